@@ -1,0 +1,1 @@
+//! The Student-t microfacet model in double precision.

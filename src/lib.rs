@@ -1,0 +1,1 @@
+//! Bakes, certifies and validates tables for Student-t microfacet materials.

@@ -1,0 +1,3 @@
+//! The `microfacet-bake` command.
+
+fn main() {}
