@@ -1,1 +1,25 @@
-//! The Student-t microfacet model in double precision.
+//! The Student-t microfacet model in double precision: the truth that tables are baked from and judged by.
+//!
+//! [`StudentT`] is the distribution of normals with roughness σx, σy and shape γ (Ribardière et al. 2017, *STD: Student's
+//! t-distribution of slopes for microfacet based BSDFs*); GGX and Beckmann are its members γ = 2 and γ = ∞. Directions are unit
+//! vectors in the tangent frame, n = +z, angles in radians. No tables and no files; every function is a formula
+//! or a root found to rounding, and uses the `libm` crate, so that results are the same bits on every system.
+
+mod error;
+mod exact;
+mod ndf;
+mod paper;
+mod reduced;
+mod shape;
+mod student_t;
+mod visible;
+
+pub use error::ParameterError;
+pub use shape::{Shape, Unit};
+pub use student_t::{Masking, StudentT};
+pub use visible::{SignedUnit, UnitView, VisibleSlope, across_cdf, across_quantile};
+
+/// The formulas as the paper prints them, for comparison only; see each for where it fails.
+pub mod printed {
+    pub use crate::paper::*;
+}

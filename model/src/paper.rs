@@ -1,0 +1,148 @@
+//! Λ as Ribardière et al. 2017 print it, in the arrangement of their equations.
+//!
+//! Kept to show where each form loses digits or leaves its range; [`Shape::lambda`](crate::Shape::lambda) is the
+//! one to use. Arguments: γ and the unit cotangent z = cot θ / σ > 0; `printed` shows each beside the conditioned form.
+
+use core::f64::consts::PI;
+
+/// Eq. 13–15: Λ = Γ(γ−½)/(√π Γ(γ)) · [ (γ−1)^γ/((2γ−3) z) · (γ−1+z²)^(3/2−γ) + √(γ−1) z·₂F₁(½, γ−½; 3/2; −z²/(γ−1)) ] − ½.
+///
+/// Fails by overflow of Γ from γ = 171, of (γ−1)^γ from γ = 144, and by cancellation against ½ wherever Λ is small: the absolute error
+/// stays near 1e-16 × the terms, so that G1 may exceed 1 by that much and no digit of a small Λ is right.
+pub fn lambda_hypergeometric(gamma: f64, z: f64) -> f64 {
+    let g1 = gamma - 1.0;
+    let s1 = libm::pow(g1, gamma) / ((2.0 * gamma - 3.0) * z) * libm::pow(g1 + z * z, 1.5 - gamma);
+    let s2 = g1.sqrt() * z * hypergeometric(gamma, z * z / g1);
+    prefactor(gamma) * (s1 + s2) - 0.5
+}
+
+/// Eq. 22–23: the same with z·₂F₁ replaced by the rational functions F₂₁(z)·(F₂₂(γ) + F₂₃(γ) F₂₄(z)).
+///
+/// Can be negative, so that G1 exceeds 1 (1.002 at γ = 3, z = 3): clamp it. Γ and the powers are taken in logarithms here; the
+/// error shown is the approximation's own.
+pub fn lambda_rational(gamma: f64, z: f64) -> f64 {
+    let g1 = gamma - 1.0;
+    let ratio = 1.0 / (1.0 + z * z / g1);
+    let s1 = g1 * g1.sqrt() / ((2.0 * gamma - 3.0) * z) * libm::pow(ratio, gamma - 1.5);
+    let f21 = polynomial(z, [0.0, 1.066, 2.655, 4.892]) / polynomial(z, [1.038, 2.969, 4.305, 4.418]);
+    let f22 = polynomial(gamma, [14.402, -27.145, 20.574, -2.745])
+        / polynomial(gamma, [-30.612, 86.567, -84.341, 29.938]);
+    let f23 = polynomial(gamma, [-129.404, 324.987, -299.305, 93.268])
+        / polynomial(gamma, [-92.609, 256.006, -245.663, 86.064]);
+    let f24 = polynomial(z, [6.537, 6.074, -0.623, 5.223]) / polynomial(z, [6.538, 6.103, -3.218, 6.347]);
+    prefactor(gamma) * (s1 + g1.sqrt() * f21 * (f22 + f23 * f24)) - 0.5
+}
+
+/// Eq. 21 for integer γ ≥ 2: the hypergeometric function becomes an alternating sum with γ−1 terms, prefactor
+/// (2γ−2)!/(4^(γ−1) ((γ−1)!)²).
+///
+/// `None` for other γ. The sum cancels as γ grows: already 2e-7 absolute in Λ at γ = 40 and z = 30.
+pub fn lambda_integer(gamma: f64, z: f64) -> Option<f64> {
+    if gamma < 2.0 || gamma.fract() != 0.0 || gamma > 1e3 {
+        return None;
+    }
+    let g1 = gamma - 1.0;
+    let a = z / g1.sqrt();
+    let sin = a / (1.0 + a * a).sqrt();
+    // (2γ−2)!/(4^(γ−1)((γ−1)!)²) by its product, which does not overflow.
+    let mut prefactor = 1.0;
+    let mut j = 1.0;
+    while j <= g1 {
+        prefactor *= (j - 0.5) / j;
+        j += 1.0;
+    }
+    // Σ (−1)^j C(γ−2, j) sin^(2j+1)/(2j+1) = ∫ cos^(2γ−3).
+    let (mut binomial, mut power, mut sum, mut j) = (1.0, sin, 0.0, 0.0);
+    while j <= gamma - 2.0 {
+        sum += binomial * power / (2.0 * j + 1.0);
+        binomial *= -(gamma - 2.0 - j) / (j + 1.0);
+        power *= sin * sin;
+        j += 1.0;
+    }
+    let first = libm::pow(1.0 + a * a, 1.5 - gamma) / ((2.0 * gamma - 3.0) * a);
+    Some(prefactor * g1 * (first + sum) - 0.5)
+}
+
+/// Eq. 21 for half-integer γ ≥ 5/2: an arctangent and a sum that runs to γ − 3/2.
+///
+/// `None` for other γ. All terms are positive, so it is limited by the cancellation against ½ only.
+pub fn lambda_half_integer(gamma: f64, z: f64) -> Option<f64> {
+    let order = gamma - 1.5;
+    if order < 1.0 || order.fract() != 0.0 || gamma > 1e3 {
+        return None;
+    }
+    let a = z / (gamma - 1.0).sqrt();
+    let cos2 = 1.0 / (1.0 + a * a);
+    // ∫₀^φ cos^(2m) = (2m−1)!!/(2m)!! · (φ + sin φ cos φ Σ_{j<m} (2j)!!/(2j+1)!! cos^(2j) φ), and the
+    // normalisation is twice the reciprocal of the whole's ½π (2m−1)!!/(2m)!!.
+    let (mut term, mut sum, mut j) = (1.0, 0.0, 0.0);
+    let mut double_factorials = 1.0;
+    while j < order {
+        sum += term;
+        term *= (2.0 * j + 2.0) / (2.0 * j + 3.0) * cos2;
+        double_factorials *= (2.0 * j + 1.0) / (2.0 * j + 2.0);
+        j += 1.0;
+    }
+    let central = (libm::atan(a) + a * cos2 * sum) / PI;
+    let first = libm::pow(1.0 + a * a, 1.5 - gamma) / ((2.0 * gamma - 3.0) * a) / (PI * double_factorials);
+    Some(first + central - 0.5)
+}
+
+fn polynomial(x: f64, c: [f64; 4]) -> f64 {
+    c[0] + x * (c[1] + x * (c[2] + x * c[3]))
+}
+
+/// Γ(γ−½)/(√π Γ(γ)), with the Γ of the paper; the ratio is ∞/∞ from γ = 171.5.
+fn prefactor(gamma: f64) -> f64 {
+    libm::tgamma(gamma - 0.5) / (PI.sqrt() * libm::tgamma(gamma))
+}
+
+/// ₂F₁(½, γ−½; 3/2; −x) by Pfaff's transformation and the power series, x ≥ 0.
+fn hypergeometric(gamma: f64, x: f64) -> f64 {
+    // (1+x)^(−½) ₂F₁(½, 2−γ; 3/2; x/(1+x)).
+    let y = x / (1.0 + x);
+    let (mut term, mut sum, mut n) = (1.0, 1.0, 0.0);
+    while n < 20_000.0 && f64::abs(term) > 1e-17 * f64::abs(sum) {
+        term *= (0.5 + n) * (2.0 - gamma + n) / ((1.5 + n) * (n + 1.0)) * y;
+        sum += term;
+        n += 1.0;
+    }
+    sum / (1.0 + x).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Shape;
+
+    fn exact(gamma: f64, z: f64) -> f64 {
+        let shape = Shape::new(gamma).unwrap();
+        shape.lambda(shape.unit(z))
+    }
+
+    #[test]
+    fn printed_forms_agree_where_they_are_sound() {
+        for z in [0.05, 0.4, 1.0, 2.5] {
+            for gamma in [1.6, 2.0, 2.5, 3.0, 7.3, 20.0] {
+                let error = (lambda_hypergeometric(gamma, z) - exact(gamma, z)).abs();
+                assert!(error < 1e-11 * (1.0 + exact(gamma, z)), "eq. 13 at gamma {gamma}, z {z}: {error}");
+            }
+            for gamma in [2.0, 3.0, 4.0, 10.0] {
+                let error = (lambda_integer(gamma, z).unwrap() - exact(gamma, z)).abs();
+                assert!(error < 1e-13 * (1.0 + exact(gamma, z)), "eq. 21 at gamma {gamma}, z {z}: {error}");
+            }
+            for gamma in [2.5, 3.5, 8.5, 40.5] {
+                let error = (lambda_half_integer(gamma, z).unwrap() - exact(gamma, z)).abs();
+                assert!(error < 1e-14 * (1.0 + exact(gamma, z)), "eq. 21 at gamma {gamma}, z {z}: {error}");
+            }
+        }
+        assert!(lambda_integer(2.5, 1.0).is_none() && lambda_half_integer(3.0, 1.0).is_none());
+    }
+
+    #[test]
+    fn printed_forms_fail_where_their_docs_say() {
+        assert!((lambda_integer(40.0, 30.0).unwrap() - exact(40.0, 30.0)).abs() > 1e-9);
+        assert!(!lambda_hypergeometric(172.0, 1.0).is_finite());
+        assert!(1.0 / (1.0 + lambda_rational(3.0, 3.0)) > 1.001);
+    }
+}

@@ -1,0 +1,235 @@
+//! Visible normals in unit space: two independent one-dimensional distributions, their CDFs and inverses.
+//!
+//! In the space where slopes are divided by σ, a view at unit angle θ sees the in-plane slope x (positive towards the
+//! viewer) with density ∝ (cos θ + x sin θ) p(x) on x > −cot θ, and the slope across the plane as
+//! y = √(1 + s x²)·t with t ∝ (1 + s t²)^(−γ), independent of the view and of x. This is the separation into α and β of
+//! the canonical lobe, tan α = √s x and tan β = √s t, written so that it survives s → 0.
+
+use crate::shape::{Shape, Unit};
+
+/// The elevation of a view in unit space, as a unit vector (sin θ, cos θ) in the plane of incidence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnitView {
+    /// sin θ ∈ [0, 1].
+    pub sin: f64,
+    /// cos θ ∈ [0, 1].
+    pub cos: f64,
+}
+
+impl UnitView {
+    /// The view whose unit cotangent is z = cot θ_v / σ_v ∈ [0, ∞].
+    pub fn from_cotangent(z: f64) -> Self {
+        if z.is_infinite() {
+            return Self { sin: 0.0, cos: 1.0 };
+        }
+        // z² would overflow above 1e154; scaling by the larger leg keeps every case.
+        if z > 1.0 {
+            let r = 1.0 / z;
+            let cos = 1.0 / (1.0 + r * r).sqrt();
+            Self { sin: r * cos, cos }
+        } else {
+            let sin = 1.0 / (1.0 + z * z).sqrt();
+            Self { sin, cos: z * sin }
+        }
+    }
+
+    /// z = cot θ ∈ [0, ∞].
+    pub fn cotangent(&self) -> f64 {
+        if self.sin == 0.0 { f64::INFINITY } else { self.cos / self.sin }
+    }
+}
+
+/// A unit slope with its sign: x = ±slope(w).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SignedUnit {
+    /// Magnitude, see [`Unit`].
+    pub w: Unit,
+    /// −1.0 (away from the viewer) or 1.0 (towards).
+    pub sign: f64,
+}
+
+/// The distribution of the in-plane slope of visible normals for one shape and one view.
+#[derive(Clone, Copy, Debug)]
+pub struct VisibleSlope<'a> {
+    shape: &'a Shape,
+    view: UnitView,
+    /// w of the silhouette x = −cot θ (∞ at normal incidence).
+    w_silhouette: Unit,
+    /// E[(X − z)⁺] at the silhouette.
+    excess: f64,
+    /// Projected area cos θ (1 + Λ) = ∫ (cos θ + x sin θ)⁺ p(x) dx in unit space.
+    area: f64,
+}
+
+impl<'a> VisibleSlope<'a> {
+    /// Prepares the distribution; costs one evaluation of Λ.
+    pub fn new(shape: &'a Shape, view: UnitView) -> Self {
+        let w_silhouette = shape.unit(view.cotangent());
+        let excess = shape.excess(w_silhouette);
+        Self { shape, view, w_silhouette, excess, area: view.cos + view.sin * excess }
+    }
+
+    /// Projected area of the microsurface per unit of projected macrosurface scale: cos θ (1 + Λ) in unit space.
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// Mass of slopes above x ≥ 0, not normalised.
+    fn upper(&self, w: Unit) -> f64 {
+        self.view.cos * self.shape.tail(w) + self.view.sin * self.shape.first_moment(w)
+    }
+
+    /// Mass of slopes between the silhouette and −q ≤ 0, not normalised.
+    fn lower(&self, w: Unit) -> f64 {
+        if w >= self.w_silhouette {
+            return 0.0;
+        }
+        if self.view.sin == 0.0 {
+            return self.view.cos * self.shape.tail(w);
+        }
+        let gap = self.w_silhouette - w;
+        if gap * (2.0 + 2.0 * w) < 1.0 {
+            return self.lower_by_quadrature(w, gap);
+        }
+        let q = self.shape.slope(w);
+        let closed = (self.view.cos - q * self.view.sin) * self.shape.tail(w)
+            - self.view.sin * (self.shape.excess(w) - self.excess);
+        closed.max(0.0)
+    }
+
+    /// Near the silhouette the closed form subtracts nearly equal areas, while the integrand is positive and, over a gap
+    /// of a fraction of its own scale, a polynomial to all digits.
+    fn lower_by_quadrature(&self, w: Unit, gap: f64) -> f64 {
+        // Gauss-Legendre, ten points, positive halves (Abramowitz & Stegun 25.4.30).
+        const NODES: [(f64, f64); 5] = [
+            (0.148874338981631211, 0.295524224714752870),
+            (0.433395394129247191, 0.269266719309996355),
+            (0.679409568299024406, 0.219086362515982044),
+            (0.865063366688984511, 0.149451349150580593),
+            (0.973906528517171720, 0.066671344308688138),
+        ];
+        let half = 0.5 * gap;
+        let mut sum = 0.0;
+        for (node, weight) in NODES {
+            for at in [half * (1.0 - node), half * (1.0 + node)] {
+                let wi = w + at;
+                sum += weight * self.facing(wi) * self.shape.density(wi);
+            }
+        }
+        half * sum
+    }
+
+    /// cos θ − q sin θ for a slope −q between the silhouette and 0, without cancellation near the silhouette.
+    fn facing(&self, w: Unit) -> f64 {
+        if self.shape.is_beckmann() {
+            return self.view.sin * (self.w_silhouette - w);
+        }
+        // sinh a − sinh b = 2 cosh((a+b)/2) sinh((a−b)/2).
+        let root = self.shape.s().sqrt();
+        let (a, b) = (root * self.w_silhouette, root * w);
+        self.view.sin / root * 2.0 * libm::cosh(0.5 * (a + b)) * libm::sinh(0.5 * (a - b))
+    }
+
+    /// CDF of the in-plane slope: the probability of slopes below (further from the viewer than) `x`.
+    pub fn cdf(&self, x: SignedUnit) -> f64 {
+        let share = if x.sign < 0.0 { self.lower(x.w) } else { self.area - self.upper(x.w) };
+        (share / self.area).clamp(0.0, 1.0)
+    }
+
+    /// 1 − CDF, accurate where the CDF is close to 1.
+    pub fn complement(&self, x: SignedUnit) -> f64 {
+        let share = if x.sign < 0.0 { self.area - self.lower(x.w) } else { self.upper(x.w) };
+        (share / self.area).clamp(0.0, 1.0)
+    }
+
+    /// Density of the CDF with respect to w at a slope of either sign.
+    pub fn density(&self, x: SignedUnit) -> f64 {
+        let facing = if x.sign < 0.0 {
+            if x.w >= self.w_silhouette { 0.0 } else { self.facing_density(x.w) }
+        } else {
+            self.view.cos * self.shape.density(x.w) + self.view.sin * self.shape.first_moment_density(x.w)
+        };
+        facing / self.area
+    }
+
+    /// Inverse CDF: the slope below which the share u ∈ [0, 1] of the visible normals lies.
+    ///
+    /// u = 0 gives the silhouette, u = 1 an infinite slope (the horizon on the viewer's side). Solved by safeguarded Newton
+    /// steps on the logarithm of the smaller side; the angle is right to about 1e-15.
+    pub fn quantile(&self, u: f64) -> SignedUnit {
+        let above_zero = self.upper(0.0);
+        let below_zero = self.area - above_zero;
+        if u * self.area < below_zero {
+            let target = u * self.area;
+            let w = if target <= 0.0 {
+                self.w_silhouette
+            } else {
+                solve_decreasing(target, 0.0, self.w_silhouette, |w| (self.lower(w), self.facing_density(w)))
+            };
+            return SignedUnit { w, sign: -1.0 };
+        }
+        let target = (1.0 - u) * self.area;
+        let w = if target <= 0.0 {
+            f64::INFINITY
+        } else {
+            let slope = |w| self.density(SignedUnit { w, sign: 1.0 }) * self.area;
+            solve_decreasing(target, 0.0, f64::INFINITY, |w| (self.upper(w), slope(w)))
+        };
+        SignedUnit { w, sign: 1.0 }
+    }
+
+    fn facing_density(&self, w: Unit) -> f64 {
+        if self.view.sin == 0.0 {
+            return self.view.cos * self.shape.density(w);
+        }
+        self.facing(w) * self.shape.density(w)
+    }
+}
+
+/// Inverse CDF of the slope across the plane (in units of √(1 + s x²)): odd about u = ½, ±∞ at u = 0 and 1.
+pub fn across_quantile(shape: &Shape, u: f64) -> SignedUnit {
+    let (target, sign) = if u < 0.5 { (u, -1.0) } else { (1.0 - u, 1.0) };
+    let w = if target <= 0.0 {
+        f64::INFINITY
+    } else {
+        solve_decreasing(target, 0.0, f64::INFINITY, |w| (shape.across_tail(w), shape.across_density(w)))
+    };
+    SignedUnit { w, sign }
+}
+
+/// CDF of the slope across the plane.
+pub fn across_cdf(shape: &Shape, t: SignedUnit) -> f64 {
+    let tail = shape.across_tail(t.w);
+    if t.sign < 0.0 { tail } else { 1.0 - tail }
+}
+
+/// Solves f(w) = target for a decreasing f on [lo, hi], where `f` gives the value and minus the derivative.
+///
+/// Newton on ln f, which is nearly linear in the tails, inside a bracket that is bisected whenever a step leaves it; an
+/// infinite upper end is first replaced by doubling.
+fn solve_decreasing(target: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let mut w = if hi.is_infinite() { 1.0 } else { 0.5 * (lo + hi) };
+    for _ in 0..200 {
+        let (value, rate) = f(w);
+        if value > target {
+            lo = w;
+        } else {
+            hi = w;
+        }
+        let step = value / rate * libm::log(value / target);
+        let newton = w + step;
+        let inside = newton > lo && newton < hi;
+        let next = if step.is_finite() && inside {
+            newton
+        } else if hi.is_infinite() {
+            2.0 * w
+        } else {
+            0.5 * (lo + hi)
+        };
+        if (next - w).abs() <= 4e-16 * w.abs() + 1e-18 || hi - lo <= 4e-16 * lo {
+            return next;
+        }
+        w = next;
+    }
+    w
+}
