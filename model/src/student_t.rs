@@ -88,7 +88,7 @@ impl StudentT {
     /// # Errors
     /// [`ParameterError::Exponent`] unless 0 ≤ N < ∞.
     pub fn blinn_phong(exponent: f64) -> Result<Self, ParameterError> {
-        if !(exponent >= 0.0 && exponent < f64::INFINITY) {
+        if !(0.0..f64::INFINITY).contains(&exponent) {
             return Err(ParameterError::Exponent(exponent));
         }
         Self::isotropic((2.0 / (exponent + 2.0)).sqrt(), 0.5 * (exponent + 4.0))
