@@ -53,6 +53,8 @@ pub struct SignedUnit {
 pub struct VisibleSlope<'a> {
     shape: &'a Shape,
     view: UnitView,
+    /// Weights of p(x) and x p(x) for slopes towards the viewer; (cos θ, sin θ) unless peeled.
+    towards: (f64, f64),
     /// w of the silhouette x = −cot θ (∞ at normal incidence).
     w_silhouette: Unit,
     /// E[(X − z)⁺] at the silhouette.
@@ -66,7 +68,21 @@ impl<'a> VisibleSlope<'a> {
     pub fn new(shape: &'a Shape, view: UnitView) -> Self {
         let w_silhouette = shape.unit(view.cotangent());
         let excess = shape.excess(w_silhouette);
-        Self { shape, view, w_silhouette, excess, area: view.cos + view.sin * excess }
+        let area = view.cos + view.sin * excess;
+        Self { shape, view, towards: (view.cos, view.sin), w_silhouette, excess, area }
+    }
+
+    /// The same without its *heavy part*, the term x sin θ p(x) on x > 0, whose mass is sin θ·M₀ and whose
+    /// inverse is closed-form.
+    ///
+    /// Near γ = 3/2 the heavy part takes all but a sliver of the probability into slopes beyond any table, with a boundary layer at
+    /// normal incidence where it fades; what is left is regular there. At grazing it vanishes, and the limit is returned: the
+    /// NDF's own slopes towards the viewer.
+    pub fn peeled(shape: &'a Shape, view: UnitView) -> Self {
+        let mut rest = Self::new(shape, view);
+        rest.towards = (if view.cos > 0.0 { view.cos } else { 1.0 }, 0.0);
+        rest.area = rest.upper(0.0) + rest.lower(0.0);
+        rest
     }
 
     /// Projected area of the microsurface per unit of projected macrosurface scale: cos θ (1 + Λ) in unit space.
@@ -76,7 +92,7 @@ impl<'a> VisibleSlope<'a> {
 
     /// Mass of slopes above x ≥ 0, not normalised.
     fn upper(&self, w: Unit) -> f64 {
-        self.view.cos * self.shape.tail(w) + self.view.sin * self.shape.first_moment(w)
+        self.towards.0 * self.shape.tail(w) + self.towards.1 * self.shape.first_moment(w)
     }
 
     /// Mass of slopes between the silhouette and −q ≤ 0, not normalised.
@@ -147,7 +163,7 @@ impl<'a> VisibleSlope<'a> {
         let facing = if x.sign < 0.0 {
             if x.w >= self.w_silhouette { 0.0 } else { self.facing_density(x.w) }
         } else {
-            self.view.cos * self.shape.density(x.w) + self.view.sin * self.shape.first_moment_density(x.w)
+            self.towards.0 * self.shape.density(x.w) + self.towards.1 * self.shape.first_moment_density(x.w)
         };
         facing / self.area
     }

@@ -1,2 +1,31 @@
-//! Run-time sampling and evaluation of Student-t microfacet materials from baked tables.
+//! Run-time evaluation and sampling of Student-t microfacet materials from baked tables.
+//!
+//! A renderer loads a set once ([`Tables::embedded`] or [`Tables::from_bytes`]), binds each material
+//! ([`Tables::student_t`]), and then evaluates `d`, `g1`, `g2`, samples visible normals and evaluates their density through [`StudentT`].
+//! Directions are unit vectors in the tangent frame, n = +z; angles are in radians.
+//!
+//! The crate is `no_std` with `alloc` when its default features are off.
+
 #![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
+
+mod axis;
+mod bind;
+mod cells;
+mod container;
+mod error;
+mod math;
+mod sample;
+mod student_t;
+mod table;
+mod table_pdf;
+mod tables;
+
+pub use axis::{Axis, Interpolation, Mapping};
+pub use cells::limit_slopes;
+pub use container::{FORMAT, MaterialEntry, Precision, Provenance, VERSION, encode};
+pub use error::{BindError, LoadError};
+pub use student_t::{Masking, Roughness, StudentT};
+pub use table::{Kind, Table};
+pub use tables::Tables;

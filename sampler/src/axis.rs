@@ -1,0 +1,151 @@
+//! Axes of tables: what runs along them, where their nodes are, and how a table is read between the nodes.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::LoadError;
+
+/// How a physical quantity becomes the coordinate along an axis. The mapping is data in the file; readers need no other
+/// knowledge of it than these formulas.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Mapping {
+    /// The quantity itself.
+    Identity,
+    /// s = 1/(γ−1) ∈ [0, 2): 0 is Beckmann, 1 is GGX.
+    InverseShape,
+    /// τ = z/(1 + √(1+z²)) ∈ [0, 1], z = cot θ_v / σ_v: the tangent of half the elevation in unit space. 0 is grazing, 1 normal
+    /// incidence (or σ → 0).
+    HalfTangent,
+    /// r = 1 − √(1−τ) ∈ [0, 1]: τ with its nodes crowded towards normal incidence.
+    HalfTangentRoot,
+    /// q = z/(z + κ) ∈ [0, 1] with κ = scale/(pole − s), z as above.
+    Rational {
+        /// Numerator of κ.
+        scale: f64,
+        /// Where κ diverges, in s.
+        pole: f64,
+    },
+    /// r = 1 − √(1−q) ∈ [0, 1]: q of [`Rational`](Self::Rational) with its nodes crowded towards normal incidence.
+    RationalRoot {
+        /// Numerator of κ.
+        scale: f64,
+        /// Where κ diverges, in s.
+        pole: f64,
+    },
+    /// t = (2 min(u, 1−u))^(1/power) ∈ [0, 1]. Along the axis stand first the nodes for u ≤ ½ (t ascending from u = 0), then as many
+    /// for u > ½ (t ascending from u = 1), unless the axis is `odd`, when only the second half is stored.
+    MirroredPower {
+        /// 1, 2 or 4.
+        power: u32,
+        /// Whether the value at u is minus the value at 1−u, so that one half is enough.
+        odd: bool,
+    },
+}
+
+/// How values between nodes are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Interpolation {
+    /// Straight lines.
+    Linear,
+    /// Cubic Hermite from the channels `value` and `slope`, the slope being the derivative with respect to the node index.
+    Hermite,
+    /// The Lagrange polynomial through the four nearest nodes (fewer if the axis has fewer).
+    Lagrange4,
+    /// None: only the nodes themselves are covered.
+    Nodes,
+}
+
+/// One axis of a table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    /// Short name, such as `gamma`, `view` or `u1`.
+    pub name: String,
+    /// Unit of the physical quantity; `1` for pure numbers.
+    pub unit: String,
+    /// From quantity to coordinate.
+    pub mapping: Mapping,
+    /// How values between nodes are made.
+    pub interpolation: Interpolation,
+    /// Node coordinates, ascending. Values sit at the nodes (not at cell centres).
+    pub nodes: Vec<f64>,
+}
+
+impl Axis {
+    /// How many values stand along this axis.
+    pub fn len(&self) -> usize {
+        match self.mapping {
+            Mapping::MirroredPower { odd: false, .. } => 2 * self.nodes.len(),
+            _ => self.nodes.len(),
+        }
+    }
+
+    /// Whether it has no nodes; never true for an axis that was validated.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// Nodes 0, 1/(n−1), …, 1.
+    pub fn uniform_nodes(n: usize) -> Vec<f64> {
+        (0..n).map(|i| i as f64 / (n - 1) as f64).collect()
+    }
+
+    /// Checks what every reader relies on: finite, strictly ascending nodes inside the mapping's range, and uniform ones where the
+    /// lookup computes its cell instead of searching it.
+    pub(crate) fn validate(&self) -> Result<(), LoadError> {
+        let fail = |why: &str| Err(LoadError::Invalid(format!("axis `{}`: {why}", self.name)));
+        if self.nodes.is_empty() {
+            return fail("no nodes");
+        }
+        if self.nodes.iter().any(|x| !x.is_finite()) {
+            return fail("a node is not finite");
+        }
+        if self.nodes.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return fail("nodes do not ascend");
+        }
+        let (low, high) = match self.mapping {
+            Mapping::Identity => (f64::MIN, f64::MAX),
+            Mapping::InverseShape => (0.0, 2.0 - f64::EPSILON),
+            _ => (0.0, 1.0),
+        };
+        if self.nodes[0] < low || self.nodes[self.nodes.len() - 1] > high {
+            return fail("a node lies outside the range of its mapping");
+        }
+        match self.mapping {
+            Mapping::MirroredPower { power, .. } if ![1, 2, 4].contains(&power) => {
+                return Err(LoadError::Unsupported(format!(
+                    "axis `{}`: power {power} is not 1, 2 or 4",
+                    self.name
+                )));
+            }
+            Mapping::Rational { scale, pole } | Mapping::RationalRoot { scale, pole }
+                if !(scale > 0.0 && scale < 1e6 && (2.0..=1e6).contains(&pole)) =>
+            {
+                return fail("scale or pole out of range");
+            }
+            _ => {}
+        }
+        // These are looked up by computing the cell; the others by searching it.
+        if !matches!(self.mapping, Mapping::Identity | Mapping::InverseShape) {
+            let n = self.nodes.len();
+            if n < 2 {
+                return fail("needs at least two nodes");
+            }
+            let off = |(i, x): (usize, &f64)| (x - i as f64 / (n - 1) as f64).abs() > 1e-12;
+            if self.nodes.iter().enumerate().any(off) {
+                return Err(LoadError::Unsupported(format!(
+                    "axis `{}`: this mapping needs nodes spread evenly over [0, 1]",
+                    self.name
+                )));
+            }
+        }
+        Ok(())
+    }
+}

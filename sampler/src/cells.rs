@@ -1,0 +1,89 @@
+//! Cubic Hermite cells on uniform nodes: the one interpolation that lookups use.
+
+/// (value, slope) at a node, the slope per node index.
+pub(crate) type Node = [f32; 2];
+
+/// Splits a coordinate in [0, cells] into a cell and the position inside it.
+///
+/// The position is 1 at the last node, so that both ends are reached. A coordinate that is not a number gives cell 0.
+#[inline(always)]
+pub(crate) fn locate(x: f32, cells: usize) -> (usize, f32) {
+    // The cast saturates and sends NaN to 0; the cell is at most cells − 1 whatever x is.
+    let cell = (x as i32).clamp(0, cells as i32 - 1);
+    (cell as usize, x - cell as f32)
+}
+
+/// The cubic through two nodes at position w ∈ [0, 1] between them.
+#[inline(always)]
+pub(crate) fn hermite(a: Node, b: Node, w: f32) -> f32 {
+    let rise = b[0] - a[0];
+    let c2 = 3.0 * rise - 2.0 * a[1] - b[1];
+    let c3 = a[1] + b[1] - 2.0 * rise;
+    a[0] + w * (a[1] + w * (c2 + w * c3))
+}
+
+/// Two neighbouring nodes, each interpolated linearly between the rows `low` and `high` of a table.
+#[inline(always)]
+pub(crate) fn between_rows(low: &[Node], high: &[Node], cell: usize, w: f32) -> (Node, Node) {
+    // A window of two nodes is 16 bytes: one load a row.
+    let (a, b) = (&low[cell..cell + 2], &high[cell..cell + 2]);
+    let mix = |a: Node, b: Node| [a[0] + w * (b[0] - a[0]), a[1] + w * (b[1] - a[1])];
+    (mix(a[0], b[0]), mix(a[1], b[1]))
+}
+
+/// A cubic on [0, 1] in double precision, for inverting what [`hermite`] evaluates.
+#[derive(Clone, Copy)]
+pub(crate) struct Cubic {
+    c: [f64; 4],
+}
+
+impl Cubic {
+    pub(crate) fn new(a: Node, b: Node) -> Self {
+        let [a0, a1, b0, b1] = [a[0], a[1], b[0], b[1]].map(f64::from);
+        let rise = b0 - a0;
+        Self { c: [a0, a1, 3.0 * rise - 2.0 * a1 - b1, a1 + b1 - 2.0 * rise] }
+    }
+
+    pub(crate) fn value(&self, w: f64) -> f64 {
+        self.c[0] + w * (self.c[1] + w * (self.c[2] + w * self.c[3]))
+    }
+
+    pub(crate) fn derivative(&self, w: f64) -> f64 {
+        self.c[1] + w * (2.0 * self.c[2] + w * 3.0 * self.c[3])
+    }
+
+    /// w ∈ [0, 1] with value `y`; the cubic ascends, as nodes are kept monotone.
+    pub(crate) fn solve(&self, y: f64) -> f64 {
+        let (mut lo, mut hi, mut w) = (0.0, 1.0, 0.5);
+        for _ in 0..60 {
+            let error = self.value(w) - y;
+            if error > 0.0 {
+                hi = w;
+            } else {
+                lo = w;
+            }
+            let newton = w - error / self.derivative(w);
+            let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
+            if (next - w).abs() < 1e-15 {
+                return next;
+            }
+            w = next;
+        }
+        w
+    }
+}
+
+/// Limits slopes so that the cubic of every cell ascends with its nodes: each slope lies in [0, 3Δ] of both
+/// neighbouring rises Δ (Fritsch & Carlson 1980). The condition is linear, so it also holds between rows.
+pub fn limit_slopes(nodes: &mut [[f32; 2]]) {
+    for i in 0..nodes.len() {
+        let mut limit = f32::INFINITY;
+        if i > 0 {
+            limit = limit.min(3.0 * (nodes[i][0] - nodes[i - 1][0]));
+        }
+        if i + 1 < nodes.len() {
+            limit = limit.min(3.0 * (nodes[i + 1][0] - nodes[i][0]));
+        }
+        nodes[i][1] = nodes[i][1].min(limit).max(0.0);
+    }
+}

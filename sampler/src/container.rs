@@ -1,0 +1,341 @@
+//! The safetensors container: one file, all tables of a set, described by one JSON document in its metadata.
+//!
+//! `docs/format.md` is the specification. Everything in the file is under one CRC-32, the header included: it is taken over
+//! the whole file with its own eight digits replaced by `0`, so that a damaged shape or axis is found like a damaged value.
+
+use alloc::borrow::ToOwned;
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec;
+use alloc::vec::Vec;
+
+use half::f16;
+use safetensors::{Dtype, SafeTensors, tensor::TensorView};
+use serde::{Deserialize, Serialize};
+
+use crate::axis::Axis;
+use crate::error::LoadError;
+use crate::table::{Kind, Table};
+
+/// `format` of the document.
+pub const FORMAT: &str = "microfacet-tables";
+/// Version of the format that this crate writes, and the newest that it reads.
+pub const VERSION: u32 = 1;
+/// Key of the document in the safetensors metadata.
+const KEY: &str = "microfacet";
+/// What precedes the digits of the checksum in the raw header, where the document is a JSON string inside JSON.
+const CHECKSUM_PREFIX: &[u8] = br#"\"checksum\":\""#;
+const NO_CHECKSUM: &str = "00000000";
+
+/// How values are stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// IEEE single precision.
+    #[default]
+    F32,
+    /// IEEE half precision.
+    F16,
+    /// Sixteen-bit fixed point, value = offset + scale·integer with one offset and scale a channel.
+    U16,
+}
+
+/// Where a set comes from and how its numbers are to be read.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Program and version that baked the set.
+    pub generator: String,
+    /// Number of the numeric method; it changes whenever the same recipe would give other bytes.
+    pub numerics: u32,
+    /// Licence of the data.
+    pub license: String,
+    /// The conventions a reader could get wrong, in words.
+    pub conventions: BTreeMap<String, String>,
+    /// The recipe the set was baked from, as TOML; empty for the general set.
+    pub recipe: String,
+    /// Named materials of the recipe.
+    pub materials: Vec<MaterialEntry>,
+}
+
+/// A named material of a recipe.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MaterialEntry {
+    /// Its name.
+    pub name: String,
+    /// σx and σy, as ranges [min, max] where a texture drives them.
+    pub sigma: [[f64; 2]; 2],
+    /// 1/(γ−1), so that γ = ∞ is the number 0; a range [min, max] likewise.
+    pub s: [f64; 2],
+}
+
+#[derive(Serialize, Deserialize)]
+struct Document {
+    format: String,
+    version: u32,
+    checksum: String,
+    #[serde(flatten)]
+    provenance: Provenance,
+    tables: Vec<Descriptor>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Descriptor {
+    name: String,
+    kind: Kind,
+    axes: Vec<Axis>,
+    channels: Vec<String>,
+    precision: Precision,
+    /// For `u16`: value = offset + scale·integer, by channel.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    scale: Vec<f32>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    offset: Vec<f32>,
+    certificate: BTreeMap<String, f64>,
+}
+
+fn invalid(why: impl ToString) -> LoadError {
+    LoadError::Invalid(why.to_string())
+}
+
+/// Writes a set as the bytes of a safetensors file; the same set always gives the same bytes.
+///
+/// # Errors
+/// [`LoadError::Invalid`] if a table would not load again.
+pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, LoadError> {
+    let mut descriptors = Vec::new();
+    let mut data = Vec::new();
+    for table in tables {
+        table.validate()?;
+        let codec = Codec::fit(table);
+        data.push((table.name.clone(), table.shape(), codec.encode(&table.values)));
+        let (scale, offset) = codec.scale_offset();
+        descriptors.push(Descriptor {
+            name: table.name.clone(),
+            kind: table.kind,
+            axes: table.axes.clone(),
+            channels: table.channels.clone(),
+            precision: table.precision,
+            scale,
+            offset,
+            certificate: table.certificate.clone(),
+        });
+    }
+    let document = Document {
+        format: FORMAT.into(),
+        version: VERSION,
+        checksum: NO_CHECKSUM.into(),
+        provenance: provenance.clone(),
+        tables: descriptors,
+    };
+    let json = serde_json::to_string(&document).map_err(invalid)?;
+    let views = data
+        .iter()
+        .zip(tables)
+        .map(|((name, shape, bytes), table)| {
+            TensorView::new(dtype(table.precision), shape.clone(), bytes).map(|view| (name.as_str(), view))
+        })
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(invalid)?;
+    // One key only: the library writes the metadata in the order of a hash map.
+    let metadata = [(KEY.to_owned(), json)].into_iter().collect();
+    let mut bytes = safetensors::serialize(views, Some(metadata)).map_err(invalid)?;
+    let at = checksum_position(&bytes).ok_or_else(|| invalid("no place for the checksum"))?;
+    let digits = format!("{:08x}", crc32fast::hash(&bytes));
+    bytes[at..at + 8].copy_from_slice(digits.as_bytes());
+    Ok(bytes)
+}
+
+/// Reads a set from the bytes of a safetensors file, checking everything; `verify` may skip the checksum where the bytes are known good.
+///
+/// # Errors
+/// [`LoadError`] saying what is wrong; never a panic, and never an allocation larger than a few times the input.
+pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Table>), LoadError> {
+    let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|why| {
+        invalid(format!("{why}; a table set is a safetensors file written by `microfacet-bake`"))
+    })?;
+    let json = metadata.metadata().as_ref().and_then(|map| map.get(KEY)).ok_or_else(|| {
+        invalid(format!("a safetensors file, but without the `{KEY}` document of a table set"))
+    })?;
+    // The version first: a newer document may not parse as this one.
+    #[derive(Deserialize)]
+    struct Head {
+        format: String,
+        version: u32,
+    }
+    let head: Head = serde_json::from_str(json).map_err(invalid)?;
+    if head.format != FORMAT {
+        return Err(invalid(format!("format \"{}\" where \"{FORMAT}\" is expected", head.format)));
+    }
+    if head.version != VERSION {
+        return Err(LoadError::Unsupported(format!(
+            "format version {} (this reader knows {VERSION}): update the reader or bake again",
+            head.version
+        )));
+    }
+    if verify {
+        verify_checksum(bytes)?;
+    }
+    let document: Document = serde_json::from_str(json).map_err(invalid)?;
+    let tensors = SafeTensors::deserialize(bytes).map_err(invalid)?;
+    if tensors.len() != document.tables.len() {
+        return Err(invalid(format!("{} tensors for {} tables", tensors.len(), document.tables.len())));
+    }
+    let mut tables = Vec::with_capacity(document.tables.len());
+    for descriptor in document.tables {
+        let name = descriptor.name.clone();
+        let fail = |why: String| invalid(format!("table `{name}`: {why}"));
+        let tensor = tensors.tensor(&name).map_err(|_| fail("no tensor of that name".into()))?;
+        if tensor.dtype() != dtype(descriptor.precision) {
+            return Err(fail(format!(
+                "stored as {:?}, described as {:?}",
+                tensor.dtype(),
+                descriptor.precision
+            )));
+        }
+        if descriptor.channels.is_empty() {
+            return Err(fail("no channels".into()));
+        }
+        let codec = Codec::from_descriptor(&descriptor).map_err(|why| fail(why.into()))?;
+        let table = Table {
+            values: codec.decode(tensor.data()),
+            name: descriptor.name,
+            kind: descriptor.kind,
+            axes: descriptor.axes,
+            channels: descriptor.channels,
+            precision: descriptor.precision,
+            certificate: descriptor.certificate,
+        };
+        if table.shape() != tensor.shape() {
+            return Err(fail(format!("tensor of shape {:?}, axes of {:?}", tensor.shape(), table.shape())));
+        }
+        if tables.iter().any(|other: &Table| other.name == table.name) {
+            return Err(fail("named twice".into()));
+        }
+        table.validate()?;
+        tables.push(table);
+    }
+    Ok((document.provenance, tables))
+}
+
+fn dtype(precision: Precision) -> Dtype {
+    match precision {
+        Precision::F32 => Dtype::F32,
+        Precision::F16 => Dtype::F16,
+        Precision::U16 => Dtype::U16,
+    }
+}
+
+fn checksum_position(bytes: &[u8]) -> Option<usize> {
+    let header = usize::try_from(u64::from_le_bytes(bytes.get(..8)?.try_into().ok()?)).ok()?;
+    let head = bytes.get(..header.checked_add(8)?)?;
+    let at = head.windows(CHECKSUM_PREFIX.len()).position(|window| window == CHECKSUM_PREFIX)?;
+    let at = at + CHECKSUM_PREFIX.len();
+    (at + 8 <= head.len()).then_some(at)
+}
+
+fn verify_checksum(bytes: &[u8]) -> Result<(), LoadError> {
+    let at = checksum_position(bytes).ok_or_else(|| invalid("no checksum"))?;
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(&bytes[..at]);
+    hasher.update(NO_CHECKSUM.as_bytes());
+    hasher.update(&bytes[at + 8..]);
+    let digits = format!("{:08x}", hasher.finalize());
+    if digits.as_bytes() == &bytes[at..at + 8] {
+        Ok(())
+    } else {
+        Err(invalid("checksum does not match: the file is damaged; copy it again or bake again"))
+    }
+}
+
+/// Between f32 values and stored bytes, little-endian.
+enum Codec {
+    F32,
+    F16,
+    U16 { scale: Vec<f32>, offset: Vec<f32> },
+}
+
+impl Codec {
+    fn fit(table: &Table) -> Self {
+        match table.precision {
+            Precision::F32 => Self::F32,
+            Precision::F16 => Self::F16,
+            Precision::U16 => {
+                let n = table.channels.len();
+                let (mut low, mut high) = (vec![f32::INFINITY; n], vec![f32::NEG_INFINITY; n]);
+                for (i, &x) in table.values.iter().enumerate() {
+                    low[i % n] = low[i % n].min(x);
+                    high[i % n] = high[i % n].max(x);
+                }
+                let scale = low.iter().zip(&high).map(|(lo, hi)| (hi - lo) / 65535.0).collect();
+                Self::U16 { scale, offset: low }
+            }
+        }
+    }
+
+    fn from_descriptor(descriptor: &Descriptor) -> Result<Self, &'static str> {
+        let n = descriptor.channels.len();
+        Ok(match descriptor.precision {
+            Precision::F32 => Self::F32,
+            Precision::F16 => Self::F16,
+            Precision::U16 => {
+                let finite = |xs: &[f32]| xs.len() == n && xs.iter().all(|x| x.is_finite());
+                if !finite(&descriptor.scale) || !finite(&descriptor.offset) {
+                    return Err("`scale` and `offset` need one finite number a channel");
+                }
+                Self::U16 { scale: descriptor.scale.clone(), offset: descriptor.offset.clone() }
+            }
+        })
+    }
+
+    fn scale_offset(&self) -> (Vec<f32>, Vec<f32>) {
+        match self {
+            Self::U16 { scale, offset } => (scale.clone(), offset.clone()),
+            _ => (Vec::new(), Vec::new()),
+        }
+    }
+
+    fn encode(&self, values: &[f32]) -> Vec<u8> {
+        match self {
+            Self::F32 => values.iter().flat_map(|x| x.to_le_bytes()).collect(),
+            Self::F16 => values.iter().flat_map(|&x| f16::from_f32(x).to_le_bytes()).collect(),
+            Self::U16 { scale, offset } => {
+                let n = scale.len();
+                let quantise = |(i, &x): (usize, &f32)| {
+                    let step = scale[i % n];
+                    // A constant channel has no step; half a step is added since the cast truncates.
+                    let q = if step > 0.0 { ((x - offset[i % n]) / step + 0.5) as u16 } else { 0 };
+                    q.to_le_bytes()
+                };
+                values.iter().enumerate().flat_map(quantise).collect()
+            }
+        }
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Vec<f32> {
+        match self {
+            Self::F32 => {
+                bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+            }
+            Self::F16 => bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect(),
+            Self::U16 { scale, offset } => {
+                let n = scale.len();
+                let value = |(i, b): (usize, &[u8])| {
+                    offset[i % n] + scale[i % n] * f32::from(u16::from_le_bytes([b[0], b[1]]))
+                };
+                bytes.chunks_exact(2).enumerate().map(value).collect()
+            }
+        }
+    }
+}
+
+impl Table {
+    /// The table as it will be read back when stored at `precision`: rounding happens here and nowhere else, so that a
+    /// certificate can be measured on what a reader gets.
+    pub fn rounded(mut self, precision: Precision) -> Self {
+        self.precision = precision;
+        let codec = Codec::fit(&self);
+        self.values = codec.decode(&codec.encode(&self.values));
+        self
+    }
+}

@@ -1,0 +1,72 @@
+//! What can be wrong with a table file, or with a request to the tables it holds.
+
+use alloc::string::String;
+use core::fmt;
+
+/// Why bytes are not a table set that this crate can use.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoadError {
+    /// The bytes contradict the format: truncated, damaged, or describing something impossible.
+    Invalid(String),
+    /// A valid file that this version cannot read: a newer format, or a mapping it does not know.
+    Unsupported(String),
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Invalid(why) => write!(f, "not a valid table set: {why}"),
+            Self::Unsupported(why) => write!(f, "table set not supported: {why}"),
+        }
+    }
+}
+
+impl core::error::Error for LoadError {}
+
+/// Why a material cannot be bound to the tables at hand.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BindError {
+    /// `!(sigma > 0)` or infinite.
+    Sigma(f32),
+    /// γ ≤ 3/2 or NaN: no member of the family.
+    Gamma(f64),
+    /// γ is legal but no table of `kind` covers it; `covered` lists what the set holds.
+    NotCovered {
+        /// The table kind that was looked for.
+        kind: &'static str,
+        /// The γ asked for.
+        gamma: f64,
+        /// The ranges or values that are covered.
+        covered: String,
+    },
+    /// No material of that name in the set; `known` lists those it has.
+    NoSuchMaterial {
+        /// The name asked for.
+        name: String,
+        /// Names in the set.
+        known: String,
+    },
+}
+
+impl fmt::Display for BindError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sigma(x) => write!(f, "sigma = {x}: a roughness must be positive and finite"),
+            Self::Gamma(x) => {
+                write!(f, "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann")
+            }
+            Self::NotCovered { kind, gamma, covered } => write!(
+                f,
+                "gamma = {gamma} is not covered by the `{kind}` tables of this set, which hold {covered}; bake a set that \
+                 does: a recipe line `gamma = {gamma}`, or `microfacet-bake bake` without a recipe for all of [1.501, inf]"
+            ),
+            Self::NoSuchMaterial { name, known } => write!(
+                f,
+                "no material \"{name}\" in this set, which holds {known}; add `[[material]] name = \"{name}\"` to its \
+                 recipe and bake again"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for BindError {}

@@ -1,0 +1,142 @@
+//! Sampling visible normals by two table lookups.
+//!
+//! The in-plane slope x and the slope across t are independent (see the model crate), so one lookup inverts each CDF. A
+//! table holds no slope but the distance g of its *half tangent* h = x/(1 + √(1+x²)) ∈ [−1, 1] from the nearer end: 1 + h for
+//! u ≤ ½ and 1 − h above. With it (x : 1) = (±2(1−g) : g(2−g)) needs no division and no square root, keeps its digits in
+//! both tails, and has the silhouette x = −cot θ at g = 1 − τ exactly, linear in the view coordinate τ; so no sampled normal faces away,
+//! however coarse the table.
+
+use glam::Vec3;
+
+use crate::cells::{between_rows, hermite, locate};
+use crate::math::sqrt;
+use crate::student_t::{Stretched, StudentT};
+
+/// A slope in homogeneous form: x/z.
+#[derive(Clone, Copy)]
+pub(crate) struct Slope {
+    pub(crate) x: f32,
+    pub(crate) z: f32,
+}
+
+impl Slope {
+    /// From the distance g of the half tangent from the end named by `sign` (∓1).
+    #[inline(always)]
+    fn from_end(g: f32, sign: f32) -> Self {
+        Self { x: sign * (2.0 - 2.0 * g), z: g * (2.0 - g) }
+    }
+}
+
+/// Smallest cosine of a sampled normal: keeps D finite on the horizon, where for γ < 2 it is not.
+const HORIZON: f32 = 1e-18;
+
+impl StudentT {
+    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them).
+    ///
+    /// Both coordinates are inverse CDFs. Where the whole distribution is tabulated (γ ≥ 1.8 in the default set)
+    /// the tilt towards the viewer rises with `u[0]` and the tilt across with `u[1]`; below, `u[0]` is first used to choose
+    /// between the tabulated part and the closed-form heavy tail, and rises within each.
+    #[inline]
+    pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let view = self.stretch(v);
+        let x =
+            if self.slices.peeled { self.sample_peeled(&view, u[0]) } else { self.sample_slope(&view, u[0]) };
+        let t = self.sample_across(u[1]);
+        self.assemble(&view, x, t)
+    }
+
+    /// The in-plane slope from the table at u ∈ [0, 1].
+    #[inline(always)]
+    pub(crate) fn sample_slope(&self, view: &Stretched, u: f32) -> Slope {
+        let slices = &self.slices;
+        let (row, between) = locate(self.view_coordinate(view) * slices.rows as f32, slices.rows);
+        let towards = u > 0.5;
+        let t = mirrored_root(u, slices.roots);
+        let (cell, w) = locate(t * slices.cells as f32, slices.cells);
+        // A row holds both halves, cells + 1 nodes each.
+        let stride = 2 * (slices.cells + 1);
+        let start = row * stride + if towards { slices.cells + 1 } else { 0 } + cell;
+        let nodes = &slices.slope[..];
+        let (a, b) =
+            between_rows(&nodes[start..start + 2], &nodes[start + stride..start + stride + 2], 0, between);
+        Slope::from_end(hermite(a, b, w), if towards { 1.0 } else { -1.0 })
+    }
+
+    /// Coordinate of the view axis in [0, 1]: τ = tan(elevation/2), or 1 − √(1−τ) where the axis is crowded.
+    #[inline(always)]
+    pub(crate) fn view_coordinate(&self, view: &Stretched) -> f32 {
+        let length = sqrt(view.rho * view.rho + view.z * view.z);
+        // The sum vanishes for the null vector only, and 0/0 selects row 0.
+        let r = 1.0 / (view.rho + length);
+        if self.slices.crowded {
+            // 1 − τ = (ρ + (length − z)) r with length − z = ρ²/(length + z), which does not cancel.
+            1.0 - sqrt((view.rho + view.rho * view.rho / (length + view.z)) * r)
+        } else {
+            view.z * r
+        }
+    }
+
+    /// As [`sample_slope`](Self::sample_slope) where the table lacks the heavy part, whose share of the visible area is ρ·M₀/area.
+    #[inline(always)]
+    fn sample_peeled(&self, view: &Stretched, u: f32) -> Slope {
+        let heavy = self.heavy_share(view);
+        let u = u.clamp(0.0, 1.0);
+        let rest = 1.0 - heavy;
+        if u < rest {
+            return self.sample_slope(view, u / rest);
+        }
+        // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).
+        let xi = ((1.0 - u) / heavy).clamp(0.0, 1.0);
+        let log = libm::logf(xi) / self.two_k;
+        Slope { x: sqrt(-libm::expm1f(2.0 * log)), z: sqrt(self.s) * libm::expf(log) }
+    }
+
+    /// Share of `u[0]` that [`sample_visible_normal`](Self::sample_visible_normal) reads from the table, from 0 up; the rest
+    /// draws from the closed-form heavy tail. 1 where the whole distribution is tabulated.
+    pub fn tabulated_share(&self, v: Vec3) -> f32 {
+        if self.slices.peeled { 1.0 - self.heavy_share(&self.stretch(v)) } else { 1.0 }
+    }
+
+    /// Share of the visible area that the term x sin θ p(x), x > 0, takes: M₀ρ/area with M₀ = κ/(G1/q at grazing).
+    #[inline(always)]
+    pub(crate) fn heavy_share(&self, view: &Stretched) -> f32 {
+        let moment = self.slices.kappa / self.slices.shadowing[0][0];
+        (moment * view.rho * self.inverse_area(view)).clamp(0.0, 1.0)
+    }
+
+    /// The slope across the plane in units of √(1 + s x²).
+    #[inline(always)]
+    fn sample_across(&self, u: f32) -> Slope {
+        let slices = &self.slices;
+        let cells = slices.across.len() - 1;
+        let t = mirrored_root(u, slices.across_roots);
+        let (cell, w) = locate(t * cells as f32, cells);
+        let pair = &slices.across[cell..cell + 2];
+        Slope::from_end(hermite(pair[0], pair[1], w), if u > 0.5 { 1.0 } else { -1.0 })
+    }
+
+    /// The world normal of unit slopes: y = √(1 + s x²)·t, turned to the view's azimuth and stretched back, all in homogeneous form.
+    #[inline(always)]
+    pub(crate) fn assemble(&self, view: &Stretched, x: Slope, t: Slope) -> Vec3 {
+        let y = sqrt(x.z * x.z + self.s * x.x * x.x) * t.x;
+        let (x, z) = (x.x * t.z, x.z * t.z);
+        let m = Vec3::new(
+            self.sigma_x * (x * view.x - y * view.y),
+            self.sigma_y * (x * view.y + y * view.x),
+            z * view.frame,
+        );
+        let m = m * (1.0 / sqrt(m.dot(m)));
+        Vec3::new(m.x, m.y, m.z.max(HORIZON))
+    }
+}
+
+/// t = (2 min(u, 1−u))^(1/2^roots), 0 outside [0, 1].
+#[inline(always)]
+pub(crate) fn mirrored_root(u: f32, roots: u32) -> f32 {
+    let m = 2.0 * u.min(1.0 - u).max(0.0);
+    match roots {
+        0 => m,
+        1 => sqrt(m),
+        _ => sqrt(sqrt(m)),
+    }
+}

@@ -1,0 +1,229 @@
+//! A material bound to its tables: σ and γ fixed, only directions left.
+
+use core::f32::consts::PI;
+
+use glam::Vec3;
+
+use crate::bind::Slices;
+use crate::cells::{hermite, locate};
+use crate::error::BindError;
+use crate::math::sqrt;
+use crate::table::Table;
+
+/// How masking and shadowing of a pair of directions are combined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Masking {
+    /// G2 = G1(v) G1(l) (Ribardière et al. 2017, eq. 12).
+    Uncorrelated,
+    /// G2 = 1/(1 + Λ(v) + Λ(l)), height-correlated (Heitz 2014, eq. 99): what most renderers use.
+    HeightCorrelated,
+}
+
+/// Roughness along the tangent frame's x and y: a number for an isotropic material, a pair for an anisotropic one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roughness(pub [f32; 2]);
+
+impl From<f32> for Roughness {
+    fn from(sigma: f32) -> Self {
+        Self([sigma, sigma])
+    }
+}
+
+impl From<f64> for Roughness {
+    fn from(sigma: f64) -> Self {
+        Self([sigma as f32; 2])
+    }
+}
+
+impl From<[f32; 2]> for Roughness {
+    fn from(sigma: [f32; 2]) -> Self {
+        Self(sigma)
+    }
+}
+
+impl From<[f64; 2]> for Roughness {
+    fn from([x, y]: [f64; 2]) -> Self {
+        Self([x as f32, y as f32])
+    }
+}
+
+/// A Student-t material with fixed roughness and shape, holding only the slices of the tables it needs.
+///
+/// Directions are unit vectors in the tangent frame, n = +z, x and y along the principal roughness axes. A view or light at or below
+/// the horizon has `g1` = 0 and `lambda` = ∞; sampling takes such a view at the horizon. Functions of `f32` return numbers of the error
+/// that the tables' certificates state; `m` returned by samplers is of unit length to 4 ulp, above the horizon and facing the view.
+#[derive(Clone, Debug)]
+pub struct StudentT {
+    pub(crate) sigma_x: f32,
+    pub(crate) sigma_y: f32,
+    gamma: f64,
+    pub(crate) s: f32,
+    /// 2γ − 3, from γ in double precision: near 3/2 a rounded γ would be another material.
+    pub(crate) two_k: f32,
+    pub(crate) slices: Slices,
+}
+
+/// A direction stretched by (σx, σy, 1), with its azimuth there.
+#[derive(Clone, Copy)]
+pub(crate) struct Stretched {
+    /// Horizontal part, unit length in the plane after division by `rho`; (1, 0) at normal incidence.
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    /// Length of (x, y); 1 at normal incidence, where it only scales.
+    pub(crate) frame: f32,
+    /// Horizontal length, 0 at normal incidence.
+    pub(crate) rho: f32,
+    /// Vertical part, ≥ 0.
+    pub(crate) z: f32,
+}
+
+/// Horizontal lengths below this are taken as normal incidence: their squares leave the range of f32, and the azimuth with them.
+const NORMAL_INCIDENCE: f32 = 1e-18;
+
+impl StudentT {
+    pub(crate) fn bind(tables: &[Table], roughness: Roughness, gamma: f64) -> Result<Self, BindError> {
+        let [sigma_x, sigma_y] = roughness.0;
+        for sigma in roughness.0 {
+            if !(sigma > 0.0 && sigma < f32::INFINITY) {
+                return Err(BindError::Sigma(sigma));
+            }
+        }
+        if !(gamma > 1.5) {
+            return Err(BindError::Gamma(gamma));
+        }
+        let s = 1.0 / (gamma - 1.0);
+        let slices = Slices::bind(tables, gamma, s)?;
+        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_k: (2.0 * gamma - 3.0) as f32, slices })
+    }
+
+    /// The same shape with another roughness; the tables are not touched again.
+    ///
+    /// # Errors
+    /// [`BindError::Sigma`] unless both roughnesses are positive and finite.
+    pub fn with_roughness(&self, roughness: impl Into<Roughness>) -> Result<Self, BindError> {
+        let Roughness([sigma_x, sigma_y]) = roughness.into();
+        for sigma in [sigma_x, sigma_y] {
+            if !(sigma > 0.0 && sigma < f32::INFINITY) {
+                return Err(BindError::Sigma(sigma));
+            }
+        }
+        Ok(Self { sigma_x, sigma_y, ..self.clone() })
+    }
+
+    /// σx and σy.
+    pub fn sigma(&self) -> [f32; 2] {
+        [self.sigma_x, self.sigma_y]
+    }
+
+    /// The shape γ.
+    pub fn gamma(&self) -> f64 {
+        self.gamma
+    }
+
+    /// Bytes of table that lookups of this material touch.
+    pub fn bytes(&self) -> usize {
+        self.slices.bytes()
+    }
+
+    #[inline(always)]
+    pub(crate) fn stretch(&self, w: Vec3) -> Stretched {
+        let (x, y) = (self.sigma_x * w.x, self.sigma_y * w.y);
+        let rho = sqrt(x * x + y * y);
+        let z = w.z.max(0.0);
+        if rho < NORMAL_INCIDENCE {
+            Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: 0.0, z }
+        } else {
+            Stretched { x, y, frame: rho, rho, z }
+        }
+    }
+
+    /// 1/(area of the microsurface seen along the stretched direction) = G1/z, finite at grazing.
+    #[inline(always)]
+    pub(crate) fn inverse_area(&self, w: &Stretched) -> f32 {
+        let r = 1.0 / (w.z + self.slices.kappa * w.rho);
+        self.shadowing(w, r) * r
+    }
+
+    /// G1/q from the table, given r = 1/(z + κρ).
+    #[inline(always)]
+    fn shadowing(&self, at: &Stretched, r: f32) -> f32 {
+        let nodes = &self.slices.shadowing[..];
+        let cells = nodes.len() - 1;
+        let coordinate =
+            if self.slices.crowded_shadowing { 1.0 - sqrt(self.slices.kappa * at.rho * r) } else { at.z * r };
+        let (cell, w) = locate(coordinate * cells as f32, cells);
+        let pair = &nodes[cell..cell + 2];
+        hermite(pair[0], pair[1], w)
+    }
+
+    /// Smith masking G1(w) ∈ [0, 1]: the visible share of the microsurface projected along `w`. 0 at and below the horizon.
+    #[inline(always)]
+    pub fn g1(&self, w: Vec3) -> f32 {
+        let w = self.stretch(w);
+        // Interpolation may overshoot 1 by the table's error near normal incidence.
+        (w.z * self.inverse_area(&w)).min(1.0)
+    }
+
+    /// Smith's Λ(w) = 1/G1 − 1 ≥ 0; ∞ at and below the horizon. Absolute accuracy is that of G1: where Λ is below 1e-5 only its size is meant.
+    #[inline]
+    pub fn lambda(&self, w: Vec3) -> f32 {
+        1.0 / self.g1(w) - 1.0
+    }
+
+    /// Masking and shadowing of view and light; 0 when either is at or below the horizon.
+    #[inline]
+    pub fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        let (a, b) = (self.g1(v), self.g1(l));
+        match masking {
+            Masking::Uncorrelated => a * b,
+            // 1/(1/a + 1/b − 1), arranged so that a = b = 0 gives 0.
+            Masking::HeightCorrelated => {
+                let sum = a + b - a * b;
+                if sum > 0.0 { a * b / sum } else { 0.0 }
+            }
+        }
+    }
+
+    /// Normal distribution function D(m) per steradian; 0 for m at or below the horizon.
+    ///
+    /// Relative error a few ulp times the exponent (about 1e-6 times |ln D σxσy|). For γ < 2 it grows without bound towards the
+    /// horizon and overflows to `f32::MAX` rather than to ∞.
+    #[inline]
+    pub fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        let (x, y) = (m.x / self.sigma_x, m.y / self.sigma_y);
+        let r2 = x * x + y * y;
+        let scale = 1.0 / (PI * self.sigma_x * self.sigma_y);
+        let z2 = m.z * m.z;
+        let s = self.s;
+        if s == 1.0 {
+            // GGX: 1/(πσxσy (z² + r²)²).
+            let b = z2 + r2;
+            return (scale / (b * b)).min(f32::MAX);
+        }
+        let ratio = r2 / z2;
+        let log = if s * ratio < 1e-4 {
+            // γ ln(1 + s r²/z²) = (1+s) r²/z² (1 − ½ s r²/z² …): Beckmann's limit, where 1/s would overflow.
+            let y = s * ratio;
+            -(1.0 + s) * ratio * (1.0 - y * (0.5 - y * (1.0 / 3.0))) - 2.0 * libm::logf(z2)
+        } else if ratio < 1e30 {
+            -(1.0 + s) / s * libm::log1pf(s * ratio) - 2.0 * libm::logf(z2)
+        } else {
+            // At the horizon: cos^(2γ−4) (s r²)^(−γ), with z² not formed.
+            let gamma = 1.0 + 1.0 / s;
+            2.0 * (gamma - 2.0) * libm::logf(m.z) - gamma * libm::logf(s * r2)
+        };
+        (scale * libm::expf(log)).min(f32::MAX)
+    }
+
+    /// Density of visible normals G1(v) (v·m)⁺ D(m)/(v·n) per steradian: the exact one, with G1 from the table.
+    ///
+    /// 0 where m faces away or lies below the horizon; finite at grazing views.
+    #[inline]
+    pub fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        let facing = v.dot(m).max(0.0);
+        (facing * self.d(m) * self.inverse_area(&self.stretch(v))).min(f32::MAX)
+    }
+}

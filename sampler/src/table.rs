@@ -1,0 +1,134 @@
+//! The in-memory table: axes, channels and values, with the certificate of what was measured on it.
+
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use crate::axis::{Axis, Mapping};
+use crate::container::Precision;
+use crate::error::LoadError;
+
+/// What a table holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Kind {
+    /// G1/q over γ × view, q being the view coordinate.
+    Shadowing,
+    /// In-plane slope of visible normals over γ × view × u₁, for γ where the whole distribution is tabulated.
+    VisibleSlope,
+    /// The same without its heavy part, for γ near 3/2 (see `docs/format.md`).
+    VisibleSlopePeeled,
+    /// Slope across the plane given the in-plane one, over γ × u₂.
+    VisibleSlopeConditional,
+}
+
+impl Kind {
+    /// The name used in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Shadowing => "shadowing",
+            Self::VisibleSlope => "visible_slope",
+            Self::VisibleSlopePeeled => "visible_slope_peeled",
+            Self::VisibleSlopeConditional => "visible_slope_conditional",
+        }
+    }
+
+    /// Names of the axes, slowest first.
+    pub const fn axes(self) -> &'static [&'static str] {
+        match self {
+            Self::Shadowing => &["gamma", "view"],
+            Self::VisibleSlope | Self::VisibleSlopePeeled => &["gamma", "view", "u1"],
+            Self::VisibleSlopeConditional => &["gamma", "u2"],
+        }
+    }
+}
+
+/// A table: values at the nodes of named axes.
+///
+/// `values` is row-major with the axes slowest first and the channels fastest: shape
+/// `[axes[0].len(), …, axes[n−1].len(), channels.len()]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Name inside its set; the kind's name, with a suffix where a set holds several of a kind.
+    pub name: String,
+    /// What it holds.
+    pub kind: Kind,
+    /// Axes, slowest first.
+    pub axes: Vec<Axis>,
+    /// Channel names, such as `value` and `slope`.
+    pub channels: Vec<String>,
+    /// Values in f32; rounded once, from f64, when they were stored.
+    pub values: Vec<f32>,
+    /// How the values are stored in a file.
+    pub precision: Precision,
+    /// Figures measured on this table by the bake that made it, off its grid and against the f64 model.
+    pub certificate: BTreeMap<String, f64>,
+}
+
+impl Table {
+    /// Lengths along the axes and the channels.
+    pub fn shape(&self) -> Vec<usize> {
+        self.axes.iter().map(Axis::len).chain([self.channels.len()]).collect()
+    }
+
+    /// Checks everything that lookups rely on.
+    ///
+    /// # Errors
+    /// [`LoadError`] naming the table and what is wrong.
+    pub fn validate(&self) -> Result<(), LoadError> {
+        let fail = |why: String| Err(LoadError::Invalid(format!("table `{}`: {why}", self.name)));
+        let names: Vec<&str> = self.axes.iter().map(|axis| axis.name.as_str()).collect();
+        if names != self.kind.axes() {
+            return fail(format!("axes {names:?} where {:?} are expected", self.kind.axes()));
+        }
+        for axis in &self.axes {
+            axis.validate()?;
+        }
+        let expected = self.axes.iter().map(Axis::len).try_fold(self.channels.len(), usize::checked_mul);
+        if expected != Some(self.values.len()) {
+            return fail(format!("{} values for shape {:?}", self.values.len(), self.shape()));
+        }
+        if self.values.iter().any(|x| !x.is_finite()) {
+            return fail("a value is not finite".into());
+        }
+        self.validate_lookup()
+    }
+
+    /// The parts particular to tables that are read by Hermite cells.
+    fn validate_lookup(&self) -> Result<(), LoadError> {
+        let fail = |why: &str| Err(LoadError::Invalid(format!("table `{}`: {why}", self.name)));
+        if self.channels != ["value", "slope"] {
+            return fail("channels are not `value`, `slope`");
+        }
+        if self.axes[0].mapping != Mapping::InverseShape {
+            return fail("axis `gamma` is not mapped by `inverse_shape`");
+        }
+        let mapped = match self.kind {
+            Kind::Shadowing => {
+                matches!(self.axes[1].mapping, Mapping::Rational { .. } | Mapping::RationalRoot { .. })
+            }
+            Kind::VisibleSlope | Kind::VisibleSlopePeeled => {
+                matches!(self.axes[1].mapping, Mapping::HalfTangent | Mapping::HalfTangentRoot)
+                    && matches!(self.axes[2].mapping, Mapping::MirroredPower { odd: false, .. })
+            }
+            Kind::VisibleSlopeConditional => {
+                matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: true, .. })
+            }
+        };
+        if !mapped {
+            return fail("an axis has a mapping that this kind does not use");
+        }
+        let positive = self.values.iter().step_by(2);
+        let in_range = match self.kind {
+            // q ≤ G1 and G1/q ≤ (1 + κ/z)…: bounded by the projected area's limits.
+            Kind::Shadowing => positive.clone().all(|&x| x > 0.0 && x < 1e3),
+            // Distances of a half tangent in [−1, 1] from its end.
+            _ => positive.clone().all(|&x| (0.0..=2.0).contains(&x)),
+        };
+        if in_range { Ok(()) } else { fail("a value is out of range") }
+    }
+}

@@ -1,0 +1,129 @@
+//! A set of tables, and what can be asked of it.
+
+use alloc::collections::BTreeMap;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use crate::bind::covers;
+use crate::container::{MaterialEntry, Provenance, decode};
+use crate::error::{BindError, LoadError};
+use crate::student_t::{Roughness, StudentT};
+use crate::table::{Kind, Table};
+
+/// A set of tables, loaded and checked.
+///
+/// ```
+/// use glam::Vec3;
+/// use microfacet_sampler::Tables;
+/// # #[cfg(feature = "embedded")] {
+/// let tables = Tables::embedded();
+/// let glass = tables.student_t(0.454, 3.0)?;
+/// let v = Vec3::new(0.6, 0.0, 0.8);
+/// let m = glass.sample_visible_normal(v, [0.3, 0.7]);
+/// assert!(v.dot(m) > 0.0 && glass.visible_normal_pdf(v, m) > 0.0);
+/// # }
+/// # Ok::<(), microfacet_sampler::BindError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tables {
+    provenance: Provenance,
+    tables: Vec<Table>,
+}
+
+impl Tables {
+    /// The default set, compiled in: all γ ∈ [1.501, ∞].
+    ///
+    /// Decodes about 1 MB in well under a millisecond; keep the result. The checksum is skipped, since the bytes are part of
+    /// the program.
+    #[cfg(feature = "embedded")]
+    pub fn embedded() -> Self {
+        let bytes = include_bytes!("../../tables/default.safetensors");
+        let (provenance, tables) = decode(bytes, false).expect("the embedded tables are tested");
+        Self { provenance, tables }
+    }
+
+    /// Reads a set from the bytes of a safetensors file written by `microfacet-bake`.
+    ///
+    /// # Errors
+    /// [`LoadError::Invalid`] for bytes that are damaged, truncated or something else, [`LoadError::Unsupported`] for a newer
+    /// format. Every part is checked, the checksum included; no input makes it panic or allocate more than a few times its size.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, LoadError> {
+        let (provenance, tables) = decode(bytes, true)?;
+        Ok(Self { provenance, tables })
+    }
+
+    /// A set made of tables at hand, such as those a bake has just filled.
+    ///
+    /// # Errors
+    /// [`LoadError::Invalid`] if one of them is not sound.
+    pub fn from_tables(provenance: Provenance, tables: Vec<Table>) -> Result<Self, LoadError> {
+        for table in &tables {
+            table.validate()?;
+        }
+        Ok(Self { provenance, tables })
+    }
+
+    /// The tables of the set.
+    pub fn tables(&self) -> &[Table] {
+        &self.tables
+    }
+
+    /// The first table of a kind.
+    pub fn table(&self, kind: Kind) -> Option<&Table> {
+        self.tables.iter().find(|table| table.kind == kind)
+    }
+
+    /// Replaces the certificate of the table at `index`; for a bake that has just measured it.
+    ///
+    /// # Panics
+    /// If there is no such table.
+    pub fn set_certificate(&mut self, index: usize, certificate: BTreeMap<String, f64>) {
+        self.tables[index].certificate = certificate;
+    }
+
+    /// Where the set comes from.
+    pub fn provenance(&self) -> &Provenance {
+        &self.provenance
+    }
+
+    /// Whether γ can be bound.
+    pub fn covers(&self, gamma: f64) -> bool {
+        let s = 1.0 / (gamma - 1.0);
+        let has = |kind| self.tables.iter().any(|table| table.kind == kind && covers(table, s));
+        gamma > 1.5
+            && has(Kind::Shadowing)
+            && has(Kind::VisibleSlopeConditional)
+            && (has(Kind::VisibleSlope) || has(Kind::VisibleSlopePeeled))
+    }
+
+    /// Binds a material: σ (one number, or a pair for x and y) and γ ∈ (3/2, ∞] are fixed, and the γ axis is collapsed there.
+    ///
+    /// γ = 2 is GGX with α = σ, γ = `f64::INFINITY` is Beckmann. γ is taken in double precision, since near 3/2 single precision is
+    /// too coarse for it. Takes some microseconds and holds about 20 KiB; [`StudentT::with_roughness`] is cheaper for a material
+    /// that differs in σ only.
+    ///
+    /// # Errors
+    /// [`BindError`] for a σ or γ outside the family, or a γ that this set does not cover.
+    pub fn student_t(&self, sigma: impl Into<Roughness>, gamma: f64) -> Result<StudentT, BindError> {
+        StudentT::bind(&self.tables, sigma.into(), gamma)
+    }
+
+    /// Binds a material of the set's recipe by its name.
+    ///
+    /// Where the recipe gives ranges, their middle is bound; use [`student_t`](Self::student_t) for others.
+    ///
+    /// # Errors
+    /// [`BindError::NoSuchMaterial`] naming those that exist, or what [`student_t`](Self::student_t) reports.
+    pub fn material(&self, name: &str) -> Result<StudentT, BindError> {
+        let materials = &self.provenance.materials;
+        let entry = materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
+            let known: Vec<String> =
+                materials.iter().map(|entry| alloc::format!("\"{}\"", entry.name)).collect();
+            let known = if known.is_empty() { "no named materials".to_string() } else { known.join(", ") };
+            BindError::NoSuchMaterial { name: name.into(), known }
+        })?;
+        let MaterialEntry { sigma: [x, y], s, .. } = entry;
+        let middle = |[min, max]: [f64; 2]| 0.5 * (min + max);
+        self.student_t([middle(*x), middle(*y)], 1.0 + 1.0 / middle(*s))
+    }
+}

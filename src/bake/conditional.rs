@@ -1,0 +1,26 @@
+//! The inverse CDF of the slope across the plane of incidence, in units of √(1 + s x²): independent of the view.
+
+use rayon::prelude::*;
+
+use microfacet_model::{Shape, across_quantile};
+use microfacet_sampler::limit_slopes;
+
+use super::{distance, half_tangent_rate, mirrored, round, shapes};
+use crate::spec::TableSpec;
+
+pub(super) fn bake(spec: &TableSpec) -> Vec<f32> {
+    let cells = spec.numbers - 1;
+    let of_shape = |shape: &Shape| {
+        let mut half = round((0..=cells).map(|i| node(shape, i as f64 / cells as f64, cells)));
+        limit_slopes(&mut half);
+        half
+    };
+    shapes(spec).par_iter().flat_map_iter(of_shape).flatten_iter().collect()
+}
+
+/// The half for u > ½: distance of the half tangent from 1, and its derivative by t, per node.
+fn node(shape: &Shape, t: f64, cells: usize) -> [f64; 2] {
+    let (u, du_dt) = mirrored(t);
+    let x = across_quantile(shape, 1.0 - u);
+    [distance(shape, x, 1.0), du_dt / shape.across_density(x.w) * half_tangent_rate(shape, x) / cells as f64]
+}

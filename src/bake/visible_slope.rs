@@ -1,0 +1,61 @@
+//! The inverse CDF of the in-plane slope of visible normals, over view and u₁.
+//!
+//! A node holds the distance g of the half tangent h = x/(1 + √(1+x²)) of the unit slope from its nearer end, and the exact
+//! derivative; `examples/table_design.rs` measures this choice against others and prints the table that `docs/tables.md` shows.
+
+use rayon::prelude::*;
+
+use microfacet_model::{Shape, UnitView, VisibleSlope};
+use microfacet_sampler::{Kind, Mapping, limit_slopes};
+
+use super::{distance, half_tangent_rate, mirrored, round, shapes};
+use crate::spec::TableSpec;
+
+/// The view axis: evenly in τ, or crowded towards normal incidence where the heavy part is peeled off: what is left
+/// depends on the tilt there like η^(1+2k), whose second derivative is infinite.
+pub(super) fn view(kind: Kind) -> Mapping {
+    if kind == Kind::VisibleSlopePeeled { Mapping::HalfTangentRoot } else { Mapping::HalfTangent }
+}
+
+pub(super) fn bake(spec: &TableSpec) -> Vec<f32> {
+    let peeled = spec.kind == Kind::VisibleSlopePeeled;
+    let shapes = shapes(spec);
+    let rows: Vec<(&Shape, usize)> =
+        shapes.iter().flat_map(|shape| (0..spec.views).map(move |row| (shape, row))).collect();
+    let of_row = |&(shape, row): &(&Shape, usize)| {
+        let at = row as f64 / (spec.views - 1) as f64;
+        let tau = if peeled { 1.0 - (1.0 - at) * (1.0 - at) } else { at };
+        row_nodes(shape, tau, spec.numbers, peeled)
+    };
+    rows.par_iter().flat_map_iter(of_row).flatten_iter().collect()
+}
+
+/// Both halves of a row: the nodes for u ≤ ½ from u = 0 up, then those for u > ½ from u = 1 down.
+fn row_nodes(shape: &Shape, tau: f64, numbers: usize, peeled: bool) -> Vec<[f32; 2]> {
+    let z = if tau == 1.0 { f64::INFINITY } else { 2.0 * tau / (1.0 - tau * tau) };
+    let view = UnitView::from_cotangent(z);
+    let slopes = if peeled { VisibleSlope::peeled(shape, view) } else { VisibleSlope::new(shape, view) };
+    let mut row = Vec::with_capacity(2 * numbers);
+    for end in [-1.0, 1.0] {
+        let mut half = round((0..numbers).map(|i| {
+            let t = i as f64 / (numbers - 1) as f64;
+            node(shape, &slopes, end, t, numbers - 1)
+        }));
+        if end < 0.0 && z.is_finite() {
+            // The silhouette, exactly: linear in τ (convex where the axis is crowded), so that between the rows it is exact (on the
+            // visible side) too and no sampled normal faces away.
+            half[0][0] = (1.0 - tau) as f32;
+        }
+        limit_slopes(&mut half);
+        row.extend(half);
+    }
+    row
+}
+
+/// Distance of the half tangent from the end at t, and its derivative by t, per node.
+fn node(shape: &Shape, slopes: &VisibleSlope, end: f64, t: f64, cells: usize) -> [f64; 2] {
+    let (u, du_dt) = mirrored(t);
+    let x = slopes.quantile(if end < 0.0 { u } else { 1.0 - u });
+    let slope = du_dt / slopes.density(x) * half_tangent_rate(shape, x) / cells as f64;
+    [distance(shape, x, end), if slope.is_finite() { slope } else { 0.0 }]
+}

@@ -1,0 +1,180 @@
+//! What is to be baked: one specification a table, pure data.
+
+use microfacet_sampler::{Interpolation, Kind, Precision};
+
+/// γ of the smallest shape that tables cover; below it almost every visible normal lies beyond any floating-point slope.
+pub const GAMMA_MIN: f64 = 1.501;
+/// γ from which the whole visible distribution is tabulated; below, its heavy part is peeled off.
+pub const GAMMA_WHOLE: f64 = 1.8;
+
+/// The γ axis of a table, as nodes in s = 1/(γ−1).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeAxis {
+    /// Ascending nodes.
+    pub nodes: Vec<f64>,
+    /// `Nodes` for a list of single shapes, `Lagrange4` for a range.
+    pub interpolation: Interpolation,
+}
+
+impl ShapeAxis {
+    /// `count` nodes evenly over [low, high] in s.
+    pub fn range(low: f64, high: f64, count: usize) -> Self {
+        let step = (high - low) / (count - 1) as f64;
+        let nodes = (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect();
+        Self { nodes, interpolation: Interpolation::Lagrange4 }
+    }
+
+    /// `count` nodes over [low, high] that crowd towards s = 2, evenly in s − ½ ln(1 − s/2): the projected area diverges there as
+    /// 1/(2 − s), and what depends on it changes by the logarithm of 2 − s.
+    pub fn crowded(low: f64, high: f64, count: usize) -> Self {
+        let warp = |s: f64| s - 0.5 * libm::log(1.0 - 0.5 * s);
+        let even = Self::range(warp(low), warp(high), count).nodes;
+        let unwarp = |y: f64| {
+            let (mut a, mut b) = (low, high);
+            // Bisection to the last bit; the warp ascends.
+            for _ in 0..64 {
+                let middle = 0.5 * (a + b);
+                if warp(middle) < y { a = middle } else { b = middle }
+            }
+            0.5 * (a + b)
+        };
+        let inner = even[1..count - 1].iter().map(|&y| unwarp(y));
+        let nodes = [low].into_iter().chain(inner).chain([high]).collect();
+        Self { nodes, interpolation: Interpolation::Lagrange4 }
+    }
+
+    /// Single shapes, sorted and without repetition.
+    pub fn points(s: impl IntoIterator<Item = f64>) -> Self {
+        let mut nodes: Vec<f64> = s.into_iter().collect();
+        nodes.sort_by(f64::total_cmp);
+        nodes.dedup();
+        Self { nodes, interpolation: Interpolation::Nodes }
+    }
+}
+
+/// A table to bake.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableSpec {
+    /// Name in the set.
+    pub name: String,
+    /// What the table holds.
+    pub kind: Kind,
+    /// The γ axis.
+    pub shapes: ShapeAxis,
+    /// Nodes of the view axis; unused by kinds without one.
+    pub views: usize,
+    /// Nodes of a (half) axis of random numbers; unused by kinds without one.
+    pub numbers: usize,
+    /// How values are stored.
+    pub precision: Precision,
+}
+
+/// How fine the tables are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Quality {
+    /// Small and rough: previews, tests.
+    Draft,
+    /// CDF error below 1e-4 where γ ≥ 1.8, G1 below 1e-5.
+    #[default]
+    Default,
+    /// CDF error below 1e-5, G1 below 2e-6.
+    High,
+}
+
+/// Numbers of nodes that go with a quality.
+#[derive(Clone, Copy, Debug)]
+pub struct Resolution {
+    /// γ nodes over the whole-distribution range.
+    pub shapes: usize,
+    /// γ nodes over the peeled range.
+    pub peeled_shapes: usize,
+    /// γ nodes of either shadowing table.
+    pub shadowing_shapes: usize,
+    /// γ nodes of the table of slopes across.
+    pub across_shapes: usize,
+    /// View nodes of the shadowing table.
+    pub shadowing_views: usize,
+    /// View nodes of the slope tables.
+    pub views: usize,
+    /// Nodes of one half of u₁.
+    pub numbers: usize,
+    /// Nodes of one half of u₂.
+    pub across_numbers: usize,
+}
+
+impl Quality {
+    /// The numbers of nodes, each found by measuring (`examples/table_design.rs`).
+    pub fn resolution(self) -> Resolution {
+        match self {
+            Self::Draft => Resolution {
+                shapes: 9,
+                peeled_shapes: 7,
+                shadowing_shapes: 17,
+                across_shapes: 17,
+                shadowing_views: 65,
+                views: 25,
+                numbers: 11,
+                across_numbers: 17,
+            },
+            Self::Default => Resolution {
+                shapes: 21,
+                peeled_shapes: 13,
+                shadowing_shapes: 25,
+                across_shapes: 33,
+                shadowing_views: 97,
+                views: 81,
+                numbers: 17,
+                across_numbers: 33,
+            },
+            Self::High => Resolution {
+                shapes: 33,
+                peeled_shapes: 25,
+                shadowing_shapes: 49,
+                across_shapes: 65,
+                shadowing_views: 193,
+                views: 321,
+                numbers: 29,
+                across_numbers: 65,
+            },
+        }
+    }
+}
+
+/// The general set: every γ ∈ [1.501, ∞] (and through shape invariance every σ).
+pub fn general_set(quality: Quality, precision: Precision) -> Vec<TableSpec> {
+    let r = quality.resolution();
+    let (whole, heaviest) = (1.0 / (GAMMA_WHOLE - 1.0), 1.0 / (GAMMA_MIN - 1.0));
+    let spec = |kind: Kind, shapes, views, numbers| TableSpec {
+        name: kind.name().into(),
+        kind,
+        shapes,
+        views,
+        numbers,
+        precision,
+    };
+    vec![
+        spec(Kind::Shadowing, ShapeAxis::range(0.0, whole, r.shadowing_shapes), r.shadowing_views, 0),
+        TableSpec {
+            name: "shadowing_peeled".into(),
+            ..spec(
+                Kind::Shadowing,
+                ShapeAxis::crowded(whole, heaviest, r.shadowing_shapes),
+                r.shadowing_views,
+                0,
+            )
+        },
+        spec(Kind::VisibleSlope, ShapeAxis::range(0.0, whole, r.shapes), r.views, r.numbers),
+        spec(
+            Kind::VisibleSlopePeeled,
+            ShapeAxis::range(whole, heaviest, r.peeled_shapes),
+            r.views,
+            r.numbers,
+        ),
+        spec(
+            Kind::VisibleSlopeConditional,
+            ShapeAxis::range(0.0, heaviest, r.across_shapes),
+            0,
+            r.across_numbers,
+        ),
+    ]
+}
