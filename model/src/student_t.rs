@@ -190,15 +190,25 @@ impl StudentT {
     ///
     /// 0 for views at or below the horizon and for normals facing away.
     pub fn visible_normal_pdf(&self, v: DVec3, m: DVec3) -> f64 {
-        let facing = v.dot(m);
-        if !(v.z > 0.0 && facing > 0.0) {
+        if !(v.z > 0.0) {
             return 0.0;
         }
-        // G1/(v·n) as one quotient, 1/area, is finite at grazing where both vanish.
+        v.dot(m).max(0.0) * self.d(m) * self.inverse_area(v)
+    }
+
+    /// G1(v)/(v·n): one over the projected area of the microsurface towards `v`, finite at grazing where both vanish.
+    ///
+    /// The density of visible normals is (v·m)⁺ D(m) times this, so it need not be evaluated again for every m.
+    pub fn inverse_area(&self, v: DVec3) -> f64 {
         let Stretched { view, .. } = self.stretch(v);
-        let area = VisibleSlope::new(&self.shape, view).area();
         let length = libm::hypot(libm::hypot(self.sigma_x * v.x, self.sigma_y * v.y), v.z);
-        facing * self.d(m) / (area * length)
+        1.0 / (VisibleSlope::new(&self.shape, view).area() * length)
+    }
+
+    /// The frame of a view: its elevation in unit space, and the cosine and sine of the azimuth of the stretched direction.
+    pub fn unit_view(&self, v: DVec3) -> (UnitView, [f64; 2]) {
+        let Stretched { view, cos_phi, sin_phi } = self.stretch(v);
+        (view, [cos_phi, sin_phi])
     }
 
     /// The visible normal at random numbers u₁ (in the plane of incidence, rising from away from the viewer to towards it)

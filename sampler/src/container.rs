@@ -98,18 +98,15 @@ fn invalid(why: impl ToString) -> LoadError {
     LoadError::Invalid(why.to_string())
 }
 
-/// Writes a set as the bytes of a safetensors file; the same set always gives the same bytes.
+/// The JSON document that describes a set, with zeros for its checksum: what [`encode`] embeds, and what other containers may carry.
 ///
 /// # Errors
 /// [`LoadError::Invalid`] if a table would not load again.
-pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, LoadError> {
+pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, LoadError> {
     let mut descriptors = Vec::new();
-    let mut data = Vec::new();
     for table in tables {
         table.validate()?;
-        let codec = Codec::fit(table);
-        data.push((table.name.clone(), table.shape(), codec.encode(&table.values)));
-        let (scale, offset) = codec.scale_offset();
+        let (scale, offset) = Codec::fit(table).scale_offset();
         descriptors.push(Descriptor {
             name: table.name.clone(),
             kind: table.kind,
@@ -128,12 +125,21 @@ pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, Load
         provenance: provenance.clone(),
         tables: descriptors,
     };
-    let json = serde_json::to_string(&document).map_err(invalid)?;
+    serde_json::to_string(&document).map_err(invalid)
+}
+
+/// Writes a set as the bytes of a safetensors file; the same set always gives the same bytes.
+///
+/// # Errors
+/// [`LoadError::Invalid`] if a table would not load again.
+pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, LoadError> {
+    let json = describe(provenance, tables)?;
+    let data: Vec<Vec<u8>> = tables.iter().map(|table| Codec::fit(table).encode(&table.values)).collect();
     let views = data
         .iter()
         .zip(tables)
-        .map(|((name, shape, bytes), table)| {
-            TensorView::new(dtype(table.precision), shape.clone(), bytes).map(|view| (name.as_str(), view))
+        .map(|(bytes, table)| {
+            TensorView::new(dtype(table.precision), table.shape(), bytes).map(|view| (table.name.as_str(), view))
         })
         .collect::<Result<Vec<_>, _>>()
         .map_err(invalid)?;
@@ -151,13 +157,50 @@ pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, Load
 /// # Errors
 /// [`LoadError`] saying what is wrong; never a panic, and never an allocation larger than a few times the input.
 pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Table>), LoadError> {
-    let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|why| {
-        invalid(format!("{why}; a table set is a safetensors file written by `microfacet-bake`"))
+    let (_, metadata) = SafeTensors::read_metadata(bytes)
+        .map_err(|why| invalid(format!("{why}; a table set is a safetensors file written by `microfacet-bake`")))?;
+    let json = metadata
+        .metadata()
+        .as_ref()
+        .and_then(|map| map.get(KEY))
+        .ok_or_else(|| invalid(format!("a safetensors file, but without the `{KEY}` document of a table set")))?;
+    check_version(json)?;
+    if verify {
+        verify_checksum(bytes)?;
+    }
+    let tensors = SafeTensors::deserialize(bytes).map_err(invalid)?;
+    let (provenance, tables) = assemble(json, |descriptor, codec| {
+        let tensor = tensors.tensor(&descriptor.name).map_err(|_| "no tensor of that name".to_string())?;
+        if tensor.dtype() != dtype(descriptor.precision) {
+            return Err(format!("stored as {:?}, described as {:?}", tensor.dtype(), descriptor.precision));
+        }
+        let shape: Vec<usize> =
+            descriptor.axes.iter().map(Axis::len).chain([descriptor.channels.len()]).collect();
+        if shape != tensor.shape() {
+            return Err(format!("tensor of shape {:?}, axes and channels of {shape:?}", tensor.shape()));
+        }
+        Ok(codec.decode(tensor.data()))
     })?;
-    let json = metadata.metadata().as_ref().and_then(|map| map.get(KEY)).ok_or_else(|| {
-        invalid(format!("a safetensors file, but without the `{KEY}` document of a table set"))
-    })?;
-    // The version first: a newer document may not parse as this one.
+    if tensors.len() != tables.len() {
+        return Err(invalid(format!("{} tensors for {} tables", tensors.len(), tables.len())));
+    }
+    Ok((provenance, tables))
+}
+
+/// Puts a set together again from the document of [`describe`] and the values of each table, decoded already.
+///
+/// # Errors
+/// [`LoadError`] if the document is not one, or a table is not sound.
+pub fn reassemble(
+    json: &str,
+    mut values: impl FnMut(&str) -> Result<Vec<f32>, String>,
+) -> Result<(Provenance, Vec<Table>), LoadError> {
+    check_version(json)?;
+    assemble(json, |descriptor, _| values(&descriptor.name))
+}
+
+/// The format and version of a document, before anything else of it: a newer one may not parse as this one.
+fn check_version(json: &str) -> Result<(), LoadError> {
     #[derive(Deserialize)]
     struct Head {
         format: String,
@@ -173,32 +216,27 @@ pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Tabl
             head.version
         )));
     }
-    if verify {
-        verify_checksum(bytes)?;
-    }
+    Ok(())
+}
+
+fn assemble(
+    json: &str,
+    mut values: impl FnMut(&Descriptor, &Codec) -> Result<Vec<f32>, String>,
+) -> Result<(Provenance, Vec<Table>), LoadError> {
     let document: Document = serde_json::from_str(json).map_err(invalid)?;
-    let tensors = SafeTensors::deserialize(bytes).map_err(invalid)?;
-    if tensors.len() != document.tables.len() {
-        return Err(invalid(format!("{} tensors for {} tables", tensors.len(), document.tables.len())));
-    }
-    let mut tables = Vec::with_capacity(document.tables.len());
+    let mut tables: Vec<Table> = Vec::with_capacity(document.tables.len());
     for descriptor in document.tables {
-        let name = descriptor.name.clone();
-        let fail = |why: String| invalid(format!("table `{name}`: {why}"));
-        let tensor = tensors.tensor(&name).map_err(|_| fail("no tensor of that name".into()))?;
-        if tensor.dtype() != dtype(descriptor.precision) {
-            return Err(fail(format!(
-                "stored as {:?}, described as {:?}",
-                tensor.dtype(),
-                descriptor.precision
-            )));
-        }
+        let fail = |why: String| invalid(format!("table `{}`: {why}", descriptor.name));
         if descriptor.channels.is_empty() {
             return Err(fail("no channels".into()));
         }
+        if tables.iter().any(|other| other.name == descriptor.name) {
+            return Err(fail("named twice".into()));
+        }
         let codec = Codec::from_descriptor(&descriptor).map_err(|why| fail(why.into()))?;
+        let values = values(&descriptor, &codec).map_err(fail)?;
         let table = Table {
-            values: codec.decode(tensor.data()),
+            values,
             name: descriptor.name,
             kind: descriptor.kind,
             axes: descriptor.axes,
@@ -206,12 +244,6 @@ pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Tabl
             precision: descriptor.precision,
             certificate: descriptor.certificate,
         };
-        if table.shape() != tensor.shape() {
-            return Err(fail(format!("tensor of shape {:?}, axes of {:?}", tensor.shape(), table.shape())));
-        }
-        if tables.iter().any(|other: &Table| other.name == table.name) {
-            return Err(fail("named twice".into()));
-        }
         table.validate()?;
         tables.push(table);
     }

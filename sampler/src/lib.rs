@@ -24,7 +24,7 @@ mod tables;
 
 pub use axis::{Axis, Interpolation, Mapping};
 pub use cells::limit_slopes;
-pub use container::{FORMAT, MaterialEntry, Precision, Provenance, VERSION, encode};
+pub use container::{FORMAT, MaterialEntry, Precision, Provenance, VERSION, describe, encode, reassemble};
 pub use error::{BindError, LoadError};
 pub use student_t::{Masking, Roughness, StudentT};
 pub use table::{Kind, Table};

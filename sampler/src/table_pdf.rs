@@ -3,6 +3,8 @@
 //! An estimator that divides by it is unbiased at any resolution: it is the Jacobian of the sampler's own map, found by inverting
 //! the interpolated CDFs, and not the analytic density they approximate. Computed in f64 from the very nodes the sampler reads.
 
+use alloc::vec::Vec;
+
 use glam::Vec3;
 
 use crate::cells::{Cubic, Node, locate};
@@ -14,6 +16,20 @@ struct UnitSlopes {
     x: f64,
     z: f64,
     y: f64,
+}
+
+/// Two neighbouring rows of a table and the position between them.
+struct Rows<'a> {
+    low: &'a [Node],
+    high: &'a [Node],
+    between: f32,
+}
+
+impl Rows<'_> {
+    fn node(&self, i: usize) -> Node {
+        let (a, b) = (self.low[i], self.high[i]);
+        [a[0] + self.between * (b[0] - a[0]), a[1] + self.between * (b[1] - a[1])]
+    }
 }
 
 impl StudentT {
@@ -43,6 +59,29 @@ impl StudentT {
         if density.is_finite() { (density as f32).min(f32::MAX) } else { 0.0 }
     }
 
+    /// Where the tabulated density has its joints for a view: unit slopes x in the plane of incidence, ascending, and t ≥ 0 across it.
+    ///
+    /// Between them [`table_pdf`](Self::table_pdf) is smooth, so a quadrature that respects them converges fast. x may end at ±∞.
+    pub fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
+        let view = self.stretch(v);
+        let rows = self.rows_at(&view);
+        let half = self.slices.cells + 1;
+        let slope = |g: f64, sign: f64| sign * 2.0 * (1.0 - g) / (g * (2.0 - g));
+        let away = (0..half).map(|i| slope(f64::from(rows.node(i)[0]), -1.0));
+        let towards = (0..half).rev().map(|i| slope(f64::from(rows.node(half + i)[0]), 1.0));
+        let across = self.slices.across.iter().rev().map(|node| slope(f64::from(node[0]), 1.0));
+        [away.chain(towards).collect(), across.collect()]
+    }
+
+    /// The two rows of the view, interpolated as the sampler does.
+    fn rows_at(&self, view: &Stretched) -> Rows<'_> {
+        let slices = &self.slices;
+        let (row, between) = locate(self.view_coordinate(view) * slices.rows as f32, slices.rows);
+        let stride = 2 * (slices.cells + 1);
+        let [low, high] = [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
+        Rows { low, high, between }
+    }
+
     fn unit_slopes(&self, view: &Stretched, m: Vec3) -> UnitSlopes {
         let (a, b) = (f64::from(m.x) / f64::from(self.sigma_x), f64::from(m.y) / f64::from(self.sigma_y));
         let r = 1.0 / sqrt64(f64::from(view.x) * f64::from(view.x) + f64::from(view.y) * f64::from(view.y));
@@ -53,18 +92,12 @@ impl StudentT {
     /// Density of the tabulated in-plane slope at x/z.
     fn slope_density(&self, view: &Stretched, at: &UnitSlopes) -> f64 {
         let slices = &self.slices;
-        let (row, between) = locate(self.view_coordinate(view) * slices.rows as f32, slices.rows);
-        let stride = 2 * (slices.cells + 1);
-        let rows = [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
-        let node = |i: usize| -> Node {
-            let (a, b) = (rows[0][i], rows[1][i]);
-            [a[0] + between * (b[0] - a[0]), a[1] + between * (b[1] - a[1])]
-        };
+        let rows = self.rows_at(view);
         let (low, high) = ends(at.x, at.z);
         // The half for u ≤ ½ ends where 1 + h reaches its last node; beyond, 1 − h is looked up in the other.
         let half = slices.cells + 1;
-        let (offset, g) = if low <= f64::from(node(half - 1)[0]) { (0, low) } else { (half, high) };
-        density_of(|i| node(offset + i), slices.cells, slices.roots, g) * end_rate(at.x, at.z)
+        let (offset, g) = if low <= f64::from(rows.node(half - 1)[0]) { (0, low) } else { (half, high) };
+        density_of(|i| rows.node(offset + i), slices.cells, slices.roots, g) * end_rate(at.x, at.z)
     }
 
     /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.
@@ -105,9 +138,11 @@ fn end_rate(x: f64, z: f64) -> f64 {
 
 /// du/dg of the interpolated inverse CDF over one half of a mirrored axis, given its `cells + 1` ascending nodes.
 fn density_of(node: impl Fn(usize) -> Node, cells: usize, roots: u32, g: f64) -> f64 {
-    if g < f64::from(node(0)[0]) || g > f64::from(node(cells)[0]) {
+    if g < f64::from(node(0)[0]) {
         return 0.0;
     }
+    // The halves meet at u = ½ up to the rounding of their nodes; a normal in the gap, if there is one, is a rounded sample of its edge.
+    let g = g.min(f64::from(node(cells)[0]));
     // The last cell whose first node is not above g.
     let (mut low, mut high) = (0, cells);
     while high - low > 1 {

@@ -1,0 +1,141 @@
+//! One table as an OpenEXR image: the last axis along x, the others stacked along y, channels as channels.
+//!
+//! A table read by Hermite cells has its values in the luminance channel `Y`, which every viewer shows, and its slopes in `slope`. The
+//! description of the set is the string attribute `microfacet`.
+
+use std::io::Cursor;
+
+use exr::prelude::*;
+use half::f16;
+
+use microfacet_sampler::{LoadError, Precision, Provenance, Table, Tables, describe, reassemble};
+
+/// The first bytes of every OpenEXR file.
+pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// The attribute that holds the description.
+const ATTRIBUTE: &str = "microfacet";
+
+/// EXR channel name of a table's channel.
+fn channel_name(channel: &str) -> &str {
+    if channel == "value" { "Y" } else { channel }
+}
+
+/// An image of the table, compressed without loss; half-precision tables give half channels, all others f32.
+///
+/// # Errors
+/// A message if the table is not sound or cannot be written.
+pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec<u8>, String> {
+    let document = describe(provenance, std::slice::from_ref(table)).map_err(|why| why.to_string())?;
+    let document = with_checksum(&document, &table.values);
+    let width = table.axes.last().map_or(1, microfacet_sampler::Axis::len);
+    let count = table.channels.len();
+    let height = table.values.len() / count / width;
+    let channels = table.channels.iter().enumerate().map(|(i, channel)| {
+        let samples = table.values.iter().skip(i).step_by(count);
+        let samples = match table.precision {
+            Precision::F16 => FlatSamples::F16(samples.map(|&x| f16::from_f32(x)).collect()),
+            _ => FlatSamples::F32(samples.copied().collect()),
+        };
+        // Numbers, not light: lossy compression elsewhere should quantise them evenly.
+        AnyChannel {
+            name: Text::new_or_panic(channel_name(channel)),
+            sample_data: samples,
+            quantize_linearly: true,
+            sampling: Vec2(1, 1),
+        }
+    });
+    let mut attributes = LayerAttributes::named(Text::new_or_panic(&table.name));
+    let text = Text::new_or_none(&document).ok_or("the description cannot be stored in EXR")?;
+    // One custom attribute only: the library writes them in the order of a hash map.
+    attributes.other.insert(Text::new_or_panic(ATTRIBUTE), AttributeValue::Text(text));
+    let layer = Layer::new(
+        (width, height),
+        attributes,
+        Encoding::SMALL_LOSSLESS,
+        AnyChannels::sort(channels.collect()),
+    );
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().non_parallel().to_buffered(&mut bytes).map_err(|why| why.to_string())?;
+    Ok(bytes.into_inner())
+}
+
+/// Reads an image back into a set of one table.
+///
+/// # Errors
+/// [`LoadError`] for an image that is damaged or was not written by [`encode`].
+pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
+    let invalid = |why: String| LoadError::Invalid(why);
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|why| invalid(format!("OpenEXR: {why}")))?;
+    let layer = image.layer_data;
+    let document = match layer.attributes.other.get(&Text::new_or_panic(ATTRIBUTE)) {
+        Some(AttributeValue::Text(text)) => text.to_string(),
+        _ => return Err(invalid(format!("an OpenEXR image, but without the `{ATTRIBUTE}` attribute of a table"))),
+    };
+    let channels = document_channels(&document).map_err(invalid)?;
+    let mut columns = Vec::new();
+    for channel in &channels {
+        let name = channel_name(channel);
+        let found = layer.channel_data.list.iter().find(|stored| stored.name == *name);
+        let found = found.ok_or_else(|| invalid(format!("no channel `{name}`")))?;
+        columns.push(found.sample_data.values_as_f32().collect::<Vec<f32>>());
+    }
+    let pixels = layer.size.area();
+    let values: Vec<f32> = (0..pixels).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+    if !checksum_matches(&document, &values) {
+        return Err(invalid("checksum does not match: the file is damaged or was edited; bake again".into()));
+    }
+    let mut values = Some(values);
+    let (provenance, tables) = reassemble(&document, |_| values.take().ok_or("more than one table".to_string()))?;
+    Tables::from_tables(provenance, tables)
+}
+
+/// Channel names of the one table that a document describes.
+fn document_channels(document: &str) -> std::result::Result<Vec<String>, String> {
+    let document: serde_json::Value = serde_json::from_str(document).map_err(|why| why.to_string())?;
+    let channels = document.pointer("/tables/0/channels").and_then(|list| list.as_array());
+    let names = channels.map(|list| list.iter().filter_map(|name| name.as_str().map(String::from)).collect());
+    names.filter(|names: &Vec<String>| !names.is_empty()).ok_or_else(|| "the description names no channels".into())
+}
+
+const PREFIX: &str = "\"checksum\":\"";
+const ZEROS: &str = "00000000";
+
+/// CRC-32 of the description with zeros for the checksum, then of the values in table order as little-endian f32.
+fn checksum(zeroed: &str, values: &[f32]) -> String {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(zeroed.as_bytes());
+    values.iter().for_each(|x| hasher.update(&x.to_le_bytes()));
+    format!("{:08x}", hasher.finalize())
+}
+
+/// The description in pure ASCII (EXR text has no Unicode), with its checksum filled in.
+fn with_checksum(document: &str, values: &[f32]) -> String {
+    let mut ascii = String::with_capacity(document.len());
+    for c in document.chars() {
+        if c.is_ascii() {
+            ascii.push(c);
+        } else {
+            // Only strings hold such characters, and there JSON allows the escape.
+            let mut units = [0; 2];
+            c.encode_utf16(&mut units).iter().for_each(|unit| ascii.push_str(&format!("\\u{unit:04x}")));
+        }
+    }
+    let digits = checksum(&ascii, values);
+    ascii.replacen(&format!("{PREFIX}{ZEROS}"), &format!("{PREFIX}{digits}"), 1)
+}
+
+fn checksum_matches(document: &str, values: &[f32]) -> bool {
+    let Some(at) = document.find(PREFIX).map(|at| at + PREFIX.len()) else { return false };
+    let Some(digits) = document.get(at..at + 8) else { return false };
+    let zeroed = format!("{}{ZEROS}{}", &document[..at], &document[at + 8..]);
+    digits == checksum(&zeroed, values)
+}

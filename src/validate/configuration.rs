@@ -1,0 +1,116 @@
+//! Materials and views to test, spread over the domain that tables promise.
+
+use std::fmt;
+
+use glam::DVec3;
+use rand::{Rng, RngExt, SeedableRng};
+
+use microfacet_sampler::{Interpolation, Kind, Tables};
+
+/// One material seen from one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Configuration {
+    /// σx.
+    pub sigma_x: f64,
+    /// σy.
+    pub sigma_y: f64,
+    /// Shape.
+    pub gamma: f64,
+    /// Polar angle of the view, radians.
+    pub theta: f64,
+    /// Azimuth of the view, radians.
+    pub phi: f64,
+    /// Seed of the random numbers drawn for it.
+    pub seed: u64,
+}
+
+impl Configuration {
+    /// The view, rounded to what the sampler gets.
+    pub fn view(&self) -> glam::Vec3 {
+        let (sin, cos) = self.theta.sin_cos();
+        let v = DVec3::new(sin * self.phi.cos(), sin * self.phi.sin(), cos.max(0.0));
+        v.as_vec3()
+    }
+}
+
+/// The options of `validate` and `sample` that reproduce it.
+impl fmt::Display for Configuration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { sigma_x, sigma_y, gamma, theta, phi, seed } = self;
+        write!(f, "--sigma {sigma_x},{sigma_y} --gamma {gamma} --theta {theta} --phi {phi} --seed {seed}")
+    }
+}
+
+/// `count` configurations over what the tables cover: γ evenly in s (or from its list), σ log-uniform in [1e-4, 10] with
+/// up to tenfold anisotropy, views over the whole hemisphere, one in eight within 0.01 of grazing or of the normal.
+pub fn configurations(tables: &Tables, count: usize, seed: u64) -> Vec<Configuration> {
+    let shapes = covered_shapes(tables);
+    let mut random = rand::rngs::StdRng::seed_from_u64(seed);
+    (0..count)
+        .map(|i| {
+            let s = shapes.draw(&mut random);
+            let sigma_x = log_uniform(&mut random, 1e-4, 10.0);
+            let ratio = if i % 3 == 0 { 1.0 } else { log_uniform(&mut random, 0.1, 10.0) };
+            let quarter = std::f64::consts::FRAC_PI_2;
+            let theta = match i % 16 {
+                0 => quarter - log_uniform(&mut random, 1e-6, 1e-2),
+                1 => log_uniform(&mut random, 1e-6, 1e-2),
+                _ => random.random_range(0.0..quarter),
+            };
+            Configuration {
+                sigma_x,
+                sigma_y: (sigma_x * ratio).clamp(1e-4, 10.0),
+                gamma: 1.0 + 1.0 / s,
+                theta,
+                phi: random.random_range(-std::f64::consts::PI..std::f64::consts::PI),
+                seed: random.next_u64(),
+            }
+        })
+        .collect()
+}
+
+fn log_uniform(random: &mut impl Rng, low: f64, high: f64) -> f64 {
+    (random.random_range(low.ln()..high.ln())).exp()
+}
+
+/// The values of s that a set holds: ranges, and single ones.
+struct Shapes {
+    ranges: Vec<[f64; 2]>,
+    points: Vec<f64>,
+}
+
+impl Shapes {
+    fn draw(&self, random: &mut impl Rng) -> f64 {
+        let total = self.ranges.len() + self.points.len();
+        let i = random.random_range(0..total);
+        match self.ranges.get(i) {
+            // The first sixteenth of the draws at each end: Beckmann and the heaviest tails are where tables fail first.
+            Some([low, high]) => match random.random_range(0..16) {
+                0 => *low,
+                1 => *high,
+                _ => random.random_range(*low..*high),
+            },
+            None => self.points[i - self.ranges.len()],
+        }
+    }
+}
+
+fn covered_shapes(tables: &Tables) -> Shapes {
+    let mut shapes = Shapes { ranges: Vec::new(), points: Vec::new() };
+    for table in tables.tables() {
+        if !matches!(table.kind, Kind::VisibleSlope | Kind::VisibleSlopePeeled) {
+            continue;
+        }
+        let axis = &table.axes[0];
+        if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
+            shapes.points.extend(&axis.nodes);
+        } else {
+            shapes.ranges.push([axis.nodes[0], axis.nodes[axis.nodes.len() - 1]]);
+        }
+    }
+    // 1 + 1/s and back may round to just outside the last node.
+    for [_, high] in &mut shapes.ranges {
+        *high *= 1.0 - 1e-15;
+    }
+    shapes
+}

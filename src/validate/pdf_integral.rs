@@ -1,0 +1,97 @@
+//! Does `table_pdf` integrate to one? Quadrature over the pieces on which it is smooth.
+
+use glam::Vec3;
+
+use microfacet_sampler::StudentT;
+
+/// Each interval between joints is split into so many: 1/(a cubic's derivative) is not a polynomial.
+const PARTS: usize = 8;
+/// Slopes beyond this are left to the closed form of the tail.
+const FAR: f64 = 1e12;
+
+/// ∫ table_pdf(v, m) dm for a material with σ = 1 and a view in the plane y = 0.
+///
+/// The tabulated part is integrated between its joints, in the half tangent, by Gauss–Legendre; where a heavy tail was peeled off, the part of
+/// it beyond all representable slopes is added in closed form, since no quadrature of an f32 density reaches it.
+pub fn integral(material: &StudentT, v: Vec3) -> f64 {
+    let gamma = material.gamma();
+    let s = 1.0 / (gamma - 1.0);
+    let [mut along, mut across] = material.table_joints(v);
+    let peeled = f64::from(material.tabulated_share(v)) < 1.0;
+    along.push(0.0);
+    // The outermost cells hold decades of slope, in which the density falls like a power of the distance from the end.
+    let (first, last) = (along[0].max(-FAR), along[along.len() - 2].min(FAR));
+    let decades = (2..24).map(|i| 10f64.powf(f64::from(i) * 0.5));
+    along.extend(decades.flat_map(|x| [-x, x]).filter(|&x| x > first && x < last));
+    if peeled {
+        // The heavy part is smooth in x, but over many decades.
+        along.extend((-8..80).map(|i| 10f64.powf(f64::from(i) * 0.15)));
+        along.push(FAR);
+    }
+    for joints in [&mut along, &mut across] {
+        joints.iter_mut().for_each(|x| *x = x.clamp(-FAR, FAR));
+        joints.sort_by(f64::total_cmp);
+    }
+    let density = |x: f64, t: f64| {
+        let root = (1.0 + s * x * x).sqrt();
+        let y = root * t;
+        let r = (1.0 + x * x + y * y).sqrt();
+        let m = Vec3::new((x / r) as f32, (y / r) as f32, (1.0 / r) as f32);
+        // dm = cos³θ dx dy, dy = √(1 + s x²) dt; both signs of t.
+        2.0 * f64::from(material.table_pdf(v, m)) * root / (r * r * r)
+    };
+    // The density is a function of x times one of t, so the sum over the grid is that of a row times that of a column over their
+    // common point. (That x and t are independent in what is drawn, the χ² tests see.)
+    let (t0, x_nodes) = (0.3, nodes(&along));
+    let row: Vec<f64> = x_nodes.iter().map(|&(x, _)| density(x, t0)).collect();
+    let along_sum: f64 = row.iter().zip(&x_nodes).map(|(f, (_, dx))| f * dx).sum();
+    // The median: at the largest density there may be a spike as narrow as the rounding of m.
+    let mut below = 0.0;
+    let median = row.iter().zip(&x_nodes).position(|(f, (_, dx))| {
+        below += f * dx;
+        // The halves of a row meet in an interval as narrow as rounding, no place for a node to stand for all.
+        below >= 0.5 * along_sum && *dx > 1e-4
+    });
+    let Some(top) = median else { return f64::NAN };
+    let across_sum: f64 = nodes(&across).iter().map(|&(t, dt)| density(x_nodes[top].0, t) * dt).sum();
+    let mut sum = along_sum * across_sum / row[top];
+    if peeled {
+        let heavy = 1.0 - f64::from(material.tabulated_share(v));
+        sum += heavy * (-(gamma - 1.5) * (s * FAR * FAR).ln_1p()).exp();
+    }
+    sum
+}
+
+/// Slopes and weights of a composite Gauss–Legendre rule between ascending joints (0 among them where they change sign), each
+/// interval in the distance of the half tangent from its end.
+fn nodes(joints: &[f64]) -> Vec<(f64, f64)> {
+    // Eight points, positive halves (Abramowitz & Stegun 25.4.30).
+    const RULE: [(f64, f64); 4] = [
+        (0.183434642495649805, 0.362683783378361983),
+        (0.525532409916328986, 0.313706645877887287),
+        (0.796666477413626740, 0.222381034453374471),
+        (0.960289856497536232, 0.101228536290376259),
+    ];
+    // Distance of the half tangent of |x| from 1: 1 − x/(1+r) with r − x = 1/(r + x).
+    let distance = |x: f64| {
+        let r = (1.0 + x * x).sqrt();
+        (1.0 + 1.0 / (r + x.abs())) / (1.0 + r)
+    };
+    let mut all = Vec::new();
+    for pair in joints.windows(2) {
+        let sign = if pair[0] < 0.0 { -1.0 } else { 1.0 };
+        let (a, b) = (distance(pair[0]), distance(pair[1]));
+        let half = 0.5 * (b - a).abs() / PARTS as f64;
+        for part in 0..PARTS {
+            let middle = a.min(b) + half * (2 * part + 1) as f64;
+            for (node, weight) in RULE {
+                for g in [middle - half * node, middle + half * node] {
+                    // |x| = 2(1−g)/(g(2−g)), |dx/dg| = 2(1+h²)/(1−h²)² with h = 1−g.
+                    let (h, z) = (1.0 - g, g * (2.0 - g));
+                    all.push((sign * 2.0 * h / z, weight * half * 2.0 * (1.0 + h * h) / (z * z)));
+                }
+            }
+        }
+    }
+    all
+}
