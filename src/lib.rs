@@ -5,6 +5,7 @@
 //! with what `microfacet-model` says.
 
 pub mod bake;
+pub mod scene;
 pub mod spec;
 pub mod generate;
 pub mod store;

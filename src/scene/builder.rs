@@ -1,0 +1,143 @@
+//! What the importers share: a scene in the making.
+
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+
+use super::material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
+use super::texture::{Channel, Encoding, Textures};
+use super::{Interval, Place, Scene, SceneError};
+
+/// γ of GGX (Trowbridge-Reitz).
+pub(super) const GGX: Interval = Interval::point(2.0);
+/// γ of Beckmann.
+pub(super) const BECKMANN: Interval = Interval::point(f64::INFINITY);
+
+/// A lobe of the material at hand, as [`Builder::add`] takes it.
+pub(super) struct Lobe {
+    /// What distinguishes it from the material's other lobes, if anything.
+    pub(super) name: Option<&'static str>,
+    pub(super) roughness: Roughness,
+    pub(super) gamma: Interval,
+    pub(super) fresnel: Option<Fresnel>,
+    pub(super) masking: Option<Masking>,
+}
+
+/// The Fresnel term of a dielectric of relative index `eta`.
+pub(super) fn dielectric(eta: f64, place: &Place) -> Result<Fresnel, SceneError> {
+    if eta > 0.0 && eta < f64::INFINITY {
+        Ok(Fresnel::Dielectric(eta))
+    } else {
+        Err(place.invalid(format!(
+            "the index of refraction is {eta}; it must be finite and more than 0"
+        )))
+    }
+}
+
+/// The Fresnel term of a conductor.
+pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Fresnel, SceneError> {
+    let finite = eta.iter().chain(&k).all(|x| x.is_finite());
+    if finite && eta.iter().all(|&eta| eta > 0.0) && k.iter().all(|&k| k >= 0.0) {
+        Ok(Fresnel::Conductor { eta, k })
+    } else {
+        Err(place.invalid(format!(
+            "the conductor has eta = {eta:?} and k = {k:?}; eta must be more than 0 and k at least 0"
+        )))
+    }
+}
+
+/// Collects the materials of a scene of one format.
+pub(super) struct Builder {
+    format: Format,
+    scene: Scene,
+    /// How often each name was asked for.
+    names: HashMap<String, u32>,
+    warned: HashSet<String>,
+    textures: Textures,
+}
+
+impl Builder {
+    pub(super) fn new(format: Format) -> Self {
+        Self {
+            format,
+            scene: Scene::default(),
+            names: HashMap::new(),
+            warned: HashSet::new(),
+            textures: Textures::default(),
+        }
+    }
+
+    pub(super) fn finish(self) -> Scene {
+        self.scene
+    }
+
+    pub(super) fn add(&mut self, name: &str, place: &Place, used: bool, lobe: Lobe) {
+        let name = match lobe.name {
+            Some(suffix) => format!("{name}.{suffix}"),
+            None => name.to_owned(),
+        };
+        let material = Material {
+            name: self.unique(name),
+            roughness: lobe.roughness,
+            gamma: lobe.gamma,
+            fresnel: lobe.fresnel,
+            masking: lobe.masking,
+            origin: Origin {
+                format: self.format,
+                place: place.clone(),
+                lobe: lobe.name,
+            },
+            used,
+        };
+        self.scene.materials.push(material);
+    }
+
+    pub(super) fn ignore(&mut self, name: &str, kind: &str, place: &Place, reason: &'static str) {
+        self.scene.ignored.push(Ignored {
+            name: name.to_owned(),
+            kind: kind.to_owned(),
+            reason,
+            place: place.clone(),
+        });
+    }
+
+    pub(super) fn warn(&mut self, place: &Place, message: impl AsRef<str>) {
+        let warning = format!("{place}: {}", message.as_ref());
+        // Materials share textures: each warning is given once.
+        if self.warned.insert(warning.clone()) {
+            self.scene.warnings.push(warning);
+        }
+    }
+
+    /// The range of a channel of an image file; [0, 1] with a warning if it cannot be read.
+    pub(super) fn image(
+        &mut self,
+        file: &Path,
+        channel: Channel,
+        encoding: Encoding,
+        place: &Place,
+    ) -> Interval {
+        self.textures
+            .range(file, channel, encoding)
+            .unwrap_or_else(|error| self.unread(&file.display().to_string(), &error, place))
+    }
+
+    /// The range [0, 1], with a warning that the texture `name` cannot be followed.
+    pub(super) fn unread(&mut self, name: &str, reason: &str, place: &Place) -> Interval {
+        self.warn(
+            place,
+            format!("texture {name} {reason}; it is assumed to cover [0, 1]"),
+        );
+        Interval::UNIT
+    }
+
+    /// The name itself the first time, then "name (2)" and so on.
+    fn unique(&mut self, name: String) -> String {
+        let count = self.names.entry(name.clone()).or_default();
+        *count += 1;
+        if *count == 1 {
+            return name;
+        }
+        let numbered = format!("{name} ({count})");
+        self.unique(numbered)
+    }
+}

@@ -1,0 +1,202 @@
+//! What a scene asks for: microfacet lobes with a roughness, a shape and a Fresnel term.
+
+use std::fmt;
+
+use super::{Interval, Place};
+
+/// The slope roughness σ of a microfacet lobe, along the tangent (x) and the bitangent (y).
+///
+/// σ is dimensionless: the scale of the surface's slopes in the Student-t distribution
+/// (Ribardière et al. 2017, eq. 11 and 18), equal to the α of GGX (γ = 2) and of Beckmann (γ = ∞).
+/// A range may start at 0, for a texture that leaves some points smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Roughness {
+    /// σ = 0 everywhere: a mirror or a pane, with no microfacets to sample.
+    Smooth,
+    /// σx = σy at every point, even where σ varies.
+    Isotropic(Interval),
+    /// σx and σy vary independently.
+    Anisotropic {
+        /// σx.
+        x: Interval,
+        /// σy.
+        y: Interval,
+    },
+}
+
+impl Roughness {
+    /// The isotropic roughness of range `sigma`, [`Roughness::Smooth`] when that is 0 alone.
+    pub(super) fn isotropic(sigma: Interval) -> Self {
+        if sigma.max > 0.0 {
+            Self::Isotropic(sigma)
+        } else {
+            Self::Smooth
+        }
+    }
+
+    /// Two roughnesses of independent origin; isotropic when both are the same single number.
+    pub(super) fn anisotropic(x: Interval, y: Interval) -> Self {
+        if x.is_point() && x == y {
+            Self::isotropic(x)
+        } else {
+            Self::Anisotropic { x, y }
+        }
+    }
+
+    /// σx, which is 0 for a smooth surface.
+    #[must_use]
+    pub fn x(self) -> Interval {
+        match self {
+            Self::Smooth => Interval::point(0.0),
+            Self::Isotropic(x) | Self::Anisotropic { x, .. } => x,
+        }
+    }
+
+    /// σy, which is 0 for a smooth surface.
+    #[must_use]
+    pub fn y(self) -> Interval {
+        match self {
+            Self::Anisotropic { y, .. } => y,
+            _ => self.x(),
+        }
+    }
+
+    /// Whether σx = σy at every point.
+    #[must_use]
+    pub fn is_isotropic(self) -> bool {
+        !matches!(self, Self::Anisotropic { .. })
+    }
+}
+
+/// How shadowing and masking combine into G2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Masking {
+    /// G2 = G1(v) G1(l): shadowing and masking independent (Ribardière et al. 2017, eq. 24).
+    Uncorrelated,
+    /// G2 = 1 / (1 + Λ(v) + Λ(l)): correlated through the height (Heitz 2014, eq. 99).
+    HeightCorrelated,
+}
+
+impl Masking {
+    /// All forms.
+    pub const ALL: [Self; 2] = [Self::Uncorrelated, Self::HeightCorrelated];
+
+    /// The name in recipes and files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Uncorrelated => "uncorrelated",
+            Self::HeightCorrelated => "height-correlated",
+        }
+    }
+}
+
+impl fmt::Display for Masking {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The reflectance of a single facet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fresnel {
+    /// F = 1.
+    Mirror,
+    /// Schlick's approximation with the given reflectance at normal incidence, in [0, 1].
+    ///
+    /// Tables for it split that number off, so one table serves every value and every colour.
+    Schlick(f64),
+    /// A conductor of complex index of refraction η + ik, for red, green and blue.
+    Conductor {
+        /// η > 0.
+        eta: [f64; 3],
+        /// k ≥ 0.
+        k: [f64; 3],
+    },
+    /// A dielectric whose index of refraction is the given multiple (> 0) of the outside's.
+    Dielectric(f64),
+}
+
+/// The format in which a material was described.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// The native recipe (TOML).
+    Recipe,
+    /// pbrt-v4.
+    Pbrt,
+    /// Mitsuba 3 XML.
+    Mitsuba,
+    /// glTF 2.0.
+    Gltf,
+    /// MaterialX.
+    MaterialX,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Recipe => "recipe",
+            Self::Pbrt => "pbrt-v4",
+            Self::Mitsuba => "Mitsuba 3",
+            Self::Gltf => "glTF 2.0",
+            Self::MaterialX => "MaterialX",
+        })
+    }
+}
+
+/// Where a material comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// The format.
+    pub format: Format,
+    /// The place of its definition.
+    pub place: Place,
+    /// Which lobe of a layered material it is, for instance "coat"; `None` for the only or main one.
+    pub lobe: Option<&'static str>,
+}
+
+/// One microfacet lobe that a scene asks for.
+///
+/// A layered material of the scene appears as one `Material` for each rough interface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// The name, unique in its scene; a further lobe is named "material.lobe".
+    pub name: String,
+    /// σ.
+    pub roughness: Roughness,
+    /// The shape γ > 3/2; `INFINITY` is Beckmann, 2 is GGX.
+    pub gamma: Interval,
+    /// The facets' reflectance; `None` where the scene states none, or none of these forms.
+    pub fresnel: Option<Fresnel>,
+    /// The form of G2 that the scene's renderer evaluates; `None` where the format leaves it open.
+    pub masking: Option<Masking>,
+    /// Where it was described.
+    pub origin: Origin,
+    /// Whether any geometry wears it. True where that cannot be known.
+    pub used: bool,
+}
+
+impl Material {
+    /// Whether both ask for the same lobe under the same name, wherever they were described.
+    #[must_use]
+    pub fn asks_the_same(&self, other: &Self) -> bool {
+        self.name == other.name
+            && self.roughness == other.roughness
+            && self.gamma == other.gamma
+            && self.fresnel == other.fresnel
+            && self.masking == other.masking
+    }
+}
+
+/// A material of the scene for which there is nothing to bake.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ignored {
+    /// Its name.
+    pub name: String,
+    /// Its kind in the scene's format, for instance "hair".
+    pub kind: String,
+    /// Why it was left out.
+    pub reason: &'static str,
+    /// Where it was described.
+    pub place: Place,
+}

@@ -1,0 +1,395 @@
+//! MaterialX documents (1.38 and later): `standard_surface` and `open_pbr_surface`.
+//!
+//! Conventions, from the graphs that define the two shading models (`libraries/bxdf` of MaterialX,
+//! the [OpenPBR specification][openpbr]) and the node `roughness_anisotropy` (`libraries/pbrlib`):
+//!
+//! - All lobes are GGX (γ = 2) with α from the roughness r and the anisotropy a, and α in [1e-6, 1]:
+//!   - `standard_surface`: αx = r²/A, αy = r² A, with A = √(1 − min(a, 0.98));
+//!   - `open_pbr_surface`: αx = r² √(2 / (1 + (1 − a)²)), αy = (1 − a) αx.
+//! - The coat, if its weight is not 0, is a lobe of its own. It roughens the base: in
+//!   `standard_surface` to r + (1 − r) `coat` · `coat_affect_roughness` · `coat_roughness`, in
+//!   `open_pbr_surface` to (min(1, r⁴ + 2 `coat_roughness`⁴))^¼, mixed in by the coat's weight.
+//! - `transmission_extra_roughness` gives transmission a lobe of its own.
+//! - Sheen and fuzz have distributions of their own. How shadowing and masking correlate is left open.
+//! - Defaults are those of the definitions' nodes, version 1.0.1 and 1.1.
+//! - A material is used if a `materialassign` names it, or if there are none.
+//! - An image counts as its first channel where it is a float, else as the channel that is taken
+//!   from it; it is decoded from sRGB if it is a colour in the colour space `srgb_texture`.
+//!
+//! [openpbr]: https://academysoftwarefoundation.github.io/OpenPBR/
+
+mod graph;
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use super::builder::{Builder, GGX, Lobe, dielectric};
+use super::include::Includes;
+use super::xml::{self, Element};
+use super::{Format, Fresnel, Interval, Place, Roughness, Scene, SceneError};
+
+/// `M_FLOAT_EPS` of the shaders: α is raised to it.
+const LEAST_ALPHA: f64 = 1e-6;
+
+/// Reads a MaterialX document.
+pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
+    let mut includes = Includes::default();
+    includes.enter(path, &Place::file(path))?;
+    let mut root = xml::read(path)?;
+    if root.tag != "materialx" {
+        return Err(root.place.invalid(format!(
+            "<{}> is not the root of a MaterialX document; expected <materialx>",
+            root.tag
+        )));
+    }
+    let mut builder = Builder::new(Format::MaterialX);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    expand(&mut root, folder, &mut includes, &mut builder)?;
+    let mut reader = Reader {
+        root: &root,
+        folder: folder.to_owned(),
+        builder,
+    };
+    reader.shaders()?;
+    Ok(reader.builder.finish())
+}
+
+/// Replaces each `<xi:include>` by the content of its document.
+fn expand(
+    root: &mut Element,
+    folder: &Path,
+    includes: &mut Includes,
+    builder: &mut Builder,
+) -> Result<(), SceneError> {
+    for child in std::mem::take(&mut root.children) {
+        if child.tag != "include" {
+            root.children.push(child);
+            continue;
+        }
+        let name = child.required("href")?;
+        let path = folder.join(name);
+        if !includes.enter(&path, &child.place)? {
+            builder.warn(
+                &child.place,
+                format!("{name} is missing; its materials are not seen"),
+            );
+            continue;
+        }
+        let mut included = xml::read(&path)?;
+        expand(
+            &mut included,
+            path.parent().unwrap_or(folder),
+            includes,
+            builder,
+        )?;
+        includes.leave();
+        root.children.append(&mut included.children);
+    }
+    Ok(())
+}
+
+struct Reader<'a> {
+    root: &'a Element,
+    folder: PathBuf,
+    builder: Builder,
+}
+
+/// The values of a shader's inputs.
+struct Shader<'a> {
+    node: &'a Element,
+    /// The graph it is in, or the document.
+    scope: &'a Element,
+}
+
+impl<'a> Reader<'a> {
+    fn shaders(&mut self) -> Result<(), SceneError> {
+        let root = self.root;
+        let mut assigned = HashSet::new();
+        root.walk(&mut |element| {
+            if element.tag == "materialassign" {
+                assigned.extend(element.attribute("material"));
+            }
+        });
+        // A graph with a definition is how a shading model works, not a use of it.
+        let graphs = root
+            .children
+            .iter()
+            .filter(|child| child.tag == "nodegraph" && child.attribute("nodedef").is_none());
+        for scope in [root].into_iter().chain(graphs) {
+            for node in &scope.children {
+                let shader = Shader { node, scope };
+                match (&node.tag[..], node.attribute("type")) {
+                    ("shaderref", _) => {
+                        let (name, reason) = ("shaderref", "older than MaterialX 1.38");
+                        self.builder.ignore(name, "shaderref", &node.place, reason);
+                    }
+                    ("material", _) if node.children.iter().any(|c| c.tag == "shaderref") => {
+                        let name = node.attribute("name").unwrap_or_default();
+                        let reason = "written for MaterialX before 1.38; upgrade the document";
+                        self.builder.ignore(name, "material", &node.place, reason);
+                    }
+                    ("output" | "input" | "nodegraph" | "nodedef", _) => {}
+                    (class, Some("surfaceshader")) => {
+                        let own = node.attribute("name").unwrap_or(class);
+                        let materials = self.materials(own);
+                        let used = assigned.is_empty()
+                            || materials.iter().any(|name| assigned.contains(name));
+                        // One material gives the shader its name; several share it.
+                        let name = if let [material] = materials[..] {
+                            material
+                        } else {
+                            own
+                        };
+                        self.shader(name, class, &shader, used)?;
+                    }
+                    _ => {}
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The names of the materials that wear the shader.
+    fn materials(&self, shader: &str) -> Vec<&'a str> {
+        let wears = |material: &Element| {
+            let input = material.child_named("surfaceshader");
+            input.is_some_and(|input| {
+                input.attribute("nodename") == Some(shader)
+                    || input.attribute("nodegraph").is_some_and(|graph| {
+                        self.root
+                            .child_named(graph)
+                            .is_some_and(|graph| graph.child_named(shader).is_some())
+                    })
+            })
+        };
+        let materials = self
+            .root
+            .children
+            .iter()
+            .filter(|e| e.tag == "surfacematerial");
+        materials
+            .filter(|material| wears(material))
+            .filter_map(|material| material.attribute("name"))
+            .collect()
+    }
+
+    fn shader(
+        &mut self,
+        name: &str,
+        class: &str,
+        shader: &Shader<'a>,
+        used: bool,
+    ) -> Result<(), SceneError> {
+        let lobes = match class {
+            "standard_surface" => self.standard_surface(shader)?,
+            "open_pbr_surface" => self.open_pbr_surface(shader)?,
+            _ => {
+                let reason = "not a shading model that is known here";
+                self.builder.ignore(name, class, &shader.node.place, reason);
+                return Ok(());
+            }
+        };
+        if lobes.is_empty() {
+            let reason = "diffuse, without microfacets";
+            self.builder.ignore(name, class, &shader.node.place, reason);
+        }
+        for lobe in lobes {
+            self.builder.add(name, &shader.node.place, used, lobe);
+        }
+        let fabric = if class == "standard_surface" {
+            "sheen"
+        } else {
+            "fuzz_weight"
+        };
+        if self.input(shader, fabric, 0.0)?.max > 0.0 {
+            let name = format!("{name}.{fabric}");
+            let reason = "a fabric's distribution, not a Student-t one";
+            self.builder
+                .ignore(&name, class, &shader.node.place, reason);
+        }
+        Ok(())
+    }
+
+    fn standard_surface(&mut self, shader: &Shader<'a>) -> Result<Vec<Lobe>, SceneError> {
+        let alpha = |roughness: Interval, anisotropy: Interval| {
+            let aspect = anisotropy.map_falling(|a| (1.0 - a.min(0.98)).sqrt());
+            axes(
+                roughness,
+                anisotropy,
+                [1.0 / aspect.max, 1.0 / aspect.min],
+                [aspect.min, aspect.max],
+            )
+        };
+        let roughness = self.unit(shader, "specular_roughness", 0.2)?;
+        let anisotropy = self.unit(shader, "specular_anisotropy", 0.0)?;
+        let metalness = self.unit(shader, "metalness", 0.0)?;
+        let transmission = self.unit(shader, "transmission", 0.0)?;
+        let extra = self.input(shader, "transmission_extra_roughness", 0.0)?;
+        let coat = self.unit(shader, "coat", 0.0)?;
+        let coat_roughness = self.unit(shader, "coat_roughness", 0.1)?;
+        let coat_anisotropy = self.unit(shader, "coat_anisotropy", 0.0)?;
+        let affect = self.unit(shader, "coat_affect_roughness", 0.0)?;
+        let roughening = coat
+            .map_bilinear(affect, |a, b| a * b)
+            .map_bilinear(coat_roughness, |a, b| a * b);
+        let under_coat = |r: Interval| r.map_bilinear(roughening, |r, t| r + (1.0 - r) * t);
+
+        let mut lobes = Vec::new();
+        if metalness.max + transmission.max + self.unit(shader, "specular", 1.0)?.max > 0.0 {
+            let fresnel = match metalness.max > 0.0 {
+                true => None,
+                false => self.index(shader, "specular_IOR", 1.5)?,
+            };
+            lobes.push(lobe(
+                None,
+                alpha(under_coat(roughness), anisotropy),
+                fresnel,
+            ));
+            if transmission.max > 0.0 && extra != Interval::point(0.0) {
+                let roughness = Interval {
+                    min: roughness.min + extra.min,
+                    max: roughness.max + extra.max,
+                };
+                let roughness = under_coat(roughness.clamp(0.0, 1.0));
+                lobes.push(lobe(
+                    Some("transmission"),
+                    alpha(roughness, anisotropy),
+                    fresnel,
+                ));
+            }
+        }
+        if coat.max > 0.0 {
+            let fresnel = self.index(shader, "coat_IOR", 1.5)?;
+            lobes.push(lobe(
+                Some("coat"),
+                alpha(coat_roughness, coat_anisotropy),
+                fresnel,
+            ));
+        }
+        Ok(lobes)
+    }
+
+    fn open_pbr_surface(&mut self, shader: &Shader<'a>) -> Result<Vec<Lobe>, SceneError> {
+        let alpha = |roughness: Interval, anisotropy: Interval| {
+            let stretch = |a: f64| (2.0 / (1.0 + (1.0 - a) * (1.0 - a))).sqrt();
+            let along = anisotropy.map_rising(stretch);
+            let across = anisotropy.map_falling(|a| (1.0 - a) * stretch(a));
+            axes(
+                roughness,
+                anisotropy,
+                [along.min, along.max],
+                [across.min, across.max],
+            )
+        };
+        let roughness = self.unit(shader, "specular_roughness", 0.3)?;
+        let anisotropy = self.unit(shader, "specular_roughness_anisotropy", 0.0)?;
+        let metalness = self.unit(shader, "base_metalness", 0.0)?;
+        let transmission = self.unit(shader, "transmission_weight", 0.0)?;
+        let specular = self.input(shader, "specular_weight", 1.0)?;
+        let coat = self.unit(shader, "coat_weight", 0.0)?;
+        let coat_roughness = self.unit(shader, "coat_roughness", 0.0)?;
+        let coat_anisotropy = self.unit(shader, "coat_roughness_anisotropy", 0.0)?;
+        let under_coat = |r: f64, coat_roughness: f64, coat: f64| {
+            let fourth = |x: f64| x * x * x * x;
+            let sum = fourth(r) + 2.0 * fourth(coat_roughness);
+            r + (sum.min(1.0).sqrt().sqrt() - r) * coat
+        };
+
+        let mut lobes = Vec::new();
+        if metalness.max + transmission.max + specular.max > 0.0 {
+            // Under a coat the index is relative to the coat's; metal is not a dielectric.
+            let fresnel = match metalness.max > 0.0 || coat.max > 0.0 {
+                true => None,
+                false => self.index(shader, "specular_ior", 1.5)?,
+            };
+            let roughness = Interval {
+                min: under_coat(roughness.min, coat_roughness.min, coat.min),
+                max: under_coat(roughness.max, coat_roughness.max, coat.max),
+            };
+            lobes.push(lobe(None, alpha(roughness, anisotropy), fresnel));
+        }
+        if coat.max > 0.0 {
+            let fresnel = self.index(shader, "coat_ior", 1.6)?;
+            lobes.push(lobe(
+                Some("coat"),
+                alpha(coat_roughness, coat_anisotropy),
+                fresnel,
+            ));
+        }
+        Ok(lobes)
+    }
+
+    /// An input from 0 to 1; what lies outside is moved there, as the shaders do.
+    fn unit(
+        &mut self,
+        shader: &Shader<'a>,
+        name: &str,
+        default: f64,
+    ) -> Result<Interval, SceneError> {
+        let value = self.input(shader, name, default)?;
+        if value.min < 0.0 || value.max > 1.0 {
+            let worst = if value.min < 0.0 {
+                value.min
+            } else {
+                value.max
+            };
+            self.builder.warn(
+                &shader.node.place,
+                format!("{name} is {worst}, outside [0, 1]; it is moved to the nearer end"),
+            );
+        }
+        Ok(value.clamp(0.0, 1.0))
+    }
+
+    fn index(
+        &mut self,
+        shader: &Shader<'a>,
+        name: &str,
+        default: f64,
+    ) -> Result<Option<Fresnel>, SceneError> {
+        let eta = self.input(shader, name, default)?;
+        eta.is_point()
+            .then(|| dielectric(eta.min, &shader.node.place))
+            .transpose()
+    }
+
+    fn input(
+        &mut self,
+        shader: &Shader<'a>,
+        name: &str,
+        default: f64,
+    ) -> Result<Interval, SceneError> {
+        match shader.node.child_named(name) {
+            Some(input) => self.value(input, shader.scope),
+            None => Ok(Interval::point(default)),
+        }
+    }
+}
+
+fn lobe(name: Option<&'static str>, roughness: Roughness, fresnel: Option<Fresnel>) -> Lobe {
+    Lobe {
+        name,
+        roughness,
+        gamma: GGX,
+        fresnel,
+        masking: None,
+    }
+}
+
+/// The roughness of r² times factors, least and greatest, along both axes.
+fn axes(r: Interval, anisotropy: Interval, x: [f64; 2], y: [f64; 2]) -> Roughness {
+    if anisotropy.max == 0.0 {
+        return Roughness::isotropic(r.map_rising(|r| r * r));
+    }
+    if r.max == 0.0 {
+        return Roughness::Smooth;
+    }
+    let alpha = |factor: [f64; 2]| {
+        Interval {
+            min: r.min * r.min * factor[0],
+            max: r.max * r.max * factor[1],
+        }
+        .clamp(LEAST_ALPHA, 1.0)
+    };
+    Roughness::anisotropic(alpha(x), alpha(y))
+}

@@ -1,0 +1,253 @@
+//! Mitsuba 3 scenes (XML).
+//!
+//! Conventions, from the [plugins' documentation][bsdfs] and Mitsuba's sources
+//! (`render/microfacet.h`, `render/ior.h`, `bsdfs/principledhelpers.h`):
+//!
+//! - `roughconductor`, `roughdielectric`, `roughplastic` and `pplastic` take `alpha` (default 0.1)
+//!   or `alpha_u` and `alpha_v`, as written and at least 1e-4. `distribution` is `beckmann` by
+//!   default (γ = ∞), or `ggx` (γ = 2); σ = α in both.
+//! - `principled` takes `roughness` r (default 0.5) and `anisotropic` a (default 0): with
+//!   A = √(1 − 0.9 a) its GGX lobe has αx = r²/A and αy = r² A, each at least 1e-3. Its clearcoat is
+//!   GTR1, which has heavier tails than any Student-t distribution (γ = 1) and is listed as ignored.
+//! - `principledthin` has the same reflection lobe, and one for transmission with
+//!   r (0.65 η − 0.35) in the place of r; both only if `spec_trans` is not 0.
+//! - `conductor`, `dielectric`, `thindielectric` and `plastic` are smooth.
+//! - G2 is uncorrelated (`MicrofacetDistribution::G`).
+//! - `twosided`, `mask`, `bumpmap`, `normalmap` and `blendbsdf` pass on to what they contain.
+//! - A `bitmap` texture is decoded from sRGB unless it is `raw`; its luminance counts.
+//! - `$name` in an attribute stands for the value that `<default>` gives it.
+//!
+//! [bsdfs]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
+
+mod bsdf;
+
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use super::builder::Builder;
+use super::error::did_you_mean;
+use super::include::Includes;
+use super::xml::{self, Element};
+use super::{Format, Place, Scene, SceneError};
+
+/// Reads a Mitsuba 3 scene.
+pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
+    let mut builder = Builder::new(Format::Mitsuba);
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let mut expansion = Expansion {
+        builder: &mut builder,
+        includes: Includes::default(),
+        defaults: Vec::new(),
+        folders: vec![folder],
+        incomplete: false,
+    };
+    expansion.includes.enter(path, &Place::file(path))?;
+    let mut root = xml::read(path)?;
+    if root.tag != "scene" && root.tag != "bsdf" {
+        return Err(root.place.invalid(format!(
+            "<{}> is not the root of a Mitsuba scene; expected <scene>",
+            root.tag
+        )));
+    }
+    expansion.element(&mut root)?;
+    let incomplete = expansion.incomplete;
+    let folders = expansion.folders;
+
+    let mut reader = Reader {
+        ids: ids(&root),
+        builder,
+        folders,
+        incomplete,
+    };
+    let used = reader.used(&root)?;
+    reader.bsdfs(&root, None, &used)?;
+    Ok(reader.builder.finish())
+}
+
+/// Replaces `<include>` by what it includes, and `$name` by its value.
+struct Expansion<'a> {
+    builder: &'a mut Builder,
+    includes: Includes,
+    defaults: Vec<(String, String)>,
+    /// Where files are looked for: the scene's own folder, then those of `<path>`.
+    folders: Vec<PathBuf>,
+    incomplete: bool,
+}
+
+impl Expansion<'_> {
+    fn element(&mut self, element: &mut Element) -> Result<(), SceneError> {
+        for (_, value) in &mut element.attributes {
+            self.substitute(value);
+        }
+        match &element.tag[..] {
+            "default" => {
+                let (name, value) = (element.required("name")?, element.required("value")?);
+                if !self.defaults.iter().any(|(known, _)| known == name) {
+                    self.defaults.push((name.to_owned(), value.to_owned()));
+                    // "$ab" must not be read as "$a" followed by "b".
+                    self.defaults
+                        .sort_by_key(|(name, _)| std::cmp::Reverse(name.len()));
+                }
+            }
+            "path" => {
+                let folder = self.folders[0].join(element.required("value")?);
+                self.folders.push(folder);
+            }
+            _ => {}
+        }
+        for mut child in std::mem::take(&mut element.children) {
+            if child.tag == "include" {
+                element.children.extend(self.include(&mut child)?);
+            } else {
+                self.element(&mut child)?;
+                element.children.push(child);
+            }
+        }
+        Ok(())
+    }
+
+    fn include(&mut self, element: &mut Element) -> Result<Vec<Element>, SceneError> {
+        for (_, value) in &mut element.attributes {
+            self.substitute(value);
+        }
+        let name = element.required("filename")?;
+        let path = find(&self.folders, name);
+        if !self.includes.enter(&path, &element.place)? {
+            self.incomplete = true;
+            self.builder.warn(
+                &element.place,
+                format!(
+                    "{name} is missing; its materials are not seen, and all others count as used"
+                ),
+            );
+            return Ok(Vec::new());
+        }
+        let mut root = xml::read(&path)?;
+        self.element(&mut root)?;
+        self.includes.leave();
+        Ok(if root.tag == "scene" {
+            root.children
+        } else {
+            vec![root]
+        })
+    }
+
+    fn substitute(&self, value: &mut String) {
+        if value.contains('$') {
+            for (name, replacement) in &self.defaults {
+                *value = value.replace(&format!("${name}"), replacement);
+            }
+        }
+    }
+}
+
+/// The file `name` in the first folder that has it, else in the first folder.
+fn find(folders: &[PathBuf], name: &str) -> PathBuf {
+    folders
+        .iter()
+        .map(|folder| folder.join(name))
+        .find(|path| path.exists())
+        .unwrap_or_else(|| folders[0].join(name))
+}
+
+/// Elements by their id; `<alias>` gives one a second id.
+fn ids(root: &Element) -> HashMap<&str, &Element> {
+    let mut ids = HashMap::new();
+    root.walk(&mut |element| {
+        if element.tag == "alias" {
+            let (old, new) = (element.attribute("id"), element.attribute("as"));
+            if let (Some(old), Some(new)) = (old.and_then(|id| ids.get(id).copied()), new) {
+                ids.insert(new, old);
+            }
+        } else if element.tag != "ref"
+            && let Some(id) = element.attribute("id")
+        {
+            ids.insert(id, element);
+        }
+    });
+    ids
+}
+
+/// Elements told apart by where they are in memory.
+type Set = HashSet<*const Element>;
+
+struct Reader<'a> {
+    ids: HashMap<&'a str, &'a Element>,
+    builder: Builder,
+    folders: Vec<PathBuf>,
+    incomplete: bool,
+}
+
+impl<'a> Reader<'a> {
+    /// The BSDFs that shapes wear, themselves or inside others; `None` if that cannot be known.
+    fn used(&self, root: &'a Element) -> Result<Option<Set>, SceneError> {
+        let mut shapes = Vec::new();
+        root.walk(&mut |element| {
+            if element.tag == "shape" {
+                shapes.push(element);
+            }
+        });
+        if shapes.is_empty() || self.incomplete {
+            return Ok(None);
+        }
+        let mut used = Set::new();
+        for shape in shapes {
+            self.mark(shape, &mut used)?;
+        }
+        Ok(Some(used))
+    }
+
+    fn mark(&self, element: &'a Element, used: &mut Set) -> Result<(), SceneError> {
+        for child in &element.children {
+            let child = match &child.tag[..] {
+                "bsdf" => child,
+                "ref" => match self.referred(child)? {
+                    Some(bsdf) if bsdf.tag == "bsdf" => bsdf,
+                    _ => continue,
+                },
+                _ => continue,
+            };
+            if used.insert(std::ptr::from_ref(child)) {
+                self.mark(child, used)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What a `<ref>` refers to; `None` if it may be in a file that is missing.
+    fn referred(&self, reference: &Element) -> Result<Option<&'a Element>, SceneError> {
+        let id = reference.required("id")?;
+        match self.ids.get(id) {
+            Some(element) => Ok(Some(element)),
+            None if self.incomplete => Ok(None),
+            None => {
+                let known: Vec<&str> = self.ids.keys().copied().collect();
+                Err(reference.place.invalid(format!(
+                    "nothing has the id \"{id}\"{}",
+                    did_you_mean(id, &known)
+                )))
+            }
+        }
+    }
+
+    /// Adds all BSDFs in `element`; those without an id are named after the outer one.
+    fn bsdfs(
+        &mut self,
+        element: &'a Element,
+        outer: Option<&'a str>,
+        used: &Option<Set>,
+    ) -> Result<(), SceneError> {
+        let named = matches!(&element.tag[..], "bsdf" | "shape");
+        let name = element.attribute("id").filter(|_| named).or(outer);
+        if element.tag == "bsdf" {
+            let used = used
+                .as_ref()
+                .is_none_or(|used| used.contains(&std::ptr::from_ref(element)));
+            self.bsdf(element, name, used)?;
+        }
+        element
+            .children
+            .iter()
+            .try_for_each(|child| self.bsdfs(child, name, used))
+    }
+}

@@ -1,0 +1,131 @@
+//! What a scene asks for: the native recipe, and importers that read other formats into it.
+//!
+//! [`load`] reads a scene description and lists the microfacet lobes in it. A table set is
+//! planned from that list alone; geometry, lights and cameras are passed over.
+//!
+//! | format | file | roughness to σ | γ | G2 |
+//! | --- | --- | --- | --- | --- |
+//! | recipe | `.toml` | as written | as written | as written |
+//! | [pbrt-v4] | `.pbrt`, `.pbrt.gz` | √roughness, or as written with `remaproughness` false; under 1e-3 smooth | 2 | height-correlated |
+//! | [Mitsuba 3] | `.xml` | α as written, at least 1e-4; `principled` roughness² | ∞ for `beckmann`, 2 for `ggx` | uncorrelated |
+//! | [glTF 2.0] | `.gltf`, `.glb` | roughness² | 2 | left open |
+//! | [MaterialX] | `.mtlx` | roughness² with the shading model's anisotropy | 2 | left open |
+//!
+//! A roughness that comes from an image is the range of that image's pixels, with the scene's
+//! scales and offsets applied. An image that cannot be read counts as [0, 1], with a warning.
+//! Materials that are not microfacet models, or that this crate does not know, are listed in
+//! [`Scene::ignored`]; they are not errors. An included file that is missing is a warning too,
+//! since scenes often travel without their geometry; then every material counts as used.
+//!
+//! [pbrt-v4]: https://pbrt.org/fileformat-v4
+//! [Mitsuba 3]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
+//! [glTF 2.0]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
+//! [MaterialX]: https://materialx.org/Specification.html
+
+mod builder;
+mod error;
+mod gltf;
+mod include;
+mod interval;
+mod material;
+mod materialx;
+mod mitsuba;
+mod pbrt;
+mod recipe;
+mod texture;
+mod xml;
+
+use std::fs;
+use std::path::Path;
+
+pub use error::{Place, SceneError, SceneErrorKind};
+pub use interval::Interval;
+pub use material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
+
+/// A scene, seen by the tables it needs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// The microfacet lobes, in the order of their definition; names are unique.
+    pub materials: Vec<Material>,
+    /// Materials for which there is nothing to bake.
+    pub ignored: Vec<Ignored>,
+    /// What was assumed where the scene could not be followed, each with its place.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Reads a native recipe.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneErrorKind::Syntax`] for text that is not TOML, [`SceneErrorKind::Invalid`] for an
+    /// unknown key, a name given twice, no material at all, or a value out of its range.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use microfacet_bake::scene::{Interval, Scene};
+    ///
+    /// let recipe = "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 4.0\n";
+    /// let scene = Scene::from_recipe_str(recipe)?;
+    /// assert_eq!(scene.materials[0].gamma, Interval::point(4.0));
+    /// assert_eq!(scene.to_recipe(), recipe);
+    /// # Ok::<(), microfacet_bake::scene::SceneError>(())
+    /// ```
+    pub fn from_recipe_str(text: &str) -> Result<Self, SceneError> {
+        Self::from_recipe(text, Path::new("recipe"))
+    }
+
+    fn from_recipe(text: &str, file: &Path) -> Result<Self, SceneError> {
+        Ok(Self {
+            materials: recipe::read(text, file)?,
+            ..Self::default()
+        })
+    }
+
+    /// The native recipe of the materials in use: the canonical statement of what this scene asks for.
+    ///
+    /// It reads back to materials that [ask the same](Material::asks_the_same), bit for bit. A
+    /// scene that uses no material gives an empty text, which is not a valid recipe.
+    #[must_use]
+    pub fn to_recipe(&self) -> String {
+        recipe::write(self.materials.iter().filter(|material| material.used))
+    }
+}
+
+/// Reads the scene description in `path`; the extension tells the format.
+///
+/// # Errors
+///
+/// [`SceneErrorKind::UnknownExtension`] for an extension of no known format,
+/// [`SceneErrorKind::Io`] if the file cannot be read, [`SceneErrorKind::Syntax`] and
+/// [`SceneErrorKind::Invalid`] with the place of what is wrong in it. A missing image or included
+/// file is a warning.
+pub fn load(path: &Path) -> Result<Scene, SceneError> {
+    let name = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_lowercase();
+    let name = name
+        .strip_suffix(".pbrt.gz")
+        .map_or(name.clone(), |stem| format!("{stem}.pbrt"));
+    match Path::new(&name)
+        .extension()
+        .and_then(|extension| extension.to_str())
+    {
+        Some("toml") => {
+            let place = Place::file(path);
+            let text = fs::read_to_string(path).map_err(|error| place.io(error))?;
+            Scene::from_recipe(&text, path)
+        }
+        Some("pbrt") => pbrt::load(path),
+        Some("xml") => mitsuba::load(path),
+        Some("gltf" | "glb") => gltf::load(path),
+        Some("mtlx") => materialx::load(path),
+        _ => Err(SceneError {
+            place: Place::file(path),
+            kind: SceneErrorKind::UnknownExtension(path.extension().unwrap_or_default().into()),
+        }),
+    }
+}

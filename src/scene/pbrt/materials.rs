@@ -1,0 +1,280 @@
+//! What pbrt's materials and float textures ask for.
+
+use super::{Parameter, Reader};
+use crate::scene::builder::{GGX, Lobe, conductor, dielectric};
+use crate::scene::error::did_you_mean;
+use crate::scene::texture::{Channel, Encoding};
+use crate::scene::{Fresnel, Interval, Masking, Place, Roughness, SceneError};
+
+/// When no α reaches this, pbrt treats the surface as smooth
+/// (`TrowbridgeReitzDistribution::EffectivelySmooth`).
+const SMOOTH: f64 = 1e-3;
+/// The least α along one axis of a surface that is rough along the other (same class, constructor).
+const LEAST: f64 = 1e-4;
+/// Textures that refer to textures more deeply than this are taken to go in a circle.
+const MAX_DEPTH: u32 = 64;
+
+/// A material or a float texture: a class with parameters.
+#[derive(Clone, Debug)]
+pub(super) struct Definition {
+    pub(super) name: String,
+    pub(super) class: String,
+    parameters: Vec<Parameter>,
+    pub(super) place: Place,
+}
+
+impl Definition {
+    pub(super) fn new(
+        name: String,
+        class: String,
+        parameters: Vec<Parameter>,
+        place: Place,
+    ) -> Self {
+        Self {
+            name,
+            class,
+            parameters,
+            place,
+        }
+    }
+
+    pub(super) fn parameter(&self, name: &str) -> Option<&Parameter> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+
+    fn truth(&self, name: &str, default: bool) -> Result<bool, SceneError> {
+        let Some(parameter) = self.parameter(name) else {
+            return Ok(default);
+        };
+        match parameter.values.first().map(|value| &value[..]) {
+            Some("true") => Ok(true),
+            Some("false") => Ok(false),
+            _ => Err(parameter
+                .place
+                .invalid(format!("{name} must be true or false"))),
+        }
+    }
+}
+
+impl Parameter {
+    fn number(&self) -> Result<f64, SceneError> {
+        let text = self.values.first().map_or("", |value| value);
+        match text.parse() {
+            Ok(number) if f64::is_finite(number) => Ok(number),
+            _ => Err(self
+                .place
+                .invalid(format!("{} must be a number, not \"{text}\"", self.name))),
+        }
+    }
+
+    /// Three numbers, if it is a colour.
+    fn rgb(&self) -> Option<[f64; 3]> {
+        let [r, g, b] = &self.values[..] else {
+            return None;
+        };
+        let (r, g, b) = (r.parse().ok()?, g.parse().ok()?, b.parse().ok()?);
+        (self.kind == "rgb").then_some([r, g, b])
+    }
+}
+
+impl Reader {
+    /// Adds the lobes of a material.
+    pub(super) fn lobes(&mut self, material: &Definition, used: bool) -> Result<(), SceneError> {
+        let (name, place) = (&material.name, &material.place);
+        let mut ignore = |reason| {
+            self.builder.ignore(name, &material.class, place, reason);
+            Ok(())
+        };
+        let interfaces: &[(Option<&'static str>, &str)] = match &material.class[..] {
+            "conductor" | "dielectric" | "coateddiffuse" | "subsurface" | "thindielectric" => {
+                &[(None, "")]
+            }
+            "coatedconductor" => &[
+                (Some("interface"), "interface."),
+                (Some("conductor"), "conductor."),
+            ],
+            "mix" => return ignore("a mixture; its parts are listed by themselves"),
+            "diffuse" | "diffusetransmission" => return ignore("diffuse, without microfacets"),
+            "hair" => return ignore("a fibre model, not a microfacet one"),
+            "measured" => return ignore("measured data with a distribution of its own"),
+            _ => return ignore("not a material of pbrt-v4"),
+        };
+        for &(lobe, prefix) in interfaces {
+            let lobe = Lobe {
+                name: lobe,
+                roughness: self.roughness(material, prefix)?,
+                gamma: GGX,
+                fresnel: fresnel(material, prefix)?,
+                masking: Some(Masking::HeightCorrelated),
+            };
+            self.builder.add(name, place, used, lobe);
+        }
+        Ok(())
+    }
+
+    fn roughness(&mut self, material: &Definition, prefix: &str) -> Result<Roughness, SceneError> {
+        if material.class == "thindielectric" {
+            return Ok(Roughness::Smooth);
+        }
+        let remap = material.truth("remaproughness", true)?;
+        let both = format!("{prefix}roughness");
+        let axis = |axis| {
+            let own = material.parameter(&format!("{prefix}{axis}roughness"));
+            own.or_else(|| material.parameter(&both))
+        };
+        let (u, v) = (axis("u"), axis("v"));
+        let alpha = |reader: &mut Self, parameter| reader.alpha(material, parameter, remap);
+
+        let x = alpha(self, u)?;
+        // Equal parameters give equal values at each point, even from a texture.
+        let key = |p: Option<&Parameter>| p.map(|p| (p.kind.clone(), p.values.clone()));
+        if key(u) == key(v) {
+            return Ok(if x.max < SMOOTH {
+                Roughness::Smooth
+            } else {
+                Roughness::Isotropic(x)
+            });
+        }
+        let y = alpha(self, v)?;
+        if x.max.max(y.max) < SMOOTH {
+            return Ok(Roughness::Smooth);
+        }
+        let at_least = |alpha: Interval| alpha.map_rising(|alpha| alpha.max(LEAST));
+        Ok(Roughness::anisotropic(at_least(x), at_least(y)))
+    }
+
+    fn alpha(
+        &mut self,
+        material: &Definition,
+        parameter: Option<&Parameter>,
+        remap: bool,
+    ) -> Result<Interval, SceneError> {
+        let Some(parameter) = parameter else {
+            return Ok(Interval::point(0.0));
+        };
+        let roughness = self.value(parameter, 0)?;
+        if roughness.min < 0.0 {
+            return Err(parameter.place.invalid(format!(
+                "the {} of material \"{}\" is {}; it must be 0 or more, commonly up to 1",
+                parameter.name, material.name, roughness.min
+            )));
+        }
+        if roughness.max > 1.0 {
+            self.builder.warn(
+                &parameter.place,
+                format!(
+                    "the {} of material \"{}\" is {}, above the usual range [0, 1]; it is used as written",
+                    parameter.name, material.name, roughness.max
+                ),
+            );
+        }
+        Ok(if remap {
+            roughness.map_rising(f64::sqrt)
+        } else {
+            roughness
+        })
+    }
+
+    /// A parameter that is a number or a texture.
+    fn value(&mut self, parameter: &Parameter, depth: u32) -> Result<Interval, SceneError> {
+        if parameter.kind != "texture" {
+            return parameter.number().map(Interval::point);
+        }
+        let place = &parameter.place;
+        let name = parameter.values.first().map_or("", |value| value);
+        if let Some(texture) = self.textures.get(name).cloned() {
+            if depth == MAX_DEPTH {
+                return Err(place.invalid(format!("texture \"{name}\" refers to itself")));
+            }
+            return self.texture(&texture, depth);
+        }
+        if self.incomplete {
+            return Ok(self.builder.unread(
+                &format!("\"{name}\""),
+                "is not defined in the files that were found",
+                place,
+            ));
+        }
+        let names: Vec<&str> = self.textures.keys().map(|name| &name[..]).collect();
+        Err(place.invalid(format!(
+            "float texture \"{name}\" is not defined{}",
+            did_you_mean(name, &names)
+        )))
+    }
+
+    fn texture(&mut self, texture: &Definition, depth: u32) -> Result<Interval, SceneError> {
+        let mut input = |name: &str, default: f64| match texture.parameter(name) {
+            Some(parameter) => self.value(parameter, depth + 1),
+            None => Ok(Interval::point(default)),
+        };
+        Ok(match &texture.class[..] {
+            "constant" => input("value", 1.0)?,
+            "scale" => input("tex", 1.0)?.map_bilinear(input("scale", 1.0)?, |a, b| a * b),
+            "mix" => input("tex1", 0.0)?.mix(input("tex2", 1.0)?, input("amount", 0.5)?),
+            "directionmix" => input("tex1", 0.0)?.union(input("tex2", 1.0)?),
+            "checkerboard" => input("tex1", 1.0)?.union(input("tex2", 0.0)?),
+            "dots" => input("inside", 1.0)?.union(input("outside", 0.0)?),
+            "bilerp" => input("v00", 0.0)?
+                .union(input("v01", 1.0)?)
+                .union(input("v10", 0.0)?)
+                .union(input("v11", 1.0)?),
+            "imagemap" => {
+                let scale = input("scale", 1.0)?;
+                let invert = texture.truth("invert", false)?;
+                let scaled = self.image(texture).map_bilinear(scale, |a, b| a * b);
+                if invert {
+                    scaled.map_falling(|x| (1.0 - x).max(0.0))
+                } else {
+                    scaled
+                }
+            }
+            class => {
+                let reason = format!("is of class {class}, whose range is not known");
+                let name = format!("\"{}\"", texture.name);
+                self.builder.unread(&name, &reason, &texture.place)
+            }
+        })
+    }
+
+    fn image(&mut self, texture: &Definition) -> Interval {
+        let text = |name| texture.parameter(name).and_then(|p| p.values.first());
+        let Some(file) = text("filename") else {
+            let name = format!("\"{}\"", texture.name);
+            return self.builder.unread(&name, "names no file", &texture.place);
+        };
+        let encoding = match text("encoding").map(|text| &text[..]) {
+            Some("linear") => Encoding::Linear,
+            None | Some("sRGB") => Encoding::Srgb,
+            Some(_) => {
+                let reason = "has an encoding other than \"sRGB\" and \"linear\"";
+                return self.builder.unread(file, reason, &texture.place);
+            }
+        };
+        let file = self.folder.join(file);
+        self.builder
+            .image(&file, Channel::Red, encoding, &texture.place)
+    }
+}
+
+/// The Fresnel term, where it is a number (or a colour) rather than a spectrum or a texture.
+fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, SceneError> {
+    let parameter = |name: &str| material.parameter(&format!("{prefix}{name}"));
+    if material.class == "conductor" || prefix == "conductor." {
+        let rgb = |name| parameter(name).and_then(Parameter::rgb);
+        let (Some(eta), Some(k)) = (rgb("eta"), rgb("k")) else {
+            return Ok(None);
+        };
+        return conductor(eta, k, &material.place).map(Some);
+    }
+    // The defaults of materials.cpp.
+    let default = if material.class == "subsurface" {
+        1.33
+    } else {
+        1.5
+    };
+    match parameter("eta") {
+        None => Ok(Some(Fresnel::Dielectric(default))),
+        Some(eta) if eta.kind == "float" => dielectric(eta.number()?, &eta.place).map(Some),
+        Some(_) => Ok(None),
+    }
+}

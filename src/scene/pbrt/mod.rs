@@ -1,0 +1,538 @@
+//! pbrt-v4 scenes.
+//!
+//! Conventions, from the [file format's description][format] and pbrt's sources
+//! (`materials.cpp`, `materials.h`, `util/scattering.h`, `textures.cpp`):
+//!
+//! - `conductor`, `dielectric`, `coateddiffuse` and `subsurface` take `uroughness` and `vroughness`,
+//!   each of which defaults to `roughness`, which defaults to 0. `coatedconductor` takes
+//!   `interface.` and `conductor.` before these names, and has two rough interfaces.
+//!   `thindielectric` is smooth.
+//! - α = √roughness unless `remaproughness` is false. The distribution is Trowbridge-Reitz's: γ = 2,
+//!   σ = α. When both α are below 1e-3 the surface is smooth, else both are at least 1e-4.
+//! - G2 is height-correlated.
+//! - `mix` uses two named materials; `Attribute "material"` gives defaults to the ones that follow.
+//! - A float image texture is the first channel, decoded from sRGB if its samples are integers and
+//!   `encoding` is not "linear", times `scale`, and `invert` makes it 1 minus that.
+//! - Included files are looked for beside the scene's own file. `Import` is an `Include` whose
+//!   graphics state is forgotten.
+//!
+//! The file is read as a stream. Whatever belongs to shapes is passed over without being stored.
+//!
+//! [format]: https://pbrt.org/fileformat-v4
+
+mod materials;
+mod token;
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use flate2::read::MultiGzDecoder;
+
+use self::materials::Definition;
+use self::token::{Token, Tokens};
+use super::builder::Builder;
+use super::error::did_you_mean;
+use super::include::Includes;
+use super::{Format, Place, Scene, SceneError};
+
+/// All directives but those that [`Reader::statement`] follows.
+const PASSED_OVER: [&str; 29] = [
+    "Accelerator",
+    "ActiveTransform",
+    "AreaLightSource",
+    "Camera",
+    "ColorSpace",
+    "ConcatTransform",
+    "CoordSysTransform",
+    "CoordinateSystem",
+    "Film",
+    "Identity",
+    "Integrator",
+    "LightSource",
+    "LookAt",
+    "MakeNamedMedium",
+    "MediumInterface",
+    "ObjectInstance",
+    "Option",
+    "PixelFilter",
+    "ReverseOrientation",
+    "Rotate",
+    "Sampler",
+    "Scale",
+    "TransformBegin",
+    "TransformEnd",
+    "Transform",
+    "TransformTimes",
+    "Translate",
+    "WorldBegin",
+    "WorldEnd",
+];
+
+const FOLLOWED: [&str; 12] = [
+    "Attribute",
+    "AttributeBegin",
+    "AttributeEnd",
+    "Import",
+    "Include",
+    "MakeNamedMaterial",
+    "Material",
+    "NamedMaterial",
+    "ObjectBegin",
+    "ObjectEnd",
+    "Shape",
+    "Texture",
+];
+
+/// Longer parameter lists are spectra or geometry; none that matters here is.
+const MAX_VALUES: usize = 16;
+
+/// Reads a pbrt-v4 scene.
+pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
+    let mut reader = Reader {
+        folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+        builder: Builder::new(Format::Pbrt),
+        includes: Includes::default(),
+        state: State::default(),
+        saved: Vec::new(),
+        slots: Vec::new(),
+        names: HashMap::new(),
+        defined: Vec::new(),
+        textures: HashMap::new(),
+        shapes: false,
+        incomplete: false,
+    };
+    let place = Place::file(path);
+    let open = File::open(path).map_err(|error| place.io(error))?;
+    reader.includes.enter(path, &place)?;
+    reader.file(open, path)?;
+    reader.finish()
+}
+
+/// A parameter: `"type name" value` or `"type name" [ values ]`.
+#[derive(Clone, Debug)]
+struct Parameter {
+    kind: String,
+    name: String,
+    /// The values as written; at most [`MAX_VALUES`].
+    values: Vec<String>,
+    place: Place,
+}
+
+/// The part of pbrt's graphics state that decides which material a shape wears.
+#[derive(Clone, Default)]
+struct State {
+    /// Index in `slots`.
+    material: Option<usize>,
+    /// Parameters from `Attribute "material"`.
+    attributes: Vec<Parameter>,
+}
+
+/// A material that is defined or referred to.
+struct Slot {
+    used: bool,
+    definition: Option<Definition>,
+    /// Where it was first mentioned.
+    place: Place,
+}
+
+struct Reader {
+    /// Where relative names of files start.
+    folder: PathBuf,
+    builder: Builder,
+    includes: Includes,
+    state: State,
+    /// States to return to, each with the place of the directive that saved it.
+    saved: Vec<(State, Place)>,
+    slots: Vec<Slot>,
+    /// Slots of the named materials.
+    names: HashMap<String, usize>,
+    /// Slots in the order of their definition.
+    defined: Vec<usize>,
+    /// Float textures by name.
+    textures: HashMap<String, Definition>,
+    shapes: bool,
+    /// An included file is missing.
+    incomplete: bool,
+}
+
+impl Reader {
+    fn file(&mut self, file: File, path: &Path) -> Result<(), SceneError> {
+        if path.extension().is_some_and(|extension| extension == "gz") {
+            self.statements(&mut Tokens::new(MultiGzDecoder::new(file), path))
+        } else {
+            self.statements(&mut Tokens::new(file, path))
+        }
+    }
+
+    fn statements<R: Read>(&mut self, tokens: &mut Tokens<R>) -> Result<(), SceneError> {
+        while let Some(token) = tokens.next()? {
+            if token != Token::Word {
+                return Err(tokens.place().syntax(format!(
+                    "expected a directive such as Material or Shape, not \"{}\"",
+                    tokens.text()
+                )));
+            }
+            self.statement(tokens)?;
+        }
+        Ok(())
+    }
+
+    fn statement<R: Read>(&mut self, tokens: &mut Tokens<R>) -> Result<(), SceneError> {
+        let place = tokens.place();
+        match tokens.text() {
+            "Shape" => {
+                self.shapes = true;
+                if let Some(slot) = self.state.material {
+                    self.slots[slot].used = true;
+                }
+                skip_arguments(tokens)
+            }
+            "AttributeBegin" | "ObjectBegin" => {
+                self.saved.push((self.state.clone(), place));
+                skip_arguments(tokens)
+            }
+            directive @ ("AttributeEnd" | "ObjectEnd") => {
+                let unmatched = format!("{directive} without its beginning");
+                let (state, _) = self.saved.pop().ok_or_else(|| place.syntax(unmatched))?;
+                self.state = state;
+                skip_arguments(tokens)
+            }
+            "Attribute" => {
+                let target = quoted(tokens, "the target of the attributes")?;
+                let parameters = parameters(tokens)?;
+                if target == "material" {
+                    self.state.attributes.splice(0..0, parameters);
+                }
+                Ok(())
+            }
+            "Include" => {
+                let name = quoted(tokens, "the name of a file")?;
+                self.include(&name, &place)
+            }
+            "Import" => {
+                let name = quoted(tokens, "the name of a file")?;
+                let state = self.state.clone();
+                self.include(&name, &place)?;
+                self.state = state;
+                Ok(())
+            }
+            "Material" => {
+                let class = quoted(tokens, "the type of the material")?;
+                let parameters = self.with_attributes(parameters(tokens)?);
+                self.state.material = if is_no_material(&class) {
+                    None
+                } else {
+                    let at = format!("{class} at {}", within(&self.folder, &place));
+                    let slot = self.slot(&place);
+                    self.define(slot, Definition::new(at, class, parameters, place));
+                    Some(slot)
+                };
+                Ok(())
+            }
+            "MakeNamedMaterial" => {
+                let name = quoted(tokens, "the name of the material")?;
+                let mut parameters = self.with_attributes(parameters(tokens)?);
+                let class = parameters.iter().position(|p| p.name == "type");
+                let class = class
+                    .and_then(|i| parameters.remove(i).values.pop())
+                    .ok_or_else(|| {
+                        place.syntax(format!(
+                            "material \"{name}\" has no type; add for example \"string type\" \"conductor\""
+                        ))
+                    })?;
+                let slot = self.named(&name, &place);
+                if let Some(first) = &self.slots[slot].definition {
+                    return Err(place.invalid(format!(
+                        "material \"{name}\" is defined twice, first at {}; rename one of them",
+                        first.place
+                    )));
+                }
+                self.define(slot, Definition::new(name, class, parameters, place));
+                Ok(())
+            }
+            "NamedMaterial" => {
+                let name = quoted(tokens, "the name of a material")?;
+                self.state.material = Some(self.named(&name, &place));
+                // A parameter list is grammatical, and without meaning.
+                parameters(tokens).map(drop)
+            }
+            "Texture" => {
+                let name = quoted(tokens, "the name of the texture")?;
+                let kind = quoted(tokens, "the type of the texture, \"float\" or \"spectrum\"")?;
+                let class = quoted(tokens, "the class of the texture")?;
+                let parameters = parameters(tokens)?;
+                if kind == "float" {
+                    let texture = Definition::new(name.clone(), class, parameters, place);
+                    self.textures.insert(name, texture);
+                }
+                Ok(())
+            }
+            "ActiveTransform" => {
+                // Its argument is a word, not a text.
+                tokens.next()?;
+                Ok(())
+            }
+            directive if PASSED_OVER.contains(&directive) => skip_arguments(tokens),
+            directive => {
+                let known = [&PASSED_OVER[..], &FOLLOWED[..]].concat();
+                Err(place.syntax(format!(
+                    "unknown directive {directive}{}",
+                    did_you_mean(directive, &known)
+                )))
+            }
+        }
+    }
+
+    fn include(&mut self, name: &str, place: &Place) -> Result<(), SceneError> {
+        let path = self.folder.join(name);
+        if !self.includes.enter(&path, place)? {
+            self.incomplete = true;
+            self.builder.warn(
+                place,
+                format!(
+                    "{name} is missing; its materials are not seen, and all others count as used"
+                ),
+            );
+            return Ok(());
+        }
+        let file = File::open(&path).map_err(|error| Place::file(&path).io(error))?;
+        self.file(file, &path)?;
+        self.includes.leave();
+        Ok(())
+    }
+
+    fn with_attributes(&self, mut parameters: Vec<Parameter>) -> Vec<Parameter> {
+        // The first of a name counts, so that a material's own parameter precedes the default.
+        parameters.extend(self.state.attributes.iter().cloned());
+        parameters
+    }
+
+    fn slot(&mut self, place: &Place) -> usize {
+        self.slots.push(Slot {
+            used: false,
+            definition: None,
+            place: place.clone(),
+        });
+        self.slots.len() - 1
+    }
+
+    fn named(&mut self, name: &str, place: &Place) -> usize {
+        match self.names.get(name) {
+            Some(&slot) => slot,
+            None => {
+                let slot = self.slot(place);
+                self.names.insert(name.to_owned(), slot);
+                slot
+            }
+        }
+    }
+
+    fn define(&mut self, slot: usize, definition: Definition) {
+        self.slots[slot].definition = Some(definition);
+        self.defined.push(slot);
+    }
+
+    fn finish(mut self) -> Result<Scene, SceneError> {
+        if let Some((_, place)) = self.saved.pop() {
+            return Err(place.syntax("this block has no end"));
+        }
+        self.check_references()?;
+        self.use_parts_of_mixtures()?;
+        let everything = !self.shapes || self.incomplete;
+        for slot in std::mem::take(&mut self.defined) {
+            let used = everything || self.slots[slot].used;
+            if let Some(definition) = self.slots[slot].definition.take() {
+                self.lobes(&definition, used)?;
+            }
+        }
+        Ok(self.builder.finish())
+    }
+
+    fn check_references(&mut self) -> Result<(), SceneError> {
+        let mut undefined: Vec<_> = self
+            .names
+            .iter()
+            .filter(|&(_, &slot)| self.slots[slot].definition.is_none())
+            .map(|(name, &slot)| (slot, name))
+            .collect();
+        undefined.sort_unstable();
+        for (slot, name) in undefined {
+            let place = &self.slots[slot].place;
+            if !self.incomplete {
+                return Err(self.undefined(name, place));
+            }
+            self.builder.warn(
+                place,
+                format!("material \"{name}\" is not defined in the files that were found"),
+            );
+        }
+        Ok(())
+    }
+
+    fn undefined(&self, name: &str, place: &Place) -> SceneError {
+        let names: Vec<&str> = self
+            .names
+            .iter()
+            .filter(|&(_, &slot)| self.slots[slot].definition.is_some())
+            .map(|(name, _)| &name[..])
+            .collect();
+        place.invalid(format!(
+            "material \"{name}\" is not defined{}",
+            did_you_mean(name, &names)
+        ))
+    }
+
+    /// Marks what used mixtures consist of as used.
+    fn use_parts_of_mixtures(&mut self) -> Result<(), SceneError> {
+        let is_mixture = |slot: &Slot| slot.definition.as_ref().is_some_and(|d| d.class == "mix");
+        let mut pending: Vec<usize> = (0..self.slots.len())
+            .filter(|&i| is_mixture(&self.slots[i]))
+            .collect();
+        for &slot in &pending {
+            for (name, place) in self.parts(slot) {
+                let known = self
+                    .names
+                    .get(&name)
+                    .is_some_and(|&part| self.slots[part].definition.is_some());
+                if !known && !self.incomplete {
+                    return Err(self.undefined(&name, &place));
+                }
+            }
+        }
+        pending.retain(|&slot| self.slots[slot].used);
+        while let Some(slot) = pending.pop() {
+            for (name, _) in self.parts(slot) {
+                let Some(&part) = self.names.get(&name) else {
+                    continue;
+                };
+                // Marking before descending ends a mixture that contains itself.
+                if !std::mem::replace(&mut self.slots[part].used, true)
+                    && is_mixture(&self.slots[part])
+                {
+                    pending.push(part);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The names of the materials in a mixture.
+    fn parts(&self, slot: usize) -> Vec<(String, Place)> {
+        let definition = self.slots[slot].definition.as_ref();
+        definition
+            .and_then(|definition| definition.parameter("materials"))
+            .map_or_else(Vec::new, |p| {
+                p.values
+                    .iter()
+                    .map(|name| (name.clone(), p.place.clone()))
+                    .collect()
+            })
+    }
+}
+
+/// The name of a place in the scene's folder, short enough for a material's name.
+fn within(folder: &Path, place: &Place) -> String {
+    let file = place.file.strip_prefix(folder).unwrap_or(&place.file);
+    format!("{}:{}", file.display(), place.line.unwrap_or_default())
+}
+
+/// The types that say that a surface is only the border of a medium.
+fn is_no_material(class: &str) -> bool {
+    matches!(class, "" | "none" | "interface")
+}
+
+/// The quoted text that must come next.
+fn quoted<R: Read>(tokens: &mut Tokens<R>, what: &str) -> Result<String, SceneError> {
+    match tokens.next()? {
+        Some(Token::Text) => Ok(tokens.text().to_owned()),
+        Some(_) => Err(tokens
+            .place()
+            .syntax(format!("expected {what} in quotes, not {}", tokens.text()))),
+        None => Err(tokens
+            .place()
+            .syntax(format!("the file ends where {what} is expected"))),
+    }
+}
+
+/// The parameter list that comes next, perhaps empty.
+fn parameters<R: Read>(tokens: &mut Tokens<R>) -> Result<Vec<Parameter>, SceneError> {
+    let mut list = Vec::new();
+    while let Some(token) = tokens.next()? {
+        if token != Token::Text {
+            tokens.push_back(token);
+            break;
+        }
+        let place = tokens.place();
+        let mut words = tokens.text().split_ascii_whitespace();
+        let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
+            return Err(place.syntax(format!(
+                "\"{}\" declares no parameter; write its type and its name, as in \"float roughness\"",
+                tokens.text()
+            )));
+        };
+        let (kind, name) = (kind.to_owned(), name.to_owned());
+        let values = values(tokens, &name)?;
+        list.push(Parameter {
+            kind,
+            name,
+            values,
+            place,
+        });
+    }
+    Ok(list)
+}
+
+fn values<R: Read>(tokens: &mut Tokens<R>, name: &str) -> Result<Vec<String>, SceneError> {
+    let mut values = Vec::new();
+    match tokens.next()? {
+        Some(Token::Word | Token::Text) => values.push(tokens.text().to_owned()),
+        Some(Token::Open) => {
+            let open = tokens.place();
+            loop {
+                match tokens.next()? {
+                    Some(Token::Close) => break,
+                    Some(Token::Word | Token::Text) if values.len() < MAX_VALUES => {
+                        values.push(tokens.text().to_owned());
+                    }
+                    Some(Token::Word | Token::Text) => {
+                        tokens.skip_list()?;
+                        break;
+                    }
+                    _ => return Err(open.syntax("this list has no closing bracket")),
+                }
+            }
+        }
+        _ => {
+            return Err(tokens
+                .place()
+                .syntax(format!("the parameter {name} has no value")));
+        }
+    }
+    Ok(values)
+}
+
+/// Passes over everything up to the next directive.
+fn skip_arguments<R: Read>(tokens: &mut Tokens<R>) -> Result<(), SceneError> {
+    while let Some(token) = tokens.next()? {
+        match token {
+            Token::Text => {}
+            Token::Open => tokens.skip_list()?,
+            Token::Close => {
+                return Err(tokens.place().syntax("this bracket closes no list"));
+            }
+            // Numbers and truth values are arguments; any other word is the next directive.
+            Token::Word => {
+                let word = tokens.text();
+                let is_directive = word.starts_with(|c: char| c.is_ascii_alphabetic())
+                    && !matches!(word, "true" | "false");
+                if is_directive {
+                    tokens.push_back(token);
+                    break;
+                }
+            }
+        }
+    }
+    Ok(())
+}

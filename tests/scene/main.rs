@@ -1,0 +1,124 @@
+//! What scene descriptions ask for, format by format.
+
+mod gltf;
+mod materialx;
+mod mitsuba;
+mod pbrt;
+mod recipe;
+
+use std::fs;
+use std::path::PathBuf;
+
+use image::{ImageFormat, Rgb, RgbImage};
+use microfacet_bake::scene::{
+    self, Interval, Material, Roughness, Scene, SceneError, SceneErrorKind,
+};
+use tempfile::TempDir;
+
+/// A folder with a scene in it.
+struct Folder(TempDir);
+
+impl Folder {
+    /// A folder with these files: names and contents.
+    fn new<C: AsRef<[u8]>>(files: &[(&str, C)]) -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        for (name, content) in files {
+            fs::write(folder.path(name), content).unwrap();
+        }
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn load(&self, name: &str) -> Result<Scene, SceneError> {
+        scene::load(&self.path(name))
+    }
+}
+
+/// The scene in one file.
+fn load(name: &str, text: &str) -> Scene {
+    Folder::new(&[(name, text)]).load(name).unwrap()
+}
+
+/// Checks that the file is refused at "line:column" with a message that holds all of `parts`.
+#[track_caller]
+fn assert_refused(name: &str, text: &str, place: &str, parts: &[&str]) {
+    let error = Folder::new(&[(name, text)]).load(name).unwrap_err();
+    let message = error.to_string();
+    let (_, after) = message.split_once(name).unwrap();
+    assert!(after.starts_with(&format!("{place}: ")), "{message}");
+    for part in parts {
+        assert!(message.contains(part), "no {part:?} in {message}");
+    }
+}
+
+fn named<'a>(scene: &'a Scene, name: &str) -> &'a Material {
+    let found = scene
+        .materials
+        .iter()
+        .find(|material| material.name == name);
+    found.unwrap_or_else(|| panic!("no {name} among {:?}", names(scene)))
+}
+
+fn names(scene: &Scene) -> Vec<&str> {
+    scene
+        .materials
+        .iter()
+        .map(|material| &material.name[..])
+        .collect()
+}
+
+fn isotropic(sigma: f64) -> Roughness {
+    Roughness::Isotropic(Interval::point(sigma))
+}
+
+fn anisotropic(x: f64, y: f64) -> Roughness {
+    Roughness::Anisotropic {
+        x: Interval::point(x),
+        y: Interval::point(y),
+    }
+}
+
+/// Checks a roughness against numbers worked out by hand.
+#[track_caller]
+fn assert_close(roughness: Roughness, x: [f64; 2], y: [f64; 2]) {
+    for (interval, expected) in [(roughness.x(), x), (roughness.y(), y)] {
+        let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
+        assert!(
+            close(interval.min, expected[0]) && close(interval.max, expected[1]),
+            "{interval:?} is not {expected:?}"
+        );
+    }
+}
+
+/// A PNG whose red is 51 and 102, green 102 and 204, blue 255 and 0.
+fn png() -> Vec<u8> {
+    let mut image = RgbImage::from_pixel(4, 4, Rgb([51, 102, 255]));
+    image.put_pixel(1, 3, Rgb([102, 204, 0]));
+    let mut file = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut file, ImageFormat::Png).unwrap();
+    file.into_inner()
+}
+
+#[test]
+fn an_unknown_extension_lists_the_formats() {
+    let error = Folder::new(&[("scene.blend", "")])
+        .load("scene.blend")
+        .unwrap_err();
+    assert!(matches!(&error.kind, SceneErrorKind::UnknownExtension(e) if e.as_os_str() == "blend"));
+    let message = error.to_string();
+    for extension in ["blend", ".toml", ".pbrt", ".xml", ".gltf", ".glb", ".mtlx"] {
+        assert!(message.contains(extension), "{message}");
+    }
+}
+
+#[test]
+fn a_missing_scene_is_an_error_of_input_and_output() {
+    for name in ["a.toml", "a.pbrt", "a.xml", "a.gltf", "a.glb", "a.mtlx"] {
+        let error = Folder::new::<&str>(&[]).load(name).unwrap_err();
+        assert!(matches!(error.kind, SceneErrorKind::Io(_)), "{error}");
+        assert!(error.to_string().contains(name), "{error}");
+    }
+}

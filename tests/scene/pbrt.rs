@@ -1,0 +1,466 @@
+//! pbrt-v4 scenes.
+
+use std::io::Write;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
+
+use crate::{
+    Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
+};
+
+/// A house of one distribution at a few roughnesses, as exporters write them.
+const HOUSE: &str = r#"
+MakeNamedMaterial "paint"
+    "string type" [ "coateddiffuse" ]
+    "rgb reflectance" [ 0.3 0.4 0.5 ]
+    "float roughness" [ 0.04 ]
+Texture "tiles-kd" "spectrum" "imagemap"
+    "string filename" [ "textures/tiles.png" ]
+MakeNamedMaterial "tiles"  # polished
+    "string type" [ "coateddiffuse" ]
+    "texture reflectance" [ "tiles-kd" ]
+    "float vroughness" [ 0.0009 ]
+    "float uroughness" [ 0.0009 ]
+MakeNamedMaterial "raw"
+    "string type" "dielectric"
+    "bool remaproughness" false
+    "float roughness" .04
+MakeNamedMaterial "window"
+    "string type" [ "dielectric" ]
+MakeNamedMaterial "frame"
+    "string type" [ "conductor" ]
+    "spectrum eta" [ "metal-Al-eta" ]
+    "spectrum k" [ "metal-Al-k" ]
+    "float uroughness" [ 0.09 ]
+    "float vroughness" [ 0.01 ]
+MakeNamedMaterial "plaster"
+    "string type" [ "diffuse" ]
+MakeNamedMaterial "sofa"
+    "string type" [ "measured" ]
+    "string filename" [ "leather.bsdf" ]
+"#;
+
+#[test]
+fn roughness_is_remapped_and_the_rest_is_ggx() {
+    let scene = load("house.pbrt", HOUSE);
+    assert_eq!(names(&scene), ["paint", "tiles", "raw", "window", "frame"]);
+    for material in &scene.materials {
+        assert_eq!(material.gamma, Interval::point(2.0));
+        assert_eq!(material.masking, Some(Masking::HeightCorrelated));
+        assert_eq!(material.origin.format, Format::Pbrt);
+        assert!(material.used, "no shape says otherwise");
+    }
+    let roughness = |name| named(&scene, name).roughness;
+    assert_eq!(roughness("paint"), isotropic(0.2));
+    assert_eq!(roughness("tiles"), isotropic(0.03));
+    assert_eq!(roughness("raw"), isotropic(0.04));
+    assert_eq!(roughness("window"), Roughness::Smooth);
+    assert_eq!(roughness("frame"), anisotropic(0.3, 0.1));
+    assert_eq!(
+        named(&scene, "paint").fresnel,
+        Some(Fresnel::Dielectric(1.5))
+    );
+    assert_eq!(named(&scene, "frame").fresnel, None);
+    assert_eq!(named(&scene, "raw").origin.place.line, Some(13));
+
+    let ignored: Vec<_> = scene
+        .ignored
+        .iter()
+        .map(|i| (&i.name[..], &i.kind[..]))
+        .collect();
+    assert_eq!(ignored, [("plaster", "diffuse"), ("sofa", "measured")]);
+    assert_eq!(scene.warnings, [""; 0]);
+}
+
+#[test]
+fn below_a_thousandth_alpha_is_smooth() {
+    let material = |parameters: &str| {
+        let text = format!("Material \"conductor\" \"bool remaproughness\" false {parameters}");
+        load("a.pbrt", &text).materials[0].roughness
+    };
+    assert_eq!(material("\"float roughness\" 0.0009"), Roughness::Smooth);
+    assert_eq!(material("\"float roughness\" 0.001"), isotropic(0.001));
+    // One rough axis makes the other rough, too.
+    assert_eq!(material("\"float uroughness\" 0.5"), anisotropic(0.5, 1e-4));
+    assert_eq!(
+        material("\"float uroughness\" 0.0005 \"float vroughness\" 0.0009"),
+        Roughness::Smooth
+    );
+    assert_eq!(
+        material("\"float uroughness\" 0.5 \"float roughness\" 0.25"),
+        anisotropic(0.5, 0.25)
+    );
+}
+
+#[test]
+fn layered_materials_have_two_interfaces() {
+    let scene = load(
+        "a.pbrt",
+        r#"MakeNamedMaterial "car" "string type" "coatedconductor"
+            "float interface.roughness" 0.01 "float interface.eta" 1.6
+            "float conductor.uroughness" 0.25 "float conductor.vroughness" 0.36
+            "rgb conductor.eta" [ 0.2 0.9 1.1 ] "rgb conductor.k" [ 3.9 2.4 2.2 ]
+           MakeNamedMaterial "skin" "string type" "subsurface" "float roughness" 0.16"#,
+    );
+    assert_eq!(names(&scene), ["car.interface", "car.conductor", "skin"]);
+    let [interface, conductor, skin] = &scene.materials[..] else {
+        unreachable!()
+    };
+    assert_eq!(interface.roughness, isotropic(0.1));
+    assert_eq!(interface.fresnel, Some(Fresnel::Dielectric(1.6)));
+    assert_eq!(interface.origin.lobe, Some("interface"));
+    assert_eq!(conductor.roughness, anisotropic(0.5, 0.6));
+    let (eta, k) = ([0.2, 0.9, 1.1], [3.9, 2.4, 2.2]);
+    assert_eq!(conductor.fresnel, Some(Fresnel::Conductor { eta, k }));
+    assert_eq!(skin.roughness, isotropic(0.4));
+    assert_eq!(skin.fresnel, Some(Fresnel::Dielectric(1.33)));
+}
+
+#[test]
+fn a_material_is_used_where_a_shape_wears_it() {
+    let scene = load(
+        "a.pbrt",
+        r#"
+        MakeNamedMaterial "outer" "string type" "conductor" "float roughness" 0.01
+        MakeNamedMaterial "inner" "string type" "conductor" "float roughness" 0.04
+        MakeNamedMaterial "left" "string type" "conductor" "float roughness" 0.09
+        MakeNamedMaterial "right" "string type" "mix" "string materials" [ "left" "inner" ]
+        MakeNamedMaterial "blend" "string type" "mix" "string materials" [ "right" "left" ]
+        MakeNamedMaterial "spare" "string type" "conductor" "float roughness" 0.16
+        WorldBegin
+        Shape "sphere"   # in the default material
+        NamedMaterial "outer"
+        AttributeBegin
+            NamedMaterial "spare"
+            Material "conductor" "float roughness" 0.25
+            AttributeBegin
+                NamedMaterial "blend"
+                Shape "sphere" "float radius" 1
+            AttributeEnd
+        AttributeEnd
+        Shape "trianglemesh" "integer indices" [ 0 1 2 ] "string name" [ "a ] # [ \" b" ] # ]
+            "point3 P" [ 0 0 0  1 0 0  0 1 0 ]
+        Material "interface"
+        Shape "sphere"
+        "#,
+    );
+    let used = |name: &str| named(&scene, name).used;
+    assert!(used("outer"), "returned to at AttributeEnd");
+    assert!(
+        used("left") && used("inner"),
+        "parts of a mixture of a mixture"
+    );
+    assert!(
+        !used("spare") && !used("conductor at a.pbrt:13"),
+        "replaced before a shape"
+    );
+}
+
+#[test]
+fn attributes_are_defaults_in_their_block() {
+    let scene = load(
+        "a.pbrt",
+        r#"
+        AttributeBegin
+            Attribute "material" "float roughness" 0.04 "bool remaproughness" false
+            Material "conductor"
+            Material "conductor" "float roughness" 0.5
+        AttributeEnd
+        Material "conductor"
+        "#,
+    );
+    let roughness: Vec<_> = scene.materials.iter().map(|m| m.roughness).collect();
+    assert_eq!(
+        roughness,
+        [isotropic(0.04), isotropic(0.5), Roughness::Smooth]
+    );
+}
+
+#[test]
+fn textures_give_ranges() {
+    let folder = Folder::new(&[
+        ("grey.png", png()),
+        (
+            "a.pbrt",
+            br#"
+            Texture "linear" "float" "imagemap" "string filename" "grey.png" "string encoding" "linear"
+            Texture "scaled" "float" "scale" "texture tex" "linear" "float scale" 0.5
+            Texture "inverted" "float" "imagemap" "string filename" "grey.png"
+                "string encoding" "linear" "bool invert" true "float scale" 2
+            Texture "srgb" "float" "imagemap" "string filename" "grey.png"
+            Texture "board" "float" "checkerboard" "float tex1" 0.3 "texture tex2" "linear"
+            Texture "half" "float" "mix" "texture tex1" "linear" "float tex2" 1
+            MakeNamedMaterial "scaled" "string type" "dielectric" "texture roughness" "scaled"
+                "bool remaproughness" false
+            MakeNamedMaterial "inverted" "string type" "dielectric" "texture roughness" "inverted"
+                "bool remaproughness" false
+            MakeNamedMaterial "remapped" "string type" "dielectric" "texture roughness" "linear"
+            MakeNamedMaterial "srgb" "string type" "dielectric" "texture roughness" "srgb"
+                "bool remaproughness" false
+            MakeNamedMaterial "board" "string type" "dielectric" "texture uroughness" "board"
+                "float vroughness" 0.5 "bool remaproughness" false
+            MakeNamedMaterial "half" "string type" "dielectric" "texture uroughness" "half"
+                "texture vroughness" "half" "bool remaproughness" false
+            "#.to_vec(),
+        ),
+    ]);
+    let scene = folder.load("a.pbrt").unwrap();
+    assert_eq!(scene.warnings, [""; 0]);
+    let check =
+        |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(&scene, name).roughness, x, y);
+    check("scaled", [0.1, 0.2], [0.1, 0.2]);
+    check("inverted", [0.2, 0.6], [0.2, 0.6]);
+    check(
+        "remapped",
+        [0.2f64.sqrt(), 0.4f64.sqrt()],
+        [0.2f64.sqrt(), 0.4f64.sqrt()],
+    );
+    // 51/255 and 102/255 by the definition of sRGB.
+    check(
+        "srgb",
+        [0.033_104_766_570_885_055, 0.132_868_321_553_817_98],
+        [0.033_104_766_570_885_055, 0.132_868_321_553_817_98],
+    );
+    check("board", [0.2, 0.4], [0.5, 0.5]);
+    check("half", [0.6, 0.7], [0.6, 0.7]);
+    assert!(
+        named(&scene, "half").roughness.is_isotropic(),
+        "one texture on both axes"
+    );
+    assert!(!named(&scene, "board").roughness.is_isotropic());
+}
+
+#[test]
+fn a_missing_image_is_the_full_range_with_a_warning() {
+    let scene = load(
+        "a.pbrt",
+        r#"
+        Texture "t" "float" "imagemap" "string filename" "absent.png" "float scale" 0.25
+        Material "conductor" "texture roughness" "t"
+        Texture "n" "float" "fbm"
+        Material "conductor" "texture roughness" "n"
+        "#,
+    );
+    assert_eq!(
+        scene.materials[0].roughness,
+        Roughness::Isotropic(Interval { min: 0.0, max: 0.5 })
+    );
+    assert_eq!(
+        scene.materials[1].roughness,
+        Roughness::Isotropic(Interval::UNIT)
+    );
+    let [missing, noise] = &scene.warnings[..] else {
+        panic!("{:?}", scene.warnings)
+    };
+    assert!(
+        missing.contains("a.pbrt:2:9: ") && missing.contains("absent.png"),
+        "{missing}"
+    );
+    assert!(noise.contains("fbm") && noise.contains("[0, 1]"), "{noise}");
+}
+
+#[test]
+fn included_files_belong_to_the_scene() {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+    packed
+        .write_all(b"NamedMaterial \"b\" Shape \"sphere\"")
+        .unwrap();
+    let folder = Folder::new(&[
+        (
+            "a.pbrt",
+            &br#"Include "materials.pbrt" NamedMaterial "a" Import "shapes.pbrt.gz" Shape "disk""#
+                [..],
+        ),
+        (
+            "materials.pbrt",
+            br#"MakeNamedMaterial "a" "string type" "conductor" "float roughness" 0.01
+                MakeNamedMaterial "b" "string type" "conductor" "float roughness" 0.04
+                MakeNamedMaterial "c" "string type" "conductor" "float roughness" 0.09"#,
+        ),
+        ("shapes.pbrt.gz", &packed.finish().unwrap()),
+    ]);
+    let scene = folder.load("a.pbrt").unwrap();
+    let used: Vec<_> = scene.materials.iter().map(|m| m.used).collect();
+    assert_eq!(
+        used,
+        [true, true, false],
+        "an import leaves the current material as it was"
+    );
+    assert!(
+        scene.materials[0]
+            .origin
+            .place
+            .file
+            .ends_with("materials.pbrt")
+    );
+    assert_eq!(
+        folder
+            .load("shapes.pbrt.gz")
+            .unwrap_err()
+            .to_string()
+            .matches("\"b\"")
+            .count(),
+        1
+    );
+}
+
+#[test]
+fn a_missing_include_leaves_everything_in_use() {
+    let scene = load(
+        "a.pbrt",
+        r#"
+        MakeNamedMaterial "a" "string type" "conductor" "float roughness" 0.01
+        Shape "sphere"
+        NamedMaterial "elsewhere"
+        Include "geometry.pbrt"
+        "#,
+    );
+    assert!(named(&scene, "a").used);
+    assert!(
+        scene
+            .warnings
+            .iter()
+            .any(|w| w.contains("geometry.pbrt is missing"))
+    );
+    assert!(scene.warnings.iter().any(|w| w.contains("elsewhere")));
+}
+
+#[test]
+fn files_that_include_each_other_are_refused() {
+    let folder = Folder::new(&[
+        ("a.pbrt", "Include \"b.pbrt\""),
+        ("b.pbrt", "\n  Import \"a.pbrt\""),
+    ]);
+    let message = folder.load("a.pbrt").unwrap_err().to_string();
+    assert!(message.contains("b.pbrt:2:3: "), "{message}");
+    assert!(message.contains("a.pbrt -> b.pbrt -> a.pbrt"), "{message}");
+}
+
+#[test]
+fn bad_syntax_is_refused_at_its_place() {
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
+    case(
+        "WorldBegin\n Shpe \"sphere\"",
+        ":2:2",
+        &["Shpe", "did you mean `Shape`?"],
+    );
+    case("Film \"rgb\n\"", ":1:6", &["closing quote"]);
+    case("Film \"r\\gb\"", ":1:6", &["escape"]);
+    case(
+        "Shape \"a\" \"point3 P\" [ 1 2\n 3",
+        ":1:22",
+        &["closing bracket"],
+    );
+    case(
+        "Shape \"a\" \"point3 P\" [ 1 2\nShape \"b\" \"point3 P\" [ 1 ]",
+        ":1:22",
+        &["closing bracket"],
+    );
+    case(
+        "Material \"conductor\" \"float roughness\" [ 1 \"b",
+        ":1:44",
+        &["closing quote"],
+    );
+    case(
+        "Material \"conductor\" \"float roughness\" [ 1",
+        ":1:40",
+        &["closing bracket"],
+    );
+    case(
+        "Material \"conductor\" \"float roughness\"",
+        ":1:22",
+        &["no value"],
+    );
+    case(
+        "Material \"conductor\" \"roughness\" 1",
+        ":1:22",
+        &["declares no parameter"],
+    );
+    case("Material conductor", ":1:10", &["in quotes", "conductor"]);
+    case("Shape \"a\" ]", ":1:11", &["closes no list"]);
+    case("AttributeEnd", ":1:1", &["without its beginning"]);
+    case("AttributeBegin", ":1:1", &["no end"]);
+    case("1 2 3", ":1:1", &["unknown directive 1"]);
+    case("[ 1 ]", ":1:1", &["expected a directive"]);
+    case("Include", ":1:1", &["file ends", "name of a file"]);
+}
+
+#[test]
+fn impossible_values_are_refused_at_their_place() {
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
+    let named = "MakeNamedMaterial \"a\" \"string type\" \"conductor\"";
+    case(
+        &format!("{named} \"float roughness\" -0.5"),
+        ":1:49",
+        &["-0.5", "0 or more", "\"a\""],
+    );
+    case(
+        &format!("{named} \"float roughness\" \"rough\""),
+        ":1:49",
+        &["number", "rough"],
+    );
+    case(
+        &format!("{named} \"float roughness\" nan"),
+        ":1:49",
+        &["number", "nan"],
+    );
+    case(
+        &format!("{named} \"bool remaproughness\" 1"),
+        ":1:49",
+        &["true or false"],
+    );
+    case(
+        &format!("{named} \"texture roughness\" \"t\""),
+        ":1:49",
+        &["\"t\" is not defined"],
+    );
+    case(
+        &format!("{named}\n{named}"),
+        ":2:1",
+        &["twice", "a.pbrt:1:1"],
+    );
+    case(
+        &format!("{named}\nNamedMaterial \"A\""),
+        ":2:1",
+        &["\"A\" is not defined", "`a`"],
+    );
+    case(
+        "MakeNamedMaterial \"a\" \"float roughness\" 1",
+        ":1:1",
+        &["no type"],
+    );
+    case(
+        "Material \"mix\" \"string materials\" [ \"x\" \"y\" ]",
+        ":1:16",
+        &["\"x\" is not defined"],
+    );
+    case(
+        "Material \"dielectric\" \"float eta\" 0",
+        ":1:23",
+        &["0", "more than 0"],
+    );
+    case(
+        "Texture \"t\" \"float\" \"scale\" \"texture tex\" \"t\"\nMaterial \"conductor\" \"texture roughness\" \"t\"",
+        ":1:29",
+        &["refers to itself"],
+    );
+}
+
+#[test]
+fn roughness_above_one_is_used_and_warned_of() {
+    let scene = load("a.pbrt", "Material \"conductor\" \"float roughness\" 4");
+    assert_eq!(scene.materials[0].roughness, isotropic(2.0));
+    assert!(scene.warnings[0].contains("a.pbrt:1:22: ") && scene.warnings[0].contains('4'));
+}
+
+#[test]
+fn materials_of_other_versions_are_listed() {
+    let scene = load("a.pbrt", "Material \"uber\" \"float roughness\" 0.1");
+    assert_eq!(scene.materials, []);
+    assert_eq!(scene.ignored[0].kind, "uber");
+    assert_eq!(scene.ignored[0].reason, "not a material of pbrt-v4");
+}

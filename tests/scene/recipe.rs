@@ -1,0 +1,374 @@
+//! The native recipe.
+
+use std::path::Path;
+
+use microfacet_bake::scene::{
+    self, Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, Scene,
+};
+use proptest::prelude::*;
+
+use crate::{anisotropic, assert_refused, isotropic, load, named};
+
+fn entry(rest: &str) -> String {
+    format!("[[material]]\nname = \"a\"\n{rest}\n")
+}
+
+#[test]
+fn every_form_of_value_is_read() {
+    let scene = load(
+        "r.toml",
+        r#"
+        [[material]]
+        name = "number"
+        sigma = 0.3
+        gamma = 3
+
+        [[material]]
+        name = "limit"
+        sigma = [0.3, 0.1]
+        gamma = "inf"
+        fresnel = "mirror"
+        masking = "uncorrelated"
+
+        [[material]]
+        name = "range"
+        sigma = { min = 0, max = 0.5 }
+        gamma = { min = 1.6, max = "inf" }
+        fresnel = { schlick = 0.04 }
+        masking = "height-correlated"
+
+        [[material]]
+        name = "mixed"
+        sigma = [{ min = 0.1, max = 0.2 }, 0.3]
+        gamma = inf
+        fresnel = { conductor = { eta = [0.2, 0.9, 1.1], k = [0, 2.4, 2.2] } }
+
+        [[material]]
+        name = "pane"
+        sigma = 0
+        gamma = 2.0
+        fresnel = { dielectric = 1.5 }
+        "#,
+    );
+    let number = named(&scene, "number");
+    assert_eq!(number.roughness, isotropic(0.3));
+    assert_eq!(number.gamma, Interval::point(3.0));
+    assert_eq!((number.fresnel, number.masking), (None, None));
+    assert_eq!(number.origin.format, Format::Recipe);
+    assert_eq!(number.origin.place.line, Some(2));
+    assert!(number.used);
+
+    let limit = named(&scene, "limit");
+    assert_eq!(limit.roughness, anisotropic(0.3, 0.1));
+    assert_eq!(limit.gamma, Interval::point(f64::INFINITY));
+    assert_eq!(limit.fresnel, Some(Fresnel::Mirror));
+    assert_eq!(limit.masking, Some(Masking::Uncorrelated));
+
+    let range = named(&scene, "range");
+    assert_eq!(
+        range.roughness,
+        Roughness::Isotropic(Interval { min: 0.0, max: 0.5 })
+    );
+    assert!(range.roughness.is_isotropic());
+    assert_eq!(
+        range.gamma,
+        Interval {
+            min: 1.6,
+            max: f64::INFINITY
+        }
+    );
+    assert_eq!(range.fresnel, Some(Fresnel::Schlick(0.04)));
+    assert_eq!(range.masking, Some(Masking::HeightCorrelated));
+
+    let mixed = named(&scene, "mixed");
+    assert_eq!(
+        mixed.roughness,
+        Roughness::Anisotropic {
+            x: Interval { min: 0.1, max: 0.2 },
+            y: Interval::point(0.3)
+        }
+    );
+    assert_eq!(mixed.gamma, Interval::point(f64::INFINITY));
+    let (eta, k) = ([0.2, 0.9, 1.1], [0.0, 2.4, 2.2]);
+    assert_eq!(mixed.fresnel, Some(Fresnel::Conductor { eta, k }));
+
+    let pane = named(&scene, "pane");
+    assert_eq!(pane.roughness, Roughness::Smooth);
+    assert_eq!(pane.fresnel, Some(Fresnel::Dielectric(1.5)));
+}
+
+#[test]
+fn equal_axes_are_isotropic_and_equal_ranges_are_not() {
+    let sigma = |text: &str| {
+        let recipe = entry(&format!("sigma = {text}\ngamma = 2.0"));
+        load("r.toml", &recipe).materials[0].roughness
+    };
+    assert_eq!(sigma("[0.2, 0.2]"), isotropic(0.2));
+    assert_eq!(sigma("[0, 0]"), Roughness::Smooth);
+    // Both axes cover the range, but not together.
+    let range = "{ min = 0.1, max = 0.2 }";
+    assert!(!sigma(&format!("[{range}, {range}]")).is_isotropic());
+}
+
+#[test]
+fn values_out_of_range_are_refused_with_the_range() {
+    let case = |rest: &str, place: &str, parts: &[&str]| {
+        assert_refused("r.toml", &entry(rest), place, parts);
+    };
+    case(
+        "sigma = 0.3\ngamma = 1.5",
+        ":4:9",
+        &["gamma = 1.5", "more than 1.5", "inf"],
+    );
+    case(
+        "sigma = 0.3\ngamma = { min = 1.2, max = 3 }",
+        ":4:9",
+        &["1.2", "more than 1.5"],
+    );
+    case(
+        "sigma = 0.3\ngamma = nan",
+        ":4:9",
+        &["gamma", "number", "nan"],
+    );
+    case(
+        "sigma = 0.3\ngamma = \"ggx\"",
+        ":4:9",
+        &["gamma", "number", "ggx"],
+    );
+    case(
+        "sigma = -0.1\ngamma = 2.0",
+        ":3:9",
+        &["sigma = -0.1", "0 (smooth) or more"],
+    );
+    case("sigma = inf\ngamma = 2.0", ":3:9", &["finite"]);
+    case("sigma = nan\ngamma = 2.0", ":3:9", &["sigma", "number"]);
+    case(
+        "sigma = true\ngamma = 2.0",
+        ":3:9",
+        &["sigma", "number", "true"],
+    );
+    case(
+        "sigma = [0.3, 0]\ngamma = 2.0",
+        ":3:9",
+        &["0 along one axis"],
+    );
+    case(
+        "sigma = [0.3]\ngamma = 2.0",
+        ":3:9",
+        &["1 values", "[x, y]"],
+    );
+    case(
+        "sigma = { min = 0.3, max = 0.1 }\ngamma = 2.0",
+        ":3:9",
+        &["inverted", "0.3", "0.1"],
+    );
+    case("sigma = { min = 0.3 }\ngamma = 2.0", ":3:9", &["both ends"]);
+    case(
+        "sigma = 0.3\ngamma = { min = 9, max = 2 }",
+        ":4:9",
+        &["inverted", "9", "2"],
+    );
+
+    let fresnel = |value: &str, place: &str, parts: &[&str]| {
+        case(
+            &format!("sigma = 0.3\ngamma = 2.0\nfresnel = {value}"),
+            place,
+            parts,
+        );
+    };
+    fresnel("{ schlick = 1.5 }", ":5:23", &["schlick = 1.5", "0 to 1"]);
+    fresnel(
+        "{ dielectric = 0 }",
+        ":5:26",
+        &["dielectric = 0", "more than 0"],
+    );
+    fresnel("{ dielectric = nan }", ":5:26", &["dielectric", "number"]);
+    fresnel(
+        "\"metal\"",
+        ":5:11",
+        &["mirror", "schlick", "conductor", "dielectric"],
+    );
+    fresnel("{}", ":5:11", &["mirror", "schlick"]);
+    fresnel(
+        "{ shlick = 0.04 }",
+        ":5:13",
+        &["shlick", "did you mean `schlick`"],
+    );
+    let conductor = |eta: &str, k: &str, place: &str, parts: &[&str]| {
+        fresnel(
+            &format!("{{ conductor = {{ eta = {eta}, k = {k} }} }}"),
+            place,
+            parts,
+        );
+    };
+    conductor(
+        "[1, 0, 1]",
+        "[1, 1, 1]",
+        ":5:37",
+        &["eta = 0", "more than 0"],
+    );
+    conductor("[1, 1, 1]", "[1, -2, 1]", ":5:52", &["k = -2", "0 or more"]);
+    conductor("1.1", "[1, 1, 1]", ":5:33", &["three numbers"]);
+    case(
+        "sigma = 0.3\ngamma = 2.0\nmasking = \"correlated\"",
+        ":5:11",
+        &["uncorrelated", "height-correlated"],
+    );
+}
+
+#[test]
+fn unknown_keys_are_named_with_the_nearest_known_one() {
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
+    case(
+        &entry("sigma = 0.3\ngama = 2.0"),
+        ":4:1",
+        &["`gama`", "did you mean `gamma`?"],
+    );
+    case(
+        "[[materials]]\nname = \"a\"",
+        ":1:3",
+        &["`materials`", "did you mean `material`?"],
+    );
+    case(
+        &entry("sigma = { min = 0.1, maxx = 0.2 }\ngamma = 2.0"),
+        ":3:22",
+        &["`maxx`", "`max`"],
+    );
+    case(
+        &entry("sigma = 0.3\ngamma = 2.0\ncolour = 1"),
+        ":5:1",
+        &["`colour`", "masking"],
+    );
+}
+
+#[test]
+fn recipes_that_say_nothing_or_twice_the_same_are_refused() {
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
+    case("", "", &["no materials", "[[material]]"]);
+    case("material = []", "", &["no materials"]);
+    case("material = 3", ":1:12", &["[[material]]"]);
+    case(
+        "[[material]]\nsigma = 0.3\ngamma = 2.0",
+        ":1:1",
+        &["no `name`"],
+    );
+    case(
+        "[[material]]\nname = \"\"\nsigma = 0.3\ngamma = 2.0",
+        ":2:8",
+        &["name"],
+    );
+    case(
+        &entry("gamma = 2.0"),
+        ":1:1",
+        &["no `sigma`", "sigma = 0.3"],
+    );
+    case(&entry("sigma = 0.3"), ":1:1", &["no `gamma`"]);
+    let twice = entry("sigma = 0.3\ngamma = 2.0").repeat(2);
+    case(&twice, ":5:1", &["\"a\"", "line 1"]);
+    case("[[material]\nname = 1", ":1:12", &["]"]);
+}
+
+#[test]
+fn the_shipped_recipes_say_what_was_published() {
+    let load = |name: &str| {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tables/recipes");
+        scene::load(&folder.join(name)).unwrap()
+    };
+    let glass = [("frosted-glass.toml", 0.454), ("etched-glass.toml", 0.524)];
+    for (file, sigma) in glass {
+        let scene = load(file);
+        assert_eq!(scene.materials.len(), 1);
+        assert_eq!(scene.materials[0].roughness, isotropic(sigma));
+        assert_eq!(scene.materials[0].gamma, Interval::point(3.0));
+    }
+    let gold = load("gold-series.toml");
+    assert!(gold.materials.iter().all(|m| m.roughness == isotropic(0.3)));
+    let gammas: Vec<f64> = gold.materials.iter().map(|m| m.gamma.min).collect();
+    assert_eq!(gammas, [1.51, 1.65, 2.0, 4.0, 10.0, 50.0]);
+    let aluminium = load("anisotropic-aluminium.toml");
+    assert_eq!(aluminium.materials[0].roughness, anisotropic(0.7, 0.3));
+}
+
+#[test]
+fn unused_materials_are_no_part_of_the_recipe() {
+    let mut scene = load("r.toml", &entry("sigma = 0.3\ngamma = 2.0"));
+    assert!(!scene.to_recipe().is_empty());
+    scene.materials[0].used = false;
+    assert_eq!(scene.to_recipe(), "");
+}
+
+fn interval(ends: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = Interval> {
+    let range = (ends.clone(), ends.clone()).prop_map(|(a, b)| Interval {
+        min: a.min(b),
+        max: a.max(b),
+    });
+    prop_oneof![ends.prop_map(Interval::point), range]
+}
+
+fn roughness() -> impl Strategy<Value = Roughness> {
+    let sigma = || interval(1e-300..1e3);
+    prop_oneof![
+        Just(Roughness::Smooth),
+        sigma().prop_map(Roughness::Isotropic),
+        (sigma(), sigma()).prop_map(|(x, y)| Roughness::Anisotropic { x, y }),
+    ]
+}
+
+fn material() -> impl Strategy<Value = Material> {
+    let gamma = interval(prop_oneof![1.500_001..1e6, Just(f64::INFINITY)]);
+    let fresnel = prop_oneof![
+        Just(Fresnel::Mirror),
+        (0.0..=1.0).prop_map(Fresnel::Schlick),
+        (1e-3..10.0).prop_map(Fresnel::Dielectric),
+        (
+            prop::array::uniform3(1e-3..10.0),
+            prop::array::uniform3(0.0..10.0)
+        )
+            .prop_map(|(eta, k)| Fresnel::Conductor { eta, k }),
+    ];
+    let masking = prop::sample::select(&Masking::ALL[..]);
+    let name = ".+";
+    let parts = (
+        name,
+        roughness(),
+        gamma,
+        prop::option::of(fresnel),
+        prop::option::of(masking),
+    );
+    parts.prop_map(|(name, roughness, gamma, fresnel, masking)| Material {
+        name,
+        roughness,
+        gamma,
+        fresnel,
+        masking,
+        origin: Origin {
+            format: Format::Pbrt,
+            place: Place {
+                file: Path::new("scene.pbrt").into(),
+                line: None,
+                column: None,
+            },
+            lobe: None,
+        },
+        used: true,
+    })
+}
+
+proptest! {
+    #[test]
+    fn a_written_recipe_reads_back_bit_for_bit(mut materials in prop::collection::vec(material(), 1..8)) {
+        for (i, material) in materials.iter_mut().enumerate() {
+            material.name.push_str(&i.to_string());
+        }
+        let scene = Scene { materials, ..Scene::default() };
+        let recipe = scene.to_recipe();
+        let again = Scene::from_recipe_str(&recipe).unwrap();
+        prop_assert_eq!(again.materials.len(), scene.materials.len());
+        for (a, b) in again.materials.iter().zip(&scene.materials) {
+            prop_assert!(a.asks_the_same(b), "{:?} is not {:?}", a, b);
+        }
+        prop_assert_eq!(again.to_recipe(), recipe);
+    }
+}
