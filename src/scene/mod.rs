@@ -29,6 +29,7 @@ mod include;
 mod interval;
 mod material;
 mod materialx;
+mod memo;
 mod mitsuba;
 mod pbrt;
 mod recipe;

@@ -62,7 +62,8 @@ pub(super) fn read(file: &Path) -> Result<Element, SceneError> {
             column: Some(at.col),
             ..place
         }
-        .syntax(error.to_string())
+        // The place stands before the message already.
+        .syntax(error.to_string().trim_end_matches(&format!(" at {at}")))
     })?;
     element(document.root_element(), &Lines::new(file, &text), 0)
 }

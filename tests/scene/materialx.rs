@@ -1,1 +1,389 @@
-//! x
+//! MaterialX documents.
+
+use microfacet_bake::scene::{Format, Fresnel, Interval, Roughness, Scene};
+
+use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, names, png};
+
+fn document(content: &str) -> String {
+    format!("<materialx version=\"1.39\">{content}</materialx>")
+}
+
+fn shader(class: &str, inputs: &[(&str, f64)]) -> Scene {
+    let inputs: String = inputs
+        .iter()
+        .map(|(name, value)| format!("<input name=\"{name}\" type=\"float\" value=\"{value}\"/>"))
+        .collect();
+    let text = format!("<{class} name=\"a\" type=\"surfaceshader\">{inputs}</{class}>");
+    load("a.mtlx", &document(&text))
+}
+
+#[test]
+fn standard_surface_follows_its_definition() {
+    let plain = shader("standard_surface", &[]);
+    assert_eq!(names(&plain), ["a"]);
+    assert_close(plain.materials[0].roughness, [0.04; 2], [0.04; 2]);
+    assert_eq!(plain.materials[0].gamma, Interval::point(2.0));
+    assert_eq!(plain.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
+    assert_eq!(plain.materials[0].masking, None);
+    assert_eq!(plain.materials[0].origin.format, Format::MaterialX);
+
+    let mirror = shader(
+        "standard_surface",
+        &[("specular_roughness", 0.0), ("metalness", 1.0)],
+    );
+    assert_eq!(mirror.materials[0].roughness, Roughness::Smooth);
+    assert_eq!(mirror.materials[0].fresnel, None);
+
+    let brushed = shader(
+        "standard_surface",
+        &[("specular_roughness", 0.6), ("specular_anisotropy", 0.36)],
+    );
+    // aspect = sqrt(1 - 0.36) = 0.8
+    assert_close(brushed.materials[0].roughness, [0.45; 2], [0.288; 2]);
+    let extreme = shader(
+        "standard_surface",
+        &[("specular_roughness", 1.0), ("specular_anisotropy", 1.0)],
+    );
+    assert_close(
+        extreme.materials[0].roughness,
+        [1.0; 2],
+        [0.02f64.sqrt(); 2],
+    );
+
+    let layered = shader(
+        "standard_surface",
+        &[
+            ("specular_roughness", 0.5),
+            ("transmission", 1.0),
+            ("transmission_extra_roughness", 0.25),
+            ("coat", 0.5),
+            ("coat_roughness", 0.4),
+            ("coat_affect_roughness", 1.0),
+            ("sheen", 1.0),
+        ],
+    );
+    assert_eq!(names(&layered), ["a", "a.transmission", "a.coat"]);
+    let roughness =
+        |i: usize, r: f64| assert_close(layered.materials[i].roughness, [r * r; 2], [r * r; 2]);
+    // The coat roughens by t = 0.5 * 0.4 * 1 = 0.2.
+    roughness(0, 0.5 + 0.5 * 0.2);
+    roughness(1, 0.75 + 0.25 * 0.2);
+    roughness(2, 0.4);
+    assert_eq!(layered.ignored[0].name, "a.sheen");
+
+    let diffuse = shader("standard_surface", &[("specular", 0.0)]);
+    assert_eq!(diffuse.materials, []);
+    assert_eq!(diffuse.ignored.len(), 1);
+}
+
+#[test]
+fn open_pbr_surface_follows_its_definition() {
+    let plain = shader("open_pbr_surface", &[]);
+    assert_close(plain.materials[0].roughness, [0.09; 2], [0.09; 2]);
+    assert_eq!(plain.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
+
+    let brushed = shader(
+        "open_pbr_surface",
+        &[
+            ("specular_roughness", 0.5),
+            ("specular_roughness_anisotropy", 0.5),
+        ],
+    );
+    // sqrt(2 / (1 + 0.25))
+    let along = 0.25 * 1.6f64.sqrt();
+    assert_close(brushed.materials[0].roughness, [along; 2], [0.5 * along; 2]);
+    let line = shader(
+        "open_pbr_surface",
+        &[
+            ("specular_roughness", 0.5),
+            ("specular_roughness_anisotropy", 1.0),
+        ],
+    );
+    assert_close(
+        line.materials[0].roughness,
+        [0.25 * 2f64.sqrt(); 2],
+        [1e-6; 2],
+    );
+
+    let coated = shader(
+        "open_pbr_surface",
+        &[
+            ("specular_roughness", 0.5),
+            ("coat_weight", 0.5),
+            ("coat_roughness", 0.6),
+            ("coat_roughness_anisotropy", 0.5),
+            ("fuzz_weight", 0.1),
+        ],
+    );
+    assert_eq!(names(&coated), ["a", "a.coat"]);
+    // (0.5^4 + 2 * 0.6^4)^(1/4), mixed half and half with 0.5
+    let r = 0.5 * 0.5 + 0.5 * 0.3217f64.powf(0.25);
+    assert_close(coated.materials[0].roughness, [r * r; 2], [r * r; 2]);
+    assert_eq!(coated.materials[0].fresnel, None, "relative to the coat");
+    let along = 0.36 * 1.6f64.sqrt();
+    assert_close(coated.materials[1].roughness, [along; 2], [0.5 * along; 2]);
+    assert_eq!(coated.materials[1].fresnel, Some(Fresnel::Dielectric(1.6)));
+    assert_eq!(coated.ignored[0].name, "a.fuzz_weight");
+}
+
+#[test]
+fn materials_name_shaders_and_looks_use_them() {
+    let text = document(
+        r#"
+        <standard_surface name="SR_gold" type="surfaceshader"/>
+        <open_pbr_surface name="SR_shared" type="surfaceshader"/>
+        <gltf_pbr name="SR_other" type="surfaceshader"/>
+        <surfacematerial name="gold" type="material">
+            <input name="surfaceshader" type="surfaceshader" nodename="SR_gold"/>
+        </surfacematerial>
+        <surfacematerial name="one" type="material">
+            <input name="surfaceshader" type="surfaceshader" nodename="SR_shared"/>
+        </surfacematerial>
+        <surfacematerial name="two" type="material">
+            <input name="surfaceshader" type="surfaceshader" nodename="SR_shared"/>
+        </surfacematerial>
+        <nodegraph name="NG_definition" nodedef="ND_x">
+            <standard_surface name="inner" type="surfaceshader"/>
+        </nodegraph>
+        <look name="L"><materialassign name="m" material="two" geom="*"/></look>
+        "#,
+    );
+    let scene = load("a.mtlx", &text);
+    let used: Vec<_> = scene
+        .materials
+        .iter()
+        .map(|m| (&m.name[..], m.used))
+        .collect();
+    assert_eq!(used, [("gold", false), ("SR_shared", true)]);
+    assert_eq!(
+        (&scene.ignored[0].name[..], &scene.ignored[0].kind[..]),
+        ("SR_other", "gltf_pbr")
+    );
+
+    let without_look = text.replace("materialassign", "other");
+    assert!(
+        load("a.mtlx", &without_look)
+            .materials
+            .iter()
+            .all(|m| m.used)
+    );
+
+    let old = r#"<material name="m"><shaderref name="s" node="standard_surface"/></material>"#;
+    assert!(
+        load("a.mtlx", &document(old)).ignored[0]
+            .reason
+            .contains("before 1.38")
+    );
+}
+
+/// A shader whose roughness comes from the output "o" of a graph.
+fn graph(nodes: &str) -> String {
+    document(&format!(
+        r#"<nodegraph name="G" fileprefix="maps/"><input name="amount" type="float" value="0.25"/>{nodes}
+             <output name="x" type="float" nodename="absent"/><output name="o" type="float" nodename="end"/></nodegraph>
+           <open_pbr_surface name="a" type="surfaceshader">
+             <input name="specular_roughness" type="float" nodegraph="G" output="o"/></open_pbr_surface>"#
+    ))
+}
+
+#[test]
+fn node_graphs_are_followed() {
+    let folder = Folder::new(&[("a.png", png())]);
+    std::fs::create_dir(folder.path("maps")).unwrap();
+    std::fs::rename(folder.path("a.png"), folder.path("maps/a.png")).unwrap();
+    let check = |nodes: &str, r: [f64; 2]| {
+        std::fs::write(folder.path("a.mtlx"), graph(nodes)).unwrap();
+        let scene = folder.load("a.mtlx").unwrap();
+        assert_eq!(scene.warnings, [""; 0]);
+        let alpha = r.map(|r| r * r);
+        assert_close(scene.materials[0].roughness, alpha, alpha);
+    };
+    let image = r#"<image name="i" type="float"><input name="file" type="filename" value="a.png"/></image>"#;
+    let colour = r#"<tiledimage name="i" type="color3"><input name="file" type="filename" value="a.png" colorspace="lin_rec709"/></tiledimage>"#;
+    let node =
+        |tag: &str, inputs: &str| format!("<{tag} name=\"end\" type=\"float\">{inputs}</{tag}>");
+    let with = |source: &str, tag: &str, inputs: &str| source.to_owned() + &node(tag, inputs);
+
+    check(
+        &node(
+            "constant",
+            r#"<input name="value" type="float" value="0.3"/>"#,
+        ),
+        [0.3; 2],
+    );
+    check(
+        &node(
+            "constant",
+            r#"<input name="value" type="float" interfacename="amount"/>"#,
+        ),
+        [0.25; 2],
+    );
+    check(
+        &with(
+            image,
+            "dot",
+            r#"<input name="in" type="float" nodename="i"/>"#,
+        ),
+        [0.2, 0.4],
+    );
+    check(
+        &with(
+            image,
+            "multiply",
+            r#"<input name="in1" type="float" nodename="i"/><input name="in2" type="float" value="0.5"/>"#,
+        ),
+        [0.1, 0.2],
+    );
+    check(
+        &with(
+            image,
+            "add",
+            r#"<input name="in1" type="float" nodename="i"/><input name="in2" type="float" interfacename="amount"/>"#,
+        ),
+        [0.45, 0.65],
+    );
+    check(
+        &with(
+            image,
+            "subtract",
+            r#"<input name="in1" type="float" value="1"/><input name="in2" type="float" nodename="i"/>"#,
+        ),
+        [0.6, 0.8],
+    );
+    check(
+        &with(
+            image,
+            "invert",
+            r#"<input name="in" type="float" nodename="i"/>"#,
+        ),
+        [0.6, 0.8],
+    );
+    check(
+        &with(
+            image,
+            "mix",
+            r#"<input name="bg" type="float" value="0.1"/><input name="fg" type="float" value="0.6"/><input name="mix" type="float" nodename="i"/>"#,
+        ),
+        [0.2, 0.3],
+    );
+    check(
+        &with(
+            image,
+            "clamp",
+            r#"<input name="in" type="float" nodename="i"/><input name="low" type="float" value="0.3"/>"#,
+        ),
+        [0.3, 0.4],
+    );
+    check(
+        &with(
+            image,
+            "max",
+            r#"<input name="in1" type="float" nodename="i"/><input name="in2" type="float" value="0.3"/>"#,
+        ),
+        [0.3, 0.4],
+    );
+    let green = r#"<input name="in" type="color3" nodename="i"/><input name="index" type="integer" value="1"/>"#;
+    check(&with(colour, "extract", green), [0.4, 0.8]);
+    let separate = colour.to_owned()
+        + r#"<separate3 name="s" type="multioutput"><input name="in" type="color3" nodename="i"/></separate3>"#;
+    check(
+        &with(
+            &separate,
+            "dot",
+            r#"<input name="in" type="float" nodename="s" output="outg"/>"#,
+        ),
+        [0.4, 0.8],
+    );
+    let decoded = |x: f64| ((x + 0.055) / 1.055f64).powf(2.4);
+    let srgb = colour.replace("lin_rec709", "srgb_texture");
+    check(&with(&srgb, "extract", green), [decoded(0.4), decoded(0.8)]);
+}
+
+#[test]
+fn what_a_graph_does_otherwise_is_the_full_range() {
+    for (nodes, part) in [
+        (r#"<fractal3d name="end" type="float"/>"#, "fractal3d"),
+        (
+            r#"<image name="end" type="float"><input name="file" value="absent.png"/></image>"#,
+            "absent.png",
+        ),
+        (r#"<image name="end" type="float"/>"#, "names no file"),
+    ] {
+        let scene = load("a.mtlx", &graph(nodes));
+        assert_eq!(
+            scene.materials[0].roughness,
+            Roughness::Isotropic(Interval::UNIT)
+        );
+        assert!(scene.warnings[0].contains(part), "{:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn included_documents_belong_to_the_scene() {
+    let include = |name: &str| {
+        format!(
+            "<materialx version=\"1.39\" xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n<xi:include href=\"{name}\"/></materialx>"
+        )
+    };
+    let shader = document("<open_pbr_surface name=\"b\" type=\"surfaceshader\"/>");
+    let folder = Folder::new(&[("a.mtlx", include("b.mtlx")), ("b.mtlx", shader)]);
+    assert_eq!(names(&folder.load("a.mtlx").unwrap()), ["b"]);
+
+    let missing = load("a.mtlx", &include("b.mtlx"));
+    assert!(missing.warnings[0].contains("a.mtlx:2:1: b.mtlx is missing"));
+
+    let circle = Folder::new(&[("a.mtlx", include("a.mtlx"))]);
+    let message = circle.load("a.mtlx").unwrap_err().to_string();
+    assert!(message.contains("a.mtlx -> a.mtlx"), "{message}");
+}
+
+#[test]
+fn values_out_of_range_are_moved_and_warned_of() {
+    let scene = shader(
+        "standard_surface",
+        &[("specular_roughness", 1.5), ("metalness", -1.0)],
+    );
+    assert_eq!(scene.materials[0].roughness, isotropic(1.0));
+    assert_eq!(scene.warnings.len(), 2);
+    assert!(scene.warnings[0].contains("specular_roughness is 1.5, outside [0, 1]"));
+    let both = shader(
+        "open_pbr_surface",
+        &[
+            ("specular_roughness", 0.5),
+            ("specular_roughness_anisotropy", 0.0),
+        ],
+    );
+    assert_ne!(both.materials[0].roughness, anisotropic(0.25, 0.25));
+}
+
+#[test]
+fn broken_documents_are_refused_at_their_place() {
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("a.mtlx", text, place, parts);
+    case("<scene/>", ":1:1", &["<scene>", "<materialx>"]);
+    case("<materialx>\n<a></materialx>", ":2:4", &["a"]);
+    let input = |attributes: &str, parts: &[&str]| {
+        let text = format!(
+            "<open_pbr_surface name=\"a\" type=\"surfaceshader\">\n<input name=\"specular_roughness\" {attributes}/></open_pbr_surface>"
+        );
+        case(&document(&text), ":2:1", parts);
+    };
+    input("value=\"x\"", &["specular_roughness", "number", "\"x\""]);
+    input("type=\"float\"", &["no attribute \"value\""]);
+    input("nodename=\"n\"", &["no node \"n\""]);
+    input("nodegraph=\"g\"", &["no nodegraph \"g\""]);
+    input("interfacename=\"i\"", &["no interface \"i\""]);
+    let circle = graph("\n<dot name=\"end\"><input name=\"in\" nodename=\"end\"/></dot>");
+    case(&circle, ":2:17", &["depends on itself"]);
+    case(
+        &shader_text("specular_ior", "0"),
+        ":1:27",
+        &["0", "more than 0"],
+    );
+}
+
+fn shader_text(name: &str, value: &str) -> String {
+    document(&format!(
+        "<open_pbr_surface name=\"a\" type=\"surfaceshader\"><input name=\"{name}\" value=\"{value}\"/></open_pbr_surface>"
+    ))
+}

@@ -233,6 +233,29 @@ fn textures_give_ranges() {
 }
 
 #[test]
+fn textures_that_double_their_references_take_no_longer() {
+    let chain = |length: u32| {
+        let texture = |i: u32| {
+            format!(
+                "Texture \"t{}\" \"float\" \"mix\" \"texture tex1\" \"t{i}\" \"texture tex2\" \"t{i}\"\n",
+                i + 1
+            )
+        };
+        let textures: String = (0..length).map(texture).collect();
+        format!(
+            "Texture \"t0\" \"float\" \"constant\" \"float value\" 0.25\n{textures}\
+             Material \"conductor\" \"texture roughness\" \"t{length}\""
+        )
+    };
+    // One by one, 2^100 references would never be followed to their end.
+    assert_eq!(
+        load("a.pbrt", &chain(100)).materials[0].roughness,
+        isotropic(0.5)
+    );
+    assert_refused("a.pbrt", &chain(1000), ":874:30", &["more than 128 deep"]);
+}
+
+#[test]
 fn a_missing_image_is_the_full_range_with_a_warning() {
     let scene = load(
         "a.pbrt",
@@ -446,7 +469,7 @@ fn impossible_values_are_refused_at_their_place() {
     case(
         "Texture \"t\" \"float\" \"scale\" \"texture tex\" \"t\"\nMaterial \"conductor\" \"texture roughness\" \"t\"",
         ":1:29",
-        &["refers to itself"],
+        &["depends on itself"],
     );
 }
 

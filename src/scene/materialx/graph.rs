@@ -5,9 +5,6 @@ use crate::scene::texture::{Channel, Encoding};
 use crate::scene::xml::Element;
 use crate::scene::{Interval, SceneError};
 
-/// Longer chains of nodes are taken to go in a circle.
-const MAX_DEPTH: u32 = 256;
-
 impl<'a> Reader<'a> {
     /// What an `<input>` of a node in `scope` may be.
     pub(super) fn value(
@@ -15,19 +12,30 @@ impl<'a> Reader<'a> {
         input: &'a Element,
         scope: &'a Element,
     ) -> Result<Interval, SceneError> {
-        self.connected(input, scope, Channel::Red, 0)
+        self.connected(input, scope, Channel::Red)
     }
 
+    /// As [`Self::value`], of one channel. Every circle of connections passes through an input.
     fn connected(
         &mut self,
         input: &'a Element,
         scope: &'a Element,
         channel: Channel,
-        depth: u32,
     ) -> Result<Interval, SceneError> {
-        if depth == MAX_DEPTH {
-            return Err(input.place.invalid("the nodes are connected in a circle"));
+        let key = (std::ptr::from_ref(input), channel);
+        if let Some(known) = self.ranges.begin(key, &input.place)? {
+            return Ok(known);
         }
+        let range = self.source(input, scope, channel)?;
+        Ok(self.ranges.end(key, range))
+    }
+
+    fn source(
+        &mut self,
+        input: &'a Element,
+        scope: &'a Element,
+        channel: Channel,
+    ) -> Result<Interval, SceneError> {
         // Documents before 1.39 take channels where they connect; separate nodes have an output each.
         let of_node = input
             .attribute("output")
@@ -37,24 +45,25 @@ impl<'a> Reader<'a> {
         let root = self.root;
         if let Some(name) = input.attribute("interfacename") {
             return match scope.child_named(name) {
-                Some(outer) => self.connected(outer, root, channel, depth + 1),
-                None => Err(undefined(input, "interface", name)),
+                // In the document's own scope an input would be its own outside.
+                Some(outer) if !std::ptr::eq(scope, root) => self.connected(outer, root, channel),
+                _ => Err(undefined(input, "interface", name)),
             };
         }
         if let Some(name) = input.attribute("nodegraph") {
             let graph = root
                 .child_named(name)
                 .ok_or_else(|| undefined(input, "nodegraph", name))?;
-            return self.output(input, graph, channel, depth);
+            return self.output(input, graph, channel);
         }
         if let Some(name) = input.attribute("nodename") {
             let node = scope
                 .child_named(name)
                 .ok_or_else(|| undefined(input, "node", name))?;
             return match &node.tag[..] {
-                "nodegraph" => self.output(input, node, channel, depth),
-                "output" => self.connected(node, scope, channel, depth + 1),
-                _ => self.node(node, scope, channel, depth + 1),
+                "nodegraph" => self.output(input, node, channel),
+                "output" => self.connected(node, scope, channel),
+                _ => self.node(node, scope, channel),
             };
         }
         number(input, channel).map(Interval::point)
@@ -66,7 +75,6 @@ impl<'a> Reader<'a> {
         input: &'a Element,
         graph: &'a Element,
         channel: Channel,
-        depth: u32,
     ) -> Result<Interval, SceneError> {
         let mut outputs = graph.children.iter().filter(|child| child.tag == "output");
         let output = match input.attribute("output") {
@@ -74,7 +82,7 @@ impl<'a> Reader<'a> {
             None => outputs.next(),
         };
         match output {
-            Some(output) => self.connected(output, graph, channel, depth + 1),
+            Some(output) => self.connected(output, graph, channel),
             None => {
                 let name = input.attribute("output").unwrap_or_default();
                 Err(undefined(input, "output", name))
@@ -87,10 +95,9 @@ impl<'a> Reader<'a> {
         node: &'a Element,
         scope: &'a Element,
         channel: Channel,
-        depth: u32,
     ) -> Result<Interval, SceneError> {
         let mut input = |name: &str, default: f64| match node.child_named(name) {
-            Some(input) => self.connected(input, scope, channel, depth),
+            Some(input) => self.connected(input, scope, channel),
             None => Ok(Interval::point(default)),
         };
         Ok(match &node.tag[..] {
@@ -138,7 +145,7 @@ impl<'a> Reader<'a> {
                     _ => Some(channel),
                 };
                 match (channel, node.child_named("in")) {
-                    (Some(channel), Some(inner)) => self.connected(inner, scope, channel, depth)?,
+                    (Some(channel), Some(inner)) => self.connected(inner, scope, channel)?,
                     _ => self.unknown(node),
                 }
             }

@@ -25,6 +25,8 @@ use std::path::{Path, PathBuf};
 
 use super::builder::{Builder, GGX, Lobe, dielectric};
 use super::include::Includes;
+use super::memo::Memo;
+use super::texture::Channel;
 use super::xml::{self, Element};
 use super::{Format, Fresnel, Interval, Place, Roughness, Scene, SceneError};
 
@@ -49,6 +51,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         root: &root,
         folder: folder.to_owned(),
         builder,
+        ranges: Memo::default(),
     };
     reader.shaders()?;
     Ok(reader.builder.finish())
@@ -92,6 +95,8 @@ struct Reader<'a> {
     root: &'a Element,
     folder: PathBuf,
     builder: Builder,
+    /// Ranges of the inputs and outputs that were asked for.
+    ranges: Memo<(*const Element, Channel)>,
 }
 
 /// The values of a shader's inputs.

@@ -11,8 +11,6 @@ use crate::scene::{Fresnel, Interval, Masking, Roughness, SceneError};
 const LEAST_ALPHA: f64 = 1e-4;
 /// `calc_dist_params` of the principled BSDFs raises α to this.
 const LEAST_PRINCIPLED_ALPHA: f64 = 1e-3;
-/// Textures that refer to textures more deeply than this are taken to go in a circle.
-const MAX_DEPTH: u32 = 64;
 
 /// Indices of refraction by name (`render/ior.h`; Hecht, Optics, 4th edition, at 589 nm).
 const INDICES: [(&str, f64); 23] = [
@@ -208,21 +206,22 @@ impl<'a> Reader<'a> {
         default: f64,
     ) -> Result<Interval, SceneError> {
         match element.child_named(name) {
-            Some(property) => self.value(property, 0),
+            Some(property) => self.value(property),
             None => Ok(Interval::point(default)),
         }
     }
 
     /// A number, or what a texture covers.
-    fn value(&mut self, property: &'a Element, depth: u32) -> Result<Interval, SceneError> {
+    fn value(&mut self, property: &'a Element) -> Result<Interval, SceneError> {
         match &property.tag[..] {
             "float" | "integer" | "spectrum" => number(property).map(Interval::point),
             "rgb" => match rgb(property) {
                 Some(rgb) => Ok(Interval::point(luminance(rgb))),
                 None => Err(property.place.invalid("an rgb value is three numbers")),
             },
-            "ref" if depth < MAX_DEPTH => match self.referred(property)? {
-                Some(texture) => self.value(texture, depth + 1),
+            "ref" => match self.referred(property)? {
+                // A reference has no id of its own, so this is none.
+                Some(texture) => self.value(texture),
                 None => {
                     let id = property.attribute("id").unwrap_or_default();
                     Ok(self.builder.unread(
@@ -232,14 +231,21 @@ impl<'a> Reader<'a> {
                     ))
                 }
             },
-            "texture" => self.texture(property, depth),
+            "texture" => {
+                let key = std::ptr::from_ref(property);
+                if let Some(known) = self.ranges.begin(key, &property.place)? {
+                    return Ok(known);
+                }
+                let range = self.texture(property)?;
+                Ok(self.ranges.end(key, range))
+            }
             tag => Err(property
                 .place
                 .invalid(format!("<{tag}> gives no number where one is expected"))),
         }
     }
 
-    fn texture(&mut self, texture: &'a Element, depth: u32) -> Result<Interval, SceneError> {
+    fn texture(&mut self, texture: &'a Element) -> Result<Interval, SceneError> {
         let place = &texture.place;
         match texture.required("type")? {
             "bitmap" => {
@@ -258,11 +264,8 @@ impl<'a> Reader<'a> {
                     .image(&file, Channel::Luminance, encoding, place))
             }
             "checkerboard" => {
-                let mut colour = |name, default| match texture.child_named(name) {
-                    Some(colour) if depth < MAX_DEPTH => self.value(colour, depth + 1),
-                    _ => Ok(Interval::point(default)),
-                };
-                Ok(colour("color0", 0.4)?.union(colour("color1", 0.2)?))
+                let first = self.property(texture, "color0", 0.4)?;
+                Ok(first.union(self.property(texture, "color1", 0.2)?))
             }
             "uniform" => self.property(texture, "value", 1.0),
             class => {

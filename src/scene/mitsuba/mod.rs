@@ -27,6 +27,7 @@ use std::path::{Path, PathBuf};
 use super::builder::Builder;
 use super::error::did_you_mean;
 use super::include::Includes;
+use super::memo::Memo;
 use super::xml::{self, Element};
 use super::{Format, Place, Scene, SceneError};
 
@@ -58,6 +59,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         builder,
         folders,
         incomplete,
+        ranges: Memo::default(),
     };
     let used = reader.used(&root)?;
     reader.bsdfs(&root, None, &used)?;
@@ -176,6 +178,8 @@ struct Reader<'a> {
     builder: Builder,
     folders: Vec<PathBuf>,
     incomplete: bool,
+    /// Ranges of the textures that were asked for.
+    ranges: Memo<*const Element>,
 }
 
 impl<'a> Reader<'a> {

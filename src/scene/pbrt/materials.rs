@@ -1,6 +1,7 @@
 //! What pbrt's materials and float textures ask for.
 
-use super::{Parameter, Reader};
+use super::Reader;
+use super::syntax::Parameter;
 use crate::scene::builder::{GGX, Lobe, conductor, dielectric};
 use crate::scene::error::did_you_mean;
 use crate::scene::texture::{Channel, Encoding};
@@ -11,9 +12,6 @@ use crate::scene::{Fresnel, Interval, Masking, Place, Roughness, SceneError};
 const SMOOTH: f64 = 1e-3;
 /// The least α along one axis of a surface that is rough along the other (same class, constructor).
 const LEAST: f64 = 1e-4;
-/// Textures that refer to textures more deeply than this are taken to go in a circle.
-const MAX_DEPTH: u32 = 64;
-
 /// A material or a float texture: a class with parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Definition {
@@ -152,7 +150,7 @@ impl Reader {
         let Some(parameter) = parameter else {
             return Ok(Interval::point(0.0));
         };
-        let roughness = self.value(parameter, 0)?;
+        let roughness = self.value(parameter)?;
         if roughness.min < 0.0 {
             return Err(parameter.place.invalid(format!(
                 "the {} of material \"{}\" is {}; it must be 0 or more, commonly up to 1",
@@ -176,24 +174,25 @@ impl Reader {
     }
 
     /// A parameter that is a number or a texture.
-    fn value(&mut self, parameter: &Parameter, depth: u32) -> Result<Interval, SceneError> {
+    fn value(&mut self, parameter: &Parameter) -> Result<Interval, SceneError> {
         if parameter.kind != "texture" {
             return parameter.number().map(Interval::point);
         }
         let place = &parameter.place;
         let name = parameter.values.first().map_or("", |value| value);
         if let Some(texture) = self.textures.get(name).cloned() {
-            if depth == MAX_DEPTH {
-                return Err(place.invalid(format!("texture \"{name}\" refers to itself")));
+            if let Some(known) = self.ranges.begin(texture.name.clone(), place)? {
+                return Ok(known);
             }
-            return self.texture(&texture, depth);
+            let range = self.texture(&texture)?;
+            return Ok(self.ranges.end(texture.name, range));
         }
         if self.incomplete {
-            return Ok(self.builder.unread(
-                &format!("\"{name}\""),
+            let (name, reason) = (
+                format!("\"{name}\""),
                 "is not defined in the files that were found",
-                place,
-            ));
+            );
+            return Ok(self.builder.unread(&name, reason, place));
         }
         let names: Vec<&str> = self.textures.keys().map(|name| &name[..]).collect();
         Err(place.invalid(format!(
@@ -202,9 +201,9 @@ impl Reader {
         )))
     }
 
-    fn texture(&mut self, texture: &Definition, depth: u32) -> Result<Interval, SceneError> {
+    fn texture(&mut self, texture: &Definition) -> Result<Interval, SceneError> {
         let mut input = |name: &str, default: f64| match texture.parameter(name) {
-            Some(parameter) => self.value(parameter, depth + 1),
+            Some(parameter) => self.value(parameter),
             None => Ok(Interval::point(default)),
         };
         Ok(match &texture.class[..] {

@@ -21,6 +21,7 @@
 //! [format]: https://pbrt.org/fileformat-v4
 
 mod materials;
+mod syntax;
 mod token;
 
 use std::collections::HashMap;
@@ -31,10 +32,12 @@ use std::path::{Path, PathBuf};
 use flate2::read::MultiGzDecoder;
 
 use self::materials::Definition;
+use self::syntax::{Parameter, parameters, quoted, skip_arguments};
 use self::token::{Token, Tokens};
 use super::builder::Builder;
 use super::error::did_you_mean;
 use super::include::Includes;
+use super::memo::Memo;
 use super::{Format, Place, Scene, SceneError};
 
 /// All directives but those that [`Reader::statement`] follows.
@@ -85,9 +88,6 @@ const FOLLOWED: [&str; 12] = [
     "Texture",
 ];
 
-/// Longer parameter lists are spectra or geometry; none that matters here is.
-const MAX_VALUES: usize = 16;
-
 /// Reads a pbrt-v4 scene.
 pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut reader = Reader {
@@ -100,6 +100,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         names: HashMap::new(),
         defined: Vec::new(),
         textures: HashMap::new(),
+        ranges: Memo::default(),
         shapes: false,
         incomplete: false,
     };
@@ -108,16 +109,6 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     reader.includes.enter(path, &place)?;
     reader.file(open, path)?;
     reader.finish()
-}
-
-/// A parameter: `"type name" value` or `"type name" [ values ]`.
-#[derive(Clone, Debug)]
-struct Parameter {
-    kind: String,
-    name: String,
-    /// The values as written; at most [`MAX_VALUES`].
-    values: Vec<String>,
-    place: Place,
 }
 
 /// The part of pbrt's graphics state that decides which material a shape wears.
@@ -152,6 +143,8 @@ struct Reader {
     defined: Vec<usize>,
     /// Float textures by name.
     textures: HashMap<String, Definition>,
+    /// Ranges of the textures that were asked for.
+    ranges: Memo<String>,
     shapes: bool,
     /// An included file is missing.
     incomplete: bool,
@@ -441,98 +434,4 @@ fn within(folder: &Path, place: &Place) -> String {
 /// The types that say that a surface is only the border of a medium.
 fn is_no_material(class: &str) -> bool {
     matches!(class, "" | "none" | "interface")
-}
-
-/// The quoted text that must come next.
-fn quoted<R: Read>(tokens: &mut Tokens<R>, what: &str) -> Result<String, SceneError> {
-    match tokens.next()? {
-        Some(Token::Text) => Ok(tokens.text().to_owned()),
-        Some(_) => Err(tokens
-            .place()
-            .syntax(format!("expected {what} in quotes, not {}", tokens.text()))),
-        None => Err(tokens
-            .place()
-            .syntax(format!("the file ends where {what} is expected"))),
-    }
-}
-
-/// The parameter list that comes next, perhaps empty.
-fn parameters<R: Read>(tokens: &mut Tokens<R>) -> Result<Vec<Parameter>, SceneError> {
-    let mut list = Vec::new();
-    while let Some(token) = tokens.next()? {
-        if token != Token::Text {
-            tokens.push_back(token);
-            break;
-        }
-        let place = tokens.place();
-        let mut words = tokens.text().split_ascii_whitespace();
-        let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
-            return Err(place.syntax(format!(
-                "\"{}\" declares no parameter; write its type and its name, as in \"float roughness\"",
-                tokens.text()
-            )));
-        };
-        let (kind, name) = (kind.to_owned(), name.to_owned());
-        let values = values(tokens, &name)?;
-        list.push(Parameter {
-            kind,
-            name,
-            values,
-            place,
-        });
-    }
-    Ok(list)
-}
-
-fn values<R: Read>(tokens: &mut Tokens<R>, name: &str) -> Result<Vec<String>, SceneError> {
-    let mut values = Vec::new();
-    match tokens.next()? {
-        Some(Token::Word | Token::Text) => values.push(tokens.text().to_owned()),
-        Some(Token::Open) => {
-            let open = tokens.place();
-            loop {
-                match tokens.next()? {
-                    Some(Token::Close) => break,
-                    Some(Token::Word | Token::Text) if values.len() < MAX_VALUES => {
-                        values.push(tokens.text().to_owned());
-                    }
-                    Some(Token::Word | Token::Text) => {
-                        tokens.skip_list()?;
-                        break;
-                    }
-                    _ => return Err(open.syntax("this list has no closing bracket")),
-                }
-            }
-        }
-        _ => {
-            return Err(tokens
-                .place()
-                .syntax(format!("the parameter {name} has no value")));
-        }
-    }
-    Ok(values)
-}
-
-/// Passes over everything up to the next directive.
-fn skip_arguments<R: Read>(tokens: &mut Tokens<R>) -> Result<(), SceneError> {
-    while let Some(token) = tokens.next()? {
-        match token {
-            Token::Text => {}
-            Token::Open => tokens.skip_list()?,
-            Token::Close => {
-                return Err(tokens.place().syntax("this bracket closes no list"));
-            }
-            // Numbers and truth values are arguments; any other word is the next directive.
-            Token::Word => {
-                let word = tokens.text();
-                let is_directive = word.starts_with(|c: char| c.is_ascii_alphabetic())
-                    && !matches!(word, "true" | "false");
-                if is_directive {
-                    tokens.push_back(token);
-                    break;
-                }
-            }
-        }
-    }
-    Ok(())
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::scene::{Place, SceneError};
 
 /// A longer word than this is no pbrt file; it bounds memory where a file has no spaces.
-const MAX_WORD: usize = 1 << 16;
+const MAX_WORD: usize = 1 << 12;
 
 /// What a token is; its text is in [`Tokens::text`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

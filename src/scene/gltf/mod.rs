@@ -18,14 +18,16 @@
 //!
 //! [spec]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 
+mod schema;
+
 use std::collections::HashSet;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use base64::Engine;
-use serde::Deserialize;
 
+use self::schema::{Document, Image, Material, TextureInfo};
 use super::builder::{Builder, GGX, Lobe};
 use super::texture::{self, Channel, Encoding};
 use super::{Format, Fresnel, Interval, Place, Roughness, Scene, SceneError};
@@ -41,7 +43,13 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
             column: number(error.column()),
             ..place.clone()
         }
-        .syntax(error.to_string())
+        // The place stands before the message already.
+        .syntax(
+            error
+                .to_string()
+                .rsplit_once(" at line ")
+                .map_or("no JSON", |(message, _)| message),
+        )
     })?;
     if !document.asset.version.starts_with("2.") {
         return Err(place.invalid(format!(
@@ -340,180 +348,4 @@ fn decode_uri(uri: &str) -> String {
         rest = if hex.is_some() { &tail[2..] } else { tail };
     }
     String::from_utf8_lossy(&bytes).into_owned()
-}
-
-// The parts of the glTF schema that matter here, under the schema's names.
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct Document {
-    asset: Asset,
-    #[serde(default)]
-    materials: Vec<Material>,
-    #[serde(default)]
-    meshes: Vec<Mesh>,
-    #[serde(default)]
-    textures: Vec<Texture>,
-    #[serde(default)]
-    images: Vec<Image>,
-    #[serde(default)]
-    buffer_views: Vec<BufferView>,
-    #[serde(default)]
-    buffers: Vec<Buffer>,
-}
-
-#[derive(Deserialize)]
-struct Asset {
-    version: String,
-}
-
-#[derive(Deserialize)]
-struct Mesh {
-    primitives: Vec<Primitive>,
-}
-
-#[derive(Deserialize)]
-struct Primitive {
-    material: Option<usize>,
-    #[serde(default)]
-    extensions: PrimitiveExtensions,
-}
-
-#[derive(Default, Deserialize)]
-struct PrimitiveExtensions {
-    #[serde(rename = "KHR_materials_variants")]
-    variants: Option<Variants>,
-}
-
-impl PrimitiveExtensions {
-    fn variants(&self) -> impl Iterator<Item = usize> {
-        let mappings = self.variants.iter().flat_map(|variants| &variants.mappings);
-        mappings.map(|mapping| mapping.material)
-    }
-}
-
-#[derive(Deserialize)]
-struct Variants {
-    mappings: Vec<Mapping>,
-}
-
-#[derive(Deserialize)]
-struct Mapping {
-    material: usize,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct Material {
-    name: Option<String>,
-    pbr_metallic_roughness: MetallicRoughness,
-    extensions: MaterialExtensions,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct MetallicRoughness {
-    roughness_factor: f64,
-    metallic_roughness_texture: Option<TextureInfo>,
-}
-
-impl Default for MetallicRoughness {
-    fn default() -> Self {
-        Self {
-            roughness_factor: 1.0,
-            metallic_roughness_texture: None,
-        }
-    }
-}
-
-#[derive(Default, Deserialize)]
-struct MaterialExtensions {
-    #[serde(rename = "KHR_materials_anisotropy")]
-    anisotropy: Option<Anisotropy>,
-    #[serde(rename = "KHR_materials_clearcoat")]
-    clearcoat: Option<Clearcoat>,
-    #[serde(rename = "KHR_materials_ior")]
-    ior: Option<Ior>,
-    #[serde(rename = "KHR_materials_iridescence")]
-    iridescence: Option<serde::de::IgnoredAny>,
-    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
-    specular_glossiness: Option<SpecularGlossiness>,
-    #[serde(rename = "KHR_materials_sheen")]
-    sheen: Option<serde::de::IgnoredAny>,
-    #[serde(rename = "KHR_materials_unlit")]
-    unlit: Option<serde::de::IgnoredAny>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct Anisotropy {
-    anisotropy_strength: f64,
-    anisotropy_texture: Option<TextureInfo>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct Clearcoat {
-    clearcoat_factor: f64,
-    clearcoat_roughness_factor: f64,
-    clearcoat_roughness_texture: Option<TextureInfo>,
-}
-
-#[derive(Deserialize)]
-#[serde(default)]
-struct Ior {
-    ior: f64,
-}
-
-impl Default for Ior {
-    fn default() -> Self {
-        Self { ior: 1.5 }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct SpecularGlossiness {
-    glossiness_factor: f64,
-    specular_glossiness_texture: Option<TextureInfo>,
-}
-
-impl Default for SpecularGlossiness {
-    fn default() -> Self {
-        Self {
-            glossiness_factor: 1.0,
-            specular_glossiness_texture: None,
-        }
-    }
-}
-
-#[derive(Deserialize)]
-struct TextureInfo {
-    index: usize,
-}
-
-#[derive(Deserialize)]
-struct Texture {
-    source: Option<usize>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct Image {
-    uri: Option<String>,
-    buffer_view: Option<usize>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct BufferView {
-    buffer: usize,
-    #[serde(default)]
-    byte_offset: u64,
-    byte_length: u64,
-}
-
-#[derive(Deserialize)]
-struct Buffer {
-    uri: Option<String>,
 }

@@ -1,0 +1,51 @@
+//! Values of things that refer to each other, such as textures.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+
+use super::{Interval, Place, SceneError};
+
+/// Longer chains of references than this are refused; it bounds the stack that recursion needs.
+const MAX_DEPTH: usize = 128;
+
+/// Works each value out once, so that time stays linear however often it is referred to, and
+/// notices when a value depends on itself.
+pub(super) struct Memo<K> {
+    /// `None` is a value that is being worked out.
+    values: HashMap<K, Option<Interval>>,
+    depth: usize,
+}
+
+impl<K> Default for Memo<K> {
+    fn default() -> Self {
+        Self {
+            values: HashMap::new(),
+            depth: 0,
+        }
+    }
+}
+
+impl<K: Eq + Hash> Memo<K> {
+    /// The value if it is known; if not, it must be worked out and given to [`Self::end`].
+    pub(super) fn begin(&mut self, key: K, place: &Place) -> Result<Option<Interval>, SceneError> {
+        match self.values.get(&key) {
+            Some(&Some(value)) => return Ok(Some(value)),
+            Some(None) => return Err(place.invalid("this texture or node depends on itself")),
+            None => {}
+        }
+        if self.depth == MAX_DEPTH {
+            return Err(place.invalid(format!(
+                "textures or nodes depend on each other more than {MAX_DEPTH} deep"
+            )));
+        }
+        self.depth += 1;
+        self.values.insert(key, None);
+        Ok(None)
+    }
+
+    pub(super) fn end(&mut self, key: K, value: Interval) -> Interval {
+        self.depth -= 1;
+        self.values.insert(key, Some(value));
+        value
+    }
+}
