@@ -27,9 +27,7 @@ pub(super) fn dielectric(eta: f64, place: &Place) -> Result<Fresnel, SceneError>
     if eta > 0.0 && eta < f64::INFINITY {
         Ok(Fresnel::Dielectric(eta))
     } else {
-        Err(place.invalid(format!(
-            "the index of refraction is {eta}; it must be finite and more than 0"
-        )))
+        Err(place.invalid(format!("the index of refraction is {eta}; it must be finite and more than 0")))
     }
 }
 
@@ -81,11 +79,7 @@ impl Builder {
             gamma: lobe.gamma,
             fresnel: lobe.fresnel,
             masking: lobe.masking,
-            origin: Origin {
-                format: self.format,
-                place: place.clone(),
-                lobe: lobe.name,
-            },
+            origin: Origin { format: self.format, place: place.clone(), lobe: lobe.name },
             used,
         };
         self.scene.materials.push(material);
@@ -123,10 +117,7 @@ impl Builder {
 
     /// The range [0, 1], with a warning that the texture `name` cannot be followed.
     pub(super) fn unread(&mut self, name: &str, reason: &str, place: &Place) -> Interval {
-        self.warn(
-            place,
-            format!("texture {name} {reason}; it is assumed to cover [0, 1]"),
-        );
+        self.warn(place, format!("texture {name} {reason}; it is assumed to cover [0, 1]"));
         Interval::UNIT
     }
 

@@ -19,32 +19,19 @@ pub struct Place {
 impl Place {
     /// The whole of a file.
     pub(super) fn file(file: &Path) -> Self {
-        Self {
-            file: file.into(),
-            line: None,
-            column: None,
-        }
+        Self { file: file.into(), line: None, column: None }
     }
 
     pub(super) fn invalid(&self, message: impl Into<String>) -> SceneError {
-        SceneError {
-            place: self.clone(),
-            kind: SceneErrorKind::Invalid(message.into()),
-        }
+        SceneError { place: self.clone(), kind: SceneErrorKind::Invalid(message.into()) }
     }
 
     pub(super) fn syntax(&self, message: impl Into<String>) -> SceneError {
-        SceneError {
-            place: self.clone(),
-            kind: SceneErrorKind::Syntax(message.into()),
-        }
+        SceneError { place: self.clone(), kind: SceneErrorKind::Syntax(message.into()) }
     }
 
     pub(super) fn io(&self, error: io::Error) -> SceneError {
-        SceneError {
-            place: self.clone(),
-            kind: SceneErrorKind::Io(error),
-        }
+        SceneError { place: self.clone(), kind: SceneErrorKind::Io(error) }
     }
 }
 
@@ -57,13 +44,7 @@ pub(super) struct Lines {
 impl Lines {
     pub(super) fn new(file: &Path, text: &str) -> Self {
         let after_breaks = text.bytes().enumerate().filter(|&(_, b)| b == b'\n');
-        Self {
-            file: file.into(),
-            starts: [0]
-                .into_iter()
-                .chain(after_breaks.map(|(i, _)| i + 1))
-                .collect(),
-        }
+        Self { file: file.into(), starts: [0].into_iter().chain(after_breaks.map(|(i, _)| i + 1)).collect() }
     }
 
     pub(super) fn place(&self, offset: usize) -> Place {
@@ -120,9 +101,7 @@ impl fmt::Display for SceneError {
                  .pbrt.gz (pbrt-v4), .xml (Mitsuba 3), .gltf and .glb (glTF 2.0), .mtlx (MaterialX)",
                 extension.display()
             ),
-            SceneErrorKind::Syntax(message) | SceneErrorKind::Invalid(message) => {
-                f.write_str(message)
-            }
+            SceneErrorKind::Syntax(message) | SceneErrorKind::Invalid(message) => f.write_str(message),
         }
     }
 }
@@ -141,17 +120,14 @@ impl std::error::Error for SceneError {
 ///
 /// Close enough is one edit in three letters, a transposition counting as one.
 pub(super) fn did_you_mean(word: &str, candidates: &[&str]) -> String {
-    let distance = |candidate: &str| {
-        strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase())
-    };
+    let distance =
+        |candidate: &str| strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase());
     candidates
         .iter()
         .map(|&candidate| (distance(candidate), candidate))
         .filter(|&(d, candidate)| 3 * d <= candidate.len().max(word.len()).max(3))
         .min_by_key(|&(d, _)| d)
-        .map_or_else(String::new, |(_, candidate)| {
-            format!("; did you mean `{candidate}`?")
-        })
+        .map_or_else(String::new, |(_, candidate)| format!("; did you mean `{candidate}`?"))
 }
 
 #[cfg(test)]

@@ -25,12 +25,7 @@ impl Includes {
             let names: Vec<String> = self.open[first..]
                 .iter()
                 .chain([&path])
-                .map(|file| {
-                    file.file_name()
-                        .unwrap_or_default()
-                        .to_string_lossy()
-                        .into_owned()
-                })
+                .map(|file| file.file_name().unwrap_or_default().to_string_lossy().into_owned())
                 .collect();
             return Err(place.invalid(format!(
                 "the file includes itself: {}; remove one of these includes",

@@ -45,28 +45,19 @@ impl Interval {
     /// The smallest interval that holds both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
-        Self {
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
-        }
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
     /// The image under a function that rises over the whole interval.
     #[must_use]
     pub fn map_rising(self, f: impl Fn(f64) -> f64) -> Self {
-        Self {
-            min: f(self.min),
-            max: f(self.max),
-        }
+        Self { min: f(self.min), max: f(self.max) }
     }
 
     /// The image under a function that falls over the whole interval.
     #[must_use]
     pub fn map_falling(self, f: impl Fn(f64) -> f64) -> Self {
-        Self {
-            min: f(self.max),
-            max: f(self.min),
-        }
+        Self { min: f(self.max), max: f(self.min) }
     }
 
     /// The image of both intervals under a function that is linear in each argument, hence takes
@@ -75,10 +66,7 @@ impl Interval {
     pub fn map_bilinear(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let rows = |y| {
             let (a, b) = (f(self.min, y), f(self.max, y));
-            Self {
-                min: a.min(b),
-                max: a.max(b),
-            }
+            Self { min: a.min(b), max: a.max(b) }
         };
         rows(other.min).union(rows(other.max))
     }
@@ -104,47 +92,26 @@ impl Interval {
 mod tests {
     use super::Interval;
 
-    const A: Interval = Interval {
-        min: -1.0,
-        max: 2.0,
-    };
+    const A: Interval = Interval { min: -1.0, max: 2.0 };
 
     #[test]
     fn a_point_is_its_own_hull() {
         assert_eq!(Interval::hull([0.3]), Some(Interval::point(0.3)));
-        assert_eq!(
-            Interval::hull([3.0, 1.0, 2.0]),
-            Some(Interval { min: 1.0, max: 3.0 })
-        );
+        assert_eq!(Interval::hull([3.0, 1.0, 2.0]), Some(Interval { min: 1.0, max: 3.0 }));
         assert_eq!(Interval::hull([]), None);
         assert_eq!(Interval::hull([1.0, f64::NAN]), None);
     }
 
     #[test]
     fn products_take_their_extremes_at_the_corners() {
-        let product = A.map_bilinear(
-            Interval {
-                min: -3.0,
-                max: 1.0,
-            },
-            |a, b| a * b,
-        );
-        assert_eq!(
-            product,
-            Interval {
-                min: -6.0,
-                max: 3.0
-            }
-        );
+        let product = A.map_bilinear(Interval { min: -3.0, max: 1.0 }, |a, b| a * b);
+        assert_eq!(product, Interval { min: -6.0, max: 3.0 });
     }
 
     #[test]
     fn a_mixture_stays_in_the_union_and_reaches_its_ends() {
         let b = Interval { min: 5.0, max: 6.0 };
         assert_eq!(A.mix(b, Interval::UNIT), A.union(b));
-        assert_eq!(
-            A.mix(b, Interval::point(0.5)),
-            Interval { min: 2.0, max: 4.0 }
-        );
+        assert_eq!(A.mix(b, Interval::point(0.5)), Interval { min: 2.0, max: 4.0 });
     }
 }

@@ -27,20 +27,12 @@ pub enum Roughness {
 impl Roughness {
     /// The isotropic roughness of range `sigma`, [`Roughness::Smooth`] when that is 0 alone.
     pub(super) fn isotropic(sigma: Interval) -> Self {
-        if sigma.max > 0.0 {
-            Self::Isotropic(sigma)
-        } else {
-            Self::Smooth
-        }
+        if sigma.max > 0.0 { Self::Isotropic(sigma) } else { Self::Smooth }
     }
 
     /// Two roughnesses of independent origin; isotropic when both are the same single number.
     pub(super) fn anisotropic(x: Interval, y: Interval) -> Self {
-        if x.is_point() && x == y {
-            Self::isotropic(x)
-        } else {
-            Self::Anisotropic { x, y }
-        }
+        if x.is_point() && x == y { Self::isotropic(x) } else { Self::Anisotropic { x, y } }
     }
 
     /// σx, which is 0 for a smooth surface.
@@ -71,7 +63,7 @@ impl Roughness {
 /// How shadowing and masking combine into G2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Masking {
-    /// G2 = G1(v) G1(l): shadowing and masking independent (Ribardière et al. 2017, eq. 24).
+    /// G2 = G1(v) G1(l): shadowing and masking independent (Ribardière et al. 2017).
     Uncorrelated,
     /// G2 = 1 / (1 + Λ(v) + Λ(l)): correlated through the height (Heitz 2014, eq. 99).
     HeightCorrelated,

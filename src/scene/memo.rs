@@ -18,10 +18,7 @@ pub(super) struct Memo<K> {
 
 impl<K> Default for Memo<K> {
     fn default() -> Self {
-        Self {
-            values: HashMap::new(),
-            depth: 0,
-        }
+        Self { values: HashMap::new(), depth: 0 }
     }
 }
 
@@ -34,9 +31,9 @@ impl<K: Eq + Hash> Memo<K> {
             None => {}
         }
         if self.depth == MAX_DEPTH {
-            return Err(place.invalid(format!(
-                "textures or nodes depend on each other more than {MAX_DEPTH} deep"
-            )));
+            return Err(
+                place.invalid(format!("textures or nodes depend on each other more than {MAX_DEPTH} deep"))
+            );
         }
         self.depth += 1;
         self.values.insert(key, None);

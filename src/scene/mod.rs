@@ -78,10 +78,7 @@ impl Scene {
     }
 
     fn from_recipe(text: &str, file: &Path) -> Result<Self, SceneError> {
-        Ok(Self {
-            materials: recipe::read(text, file)?,
-            ..Self::default()
-        })
+        Ok(Self { materials: recipe::read(text, file)?, ..Self::default() })
     }
 
     /// The native recipe of the materials in use: the canonical statement of what this scene asks for.
@@ -103,18 +100,9 @@ impl Scene {
 /// [`SceneErrorKind::Invalid`] with the place of what is wrong in it. A missing image or included
 /// file is a warning.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    let name = path
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_lowercase();
-    let name = name
-        .strip_suffix(".pbrt.gz")
-        .map_or(name.clone(), |stem| format!("{stem}.pbrt"));
-    match Path::new(&name)
-        .extension()
-        .and_then(|extension| extension.to_str())
-    {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let name = name.strip_suffix(".pbrt.gz").map_or(name.clone(), |stem| format!("{stem}.pbrt"));
+    match Path::new(&name).extension().and_then(|extension| extension.to_str()) {
         Some("toml") => {
             let place = Place::file(path);
             let text = fs::read_to_string(path).map_err(|error| place.io(error))?;

@@ -28,12 +28,7 @@ const FRESNEL_KEYS: [&str; 3] = ["schlick", "conductor", "dielectric"];
 
 /// Reads the materials of the recipe `text`, the content of `file`.
 pub(super) fn read(text: &str, file: &Path) -> Result<Vec<Material>, SceneError> {
-    Source {
-        text,
-        file,
-        lines: Lines::new(file, text),
-    }
-    .materials()
+    Source { text, file, lines: Lines::new(file, text) }.materials()
 }
 
 /// Writes the recipe that [`read`] turns into the same materials.
@@ -75,20 +70,12 @@ fn quoted(text: &str) -> String {
 /// A number or a range; Rust's shortest form that reads back to the same bits is valid TOML.
 fn range(interval: Interval) -> String {
     let number = |x: f64| {
-        if x == f64::INFINITY {
-            "\"inf\"".to_owned()
-        } else {
-            format!("{x:?}")
-        }
+        if x == f64::INFINITY { "\"inf\"".to_owned() } else { format!("{x:?}") }
     };
     if interval.is_point() {
         number(interval.min)
     } else {
-        format!(
-            "{{ min = {}, max = {} }}",
-            number(interval.min),
-            number(interval.max)
-        )
+        format!("{{ min = {}, max = {} }}", number(interval.min), number(interval.max))
     }
 }
 
@@ -107,10 +94,8 @@ impl Source<'_> {
     }
 
     fn materials(&self) -> Result<Vec<Material>, SceneError> {
-        let document = DeTable::parse(self.text).map_err(|error| {
-            self.place(error.span().unwrap_or(0..0))
-                .syntax(error.message())
-        })?;
+        let document = DeTable::parse(self.text)
+            .map_err(|error| self.place(error.span().unwrap_or(0..0)).syntax(error.message()))?;
         let document = document.get_ref();
         self.only_keys(document, &["material"])?;
         let entries = match document.get("material") {
@@ -152,9 +137,7 @@ impl Source<'_> {
         self.only_keys(table, &MATERIAL_KEYS)?;
         let required = |key: &str, example: &str| {
             table.get(key).ok_or_else(|| {
-                place.invalid(format!(
-                    "the material has no `{key}`; add for example {key} = {example}"
-                ))
+                place.invalid(format!("the material has no `{key}`; add for example {key} = {example}"))
             })
         };
 
@@ -162,9 +145,7 @@ impl Source<'_> {
         let name = match name.get_ref().as_str() {
             Some(text) if !text.is_empty() => text.to_owned(),
             _ => {
-                return Err(self
-                    .place(name.span())
-                    .invalid("`name` must be a text that is not empty"));
+                return Err(self.place(name.span()).invalid("`name` must be a text that is not empty"));
             }
         };
         Ok(Material {
@@ -173,20 +154,13 @@ impl Source<'_> {
             gamma: self.gamma(required("gamma", "2.0")?)?,
             fresnel: table.get("fresnel").map(|v| self.fresnel(v)).transpose()?,
             masking: table.get("masking").map(|v| self.masking(v)).transpose()?,
-            origin: Origin {
-                format: Format::Recipe,
-                place,
-                lobe: None,
-            },
+            origin: Origin { format: Format::Recipe, place, lobe: None },
             used: true,
         })
     }
 
     fn only_keys(&self, table: &Table<'_>, known: &[&str]) -> Result<(), SceneError> {
-        match table
-            .keys()
-            .find(|key| !known.contains(&key.get_ref().as_ref()))
-        {
+        match table.keys().find(|key| !known.contains(&key.get_ref().as_ref())) {
             None => Ok(()),
             Some(key) => Err(self.place(key.span()).invalid(format!(
                 "unknown key `{}`{}; the keys here are {}",
@@ -214,10 +188,9 @@ impl Source<'_> {
         };
         let place = self.place(value.span());
         let [x, y] = &pair[..] else {
-            return Err(place.invalid(format!(
-                "sigma has {} values; an anisotropic roughness is [x, y]",
-                pair.len()
-            )));
+            return Err(
+                place.invalid(format!("sigma has {} values; an anisotropic roughness is [x, y]", pair.len()))
+            );
         };
         let (x, y) = (valid(x)?, valid(y)?);
         match Roughness::anisotropic(x, y) {
@@ -248,9 +221,9 @@ impl Source<'_> {
         };
         self.only_keys(table, &["min", "max"])?;
         let (Some(min), Some(max)) = (table.get("min"), table.get("max")) else {
-            return Err(self.place(value.span()).invalid(format!(
-                "a range of {key} needs both ends: {{ min = .., max = .. }}"
-            )));
+            return Err(self
+                .place(value.span())
+                .invalid(format!("a range of {key} needs both ends: {{ min = .., max = .. }}")));
         };
         let (min, max) = (self.number(min, key)?, self.number(max, key)?);
         if min <= max {
@@ -286,10 +259,7 @@ impl Source<'_> {
         if value.get_ref().as_str() == Some("mirror") {
             return Ok(Fresnel::Mirror);
         }
-        let table = value
-            .get_ref()
-            .as_table()
-            .ok_or_else(|| place.invalid(forms))?;
+        let table = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
         self.only_keys(table, &FRESNEL_KEYS)?;
         let mut entries = table.iter();
         let (Some((form, value)), None) = (entries.next(), entries.next()) else {
@@ -298,12 +268,7 @@ impl Source<'_> {
         match form.get_ref().as_ref() {
             "schlick" => {
                 let f0 = self.number(value, "schlick")?;
-                self.check(
-                    value,
-                    (0.0..=1.0).contains(&f0),
-                    "schlick",
-                    "a reflectance from 0 to 1",
-                )?;
+                self.check(value, (0.0..=1.0).contains(&f0), "schlick", "a reflectance from 0 to 1")?;
                 Ok(Fresnel::Schlick(f0))
             }
             "dielectric" => {
@@ -311,27 +276,17 @@ impl Source<'_> {
                 Ok(Fresnel::Dielectric(eta))
             }
             _ => {
-                let table = value
-                    .get_ref()
-                    .as_table()
-                    .ok_or_else(|| place.invalid(forms))?;
+                let table = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
                 self.only_keys(table, &["eta", "k"])?;
                 let (Some(eta), Some(k)) = (table.get("eta"), table.get("k")) else {
-                    return Err(
-                        place.invalid("a conductor needs both eta = [r, g, b] and k = [r, g, b]")
-                    );
+                    return Err(place.invalid("a conductor needs both eta = [r, g, b] and k = [r, g, b]"));
                 };
                 Ok(Fresnel::Conductor {
                     eta: self.rgb(eta, "eta", |value| self.index(value, "eta"))?,
                     k: self.rgb(k, "k", |value| {
                         let k = self.number(value, "k")?;
                         let valid = (0.0..f64::INFINITY).contains(&k);
-                        self.check(
-                            value,
-                            valid,
-                            "k",
-                            "an extinction coefficient, finite and 0 or more",
-                        )?;
+                        self.check(value, valid, "k", "an extinction coefficient, finite and 0 or more")?;
                         Ok(k)
                     })?,
                 })
@@ -342,29 +297,16 @@ impl Source<'_> {
     fn index(&self, value: &Value<'_>, key: &str) -> Result<f64, SceneError> {
         let eta = self.number(value, key)?;
         let valid = eta > 0.0 && eta < f64::INFINITY;
-        self.check(
-            value,
-            valid,
-            key,
-            "an index of refraction, finite and more than 0",
-        )?;
+        self.check(value, valid, key, "an index of refraction, finite and more than 0")?;
         Ok(eta)
     }
 
-    fn check(
-        &self,
-        value: &Value<'_>,
-        valid: bool,
-        key: &str,
-        what: &str,
-    ) -> Result<(), SceneError> {
+    fn check(&self, value: &Value<'_>, valid: bool, key: &str, what: &str) -> Result<(), SceneError> {
         if valid {
             return Ok(());
         }
         let text = self.text.get(value.span()).unwrap_or_default();
-        Err(self
-            .place(value.span())
-            .invalid(format!("{key} = {text} is out of range; it must be {what}")))
+        Err(self.place(value.span()).invalid(format!("{key} = {text} is out of range; it must be {what}")))
     }
 
     fn rgb(
@@ -383,16 +325,13 @@ impl Source<'_> {
 
     fn masking(&self, value: &Value<'_>) -> Result<Masking, SceneError> {
         let name = value.get_ref().as_str().unwrap_or_default();
-        Masking::ALL
-            .into_iter()
-            .find(|masking| masking.name() == name)
-            .ok_or_else(|| {
-                let names = Masking::ALL.map(Masking::name);
-                self.place(value.span()).invalid(format!(
-                    "masking must be \"{}\"{}",
-                    names.join("\" or \""),
-                    did_you_mean(name, &names)
-                ))
-            })
+        Masking::ALL.into_iter().find(|masking| masking.name() == name).ok_or_else(|| {
+            let names = Masking::ALL.map(Masking::name);
+            self.place(value.span()).invalid(format!(
+                "masking must be \"{}\"{}",
+                names.join("\" or \""),
+                did_you_mean(name, &names)
+            ))
+        })
     }
 }

@@ -59,11 +59,7 @@ impl Textures {
 }
 
 /// As [`Textures::range`], of an image file in memory.
-pub(super) fn range_of_bytes(
-    bytes: &[u8],
-    channel: Channel,
-    encoding: Encoding,
-) -> Result<Interval, String> {
+pub(super) fn range_of_bytes(bytes: &[u8], channel: Channel, encoding: Encoding) -> Result<Interval, String> {
     let image = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
         .map_err(|error| format!("cannot be read ({error})"))?;
@@ -75,9 +71,7 @@ fn range<R: std::io::BufRead + std::io::Seek>(
     channel: Channel,
     encoding: Encoding,
 ) -> Result<Interval, String> {
-    let image = image
-        .decode()
-        .map_err(|error| format!("cannot be decoded ({error})"))?;
+    let image = image.decode().map_err(|error| format!("cannot be decoded ({error})"))?;
     let stride = usize::from(image.color().channel_count());
     let pixels = Pixels { channel, stride };
     let decode = |x: f64| match encoding {
@@ -89,9 +83,7 @@ fn range<R: std::io::BufRead + std::io::Seek>(
         let table: Vec<f64> = (0..=255u8).map(|i| decode(f64::from(i) / 255.0)).collect();
         pixels.range(samples.samples, |x| table[usize::from(x)])
     } else if let Some(samples) = image.as_flat_samples_u16() {
-        let table: Vec<f64> = (0..=u16::MAX)
-            .map(|i| decode(f64::from(i) / 65535.0))
-            .collect();
+        let table: Vec<f64> = (0..=u16::MAX).map(|i| decode(f64::from(i) / 65535.0)).collect();
         pixels.range(samples.samples, |x| table[usize::from(x)])
     } else {
         let image = DynamicImage::from(image.to_rgba32f());
@@ -127,11 +119,7 @@ impl Pixels {
 
 /// IEC 61966-2-1. The `libm` power keeps the roughness, and so the tables, equal on every system.
 fn srgb_to_linear(x: f64) -> f64 {
-    if x <= 0.04045 {
-        x / 12.92
-    } else {
-        libm::pow((x + 0.055) / 1.055, 2.4)
-    }
+    if x <= 0.04045 { x / 12.92 } else { libm::pow((x + 0.055) / 1.055, 2.4) }
 }
 
 #[cfg(test)]
@@ -177,13 +165,7 @@ mod tests {
         image.put_pixel(0, 1, Rgb([0.75, 0.5, 4.0]));
         let exr = bytes(&image.into(), ImageFormat::OpenExr);
         let range = |channel| range_of_bytes(&exr, channel, Encoding::Srgb).unwrap();
-        assert_eq!(
-            range(Channel::Red),
-            Interval {
-                min: 0.25,
-                max: 0.75
-            }
-        );
+        assert_eq!(range(Channel::Red), Interval { min: 0.25, max: 0.75 });
         assert_eq!(range(Channel::Blue), Interval::point(4.0));
     }
 
@@ -192,9 +174,7 @@ mod tests {
         let error = range_of_bytes(b"no image", Channel::Red, Encoding::Linear).unwrap_err();
         assert!(error.contains("cannot be decoded"), "{error}");
         let mut textures = Textures::default();
-        let error = textures
-            .range(Path::new("absent.png"), Channel::Red, Encoding::Linear)
-            .unwrap_err();
+        let error = textures.range(Path::new("absent.png"), Channel::Red, Encoding::Linear).unwrap_err();
         assert!(error.contains("cannot be read"), "{error}");
     }
 }

@@ -22,24 +22,18 @@ pub(super) struct Element {
 
 impl Element {
     pub(super) fn attribute(&self, name: &str) -> Option<&str> {
-        self.attributes
-            .iter()
-            .find_map(|(key, value)| (key == name).then_some(&value[..]))
+        self.attributes.iter().find_map(|(key, value)| (key == name).then_some(&value[..]))
     }
 
     /// The attribute `name`, whose absence is an error.
     pub(super) fn required(&self, name: &str) -> Result<&str, SceneError> {
-        self.attribute(name).ok_or_else(|| {
-            self.place
-                .syntax(format!("<{}> has no attribute \"{name}\"", self.tag))
-        })
+        self.attribute(name)
+            .ok_or_else(|| self.place.syntax(format!("<{}> has no attribute \"{name}\"", self.tag)))
     }
 
     /// The child element whose attribute "name" is `name`.
     pub(super) fn child_named(&self, name: &str) -> Option<&Element> {
-        self.children
-            .iter()
-            .find(|child| child.attribute("name") == Some(name))
+        self.children.iter().find(|child| child.attribute("name") == Some(name))
     }
 
     /// Calls `visit` for this element and everything below it, in document order.
@@ -57,13 +51,9 @@ pub(super) fn read(file: &Path) -> Result<Element, SceneError> {
     let text = fs::read_to_string(file).map_err(|error| place.io(error))?;
     let document = Document::parse(&text).map_err(|error| {
         let at = error.pos();
-        Place {
-            line: Some(at.row),
-            column: Some(at.col),
-            ..place
-        }
-        // The place stands before the message already.
-        .syntax(error.to_string().trim_end_matches(&format!(" at {at}")))
+        Place { line: Some(at.row), column: Some(at.col), ..place }
+            // The place stands before the message already.
+            .syntax(error.to_string().trim_end_matches(&format!(" at {at}")))
     })?;
     element(document.root_element(), &Lines::new(file, &text), 0)
 }

@@ -1,6 +1,7 @@
 //! What scene descriptions ask for, format by format.
 
 mod gltf;
+mod hostile;
 mod materialx;
 mod mitsuba;
 mod pbrt;
@@ -10,9 +11,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use image::{ImageFormat, Rgb, RgbImage};
-use microfacet_bake::scene::{
-    self, Interval, Material, Roughness, Scene, SceneError, SceneErrorKind,
-};
+use microfacet_bake::scene::{self, Interval, Material, Roughness, Scene, SceneError, SceneErrorKind};
 use tempfile::TempDir;
 
 /// A folder with a scene in it.
@@ -55,19 +54,12 @@ fn assert_refused(name: &str, text: &str, place: &str, parts: &[&str]) {
 }
 
 fn named<'a>(scene: &'a Scene, name: &str) -> &'a Material {
-    let found = scene
-        .materials
-        .iter()
-        .find(|material| material.name == name);
+    let found = scene.materials.iter().find(|material| material.name == name);
     found.unwrap_or_else(|| panic!("no {name} among {:?}", names(scene)))
 }
 
 fn names(scene: &Scene) -> Vec<&str> {
-    scene
-        .materials
-        .iter()
-        .map(|material| &material.name[..])
-        .collect()
+    scene.materials.iter().map(|material| &material.name[..]).collect()
 }
 
 fn isotropic(sigma: f64) -> Roughness {
@@ -75,10 +67,7 @@ fn isotropic(sigma: f64) -> Roughness {
 }
 
 fn anisotropic(x: f64, y: f64) -> Roughness {
-    Roughness::Anisotropic {
-        x: Interval::point(x),
-        y: Interval::point(y),
-    }
+    Roughness::Anisotropic { x: Interval::point(x), y: Interval::point(y) }
 }
 
 /// Checks a roughness against numbers worked out by hand.
@@ -104,9 +93,7 @@ fn png() -> Vec<u8> {
 
 #[test]
 fn an_unknown_extension_lists_the_formats() {
-    let error = Folder::new(&[("scene.blend", "")])
-        .load("scene.blend")
-        .unwrap_err();
+    let error = Folder::new(&[("scene.blend", "")]).load("scene.blend").unwrap_err();
     assert!(matches!(&error.kind, SceneErrorKind::UnknownExtension(e) if e.as_os_str() == "blend"));
     let message = error.to_string();
     for extension in ["blend", ".toml", ".pbrt", ".xml", ".gltf", ".glb", ".mtlx"] {

@@ -27,28 +27,15 @@ fn standard_surface_follows_its_definition() {
     assert_eq!(plain.materials[0].masking, None);
     assert_eq!(plain.materials[0].origin.format, Format::MaterialX);
 
-    let mirror = shader(
-        "standard_surface",
-        &[("specular_roughness", 0.0), ("metalness", 1.0)],
-    );
+    let mirror = shader("standard_surface", &[("specular_roughness", 0.0), ("metalness", 1.0)]);
     assert_eq!(mirror.materials[0].roughness, Roughness::Smooth);
     assert_eq!(mirror.materials[0].fresnel, None);
 
-    let brushed = shader(
-        "standard_surface",
-        &[("specular_roughness", 0.6), ("specular_anisotropy", 0.36)],
-    );
+    let brushed = shader("standard_surface", &[("specular_roughness", 0.6), ("specular_anisotropy", 0.36)]);
     // aspect = sqrt(1 - 0.36) = 0.8
     assert_close(brushed.materials[0].roughness, [0.45; 2], [0.288; 2]);
-    let extreme = shader(
-        "standard_surface",
-        &[("specular_roughness", 1.0), ("specular_anisotropy", 1.0)],
-    );
-    assert_close(
-        extreme.materials[0].roughness,
-        [1.0; 2],
-        [0.02f64.sqrt(); 2],
-    );
+    let extreme = shader("standard_surface", &[("specular_roughness", 1.0), ("specular_anisotropy", 1.0)]);
+    assert_close(extreme.materials[0].roughness, [1.0; 2], [0.02f64.sqrt(); 2]);
 
     let layered = shader(
         "standard_surface",
@@ -63,8 +50,7 @@ fn standard_surface_follows_its_definition() {
         ],
     );
     assert_eq!(names(&layered), ["a", "a.transmission", "a.coat"]);
-    let roughness =
-        |i: usize, r: f64| assert_close(layered.materials[i].roughness, [r * r; 2], [r * r; 2]);
+    let roughness = |i: usize, r: f64| assert_close(layered.materials[i].roughness, [r * r; 2], [r * r; 2]);
     // The coat roughens by t = 0.5 * 0.4 * 1 = 0.2.
     roughness(0, 0.5 + 0.5 * 0.2);
     roughness(1, 0.75 + 0.25 * 0.2);
@@ -82,28 +68,14 @@ fn open_pbr_surface_follows_its_definition() {
     assert_close(plain.materials[0].roughness, [0.09; 2], [0.09; 2]);
     assert_eq!(plain.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
 
-    let brushed = shader(
-        "open_pbr_surface",
-        &[
-            ("specular_roughness", 0.5),
-            ("specular_roughness_anisotropy", 0.5),
-        ],
-    );
+    let brushed =
+        shader("open_pbr_surface", &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 0.5)]);
     // sqrt(2 / (1 + 0.25))
     let along = 0.25 * 1.6f64.sqrt();
     assert_close(brushed.materials[0].roughness, [along; 2], [0.5 * along; 2]);
-    let line = shader(
-        "open_pbr_surface",
-        &[
-            ("specular_roughness", 0.5),
-            ("specular_roughness_anisotropy", 1.0),
-        ],
-    );
-    assert_close(
-        line.materials[0].roughness,
-        [0.25 * 2f64.sqrt(); 2],
-        [1e-6; 2],
-    );
+    let line =
+        shader("open_pbr_surface", &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 1.0)]);
+    assert_close(line.materials[0].roughness, [0.25 * 2f64.sqrt(); 2], [1e-6; 2]);
 
     let coated = shader(
         "open_pbr_surface",
@@ -149,31 +121,15 @@ fn materials_name_shaders_and_looks_use_them() {
         "#,
     );
     let scene = load("a.mtlx", &text);
-    let used: Vec<_> = scene
-        .materials
-        .iter()
-        .map(|m| (&m.name[..], m.used))
-        .collect();
+    let used: Vec<_> = scene.materials.iter().map(|m| (&m.name[..], m.used)).collect();
     assert_eq!(used, [("gold", false), ("SR_shared", true)]);
-    assert_eq!(
-        (&scene.ignored[0].name[..], &scene.ignored[0].kind[..]),
-        ("SR_other", "gltf_pbr")
-    );
+    assert_eq!((&scene.ignored[0].name[..], &scene.ignored[0].kind[..]), ("SR_other", "gltf_pbr"));
 
     let without_look = text.replace("materialassign", "other");
-    assert!(
-        load("a.mtlx", &without_look)
-            .materials
-            .iter()
-            .all(|m| m.used)
-    );
+    assert!(load("a.mtlx", &without_look).materials.iter().all(|m| m.used));
 
     let old = r#"<material name="m"><shaderref name="s" node="standard_surface"/></material>"#;
-    assert!(
-        load("a.mtlx", &document(old)).ignored[0]
-            .reason
-            .contains("before 1.38")
-    );
+    assert!(load("a.mtlx", &document(old)).ignored[0].reason.contains("before 1.38"));
 }
 
 /// A shader whose roughness comes from the output "o" of a graph.
@@ -200,32 +156,12 @@ fn node_graphs_are_followed() {
     };
     let image = r#"<image name="i" type="float"><input name="file" type="filename" value="a.png"/></image>"#;
     let colour = r#"<tiledimage name="i" type="color3"><input name="file" type="filename" value="a.png" colorspace="lin_rec709"/></tiledimage>"#;
-    let node =
-        |tag: &str, inputs: &str| format!("<{tag} name=\"end\" type=\"float\">{inputs}</{tag}>");
+    let node = |tag: &str, inputs: &str| format!("<{tag} name=\"end\" type=\"float\">{inputs}</{tag}>");
     let with = |source: &str, tag: &str, inputs: &str| source.to_owned() + &node(tag, inputs);
 
-    check(
-        &node(
-            "constant",
-            r#"<input name="value" type="float" value="0.3"/>"#,
-        ),
-        [0.3; 2],
-    );
-    check(
-        &node(
-            "constant",
-            r#"<input name="value" type="float" interfacename="amount"/>"#,
-        ),
-        [0.25; 2],
-    );
-    check(
-        &with(
-            image,
-            "dot",
-            r#"<input name="in" type="float" nodename="i"/>"#,
-        ),
-        [0.2, 0.4],
-    );
+    check(&node("constant", r#"<input name="value" type="float" value="0.3"/>"#), [0.3; 2]);
+    check(&node("constant", r#"<input name="value" type="float" interfacename="amount"/>"#), [0.25; 2]);
+    check(&with(image, "dot", r#"<input name="in" type="float" nodename="i"/>"#), [0.2, 0.4]);
     check(
         &with(
             image,
@@ -250,14 +186,7 @@ fn node_graphs_are_followed() {
         ),
         [0.6, 0.8],
     );
-    check(
-        &with(
-            image,
-            "invert",
-            r#"<input name="in" type="float" nodename="i"/>"#,
-        ),
-        [0.6, 0.8],
-    );
+    check(&with(image, "invert", r#"<input name="in" type="float" nodename="i"/>"#), [0.6, 0.8]);
     check(
         &with(
             image,
@@ -282,16 +211,13 @@ fn node_graphs_are_followed() {
         ),
         [0.3, 0.4],
     );
-    let green = r#"<input name="in" type="color3" nodename="i"/><input name="index" type="integer" value="1"/>"#;
+    let green =
+        r#"<input name="in" type="color3" nodename="i"/><input name="index" type="integer" value="1"/>"#;
     check(&with(colour, "extract", green), [0.4, 0.8]);
     let separate = colour.to_owned()
         + r#"<separate3 name="s" type="multioutput"><input name="in" type="color3" nodename="i"/></separate3>"#;
     check(
-        &with(
-            &separate,
-            "dot",
-            r#"<input name="in" type="float" nodename="s" output="outg"/>"#,
-        ),
+        &with(&separate, "dot", r#"<input name="in" type="float" nodename="s" output="outg"/>"#),
         [0.4, 0.8],
     );
     let decoded = |x: f64| ((x + 0.055) / 1.055f64).powf(2.4);
@@ -303,17 +229,11 @@ fn node_graphs_are_followed() {
 fn what_a_graph_does_otherwise_is_the_full_range() {
     for (nodes, part) in [
         (r#"<fractal3d name="end" type="float"/>"#, "fractal3d"),
-        (
-            r#"<image name="end" type="float"><input name="file" value="absent.png"/></image>"#,
-            "absent.png",
-        ),
+        (r#"<image name="end" type="float"><input name="file" value="absent.png"/></image>"#, "absent.png"),
         (r#"<image name="end" type="float"/>"#, "names no file"),
     ] {
         let scene = load("a.mtlx", &graph(nodes));
-        assert_eq!(
-            scene.materials[0].roughness,
-            Roughness::Isotropic(Interval::UNIT)
-        );
+        assert_eq!(scene.materials[0].roughness, Roughness::Isotropic(Interval::UNIT));
         assert!(scene.warnings[0].contains(part), "{:?}", scene.warnings);
     }
 }
@@ -339,27 +259,18 @@ fn included_documents_belong_to_the_scene() {
 
 #[test]
 fn values_out_of_range_are_moved_and_warned_of() {
-    let scene = shader(
-        "standard_surface",
-        &[("specular_roughness", 1.5), ("metalness", -1.0)],
-    );
+    let scene = shader("standard_surface", &[("specular_roughness", 1.5), ("metalness", -1.0)]);
     assert_eq!(scene.materials[0].roughness, isotropic(1.0));
     assert_eq!(scene.warnings.len(), 2);
     assert!(scene.warnings[0].contains("specular_roughness is 1.5, outside [0, 1]"));
-    let both = shader(
-        "open_pbr_surface",
-        &[
-            ("specular_roughness", 0.5),
-            ("specular_roughness_anisotropy", 0.0),
-        ],
-    );
+    let both =
+        shader("open_pbr_surface", &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 0.0)]);
     assert_ne!(both.materials[0].roughness, anisotropic(0.25, 0.25));
 }
 
 #[test]
 fn broken_documents_are_refused_at_their_place() {
-    let case =
-        |text: &str, place: &str, parts: &[&str]| assert_refused("a.mtlx", text, place, parts);
+    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("a.mtlx", text, place, parts);
     case("<scene/>", ":1:1", &["<scene>", "<materialx>"]);
     case("<materialx>\n<a></materialx>", ":2:4", &["a"]);
     let input = |attributes: &str, parts: &[&str]| {
@@ -375,11 +286,7 @@ fn broken_documents_are_refused_at_their_place() {
     input("interfacename=\"i\"", &["no interface \"i\""]);
     let circle = graph("\n<dot name=\"end\"><input name=\"in\" nodename=\"end\"/></dot>");
     case(&circle, ":2:17", &["depends on itself"]);
-    case(
-        &shader_text("specular_ior", "0"),
-        ":1:27",
-        &["0", "more than 0"],
-    );
+    case(&shader_text("specular_ior", "0"), ":1:27", &["0", "more than 0"]);
 }
 
 fn shader_text(name: &str, value: &str) -> String {

@@ -2,18 +2,14 @@
 
 use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
 
-use crate::{
-    Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
-};
+use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png};
 
 fn scene(content: &str) -> String {
     format!("<scene version=\"3.0.0\">{content}</scene>")
 }
 
 fn bsdf(class: &str, properties: &str) -> String {
-    scene(&format!(
-        "<bsdf type=\"{class}\" id=\"a\">{properties}</bsdf>"
-    ))
+    scene(&format!("<bsdf type=\"{class}\" id=\"a\">{properties}</bsdf>"))
 }
 
 #[test]
@@ -71,11 +67,7 @@ fn rough_plugins_take_alpha_as_written() {
     assert_eq!(mirror.roughness, Roughness::Smooth);
     assert_eq!(mirror.fresnel, Some(Fresnel::Mirror));
     let copper = named(&scene, "copper");
-    assert_eq!(
-        copper.gamma,
-        Interval::point(f64::INFINITY),
-        "the default distribution"
-    );
+    assert_eq!(copper.gamma, Interval::point(f64::INFINITY), "the default distribution");
     let (eta, k) = ([0.2, 0.9, 1.1], [3.9, 2.4, 2.2]);
     assert_eq!(copper.fresnel, Some(Fresnel::Conductor { eta, k }));
     assert_eq!(scene.ignored[0].kind, "diffuse");
@@ -95,11 +87,7 @@ fn principled_squares_the_roughness() {
     assert!((eta - 1.5).abs() < 1e-15, "{eta}");
 
     let smooth = first("principled", "<float name=\"roughness\" value=\"0\"/>");
-    assert_eq!(
-        smooth.materials[0].roughness,
-        isotropic(1e-3),
-        "raised, as Mitsuba does"
-    );
+    assert_eq!(smooth.materials[0].roughness, isotropic(1e-3), "raised, as Mitsuba does");
 
     let stretched = first(
         "principled",
@@ -152,18 +140,8 @@ fn nested_bsdfs_are_found_and_used_where_shapes_refer_to_them() {
             "#,
         ),
     );
-    let used: Vec<_> = scene
-        .materials
-        .iter()
-        .map(|m| (&m.name[..], m.used))
-        .collect();
-    let expected = [
-        ("door", false),
-        ("base", true),
-        ("spare", false),
-        ("box", true),
-        ("box (2)", true),
-    ];
+    let used: Vec<_> = scene.materials.iter().map(|m| (&m.name[..], m.used)).collect();
+    let expected = [("door", false), ("base", true), ("spare", false), ("box", true), ("box (2)", true)];
     assert_eq!(used, expected);
 }
 
@@ -190,26 +168,11 @@ fn parameters_and_includes_are_followed() {
         ),
     ]);
     let scene = folder.load("a.xml").unwrap();
-    assert_eq!(
-        named(&scene, "b").roughness,
-        isotropic(0.2),
-        "the first default holds"
-    );
-    assert_eq!(
-        named(&scene, "a").roughness,
-        isotropic(0.4),
-        "the longest name is meant"
-    );
+    assert_eq!(named(&scene, "b").roughness, isotropic(0.2), "the first default holds");
+    assert_eq!(named(&scene, "a").roughness, isotropic(0.4), "the longest name is meant");
     assert_eq!(scene.warnings.len(), 1);
-    assert!(
-        scene.warnings[0].contains("a.xml:3:20: $file.xml is missing"),
-        "{:?}",
-        scene.warnings
-    );
-    assert!(
-        named(&scene, "b").used,
-        "something is missing that may use it"
-    );
+    assert!(scene.warnings[0].contains("a.xml:3:20: $file.xml is missing"), "{:?}", scene.warnings);
+    assert!(named(&scene, "b").used, "something is missing that may use it");
 }
 
 #[test]
@@ -253,11 +216,7 @@ fn textured_alpha_is_a_range() {
     let scene = folder.load("a.xml").unwrap();
     let dark = 0.2126 * 0.2 + 0.7152 * 0.4 + 0.0722;
     let light = 0.2126 * 0.4 + 0.7152 * 0.8;
-    assert_close(
-        named(&scene, "shared").roughness,
-        [dark, light],
-        [dark, light],
-    );
+    assert_close(named(&scene, "shared").roughness, [dark, light], [dark, light]);
     let decoded = |x: f64| ((x + 0.055) / 1.055f64).powf(2.4);
     let dark = 0.2126 * decoded(0.2) + 0.7152 * decoded(0.4) + 0.0722;
     let light = 0.2126 * decoded(0.4) + 0.7152 * decoded(0.8);
@@ -269,22 +228,14 @@ fn textured_alpha_is_a_range() {
 
 #[test]
 fn zero_alpha_is_raised_and_warned_of() {
-    let scene = load(
-        "a.xml",
-        &bsdf("roughconductor", "<float name=\"alpha\" value=\"0\"/>"),
-    );
+    let scene = load("a.xml", &bsdf("roughconductor", "<float name=\"alpha\" value=\"0\"/>"));
     assert_eq!(scene.materials[0].roughness, isotropic(1e-4));
-    assert!(
-        scene.warnings[0].contains("a.xml:1:24: alpha is 0"),
-        "{:?}",
-        scene.warnings
-    );
+    assert!(scene.warnings[0].contains("a.xml:1:24: alpha is 0"), "{:?}", scene.warnings);
 }
 
 #[test]
 fn what_mitsuba_refuses_is_refused_here() {
-    let case =
-        |text: &str, place: &str, parts: &[&str]| assert_refused("a.xml", text, place, parts);
+    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("a.xml", text, place, parts);
     let property = |class: &str, text: &str, place: &str, parts: &[&str]| {
         case(&bsdf(class, text), place, parts);
     };
@@ -295,78 +246,20 @@ fn what_mitsuba_refuses_is_refused_here() {
         ":2:1",
         &["phong", "beckmann", "ggx"],
     );
-    property(
-        rough,
-        "\n<float name=\"alpha\" value=\"x\"/>",
-        ":2:1",
-        &["alpha", "number", "\"x\""],
-    );
-    property(
-        rough,
-        "\n<float name=\"alpha\" value=\"$a\"/>",
-        ":2:1",
-        &["$a", "<default name=\"a\""],
-    );
-    property(
-        rough,
-        "\n<float name=\"alpha\"/>",
-        ":2:1",
-        &["no attribute \"value\""],
-    );
-    property(
-        rough,
-        "<float name=\"alpha\" value=\"-1\"/>",
-        ":1:24",
-        &["-1", "more than 0"],
-    );
-    property(
-        rough,
-        "<float name=\"alpha_u\" value=\"1\"/>",
-        ":1:24",
-        &["both alpha_u and alpha_v"],
-    );
-    property(
-        rough,
-        "\n<ref name=\"alpha\" id=\"b\"/>",
-        ":2:1",
-        &["id \"b\""],
-    );
-    property(
-        "principled",
-        "<float name=\"roughness\" value=\"1.5\"/>",
-        ":1:24",
-        &["1.5", "0 to 1"],
-    );
-    property(
-        "roughdielectric",
-        "\n<string name=\"int_ior\" value=\"watr\"/>",
-        ":2:1",
-        &["watr", "`water`"],
-    );
-    property(
-        "roughdielectric",
-        "<float name=\"int_ior\" value=\"-1\"/>",
-        ":1:24",
-        &["more than 0"],
-    );
-    case(
-        "<scene version=\"3.0.0\">\n<bsdf id=\"a\"></scene>",
-        ":2:14",
-        &["bsdf"],
-    );
-    case(
-        &scene("\n<bsdf id=\"a\"/>"),
-        ":2:1",
-        &["no attribute \"type\""],
-    );
-    case(
-        &scene("\n<shape type=\"cube\"><ref id=\"b\"/></shape>"),
-        ":2:20",
-        &["id \"b\""],
-    );
+    property(rough, "\n<float name=\"alpha\" value=\"x\"/>", ":2:1", &["alpha", "number", "\"x\""]);
+    property(rough, "\n<float name=\"alpha\" value=\"$a\"/>", ":2:1", &["$a", "<default name=\"a\""]);
+    property(rough, "\n<float name=\"alpha\"/>", ":2:1", &["no attribute \"value\""]);
+    property(rough, "<float name=\"alpha\" value=\"-1\"/>", ":1:24", &["-1", "more than 0"]);
+    property(rough, "<float name=\"alpha_u\" value=\"1\"/>", ":1:24", &["both alpha_u and alpha_v"]);
+    property(rough, "\n<ref name=\"alpha\" id=\"b\"/>", ":2:1", &["id \"b\""]);
+    property("principled", "<float name=\"roughness\" value=\"1.5\"/>", ":1:24", &["1.5", "0 to 1"]);
+    property("roughdielectric", "\n<string name=\"int_ior\" value=\"watr\"/>", ":2:1", &["watr", "`water`"]);
+    property("roughdielectric", "<float name=\"int_ior\" value=\"-1\"/>", ":1:24", &["more than 0"]);
+    case("<scene version=\"3.0.0\">\n<bsdf id=\"a\"></scene>", ":2:14", &["bsdf"]);
+    case(&scene("\n<bsdf id=\"a\"/>"), ":2:1", &["no attribute \"type\""]);
+    case(&scene("\n<shape type=\"cube\"><ref id=\"b\"/></shape>"), ":2:20", &["id \"b\""]);
     case("<mesh/>", ":1:1", &["<mesh>", "<scene>"]);
-    let circle =
-        "\n<texture type=\"checkerboard\" id=\"t\"><ref name=\"color0\" id=\"t\"/></texture>
+    let circle = "\n<texture type=\"checkerboard\" id=\"t\"><ref name=\"color0\" id=\"t\"/></texture>
                   <bsdf type=\"roughconductor\"><ref name=\"alpha\" id=\"t\"/></bsdf>";
     case(&scene(circle), ":2:1", &["depends on itself"]);
 }

@@ -6,9 +6,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
 
-use crate::{
-    Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
-};
+use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png};
 
 /// A house of one distribution at a few roughnesses, as exporters write them.
 const HOUSE: &str = r#"
@@ -58,18 +56,11 @@ fn roughness_is_remapped_and_the_rest_is_ggx() {
     assert_eq!(roughness("raw"), isotropic(0.04));
     assert_eq!(roughness("window"), Roughness::Smooth);
     assert_eq!(roughness("frame"), anisotropic(0.3, 0.1));
-    assert_eq!(
-        named(&scene, "paint").fresnel,
-        Some(Fresnel::Dielectric(1.5))
-    );
+    assert_eq!(named(&scene, "paint").fresnel, Some(Fresnel::Dielectric(1.5)));
     assert_eq!(named(&scene, "frame").fresnel, None);
     assert_eq!(named(&scene, "raw").origin.place.line, Some(13));
 
-    let ignored: Vec<_> = scene
-        .ignored
-        .iter()
-        .map(|i| (&i.name[..], &i.kind[..]))
-        .collect();
+    let ignored: Vec<_> = scene.ignored.iter().map(|i| (&i.name[..], &i.kind[..])).collect();
     assert_eq!(ignored, [("plaster", "diffuse"), ("sofa", "measured")]);
     assert_eq!(scene.warnings, [""; 0]);
 }
@@ -84,14 +75,8 @@ fn below_a_thousandth_alpha_is_smooth() {
     assert_eq!(material("\"float roughness\" 0.001"), isotropic(0.001));
     // One rough axis makes the other rough, too.
     assert_eq!(material("\"float uroughness\" 0.5"), anisotropic(0.5, 1e-4));
-    assert_eq!(
-        material("\"float uroughness\" 0.0005 \"float vroughness\" 0.0009"),
-        Roughness::Smooth
-    );
-    assert_eq!(
-        material("\"float uroughness\" 0.5 \"float roughness\" 0.25"),
-        anisotropic(0.5, 0.25)
-    );
+    assert_eq!(material("\"float uroughness\" 0.0005 \"float vroughness\" 0.0009"), Roughness::Smooth);
+    assert_eq!(material("\"float uroughness\" 0.5 \"float roughness\" 0.25"), anisotropic(0.5, 0.25));
 }
 
 #[test]
@@ -105,9 +90,7 @@ fn layered_materials_have_two_interfaces() {
            MakeNamedMaterial "skin" "string type" "subsurface" "float roughness" 0.16"#,
     );
     assert_eq!(names(&scene), ["car.interface", "car.conductor", "skin"]);
-    let [interface, conductor, skin] = &scene.materials[..] else {
-        unreachable!()
-    };
+    let [interface, conductor, skin] = &scene.materials[..] else { unreachable!() };
     assert_eq!(interface.roughness, isotropic(0.1));
     assert_eq!(interface.fresnel, Some(Fresnel::Dielectric(1.6)));
     assert_eq!(interface.origin.lobe, Some("interface"));
@@ -148,14 +131,8 @@ fn a_material_is_used_where_a_shape_wears_it() {
     );
     let used = |name: &str| named(&scene, name).used;
     assert!(used("outer"), "returned to at AttributeEnd");
-    assert!(
-        used("left") && used("inner"),
-        "parts of a mixture of a mixture"
-    );
-    assert!(
-        !used("spare") && !used("conductor at a.pbrt:13"),
-        "replaced before a shape"
-    );
+    assert!(used("left") && used("inner"), "parts of a mixture of a mixture");
+    assert!(!used("spare") && !used("conductor at a.pbrt:13"), "replaced before a shape");
 }
 
 #[test]
@@ -172,10 +149,7 @@ fn attributes_are_defaults_in_their_block() {
         "#,
     );
     let roughness: Vec<_> = scene.materials.iter().map(|m| m.roughness).collect();
-    assert_eq!(
-        roughness,
-        [isotropic(0.04), isotropic(0.5), Roughness::Smooth]
-    );
+    assert_eq!(roughness, [isotropic(0.04), isotropic(0.5), Roughness::Smooth]);
 }
 
 #[test]
@@ -203,20 +177,16 @@ fn textures_give_ranges() {
                 "float vroughness" 0.5 "bool remaproughness" false
             MakeNamedMaterial "half" "string type" "dielectric" "texture uroughness" "half"
                 "texture vroughness" "half" "bool remaproughness" false
-            "#.to_vec(),
+            "#
+            .to_vec(),
         ),
     ]);
     let scene = folder.load("a.pbrt").unwrap();
     assert_eq!(scene.warnings, [""; 0]);
-    let check =
-        |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(&scene, name).roughness, x, y);
+    let check = |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(&scene, name).roughness, x, y);
     check("scaled", [0.1, 0.2], [0.1, 0.2]);
     check("inverted", [0.2, 0.6], [0.2, 0.6]);
-    check(
-        "remapped",
-        [0.2f64.sqrt(), 0.4f64.sqrt()],
-        [0.2f64.sqrt(), 0.4f64.sqrt()],
-    );
+    check("remapped", [0.2f64.sqrt(), 0.4f64.sqrt()], [0.2f64.sqrt(), 0.4f64.sqrt()]);
     // 51/255 and 102/255 by the definition of sRGB.
     check(
         "srgb",
@@ -225,10 +195,7 @@ fn textures_give_ranges() {
     );
     check("board", [0.2, 0.4], [0.5, 0.5]);
     check("half", [0.6, 0.7], [0.6, 0.7]);
-    assert!(
-        named(&scene, "half").roughness.is_isotropic(),
-        "one texture on both axes"
-    );
+    assert!(named(&scene, "half").roughness.is_isotropic(), "one texture on both axes");
     assert!(!named(&scene, "board").roughness.is_isotropic());
 }
 
@@ -248,10 +215,7 @@ fn textures_that_double_their_references_take_no_longer() {
         )
     };
     // One by one, 2^100 references would never be followed to their end.
-    assert_eq!(
-        load("a.pbrt", &chain(100)).materials[0].roughness,
-        isotropic(0.5)
-    );
+    assert_eq!(load("a.pbrt", &chain(100)).materials[0].roughness, isotropic(0.5));
     assert_refused("a.pbrt", &chain(1000), ":874:30", &["more than 128 deep"]);
 }
 
@@ -266,35 +230,21 @@ fn a_missing_image_is_the_full_range_with_a_warning() {
         Material "conductor" "texture roughness" "n"
         "#,
     );
-    assert_eq!(
-        scene.materials[0].roughness,
-        Roughness::Isotropic(Interval { min: 0.0, max: 0.5 })
-    );
-    assert_eq!(
-        scene.materials[1].roughness,
-        Roughness::Isotropic(Interval::UNIT)
-    );
-    let [missing, noise] = &scene.warnings[..] else {
-        panic!("{:?}", scene.warnings)
-    };
-    assert!(
-        missing.contains("a.pbrt:2:9: ") && missing.contains("absent.png"),
-        "{missing}"
-    );
+    assert_eq!(scene.materials[0].roughness, Roughness::Isotropic(Interval { min: 0.0, max: 0.5 }));
+    assert_eq!(scene.materials[1].roughness, Roughness::Isotropic(Interval::UNIT));
+    let [missing, noise] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+    assert!(missing.contains("a.pbrt:2:9: ") && missing.contains("absent.png"), "{missing}");
     assert!(noise.contains("fbm") && noise.contains("[0, 1]"), "{noise}");
 }
 
 #[test]
 fn included_files_belong_to_the_scene() {
     let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
-    packed
-        .write_all(b"NamedMaterial \"b\" Shape \"sphere\"")
-        .unwrap();
+    packed.write_all(b"NamedMaterial \"b\" Shape \"sphere\"").unwrap();
     let folder = Folder::new(&[
         (
             "a.pbrt",
-            &br#"Include "materials.pbrt" NamedMaterial "a" Import "shapes.pbrt.gz" Shape "disk""#
-                [..],
+            &br#"Include "materials.pbrt" NamedMaterial "a" Import "shapes.pbrt.gz" Shape "disk""#[..],
         ),
         (
             "materials.pbrt",
@@ -306,27 +256,9 @@ fn included_files_belong_to_the_scene() {
     ]);
     let scene = folder.load("a.pbrt").unwrap();
     let used: Vec<_> = scene.materials.iter().map(|m| m.used).collect();
-    assert_eq!(
-        used,
-        [true, true, false],
-        "an import leaves the current material as it was"
-    );
-    assert!(
-        scene.materials[0]
-            .origin
-            .place
-            .file
-            .ends_with("materials.pbrt")
-    );
-    assert_eq!(
-        folder
-            .load("shapes.pbrt.gz")
-            .unwrap_err()
-            .to_string()
-            .matches("\"b\"")
-            .count(),
-        1
-    );
+    assert_eq!(used, [true, true, false], "an import leaves the current material as it was");
+    assert!(scene.materials[0].origin.place.file.ends_with("materials.pbrt"));
+    assert_eq!(folder.load("shapes.pbrt.gz").unwrap_err().to_string().matches("\"b\"").count(), 1);
 }
 
 #[test]
@@ -341,21 +273,13 @@ fn a_missing_include_leaves_everything_in_use() {
         "#,
     );
     assert!(named(&scene, "a").used);
-    assert!(
-        scene
-            .warnings
-            .iter()
-            .any(|w| w.contains("geometry.pbrt is missing"))
-    );
+    assert!(scene.warnings.iter().any(|w| w.contains("geometry.pbrt is missing")));
     assert!(scene.warnings.iter().any(|w| w.contains("elsewhere")));
 }
 
 #[test]
 fn files_that_include_each_other_are_refused() {
-    let folder = Folder::new(&[
-        ("a.pbrt", "Include \"b.pbrt\""),
-        ("b.pbrt", "\n  Import \"a.pbrt\""),
-    ]);
+    let folder = Folder::new(&[("a.pbrt", "Include \"b.pbrt\""), ("b.pbrt", "\n  Import \"a.pbrt\"")]);
     let message = folder.load("a.pbrt").unwrap_err().to_string();
     assert!(message.contains("b.pbrt:2:3: "), "{message}");
     assert!(message.contains("a.pbrt -> b.pbrt -> a.pbrt"), "{message}");
@@ -363,45 +287,16 @@ fn files_that_include_each_other_are_refused() {
 
 #[test]
 fn bad_syntax_is_refused_at_its_place() {
-    let case =
-        |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
-    case(
-        "WorldBegin\n Shpe \"sphere\"",
-        ":2:2",
-        &["Shpe", "did you mean `Shape`?"],
-    );
+    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
+    case("WorldBegin\n Shpe \"sphere\"", ":2:2", &["Shpe", "did you mean `Shape`?"]);
     case("Film \"rgb\n\"", ":1:6", &["closing quote"]);
     case("Film \"r\\gb\"", ":1:6", &["escape"]);
-    case(
-        "Shape \"a\" \"point3 P\" [ 1 2\n 3",
-        ":1:22",
-        &["closing bracket"],
-    );
-    case(
-        "Shape \"a\" \"point3 P\" [ 1 2\nShape \"b\" \"point3 P\" [ 1 ]",
-        ":1:22",
-        &["closing bracket"],
-    );
-    case(
-        "Material \"conductor\" \"float roughness\" [ 1 \"b",
-        ":1:44",
-        &["closing quote"],
-    );
-    case(
-        "Material \"conductor\" \"float roughness\" [ 1",
-        ":1:40",
-        &["closing bracket"],
-    );
-    case(
-        "Material \"conductor\" \"float roughness\"",
-        ":1:22",
-        &["no value"],
-    );
-    case(
-        "Material \"conductor\" \"roughness\" 1",
-        ":1:22",
-        &["declares no parameter"],
-    );
+    case("Shape \"a\" \"point3 P\" [ 1 2\n 3", ":1:22", &["closing bracket"]);
+    case("Shape \"a\" \"point3 P\" [ 1 2\nShape \"b\" \"point3 P\" [ 1 ]", ":1:22", &["closing bracket"]);
+    case("Material \"conductor\" \"float roughness\" [ 1 \"b", ":1:44", &["closing quote"]);
+    case("Material \"conductor\" \"float roughness\" [ 1", ":1:40", &["closing bracket"]);
+    case("Material \"conductor\" \"float roughness\"", ":1:22", &["no value"]);
+    case("Material \"conductor\" \"roughness\" 1", ":1:22", &["declares no parameter"]);
     case("Material conductor", ":1:10", &["in quotes", "conductor"]);
     case("Shape \"a\" ]", ":1:11", &["closes no list"]);
     case("AttributeEnd", ":1:1", &["without its beginning"]);
@@ -413,59 +308,18 @@ fn bad_syntax_is_refused_at_its_place() {
 
 #[test]
 fn impossible_values_are_refused_at_their_place() {
-    let case =
-        |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
+    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
     let named = "MakeNamedMaterial \"a\" \"string type\" \"conductor\"";
-    case(
-        &format!("{named} \"float roughness\" -0.5"),
-        ":1:49",
-        &["-0.5", "0 or more", "\"a\""],
-    );
-    case(
-        &format!("{named} \"float roughness\" \"rough\""),
-        ":1:49",
-        &["number", "rough"],
-    );
-    case(
-        &format!("{named} \"float roughness\" nan"),
-        ":1:49",
-        &["number", "nan"],
-    );
-    case(
-        &format!("{named} \"bool remaproughness\" 1"),
-        ":1:49",
-        &["true or false"],
-    );
-    case(
-        &format!("{named} \"texture roughness\" \"t\""),
-        ":1:49",
-        &["\"t\" is not defined"],
-    );
-    case(
-        &format!("{named}\n{named}"),
-        ":2:1",
-        &["twice", "a.pbrt:1:1"],
-    );
-    case(
-        &format!("{named}\nNamedMaterial \"A\""),
-        ":2:1",
-        &["\"A\" is not defined", "`a`"],
-    );
-    case(
-        "MakeNamedMaterial \"a\" \"float roughness\" 1",
-        ":1:1",
-        &["no type"],
-    );
-    case(
-        "Material \"mix\" \"string materials\" [ \"x\" \"y\" ]",
-        ":1:16",
-        &["\"x\" is not defined"],
-    );
-    case(
-        "Material \"dielectric\" \"float eta\" 0",
-        ":1:23",
-        &["0", "more than 0"],
-    );
+    case(&format!("{named} \"float roughness\" -0.5"), ":1:49", &["-0.5", "0 or more", "\"a\""]);
+    case(&format!("{named} \"float roughness\" \"rough\""), ":1:49", &["number", "rough"]);
+    case(&format!("{named} \"float roughness\" nan"), ":1:49", &["number", "nan"]);
+    case(&format!("{named} \"bool remaproughness\" 1"), ":1:49", &["true or false"]);
+    case(&format!("{named} \"texture roughness\" \"t\""), ":1:49", &["\"t\" is not defined"]);
+    case(&format!("{named}\n{named}"), ":2:1", &["twice", "a.pbrt:1:1"]);
+    case(&format!("{named}\nNamedMaterial \"A\""), ":2:1", &["\"A\" is not defined", "`a`"]);
+    case("MakeNamedMaterial \"a\" \"float roughness\" 1", ":1:1", &["no type"]);
+    case("Material \"mix\" \"string materials\" [ \"x\" \"y\" ]", ":1:16", &["\"x\" is not defined"]);
+    case("Material \"dielectric\" \"float eta\" 0", ":1:23", &["0", "more than 0"]);
     case(
         "Texture \"t\" \"float\" \"scale\" \"texture tex\" \"t\"\nMaterial \"conductor\" \"texture roughness\" \"t\"",
         ":1:29",

@@ -65,28 +65,16 @@ fn every_form_of_value_is_read() {
     assert_eq!(limit.masking, Some(Masking::Uncorrelated));
 
     let range = named(&scene, "range");
-    assert_eq!(
-        range.roughness,
-        Roughness::Isotropic(Interval { min: 0.0, max: 0.5 })
-    );
+    assert_eq!(range.roughness, Roughness::Isotropic(Interval { min: 0.0, max: 0.5 }));
     assert!(range.roughness.is_isotropic());
-    assert_eq!(
-        range.gamma,
-        Interval {
-            min: 1.6,
-            max: f64::INFINITY
-        }
-    );
+    assert_eq!(range.gamma, Interval { min: 1.6, max: f64::INFINITY });
     assert_eq!(range.fresnel, Some(Fresnel::Schlick(0.04)));
     assert_eq!(range.masking, Some(Masking::HeightCorrelated));
 
     let mixed = named(&scene, "mixed");
     assert_eq!(
         mixed.roughness,
-        Roughness::Anisotropic {
-            x: Interval { min: 0.1, max: 0.2 },
-            y: Interval::point(0.3)
-        }
+        Roughness::Anisotropic { x: Interval { min: 0.1, max: 0.2 }, y: Interval::point(0.3) }
     );
     assert_eq!(mixed.gamma, Interval::point(f64::INFINITY));
     let (eta, k) = ([0.2, 0.9, 1.1], [0.0, 2.4, 2.2]);
@@ -115,98 +103,33 @@ fn values_out_of_range_are_refused_with_the_range() {
     let case = |rest: &str, place: &str, parts: &[&str]| {
         assert_refused("r.toml", &entry(rest), place, parts);
     };
-    case(
-        "sigma = 0.3\ngamma = 1.5",
-        ":4:9",
-        &["gamma = 1.5", "more than 1.5", "inf"],
-    );
-    case(
-        "sigma = 0.3\ngamma = { min = 1.2, max = 3 }",
-        ":4:9",
-        &["1.2", "more than 1.5"],
-    );
-    case(
-        "sigma = 0.3\ngamma = nan",
-        ":4:9",
-        &["gamma", "number", "nan"],
-    );
-    case(
-        "sigma = 0.3\ngamma = \"ggx\"",
-        ":4:9",
-        &["gamma", "number", "ggx"],
-    );
-    case(
-        "sigma = -0.1\ngamma = 2.0",
-        ":3:9",
-        &["sigma = -0.1", "0 (smooth) or more"],
-    );
+    case("sigma = 0.3\ngamma = 1.5", ":4:9", &["gamma = 1.5", "more than 1.5", "inf"]);
+    case("sigma = 0.3\ngamma = { min = 1.2, max = 3 }", ":4:9", &["1.2", "more than 1.5"]);
+    case("sigma = 0.3\ngamma = nan", ":4:9", &["gamma", "number", "nan"]);
+    case("sigma = 0.3\ngamma = \"ggx\"", ":4:9", &["gamma", "number", "ggx"]);
+    case("sigma = -0.1\ngamma = 2.0", ":3:9", &["sigma = -0.1", "0 (smooth) or more"]);
     case("sigma = inf\ngamma = 2.0", ":3:9", &["finite"]);
     case("sigma = nan\ngamma = 2.0", ":3:9", &["sigma", "number"]);
-    case(
-        "sigma = true\ngamma = 2.0",
-        ":3:9",
-        &["sigma", "number", "true"],
-    );
-    case(
-        "sigma = [0.3, 0]\ngamma = 2.0",
-        ":3:9",
-        &["0 along one axis"],
-    );
-    case(
-        "sigma = [0.3]\ngamma = 2.0",
-        ":3:9",
-        &["1 values", "[x, y]"],
-    );
-    case(
-        "sigma = { min = 0.3, max = 0.1 }\ngamma = 2.0",
-        ":3:9",
-        &["inverted", "0.3", "0.1"],
-    );
+    case("sigma = true\ngamma = 2.0", ":3:9", &["sigma", "number", "true"]);
+    case("sigma = [0.3, 0]\ngamma = 2.0", ":3:9", &["0 along one axis"]);
+    case("sigma = [0.3]\ngamma = 2.0", ":3:9", &["1 values", "[x, y]"]);
+    case("sigma = { min = 0.3, max = 0.1 }\ngamma = 2.0", ":3:9", &["inverted", "0.3", "0.1"]);
     case("sigma = { min = 0.3 }\ngamma = 2.0", ":3:9", &["both ends"]);
-    case(
-        "sigma = 0.3\ngamma = { min = 9, max = 2 }",
-        ":4:9",
-        &["inverted", "9", "2"],
-    );
+    case("sigma = 0.3\ngamma = { min = 9, max = 2 }", ":4:9", &["inverted", "9", "2"]);
 
     let fresnel = |value: &str, place: &str, parts: &[&str]| {
-        case(
-            &format!("sigma = 0.3\ngamma = 2.0\nfresnel = {value}"),
-            place,
-            parts,
-        );
+        case(&format!("sigma = 0.3\ngamma = 2.0\nfresnel = {value}"), place, parts);
     };
     fresnel("{ schlick = 1.5 }", ":5:23", &["schlick = 1.5", "0 to 1"]);
-    fresnel(
-        "{ dielectric = 0 }",
-        ":5:26",
-        &["dielectric = 0", "more than 0"],
-    );
+    fresnel("{ dielectric = 0 }", ":5:26", &["dielectric = 0", "more than 0"]);
     fresnel("{ dielectric = nan }", ":5:26", &["dielectric", "number"]);
-    fresnel(
-        "\"metal\"",
-        ":5:11",
-        &["mirror", "schlick", "conductor", "dielectric"],
-    );
+    fresnel("\"metal\"", ":5:11", &["mirror", "schlick", "conductor", "dielectric"]);
     fresnel("{}", ":5:11", &["mirror", "schlick"]);
-    fresnel(
-        "{ shlick = 0.04 }",
-        ":5:13",
-        &["shlick", "did you mean `schlick`"],
-    );
+    fresnel("{ shlick = 0.04 }", ":5:13", &["shlick", "did you mean `schlick`"]);
     let conductor = |eta: &str, k: &str, place: &str, parts: &[&str]| {
-        fresnel(
-            &format!("{{ conductor = {{ eta = {eta}, k = {k} }} }}"),
-            place,
-            parts,
-        );
+        fresnel(&format!("{{ conductor = {{ eta = {eta}, k = {k} }} }}"), place, parts);
     };
-    conductor(
-        "[1, 0, 1]",
-        "[1, 1, 1]",
-        ":5:37",
-        &["eta = 0", "more than 0"],
-    );
+    conductor("[1, 0, 1]", "[1, 1, 1]", ":5:37", &["eta = 0", "more than 0"]);
     conductor("[1, 1, 1]", "[1, -2, 1]", ":5:52", &["k = -2", "0 or more"]);
     conductor("1.1", "[1, 1, 1]", ":5:33", &["three numbers"]);
     case(
@@ -218,52 +141,22 @@ fn values_out_of_range_are_refused_with_the_range() {
 
 #[test]
 fn unknown_keys_are_named_with_the_nearest_known_one() {
-    let case =
-        |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
-    case(
-        &entry("sigma = 0.3\ngama = 2.0"),
-        ":4:1",
-        &["`gama`", "did you mean `gamma`?"],
-    );
-    case(
-        "[[materials]]\nname = \"a\"",
-        ":1:3",
-        &["`materials`", "did you mean `material`?"],
-    );
-    case(
-        &entry("sigma = { min = 0.1, maxx = 0.2 }\ngamma = 2.0"),
-        ":3:22",
-        &["`maxx`", "`max`"],
-    );
-    case(
-        &entry("sigma = 0.3\ngamma = 2.0\ncolour = 1"),
-        ":5:1",
-        &["`colour`", "masking"],
-    );
+    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
+    case(&entry("sigma = 0.3\ngama = 2.0"), ":4:1", &["`gama`", "did you mean `gamma`?"]);
+    case("[[materials]]\nname = \"a\"", ":1:3", &["`materials`", "did you mean `material`?"]);
+    case(&entry("sigma = { min = 0.1, maxx = 0.2 }\ngamma = 2.0"), ":3:22", &["`maxx`", "`max`"]);
+    case(&entry("sigma = 0.3\ngamma = 2.0\ncolour = 1"), ":5:1", &["`colour`", "masking"]);
 }
 
 #[test]
 fn recipes_that_say_nothing_or_twice_the_same_are_refused() {
-    let case =
-        |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
+    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
     case("", "", &["no materials", "[[material]]"]);
     case("material = []", "", &["no materials"]);
     case("material = 3", ":1:12", &["[[material]]"]);
-    case(
-        "[[material]]\nsigma = 0.3\ngamma = 2.0",
-        ":1:1",
-        &["no `name`"],
-    );
-    case(
-        "[[material]]\nname = \"\"\nsigma = 0.3\ngamma = 2.0",
-        ":2:8",
-        &["name"],
-    );
-    case(
-        &entry("gamma = 2.0"),
-        ":1:1",
-        &["no `sigma`", "sigma = 0.3"],
-    );
+    case("[[material]]\nsigma = 0.3\ngamma = 2.0", ":1:1", &["no `name`"]);
+    case("[[material]]\nname = \"\"\nsigma = 0.3\ngamma = 2.0", ":2:8", &["name"]);
+    case(&entry("gamma = 2.0"), ":1:1", &["no `sigma`", "sigma = 0.3"]);
     case(&entry("sigma = 0.3"), ":1:1", &["no `gamma`"]);
     let twice = entry("sigma = 0.3\ngamma = 2.0").repeat(2);
     case(&twice, ":5:1", &["\"a\"", "line 1"]);
@@ -300,10 +193,7 @@ fn unused_materials_are_no_part_of_the_recipe() {
 }
 
 fn interval(ends: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = Interval> {
-    let range = (ends.clone(), ends.clone()).prop_map(|(a, b)| Interval {
-        min: a.min(b),
-        max: a.max(b),
-    });
+    let range = (ends.clone(), ends.clone()).prop_map(|(a, b)| Interval { min: a.min(b), max: a.max(b) });
     prop_oneof![ends.prop_map(Interval::point), range]
 }
 
@@ -322,21 +212,12 @@ fn material() -> impl Strategy<Value = Material> {
         Just(Fresnel::Mirror),
         (0.0..=1.0).prop_map(Fresnel::Schlick),
         (1e-3..10.0).prop_map(Fresnel::Dielectric),
-        (
-            prop::array::uniform3(1e-3..10.0),
-            prop::array::uniform3(0.0..10.0)
-        )
+        (prop::array::uniform3(1e-3..10.0), prop::array::uniform3(0.0..10.0))
             .prop_map(|(eta, k)| Fresnel::Conductor { eta, k }),
     ];
     let masking = prop::sample::select(&Masking::ALL[..]);
     let name = ".+";
-    let parts = (
-        name,
-        roughness(),
-        gamma,
-        prop::option::of(fresnel),
-        prop::option::of(masking),
-    );
+    let parts = (name, roughness(), gamma, prop::option::of(fresnel), prop::option::of(masking));
     parts.prop_map(|(name, roughness, gamma, fresnel, masking)| Material {
         name,
         roughness,
@@ -345,11 +226,7 @@ fn material() -> impl Strategy<Value = Material> {
         masking,
         origin: Origin {
             format: Format::Pbrt,
-            place: Place {
-                file: Path::new("scene.pbrt").into(),
-                line: None,
-                column: None,
-            },
+            place: Place { file: Path::new("scene.pbrt").into(), line: None, column: None },
             lobe: None,
         },
         used: true,

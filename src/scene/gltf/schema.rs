@@ -78,10 +78,7 @@ pub(super) struct MetallicRoughness {
 
 impl Default for MetallicRoughness {
     fn default() -> Self {
-        Self {
-            roughness_factor: 1.0,
-            metallic_roughness_texture: None,
-        }
+        Self { roughness_factor: 1.0, metallic_roughness_texture: None }
     }
 }
 
@@ -139,10 +136,7 @@ pub(super) struct SpecularGlossiness {
 
 impl Default for SpecularGlossiness {
     fn default() -> Self {
-        Self {
-            glossiness_factor: 1.0,
-            specular_glossiness_texture: None,
-        }
+        Self { glossiness_factor: 1.0, specular_glossiness_texture: None }
     }
 }
 

@@ -7,11 +7,7 @@ use crate::scene::{Interval, SceneError};
 
 impl<'a> Reader<'a> {
     /// What an `<input>` of a node in `scope` may be.
-    pub(super) fn value(
-        &mut self,
-        input: &'a Element,
-        scope: &'a Element,
-    ) -> Result<Interval, SceneError> {
+    pub(super) fn value(&mut self, input: &'a Element, scope: &'a Element) -> Result<Interval, SceneError> {
         self.connected(input, scope, Channel::Red)
     }
 
@@ -37,9 +33,7 @@ impl<'a> Reader<'a> {
         channel: Channel,
     ) -> Result<Interval, SceneError> {
         // Documents before 1.39 take channels where they connect; separate nodes have an output each.
-        let of_node = input
-            .attribute("output")
-            .filter(|_| input.attribute("nodename").is_some());
+        let of_node = input.attribute("output").filter(|_| input.attribute("nodename").is_some());
         let taken = input.attribute("channels").or(of_node);
         let channel = taken.and_then(channel_named).unwrap_or(channel);
         let root = self.root;
@@ -51,15 +45,11 @@ impl<'a> Reader<'a> {
             };
         }
         if let Some(name) = input.attribute("nodegraph") {
-            let graph = root
-                .child_named(name)
-                .ok_or_else(|| undefined(input, "nodegraph", name))?;
+            let graph = root.child_named(name).ok_or_else(|| undefined(input, "nodegraph", name))?;
             return self.output(input, graph, channel);
         }
         if let Some(name) = input.attribute("nodename") {
-            let node = scope
-                .child_named(name)
-                .ok_or_else(|| undefined(input, "node", name))?;
+            let node = scope.child_named(name).ok_or_else(|| undefined(input, "node", name))?;
             return match &node.tag[..] {
                 "nodegraph" => self.output(input, node, channel),
                 "output" => self.connected(node, scope, channel),
@@ -110,19 +100,11 @@ impl<'a> Reader<'a> {
             "mix" => input("bg", 0.0)?.mix(input("fg", 0.0)?, input("mix", 0.0)?),
             "min" | "max" => {
                 let (a, b) = (input("in1", 0.0)?, input("in2", 0.0)?);
-                let of = if node.tag == "min" {
-                    f64::min
-                } else {
-                    f64::max
-                };
-                Interval {
-                    min: of(a.min, b.min),
-                    max: of(a.max, b.max),
-                }
+                let of = if node.tag == "min" { f64::min } else { f64::max };
+                Interval { min: of(a.min, b.min), max: of(a.max, b.max) }
             }
             "clamp" => {
-                let (value, low, high) =
-                    (input("in", 0.0)?, input("low", 0.0)?, input("high", 1.0)?);
+                let (value, low, high) = (input("in", 0.0)?, input("low", 0.0)?, input("high", 1.0)?);
                 let clamp = |x: f64, low: f64, high: f64| x.max(low).min(high);
                 Interval {
                     min: clamp(value.min, low.min, high.min),
@@ -136,9 +118,7 @@ impl<'a> Reader<'a> {
                         channel_at(index.unwrap_or("0"))
                     }
                     "swizzle" => {
-                        let names = node
-                            .child_named("channels")
-                            .and_then(|c| c.attribute("value"));
+                        let names = node.child_named("channels").and_then(|c| c.attribute("value"));
                         names.and_then(channel_named)
                     }
                     // Which output was taken is in `channel` already.
@@ -149,9 +129,7 @@ impl<'a> Reader<'a> {
                     _ => self.unknown(node),
                 }
             }
-            "image" | "tiledimage" | "hextiledimage" | "gltf_image" => {
-                self.image(node, scope, channel)
-            }
+            "image" | "tiledimage" | "hextiledimage" | "gltf_image" => self.image(node, scope, channel),
             _ => self.unknown(node),
         })
     }
@@ -164,29 +142,20 @@ impl<'a> Reader<'a> {
 
     fn image(&mut self, node: &'a Element, scope: &'a Element, channel: Channel) -> Interval {
         let place = &node.place;
-        let input =
-            node.child_named("file")
-                .and_then(|file| match file.attribute("interfacename") {
-                    Some(name) => scope.child_named(name),
-                    None => Some(file),
-                });
-        let Some((input, file)) = input.and_then(|input| Some((input, input.attribute("value")?)))
-        else {
+        let input = node.child_named("file").and_then(|file| match file.attribute("interfacename") {
+            Some(name) => scope.child_named(name),
+            None => Some(file),
+        });
+        let Some((input, file)) = input.and_then(|input| Some((input, input.attribute("value")?))) else {
             let name = node.attribute("name").unwrap_or(&node.tag);
             return self.builder.unread(name, "names no file", place);
         };
-        let is_colour = node
-            .attribute("type")
-            .is_some_and(|t| t.starts_with("color"));
+        let is_colour = node.attribute("type").is_some_and(|t| t.starts_with("color"));
         let encoding = match input.attribute("colorspace") {
             Some("srgb_texture") if is_colour => Encoding::Srgb,
             _ => Encoding::Linear,
         };
-        let channel = if node.attribute("type") == Some("float") {
-            Channel::Red
-        } else {
-            channel
-        };
+        let channel = if node.attribute("type") == Some("float") { Channel::Red } else { channel };
         let prefix = [node, scope, self.root]
             .into_iter()
             .find_map(|element| element.attribute("fileprefix"))
@@ -197,10 +166,7 @@ impl<'a> Reader<'a> {
 }
 
 fn sum(a: Interval, b: Interval) -> Interval {
-    Interval {
-        min: a.min + b.min,
-        max: a.max + b.max,
-    }
+    Interval { min: a.min + b.min, max: a.max + b.max }
 }
 
 fn negated(a: Interval) -> Interval {

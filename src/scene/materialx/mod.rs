@@ -47,12 +47,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut builder = Builder::new(Format::MaterialX);
     let folder = path.parent().unwrap_or(Path::new(""));
     expand(&mut root, folder, &mut includes, &mut builder)?;
-    let mut reader = Reader {
-        root: &root,
-        folder: folder.to_owned(),
-        builder,
-        ranges: Memo::default(),
-    };
+    let mut reader = Reader { root: &root, folder: folder.to_owned(), builder, ranges: Memo::default() };
     reader.shaders()?;
     Ok(reader.builder.finish())
 }
@@ -72,19 +67,11 @@ fn expand(
         let name = child.required("href")?;
         let path = folder.join(name);
         if !includes.enter(&path, &child.place)? {
-            builder.warn(
-                &child.place,
-                format!("{name} is missing; its materials are not seen"),
-            );
+            builder.warn(&child.place, format!("{name} is missing; its materials are not seen"));
             continue;
         }
         let mut included = xml::read(&path)?;
-        expand(
-            &mut included,
-            path.parent().unwrap_or(folder),
-            includes,
-            builder,
-        )?;
+        expand(&mut included, path.parent().unwrap_or(folder), includes, builder)?;
         includes.leave();
         root.children.append(&mut included.children);
     }
@@ -137,14 +124,10 @@ impl<'a> Reader<'a> {
                     (class, Some("surfaceshader")) => {
                         let own = node.attribute("name").unwrap_or(class);
                         let materials = self.materials(own);
-                        let used = assigned.is_empty()
-                            || materials.iter().any(|name| assigned.contains(name));
+                        let used =
+                            assigned.is_empty() || materials.iter().any(|name| assigned.contains(name));
                         // One material gives the shader its name; several share it.
-                        let name = if let [material] = materials[..] {
-                            material
-                        } else {
-                            own
-                        };
+                        let name = if let [material] = materials[..] { material } else { own };
                         self.shader(name, class, &shader, used)?;
                     }
                     _ => {}
@@ -161,30 +144,18 @@ impl<'a> Reader<'a> {
             input.is_some_and(|input| {
                 input.attribute("nodename") == Some(shader)
                     || input.attribute("nodegraph").is_some_and(|graph| {
-                        self.root
-                            .child_named(graph)
-                            .is_some_and(|graph| graph.child_named(shader).is_some())
+                        self.root.child_named(graph).is_some_and(|graph| graph.child_named(shader).is_some())
                     })
             })
         };
-        let materials = self
-            .root
-            .children
-            .iter()
-            .filter(|e| e.tag == "surfacematerial");
+        let materials = self.root.children.iter().filter(|e| e.tag == "surfacematerial");
         materials
             .filter(|material| wears(material))
             .filter_map(|material| material.attribute("name"))
             .collect()
     }
 
-    fn shader(
-        &mut self,
-        name: &str,
-        class: &str,
-        shader: &Shader<'a>,
-        used: bool,
-    ) -> Result<(), SceneError> {
+    fn shader(&mut self, name: &str, class: &str, shader: &Shader<'a>, used: bool) -> Result<(), SceneError> {
         let lobes = match class {
             "standard_surface" => self.standard_surface(shader)?,
             "open_pbr_surface" => self.open_pbr_surface(shader)?,
@@ -201,16 +172,11 @@ impl<'a> Reader<'a> {
         for lobe in lobes {
             self.builder.add(name, &shader.node.place, used, lobe);
         }
-        let fabric = if class == "standard_surface" {
-            "sheen"
-        } else {
-            "fuzz_weight"
-        };
+        let fabric = if class == "standard_surface" { "sheen" } else { "fuzz_weight" };
         if self.input(shader, fabric, 0.0)?.max > 0.0 {
             let name = format!("{name}.{fabric}");
             let reason = "a fabric's distribution, not a Student-t one";
-            self.builder
-                .ignore(&name, class, &shader.node.place, reason);
+            self.builder.ignore(&name, class, &shader.node.place, reason);
         }
         Ok(())
     }
@@ -218,12 +184,7 @@ impl<'a> Reader<'a> {
     fn standard_surface(&mut self, shader: &Shader<'a>) -> Result<Vec<Lobe>, SceneError> {
         let alpha = |roughness: Interval, anisotropy: Interval| {
             let aspect = anisotropy.map_falling(|a| (1.0 - a.min(0.98)).sqrt());
-            axes(
-                roughness,
-                anisotropy,
-                [1.0 / aspect.max, 1.0 / aspect.min],
-                [aspect.min, aspect.max],
-            )
+            axes(roughness, anisotropy, [1.0 / aspect.max, 1.0 / aspect.min], [aspect.min, aspect.max])
         };
         let roughness = self.unit(shader, "specular_roughness", 0.2)?;
         let anisotropy = self.unit(shader, "specular_anisotropy", 0.0)?;
@@ -234,9 +195,7 @@ impl<'a> Reader<'a> {
         let coat_roughness = self.unit(shader, "coat_roughness", 0.1)?;
         let coat_anisotropy = self.unit(shader, "coat_anisotropy", 0.0)?;
         let affect = self.unit(shader, "coat_affect_roughness", 0.0)?;
-        let roughening = coat
-            .map_bilinear(affect, |a, b| a * b)
-            .map_bilinear(coat_roughness, |a, b| a * b);
+        let roughening = coat.map_bilinear(affect, |a, b| a * b).map_bilinear(coat_roughness, |a, b| a * b);
         let under_coat = |r: Interval| r.map_bilinear(roughening, |r, t| r + (1.0 - r) * t);
 
         let mut lobes = Vec::new();
@@ -245,31 +204,16 @@ impl<'a> Reader<'a> {
                 true => None,
                 false => self.index(shader, "specular_IOR", 1.5)?,
             };
-            lobes.push(lobe(
-                None,
-                alpha(under_coat(roughness), anisotropy),
-                fresnel,
-            ));
+            lobes.push(lobe(None, alpha(under_coat(roughness), anisotropy), fresnel));
             if transmission.max > 0.0 && extra != Interval::point(0.0) {
-                let roughness = Interval {
-                    min: roughness.min + extra.min,
-                    max: roughness.max + extra.max,
-                };
+                let roughness = Interval { min: roughness.min + extra.min, max: roughness.max + extra.max };
                 let roughness = under_coat(roughness.clamp(0.0, 1.0));
-                lobes.push(lobe(
-                    Some("transmission"),
-                    alpha(roughness, anisotropy),
-                    fresnel,
-                ));
+                lobes.push(lobe(Some("transmission"), alpha(roughness, anisotropy), fresnel));
             }
         }
         if coat.max > 0.0 {
             let fresnel = self.index(shader, "coat_IOR", 1.5)?;
-            lobes.push(lobe(
-                Some("coat"),
-                alpha(coat_roughness, coat_anisotropy),
-                fresnel,
-            ));
+            lobes.push(lobe(Some("coat"), alpha(coat_roughness, coat_anisotropy), fresnel));
         }
         Ok(lobes)
     }
@@ -279,12 +223,7 @@ impl<'a> Reader<'a> {
             let stretch = |a: f64| (2.0 / (1.0 + (1.0 - a) * (1.0 - a))).sqrt();
             let along = anisotropy.map_rising(stretch);
             let across = anisotropy.map_falling(|a| (1.0 - a) * stretch(a));
-            axes(
-                roughness,
-                anisotropy,
-                [along.min, along.max],
-                [across.min, across.max],
-            )
+            axes(roughness, anisotropy, [along.min, along.max], [across.min, across.max])
         };
         let roughness = self.unit(shader, "specular_roughness", 0.3)?;
         let anisotropy = self.unit(shader, "specular_roughness_anisotropy", 0.0)?;
@@ -315,29 +254,16 @@ impl<'a> Reader<'a> {
         }
         if coat.max > 0.0 {
             let fresnel = self.index(shader, "coat_ior", 1.6)?;
-            lobes.push(lobe(
-                Some("coat"),
-                alpha(coat_roughness, coat_anisotropy),
-                fresnel,
-            ));
+            lobes.push(lobe(Some("coat"), alpha(coat_roughness, coat_anisotropy), fresnel));
         }
         Ok(lobes)
     }
 
     /// An input from 0 to 1; what lies outside is moved there, as the shaders do.
-    fn unit(
-        &mut self,
-        shader: &Shader<'a>,
-        name: &str,
-        default: f64,
-    ) -> Result<Interval, SceneError> {
+    fn unit(&mut self, shader: &Shader<'a>, name: &str, default: f64) -> Result<Interval, SceneError> {
         let value = self.input(shader, name, default)?;
         if value.min < 0.0 || value.max > 1.0 {
-            let worst = if value.min < 0.0 {
-                value.min
-            } else {
-                value.max
-            };
+            let worst = if value.min < 0.0 { value.min } else { value.max };
             self.builder.warn(
                 &shader.node.place,
                 format!("{name} is {worst}, outside [0, 1]; it is moved to the nearer end"),
@@ -353,17 +279,10 @@ impl<'a> Reader<'a> {
         default: f64,
     ) -> Result<Option<Fresnel>, SceneError> {
         let eta = self.input(shader, name, default)?;
-        eta.is_point()
-            .then(|| dielectric(eta.min, &shader.node.place))
-            .transpose()
+        eta.is_point().then(|| dielectric(eta.min, &shader.node.place)).transpose()
     }
 
-    fn input(
-        &mut self,
-        shader: &Shader<'a>,
-        name: &str,
-        default: f64,
-    ) -> Result<Interval, SceneError> {
+    fn input(&mut self, shader: &Shader<'a>, name: &str, default: f64) -> Result<Interval, SceneError> {
         match shader.node.child_named(name) {
             Some(input) => self.value(input, shader.scope),
             None => Ok(Interval::point(default)),
@@ -372,13 +291,7 @@ impl<'a> Reader<'a> {
 }
 
 fn lobe(name: Option<&'static str>, roughness: Roughness, fresnel: Option<Fresnel>) -> Lobe {
-    Lobe {
-        name,
-        roughness,
-        gamma: GGX,
-        fresnel,
-        masking: None,
-    }
+    Lobe { name, roughness, gamma: GGX, fresnel, masking: None }
 }
 
 /// The roughness of r² times factors, least and greatest, along both axes.
@@ -390,11 +303,7 @@ fn axes(r: Interval, anisotropy: Interval, x: [f64; 2], y: [f64; 2]) -> Roughnes
         return Roughness::Smooth;
     }
     let alpha = |factor: [f64; 2]| {
-        Interval {
-            min: r.min * r.min * factor[0],
-            max: r.max * r.max * factor[1],
-        }
-        .clamp(LEAST_ALPHA, 1.0)
+        Interval { min: r.min * r.min * factor[0], max: r.max * r.max * factor[1] }.clamp(LEAST_ALPHA, 1.0)
     };
     Roughness::anisotropic(alpha(x), alpha(y))
 }

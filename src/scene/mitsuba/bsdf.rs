@@ -51,13 +51,7 @@ impl<'a> Reader<'a> {
         let unnamed = || format!("{class} at line {}", bsdf.place.line.unwrap_or_default());
         let name = name.map_or_else(unnamed, str::to_owned);
         let lobe = |reader: &mut Self, suffix, roughness, gamma, fresnel| {
-            let lobe = Lobe {
-                name: suffix,
-                roughness,
-                gamma,
-                fresnel,
-                masking: Some(Masking::Uncorrelated),
-            };
+            let lobe = Lobe { name: suffix, roughness, gamma, fresnel, masking: Some(Masking::Uncorrelated) };
             reader.builder.add(&name, &bsdf.place, used, lobe);
         };
         let reason = match class {
@@ -80,8 +74,7 @@ impl<'a> Reader<'a> {
                 if self.weight(bsdf, "clearcoat")?.max > 0.0 {
                     let name = format!("{name}.clearcoat");
                     let reason = "GTR1, whose tails are heavier than any Student-t distribution's";
-                    self.builder
-                        .ignore(&name, "principled clearcoat", &bsdf.place, reason);
+                    self.builder.ignore(&name, "principled clearcoat", &bsdf.place, reason);
                 }
                 return Ok(());
             }
@@ -112,10 +105,7 @@ impl<'a> Reader<'a> {
         let roughness = match (both, u, v) {
             (_, None, None) => Roughness::isotropic(self.one_alpha(bsdf, "alpha")?),
             (None, Some(_), Some(_)) => {
-                let (x, y) = (
-                    self.one_alpha(bsdf, "alpha_u")?,
-                    self.one_alpha(bsdf, "alpha_v")?,
-                );
+                let (x, y) = (self.one_alpha(bsdf, "alpha_u")?, self.one_alpha(bsdf, "alpha_v")?);
                 Roughness::anisotropic(x, y)
             }
             _ => {
@@ -130,14 +120,11 @@ impl<'a> Reader<'a> {
     fn one_alpha(&mut self, bsdf: &'a Element, name: &str) -> Result<Interval, SceneError> {
         let alpha = self.property(bsdf, name, 0.1)?;
         if alpha.min < 0.0 {
-            return Err(bsdf
-                .place
-                .invalid(format!("{name} is {}; it must be more than 0", alpha.min)));
+            return Err(bsdf.place.invalid(format!("{name} is {}; it must be more than 0", alpha.min)));
         }
         if alpha == Interval::point(0.0) {
-            let message = format!(
-                "{name} is 0, which Mitsuba raises to {LEAST_ALPHA:e}; a smooth BSDF is meant"
-            );
+            let message =
+                format!("{name} is 0, which Mitsuba raises to {LEAST_ALPHA:e}; a smooth BSDF is meant");
             self.builder.warn(&bsdf.place, message);
         }
         Ok(alpha.map_rising(|alpha| alpha.max(LEAST_ALPHA)))
@@ -149,23 +136,15 @@ impl<'a> Reader<'a> {
             if value.min >= 0.0 && value.max <= 1.0 {
                 return Ok(value);
             }
-            let worst = if value.min < 0.0 {
-                value.min
-            } else {
-                value.max
-            };
-            Err(bsdf
-                .place
-                .invalid(format!("{name} is {worst}; it must be from 0 to 1")))
+            let worst = if value.min < 0.0 { value.min } else { value.max };
+            Err(bsdf.place.invalid(format!("{name} is {worst}; it must be from 0 to 1")))
         };
-        let roughness = unit(self.property(bsdf, "roughness", 0.5)?, "roughness")?
-            .map_bilinear(scale, |r, s| r * s);
+        let roughness =
+            unit(self.property(bsdf, "roughness", 0.5)?, "roughness")?.map_bilinear(scale, |r, s| r * s);
         let anisotropic = unit(self.weight(bsdf, "anisotropic")?, "anisotropic")?;
         let alpha = |r: f64, aspect: f64| (r * r * aspect).max(LEAST_PRINCIPLED_ALPHA);
         if anisotropic.max == 0.0 {
-            return Ok(Roughness::Isotropic(
-                roughness.map_rising(|r| alpha(r, 1.0)),
-            ));
+            return Ok(Roughness::Isotropic(roughness.map_rising(|r| alpha(r, 1.0))));
         }
         let aspect = anisotropic.map_falling(|a| (1.0 - 0.9 * a).sqrt());
         Ok(Roughness::anisotropic(
@@ -173,10 +152,7 @@ impl<'a> Reader<'a> {
                 min: alpha(roughness.min, 1.0 / aspect.max),
                 max: alpha(roughness.max, 1.0 / aspect.min),
             },
-            Interval {
-                min: alpha(roughness.min, aspect.min),
-                max: alpha(roughness.max, aspect.max),
-            },
+            Interval { min: alpha(roughness.min, aspect.min), max: alpha(roughness.max, aspect.max) },
         ))
     }
 
@@ -199,12 +175,7 @@ impl<'a> Reader<'a> {
         self.property(bsdf, name, 0.0)
     }
 
-    fn property(
-        &mut self,
-        element: &'a Element,
-        name: &str,
-        default: f64,
-    ) -> Result<Interval, SceneError> {
+    fn property(&mut self, element: &'a Element, name: &str, default: f64) -> Result<Interval, SceneError> {
         match element.child_named(name) {
             Some(property) => self.value(property),
             None => Ok(Interval::point(default)),
@@ -224,11 +195,7 @@ impl<'a> Reader<'a> {
                 Some(texture) => self.value(texture),
                 None => {
                     let id = property.attribute("id").unwrap_or_default();
-                    Ok(self.builder.unread(
-                        id,
-                        "is not in the files that were found",
-                        &property.place,
-                    ))
+                    Ok(self.builder.unread(id, "is not in the files that were found", &property.place))
                 }
             },
             "texture" => {
@@ -239,9 +206,7 @@ impl<'a> Reader<'a> {
                 let range = self.texture(property)?;
                 Ok(self.ranges.end(key, range))
             }
-            tag => Err(property
-                .place
-                .invalid(format!("<{tag}> gives no number where one is expected"))),
+            tag => Err(property.place.invalid(format!("<{tag}> gives no number where one is expected"))),
         }
     }
 
@@ -253,15 +218,9 @@ impl<'a> Reader<'a> {
                 let Some(file) = value("filename") else {
                     return Ok(self.builder.unread("bitmap", "names no file", place));
                 };
-                let encoding = if value("raw") == Some("true") {
-                    Encoding::Linear
-                } else {
-                    Encoding::Srgb
-                };
+                let encoding = if value("raw") == Some("true") { Encoding::Linear } else { Encoding::Srgb };
                 let file = find(&self.folders, file);
-                Ok(self
-                    .builder
-                    .image(&file, Channel::Luminance, encoding, place))
+                Ok(self.builder.image(&file, Channel::Luminance, encoding, place))
             }
             "checkerboard" => {
                 let first = self.property(texture, "color0", 0.4)?;
@@ -279,36 +238,24 @@ impl<'a> Reader<'a> {
 /// The Fresnel term of the BSDFs that are one interface.
 fn fresnel(bsdf: &Element, class: &str) -> Result<Option<Fresnel>, SceneError> {
     if class.ends_with("conductor") {
-        let material = bsdf
-            .child_named("material")
-            .and_then(|m| m.attribute("value"));
+        let material = bsdf.child_named("material").and_then(|m| m.attribute("value"));
         if material == Some("none") {
             return Ok(Some(Fresnel::Mirror));
         }
-        let rgb = |name| {
-            bsdf.child_named(name)
-                .filter(|p| p.tag == "rgb")
-                .and_then(rgb)
-        };
+        let rgb = |name| bsdf.child_named(name).filter(|p| p.tag == "rgb").and_then(rgb);
         return match (rgb("eta"), rgb("k")) {
             (Some(eta), Some(k)) => conductor(eta, k, &bsdf.place).map(Some),
             _ => Ok(None),
         };
     }
-    let inside = if class.ends_with("plastic") {
-        "polypropylene"
-    } else {
-        "bk7"
-    };
+    let inside = if class.ends_with("plastic") { "polypropylene" } else { "bk7" };
     let eta = index(bsdf, "int_ior", inside)? / index(bsdf, "ext_ior", "air")?;
     dielectric(eta, &bsdf.place).map(Some)
 }
 
 /// The Fresnel term of an index of refraction, unless a texture varies it.
 fn constant_dielectric(eta: Interval, bsdf: &Element) -> Result<Option<Fresnel>, SceneError> {
-    eta.is_point()
-        .then(|| dielectric(eta.min, &bsdf.place))
-        .transpose()
+    eta.is_point().then(|| dielectric(eta.min, &bsdf.place)).transpose()
 }
 
 fn distribution(bsdf: &Element) -> Result<Interval, SceneError> {
@@ -338,20 +285,15 @@ fn number(property: &Element) -> Result<f64, SceneError> {
                 None => String::new(),
             };
             let name = property.attribute("name").unwrap_or("value");
-            Err(property
-                .place
-                .invalid(format!("{name} must be a number, not \"{text}\"{remedy}")))
+            Err(property.place.invalid(format!("{name} must be a number, not \"{text}\"{remedy}")))
         }
     }
 }
 
 fn rgb(property: &Element) -> Option<[f64; 3]> {
     let text = property.attribute("value")?;
-    let numbers: Option<Vec<f64>> = text
-        .split([',', ' '])
-        .filter(|part| !part.is_empty())
-        .map(|part| part.parse().ok())
-        .collect();
+    let numbers: Option<Vec<f64>> =
+        text.split([',', ' ']).filter(|part| !part.is_empty()).map(|part| part.parse().ok()).collect();
     match numbers?[..] {
         [grey] => Some([grey; 3]),
         [r, g, b] => Some([r, g, b]),
@@ -370,9 +312,7 @@ fn index(bsdf: &Element, name: &str, default: &str) -> Result<f64, SceneError> {
         Some(property) => (property.required("value")?, &property.place),
         None => (default, &bsdf.place),
     };
-    let known = INDICES
-        .iter()
-        .find(|(name, _)| name.eq_ignore_ascii_case(text));
+    let known = INDICES.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
     known.map(|&(_, eta)| eta).ok_or_else(|| {
         let names = INDICES.map(|(name, _)| name);
         place.invalid(format!(

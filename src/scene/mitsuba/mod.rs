@@ -45,22 +45,15 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     expansion.includes.enter(path, &Place::file(path))?;
     let mut root = xml::read(path)?;
     if root.tag != "scene" && root.tag != "bsdf" {
-        return Err(root.place.invalid(format!(
-            "<{}> is not the root of a Mitsuba scene; expected <scene>",
-            root.tag
-        )));
+        return Err(root
+            .place
+            .invalid(format!("<{}> is not the root of a Mitsuba scene; expected <scene>", root.tag)));
     }
     expansion.element(&mut root)?;
     let incomplete = expansion.incomplete;
     let folders = expansion.folders;
 
-    let mut reader = Reader {
-        ids: ids(&root),
-        builder,
-        folders,
-        incomplete,
-        ranges: Memo::default(),
-    };
+    let mut reader = Reader { ids: ids(&root), builder, folders, incomplete, ranges: Memo::default() };
     let used = reader.used(&root)?;
     reader.bsdfs(&root, None, &used)?;
     Ok(reader.builder.finish())
@@ -87,8 +80,7 @@ impl Expansion<'_> {
                 if !self.defaults.iter().any(|(known, _)| known == name) {
                     self.defaults.push((name.to_owned(), value.to_owned()));
                     // "$ab" must not be read as "$a" followed by "b".
-                    self.defaults
-                        .sort_by_key(|(name, _)| std::cmp::Reverse(name.len()));
+                    self.defaults.sort_by_key(|(name, _)| std::cmp::Reverse(name.len()));
                 }
             }
             "path" => {
@@ -118,20 +110,14 @@ impl Expansion<'_> {
             self.incomplete = true;
             self.builder.warn(
                 &element.place,
-                format!(
-                    "{name} is missing; its materials are not seen, and all others count as used"
-                ),
+                format!("{name} is missing; its materials are not seen, and all others count as used"),
             );
             return Ok(Vec::new());
         }
         let mut root = xml::read(&path)?;
         self.element(&mut root)?;
         self.includes.leave();
-        Ok(if root.tag == "scene" {
-            root.children
-        } else {
-            vec![root]
-        })
+        Ok(if root.tag == "scene" { root.children } else { vec![root] })
     }
 
     fn substitute(&self, value: &mut String) {
@@ -226,10 +212,9 @@ impl<'a> Reader<'a> {
             None if self.incomplete => Ok(None),
             None => {
                 let known: Vec<&str> = self.ids.keys().copied().collect();
-                Err(reference.place.invalid(format!(
-                    "nothing has the id \"{id}\"{}",
-                    did_you_mean(id, &known)
-                )))
+                Err(reference
+                    .place
+                    .invalid(format!("nothing has the id \"{id}\"{}", did_you_mean(id, &known))))
             }
         }
     }
@@ -244,14 +229,9 @@ impl<'a> Reader<'a> {
         let named = matches!(&element.tag[..], "bsdf" | "shape");
         let name = element.attribute("id").filter(|_| named).or(outer);
         if element.tag == "bsdf" {
-            let used = used
-                .as_ref()
-                .is_none_or(|used| used.contains(&std::ptr::from_ref(element)));
+            let used = used.as_ref().is_none_or(|used| used.contains(&std::ptr::from_ref(element)));
             self.bsdf(element, name, used)?;
         }
-        element
-            .children
-            .iter()
-            .try_for_each(|child| self.bsdfs(child, name, used))
+        element.children.iter().try_for_each(|child| self.bsdfs(child, name, used))
     }
 }

@@ -22,18 +22,8 @@ pub(super) struct Definition {
 }
 
 impl Definition {
-    pub(super) fn new(
-        name: String,
-        class: String,
-        parameters: Vec<Parameter>,
-        place: Place,
-    ) -> Self {
-        Self {
-            name,
-            class,
-            parameters,
-            place,
-        }
+    pub(super) fn new(name: String, class: String, parameters: Vec<Parameter>, place: Place) -> Self {
+        Self { name, class, parameters, place }
     }
 
     pub(super) fn parameter(&self, name: &str) -> Option<&Parameter> {
@@ -47,9 +37,7 @@ impl Definition {
         match parameter.values.first().map(|value| &value[..]) {
             Some("true") => Ok(true),
             Some("false") => Ok(false),
-            _ => Err(parameter
-                .place
-                .invalid(format!("{name} must be true or false"))),
+            _ => Err(parameter.place.invalid(format!("{name} must be true or false"))),
         }
     }
 }
@@ -59,9 +47,7 @@ impl Parameter {
         let text = self.values.first().map_or("", |value| value);
         match text.parse() {
             Ok(number) if f64::is_finite(number) => Ok(number),
-            _ => Err(self
-                .place
-                .invalid(format!("{} must be a number, not \"{text}\"", self.name))),
+            _ => Err(self.place.invalid(format!("{} must be a number, not \"{text}\"", self.name))),
         }
     }
 
@@ -84,13 +70,8 @@ impl Reader {
             Ok(())
         };
         let interfaces: &[(Option<&'static str>, &str)] = match &material.class[..] {
-            "conductor" | "dielectric" | "coateddiffuse" | "subsurface" | "thindielectric" => {
-                &[(None, "")]
-            }
-            "coatedconductor" => &[
-                (Some("interface"), "interface."),
-                (Some("conductor"), "conductor."),
-            ],
+            "conductor" | "dielectric" | "coateddiffuse" | "subsurface" | "thindielectric" => &[(None, "")],
+            "coatedconductor" => &[(Some("interface"), "interface."), (Some("conductor"), "conductor.")],
             "mix" => return ignore("a mixture; its parts are listed by themselves"),
             "diffuse" | "diffusetransmission" => return ignore("diffuse, without microfacets"),
             "hair" => return ignore("a fibre model, not a microfacet one"),
@@ -127,11 +108,7 @@ impl Reader {
         // Equal parameters give equal values at each point, even from a texture.
         let key = |p: Option<&Parameter>| p.map(|p| (p.kind.clone(), p.values.clone()));
         if key(u) == key(v) {
-            return Ok(if x.max < SMOOTH {
-                Roughness::Smooth
-            } else {
-                Roughness::Isotropic(x)
-            });
+            return Ok(if x.max < SMOOTH { Roughness::Smooth } else { Roughness::Isotropic(x) });
         }
         let y = alpha(self, v)?;
         if x.max.max(y.max) < SMOOTH {
@@ -166,11 +143,7 @@ impl Reader {
                 ),
             );
         }
-        Ok(if remap {
-            roughness.map_rising(f64::sqrt)
-        } else {
-            roughness
-        })
+        Ok(if remap { roughness.map_rising(f64::sqrt) } else { roughness })
     }
 
     /// A parameter that is a number or a texture.
@@ -188,17 +161,11 @@ impl Reader {
             return Ok(self.ranges.end(texture.name, range));
         }
         if self.incomplete {
-            let (name, reason) = (
-                format!("\"{name}\""),
-                "is not defined in the files that were found",
-            );
+            let (name, reason) = (format!("\"{name}\""), "is not defined in the files that were found");
             return Ok(self.builder.unread(&name, reason, place));
         }
         let names: Vec<&str> = self.textures.keys().map(|name| &name[..]).collect();
-        Err(place.invalid(format!(
-            "float texture \"{name}\" is not defined{}",
-            did_you_mean(name, &names)
-        )))
+        Err(place.invalid(format!("float texture \"{name}\" is not defined{}", did_you_mean(name, &names))))
     }
 
     fn texture(&mut self, texture: &Definition) -> Result<Interval, SceneError> {
@@ -221,11 +188,7 @@ impl Reader {
                 let scale = input("scale", 1.0)?;
                 let invert = texture.truth("invert", false)?;
                 let scaled = self.image(texture).map_bilinear(scale, |a, b| a * b);
-                if invert {
-                    scaled.map_falling(|x| (1.0 - x).max(0.0))
-                } else {
-                    scaled
-                }
+                if invert { scaled.map_falling(|x| (1.0 - x).max(0.0)) } else { scaled }
             }
             class => {
                 let reason = format!("is of class {class}, whose range is not known");
@@ -250,8 +213,7 @@ impl Reader {
             }
         };
         let file = self.folder.join(file);
-        self.builder
-            .image(&file, Channel::Red, encoding, &texture.place)
+        self.builder.image(&file, Channel::Red, encoding, &texture.place)
     }
 }
 
@@ -266,11 +228,7 @@ fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, Scene
         return conductor(eta, k, &material.place).map(Some);
     }
     // The defaults of materials.cpp.
-    let default = if material.class == "subsurface" {
-        1.33
-    } else {
-        1.5
-    };
+    let default = if material.class == "subsurface" { 1.33 } else { 1.5 };
     match parameter("eta") {
         None => Ok(Some(Fresnel::Dielectric(default))),
         Some(eta) if eta.kind == "float" => dielectric(eta.number()?, &eta.place).map(Some),

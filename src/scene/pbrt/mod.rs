@@ -228,13 +228,11 @@ impl Reader {
                 let name = quoted(tokens, "the name of the material")?;
                 let mut parameters = self.with_attributes(parameters(tokens)?);
                 let class = parameters.iter().position(|p| p.name == "type");
-                let class = class
-                    .and_then(|i| parameters.remove(i).values.pop())
-                    .ok_or_else(|| {
-                        place.syntax(format!(
-                            "material \"{name}\" has no type; add for example \"string type\" \"conductor\""
-                        ))
-                    })?;
+                let class = class.and_then(|i| parameters.remove(i).values.pop()).ok_or_else(|| {
+                    place.syntax(format!(
+                        "material \"{name}\" has no type; add for example \"string type\" \"conductor\""
+                    ))
+                })?;
                 let slot = self.named(&name, &place);
                 if let Some(first) = &self.slots[slot].definition {
                     return Err(place.invalid(format!(
@@ -270,10 +268,7 @@ impl Reader {
             directive if PASSED_OVER.contains(&directive) => skip_arguments(tokens),
             directive => {
                 let known = [&PASSED_OVER[..], &FOLLOWED[..]].concat();
-                Err(place.syntax(format!(
-                    "unknown directive {directive}{}",
-                    did_you_mean(directive, &known)
-                )))
+                Err(place.syntax(format!("unknown directive {directive}{}", did_you_mean(directive, &known))))
             }
         }
     }
@@ -284,9 +279,7 @@ impl Reader {
             self.incomplete = true;
             self.builder.warn(
                 place,
-                format!(
-                    "{name} is missing; its materials are not seen, and all others count as used"
-                ),
+                format!("{name} is missing; its materials are not seen, and all others count as used"),
             );
             return Ok(());
         }
@@ -303,11 +296,7 @@ impl Reader {
     }
 
     fn slot(&mut self, place: &Place) -> usize {
-        self.slots.push(Slot {
-            used: false,
-            definition: None,
-            place: place.clone(),
-        });
+        self.slots.push(Slot { used: false, definition: None, place: place.clone() });
         self.slots.len() - 1
     }
 
@@ -356,10 +345,8 @@ impl Reader {
             if !self.incomplete {
                 return Err(self.undefined(name, place));
             }
-            self.builder.warn(
-                place,
-                format!("material \"{name}\" is not defined in the files that were found"),
-            );
+            self.builder
+                .warn(place, format!("material \"{name}\" is not defined in the files that were found"));
         }
         Ok(())
     }
@@ -371,24 +358,16 @@ impl Reader {
             .filter(|&(_, &slot)| self.slots[slot].definition.is_some())
             .map(|(name, _)| &name[..])
             .collect();
-        place.invalid(format!(
-            "material \"{name}\" is not defined{}",
-            did_you_mean(name, &names)
-        ))
+        place.invalid(format!("material \"{name}\" is not defined{}", did_you_mean(name, &names)))
     }
 
     /// Marks what used mixtures consist of as used.
     fn use_parts_of_mixtures(&mut self) -> Result<(), SceneError> {
         let is_mixture = |slot: &Slot| slot.definition.as_ref().is_some_and(|d| d.class == "mix");
-        let mut pending: Vec<usize> = (0..self.slots.len())
-            .filter(|&i| is_mixture(&self.slots[i]))
-            .collect();
+        let mut pending: Vec<usize> = (0..self.slots.len()).filter(|&i| is_mixture(&self.slots[i])).collect();
         for &slot in &pending {
             for (name, place) in self.parts(slot) {
-                let known = self
-                    .names
-                    .get(&name)
-                    .is_some_and(|&part| self.slots[part].definition.is_some());
+                let known = self.names.get(&name).is_some_and(|&part| self.slots[part].definition.is_some());
                 if !known && !self.incomplete {
                     return Err(self.undefined(&name, &place));
                 }
@@ -401,9 +380,7 @@ impl Reader {
                     continue;
                 };
                 // Marking before descending ends a mixture that contains itself.
-                if !std::mem::replace(&mut self.slots[part].used, true)
-                    && is_mixture(&self.slots[part])
-                {
+                if !std::mem::replace(&mut self.slots[part].used, true) && is_mixture(&self.slots[part]) {
                     pending.push(part);
                 }
             }
@@ -416,12 +393,7 @@ impl Reader {
         let definition = self.slots[slot].definition.as_ref();
         definition
             .and_then(|definition| definition.parameter("materials"))
-            .map_or_else(Vec::new, |p| {
-                p.values
-                    .iter()
-                    .map(|name| (name.clone(), p.place.clone()))
-                    .collect()
-            })
+            .map_or_else(Vec::new, |p| p.values.iter().map(|name| (name.clone(), p.place.clone())).collect())
     }
 }
 

@@ -22,12 +22,8 @@ pub(super) struct Parameter {
 pub(super) fn quoted<R: Read>(tokens: &mut Tokens<R>, what: &str) -> Result<String, SceneError> {
     match tokens.next()? {
         Some(Token::Text) => Ok(tokens.text().to_owned()),
-        Some(_) => Err(tokens
-            .place()
-            .syntax(format!("expected {what} in quotes, not {}", tokens.text()))),
-        None => Err(tokens
-            .place()
-            .syntax(format!("the file ends where {what} is expected"))),
+        Some(_) => Err(tokens.place().syntax(format!("expected {what} in quotes, not {}", tokens.text()))),
+        None => Err(tokens.place().syntax(format!("the file ends where {what} is expected"))),
     }
 }
 
@@ -49,12 +45,7 @@ pub(super) fn parameters<R: Read>(tokens: &mut Tokens<R>) -> Result<Vec<Paramete
         };
         let (kind, name) = (kind.to_owned(), name.to_owned());
         let values = values(tokens, &name)?;
-        list.push(Parameter {
-            kind,
-            name,
-            values,
-            place,
-        });
+        list.push(Parameter { kind, name, values, place });
     }
     Ok(list)
 }
@@ -80,9 +71,7 @@ fn values<R: Read>(tokens: &mut Tokens<R>, name: &str) -> Result<Vec<String>, Sc
             }
         }
         _ => {
-            return Err(tokens
-                .place()
-                .syntax(format!("the parameter {name} has no value")));
+            return Err(tokens.place().syntax(format!("the parameter {name} has no value")));
         }
     }
     Ok(values)
@@ -100,8 +89,8 @@ pub(super) fn skip_arguments<R: Read>(tokens: &mut Tokens<R>) -> Result<(), Scen
             // Numbers and truth values are arguments; any other word is the next directive.
             Token::Word => {
                 let word = tokens.text();
-                let is_directive = word.starts_with(|c: char| c.is_ascii_alphabetic())
-                    && !matches!(word, "true" | "false");
+                let is_directive =
+                    word.starts_with(|c: char| c.is_ascii_alphabetic()) && !matches!(word, "true" | "false");
                 if is_directive {
                     tokens.push_back(token);
                     break;

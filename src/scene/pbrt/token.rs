@@ -99,9 +99,7 @@ impl<R: Read> Tokens<R> {
         let open = self.place();
         loop {
             let chunk = fill(&mut self.input, &self.file)?;
-            let stop = chunk
-                .iter()
-                .position(|b| matches!(b, b'\n' | b']' | b'"' | b'#' | b'['));
+            let stop = chunk.iter().position(|b| matches!(b, b'\n' | b']' | b'"' | b'#' | b'['));
             let taken = stop.unwrap_or(chunk.len());
             let stop = stop.map(|i| chunk[i]);
             let at_end = chunk.is_empty();
@@ -121,9 +119,7 @@ impl<R: Read> Tokens<R> {
                     if byte == b']' {
                         return Ok(());
                     }
-                    return Err(
-                        open.syntax("this list has another list in it, or no closing bracket")
-                    );
+                    return Err(open.syntax("this list has another list in it, or no closing bracket"));
                 }
             }
         }
@@ -218,13 +214,10 @@ impl<R: Read> Tokens<R> {
 }
 
 fn text(bytes: Vec<u8>) -> String {
-    String::from_utf8(bytes)
-        .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
+    String::from_utf8(bytes).unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
 }
 
 /// The bytes that wait, read anew if none do; empty at the end.
 fn fill<'a>(input: &'a mut BufReader<impl Read>, file: &Path) -> Result<&'a [u8], SceneError> {
-    input
-        .fill_buf()
-        .map_err(|error| Place::file(file).io(error))
+    input.fill_buf().map_err(|error| Place::file(file).io(error))
 }
