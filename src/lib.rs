@@ -5,8 +5,9 @@
 //! with what `microfacet-model` says.
 
 pub mod bake;
+pub mod generate;
+pub mod plan;
 pub mod scene;
 pub mod spec;
-pub mod generate;
 pub mod store;
 pub mod validate;

@@ -1,3 +1,9 @@
-//! The `microfacet-bake` command.
+//! The `microfacet-bake` command: parses, dispatches, and turns the result into an exit code.
 
-fn main() {}
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::main()
+}

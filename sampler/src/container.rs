@@ -139,7 +139,8 @@ pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, Load
         .iter()
         .zip(tables)
         .map(|(bytes, table)| {
-            TensorView::new(dtype(table.precision), table.shape(), bytes).map(|view| (table.name.as_str(), view))
+            TensorView::new(dtype(table.precision), table.shape(), bytes)
+                .map(|view| (table.name.as_str(), view))
         })
         .collect::<Result<Vec<_>, _>>()
         .map_err(invalid)?;
@@ -157,13 +158,12 @@ pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, Load
 /// # Errors
 /// [`LoadError`] saying what is wrong; never a panic, and never an allocation larger than a few times the input.
 pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Table>), LoadError> {
-    let (_, metadata) = SafeTensors::read_metadata(bytes)
-        .map_err(|why| invalid(format!("{why}; a table set is a safetensors file written by `microfacet-bake`")))?;
-    let json = metadata
-        .metadata()
-        .as_ref()
-        .and_then(|map| map.get(KEY))
-        .ok_or_else(|| invalid(format!("a safetensors file, but without the `{KEY}` document of a table set")))?;
+    let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|why| {
+        invalid(format!("{why}; a table set is a safetensors file written by `microfacet-bake`"))
+    })?;
+    let json = metadata.metadata().as_ref().and_then(|map| map.get(KEY)).ok_or_else(|| {
+        invalid(format!("a safetensors file, but without the `{KEY}` document of a table set"))
+    })?;
     check_version(json)?;
     if verify {
         verify_checksum(bytes)?;

@@ -78,7 +78,8 @@ impl StudentT {
         let slices = &self.slices;
         let (row, between) = locate(self.view_coordinate(view) * slices.rows as f32, slices.rows);
         let stride = 2 * (slices.cells + 1);
-        let [low, high] = [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
+        let [low, high] =
+            [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
         Rows { low, high, between }
     }
 

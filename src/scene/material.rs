@@ -192,3 +192,10 @@ pub struct Ignored {
     /// Where it was described.
     pub place: Place,
 }
+
+impl fmt::Display for Ignored {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, kind, reason, place } = self;
+        write!(f, "{place}: nothing to bake for \"{name}\" ({kind}): {reason}")
+    }
+}

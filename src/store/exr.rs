@@ -78,7 +78,11 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     let layer = image.layer_data;
     let document = match layer.attributes.other.get(&Text::new_or_panic(ATTRIBUTE)) {
         Some(AttributeValue::Text(text)) => text.to_string(),
-        _ => return Err(invalid(format!("an OpenEXR image, but without the `{ATTRIBUTE}` attribute of a table"))),
+        _ => {
+            return Err(invalid(format!(
+                "an OpenEXR image, but without the `{ATTRIBUTE}` attribute of a table"
+            )));
+        }
     };
     let channels = document_channels(&document).map_err(invalid)?;
     let mut columns = Vec::new();
@@ -94,7 +98,8 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
         return Err(invalid("checksum does not match: the file is damaged or was edited; bake again".into()));
     }
     let mut values = Some(values);
-    let (provenance, tables) = reassemble(&document, |_| values.take().ok_or("more than one table".to_string()))?;
+    let (provenance, tables) =
+        reassemble(&document, |_| values.take().ok_or("more than one table".to_string()))?;
     Tables::from_tables(provenance, tables)
 }
 
@@ -103,7 +108,9 @@ fn document_channels(document: &str) -> std::result::Result<Vec<String>, String>
     let document: serde_json::Value = serde_json::from_str(document).map_err(|why| why.to_string())?;
     let channels = document.pointer("/tables/0/channels").and_then(|list| list.as_array());
     let names = channels.map(|list| list.iter().filter_map(|name| name.as_str().map(String::from)).collect());
-    names.filter(|names: &Vec<String>| !names.is_empty()).ok_or_else(|| "the description names no channels".into())
+    names
+        .filter(|names: &Vec<String>| !names.is_empty())
+        .ok_or_else(|| "the description names no channels".into())
 }
 
 const PREFIX: &str = "\"checksum\":\"";

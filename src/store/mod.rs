@@ -66,7 +66,8 @@ pub fn write(folder: &Path, set: &Tables, formats: &[Format]) -> Result<Vec<Writ
     if formats.contains(&Format::Exr) {
         for table in set.tables() {
             let path = folder.join(format!("{}.exr", table.name));
-            let bytes = encode_exr(set.provenance(), table).map_err(|why| StoreError::Exr(path.clone(), why))?;
+            let bytes =
+                encode_exr(set.provenance(), table).map_err(|why| StoreError::Exr(path.clone(), why))?;
             files.push((path, bytes));
         }
     }

@@ -10,7 +10,8 @@ use std::path::Path;
 /// What the operating system reports; the old file is then untouched.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::Builder::new().prefix(".microfacet-bake-").suffix(".partial").tempfile_in(folder)?;
+    let mut file =
+        tempfile::Builder::new().prefix(".microfacet-bake-").suffix(".partial").tempfile_in(folder)?;
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
     #[cfg(unix)]

@@ -66,7 +66,9 @@ pub fn certify(tables: &mut Tables, points: usize) -> Result<(), BindError> {
 
 /// Figures of one table, rounded up to three digits.
 fn measure(tables: &Tables, table: &Table, points: usize) -> Result<BTreeMap<String, f64>, BindError> {
-    let gammas = gammas_between_nodes(table);
+    // A sub-range keeps a node or two beyond its end for the interpolation; the kinds need not agree on where.
+    let mut gammas = gammas_between_nodes(table);
+    gammas.retain(|&gamma| tables.covers(gamma));
     let all = gammas
         .par_iter()
         .map(|&gamma| {

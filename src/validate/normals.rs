@@ -156,7 +156,11 @@ fn upper_edges(
 
 fn shares(cdf: &[f64]) -> Vec<f64> {
     let mut below = 0.0;
-    cdf.iter().map(|&value| std::mem::replace(&mut below, value)).zip(cdf).map(|(low, high)| high - low).collect()
+    cdf.iter()
+        .map(|&value| std::mem::replace(&mut below, value))
+        .zip(cdf)
+        .map(|(low, high)| high - low)
+        .collect()
 }
 
 /// Cells of the hemisphere in the tangent frame: rings of unit slope by azimuth, fixed to the surface and not to the view, so that a

@@ -7,7 +7,7 @@ use microfacet_model as model;
 use microfacet_sampler::{BindError, Tables};
 
 use super::chi_square::sidak;
-use super::configuration::{Configuration, configurations};
+use super::configuration::Configuration;
 use super::normals::{Report, judge};
 use super::pdf_integral;
 
@@ -21,10 +21,6 @@ pub const PDF_TOLERANCE: f64 = 1e-6;
 pub struct Options {
     /// Normals drawn for each configuration.
     pub samples: usize,
-    /// Materials and views.
-    pub configurations: usize,
-    /// Seed of everything random.
-    pub seed: u64,
     /// Factor on γ of the model that tables are judged against; 1 unless one wants to see them rejected.
     pub gamma_factor: f64,
 }
@@ -60,13 +56,17 @@ impl Outcome {
     }
 }
 
-/// Runs all configurations in parallel, calling `progress` after each.
+/// Judges all `configurations` in parallel, calling `progress` after each.
 ///
 /// # Errors
 /// [`BindError`] if the set does not hold what it says it covers.
-pub fn run(tables: &Tables, options: Options, progress: impl Fn() + Sync) -> Result<Outcome, BindError> {
-    let all = configurations(tables, options.configurations, options.seed);
-    let results = all
+pub fn run(
+    tables: &Tables,
+    configurations: &[Configuration],
+    options: Options,
+    progress: impl Fn() + Sync,
+) -> Result<Outcome, BindError> {
+    let results = configurations
         .par_iter()
         .map(|configuration| {
             let result = one(tables, configuration, options);
@@ -74,7 +74,7 @@ pub fn run(tables: &Tables, options: Options, progress: impl Fn() + Sync) -> Res
             result
         })
         .collect::<Result<Vec<_>, BindError>>()?;
-    let integrals = all.iter().zip(&results).map(|(at, (_, integral))| (*at, *integral)).collect();
+    let integrals = configurations.iter().zip(&results).map(|(at, (_, integral))| (*at, *integral)).collect();
     let mut reports: Vec<Report> = results.into_iter().map(|(report, _)| report).collect();
     reports.sort_by(|a, b| a.p().total_cmp(&b.p()));
     // Two tests a configuration.
@@ -82,11 +82,7 @@ pub fn run(tables: &Tables, options: Options, progress: impl Fn() + Sync) -> Res
 }
 
 /// One configuration: the tests, and the integral of `table_pdf`.
-fn one(
-    tables: &Tables,
-    configuration: &Configuration,
-    options: Options,
-) -> Result<(Report, f64), BindError> {
+fn one(tables: &Tables, configuration: &Configuration, options: Options) -> Result<(Report, f64), BindError> {
     let Configuration { sigma_x, sigma_y, gamma, .. } = *configuration;
     // The model gets the roughness that the run time has rounded to.
     let bound = tables.student_t([sigma_x, sigma_y], gamma)?;

@@ -1,0 +1,88 @@
+//! `inspect`: what is in a table file.
+
+use std::path::PathBuf;
+
+use serde_json::json;
+
+use microfacet_bake::store;
+use microfacet_sampler::{Axis, Interpolation, Mapping, Table, describe};
+
+use super::bake::largest_error;
+use super::{Done, Outcome, print, print_json};
+
+/// Show axes, ranges, sizes, metadata and certificates of a table file.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  microfacet-bake inspect out/tables.safetensors")]
+pub(super) struct Args {
+    /// A .safetensors set, a folder that holds one, or a single table as .exr.
+    file: PathBuf,
+    /// Print the complete description as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: Args) -> Outcome {
+    let set = store::read(&args.file)?;
+    if args.json {
+        let document: serde_json::Value = serde_json::from_str(&describe(set.provenance(), set.tables())?)?;
+        print_json(&json!(document))?;
+        return Ok(Done::Ok);
+    }
+    let origin = set.provenance();
+    let mut text =
+        format!("baked by {} (numerics {}), {}\n", origin.generator, origin.numerics, origin.license);
+    for material in &origin.materials {
+        text += &format!("material \"{}\"\n", material.name);
+    }
+    for table in set.tables() {
+        text += &describe_table(table);
+    }
+    text += "\nconventions:\n";
+    for (key, value) in &origin.conventions {
+        text += &format!("  {key}: {value}\n");
+    }
+    if !origin.recipe.is_empty() {
+        text += &format!("\nrecipe:\n{}", origin.recipe);
+    }
+    print(&text)?;
+    Ok(Done::Ok)
+}
+
+fn describe_table(table: &Table) -> String {
+    let mut text = format!(
+        "\n{} ({}), {:?}, {} values of {:?}\n",
+        table.name,
+        table.kind.name(),
+        table.shape(),
+        table.values.len(),
+        table.precision
+    );
+    for axis in &table.axes {
+        text += &format!("  {}\n", describe_axis(axis));
+    }
+    text += &format!("  {}\n", largest_error(table));
+    for (key, value) in &table.certificate {
+        text += &format!("    {key} {value}\n");
+    }
+    text
+}
+
+fn describe_axis(axis: &Axis) -> String {
+    let (first, last) = (axis.nodes[0], axis.nodes[axis.nodes.len() - 1]);
+    let gamma = |s: f64| 1.0 + 1.0 / s;
+    let range = match axis.mapping {
+        Mapping::InverseShape if axis.interpolation == Interpolation::Nodes => {
+            let shapes: Vec<String> = axis.nodes.iter().rev().map(|&s| format!("{}", gamma(s))).collect();
+            format!("gamma = {}", shapes.join(", "))
+        }
+        Mapping::InverseShape => format!("gamma in [{:.6}, {}]", gamma(last), gamma(first)),
+        _ => format!("coordinate in [{first}, {last}]"),
+    };
+    format!(
+        "{}: {} nodes, {range}, {:?}, {:?} between them",
+        axis.name,
+        axis.len(),
+        axis.mapping,
+        axis.interpolation
+    )
+}

@@ -1,0 +1,152 @@
+//! The command line: one file a subcommand. The only place that prints or shows progress.
+
+mod bake;
+mod inspect;
+mod query;
+mod sample;
+mod validate;
+
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use microfacet_bake::store;
+use microfacet_sampler::Tables;
+
+/// Bake, check and query tables for Student-t microfacet materials.
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true)]
+#[command(after_help = "Exit status: 0 done, 1 validation rejected, 2 bad input.")]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Threads to use; all processors by default.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Bake(bake::Args),
+    Validate(validate::Args),
+    Inspect(inspect::Args),
+    Query(query::Args),
+    Sample(sample::Args),
+}
+
+/// How a command ends when it does not fail.
+enum Done {
+    /// Exit status 0.
+    Ok,
+    /// Exit status 1: a validation ran and rejected.
+    Rejected,
+}
+
+/// A message for the user; exit status 2.
+struct Failure(String);
+
+impl<E: Display> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self(error.to_string())
+    }
+}
+
+type Outcome = Result<Done, Failure>;
+
+pub(crate) fn main() -> ExitCode {
+    let cli = Cli::parse();
+    if let Some(threads) = cli.threads {
+        // Fails only if a pool exists already, and none does.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+    }
+    let outcome = match cli.command {
+        Command::Bake(args) => bake::run(args),
+        Command::Validate(args) => validate::run(args),
+        Command::Inspect(args) => inspect::run(args),
+        Command::Query(args) => query::run(args),
+        Command::Sample(args) => sample::run(args),
+    };
+    match outcome {
+        Ok(Done::Ok) => ExitCode::SUCCESS,
+        Ok(Done::Rejected) => ExitCode::from(1),
+        Err(Failure(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Writes to standard output; a reader that has gone away (`| head`) is no error.
+fn print(text: &str) -> Result<(), Failure> {
+    match io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}
+
+/// Prints a value as JSON.
+fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
+    print(&format!("{value:#}\n"))
+}
+
+/// A progress bar of `steps`, on a terminal only.
+fn progress(steps: usize, what: &'static str) -> ProgressBar {
+    let style =
+        ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}").expect("a constant template");
+    ProgressBar::new(steps as u64).with_style(style).with_message(what)
+}
+
+/// The tables at a path, or the embedded default.
+fn tables(path: Option<&Path>) -> Result<Tables, Failure> {
+    Ok(match path {
+        Some(path) => store::read(path)?,
+        None => Tables::embedded(),
+    })
+}
+
+/// Parses σ as `X` or `X,Y`.
+fn parse_sigma(text: &str) -> Result<[f64; 2], String> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let one = |part: &str| match part.trim().parse::<f64>() {
+        Ok(sigma) if sigma > 0.0 && sigma <= 1e6 => Ok(sigma),
+        _ => Err(format!(
+            "sigma \"{part}\" must be a number in (0, 1e6]; give X, or X,Y for an anisotropic material"
+        )),
+    };
+    match parts[..] {
+        [both] => Ok([one(both)?; 2]),
+        [x, y] => Ok([one(x)?, one(y)?]),
+        _ => Err(format!("\"{text}\" has {} values; give X, or X,Y", parts.len())),
+    }
+}
+
+/// Parses γ ∈ (1.5, ∞], `inf` included.
+fn parse_gamma(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(gamma) if gamma > 1.5 => Ok(gamma),
+        _ => Err(format!("gamma \"{text}\" must be a number in (1.5, inf]; 2 is GGX, inf is Beckmann")),
+    }
+}
+
+/// Parses a polar angle in [0, π/2].
+fn parse_theta(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        // A little above π/2 is a rounded π/2.
+        Ok(theta) if (0.0..=std::f64::consts::FRAC_PI_2 + 1e-6).contains(&theta) => Ok(theta),
+        _ => Err(format!(
+            "theta \"{text}\" must be an angle in [0, 1.5708] radians, measured from the macro normal"
+        )),
+    }
+}
+
+/// Parses any finite angle.
+fn parse_phi(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(phi) if phi.is_finite() => Ok(phi),
+        _ => Err(format!("phi \"{text}\" must be a finite angle in radians")),
+    }
+}

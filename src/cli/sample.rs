@@ -1,0 +1,109 @@
+//! `sample`: visible normals of one material and view, as tensors.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use glam::Vec3;
+use rand::{RngExt, SeedableRng};
+use safetensors::Dtype;
+use safetensors::tensor::TensorView;
+
+use microfacet_bake::store::replace;
+use microfacet_bake::validate::configuration::Configuration;
+use microfacet_model as model;
+
+use super::{Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, tables};
+
+/// Draw normals for one material and view into a safetensors file: `normals` [N,3] and `pdf` [N], f32.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  microfacet-bake sample --sigma 0.454 --gamma 3 --theta 1.0 --count 100000 --out normals.safetensors"
+)]
+pub(super) struct Args {
+    /// Roughness, `X` or `X,Y`.
+    #[arg(long, value_name = "X[,Y]", value_parser = parse_sigma)]
+    sigma: [f64; 2],
+    /// Shape.
+    #[arg(long, value_name = "G", value_parser = parse_gamma)]
+    gamma: f64,
+    /// Polar angle of the view, radians.
+    #[arg(long, value_name = "T", value_parser = parse_theta)]
+    theta: f64,
+    /// Azimuth of the view, radians.
+    #[arg(long, value_name = "P", value_parser = parse_phi, default_value = "0", allow_hyphen_values = true)]
+    phi: f64,
+    /// How many.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    count: u64,
+    /// Seed of the random numbers.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How they are drawn, and whose density is given.
+    #[arg(long, value_enum, default_value = "table")]
+    method: Method,
+    /// Tables to draw from; the embedded default if absent.
+    #[arg(long, value_name = "PATH")]
+    tables: Option<PathBuf>,
+    /// File to write.
+    #[arg(long, value_name = "FILE.safetensors")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Method {
+    /// Visible normals from tables, with the exact density of what the table draws.
+    Table,
+    /// Visible normals by the model's exact sampler, with the analytic density.
+    Exact,
+    /// Normals of the NDF, eq. 16-17 and 19-20, with density D(m) (m.n); the view is not used.
+    Ndf,
+}
+
+pub(super) fn run(args: Args) -> Outcome {
+    let [sigma_x, sigma_y] = args.sigma;
+    let truth = model::StudentT::anisotropic(sigma_x, sigma_y, args.gamma)?;
+    let at = Configuration {
+        sigma_x,
+        sigma_y,
+        gamma: args.gamma,
+        theta: args.theta,
+        phi: args.phi,
+        seed: args.seed,
+    };
+    let v = at.view();
+    let mut random = rand::rngs::StdRng::seed_from_u64(args.seed);
+    let mut draw: Box<dyn FnMut() -> (Vec3, f32)> = match args.method {
+        Method::Table => {
+            let bound = tables(args.tables.as_deref())?.student_t(args.sigma, args.gamma)?;
+            Box::new(move || {
+                let m = bound.sample_visible_normal(v, [random.random(), random.random()]);
+                (m, bound.table_pdf(v, m))
+            })
+        }
+        Method::Exact => Box::new(move || {
+            let m = truth.sample_visible_exact(v.as_dvec3(), &mut || random.random());
+            (m.as_vec3(), truth.visible_normal_pdf(v.as_dvec3(), m) as f32)
+        }),
+        Method::Ndf => Box::new(move || {
+            let m = truth.sample_ndf([random.random(), random.random()]);
+            (m.as_vec3(), (truth.d(m) * m.z) as f32)
+        }),
+    };
+    let count = usize::try_from(args.count)?;
+    let (mut normals, mut pdf) = (Vec::with_capacity(12 * count), Vec::with_capacity(4 * count));
+    for _ in 0..count {
+        let (m, density) = draw();
+        m.to_array().iter().for_each(|x| normals.extend(x.to_le_bytes()));
+        pdf.extend(density.to_le_bytes());
+    }
+    let bytes = safetensors::serialize(
+        [
+            ("normals", TensorView::new(Dtype::F32, vec![count, 3], &normals)?),
+            ("pdf", TensorView::new(Dtype::F32, vec![count], &pdf)?),
+        ],
+        None,
+    )?;
+    replace(&args.out, &bytes).map_err(|why| Failure(format!("{}: {why}", args.out.display())))?;
+    print(&format!("{} ({count} normals)\n", args.out.display()))?;
+    Ok(Done::Ok)
+}

@@ -1,0 +1,135 @@
+//! `validate`: does what the sampler draws come from the analytic densities?
+
+use std::path::PathBuf;
+
+use serde_json::json;
+
+use microfacet_bake::validate::configuration::{Configuration, configurations};
+use microfacet_bake::validate::normals::Report;
+use microfacet_bake::validate::{LEVEL, Options, Outcome as Result, PDF_TOLERANCE, run as run_all};
+
+use super::{
+    Done, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, print_json, progress, tables,
+};
+
+/// Test what tables draw against the analytic densities by chi-square.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  microfacet-bake validate --configurations 50 --samples 1000000")]
+pub(super) struct Args {
+    /// A table file, or a folder with one; the embedded default if absent.
+    tables: Option<PathBuf>,
+    /// Normals drawn for each configuration.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = parse_samples)]
+    samples: usize,
+    /// Materials and views drawn over the covered domain.
+    #[arg(long, value_name = "K", default_value_t = 100, value_parser = parse_configurations)]
+    configurations: usize,
+    /// Seed of everything random.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Judge one configuration instead: its roughness, `X` or `X,Y`.
+    #[arg(long, value_name = "X[,Y]", value_parser = parse_sigma, requires_all = ["gamma", "theta"])]
+    sigma: Option<[f64; 2]>,
+    /// Shape of the one configuration.
+    #[arg(long, value_name = "G", value_parser = parse_gamma, requires = "sigma")]
+    gamma: Option<f64>,
+    /// Polar angle of its view, radians.
+    #[arg(long, value_name = "T", value_parser = parse_theta, requires = "sigma")]
+    theta: Option<f64>,
+    /// Azimuth of its view, radians.
+    #[arg(long, value_name = "P", value_parser = parse_phi, default_value = "0", allow_hyphen_values = true)]
+    phi: f64,
+    /// Multiply the model's gamma: 1.01 shows that the tests reject.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    perturb_gamma: f64,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+fn parse_samples(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(n @ 1_000..=10_000_000_000) => Ok(n),
+        _ => Err(format!(
+            "\"{text}\" samples: must be a whole number in [1000, 1e10], to fill the cells of a chi-square"
+        )),
+    }
+}
+
+fn parse_configurations(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(n @ 1..=1_000_000) => Ok(n),
+        _ => Err(format!("\"{text}\" configurations: must be a whole number in [1, 1000000]")),
+    }
+}
+
+pub(super) fn run(args: Args) -> Outcome {
+    let set = tables(args.tables.as_deref())?;
+    let chosen = match (args.sigma, args.gamma, args.theta) {
+        (Some([sigma_x, sigma_y]), Some(gamma), Some(theta)) => {
+            vec![Configuration { sigma_x, sigma_y, gamma, theta, phi: args.phi, seed: args.seed }]
+        }
+        _ => configurations(&set, args.configurations, args.seed),
+    };
+    let options = Options { samples: args.samples, gamma_factor: args.perturb_gamma };
+    let bar = progress(chosen.len(), "validating");
+    let result = run_all(&set, &chosen, options, || bar.inc(1))?;
+    bar.finish_and_clear();
+    let source = args.tables.as_deref().map_or(String::new(), |path| format!("{} ", path.display()));
+    if args.json {
+        print_json(&as_json(&result, options))?
+    } else {
+        print(&summary(&result, options, &source))?
+    }
+    Ok(if result.passed() { Done::Ok } else { Done::Rejected })
+}
+
+fn summary(result: &Result, options: Options, source: &str) -> String {
+    let reports = &result.reports;
+    let max = |f: fn(&Report) -> f64| reports.iter().map(f).fold(0.0, f64::max);
+    let mut text = format!(
+        "{} configurations x {} normals, two chi-square tests each; a single test rejects below p = {:.3e}\n\
+         smallest p {:.3e}, {} rejected; KS distance {:.2e}; G1 error {:.2e}\n",
+        reports.len(),
+        options.samples,
+        result.level,
+        reports.first().map_or(1.0, Report::p),
+        result.rejected(),
+        max(|report| report.ks),
+        max(|report| report.g1_error),
+    );
+    if let Some((at, integral)) = result.worst_integral() {
+        text += &format!("table_pdf integrates to 1 {:+.2e} at worst (gamma {})\n", integral - 1.0, at.gamma);
+    }
+    text += "worst configurations:\n";
+    for report in reports.iter().take(5) {
+        text += &format!(
+            "  p {:.3e} (lobe {:.3e}, world {:.3e}): microfacet-bake validate {source}--samples {} {}\n",
+            report.p(),
+            report.lobe.p,
+            report.world.p,
+            options.samples,
+            report.configuration
+        );
+    }
+    text + if result.passed() { "PASSED\n" } else { "REJECTED\n" }
+}
+
+fn as_json(result: &Result, options: Options) -> serde_json::Value {
+    let reports: Vec<_> = result
+        .reports
+        .iter()
+        .map(|report| {
+            let Configuration { sigma_x, sigma_y, gamma, theta, phi, seed } = report.configuration;
+            json!({
+                "sigma_x": sigma_x, "sigma_y": sigma_y, "gamma": gamma.to_string(), "theta": theta, "phi": phi, "seed": seed,
+                "p_lobe": report.lobe.p, "p_world": report.world.p, "ks": report.ks, "g1_error": report.g1_error,
+            })
+        })
+        .collect();
+    json!({
+        "passed": result.passed(), "samples": options.samples, "level": LEVEL, "level_of_one_test": result.level,
+        "rejected": result.rejected(), "pdf_tolerance": PDF_TOLERANCE,
+        "worst_pdf_integral": result.worst_integral().map(|(_, integral)| integral), "configurations": reports,
+    })
+}
