@@ -11,6 +11,8 @@ mod ndf;
 mod paper;
 mod reduced;
 mod shape;
+#[cfg(feature = "statistics")]
+pub mod statistics;
 mod student_t;
 mod visible;
 

@@ -82,7 +82,8 @@ impl StudentT {
         let heavy = self.heavy_share(view);
         let u = u.clamp(0.0, 1.0);
         let rest = 1.0 - heavy;
-        if u < rest {
+        // Straight from above nothing is heavy, and u = 1 still belongs to the table.
+        if u <= rest {
             return self.sample_slope(view, u / rest);
         }
         // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).

@@ -51,7 +51,8 @@ impl From<[f64; 2]> for Roughness {
 ///
 /// Directions are unit vectors in the tangent frame, n = +z, x and y along the principal roughness axes. A view or light at or below
 /// the horizon has `g1` = 0 and `lambda` = ∞; sampling takes such a view at the horizon. Functions of `f32` return numbers of the error
-/// that the tables' certificates state; `m` returned by samplers is of unit length to 4 ulp, above the horizon and facing the view.
+/// that the tables' certificates state; `m` returned by samplers is of unit length to 4 ulp, above the
+/// horizon, and faces the view to rounding (v·m > −1.2e-7).
 #[derive(Clone, Debug)]
 pub struct StudentT {
     pub(crate) sigma_x: f32,
@@ -140,7 +141,8 @@ impl StudentT {
     /// 1/(area of the microsurface seen along the stretched direction) = G1/z, finite at grazing.
     #[inline(always)]
     pub(crate) fn inverse_area(&self, w: &Stretched) -> f32 {
-        let r = 1.0 / (w.z + self.slices.kappa * w.rho);
+        // The sum vanishes for the null vector and straight below the surface only, where z·r is then 0 and not 0·∞.
+        let r = 1.0 / (w.z + self.slices.kappa * w.rho).max(f32::MIN_POSITIVE);
         self.shadowing(w, r) * r
     }
 

@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use microfacet_bake::validate::configuration::{Configuration, configurations};
-use microfacet_bake::validate::normals::Report;
-use microfacet_bake::validate::{LEVEL, Options, Outcome as Result, PDF_TOLERANCE, run as run_all};
+use microfacet_bake::validate::{LEVEL, Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all};
 
 use super::{
     Done, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, print_json, progress, tables,
@@ -93,21 +92,22 @@ fn summary(result: &Result, options: Options, source: &str) -> String {
         reports.len(),
         options.samples,
         result.level,
-        reports.first().map_or(1.0, Report::p),
+        reports.first().map_or(1.0, |report| report.normals.p()),
         result.rejected(),
-        max(|report| report.ks),
+        max(|report| report.normals.ks),
         max(|report| report.g1_error),
     );
-    if let Some((at, integral)) = result.worst_integral() {
-        text += &format!("table_pdf integrates to 1 {:+.2e} at worst (gamma {})\n", integral - 1.0, at.gamma);
+    if let Some(worst) = result.worst_integral() {
+        let (off, gamma) = (worst.pdf_integral - 1.0, worst.configuration.gamma);
+        text += &format!("table_pdf integrates to 1 {off:+.2e} at worst (gamma {gamma})\n");
     }
     text += "worst configurations:\n";
     for report in reports.iter().take(5) {
         text += &format!(
             "  p {:.3e} (lobe {:.3e}, world {:.3e}): microfacet-bake validate {source}--samples {} {}\n",
-            report.p(),
-            report.lobe.p,
-            report.world.p,
+            report.normals.p(),
+            report.normals.lobe.p,
+            report.normals.world.p,
             options.samples,
             report.configuration
         );
@@ -123,13 +123,13 @@ fn as_json(result: &Result, options: Options) -> serde_json::Value {
             let Configuration { sigma_x, sigma_y, gamma, theta, phi, seed } = report.configuration;
             json!({
                 "sigma_x": sigma_x, "sigma_y": sigma_y, "gamma": gamma.to_string(), "theta": theta, "phi": phi, "seed": seed,
-                "p_lobe": report.lobe.p, "p_world": report.world.p, "ks": report.ks, "g1_error": report.g1_error,
+                "p_lobe": report.normals.lobe.p, "p_world": report.normals.world.p, "ks": report.normals.ks, "g1_error": report.g1_error,
             })
         })
         .collect();
     json!({
         "passed": result.passed(), "samples": options.samples, "level": LEVEL, "level_of_one_test": result.level,
         "rejected": result.rejected(), "pdf_tolerance": PDF_TOLERANCE,
-        "worst_pdf_integral": result.worst_integral().map(|(_, integral)| integral), "configurations": reports,
+        "worst_pdf_integral": result.worst_integral().map(|report| report.pdf_integral), "configurations": reports,
     })
 }

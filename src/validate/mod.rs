@@ -1,10 +1,8 @@
 //! Judges of tables: what the sampler draws and returns against what the model says. They report and never repair.
 
 pub mod certificate;
-pub mod chi_square;
 pub mod configuration;
-pub mod normals;
 pub mod pdf_integral;
 mod run;
 
-pub use run::{LEVEL, Options, Outcome, PDF_TOLERANCE, run};
+pub use run::{LEVEL, Options, Outcome, PDF_TOLERANCE, Report, run};

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 use microfacet_model as model;
 use microfacet_sampler::{BindError, Tables};
 
-use super::chi_square::sidak;
+use microfacet_model::statistics::{Judgement, judge_visible_normals, sidak};
+
 use super::configuration::Configuration;
-use super::normals::{Report, judge};
 use super::pdf_integral;
 
 /// Probability with which a run rejects a correct set.
@@ -25,6 +25,19 @@ pub struct Options {
     pub gamma_factor: f64,
 }
 
+/// What was found for one configuration.
+#[derive(Clone, Copy, Debug)]
+pub struct Report {
+    /// Material and view.
+    pub configuration: Configuration,
+    /// The statistical tests of the normals drawn.
+    pub normals: Judgement,
+    /// Error of G1 for the view.
+    pub g1_error: f64,
+    /// Integral of `table_pdf` over all normals, with the configuration's γ and θ.
+    pub pdf_integral: f64,
+}
+
 /// What was found.
 #[derive(Clone, Debug)]
 pub struct Outcome {
@@ -32,27 +45,25 @@ pub struct Outcome {
     pub reports: Vec<Report>,
     /// Level of a single test after Šidák's correction.
     pub level: f64,
-    /// Integral of `table_pdf` for each configuration.
-    pub integrals: Vec<(Configuration, f64)>,
 }
 
 impl Outcome {
     /// Configurations whose χ² rejects.
     pub fn rejected(&self) -> usize {
-        self.reports.iter().filter(|report| report.p() < self.level).count()
+        self.reports.iter().filter(|report| report.normals.p() < self.level).count()
     }
 
-    /// The integral furthest from one.
-    pub fn worst_integral(&self) -> Option<(Configuration, f64)> {
-        let off = |x: &(Configuration, f64)| (x.1 - 1.0).abs();
-        self.integrals.iter().copied().max_by(|a, b| off(a).total_cmp(&off(b)))
+    /// The report whose integral of `table_pdf` is furthest from one.
+    pub fn worst_integral(&self) -> Option<&Report> {
+        let off = |report: &Report| (report.pdf_integral - 1.0).abs();
+        self.reports.iter().max_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
     /// Whether nothing rejects.
     pub fn passed(&self) -> bool {
         // A NaN fails.
-        let sound = |x: f64| (x - 1.0).abs() <= PDF_TOLERANCE;
-        self.rejected() == 0 && self.integrals.iter().all(|&(_, integral)| sound(integral))
+        let sound = |report: &Report| (report.pdf_integral - 1.0).abs() <= PDF_TOLERANCE;
+        self.rejected() == 0 && self.reports.iter().all(sound)
     }
 }
 
@@ -66,34 +77,36 @@ pub fn run(
     options: Options,
     progress: impl Fn() + Sync,
 ) -> Result<Outcome, BindError> {
-    let results = configurations
+    let mut reports = configurations
         .par_iter()
         .map(|configuration| {
-            let result = one(tables, configuration, options);
+            let report = one(tables, configuration, options);
             progress();
-            result
+            report
         })
         .collect::<Result<Vec<_>, BindError>>()?;
-    let integrals = configurations.iter().zip(&results).map(|(at, (_, integral))| (*at, *integral)).collect();
-    let mut reports: Vec<Report> = results.into_iter().map(|(report, _)| report).collect();
-    reports.sort_by(|a, b| a.p().total_cmp(&b.p()));
+    reports.sort_by(|a, b| a.normals.p().total_cmp(&b.normals.p()));
     // Two tests a configuration.
-    Ok(Outcome { level: sidak(LEVEL, 2 * reports.len()), reports, integrals })
+    Ok(Outcome { level: sidak(LEVEL, 2 * reports.len()), reports })
 }
 
-/// One configuration: the tests, and the integral of `table_pdf`.
-fn one(tables: &Tables, configuration: &Configuration, options: Options) -> Result<(Report, f64), BindError> {
-    let Configuration { sigma_x, sigma_y, gamma, .. } = *configuration;
-    // The model gets the roughness that the run time has rounded to.
+fn one(tables: &Tables, configuration: &Configuration, options: Options) -> Result<Report, BindError> {
+    let Configuration { sigma_x, sigma_y, gamma, seed, .. } = *configuration;
     let bound = tables.student_t([sigma_x, sigma_y], gamma)?;
+    // The model gets the roughness that the run time has rounded to.
     let [x, y] = bound.sigma().map(f64::from);
-    let truth = model::StudentT::anisotropic(x, y, gamma * options.gamma_factor)
-        .map_err(|_| BindError::Gamma(gamma * options.gamma_factor))?;
+    let judged = gamma * options.gamma_factor;
+    let truth = model::StudentT::anisotropic(x, y, judged).map_err(|_| BindError::Gamma(judged))?;
     let v = configuration.view();
-    let report =
-        judge(configuration, &truth, bound.g1(v), options.samples, |u| bound.sample_visible_normal(v, u));
+    let normals = judge_visible_normals(&truth, v.as_dvec3(), options.samples, seed, |u| {
+        bound.sample_visible_normal(v, u)
+    });
     let theta = configuration.theta as f32;
     let in_plane = Vec3::new(theta.sin(), 0.0, theta.cos().max(0.0));
-    let integral = pdf_integral::integral(&bound.with_roughness(1.0)?, in_plane);
-    Ok((report, integral))
+    Ok(Report {
+        configuration: *configuration,
+        normals,
+        g1_error: (f64::from(bound.g1(v)) - truth.g1(v.as_dvec3())).abs(),
+        pdf_integral: pdf_integral::integral(&bound.with_roughness(1.0)?, in_plane),
+    })
 }

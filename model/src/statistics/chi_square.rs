@@ -44,7 +44,7 @@ pub fn chi_square(observed: &[u64], expected: &[f64]) -> ChiSquare {
         Some(last) => *last = (last.0 + pool.0, last.1 + pool.1),
         None => groups.push(pool),
     }
-    let statistic = groups.iter().map(|(count, mean)| (count - mean).powi(2) / mean).sum();
+    let statistic = groups.iter().map(|(count, mean)| (count - mean) * (count - mean) / mean).sum();
     let degrees = groups.len() - 1;
     let p = match ChiSquared::new(degrees as f64) {
         _ if impossible => 0.0,
@@ -57,7 +57,7 @@ pub fn chi_square(observed: &[u64], expected: &[f64]) -> ChiSquare {
 
 /// Level for each of `tests` so that all together falsely reject with probability `level` (Šidák).
 pub fn sidak(level: f64, tests: usize) -> f64 {
-    -f64::exp_m1(f64::ln_1p(-level) / tests.max(1) as f64)
+    -libm::expm1(libm::log1p(-level) / tests.max(1) as f64)
 }
 
 #[cfg(test)]

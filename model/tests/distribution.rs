@@ -1,0 +1,133 @@
+//! The model against its own definitions: normalisations, defining integrals, and samplers by χ².
+
+use glam::{DVec3, Vec3};
+use microfacet_model::statistics::judge_visible_normals;
+use microfacet_model::{
+    Masking, Shape, SignedUnit, StudentT, UnitView, VisibleSlope, across_cdf, across_quantile,
+};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+const GAMMAS: [f64; 7] = [1.55, 1.8, 2.0, 2.5, 3.0, 20.0, f64::INFINITY];
+
+/// ∫ f(m) dm over the upper hemisphere by Gauss–Legendre-free midpoints in (r, ψ) of unit slopes, r = w/(1−w).
+fn over_hemisphere(material: &StudentT, f: impl Fn(DVec3) -> f64) -> f64 {
+    let (radial, angular) = (4000, 64);
+    let mut sum = 0.0;
+    for i in 0..radial {
+        // w⁴ in the complement carries the heavy tails.
+        let t = (f64::from(i) + 0.5) / f64::from(radial);
+        let rest = t * t * t * t;
+        let r = (1.0 - rest) / rest;
+        let dr = 4.0 * t * t * t / (rest * rest) / f64::from(radial);
+        for j in 0..angular {
+            let psi = (f64::from(j) + 0.5) / f64::from(angular) * 2.0 * std::f64::consts::PI;
+            let (x, y) = (material.sigma_x() * r * libm::cos(psi), material.sigma_y() * r * libm::sin(psi));
+            let m = DVec3::new(x, y, 1.0).normalize();
+            let area = material.sigma_x() * material.sigma_y() * r * dr * 2.0 * std::f64::consts::PI
+                / f64::from(angular);
+            sum += f(m) * m.z * m.z * m.z * area;
+        }
+    }
+    sum
+}
+
+#[test]
+fn d_is_normalised_and_p22_is_its_density_of_slopes() {
+    for gamma in GAMMAS {
+        let material = StudentT::anisotropic(0.3, 0.8, gamma).unwrap();
+        let total = over_hemisphere(&material, |m| material.d(m) * m.z);
+        assert!((total - 1.0).abs() < 1e-5, "gamma {gamma}: {total}");
+        let m = DVec3::new(0.3, -0.2, 0.7).normalize();
+        let p22 = material.p22(-m.x / m.z, -m.y / m.z);
+        assert!((material.d(m) * m.z.powi(4) / p22 - 1.0).abs() < 1e-13);
+    }
+}
+
+#[test]
+fn g1_is_its_defining_integral() {
+    // cos θ_v = G1 ∫ (v·m)⁺ D dm; a heavy tail beyond the grid is why γ starts at 2 here.
+    for gamma in [2.0, 2.5, 3.0, 20.0, f64::INFINITY] {
+        let material = StudentT::anisotropic(0.4, 0.9, gamma).unwrap();
+        for theta in [0.3_f64, 1.0, 1.4] {
+            let v = DVec3::new(theta.sin() * 0.6, theta.sin() * 0.8, theta.cos());
+            let seen = over_hemisphere(&material, |m| v.dot(m).max(0.0) * material.d(m));
+            let g1 = v.z / seen;
+            assert!(
+                (g1 - material.g1(v)).abs() < 2e-4,
+                "gamma {gamma}, theta {theta}: {g1} {}",
+                material.g1(v)
+            );
+        }
+    }
+}
+
+#[test]
+fn beckmann_g1_is_the_closed_form() {
+    let material = StudentT::beckmann(0.5).unwrap();
+    for theta in [0.2_f64, 0.9, 1.3, 1.5] {
+        let a = 1.0 / (0.5 * theta.tan());
+        let lambda = 0.5 * (libm::erf(a) - 1.0) + libm::exp(-a * a) / (2.0 * a * std::f64::consts::PI.sqrt());
+        let v = DVec3::new(theta.sin(), 0.0, theta.cos());
+        assert!((material.lambda(v) - lambda).abs() < 1e-15 + 1e-13 * lambda);
+        let l = DVec3::new(0.0, 0.6, 0.8);
+        let both = 1.0 / (1.0 + material.lambda(v) + material.lambda(l));
+        assert_eq!(material.g2(v, l, Masking::HeightCorrelated), both);
+        assert!(material.g2(v, l, Masking::Uncorrelated) <= both);
+    }
+}
+
+#[test]
+fn blinn_phong_is_an_identity() {
+    let exponent = 37.0;
+    let material = StudentT::blinn_phong(exponent).unwrap();
+    for cos in [0.05, 0.4, 0.9, 1.0_f64] {
+        let m = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+        let want = (exponent + 2.0) / (2.0 * std::f64::consts::PI) * cos.powf(exponent);
+        assert!((material.d(m) / want - 1.0).abs() < 1e-12, "{cos}");
+    }
+}
+
+#[test]
+fn quantiles_invert_their_cdfs() {
+    for gamma in GAMMAS {
+        let shape = Shape::new(gamma).unwrap();
+        for z in [0.0, 1e-3, 0.4, 2.0, 50.0, f64::INFINITY] {
+            for slopes in [
+                VisibleSlope::new(&shape, UnitView::from_cotangent(z)),
+                VisibleSlope::peeled(&shape, UnitView::from_cotangent(z)),
+            ] {
+                for u in [1e-9, 1e-3, 0.2, 0.5, 0.8, 0.999] {
+                    let back = slopes.cdf(slopes.quantile(u));
+                    assert!((back - u).abs() < 1e-13, "gamma {gamma}, z {z}, u {u}: {back}");
+                }
+            }
+        }
+        for u in [1e-9, 0.1, 0.5, 0.9] {
+            let t: SignedUnit = across_quantile(&shape, u);
+            assert!((across_cdf(&shape, t) - u).abs() < 1e-14);
+        }
+    }
+}
+
+/// The three ways to draw normals: the exact sampler, the inverse CDFs, and (for its own density) the NDF.
+#[test]
+fn samplers_draw_the_visible_normals() {
+    for gamma in GAMMAS {
+        let material = StudentT::anisotropic(0.5, 0.2, gamma).unwrap();
+        for theta in [0.1_f64, 1.0, 1.55] {
+            let v = DVec3::new(theta.sin() * 0.8, theta.sin() * -0.6, theta.cos());
+            let mut random = StdRng::seed_from_u64(3);
+            let exact = |_: [f32; 2]| material.sample_visible_exact(v, &mut || random.random()).as_vec3();
+            let judgement = judge_visible_normals(&material, v, 100_000, 5, exact);
+            assert!(judgement.p() > 1e-4, "exact, gamma {gamma}, theta {theta}: {judgement:?}");
+            let inverse = |u: [f32; 2]| material.visible_normal(v, u.map(f64::from)).as_vec3();
+            let judgement = judge_visible_normals(&material, v, 20_000, 5, inverse);
+            assert!(judgement.p() > 1e-4, "inverse, gamma {gamma}, theta {theta}: {judgement:?}");
+        }
+        // Straight from above, visible normals are the NDF weighted by m·n: what sample_ndf draws.
+        let draw = |u: [f32; 2]| -> Vec3 { material.sample_ndf(u.map(f64::from)).as_vec3() };
+        let judgement = judge_visible_normals(&material, DVec3::Z, 100_000, 5, draw);
+        assert!(judgement.p() > 1e-4, "ndf, gamma {gamma}: {judgement:?}");
+    }
+}

@@ -1,0 +1,148 @@
+//! Values of the run-time functions against the f64 model, and the properties their docs promise.
+
+use glam::{DVec3, Vec3};
+use microfacet_model as model;
+use microfacet_sampler::{BindError, Masking, StudentT, Tables};
+
+const GAMMAS: [f64; 9] = [1.501, 1.55, 1.799_99, 1.8, 2.0, 3.0, 8.5, 1e5, f64::INFINITY];
+
+fn directions() -> impl Iterator<Item = Vec3> {
+    let thetas = [0.0, 1e-4, 0.3, 0.9, 1.4, 1.56, 1.570_7];
+    let phis = [0.0, 0.8, 2.9, -1.6];
+    thetas.into_iter().flat_map(move |theta: f64| {
+        phis.into_iter().map(move |phi: f64| {
+            DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()).as_vec3()
+        })
+    })
+}
+
+fn pairs() -> impl Iterator<Item = (StudentT, model::StudentT)> {
+    let tables = Tables::embedded();
+    let roughness = [[0.3, 0.3], [1e-3, 0.01], [4.0, 0.5]];
+    GAMMAS.into_iter().flat_map(move |gamma| {
+        let tables = tables.clone();
+        roughness.into_iter().map(move |sigma: [f64; 2]| {
+            let bound = tables.student_t(sigma, gamma).unwrap();
+            let [x, y] = bound.sigma().map(f64::from);
+            (bound, model::StudentT::anisotropic(x, y, gamma).unwrap())
+        })
+    })
+}
+
+#[test]
+fn g1_and_g2_are_the_models() {
+    for (bound, truth) in pairs() {
+        for v in directions() {
+            let exact = truth.g1(v.as_dvec3());
+            // The certificate's 4e-6 and the rounding of f32.
+            assert!(
+                (f64::from(bound.g1(v)) - exact).abs() < 4.2e-6,
+                "{truth:?} {v}: {} {exact}",
+                bound.g1(v)
+            );
+            let l = Vec3::new(0.36, -0.48, 0.8);
+            for (ours, theirs) in [
+                (Masking::Uncorrelated, model::Masking::Uncorrelated),
+                (Masking::HeightCorrelated, model::Masking::HeightCorrelated),
+            ] {
+                let exact = truth.g2(v.as_dvec3(), l.as_dvec3(), theirs);
+                assert!((f64::from(bound.g2(v, l, ours)) - exact).abs() < 1e-5, "{truth:?} {v}");
+            }
+        }
+        for below in [Vec3::X, -Vec3::Z, Vec3::new(0.6, 0.0, -0.8)] {
+            assert_eq!(bound.g1(below), 0.0);
+            assert_eq!(bound.lambda(below), f32::INFINITY);
+            assert_eq!(bound.g2(below, Vec3::Z, Masking::HeightCorrelated), 0.0);
+        }
+    }
+}
+
+#[test]
+fn densities_are_the_models() {
+    for (bound, truth) in pairs() {
+        for v in directions() {
+            for u in [[0.02, 0.3], [0.4, 0.9], [0.77, 0.51], [0.99, 0.04]] {
+                let m = bound.sample_visible_normal(v, u);
+                let exact = truth.d(m.as_dvec3());
+                let d = f64::from(bound.d(m));
+                if exact > 1e35 {
+                    // Next to the horizon at γ < 2: the order of magnitude is all that f32 holds.
+                    assert!(d > 1e34, "{truth:?} {m}: {d} {exact}");
+                    continue;
+                }
+                // Rounding of the exponent: |ln D| times a few ulp.
+                let scale = 1.0 + (exact * f64::from(bound.sigma()[0] * bound.sigma()[1])).ln().abs();
+                assert!(
+                    (d / exact - 1.0).abs() < 2e-6 * scale || exact < 1e-35,
+                    "{truth:?} {m}: {d} {exact}"
+                );
+                let exact = truth.visible_normal_pdf(v.as_dvec3(), m.as_dvec3());
+                let pdf = f64::from(bound.visible_normal_pdf(v, m));
+                // v·m cancels where m is nearly turned away.
+                let facing = v.as_dvec3().dot(m.as_dvec3());
+                // The certificate bounds the absolute error of G1; the density divides by the area, 1/G1.
+                let g1 = truth.g1(v.as_dvec3());
+                let tolerance = 4.2e-6 / g1 + 2e-6 * scale + 3e-7 / facing.max(1e-9);
+                assert!((pdf - exact).abs() <= tolerance * exact + 1e-30, "{truth:?} {v} {m}: {pdf} {exact}");
+            }
+        }
+    }
+}
+
+#[test]
+fn table_pdf_approaches_the_analytic_density() {
+    for (bound, truth) in pairs() {
+        for v in directions().filter(|v| v.z > 0.1) {
+            for u in [[0.2, 0.3], [0.4, 0.9], [0.77, 0.51], [0.6, 0.2]] {
+                let m = bound.sample_visible_normal(v, u);
+                let table = f64::from(bound.table_pdf(v, m));
+                let exact = truth.visible_normal_pdf(v.as_dvec3(), m.as_dvec3());
+                assert!((table / exact - 1.0).abs() < 0.02, "{truth:?} {v} {u:?}: {table} {exact}");
+            }
+        }
+    }
+}
+
+#[test]
+fn sampled_normals_are_unit_upward_and_facing_and_rise_with_u() {
+    for (bound, truth) in pairs() {
+        for v in directions() {
+            let azimuth = Vec3::new(v.x, v.y, 0.0);
+            let mut last = f32::NEG_INFINITY;
+            for i in 0..=64 {
+                let u = i as f32 / 64.0;
+                for other in [0.0, 0.3, 1.0] {
+                    let m = bound.sample_visible_normal(v, [u, other]);
+                    let what = format!("{truth:?} {v} u {u} {other}: {m}");
+                    assert!((m.length() - 1.0).abs() < 4.0 * f32::EPSILON && m.z > 0.0, "{what}");
+                    assert!(v.dot(m) > -1.2e-7, "{what} faces away by {:e}", v.dot(m));
+                }
+                // In the plane of incidence (u₂ = ½) of an isotropic material the tilt towards the viewer rises.
+                let m = bound.sample_visible_normal(v, [u, 0.5]);
+                let [x, y] = bound.sigma();
+                if x == y && bound.gamma() >= 1.8 && azimuth.length() > 0.0 {
+                    let tilt = m.dot(azimuth / azimuth.length()) / m.z;
+                    assert!(tilt >= last - 1e-6 * tilt.abs(), "{truth:?} {v} {u}: {tilt} after {last}");
+                    last = tilt;
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn refuses_what_it_cannot_bind() {
+    let tables = Tables::embedded();
+    for sigma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(tables.student_t(sigma, 3.0), Err(BindError::Sigma(_))));
+    }
+    for gamma in [1.5, 0.0, f64::NAN, f64::NEG_INFINITY] {
+        assert!(matches!(tables.student_t(0.3, gamma), Err(BindError::Gamma(_))));
+    }
+    let error = tables.student_t(0.3, 1.5005).unwrap_err().to_string();
+    assert!(
+        error.contains("1.5005") && error.contains("1.501") && error.contains("microfacet-bake bake"),
+        "{error}"
+    );
+    assert!(tables.material("glass").unwrap_err().to_string().contains("no named materials"));
+}

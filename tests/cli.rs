@@ -1,0 +1,177 @@
+//! The command end to end, from an empty folder.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use microfacet_bake::store;
+use microfacet_sampler::{Kind, Tables};
+
+fn run(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_microfacet-bake")).args(args).current_dir(folder).output().expect("runs")
+}
+
+fn ok(folder: &Path, args: &[&str]) -> String {
+    let output = run(folder, args);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {errors}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// Runs what must be refused with exit status 2 and returns the message.
+fn refused(folder: &Path, args: &[&str]) -> String {
+    let output = run(folder, args);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {errors}");
+    assert!(output.stdout.is_empty(), "{args:?} printed something");
+    errors
+}
+
+const GLASS: &str = "[[material]]\nname = \"glass\"\nsigma = 0.454\ngamma = 3.0\n";
+
+#[test]
+fn from_a_recipe_to_normals() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("glass.toml"), GLASS).unwrap();
+    let summary = ok(at, &["bake", "glass.toml", "--out", "out", "--format", "safetensors,exr"]);
+    assert!(summary.contains("CDF error max") && summary.contains("G1 error max"), "{summary}");
+
+    // The file holds its material, and the certificate holds what the quality promises.
+    let set = store::read(&at.join("out")).unwrap();
+    let glass = set.material("glass").unwrap();
+    assert_eq!((glass.sigma(), glass.gamma()), ([0.454, 0.454], 3.0));
+    assert!(set.table(Kind::VisibleSlope).unwrap().certificate["cdf_max_error"] < 1e-4);
+    let error = set.student_t(0.3, 4.0).unwrap_err().to_string();
+    assert!(error.contains("gamma = 3"), "{error}");
+
+    // Every image reads back to the very table of the set.
+    for table in set.tables() {
+        let image = store::read(&at.join("out").join(format!("{}.exr", table.name))).unwrap();
+        assert_eq!(image.tables(), [table.clone()]);
+    }
+
+    let shown = ok(at, &["inspect", "out"]);
+    assert!(shown.contains("gamma = 3") && shown.contains("CC0-1.0") && shown.contains("glass"), "{shown}");
+    let json: serde_json::Value = serde_json::from_str(&ok(at, &["inspect", "out", "--json"])).unwrap();
+    assert_eq!(json["format"], "microfacet-tables");
+
+    ok(
+        at,
+        &[
+            "sample",
+            "--sigma",
+            "0.454",
+            "--gamma",
+            "3",
+            "--theta",
+            "1",
+            "--count",
+            "1000",
+            "--out",
+            "n.safetensors",
+        ],
+    );
+    let bytes = std::fs::read(at.join("n.safetensors")).unwrap();
+    let tensors = safetensors::SafeTensors::deserialize(&bytes).unwrap();
+    assert_eq!(tensors.tensor("normals").unwrap().shape(), [1000, 3]);
+    assert_eq!(tensors.tensor("pdf").unwrap().shape(), [1000]);
+
+    let verdict = ok(at, &["validate", "out", "--configurations", "4", "--samples", "20000"]);
+    assert!(verdict.ends_with("PASSED\n"), "{verdict}");
+}
+
+#[test]
+fn query_passes_columns_through_and_agrees_with_the_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let points =
+        "id,sigma_x,sigma_y,gamma,theta,phi,u1,u2\na,0.3,0.3,3,1.2,0,0.2,0.7\nb,0.3,0.1,inf,1.5,2,0.9,0.1\n";
+    std::fs::write(folder.path().join("points.csv"), points).unwrap();
+    let table = ok(folder.path(), &["query", "g1", "--input", "points.csv"]);
+    let mut rows = csv::Reader::from_reader(table.as_bytes());
+    assert_eq!(rows.headers().unwrap().iter().last(), Some("g1_exact"));
+    for row in rows.records() {
+        let row = row.unwrap();
+        assert!(["a", "b"].contains(&&row[0]));
+        let [lambda, g1, exact_lambda, exact_g1] = [8, 9, 10, 11].map(|i| row[i].parse::<f64>().unwrap());
+        assert!(
+            (g1 - exact_g1).abs() < 5e-6
+                && (lambda - exact_lambda).abs() < 1e-5 * (1.0 + exact_lambda).powi(2)
+        );
+    }
+    let normals = ok(folder.path(), &["query", "normal", "--input", "points.csv", "--method", "exact"]);
+    assert!(
+        normals.lines().next().unwrap().ends_with("u2,m_x_exact,m_y_exact,m_z_exact,pdf_exact"),
+        "{normals}"
+    );
+}
+
+#[test]
+fn validation_rejects_a_wrong_gamma() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = [
+        "validate",
+        "--sigma",
+        "0.5,0.2",
+        "--gamma",
+        "1.65",
+        "--theta",
+        "1.1",
+        "--phi",
+        "-2",
+        "--samples",
+        "300000",
+    ];
+    ok(folder.path(), &one);
+    let output = run(folder.path(), &[&one[..], &["--perturb-gamma", "1.01"]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stdout).ends_with("REJECTED\n"));
+}
+
+#[test]
+fn bad_input_is_named_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let recipe = |text: &str| std::fs::write(at.join("r.toml"), text).unwrap();
+    let cases = [
+        (GLASS.replace("3.0", "1.5"), "1.5"),
+        (GLASS.replace("3.0", "nan"), "nan"),
+        (GLASS.replace("3.0", "1.5005"), "1.501"),
+        (GLASS.replace("0.454", "-0.1"), "-0.1"),
+        (GLASS.replace("sigma", "sgima"), "sigma"),
+        (String::new(), "material"),
+        ("[[material\n".into(), "r.toml:1"),
+    ];
+    for (text, hint) in cases {
+        recipe(&text);
+        let message = refused(at, &["bake", "r.toml", "--out", "out"]);
+        assert!(message.to_lowercase().contains(hint), "{text}: {message}");
+        assert!(!at.join("out/tables.safetensors").exists());
+    }
+    recipe(GLASS);
+    std::fs::write(at.join("file"), "x").unwrap();
+    assert!(refused(at, &["bake", "r.toml", "--out", "file"]).contains("is a file"));
+    assert!(refused(at, &["bake", "absent.toml", "--out", "out"]).contains("absent.toml"));
+    assert!(refused(at, &["inspect", "file"]).contains("not a valid table set"));
+    assert!(refused(at, &["inspect", "absent"]).contains("absent"));
+    std::fs::write(at.join("p.csv"), "sigma_x,sigma_y,gamma,theta\n1,1,1,1\n").unwrap();
+    assert!(refused(at, &["query", "g1", "--input", "p.csv"]).contains("phi"));
+    assert!(
+        refused(
+            at,
+            &["sample", "--sigma", "0", "--gamma", "2", "--theta", "1", "--count", "1", "--out", "n"]
+        )
+        .contains("sigma")
+    );
+}
+
+#[test]
+fn a_failed_bake_leaves_the_old_set() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("r.toml"), GLASS).unwrap();
+    ok(folder.path(), &["bake", "r.toml", "--out", "out"]);
+    let before = std::fs::read(folder.path().join("out/tables.safetensors")).unwrap();
+    std::fs::write(folder.path().join("r.toml"), GLASS.replace("3.0", "1.2")).unwrap();
+    refused(folder.path(), &["bake", "r.toml", "--out", "out"]);
+    assert_eq!(std::fs::read(folder.path().join("out/tables.safetensors")).unwrap(), before);
+    Tables::from_bytes(&before).unwrap();
+}

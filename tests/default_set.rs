@@ -1,0 +1,30 @@
+//! The committed default set is what this code bakes, byte for byte.
+
+use microfacet_bake::generate::generate;
+use microfacet_bake::spec::{Quality, general_set};
+use microfacet_sampler::{Kind, Precision, encode};
+
+const COMMITTED: &[u8] = include_bytes!("../tables/default.safetensors");
+
+#[test]
+fn the_default_set_is_reproducible() {
+    let specs = general_set(Quality::Default, Precision::F32);
+    let set = generate(&specs, String::new(), Vec::new(), |_| ()).unwrap();
+    let bytes = encode(set.provenance(), set.tables()).unwrap();
+    assert!(
+        bytes == COMMITTED,
+        "the baked set differs from tables/default.safetensors; if the change is meant, raise bake::NUMERICS, run \
+         `cargo run --release -- bake --out out`, copy out/tables.safetensors there, and note it as value-breaking"
+    );
+    assert!(COMMITTED.len() < 2 << 20);
+
+    // What the README promises of the default quality.
+    let worst = |kind: Kind, key: &str| {
+        let of_kind = set.tables().iter().filter(|table| table.kind == kind);
+        of_kind.map(|table| table.certificate[key]).fold(0.0, f64::max)
+    };
+    assert!(worst(Kind::Shadowing, "g1_max_error") < 1e-5);
+    assert!(worst(Kind::VisibleSlope, "cdf_max_error") < 1e-4);
+    assert!(worst(Kind::VisibleSlopePeeled, "cdf_max_error") < 5e-4);
+    assert!(worst(Kind::VisibleSlopeConditional, "cdf_max_error") < 1e-4);
+}
