@@ -1,5 +1,7 @@
 //! The model against its own definitions: normalisations, defining integrals, and samplers by χ².
 
+#![allow(clippy::disallowed_methods, reason = "only what is baked must be the same on every system")]
+
 use glam::{DVec3, Vec3};
 use microfacet_model::statistics::judge_visible_normals;
 use microfacet_model::{
