@@ -29,3 +29,8 @@ pub use error::{BindError, LoadError};
 pub use student_t::{Masking, Roughness, StudentT};
 pub use table::{Kind, Table};
 pub use tables::Tables;
+
+/// The README's example, so that it keeps compiling.
+#[cfg(all(doctest, feature = "embedded"))]
+#[doc = include_str!("../../README.md")]
+struct Readme;
