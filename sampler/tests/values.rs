@@ -7,7 +7,7 @@ use microfacet_sampler::{BindError, Masking, StudentT, Tables};
 const GAMMAS: [f64; 9] = [1.501, 1.55, 1.799_99, 1.8, 2.0, 3.0, 8.5, 1e5, f64::INFINITY];
 
 fn directions() -> impl Iterator<Item = Vec3> {
-    let thetas = [0.0, 1e-4, 0.3, 0.9, 1.4, 1.56, 1.570_7];
+    let thetas = [0.0, 1e-4, 0.3, 0.9, 1.4, 1.56, 1.5705];
     let phis = [0.0, 0.8, 2.9, -1.6];
     thetas.into_iter().flat_map(move |theta: f64| {
         phis.into_iter().map(move |phi: f64| {
