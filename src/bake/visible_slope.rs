@@ -1,7 +1,23 @@
 //! The inverse CDF of the in-plane slope of visible normals, over view and u₁.
 //!
 //! A node holds the distance g of the half tangent h = x/(1 + √(1+x²)) of the unit slope from its nearer end, and the exact
-//! derivative; `examples/table_design.rs` measures this choice against others and prints the table that `docs/tables.md` shows.
+//! derivative. Largest CDF error between the nodes of several designs, all of 65 views by 2·17 numbers, cubic Hermite along u and lines
+//! between views, as `cargo run --release --example table_design` prints it:
+//!
+//! | stored | view axis | u | γ = 1.8 | 2 | 4 | ∞ |
+//! | --- | --- | --- | --- | --- | --- | --- |
+//! | h | cos θ | t⁴ | 2.7e-2 | 2.1e-2 | 1.4e-2 | 1.2e-2 |
+//! | h | tan ½(π/2−θ) | t | 5.7e-3 | 5.3e-3 | 5.2e-3 | 1.1e-2 |
+//! | h | tan ½(π/2−θ) | t² | 1.7e-4 | 9.6e-5 | 4.0e-4 | 4.1e-4 |
+//! | **h** | **tan ½(π/2−θ)** | **t⁴** | 1.2e-4 | 2.3e-5 | 2.4e-5 | 3.4e-5 |
+//! | u of GGX | cos θ | t⁴ | 7.1e-3 | 2.3e-6 | 1.1e-2 | 1.5e-2 |
+//! | u of GGX | tan ½(π/2−θ) | t | 2.2e-3 | 7.9e-13 | 7.5e-3 | 1.1e-2 |
+//! | u of GGX | tan ½(π/2−θ) | t² | 7.6e-5 | 4.6e-7 | 4.8e-4 | 4.5e-4 |
+//! | u of GGX | tan ½(π/2−θ) | t⁴ | 5.1e-5 | 2.3e-6 | 2.4e-5 | 2.9e-5 |
+//!
+//! The number of a GGX sampler is as good, and exact at γ = 2, but costs a rotation and two square roots more at run time. The half tangent has
+//! the silhouette x = −cot θ at h = −τ, linear in the view coordinate τ, so that no interpolated slope faces away; and measured from its ends it
+//! keeps its digits in both tails.
 
 use rayon::prelude::*;
 
