@@ -4,6 +4,7 @@ mod bake;
 mod inspect;
 mod query;
 mod sample;
+mod stress;
 mod validate;
 
 use std::fmt::Display;

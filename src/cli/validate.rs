@@ -41,6 +41,12 @@ pub(super) struct Args {
     /// Multiply the model's gamma: 1.01 shows that the tests reject.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     perturb_gamma: f64,
+    /// Judge every public function at corners and random points instead: no NaN, nothing out of range.
+    #[arg(long, conflicts_with_all = ["sigma", "gamma", "theta", "perturb_gamma"])]
+    stress: bool,
+    /// Points of the stress run; never fewer than its corners, about a million.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "stress")]
+    points: u64,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -64,6 +70,9 @@ fn parse_configurations(text: &str) -> std::result::Result<usize, String> {
 
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
+    if args.stress {
+        return super::stress::stress(&set, args.points, args.seed, args.json);
+    }
     let chosen = match (args.sigma, args.gamma, args.theta) {
         (Some([sigma_x, sigma_y]), Some(gamma), Some(theta)) => {
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi: args.phi, seed: args.seed }]

@@ -4,5 +4,6 @@ pub mod certificate;
 pub mod configuration;
 pub mod pdf_integral;
 mod run;
+pub mod stress;
 
 pub use run::{LEVEL, Options, Outcome, PDF_TOLERANCE, Report, run};

@@ -1,0 +1,74 @@
+//! `validate --stress`: the report as a table by region.
+
+use serde_json::json;
+
+use microfacet_bake::validate::stress::{ERRORS, ROUGHNESSES, Region, Report, SHAPES, VIEWS, run};
+use microfacet_sampler::Tables;
+
+use super::{Done, Outcome, print, print_json};
+
+pub(super) fn stress(tables: &Tables, points: u64, seed: u64, as_json: bool) -> Outcome {
+    let report = run(tables, points, seed)?;
+    if as_json { print_json(&document(&report))? } else { print(&summary(&report))? }
+    Ok(if report.total().violations.is_empty() { Done::Ok } else { Done::Rejected })
+}
+
+/// Regions that hold points, with their names.
+fn regions(report: &Report) -> impl Iterator<Item = ([&'static str; 3], &Region)> {
+    let of_view = |shape: usize, view: usize| {
+        let row = &report.regions[shape][view];
+        row.iter().zip(ROUGHNESSES).map(move |(region, rough)| ([SHAPES[shape], VIEWS[view], rough], region))
+    };
+    let all = (0..SHAPES.len()).flat_map(move |shape| (0..VIEWS.len()).flat_map(move |view| of_view(shape, view)));
+    all.filter(|(_, region)| region.points > 0)
+}
+
+fn summary(report: &Report) -> String {
+    let mut text = format!("{:12} {:14} {:9} {:>11} {:>10}", "shape", "view", "sigma", "points", "violations");
+    ERRORS.iter().for_each(|error| text += &format!(" {error:>10}"));
+    text.push('\n');
+    for ([shape, view, rough], region) in regions(report) {
+        let broken: u64 = region.violations.values().map(|violation| violation.count).sum();
+        text += &format!("{shape:12} {view:14} {rough:9} {:>11} {broken:>10}", region.points);
+        region.errors.iter().for_each(|worst| text += &format!(" {:>10.2e}", worst.value));
+        text.push('\n');
+    }
+    text += "\nsigma: ordinary is [1e-4, 10], extreme [1e-8, 1e6]\nlargest errors among ordinary sigma:\n";
+    for (i, error) in ERRORS.iter().enumerate() {
+        let ordinary = regions(report).filter(|(name, _)| name[2] == ROUGHNESSES[0]);
+        let worst = ordinary.map(|(_, region)| region.errors[i]).max_by(|a, b| a.value.total_cmp(&b.value));
+        if let Some(worst) = worst {
+            text += &format!("  {error} {:.2e}: {}\n", worst.value, worst.at);
+        }
+    }
+    let total = report.total();
+    for (rule, violation) in &total.violations {
+        text += &format!("BROKEN {} times: {rule}, at worst {:e}", violation.count, violation.worst.value);
+        text += &format!("\n  {}\n", violation.worst.at);
+    }
+    let verdict = if total.violations.is_empty() { "PASSED" } else { "REJECTED" };
+    text + &format!("{} points\n{verdict}\n", total.points)
+}
+
+fn document(report: &Report) -> serde_json::Value {
+    let regions: Vec<_> = regions(report)
+        .map(|([shape, view, sigma], region)| {
+            let errors: Vec<_> = ERRORS
+                .iter()
+                .zip(&region.errors)
+                .map(|(name, worst)| json!({ "quantity": name, "max": worst.value, "query": worst.at.to_string() }))
+                .collect();
+            let violations: Vec<_> = region
+                .violations
+                .iter()
+                .map(|(rule, found)| json!({ "rule": rule, "count": found.count, "query": found.worst.at.to_string() }))
+                .collect();
+            json!({
+                "shape": shape, "view": view, "sigma": sigma, "points": region.points,
+                "errors": errors, "violations": violations,
+            })
+        })
+        .collect();
+    let total = report.total();
+    json!({ "passed": total.violations.is_empty(), "points": total.points, "regions": regions })
+}

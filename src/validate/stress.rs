@@ -1,0 +1,193 @@
+//! Stress: every public function of sampler and model at generated corners and random points, counting what must never happen.
+//!
+//! A violation is a NaN, an infinity, a value out of its range, a normal that is not of unit length, below the horizon or facing away, or a
+//! broken monotonicity. Errors of the single-precision sampler against the model are measured along the way, by region.
+
+mod checks;
+mod corners;
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use microfacet_sampler::{BindError, Tables};
+
+use corners::{corner_materials, corner_points, random_material, random_points};
+
+/// Points drawn for each random material.
+const POINTS_PER_MATERIAL: u64 = 256;
+
+/// One material, view and pair of random numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Point {
+    /// σx and σy.
+    pub sigma: [f32; 2],
+    /// γ.
+    pub gamma: f64,
+    /// Polar angle of the view, radians; up to 1e-6 beyond π/2.
+    pub theta: f64,
+    /// Azimuth of the view, radians.
+    pub phi: f64,
+    /// Random numbers.
+    pub u: [f32; 2],
+}
+
+impl Point {
+    /// The view as `query` forms it.
+    pub fn view(&self) -> Vec3 {
+        direction(self.theta, self.phi)
+    }
+}
+
+fn direction(theta: f64, phi: f64) -> Vec3 {
+    let (sin, cos) = theta.sin_cos();
+    DVec3::new(sin * phi.cos(), sin * phi.sin(), cos).as_vec3()
+}
+
+/// The command that shows the point.
+impl fmt::Display for Point {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { sigma: [x, y], gamma, theta, phi, u: [u1, u2] } = self;
+        write!(
+            f,
+            "printf 'sigma_x,sigma_y,gamma,theta,phi,u1,u2\\n{x:?},{y:?},{gamma:?},{theta:?},{phi:?},{u1:?},{u2:?}\\n' | \
+             microfacet-bake query normal --input -"
+        )
+    }
+}
+
+/// The largest of something, and where it was seen.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Worst {
+    /// The largest value.
+    pub value: f64,
+    /// Where.
+    pub at: Point,
+}
+
+impl Worst {
+    fn see(&mut self, value: f64, at: &Point) {
+        // A NaN is the worst there is.
+        if !(value <= self.value) {
+            *self = Self { value, at: *at };
+        }
+    }
+}
+
+/// A rule that was broken.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Violation {
+    /// How often.
+    pub count: u64,
+    /// The offending value that was largest in magnitude.
+    pub worst: Worst,
+}
+
+/// Errors of the sampler against the model: what is compared, in the order of [`Region::errors`].
+pub const ERRORS: [&str; 4] = ["g1 abs", "d rel", "pdf rel", "normal rad"];
+
+/// What was found in a part of the domain.
+#[derive(Clone, Debug, Default)]
+pub struct Region {
+    /// Points judged.
+    pub points: u64,
+    /// Largest errors, see [`ERRORS`].
+    pub errors: [Worst; 4],
+    /// Rules that were broken, by name.
+    pub violations: BTreeMap<&'static str, Violation>,
+}
+
+impl Region {
+    fn merge(&mut self, other: &Self) {
+        self.points += other.points;
+        for (mine, theirs) in self.errors.iter_mut().zip(&other.errors) {
+            mine.see(theirs.value, &theirs.at);
+        }
+        for (&rule, theirs) in &other.violations {
+            let mine = self.violations.entry(rule).or_default();
+            mine.count += theirs.count;
+            mine.worst.see(theirs.worst.value, &theirs.worst.at);
+        }
+    }
+}
+
+/// Names of the parts into which the domain is divided: by shape, by view, by roughness.
+pub const SHAPES: [&str; 4] = ["gamma < 1.8", "gamma < 4", "gamma < 1e4", "to inf"];
+/// See [`SHAPES`].
+pub const VIEWS: [&str; 4] = ["near n", "between", "grazing", "below horizon"];
+/// See [`SHAPES`].
+pub const ROUGHNESSES: [&str; 3] = ["ordinary", "extreme", "any f32"];
+
+/// What a stress run found, region by region.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Indexed by position in [`SHAPES`], [`VIEWS`] and [`ROUGHNESSES`].
+    pub regions: [[[Region; ROUGHNESSES.len()]; VIEWS.len()]; SHAPES.len()],
+}
+
+impl Report {
+    fn region(&mut self, at: &Point) -> &mut Region {
+        let shape = [1.8, 4.0, 1e4].iter().filter(|&&gamma| at.gamma >= gamma).count();
+        let cos = at.view().z;
+        let view = match cos {
+            _ if cos < 0.0 => 3,
+            _ if cos < 1e-2 => 2,
+            _ if at.theta < 1e-2 => 0,
+            _ => 1,
+        };
+        let inside = |low: f32, high: f32| at.sigma.iter().all(|sigma| (low..=high).contains(sigma));
+        let roughness = match () {
+            () if inside(1e-4, 10.0) => 0,
+            () if inside(1e-8, 1e6) => 1,
+            () => 2,
+        };
+        &mut self.regions[shape][view][roughness]
+    }
+
+    fn merge(mut self, other: Self) -> Self {
+        let (mine, theirs) = (self.regions.as_flattened_mut(), other.regions.as_flattened());
+        mine.as_flattened_mut().iter_mut().zip(theirs.as_flattened()).for_each(|(a, b)| a.merge(b));
+        self
+    }
+
+    /// All regions together.
+    pub fn total(&self) -> Region {
+        let mut total = Region::default();
+        self.regions.as_flattened().as_flattened().iter().for_each(|region| total.merge(region));
+        total
+    }
+}
+
+/// Visits all corners and then random points until `points` are judged; the same `seed` visits the same ones.
+///
+/// # Errors
+/// [`BindError`] if the set does not hold what it says it covers.
+pub fn run(tables: &Tables, points: u64, seed: u64) -> Result<Report, BindError> {
+    let corners = corner_materials(tables)
+        .par_iter()
+        .enumerate()
+        .map(|(i, &(sigma, gamma))| {
+            let mut report = Report::default();
+            checks::judge(tables, sigma, gamma, corner_points(sigma, gamma, i), &mut report)?;
+            Ok(report)
+        })
+        .try_reduce(Report::default, |a, b| Ok(a.merge(b)))?;
+    let left = points.saturating_sub(corners.total().points).div_ceil(POINTS_PER_MATERIAL);
+    let random = (0..left)
+        .into_par_iter()
+        .fold(
+            || Ok(Report::default()),
+            |report: Result<Report, BindError>, i| {
+                let mut report = report?;
+                let mut numbers = corners::numbers(seed, i);
+                let (sigma, gamma) = random_material(tables, &mut numbers);
+                let points = random_points(sigma, gamma, POINTS_PER_MATERIAL, &mut numbers);
+                checks::judge(tables, sigma, gamma, points, &mut report)?;
+                Ok(report)
+            },
+        )
+        .try_reduce(Report::default, |a, b| Ok(a.merge(b)))?;
+    Ok(corners.merge(random))
+}

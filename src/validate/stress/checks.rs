@@ -1,0 +1,160 @@
+//! The rules. Each is named by the function and what must not happen to it.
+
+use glam::{DVec3, Vec3};
+
+use microfacet_model as model;
+use microfacet_sampler::{BindError, Masking, StudentT, Tables};
+
+use super::{Point, Report, direction};
+
+/// Four ulp of a unit vector's components.
+const ULP4: f64 = 4.0 * f32::EPSILON as f64;
+/// One view in this many is also put to the model's inverse CDFs, which cost a hundred lookups.
+const MODEL_EVERY: usize = 8;
+/// γ from which the tilt towards the viewer rises with `u[0]` over the whole range.
+const GAMMA_WHOLE: f64 = 1.8;
+
+struct Judge<'a> {
+    bound: StudentT,
+    exact: model::StudentT,
+    report: &'a mut Report,
+}
+
+/// Judges a material at `views`, each a list of points that differ in `u` only, `u[0]` ascending.
+pub(super) fn judge(
+    tables: &Tables,
+    sigma: [f32; 2],
+    gamma: f64,
+    views: Vec<Vec<Point>>,
+    report: &mut Report,
+) -> Result<(), BindError> {
+    let bound = tables.student_t(sigma, gamma)?;
+    let [x, y] = sigma.map(f64::from);
+    let exact = model::StudentT::anisotropic(x, y, gamma).map_err(|_| BindError::Gamma(gamma))?;
+    let mut judge = Judge { bound, exact, report };
+    for (i, points) in views.iter().enumerate() {
+        judge.view(&points[0]);
+        let mut last = f64::NEG_INFINITY;
+        for at in points {
+            judge.normal(at, &mut last);
+        }
+        if i % MODEL_EVERY == 0 {
+            judge.model_normal(&points[i % points.len()]);
+        }
+    }
+    Ok(())
+}
+
+impl Judge<'_> {
+    /// Notes a broken rule; `value` is the offending number.
+    fn require(&mut self, holds: bool, rule: &'static str, value: f64, at: &Point) {
+        if !holds {
+            let violation = self.report.region(at).violations.entry(rule).or_default();
+            violation.count += 1;
+            violation.worst.see(value.abs(), at);
+        }
+    }
+
+    /// Functions of directions alone.
+    fn view(&mut self, at: &Point) {
+        let v = at.view();
+        let g1 = f64::from(self.bound.g1(v));
+        let unit = |x: f64| (0.0..=1.0).contains(&x);
+        self.require(unit(g1), "g1 outside [0, 1]", g1, at);
+        self.require((g1 > 0.0) == (v.z > 0.0), "g1 = 0 above the horizon, or not below", g1, at);
+        let lambda = self.bound.lambda(v);
+        self.require(lambda >= 0.0, "lambda negative or NaN", lambda.into(), at);
+        let share = self.bound.tabulated_share(v);
+        self.require(unit(share.into()), "tabulated_share outside [0, 1]", share.into(), at);
+
+        let precise = v.as_dvec3();
+        let truth = self.exact.g1(precise);
+        self.require(unit(truth), "model g1 outside [0, 1]", truth, at);
+        let lambda = self.exact.lambda(precise);
+        self.require(lambda >= 0.0, "model lambda negative or NaN", lambda, at);
+        let area = self.exact.inverse_area(if v.z < 0.0 { DVec3::new(precise.x, precise.y, 0.0) } else { precise });
+        self.require(area >= 0.0 && area.is_finite(), "model inverse_area negative, NaN or inf", area, at);
+        self.report.region(at).errors[0].see((g1 - truth).abs(), at);
+
+        // A little further from the normal, as far again from the horizon, and half way to it.
+        for factor in [1.0 + 1e-6, 1.01, 1.5] {
+            let further = self.bound.g1(direction((at.theta * factor).min(std::f64::consts::PI), at.phi));
+            self.require(f64::from(further) <= g1 + ULP4, "g1 rises with theta", f64::from(further) - g1, at);
+        }
+        // Any other direction will do for the light.
+        let l = direction(1.5 * f64::from(at.u[1]), at.phi + 2.0);
+        for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
+            let (g2, swapped) = (self.bound.g2(v, l, masking), self.bound.g2(l, v, masking));
+            let bound = f64::from(g2) <= g1.min(self.bound.g1(l).into()) * (1.0 + ULP4);
+            self.require(g2 >= 0.0 && bound, "g2 outside [0, min g1]", g2.into(), at);
+            self.require(g2 == swapped, "g2 not symmetric", (g2 - swapped).into(), at);
+        }
+    }
+
+    /// A sampled normal and the densities at it. `last` is the tilt at the number before.
+    fn normal(&mut self, at: &Point, last: &mut f64) {
+        self.report.region(at).points += 1;
+        let v = at.view();
+        let m = self.bound.sample_visible_normal(v, at.u);
+        self.unit_and_above(m, at);
+        let facing = v.as_dvec3().dot(m.as_dvec3());
+        let seen = v.z < 0.0 || facing >= -ULP4;
+        self.require(seen, "sampled normal faces away", facing, at);
+
+        let tilt = self.tilt(v, m);
+        if at.gamma >= GAMMA_WHOLE {
+            self.require(!(tilt < *last - 2.0 * ULP4), "tilt falls with u1", *last - tilt, at);
+        }
+        *last = tilt;
+
+        let bound = &self.bound;
+        let (d, pdf, table) = (bound.d(m), bound.visible_normal_pdf(v, m), bound.table_pdf(v, m));
+        let sound = |x: f32| x >= 0.0 && x.is_finite();
+        self.require(sound(d), "d negative, NaN or inf", d.into(), at);
+        self.require(sound(pdf), "visible_normal_pdf negative, NaN or inf", pdf.into(), at);
+        self.require(sound(table), "table_pdf negative, NaN or inf", table.into(), at);
+        let truth = [self.exact.d(m.as_dvec3()), self.exact.visible_normal_pdf(v.as_dvec3(), m.as_dvec3())];
+        for (i, (got, want)) in [d, pdf].into_iter().zip(truth).enumerate() {
+            self.require(want >= 0.0, ["model d negative or NaN", "model pdf negative or NaN"][i], want, at);
+            // Elsewhere f32 cannot hold it; and v·m itself is rounding at the silhouette.
+            if (1e-30..1e30).contains(&want) && (i == 0 || facing > 1e-3) {
+                self.report.region(at).errors[1 + i].see((f64::from(got) / want - 1.0).abs(), at);
+            }
+        }
+    }
+
+    fn unit_and_above(&mut self, m: Vec3, at: &Point) {
+        let length = m.as_dvec3().length();
+        self.require((length - 1.0).abs() <= ULP4, "sampled normal not of unit length", length - 1.0, at);
+        self.require(m.z > 0.0, "sampled normal not above the horizon", m.z.into(), at);
+    }
+
+    /// Tilt of m towards the viewer in unit space, as tan(α/2) ∈ [−1, 1].
+    fn tilt(&self, v: Vec3, m: Vec3) -> f64 {
+        let [sx, sy] = self.bound.sigma().map(f64::from);
+        let (v, m) = (v.as_dvec3(), m.as_dvec3());
+        let (vx, vy) = (sx * v.x, sy * v.y);
+        let rho = vx.hypot(vy);
+        let towards = if rho > 0.0 { (vx / rho, vy / rho) } else { (1.0, 0.0) };
+        let x = m.x / sx * towards.0 + m.y / sy * towards.1;
+        x / (m.z + x.hypot(m.z))
+    }
+
+    /// The model's own sampler, and how far the table's normal is from its.
+    fn model_normal(&mut self, at: &Point) {
+        let v = at.view();
+        let m = self.exact.visible_normal(v.as_dvec3(), at.u.map(f64::from));
+        let ulp4 = 4.0 * f64::EPSILON;
+        self.require((m.length() - 1.0).abs() <= ulp4, "model normal not of unit length", m.length() - 1.0, at);
+        self.require(m.z >= 0.0, "model normal below the horizon", m.z, at);
+        let facing = v.as_dvec3().dot(m);
+        self.require(v.z < 0.0 || facing >= -2.0 * ULP4 * ULP4 - ulp4, "model normal faces away", facing, at);
+        let pdf = self.exact.visible_normal_pdf(v.as_dvec3(), m);
+        self.require(pdf >= 0.0, "model pdf negative or NaN", pdf, at);
+        // Below 1.8 the first number is first used to choose a part, so the two maps differ.
+        if at.gamma >= GAMMA_WHOLE {
+            let drawn = self.bound.sample_visible_normal(v, at.u);
+            self.report.region(at).errors[3].see((drawn.as_dvec3() - m).length(), at);
+        }
+    }
+}
