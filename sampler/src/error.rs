@@ -26,7 +26,7 @@ impl core::error::Error for LoadError {}
 /// Why a material cannot be bound to the tables at hand.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BindError {
-    /// `!(sigma > 0)` or infinite.
+    /// `sigma` outside [1e-8, 1e6] or NaN.
     Sigma(f32),
     /// γ ≤ 3/2 or NaN: no member of the family.
     Gamma(f64),
@@ -51,7 +51,10 @@ pub enum BindError {
 impl fmt::Display for BindError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Sigma(x) => write!(f, "sigma = {x}: a roughness must be positive and finite"),
+            Self::Sigma(x) => write!(
+                f,
+                "sigma = {x}: a roughness must lie in [1e-8, 1e6]; below, treat the surface as smooth"
+            ),
             Self::Gamma(x) => {
                 write!(f, "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann")
             }

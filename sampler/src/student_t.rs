@@ -23,6 +23,18 @@ pub enum Masking {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roughness(pub [f32; 2]);
 
+/// Outside this range squares of stretched directions, and of normals made from them, leave single precision.
+const SIGMAS: core::ops::RangeInclusive<f32> = 1e-8..=1e6;
+
+impl Roughness {
+    fn checked(self) -> Result<[f32; 2], BindError> {
+        match self.0.into_iter().find(|sigma| !SIGMAS.contains(sigma)) {
+            Some(sigma) => Err(BindError::Sigma(sigma)),
+            None => Ok(self.0),
+        }
+    }
+}
+
 impl From<f32> for Roughness {
     fn from(sigma: f32) -> Self {
         Self([sigma, sigma])
@@ -67,10 +79,10 @@ pub struct StudentT {
 /// A direction stretched by (σx, σy, 1), with its azimuth there.
 #[derive(Clone, Copy)]
 pub(crate) struct Stretched {
-    /// Horizontal part, unit length in the plane after division by `rho`; (1, 0) at normal incidence.
+    /// Direction of the horizontal part, of length `frame`; (1, 0) at normal incidence.
     pub(crate) x: f32,
     pub(crate) y: f32,
-    /// Length of (x, y); 1 at normal incidence, where it only scales.
+    /// Length of (x, y): that of the horizontal part, or 1 where that is short.
     pub(crate) frame: f32,
     /// Horizontal length, 0 at normal incidence.
     pub(crate) rho: f32,
@@ -81,14 +93,12 @@ pub(crate) struct Stretched {
 /// Horizontal lengths below this are taken as normal incidence: their squares leave the range of f32, and the azimuth with them.
 const NORMAL_INCIDENCE: f32 = 1e-18;
 
+/// Below this the azimuth is scaled to unit length: the square of a normal carrying it would leave the range of f32.
+const SHORT: f32 = 1e-6;
+
 impl StudentT {
     pub(crate) fn bind(tables: &[Table], roughness: Roughness, gamma: f64) -> Result<Self, BindError> {
-        let [sigma_x, sigma_y] = roughness.0;
-        for sigma in roughness.0 {
-            if !(sigma > 0.0 && sigma < f32::INFINITY) {
-                return Err(BindError::Sigma(sigma));
-            }
-        }
+        let [sigma_x, sigma_y] = roughness.checked()?;
         if !(gamma > 1.5) {
             return Err(BindError::Gamma(gamma));
         }
@@ -100,14 +110,9 @@ impl StudentT {
     /// The same shape with another roughness; the tables are not touched again.
     ///
     /// # Errors
-    /// [`BindError::Sigma`] unless both roughnesses are positive and finite.
+    /// [`BindError::Sigma`] unless both roughnesses lie in [1e-8, 1e6].
     pub fn with_roughness(&self, roughness: impl Into<Roughness>) -> Result<Self, BindError> {
-        let Roughness([sigma_x, sigma_y]) = roughness.into();
-        for sigma in [sigma_x, sigma_y] {
-            if !(sigma > 0.0 && sigma < f32::INFINITY) {
-                return Err(BindError::Sigma(sigma));
-            }
-        }
+        let [sigma_x, sigma_y] = roughness.into().checked()?;
         Ok(Self { sigma_x, sigma_y, ..self.clone() })
     }
 
@@ -131,10 +136,12 @@ impl StudentT {
         let (x, y) = (self.sigma_x * w.x, self.sigma_y * w.y);
         let rho = sqrt(x * x + y * y);
         let z = w.z.max(0.0);
-        if rho < NORMAL_INCIDENCE {
-            Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: 0.0, z }
-        } else {
+        if rho >= SHORT {
             Stretched { x, y, frame: rho, rho, z }
+        } else if rho >= NORMAL_INCIDENCE {
+            Stretched { x: x / rho, y: y / rho, frame: 1.0, rho, z }
+        } else {
+            Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: 0.0, z }
         }
     }
 
@@ -217,7 +224,9 @@ impl StudentT {
             let gamma = 1.0 + 1.0 / s;
             2.0 * (gamma - 2.0) * libm::logf(m.z) - gamma * libm::logf(s * r2)
         };
-        (scale * libm::expf(log)).min(f32::MAX)
+        // In two halves: the whole power may underflow where 1/σ² brings D back.
+        let root = libm::expf(0.5 * log);
+        (scale * root * root).min(f32::MAX)
     }
 
     /// Density of visible normals G1(v) (v·m)⁺ D(m)/(v·n) per steradian: the exact one, with G1 from the table.
