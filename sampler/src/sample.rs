@@ -42,7 +42,7 @@ impl StudentT {
         let x =
             if self.slices.peeled { self.sample_peeled(&view, u[0]) } else { self.sample_slope(&view, u[0]) };
         let t = self.sample_across(u[1]);
-        self.assemble(&view, x, t)
+        face(self.assemble(&view, x, t), Vec3::new(v.x, v.y, view.z))
     }
 
     /// The in-plane slope from the table at u ∈ [0, 1].
@@ -129,6 +129,21 @@ impl StudentT {
         let m = m * (1.0 / sqrt(m.dot(m)));
         Vec3::new(m.x, m.y, m.z.max(HORIZON))
     }
+}
+
+/// Turns a normal that rounding has put behind the silhouette back onto it.
+///
+/// The silhouette's slope has the rounding of the view coordinate, which is coarse where σ is far below the view's tilt, and the
+/// stretch of a strongly anisotropic material lets the tilt across spoil the tilt along.
+#[inline(always)]
+fn face(m: Vec3, v: Vec3) -> Vec3 {
+    let facing = v.dot(m);
+    if facing >= 0.0 {
+        return m;
+    }
+    let m = m - facing * v;
+    let m = m * (1.0 / sqrt(m.dot(m)));
+    Vec3::new(m.x, m.y, m.z.max(HORIZON))
 }
 
 /// t = (2 min(u, 1−u))^(1/2^roots), 0 outside [0, 1].
