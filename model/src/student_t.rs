@@ -190,10 +190,12 @@ impl StudentT {
     ///
     /// 0 for views at or below the horizon and for normals facing away.
     pub fn visible_normal_pdf(&self, v: DVec3, m: DVec3) -> f64 {
-        if !(v.z > 0.0) {
+        let facing = v.dot(m);
+        // Decided first, for D may be infinite on the horizon.
+        if !(v.z > 0.0 && facing > 0.0) {
             return 0.0;
         }
-        v.dot(m).max(0.0) * self.d(m) * self.inverse_area(v)
+        facing * self.d(m) * self.inverse_area(v)
     }
 
     /// G1(v)/(v·n): one over the projected area of the microsurface towards `v`, finite at grazing where both vanish.
@@ -224,10 +226,13 @@ impl StudentT {
     pub(crate) fn assemble(&self, at: &Stretched, x: SignedUnit, t: SignedUnit) -> DVec3 {
         let (sin_x, cos_x) = self.shape.unit_sin_cos(x.w);
         let (sin_t, cos_t) = self.shape.unit_sin_cos(t.w);
-        let (x, z) = (x.sign * sin_x, cos_x);
+        let side = x.sign;
+        let (x, z) = (side * sin_x, cos_x);
         // (x : y : z) in homogeneous form, y = √(z² + s x²)·t, everything times cos_t: no slope is ever formed.
         let y = (z * z + self.shape.s() * x * x).sqrt() * t.sign * sin_t;
         let (x, z) = (x * cos_t, z * cos_t);
+        // Beckmann's slopes are independent, so that two infinite ones leave their ratio open.
+        let (x, y) = if x == 0.0 && y == 0.0 && z == 0.0 { (side, t.sign) } else { (x, y) };
         DVec3::new(
             self.sigma_x * (x * at.cos_phi - y * at.sin_phi),
             self.sigma_y * (x * at.sin_phi + y * at.cos_phi),
