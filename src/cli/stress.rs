@@ -9,7 +9,11 @@ use super::{Done, Outcome, print, print_json};
 
 pub(super) fn stress(tables: &Tables, points: u64, seed: u64, as_json: bool) -> Outcome {
     let report = run(tables, points, seed)?;
-    if as_json { print_json(&document(&report))? } else { print(&summary(&report))? }
+    if as_json {
+        print_json(&document(&report))?
+    } else {
+        print(&summary(&report))?
+    }
     Ok(if report.total().violations.is_empty() { Done::Ok } else { Done::Rejected })
 }
 
@@ -19,12 +23,14 @@ fn regions(report: &Report) -> impl Iterator<Item = ([&'static str; 3], &Region)
         let row = &report.regions[shape][view];
         row.iter().zip(ROUGHNESSES).map(move |(region, rough)| ([SHAPES[shape], VIEWS[view], rough], region))
     };
-    let all = (0..SHAPES.len()).flat_map(move |shape| (0..VIEWS.len()).flat_map(move |view| of_view(shape, view)));
+    let all =
+        (0..SHAPES.len()).flat_map(move |shape| (0..VIEWS.len()).flat_map(move |view| of_view(shape, view)));
     all.filter(|(_, region)| region.points > 0)
 }
 
 fn summary(report: &Report) -> String {
-    let mut text = format!("{:12} {:14} {:9} {:>11} {:>10}", "shape", "view", "sigma", "points", "violations");
+    let mut text =
+        format!("{:12} {:14} {:9} {:>11} {:>10}", "shape", "view", "sigma", "points", "violations");
     ERRORS.iter().for_each(|error| text += &format!(" {error:>10}"));
     text.push('\n');
     for ([shape, view, rough], region) in regions(report) {
@@ -61,7 +67,7 @@ fn document(report: &Report) -> serde_json::Value {
             let violations: Vec<_> = region
                 .violations
                 .iter()
-                .map(|(rule, found)| json!({ "rule": rule, "count": found.count, "query": found.worst.at.to_string() }))
+                .map(|(rule, found)| json!({ "rule": rule, "count": found.count, "worst": found.worst.value, "query": found.worst.at.to_string() }))
                 .collect();
             json!({
                 "shape": shape, "view": view, "sigma": sigma, "points": region.points,

@@ -86,7 +86,7 @@ pub struct Violation {
 }
 
 /// Errors of the sampler against the model: what is compared, in the order of [`Region::errors`].
-pub const ERRORS: [&str; 4] = ["g1 abs", "d rel", "pdf rel", "normal rad"];
+pub const ERRORS: [&str; 4] = ["g1 abs", "d rel", "pdf rel", "cdf abs"];
 
 /// What was found in a part of the domain.
 #[derive(Clone, Debug, Default)]
@@ -118,7 +118,7 @@ pub const SHAPES: [&str; 4] = ["gamma < 1.8", "gamma < 4", "gamma < 1e4", "to in
 /// See [`SHAPES`].
 pub const VIEWS: [&str; 4] = ["near n", "between", "grazing", "below horizon"];
 /// See [`SHAPES`].
-pub const ROUGHNESSES: [&str; 3] = ["ordinary", "extreme", "any f32"];
+pub const ROUGHNESSES: [&str; 2] = ["ordinary", "extreme"];
 
 /// What a stress run found, region by region.
 #[derive(Clone, Debug, Default)]
@@ -137,13 +137,8 @@ impl Report {
             _ if at.theta < 1e-2 => 0,
             _ => 1,
         };
-        let inside = |low: f32, high: f32| at.sigma.iter().all(|sigma| (low..=high).contains(sigma));
-        let roughness = match () {
-            () if inside(1e-4, 10.0) => 0,
-            () if inside(1e-8, 1e6) => 1,
-            () => 2,
-        };
-        &mut self.regions[shape][view][roughness]
+        let inside = at.sigma.iter().all(|sigma| (1e-4..=10.0).contains(sigma));
+        &mut self.regions[shape][view][usize::from(!inside)]
     }
 
     fn merge(mut self, other: Self) -> Self {

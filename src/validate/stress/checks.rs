@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use microfacet_model as model;
+use microfacet_model::{self as model, SignedUnit, VisibleSlope};
 use microfacet_sampler::{BindError, Masking, StudentT, Tables};
 
 use super::{Point, Report, direction};
@@ -13,6 +13,16 @@ const ULP4: f64 = 4.0 * f32::EPSILON as f64;
 const MODEL_EVERY: usize = 8;
 /// γ from which the tilt towards the viewer rises with `u[0]` over the whole range.
 const GAMMA_WHOLE: f64 = 1.8;
+
+/// The tilt towards the viewer in unit space.
+struct Tilt {
+    /// Unit slope.
+    slope: f64,
+    /// tan(α/2) ∈ [−1, 1].
+    half_tangent: f64,
+    /// What four ulp of m make of it: much, where m is tilted across more than along.
+    rounding: f64,
+}
 
 struct Judge<'a> {
     bound: StudentT,
@@ -72,7 +82,8 @@ impl Judge<'_> {
         self.require(unit(truth), "model g1 outside [0, 1]", truth, at);
         let lambda = self.exact.lambda(precise);
         self.require(lambda >= 0.0, "model lambda negative or NaN", lambda, at);
-        let area = self.exact.inverse_area(if v.z < 0.0 { DVec3::new(precise.x, precise.y, 0.0) } else { precise });
+        let area =
+            self.exact.inverse_area(if v.z < 0.0 { DVec3::new(precise.x, precise.y, 0.0) } else { precise });
         self.require(area >= 0.0 && area.is_finite(), "model inverse_area negative, NaN or inf", area, at);
         self.report.region(at).errors[0].see((g1 - truth).abs(), at);
 
@@ -101,11 +112,11 @@ impl Judge<'_> {
         let seen = v.z < 0.0 || facing >= -ULP4;
         self.require(seen, "sampled normal faces away", facing, at);
 
-        let tilt = self.tilt(v, m);
+        let Tilt { half_tangent, rounding, .. } = self.tilt(v, m);
         if at.gamma >= GAMMA_WHOLE {
-            self.require(!(tilt < *last - 2.0 * ULP4), "tilt falls with u1", *last - tilt, at);
+            self.require(!(half_tangent < *last - rounding), "tilt falls with u1", *last - half_tangent, at);
         }
-        *last = tilt;
+        *last = half_tangent;
 
         let bound = &self.bound;
         let (d, pdf, table) = (bound.d(m), bound.visible_normal_pdf(v, m), bound.table_pdf(v, m));
@@ -129,15 +140,23 @@ impl Judge<'_> {
         self.require(m.z > 0.0, "sampled normal not above the horizon", m.z.into(), at);
     }
 
-    /// Tilt of m towards the viewer in unit space, as tan(α/2) ∈ [−1, 1].
-    fn tilt(&self, v: Vec3, m: Vec3) -> f64 {
-        let [sx, sy] = self.bound.sigma().map(f64::from);
+    /// What m says about the tilt that was drawn.
+    fn tilt(&self, v: Vec3, m: Vec3) -> Tilt {
+        let [sx, sy] = self.bound.sigma();
+        let rho = ((sx * v.x) * (sx * v.x) + (sy * v.y) * (sy * v.y)).sqrt();
+        let [sx, sy] = [sx, sy].map(f64::from);
         let (v, m) = (v.as_dvec3(), m.as_dvec3());
-        let (vx, vy) = (sx * v.x, sy * v.y);
+        // The sampler takes such views as the normal, whose azimuth is free.
+        let (vx, vy) = if rho < 1e-18 { (1.0, 0.0) } else { (sx * v.x, sy * v.y) };
         let rho = vx.hypot(vy);
-        let towards = if rho > 0.0 { (vx / rho, vy / rho) } else { (1.0, 0.0) };
-        let x = m.x / sx * towards.0 + m.y / sy * towards.1;
-        x / (m.z + x.hypot(m.z))
+        let (x, y) = (m.x / sx, m.y / sy);
+        let (along, across) = ((x * vx + y * vy) / rho, (y * vx - x * vy) / rho);
+        let r = along.hypot(m.z);
+        Tilt {
+            slope: along / m.z,
+            half_tangent: along / (m.z + r),
+            rounding: 2.0 * ULP4 * across.hypot(r) / r,
+        }
     }
 
     /// The model's own sampler, and how far the table's normal is from its.
@@ -145,16 +164,32 @@ impl Judge<'_> {
         let v = at.view();
         let m = self.exact.visible_normal(v.as_dvec3(), at.u.map(f64::from));
         let ulp4 = 4.0 * f64::EPSILON;
-        self.require((m.length() - 1.0).abs() <= ulp4, "model normal not of unit length", m.length() - 1.0, at);
+        self.require(
+            (m.length() - 1.0).abs() <= ulp4,
+            "model normal not of unit length",
+            m.length() - 1.0,
+            at,
+        );
         self.require(m.z >= 0.0, "model normal below the horizon", m.z, at);
         let facing = v.as_dvec3().dot(m);
         self.require(v.z < 0.0 || facing >= -2.0 * ULP4 * ULP4 - ulp4, "model normal faces away", facing, at);
         let pdf = self.exact.visible_normal_pdf(v.as_dvec3(), m);
         self.require(pdf >= 0.0, "model pdf negative or NaN", pdf, at);
-        // Below 1.8 the first number is first used to choose a part, so the two maps differ.
-        if at.gamma >= GAMMA_WHOLE {
-            let drawn = self.bound.sample_visible_normal(v, at.u);
-            self.report.region(at).errors[3].see((drawn.as_dvec3() - m).length(), at);
+        self.cdf_error(at);
+    }
+
+    /// The share of visible normals tilted less than the one drawn, against u₁.
+    fn cdf_error(&mut self, at: &Point) {
+        let v = at.view();
+        let tilt = self.tilt(v, self.bound.sample_visible_normal(v, at.u));
+        // Below 1.8 the first number is first used to choose a part.
+        if at.gamma < GAMMA_WHOLE || tilt.rounding > 1e-5 {
+            return;
         }
+        let shape = self.exact.shape();
+        let (view, _) = self.exact.unit_view(DVec3::new(v.x.into(), v.y.into(), v.z.max(0.0).into()));
+        let x = SignedUnit { w: shape.unit(tilt.slope.abs()), sign: tilt.slope.signum() };
+        let cdf = VisibleSlope::new(shape, view).cdf(x);
+        self.report.region(at).errors[3].see((cdf - f64::from(at.u[0])).abs(), at);
     }
 }

@@ -9,13 +9,8 @@ use microfacet_sampler::Tables;
 
 use super::Point;
 
-/// Rounds below the smallest and above the largest number too: bound are positive finite ones only.
-const SIGMAS: [[f32; 2]; 22] = [
-    [1e-45, 1e-45],
-    [f32::MIN_POSITIVE, f32::MIN_POSITIVE],
-    [1e-30, 1e-30],
-    [1e-20, 1e-20],
-    [1e-12, 1e-12],
+/// Roughnesses, both ends of what can be bound among them.
+const SIGMAS: [[f32; 2]; 16] = [
     [1e-8, 1e-8],
     [1e-6, 1e-6],
     [1e-4, 1e-4],
@@ -26,20 +21,20 @@ const SIGMAS: [[f32; 2]; 22] = [
     [10.0, 10.0],
     [1e3, 1e3],
     [1e6, 1e6],
-    [1e10, 1e10],
-    [1e20, 1e20],
-    [f32::MAX, f32::MAX],
     [1e-4, 10.0],
     [10.0, 1e-4],
     [1e-8, 1e6],
-    [f32::MAX, 1e-45],
+    [1e6, 1e-8],
+    [0.1, 0.2],
+    [3.0, 0.01],
 ];
 
 /// Every material at a corner that the tables cover.
 pub(super) fn corner_materials(tables: &Tables) -> Vec<([f32; 2], f64)> {
     let joints = [1.501_f64, 1.6, 1.8, 2.0, 4.0];
     let around = joints.into_iter().flat_map(|gamma| [gamma.next_down(), gamma, gamma.next_up()]);
-    let single = [1.50101, 1.51, 1.9, 2.5, 3.0, 10.0, 60.0, 1e3, 1e4, 1e6, 1e8, 1e10, 1e14, 1e16, 1e17, 1e300];
+    let single =
+        [1.50101, 1.51, 1.9, 2.5, 3.0, 10.0, 60.0, 1e3, 1e4, 1e6, 1e8, 1e10, 1e14, 1e16, 1e17, 1e300];
     let near_two = [2.0 - 1e-9, 2.0 + 1e-9, 2.0 - 1e-7, 2.0 + 1e-7];
     let gammas: Vec<f64> = around.chain(single).chain(near_two).chain([f64::INFINITY]).collect();
     let gammas = gammas.into_iter().filter(|&gamma| tables.covers(gamma));
@@ -111,7 +106,7 @@ fn log_uniform(random: &mut StdRng, low: f64, high: f64) -> f64 {
     random.random_range(low.ln()..high.ln()).exp()
 }
 
-/// A material that the tables cover: s evenly, or γ close to 3/2, to 2 or to ∞; σ over the whole range where lengths can be squared.
+/// A material that the tables cover: s evenly, or γ close to 3/2, to 2 or to ∞; σ over all that can be bound.
 pub(super) fn random_material(tables: &Tables, random: &mut StdRng) -> ([f32; 2], f64) {
     let gamma = loop {
         let gamma = match random.random_range(0..8) {
@@ -126,7 +121,8 @@ pub(super) fn random_material(tables: &Tables, random: &mut StdRng) -> ([f32; 2]
         }
     };
     let wide = random.random_range(0..4) == 0;
-    let mut sigma = || if wide { log_uniform(random, 1e-8, 1e6) } else { log_uniform(random, 1e-4, 10.0) } as f32;
+    let mut sigma =
+        || if wide { log_uniform(random, 1e-8, 1e6) } else { log_uniform(random, 1e-4, 10.0) } as f32;
     let x = sigma();
     ([x, if gamma.to_bits() & 1 == 0 { x } else { sigma() }], gamma)
 }
