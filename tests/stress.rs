@@ -11,7 +11,7 @@ fn a_million_points_break_no_rule() {
     let report = stress::run(&Tables::embedded(), 1_000_000, 1).unwrap();
     let total = report.total();
     assert!(total.points >= 1_000_000);
-    for (rule, found) in &total.violations {
+    if let Some((rule, found)) = total.violations.iter().next() {
         panic!("{rule}: {} times, first {:e} at\n{}", found.count, found.worst.value, found.worst.at);
     }
     for region in report.regions.as_flattened().iter().map(|by_sigma| &by_sigma[0]) {
