@@ -5,8 +5,11 @@
 //! vectors in the tangent frame, n = +z, angles in radians. No tables and no files; every function is a formula
 //! or a root found to rounding, and uses the `libm` crate, so that results are the same bits on every system.
 
+mod below;
+mod ellipsoid;
 mod error;
 mod exact;
+mod lune;
 mod ndf;
 mod paper;
 mod reduced;
@@ -16,7 +19,9 @@ pub mod statistics;
 mod student_t;
 mod visible;
 
+pub use ellipsoid::{Ellipsoid, EllipsoidError};
 pub use error::ParameterError;
+pub use lune::Lune;
 pub use shape::{Shape, Unit};
 pub use student_t::{Masking, StudentT};
 pub use visible::{SignedUnit, UnitView, VisibleSlope, across_cdf, across_quantile};

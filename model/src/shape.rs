@@ -109,6 +109,20 @@ impl Shape {
         2.0 * reduced::ln_cosh(self.sqrt_s * w)
     }
 
+    /// Normal distribution function of unit roughness at a normal ∝ (x, y, z), r² = x² + y², z > 0, |(x, y, z)| not necessarily 1:
+    /// (1 + s r²/z²)^(−γ) / (π z⁴).
+    pub(crate) fn unit_d(&self, r2: f64, z2: f64) -> f64 {
+        let log = if self.is_beckmann() {
+            -r2 / z2 - 2.0 * libm::log(z2)
+        } else if self.s * r2 > z2 {
+            // z⁻⁴ (1 + s r²/z²)^(−γ), arranged so that r²/z² does not overflow near the horizon.
+            (self.gamma - 2.0) * libm::log(z2) - self.gamma * libm::log(z2 + self.s * r2)
+        } else {
+            -2.0 * libm::log(z2) - self.gamma * libm::log1p(self.s * r2 / z2)
+        };
+        libm::exp(log) / PI
+    }
+
     /// Marginal density p(x) of the in-plane unit slope times dx/dw: the density with respect to w.
     pub fn density(&self, w: Unit) -> f64 {
         if self.is_beckmann() {

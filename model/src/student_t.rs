@@ -129,18 +129,7 @@ impl StudentT {
         }
         let (x, y) = (m.x / self.sigma_x, m.y / self.sigma_y);
         let (r2, z2) = (x * x + y * y, m.z * m.z);
-        let log = if self.shape.is_beckmann() {
-            -r2 / z2 - 2.0 * libm::log(z2)
-        } else {
-            let (gamma, s) = (self.shape.gamma(), self.shape.s());
-            // cos⁻⁴ (1 + s r²/z²)^(−γ), arranged so that r²/z² does not overflow near the horizon.
-            if s * r2 > z2 {
-                (gamma - 2.0) * libm::log(z2) - gamma * libm::log(z2 + s * r2)
-            } else {
-                -2.0 * libm::log(z2) - gamma * libm::log1p(s * r2 / z2)
-            }
-        };
-        libm::exp(log) / (PI * self.sigma_x * self.sigma_y)
+        self.shape.unit_d(r2, z2) / (self.sigma_x * self.sigma_y)
     }
 
     /// Density of slopes P22(x̃, ỹ), ∫∫ P22 = 1 (eq. 11). The slopes of m are (−m_x/m_z, −m_y/m_z).
@@ -224,15 +213,7 @@ impl StudentT {
 
     /// Builds the world normal from the unit slopes x (towards the viewer) and t = y/√(1 + s x²).
     pub(crate) fn assemble(&self, at: &Stretched, x: SignedUnit, t: SignedUnit) -> DVec3 {
-        let (sin_x, cos_x) = self.shape.unit_sin_cos(x.w);
-        let (sin_t, cos_t) = self.shape.unit_sin_cos(t.w);
-        let side = x.sign;
-        let (x, z) = (side * sin_x, cos_x);
-        // (x : y : z) in homogeneous form, y = √(z² + s x²)·t, everything times cos_t: no slope is ever formed.
-        let y = (z * z + self.shape.s() * x * x).sqrt() * t.sign * sin_t;
-        let (x, z) = (x * cos_t, z * cos_t);
-        // Beckmann's slopes are independent, so that two infinite ones leave their ratio open.
-        let (x, y) = if x == 0.0 && y == 0.0 && z == 0.0 { (side, t.sign) } else { (x, y) };
+        let DVec3 { x, y, z } = visible::unit_normal(&self.shape, x, t);
         DVec3::new(
             self.sigma_x * (x * at.cos_phi - y * at.sin_phi),
             self.sigma_y * (x * at.sin_phi + y * at.cos_phi),

@@ -5,6 +5,8 @@
 //! y = √(1 + s x²)·t with t ∝ (1 + s t²)^(−γ), independent of the view and of x. This is the separation into α and β of
 //! the canonical lobe, tan α = √s x and tan β = √s t, written so that it survives s → 0.
 
+use glam::DVec3;
+
 use crate::shape::{Shape, Unit};
 
 /// The elevation of a view in unit space, as a unit vector (sin θ, cos θ) in the plane of incidence.
@@ -202,6 +204,19 @@ impl<'a> VisibleSlope<'a> {
     }
 }
 
+/// The unnormalised normal in unit space of the in-plane slope x and the slope across t = y/√(1 + s x²); no slope is ever formed.
+pub(crate) fn unit_normal(shape: &Shape, x: SignedUnit, t: SignedUnit) -> DVec3 {
+    let (sin_x, cos_x) = shape.unit_sin_cos(x.w);
+    let (sin_t, cos_t) = shape.unit_sin_cos(t.w);
+    let side = x.sign;
+    let (x, z) = (side * sin_x, cos_x);
+    // (x : y : z) in homogeneous form, y = √(z² + s x²)·t, everything times cos_t.
+    let y = (z * z + shape.s() * x * x).sqrt() * t.sign * sin_t;
+    let m = DVec3::new(x * cos_t, y, z * cos_t);
+    // Beckmann's slopes are independent, so that two infinite ones leave their ratio open.
+    if m == DVec3::ZERO { DVec3::new(side, t.sign, 0.0) } else { m }
+}
+
 /// Inverse CDF of the slope across the plane (in units of √(1 + s x²)): odd about u = ½, ±∞ at u = 0 and 1.
 pub fn across_quantile(shape: &Shape, u: f64) -> SignedUnit {
     let (target, sign) = if u < 0.5 { (u, -1.0) } else { (1.0 - u, 1.0) };
@@ -223,8 +238,8 @@ pub fn across_cdf(shape: &Shape, t: SignedUnit) -> f64 {
 ///
 /// Newton on ln f, which is nearly linear in the tails, inside a bracket that is bisected whenever a step leaves it; an
 /// infinite upper end is first replaced by doubling.
-fn solve_decreasing(target: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
-    let mut w = if hi.is_infinite() { 1.0 } else { 0.5 * (lo + hi) };
+pub(crate) fn solve_decreasing(target: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let mut w = if hi.is_infinite() { lo + 1.0 } else { 0.5 * (lo + hi) };
     for _ in 0..200 {
         let (value, rate) = f(w);
         if value > target {
