@@ -6,12 +6,14 @@
 //! or a root found to rounding, and uses the `libm` crate, so that results are the same bits on every system.
 
 mod below;
+pub mod classic;
 mod ellipsoid;
 mod error;
 mod exact;
 mod lune;
 mod ndf;
 mod paper;
+mod quadrature;
 mod reduced;
 mod shape;
 #[cfg(feature = "statistics")]

@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 
+use crate::quadrature;
 use crate::shape::{Shape, Unit};
 
 /// The elevation of a view in unit space, as a unit vector (sin θ, cos θ) in the plane of incidence.
@@ -118,23 +119,7 @@ impl<'a> VisibleSlope<'a> {
     /// Near the silhouette the closed form subtracts nearly equal areas, while the integrand is positive and, over a gap
     /// of a fraction of its own scale, a polynomial to all digits.
     fn lower_by_quadrature(&self, w: Unit, gap: f64) -> f64 {
-        // Gauss-Legendre, ten points, positive halves (Abramowitz & Stegun 25.4.30).
-        const NODES: [(f64, f64); 5] = [
-            (0.148874338981631211, 0.295524224714752870),
-            (0.433395394129247191, 0.269266719309996355),
-            (0.679409568299024406, 0.219086362515982044),
-            (0.865063366688984511, 0.149451349150580593),
-            (0.973906528517171720, 0.066671344308688138),
-        ];
-        let half = 0.5 * gap;
-        let mut sum = 0.0;
-        for (node, weight) in NODES {
-            for at in [half * (1.0 - node), half * (1.0 + node)] {
-                let wi = w + at;
-                sum += weight * self.facing(wi) * self.shape.density(wi);
-            }
-        }
-        half * sum
+        quadrature::panel(w, w + gap, |w| self.facing(w) * self.shape.density(w))
     }
 
     /// cos θ − q sin θ for a slope −q between the silhouette and 0, without cancellation near the silhouette.
