@@ -5,6 +5,10 @@
 //! with what `microfacet-model` says.
 
 pub mod bake;
+pub mod convert;
+pub mod family;
+pub mod fit;
+pub mod spec;
 pub mod generate;
 pub mod plan;
 pub mod scene;

@@ -37,6 +37,14 @@ impl Member {
         StudentT::blinn_phong(n).map(Self)
     }
 
+    /// Hyper-Cauchy with D ∝ (1 + tan²θ/σ₀²)^(−γ)/cos⁴θ.
+    ///
+    /// # Errors
+    /// [`ParameterError`] unless 0 < σ₀ < ∞ and 3/2 < γ < ∞.
+    pub fn hyper_cauchy(sigma_0: f64, gamma: f64) -> Result<Self, ParameterError> {
+        StudentT::hyper_cauchy(sigma_0, gamma).map(Self)
+    }
+
     /// Student-t with roughness σ and shape γ.
     ///
     /// # Errors

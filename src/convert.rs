@@ -1,0 +1,339 @@
+//! Replacing one distribution by another: equal half angles, least squares, and the formulas in print.
+//!
+//! After Sawicki 2021, *Microfacet Distribution Function: To Change or Not to Change, That Is the Question*: the error of a replacement
+//! is the root mean square of the difference over a uniform grid of θ in [0, π/2).
+
+use std::f64::consts::FRAC_PI_2;
+use std::fmt;
+
+use argmin::core::{CostFunction, Error, Executor, State};
+use argmin::solver::brent::BrentOpt;
+use argmin::solver::neldermead::NelderMead;
+use microfacet_model::classic::{Isotropic, Tabulated};
+
+use crate::family::{Family, FamilyError, Named};
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// D(θ)/D(0): the shape of the highlight.
+    Unit,
+    /// D(θ) itself, normalised.
+    Density,
+}
+
+/// A replacement and its errors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replacement {
+    /// The distribution found.
+    pub to: Named,
+    /// RMSE of the unit form, and of D in 1/sr.
+    pub rmse: [f64; 2],
+}
+
+/// Why there is no replacement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConvertError {
+    /// A distribution could not be made.
+    Family(FamilyError),
+    /// The distribution nowhere falls to half of D(0).
+    NoHalfAngle(String),
+    /// No parameter of the family gives that half angle, in radians.
+    OutOfReach(Family, f64),
+    /// A half angle fixes one parameter; the family has two, and the second must be given.
+    ShapeNeeded(Family),
+    /// No published formula is known for this pair.
+    NoFormula(Family, Family),
+    /// The minimiser's message.
+    Minimiser(String),
+}
+
+impl fmt::Display for ConvertError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Family(e) => e.fmt(f),
+            Self::NoHalfAngle(name) => {
+                write!(f, "{name} is so wide that D nowhere falls to half of D(0); use rmse")
+            }
+            Self::OutOfReach(to, angle) => {
+                write!(f, "no {} has its half angle at {angle} radians; use rmse", to.name())
+            }
+            Self::ShapeNeeded(to) => write!(
+                f,
+                "a half angle fixes one parameter and {} has two: give the second with --shape, or use rmse",
+                to.name()
+            ),
+            Self::NoFormula(from, to) => write!(
+                f,
+                "there is no formula from {} to {} here; there is one between beckmann and blinn-phong, and half-angle and rmse work \
+                 between any two",
+                from.name(),
+                to.name()
+            ),
+            Self::Minimiser(e) => write!(f, "the minimiser failed: {e}"),
+        }
+    }
+}
+
+impl std::error::Error for ConvertError {}
+
+impl From<FamilyError> for ConvertError {
+    fn from(e: FamilyError) -> Self {
+        Self::Family(e)
+    }
+}
+
+/// The uniform grid over which errors are taken, with the distribution to be replaced on it.
+pub struct Target<'a> {
+    from: &'a dyn Isotropic,
+    theta: Vec<f64>,
+    d: Vec<f64>,
+    peak: f64,
+}
+
+impl<'a> Target<'a> {
+    /// Prepares the grid: 900 steps, or as many as put 64 into the half angle.
+    pub fn new(from: &'a dyn Isotropic) -> Self {
+        let half = from.half_angle().unwrap_or(FRAC_PI_2);
+        let steps = (64.0 * FRAC_PI_2 / half).clamp(900.0, 200_000.0).ceil() as usize;
+        let theta: Vec<f64> = (0..steps).map(|i| i as f64 * FRAC_PI_2 / steps as f64).collect();
+        let d = theta.iter().map(|&t| from.d(t)).collect();
+        Self { from, theta, d, peak: from.peak() }
+    }
+
+    /// The grid of a measured distribution, over the angles that were measured.
+    pub fn measured(from: &'a Tabulated) -> Self {
+        let mut this = Self::new(from);
+        let (low, high) = from.assumed();
+        let inside = this.theta.iter().filter(|t| (low..=high).contains(*t)).count();
+        let skip = this.theta.partition_point(|t| *t < low);
+        this.theta = this.theta[skip..skip + inside].to_vec();
+        this.d = this.d[skip..skip + inside].to_vec();
+        this
+    }
+
+    /// Root mean square of the difference over the grid.
+    pub fn rmse(&self, to: &dyn Isotropic, form: Form) -> f64 {
+        let (a, b) = match form {
+            Form::Unit => (1.0 / self.peak, 1.0 / to.peak()),
+            Form::Density => (1.0, 1.0),
+        };
+        let square = |(&t, &d): (&f64, &f64)| {
+            let difference = a * d - b * to.d(t);
+            difference * difference
+        };
+        let sum: f64 = self.theta.iter().zip(&self.d).map(square).sum();
+        (sum / self.theta.len() as f64).sqrt()
+    }
+
+    fn judged(&self, to: Named) -> Result<Replacement, ConvertError> {
+        let built = to.build()?;
+        let rmse = [Form::Unit, Form::Density].map(|form| self.rmse(&*built, form));
+        Ok(Replacement { to, rmse })
+    }
+
+    /// The member of a family with the same half angle. `shape` is the second parameter of a family that has two.
+    ///
+    /// # Errors
+    /// [`ConvertError`] where either has no such angle, or `shape` is missing.
+    pub fn by_half_angle(&self, to: Family, shape: Option<f64>) -> Result<Replacement, ConvertError> {
+        let named = |y: f64| {
+            let mut values = to.at(&vec![y; to.dimension()]);
+            if to.dimension() == 2 {
+                values[1] = shape.ok_or(ConvertError::ShapeNeeded(to))?;
+            }
+            Ok::<_, ConvertError>(Named { family: to, values })
+        };
+        named(0.5)?.build()?;
+        let angle =
+            self.from.half_angle().ok_or_else(|| ConvertError::NoHalfAngle("the distribution".into()))?;
+        // The half angle is monotone in the width; a lobe too wide to have one counts as beyond any.
+        let excess = |y: f64| {
+            let half = named(y)?.build()?.half_angle();
+            Ok::<_, ConvertError>(half.map_or(f64::INFINITY, |half| half - angle))
+        };
+        let rising = excess(0.0)? < 0.0;
+        if rising == (excess(1.0)? < 0.0) {
+            return Err(ConvertError::OutOfReach(to, angle));
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if (excess(middle)? < 0.0) == rising { low = middle } else { high = middle }
+        }
+        let found = named(0.5 * (low + high))?;
+        match found.build()?.half_angle() {
+            Some(half) if (half - angle).abs() < 1e-6 * angle => self.judged(found),
+            _ => Err(ConvertError::OutOfReach(to, angle)),
+        }
+    }
+
+    /// The member of a family with the least RMSE, all parameters fitted together.
+    ///
+    /// # Errors
+    /// [`ConvertError::Minimiser`] with the minimiser's own message.
+    pub fn by_rmse(&self, to: Family, form: Form) -> Result<Replacement, ConvertError> {
+        let problem = Problem { target: self, to, form };
+        let failed = |e: Error| ConvertError::Minimiser(e.to_string());
+        // A coarse scan finds the valley, which several local minima may surround.
+        let steps = if to.dimension() == 1 { 200 } else { 48 };
+        let scale = |i: usize| i as f64 / steps as f64;
+        let start = (0..=steps)
+            .flat_map(|i| {
+                let seconds = if to.dimension() == 1 { 0..=0 } else { 0..=steps };
+                seconds.map(move |j| [scale(i), scale(j)])
+            })
+            .map(|point| (problem.error(&point[..to.dimension()]), point))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .expect("the scan is not empty")
+            .1;
+        let h = 1.0 / steps as f64;
+        let best = if to.dimension() == 1 {
+            let solver =
+                BrentOpt::new((start[0] - h).max(0.0), (start[0] + h).min(1.0)).set_tolerance(1e-9, 1e-10);
+            let run =
+                Executor::new(&problem, solver).configure(|s| s.max_iters(200)).run().map_err(failed)?;
+            vec![*run.state().get_best_param().unwrap_or(&start[0])]
+        } else {
+            // Away from an edge of the square, where the simplex would be flat.
+            let [x, y] = start.map(|c| c.clamp(0.5 * h, 1.0 - 0.5 * h));
+            let simplex = vec![vec![x, y], vec![x + 0.4 * h, y], vec![x, y + 0.4 * h]];
+            let solver = NelderMead::new(simplex).with_sd_tolerance(1e-14).map_err(failed)?;
+            let run = Executor::new(Simplex(&problem), solver)
+                .configure(|s| s.max_iters(2000))
+                .run()
+                .map_err(failed)?;
+            run.state().get_best_param().cloned().unwrap_or(vec![x, y])
+        };
+        self.judged(Named { family: to, values: to.at(&best) })
+    }
+}
+
+/// RMSE as a function on the family's search square.
+struct Problem<'a> {
+    target: &'a Target<'a>,
+    to: Family,
+    form: Form,
+}
+
+impl Problem<'_> {
+    fn error(&self, point: &[f64]) -> f64 {
+        let rmse = self.to.build(&self.to.at(point)).map(|to| self.target.rmse(&*to, self.form));
+        // Points outside the square stand for its edge; the slope leads the simplex back.
+        let outside: f64 = point.iter().map(|y| (y - y.clamp(0.0, 1.0)).abs()).sum();
+        match rmse {
+            Ok(rmse) if rmse.is_finite() => rmse * (1.0 + outside) + 1e-12 * outside,
+            _ => f64::MAX,
+        }
+    }
+}
+
+impl CostFunction for &Problem<'_> {
+    type Param = f64;
+    type Output = f64;
+
+    fn cost(&self, y: &f64) -> Result<f64, Error> {
+        Ok(self.error(&[*y]))
+    }
+}
+
+/// The same problem for the minimiser of several variables.
+struct Simplex<'a>(&'a Problem<'a>);
+
+impl CostFunction for Simplex<'_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, point: &Vec<f64>) -> Result<f64, Error> {
+        Ok(self.0.error(point))
+    }
+}
+
+/// The published formula from one distribution to another: N = 2/m² − 2 between Beckmann and Blinn–Phong (Walter et al. 2007,
+/// *Microfacet Models for Refraction through Rough Surfaces*, section 5.2).
+///
+/// # Errors
+/// [`ConvertError::NoFormula`] for other pairs; [`ConvertError::Family`] where the formula leaves the range.
+pub fn by_formula(from: &Named, to: Family) -> Result<Replacement, ConvertError> {
+    let values = match (from.family, to, from.values.as_slice()) {
+        (Family::Beckmann, Family::BlinnPhong, &[m]) => vec![2.0 / (m * m) - 2.0],
+        (Family::BlinnPhong, Family::Beckmann, &[n]) => vec![(2.0 / (n + 2.0)).sqrt()],
+        _ => return Err(ConvertError::NoFormula(from.family, to)),
+    };
+    Target::new(&*from.build()?).judged(Named { family: to, values })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(text: &str) -> Named {
+        text.parse().unwrap()
+    }
+
+    #[test]
+    fn every_family_finds_itself() {
+        for text in ["beckmann:0.2", "gauss:0.15", "trowbridge-reitz:0.3", "blinn-phong:40", "schlick:0.1"] {
+            let from = named(text);
+            let built = from.build().unwrap();
+            let target = Target::new(&*built);
+            for found in [
+                target.by_rmse(from.family, Form::Unit).unwrap(),
+                target.by_half_angle(from.family, None).unwrap(),
+            ] {
+                let (a, b) = (found.to.values[0], from.values[0]);
+                assert!((a / b - 1.0).abs() < 1e-6 && found.rmse[0] < 1e-7, "{text} became {}", found.to);
+            }
+        }
+        for text in ["student-t:0.3,2.5", "gtr:0.2,1.3", "hyper-cauchy:0.4,3"] {
+            let from = named(text);
+            let built = from.build().unwrap();
+            let found = Target::new(&*built).by_rmse(from.family, Form::Density).unwrap();
+            for (a, b) in found.to.values.iter().zip(&from.values) {
+                assert!((a / b - 1.0).abs() < 1e-3, "{text} became {}", found.to);
+            }
+            assert!(found.rmse[1] < 1e-3 * built.peak());
+        }
+    }
+
+    #[test]
+    fn student_t_recognises_its_members() {
+        for (text, gamma) in [("trowbridge-reitz:0.2", 2.0), ("blinn-phong:20", 12.0)] {
+            let built = named(text).build().unwrap();
+            let found = Target::new(&*built).by_rmse(Family::StudentT, Form::Unit).unwrap();
+            assert!((found.to.values[1] / gamma - 1.0).abs() < 1e-2, "{text} became {}", found.to);
+        }
+        let built = named("beckmann:0.2").build().unwrap();
+        let found = Target::new(&*built).by_rmse(Family::StudentT, Form::Unit).unwrap();
+        assert!(found.to.values[1] > 1e3 && (found.to.values[0] - 0.2).abs() < 1e-3, "{}", found.to);
+    }
+
+    #[test]
+    fn the_optimum_beats_the_half_angle_and_the_formula() {
+        let from = named("blinn-phong:50");
+        let built = from.build().unwrap();
+        let target = Target::new(&*built);
+        let best = target.by_rmse(Family::Beckmann, Form::Unit).unwrap();
+        let half = target.by_half_angle(Family::Beckmann, None).unwrap();
+        let formula = by_formula(&from, Family::Beckmann).unwrap();
+        assert!(best.rmse[0] <= half.rmse[0] && best.rmse[0] <= formula.rmse[0]);
+        assert!((best.to.values[0] / formula.to.values[0] - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn refusals() {
+        let built = named("blinn-phong:50").build().unwrap();
+        let target = Target::new(&*built);
+        assert_eq!(
+            target.by_half_angle(Family::Gtr, None).unwrap_err(),
+            ConvertError::ShapeNeeded(Family::Gtr)
+        );
+        target.by_half_angle(Family::Gtr, Some(2.0)).unwrap();
+        assert!(matches!(by_formula(&named("gauss:0.1"), Family::Gtr), Err(ConvertError::NoFormula(..))));
+        let flat = named("blinn-phong:0").build().unwrap();
+        assert!(matches!(
+            Target::new(&*flat).by_half_angle(Family::Gauss, None),
+            Err(ConvertError::NoHalfAngle(_))
+        ));
+    }
+}

@@ -1,0 +1,252 @@
+//! The distributions by name, as recipes and the command line give them: `blinn-phong:50`, `student-t:0.3,2.5`.
+
+use std::fmt;
+use std::str::FromStr;
+
+use microfacet_model::classic::{AshikhminShirley, Gauss, Gtr, Isotropic, Member, Schlick};
+
+/// A named distribution of one or two parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Family {
+    /// Beckmann, slope parameter m.
+    Beckmann,
+    /// Gaussian of the angle (Torrance–Sparrow), width m in radians.
+    Gauss,
+    /// Trowbridge–Reitz (GGX), C.
+    TrowbridgeReitz,
+    /// Generalised Trowbridge–Reitz, C and γ.
+    Gtr,
+    /// Blinn–Phong, exponent N.
+    BlinnPhong,
+    /// Schlick's rational distribution, m.
+    Schlick,
+    /// Student-t, σ and γ.
+    StudentT,
+    /// Hyper-Cauchy, σ₀ and γ.
+    HyperCauchy,
+    /// Ashikhmin–Shirley, exponents along x and y; isotropic only where they are equal.
+    AshikhminShirley,
+}
+
+/// A distribution with its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named {
+    /// Which.
+    pub family: Family,
+    /// Its parameters, in the order of [`Family::parameters`].
+    pub values: Vec<f64>,
+}
+
+/// Why a distribution could not be made.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FamilyError {
+    /// No distribution has this name.
+    Unknown(String),
+    /// The wrong number of parameters, or one that is no number.
+    Parameters(Family, String),
+    /// A parameter outside its range; the message of the model.
+    Range(Family, String),
+    /// An anisotropic distribution where an isotropic one is needed.
+    Dimension(f64, f64),
+}
+
+impl fmt::Display for FamilyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(name) => {
+                let names: Vec<&str> = Family::ALL.iter().map(|family| family.name()).collect();
+                write!(f, "distribution `{name}` is not known; there are {}", names.join(", "))
+            }
+            Self::Parameters(family, given) => {
+                let names = family.parameters().join(",");
+                write!(f, "`{given}`: {} is written {0}:{names}, each a number", family.name())
+            }
+            Self::Range(family, why) => write!(f, "{}: {why}", family.name()),
+            Self::Dimension(nx, ny) => write!(
+                f,
+                "ashikhmin-shirley with exponents {nx} and {ny} is anisotropic: its D depends on two angles and that of the \
+                 others on one; give equal exponents, or treat each axis as a blinn-phong"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for FamilyError {}
+
+impl Family {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Beckmann,
+        Self::Gauss,
+        Self::TrowbridgeReitz,
+        Self::Gtr,
+        Self::BlinnPhong,
+        Self::Schlick,
+        Self::StudentT,
+        Self::HyperCauchy,
+        Self::AshikhminShirley,
+    ];
+
+    /// The name in recipes and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Beckmann => "beckmann",
+            Self::Gauss => "gauss",
+            Self::TrowbridgeReitz => "trowbridge-reitz",
+            Self::Gtr => "gtr",
+            Self::BlinnPhong => "blinn-phong",
+            Self::Schlick => "schlick",
+            Self::StudentT => "student-t",
+            Self::HyperCauchy => "hyper-cauchy",
+            Self::AshikhminShirley => "ashikhmin-shirley",
+        }
+    }
+
+    /// The family of this name; `ggx` and `torrance-sparrow` are understood too.
+    ///
+    /// # Errors
+    /// [`FamilyError::Unknown`], listing the names.
+    pub fn by_name(name: &str) -> Result<Self, FamilyError> {
+        let plain = match name {
+            "ggx" => "trowbridge-reitz",
+            "torrance-sparrow" => "gauss",
+            other => other,
+        };
+        let found = Self::ALL.into_iter().find(|family| family.name() == plain);
+        found.ok_or_else(|| FamilyError::Unknown(name.into()))
+    }
+
+    /// Names of its parameters.
+    pub const fn parameters(self) -> &'static [&'static str] {
+        match self {
+            Self::Beckmann | Self::Gauss | Self::Schlick => &["m"],
+            Self::TrowbridgeReitz => &["c"],
+            Self::Gtr => &["c", "gamma"],
+            Self::BlinnPhong => &["n"],
+            Self::StudentT => &["sigma", "gamma"],
+            Self::HyperCauchy => &["sigma0", "gamma"],
+            Self::AshikhminShirley => &["nx", "ny"],
+        }
+    }
+
+    /// The distribution with these parameters.
+    ///
+    /// # Errors
+    /// [`FamilyError`] for a wrong number of parameters, one out of range, or anisotropy.
+    pub fn build(self, values: &[f64]) -> Result<Box<dyn Isotropic>, FamilyError> {
+        let range = |e: &dyn fmt::Display| FamilyError::Range(self, e.to_string());
+        let member =
+            |m: Result<Member, microfacet_model::ParameterError>| -> Result<Box<dyn Isotropic>, FamilyError> {
+                m.map(|m| Box::new(m) as _).map_err(|e| range(&e))
+            };
+        match (self, values) {
+            (Self::Beckmann, &[m]) => member(Member::beckmann(m)),
+            (Self::TrowbridgeReitz, &[c]) => member(Member::trowbridge_reitz(c)),
+            (Self::BlinnPhong, &[n]) => member(Member::blinn_phong(n)),
+            (Self::StudentT, &[sigma, gamma]) => member(Member::student_t(sigma, gamma)),
+            (Self::HyperCauchy, &[sigma, gamma]) => member(Member::hyper_cauchy(sigma, gamma)),
+            (Self::Gauss, &[m]) => Gauss::new(m).map(|d| Box::new(d) as _).map_err(|e| range(&e)),
+            (Self::Schlick, &[m]) => Schlick::new(m).map(|d| Box::new(d) as _).map_err(|e| range(&e)),
+            (Self::Gtr, &[c, gamma]) => Gtr::new(c, gamma).map(|d| Box::new(d) as _).map_err(|e| range(&e)),
+            (Self::AshikhminShirley, &[nx, ny]) => {
+                AshikhminShirley::new(nx, ny).map_err(|e| range(&e))?;
+                if nx != ny {
+                    return Err(FamilyError::Dimension(nx, ny));
+                }
+                member(Member::blinn_phong(nx))
+            }
+            _ => Err(FamilyError::Parameters(self, format!("{values:?}"))),
+        }
+    }
+
+    /// Parameters at a point of the search space [0, 1]ⁿ: logarithmic along the width, in s = 1/(γ−1) (Student-t, with Beckmann
+    /// at 0) or ln γ (GTR) along the shape.
+    pub(crate) fn at(self, point: &[f64]) -> Vec<f64> {
+        let log = |y: f64, low: f64, high: f64| {
+            (low * (y.clamp(0.0, 1.0) * (high / low).ln()).exp()).clamp(low, high)
+        };
+        let gamma = |y: f64| 1.0 + 1.0 / (1.99 * y.clamp(0.0, 1.0));
+        match (self, point) {
+            (Self::Beckmann | Self::Gauss, &[y]) => vec![log(y, 1e-3, 10.0)],
+            (Self::TrowbridgeReitz, &[y]) => vec![log(y, 1e-4, 10.0)],
+            (Self::Schlick, &[y]) => vec![log(y, 1e-6, 1.0)],
+            (Self::BlinnPhong, &[y]) => vec![log(y, 1e-2, 1e6)],
+            (Self::AshikhminShirley, &[y]) => vec![log(y, 1e-2, 1e6); 2],
+            (Self::StudentT, &[y, z]) => vec![log(y, 1e-4, 10.0), gamma(z)],
+            // Without a Beckmann limit: σ₀ would diverge.
+            (Self::HyperCauchy, &[y, z]) => vec![log(y, 1e-4, 1e3), gamma(z.max(1e-4))],
+            (Self::Gtr, &[y, z]) => vec![log(y, 1e-5, 1.0), log(z, 0.1, 100.0)],
+            _ => unreachable!("points have `dimension` coordinates"),
+        }
+    }
+
+    /// How many parameters an isotropic member of it has.
+    pub(crate) fn dimension(self) -> usize {
+        if self == Self::AshikhminShirley { 1 } else { self.parameters().len() }
+    }
+}
+
+impl Named {
+    /// The distribution itself.
+    ///
+    /// # Errors
+    /// As [`Family::build`].
+    pub fn build(&self) -> Result<Box<dyn Isotropic>, FamilyError> {
+        self.family.build(&self.values)
+    }
+}
+
+impl FromStr for Named {
+    type Err = FamilyError;
+
+    /// Parses `name:value` or `name:value,value`; `inf` is a number.
+    fn from_str(text: &str) -> Result<Self, FamilyError> {
+        let (name, rest) = text.split_once(':').unwrap_or((text, ""));
+        let family = Family::by_name(name)?;
+        let values: Result<Vec<f64>, _> = rest.split(',').map(|x| x.trim().parse()).collect();
+        let values = values.map_err(|_| FamilyError::Parameters(family, text.into()))?;
+        if values.len() != family.parameters().len() {
+            return Err(FamilyError::Parameters(family, text.into()));
+        }
+        Ok(Self { family, values })
+    }
+}
+
+impl fmt::Display for Named {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let values: Vec<String> = self.values.iter().map(|x| format!("{x:.6}")).collect();
+        write!(f, "{}:{}", self.family.name(), values.join(","))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_parse_and_print() {
+        for family in Family::ALL {
+            let point = vec![0.6; family.dimension()];
+            let named = Named { family, values: family.at(&point) };
+            let back: Named = named.to_string().parse().unwrap();
+            assert_eq!(back.family, family);
+            assert!(back.build().is_ok(), "{named}");
+        }
+        let beckmann: Named = "student-t:0.3,inf".parse().unwrap();
+        assert!(beckmann.build().unwrap().student_t().unwrap().shape().is_beckmann());
+        assert_eq!("ggx:0.1".parse::<Named>().unwrap().family, Family::TrowbridgeReitz);
+    }
+
+    #[test]
+    fn errors_name_the_remedy() {
+        let message = |text: &str| match text.parse::<Named>() {
+            Ok(named) => named.build().map(|_| ()).unwrap_err().to_string(),
+            Err(e) => e.to_string(),
+        };
+        assert!(message("phong:3").contains("there are beckmann"));
+        assert!(message("gtr:0.1").contains("gtr:c,gamma"));
+        assert!(message("beckmann:x").contains("beckmann:m"));
+        assert!(message("schlick:2").contains("(0, 1]"));
+        assert!(message("ashikhmin-shirley:10,20").contains("anisotropic"));
+    }
+}

@@ -1,0 +1,136 @@
+//! Fitting (σ, γ) to a measured distribution of normals.
+
+use std::fmt;
+use std::io::Read;
+
+use microfacet_model::classic::{Tabulated, TabulatedError};
+
+use crate::convert::{ConvertError, Form, Replacement, Target};
+use crate::family::Family;
+
+/// Why a measurement could not be read.
+#[derive(Debug)]
+pub enum MeasuredError {
+    /// The file is no CSV of two numbers a row; the line (from 1) and what is wrong.
+    Row(u64, String),
+    /// The rows make no distribution.
+    Distribution(TabulatedError),
+}
+
+impl fmt::Display for MeasuredError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Row(line, why) => {
+                write!(f, "line {line}: {why}; each line holds an angle and a D, separated by a comma")
+            }
+            Self::Distribution(e) => write!(f, "{e} (rows are counted from 0, without the header)"),
+        }
+    }
+}
+
+impl std::error::Error for MeasuredError {}
+
+/// Unit of the angles in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Angles {
+    /// Radians.
+    Radians,
+    /// Degrees.
+    Degrees,
+}
+
+/// Reads a CSV with the columns θ and D, with or without a header; further columns are refused.
+///
+/// # Errors
+/// [`MeasuredError`] with the line, or the row of a value that is out of range.
+pub fn read_csv(input: impl Read, angles: Angles) -> Result<Tabulated, MeasuredError> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_reader(input);
+    let mut rows = Vec::new();
+    for (i, record) in reader.records().enumerate() {
+        let record = record.map_err(|e| {
+            MeasuredError::Row(e.position().map_or(0, csv::Position::line), "not readable text".into())
+        })?;
+        let line = record.position().map_or(0, csv::Position::line);
+        if record.len() != 2 {
+            return Err(MeasuredError::Row(line, format!("{} columns", record.len())));
+        }
+        let number = |text: &str| text.parse::<f64>();
+        match (number(&record[0]), number(&record[1])) {
+            (Ok(theta), Ok(d)) => {
+                rows.push((if angles == Angles::Degrees { theta.to_radians() } else { theta }, d));
+            }
+            // Only a first line without any number is a header.
+            (Err(_), Err(_)) if i == 0 => {}
+            (Err(_), _) => return Err(MeasuredError::Row(line, format!("`{}` is not a number", &record[0]))),
+            (_, Err(_)) => return Err(MeasuredError::Row(line, format!("`{}` is not a number", &record[1]))),
+        }
+    }
+    Tabulated::new(&rows).map_err(MeasuredError::Distribution)
+}
+
+/// The best Student-t, and the best of its two well-known members for comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// σ and γ fitted together.
+    pub student_t: Replacement,
+    /// γ = ∞.
+    pub beckmann: Replacement,
+    /// γ = 2.
+    pub ggx: Replacement,
+}
+
+/// Least squares over the measured angles.
+///
+/// # Errors
+/// [`ConvertError::Minimiser`].
+pub fn fit(measured: &Tabulated, form: Form) -> Result<Fit, ConvertError> {
+    let target = Target::measured(measured);
+    Ok(Fit {
+        student_t: target.by_rmse(Family::StudentT, form)?,
+        beckmann: target.by_rmse(Family::Beckmann, form)?,
+        ggx: target.by_rmse(Family::TrowbridgeReitz, form)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use microfacet_model::classic::{Isotropic, Member};
+
+    fn measured(sigma: f64, gamma: f64, upto: f64) -> String {
+        let truth = Member::student_t(sigma, gamma).unwrap();
+        let rows = (0..=400)
+            .map(|i| f64::from(i) * upto / 400.0)
+            .map(|t| format!("{t},{}\n", 3.0 * truth.d(t.to_radians())));
+        format!("theta,D\n{}", rows.collect::<String>())
+    }
+
+    #[test]
+    fn finds_what_was_measured() {
+        for (sigma, gamma) in [(0.3, 2.6), (0.15, 5.0), (0.2, 1.8)] {
+            let table = read_csv(measured(sigma, gamma, 89.9).as_bytes(), Angles::Degrees).unwrap();
+            let fit = fit(&table, Form::Unit).unwrap();
+            let [s, g] = fit.student_t.to.values[..] else { panic!() };
+            assert!(
+                (s / sigma - 1.0).abs() < 1e-2 && (g / gamma - 1.0).abs() < 2e-2,
+                "{sigma} {gamma}: {s} {g}"
+            );
+            assert!(fit.student_t.rmse[0] < 0.3 * fit.ggx.rmse[0].min(fit.beckmann.rmse[0]));
+        }
+    }
+
+    #[test]
+    fn bad_rows_are_named() {
+        let message = |text: &str| read_csv(text.as_bytes(), Angles::Radians).unwrap_err().to_string();
+        assert!(message("0,1\n0.1,x\n").contains("line 2"));
+        assert!(message("0,1\n0.1\n").contains("line 2: 1 columns"));
+        assert!(message("0,1\n0.1,\n0.2,1\n").contains("line 2"));
+        assert!(message("theta,D\n0,1\n0.1,-3\n0.2,1").contains("row 1: D = -3"));
+        assert!(message("0,1\n30,1\n60,1").contains("radians"));
+    }
+}
