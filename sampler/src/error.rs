@@ -30,6 +30,12 @@ pub enum BindError {
     Sigma(f32),
     /// γ ≤ 3/2 or NaN: no member of the family.
     Gamma(f64),
+    /// An ellipsoid's angle or matrix entry that is infinite or NaN.
+    NotFinite(f64),
+    /// An ellipsoid's matrix whose columns are linearly dependent to a ratio below 1e-8; the ratio.
+    Singular(f64),
+    /// An ellipsoid with the macro normal almost in its silhouette: the tangent of the lobe's tilt exceeds 1e8.
+    Silhouette(f64),
     /// γ is legal but no table of `kind` covers it; `covered` lists what the set holds.
     NotCovered {
         /// The table kind that was looked for.
@@ -58,6 +64,17 @@ impl fmt::Display for BindError {
             Self::Gamma(x) => {
                 write!(f, "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann")
             }
+            Self::NotFinite(x) => {
+                write!(f, "{x}: an ellipsoid's angles (radians) and matrix entries must be finite")
+            }
+            Self::Singular(ratio) => write!(
+                f,
+                "the ellipsoid's matrix is singular (ratio {ratio:e}, at least 1e-8): its columns must span space"
+            ),
+            Self::Silhouette(tilt) => write!(
+                f,
+                "the macro normal is almost in the ellipsoid's silhouette (mean slope {tilt:e}, at most 1e8): turn it less"
+            ),
             Self::NotCovered { kind, gamma, covered } => write!(
                 f,
                 "gamma = {gamma} is not covered by the `{kind}` tables of this set, which hold {covered}; bake a set that \

@@ -11,9 +11,11 @@
 extern crate alloc;
 
 mod axis;
+mod below;
 mod bind;
 mod cells;
 mod container;
+mod ellipsoid;
 mod error;
 mod math;
 mod sample;
@@ -25,6 +27,7 @@ mod tables;
 pub use axis::{Axis, Interpolation, Mapping};
 pub use cells::limit_slopes;
 pub use container::{FORMAT, MaterialEntry, Precision, Provenance, VERSION, describe, encode, reassemble};
+pub use ellipsoid::{Ellipsoid, Skew};
 pub use error::{BindError, LoadError};
 pub use student_t::{Masking, Roughness, StudentT};
 pub use table::{Kind, Table};

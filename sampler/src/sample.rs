@@ -22,7 +22,7 @@ pub(crate) struct Slope {
 impl Slope {
     /// From the distance g of the half tangent from the end named by `sign` (∓1).
     #[inline(always)]
-    fn from_end(g: f32, sign: f32) -> Self {
+    pub(crate) fn from_end(g: f32, sign: f32) -> Self {
         Self { x: sign * (2.0 - 2.0 * g), z: g * (2.0 - g) }
     }
 }
@@ -39,10 +39,15 @@ impl StudentT {
     #[inline]
     pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let view = self.stretch(v);
-        let x =
-            if self.slices.peeled { self.sample_peeled(&view, u[0]) } else { self.sample_slope(&view, u[0]) };
+        let x = self.sample_along(&view, u[0]);
         let t = self.sample_across(u[1]);
         face(self.assemble(&view, x, t), Vec3::new(v.x, v.y, view.z))
+    }
+
+    /// The in-plane slope, from the table or, where it lacks the heavy part, from either.
+    #[inline(always)]
+    pub(crate) fn sample_along(&self, view: &Stretched, u: f32) -> Slope {
+        if self.slices.peeled { self.sample_peeled(view, u) } else { self.sample_slope(view, u) }
     }
 
     /// The in-plane slope from the table at u ∈ [0, 1].
@@ -101,13 +106,12 @@ impl StudentT {
     /// Share of the visible area that the term x sin θ p(x), x > 0, takes: M₀ρ/area with M₀ = κ/(G1/q at grazing).
     #[inline(always)]
     pub(crate) fn heavy_share(&self, view: &Stretched) -> f32 {
-        let moment = self.slices.kappa / self.slices.shadowing[0][0];
-        (moment * view.rho * self.inverse_area(view)).clamp(0.0, 1.0)
+        (self.first_moment() * view.rho * self.inverse_area(view)).clamp(0.0, 1.0)
     }
 
     /// The slope across the plane in units of √(1 + s x²).
     #[inline(always)]
-    fn sample_across(&self, u: f32) -> Slope {
+    pub(crate) fn sample_across(&self, u: f32) -> Slope {
         let slices = &self.slices;
         let cells = slices.across.len() - 1;
         let t = mirrored_root(u, slices.across_roots);
@@ -116,18 +120,19 @@ impl StudentT {
         Slope::from_end(hermite(pair[0], pair[1], w), if u > 0.5 { 1.0 } else { -1.0 })
     }
 
-    /// The world normal of unit slopes: y = √(1 + s x²)·t, turned to the view's azimuth and stretched back, all in homogeneous form.
+    /// The world normal of unit slopes, stretched back from unit space.
     #[inline(always)]
     pub(crate) fn assemble(&self, view: &Stretched, x: Slope, t: Slope) -> Vec3 {
+        let m = self.unit_normal(view, x, t);
+        above_horizon(Vec3::new(self.sigma_x * m.x, self.sigma_y * m.y, m.z))
+    }
+
+    /// The unnormalised normal in unit space: y = √(1 + s x²)·t, turned to the view's azimuth, all in homogeneous form.
+    #[inline(always)]
+    pub(crate) fn unit_normal(&self, view: &Stretched, x: Slope, t: Slope) -> Vec3 {
         let y = sqrt(x.z * x.z + self.s * x.x * x.x) * t.x;
         let (x, z) = (x.x * t.z, x.z * t.z);
-        let m = Vec3::new(
-            self.sigma_x * (x * view.x - y * view.y),
-            self.sigma_y * (x * view.y + y * view.x),
-            z * view.frame,
-        );
-        let m = m * (1.0 / sqrt(m.dot(m)));
-        Vec3::new(m.x, m.y, m.z.max(HORIZON))
+        Vec3::new(x * view.x - y * view.y, x * view.y + y * view.x, z * view.frame)
     }
 }
 
@@ -141,7 +146,12 @@ fn face(m: Vec3, v: Vec3) -> Vec3 {
     if facing >= 0.0 {
         return m;
     }
-    let m = m - facing * v;
+    above_horizon(m - facing * v)
+}
+
+/// Unit length, and not below the smallest cosine.
+#[inline(always)]
+pub(crate) fn above_horizon(m: Vec3) -> Vec3 {
     let m = m * (1.0 / sqrt(m.dot(m)));
     Vec3::new(m.x, m.y, m.z.max(HORIZON))
 }

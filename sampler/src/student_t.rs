@@ -19,6 +19,21 @@ pub enum Masking {
     HeightCorrelated,
 }
 
+impl Masking {
+    /// G2 from the G1 of view and light.
+    #[inline(always)]
+    pub(crate) fn combine(self, a: f32, b: f32) -> f32 {
+        match self {
+            Self::Uncorrelated => a * b,
+            // 1/(1/a + 1/b − 1), arranged so that a = b = 0 gives 0.
+            Self::HeightCorrelated => {
+                let sum = a + b - a * b;
+                if sum > 0.0 { a * b / sum } else { 0.0 }
+            }
+        }
+    }
+}
+
 /// Roughness along the tangent frame's x and y: a number for an isotropic material, a pair for an anisotropic one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roughness(pub [f32; 2]);
@@ -153,6 +168,11 @@ impl StudentT {
         self.shadowing(w, r) * r
     }
 
+    /// M₀ = ∫₀^∞ x p(x) dx: the area at grazing, κ over the first node.
+    pub(crate) fn first_moment(&self) -> f32 {
+        self.slices.kappa / self.slices.shadowing[0][0]
+    }
+
     /// G1/q from the table, given r = 1/(z + κρ).
     #[inline(always)]
     fn shadowing(&self, at: &Stretched, r: f32) -> f32 {
@@ -182,15 +202,7 @@ impl StudentT {
     /// Masking and shadowing of view and light; 0 when either is at or below the horizon.
     #[inline]
     pub fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
-        let (a, b) = (self.g1(v), self.g1(l));
-        match masking {
-            Masking::Uncorrelated => a * b,
-            // 1/(1/a + 1/b − 1), arranged so that a = b = 0 gives 0.
-            Masking::HeightCorrelated => {
-                let sum = a + b - a * b;
-                if sum > 0.0 { a * b / sum } else { 0.0 }
-            }
-        }
+        masking.combine(self.g1(v), self.g1(l))
     }
 
     /// Normal distribution function D(m) per steradian; 0 for m at or below the horizon.

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 
 use crate::bind::covers;
 use crate::container::{MaterialEntry, Provenance, decode};
+use crate::ellipsoid::{Ellipsoid, Skew};
 use crate::error::{BindError, LoadError};
 use crate::student_t::{Roughness, StudentT};
 use crate::table::{Kind, Table};
@@ -106,6 +107,16 @@ impl Tables {
     /// [`BindError`] for a σ or γ outside the family, or a γ that this set does not cover.
     pub fn student_t(&self, sigma: impl Into<Roughness>, gamma: f64) -> Result<StudentT, BindError> {
         StudentT::bind(&self.tables, sigma.into(), gamma)
+    }
+
+    /// Binds an ellipsoid: a lobe of shape γ ∈ (3/2, ∞] seen through a matrix, tilted and turned; see [`Ellipsoid`].
+    ///
+    /// It reads the same tables as [`student_t`](Self::student_t).
+    ///
+    /// # Errors
+    /// [`BindError`] for a matrix that is not finite or (almost) singular, a γ outside the family, or one that this set does not cover.
+    pub fn ellipsoid(&self, skew: Skew, gamma: f64) -> Result<Ellipsoid, BindError> {
+        Ellipsoid::bind(self.student_t(1.0, gamma)?, skew)
     }
 
     /// Binds a material of the set's recipe by its name.
