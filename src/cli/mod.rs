@@ -1,7 +1,10 @@
 //! The command line: one file a subcommand. The only place that prints or shows progress.
 
 mod bake;
+mod convert;
+mod fit;
 mod inspect;
+mod plot;
 mod query;
 mod sample;
 mod stress;
@@ -37,6 +40,9 @@ enum Command {
     Inspect(inspect::Args),
     Query(query::Args),
     Sample(sample::Args),
+    Convert(convert::Args),
+    Fit(fit::Args),
+    Plot(plot::Args),
 }
 
 /// How a command ends when it does not fail.
@@ -70,6 +76,9 @@ pub(crate) fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(args),
         Command::Query(args) => query::run(args),
         Command::Sample(args) => sample::run(args),
+        Command::Convert(args) => convert::run(args),
+        Command::Fit(args) => fit::run(args),
+        Command::Plot(args) => plot::run(args),
     };
     match outcome {
         Ok(Done::Ok) => ExitCode::SUCCESS,

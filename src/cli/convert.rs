@@ -1,0 +1,167 @@
+//! `convert`: replace one distribution by another.
+
+use std::error::Error;
+use std::fmt::Write;
+
+use clap::ValueEnum;
+
+use microfacet_bake::convert::{ConvertError, Form, Replacement, Target, by_formula};
+use microfacet_bake::family::{Family, Named};
+
+use super::{Done, Failure, Outcome, print};
+
+/// Which replacement is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum By {
+    /// Equal angle at which D falls to half.
+    HalfAngle,
+    /// Least root mean square error over a uniform grid of angles.
+    Rmse,
+    /// The formula in print, where there is one.
+    Formula,
+}
+
+/// What the error is taken of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum On {
+    /// D/D(0), the shape of the highlight.
+    Unit,
+    /// D itself.
+    Density,
+}
+
+impl From<On> for Form {
+    fn from(on: On) -> Self {
+        match on {
+            On::Unit => Self::Unit,
+            On::Density => Self::Density,
+        }
+    }
+}
+
+/// Replace one distribution of normals by another, and say how far apart they are.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  microfacet-bake convert --from blinn-phong:50 --to beckmann")]
+pub(super) struct Args {
+    /// Distribution to be replaced, such as `blinn-phong:50` or `student-t:0.3,2.5`.
+    #[arg(long, required_unless_present = "table")]
+    from: Option<String>,
+    /// Family to take its place, such as `beckmann`.
+    #[arg(long, required_unless_present = "table")]
+    to: Option<String>,
+    /// One way only; all that exist by default.
+    #[arg(long)]
+    by: Option<By>,
+    /// The second parameter of a family that has two, for `half-angle`.
+    #[arg(long)]
+    shape: Option<f64>,
+    /// What the least-error replacement minimises.
+    #[arg(long, default_value = "unit")]
+    on: On,
+    /// Print the replacements of 17 Beckmann distributions by Blinn-Phong, Gauss, Schlick and Trowbridge-Reitz.
+    #[arg(long, conflicts_with_all = ["from", "to", "by", "shape"])]
+    table: bool,
+}
+
+pub(super) fn run(args: Args) -> Outcome {
+    let text = args.text().map_err(Failure::from)?;
+    print(&text)?;
+    Ok(Done::Ok)
+}
+
+impl Args {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        match (&self.from, &self.to) {
+            (Some(from), Some(to)) => self.pair(&from.parse()?, Family::by_name(to)?),
+            _ => table(self.on.into()),
+        }
+    }
+
+    fn pair(&self, from: &Named, to: Family) -> Result<String, Box<dyn Error>> {
+        let built = from.build()?;
+        let target = Target::new(&*built);
+        let replace = |by| match by {
+            By::HalfAngle => target.by_half_angle(to, self.shape),
+            By::Rmse => target.by_rmse(to, self.on.into()),
+            By::Formula => by_formula(from, to),
+        };
+        let mut text =
+            format!("{:<12}{:<40}{:>14}{:>16}\n", "by", "replacement", "RMSE of unit", "RMSE of D, 1/sr");
+        let mut line = |name: &str, found: &Replacement| {
+            writeln!(
+                text,
+                "{name:<12}{:<40}{:>14.4e}{:>16.4e}",
+                found.to.to_string(),
+                found.rmse[0],
+                found.rmse[1]
+            )
+        };
+        for by in By::value_variants().iter().filter(|by| self.by.is_none_or(|only| only == **by)) {
+            let name = by.to_possible_value().expect("no variant is skipped");
+            match replace(*by) {
+                Ok(found) => line(name.get_name(), &found)?,
+                // Without a choice, ways that do not exist for this pair are left out.
+                Err(ConvertError::NoFormula(..) | ConvertError::ShapeNeeded(_)) if self.by.is_none() => {}
+                Err(e) => return Err(e.into()),
+            }
+        }
+        Ok(text)
+    }
+}
+
+/// Least-error replacements of Beckmann with m from 0.05 to 0.45.
+fn table(form: Form) -> Result<String, Box<dyn Error>> {
+    let families = [Family::BlinnPhong, Family::Gauss, Family::Schlick, Family::TrowbridgeReitz];
+    let mut text = format!("{:>8}", "m");
+    for family in families {
+        let name = format!("{} {}", family.name(), family.parameters()[0]);
+        write!(text, "{name:>20}{:>10}", "RMSE")?;
+    }
+    text.push('\n');
+    for i in 0..17 {
+        let m = 0.05 + 0.025 * f64::from(i);
+        let built = Family::Beckmann.build(&[m])?;
+        let target = Target::new(&*built);
+        write!(text, "{m:>8.3}")?;
+        for family in families {
+            let found = target.by_rmse(family, form)?;
+            write!(
+                text,
+                "{:>20.5}{:>10.2e}",
+                found.to.values[0],
+                found.rmse[usize::from(form == Form::Density)]
+            )?;
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    fn run(line: &str) -> Result<String, String> {
+        let words = std::iter::once("convert").chain(line.split(' '));
+        let line = Line::try_parse_from(words).map_err(|e| e.to_string())?;
+        line.args.text().map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn prints_all_ways_or_one() {
+        let all = run("--from blinn-phong:50 --to beckmann").unwrap();
+        assert!(all.contains("half-angle") && all.contains("rmse") && all.contains("formula"), "{all}");
+        assert_eq!(run("--from blinn-phong:50 --to student-t").unwrap().lines().count(), 2);
+        assert!(run("--from gauss:0.1 --to schlick --by formula").unwrap_err().contains("no formula"));
+        assert!(run("--from gauss:0.1 --to student-t --by half-angle").unwrap_err().contains("--shape"));
+        assert!(run("--from ashikhmin-shirley:10,90 --to gauss").unwrap_err().contains("anisotropic"));
+        assert!(run("--from gauss:0.1").is_err());
+    }
+}

@@ -1,0 +1,46 @@
+//! `fit`: σ and γ of a measured distribution.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use microfacet_bake::fit::{self, Angles};
+
+use super::convert::On;
+use super::{Done, Outcome, print};
+
+/// Fit a Student-t to a measured distribution of normals (a CSV with the columns angle and D).
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  microfacet-bake fit --input measured.csv --degrees")]
+pub(super) struct Args {
+    /// The CSV file.
+    #[arg(long)]
+    input: PathBuf,
+    /// Angles are in degrees instead of radians.
+    #[arg(long)]
+    degrees: bool,
+    /// What the fit minimises.
+    #[arg(long, default_value = "unit")]
+    on: On,
+}
+
+pub(super) fn run(args: Args) -> Outcome {
+    let path = args.input.display();
+    let file = std::fs::File::open(&args.input).map_err(|e| format!("opening {path}: {e}"))?;
+    let angles = if args.degrees { Angles::Degrees } else { Angles::Radians };
+    let measured = fit::read_csv(file, angles).map_err(|e| format!("{path}: {e}"))?;
+    let found = fit::fit(&measured, args.on.into())?;
+    let mut text = String::new();
+    let (first, last) = measured.assumed();
+    if first > 0.0 {
+        writeln!(text, "nothing below {:.3} degrees: D is taken as constant there", first.to_degrees())?;
+    }
+    if last < std::f64::consts::FRAC_PI_2 - 0.01 {
+        writeln!(text, "nothing above {:.3} degrees: D is taken as zero there", last.to_degrees())?;
+    }
+    writeln!(text, "{:<44}{:>14}{:>16}", "fit", "RMSE of unit", "RMSE of D, 1/sr")?;
+    for found in [&found.student_t, &found.beckmann, &found.ggx] {
+        writeln!(text, "{:<44}{:>14.4e}{:>16.4e}", found.to.to_string(), found.rmse[0], found.rmse[1])?;
+    }
+    print(&text)?;
+    Ok(Done::Ok)
+}

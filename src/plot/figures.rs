@@ -1,0 +1,145 @@
+//! What each figure shows.
+
+use std::f64::consts::FRAC_PI_2;
+
+use glam::DVec3;
+use microfacet_model::StudentT;
+use microfacet_model::classic::Isotropic;
+
+use super::{Curve, Panel, PlotError};
+use crate::convert::{Form, Target};
+use crate::family::{Family, Named};
+
+/// The figures there are.
+pub const NAMES: [&str; 4] = ["student-t", "distributions", "relative-error", "highlights"];
+
+/// Points of a curve.
+const POINTS: usize = 400;
+
+/// A figure by name.
+///
+/// `student-t`: P22 and G1 by γ and by σ (Ribardière et al. 2017, figure 3). `distributions` and `relative-error`: the unit
+/// forms of least RMSE to a Beckmann, and their deviation from it (after Sawicki 2021, figures 1–2). `highlights`: the brightness across a
+/// sphere (after figures 3–5).
+///
+/// # Errors
+/// [`PlotError::Unknown`], listing the names.
+pub fn figure(name: &str) -> Result<Vec<Panel>, PlotError> {
+    match name {
+        "student-t" => Ok(student_t()),
+        "distributions" => Ok(WIDTHS.iter().map(|&m| unit_forms(m)).collect()),
+        "relative-error" => Ok(WIDTHS.iter().map(|&m| deviations(m)).collect()),
+        "highlights" => Ok(WIDTHS.iter().map(|&m| highlight(m)).collect()),
+        _ => Err(PlotError::Unknown(name.into())),
+    }
+}
+
+/// Beckmann's m in the comparisons.
+const WIDTHS: [f64; 2] = [0.1, 0.3];
+
+fn curve(name: String, low: f64, high: f64, f: impl Fn(f64) -> f64) -> Curve {
+    let at = |i: usize| low + (high - low) * i as f64 / POINTS as f64;
+    Curve { name, points: (0..=POINTS).map(at).map(|x| (x, f(x))).collect() }
+}
+
+fn degrees(theta: f64) -> DVec3 {
+    let (sin, cos) = theta.to_radians().sin_cos();
+    DVec3::new(sin, 0.0, cos)
+}
+
+fn student_t() -> Vec<Panel> {
+    let of = |sigma, gamma| StudentT::isotropic(sigma, gamma).expect("the figures' own parameters");
+    let gammas = [1.6, 2.0, 3.0, 5.0, 40.0];
+    let sigmas = [0.2, 0.35, 0.5, 0.75, 1.0];
+    let slopes = |name: String, t: StudentT| curve(name, -2.0, 2.0, move |x| t.p22(x, 0.0));
+    let masking = |name: String, t: StudentT| curve(name, 0.0, 90.0, move |theta| t.g1(degrees(theta)));
+    let by_gamma = |f: &dyn Fn(String, StudentT) -> Curve| {
+        gammas.iter().map(|&g| f(format!("γ = {g}"), of(0.5, g))).collect::<Vec<_>>()
+    };
+    let by_sigma = |f: &dyn Fn(String, StudentT) -> Curve| {
+        sigmas.iter().map(|&s| f(format!("σ = {s}"), of(s, 3.0))).collect::<Vec<_>>()
+    };
+    let panel =
+        |title: &str, x_label, y_label, y, curves| Panel { title: title.into(), x_label, y_label, y, curves };
+    vec![
+        panel("P22 by γ, σ = 0.5", "slope x (slope y = 0)", "P22", (0.0, 1.4), by_gamma(&slopes)),
+        panel("G1 by γ, σ = 0.5", "θ in degrees", "G1", (0.0, 1.05), by_gamma(&masking)),
+        panel("P22 by σ, γ = 3", "slope x (slope y = 0)", "P22", (0.0, 8.5), by_sigma(&slopes)),
+        panel("G1 by σ, γ = 3", "θ in degrees", "G1", (0.0, 1.05), by_sigma(&masking)),
+    ]
+}
+
+/// A Beckmann and the members of the other families nearest to it.
+fn nearest_to_beckmann(m: f64) -> Vec<(Named, Box<dyn Isotropic>)> {
+    let beckmann = Named { family: Family::Beckmann, values: vec![m] };
+    let from = beckmann.build().expect("m is positive");
+    let others = [Family::BlinnPhong, Family::Gauss, Family::TrowbridgeReitz, Family::Schlick];
+    let nearest = others.map(|family| {
+        let found =
+            Target::new(&*from).by_rmse(family, Form::Unit).expect("a smooth problem of one variable").to;
+        let built = found.build().expect("it was built to be judged");
+        (found, built)
+    });
+    [(beckmann, from)].into_iter().chain(nearest).collect()
+}
+
+fn unit_forms(m: f64) -> Panel {
+    let reach = (3.0 * m).min(FRAC_PI_2).to_degrees();
+    let one = |(name, d): (Named, Box<dyn Isotropic>)| {
+        curve(label(&name), 0.0, reach, |theta| d.unit(theta.to_radians()))
+    };
+    Panel {
+        title: format!("Unit forms nearest to Beckmann, m = {m}"),
+        x_label: "β in degrees",
+        y_label: "D(β)/D(0)",
+        y: (0.0, 1.05),
+        curves: nearest_to_beckmann(m).into_iter().map(one).collect(),
+    }
+}
+
+fn deviations(m: f64) -> Panel {
+    let reach = (3.0 * m).min(FRAC_PI_2).to_degrees();
+    let mut all = nearest_to_beckmann(m);
+    let (_, beckmann) = all.remove(0);
+    let one = |(name, d): (Named, Box<dyn Isotropic>)| {
+        let deviation = |theta: f64| d.unit(theta.to_radians()) / beckmann.unit(theta.to_radians()) - 1.0;
+        curve(label(&name), 0.0, reach, deviation)
+    };
+    Panel {
+        title: format!("Relative error against Beckmann, m = {m}"),
+        x_label: "β in degrees",
+        y_label: "D/D(0) over Beckmann's, minus 1",
+        y: (-1.05, 3.0),
+        curves: all.into_iter().map(one).collect(),
+    }
+}
+
+/// The angle between the view and the light that makes the highlight.
+const LIGHT_DEGREES: f64 = 45.0;
+
+/// Brightness D/(4 cos θ_v) along the equator of a sphere seen from afar, view, light and normals in one plane, masking left out, as a share of
+/// the value where the half vector is the normal.
+fn highlight(m: f64) -> Panel {
+    let light = LIGHT_DEGREES.to_radians();
+    let one = |(name, d): (Named, Box<dyn Isotropic>)| {
+        let brightness = |x: f64| {
+            let normal = x.asin();
+            let (cos_v, cos_l) = (normal.cos(), (normal - light).cos());
+            if cos_v > 0.0 && cos_l > 0.0 { d.d((normal - 0.5 * light).abs()) / (4.0 * cos_v) } else { 0.0 }
+        };
+        let at_half = brightness((0.5 * light).sin());
+        curve(label(&name), -0.7, 0.995, |x| brightness(x) / at_half)
+    };
+    Panel {
+        title: format!("Highlight across a sphere, light at 45°, Beckmann m = {m}"),
+        x_label: "distance from the centre, in radii",
+        y_label: "brightness relative to the centre of the highlight",
+        y: (0.0, 1.1),
+        curves: nearest_to_beckmann(m).into_iter().map(one).collect(),
+    }
+}
+
+fn label(named: &Named) -> String {
+    let values: Vec<String> = named.values.iter().map(|x| format!("{x:.4}")).collect();
+    format!("{} {}", named.family.name(), values.join(", "))
+}
