@@ -6,7 +6,7 @@ use glam::DVec3;
 use microfacet_model::StudentT;
 use microfacet_model::classic::Isotropic;
 
-use super::{Curve, Panel, PlotError};
+use super::{Curve, Legend, Panel, PlotError};
 use crate::convert::{Form, Target};
 use crate::family::{Family, Named};
 
@@ -59,13 +59,20 @@ fn student_t() -> Vec<Panel> {
     let by_sigma = |f: &dyn Fn(String, StudentT) -> Curve| {
         sigmas.iter().map(|&s| f(format!("σ = {s}"), of(s, 3.0))).collect::<Vec<_>>()
     };
-    let panel =
-        |title: &str, x_label, y_label, y, curves| Panel { title: title.into(), x_label, y_label, y, curves };
+    let panel = |title: &str, x_label, y_label, y, legend, curves| Panel {
+        title: title.into(),
+        x_label,
+        y_label,
+        y,
+        legend,
+        curves,
+    };
+    let (slope, angle) = ("slope x (slope y = 0)", "θ in degrees");
     vec![
-        panel("P22 by γ, σ = 0.5", "slope x (slope y = 0)", "P22", (0.0, 1.4), by_gamma(&slopes)),
-        panel("G1 by γ, σ = 0.5", "θ in degrees", "G1", (0.0, 1.05), by_gamma(&masking)),
-        panel("P22 by σ, γ = 3", "slope x (slope y = 0)", "P22", (0.0, 8.5), by_sigma(&slopes)),
-        panel("G1 by σ, γ = 3", "θ in degrees", "G1", (0.0, 1.05), by_sigma(&masking)),
+        panel("P22 by γ, σ = 0.5", slope, "P22", (0.0, 1.4), Legend::Right, by_gamma(&slopes)),
+        panel("G1 by γ, σ = 0.5", angle, "G1", (0.0, 1.05), Legend::Left, by_gamma(&masking)),
+        panel("P22 by σ, γ = 3", slope, "P22", (0.0, 8.5), Legend::Right, by_sigma(&slopes)),
+        panel("G1 by σ, γ = 3", angle, "G1", (0.0, 1.05), Legend::Left, by_sigma(&masking)),
     ]
 }
 
@@ -93,6 +100,7 @@ fn unit_forms(m: f64) -> Panel {
         x_label: "β in degrees",
         y_label: "D(β)/D(0)",
         y: (0.0, 1.05),
+        legend: Legend::Right,
         curves: nearest_to_beckmann(m).into_iter().map(one).collect(),
     }
 }
@@ -110,6 +118,7 @@ fn deviations(m: f64) -> Panel {
         x_label: "β in degrees",
         y_label: "D/D(0) over Beckmann's, minus 1",
         y: (-1.05, 3.0),
+        legend: Legend::Left,
         curves: all.into_iter().map(one).collect(),
     }
 }
@@ -134,7 +143,8 @@ fn highlight(m: f64) -> Panel {
         title: format!("Highlight across a sphere, light at 45°, Beckmann m = {m}"),
         x_label: "distance from the centre, in radii",
         y_label: "brightness relative to the centre of the highlight",
-        y: (0.0, 1.1),
+        y: (0.0, 1.5),
+        legend: Legend::Right,
         curves: nearest_to_beckmann(m).into_iter().map(one).collect(),
     }
 }
