@@ -6,6 +6,7 @@
 mod ashikhmin_shirley;
 mod gauss;
 mod gtr;
+mod marginal;
 mod member;
 mod schlick;
 mod tabulated;
@@ -19,6 +20,7 @@ use crate::student_t::StudentT;
 pub use ashikhmin_shirley::AshikhminShirley;
 pub use gauss::Gauss;
 pub use gtr::Gtr;
+pub use marginal::{Beyond, Marginal, MarginalView, resolved};
 pub use member::Member;
 pub use schlick::Schlick;
 pub use tabulated::{Tabulated, TabulatedError};

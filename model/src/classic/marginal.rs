@@ -1,0 +1,249 @@
+//! Masking and visible normals of any isotropic distribution, by quadrature over its slopes.
+//!
+//! Slopes are divided by a scale σ. With r² = x² + y², and the slope across written as y, every function of the in-plane slope x is an
+//! integral of the slope density P22(r) over y alone: p = 2∫P22 dy, Q = 2∫P22 atan(y/x) y dy, and so on, smooth integrands all.
+
+use core::f64::consts::{FRAC_PI_2, PI};
+
+use super::Isotropic;
+
+/// Nodes of one integral, each side of the middle.
+const NODES: i32 = 48;
+/// Their step. The rule is double exponential; on smooth distributions it is good to 1e-12.
+const STEP: f64 = 4.0 / NODES as f64;
+
+/// The slope marginal of an isotropic distribution in units of a scale σ.
+pub struct Marginal<'a> {
+    d: &'a dyn Isotropic,
+    sigma: f64,
+    /// Largest unit slope; ∞ where normals reach the horizon.
+    reach: f64,
+}
+
+/// Integrals of the marginal p beyond a slope x ≥ 0.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Beyond {
+    /// p(x).
+    pub density: f64,
+    /// ∫ₓ^∞ p.
+    pub tail: f64,
+    /// ∫ₓ^∞ ξ p(ξ) dξ.
+    pub first_moment: f64,
+    /// ∫ₓ^∞ (ξ − x) p(ξ) dξ = x Λ(x).
+    pub excess: f64,
+}
+
+impl<'a> Marginal<'a> {
+    /// With the median slope as the scale, which for Trowbridge–Reitz is C.
+    pub fn new(d: &'a dyn Isotropic) -> Self {
+        let sigma = libm::tan(d.sample_theta(0.5));
+        let reach = if d.support() < FRAC_PI_2 { libm::tan(d.support()) / sigma } else { f64::INFINITY };
+        Self { d, sigma, reach }
+    }
+
+    /// The scale σ.
+    pub fn sigma(&self) -> f64 {
+        self.sigma
+    }
+
+    /// Largest unit slope; ∞ where normals reach the horizon.
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Density of unit slopes at the given distance from 0.
+    pub fn p22(&self, r: f64) -> f64 {
+        let slope = self.sigma * r;
+        let cos2 = 1.0 / (1.0 + slope * slope);
+        self.sigma * self.sigma * self.d.d(libm::atan(slope)) * cos2 * cos2
+    }
+
+    /// Calls `add(y, weight)` at the nodes of ∫ over y from `from` to the end of the support, at in-plane slope x.
+    fn across(&self, x: f64, from: f64, mut add: impl FnMut(f64, f64)) {
+        let whole = if self.reach.is_finite() {
+            let left = self.reach * self.reach - x * x;
+            if left <= from * from {
+                return;
+            }
+            left.sqrt() - from
+        } else {
+            f64::INFINITY
+        };
+        let scale = (1.0 + x * x + from * from).sqrt();
+        for i in -NODES..=NODES {
+            let t = f64::from(i) * STEP;
+            let (u, du) = (FRAC_PI_2 * libm::sinh(t), FRAC_PI_2 * libm::cosh(t) * STEP);
+            if whole.is_finite() {
+                // tanh on [from, from + whole].
+                let e = libm::exp(-2.0 * u.abs());
+                let near = whole * e / (1.0 + e);
+                let y = if u < 0.0 { from + near } else { from + (whole - near) };
+                add(y, whole * 2.0 * e / ((1.0 + e) * (1.0 + e)) * du);
+            } else {
+                let y = scale * libm::exp(u);
+                if y < 1e30 {
+                    add(from + y, y * du);
+                }
+            }
+        }
+    }
+
+    /// The integrals beyond x ≥ 0.
+    pub fn beyond(&self, x: f64) -> Beyond {
+        let mut sum = Beyond::default();
+        self.across(x, 0.0, |y, weight| {
+            let w = 2.0 * weight * self.p22(libm::hypot(x, y));
+            let angle = if x > 0.0 { libm::atan(y / x) } else { FRAC_PI_2 };
+            sum.density += w;
+            sum.tail += w * y * angle;
+            sum.first_moment += w * y * y;
+            sum.excess += w * y * (y - x * angle).max(0.0);
+        });
+        sum
+    }
+
+    /// Share of the slopes across that exceed y ≥ 0, given the in-plane slope x.
+    pub fn across_tail(&self, x: f64, y: f64) -> f64 {
+        let beyond = |from: f64| {
+            let mut sum = 0.0;
+            self.across(x, from, |y, weight| sum += weight * self.p22(libm::hypot(x, y)));
+            sum
+        };
+        let whole = 2.0 * beyond(0.0);
+        if whole > 0.0 { beyond(y) / whole } else { 0.0 }
+    }
+
+    /// Density of the slope across at y, given x.
+    pub fn across_density(&self, x: f64, y: f64) -> f64 {
+        let whole = self.beyond(x).density;
+        if whole > 0.0 { self.p22(libm::hypot(x, y)) / whole } else { 0.0 }
+    }
+
+    /// Smith's G1 of a view at polar angle θ < π/2.
+    pub fn g1(&self, theta: f64) -> f64 {
+        let (sin, cos) = (self.sigma * libm::sin(theta), libm::cos(theta));
+        if sin == 0.0 { 1.0 } else { cos / (cos + sin * self.beyond(cos / sin).excess) }
+    }
+}
+
+/// In-plane slopes that a view sees: density ∝ (cos θ + x sin θ) p(x) beyond the silhouette, θ the unit angle.
+pub struct MarginalView<'a> {
+    marginal: &'a Marginal<'a>,
+    sin: f64,
+    cos: f64,
+    /// Cotangent, and the excess beyond it.
+    z: f64,
+    excess: f64,
+    area: f64,
+}
+
+impl<'a> MarginalView<'a> {
+    /// A view whose unit cotangent is z = cot θ_v/σ ∈ [0, ∞].
+    pub fn new(marginal: &'a Marginal<'a>, z: f64) -> Self {
+        let crate::UnitView { sin, cos } = crate::UnitView::from_cotangent(z);
+        let excess = if sin == 0.0 { 0.0 } else { marginal.beyond(z).excess };
+        Self { marginal, sin, cos, z, excess, area: cos + sin * excess }
+    }
+
+    /// Projected area cos θ (1 + Λ) in unit space.
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// The share of visible normals with a slope below x.
+    pub fn cdf(&self, x: f64) -> f64 {
+        if x <= -self.z {
+            return 0.0;
+        }
+        let at = self.marginal.beyond(x.abs());
+        if x >= 0.0 {
+            return 1.0 - (self.cos * at.tail + self.sin * at.first_moment) / self.area;
+        }
+        let below = if self.sin == 0.0 {
+            self.cos * at.tail
+        } else {
+            // ∫ (z − ξ) p from |x| to z.
+            self.sin * ((self.z + x) * at.tail - at.excess + self.excess)
+        };
+        (below / self.area).max(0.0)
+    }
+
+    /// 1 − cdf, accurate where that is small.
+    pub fn complement(&self, x: f64) -> f64 {
+        if x < 0.0 {
+            return 1.0 - self.cdf(x);
+        }
+        let at = self.marginal.beyond(x);
+        (self.cos * at.tail + self.sin * at.first_moment) / self.area
+    }
+
+    /// Density of that share by x.
+    pub fn density(&self, x: f64) -> f64 {
+        (self.cos + x * self.sin).max(0.0) * self.marginal.beyond(x.abs()).density / self.area
+    }
+}
+
+/// ∫ D (m·n) over the hemisphere by way of the slopes: 1 when the marginal's quadrature resolves the distribution.
+pub fn resolved(marginal: &Marginal) -> f64 {
+    let mut sum = 0.0;
+    marginal.across(0.0, 0.0, |r, weight| sum += 2.0 * PI * r * weight * marginal.p22(r));
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::classic::{Gauss, Gtr, Member, Schlick};
+    use crate::{SignedUnit, UnitView, VisibleSlope};
+
+    #[test]
+    fn members_have_the_family_s_closed_forms() {
+        for (member, scale) in [
+            (Member::beckmann(0.3).unwrap(), None),
+            (Member::trowbridge_reitz(0.2).unwrap(), Some(0.2)),
+            (Member::blinn_phong(12.0).unwrap(), None),
+            (Member::student_t(0.5, 2.6).unwrap(), None),
+        ] {
+            let (marginal, t) = (Marginal::new(&member), member.student_t().unwrap());
+            if let Some(scale) = scale {
+                assert!((marginal.sigma() - scale).abs() < 1e-12);
+            }
+            let shape = t.shape();
+            // The family's unit slopes are divided by its own σ.
+            let ratio = marginal.sigma() / t.sigma_x();
+            for z in [0.0, 0.2, 1.0, 4.0] {
+                let w = shape.unit(z * ratio);
+                let at = marginal.beyond(z);
+                assert!((at.tail - shape.tail(w)).abs() < 1e-9, "tail at {z}: {} {}", at.tail, shape.tail(w));
+                assert!((at.excess * ratio - shape.excess(w)).abs() < 1e-9, "excess at {z}");
+                let visible = MarginalView::new(&marginal, z);
+                let exact = VisibleSlope::new(shape, UnitView::from_cotangent(z * ratio));
+                for x in [-1.0, -0.1, 0.3, 2.0] {
+                    let slope = SignedUnit { w: shape.unit(f64::abs(x * ratio)), sign: f64::signum(x) };
+                    assert!((visible.cdf(x) - exact.cdf(slope)).abs() < 1e-8, "z {z}, x {x}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_quadrature_resolves_the_others() {
+        let schlick = Schlick::new(0.2).unwrap();
+        let (gauss, gtr) = (Gauss::new(0.2).unwrap(), Gtr::new(0.1, 1.2).unwrap());
+        let all: [(&dyn Isotropic, f64); 3] = [(&gauss, 1e-9), (&gtr, 1e-9), (&schlick, 1e-9)];
+        for (d, tolerance) in all {
+            let marginal = Marginal::new(d);
+            assert!((resolved(&marginal) - 1.0).abs() < tolerance, "{}", resolved(&marginal));
+            assert!((marginal.beyond(0.0).tail - 0.5).abs() < tolerance);
+            // p is minus the derivative of the tail, and the tail that of the excess.
+            for x in [0.3, 0.9, 1.7] {
+                let (a, b, at) = (marginal.beyond(x - 1e-4), marginal.beyond(x + 1e-4), marginal.beyond(x));
+                assert!(((a.tail - b.tail) / 2e-4 - at.density).abs() < 1e-6, "density at {x}");
+                assert!(((a.excess - b.excess) / 2e-4 - at.tail).abs() < 1e-6, "tail at {x}");
+                let t = marginal.across_tail(x, 0.4);
+                let rate = (marginal.across_tail(x, 0.4 - 1e-4) - marginal.across_tail(x, 0.4 + 1e-4)) / 2e-4;
+                assert!(t > 0.0 && t < 0.5 && (rate - marginal.across_density(x, 0.4)).abs() < 1e-5);
+            }
+        }
+    }
+}
