@@ -99,6 +99,7 @@ pub fn entries(scene: &Scene) -> Vec<MaterialEntry> {
             name: material.name.clone(),
             sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
             s: [s_of(max), s_of(min)],
+            distribution: String::new(),
         }
     };
     rough(scene).map(entry).collect()

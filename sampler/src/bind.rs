@@ -56,7 +56,7 @@ fn slice(table: &Table, s: f64) -> Option<Vec<Node>> {
 }
 
 /// Makes a run of nodes ascend in spite of rounding and of the negative weights of the γ interpolation.
-fn make_monotone(run: &mut [Node]) {
+pub(crate) fn make_monotone(run: &mut [Node]) {
     let mut last = 0.0_f32;
     for node in run.iter_mut() {
         last = last.max(node[0]);
@@ -129,7 +129,7 @@ impl Slices {
     }
 }
 
-fn roots(axis: &Axis) -> u32 {
+pub(crate) fn roots(axis: &Axis) -> u32 {
     match axis.mapping {
         Mapping::MirroredPower { power, .. } => power.trailing_zeros(),
         _ => unreachable!("validated on load"),

@@ -67,6 +67,17 @@ pub struct MaterialEntry {
     pub sigma: [[f64; 2]; 2],
     /// 1/(γ−1), so that γ = ∞ is the number 0; a range [min, max] likewise.
     pub s: [f64; 2],
+    /// The distribution, such as `gtr:0.2,1.5`, of a material that is no Student-t; `sigma` is then the scale of its tables, which carry
+    /// the [`table_suffix`](Self::table_suffix), and `s` means nothing.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub distribution: String,
+}
+
+impl MaterialEntry {
+    /// What follows the kind in the names of this material's own tables; empty for a Student-t.
+    pub fn table_suffix(&self) -> String {
+        self.distribution.replace([':', ','], "_")
+    }
 }
 
 #[derive(Serialize, Deserialize)]

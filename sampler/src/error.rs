@@ -30,6 +30,15 @@ pub enum BindError {
     Sigma(f32),
     /// γ ≤ 3/2 or NaN: no member of the family.
     Gamma(f64),
+    /// The material exists, but as another distribution than the one it was asked for as.
+    OtherDistribution {
+        /// The material.
+        name: String,
+        /// Its distribution.
+        distribution: String,
+    },
+    /// A table of a material's own distribution is missing from the set.
+    NoTable(String),
     /// An ellipsoid's angle or matrix entry that is infinite or NaN.
     NotFinite(f64),
     /// An ellipsoid's matrix whose columns are linearly dependent to a ratio below 1e-8; the ratio.
@@ -64,6 +73,11 @@ impl fmt::Display for BindError {
             Self::Gamma(x) => {
                 write!(f, "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann")
             }
+            Self::OtherDistribution { name, distribution } => write!(
+                f,
+                "material \"{name}\" is a {distribution}: bind a student-t with `student_t` or `material`, others with `radial`"
+            ),
+            Self::NoTable(name) => write!(f, "table `{name}` is missing from this set; bake it again"),
             Self::NotFinite(x) => {
                 write!(f, "{x}: an ellipsoid's angles (radians) and matrix entries must be finite")
             }

@@ -122,6 +122,11 @@ impl StudentT {
         Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_k: (2.0 * gamma - 3.0) as f32, slices })
     }
 
+    /// The carrier of another distribution's tables: unit slopes are slopes over σ, and those across scale with √(1 + x²).
+    pub(crate) fn carrier(sigma: f32, slices: Slices) -> Self {
+        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_k: 1.0, slices }
+    }
+
     /// The same shape with another roughness; the tables are not touched again.
     ///
     /// # Errors

@@ -24,6 +24,14 @@ pub enum Kind {
     VisibleSlopePeeled,
     /// Slope across the plane given the in-plane one, over γ × u₂.
     VisibleSlopeConditional,
+    /// As `Shadowing` for one distribution that is no member of the family, over view.
+    RadialShadowing,
+    /// As `VisibleSlope` for one such distribution, over view × u₁.
+    RadialSlope,
+    /// Slope across in units of √(1 + x²), over the in-plane slope x × u₂.
+    RadialConditional,
+    /// Fourth root of D, over the slope of the normal.
+    RadialDensity,
 }
 
 impl Kind {
@@ -34,6 +42,10 @@ impl Kind {
             Self::VisibleSlope => "visible_slope",
             Self::VisibleSlopePeeled => "visible_slope_peeled",
             Self::VisibleSlopeConditional => "visible_slope_conditional",
+            Self::RadialShadowing => "radial_shadowing",
+            Self::RadialSlope => "radial_slope",
+            Self::RadialConditional => "radial_conditional",
+            Self::RadialDensity => "radial_density",
         }
     }
 
@@ -43,6 +55,10 @@ impl Kind {
             Self::Shadowing => &["gamma", "view"],
             Self::VisibleSlope | Self::VisibleSlopePeeled => &["gamma", "view", "u1"],
             Self::VisibleSlopeConditional => &["gamma", "u2"],
+            Self::RadialShadowing => &["view"],
+            Self::RadialSlope => &["view", "u1"],
+            Self::RadialConditional => &["slope", "u2"],
+            Self::RadialDensity => &["slope"],
         }
     }
 }
@@ -104,7 +120,7 @@ impl Table {
         if self.channels != ["value", "slope"] {
             return fail("channels are not `value`, `slope`");
         }
-        if self.axes[0].mapping != Mapping::InverseShape {
+        if self.axes[0].name == "gamma" && self.axes[0].mapping != Mapping::InverseShape {
             return fail("axis `gamma` is not mapped by `inverse_shape`");
         }
         let mapped = match self.kind {
@@ -118,6 +134,19 @@ impl Table {
             Kind::VisibleSlopeConditional => {
                 matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: true, .. })
             }
+            // With the pole at 2 and s = 1, κ is the scale itself.
+            Kind::RadialShadowing => {
+                matches!(self.axes[0].mapping, Mapping::Rational { pole, .. } if pole == 2.0)
+            }
+            Kind::RadialSlope => {
+                self.axes[0].mapping == Mapping::HalfTangent
+                    && matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: false, .. })
+            }
+            Kind::RadialConditional => {
+                self.axes[0].mapping == Mapping::HalfTangent
+                    && matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: true, .. })
+            }
+            Kind::RadialDensity => self.axes[0].mapping == Mapping::HalfTangent,
         };
         if !mapped {
             return fail("an axis has a mapping that this kind does not use");
@@ -125,7 +154,9 @@ impl Table {
         let positive = self.values.iter().step_by(2);
         let in_range = match self.kind {
             // q ≤ G1 and G1/q ≤ (1 + κ/z)…: bounded by the projected area's limits.
-            Kind::Shadowing => positive.clone().all(|&x| x > 0.0 && x < 1e3),
+            Kind::Shadowing | Kind::RadialShadowing => positive.clone().all(|&x| x > 0.0 && x < 1e3),
+            // Its fourth power must be a number.
+            Kind::RadialDensity => positive.clone().all(|&x| (0.0..1e9).contains(&x)),
             // Distances of a half tangent in [−1, 1] from its end.
             _ => positive.clone().all(|&x| (0.0..=2.0).contains(&x)),
         };

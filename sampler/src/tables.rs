@@ -8,6 +8,7 @@ use crate::bind::covers;
 use crate::container::{MaterialEntry, Provenance, decode};
 use crate::ellipsoid::{Ellipsoid, Skew};
 use crate::error::{BindError, LoadError};
+use crate::radial::Radial;
 use crate::student_t::{Roughness, StudentT};
 use crate::table::{Kind, Table};
 
@@ -126,15 +127,35 @@ impl Tables {
     /// # Errors
     /// [`BindError::NoSuchMaterial`] naming those that exist, or what [`student_t`](Self::student_t) reports.
     pub fn material(&self, name: &str) -> Result<StudentT, BindError> {
+        let entry = self.entry(name)?;
+        if !entry.distribution.is_empty() {
+            let distribution = entry.distribution.clone();
+            return Err(BindError::OtherDistribution { name: name.into(), distribution });
+        }
+        let MaterialEntry { sigma: [x, y], s, .. } = entry;
+        let middle = |[min, max]: [f64; 2]| 0.5 * (min + max);
+        self.student_t([middle(*x), middle(*y)], 1.0 + 1.0 / middle(*s))
+    }
+
+    /// Binds a material of the set's recipe that is no Student-t, such as a GTR or a measured one.
+    ///
+    /// # Errors
+    /// [`BindError::NoSuchMaterial`], or [`BindError::OtherDistribution`] for a Student-t.
+    pub fn radial(&self, name: &str) -> Result<Radial, BindError> {
+        let entry = self.entry(name)?;
+        if entry.distribution.is_empty() {
+            return Err(BindError::OtherDistribution { name: name.into(), distribution: "student-t".into() });
+        }
+        Radial::bind(&self.tables, entry.sigma[0][0] as f32, &entry.table_suffix())
+    }
+
+    fn entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
         let materials = &self.provenance.materials;
-        let entry = materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
+        materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
             let known: Vec<String> =
                 materials.iter().map(|entry| alloc::format!("\"{}\"", entry.name)).collect();
             let known = if known.is_empty() { "no named materials".to_string() } else { known.join(", ") };
             BindError::NoSuchMaterial { name: name.into(), known }
-        })?;
-        let MaterialEntry { sigma: [x, y], s, .. } = entry;
-        let middle = |[min, max]: [f64; 2]| 0.5 * (min + max);
-        self.student_t([middle(*x), middle(*y)], 1.0 + 1.0 / middle(*s))
+        })
     }
 }

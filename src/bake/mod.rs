@@ -4,6 +4,7 @@
 //! are the same on every system, with any number of threads and in every build.
 
 mod conditional;
+mod radial;
 mod shadowing;
 mod visible_slope;
 
@@ -11,6 +12,8 @@ use microfacet_model::{Shape, SignedUnit};
 use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Table};
 
 use crate::spec::TableSpec;
+
+pub use radial::bake_radial;
 
 /// Changes whenever the same specification would give other values: part of every file, and of every cache key.
 pub const NUMERICS: u32 = 1;

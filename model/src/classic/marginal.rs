@@ -37,7 +37,9 @@ impl<'a> Marginal<'a> {
     /// With the median slope as the scale, which for Trowbridge–Reitz is C.
     pub fn new(d: &'a dyn Isotropic) -> Self {
         let sigma = libm::tan(d.sample_theta(0.5));
-        let reach = if d.support() < FRAC_PI_2 { libm::tan(d.support()) / sigma } else { f64::INFINITY };
+        let reach = libm::tan(d.support()) / sigma;
+        // A support that ends within rounding of the horizon (tan negative or huge) is the whole hemisphere.
+        let reach = if (0.0..1e6).contains(&reach) { reach } else { f64::INFINITY };
         Self { d, sigma, reach }
     }
 
@@ -49,6 +51,11 @@ impl<'a> Marginal<'a> {
     /// Largest unit slope; ∞ where normals reach the horizon.
     pub fn reach(&self) -> f64 {
         self.reach
+    }
+
+    /// D per steradian at the unit slope r.
+    pub fn d(&self, r: f64) -> f64 {
+        self.d.d(libm::atan(self.sigma * r))
     }
 
     /// Density of unit slopes at the given distance from 0.
@@ -102,27 +109,42 @@ impl<'a> Marginal<'a> {
         sum
     }
 
-    /// Share of the slopes across that exceed y ≥ 0, given the in-plane slope x.
-    pub fn across_tail(&self, x: f64, y: f64) -> f64 {
-        let beyond = |from: f64| {
-            let mut sum = 0.0;
-            self.across(x, from, |y, weight| sum += weight * self.p22(libm::hypot(x, y)));
-            sum
-        };
-        let whole = 2.0 * beyond(0.0);
-        if whole > 0.0 { beyond(y) / whole } else { 0.0 }
+    /// The distribution of slopes across, given the in-plane slope x.
+    pub fn across_at(&self, x: f64) -> Across<'_> {
+        Across { marginal: self, x, half: self.p22_beyond(x, 0.0) }
     }
 
-    /// Density of the slope across at y, given x.
-    pub fn across_density(&self, x: f64, y: f64) -> f64 {
-        let whole = self.beyond(x).density;
-        if whole > 0.0 { self.p22(libm::hypot(x, y)) / whole } else { 0.0 }
+    /// ∫ P22 over slopes across above y.
+    fn p22_beyond(&self, x: f64, y: f64) -> f64 {
+        let mut sum = 0.0;
+        self.across(x, y, |y, weight| sum += weight * self.p22(libm::hypot(x, y)));
+        sum
     }
 
     /// Smith's G1 of a view at polar angle θ < π/2.
     pub fn g1(&self, theta: f64) -> f64 {
         let (sin, cos) = (self.sigma * libm::sin(theta), libm::cos(theta));
         if sin == 0.0 { 1.0 } else { cos / (cos + sin * self.beyond(cos / sin).excess) }
+    }
+}
+
+/// Slopes across the plane of incidence at one in-plane slope; symmetric, independent of the view.
+pub struct Across<'a> {
+    marginal: &'a Marginal<'a>,
+    x: f64,
+    /// ∫ P22 over half of them.
+    half: f64,
+}
+
+impl Across<'_> {
+    /// The share that exceeds y ≥ 0; 0 where there are no slopes.
+    pub fn tail(&self, y: f64) -> f64 {
+        if self.half > 0.0 { 0.5 * self.marginal.p22_beyond(self.x, y) / self.half } else { 0.0 }
+    }
+
+    /// Density at y; 0 where there are no slopes.
+    pub fn density(&self, y: f64) -> f64 {
+        if self.half > 0.0 { 0.5 * self.marginal.p22(libm::hypot(self.x, y)) / self.half } else { 0.0 }
     }
 }
 
@@ -150,14 +172,16 @@ impl<'a> MarginalView<'a> {
         self.area
     }
 
-    /// The share of visible normals with a slope below x.
-    pub fn cdf(&self, x: f64) -> f64 {
+    /// The shares of visible normals with a slope below and above x, each accurate where it is small, and the density of either by x.
+    pub fn shares(&self, x: f64) -> Shares {
         if x <= -self.z {
-            return 0.0;
+            return Shares { below: 0.0, above: 1.0, density: 0.0 };
         }
         let at = self.marginal.beyond(x.abs());
+        let density = (self.cos + x * self.sin).max(0.0) * at.density / self.area;
         if x >= 0.0 {
-            return 1.0 - (self.cos * at.tail + self.sin * at.first_moment) / self.area;
+            let above = (self.cos * at.tail + self.sin * at.first_moment) / self.area;
+            return Shares { below: 1.0 - above, above, density };
         }
         let below = if self.sin == 0.0 {
             self.cos * at.tail
@@ -165,22 +189,20 @@ impl<'a> MarginalView<'a> {
             // ∫ (z − ξ) p from |x| to z.
             self.sin * ((self.z + x) * at.tail - at.excess + self.excess)
         };
-        (below / self.area).max(0.0)
+        let below = (below / self.area).max(0.0);
+        Shares { below, above: 1.0 - below, density }
     }
+}
 
-    /// 1 − cdf, accurate where that is small.
-    pub fn complement(&self, x: f64) -> f64 {
-        if x < 0.0 {
-            return 1.0 - self.cdf(x);
-        }
-        let at = self.marginal.beyond(x);
-        (self.cos * at.tail + self.sin * at.first_moment) / self.area
-    }
-
-    /// Density of that share by x.
-    pub fn density(&self, x: f64) -> f64 {
-        (self.cos + x * self.sin).max(0.0) * self.marginal.beyond(x.abs()).density / self.area
-    }
+/// How visible normals split at a slope.
+#[derive(Clone, Copy, Debug)]
+pub struct Shares {
+    /// Share below.
+    pub below: f64,
+    /// Share above.
+    pub above: f64,
+    /// Density at the slope.
+    pub density: f64,
 }
 
 /// ∫ D (m·n) over the hemisphere by way of the slopes: 1 when the marginal's quadrature resolves the distribution.
@@ -220,7 +242,7 @@ mod tests {
                 let exact = VisibleSlope::new(shape, UnitView::from_cotangent(z * ratio));
                 for x in [-1.0, -0.1, 0.3, 2.0] {
                     let slope = SignedUnit { w: shape.unit(f64::abs(x * ratio)), sign: f64::signum(x) };
-                    assert!((visible.cdf(x) - exact.cdf(slope)).abs() < 1e-8, "z {z}, x {x}");
+                    assert!((visible.shares(x).below - exact.cdf(slope)).abs() < 1e-8, "z {z}, x {x}");
                 }
             }
         }
@@ -240,9 +262,9 @@ mod tests {
                 let (a, b, at) = (marginal.beyond(x - 1e-4), marginal.beyond(x + 1e-4), marginal.beyond(x));
                 assert!(((a.tail - b.tail) / 2e-4 - at.density).abs() < 1e-6, "density at {x}");
                 assert!(((a.excess - b.excess) / 2e-4 - at.tail).abs() < 1e-6, "tail at {x}");
-                let t = marginal.across_tail(x, 0.4);
-                let rate = (marginal.across_tail(x, 0.4 - 1e-4) - marginal.across_tail(x, 0.4 + 1e-4)) / 2e-4;
-                assert!(t > 0.0 && t < 0.5 && (rate - marginal.across_density(x, 0.4)).abs() < 1e-5);
+                let across = marginal.across_at(x);
+                let rate = (across.tail(0.4 - 1e-4) - across.tail(0.4 + 1e-4)) / 2e-4;
+                assert!((0.0..0.5).contains(&across.tail(0.4)) && (rate - across.density(0.4)).abs() < 1e-5);
             }
         }
     }

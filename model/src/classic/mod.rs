@@ -20,7 +20,7 @@ use crate::student_t::StudentT;
 pub use ashikhmin_shirley::AshikhminShirley;
 pub use gauss::Gauss;
 pub use gtr::Gtr;
-pub use marginal::{Beyond, Marginal, MarginalView, resolved};
+pub use marginal::{Across, Beyond, Marginal, MarginalView, Shares, resolved};
 pub use member::Member;
 pub use schlick::Schlick;
 pub use tabulated::{Tabulated, TabulatedError};

@@ -1,0 +1,151 @@
+//! Isotropic distributions that are no members of the Student-t family, from tables of their own.
+
+use alloc::format;
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use crate::axis::Mapping;
+use crate::bind::{Slices, make_monotone, roots};
+use crate::cells::{Node, between_rows, hermite, locate};
+use crate::error::BindError;
+use crate::math::sqrt;
+use crate::sample::{Slope, mirrored_root};
+use crate::student_t::{Masking, StudentT};
+use crate::table::{Kind, Table};
+
+/// A material of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
+///
+/// Directions are unit vectors in the tangent frame, n = +z. As for the family, one lookup inverts the CDF of the in-plane slope and one that of the
+/// slope across; the latter depends here on the former.
+#[derive(Clone, Debug)]
+pub struct Radial {
+    /// σ, masking and the in-plane slope.
+    plane: StudentT,
+    /// Slopes across: rows by in-plane slope, the half for u > ½.
+    across: Vec<Node>,
+    /// Cells along a row, and between rows.
+    cells: usize,
+    rows: usize,
+    roots: u32,
+    /// D^(1/4) by the half tangent of the slope.
+    density: Vec<Node>,
+}
+
+fn nodes(table: &Table) -> Vec<Node> {
+    table.values.chunks_exact(2).map(|node| [node[0], node[1]]).collect()
+}
+
+impl Radial {
+    pub(crate) fn bind(tables: &[Table], sigma: f32, suffix: &str) -> Result<Self, BindError> {
+        if !(sigma > 0.0 && sigma < f32::INFINITY) {
+            return Err(BindError::Sigma(sigma));
+        }
+        let table = |kind: Kind| {
+            let name = format!("{}_{suffix}", kind.name());
+            let found = tables.iter().find(|table| table.kind == kind && table.name == name);
+            found.ok_or(BindError::NoTable(name))
+        };
+        let (shadowing, slope) = (table(Kind::RadialShadowing)?, table(Kind::RadialSlope)?);
+        let (conditional, density) = (table(Kind::RadialConditional)?, table(Kind::RadialDensity)?);
+        let kappa = match shadowing.axes[0].mapping {
+            Mapping::Rational { scale, .. } => scale as f32,
+            _ => unreachable!("validated on load"),
+        };
+        let half = slope.axes[1].nodes.len();
+        let mut slopes = nodes(slope);
+        slopes.chunks_exact_mut(half).for_each(make_monotone);
+        let width = conditional.axes[1].nodes.len();
+        let mut across = nodes(conditional);
+        across.chunks_exact_mut(width).for_each(make_monotone);
+        let slices = Slices {
+            shadowing: nodes(shadowing),
+            kappa,
+            crowded_shadowing: false,
+            slope: slopes,
+            rows: slope.axes[0].nodes.len() - 1,
+            crowded: false,
+            cells: half - 1,
+            roots: roots(&slope.axes[1]),
+            peeled: false,
+            across: Vec::new(),
+            across_roots: 0,
+        };
+        Ok(Self {
+            plane: StudentT::carrier(sigma, slices),
+            across,
+            cells: width - 1,
+            rows: conditional.axes[0].nodes.len() - 1,
+            roots: roots(&conditional.axes[1]),
+            density: nodes(density),
+        })
+    }
+
+    /// The scale of slopes in the tables, their median.
+    pub fn sigma(&self) -> f32 {
+        self.plane.sigma()[0]
+    }
+
+    /// Normal distribution function D(m) per steradian, interpolated; 0 for m at or below the horizon.
+    #[inline]
+    pub fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        let sigma = self.sigma();
+        let r = sqrt(m.x * m.x + m.y * m.y);
+        // The half tangent of the unit slope r/(σ z).
+        let (x, z) = (r, sigma * m.z);
+        let h = x / (z + sqrt(x * x + z * z));
+        let cells = self.density.len() - 1;
+        let (cell, w) = locate(h * cells as f32, cells);
+        let root = hermite(self.density[cell], self.density[cell + 1], w).max(0.0);
+        (root * root) * (root * root)
+    }
+
+    /// Smith masking G1(w) ∈ [0, 1]; 0 at and below the horizon.
+    #[inline]
+    pub fn g1(&self, w: Vec3) -> f32 {
+        self.plane.g1(w)
+    }
+
+    /// Λ(w) = 1/G1 − 1 ≥ 0; ∞ at and below the horizon.
+    #[inline]
+    pub fn lambda(&self, w: Vec3) -> f32 {
+        self.plane.lambda(w)
+    }
+
+    /// Masking and shadowing of view and light; 0 when either is at or below the horizon.
+    #[inline]
+    pub fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        self.plane.g2(v, l, masking)
+    }
+
+    /// A normal visible from `v`, from two numbers in [0, 1].
+    #[inline]
+    pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let view = self.plane.stretch(v);
+        let x = self.plane.sample_slope(&view, u[0]);
+        self.plane.assemble(&view, x, self.sample_across(x, u[1]))
+    }
+
+    /// The slope across in units of √(1 + x²), given the in-plane slope.
+    #[inline(always)]
+    fn sample_across(&self, x: Slope, u: f32) -> Slope {
+        let a = x.x.abs();
+        let h = a / (x.z + sqrt(a * a + x.z * x.z));
+        let (row, between) = locate(h * self.rows as f32, self.rows);
+        let (cell, w) = locate(mirrored_root(u, self.roots) * self.cells as f32, self.cells);
+        let start = row * (self.cells + 1) + cell;
+        let below = start + self.cells + 1;
+        let (a, b) = between_rows(&self.across[start..start + 2], &self.across[below..below + 2], 0, between);
+        Slope::from_end(hermite(a, b, w), if u > 0.5 { 1.0 } else { -1.0 })
+    }
+
+    /// Density of visible normals (v·m)⁺ D(m) G1(v)/(v·n) per steradian, with the tables' D and G1.
+    #[inline]
+    pub fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        let facing = v.dot(m).max(0.0);
+        (facing * self.d(m) * self.plane.inverse_area(&self.plane.stretch(v))).min(f32::MAX)
+    }
+}

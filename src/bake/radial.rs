@@ -1,0 +1,210 @@
+//! The four tables of an isotropic distribution that is no member of the Student-t family.
+//!
+//! The same coordinates as the family's tables, without its γ: slopes are divided by their median σ, and the slope across, by √(1 + x²). All values
+//! are integrals over the slope marginal and roots of them.
+
+use microfacet_model::classic::{Marginal, MarginalView};
+use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Precision, Table, limit_slopes};
+use rayon::prelude::*;
+
+use super::{POWER, mirrored, round};
+use crate::spec::Quality;
+
+/// Rows of in-plane slopes in the table of slopes across.
+const SLOPES: usize = 193;
+/// Nodes of D.
+const DENSITIES: usize = 257;
+
+/// The four tables, their names ending in `suffix`.
+pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precision: Precision) -> Vec<Table> {
+    let r = quality.resolution();
+    // Twice as fine as the family's: a distribution at hand may have kinks and several scales, and there is one slice only.
+    let [along_numbers, across_numbers] = [r.numbers, r.across_numbers].map(|n| 2 * n - 1);
+    let axis = |name: &str, mapping, interpolation, count: usize| Axis {
+        name: name.into(),
+        unit: "1".into(),
+        mapping,
+        interpolation,
+        nodes: Axis::uniform_nodes(count),
+    };
+    let numbers = |name, odd, count| {
+        axis(name, Mapping::MirroredPower { power: POWER, odd }, Interpolation::Hermite, count)
+    };
+    let kappa = marginal.beyond(0.0).excess;
+    let view = Mapping::Rational { scale: kappa, pole: 2.0 };
+    let table = |kind: Kind, axes, values: Vec<[f32; 2]>| {
+        let table = Table {
+            name: format!("{}_{suffix}", kind.name()),
+            kind,
+            axes,
+            channels: vec!["value".into(), "slope".into()],
+            values: values.into_iter().flatten().collect(),
+            precision,
+            certificate: Default::default(),
+        };
+        table.rounded(precision)
+    };
+    vec![
+        table(
+            Kind::RadialShadowing,
+            vec![axis("view", view, Interpolation::Hermite, r.shadowing_views)],
+            shadowing(marginal, kappa, r.shadowing_views),
+        ),
+        table(
+            Kind::RadialSlope,
+            vec![
+                axis("view", Mapping::HalfTangent, Interpolation::Linear, r.views),
+                numbers("u1", false, along_numbers),
+            ],
+            along(marginal, r.views, along_numbers),
+        ),
+        table(
+            Kind::RadialConditional,
+            vec![
+                axis("slope", Mapping::HalfTangent, Interpolation::Linear, SLOPES),
+                numbers("u2", true, across_numbers),
+            ],
+            across(marginal, across_numbers),
+        ),
+        table(
+            Kind::RadialDensity,
+            vec![axis("slope", Mapping::HalfTangent, Interpolation::Hermite, DENSITIES)],
+            density(marginal),
+        ),
+    ]
+}
+
+/// The slope of a half tangent h = x/(1 + √(1+x²)) ∈ [0, 1].
+fn slope(h: f64) -> f64 {
+    if h >= 1.0 { f64::INFINITY } else { 2.0 * h / ((1.0 - h) * (1.0 + h)) }
+}
+
+/// dh/dx.
+fn rate(x: f64) -> f64 {
+    let root = (1.0 + x * x).sqrt();
+    1.0 / (root * (1.0 + root))
+}
+
+/// G1/q by q = z/(z + κ), with κ the area at grazing, as for the family.
+fn shadowing(marginal: &Marginal, kappa: f64, views: usize) -> Vec<[f32; 2]> {
+    let cells = (views - 1) as f64;
+    let node = |q: f64| {
+        let z = kappa * q / (1.0 - q);
+        let at = marginal.beyond(z);
+        let value = (z + kappa) / (z + at.excess);
+        let slope = (at.excess - kappa + (z + kappa) * at.tail) * value * value / kappa;
+        [value, slope / cells]
+    };
+    let mut nodes: Vec<[f64; 2]> = (0..views - 1).into_par_iter().map(|i| node(i as f64 / cells)).collect();
+    // At normal incidence G1 = 1, with the slope that makes the last cubic exact in its middle.
+    let [before, rise] = nodes[views - 2];
+    let [middle, _] = node(1.0 - 0.5 / cells);
+    nodes.push([1.0, rise - 8.0 * (middle - 0.5 * (before + 1.0))]);
+    round(nodes)
+}
+
+/// Finds the distance g ∈ (0, 2) from an end at which a share that rises with g reaches `u`, from a first guess.
+///
+/// `share` also gives its derivative. Newton on the logarithms of both, for the share is nearly a power of g, in a bracket that is halved where a
+/// step leaves it.
+fn solve(u: f64, guess: f64, share: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let (mut low, mut high, mut g) = (0.0, 2.0, guess);
+    for _ in 0..80 {
+        let (value, rate) = share(g);
+        if value < u {
+            low = g
+        } else {
+            high = g
+        }
+        let step = g * libm::exp(value / (rate * g) * libm::log(u / value));
+        let next = if step > low && step < high { step } else { 0.5 * (low + high) };
+        // A tenth of the last bit of what is stored.
+        if (next - g).abs() < 1e-9 * g || high - low < 1e-14 {
+            return next;
+        }
+        g = next;
+    }
+    g
+}
+
+/// The slope at the distance g from the end `sign` of the half tangent.
+fn slope_from(g: f64, sign: f64) -> f64 {
+    let x = 2.0 * (1.0 - g) / (g * (2.0 - g)).max(1e-300);
+    sign * x.clamp(-1e30, 1e30)
+}
+
+/// Slopes at the ends of a support are infinite; `limit_slopes` bounds them afterwards.
+fn finite(slope: f64) -> f64 {
+    if slope.is_finite() { slope } else { f64::from(f32::MAX) }
+}
+
+fn along(marginal: &Marginal, views: usize, numbers: usize) -> Vec<[f32; 2]> {
+    let row = |i: usize| {
+        let tau = i as f64 / (views - 1) as f64;
+        let z = slope(tau);
+        let view = MarginalView::new(marginal, z);
+        let mut row = Vec::with_capacity(2 * numbers);
+        for sign in [-1.0, 1.0] {
+            let mut g = 1e-3;
+            let mut half = round((0..numbers).map(|j| {
+                let (u, du_dt) = mirrored(j as f64 / (numbers - 1) as f64);
+                let share = |g: f64| {
+                    let x = slope_from(g, sign);
+                    let at = view.shares(x);
+                    (if sign < 0.0 { at.below } else { at.above }, at.density / rate(x))
+                };
+                g = solve(u, g, share);
+                [g, finite(du_dt / share(g).1 / (numbers - 1) as f64)]
+            }));
+            if sign < 0.0 && tau < 1.0 && z <= marginal.reach() {
+                // The silhouette, exactly, as in the family's tables.
+                half[0][0] = (1.0 - tau) as f32;
+            }
+            limit_slopes(&mut half);
+            row.extend(half);
+        }
+        row
+    };
+    (0..views).into_par_iter().flat_map_iter(row).collect()
+}
+
+fn across(marginal: &Marginal, numbers: usize) -> Vec<[f32; 2]> {
+    let row = |i: usize| {
+        // A row at infinity has no quadrature; the one just before it has reached the limit.
+        let h = (i as f64 / (SLOPES - 1) as f64).min(1.0 - 1e-5);
+        let x = slope(h);
+        let scale = (1.0 + x * x).sqrt();
+        let across = marginal.across_at(x);
+        let mut g = 1e-3;
+        let mut half = round((0..numbers).map(|j| {
+            let (u, du_dt) = mirrored(j as f64 / (numbers - 1) as f64);
+            let share = |g: f64| {
+                let t = slope_from(g, 1.0);
+                let tail = across.tail(t.abs() * scale);
+                // Symmetric about t = 0, where the half table ends.
+                let above = if t < 0.0 { 1.0 - tail } else { tail };
+                (above, scale * across.density(t.abs() * scale) / rate(t))
+            };
+            g = solve(u, g, share);
+            [g, finite(du_dt / share(g).1 / (numbers - 1) as f64)]
+        }));
+        limit_slopes(&mut half);
+        half
+    };
+    (0..SLOPES).into_par_iter().flat_map_iter(row).collect()
+}
+
+fn density(marginal: &Marginal) -> Vec<[f32; 2]> {
+    let cells = (DENSITIES - 1) as f64;
+    // At the horizon itself D is the limit of what is near it.
+    let root = |h: f64| marginal.d(slope(h.min(1.0 - 1e-9))).sqrt().sqrt();
+    let step = 1e-4 / cells;
+    let node = |i: usize| {
+        let h = i as f64 / cells;
+        // D is even in h, and one-sided at the horizon.
+        let (a, b) = (root((h - step).abs()), root(h + step));
+        let width = if h + step > 1.0 { step } else { 2.0 * step };
+        [root(h), (b - a) / width / cells]
+    };
+    round((0..DENSITIES).map(node))
+}
