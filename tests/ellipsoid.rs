@@ -8,11 +8,11 @@ use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake;
 use microfacet_bake::spec::{GAMMA_WHOLE, Quality, ShapeAxis, TableSpec};
 use microfacet_model as model;
+use microfacet_model::statistics::{chi_square, sidak};
 use microfacet_sampler::{BindError, Kind, Masking, Precision, Provenance, Skew, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// A set with the single shape γ.
 fn tables(gamma: f64) -> Tables {
@@ -103,7 +103,7 @@ fn smallest_p(count: usize, draws: usize, gammas: &[f64]) -> f64 {
         let v = view(&mut rng, &truth, i % 4 == 1);
         let v64 = v.as_dvec3();
         let lune = truth.lune();
-        let mut counts = vec![0.0; BINS * BINS];
+        let mut counts = vec![0; BINS * BINS];
         for _ in 0..draws {
             let m = e.sample_visible_normal(v, [rng.random(), rng.random()]).as_dvec3();
             let [a, b] = match &lune {
@@ -111,16 +111,15 @@ fn smallest_p(count: usize, draws: usize, gammas: &[f64]) -> f64 {
                 None => truth.invert_visible_normal(v64, m),
             };
             let bin = |u: f64| ((u * BINS as f64) as usize).min(BINS - 1);
-            counts[bin(a) * BINS + bin(b)] += 1.0;
+            counts[bin(a) * BINS + bin(b)] += 1;
         }
-        let expected = draws as f64 / (BINS * BINS) as f64;
-        let chi2: f64 = counts.iter().map(|c| (c - expected) * (c - expected) / expected).sum();
-        let p = 1.0 - ChiSquared::new((BINS * BINS - 1) as f64).unwrap().cdf(chi2);
+        let expected = vec![draws as f64 / (BINS * BINS) as f64; BINS * BINS];
+        let p = chi_square(&counts, &expected).p;
         (p, format!("gamma {gamma}, v {v}, {:?}", truth.unit_matrix()))
     };
     let (p, at) = (0..count).into_par_iter().map(p_of).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
-    // Šidák: one false alarm in a hundred runs.
-    let level = 1.0 - 0.99_f64.powf(1.0 / count as f64);
+    // One false alarm in a hundred runs.
+    let level = sidak(0.01, count);
     assert!(p > level, "p = {p:e}, level {level:e}: {at}");
     p
 }

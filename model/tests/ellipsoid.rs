@@ -8,10 +8,10 @@
 use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
+use microfacet_model::statistics::chi_square;
 use microfacet_model::{Ellipsoid, EllipsoidError, StudentT};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// A turned, stretched ellipsoid with the given γ whose mean slope is moderate, as surfaces have.
 fn random(rng: &mut StdRng, gamma: f64) -> Ellipsoid {
@@ -195,15 +195,13 @@ fn the_clamp_is_needed() {
 /// Pearson's p-value of draws binned on a 16 × 16 grid by the random numbers that `invert` finds, where every bin expects the same.
 fn p_value(draws: usize, mut draw: impl FnMut() -> DVec3, invert: impl Fn(DVec3) -> [f64; 2]) -> f64 {
     const BINS: usize = 16;
-    let mut counts = [0.0; BINS * BINS];
+    let mut counts = [0; BINS * BINS];
     for _ in 0..draws {
         let [a, b] = invert(draw());
         let bin = |u: f64| ((u * BINS as f64) as usize).min(BINS - 1);
-        counts[bin(a) * BINS + bin(b)] += 1.0;
+        counts[bin(a) * BINS + bin(b)] += 1;
     }
-    let expected = draws as f64 / (BINS * BINS) as f64;
-    let chi2: f64 = counts.iter().map(|c| (c - expected) * (c - expected) / expected).sum();
-    1.0 - ChiSquared::new((BINS * BINS - 1) as f64).unwrap().cdf(chi2)
+    chi_square(&counts, &[draws as f64 / (BINS * BINS) as f64; BINS * BINS]).p
 }
 
 /// The four ways of drawing at γ = 2 and the smallest p-value over `count` ellipsoids; every fourth view is below the lobe's
@@ -278,25 +276,14 @@ fn visible_normals_match_their_density() {
             }
         }
         let draws = 20_000;
-        let mut counts = [0.0; N * N];
+        let mut counts = [0; N * N];
         for _ in 0..draws {
             let m = e.visible_normal(v, [rng.random(), rng.random()]);
             let phi = m.y.atan2(m.x).rem_euclid(2.0 * PI);
             let cell = |x: f64| ((x * N as f64) as usize).min(N - 1);
-            counts[cell(m.z) * N + cell(phi / (2.0 * PI))] += 1.0;
+            counts[cell(m.z) * N + cell(phi / (2.0 * PI))] += 1;
         }
-        let (mut chi2, mut cells, mut pooled) = (0.0, 0, (0.0, 0.0));
-        for (count, p) in counts.iter().zip(expected) {
-            let e = p * f64::from(draws);
-            if e > 20.0 {
-                chi2 += (count - e) * (count - e) / e;
-                cells += 1;
-            } else {
-                pooled = (pooled.0 + count, pooled.1 + e);
-            }
-        }
-        chi2 += (pooled.0 - pooled.1) * (pooled.0 - pooled.1) / pooled.1.max(1.0);
-        let p = 1.0 - ChiSquared::new(f64::from(cells)).unwrap().cdf(chi2);
-        assert!(cells > 15 && p > 1e-3, "gamma {gamma}: p = {p:e} over {cells} cells");
+        let test = chi_square(&counts, &expected.map(|share| share * f64::from(draws)));
+        assert!(test.degrees > 15 && test.p > 1e-3, "gamma {gamma}: {test:?}");
     }
 }
