@@ -71,7 +71,6 @@ impl StudentT {
     #[inline(always)]
     pub(crate) fn view_coordinate(&self, view: &Stretched) -> f32 {
         let length = sqrt(view.rho * view.rho + view.z * view.z);
-        // The sum vanishes for the null vector only, and 0/0 selects row 0.
         let r = 1.0 / (view.rho + length);
         if self.slices.crowded {
             // 1 − τ = (ρ + (length − z)) r with length − z = ρ²/(length + z), which does not cancel.
@@ -143,7 +142,7 @@ impl StudentT {
 #[inline(always)]
 fn face(m: Vec3, v: Vec3) -> Vec3 {
     let facing = v.dot(m);
-    if facing >= 0.0 {
+    if !(facing < 0.0) {
         return m;
     }
     above_horizon(m - facing * v)

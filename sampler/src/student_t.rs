@@ -161,7 +161,8 @@ impl StudentT {
         } else if rho >= NORMAL_INCIDENCE {
             Stretched { x: x / rho, y: y / rho, frame: 1.0, rho, z }
         } else {
-            Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: 0.0, z }
+            // Straight down, or not a number: the horizon, as for every view below it, with an azimuth of its own.
+            Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: if z > 0.0 { 0.0 } else { 1.0 }, z }
         }
     }
 

@@ -1,0 +1,245 @@
+//! Hostile bytes and hostile arguments: damaged, truncated and lying table files; directions and numbers out of their domain.
+
+use glam::Vec3;
+use microfacet_sampler::{
+    Axis, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Provenance, StudentT, Table, Tables,
+    encode,
+};
+
+fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {
+    Axis { name: name.into(), unit: "1".into(), mapping, interpolation, nodes: nodes.to_vec() }
+}
+
+fn table(kind: Kind, precision: Precision, mut axes: Vec<Axis>, values: &[f32]) -> Table {
+    axes.insert(0, axis("gamma", Mapping::InverseShape, Interpolation::Nodes, &[1.0]));
+    let table = Table {
+        name: kind.name().into(),
+        kind,
+        axes,
+        channels: vec!["value".into(), "slope".into()],
+        values: values.to_vec(),
+        precision,
+        certificate: [("g1_max_error".to_string(), 0.5)].into_iter().collect(),
+    };
+    table.rounded(precision)
+}
+
+/// The smallest set that binds GGX, with each way of storing values.
+fn small_tables() -> Vec<Table> {
+    let numbers = |odd| Mapping::MirroredPower { power: 4, odd };
+    let view = Mapping::Rational { scale: 0.5, pole: 2.0 };
+    vec![
+        table(
+            Kind::Shadowing,
+            Precision::F32,
+            vec![axis("view", view, Interpolation::Hermite, &[0.0, 0.5, 1.0])],
+            &[0.9, 0.05, 0.95, 0.05, 1.0, 0.05],
+        ),
+        table(
+            Kind::VisibleSlope,
+            Precision::U16,
+            vec![
+                axis("view", Mapping::HalfTangent, Interpolation::Linear, &[0.0, 1.0]),
+                axis("u1", numbers(false), Interpolation::Hermite, &[0.0, 1.0]),
+            ],
+            &[1.0, 0.2, 1.4, 0.2, 0.0, 0.2, 0.6, 0.2, 0.0, 0.5, 1.0, 0.5, 0.0, 0.5, 1.0, 0.5],
+        ),
+        table(
+            Kind::VisibleSlopeConditional,
+            Precision::F16,
+            vec![axis("u2", numbers(true), Interpolation::Hermite, &[0.0, 0.5, 1.0])],
+            &[0.0, 0.25, 0.5, 0.25, 1.0, 0.25],
+        ),
+    ]
+}
+
+fn small_file() -> Vec<u8> {
+    encode(&Provenance { generator: "test".into(), ..Provenance::default() }, &small_tables()).unwrap()
+}
+
+#[test]
+fn every_truncation_is_refused() {
+    let file = small_file();
+    assert!(Tables::from_bytes(&file).unwrap().student_t(0.3, 2.0).is_ok());
+    for length in 0..file.len() {
+        assert!(matches!(Tables::from_bytes(&file[..length]), Err(LoadError::Invalid(_))), "{length} bytes");
+    }
+    let longer = [&file[..], &[0]].concat();
+    assert!(Tables::from_bytes(&longer).is_err());
+}
+
+#[test]
+fn every_flipped_bit_is_refused() {
+    let mut file = small_file();
+    for bit in 0..8 * file.len() {
+        file[bit / 8] ^= 1 << (bit % 8);
+        assert!(Tables::from_bytes(&file).is_err(), "bit {bit} of {}", 8 * file.len());
+        file[bit / 8] ^= 1 << (bit % 8);
+    }
+    assert!(Tables::from_bytes(&file).is_ok());
+}
+
+/// The file with `from` replaced in its header, as often as it stands there, and a checksum that fits again.
+fn forge(from: &str, to: &str) -> Vec<u8> {
+    let file = small_file();
+    let length = u64::from_le_bytes(file[..8].try_into().unwrap()) as usize;
+    let header = String::from_utf8(file[8..8 + length].to_vec()).unwrap();
+    assert!(header.contains(from), "no {from} in {header}");
+    let mut header = header.replace(from, to);
+    while header.len() % 8 != 0 {
+        header.push(' ');
+    }
+    let mut forged = (header.len() as u64).to_le_bytes().to_vec();
+    forged.extend(header.as_bytes());
+    forged.extend(&file[8 + length..]);
+    seal(&mut forged);
+    forged
+}
+
+/// Fills in the checksum of whatever stands in the file, if it has one.
+fn seal(file: &mut [u8]) {
+    let prefix = br#"\"checksum\":\""#;
+    if let Some(at) = file.windows(prefix.len()).position(|window| window == prefix) {
+        let at = at + prefix.len();
+        file[at..at + 8].fill(b'0');
+        let digits = format!("{:08x}", crc32fast::hash(file));
+        file[at..at + 8].copy_from_slice(digits.as_bytes());
+    }
+}
+
+#[test]
+fn lying_headers_are_refused_by_name() {
+    let nodes = r#"\"nodes\":[0.0,0.5,1.0]"#;
+    let tensor = r#""shape":[1,3,2],"data_offsets":[0,24]"#;
+    let lies = [
+        // Shapes, offsets and types.
+        (tensor, r#""shape":[1,2,3],"data_offsets":[0,24]"#, "shape [1, 2, 3]"),
+        (tensor, r#""shape":[1,3,2],"data_offsets":[0,20]"#, "invalid"),
+        (tensor, r#""shape":[1,3,2],"data_offsets":[4,28]"#, "invalid"),
+        (tensor, r#""shape":[4294967296,4294967296,4294967296],"data_offsets":[0,24]"#, "overflow"),
+        (r#""dtype":"F16""#, r#""dtype":"BF16""#, "stored as BF16"),
+        (r#"\"precision\":\"f16\""#, r#"\"precision\":\"u16\""#, "one finite number a channel"),
+        // Axes.
+        (r#"\"name\":\"view\""#, r#"\"name\":\"gamma\""#, "axes [\"gamma\", \"gamma\"]"),
+        (nodes, r#"\"nodes\":[0.0,1.0,0.5]"#, "do not ascend"),
+        (nodes, r#"\"nodes\":[0.0,0.0,1.0]"#, "do not ascend"),
+        (nodes, r#"\"nodes\":[0.0,0.4,1.0]"#, "evenly"),
+        (nodes, r#"\"nodes\":[0.0,0.5,1.5]"#, "outside the range"),
+        (nodes, r#"\"nodes\":[]"#, "shape"),
+        (nodes, r#"\"nodes\":[0.0,0.5,1e999]"#, "number out of range"),
+        (nodes, r#"\"nodes\":[0.0,0.5,NaN]"#, "expected value"),
+        (nodes, r#"\"nodes\":[0.0,1.0]"#, "shape"),
+        (r#"\"nodes\":[1.0]"#, r#"\"nodes\":[2.0]"#, "outside the range"),
+        (r#"\"nodes\":[1.0]"#, r#"\"nodes\":[-1.0]"#, "outside the range"),
+        (r#"\"kind\":\"inverse_shape\""#, r#"\"kind\":\"identity\""#, "not mapped by `inverse_shape`"),
+        (r#"\"kind\":\"half_tangent\""#, r#"\"kind\":\"cube_root\""#, "cube_root"),
+        (r#"\"scale\":0.5,\"pole\":2.0"#, r#"\"scale\":0.5,\"pole\":1.0"#, "scale or pole"),
+        (r#"\"power\":4"#, r#"\"power\":3"#, "power 3"),
+        (r#"\"odd\":true"#, r#"\"odd\":false"#, "shape"),
+        // Documents.
+        (r#"\"channels\":[\"value\",\"slope\"]"#, r#"\"channels\":[]"#, "no channels"),
+        (r#"\"channels\":[\"value\",\"slope\"]"#, r#"\"channels\":[\"slope\",\"value\"]"#, "channels"),
+        (r#"\"kind\":\"visible_slope\""#, r#"\"kind\":\"albatross\""#, "albatross"),
+        (r#"\"name\":\"visible_slope_conditional\""#, r#"\"name\":\"shadowing\""#, "named twice"),
+        (r#"\"name\":\"shadowing\""#, r#"\"name\":\"elsewhere\""#, "no tensor of that name"),
+        (r#"\"format\":\"microfacet-tables\""#, r#"\"format\":\"recipes\""#, "format \"recipes\""),
+        (r#"\"checksum\""#, r#"\"chequesum\""#, "checksum"),
+        (r#"{"microfacet""#, r#"{"macrofacet""#, "without the `microfacet` document"),
+    ];
+    for (from, to, part) in lies {
+        let error = Tables::from_bytes(&forge(from, to)).expect_err(to).to_string();
+        assert!(error.to_lowercase().contains(&part.to_lowercase()), "{to}: {error}");
+    }
+    // The forgery itself is sound.
+    assert!(Tables::from_bytes(&forge("microfacet-tables", "microfacet-tables")).is_ok());
+}
+
+#[test]
+fn a_newer_version_says_so() {
+    // With a key that this version cannot know.
+    let newer = forge(r#"\"version\":1"#, r#"\"version\":2,\"weather\":\"fine\""#);
+    let Err(LoadError::Unsupported(why)) = Tables::from_bytes(&newer) else { panic!("loaded") };
+    assert!(why.contains("version 2") && why.contains("knows 1"), "{why}");
+}
+
+#[test]
+fn values_that_no_lookup_survives_are_refused() {
+    let last = small_file().len();
+    // All tensors: each value but those of fixed point in turn not a number, infinite and negative.
+    let mut refused = 0;
+    for at in (last - 64..last).step_by(2) {
+        for bits in [f32::NAN, f32::INFINITY, -1.0].map(f32::to_le_bytes) {
+            let mut file = small_file();
+            let end = (at + 4).min(last);
+            file[at..end].copy_from_slice(&bits[..end - at]);
+            seal(&mut file);
+            match Tables::from_bytes(&file) {
+                Err(_) => refused += 1,
+                Ok(set) => assert!(set.tables().iter().all(|table| table.validate().is_ok())),
+            }
+        }
+    }
+    assert!(refused > 10, "{refused}");
+}
+
+#[test]
+fn headers_longer_than_files_and_towers_of_brackets_are_refused() {
+    for length in [0, 1, 8, 100, 1 << 20, 1 << 40, u64::MAX] {
+        let mut file = small_file();
+        file[..8].copy_from_slice(&length.to_le_bytes());
+        assert!(Tables::from_bytes(&file).is_err(), "{length}");
+    }
+    let tower = "[".repeat(100_000);
+    assert!(Tables::from_bytes(&forge(r#"\"tables\":["#, &format!(r#"\"tables\":[{tower}"#))).is_err());
+}
+
+/// Whatever it is given, the sampler answers; and for finite views of some length with numbers in range and normals above the horizon.
+#[test]
+fn directions_and_numbers_out_of_their_domain_are_answered() {
+    let tables = Tables::embedded();
+    let odd = [0.0, -0.0, 1e-45, -1e-45, 1e-38, 1e-20, 1e-10, 1.0, -1.0, f32::NAN];
+    for gamma in [1.501, 1.7, 2.0, 3.0, f64::INFINITY] {
+        for sigma in [[1e-8_f32, 1e-8], [0.3, 0.3], [1e-8, 1e6], [1e6, 1e6]] {
+            let material: StudentT = tables.student_t(sigma, gamma).unwrap();
+            for v in odd.iter().flat_map(|&x| odd.iter().flat_map(move |&y| odd.map(|z| Vec3::new(x, y, z))))
+            {
+                let v = if v.length() > 1e-3 { v.normalize() } else { v };
+                let defined = v.is_finite() && v.length() > 1e-3;
+                for u in
+                    [[0.0, 0.5], [1.0, 1.0], [0.3, f32::NAN], [f32::NEG_INFINITY, f32::INFINITY], [-3.0, 7.0]]
+                {
+                    let m = material.sample_visible_normal(v, u);
+                    let sound = (m.length() - 1.0).abs() < 5e-7 && m.z > 0.0;
+                    assert!(sound || !defined, "{gamma} {sigma:?} {v} {u:?}: {m}");
+                }
+                let g1 = material.g1(v);
+                if defined {
+                    assert!((0.0..=1.0).contains(&g1), "{gamma} {sigma:?} {v}: {g1}");
+                    // The smallest cosines times G1/cos may underflow.
+                    assert!(
+                        if v.z > 1e-30 { g1 > 0.0 } else { v.z > 0.0 || g1 == 0.0 },
+                        "{gamma} {sigma:?} {v}: {g1}"
+                    );
+                    assert!(material.lambda(v) >= 0.0);
+                    assert!(material.d(v) >= 0.0 && material.d(v).is_finite(), "{gamma} {sigma:?} {v}");
+                    assert!((0.0..=1.0).contains(&material.g2(v, Vec3::Z, Masking::HeightCorrelated)));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn roughness_and_shape_out_of_range_are_refused_by_value() {
+    let tables = Tables::embedded();
+    for sigma in [0.0_f32, -1.0, 1e-9, 1e7, f32::INFINITY, f32::NAN] {
+        let error = tables.student_t([0.3, sigma], 2.0).unwrap_err().to_string();
+        assert!(error.contains("sigma") && error.contains("[1e-8, 1e6]"), "{error}");
+        assert!(tables.student_t(0.3_f32, 2.0).unwrap().with_roughness(sigma).is_err());
+    }
+    for gamma in [f64::NAN, 1.5, 1.0, 0.0, -3.0, f64::NEG_INFINITY] {
+        assert!(tables.student_t(0.3_f32, gamma).unwrap_err().to_string().contains("(1.5, inf]"));
+    }
+    // Legal, but heavier than any table.
+    assert!(tables.student_t(0.3_f32, 1.5005).unwrap_err().to_string().contains("not covered"));
+}
