@@ -66,6 +66,7 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
 /// [`LoadError`] for an image that is damaged or was not written by [`encode`].
 pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     let invalid = |why: String| LoadError::Invalid(why);
+    check_size(bytes).map_err(invalid)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -101,6 +102,30 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     let (provenance, tables) =
         reassemble(&document, |_| values.take().ok_or("more than one table".to_string()))?;
     Tables::from_tables(provenance, tables)
+}
+
+/// How many times larger than its file an image may be. Tables compress by less than four; DEFLATE alone could by a thousand.
+const EXPANSION: usize = 64;
+
+/// Refuses a header that promises more pixels than the file can hold, before the library makes room for them.
+fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
+    let meta =
+        exr::meta::MetaData::read_from_buffered(bytes, false).map_err(|why| format!("OpenEXR: {why}"))?;
+    let promised = |header: &exr::meta::header::Header| {
+        let Vec2(width, height) = header.layer_size;
+        width.checked_mul(height)?.checked_mul(header.channels.bytes_per_pixel)
+    };
+    let total = meta.headers.iter().map(promised).try_fold(0_usize, |sum, bytes| sum.checked_add(bytes?));
+    if total.is_some_and(|total| total <= EXPANSION * bytes.len()) {
+        return Ok(());
+    }
+    let size = meta.headers.first().map_or(Vec2(0, 0), |header| header.layer_size);
+    Err(format!(
+        "OpenEXR: {} x {} pixels in a file of {} bytes: the header is damaged",
+        size.0,
+        size.1,
+        bytes.len()
+    ))
 }
 
 /// Channel names of the one table that a document describes.

@@ -1,0 +1,52 @@
+//! Damaged images: every truncation and every flipped bit of a small table gives an error or the identical table.
+
+use microfacet_bake::bake::bake;
+use microfacet_bake::generate::provenance;
+use microfacet_bake::spec::{ShapeAxis, TableSpec};
+use microfacet_bake::store::{decode_exr, encode_exr};
+use microfacet_sampler::{Kind, LoadError, Precision, Tables};
+
+fn small_table(precision: Precision) -> Tables {
+    let spec = TableSpec {
+        name: "shadowing".into(),
+        kind: Kind::Shadowing,
+        shapes: ShapeAxis::points([0.5, 1.0]),
+        views: 4,
+        numbers: 0,
+        precision,
+    };
+    let mut origin = provenance(String::new(), Vec::new());
+    origin.conventions.clear();
+    Tables::from_tables(origin, vec![bake(&spec)]).unwrap()
+}
+
+fn small_image() -> (Tables, Vec<u8>) {
+    let set = small_table(Precision::F16);
+    let bytes = encode_exr(set.provenance(), &set.tables()[0]).unwrap();
+    assert_eq!(decode_exr(&bytes).unwrap(), set);
+    (set, bytes)
+}
+
+#[test]
+fn every_truncation_of_an_image_is_refused() {
+    let (_, file) = small_image();
+    for length in 0..file.len() {
+        assert!(matches!(decode_exr(&file[..length]), Err(LoadError::Invalid(_))), "{length} bytes");
+    }
+}
+
+#[test]
+fn every_flipped_bit_of_an_image_is_refused_or_harmless() {
+    let (set, mut file) = small_image();
+    let mut harmless = 0;
+    for bit in 0..8 * file.len() {
+        file[bit / 8] ^= 1 << (bit % 8);
+        if let Ok(read) = decode_exr(&file) {
+            assert_eq!(read, set, "bit {bit}");
+            harmless += 1;
+        }
+        file[bit / 8] ^= 1 << (bit % 8);
+    }
+    // Attributes that say how to show an image do not belong to the table.
+    assert!(harmless < 8 * file.len() / 4, "{harmless} of {}", 8 * file.len());
+}
