@@ -10,10 +10,10 @@ use microfacet_bake::generate::generate;
 use microfacet_bake::plan;
 use microfacet_bake::scene::{self, Scene};
 use microfacet_bake::spec::{Quality, general_set};
-use microfacet_bake::store::{self, Format, Written};
+use microfacet_bake::store::{Format, OutputFolder, Written};
 use microfacet_sampler::{Precision, Table, Tables};
 
-use super::{Done, Failure, Outcome, print, print_json, progress};
+use super::{Done, Outcome, print, print_json, progress};
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
@@ -78,7 +78,7 @@ pub(super) fn run(args: Args) -> Outcome {
         QualityArg::Default => Quality::Default,
         QualityArg::High => Quality::High,
     };
-    check_out(&args.out)?;
+    let out = OutputFolder::open(&args.out)?;
     let scene = args.recipe.as_deref().map(scene::load).transpose()?;
     if let Some(scene) = &scene {
         scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
@@ -107,7 +107,7 @@ pub(super) fn run(args: Args) -> Outcome {
             FormatArg::Exr => Format::Exr,
         })
         .collect();
-    let written = store::write(&args.out, &set, &formats)?;
+    let written = out.write(&set, &formats)?;
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
         print_json(&as_json(&set, &written, seconds))?
@@ -115,14 +115,6 @@ pub(super) fn run(args: Args) -> Outcome {
         print(&summary(&set, &written, seconds))?
     }
     Ok(Done::Ok)
-}
-
-/// Refuses an output that is a file before anything is computed.
-fn check_out(out: &std::path::Path) -> Result<(), Failure> {
-    if out.exists() && !out.is_dir() {
-        return Err(Failure(format!("--out {}: is a file; name a folder", out.display())));
-    }
-    std::fs::create_dir_all(out).map_err(|why| Failure(format!("--out {}: {why}", out.display())))
 }
 
 fn report_ignored(scene: &Scene) {

@@ -1,6 +1,7 @@
 //! Tables on disk: safetensors and OpenEXR. The only place of the generator that touches table files.
 
 mod exr;
+mod lock;
 mod replace;
 
 use std::fmt;
@@ -9,6 +10,7 @@ use std::path::{Path, PathBuf};
 use microfacet_sampler::{LoadError, Tables, encode};
 
 pub use self::exr::{decode as decode_exr, encode as encode_exr};
+pub use lock::OutputFolder;
 pub use replace::replace;
 
 /// Name of the file that holds a whole set.
@@ -32,6 +34,20 @@ pub enum StoreError {
     Load(PathBuf, LoadError),
     /// Writing an image failed.
     Exr(PathBuf, String),
+    /// Another bake is writing into the folder.
+    InUse(PathBuf),
+}
+
+impl StoreError {
+    /// The same with its path taken relative to a folder.
+    fn inside(self, folder: &Path) -> Self {
+        match self {
+            Self::Io(path, why) => Self::Io(folder.join(path), why),
+            Self::Load(path, why) => Self::Load(folder.join(path), why),
+            Self::Exr(path, why) => Self::Exr(folder.join(path), why),
+            Self::InUse(path) => Self::InUse(folder.join(path)),
+        }
+    }
 }
 
 impl fmt::Display for StoreError {
@@ -40,6 +56,11 @@ impl fmt::Display for StoreError {
             Self::Io(path, why) => write!(f, "{}: {why}", path.display()),
             Self::Load(path, why) => write!(f, "{}: {why}", path.display()),
             Self::Exr(path, why) => write!(f, "{}: {why}", path.display()),
+            Self::InUse(path) => write!(
+                f,
+                "{}: another bake is writing into this folder; wait for it to end, or name another folder",
+                path.display()
+            ),
         }
     }
 }
@@ -55,36 +76,31 @@ pub struct Written {
     pub bytes: usize,
 }
 
-/// Writes a set into a folder, which is made if it is not there: `tables.safetensors`, and `NAME.exr` for each table.
-///
-/// Everything is prepared in memory first and each file is replaced as a whole; the set file comes last.
+/// Writes a set into a folder; [`OutputFolder::open`] and [`OutputFolder::write`] in one.
 ///
 /// # Errors
-/// [`StoreError`] naming the path; files already there are then untouched or complete.
+/// As those.
 pub fn write(folder: &Path, set: &Tables, formats: &[Format]) -> Result<Vec<Written>, StoreError> {
+    OutputFolder::open(folder)?.write(set, formats)
+}
+
+/// Names and contents of the files that hold a set.
+fn files(set: &Tables, formats: &[Format]) -> Result<Vec<(String, Vec<u8>)>, StoreError> {
     let mut files = Vec::new();
     if formats.contains(&Format::Exr) {
         for table in set.tables() {
-            let path = folder.join(format!("{}.exr", table.name));
-            let bytes =
-                encode_exr(set.provenance(), table).map_err(|why| StoreError::Exr(path.clone(), why))?;
-            files.push((path, bytes));
+            let name = format!("{}.exr", table.name);
+            let bytes = encode_exr(set.provenance(), table)
+                .map_err(|why| StoreError::Exr(name.clone().into(), why))?;
+            files.push((name, bytes));
         }
     }
     if formats.contains(&Format::Safetensors) {
-        let path = folder.join(SET_FILE);
         let bytes =
-            encode(set.provenance(), set.tables()).map_err(|why| StoreError::Load(path.clone(), why))?;
-        files.push((path, bytes));
+            encode(set.provenance(), set.tables()).map_err(|why| StoreError::Load(SET_FILE.into(), why))?;
+        files.push((SET_FILE.into(), bytes));
     }
-    std::fs::create_dir_all(folder).map_err(|why| StoreError::Io(folder.into(), why))?;
-    files
-        .into_iter()
-        .map(|(path, bytes)| {
-            replace(&path, &bytes).map_err(|why| StoreError::Io(path.clone(), why))?;
-            Ok(Written { bytes: bytes.len(), path })
-        })
-        .collect()
+    Ok(files)
 }
 
 /// Reads a set from a safetensors file, a folder that holds one, or a single table from an EXR file.

@@ -1,0 +1,73 @@
+//! An output folder held by one bake at a time.
+
+use std::fs::{File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use microfacet_sampler::Tables;
+
+use super::replace::{finish, replace_all};
+use super::{Format, StoreError, Written, files};
+
+/// A folder to write a set into, locked against every other bake until it is dropped.
+///
+/// The lock ends with the process, however it ends, and leaves nothing behind.
+#[derive(Debug)]
+pub struct OutputFolder {
+    path: PathBuf,
+    _lock: File,
+}
+
+impl OutputFolder {
+    /// Makes the folder if it is not there, locks it, checks that it can be written to, and tidies up after a bake that was
+    /// interrupted in it: a set whose last step had begun is completed, files half written are removed.
+    ///
+    /// # Errors
+    /// [`StoreError::InUse`] if another bake holds the folder, [`StoreError::Io`] if it is none or cannot be written to.
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
+        let failed = |why| StoreError::Io(path.into(), why);
+        if path.exists() && !path.is_dir() {
+            return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, "is a file; name a folder")));
+        }
+        std::fs::create_dir_all(path).map_err(failed)?;
+        let lock = lock_file(path).map_err(failed)?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(StoreError::InUse(path.into())),
+            // Some network file systems have no locks; the files are still replaced as a whole.
+            Err(TryLockError::Error(why)) if why.kind() == io::ErrorKind::Unsupported => {}
+            Err(TryLockError::Error(why)) => return Err(failed(why)),
+        }
+        finish(path).map_err(failed)?;
+        // Now rather than after an hour of baking.
+        tempfile::tempfile_in(path).map_err(failed)?;
+        Ok(Self { path: path.into(), _lock: lock })
+    }
+
+    /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table.
+    ///
+    /// Everything is prepared in memory and beside the old files first. One file is then replaced in one step; of several, the old
+    /// ones are removed before the first new one appears, so that the two never mix.
+    ///
+    /// # Errors
+    /// [`StoreError`] naming the path; the old set is then still there.
+    pub fn write(&self, set: &Tables, formats: &[Format]) -> Result<Vec<Written>, StoreError> {
+        let files = files(set, formats).map_err(|why| why.inside(&self.path))?;
+        replace_all(&self.path, &files).map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
+        let written =
+            |(name, bytes): &(String, Vec<u8>)| Written { path: self.path.join(name), bytes: bytes.len() };
+        Ok(files.iter().map(written).collect())
+    }
+}
+
+/// What the lock is taken on: the folder itself, which needs no file of its own.
+#[cfg(unix)]
+fn lock_file(folder: &Path) -> io::Result<File> {
+    File::open(folder)
+}
+
+/// Elsewhere folders cannot be opened.
+#[cfg(not(unix))]
+fn lock_file(folder: &Path) -> io::Result<File> {
+    File::create(folder.join(".microfacet-bake.lock"))
+}
