@@ -90,6 +90,10 @@ fn killed_at_any_moment_one_whole_set_is_there() {
             assert!(hidden.iter().any(|name| name == ".microfacet-bake.commit"), "mixture at {i}");
             let mixed = files.iter().any(|(name, bytes)| old.contains_key(name) && bytes != &target[name]);
             assert!(!mixed || files.iter().all(|(name, bytes)| bytes != &target[name]), "mixture at {i}");
+            // Whoever opens the folder next, be it to look, gets the new set.
+            let look = Command::new(PROGRAM).arg("inspect").arg(&out).stdout(Stdio::null()).status();
+            assert!(look.unwrap().success());
+            assert_eq!(content(&out), (target.clone(), Vec::new()), "completed at {i}");
             2
         };
         outcomes[outcome] += 1;

@@ -105,9 +105,16 @@ fn files(set: &Tables, formats: &[Format]) -> Result<Vec<(String, Vec<u8>)>, Sto
 
 /// Reads a set from a safetensors file, a folder that holds one, or a single table from an EXR file.
 ///
+/// Where a bake was killed while it exchanged several files, the exchange is completed first.
+///
 /// # Errors
 /// [`StoreError`] naming the path and what is wrong.
 pub fn read(path: &Path) -> Result<Tables, StoreError> {
+    let folder = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
+    if replace::is_interrupted(folder) {
+        // Opening completes what a bake that was killed in its last step had begun.
+        OutputFolder::open(folder)?;
+    }
     let path = if path.is_dir() { path.join(SET_FILE) } else { path.to_path_buf() };
     let bytes = std::fs::read(&path).map_err(|why| StoreError::Io(path.clone(), why))?;
     let set = if bytes.starts_with(&exr::MAGIC) { decode_exr(&bytes) } else { Tables::from_bytes(&bytes) };

@@ -74,6 +74,11 @@ pub(super) fn replace_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<
     finish(folder).map_err(failed)
 }
 
+/// Whether an exchange in the folder was begun and not completed.
+pub(super) fn is_interrupted(folder: &Path) -> bool {
+    folder.join(JOURNAL).exists()
+}
+
 /// Completes the exchange that a journal lists, if there is one, and removes leftovers. Can itself be interrupted and repeated.
 pub(super) fn finish(folder: &Path) -> io::Result<()> {
     let journal = folder.join(JOURNAL);
