@@ -1,47 +1,187 @@
-//! The whole bake: specifications in, a certified set out.
+//! The whole bake: needs in, a certified set out; what is finished already is taken from the cache.
 
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
+use std::fmt;
+use std::io;
 
-use microfacet_sampler::{LoadError, MaterialEntry, Provenance, Tables};
+use microfacet_sampler::{LoadError, MaterialEntry, Precision, Provenance, Table, Tables, encode};
 
 use crate::bake::{self, NUMERICS};
-use crate::spec::TableSpec;
+use crate::budget::{self, Memo, OutOfReach};
+use crate::cache::Cache;
+use crate::plan::Need;
+use crate::spec::{Quality, TableSpec, general_set};
 use crate::validate::certificate::certify;
 
 /// Points measured at each γ for a certificate.
-const CERTIFICATE_POINTS: usize = 4000;
+pub(crate) const CERTIFICATE_POINTS: usize = 4000;
 
-/// What happened to one table.
-#[derive(Clone, Debug)]
-pub struct Step {
-    /// Name of the table.
-    pub name: String,
-    /// Time it took to bake.
-    pub elapsed: Duration,
+/// How good the tables are to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// Fixed numbers of nodes.
+    Quality(Quality, Precision),
+    /// The smallest tables with no larger error: of G1, absolute, and of the CDF of slopes.
+    MaxError(f64),
+    /// The most accurate set in a file of no more bytes.
+    MaxBytes(usize),
 }
 
-/// Bakes the tables in order, calling `progress` after each, and certifies the set.
+/// A set, and what was done for it.
+#[derive(Debug)]
+pub struct Baked {
+    /// The set.
+    pub set: Tables,
+    /// How many of its tables were baked now; the others come from the cache.
+    pub baked: usize,
+    /// Why the cache could not keep something.
+    pub cache_error: Option<io::Error>,
+}
+
+/// Why there is no set.
+#[derive(Debug)]
+pub enum BakeError {
+    /// The tables do not make a set; a fault of the plan.
+    Set(LoadError),
+    /// [`Target::MaxError`] is too small.
+    OutOfReach(OutOfReach),
+    /// [`Target::MaxBytes`] is too small.
+    TooSmall {
+        /// What was allowed.
+        max_bytes: usize,
+        /// What the smallest set takes.
+        smallest: usize,
+    },
+}
+
+impl fmt::Display for BakeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Set(why) => why.fmt(f),
+            Self::OutOfReach(why) => why.fmt(f),
+            Self::TooSmall { max_bytes, smallest } => write!(
+                f,
+                "no set of these materials fits into {max_bytes} bytes: the smallest, with an error of 0.1, has {smallest}"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for BakeError {}
+
+/// Bakes the tables of all needs and certifies them, calling `progress` after each table and each certificate.
+///
+/// Each need that is finished goes into the cache, and so does each table of a range, until its need is finished: a bake that
+/// was interrupted goes on where it was.
 ///
 /// # Errors
-/// [`LoadError::Invalid`] if the specifications do not make a complete set; a fault of the plan.
+/// [`BakeError`] for a target that cannot be met.
 pub fn generate(
-    specs: &[TableSpec],
-    recipe: String,
-    materials: Vec<MaterialEntry>,
-    mut progress: impl FnMut(Step),
-) -> Result<Tables, LoadError> {
-    let mut tables = Vec::new();
-    for spec in specs {
-        let start = Instant::now();
-        tables.push(bake::bake(spec));
-        progress(Step { name: spec.name.clone(), elapsed: start.elapsed() });
+    needs: &[Need],
+    target: Target,
+    provenance: Provenance,
+    cache: &Cache,
+    mut progress: impl FnMut(),
+) -> Result<Baked, BakeError> {
+    let mut job = Job { cache, baked: 0, cache_error: None };
+    let tables = match target {
+        Target::Quality(quality, precision) => {
+            let general = general_set(quality, precision);
+            let each = needs.iter().map(|need| job.at(need, &need.specs(&general), &mut progress));
+            each.collect::<Result<Vec<_>, _>>()?.concat()
+        }
+        Target::MaxError(max_error) => {
+            let mut memo = Memo::default();
+            let each = needs.iter().map(|need| {
+                let key = format!("{need:?}, error at most {max_error:?}");
+                let tables = job.kept(&key, || budget::smallest(need, max_error, &mut memo));
+                progress();
+                tables.map_err(BakeError::OutOfReach)
+            });
+            each.collect::<Result<Vec<_>, _>>()?.concat()
+        }
+        Target::MaxBytes(max_bytes) => {
+            let size = |tables: &[Table]| encode(&provenance, tables).map_or(usize::MAX, |bytes| bytes.len());
+            let key = format!("{needs:?}, {max_bytes} bytes at most, besides {} bytes", size(&[]));
+            let found =
+                job.kept(&key, || budget::most_accurate(needs, max_bytes, size).map(|(tables, _)| tables));
+            found.map_err(|smallest| BakeError::TooSmall { max_bytes, smallest })?
+        }
+    };
+    let set = Tables::from_tables(provenance, tables).map_err(BakeError::Set)?;
+    Ok(Baked { set, baked: job.baked, cache_error: job.cache_error })
+}
+
+/// The largest error that a table's certificate states; ∞ if there is none.
+pub fn worst_error(table: &Table) -> f64 {
+    let figure = |key| table.certificate.get(key).copied();
+    figure("g1_max_error").or_else(|| figure("cdf_max_error")).unwrap_or(f64::INFINITY)
+}
+
+struct Job<'a> {
+    cache: &'a Cache,
+    baked: usize,
+    cache_error: Option<io::Error>,
+}
+
+impl Job<'_> {
+    /// The tables under a key, or else new ones, which are then kept.
+    fn kept<E>(&mut self, key: &str, make: impl FnOnce() -> Result<Vec<Table>, E>) -> Result<Vec<Table>, E> {
+        if let Some(tables) = self.cache.get(key) {
+            return Ok(tables);
+        }
+        let tables = make()?;
+        self.baked += tables.len();
+        self.keep(key, &tables);
+        Ok(tables)
     }
-    let mut set = Tables::from_tables(provenance(recipe, materials), tables)?;
-    let start = Instant::now();
-    certify(&mut set, CERTIFICATE_POINTS).map_err(|why| LoadError::Invalid(why.to_string()))?;
-    progress(Step { name: "certificate".into(), elapsed: start.elapsed() });
-    Ok(set)
+
+    fn keep(&mut self, key: &str, tables: &[Table]) {
+        if let Err(why) = self.cache.put(key, tables) {
+            self.cache_error.get_or_insert(why);
+        }
+    }
+
+    /// The tables of a need with the given specifications.
+    fn at(
+        &mut self,
+        need: &Need,
+        specs: &[TableSpec],
+        progress: &mut impl FnMut(),
+    ) -> Result<Vec<Table>, BakeError> {
+        let key = format!("{specs:?}, {CERTIFICATE_POINTS} points at s in {:?}", need.certified_s());
+        if let Some(tables) = self.cache.get(&key) {
+            (0..=specs.len()).for_each(|_| progress());
+            return Ok(tables);
+        }
+        let mut tables = Vec::new();
+        let mut waiting = Vec::new();
+        for spec in specs {
+            // Kept in full precision, which storing does not change.
+            let full = TableSpec { precision: Precision::F32, ..spec.clone() };
+            let key = format!("{full:?}");
+            let table = self.cache.get(&key).and_then(|mut tables| tables.pop());
+            let table = table.unwrap_or_else(|| {
+                let table = bake::bake(&full);
+                self.baked += 1;
+                // A slice is baked again as fast as it is read.
+                if !need.gamma().is_point() {
+                    self.keep(&key, std::slice::from_ref(&table));
+                }
+                table
+            });
+            waiting.push(key);
+            tables.push(table.rounded(spec.precision));
+            progress();
+        }
+        let mut set = Tables::from_tables(Provenance::default(), tables).map_err(BakeError::Set)?;
+        certify(&mut set, CERTIFICATE_POINTS, need.certified_s())
+            .map_err(|why| BakeError::Set(LoadError::Invalid(why.to_string())))?;
+        progress();
+        self.keep(&key, set.tables());
+        waiting.iter().for_each(|key| self.cache.remove(key));
+        Ok(set.tables().to_vec())
+    }
 }
 
 /// Origin, licence and conventions of a set baked by this version.

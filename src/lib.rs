@@ -5,6 +5,8 @@
 //! with what `microfacet-model` says.
 
 pub mod bake;
+pub mod budget;
+pub mod cache;
 pub mod convert;
 pub mod family;
 pub mod fit;

@@ -69,6 +69,28 @@ pub struct TableSpec {
     pub precision: Precision,
 }
 
+impl TableSpec {
+    /// How many pairs of value and slope the table holds.
+    pub fn nodes(&self) -> usize {
+        let per_shape = match self.kind {
+            Kind::Shadowing => self.views,
+            Kind::VisibleSlopeConditional => self.numbers,
+            // Both halves of u₁.
+            _ => self.views * 2 * self.numbers,
+        };
+        self.shapes.nodes.len() * per_shape
+    }
+
+    /// Bytes of its values as they are stored.
+    pub fn bytes(&self) -> usize {
+        let one = match self.precision {
+            Precision::F32 => 4,
+            Precision::F16 | Precision::U16 => 2,
+        };
+        2 * one * self.nodes()
+    }
+}
+
 /// How fine the tables are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
@@ -82,7 +104,7 @@ pub enum Quality {
 }
 
 /// Numbers of nodes that go with a quality.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Resolution {
     /// γ nodes over the whole-distribution range.
     pub shapes: usize,
@@ -142,7 +164,11 @@ impl Quality {
 
 /// The general set: every γ ∈ [1.501, ∞] (and through shape invariance every σ).
 pub fn general_set(quality: Quality, precision: Precision) -> Vec<TableSpec> {
-    let r = quality.resolution();
+    general_set_at(quality.resolution(), precision)
+}
+
+/// The general set with other numbers of nodes.
+pub fn general_set_at(r: Resolution, precision: Precision) -> Vec<TableSpec> {
     let (whole, heaviest) = (1.0 / (GAMMA_WHOLE - 1.0), 1.0 / (GAMMA_MIN - 1.0));
     let spec = |kind: Kind, shapes, views, numbers| TableSpec {
         name: kind.name().into(),

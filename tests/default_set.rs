@@ -1,15 +1,18 @@
 //! The committed default set is what this code bakes, byte for byte.
 
-use microfacet_bake::generate::generate;
-use microfacet_bake::spec::{Quality, general_set};
+use microfacet_bake::cache::Cache;
+use microfacet_bake::generate::{Target, generate, provenance};
+use microfacet_bake::plan::Plan;
+use microfacet_bake::spec::Quality;
 use microfacet_sampler::{Kind, Precision, encode};
 
 const COMMITTED: &[u8] = include_bytes!("../tables/default.safetensors");
 
 #[test]
 fn the_default_set_is_reproducible() {
-    let specs = general_set(Quality::Default, Precision::F32);
-    let set = generate(&specs, String::new(), Vec::new(), |_| ()).unwrap();
+    let target = Target::Quality(Quality::Default, Precision::F32);
+    let origin = provenance(String::new(), Vec::new());
+    let set = generate(&Plan::general().needs, target, origin, &Cache::none(), || ()).unwrap().set;
     let bytes = encode(set.provenance(), set.tables()).unwrap();
     assert!(
         bytes == COMMITTED,

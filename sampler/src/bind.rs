@@ -66,7 +66,7 @@ pub(crate) fn make_monotone(run: &mut [Node]) {
 }
 
 /// Slices of one shape.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Slices {
     /// G1/q by view node.
     pub(crate) shadowing: Vec<Node>,

@@ -377,8 +377,16 @@ impl Table {
     /// certificate can be measured on what a reader gets.
     pub fn rounded(mut self, precision: Precision) -> Self {
         self.precision = precision;
-        let codec = Codec::fit(&self);
-        self.values = codec.decode(&codec.encode(&self.values));
+        // Storing fits scale and offset to the values once more, which after rounding may differ by an ulp: until they do not. Two
+        // rounds have always been enough; the limit is against a cycle.
+        for _ in 0..16 {
+            let codec = Codec::fit(&self);
+            let values = codec.decode(&codec.encode(&self.values));
+            if values == self.values {
+                break;
+            }
+            self.values = values;
+        }
         self
     }
 }

@@ -96,8 +96,9 @@ impl fmt::Display for BindError {
             ),
             Self::NoSuchMaterial { name, known } => write!(
                 f,
-                "no material \"{name}\" in this set, which holds {known}; add `[[material]] name = \"{name}\"` to its \
-                 recipe and bake again"
+                "no material \"{name}\" in this set, which holds {known} (smooth materials have no microfacets and are not \
+                 listed); to add it, append to its recipe, with its own roughness and shape, and bake again:\n\
+                 [[material]]\nname = \"{name}\"\nsigma = 0.3\ngamma = 3.0"
             ),
         }
     }

@@ -17,6 +17,7 @@ mod cells;
 mod container;
 mod ellipsoid;
 mod error;
+mod ggx;
 mod math;
 mod radial;
 mod sample;

@@ -35,9 +35,12 @@ impl StudentT {
     ///
     /// Both coordinates are inverse CDFs. Where the whole distribution is tabulated (γ ≥ 1.8 in the default set)
     /// the tilt towards the viewer rises with `u[0]` and the tilt across with `u[1]`; below, `u[0]` is first used to choose
-    /// between the tabulated part and the closed-form heavy tail, and rises within each.
+    /// between the tabulated part and the closed-form heavy tail, and rises within each. Without tables see [`ggx`](Self::ggx).
     #[inline]
     pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        if self.closed_form {
+            return self.sample_ggx(v, u);
+        }
         let view = self.stretch(v);
         let x = self.sample_along(&view, u[0]);
         let t = self.sample_across(u[1]);
@@ -140,7 +143,7 @@ impl StudentT {
 /// The silhouette's slope has the rounding of the view coordinate, which is coarse where σ is far below the view's tilt, and the
 /// stretch of a strongly anisotropic material lets the tilt across spoil the tilt along.
 #[inline(always)]
-fn face(m: Vec3, v: Vec3) -> Vec3 {
+pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
     let facing = v.dot(m);
     if !(facing < 0.0) {
         return m;

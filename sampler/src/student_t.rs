@@ -42,7 +42,7 @@ pub struct Roughness(pub [f32; 2]);
 const SIGMAS: core::ops::RangeInclusive<f32> = 1e-8..=1e6;
 
 impl Roughness {
-    fn checked(self) -> Result<[f32; 2], BindError> {
+    pub(crate) fn checked(self) -> Result<[f32; 2], BindError> {
         match self.0.into_iter().find(|sigma| !SIGMAS.contains(sigma)) {
             Some(sigma) => Err(BindError::Sigma(sigma)),
             None => Ok(self.0),
@@ -84,11 +84,13 @@ impl From<[f64; 2]> for Roughness {
 pub struct StudentT {
     pub(crate) sigma_x: f32,
     pub(crate) sigma_y: f32,
-    gamma: f64,
+    pub(crate) gamma: f64,
     pub(crate) s: f32,
     /// 2γ − 3, from γ in double precision: near 3/2 a rounded γ would be another material.
     pub(crate) two_k: f32,
     pub(crate) slices: Slices,
+    /// Whether there are no slices, since GGX's closed forms need none.
+    pub(crate) closed_form: bool,
 }
 
 /// A direction stretched by (σx, σy, 1), with its azimuth there.
@@ -119,12 +121,13 @@ impl StudentT {
         }
         let s = 1.0 / (gamma - 1.0);
         let slices = Slices::bind(tables, gamma, s)?;
-        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_k: (2.0 * gamma - 3.0) as f32, slices })
+        let two_k = (2.0 * gamma - 3.0) as f32;
+        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_k, slices, closed_form: false })
     }
 
     /// The carrier of another distribution's tables: unit slopes are slopes over σ, and those across scale with √(1 + x²).
     pub(crate) fn carrier(sigma: f32, slices: Slices) -> Self {
-        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_k: 1.0, slices }
+        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_k: 1.0, slices, closed_form: false }
     }
 
     /// The same shape with another roughness; the tables are not touched again.
@@ -146,7 +149,7 @@ impl StudentT {
         self.gamma
     }
 
-    /// Bytes of table that lookups of this material touch.
+    /// Bytes of table that lookups of this material touch; 0 for closed forms.
     pub fn bytes(&self) -> usize {
         self.slices.bytes()
     }
@@ -169,6 +172,9 @@ impl StudentT {
     /// 1/(area of the microsurface seen along the stretched direction) = G1/z, finite at grazing.
     #[inline(always)]
     pub(crate) fn inverse_area(&self, w: &Stretched) -> f32 {
+        if self.closed_form {
+            return Self::ggx_inverse_area(w);
+        }
         // The sum vanishes for the null vector and straight below the surface only, where z·r is then 0 and not 0·∞.
         let r = 1.0 / (w.z + self.slices.kappa * w.rho).max(f32::MIN_POSITIVE);
         self.shadowing(w, r) * r

@@ -41,6 +41,9 @@ impl StudentT {
         if !(m.z > 0.0) {
             return 0.0;
         }
+        if self.closed_form {
+            return self.visible_normal_pdf(v, m);
+        }
         let view = self.stretch(v);
         let slopes = self.unit_slopes(&view, m);
         let along = if self.slices.peeled {
@@ -64,6 +67,9 @@ impl StudentT {
     /// Between them [`table_pdf`](Self::table_pdf) is smooth, so a quadrature that respects them converges fast. x may end at ±∞.
     pub fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
         let view = self.stretch(v);
+        if self.closed_form {
+            return Self::ggx_joints(&view);
+        }
         let rows = self.rows_at(&view);
         let half = self.slices.cells + 1;
         let slope = |g: f64, sign: f64| sign * 2.0 * (1.0 - g) / (g * (2.0 - g));

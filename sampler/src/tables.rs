@@ -88,7 +88,7 @@ impl Tables {
         &self.provenance
     }
 
-    /// Whether γ can be bound.
+    /// Whether tables of this set cover γ. GGX, γ = 2, can be bound even where they do not.
     pub fn covers(&self, gamma: f64) -> bool {
         let s = 1.0 / (gamma - 1.0);
         let has = |kind| self.tables.iter().any(|table| table.kind == kind && covers(table, s));
@@ -100,29 +100,42 @@ impl Tables {
 
     /// Binds a material: σ (one number, or a pair for x and y) and γ ∈ (3/2, ∞] are fixed, and the γ axis is collapsed there.
     ///
-    /// γ = 2 is GGX with α = σ, γ = `f64::INFINITY` is Beckmann. γ is taken in double precision, since near 3/2 single precision is
-    /// too coarse for it. Takes some microseconds and holds about 20 KiB; [`StudentT::with_roughness`] is cheaper for a material
-    /// that differs in σ only.
+    /// γ = 2 is GGX with α = σ, γ = `f64::INFINITY` is Beckmann. Where no table covers γ = 2 the material is [`StudentT::ggx`]. γ is
+    /// taken in double precision, since near 3/2 single precision is too coarse for it. Takes some microseconds and holds about
+    /// 20 KiB; [`StudentT::with_roughness`] is cheaper for a material that differs in σ only.
     ///
     /// # Errors
     /// [`BindError`] for a σ or γ outside the family, or a γ that this set does not cover.
     pub fn student_t(&self, sigma: impl Into<Roughness>, gamma: f64) -> Result<StudentT, BindError> {
-        StudentT::bind(&self.tables, sigma.into(), gamma)
+        let sigma = sigma.into();
+        match StudentT::bind(&self.tables, sigma, gamma) {
+            Err(BindError::NotCovered { .. }) if gamma == 2.0 => StudentT::ggx(sigma),
+            bound => bound,
+        }
     }
 
     /// Binds an ellipsoid: a lobe of shape γ ∈ (3/2, ∞] seen through a matrix, tilted and turned; see [`Ellipsoid`].
     ///
-    /// It reads the same tables as [`student_t`](Self::student_t).
+    /// It reads the same tables as [`student_t`](Self::student_t), at γ = 2 too.
     ///
     /// # Errors
     /// [`BindError`] for a matrix that is not finite or (almost) singular, a γ outside the family, or one that this set does not cover.
     pub fn ellipsoid(&self, skew: Skew, gamma: f64) -> Result<Ellipsoid, BindError> {
-        Ellipsoid::bind(self.student_t(1.0, gamma)?, skew)
+        Ellipsoid::bind(StudentT::bind(&self.tables, 1.0.into(), gamma)?, skew)
+    }
+
+    /// This set with the default set behind it: shapes that its own tables do not cover are read from those compiled in.
+    ///
+    /// For lookups; names of tables may then repeat, which a file does not allow.
+    #[cfg(feature = "embedded")]
+    pub fn or_embedded(mut self) -> Self {
+        self.tables.extend(Self::embedded().tables);
+        self
     }
 
     /// Binds a material of the set's recipe by its name.
     ///
-    /// Where the recipe gives ranges, their middle is bound; use [`student_t`](Self::student_t) for others.
+    /// Where the recipe gives ranges, the middle of σ and of s = 1/(γ−1) is bound; use [`student_t`](Self::student_t) for others.
     ///
     /// # Errors
     /// [`BindError::NoSuchMaterial`] naming those that exist, or what [`student_t`](Self::student_t) reports.
@@ -152,8 +165,13 @@ impl Tables {
     fn entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
         let materials = &self.provenance.materials;
         materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
-            let known: Vec<String> =
-                materials.iter().map(|entry| alloc::format!("\"{}\"", entry.name)).collect();
+            // A scene may have thousands.
+            const SHOWN: usize = 12;
+            let mut known: Vec<String> =
+                materials.iter().take(SHOWN).map(|entry| alloc::format!("\"{}\"", entry.name)).collect();
+            if materials.len() > SHOWN {
+                known.push(alloc::format!("{} more", materials.len() - SHOWN));
+            }
             let known = if known.is_empty() { "no named materials".to_string() } else { known.join(", ") };
             BindError::NoSuchMaterial { name: name.into(), known }
         })

@@ -6,13 +6,15 @@ use std::time::Instant;
 use clap::ValueEnum;
 use serde_json::json;
 
-use microfacet_bake::generate::generate;
-use microfacet_bake::plan;
+use microfacet_bake::cache::Cache;
+use microfacet_bake::generate::{Baked, Target, generate};
+use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::{self, Scene};
-use microfacet_bake::spec::{Quality, general_set};
+use microfacet_bake::spec::general_set;
 use microfacet_bake::store::{Format, OutputFolder, Written};
-use microfacet_sampler::{Precision, Table, Tables};
+use microfacet_sampler::Table;
 
+use super::request::{Request, provenance};
 use super::{Done, Outcome, print, print_json, progress};
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
@@ -27,12 +29,20 @@ pub(super) struct Args {
     /// Container formats, comma separated.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "safetensors")]
     format: Vec<FormatArg>,
-    /// How values are stored.
-    #[arg(long, value_enum, default_value = "f32")]
-    precision: PrecisionArg,
-    /// How fine the tables are.
-    #[arg(long, value_enum, default_value = "default")]
-    quality: QualityArg,
+    #[command(flatten)]
+    request: Request,
+    /// Choose each table's nodes and precision instead: the smallest whose error, measured, is not above this (G1 absolute, or CDF).
+    #[arg(long, value_name = "E", value_parser = parse_error, conflicts_with_all = ["quality", "precision", "max_bytes"])]
+    max_error: Option<f64>,
+    /// The most accurate tables whose file is not larger than this.
+    #[arg(long, value_name = "BYTES", conflicts_with_all = ["quality", "precision"])]
+    max_bytes: Option<usize>,
+    /// Folder of finished tables, which are not baked again; in the user's cache folder by default.
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// Bake everything, and keep nothing for the next time.
+    #[arg(long, conflicts_with = "cache")]
+    no_cache: bool,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
@@ -46,59 +56,65 @@ enum FormatArg {
     Exr,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum PrecisionArg {
-    /// Single precision.
-    F32,
-    /// Half precision.
-    F16,
-    /// Sixteen-bit fixed point.
-    U16,
+fn parse_error(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(error) if error > 0.0 && error <= 0.1 => Ok(error),
+        _ => Err(format!("\"{text}\" must be a number in (0, 0.1], such as 1e-4")),
+    }
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum QualityArg {
-    /// Small and rough.
-    Draft,
-    /// CDF error below 1e-4 (gamma >= 1.8), G1 error below 1e-5.
-    Default,
-    /// CDF error below 1e-5, G1 error below 2e-6; eight times the bytes.
-    High,
+impl Args {
+    fn target(&self) -> Target {
+        match (self.max_error, self.max_bytes) {
+            (Some(max_error), _) => Target::MaxError(max_error),
+            (_, Some(max_bytes)) => Target::MaxBytes(max_bytes),
+            _ => Target::Quality(self.request.quality(), self.request.precision()),
+        }
+    }
+
+    fn cache(&self) -> Cache {
+        match &self.cache {
+            _ if self.no_cache => Cache::none(),
+            Some(folder) => Cache::new(folder.clone()),
+            None => Cache::user(),
+        }
+    }
 }
 
 pub(super) fn run(args: Args) -> Outcome {
     let start = Instant::now();
-    let precision = match args.precision {
-        PrecisionArg::F32 => Precision::F32,
-        PrecisionArg::F16 => Precision::F16,
-        PrecisionArg::U16 => Precision::U16,
-    };
-    let quality = match args.quality {
-        QualityArg::Draft => Quality::Draft,
-        QualityArg::Default => Quality::Default,
-        QualityArg::High => Quality::High,
-    };
     let out = OutputFolder::open(&args.out)?;
     let scene = args.recipe.as_deref().map(scene::load).transpose()?;
-    if let Some(scene) = &scene {
-        scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
-        report_ignored(scene);
-    }
-    let specs = match &scene {
-        Some(scene) => plan::specs(scene, quality, precision)?,
-        None => general_set(quality, precision),
+    let plan = match &scene {
+        Some(scene) => {
+            scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+            report_ignored(scene);
+            args.request.plan(scene, args.max_error)?
+        }
+        None => Plan::general(),
     };
-    if specs.is_empty() {
+    if plan.is_empty() {
         print("Nothing to bake: no material in use is rough.\n")?;
         return Ok(Done::Ok);
     }
-    let (recipe, entries) = match &scene {
-        Some(scene) => (scene.to_recipe(), plan::entries(scene)),
-        None => (String::new(), Vec::new()),
+    let target = args.target();
+    let steps = match target {
+        // The tables of each need, and its certificate.
+        Target::Quality(quality, precision) => {
+            let general = general_set(quality, precision);
+            plan.needs.iter().map(|need| need.specs(&general).len() + 1).sum()
+        }
+        _ => plan.needs.len(),
     };
-    let bar = progress(specs.len() + 1, "baking");
-    let set = generate(&specs, recipe, entries, |_| bar.inc(1))?;
+    let bar = progress(steps, "baking");
+    let provenance = provenance(scene.as_ref().map(|scene| (scene, &plan)));
+    let result = generate(&plan.needs, target, provenance, &args.cache(), || bar.inc(1))?;
     bar.finish_and_clear();
+    if let Some(why) = &result.cache_error {
+        eprintln!(
+            "warning: finished tables are not kept for the next time: {why}; name a folder with --cache, or use --no-cache"
+        );
+    }
     let formats: Vec<Format> = args
         .format
         .iter()
@@ -107,12 +123,12 @@ pub(super) fn run(args: Args) -> Outcome {
             FormatArg::Exr => Format::Exr,
         })
         .collect();
-    let written = out.write(&set, &formats)?;
+    let written = out.write(&result.set, &formats)?;
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
-        print_json(&as_json(&set, &written, seconds))?
+        print_json(&as_json(&result, &written, seconds))?
     } else {
-        print(&summary(&set, &written, seconds))?
+        print(&summary(&result, &plan, &written, seconds))?
     }
     Ok(Done::Ok)
 }
@@ -135,32 +151,47 @@ pub(super) fn largest_error(table: &Table) -> String {
     "not certified".into()
 }
 
-fn summary(set: &Tables, written: &[Written], seconds: f64) -> String {
+fn summary(result: &Baked, plan: &Plan, written: &[Written], seconds: f64) -> String {
     let mut text = String::new();
-    for table in set.tables() {
+    let tables = result.set.tables();
+    let width = tables.iter().map(|table| table.name.len()).max().unwrap_or(0);
+    for table in tables {
         let axes: Vec<String> =
             table.axes.iter().map(|axis| format!("{} {}", axis.name, axis.len())).collect();
-        text += &format!("{:26} {:34} {}\n", table.name, axes.join(" x "), largest_error(table));
+        let (axes, precision) = (axes.join(" x "), format!("{:?}", table.precision).to_lowercase());
+        text += &format!("{:width$}  {axes:34} {precision}  {}\n", table.name, largest_error(table));
     }
     for file in written {
         text += &format!("{} ({} bytes)\n", file.path.display(), file.bytes);
     }
-    text + &format!("{} tables in {seconds:.2} s\n", set.tables().len())
+    if tables.is_empty() && plan.has_closed_forms() {
+        text += "no tables: every rough material has closed forms, which the sampler uses\n";
+    }
+    let baked = match (tables.len(), result.baked) {
+        (all, 0) if all > 0 => format!("nothing to bake: all {all} tables were finished before"),
+        (all, baked) if baked < all => format!("{baked} tables baked, {} finished before,", all - baked),
+        (all, _) => format!("{all} tables"),
+    };
+    text + &format!("{baked} in {seconds:.3} s\n")
 }
 
-fn as_json(set: &Tables, written: &[Written], seconds: f64) -> serde_json::Value {
-    let tables: Vec<_> = set
+fn as_json(result: &Baked, written: &[Written], seconds: f64) -> serde_json::Value {
+    let tables: Vec<_> = result
+        .set
         .tables()
         .iter()
         .map(|table| {
             let axes: Vec<_> =
                 table.axes.iter().map(|axis| json!({ "name": axis.name, "length": axis.len() })).collect();
-            json!({ "name": table.name, "kind": table.kind.name(), "axes": axes, "certificate": table.certificate })
+            json!({
+                "name": table.name, "kind": table.kind.name(), "axes": axes, "precision": table.precision,
+                "certificate": table.certificate,
+            })
         })
         .collect();
     let files: Vec<_> = written
         .iter()
         .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }))
         .collect();
-    json!({ "tables": tables, "files": files, "seconds": seconds })
+    json!({ "tables": tables, "baked": result.baked, "files": files, "seconds": seconds })
 }

@@ -4,8 +4,10 @@ mod bake;
 mod convert;
 mod fit;
 mod inspect;
+mod plan;
 mod plot;
 mod query;
+mod request;
 mod sample;
 mod stress;
 mod validate;
@@ -36,6 +38,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Bake(bake::Args),
+    Plan(plan::Args),
     Validate(validate::Args),
     Inspect(inspect::Args),
     Query(query::Args),
@@ -72,6 +75,7 @@ pub(crate) fn main() -> ExitCode {
     }
     let outcome = match cli.command {
         Command::Bake(args) => bake::run(args),
+        Command::Plan(args) => plan::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Inspect(args) => inspect::run(args),
         Command::Query(args) => query::run(args),

@@ -51,13 +51,19 @@ impl Error {
     }
 }
 
+/// The s = 1/(γ−1) of all shapes.
+pub const ALL_SHAPES: [f64; 2] = [0.0, 2.0];
+
 /// Adds to each table the errors measured on it, `points` of them for each of a few γ between every two nodes.
+///
+/// `s` limits the shapes to those that were asked for: a sub-range has nodes beyond its ends, for the interpolation only, and what lies
+/// between those is less accurate. Unless it is [`ALL_SHAPES`], certificates state it as `s_min` and `s_max`.
 ///
 /// # Errors
 /// [`BindError`] if the tables are not a complete set.
-pub fn certify(tables: &mut Tables, points: usize) -> Result<(), BindError> {
+pub fn certify(tables: &mut Tables, points: usize, s: [f64; 2]) -> Result<(), BindError> {
     let measured: Vec<BTreeMap<String, f64>> =
-        tables.tables().iter().map(|table| measure(tables, table, points)).collect::<Result<_, _>>()?;
+        tables.tables().iter().map(|table| measure(tables, table, points, s)).collect::<Result<_, _>>()?;
     for (i, certificate) in measured.into_iter().enumerate() {
         tables.set_certificate(i, certificate);
     }
@@ -65,10 +71,13 @@ pub fn certify(tables: &mut Tables, points: usize) -> Result<(), BindError> {
 }
 
 /// Figures of one table, rounded up to three digits.
-fn measure(tables: &Tables, table: &Table, points: usize) -> Result<BTreeMap<String, f64>, BindError> {
-    // A sub-range keeps a node or two beyond its end for the interpolation; the kinds need not agree on where.
-    let mut gammas = gammas_between_nodes(table);
-    gammas.retain(|&gamma| tables.covers(gamma));
+pub(crate) fn measure(
+    tables: &Tables,
+    table: &Table,
+    points: usize,
+    s: [f64; 2],
+) -> Result<BTreeMap<String, f64>, BindError> {
+    let gammas = gammas_between_nodes(table, s);
     let all = gammas
         .par_iter()
         .map(|&gamma| {
@@ -100,6 +109,9 @@ fn measure(tables: &Tables, table: &Table, points: usize) -> Result<BTreeMap<Str
     if u.is_finite() {
         figures.insert("worst_u".into(), u);
     }
+    if s != ALL_SHAPES {
+        figures.extend([("s_min".into(), s[0]), ("s_max".into(), s[1])]);
+    }
     Ok(figures)
 }
 
@@ -112,20 +124,25 @@ fn round_up(x: f64) -> f64 {
     text.parse().expect("a number just printed")
 }
 
-/// Shapes to measure at: those of a list, and three between every two nodes of a range.
-fn gammas_between_nodes(table: &Table) -> Vec<f64> {
+/// Shapes to measure at, none outside [from, to] in s: those of a list, and three between every two nodes of a range.
+fn gammas_between_nodes(table: &Table, [from, to]: [f64; 2]) -> Vec<f64> {
     let axis = &table.axes[0];
     let gamma = |s: f64| 1.0 + 1.0 / s;
     if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
         return axis.nodes.iter().map(|&s| gamma(s)).collect();
     }
+    let [low, high] = [axis.nodes[0].max(from), axis.nodes[axis.nodes.len() - 1].min(to)];
     let mut all: Vec<f64> = Vec::new();
     for pair in axis.nodes.windows(2) {
-        all.extend([0.0, 0.21, 0.5, 0.83].map(|w| gamma(pair[0] + w * (pair[1] - pair[0]))));
+        all.extend([0.0, 0.21, 0.5, 0.83].map(|w| pair[0] + w * (pair[1] - pair[0])));
     }
-    // The far end as γ itself, not as 1 + 1/s, which may round to just outside.
-    all.push(gamma(axis.nodes[axis.nodes.len() - 1] * (1.0 - 1e-15)));
-    all
+    all.retain(|s| (low..high).contains(s));
+    if all.first() != Some(&low) {
+        all.push(low);
+    }
+    // The far end not as 1 + 1/s itself, which may round to just outside.
+    all.push(high * (1.0 - 1e-15));
+    all.into_iter().map(gamma).collect()
 }
 
 /// The i-th point of the additive recurrence with the plastic number (Roberts 2018), in [0, 1)².

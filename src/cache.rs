@@ -1,0 +1,86 @@
+//! Finished tables kept between runs, under the content of what they were baked from.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use etcetera::BaseStrategy;
+use sha2::{Digest, Sha256};
+
+use microfacet_sampler::{Provenance, Table, VERSION, encode};
+
+use crate::bake::NUMERICS;
+use crate::store::{self, replace};
+
+/// A folder of finished tables, or none.
+///
+/// An entry is a table set named by the SHA-256 of its key: the complete specification with all its numbers, the number of the numeric
+/// method and the version of the format. So an entry is never out of date, entries may be removed at any time, and several
+/// processes may share a folder. An entry that is damaged is as good as none.
+#[derive(Clone, Debug)]
+pub struct Cache {
+    folder: Option<PathBuf>,
+}
+
+impl Cache {
+    /// A cache in this folder, which is made when something is put into it.
+    pub fn new(folder: PathBuf) -> Self {
+        Self { folder: Some(folder) }
+    }
+
+    /// One that keeps nothing.
+    pub fn none() -> Self {
+        Self { folder: None }
+    }
+
+    /// The folder `microfacet-bake` in the user's cache folder (`$XDG_CACHE_HOME`, or what the system has in its place); none if the
+    /// user has no home.
+    pub fn user() -> Self {
+        let folder =
+            etcetera::choose_base_strategy().ok().map(|base| base.cache_dir().join("microfacet-bake"));
+        Self { folder }
+    }
+
+    /// Where it is.
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
+    /// The tables kept under a key.
+    pub fn get(&self, key: &str) -> Option<Vec<Table>> {
+        let key = complete(key);
+        let set = store::read(&self.path(&key)?).ok()?;
+        // The key itself is in the entry: whatever else bears this name is not it.
+        (set.provenance().recipe == key).then(|| set.tables().to_vec())
+    }
+
+    /// Keeps tables under a key.
+    ///
+    /// # Errors
+    /// What the operating system reports, such as a folder that cannot be written.
+    pub fn put(&self, key: &str, tables: &[Table]) -> io::Result<()> {
+        let key = complete(key);
+        let (Some(path), Some(folder)) = (self.path(&key), &self.folder) else { return Ok(()) };
+        let provenance = Provenance { recipe: key, numerics: NUMERICS, ..Provenance::default() };
+        let bytes = encode(&provenance, tables).map_err(io::Error::other)?;
+        std::fs::create_dir_all(folder)?;
+        replace(&path, &bytes)
+    }
+
+    /// Forgets what is kept under a key.
+    pub fn remove(&self, key: &str) {
+        if let Some(path) = self.path(&complete(key)) {
+            // Gone already is as good.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+
+    fn path(&self, key: &str) -> Option<PathBuf> {
+        let name: String = Sha256::digest(key).iter().map(|byte| format!("{byte:02x}")).collect();
+        self.folder.as_ref().map(|folder| folder.join(name).with_extension("safetensors"))
+    }
+}
+
+/// A key with the versions that decide what it stands for.
+fn complete(key: &str) -> String {
+    format!("format {VERSION}, numerics {NUMERICS}, program {}\n{key}", env!("CARGO_PKG_VERSION"))
+}

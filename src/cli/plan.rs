@@ -1,0 +1,203 @@
+//! `plan`: what a bake of a scene would do, and why not more.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use serde_json::json;
+
+use microfacet_bake::plan::{Cost, Need, Plan, Verdict, cost};
+use microfacet_bake::scene::{self, Interval, Scene};
+use microfacet_bake::spec::{TableSpec, general_set};
+
+use super::request::{Request, provenance};
+use super::{Done, Outcome, print, print_json};
+
+/// Show what a scene needs baked and what it does not, with bytes and seconds.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  microfacet-bake plan tables/recipes/gold-series.toml")]
+pub(super) struct Args {
+    /// A recipe (.toml) or scene (.pbrt, .xml, .gltf, .glb, .mtlx).
+    scene: PathBuf,
+    #[command(flatten)]
+    request: Request,
+    /// Print the plan as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// A plan with all that is said about it.
+struct Report<'a> {
+    scene: &'a Scene,
+    plan: &'a Plan,
+    /// Tables of each need, and what they cost on their own.
+    tables: Vec<(Vec<TableSpec>, Cost)>,
+    total: Cost,
+    general: Cost,
+    /// Milliseconds.
+    reading: f64,
+    planning: f64,
+}
+
+pub(super) fn run(args: Args) -> Outcome {
+    let start = Instant::now();
+    let scene = scene::load(&args.scene)?;
+    let reading = start.elapsed();
+    scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    let start = Instant::now();
+    let plan = args.request.plan(&scene, None)?;
+    let general = general_set(args.request.quality(), args.request.precision());
+    let origin = provenance(Some((&scene, &plan)));
+    let bare = cost(&[], &origin);
+    let tables = plan.needs.iter().map(|need| {
+        let specs = need.specs(&general);
+        let cost = cost(&specs, &origin);
+        (specs, Cost { bytes: cost.bytes - bare.bytes, ..cost })
+    });
+    let tables: Vec<(Vec<TableSpec>, Cost)> = tables.collect();
+    let sum = |total: Cost, (_, cost): &(Vec<TableSpec>, Cost)| Cost {
+        bytes: total.bytes + cost.bytes,
+        seconds: total.seconds + cost.seconds,
+    };
+    let total = tables.iter().fold(bare, sum);
+    let general = cost(&general, &provenance(None));
+    let milliseconds = |time: std::time::Duration| 1e3 * time.as_secs_f64();
+    let (reading, planning) = (milliseconds(reading), milliseconds(start.elapsed()));
+    let report = Report { scene: &scene, plan: &plan, tables, total, general, reading, planning };
+    if args.json {
+        print_json(&report.json())?
+    } else {
+        print(&report.text())?
+    }
+    Ok(Done::Ok)
+}
+
+/// Why a material needs no tables of its own, in few words and in more.
+fn reason(verdict: &Verdict) -> [&'static str; 2] {
+    match verdict {
+        Verdict::Bake(_) => ["baked", "tables are baked for it"],
+        Verdict::Same { .. } => ["same", "another material needs the same tables"],
+        Verdict::Within { .. } => ["within", "its gamma lies in a range that is baked for another material"],
+        Verdict::ClosedForm => ["closed form", "GGX: D, G1 and visible normals have closed forms; no table"],
+        Verdict::Embedded => ["embedded", "covered by the default set compiled into the sampler"],
+        Verdict::NotRough => ["not rough", "no microfacets"],
+        Verdict::NotUsed => ["not used", "no geometry wears it"],
+    }
+}
+
+fn shapes(gamma: Interval) -> String {
+    if gamma.is_point() {
+        format!("gamma {}", gamma.min)
+    } else {
+        format!("gamma {} to {}", gamma.min, gamma.max)
+    }
+}
+
+/// The first few of many names.
+fn list<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    const SHOWN: usize = 4;
+    let more = names.len().saturating_sub(SHOWN);
+    let mut shown: Vec<String> = names.take(SHOWN).map(|name| format!("\"{name}\"")).collect();
+    if more > 0 {
+        shown.push(format!("{more} more"));
+    }
+    shown.join(", ")
+}
+
+impl Report<'_> {
+    /// Names of the materials whose verdict satisfies a condition.
+    fn names(&self, of: impl Fn(&Verdict) -> bool) -> Vec<&str> {
+        let pairs = self.scene.materials.iter().zip(&self.plan.verdicts);
+        pairs.filter(|(_, verdict)| of(verdict)).map(|(material, _)| material.name.as_str()).collect()
+    }
+
+    fn text(&self) -> String {
+        let mut text = String::new();
+        for (i, (need, (specs, cost))) in self.plan.needs.iter().zip(&self.tables).enumerate() {
+            let names = self.names(|verdict| verdict.need() == Some(i));
+            text += &format!(
+                "bake  {:22} {} tables, {} bytes, about {:.3} s, for {}\n",
+                shapes(need.gamma()),
+                specs.len(),
+                cost.bytes,
+                cost.seconds,
+                list(names.into_iter())
+            );
+        }
+        for verdict in [Verdict::ClosedForm, Verdict::Embedded, Verdict::NotRough, Verdict::NotUsed] {
+            let names = self.names(|other| *other == verdict);
+            if !names.is_empty() {
+                let [short, long] = reason(&verdict);
+                text += &format!("skip  {short:22} {long}: {}\n", list(names.into_iter()));
+            }
+        }
+        let mut ignored: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        for material in &self.scene.ignored {
+            ignored.entry(material.reason).or_default().push(&material.name);
+        }
+        for (reason, names) in ignored {
+            text += &format!("skip  {:22} {reason}: {}\n", "no lobe", list(names.into_iter()));
+        }
+        let (total, general) = (self.total, self.general);
+        text += &if self.plan.is_empty() {
+            "Nothing is needed: no material in use is rough.\n".into()
+        } else {
+            let smaller = general.bytes as f64 / total.bytes as f64;
+            let share = if total.seconds > 0.0 {
+                format!("; {smaller:.0} times smaller, {:.0} times faster", general.seconds / total.seconds)
+            } else {
+                format!("; {smaller:.0} times smaller, and nothing to bake")
+            };
+            format!(
+                "total {} bytes, about {:.3} s; the general set {} bytes, about {:.3} s{share}\n",
+                total.bytes, total.seconds, general.bytes, general.seconds
+            )
+        };
+        text + &format!(
+            "{} materials read in {:.1} ms, planned in {:.1} ms\n",
+            self.scene.materials.len() + self.scene.ignored.len(),
+            self.reading,
+            self.planning
+        )
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let cost = |cost: &Cost| json!({ "bytes": cost.bytes, "seconds": cost.seconds });
+        // JSON has no infinity.
+        let ends = |need: &Need| json!({ "gamma": [need.gamma().min.to_string(), need.gamma().max.to_string()], "s": need.s() });
+        let needs: Vec<_> = self.plan.needs.iter().zip(&self.tables).enumerate().map(|(i, (need, (specs, sum)))| {
+            let tables: Vec<_> = specs
+                .iter()
+                .map(|spec| json!({ "name": spec.name, "kind": spec.kind.name(), "shapes": spec.shapes.nodes.len(), "views": spec.views, "numbers": spec.numbers }))
+                .collect();
+            json!({ "shapes": ends(need), "tables": tables, "cost": cost(sum), "materials": self.names(|verdict| verdict.need() == Some(i)) })
+        }).collect();
+        let materials: Vec<_> = self
+            .scene
+            .materials
+            .iter()
+            .zip(&self.plan.verdicts)
+            .map(|(material, verdict)| {
+                let [short, long] = reason(verdict);
+                let other = match *verdict {
+                    Verdict::Same { as_material: i, .. } | Verdict::Within { of_material: i, .. } => {
+                        Some(&self.scene.materials[i].name)
+                    }
+                    _ => None,
+                };
+                json!({ "name": material.name, "verdict": short, "why": long, "need": verdict.need(), "shares_with": other })
+            })
+            .collect();
+        let ignored: Vec<_> = self
+            .scene
+            .ignored
+            .iter()
+            .map(|material| json!({ "name": material.name, "kind": material.kind, "why": material.reason }))
+            .collect();
+        json!({
+            "needs": needs, "materials": materials, "ignored": ignored, "nothing_needed": self.plan.is_empty(),
+            "total": cost(&self.total), "general_set": cost(&self.general),
+            "milliseconds": { "reading": self.reading, "planning": self.planning },
+        })
+    }
+}

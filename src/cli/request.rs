@@ -1,0 +1,96 @@
+//! What `plan` and `bake` have in common: how fine, and what the run time brings along.
+
+use clap::ValueEnum;
+
+use microfacet_bake::generate::{self, worst_error};
+use microfacet_bake::plan::{self, Options, Plan};
+use microfacet_bake::scene::Scene;
+use microfacet_bake::spec::Quality;
+use microfacet_sampler::{Precision, Provenance, Tables};
+
+use super::Failure;
+
+#[derive(clap::Args)]
+pub(super) struct Request {
+    /// How values are stored.
+    #[arg(long, value_enum, default_value = "f32")]
+    precision: PrecisionArg,
+    /// How fine the tables are.
+    #[arg(long, value_enum, default_value = "default")]
+    quality: QualityArg,
+    /// Tabulate GGX (gamma = 2) as well, for a run time without its closed forms.
+    #[arg(long)]
+    tabulate_ggx: bool,
+    /// The run time has the sampler crate's default set compiled in (`Tables::or_embedded`): skip what it covers.
+    #[arg(long)]
+    embedded: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum PrecisionArg {
+    /// Single precision.
+    F32,
+    /// Half precision.
+    F16,
+    /// Sixteen-bit fixed point.
+    U16,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum QualityArg {
+    /// Small and rough.
+    Draft,
+    /// CDF error below 1e-4 (gamma >= 1.8), G1 error below 1e-5.
+    Default,
+    /// CDF error below 1e-5, G1 error below 2e-6; ten times the bytes.
+    High,
+}
+
+impl Request {
+    pub(super) fn quality(&self) -> Quality {
+        match self.quality {
+            QualityArg::Draft => Quality::Draft,
+            QualityArg::Default => Quality::Default,
+            QualityArg::High => Quality::High,
+        }
+    }
+
+    pub(super) fn precision(&self) -> Precision {
+        match self.precision {
+            PrecisionArg::F32 => Precision::F32,
+            PrecisionArg::F16 => Precision::F16,
+            PrecisionArg::U16 => Precision::U16,
+        }
+    }
+
+    /// The plan of a scene; `max_error` if there is a budget.
+    pub(super) fn plan(&self, scene: &Scene, max_error: Option<f64>) -> Result<Plan, Failure> {
+        if self.embedded {
+            let worst = Tables::embedded().tables().iter().map(worst_error).fold(0.0, f64::max);
+            if matches!(self.quality(), Quality::High) {
+                return Err(Failure(
+                    "--embedded: the set compiled in is of default quality; drop --quality high".into(),
+                ));
+            }
+            if max_error.is_some_and(|max| max < worst) {
+                return Err(Failure(format!(
+                    "--embedded: the set compiled in errs by {worst:.1e}; allow that much"
+                )));
+            }
+        }
+        let options = Options { tabulate_ggx: self.tabulate_ggx, embedded: self.embedded };
+        Ok(Plan::new(scene, options)?)
+    }
+}
+
+/// What a file says about where it comes from; `None` is the general set.
+pub(super) fn provenance(scene: Option<(&Scene, &Plan)>) -> Provenance {
+    let Some((scene, plan)) = scene else { return generate::provenance(String::new(), Vec::new()) };
+    let mut provenance = generate::provenance(scene.to_recipe(), plan::entries(scene));
+    if plan.has_closed_forms() {
+        let text = "a material with gamma = 2 that no table covers has closed forms: G1 = 2/(1 + sqrt(1 + (sigma/cot theta)^2)), \
+                    visible normals by spherical caps (Dupuy and Benyoub 2023)";
+        provenance.conventions.insert("ggx".into(), text.into());
+    }
+    provenance
+}

@@ -1,0 +1,198 @@
+//! From what a scene asks for to what is to be baked: pure, and as little as possible.
+//!
+//! Tables have no σ axis (mathematically, slopes divide by σ before any lookup), so what a material needs is its shape γ alone: one
+//! γ is a slice, 1D for masking and across the plane, 2D along it; a range of γ is a sub-range of the general set.
+
+mod cost;
+mod needs;
+
+use std::fmt;
+
+use microfacet_sampler::MaterialEntry;
+
+pub use cost::{Cost, cost};
+pub use needs::Need;
+
+use crate::scene::{Interval, Material, Scene};
+use crate::spec::GAMMA_MIN;
+
+/// s = 1/(γ−1) of a shape.
+fn s_of(gamma: f64) -> f64 {
+    1.0 / (gamma - 1.0)
+}
+
+/// γ of GGX.
+const GGX: f64 = 2.0;
+
+/// What the run time brings along, so that it need not be baked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Tabulate GGX as well, for a run time without its closed forms.
+    pub tabulate_ggx: bool,
+    /// The default set is compiled in and good enough.
+    pub embedded: bool,
+}
+
+/// What becomes of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Tables are baked for it: an index into [`Plan::needs`].
+    Bake(usize),
+    /// Tables that another material needs serve it too.
+    Same {
+        /// Index into [`Plan::needs`].
+        need: usize,
+        /// Index of the other material.
+        as_material: usize,
+    },
+    /// Its γ lies in a range that is baked for another material.
+    Within {
+        /// Index into [`Plan::needs`].
+        need: usize,
+        /// Index of the other material.
+        of_material: usize,
+    },
+    /// GGX: D, G1 and visible normals have closed forms, which the sampler crate uses where there is no table.
+    ClosedForm,
+    /// The default set that is compiled into the sampler crate covers it.
+    Embedded,
+    /// It has no microfacets.
+    NotRough,
+    /// No geometry wears it.
+    NotUsed,
+}
+
+impl Verdict {
+    /// The set of tables that serves the material.
+    pub fn need(&self) -> Option<usize> {
+        match *self {
+            Self::Bake(need) | Self::Same { need, .. } | Self::Within { need, .. } => Some(need),
+            _ => None,
+        }
+    }
+}
+
+/// What is to be baked for a scene, and why not more.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plan {
+    /// Disjoint needs, from Beckmann to heavy tails: the ranges first, then the single shapes.
+    pub needs: Vec<Need>,
+    /// One verdict for each material of the scene, in order.
+    pub verdicts: Vec<Verdict>,
+}
+
+impl Plan {
+    /// Everything: all γ that tables cover.
+    pub fn general() -> Self {
+        Self { needs: vec![Need::general()], verdicts: Vec::new() }
+    }
+
+    /// The plan of a scene.
+    ///
+    /// # Errors
+    /// [`TooHeavy`] for a γ that no table covers.
+    pub fn new(scene: &Scene, options: Options) -> Result<Self, TooHeavy> {
+        let wants: Vec<Result<Interval, Verdict>> =
+            scene.materials.iter().map(|material| want(material, options)).collect::<Result<_, _>>()?;
+        let needs = needs::disjoint(wants.iter().flatten().copied());
+        let find = |want: &Interval| needs::find(&needs, *want).expect("the needs cover every want");
+        // A need is baked for the first material that asks for exactly it, else for the first inside.
+        let mut owner: Vec<Option<usize>> = vec![None; needs.len()];
+        for exact in [true, false] {
+            for (i, want) in wants.iter().enumerate() {
+                let Ok(want) = want else { continue };
+                let need = find(want);
+                if owner[need].is_none() && (!exact || needs[need].gamma() == *want) {
+                    owner[need] = Some(i);
+                }
+            }
+        }
+        let within = |need: usize, i: usize, want: &Interval| match owner[need] {
+            Some(other) if other == i => Verdict::Bake(need),
+            Some(other) if wants[other] == Ok(*want) => Verdict::Same { need, as_material: other },
+            other => Verdict::Within { need, of_material: other.unwrap_or(i) },
+        };
+        let verdict = |(i, want): (usize, &Result<Interval, Verdict>)| match want {
+            Ok(want) => within(find(want), i, want),
+            // Where a table covers γ = 2 anyway, it is what the run time reads.
+            Err(Verdict::ClosedForm) => match needs::find(&needs, Interval::point(GGX)) {
+                Some(need) => within(need, i, &Interval::point(GGX)),
+                None => Verdict::ClosedForm,
+            },
+            Err(verdict) => verdict.clone(),
+        };
+        let verdicts = wants.iter().enumerate().map(verdict).collect();
+        Ok(Self { needs, verdicts })
+    }
+
+    /// Whether some material is left to closed forms: then even a set without tables is worth writing.
+    pub fn has_closed_forms(&self) -> bool {
+        self.verdicts.contains(&Verdict::ClosedForm)
+    }
+
+    /// Whether no material in use is rough.
+    pub fn is_empty(&self) -> bool {
+        self.needs.is_empty()
+            && self.verdicts.iter().all(|verdict| matches!(verdict, Verdict::NotRough | Verdict::NotUsed))
+    }
+}
+
+/// The range of γ that a material needs tables for, or why it needs none.
+fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdict>, TooHeavy> {
+    if !material.used {
+        return Ok(Err(Verdict::NotUsed));
+    }
+    if !is_rough(material) {
+        return Ok(Err(Verdict::NotRough));
+    }
+    let gamma = material.gamma;
+    if gamma.min < GAMMA_MIN {
+        return Err(TooHeavy { material: material.name.clone(), gamma: gamma.min });
+    }
+    if gamma == Interval::point(GGX) && !options.tabulate_ggx {
+        return Ok(Err(Verdict::ClosedForm));
+    }
+    Ok(if options.embedded { Err(Verdict::Embedded) } else { Ok(gamma) })
+}
+
+/// Whether there are microfacets at some point at least.
+fn is_rough(material: &Material) -> bool {
+    material.roughness.x().max > 0.0 && material.roughness.y().max > 0.0
+}
+
+/// The named materials of a scene as a set records them: those in use that are rough.
+pub fn entries(scene: &Scene) -> Vec<MaterialEntry> {
+    let pair = |interval: Interval| [interval.min, interval.max];
+    let entry = |material: &Material| {
+        let Interval { min, max } = material.gamma;
+        MaterialEntry {
+            name: material.name.clone(),
+            sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
+            s: [s_of(max), s_of(min)],
+            distribution: String::new(),
+        }
+    };
+    scene.materials.iter().filter(|material| material.used && is_rough(material)).map(entry).collect()
+}
+
+/// A shape that tables cannot cover: γ below [`GAMMA_MIN`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct TooHeavy {
+    /// Name of the material.
+    pub material: String,
+    /// Its γ.
+    pub gamma: f64,
+}
+
+impl fmt::Display for TooHeavy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { material, gamma } = self;
+        write!(
+            f,
+            "material \"{material}\": gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it, or \
+             sample it with the model's exact sampler"
+        )
+    }
+}
+
+impl std::error::Error for TooHeavy {}

@@ -1,0 +1,115 @@
+//! Needs: single shapes and ranges of them, and the table specifications of each.
+
+use microfacet_sampler::Interpolation;
+
+use super::s_of;
+use crate::scene::Interval;
+use crate::spec::{GAMMA_MIN, GAMMA_WHOLE, ShapeAxis, TableSpec};
+use crate::validate::certificate::ALL_SHAPES;
+
+/// A γ, or a range of them, that tables are to cover: the unit in which tables are baked, measured and kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Need {
+    gamma: Interval,
+}
+
+impl Need {
+    /// Everything that tables can cover.
+    pub(super) fn general() -> Self {
+        Self { gamma: Interval { min: GAMMA_MIN, max: f64::INFINITY } }
+    }
+
+    /// The shapes.
+    pub fn gamma(&self) -> Interval {
+        self.gamma
+    }
+
+    /// The shapes as [min, max] of s = 1/(γ−1).
+    pub fn s(&self) -> [f64; 2] {
+        [s_of(self.gamma.max), s_of(self.gamma.min)]
+    }
+
+    /// Where in s its tables are measured.
+    pub(crate) fn certified_s(&self) -> [f64; 2] {
+        if *self == Self::general() { ALL_SHAPES } else { self.s() }
+    }
+
+    /// What the names of its tables end in; nothing for the general set.
+    fn suffix(&self) -> String {
+        let Interval { min, max } = self.gamma;
+        if *self == Self::general() {
+            String::new()
+        } else if min == max {
+            format!("_gamma_{min}")
+        } else {
+            format!("_gamma_{min}_to_{max}")
+        }
+    }
+
+    /// The tables that cover it, cut out of a general set: slices for one shape, else sub-ranges with the general spacing, so that the
+    /// values in between are the same bits.
+    pub fn specs(&self, general: &[TableSpec]) -> Vec<TableSpec> {
+        general.iter().filter_map(|spec| self.cut(spec)).collect()
+    }
+
+    /// What this need takes of one table, or nothing.
+    pub fn cut(&self, spec: &TableSpec) -> Option<TableSpec> {
+        let [from, to] = self.s();
+        let nodes = &spec.shapes.nodes;
+        let [low, high] = [nodes[0], nodes[nodes.len() - 1]];
+        // At the seam γ = 1.8 the whole distribution is preferred.
+        let after_seam = low >= s_of(GAMMA_WHOLE);
+        let shapes = if from == to {
+            let here = if after_seam { from > low } else { from >= low } && from <= high;
+            here.then(|| ShapeAxis { nodes: vec![from], interpolation: Interpolation::Nodes })
+        } else {
+            (to > low && from < high).then(|| sub_range(nodes, from.max(low), to.min(high)))
+        };
+        let name = format!("{}{}", spec.name, self.suffix());
+        shapes.map(|shapes| TableSpec { shapes, name, ..spec.clone() })
+    }
+}
+
+/// The nodes that an interpolation through four of them reads anywhere in [from, to].
+fn sub_range(nodes: &[f64], from: f64, to: f64) -> ShapeAxis {
+    const WINDOW: usize = 4;
+    let first = |s: f64| {
+        let above = nodes.partition_point(|&node| node <= s);
+        above.saturating_sub(WINDOW / 2).min(nodes.len().saturating_sub(WINDOW))
+    };
+    let last = (first(to) + WINDOW).min(nodes.len());
+    ShapeAxis { nodes: nodes[first(from)..last].to_vec(), interpolation: Interpolation::Lagrange4 }
+}
+
+/// The needs that cover all `wants`, disjoint: overlapping ranges become one, single shapes inside them none. The ranges come first,
+/// and either part descends.
+pub(super) fn disjoint(wants: impl Iterator<Item = Interval>) -> Vec<Need> {
+    let (mut points, mut ranges): (Vec<Interval>, Vec<Interval>) = wants.partition(|want| want.is_point());
+    let descending = |a: &Interval, b: &Interval| b.max.total_cmp(&a.max);
+    ranges.sort_by(descending);
+    let mut needs: Vec<Need> = Vec::new();
+    for range in ranges {
+        match needs.last_mut() {
+            Some(last) if range.max >= last.gamma.min => last.gamma = last.gamma.union(range),
+            _ => needs.push(Need { gamma: range }),
+        }
+    }
+    points.sort_by(descending);
+    points.dedup();
+    points.retain(|&point| holder(&needs, point).is_none());
+    needs.extend(points.into_iter().map(|gamma| Need { gamma }));
+    needs
+}
+
+/// The need, of those that [`disjoint`] made, that covers `want`.
+pub(super) fn find(needs: &[Need], want: Interval) -> Option<usize> {
+    let ranges = needs.partition_point(|need| !need.gamma.is_point());
+    holder(&needs[..ranges], want).or_else(|| holder(&needs[ranges..], want).map(|i| ranges + i))
+}
+
+/// Which of descending, disjoint needs holds `want`.
+fn holder(needs: &[Need], want: Interval) -> Option<usize> {
+    // The first that reaches down to it.
+    let i = needs.partition_point(|need| need.gamma.min > want.min);
+    needs.get(i).filter(|need| need.gamma.max >= want.max).map(|_| i)
+}
