@@ -86,7 +86,7 @@ fn forge(from: &str, to: &str) -> Vec<u8> {
     let header = String::from_utf8(file[8..8 + length].to_vec()).unwrap();
     assert!(header.contains(from), "no {from} in {header}");
     let mut header = header.replace(from, to);
-    while header.len() % 8 != 0 {
+    while !header.len().is_multiple_of(8) {
         header.push(' ');
     }
     let mut forged = (header.len() as u64).to_le_bytes().to_vec();
