@@ -1,5 +1,7 @@
 //! Laws that the model obeys for every roughness, shape and direction; edge values are generated as often as ordinary ones.
 
+#![allow(clippy::disallowed_methods, reason = "only what is baked must be the same on every system")]
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
