@@ -20,6 +20,8 @@ const SHADOWING_VIEWS: [usize; 12] = [9, 13, 17, 25, 33, 49, 65, 97, 129, 193, 2
 const VIEWS: [usize; 12] = [9, 13, 17, 25, 33, 49, 81, 113, 161, 225, 321, 449];
 const NUMBERS: [usize; 11] = [5, 7, 9, 11, 13, 17, 21, 25, 29, 37, 49];
 const ACROSS_NUMBERS: [usize; 12] = [5, 7, 9, 11, 13, 17, 21, 25, 33, 49, 65, 97];
+/// So many steps up the lists an error is a hundredth or less.
+const FINER: usize = 4;
 /// A candidate that fails on so few points need not be measured on all.
 const QUICK_POINTS: usize = 300;
 
@@ -155,18 +157,22 @@ impl Search<'_> {
         let lists = self.lists();
         let finest = lists.map(|list| list.len() - 1);
         let at = |nodes, precision| Candidate { nodes, precision };
-        if !self.meets(at(finest, Precision::F32)) {
-            let spec = self.spec(at(finest, Precision::F32));
-            let reached = self.error(at(finest, Precision::F32), CERTIFICATE_POINTS);
-            return Err(OutOfReach { max_error: self.max_error, table: spec.name, reached });
-        }
-        // What each axis needs at least, the others being finest.
+        // Some candidate that meets the budget, all axes being refined alike.
+        let step = |i: usize| finest.map(|last| i.min(last));
+        let steps = finest.into_iter().max().unwrap_or(0);
+        let Some(met) = (0..=steps).find(|&i| self.meets(at(step(i), Precision::F32))) else {
+            let finest = at(finest, Precision::F32);
+            let reached = self.error(finest, CERTIFICATE_POINTS);
+            return Err(OutOfReach { max_error: self.max_error, table: self.spec(finest).name, reached });
+        };
+        // What each axis needs at least, the others being so fine that they contribute nothing.
+        let fine = step(met + FINER);
         let mut least = [0; 3];
         for axis in 0..3 {
-            let (mut low, mut high) = (0, finest[axis]);
+            let (mut low, mut high) = (0, fine[axis]);
             while low < high {
                 let middle = (low + high) / 2;
-                let mut nodes = finest;
+                let mut nodes = fine;
                 nodes[axis] = middle;
                 if self.meets(at(nodes, Precision::F32)) { high = middle } else { low = middle + 1 }
             }
@@ -174,19 +180,19 @@ impl Search<'_> {
         }
         let mut candidates = Vec::new();
         for precision in [Precision::U16, Precision::F16, Precision::F32] {
-            // A precision that is too coarse even with the finest nodes is out.
-            if precision != Precision::F32 && !self.meets(at(finest, precision)) {
+            // A precision that is too coarse even with such fine nodes is out.
+            if precision != Precision::F32 && !self.meets(at(fine, precision)) {
                 continue;
             }
-            for i in least[0]..=finest[0] {
-                for j in least[1]..=finest[1] {
-                    candidates.extend((least[2]..=finest[2]).map(|k| at([i, j, k], precision)));
+            for i in least[0]..=fine[0] {
+                for j in least[1]..=fine[1] {
+                    candidates.extend((least[2]..=fine[2]).map(|k| at([i, j, k], precision)));
                 }
             }
         }
         candidates.sort_by_cached_key(|&candidate| self.spec(candidate).bytes());
         let found = candidates.into_iter().find(|&candidate| self.meets(candidate));
-        Ok(bake::bake(&self.spec(found.expect("the finest candidate meets the budget"))))
+        Ok(bake::bake(&self.spec(found.unwrap_or(at(step(met), Precision::F32)))))
     }
 
     fn kind(&self) -> Kind {

@@ -7,13 +7,8 @@ use microfacet_bake::store;
 use microfacet_sampler::{Kind, Tables};
 
 fn run(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_microfacet-bake"))
-        .args(args)
-        .current_dir(folder)
-        // Finished tables of other runs must not stand in for those of this build.
-        .env("XDG_CACHE_HOME", folder.join("cache"))
-        .output()
-        .expect("runs")
+    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
+    command.env("XDG_CACHE_HOME", folder).args(args).current_dir(folder).output().expect("runs")
 }
 
 fn ok(folder: &Path, args: &[&str]) -> String {

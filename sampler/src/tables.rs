@@ -88,14 +88,14 @@ impl Tables {
         &self.provenance
     }
 
-    /// Whether tables of this set cover γ. GGX, γ = 2, can be bound even where they do not.
+    /// Whether γ can be bound; γ = 2 always can.
     pub fn covers(&self, gamma: f64) -> bool {
         let s = 1.0 / (gamma - 1.0);
         let has = |kind| self.tables.iter().any(|table| table.kind == kind && covers(table, s));
-        gamma > 1.5
-            && has(Kind::Shadowing)
+        let tabulated = has(Kind::Shadowing)
             && has(Kind::VisibleSlopeConditional)
-            && (has(Kind::VisibleSlope) || has(Kind::VisibleSlopePeeled))
+            && (has(Kind::VisibleSlope) || has(Kind::VisibleSlopePeeled));
+        gamma == 2.0 || gamma > 1.5 && tabulated
     }
 
     /// Binds a material: σ (one number, or a pair for x and y) and γ ∈ (3/2, ∞] are fixed, and the γ axis is collapsed there.

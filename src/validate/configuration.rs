@@ -108,6 +108,13 @@ fn covered_shapes(tables: &Tables) -> Shapes {
             shapes.ranges.push([axis.nodes[0], axis.nodes[axis.nodes.len() - 1]]);
         }
     }
+    // GGX in closed form: where materials are left to it, and where there is nothing else to judge.
+    let ggx = tables.provenance().materials.iter().any(|material| material.s == [1.0, 1.0]);
+    let empty = shapes.ranges.is_empty() && shapes.points.is_empty();
+    let closed_form = tables.student_t(1.0, 2.0).is_ok_and(|bound| bound.bytes() == 0);
+    if closed_form && (ggx || empty) {
+        shapes.points.push(1.0);
+    }
     // 1 + 1/s and back may round to just outside the last node.
     for [_, high] in &mut shapes.ranges {
         *high *= 1.0 - 1e-15;

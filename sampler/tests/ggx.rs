@@ -1,0 +1,108 @@
+//! GGX without tables: exact values, the analytic distribution, and sets that leave it to closed forms.
+
+use glam::{DVec3, Vec3};
+use microfacet_model as model;
+use microfacet_model::statistics::{judge_visible_normals, sidak};
+use microfacet_sampler::{BindError, MaterialEntry, Provenance, StudentT, Tables};
+
+const SIGMAS: [[f64; 2]; 4] = [[0.3, 0.3], [1e-3, 0.01], [4.0, 0.5], [1e-8, 1e6]];
+const VIEWS: [[f64; 2]; 5] = [[0.0, 0.0], [1e-3, 1.0], [0.8, -2.5], [1.4, 3.0], [1.5707, 0.6]];
+
+fn direction([theta, phi]: [f64; 2]) -> DVec3 {
+    DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
+}
+
+#[test]
+fn values_are_those_of_the_model() {
+    for sigma in &SIGMAS[..3] {
+        let ggx = StudentT::ggx(*sigma).unwrap();
+        let [x, y] = ggx.sigma().map(f64::from);
+        let truth = model::StudentT::anisotropic(x, y, 2.0).unwrap();
+        for view in VIEWS {
+            let v = direction(view).as_vec3();
+            let exact = truth.g1(v.as_dvec3());
+            assert!((f64::from(ggx.g1(v)) - exact).abs() < 3e-7, "{sigma:?} {view:?}");
+            let m = ggx.sample_visible_normal(v, [0.4, 0.8]);
+            let density = truth.visible_normal_pdf(v.as_dvec3(), m.as_dvec3());
+            // Relative, and as the rounding of v·m allows.
+            let error = (f64::from(ggx.visible_normal_pdf(v, m)) - density).abs() / density;
+            assert!(error < 2e-6 + 2e-7 / f64::from(v.dot(m)), "{sigma:?} {view:?}: {error}");
+            assert_eq!(ggx.table_pdf(v, m), ggx.visible_normal_pdf(v, m));
+        }
+    }
+}
+
+#[test]
+fn normals_have_the_analytic_distribution() {
+    const SAMPLES: usize = 200_000;
+    let cases: Vec<_> =
+        SIGMAS[..3].iter().flat_map(|sigma| VIEWS.iter().map(move |view| (*sigma, *view))).collect();
+    let level = sidak(0.01, 2 * cases.len());
+    let judge = |sigma: [f64; 2], view, gamma| {
+        let ggx = StudentT::ggx(sigma).unwrap();
+        let [x, y] = ggx.sigma().map(f64::from);
+        let truth = model::StudentT::anisotropic(x, y, gamma).unwrap();
+        let v = direction(view).as_vec3();
+        judge_visible_normals(&truth, v.as_dvec3(), SAMPLES, 11, |u| ggx.sample_visible_normal(v, u))
+    };
+    for (sigma, view) in cases {
+        let judgement = judge(sigma, view, 2.0);
+        assert!(judgement.p() > level, "{sigma:?} {view:?}: {judgement:?}");
+    }
+    // The test has teeth: another shape is seen.
+    assert!(judge([0.3, 0.3], [0.8, -2.5], 2.1).p() < level);
+}
+
+#[test]
+fn normals_are_visible_at_every_corner() {
+    let corners = [0.0, f32::from_bits(1), 0.5, 1.0 - f32::EPSILON, 1.0, 2.0, -1.0];
+    for sigma in SIGMAS {
+        let ggx = StudentT::ggx(sigma).unwrap();
+        let directions = VIEWS.map(|view| direction(view).as_vec3());
+        for v in directions.into_iter().chain([Vec3::X, Vec3::Z, -Vec3::Z, Vec3::new(0.6, 0.0, -0.8)]) {
+            for u in corners.into_iter().flat_map(|a| corners.map(|b| [a, b])) {
+                let m = ggx.sample_visible_normal(v, u);
+                assert!((m.length() - 1.0).abs() < 1e-6 && m.z > 0.0, "{sigma:?} {v} {u:?}: {m}");
+                let above = Vec3::new(v.x, v.y, v.z.max(0.0));
+                assert!(above.dot(m) > -1.2e-7, "{sigma:?} {v} {u:?}: {m} faces away");
+            }
+        }
+    }
+}
+
+/// A set as a plan makes it where all is GGX: a name, and no table.
+fn without_tables() -> Tables {
+    let gold = MaterialEntry {
+        name: "gold".into(),
+        sigma: [[0.2, 0.2], [0.1, 0.3]],
+        s: [1.0, 1.0],
+        distribution: String::new(),
+    };
+    let origin = Provenance { materials: vec![gold], ..Provenance::default() };
+    Tables::from_tables(origin, Vec::new()).unwrap()
+}
+
+#[test]
+fn a_set_without_tables_binds_ggx_and_nothing_else() {
+    let bytes = microfacet_sampler::encode(without_tables().provenance(), &[]).unwrap();
+    let set = Tables::from_bytes(&bytes).unwrap();
+    let gold = set.material("gold").unwrap();
+    assert_eq!((gold.sigma(), gold.gamma(), gold.bytes()), ([0.2, 0.2], 2.0, 0));
+    assert!(set.covers(2.0) && !set.covers(3.0));
+    let error = set.student_t(0.3, 3.0).unwrap_err();
+    assert!(
+        matches!(error, BindError::NotCovered { .. }) && error.to_string().contains("gamma = 3"),
+        "{error}"
+    );
+    // The message can be pasted into a recipe.
+    let error = set.material("silver").unwrap_err().to_string();
+    assert!(error.contains("[[material]]\nname = \"silver\"\nsigma = "), "{error}");
+}
+
+#[test]
+fn tables_are_preferred_where_there_are_some() {
+    let embedded = Tables::embedded();
+    assert!(embedded.student_t(0.3, 2.0).unwrap().bytes() > 0);
+    let both = without_tables().or_embedded();
+    assert!(both.material("gold").unwrap().bytes() > 0 && both.student_t(0.3, 3.0).is_ok());
+}

@@ -1,0 +1,353 @@
+//! Planning, the cache and error budgets: no more is baked than a scene needs, and nothing twice.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::process::{Command, Output};
+
+use glam::Vec3;
+use microfacet_bake::cache::Cache;
+use microfacet_bake::generate::{BakeError, Baked, Target, generate, provenance, worst_error};
+use microfacet_bake::plan::{Options, Plan, Verdict, cost};
+use microfacet_bake::scene::{Interval, Scene};
+use microfacet_bake::spec::{Quality, general_set};
+use microfacet_sampler::{Precision, Tables, encode};
+use serde_json::Value;
+
+const GENERAL: &[u8] = include_bytes!("../tables/default.safetensors");
+const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
+
+/// A recipe of materials: name, σ and γ as TOML.
+fn recipe(materials: &[[&str; 3]]) -> String {
+    let entry = |[name, sigma, gamma]: &[&str; 3]| {
+        format!("[[material]]\nname = \"{name}\"\nsigma = {sigma}\ngamma = {gamma}\n")
+    };
+    materials.iter().map(entry).collect()
+}
+
+fn scene(materials: &[[&str; 3]]) -> Scene {
+    Scene::from_recipe_str(&recipe(materials)).unwrap()
+}
+
+fn plan(scene: &Scene) -> Plan {
+    Plan::new(scene, Options::default()).unwrap()
+}
+
+fn bake(plan: &Plan, target: Target, cache: &Cache) -> Result<Baked, BakeError> {
+    generate(&plan.needs, target, provenance(String::new(), Vec::new()), cache, || ())
+}
+
+fn bytes(set: &Tables) -> Vec<u8> {
+    encode(set.provenance(), set.tables()).unwrap()
+}
+
+fn run(folder: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
+    command.env("XDG_CACHE_HOME", folder.join("home")).args(args).current_dir(folder).output().unwrap()
+}
+
+/// Standard output as JSON of a run that must succeed.
+fn json(folder: &Path, args: &[&str]) -> Value {
+    let output = run(folder, &[args, &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn refused(folder: &Path, args: &[&str]) -> String {
+    let output = run(folder, args);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {message}");
+    message
+}
+
+const MIXED: [[&str; 3]; 9] = [
+    ["a", "0.3", "3.0"],
+    ["b", "0.7", "3.0"],
+    ["gold", "0.2", "2.0"],
+    ["mirror", "0.0", "5.0"],
+    ["series", "0.4", "{ min = 5.0, max = 20.0 }"],
+    ["inside", "0.1", "8.0"],
+    ["more", "0.1", "{ min = 15.0, max = \"inf\" }"],
+    ["heavy", "0.1", "1.6"],
+    ["beckmann", "[0.1, 0.4]", "\"inf\""],
+];
+
+#[test]
+fn every_material_gets_its_verdict() {
+    let mut scene = scene(&MIXED);
+    scene.materials[7].used = false;
+    let plan = plan(&scene);
+    let gammas: Vec<Interval> = plan.needs.iter().map(|need| need.gamma()).collect();
+    // Overlapping ranges are one, which takes Beckmann in; equal shapes are one, whatever their roughness.
+    assert_eq!(gammas, [Interval { min: 5.0, max: f64::INFINITY }, Interval::point(3.0)]);
+    let expected = [
+        Verdict::Bake(1),
+        Verdict::Same { need: 1, as_material: 0 },
+        Verdict::ClosedForm,
+        Verdict::NotRough,
+        Verdict::Bake(0),
+        Verdict::Within { need: 0, of_material: 4 },
+        Verdict::Within { need: 0, of_material: 4 },
+        Verdict::NotUsed,
+        Verdict::Within { need: 0, of_material: 4 },
+    ];
+    assert_eq!(plan.verdicts, expected);
+
+    let options = Options { tabulate_ggx: true, embedded: false };
+    let all = Plan::new(&scene, options).unwrap();
+    assert!(all.needs.iter().any(|need| need.gamma() == Interval::point(2.0)));
+    let none = Plan::new(&scene, Options { tabulate_ggx: false, embedded: true }).unwrap();
+    assert!(none.needs.is_empty() && none.verdicts[0] == Verdict::Embedded && !none.is_empty());
+}
+
+#[test]
+fn a_range_over_ggx_serves_ggx() {
+    let plan = plan(&scene(&[["gold", "0.3", "2.0"], ["worn", "0.3", "{ min = 1.9, max = 2.5 }"]]));
+    assert_eq!(plan.verdicts, [Verdict::Within { need: 0, of_material: 1 }, Verdict::Bake(0)]);
+}
+
+#[test]
+fn a_slice_has_no_axis_of_shapes_and_a_smooth_scene_nothing() {
+    let general = general_set(Quality::Default, Precision::F32);
+    let specs = plan(&scene(&[["glass", "0.454", "3.0"]])).needs[0].specs(&general);
+    let shapes: Vec<usize> = specs.iter().map(|spec| spec.shapes.nodes.len()).collect();
+    assert_eq!(shapes, [1, 1, 1]);
+    // γ = 1.8 itself is the whole distribution's.
+    let seam = plan(&scene(&[["seam", "0.3", "1.8"]])).needs[0].specs(&general);
+    assert!(seam.iter().all(|spec| !spec.name.contains("peeled")));
+    assert!(plan(&scene(&[["mirror", "0.0", "3.0"]])).is_empty());
+}
+
+#[test]
+fn sub_ranges_draw_the_very_normals_of_the_general_set() {
+    let general = bake(&Plan::general(), DRAFT, &Cache::none()).unwrap().set;
+    let size = general_set(Quality::Draft, Precision::F32).iter().map(|spec| spec.bytes()).sum::<usize>();
+    for (range, gammas) in [
+        ("{ min = 1.51, max = 2.2 }", [1.51, 1.5432, 1.7999, 1.8, 2.2]),
+        ("{ min = 2.9, max = 3.2 }", [2.9, 2.95, 3.0, 3.1, 3.2]),
+        ("{ min = 40.0, max = \"inf\" }", [40.0, 41.0, 1e3, 1e9, f64::INFINITY]),
+    ] {
+        let part = bake(&plan(&scene(&[["m", "0.3", range]])), DRAFT, &Cache::none()).unwrap().set;
+        assert!(part.tables().iter().map(|table| 4 * table.values.len()).sum::<usize>() < size);
+        for gamma in gammas {
+            let [a, b] = [&general, &part].map(|set| set.student_t([0.3, 0.5], gamma).unwrap());
+            for u in [[0.01, 0.9], [0.4, 0.2], [0.77, 0.5], [0.999, 0.03]] {
+                let v = Vec3::new(0.48, 0.6, 0.64);
+                assert_eq!(a.sample_visible_normal(v, u), b.sample_visible_normal(v, u), "{gamma}");
+                assert_eq!(a.g1(v), b.g1(v));
+            }
+        }
+        // And is worth no less: its certificate is about what was asked for, not about the margins.
+        let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
+        assert!(worst(&part) <= worst(&general) * 1.01, "{range}: {} {}", worst(&part), worst(&general));
+    }
+}
+
+#[test]
+fn a_thousand_materials_come_down_to_their_distinct_shapes() {
+    let names: Vec<String> = (0..1000).map(|i| format!("material {i}")).collect();
+    let sigmas: Vec<String> = (0..1000).map(|i| format!("{}", 0.001 * f64::from(i + 1))).collect();
+    let gammas: Vec<String> = (0..1000).map(|i| format!("{}", 1.6 + 0.1 * f64::from(i % 23))).collect();
+    let materials: Vec<[&str; 3]> =
+        (0..1000).map(|i| [names[i].as_str(), sigmas[i].as_str(), gammas[i].as_str()]).collect();
+    let plan = plan(&scene(&materials));
+    // One of the 23 is GGX.
+    assert_eq!(plan.needs.len(), 22);
+    let baked = plan.verdicts.iter().filter(|verdict| matches!(verdict, Verdict::Bake(_))).count();
+    let shared = plan.verdicts.iter().filter(|verdict| matches!(verdict, Verdict::Same { .. })).count();
+    let closed = plan.verdicts.iter().filter(|verdict| **verdict == Verdict::ClosedForm).count();
+    assert_eq!((baked, closed, baked + shared + closed), (22, 44, 1000));
+}
+
+#[test]
+fn estimated_bytes_are_those_of_the_file() {
+    for materials in [&MIXED[..2], &MIXED[..]] {
+        let (scene, origin) = (scene(materials), provenance("x".repeat(500), Vec::new()));
+        let plan = plan(&scene);
+        for precision in [Precision::F32, Precision::U16] {
+            let general = general_set(Quality::Draft, precision);
+            let specs: Vec<_> = plan.needs.iter().flat_map(|need| need.specs(&general)).collect();
+            let target = Target::Quality(Quality::Draft, precision);
+            let set = generate(&plan.needs, target, origin.clone(), &Cache::none(), || ()).unwrap().set;
+            let (estimate, real) = (cost(&specs, &origin).bytes as f64, bytes(&set).len() as f64);
+            assert!((estimate / real - 1.0).abs() < 0.04, "{estimate} for {real}");
+        }
+    }
+}
+
+#[test]
+fn what_is_finished_is_not_baked_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let cache = Cache::new(folder.path().join("cache"));
+    let two = [["a", "0.3", "3.0"], ["b", "0.3", "4.0"]];
+    for precision in [Precision::F32, Precision::F16, Precision::U16] {
+        let target = Target::Quality(Quality::Draft, precision);
+        let first = bake(&plan(&scene(&two)), target, &cache).unwrap();
+        let second = bake(&plan(&scene(&two)), target, &cache).unwrap();
+        assert_eq!((first.baked, second.baked), (6, 0));
+        assert!(bytes(&first.set) == bytes(&second.set), "{precision:?}: kept tables give another file");
+    }
+    // Another shape is baked alone; another roughness is not even a change.
+    let other = bake(&plan(&scene(&[["a", "0.9", "3.0"], ["b", "0.3", "4.5"]])), DRAFT, &cache).unwrap();
+    assert_eq!(other.baked, 3);
+    // A damaged entry is baked again, and so is one that lies about what it is.
+    let entries =
+        || std::fs::read_dir(folder.path().join("cache")).unwrap().map(|entry| entry.unwrap().path());
+    let all: Vec<_> = entries().collect();
+    assert_eq!(all.len(), 7);
+    let genuine = std::fs::read(&all[0]).unwrap();
+    all.iter().for_each(|path| std::fs::write(path, &genuine).unwrap());
+    std::fs::write(&all[0], &genuine[..genuine.len() / 2]).unwrap();
+    let again = bake(&plan(&scene(&two)), DRAFT, &cache).unwrap();
+    assert_eq!(again.baked, 6);
+    assert_eq!(bake(&plan(&scene(&two)), DRAFT, &cache).unwrap().baked, 0);
+}
+
+#[test]
+fn an_interrupted_bake_goes_on_where_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let cache = Cache::new(folder.path().into());
+    let plan = Plan::general();
+    let mut left = 3;
+    let interrupted = catch_unwind(AssertUnwindSafe(|| {
+        generate(&plan.needs, DRAFT, provenance(String::new(), Vec::new()), &cache, || {
+            left -= 1;
+            assert!(left > 0, "interrupted");
+        })
+    }));
+    assert!(interrupted.is_err());
+    let resumed = bake(&plan, DRAFT, &cache).unwrap();
+    assert_eq!(resumed.baked, 2, "three of five tables were finished");
+    let fresh = bake(&plan, DRAFT, &Cache::none()).unwrap();
+    assert!(bytes(&resumed.set) == bytes(&fresh.set));
+    // The finished need stands for its tables.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn an_error_budget_is_met_by_less() {
+    let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
+    let at = |target| bake(&plan, target, &Cache::none()).unwrap().set;
+    let default = at(Target::Quality(Quality::Default, Precision::F32));
+    let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
+    let mut before = bytes(&default).len();
+    for max_error in [1e-4, 1e-3, 1e-2] {
+        let set = at(Target::MaxError(max_error));
+        assert!(worst(&set) <= max_error, "{max_error}: {}", worst(&set));
+        let size = bytes(&set).len();
+        assert!(size < before, "{size} bytes for an error of {max_error}, {before} for less");
+        // The certificates are about what a reader gets.
+        assert_eq!(Tables::from_bytes(&bytes(&set)).unwrap(), set);
+        before = size;
+    }
+    let error = bake(&plan, Target::MaxError(1e-12), &Cache::none()).unwrap_err().to_string();
+    assert!(error.contains("1e-12") && error.contains("reaches"), "{error}");
+}
+
+#[test]
+fn a_byte_budget_is_filled_and_not_exceeded() {
+    let plan = plan(&scene(&[["glass", "0.454", "3.0"], ["etched", "0.5", "1.7"]]));
+    let at = |max_bytes| bake(&plan, Target::MaxBytes(max_bytes), &Cache::none());
+    let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
+    let [small, large] = [8_000, 12_000].map(|limit| {
+        let set = at(limit).unwrap().set;
+        assert!(bytes(&set).len() <= limit);
+        set
+    });
+    assert!(worst(&large) < worst(&small));
+    let error = at(2_000).unwrap_err().to_string();
+    assert!(error.contains("2000 bytes"), "{error}");
+}
+
+/// Coated and metallic GGX at five roughnesses, as an architectural scene has them, and what needs nothing.
+const PAVILION: &str = r#"
+MakeNamedMaterial "polished" "string type" "coateddiffuse" "float roughness" 0.0104
+MakeNamedMaterial "plaster" "string type" "coateddiffuse" "float roughness" 0.0104 "rgb reflectance" [ 0.6 0.6 0.6 ]
+MakeNamedMaterial "lawn" "string type" "coateddiffuse" "float roughness" 0.1
+MakeNamedMaterial "marble" "string type" "coateddiffuse" "float uroughness" 0.001 "float vroughness" 0.001
+MakeNamedMaterial "steel" "string type" "conductor" "float roughness" 0.04
+MakeNamedMaterial "travertine" "string type" "coateddiffuse" "float roughness" 0.25
+MakeNamedMaterial "pool" "string type" "dielectric"
+MakeNamedMaterial "wall" "string type" "diffuse"
+"#;
+
+#[test]
+fn a_pavilion_needs_names_and_no_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("pavilion.pbrt"), PAVILION).unwrap();
+    let shown = json(at, &["plan", "pavilion.pbrt"]);
+    assert_eq!(shown["needs"].as_array().unwrap().len(), 0);
+    let verdicts: Vec<&str> =
+        shown["materials"].as_array().unwrap().iter().map(|m| m["verdict"].as_str().unwrap()).collect();
+    assert_eq!(verdicts.iter().filter(|verdict| **verdict == "closed form").count(), 6);
+    assert_eq!(verdicts.iter().filter(|verdict| **verdict == "not rough").count(), 1);
+    assert_eq!(shown["ignored"].as_array().unwrap().len(), 1);
+
+    json(at, &["bake", "pavilion.pbrt", "--out", "out"]);
+    let file = std::fs::read(at.join("out/tables.safetensors")).unwrap();
+    assert!(50 * file.len() < GENERAL.len(), "{} bytes", file.len());
+    let steel = Tables::from_bytes(&file).unwrap().material("steel").unwrap();
+    assert_eq!((steel.sigma(), steel.gamma()), ([0.2, 0.2], 2.0));
+    let verdict = run(at, &["validate", "out", "--configurations", "4", "--samples", "20000"]);
+    assert!(String::from_utf8_lossy(&verdict.stdout).ends_with("PASSED\n"), "{verdict:?}");
+
+    // With tables at no larger an error than the general set's, for a run time that wants them.
+    let worst = Tables::from_bytes(GENERAL).unwrap().tables().iter().map(worst_error).fold(0.0, f64::max);
+    let budget = format!("{worst:e}");
+    let tabulated = ["bake", "pavilion.pbrt", "--tabulate-ggx", "--max-error", &budget, "--out", "tables"];
+    assert_eq!(json(at, &tabulated)["tables"].as_array().unwrap().len(), 3);
+    let file = std::fs::read(at.join("tables/tables.safetensors")).unwrap();
+    assert!(50 * file.len() < GENERAL.len(), "{} bytes", file.len());
+    assert!(Tables::from_bytes(&file).unwrap().material("steel").unwrap().bytes() > 0);
+}
+
+#[test]
+fn the_command_says_what_it_did_not_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let write = |materials: &[[&str; 3]]| std::fs::write(at.join("r.toml"), recipe(materials)).unwrap();
+    let draft = ["bake", "r.toml", "--out", "out", "--quality", "draft"];
+    write(&MIXED[..2]);
+    assert_eq!(json(at, &draft)["baked"], 3);
+    let second = run(at, &draft);
+    assert!(String::from_utf8_lossy(&second.stdout).contains("nothing to bake: all 3 tables"), "{second:?}");
+    write(&[MIXED[0], MIXED[7]]);
+    assert_eq!(json(at, &draft)["baked"], 3);
+    assert_eq!(json(at, &[&draft[..], &["--no-cache"]].concat())["baked"], 6);
+    assert_eq!(json(at, &[&draft[..], &["--cache", "elsewhere"]].concat())["baked"], 6);
+    assert_eq!(json(at, &[&draft[..], &["--cache", "elsewhere"]].concat())["baked"], 0);
+
+    // A cache that cannot be written is a warning.
+    std::fs::write(at.join("file"), "").unwrap();
+    let output = run(at, &[&draft[..], &["--cache", "file"]].concat());
+    assert!(
+        output.status.success() && String::from_utf8_lossy(&output.stderr).contains("not kept"),
+        "{output:?}"
+    );
+
+    // Nothing rough: said, and no error.
+    write(&[["mirror", "0.0", "3.0"]]);
+    for command in [&["plan", "r.toml"][..], &["bake", "r.toml", "--out", "empty"]] {
+        let output = run(at, command);
+        assert!(output.status.success(), "{output:?}");
+        assert!(
+            String::from_utf8_lossy(&output.stdout).contains("no material in use is rough"),
+            "{output:?}"
+        );
+    }
+    assert!(!at.join("empty/tables.safetensors").exists());
+}
+
+#[test]
+fn budgets_that_cannot_be_met_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("r.toml"), recipe(&MIXED[..1])).unwrap();
+    let with = |more: &[&str]| refused(at, &[&["bake", "r.toml", "--out", "out"][..], more].concat());
+    assert!(with(&["--max-error", "0"]).contains("(0, 0.1]"));
+    assert!(with(&["--max-error", "nan"]).contains("(0, 0.1]"));
+    assert!(with(&["--max-error", "1e-3", "--quality", "high"]).contains("--quality"));
+    assert!(with(&["--max-bytes", "100"]).contains("100 bytes"));
+    assert!(with(&["--embedded", "--max-error", "1e-6"]).contains("compiled in"));
+    assert!(refused(at, &["plan", "absent.toml"]).contains("absent.toml"));
+}
