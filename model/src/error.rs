@@ -11,6 +11,14 @@ pub enum ParameterError {
     Gamma(f64),
     /// `!(exponent >= 0)` or infinite, for Blinn–Phong.
     Exponent(f64),
+    /// `!(cos >= 0 && cos <= 1)`: the cosine of a direction above the surface to the macro normal.
+    CosTheta(f64),
+    /// `!(eta > 0)` or infinite: a relative refractive index.
+    Eta(f64),
+    /// `!(k >= 0)` or infinite: the extinction of a conductor.
+    Extinction(f64),
+    /// `!(x >= 0 && x <= 1)`: a reflectance or a tint.
+    Reflectance(f64),
 }
 
 impl fmt::Display for ParameterError {
@@ -26,6 +34,25 @@ impl fmt::Display for ParameterError {
                 write!(f, "gamma = {x}: the shape must lie in (1.5, inf]; use 2 for GGX and inf for Beckmann")
             }
             Self::Exponent(x) => write!(f, "exponent = {x}: a Blinn-Phong exponent must lie in [0, inf)"),
+            Self::CosTheta(x) => {
+                write!(
+                    f,
+                    "cos_theta = {x}: must lie in [0, 1]; flip the frame for directions below the surface"
+                )
+            }
+            Self::Eta(x) => {
+                write!(
+                    f,
+                    "eta = {x}: a relative refractive index must lie in (0, inf); use 1/eta from inside"
+                )
+            }
+            Self::Extinction(x) => {
+                write!(
+                    f,
+                    "k = {x}: an extinction coefficient must lie in [0, inf); give its magnitude, whatever the sign convention"
+                )
+            }
+            Self::Reflectance(x) => write!(f, "reflectance = {x}: a reflectance or tint must lie in [0, 1]"),
         }
     }
 }

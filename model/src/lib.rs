@@ -5,22 +5,27 @@
 //! vectors in the tangent frame, n = +z, angles in radians. No tables and no files; every function is a formula
 //! or a root found to rounding, and uses the `libm` crate, so that results are the same bits on every system.
 
+mod albedo;
 mod below;
 pub mod classic;
 mod ellipsoid;
 mod error;
 mod exact;
+pub mod fresnel;
 mod lune;
 mod ndf;
+mod panels;
 mod paper;
 mod quadrature;
 mod reduced;
 mod shape;
+mod smith_table;
 #[cfg(feature = "statistics")]
 pub mod statistics;
 mod student_t;
 mod visible;
 
+pub use albedo::{Albedo, AlbedoIntegrator};
 pub use ellipsoid::{Ellipsoid, EllipsoidError};
 pub use error::ParameterError;
 pub use lune::Lune;

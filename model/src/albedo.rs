@@ -1,0 +1,336 @@
+//! Directional albedo by deterministic quadrature over slopes.
+//!
+//! Let r, φ be polar coordinates of the unit slopes (slopes divided by σ), about the normal m = n. Reflection off m
+//! stays above the surface exactly inside a disc of slopes (an ellipse in unit slopes), which contains the origin, so that
+//!
+//! ```text
+//! E = 1/(cos θ + ρ e(z)) ∫dφ ∫₀^{R(φ)} r dr P22(r) (cos θ − r b(φ)) F(v·m) S(l)
+//! ```
+//!
+//! with ρ the σ-stretched horizontal length of v, ρ e(z) = cos θ Λ(v), r b the slope towards v times sin θ (negative where m faces v), and
+//! S = G1(l) or G1(l)/(G1(l) + G1(v)(1 − G1(l))) for the two forms of masking. The factor in front is G1(v)/cos θ as one
+//! quotient, finite at grazing. Everything is smooth inside the disc; what varies quickly are a layer of width σ along the rim, where l grazes,
+//! and near grazing views the turn of R(φ) at right angles to v. Both are stretched by a hyperbolic sine whose scale is known.
+
+use core::f64::consts::{FRAC_PI_2, PI};
+
+use crate::error::ParameterError;
+use crate::panels::{End, Gauss};
+use crate::reduced;
+use crate::shape::Shape;
+use crate::smith_table::SmithTable;
+use crate::student_t::Masking;
+
+/// Points a panel at successive levels of accuracy; a level's error is estimated from the one before.
+const LEVELS: [usize; 7] = [5, 7, 10, 14, 20, 28, 40];
+
+/// Share of the visible slopes that is left out, relative to the tolerance.
+const CUT: f64 = 1e-3;
+/// Slopes beyond e³⁴⁰ have no square.
+const LARGEST_RAPIDITY: f64 = 340.0;
+/// Widest panel along a ray, in the unit of [`Shape::unit`]; the lobe's own singularities are at ±iπ/(2√s), 1.1 or more away.
+const PANEL: f64 = 1.5;
+/// Widest panel of φ.
+const SECTOR: f64 = 1.6;
+
+/// Albedos of one view under N Fresnel weights, for both forms of masking.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Albedo<const N: usize> {
+    /// With G2 = G1(v) G1(l).
+    pub uncorrelated: [f64; N],
+    /// With G2 = 1/(1 + Λ(v) + Λ(l)).
+    pub height_correlated: [f64; N],
+    /// Estimate of the largest error, from above: twice the difference between the last two orders of quadrature, and
+    /// what is cut off.
+    pub error: f64,
+}
+
+impl<const N: usize> Albedo<N> {
+    /// The albedos of one form.
+    pub fn of(&self, masking: Masking) -> [f64; N] {
+        match masking {
+            Masking::Uncorrelated => self.uncorrelated,
+            Masking::HeightCorrelated => self.height_correlated,
+        }
+    }
+}
+
+/// Integrates albedos for one shape γ and any roughness, view and Fresnel reflectance.
+#[derive(Clone, Debug)]
+pub struct AlbedoIntegrator {
+    shape: Shape,
+    smith: SmithTable,
+    rules: Vec<Gauss>,
+    tolerance: f64,
+    /// Where the lobe ends for the purpose, in the unit of [`Shape::unit`].
+    cut: f64,
+}
+
+/// The view and what depends on it alone.
+struct View {
+    cos: f64,
+    sin: f64,
+    /// Azimuth in the frame of the principal axes.
+    cos_phi: f64,
+    sin_phi: f64,
+    sigma: [f64; 2],
+    /// G1(v)/cos θ.
+    scale: f64,
+    g1: f64,
+    /// Smaller σ over larger.
+    aspect: f64,
+    /// Azimuth of v in unit space.
+    phi_0: f64,
+    /// Width of the turn of R(φ) at right angles to v.
+    turn: f64,
+    /// Unit slope of the m that reflects v to n, where Λ(l) has a branch point: azimuth and radius.
+    phi_normal: f64,
+    r_normal: f64,
+}
+
+impl AlbedoIntegrator {
+    /// Prepares the shape; `tolerance` ∈ [1e-13, 1e-2] is the error aimed at, absolute.
+    pub fn new(shape: Shape, tolerance: f64) -> Self {
+        let tolerance = tolerance.clamp(1e-13, 1e-2);
+        // The share of visible slopes beyond is below cosh^(−2k) of the rapidity.
+        let log = -libm::log(CUT * tolerance);
+        let cut = if shape.is_beckmann() {
+            log.sqrt()
+        } else {
+            let ln_cosh = 0.5 * log / (shape.gamma() - 1.5);
+            let root = shape.s().sqrt();
+            (ln_cosh + libm::log1p((-libm::expm1(-2.0 * ln_cosh)).sqrt())).min(LARGEST_RAPIDITY) / root
+        };
+        Self {
+            shape,
+            smith: SmithTable::new(&shape),
+            rules: LEVELS.iter().map(|&n| Gauss::new(n)).collect(),
+            tolerance,
+            cut,
+        }
+    }
+
+    /// The shape.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Albedo of reflection for equal roughness σ ≥ 0 along both axes, with `weight` the reflectances at a given v·m ∈ [0, 1].
+    ///
+    /// σ = 0 is a mirror. cos θ = 0 is the limit of grazing views.
+    ///
+    /// # Errors
+    /// [`ParameterError`] unless 0 ≤ σ < ∞ and cos θ ∈ [0, 1].
+    pub fn reflection<const N: usize>(
+        &self,
+        sigma: f64,
+        cos_theta: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        if !(0.0..=1.0).contains(&cos_theta) {
+            return Err(ParameterError::CosTheta(cos_theta));
+        }
+        if sigma == 0.0 {
+            let mirror = weight(cos_theta);
+            return Ok(Albedo { uncorrelated: mirror, height_correlated: mirror, error: 0.0 });
+        }
+        self.reflection_anisotropic([sigma, sigma], cos_theta, 0.0, weight)
+    }
+
+    /// The same for roughness σx, σy > 0 and a view of azimuth φ (radians, from the x axis).
+    ///
+    /// # Errors
+    /// [`ParameterError`] unless both σ are positive and finite and cos θ ∈ [0, 1].
+    pub fn reflection_anisotropic<const N: usize>(
+        &self,
+        sigma: [f64; 2],
+        cos_theta: f64,
+        phi: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        let view = self.view(sigma, cos_theta, phi)?;
+        let mut before = self.quadrature(&self.rules[0], &view, &weight);
+        let mut error = f64::INFINITY;
+        for rule in &self.rules[1..] {
+            let now = self.quadrature(rule, &view, &weight);
+            let pairs = now.iter().flatten().zip(before.iter().flatten());
+            let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            // Twice, because two orders may agree by chance; and what the cut leaves out, which no order sees.
+            error = 2.0 * change + 10.0 * CUT * self.tolerance;
+            before = now;
+            if error < self.tolerance {
+                break;
+            }
+        }
+        Ok(Albedo { uncorrelated: before[0], height_correlated: before[1], error })
+    }
+
+    fn view(&self, sigma: [f64; 2], cos: f64, phi: f64) -> Result<View, ParameterError> {
+        for sigma in sigma {
+            if !(sigma > 0.0 && sigma < f64::INFINITY) {
+                return Err(ParameterError::Sigma(sigma));
+            }
+        }
+        if !(0.0..=1.0).contains(&cos) {
+            return Err(ParameterError::CosTheta(cos));
+        }
+        let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
+        let (sin_phi, cos_phi) = libm::sincos(phi);
+        let rho = sin * libm::hypot(sigma[0] * cos_phi, sigma[1] * sin_phi);
+        let excess = if rho == 0.0 { 0.0 } else { self.shape.excess(self.shape.unit(cos / rho)) };
+        let area = cos + rho * excess;
+        let [sx, sy] = sigma;
+        let phi_0 = libm::atan2(sy * sin_phi, sx * cos_phi);
+        let half = sin / (1.0 + cos);
+        let (x, y) = (cos_phi / sx, sin_phi / sy);
+        let phi_normal = libm::atan2(y, x) + PI;
+        Ok(View {
+            cos,
+            sin,
+            cos_phi,
+            sin_phi,
+            sigma,
+            scale: 1.0 / area,
+            g1: cos / area,
+            aspect: sx.min(sy) / sx.max(sy),
+            phi_0,
+            turn: cos / (sin * sx.max(sy).max(1.0)),
+            phi_normal,
+            r_normal: half * libm::hypot(x, y),
+        })
+    }
+
+    /// Both forms' integrals at one order.
+    fn quadrature<const N: usize>(
+        &self,
+        rule: &Gauss,
+        view: &View,
+        weight: &impl Fn(f64) -> [f64; N],
+    ) -> [[f64; N]; 2] {
+        let mut sum = [[0.0; N]; 2];
+        for (low, high) in self.sectors(view) {
+            rule.graded(low, high, SECTOR, |phi, jacobian| {
+                let part = self.ray(rule, view, phi, weight);
+                for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
+                    *sum += jacobian * part;
+                }
+            });
+        }
+        let fold = if view.aspect == 1.0 { 2.0 } else { 1.0 };
+        sum.map(|form| form.map(|x| x * fold * view.scale / PI))
+    }
+
+    /// The intervals of φ, with what is quick at their ends; half a turn if the other half is the same.
+    fn sectors(&self, view: &View) -> Vec<(End, End)> {
+        let plain = |at: f64| End { at, scale: f64::INFINITY };
+        // b(φ) vanishes a right angle from φ₀; there R(φ) turns from the near rim to the far one.
+        let turn = |at: f64| End { at, scale: view.turn.max(1e-9) };
+        let scale = if self.has_cone(view) { 0.05 * view.aspect } else { f64::INFINITY };
+        let normal = End { at: view.phi_normal, scale };
+        let phi_0 = view.phi_0;
+        if view.aspect == 1.0 {
+            let right = turn(phi_0 + FRAC_PI_2);
+            return vec![(plain(phi_0), right), (right, normal)];
+        }
+        // Where the ellipse of the roughness is narrow, its width turns within the aspect.
+        let minor = if view.sigma[0] < view.sigma[1] { 0.0 } else { FRAC_PI_2 };
+        let narrow = |at: f64| End { at, scale: view.aspect };
+        let mut ends =
+            [turn(phi_0 + FRAC_PI_2), turn(phi_0 - FRAC_PI_2), normal, narrow(minor), narrow(minor + PI)];
+        for end in &mut ends {
+            end.at -= 2.0 * PI * libm::floor(end.at / (2.0 * PI));
+        }
+        ends.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let again = End { at: ends[0].at + 2.0 * PI, ..ends[0] };
+        (0..5).map(|i| (ends[i], *ends.get(i + 1).unwrap_or(&again))).collect()
+    }
+
+    /// Whether the branch point of Λ(l) at l = n is strong enough to need panels of its own.
+    fn has_cone(&self, view: &View) -> bool {
+        self.shape.gamma() < 3.5 || view.sigma[0].max(view.sigma[1]) > 0.7
+    }
+
+    /// The integral along one ray of slopes from m = n to the rim.
+    fn ray<const N: usize>(
+        &self,
+        rule: &Gauss,
+        view: &View,
+        phi: f64,
+        weight: &impl Fn(f64) -> [f64; N],
+    ) -> [[f64; N]; 2] {
+        let (sin_phi, cos_phi) = libm::sincos(phi);
+        let (x, y) = (view.sigma[0] * cos_phi, view.sigma[1] * sin_phi);
+        let a = x * x + y * y;
+        let b = view.sin * (x * view.cos_phi + y * view.sin_phi);
+        let q = (b * b + a * view.cos * view.cos).sqrt();
+        let s = self.shape.s();
+        let rim = if b > 0.0 { view.cos / (b + q) } else { (q - b) / (a * view.cos) };
+        let w_rim = self.shape.unit(rim);
+        let end = if w_rim <= self.cut {
+            // l_z falls by 2q/(1 + ar²) a unit of slope, to the height √a at which masking sets in and to zero.
+            let layer = a.sqrt() * (1.0 + a * rim * rim) / (2.0 * q * (1.0 + s * rim * rim).sqrt());
+            End { at: w_rim, scale: layer }
+        } else {
+            End { at: self.cut, scale: f64::INFINITY }
+        };
+        let mut sum = [[0.0; N]; 2];
+        let mut add = |w: f64, jacobian: f64| {
+            let (r, measure) = self.measure(w.max(0.0));
+            let area = 1.0 + a * r * r;
+            let facing = view.cos - r * b;
+            let l_z = 2.0 * facing / area - view.cos;
+            let reach = 2.0 * facing / area * r;
+            let l_x = view.sigma[0] * (reach * x + view.sin * view.cos_phi);
+            let l_y = view.sigma[1] * (reach * y + view.sin * view.sin_phi);
+            let g1 = self.smith.g1(l_z, l_x * l_x + l_y * l_y);
+            if g1 == 0.0 {
+                return;
+            }
+            let fresnel = weight((facing / area.sqrt()).min(1.0));
+            let mass = jacobian * measure * facing;
+            let correlated = mass * g1 / (g1 + view.g1 * (1.0 - g1));
+            let uncorrelated = mass * g1;
+            for i in 0..N {
+                sum[0][i] += uncorrelated * fresnel[i];
+                sum[1][i] += correlated * fresnel[i];
+            }
+        };
+        // Distances from the branch point at l = n, in the unit of w.
+        let cone = |distance: f64| {
+            let scale = view.aspect * distance / (1.0 + s * view.r_normal * view.r_normal).sqrt();
+            if self.has_cone(view) && scale < 0.5 { scale.max(0.01 * view.aspect) } else { f64::INFINITY }
+        };
+        let aside = cone(view.r_normal * libm::fabs(libm::sin(phi - view.phi_normal)));
+        let w_normal = self.shape.unit(view.r_normal);
+        if b < 0.0 && aside.is_finite() && w_normal < end.at {
+            let normal = End { at: w_normal, scale: aside };
+            rule.graded(End { at: 0.0, scale: f64::INFINITY }, normal, PANEL, &mut add);
+            rule.graded(normal, end, PANEL, &mut add);
+        } else {
+            let scale = if b < 0.0 { f64::INFINITY } else { cone(view.r_normal) };
+            rule.graded(End { at: 0.0, scale }, end, PANEL, &mut add);
+        }
+        if view.cos == 0.0 && b < 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY {
+            // At grazing nothing ends the power law r^(−2k−1), and correlated masking (G2/G1 = 1) keeps all of it.
+            let k = self.shape.gamma() - 1.5;
+            let fresnel = weight(-b / a.sqrt());
+            let tail =
+                libm::exp(-2.0 * k * LARGEST_RAPIDITY) * libm::exp2(2.0 * k) / (2.0 * k * s * s.sqrt());
+            for i in 0..N {
+                sum[1][i] -= b * tail * fresnel[i];
+            }
+        }
+        sum
+    }
+
+    /// The unit slope r of w, and π P22(r) r dr/dw.
+    fn measure(&self, w: f64) -> (f64, f64) {
+        if self.shape.is_beckmann() {
+            return (w, w * libm::exp(-w * w));
+        }
+        let root = self.shape.s().sqrt();
+        let r = libm::sinh(root * w) / root;
+        let power = libm::exp(-(2.0 * self.shape.gamma() - 1.0) * reduced::ln_cosh(root * w));
+        (r, r * power)
+    }
+}
