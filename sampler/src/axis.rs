@@ -37,6 +37,24 @@ pub enum Mapping {
         /// Where κ diverges, in s.
         pole: f64,
     },
+    /// t = ln(1 + scale/(2γ−3)) ≥ 0: 0 is Beckmann, and γ → 3/2, where the projected area diverges, is reached slowly.
+    LogShape {
+        /// Factor of 1/(2γ−3).
+        scale: f64,
+    },
+    /// t = ln(1 + σ/offset) ≥ 0.
+    LogRoughness {
+        /// The σ about which even steps turn into even ratios.
+        offset: f64,
+    },
+    /// t = (1−weight) √(μ/(1+√(1−μ²))) + weight·μ/(μ + scale·σ√(1−μ²)) ∈ [0, 1], μ = cos θ_v: the first term follows the view,
+    /// the second z = cot θ_v/σ.
+    ViewBlend {
+        /// Share of the second term, in (0, 1).
+        weight: f64,
+        /// Factor of σ.
+        scale: f64,
+    },
     /// t = (2 min(u, 1−u))^(1/power) ∈ [0, 1]. Along the axis stand first the nodes for u ≤ ½ (t ascending from u = 0), then as many
     /// for u > ½ (t ascending from u = 1), unless the axis is `odd`, when only the second half is stored.
     MirroredPower {
@@ -58,6 +76,8 @@ pub enum Interpolation {
     Hermite,
     /// The Lagrange polynomial through the four nearest nodes (fewer if the axis has fewer).
     Lagrange4,
+    /// The polynomial through the six nearest nodes, evenly spaced in the coordinate (fewer if the axis has fewer).
+    Lagrange6,
     /// None: only the nodes themselves are covered.
     Nodes,
 }
@@ -97,6 +117,14 @@ impl Axis {
         (0..n).map(|i| i as f64 / (n - 1) as f64).collect()
     }
 
+    /// Whether the nodes are spread evenly between the first and the last.
+    fn is_even(&self) -> bool {
+        let (first, last) = (self.nodes[0], self.nodes[self.nodes.len() - 1]);
+        let step = (last - first) / (self.nodes.len().max(2) - 1) as f64;
+        let off = |(i, x): (usize, &f64)| (x - first - i as f64 * step).abs() > 1e-9 * step;
+        !self.nodes.iter().enumerate().any(off)
+    }
+
     /// Checks what every reader relies on: finite, strictly ascending nodes inside the mapping's range, and uniform ones where the
     /// lookup computes its cell instead of searching it.
     pub(crate) fn validate(&self) -> Result<(), LoadError> {
@@ -113,6 +141,7 @@ impl Axis {
         let (low, high) = match self.mapping {
             Mapping::Identity => (f64::MIN, f64::MAX),
             Mapping::InverseShape => (0.0, 2.0 - f64::EPSILON),
+            Mapping::LogShape { .. } | Mapping::LogRoughness { .. } => (0.0, f64::MAX),
             _ => (0.0, 1.0),
         };
         if self.nodes[0] < low || self.nodes[self.nodes.len() - 1] > high {
@@ -130,10 +159,26 @@ impl Axis {
             {
                 return fail("scale or pole out of range");
             }
+            Mapping::LogShape { scale: x } | Mapping::LogRoughness { offset: x } if !(x > 0.0 && x < 1e6) => {
+                return fail("scale or offset out of range");
+            }
+            Mapping::ViewBlend { weight, scale }
+                if !(weight > 0.0 && weight < 1.0 && scale > 0.0 && scale < 1e6) =>
+            {
+                return fail("weight or scale out of range");
+            }
             _ => {}
         }
         // These are looked up by computing the cell; the others by searching it.
-        if !matches!(self.mapping, Mapping::Identity | Mapping::InverseShape) {
+        if self.interpolation == Interpolation::Lagrange6 && !self.is_even() {
+            return Err(LoadError::Unsupported(format!(
+                "axis `{}`: this interpolation needs evenly spaced nodes",
+                self.name
+            )));
+        }
+        let searched = matches!(self.mapping, Mapping::Identity | Mapping::InverseShape);
+        let free = matches!(self.mapping, Mapping::LogShape { .. } | Mapping::LogRoughness { .. });
+        if !searched && !free {
             let n = self.nodes.len();
             if n < 2 {
                 return fail("needs at least two nodes");

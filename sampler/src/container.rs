@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
 use crate::error::LoadError;
+use crate::student_t::Masking;
 use crate::table::{Kind, Table};
 
 /// `format` of the document.
@@ -96,6 +97,8 @@ struct Descriptor {
     kind: Kind,
     axes: Vec<Axis>,
     channels: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    masking: Option<Masking>,
     precision: Precision,
     /// For `u16`: value = offset + scale·integer, by channel.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -123,6 +126,7 @@ pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, Loa
             kind: table.kind,
             axes: table.axes.clone(),
             channels: table.channels.clone(),
+            masking: table.masking,
             precision: table.precision,
             scale,
             offset,
@@ -252,6 +256,7 @@ fn assemble(
             kind: descriptor.kind,
             axes: descriptor.axes,
             channels: descriptor.channels,
+            masking: descriptor.masking,
             precision: descriptor.precision,
             certificate: descriptor.certificate,
         };

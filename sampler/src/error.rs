@@ -54,6 +54,13 @@ pub enum BindError {
         /// The ranges or values that are covered.
         covered: String,
     },
+    /// σ is legal but beyond the albedo tables, which reach to `max`.
+    SigmaNotCovered {
+        /// The σ asked for.
+        sigma: f64,
+        /// The largest that is covered.
+        max: f64,
+    },
     /// No material of that name in the set; `known` lists those it has.
     NoSuchMaterial {
         /// The name asked for.
@@ -93,6 +100,11 @@ impl fmt::Display for BindError {
                 f,
                 "gamma = {gamma} is not covered by the `{kind}` tables of this set, which hold {covered}; bake a set that \
                  does: a recipe line `gamma = {gamma}`, or `microfacet-bake bake` without a recipe for all of [1.501, inf]"
+            ),
+            Self::SigmaNotCovered { sigma, max } => write!(
+                f,
+                "sigma = {sigma} is not covered by the albedo tables of this set, which hold [0, {max}]; clamp it, or \
+                 bake a set whose recipe holds it"
             ),
             Self::NoSuchMaterial { name, known } => write!(
                 f,

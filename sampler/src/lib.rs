@@ -10,6 +10,7 @@
 
 extern crate alloc;
 
+mod albedo;
 mod axis;
 mod below;
 mod bind;
@@ -26,6 +27,7 @@ mod table;
 mod table_pdf;
 mod tables;
 
+pub use albedo::{Albedo, GRAZING_FLOOR, Moments};
 pub use axis::{Axis, Interpolation, Mapping};
 pub use cells::limit_slopes;
 pub use container::{FORMAT, MaterialEntry, Precision, Provenance, VERSION, describe, encode, reassemble};

@@ -3,6 +3,7 @@
 use core::f32::consts::PI;
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use crate::bind::Slices;
 use crate::cells::{hermite, locate};
@@ -11,7 +12,8 @@ use crate::math::sqrt;
 use crate::table::Table;
 
 /// How masking and shadowing of a pair of directions are combined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Masking {
     /// G2 = G1(v) G1(l) (Ribardière et al. 2017, eq. 12).
     Uncorrelated,
@@ -20,6 +22,17 @@ pub enum Masking {
 }
 
 impl Masking {
+    /// Both forms.
+    pub const ALL: [Self; 2] = [Self::Uncorrelated, Self::HeightCorrelated];
+
+    /// The name used in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Uncorrelated => "uncorrelated",
+            Self::HeightCorrelated => "height-correlated",
+        }
+    }
+
     /// G2 from the G1 of view and light.
     #[inline(always)]
     pub(crate) fn combine(self, a: f32, b: f32) -> f32 {

@@ -7,9 +7,10 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::{Axis, Mapping};
+use crate::axis::{Axis, Interpolation, Mapping};
 use crate::container::Precision;
 use crate::error::LoadError;
+use crate::student_t::Masking;
 
 /// What a table holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -32,6 +33,10 @@ pub enum Kind {
     RadialConditional,
     /// Fourth root of D, over the slope of the normal.
     RadialDensity,
+    /// Directional albedo over γ × σ × view, as moments of the Fresnel weights less those of a mirror.
+    Albedo,
+    /// Its cosine-weighted average over γ × σ.
+    AlbedoAverage,
 }
 
 impl Kind {
@@ -46,6 +51,8 @@ impl Kind {
             Self::RadialSlope => "radial_slope",
             Self::RadialConditional => "radial_conditional",
             Self::RadialDensity => "radial_density",
+            Self::Albedo => "albedo",
+            Self::AlbedoAverage => "albedo_average",
         }
     }
 
@@ -59,6 +66,8 @@ impl Kind {
             Self::RadialSlope => &["view", "u1"],
             Self::RadialConditional => &["slope", "u2"],
             Self::RadialDensity => &["slope"],
+            Self::Albedo => &["gamma", "sigma", "view"],
+            Self::AlbedoAverage => &["gamma", "sigma"],
         }
     }
 }
@@ -77,6 +86,8 @@ pub struct Table {
     pub axes: Vec<Axis>,
     /// Channel names, such as `value` and `slope`.
     pub channels: Vec<String>,
+    /// Form of G2 that the values are for; `None` where they are of one direction only.
+    pub masking: Option<Masking>,
     /// Values in f32; rounded once, from f64, when they were stored.
     pub values: Vec<f32>,
     /// How the values are stored in a file.
@@ -111,7 +122,32 @@ impl Table {
         if self.values.iter().any(|x| !x.is_finite()) {
             return fail("a value is not finite".into());
         }
-        self.validate_lookup()
+        match self.kind {
+            Kind::Albedo | Kind::AlbedoAverage => self.validate_albedo(),
+            _ => self.validate_lookup(),
+        }
+    }
+
+    /// The parts particular to albedos, which are read by polynomials on even nodes.
+    fn validate_albedo(&self) -> Result<(), LoadError> {
+        let fail = |why: &str| Err(LoadError::Invalid(format!("table `{}`: {why}", self.name)));
+        if self.channels != crate::albedo::CHANNELS {
+            return fail("channels are not `scale`, `bias`, `f82`");
+        }
+        if self.masking.is_none() {
+            return fail("an albedo without the form of masking it is for");
+        }
+        let mapped = matches!(self.axes[0].mapping, Mapping::LogShape { .. })
+            && matches!(self.axes[1].mapping, Mapping::LogRoughness { .. })
+            && self.axes.get(2).is_none_or(|view| matches!(view.mapping, Mapping::ViewBlend { .. }));
+        if !mapped || self.axes.iter().any(|axis| axis.interpolation != Interpolation::Lagrange6) {
+            return fail("an axis has a mapping or interpolation that this kind does not use");
+        }
+        if self.axes.get(2).is_some_and(|view| view.nodes.len() < 6) {
+            return fail("axis `view` has fewer than six nodes");
+        }
+        // Moments less a mirror's, and each of them is in [0, 1].
+        if self.values.iter().all(|x| (-1.0..=1.0).contains(x)) { Ok(()) } else { fail("a value is out of range") }
     }
 
     /// The parts particular to tables that are read by Hermite cells.
@@ -147,6 +183,7 @@ impl Table {
                     && matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: true, .. })
             }
             Kind::RadialDensity => self.axes[0].mapping == Mapping::HalfTangent,
+            Kind::Albedo | Kind::AlbedoAverage => unreachable!("validated apart"),
         };
         if !mapped {
             return fail("an axis has a mapping that this kind does not use");

@@ -3,6 +3,7 @@
 //! Everything is computed in f64 with the `libm` crate's functions and rounded once, to f32, at the end: the bytes
 //! are the same on every system, with any number of threads and in every build.
 
+pub mod albedo;
 mod conditional;
 mod radial;
 mod shadowing;
@@ -38,6 +39,7 @@ pub fn bake(spec: &TableSpec) -> Table {
         kind: spec.kind,
         axes: axes(spec),
         channels: vec!["value".into(), "slope".into()],
+        masking: None,
         values,
         precision: spec.precision,
         certificate: Default::default(),

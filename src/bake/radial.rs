@@ -40,6 +40,7 @@ pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precisio
             channels: vec!["value".into(), "slope".into()],
             values: values.into_iter().flatten().collect(),
             precision,
+            masking: None,
             certificate: Default::default(),
         };
         table.rounded(precision)

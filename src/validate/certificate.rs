@@ -77,6 +77,9 @@ pub(crate) fn measure(
     points: usize,
     s: [f64; 2],
 ) -> Result<BTreeMap<String, f64>, BindError> {
+    if matches!(table.kind, Kind::Albedo | Kind::AlbedoAverage) {
+        return super::albedo::measure(tables, table);
+    }
     let gammas = gammas_between_nodes(table, s);
     let all = gammas
         .par_iter()
@@ -116,7 +119,7 @@ pub(crate) fn measure(
 }
 
 /// Three significant digits, upwards: a certificate must not promise more than was measured.
-fn round_up(x: f64) -> f64 {
+pub(super) fn round_up(x: f64) -> f64 {
     if !(x > 0.0) {
         return x;
     }
@@ -146,7 +149,7 @@ fn gammas_between_nodes(table: &Table, [from, to]: [f64; 2]) -> Vec<f64> {
 }
 
 /// The i-th point of the additive recurrence with the plastic number (Roberts 2018), in [0, 1)².
-fn low_discrepancy(i: usize) -> [f64; 2] {
+pub(super) fn low_discrepancy(i: usize) -> [f64; 2] {
     [0.7548776662466927, 0.5698402909980532].map(|a| (0.5 + a * (i + 1) as f64).fract())
 }
 

@@ -1,5 +1,6 @@
 //! Judges of tables: what the sampler draws and returns against what the model says. They report and never repair.
 
+pub mod albedo;
 pub mod certificate;
 pub mod configuration;
 pub mod pdf_integral;

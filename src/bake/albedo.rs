@@ -1,0 +1,227 @@
+//! Directional albedo and its average, for both forms of masking in one pass.
+//!
+//! Stored are the moments less those of a mirror, which vanish with σ; nodes stand evenly in the coordinates found by
+//! `examples/albedo_design.rs`. The averages are integrated from the stored, interpolated albedo, so that a white furnace closes to
+//! rounding rather than to the interpolation error.
+
+use std::fmt;
+
+use rayon::prelude::*;
+
+use microfacet_model::fresnel::{f82_weight, schlick_weight};
+use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
+use microfacet_sampler::{
+    Axis, GRAZING_FLOOR, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
+};
+
+/// scale of the γ coordinate ln(1 + scale/(2γ−3)).
+const SHAPE_SCALE: f64 = 20.0;
+/// offset of the σ coordinate ln(1 + σ/offset).
+const ROUGHNESS_OFFSET: f64 = 0.02;
+/// Smallest σ node; below it the difference to a mirror is taken to fade in proportion.
+const SIGMA_MIN: f64 = 0.008;
+/// weight and scale of the view coordinate.
+const VIEW: (f64, f64) = (0.2, 2.0);
+
+/// A pair of albedo tables to bake for each form of masking.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlbedoSpec {
+    /// Smallest and largest γ; equal for a single shape.
+    pub gamma: [f64; 2],
+    /// Largest σ.
+    pub sigma_max: f64,
+    /// Nodes along γ, σ and the view (six or more of the last).
+    pub nodes: [usize; 3],
+    /// Error aimed at in every node.
+    pub tolerance: f64,
+    /// How values are stored.
+    pub precision: Precision,
+}
+
+/// Why a bake gave up.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BakeError {
+    /// A parameter outside the domain of the model.
+    Parameter(ParameterError),
+    /// A node whose E is not a number, or above 1 by more than its error: a fault of the quadrature, which must not reach a table.
+    Albedo {
+        /// Where, as σ, γ and cos θ.
+        at: [f64; 3],
+        /// The value.
+        value: f64,
+    },
+    /// A node whose error estimate stayed above the tolerance.
+    Accuracy {
+        /// Where, as σ, γ and cos θ.
+        at: [f64; 3],
+        /// The estimate.
+        error: f64,
+    },
+    /// The tables would not load.
+    Table(LoadError),
+}
+
+impl fmt::Display for BakeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = |[sigma, gamma, cos]: &[f64; 3]| format!("sigma {sigma}, gamma {gamma}, cos_theta {cos}");
+        match self {
+            Self::Parameter(why) => why.fmt(f),
+            Self::Albedo { at, value } => {
+                write!(f, "albedo {value} at {}: it must lie in [0, 1]; please report it", place(at))
+            }
+            Self::Accuracy { at, error } => {
+                write!(f, "quadrature error {error:e} at {}: raise the tolerance", place(at))
+            }
+            Self::Table(why) => why.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for BakeError {}
+
+impl From<ParameterError> for BakeError {
+    fn from(why: ParameterError) -> Self {
+        Self::Parameter(why)
+    }
+}
+
+impl From<LoadError> for BakeError {
+    fn from(why: LoadError) -> Self {
+        Self::Table(why)
+    }
+}
+
+/// The Fresnel weights of the channels: Schlick scale, Schlick bias and F82.
+pub fn weights(cos: f64) -> [f64; 3] {
+    let bias = schlick_weight(cos);
+    [1.0 - bias, bias, f82_weight(cos)]
+}
+
+/// Moments of one view for both forms of masking, less a mirror's.
+type Node = [[f64; 3]; 2];
+
+/// Bakes `albedo` and `albedo_average` for both forms of masking, four tables in all.
+///
+/// Each `albedo` table has `quadrature_error`, the largest error estimate of a node, in its certificate.
+///
+/// # Errors
+/// [`BakeError`] if a node is not a sound albedo or not accurate enough, or the specification is out of the domain.
+pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
+    let axes = axes(spec);
+    let quantities = |axis: &Axis| -> Vec<f64> { axis.nodes.iter().filter_map(|&t| axis.quantity(t)).collect() };
+    let (gammas, sigmas) = (quantities(&axes[0]), quantities(&axes[1]));
+    let integrators = gammas
+        .par_iter()
+        .map(|&gamma| Ok(AlbedoIntegrator::new(Shape::new(gamma)?, spec.tolerance)))
+        .collect::<Result<Vec<_>, ParameterError>>()?;
+    let pairs: Vec<_> = integrators.iter().flat_map(|shape| sigmas.iter().map(move |&sigma| (shape, sigma))).collect();
+    let rows = pairs
+        .par_iter()
+        .map(|&(shape, sigma)| axes[2].nodes.iter().map(|&t| node(shape, sigma, view(sigma, t), spec.tolerance)).collect())
+        .collect::<Result<Vec<Vec<(Node, f64)>>, BakeError>>()?;
+    let error = rows.iter().flatten().map(|node| node.1).fold(0.0, f64::max);
+    let mut tables = Vec::new();
+    for masking in Masking::ALL {
+        let values = rows.iter().flatten().flat_map(|node| node.0[masking as usize].map(|x| x as f32)).collect();
+        let directional = Table {
+            certificate: [("quadrature_error".to_string(), error)].into(),
+            ..table(Kind::Albedo, masking, axes.clone(), values, spec.precision)
+        };
+        let set = Tables::from_tables(Default::default(), vec![directional.clone()])?;
+        let average = |&(shape, sigma): &(&AlbedoIntegrator, f64)| {
+            let bound = set.albedo(sigma, shape.shape().gamma(), masking).expect("nodes are covered");
+            bound.average_moments().less_mirror()
+        };
+        let values = pairs.iter().flat_map(average).collect();
+        tables.push(directional);
+        tables.push(table(Kind::AlbedoAverage, masking, axes[..2].to_vec(), values, Precision::F32));
+    }
+    Ok(tables)
+}
+
+fn table(kind: Kind, masking: Masking, axes: Vec<Axis>, values: Vec<f32>, precision: Precision) -> Table {
+    Table {
+        name: format!("{}_{}", kind.name(), masking.name().replace('-', "_")),
+        kind,
+        axes,
+        channels: ["scale", "bias", "f82"].map(String::from).into(),
+        masking: Some(masking),
+        values,
+        precision,
+        certificate: Default::default(),
+    }
+    .rounded(precision)
+}
+
+fn node(shape: &AlbedoIntegrator, sigma: f64, cos: f64, tolerance: f64) -> Result<(Node, f64), BakeError> {
+    let albedo = shape.reflection(sigma, cos, weights)?;
+    let at = [sigma, shape.shape().gamma(), cos];
+    if !(albedo.error <= tolerance) {
+        return Err(BakeError::Accuracy { at, error: albedo.error });
+    }
+    let mirror = weights(cos);
+    let mut out = [albedo.uncorrelated, albedo.height_correlated];
+    for form in &mut out {
+        let value = form[0] + form[1];
+        // Not clamped: a wrong sum must be seen. The estimate bounds what rounding and quadrature can do.
+        if !(value >= 0.0 && value <= 1.0 + albedo.error) {
+            return Err(BakeError::Albedo { at, value });
+        }
+        for (x, mirror) in form.iter_mut().zip(mirror) {
+            *x -= mirror;
+        }
+    }
+    Ok((out, albedo.error))
+}
+
+/// The axes: γ, σ and the view.
+fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
+    let axis = |name: &str, mapping, nodes| Axis {
+        name: name.into(),
+        unit: "1".into(),
+        mapping,
+        interpolation: Interpolation::Lagrange6,
+        nodes,
+    };
+    let even = |low: f64, high: f64, count: usize| -> Vec<f64> {
+        if low == high {
+            return vec![low];
+        }
+        let step = (high - low) / (count - 1) as f64;
+        (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect()
+    };
+    let shape = |gamma: f64| libm::log1p(SHAPE_SCALE / (2.0 * gamma - 3.0));
+    let roughness = |sigma: f64| libm::log1p(sigma / ROUGHNESS_OFFSET);
+    let [shapes, roughnesses, views] = spec.nodes;
+    let (weight, scale) = VIEW;
+    vec![
+        axis(
+            "gamma",
+            Mapping::LogShape { scale: SHAPE_SCALE },
+            even(shape(spec.gamma[1]), shape(spec.gamma[0]), shapes),
+        ),
+        axis(
+            "sigma",
+            Mapping::LogRoughness { offset: ROUGHNESS_OFFSET },
+            even(roughness(SIGMA_MIN), roughness(spec.sigma_max), roughnesses),
+        ),
+        axis("view", Mapping::ViewBlend { weight, scale }, Axis::uniform_nodes(views)),
+    ]
+}
+
+/// cos θ at a view coordinate, at least [`GRAZING_FLOOR`].
+fn view(sigma: f64, t: f64) -> f64 {
+    let (weight, scale) = VIEW;
+    let (mut low, mut high) = (0.0, 1.0);
+    if t >= 1.0 {
+        return 1.0;
+    }
+    // Bisection to the last bit; the coordinate ascends with the cosine.
+    for _ in 0..64 {
+        let cos: f64 = 0.5 * (low + high);
+        let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
+        let at = (1.0 - weight) * (cos / (1.0 + sin)).sqrt() + weight * cos / (cos + scale * sigma * sin);
+        if at < t { low = cos } else { high = cos }
+    }
+    (0.5 * (low + high)).max(GRAZING_FLOOR)
+}
