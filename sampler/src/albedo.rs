@@ -61,12 +61,6 @@ impl Moments {
         Self { scale: 20.0 / 21.0, bias: 1.0 / 21.0, f82: 117649.0 / 839808.0 }
     }
 
-    /// The moments averaged over cos θ less those of a mirror, as tables of averages store them.
-    pub fn less_mirror(&self) -> [f32; 3] {
-        let mirror = Self::mirror_average();
-        [self.scale - mirror.scale, self.bias - mirror.bias, self.f82 - mirror.f82]
-    }
-
     fn plus(self, rest: [f32; 3]) -> Self {
         Self { scale: self.scale + rest[0], bias: self.bias + rest[1], f82: self.f82 + rest[2] }
     }
@@ -84,9 +78,10 @@ pub struct Albedo {
     /// Moments less a mirror's, by view node.
     nodes: Vec<[f32; 3]>,
     weight: f32,
-    /// scale·σ of the view coordinate.
+    /// κσ of the view coordinate.
     knee: f32,
-    average: Moments,
+    /// Average moments less a mirror's.
+    average: [f32; 3],
 }
 
 /// cos θ of the first view node, 1e-4; at 0 itself the height-correlated albedo is 1, a spike that polynomials
@@ -108,7 +103,7 @@ impl Tables {
             return Err(BindError::Gamma(gamma));
         }
         let (directional, nodes) = self.collapse(Kind::Albedo, sigma, gamma, masking)?;
-        let Mapping::ViewBlend { weight, scale } = directional.axes[2].mapping else {
+        let Mapping::ViewBlend { weight, scale, heavy } = directional.axes[2].mapping else {
             unreachable!("validated on load")
         };
         let mut albedo = Albedo {
@@ -116,12 +111,11 @@ impl Tables {
             sigma: sigma as f32,
             nodes,
             weight: weight as f32,
-            knee: (scale * sigma) as f32,
-            average: Moments::default(),
+            knee: ((scale + heavy / (2.0 * gamma - 3.0)) * sigma) as f32,
+            average: [0.0; 3],
         };
         albedo.average = if self.tables().iter().any(|table| table.kind == Kind::AlbedoAverage) {
-            let (_, average) = self.collapse(Kind::AlbedoAverage, sigma, gamma, masking)?;
-            Moments::mirror_average().plus(average[0])
+            self.collapse(Kind::AlbedoAverage, sigma, gamma, masking)?.1[0]
         } else {
             albedo.integrate()
         };
@@ -225,6 +219,11 @@ fn weights(axis: &Axis, t: f64) -> Option<Vec<(usize, f64)>> {
     Some((0..count).map(|i| (start + i, weight(i))).collect())
 }
 
+/// cos θ in [0, 1]; NaN becomes 0.
+fn within(cos_theta: f32) -> f32 {
+    cos_theta.max(0.0).min(1.0)
+}
+
 /// Nodes that a polynomial goes through.
 const STENCIL: usize = 6;
 
@@ -246,12 +245,8 @@ impl Albedo {
 
     /// Moments of the Fresnel weights at a view; each in [0, 1], their total at most 1.
     pub fn moments(&self, cos_theta: f32) -> Moments {
-        // `max` sends NaN to the floor.
-        let cos = cos_theta.max(GRAZING_FLOOR as f32).min(1.0);
-        let sin = sqrt((1.0 - cos) * (1.0 + cos));
-        let t = (1.0 - self.weight) * sqrt(cos / (1.0 + sin)) + self.weight * cos / (cos + self.knee * sin);
-        let rest = self.interpolate(t);
-        let sum = Moments::mirror(cos).plus(rest);
+        let cos = within(cos_theta);
+        let sum = Moments::mirror(cos).plus(self.rest(cos));
         // Interpolation may leave [0, 1] by the table's error.
         let bias = sum.bias.clamp(0.0, 1.0);
         Moments { scale: sum.scale.clamp(0.0, 1.0 - bias), bias, f82: sum.f82.clamp(0.0, 1.0) }
@@ -259,21 +254,37 @@ impl Albedo {
 
     /// E(cos θ) with F = 1, in [0, 1].
     pub fn albedo(&self, cos_theta: f32) -> f32 {
-        self.moments(cos_theta).total()
+        1.0 - self.lost(cos_theta)
+    }
+
+    /// 1 − E(cos θ), with all its digits where E is close to 1.
+    pub fn lost(&self, cos_theta: f32) -> f32 {
+        let rest = self.rest(within(cos_theta));
+        (-rest[0] - rest[1]).clamp(0.0, 1.0)
     }
 
     /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments.
     pub fn average_moments(&self) -> Moments {
+        Moments::mirror_average().plus(self.average)
+    }
+
+    /// The average moments less a mirror's.
+    pub fn average_rest(&self) -> [f32; 3] {
         self.average
     }
 
     /// E_avg = 2∫₀¹ E(μ) μ dμ with F = 1.
     pub fn albedo_average(&self) -> f32 {
-        self.average.total()
+        1.0 - self.lost_average()
     }
 
-    /// The average moments by quadrature of what [`moments`](Self::moments) returns; what tables of averages are filled with.
-    pub fn integrate(&self) -> Moments {
+    /// 1 − E_avg, with all its digits.
+    pub fn lost_average(&self) -> f32 {
+        (-self.average[0] - self.average[1]).clamp(0.0, 1.0)
+    }
+
+    /// The average moments less a mirror's, by quadrature of the interpolated albedo: what tables of averages are filled with.
+    pub fn integrate(&self) -> [f32; 3] {
         // Gauss-Legendre, four points; μ = x³ resolves grazing views, where small roughness makes its difference.
         const POINTS: [(f64, f64); 2] =
             [(0.339981043584856265, 0.652145154862546143), (0.861136311594052575, 0.347854845137453857)];
@@ -285,17 +296,24 @@ impl Albedo {
             for (node, weight) in POINTS {
                 for x in [middle - half * node, middle + half * node] {
                     let cos = x * x * x;
-                    let Moments { scale, bias, f82 } = self.moments(cos as f32);
                     // 2 μ dμ = 6 x⁵ dx.
                     let measure = 6.0 * half * weight * cos * x * x;
-                    for (sum, value) in sum.iter_mut().zip([scale, bias, f82]) {
+                    for (sum, value) in sum.iter_mut().zip(self.rest(cos as f32)) {
                         *sum += measure * f64::from(value);
                     }
                 }
             }
         }
-        let [scale, bias, f82] = sum.map(|x| x as f32);
-        Moments { scale, bias, f82 }
+        sum.map(|x| x as f32)
+    }
+
+    /// Moments less a mirror's at cos θ ∈ [0, 1].
+    fn rest(&self, cos: f32) -> [f32; 3] {
+        let cos = cos.max(GRAZING_FLOOR as f32);
+        let sin = sqrt((1.0 - cos) * (1.0 + cos));
+        self.interpolate(
+            (1.0 - self.weight) * sqrt(cos / (1.0 + sin)) + self.weight * cos / (cos + self.knee * sin),
+        )
     }
 
     fn interpolate(&self, t: f32) -> [f32; 3] {

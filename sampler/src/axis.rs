@@ -47,13 +47,15 @@ pub enum Mapping {
         /// The σ about which even steps turn into even ratios.
         offset: f64,
     },
-    /// t = (1−weight) √(μ/(1+√(1−μ²))) + weight·μ/(μ + scale·σ√(1−μ²)) ∈ [0, 1], μ = cos θ_v: the first term follows the view,
-    /// the second z = cot θ_v/σ.
+    /// t = (1−weight) √(μ/(1+√(1−μ²))) + weight·μ/(μ + κσ√(1−μ²)) ∈ [0, 1], μ = cos θ_v, κ = scale + heavy/(2γ−3): the first term follows
+    /// the view, the second z = cot θ_v/σ and, as γ → 3/2, the ever wider reach of masking.
     ViewBlend {
         /// Share of the second term, in (0, 1).
         weight: f64,
-        /// Factor of σ.
+        /// κ for Beckmann.
         scale: f64,
+        /// How κ grows with 1/(2γ−3).
+        heavy: f64,
     },
     /// t = (2 min(u, 1−u))^(1/power) ∈ [0, 1]. Along the axis stand first the nodes for u ≤ ½ (t ascending from u = 0), then as many
     /// for u > ½ (t ascending from u = 1), unless the axis is `odd`, when only the second half is stored.
@@ -162,10 +164,14 @@ impl Axis {
             Mapping::LogShape { scale: x } | Mapping::LogRoughness { offset: x } if !(x > 0.0 && x < 1e6) => {
                 return fail("scale or offset out of range");
             }
-            Mapping::ViewBlend { weight, scale }
-                if !(weight > 0.0 && weight < 1.0 && scale > 0.0 && scale < 1e6) =>
+            Mapping::ViewBlend { weight, scale, heavy }
+                if !(weight > 0.0
+                    && weight < 1.0
+                    && scale > 0.0
+                    && scale < 1e6
+                    && (0.0..1e6).contains(&heavy)) =>
             {
-                return fail("weight or scale out of range");
+                return fail("weight, scale or heavy out of range");
             }
             _ => {}
         }

@@ -14,14 +14,16 @@ use microfacet_sampler::{
     Axis, GRAZING_FLOOR, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
 };
 
+use crate::spec::{GAMMA_MIN, Quality};
+
 /// scale of the γ coordinate ln(1 + scale/(2γ−3)).
 const SHAPE_SCALE: f64 = 20.0;
 /// offset of the σ coordinate ln(1 + σ/offset).
 const ROUGHNESS_OFFSET: f64 = 0.02;
 /// Smallest σ node; below it the difference to a mirror is taken to fade in proportion.
-const SIGMA_MIN: f64 = 0.008;
-/// weight and scale of the view coordinate.
-const VIEW: (f64, f64) = (0.2, 2.0);
+const SIGMA_MIN: f64 = 0.006;
+/// weight, scale and heavy of the view coordinate.
+const VIEW: (f64, f64, f64) = (0.2, 2.0, 0.5);
 
 /// A pair of albedo tables to bake for each form of masking.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +38,36 @@ pub struct AlbedoSpec {
     pub tolerance: f64,
     /// How values are stored.
     pub precision: Precision,
+}
+
+impl AlbedoSpec {
+    /// For γ ∈ [1.501, ∞] and σ ∈ [0, 3].
+    ///
+    /// Draft tables err by up to 3e-3; the figures of the others are in `docs/albedo.md`.
+    pub fn general(quality: Quality, precision: Precision) -> Self {
+        let (nodes, tolerance) = match quality {
+            Quality::Draft => ([16, 16, 20], 1e-5),
+            Quality::Default => ([24, 27, 33], 1e-6),
+            Quality::High => ([40, 50, 87], 1e-7),
+        };
+        Self { gamma: [GAMMA_MIN, f64::INFINITY], sigma_max: 3.0, nodes, tolerance, precision }
+    }
+
+    /// The same for a part of the shapes, at the same spacing.
+    pub fn of_shapes(self, gamma: [f64; 2]) -> Self {
+        let length = |[low, high]: [f64; 2]| shape(low) - shape(high);
+        let [shapes, roughnesses, views] = self.nodes;
+        let share = length(gamma) / length(self.gamma);
+        // Six nodes at least, the polynomial's; one for a single shape.
+        let count = libm::ceil(share * (shapes - 1) as f64) as usize + 1;
+        let count = if gamma[0] == gamma[1] { 1 } else { count.max(6) };
+        Self { gamma, nodes: [count, roughnesses, views], ..self }
+    }
+}
+
+/// The coordinate of a shape.
+fn shape(gamma: f64) -> f64 {
+    libm::log1p(SHAPE_SCALE / (2.0 * gamma - 3.0))
 }
 
 /// Why a bake gave up.
@@ -108,21 +140,30 @@ type Node = [[f64; 3]; 2];
 /// [`BakeError`] if a node is not a sound albedo or not accurate enough, or the specification is out of the domain.
 pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
     let axes = axes(spec);
-    let quantities = |axis: &Axis| -> Vec<f64> { axis.nodes.iter().filter_map(|&t| axis.quantity(t)).collect() };
+    let quantities =
+        |axis: &Axis| -> Vec<f64> { axis.nodes.iter().filter_map(|&t| axis.quantity(t)).collect() };
     let (gammas, sigmas) = (quantities(&axes[0]), quantities(&axes[1]));
     let integrators = gammas
         .par_iter()
         .map(|&gamma| Ok(AlbedoIntegrator::new(Shape::new(gamma)?, spec.tolerance)))
         .collect::<Result<Vec<_>, ParameterError>>()?;
-    let pairs: Vec<_> = integrators.iter().flat_map(|shape| sigmas.iter().map(move |&sigma| (shape, sigma))).collect();
+    let pairs: Vec<_> =
+        integrators.iter().flat_map(|shape| sigmas.iter().map(move |&sigma| (shape, sigma))).collect();
     let rows = pairs
         .par_iter()
-        .map(|&(shape, sigma)| axes[2].nodes.iter().map(|&t| node(shape, sigma, view(sigma, t), spec.tolerance)).collect())
+        .map(|&(shape, sigma)| {
+            axes[2]
+                .nodes
+                .iter()
+                .map(|&t| node(shape, sigma, view(sigma, shape.shape().gamma(), t), spec.tolerance))
+                .collect()
+        })
         .collect::<Result<Vec<Vec<(Node, f64)>>, BakeError>>()?;
     let error = rows.iter().flatten().map(|node| node.1).fold(0.0, f64::max);
     let mut tables = Vec::new();
     for masking in Masking::ALL {
-        let values = rows.iter().flatten().flat_map(|node| node.0[masking as usize].map(|x| x as f32)).collect();
+        let values =
+            rows.iter().flatten().flat_map(|node| node.0[masking as usize].map(|x| x as f32)).collect();
         let directional = Table {
             certificate: [("quadrature_error".to_string(), error)].into(),
             ..table(Kind::Albedo, masking, axes.clone(), values, spec.precision)
@@ -130,7 +171,7 @@ pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
         let set = Tables::from_tables(Default::default(), vec![directional.clone()])?;
         let average = |&(shape, sigma): &(&AlbedoIntegrator, f64)| {
             let bound = set.albedo(sigma, shape.shape().gamma(), masking).expect("nodes are covered");
-            bound.average_moments().less_mirror()
+            bound.integrate()
         };
         let values = pairs.iter().flat_map(average).collect();
         tables.push(directional);
@@ -190,10 +231,9 @@ fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
         let step = (high - low) / (count - 1) as f64;
         (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect()
     };
-    let shape = |gamma: f64| libm::log1p(SHAPE_SCALE / (2.0 * gamma - 3.0));
     let roughness = |sigma: f64| libm::log1p(sigma / ROUGHNESS_OFFSET);
     let [shapes, roughnesses, views] = spec.nodes;
-    let (weight, scale) = VIEW;
+    let (weight, scale, heavy) = VIEW;
     vec![
         axis(
             "gamma",
@@ -205,13 +245,14 @@ fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
             Mapping::LogRoughness { offset: ROUGHNESS_OFFSET },
             even(roughness(SIGMA_MIN), roughness(spec.sigma_max), roughnesses),
         ),
-        axis("view", Mapping::ViewBlend { weight, scale }, Axis::uniform_nodes(views)),
+        axis("view", Mapping::ViewBlend { weight, scale, heavy }, Axis::uniform_nodes(views)),
     ]
 }
 
 /// cos θ at a view coordinate, at least [`GRAZING_FLOOR`].
-fn view(sigma: f64, t: f64) -> f64 {
-    let (weight, scale) = VIEW;
+fn view(sigma: f64, gamma: f64, t: f64) -> f64 {
+    let (weight, scale, heavy) = VIEW;
+    let knee = (scale + heavy / (2.0 * gamma - 3.0)) * sigma;
     let (mut low, mut high) = (0.0, 1.0);
     if t >= 1.0 {
         return 1.0;
@@ -220,7 +261,7 @@ fn view(sigma: f64, t: f64) -> f64 {
     for _ in 0..64 {
         let cos: f64 = 0.5 * (low + high);
         let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
-        let at = (1.0 - weight) * (cos / (1.0 + sin)).sqrt() + weight * cos / (cos + scale * sigma * sin);
+        let at = (1.0 - weight) * (cos / (1.0 + sin)).sqrt() + weight * cos / (cos + knee * sin);
         if at < t { low = cos } else { high = cos }
     }
     (0.5 * (low + high)).max(GRAZING_FLOOR)
