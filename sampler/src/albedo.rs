@@ -130,10 +130,13 @@ impl Tables {
         gamma: f64,
         masking: Masking,
     ) -> Result<(&Table, Vec<[f32; 3]>), BindError> {
-        let tables = || self.tables().iter().filter(|table| table.kind == kind && table.masking == Some(masking));
+        let tables =
+            || self.tables().iter().filter(|table| table.kind == kind && table.masking == Some(masking));
         let mut widest = f64::NEG_INFINITY;
         for table in tables() {
-            let Some(shapes) = weights(&table.axes[0], shape_coordinate(&table.axes[0], gamma)) else { continue };
+            let Some(shapes) = weights(&table.axes[0], shape_coordinate(&table.axes[0], gamma)) else {
+                continue;
+            };
             let axis = &table.axes[1];
             let first = roughness(axis, axis.nodes[0]);
             // Below the first node what a mirror lacks fades in proportion: σ = 0 has E = 1 exactly.
@@ -221,7 +224,7 @@ fn weights(axis: &Axis, t: f64) -> Option<Vec<(usize, f64)>> {
 
 /// cos θ in [0, 1]; NaN becomes 0.
 fn within(cos_theta: f32) -> f32 {
-    cos_theta.max(0.0).min(1.0)
+    if cos_theta > 0.0 { cos_theta.min(1.0) } else { 0.0 }
 }
 
 /// Nodes that a polynomial goes through.
@@ -322,7 +325,8 @@ impl Albedo {
         let start = first_node(x as usize, n, STENCIL);
         let x = x - start as f32;
         // Products from the left and from the right leave one factor out at each node.
-        const C: [f32; STENCIL] = [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
+        const C: [f32; STENCIL] =
+            [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
         let mut weights = C;
         let (mut left, mut right) = (1.0, 1.0);
         for i in 0..STENCIL {

@@ -147,7 +147,11 @@ impl Table {
             return fail("axis `view` has fewer than six nodes");
         }
         // Moments less a mirror's, and each of them is in [0, 1].
-        if self.values.iter().all(|x| (-1.0..=1.0).contains(x)) { Ok(()) } else { fail("a value is out of range") }
+        if self.values.iter().all(|x| (-1.0..=1.0).contains(x)) {
+            Ok(())
+        } else {
+            fail("a value is out of range")
+        }
     }
 
     /// The parts particular to tables that are read by Hermite cells.

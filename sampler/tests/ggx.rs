@@ -6,7 +6,7 @@ use microfacet_model::statistics::{judge_visible_normals, sidak};
 use microfacet_sampler::{BindError, MaterialEntry, Provenance, StudentT, Tables};
 
 const SIGMAS: [[f64; 2]; 4] = [[0.3, 0.3], [1e-3, 0.01], [4.0, 0.5], [1e-8, 1e6]];
-const VIEWS: [[f64; 2]; 5] = [[0.0, 0.0], [1e-3, 1.0], [0.8, -2.5], [1.4, 3.0], [1.5707, 0.6]];
+const VIEWS: [[f64; 2]; 5] = [[0.0, 0.0], [1e-3, 1.0], [0.8, -2.5], [1.4, 3.0], [1.5705, 0.6]];
 
 fn direction([theta, phi]: [f64; 2]) -> DVec3 {
     DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())

@@ -19,6 +19,7 @@ fn table(kind: Kind, precision: Precision, mut axes: Vec<Axis>, values: &[f32]) 
         channels: vec!["value".into(), "slope".into()],
         values: values.to_vec(),
         precision,
+        masking: None,
         certificate: [("g1_max_error".to_string(), 0.5)].into_iter().collect(),
     };
     table.rounded(precision)

@@ -1,7 +1,7 @@
 //! Directional albedo and its average, for both forms of masking in one pass.
 //!
-//! Stored are the moments less those of a mirror, which vanish with σ; nodes stand evenly in the coordinates found by
-//! `examples/albedo_design.rs`. The averages are integrated from the stored, interpolated albedo, so that a white furnace closes to
+//! Stored are the moments less those of a mirror, which vanish with σ; nodes stand evenly in coordinates found by measuring. The
+//! averages are integrated from the stored, interpolated albedo, so that a white furnace closes to
 //! rounding rather than to the interpolation error.
 
 use std::fmt;
