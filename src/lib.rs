@@ -11,6 +11,7 @@ pub mod convert;
 pub mod family;
 pub mod fit;
 pub mod generate;
+pub mod memory;
 pub mod plan;
 pub mod plot;
 pub mod scene;

@@ -231,3 +231,25 @@ fn inspecting_a_lie_takes_little_memory() {
         assert!(message(&output).contains(part), "{}", message(&output));
     }
 }
+
+#[test]
+fn more_memory_than_allowed_is_refused_with_the_estimate() {
+    let workshop = workshop();
+    let gammas = (0..3000).map(|i| 2.0 + f64::from(i));
+    let many: String = gammas
+        .map(|gamma| format!("[[material]]\nname = \"{gamma}\"\nsigma = 0.3\ngamma = {gamma:?}\n"))
+        .collect();
+    fs::write(workshop.path().join("many.toml"), many).unwrap();
+    let out = workshop.path().join("out");
+    let mut command = bake(&workshop, "many", &out);
+    // The high tables of three thousand shapes.
+    let output = command.args(["--max-memory", "512M"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let text = message(&output);
+    assert!(
+        text.contains("values would take about") && text.contains("more than the 512 MiB allowed"),
+        "{text}"
+    );
+    let output = bake(&workshop, "old", &out).args(["--max-memory", "512T"]).output().unwrap();
+    assert!(message(&output).contains("512M"), "{}", message(&output));
+}

@@ -8,11 +8,12 @@ use serde_json::json;
 
 use microfacet_bake::cache::Cache;
 use microfacet_bake::generate::{Baked, Target, generate};
+use microfacet_bake::memory;
 use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::{self, Scene};
-use microfacet_bake::spec::general_set;
+use microfacet_bake::spec::{Quality, general_set};
 use microfacet_bake::store::{Format, OutputFolder, Written};
-use microfacet_sampler::Table;
+use microfacet_sampler::{Precision, Table};
 
 use super::request::{Request, provenance};
 use super::{Done, Outcome, print, print_json, progress};
@@ -43,9 +44,26 @@ pub(super) struct Args {
     /// Bake everything, and keep nothing for the next time.
     #[arg(long, conflicts_with = "cache")]
     no_cache: bool,
+    /// Memory that baking may take, in bytes or with K, M or G; more is refused before any is taken.
+    #[arg(long, value_name = "BYTES", value_parser = parse_bytes, default_value = "4G")]
+    max_memory: u64,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// Parses a number of bytes, with K, M or G for powers of 1024.
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(['K', 'M', 'G']);
+    let shift = match &text[digits.len()..] {
+        "" => Some(0),
+        "K" => Some(10),
+        "M" => Some(20),
+        "G" => Some(30),
+        _ => None,
+    };
+    let bytes = digits.parse::<u64>().ok().zip(shift).and_then(|(n, shift)| n.checked_mul(1 << shift));
+    bytes.ok_or_else(|| format!("\"{text}\" must be a whole number of bytes, such as 536870912 or 512M"))
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -98,12 +116,16 @@ pub(super) fn run(args: Args) -> Outcome {
         return Ok(Done::Ok);
     }
     let target = args.target();
+    let general = match target {
+        Target::Quality(quality, precision) => general_set(quality, precision),
+        // Where a search ends is not known; hardly ever beyond this.
+        _ => general_set(Quality::High, Precision::F32),
+    };
+    let specs: Vec<_> = plan.needs.iter().flat_map(|need| need.specs(&general)).collect();
+    memory::check(&specs, args.max_memory)?;
     let steps = match target {
         // The tables of each need, and its certificate.
-        Target::Quality(quality, precision) => {
-            let general = general_set(quality, precision);
-            plan.needs.iter().map(|need| need.specs(&general).len() + 1).sum()
-        }
+        Target::Quality(..) => specs.len() + plan.needs.len(),
         _ => plan.needs.len(),
     };
     let bar = progress(steps, "baking");

@@ -1,0 +1,83 @@
+//! What a bake will hold in memory, known before any of it is taken.
+
+use std::fmt;
+
+use crate::spec::TableSpec;
+
+/// Bytes held per value while a set is made: the values while they are gathered, rounded and kept, and the files they are written to.
+/// `docs/reliability.md` has what was measured.
+const BYTES_PER_VALUE: u128 = 32;
+/// What the program itself takes.
+const BASE: u128 = 32 << 20;
+
+/// A set that would not fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooLarge {
+    /// Values of all tables together.
+    pub values: u128,
+    /// Bytes that baking them would take.
+    pub needed: u128,
+    /// Bytes it may take.
+    pub limit: u64,
+}
+
+impl fmt::Display for TooLarge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mib = |bytes: u128| bytes.div_ceil(1 << 20);
+        let Self { values, needed, limit } = *self;
+        write!(
+            f,
+            "baking {values} values would take about {} MiB of memory, more than the {} MiB allowed; ask for fewer shapes (a range of \
+             gamma instead of many single ones), a lower quality, or allow more with --max-memory",
+            mib(needed),
+            mib(limit.into())
+        )
+    }
+}
+
+impl std::error::Error for TooLarge {}
+
+/// Values of a table; in 128 bits, where no product of three lengths overflows.
+fn values(spec: &TableSpec) -> u128 {
+    // Lengths only: `axes` would make room for the nodes.
+    let (views, numbers) = (spec.views.max(1) as u128, spec.numbers.max(1) as u128);
+    let halves = if spec.views > 0 && spec.numbers > 0 { 2 } else { 1 };
+    [views, halves, numbers].into_iter().fold(2 * spec.shapes.nodes.len() as u128, u128::saturating_mul)
+}
+
+/// Checks that a set can be baked within `limit` bytes; the estimate is a few per cent to a factor of two above the truth.
+///
+/// # Errors
+/// [`TooLarge`] with the estimate.
+pub fn check(specs: &[TableSpec], limit: u64) -> Result<(), TooLarge> {
+    let values = specs.iter().map(values).fold(0, u128::saturating_add);
+    let needed = values.saturating_mul(BYTES_PER_VALUE).saturating_add(BASE);
+    if needed <= limit.into() { Ok(()) } else { Err(TooLarge { values, needed, limit }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bake::axes;
+    use crate::spec::{Quality, general_set};
+    use microfacet_sampler::Precision;
+
+    #[test]
+    fn values_are_counted_as_they_are_baked() {
+        for spec in general_set(Quality::Default, Precision::F32) {
+            let shape = axes(&spec).iter().map(|axis| axis.len() as u128).product::<u128>();
+            assert_eq!(values(&spec), 2 * shape, "{}", spec.name);
+        }
+    }
+
+    #[test]
+    fn a_million_million_nodes_are_refused_untouched() {
+        let mut specs = general_set(Quality::High, Precision::F32);
+        assert_eq!(check(&specs, 1 << 30), Ok(()));
+        (specs[2].views, specs[2].numbers) = (1_000_000, 1_000_000);
+        let refused = check(&specs, 1 << 30).unwrap_err();
+        assert!(refused.values > 66_000_000_000_000 && refused.to_string().contains("1024 MiB"), "{refused}");
+        (specs[2].views, specs[2].numbers) = (usize::MAX, usize::MAX);
+        assert!(check(&specs, u64::MAX).is_err());
+    }
+}
