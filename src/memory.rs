@@ -6,7 +6,7 @@ use crate::spec::TableSpec;
 
 /// Bytes held per value while a set is made: the values while they are gathered, rounded and kept, and the files they are written to.
 /// `docs/reliability.md` has what was measured.
-const BYTES_PER_VALUE: u128 = 32;
+const BYTES_PER_VALUE: u128 = 24;
 /// What the program itself takes.
 const BASE: u128 = 32 << 20;
 
@@ -45,7 +45,7 @@ fn values(spec: &TableSpec) -> u128 {
     [views, halves, numbers].into_iter().fold(2 * spec.shapes.nodes.len() as u128, u128::saturating_mul)
 }
 
-/// Checks that a set can be baked within `limit` bytes; the estimate is a few per cent to a factor of two above the truth.
+/// Checks that a set can be baked within `limit` bytes; the estimate is above the truth, by half for large sets.
 ///
 /// # Errors
 /// [`TooLarge`] with the estimate.

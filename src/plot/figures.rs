@@ -3,15 +3,16 @@
 use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
-use microfacet_model::StudentT;
 use microfacet_model::classic::Isotropic;
+use microfacet_model::{Shape, StudentT, printed};
 
 use super::{Curve, Legend, Panel, PlotError};
 use crate::convert::{Form, Target};
 use crate::family::{Family, Named};
 
 /// The figures there are.
-pub const NAMES: [&str; 4] = ["student-t", "distributions", "relative-error", "highlights"];
+pub const NAMES: [&str; 5] =
+    ["student-t", "distributions", "relative-error", "highlights", "printed-formulas"];
 
 /// Points of a curve.
 const POINTS: usize = 400;
@@ -20,7 +21,7 @@ const POINTS: usize = 400;
 ///
 /// `student-t`: P22 and G1 by γ and by σ (Ribardière et al. 2017, figure 3). `distributions` and `relative-error`: the unit
 /// forms of least RMSE to a Beckmann, and their deviation from it (after Sawicki 2021, figures 1–2). `highlights`: the brightness across a
-/// sphere (after figures 3–5).
+/// sphere (after figures 3–5). `printed-formulas`: the error of Λ as Ribardière et al. 2017 print it.
 ///
 /// # Errors
 /// [`PlotError::Unknown`], listing the names.
@@ -29,6 +30,7 @@ pub fn figure(name: &str) -> Result<Vec<Panel>, PlotError> {
         "student-t" => Ok(student_t()),
         "distributions" => Ok(WIDTHS.iter().map(|&m| unit_forms(m)).collect()),
         "relative-error" => Ok(WIDTHS.iter().map(|&m| deviations(m)).collect()),
+        "printed-formulas" => Ok([3.0, 10.5, 40.0, 150.0].into_iter().map(printed_formulas).collect()),
         "highlights" => Ok(WIDTHS.iter().map(|&m| highlight(m)).collect()),
         _ => Err(PlotError::Unknown(name.into())),
     }
@@ -74,6 +76,35 @@ fn student_t() -> Vec<Panel> {
         panel("P22 by σ, γ = 3", slope, "P22", (0.0, 8.5), Legend::Right, by_sigma(&slopes)),
         panel("G1 by σ, γ = 3", angle, "G1", (0.0, 1.05), Legend::Left, by_sigma(&masking)),
     ]
+}
+
+/// Decimal digits of Λ's error by each printed form that is defined at γ, over log₁₀ of z = cot θ/σ.
+fn printed_formulas(gamma: f64) -> Panel {
+    let shape = Shape::new(gamma).expect("the figure's own parameters");
+    let forms: [(&str, fn(f64, f64) -> Option<f64>); 4] = [
+        ("13–15", |gamma, z| Some(printed::lambda_hypergeometric(gamma, z))),
+        ("21, integer", printed::lambda_integer),
+        ("21, half-integer", printed::lambda_half_integer),
+        ("22–23", |gamma, z| Some(printed::lambda_rational(gamma, z))),
+    ];
+    let defined = forms.into_iter().filter(|(_, form)| form(gamma, 1.0).is_some_and(f64::is_finite));
+    let digits = |(name, form): (&str, fn(f64, f64) -> Option<f64>)| {
+        curve(name.into(), -2.0, 3.0, |log_z| {
+            let z = libm::exp10(log_z);
+            let truth = shape.lambda(shape.unit(z));
+            // No error at all is drawn as that of a half ulp.
+            let error = form(gamma, z).map_or(f64::NAN, |lambda| (lambda - truth).abs() / truth.max(1e-300));
+            libm::log10(error.max(1.1e-16)).min(5.0)
+        })
+    };
+    Panel {
+        title: format!("Λ as printed, γ = {gamma}"),
+        x_label: "log10 of cot θ/σ",
+        y_label: "log10 of the relative error of Λ",
+        y: (-17.0, 5.5),
+        legend: Legend::Right,
+        curves: defined.map(digits).collect(),
+    }
 }
 
 /// A Beckmann and the members of the other families nearest to it.

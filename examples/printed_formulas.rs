@@ -1,0 +1,58 @@
+//! The formulas for Λ as Ribardière et al. 2017 print them, beside the conditioned form: the table of `docs/formulas.md`.
+//!
+//! `cargo run --release --example printed_formulas`; the curves are `microfacet-bake plot printed-formulas`.
+
+use microfacet_model::{Shape, printed};
+
+/// A printed form: its name, and Λ(γ, z) where it is defined.
+type Form = (&'static str, fn(f64, f64) -> Option<f64>);
+
+const FORMS: [Form; 4] = [
+    ("13-15, hypergeometric", |gamma, z| Some(printed::lambda_hypergeometric(gamma, z))),
+    ("21, integer", printed::lambda_integer),
+    ("21, half-integer", printed::lambda_half_integer),
+    ("22-23, rational", |gamma, z| Some(printed::lambda_rational(gamma, z))),
+];
+
+const GAMMAS: [f64; 12] = [1.51, 1.6, 2.0, 2.5, 3.0, 10.0, 10.5, 40.0, 40.5, 100.0, 150.0, 1000.0];
+
+/// z = cot θ/σ from 1e-6 to 1e4.
+fn cotangents() -> impl Iterator<Item = f64> {
+    (0..=400).map(|i| libm::exp10(-6.0 + 0.025 * f64::from(i)))
+}
+
+fn main() {
+    println!(
+        "| eq. | gamma | largest error of G1 | at z | largest G1 - 1 | smallest G1 | no digit of lambda from z |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    for (name, form) in FORMS {
+        for gamma in GAMMAS {
+            if form(gamma, 1.0).is_some() {
+                println!("| {name} | {gamma} | {} |", row(gamma, |z| form(gamma, z).unwrap_or(f64::NAN)));
+            }
+        }
+    }
+}
+
+/// The cells of one form at one γ.
+fn row(gamma: f64, form: impl Fn(f64) -> f64) -> String {
+    let shape = Shape::new(gamma).expect("above 3/2");
+    let (mut error, mut at, mut high, mut low, mut lost) = (0.0, 0.0, f64::NEG_INFINITY, f64::INFINITY, None);
+    for z in cotangents() {
+        let (printed, truth) = (form(z), shape.lambda(shape.unit(z)));
+        let (g1, true_g1) = (1.0 / (1.0 + printed), 1.0 / (1.0 + truth));
+        if !g1.is_finite() {
+            return format!("not a number from z = {z:.1e} | | | |");
+        }
+        if (g1 - true_g1).abs() > error {
+            (error, at) = ((g1 - true_g1).abs(), z);
+        }
+        (high, low) = (g1.max(high), g1.min(low));
+        if (printed - truth).abs() > 0.5 * truth && lost.is_none() {
+            lost = Some(z);
+        }
+    }
+    let lost = lost.map_or("-".into(), |z| format!("{z:.1e}"));
+    format!("{error:.1e} | {at:.1e} | {:.1e} | {low:.1e} | {lost}", high - 1.0)
+}

@@ -1,0 +1,7 @@
+//! The reader of images: any bytes are refused or give a table.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let _ = microfacet_bake::store::decode_exr(bytes);
+});

@@ -1,0 +1,7 @@
+//! Scenes in .mtlx files: any bytes are read or refused.
+
+#![no_main]
+
+include!("common.rs");
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| scene("a.mtlx", bytes));

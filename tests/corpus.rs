@@ -1,0 +1,38 @@
+//! The seeds of the fuzz targets, and what fuzzing has found since, on a stable compiler: each is read or refused.
+
+use std::fs;
+use std::path::Path;
+
+include!("../fuzz/fuzz_targets/common.rs");
+
+/// Files of a folder of seeds; those of a corpus that fuzzing has left beside them too.
+fn seeds(target: &str) -> Vec<Vec<u8>> {
+    let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz");
+    let list = |kind: &str| fs::read_dir(fuzz.join(kind).join(target)).into_iter().flatten();
+    let files: Vec<_> =
+        list("seeds").chain(list("corpus")).map(|entry| fs::read(entry.unwrap().path()).unwrap()).collect();
+    assert!(!files.is_empty(), "no seeds for {target}");
+    files
+}
+
+#[test]
+fn table_files() {
+    seeds("loader").iter().for_each(|bytes| load(bytes));
+    for bytes in seeds("image") {
+        let _ = microfacet_bake::store::decode_exr(&bytes);
+    }
+}
+
+#[test]
+fn scenes() {
+    let targets = [
+        ("recipe", "a.toml"),
+        ("pbrt", "a.pbrt"),
+        ("mitsuba", "a.xml"),
+        ("gltf", "a.gltf"),
+        ("materialx", "a.mtlx"),
+    ];
+    for (target, name) in targets {
+        seeds(target).iter().for_each(|bytes| scene(name, bytes));
+    }
+}
