@@ -98,7 +98,7 @@ impl Tables {
         gamma == 2.0 || gamma > 1.5 && tabulated
     }
 
-    /// Binds a material: σ (one number, or a pair for x and y) and γ ∈ (3/2, ∞] are fixed, and the γ axis is collapsed there.
+    /// Binds a material: σ ∈ [1e-8, 1e6] (one number, or a pair for x and y) and γ ∈ (3/2, ∞] are fixed, and the γ axis is collapsed there.
     ///
     /// γ = 2 is GGX with α = σ, γ = `f64::INFINITY` is Beckmann. Where no table covers γ = 2 the material is [`StudentT::ggx`]. γ is
     /// taken in double precision, since near 3/2 single precision is too coarse for it. Takes some microseconds and holds about
