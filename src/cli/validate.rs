@@ -8,7 +8,8 @@ use microfacet_bake::validate::configuration::{Configuration, configurations};
 use microfacet_bake::validate::{LEVEL, Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all};
 
 use super::{
-    Done, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, print_json, progress, tables,
+    Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, print_json, progress,
+    tables,
 };
 
 /// Test what tables draw against the analytic densities by chi-square.
@@ -70,6 +71,13 @@ fn parse_configurations(text: &str) -> std::result::Result<usize, String> {
 
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
+    if !set.tables().iter().any(|table| table.kind.axes()[0] == "gamma") {
+        return Err(Failure(
+            "the set has no Student-t tables to judge; those of other distributions carry what was measured when they were baked: \
+             see `microfacet-bake inspect`"
+                .into(),
+        ));
+    }
     if args.stress {
         return super::stress::stress(&set, args.points, args.seed, args.json);
     }
