@@ -11,7 +11,7 @@ use crate::convert::{Form, Target};
 use crate::family::{Family, Named};
 
 /// Λ(γ, z) in one of the arrangements compared.
-type Form = fn(f64, f64) -> Option<f64>;
+type PrintedLambda = fn(f64, f64) -> Option<f64>;
 
 /// The figures there are.
 pub const NAMES: [&str; 5] =
@@ -84,14 +84,14 @@ fn student_t() -> Vec<Panel> {
 /// Decimal digits of Λ's error by each printed form that is defined at γ, over log₁₀ of z = cot θ/σ.
 fn printed_formulas(gamma: f64) -> Panel {
     let shape = Shape::new(gamma).expect("the figure's own parameters");
-    let forms: [(&str, Form); 4] = [
+    let forms: [(&str, PrintedLambda); 4] = [
         ("13–15", |gamma, z| Some(printed::lambda_hypergeometric(gamma, z))),
         ("21, integer", printed::lambda_integer),
         ("21, half-integer", printed::lambda_half_integer),
         ("22–23", |gamma, z| Some(printed::lambda_rational(gamma, z))),
     ];
     let defined = forms.into_iter().filter(|(_, form)| form(gamma, 1.0).is_some_and(f64::is_finite));
-    let digits = |(name, form): (&str, Form)| {
+    let digits = |(name, form): (&str, PrintedLambda)| {
         curve(name.into(), -2.0, 3.0, |log_z| {
             let z = libm::exp10(log_z);
             let truth = shape.lambda(shape.unit(z));
