@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use microfacet_model::classic::{AshikhminShirley, Gauss, Gtr, Isotropic, Member, Schlick};
+use microfacet_model::classic::{AshikhminShirley, Gauss, Gtr, Isotropic, Member, Schlick, Tabulated};
 
 /// A named distribution of one or two parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -35,6 +35,44 @@ pub struct Named {
     pub family: Family,
     /// Its parameters, in the order of [`Family::parameters`].
     pub values: Vec<f64>,
+}
+
+/// A distribution that a material may have of its own, outside the Student-t family.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Distribution {
+    /// By name and parameters.
+    Named(Named),
+    /// From a file of angles (radians) and D.
+    Measured {
+        /// The file as the recipe names it.
+        file: String,
+        /// What it holds.
+        table: Tabulated,
+    },
+}
+
+impl Distribution {
+    /// The distribution itself.
+    ///
+    /// # Errors
+    /// As [`Family::build`].
+    pub fn build(&self) -> Result<Box<dyn Isotropic>, FamilyError> {
+        match self {
+            Self::Named(named) => named.build(),
+            Self::Measured { table, .. } => Ok(Box::new(table.clone())),
+        }
+    }
+
+    /// One text for one distribution, such as `gtr:0.2,1.5` or `measured:steel.csv`, with every digit.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Named(named) => {
+                let values: Vec<String> = named.values.iter().map(|x| format!("{x}")).collect();
+                format!("{}:{}", named.family.name(), values.join(","))
+            }
+            Self::Measured { file, .. } => format!("measured:{file}"),
+        }
+    }
 }
 
 /// Why a distribution could not be made.

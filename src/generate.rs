@@ -4,14 +4,17 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::io;
 
+use microfacet_model::classic::Marginal;
 use microfacet_sampler::{LoadError, MaterialEntry, Precision, Provenance, Table, Tables, encode};
 
 use crate::bake::{self, NUMERICS};
 use crate::budget::{self, Memo, OutOfReach};
 use crate::cache::Cache;
+use crate::family::Distribution;
 use crate::plan::Need;
 use crate::spec::{Quality, TableSpec, general_set};
 use crate::validate::certificate::certify;
+use crate::validate::radial;
 
 /// Points measured at each γ for a certificate.
 pub(crate) const CERTIFICATE_POINTS: usize = 4000;
@@ -52,6 +55,16 @@ pub enum BakeError {
         /// What the smallest set takes.
         smallest: usize,
     },
+    /// A byte budget with a distribution outside the family, which has no sizes to choose from; its name.
+    NoByteBudget(String),
+    /// A distribution outside the family whose tables err by more than [`Target::MaxError`] at every quality; its name and error.
+    TooCoarse(String, f64),
+}
+
+impl From<LoadError> for BakeError {
+    fn from(why: LoadError) -> Self {
+        Self::Set(why)
+    }
 }
 
 impl fmt::Display for BakeError {
@@ -59,6 +72,13 @@ impl fmt::Display for BakeError {
         match self {
             Self::Set(why) => why.fmt(f),
             Self::OutOfReach(why) => why.fmt(f),
+            Self::NoByteBudget(name) => write!(
+                f,
+                "{name} has tables of its own, which no byte budget covers: choose --quality or --max-error, or bake it apart"
+            ),
+            Self::TooCoarse(name, error) => {
+                write!(f, "the tables of {name} err by {error:.1e} at the highest quality: allow that much")
+            }
             Self::TooSmall { max_bytes, smallest } => write!(
                 f,
                 "no set of these materials fits into {max_bytes} bytes: the smallest, with an error of 0.1, has {smallest}"
@@ -112,10 +132,79 @@ pub fn generate(
     Ok(Baked { set, baked: job.baked, cache_error: job.cache_error })
 }
 
+/// Adds the tables of distributions outside the family, four each, to a set whose provenance lists their materials.
+///
+/// # Errors
+/// [`BakeError`] for a target that cannot be met.
+pub fn add_distributions(
+    baked: Baked,
+    distributions: &[Distribution],
+    target: Target,
+    cache: &Cache,
+    mut progress: impl FnMut(),
+) -> Result<Baked, BakeError> {
+    let provenance = baked.set.provenance().clone();
+    let mut tables = baked.set.tables().to_vec();
+    let mut job = Job { cache, baked: baked.baked, cache_error: baked.cache_error };
+    for distribution in distributions {
+        let label = distribution.label();
+        let entry = provenance.materials.iter().find(|entry| entry.distribution == label);
+        let entry =
+            entry.ok_or_else(|| LoadError::Invalid(format!("no material has the distribution {label}")))?;
+        let mut at = |quality, precision| {
+            // Its values, too: two measured files may have the same name.
+            let key = format!("{distribution:?}, {label}, {quality:?}, {precision:?}");
+            job.kept(&key, || radial_tables(distribution, entry, quality, precision))
+        };
+        let own = match target {
+            Target::Quality(quality, precision) => at(quality, precision)?,
+            Target::MaxBytes(_) => return Err(BakeError::NoByteBudget(label)),
+            Target::MaxError(max_error) => {
+                let mut smallest = f64::INFINITY;
+                let mut found = None;
+                for quality in [Quality::Draft, Quality::Default, Quality::High] {
+                    let own = at(quality, Precision::F32)?;
+                    let error = own.iter().map(worst_error).fold(0.0, f64::max);
+                    smallest = smallest.min(error);
+                    if error <= max_error {
+                        found = Some(own);
+                        break;
+                    }
+                }
+                found.ok_or(BakeError::TooCoarse(label, smallest))?
+            }
+        };
+        tables.extend(own);
+        progress();
+    }
+    Ok(Baked {
+        set: Tables::from_tables(provenance, tables)?,
+        baked: job.baked,
+        cache_error: job.cache_error,
+    })
+}
+
+/// The certified tables of one distribution outside the family.
+fn radial_tables(
+    distribution: &Distribution,
+    entry: &MaterialEntry,
+    quality: Quality,
+    precision: Precision,
+) -> Result<Vec<Table>, BakeError> {
+    let built = distribution.build().map_err(|why| LoadError::Invalid(why.to_string()))?;
+    let marginal = Marginal::new(&*built);
+    let mut tables = bake::bake_radial(&marginal, &entry.table_suffix(), quality, precision);
+    radial::certify(&mut tables, entry, &marginal)?;
+    Ok(tables)
+}
+
 /// The largest error that a table's certificate states; ∞ if there is none.
 pub fn worst_error(table: &Table) -> f64 {
     let figure = |key| table.certificate.get(key).copied();
-    figure("g1_max_error").or_else(|| figure("cdf_max_error")).unwrap_or(f64::INFINITY)
+    figure("g1_max_error")
+        .or_else(|| figure("cdf_max_error"))
+        .or_else(|| figure("d_max_error"))
+        .unwrap_or(f64::INFINITY)
 }
 
 struct Job<'a> {

@@ -7,11 +7,16 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake_radial;
+use microfacet_bake::cache::Cache;
 use microfacet_bake::family::Named;
+use microfacet_bake::generate::{Target, add_distributions, generate, provenance};
+use microfacet_bake::plan::{Options, Plan, entries};
+use microfacet_bake::scene::{Scene, load};
 use microfacet_bake::spec::Quality;
+use microfacet_bake::validate::radial::measure;
 use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
 use microfacet_model::statistics::chi_square;
-use microfacet_sampler::{MaterialEntry, Precision, Provenance, Radial, Tables};
+use microfacet_sampler::{Kind, MaterialEntry, Precision, Provenance, Radial, Tables, encode};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -53,29 +58,12 @@ fn tables_follow_the_quadrature() {
         let marginal = Marginal::new(&*d);
         let radial = bound(&name, &marginal);
         let seconds = start.elapsed().as_secs_f64();
-        let (mut g1, mut cdf, mut across, mut density) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-        for i in 0..90 {
-            let theta = (f64::from(i) + 0.37) * 0.5 * PI / 90.0;
-            let v = view(theta);
-            g1 = g1.max((f64::from(radial.g1(v)) - marginal.g1(theta)).abs());
-            density = density.max((f64::from(radial.d(v)) / d.d(0.0) - d.unit(theta)).abs());
-            let z = theta.cos() / (marginal.sigma() * theta.sin());
-            let exact = MarginalView::new(&marginal, z);
-            for j in 0..40 {
-                let u = [(f64::from(j) + 0.21) / 40.0, (f64::from(j * 7 % 40) + 0.6) / 40.0];
-                let m = radial.sample_visible_normal(v, u.map(|u| u as f32)).as_dvec3();
-                let slope = DVec3::new(m.x, m.y, 0.0) / (m.z * marginal.sigma());
-                cdf = cdf.max((exact.shares(slope.x).below - u[0]).abs());
-                let tail = marginal.across_at(slope.x.abs()).tail(slope.y.abs());
-                let share = if slope.y < 0.0 { tail } else { 1.0 - tail };
-                across = across.max((share - u[1]).abs());
-            }
-        }
+        let e = measure(&radial, &marginal);
         println!(
-            "{name:16} G1 {g1:.1e}  CDF {cdf:.1e}  across {across:.1e}  D/D(0) {density:.1e}  {seconds:.2} s"
+            "{name:16} G1 {:.1e}  CDF {:.1e}  across {:.1e}  D/D(0) {:.1e}  {seconds:.2} s",
+            e.g1, e.along, e.across, e.density
         );
-        assert!(g1 < 1e-4 && cdf < 5e-4 && density < 1e-3, "{name}: G1 {g1:e}, CDF {cdf:e}, D {density:e}");
-        assert!(across < 5e-4, "{name}: slope across {across:e}");
+        assert!(e.g1 < 1e-4 && e.along < 5e-4 && e.across < 5e-4 && e.density < 1e-3, "{name}: {e:?}");
     }
 }
 
@@ -116,4 +104,65 @@ fn draws_pass_chi_square() {
         smallest.0,
         smallest.1
     );
+}
+
+#[test]
+fn recipes_name_distributions() {
+    let material = |text: &str| {
+        let recipe = format!("[[material]]\nname = \"it\"\n{text}\n");
+        Scene::from_recipe_str(&recipe).map(|scene| (scene.materials[0].clone(), scene.to_recipe()))
+    };
+    // An exact member is read as the family.
+    let (beckmann, _) = material("distribution = \"beckmann\"\nm = 0.3").unwrap();
+    assert!(beckmann.distribution.is_none() && beckmann.gamma.min == f64::INFINITY);
+    let (ggx, _) = material("distribution = \"gtr\"\nc = 0.2\ngamma = 2").unwrap();
+    assert!(ggx.distribution.is_none() && (ggx.roughness.x().min - 0.2).abs() < 1e-15);
+    // Another one keeps its name, through the recipe that is written and read again.
+    let (gtr, text) = material("distribution = \"gtr\"\nc = 0.2\ngamma = 1.3").unwrap();
+    assert_eq!(gtr.distribution.as_ref().unwrap().label(), "gtr:0.2,1.3");
+    let again = Scene::from_recipe_str(&text).unwrap();
+    assert!(again.materials[0].asks_the_same(&gtr), "{text}");
+    let refused = |text: &str| material(text).unwrap_err().to_string();
+    assert!(refused("distribution = \"gtr\"\nc = 0.2").contains("has no `gamma`"));
+    assert!(refused("distribution = \"gtr\"\nc = 2.0\ngamma = 3").contains("(0, 1]"));
+    assert!(refused("distribution = \"phong\"\nn = 3").contains("there are beckmann"));
+    assert!(refused("distribution = \"gauss\"\nm = 0.2\nsigma = 0.1").contains("unknown key `sigma`"));
+    assert!(refused("distribution = { measured = \"nowhere.csv\" }").contains("nowhere.csv"));
+    assert!(refused("distribution = 3").contains("name in quotes"));
+}
+
+#[test]
+fn a_recipe_bakes_all_kinds() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..=200)
+        .map(|i| f64::from(i) * 0.5 * PI / 200.0)
+        .map(|t| format!("{t},{}\n", (-9.0 * t * t).exp()))
+        .collect();
+    std::fs::write(folder.path().join("steel.csv"), format!("theta,D\n{rows}")).unwrap();
+    let recipe = folder.path().join("metals.toml");
+    let text = "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 3.0\n\n\
+                [[material]]\nname = \"paint\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.3\n\n\
+                [[material]]\nname = \"steel\"\ndistribution = { measured = \"steel.csv\" }\n";
+    std::fs::write(&recipe, text).unwrap();
+    let scene = load(&recipe).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    assert_eq!((plan.needs.len(), plan.distributions.len()), (1, 2));
+    let bake = |target| {
+        let origin = provenance(scene.to_recipe(), entries(&scene));
+        let baked = generate(&plan.needs, target, origin, &Cache::none(), || ()).unwrap();
+        add_distributions(baked, &plan.distributions, target, &Cache::none(), || ())
+    };
+    assert!(bake(Target::MaxBytes(1 << 20)).unwrap_err().to_string().contains("gtr:0.2,1.3"));
+    let set = bake(Target::Quality(Quality::Draft, Precision::F32)).unwrap().set;
+    let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
+    let v = Vec3::new(0.6, 0.0, 0.8);
+    assert!(set.material("gold").unwrap().g1(v) > 0.9);
+    for name in ["paint", "steel"] {
+        let m = set.radial(name).unwrap().sample_visible_normal(v, [0.4, 0.6]);
+        assert!(m.dot(v) > 0.0 && m.z > 0.0, "{name}: {m}");
+        assert!(set.material(name).unwrap_err().to_string().contains("radial"));
+    }
+    assert!(set.radial("gold").is_err());
+    let figures = set.tables().iter().find(|table| table.kind == Kind::RadialShadowing).unwrap();
+    assert!(figures.certificate["g1_max_error"] < 1e-3);
 }

@@ -11,33 +11,29 @@ use crate::student_t::{Stretched, StudentT};
 const NEAR: f64 = 0.8;
 
 /// The slopes beyond a, for a bound lobe.
-pub(crate) struct Below {
+pub(crate) struct Below<'a> {
+    lobe: &'a StudentT,
     a: f64,
     s: f64,
-    /// ∫ (x − a)⁺ p(x) dx over ∫ₐ^∞ x p(x) dx ∈ (0, 1].
-    share: f64,
-    /// M₀ (1 + s a²)^(−k) = ∫ₐ^∞ x p(x) dx.
-    moment: f64,
 }
 
-impl Below {
+impl<'a> Below<'a> {
     /// For a view `rho` across and `depth` ≥ 0 below the horizon of the lobe.
-    pub(crate) fn new(lobe: &StudentT, rho: f32, depth: f32) -> Self {
-        let (s, a) = (f64::from(lobe.s), f64::from(depth) / f64::from(rho));
-        let moment = f64::from(lobe.first_moment()) * decay(s, a * a);
-        let share = if a > NEAR {
-            excess_share(s, a)
-        } else {
-            // E[(X−a)⁺] = E[(X+a)⁺] − a.
-            let above = Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: 1.0, z: a as f32 };
-            (1.0 / f64::from(lobe.inverse_area(&above)) - a) / moment
-        };
-        Self { a, s, share, moment }
+    pub(crate) fn new(lobe: &'a StudentT, rho: f32, depth: f32) -> Self {
+        Self { lobe, a: f64::from(depth) / f64::from(rho), s: f64::from(lobe.s) }
     }
 
     /// ∫ (x − a)⁺ p(x) dx.
     pub(crate) fn excess(&self) -> f32 {
-        (self.moment * self.share) as f32
+        let Self { lobe, a, s } = *self;
+        if a > NEAR {
+            // ∫ₐ^∞ x p(x) dx = M₀ (1 + s a²)^(−k).
+            let moment = f64::from(lobe.first_moment()) * decay(s, a * a);
+            return (moment * excess_share(s, a)) as f32;
+        }
+        // E[(X−a)⁺] = E[(X+a)⁺] − a.
+        let above = Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: 1.0, z: a as f32 };
+        (1.0 / f64::from(lobe.inverse_area(&above)) - a) as f32
     }
 
     /// A slope, from a first number in [0, 1) and as many more as needed.

@@ -77,7 +77,7 @@ pub struct MaterialEntry {
 impl MaterialEntry {
     /// What follows the kind in the names of this material's own tables; empty for a Student-t.
     pub fn table_suffix(&self) -> String {
-        self.distribution.replace([':', ','], "_")
+        self.distribution.replace([':', ',', '/', '\\', ' '], "_")
     }
 }
 

@@ -28,6 +28,8 @@ pub struct Radial {
     cells: usize,
     rows: usize,
     roots: u32,
+    /// Largest unit slope; ∞ where normals reach the horizon.
+    reach: f32,
     /// D^(1/4) by the half tangent of the slope.
     density: Vec<Node>,
 }
@@ -51,6 +53,10 @@ impl Radial {
         let kappa = match shadowing.axes[0].mapping {
             Mapping::Rational { scale, .. } => scale as f32,
             _ => unreachable!("validated on load"),
+        };
+        let reach = match conditional.axes[0].mapping {
+            Mapping::Rational { scale, .. } => scale as f32,
+            _ => f32::INFINITY,
         };
         let half = slope.axes[1].nodes.len();
         let mut slopes = nodes(slope);
@@ -77,6 +83,7 @@ impl Radial {
             cells: width - 1,
             rows: conditional.axes[0].nodes.len() - 1,
             roots: roots(&conditional.axes[1]),
+            reach,
             density: nodes(density),
         })
     }
@@ -130,16 +137,26 @@ impl Radial {
     }
 
     /// The slope across in units of √(1 + x²), given the in-plane slope.
+    ///
+    /// Tabulated by the half tangent of that slope; where slopes are bounded by R, in units of √(1 − x²/R²) by x/(x + R), which keeps the rows
+    /// alike up to the bound.
     #[inline(always)]
     fn sample_across(&self, x: Slope, u: f32) -> Slope {
         let a = x.x.abs();
-        let h = a / (x.z + sqrt(a * a + x.z * x.z));
-        let (row, between) = locate(h * self.rows as f32, self.rows);
+        let length = sqrt(a * a + x.z * x.z);
+        let (coordinate, shrink) = if self.reach < f32::INFINITY {
+            let z = self.reach * x.z;
+            (a / (a + z), sqrt((z - a).max(0.0) * (z + a)) / (self.reach * length))
+        } else {
+            (a / (x.z + length), 1.0)
+        };
+        let (row, between) = locate(coordinate * self.rows as f32, self.rows);
         let (cell, w) = locate(mirrored_root(u, self.roots) * self.cells as f32, self.cells);
         let start = row * (self.cells + 1) + cell;
         let below = start + self.cells + 1;
         let (a, b) = between_rows(&self.across[start..start + 2], &self.across[below..below + 2], 0, between);
-        Slope::from_end(hermite(a, b, w), if u > 0.5 { 1.0 } else { -1.0 })
+        let t = Slope::from_end(hermite(a, b, w), if u > 0.5 { 1.0 } else { -1.0 });
+        Slope { x: t.x * shrink, z: t.z }
     }
 
     /// Density of visible normals (v·m)⁺ D(m) G1(v)/(v·n) per steradian, with the tables' D and G1.

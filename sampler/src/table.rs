@@ -29,7 +29,7 @@ pub enum Kind {
     RadialShadowing,
     /// As `VisibleSlope` for one such distribution, over view × u₁.
     RadialSlope,
-    /// Slope across in units of √(1 + x²), over the in-plane slope x × u₂.
+    /// Slope across over the in-plane slope x × u₂, in units of √(1 + x²), or of √(1 − x²/R²) where no slope exceeds R.
     RadialConditional,
     /// Fourth root of D, over the slope of the normal.
     RadialDensity,
@@ -182,8 +182,10 @@ impl Table {
                 self.axes[0].mapping == Mapping::HalfTangent
                     && matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: false, .. })
             }
+            // κ is the largest slope of a distribution that has one.
             Kind::RadialConditional => {
-                self.axes[0].mapping == Mapping::HalfTangent
+                let bounded = matches!(self.axes[0].mapping, Mapping::Rational { pole, .. } if pole == 2.0);
+                (bounded || self.axes[0].mapping == Mapping::HalfTangent)
                     && matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: true, .. })
             }
             Kind::RadialDensity => self.axes[0].mapping == Mapping::HalfTangent,

@@ -31,6 +31,10 @@ pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precisio
         axis(name, Mapping::MirroredPower { power: POWER, odd }, Interpolation::Hermite, count)
     };
     let kappa = marginal.beyond(0.0).excess;
+    let slopes = match marginal.reach() {
+        reach if reach.is_finite() => Mapping::Rational { scale: reach, pole: 2.0 },
+        _ => Mapping::HalfTangent,
+    };
     let view = Mapping::Rational { scale: kappa, pole: 2.0 };
     let table = |kind: Kind, axes, values: Vec<[f32; 2]>| {
         let table = Table {
@@ -61,10 +65,7 @@ pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precisio
         ),
         table(
             Kind::RadialConditional,
-            vec![
-                axis("slope", Mapping::HalfTangent, Interpolation::Linear, SLOPES),
-                numbers("u2", true, across_numbers),
-            ],
+            vec![axis("slope", slopes, Interpolation::Linear, SLOPES), numbers("u2", true, across_numbers)],
             across(marginal, across_numbers),
         ),
         table(
@@ -171,10 +172,16 @@ fn along(marginal: &Marginal, views: usize, numbers: usize) -> Vec<[f32; 2]> {
 
 fn across(marginal: &Marginal, numbers: usize) -> Vec<[f32; 2]> {
     let row = |i: usize| {
-        // A row at infinity has no quadrature; the one just before it has reached the limit.
-        let h = (i as f64 / (SLOPES - 1) as f64).min(1.0 - 1e-5);
-        let x = slope(h);
-        let scale = (1.0 + x * x).sqrt();
+        let at = i as f64 / (SLOPES - 1) as f64;
+        let reach = marginal.reach();
+        // A row at infinity, or at the bound R of the slopes and beyond, has no quadrature; one just before has reached the limit.
+        let (x, scale) = if reach.is_finite() {
+            let part = (at / (1.0 - at)).min(1.0 - 1e-6);
+            (reach * part, ((1.0 - part) * (1.0 + part)).sqrt())
+        } else {
+            let x = slope(at.min(1.0 - 1e-5));
+            (x, (1.0 + x * x).sqrt())
+        };
         let across = marginal.across_at(x);
         let mut g = 1e-3;
         let mut half = round((0..numbers).map(|j| {

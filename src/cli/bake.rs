@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use serde_json::json;
 
 use microfacet_bake::cache::Cache;
-use microfacet_bake::generate::{Baked, Target, generate};
+use microfacet_bake::generate::{Baked, Target, add_distributions, generate};
 use microfacet_bake::memory;
 use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::{self, Scene};
@@ -128,9 +128,11 @@ pub(super) fn run(args: Args) -> Outcome {
         Target::Quality(..) => specs.len() + plan.needs.len(),
         _ => plan.needs.len(),
     };
-    let bar = progress(steps, "baking");
+    let bar = progress(steps + plan.distributions.len(), "baking");
     let provenance = provenance(scene.as_ref().map(|scene| (scene, &plan)));
-    let result = generate(&plan.needs, target, provenance, &args.cache(), || bar.inc(1))?;
+    let cache = args.cache();
+    let result = generate(&plan.needs, target, provenance, &cache, || bar.inc(1))?;
+    let result = add_distributions(result, &plan.distributions, target, &cache, || bar.inc(1))?;
     bar.finish_and_clear();
     if let Some(why) = &result.cache_error {
         eprintln!(
@@ -164,10 +166,11 @@ fn report_ignored(scene: &Scene) {
 /// What a table's certificate says about its largest error.
 pub(super) fn largest_error(table: &Table) -> String {
     let figure = |key: &str| table.certificate.get(key);
-    for (quantity, name) in [("g1", "G1"), ("cdf", "CDF")] {
+    for (quantity, name) in [("g1", "G1"), ("cdf", "CDF"), ("d", "D/D(0)")] {
         if let Some(max) = figure(&format!("{quantity}_max_error")) {
-            let rms = figure(&format!("{quantity}_rms_error")).copied().unwrap_or(f64::NAN);
-            return format!("{name} error max {max:.2e}, rms {rms:.2e}");
+            let rms = figure(&format!("{quantity}_rms_error"));
+            let rms = rms.map_or(String::new(), |rms| format!(", rms {rms:.2e}"));
+            return format!("{name} error max {max:.2e}{rms}");
         }
     }
     "not certified".into()

@@ -79,6 +79,7 @@ fn reason(verdict: &Verdict) -> [&'static str; 2] {
         Verdict::Same { .. } => ["same", "another material needs the same tables"],
         Verdict::Within { .. } => ["within", "its gamma lies in a range that is baked for another material"],
         Verdict::ClosedForm => ["closed form", "GGX: D, G1 and visible normals have closed forms; no table"],
+        Verdict::Own => ["own tables", "no Student-t: tables of its own, not counted below"],
         Verdict::Embedded => ["embedded", "covered by the default set compiled into the sampler"],
         Verdict::NotRough => ["not rough", "no microfacets"],
         Verdict::NotUsed => ["not used", "no geometry wears it"],
@@ -123,6 +124,11 @@ impl Report<'_> {
                 cost.seconds,
                 list(names.into_iter())
             );
+        }
+        let own = self.names(|verdict| *verdict == Verdict::Own);
+        if !own.is_empty() {
+            let [short, long] = reason(&Verdict::Own);
+            text += &format!("bake  {short:22} {long}: {}\n", list(own.into_iter()));
         }
         for verdict in [Verdict::ClosedForm, Verdict::Embedded, Verdict::NotRough, Verdict::NotUsed] {
             let names = self.names(|other| *other == verdict);

@@ -13,6 +13,7 @@ use microfacet_sampler::MaterialEntry;
 pub use cost::{Cost, cost};
 pub use needs::Need;
 
+use crate::family::Distribution;
 use crate::scene::{Interval, Material, Scene};
 use crate::spec::GAMMA_MIN;
 
@@ -54,6 +55,8 @@ pub enum Verdict {
     },
     /// GGX: D, G1 and visible normals have closed forms, which the sampler crate uses where there is no table.
     ClosedForm,
+    /// It is no Student-t: tables of its own are baked for it.
+    Own,
     /// The default set that is compiled into the sampler crate covers it.
     Embedded,
     /// It has no microfacets.
@@ -77,6 +80,8 @@ impl Verdict {
 pub struct Plan {
     /// Disjoint needs, from Beckmann to heavy tails: the ranges first, then the single shapes.
     pub needs: Vec<Need>,
+    /// Distributions outside the family that materials have, each once.
+    pub distributions: Vec<Distribution>,
     /// One verdict for each material of the scene, in order.
     pub verdicts: Vec<Verdict>,
 }
@@ -84,7 +89,7 @@ pub struct Plan {
 impl Plan {
     /// Everything: all γ that tables cover.
     pub fn general() -> Self {
-        Self { needs: vec![Need::general()], verdicts: Vec::new() }
+        Self { needs: vec![Need::general()], ..Self::default() }
     }
 
     /// The plan of a scene.
@@ -122,7 +127,7 @@ impl Plan {
             Err(verdict) => verdict.clone(),
         };
         let verdicts = wants.iter().enumerate().map(verdict).collect();
-        Ok(Self { needs, verdicts })
+        Ok(Self { needs, distributions: distributions(scene), verdicts })
     }
 
     /// Whether some material is left to closed forms: then even a set without tables is worth writing.
@@ -145,6 +150,9 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
     if !is_rough(material) {
         return Ok(Err(Verdict::NotRough));
     }
+    if material.distribution.is_some() {
+        return Ok(Err(Verdict::Own));
+    }
     let gamma = material.gamma;
     if gamma.min < GAMMA_MIN {
         return Err(TooHeavy { material: material.name.clone(), gamma: gamma.min });
@@ -153,6 +161,17 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
         return Ok(Err(Verdict::ClosedForm));
     }
     Ok(if options.embedded { Err(Verdict::Embedded) } else { Ok(gamma) })
+}
+
+/// The distributions of materials that are no Student-t, in order and without repetition.
+fn distributions(scene: &Scene) -> Vec<Distribution> {
+    let mut all: Vec<Distribution> = Vec::new();
+    for material in scene.materials.iter().filter(|material| material.used) {
+        if let Some(distribution) = material.distribution.as_ref().filter(|d| !all.contains(d)) {
+            all.push(distribution.clone());
+        }
+    }
+    all
 }
 
 /// Whether there are microfacets at some point at least.
@@ -169,7 +188,7 @@ pub fn entries(scene: &Scene) -> Vec<MaterialEntry> {
             name: material.name.clone(),
             sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
             s: [s_of(max), s_of(min)],
-            distribution: String::new(),
+            distribution: material.distribution.as_ref().map_or(String::new(), Distribution::label),
         }
     };
     scene.materials.iter().filter(|material| material.used && is_rough(material)).map(entry).collect()

@@ -77,6 +77,7 @@ impl Builder {
             name: self.unique(name),
             roughness: lobe.roughness,
             gamma: lobe.gamma,
+            distribution: None,
             fresnel: lobe.fresnel,
             masking: lobe.masking,
             origin: Origin { format: self.format, place: place.clone(), lobe: lobe.name },

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::{Interval, Place};
+use crate::family::Distribution;
 
 /// The slope roughness σ of a microfacet lobe, along the tangent (x) and the bitangent (y).
 ///
@@ -158,6 +159,8 @@ pub struct Material {
     pub roughness: Roughness,
     /// The shape γ > 3/2; `INFINITY` is Beckmann, 2 is GGX.
     pub gamma: Interval,
+    /// A distribution outside the Student-t family; σ is then the median slope of its normals, and γ means nothing.
+    pub distribution: Option<Distribution>,
     /// The facets' reflectance; `None` where the scene states none, or none of these forms.
     pub fresnel: Option<Fresnel>,
     /// The form of G2 that the scene's renderer evaluates; `None` where the format leaves it open.
@@ -175,6 +178,7 @@ impl Material {
         self.name == other.name
             && self.roughness == other.roughness
             && self.gamma == other.gamma
+            && self.distribution == other.distribution
             && self.fresnel == other.fresnel
             && self.masking == other.masking
     }

@@ -9,6 +9,10 @@
 //! masking = "height-correlated"  # or "uncorrelated"
 //! ```
 //!
+//! `distribution` with its parameters stands in the place of σ and γ for a distribution by another name: `distribution =
+//! "gtr"`, `c = 0.2`, `gamma = 1.5`, or `distribution = { measured = "steel.csv" }` for a CSV of angles in radians and D. Exact members of the
+//! family (Beckmann, Trowbridge–Reitz, Blinn–Phong, Hyper-Cauchy) are read as such.
+//!
 //! `fresnel` and `masking` may be absent. The ends of an anisotropic roughness may be ranges as
 //! well: `sigma = [{ min = 0.1, max = 0.2 }, 0.3]`.
 
@@ -17,13 +21,17 @@ use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
+use microfacet_model::classic::Marginal;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Lines, did_you_mean};
+use crate::family::{Distribution, Family, Named};
+use crate::fit::{Angles, read_csv};
+
 use super::{Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, SceneError};
 
-const MATERIAL_KEYS: [&str; 5] = ["name", "sigma", "gamma", "fresnel", "masking"];
+const MATERIAL_KEYS: [&str; 6] = ["name", "sigma", "gamma", "distribution", "fresnel", "masking"];
 const FRESNEL_KEYS: [&str; 3] = ["schlick", "conductor", "dielectric"];
 
 /// Reads the materials of the recipe `text`, the content of `file`.
@@ -45,7 +53,18 @@ fn entry(material: &Material) -> String {
         Roughness::Anisotropic { x, y } => format!("[{}, {}]", range(x), range(y)),
     };
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "sigma = {sigma}\ngamma = {}", range(material.gamma));
+    let _ = match &material.distribution {
+        None => writeln!(text, "sigma = {sigma}\ngamma = {}", range(material.gamma)),
+        Some(Distribution::Measured { file, .. }) => {
+            writeln!(text, "distribution = {{ measured = {} }}", quoted(file))
+        }
+        Some(Distribution::Named(named)) => {
+            let number = |x: f64| range(Interval::point(x));
+            let pairs = named.family.parameters().iter().zip(&named.values);
+            let values: String = pairs.map(|(key, x)| format!("\n{key} = {}", number(*x))).collect();
+            writeln!(text, "distribution = {}{values}", quoted(named.family.name()))
+        }
+    };
     if let Some(fresnel) = material.fresnel {
         let value = match fresnel {
             Fresnel::Mirror => "\"mirror\"".to_owned(),
@@ -78,6 +97,9 @@ fn range(interval: Interval) -> String {
         format!("{{ min = {}, max = {} }}", number(interval.min), number(interval.max))
     }
 }
+
+/// Roughness, shape, and what replaces them.
+type Lobe = (Roughness, Interval, Option<Distribution>);
 
 struct Source<'a> {
     text: &'a str,
@@ -134,7 +156,13 @@ impl Source<'_> {
         let table = entry.get_ref().as_table().ok_or_else(|| {
             place.invalid("a material must be a table: head each material with [[material]]")
         })?;
-        self.only_keys(table, &MATERIAL_KEYS)?;
+        let lobe = match table.get("distribution") {
+            Some(value) => Some(self.distribution(table, value)?),
+            None => {
+                self.only_keys(table, &MATERIAL_KEYS)?;
+                None
+            }
+        };
         let required = |key: &str, example: &str| {
             table.get(key).ok_or_else(|| {
                 place.invalid(format!("the material has no `{key}`; add for example {key} = {example}"))
@@ -148,14 +176,68 @@ impl Source<'_> {
                 return Err(self.place(name.span()).invalid("`name` must be a text that is not empty"));
             }
         };
+        let (roughness, gamma, distribution) = match lobe {
+            Some(lobe) => lobe,
+            None => {
+                let roughness = self.sigma(required("sigma", "0.3")?)?;
+                (roughness, self.gamma(required("gamma", "2.0")?)?, None)
+            }
+        };
         Ok(Material {
             name,
-            roughness: self.sigma(required("sigma", "0.3")?)?,
-            gamma: self.gamma(required("gamma", "2.0")?)?,
+            roughness,
+            gamma,
+            distribution,
             fresnel: table.get("fresnel").map(|v| self.fresnel(v)).transpose()?,
             masking: table.get("masking").map(|v| self.masking(v)).transpose()?,
             origin: Origin { format: Format::Recipe, place, lobe: None },
             used: true,
+        })
+    }
+
+    /// The lobe of a material with a distribution by name: as a Student-t where it is one.
+    fn distribution(&self, table: &Table<'_>, value: &Value<'_>) -> Result<Lobe, SceneError> {
+        let place = self.place(value.span());
+        let common = ["name", "distribution", "fresnel", "masking"];
+        let distribution = if let Some(name) = value.get_ref().as_str() {
+            let family = Family::by_name(name).map_err(|e| place.invalid(e.to_string()))?;
+            let keys: Vec<&str> = common.iter().chain(family.parameters()).copied().collect();
+            self.only_keys(table, &keys)?;
+            let parameter = |key: &&str| {
+                let value = table.get(*key).ok_or_else(|| {
+                    place.invalid(format!(
+                        "distribution \"{name}\" has no `{key}`; add for example {key} = 0.3"
+                    ))
+                })?;
+                self.number(value, key)
+            };
+            let values = family.parameters().iter().map(parameter).collect::<Result<_, _>>()?;
+            Distribution::Named(Named { family, values })
+        } else {
+            let forms = "distribution must be a name in quotes or { measured = \"file.csv\" }";
+            let source = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
+            self.only_keys(table, &common)?;
+            self.only_keys(source, &["measured"])?;
+            let file = source.get("measured").and_then(|file| file.get_ref().as_str());
+            let file = file.ok_or_else(|| place.invalid(forms))?;
+            // Relative to the recipe.
+            let path = self.file.parent().unwrap_or(Path::new("")).join(file);
+            let input =
+                std::fs::File::open(&path).map_err(|e| place.invalid(format!("{}: {e}", path.display())))?;
+            let measured = read_csv(input, Angles::Radians);
+            let measured = measured.map_err(|e| place.invalid(format!("{}: {e}", path.display())))?;
+            Distribution::Measured { file: file.to_owned(), table: measured }
+        };
+        let built = distribution.build().map_err(|e| place.invalid(e.to_string()))?;
+        Ok(match built.student_t() {
+            Some(t) => {
+                let sigma = Interval::point(t.sigma_x());
+                (Roughness::isotropic(sigma), Interval::point(t.shape().gamma()), None)
+            }
+            None => {
+                let sigma = Interval::point(Marginal::new(&*built).sigma());
+                (Roughness::isotropic(sigma), Interval::point(2.0), Some(distribution))
+            }
         })
     }
 

@@ -4,6 +4,7 @@ pub mod albedo;
 pub mod certificate;
 pub mod configuration;
 pub mod pdf_integral;
+pub mod radial;
 mod run;
 pub mod stress;
 

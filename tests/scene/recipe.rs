@@ -222,6 +222,7 @@ fn material() -> impl Strategy<Value = Material> {
         name,
         roughness,
         gamma,
+        distribution: None,
         fresnel,
         masking,
         origin: Origin {
