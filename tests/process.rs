@@ -243,11 +243,11 @@ fn more_memory_than_allowed_is_refused_with_the_estimate() {
     let out = workshop.path().join("out");
     let mut command = bake(&workshop, "many", &out);
     // The high tables of three thousand shapes.
-    let output = command.args(["--max-memory", "512M"]).output().unwrap();
+    let output = command.args(["--max-memory", "64M"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     let text = message(&output);
     assert!(
-        text.contains("values would take about") && text.contains("more than the 512 MiB allowed"),
+        text.contains("values would take about") && text.contains("more than the 64 MiB allowed"),
         "{text}"
     );
     let output = bake(&workshop, "old", &out).args(["--max-memory", "512T"]).output().unwrap();
