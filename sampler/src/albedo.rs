@@ -91,7 +91,7 @@ pub const GRAZING_FLOOR: f64 = 1e-4;
 impl Tables {
     /// The directional albedo of the material with σ ∈ [0, 3] and γ, for one form of masking.
     ///
-    /// σ = 0 is a mirror, E = 1. A set without a table of averages has them integrated here. For σx ≠ σy see `docs/albedo.md`. Takes some microseconds; keep the result.
+    /// σ = 0 is a mirror, E = 1. A set without a table of averages has them integrated here. Below σ = 0.006 the difference to a mirror only fades in proportion and can be far off. Takes some microseconds; keep the result.
     ///
     /// # Errors
     /// [`BindError`] for a σ or γ outside the family, or one that the set's albedo tables do not cover.

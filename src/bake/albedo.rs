@@ -43,7 +43,7 @@ pub struct AlbedoSpec {
 impl AlbedoSpec {
     /// For γ ∈ [1.501, ∞] and σ ∈ [0, 3].
     ///
-    /// Draft tables err by up to 3e-3; the figures of the others are in `docs/albedo.md`.
+    /// Draft tables err by up to 3e-3.
     pub fn general(quality: Quality, precision: Precision) -> Self {
         let (nodes, tolerance) = match quality {
             Quality::Draft => ([16, 16, 20], 1e-5),
