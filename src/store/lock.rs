@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use microfacet_sampler::Tables;
 
 use super::replace::{finish, replace_all};
-use super::{Format, StoreError, Written, files};
+use super::{Format, SET_FILE, StoreError, Written, files, read_file};
 
 /// A folder to write a set into, locked against every other bake until it is dropped.
 ///
@@ -44,7 +44,8 @@ impl OutputFolder {
         Ok(Self { path: path.into(), _lock: lock })
     }
 
-    /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table.
+    /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table. A folder holds one set: tables of an earlier one go, other
+    /// files stay.
     ///
     /// Everything is prepared in memory and beside the old files first. One file is then replaced in one step; of several, the old
     /// ones are removed before the first new one appears, so that the two never mix.
@@ -53,10 +54,27 @@ impl OutputFolder {
     /// [`StoreError`] naming the path; the old set is then still there.
     pub fn write(&self, set: &Tables, formats: &[Format]) -> Result<Vec<Written>, StoreError> {
         let files = files(set, formats).map_err(|why| why.inside(&self.path))?;
-        replace_all(&self.path, &files).map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
+        let stale = self.stale(&files).map_err(|why| StoreError::Io(self.path.clone(), why))?;
+        replace_all(&self.path, &files, &stale)
+            .map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
         let written =
             |(name, bytes): &(String, Vec<u8>)| Written { path: self.path.join(name), bytes: bytes.len() };
         Ok(files.iter().map(written).collect())
+    }
+
+    /// Names of the tables in the folder that the new `files` do not replace.
+    fn stale(&self, files: &[(String, Vec<u8>)]) -> io::Result<Vec<String>> {
+        let mut stale = Vec::new();
+        for entry in std::fs::read_dir(&self.path)? {
+            let Ok(name) = entry?.file_name().into_string() else { continue };
+            let ours = name == SET_FILE || name.ends_with(".exr");
+            // Whatever does not load as a table is somebody else's.
+            if ours && files.iter().all(|(new, _)| *new != name) && read_file(&self.path.join(&name)).is_ok()
+            {
+                stale.push(name);
+            }
+        }
+        Ok(stale)
     }
 }
 

@@ -115,7 +115,12 @@ pub fn read(path: &Path) -> Result<Tables, StoreError> {
         // Opening completes what a bake that was killed in its last step had begun.
         OutputFolder::open(folder)?;
     }
-    let path = if path.is_dir() { path.join(SET_FILE) } else { path.to_path_buf() };
+    read_file(&if path.is_dir() { path.join(SET_FILE) } else { path.to_path_buf() })
+}
+
+/// Reads the set or the table in one file.
+fn read_file(path: &Path) -> Result<Tables, StoreError> {
+    let path = path.to_path_buf();
     let bytes = std::fs::read(&path).map_err(|why| StoreError::Io(path.clone(), why))?;
     let set = if bytes.starts_with(&exr::MAGIC) { decode_exr(&bytes) } else { Tables::from_bytes(&bytes) };
     set.map_err(|why| StoreError::Load(path, why))

@@ -10,8 +10,11 @@ use tempfile::NamedTempFile;
 const PREFIX: &str = ".microfacet-bake-";
 const SUFFIX: &str = ".partial";
 
-/// Lists the exchanges of a set of several files while they are being made: `PARTIAL NAME` by line.
+/// Lists the exchanges of a set of several files while they are being made: `PARTIAL NAME` by line, `- NAME` for a file that goes.
 const JOURNAL: &str = ".microfacet-bake.commit";
+
+/// Stands for the new file of one that goes.
+const STALE: &str = "-";
 
 /// Writes `bytes` to `path` so that at every moment either the old file or the complete new one is there: into a temporary file in the same
 /// folder, to disk, then renamed over it.
@@ -43,15 +46,19 @@ fn sync(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { fs::File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
-/// Replaces several files of a folder, by name, so that old and new ones never stand side by side.
+/// Replaces several files of a folder, by name, and removes those in `stale`, so that old and new ones never stand side by side.
 ///
 /// No file system exchanges several files in one step. The new ones are completed under temporary names, a journal of the exchange is
 /// written in one step, and from there on [`finish`] leads to the new set, now or after an interruption.
 ///
 /// # Errors
 /// The name and what the operating system reports; before the journal is written the old files are untouched.
-pub(super) fn replace_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), (String, io::Error)> {
-    if let [(name, bytes)] = files {
+pub(super) fn replace_all(
+    folder: &Path,
+    files: &[(String, Vec<u8>)],
+    stale: &[String],
+) -> Result<(), (String, io::Error)> {
+    if let ([(name, bytes)], []) = (files, stale) {
         return replace(&folder.join(name), bytes).map_err(|why| (name.clone(), why));
     }
     let mut staged = Vec::new();
@@ -61,7 +68,7 @@ pub(super) fn replace_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<
         staged.push(file.map_err(|why| (name.clone(), why))?);
     }
     let failed = |why| (JOURNAL.to_string(), why);
-    let mut journal = String::new();
+    let mut journal: String = stale.iter().map(|name| format!("{STALE} {name}\n")).collect();
     for (file, (name, _)) in staged.iter().zip(files) {
         let partial = file.path().file_name().unwrap_or_default().to_string_lossy();
         journal += &format!("{partial} {name}\n");
@@ -87,17 +94,18 @@ pub(super) fn finish(folder: &Path) -> io::Result<()> {
         text => text?,
     };
     let plain = |name: &str| !name.contains(['/', '\\']) && name != "..";
-    let exchanges: Vec<_> = text
-        .lines()
-        .filter_map(|line| line.split_once(' '))
+    let lines = || text.lines().filter_map(|line| line.split_once(' '));
+    let exchanges: Vec<_> = lines()
         // A journal that someone else has written may name anything.
         .filter(|(partial, name)| plain(partial) && partial.starts_with(PREFIX) && plain(name))
         .map(|(partial, name)| (folder.join(partial), folder.join(name)))
         // What is no longer under its temporary name stands in its place already.
         .filter(|(partial, _)| partial.exists())
         .collect();
-    for (_, path) in &exchanges {
-        match fs::remove_file(path) {
+    let stale =
+        lines().filter(|(partial, name)| *partial == STALE && plain(name)).map(|(_, name)| folder.join(name));
+    for path in stale.chain(exchanges.iter().map(|(_, path)| path.clone())) {
+        match fs::remove_file(&path) {
             Err(why) if why.kind() != io::ErrorKind::NotFound => return Err(why),
             _ => {}
         }
@@ -147,7 +155,7 @@ mod tests {
             for renamed in 0..=(if removed == 3 { 3 } else { 0 }) {
                 let folder = tempfile::tempdir().unwrap();
                 let path = |name: &str| folder.path().join(name);
-                replace_all(folder.path(), &set("old")).unwrap();
+                replace_all(folder.path(), &set("old"), &[]).unwrap();
                 let mut journal = String::new();
                 for (i, (name, bytes)) in set("new").into_iter().enumerate() {
                     let partial = format!("{PREFIX}{i}{SUFFIX}");
@@ -170,7 +178,7 @@ mod tests {
     #[test]
     fn without_a_journal_the_old_set_stays_and_leftovers_go() {
         let folder = tempfile::tempdir().unwrap();
-        replace_all(folder.path(), &set("old")).unwrap();
+        replace_all(folder.path(), &set("old"), &[]).unwrap();
         fs::write(folder.path().join(format!("{PREFIX}x{SUFFIX}")), "half").unwrap();
         fs::write(folder.path().join(".hidden"), "not ours").unwrap();
         finish(folder.path()).unwrap();
@@ -180,13 +188,22 @@ mod tests {
     }
 
     #[test]
+    fn what_is_stale_goes_with_the_old_set() {
+        let folder = tempfile::tempdir().unwrap();
+        replace_all(folder.path(), &set("old"), &[]).unwrap();
+        let new = vec![("b".to_string(), b"new b".to_vec())];
+        replace_all(folder.path(), &new, &["a".into(), "c".into()]).unwrap();
+        assert_eq!(content(folder.path()), new);
+    }
+
+    #[test]
     fn a_journal_reaches_no_other_folder() {
         let folder = tempfile::tempdir().unwrap();
         let inner = folder.path().join("inner");
         fs::create_dir(&inner).unwrap();
         fs::write(folder.path().join("precious"), "precious").unwrap();
         fs::write(inner.join(format!("{PREFIX}x{SUFFIX}")), "").unwrap();
-        fs::write(inner.join(JOURNAL), format!("{PREFIX}x{SUFFIX} ../precious\n")).unwrap();
+        fs::write(inner.join(JOURNAL), format!("{PREFIX}x{SUFFIX} ../precious\n- ../precious\n")).unwrap();
         finish(&inner).unwrap();
         assert_eq!(fs::read(folder.path().join("precious")).unwrap(), b"precious");
         assert_eq!(content(&inner), []);
