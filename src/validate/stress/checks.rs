@@ -26,11 +26,12 @@ struct Tilt {
 
 struct Judge<'a> {
     bound: StudentT,
+    rises: bool,
     exact: model::StudentT,
     report: &'a mut Report,
 }
 
-/// Judges a material at `views`, each a list of points that differ in `u` only, `u[0]` ascending.
+/// Judges a material at `views`, each a list of points that differ in `u` only, `u[0]` ascending; GGX by its closed forms too.
 pub(super) fn judge(
     tables: &Tables,
     sigma: [f32; 2],
@@ -38,10 +39,22 @@ pub(super) fn judge(
     views: Vec<Vec<Point>>,
     report: &mut Report,
 ) -> Result<(), BindError> {
-    let bound = tables.student_t(sigma, gamma)?;
-    let [x, y] = sigma.map(f64::from);
+    if gamma == 2.0 {
+        judge_bound(StudentT::ggx(sigma)?, false, &views, report)?;
+    }
+    judge_bound(tables.student_t(sigma, gamma)?, gamma >= GAMMA_WHOLE, &views, report)
+}
+
+/// `rises`: whether the tilt towards the viewer rises with `u[0]` and is its quantile.
+fn judge_bound(
+    bound: StudentT,
+    rises: bool,
+    views: &[Vec<Point>],
+    report: &mut Report,
+) -> Result<(), BindError> {
+    let ([x, y], gamma) = (bound.sigma().map(f64::from), bound.gamma());
     let exact = model::StudentT::anisotropic(x, y, gamma).map_err(|_| BindError::Gamma(gamma))?;
-    let mut judge = Judge { bound, exact, report };
+    let mut judge = Judge { bound, rises, exact, report };
     for (i, points) in views.iter().enumerate() {
         judge.view(&points[0]);
         let mut last = f64::NEG_INFINITY;
@@ -113,7 +126,7 @@ impl Judge<'_> {
         self.require(seen, "sampled normal faces away", facing, at);
 
         let Tilt { half_tangent, rounding, .. } = self.tilt(v, m);
-        if at.gamma >= GAMMA_WHOLE {
+        if self.rises {
             self.require(!(half_tangent < *last - rounding), "tilt falls with u1", *last - half_tangent, at);
         }
         *last = half_tangent;
@@ -182,8 +195,7 @@ impl Judge<'_> {
     fn cdf_error(&mut self, at: &Point) {
         let v = at.view();
         let tilt = self.tilt(v, self.bound.sample_visible_normal(v, at.u));
-        // Below 1.8 the first number is first used to choose a part.
-        if at.gamma < GAMMA_WHOLE || tilt.rounding > 1e-5 {
+        if !self.rises || tilt.rounding > 1e-5 {
             return;
         }
         let shape = self.exact.shape();

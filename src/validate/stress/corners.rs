@@ -113,7 +113,7 @@ pub(super) fn random_material(tables: &Tables, random: &mut StdRng) -> ([f32; 2]
             0 => 1.5 + log_uniform(random, 1e-3, 0.3),
             1 => 2.0 + log_uniform(random, 1e-12, 0.1) * if random.random() { 1.0 } else { -1.0 },
             2 => log_uniform(random, 4.0, 1e18),
-            3 => f64::INFINITY,
+            3 => [2.0, f64::INFINITY][random.random_range(0..2)],
             _ => 1.0 + 1.0 / random.random_range(0.0..2.0),
         };
         if tables.covers(gamma) {
