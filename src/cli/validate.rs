@@ -71,20 +71,20 @@ fn parse_configurations(text: &str) -> std::result::Result<usize, String> {
 
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
-    // A set without any table holds GGX in closed form, which can be judged.
-    if !set.tables().is_empty() && !set.tables().iter().any(|table| table.kind.axes()[0] == "gamma") {
-        return Err(Failure(
-            "the set has no Student-t tables to judge; those of other distributions carry what was measured when they were baked: \
-             see `microfacet-bake inspect`"
-                .into(),
-        ));
-    }
     if args.stress {
         return super::stress::stress(&set, args.points, args.seed, args.json);
     }
     let chosen = match (args.sigma, args.gamma, args.theta) {
         (Some([sigma_x, sigma_y]), Some(gamma), Some(theta)) => {
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi: args.phi, seed: args.seed }]
+        }
+        // A set without any table holds GGX in closed form, which can be judged.
+        _ if !set.tables().is_empty() && !set.tables().iter().any(|table| table.kind.axes()[0] == "gamma") => {
+            return Err(Failure(
+                "the set has no Student-t tables to judge; name one configuration with --sigma, --gamma and --theta for the closed \
+                 forms of GGX; tables of other distributions carry what was measured when they were baked: see `microfacet-bake inspect`"
+                    .into(),
+            ));
         }
         _ => configurations(&set, args.configurations, args.seed),
     };
