@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use glam::Vec3;
 use microfacet_bake::cache::Cache;
 use microfacet_bake::generate::{BakeError, Baked, Target, generate, provenance, worst_error};
-use microfacet_bake::plan::{Options, Plan, Verdict, cost};
+use microfacet_bake::plan::{Options, Plan, Verdict, bare_cost, cost};
 use microfacet_bake::scene::{Interval, Scene};
 use microfacet_bake::spec::{Quality, general_set};
 use microfacet_sampler::{Precision, Tables, encode};
@@ -159,6 +159,19 @@ fn a_thousand_materials_come_down_to_their_distinct_shapes() {
 }
 
 #[test]
+fn more_shapes_than_a_range_has_nodes_are_a_range() {
+    let gammas: Vec<String> = (0..200).map(|i| format!("{}", 2.5 + 0.01 * f64::from(i))).collect();
+    let names: Vec<String> = (0..200).map(|i| format!("m{i}")).collect();
+    let materials: Vec<[&str; 3]> =
+        (0..200).map(|i| [names[i].as_str(), "0.3", gammas[i].as_str()]).collect();
+    let plan = plan(&scene(&materials));
+    assert_eq!(plan.needs.len(), 1);
+    assert_eq!(plan.needs[0].gamma(), Interval { min: 2.5, max: 4.49 });
+    assert_eq!(plan.verdicts[0], Verdict::Bake(0));
+    assert_eq!(plan.verdicts[7], Verdict::Within { need: 0, of_material: 0 });
+}
+
+#[test]
 fn estimated_bytes_are_those_of_the_file() {
     for materials in [&MIXED[..2], &MIXED[..]] {
         let (scene, origin) = (scene(materials), provenance("x".repeat(500), Vec::new()));
@@ -168,7 +181,8 @@ fn estimated_bytes_are_those_of_the_file() {
             let specs: Vec<_> = plan.needs.iter().flat_map(|need| need.specs(&general)).collect();
             let target = Target::Quality(Quality::Draft, precision);
             let set = generate(&plan.needs, target, origin.clone(), &Cache::none(), || ()).unwrap().set;
-            let (estimate, real) = (cost(&specs, &origin).bytes as f64, bytes(&set).len() as f64);
+            let (estimate, real) =
+                ((cost(&specs).bytes + bare_cost(&origin).bytes) as f64, bytes(&set).len() as f64);
             assert!((estimate / real - 1.0).abs() < 0.04, "{estimate} for {real}");
         }
     }

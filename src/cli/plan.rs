@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use microfacet_bake::plan::{Cost, Need, Plan, Verdict, cost};
+use microfacet_bake::plan::{Cost, Need, Plan, Verdict, bare_cost, cost};
 use microfacet_bake::scene::{self, Interval, Scene};
 use microfacet_bake::spec::{TableSpec, general_set};
 
@@ -48,19 +48,17 @@ pub(super) fn run(args: Args) -> Outcome {
     let plan = args.request.plan(&scene, None)?;
     let general = general_set(args.request.quality(), args.request.precision());
     let origin = provenance(Some((&scene, &plan)));
-    let bare = cost(&[], &origin);
-    let tables = plan.needs.iter().map(|need| {
-        let specs = need.specs(&general);
-        let cost = cost(&specs, &origin);
-        (specs, Cost { bytes: cost.bytes - bare.bytes, ..cost })
-    });
-    let tables: Vec<(Vec<TableSpec>, Cost)> = tables.collect();
-    let sum = |total: Cost, (_, cost): &(Vec<TableSpec>, Cost)| Cost {
-        bytes: total.bytes + cost.bytes,
-        seconds: total.seconds + cost.seconds,
-    };
-    let total = tables.iter().fold(bare, sum);
-    let general = cost(&general, &provenance(None));
+    let tables: Vec<(Vec<TableSpec>, Cost)> = plan
+        .needs
+        .iter()
+        .map(|need| need.specs(&general))
+        .map(|specs| {
+            let cost = cost(&specs);
+            (specs, cost)
+        })
+        .collect();
+    let total = tables.iter().map(|(_, cost)| *cost).chain([bare_cost(&origin)]).sum();
+    let general = [cost(&general), bare_cost(&provenance(None))].into_iter().sum();
     let milliseconds = |time: std::time::Duration| 1e3 * time.as_secs_f64();
     let (reading, planning) = (milliseconds(reading), milliseconds(start.elapsed()));
     let report = Report { scene: &scene, plan: &plan, tables, total, general, reading, planning };
@@ -148,12 +146,12 @@ impl Report<'_> {
         text += &if self.plan.is_empty() {
             "Nothing is needed: no material in use is rough.\n".into()
         } else {
-            let smaller = general.bytes as f64 / total.bytes as f64;
             let share = if total.seconds > 0.0 {
-                format!("; {smaller:.0} times smaller, {:.0} times faster", general.seconds / total.seconds)
+                format!("{:.1} times faster", general.seconds / total.seconds)
             } else {
-                format!("; {smaller:.0} times smaller, and nothing to bake")
+                "and nothing to bake".into()
             };
+            let share = format!("; {:.1} times smaller, {share}", general.bytes as f64 / total.bytes as f64);
             format!(
                 "total {} bytes, about {:.3} s; the general set {} bytes, about {:.3} s{share}\n",
                 total.bytes, total.seconds, general.bytes, general.seconds

@@ -10,7 +10,7 @@ use std::fmt;
 
 use microfacet_sampler::MaterialEntry;
 
-pub use cost::{Cost, cost};
+pub use cost::{Cost, bare_cost, cost};
 pub use needs::Need;
 
 use crate::family::Distribution;
@@ -99,7 +99,10 @@ impl Plan {
     pub fn new(scene: &Scene, options: Options) -> Result<Self, TooHeavy> {
         let wants: Vec<Result<Interval, Verdict>> =
             scene.materials.iter().map(|material| want(material, options)).collect::<Result<_, _>>()?;
-        let needs = needs::disjoint(wants.iter().flatten().copied());
+        let mut needs = needs::disjoint(wants.iter().flatten().copied());
+        if let Some(range) = needs::cheaper_range(&needs) {
+            needs = needs::disjoint(wants.iter().flatten().copied().chain([range]));
+        }
         let find = |want: &Interval| needs::find(&needs, *want).expect("the needs cover every want");
         // A need is baked for the first material that asks for exactly it, else for the first inside.
         let mut owner: Vec<Option<usize>> = vec![None; needs.len()];

@@ -1,10 +1,10 @@
 //! Needs: single shapes and ranges of them, and the table specifications of each.
 
-use microfacet_sampler::Interpolation;
+use microfacet_sampler::{Interpolation, Precision};
 
 use super::s_of;
 use crate::scene::Interval;
-use crate::spec::{GAMMA_MIN, GAMMA_WHOLE, ShapeAxis, TableSpec};
+use crate::spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, ShapeAxis, TableSpec, general_set};
 use crate::validate::certificate::ALL_SHAPES;
 
 /// A γ, or a range of them, that tables are to cover: the unit in which tables are baked, measured and kept.
@@ -99,6 +99,16 @@ pub(super) fn disjoint(wants: impl Iterator<Item = Interval>) -> Vec<Need> {
     points.retain(|&point| holder(&needs, point).is_none());
     needs.extend(points.into_iter().map(|gamma| Need { gamma }));
     needs
+}
+
+/// The range over all single shapes, if its tables are smaller than so many slices.
+pub(super) fn cheaper_range(needs: &[Need]) -> Option<Interval> {
+    let points: Vec<&Need> = needs.iter().filter(|need| need.gamma.is_point()).collect();
+    let hull = points.iter().map(|need| need.gamma).reduce(Interval::union)?;
+    let general = general_set(Quality::Default, Precision::F32);
+    let bytes = |need: &Need| need.specs(&general).iter().map(TableSpec::bytes).sum::<usize>();
+    let slices: usize = points.into_iter().map(bytes).sum();
+    (bytes(&Need { gamma: hull }) < slices).then_some(hull)
 }
 
 /// The need, of those that [`disjoint`] made, that covers `want`.
