@@ -148,8 +148,10 @@ impl Report<'_> {
         } else {
             let share = if total.seconds > 0.0 {
                 format!("{:.1} times faster", general.seconds / total.seconds)
-            } else {
+            } else if self.plan.distributions.is_empty() {
                 "and nothing to bake".into()
+            } else {
+                "besides other distributions".into()
             };
             let share = format!("; {:.1} times smaller, {share}", general.bytes as f64 / total.bytes as f64);
             format!(
