@@ -5,14 +5,16 @@ use std::fmt;
 use std::io;
 
 use microfacet_model::classic::Marginal;
-use microfacet_sampler::{LoadError, MaterialEntry, Precision, Provenance, Table, Tables, encode};
+use microfacet_sampler::{Kind, LoadError, MaterialEntry, Precision, Provenance, Table, Tables, encode};
 
+use crate::bake::albedo::AlbedoSpec;
 use crate::bake::{self, NUMERICS};
 use crate::budget::{self, Memo, OutOfReach};
 use crate::cache::Cache;
 use crate::family::Distribution;
-use crate::plan::Need;
+use crate::plan::{AlbedoNeed, Need};
 use crate::spec::{Quality, TableSpec, general_set};
+use crate::validate::albedo;
 use crate::validate::certificate::certify;
 use crate::validate::radial;
 
@@ -57,7 +59,11 @@ pub enum BakeError {
     },
     /// A byte budget with a distribution outside the family, which has no sizes to choose from; its name.
     NoByteBudget(String),
-    /// A distribution outside the family whose tables err by more than [`Target::MaxError`] at every quality; its name and error.
+    /// A byte budget with albedo tables, which have no sizes to choose from.
+    NoAlbedoBudget,
+    /// An albedo that is not sound, or not accurate enough.
+    Albedo(bake::albedo::BakeError),
+    /// Albedos, or a distribution outside the family, whose tables err by more than [`Target::MaxError`] at every quality; name and error.
     TooCoarse(String, f64),
 }
 
@@ -76,6 +82,11 @@ impl fmt::Display for BakeError {
                 f,
                 "{name} has tables of its own, which no byte budget covers: choose --quality or --max-error, or bake it apart"
             ),
+            Self::NoAlbedoBudget => write!(
+                f,
+                "no byte budget covers albedo tables: choose --quality or --max-error, or leave them out with --no-albedo"
+            ),
+            Self::Albedo(why) => why.fmt(f),
             Self::TooCoarse(name, error) => {
                 write!(f, "the tables of {name} err by {error:.1e} at the highest quality: allow that much")
             }
@@ -159,20 +170,7 @@ pub fn add_distributions(
         let own = match target {
             Target::Quality(quality, precision) => at(quality, precision)?,
             Target::MaxBytes(_) => return Err(BakeError::NoByteBudget(label)),
-            Target::MaxError(max_error) => {
-                let mut smallest = f64::INFINITY;
-                let mut found = None;
-                for quality in [Quality::Draft, Quality::Default, Quality::High] {
-                    let own = at(quality, Precision::F32)?;
-                    let error = own.iter().map(worst_error).fold(0.0, f64::max);
-                    smallest = smallest.min(error);
-                    if error <= max_error {
-                        found = Some(own);
-                        break;
-                    }
-                }
-                found.ok_or(BakeError::TooCoarse(label, smallest))?
-            }
+            Target::MaxError(max_error) => within(max_error, &label, |quality| at(quality, Precision::F32))?,
         };
         tables.extend(own);
         progress();
@@ -182,6 +180,71 @@ pub fn add_distributions(
         baked: job.baked,
         cache_error: job.cache_error,
     })
+}
+
+/// Adds albedo tables to a set, calling `progress` after those of each need.
+///
+/// # Errors
+/// [`BakeError`] for a target that cannot be met, or an albedo that is not sound.
+pub fn add_albedos(
+    baked: Baked,
+    needs: &[AlbedoNeed],
+    target: Target,
+    cache: &Cache,
+    mut progress: impl FnMut(),
+) -> Result<Baked, BakeError> {
+    let mut provenance = baked.set.provenance().clone();
+    if !needs.is_empty() {
+        add_albedo_conventions(&mut provenance);
+    }
+    let mut tables = baked.set.tables().to_vec();
+    let mut job = Job { cache, baked: baked.baked, cache_error: baked.cache_error };
+    for need in needs {
+        let mut at = |quality, precision| {
+            let spec = need.spec(&AlbedoSpec::general(quality, precision));
+            job.kept(&format!("{spec:?}"), || albedo_tables(&spec))
+        };
+        tables.extend(match target {
+            Target::Quality(quality, precision) => at(quality, precision)?,
+            Target::MaxBytes(_) => return Err(BakeError::NoAlbedoBudget),
+            Target::MaxError(max_error) => {
+                within(max_error, "albedo", |quality| at(quality, Precision::F32))?
+            }
+        });
+        progress();
+    }
+    Ok(Baked {
+        set: Tables::from_tables(provenance, tables)?,
+        baked: job.baked,
+        cache_error: job.cache_error,
+    })
+}
+
+/// The certified albedo tables of a specification.
+fn albedo_tables(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
+    let mut set =
+        Tables::from_tables(Provenance::default(), bake::albedo::bake(spec).map_err(BakeError::Albedo)?)?;
+    albedo::certify(&mut set, spec.domain)
+        .map_err(|why| BakeError::Set(LoadError::Invalid(why.to_string())))?;
+    Ok(set.tables().to_vec())
+}
+
+/// The tables of the lowest quality at which none errs by more than `max_error`.
+fn within(
+    max_error: f64,
+    name: &str,
+    mut at: impl FnMut(Quality) -> Result<Vec<Table>, BakeError>,
+) -> Result<Vec<Table>, BakeError> {
+    let mut smallest = f64::INFINITY;
+    for quality in [Quality::Draft, Quality::Default, Quality::High] {
+        let tables = at(quality)?;
+        let error = tables.iter().map(worst_error).fold(0.0, f64::max);
+        if error <= max_error {
+            return Ok(tables);
+        }
+        smallest = smallest.min(error);
+    }
+    Err(BakeError::TooCoarse(name.into(), smallest))
 }
 
 /// The certified tables of one distribution outside the family.
@@ -198,13 +261,16 @@ fn radial_tables(
     Ok(tables)
 }
 
-/// The largest error that a table's certificate states; ∞ if there is none.
+/// The largest error that a table's certificate states, of albedos over all moments; ∞ if there is none.
 pub fn worst_error(table: &Table) -> f64 {
-    let figure = |key| table.certificate.get(key).copied();
-    figure("g1_max_error")
-        .or_else(|| figure("cdf_max_error"))
-        .or_else(|| figure("d_max_error"))
-        .unwrap_or(f64::INFINITY)
+    let keys = match table.kind {
+        Kind::Albedo | Kind::AlbedoAverage => {
+            &["e_max_error", "scale_max_error", "bias_max_error", "f82_max_error"][..]
+        }
+        _ => &["g1_max_error", "cdf_max_error", "d_max_error"],
+    };
+    let figures = keys.iter().filter_map(|key| table.certificate.get(*key).copied());
+    figures.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
 struct Job<'a> {
@@ -271,6 +337,23 @@ impl Job<'_> {
         waiting.iter().for_each(|key| self.cache.remove(key));
         Ok(set.tables().to_vec())
     }
+}
+
+/// Adds what albedo tables mean to the conventions of a set that holds some.
+pub fn add_albedo_conventions(provenance: &mut Provenance) {
+    let conventions = [
+        (
+            "albedo",
+            "moments of 1-(1-v.m)^5, (1-v.m)^5 and 7^7/6^6 v.m (1-v.m)^6 with G2/G1(v) over visible normals that reflect upwards, less those \
+             weights at v.n; the first two add up to E-1; nodes with cos(theta) below 1e-4 hold what is there",
+        ),
+        ("albedo_average", "2 int_0^1 x mu dmu of what is read from the albedo table"),
+        (
+            "albedo_masking",
+            "each albedo table names its form of G2: uncorrelated G1(v) G1(l), height-correlated 1/(1+lambda(v)+lambda(l))",
+        ),
+    ];
+    provenance.conventions.extend(conventions.map(|(key, value)| (key.into(), value.into())));
 }
 
 /// Origin, licence and conventions of a set baked by this version.

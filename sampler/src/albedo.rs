@@ -1,6 +1,6 @@
 //! Directional albedo from tables: the share of light that one bounce off the microsurface returns.
 
-use alloc::string::ToString;
+use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -142,7 +142,8 @@ impl Tables {
             // Below the first node what a mirror lacks fades in proportion: σ = 0 has E = 1 exactly.
             let (at, fade) = if sigma < first { (first, sigma / first) } else { (sigma, 1.0) };
             widest = widest.max(roughness(axis, axis.nodes[axis.nodes.len() - 1]));
-            let Some(roughnesses) = weights(axis, roughness_coordinate(axis, at)) else { continue };
+            let found = weights(axis, roughness_coordinate(axis, at)).filter(|_| reaches(axis, sigma));
+            let Some(roughnesses) = found else { continue };
             let views = table.axes.get(2).map_or(1, Axis::len);
             let mut sum = vec![[0.0_f64; 3]; views];
             for &(i, a) in &shapes {
@@ -156,6 +157,9 @@ impl Tables {
                 }
             }
             return Ok((table, sum.into_iter().map(|node| node.map(|x| x as f32)).collect()));
+        }
+        if tables().any(|table| !reaches(&table.axes[1], 0.0)) {
+            return Err(BindError::AlbedoNotCovered { sigma, gamma, covered: domains(tables()) });
         }
         if widest.is_finite() {
             return Err(BindError::SigmaNotCovered { sigma, max: widest });
@@ -199,6 +203,43 @@ fn roughness(axis: &Axis, t: f64) -> f64 {
         Mapping::LogRoughness { offset } => offset * libm::expm1(t),
         _ => unreachable!("validated on load"),
     }
+}
+
+/// First σ node, at most, of tables that serve all smaller σ as well; those of a recipe may begin higher.
+const SMOOTHEST: f64 = 0.0061;
+
+/// Whether a table goes down to σ.
+fn reaches(axis: &Axis, sigma: f64) -> bool {
+    let first = roughness(axis, axis.nodes[0]);
+    first <= SMOOTHEST || sigma >= first * (1.0 - 1e-9)
+}
+
+/// What tables cover, in words.
+fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
+    let ends = |axis: &Axis, at: &dyn Fn(f64) -> f64| match axis.nodes[..] {
+        [t] => alloc::format!("= {:.6}", at(t)),
+        [first, .., last] => {
+            let (a, b) = (at(first), at(last));
+            alloc::format!("in [{:.6}, {:.6}]", a.min(b), a.max(b))
+        }
+        [] => unreachable!("validated on load"),
+    };
+    let one = |table: &Table| {
+        let [gamma, sigma] = [&table.axes[0], &table.axes[1]];
+        alloc::format!(
+            "gamma {} with sigma {}",
+            ends(gamma, &|t| shape(gamma, t)),
+            ends(sigma, &|t| roughness(sigma, t))
+        )
+    };
+    const SHOWN: usize = 8;
+    let mut all: Vec<String> = tables.map(one).collect();
+    if all.len() > SHOWN {
+        let more = all.len() - SHOWN;
+        all.truncate(SHOWN);
+        all.push(alloc::format!("{more} more"));
+    }
+    all.join("; ")
 }
 
 /// Weights of the nodes about a coordinate, or `None` where the axis does not cover it.

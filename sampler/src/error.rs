@@ -61,6 +61,15 @@ pub enum BindError {
         /// The largest that is covered.
         max: f64,
     },
+    /// No albedo table of this set covers the pair of σ and γ; `covered` lists what they do.
+    AlbedoNotCovered {
+        /// The σ asked for.
+        sigma: f64,
+        /// The γ asked for.
+        gamma: f64,
+        /// The pairs that are covered.
+        covered: String,
+    },
     /// No material of that name in the set; `known` lists those it has.
     NoSuchMaterial {
         /// The name asked for.
@@ -105,6 +114,11 @@ impl fmt::Display for BindError {
                 f,
                 "sigma = {sigma} is not covered by the albedo tables of this set, which hold [0, {max}]; clamp it, or \
                  bake a set whose recipe holds it"
+            ),
+            Self::AlbedoNotCovered { sigma, gamma, covered } => write!(
+                f,
+                "sigma = {sigma} with gamma = {gamma} is not covered by the albedo tables of this set, which hold {covered}; bake a \
+                 set that does: a recipe's material with `fresnel`, or `microfacet-bake bake` without a recipe for all"
             ),
             Self::NoSuchMaterial { name, known } => write!(
                 f,

@@ -56,6 +56,11 @@ impl Kind {
         }
     }
 
+    /// Whether it is a directional albedo or the average of one: what depends on light and view, not on the view alone.
+    pub const fn is_albedo(self) -> bool {
+        matches!(self, Self::Albedo | Self::AlbedoAverage)
+    }
+
     /// Names of the axes, slowest first.
     pub const fn axes(self) -> &'static [&'static str] {
         match self {

@@ -14,6 +14,7 @@ use microfacet_sampler::{
     Axis, GRAZING_FLOOR, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
 };
 
+use crate::scene::Interval;
 use crate::spec::{GAMMA_MIN, Quality};
 
 /// scale of the γ coordinate ln(1 + scale/(2γ−3)).
@@ -25,15 +26,65 @@ const SIGMA_MIN: f64 = 0.006;
 /// weight, scale and heavy of the view coordinate.
 const VIEW: (f64, f64, f64) = (0.2, 2.0, 0.5);
 
-/// A pair of albedo tables to bake for each form of masking.
+/// Largest σ of the general tables.
+pub const SIGMA_MAX: f64 = 3.0;
+/// Nodes that the polynomial between nodes goes through.
+const WINDOW: usize = 6;
+
+/// The materials that tables are baked for: they are measured there, and need hold nowhere else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// Shapes.
+    pub gamma: Interval,
+    /// Roughnesses, σx = σy.
+    pub sigma: Interval,
+}
+
+impl Domain {
+    /// γ ∈ [1.501, ∞] and σ ∈ [0, 3].
+    pub const GENERAL: Self = Self {
+        gamma: Interval { min: GAMMA_MIN, max: f64::INFINITY },
+        sigma: Interval { min: 0.0, max: SIGMA_MAX },
+    };
+
+    /// Whether every material of `other` is one of this.
+    pub fn contains(&self, other: &Self) -> bool {
+        let within = |a: Interval, b: Interval| a.contains(b.min) && a.contains(b.max);
+        within(self.gamma, other.gamma) && within(self.sigma, other.sigma)
+    }
+
+    /// The smallest that contains both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self { gamma: self.gamma.union(other.gamma), sigma: self.sigma.union(other.sigma) }
+    }
+
+    /// What the names of tables end in; nothing for the general ones.
+    fn suffix(&self) -> String {
+        let part = |name: &str, Interval { min, max }: Interval| {
+            if min == max { format!("_{name}_{min}") } else { format!("_{name}_{min}_to_{max}") }
+        };
+        if *self == Self::GENERAL {
+            String::new()
+        } else {
+            part("gamma", self.gamma) + &part("sigma", self.sigma)
+        }
+    }
+}
+
+/// A pair of albedo tables to bake for each of some forms of masking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlbedoSpec {
-    /// Smallest and largest γ; equal for a single shape.
-    pub gamma: [f64; 2],
-    /// Largest σ.
-    pub sigma_max: f64,
-    /// Nodes along γ, σ and the view (six or more of the last).
-    pub nodes: [usize; 3],
+    /// What the tables are for.
+    pub domain: Domain,
+    /// The forms; both cost hardly more than one.
+    pub maskings: Vec<Masking>,
+    /// Nodes of the γ axis, ascending in its coordinate.
+    pub shapes: Vec<f64>,
+    /// Nodes of the σ axis.
+    pub roughnesses: Vec<f64>,
+    /// How many nodes the view axis has, six or more.
+    pub views: usize,
     /// Error aimed at in every node.
     pub tolerance: f64,
     /// How values are stored.
@@ -41,33 +92,85 @@ pub struct AlbedoSpec {
 }
 
 impl AlbedoSpec {
-    /// For γ ∈ [1.501, ∞] and σ ∈ [0, 3].
+    /// For [`Domain::GENERAL`] and both forms of masking.
     ///
     /// Draft tables err by up to 3e-3.
     pub fn general(quality: Quality, precision: Precision) -> Self {
-        let (nodes, tolerance) = match quality {
+        let ([shapes, roughnesses, views], tolerance) = match quality {
             Quality::Draft => ([16, 16, 20], 1e-5),
             Quality::Default => ([24, 27, 33], 1e-6),
             Quality::High => ([40, 50, 87], 1e-7),
         };
-        Self { gamma: [GAMMA_MIN, f64::INFINITY], sigma_max: 3.0, nodes, tolerance, precision }
+        Self {
+            domain: Domain::GENERAL,
+            maskings: Masking::ALL.into(),
+            shapes: even(shape(f64::INFINITY), shape(GAMMA_MIN), shapes),
+            roughnesses: even(roughness(SIGMA_MIN), roughness(SIGMA_MAX), roughnesses),
+            views,
+            tolerance,
+            precision,
+        }
     }
 
-    /// The same for a part of the shapes, at the same spacing.
-    pub fn of_shapes(self, gamma: [f64; 2]) -> Self {
-        let length = |[low, high]: [f64; 2]| shape(low) - shape(high);
-        let [shapes, roughnesses, views] = self.nodes;
-        let share = length(gamma) / length(self.gamma);
-        // Six nodes at least, the polynomial's; one for a single shape.
-        let count = libm::ceil(share * (shapes - 1) as f64) as usize + 1;
-        let count = if gamma[0] == gamma[1] { 1 } else { count.max(6) };
-        Self { gamma, nodes: [count, roughnesses, views], ..self }
+    /// The part of general tables that a domain needs: one node for a single γ or σ, else the nodes that are read there, so that the
+    /// values in between are those of the general tables.
+    #[must_use]
+    pub fn part(&self, domain: Domain, maskings: &[Masking]) -> Self {
+        let Domain { gamma, sigma } = domain;
+        let shapes = cut(&self.shapes, shape(gamma.max), shape(gamma.min));
+        // What is smoother than the first node is read from it and from twice its σ.
+        let sigma = if sigma.min < SIGMA_MIN {
+            Interval { min: SIGMA_MIN, max: sigma.max.max(2.0 * SIGMA_MIN) }
+        } else {
+            sigma
+        };
+        let roughnesses = cut(&self.roughnesses, roughness(sigma.min), roughness(sigma.max));
+        Self { domain, maskings: maskings.into(), shapes, roughnesses, ..self.clone() }
     }
+
+    /// Places (γ, σ, view) at which the albedo is integrated.
+    pub fn nodes(&self) -> usize {
+        self.shapes.len() * self.roughnesses.len() * self.views
+    }
+
+    /// Bytes of the values as they are stored.
+    pub fn bytes(&self) -> usize {
+        let one = match self.precision {
+            Precision::F32 => 4,
+            Precision::F16 | Precision::U16 => 2,
+        };
+        // Averages are always in single precision.
+        3 * self.maskings.len() * (one * self.nodes() + 4 * self.shapes.len() * self.roughnesses.len())
+    }
+}
+
+/// `count` values evenly from `low` to `high`.
+fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
+    let step = (high - low) / (count - 1) as f64;
+    (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect()
+}
+
+/// The nodes that the polynomial reads anywhere in [from, to]; a single value is a node itself.
+fn cut(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
+    if from == to {
+        return vec![from];
+    }
+    let first = |t: f64| {
+        let above = nodes.partition_point(|&node| node <= t);
+        above.saturating_sub(WINDOW / 2).min(nodes.len().saturating_sub(WINDOW))
+    };
+    let last = (first(to) + WINDOW).min(nodes.len());
+    nodes[first(from)..last].to_vec()
 }
 
 /// The coordinate of a shape.
 fn shape(gamma: f64) -> f64 {
     libm::log1p(SHAPE_SCALE / (2.0 * gamma - 3.0))
+}
+
+/// The coordinate of a roughness.
+fn roughness(sigma: f64) -> f64 {
+    libm::log1p(sigma / ROUGHNESS_OFFSET)
 }
 
 /// Why a bake gave up.
@@ -161,12 +264,12 @@ pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
         .collect::<Result<Vec<Vec<(Node, f64)>>, BakeError>>()?;
     let error = rows.iter().flatten().map(|node| node.1).fold(0.0, f64::max);
     let mut tables = Vec::new();
-    for masking in Masking::ALL {
+    for &masking in &spec.maskings {
         let values =
             rows.iter().flatten().flat_map(|node| node.0[masking as usize].map(|x| x as f32)).collect();
         let directional = Table {
             certificate: [("quadrature_error".to_string(), error)].into(),
-            ..table(Kind::Albedo, masking, axes.clone(), values, spec.precision)
+            ..table(spec, Kind::Albedo, masking, axes.clone(), values)
         };
         let set = Tables::from_tables(Default::default(), vec![directional.clone()])?;
         let average = |&(shape, sigma): &(&AlbedoIntegrator, f64)| {
@@ -175,23 +278,24 @@ pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
         };
         let values = pairs.iter().flat_map(average).collect();
         tables.push(directional);
-        tables.push(table(Kind::AlbedoAverage, masking, axes[..2].to_vec(), values, Precision::F32));
+        let single = AlbedoSpec { precision: Precision::F32, ..spec.clone() };
+        tables.push(table(&single, Kind::AlbedoAverage, masking, axes[..2].to_vec(), values));
     }
     Ok(tables)
 }
 
-fn table(kind: Kind, masking: Masking, axes: Vec<Axis>, values: Vec<f32>, precision: Precision) -> Table {
+fn table(spec: &AlbedoSpec, kind: Kind, masking: Masking, axes: Vec<Axis>, values: Vec<f32>) -> Table {
     Table {
-        name: format!("{}_{}", kind.name(), masking.name().replace('-', "_")),
+        name: format!("{}_{}{}", kind.name(), masking.name().replace('-', "_"), spec.domain.suffix()),
         kind,
         axes,
         channels: ["scale", "bias", "f82"].map(String::from).into(),
         masking: Some(masking),
         values,
-        precision,
+        precision: spec.precision,
         certificate: Default::default(),
     }
-    .rounded(precision)
+    .rounded(spec.precision)
 }
 
 fn node(shape: &AlbedoIntegrator, sigma: f64, cos: f64, tolerance: f64) -> Result<(Node, f64), BakeError> {
@@ -216,7 +320,7 @@ fn node(shape: &AlbedoIntegrator, sigma: f64, cos: f64, tolerance: f64) -> Resul
 }
 
 /// The axes: γ, σ and the view.
-fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
+pub fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
     let axis = |name: &str, mapping, nodes| Axis {
         name: name.into(),
         unit: "1".into(),
@@ -224,28 +328,11 @@ fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
         interpolation: Interpolation::Lagrange6,
         nodes,
     };
-    let even = |low: f64, high: f64, count: usize| -> Vec<f64> {
-        if low == high {
-            return vec![low];
-        }
-        let step = (high - low) / (count - 1) as f64;
-        (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect()
-    };
-    let roughness = |sigma: f64| libm::log1p(sigma / ROUGHNESS_OFFSET);
-    let [shapes, roughnesses, views] = spec.nodes;
     let (weight, scale, heavy) = VIEW;
     vec![
-        axis(
-            "gamma",
-            Mapping::LogShape { scale: SHAPE_SCALE },
-            even(shape(spec.gamma[1]), shape(spec.gamma[0]), shapes),
-        ),
-        axis(
-            "sigma",
-            Mapping::LogRoughness { offset: ROUGHNESS_OFFSET },
-            even(roughness(SIGMA_MIN), roughness(spec.sigma_max), roughnesses),
-        ),
-        axis("view", Mapping::ViewBlend { weight, scale, heavy }, Axis::uniform_nodes(views)),
+        axis("gamma", Mapping::LogShape { scale: SHAPE_SCALE }, spec.shapes.clone()),
+        axis("sigma", Mapping::LogRoughness { offset: ROUGHNESS_OFFSET }, spec.roughnesses.clone()),
+        axis("view", Mapping::ViewBlend { weight, scale, heavy }, Axis::uniform_nodes(spec.views)),
     ]
 }
 

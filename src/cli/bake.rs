@@ -6,8 +6,9 @@ use std::time::Instant;
 use clap::ValueEnum;
 use serde_json::json;
 
+use microfacet_bake::bake::albedo::AlbedoSpec;
 use microfacet_bake::cache::Cache;
-use microfacet_bake::generate::{Baked, Target, add_distributions, generate};
+use microfacet_bake::generate::{BakeError, Baked, Target, add_albedos, add_distributions, generate};
 use microfacet_bake::memory;
 use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::{self, Scene};
@@ -109,30 +110,42 @@ pub(super) fn run(args: Args) -> Outcome {
             report_ignored(scene);
             args.request.plan(scene, args.max_error)?
         }
-        None => Plan::general(),
+        None => args.request.general_plan(),
     };
     if plan.is_empty() {
         print("Nothing to bake: no material in use is rough.\n")?;
         return Ok(Done::Ok);
     }
     let target = args.target();
-    let general = match target {
-        Target::Quality(quality, precision) => general_set(quality, precision),
+    let (quality, precision) = match target {
+        Target::Quality(quality, precision) => (quality, precision),
         // Where a search ends is not known; hardly ever beyond this.
-        _ => general_set(Quality::High, Precision::F32),
+        _ => (Quality::High, Precision::F32),
     };
+    let general = general_set(quality, precision);
     let specs: Vec<_> = plan.needs.iter().flat_map(|need| need.specs(&general)).collect();
-    memory::check(&specs, args.max_memory)?;
+    let albedo = AlbedoSpec::general(quality, precision);
+    let albedos: Vec<_> = plan.albedos.iter().map(|need| need.spec(&albedo)).collect();
+    memory::check(&specs, &albedos, args.max_memory)?;
     let steps = match target {
         // The tables of each need, and its certificate.
         Target::Quality(..) => specs.len() + plan.needs.len(),
         _ => plan.needs.len(),
     };
-    let bar = progress(steps + plan.distributions.len(), "baking");
+    let bar = progress(steps + plan.distributions.len() + plan.albedos.len(), "baking");
     let provenance = provenance(scene.as_ref().map(|scene| (scene, &plan)));
     let cache = args.cache();
+    if matches!(target, Target::MaxBytes(_)) && !plan.albedos.is_empty() {
+        // Before the search for the other tables, which takes long.
+        return Err(BakeError::NoAlbedoBudget.into());
+    }
+    let normals = Instant::now();
     let result = generate(&plan.needs, target, provenance, &cache, || bar.inc(1))?;
     let result = add_distributions(result, &plan.distributions, target, &cache, || bar.inc(1))?;
+    let normals = normals.elapsed().as_secs_f64();
+    let albedo = Instant::now();
+    let result = add_albedos(result, &plan.albedos, target, &cache, || bar.inc(1))?;
+    let families = [("visible normals", normals), ("albedo", albedo.elapsed().as_secs_f64())];
     bar.finish_and_clear();
     if let Some(why) = &result.cache_error {
         eprintln!(
@@ -150,9 +163,9 @@ pub(super) fn run(args: Args) -> Outcome {
     let written = out.write(&result.set, &formats)?;
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
-        print_json(&as_json(&result, &written, seconds))?
+        print_json(&as_json(&result, &written, families, seconds))?
     } else {
-        print(&summary(&result, &plan, &written, seconds))?
+        print(&summary(&result, &plan, &written, families, seconds))?
     }
     Ok(Done::Ok)
 }
@@ -166,7 +179,7 @@ fn report_ignored(scene: &Scene) {
 /// What a table's certificate says about its largest error.
 pub(super) fn largest_error(table: &Table) -> String {
     let figure = |key: &str| table.certificate.get(key);
-    for (quantity, name) in [("g1", "G1"), ("cdf", "CDF"), ("d", "D/D(0)")] {
+    for (quantity, name) in [("g1", "G1"), ("cdf", "CDF"), ("d", "D/D(0)"), ("e", "E")] {
         if let Some(max) = figure(&format!("{quantity}_max_error")) {
             let rms = figure(&format!("{quantity}_rms_error"));
             let rms = rms.map_or(String::new(), |rms| format!(", rms {rms:.2e}"));
@@ -176,7 +189,10 @@ pub(super) fn largest_error(table: &Table) -> String {
     "not certified".into()
 }
 
-fn summary(result: &Baked, plan: &Plan, written: &[Written], seconds: f64) -> String {
+/// Seconds that each family of tables took.
+type Families = [(&'static str, f64); 2];
+
+fn summary(result: &Baked, plan: &Plan, written: &[Written], families: Families, seconds: f64) -> String {
     let mut text = String::new();
     let tables = result.set.tables();
     let width = tables.iter().map(|table| table.name.len()).max().unwrap_or(0);
@@ -197,10 +213,15 @@ fn summary(result: &Baked, plan: &Plan, written: &[Written], seconds: f64) -> St
         (all, baked) if baked < all => format!("{baked} tables baked, {} finished before,", all - baked),
         (all, _) => format!("{all} tables"),
     };
-    text + &format!("{baked} in {seconds:.3} s\n")
+    text += &format!("{baked} in {seconds:.3} s");
+    if !plan.albedos.is_empty() {
+        let parts = families.map(|(name, seconds)| format!("{name} {seconds:.3} s"));
+        text += &format!(" ({})", parts.join(", "));
+    }
+    text + "\n"
 }
 
-fn as_json(result: &Baked, written: &[Written], seconds: f64) -> serde_json::Value {
+fn as_json(result: &Baked, written: &[Written], families: Families, seconds: f64) -> serde_json::Value {
     let tables: Vec<_> = result
         .set
         .tables()
@@ -218,5 +239,7 @@ fn as_json(result: &Baked, written: &[Written], seconds: f64) -> serde_json::Val
         .iter()
         .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }))
         .collect();
-    json!({ "tables": tables, "baked": result.baked, "files": files, "seconds": seconds })
+    let families: serde_json::Map<_, _> =
+        families.map(|(name, seconds)| (name.into(), json!(seconds))).into_iter().collect();
+    json!({ "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families })
 }

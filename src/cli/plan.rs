@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use microfacet_bake::plan::{Cost, Need, Plan, Verdict, bare_cost, cost};
+use microfacet_bake::bake::albedo::{AlbedoSpec, Domain};
+use microfacet_bake::generate::add_albedo_conventions;
+use microfacet_bake::plan::{AlbedoVerdict, Cost, Need, Plan, Verdict, albedo_cost, bare_cost, cost};
 use microfacet_bake::scene::{self, Interval, Scene};
 use microfacet_bake::spec::{TableSpec, general_set};
 
@@ -32,6 +34,8 @@ struct Report<'a> {
     plan: &'a Plan,
     /// Tables of each need, and what they cost on their own.
     tables: Vec<(Vec<TableSpec>, Cost)>,
+    /// Specification and cost of each albedo need.
+    albedos: Vec<(AlbedoSpec, Cost)>,
     total: Cost,
     general: Cost,
     /// Milliseconds.
@@ -47,7 +51,18 @@ pub(super) fn run(args: Args) -> Outcome {
     let start = Instant::now();
     let plan = args.request.plan(&scene, None)?;
     let general = general_set(args.request.quality(), args.request.precision());
-    let origin = provenance(Some((&scene, &plan)));
+    let mut origin = provenance(Some((&scene, &plan)));
+    let general_albedo = AlbedoSpec::general(args.request.quality(), args.request.precision());
+    let albedo_needs = plan.albedos.iter().map(|need| need.spec(&general_albedo));
+    let albedos: Vec<(AlbedoSpec, Cost)> = albedo_needs
+        .map(|spec| {
+            let cost = albedo_cost(&spec);
+            (spec, cost)
+        })
+        .collect();
+    if !albedos.is_empty() {
+        add_albedo_conventions(&mut origin);
+    }
     let tables: Vec<(Vec<TableSpec>, Cost)> = plan
         .needs
         .iter()
@@ -57,11 +72,16 @@ pub(super) fn run(args: Args) -> Outcome {
             (specs, cost)
         })
         .collect();
-    let total = tables.iter().map(|(_, cost)| *cost).chain([bare_cost(&origin)]).sum();
-    let general = [cost(&general), bare_cost(&provenance(None))].into_iter().sum();
+    let albedo_costs = albedos.iter().map(|(_, cost)| *cost);
+    let total = tables.iter().map(|(_, cost)| *cost).chain(albedo_costs).chain([bare_cost(&origin)]).sum();
+    let mut everything = vec![cost(&general), bare_cost(&provenance(None))];
+    if !args.request.general_plan().albedos.is_empty() {
+        everything.push(albedo_cost(&general_albedo));
+    }
+    let general = everything.into_iter().sum();
     let milliseconds = |time: std::time::Duration| 1e3 * time.as_secs_f64();
     let (reading, planning) = (milliseconds(reading), milliseconds(start.elapsed()));
-    let report = Report { scene: &scene, plan: &plan, tables, total, general, reading, planning };
+    let report = Report { scene: &scene, plan: &plan, tables, albedos, total, general, reading, planning };
     if args.json {
         print_json(&report.json())?
     } else {
@@ -92,6 +112,27 @@ fn shapes(gamma: Interval) -> String {
     }
 }
 
+/// Why a material gets no albedo, in few words and in more.
+fn albedo_reason(verdict: AlbedoVerdict) -> [&'static str; 2] {
+    match verdict {
+        AlbedoVerdict::Bake(_) => ["baked", "albedo tables cover it"],
+        AlbedoVerdict::NotAsked => ["no fresnel", "the recipe states no `fresnel`; --albedo bakes all"],
+        AlbedoVerdict::Imported => ["not asked", "scenes other than recipes get albedos with --albedo"],
+        AlbedoVerdict::Declined => ["declined", "--no-albedo"],
+        AlbedoVerdict::OtherDistribution => ["no student-t", "albedo tables are for the Student-t family"],
+        AlbedoVerdict::Embedded => ["embedded", "the default set compiled into the sampler has its albedo"],
+        AlbedoVerdict::NotNeeded => ["not needed", "it needs no tables at all"],
+    }
+}
+
+/// "gamma 3, sigma 0.1 to 0.4".
+fn domain(Domain { gamma, sigma }: Domain) -> String {
+    // Means of anisotropic roughnesses have many digits.
+    let number = |x: f64| format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned();
+    let end = if sigma.is_point() { String::new() } else { format!(" to {}", number(sigma.max)) };
+    format!("{}, sigma {}{end}", shapes(gamma), number(sigma.min))
+}
+
 /// The first few of many names.
 fn list<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 4;
@@ -108,6 +149,44 @@ impl Report<'_> {
     fn names(&self, of: impl Fn(&Verdict) -> bool) -> Vec<&str> {
         let pairs = self.scene.materials.iter().zip(&self.plan.verdicts);
         pairs.filter(|(_, verdict)| of(verdict)).map(|(material, _)| material.name.as_str()).collect()
+    }
+
+    /// Names of the materials whose albedo has this verdict.
+    fn albedo_names(&self, of: AlbedoVerdict) -> Vec<&str> {
+        let pairs = self.scene.materials.iter().zip(&self.plan.albedo_verdicts);
+        pairs.filter(|(_, verdict)| **verdict == of).map(|(material, _)| material.name.as_str()).collect()
+    }
+
+    fn albedo_text(&self) -> String {
+        let mut text = String::new();
+        for (i, (spec, cost)) in self.albedos.iter().enumerate() {
+            let names = self.albedo_names(AlbedoVerdict::Bake(i));
+            let forms: Vec<&str> = spec.maskings.iter().map(|masking| masking.name()).collect();
+            text += &format!(
+                "bake  albedo, {}, {}: {} tables, {} bytes, about {:.3} s, for {}\n",
+                domain(spec.domain),
+                forms.join(" and "),
+                2 * forms.len(),
+                cost.bytes,
+                cost.seconds,
+                list(names.into_iter())
+            );
+        }
+        for verdict in [
+            AlbedoVerdict::NotAsked,
+            AlbedoVerdict::Imported,
+            AlbedoVerdict::Declined,
+            AlbedoVerdict::OtherDistribution,
+            AlbedoVerdict::Embedded,
+        ] {
+            let names = self.albedo_names(verdict);
+            if !names.is_empty() {
+                let [short, long] = albedo_reason(verdict);
+                text +=
+                    &format!("skip  {:22} {long}: {}\n", format!("albedo, {short}"), list(names.into_iter()));
+            }
+        }
+        text
     }
 
     fn text(&self) -> String {
@@ -135,6 +214,7 @@ impl Report<'_> {
                 text += &format!("skip  {short:22} {long}: {}\n", list(names.into_iter()));
             }
         }
+        text += &self.albedo_text();
         let mut ignored: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for material in &self.scene.ignored {
             ignored.entry(material.reason).or_default().push(&material.name);
@@ -178,12 +258,21 @@ impl Report<'_> {
                 .collect();
             json!({ "shapes": ends(need), "tables": tables, "cost": cost(sum), "materials": self.names(|verdict| verdict.need() == Some(i)) })
         }).collect();
+        let albedos: Vec<_> = self.albedos.iter().enumerate().map(|(i, (spec, sum))| {
+            let Domain { gamma, sigma } = spec.domain;
+            let nodes = [spec.shapes.len(), spec.roughnesses.len(), spec.views];
+            json!({
+                "gamma": [gamma.min.to_string(), gamma.max.to_string()], "sigma": [sigma.min, sigma.max], "masking": spec.maskings,
+                "nodes": nodes, "cost": cost(sum), "materials": self.albedo_names(AlbedoVerdict::Bake(i)),
+            })
+        }).collect();
+        let verdicts = self.plan.verdicts.iter().zip(&self.plan.albedo_verdicts);
         let materials: Vec<_> = self
             .scene
             .materials
             .iter()
-            .zip(&self.plan.verdicts)
-            .map(|(material, verdict)| {
+            .zip(verdicts)
+            .map(|(material, (verdict, albedo))| {
                 let [short, long] = reason(verdict);
                 let other = match *verdict {
                     Verdict::Same { as_material: i, .. } | Verdict::Within { of_material: i, .. } => {
@@ -191,7 +280,8 @@ impl Report<'_> {
                     }
                     _ => None,
                 };
-                json!({ "name": material.name, "verdict": short, "why": long, "need": verdict.need(), "shares_with": other })
+                json!({ "name": material.name, "verdict": short, "why": long, "need": verdict.need(), "shares_with": other,
+                        "albedo": albedo_reason(*albedo) })
             })
             .collect();
         let ignored: Vec<_> = self
@@ -201,7 +291,7 @@ impl Report<'_> {
             .map(|material| json!({ "name": material.name, "kind": material.kind, "why": material.reason }))
             .collect();
         json!({
-            "needs": needs, "materials": materials, "ignored": ignored, "nothing_needed": self.plan.is_empty(),
+            "needs": needs, "albedo": albedos, "materials": materials, "ignored": ignored, "nothing_needed": self.plan.is_empty(),
             "total": cost(&self.total), "general_set": cost(&self.general),
             "milliseconds": { "reading": self.reading, "planning": self.planning },
         })

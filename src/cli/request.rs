@@ -3,10 +3,10 @@
 use clap::ValueEnum;
 
 use microfacet_bake::generate::{self, worst_error};
-use microfacet_bake::plan::{self, Options, Plan};
+use microfacet_bake::plan::{self, AlbedoWish, Options, Plan};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::spec::Quality;
-use microfacet_sampler::{Precision, Provenance, Tables};
+use microfacet_sampler::{Precision, Provenance, Table, Tables};
 
 use super::Failure;
 
@@ -21,6 +21,12 @@ pub(super) struct Request {
     /// Tabulate GGX (gamma = 2) as well, for a run time without its closed forms.
     #[arg(long)]
     tabulate_ggx: bool,
+    /// Bake directional albedos for every rough material of a scene; without it, for the materials of a recipe that state `fresnel`.
+    #[arg(long)]
+    albedo: bool,
+    /// Bake no directional albedos, which take most of the time.
+    #[arg(long, conflicts_with = "albedo")]
+    no_albedo: bool,
     /// The run time has the sampler crate's default set compiled in (`Tables::or_embedded`): skip what it covers.
     #[arg(long)]
     embedded: bool,
@@ -63,22 +69,47 @@ impl Request {
         }
     }
 
+    /// The plan of everything.
+    pub(super) fn general_plan(&self) -> Plan {
+        let mut plan = Plan::general();
+        if self.no_albedo {
+            plan.albedos.clear();
+        }
+        plan
+    }
+
     /// The plan of a scene; `max_error` if there is a budget.
     pub(super) fn plan(&self, scene: &Scene, max_error: Option<f64>) -> Result<Plan, Failure> {
+        let mut embedded_albedo = false;
         if self.embedded {
-            let worst = Tables::embedded().tables().iter().map(worst_error).fold(0.0, f64::max);
+            let embedded = Tables::embedded();
+            let (albedos, others): (Vec<&Table>, Vec<&Table>) =
+                embedded.tables().iter().partition(|table| table.kind.is_albedo());
+            let worst = |tables: &[&Table]| tables.iter().map(|table| worst_error(table)).fold(0.0, f64::max);
             if matches!(self.quality(), Quality::High) {
                 return Err(Failure(
                     "--embedded: the set compiled in is of default quality; drop --quality high".into(),
                 ));
             }
-            if max_error.is_some_and(|max| max < worst) {
+            let worst_of_others = worst(&others);
+            if max_error.is_some_and(|max| max < worst_of_others) {
                 return Err(Failure(format!(
-                    "--embedded: the set compiled in errs by {worst:.1e}; allow that much"
+                    "--embedded: the set compiled in errs by {worst_of_others:.1e}; allow that much"
                 )));
             }
+            // Where its albedos are not good enough, better ones are baked.
+            embedded_albedo = !albedos.is_empty() && max_error.is_none_or(|max| max >= worst(&albedos));
         }
-        let options = Options { tabulate_ggx: self.tabulate_ggx, embedded: self.embedded };
+        let options = Options {
+            tabulate_ggx: self.tabulate_ggx,
+            embedded: self.embedded,
+            embedded_albedo,
+            albedo: match (self.albedo, self.no_albedo) {
+                (true, _) => AlbedoWish::All,
+                (_, true) => AlbedoWish::None,
+                _ => AlbedoWish::Recipes,
+            },
+        };
         Ok(Plan::new(scene, options)?)
     }
 }

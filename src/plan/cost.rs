@@ -1,10 +1,11 @@
 //! What a bake costs, before it is done.
 
-use microfacet_sampler::{Interpolation, Kind, Provenance, describe};
+use microfacet_sampler::{Axis, Interpolation, Kind, Provenance, describe};
 
-use crate::bake;
+use crate::bake::{self, albedo::AlbedoSpec};
 use crate::generate::CERTIFICATE_POINTS;
 use crate::spec::TableSpec;
+use crate::validate::albedo;
 
 /// Bytes and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +45,24 @@ pub fn cost(specs: &[TableSpec]) -> Cost {
     let one =
         |spec: &TableSpec| Cost { bytes: spec.bytes() + header(spec), seconds: seconds(spec) / threads };
     specs.iter().map(one).sum()
+}
+
+/// The same for albedo tables.
+pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
+    let axes = bake::albedo::axes(spec);
+    let json = |axes: &[Axis]| serde_json::to_string(axes).map_or(0, |json| escaped(&json));
+    let header = json(&axes) + json(&axes[..2]) + 1400;
+    let threads = rayon::current_num_threads() as f64;
+    Cost { bytes: spec.bytes() + spec.maskings.len() * header, seconds: albedo_seconds(spec) / threads }
+}
+
+/// Seconds that one thread bakes and certifies albedo tables.
+fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
+    // Microseconds a node, a row of averages and a point of the certificate, as below.
+    let [node, average, point] = [700.0, 60.0, 700.0];
+    let rows = spec.shapes.len() * spec.roughnesses.len();
+    let points = spec.maskings.len() * albedo::points(spec.shapes.len());
+    1e-6 * (node * spec.nodes() as f64 + average * rows as f64 + point * points as f64)
 }
 
 /// Seconds that one thread bakes and certifies a table.

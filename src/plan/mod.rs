@@ -1,8 +1,10 @@
 //! From what a scene asks for to what is to be baked: pure, and as little as possible.
 //!
-//! Tables have no σ axis (mathematically, slopes divide by σ before any lookup), so what a material needs is its shape γ alone: one
-//! γ is a slice, 1D for masking and across the plane, 2D along it; a range of γ is a sub-range of the general set.
+//! Tables of visible normals have no σ axis (mathematically, slopes divide by σ before any lookup), so what a material needs is its shape γ alone: one
+//! γ is a slice, 1D for masking and across the plane, 2D along it; a range of γ is a sub-range of the general set. Albedos do depend on σ, and are
+//! baked for those who ask.
 
+mod albedo;
 mod cost;
 mod needs;
 
@@ -10,9 +12,11 @@ use std::fmt;
 
 use microfacet_sampler::MaterialEntry;
 
-pub use cost::{Cost, bare_cost, cost};
+pub use albedo::{AlbedoNeed, AlbedoVerdict, AlbedoWish};
+pub use cost::{Cost, albedo_cost, bare_cost, cost};
 pub use needs::Need;
 
+use crate::bake::albedo::SIGMA_MAX;
 use crate::family::Distribution;
 use crate::scene::{Interval, Material, Scene};
 use crate::spec::GAMMA_MIN;
@@ -32,6 +36,10 @@ pub struct Options {
     pub tabulate_ggx: bool,
     /// The default set is compiled in and good enough.
     pub embedded: bool,
+    /// And it holds albedo tables that are good enough, too.
+    pub embedded_albedo: bool,
+    /// Which materials get albedo tables.
+    pub albedo: AlbedoWish,
 }
 
 /// What becomes of a material.
@@ -84,19 +92,23 @@ pub struct Plan {
     pub distributions: Vec<Distribution>,
     /// One verdict for each material of the scene, in order.
     pub verdicts: Vec<Verdict>,
+    /// What albedo tables are to cover.
+    pub albedos: Vec<AlbedoNeed>,
+    /// One verdict on the albedo of each material, in order.
+    pub albedo_verdicts: Vec<AlbedoVerdict>,
 }
 
 impl Plan {
-    /// Everything: all γ that tables cover.
+    /// Everything: all γ that tables cover, and all σ that albedo tables do.
     pub fn general() -> Self {
-        Self { needs: vec![Need::general()], ..Self::default() }
+        Self { needs: vec![Need::general()], albedos: vec![AlbedoNeed::general()], ..Self::default() }
     }
 
     /// The plan of a scene.
     ///
     /// # Errors
-    /// [`TooHeavy`] for a γ that no table covers.
-    pub fn new(scene: &Scene, options: Options) -> Result<Self, TooHeavy> {
+    /// [`NotCovered`] for a γ, or a σ that an albedo is asked of, that no table covers.
+    pub fn new(scene: &Scene, options: Options) -> Result<Self, NotCovered> {
         let wants: Vec<Result<Interval, Verdict>> =
             scene.materials.iter().map(|material| want(material, options)).collect::<Result<_, _>>()?;
         let mut needs = needs::disjoint(wants.iter().flatten().copied());
@@ -130,7 +142,8 @@ impl Plan {
             Err(verdict) => verdict.clone(),
         };
         let verdicts = wants.iter().enumerate().map(verdict).collect();
-        Ok(Self { needs, distributions: distributions(scene), verdicts })
+        let (albedos, albedo_verdicts) = albedo::needs(scene, options)?;
+        Ok(Self { needs, distributions: distributions(scene), verdicts, albedos, albedo_verdicts })
     }
 
     /// Whether some material is left to closed forms: then even a set without tables is worth writing.
@@ -141,12 +154,13 @@ impl Plan {
     /// Whether no material in use is rough.
     pub fn is_empty(&self) -> bool {
         self.needs.is_empty()
+            && self.albedos.is_empty()
             && self.verdicts.iter().all(|verdict| matches!(verdict, Verdict::NotRough | Verdict::NotUsed))
     }
 }
 
 /// The range of γ that a material needs tables for, or why it needs none.
-fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdict>, TooHeavy> {
+fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdict>, NotCovered> {
     if !material.used {
         return Ok(Err(Verdict::NotUsed));
     }
@@ -158,7 +172,7 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
     }
     let gamma = material.gamma;
     if gamma.min < GAMMA_MIN {
-        return Err(TooHeavy { material: material.name.clone(), gamma: gamma.min });
+        return Err(NotCovered::Gamma { material: material.name.clone(), gamma: gamma.min });
     }
     if gamma == Interval::point(GGX) && !options.tabulate_ggx {
         return Ok(Err(Verdict::ClosedForm));
@@ -197,24 +211,40 @@ pub fn entries(scene: &Scene) -> Vec<MaterialEntry> {
     scene.materials.iter().filter(|material| material.used && is_rough(material)).map(entry).collect()
 }
 
-/// A shape that tables cannot cover: γ below [`GAMMA_MIN`].
+/// A material that tables cannot cover.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TooHeavy {
-    /// Name of the material.
-    pub material: String,
-    /// Its γ.
-    pub gamma: f64,
+pub enum NotCovered {
+    /// γ below [`GAMMA_MIN`].
+    Gamma {
+        /// Name of the material.
+        material: String,
+        /// Its γ.
+        gamma: f64,
+    },
+    /// An albedo for σ above [`SIGMA_MAX`].
+    Sigma {
+        /// Name of the material.
+        material: String,
+        /// Its σ.
+        sigma: f64,
+    },
 }
 
-impl fmt::Display for TooHeavy {
+impl fmt::Display for NotCovered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { material, gamma } = self;
-        write!(
-            f,
-            "material \"{material}\": gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it, or \
-             sample it with the model's exact sampler"
-        )
+        match self {
+            Self::Gamma { material, gamma } => write!(
+                f,
+                "material \"{material}\": gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it, or \
+                 sample it with the model's exact sampler"
+            ),
+            Self::Sigma { material, sigma } => write!(
+                f,
+                "material \"{material}\": sigma = {sigma} is above {SIGMA_MAX}, the largest roughness that albedo tables cover; lower \
+                 it, remove its `fresnel`, or use --no-albedo"
+            ),
+        }
     }
 }
 
-impl std::error::Error for TooHeavy {}
+impl std::error::Error for NotCovered {}

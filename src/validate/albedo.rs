@@ -8,25 +8,38 @@ use microfacet_model::{AlbedoIntegrator, Masking as ModelMasking, Shape};
 use microfacet_sampler::{BindError, GRAZING_FLOOR, Kind, Masking, Table, Tables};
 
 use super::certificate::{low_discrepancy, round_up};
-use crate::bake::albedo::weights;
+use crate::bake::albedo::{Domain, weights};
+use crate::scene::Interval;
 
 /// Accuracy of the model's values that tables are judged by.
 const TOLERANCE: f64 = 1e-7;
 /// Views and roughnesses measured at each γ.
 const POINTS: usize = 96;
+/// So many are measured of the fewest shapes.
+const LEAST: usize = 480;
 /// Smallest σ and cos θ of the domain that the figures are promised for.
 const DOMAIN: (f64, f64) = (0.01, 0.02);
 
 /// Figures of one table, rounded up to three digits; those a bake has left there are kept.
-pub(super) fn measure(tables: &Tables, table: &Table) -> Result<BTreeMap<String, f64>, BindError> {
+fn measure(tables: &Tables, table: &Table, domain: Domain) -> Result<BTreeMap<String, f64>, BindError> {
     let mut figures = table.certificate.clone();
     let masking = table.masking.expect("validated on load");
-    let errors = gammas(table)
+    let gammas = gammas(table, domain);
+    let points = points_at(gammas.len());
+    let at = |i: usize, gamma: f64| Places {
+        tables,
+        masking,
+        gamma,
+        first: i * points,
+        points,
+        sigma: domain.sigma,
+    };
+    let errors = gammas
         .par_iter()
         .enumerate()
         .map(|(i, &gamma)| match table.kind {
-            Kind::Albedo => directional(tables, table, masking, gamma, i),
-            _ => averages(tables, table, masking, gamma, i),
+            Kind::Albedo => directional(&at(i, gamma)),
+            _ => averages(&at(i, gamma)),
         })
         .collect::<Result<Vec<_>, BindError>>()?;
     let all: Vec<Point> = errors.into_iter().flatten().collect();
@@ -49,6 +62,12 @@ pub(super) fn measure(tables: &Tables, table: &Table) -> Result<BTreeMap<String,
         figures.insert("e_max_error_grazing".into(), round_up(grazing));
     }
     figures.insert("points".into(), all.len() as f64);
+    if domain != Domain::GENERAL {
+        let s = |gamma: f64| 1.0 / (gamma - 1.0);
+        let ends = [("s_min", s(domain.gamma.max)), ("s_max", s(domain.gamma.min))];
+        let sigmas = [("sigma_min", domain.sigma.min), ("sigma_max", domain.sigma.max)];
+        figures.extend(ends.into_iter().chain(sigmas).map(|(key, value)| (key.into(), value)));
+    }
     Ok(figures)
 }
 
@@ -60,28 +79,58 @@ struct Point {
     grazing: bool,
 }
 
-/// Shapes to measure at: two between every two nodes, and the nodes.
-fn gammas(table: &Table) -> Vec<f64> {
+/// Adds to each table of a set of albedos the errors measured on it, over the domain it was baked for.
+///
+/// # Errors
+/// [`BindError`] if the tables do not cover the domain.
+pub fn certify(tables: &mut Tables, domain: Domain) -> Result<(), BindError> {
+    let figures: Vec<_> =
+        tables.tables().iter().map(|table| measure(tables, table, domain)).collect::<Result<_, _>>()?;
+    figures.into_iter().enumerate().for_each(|(i, figures)| tables.set_certificate(i, figures));
+    Ok(())
+}
+
+/// Points at each of `shapes` measured shapes.
+fn points_at(shapes: usize) -> usize {
+    POINTS.max(LEAST / shapes)
+}
+
+/// Points at which a table with so many γ nodes is measured, the average included.
+pub(crate) fn points(nodes: usize) -> usize {
+    // Most albedos are those of the points themselves; an average is a quarter as many lookups.
+    let shapes = 3 * nodes - 2;
+    shapes * points_at(shapes)
+}
+
+/// Where one table is measured at one γ.
+struct Places<'a> {
+    tables: &'a Tables,
+    masking: Masking,
+    gamma: f64,
+    sigma: Interval,
+    /// Index of the first of its numbers.
+    first: usize,
+    points: usize,
+}
+
+/// Shapes to measure at: two between every two nodes, and the nodes, as far as they are in the domain; and its ends.
+fn gammas(table: &Table, domain: Domain) -> Vec<f64> {
+    let Interval { min, max } = domain.gamma;
     let axis = &table.axes[0];
     let nodes = &axis.nodes;
     let between = nodes.windows(2).flat_map(|pair| [0.31, 0.57].map(|w| pair[0] + w * (pair[1] - pair[0])));
-    nodes.iter().copied().chain(between).filter_map(|t| axis.quantity(t)).collect()
+    let all = nodes.iter().copied().chain(between).filter_map(|t| axis.quantity(t));
+    let mut all: Vec<f64> = all.filter(|gamma| *gamma > min && *gamma < max).chain([min, max]).collect();
+    all.dedup();
+    all
 }
 
-fn largest_sigma(table: &Table) -> f64 {
-    let axis = &table.axes[1];
-    axis.quantity(axis.nodes[axis.nodes.len() - 1]).expect("validated on load")
-}
-
-/// σ log-uniform over the domain for one half of the numbers, uniform for the other.
-fn sigma_at(x: f64, largest: f64) -> f64 {
-    let low = DOMAIN.0;
-    let sigma = if x < 0.5 {
-        low * libm::pow(largest / low, 2.0 * x)
-    } else {
-        low + (largest - low) * (2.0 * x - 1.0)
-    };
-    sigma.clamp(low.min(largest), largest)
+/// σ log-uniform over the domain for one half of the numbers, uniform for the other; from 0.01 on where the domain goes on.
+fn sigma_at(x: f64, Interval { min, max }: Interval) -> f64 {
+    let low = DOMAIN.0.min(max).max(min);
+    let sigma =
+        if x < 0.5 { low * libm::pow(max / low, 2.0 * x) } else { low + (max - low) * (2.0 * x - 1.0) };
+    sigma.clamp(low, max)
 }
 
 fn model_masking(masking: Masking) -> ModelMasking {
@@ -91,19 +140,14 @@ fn model_masking(masking: Masking) -> ModelMasking {
     }
 }
 
-fn directional(
-    tables: &Tables,
-    table: &Table,
-    masking: Masking,
-    gamma: f64,
-    index: usize,
-) -> Result<Vec<Point>, BindError> {
+fn directional(at: &Places) -> Result<Vec<Point>, BindError> {
+    let &Places { tables, masking, gamma, first, points, .. } = at;
     let shape = Shape::new(gamma).map_err(|_| BindError::Gamma(gamma))?;
     let model = AlbedoIntegrator::new(shape, TOLERANCE);
-    (0..POINTS)
+    (first..first + points)
         .map(|i| {
-            let [a, b] = low_discrepancy(index * POINTS + i);
-            let sigma = sigma_at(a, largest_sigma(table));
+            let [a, b] = low_discrepancy(i);
+            let sigma = sigma_at(a, at.sigma);
             // A half over the cosine, a quarter logarithmic, an eighth near the normal and an eighth below the domain.
             let cos = match i % 8 {
                 0 => GRAZING_FLOOR * libm::pow(DOMAIN.1 / GRAZING_FLOOR, b),
@@ -120,26 +164,18 @@ fn directional(
             let error = |i: usize| (got[i] - exact[i]).abs();
             let total = (got[0] + got[1] - exact[0] - exact[1]).abs();
             let grazing = f64::from(cos) < DOMAIN.1;
-            Ok(Point {
-                error: [error(0), error(1), error(2), total],
-                at: [sigma, gamma, f64::from(cos)],
-                grazing,
-            })
+            let error = [error(0), error(1), error(2), total];
+            Ok(Point { error, at: [sigma, gamma, f64::from(cos)], grazing })
         })
         .collect()
 }
 
 /// Averages against quadrature of the directional albedo at the same material: what a furnace sees.
-fn averages(
-    tables: &Tables,
-    table: &Table,
-    masking: Masking,
-    gamma: f64,
-    index: usize,
-) -> Result<Vec<Point>, BindError> {
-    (0..POINTS / 4)
+fn averages(at: &Places) -> Result<Vec<Point>, BindError> {
+    let &Places { tables, masking, gamma, first, points, .. } = at;
+    (first..first + points / 4)
         .map(|i| {
-            let sigma = sigma_at(low_discrepancy(index * POINTS + i)[0], largest_sigma(table));
+            let sigma = sigma_at(low_discrepancy(i)[0], at.sigma);
             let albedo = tables.albedo(sigma, gamma, masking)?;
             let (got, exact) = (albedo.average_rest(), albedo.integrate());
             let [scale, bias, f82] = [0, 1, 2].map(|i| f64::from((got[i] - exact[i]).abs()));

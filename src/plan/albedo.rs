@@ -1,0 +1,159 @@
+//! Which albedo tables a scene needs: for the forms of masking, the shapes and the roughnesses of the materials that ask, and no others.
+
+use microfacet_sampler::{Masking, Precision};
+
+use super::{NotCovered, Options, is_rough};
+use crate::bake::albedo::{AlbedoSpec, Domain, SIGMA_MAX};
+use crate::scene::{self, Format, Interval, Material, Scene};
+use crate::spec::Quality;
+
+/// Which materials get albedo tables.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AlbedoWish {
+    /// Those of a native recipe that state `fresnel`. Scenes of other formats state a Fresnel term of nearly every material, whether or
+    /// not their renderer wants albedos.
+    #[default]
+    Recipes,
+    /// Every rough material in use.
+    All,
+    /// None.
+    None,
+}
+
+/// Materials that albedo tables are to cover: the unit in which they are baked, measured and kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlbedoNeed {
+    /// Shapes and roughnesses.
+    pub domain: Domain,
+    /// Forms of masking.
+    pub maskings: Vec<Masking>,
+}
+
+impl AlbedoNeed {
+    /// Everything that tables can cover.
+    pub fn general() -> Self {
+        Self { domain: Domain::GENERAL, maskings: Masking::ALL.into() }
+    }
+
+    /// The specification that covers it, cut out of a general one.
+    pub fn spec(&self, general: &AlbedoSpec) -> AlbedoSpec {
+        general.part(self.domain, &self.maskings)
+    }
+}
+
+/// What becomes of a material's albedo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AlbedoVerdict {
+    /// Tables are baked that cover it: an index into [`Plan::albedos`](super::Plan::albedos).
+    Bake(usize),
+    /// Its recipe states no `fresnel`.
+    NotAsked,
+    /// It comes from a scene of another format, and those have to ask.
+    Imported,
+    /// Albedo tables were declined.
+    Declined,
+    /// It is no Student-t.
+    OtherDistribution,
+    /// The default set that is compiled into the sampler crate covers it.
+    Embedded,
+    /// It has no microfacets, or no geometry wears it.
+    NotNeeded,
+}
+
+/// The needs of a scene, and one verdict for each of its materials.
+pub(super) fn needs(
+    scene: &Scene,
+    options: Options,
+) -> Result<(Vec<AlbedoNeed>, Vec<AlbedoVerdict>), NotCovered> {
+    let wants: Vec<Result<(Domain, Masking), AlbedoVerdict>> =
+        scene.materials.iter().map(|material| want(material, options)).collect::<Result<_, _>>()?;
+    let mut needs: Vec<AlbedoNeed> = Vec::new();
+    for masking in Masking::ALL {
+        let of_form = wants.iter().flatten().filter(|want| want.1 == masking).map(|want| want.0);
+        for domain in joined(of_form.collect()) {
+            // Two forms at once cost little more than one.
+            match needs.iter_mut().find(|need| need.domain == domain) {
+                Some(need) => need.maskings.push(masking),
+                None => needs.push(AlbedoNeed { domain, maskings: vec![masking] }),
+            }
+        }
+    }
+    let verdict = |want: &Result<(Domain, Masking), AlbedoVerdict>| match want {
+        Ok((domain, masking)) => {
+            let covers = |need: &AlbedoNeed| need.maskings.contains(masking) && need.domain.contains(domain);
+            AlbedoVerdict::Bake(needs.iter().position(covers).expect("the needs cover every want"))
+        }
+        Err(verdict) => *verdict,
+    };
+    let verdicts = wants.iter().map(verdict).collect();
+    Ok((needs, verdicts))
+}
+
+/// What a material needs, or why it needs nothing.
+fn want(
+    material: &Material,
+    options: Options,
+) -> Result<Result<(Domain, Masking), AlbedoVerdict>, NotCovered> {
+    let native = material.origin.format == Format::Recipe;
+    let verdict = match options.albedo {
+        _ if !material.used || !is_rough(material) => Some(AlbedoVerdict::NotNeeded),
+        AlbedoWish::None => Some(AlbedoVerdict::Declined),
+        AlbedoWish::Recipes if !native => Some(AlbedoVerdict::Imported),
+        AlbedoWish::Recipes if material.fresnel.is_none() => Some(AlbedoVerdict::NotAsked),
+        _ if material.distribution.is_some() => Some(AlbedoVerdict::OtherDistribution),
+        _ => None,
+    };
+    if let Some(verdict) = verdict {
+        return Ok(Err(verdict));
+    }
+    let (gamma, [x, y]) = (material.gamma, [material.roughness.x(), material.roughness.y()]);
+    // The usual stand-in for an anisotropic surface.
+    let mean = |x: f64, y: f64| if x == y { x } else { (x * y).sqrt() };
+    let sigma = Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) };
+    if sigma.max > SIGMA_MAX {
+        return Err(NotCovered::Sigma { material: material.name.clone(), sigma: sigma.max });
+    }
+    if options.embedded_albedo {
+        return Ok(Err(AlbedoVerdict::Embedded));
+    }
+    let masking = match material.masking {
+        Some(scene::Masking::HeightCorrelated) => Masking::HeightCorrelated,
+        // What the recipe leaves open is the form of the distribution's own paper.
+        Some(scene::Masking::Uncorrelated) | None => Masking::Uncorrelated,
+    };
+    Ok(Ok((Domain { gamma, sigma }, masking)))
+}
+
+/// Few domains that cover all of `wants` with no more nodes in all.
+fn joined(wants: Vec<Domain>) -> Vec<Domain> {
+    let general = AlbedoSpec::general(Quality::Default, Precision::F32);
+    let cost = |domain: Domain| general.part(domain, &[Masking::Uncorrelated]).nodes();
+    // One domain in the place of several, if that is not more.
+    let hull_if_cheaper = |domains: Vec<Domain>| -> Vec<Domain> {
+        let hull = domains.iter().copied().reduce(|a, b| a.union(&b));
+        match hull {
+            Some(hull) if cost(hull) <= domains.iter().map(|domain| cost(*domain)).sum() => vec![hull],
+            _ => domains,
+        }
+    };
+    // All roughnesses of one shape, then all shapes.
+    let mut groups: Vec<Vec<Domain>> = Vec::new();
+    for want in wants {
+        match groups.iter_mut().find(|group| group[0].gamma == want.gamma) {
+            Some(group) if group.contains(&want) => {}
+            Some(group) => group.push(want),
+            None => groups.push(vec![want]),
+        }
+    }
+    let all = groups.into_iter().flat_map(hull_if_cheaper).collect();
+    let all = hull_if_cheaper(all);
+    // What lies inside another is there.
+    let inside = |i: usize| {
+        let holds =
+            |(j, other): (usize, &Domain)| i != j && other.contains(&all[i]) && (*other != all[i] || j < i);
+        all.iter().enumerate().any(holds)
+    };
+    let mut kept: Vec<Domain> = (0..all.len()).filter(|&i| !inside(i)).map(|i| all[i]).collect();
+    kept.sort_by(|a, b| b.gamma.max.total_cmp(&a.gamma.max).then(a.sigma.min.total_cmp(&b.sigma.min)));
+    kept
+}
