@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release --example spheres -- OUTPUT [WIDTH] [SAMPLES]` writes OUTPUT.exr (linear radiance) and OUTPUT.png.
 //!
-//! Rows: gold of σ = 0.35 and γ = 1.6, 2, 3, 6 and ∞, single scattering; the same with multiple-scattering compensation; brushed aluminium of
-//! γ = 1.7, 2 and 5, and two ellipsoids whose lobe is tilted by 0.5 radians about the brushing, γ = 2 and 5.
+//! Rows: the gold of Ribardière et al. 2017, σ = 0.3 and γ = 1.51, 1.65, 2, 4, 10 and 50, single scattering; the same with
+//! multiple-scattering compensation; brushed aluminium of σ = (0.3, 0.7), and the same tilted by half a radian about the brushing
+//! as generalised ellipsoids, both for γ = 1.65, 2 and 10.
 
 use std::error::Error;
 
@@ -15,7 +16,7 @@ use rayon::prelude::*;
 const GOLD: Vec3 = Vec3::new(1.0, 0.766, 0.336);
 const ALUMINIUM: Vec3 = Vec3::new(0.913, 0.921, 0.925);
 
-const COLUMNS: usize = 5;
+const COLUMNS: usize = 6;
 const ROWS: usize = 3;
 
 enum Lobe {
@@ -89,30 +90,23 @@ struct Material {
 fn materials(tables: &Tables) -> Result<Vec<Material>, BindError> {
     let mut all = Vec::new();
     for compensate in [false, true] {
-        for gamma in [1.6, 2.0, 3.0, 6.0, f64::INFINITY] {
-            let lobe = Lobe::Plain(tables.student_t(0.35, gamma)?);
+        for gamma in [1.51, 1.65, 2.0, 4.0, 10.0, 50.0] {
+            let lobe = Lobe::Plain(tables.student_t(0.3, gamma)?);
             let compensation = compensate.then(|| Albedo::new(&lobe));
             all.push(Material { lobe, f0: GOLD, compensation });
         }
     }
-    let brushed = [0.08, 0.45];
-    for gamma in [1.7, 2.0, 5.0] {
-        all.push(Material {
-            lobe: Lobe::Plain(tables.student_t(brushed, gamma)?),
-            f0: ALUMINIUM,
-            compensation: None,
-        });
-    }
-    for gamma in [2.0, 5.0] {
-        let skew = Skew::new(brushed, [0.5, 0.0, 0.0])?;
-        all.push(Material {
-            lobe: Lobe::Skewed(tables.ellipsoid(skew, gamma)?),
-            f0: ALUMINIUM,
-            compensation: None,
-        });
-    }
-    for material in &mut all[2 * COLUMNS..] {
-        material.compensation = Some(Albedo::new(&material.lobe));
+    let brushed = [0.3, 0.7];
+    for tilted in [false, true] {
+        for gamma in [1.65, 2.0, 10.0] {
+            let lobe = if tilted {
+                Lobe::Skewed(tables.ellipsoid(Skew::new(brushed, [0.5, 0.0, 0.0])?, gamma)?)
+            } else {
+                Lobe::Plain(tables.student_t(brushed, gamma)?)
+            };
+            let compensation = Some(Albedo::new(&lobe));
+            all.push(Material { lobe, f0: ALUMINIUM, compensation });
+        }
     }
     Ok(all)
 }
