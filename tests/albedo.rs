@@ -1,0 +1,235 @@
+//! Albedo tables end to end: baked for those who ask, restricted to what they ask for, read back, and refused elsewhere.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use microfacet_bake::bake::albedo::{AlbedoSpec, Domain, bake};
+use microfacet_bake::cache::Cache;
+use microfacet_bake::generate::{BakeError, Target, add_albedos, generate, provenance, worst_error};
+use microfacet_bake::plan::{AlbedoNeed, AlbedoVerdict, AlbedoWish, Options, Plan, albedo_cost, bare_cost};
+use microfacet_bake::scene::{Interval, Scene};
+use microfacet_bake::spec::Quality;
+use microfacet_bake::store;
+use microfacet_model::{AlbedoIntegrator, Shape};
+use microfacet_sampler::{Kind, Masking, Precision, Provenance, Tables, encode};
+use serde_json::Value;
+
+const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
+
+fn point(x: f64) -> Interval {
+    Interval::point(x)
+}
+
+fn domain(gamma: [f64; 2], sigma: [f64; 2]) -> Domain {
+    let interval = |[min, max]: [f64; 2]| Interval { min, max };
+    Domain { gamma: interval(gamma), sigma: interval(sigma) }
+}
+
+/// A recipe of materials: name, σ, γ, and further lines.
+fn recipe(materials: &[[&str; 4]]) -> String {
+    let entry = |[name, sigma, gamma, more]: &[&str; 4]| {
+        format!("[[material]]\nname = \"{name}\"\nsigma = {sigma}\ngamma = {gamma}\n{more}\n")
+    };
+    materials.iter().map(entry).collect()
+}
+
+fn plan(materials: &[[&str; 4]], albedo: AlbedoWish) -> Plan {
+    let scene = Scene::from_recipe_str(&recipe(materials)).unwrap();
+    Plan::new(&scene, Options { albedo, ..Options::default() }).unwrap()
+}
+
+fn run(folder: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
+    command.env("XDG_CACHE_HOME", folder.join("home")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn json(folder: &Path, args: &[&str]) -> Value {
+    let output = run(folder, &[args, &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+const MIRROR: &str = "fresnel = \"mirror\"";
+const CORRELATED: &str = "fresnel = { schlick = 0.04 }\nmasking = \"height-correlated\"";
+const MIXED: [[&str; 4]; 6] = [
+    ["plain", "0.2", "5.0", ""],
+    ["mirror", "0.454", "3.0", MIRROR],
+    ["the same", "0.454", "3.0", "fresnel = { schlick = 0.5 }\nmasking = \"uncorrelated\""],
+    ["gold", "0.3", "2.0", CORRELATED],
+    ["brushed", "[0.6, 0.15]", "2.0", CORRELATED],
+    ["smooth", "0.0", "2.0", MIRROR],
+];
+
+#[test]
+fn those_who_ask_get_the_form_they_name() {
+    let plan_of = |albedo| plan(&MIXED, albedo);
+    let asked = plan_of(AlbedoWish::Recipes);
+    // σ of the anisotropic one is the geometric mean, 0.3: that of the isotropic one.
+    let uncorrelated = AlbedoNeed {
+        domain: Domain { gamma: point(3.0), sigma: point(0.454) },
+        maskings: vec![Masking::Uncorrelated],
+    };
+    assert_eq!(asked.albedos[0], uncorrelated);
+    let [_, correlated] = &asked.albedos[..] else { panic!("{:?}", asked.albedos) };
+    assert_eq!(
+        (correlated.domain.gamma, &correlated.maskings[..]),
+        (point(2.0), &[Masking::HeightCorrelated][..])
+    );
+    assert!(
+        (correlated.domain.sigma.max - 0.3).abs() < 1e-15
+            && (correlated.domain.sigma.min - 0.3).abs() < 1e-15
+    );
+    use AlbedoVerdict::{Bake, NotAsked, NotNeeded};
+    assert_eq!(asked.albedo_verdicts, [NotAsked, Bake(0), Bake(0), Bake(1), Bake(1), NotNeeded]);
+    assert!(plan_of(AlbedoWish::None).albedos.is_empty());
+    assert!(matches!(plan_of(AlbedoWish::All).albedo_verdicts[0], Bake(_)));
+    // GGX needs no other table, but its albedo is one.
+    let gold = plan(&MIXED[3..4], AlbedoWish::Recipes);
+    assert!(gold.needs.is_empty() && !gold.is_empty());
+}
+
+#[test]
+fn many_roughnesses_are_a_range_and_what_lies_inside_is_there() {
+    let sigmas: Vec<String> = (0..100).map(|i| format!("{}", 0.1 + 0.002 * f64::from(i))).collect();
+    let names: Vec<String> = (0..100).map(|i| format!("m{i}")).collect();
+    let mut materials: Vec<[&str; 4]> =
+        (0..100).map(|i| [names[i].as_str(), sigmas[i].as_str(), "3.0", MIRROR]).collect();
+    let one = plan(&materials, AlbedoWish::Recipes);
+    assert_eq!(one.albedos.len(), 1);
+    assert_eq!(
+        one.albedos[0].domain,
+        Domain { gamma: point(3.0), sigma: Interval { min: 0.1, max: 0.1 + 0.002 * 99.0 } }
+    );
+    materials.push(["texture", "{ min = 0.0, max = 0.5 }", "{ min = 2.5, max = 4.0 }", MIRROR]);
+    let plan = plan(&materials, AlbedoWish::Recipes);
+    assert_eq!(plan.albedos.len(), 1, "{:?}", plan.albedos);
+    assert!(plan.albedo_verdicts.iter().all(|verdict| *verdict == AlbedoVerdict::Bake(0)));
+}
+
+#[test]
+fn a_part_reads_as_the_whole_does() {
+    let general = AlbedoSpec::general(Quality::Draft, Precision::F32);
+    let of = |domain| {
+        let tables = bake(&general.part(domain, &[Masking::HeightCorrelated])).unwrap();
+        Tables::from_tables(Provenance::default(), tables).unwrap()
+    };
+    // Nodes on every side of the part's, so that its windows are the same.
+    let (part, whole) = (of(domain([2.6, 2.9], [0.0, 0.08])), of(domain([2.2, 3.6], [0.0, 0.2])));
+    assert!(part.tables()[0].values.len() < whole.tables()[0].values.len());
+    for gamma in [2.6, 2.77, 2.9] {
+        for sigma in [0.003, 0.02, 0.08] {
+            let [a, b] =
+                [&part, &whole].map(|set| set.albedo(sigma, gamma, Masking::HeightCorrelated).unwrap());
+            for cos in [0.01, 0.3, 0.77, 1.0] {
+                let [a, b] = [a.moments(cos), b.moments(cos)];
+                // Node distances round differently.
+                assert!((a.scale - b.scale).abs() < 1e-6 && (a.bias - b.bias).abs() < 1e-6, "{a:?} {b:?}");
+            }
+            assert!((a.albedo_average() - b.albedo_average()).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn a_single_material_has_its_albedo_and_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("r.toml"), recipe(&MIXED[1..2])).unwrap();
+    let summary = run(at, &["bake", "r.toml", "--out", "out", "--format", "safetensors,exr"]);
+    let text = String::from_utf8_lossy(&summary.stdout).into_owned();
+    assert!(text.contains("E error max") && text.contains("s, albedo "), "{text}");
+    let set = store::read(&at.join("out/tables.safetensors")).unwrap();
+    let albedo = set.albedo(0.454, 3.0, Masking::Uncorrelated).unwrap();
+    let model = AlbedoIntegrator::new(Shape::new(3.0).unwrap(), 1e-9);
+    for cos in [0.02_f32, 0.1, 0.33, 0.5, 0.9, 1.0] {
+        let exact = model.reflection(0.454, f64::from(cos), |_| [1.0]).unwrap().uncorrelated[0];
+        assert!((f64::from(albedo.albedo(cos)) - exact).abs() < 2e-6, "{cos}");
+    }
+    let table = set.table(Kind::Albedo).unwrap();
+    assert_eq!(table.shape(), [1, 1, 33, 3]);
+    assert!(table.certificate["quadrature_error"] < 1e-6 && table.certificate["sigma_min"] == 0.454);
+    // Another roughness, shape or form is not there, and the message says what is.
+    for (sigma, gamma, masking) in [
+        (0.3, 3.0, Masking::Uncorrelated),
+        (0.5, 3.0, Masking::Uncorrelated),
+        (0.454, 2.9, Masking::Uncorrelated),
+    ] {
+        let why = set.albedo(sigma, gamma, masking).unwrap_err().to_string();
+        assert!(why.contains("gamma = 3.0") && why.contains("sigma = 0.454"), "{why}");
+    }
+    assert!(set.albedo(0.454, 3.0, Masking::HeightCorrelated).is_err());
+    // The same as an image.
+    let image = store::read(&at.join("out/albedo_uncorrelated_gamma_3_sigma_0.454.exr")).unwrap();
+    assert_eq!(image.tables()[0], *table);
+    // Baked once.
+    assert_eq!(json(at, &["bake", "r.toml", "--out", "out"])["baked"], 0);
+    let less = json(at, &["bake", "r.toml", "--out", "less", "--no-albedo"]);
+    assert_eq!(less["tables"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn imported_scenes_have_to_ask() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let scene =
+        "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float roughness\" 0.04\nWorldBegin\n";
+    std::fs::write(at.join("s.pbrt"), scene).unwrap();
+    let shown = json(at, &["plan", "s.pbrt"]);
+    assert_eq!(shown["albedo"], Value::Array(Vec::new()));
+    assert_eq!(shown["materials"][0]["albedo"][0], "not asked");
+    let asked = json(at, &["plan", "s.pbrt", "--albedo"]);
+    assert_eq!(asked["albedo"][0]["masking"], serde_json::json!(["height-correlated"]));
+    assert_eq!(asked["albedo"][0]["materials"], serde_json::json!(["steel"]));
+    json(at, &["bake", "s.pbrt", "--albedo", "--quality", "draft", "--out", "out"]);
+    let set = store::read(&at.join("out")).unwrap();
+    assert!(set.albedo(0.2, 2.0, Masking::HeightCorrelated).is_ok());
+    assert!(set.provenance().conventions.contains_key("albedo"));
+}
+
+#[test]
+fn targets_are_met_or_refused() {
+    let plan = plan(&MIXED[1..2], AlbedoWish::Recipes);
+    let bake = |target| {
+        let origin = provenance(String::new(), Vec::new());
+        let normals = generate(&[], DRAFT, origin, &Cache::none(), || ()).unwrap();
+        add_albedos(normals, &plan.albedos, target, &Cache::none(), || ())
+    };
+    let worst = |target| bake(target).unwrap().set.tables().iter().map(worst_error).fold(0.0, f64::max);
+    let draft = worst(DRAFT);
+    assert!(worst(Target::MaxError(draft)) <= draft);
+    let finer = 0.1 * draft;
+    assert!(worst(Target::MaxError(finer)) <= finer);
+    let refused = bake(Target::MaxError(1e-12)).unwrap_err().to_string();
+    assert!(refused.contains("albedo") && refused.contains("highest quality"), "{refused}");
+    assert!(matches!(bake(Target::MaxBytes(1 << 20)), Err(BakeError::NoAlbedoBudget)));
+
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("r.toml"), recipe(&[["wild", "3.5", "2.0", MIRROR]])).unwrap();
+    for (args, words) in [
+        (&["--max-bytes", "9000"][..], &["3.5", "fresnel"][..]),
+        (&[], &["\"wild\"", "3.5", "above 3", "--no-albedo"]),
+    ] {
+        let output = run(folder.path(), &[&["bake", "r.toml", "--out", "out"], args].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
+    let general = run(folder.path(), &["bake", "--max-bytes", "900000", "--out", "out"]);
+    assert!(String::from_utf8_lossy(&general.stderr).contains("--no-albedo"), "{general:?}");
+}
+
+#[test]
+fn estimated_bytes_are_those_of_the_file() {
+    let plan = plan(&MIXED, AlbedoWish::Recipes);
+    let set = |albedos| {
+        let origin = provenance(String::new(), Vec::new());
+        let normals = generate(&[], DRAFT, origin, &Cache::none(), || ()).unwrap();
+        add_albedos(normals, albedos, DRAFT, &Cache::none(), || ()).unwrap().set
+    };
+    let set = set(&plan.albedos);
+    let general = AlbedoSpec::general(Quality::Draft, Precision::F32);
+    let tables: usize = plan.albedos.iter().map(|need| albedo_cost(&need.spec(&general)).bytes).sum();
+    let estimate = (tables + bare_cost(set.provenance()).bytes) as f64;
+    let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
+    assert!((estimate / real - 1.0).abs() < 0.06, "{estimate} for {real}");
+}
