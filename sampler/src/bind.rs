@@ -6,7 +6,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::axis::{Axis, Interpolation, Mapping};
-use crate::cells::{Node, limit_slopes};
+use crate::cells::{Cell, Node, cells, limit_slopes};
 use crate::error::BindError;
 use crate::table::{Kind, Table};
 
@@ -68,13 +68,15 @@ pub(crate) fn make_monotone(run: &mut [Node]) {
 /// Slices of one shape.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Slices {
-    /// G1/q by view node.
-    pub(crate) shadowing: Vec<Node>,
+    /// G1/q over the number of cells, by cell of the view coordinate; the coordinate in cells then needs no scaling of its own.
+    pub(crate) shadowing: Vec<Cell>,
+    /// Cells of that axis.
+    pub(crate) shadowing_cells: f32,
     /// κ of the view coordinate q.
     pub(crate) kappa: f32,
     /// Whether the shadowing table's axis is 1 − √(1−q) instead of q.
     pub(crate) crowded_shadowing: bool,
-    /// In-plane slopes: rows by view, each `2 (cells + 1)` nodes, the half for u ≤ ½ first.
+    /// In-plane slopes: rows by view, each `2 (cells + 1)` nodes, the half for u ≤ ½ first; and a node that is read with weight 0.
     pub(crate) slope: Vec<Node>,
     /// Cells of the view axis.
     pub(crate) rows: usize,
@@ -90,6 +92,23 @@ pub(crate) struct Slices {
     pub(crate) across: Vec<Node>,
     /// As `roots`, for u₂.
     pub(crate) across_roots: u32,
+    /// What the common case reads besides `slope`; absent where it does not apply.
+    pub(crate) plain: Option<Plain>,
+}
+
+/// The case that most materials are, laid out for speed: nothing peeled off, no crowded axis, and fourth roots of both numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Plain {
+    /// Slopes across by cell.
+    pub(crate) across: Vec<Cell>,
+    /// What takes min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
+    pub(crate) scales: [f32; 2],
+    /// Cells of the view axis.
+    pub(crate) rows: f32,
+    /// 1 over it.
+    pub(crate) row: f32,
+    /// Nodes of half a row of `slope`.
+    pub(crate) half: u32,
 }
 
 impl Slices {
@@ -102,32 +121,52 @@ impl Slices {
         };
         let kinds = [Kind::VisibleSlope, Kind::VisibleSlopePeeled];
         let (kind, mut slope, axis) = find(tables, &kinds, gamma, s)?;
-        let (rows, cells) = (axis[1].nodes.len() - 1, axis[2].nodes.len() - 1);
-        slope.chunks_exact_mut(cells + 1).for_each(make_monotone);
+        let (rows, numbers) = (axis[1].nodes.len() - 1, axis[2].nodes.len());
+        slope.chunks_exact_mut(numbers).for_each(make_monotone);
+        slope.push([0.0; 2]);
         let crowded = axis[1].mapping == Mapping::HalfTangentRoot;
         let slope_roots = roots(&axis[2]);
         let (_, mut across, axis) = find(tables, &[Kind::VisibleSlopeConditional], gamma, s)?;
         make_monotone(&mut across);
+        let peeled = kind == Kind::VisibleSlopePeeled;
+        let across_roots = roots(&axis[1]);
+        let plain = (!peeled && !crowded && slope_roots == 2 && across_roots == 2).then(|| Plain {
+            scales: [numbers, across.len()].map(|nodes| ((nodes - 1) as f64 * FOURTH_ROOT_OF_2) as f32),
+            across: cells(&across, 1.0),
+            rows: rows as f32,
+            row: (1.0 / rows as f64) as f32,
+            half: numbers as u32,
+        });
+        let shadowing_cells = shadowing.len() - 1;
         Ok(Self {
-            shadowing,
+            shadowing: cells(&shadowing, 1.0 / shadowing_cells as f64),
+            shadowing_cells: shadowing_cells as f32,
             kappa: kappa as f32,
             crowded_shadowing,
             slope,
             rows,
             crowded,
-            cells,
+            cells: numbers - 1,
             roots: slope_roots,
-            peeled: kind == Kind::VisibleSlopePeeled,
+            peeled,
             across,
-            across_roots: roots(&axis[1]),
+            across_roots,
+            plain,
         })
     }
 
     /// Bytes that lookups of this material touch.
     pub(crate) fn bytes(&self) -> usize {
-        (self.shadowing.len() + self.slope.len() + self.across.len()) * size_of::<Node>()
+        let across = match &self.plain {
+            Some(plain) => size_of_val(&plain.across[..]),
+            None => size_of_val(&self.across[..]),
+        };
+        size_of_val(&self.shadowing[..]) + size_of_val(&self.slope[..]) + across
     }
 }
+
+/// ⁴√2: the factor 2 of a mirrored axis is in the scale, not applied before the roots.
+const FOURTH_ROOT_OF_2: f64 = 1.189_207_115_002_721_1;
 
 pub(crate) fn roots(axis: &Axis) -> u32 {
     match axis.mapping {

@@ -1,5 +1,9 @@
 //! Cubic Hermite cells on uniform nodes: the one interpolation that lookups use.
 
+use alloc::vec::Vec;
+
+use wide::{f32x4, i32x4};
+
 /// (value, slope) at a node, the slope per node index.
 pub(crate) type Node = [f32; 2];
 
@@ -20,6 +24,32 @@ pub(crate) fn hermite(a: Node, b: Node, w: f32) -> f32 {
     let c2 = 3.0 * rise - 2.0 * a[1] - b[1];
     let c3 = a[1] + b[1] - 2.0 * rise;
     a[0] + w * (a[1] + w * (c2 + w * c3))
+}
+
+/// Coefficients of the cubic c₀ + w(c₁ + w(c₂ + w c₃)) of a cell.
+pub(crate) type Cell = [f32; 4];
+
+/// The cubics between nodes, values multiplied by `scale`, and behind them a *guard cell*: a coordinate at the upper end may fall
+/// into it, at position 0, so that fast lookups have no cell to limit.
+pub(crate) fn cells(nodes: &[Node], scale: f64) -> Vec<Cell> {
+    let guard = nodes.last().map(|node| [f64::from(node[0]), 0.0, 0.0, 0.0]);
+    let cubics = nodes.windows(2).map(|pair| Cubic::new(pair[0], pair[1]).c);
+    cubics.chain(guard).map(|c| c.map(|c| (c * scale) as f32)).collect()
+}
+
+/// The cubic of a cell at position w, in two halves that need not wait for each other.
+#[inline(always)]
+pub(crate) fn cubic(c: &Cell, w: f32) -> f32 {
+    (c[0] + w * c[1]) + (w * w) * (c[2] + w * c[3])
+}
+
+/// Splits coordinates in [0, cells] into cells, the guard included, and the positions inside them.
+///
+/// The cast does not saturate where the hardware has none that does; what is no number leaves the range, or stays none.
+#[inline(always)]
+pub(crate) fn split(x: f32x4) -> (i32x4, f32x4) {
+    let cell = x.fast_trunc_int();
+    (cell, x - f32x4::from_i32x4(cell))
 }
 
 /// Two neighbouring nodes, each interpolated linearly between the rows `low` and `high` of a table.

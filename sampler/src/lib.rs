@@ -21,6 +21,7 @@ mod ellipsoid;
 mod error;
 mod ggx;
 mod math;
+mod plain;
 mod radial;
 mod sample;
 mod student_t;

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use crate::axis::Mapping;
 use crate::bind::{Slices, make_monotone, roots};
-use crate::cells::{Node, between_rows, hermite, locate};
+use crate::cells::{Node, between_rows, cells, hermite, locate};
 use crate::error::BindError;
 use crate::math::sqrt;
 use crate::sample::{Slope, mirrored_root};
@@ -64,8 +64,11 @@ impl Radial {
         let width = conditional.axes[1].nodes.len();
         let mut across = nodes(conditional);
         across.chunks_exact_mut(width).for_each(make_monotone);
+        let shadowing = nodes(shadowing);
+        let shadowing_cells = shadowing.len() - 1;
         let slices = Slices {
-            shadowing: nodes(shadowing),
+            shadowing: cells(&shadowing, 1.0 / shadowing_cells as f64),
+            shadowing_cells: shadowing_cells as f32,
             kappa,
             crowded_shadowing: false,
             slope: slopes,
@@ -76,6 +79,7 @@ impl Radial {
             peeled: false,
             across: Vec::new(),
             across_roots: 0,
+            plain: None,
         };
         Ok(Self {
             plane: StudentT::carrier(sigma, slices),

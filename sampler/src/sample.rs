@@ -36,15 +36,25 @@ impl StudentT {
     /// Both coordinates are inverse CDFs. Where the whole distribution is tabulated (γ ≥ 1.8 in the default set)
     /// the tilt towards the viewer rises with `u[0]` and the tilt across with `u[1]`; below, `u[0]` is first used to choose
     /// between the tabulated part and the closed-form heavy tail, and rises within each. Without tables see [`ggx`](Self::ggx).
-    #[inline]
+    #[inline(always)]
     pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        // Plain numbers in and out keep those of the common case in registers next to the call of the other.
+        let [x, y, z] =
+            self.sample_plain([v.x, v.y, v.z], u).unwrap_or_else(|| self.sample_any(v.x, v.y, v.z, u));
+        Vec3::new(x, y, z)
+    }
+
+    /// What [`sample_visible_normal`](Self::sample_visible_normal) returns, by the way that always works.
+    #[inline(never)]
+    pub(crate) fn sample_any(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
+        let v = Vec3::new(x, y, z);
         if self.closed_form {
-            return self.sample_ggx(v, u);
+            return self.sample_ggx(v, u).to_array();
         }
         let view = self.stretch(v);
         let x = self.sample_along(&view, u[0]);
         let t = self.sample_across(u[1]);
-        face(self.assemble(&view, x, t), Vec3::new(v.x, v.y, view.z))
+        face(self.assemble(&view, x, t), Vec3::new(v.x, v.y, view.z)).to_array()
     }
 
     /// The in-plane slope, from the table or, where it lacks the heavy part, from either.

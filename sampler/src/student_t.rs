@@ -4,9 +4,10 @@ use core::f32::consts::PI;
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
+use wide::f32x4;
 
 use crate::bind::Slices;
-use crate::cells::{hermite, locate};
+use crate::cells::{cubic, split};
 use crate::error::BindError;
 use crate::math::sqrt;
 use crate::table::Table;
@@ -121,10 +122,16 @@ pub(crate) struct Stretched {
 }
 
 /// Horizontal lengths below this are taken as normal incidence: their squares leave the range of f32, and the azimuth with them.
-const NORMAL_INCIDENCE: f32 = 1e-18;
+pub(crate) const NORMAL_INCIDENCE: f32 = 1e-18;
 
 /// Below this the azimuth is scaled to unit length: the square of a normal carrying it would leave the range of f32.
-const SHORT: f32 = 1e-6;
+pub(crate) const SHORT: f32 = 1e-6;
+
+/// s times the squared slope from which D takes double precision: few normals of any shape, yet no logarithm below exceeds a few units.
+const STEEP: f32 = 1e3;
+
+/// Below the area of any direction; its reciprocal times the number of cells stays finite.
+pub(crate) const LEAST_AREA: f32 = 1e-30;
 
 impl StudentT {
     pub(crate) fn bind(tables: &[Table], roughness: Roughness, gamma: f64) -> Result<Self, BindError> {
@@ -188,34 +195,62 @@ impl StudentT {
         if self.closed_form {
             return Self::ggx_inverse_area(w);
         }
-        // The sum vanishes for the null vector and straight below the surface only, where z·r is then 0 and not 0·∞.
-        let r = 1.0 / (w.z + self.slices.kappa * w.rho).max(f32::MIN_POSITIVE);
-        self.shadowing(w, r) * r
+        let r = self.inverse_mean_area(w.rho, w.z);
+        self.shadowing(w.rho, w.z, r) * r
     }
 
     /// M₀ = ∫₀^∞ x p(x) dx: the area at grazing, κ over the first node.
     pub(crate) fn first_moment(&self) -> f32 {
-        self.slices.kappa / self.slices.shadowing[0][0]
+        self.slices.kappa / (self.slices.shadowing[0][0] * self.slices.shadowing_cells)
     }
 
-    /// G1/q from the table, given r = 1/(z + κρ).
+    /// cells/(z + κρ): the view coordinate q in cells, for each unit of z.
     #[inline(always)]
-    fn shadowing(&self, at: &Stretched, r: f32) -> f32 {
-        let nodes = &self.slices.shadowing[..];
-        let cells = nodes.len() - 1;
-        let coordinate =
-            if self.slices.crowded_shadowing { 1.0 - sqrt(self.slices.kappa * at.rho * r) } else { at.z * r };
-        let (cell, w) = locate(coordinate * cells as f32, cells);
-        let pair = &nodes[cell..cell + 2];
-        hermite(pair[0], pair[1], w)
+    fn inverse_mean_area(&self, rho: f32, z: f32) -> f32 {
+        // The sum vanishes for the null vector and straight below the surface only, where z·r is then 0 and not 0·∞.
+        self.slices.shadowing_cells / (z + self.slices.kappa * rho).max(LEAST_AREA)
+    }
+
+    /// G1/q over the number of cells, from the table.
+    #[inline(always)]
+    fn shadowing(&self, rho: f32, z: f32, r: f32) -> f32 {
+        let slices = &self.slices;
+        let at = if slices.crowded_shadowing {
+            let rest = slices.kappa * rho * r / slices.shadowing_cells;
+            (1.0 - sqrt(rest)) * slices.shadowing_cells
+        } else {
+            z * r
+        };
+        let (cell, w) = split(f32x4::splat(at));
+        // Only what is no number can leave the table.
+        let cell = slices.shadowing.get(cell.to_array()[0] as u32 as usize);
+        cell.map_or(0.0, |cell| cubic(cell, w.to_array()[0]))
     }
 
     /// Smith masking G1(w) ∈ [0, 1]: the visible share of the microsurface projected along `w`. 0 at and below the horizon.
     #[inline(always)]
     pub fn g1(&self, w: Vec3) -> f32 {
-        let w = self.stretch(w);
+        if self.closed_form {
+            let w = self.stretch(w);
+            return (w.z * Self::ggx_inverse_area(&w)).min(1.0);
+        }
+        // As `inverse_area`, for speed: without the azimuth that `stretch` finds, κ within the roughness, and nothing between the division
+        // and the lookup. Each wait that is shorter lets the processor start the next call sooner; 4.3 ns become 3.
+        let slices = &self.slices;
+        let (x, y) = (slices.kappa * self.sigma_x * w.x, slices.kappa * self.sigma_y * w.y);
+        let z = f32x4::new([if w.z > 0.0 { w.z } else { 0.0 }, 0.0, 0.0, 0.0]);
+        let across = f32x4::new([x * x + y * y, 0.0, 0.0, 0.0]).sqrt();
+        let area = (z + across).fast_max(f32x4::splat(LEAST_AREA));
+        let q = z * slices.shadowing_cells / area;
+        let at = if slices.crowded_shadowing {
+            (1.0 - (across / area).sqrt()) * slices.shadowing_cells
+        } else {
+            q
+        };
+        let (cell, w) = split(at);
+        let cell = slices.shadowing.get(cell.to_array()[0] as u32 as usize);
         // Interpolation may overshoot 1 by the table's error near normal incidence.
-        (w.z * self.inverse_area(&w)).min(1.0)
+        cell.map_or(0.0, |cell| (q.to_array()[0] * cubic(cell, w.to_array()[0])).min(1.0))
     }
 
     /// Smith's Λ(w) = 1/G1 − 1 ≥ 0; ∞ at and below the horizon. Absolute accuracy is that of G1: where Λ is below 1e-5 only its size is meant.
@@ -254,12 +289,13 @@ impl StudentT {
             // γ ln(1 + s r²/z²) = (1+s) r²/z² (1 − ½ s r²/z² …): Beckmann's limit, where 1/s would overflow.
             let y = s * ratio;
             -(1.0 + s) * ratio * (1.0 - y * (0.5 - y * (1.0 / 3.0))) - 2.0 * libm::logf(z2)
-        } else if ratio < 1e30 {
+        } else if s * ratio < STEEP {
             -(1.0 + s) / s * libm::log1pf(s * ratio) - 2.0 * libm::logf(z2)
         } else {
-            // At the horizon: cos^(2γ−4) (s r²)^(−γ), with z² not formed.
+            // cos^(2γ−4) (z² + s r²)^(−γ): towards the horizon both logarithms grow, and for small γ they cancel.
+            let (z, s, r2) = (f64::from(m.z), f64::from(s), f64::from(r2));
             let gamma = 1.0 + 1.0 / s;
-            2.0 * (gamma - 2.0) * libm::logf(m.z) - gamma * libm::logf(s * r2)
+            (2.0 * (gamma - 2.0) * libm::log(z) - gamma * libm::log(z * z + s * r2)) as f32
         };
         // In two halves: the whole power may underflow where 1/σ² brings D back.
         let root = libm::expf(0.5 * log);
