@@ -131,3 +131,24 @@ impl fmt::Display for BindError {
 }
 
 impl core::error::Error for BindError {}
+
+/// Slices of a batch that are not of one length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BatchError {
+    /// Names of two parameters that differ.
+    pub slices: [&'static str; 2],
+    /// Their lengths.
+    pub lengths: [usize; 2],
+}
+
+impl fmt::Display for BatchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([a, b], [n, m]) = (self.slices, self.lengths);
+        write!(
+            f,
+            "a batch of {n} `{a}` and {m} `{b}`: all slices must have the same length; cut the longer one"
+        )
+    }
+}
+
+impl core::error::Error for BatchError {}

@@ -12,6 +12,7 @@ extern crate alloc;
 
 mod albedo;
 mod axis;
+mod batch;
 mod below;
 mod bind;
 mod cells;
@@ -35,7 +36,7 @@ pub use cells::limit_slopes;
 pub use compensation::{f82_tint_average, fresnel_average, schlick_average};
 pub use container::{FORMAT, MaterialEntry, Precision, Provenance, VERSION, describe, encode, reassemble};
 pub use ellipsoid::{Ellipsoid, Skew};
-pub use error::{BindError, LoadError};
+pub use error::{BatchError, BindError, LoadError};
 pub use radial::Radial;
 pub use student_t::{Masking, Roughness, StudentT};
 pub use table::{Kind, Table};

@@ -1,0 +1,91 @@
+//! The functions over slices against the functions for one.
+
+use glam::Vec3;
+use microfacet_sampler::{BatchError, StudentT, Tables};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+/// Views of the whole hemisphere and a little below it, the axes, and what is no direction; numbers with both ends and beyond.
+fn inputs(count: usize) -> (Vec<Vec3>, Vec<[f32; 2]>) {
+    let mut rng = StdRng::seed_from_u64(5);
+    let odd = [Vec3::Z, Vec3::X, -Vec3::Z, Vec3::new(1e-20, 0.0, 1.0), Vec3::new(0.6, 0.0, -0.8), Vec3::NAN];
+    let ends = [0.0, 1.0, 0.5, 1e-12, 1.0 - f32::EPSILON / 2.0, -0.5, 1.5, 0.25];
+    let views = (0..count).map(|i| match odd.get(i % 23) {
+        Some(v) => *v,
+        None => {
+            let (z, phi) = (rng.random_range(-0.1_f32..1.0), rng.random_range(0.0_f32..6.3));
+            let r = (1.0 - z * z).sqrt();
+            Vec3::new(r * phi.cos(), r * phi.sin(), z)
+        }
+    });
+    let views = views.collect();
+    let mut number = |i: usize| ends.get(i).copied().unwrap_or_else(|| rng.random());
+    (views, (0..count).map(|i| [number(i % 29), number(i % 31)]).collect())
+}
+
+fn materials() -> impl Iterator<Item = StudentT> {
+    let tables = Tables::embedded();
+    [1.51, 1.8, 2.0, 3.3, f64::INFINITY].into_iter().flat_map(move |gamma| {
+        let tables = tables.clone();
+        [[0.3, 0.3], [0.02, 4.0]].map(|sigma| tables.student_t(sigma, gamma).unwrap())
+    })
+}
+
+/// Lengths that leave every remainder, and one that fills several blocks.
+const LENGTHS: [usize; 6] = [0, 1, 3, 6, 37, 4000];
+
+#[test]
+fn a_batch_of_normals_is_those_normals() {
+    for material in materials() {
+        for count in LENGTHS {
+            let (v, u) = inputs(count);
+            let mut m = vec![Vec3::ZERO; count];
+            material.sample_batch(&v, &u, &mut m).unwrap();
+            for i in 0..count {
+                let one = material.sample_visible_normal(v[i], u[i]);
+                let same = one.is_nan() && m[i].is_nan();
+                // 2 ulp of their unit length.
+                assert!(
+                    same || one.abs_diff_eq(m[i], 2.0 * f32::EPSILON),
+                    "{} {:?}: {one} {}",
+                    v[i],
+                    u[i],
+                    m[i]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_batch_of_g1_is_those_numbers() {
+    for material in materials() {
+        for count in LENGTHS {
+            let (v, _) = inputs(count);
+            let mut g1 = vec![0.0; count];
+            material.g1_batch(&v, &mut g1).unwrap();
+            for (v, g1) in v.iter().zip(g1) {
+                let one = material.g1(*v);
+                assert!(one == g1 || one.is_nan() && g1.is_nan(), "{v}: {one} {g1}");
+            }
+        }
+    }
+}
+
+#[test]
+fn slices_of_unequal_length_are_refused_and_nothing_is_written() {
+    let material = materials().next().unwrap();
+    let (v, u) = inputs(8);
+    let mut m = [Vec3::ONE; 8];
+    assert_eq!(
+        material.sample_batch(&v, &u[..7], &mut m),
+        Err(BatchError { slices: ["v", "u"], lengths: [8, 7] })
+    );
+    let error = material.sample_batch(&v, &u, &mut m[..5]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "a batch of 8 `v` and 5 `m`: all slices must have the same length; cut the longer one"
+    );
+    assert_eq!(m, [Vec3::ONE; 8]);
+    assert!(material.g1_batch(&v, &mut [0.0; 9]).is_err());
+}
