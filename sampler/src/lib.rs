@@ -15,6 +15,7 @@ mod axis;
 mod batch;
 mod below;
 mod bind;
+mod bounded;
 mod cells;
 mod compensation;
 mod container;
@@ -32,6 +33,7 @@ mod tables;
 
 pub use albedo::{Albedo, GRAZING_FLOOR, Moments};
 pub use axis::{Axis, Interpolation, Mapping};
+pub use bounded::Bounded;
 pub use cells::limit_slopes;
 pub use compensation::{f82_tint_average, fresnel_average, schlick_average};
 pub use container::{FORMAT, MaterialEntry, Precision, Provenance, VERSION, describe, encode, reassemble};

@@ -98,13 +98,25 @@ impl StudentT {
 
     /// Density of the tabulated in-plane slope at x/z.
     fn slope_density(&self, view: &Stretched, at: &UnitSlopes) -> f64 {
-        let slices = &self.slices;
+        let place = self.place_along(view, at.x, at.z).1;
+        place.map_or(0.0, |place| place.density(self.slices.roots)) * end_rate(at.x, at.z)
+    }
+
+    /// The number at which the table has the in-plane slope x/z: the inverse of the lookup.
+    pub(crate) fn number_along(&self, view: &Stretched, x: f64, z: f64) -> f64 {
+        let (half, place) = self.place_along(view, x, z);
+        let u = place.map_or(0.0, |place| place.number(self.slices.roots));
+        if half == 0 { u } else { 1.0 - u }
+    }
+
+    /// The half of the row, and the place in it, that hold the in-plane slope x/z.
+    fn place_along(&self, view: &Stretched, x: f64, z: f64) -> (usize, Option<Place>) {
         let rows = self.rows_at(view);
-        let (low, high) = ends(at.x, at.z);
+        let (low, high) = ends(x, z);
         // The half for u ≤ ½ ends where 1 + h reaches its last node; beyond, 1 − h is looked up in the other.
-        let half = slices.cells + 1;
-        let (offset, g) = if low <= f64::from(rows.node(half - 1)[0]) { (0, low) } else { (half, high) };
-        density_of(|i| rows.node(offset + i), slices.cells, slices.roots, g) * end_rate(at.x, at.z)
+        let nodes = self.slices.cells + 1;
+        let (half, g) = if low <= f64::from(rows.node(nodes - 1)[0]) { (0, low) } else { (1, high) };
+        (half, Place::find(|i| rows.node(half * nodes + i), self.slices.cells, g))
     }
 
     /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.
@@ -122,7 +134,8 @@ impl StudentT {
     fn across_density(&self, t: f64) -> f64 {
         let nodes = &self.slices.across;
         let (_, g) = ends(t.abs(), 1.0);
-        density_of(|i| nodes[i], nodes.len() - 1, self.slices.across_roots, g) * end_rate(t, 1.0)
+        let place = Place::find(|i| nodes[i], nodes.len() - 1, g);
+        place.map_or(0.0, |place| place.density(self.slices.across_roots)) * end_rate(t, 1.0)
     }
 }
 
@@ -143,28 +156,50 @@ fn end_rate(x: f64, z: f64) -> f64 {
     p * p / (2.0 * (2.0 - p))
 }
 
-/// du/dg of the interpolated inverse CDF over one half of a mirrored axis, given its `cells + 1` ascending nodes.
-fn density_of(node: impl Fn(usize) -> Node, cells: usize, roots: u32, g: f64) -> f64 {
-    if g < f64::from(node(0)[0]) {
-        return 0.0;
+/// Where the interpolated inverse CDF over one half of a mirrored axis takes a value.
+struct Place {
+    /// Coordinate in [0, 1].
+    t: f64,
+    /// Rate of the value there.
+    dg_dt: f64,
+}
+
+impl Place {
+    /// Of the value g, given the half's `cells + 1` ascending nodes; `None` before the first.
+    fn find(node: impl Fn(usize) -> Node, cells: usize, g: f64) -> Option<Self> {
+        if g < f64::from(node(0)[0]) {
+            return None;
+        }
+        // The halves meet at u = ½ up to the rounding of their nodes; a normal in the gap, if there is one, is a rounded sample of its edge.
+        let g = g.min(f64::from(node(cells)[0]));
+        // The last cell whose first node is not above g.
+        let (mut low, mut high) = (0, cells);
+        while high - low > 1 {
+            let middle = (low + high) / 2;
+            if f64::from(node(middle)[0]) <= g { low = middle } else { high = middle }
+        }
+        let cubic = Cubic::new(node(low), node(low + 1));
+        let w = cubic.solve(g);
+        Some(Self { t: (low as f64 + w) / cells as f64, dg_dt: cubic.derivative(w) * cells as f64 })
     }
-    // The halves meet at u = ½ up to the rounding of their nodes; a normal in the gap, if there is one, is a rounded sample of its edge.
-    let g = g.min(f64::from(node(cells)[0]));
-    // The last cell whose first node is not above g.
-    let (mut low, mut high) = (0, cells);
-    while high - low > 1 {
-        let middle = (low + high) / 2;
-        if f64::from(node(middle)[0]) <= g { low = middle } else { high = middle }
+
+    /// The distance of the number from its end, ½ t^(2^roots).
+    fn number(&self, roots: u32) -> f64 {
+        let t = self.t;
+        0.5 * match roots {
+            0 => t,
+            1 => t * t,
+            _ => (t * t) * (t * t),
+        }
     }
-    let cubic = Cubic::new(node(low), node(low + 1));
-    let w = cubic.solve(g);
-    let t = (low as f64 + w) / cells as f64;
-    // u = ½ t^(2^roots) on either half.
-    let du_dt = match roots {
-        0 => 0.5,
-        1 => t,
-        _ => 2.0 * t * t * t,
-    };
-    let dg_dt = cubic.derivative(w) * cells as f64;
-    if dg_dt > 0.0 { du_dt / dg_dt } else { 0.0 }
+
+    /// du/dg.
+    fn density(&self, roots: u32) -> f64 {
+        let du_dt = match roots {
+            0 => 0.5,
+            1 => self.t,
+            _ => 2.0 * self.t * self.t * self.t,
+        };
+        if self.dg_dt > 0.0 { du_dt / self.dg_dt } else { 0.0 }
+    }
 }
