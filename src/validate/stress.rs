@@ -5,6 +5,7 @@
 
 mod checks;
 mod corners;
+mod derived;
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -3,14 +3,16 @@
 use glam::{DVec3, Vec3};
 
 use microfacet_model::{self as model, SignedUnit, VisibleSlope};
-use microfacet_sampler::{BindError, Masking, StudentT, Tables};
+use microfacet_sampler::{BindError, Masking, Skew, StudentT, Tables};
 
 use super::{Point, Report, direction};
 
 /// Four ulp of a unit vector's components.
-const ULP4: f64 = 4.0 * f32::EPSILON as f64;
+pub(super) const ULP4: f64 = 4.0 * f32::EPSILON as f64;
 /// One view in this many is also put to the model's inverse CDFs, which cost a hundred lookups.
 const MODEL_EVERY: usize = 8;
+/// One view in this many is also put to what is built on the plain functions.
+const DERIVED_EVERY: usize = 4;
 /// γ from which the tilt towards the viewer rises with `u[0]` over the whole range.
 const GAMMA_WHOLE: f64 = 1.8;
 
@@ -24,8 +26,8 @@ struct Tilt {
     rounding: f64,
 }
 
-struct Judge<'a> {
-    bound: StudentT,
+pub(super) struct Judge<'a> {
+    pub(super) bound: StudentT,
     rises: bool,
     exact: model::StudentT,
     report: &'a mut Report,
@@ -40,37 +42,53 @@ pub(super) fn judge(
     report: &mut Report,
 ) -> Result<(), BindError> {
     if gamma == 2.0 {
-        judge_bound(StudentT::ggx(sigma)?, false, &views, report)?;
+        Judge::new(StudentT::ggx(sigma)?, false, report)?.views(&views);
     }
-    judge_bound(tables.student_t(sigma, gamma)?, gamma >= GAMMA_WHOLE, &views, report)
-}
-
-/// `rises`: whether the tilt towards the viewer rises with `u[0]` and is its quantile.
-fn judge_bound(
-    bound: StudentT,
-    rises: bool,
-    views: &[Vec<Point>],
-    report: &mut Report,
-) -> Result<(), BindError> {
-    let ([x, y], gamma) = (bound.sigma().map(f64::from), bound.gamma());
-    let exact = model::StudentT::anisotropic(x, y, gamma).map_err(|_| BindError::Gamma(gamma))?;
-    let mut judge = Judge { bound, rises, exact, report };
-    for (i, points) in views.iter().enumerate() {
-        judge.view(&points[0]);
-        let mut last = f64::NEG_INFINITY;
-        for at in points {
-            judge.normal(at, &mut last);
-        }
-        if i % MODEL_EVERY == 0 {
-            judge.model_normal(&points[i % points.len()]);
+    let mut judge = Judge::new(tables.student_t(sigma, gamma)?, gamma >= GAMMA_WHOLE, report)?;
+    judge.views(&views);
+    // Any matrix will do: each is replaced.
+    let lobe = tables.ellipsoid(Skew::new([1.0, 1.0], [0.0; 3])?, gamma)?;
+    let forms = [Masking::Uncorrelated, Masking::HeightCorrelated];
+    // Roughness outside the table, or a set without albedo, has none to judge.
+    let albedos: Vec<_> =
+        forms.iter().filter_map(|form| tables.albedo(sigma[0].into(), gamma, *form).ok()).collect();
+    for points in views.iter().step_by(DERIVED_EVERY) {
+        judge.ellipsoids(&lobe, points);
+        for albedo in &albedos {
+            judge.albedo(albedo, &points[points.len() / 2]);
         }
     }
     Ok(())
 }
 
+impl<'a> Judge<'a> {
+    /// `rises`: whether the tilt towards the viewer rises with `u[0]` and is its quantile.
+    fn new(bound: StudentT, rises: bool, report: &'a mut Report) -> Result<Self, BindError> {
+        let ([x, y], gamma) = (bound.sigma().map(f64::from), bound.gamma());
+        let exact = model::StudentT::anisotropic(x, y, gamma).map_err(|_| BindError::Gamma(gamma))?;
+        Ok(Self { bound, rises, exact, report })
+    }
+
+    fn views(&mut self, views: &[Vec<Point>]) {
+        for (i, points) in views.iter().enumerate() {
+            self.view(&points[0]);
+            let mut last = f64::NEG_INFINITY;
+            for at in points {
+                self.normal(at, &mut last);
+            }
+            if i % MODEL_EVERY == 0 {
+                self.model_normal(&points[i % points.len()]);
+            }
+            if i % DERIVED_EVERY == 0 {
+                self.batch_and_bounded(points);
+            }
+        }
+    }
+}
+
 impl Judge<'_> {
     /// Notes a broken rule; `value` is the offending number.
-    fn require(&mut self, holds: bool, rule: &'static str, value: f64, at: &Point) {
+    pub(super) fn require(&mut self, holds: bool, rule: &'static str, value: f64, at: &Point) {
         if !holds {
             let violation = self.report.region(at).violations.entry(rule).or_default();
             violation.count += 1;
@@ -147,7 +165,7 @@ impl Judge<'_> {
         }
     }
 
-    fn unit_and_above(&mut self, m: Vec3, at: &Point) {
+    pub(super) fn unit_and_above(&mut self, m: Vec3, at: &Point) {
         let length = m.as_dvec3().length();
         self.require((length - 1.0).abs() <= ULP4, "sampled normal not of unit length", length - 1.0, at);
         self.require(m.z > 0.0, "sampled normal not above the horizon", m.z.into(), at);
