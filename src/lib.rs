@@ -5,6 +5,7 @@
 //! with what `microfacet-model` says.
 
 pub mod bake;
+pub mod bench;
 pub mod budget;
 pub mod cache;
 pub mod convert;

@@ -1,0 +1,83 @@
+//! The figures that say whether tables are worth having, as ratios of times within one run.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use microfacet_sampler::{Kind, Tables};
+
+use super::paper::Approximation;
+use super::sampler::{CAPS, INVERSION, INVERSION_SUM, TABLE, bind};
+use super::tables::Slices;
+use super::{GAMMA, Quantity, Row, SIGMA, Settings, clock, masking};
+
+/// One figure with what it must be and aims to be; smaller is better.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// What is compared.
+    pub name: &'static str,
+    /// Its unit; nothing for a ratio.
+    pub unit: &'static str,
+    /// No more than this.
+    pub must: f64,
+    /// If it can be.
+    pub aim: f64,
+    /// What was measured; `None` where a rival is missing.
+    pub reached: Option<f64>,
+}
+
+/// All figures, from measured rows and the errors of the rational approximation.
+pub fn figures(
+    rows: &[Row],
+    approximation: &[Approximation],
+    slices: &Slices,
+    settings: &Settings,
+) -> Vec<Figure> {
+    let ns = |quantity, name: &str| {
+        rows.iter().find(|row| row.quantity == quantity && row.name == name).map(|row| row.ns)
+    };
+    let ratio = |quantity, a, b| Some(ns(quantity, a)? / ns(quantity, b)?);
+    let normals = |a, b| ratio(Quantity::Normal, a, b);
+    let worst = |error: fn(&Approximation) -> f64| approximation.iter().map(error).fold(0.0, f64::max);
+    let bytes = bind(&slices.default, GAMMA).bytes() as f64;
+    let figure = |name, unit, must, aim, reached| Figure { name, unit, must, aim, reached };
+    vec![
+        figure("sample, table / GGX spherical caps", "", 1.3, 1.0, normals(TABLE, CAPS)),
+        figure("g1, table / GGX closed form", "", 2.0, 1.2, ratio(Quantity::G1, TABLE, masking::GGX)),
+        figure("sample, table / inversion, any gamma", "", 1.0 / 20.0, 1.0 / 40.0, normals(TABLE, INVERSION)),
+        figure(
+            "sample, table / inversion, integer gamma only",
+            "",
+            1.0 / 20.0,
+            1.0 / 40.0,
+            normals(TABLE, INVERSION_SUM),
+        ),
+        figure("CDF error, default tables, gamma >= 1.8", "", 1e-4, 2e-5, Some(certified(&slices.whole))),
+        figure(
+            "G1 error, table / rational approximation",
+            "",
+            1e-2,
+            1e-3,
+            Some(worst(|at| at.table_error.abs()) / worst(|at| at.rational_error.abs())),
+        ),
+        figure("a bound material", "KiB", 32.0, 16.0, Some(bytes / 1024.0)),
+        figure("bind a material", "us", 50.0, 10.0, Some(1e-3 * bind_ns(&slices.whole, settings))),
+    ]
+}
+
+/// The largest CDF error, between nodes and over all γ from 1.8 on, that the set's certificates state.
+fn certified(set: &Tables) -> f64 {
+    let whole = |kind| matches!(kind, Kind::VisibleSlope | Kind::VisibleSlopeConditional);
+    let tables = set.tables().iter().filter(|table| whole(table.kind));
+    tables.filter_map(|table| table.certificate.get("cdf_max_error")).fold(0.0, |worst, &x| x.max(worst))
+}
+
+/// The median time of binding, over shapes between the nodes of the general set.
+fn bind_ns(set: &Tables, settings: &Settings) -> f64 {
+    let times = (0..settings.rounds.max(settings.calls / 64)).map(|i| {
+        let gamma = 2.1 + 0.37 * (i % 40) as f64;
+        let start = Instant::now();
+        black_box(set.student_t(black_box(SIGMA), black_box(gamma))).expect("all gamma are covered");
+        start.elapsed().as_nanos() as f64
+    });
+    clock::median(times.collect())
+}

@@ -1,0 +1,64 @@
+//! What every rival is fed: the same views and random numbers, drawn once and resident in the caches.
+
+use std::f32::consts::TAU;
+
+use glam::Vec3;
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+/// Views spread evenly over the solid angle above the surface (cos θ uniform in (0, 1], φ in [0, 2π)), and pairs of random numbers uniform in
+/// [0, 1)².
+///
+/// Many enough that a branch predictor cannot learn them: 16 384 of either, 320 KiB, read in order.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// Unit vectors, n = +z.
+    pub views: Vec<Vec3>,
+    /// u₁ and u₂.
+    pub numbers: Vec<[f32; 2]>,
+}
+
+/// How many views and pairs of numbers there are.
+pub const COUNT: usize = 16_384;
+
+impl Inputs {
+    /// `count` of either.
+    pub fn new(seed: u64, count: usize) -> Self {
+        let mut random = StdRng::seed_from_u64(seed);
+        let view = |u: [f32; 2]| {
+            let cos = 1.0 - u[0];
+            let (y, x) = (TAU * u[1]).sin_cos();
+            let sin = (1.0 - cos * cos).max(0.0).sqrt();
+            Vec3::new(sin * x, sin * y, cos)
+        };
+        let mut pairs = || (0..count).map(|_| [random.random(), random.random()]).collect::<Vec<[f32; 2]>>();
+        let views = pairs().into_iter().map(view).collect();
+        Self { views, numbers: pairs() }
+    }
+}
+
+/// How many numbers a [`Stream`] repeats.
+const STREAM: usize = 1 << 16;
+
+/// Random numbers uniform in [0, 1) for rivals that need no fixed number of them: drawn beforehand, as the others' are, so that no one
+/// pays for a generator.
+#[derive(Clone, Debug)]
+pub(super) struct Stream {
+    numbers: Box<[f32; STREAM]>,
+    at: u16,
+}
+
+impl Stream {
+    pub(super) fn new(seed: u64) -> Self {
+        let mut random = StdRng::seed_from_u64(seed);
+        let numbers: Vec<f32> = (0..STREAM).map(|_| random.random()).collect();
+        Self { numbers: numbers.try_into().expect("so many were made"), at: 0 }
+    }
+
+    #[inline(always)]
+    pub(super) fn next(&mut self) -> f32 {
+        // The index wraps round by itself, and no bound is to be checked.
+        self.at = self.at.wrapping_add(1);
+        self.numbers[usize::from(self.at)]
+    }
+}

@@ -1,0 +1,118 @@
+//! How wrong a rival is, and how noisy an estimator that uses it.
+
+use glam::{DVec3, Vec3};
+use microfacet_model::{Masking, SignedUnit, StudentT, VisibleSlope, across_cdf};
+
+use super::SIGMA;
+use super::inputs::Inputs;
+use super::masking::Evaluate;
+use super::sampler::{Check, Density, Sampler};
+
+/// Largest and root-mean-square error over the inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Error {
+    /// Largest.
+    pub max: f64,
+    /// Root mean square.
+    pub rms: f64,
+}
+
+impl Error {
+    pub(super) fn of(errors: impl IntoIterator<Item = f64>) -> Self {
+        let (mut max, mut sum, mut count) = (0.0, 0.0, 0.0_f64);
+        for error in errors {
+            // No number is the worst error there is.
+            if !(error <= max) {
+                max = error;
+            }
+            sum += error * error;
+            count += 1.0;
+        }
+        Self { max, rms: (sum / count.max(1.0)).sqrt() }
+    }
+}
+
+/// The material of a shape.
+pub(super) fn truth(gamma: f64) -> StudentT {
+    StudentT::isotropic(SIGMA, gamma).expect("sigma is a constant, and so are the shapes")
+}
+
+/// The error of a sampler: how far the CDFs along and across the plane of incidence are from those they should have, the larger of the two. `None`
+/// where the random numbers have no CDF of their own.
+pub(super) fn sampler_error(sampler: &Sampler, inputs: &Inputs) -> Option<Error> {
+    if matches!(sampler.check, Check::Distribution) {
+        return None;
+    }
+    let truth = truth(sampler.gamma);
+    let mut normals = vec![Vec3::ZERO; inputs.views.len()];
+    (sampler.draw)(&inputs.views, &inputs.numbers, &mut normals);
+    let one = |((v, u), m): ((&Vec3, &[f32; 2]), &Vec3)| {
+        let (v, u, m) = (v.as_dvec3(), u.map(f64::from), m.as_dvec3());
+        let want = match sampler.check {
+            Check::Falling => [1.0 - u[0], u[1]],
+            Check::Formula(exactly) => cdfs(&truth, v, exactly(SIGMA, v, u)),
+            _ => u,
+        };
+        let got = cdfs(&truth, v, m);
+        (got[0] - want[0]).abs().max((got[1] - want[1]).abs())
+    };
+    Some(Error::of(inputs.views.iter().zip(&inputs.numbers).zip(&normals).map(one)))
+}
+
+/// The CDFs along and across the plane of incidence at a normal.
+fn cdfs(truth: &StudentT, v: DVec3, m: DVec3) -> [f64; 2] {
+    let (view, [cos, sin]) = truth.unit_view(v);
+    let shape = truth.shape();
+    let (a, b) = (m.x / SIGMA, m.y / SIGMA);
+    let (x, y) = (a * cos + b * sin, b * cos - a * sin);
+    let t = y / (m.z * m.z + shape.s() * x * x).sqrt();
+    let signed = |x: f64| SignedUnit { w: shape.unit(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } };
+    [VisibleSlope::new(shape, view).cdf(signed(x / m.z)), across_cdf(shape, signed(t))]
+}
+
+/// The error of a form of G1, absolute.
+pub(super) fn masking_error(evaluate: &Evaluate, gamma: f64, inputs: &Inputs) -> Error {
+    let truth = truth(gamma);
+    let mut g1 = vec![0.0; inputs.views.len()];
+    evaluate(&inputs.views, &mut g1);
+    Error::of(inputs.views.iter().zip(g1).map(|(w, g1)| (f64::from(g1) - truth.g1(w.as_dvec3())).abs()))
+}
+
+/// The mean over views of the variance of a white-furnace estimator: the weight f cos/pdf of one reflected light, with G2 height-correlated
+/// and no Fresnel term, 0 for a light below the horizon.
+///
+/// Weights are the model's in double precision, so that samplers differ by their normals alone. `views` of the inputs take part, with
+/// `draws` of the numbers each.
+pub(super) fn furnace_variance(sampler: &Sampler, inputs: &Inputs, views: usize, draws: usize) -> f64 {
+    let truth = truth(sampler.gamma);
+    let mut normals = vec![Vec3::ZERO; draws];
+    let numbers = &inputs.numbers[..draws.min(inputs.numbers.len())];
+    normals.truncate(numbers.len());
+    let n = numbers.len() as f64;
+    let mut total = 0.0;
+    let views = &inputs.views[..views.min(inputs.views.len())];
+    for v in views {
+        (sampler.draw)(&vec![*v; numbers.len()], numbers, &mut normals);
+        let v = v.as_dvec3();
+        let g1 = truth.g1(v);
+        let weight = |m: &Vec3| {
+            let m = m.as_dvec3();
+            let facing = v.dot(m);
+            let l = 2.0 * facing * m - v;
+            if !(l.z > 0.0 && facing > 0.0) {
+                return 0.0;
+            }
+            let g2 = truth.g2(v, l, Masking::HeightCorrelated);
+            match sampler.density {
+                Density::Ndf => g2 * facing / (v.z * m.z),
+                Density::Visible => g2 / g1,
+            }
+        };
+        let (sum, squares) = normals
+            .iter()
+            .map(weight)
+            .fold((0.0, 0.0), |(sum, squares), weight| (sum + weight, squares + weight * weight));
+        total += (squares - sum * sum / n) / (n - 1.0).max(1.0);
+    }
+    total / views.len().max(1) as f64
+}

@@ -1,0 +1,68 @@
+//! The forms of Smith's G1 that are compared.
+
+use std::hint::black_box;
+
+use glam::Vec3;
+use microfacet_model as model;
+
+use super::rivals::lobe::Lobe;
+use super::rivals::rational::Rational;
+use super::rivals::{beckmann, ggx};
+use super::sampler::{bind, stored};
+use super::tables::Slices;
+use super::{GAMMA, SIGMA};
+
+/// G1 of directions, as many as there is room for.
+pub type Evaluate<'a> = Box<dyn Fn(&[Vec3], &mut [f32]) + 'a>;
+
+/// One form.
+pub struct Masking<'a> {
+    /// Its name.
+    pub name: String,
+    /// The shape; roughness is [`SIGMA`].
+    pub gamma: f64,
+    /// Bytes of table that lookups touch.
+    pub bytes: usize,
+    /// Bytes of those tables as stored in a file.
+    pub stored: usize,
+    /// Evaluates.
+    pub evaluate: Evaluate<'a>,
+}
+
+/// One call after the other, as for samplers.
+pub(super) fn each<'a>(one: impl Fn(Vec3) -> f32 + 'a) -> Evaluate<'a> {
+    Box::new(move |w, g1| {
+        for (w, g1) in w.iter().zip(g1) {
+            *g1 = black_box(one(*w));
+        }
+    })
+}
+
+/// Names that figures refer to.
+pub(super) const GGX: &str = "GGX, closed form";
+
+/// All of them, over the given tables.
+pub fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
+    let sigma = SIGMA as f32;
+    let form =
+        |name: &str, gamma, evaluate| Masking { name: name.into(), gamma, bytes: 0, stored: 0, evaluate };
+    let (any, four, half) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA), Lobe::three_and_a_half(SIGMA));
+    let rational = Rational::new(SIGMA, GAMMA);
+    let truth = model::StudentT::isotropic(SIGMA, GAMMA).expect("constants");
+    let mut all = vec![
+        form(GGX, 2.0, each(move |w| ggx::g1(sigma, w))),
+        form("Beckmann, closed form", f64::INFINITY, each(move |w| beckmann::g1(sigma, w))),
+        form("Beckmann, rational fit", f64::INFINITY, each(move |w| beckmann::g1_rational(sigma, w))),
+        form("beta function, any gamma", GAMMA, each(move |w| any.g1(w))),
+        form("beta function, to rounding in f64", GAMMA, each(move |w| truth.g1(w.as_dvec3()) as f32)),
+        form("sum for integer gamma", GAMMA, each(move |w| four.g1(w))),
+        form("sum for half-integer gamma", 3.5, each(move |w| half.g1(w))),
+        form("rational approximation (eq. 22-23)", GAMMA, each(move |w| rational.g1(w))),
+    ];
+    for (name, set) in slices.each() {
+        let bound = bind(set, GAMMA);
+        let (bytes, stored) = (bound.bytes(), stored(set));
+        all.push(Masking { bytes, stored, ..form(name, GAMMA, each(move |w| bound.g1(w))) });
+    }
+    all
+}

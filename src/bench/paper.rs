@@ -1,0 +1,211 @@
+//! Two comparisons of Ribardière et al. 2017, done again with tables beside them: the time by γ and by σ (after figure 4), and the error of
+//! the rational approximation of masking (after figure 5).
+
+use std::cell::RefCell;
+
+use glam::Vec3;
+use microfacet_model::{StudentT, printed};
+use microfacet_sampler::Tables;
+
+use super::clock::{self, Calls};
+use super::inputs::{Inputs, Stream};
+use super::masking::Evaluate;
+use super::rivals::rational::Rational;
+use super::sampler::Draw;
+use super::{GAMMA, Quantity, SIGMA, Settings, masking, normals, sampler, values};
+use crate::plot::{self, Curve, Legend, Panel, PlotError};
+
+/// Shapes at [`SIGMA`], and roughnesses at [`GAMMA`].
+const GAMMAS: [f64; 12] = [1.6, 1.8, 2.0, 2.5, 3.0, 4.0, 5.5, 8.0, 12.0, 20.0, 30.0, 40.0];
+const SIGMAS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
+
+/// The time of one method for one material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Timing {
+    /// What it computes.
+    pub quantity: Quantity,
+    /// How.
+    pub method: &'static str,
+    /// Whether this is a point over γ (else over σ).
+    pub by_gamma: bool,
+    /// Its shape.
+    pub gamma: f64,
+    /// Its roughness.
+    pub sigma: f64,
+    /// Nanoseconds a call.
+    pub ns: f64,
+}
+
+/// A method on the clock: G1, or normals.
+enum Method<'a> {
+    G1(Evaluate<'a>),
+    Normal(Draw<'a>),
+}
+
+/// Every method at every material, taking turns.
+pub fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
+    let inputs = Inputs::new(settings.seed, settings.calls);
+    let by_gamma = GAMMAS.map(|gamma| (true, gamma, SIGMA));
+    let by_sigma = SIGMAS.map(|sigma| (false, GAMMA, sigma));
+    let points = by_gamma.into_iter().chain(by_sigma);
+    let all: Vec<(Timing, Method)> = points
+        .flat_map(|(by_gamma, gamma, sigma)| {
+            methods(set, gamma, sigma, settings.seed).into_iter().map(move |(name, method)| {
+                let quantity = match method {
+                    Method::G1(_) => Quantity::G1,
+                    Method::Normal(_) => Quantity::Normal,
+                };
+                (Timing { quantity, method: name, by_gamma, gamma, sigma, ns: 0.0 }, method)
+            })
+        })
+        .collect();
+    let mut runs: Vec<Calls> = all
+        .iter()
+        .map(|(_, method)| match method {
+            Method::G1(evaluate) => values(evaluate, &inputs),
+            Method::Normal(draw) => normals(draw, &inputs),
+        })
+        .collect();
+    // So many that a few rounds and short batches must do.
+    let times = clock::medians(&mut runs, settings.rounds.div_ceil(4), settings.calls.min(2048));
+    all.iter().zip(times).map(|((at, _), ns)| Timing { ns, ..at.clone() }).collect()
+}
+
+/// All methods that are defined for a material.
+fn methods(set: &Tables, gamma: f64, sigma: f64, seed: u64) -> Vec<(&'static str, Method<'static>)> {
+    let truth = StudentT::isotropic(sigma, gamma).expect("constants");
+    let bound = set.student_t(sigma, gamma).expect("the general set covers all shapes");
+    let z = move |w: Vec3| f64::from(w.z) / (sigma * f64::from(w.x.hypot(w.y)));
+    let g1 = |lambda: f64| (1.0 / (1.0 + lambda)) as f32;
+    let mut all: Vec<(&str, Method)> = vec![(
+        "eq. 13-15, hypergeometric",
+        Method::G1(masking::each(move |w| g1(printed::lambda_hypergeometric(gamma, z(w))))),
+    )];
+    if printed::lambda_integer(gamma, 1.0).is_some() {
+        let sum = move |w| g1(printed::lambda_integer(gamma, z(w)).unwrap_or(f64::NAN));
+        all.push(("eq. 21, integer", Method::G1(masking::each(sum))));
+    }
+    if printed::lambda_half_integer(gamma, 1.0).is_some() {
+        let sum = move |w| g1(printed::lambda_half_integer(gamma, z(w)).unwrap_or(f64::NAN));
+        all.push(("eq. 21, half-integer", Method::G1(masking::each(sum))));
+    }
+    let rational = Rational::new(sigma, gamma);
+    all.push(("eq. 22-23, rational", Method::G1(masking::each(move |w| rational.g1(w)))));
+    let table = bound.clone();
+    all.push(("table", Method::G1(masking::each(move |w| table.g1(w)))));
+    let inversion =
+        move |v: Vec3, u: [f32; 2]| truth.visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3();
+    all.push(("inversion of the CDF, f64", Method::Normal(sampler::each(inversion))));
+    let stream = RefCell::new(Stream::new(seed));
+    let exact = move |v: Vec3, _| {
+        let stream = &mut *stream.borrow_mut();
+        truth.sample_visible_exact(v.as_dvec3(), &mut || f64::from(stream.next())).as_vec3()
+    };
+    all.push(("exact by rejection, f64", Method::Normal(sampler::each(exact))));
+    let table = move |v: Vec3, u| bound.sample_visible_normal(v, u);
+    all.push(("table", Method::Normal(sampler::each(table))));
+    all
+}
+
+/// The times as a drawing of four panels.
+///
+/// # Errors
+/// [`PlotError::Drawing`].
+pub fn times_svg(times: &[Timing]) -> Result<String, PlotError> {
+    let panel = |quantity: Quantity, by_gamma| {
+        let mut curves: Vec<Curve> = Vec::new();
+        for at in times.iter().filter(|at| at.quantity == quantity && at.by_gamma == by_gamma) {
+            let x = if by_gamma { at.gamma.log10() } else { at.sigma };
+            let point = (x, at.ns.max(0.1).log10());
+            match curves.iter_mut().find(|curve| curve.name == at.method) {
+                Some(curve) => curve.points.push(point),
+                None => curves.push(Curve { name: at.method.into(), points: vec![point] }),
+            }
+        }
+        let what = if quantity == Quantity::G1 { "G1" } else { "a visible normal" };
+        Panel {
+            title: if by_gamma {
+                format!("{what} by γ, σ = {SIGMA}")
+            } else {
+                format!("{what} by σ, γ = {GAMMA}")
+            },
+            x_label: if by_gamma { "log10 γ" } else { "σ" },
+            y_label: "log10 of ns a call",
+            y: (0.0, 5.5),
+            legend: Legend::Right,
+            curves,
+        }
+    };
+    let panels = [
+        panel(Quantity::G1, true),
+        panel(Quantity::G1, false),
+        panel(Quantity::Normal, true),
+        panel(Quantity::Normal, false),
+    ];
+    plot::svg(&panels)
+}
+
+/// How wrong the rational approximation of G1 is for one view, and how wrong the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approximation {
+    /// The shape.
+    pub gamma: f64,
+    /// Polar angle of the view, degrees.
+    pub degrees: f64,
+    /// The exact G1.
+    pub g1: f64,
+    /// Approximation minus exact.
+    pub rational_error: f64,
+    /// Table minus exact.
+    pub table_error: f64,
+}
+
+/// Over θ by half degrees, for the shapes that the approximation was made for, at σ = [`SIGMA`].
+pub fn approximation(set: &Tables) -> Vec<Approximation> {
+    let of_shape = |gamma: f64| {
+        let truth = StudentT::isotropic(SIGMA, gamma).expect("constants");
+        let bound = set.student_t(SIGMA, gamma).expect("the general set covers all shapes");
+        (1..180).map(move |i| {
+            let degrees = 0.5 * f64::from(i);
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            // The view as single precision has it.
+            let v = Vec3::new(sin as f32, 0.0, cos as f32);
+            let g1 = truth.g1(v.as_dvec3());
+            let z = f64::from(v.z) / (SIGMA * f64::from(v.x));
+            let rational_error = 1.0 / (1.0 + printed::lambda_rational(gamma, z)) - g1;
+            Approximation { gamma, degrees, g1, rational_error, table_error: f64::from(bound.g1(v)) - g1 }
+        })
+    };
+    [1.6, 1.8, 2.2, 3.0, 5.0, 10.0, 20.0, 40.0].into_iter().flat_map(of_shape).collect()
+}
+
+/// The errors as a drawing of two panels.
+///
+/// # Errors
+/// [`PlotError::Drawing`].
+pub fn approximation_svg(all: &[Approximation]) -> Result<String, PlotError> {
+    let panel = |title: &str, error: fn(&Approximation) -> f64| {
+        let mut curves: Vec<Curve> = Vec::new();
+        for at in all {
+            let name = format!("γ = {}", at.gamma);
+            // Below the rounding of single precision there is nothing to see.
+            let point = (at.degrees, error(at).abs().max(1e-9).log10());
+            match curves.last_mut().filter(|curve| curve.name == name) {
+                Some(curve) => curve.points.push(point),
+                None => curves.push(Curve { name, points: vec![point] }),
+            }
+        }
+        Panel {
+            title: title.into(),
+            x_label: "θ in degrees",
+            y_label: "log10 of the error of G1",
+            y: (-9.0, -1.5),
+            legend: Legend::Left,
+            curves,
+        }
+    };
+    plot::svg(&[
+        panel("Rational approximation, eq. 22–23", |at| at.rational_error),
+        panel("Table, default quality", |at| at.table_error),
+    ])
+}

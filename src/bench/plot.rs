@@ -1,0 +1,126 @@
+//! Run time against error, with the front that no rival is both faster and more accurate than.
+
+use plotters::prelude::*;
+
+use super::{GAMMA, Quantity, Row};
+use crate::plot::PlotError;
+
+/// Size on the page, and fine units a unit of it.
+const PAGE: (u32, u32) = (760, 940);
+const FINE: u32 = 8;
+
+/// Error at which rivals without one, exact in distribution, are drawn.
+const EXACT: f64 = 1e-8;
+
+/// Two panels, visible normals above and G1 below. Filled points are Student-t with γ = [`GAMMA`], and the front is theirs; rings are other
+/// distributions.
+///
+/// # Errors
+/// [`PlotError::Drawing`].
+pub fn svg(rows: &[Row]) -> Result<String, PlotError> {
+    let size = (FINE * PAGE.0, FINE * PAGE.1);
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        root.fill(&WHITE).map_err(failed)?;
+        let areas = root.split_evenly((2, 1));
+        let of = |quantity| rows.iter().filter(|row| row.quantity == quantity).collect::<Vec<_>>();
+        panel(&areas[0], "Visible normals", "error of the CDFs, max", &of(Quantity::Normal))?;
+        panel(&areas[1], "G1", "error of G1, max", &of(Quantity::G1))?;
+        root.present().map_err(failed)?;
+    }
+    let fine = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
+    Ok(text.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", PAGE.0, PAGE.1), 1))
+}
+
+fn failed(why: impl std::fmt::Display) -> PlotError {
+    PlotError::Drawing(why.to_string())
+}
+
+/// Where a row is drawn: log₁₀ of time and of error. `None` for a sampler of something else than visible normals.
+fn place(row: &Row) -> Option<(f64, f64)> {
+    if row.name.contains("NDF") {
+        return None;
+    }
+    let error = row.error.map_or(EXACT, |error| error.max.max(EXACT));
+    Some((row.ns.max(0.1).log10(), error.log10()))
+}
+
+/// The points that no other is at least as fast and as accurate as, by time.
+fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut lowest = f64::INFINITY;
+    points.retain(|point| {
+        let better = point.1 < lowest;
+        lowest = lowest.min(point.1);
+        better
+    });
+    points
+}
+
+fn panel(
+    area: &DrawingArea<SVGBackend, plotters::coord::Shift>,
+    title: &str,
+    y_label: &str,
+    rows: &[&Row],
+) -> Result<(), PlotError> {
+    let places: Vec<((f64, f64), &Row)> = rows.iter().filter_map(|row| Some((place(row)?, *row))).collect();
+    let mut chart = ChartBuilder::on(area)
+        .caption(title, ("sans-serif", 16 * FINE))
+        .margin(12 * FINE)
+        .x_label_area_size(36 * FINE)
+        .y_label_area_size(58 * FINE)
+        .build_cartesian_2d(range(&places, |at| at.0, 0.9), range(&places, |at| at.1, 0.3))
+        .map_err(failed)?;
+    chart
+        .configure_mesh()
+        .x_desc("ns a call")
+        .y_desc(y_label)
+        .light_line_style(WHITE)
+        .bold_line_style(BLACK.mix(0.15).stroke_width(FINE))
+        .axis_style(BLACK.stroke_width(FINE))
+        .set_all_tick_mark_size(4 * FINE)
+        .label_style(("sans-serif", 11 * FINE))
+        .x_label_formatter(&|x: &f64| format!("{:.3}", 10_f64.powf(*x)).trim_end_matches(['0', '.']).into())
+        .y_label_formatter(&|y: &f64| format!("{:.0e}", 10_f64.powf(*y)))
+        .draw()
+        .map_err(failed)?;
+    let own = places.iter().filter(|(_, row)| row.gamma == GAMMA).map(|(at, _)| *at).collect();
+    let steps: Vec<(f64, f64)> =
+        front(own).windows(2).flat_map(|pair| [pair[0], (pair[1].0, pair[0].1), pair[1]]).collect();
+    let line = RED.mix(0.5).stroke_width(2 * FINE);
+    chart.draw_series(LineSeries::new(steps, line)).map_err(failed)?;
+    for (at, row) in places {
+        let ours = row.name.starts_with("table");
+        let color = if ours { RGBColor(20, 90, 190) } else { RGBColor(70, 70, 70) };
+        let filled = row.gamma == GAMMA;
+        let style = if filled { color.filled() } else { color.stroke_width(FINE) };
+        let label = if row.error.is_some() { row.name.clone() } else { format!("{} (exact)", row.name) };
+        let dot = EmptyElement::at(at)
+            + Circle::new((0, 0), 4 * FINE as i32, style)
+            + Text::new(
+                label,
+                (7 * FINE as i32, -(5 * FINE as i32)),
+                ("sans-serif", 10 * FINE).into_font().color(&color),
+            );
+        chart.draw_series(std::iter::once(dot)).map_err(failed)?;
+    }
+    Ok(())
+}
+
+/// The range of a coordinate with room for names.
+fn range(places: &[((f64, f64), &Row)], of: fn(&(f64, f64)) -> f64, room: f64) -> std::ops::Range<f64> {
+    let values = || places.iter().map(|(at, _)| of(at));
+    values().fold(f64::INFINITY, f64::min) - 0.2..values().fold(f64::NEG_INFINITY, f64::max) + room
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let points = vec![(3.0, 1.0), (1.0, 5.0), (2.0, 6.0), (2.0, 2.0), (1.0, 7.0), (4.0, 1.0)];
+        assert_eq!(front(points), [(1.0, 5.0), (2.0, 2.0), (3.0, 1.0)]);
+    }
+}

@@ -1,0 +1,81 @@
+//! The plainest table: the inverse CDFs read by straight lines along every axis, at any number of nodes.
+//!
+//! The same values, axes and mappings as the real tables', but no slopes; what cubic interpolation along the random numbers is worth.
+
+use glam::Vec3;
+use microfacet_sampler::{Kind, Tables};
+
+/// Bound to one shape.
+pub(crate) struct Bilinear {
+    sigma: f32,
+    s: f32,
+    /// Distances from the nearer end: rows by view, both halves of u₁.
+    along: Vec<f32>,
+    rows: usize,
+    numbers: usize,
+    across: Vec<f32>,
+}
+
+impl Bilinear {
+    /// From a set that holds slices at γ alone, with evenly spaced views and fourth roots of the numbers.
+    pub(crate) fn new(sigma: f64, gamma: f64, set: &Tables) -> Self {
+        let of = |kind| set.table(kind).expect("a slice has tables of both kinds");
+        let values = |kind| of(kind).values.iter().step_by(2).copied().collect::<Vec<f32>>();
+        let axes = &of(Kind::VisibleSlope).axes;
+        Self {
+            sigma: sigma as f32,
+            s: (1.0 / (gamma - 1.0)) as f32,
+            along: values(Kind::VisibleSlope),
+            rows: axes[1].nodes.len() - 1,
+            numbers: axes[2].nodes.len(),
+            across: values(Kind::VisibleSlopeConditional),
+        }
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&self.along[..]) + size_of_val(&self.across[..])
+    }
+
+    #[inline(always)]
+    pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let (x, y) = (self.sigma * v.x, self.sigma * v.y);
+        let rho = (x * x + y * y).sqrt();
+        let (cos, sin) = if rho > 0.0 { (x / rho, y / rho) } else { (1.0, 0.0) };
+        let tau = v.z / (rho + (rho * rho + v.z * v.z).sqrt());
+        let (row, between) = locate(tau * self.rows as f32, self.rows);
+        let (cell, w) = locate(root(u[0]) * (self.numbers - 1) as f32, self.numbers - 1);
+        let at = row * 2 * self.numbers + if u[0] > 0.5 { self.numbers } else { 0 } + cell;
+        let (low, high) = (&self.along[at..at + 2], &self.along[at + 2 * self.numbers..][..2]);
+        let (low, high) = (mix(low, w), mix(high, w));
+        let (x, z) = slope(mix(&[low, high], between), u[0]);
+        let (cell, w) = locate(root(u[1]) * (self.across.len() - 1) as f32, self.across.len() - 1);
+        let (tx, tz) = slope(mix(&self.across[cell..cell + 2], w), u[1]);
+        let y = (z * z + self.s * x * x).sqrt() * tx;
+        let (x, z) = (x * tz, z * tz);
+        let m = Vec3::new(self.sigma * (x * cos - y * sin), self.sigma * (x * sin + y * cos), z);
+        m * (1.0 / m.dot(m).sqrt())
+    }
+}
+
+#[inline(always)]
+fn mix(pair: &[f32], w: f32) -> f32 {
+    pair[0] + w * (pair[1] - pair[0])
+}
+
+#[inline(always)]
+fn locate(x: f32, cells: usize) -> (usize, f32) {
+    let cell = (x as i32).clamp(0, cells as i32 - 1) as usize;
+    (cell, x - cell as f32)
+}
+
+/// (2 min(u, 1−u))^(1/4).
+#[inline(always)]
+fn root(u: f32) -> f32 {
+    (2.0 * u.min(1.0 - u)).max(0.0).sqrt().sqrt()
+}
+
+/// A slope x : z from the distance of its half tangent from the end that u is next to.
+#[inline(always)]
+fn slope(g: f32, u: f32) -> (f32, f32) {
+    ((2.0 - 2.0 * g) * if u > 0.5 { 1.0 } else { -1.0 }, g * (2.0 - g))
+}

@@ -1,0 +1,190 @@
+//! The samplers that are compared, each as a function over slices, with what is needed to judge it.
+
+use std::cell::RefCell;
+use std::hint::black_box;
+
+use glam::{DVec3, Vec3};
+use microfacet_model as model;
+use microfacet_sampler::{Precision, StudentT, Tables};
+
+use super::inputs::Stream;
+use super::rivals::bilinear::Bilinear;
+use super::rivals::lobe::Lobe;
+use super::rivals::stream::Drawer;
+use super::rivals::{beckmann, ggx};
+use super::tables::Slices;
+use super::{GAMMA, SIGMA};
+use crate::spec::Quality;
+
+/// Normals for views and random numbers, as many as there are views.
+pub type Draw<'a> = Box<dyn Fn(&[Vec3], &[[f32; 2]], &mut [Vec3]) + 'a>;
+
+/// The normal of a view at two random numbers, in double precision.
+pub(super) type Exactly = fn(f64, DVec3, [f64; 2]) -> DVec3;
+
+/// What the normals of a sampler are compared with.
+#[derive(Clone, Copy)]
+pub(super) enum Check {
+    /// The CDFs along and across the plane of incidence are the random numbers.
+    Cdf,
+    /// The same, but the tilt falls with the first number.
+    Falling,
+    /// The normal that the same formula gives in double precision.
+    Formula(Exactly),
+    /// Nothing: the numbers it takes have no CDF of their own. Exact in distribution, or not a sampler of visible normals at all.
+    Distribution,
+}
+
+/// What density it draws from, for the weights of an estimator.
+#[derive(Clone, Copy)]
+pub(super) enum Density {
+    /// Visible normals.
+    Visible,
+    /// All normals, D(m)(m·n).
+    Ndf,
+}
+
+/// A sampler.
+pub struct Sampler<'a> {
+    /// Its name.
+    pub name: String,
+    /// The shape it draws from; roughness is [`SIGMA`].
+    pub gamma: f64,
+    /// Bytes of table that lookups touch.
+    pub bytes: usize,
+    /// Bytes of those tables as stored in a file.
+    pub stored: usize,
+    /// Draws.
+    pub draw: Draw<'a>,
+    pub(super) check: Check,
+    pub(super) density: Density,
+}
+
+impl<'a> Sampler<'a> {
+    fn new(name: &str, gamma: f64, check: Check, draw: Draw<'a>) -> Self {
+        Self { name: name.into(), gamma, bytes: 0, stored: 0, draw, check, density: Density::Visible }
+    }
+
+    fn tables(self, bytes: usize, stored: usize) -> Self {
+        Self { bytes, stored, ..self }
+    }
+}
+
+/// One call after the other. Each result is used, so that none is left out and no loop becomes one over lanes, which the calls of a
+/// renderer are not.
+pub(super) fn each<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
+    Box::new(move |v, u, m| {
+        for ((v, u), m) in v.iter().zip(u).zip(m) {
+            *m = black_box(one(*v, *u));
+        }
+    })
+}
+
+fn streamed<'a>(seed: u64, one: impl Fn(Vec3, &mut Stream) -> Vec3 + 'a) -> Draw<'a> {
+    let stream = RefCell::new(Stream::new(seed));
+    Box::new(move |v, _, m| {
+        let stream = &mut *stream.borrow_mut();
+        for (v, m) in v.iter().zip(m) {
+            *m = black_box(one(*v, stream));
+        }
+    })
+}
+
+/// Names that figures refer to.
+pub(super) const CAPS: &str = "GGX, spherical caps";
+pub(super) const TABLE: &str = "table, default";
+pub(super) const INVERSION: &str = "inversion of the CDF, any gamma";
+pub(super) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
+
+/// All of them, over the given tables.
+pub fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
+    let sigma = SIGMA as f32;
+    let truth = model::StudentT::isotropic(SIGMA, GAMMA).expect("constants");
+    let drawer = || Drawer::new(SIGMA);
+    let (any, four) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA));
+    let (exact, mixture, ndf) = (drawer(), drawer(), drawer());
+    let doubles = move |v: Vec3, u: [f32; 2]| truth.visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3();
+    let closed = StudentT::ggx(SIGMA).expect("a constant");
+    let caps: Exactly = ggx::double::caps;
+    let mut all = vec![
+        Sampler::new(CAPS, 2.0, Check::Formula(caps), each(move |v, u| ggx::single::caps(sigma, v, u))),
+        Sampler::new(
+            "GGX, Heitz 2018",
+            2.0,
+            Check::Formula(ggx::double::heitz),
+            each(move |v, u| ggx::single::heitz(sigma, v, u)),
+        ),
+        Sampler::new(
+            "GGX, closed form of the sampler crate",
+            2.0,
+            // Its numbers are those of the listing the other way round: height first.
+            Check::Formula(|sigma, v, [height, azimuth]| ggx::double::caps(sigma, v, [azimuth, height])),
+            each(move |v, u| closed.sample_visible_normal(v, u)),
+        ),
+        Sampler::new(
+            "Beckmann, numerical inversion",
+            f64::INFINITY,
+            Check::Falling,
+            each(move |v, u| beckmann::sample(sigma, v, u)),
+        ),
+        Sampler::new(INVERSION, GAMMA, Check::Cdf, each(move |v, u| any.sample(v, u))),
+        Sampler::new(INVERSION_SUM, GAMMA, Check::Cdf, each(move |v, u| four.sample(v, u))),
+        Sampler::new("inversion of the CDF, to rounding in f64", GAMMA, Check::Cdf, each(doubles)),
+        Sampler::new(
+            "exact by rejection",
+            GAMMA,
+            Check::Distribution,
+            streamed(seed, move |v, stream| exact.exact(v, stream)),
+        ),
+        Sampler::new(
+            "mixture of Beckmanns",
+            GAMMA,
+            Check::Distribution,
+            streamed(seed, move |v, stream| mixture.mixture(v, stream)),
+        ),
+        Sampler {
+            density: Density::Ndf,
+            ..Sampler::new("all normals (NDF)", GAMMA, Check::Distribution, each(move |_, u| ndf.ndf(u)))
+        },
+    ];
+    all.extend(slices.each().map(|(name, set)| table(name, set)));
+    for (name, set) in [("bilinear, default nodes", &slices.default), ("bilinear, high nodes", &slices.high)]
+    {
+        let plain = Bilinear::new(SIGMA, GAMMA, set);
+        let bytes = plain.bytes();
+        all.push(
+            Sampler::new(name, GAMMA, Check::Cdf, each(move |v, u| plain.sample(v, u))).tables(bytes, bytes),
+        );
+    }
+    all
+}
+
+fn table<'a>(name: &str, set: &Tables) -> Sampler<'a> {
+    let bound = bind(set, GAMMA);
+    let (bytes, stored) = (bound.bytes(), stored(set));
+    Sampler::new(name, GAMMA, Check::Cdf, each(move |v, u| bound.sample_visible_normal(v, u)))
+        .tables(bytes, stored)
+}
+
+/// A material of a set that covers γ.
+pub(super) fn bind(set: &Tables, gamma: f64) -> StudentT {
+    set.student_t(SIGMA, gamma).expect("the sets were made for this shape")
+}
+
+/// Bytes of all values of a set as a file has them.
+pub(super) fn stored(set: &Tables) -> usize {
+    let one = |precision| match precision {
+        Precision::F32 => 4,
+        Precision::F16 | Precision::U16 => 2,
+    };
+    set.tables().iter().map(|table| table.values.len() * one(table.precision)).sum()
+}
+
+/// Names of the qualities.
+pub(super) fn name(quality: Quality) -> &'static str {
+    match quality {
+        Quality::Draft => "table, draft",
+        Quality::Default => TABLE,
+        Quality::High => "table, high",
+    }
+}

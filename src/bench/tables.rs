@@ -1,0 +1,59 @@
+//! Tables of several sizes and precisions, for one shape.
+
+use microfacet_sampler::{Precision, Provenance, Tables};
+
+use super::{GAMMA, sampler};
+use crate::bake;
+use crate::spec::{Quality, ShapeAxis, TableSpec, general_set};
+
+/// Slices at [`GAMMA`](super::GAMMA), and the compiled-in set for all shapes.
+pub struct Slices {
+    pub(super) draft: Tables,
+    pub(super) default: Tables,
+    pub(super) high: Tables,
+    pub(super) f16: Tables,
+    pub(super) u16: Tables,
+    pub(super) whole: Tables,
+}
+
+impl Slices {
+    /// Bakes them; a fraction of a second.
+    pub fn bake() -> Self {
+        let f32 = Precision::F32;
+        Self {
+            draft: slice(Quality::Draft, f32, GAMMA),
+            default: slice(Quality::Default, f32, GAMMA),
+            high: slice(Quality::High, f32, GAMMA),
+            f16: slice(Quality::Default, Precision::F16, GAMMA),
+            u16: slice(Quality::Default, Precision::U16, GAMMA),
+            whole: Tables::embedded(),
+        }
+    }
+
+    /// The compiled-in set.
+    pub fn whole(&self) -> &Tables {
+        &self.whole
+    }
+
+    /// Each with its name.
+    pub(super) fn each(&self) -> impl Iterator<Item = (&'static str, &Tables)> {
+        [
+            (sampler::name(Quality::Draft), &self.draft),
+            (sampler::name(Quality::Default), &self.default),
+            (sampler::name(Quality::High), &self.high),
+            ("table, default, f16", &self.f16),
+            ("table, default, u16", &self.u16),
+            ("table, default, of all gamma", &self.whole),
+        ]
+        .into_iter()
+    }
+}
+
+/// What lookups of one shape read, baked at that shape alone.
+fn slice(quality: Quality, precision: Precision, gamma: f64) -> Tables {
+    let s = 1.0 / (gamma - 1.0);
+    let covers = |spec: &TableSpec| spec.shapes.nodes[0] <= s && spec.shapes.nodes.last() >= Some(&s);
+    let at = |spec: TableSpec| bake::bake(&TableSpec { shapes: ShapeAxis::points([s]), ..spec });
+    let tables = general_set(quality, precision).into_iter().filter(covers).map(at).collect();
+    Tables::from_tables(Provenance::default(), tables).expect("a bake makes sound tables")
+}
