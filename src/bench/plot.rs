@@ -81,7 +81,7 @@ fn panel(
         .axis_style(BLACK.stroke_width(FINE))
         .set_all_tick_mark_size(4 * FINE)
         .label_style(("sans-serif", 11 * FINE))
-        .x_label_formatter(&|x: &f64| format!("{:.3}", 10_f64.powf(*x)).trim_end_matches(['0', '.']).into())
+        .x_label_formatter(&|x: &f64| format!("{:.0}", 10_f64.powf(*x)))
         .y_label_formatter(&|y: &f64| format!("{:.0e}", 10_f64.powf(*y)))
         .draw()
         .map_err(failed)?;
@@ -90,22 +90,56 @@ fn panel(
         front(own).windows(2).flat_map(|pair| [pair[0], (pair[1].0, pair[0].1), pair[1]]).collect();
     let line = RED.mix(0.5).stroke_width(2 * FINE);
     chart.draw_series(LineSeries::new(steps, line)).map_err(failed)?;
-    for (at, row) in places {
+    let pixels: Vec<(i32, i32)> = places.iter().map(|(at, _)| chart.backend_coord(at)).collect();
+    let mut taken: Vec<Box> = pixels.iter().map(|&(x, y)| Box::around(x, y)).collect();
+    for (&(at, row), &(x, y)) in places.iter().zip(&pixels) {
         let ours = row.name.starts_with("table");
         let color = if ours { RGBColor(20, 90, 190) } else { RGBColor(70, 70, 70) };
         let filled = row.gamma == GAMMA;
         let style = if filled { color.filled() } else { color.stroke_width(FINE) };
         let label = if row.error.is_some() { row.name.clone() } else { format!("{} (exact)", row.name) };
+        let down = free(&mut taken, x, y, label.chars().count());
+        let font = ("sans-serif", 10 * FINE).into_font().color(&color);
         let dot = EmptyElement::at(at)
-            + Circle::new((0, 0), 4 * FINE as i32, style)
-            + Text::new(
-                label,
-                (7 * FINE as i32, -(5 * FINE as i32)),
-                ("sans-serif", 10 * FINE).into_font().color(&color),
-            );
+            + Circle::new((0, 0), DOT, style)
+            + Text::new(label, (DOT + 3 * FINE as i32, down - 6 * FINE as i32), font);
         chart.draw_series(std::iter::once(dot)).map_err(failed)?;
     }
     Ok(())
+}
+
+/// Radius of a point.
+const DOT: i32 = 4 * FINE as i32;
+
+/// A rectangle that nothing else should be drawn on: [left, right] and [top, bottom].
+struct Box {
+    x: [i32; 2],
+    y: [i32; 2],
+}
+
+impl Box {
+    fn around(x: i32, y: i32) -> Self {
+        Self { x: [x - DOT, x + DOT], y: [y - DOT, y + DOT] }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        let overlap = |a: [i32; 2], b: [i32; 2]| a[0] < b[1] && b[0] < a[1];
+        overlap(self.x, other.x) && overlap(self.y, other.y)
+    }
+}
+
+/// How far down from its point at (x, y) a name of so many letters hides nothing, the nearest such place, and takes it.
+fn free(taken: &mut Vec<Box>, x: i32, y: i32, letters: usize) -> i32 {
+    let line = 11 * FINE as i32;
+    let width = letters as i32 * 11 * FINE as i32 / 2;
+    let at = |down: i32| Box {
+        x: [x + DOT + 2 * FINE as i32, x + DOT + 2 * FINE as i32 + width],
+        y: [y + down - line / 2, y + down + line / 2],
+    };
+    let steps = (0..24).map(|i| if i % 2 == 0 { i / 2 } else { -(i + 1) / 2 } * line / 2);
+    let down = steps.into_iter().find(|&down| !taken.iter().any(|other| other.meets(&at(down)))).unwrap_or(0);
+    taken.push(at(down));
+    down
 }
 
 /// The range of a coordinate with room for names.

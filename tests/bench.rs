@@ -1,0 +1,94 @@
+//! The benchmark as a command: what it writes and what its values are, never how long anything takes.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn run(folder: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
+    command.arg("bench").args(args).current_dir(folder).output().expect("runs")
+}
+
+type Record = BTreeMap<String, String>;
+
+fn read(path: &Path) -> Vec<Record> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    reader.deserialize().collect::<Result<_, _>>().unwrap()
+}
+
+fn number(record: &Record, column: &str) -> f64 {
+    record[column].parse().unwrap_or_else(|_| panic!("{column} of {record:?}"))
+}
+
+#[test]
+fn every_rival_is_measured_and_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let output = run(at, &["--quick", "--calls", "64", "--out", "out"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in ["GGX, spherical caps", "table, default", "var x ns", "must", "bind a material, us"] {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+
+    let rows = read(&at.join("out/bench.csv"));
+    let row = |quantity: &str, name: &str| {
+        let found = rows.iter().find(|row| row["quantity"] == quantity && row["name"] == name);
+        found.unwrap_or_else(|| panic!("no {quantity} of {name}"))
+    };
+    assert!(rows.iter().all(|row| number(row, "ns") > 0.0));
+    assert!(number(row("normal", "table, default"), "error_max") < 1e-4);
+    assert!(number(row("normal", "table, default"), "bytes") < 32.0 * 1024.0);
+    assert!(number(row("normal", "table, high"), "error_max") < 1e-5);
+    assert!(number(row("g1", "table, default"), "error_max") < 1e-6);
+    assert!(number(row("g1", "rational approximation (eq. 22-23)"), "error_max") > 1e-3);
+    assert_eq!(row("normal", "GGX, spherical caps")["bytes"], "0");
+    assert_eq!(row("normal", "exact by rejection")["error_max"], "");
+    assert_eq!(row("g1", "Beckmann, closed form")["furnace_variance"], "");
+    let of_half = number(row("normal", "table, default, u16"), "stored_bytes") * 2.0;
+    assert_eq!(of_half, number(row("normal", "table, default"), "stored_bytes"));
+    for row in rows.iter().filter(|row| row["quantity"] == "normal") {
+        let product = number(row, "furnace_variance") * number(row, "ns");
+        assert!((number(row, "variance_ns") / product - 1.0).abs() < 1e-3, "{row:?}");
+    }
+
+    let text = std::fs::read_to_string(at.join("out/bench.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["rows"].as_array().unwrap().len(), rows.len());
+    assert_eq!(json["calls"], 64);
+    let figures = json["figures"].as_array().unwrap();
+    assert!(figures.iter().all(|figure| figure["reached"].is_number()), "{figures:?}");
+    assert!(figures.iter().all(|figure| figure["aim"].as_f64() < figure["must"].as_f64()));
+
+    let errors = read(&at.join("out/figure-5.csv"));
+    let worst = |column| errors.iter().map(|at| number(at, column).abs()).fold(0.0, f64::max);
+    assert!(worst("rational_error") > 1e-3 && worst("table_error") < 1e-5);
+    let times = read(&at.join("out/figure-4.csv"));
+    for (by, column) in [("gamma", "gamma"), ("sigma", "sigma")] {
+        let of = times.iter().filter(|time| time["by"] == by && time["method"] == "table");
+        let mut points: Vec<f64> = of.map(|time| number(time, column)).collect();
+        points.dedup();
+        assert!(points.len() >= 8, "{by}: {points:?}");
+    }
+    for name in ["bench.svg", "figure-4.svg", "figure-5.svg"] {
+        let drawn = std::fs::read_to_string(at.join("out").join(name)).unwrap();
+        assert!(drawn.starts_with("<svg") && drawn.contains("table"), "{name}");
+    }
+}
+
+#[test]
+fn what_cannot_be_measured_or_written_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    for (args, word) in [
+        (&["--calls", "0"][..], "16..=16384"),
+        (&["--calls", "1000000"], "16..=16384"),
+        (&["--seed", "-1"], "--seed"),
+        (&["--calls", "16", "--out", "file"], "file"),
+    ] {
+        let output = run(folder.path(), args);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {errors}");
+        assert!(output.stdout.is_empty() && errors.contains(word), "{args:?}: {errors}");
+    }
+}
