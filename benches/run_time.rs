@@ -1,5 +1,8 @@
 //! The rivals of `microfacet-bake bench`, one by one, under a statistics harness: `cargo bench --bench run_time`.
 
+// What the harness's macro makes has no docs.
+#![allow(missing_docs)]
+
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

@@ -3,37 +3,40 @@
 //! One batch of each in every round: what disturbs the machine for a while disturbs all of them, so that their ratios are
 //! steadier than their times.
 
+use std::ops::Range;
 use std::time::Instant;
 
-/// A rival that makes as many calls as it is told.
-pub(super) type Calls<'a> = Box<dyn FnMut(usize) + 'a>;
+/// A rival that makes one call for each of a range of the inputs.
+pub(super) type Calls<'a> = Box<dyn FnMut(Range<usize>) + 'a>;
 
-/// A batch takes no longer than this, or the slowest rivals would take all of the time.
-const BATCH_NS: f64 = 3e6;
+/// About how long a batch takes: long against the clock's own call, short against the slices of time that a busy system gives to others,
+/// so that most batches are not interrupted.
+const BATCH_NS: f64 = 1e5;
 
-/// Nanoseconds a call of each, over `rounds` batches of at most `calls`.
-pub(super) fn medians(rivals: &mut [Calls], rounds: usize, calls: usize) -> Vec<f64> {
-    let time = |rival: &mut Calls, calls: usize| {
+/// Nanoseconds a call of each, over `rounds` batches of inputs from `count`.
+pub(super) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<f64> {
+    let time = |rival: &mut Calls, range: Range<usize>| {
+        let calls = range.len() as f64;
         let start = Instant::now();
-        rival(calls);
-        start.elapsed().as_nanos() as f64 / calls as f64
+        rival(range);
+        start.elapsed().as_nanos() as f64 / calls
     };
-    let few = calls.min(256);
     let batches: Vec<usize> = rivals
         .iter_mut()
         .map(|rival| {
-            // The first touches its data, the second tells how long it takes.
-            time(rival, few);
-            let one = time(rival, few);
-            ((BATCH_NS / one) as usize).clamp(few, calls)
+            // The first few touch its data, the others tell how long it takes; the least is the one that was not interrupted.
+            let least = (0..5).map(|_| time(rival, 0..16.min(count))).fold(f64::INFINITY, f64::min);
+            ((BATCH_NS / least) as usize).clamp(8.min(count), count)
         })
         .collect();
     let mut times = vec![Vec::with_capacity(rounds); rivals.len()];
-    for _ in 0..rounds {
+    for round in 0..rounds {
         for ((rival, &calls), times) in rivals.iter_mut().zip(&batches).zip(&mut times) {
+            // Other inputs each time, or a branch predictor would learn a short batch.
+            let start = round * calls % (count - calls + 1);
             // Its code and tables back into the caches.
-            rival(few.min(calls));
-            times.push(time(rival, calls));
+            rival(0..(calls / 4).max(1));
+            times.push(time(rival, start..start + calls));
         }
     }
     times.into_iter().map(median).collect()

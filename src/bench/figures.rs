@@ -6,7 +6,7 @@ use std::time::Instant;
 use microfacet_sampler::{Kind, Tables};
 
 use super::paper::Approximation;
-use super::sampler::{CAPS, INVERSION, INVERSION_SUM, TABLE, bind};
+use super::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM, TABLE, bind};
 use super::tables::Slices;
 use super::{GAMMA, Quantity, Row, SIGMA, Settings, clock, masking};
 
@@ -42,6 +42,7 @@ pub fn figures(
     let figure = |name, unit, must, aim, reached| Figure { name, unit, must, aim, reached };
     vec![
         figure("sample, table / GGX spherical caps", "", 1.3, 1.0, normals(TABLE, CAPS)),
+        figure("sample_batch, table / GGX spherical caps", "", 0.6, 0.35, normals(BATCH, CAPS)),
         figure("g1, table / GGX closed form", "", 2.0, 1.2, ratio(Quantity::G1, TABLE, masking::GGX)),
         figure("sample, table / inversion, any gamma", "", 1.0 / 20.0, 1.0 / 40.0, normals(TABLE, INVERSION)),
         figure(
@@ -73,7 +74,7 @@ fn certified(set: &Tables) -> f64 {
 
 /// The median time of binding, over shapes between the nodes of the general set.
 fn bind_ns(set: &Tables, settings: &Settings) -> f64 {
-    let times = (0..settings.rounds.max(settings.calls / 64)).map(|i| {
+    let times = (0..settings.rounds.max(40)).map(|i| {
         let gamma = 2.1 + 0.37 * (i % 40) as f64;
         let start = Instant::now();
         black_box(set.student_t(black_box(SIGMA), black_box(gamma))).expect("all gamma are covered");

@@ -102,6 +102,10 @@ pub(super) fn furnace_variance(sampler: &Sampler, inputs: &Inputs, views: usize,
         (sampler.draw)(&vec![*v; draws], &numbers, &mut normals);
         let v = v.as_dvec3();
         let g1 = truth.g1(v);
+        let share = match &sampler.density {
+            Density::Bounded(material) => f64::from(material.bounded(v.as_vec3()).share()),
+            _ => 1.0,
+        };
         let weight = |m: &Vec3| {
             let m = m.as_dvec3();
             let facing = v.dot(m);
@@ -112,7 +116,7 @@ pub(super) fn furnace_variance(sampler: &Sampler, inputs: &Inputs, views: usize,
             let g2 = truth.g2(v, l, Masking::HeightCorrelated);
             match sampler.density {
                 Density::Ndf => g2 * facing / (v.z * m.z),
-                Density::Visible => g2 / g1,
+                Density::Visible | Density::Bounded(_) => share * g2 / g1,
             }
         };
         let (sum, squares) = normals
@@ -136,7 +140,7 @@ mod tests {
     const STREAMED: usize = 4000;
 
     #[test]
-    fn rivals_draw_visible_normals_and_the_ndf_does_not() {
+    fn rivals_draw_visible_normals_and_others_do_not() {
         let slices = Slices::bake();
         let views = [0.05_f64, 0.9, 1.5].map(|theta| DVec3::new(theta.sin(), 0.0, theta.cos()));
         let all = samplers(&slices, 3);
@@ -152,7 +156,7 @@ mod tests {
                 let samples = if streamed { STREAMED } else { SAMPLES };
                 judge_visible_normals(&truth(sampler.gamma), v, samples, 7, draw).p()
             });
-            if matches!(sampler.density, Density::Ndf) {
+            if !sampler.draws_visible_normals() {
                 assert!(p[1] < 1e-12 && p[2] < 1e-12, "{}: {p:?}", sampler.name);
             } else {
                 assert!(p.iter().all(|&p| p > level), "{}: {p:?}", sampler.name);
@@ -197,5 +201,6 @@ mod tests {
         let (table, inversion) = (variance("table, default"), variance("inversion of the CDF, any gamma"));
         assert!((table / inversion - 1.0).abs() < 1e-2, "{table} against {inversion}");
         assert!(variance("all normals (NDF)") > 3.0 * table);
+        assert!(variance("table, default, bounded to reflections") < 0.9 * table);
     }
 }

@@ -59,6 +59,10 @@ pub fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
         form("sum for half-integer gamma", 3.5, each(move |w| half.g1(w))),
         form("rational approximation (eq. 22-23)", GAMMA, each(move |w| rational.g1(w))),
     ];
+    let batch = bind(&slices.default, GAMMA);
+    let (bytes, stored_bytes) = (batch.bytes(), stored(&slices.default));
+    let evaluate: Evaluate = Box::new(move |w, g1| batch.g1_batch(w, g1).expect("of one length"));
+    all.push(Masking { bytes, stored: stored_bytes, ..form("table, default, batch", GAMMA, evaluate) });
     for (name, set) in slices.each() {
         let bound = bind(set, GAMMA);
         let (bytes, stored) = (bound.bytes(), stored(set));

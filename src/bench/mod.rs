@@ -33,7 +33,7 @@ pub const GAMMA: f64 = 4.0;
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Calls in a batch, and points of an error; at most [`COUNT`].
+    /// Views and pairs of numbers that calls and errors are taken over; at most [`COUNT`].
     pub calls: usize,
     /// Batches, of whose times the median is taken.
     pub rounds: usize,
@@ -47,14 +47,15 @@ pub struct Settings {
 
 impl Settings {
     /// A minute or so.
-    pub const FULL: Self = Self { calls: COUNT, rounds: 61, views: 128, draws: 2048, seed: 1 };
+    pub const FULL: Self = Self { calls: COUNT, rounds: 801, views: 128, draws: 2048, seed: 1 };
     /// Some seconds.
-    pub const QUICK: Self = Self { rounds: 15, views: 32, draws: 1024, ..Self::FULL };
+    pub const QUICK: Self = Self { rounds: 101, views: 32, draws: 1024, ..Self::FULL };
 
-    /// The same with `calls` in a batch, and no more than that of anything else.
+    /// The same over `calls` inputs, and no more than that of anything else.
     pub fn with_calls(self, calls: usize) -> Self {
         let calls = calls.clamp(1, COUNT);
-        Self { calls, views: self.views.min(calls), draws: self.draws.min(calls), ..self }
+        let few = |n: usize| n.min(calls);
+        Self { calls, rounds: few(self.rounds), views: few(self.views), draws: few(self.draws), ..self }
     }
 }
 
@@ -86,6 +87,8 @@ pub struct Row {
     pub name: String,
     /// Its shape; ∞ is Beckmann.
     pub gamma: f64,
+    /// Whether it draws visible normals, all of them, or evaluates G1: what can be compared by its error.
+    pub complete: bool,
     /// Nanoseconds a call.
     pub ns: f64,
     /// Bytes of table that a bound material's lookups touch; 0 for closed forms.
@@ -117,6 +120,7 @@ pub fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
         quantity: Quantity::Normal,
         name: sampler.name.clone(),
         gamma: sampler.gamma,
+        complete: sampler.draws_visible_normals(),
         ns,
         bytes: sampler.bytes,
         stored: sampler.stored,
@@ -127,6 +131,7 @@ pub fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
         quantity: Quantity::G1,
         name: masking.name.clone(),
         gamma: masking.gamma,
+        complete: true,
         ns,
         bytes: masking.bytes,
         stored: masking.stored,
@@ -140,8 +145,8 @@ pub fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
 /// A sampler as what the clock runs.
 fn normals<'a>(draw: &'a Draw<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
     let mut normals = vec![Vec3::ZERO; inputs.views.len()];
-    Box::new(move |calls| {
-        draw(&inputs.views[..calls], &inputs.numbers[..calls], &mut normals[..calls]);
+    Box::new(move |at| {
+        draw(&inputs.views[at.clone()], &inputs.numbers[at.clone()], &mut normals[at]);
         std::hint::black_box(&mut normals);
     })
 }
@@ -149,8 +154,8 @@ fn normals<'a>(draw: &'a Draw<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
 /// A form of G1 likewise.
 fn values<'a>(evaluate: &'a Evaluate<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
     let mut values = vec![0.0; inputs.views.len()];
-    Box::new(move |calls| {
-        evaluate(&inputs.views[..calls], &mut values[..calls]);
+    Box::new(move |at| {
+        evaluate(&inputs.views[at.clone()], &mut values[at]);
         std::hint::black_box(&mut values);
     })
 }

@@ -66,8 +66,8 @@ pub fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
             Method::Normal(draw) => normals(draw, &inputs),
         })
         .collect();
-    // So many that a few rounds and short batches must do.
-    let times = clock::medians(&mut runs, settings.rounds.div_ceil(4), settings.calls.min(2048));
+    // So many that fewer rounds must do.
+    let times = clock::medians(&mut runs, settings.rounds.div_ceil(8), settings.calls);
     all.iter().zip(times).map(|((at, _), ns)| Timing { ns, ..at.clone() }).collect()
 }
 

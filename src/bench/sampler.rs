@@ -36,12 +36,13 @@ pub(super) enum Check {
 }
 
 /// What density it draws from, for the weights of an estimator.
-#[derive(Clone, Copy)]
 pub(super) enum Density {
     /// Visible normals.
     Visible,
     /// All normals, D(m)(m·n).
     Ndf,
+    /// Visible normals that may reflect upwards, of this material.
+    Bounded(StudentT),
 }
 
 /// A sampler.
@@ -63,6 +64,10 @@ pub struct Sampler<'a> {
 impl<'a> Sampler<'a> {
     fn new(name: &str, gamma: f64, check: Check, draw: Draw<'a>) -> Self {
         Self { name: name.into(), gamma, bytes: 0, stored: 0, draw, check, density: Density::Visible }
+    }
+
+    pub(super) fn draws_visible_normals(&self) -> bool {
+        matches!(self.density, Density::Visible)
     }
 
     fn tables(self, bytes: usize, stored: usize) -> Self {
@@ -93,6 +98,7 @@ fn streamed<'a>(seed: u64, one: impl Fn(Vec3, &mut Stream) -> Vec3 + 'a) -> Draw
 /// Names that figures refer to.
 pub(super) const CAPS: &str = "GGX, spherical caps";
 pub(super) const TABLE: &str = "table, default";
+pub(super) const BATCH: &str = "table, default, batch";
 pub(super) const INVERSION: &str = "inversion of the CDF, any gamma";
 pub(super) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
 
@@ -148,6 +154,7 @@ pub fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
         },
     ];
     all.extend(slices.each().map(|(name, set)| table(name, set)));
+    all.extend(variants(&slices.default));
     for (name, set) in [("bilinear, default nodes", &slices.default), ("bilinear, high nodes", &slices.high)]
     {
         let plain = Bilinear::new(SIGMA, GAMMA, set);
@@ -157,6 +164,18 @@ pub fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
         );
     }
     all
+}
+
+/// Over slices, and bounded to reflections.
+fn variants<'a>(set: &Tables) -> [Sampler<'a>; 2] {
+    let (batch, bounded) = (bind(set, GAMMA), bind(set, GAMMA));
+    let (bytes, stored) = (batch.bytes(), stored(set));
+    let density = Density::Bounded(bounded.clone());
+    let draw: Draw = Box::new(move |v, u, m| batch.sample_batch(v, u, m).expect("of one length"));
+    let one = each(move |v, u| bounded.bounded(v).sample(u));
+    let bounded = Sampler::new("table, default, bounded to reflections", GAMMA, Check::Distribution, one);
+    [Sampler::new(BATCH, GAMMA, Check::Cdf, draw), Sampler { density, ..bounded }]
+        .map(|sampler| sampler.tables(bytes, stored))
 }
 
 fn table<'a>(name: &str, set: &Tables) -> Sampler<'a> {
@@ -171,13 +190,14 @@ pub(super) fn bind(set: &Tables, gamma: f64) -> StudentT {
     set.student_t(SIGMA, gamma).expect("the sets were made for this shape")
 }
 
-/// Bytes of all values of a set as a file has them.
+/// Bytes that a file takes for what G1 and normals are looked up in.
 pub(super) fn stored(set: &Tables) -> usize {
     let one = |precision| match precision {
         Precision::F32 => 4,
         Precision::F16 | Precision::U16 => 2,
     };
-    set.tables().iter().map(|table| table.values.len() * one(table.precision)).sum()
+    let lookups = set.tables().iter().filter(|table| !table.kind.is_albedo());
+    lookups.map(|table| table.values.len() * one(table.precision)).sum()
 }
 
 /// Names of the qualities.

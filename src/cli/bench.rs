@@ -19,7 +19,7 @@ pub(super) struct Args {
     /// Fewer batches: some seconds instead of a minute.
     #[arg(long)]
     quick: bool,
-    /// Calls in a batch.
+    /// Different inputs to call with.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=bench::COUNT as i64))]
     calls: Option<u32>,
     /// Seed of views and random numbers.
