@@ -234,8 +234,8 @@ impl StudentT {
             let w = self.stretch(w);
             return (w.z * Self::ggx_inverse_area(&w)).min(1.0);
         }
-        // As `inverse_area`, for speed: without the azimuth that `stretch` finds, κ within the roughness, and nothing between the division
-        // and the lookup. Each wait that is shorter lets the processor start the next call sooner; 4.3 ns become 3.
+        // As `inverse_area`, without the azimuth that `stretch` finds, with κ within the roughness, and with nothing between the division
+        // and the lookup. One call is no faster for it (4.3 ns); a call of a batch takes 2.0 ns instead of 2.2.
         let slices = &self.slices;
         let (x, y) = (slices.kappa * self.sigma_x * w.x, slices.kappa * self.sigma_y * w.y);
         let z = f32x4::new([if w.z > 0.0 { w.z } else { 0.0 }, 0.0, 0.0, 0.0]);
