@@ -13,14 +13,15 @@ use crate::shape::Shape;
 use crate::student_t::StudentT;
 
 impl StudentT {
-    /// Draws a visible normal for a view above the horizon, taking uniform numbers in [0, 1) from `uniform`.
+    /// Draws a visible normal, taking uniform numbers in [0, 1) from `uniform`.
     ///
-    /// 1 + (3 or more) numbers a draw; the rejection accepts 1 in 1.1–2.8. At grazing every draw is an excess draw.
+    /// 1 + (3 or more) numbers a draw; the rejection accepts 1 in 1.1–2.8. At grazing every draw is an excess draw, and so it is for a
+    /// view below the horizon, which sees the microsurface from within; there the rejection accepts ever less the steeper the view.
     pub fn sample_visible_exact(&self, v: DVec3, uniform: &mut impl FnMut() -> f64) -> DVec3 {
-        let at = self.stretch(DVec3::new(v.x, v.y, v.z.max(0.0)));
+        let at = self.stretch(DVec3::new(v.x, v.y, v.z.abs()));
         let (shape, z) = (self.shape(), at.view.cotangent());
         let lambda = if z.is_infinite() { 0.0 } else { shape.lambda(shape.unit(z)) };
-        let (x, y) = if uniform() * (1.0 + lambda) < 1.0 {
+        let (x, y) = if uniform() * (1.0 + lambda) < 1.0 && v.z >= 0.0 {
             flipped_slope(shape, z, uniform)
         } else {
             excess_slope(shape, z, uniform)

@@ -24,6 +24,7 @@ mod smith_table;
 pub mod statistics;
 mod student_t;
 mod visible;
+mod walk;
 
 pub use albedo::{Albedo, AlbedoIntegrator};
 pub use ellipsoid::{Ellipsoid, EllipsoidError};

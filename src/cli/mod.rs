@@ -4,6 +4,7 @@ mod bake;
 mod bench;
 mod convert;
 mod fit;
+mod furnace;
 mod inspect;
 mod plan;
 mod plot;
@@ -41,6 +42,7 @@ enum Command {
     Bake(bake::Args),
     Plan(plan::Args),
     Validate(validate::Args),
+    Furnace(furnace::Args),
     Inspect(inspect::Args),
     Query(query::Args),
     Sample(sample::Args),
@@ -79,6 +81,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Bake(args) => bake::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Validate(args) => validate::run(args),
+        Command::Furnace(args) => furnace::run(args),
         Command::Inspect(args) => inspect::run(args),
         Command::Query(args) => query::run(args),
         Command::Sample(args) => sample::run(args),

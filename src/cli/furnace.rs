@@ -1,0 +1,200 @@
+//! `furnace`: how much light comes back with F = 1, and what compensation restores.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use serde_json::json;
+
+use microfacet_bake::validate::furnace::{Furnace, TOLERANCE, Walk, furnace, walk};
+use microfacet_sampler::{Masking, Tables};
+
+use super::{Done, Failure, Outcome, parse_gamma, print, print_json, tables};
+
+/// White furnace: single scattering, with each compensation, and the random walk on the microsurface.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Exit status 1 if the Kulla-Conty lobe misses 1 by more than 2e-3, or a walk by more than three standard errors.\n\
+    Examples:\n  microfacet-bake furnace\n  microfacet-bake furnace --sigma 1 --gamma 2 --method walk"
+)]
+pub(super) struct Args {
+    /// A table file, or a folder with one; the embedded default if absent.
+    tables: Option<PathBuf>,
+    /// Roughnesses in [0, 3], comma separated.
+    #[arg(long, value_delimiter = ',', value_parser = parse_roughness, default_value = "0.01,0.1,0.3,0.6,1,2,3")]
+    sigma: Vec<f64>,
+    /// Shapes in [1.501, inf], comma separated.
+    #[arg(long, value_delimiter = ',', value_parser = parse_gamma, default_value = "1.501,1.6,2,3,5,10,40,inf")]
+    gamma: Vec<f64>,
+    /// Cosines of the view in [0, 1], comma separated.
+    #[arg(long, value_delimiter = ',', value_parser = parse_cosine, default_value = "0.02,0.3,1")]
+    cos_theta: Vec<f64>,
+    /// Form of masking; a walk is height-correlated.
+    #[arg(long, value_enum, default_value = "height-correlated")]
+    masking: MaskingArg,
+    /// `walk` adds the random walk (Heitz et al. 2016).
+    #[arg(long, value_enum, default_value = "quadrature")]
+    method: Method,
+    /// Rays of a walk.
+    #[arg(long, default_value_t = 100_000, value_parser = parse_walks)]
+    walks: usize,
+    /// Seed of the walks.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print the average albedo by gamma and sigma instead.
+    #[arg(long)]
+    average: bool,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum MaskingArg {
+    /// G1(v) G1(l).
+    Uncorrelated,
+    /// 1/(1 + lambda(v) + lambda(l)).
+    HeightCorrelated,
+}
+
+impl From<MaskingArg> for Masking {
+    fn from(arg: MaskingArg) -> Self {
+        match arg {
+            MaskingArg::Uncorrelated => Self::Uncorrelated,
+            MaskingArg::HeightCorrelated => Self::HeightCorrelated,
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Method {
+    /// Deterministic.
+    Quadrature,
+    /// The random walk as well.
+    Walk,
+}
+
+fn parse_roughness(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(sigma) if (0.0..=3.0).contains(&sigma) => Ok(sigma),
+        _ => Err(format!("sigma \"{text}\" must be a number in [0, 3]; 0 is a mirror")),
+    }
+}
+
+fn parse_cosine(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(cos) if (0.0..=1.0).contains(&cos) => Ok(cos),
+        _ => Err(format!("cos_theta \"{text}\" must be a number in [0, 1]; 0 is grazing")),
+    }
+}
+
+fn parse_walks(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n @ 1_000..=10_000_000_000) => Ok(n),
+        _ => Err(format!("\"{text}\" walks: must be a whole number in [1000, 1e10]")),
+    }
+}
+
+pub(super) fn run(args: Args) -> Outcome {
+    let set = tables(args.tables.as_deref())?;
+    if args.average {
+        return average(&args, &set);
+    }
+    let walking = args.method == Method::Walk;
+    let masking = args.masking.into();
+    let mut rows = Vec::new();
+    let mut passed = true;
+    if !args.json {
+        print(&head(walking))?;
+    }
+    for &gamma in &args.gamma {
+        for &sigma in &args.sigma {
+            for &cos in &args.cos_theta {
+                let row = furnace(&set, masking, sigma, gamma, cos)?;
+                // A mirror has no microsurface to walk on.
+                let walked = if walking && sigma > 0.0 {
+                    Some(walk(sigma, gamma, cos, args.walks, args.seed)?)
+                } else {
+                    None
+                };
+                // A NaN fails.
+                passed &= (row.kulla_conty - 1.0).abs() <= TOLERANCE;
+                passed &= walked.is_none_or(|walk| conserves(&walk) && agrees(&row, &walk, masking));
+                if args.json {
+                    rows.push(as_json(&row, walked));
+                } else {
+                    print(&line(&row, walked))?;
+                }
+            }
+        }
+    }
+    if args.json {
+        print_json(&json!({ "masking": Masking::name(masking), "passed": passed, "rows": rows }))?;
+    } else {
+        print(if passed { "The furnace closes.\n" } else { "The furnace does not close.\n" })?;
+    }
+    Ok(if passed { Done::Ok } else { Done::Rejected })
+}
+
+/// Whether all light came back, within three standard errors.
+fn conserves(walk: &Walk) -> bool {
+    (walk.total.mean - 1.0).abs() <= 3.0 * walk.total.error
+}
+
+/// Whether the walk's first bounce is E. Four standard errors: a grid holds hundreds of tests.
+fn agrees(row: &Furnace, walk: &Walk, masking: Masking) -> bool {
+    // Where nearly all or nearly nothing returns, the counts say less than one walk.
+    masking != Masking::HeightCorrelated
+        || (walk.single.mean - row.single).abs()
+            <= 4.0 * walk.single.error.max((row.single / 1e5).sqrt() * 1e-2) + 1e-5
+}
+
+fn head(walking: bool) -> String {
+    let walk = if walking { "  walk, 1 bounce         walk, all   bounces" } else { "" };
+    format!(
+        "{:>8} {:>6} {:>9} {:>9} {:>9} {:>11}{walk}\n",
+        "gamma", "sigma", "cos_theta", "E", "Turquin", "Kulla-Conty"
+    )
+}
+
+fn line(row: &Furnace, walk: Option<Walk>) -> String {
+    let Furnace { sigma, gamma, cos_theta, single, turquin, kulla_conty } = row;
+    let walk = walk.map_or(String::new(), |walk| {
+        let Walk { single, total, bounces } = walk;
+        format!(
+            "  {:.5} +- {:.5}  {:.5} +- {:.5} {bounces:9.3}",
+            single.mean, single.error, total.mean, total.error
+        )
+    });
+    format!("{gamma:>8} {sigma:>6} {cos_theta:>9} {single:9.5} {turquin:9.5} {kulla_conty:11.5}{walk}\n")
+}
+
+fn as_json(row: &Furnace, walk: Option<Walk>) -> serde_json::Value {
+    let walk = walk.map(|walk| {
+        json!({
+            "single": walk.single.mean, "single_error": walk.single.error,
+            "total": walk.total.mean, "total_error": walk.total.error, "bounces": walk.bounces,
+        })
+    });
+    // JSON has no infinity.
+    json!({
+        "sigma": row.sigma, "gamma": row.gamma.to_string(), "cos_theta": row.cos_theta, "single": row.single,
+        "turquin": row.turquin, "kulla_conty": row.kulla_conty, "walk": walk,
+    })
+}
+
+/// The average albedo, γ down and σ across: what the STD paper's figure 9 shows as spheres.
+fn average(args: &Args, set: &Tables) -> Outcome {
+    let mut text = String::from("| gamma |");
+    args.sigma.iter().for_each(|sigma| text += &format!(" sigma = {sigma} |"));
+    text += &format!("\n| --- |{}\n", " --- |".repeat(args.sigma.len()));
+    for &gamma in &args.gamma {
+        text += &format!("| {gamma} |");
+        for &sigma in &args.sigma {
+            let albedo = set.albedo(sigma, gamma, args.masking.into()).map_err(Failure::from)?;
+            text += &format!(" {:.3} |", albedo.albedo_average());
+        }
+        text += "\n";
+    }
+    print(&text)?;
+    Ok(Done::Ok)
+}
