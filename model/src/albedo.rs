@@ -165,6 +165,42 @@ impl AlbedoIntegrator {
         Ok(Albedo { uncorrelated: before[0], height_correlated: before[1], error })
     }
 
+    /// Cosine-weighted average 2∫₀¹ E(μ) μ dμ of the reflection albedo, for equal roughness σ ≥ 0.
+    ///
+    /// # Errors
+    /// [`ParameterError::Sigma`] unless 0 ≤ σ < ∞.
+    pub fn average<const N: usize>(
+        &self,
+        sigma: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        let integrate = |rule: &Gauss| -> Result<([[f64; N]; 2], f64), ParameterError> {
+            let (mut sum, mut error) = ([[0.0; N]; 2], Ok(0.0_f64));
+            // In θ: quick at normal incidence, where masking sets in with a cusp, and at grazing within the roughness.
+            let low = End { at: 0.0, scale: 0.02 };
+            let high = End { at: FRAC_PI_2, scale: (0.1 * sigma).clamp(1e-5, 0.1) };
+            rule.graded(low, high, 0.5, |theta, measure| {
+                let (sin, cos) = libm::sincos(theta);
+                match self.reflection(sigma, cos, &weight) {
+                    Ok(albedo) => {
+                        error = error.map(|error| error.max(albedo.error));
+                        let forms = [albedo.uncorrelated, albedo.height_correlated];
+                        for (sum, x) in sum.iter_mut().flatten().zip(forms.iter().flatten()) {
+                            *sum += 2.0 * sin * cos * measure * x;
+                        }
+                    }
+                    Err(why) => error = Err(why),
+                }
+            });
+            Ok((sum, error?))
+        };
+        let (coarse, _) = integrate(&self.rules[1])?;
+        let (fine, error) = integrate(&self.rules[3])?;
+        let change = |(a, b): (&f64, &f64)| (a - b).abs();
+        let change = fine.iter().flatten().zip(coarse.iter().flatten()).map(change).fold(0.0, f64::max);
+        Ok(Albedo { uncorrelated: fine[0], height_correlated: fine[1], error: change + error })
+    }
+
     fn view(&self, sigma: [f64; 2], cos: f64, phi: f64) -> Result<View, ParameterError> {
         for sigma in sigma {
             if !(sigma > 0.0 && sigma < f64::INFINITY) {

@@ -57,6 +57,21 @@ fn anisotropic_views_match_the_reference() {
     }
 }
 
+#[test]
+fn averages_match_the_reference() {
+    for row in rows("albedo_avg.csv") {
+        let f = |i: usize| row[i].parse::<f64>().expect("number");
+        let integrator = AlbedoIntegrator::new(Shape::new(f(1)).unwrap(), 1e-7);
+        let albedo = integrator.average(f(0), |_| [1.0]).unwrap();
+        let error = (albedo.of(masking(&row[2]))[0] - f(3)).abs();
+        assert!(
+            error < albedo.error && albedo.error < 1e-5,
+            "{row:?}: error {error:e} of {:e}",
+            albedo.error
+        );
+    }
+}
+
 /// E by brute force: f cos θ_l with F = 1 over the hemisphere of l, in solid angle, by the midpoint rule.
 fn brute_force(material: &StudentT, v: DVec3, masking: Masking) -> f64 {
     let (rings, sectors) = (800, 800);

@@ -8,7 +8,8 @@ use clap::{Subcommand, ValueEnum};
 use glam::DVec3;
 
 use microfacet_model as model;
-use microfacet_sampler::{StudentT, Tables};
+use microfacet_model::fresnel::schlick_weight;
+use microfacet_sampler::{Masking, Moments, StudentT, Tables};
 
 use super::{Done, Failure, Outcome, tables};
 
@@ -28,6 +29,10 @@ enum What {
     G1(Io),
     /// The visible normal at random numbers u1, u2, and its density. Columns: those of g1, and u1, u2.
     Normal(Io),
+    /// Directional albedo with F = 1 and its Schlick parts. Columns: sigma, gamma, cos_theta, masking.
+    Albedo(Io),
+    /// Cosine-weighted average of the albedo. Columns: sigma, gamma, masking.
+    AlbedoAverage(Io),
 }
 
 #[derive(clap::Args)]
@@ -52,10 +57,16 @@ enum Method {
 }
 
 pub(super) fn run(args: Args) -> Outcome {
-    let (io, quantity): (_, &dyn Quantity) = match &args.what {
-        What::G1(io) => (io, &G1),
-        What::Normal(io) => (io, &Normal),
-    };
+    match &args.what {
+        What::G1(io) => answer(io, &G1),
+        What::Normal(io) => answer(io, &Normal),
+        What::Albedo(io) => answer(io, &Albedo),
+        What::AlbedoAverage(io) => answer(io, &AlbedoAverage),
+    }
+}
+
+/// Passes the rows of a file through, with the quantity's values appended.
+fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
     let set = tables(io.tables.as_deref())?;
     let input: Box<dyn Read> = if io.input.as_os_str() == "-" {
         Box::new(io::stdin())
@@ -84,16 +95,10 @@ pub(super) fn run(args: Args) -> Outcome {
         let record = record?;
         let line = record.position().map_or(0, csv::Position::line);
         let at = |error: String| Failure(format!("line {line}: {error}"));
-        let values = columns
-            .iter()
-            .zip(quantity.inputs())
-            .map(|(&column, name)| parse(&record[column], name))
-            .collect::<Result<Vec<f64>, _>>()
-            .map_err(at)?;
-        let point = Point::new(&values, &set).map_err(at)?;
+        let fields: Vec<&str> = columns.iter().map(|&column| &record[column]).collect();
         let mut row: Vec<String> = record.iter().map(String::from).collect();
         for &method in &io.method {
-            row.extend(quantity.values(&point, method).map_err(at)?);
+            row.extend(quantity.values(&fields, &set, method).map_err(at)?);
         }
         if !write(&mut writer, row)? {
             break;
@@ -124,12 +129,17 @@ fn parse(text: &str, name: &str) -> Result<f64, String> {
     let x: f64 = text.parse().map_err(|_| format!("{name} \"{text}\" is not a number"))?;
     let (low, high) = match name {
         "theta" => (0.0, std::f64::consts::FRAC_PI_2 + 1e-6),
-        "u1" | "u2" => (0.0, 1.0),
+        "u1" | "u2" | "cos_theta" => (0.0, 1.0),
         "phi" => (f64::MIN, f64::MAX),
         // σ and γ are judged, with their own messages, by the constructors.
         _ => return Ok(x),
     };
     if (low..=high).contains(&x) { Ok(x) } else { Err(format!("{name} = {x} must lie in [{low}, {high}]")) }
+}
+
+/// The fields of a row as numbers.
+fn numbers(fields: &[&str], names: &[&str]) -> Result<Vec<f64>, String> {
+    fields.iter().zip(names).map(|(text, name)| parse(text, name)).collect()
 }
 
 /// A material and a view, and for normals two random numbers.
@@ -143,8 +153,9 @@ struct Point<'a> {
 }
 
 impl<'a> Point<'a> {
-    fn new(values: &[f64], set: &'a Tables) -> Result<Self, String> {
-        let &[x, y, gamma, theta, phi, ref rest @ ..] = values else {
+    fn new(fields: &[&str], names: &[&str], set: &'a Tables) -> Result<Self, String> {
+        let values = numbers(fields, names)?;
+        let &[x, y, gamma, theta, phi, ref rest @ ..] = &values[..] else {
             unreachable!("five columns were found")
         };
         model::StudentT::anisotropic(x, y, gamma).map_err(|why| why.to_string())?;
@@ -170,7 +181,7 @@ impl<'a> Point<'a> {
 trait Quantity {
     fn inputs(&self) -> &'static [&'static str];
     fn output_stems(&self) -> &'static [&'static str];
-    fn values(&self, at: &Point, method: Method) -> Result<Vec<String>, String>;
+    fn values(&self, fields: &[&str], set: &Tables, method: Method) -> Result<Vec<String>, String>;
 
     fn outputs(&self, method: Method) -> Vec<String> {
         let suffix = match method {
@@ -192,7 +203,8 @@ impl Quantity for G1 {
         &["lambda", "g1"]
     }
 
-    fn values(&self, at: &Point, method: Method) -> Result<Vec<String>, String> {
+    fn values(&self, fields: &[&str], set: &Tables, method: Method) -> Result<Vec<String>, String> {
+        let at = Point::new(fields, self.inputs(), set)?;
         let v = at.view();
         Ok(match method {
             Method::Table => {
@@ -215,7 +227,8 @@ impl Quantity for Normal {
         &["m_x", "m_y", "m_z", "pdf"]
     }
 
-    fn values(&self, at: &Point, method: Method) -> Result<Vec<String>, String> {
+    fn values(&self, fields: &[&str], set: &Tables, method: Method) -> Result<Vec<String>, String> {
+        let at = Point::new(fields, self.inputs(), set)?;
         let v = at.view();
         Ok(match method {
             Method::Table => {
@@ -226,6 +239,90 @@ impl Quantity for Normal {
             Method::Exact => {
                 let m = at.exact().visible_normal(v, at.u);
                 [m.x, m.y, m.z, at.exact().visible_normal_pdf(v, m)].map(|x| x.to_string()).into()
+            }
+        })
+    }
+}
+
+/// The form of masking that a field names.
+fn masking(text: &str) -> Result<Masking, String> {
+    Masking::ALL.into_iter().find(|masking| masking.name() == text).ok_or_else(|| {
+        let known = Masking::ALL.map(|masking| format!("\"{}\"", masking.name()));
+        format!("masking \"{text}\" must be {}", known.join(" or "))
+    })
+}
+
+/// The model's albedos of one form.
+fn of<const N: usize>(albedo: &model::Albedo<N>, masking: Masking) -> [f64; N] {
+    match masking {
+        Masking::Uncorrelated => albedo.uncorrelated,
+        Masking::HeightCorrelated => albedo.height_correlated,
+    }
+}
+
+/// Error aimed at by the exact values.
+const EXACT: f64 = 1e-10;
+
+fn integrator(gamma: f64) -> Result<model::AlbedoIntegrator, String> {
+    let shape = model::Shape::new(gamma).map_err(|why| why.to_string())?;
+    Ok(model::AlbedoIntegrator::new(shape, EXACT))
+}
+
+struct Albedo;
+
+impl Quantity for Albedo {
+    fn inputs(&self) -> &'static [&'static str] {
+        &["sigma", "gamma", "cos_theta", "masking"]
+    }
+
+    fn output_stems(&self) -> &'static [&'static str] {
+        &["E", "schlick_scale", "schlick_bias"]
+    }
+
+    fn values(&self, fields: &[&str], set: &Tables, method: Method) -> Result<Vec<String>, String> {
+        let values = numbers(&fields[..3], self.inputs())?;
+        let &[sigma, gamma, cos] = &values[..] else { unreachable!("three columns were found") };
+        let masking = masking(fields[3])?;
+        Ok(match method {
+            Method::Table => {
+                let albedo = set.albedo(sigma, gamma, masking).map_err(|why| why.to_string())?;
+                let Moments { scale, bias, .. } = albedo.moments(cos as f32);
+                [albedo.albedo(cos as f32), scale, bias].map(|x| x.to_string()).into()
+            }
+            Method::Exact => {
+                let schlick = |cos| [1.0 - schlick_weight(cos), schlick_weight(cos)];
+                let albedo =
+                    integrator(gamma)?.reflection(sigma, cos, schlick).map_err(|why| why.to_string())?;
+                let [scale, bias] = of(&albedo, masking);
+                [scale + bias, scale, bias].map(|x| x.to_string()).into()
+            }
+        })
+    }
+}
+
+struct AlbedoAverage;
+
+impl Quantity for AlbedoAverage {
+    fn inputs(&self) -> &'static [&'static str] {
+        &["sigma", "gamma", "masking"]
+    }
+
+    fn output_stems(&self) -> &'static [&'static str] {
+        &["E_avg"]
+    }
+
+    fn values(&self, fields: &[&str], set: &Tables, method: Method) -> Result<Vec<String>, String> {
+        let values = numbers(&fields[..2], self.inputs())?;
+        let &[sigma, gamma] = &values[..] else { unreachable!("two columns were found") };
+        let masking = masking(fields[2])?;
+        Ok(match method {
+            Method::Table => {
+                let albedo = set.albedo(sigma, gamma, masking).map_err(|why| why.to_string())?;
+                vec![albedo.albedo_average().to_string()]
+            }
+            Method::Exact => {
+                let albedo = integrator(gamma)?.average(sigma, |_| [1.0]).map_err(|why| why.to_string())?;
+                vec![of(&albedo, masking)[0].to_string()]
             }
         })
     }
