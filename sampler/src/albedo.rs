@@ -6,13 +6,13 @@ use alloc::vec::Vec;
 
 use crate::axis::{Axis, Mapping};
 use crate::error::BindError;
-use crate::math::sqrt;
+use crate::math::sqrt64;
 use crate::student_t::Masking;
 use crate::table::{Kind, Table};
 use crate::tables::Tables;
 
-/// Channels of albedo tables.
-pub(crate) const CHANNELS: [&str; 3] = ["scale", "bias", "f82"];
+/// Channels of albedo tables: E − 1, and what the other moments have over a mirror's times E, in which form they are smooth.
+pub(crate) const CHANNELS: [&str; 3] = ["e", "bias", "f82"];
 
 /// Moments of one Fresnel reflectance F(v·m) over the visible normals whose reflections leave the surface, weighted by shadowing.
 ///
@@ -61,65 +61,78 @@ impl Moments {
         Self { scale: 20.0 / 21.0, bias: 1.0 / 21.0, f82: 117649.0 / 839808.0 }
     }
 
-    fn plus(self, rest: [f32; 3]) -> Self {
-        Self { scale: self.scale + rest[0], bias: self.bias + rest[1], f82: self.f82 + rest[2] }
+    /// From what is stored, `self` being the mirror's.
+    fn plus(self, [e, bias, f82]: [f32; 3]) -> Self {
+        let e = 1.0 + e;
+        // Interpolation may leave [0, E] by the table's error.
+        let bias = (bias + e * self.bias).clamp(0.0, e);
+        Self { scale: e - bias, bias, f82: (f82 + e * self.f82).clamp(0.0, 1.0) }
     }
 }
 
 /// The directional albedo of one material, with the γ and σ axes of the table collapsed.
 ///
 /// Made by [`Tables::albedo`]. `cos_theta` is the view's cosine to the macro normal; values outside [0, 1] and NaN are taken at the nearer
-/// end (NaN at grazing). Below [`GRAZING_FLOOR`] the albedo is held constant. Errors are those of the table's
-/// certificate: at most 3e-4 in the default set for cos θ ≥ 0.02 and σ ≥ 0.01.
+/// end (NaN at grazing). Errors are those of the table's certificate: at most 3e-4 in the default set for cos θ ≥ 0.02 and σ ≥ 0.01, at most
+/// 2e-3 elsewhere.
 #[derive(Clone, Debug)]
 pub struct Albedo {
     masking: Masking,
     sigma: f32,
-    /// Moments less a mirror's, by view node.
+    /// What the view nodes hold; see [`CHANNELS`].
     nodes: Vec<[f32; 3]>,
-    weight: f32,
-    /// κσ of the view coordinate.
-    knee: f32,
-    /// Average moments less a mirror's.
+    view: ViewCoordinate,
+    /// The averages, in the same form.
     average: [f32; 3],
+    /// Height-correlated: 1 − E vanishes with this power of cos θ; 0 for uncorrelated masking, where E has another limit.
+    power: f32,
 }
-
-/// cos θ of the first view node, 1e-4; at 0 itself the height-correlated albedo is 1, a spike that polynomials
-/// cannot follow (near γ = 3/2 it is narrower than any floating-point cosine).
-pub const GRAZING_FLOOR: f64 = 1e-4;
 
 impl Tables {
     /// The directional albedo of the material with σ ∈ [0, 3] and γ, for one form of masking.
     ///
-    /// σ = 0 is a mirror, E = 1. A set without a table of averages has them integrated here. Below σ = 0.006 the difference to a mirror only fades in proportion and can be far off. Takes some microseconds; keep the result.
+    /// A surface smoother than the table's first node, σ = 1e-8, is a mirror, E = 1. The averages are integrated from the interpolated albedo of
+    /// just this material, so that a furnace closes to rounding. Takes some ten microseconds; keep the result.
     ///
     /// # Errors
     /// [`BindError`] for a σ or γ outside the family, or one that the set's albedo tables do not cover.
     pub fn albedo(&self, sigma: f64, gamma: f64, masking: Masking) -> Result<Albedo, BindError> {
+        Self::within_family(sigma, gamma)?;
+        let (table, mut nodes) = self.collapse(Kind::Albedo, sigma, gamma, masking)?;
+        let first = first_sigma(table);
+        if sigma < first * (1.0 - 1e-9) {
+            nodes.fill([0.0; 3]);
+        }
+        let power = match masking {
+            Masking::Uncorrelated => 0.0,
+            Masking::HeightCorrelated => (2.0 * gamma - 3.0).min(1.0) as f32,
+        };
+        let view = ViewCoordinate::new(&table.axes[2], sigma.max(first), gamma);
+        let mut albedo = Albedo { masking, sigma: sigma as f32, nodes, view, power, average: [0.0; 3] };
+        albedo.average = albedo.integrate();
+        Ok(albedo)
+    }
+
+    /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments from the table of averages alone; off its nodes they differ from those of
+    /// [`albedo`](Self::albedo) by the errors of its certificate.
+    ///
+    /// # Errors
+    /// As [`albedo`](Self::albedo).
+    pub fn average_moments(&self, sigma: f64, gamma: f64, masking: Masking) -> Result<Moments, BindError> {
+        Self::within_family(sigma, gamma)?;
+        let (table, rest) = self.collapse(Kind::AlbedoAverage, sigma, gamma, masking)?;
+        let smooth = sigma < first_sigma(table) * (1.0 - 1e-9);
+        Ok(Moments::mirror_average().plus(if smooth { [0.0; 3] } else { rest[0] }))
+    }
+
+    fn within_family(sigma: f64, gamma: f64) -> Result<(), BindError> {
         if !(0.0..f64::INFINITY).contains(&sigma) {
             return Err(BindError::Sigma(sigma as f32));
         }
         if !(gamma > 1.5) {
             return Err(BindError::Gamma(gamma));
         }
-        let (directional, nodes) = self.collapse(Kind::Albedo, sigma, gamma, masking)?;
-        let Mapping::ViewBlend { weight, scale, heavy } = directional.axes[2].mapping else {
-            unreachable!("validated on load")
-        };
-        let mut albedo = Albedo {
-            masking,
-            sigma: sigma as f32,
-            nodes,
-            weight: weight as f32,
-            knee: ((scale + heavy / (2.0 * gamma - 3.0)) * sigma) as f32,
-            average: [0.0; 3],
-        };
-        albedo.average = if self.tables().iter().any(|table| table.kind == Kind::AlbedoAverage) {
-            self.collapse(Kind::AlbedoAverage, sigma, gamma, masking)?.1[0]
-        } else {
-            albedo.integrate()
-        };
-        Ok(albedo)
+        Ok(())
     }
 
     /// The first table of a kind and masking that covers (σ, γ), collapsed there.
@@ -138,9 +151,7 @@ impl Tables {
                 continue;
             };
             let axis = &table.axes[1];
-            let first = roughness(axis, axis.nodes[0]);
-            // Below the first node what a mirror lacks fades in proportion: σ = 0 has E = 1 exactly.
-            let (at, fade) = if sigma < first { (first, sigma / first) } else { (sigma, 1.0) };
+            let at = sigma.max(first_sigma(table));
             widest = widest.max(roughness(axis, axis.nodes[axis.nodes.len() - 1]));
             let found = weights(axis, roughness_coordinate(axis, at)).filter(|_| reaches(axis, sigma));
             let Some(roughnesses) = found else { continue };
@@ -151,7 +162,7 @@ impl Tables {
                     let row = &table.values[(i * axis.len() + j) * views * 3..][..views * 3];
                     for (into, node) in sum.iter_mut().zip(row.chunks_exact(3)) {
                         for (x, value) in into.iter_mut().zip(node) {
-                            *x += fade * a * b * f64::from(*value);
+                            *x += a * b * f64::from(*value);
                         }
                     }
                 }
@@ -167,7 +178,7 @@ impl Tables {
         let covered: Vec<_> = tables()
             .map(|table| {
                 let axis = &table.axes[0];
-                let gamma = |t: f64| shape(axis, t);
+                let gamma = |t: f64| axis.quantity(t).expect("validated on load");
                 alloc::format!("[{:.6}, {}]", gamma(axis.nodes[axis.nodes.len() - 1]), gamma(axis.nodes[0]))
             })
             .collect();
@@ -183,30 +194,90 @@ fn shape_coordinate(axis: &Axis, gamma: f64) -> f64 {
     }
 }
 
-/// γ at a coordinate.
-fn shape(axis: &Axis, t: f64) -> f64 {
-    match axis.mapping {
-        Mapping::LogShape { scale } => 1.5 + 0.5 * scale / libm::expm1(t),
-        _ => unreachable!("validated on load"),
-    }
-}
-
 fn roughness_coordinate(axis: &Axis, sigma: f64) -> f64 {
     match axis.mapping {
-        Mapping::LogRoughness { offset } => libm::log1p(sigma / offset),
+        Mapping::Roughness { offset, first, slow, linear } => {
+            libm::log1p(sigma / offset) + slow * libm::log(sigma / first) + linear * sigma
+        }
         _ => unreachable!("validated on load"),
     }
 }
 
+/// σ at a coordinate, by bisection: the coordinate ascends.
 fn roughness(axis: &Axis, t: f64) -> f64 {
-    match axis.mapping {
-        Mapping::LogRoughness { offset } => offset * libm::expm1(t),
-        _ => unreachable!("validated on load"),
+    let (mut low, mut high) = (-40.0, 14.0);
+    for _ in 0..64 {
+        let ln = 0.5 * (low + high);
+        if roughness_coordinate(axis, libm::exp(ln)) < t { low = ln } else { high = ln }
+    }
+    libm::exp(0.5 * (low + high))
+}
+
+/// The view coordinate of one material; see [`Mapping::ViewBlend`].
+#[derive(Clone, Copy, Debug)]
+struct ViewCoordinate {
+    weight: f64,
+    normal: f64,
+    share: f64,
+    /// κσ.
+    knee: f64,
+    /// ν.
+    turn: f64,
+    /// μ₀ and y(μ₀).
+    floor: f64,
+    start: f64,
+}
+
+impl ViewCoordinate {
+    fn new(axis: &Axis, sigma: f64, gamma: f64) -> Self {
+        let Mapping::ViewBlend { weight, normal, share, scale, heavy, spread, floor, slope } = axis.mapping
+        else {
+            unreachable!("validated on load")
+        };
+        let knee = (scale + heavy / (2.0 * gamma - 3.0)) * sigma;
+        let floor = floor.min(slope * sigma);
+        let mut view = Self { weight, normal, share, knee, turn: spread * sigma, floor, start: 0.0 };
+        view.start = view.blend(floor);
+        view
+    }
+
+    /// y(μ).
+    fn blend(&self, cos: f64) -> f64 {
+        let sin = sqrt64((1.0 - cos) * (1.0 + cos));
+        let (x, h) = (cos / (cos + self.knee * sin), cos / (1.0 + sin));
+        let [x4, h4] = [x, h].map(|x| sqrt64(sqrt64(x)));
+        let roots = self.share * x4 + (1.0 - self.share) * h4;
+        self.weight * x
+            + self.normal * self.turn / (self.turn + sin)
+            + (1.0 - self.weight - self.normal) * roots
+    }
+
+    /// The coordinate of cos θ ≥ μ₀.
+    fn at(&self, cos: f64) -> f64 {
+        (self.blend(cos) - self.start) / (1.0 - self.start)
+    }
+
+    /// cos θ at a coordinate, by bisection to the last bit.
+    fn cos(&self, t: f64) -> f64 {
+        if t >= 1.0 {
+            return 1.0;
+        }
+        let (mut low, mut high) = (self.floor, 1.0);
+        for _ in 0..80 {
+            let cos = 0.5 * (low + high);
+            if self.at(cos) < t { low = cos } else { high = cos }
+        }
+        0.5 * (low + high)
     }
 }
 
-/// First σ node, at most, of tables that serve all smaller σ as well; those of a recipe may begin higher.
-const SMOOTHEST: f64 = 0.0061;
+/// σ of the first node of an albedo table.
+fn first_sigma(table: &Table) -> f64 {
+    roughness(&table.axes[1], table.axes[1].nodes[0])
+}
+
+/// First σ node, at most, of tables that serve all smaller σ as mirrors; those of a recipe may begin higher.
+const SMOOTHEST: f64 = 1.01e-8;
 
 /// Whether a table goes down to σ.
 fn reaches(axis: &Axis, sigma: f64) -> bool {
@@ -228,7 +299,7 @@ fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
         let [gamma, sigma] = [&table.axes[0], &table.axes[1]];
         alloc::format!(
             "gamma {} with sigma {}",
-            ends(gamma, &|t| shape(gamma, t)),
+            ends(gamma, &|t| gamma.quantity(t).expect("validated on load")),
             ends(sigma, &|t| roughness(sigma, t))
         )
     };
@@ -290,10 +361,7 @@ impl Albedo {
     /// Moments of the Fresnel weights at a view; each in [0, 1], their total at most 1.
     pub fn moments(&self, cos_theta: f32) -> Moments {
         let cos = within(cos_theta);
-        let sum = Moments::mirror(cos).plus(self.rest(cos));
-        // Interpolation may leave [0, 1] by the table's error.
-        let bias = sum.bias.clamp(0.0, 1.0);
-        Moments { scale: sum.scale.clamp(0.0, 1.0 - bias), bias, f82: sum.f82.clamp(0.0, 1.0) }
+        Moments::mirror(cos).plus(self.rest(cos))
     }
 
     /// E(cos θ) with F = 1, in [0, 1].
@@ -303,18 +371,12 @@ impl Albedo {
 
     /// 1 − E(cos θ), with all its digits where E is close to 1.
     pub fn lost(&self, cos_theta: f32) -> f32 {
-        let rest = self.rest(within(cos_theta));
-        (-rest[0] - rest[1]).clamp(0.0, 1.0)
+        -self.rest(within(cos_theta))[0]
     }
 
     /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments.
     pub fn average_moments(&self) -> Moments {
         Moments::mirror_average().plus(self.average)
-    }
-
-    /// The average moments less a mirror's.
-    pub fn average_rest(&self) -> [f32; 3] {
-        self.average
     }
 
     /// E_avg = 2∫₀¹ E(μ) μ dμ with F = 1.
@@ -324,40 +386,52 @@ impl Albedo {
 
     /// 1 − E_avg, with all its digits.
     pub fn lost_average(&self) -> f32 {
-        (-self.average[0] - self.average[1]).clamp(0.0, 1.0)
+        -self.average[0]
     }
 
-    /// The average moments less a mirror's, by quadrature of the interpolated albedo: what tables of averages are filled with.
+    /// The averages by quadrature of the interpolated albedo, in the form of the tables' channels: what tables of averages are filled with.
     pub fn integrate(&self) -> [f32; 3] {
-        // Gauss-Legendre, four points; μ = x³ resolves grazing views, where small roughness makes its difference.
+        // Gauss-Legendre, four points, in y = −ln h with h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and
+        // in its logarithm where views graze and small roughness makes its difference. Views below the table's first weigh nothing.
         const POINTS: [(f64, f64); 2] =
             [(0.339981043584856265, 0.652145154862546143), (0.861136311594052575, 0.347854845137453857)];
-        const PANELS: usize = 64;
-        let half = 0.5 / PANELS as f64;
+        const WIDTH: f64 = 0.35;
+        let panels = libm::ceil(libm::log(2.0 / self.view.floor) / WIDTH) as usize;
         let mut sum = [0.0_f64; 3];
-        for panel in 0..PANELS {
-            let middle = half * (2 * panel + 1) as f64;
+        for panel in 0..panels {
+            let middle = WIDTH * (panel as f64 + 0.5);
             for (node, weight) in POINTS {
-                for x in [middle - half * node, middle + half * node] {
-                    let cos = x * x * x;
-                    // 2 μ dμ = 6 x⁵ dx.
-                    let measure = 6.0 * half * weight * cos * x * x;
-                    for (sum, value) in sum.iter_mut().zip(self.rest(cos as f32)) {
-                        *sum += measure * f64::from(value);
-                    }
+                for y in [middle - 0.5 * WIDTH * node, middle + 0.5 * WIDTH * node] {
+                    let h = libm::exp(-y);
+                    let cos = 2.0 * h / (1.0 + h * h);
+                    // 2 μ dμ, with dμ/dy = μ (1−h²)/(1+h²).
+                    let measure = WIDTH * weight * cos * cos * (1.0 - h * h) / (1.0 + h * h);
+                    let [e, bias, f82] = self.rest(cos as f32).map(f64::from);
+                    let mirror = Moments::mirror(cos as f32);
+                    sum[0] += measure * e;
+                    sum[1] += measure * (bias + e * f64::from(mirror.bias));
+                    sum[2] += measure * (f82 + e * f64::from(mirror.f82));
                 }
             }
         }
-        sum.map(|x| x as f32)
+        let [e, bias, f82] = sum;
+        let mirror = Moments::mirror_average();
+        [e, bias - e * f64::from(mirror.bias), f82 - e * f64::from(mirror.f82)].map(|x| x as f32)
     }
 
-    /// Moments less a mirror's at cos θ ∈ [0, 1].
+    /// What a table of any number of nodes would hold at cos θ ∈ [0, 1]; E in [0, 1], so that what is lost and its average agree.
     fn rest(&self, cos: f32) -> [f32; 3] {
-        let cos = cos.max(GRAZING_FLOOR as f32);
-        let sin = sqrt((1.0 - cos) * (1.0 + cos));
-        self.interpolate(
-            (1.0 - self.weight) * sqrt(cos / (1.0 + sin)) + self.weight * cos / (cos + self.knee * sin),
-        )
+        let floor = self.view.floor as f32;
+        let at = if cos > floor { self.view.at(f64::from(cos)) as f32 } else { 0.0 };
+        let [e, bias, f82] = self.interpolate(at);
+        let e = e.clamp(-1.0, 0.0);
+        if cos >= floor || self.power == 0.0 {
+            return [e, bias, f82];
+        }
+        // Correlated masking lets through ever more of what is seen, up to all of it, and in the same mixture.
+        let less = e * libm::powf(cos / floor, self.power);
+        let more = (1.0 + less) / (1.0 + e).max(1e-6);
+        [less, bias * more, f82 * more]
     }
 
     fn interpolate(&self, t: f32) -> [f32; 3] {
@@ -389,12 +463,27 @@ impl Albedo {
 
 /// Where nodes of a table stand, for those who fill one.
 impl Axis {
-    /// σ at a coordinate of a [`Mapping::LogRoughness`] axis, γ at one of a [`Mapping::LogShape`] axis; `None` for others.
+    /// σ at a coordinate of a [`Mapping::Roughness`] axis, γ at one of a [`Mapping::LogShape`] axis; `None` for others.
     pub fn quantity(&self, t: f64) -> Option<f64> {
         match self.mapping {
-            Mapping::LogShape { .. } => Some(shape(self, t)),
-            Mapping::LogRoughness { .. } => Some(roughness(self, t)),
+            Mapping::LogShape { scale } => Some(1.5 + 0.5 * scale / libm::expm1(t)),
+            Mapping::Roughness { .. } => Some(roughness(self, t)),
             _ => None,
         }
+    }
+
+    /// The coordinate of σ along a [`Mapping::Roughness`] axis, of γ along a [`Mapping::LogShape`] axis; `None` for others.
+    pub fn coordinate(&self, quantity: f64) -> Option<f64> {
+        match self.mapping {
+            Mapping::LogShape { .. } => Some(shape_coordinate(self, quantity)),
+            Mapping::Roughness { .. } => Some(roughness_coordinate(self, quantity)),
+            _ => None,
+        }
+    }
+
+    /// cos θ at a coordinate of a [`Mapping::ViewBlend`] axis for one material; `None` for others.
+    pub fn view_cosine(&self, sigma: f64, gamma: f64, t: f64) -> Option<f64> {
+        let blends = matches!(self.mapping, Mapping::ViewBlend { .. });
+        blends.then(|| ViewCoordinate::new(self, sigma, gamma).cos(t))
     }
 }

@@ -42,20 +42,41 @@ pub enum Mapping {
         /// Factor of 1/(2γ−3).
         scale: f64,
     },
-    /// t = ln(1 + σ/offset) ≥ 0.
-    LogRoughness {
-        /// The σ about which even steps turn into even ratios.
+    /// t = ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ ≥ 0 for σ ≥ first: even ratios about the offset, wide ones far below it,
+    /// where only a heavy tail still makes a difference, and finer steps where σ is large.
+    Roughness {
+        /// The σ about which the first term turns from even steps into even ratios.
         offset: f64,
+        /// Where t vanishes (but for first/offset); a surface smoother than this is a mirror.
+        first: f64,
+        /// Weight of ln(σ/first).
+        slow: f64,
+        /// Weight of σ.
+        linear: f64,
     },
-    /// t = (1−weight) √(μ/(1+√(1−μ²))) + weight·μ/(μ + κσ√(1−μ²)) ∈ [0, 1], μ = cos θ_v, κ = scale + heavy/(2γ−3): the first term follows
-    /// the view, the second z = cot θ_v/σ and, as γ → 3/2, the ever wider reach of masking.
+    /// t = (y(μ) − y(μ₀))/(1 − y(μ₀)) ∈ [0, 1] for μ = cos θ_v ≥ μ₀ = min(floor, slope·σ), where
+    /// y = weight·x + normal·ν/(ν + √(1−μ²)) + (1 − weight − normal)(share·x^¼ + (1−share)·h^¼),
+    /// x = μ/(μ + κσ√(1−μ²)), κ = scale + heavy/(2γ−3), h = μ/(1 + √(1−μ²)), ν = spread·σ.
+    ///
+    /// h follows the view; x follows z = cot θ_v/σ and, as γ → 3/2, the ever wider reach of masking; ν resolves the turn at normal
+    /// incidence, and the fourth roots grazing views.
     ViewBlend {
-        /// Share of the second term, in (0, 1).
+        /// Share of x itself.
         weight: f64,
+        /// Share of the term with ν.
+        normal: f64,
+        /// Share of x among the fourth roots, in [0, 1].
+        share: f64,
         /// κ for Beckmann.
         scale: f64,
         /// How κ grows with 1/(2γ−3).
         heavy: f64,
+        /// ν/σ.
+        spread: f64,
+        /// Largest μ₀.
+        floor: f64,
+        /// μ₀/σ of smooth surfaces.
+        slope: f64,
     },
     /// t = (2 min(u, 1−u))^(1/power) ∈ [0, 1]. Along the axis stand first the nodes for u ≤ ½ (t ascending from u = 0), then as many
     /// for u > ½ (t ascending from u = 1), unless the axis is `odd`, when only the second half is stored.
@@ -143,7 +164,7 @@ impl Axis {
         let (low, high) = match self.mapping {
             Mapping::Identity => (f64::MIN, f64::MAX),
             Mapping::InverseShape => (0.0, 2.0 - f64::EPSILON),
-            Mapping::LogShape { .. } | Mapping::LogRoughness { .. } => (0.0, f64::MAX),
+            Mapping::LogShape { .. } | Mapping::Roughness { .. } => (0.0, f64::MAX),
             _ => (0.0, 1.0),
         };
         if self.nodes[0] < low || self.nodes[self.nodes.len() - 1] > high {
@@ -161,17 +182,23 @@ impl Axis {
             {
                 return fail("scale or pole out of range");
             }
-            Mapping::LogShape { scale: x } | Mapping::LogRoughness { offset: x } if !(x > 0.0 && x < 1e6) => {
-                return fail("scale or offset out of range");
+            Mapping::LogShape { scale } if !(scale > 0.0 && scale < 1e6) => {
+                return fail("scale out of range");
             }
-            Mapping::ViewBlend { weight, scale, heavy }
-                if !(weight > 0.0
-                    && weight < 1.0
-                    && scale > 0.0
-                    && scale < 1e6
-                    && (0.0..1e6).contains(&heavy)) =>
+            Mapping::Roughness { offset, first, slow, linear }
+                if !([offset, first, slow].iter().all(|&x| x > 0.0 && x < 1e6)
+                    && (0.0..1e6).contains(&linear)) =>
             {
-                return fail("weight, scale or heavy out of range");
+                return fail("offset, first, slow or linear out of range");
+            }
+            Mapping::ViewBlend { weight, normal, share, scale, heavy, spread, floor, slope }
+                if !([weight, normal, scale, spread, floor, slope].iter().all(|&x| x > 0.0 && x < 1e6)
+                    && weight + normal < 1.0
+                    && (0.0..=1.0).contains(&share)
+                    && (0.0..1e6).contains(&heavy)
+                    && floor < 0.5) =>
+            {
+                return fail("a parameter of the view coordinate is out of range");
             }
             _ => {}
         }
@@ -183,7 +210,7 @@ impl Axis {
             )));
         }
         let searched = matches!(self.mapping, Mapping::Identity | Mapping::InverseShape);
-        let free = matches!(self.mapping, Mapping::LogShape { .. } | Mapping::LogRoughness { .. });
+        let free = matches!(self.mapping, Mapping::LogShape { .. } | Mapping::Roughness { .. });
         if !searched && !free {
             let n = self.nodes.len();
             if n < 2 {

@@ -31,7 +31,7 @@ mod table;
 mod table_pdf;
 mod tables;
 
-pub use albedo::{Albedo, GRAZING_FLOOR, Moments};
+pub use albedo::{Albedo, Moments};
 pub use axis::{Axis, Interpolation, Mapping};
 pub use bounded::Bounded;
 pub use cells::limit_slopes;

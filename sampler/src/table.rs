@@ -143,7 +143,7 @@ impl Table {
             return fail("an albedo without the form of masking it is for");
         }
         let mapped = matches!(self.axes[0].mapping, Mapping::LogShape { .. })
-            && matches!(self.axes[1].mapping, Mapping::LogRoughness { .. })
+            && matches!(self.axes[1].mapping, Mapping::Roughness { .. })
             && self.axes.get(2).is_none_or(|view| matches!(view.mapping, Mapping::ViewBlend { .. }));
         if !mapped || self.axes.iter().any(|axis| axis.interpolation != Interpolation::Lagrange6) {
             return fail("an axis has a mapping or interpolation that this kind does not use");

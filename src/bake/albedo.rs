@@ -1,6 +1,6 @@
 //! Directional albedo and its average, for both forms of masking in one pass.
 //!
-//! Stored are the moments less those of a mirror, which vanish with σ; nodes stand evenly in coordinates found by measuring. The
+//! Stored are E − 1 and the other moments less E times a mirror's, which vanish with σ; nodes stand evenly in coordinates found by measuring. The
 //! averages are integrated from the stored, interpolated albedo, so that a white furnace closes to
 //! rounding rather than to the interpolation error.
 
@@ -11,20 +11,30 @@ use rayon::prelude::*;
 use microfacet_model::fresnel::{f82_weight, schlick_weight};
 use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
 use microfacet_sampler::{
-    Axis, GRAZING_FLOOR, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
+    Axis, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
 };
 
 use crate::scene::Interval;
 use crate::spec::{GAMMA_MIN, Quality};
 
 /// scale of the γ coordinate ln(1 + scale/(2γ−3)).
-const SHAPE_SCALE: f64 = 20.0;
-/// offset of the σ coordinate ln(1 + σ/offset).
-const ROUGHNESS_OFFSET: f64 = 0.02;
-/// Smallest σ node; below it the difference to a mirror is taken to fade in proportion.
-const SIGMA_MIN: f64 = 0.006;
-/// weight, scale and heavy of the view coordinate.
-const VIEW: (f64, f64, f64) = (0.2, 2.0, 0.5);
+const SHAPE_SCALE: f64 = 17.0;
+/// offset, slow and linear of the σ coordinate ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ.
+const ROUGHNESS: (f64, f64, f64) = (0.025, 0.13, 0.8);
+/// Smallest σ node, the sampler's smallest; what is smoother is a mirror.
+const SIGMA_MIN: f64 = 1e-8;
+/// The coordinate of the view, found by measuring (`cargo run --release --example albedo_design`).
+const VIEW: Mapping =
+    Mapping::ViewBlend {
+    weight: 0.3,
+    normal: 0.1,
+    share: 0.4,
+    scale: 3.0,
+    heavy: 0.5,
+    spread: 10.0,
+    floor: 2e-5,
+    slope: 2e-3,
+};
 
 /// Largest σ of the general tables.
 pub const SIGMA_MAX: f64 = 3.0;
@@ -94,12 +104,12 @@ pub struct AlbedoSpec {
 impl AlbedoSpec {
     /// For [`Domain::GENERAL`] and both forms of masking.
     ///
-    /// Draft tables err by up to 3e-3.
+    /// Draft tables err by up to 1e-2.
     pub fn general(quality: Quality, precision: Precision) -> Self {
         let ([shapes, roughnesses, views], tolerance) = match quality {
-            Quality::Draft => ([16, 16, 20], 1e-5),
-            Quality::Default => ([24, 27, 33], 1e-6),
-            Quality::High => ([40, 50, 87], 1e-7),
+            Quality::Draft => ([16, 22, 20], 1e-5),
+            Quality::Default => ([23, 33, 28], 1e-6),
+            Quality::High => ([38, 54, 50], 1e-7),
         };
         Self {
             domain: Domain::GENERAL,
@@ -118,7 +128,7 @@ impl AlbedoSpec {
     pub fn part(&self, domain: Domain, maskings: &[Masking]) -> Self {
         let Domain { gamma, sigma } = domain;
         let shapes = cut(&self.shapes, shape(gamma.max), shape(gamma.min));
-        // What is smoother than the first node is read from it and from twice its σ.
+        // What is smoother than the first node is a mirror.
         let sigma = if sigma.min < SIGMA_MIN {
             Interval { min: SIGMA_MIN, max: sigma.max.max(2.0 * SIGMA_MIN) }
         } else {
@@ -163,14 +173,15 @@ fn cut(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
     nodes[first(from)..last].to_vec()
 }
 
+/// The coordinate of a roughness.
+fn roughness(sigma: f64) -> f64 {
+    let (offset, slow, linear) = ROUGHNESS;
+    libm::log1p(sigma / offset) + slow * libm::log(sigma / SIGMA_MIN) + linear * sigma
+}
+
 /// The coordinate of a shape.
 fn shape(gamma: f64) -> f64 {
     libm::log1p(SHAPE_SCALE / (2.0 * gamma - 3.0))
-}
-
-/// The coordinate of a roughness.
-fn roughness(sigma: f64) -> f64 {
-    libm::log1p(sigma / ROUGHNESS_OFFSET)
 }
 
 /// Why a bake gave up.
@@ -232,7 +243,7 @@ pub fn weights(cos: f64) -> [f64; 3] {
     [1.0 - bias, bias, f82_weight(cos)]
 }
 
-/// Moments of one view for both forms of masking, less a mirror's.
+/// What a node holds for both forms of masking: E − 1, and what the other moments have over a mirror's times E.
 type Node = [[f64; 3]; 2];
 
 /// Bakes `albedo` and `albedo_average` for both forms of masking, four tables in all.
@@ -258,7 +269,10 @@ pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
             axes[2]
                 .nodes
                 .iter()
-                .map(|&t| node(shape, sigma, view(sigma, shape.shape().gamma(), t), spec.tolerance))
+                .map(|&t| {
+                    let cos = axes[2].view_cosine(sigma, shape.shape().gamma(), t).expect("a view axis");
+                    node(shape, sigma, cos, spec.tolerance)
+                })
                 .collect()
         })
         .collect::<Result<Vec<Vec<(Node, f64)>>, BakeError>>()?;
@@ -289,7 +303,7 @@ fn table(spec: &AlbedoSpec, kind: Kind, masking: Masking, axes: Vec<Axis>, value
         name: format!("{}_{}{}", kind.name(), masking.name().replace('-', "_"), spec.domain.suffix()),
         kind,
         axes,
-        channels: ["scale", "bias", "f82"].map(String::from).into(),
+        channels: ["e", "bias", "f82"].map(String::from).into(),
         masking: Some(masking),
         values,
         precision: spec.precision,
@@ -313,8 +327,9 @@ fn node(shape: &AlbedoIntegrator, sigma: f64, cos: f64, tolerance: f64) -> Resul
             return Err(BakeError::Albedo { at, value });
         }
         for (x, mirror) in form.iter_mut().zip(mirror) {
-            *x -= mirror;
+            *x -= value * mirror;
         }
+        form[0] = value - 1.0;
     }
     Ok((out, albedo.error))
 }
@@ -328,28 +343,11 @@ pub fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
         interpolation: Interpolation::Lagrange6,
         nodes,
     };
-    let (weight, scale, heavy) = VIEW;
+    let (offset, slow, linear) = ROUGHNESS;
+    let sigma = Mapping::Roughness { offset, first: SIGMA_MIN, slow, linear };
     vec![
         axis("gamma", Mapping::LogShape { scale: SHAPE_SCALE }, spec.shapes.clone()),
-        axis("sigma", Mapping::LogRoughness { offset: ROUGHNESS_OFFSET }, spec.roughnesses.clone()),
-        axis("view", Mapping::ViewBlend { weight, scale, heavy }, Axis::uniform_nodes(spec.views)),
+        axis("sigma", sigma, spec.roughnesses.clone()),
+        axis("view", VIEW, Axis::uniform_nodes(spec.views)),
     ]
-}
-
-/// cos θ at a view coordinate, at least [`GRAZING_FLOOR`].
-fn view(sigma: f64, gamma: f64, t: f64) -> f64 {
-    let (weight, scale, heavy) = VIEW;
-    let knee = (scale + heavy / (2.0 * gamma - 3.0)) * sigma;
-    let (mut low, mut high) = (0.0, 1.0);
-    if t >= 1.0 {
-        return 1.0;
-    }
-    // Bisection to the last bit; the coordinate ascends with the cosine.
-    for _ in 0..64 {
-        let cos: f64 = 0.5 * (low + high);
-        let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
-        let at = (1.0 - weight) * (cos / (1.0 + sin)).sqrt() + weight * cos / (cos + knee * sin);
-        if at < t { low = cos } else { high = cos }
-    }
-    (0.5 * (low + high)).max(GRAZING_FLOOR)
 }

@@ -317,8 +317,8 @@ impl Quantity for AlbedoAverage {
         let masking = masking(fields[2])?;
         Ok(match method {
             Method::Table => {
-                let albedo = set.albedo(sigma, gamma, masking).map_err(|why| why.to_string())?;
-                vec![albedo.albedo_average().to_string()]
+                let average = set.average_moments(sigma, gamma, masking).map_err(|why| why.to_string())?;
+                vec![average.total().to_string()]
             }
             Method::Exact => {
                 let albedo = integrator(gamma)?.average(sigma, |_| [1.0]).map_err(|why| why.to_string())?;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use microfacet_bake::validate::configuration::{Configuration, configurations};
+use microfacet_bake::validate::furnace::{Furnace, Survey, TOLERANCE as FURNACE_TOLERANCE, survey};
 use microfacet_bake::validate::{LEVEL, Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all};
 
 use super::{
@@ -94,13 +95,17 @@ pub(super) fn run(args: Args) -> Outcome {
     let bar = progress(chosen.len(), "validating");
     let result = run_all(&set, &chosen, options, || bar.inc(1))?;
     bar.finish_and_clear();
+    // One named configuration asks about its lobe alone.
+    let furnaces = if args.sigma.is_none() { survey(&set)? } else { Vec::new() };
+    let passed = result.passed() && furnaces.iter().all(Survey::passed);
     let source = args.tables.as_deref().map_or(String::new(), |path| format!("{} ", path.display()));
     if args.json {
-        print_json(&as_json(&result, options))?
+        print_json(&as_json(&result, options, &furnaces, passed))?
     } else {
-        print(&summary(&result, options, &source))?
+        print(&(summary(&result, options, &source) + &white(&furnaces)))?;
+        print(if passed { "PASSED\n" } else { "REJECTED\n" })?;
     }
-    Ok(if result.passed() { Done::Ok } else { Done::Rejected })
+    Ok(if passed { Done::Ok } else { Done::Rejected })
 }
 
 fn summary(result: &Result, options: Options, source: &str) -> String {
@@ -132,10 +137,26 @@ fn summary(result: &Result, options: Options, source: &str) -> String {
             report.configuration
         );
     }
-    text + if result.passed() { "PASSED\n" } else { "REJECTED\n" }
+    text
 }
 
-fn as_json(result: &Result, options: Options) -> serde_json::Value {
+/// The white furnaces, one line a table of albedos.
+fn white(furnaces: &[Survey]) -> String {
+    let line = |survey: &Survey| {
+        let row = |row: &Furnace| {
+            let Furnace { sigma, gamma, cos_theta, kulla_conty, .. } = row;
+            format!("{kulla_conty:.5} (sigma {sigma:.3e}, gamma {gamma:.4}, cos_theta {cos_theta})")
+        };
+        let (name, points) = (survey.masking.name(), survey.points);
+        let (low, high) = (row(&survey.lowest), row(&survey.highest));
+        format!(
+            "white furnace, {name}, {points} points, Kulla-Conty: {low} to {high}; 1 +- {FURNACE_TOLERANCE:e} allowed\n"
+        )
+    };
+    furnaces.iter().map(line).collect()
+}
+
+fn as_json(result: &Result, options: Options, furnaces: &[Survey], passed: bool) -> serde_json::Value {
     let reports: Vec<_> = result
         .reports
         .iter()
@@ -147,8 +168,15 @@ fn as_json(result: &Result, options: Options) -> serde_json::Value {
             })
         })
         .collect();
+    let furnaces: Vec<_> = furnaces
+        .iter()
+        .map(|survey| {
+            let (low, high) = (survey.lowest.kulla_conty, survey.highest.kulla_conty);
+            json!({ "masking": survey.masking.name(), "points": survey.points, "lowest": low, "highest": high })
+        })
+        .collect();
     json!({
-        "passed": result.passed(), "samples": options.samples, "level": LEVEL, "level_of_one_test": result.level,
+        "passed": passed, "furnaces": furnaces, "samples": options.samples, "level": LEVEL, "level_of_one_test": result.level,
         "rejected": result.rejected(), "pdf_tolerance": PDF_TOLERANCE,
         "worst_pdf_integral": result.worst_integral().map(|report| report.pdf_integral), "configurations": reports,
     })

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use microfacet_model::{AlbedoIntegrator, Masking as ModelMasking, Shape};
-use microfacet_sampler::{BindError, GRAZING_FLOOR, Kind, Masking, Table, Tables};
+use microfacet_sampler::{BindError, Kind, Masking, Table, Tables};
 
 use super::certificate::{low_discrepancy, round_up};
 use crate::bake::albedo::{Domain, weights};
@@ -19,6 +19,8 @@ const POINTS: usize = 96;
 const LEAST: usize = 480;
 /// Smallest σ and cos θ of the domain that the figures are promised for.
 const DOMAIN: (f64, f64) = (0.01, 0.02);
+/// Smallest σ that is no mirror.
+const SMOOTHEST: f64 = 1e-8;
 
 /// Figures of one table, rounded up to three digits; those a bake has left there are kept.
 fn measure(tables: &Tables, table: &Table, domain: Domain) -> Result<BTreeMap<String, f64>, BindError> {
@@ -43,7 +45,7 @@ fn measure(tables: &Tables, table: &Table, domain: Domain) -> Result<BTreeMap<St
         })
         .collect::<Result<Vec<_>, BindError>>()?;
     let all: Vec<Point> = errors.into_iter().flatten().collect();
-    let inside = || all.iter().filter(|point| !point.grazing);
+    let inside = || all.iter().filter(|point| !point.outside);
     for (i, name) in ["scale", "bias", "f82", "e"].into_iter().enumerate() {
         let worst = inside().max_by(|a, b| a.error[i].total_cmp(&b.error[i])).expect("points were measured");
         let sum: f64 = inside().map(|point| point.error[i] * point.error[i]).sum();
@@ -57,9 +59,9 @@ fn measure(tables: &Tables, table: &Table, domain: Domain) -> Result<BTreeMap<St
             }
         }
     }
-    let grazing = all.iter().filter(|point| point.grazing).map(|point| point.error[3]).fold(0.0, f64::max);
+    let outside = all.iter().filter(|point| point.outside).map(|point| point.error[3]).fold(0.0, f64::max);
     if table.kind == Kind::Albedo {
-        figures.insert("e_max_error_grazing".into(), round_up(grazing));
+        figures.insert("e_max_error_outside".into(), round_up(outside));
     }
     figures.insert("points".into(), all.len() as f64);
     if domain != Domain::GENERAL {
@@ -75,8 +77,8 @@ fn measure(tables: &Tables, table: &Table, domain: Domain) -> Result<BTreeMap<St
 struct Point {
     error: [f64; 4],
     at: [f64; 3],
-    /// Outside the domain of the figures: cos θ below 0.02.
-    grazing: bool,
+    /// Outside the domain of the figures: cos θ below 0.02 or σ below 0.01.
+    outside: bool,
 }
 
 /// Adds to each table of a set of albedos the errors measured on it, over the domain it was baked for.
@@ -147,10 +149,17 @@ fn directional(at: &Places) -> Result<Vec<Point>, BindError> {
     (first..first + points)
         .map(|i| {
             let [a, b] = low_discrepancy(i);
-            let sigma = sigma_at(a, at.sigma);
-            // A half over the cosine, a quarter logarithmic, an eighth near the normal and an eighth below the domain.
+            // An eighth outside the domain: grazing, and of these a half of surfaces smoother than it, seen where they mask.
+            let sigma = match i % 16 {
+                8 if at.sigma.min <= SMOOTHEST => DOMAIN.0 * libm::pow(SMOOTHEST / DOMAIN.0, a),
+                _ => sigma_at(a, at.sigma),
+            };
+            // A half over the cosine, a quarter logarithmic and an eighth near the normal.
             let cos = match i % 8 {
-                0 => GRAZING_FLOOR * libm::pow(DOMAIN.1 / GRAZING_FLOOR, b),
+                0 => {
+                    let grazing = 1e-5 * sigma.min(0.1);
+                    grazing * libm::pow(DOMAIN.1 / grazing, b)
+                }
                 1 => 1.0 - 0.02 * b * b,
                 2 | 3 => libm::pow(DOMAIN.1, b),
                 _ => DOMAIN.1 + (1.0 - DOMAIN.1) * b,
@@ -163,9 +172,9 @@ fn directional(at: &Places) -> Result<Vec<Point>, BindError> {
             let got = [got.scale, got.bias, got.f82].map(f64::from);
             let error = |i: usize| (got[i] - exact[i]).abs();
             let total = (got[0] + got[1] - exact[0] - exact[1]).abs();
-            let grazing = f64::from(cos) < DOMAIN.1;
+            let outside = f64::from(cos) < DOMAIN.1 || sigma < DOMAIN.0;
             let error = [error(0), error(1), error(2), total];
-            Ok(Point { error, at: [sigma, gamma, f64::from(cos)], grazing })
+            Ok(Point { error, at: [sigma, gamma, f64::from(cos)], outside })
         })
         .collect()
 }
@@ -176,11 +185,12 @@ fn averages(at: &Places) -> Result<Vec<Point>, BindError> {
     (first..first + points / 4)
         .map(|i| {
             let sigma = sigma_at(low_discrepancy(i)[0], at.sigma);
-            let albedo = tables.albedo(sigma, gamma, masking)?;
-            let (got, exact) = (albedo.average_rest(), albedo.integrate());
-            let [scale, bias, f82] = [0, 1, 2].map(|i| f64::from((got[i] - exact[i]).abs()));
-            let total = f64::from((got[0] + got[1] - exact[0] - exact[1]).abs());
-            Ok(Point { error: [scale, bias, f82, total], at: [sigma, gamma, f64::NAN], grazing: false })
+            let got = tables.average_moments(sigma, gamma, masking)?;
+            let exact = tables.albedo(sigma, gamma, masking)?.average_moments();
+            let error = |a: f32, b: f32| f64::from((a - b).abs());
+            let (scale, bias) = (error(got.scale, exact.scale), error(got.bias, exact.bias));
+            let (f82, total) = (error(got.f82, exact.f82), error(got.total(), exact.total()));
+            Ok(Point { error: [scale, bias, f82, total], at: [sigma, gamma, f64::NAN], outside: false })
         })
         .collect()
 }

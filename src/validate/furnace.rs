@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
 use microfacet_model as model;
-use microfacet_sampler::{Albedo, BindError, Masking, Tables};
+use microfacet_sampler::{Albedo, Axis, BindError, Kind, Masking, Tables};
 
 /// How far a furnace closed by the Kulla–Conty lobe may be from 1.
 pub const TOLERANCE: f64 = 2e-3;
@@ -54,7 +54,7 @@ pub struct Walk {
     pub bounces: f64,
 }
 
-/// Puts one material and view into the furnace; σ = 0 is a mirror.
+/// Puts one material and view into the furnace; σ = 0 is a mirror, and a view at the horizon itself stands 1e-30 above it.
 ///
 /// # Errors
 /// [`BindError`] for what the tables do not cover.
@@ -66,37 +66,90 @@ pub fn furnace(
     cos_theta: f64,
 ) -> Result<Furnace, BindError> {
     let albedo = tables.albedo(sigma, gamma, masking)?;
+    let cos = (cos_theta as f32).max(1e-30);
     let shape = model::Shape::new(gamma).map_err(|_| BindError::Gamma(gamma))?;
     let exact = model::AlbedoIntegrator::new(shape, 1e-6)
-        .reflection(sigma, cos_theta, |_| [1.0])
+        .reflection(sigma, f64::from(cos), |_| [1.0])
         .map_err(|_| BindError::Sigma(sigma as f32))?;
     let [single] = match masking {
         Masking::Uncorrelated => exact.uncorrelated,
         Masking::HeightCorrelated => exact.height_correlated,
     };
-    let turquin = single * f64::from(albedo.turquin(cos_theta as f32, 1.0));
-    let kulla_conty = single + lobe(&albedo, cos_theta as f32);
+    let turquin = single * f64::from(albedo.turquin(cos, 1.0));
+    let kulla_conty = single + lobe(&albedo, cos);
     Ok(Furnace { sigma, gamma, cos_theta, single, turquin, kulla_conty })
 }
 
-/// ∫ of the compensating lobe times the cosine over all lights, by the midpoint rule in the cube root of the cosine.
+/// ∫ of the compensating lobe times the cosine over all lights, by the midpoint rule in the logarithm of the cosine: what a smooth surface
+/// loses, it loses at grazing.
 fn lobe(albedo: &Albedo, cos_theta: f32) -> f64 {
-    const STEPS: usize = 2000;
+    const STEPS: usize = 4000;
+    /// Lights below e⁻³⁰ bring nothing.
+    const RANGE: f64 = 30.0;
     let v = direction(cos_theta);
-    let step = 1.0 / STEPS as f64;
+    let step = RANGE / STEPS as f64;
     let at = |i: usize| {
-        let x = (i as f64 + 0.5) * step;
-        let cos = x * x * x;
-        let lobe = f64::from(albedo.compensation(v, direction(cos as f32)));
-        lobe * cos * 3.0 * x * x * step
+        let cos = libm::exp(-(i as f64 + 0.5) * step);
+        f64::from(albedo.compensation(v, direction(cos as f32))) * cos * cos * step
     };
     2.0 * std::f64::consts::PI * (0..STEPS).map(at).sum::<f64>()
 }
 
 fn direction(cos: f32) -> Vec3 {
-    // A view at the horizon itself has no lobe; the smallest one above it has its limit.
-    let cos = cos.max(f32::MIN_POSITIVE);
     Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
+}
+
+/// The furnace over what one albedo table covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Survey {
+    /// The form of masking.
+    pub masking: Masking,
+    /// Materials and views.
+    pub points: usize,
+    /// Where the least light came back with the Kulla–Conty lobe.
+    pub lowest: Furnace,
+    /// Where the most did.
+    pub highest: Furnace,
+}
+
+impl Survey {
+    /// Whether all of it is within [`TOLERANCE`] of 1.
+    pub fn passed(&self) -> bool {
+        // A NaN fails.
+        [self.lowest, self.highest].iter().all(|row| (row.kulla_conty - 1.0).abs() <= TOLERANCE)
+    }
+}
+
+/// Puts a grid of materials between the nodes of each albedo table, and views from grazing to normal, into the furnace.
+///
+/// # Errors
+/// [`BindError`] if the set does not hold what it says it covers.
+pub fn survey(tables: &Tables) -> Result<Vec<Survey>, BindError> {
+    const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1.0];
+    let directional = tables.tables().iter().filter(|table| table.kind == Kind::Albedo);
+    directional
+        .map(|table| {
+            let masking = table.masking.expect("validated on load");
+            let (gammas, sigmas) = (between(&table.axes[0], 11), between(&table.axes[1], 14));
+            let pairs: Vec<_> = gammas.iter().flat_map(|&g| sigmas.iter().map(move |&s| (g, s))).collect();
+            let rows = pairs
+                .par_iter()
+                .flat_map_iter(|&(g, s)| VIEWS.map(|cos| furnace(tables, masking, s, g, cos)))
+                .collect::<Result<Vec<_>, BindError>>()?;
+            let order = |a: &&Furnace, b: &&Furnace| a.kulla_conty.total_cmp(&b.kulla_conty);
+            let lowest = *rows.iter().min_by(order).expect("a grid has points");
+            let highest = *rows.iter().max_by(order).expect("a grid has points");
+            Ok(Survey { masking, points: rows.len(), lowest, highest })
+        })
+        .collect()
+}
+
+/// `count` quantities between the ends of an axis, off its nodes; the one there is of a single node.
+fn between(axis: &Axis, count: usize) -> Vec<f64> {
+    let (first, last) = (axis.nodes[0], axis.nodes[axis.nodes.len() - 1]);
+    let count = if first == last { 1 } else { count };
+    let at = |i: usize| first + (last - first) * (i as f64 + 0.43) / count as f64;
+    (0..count).filter_map(|i| axis.quantity(at(i))).collect()
 }
 
 /// Follows `walks` rays on the microsurface itself, in parallel; the same seed gives the same result on any number of threads.
