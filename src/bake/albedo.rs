@@ -10,9 +10,7 @@ use rayon::prelude::*;
 
 use microfacet_model::fresnel::{f82_weight, schlick_weight};
 use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
-use microfacet_sampler::{
-    Axis, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
-};
+use microfacet_sampler::{Axis, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables};
 
 use crate::scene::Interval;
 use crate::spec::{GAMMA_MIN, Quality};
@@ -20,12 +18,11 @@ use crate::spec::{GAMMA_MIN, Quality};
 /// scale of the γ coordinate ln(1 + scale/(2γ−3)).
 const SHAPE_SCALE: f64 = 17.0;
 /// offset, slow and linear of the σ coordinate ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ.
-const ROUGHNESS: (f64, f64, f64) = (0.025, 0.13, 0.8);
+const ROUGHNESS: (f64, f64, f64) = (0.015, 0.2, 1.0);
 /// Smallest σ node, the sampler's smallest; what is smoother is a mirror.
 const SIGMA_MIN: f64 = 1e-8;
 /// The coordinate of the view, found by measuring (`cargo run --release --example albedo_design`).
-const VIEW: Mapping =
-    Mapping::ViewBlend {
+const VIEW: Mapping = Mapping::ViewBlend {
     weight: 0.3,
     normal: 0.1,
     share: 0.4,
@@ -108,8 +105,8 @@ impl AlbedoSpec {
     pub fn general(quality: Quality, precision: Precision) -> Self {
         let ([shapes, roughnesses, views], tolerance) = match quality {
             Quality::Draft => ([16, 22, 20], 1e-5),
-            Quality::Default => ([23, 33, 28], 1e-6),
-            Quality::High => ([38, 54, 50], 1e-7),
+            Quality::Default => ([23, 35, 27], 1e-6),
+            Quality::High => ([38, 58, 48], 1e-7),
         };
         Self {
             domain: Domain::GENERAL,
