@@ -5,7 +5,9 @@ use std::fmt;
 use std::io;
 
 use microfacet_model::classic::Marginal;
-use microfacet_sampler::{Kind, LoadError, MaterialEntry, Precision, Provenance, Table, Tables, encode};
+use microfacet_sampler::{
+    FresnelEntry, Kind, LoadError, MaterialEntry, Precision, Provenance, Table, Tables, encode,
+};
 
 use crate::bake::albedo::AlbedoSpec;
 use crate::bake::{self, NUMERICS};
@@ -14,9 +16,9 @@ use crate::cache::Cache;
 use crate::family::Distribution;
 use crate::plan::{AlbedoNeed, Need};
 use crate::spec::{Quality, TableSpec, general_set};
-use crate::validate::albedo;
 use crate::validate::certificate::certify;
 use crate::validate::radial;
+use crate::validate::{albedo, fresnel_albedo};
 
 /// Points measured at each γ for a certificate.
 pub(crate) const CERTIFICATE_POINTS: usize = 4000;
@@ -222,11 +224,36 @@ pub fn add_albedos(
 
 /// The certified albedo tables of a specification.
 fn albedo_tables(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
+    if let Some(fresnel) = &spec.fresnel {
+        return fresnel_tables(spec, fresnel);
+    }
     let mut set =
         Tables::from_tables(Provenance::default(), bake::albedo::bake(spec).map_err(BakeError::Albedo)?)?;
     albedo::certify(&mut set, spec.domain)
         .map_err(|why| BakeError::Set(LoadError::Invalid(why.to_string())))?;
     Ok(set.tables().to_vec())
+}
+
+/// The certified tables of an exact reflectance, with as many view nodes as the quality's error takes: total reflection inside a dielectric
+/// sets in within σ, which on a smooth surface is narrower than the cells that serve everything else.
+fn fresnel_tables(spec: &AlbedoSpec, fresnel: &FresnelEntry) -> Result<Vec<Table>, BakeError> {
+    const DOUBLINGS: usize = 3;
+    let mut spec = spec.clone();
+    for doubling in 0.. {
+        let tables = bake::fresnel_albedo::bake(&spec, fresnel).map_err(BakeError::Albedo)?;
+        let certified = |table| {
+            fresnel_albedo::certified(table, spec.domain, fresnel)
+                .map_err(|why| BakeError::Set(LoadError::Invalid(why.to_string())))
+        };
+        let tables = tables.into_iter().map(certified).collect::<Result<Vec<_>, _>>()?;
+        let error = tables.iter().map(worst_error).fold(0.0, f64::max);
+        // Three hundred times the error of a node is what a quality's tables of moments err by.
+        if error <= 300.0 * spec.tolerance || doubling == DOUBLINGS {
+            return Ok(tables);
+        }
+        spec.views = 2 * spec.views - 1;
+    }
+    unreachable!("the last doubling returns")
 }
 
 /// The tables of the lowest quality at which none errs by more than `max_error`.
@@ -264,7 +291,7 @@ fn radial_tables(
 /// The largest error that a table's certificate states, of albedos over all moments; ∞ if there is none.
 pub fn worst_error(table: &Table) -> f64 {
     let keys = match table.kind {
-        Kind::Albedo | Kind::AlbedoAverage => {
+        Kind::Albedo | Kind::AlbedoAverage | Kind::FresnelAlbedo => {
             &["e_max_error", "scale_max_error", "bias_max_error", "f82_max_error"][..]
         }
         _ => &["g1_max_error", "cdf_max_error", "d_max_error"],
@@ -348,6 +375,10 @@ pub fn add_albedo_conventions(provenance: &mut Provenance) {
              weights at v.n; the first two add up to E-1; nodes with cos(theta) below 1e-4 hold what is there",
         ),
         ("albedo_average", "2 int_0^1 x mu dmu of what is read from the albedo table"),
+        (
+            "fresnel_albedo",
+            "share of light reflected by one bounce: of a conductor by channel, of a dielectric from outside and (_leaving) from inside",
+        ),
         (
             "albedo_masking",
             "each albedo table names its form of G2: uncorrelated G1(v) G1(l), height-correlated 1/(1+lambda(v)+lambda(l))",

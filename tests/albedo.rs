@@ -6,12 +6,15 @@ use std::process::{Command, Output};
 use microfacet_bake::bake::albedo::{AlbedoSpec, Domain, bake};
 use microfacet_bake::cache::Cache;
 use microfacet_bake::generate::{BakeError, Target, add_albedos, generate, provenance, worst_error};
-use microfacet_bake::plan::{AlbedoNeed, AlbedoVerdict, AlbedoWish, Options, Plan, albedo_cost, bare_cost};
+use microfacet_bake::plan::{
+    AlbedoNeed, AlbedoVerdict, AlbedoWish, Options, Plan, albedo_cost, bare_cost, entries,
+};
 use microfacet_bake::scene::{Interval, Scene};
 use microfacet_bake::spec::Quality;
 use microfacet_bake::store;
+use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
-use microfacet_sampler::{Kind, Masking, Precision, Provenance, Tables, encode};
+use microfacet_sampler::{FresnelAlbedo, Kind, Masking, Precision, Provenance, Tables, encode};
 use serde_json::Value;
 
 const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
@@ -68,6 +71,7 @@ fn those_who_ask_get_the_form_they_name() {
     let uncorrelated = AlbedoNeed {
         domain: Domain { gamma: point(3.0), sigma: point(0.454) },
         maskings: vec![Masking::Uncorrelated],
+        fresnel: None,
     };
     assert_eq!(asked.albedos[0], uncorrelated);
     let [_, correlated] = &asked.albedos[..] else { panic!("{:?}", asked.albedos) };
@@ -232,4 +236,83 @@ fn estimated_bytes_are_those_of_the_file() {
     let estimate = (tables + bare_cost(set.provenance()).bytes) as f64;
     let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
     assert!((estimate / real - 1.0).abs() < 0.06, "{estimate} for {real}");
+}
+
+const EXACT: [[&str; 4]; 4] = [
+    [
+        "gold",
+        "0.3",
+        "2.0",
+        "fresnel = { conductor = { eta = [0.143, 0.375, 1.442], k = [3.983, 2.386, 1.603] } }\nmasking = \"height-correlated\"",
+    ],
+    ["glass", "0.454", "3.0", "fresnel = { dielectric = 1.5 }"],
+    ["air", "0.454", "3.0", "fresnel = { dielectric = 0.6666666666666666 }"],
+    ["nothing", "0.454", "3.0", "fresnel = { dielectric = 1.0 }"],
+];
+
+/// The albedo as a renderer would estimate it: F G2/G1 over a grid of visible normals, in single precision.
+fn estimate(set: &Tables, name: &str, masking: Masking, cos: f32, fresnel: impl Fn(f64) -> f64) -> f64 {
+    const STEPS: usize = 300;
+    let material = set.material(name).unwrap();
+    let v = glam::Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
+    let mut sum = 0.0;
+    for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+        let m = material.sample_visible_normal(v, [step(i), step(j)]);
+        let l = 2.0 * v.dot(m) * m - v;
+        if l.z > 0.0 {
+            sum += fresnel(f64::from(v.dot(m))) * f64::from(material.g2(v, l, masking) / material.g1(v));
+        }
+    }
+    sum / (STEPS * STEPS) as f64
+}
+
+#[test]
+fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
+    let scene = Scene::from_recipe_str(&recipe(&EXACT)).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    let origin = provenance(scene.to_recipe(), entries(&scene));
+    let set = generate(&plan.needs, DRAFT, origin, &Cache::none(), || ()).unwrap();
+    let target = Target::Quality(Quality::Default, Precision::F32);
+    let set = add_albedos(set, &plan.albedos, target, &Cache::none(), || ()).unwrap().set;
+    let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
+    for table in set.tables().iter().filter(|table| table.kind == Kind::FresnelAlbedo) {
+        assert!(worst_error(table) < 3e-4, "{}: {:?}", table.name, table.certificate);
+        assert!(table.certificate["quadrature_error"] < 1e-4);
+    }
+
+    let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else { panic!() };
+    let metal =
+        [(0.143, 3.983), (0.375, 2.386), (1.442, 1.603)].map(|(eta, k)| Conductor::new(eta, k).unwrap());
+    for cos in [0.05, 0.3, 0.8, 1.0] {
+        for (got, metal) in gold.eval(cos).into_iter().zip(metal) {
+            let want = estimate(&set, "gold", Masking::HeightCorrelated, cos, |x| metal.reflectance(x));
+            assert!((f64::from(got) - want).abs() < 2e-3, "gold at {cos}: {got}, {want}");
+        }
+        // Bounded by what F = 1 returns.
+        let all = set.material_albedo("gold").unwrap().albedo(cos);
+        assert!(gold.eval(cos).iter().all(|&x| x <= all + 1e-5));
+    }
+    let average = gold.average();
+    assert!(average[0] > average[1] && average[1] > average[2] && average[0] < 1.0, "{average:?}");
+
+    let side = |name| match set.material_fresnel_albedo(name).unwrap() {
+        FresnelAlbedo::Dielectric(sides) => sides,
+        other => panic!("{other:?}"),
+    };
+    let (glass, air, nothing) = (side("glass"), side("air"), side("nothing"));
+    let interface = Dielectric::new(1.5).unwrap();
+    for cos in [0.05, 0.3, 0.6, 0.8, 1.0] {
+        let [entering, leaving] = glass.eval(cos);
+        for (got, face) in [(entering, interface), (leaving, interface.reversed())] {
+            let want = estimate(&set, "glass", Masking::Uncorrelated, cos, |x| face.reflectance(x));
+            assert!((f64::from(got) - want).abs() < 2e-3, "glass at {cos}: {got}, {want}");
+        }
+        assert!(entering < leaving);
+        // The other side of the same interface.
+        let [from_glass, back] = air.eval(cos);
+        assert!((from_glass - leaving).abs() < 1e-3 && (back - entering).abs() < 1e-3);
+        assert_eq!(nothing.eval(cos), [0.0, 0.0]);
+    }
+    assert!(set.material_fresnel_albedo("glass").is_ok() && set.material_fresnel_albedo("copper").is_err());
 }

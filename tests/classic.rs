@@ -41,6 +41,8 @@ fn bound(name: &str, marginal: &Marginal) -> Radial {
         sigma: [[marginal.sigma(); 2]; 2],
         s: [0.0; 2],
         distribution: name.into(),
+        masking: None,
+        fresnel: None,
     };
     let tables = bake_radial(marginal, &entry.table_suffix(), Quality::Default, Precision::F32);
     let provenance = Provenance { materials: vec![entry], ..Provenance::default() };

@@ -86,6 +86,8 @@ struct View {
     /// Unit slope of the m that reflects v to n, where Λ(l) has a branch point: azimuth and radius.
     phi_normal: f64,
     r_normal: f64,
+    /// v·m at which the reflectance has a kink; 0 if it has none.
+    kink: f64,
 }
 
 impl AlbedoIntegrator {
@@ -148,21 +150,46 @@ impl AlbedoIntegrator {
         phi: f64,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Result<Albedo<N>, ParameterError> {
-        let view = self.view(sigma, cos_theta, phi)?;
-        let mut before = self.quadrature(&self.rules[0], &view, &weight);
+        Ok(self.converged(&self.view(sigma, cos_theta, phi)?, weight))
+    }
+
+    /// As [`reflection`](Self::reflection), for reflectances that are singular like a square root at v·m = `kink` ∈ (0, 1): where total
+    /// reflection sets in.
+    ///
+    /// # Errors
+    /// As [`reflection`](Self::reflection).
+    pub fn reflection_with_kink<const N: usize>(
+        &self,
+        sigma: f64,
+        cos_theta: f64,
+        kink: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        if sigma == 0.0 {
+            return self.reflection(sigma, cos_theta, weight);
+        }
+        let view = View { kink, ..self.view([sigma, sigma], cos_theta, 0.0)? };
+        Ok(self.converged(&view, weight))
+    }
+
+    /// The integral at the first order that is accurate enough, or else the last.
+    fn converged<const N: usize>(&self, view: &View, weight: impl Fn(f64) -> [f64; N]) -> Albedo<N> {
+        let mut before = self.quadrature(&self.rules[0], view, &weight);
         let mut error = f64::INFINITY;
         for rule in &self.rules[1..] {
-            let now = self.quadrature(rule, &view, &weight);
+            let now = self.quadrature(rule, view, &weight);
             let pairs = now.iter().flatten().zip(before.iter().flatten());
             let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             // Twice, because two orders may agree by chance; and what the cut leaves out, which no order sees.
-            error = 2.0 * change + 10.0 * CUT * self.tolerance;
+            // At a kink orders converge algebraically, and the last difference says less about the rest.
+            let factor = if view.kink > 0.0 { 10.0 } else { 2.0 };
+            error = factor * change + 10.0 * CUT * self.tolerance;
             before = now;
             if error < self.tolerance {
                 break;
             }
         }
-        Ok(Albedo { uncorrelated: before[0], height_correlated: before[1], error })
+        Albedo { uncorrelated: before[0], height_correlated: before[1], error }
     }
 
     /// Cosine-weighted average 2∫₀¹ E(μ) μ dμ of the reflection albedo, for equal roughness σ ≥ 0.
@@ -233,6 +260,7 @@ impl AlbedoIntegrator {
             turn: cos / (sin * sx.max(sy).max(1.0)),
             phi_normal,
             r_normal: half * libm::hypot(x, y),
+            kink: 0.0,
         })
     }
 
@@ -265,8 +293,20 @@ impl AlbedoIntegrator {
         let normal = End { at: view.phi_normal, scale };
         let phi_0 = view.phi_0;
         if view.aspect == 1.0 {
-            let right = turn(phi_0 + FRAC_PI_2);
-            return vec![(plain(phi_0), right), (right, normal)];
+            let mut right = turn(phi_0 + FRAC_PI_2);
+            if view.kink == 0.0 {
+                return vec![(plain(phi_0), right), (right, normal)];
+            }
+            // Seen from m = n the cone of the kink turns its near side within this angle of the right one.
+            let across = (view.kink - view.cos) * (view.kink + view.cos);
+            let angle = (libm::fabs(across).sqrt() / view.sin).min(1.0);
+            if across <= 0.0 {
+                right.scale = right.scale.min(angle.max(1e-6));
+                return vec![(plain(phi_0), right), (right, normal)];
+            }
+            // Rays meet it twice on one side of its tangent, and not at all on the other.
+            let tangent = End { at: phi_0 + libm::acos(-angle), scale: (0.3 * angle).max(1e-6) };
+            return vec![(plain(phi_0), right), (right, tangent), (tangent, normal)];
         }
         // Where the ellipse of the roughness is narrow, its width turns within the aspect.
         let minor = if view.sigma[0] < view.sigma[1] { 0.0 } else { FRAC_PI_2 };
@@ -338,7 +378,20 @@ impl AlbedoIntegrator {
         };
         let aside = cone(view.r_normal * libm::fabs(libm::sin(phi - view.phi_normal)));
         let w_normal = self.shape.unit(view.r_normal);
-        if b < 0.0 && aside.is_finite() && w_normal < end.at {
+        let kinks = self.kinks(view, a, b, end.at);
+        if !kinks.is_empty() {
+            let plain = |at: f64| End { at, scale: f64::INFINITY };
+            let mut from = plain(0.0);
+            let mut stops = kinks;
+            if b < 0.0 && aside.is_finite() && w_normal < end.at {
+                stops.push(End { at: w_normal, scale: aside });
+                stops.sort_by(|x, y| x.at.total_cmp(&y.at));
+            }
+            for stop in stops.into_iter().chain([end]) {
+                rule.graded(from, stop, PANEL, &mut add);
+                from = stop;
+            }
+        } else if b < 0.0 && aside.is_finite() && w_normal < end.at {
             let normal = End { at: w_normal, scale: aside };
             rule.graded(End { at: 0.0, scale: f64::INFINITY }, normal, PANEL, &mut add);
             rule.graded(normal, end, PANEL, &mut add);
@@ -357,6 +410,32 @@ impl AlbedoIntegrator {
             }
         }
         sum
+    }
+
+    /// Where a ray meets the kink, in the unit of w, ascending; (cos θ − r b)² = kink² (1 + a r²).
+    fn kinks(&self, view: &View, a: f64, b: f64, last: f64) -> Vec<End> {
+        // A square root is resolved by panels that begin this small: their error is 1e-3 (1e-2)^1.5.
+        const SCALE: f64 = 0.01;
+        if view.kink == 0.0 {
+            return Vec::new();
+        }
+        let square = view.kink * view.kink;
+        let (p, q) = (b * b - square * a, b * view.cos);
+        let rest = (view.cos - view.kink) * (view.cos + view.kink);
+        let root = square * (b * b + a * rest);
+        if root < 0.0 {
+            return Vec::new();
+        }
+        // The two roots without cancellation.
+        let sum = q + root.sqrt().copysign(q);
+        let facing = |r: &f64| *r > 0.0 && r.is_finite() && view.cos - r * b > 0.0;
+        let roots = [sum / p, rest / sum].into_iter().filter(facing);
+        let mut ends: Vec<End> = roots
+            .map(|r| End { at: self.shape.unit(r), scale: SCALE })
+            .filter(|end| end.at > 0.0 && end.at < last)
+            .collect();
+        ends.sort_by(|x, y| x.at.total_cmp(&y.at));
+        ends
     }
 
     /// The unit slope r of w, and π P22(r) r dr/dw.

@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use glam::DVec3;
-use microfacet_model::fresnel::{self, schlick_weight};
+use microfacet_model::fresnel::{self, Dielectric, schlick_weight};
 use microfacet_model::{AlbedoIntegrator, Masking, ParameterError, Shape, StudentT};
 
 /// The rows of a data file as text, header dropped; see `reference.rs` for the folder.
@@ -166,6 +166,35 @@ fn refuses_what_is_outside_the_domain() {
         for sigma in [0.0, 0.3] {
             let error = integrator.reflection(sigma, cos, schlick).unwrap_err();
             assert!(error.to_string().contains("[0, 1]"), "{error}");
+        }
+    }
+}
+
+/// Total reflection sets in with a square root, which quadrature must be told of: then its order changes nothing.
+#[test]
+fn leaving_a_dielectric_converges() {
+    let inside = Dielectric::new(1.0 / 1.5).unwrap();
+    let kink = (1.0 - 1.0 / 2.25_f64).sqrt();
+    for gamma in [1.7, 3.0, f64::INFINITY] {
+        let integrator = |tolerance| AlbedoIntegrator::new(Shape::new(gamma).unwrap(), tolerance);
+        let (coarse, fine) = (integrator(1e-5), integrator(1e-10));
+        for sigma in [0.03, 0.2, 0.454, 1.5] {
+            for cos in [0.05, 0.4, kink - 0.01, kink, 0.8, 1.0] {
+                let at = |by: &AlbedoIntegrator| {
+                    by.reflection_with_kink(sigma, cos, kink, |c| [inside.reflectance(c)]).unwrap()
+                };
+                let (a, b) = (at(&coarse), at(&fine));
+                assert!(a.error < 1e-4, "gamma {gamma}, sigma {sigma}, cos {cos}: {}", a.error);
+                let off = (a.uncorrelated[0] - b.uncorrelated[0]).abs();
+                assert!(
+                    off <= a.error + b.error && off < 1e-5,
+                    "gamma {gamma}, sigma {sigma}, cos {cos}: {off}"
+                );
+                // What knows nothing of the kink agrees as far as it goes, which its estimate overstates.
+                let blind = fine.reflection(sigma, cos, |c| [inside.reflectance(c)]).unwrap();
+                let off = (blind.height_correlated[0] - b.height_correlated[0]).abs();
+                assert!(off < 1e-3, "gamma {gamma}, sigma {sigma}, cos {cos}: {off}");
+            }
         }
     }
 }

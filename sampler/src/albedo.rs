@@ -187,14 +187,14 @@ impl Tables {
     }
 }
 
-fn shape_coordinate(axis: &Axis, gamma: f64) -> f64 {
+pub(crate) fn shape_coordinate(axis: &Axis, gamma: f64) -> f64 {
     match axis.mapping {
         Mapping::LogShape { scale } => libm::log1p(scale / (2.0 * gamma - 3.0)),
         _ => unreachable!("validated on load"),
     }
 }
 
-fn roughness_coordinate(axis: &Axis, sigma: f64) -> f64 {
+pub(crate) fn roughness_coordinate(axis: &Axis, sigma: f64) -> f64 {
     match axis.mapping {
         Mapping::Roughness { offset, first, slow, linear } => {
             libm::log1p(sigma / offset) + slow * libm::log(sigma / first) + linear * sigma
@@ -204,7 +204,7 @@ fn roughness_coordinate(axis: &Axis, sigma: f64) -> f64 {
 }
 
 /// σ at a coordinate, by bisection: the coordinate ascends.
-fn roughness(axis: &Axis, t: f64) -> f64 {
+pub(crate) fn roughness(axis: &Axis, t: f64) -> f64 {
     let (mut low, mut high) = (-40.0, 14.0);
     for _ in 0..64 {
         let ln = 0.5 * (low + high);
@@ -215,7 +215,7 @@ fn roughness(axis: &Axis, t: f64) -> f64 {
 
 /// The view coordinate of one material; see [`Mapping::ViewBlend`].
 #[derive(Clone, Copy, Debug)]
-struct ViewCoordinate {
+pub(crate) struct ViewCoordinate {
     weight: f64,
     normal: f64,
     share: f64,
@@ -229,7 +229,7 @@ struct ViewCoordinate {
 }
 
 impl ViewCoordinate {
-    fn new(axis: &Axis, sigma: f64, gamma: f64) -> Self {
+    pub(crate) fn new(axis: &Axis, sigma: f64, gamma: f64) -> Self {
         let Mapping::ViewBlend { weight, normal, share, scale, heavy, spread, floor, slope } = axis.mapping
         else {
             unreachable!("validated on load")
@@ -257,6 +257,11 @@ impl ViewCoordinate {
         (self.blend(cos) - self.start) / (1.0 - self.start)
     }
 
+    /// The coordinate of any cos θ ∈ [0, 1]: that of the first node below μ₀.
+    pub(crate) fn clamped(&self, cos: f32) -> f32 {
+        if cos > self.floor as f32 { self.at(f64::from(cos)) as f32 } else { 0.0 }
+    }
+
     /// cos θ at a coordinate, by bisection to the last bit.
     fn cos(&self, t: f64) -> f64 {
         if t >= 1.0 {
@@ -280,13 +285,13 @@ fn first_sigma(table: &Table) -> f64 {
 const SMOOTHEST: f64 = 1.01e-8;
 
 /// Whether a table goes down to σ.
-fn reaches(axis: &Axis, sigma: f64) -> bool {
+pub(crate) fn reaches(axis: &Axis, sigma: f64) -> bool {
     let first = roughness(axis, axis.nodes[0]);
     first <= SMOOTHEST || sigma >= first * (1.0 - 1e-9)
 }
 
 /// What tables cover, in words.
-fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
+pub(crate) fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
     let ends = |axis: &Axis, at: &dyn Fn(f64) -> f64| match axis.nodes[..] {
         [t] => alloc::format!("= {:.6}", at(t)),
         [first, .., last] => {
@@ -314,7 +319,7 @@ fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
 }
 
 /// Weights of the nodes about a coordinate, or `None` where the axis does not cover it.
-fn weights(axis: &Axis, t: f64) -> Option<Vec<(usize, f64)>> {
+pub(crate) fn weights(axis: &Axis, t: f64) -> Option<Vec<(usize, f64)>> {
     let (n, first, last) = (axis.nodes.len(), axis.nodes[0], axis.nodes[axis.nodes.len() - 1]);
     let slack = 1e-9 * (1.0 + last.abs());
     if !(t >= first - slack && t <= last + slack) {
@@ -335,16 +340,36 @@ fn weights(axis: &Axis, t: f64) -> Option<Vec<(usize, f64)>> {
 }
 
 /// cos θ in [0, 1]; NaN becomes 0.
-fn within(cos_theta: f32) -> f32 {
+pub(crate) fn within(cos_theta: f32) -> f32 {
     if cos_theta > 0.0 { cos_theta.min(1.0) } else { 0.0 }
 }
 
 /// Nodes that a polynomial goes through.
-const STENCIL: usize = 6;
+pub(crate) const STENCIL: usize = 6;
 
 /// The first of `count` nodes with the cell in their middle, or as near to it as the ends allow.
 fn first_node(cell: usize, n: usize, count: usize) -> usize {
     (cell + 1).saturating_sub(count / 2).min(n - count)
+}
+
+/// The first of the six nodes about t ∈ [0, 1], of `n` spread evenly, and their weights.
+#[inline]
+pub(crate) fn stencil(t: f32, n: usize) -> (usize, [f32; STENCIL]) {
+    let x = (t * (n - 1) as f32).clamp(0.0, (n - 1) as f32);
+    let start = first_node(x as usize, n, STENCIL);
+    let x = x - start as f32;
+    // Products from the left and from the right leave one factor out at each node.
+    const C: [f32; STENCIL] = [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
+    let mut weights = C;
+    let (mut left, mut right) = (1.0, 1.0);
+    for i in 0..STENCIL {
+        weights[i] *= left;
+        left *= x - i as f32;
+        let j = STENCIL - 1 - i;
+        weights[j] *= right;
+        right *= x - j as f32;
+    }
+    (start, weights)
 }
 
 impl Albedo {
@@ -422,8 +447,7 @@ impl Albedo {
     /// What a table of any number of nodes would hold at cos θ ∈ [0, 1]; E in [0, 1], so that what is lost and its average agree.
     fn rest(&self, cos: f32) -> [f32; 3] {
         let floor = self.view.floor as f32;
-        let at = if cos > floor { self.view.at(f64::from(cos)) as f32 } else { 0.0 };
-        let [e, bias, f82] = self.interpolate(at);
+        let [e, bias, f82] = self.interpolate(self.view.clamped(cos));
         let e = e.clamp(-1.0, 0.0);
         if cos >= floor || self.power == 0.0 {
             return [e, bias, f82];
@@ -435,22 +459,7 @@ impl Albedo {
     }
 
     fn interpolate(&self, t: f32) -> [f32; 3] {
-        let n = self.nodes.len();
-        let x = (t * (n - 1) as f32).clamp(0.0, (n - 1) as f32);
-        let start = first_node(x as usize, n, STENCIL);
-        let x = x - start as f32;
-        // Products from the left and from the right leave one factor out at each node.
-        const C: [f32; STENCIL] =
-            [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
-        let mut weights = C;
-        let (mut left, mut right) = (1.0, 1.0);
-        for i in 0..STENCIL {
-            weights[i] *= left;
-            left *= x - i as f32;
-            let j = STENCIL - 1 - i;
-            weights[j] *= right;
-            right *= x - j as f32;
-        }
+        let (start, weights) = stencil(t, self.nodes.len());
         let mut sum = [0.0; 3];
         for (node, w) in self.nodes[start..start + STENCIL].iter().zip(weights) {
             for (sum, x) in sum.iter_mut().zip(node) {

@@ -72,6 +72,43 @@ pub struct MaterialEntry {
     /// the [`table_suffix`](Self::table_suffix), and `s` means nothing.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub distribution: String,
+    /// The form of masking and shadowing it states, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub masking: Option<Masking>,
+    /// The reflectance of its facets, if it states one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fresnel: Option<FresnelEntry>,
+}
+
+/// The reflectance of a material's facets, as in its recipe.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FresnelEntry {
+    /// F = 1.
+    Mirror,
+    /// Schlick's approximation with this reflectance at normal incidence.
+    Schlick(f64),
+    /// A conductor of complex index η + ik relative to the outside, for red, green and blue.
+    Conductor {
+        /// η > 0.
+        eta: [f64; 3],
+        /// k ≥ 0.
+        k: [f64; 3],
+    },
+    /// A dielectric with this index relative to the outside.
+    Dielectric(f64),
+}
+
+impl FresnelEntry {
+    /// What the names of its own albedo tables hold; empty where the moments of `albedo` tables are enough.
+    pub fn label(&self) -> String {
+        let list = |x: &[f64; 3]| format!("{}_{}_{}", x[0], x[1], x[2]);
+        match self {
+            Self::Mirror | Self::Schlick(_) => String::new(),
+            Self::Conductor { eta, k } => format!("conductor_{}_k_{}", list(eta), list(k)),
+            Self::Dielectric(eta) => format!("dielectric_{eta}"),
+        }
+    }
 }
 
 impl MaterialEntry {

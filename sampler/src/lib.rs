@@ -21,6 +21,7 @@ mod compensation;
 mod container;
 mod ellipsoid;
 mod error;
+mod fresnel_albedo;
 mod ggx;
 mod math;
 mod plain;
@@ -36,9 +37,12 @@ pub use axis::{Axis, Interpolation, Mapping};
 pub use bounded::Bounded;
 pub use cells::limit_slopes;
 pub use compensation::{f82_tint_average, fresnel_average, schlick_average};
-pub use container::{FORMAT, MaterialEntry, Precision, Provenance, VERSION, describe, encode, reassemble};
+pub use container::{
+    FORMAT, FresnelEntry, MaterialEntry, Precision, Provenance, VERSION, describe, encode, reassemble,
+};
 pub use ellipsoid::{Ellipsoid, Skew};
 pub use error::{BatchError, BindError, LoadError};
+pub use fresnel_albedo::{FresnelAlbedo, ViewCurve};
 pub use radial::Radial;
 pub use student_t::{Masking, Roughness, StudentT};
 pub use table::{Kind, Table};

@@ -37,6 +37,8 @@ pub enum Kind {
     Albedo,
     /// Its cosine-weighted average over γ × σ.
     AlbedoAverage,
+    /// Directional albedo over γ × σ × view under an exact Fresnel term, which its name holds.
+    FresnelAlbedo,
 }
 
 impl Kind {
@@ -53,12 +55,13 @@ impl Kind {
             Self::RadialDensity => "radial_density",
             Self::Albedo => "albedo",
             Self::AlbedoAverage => "albedo_average",
+            Self::FresnelAlbedo => "fresnel_albedo",
         }
     }
 
     /// Whether it is a directional albedo or the average of one: what depends on light and view, not on the view alone.
     pub const fn is_albedo(self) -> bool {
-        matches!(self, Self::Albedo | Self::AlbedoAverage)
+        matches!(self, Self::Albedo | Self::AlbedoAverage | Self::FresnelAlbedo)
     }
 
     /// Names of the axes, slowest first.
@@ -71,7 +74,7 @@ impl Kind {
             Self::RadialSlope => &["view", "u1"],
             Self::RadialConditional => &["slope", "u2"],
             Self::RadialDensity => &["slope"],
-            Self::Albedo => &["gamma", "sigma", "view"],
+            Self::Albedo | Self::FresnelAlbedo => &["gamma", "sigma", "view"],
             Self::AlbedoAverage => &["gamma", "sigma"],
         }
     }
@@ -128,7 +131,7 @@ impl Table {
             return fail("a value is not finite".into());
         }
         match self.kind {
-            Kind::Albedo | Kind::AlbedoAverage => self.validate_albedo(),
+            kind if kind.is_albedo() => self.validate_albedo(),
             _ => self.validate_lookup(),
         }
     }
@@ -136,8 +139,12 @@ impl Table {
     /// The parts particular to albedos, which are read by polynomials on even nodes.
     fn validate_albedo(&self) -> Result<(), LoadError> {
         let fail = |why: &str| Err(LoadError::Invalid(format!("table `{}`: {why}", self.name)));
-        if self.channels != crate::albedo::CHANNELS {
-            return fail("channels are not `scale`, `bias`, `f82`");
+        let known: &[&[&str]] = match self.kind {
+            Kind::FresnelAlbedo => &crate::fresnel_albedo::CHANNELS,
+            _ => &[&crate::albedo::CHANNELS],
+        };
+        if !known.iter().any(|known| self.channels == *known) {
+            return fail("channels are not those of this kind");
         }
         if self.masking.is_none() {
             return fail("an albedo without the form of masking it is for");
@@ -151,7 +158,7 @@ impl Table {
         if self.axes.get(2).is_some_and(|view| view.nodes.len() < 6) {
             return fail("axis `view` has fewer than six nodes");
         }
-        // Moments less a mirror's, and each of them is in [0, 1].
+        // Moments less a mirror's, and each of them is in [0, 1]; a share of light.
         if self.values.iter().all(|x| (-1.0..=1.0).contains(x)) {
             Ok(())
         } else {
@@ -194,7 +201,7 @@ impl Table {
                     && matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: true, .. })
             }
             Kind::RadialDensity => self.axes[0].mapping == Mapping::HalfTangent,
-            Kind::Albedo | Kind::AlbedoAverage => unreachable!("validated apart"),
+            Kind::Albedo | Kind::AlbedoAverage | Kind::FresnelAlbedo => unreachable!("validated apart"),
         };
         if !mapped {
             return fail("an axis has a mapping that this kind does not use");

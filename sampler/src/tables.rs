@@ -140,12 +140,7 @@ impl Tables {
     /// # Errors
     /// [`BindError::NoSuchMaterial`] naming those that exist, or what [`student_t`](Self::student_t) reports.
     pub fn material(&self, name: &str) -> Result<StudentT, BindError> {
-        let entry = self.entry(name)?;
-        if !entry.distribution.is_empty() {
-            let distribution = entry.distribution.clone();
-            return Err(BindError::OtherDistribution { name: name.into(), distribution });
-        }
-        let MaterialEntry { sigma: [x, y], s, .. } = entry;
+        let MaterialEntry { sigma: [x, y], s, .. } = self.student_t_entry(name)?;
         let middle = |[min, max]: [f64; 2]| 0.5 * (min + max);
         self.student_t([middle(*x), middle(*y)], 1.0 + 1.0 / middle(*s))
     }
@@ -160,6 +155,15 @@ impl Tables {
             return Err(BindError::OtherDistribution { name: name.into(), distribution: "student-t".into() });
         }
         Radial::bind(&self.tables, entry.sigma[0][0] as f32, &entry.table_suffix())
+    }
+
+    /// The entry of a material that is a Student-t.
+    pub(crate) fn student_t_entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
+        let entry = self.entry(name)?;
+        if entry.distribution.is_empty() {
+            return Ok(entry);
+        }
+        Err(BindError::OtherDistribution { name: name.into(), distribution: entry.distribution.clone() })
     }
 
     fn entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {

@@ -77,6 +77,8 @@ fn without_tables() -> Tables {
         sigma: [[0.2, 0.2], [0.1, 0.3]],
         s: [1.0, 1.0],
         distribution: String::new(),
+        masking: None,
+        fresnel: None,
     };
     let origin = Provenance { materials: vec![gold], ..Provenance::default() };
     Tables::from_tables(origin, Vec::new()).unwrap()

@@ -10,7 +10,9 @@ use rayon::prelude::*;
 
 use microfacet_model::fresnel::{f82_weight, schlick_weight};
 use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
-use microfacet_sampler::{Axis, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables};
+use microfacet_sampler::{
+    Axis, FresnelEntry, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
+};
 
 use crate::scene::Interval;
 use crate::spec::{GAMMA_MIN, Quality};
@@ -67,7 +69,7 @@ impl Domain {
     }
 
     /// What the names of tables end in; nothing for the general ones.
-    fn suffix(&self) -> String {
+    pub(super) fn suffix(&self) -> String {
         let part = |name: &str, Interval { min, max }: Interval| {
             if min == max { format!("_{name}_{min}") } else { format!("_{name}_{min}_to_{max}") }
         };
@@ -84,6 +86,8 @@ impl Domain {
 pub struct AlbedoSpec {
     /// What the tables are for.
     pub domain: Domain,
+    /// An exact reflectance, baked by [`fresnel_albedo`](super::fresnel_albedo) into one table; `None` are the moments.
+    pub fresnel: Option<FresnelEntry>,
     /// The forms; both cost hardly more than one.
     pub maskings: Vec<Masking>,
     /// Nodes of the γ axis, ascending in its coordinate.
@@ -110,6 +114,7 @@ impl AlbedoSpec {
         };
         Self {
             domain: Domain::GENERAL,
+            fresnel: None,
             maskings: Masking::ALL.into(),
             shapes: even(shape(f64::INFINITY), shape(GAMMA_MIN), shapes),
             roughnesses: even(roughness(SIGMA_MIN), roughness(SIGMA_MAX), roughnesses),
@@ -146,6 +151,9 @@ impl AlbedoSpec {
             Precision::F32 => 4,
             Precision::F16 | Precision::U16 => 2,
         };
+        if let Some(fresnel) = &self.fresnel {
+            return one * self.maskings.len() * self.nodes() * super::fresnel_albedo::channels(fresnel).len();
+        }
         // Averages are always in single precision.
         3 * self.maskings.len() * (one * self.nodes() + 4 * self.shapes.len() * self.roughnesses.len())
     }

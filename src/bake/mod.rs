@@ -5,6 +5,7 @@
 
 pub mod albedo;
 mod conditional;
+pub mod fresnel_albedo;
 mod radial;
 mod shadowing;
 mod visible_slope;

@@ -160,16 +160,21 @@ impl Report<'_> {
     fn albedo_text(&self) -> String {
         let mut text = String::new();
         for (i, (spec, cost)) in self.albedos.iter().enumerate() {
-            let names = self.albedo_names(AlbedoVerdict::Bake(i));
             let forms: Vec<&str> = spec.maskings.iter().map(|masking| masking.name()).collect();
+            let (tables, what) = match &spec.fresnel {
+                None => {
+                    let names = self.albedo_names(AlbedoVerdict::Bake(i));
+                    (2, format!(", for {}", list(names.into_iter())))
+                }
+                Some(fresnel) => (1, format!(" at least, for {}", fresnel.label())),
+            };
             text += &format!(
-                "bake  albedo, {}, {}: {} tables, {} bytes, about {:.3} s, for {}\n",
+                "bake  albedo, {}, {}: {} tables, {} bytes, about {:.3} s{what}\n",
                 domain(spec.domain),
                 forms.join(" and "),
-                2 * forms.len(),
+                tables * forms.len(),
                 cost.bytes,
                 cost.seconds,
-                list(names.into_iter())
             );
         }
         for verdict in [
@@ -262,7 +267,7 @@ impl Report<'_> {
             let Domain { gamma, sigma } = spec.domain;
             let nodes = [spec.shapes.len(), spec.roughnesses.len(), spec.views];
             json!({
-                "gamma": [gamma.min.to_string(), gamma.max.to_string()], "sigma": [sigma.min, sigma.max], "masking": spec.maskings,
+                "gamma": [gamma.min.to_string(), gamma.max.to_string()], "sigma": [sigma.min, sigma.max], "masking": spec.maskings, "fresnel": spec.fresnel,
                 "nodes": nodes, "cost": cost(sum), "materials": self.albedo_names(AlbedoVerdict::Bake(i)),
             })
         }).collect();

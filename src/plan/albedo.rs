@@ -1,10 +1,10 @@
 //! Which albedo tables a scene needs: for the forms of masking, the shapes and the roughnesses of the materials that ask, and no others.
 
-use microfacet_sampler::{Masking, Precision};
+use microfacet_sampler::{FresnelEntry, Masking, Precision};
 
 use super::{NotCovered, Options, is_rough};
 use crate::bake::albedo::{AlbedoSpec, Domain, SIGMA_MAX};
-use crate::scene::{self, Format, Interval, Material, Scene};
+use crate::scene::{self, Format, Fresnel, Interval, Material, Scene};
 use crate::spec::Quality;
 
 /// Which materials get albedo tables.
@@ -27,17 +27,19 @@ pub struct AlbedoNeed {
     pub domain: Domain,
     /// Forms of masking.
     pub maskings: Vec<Masking>,
+    /// A conductor's or dielectric's exact reflectance; `None` are the moments that serve F = 1 and Schlick's approximation.
+    pub fresnel: Option<FresnelEntry>,
 }
 
 impl AlbedoNeed {
     /// Everything that tables can cover.
     pub fn general() -> Self {
-        Self { domain: Domain::GENERAL, maskings: Masking::ALL.into() }
+        Self { domain: Domain::GENERAL, maskings: Masking::ALL.into(), fresnel: None }
     }
 
     /// The specification that covers it, cut out of a general one.
     pub fn spec(&self, general: &AlbedoSpec) -> AlbedoSpec {
-        general.part(self.domain, &self.maskings)
+        AlbedoSpec { fresnel: self.fresnel.clone(), ..general.part(self.domain, &self.maskings) }
     }
 }
 
@@ -74,13 +76,39 @@ pub(super) fn needs(
             // Two forms at once cost little more than one.
             match needs.iter_mut().find(|need| need.domain == domain) {
                 Some(need) => need.maskings.push(masking),
-                None => needs.push(AlbedoNeed { domain, maskings: vec![masking] }),
+                None => needs.push(AlbedoNeed { domain, maskings: vec![masking], fresnel: None }),
             }
         }
     }
+    // Besides these, the exact reflectances that are no combination of the moments.
+    let mut exact: Vec<(FresnelEntry, Masking)> = Vec::new();
+    let pairs = || {
+        scene
+            .materials
+            .iter()
+            .zip(&wants)
+            .filter_map(|(material, want)| Some((material, want.as_ref().ok()?)))
+    };
+    for (material, &(_, masking)) in pairs() {
+        if let Some(fresnel) = exact_fresnel(material)
+            && !exact.contains(&(fresnel.clone(), masking))
+        {
+            exact.push((fresnel, masking));
+        }
+    }
+    for (fresnel, masking) in exact {
+        let same = |(material, want): &(&Material, &(Domain, Masking))| {
+            want.1 == masking && exact_fresnel(material).as_ref() == Some(&fresnel)
+        };
+        let domains = joined(pairs().filter(same).map(|(_, want)| want.0).collect());
+        let need = |domain| AlbedoNeed { domain, maskings: vec![masking], fresnel: Some(fresnel.clone()) };
+        needs.extend(domains.into_iter().map(need));
+    }
     let verdict = |want: &Result<(Domain, Masking), AlbedoVerdict>| match want {
         Ok((domain, masking)) => {
-            let covers = |need: &AlbedoNeed| need.maskings.contains(masking) && need.domain.contains(domain);
+            let covers = |need: &AlbedoNeed| {
+                need.fresnel.is_none() && need.maskings.contains(masking) && need.domain.contains(domain)
+            };
             AlbedoVerdict::Bake(needs.iter().position(covers).expect("the needs cover every want"))
         }
         Err(verdict) => *verdict,
@@ -116,12 +144,31 @@ fn want(
     if options.embedded_albedo {
         return Ok(Err(AlbedoVerdict::Embedded));
     }
-    let masking = match material.masking {
-        Some(scene::Masking::HeightCorrelated) => Masking::HeightCorrelated,
-        // What the recipe leaves open is the form of the distribution's own paper.
-        Some(scene::Masking::Uncorrelated) | None => Masking::Uncorrelated,
-    };
-    Ok(Ok((Domain { gamma, sigma }, masking)))
+    // What the recipe leaves open is the form of the distribution's own paper.
+    Ok(Ok((Domain { gamma, sigma }, material.masking.map_or(Masking::Uncorrelated, masking))))
+}
+
+/// The form of masking as a set records it.
+pub(super) fn masking(masking: scene::Masking) -> Masking {
+    match masking {
+        scene::Masking::Uncorrelated => Masking::Uncorrelated,
+        scene::Masking::HeightCorrelated => Masking::HeightCorrelated,
+    }
+}
+
+/// The reflectance as a set records it.
+pub(super) fn fresnel(fresnel: Fresnel) -> FresnelEntry {
+    match fresnel {
+        Fresnel::Mirror => FresnelEntry::Mirror,
+        Fresnel::Schlick(f0) => FresnelEntry::Schlick(f0),
+        Fresnel::Conductor { eta, k } => FresnelEntry::Conductor { eta, k },
+        Fresnel::Dielectric(eta) => FresnelEntry::Dielectric(eta),
+    }
+}
+
+/// A reflectance that needs a table of its own.
+fn exact_fresnel(material: &Material) -> Option<FresnelEntry> {
+    material.fresnel.map(fresnel).filter(|entry| !entry.label().is_empty())
 }
 
 /// Few domains that cover all of `wants` with no more nodes in all.

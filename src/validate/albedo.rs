@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use microfacet_model::{AlbedoIntegrator, Masking as ModelMasking, Shape};
+use microfacet_model::{Albedo, AlbedoIntegrator, Masking as ModelMasking, Shape};
 use microfacet_sampler::{BindError, Kind, Masking, Table, Tables};
 
 use super::certificate::{low_discrepancy, round_up};
@@ -12,38 +12,32 @@ use crate::bake::albedo::{Domain, weights};
 use crate::scene::Interval;
 
 /// Accuracy of the model's values that tables are judged by.
-const TOLERANCE: f64 = 1e-7;
+pub(super) const TOLERANCE: f64 = 1e-7;
 /// Views and roughnesses measured at each γ.
 const POINTS: usize = 96;
 /// So many are measured of the fewest shapes.
 const LEAST: usize = 480;
 /// Smallest σ and cos θ of the domain that the figures are promised for.
-const DOMAIN: (f64, f64) = (0.01, 0.02);
+pub(super) const DOMAIN: (f64, f64) = (0.01, 0.02);
 /// Smallest σ that is no mirror.
 const SMOOTHEST: f64 = 1e-8;
 
 /// Figures of one table, rounded up to three digits; those a bake has left there are kept.
-fn measure(tables: &Tables, table: &Table, domain: Domain) -> Result<BTreeMap<String, f64>, BindError> {
+fn measure(
+    tables: &Tables,
+    table: &Table,
+    domain: Domain,
+    references: &[Vec<Reference>],
+) -> Result<BTreeMap<String, f64>, BindError> {
     let mut figures = table.certificate.clone();
     let masking = table.masking.expect("validated on load");
-    let gammas = gammas(table, domain);
-    let points = points_at(gammas.len());
-    let at = |i: usize, gamma: f64| Places {
-        tables,
-        masking,
-        gamma,
-        first: i * points,
-        points,
-        sigma: domain.sigma,
-    };
-    let errors = gammas
+    let errors = references
         .par_iter()
-        .enumerate()
-        .map(|(i, &gamma)| match table.kind {
-            Kind::Albedo => directional(&at(i, gamma)),
-            _ => averages(&at(i, gamma)),
+        .map(|references| match table.kind {
+            Kind::Albedo => references.iter().map(|at| directional(tables, masking, at)).collect(),
+            _ => references.iter().step_by(4).map(|at| average(tables, masking, at)).collect(),
         })
-        .collect::<Result<Vec<_>, BindError>>()?;
+        .collect::<Result<Vec<Vec<Point>>, BindError>>()?;
     let all: Vec<Point> = errors.into_iter().flatten().collect();
     let inside = || all.iter().filter(|point| !point.outside);
     for (i, name) in ["scale", "bias", "f82", "e"].into_iter().enumerate() {
@@ -64,20 +58,27 @@ fn measure(tables: &Tables, table: &Table, domain: Domain) -> Result<BTreeMap<St
         figures.insert("e_max_error_outside".into(), round_up(outside));
     }
     figures.insert("points".into(), all.len() as f64);
+    figures.extend(stated(domain));
+    Ok(figures)
+}
+
+/// What a certificate says of the domain it is about, unless that is everything.
+pub(super) fn stated(domain: Domain) -> BTreeMap<String, f64> {
+    let mut figures = BTreeMap::new();
     if domain != Domain::GENERAL {
         let s = |gamma: f64| 1.0 / (gamma - 1.0);
         let ends = [("s_min", s(domain.gamma.max)), ("s_max", s(domain.gamma.min))];
         let sigmas = [("sigma_min", domain.sigma.min), ("sigma_max", domain.sigma.max)];
         figures.extend(ends.into_iter().chain(sigmas).map(|(key, value)| (key.into(), value)));
     }
-    Ok(figures)
+    figures
 }
 
 /// Errors of scale, bias, F82 and E at one (σ, γ, cos θ).
 struct Point {
     error: [f64; 4],
     at: [f64; 3],
-    /// Outside the domain of the figures: cos θ below 0.02 or σ below 0.01.
+    /// Outside the domain of the figures: cos θ below 0.02.
     outside: bool,
 }
 
@@ -86,37 +87,52 @@ struct Point {
 /// # Errors
 /// [`BindError`] if the tables do not cover the domain.
 pub fn certify(tables: &mut Tables, domain: Domain) -> Result<(), BindError> {
-    let figures: Vec<_> =
-        tables.tables().iter().map(|table| measure(tables, table, domain)).collect::<Result<_, _>>()?;
+    let Some(first) = tables.table(Kind::Albedo) else { return Ok(()) };
+    let gammas = gammas(first, domain);
+    let points = points_at(gammas.len());
+    // Once for both forms of masking.
+    let references = gammas
+        .par_iter()
+        .enumerate()
+        .map(|(i, &gamma)| {
+            let model =
+                AlbedoIntegrator::new(Shape::new(gamma).map_err(|_| BindError::Gamma(gamma))?, TOLERANCE);
+            let reference = |i| {
+                let (sigma, cos) = place(i, domain.sigma);
+                let exact = model.reflection(sigma, f64::from(cos), weights);
+                let exact = exact.map_err(|_| BindError::Sigma(sigma as f32))?;
+                Ok(Reference { gamma, sigma, cos, exact })
+            };
+            (i * points..(i + 1) * points).map(reference).collect()
+        })
+        .collect::<Result<Vec<Vec<Reference>>, BindError>>()?;
+    let measured = tables.tables().iter().map(|table| measure(tables, table, domain, &references));
+    let figures: Vec<_> = measured.collect::<Result<_, _>>()?;
     figures.into_iter().enumerate().for_each(|(i, figures)| tables.set_certificate(i, figures));
     Ok(())
 }
 
 /// Points at each of `shapes` measured shapes.
-fn points_at(shapes: usize) -> usize {
+pub(super) fn points_at(shapes: usize) -> usize {
     POINTS.max(LEAST / shapes)
 }
 
-/// Points at which a table with so many γ nodes is measured, the average included.
+/// Albedos integrated to measure tables with so many γ nodes.
 pub(crate) fn points(nodes: usize) -> usize {
-    // Most albedos are those of the points themselves; an average is a quarter as many lookups.
     let shapes = 3 * nodes - 2;
     shapes * points_at(shapes)
 }
 
-/// Where one table is measured at one γ.
-struct Places<'a> {
-    tables: &'a Tables,
-    masking: Masking,
+/// What the model says of one material and view.
+struct Reference {
     gamma: f64,
-    sigma: Interval,
-    /// Index of the first of its numbers.
-    first: usize,
-    points: usize,
+    sigma: f64,
+    cos: f32,
+    exact: Albedo<3>,
 }
 
 /// Shapes to measure at: two between every two nodes, and the nodes, as far as they are in the domain; and its ends.
-fn gammas(table: &Table, domain: Domain) -> Vec<f64> {
+pub(super) fn gammas(table: &Table, domain: Domain) -> Vec<f64> {
     let Interval { min, max } = domain.gamma;
     let axis = &table.axes[0];
     let nodes = &axis.nodes;
@@ -135,62 +151,57 @@ fn sigma_at(x: f64, Interval { min, max }: Interval) -> f64 {
     sigma.clamp(low, max)
 }
 
-fn model_masking(masking: Masking) -> ModelMasking {
+pub(super) fn model_masking(masking: Masking) -> ModelMasking {
     match masking {
         Masking::Uncorrelated => ModelMasking::Uncorrelated,
         Masking::HeightCorrelated => ModelMasking::HeightCorrelated,
     }
 }
 
-fn directional(at: &Places) -> Result<Vec<Point>, BindError> {
-    let &Places { tables, masking, gamma, first, points, .. } = at;
-    let shape = Shape::new(gamma).map_err(|_| BindError::Gamma(gamma))?;
-    let model = AlbedoIntegrator::new(shape, TOLERANCE);
-    (first..first + points)
-        .map(|i| {
-            let [a, b] = low_discrepancy(i);
-            // An eighth outside the domain: grazing, and of these a half of surfaces smoother than it, seen where they mask.
-            let sigma = match i % 16 {
-                8 if at.sigma.min <= SMOOTHEST => DOMAIN.0 * libm::pow(SMOOTHEST / DOMAIN.0, a),
-                _ => sigma_at(a, at.sigma),
-            };
-            // A half over the cosine, a quarter logarithmic and an eighth near the normal.
-            let cos = match i % 8 {
-                0 => {
-                    let grazing = 1e-5 * sigma.min(0.1);
-                    grazing * libm::pow(DOMAIN.1 / grazing, b)
-                }
-                1 => 1.0 - 0.02 * b * b,
-                2 | 3 => libm::pow(DOMAIN.1, b),
-                _ => DOMAIN.1 + (1.0 - DOMAIN.1) * b,
-            } as f32;
-            let exact = model
-                .reflection(sigma, f64::from(cos), weights)
-                .map_err(|_| BindError::Sigma(sigma as f32))?
-                .of(model_masking(masking));
-            let got = tables.albedo(sigma, gamma, masking)?.moments(cos);
-            let got = [got.scale, got.bias, got.f82].map(f64::from);
-            let error = |i: usize| (got[i] - exact[i]).abs();
-            let total = (got[0] + got[1] - exact[0] - exact[1]).abs();
-            let outside = f64::from(cos) < DOMAIN.1 || sigma < DOMAIN.0;
-            let error = [error(0), error(1), error(2), total];
-            Ok(Point { error, at: [sigma, gamma, f64::from(cos)], outside })
-        })
-        .collect()
+/// σ and cos θ of the i-th point.
+pub(super) fn place(i: usize, sigma: Interval) -> (f64, f32) {
+    let [a, b] = low_discrepancy(i);
+    // An eighth outside the domain: grazing, and of these a half of surfaces smoother than it, seen where they mask.
+    let sigma = match i % 16 {
+        8 if sigma.min <= SMOOTHEST => DOMAIN.0 * libm::pow(SMOOTHEST / DOMAIN.0, a),
+        _ => sigma_at(a, sigma),
+    };
+    // A half over the cosine, a quarter logarithmic and an eighth near the normal.
+    let cos = match i % 8 {
+        0 => {
+            let grazing = 1e-5 * sigma.min(0.1);
+            grazing * libm::pow(DOMAIN.1 / grazing, b)
+        }
+        1 => 1.0 - 0.02 * b * b,
+        2 | 3 => libm::pow(DOMAIN.1, b),
+        _ => DOMAIN.1 + (1.0 - DOMAIN.1) * b,
+    };
+    (sigma, cos as f32)
+}
+
+/// Whether a point is outside the domain that the figures are promised for.
+pub(super) fn outside(sigma: f64, cos: f32) -> bool {
+    f64::from(cos) < DOMAIN.1 || sigma < DOMAIN.0
+}
+
+fn directional(tables: &Tables, masking: Masking, at: &Reference) -> Result<Point, BindError> {
+    let &Reference { gamma, sigma, cos, exact } = at;
+    let exact = exact.of(model_masking(masking));
+    let got = tables.albedo(sigma, gamma, masking)?.moments(cos);
+    let got = [got.scale, got.bias, got.f82].map(f64::from);
+    let error = |i: usize| (got[i] - exact[i]).abs();
+    let total = (got[0] + got[1] - exact[0] - exact[1]).abs();
+    let error = [error(0), error(1), error(2), total];
+    Ok(Point { error, at: [sigma, gamma, f64::from(cos)], outside: outside(sigma, cos) })
 }
 
 /// Averages against quadrature of the directional albedo at the same material: what a furnace sees.
-fn averages(at: &Places) -> Result<Vec<Point>, BindError> {
-    let &Places { tables, masking, gamma, first, points, .. } = at;
-    (first..first + points / 4)
-        .map(|i| {
-            let sigma = sigma_at(low_discrepancy(i)[0], at.sigma);
-            let got = tables.average_moments(sigma, gamma, masking)?;
-            let exact = tables.albedo(sigma, gamma, masking)?.average_moments();
-            let error = |a: f32, b: f32| f64::from((a - b).abs());
-            let (scale, bias) = (error(got.scale, exact.scale), error(got.bias, exact.bias));
-            let (f82, total) = (error(got.f82, exact.f82), error(got.total(), exact.total()));
-            Ok(Point { error: [scale, bias, f82, total], at: [sigma, gamma, f64::NAN], outside: false })
-        })
-        .collect()
+fn average(tables: &Tables, masking: Masking, at: &Reference) -> Result<Point, BindError> {
+    let &Reference { gamma, sigma, .. } = at;
+    let got = tables.average_moments(sigma, gamma, masking)?;
+    let exact = tables.albedo(sigma, gamma, masking)?.average_moments();
+    let error = |a: f32, b: f32| f64::from((a - b).abs());
+    let (scale, bias) = (error(got.scale, exact.scale), error(got.bias, exact.bias));
+    let (f82, total) = (error(got.f82, exact.f82), error(got.total(), exact.total()));
+    Ok(Point { error: [scale, bias, f82, total], at: [sigma, gamma, f64::NAN], outside: sigma < DOMAIN.0 })
 }

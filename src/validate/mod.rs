@@ -3,6 +3,7 @@
 pub mod albedo;
 pub mod certificate;
 pub mod configuration;
+pub mod fresnel_albedo;
 pub mod furnace;
 pub mod pdf_integral;
 pub mod radial;
