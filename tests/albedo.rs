@@ -150,7 +150,7 @@ fn a_single_material_has_its_albedo_and_no_other() {
         assert!((f64::from(albedo.albedo(cos)) - exact).abs() < 2e-6, "{cos}");
     }
     let table = set.table(Kind::Albedo).unwrap();
-    assert_eq!(table.shape(), [1, 1, 33, 3]);
+    assert_eq!(table.shape(), [1, 1, 26, 3]);
     assert!(table.certificate["quadrature_error"] < 1e-6 && table.certificate["sigma_min"] == 0.454);
     // Another roughness, shape or form is not there, and the message says what is.
     for (sigma, gamma, masking) in [

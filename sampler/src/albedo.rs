@@ -235,7 +235,8 @@ impl ViewCoordinate {
             unreachable!("validated on load")
         };
         let knee = (scale + heavy / (2.0 * gamma - 3.0)) * sigma;
-        let floor = floor.min(slope * sigma);
+        // Without the kink of a minimum, which would show in the nodes along σ.
+        let floor = floor * (slope * sigma) / (floor + slope * sigma);
         let mut view = Self { weight, normal, share, knee, turn: spread * sigma, floor, start: 0.0 };
         view.start = view.blend(floor);
         view

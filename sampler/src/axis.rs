@@ -54,7 +54,7 @@ pub enum Mapping {
         /// Weight of σ.
         linear: f64,
     },
-    /// t = (y(μ) − y(μ₀))/(1 − y(μ₀)) ∈ [0, 1] for μ = cos θ_v ≥ μ₀ = min(floor, slope·σ), where
+    /// t = (y(μ) − y(μ₀))/(1 − y(μ₀)) ∈ [0, 1] for μ = cos θ_v ≥ μ₀ = floor·slope·σ/(floor + slope·σ), where
     /// y = weight·x + normal·ν/(ν + √(1−μ²)) + (1 − weight − normal)(share·x^¼ + (1−share)·h^¼),
     /// x = μ/(μ + κσ√(1−μ²)), κ = scale + heavy/(2γ−3), h = μ/(1 + √(1−μ²)), ν = spread·σ.
     ///

@@ -24,7 +24,7 @@ pub struct ViewCurve<const N: usize> {
 
 impl<const N: usize> ViewCurve<N> {
     /// The albedos at a view, each in [0, 1]; `cos_theta` outside [0, 1] is taken at the nearer end, NaN at grazing, and beyond
-    /// the table's last view, cos θ = min(2e-5, σ/500) in the tables of this version, they are held constant.
+    /// the table's last view, cos θ = 1/(5e4 + 500/σ) in the tables of this version, they are held constant.
     pub fn eval(&self, cos_theta: f32) -> [f32; N] {
         let (start, weights) = stencil(self.view.clamped(within(cos_theta)), self.nodes.len());
         let mut sum = [0.0; N];

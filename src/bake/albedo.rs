@@ -109,8 +109,8 @@ impl AlbedoSpec {
     pub fn general(quality: Quality, precision: Precision) -> Self {
         let ([shapes, roughnesses, views], tolerance) = match quality {
             Quality::Draft => ([16, 22, 20], 1e-5),
-            Quality::Default => ([23, 35, 27], 1e-6),
-            Quality::High => ([38, 58, 48], 1e-7),
+            Quality::Default => ([22, 35, 26], 1e-6),
+            Quality::High => ([44, 68, 56], 1e-7),
         };
         Self {
             domain: Domain::GENERAL,
