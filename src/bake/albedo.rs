@@ -327,8 +327,8 @@ fn node(shape: &AlbedoIntegrator, sigma: f64, cos: f64, tolerance: f64) -> Resul
     let mut out = [albedo.uncorrelated, albedo.height_correlated];
     for form in &mut out {
         let value = form[0] + form[1];
-        // Not clamped: a wrong sum must be seen. The estimate bounds what rounding and quadrature can do.
-        if !(value >= 0.0 && value <= 1.0 + albedo.error) {
+        // Not clamped: a wrong sum must be seen. Near normal incidence on a smooth surface 1 − E is far below what quadrature is asked for.
+        if !(value >= 0.0 && value <= 1.0 + tolerance) {
             return Err(BakeError::Albedo { at, value });
         }
         for (x, mirror) in form.iter_mut().zip(mirror) {
