@@ -1,0 +1,40 @@
+//! What the instruction counts of `benches/instructions.rs` are taken over.
+
+use glam::Vec3;
+use microfacet_sampler::{StudentT, Tables};
+
+/// Calls of each function; a count over it is instructions a call.
+pub const CALLS: usize = 1000;
+
+/// Roughness of the material.
+pub const SIGMA: [f32; 2] = [0.3, 0.5];
+
+/// A bound material, views, pairs of numbers and the normals they give: the same on every machine.
+pub struct Inputs {
+    pub material: StudentT,
+    pub v: Vec<Vec3>,
+    pub u: Vec<[f32; 2]>,
+    pub m: Vec<Vec3>,
+}
+
+impl Inputs {
+    /// Of the default tables at γ.
+    pub fn new(gamma: f64) -> Self {
+        Self::of(Tables::embedded().student_t(SIGMA, gamma).expect("covered by the default set"))
+    }
+
+    /// Views and numbers from the golden ratio's like in higher dimensions (Roberts 2018); cosines of views even in (0, 1), their azimuths
+    /// without trigonometry and therefore not even.
+    pub fn of(material: StudentT) -> Self {
+        let at = |i: usize, step: f64| (i as f64 * step).fract() as f32;
+        let views = (0..CALLS).map(|i| {
+            let (z, t) = (at(i, 0.819_172_513_396_164_4), 2.0 * at(i, 0.671_043_606_703_789_2) - 1.0);
+            let r = (1.0 - z * z).sqrt() / (1.0 + t * t);
+            Vec3::new(r * (1.0 - t * t), r * 2.0 * t, z)
+        });
+        let numbers = (0..CALLS).map(|i| [at(i, 0.754_877_666_246_692_7), at(i, 0.569_840_290_998_053_3)]);
+        let (v, u): (Vec<_>, Vec<_>) = (views.collect(), numbers.collect());
+        let m = v.iter().zip(&u).map(|(v, u)| material.sample_visible_normal(*v, *u)).collect();
+        Self { material, v, u, m }
+    }
+}
