@@ -22,7 +22,7 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(170.5))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(454.4))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(447.4))]
 fn sample_visible_normal(inputs: Inputs) -> Vec3 {
     let calls = inputs.v.iter().zip(&inputs.u);
     black_box(calls.map(|(v, u)| black_box(inputs.material.sample_visible_normal(*v, *u))).sum())
@@ -37,14 +37,14 @@ fn sample_batch(inputs: Inputs) -> Vec<Vec3> {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(58.1))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(63.0))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(49.1))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(54.0))]
 fn g1(inputs: Inputs) -> f32 {
     black_box(inputs.v.iter().map(|v| black_box(inputs.material.g1(*v))).sum())
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(37.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(35.9))]
 fn g1_batch(inputs: Inputs) -> Vec<f32> {
     let mut g1 = vec![0.0; CALLS];
     inputs.material.g1_batch(&inputs.v, &mut g1).expect("equal lengths");
@@ -52,7 +52,7 @@ fn g1_batch(inputs: Inputs) -> Vec<f32> {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(298.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(290.1))]
 fn visible_normal_pdf(inputs: Inputs) -> f32 {
     let calls = inputs.v.iter().zip(&inputs.m);
     black_box(calls.map(|(v, m)| black_box(inputs.material.visible_normal_pdf(*v, *m))).sum())

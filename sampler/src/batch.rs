@@ -12,7 +12,7 @@ use crate::bind::Plain;
 use crate::cells::{Cell, split};
 use crate::error::BatchError;
 use crate::plain::{HIDDEN, HIDDEN_ACROSS, pair, start};
-use crate::student_t::{LEAST_AREA, SHORT, StudentT};
+use crate::student_t::{SHORT, StudentT};
 
 const LANES: usize = 4;
 /// How many fours go through each stage together.
@@ -131,7 +131,9 @@ impl StudentT {
         let b2 = w * (w * (3.0 - w * 2.0));
         let b3 = w * (w * (w - 1.0));
         let g = (v0 * b0 + v1 * b2) + (s0 * b1 + s1 * b3);
-        [g, cubics(&plain.across, at.across.cell.to_array(), at.across.w)]
+        let [c0, c1, c2, c3] = coefficients(&plain.across, at.across.cell.to_array());
+        let w = at.across.w;
+        [g, (c0 + w * c1) + (w * w) * (c2 + w * c3)]
     }
 
     /// Writes the normals; false where one of them is not of the common case.
@@ -159,9 +161,9 @@ impl StudentT {
         let slices = &self.slices;
         let [wx, wy, wz] = transpose(w);
         let (x, y) = (wx * (slices.kappa * self.sigma_x), wy * (slices.kappa * self.sigma_y));
-        let z = wz & wz.simd_gt(0.0);
+        let z = wz.fast_max(f32x4::ZERO);
         let across = (x * x + y * y).sqrt();
-        let area = (z + across).fast_max(f32x4::splat(LEAST_AREA));
+        let area = z + across;
         let q = z * slices.shadowing_cells / area;
         let at = if slices.crowded_shadowing {
             (1.0 - (across / area).sqrt()) * slices.shadowing_cells
@@ -169,7 +171,8 @@ impl StudentT {
             q
         };
         let (cell, w) = split(at);
-        let g1 = q * cubics(&slices.shadowing, cell.to_array(), w);
+        let [c0, c1, c2, c3] = coefficients(&slices.shadowing, cell.to_array());
+        let g1 = q * (c0 + w * (c1 + w * (c2 + w * c3)));
         // What is no number is 0 here, too.
         (g1.fast_min(f32x4::ONE) & g1.simd_ge(0.0)).to_array()
     }
@@ -212,12 +215,11 @@ impl Number {
     }
 }
 
-/// The cubics of four cells; 0 where there is no such cell.
+/// The coefficients of four cells' cubics; 0 where there is no such cell.
 #[inline(always)]
-fn cubics(cells: &[Cell], at: [i32; LANES], w: f32x4) -> f32x4 {
+fn coefficients(cells: &[Cell], at: [i32; LANES]) -> [f32x4; 4] {
     let cell = |i: usize| f32x4::new(cells.get(at[i] as u32 as usize).copied().unwrap_or([0.0; 4]));
-    let [c0, c1, c2, c3] = f32x4::transpose(core::array::from_fn(cell));
-    (c0 + w * c1) + (w * w) * (c2 + w * c3)
+    f32x4::transpose(core::array::from_fn(cell))
 }
 
 #[inline(always)]
