@@ -9,7 +9,7 @@ use gungraun::{
 use microfacet_guard::{CALLS, Inputs};
 use microfacet_sampler::StudentT;
 
-/// The baseline: instructions a call that this commit takes. A count 1 % above it fails: one instruction more in `g1` does.
+/// The baseline: instructions a call that this commit takes. A count 1 % above it fails, which is one instruction in the short paths.
 fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
     const TOLERANCE: f64 = 1.01;
     let limit = (instructions * TOLERANCE * CALLS as f64) as u64;
