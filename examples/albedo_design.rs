@@ -136,10 +136,10 @@ fn interpolate(nodes: &[[f64; 2]], stencil: usize, t: f64) -> [f64; 2] {
     let x = t.clamp(0.0, 1.0) * (nodes.len() - 1) as f64;
     let start = (x as usize + 1).saturating_sub(stencil / 2).min(nodes.len() - stencil);
     let mut sum = [0.0; 2];
-    for i in start..start + stencil {
+    for (i, node) in nodes.iter().enumerate().skip(start).take(stencil) {
         let others = (start..start + stencil).filter(|&j| j != i);
         let weight: f64 = others.map(|j| (x - j as f64) / (i as f64 - j as f64)).product();
-        sum = [0, 1].map(|form| sum[form] + weight * nodes[i][form]);
+        sum = [0, 1].map(|form| sum[form] + weight * node[form]);
     }
     sum
 }
