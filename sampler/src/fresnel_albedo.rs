@@ -5,7 +5,8 @@ use alloc::string::ToString;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::albedo::{self, Albedo, STENCIL, ViewCoordinate, stencil, within};
+use crate::albedo::{self, Albedo, within};
+use crate::albedo_axes::{self, STENCIL, ViewCoordinate, stencil};
 use crate::container::{FresnelEntry, MaterialEntry};
 use crate::error::BindError;
 use crate::student_t::Masking;
@@ -111,11 +112,12 @@ impl Tables {
             .filter(|table| table.kind == Kind::FresnelAlbedo && table.name.starts_with(&named))
         {
             let [shapes, roughnesses, views] = &table.axes[..] else { unreachable!("validated on load") };
-            let at = sigma.max(albedo::roughness(roughnesses, roughnesses.nodes[0]));
+            let at = sigma.max(albedo_axes::roughness(roughnesses, roughnesses.nodes[0]));
             let reached = |_: &Vec<(usize, f64)>| albedo::reaches(roughnesses, sigma);
             let (Some(rows), Some(columns), true) = (
-                albedo::weights(shapes, albedo::shape_coordinate(shapes, gamma)),
-                albedo::weights(roughnesses, albedo::roughness_coordinate(roughnesses, at)).filter(reached),
+                albedo_axes::weights(shapes, albedo_axes::shape_coordinate(shapes, gamma)),
+                albedo_axes::weights(roughnesses, albedo_axes::roughness_coordinate(roughnesses, at))
+                    .filter(reached),
                 table.channels.len() == N,
             ) else {
                 continue;

@@ -11,6 +11,7 @@
 extern crate alloc;
 
 mod albedo;
+mod albedo_axes;
 mod axis;
 mod batch;
 mod below;
