@@ -371,10 +371,14 @@ pub fn add_albedo_conventions(provenance: &mut Provenance) {
     let conventions = [
         (
             "albedo",
-            "moments of 1-(1-v.m)^5, (1-v.m)^5 and 7^7/6^6 v.m (1-v.m)^6 with G2/G1(v) over visible normals that reflect upwards, less those \
-             weights at v.n; the first two add up to E-1; nodes with cos(theta) below 1e-4 hold what is there",
+            "E is the share of light that one bounce with F = 1 returns: the integral of G2/G1(v) over visible normals that reflect upwards. Channels: \
+             e = E-1; bias and f82, the same integral weighted with (1-v.m)^5 and 7^7/6^6 v.m (1-v.m)^6, less E times that weight at v.n. The \
+             weight 1-(1-v.m)^5 has E less the whole of bias. A sigma below the first node is a mirror",
         ),
-        ("albedo_average", "2 int_0^1 x mu dmu of what is read from the albedo table"),
+        (
+            "albedo_average",
+            "2 int_0^1 x mu dmu of what is read from the albedo table, less E_avg times that of a mirror for bias and f82",
+        ),
         (
             "fresnel_albedo",
             "share of light reflected by one bounce: of a conductor by channel, of a dielectric from outside and (_leaving) from inside",

@@ -33,7 +33,7 @@ pub enum Kind {
     RadialConditional,
     /// Fourth root of D, over the slope of the normal.
     RadialDensity,
-    /// Directional albedo over γ × σ × view, as moments of the Fresnel weights less those of a mirror.
+    /// Directional albedo over γ × σ × view: E − 1, and moments of the Fresnel weights less E times those of a mirror.
     Albedo,
     /// Its cosine-weighted average over γ × σ.
     AlbedoAverage,
