@@ -81,21 +81,21 @@ pub struct MaterialEntry {
 }
 
 /// The reflectance of a material's facets, as in its recipe.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FresnelEntry {
     /// F = 1.
     Mirror,
-    /// Schlick's approximation with this reflectance at normal incidence.
+    /// Schlick's approximation with this reflectance at normal incidence, in [0, 1]; the moments of `albedo` tables serve every value.
     Schlick(f64),
-    /// A conductor of complex index η + ik relative to the outside, for red, green and blue.
+    /// A conductor of complex index of refraction η + ik relative to the outside, for red, green and blue.
     Conductor {
         /// η > 0.
         eta: [f64; 3],
         /// k ≥ 0.
         k: [f64; 3],
     },
-    /// A dielectric with this index relative to the outside.
+    /// A dielectric with this index of refraction, > 0, relative to the outside.
     Dielectric(f64),
 }
 

@@ -4,7 +4,7 @@ use microfacet_sampler::{FresnelEntry, Masking, Precision};
 
 use super::{NotCovered, Options, is_rough};
 use crate::bake::albedo::{AlbedoSpec, Domain, SIGMA_MAX};
-use crate::scene::{self, Format, Fresnel, Interval, Material, Scene};
+use crate::scene::{Format, Interval, Material, Scene};
 use crate::spec::Quality;
 
 /// Which materials get albedo tables.
@@ -39,7 +39,7 @@ impl AlbedoNeed {
 
     /// The specification that covers it, cut out of a general one.
     pub fn spec(&self, general: &AlbedoSpec) -> AlbedoSpec {
-        AlbedoSpec { fresnel: self.fresnel.clone(), ..general.part(self.domain, &self.maskings) }
+        AlbedoSpec { fresnel: self.fresnel, ..general.part(self.domain, &self.maskings) }
     }
 }
 
@@ -91,7 +91,7 @@ pub(super) fn needs(
     };
     for (material, &(_, masking)) in pairs() {
         if let Some(fresnel) = exact_fresnel(material)
-            && !exact.contains(&(fresnel.clone(), masking))
+            && !exact.contains(&(fresnel, masking))
         {
             exact.push((fresnel, masking));
         }
@@ -101,7 +101,7 @@ pub(super) fn needs(
             want.1 == masking && exact_fresnel(material).as_ref() == Some(&fresnel)
         };
         let domains = joined(pairs().filter(same).map(|(_, want)| want.0).collect());
-        let need = |domain| AlbedoNeed { domain, maskings: vec![masking], fresnel: Some(fresnel.clone()) };
+        let need = |domain| AlbedoNeed { domain, maskings: vec![masking], fresnel: Some(fresnel) };
         needs.extend(domains.into_iter().map(need));
     }
     let verdict = |want: &Result<(Domain, Masking), AlbedoVerdict>| match want {
@@ -145,30 +145,12 @@ fn want(
         return Ok(Err(AlbedoVerdict::Embedded));
     }
     // What the recipe leaves open is the form of the distribution's own paper.
-    Ok(Ok((Domain { gamma, sigma }, material.masking.map_or(Masking::Uncorrelated, masking))))
-}
-
-/// The form of masking as a set records it.
-pub(super) fn masking(masking: scene::Masking) -> Masking {
-    match masking {
-        scene::Masking::Uncorrelated => Masking::Uncorrelated,
-        scene::Masking::HeightCorrelated => Masking::HeightCorrelated,
-    }
-}
-
-/// The reflectance as a set records it.
-pub(super) fn fresnel(fresnel: Fresnel) -> FresnelEntry {
-    match fresnel {
-        Fresnel::Mirror => FresnelEntry::Mirror,
-        Fresnel::Schlick(f0) => FresnelEntry::Schlick(f0),
-        Fresnel::Conductor { eta, k } => FresnelEntry::Conductor { eta, k },
-        Fresnel::Dielectric(eta) => FresnelEntry::Dielectric(eta),
-    }
+    Ok(Ok((Domain { gamma, sigma }, material.masking.unwrap_or(Masking::Uncorrelated))))
 }
 
 /// A reflectance that needs a table of its own.
 fn exact_fresnel(material: &Material) -> Option<FresnelEntry> {
-    material.fresnel.map(fresnel).filter(|entry| !entry.label().is_empty())
+    material.fresnel.filter(|entry| !entry.label().is_empty())
 }
 
 /// Few domains that cover all of `wants` with no more nodes in all.

@@ -206,8 +206,8 @@ pub fn entries(scene: &Scene) -> Vec<MaterialEntry> {
             sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
             s: [s_of(max), s_of(min)],
             distribution: material.distribution.as_ref().map_or(String::new(), Distribution::label),
-            masking: material.masking.map(albedo::masking),
-            fresnel: material.fresnel.map(albedo::fresnel),
+            masking: material.masking,
+            fresnel: material.fresnel,
         }
     };
     scene.materials.iter().filter(|material| material.used && is_rough(material)).map(entry).collect()

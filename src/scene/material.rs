@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+pub use microfacet_sampler::{FresnelEntry as Fresnel, Masking};
+
 use super::{Interval, Place};
 use crate::family::Distribution;
 
@@ -59,55 +61,6 @@ impl Roughness {
     pub fn is_isotropic(self) -> bool {
         !matches!(self, Self::Anisotropic { .. })
     }
-}
-
-/// How shadowing and masking combine into G2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Masking {
-    /// G2 = G1(v) G1(l): shadowing and masking independent (Ribardière et al. 2017).
-    Uncorrelated,
-    /// G2 = 1 / (1 + Λ(v) + Λ(l)): correlated through the height (Heitz 2014, eq. 99).
-    HeightCorrelated,
-}
-
-impl Masking {
-    /// All forms.
-    pub const ALL: [Self; 2] = [Self::Uncorrelated, Self::HeightCorrelated];
-
-    /// The name in recipes and files.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Uncorrelated => "uncorrelated",
-            Self::HeightCorrelated => "height-correlated",
-        }
-    }
-}
-
-impl fmt::Display for Masking {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// The reflectance of a single facet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fresnel {
-    /// F = 1.
-    Mirror,
-    /// Schlick's approximation with the given reflectance at normal incidence, in [0, 1].
-    ///
-    /// Tables for it split that number off, so one table serves every value and every colour.
-    Schlick(f64),
-    /// A conductor of complex index of refraction η + ik, for red, green and blue.
-    Conductor {
-        /// η > 0.
-        eta: [f64; 3],
-        /// k ≥ 0.
-        k: [f64; 3],
-    },
-    /// A dielectric whose index of refraction is the given multiple (> 0) of the outside's.
-    Dielectric(f64),
 }
 
 /// The format in which a material was described.

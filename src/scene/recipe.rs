@@ -77,7 +77,7 @@ fn entry(material: &Material) -> String {
         let _ = writeln!(text, "fresnel = {value}");
     }
     if let Some(masking) = material.masking {
-        let _ = writeln!(text, "masking = \"{masking}\"");
+        let _ = writeln!(text, "masking = \"{}\"", masking.name());
     }
     text
 }

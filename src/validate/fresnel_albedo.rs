@@ -69,7 +69,7 @@ fn read(
         s: [1.0 / (gamma - 1.0); 2],
         distribution: String::new(),
         masking: table.masking,
-        fresnel: Some(fresnel.clone()),
+        fresnel: Some(*fresnel),
     };
     let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
     let set = Tables::from_tables(provenance, vec![table.clone()])
