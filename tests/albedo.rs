@@ -1,7 +1,6 @@
 //! Albedo tables end to end: baked for those who ask, restricted to what they ask for, read back, and refused elsewhere.
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod command;
 
 use microfacet_bake::bake::albedo::{AlbedoSpec, Domain, bake};
 use microfacet_bake::cache::Cache;
@@ -16,6 +15,8 @@ use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::{FresnelAlbedo, Kind, Masking, Precision, Provenance, Tables, encode};
 use serde_json::Value;
+
+use command::{json, run};
 
 const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
 
@@ -39,17 +40,6 @@ fn recipe(materials: &[[&str; 4]]) -> String {
 fn plan(materials: &[[&str; 4]], albedo: AlbedoWish) -> Plan {
     let scene = Scene::from_recipe_str(&recipe(materials)).unwrap();
     Plan::new(&scene, Options { albedo, ..Options::default() }).unwrap()
-}
-
-fn run(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
-    command.env("XDG_CACHE_HOME", folder.join("home")).args(args).current_dir(folder).output().unwrap()
-}
-
-fn json(folder: &Path, args: &[&str]) -> Value {
-    let output = run(folder, &[args, &["--json"]].concat());
-    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 const MIRROR: &str = "fresnel = \"mirror\"";

@@ -1,31 +1,11 @@
 //! The command end to end, from an empty folder.
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod command;
 
 use microfacet_bake::store;
 use microfacet_sampler::{Kind, Tables};
 
-fn run(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
-    command.env("XDG_CACHE_HOME", folder).args(args).current_dir(folder).output().expect("runs")
-}
-
-fn ok(folder: &Path, args: &[&str]) -> String {
-    let output = run(folder, args);
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{args:?}: {errors}");
-    String::from_utf8(output.stdout).expect("text")
-}
-
-/// Runs what must be refused with exit status 2 and returns the message.
-fn refused(folder: &Path, args: &[&str]) -> String {
-    let output = run(folder, args);
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{args:?}: {errors}");
-    assert!(output.stdout.is_empty(), "{args:?} printed something");
-    errors
-}
+use command::{ok, refused, run};
 
 const GLASS: &str = "[[material]]\nname = \"glass\"\nsigma = 0.454\ngamma = 3.0\n";
 
@@ -153,6 +133,15 @@ fn bad_input_is_named_and_nothing_is_written() {
     assert!(refused(at, &["bake", "r.toml", "--out", "file"]).contains("is a file"));
     assert!(refused(at, &["bake", "absent.toml", "--out", "out"]).contains("absent.toml"));
     assert!(refused(at, &["inspect", "file"]).contains("not a valid table set"));
+    // A value that begins like an option is a value.
+    for (args, value) in [
+        (["furnace", "--sigma", "-1"], "\"-1\""),
+        (["furnace", "--cos-theta", "-0.5"], "\"-0.5\""),
+        (["validate", "--samples", "-5"], "'-5'"),
+    ] {
+        let message = refused(at, &args);
+        assert!(message.contains(value) && !message.contains("unexpected"), "{message}");
+    }
     assert!(refused(at, &["inspect", "absent"]).contains("absent"));
     std::fs::write(at.join("p.csv"), "sigma_x,sigma_y,gamma,theta\n1,1,1,1\n").unwrap();
     assert!(refused(at, &["query", "g1", "--input", "p.csv"]).contains("phi"));

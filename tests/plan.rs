@@ -1,8 +1,8 @@
 //! Planning, the cache and error budgets: no more is baked than a scene needs, and nothing twice.
 
+mod command;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
-use std::process::{Command, Output};
 
 use glam::Vec3;
 use microfacet_bake::cache::Cache;
@@ -11,7 +11,8 @@ use microfacet_bake::plan::{Options, Plan, Verdict, bare_cost, cost};
 use microfacet_bake::scene::{Interval, Scene};
 use microfacet_bake::spec::{Quality, general_set};
 use microfacet_sampler::{Precision, Tables, encode};
-use serde_json::Value;
+
+use command::{json, refused, run};
 
 const GENERAL: &[u8] = include_bytes!("../tables/default.safetensors");
 const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
@@ -38,25 +39,6 @@ fn bake(plan: &Plan, target: Target, cache: &Cache) -> Result<Baked, BakeError> 
 
 fn bytes(set: &Tables) -> Vec<u8> {
     encode(set.provenance(), set.tables()).unwrap()
-}
-
-fn run(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
-    command.env("XDG_CACHE_HOME", folder.join("home")).args(args).current_dir(folder).output().unwrap()
-}
-
-/// Standard output as JSON of a run that must succeed.
-fn json(folder: &Path, args: &[&str]) -> Value {
-    let output = run(folder, &[args, &["--json"]].concat());
-    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn refused(folder: &Path, args: &[&str]) -> String {
-    let output = run(folder, args);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{args:?}: {message}");
-    message
 }
 
 const MIXED: [[&str; 3]; 9] = [

@@ -34,7 +34,7 @@ pub(super) struct Args {
     #[command(flatten)]
     request: Request,
     /// Choose each table's nodes and precision instead: the smallest whose error, measured, is not above this (G1 absolute, or CDF).
-    #[arg(long, value_name = "E", value_parser = parse_error, conflicts_with_all = ["quality", "precision", "max_bytes"])]
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_error, conflicts_with_all = ["quality", "precision", "max_bytes"])]
     max_error: Option<f64>,
     /// The most accurate tables whose file is not larger than this.
     #[arg(long, value_name = "BYTES", conflicts_with_all = ["quality", "precision"])]

@@ -20,13 +20,13 @@ pub(super) struct Args {
     /// A table file, or a folder with one; the embedded default if absent.
     tables: Option<PathBuf>,
     /// Roughnesses in [0, 3], comma separated.
-    #[arg(long, value_delimiter = ',', value_parser = parse_roughness, default_value = "0.01,0.1,0.3,0.6,1,2,3")]
+    #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_roughness, default_value = "0.01,0.1,0.3,0.6,1,2,3")]
     sigma: Vec<f64>,
     /// Shapes in [1.501, inf], comma separated.
-    #[arg(long, value_delimiter = ',', value_parser = parse_gamma, default_value = "1.501,1.6,2,3,5,10,40,inf")]
+    #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_gamma, default_value = "1.501,1.6,2,3,5,10,40,inf")]
     gamma: Vec<f64>,
     /// Cosines of the view in [0, 1], comma separated.
-    #[arg(long, value_delimiter = ',', value_parser = parse_cosine, default_value = "0.02,0.3,1")]
+    #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_cosine, default_value = "0.02,0.3,1")]
     cos_theta: Vec<f64>,
     /// Form of masking; a walk is height-correlated.
     #[arg(long, value_enum, default_value = "height-correlated")]
@@ -35,7 +35,7 @@ pub(super) struct Args {
     #[arg(long, value_enum, default_value = "quadrature")]
     method: Method,
     /// Rays of a walk.
-    #[arg(long, default_value_t = 100_000, value_parser = parse_walks)]
+    #[arg(long, default_value_t = 100_000, allow_negative_numbers = true, value_parser = parse_walks)]
     walks: usize,
     /// Seed of the walks.
     #[arg(long, default_value_t = 1)]

@@ -21,13 +21,13 @@ use super::{Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_t
 )]
 pub(super) struct Args {
     /// Roughness, `X` or `X,Y`.
-    #[arg(long, value_name = "X[,Y]", value_parser = parse_sigma)]
+    #[arg(long, value_name = "X[,Y]", allow_negative_numbers = true, value_parser = parse_sigma)]
     sigma: [f64; 2],
     /// Shape.
-    #[arg(long, value_name = "G", value_parser = parse_gamma)]
+    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = parse_gamma)]
     gamma: f64,
     /// Polar angle of the view, radians.
-    #[arg(long, value_name = "T", value_parser = parse_theta)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_theta)]
     theta: f64,
     /// Azimuth of the view, radians.
     #[arg(long, value_name = "P", value_parser = parse_phi, default_value = "0", allow_hyphen_values = true)]

@@ -20,22 +20,22 @@ pub(super) struct Args {
     /// A table file, or a folder with one; the embedded default if absent.
     tables: Option<PathBuf>,
     /// Normals drawn for each configuration.
-    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = parse_samples)]
+    #[arg(long, value_name = "N", default_value_t = 100_000, allow_negative_numbers = true, value_parser = parse_samples)]
     samples: usize,
     /// Materials and views drawn over the covered domain.
-    #[arg(long, value_name = "K", default_value_t = 100, value_parser = parse_configurations)]
+    #[arg(long, value_name = "K", default_value_t = 100, allow_negative_numbers = true, value_parser = parse_configurations)]
     configurations: usize,
     /// Seed of everything random.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Judge one configuration instead: its roughness, `X` or `X,Y`.
-    #[arg(long, value_name = "X[,Y]", value_parser = parse_sigma, requires_all = ["gamma", "theta"])]
+    #[arg(long, value_name = "X[,Y]", allow_negative_numbers = true, value_parser = parse_sigma, requires_all = ["gamma", "theta"])]
     sigma: Option<[f64; 2]>,
     /// Shape of the one configuration.
-    #[arg(long, value_name = "G", value_parser = parse_gamma, requires = "sigma")]
+    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = parse_gamma, requires = "sigma")]
     gamma: Option<f64>,
     /// Polar angle of its view, radians.
-    #[arg(long, value_name = "T", value_parser = parse_theta, requires = "sigma")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_theta, requires = "sigma")]
     theta: Option<f64>,
     /// Azimuth of its view, radians.
     #[arg(long, value_name = "P", value_parser = parse_phi, default_value = "0", allow_hyphen_values = true)]
