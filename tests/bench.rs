@@ -58,7 +58,7 @@ fn every_rival_is_measured_and_written() {
     assert_eq!(json["calls"], 64);
     let figures = json["figures"].as_array().unwrap();
     assert!(figures.iter().all(|figure| figure["reached"].is_number()), "{figures:?}");
-    assert!(figures.iter().all(|figure| figure["aim"].as_f64() < figure["must"].as_f64()));
+    assert!(figures.iter().all(|figure| figure["aim"].as_f64() <= figure["must"].as_f64()));
 
     let errors = read(&at.join("out/figure-5.csv"));
     let worst = |column| errors.iter().map(|at| number(at, column).abs()).fold(0.0, f64::max);

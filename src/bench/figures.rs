@@ -62,6 +62,8 @@ pub fn figures(
         ),
         figure("a bound material", "KiB", 32.0, 16.0, Some(bytes / 1024.0)),
         figure("bind a material", "us", 50.0, 10.0, Some(1e-3 * bind_ns(&slices.whole, settings))),
+        // Nothing beyond is aimed at: it happens once in a process.
+        figure("the embedded set, ready", "ms", 1.0, 1.0, Some(1e-6 * embedded_ns(settings))),
     ]
 }
 
@@ -70,6 +72,16 @@ fn certified(set: &Tables) -> f64 {
     let whole = |kind| matches!(kind, Kind::VisibleSlope | Kind::VisibleSlopeConditional);
     let tables = set.tables().iter().filter(|table| whole(table.kind));
     tables.filter_map(|table| table.certificate.get("cdf_max_error")).fold(0.0, |worst, &x| x.max(worst))
+}
+
+/// The median time of decoding the compiled-in set.
+fn embedded_ns(settings: &Settings) -> f64 {
+    let times = (0..settings.rounds.max(40)).map(|_| {
+        let start = Instant::now();
+        black_box(Tables::embedded());
+        start.elapsed().as_nanos() as f64
+    });
+    clock::median(times.collect())
 }
 
 /// The median time of binding, over shapes between the nodes of the general set.
