@@ -245,7 +245,7 @@ impl Report<'_> {
             )
         };
         text + &format!(
-            "{} materials read in {:.1} ms, planned in {:.1} ms\n",
+            "materials: {}, read in {:.1} ms, planned in {:.1} ms\n",
             self.scene.materials.len() + self.scene.ignored.len(),
             self.reading,
             self.planning
