@@ -29,9 +29,11 @@ const CUT: f64 = 1e-3;
 /// Slopes beyond e³⁴⁰ have no square.
 const LARGEST_RAPIDITY: f64 = 340.0;
 /// Widest panel along a ray, in the unit of [`Shape::unit`]; the lobe's own singularities are at ±iπ/(2√s), 1.1 or more away.
-const PANEL: f64 = 1.5;
+pub(crate) const PANEL: f64 = 1.5;
 /// Widest panel of φ.
-const SECTOR: f64 = 1.6;
+pub(crate) const SECTOR: f64 = 1.6;
+/// A square root is resolved by panels that begin this small: their error is 1e-3 (1e-2)^1.5.
+pub(crate) const ROOT: f64 = 0.01;
 
 /// Albedos of one view under N Fresnel weights, for both forms of masking.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,24 +61,24 @@ impl<const N: usize> Albedo<N> {
 #[derive(Clone, Debug)]
 pub struct AlbedoIntegrator {
     shape: Shape,
-    smith: SmithTable,
+    pub(crate) smith: SmithTable,
     rules: Vec<Gauss>,
     tolerance: f64,
     /// Where the lobe ends for the purpose, in the unit of [`Shape::unit`].
-    cut: f64,
+    pub(crate) cut: f64,
 }
 
 /// The view and what depends on it alone.
-struct View {
-    cos: f64,
-    sin: f64,
+pub(crate) struct View {
+    pub(crate) cos: f64,
+    pub(crate) sin: f64,
     /// Azimuth in the frame of the principal axes.
     cos_phi: f64,
     sin_phi: f64,
     sigma: [f64; 2],
     /// G1(v)/cos θ.
-    scale: f64,
-    g1: f64,
+    pub(crate) scale: f64,
+    pub(crate) g1: f64,
     /// Smaller σ over larger.
     aspect: f64,
     /// Azimuth of v in unit space.
@@ -172,17 +174,26 @@ impl AlbedoIntegrator {
         Ok(self.converged(&view, weight))
     }
 
-    /// The integral at the first order that is accurate enough, or else the last.
+    /// The integral of one view at the first order that is accurate enough, or else the last.
     fn converged<const N: usize>(&self, view: &View, weight: impl Fn(f64) -> [f64; N]) -> Albedo<N> {
-        let mut before = self.quadrature(&self.rules[0], view, &weight);
+        self.refined(view.kink > 0.0, |rule| self.quadrature(rule, view, &weight))
+    }
+
+    /// The same of any `quadrature`, which may have a kink inside.
+    pub(crate) fn refined<const N: usize>(
+        &self,
+        kink: bool,
+        quadrature: impl Fn(&Gauss) -> [[f64; N]; 2],
+    ) -> Albedo<N> {
+        let mut before = quadrature(&self.rules[0]);
         let mut error = f64::INFINITY;
         for rule in &self.rules[1..] {
-            let now = self.quadrature(rule, view, &weight);
+            let now = quadrature(rule);
             let pairs = now.iter().flatten().zip(before.iter().flatten());
             let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             // Twice, because two orders may agree by chance; and what the cut leaves out, which no order sees.
             // At a kink orders converge algebraically, and the last difference says less about the rest.
-            let factor = if view.kink > 0.0 { 10.0 } else { 2.0 };
+            let factor = if kink { 10.0 } else { 2.0 };
             error = factor * change + 10.0 * CUT * self.tolerance;
             before = now;
             if error < self.tolerance {
@@ -228,7 +239,7 @@ impl AlbedoIntegrator {
         Ok(Albedo { uncorrelated: fine[0], height_correlated: fine[1], error: change + error })
     }
 
-    fn view(&self, sigma: [f64; 2], cos: f64, phi: f64) -> Result<View, ParameterError> {
+    pub(crate) fn view(&self, sigma: [f64; 2], cos: f64, phi: f64) -> Result<View, ParameterError> {
         for sigma in sigma {
             if !(sigma > 0.0 && sigma < f64::INFINITY) {
                 return Err(ParameterError::Sigma(sigma));
@@ -293,20 +304,18 @@ impl AlbedoIntegrator {
         let normal = End { at: view.phi_normal, scale };
         let phi_0 = view.phi_0;
         if view.aspect == 1.0 {
-            let mut right = turn(phi_0 + FRAC_PI_2);
+            let right = turn(phi_0 + FRAC_PI_2);
             if view.kink == 0.0 {
                 return vec![(plain(phi_0), right), (right, normal)];
             }
-            // Seen from m = n the cone of the kink turns its near side within this angle of the right one.
-            let across = (view.kink - view.cos) * (view.kink + view.cos);
-            let angle = (libm::fabs(across).sqrt() / view.sin).min(1.0);
-            if across <= 0.0 {
-                right.scale = right.scale.min(angle.max(1e-6));
-                return vec![(plain(phi_0), right), (right, normal)];
-            }
-            // Rays meet it twice on one side of its tangent, and not at all on the other.
-            let tangent = End { at: phi_0 + libm::acos(-angle), scale: (0.3 * angle).max(1e-6) };
-            return vec![(plain(phi_0), right), (right, tangent), (tangent, normal)];
+            let conic = self.conic_sectors(view.cos, view.sin, view.kink, right, normal);
+            let (first, tangent) = (plain(phi_0), conic[0].0);
+            let before = if view.cos < view.kink {
+                vec![(first, right), (right, tangent)]
+            } else {
+                vec![(first, tangent)]
+            };
+            return [before, conic].concat();
         }
         // Where the ellipse of the roughness is narrow, its width turns within the aspect.
         let minor = if view.sigma[0] < view.sigma[1] { 0.0 } else { FRAC_PI_2 };
@@ -378,7 +387,7 @@ impl AlbedoIntegrator {
         };
         let aside = cone(view.r_normal * libm::fabs(libm::sin(phi - view.phi_normal)));
         let w_normal = self.shape.unit(view.r_normal);
-        let kinks = self.kinks(view, a, b, end.at);
+        let kinks = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
         if !kinks.is_empty() {
             let plain = |at: f64| End { at, scale: f64::INFINITY };
             let mut from = plain(0.0);
@@ -412,26 +421,52 @@ impl AlbedoIntegrator {
         sum
     }
 
-    /// Where a ray meets the kink, in the unit of w, ascending; (cos θ − r b)² = kink² (1 + a r²).
-    fn kinks(&self, view: &View, a: f64, b: f64, last: f64) -> Vec<End> {
-        // A square root is resolved by panels that begin this small: their error is 1e-3 (1e-2)^1.5.
-        const SCALE: f64 = 0.01;
-        if view.kink == 0.0 {
+    /// The intervals of φ on the side towards the view in which rays from m = n may meet the cone v·m = `kink`, from `right`, at right angles
+    /// to the view, or else their tangent, to `towards`.
+    pub(crate) fn conic_sectors(
+        &self,
+        cos: f64,
+        sin: f64,
+        kink: f64,
+        right: End,
+        towards: End,
+    ) -> Vec<(End, End)> {
+        // Seen from m = n the cone turns its near side within this angle of the right one.
+        let across = (kink - cos) * (kink + cos);
+        let angle = (libm::fabs(across).sqrt() / sin).min(1.0);
+        let first = if across <= 0.0 {
+            End { at: right.at, scale: right.scale.min(angle.max(1e-6)) }
+        } else {
+            // Rays meet it twice on one side of its tangent, and not at all on the other.
+            End { at: right.at + libm::asin(angle), scale: (0.3 * angle).max(1e-6) }
+        };
+        if sin <= kink {
+            return vec![(first, towards)];
+        }
+        // Beside this asymptote of the cone rays meet it ever further out, where heavy tails still have mass: a power 2γ−3 of the angle.
+        let scale = libm::exp(-14.0 / (2.0 * self.shape.gamma() - 2.0));
+        let asymptote = End { at: right.at + libm::asin(kink / sin), scale };
+        vec![(first, asymptote), (asymptote, towards)]
+    }
+
+    /// Where a ray meets the cone v·m = `kink`, in the unit of w, ascending; (cos θ − r b)² = kink² (1 + a r²).
+    pub(crate) fn conic(&self, cos: f64, kink: f64, a: f64, b: f64, last: f64, scale: f64) -> Vec<End> {
+        if kink == 0.0 {
             return Vec::new();
         }
-        let square = view.kink * view.kink;
-        let (p, q) = (b * b - square * a, b * view.cos);
-        let rest = (view.cos - view.kink) * (view.cos + view.kink);
+        let square = kink * kink;
+        let (p, q) = (b * b - square * a, b * cos);
+        let rest = (cos - kink) * (cos + kink);
         let root = square * (b * b + a * rest);
         if root < 0.0 {
             return Vec::new();
         }
         // The two roots without cancellation.
         let sum = q + root.sqrt().copysign(q);
-        let facing = |r: &f64| *r > 0.0 && r.is_finite() && view.cos - r * b > 0.0;
+        let facing = |r: &f64| *r > 0.0 && r.is_finite() && cos - r * b > 0.0;
         let roots = [sum / p, rest / sum].into_iter().filter(facing);
         let mut ends: Vec<End> = roots
-            .map(|r| End { at: self.shape.unit(r), scale: SCALE })
+            .map(|r| End { at: self.shape.unit(r), scale })
             .filter(|end| end.at > 0.0 && end.at < last)
             .collect();
         ends.sort_by(|x, y| x.at.total_cmp(&y.at));
@@ -439,7 +474,7 @@ impl AlbedoIntegrator {
     }
 
     /// The unit slope r of w, and π P22(r) r dr/dw.
-    fn measure(&self, w: f64) -> (f64, f64) {
+    pub(crate) fn measure(&self, w: f64) -> (f64, f64) {
         if self.shape.is_beckmann() {
             return (w, w * libm::exp(-w * w));
         }

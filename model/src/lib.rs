@@ -23,6 +23,7 @@ mod smith_table;
 #[cfg(feature = "statistics")]
 pub mod statistics;
 mod student_t;
+mod transmission;
 mod visible;
 mod walk;
 

@@ -1,0 +1,216 @@
+//! Directional albedo of transmission through a rough dielectric, by deterministic quadrature over slopes.
+//!
+//! As for reflection, polar coordinates r, φ of the unit slopes about m = n:
+//!
+//! ```text
+//! T = 1/(cos θ + ρ e(z)) ∫dφ ∫ r dr P22(r) (cos θ − r b(φ)) (1 − F(v·m)) S(l)
+//! ```
+//!
+//! with l the refracted direction. Entering the denser side (η > 1) every m that faces the view sends l below the surface, and the
+//! domain is the half-plane of visible slopes. Leaving it (η < 1) the slopes of total reflection are left out, v·m < √(1−η²), beyond a conic
+//! where 1 − F is singular like a square root, and those whose l would come out above the surface: with p the slopes,
+//! those outside the circle |p + v_xy/cos θ| = η/cos θ on the side towards the view, along which l grazes.
+
+use core::f64::consts::{FRAC_PI_2, PI};
+
+use crate::albedo::{Albedo, AlbedoIntegrator, PANEL, ROOT, SECTOR};
+use crate::error::ParameterError;
+use crate::fresnel::Dielectric;
+use crate::panels::{End, Gauss};
+
+/// One view of one interface.
+struct Pane<'a> {
+    model: &'a AlbedoIntegrator,
+    dielectric: Dielectric,
+    eta: f64,
+    sigma: f64,
+    cos: f64,
+    sin: f64,
+    /// G1(v)/cos θ and G1(v).
+    scale: f64,
+    g1: f64,
+    /// v·m at which total reflection sets in; 0 if it does not.
+    critical: f64,
+}
+
+impl AlbedoIntegrator {
+    /// Share of the light from a direction of cosine cos θ ∈ [0, 1] that one refraction at the rough interface sends on below it, for
+    /// equal roughness σ ≥ 0 along both axes. The density of l is that of Walter et al. 2007, eq. 21, with radiance scaled to energy; masking and
+    /// shadowing are those of |l·n|, for the correlated form 1/(1 + Λ(v) + Λ(l)) as for reflection.
+    ///
+    /// With the reflection it adds up to less than one: the rest is shadowed. σ = 0 is a pane, cos θ = 0 the limit of grazing views.
+    ///
+    /// # Errors
+    /// [`ParameterError`] unless 0 ≤ σ < ∞ and cos θ ∈ [0, 1].
+    pub fn transmission(
+        &self,
+        sigma: f64,
+        cos_theta: f64,
+        dielectric: Dielectric,
+    ) -> Result<Albedo<1>, ParameterError> {
+        if !(0.0..=1.0).contains(&cos_theta) {
+            return Err(ParameterError::CosTheta(cos_theta));
+        }
+        if sigma == 0.0 {
+            let pane = [1.0 - dielectric.reflectance(cos_theta)];
+            return Ok(Albedo { uncorrelated: pane, height_correlated: pane, error: 0.0 });
+        }
+        let view = self.view([sigma, sigma], cos_theta, 0.0)?;
+        let eta = dielectric.eta();
+        let critical = if eta < 1.0 { ((1.0 - eta) * (1.0 + eta)).sqrt() } else { 0.0 };
+        let pane = Pane {
+            model: self,
+            dielectric,
+            eta,
+            sigma,
+            cos: view.cos,
+            sin: view.sin,
+            scale: view.scale,
+            g1: view.g1,
+            critical,
+        };
+        Ok(self.refined(critical > 0.0, |rule| pane.quadrature(rule)))
+    }
+}
+
+impl Pane<'_> {
+    fn quadrature(&self, rule: &Gauss) -> [[f64; 1]; 2] {
+        let mut sum = [0.0; 2];
+        for (low, high) in self.sectors() {
+            rule.graded(low, high, SECTOR, |phi, jacobian| {
+                for (sum, part) in sum.iter_mut().zip(self.ray(rule, phi)) {
+                    *sum += jacobian * part;
+                }
+            });
+        }
+        // The other half of the turn is the same.
+        sum.map(|x| [2.0 * x * self.scale / PI])
+    }
+
+    /// Half a turn of φ from the azimuth of the view, where slopes lean away from it, with what is quick at the ends.
+    fn sectors(&self) -> Vec<(End, End)> {
+        let turn = self.cos / (self.sin * self.sigma.max(1.0));
+        let right = End { at: FRAC_PI_2, scale: turn.max(1e-9) };
+        // Λ(l) has a branch point at l = −n, straight away from the view or towards it.
+        let axis = |at: f64, sign: f64| {
+            let here = self.branch().is_some_and(|r| r * sign > 0.0);
+            End { at, scale: if here { 0.05 } else { f64::INFINITY } }
+        };
+        let (away, towards) = (axis(0.0, 1.0), axis(PI, -1.0));
+        if self.critical == 0.0 {
+            return vec![(away, right), (right, towards)];
+        }
+        let conic = self.model.conic_sectors(self.cos, self.sin, self.critical, right, towards);
+        // Rays cut the conic and the circle on one side of their common tangent, and neither on the other, where all light is reflected.
+        if self.cos < self.critical { conic } else { [vec![(away, conic[0].0)], conic].concat() }
+    }
+
+    /// The unit slope of the m that refracts v to −n, positive where it leans away from the view; only if the branch point of Λ(l) is strong
+    /// enough to need panels of its own.
+    fn branch(&self) -> Option<f64> {
+        let strong = self.model.shape().gamma() < 3.5 || self.sigma > 0.7;
+        // m = ±(v − ηn), below the surface or turned away for the views in between.
+        let there = self.eta * self.cos > 1.0 || self.eta < self.cos;
+        (strong && there && self.eta != 1.0).then(|| self.sin / ((self.eta - self.cos) * self.sigma))
+    }
+
+    /// The integral along one ray of slopes from m = n.
+    fn ray(&self, rule: &Gauss, phi: f64) -> [f64; 2] {
+        let a = self.sigma * self.sigma;
+        let b = self.sigma * self.sin * libm::cos(phi);
+        let s = self.model.shape().s();
+        // From where m turns its back, if anywhere.
+        let rim = if b > 0.0 { self.model.shape().unit(self.cos / b) } else { f64::INFINITY };
+        let scale = if rim < self.model.cut && self.eta > 1.0 {
+            // cos θ_t turns within v·m of √(η²−1).
+            let across = ((self.eta - 1.0) * (self.eta + 1.0)).sqrt();
+            let r = self.cos / b;
+            0.5 * across * (1.0 + a * r * r).sqrt() / (b * (1.0 + s * r * r).sqrt())
+        } else {
+            f64::INFINITY
+        };
+        let end = End { at: rim.min(self.model.cut), scale };
+        let mut stops = self.stops(a, b, s, end.at);
+        let mut from = End { at: 0.0, scale: f64::INFINITY };
+        if let Some(normal) = self.branch() {
+            let r = libm::fabs(normal);
+            let aside = r * libm::fabs(libm::sin(phi)) / (1.0 + s * r * r).sqrt();
+            let at = self.model.shape().unit(r);
+            if b * normal > 0.0 && aside < 0.5 && at < end.at {
+                stops.push(End { at, scale: aside.max(0.01) });
+                stops.sort_by(|x, y| x.at.total_cmp(&y.at));
+            } else if b * normal <= 0.0 && at < 0.5 {
+                from.scale = at.max(0.01);
+            }
+        }
+        let mut sum = [0.0; 2];
+        for stop in stops.into_iter().chain([end]) {
+            // Nothing comes through where one point inside says so: the stops are where that changes.
+            let middle = self.model.measure(0.5 * (from.at + stop.at)).0;
+            if self.refracted(a, b, middle).is_some() {
+                rule.graded(from, stop, PANEL, |w, jacobian| {
+                    let (r, measure) = self.model.measure(w.max(0.0));
+                    if let Some([uncorrelated, correlated]) = self.refracted(a, b, r) {
+                        sum[0] += jacobian * measure * uncorrelated;
+                        sum[1] += jacobian * measure * correlated;
+                    }
+                });
+            }
+            from = stop;
+        }
+        sum
+    }
+
+    /// (cos θ − r b) (1 − F) S at the unit slope r of a ray; `None` where nothing is refracted downwards.
+    fn refracted(&self, a: f64, b: f64, r: f64) -> Option<[f64; 2]> {
+        let facing = self.cos - r * b;
+        if facing <= 0.0 {
+            return None;
+        }
+        let length = (1.0 + a * r * r).sqrt();
+        let mu = (facing / length).min(1.0);
+        let inside = self.dielectric.refracted_cos(mu)?;
+        // l = −k m − v/η with k = cos θ_t − μ/η, formed without its cancellation.
+        let k = (1.0 - 1.0 / self.eta) * (1.0 + 1.0 / self.eta) / (inside + mu / self.eta);
+        let depth = k / length + self.cos / self.eta;
+        if depth <= 0.0 {
+            return None;
+        }
+        // |l_xy|² from the sides of the triangle; cos φ = b/(σ sin θ).
+        let (reach, ahead) = (k * self.sigma * r / length, self.sin / self.eta);
+        let along = if self.sin > 0.0 { b / (self.sigma * self.sin) } else { 0.0 };
+        let across2 = reach * reach + ahead * ahead - 2.0 * reach * ahead * along;
+        let g1 = self.model.smith.g1(depth, (a * across2).max(0.0));
+        let mass = facing * (1.0 - self.dielectric.reflectance(mu));
+        Some([mass * g1, if g1 > 0.0 { mass * g1 / (g1 + self.g1 * (1.0 - g1)) } else { 0.0 }])
+    }
+
+    /// Where a ray enters or leaves the domain, ascending, in the unit of w.
+    fn stops(&self, a: f64, b: f64, s: f64, last: f64) -> Vec<End> {
+        if self.critical == 0.0 {
+            return Vec::new();
+        }
+        let mut stops = self.model.conic(self.cos, self.critical, a, b, last, ROOT);
+        let outside = (self.sin - self.eta) * (self.sin + self.eta);
+        let root = b * b - a * outside;
+        if b < 0.0 && outside > 0.0 && root >= 0.0 && self.cos > 0.0 {
+            // The nearer of the ray's meetings with the circle; there l grazes, and masking sets in within σ of it.
+            let r = outside / (self.cos * (root.sqrt() - b));
+            let w = self.model.shape().unit(r);
+            let depth = |r: f64| {
+                let length = (1.0 + a * r * r).sqrt();
+                let mu = (self.cos - r * b) / length;
+                let square = (mu - self.critical) * (mu + self.critical);
+                (square.max(0.0).sqrt() - mu) / length + self.cos
+            };
+            let h = 1e-4;
+            let slope = libm::fabs(depth(r * (1.0 + h)) - depth(r)) / (r * h * self.eta);
+            let layer = self.sigma / (slope * (1.0 + s * r * r).sqrt());
+            if w > 0.0 && w < last {
+                stops.push(End { at: w, scale: layer.clamp(1e-4, 1.0) });
+                stops.sort_by(|x, y| x.at.total_cmp(&y.at));
+            }
+        }
+        stops
+    }
+}

@@ -1,0 +1,161 @@
+//! Albedos of transmission against brute force, limits and reciprocity.
+
+use microfacet_model::fresnel::Dielectric;
+use microfacet_model::{AlbedoIntegrator, Masking, Shape, StudentT};
+
+use glam::DVec3;
+
+const GAMMAS: [f64; 5] = [1.55, 2.0, 3.0, 11.0, f64::INFINITY];
+const ETAS: [f64; 8] = [0.3, 0.67, 0.9, 0.999, 1.001, 1.1, 1.5, 4.0];
+
+fn view(cos: f64) -> DVec3 {
+    DVec3::new(((1.0 - cos) * (1.0 + cos)).sqrt(), 0.0, cos)
+}
+
+/// T by the midpoint rule over the two numbers of the visible normal.
+fn brute_force(material: &StudentT, pane: Dielectric, v: DVec3, masking: Masking) -> f64 {
+    const STEPS: u32 = 240;
+    let mut sum = 0.0;
+    for i in 0..STEPS {
+        for j in 0..STEPS {
+            let u = [i, j].map(|i| (f64::from(i) + 0.5) / f64::from(STEPS));
+            let m = material.visible_normal(v, u);
+            let mu = v.dot(m);
+            let Some(inside) = pane.refracted_cos(mu) else { continue };
+            let l = (mu / pane.eta() - inside) * m - v / pane.eta();
+            if l.z < 0.0 {
+                let g2 = material.g2(v, DVec3::new(l.x, l.y, -l.z), masking);
+                sum += (1.0 - pane.reflectance(mu)) * g2 / material.g1(v);
+            }
+        }
+    }
+    sum / f64::from(STEPS * STEPS)
+}
+
+#[test]
+fn agrees_with_brute_force() {
+    for (gamma, eta, sigma, cos) in [
+        (1.55, 0.3, 0.05, 0.1),
+        (1.55, 0.999, 0.05, 0.7),
+        (2.0, 0.67, 1.0, 0.95),
+        (3.0, 0.9, 0.3, 0.7),
+        (2.0, 1.5, 0.3, 0.4),
+        (11.0, 1.1, 1.0, 0.4),
+        (f64::INFINITY, 4.0, 1.0, 0.7),
+    ] {
+        let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);
+        let material = StudentT::isotropic(sigma, gamma).unwrap();
+        let pane = Dielectric::new(eta).unwrap();
+        let got = integrator.transmission(sigma, cos, pane).unwrap();
+        assert!(got.error < 2e-6, "{gamma} {eta} {sigma} {cos}: estimate {:e}", got.error);
+        for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
+            let want = brute_force(&material, pane, view(cos), masking);
+            let error = (got.of(masking)[0] - want).abs();
+            // The midpoint rule's own error at the edges of the domain.
+            assert!(
+                error < 1e-3,
+                "gamma {gamma}, eta {eta}, sigma {sigma}, cos {cos}: {want}, off by {error:e}"
+            );
+        }
+    }
+}
+
+/// 2 ∫ μ dμ by the midpoint rule in √μ.
+fn average(f: impl Fn(f64) -> f64) -> f64 {
+    const STEPS: u32 = 250;
+    let step = |i: u32| (f64::from(i) + 0.5) / f64::from(STEPS);
+    (0..STEPS).map(|i| 4.0 * step(i) * step(i) * step(i) * f(step(i) * step(i))).sum::<f64>()
+        / f64::from(STEPS)
+}
+
+#[test]
+fn as_much_passes_either_way() {
+    // f(v, l)/η² is the same both ways (Veach 1997, eq. 5.14), so that the average of what enters is η² times that of what leaves.
+    for gamma in [1.6, 3.0, f64::INFINITY] {
+        let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);
+        for (sigma, eta) in [(0.2, 1.5), (1.0, 3.0)] {
+            let pane = Dielectric::new(eta).unwrap();
+            for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
+                let of = |pane: Dielectric| {
+                    average(|cos| integrator.transmission(sigma, cos, pane).unwrap().of(masking)[0])
+                };
+                let (enters, leaves) = (of(pane), of(pane.reversed()));
+                let error = (enters - eta * eta * leaves).abs();
+                // The midpoint rule's at the kink of what leaves, times η².
+                assert!(
+                    error < 2e-5 * eta * eta,
+                    "gamma {gamma}, sigma {sigma}, eta {eta}: {enters}, off by {error:e}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn without_a_difference_all_that_is_not_shadowed_passes() {
+    let pane = Dielectric::new(1.0).unwrap();
+    for gamma in GAMMAS {
+        let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-7);
+        for (sigma, cos) in [(0.01, 0.2), (0.3, 0.05), (1.0, 0.6), (3.0, 1.0)] {
+            let material = StudentT::isotropic(sigma, gamma).unwrap();
+            let lambda = material.lambda(view(cos));
+            let got = integrator.transmission(sigma, cos, pane).unwrap();
+            for (masking, want) in [
+                (Masking::Uncorrelated, 1.0 / (1.0 + lambda)),
+                (Masking::HeightCorrelated, (1.0 + lambda) / (1.0 + 2.0 * lambda)),
+            ] {
+                let error = (got.of(masking)[0] - want).abs();
+                assert!(
+                    error < got.error && got.error < 1e-7,
+                    "gamma {gamma}, sigma {sigma}, cos {cos}: {want}, off by {error:e}, estimate {:e}",
+                    got.error
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn with_reflection_at_most_everything() {
+    for gamma in GAMMAS.into_iter().chain([1.501]) {
+        let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);
+        for eta in ETAS {
+            let pane = Dielectric::new(eta).unwrap();
+            let kink = ((1.0 - eta) * (1.0 + eta)).max(0.0).sqrt();
+            for sigma in [1e-6, 0.01, 0.3, 3.0] {
+                for cos in [0.0, 1e-3, 0.1, 0.5, 0.9, 1.0] {
+                    let passed = integrator.transmission(sigma, cos, pane).unwrap();
+                    let weight = |mu: f64| [pane.reflectance(mu)];
+                    let reflected = integrator.reflection_with_kink(sigma, cos, kink, weight).unwrap();
+                    assert!(
+                        passed.error < 1e-4,
+                        "gamma {gamma}, eta {eta}, sigma {sigma}, cos {cos}: {passed:?}"
+                    );
+                    for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
+                        let [t, r] = [&passed, &reflected].map(|albedo| albedo.of(masking)[0]);
+                        let slack = passed.error + reflected.error;
+                        assert!(
+                            t >= 0.0 && r >= 0.0 && t + r <= 1.0 + slack,
+                            "gamma {gamma}, eta {eta}: {t} + {r}"
+                        );
+                        if sigma == 1e-6 && gamma == f64::INFINITY && cos > 1e-3 {
+                            let smooth = 1.0 - pane.reflectance(cos);
+                            assert!((t - smooth).abs() < 1e-4, "eta {eta}, cos {cos}: {t} for {smooth}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn refuses_what_is_no_view() {
+    let integrator = AlbedoIntegrator::new(Shape::new(2.0).unwrap(), 1e-6);
+    let pane = Dielectric::new(1.5).unwrap();
+    for (sigma, cos) in [(-1.0, 0.5), (f64::NAN, 0.5), (0.3, -0.1), (0.3, 1.1), (0.3, f64::NAN)] {
+        assert!(integrator.transmission(sigma, cos, pane).is_err(), "{sigma} {cos}");
+    }
+    let smooth = integrator.transmission(0.0, 0.4, pane).unwrap();
+    assert_eq!(smooth.uncorrelated[0], 1.0 - pane.reflectance(0.4));
+}
