@@ -10,6 +10,8 @@ use microfacet_sampler::{
 };
 
 use crate::bake::albedo::AlbedoSpec;
+use crate::bake::dielectric_albedo::Side;
+use crate::bake::fresnel_albedo::Metal;
 use crate::bake::{self, NUMERICS};
 use crate::budget::{self, Memo, OutOfReach};
 use crate::cache::Cache;
@@ -234,15 +236,31 @@ fn albedo_tables(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
     Ok(set.tables().to_vec())
 }
 
-/// The certified tables of an exact reflectance, with as many view nodes as the quality's error takes: total reflection inside a dielectric
-/// sets in within σ, which on a smooth surface is narrower than the cells that serve everything else.
+/// The certified tables of an exact reflectance: of a conductor, or of both sides of a dielectric.
 fn fresnel_tables(spec: &AlbedoSpec, fresnel: &FresnelEntry) -> Result<Vec<Table>, BakeError> {
-    const DOUBLINGS: usize = 3;
+    if let Some(metal) = Metal::new(fresnel).map_err(|why| BakeError::Albedo(why.into()))? {
+        return refined(spec, fresnel, |spec| bake::fresnel_albedo::bake(spec, fresnel, &metal));
+    }
+    // Without a difference of indices both sides are one.
+    let sides = if fresnel.indices() == Some([1.0; 2]) { &Side::ALL[..1] } else { &Side::ALL };
+    let of_side =
+        |side: &Side| refined(spec, fresnel, |spec| bake::dielectric_albedo::bake(spec, fresnel, *side));
+    Ok(sides.iter().map(of_side).collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// The certified tables that `bake` makes, with as many view nodes as the quality's error takes: total reflection inside a dielectric sets in within
+/// the roughness, which on a smooth surface is narrower than the cells that serve everything else.
+fn refined(
+    spec: &AlbedoSpec,
+    fresnel: &FresnelEntry,
+    bake: impl Fn(&AlbedoSpec) -> Result<Vec<Table>, bake::albedo::BakeError>,
+) -> Result<Vec<Table>, BakeError> {
+    const DOUBLINGS: usize = 2;
     let mut spec = spec.clone();
     for doubling in 0.. {
-        let tables = bake::fresnel_albedo::bake(&spec, fresnel).map_err(BakeError::Albedo)?;
-        let certified = |table| {
-            fresnel_albedo::certified(table, spec.domain, fresnel)
+        let tables = bake(&spec).map_err(BakeError::Albedo)?;
+        let certified = |table: Table| {
+            fresnel_albedo::certified(table.rounded(spec.precision), spec.domain, fresnel)
                 .map_err(|why| BakeError::Set(LoadError::Invalid(why.to_string())))
         };
         let tables = tables.into_iter().map(certified).collect::<Result<Vec<_>, _>>()?;
@@ -291,7 +309,7 @@ fn radial_tables(
 /// The largest error that a table's certificate states, of albedos over all moments; ∞ if there is none.
 pub fn worst_error(table: &Table) -> f64 {
     let keys = match table.kind {
-        Kind::Albedo | Kind::AlbedoAverage | Kind::FresnelAlbedo => {
+        Kind::Albedo | Kind::AlbedoAverage | Kind::FresnelAlbedo | Kind::DielectricAlbedo => {
             &["e_max_error", "scale_max_error", "bias_max_error", "f82_max_error"][..]
         }
         _ => &["g1_max_error", "cdf_max_error", "d_max_error"],
@@ -379,9 +397,11 @@ pub fn add_albedo_conventions(provenance: &mut Provenance) {
             "albedo_average",
             "2 int_0^1 x mu dmu of what is read from the albedo table, less E_avg times that of a mirror for bias and f82",
         ),
+        ("fresnel_albedo", "share of light that one bounce off a conductor reflects, by channel"),
         (
-            "fresnel_albedo",
-            "share of light reflected by one bounce: of a conductor by channel, of a dielectric from outside and (_leaving) from inside",
+            "dielectric_albedo",
+            "shares of light that one bounce off a dielectric reflects and transmits, seen from the thin and (_leaving) from the dense side; eta is \
+             the index of the dense side over the other's",
         ),
         (
             "albedo_masking",

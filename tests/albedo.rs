@@ -235,8 +235,8 @@ const EXACT: [[&str; 4]; 4] = [
         "2.0",
         "fresnel = { conductor = { eta = [0.143, 0.375, 1.442], k = [3.983, 2.386, 1.603] } }\nmasking = \"height-correlated\"",
     ],
-    ["glass", "0.454", "3.0", "fresnel = { dielectric = 1.5 }"],
-    ["air", "0.454", "3.0", "fresnel = { dielectric = 0.6666666666666666 }"],
+    ["glass", "0.454", "3.0", "fresnel = { dielectric = 1.6 }"],
+    ["air", "0.454", "3.0", "fresnel = { dielectric = 0.625 }"],
     ["nothing", "0.454", "3.0", "fresnel = { dielectric = 1.0 }"],
 ];
 
@@ -257,6 +257,74 @@ fn estimate(set: &Tables, name: &str, masking: Masking, cos: f32, fresnel: impl 
     sum / (STEPS * STEPS) as f64
 }
 
+/// The same of what is transmitted, the exact refraction of each normal.
+fn transmitted(set: &Tables, name: &str, masking: Masking, cos: f32, face: Dielectric) -> f64 {
+    const STEPS: usize = 300;
+    let material = set.material(name).unwrap();
+    let v = glam::Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
+    let mut sum = 0.0;
+    for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+        let m = material.sample_visible_normal(v, [step(i), step(j)]);
+        let mu = f64::from(v.dot(m));
+        let Some(inside) = face.refracted_cos(mu) else { continue };
+        let l = (mu / face.eta() - inside) as f32 * m - v / face.eta() as f32;
+        if l.z < 0.0 {
+            let g2 = material.g2(v, glam::Vec3::new(l.x, l.y, -l.z), masking) / material.g1(v);
+            sum += (1.0 - face.reflectance(mu)) * f64::from(g2);
+        }
+    }
+    sum / (STEPS * STEPS) as f64
+}
+
+#[test]
+fn a_range_of_indices_has_an_axis() {
+    let text = recipe(&[["any", "0.5", "3.0", "fresnel = { dielectric = { min = 1.2, max = 1.7 } }"]]);
+    let scene = Scene::from_recipe_str(&text).unwrap();
+    assert_eq!(
+        Scene::from_recipe_str(&scene.to_recipe()).unwrap().materials[0].fresnel,
+        scene.materials[0].fresnel
+    );
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    let origin = provenance(scene.to_recipe(), entries(&scene));
+    let set = generate(&plan.needs, DRAFT, origin, &Cache::none(), || ()).unwrap();
+    let set = add_albedos(set, &plan.albedos, DRAFT, &Cache::none(), || ()).unwrap().set;
+    let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
+    let tables: Vec<_> = set.tables().iter().filter(|table| table.kind == Kind::DielectricAlbedo).collect();
+    assert_eq!(tables.len(), 2);
+    for table in tables {
+        assert!(
+            table.axes[2].len() > 5 && worst_error(table) < 2e-3,
+            "{}: {:?}",
+            table.name,
+            table.certificate
+        );
+    }
+    let integrator = AlbedoIntegrator::new(Shape::new(3.0).unwrap(), 1e-6);
+    for eta in [1.2, 1.37, 1.7] {
+        let bound = set.material_dielectric_albedo("any", eta).unwrap();
+        for cos in [0.1, 0.4, 0.9] {
+            for (got, eta) in [(bound.outside.eval(cos), eta), (bound.inside.eval(cos), 1.0 / eta)] {
+                let pane = Dielectric::new(eta).unwrap();
+                let want = integrator.transmission(0.5, f64::from(cos), pane).unwrap().uncorrelated[0];
+                assert!((f64::from(got[1]) - want).abs() < 2e-3, "eta {eta}, {cos}: {got:?}, {want}");
+            }
+        }
+    }
+    let why = set.material_dielectric_albedo("any", 4.0).unwrap_err().to_string();
+    assert!(why.contains("index 4 ") && why.contains("fresnel"), "{why}");
+    for (range, told) in [
+        ("{ min = 0.5, max = 2.0 }", "0.5"),
+        ("{ min = 2.0, max = 1.5 }", "inverted"),
+        ("{ min = \"inf\", max = \"inf\" }", "inf"),
+        ("{ min = 1.5, max = 1.5 }", "1.5"),
+    ] {
+        let text = recipe(&[["any", "0.5", "3.0", &format!("fresnel = {{ dielectric = {range} }}")]]);
+        let why = Scene::from_recipe_str(&text).unwrap_err().to_string();
+        assert!(why.contains(told), "{range}: {why}");
+    }
+}
+
 #[test]
 fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
     let scene = Scene::from_recipe_str(&recipe(&EXACT)).unwrap();
@@ -266,9 +334,12 @@ fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
     let target = Target::Quality(Quality::Default, Precision::F32);
     let set = add_albedos(set, &plan.albedos, target, &Cache::none(), || ()).unwrap().set;
     let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
-    for table in set.tables().iter().filter(|table| table.kind == Kind::FresnelAlbedo) {
+    let exact = |kind| matches!(kind, Kind::FresnelAlbedo | Kind::DielectricAlbedo);
+    // Gold, glass from both sides, which serves air, and nothing from the only one.
+    assert_eq!(set.tables().iter().filter(|table| exact(table.kind)).count(), 4);
+    for table in set.tables().iter().filter(|table| exact(table.kind)) {
         assert!(worst_error(table) < 3e-4, "{}: {:?}", table.name, table.certificate);
-        assert!(table.certificate["quadrature_error"] < 1e-4);
+        assert!(table.certificate["quadrature_error"] < 1e-5);
     }
 
     let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else { panic!() };
@@ -286,23 +357,30 @@ fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
     let average = gold.average();
     assert!(average[0] > average[1] && average[1] > average[2] && average[0] < 1.0, "{average:?}");
 
-    let side = |name| match set.material_fresnel_albedo(name).unwrap() {
+    let sides = |name| match set.material_fresnel_albedo(name).unwrap() {
         FresnelAlbedo::Dielectric(sides) => sides,
         other => panic!("{other:?}"),
     };
-    let (glass, air, nothing) = (side("glass"), side("air"), side("nothing"));
-    let interface = Dielectric::new(1.5).unwrap();
+    let (glass, air, nothing) = (sides("glass"), sides("air"), sides("nothing"));
+    let interface = Dielectric::new(1.6).unwrap();
+    let all = set.material_albedo("glass").unwrap();
     for cos in [0.05, 0.3, 0.6, 0.8, 1.0] {
-        let [entering, leaving] = glass.eval(cos);
+        let (entering, leaving) = (glass.outside.eval(cos), glass.inside.eval(cos));
         for (got, face) in [(entering, interface), (leaving, interface.reversed())] {
             let want = estimate(&set, "glass", Masking::Uncorrelated, cos, |x| face.reflectance(x));
-            assert!((f64::from(got) - want).abs() < 2e-3, "glass at {cos}: {got}, {want}");
+            assert!((f64::from(got[0]) - want).abs() < 2e-3, "glass at {cos}: {got:?}, {want}");
+            let want = transmitted(&set, "glass", Masking::Uncorrelated, cos, face);
+            assert!((f64::from(got[1]) - want).abs() < 3e-3, "through glass at {cos}: {got:?}, {want}");
+            assert!(got[0] <= all.albedo(cos) + 1e-4 && got[0] + got[1] <= 1.0 + 1e-4, "{got:?}");
         }
-        assert!(entering < leaving);
-        // The other side of the same interface.
-        let [from_glass, back] = air.eval(cos);
-        assert!((from_glass - leaving).abs() < 1e-3 && (back - entering).abs() < 1e-3);
-        assert_eq!(nothing.eval(cos), [0.0, 0.0]);
+        assert!(entering[0] < leaving[0] && entering[1] > leaving[1]);
+        // The other side of the same interface, from the same tables.
+        assert_eq!((air.outside.eval(cos), air.inside.eval(cos)), (leaving, entering));
+        assert_eq!(nothing.outside.eval(cos)[0], 0.0);
+        assert_eq!(nothing.outside.eval(cos), nothing.inside.eval(cos));
     }
+    // What enters and what leaves is the same up to the squeezing of solid angles, η².
+    let (enters, leaves) = (glass.outside.average()[1], glass.inside.average()[1]);
+    assert!((enters - 2.56 * leaves).abs() < 1e-4, "{enters} and {leaves}");
     assert!(set.material_fresnel_albedo("glass").is_ok() && set.material_fresnel_albedo("copper").is_err());
 }

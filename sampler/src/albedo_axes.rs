@@ -2,8 +2,10 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::f64::consts::FRAC_PI_2;
 
 use crate::axis::{Axis, Mapping};
+use crate::critical::CriticalCoordinate;
 use crate::math::sqrt64;
 
 pub(crate) fn shape_coordinate(axis: &Axis, gamma: f64) -> f64 {
@@ -30,6 +32,20 @@ pub(crate) fn roughness(axis: &Axis, t: f64) -> f64 {
         if roughness_coordinate(axis, libm::exp(ln)) < t { low = ln } else { high = ln }
     }
     libm::exp(0.5 * (low + high))
+}
+
+/// The coordinate of an index η ≥ 1, ∞ included.
+pub(crate) fn index_coordinate(eta: f64) -> f64 {
+    // sin²(πt/2) = F0^¼.
+    let root = if eta == f64::INFINITY { 1.0 } else { sqrt64((eta - 1.0) / (eta + 1.0)) };
+    libm::asin(sqrt64(root)) / FRAC_PI_2
+}
+
+/// 1/η at a coordinate of an axis of indices.
+pub(crate) fn inverse_index(t: f64) -> f64 {
+    let (sin, cos) = libm::sincos(FRAC_PI_2 * t);
+    let root = sin * sin;
+    if t < 1.0 { cos * cos * (1.0 + root) / (1.0 + root * root) } else { 0.0 }
 }
 
 /// The view coordinate of one material; see [`Mapping::ViewBlend`].
@@ -147,20 +163,24 @@ pub(crate) fn stencil(t: f32, n: usize) -> (usize, [f32; STENCIL]) {
 
 /// Where nodes of a table stand, for those who fill one.
 impl Axis {
-    /// σ at a coordinate of a [`Mapping::Roughness`] axis, γ at one of a [`Mapping::LogShape`] axis; `None` for others.
+    /// σ at a coordinate of a [`Mapping::Roughness`] axis, γ at one of a [`Mapping::LogShape`] axis, η at one of a
+    /// [`Mapping::ReflectanceRoot`] axis; `None` for others.
     pub fn quantity(&self, t: f64) -> Option<f64> {
         match self.mapping {
             Mapping::LogShape { scale } => Some(1.5 + 0.5 * scale / libm::expm1(t)),
             Mapping::Roughness { .. } => Some(roughness(self, t)),
+            Mapping::ReflectanceRoot => Some(1.0 / inverse_index(t)),
             _ => None,
         }
     }
 
-    /// The coordinate of σ along a [`Mapping::Roughness`] axis, of γ along a [`Mapping::LogShape`] axis; `None` for others.
+    /// The coordinate of σ along a [`Mapping::Roughness`] axis, of γ along a [`Mapping::LogShape`] axis, of η ≥ 1 along a
+    /// [`Mapping::ReflectanceRoot`] axis; `None` for others.
     pub fn coordinate(&self, quantity: f64) -> Option<f64> {
         match self.mapping {
             Mapping::LogShape { .. } => Some(shape_coordinate(self, quantity)),
             Mapping::Roughness { .. } => Some(roughness_coordinate(self, quantity)),
+            Mapping::ReflectanceRoot => Some(index_coordinate(quantity)),
             _ => None,
         }
     }
@@ -169,5 +189,11 @@ impl Axis {
     pub fn view_cosine(&self, sigma: f64, gamma: f64, t: f64) -> Option<f64> {
         let blends = matches!(self.mapping, Mapping::ViewBlend { .. });
         blends.then(|| ViewCoordinate::new(self, sigma, gamma).cos(t))
+    }
+
+    /// cos θ at a coordinate of a [`Mapping::CriticalBlend`] axis for one material and an index η ≥ 1; `None` for others.
+    pub fn critical_view_cosine(&self, sigma: f64, gamma: f64, eta: f64, t: f64) -> Option<f64> {
+        let splits = matches!(self.mapping, Mapping::CriticalBlend { .. });
+        splits.then(|| CriticalCoordinate::new(self, sigma, gamma, 1.0 / eta).cos(t))
     }
 }

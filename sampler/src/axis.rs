@@ -78,6 +78,31 @@ pub enum Mapping {
         /// μ₀/σ of smooth surfaces.
         slope: f64,
     },
+    /// t ∈ [0, 1] for the view from the dense side of an interface of index η, with ½ at μ_c = √(1 − 1/η²), where total reflection
+    /// sets in; a polynomial reads nodes of one half alone. With p = share·x + (1−share)·h, y = share·x^¼ + (1−share)·h^¼ (x, h, κ as for
+    /// [`ViewBlend`](Self::ViewBlend)), S(q) = asinh(√q/δ)/asinh(1/δ), δ² = kink·σ, and μ₀ the harmonic sum
+    /// 1/(1/floor + 1/(slope·σ) + 1/μ_c):
+    /// t = ½ (1−root)(y(μ)−y(μ₀))/(y(μ_c)−y(μ₀)) + ½ root (1 − S((μ_c−μ)/(μ_c−μ₀))) for μ₀ ≤ μ < μ_c, and
+    /// t = ½ + ½ (1−root)(p(μ)−p(μ_c))/(1−p(μ_c)) + ½ root S((μ−μ_c)/(1−μ_c)) for μ ≥ μ_c.
+    CriticalBlend {
+        /// Share of x among the fourth roots, in [0, 1].
+        share: f64,
+        /// κ for Beckmann.
+        scale: f64,
+        /// How κ grows with 1/(2γ−3).
+        heavy: f64,
+        /// Largest μ₀.
+        floor: f64,
+        /// μ₀/σ of smooth surfaces.
+        slope: f64,
+        /// Share of S, in (0, 1).
+        root: f64,
+        /// δ²/σ.
+        kink: f64,
+    },
+    /// t = acos(1 − 2x)/π ∈ [0, 1], x = F0^¼ = √((η−1)/(η+1)), of an index η ∈ [1, ∞] of the dense side: finer towards both ends, where
+    /// the reflectance of grazing views turns within √(η²−1) and 1/η of the horizon.
+    ReflectanceRoot,
     /// t = (2 min(u, 1−u))^(1/power) ∈ [0, 1]. Along the axis stand first the nodes for u ≤ ½ (t ascending from u = 0), then as many
     /// for u > ½ (t ascending from u = 1), unless the axis is `odd`, when only the second half is stored.
     MirroredPower {
@@ -200,6 +225,16 @@ impl Axis {
             {
                 return fail("a parameter of the view coordinate is out of range");
             }
+            Mapping::CriticalBlend { share, scale, heavy, floor, slope, root, kink }
+                if !([scale, floor, slope, kink].iter().all(|&x| x > 0.0 && x < 1e6)
+                    && (0.0..=1.0).contains(&share)
+                    && (0.0..1e6).contains(&heavy)
+                    && root > 0.0
+                    && root < 1.0
+                    && floor < 0.5) =>
+            {
+                return fail("a parameter of the view coordinate is out of range");
+            }
             _ => {}
         }
         // These are looked up by computing the cell; the others by searching it.
@@ -210,7 +245,10 @@ impl Axis {
             )));
         }
         let searched = matches!(self.mapping, Mapping::Identity | Mapping::InverseShape);
-        let free = matches!(self.mapping, Mapping::LogShape { .. } | Mapping::Roughness { .. });
+        let free = matches!(
+            self.mapping,
+            Mapping::LogShape { .. } | Mapping::Roughness { .. } | Mapping::ReflectanceRoot
+        );
         if !searched && !free {
             let n = self.nodes.len();
             if n < 2 {

@@ -97,6 +97,14 @@ pub enum FresnelEntry {
     },
     /// A dielectric with this index of refraction, > 0, relative to the outside.
     Dielectric(f64),
+    /// Dielectrics of all indices of refraction from 1 ≤ `min` on, relative to the outside.
+    Dielectrics {
+        /// Smallest.
+        min: f64,
+        /// Largest; `None` is ∞.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        max: Option<f64>,
+    },
 }
 
 impl FresnelEntry {
@@ -106,7 +114,19 @@ impl FresnelEntry {
         match self {
             Self::Mirror | Self::Schlick(_) => String::new(),
             Self::Conductor { eta, k } => format!("conductor_{}_k_{}", list(eta), list(k)),
-            Self::Dielectric(eta) => format!("dielectric_{eta}"),
+            Self::Dielectric(eta) => format!("eta_{eta}"),
+            Self::Dielectrics { min, max } => {
+                format!("eta_{min}_to_{}", max.unwrap_or(f64::INFINITY))
+            }
+        }
+    }
+
+    /// The indices [min, max] ⊂ [1, ∞] of the dense side over the thin one; `None` of what is no dielectric.
+    pub fn indices(&self) -> Option<[f64; 2]> {
+        match *self {
+            Self::Dielectric(eta) => Some([eta.max(1.0 / eta); 2]),
+            Self::Dielectrics { min, max } => Some([min, max.unwrap_or(f64::INFINITY)]),
+            _ => None,
         }
     }
 }

@@ -39,6 +39,8 @@ pub enum BindError {
     },
     /// A table of a material's own distribution is missing from the set.
     NoTable(String),
+    /// A dielectric whose albedo no table of the set holds: its index, σ and γ.
+    Dielectric([f64; 3]),
     /// An ellipsoid's angle or matrix entry that is infinite or NaN.
     NotFinite(f64),
     /// An ellipsoid's matrix whose columns are linearly dependent to a ratio below 1e-8; the ratio.
@@ -94,6 +96,11 @@ impl fmt::Display for BindError {
                 "material \"{name}\" is a {distribution}: bind a student-t with `student_t` or `material`, others with `radial`"
             ),
             Self::NoTable(name) => write!(f, "table `{name}` is missing from this set; bake it again"),
+            Self::Dielectric([eta, sigma, gamma]) => write!(
+                f,
+                "no table of this set holds the albedo of a dielectric of index {eta} (more than 0) with sigma {sigma} and gamma {gamma}; add \
+                 `fresnel = {{ dielectric = {eta} }}` to the recipe's material, or a range of indices, and bake it again"
+            ),
             Self::NotFinite(x) => {
                 write!(f, "{x}: an ellipsoid's angles (radians) and matrix entries must be finite")
             }

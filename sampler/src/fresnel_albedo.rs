@@ -7,27 +7,40 @@ use alloc::vec::Vec;
 
 use crate::albedo::{self, Albedo, within};
 use crate::albedo_axes::{self, STENCIL, ViewCoordinate, stencil};
-use crate::container::{FresnelEntry, MaterialEntry};
+use crate::container::MaterialEntry;
+use crate::critical::CriticalCoordinate;
+use crate::dielectric_albedo::DielectricAlbedo;
 use crate::error::BindError;
 use crate::student_t::Masking;
-use crate::table::Kind;
+use crate::table::{Kind, Table};
 use crate::tables::Tables;
 
-/// Channels of `fresnel_albedo` tables: of a conductor and of a dielectric.
-pub(crate) const CHANNELS: [&[&str]; 2] = [&["red", "green", "blue"], &["reflection", "reflection_leaving"]];
+/// Channels of `fresnel_albedo` tables.
+pub(crate) const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
-/// N albedos as functions of the view, the γ and σ axes of their table collapsed.
+/// N albedos as functions of the view, the other axes of their table collapsed.
 #[derive(Clone, Debug)]
 pub struct ViewCurve<const N: usize> {
     nodes: Vec<[f32; N]>,
-    view: ViewCoordinate,
+    view: View,
+}
+
+/// The view axis at one material.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum View {
+    Blend(ViewCoordinate),
+    Critical(CriticalCoordinate),
 }
 
 impl<const N: usize> ViewCurve<N> {
     /// The albedos at a view, each in [0, 1]; `cos_theta` outside [0, 1] is taken at the nearer end, NaN at grazing, and beyond
     /// the table's last view, cos θ = 1/(5e4 + 500/σ) in the tables of this version, they are held constant.
     pub fn eval(&self, cos_theta: f32) -> [f32; N] {
-        let (start, weights) = stencil(self.view.clamped(within(cos_theta)), self.nodes.len());
+        let (cos, n) = (within(cos_theta), self.nodes.len());
+        let (start, weights) = match &self.view {
+            View::Blend(view) => stencil(view.clamped(cos), n),
+            View::Critical(view) => view.stencil(f64::from(cos), n),
+        };
         let mut sum = [0.0; N];
         for (node, w) in self.nodes[start..start + STENCIL].iter().zip(weights) {
             for (sum, x) in sum.iter_mut().zip(node) {
@@ -58,8 +71,8 @@ impl<const N: usize> ViewCurve<N> {
 pub enum FresnelAlbedo {
     /// Off a conductor: red, green and blue.
     Conductor(ViewCurve<3>),
-    /// Reflected off a dielectric: seen from outside, and from inside (where `cos_theta` is that of the view inside).
-    Dielectric(ViewCurve<2>),
+    /// Off and through a dielectric.
+    Dielectric(DielectricAlbedo),
 }
 
 impl Tables {
@@ -75,7 +88,8 @@ impl Tables {
         self.albedo(sigma, gamma, masking)
     }
 
-    /// The albedo of a named conductor or dielectric under its exact reflectance, bound as by [`material_albedo`](Self::material_albedo).
+    /// The albedo of a named conductor or dielectric under its exact reflectance, bound as by [`material_albedo`](Self::material_albedo); of a
+    /// range of indices the one in the middle of their F0^¼.
     ///
     /// Below σ = 1e-8 it is held at what it is there.
     ///
@@ -84,63 +98,68 @@ impl Tables {
     pub fn material_fresnel_albedo(&self, name: &str) -> Result<FresnelAlbedo, BindError> {
         let entry = self.student_t_entry(name)?;
         let (sigma, gamma, masking) = middle(entry);
-        let label = entry.fresnel.as_ref().map_or_else(Default::default, FresnelEntry::label);
-        let start = format!("{}_{}_{label}", Kind::FresnelAlbedo.name(), masking.name().replace('-', "_"));
-        if label.is_empty() {
-            return Err(BindError::NoTable(start));
+        let Some(fresnel) = entry.fresnel.filter(|entry| !entry.label().is_empty()) else {
+            return Err(BindError::NoTable(Kind::FresnelAlbedo.name().to_string()));
+        };
+        if let Some(eta) = fresnel.middle_index() {
+            return Ok(FresnelAlbedo::Dielectric(self.dielectric_albedo(sigma, gamma, eta, masking)?));
         }
-        Ok(match entry.fresnel {
-            Some(FresnelEntry::Dielectric(_)) => {
-                FresnelAlbedo::Dielectric(self.view_curve(&start, sigma, gamma)?)
-            }
-            _ => FresnelAlbedo::Conductor(self.view_curve(&start, sigma, gamma)?),
-        })
-    }
-
-    /// The table whose name begins with `start` and that covers (σ, γ), collapsed there.
-    fn view_curve<const N: usize>(
-        &self,
-        start: &str,
-        sigma: f64,
-        gamma: f64,
-    ) -> Result<ViewCurve<N>, BindError> {
         // The domain follows the reflectance, so that one index is not another's beginning.
-        let named = format!("{start}_gamma_");
-        for table in self
-            .tables()
-            .iter()
-            .filter(|table| table.kind == Kind::FresnelAlbedo && table.name.starts_with(&named))
-        {
-            let [shapes, roughnesses, views] = &table.axes[..] else { unreachable!("validated on load") };
-            let at = sigma.max(albedo_axes::roughness(roughnesses, roughnesses.nodes[0]));
-            let reached = |_: &Vec<(usize, f64)>| albedo::reaches(roughnesses, sigma);
-            let (Some(rows), Some(columns), true) = (
-                albedo_axes::weights(shapes, albedo_axes::shape_coordinate(shapes, gamma)),
-                albedo_axes::weights(roughnesses, albedo_axes::roughness_coordinate(roughnesses, at))
-                    .filter(reached),
-                table.channels.len() == N,
-            ) else {
-                continue;
-            };
-            let mut nodes = vec![[0.0_f32; N]; views.len()];
-            for &(i, a) in &rows {
-                for &(j, b) in &columns {
-                    let row = &table.values[(i * roughnesses.len() + j) * views.len() * N..];
-                    for (into, node) in nodes.iter_mut().zip(row.chunks_exact(N)) {
-                        for (x, value) in into.iter_mut().zip(node) {
-                            *x += (a * b) as f32 * value;
-                        }
-                    }
+        let masking_name = masking.name().replace('-', "_");
+        let start = format!("{}_{masking_name}_{}_gamma_", Kind::FresnelAlbedo.name(), fresnel.label());
+        let tables = self.tables().iter();
+        let found = tables
+            .filter(|table| table.kind == Kind::FresnelAlbedo && table.name.starts_with(&start))
+            .find_map(|table| Some((table, at_material(table, sigma, gamma)?)));
+        let Some((table, (at, sigma))) = found else { return Err(BindError::NoTable(start)) };
+        let view = View::Blend(ViewCoordinate::new(&table.axes[2], sigma, gamma));
+        Ok(FresnelAlbedo::Conductor(ViewCurve::new(table, &at, view)))
+    }
+}
+
+/// Nodes of an axis with their weights.
+pub(crate) type Weights = Vec<(usize, f64)>;
+
+/// Weights along the axes γ and σ of a table, and the σ that they are at: no less than the first of a table that reaches down to none. `None`
+/// if it does not cover them.
+pub(crate) fn at_material(table: &Table, sigma: f64, gamma: f64) -> Option<(Vec<Weights>, f64)> {
+    let [shapes, roughnesses, ..] = &table.axes[..] else { unreachable!("validated on load") };
+    let at = sigma.max(albedo_axes::roughness(roughnesses, roughnesses.nodes[0]));
+    if !albedo::reaches(roughnesses, sigma) {
+        return None;
+    }
+    let rows = albedo_axes::weights(shapes, albedo_axes::shape_coordinate(shapes, gamma))?;
+    let columns = albedo_axes::weights(roughnesses, albedo_axes::roughness_coordinate(roughnesses, at))?;
+    Some((vec![rows, columns], at))
+}
+
+impl<const N: usize> ViewCurve<N> {
+    /// The values of a table of N channels, its axes but the last collapsed.
+    pub(crate) fn new(table: &Table, at: &[Weights], view: View) -> Self {
+        let views = table.axes[at.len()].len();
+        let mut nodes = vec![[0.0_f32; N]; views];
+        // All combinations of the nodes along the axes, as one index and the product of the weights.
+        let mut rows = vec![(0, 1.0)];
+        for (axis, weights) in table.axes.iter().zip(at) {
+            let all = rows
+                .iter()
+                .flat_map(|&(row, a)| weights.iter().map(move |&(i, b)| (row * axis.len() + i, a * b)));
+            rows = all.collect();
+        }
+        for (row, weight) in rows {
+            let row = table.values[row * views * N..].chunks_exact(N);
+            for (into, node) in nodes.iter_mut().zip(row) {
+                for (x, value) in into.iter_mut().zip(node) {
+                    *x += weight as f32 * value;
                 }
             }
-            return Ok(ViewCurve { nodes, view: ViewCoordinate::new(views, at, gamma) });
         }
-        Err(BindError::NoTable(start.to_string()))
+        Self { nodes, view }
     }
 }
 
 /// σ, γ and masking in the middle of a material's ranges.
-fn middle(entry: &MaterialEntry) -> (f64, f64, Masking) {
+pub(crate) fn middle(entry: &MaterialEntry) -> (f64, f64, Masking) {
     let middle = |[min, max]: [f64; 2]| if min == max { min } else { 0.5 * (min + max) };
     let [x, y] = entry.sigma.map(middle);
     let sigma = if x == y { x } else { libm::sqrt(x * y) };

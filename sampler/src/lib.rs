@@ -20,6 +20,8 @@ mod bounded;
 mod cells;
 mod compensation;
 mod container;
+mod critical;
+mod dielectric_albedo;
 mod ellipsoid;
 mod error;
 mod fresnel_albedo;
@@ -41,6 +43,7 @@ pub use compensation::{f82_tint_average, fresnel_average, schlick_average};
 pub use container::{
     FORMAT, FresnelEntry, MaterialEntry, Precision, Provenance, VERSION, describe, encode, reassemble,
 };
+pub use dielectric_albedo::DielectricAlbedo;
 pub use ellipsoid::{Ellipsoid, Skew};
 pub use error::{BatchError, BindError, LoadError};
 pub use fresnel_albedo::{FresnelAlbedo, ViewCurve};

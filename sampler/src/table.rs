@@ -39,6 +39,8 @@ pub enum Kind {
     AlbedoAverage,
     /// Directional albedo over γ × σ × view under an exact Fresnel term, which its name holds.
     FresnelAlbedo,
+    /// The same of a dielectric, reflected and transmitted, over γ × σ × η × view, seen from one of its sides.
+    DielectricAlbedo,
 }
 
 impl Kind {
@@ -56,12 +58,13 @@ impl Kind {
             Self::Albedo => "albedo",
             Self::AlbedoAverage => "albedo_average",
             Self::FresnelAlbedo => "fresnel_albedo",
+            Self::DielectricAlbedo => "dielectric_albedo",
         }
     }
 
     /// Whether it is a directional albedo or the average of one: what depends on light and view, not on the view alone.
     pub const fn is_albedo(self) -> bool {
-        matches!(self, Self::Albedo | Self::AlbedoAverage | Self::FresnelAlbedo)
+        matches!(self, Self::Albedo | Self::AlbedoAverage | Self::FresnelAlbedo | Self::DielectricAlbedo)
     }
 
     /// Names of the axes, slowest first.
@@ -76,6 +79,7 @@ impl Kind {
             Self::RadialDensity => &["slope"],
             Self::Albedo | Self::FresnelAlbedo => &["gamma", "sigma", "view"],
             Self::AlbedoAverage => &["gamma", "sigma"],
+            Self::DielectricAlbedo => &["gamma", "sigma", "eta", "view"],
         }
     }
 }
@@ -140,7 +144,8 @@ impl Table {
     fn validate_albedo(&self) -> Result<(), LoadError> {
         let fail = |why: &str| Err(LoadError::Invalid(format!("table `{}`: {why}", self.name)));
         let known: &[&[&str]] = match self.kind {
-            Kind::FresnelAlbedo => &crate::fresnel_albedo::CHANNELS,
+            Kind::FresnelAlbedo => &[&crate::fresnel_albedo::CHANNELS],
+            Kind::DielectricAlbedo => &crate::dielectric_albedo::CHANNELS,
             _ => &[&crate::albedo::CHANNELS],
         };
         if !known.iter().any(|known| self.channels == *known) {
@@ -151,12 +156,27 @@ impl Table {
         }
         let mapped = matches!(self.axes[0].mapping, Mapping::LogShape { .. })
             && matches!(self.axes[1].mapping, Mapping::Roughness { .. })
-            && self.axes.get(2).is_none_or(|view| matches!(view.mapping, Mapping::ViewBlend { .. }));
+            && match &self.axes[2..] {
+                [] => true,
+                [view] => matches!(view.mapping, Mapping::ViewBlend { .. }),
+                [eta, view] => {
+                    eta.mapping == Mapping::ReflectanceRoot
+                        && if self.channels == crate::dielectric_albedo::CHANNELS[0] {
+                            matches!(view.mapping, Mapping::ViewBlend { .. })
+                        } else {
+                            matches!(view.mapping, Mapping::CriticalBlend { .. }) && view.nodes.len() % 2 == 1
+                        }
+                }
+                _ => false,
+            };
         if !mapped || self.axes.iter().any(|axis| axis.interpolation != Interpolation::Lagrange6) {
-            return fail("an axis has a mapping or interpolation that this kind does not use");
+            return fail(
+                "an axis has a mapping, a number of nodes or an interpolation that this kind does not use",
+            );
         }
-        if self.axes.get(2).is_some_and(|view| view.nodes.len() < 6) {
-            return fail("axis `view` has fewer than six nodes");
+        let least = |view: &Axis| if matches!(view.mapping, Mapping::CriticalBlend { .. }) { 11 } else { 6 };
+        if self.axes[2..].last().is_some_and(|view| view.nodes.len() < least(view)) {
+            return fail("axis `view` has fewer than six nodes, or eleven in two halves");
         }
         // Moments less a mirror's, and each of them is in [0, 1]; a share of light.
         if self.values.iter().all(|x| (-1.0..=1.0).contains(x)) {
@@ -201,7 +221,9 @@ impl Table {
                     && matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: true, .. })
             }
             Kind::RadialDensity => self.axes[0].mapping == Mapping::HalfTangent,
-            Kind::Albedo | Kind::AlbedoAverage | Kind::FresnelAlbedo => unreachable!("validated apart"),
+            Kind::Albedo | Kind::AlbedoAverage | Kind::FresnelAlbedo | Kind::DielectricAlbedo => {
+                unreachable!("validated apart")
+            }
         };
         if !mapped {
             return fail("an axis has a mapping that this kind does not use");

@@ -14,6 +14,7 @@ use microfacet_sampler::{
     Axis, FresnelEntry, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
 };
 
+use super::dielectric_albedo;
 use crate::scene::Interval;
 use crate::spec::{GAMMA_MIN, Quality};
 
@@ -86,7 +87,7 @@ impl Domain {
 pub struct AlbedoSpec {
     /// What the tables are for.
     pub domain: Domain,
-    /// An exact reflectance, baked by [`fresnel_albedo`](super::fresnel_albedo) into one table; `None` are the moments.
+    /// An exact reflectance, baked by [`fresnel_albedo`](super::fresnel_albedo) or [`dielectric_albedo`]; `None` are the moments.
     pub fresnel: Option<FresnelEntry>,
     /// The forms; both cost hardly more than one.
     pub maskings: Vec<Masking>,
@@ -96,6 +97,8 @@ pub struct AlbedoSpec {
     pub roughnesses: Vec<f64>,
     /// How many nodes the view axis has, six or more.
     pub views: usize,
+    /// How many nodes an axis of all indices of refraction has.
+    pub indices: usize,
     /// Error aimed at in every node.
     pub tolerance: f64,
     /// How values are stored.
@@ -107,10 +110,10 @@ impl AlbedoSpec {
     ///
     /// Draft tables err by up to 1e-2.
     pub fn general(quality: Quality, precision: Precision) -> Self {
-        let ([shapes, roughnesses, views], tolerance) = match quality {
-            Quality::Draft => ([16, 22, 20], 1e-5),
-            Quality::Default => ([22, 35, 26], 1e-6),
-            Quality::High => ([44, 68, 56], 1e-7),
+        let ([shapes, roughnesses, views, indices], tolerance) = match quality {
+            Quality::Draft => ([16, 22, 20, 20], 1e-5),
+            Quality::Default => ([22, 35, 26, 32], 1e-6),
+            Quality::High => ([44, 68, 56, 48], 1e-7),
         };
         Self {
             domain: Domain::GENERAL,
@@ -119,6 +122,7 @@ impl AlbedoSpec {
             shapes: even(shape(f64::INFINITY), shape(GAMMA_MIN), shapes),
             roughnesses: even(roughness(SIGMA_MIN), roughness(SIGMA_MAX), roughnesses),
             views,
+            indices,
             tolerance,
             precision,
         }
@@ -140,9 +144,15 @@ impl AlbedoSpec {
         Self { domain, maskings: maskings.into(), shapes, roughnesses, ..self.clone() }
     }
 
-    /// Places (γ, σ, view) at which the albedo is integrated.
+    /// Places (γ, σ, view) at which the albedo is integrated; of a dielectric (γ, σ, η, view), of both sides together.
     pub fn nodes(&self) -> usize {
-        self.shapes.len() * self.roughnesses.len() * self.views
+        let materials = self.shapes.len() * self.roughnesses.len();
+        match self.fresnel.as_ref().and_then(FresnelEntry::indices) {
+            Some(ends) => {
+                materials * dielectric_albedo::indices(self.indices, ends).len() * (3 * self.views - 1)
+            }
+            None => materials * self.views,
+        }
     }
 
     /// Bytes of the values as they are stored.
@@ -151,8 +161,13 @@ impl AlbedoSpec {
             Precision::F32 => 4,
             Precision::F16 | Precision::U16 => 2,
         };
-        if let Some(fresnel) = &self.fresnel {
-            return one * self.maskings.len() * self.nodes() * super::fresnel_albedo::channels(fresnel).len();
+        match &self.fresnel {
+            None => {}
+            Some(fresnel) if fresnel.indices().is_none() => {
+                return 3 * one * self.maskings.len() * self.nodes();
+            }
+            // Two channels from one side, and as many and twice the views from the other.
+            Some(_) => return 2 * one * self.maskings.len() * self.nodes(),
         }
         // Averages are always in single precision.
         3 * self.maskings.len() * (one * self.nodes() + 4 * self.shapes.len() * self.roughnesses.len())
@@ -166,7 +181,7 @@ fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
 }
 
 /// The nodes that the polynomial reads anywhere in [from, to]; a single value is a node itself.
-fn cut(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
+pub(super) fn cut(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
     if from == to {
         return vec![from];
     }

@@ -5,6 +5,7 @@
 
 pub mod albedo;
 mod conditional;
+pub mod dielectric_albedo;
 pub mod fresnel_albedo;
 mod radial;
 mod shadowing;

@@ -150,7 +150,12 @@ fn want(
 
 /// A reflectance that needs a table of its own.
 fn exact_fresnel(material: &Material) -> Option<FresnelEntry> {
-    material.fresnel.filter(|entry| !entry.label().is_empty())
+    let fresnel = material.fresnel.filter(|entry| !entry.label().is_empty())?;
+    // Tables hold both sides of an interface.
+    Some(match fresnel {
+        FresnelEntry::Dielectric(eta) if eta < 1.0 => FresnelEntry::Dielectric(1.0 / eta),
+        other => other,
+    })
 }
 
 /// Few domains that cover all of `wants` with no more nodes in all.

@@ -60,9 +60,14 @@ pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
 fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
     // Microseconds a node and a point of the certificate: fitted to `time microfacet-bake bake --threads 1 --no-cache` of the draft and
     // the default set, of one material and of a range of sigma, which they meet within an eighth.
-    let [node, point] = [520.0, 720.0];
-    let points = albedo::points(spec.shapes.len());
-    1e-6 * (node * spec.nodes() as f64 + point * points as f64)
+    let points = albedo::points(spec.shapes.len()) as f64;
+    // Both sides of a dielectric, what is reflected and what is transmitted, each with a kink; measured at half as many points each.
+    let ([node, point], points) = match spec.fresnel.as_ref() {
+        Some(fresnel) if fresnel.indices().is_some() => ([4500.0, 4500.0], points),
+        Some(_) => ([520.0, 720.0], 0.5 * points),
+        None => ([520.0, 720.0], points),
+    };
+    1e-6 * (node * spec.nodes() as f64 + point * points)
 }
 
 /// Seconds that one thread bakes and certifies a table.

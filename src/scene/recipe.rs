@@ -13,6 +13,7 @@
 //! "gtr"`, `c = 0.2`, `gamma = 1.5`, or `distribution = { measured = "steel.csv" }` for a CSV of angles in radians and D. Exact members of the
 //! family (Beckmann, Trowbridge–Reitz, Blinn–Phong, Hyper-Cauchy) are read as such.
 //!
+//! The index of a dielectric may be a range, `{ dielectric = { min = 1.0, max = "inf" } }`, whose tables have an axis of indices.
 //! `fresnel` and `masking` may be absent. The ends of an anisotropic roughness may be ranges as
 //! well: `sigma = [{ min = 0.1, max = 0.2 }, 0.3]`.
 
@@ -73,6 +74,10 @@ fn entry(material: &Material) -> String {
                 format!("{{ conductor = {{ eta = {eta:?}, k = {k:?} }} }}")
             }
             Fresnel::Dielectric(eta) => format!("{{ dielectric = {eta:?} }}"),
+            Fresnel::Dielectrics { min, max } => {
+                let eta = Interval { min, max: max.unwrap_or(f64::INFINITY) };
+                format!("{{ dielectric = {} }}", range(eta))
+            }
         };
         let _ = writeln!(text, "fresnel = {value}");
     }
@@ -337,7 +342,8 @@ impl Source<'_> {
     fn fresnel(&self, value: &Value<'_>) -> Result<Fresnel, SceneError> {
         let place = self.place(value.span());
         let forms = "fresnel must be \"mirror\", { schlick = F0 }, \
-                     { conductor = { eta = [r, g, b], k = [r, g, b] } } or { dielectric = eta }";
+                     { conductor = { eta = [r, g, b], k = [r, g, b] } } or { dielectric = eta }, a number or \
+                     { min = .., max = .. }";
         if value.get_ref().as_str() == Some("mirror") {
             return Ok(Fresnel::Mirror);
         }
@@ -352,6 +358,13 @@ impl Source<'_> {
                 let f0 = self.number(value, "schlick")?;
                 self.check(value, (0.0..=1.0).contains(&f0), "schlick", "a reflectance from 0 to 1")?;
                 Ok(Fresnel::Schlick(f0))
+            }
+            "dielectric" if value.get_ref().is_table() => {
+                let eta = self.interval(value, "dielectric")?;
+                let valid = eta.min >= 1.0 && eta.min < f64::INFINITY && eta.min < eta.max;
+                let what = "a range of indices inside over outside, from 1 or more up to \"inf\"; both sides are baked";
+                self.check(value, valid, "dielectric", what)?;
+                Ok(Fresnel::Dielectrics { min: eta.min, max: (eta.max < f64::INFINITY).then_some(eta.max) })
             }
             "dielectric" => {
                 let eta = self.index(value, "dielectric")?;

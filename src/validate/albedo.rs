@@ -34,8 +34,10 @@ fn measure(
     let errors = references
         .par_iter()
         .map(|references| match table.kind {
-            Kind::Albedo => references.iter().map(|at| directional(tables, masking, at)).collect(),
-            _ => references.iter().step_by(4).map(|at| average(tables, masking, at)).collect(),
+            Kind::Albedo => {
+                references.iter().map(|at| directional(tables, masking, domain.sigma, at)).collect()
+            }
+            _ => references.iter().step_by(4).map(|at| average(tables, masking, domain.sigma, at)).collect(),
         })
         .collect::<Result<Vec<Vec<Point>>, BindError>>()?;
     let all: Vec<Point> = errors.into_iter().flatten().collect();
@@ -179,12 +181,22 @@ pub(super) fn place(i: usize, sigma: Interval) -> (f64, f32) {
     (sigma, cos as f32)
 }
 
-/// Whether a point is outside the domain that the figures are promised for.
-pub(super) fn outside(sigma: f64, cos: f32) -> bool {
-    f64::from(cos) < DOMAIN.1 || sigma < DOMAIN.0
+/// Smallest σ that the figures are promised for, of tables for these: of materials that are all smoother there is no other.
+fn least(sigma: Interval) -> f64 {
+    DOMAIN.0.min(sigma.max)
 }
 
-fn directional(tables: &Tables, masking: Masking, at: &Reference) -> Result<Point, BindError> {
+/// Whether a point is outside the domain that the figures are promised for.
+pub(super) fn outside(range: Interval, sigma: f64, cos: f32) -> bool {
+    f64::from(cos) < DOMAIN.1 || sigma < least(range)
+}
+
+fn directional(
+    tables: &Tables,
+    masking: Masking,
+    range: Interval,
+    at: &Reference,
+) -> Result<Point, BindError> {
     let &Reference { gamma, sigma, cos, exact } = at;
     let exact = exact.of(model_masking(masking));
     let got = tables.albedo(sigma, gamma, masking)?.moments(cos);
@@ -192,16 +204,20 @@ fn directional(tables: &Tables, masking: Masking, at: &Reference) -> Result<Poin
     let error = |i: usize| (got[i] - exact[i]).abs();
     let total = (got[0] + got[1] - exact[0] - exact[1]).abs();
     let error = [error(0), error(1), error(2), total];
-    Ok(Point { error, at: [sigma, gamma, f64::from(cos)], outside: outside(sigma, cos) })
+    Ok(Point { error, at: [sigma, gamma, f64::from(cos)], outside: outside(range, sigma, cos) })
 }
 
 /// Averages against quadrature of the directional albedo at the same material: what a furnace sees.
-fn average(tables: &Tables, masking: Masking, at: &Reference) -> Result<Point, BindError> {
+fn average(tables: &Tables, masking: Masking, range: Interval, at: &Reference) -> Result<Point, BindError> {
     let &Reference { gamma, sigma, .. } = at;
     let got = tables.average_moments(sigma, gamma, masking)?;
     let exact = tables.albedo(sigma, gamma, masking)?.average_moments();
     let error = |a: f32, b: f32| f64::from((a - b).abs());
     let (scale, bias) = (error(got.scale, exact.scale), error(got.bias, exact.bias));
     let (f82, total) = (error(got.f82, exact.f82), error(got.total(), exact.total()));
-    Ok(Point { error: [scale, bias, f82, total], at: [sigma, gamma, f64::NAN], outside: sigma < DOMAIN.0 })
+    Ok(Point {
+        error: [scale, bias, f82, total],
+        at: [sigma, gamma, f64::NAN],
+        outside: sigma < least(range),
+    })
 }
