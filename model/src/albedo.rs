@@ -12,6 +12,8 @@
 //! quotient, finite at grazing. Everything is smooth inside the disc; what varies quickly are a layer of width σ along the rim, where l grazes,
 //! and near grazing views the turn of R(φ) at right angles to v. Both are stretched by a hyperbolic sine whose scale is known.
 
+mod skewed;
+
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use crate::error::ParameterError;
@@ -25,7 +27,7 @@ use crate::student_t::Masking;
 const LEVELS: [usize; 7] = [5, 7, 10, 14, 20, 28, 40];
 
 /// Share of the visible slopes that is left out, relative to the tolerance.
-const CUT: f64 = 1e-3;
+pub(crate) const CUT: f64 = 1e-3;
 /// Slopes beyond e³⁴⁰ have no square.
 const LARGEST_RAPIDITY: f64 = 340.0;
 /// Widest panel along a ray, in the unit of [`Shape::unit`]; the lobe's own singularities are at ±iπ/(2√s), 1.1 or more away.

@@ -13,12 +13,21 @@ pub enum ParameterError {
     Exponent(f64),
     /// `!(cos >= 0 && cos <= 1)`: the cosine of a direction above the surface to the macro normal.
     CosTheta(f64),
+    /// The azimuth of a direction is infinite or NaN.
+    Phi(f64),
     /// `!(eta > 0)` or infinite: a relative refractive index.
     Eta(f64),
     /// `!(k >= 0)` or infinite: the extinction of a conductor.
     Extinction(f64),
     /// `!(x >= 0 && x <= 1)`: a reflectance or a tint.
     Reflectance(f64),
+    /// `given != prepared`: a lobe was given to an integrator that was prepared for another shape.
+    OtherGamma {
+        /// Shape of the lobe.
+        given: f64,
+        /// Shape of the integrator.
+        prepared: f64,
+    },
 }
 
 impl fmt::Display for ParameterError {
@@ -40,6 +49,7 @@ impl fmt::Display for ParameterError {
                     "cos_theta = {x}: must lie in [0, 1]; flip the frame for directions below the surface"
                 )
             }
+            Self::Phi(x) => write!(f, "phi = {x}: an azimuth must be finite, in radians"),
             Self::Eta(x) => {
                 write!(
                     f,
@@ -53,6 +63,12 @@ impl fmt::Display for ParameterError {
                 )
             }
             Self::Reflectance(x) => write!(f, "reflectance = {x}: a reflectance or tint must lie in [0, 1]"),
+            Self::OtherGamma { given, prepared } => {
+                write!(
+                    f,
+                    "gamma = {given}: the integrator was prepared for {prepared}; prepare one for each shape"
+                )
+            }
         }
     }
 }

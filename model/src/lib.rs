@@ -8,6 +8,7 @@
 mod albedo;
 mod below;
 pub mod classic;
+mod converge;
 mod ellipsoid;
 mod error;
 mod exact;

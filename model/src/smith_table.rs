@@ -53,6 +53,15 @@ impl SmithTable {
         self.smooth(length2 / rho2).map_or(1.0, |h| cos_unit / (h + 0.5 * cos_unit))
     }
 
+    /// Projected area of the microsurface, ∫ (w·m)⁺ D, for a direction w of any height `cos` in unit space and horizontal length
+    /// squared `rho2`, not both 0; to 1e-13 of its length.
+    #[inline]
+    pub(crate) fn area(&self, cos: f64, rho2: f64) -> f64 {
+        let length2 = cos * cos + rho2;
+        let half = self.smooth(length2 / rho2).map_or(0.5 * cos.abs(), |h| h * length2.sqrt());
+        (half + 0.5 * cos).max(0.0)
+    }
+
     #[inline]
     fn smooth(&self, y: f64) -> Option<f64> {
         let bits = y.to_bits();

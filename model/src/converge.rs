@@ -1,0 +1,28 @@
+//! Quadrature at rising orders, until two of them agree.
+
+use crate::albedo::CUT;
+use crate::panels::Gauss;
+
+/// The integral at the first order that is accurate enough, or else the last, and an estimate of its error from above.
+///
+/// The estimate is `factor` times the largest difference between the last two orders, and what the cut leaves out, which no order sees.
+pub(crate) fn converge<const N: usize>(
+    rules: &[Gauss],
+    tolerance: f64,
+    factor: f64,
+    integrate: impl Fn(&Gauss) -> [[f64; N]; 2],
+) -> ([[f64; N]; 2], f64) {
+    let mut before = integrate(&rules[0]);
+    let mut error = f64::INFINITY;
+    for rule in &rules[1..] {
+        let now = integrate(rule);
+        let pairs = now.iter().flatten().zip(before.iter().flatten());
+        let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        error = factor * change + 10.0 * CUT * tolerance;
+        before = now;
+        if error < tolerance {
+            break;
+        }
+    }
+    (before, error)
+}
