@@ -24,7 +24,7 @@ use crate::smith_table::SmithTable;
 use crate::student_t::Masking;
 
 /// Points a panel at successive levels of accuracy; a level's error is estimated from the one before.
-const LEVELS: [usize; 7] = [5, 7, 10, 14, 20, 28, 40];
+pub(crate) const LEVELS: [usize; 7] = [5, 7, 10, 14, 20, 28, 40];
 
 /// Share of the visible slopes that is left out, relative to the tolerance.
 pub(crate) const CUT: f64 = 1e-3;

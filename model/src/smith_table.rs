@@ -23,18 +23,23 @@ pub(crate) struct SmithTable {
 
 impl SmithTable {
     pub(crate) fn new(shape: &Shape) -> Self {
+        Self::from_excess(|z| shape.excess(shape.unit(z)), 1e-13)
+    }
+
+    /// The same from E[(X − z)⁺] = z Λ(z) of any symmetric distribution of unit slopes; from where Λ falls below `unmasked` on, G1 is 1.
+    pub(crate) fn from_excess(excess: impl Fn(f64) -> f64, unmasked: f64) -> Self {
         let mut pieces = Vec::new();
         let mut low = 1.0;
         for _ in 0..OCTAVES {
             for i in 0..PIECES {
                 let width = low / PIECES as f64;
                 let start = low + width * i as f64;
-                pieces.push(interpolate(|t| smooth(shape, start + width * 0.5 * (1.0 + t))));
+                pieces.push(interpolate(|t| smooth(&excess, start + width * 0.5 * (1.0 + t))));
             }
             low *= 2.0;
             // From here on 1 − G1 = Λ is nothing.
             let z = low.sqrt();
-            if shape.lambda(shape.unit(z)) < 1e-13 {
+            if excess(z) < unmasked * z {
                 break;
             }
         }
@@ -78,9 +83,9 @@ impl SmithTable {
 }
 
 /// h(z)/√y at y = 1 + z².
-fn smooth(shape: &Shape, y: f64) -> f64 {
+fn smooth(excess: impl Fn(f64) -> f64, y: f64) -> f64 {
     let z = (y - 1.0).sqrt();
-    (shape.excess(shape.unit(z)) + 0.5 * z) / y.sqrt()
+    (excess(z) + 0.5 * z) / y.sqrt()
 }
 
 /// Power coefficients of the polynomial through f at the Chebyshev points of [−1, 1].

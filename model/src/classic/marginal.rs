@@ -53,6 +53,18 @@ impl<'a> Marginal<'a> {
         self.reach
     }
 
+    /// The angles at which D has a corner.
+    pub(crate) fn corners(&self) -> Vec<f64> {
+        self.d.corners()
+    }
+
+    /// The unit slope at which D has fallen to half of its peak; ∞ if it never does.
+    pub(crate) fn half_slope(&self) -> f64 {
+        // A half angle within rounding of the horizon may have a negative tangent.
+        let slope = self.d.half_angle().map(libm::tan).filter(|slope| *slope > 0.0);
+        slope.map_or(f64::INFINITY, |slope| slope / self.sigma)
+    }
+
     /// D per steradian at the unit slope r.
     pub fn d(&self, r: f64) -> f64 {
         self.d.d(libm::atan(self.sigma * r))

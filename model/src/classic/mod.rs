@@ -3,6 +3,7 @@
 //! Those that are members of the Student-t family (Beckmann, Trowbridge–Reitz, Blinn–Phong, Hyper-Cauchy) are a [`Member`]; the others
 //! have a file each. [`Isotropic`] is what they have in common.
 
+mod albedo;
 mod ashikhmin_shirley;
 mod gauss;
 mod gtr;
@@ -17,6 +18,7 @@ use core::fmt;
 use crate::quadrature;
 use crate::student_t::StudentT;
 
+pub use albedo::RadialAlbedo;
 pub use ashikhmin_shirley::AshikhminShirley;
 pub use gauss::Gauss;
 pub use gtr::Gtr;
@@ -60,6 +62,11 @@ pub trait Isotropic: Sync {
     /// The largest θ at which D is not zero.
     fn support(&self) -> f64 {
         FRAC_PI_2
+    }
+
+    /// The angles at which D has a corner or a jump, ascending; none for smooth distributions.
+    fn corners(&self) -> Vec<f64> {
+        Vec::new()
     }
 
     /// β_half: the smallest angle at which D has fallen to half of D(0); `None` if it never does.

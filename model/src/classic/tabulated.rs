@@ -145,6 +145,10 @@ impl Isotropic for Tabulated {
         self.theta[self.theta.len() - 1]
     }
 
+    fn corners(&self) -> Vec<f64> {
+        self.theta.clone()
+    }
+
     fn cdf(&self, theta: f64) -> f64 {
         let theta = theta.clamp(0.0, self.support());
         let i = self.at(theta);
