@@ -85,8 +85,8 @@ impl AlbedoIntegrator {
     /// minute, and it is taken as 0 where that area underflows.
     ///
     /// The clamp is a kink, and a few views miss the tolerance even at the highest order; `error` says so. Measured at 1e-5 over 8,000
-    /// views (σ from 0.01 to 3, γ from 1.501 to ∞, mean slopes up to four times σ): 5 estimates above it, 3.6e-5 the largest, and at
-    /// most 6.7e-6 from finer quadrature.
+    /// views (σ from 0.01 to 3, γ from 1.501 to ∞, mean slopes up to four times σ): 5 estimates above it, 3.6e-5 the largest. Of 1,142
+    /// views compared with finer quadrature none differs by more than 6.7e-6, and 3 by more than their estimate.
     ///
     /// # Errors
     /// [`ParameterError::OtherGamma`] if the ellipsoid has another shape than the integrator, [`ParameterError::CosTheta`] unless
