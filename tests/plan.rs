@@ -333,7 +333,7 @@ fn the_command_says_what_it_did_not_do() {
             "{output:?}"
         );
     }
-    assert!(!at.join("empty/tables.safetensors").exists());
+    assert!(!at.join("empty").exists());
 }
 
 #[test]
@@ -348,4 +348,32 @@ fn budgets_that_cannot_be_met_are_refused() {
     assert!(with(&["--max-bytes", "100"]).contains("100 bytes"));
     assert!(with(&["--embedded", "--max-error", "1e-6"]).contains("compiled in"));
     assert!(refused(at, &["plan", "absent.toml"]).contains("absent.toml"));
+}
+
+#[test]
+fn a_refused_bake_leaves_no_folder_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("bad.toml"), "[[material]]\n").unwrap();
+    std::fs::write(at.join("heavy.toml"), recipe(&[["heavy", "0.3", "1.5005"]])).unwrap();
+    std::fs::write(at.join("good.toml"), recipe(&MIXED[..1])).unwrap();
+    let refusals: [&[&str]; 4] = [
+        &["bad.toml"],
+        &["heavy.toml"],
+        &["good.toml", "--max-bytes", "100"],
+        &["good.toml", "--quality", "draft", "--max-memory", "1K"],
+    ];
+    std::fs::create_dir(at.join("mine")).unwrap();
+    for refusal in refusals {
+        let to = |out| refused(at, &[&["bake"], refusal, &["--out", out]].concat());
+        for out in ["new", "new/and/deep", "mine/new"] {
+            to(out);
+            assert!(!at.join("new").exists() && !at.join("mine/new").exists(), "{refusal:?} {out}");
+        }
+        // What was there before stays.
+        to("mine");
+        assert!(at.join("mine").is_dir(), "{refusal:?}");
+    }
+    json(at, &["bake", "good.toml", "--out", "new/and/deep", "--quality", "draft"]);
+    assert!(at.join("new/and/deep/tables.safetensors").exists());
 }

@@ -11,11 +11,14 @@ use super::{Format, SET_FILE, StoreError, Written, files, read_file};
 
 /// A folder to write a set into, locked against every other bake until it is dropped.
 ///
-/// The lock ends with the process, however it ends, and leaves nothing behind.
+/// The lock ends with the process, however it ends, and leaves nothing behind. A folder that was made for the set and got none, since the
+/// bake was refused, goes when this is dropped.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    _lock: File,
+    /// Folders that were not there before, the innermost first.
+    made: Vec<PathBuf>,
+    lock: Option<File>,
 }
 
 impl OutputFolder {
@@ -29,11 +32,18 @@ impl OutputFolder {
         if path.exists() && !path.is_dir() {
             return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, "is a file; name a folder")));
         }
+        let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+        let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let mut this = Self { path: path.into(), made, lock: None };
         std::fs::create_dir_all(path).map_err(failed)?;
-        let lock = lock_file(path).map_err(failed)?;
+        let lock = this.lock.insert(lock_file(path).map_err(failed)?);
         match lock.try_lock() {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(StoreError::InUse(path.into())),
+            Err(TryLockError::WouldBlock) => {
+                // Whoever holds it needs it.
+                this.made.clear();
+                return Err(StoreError::InUse(path.into()));
+            }
             // Some network file systems have no locks; the files are still replaced as a whole.
             Err(TryLockError::Error(why)) if why.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(why)) => return Err(failed(why)),
@@ -41,7 +51,7 @@ impl OutputFolder {
         finish(path).map_err(failed)?;
         // Now rather than after an hour of baking.
         tempfile::tempfile_in(path).map_err(failed)?;
-        Ok(Self { path: path.into(), _lock: lock })
+        Ok(this)
     }
 
     /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table. A folder holds one set: tables of an earlier one go, other
@@ -78,6 +88,20 @@ impl OutputFolder {
     }
 }
 
+impl Drop for OutputFolder {
+    fn drop(&mut self) {
+        // A folder that holds anything cannot be removed, and stays as it is.
+        if !cfg!(unix) && !self.made.is_empty() {
+            self.lock = None;
+            let _ = std::fs::remove_file(self.path.join(LOCK_FILE));
+        }
+        self.made.iter().all(|folder| std::fs::remove_dir(folder).is_ok());
+    }
+}
+
+/// Name of the file that is locked where a folder itself cannot be.
+const LOCK_FILE: &str = ".microfacet-bake.lock";
+
 /// What the lock is taken on: the folder itself, which needs no file of its own.
 #[cfg(unix)]
 fn lock_file(folder: &Path) -> io::Result<File> {
@@ -87,5 +111,5 @@ fn lock_file(folder: &Path) -> io::Result<File> {
 /// Elsewhere folders cannot be opened.
 #[cfg(not(unix))]
 fn lock_file(folder: &Path) -> io::Result<File> {
-    File::create(folder.join(".microfacet-bake.lock"))
+    File::create(folder.join(LOCK_FILE))
 }
