@@ -10,9 +10,9 @@ use microfacet_bake::bake::bake_radial;
 use microfacet_bake::cache::Cache;
 use microfacet_bake::family::Named;
 use microfacet_bake::generate::{Target, add_distributions, generate, provenance};
-use microfacet_bake::plan::{Options, Plan, entries};
+use microfacet_bake::plan::{Cost, Options, Plan, bare_cost, cost, distribution_cost, entries};
 use microfacet_bake::scene::{Scene, load};
-use microfacet_bake::spec::Quality;
+use microfacet_bake::spec::{Quality, general_set};
 use microfacet_bake::validate::radial::measure;
 use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
 use microfacet_model::statistics::chi_square;
@@ -155,6 +155,16 @@ fn a_recipe_bakes_all_kinds() {
         add_distributions(baked, &plan.distributions, target, &Cache::none(), || ())
     };
     assert!(bake(Target::MaxBytes(1 << 20)).unwrap_err().to_string().contains("gtr:0.2,1.3"));
+    for precision in [Precision::F32, Precision::U16] {
+        let set = bake(Target::Quality(Quality::Draft, precision)).unwrap().set;
+        let general = general_set(Quality::Draft, precision);
+        let normals = plan.needs.iter().map(|need| cost(&need.specs(&general)));
+        let own = plan.distributions.iter().map(|own| distribution_cost(own, Quality::Draft, precision));
+        let estimate: Cost = normals.chain(own).chain([bare_cost(set.provenance())]).sum();
+        let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
+        assert!((estimate.bytes as f64 / real - 1.0).abs() < 0.02, "{estimate:?} for {real}");
+        assert!(estimate.seconds > 0.0);
+    }
     let set = bake(Target::Quality(Quality::Draft, Precision::F32)).unwrap().set;
     let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
     let v = Vec3::new(0.6, 0.0, 0.8);

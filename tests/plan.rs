@@ -12,7 +12,7 @@ use microfacet_bake::scene::{Interval, Scene};
 use microfacet_bake::spec::{Quality, general_set};
 use microfacet_sampler::{Precision, Tables, encode};
 
-use command::{json, refused, run};
+use command::{json, ok, refused, run};
 
 const GENERAL: &[u8] = include_bytes!("../tables/default.safetensors");
 const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
@@ -297,6 +297,27 @@ fn a_pavilion_needs_names_and_no_tables() {
     let file = std::fs::read(at.join("tables/tables.safetensors")).unwrap();
     assert!(50 * file.len() < GENERAL.len(), "{} bytes", file.len());
     assert!(Tables::from_bytes(&file).unwrap().material("steel").unwrap().bytes() > 0);
+}
+
+#[test]
+fn distributions_have_their_part_in_the_totals() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let paint = "[[material]]\nname = \"paint\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.3\n";
+    std::fs::write(at.join("r.toml"), recipe(&MIXED[..1]) + paint).unwrap();
+    let shown = json(at, &["plan", "r.toml", "--quality", "high", "--precision", "u16"]);
+    let own = &shown["distributions"][0];
+    assert_eq!(own["distribution"], "gtr:0.2,1.3");
+    assert_eq!(own["materials"], serde_json::json!(["paint"]));
+    let figure = |of: &serde_json::Value, name: &str| of["cost"][name].as_f64().unwrap();
+    for name in ["bytes", "seconds"] {
+        let tables = figure(own, name) + figure(&shown["needs"][0], name);
+        let total = shown["total"][name].as_f64().unwrap();
+        // What is left is the file's own description.
+        let rest = if name == "bytes" { 3000.0 } else { 1e-9 };
+        assert!(figure(own, name) > 0.0 && (0.0..rest).contains(&(total - tables)), "{name}: {shown}");
+    }
+    assert!(ok(at, &["plan", "r.toml"]).contains("gtr:0.2,1.3            4 tables, "));
 }
 
 #[test]

@@ -16,7 +16,7 @@ use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Table};
 
 use crate::spec::TableSpec;
 
-pub use radial::bake_radial;
+pub use radial::{bake_radial, radial_axes, radial_bytes};
 
 /// Changes whenever the same specification would give other values: part of every file, and of every cache key.
 pub const NUMERICS: u32 = 1;

@@ -15,8 +15,8 @@ const SLOPES: usize = 193;
 /// Nodes of D.
 const DENSITIES: usize = 257;
 
-/// The four tables, their names ending in `suffix`.
-pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precision: Precision) -> Vec<Table> {
+/// Kinds and axes of the four tables, for a distribution whose projected area at grazing is `kappa` and whose slopes reach to `reach`.
+pub fn radial_axes(quality: Quality, kappa: f64, reach: f64) -> [(Kind, Vec<Axis>); 4] {
     let r = quality.resolution();
     // Twice as fine as the family's: a distribution at hand may have kinks and several scales, and there is one slice only.
     let [along_numbers, across_numbers] = [r.numbers, r.across_numbers].map(|n| 2 * n - 1);
@@ -30,13 +30,50 @@ pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precisio
     let numbers = |name, odd, count| {
         axis(name, Mapping::MirroredPower { power: POWER, odd }, Interpolation::Hermite, count)
     };
-    let kappa = marginal.beyond(0.0).excess;
-    let slopes = match marginal.reach() {
+    let slopes = match reach {
         reach if reach.is_finite() => Mapping::Rational { scale: reach, pole: 2.0 },
         _ => Mapping::HalfTangent,
     };
     let view = Mapping::Rational { scale: kappa, pole: 2.0 };
-    let table = |kind: Kind, axes, values: Vec<[f32; 2]>| {
+    [
+        (Kind::RadialShadowing, vec![axis("view", view, Interpolation::Hermite, r.shadowing_views)]),
+        (
+            Kind::RadialSlope,
+            vec![
+                axis("view", Mapping::HalfTangent, Interpolation::Linear, r.views),
+                numbers("u1", false, along_numbers),
+            ],
+        ),
+        (
+            Kind::RadialConditional,
+            vec![axis("slope", slopes, Interpolation::Linear, SLOPES), numbers("u2", true, across_numbers)],
+        ),
+        (Kind::RadialDensity, vec![axis("slope", Mapping::HalfTangent, Interpolation::Hermite, DENSITIES)]),
+    ]
+}
+
+/// Bytes of the values of the four tables as they are stored.
+pub fn radial_bytes(quality: Quality, precision: Precision) -> usize {
+    let one = match precision {
+        Precision::F32 => 4,
+        Precision::F16 | Precision::U16 => 2,
+    };
+    // None depends on the distribution.
+    let values = |(_, axes): &(Kind, Vec<Axis>)| 2 * axes.iter().map(Axis::len).product::<usize>();
+    radial_axes(quality, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * one
+}
+
+/// The four tables, their names ending in `suffix`.
+pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precision: Precision) -> Vec<Table> {
+    let kappa = marginal.beyond(0.0).excess;
+    let table = |(kind, axes): (Kind, Vec<Axis>)| {
+        let [first, last] = [&axes[0], &axes[axes.len() - 1]].map(|axis| axis.nodes.len());
+        let values = match kind {
+            Kind::RadialShadowing => shadowing(marginal, kappa, first),
+            Kind::RadialSlope => along(marginal, first, last),
+            Kind::RadialConditional => across(marginal, last),
+            _ => density(marginal),
+        };
         let table = Table {
             name: format!("{}_{suffix}", kind.name()),
             kind,
@@ -49,31 +86,7 @@ pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precisio
         };
         table.rounded(precision)
     };
-    vec![
-        table(
-            Kind::RadialShadowing,
-            vec![axis("view", view, Interpolation::Hermite, r.shadowing_views)],
-            shadowing(marginal, kappa, r.shadowing_views),
-        ),
-        table(
-            Kind::RadialSlope,
-            vec![
-                axis("view", Mapping::HalfTangent, Interpolation::Linear, r.views),
-                numbers("u1", false, along_numbers),
-            ],
-            along(marginal, r.views, along_numbers),
-        ),
-        table(
-            Kind::RadialConditional,
-            vec![axis("slope", slopes, Interpolation::Linear, SLOPES), numbers("u2", true, across_numbers)],
-            across(marginal, across_numbers),
-        ),
-        table(
-            Kind::RadialDensity,
-            vec![axis("slope", Mapping::HalfTangent, Interpolation::Hermite, DENSITIES)],
-            density(marginal),
-        ),
-    ]
+    radial_axes(quality, kappa, marginal.reach()).into_iter().map(table).collect()
 }
 
 /// The slope of a half tangent h = x/(1 + √(1+x²)) ∈ [0, 1].

@@ -7,9 +7,12 @@ use std::time::Instant;
 use serde_json::json;
 
 use microfacet_bake::bake::albedo::{AlbedoSpec, Domain};
+use microfacet_bake::family::Distribution;
 use microfacet_bake::generate::add_albedo_conventions;
-use microfacet_bake::plan::{AlbedoVerdict, Cost, Need, Plan, Verdict, albedo_cost, bare_cost, cost};
-use microfacet_bake::scene::{self, Interval, Scene};
+use microfacet_bake::plan::{
+    AlbedoVerdict, Cost, Need, Plan, Verdict, albedo_cost, bare_cost, cost, distribution_cost,
+};
+use microfacet_bake::scene::{self, Interval, Material, Scene};
 use microfacet_bake::spec::{TableSpec, general_set};
 
 use super::request::{Request, provenance};
@@ -36,6 +39,8 @@ struct Report<'a> {
     tables: Vec<(Vec<TableSpec>, Cost)>,
     /// Specification and cost of each albedo need.
     albedos: Vec<(AlbedoSpec, Cost)>,
+    /// Cost of each distribution outside the family.
+    distributions: Vec<Cost>,
     total: Cost,
     general: Cost,
     /// Milliseconds.
@@ -72,8 +77,17 @@ pub(super) fn run(args: Args) -> Outcome {
             (specs, cost)
         })
         .collect();
+    let (quality, precision) = (args.request.quality(), args.request.precision());
+    let distributions: Vec<Cost> =
+        plan.distributions.iter().map(|own| distribution_cost(own, quality, precision)).collect();
     let albedo_costs = albedos.iter().map(|(_, cost)| *cost);
-    let total = tables.iter().map(|(_, cost)| *cost).chain(albedo_costs).chain([bare_cost(&origin)]).sum();
+    let total = tables
+        .iter()
+        .map(|(_, cost)| *cost)
+        .chain(distributions.iter().copied())
+        .chain(albedo_costs)
+        .chain([bare_cost(&origin)])
+        .sum();
     let mut everything = vec![cost(&general), bare_cost(&provenance(None))];
     if !args.request.general_plan().albedos.is_empty() {
         everything.push(albedo_cost(&general_albedo));
@@ -81,7 +95,17 @@ pub(super) fn run(args: Args) -> Outcome {
     let general = everything.into_iter().sum();
     let milliseconds = |time: std::time::Duration| 1e3 * time.as_secs_f64();
     let (reading, planning) = (milliseconds(reading), milliseconds(start.elapsed()));
-    let report = Report { scene: &scene, plan: &plan, tables, albedos, total, general, reading, planning };
+    let report = Report {
+        scene: &scene,
+        plan: &plan,
+        tables,
+        albedos,
+        distributions,
+        total,
+        general,
+        reading,
+        planning,
+    };
     if args.json {
         print_json(&report.json())?
     } else {
@@ -97,7 +121,7 @@ fn reason(verdict: &Verdict) -> [&'static str; 2] {
         Verdict::Same { .. } => ["same", "another material needs the same tables"],
         Verdict::Within { .. } => ["within", "its gamma lies in a range that is baked for another material"],
         Verdict::ClosedForm => ["closed form", "GGX: D, G1 and visible normals have closed forms; no table"],
-        Verdict::Own => ["own tables", "no Student-t: tables of its own, not counted below"],
+        Verdict::Own => ["own tables", "no Student-t: tables of its own"],
         Verdict::Embedded => ["embedded", "covered by the default set compiled into the sampler"],
         Verdict::NotRough => ["not rough", "no microfacets"],
         Verdict::NotUsed => ["not used", "no geometry wears it"],
@@ -149,6 +173,14 @@ impl Report<'_> {
     fn names(&self, of: impl Fn(&Verdict) -> bool) -> Vec<&str> {
         let pairs = self.scene.materials.iter().zip(&self.plan.verdicts);
         pairs.filter(|(_, verdict)| of(verdict)).map(|(material, _)| material.name.as_str()).collect()
+    }
+
+    /// Names of the materials in use that have a distribution outside the family.
+    fn wearers(&self, distribution: &Distribution) -> Vec<&str> {
+        let pairs = self.scene.materials.iter().zip(&self.plan.verdicts);
+        let wears = |material: &Material| material.distribution.as_ref() == Some(distribution);
+        let theirs = pairs.filter(|(material, verdict)| **verdict == Verdict::Own && wears(material));
+        theirs.map(|(material, _)| material.name.as_str()).collect()
     }
 
     /// Names of the materials whose albedo has this verdict.
@@ -207,10 +239,14 @@ impl Report<'_> {
                 list(names.into_iter())
             );
         }
-        let own = self.names(|verdict| *verdict == Verdict::Own);
-        if !own.is_empty() {
-            let [short, long] = reason(&Verdict::Own);
-            text += &format!("bake  {short:22} {long}: {}\n", list(own.into_iter()));
+        for (distribution, cost) in self.plan.distributions.iter().zip(&self.distributions) {
+            text += &format!(
+                "bake  {:22} 4 tables, {} bytes, about {:.3} s, for {}\n",
+                distribution.label(),
+                cost.bytes,
+                cost.seconds,
+                list(self.wearers(distribution).into_iter())
+            );
         }
         for verdict in [Verdict::ClosedForm, Verdict::Embedded, Verdict::NotRough, Verdict::NotUsed] {
             let names = self.names(|other| *other == verdict);
@@ -233,10 +269,8 @@ impl Report<'_> {
         } else {
             let share = if total.seconds > 0.0 {
                 format!("{:.1} times faster", general.seconds / total.seconds)
-            } else if self.plan.distributions.is_empty() {
-                "and nothing to bake".into()
             } else {
-                "besides other distributions".into()
+                "and nothing to bake".into()
             };
             let share = format!("; {:.1} times smaller, {share}", general.bytes as f64 / total.bytes as f64);
             format!(
@@ -271,6 +305,15 @@ impl Report<'_> {
                 "nodes": nodes, "cost": cost(sum), "materials": self.albedo_names(AlbedoVerdict::Bake(i)),
             })
         }).collect();
+        let distributions: Vec<_> = self
+            .plan
+            .distributions
+            .iter()
+            .zip(&self.distributions)
+            .map(|(distribution, sum)| {
+                json!({ "distribution": distribution.label(), "tables": 4, "cost": cost(sum), "materials": self.wearers(distribution) })
+            })
+            .collect();
         let verdicts = self.plan.verdicts.iter().zip(&self.plan.albedo_verdicts);
         let materials: Vec<_> = self
             .scene
@@ -296,7 +339,7 @@ impl Report<'_> {
             .map(|material| json!({ "name": material.name, "kind": material.kind, "why": material.reason }))
             .collect();
         json!({
-            "needs": needs, "albedo": albedos, "materials": materials, "ignored": ignored, "nothing_needed": self.plan.is_empty(),
+            "needs": needs, "distributions": distributions, "albedo": albedos, "materials": materials, "ignored": ignored, "nothing_needed": self.plan.is_empty(),
             "total": cost(&self.total), "general_set": cost(&self.general),
             "milliseconds": { "reading": self.reading, "planning": self.planning },
         })

@@ -13,7 +13,7 @@ use std::fmt;
 use microfacet_sampler::MaterialEntry;
 
 pub use albedo::{AlbedoNeed, AlbedoVerdict, AlbedoWish};
-pub use cost::{Cost, albedo_cost, bare_cost, cost};
+pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost};
 pub use needs::Need;
 
 use crate::bake::albedo::SIGMA_MAX;

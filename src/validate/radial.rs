@@ -12,6 +12,8 @@ use super::certificate::{low_discrepancy, round_up};
 /// Views, and normals drawn at each.
 const VIEWS: usize = 200;
 const NORMALS: usize = 40;
+/// Normals drawn for a certificate.
+pub(crate) const POINTS: usize = VIEWS * NORMALS;
 
 /// Largest errors seen.
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,7 +83,7 @@ pub fn certify(tables: &mut [Table], entry: &MaterialEntry, marginal: &Marginal)
             Kind::RadialConditional => ("cdf_max_error", errors.across),
             _ => ("d_max_error", errors.density),
         };
-        let points = if key == "cdf_max_error" { VIEWS * NORMALS } else { VIEWS };
+        let points = if key == "cdf_max_error" { POINTS } else { VIEWS };
         table.certificate = BTreeMap::from([(key.into(), round_up(error)), ("points".into(), points as f64)]);
     }
     Ok(())
