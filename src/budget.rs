@@ -84,41 +84,6 @@ pub fn smallest(need: &Need, max_error: f64, memo: &mut Memo) -> Result<Vec<Tabl
     }
 }
 
-/// The tables of all needs with the smallest common error whose file, as `size` says, has no more than `max_bytes`, to 12% in the
-/// error; and that error.
-///
-/// # Errors
-/// The bytes of the smallest file there is, if that is too large.
-pub fn most_accurate(
-    needs: &[Need],
-    max_bytes: usize,
-    size: impl Fn(&[Table]) -> usize,
-) -> Result<(Vec<Table>, f64), usize> {
-    // From 0.1 in steps of a twentieth of a decade; the last is beyond what f32 lookups can reach.
-    let budget = |step: usize| 0.1 * 10_f64.powf(-0.05 * step as f64);
-    const LAST: usize = 140;
-    let mut memo = Memo::default();
-    let mut all = |step: usize| -> Option<Vec<Table>> {
-        let tables =
-            needs.iter().map(|need| smallest(need, budget(step), &mut memo)).collect::<Result<Vec<_>, _>>();
-        tables.ok().map(|tables| tables.concat())
-    };
-    let coarsest = all(0).expect("the coarsest budget is within reach");
-    if size(&coarsest) > max_bytes {
-        return Err(size(&coarsest));
-    }
-    let (mut best, mut fits, mut fails) = (coarsest, 0, LAST);
-    while fails - fits > 1 {
-        let middle = (fits + fails) / 2;
-        match all(middle) {
-            Some(tables) if size(&tables) <= max_bytes => (best, fits) = (tables, middle),
-            _ => fails = middle,
-        }
-    }
-    let error = best.iter().map(worst_error).fold(0.0, f64::max);
-    Ok((best, error))
-}
-
 /// One table of the general set after the other: masking first, since the peeled slopes depend on it.
 fn chosen(need: &Need, max_error: f64, memo: &mut Memo) -> Result<Vec<Table>, OutOfReach> {
     let parts: Vec<usize> = (0..general_set(Quality::Draft, Precision::F32).len()).collect();

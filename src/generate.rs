@@ -6,7 +6,7 @@ use std::io;
 
 use microfacet_model::classic::Marginal;
 use microfacet_sampler::{
-    FresnelEntry, Kind, LoadError, MaterialEntry, Precision, Provenance, Table, Tables, encode,
+    FresnelEntry, Kind, LoadError, MaterialEntry, Precision, Provenance, Table, Tables,
 };
 
 use crate::bake::albedo::AlbedoSpec;
@@ -16,6 +16,7 @@ use crate::bake::{self, NUMERICS};
 use crate::budget::{self, Memo, OutOfReach};
 use crate::cache::Cache;
 use crate::family::Distribution;
+use crate::graded::{Choice, Graded};
 use crate::plan::{AlbedoNeed, Need};
 use crate::spec::{Quality, TableSpec, general_set};
 use crate::validate::certificate::certify;
@@ -30,10 +31,8 @@ pub(crate) const CERTIFICATE_POINTS: usize = 4000;
 pub enum Target {
     /// Fixed numbers of nodes.
     Quality(Quality, Precision),
-    /// The smallest tables with no larger error: of G1, absolute, and of the CDF of slopes.
+    /// The smallest tables with no larger error: of G1, absolute, of the CDF of slopes, of D/D(0) and of albedos.
     MaxError(f64),
-    /// The most accurate set in a file of no more bytes.
-    MaxBytes(usize),
 }
 
 /// A set, and what was done for it.
@@ -54,21 +53,23 @@ pub enum BakeError {
     Set(LoadError),
     /// [`Target::MaxError`] is too small.
     OutOfReach(OutOfReach),
-    /// [`Target::MaxBytes`] is too small.
+    /// A byte budget is too small.
     TooSmall {
         /// What was allowed.
         max_bytes: usize,
         /// What the smallest set takes.
         smallest: usize,
     },
-    /// A byte budget with a distribution outside the family, which has no sizes to choose from; its name.
-    NoByteBudget(String),
-    /// A byte budget with albedo tables, which have no sizes to choose from.
-    NoAlbedoBudget,
     /// An albedo that is not sound, or not accurate enough.
     Albedo(bake::albedo::BakeError),
     /// Albedos, or a distribution outside the family, whose tables err by more than [`Target::MaxError`] at every quality; name and error.
     TooCoarse(String, f64),
+}
+
+impl BakeError {
+    pub(crate) fn invalid(why: impl Into<String>) -> Self {
+        Self::Set(LoadError::Invalid(why.into()))
+    }
 }
 
 impl From<LoadError> for BakeError {
@@ -82,21 +83,13 @@ impl fmt::Display for BakeError {
         match self {
             Self::Set(why) => why.fmt(f),
             Self::OutOfReach(why) => why.fmt(f),
-            Self::NoByteBudget(name) => write!(
-                f,
-                "{name} has tables of its own, which no byte budget covers: choose --quality or --max-error, or bake it apart"
-            ),
-            Self::NoAlbedoBudget => write!(
-                f,
-                "no byte budget covers albedo tables: choose --quality or --max-error, or leave them out with --no-albedo"
-            ),
             Self::Albedo(why) => why.fmt(f),
             Self::TooCoarse(name, error) => {
                 write!(f, "the tables of {name} err by {error:.1e} at the highest quality: allow that much")
             }
             Self::TooSmall { max_bytes, smallest } => write!(
                 f,
-                "no set of these materials fits into {max_bytes} bytes: the smallest, with an error of 0.1, has {smallest}"
+                "no set of these materials fits into {max_bytes} bytes: the smallest, of the coarsest tables, has {smallest}"
             ),
         }
     }
@@ -135,13 +128,6 @@ pub fn generate(
             });
             each.collect::<Result<Vec<_>, _>>()?.concat()
         }
-        Target::MaxBytes(max_bytes) => {
-            let size = |tables: &[Table]| encode(&provenance, tables).map_or(usize::MAX, |bytes| bytes.len());
-            let key = format!("{needs:?}, {max_bytes} bytes at most, besides {} bytes", size(&[]));
-            let found =
-                job.kept(&key, || budget::most_accurate(needs, max_bytes, size).map(|(tables, _)| tables));
-            found.map_err(|smallest| BakeError::TooSmall { max_bytes, smallest })?
-        }
     };
     let set = Tables::from_tables(provenance, tables).map_err(BakeError::Set)?;
     Ok(Baked { set, baked: job.baked, cache_error: job.cache_error })
@@ -159,31 +145,11 @@ pub fn add_distributions(
     mut progress: impl FnMut(),
 ) -> Result<Baked, BakeError> {
     let provenance = baked.set.provenance().clone();
-    let mut tables = baked.set.tables().to_vec();
-    let mut job = Job { cache, baked: baked.baked, cache_error: baked.cache_error };
-    for distribution in distributions {
-        let label = distribution.label();
-        let entry = provenance.materials.iter().find(|entry| entry.distribution == label);
-        let entry =
-            entry.ok_or_else(|| LoadError::Invalid(format!("no material has the distribution {label}")))?;
-        let mut at = |quality, precision| {
-            // Its values, too: two measured files may have the same name.
-            let key = format!("{distribution:?}, {label}, {quality:?}, {precision:?}");
-            job.kept(&key, || radial_tables(distribution, entry, quality, precision))
-        };
-        let own = match target {
-            Target::Quality(quality, precision) => at(quality, precision)?,
-            Target::MaxBytes(_) => return Err(BakeError::NoByteBudget(label)),
-            Target::MaxError(max_error) => within(max_error, &label, |quality| at(quality, Precision::F32))?,
-        };
-        tables.extend(own);
-        progress();
-    }
-    Ok(Baked {
-        set: Tables::from_tables(provenance, tables)?,
-        baked: job.baked,
-        cache_error: job.cache_error,
-    })
+    let families: Vec<Graded> = distributions
+        .iter()
+        .map(|distribution| Graded::distribution(distribution, &provenance))
+        .collect::<Result<_, _>>()?;
+    add(baked, &families, target, provenance.clone(), cache, &mut progress)
 }
 
 /// Adds albedo tables to a set, calling `progress` after those of each need.
@@ -201,18 +167,27 @@ pub fn add_albedos(
     if !needs.is_empty() {
         add_albedo_conventions(&mut provenance);
     }
+    let families: Vec<Graded> = needs.iter().map(Graded::Albedo).collect();
+    add(baked, &families, target, provenance, cache, &mut progress)
+}
+
+fn add(
+    baked: Baked,
+    families: &[Graded],
+    target: Target,
+    provenance: Provenance,
+    cache: &Cache,
+    progress: &mut impl FnMut(),
+) -> Result<Baked, BakeError> {
     let mut tables = baked.set.tables().to_vec();
     let mut job = Job { cache, baked: baked.baked, cache_error: baked.cache_error };
-    for need in needs {
-        let mut at = |quality, precision| {
-            let spec = need.spec(&AlbedoSpec::general(quality, precision));
-            job.kept(&format!("{spec:?}"), || albedo_tables(&spec))
-        };
+    for family in families {
         tables.extend(match target {
-            Target::Quality(quality, precision) => at(quality, precision)?,
-            Target::MaxBytes(_) => return Err(BakeError::NoAlbedoBudget),
+            Target::Quality(quality, precision) => family.bake(quality, &[precision], &mut job)?.concat(),
             Target::MaxError(max_error) => {
-                within(max_error, "albedo", |quality| at(quality, Precision::F32))?
+                let mut choice = Choice::new(family);
+                let found = choice.smallest(max_error, usize::MAX, &mut job)?;
+                found.ok_or_else(|| BakeError::TooCoarse(family.name(), choice.least_error()))?
             }
         });
         progress();
@@ -224,16 +199,21 @@ pub fn add_albedos(
     })
 }
 
-/// The certified albedo tables of a specification.
-fn albedo_tables(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
+/// The certified albedo tables of a specification, in each of some precisions.
+pub(crate) fn albedo_tables(
+    spec: &AlbedoSpec,
+    precisions: &[Precision],
+) -> Result<Vec<Vec<Table>>, BakeError> {
     if let Some(fresnel) = &spec.fresnel {
-        return fresnel_tables(spec, fresnel);
+        let at = |&precision| fresnel_tables(&AlbedoSpec { precision, ..spec.clone() }, fresnel);
+        return precisions.iter().map(at).collect();
     }
-    let mut set =
-        Tables::from_tables(Provenance::default(), bake::albedo::bake(spec).map_err(BakeError::Albedo)?)?;
-    albedo::certify(&mut set, spec.domain)
+    let baked = bake::albedo::bake_in(spec, precisions).map_err(BakeError::Albedo)?;
+    let sets = baked.into_iter().map(|tables| Tables::from_tables(Provenance::default(), tables));
+    let mut sets = sets.collect::<Result<Vec<_>, _>>()?;
+    albedo::certify_all(&mut sets, spec.domain)
         .map_err(|why| BakeError::Set(LoadError::Invalid(why.to_string())))?;
-    Ok(set.tables().to_vec())
+    Ok(sets.iter().map(|set| set.tables().to_vec()).collect())
 }
 
 /// The certified tables of an exact reflectance: of a conductor, or of both sides of a dielectric.
@@ -274,36 +254,22 @@ fn refined(
     unreachable!("the last doubling returns")
 }
 
-/// The tables of the lowest quality at which none errs by more than `max_error`.
-fn within(
-    max_error: f64,
-    name: &str,
-    mut at: impl FnMut(Quality) -> Result<Vec<Table>, BakeError>,
-) -> Result<Vec<Table>, BakeError> {
-    let mut smallest = f64::INFINITY;
-    for quality in [Quality::Draft, Quality::Default, Quality::High] {
-        let tables = at(quality)?;
-        let error = tables.iter().map(worst_error).fold(0.0, f64::max);
-        if error <= max_error {
-            return Ok(tables);
-        }
-        smallest = smallest.min(error);
-    }
-    Err(BakeError::TooCoarse(name.into(), smallest))
-}
-
-/// The certified tables of one distribution outside the family.
-fn radial_tables(
+/// The certified tables of one distribution outside the family, in each of some precisions.
+pub(crate) fn radial_tables(
     distribution: &Distribution,
     entry: &MaterialEntry,
     quality: Quality,
-    precision: Precision,
-) -> Result<Vec<Table>, BakeError> {
+    precisions: &[Precision],
+) -> Result<Vec<Vec<Table>>, BakeError> {
     let built = distribution.build().map_err(|why| LoadError::Invalid(why.to_string()))?;
     let marginal = Marginal::new(&*built);
-    let mut tables = bake::bake_radial(&marginal, &entry.table_suffix(), quality, precision);
-    radial::certify(&mut tables, entry, &marginal)?;
-    Ok(tables)
+    let full = bake::bake_radial(&marginal, &entry.table_suffix(), quality, Precision::F32);
+    let certified = |&precision| {
+        let mut tables: Vec<Table> = full.iter().map(|table| table.clone().rounded(precision)).collect();
+        radial::certify(&mut tables, entry, &marginal)?;
+        Ok(tables)
+    };
+    precisions.iter().map(certified).collect()
 }
 
 /// The largest error that a table's certificate states, of albedos over all moments; ∞ if there is none.
@@ -318,25 +284,41 @@ pub fn worst_error(table: &Table) -> f64 {
     figures.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
-struct Job<'a> {
-    cache: &'a Cache,
-    baked: usize,
-    cache_error: Option<io::Error>,
+/// What is being done for a set.
+pub(crate) struct Job<'a> {
+    pub(crate) cache: &'a Cache,
+    pub(crate) baked: usize,
+    pub(crate) cache_error: Option<io::Error>,
 }
 
 impl Job<'_> {
     /// The tables under a key, or else new ones, which are then kept.
-    fn kept<E>(&mut self, key: &str, make: impl FnOnce() -> Result<Vec<Table>, E>) -> Result<Vec<Table>, E> {
-        if let Some(tables) = self.cache.get(key) {
-            return Ok(tables);
-        }
-        let tables = make()?;
-        self.baked += tables.len();
-        self.keep(key, &tables);
-        Ok(tables)
+    pub(crate) fn kept<E>(
+        &mut self,
+        key: &str,
+        make: impl FnOnce() -> Result<Vec<Table>, E>,
+    ) -> Result<Vec<Table>, E> {
+        Ok(self.kept_each(&[key.into()], || Ok(vec![make()?]))?.concat())
     }
 
-    fn keep(&mut self, key: &str, tables: &[Table]) {
+    /// The same for several keys whose tables are made together.
+    pub(crate) fn kept_each<E>(
+        &mut self,
+        keys: &[String],
+        make: impl FnOnce() -> Result<Vec<Vec<Table>>, E>,
+    ) -> Result<Vec<Vec<Table>>, E> {
+        if let Some(tables) = keys.iter().map(|key| self.cache.get(key)).collect() {
+            return Ok(tables);
+        }
+        let made = make()?;
+        for (key, tables) in keys.iter().zip(&made) {
+            self.baked += tables.len();
+            self.keep(key, tables);
+        }
+        Ok(made)
+    }
+
+    pub(crate) fn keep(&mut self, key: &str, tables: &[Table]) {
         if let Err(why) = self.cache.put(key, tables) {
             self.cache_error.get_or_insert(why);
         }

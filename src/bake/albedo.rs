@@ -273,6 +273,14 @@ type Node = [[f64; 3]; 2];
 /// # Errors
 /// [`BakeError`] if a node is not a sound albedo or not accurate enough, or the specification is out of the domain.
 pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
+    Ok(bake_in(spec, &[spec.precision])?.concat())
+}
+
+/// The same in each of some precisions, from one pass over the nodes, which takes nearly all the time.
+///
+/// # Errors
+/// As [`bake`].
+pub fn bake_in(spec: &AlbedoSpec, precisions: &[Precision]) -> Result<Vec<Vec<Table>>, BakeError> {
     let axes = axes(spec);
     let quantities =
         |axis: &Axis| -> Vec<f64> { axis.nodes.iter().filter_map(|&t| axis.quantity(t)).collect() };
@@ -297,25 +305,29 @@ pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
         })
         .collect::<Result<Vec<Vec<(Node, f64)>>, BakeError>>()?;
     let error = rows.iter().flatten().map(|node| node.1).fold(0.0, f64::max);
-    let mut tables = Vec::new();
-    for &masking in &spec.maskings {
-        let values =
-            rows.iter().flatten().flat_map(|node| node.0[masking as usize].map(|x| x as f32)).collect();
-        let directional = Table {
-            certificate: [("quadrature_error".to_string(), error)].into(),
-            ..table(spec, Kind::Albedo, masking, axes.clone(), values)
-        };
-        let set = Tables::from_tables(Default::default(), vec![directional.clone()])?;
-        let average = |&(shape, sigma): &(&AlbedoIntegrator, f64)| {
-            let bound = set.albedo(sigma, shape.shape().gamma(), masking).expect("nodes are covered");
-            bound.integrate()
-        };
-        let values = pairs.iter().flat_map(average).collect();
-        tables.push(directional);
-        let single = AlbedoSpec { precision: Precision::F32, ..spec.clone() };
-        tables.push(table(&single, Kind::AlbedoAverage, masking, axes[..2].to_vec(), values));
-    }
-    Ok(tables)
+    let rounded = |&precision: &Precision| {
+        let mut tables = Vec::new();
+        for &masking in &spec.maskings {
+            let values =
+                rows.iter().flatten().flat_map(|node| node.0[masking as usize].map(|x| x as f32)).collect();
+            let stored = AlbedoSpec { precision, ..spec.clone() };
+            let directional = Table {
+                certificate: [("quadrature_error".to_string(), error)].into(),
+                ..table(&stored, Kind::Albedo, masking, axes.clone(), values)
+            };
+            let set = Tables::from_tables(Default::default(), vec![directional.clone()])?;
+            let average = |&(shape, sigma): &(&AlbedoIntegrator, f64)| {
+                let bound = set.albedo(sigma, shape.shape().gamma(), masking).expect("nodes are covered");
+                bound.integrate()
+            };
+            let values = pairs.iter().flat_map(average).collect();
+            tables.push(directional);
+            let single = AlbedoSpec { precision: Precision::F32, ..spec.clone() };
+            tables.push(table(&single, Kind::AlbedoAverage, masking, axes[..2].to_vec(), values));
+        }
+        Ok(tables)
+    };
+    precisions.iter().map(rounded).collect()
 }
 
 fn table(spec: &AlbedoSpec, kind: Kind, masking: Masking, axes: Vec<Axis>, values: Vec<f32>) -> Table {

@@ -8,7 +8,8 @@ use serde_json::json;
 
 use microfacet_bake::bake::albedo::AlbedoSpec;
 use microfacet_bake::cache::Cache;
-use microfacet_bake::generate::{BakeError, Baked, Target, add_albedos, add_distributions, generate};
+use microfacet_bake::fill::fill;
+use microfacet_bake::generate::{Baked, Target, add_albedos, add_distributions, generate};
 use microfacet_bake::memory;
 use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::{self, Scene};
@@ -33,10 +34,11 @@ pub(super) struct Args {
     format: Vec<FormatArg>,
     #[command(flatten)]
     request: Request,
-    /// Choose each table's nodes and precision instead: the smallest whose error, measured, is not above this (G1 absolute, or CDF).
+    /// Choose each table's nodes and precision instead: the smallest whose error, measured, is not above this (of G1, the CDFs of slopes, and
+    /// albedos).
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_error, conflicts_with_all = ["quality", "precision", "max_bytes"])]
     max_error: Option<f64>,
-    /// The most accurate tables whose file is not larger than this.
+    /// The most accurate tables of all kinds whose safetensors file is not larger than this.
     #[arg(long, value_name = "BYTES", conflicts_with_all = ["quality", "precision"])]
     max_bytes: Option<usize>,
     /// Folder of finished tables, which are not baked again; in the user's cache folder by default.
@@ -84,10 +86,9 @@ fn parse_error(text: &str) -> Result<f64, String> {
 
 impl Args {
     fn target(&self) -> Target {
-        match (self.max_error, self.max_bytes) {
-            (Some(max_error), _) => Target::MaxError(max_error),
-            (_, Some(max_bytes)) => Target::MaxBytes(max_bytes),
-            _ => Target::Quality(self.request.quality(), self.request.precision()),
+        match self.max_error {
+            Some(max_error) => Target::MaxError(max_error),
+            None => Target::Quality(self.request.quality(), self.request.precision()),
         }
     }
 
@@ -118,7 +119,7 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     let target = args.target();
     let (quality, precision) = match target {
-        Target::Quality(quality, precision) => (quality, precision),
+        Target::Quality(quality, precision) if args.max_bytes.is_none() => (quality, precision),
         // Where a search ends is not known; hardly ever beyond this.
         _ => (Quality::High, Precision::F32),
     };
@@ -128,6 +129,8 @@ pub(super) fn run(args: Args) -> Outcome {
     let albedos: Vec<_> = plan.albedos.iter().map(|need| need.spec(&albedo)).collect();
     memory::check(&specs, &albedos, args.max_memory)?;
     let steps = match target {
+        // All at once.
+        _ if args.max_bytes.is_some() => 0,
         // The tables of each need, and its certificate.
         Target::Quality(..) => specs.len() + plan.needs.len(),
         _ => plan.needs.len(),
@@ -135,17 +138,19 @@ pub(super) fn run(args: Args) -> Outcome {
     let bar = progress(steps + plan.distributions.len() + plan.albedos.len(), "baking");
     let provenance = provenance(scene.as_ref().map(|scene| (scene, &plan)));
     let cache = args.cache();
-    if matches!(target, Target::MaxBytes(_)) && !plan.albedos.is_empty() {
-        // Before the search for the other tables, which takes long.
-        return Err(BakeError::NoAlbedoBudget.into());
-    }
-    let normals = Instant::now();
-    let result = generate(&plan.needs, target, provenance, &cache, || bar.inc(1))?;
-    let result = add_distributions(result, &plan.distributions, target, &cache, || bar.inc(1))?;
-    let normals = normals.elapsed().as_secs_f64();
-    let albedo = Instant::now();
-    let result = add_albedos(result, &plan.albedos, target, &cache, || bar.inc(1))?;
-    let families = [("visible normals", normals), ("albedo", albedo.elapsed().as_secs_f64())];
+    let (result, families) = match args.max_bytes {
+        Some(max_bytes) => (fill(&plan, max_bytes, provenance, &cache)?, None),
+        None => {
+            let normals = Instant::now();
+            let result = generate(&plan.needs, target, provenance, &cache, || bar.inc(1))?;
+            let result = add_distributions(result, &plan.distributions, target, &cache, || bar.inc(1))?;
+            let normals = normals.elapsed().as_secs_f64();
+            let albedo = Instant::now();
+            let result = add_albedos(result, &plan.albedos, target, &cache, || bar.inc(1))?;
+            let families = [("visible normals", normals), ("albedo", albedo.elapsed().as_secs_f64())];
+            (result, Some(families))
+        }
+    };
     bar.finish_and_clear();
     if let Some(why) = &result.cache_error {
         eprintln!(
@@ -189,8 +194,8 @@ pub(super) fn largest_error(table: &Table) -> String {
     "not certified".into()
 }
 
-/// Seconds that each family of tables took.
-type Families = [(&'static str, f64); 2];
+/// Seconds that each family of tables took; unknown where they are chosen together.
+type Families = Option<[(&'static str, f64); 2]>;
 
 fn summary(result: &Baked, plan: &Plan, written: &[Written], families: Families, seconds: f64) -> String {
     let mut text = String::new();
@@ -214,7 +219,7 @@ fn summary(result: &Baked, plan: &Plan, written: &[Written], families: Families,
         (all, _) => format!("{all} tables"),
     };
     text += &format!("{baked} in {seconds:.3} s");
-    if !plan.albedos.is_empty() {
+    if let Some(families) = families.filter(|_| !plan.albedos.is_empty()) {
         let parts = families.map(|(name, seconds)| format!("{name} {seconds:.3} s"));
         text += &format!(" ({})", parts.join(", "));
     }
@@ -240,6 +245,6 @@ fn as_json(result: &Baked, written: &[Written], families: Families, seconds: f64
         .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }))
         .collect();
     let families: serde_json::Map<_, _> =
-        families.map(|(name, seconds)| (name.into(), json!(seconds))).into_iter().collect();
+        families.into_iter().flatten().map(|(name, seconds)| (name.into(), json!(seconds))).collect();
     json!({ "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families })
 }

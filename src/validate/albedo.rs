@@ -89,7 +89,15 @@ struct Point {
 /// # Errors
 /// [`BindError`] if the tables do not cover the domain.
 pub fn certify(tables: &mut Tables, domain: Domain) -> Result<(), BindError> {
-    let Some(first) = tables.table(Kind::Albedo) else { return Ok(()) };
+    certify_all(std::slice::from_mut(tables), domain)
+}
+
+/// The same for sets with the same nodes, such as one set in several precisions: what they are judged by is integrated once.
+///
+/// # Errors
+/// As [`certify`].
+pub fn certify_all(sets: &mut [Tables], domain: Domain) -> Result<(), BindError> {
+    let Some(first) = sets.first().and_then(|set| set.table(Kind::Albedo)) else { return Ok(()) };
     let gammas = gammas(first, domain);
     let points = points_at(gammas.len());
     // Once for both forms of masking.
@@ -108,9 +116,11 @@ pub fn certify(tables: &mut Tables, domain: Domain) -> Result<(), BindError> {
             (i * points..(i + 1) * points).map(reference).collect()
         })
         .collect::<Result<Vec<Vec<Reference>>, BindError>>()?;
-    let measured = tables.tables().iter().map(|table| measure(tables, table, domain, &references));
-    let figures: Vec<_> = measured.collect::<Result<_, _>>()?;
-    figures.into_iter().enumerate().for_each(|(i, figures)| tables.set_certificate(i, figures));
+    for set in sets {
+        let measured = set.tables().iter().map(|table| measure(set, table, domain, &references));
+        let figures: Vec<_> = measured.collect::<Result<_, _>>()?;
+        figures.into_iter().enumerate().for_each(|(i, figures)| set.set_certificate(i, figures));
+    }
     Ok(())
 }
 

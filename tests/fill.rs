@@ -1,0 +1,71 @@
+//! A budget of bytes for tables of all kinds: filled, never exceeded, and refused with the smallest one there is.
+
+use microfacet_bake::cache::Cache;
+use microfacet_bake::fill::fill;
+use microfacet_bake::generate::{BakeError, Baked, provenance, worst_error};
+use microfacet_bake::plan::{Options, Plan, entries};
+use microfacet_bake::scene::Scene;
+use microfacet_sampler::{Precision, Table, Tables, encode};
+
+const GOLD: &str = "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0\nfresnel = \"mirror\"\n";
+const CLOTH: &str = "[[material]]\nname = \"cloth\"\ndistribution = \"gauss\"\nm = 0.25\n";
+const GLASS: &str = "[[material]]\nname = \"glass\"\nsigma = 0.454\ngamma = 3.0\n";
+
+fn within(recipe: &str, max_bytes: usize, cache: &Cache) -> Result<Baked, BakeError> {
+    let scene = Scene::from_recipe_str(recipe).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    fill(&plan, max_bytes, provenance(scene.to_recipe(), entries(&scene)), cache)
+}
+
+fn bytes(set: &Tables) -> Vec<u8> {
+    encode(set.provenance(), set.tables()).unwrap()
+}
+
+fn worst<'a>(tables: impl Iterator<Item = &'a Table>) -> f64 {
+    tables.map(worst_error).fold(0.0, f64::max)
+}
+
+#[test]
+fn all_kinds_of_tables_share_a_budget() {
+    let folder = tempfile::tempdir().unwrap();
+    let cache = Cache::new(folder.path().into());
+    let recipe = [GOLD, CLOTH, GLASS].concat();
+    let refused = within(&recipe, 1000, &cache).unwrap_err();
+    let BakeError::TooSmall { max_bytes: 1000, smallest } = refused else { panic!("{refused}") };
+    assert!(refused.to_string().contains(&smallest.to_string()), "{refused}");
+    assert!(matches!(within(&recipe, smallest - 1, &cache), Err(BakeError::TooSmall { .. })));
+
+    let mut before = f64::INFINITY;
+    for max_bytes in [smallest, smallest + 3000, 110_000] {
+        let set = within(&recipe, max_bytes, &cache).unwrap().set;
+        let file = bytes(&set);
+        assert!(file.len() <= max_bytes, "{} bytes of {max_bytes}", file.len());
+        // Visible normals take what is left.
+        let (graded, normals): (Vec<_>, Vec<_>) =
+            set.tables().iter().partition(|table| table.kind.is_albedo() || table.name.contains("radial"));
+        assert_eq!((graded.len(), normals.len()), (6, 3));
+        let error = worst(graded.iter().chain(&normals).copied());
+        assert!(
+            error <= before && worst(normals.into_iter()) <= error,
+            "{max_bytes}: {error} after {before}"
+        );
+        before = error;
+        // What is kept is what was baked.
+        let again = within(&recipe, max_bytes, &cache).unwrap();
+        assert!(again.baked == 0 && bytes(&again.set) == file);
+        assert_eq!(Tables::from_bytes(&file).unwrap(), set);
+    }
+    // The larger budget is worth it: a better quality of the distribution, which takes most of it.
+    assert!(before < 1e-4, "{before}");
+}
+
+#[test]
+fn without_visible_normals_the_tables_in_grades_are_all_there_is() {
+    let at = |max_bytes| within(CLOTH, max_bytes, &Cache::none()).unwrap().set;
+    let small = at(45_000);
+    assert!(bytes(&small).len() <= 45_000);
+    assert!(small.tables().iter().all(|table| table.precision == Precision::U16));
+    let large = at(100_000);
+    assert!(bytes(&large).len() <= 100_000);
+    assert!(3.0 * worst(large.tables().iter()) < worst(small.tables().iter()));
+}
