@@ -65,8 +65,8 @@ impl Moments {
 
     /// From what is stored, `self` being the mirror's.
     fn plus(self, [e, bias, f82]: [f32; 3]) -> Self {
-        let e = 1.0 + e;
-        // Interpolation may leave [0, E] by the table's error.
+        // Interpolation and 16-bit rounding may leave [0, 1] and [0, E] by the table's error; below 0 there is no [0, E].
+        let e = (1.0 + e).max(0.0);
         let bias = (bias + e * self.bias).clamp(0.0, e);
         Self { scale: e - bias, bias, f82: (f82 + e * self.f82).clamp(0.0, 1.0) }
     }
@@ -331,5 +331,17 @@ impl Albedo {
             }
         }
         sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_albedo_of_nothing_is_no_panic() {
+        // What 16-bit rounding makes of E = 0.
+        let moments = Moments::mirror(0.4).plus([-1.000_003, 1e-6, -1e-6]);
+        assert_eq!([moments.scale, moments.bias, moments.f82], [0.0; 3]);
     }
 }
