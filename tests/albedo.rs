@@ -214,6 +214,24 @@ fn targets_are_met_or_refused() {
 }
 
 #[test]
+fn a_surface_smoother_than_the_promised_ones_has_a_certificate() {
+    let smooth = [
+        ["water", "0.002", "2.0", MIRROR],
+        ["pond", "0.002", "2.0", "fresnel = { dielectric = 1.33 }"],
+        ["nearly a mirror", "{ min = 0.0, max = 1e-4 }", "5.0", MIRROR],
+    ];
+    let plan = plan(&smooth, AlbedoWish::Recipes);
+    let normals = generate(&[], DRAFT, provenance(String::new(), Vec::new()), &Cache::none(), || ()).unwrap();
+    let set = add_albedos(normals, &plan.albedos, DRAFT, &Cache::none(), || ()).unwrap().set;
+    for table in set.tables() {
+        // The edge of total reflection inside the pond is narrower than any cell: that is an error, and said.
+        let [low, high] = if table.kind == Kind::FresnelAlbedo { [1e-3, 1.0] } else { [0.0, 1e-2] };
+        assert!((low..high).contains(&worst_error(table)), "{}: {:?}", table.name, table.certificate);
+        assert!(table.certificate.values().all(|figure| !figure.is_nan()), "{:?}", table.certificate);
+    }
+}
+
+#[test]
 fn estimated_bytes_are_those_of_the_file() {
     let plan = plan(&MIXED, AlbedoWish::Recipes);
     let set = |albedos| {

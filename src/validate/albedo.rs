@@ -34,10 +34,8 @@ fn measure(
     let errors = references
         .par_iter()
         .map(|references| match table.kind {
-            Kind::Albedo => {
-                references.iter().map(|at| directional(tables, masking, domain.sigma, at)).collect()
-            }
-            _ => references.iter().step_by(4).map(|at| average(tables, masking, domain.sigma, at)).collect(),
+            Kind::Albedo => references.iter().map(|at| directional(tables, masking, at, domain)).collect(),
+            _ => references.iter().step_by(4).map(|at| average(tables, masking, at, domain)).collect(),
         })
         .collect::<Result<Vec<Vec<Point>>, BindError>>()?;
     let all: Vec<Point> = errors.into_iter().flatten().collect();
@@ -191,21 +189,17 @@ pub(super) fn place(i: usize, sigma: Interval) -> (f64, f32) {
     (sigma, cos as f32)
 }
 
-/// Smallest σ that the figures are promised for, of tables for these: of materials that are all smoother there is no other.
-fn least(sigma: Interval) -> f64 {
-    DOMAIN.0.min(sigma.max)
-}
-
-/// Whether a point is outside the domain that the figures are promised for.
-pub(super) fn outside(range: Interval, sigma: f64, cos: f32) -> bool {
-    f64::from(cos) < DOMAIN.1 || sigma < least(range)
+/// Whether a point is outside what the figures are promised for. Where all materials are smoother than that, it is the roughest that counts: without
+/// a point there would be no figures.
+pub(super) fn outside(sigma: f64, cos: f32, materials: Interval) -> bool {
+    f64::from(cos) < DOMAIN.1 || sigma < DOMAIN.0.min(materials.max)
 }
 
 fn directional(
     tables: &Tables,
     masking: Masking,
-    range: Interval,
     at: &Reference,
+    domain: Domain,
 ) -> Result<Point, BindError> {
     let &Reference { gamma, sigma, cos, exact } = at;
     let exact = exact.of(model_masking(masking));
@@ -214,11 +208,11 @@ fn directional(
     let error = |i: usize| (got[i] - exact[i]).abs();
     let total = (got[0] + got[1] - exact[0] - exact[1]).abs();
     let error = [error(0), error(1), error(2), total];
-    Ok(Point { error, at: [sigma, gamma, f64::from(cos)], outside: outside(range, sigma, cos) })
+    Ok(Point { error, at: [sigma, gamma, f64::from(cos)], outside: outside(sigma, cos, domain.sigma) })
 }
 
 /// Averages against quadrature of the directional albedo at the same material: what a furnace sees.
-fn average(tables: &Tables, masking: Masking, range: Interval, at: &Reference) -> Result<Point, BindError> {
+fn average(tables: &Tables, masking: Masking, at: &Reference, domain: Domain) -> Result<Point, BindError> {
     let &Reference { gamma, sigma, .. } = at;
     let got = tables.average_moments(sigma, gamma, masking)?;
     let exact = tables.albedo(sigma, gamma, masking)?.average_moments();
@@ -228,6 +222,6 @@ fn average(tables: &Tables, masking: Masking, range: Interval, at: &Reference) -
     Ok(Point {
         error: [scale, bias, f82, total],
         at: [sigma, gamma, f64::NAN],
-        outside: sigma < least(range),
+        outside: outside(sigma, 1.0, domain.sigma),
     })
 }

@@ -43,7 +43,7 @@ pub fn certified(table: Table, domain: Domain, fresnel: &FresnelEntry) -> Result
                 let got = surface.read(&table, [sigma, gamma, eta], cos)?;
                 let error = got.iter().zip(exact).map(|(got, exact)| (f64::from(*got) - exact).abs());
                 let at = [sigma, gamma, f64::from(cos), eta];
-                Ok(Point { error: error.collect(), at, outside: outside(domain.sigma, sigma, cos) })
+                Ok(Point { error: error.collect(), at, outside: outside(sigma, cos, domain.sigma) })
             };
             (i * points..(i + 1) * points).map(point).collect()
         })
