@@ -12,16 +12,17 @@ use microfacet_sampler::{
 use crate::bake::albedo::AlbedoSpec;
 use crate::bake::dielectric_albedo::Side;
 use crate::bake::fresnel_albedo::Metal;
+use crate::bake::view_albedo::{Lobe, ViewSpec};
 use crate::bake::{self, NUMERICS};
 use crate::budget::{self, Memo, OutOfReach};
 use crate::cache::Cache;
 use crate::family::Distribution;
 use crate::graded::{Choice, Graded};
-use crate::plan::{AlbedoNeed, Need};
+use crate::plan::{AlbedoNeed, Need, ViewNeed};
 use crate::spec::{Quality, TableSpec, general_set};
 use crate::validate::certificate::certify;
 use crate::validate::radial;
-use crate::validate::{albedo, fresnel_albedo};
+use crate::validate::{albedo, fresnel_albedo, view_albedo};
 
 /// Points measured at each γ for a certificate.
 pub(crate) const CERTIFICATE_POINTS: usize = 4000;
@@ -171,6 +172,25 @@ pub fn add_albedos(
     add(baked, &families, target, provenance, cache, &mut progress)
 }
 
+/// Adds the albedo tables of materials whose lobe is not round, one each, calling `progress` after each.
+///
+/// # Errors
+/// As [`add_albedos`].
+pub fn add_view_albedos(
+    baked: Baked,
+    needs: &[ViewNeed],
+    target: Target,
+    cache: &Cache,
+    mut progress: impl FnMut(),
+) -> Result<Baked, BakeError> {
+    let mut provenance = baked.set.provenance().clone();
+    if !needs.is_empty() {
+        add_view_albedo_conventions(&mut provenance);
+    }
+    let families: Vec<Graded> = needs.iter().map(Graded::View).collect();
+    add(baked, &families, target, provenance, cache, &mut progress)
+}
+
 fn add(
     baked: Baked,
     families: &[Graded],
@@ -197,6 +217,27 @@ fn add(
         baked: job.baked,
         cache_error: job.cache_error,
     })
+}
+
+/// The certified table of a lobe that is not round, with as many nodes as the quality's error takes: how many depends on both roughnesses.
+pub(crate) fn view_tables(spec: &ViewSpec, precisions: &[Precision]) -> Result<Vec<Vec<Table>>, BakeError> {
+    // What the clamp of G1(l) leaves of a kink in the albedo of a tilted lobe no number of nodes resolves well.
+    let doublings = if matches!(spec.lobe, Lobe::Ellipsoid { .. }) { 2 } else { 4 };
+    let references = view_albedo::references(spec).map_err(BakeError::Albedo)?;
+    let mut full = ViewSpec { precision: Precision::F32, ..spec.clone() };
+    for doubling in 0.. {
+        let table = bake::view_albedo::bake(&full).map_err(BakeError::Albedo)?;
+        let table = view_albedo::certified(table, &references)?;
+        // As of the tables of moments.
+        if worst_error(&table) <= 300.0 * spec.tolerance || doubling == doublings {
+            let at =
+                |&precision| Ok(vec![view_albedo::certified(table.clone().rounded(precision), &references)?]);
+            return precisions.iter().map(at).collect();
+        }
+        let [azimuths, views] = view_albedo::missed_by_half(&table)?;
+        full = if azimuths > views { full.with_more_azimuths() } else { full.with_more_views() };
+    }
+    unreachable!("the last doubling returns")
 }
 
 /// The certified albedo tables of a specification, in each of some precisions.
@@ -275,9 +316,11 @@ pub(crate) fn radial_tables(
 /// The largest error that a table's certificate states, of albedos over all moments; ∞ if there is none.
 pub fn worst_error(table: &Table) -> f64 {
     let keys = match table.kind {
-        Kind::Albedo | Kind::AlbedoAverage | Kind::FresnelAlbedo | Kind::DielectricAlbedo => {
-            &["e_max_error", "scale_max_error", "bias_max_error", "f82_max_error"][..]
-        }
+        Kind::Albedo
+        | Kind::AlbedoAverage
+        | Kind::FresnelAlbedo
+        | Kind::DielectricAlbedo
+        | Kind::ViewAlbedo => &["e_max_error", "scale_max_error", "bias_max_error", "f82_max_error"][..],
         _ => &["g1_max_error", "cdf_max_error", "d_max_error"],
     };
     let figures = keys.iter().filter_map(|key| table.certificate.get(*key).copied());
@@ -391,6 +434,13 @@ pub fn add_albedo_conventions(provenance: &mut Provenance) {
         ),
     ];
     provenance.conventions.extend(conventions.map(|(key, value)| (key.into(), value.into())));
+}
+
+/// Adds what albedo tables over all views mean to the conventions of a set that holds some.
+pub fn add_view_albedo_conventions(provenance: &mut Provenance) {
+    let text = "as albedo, for one material and its form of masking, over the azimuth of the view (radians, from the x axis) and the view; sigma in \
+                the view's coordinate is the roughness seen from the azimuth";
+    provenance.conventions.insert("view_albedo".into(), text.into());
 }
 
 /// Origin, licence and conventions of a set baked by this version.

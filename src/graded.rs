@@ -8,8 +8,8 @@ use microfacet_sampler::{MaterialEntry, Precision, Provenance, Table};
 use crate::bake::albedo::AlbedoSpec;
 use crate::bake::radial_bytes;
 use crate::family::Distribution;
-use crate::generate::{BakeError, Job, albedo_tables, radial_tables, worst_error};
-use crate::plan::AlbedoNeed;
+use crate::generate::{BakeError, Job, albedo_tables, radial_tables, view_tables, worst_error};
+use crate::plan::{AlbedoNeed, ViewNeed};
 use crate::spec::Quality;
 
 const QUALITIES: [Quality; 3] = [Quality::Draft, Quality::Default, Quality::High];
@@ -19,6 +19,8 @@ const PRECISIONS: [Precision; 2] = [Precision::U16, Precision::F32];
 pub(crate) enum Graded<'a> {
     /// Albedos of the Student-t family.
     Albedo(&'a AlbedoNeed),
+    /// The albedo of a lobe that is not round, or of another distribution.
+    View(&'a ViewNeed),
     /// A distribution outside it, and a material that has it.
     Distribution(&'a Distribution, &'a MaterialEntry),
 }
@@ -41,6 +43,7 @@ impl<'a> Graded<'a> {
     pub(crate) fn name(&self) -> String {
         match self {
             Self::Albedo(_) => "albedo".into(),
+            Self::View(need) => need.label.clone(),
             Self::Distribution(distribution, _) => distribution.label(),
         }
     }
@@ -49,6 +52,7 @@ impl<'a> Graded<'a> {
     pub(crate) fn key(&self, quality: Quality, precision: Precision) -> String {
         match self {
             Self::Albedo(need) => format!("{:?}", need.spec(&AlbedoSpec::general(quality, precision))),
+            Self::View(need) => format!("{:?}", need.spec(quality, precision)),
             // Its values, too: two measured files may have the same name.
             Self::Distribution(distribution, _) => {
                 format!("{distribution:?}, {}, {quality:?}, {precision:?}", distribution.label())
@@ -56,10 +60,11 @@ impl<'a> Graded<'a> {
         }
     }
 
-    /// Bytes of the values, known before they are baked; a dielectric's may become more.
+    /// Bytes of the values, known before they are baked; a dielectric's, or those of a lobe that is not round, may become more.
     fn bytes(&self, quality: Quality, precision: Precision) -> usize {
         match self {
             Self::Albedo(need) => need.spec(&AlbedoSpec::general(quality, precision)).bytes(),
+            Self::View(need) => need.spec(quality, precision).bytes(),
             Self::Distribution(..) => radial_bytes(quality, precision),
         }
     }
@@ -76,6 +81,7 @@ impl<'a> Graded<'a> {
             Self::Albedo(need) => {
                 albedo_tables(&need.spec(&AlbedoSpec::general(quality, Precision::F32)), precisions)
             }
+            Self::View(need) => view_tables(&need.spec(quality, Precision::F32), precisions),
             Self::Distribution(distribution, entry) => {
                 radial_tables(distribution, entry, quality, precisions)
             }

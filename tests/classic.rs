@@ -41,6 +41,7 @@ fn bound(name: &str, marginal: &Marginal) -> Radial {
         sigma: [[marginal.sigma(); 2]; 2],
         s: [0.0; 2],
         distribution: name.into(),
+        theta: None,
         masking: None,
         fresnel: None,
     };

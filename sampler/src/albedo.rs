@@ -49,7 +49,7 @@ impl Moments {
     }
 
     /// Moments of a perfect mirror seen at cos θ.
-    fn mirror(cos_theta: f32) -> Self {
+    pub(crate) fn mirror(cos_theta: f32) -> Self {
         // 7⁷/6⁶ normalises the peak of μ(1−μ)⁶.
         const PEAK: f32 = 823543.0 / 46656.0;
         let x = 1.0 - cos_theta;
@@ -58,13 +58,13 @@ impl Moments {
     }
 
     /// 2 ∫ μ dμ of a mirror's moments.
-    fn mirror_average() -> Self {
+    pub(crate) fn mirror_average() -> Self {
         // 2 B(2, 6) = 1/21 and 2·7⁷/6⁶ B(3, 7) = 117649/839808.
         Self { scale: 20.0 / 21.0, bias: 1.0 / 21.0, f82: 117649.0 / 839808.0 }
     }
 
     /// From what is stored, `self` being the mirror's.
-    fn plus(self, [e, bias, f82]: [f32; 3]) -> Self {
+    pub(crate) fn plus(self, [e, bias, f82]: [f32; 3]) -> Self {
         // Interpolation and 16-bit rounding may leave [0, 1] and [0, E] by the table's error; below 0 there is no [0, E].
         let e = (1.0 + e).max(0.0);
         let bias = (bias + e * self.bias).clamp(0.0, e);
@@ -280,32 +280,7 @@ impl Albedo {
 
     /// The averages by quadrature of the interpolated albedo, in the form of the tables' channels: what tables of averages are filled with.
     pub fn integrate(&self) -> [f32; 3] {
-        // Gauss-Legendre, four points, in y = −ln h with h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and
-        // in its logarithm where views graze and small roughness makes its difference. Views below the table's first weigh nothing.
-        const POINTS: [(f64, f64); 2] =
-            [(0.339981043584856265, 0.652145154862546143), (0.861136311594052575, 0.347854845137453857)];
-        const WIDTH: f64 = 0.35;
-        let panels = libm::ceil(libm::log(2.0 / self.view.floor) / WIDTH) as usize;
-        let mut sum = [0.0_f64; 3];
-        for panel in 0..panels {
-            let middle = WIDTH * (panel as f64 + 0.5);
-            for (node, weight) in POINTS {
-                for y in [middle - 0.5 * WIDTH * node, middle + 0.5 * WIDTH * node] {
-                    let h = libm::exp(-y);
-                    let cos = 2.0 * h / (1.0 + h * h);
-                    // 2 μ dμ, with dμ/dy = μ (1−h²)/(1+h²).
-                    let measure = WIDTH * weight * cos * cos * (1.0 - h * h) / (1.0 + h * h);
-                    let [e, bias, f82] = self.rest(cos as f32).map(f64::from);
-                    let mirror = Moments::mirror(cos as f32);
-                    sum[0] += measure * e;
-                    sum[1] += measure * (bias + e * f64::from(mirror.bias));
-                    sum[2] += measure * (f82 + e * f64::from(mirror.f82));
-                }
-            }
-        }
-        let [e, bias, f82] = sum;
-        let mirror = Moments::mirror_average();
-        [e, bias - e * f64::from(mirror.bias), f82 - e * f64::from(mirror.f82)].map(|x| x as f32)
+        less_mirror(over_views(self.view.floor, |cos| self.rest(cos)))
     }
 
     /// What a table of any number of nodes would hold at cos θ ∈ [0, 1]; E in [0, 1], so that what is lost and its average agree.
@@ -332,6 +307,40 @@ impl Albedo {
         }
         sum
     }
+}
+
+/// 2 ∫ μ dμ of E − 1 and of the whole moments, from what is stored as a function of cos θ, which is resolved down to `floor`.
+pub(crate) fn over_views(floor: f64, rest: impl Fn(f32) -> [f32; 3]) -> [f64; 3] {
+    // Gauss-Legendre, four points, in y = −ln h with h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and
+    // in its logarithm where views graze and small roughness makes its difference. Views below the table's first weigh nothing.
+    const POINTS: [(f64, f64); 2] =
+        [(0.339981043584856265, 0.652145154862546143), (0.861136311594052575, 0.347854845137453857)];
+    const WIDTH: f64 = 0.35;
+    let panels = libm::ceil(libm::log(2.0 / floor) / WIDTH) as usize;
+    let mut sum = [0.0_f64; 3];
+    for panel in 0..panels {
+        let middle = WIDTH * (panel as f64 + 0.5);
+        for (node, weight) in POINTS {
+            for y in [middle - 0.5 * WIDTH * node, middle + 0.5 * WIDTH * node] {
+                let h = libm::exp(-y);
+                let cos = 2.0 * h / (1.0 + h * h);
+                // 2 μ dμ, with dμ/dy = μ (1−h²)/(1+h²).
+                let measure = WIDTH * weight * cos * cos * (1.0 - h * h) / (1.0 + h * h);
+                let [e, bias, f82] = rest(cos as f32).map(f64::from);
+                let mirror = Moments::mirror(cos as f32);
+                sum[0] += measure * e;
+                sum[1] += measure * (bias + e * f64::from(mirror.bias));
+                sum[2] += measure * (f82 + e * f64::from(mirror.f82));
+            }
+        }
+    }
+    sum
+}
+
+/// Averages of whole moments in the form of the tables' channels.
+pub(crate) fn less_mirror([e, bias, f82]: [f64; 3]) -> [f32; 3] {
+    let mirror = Moments::mirror_average();
+    [e, bias - e * f64::from(mirror.bias), f82 - e * f64::from(mirror.f82)].map(|x| x as f32)
 }
 
 #[cfg(test)]

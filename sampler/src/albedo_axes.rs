@@ -2,9 +2,10 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::axis::{Axis, Mapping};
+use crate::azimuth::Azimuth;
 use crate::critical::CriticalCoordinate;
 use crate::math::sqrt64;
 
@@ -146,7 +147,12 @@ fn first_node(cell: usize, n: usize, count: usize) -> usize {
 pub(crate) fn stencil(t: f32, n: usize) -> (usize, [f32; STENCIL]) {
     let x = (t * (n - 1) as f32).clamp(0.0, (n - 1) as f32);
     let start = first_node(x as usize, n, STENCIL);
-    let x = x - start as f32;
+    (start, lagrange(x - start as f32))
+}
+
+/// Weights of the polynomial through the nodes 0 … 5 at x.
+#[inline]
+pub(crate) fn lagrange(x: f32) -> [f32; STENCIL] {
     // Products from the left and from the right leave one factor out at each node.
     const C: [f32; STENCIL] = [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
     let mut weights = C;
@@ -158,7 +164,7 @@ pub(crate) fn stencil(t: f32, n: usize) -> (usize, [f32; STENCIL]) {
         weights[j] *= right;
         right *= x - j as f32;
     }
-    (start, weights)
+    weights
 }
 
 /// Where nodes of a table stand, for those who fill one.
@@ -183,6 +189,14 @@ impl Axis {
             Mapping::ReflectanceRoot => Some(index_coordinate(quantity)),
             _ => None,
         }
+    }
+
+    /// φ ∈ [0, 2π) at a coordinate of a [`Mapping::Azimuth`] axis and the roughness σ_φ seen from there; `None` for others.
+    pub fn azimuth(&self, t: f64) -> Option<(f64, f64)> {
+        let azimuth = Azimuth::new(self)?;
+        let [c, s] = azimuth.direction(t);
+        let phi = libm::atan2(s, c);
+        Some((if phi < 0.0 { phi + TAU } else { phi }, azimuth.sigma(c, s)))
     }
 
     /// cos θ at a coordinate of a [`Mapping::ViewBlend`] axis for one material; `None` for others.

@@ -103,6 +103,20 @@ pub enum Mapping {
     /// t = acos(1 − 2x)/π ∈ [0, 1], x = F0^¼ = √((η−1)/(η+1)), of an index η ∈ [1, ∞] of the dense side: finer towards both ends, where
     /// the reflectance of grazing views turns within √(η²−1) and 1/η of the horizon.
     ReflectanceRoot,
+    /// The azimuth φ of a view (radians, from the x axis), by p = atan2(√σ₂ sin(φ − turn), √σ₁ cos(φ − turn)): t = p/2π modulo one, with
+    /// nodes 0, 1/n, …, (n−1)/n; or where `fold`, with |sin| and |cos|, t = 2p/π ∈ [0, 1], with nodes 0, 1/(n−1), …, 1. One node stands
+    /// for every azimuth.
+    ///
+    /// σ_φ² = σ₁² cos²(φ − turn) + σ₂² sin²(φ − turn) is the square of the roughness seen from there, which takes the place of σ in
+    /// [`ViewBlend`](Self::ViewBlend).
+    Azimuth {
+        /// σ₁ and σ₂ along the principal axes.
+        sigma: [f64; 2],
+        /// Azimuth of the first, radians.
+        turn: f64,
+        /// Whether what is tabulated is the same on both sides of either principal axis.
+        fold: bool,
+    },
     /// t = (2 min(u, 1−u))^(1/power) ∈ [0, 1]. Along the axis stand first the nodes for u ≤ ½ (t ascending from u = 0), then as many
     /// for u > ½ (t ascending from u = 1), unless the axis is `odd`, when only the second half is stored.
     MirroredPower {
@@ -235,6 +249,11 @@ impl Axis {
             {
                 return fail("a parameter of the view coordinate is out of range");
             }
+            Mapping::Azimuth { sigma, turn, .. }
+                if !(sigma.iter().all(|x| (1e-12..=1e6).contains(x)) && turn.abs() <= 7.0) =>
+            {
+                return fail("sigma or turn out of range");
+            }
             _ => {}
         }
         // These are looked up by computing the cell; the others by searching it.
@@ -249,6 +268,9 @@ impl Axis {
             self.mapping,
             Mapping::LogShape { .. } | Mapping::Roughness { .. } | Mapping::ReflectanceRoot
         );
+        if let Mapping::Azimuth { fold, .. } = self.mapping {
+            return self.validate_azimuths(fold);
+        }
         if !searched && !free {
             let n = self.nodes.len();
             if n < 2 {
@@ -261,6 +283,20 @@ impl Axis {
                     self.name
                 )));
             }
+        }
+        Ok(())
+    }
+
+    fn validate_azimuths(&self, fold: bool) -> Result<(), LoadError> {
+        let n = self.nodes.len();
+        let steps = if fold && n > 1 { n - 1 } else { n };
+        let off = |(i, x): (usize, &f64)| (x - i as f64 / steps as f64).abs() > 1e-12;
+        if self.nodes.iter().enumerate().any(off) {
+            let why = format!(
+                "axis `{}`: azimuths must be spread evenly over the circle or its quarter",
+                self.name
+            );
+            return Err(LoadError::Unsupported(why));
         }
         Ok(())
     }

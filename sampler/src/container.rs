@@ -72,6 +72,9 @@ pub struct MaterialEntry {
     /// the [`table_suffix`](Self::table_suffix), and `s` means nothing.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub distribution: String,
+    /// The turn of an ellipsoid, θx, θy, θz in radians as of [`Skew::new`](crate::Skew::new); its σ and s are single numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub theta: Option<[f64; 3]>,
     /// The form of masking and shadowing it states, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub masking: Option<Masking>,
@@ -135,6 +138,25 @@ impl MaterialEntry {
     /// What follows the kind in the names of this material's own tables; empty for a Student-t.
     pub fn table_suffix(&self) -> String {
         self.distribution.replace([':', ',', '/', '\\', ' '], "_")
+    }
+
+    /// What the name of this material's own albedo table ends in, after `view_albedo_`, the form of masking and `_`: of another
+    /// distribution its [`table_suffix`](Self::table_suffix), of an anisotropic material of single numbers `gamma_γ_sigma_σx_σy` with γ to nine
+    /// decimals, of an ellipsoid followed by `_theta_θx_θy_θz`. `None` if its albedo is that of the family's tables.
+    pub fn view_label(&self) -> Option<String> {
+        if !self.distribution.is_empty() {
+            return Some(self.table_suffix());
+        }
+        let [x, y] = self.sigma;
+        let single = |[min, max]: [f64; 2]| min == max;
+        let round = x == y && self.theta.is_none();
+        if round || ![x, y, self.s].into_iter().all(single) {
+            return None;
+        }
+        // γ = 1 + 1/s of a γ with few digits has many: rounded, they are the same again.
+        let gamma = libm::round((1.0 + 1.0 / self.s[0]) * 1e9) / 1e9;
+        let turn = self.theta.map_or_else(String::new, |[x, y, z]| format!("_theta_{x}_{y}_{z}"));
+        Some(format!("gamma_{gamma}_sigma_{}_{}{turn}", x[0], y[0]))
     }
 }
 

@@ -72,6 +72,13 @@ pub enum BindError {
         /// The pairs that are covered.
         covered: String,
     },
+    /// A material without an albedo over the whole view in this set.
+    NoViewAlbedo {
+        /// The material.
+        name: String,
+        /// Why, and what helps.
+        remedy: &'static str,
+    },
     /// No material of that name in the set; `known` lists those it has.
     NoSuchMaterial {
         /// The name asked for.
@@ -93,7 +100,8 @@ impl fmt::Display for BindError {
             }
             Self::OtherDistribution { name, distribution } => write!(
                 f,
-                "material \"{name}\" is a {distribution}: bind a student-t with `student_t` or `material`, others with `radial`"
+                "material \"{name}\" is of the kind {distribution}: bind a student-t with `student_t` or `material`, an ellipsoid with \
+                 `material_ellipsoid`, others with `radial`; albedos of these two with `material_view_albedo`"
             ),
             Self::NoTable(name) => write!(f, "table `{name}` is missing from this set; bake it again"),
             Self::Dielectric([eta, sigma, gamma]) => write!(
@@ -127,6 +135,12 @@ impl fmt::Display for BindError {
                 "sigma = {sigma} with gamma = {gamma} is not covered by the albedo tables of this set, which hold {covered}; bake a \
                  set that does: a recipe's material with `fresnel`, or `microfacet-bake bake` without a recipe for all"
             ),
+            Self::NoViewAlbedo { name, remedy } => {
+                write!(
+                    f,
+                    "material \"{name}\" has no albedo over the azimuth of the view in this set: {remedy}"
+                )
+            }
             Self::NoSuchMaterial { name, known } => write!(
                 f,
                 "no material \"{name}\" in this set, which holds {known} (smooth materials have no microfacets and are not \

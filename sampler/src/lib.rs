@@ -13,6 +13,7 @@ extern crate alloc;
 mod albedo;
 mod albedo_axes;
 mod axis;
+mod azimuth;
 mod batch;
 mod below;
 mod bind;
@@ -34,6 +35,7 @@ mod student_t;
 mod table;
 mod table_pdf;
 mod tables;
+mod view_albedo;
 
 pub use albedo::{Albedo, Moments};
 pub use axis::{Axis, Interpolation, Mapping};
@@ -51,6 +53,7 @@ pub use radial::Radial;
 pub use student_t::{Masking, Roughness, StudentT};
 pub use table::{Kind, Table};
 pub use tables::Tables;
+pub use view_albedo::ViewAlbedo;
 
 /// The README's example, so that it keeps compiling.
 #[cfg(all(doctest, feature = "embedded"))]

@@ -41,6 +41,8 @@ pub enum Kind {
     FresnelAlbedo,
     /// The same of a dielectric, reflected and transmitted, over γ × σ × η × view, seen from one of its sides.
     DielectricAlbedo,
+    /// As `Albedo` for one material whose albedo depends on more than γ, σ and cos θ, over the azimuth of the view × view.
+    ViewAlbedo,
 }
 
 impl Kind {
@@ -59,12 +61,20 @@ impl Kind {
             Self::AlbedoAverage => "albedo_average",
             Self::FresnelAlbedo => "fresnel_albedo",
             Self::DielectricAlbedo => "dielectric_albedo",
+            Self::ViewAlbedo => "view_albedo",
         }
     }
 
     /// Whether it is a directional albedo or the average of one: what depends on light and view, not on the view alone.
     pub const fn is_albedo(self) -> bool {
-        matches!(self, Self::Albedo | Self::AlbedoAverage | Self::FresnelAlbedo | Self::DielectricAlbedo)
+        matches!(
+            self,
+            Self::Albedo
+                | Self::AlbedoAverage
+                | Self::FresnelAlbedo
+                | Self::DielectricAlbedo
+                | Self::ViewAlbedo
+        )
     }
 
     /// Names of the axes, slowest first.
@@ -80,6 +90,7 @@ impl Kind {
             Self::Albedo | Self::FresnelAlbedo => &["gamma", "sigma", "view"],
             Self::AlbedoAverage => &["gamma", "sigma"],
             Self::DielectricAlbedo => &["gamma", "sigma", "eta", "view"],
+            Self::ViewAlbedo => &["azimuth", "view"],
         }
     }
 }
@@ -146,6 +157,7 @@ impl Table {
         let known: &[&[&str]] = match self.kind {
             Kind::FresnelAlbedo => &[&crate::fresnel_albedo::CHANNELS],
             Kind::DielectricAlbedo => &crate::dielectric_albedo::CHANNELS,
+            Kind::ViewAlbedo => &[&crate::albedo::CHANNELS, &crate::view_albedo::CHANNELS],
             _ => &[&crate::albedo::CHANNELS],
         };
         if !known.iter().any(|known| self.channels == *known) {
@@ -154,28 +166,36 @@ impl Table {
         if self.masking.is_none() {
             return fail("an albedo without the form of masking it is for");
         }
-        let mapped = matches!(self.axes[0].mapping, Mapping::LogShape { .. })
-            && matches!(self.axes[1].mapping, Mapping::Roughness { .. })
-            && match &self.axes[2..] {
-                [] => true,
-                [view] => matches!(view.mapping, Mapping::ViewBlend { .. }),
-                [eta, view] => {
-                    eta.mapping == Mapping::ReflectanceRoot
-                        && if self.channels == crate::dielectric_albedo::CHANNELS[0] {
-                            matches!(view.mapping, Mapping::ViewBlend { .. })
-                        } else {
-                            matches!(view.mapping, Mapping::CriticalBlend { .. }) && view.nodes.len() % 2 == 1
+        let blends = |view: &Axis| matches!(view.mapping, Mapping::ViewBlend { .. });
+        let splits = |view: &Axis| matches!(view.mapping, Mapping::CriticalBlend { .. });
+        let mapped = match (self.kind, &self.axes[..]) {
+            (Kind::ViewAlbedo, [azimuth, view]) => {
+                matches!(azimuth.mapping, Mapping::Azimuth { .. }) && blends(view)
+            }
+            (_, [shape, roughness, rest @ ..]) => {
+                matches!(shape.mapping, Mapping::LogShape { .. })
+                    && matches!(roughness.mapping, Mapping::Roughness { .. })
+                    && match rest {
+                        [] => true,
+                        [view] => blends(view),
+                        [eta, view] if self.channels == crate::dielectric_albedo::CHANNELS[0] => {
+                            eta.mapping == Mapping::ReflectanceRoot && blends(view)
                         }
-                }
-                _ => false,
-            };
+                        [eta, view] => {
+                            eta.mapping == Mapping::ReflectanceRoot && splits(view) && view.len() % 2 == 1
+                        }
+                        _ => false,
+                    }
+            }
+            _ => false,
+        };
         if !mapped || self.axes.iter().any(|axis| axis.interpolation != Interpolation::Lagrange6) {
             return fail(
                 "an axis has a mapping, a number of nodes or an interpolation that this kind does not use",
             );
         }
-        let least = |view: &Axis| if matches!(view.mapping, Mapping::CriticalBlend { .. }) { 11 } else { 6 };
-        if self.axes[2..].last().is_some_and(|view| view.nodes.len() < least(view)) {
+        let least = |view: &Axis| if splits(view) { 11 } else { 6 };
+        if self.axes.iter().any(|axis| axis.name == "view" && axis.len() < least(axis)) {
             return fail("axis `view` has fewer than six nodes, or eleven in two halves");
         }
         // Moments less a mirror's, and each of them is in [0, 1]; a share of light.
@@ -221,7 +241,11 @@ impl Table {
                     && matches!(self.axes[1].mapping, Mapping::MirroredPower { odd: true, .. })
             }
             Kind::RadialDensity => self.axes[0].mapping == Mapping::HalfTangent,
-            Kind::Albedo | Kind::AlbedoAverage | Kind::FresnelAlbedo | Kind::DielectricAlbedo => {
+            Kind::Albedo
+            | Kind::AlbedoAverage
+            | Kind::FresnelAlbedo
+            | Kind::DielectricAlbedo
+            | Kind::ViewAlbedo => {
                 unreachable!("validated apart")
             }
         };

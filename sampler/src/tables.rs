@@ -145,6 +145,24 @@ impl Tables {
         self.student_t([middle(*x), middle(*y)], 1.0 + 1.0 / middle(*s))
     }
 
+    /// Binds a material of the set's recipe that is an ellipsoid: one that states `theta`.
+    ///
+    /// # Errors
+    /// [`BindError::NoSuchMaterial`], [`BindError::OtherDistribution`] for another material, or what [`ellipsoid`](Self::ellipsoid) reports.
+    pub fn material_ellipsoid(&self, name: &str) -> Result<Ellipsoid, BindError> {
+        let entry = self.entry(name)?;
+        let Some(theta) = entry.theta else {
+            let distribution =
+                if entry.distribution.is_empty() { "student-t" } else { entry.distribution.as_str() };
+            return Err(BindError::OtherDistribution {
+                name: name.into(),
+                distribution: distribution.into(),
+            });
+        };
+        let [x, y] = entry.sigma;
+        self.ellipsoid(Skew::new([x[0], y[0]], theta)?, 1.0 + 1.0 / entry.s[0])
+    }
+
     /// Binds a material of the set's recipe that is no Student-t, such as a GTR or a measured one.
     ///
     /// # Errors
@@ -152,7 +170,11 @@ impl Tables {
     pub fn radial(&self, name: &str) -> Result<Radial, BindError> {
         let entry = self.entry(name)?;
         if entry.distribution.is_empty() {
-            return Err(BindError::OtherDistribution { name: name.into(), distribution: "student-t".into() });
+            let distribution = if entry.theta.is_some() { "ellipsoid" } else { "student-t" };
+            return Err(BindError::OtherDistribution {
+                name: name.into(),
+                distribution: distribution.into(),
+            });
         }
         Radial::bind(&self.tables, entry.sigma[0][0] as f32, &entry.table_suffix())
     }
@@ -160,13 +182,15 @@ impl Tables {
     /// The entry of a material that is a Student-t.
     pub(crate) fn student_t_entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
         let entry = self.entry(name)?;
-        if entry.distribution.is_empty() {
-            return Ok(entry);
-        }
-        Err(BindError::OtherDistribution { name: name.into(), distribution: entry.distribution.clone() })
+        let distribution = match entry.theta {
+            Some(_) => "ellipsoid",
+            None if entry.distribution.is_empty() => return Ok(entry),
+            None => &entry.distribution,
+        };
+        Err(BindError::OtherDistribution { name: name.into(), distribution: distribution.into() })
     }
 
-    fn entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
+    pub(crate) fn entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
         let materials = &self.provenance.materials;
         materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
             // A scene may have thousands.

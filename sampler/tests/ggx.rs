@@ -77,6 +77,7 @@ fn without_tables() -> Tables {
         sigma: [[0.2, 0.2], [0.1, 0.3]],
         s: [1.0, 1.0],
         distribution: String::new(),
+        theta: None,
         masking: None,
         fresnel: None,
     };

@@ -9,7 +9,7 @@ use std::fmt;
 use rayon::prelude::*;
 
 use microfacet_model::fresnel::{f82_weight, schlick_weight};
-use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
+use microfacet_model::{Albedo, AlbedoIntegrator, ParameterError, Shape};
 use microfacet_sampler::{
     Axis, FresnelEntry, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
 };
@@ -25,7 +25,7 @@ const ROUGHNESS: (f64, f64, f64) = (0.015, 0.2, 1.0);
 /// Smallest σ node, the sampler's smallest; what is smoother is a mirror.
 const SIGMA_MIN: f64 = 1e-8;
 /// The coordinate of the view, found by measuring (`cargo run --release --example albedo_design`).
-const VIEW: Mapping = Mapping::ViewBlend {
+pub(super) const VIEW: Mapping = Mapping::ViewBlend {
     weight: 0.3,
     normal: 0.1,
     share: 0.4,
@@ -223,6 +223,15 @@ pub enum BakeError {
         /// The estimate.
         error: f64,
     },
+    /// Any of these at one azimuth of a lobe that is not round, with the roughness seen from there for σ.
+    Azimuth {
+        /// Which lobe, as in the name of its table.
+        lobe: String,
+        /// The azimuth, radians.
+        phi: f64,
+        /// What.
+        why: Box<BakeError>,
+    },
     /// The tables would not load.
     Table(LoadError),
 }
@@ -238,6 +247,7 @@ impl fmt::Display for BakeError {
             Self::Accuracy { at, error } => {
                 write!(f, "quadrature error {error:e} at {}: raise the tolerance", place(at))
             }
+            Self::Azimuth { lobe, phi, why } => write!(f, "{lobe}, azimuth {phi}: {why}"),
             Self::Table(why) => why.fmt(f),
         }
     }
@@ -264,7 +274,7 @@ pub fn weights(cos: f64) -> [f64; 3] {
 }
 
 /// What a node holds for both forms of masking: E − 1, and what the other moments have over a mirror's times E.
-type Node = [[f64; 3]; 2];
+pub(super) type Node = [[f64; 3]; 2];
 
 /// Bakes `albedo` and `albedo_average` for both forms of masking, four tables in all.
 ///
@@ -345,12 +355,15 @@ fn table(spec: &AlbedoSpec, kind: Kind, masking: Masking, axes: Vec<Axis>, value
 }
 
 fn node(shape: &AlbedoIntegrator, sigma: f64, cos: f64, tolerance: f64) -> Result<(Node, f64), BakeError> {
-    let albedo = shape.reflection(sigma, cos, weights)?;
-    let at = [sigma, shape.shape().gamma(), cos];
+    residual(&shape.reflection(sigma, cos, weights)?, [sigma, shape.shape().gamma(), cos], tolerance)
+}
+
+/// What a node holds of an albedo, at σ, γ and cos θ.
+pub(super) fn residual(albedo: &Albedo<3>, at: [f64; 3], tolerance: f64) -> Result<(Node, f64), BakeError> {
     if !(albedo.error <= tolerance) {
         return Err(BakeError::Accuracy { at, error: albedo.error });
     }
-    let mirror = weights(cos);
+    let mirror = weights(at[2]);
     let mut out = [albedo.uncorrelated, albedo.height_correlated];
     for form in &mut out {
         let value = form[0] + form[1];

@@ -9,6 +9,7 @@ pub mod dielectric_albedo;
 pub mod fresnel_albedo;
 mod radial;
 mod shadowing;
+pub mod view_albedo;
 mod visible_slope;
 
 use microfacet_model::{Shape, SignedUnit};

@@ -9,7 +9,7 @@ use serde_json::json;
 use microfacet_bake::bake::albedo::AlbedoSpec;
 use microfacet_bake::cache::Cache;
 use microfacet_bake::fill::fill;
-use microfacet_bake::generate::{Baked, Target, add_albedos, add_distributions, generate};
+use microfacet_bake::generate::{Baked, Target, add_albedos, add_distributions, add_view_albedos, generate};
 use microfacet_bake::memory;
 use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::{self, Scene};
@@ -127,7 +127,8 @@ pub(super) fn run(args: Args) -> Outcome {
     let specs: Vec<_> = plan.needs.iter().flat_map(|need| need.specs(&general)).collect();
     let albedo = AlbedoSpec::general(quality, precision);
     let albedos: Vec<_> = plan.albedos.iter().map(|need| need.spec(&albedo)).collect();
-    memory::check(&specs, &albedos, args.max_memory)?;
+    let views: Vec<_> = plan.view_albedos.iter().map(|need| need.spec(quality, precision)).collect();
+    memory::check(&specs, &albedos, &views, args.max_memory)?;
     let steps = match target {
         // All at once.
         _ if args.max_bytes.is_some() => 0,
@@ -135,7 +136,8 @@ pub(super) fn run(args: Args) -> Outcome {
         Target::Quality(..) => specs.len() + plan.needs.len(),
         _ => plan.needs.len(),
     };
-    let bar = progress(steps + plan.distributions.len() + plan.albedos.len(), "baking");
+    let albedos = plan.albedos.len() + plan.view_albedos.len();
+    let bar = progress(steps + plan.distributions.len() + albedos, "baking");
     let provenance = provenance(scene.as_ref().map(|scene| (scene, &plan)));
     let cache = args.cache();
     let (result, families) = match args.max_bytes {
@@ -147,6 +149,7 @@ pub(super) fn run(args: Args) -> Outcome {
             let normals = normals.elapsed().as_secs_f64();
             let albedo = Instant::now();
             let result = add_albedos(result, &plan.albedos, target, &cache, || bar.inc(1))?;
+            let result = add_view_albedos(result, &plan.view_albedos, target, &cache, || bar.inc(1))?;
             let families = [("visible normals", normals), ("albedo", albedo.elapsed().as_secs_f64())];
             (result, Some(families))
         }
@@ -219,7 +222,8 @@ fn summary(result: &Baked, plan: &Plan, written: &[Written], families: Families,
         (all, _) => format!("{all} tables"),
     };
     text += &format!("{baked} in {seconds:.3} s");
-    if let Some(families) = families.filter(|_| !plan.albedos.is_empty()) {
+    let albedos = !(plan.albedos.is_empty() && plan.view_albedos.is_empty());
+    if let Some(families) = families.filter(|_| albedos) {
         let parts = families.map(|(name, seconds)| format!("{name} {seconds:.3} s"));
         text += &format!(" ({})", parts.join(", "));
     }

@@ -61,6 +61,11 @@ fn describe_table(table: &Table) -> String {
         text += &format!("  {}\n", describe_axis(axis));
     }
     text += &format!("  {}\n", largest_error(table));
+    if let Some(error) = table.certificate.get("shortcut_max_error") {
+        text += &format!(
+            "  an isotropic table at sqrt(sigma_x sigma_y) in its place would be off by up to {error}\n"
+        );
+    }
     for (key, value) in &table.certificate {
         text += &format!("    {key} {value}\n");
     }

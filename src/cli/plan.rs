@@ -7,10 +7,11 @@ use std::time::Instant;
 use serde_json::json;
 
 use microfacet_bake::bake::albedo::{AlbedoSpec, Domain};
+use microfacet_bake::bake::view_albedo::ViewSpec;
 use microfacet_bake::family::Distribution;
-use microfacet_bake::generate::add_albedo_conventions;
+use microfacet_bake::generate::{add_albedo_conventions, add_view_albedo_conventions};
 use microfacet_bake::plan::{
-    AlbedoVerdict, Cost, Need, Plan, Verdict, albedo_cost, bare_cost, cost, distribution_cost,
+    AlbedoVerdict, Cost, Need, Plan, Verdict, albedo_cost, bare_cost, cost, distribution_cost, view_cost,
 };
 use microfacet_bake::scene::{self, Interval, Material, Scene};
 use microfacet_bake::spec::{TableSpec, general_set};
@@ -41,6 +42,8 @@ struct Report<'a> {
     albedos: Vec<(AlbedoSpec, Cost)>,
     /// Cost of each distribution outside the family.
     distributions: Vec<Cost>,
+    /// The same of tables over all views.
+    views: Vec<(ViewSpec, Cost)>,
     total: Cost,
     general: Cost,
     /// Milliseconds.
@@ -68,6 +71,15 @@ pub(super) fn run(args: Args) -> Outcome {
     if !albedos.is_empty() {
         add_albedo_conventions(&mut origin);
     }
+    let views = plan.view_albedos.iter().map(|need| {
+        let spec = need.spec(args.request.quality(), args.request.precision());
+        let cost = view_cost(&spec);
+        (spec, cost)
+    });
+    let views: Vec<(ViewSpec, Cost)> = views.collect();
+    if !views.is_empty() {
+        add_view_albedo_conventions(&mut origin);
+    }
     let tables: Vec<(Vec<TableSpec>, Cost)> = plan
         .needs
         .iter()
@@ -80,7 +92,7 @@ pub(super) fn run(args: Args) -> Outcome {
     let (quality, precision) = (args.request.quality(), args.request.precision());
     let distributions: Vec<Cost> =
         plan.distributions.iter().map(|own| distribution_cost(own, quality, precision)).collect();
-    let albedo_costs = albedos.iter().map(|(_, cost)| *cost);
+    let albedo_costs = albedos.iter().map(|(_, cost)| *cost).chain(views.iter().map(|(_, cost)| *cost));
     let total = tables
         .iter()
         .map(|(_, cost)| *cost)
@@ -100,6 +112,7 @@ pub(super) fn run(args: Args) -> Outcome {
         plan: &plan,
         tables,
         albedos,
+        views,
         distributions,
         total,
         general,
@@ -143,7 +156,7 @@ fn albedo_reason(verdict: AlbedoVerdict) -> [&'static str; 2] {
         AlbedoVerdict::NotAsked => ["no fresnel", "the recipe states no `fresnel`; --albedo bakes all"],
         AlbedoVerdict::Imported => ["not asked", "scenes other than recipes get albedos with --albedo"],
         AlbedoVerdict::Declined => ["declined", "--no-albedo"],
-        AlbedoVerdict::OtherDistribution => ["no student-t", "albedo tables are for the Student-t family"],
+        AlbedoVerdict::Own => ["own table", "no plain Student-t: its albedo has a table of its own"],
         AlbedoVerdict::Embedded => ["embedded", "the default set compiled into the sampler has its albedo"],
         AlbedoVerdict::NotNeeded => ["not needed", "it needs no tables at all"],
     }
@@ -189,6 +202,12 @@ impl Report<'_> {
         pairs.filter(|(_, verdict)| **verdict == of).map(|(material, _)| material.name.as_str()).collect()
     }
 
+    /// Names of the materials with one table over all views.
+    fn view_names(&self, of: usize) -> Vec<&str> {
+        let pairs = self.scene.materials.iter().zip(&self.plan.view_indices);
+        pairs.filter(|(_, index)| **index == Some(of)).map(|(material, _)| material.name.as_str()).collect()
+    }
+
     fn albedo_text(&self) -> String {
         let mut text = String::new();
         for (i, (spec, cost)) in self.albedos.iter().enumerate() {
@@ -209,11 +228,20 @@ impl Report<'_> {
                 cost.seconds,
             );
         }
+        for (i, (spec, cost)) in self.views.iter().enumerate() {
+            text += &format!(
+                "bake  albedo over all views, {}, {}: 1 table, {} bytes at least, about {:.3} s, for {}\n",
+                spec.label.replace('_', " "),
+                spec.masking.name(),
+                cost.bytes,
+                cost.seconds,
+                list(self.view_names(i).into_iter())
+            );
+        }
         for verdict in [
             AlbedoVerdict::NotAsked,
             AlbedoVerdict::Imported,
             AlbedoVerdict::Declined,
-            AlbedoVerdict::OtherDistribution,
             AlbedoVerdict::Embedded,
         ] {
             let names = self.albedo_names(verdict);
@@ -314,6 +342,12 @@ impl Report<'_> {
                 json!({ "distribution": distribution.label(), "tables": 4, "cost": cost(sum), "materials": self.wearers(distribution) })
             })
             .collect();
+        let views: Vec<_> = self.views.iter().enumerate().map(|(i, (spec, sum))| {
+            json!({
+                "name": spec.name(), "masking": spec.masking, "nodes": [spec.azimuths, spec.views], "cost": cost(sum),
+                "materials": self.view_names(i),
+            })
+        }).collect();
         let verdicts = self.plan.verdicts.iter().zip(&self.plan.albedo_verdicts);
         let materials: Vec<_> = self
             .scene
@@ -339,7 +373,7 @@ impl Report<'_> {
             .map(|material| json!({ "name": material.name, "kind": material.kind, "why": material.reason }))
             .collect();
         json!({
-            "needs": needs, "distributions": distributions, "albedo": albedos, "materials": materials, "ignored": ignored, "nothing_needed": self.plan.is_empty(),
+            "needs": needs, "distributions": distributions, "albedo": albedos, "view_albedo": views, "materials": materials, "ignored": ignored, "nothing_needed": self.plan.is_empty(),
             "total": cost(&self.total), "general_set": cost(&self.general),
             "milliseconds": { "reading": self.reading, "planning": self.planning },
         })

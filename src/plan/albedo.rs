@@ -2,8 +2,9 @@
 
 use microfacet_sampler::{FresnelEntry, Masking, Precision};
 
-use super::{NotCovered, Options, is_rough};
+use super::{NotCovered, Options, entry, is_rough};
 use crate::bake::albedo::{AlbedoSpec, Domain, SIGMA_MAX};
+use crate::bake::view_albedo::{Lobe, ViewSpec};
 use crate::scene::{Format, Interval, Material, Scene};
 use crate::spec::Quality;
 
@@ -43,6 +44,59 @@ impl AlbedoNeed {
     }
 }
 
+/// A material whose albedo depends on the azimuth of the view, or on a distribution of its own, and gets a table of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ViewNeed {
+    /// Its normals.
+    pub lobe: Lobe,
+    /// What the name of its table ends in; materials of one label and masking share the table.
+    pub label: String,
+    /// The form of masking.
+    pub masking: Masking,
+}
+
+impl ViewNeed {
+    /// The smallest table that is tried for it.
+    pub fn spec(&self, quality: Quality, precision: Precision) -> ViewSpec {
+        ViewSpec::new(self.lobe.clone(), self.label.clone(), self.masking, quality, precision)
+    }
+}
+
+/// The materials that get an albedo table over all views, each table once, and for each material of the scene the index of its own.
+pub(super) fn view_needs(scene: &Scene, options: Options) -> (Vec<ViewNeed>, Vec<Option<usize>>) {
+    let mut needs: Vec<ViewNeed> = Vec::new();
+    let mut index = |material: &Material| {
+        if unasked(material, options).is_some() {
+            return None;
+        }
+        let need = view_need(material)?;
+        let same = |other: &ViewNeed| (&other.label, other.masking) == (&need.label, need.masking);
+        Some(needs.iter().position(same).unwrap_or_else(|| {
+            needs.push(need);
+            needs.len() - 1
+        }))
+    };
+    let indices = scene.materials.iter().map(&mut index).collect();
+    (needs, indices)
+}
+
+fn view_need(material: &Material) -> Option<ViewNeed> {
+    let label = entry(material).view_label()?;
+    let sigma = [material.roughness.x().min, material.roughness.y().min];
+    let gamma = material.gamma.min;
+    let lobe = match (&material.distribution, material.theta) {
+        (Some(distribution), _) => Lobe::Radial { distribution: distribution.clone(), sigma: sigma[0] },
+        (_, Some(theta)) => Lobe::Ellipsoid { sigma, theta, gamma },
+        _ => Lobe::StudentT { sigma, gamma },
+    };
+    Some(ViewNeed { lobe, label, masking: masking(material) })
+}
+
+/// What the recipe leaves open is the form of the distribution's own paper.
+fn masking(material: &Material) -> Masking {
+    material.masking.unwrap_or(Masking::Uncorrelated)
+}
+
 /// What becomes of a material's albedo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AlbedoVerdict {
@@ -54,8 +108,8 @@ pub enum AlbedoVerdict {
     Imported,
     /// Albedo tables were declined.
     Declined,
-    /// It is no Student-t.
-    OtherDistribution,
+    /// It is no plain Student-t, and has a table of its own alone: see [`Plan::view_indices`](super::Plan::view_indices).
+    Own,
     /// The default set that is compiled into the sampler crate covers it.
     Embedded,
     /// It has no microfacets, or no geometry wears it.
@@ -122,17 +176,11 @@ fn want(
     material: &Material,
     options: Options,
 ) -> Result<Result<(Domain, Masking), AlbedoVerdict>, NotCovered> {
-    let native = material.origin.format == Format::Recipe;
-    let verdict = match options.albedo {
-        _ if !material.used || !is_rough(material) => Some(AlbedoVerdict::NotNeeded),
-        AlbedoWish::None => Some(AlbedoVerdict::Declined),
-        AlbedoWish::Recipes if !native => Some(AlbedoVerdict::Imported),
-        AlbedoWish::Recipes if material.fresnel.is_none() => Some(AlbedoVerdict::NotAsked),
-        _ if material.distribution.is_some() => Some(AlbedoVerdict::OtherDistribution),
-        _ => None,
-    };
-    if let Some(verdict) = verdict {
+    if let Some(verdict) = unasked(material, options) {
         return Ok(Err(verdict));
+    }
+    if material.distribution.is_some() || material.theta.is_some() {
+        return Ok(Err(AlbedoVerdict::Own));
     }
     let (gamma, [x, y]) = (material.gamma, [material.roughness.x(), material.roughness.y()]);
     // The usual stand-in for an anisotropic surface.
@@ -144,8 +192,19 @@ fn want(
     if options.embedded_albedo {
         return Ok(Err(AlbedoVerdict::Embedded));
     }
-    // What the recipe leaves open is the form of the distribution's own paper.
-    Ok(Ok((Domain { gamma, sigma }, material.masking.unwrap_or(Masking::Uncorrelated))))
+    Ok(Ok((Domain { gamma, sigma }, masking(material))))
+}
+
+/// Why no albedo is wanted of a material, if none is.
+fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
+    let native = material.origin.format == Format::Recipe;
+    match options.albedo {
+        _ if !material.used || !is_rough(material) => Some(AlbedoVerdict::NotNeeded),
+        AlbedoWish::None => Some(AlbedoVerdict::Declined),
+        AlbedoWish::Recipes if !native => Some(AlbedoVerdict::Imported),
+        AlbedoWish::Recipes if material.fresnel.is_none() => Some(AlbedoVerdict::NotAsked),
+        _ => None,
+    }
 }
 
 /// A reflectance that needs a table of its own.

@@ -2,11 +2,11 @@
 
 use microfacet_sampler::{Axis, Interpolation, Kind, Precision, Provenance, describe};
 
-use crate::bake::{self, albedo::AlbedoSpec};
+use crate::bake::{self, albedo::AlbedoSpec, view_albedo::ViewSpec};
 use crate::family::Distribution;
 use crate::generate::CERTIFICATE_POINTS;
 use crate::spec::{Quality, TableSpec};
-use crate::validate::{albedo, radial};
+use crate::validate::{albedo, radial, view_albedo};
 
 /// Bytes and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +79,18 @@ pub fn distribution_cost(distribution: &Distribution, quality: Quality, precisio
     let nodes: usize = tables.iter().map(nodes).sum();
     let seconds = 1e-6 * (node * nodes as f64 + normal * radial::POINTS as f64);
     Cost { bytes, seconds: seconds / rayon::current_num_threads() as f64 }
+}
+
+/// The same for an albedo table over all views, at the nodes that are tried first.
+pub fn view_cost(spec: &ViewSpec) -> Cost {
+    // Milliseconds a node or a point of the certificate, from `time microfacet-bake bake --threads 1 --no-cache` of an anisotropic material;
+    // long tails and narrow lobes take up to twice as long, and refinement comes on top.
+    const PLACE: f64 = 5.0;
+    let axes = spec.axes().ok().and_then(|axes| serde_json::to_string(&axes).ok());
+    let header = axes.map_or(0, |json| escaped(&json)) + 2 * spec.name().len() + 800;
+    let threads = rayon::current_num_threads() as f64;
+    let seconds = 1e-3 * PLACE * (spec.nodes() + view_albedo::POINTS) as f64;
+    Cost { bytes: spec.bytes() + header, seconds: seconds / threads }
 }
 
 /// Seconds that one thread bakes and certifies albedo tables.

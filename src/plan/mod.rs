@@ -12,8 +12,8 @@ use std::fmt;
 
 use microfacet_sampler::MaterialEntry;
 
-pub use albedo::{AlbedoNeed, AlbedoVerdict, AlbedoWish};
-pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost};
+pub use albedo::{AlbedoNeed, AlbedoVerdict, AlbedoWish, ViewNeed};
+pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, view_cost};
 pub use needs::Need;
 
 use crate::bake::albedo::SIGMA_MAX;
@@ -96,6 +96,10 @@ pub struct Plan {
     pub albedos: Vec<AlbedoNeed>,
     /// One verdict on the albedo of each material, in order.
     pub albedo_verdicts: Vec<AlbedoVerdict>,
+    /// Albedo tables over all views, each of one or more equal materials.
+    pub view_albedos: Vec<ViewNeed>,
+    /// An index into those for each material, in order; `None` for most.
+    pub view_indices: Vec<Option<usize>>,
 }
 
 impl Plan {
@@ -143,7 +147,9 @@ impl Plan {
         };
         let verdicts = wants.iter().enumerate().map(verdict).collect();
         let (albedos, albedo_verdicts) = albedo::needs(scene, options)?;
-        Ok(Self { needs, distributions: distributions(scene), verdicts, albedos, albedo_verdicts })
+        let (view_albedos, view_indices) = albedo::view_needs(scene, options);
+        let distributions = distributions(scene);
+        Ok(Self { needs, distributions, verdicts, albedos, albedo_verdicts, view_albedos, view_indices })
     }
 
     /// Whether some material is left to closed forms: then even a set without tables is worth writing.
@@ -155,6 +161,7 @@ impl Plan {
     pub fn is_empty(&self) -> bool {
         self.needs.is_empty()
             && self.albedos.is_empty()
+            && self.view_albedos.is_empty()
             && self.verdicts.iter().all(|verdict| matches!(verdict, Verdict::NotRough | Verdict::NotUsed))
     }
 }
@@ -174,7 +181,8 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
     if gamma.min < GAMMA_MIN {
         return Err(NotCovered::Gamma { material: material.name.clone(), gamma: gamma.min });
     }
-    if gamma == Interval::point(GGX) && !options.tabulate_ggx {
+    // Ellipsoids read tables at every γ.
+    if gamma == Interval::point(GGX) && !options.tabulate_ggx && material.theta.is_none() {
         return Ok(Err(Verdict::ClosedForm));
     }
     Ok(if options.embedded { Err(Verdict::Embedded) } else { Ok(gamma) })
@@ -198,19 +206,22 @@ fn is_rough(material: &Material) -> bool {
 
 /// The named materials of a scene as a set records them: those in use that are rough.
 pub fn entries(scene: &Scene) -> Vec<MaterialEntry> {
-    let pair = |interval: Interval| [interval.min, interval.max];
-    let entry = |material: &Material| {
-        let Interval { min, max } = material.gamma;
-        MaterialEntry {
-            name: material.name.clone(),
-            sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
-            s: [s_of(max), s_of(min)],
-            distribution: material.distribution.as_ref().map_or(String::new(), Distribution::label),
-            masking: material.masking,
-            fresnel: material.fresnel,
-        }
-    };
     scene.materials.iter().filter(|material| material.used && is_rough(material)).map(entry).collect()
+}
+
+/// A material as a set records it.
+fn entry(material: &Material) -> MaterialEntry {
+    let pair = |interval: Interval| [interval.min, interval.max];
+    let Interval { min, max } = material.gamma;
+    MaterialEntry {
+        name: material.name.clone(),
+        sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
+        s: [s_of(max), s_of(min)],
+        distribution: material.distribution.as_ref().map_or(String::new(), Distribution::label),
+        theta: material.theta,
+        masking: material.masking,
+        fresnel: material.fresnel,
+    }
 }
 
 /// A material that tables cannot cover.

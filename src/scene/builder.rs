@@ -78,6 +78,7 @@ impl Builder {
             roughness: lobe.roughness,
             gamma: lobe.gamma,
             distribution: None,
+            theta: None,
             fresnel: lobe.fresnel,
             masking: lobe.masking,
             origin: Origin { format: self.format, place: place.clone(), lobe: lobe.name },

@@ -114,6 +114,8 @@ pub struct Material {
     pub gamma: Interval,
     /// A distribution outside the Student-t family; σ is then the median slope of its normals, and γ means nothing.
     pub distribution: Option<Distribution>,
+    /// The turn of an ellipsoid, θx, θy, θz in radians (`microfacet_model::Ellipsoid::new`); σ and γ are then single numbers.
+    pub theta: Option<[f64; 3]>,
     /// The facets' reflectance; `None` where the scene states none, or none of these forms.
     pub fresnel: Option<Fresnel>,
     /// The form of G2 that the scene's renderer evaluates; `None` where the format leaves it open.
@@ -132,6 +134,7 @@ impl Material {
             && self.roughness == other.roughness
             && self.gamma == other.gamma
             && self.distribution == other.distribution
+            && self.theta == other.theta
             && self.fresnel == other.fresnel
             && self.masking == other.masking
     }

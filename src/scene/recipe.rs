@@ -13,6 +13,8 @@
 //! "gtr"`, `c = 0.2`, `gamma = 1.5`, or `distribution = { measured = "steel.csv" }` for a CSV of angles in radians and D. Exact members of the
 //! family (Beckmann, Trowbridge–Reitz, Blinn–Phong, Hyper-Cauchy) are read as such.
 //!
+//! `theta = [0.1, -0.2, 0.5]` beside single numbers of σ and γ tilts and turns the lobe: an ellipsoid, by the angles θx, θy, θz in radians.
+//!
 //! The index of a dielectric may be a range, `{ dielectric = { min = 1.0, max = "inf" } }`, whose tables have an axis of indices.
 //! `fresnel` and `masking` may be absent. The ends of an anisotropic roughness may be ranges as
 //! well: `sigma = [{ min = 0.1, max = 0.2 }, 0.3]`.
@@ -22,6 +24,7 @@ use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
+use microfacet_model::Ellipsoid;
 use microfacet_model::classic::Marginal;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -32,7 +35,7 @@ use crate::fit::{Angles, read_csv};
 
 use super::{Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, SceneError};
 
-const MATERIAL_KEYS: [&str; 6] = ["name", "sigma", "gamma", "distribution", "fresnel", "masking"];
+const MATERIAL_KEYS: [&str; 7] = ["name", "sigma", "gamma", "theta", "distribution", "fresnel", "masking"];
 const FRESNEL_KEYS: [&str; 3] = ["schlick", "conductor", "dielectric"];
 
 /// Reads the materials of the recipe `text`, the content of `file`.
@@ -66,6 +69,9 @@ fn entry(material: &Material) -> String {
             writeln!(text, "distribution = {}{values}", quoted(named.family.name()))
         }
     };
+    if let Some(theta) = material.theta {
+        let _ = writeln!(text, "theta = {theta:?}");
+    }
     if let Some(fresnel) = material.fresnel {
         let value = match fresnel {
             Fresnel::Mirror => "\"mirror\"".to_owned(),
@@ -188,11 +194,16 @@ impl Source<'_> {
                 (roughness, self.gamma(required("gamma", "2.0")?)?, None)
             }
         };
+        let theta = match table.get("theta") {
+            Some(value) if distribution.is_none() => Some(self.theta(value, roughness, gamma)?),
+            _ => None,
+        };
         Ok(Material {
             name,
             roughness,
             gamma,
             distribution,
+            theta,
             fresnel: table.get("fresnel").map(|v| self.fresnel(v)).transpose()?,
             masking: table.get("masking").map(|v| self.masking(v)).transpose()?,
             origin: Origin { format: Format::Recipe, place, lobe: None },
@@ -300,6 +311,38 @@ impl Source<'_> {
              diverges, up to \"inf\" (Beckmann)",
             range(gamma)
         )))
+    }
+
+    /// The turn of an ellipsoid, checked with its σ and γ.
+    fn theta(
+        &self,
+        value: &Value<'_>,
+        roughness: Roughness,
+        gamma: Interval,
+    ) -> Result<[f64; 3], SceneError> {
+        let place = self.place(value.span());
+        let theta = match value.get_ref().as_array().map(|array| &array[..]) {
+            Some([x, y, z]) => [self.number(x, "theta")?, self.number(y, "theta")?, self.number(z, "theta")?],
+            _ => {
+                return Err(place.invalid(
+                    "theta must be three angles in radians, about x, y and z: theta = [0.1, -0.2, 0.5]",
+                ));
+            }
+        };
+        let (x, y) = (roughness.x(), roughness.y());
+        for (key, interval) in [("sigma", x), ("sigma", y), ("gamma", gamma)] {
+            if !interval.is_point() {
+                return Err(place.invalid(format!(
+                    "theta with a range of {key}, {}: an ellipsoid needs single numbers; give {key} one",
+                    range(interval)
+                )));
+            }
+        }
+        let ellipsoid = Ellipsoid::new(x.min, y.min, theta, gamma.min);
+        match ellipsoid {
+            Ok(_) => Ok(theta),
+            Err(why) => Err(place.invalid(format!("theta = {theta:?} with its sigma: {why}"))),
+        }
     }
 
     fn interval(&self, value: &Value<'_>, key: &str) -> Result<Interval, SceneError> {

@@ -136,6 +136,7 @@ impl Surface {
             sigma: [[sigma; 2]; 2],
             s: [1.0 / (gamma - 1.0); 2],
             distribution: String::new(),
+            theta: None,
             masking: table.masking,
             fresnel,
         };

@@ -9,5 +9,6 @@ pub mod pdf_integral;
 pub mod radial;
 mod run;
 pub mod stress;
+pub mod view_albedo;
 
 pub use run::{LEVEL, Options, Outcome, PDF_TOLERANCE, Report, run};

@@ -185,6 +185,28 @@ fn the_shipped_recipes_say_what_was_published() {
 }
 
 #[test]
+fn ellipsoids_have_a_turn_and_single_numbers() {
+    let tilted = "sigma = [0.3, 0.1]\ngamma = 2.7\ntheta = [0.1, -0.2, 0.5]";
+    let scene = load("r.toml", &entry(tilted));
+    assert_eq!(scene.materials[0].theta, Some([0.1, -0.2, 0.5]));
+    let again = Scene::from_recipe_str(&scene.to_recipe()).unwrap();
+    assert!(again.materials[0].asks_the_same(&scene.materials[0]), "{}", scene.to_recipe());
+    for (text, words) in [
+        ("sigma = 0.3\ngamma = 2.0\ntheta = [0.1, 0.2]", "three angles"),
+        ("sigma = 0.3\ngamma = 2.0\ntheta = 0.1", "three angles"),
+        ("sigma = 0.3\ngamma = 2.0\ntheta = [0.1, \"inf\", 0.0]", "finite"),
+        ("sigma = 0.3\ngamma = { min = 2.0, max = 3.0 }\ntheta = [0.1, 0.2, 0.0]", "range of gamma"),
+        ("sigma = { min = 0.1, max = 0.3 }\ngamma = 2.0\ntheta = [0.1, 0.2, 0.0]", "range of sigma"),
+        ("sigma = 0\ngamma = 2.0\ntheta = [0.1, 0.2, 0.0]", "sigma"),
+        ("sigma = 1e-9\ngamma = 2.0\ntheta = [0.0, 1.5707963267948966, 0.0]", "theta"),
+        ("distribution = \"gauss\"\nm = 0.2\ntheta = [0.1, 0.2, 0.0]", "unknown key `theta`"),
+    ] {
+        let message = Scene::from_recipe_str(&entry(text)).unwrap_err().to_string();
+        assert!(message.contains(words), "no {words:?} in {message}");
+    }
+}
+
+#[test]
 fn unused_materials_are_no_part_of_the_recipe() {
     let mut scene = load("r.toml", &entry("sigma = 0.3\ngamma = 2.0"));
     assert!(!scene.to_recipe().is_empty());
@@ -223,6 +245,7 @@ fn material() -> impl Strategy<Value = Material> {
         roughness,
         gamma,
         distribution: None,
+        theta: None,
         fresnel,
         masking,
         origin: Origin {

@@ -1,0 +1,410 @@
+//! Albedo tables over all views, end to end: for lobes that are not round, and for those outside the family.
+
+mod command;
+
+use std::sync::LazyLock;
+
+use glam::Vec3;
+use microfacet_bake::bake::view_albedo::{Lobe, LobeAlbedo, ViewSpec, bake};
+use microfacet_bake::cache::Cache;
+use microfacet_bake::generate::{
+    Target, add_albedos, add_distributions, add_view_albedos, generate, provenance, worst_error,
+};
+use microfacet_bake::plan::{Options, Plan, entries, view_cost};
+use microfacet_bake::scene::Scene;
+use microfacet_bake::spec::Quality;
+use microfacet_bake::store;
+use microfacet_bake::validate::view_albedo::{certified, missed_by_half, references};
+use microfacet_sampler::{BindError, Kind, Masking, Precision, Table, Tables, ViewAlbedo, encode};
+
+use command::{json, run};
+
+/// Independently integrated: σx, σy, γ, cos θ, φ, whether correlated, E.
+const REFERENCE: [([f64; 2], f64, f64, f64, bool, f64); 6] = [
+    (
+        [8.3663595940515578e-01, 1.8308432948070335e+00],
+        1.55,
+        6.0718204099530682e-01,
+        3.9627675943465577,
+        false,
+        2.0872905077163967e-02,
+    ),
+    (
+        [7.4568217468574471e-01, 1.4241501596865552e-01],
+        2.5,
+        7.6052364365567737e-01,
+        5.4189788932829108e-01,
+        true,
+        7.7274547738909416e-01,
+    ),
+    (
+        [1.3083347922293459e-01, 1.1215055613044751],
+        1.8581594715900893,
+        5.3205056829163744e-01,
+        3.3376563960005234,
+        false,
+        4.2776669010613888e-01,
+    ),
+    (
+        [8.2318179246625356e-01, 1.2108621091826757e-01],
+        8.0,
+        3.0189095046339626e-01,
+        1.0622907540033377,
+        true,
+        8.9592194255795199e-01,
+    ),
+    (
+        [4.7838580515658757e-01, 2.0],
+        3.0,
+        3.9786316530442611e-01,
+        4.3238001313265064,
+        false,
+        5.1051271478131088e-01,
+    ),
+    (
+        [6.3962601128219509e-01, 2.0],
+        1.7,
+        1.4856543593771659e-01,
+        1.7119071938636254,
+        true,
+        3.9822057356187424e-01,
+    ),
+];
+
+fn direction(cos: f64, phi: f64) -> Vec3 {
+    let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
+    Vec3::new((sin * phi.cos()) as f32, (sin * phi.sin()) as f32, cos as f32)
+}
+
+const CORRELATED: &str = "fresnel = { schlick = 0.04 }\nmasking = \"height-correlated\"";
+const PLAIN: &str = "fresnel = \"mirror\"";
+
+/// A recipe of materials: name, σ, γ, and further lines.
+fn recipe(materials: &[[&str; 4]]) -> String {
+    let entry = |[name, sigma, gamma, more]: &[&str; 4]| {
+        format!("[[material]]\nname = \"{name}\"\nsigma = {sigma}\ngamma = {gamma}\n{more}\n")
+    };
+    materials.iter().map(entry).collect()
+}
+
+const MATERIALS: [[&str; 4]; 6] = [
+    ["brushed", "[0.6, 0.15]", "2.7", CORRELATED],
+    ["the same", "[0.6, 0.15]", "2.7", CORRELATED],
+    ["other form", "[0.6, 0.15]", "2.7", PLAIN],
+    ["round", "0.3", "2.7", PLAIN],
+    ["worn", "[{ min = 0.2, max = 0.3 }, 0.1]", "2.7", PLAIN],
+    ["silent", "[0.4, 0.1]", "2.7", ""],
+];
+
+fn bake_all(text: &str, quality: Quality) -> Tables {
+    let scene = Scene::from_recipe_str(text).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    let origin = provenance(scene.to_recipe(), entries(&scene));
+    let target = Target::Quality(quality, Precision::F32);
+    let set = generate(&plan.needs, target, origin, &Cache::none(), || ()).unwrap();
+    let set = add_albedos(set, &plan.albedos, target, &Cache::none(), || ()).unwrap();
+    let set = add_view_albedos(set, &plan.view_albedos, target, &Cache::none(), || ()).unwrap().set;
+    // As a renderer gets it.
+    Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap()
+}
+
+static SET: LazyLock<Tables> = LazyLock::new(|| bake_all(&recipe(&MATERIALS), Quality::Draft));
+
+fn views(set: &Tables) -> Vec<&Table> {
+    set.tables().iter().filter(|table| table.kind == Kind::ViewAlbedo).collect()
+}
+
+fn brushed(masking: Masking, quality: Quality) -> ViewSpec {
+    let lobe = Lobe::StudentT { sigma: [0.6, 0.15], gamma: 2.7 };
+    ViewSpec::new(lobe, "gamma_2.7_sigma_0.6_0.15".into(), masking, quality, Precision::F32)
+}
+
+#[test]
+fn the_model_agrees_with_independent_values() {
+    for (sigma, gamma, cos, phi, correlated, e) in REFERENCE {
+        let lobe = Lobe::StudentT { sigma, gamma };
+        let albedo = LobeAlbedo::with(&lobe, 1e-8, |model| Ok(model.at(cos, phi)?)).unwrap();
+        let [scale, bias, _] = if correlated { albedo.height_correlated } else { albedo.uncorrelated };
+        assert!((scale + bias - e).abs() < 1e-7, "{sigma:?} {gamma}: {} for {e}", scale + bias);
+    }
+}
+
+#[test]
+fn a_table_of_default_quality_agrees_with_independent_values() {
+    let (sigma, gamma, cos, phi, _, e) = REFERENCE[1];
+    let (lobe, masking) = (Lobe::StudentT { sigma, gamma }, Masking::HeightCorrelated);
+    let spec = ViewSpec::new(lobe, "x".into(), masking, Quality::Default, Precision::F32);
+    let bound = ViewAlbedo::new(&bake(&spec).unwrap()).unwrap();
+    let got = f64::from(bound.albedo(direction(cos, phi)));
+    assert!((got - e).abs() < 1e-4, "{got} for {e}");
+}
+
+#[test]
+fn each_lobe_and_form_has_one_table_within_its_error() {
+    let tables = views(&SET);
+    let names: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();
+    let name = |form: &str| format!("view_albedo_{form}_gamma_2.7_sigma_0.6_0.15");
+    assert_eq!(names, [name("height_correlated"), name("uncorrelated")]);
+    for table in tables {
+        assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
+        assert!(table.certificate["quadrature_error"] <= 1e-4);
+        // Of single materials the round stand-in is off by this much.
+        assert!((0.05..0.3).contains(&table.certificate["shortcut_max_error"]), "{:?}", table.certificate);
+    }
+}
+
+#[test]
+fn opposite_and_mirrored_views_are_the_same_and_no_view_gains() {
+    for name in ["brushed", "other form"] {
+        let albedo = SET.material_view_albedo(name).unwrap();
+        for i in 0..400 {
+            let (cos, phi) = ((f64::from(i) * 0.618).fract().powi(3), 0.01 * f64::from(i));
+            let v = direction(cos, phi);
+            let [e, mirrored, opposite] =
+                [v, Vec3::new(v.x, -v.y, v.z), Vec3::new(-v.x, -v.y, v.z)].map(|v| albedo.albedo(v));
+            assert!((0.0..=1.0).contains(&e), "{e} at {v}");
+            assert!((e - mirrored).abs() < 1e-6 && (e - opposite).abs() < 1e-6, "{e} {mirrored} {opposite}");
+            let moments = albedo.moments(v);
+            assert!(moments.scale >= 0.0 && moments.bias >= 0.0 && moments.total() <= 1.0 + 1e-6);
+        }
+        // Every azimuth is the normal's; below the horizon is grazing, as is NaN.
+        let normal = albedo.albedo(Vec3::Z);
+        assert!((albedo.albedo(Vec3::new(1e-30, -1e-30, 1.0)) - normal).abs() < 1e-6);
+        let grazing = albedo.albedo(Vec3::X);
+        assert_eq!(albedo.albedo(Vec3::new(0.8, 0.0, -0.6)), grazing);
+        assert_eq!(albedo.albedo(Vec3::new(f32::NAN, f32::NAN, f32::NAN)), grazing);
+        if albedo.masking() == Masking::HeightCorrelated {
+            assert!(albedo.lost(Vec3::new(1.0, 0.0, 1e-30)) < 1e-6);
+        }
+    }
+}
+
+/// 1/π ∫ f cos θ over the hemisphere, by the midpoint rule.
+fn hemisphere(f: impl Fn(Vec3) -> f32) -> f64 {
+    const N: usize = 200;
+    let mut sum = 0.0;
+    for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
+        // sin² θ evenly weighs by the cosine; its square crowds views at grazing.
+        let x = (i as f64 + 0.5) / N as f64;
+        let cos = x * x;
+        let phi = std::f64::consts::TAU * (j as f64 + 0.5) / N as f64;
+        sum += 4.0 * x * x * x * f64::from(f(direction(cos, phi)));
+    }
+    sum / (N * N) as f64
+}
+
+#[test]
+fn the_average_is_that_of_all_views_and_the_furnace_closes() {
+    for name in ["brushed", "other form"] {
+        let albedo = SET.material_view_albedo(name).unwrap();
+        let average = hemisphere(|v| albedo.albedo(v));
+        assert!((average - f64::from(albedo.albedo_average())).abs() < 2e-5, "{average}");
+        let bias = hemisphere(|v| albedo.moments(v).bias);
+        assert!((bias - f64::from(albedo.average_moments().bias)).abs() < 2e-5, "{bias}");
+        let v = direction(0.3, 0.7);
+        let back = std::f64::consts::PI * hemisphere(|l| albedo.compensation(v, l));
+        assert!((back - f64::from(albedo.lost(v))).abs() < 1e-4, "{back}");
+        let l = direction(0.8, 2.0);
+        assert_eq!(albedo.compensation(v, l), albedo.compensation(l, v));
+        assert!((albedo.turquin(v, 1.0) * albedo.albedo(v) - 1.0).abs() < 1e-5);
+        assert_eq!(albedo.multiple_bounces(1.0), 1.0);
+    }
+}
+
+#[test]
+fn the_round_stand_in_is_off_by_what_the_certificate_says() {
+    let own = SET.material_view_albedo("brushed").unwrap();
+    let stand_in = SET.material_albedo("brushed").unwrap();
+    let said = views(&SET)[0].certificate["shortcut_max_error"];
+    let views = (0..4000).map(|i| direction(0.02 + 0.98 * f64::from(i % 40) / 39.0, 0.01 * f64::from(i)));
+    let seen = views.map(|v| (own.albedo(v) - stand_in.albedo(v.z)).abs()).fold(0.0, f32::max);
+    assert!((f64::from(seen) - said).abs() < 0.1 * said + 3e-3, "{seen}, certified {said}");
+}
+
+#[test]
+fn a_wrong_table_is_noticed() {
+    let spec = brushed(Masking::HeightCorrelated, Quality::Draft);
+    let references = references(&spec).unwrap();
+    let table = bake(&spec).unwrap();
+    let right = worst_error(&certified(table.clone(), &references).unwrap());
+    // Axes exchanged.
+    let swapped = ViewSpec { lobe: Lobe::StudentT { sigma: [0.15, 0.6], gamma: 2.7 }, ..spec.clone() };
+    assert!(worst_error(&certified(bake(&swapped).unwrap(), &references).unwrap()) > 0.1);
+    // One node.
+    let mut wrong = table.clone();
+    let middle = wrong.values.len() / 6 * 3;
+    wrong.values[middle] = (wrong.values[middle] - 0.1).max(-1.0);
+    assert!(worst_error(&certified(wrong, &references).unwrap()) > 10.0 * right.max(3e-3));
+    // Which axis is the coarser one.
+    let few = ViewSpec { azimuths: 3, views: 65, ..spec.clone() };
+    let [azimuths, views] = missed_by_half(&bake(&few).unwrap()).unwrap();
+    assert!(azimuths > 10.0 * views, "{azimuths} {views}");
+    let few = ViewSpec { azimuths: 17, views: 11, ..spec };
+    let [azimuths, views] = missed_by_half(&bake(&few).unwrap()).unwrap();
+    assert!(views > 10.0 * azimuths, "{azimuths} {views}");
+}
+
+#[test]
+fn materials_without_such_a_table_say_what_helps() {
+    for (name, word) in [("round", "material_albedo"), ("worn", "range"), ("silent", "fresnel")] {
+        let why = SET.material_view_albedo(name).unwrap_err();
+        assert!(matches!(why, BindError::NoViewAlbedo { .. }), "{why}");
+        assert!(why.to_string().contains(name) && why.to_string().contains(word), "{why}");
+    }
+    let unknown = SET.material_view_albedo("gold").unwrap_err();
+    assert!(matches!(unknown, BindError::NoSuchMaterial { .. }));
+    let other = SET.table(Kind::Albedo).unwrap();
+    assert!(ViewAlbedo::new(other).unwrap_err().to_string().contains("view_albedo"));
+}
+
+#[test]
+fn damaged_tables_are_refused() {
+    let table = views(&SET)[0].clone();
+    let refused = |change: fn(&mut Table)| {
+        let mut table = table.clone();
+        change(&mut table);
+        ViewAlbedo::new(&table).unwrap_err().to_string()
+    };
+    assert!(refused(|t| t.axes.swap(0, 1)).contains("axes"));
+    assert!(refused(|t| t.masking = None).contains("masking"));
+    assert!(refused(|t| t.values[0] = 1.5).contains("out of range"));
+    assert!(refused(|t| t.axes[0].nodes[1] *= 1.01).contains("azimuth"));
+    assert!(refused(|t| t.channels[0] = "value".into()).contains("channels"));
+    let sigma = |t: &mut Table| {
+        let microfacet_sampler::Mapping::Azimuth { sigma, .. } = &mut t.axes[0].mapping else { panic!() };
+        sigma[1] = 0.0;
+    };
+    assert!(refused(sigma).contains("sigma"));
+}
+
+#[test]
+fn the_commands_list_bake_keep_and_show_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("r.toml"), recipe(&MATERIALS[..1])).unwrap();
+    let shown = json(at, &["plan", "r.toml"]);
+    let listed = &shown["view_albedo"][0];
+    assert_eq!(listed["materials"], serde_json::json!(["brushed"]));
+    assert!(listed["cost"]["seconds"].as_f64().unwrap() > 0.0);
+    let text = String::from_utf8(run(at, &["plan", "r.toml"]).stdout).unwrap();
+    assert!(text.contains("albedo over all views") && text.contains("sigma 0.6 0.15"), "{text}");
+    assert_eq!(json(at, &["plan", "r.toml", "--no-albedo"])["view_albedo"], serde_json::json!([]));
+
+    let bake = ["bake", "r.toml", "--quality", "draft", "--out", "out", "--format", "safetensors,exr"];
+    let baked = json(at, &bake);
+    assert!(baked["baked"].as_u64().unwrap() > 0);
+    assert_eq!(json(at, &bake)["baked"], 0);
+    let text = String::from_utf8(run(at, &["inspect", "out"]).stdout).unwrap();
+    assert!(text.contains("view_albedo_height_correlated_gamma_2.7_sigma_0.6_0.15"), "{text}");
+    assert!(text.contains("an isotropic table at sqrt(sigma_x sigma_y) in its place would be off by up to"));
+    let set = store::read(&at.join("out")).unwrap();
+    assert!(set.material_view_albedo("brushed").is_ok());
+    assert!(set.provenance().conventions.contains_key("view_albedo"));
+    let table = views(&set)[0];
+    assert_eq!(store::read(&at.join(format!("out/{}.exr", table.name))).unwrap().tables()[0], *table);
+    // The estimate is of the table that is tried first.
+    let spec = brushed(Masking::HeightCorrelated, Quality::Draft);
+    let one = encode(&Default::default(), std::slice::from_ref(table)).unwrap().len();
+    let none = encode(&Default::default(), &[]).unwrap().len();
+    let nodes = table.values.len() / 3;
+    let real = one - none - 12 * (nodes - spec.nodes());
+    let estimate = view_cost(&spec).bytes;
+    assert!((estimate as f64 / real as f64 - 1.0).abs() < 0.2, "{estimate} for {real}");
+
+    let less = ["bake", "r.toml", "--quality", "draft", "--out", "less", "--no-albedo"];
+    assert!(json(at, &less)["tables"].as_array().unwrap().iter().all(|t| t["kind"] != "view_albedo"));
+    let refused = run(at, &["bake", "r.toml", "--max-bytes", "100000", "--out", "none"]);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("--no-albedo"));
+
+    let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float uroughness\" 0.04 \
+                 \"float vroughness\" 0.25\nWorldBegin\n";
+    std::fs::write(at.join("s.pbrt"), scene).unwrap();
+    assert_eq!(json(at, &["plan", "s.pbrt"])["view_albedo"], serde_json::json!([]));
+    let asked = json(at, &["plan", "s.pbrt", "--albedo"]);
+    assert_eq!(asked["view_albedo"][0]["materials"], serde_json::json!(["steel"]));
+    assert_eq!(asked["view_albedo"][0]["masking"], "height-correlated");
+}
+
+const GTR: &str = "[[material]]\nname = \"paint\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.5\n\
+                   fresnel = \"mirror\"\nmasking = \"height-correlated\"\n";
+
+/// The albedo with F = 1 as a renderer would estimate it: G2/G1 over a grid of visible normals.
+fn estimate(v: Vec3, g1: f32, sample: impl Fn([f32; 2]) -> Vec3, g2: impl Fn(Vec3) -> f32) -> f64 {
+    const STEPS: usize = 300;
+    let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
+    let mut sum = 0.0;
+    for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+        let m = sample([step(i), step(j)]);
+        let l = 2.0 * v.dot(m) * m - v;
+        if l.z > 0.0 {
+            sum += f64::from(g2(l) / g1);
+        }
+    }
+    sum / (STEPS * STEPS) as f64
+}
+
+#[test]
+fn other_distributions_have_an_albedo_over_the_cosine() {
+    let scene = Scene::from_recipe_str(GTR).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    let origin = provenance(scene.to_recipe(), entries(&scene));
+    let target = Target::Quality(Quality::Draft, Precision::F32);
+    let set = generate(&plan.needs, target, origin, &Cache::none(), || ()).unwrap();
+    let set = add_distributions(set, &plan.distributions, target, &Cache::none(), || ()).unwrap();
+    let set = add_view_albedos(set, &plan.view_albedos, target, &Cache::none(), || ()).unwrap().set;
+    let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
+    let table = views(&set)[0];
+    assert_eq!((table.name.as_str(), table.shape()[0]), ("view_albedo_height_correlated_gtr_0.2_1.5", 1));
+    assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
+    assert!(!table.certificate.contains_key("shortcut_max_error"));
+    let (paint, albedo) = (set.radial("paint").unwrap(), set.material_view_albedo("paint").unwrap());
+    for cos in [0.1, 0.4, 0.9] {
+        let v = direction(cos, 0.0);
+        assert_eq!(albedo.albedo(v), albedo.albedo(Vec3::new(0.0, v.x, v.z)));
+        let sample = |u| paint.sample_visible_normal(v, u);
+        let want = estimate(v, paint.g1(v), sample, |l| paint.g2(v, l, Masking::HeightCorrelated));
+        assert!((f64::from(albedo.albedo(v)) - want).abs() < 3e-3, "{cos}: {want}");
+    }
+    assert!(set.material_albedo("paint").unwrap_err().to_string().contains("material_view_albedo"));
+}
+
+#[test]
+fn ellipsoids_are_bound_by_name_with_their_albedo() {
+    let theta = "theta = [0.05, -0.1, 0.5]\nfresnel = \"mirror\"\nmasking = \"height-correlated\"";
+    let text = recipe(&[["tilted", "[0.4, 0.2]", "2.0", theta]]);
+    let scene = Scene::from_recipe_str(&text).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    // Visible normals of its γ, even of GGX; no isotropic albedo.
+    assert_eq!((plan.needs.len(), plan.albedos.len(), plan.view_albedos.len()), (1, 0, 1));
+    let set = bake_all(&text, Quality::Draft);
+    let table = views(&set)[0];
+    assert!(table.name.ends_with("gamma_2_sigma_0.4_0.2_theta_0.05_-0.1_0.5"), "{}", table.name);
+    assert!(table.certificate["e_max_error"] <= 3e-3, "{:?}", table.certificate);
+    let (tilted, albedo) =
+        (set.material_ellipsoid("tilted").unwrap(), set.material_view_albedo("tilted").unwrap());
+    for i in 0..8 {
+        let v = direction(0.3 + 0.08 * f64::from(i), 0.8 * f64::from(i));
+        let sample = |u| tilted.sample_visible_normal(v, u);
+        // Normals are drawn with their density over the area, of which G1 is the clamped share.
+        let mut want = 0.0;
+        const STEPS: usize = 200;
+        for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+            let m = sample([i, j].map(|i| (i as f32 + 0.5) / STEPS as f32));
+            let l = 2.0 * v.dot(m) * m - v;
+            if l.z > 0.0 {
+                want += f64::from(tilted.reflection_weight(v, l, Masking::HeightCorrelated));
+            }
+        }
+        want /= (STEPS * STEPS) as f64;
+        assert!((f64::from(albedo.albedo(v)) - want).abs() < 4e-3, "{v}: {} {want}", albedo.albedo(v));
+    }
+    // It is tilted: the opposite view sees something else.
+    let [a, b] = [direction(0.4, 1.0), direction(0.4, 1.0 + std::f64::consts::PI)].map(|v| albedo.albedo(v));
+    assert!((a - b).abs() > 0.01, "{a} {b}");
+    let average = hemisphere(|v| albedo.albedo(v));
+    assert!((average - f64::from(albedo.albedo_average())).abs() < 1e-4, "{average}");
+    for why in [set.material("tilted").unwrap_err(), set.radial("tilted").unwrap_err()] {
+        assert!(why.to_string().contains("material_ellipsoid"), "{why}");
+    }
+    assert!(SET.material_ellipsoid("brushed").is_err());
+}
