@@ -1,6 +1,8 @@
 //! Time of one visible normal and its density: plain anisotropic against ellipsoid, and the lune sampler as the rival at γ = 2.
 //!
-//! `cargo run --release --example ellipsoid_cost` prints nanoseconds a draw, the least of several rounds.
+//! `cargo run --release --example ellipsoid_cost` prints nanoseconds a draw, the least of many short rounds by turns. Measured: a normal of
+//! the ellipsoid takes 1.19 to 1.24 times the plain one for γ ≥ 2 (19 ns), and with its density 1.05 to 1.17 times; for γ = 1.6, where the
+//! heavy tail's closed form takes most of the time, 0.80 and 1.04 times. The lune takes 60 to 84 ns.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -10,7 +12,9 @@ use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_sampler::{Skew, Tables};
 
-const DRAWS: usize = 1_000_000;
+/// Draws of each input in a round, and rounds.
+const PASSES: usize = 4;
+const ROUNDS: usize = 500;
 
 /// Views above the surface with their random numbers, the same for every sampler.
 fn inputs() -> Vec<(Vec3, [f32; 2])> {
@@ -26,17 +30,20 @@ fn inputs() -> Vec<(Vec3, [f32; 2])> {
         .collect()
 }
 
-fn nanoseconds(inputs: &[(Vec3, [f32; 2])], mut draw: impl FnMut(Vec3, [f32; 2]) -> f32) -> f64 {
-    let mut least = f64::INFINITY;
-    for _ in 0..9 {
-        let start = Instant::now();
-        for i in 0..DRAWS {
-            let (v, u) = inputs[i % inputs.len()];
+/// Nanoseconds a draw of one short round.
+fn round(inputs: &Inputs, mut draw: impl FnMut(Vec3, [f32; 2]) -> f32) -> f64 {
+    let start = Instant::now();
+    for _ in 0..PASSES {
+        for &(v, u) in inputs {
             black_box(draw(black_box(v), black_box(u)));
         }
-        least = least.min(start.elapsed().as_secs_f64());
     }
-    least * 1e9 / DRAWS as f64
+    start.elapsed().as_secs_f64() * 1e9 / (PASSES * inputs.len()) as f64
+}
+
+/// The least time of either in rounds by turns, so that whatever else the machine does strikes both.
+fn least(mut a: impl FnMut() -> f64, mut b: impl FnMut() -> f64) -> [f64; 2] {
+    (0..ROUNDS).fold([f64::INFINITY; 2], |[x, y], _| [x.min(a()), y.min(b())])
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -48,7 +55,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("turned by {theta:?}: {:.1}% of the views below the lobe's horizon", below as f64 / 40.96);
         compare(&tables, &inputs, sigma, theta)?;
         let lune = exact.lune().expect("gamma is 2");
-        let time = nanoseconds(&inputs, |v, u| lune.sample_lune(v.as_dvec3(), u.map(f64::from)).z as f32);
+        let draw = |v: Vec3, u: [f32; 2]| lune.sample_lune(v.as_dvec3(), u.map(f64::from)).z as f32;
+        let time = (0..ROUNDS).fold(f64::INFINITY, |least, _| least.min(round(&inputs, draw)));
         println!("lune, double precision, gamma 2: {time:.1}");
     }
     Ok(())
@@ -61,10 +69,14 @@ fn compare(tables: &Tables, inputs: &Inputs, sigma: [f64; 2], theta: [f64; 3]) -
     for gamma in [1.6, 2.0, 4.0, f64::INFINITY] {
         let plain = tables.student_t(sigma, gamma)?;
         let skewed = tables.ellipsoid(Skew::new(sigma, theta)?, gamma)?;
-        let a = nanoseconds(inputs, |v, u| plain.sample_visible_normal(v, u).z);
-        let b = nanoseconds(inputs, |v, u| skewed.sample_visible_normal(v, u).z);
-        let c = nanoseconds(inputs, |v, u| plain.visible_normal_pdf(v, plain.sample_visible_normal(v, u)));
-        let d = nanoseconds(inputs, |v, u| skewed.visible_normal_pdf(v, skewed.sample_visible_normal(v, u)));
+        let [a, b] = least(
+            || round(inputs, |v, u| plain.sample_visible_normal(v, u).z),
+            || round(inputs, |v, u| skewed.sample_visible_normal(v, u).z),
+        );
+        let [c, d] = least(
+            || round(inputs, |v, u| plain.visible_normal_pdf(v, plain.sample_visible_normal(v, u))),
+            || round(inputs, |v, u| skewed.visible_normal_pdf(v, skewed.sample_visible_normal(v, u))),
+        );
         println!("{gamma:<8} {a:>6.1} {b:>10.1} {:>6.2} {c:>21.1} {d:>10.1} {:>6.2}", b / a, d / c);
     }
     Ok(())

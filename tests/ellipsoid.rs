@@ -91,6 +91,46 @@ fn values_follow_the_model() {
     assert!(below > 60, "only {below} views below the lobe's horizon");
 }
 
+/// Without tilt and turn the matrix is a plain lobe's roughness, and the normals are its normals.
+#[test]
+fn plain_matrices_give_plain_normals() {
+    let mut rng = StdRng::seed_from_u64(9);
+    for gamma in GAMMAS {
+        let set = tables(gamma);
+        let sigma = [0.2, 0.7];
+        let (plain, e) = (
+            set.student_t(sigma, gamma).unwrap(),
+            set.ellipsoid(Skew::new(sigma, [0.0; 3]).unwrap(), gamma).unwrap(),
+        );
+        for _ in 0..10_000 {
+            let (v, u) = (above(&mut rng), [rng.random(), rng.random()]);
+            let (m, expected) = (e.sample_visible_normal(v, u), plain.sample_visible_normal(v, u));
+            assert!((m - expected).length() < 2e-6, "gamma {gamma}, {v}, {u:?}: {m} against {expected}");
+        }
+    }
+}
+
+/// Entries of the matrix from 1e-7 to 9e7, with which squares leave single precision: unit normals above the horizon still.
+#[test]
+fn matrices_almost_singular_give_normals() {
+    let mut rng = StdRng::seed_from_u64(10);
+    let ends = [0.0, 1e-11, 0.3, 0.999_999_94, 1.0_f32];
+    for gamma in [2.0, f64::INFINITY] {
+        let set = tables(gamma);
+        for sigma in [[9e7, 9e7], [1e-7, 1.0], [1.0, 9e7]] {
+            for theta in [[0.0; 3], [0.3, 0.2, 0.1]] {
+                let e = set.ellipsoid(Skew::new(sigma, theta).unwrap(), gamma).unwrap();
+                for i in 0..2500 {
+                    let (v, u) = (above(&mut rng), [ends[i % 5], ends[i / 5 % 5]]);
+                    let m = e.sample_visible_normal(v, u);
+                    let unit = (m.length() - 1.0).abs() < 1e-6 && m.z > 0.0;
+                    assert!(unit, "gamma {gamma}, sigma {sigma:?}, theta {theta:?}, {v}, {u:?}: {m}");
+                }
+            }
+        }
+    }
+}
+
 /// Smallest p-value of `count` ellipsoids, binned 16 × 16 by the numbers the exact map inverts to.
 fn smallest_p(count: usize, draws: usize, gammas: &[f64]) -> f64 {
     const BINS: usize = 16;

@@ -1,11 +1,14 @@
 //! The Ellipsoid distribution at run time: a bound lobe seen through a matrix.
 
+use core::f32::consts::FRAC_1_PI;
+
 use glam::Vec3;
+use wide::f32x4;
 
 use crate::below::{Below, Numbers};
 use crate::error::BindError;
 use crate::math::sqrt64;
-use crate::sample::above_horizon;
+use crate::sample::{HORIZON, above_horizon};
 use crate::student_t::{Masking, Stretched, StudentT};
 
 /// A matrix is singular below this ratio, and tilted into the silhouette above its reciprocal.
@@ -141,10 +144,15 @@ impl Ellipsoid {
     /// Normal distribution function D(m) per steradian, ∫ D(m) (m·n) dm = 1; 0 for m at or below the horizon.
     #[inline]
     pub fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
         let Skew { p, q, r, x, y } = self.skew;
-        let uy = (m.y - y * m.z) / r;
-        let ux = (m.x - x * m.z - q * uy) / p;
-        (self.lobe.d(Vec3::new(ux, uy, m.z)) / (p * r)).min(f32::MAX)
+        // Reciprocals do not wait for the normal, as four divisions of it, one after the other, would: 10 of 80 ns for a normal and its density.
+        let (along, aside) = (1.0 / p, 1.0 / r);
+        let uy = (m.y - y * m.z) * aside;
+        let ux = (m.x - x * m.z - q * uy) * along;
+        self.lobe.d_of_unit(Vec3::new(ux, uy, m.z), FRAC_1_PI * along * aside)
     }
 
     /// Smith masking G1(v) = min(1, (v·n)/area); 0 at and below the horizon.
@@ -172,15 +180,45 @@ impl Ellipsoid {
     }
 
     /// A normal visible from `v`, from two numbers in [0, 1].
-    #[inline]
+    #[inline(always)]
     pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let [x, y, z] = self.sample_plain(v, u).unwrap_or_else(|| self.sample_any(v.x, v.y, v.z, u));
+        Vec3::new(x, y, z)
+    }
+
+    /// The lobe's [common case](StudentT::sample_common) between U and Uᵀ; `None` elsewhere, and where views are below its horizon.
+    ///
+    /// A normal from it takes 1.2 times as long as one of the plain anisotropic lobe, 1.1 to 1.2 times with its density; by the way that
+    /// always works it took twice as long (`cargo run --release --example ellipsoid_cost`).
+    #[inline(always)]
+    fn sample_plain(&self, v: Vec3, u: [f32; 2]) -> Option<[f32; 3]> {
+        let Skew { p, q, r, x, y } = self.skew;
         let w = self.to_unit(v);
+        if !(w.z >= 0.0) {
+            return None;
+        }
+        let back = |m: f32x4| {
+            let [mx, my, mz, _] = m.to_array();
+            let lanes = |a| f32x4::splat(a);
+            lanes(mx) * f32x4::new([p, 0.0, 0.0, 0.0])
+                + lanes(my) * f32x4::new([q, r, 0.0, 0.0])
+                + lanes(mz) * f32x4::new([x, y, 1.0, 0.0])
+        };
+        let m = self.lobe.sample_common(f32x4::new([w.x, w.y, 0.0, 0.0]), w.z, u, [1.0; 2], back)?;
+        // Not where a matrix almost singular has taken squares out of range, or a normal below the smallest cosine.
+        (m[2] >= HORIZON).then_some(m)
+    }
+
+    /// What [`sample_visible_normal`](Self::sample_visible_normal) returns, by the way that always works.
+    #[inline(never)]
+    fn sample_any(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
+        let w = self.to_unit(Vec3::new(x, y, z));
         let view = self.lobe.stretch(w);
         let along =
             if w.z >= 0.0 { self.lobe.sample_along(&view, u[0]) } else { self.sample_below(w, &view, u) };
         let m = self.lobe.unit_normal(&view, along, self.lobe.sample_across(u[1]));
         let Skew { p, q, r, x, y } = self.skew;
-        above_horizon(Vec3::new(p * m.x + q * m.y + x * m.z, r * m.y + y * m.z, m.z))
+        above_horizon(Vec3::new(p * m.x + q * m.y + x * m.z, r * m.y + y * m.z, m.z)).to_array()
     }
 
     #[cold]

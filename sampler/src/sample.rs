@@ -28,7 +28,7 @@ impl Slope {
 }
 
 /// Smallest cosine of a sampled normal: keeps D finite on the horizon, where for γ < 2 it is not.
-const HORIZON: f32 = 1e-18;
+pub(crate) const HORIZON: f32 = 1e-18;
 
 impl StudentT {
     /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them).

@@ -281,9 +281,14 @@ impl StudentT {
         if !(m.z > 0.0) {
             return 0.0;
         }
-        let (x, y) = (m.x / self.sigma_x, m.y / self.sigma_y);
-        let r2 = x * x + y * y;
         let scale = 1.0 / (PI * self.sigma_x * self.sigma_y);
+        self.d_of_unit(Vec3::new(m.x / self.sigma_x, m.y / self.sigma_y, m.z), scale)
+    }
+
+    /// D of a normal above the horizon whose horizontal part is divided by σ, with 1/(πσxσy).
+    #[inline(always)]
+    pub(crate) fn d_of_unit(&self, m: Vec3, scale: f32) -> f32 {
+        let r2 = m.x * m.x + m.y * m.y;
         let z2 = m.z * m.z;
         let s = self.s;
         if s == 1.0 {
