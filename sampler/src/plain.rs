@@ -150,7 +150,7 @@ fn swap_halves(a: f32x4) -> f32x4 {
 }
 
 #[inline(always)]
-fn swap_pairs(a: f32x4) -> f32x4 {
+pub(crate) fn swap_pairs(a: f32x4) -> f32x4 {
     let [a, b, c, d] = a.to_array();
     f32x4::new([b, a, d, c])
 }
