@@ -79,7 +79,8 @@ impl Tables {
     /// The moments of the albedo of a named material, from which those of F = 1, Schlick's approximation and OpenPBR's metals are made; for
     /// the form of masking that the recipe names, uncorrelated if it names none.
     ///
-    /// The middle of the material's ranges is bound; of an anisotropic one the isotropic stand-in √(σx σy).
+    /// The middle of the material's ranges is bound; of an anisotropic one the isotropic stand-in √(σx σy): its own albedo, by azimuth, is
+    /// [`material_view_albedo`](Self::material_view_albedo).
     ///
     /// # Errors
     /// [`BindError::NoSuchMaterial`], or what [`albedo`](Self::albedo) reports.
