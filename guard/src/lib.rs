@@ -9,12 +9,13 @@ pub const CALLS: usize = 1000;
 /// Roughness of the material.
 pub const SIGMA: [f32; 2] = [0.3, 0.5];
 
-/// A bound material, views, pairs of numbers and the normals they give: the same on every machine.
+/// A bound material, views, pairs of numbers and the normals they give, the same on every machine; and room for G1 of the views.
 pub struct Inputs {
     pub material: StudentT,
     pub v: Vec<Vec3>,
     pub u: Vec<[f32; 2]>,
     pub m: Vec<Vec3>,
+    pub g1: Vec<f32>,
 }
 
 impl Inputs {
@@ -35,6 +36,6 @@ impl Inputs {
         let numbers = (0..CALLS).map(|i| [at(i, 0.754_877_666_246_692_7), at(i, 0.569_840_290_998_053_3)]);
         let (v, u): (Vec<_>, Vec<_>) = (views.collect(), numbers.collect());
         let m = v.iter().zip(&u).map(|(v, u)| material.sample_visible_normal(*v, *u)).collect();
-        Self { material, v, u, m }
+        Self { material, v, u, m, g1: vec![0.0; CALLS] }
     }
 }
