@@ -16,6 +16,7 @@ mod skewed;
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
+use crate::converge::converge;
 use crate::error::ParameterError;
 use crate::panels::{End, Gauss};
 use crate::reduced;
@@ -187,22 +188,11 @@ impl AlbedoIntegrator {
         kink: bool,
         quadrature: impl Fn(&Gauss) -> [[f64; N]; 2],
     ) -> Albedo<N> {
-        let mut before = quadrature(&self.rules[0]);
-        let mut error = f64::INFINITY;
-        for rule in &self.rules[1..] {
-            let now = quadrature(rule);
-            let pairs = now.iter().flatten().zip(before.iter().flatten());
-            let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // Twice, because two orders may agree by chance; and what the cut leaves out, which no order sees.
-            // At a kink orders converge algebraically, and the last difference says less about the rest.
-            let factor = if kink { 10.0 } else { 2.0 };
-            error = factor * change + 10.0 * CUT * self.tolerance;
-            before = now;
-            if error < self.tolerance {
-                break;
-            }
-        }
-        Albedo { uncorrelated: before[0], height_correlated: before[1], error }
+        // At a kink orders converge algebraically, and the last difference says less about the rest; else twice it, because two orders may agree.
+        let factor = if kink { 10.0 } else { 2.0 };
+        let ([uncorrelated, height_correlated], error) =
+            converge(&self.rules, self.tolerance, factor, quadrature);
+        Albedo { uncorrelated, height_correlated, error }
     }
 
     /// Cosine-weighted average 2∫₀¹ E(μ) μ dμ of the reflection albedo, for equal roughness σ ≥ 0.

@@ -12,6 +12,8 @@ pub(crate) fn converge<const N: usize>(
     factor: f64,
     integrate: impl Fn(&Gauss) -> [[f64; N]; 2],
 ) -> ([[f64; N]; 2], f64) {
+    // The lowest two orders were seen to agree to 5e-8 by chance, both off by three times that.
+    let rules = if tolerance < 1e-6 { &rules[1..] } else { rules };
     let mut before = integrate(&rules[0]);
     let mut error = f64::INFINITY;
     for rule in &rules[1..] {

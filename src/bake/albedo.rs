@@ -25,16 +25,21 @@ const ROUGHNESS: (f64, f64, f64) = (0.015, 0.2, 1.0);
 /// Smallest σ node, the sampler's smallest; what is smoother is a mirror.
 const SIGMA_MIN: f64 = 1e-8;
 /// The coordinate of the view, found by measuring (`cargo run --release --example albedo_design`).
-pub(super) const VIEW: Mapping = Mapping::ViewBlend {
-    weight: 0.3,
-    normal: 0.1,
-    share: 0.4,
-    scale: 3.0,
-    heavy: 0.5,
-    spread: 10.0,
-    floor: 2e-5,
-    slope: 2e-3,
-};
+pub(super) const VIEW: Mapping = view(10.0);
+
+/// That coordinate with a turn at normal incidence within `spread`·σ.
+const fn view(spread: f64) -> Mapping {
+    Mapping::ViewBlend {
+        weight: 0.3,
+        normal: 0.1,
+        share: 0.4,
+        scale: 3.0,
+        heavy: 0.5,
+        spread,
+        floor: 2e-5,
+        slope: 2e-3,
+    }
+}
 
 /// Largest σ of the general tables.
 pub const SIGMA_MAX: f64 = 3.0;
@@ -97,6 +102,8 @@ pub struct AlbedoSpec {
     pub roughnesses: Vec<f64>,
     /// How many nodes the view axis has, six or more.
     pub views: usize,
+    /// ν/σ of the view axis: what is left to err by in tables of many nodes is the cusp at normal incidence, which takes closer ones.
+    pub spread: f64,
     /// How many nodes an axis of all indices of refraction has.
     pub indices: usize,
     /// Error aimed at in every node.
@@ -110,10 +117,10 @@ impl AlbedoSpec {
     ///
     /// Draft tables err by up to 1e-2.
     pub fn general(quality: Quality, precision: Precision) -> Self {
-        let ([shapes, roughnesses, views, indices], tolerance) = match quality {
-            Quality::Draft => ([16, 22, 20, 20], 1e-5),
-            Quality::Default => ([22, 35, 26, 32], 1e-6),
-            Quality::High => ([44, 68, 56, 48], 1e-7),
+        let ([shapes, roughnesses, views, indices], spread, tolerance) = match quality {
+            Quality::Draft => ([16, 22, 20, 20], 10.0, 1e-5),
+            Quality::Default => ([22, 35, 26, 32], 10.0, 1e-6),
+            Quality::High => ([44, 68, 58, 48], 1.0, 1e-7),
         };
         Self {
             domain: Domain::GENERAL,
@@ -122,6 +129,7 @@ impl AlbedoSpec {
             shapes: even(shape(f64::INFINITY), shape(GAMMA_MIN), shapes),
             roughnesses: even(roughness(SIGMA_MIN), roughness(SIGMA_MAX), roughnesses),
             views,
+            spread,
             indices,
             tolerance,
             precision,
@@ -153,6 +161,17 @@ impl AlbedoSpec {
             }
             None => materials * self.views,
         }
+    }
+
+    /// How many tables it makes.
+    pub fn tables(&self) -> usize {
+        let of_form = match self.fresnel.map(|fresnel| fresnel.indices()) {
+            // The moments and their averages; a dielectric from either side, unless both are one.
+            None => 2,
+            Some(Some(ends)) if ends != [1.0; 2] => 2,
+            Some(_) => 1,
+        };
+        of_form * self.maskings.len()
     }
 
     /// Bytes of the values as they are stored.
@@ -393,6 +412,6 @@ pub fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
     vec![
         axis("gamma", Mapping::LogShape { scale: SHAPE_SCALE }, spec.shapes.clone()),
         axis("sigma", sigma, spec.roughnesses.clone()),
-        axis("view", VIEW, Axis::uniform_nodes(spec.views)),
+        axis("view", view(spec.spread), Axis::uniform_nodes(spec.views)),
     ]
 }
