@@ -212,18 +212,16 @@ impl Report<'_> {
         let mut text = String::new();
         for (i, (spec, cost)) in self.albedos.iter().enumerate() {
             let forms: Vec<&str> = spec.maskings.iter().map(|masking| masking.name()).collect();
-            let (tables, what) = match &spec.fresnel {
-                None => {
-                    let names = self.albedo_names(AlbedoVerdict::Bake(i));
-                    (2, format!(", for {}", list(names.into_iter())))
-                }
-                Some(fresnel) => (1, format!(" at least, for {}", fresnel.label())),
+            let what = match &spec.fresnel {
+                None => format!(", for {}", list(self.albedo_names(AlbedoVerdict::Bake(i)).into_iter())),
+                Some(fresnel) => format!(" at least, for {}", fresnel.label()),
             };
+            let tables = spec.tables();
             text += &format!(
-                "bake  albedo, {}, {}: {} tables, {} bytes, about {:.3} s{what}\n",
+                "bake  albedo, {}, {}: {tables} table{}, {} bytes, about {:.3} s{what}\n",
                 domain(spec.domain),
                 forms.join(" and "),
-                tables * forms.len(),
+                if tables == 1 { "" } else { "s" },
                 cost.bytes,
                 cost.seconds,
             );

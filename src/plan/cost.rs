@@ -52,9 +52,14 @@ pub fn cost(specs: &[TableSpec]) -> Cost {
 pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
     let axes = bake::albedo::axes(spec);
     let json = |axes: &[Axis]| serde_json::to_string(axes).map_or(0, |json| escaped(&json));
-    let header = json(&axes) + if spec.fresnel.is_some() { 700 } else { json(&axes[..2]) + 1400 };
+    let headers = match spec.fresnel {
+        // Of the averages, too, over all axes but the view.
+        None => spec.maskings.len() * (json(&axes) + json(&axes[..2]) + 1400),
+        // The axis of indices, and an odd number of views from one side.
+        Some(_) => spec.tables() * (json(&axes) + 900),
+    };
     let threads = rayon::current_num_threads() as f64;
-    Cost { bytes: spec.bytes() + spec.maskings.len() * header, seconds: albedo_seconds(spec) / threads }
+    Cost { bytes: spec.bytes() + headers, seconds: albedo_seconds(spec) / threads }
 }
 
 /// The same for the four tables of a distribution outside the family.
