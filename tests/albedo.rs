@@ -2,6 +2,7 @@
 
 mod command;
 
+use glam::Vec3;
 use microfacet_bake::bake::albedo::{AlbedoSpec, Domain, bake};
 use microfacet_bake::cache::Cache;
 use microfacet_bake::generate::{Target, add_albedos, generate, provenance, worst_error};
@@ -13,7 +14,7 @@ use microfacet_bake::spec::Quality;
 use microfacet_bake::store;
 use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
-use microfacet_sampler::{FresnelAlbedo, Kind, Masking, Precision, Provenance, Tables, encode};
+use microfacet_sampler::{FresnelAlbedo, Kind, Masking, Precision, Provenance, StudentT, Tables, encode};
 use serde_json::Value;
 
 use command::{json, run};
@@ -259,41 +260,36 @@ const EXACT: [[&str; 4]; 4] = [
     ["nothing", "0.454", "3.0", "fresnel = { dielectric = 1.0 }"],
 ];
 
-/// The albedo as a renderer would estimate it: F G2/G1 over a grid of visible normals, in single precision.
-fn estimate(set: &Tables, name: &str, masking: Masking, cos: f32, fresnel: impl Fn(f64) -> f64) -> f64 {
+/// The mean over a grid of visible normals of what `worth` makes of view and normal, in single precision: as a renderer would estimate it.
+fn mean(set: &Tables, name: &str, cos: f32, worth: impl Fn(&StudentT, Vec3, Vec3) -> f64) -> f64 {
     const STEPS: usize = 300;
     let material = set.material(name).unwrap();
-    let v = glam::Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    let v = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
     let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
-    let mut sum = 0.0;
-    for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
-        let m = material.sample_visible_normal(v, [step(i), step(j)]);
-        let l = 2.0 * v.dot(m) * m - v;
-        if l.z > 0.0 {
-            sum += fresnel(f64::from(v.dot(m))) * f64::from(material.g2(v, l, masking) / material.g1(v));
-        }
-    }
+    let numbers = (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| [step(i), step(j)]));
+    let sum: f64 = numbers.map(|u| worth(&material, v, material.sample_visible_normal(v, u))).sum();
     sum / (STEPS * STEPS) as f64
 }
 
-/// The same of what is transmitted, the exact refraction of each normal.
+/// The albedo of reflection: F G2/G1.
+fn reflected(set: &Tables, name: &str, masking: Masking, cos: f32, fresnel: impl Fn(f64) -> f64) -> f64 {
+    mean(set, name, cos, |material, v, m| {
+        let l = 2.0 * v.dot(m) * m - v;
+        let g = if l.z > 0.0 { material.g2(v, l, masking) / material.g1(v) } else { 0.0 };
+        fresnel(f64::from(v.dot(m))) * f64::from(g)
+    })
+}
+
+/// The albedo of transmission, with the exact refraction of each normal.
 fn transmitted(set: &Tables, name: &str, masking: Masking, cos: f32, face: Dielectric) -> f64 {
-    const STEPS: usize = 300;
-    let material = set.material(name).unwrap();
-    let v = glam::Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-    let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
-    let mut sum = 0.0;
-    for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
-        let m = material.sample_visible_normal(v, [step(i), step(j)]);
+    mean(set, name, cos, |material, v, m| {
         let mu = f64::from(v.dot(m));
-        let Some(inside) = face.refracted_cos(mu) else { continue };
+        let Some(inside) = face.refracted_cos(mu) else { return 0.0 };
         let l = (mu / face.eta() - inside) as f32 * m - v / face.eta() as f32;
-        if l.z < 0.0 {
-            let g2 = material.g2(v, glam::Vec3::new(l.x, l.y, -l.z), masking) / material.g1(v);
-            sum += (1.0 - face.reflectance(mu)) * f64::from(g2);
-        }
-    }
-    sum / (STEPS * STEPS) as f64
+        let below = Vec3::new(l.x, l.y, -l.z);
+        let g = if l.z < 0.0 { material.g2(v, below, masking) / material.g1(v) } else { 0.0 };
+        (1.0 - face.reflectance(mu)) * f64::from(g)
+    })
 }
 
 #[test]
@@ -329,6 +325,16 @@ fn a_range_of_indices_has_an_axis() {
                 assert!((f64::from(got[1]) - want).abs() < 2e-3, "eta {eta}, {cos}: {got:?}, {want}");
             }
         }
+    }
+    // Everywhere something in [0, 1], and no step where total reflection sets in.
+    let bound = set.material_dielectric_albedo("any", 1.5).unwrap();
+    let critical = (1.0_f32 - 1.0 / 2.25).sqrt();
+    for curve in [&bound.outside, &bound.inside] {
+        for cos in [f32::NAN, -1.0, 0.0, 1e-40, 1e-7, critical, 1.0 - f32::EPSILON, 1.0, f32::INFINITY] {
+            assert!(curve.eval(cos).iter().all(|x| (0.0..=1.0).contains(x)), "{cos}: {:?}", curve.eval(cos));
+        }
+        let sides = [critical - 1e-6, critical + 1e-6].map(|cos| curve.eval(cos));
+        assert!(sides[0].iter().zip(sides[1]).all(|(a, b)| (a - b).abs() < 1e-4), "{sides:?}");
     }
     let why = set.material_dielectric_albedo("any", 4.0).unwrap_err().to_string();
     assert!(why.contains("index 4 ") && why.contains("fresnel"), "{why}");
@@ -366,7 +372,7 @@ fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
         [(0.143, 3.983), (0.375, 2.386), (1.442, 1.603)].map(|(eta, k)| Conductor::new(eta, k).unwrap());
     for cos in [0.05, 0.3, 0.8, 1.0] {
         for (got, metal) in gold.eval(cos).into_iter().zip(metal) {
-            let want = estimate(&set, "gold", Masking::HeightCorrelated, cos, |x| metal.reflectance(x));
+            let want = reflected(&set, "gold", Masking::HeightCorrelated, cos, |x| metal.reflectance(x));
             assert!((f64::from(got) - want).abs() < 2e-3, "gold at {cos}: {got}, {want}");
         }
         // Bounded by what F = 1 returns.
@@ -386,7 +392,7 @@ fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
     for cos in [0.05, 0.3, 0.6, 0.8, 1.0] {
         let (entering, leaving) = (glass.outside.eval(cos), glass.inside.eval(cos));
         for (got, face) in [(entering, interface), (leaving, interface.reversed())] {
-            let want = estimate(&set, "glass", Masking::Uncorrelated, cos, |x| face.reflectance(x));
+            let want = reflected(&set, "glass", Masking::Uncorrelated, cos, |x| face.reflectance(x));
             assert!((f64::from(got[0]) - want).abs() < 2e-3, "glass at {cos}: {got:?}, {want}");
             let want = transmitted(&set, "glass", Masking::Uncorrelated, cos, face);
             assert!((f64::from(got[1]) - want).abs() < 3e-3, "through glass at {cos}: {got:?}, {want}");
