@@ -20,6 +20,32 @@ fn load(bytes: &[u8]) {
             let _ = (material.table_pdf(v, m), material.visible_normal_pdf(v, m), material.g1(m));
         }
     }
+    albedos(&set);
+}
+
+/// Whatever the tables hold, an albedo is a share.
+fn albedos(set: &microfacet_sampler::Tables) {
+    use microfacet_sampler::FresnelAlbedo;
+    let share = |x: f32| assert!((0.0..=1.0).contains(&x), "an albedo of {x}");
+    for material in &set.provenance().materials {
+        for cos in [0.0, 1e-7, 0.4, 0.75, 1.0] {
+            if let Ok(albedo) = set.material_albedo(&material.name) {
+                share(albedo.albedo(cos));
+                share(albedo.albedo_average());
+            }
+            if let Ok(albedo) = set.material_view_albedo(&material.name) {
+                share(albedo.albedo(glam::Vec3::new(0.0, (1.0_f32 - cos * cos).sqrt(), cos)));
+                share(albedo.albedo_average());
+            }
+            match set.material_fresnel_albedo(&material.name) {
+                Ok(FresnelAlbedo::Conductor(metal)) => metal.eval(cos).into_iter().for_each(share),
+                Ok(FresnelAlbedo::Dielectric(sides)) => {
+                    sides.outside.eval(cos).into_iter().chain(sides.inside.eval(cos)).for_each(share);
+                }
+                Err(_) => {}
+            }
+        }
+    }
 }
 
 /// Loads a scene from a file of that name in a folder of its own, and plans its tables.
