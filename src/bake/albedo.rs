@@ -102,7 +102,8 @@ pub struct AlbedoSpec {
     pub roughnesses: Vec<f64>,
     /// How many nodes the view axis has, six or more.
     pub views: usize,
-    /// ν/σ of the view axis: what is left to err by in tables of many nodes is the cusp at normal incidence, which takes closer ones.
+    /// ν/σ of the view axis: what is left to err by in tables of many nodes is the cusp at normal incidence, which takes closer ones. Of high
+    /// quality, gamma 1.55 to 1.65 and sigma 0.1 to 0.2 err by 4.3e-5 at 10, 3.0e-5 at 1.5 and 2.5e-5 at 1; below, smoother surfaces lose.
     pub spread: f64,
     /// How many nodes an axis of all indices of refraction has.
     pub indices: usize,

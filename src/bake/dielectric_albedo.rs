@@ -63,7 +63,8 @@ impl Side {
     }
 }
 
-/// The coordinate of views from the dense side.
+/// The coordinate of views from the dense side: knee, shares and floor as from outside; the root and the kink's width by measuring. With fourth roots above
+/// μ_c, too, where they are steep in η near 1, tables over all indices erred by 0.12 for 1e-3 (sigma 0.454, gamma 3, twenty indices).
 const VIEW: Mapping = Mapping::CriticalBlend {
     share: 0.4,
     scale: 3.0,
