@@ -16,19 +16,15 @@ mod skewed;
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use crate::converge::converge;
+use microfacet_common::Masking;
+
+use crate::converge::{CUT, converge, rules};
 use crate::error::ParameterError;
 use crate::panels::{End, Gauss};
 use crate::reduced;
 use crate::shape::Shape;
 use crate::smith_table::SmithTable;
-use crate::student_t::Masking;
 
-/// Points a panel at successive levels of accuracy; a level's error is estimated from the one before.
-pub(crate) const LEVELS: [usize; 7] = [5, 7, 10, 14, 20, 28, 40];
-
-/// Share of the visible slopes that is left out, relative to the tolerance.
-pub(crate) const CUT: f64 = 1e-3;
 /// Slopes beyond e³⁴⁰ have no square.
 const LARGEST_RAPIDITY: f64 = 340.0;
 /// Widest panel along a ray, in the unit of [`Shape::unit`]; the lobe's own singularities are at ±iπ/(2√s), 1.1 or more away.
@@ -111,7 +107,7 @@ impl AlbedoIntegrator {
         Self {
             shape,
             smith: SmithTable::new(&shape),
-            rules: LEVELS.iter().map(|&n| Gauss::new(n)).collect(),
+            rules: rules(),
             tolerance,
             cut,
         }

@@ -1,7 +1,17 @@
 //! Quadrature at rising orders, until two of them agree.
 
-use crate::albedo::CUT;
 use crate::panels::Gauss;
+
+/// Points a panel at successive levels of accuracy; a level's error is estimated from the one before.
+const LEVELS: [usize; 7] = [5, 7, 10, 14, 20, 28, 40];
+
+/// Share of the visible slopes that is left out, relative to the tolerance.
+pub(crate) const CUT: f64 = 1e-3;
+
+/// The rules of all levels.
+pub(crate) fn rules() -> Vec<Gauss> {
+    LEVELS.iter().map(|&n| Gauss::new(n)).collect()
+}
 
 /// The integral at the first order that is accurate enough, or else the last, and an estimate of its error from above.
 ///

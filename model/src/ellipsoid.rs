@@ -4,11 +4,11 @@ use core::f64::consts::PI;
 use core::fmt;
 
 use glam::{DMat3, DVec3};
+use microfacet_common::Masking;
 
 use crate::below::SlopeBelow;
 use crate::error::ParameterError;
 use crate::shape::Shape;
-use crate::student_t::Masking;
 use crate::visible::{self, SignedUnit, UnitView, VisibleSlope};
 
 /// Below this ratio the matrix is taken for singular: half of the digits of a double would be lost in its inverse.
@@ -249,10 +249,7 @@ impl Ellipsoid {
 
     /// Masking and shadowing of a pair of directions; 0 when either is at or below the horizon.
     pub fn g2(&self, v: DVec3, l: DVec3, masking: Masking) -> f64 {
-        match masking {
-            Masking::Uncorrelated => self.g1(v) * self.g1(l),
-            Masking::HeightCorrelated => 1.0 / (1.0 + self.lambda(v) + self.lambda(l)),
-        }
+        masking.g2(self.g1(v), self.g1(l))
     }
 
     /// Density of visible normals per steradian, (v·m)⁺ D(m) / ∫ (v·m)⁺ D (Walter et al. 2015, eq. 30).

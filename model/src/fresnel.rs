@@ -3,10 +3,11 @@
 //! `cos_theta` is the cosine between the view and the microfacet normal, in [0, 1]. Light is unpolarised. The types validate when they
 //! are made, so that evaluation cannot fail.
 
+use microfacet_common::schlick::{f82_dip, schlick};
+
 use crate::error::ParameterError;
 
-/// Cosine at which the F82 tint is given, about 82°: where μ(1−μ)⁶ peaks.
-pub const F82_COS: f64 = 1.0 / 7.0;
+pub use microfacet_common::schlick::{F82_COS, f82_weight, schlick_weight};
 
 /// A conductor with complex refractive index η + ik relative to the medium outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,23 +107,6 @@ impl Dielectric {
     }
 }
 
-/// Schlick's weight (1−μ)⁵: reflectance F0 + (F90 − F0)(1−μ)⁵ (Schlick 1994, eq. 15).
-pub fn schlick_weight(cos_theta: f64) -> f64 {
-    let x = 1.0 - cos_theta;
-    let x2 = x * x;
-    x2 * x2 * x
-}
-
-/// The F82 tint's weight μ(1−μ)⁶ divided by its peak at μ = 1/7, in [0, 1].
-///
-/// OpenPBR's metal is F_S(μ) − (1 − tint)·F_S(1/7)·weight(μ), F_S being Schlick's with F90 = 1 (Kutz, Hašan & Edmondson 2021, *Novel
-/// aspects of the Adobe Standard Material*, eq. 2–5): tint is the reflectance at 1/7 relative to F_S's.
-pub fn f82_weight(cos_theta: f64) -> f64 {
-    // 7⁷/6⁶, the reciprocal of the peak.
-    const PEAK: f64 = 823543.0 / 46656.0;
-    PEAK * cos_theta * (1.0 - cos_theta) * schlick_weight(cos_theta)
-}
-
 /// A metal in OpenPBR's terms: reflectance F0 at normal incidence and a tint at 82°.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct F82Tint {
@@ -146,20 +130,12 @@ impl F82Tint {
 
     /// Reflectance ∈ [0, 1].
     pub fn reflectance(&self, cos_theta: f64) -> f64 {
-        self.schlick(cos_theta) - self.dip() * f82_weight(cos_theta)
+        schlick(self.f0, 1.0, cos_theta) - f82_dip(self.f0, self.tint) * f82_weight(cos_theta)
     }
 
     /// The directional albedo from the moments of the three weights: scale (1 − (1−μ)⁵), bias (1−μ)⁵ and F82.
     pub fn albedo(&self, scale: f64, bias: f64, f82: f64) -> f64 {
-        self.f0 * scale + bias - self.dip() * f82
-    }
-
-    fn schlick(&self, cos_theta: f64) -> f64 {
-        self.f0 + (1.0 - self.f0) * schlick_weight(cos_theta)
-    }
-
-    fn dip(&self) -> f64 {
-        (1.0 - self.tint) * self.schlick(F82_COS)
+        self.f0 * scale + bias - f82_dip(self.f0, self.tint) * f82
     }
 }
 

@@ -33,7 +33,8 @@ pub use ellipsoid::{Ellipsoid, EllipsoidError};
 pub use error::ParameterError;
 pub use lune::Lune;
 pub use shape::{Shape, Unit};
-pub use student_t::{Masking, StudentT};
+pub use microfacet_common::Masking;
+pub use student_t::StudentT;
 pub use visible::{SignedUnit, UnitView, VisibleSlope, across_cdf, across_quantile};
 
 /// The formulas as the paper prints them, for comparison only; see each for where it fails.

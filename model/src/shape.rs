@@ -2,6 +2,8 @@
 
 use core::f64::consts::{FRAC_2_SQRT_PI, PI};
 
+use microfacet_common::shape::{gamma_of_s, s_of_gamma};
+
 use crate::error::ParameterError;
 use crate::reduced;
 
@@ -51,7 +53,7 @@ impl Shape {
             let inf = f64::INFINITY;
             return Ok(Self { gamma, s: 0.0, sqrt_s: 0.0, k: inf, c: inf, c_across: inf });
         }
-        let (k, s) = (gamma - 1.5, 1.0 / (gamma - 1.0));
+        let (k, s) = (gamma - 1.5, s_of_gamma(gamma));
         Ok(Self { gamma, s, sqrt_s: s.sqrt(), k, c: reduced::norm(k), c_across: reduced::norm(k + 0.5) })
     }
 
@@ -61,9 +63,9 @@ impl Shape {
     /// [`ParameterError::Gamma`] outside that interval.
     pub fn from_s(s: f64) -> Result<Self, ParameterError> {
         if !(s >= 0.0) {
-            return Err(ParameterError::Gamma(1.0 + 1.0 / s));
+            return Err(ParameterError::Gamma(gamma_of_s(s)));
         }
-        Self::new(1.0 + 1.0 / s)
+        Self::new(gamma_of_s(s))
     }
 
     /// γ as given.

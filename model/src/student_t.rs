@@ -3,19 +3,11 @@
 use core::f64::consts::PI;
 
 use glam::DVec3;
+use microfacet_common::Masking;
 
 use crate::error::ParameterError;
 use crate::shape::Shape;
 use crate::visible::{self, SignedUnit, UnitView, VisibleSlope};
-
-/// How masking and shadowing of a pair of directions are combined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Masking {
-    /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12).
-    Uncorrelated,
-    /// G2 = 1/(1 + Λ(v) + Λ(l)): height-correlated (Heitz 2014, eq. 99), what most renderers use.
-    HeightCorrelated,
-}
 
 /// Student-t microfacet normals (Ribardière et al. 2017).
 ///
@@ -169,10 +161,7 @@ impl StudentT {
 
     /// Masking and shadowing of a pair of directions; 0 when either is at or below the horizon.
     pub fn g2(&self, v: DVec3, l: DVec3, masking: Masking) -> f64 {
-        match masking {
-            Masking::Uncorrelated => self.g1(v) * self.g1(l),
-            Masking::HeightCorrelated => 1.0 / (1.0 + self.lambda(v) + self.lambda(l)),
-        }
+        masking.g2(self.g1(v), self.g1(l))
     }
 
     /// Density of visible normals, G1(v) (v·m)⁺ D(m) / (v·n), per steradian (Heitz & d'Eon 2014, eq. 2).

@@ -18,7 +18,8 @@
 //! the layer along the rim and, for long tails, the neighbourhood of l = n; the clamp of G1(l) at one is a kink along
 //! a curve, at which chords are divided.
 
-use super::{Albedo, AlbedoIntegrator, CUT, PANEL};
+use super::{Albedo, AlbedoIntegrator, PANEL};
+use crate::converge::CUT;
 use crate::converge::converge;
 use crate::ellipsoid::Ellipsoid;
 use crate::error::ParameterError;

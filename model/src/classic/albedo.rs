@@ -10,8 +10,8 @@
 //! The integral over r is outside, so that the slopes at which a measured D has its corners divide it once for all φ.
 
 use super::Marginal;
-use crate::albedo::{Albedo, CUT, LEVELS};
-use crate::converge::converge;
+use crate::albedo::Albedo;
+use crate::converge::{CUT, converge, rules};
 use crate::error::ParameterError;
 use crate::panels::{End, Gauss};
 use crate::smith_table::SmithTable;
@@ -65,7 +65,7 @@ impl<'a> RadialAlbedo<'a> {
         Self {
             smith: SmithTable::from_excess(|z| marginal.beyond(z).excess, UNMASKED),
             marginal,
-            rules: LEVELS.iter().map(|&n| Gauss::new(n)).collect(),
+            rules: rules(),
             tolerance,
             corners,
             peak: marginal.half_slope(),

@@ -1,0 +1,61 @@
+//! How masking and shadowing of a pair of directions are combined.
+
+use crate::Real;
+
+/// The form of G2, the share of the microsurface that both view and light reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Masking {
+    /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12).
+    Uncorrelated,
+    /// G2 = 1/(1 + Λ(v) + Λ(l)), height-correlated (Heitz 2014, eq. 99): what most renderers use.
+    HeightCorrelated,
+}
+
+impl Masking {
+    /// Both forms.
+    pub const ALL: [Self; 2] = [Self::Uncorrelated, Self::HeightCorrelated];
+
+    /// The name used in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Uncorrelated => "uncorrelated",
+            Self::HeightCorrelated => "height-correlated",
+        }
+    }
+
+    /// G2 from the G1 ∈ [0, 1] of view and light; 0 where either is.
+    #[inline(always)]
+    pub fn g2<T: Real>(self, v: T, l: T) -> T {
+        let both = v * l;
+        match self {
+            Self::Uncorrelated => both,
+            Self::HeightCorrelated => {
+                // 1/(1/a + 1/b − 1), arranged so that a = b = 0 gives 0 and not 0/0.
+                let zero = T::constant(0.0);
+                let sum = v + l - both;
+                if sum > zero { both / sum } else { zero }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn g2_is_that_of_lambda() {
+        let values = [0.0, 1e-12, 0.1, 0.7, 1.0];
+        for a in values {
+            for b in values {
+                let lambda = |g1: f64| 1.0 / g1 - 1.0;
+                let want = 1.0 / (1.0 + lambda(a) + lambda(b));
+                let got = Masking::HeightCorrelated.g2(a, b);
+                assert!((got - want).abs() <= 4.0 * f64::EPSILON * want, "{a}, {b}: {got} for {want}");
+                assert_eq!(Masking::Uncorrelated.g2(a, b), a * b);
+            }
+        }
+        assert_eq!(Masking::HeightCorrelated.g2(0.0_f32, 0.0), 0.0);
+    }
+}
