@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use glam::Vec3;
-use microfacet_model::{AlbedoIntegrator, Masking as ModelMasking, Shape};
+use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::{Masking, Tables};
 use rand::{RngExt, SeedableRng};
 
@@ -40,7 +40,7 @@ fn run(truth: &[f64], albedo: impl Fn((f64, f64, f64)) -> f64) -> (f64, f64) {
 fn quadrature((sigma, gamma, cos): (f64, f64, f64), tolerance: f64) -> f64 {
     let shape = Shape::new(gamma).expect("in the family");
     let albedo = AlbedoIntegrator::new(shape, tolerance).reflection(sigma, cos, |_| [1.0]);
-    albedo.expect("in the domain").of(ModelMasking::HeightCorrelated)[0]
+    albedo.expect("in the domain").of(Masking::HeightCorrelated)[0]
 }
 
 fn monte_carlo(tables: &Tables, (sigma, gamma, cos): (f64, f64, f64), samples: usize) -> f64 {

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use microfacet_common::shape::gamma_of_s;
 use microfacet_model::classic::{AshikhminShirley, Gauss, Gtr, Isotropic, Member, Schlick, Tabulated};
 
 /// A named distribution of one or two parameters.
@@ -203,7 +204,7 @@ impl Family {
         let log = |y: f64, low: f64, high: f64| {
             (low * (y.clamp(0.0, 1.0) * (high / low).ln()).exp()).clamp(low, high)
         };
-        let gamma = |y: f64| 1.0 + 1.0 / (1.99 * y.clamp(0.0, 1.0));
+        let gamma = |y: f64| gamma_of_s(1.99 * y.clamp(0.0, 1.0));
         match (self, point) {
             (Self::Beckmann | Self::Gauss, &[y]) => vec![log(y, 1e-3, 10.0)],
             (Self::TrowbridgeReitz, &[y]) => vec![log(y, 1e-4, 10.0)],

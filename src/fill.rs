@@ -8,7 +8,7 @@ use microfacet_sampler::{Precision, Provenance, Table, Tables, encode};
 use crate::budget::{Memo, smallest};
 use crate::cache::Cache;
 use crate::generate::{BakeError, Baked, Job, add_albedo_conventions, add_view_albedo_conventions};
-use crate::graded::{Choice, Graded, stored_bytes};
+use crate::graded::{Choice, Graded};
 use crate::plan::{Need, Plan};
 use crate::spec::Quality;
 
@@ -129,7 +129,7 @@ impl Filling<'_> {
             let later = self.choices[i + 1..].iter().map(Choice::least_bytes).sum();
             let Some(left) = room.checked_sub(later) else { return Ok(None) };
             let Some(found) = self.choices[i].smallest(max_error, left, job)? else { return Ok(None) };
-            room = room.saturating_sub(stored_bytes(&found));
+            room = room.saturating_sub(found.iter().map(Table::stored_bytes).sum());
             tables.extend(found);
         }
         Ok(Some(tables))

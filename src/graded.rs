@@ -165,12 +165,6 @@ impl<'a> Choice<'a> {
     }
 }
 
-/// Bytes of the values of tables.
-pub(crate) fn stored_bytes(tables: &[Table]) -> usize {
-    let one = |precision| if precision == Precision::F32 { 4 } else { 2 };
-    tables.iter().map(|table| one(table.precision) * table.values.len()).sum()
-}
-
 fn largest(tables: &[Table]) -> f64 {
     tables.iter().map(worst_error).fold(0.0, f64::max)
 }

@@ -1,5 +1,8 @@
 //! What is to be baked: one specification a table, pure data.
 
+use microfacet_common::shape::s_of_gamma;
+use microfacet_sampler::axis::lagrange::nodes_read;
+use microfacet_sampler::axis::{InverseShape, even_nodes};
 use microfacet_sampler::{Interpolation, Kind, Precision};
 
 /// γ of the smallest shape that tables cover; below it almost every visible normal lies beyond any floating-point slope.
@@ -19,28 +22,20 @@ pub struct ShapeAxis {
 impl ShapeAxis {
     /// `count` nodes evenly over [low, high] in s.
     pub fn range(low: f64, high: f64, count: usize) -> Self {
-        let step = (high - low) / (count - 1) as f64;
-        let nodes = (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect();
+        Self { nodes: even_nodes(low, high, count), interpolation: Interpolation::Lagrange4 }
+    }
+
+    /// The same, crowded towards s = 2 as by [`InverseShape::crowded_nodes`].
+    pub fn crowded(low: f64, high: f64, count: usize) -> Self {
+        let nodes = InverseShape::crowded_nodes(low, high, count);
         Self { nodes, interpolation: Interpolation::Lagrange4 }
     }
 
-    /// `count` nodes over [low, high] that crowd towards s = 2, evenly in s − ½ ln(1 − s/2): the projected area diverges there as
-    /// 1/(2 − s), and what depends on it changes by the logarithm of 2 − s.
-    pub fn crowded(low: f64, high: f64, count: usize) -> Self {
-        let warp = |s: f64| s - 0.5 * libm::log(1.0 - 0.5 * s);
-        let even = Self::range(warp(low), warp(high), count).nodes;
-        let unwarp = |y: f64| {
-            let (mut a, mut b) = (low, high);
-            // Bisection to the last bit; the warp ascends.
-            for _ in 0..64 {
-                let middle = 0.5 * (a + b);
-                if warp(middle) < y { a = middle } else { b = middle }
-            }
-            0.5 * (a + b)
-        };
-        let inner = even[1..count - 1].iter().map(|&y| unwarp(y));
-        let nodes = [low].into_iter().chain(inner).chain([high]).collect();
-        Self { nodes, interpolation: Interpolation::Lagrange4 }
+    /// The part of a range that [from, to] reads.
+    #[must_use]
+    pub fn part(&self, from: f64, to: f64) -> Self {
+        let nodes = nodes_read(&self.nodes, from, to, self.interpolation.window()).to_vec();
+        Self { nodes, ..*self }
     }
 
     /// Single shapes, sorted and without repetition.
@@ -83,11 +78,7 @@ impl TableSpec {
 
     /// Bytes of its values as they are stored.
     pub fn bytes(&self) -> usize {
-        let one = match self.precision {
-            Precision::F32 => 4,
-            Precision::F16 | Precision::U16 => 2,
-        };
-        2 * one * self.nodes()
+        Kind::VALUE_AND_SLOPE.len() * self.precision.bytes() * self.nodes()
     }
 }
 
@@ -169,7 +160,7 @@ pub fn general_set(quality: Quality, precision: Precision) -> Vec<TableSpec> {
 
 /// The general set with other numbers of nodes.
 pub fn general_set_at(r: Resolution, precision: Precision) -> Vec<TableSpec> {
-    let (whole, heaviest) = (1.0 / (GAMMA_WHOLE - 1.0), 1.0 / (GAMMA_MIN - 1.0));
+    let (whole, heaviest) = (s_of_gamma(GAMMA_WHOLE), s_of_gamma(GAMMA_MIN));
     let spec = |kind: Kind, shapes, views, numbers| TableSpec {
         name: kind.name().into(),
         kind,

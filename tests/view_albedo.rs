@@ -271,8 +271,8 @@ fn damaged_tables_are_refused() {
     assert!(refused(|t| t.axes[0].nodes[1] *= 1.01).contains("azimuth"));
     assert!(refused(|t| t.channels[0] = "value".into()).contains("channels"));
     let sigma = |t: &mut Table| {
-        let microfacet_sampler::Mapping::Azimuth { sigma, .. } = &mut t.axes[0].mapping else { panic!() };
-        sigma[1] = 0.0;
+        let microfacet_sampler::Mapping::Azimuth(azimuth) = &mut t.axes[0].mapping else { panic!() };
+        azimuth.sigma[1] = 0.0;
     };
     assert!(refused(sigma).contains("sigma"));
 }

@@ -85,7 +85,8 @@ mod tests {
     #[test]
     fn nodes_are_those_of_the_literature() {
         // Abramowitz & Stegun 25.4.30, n = 4, on [−1, 1].
-        let want = [(0.339981043584856265, 0.652145154862546143), (0.861136311594052575, 0.347854845137453857)];
+        let want =
+            [(0.339981043584856265, 0.652145154862546143), (0.861136311594052575, 0.347854845137453857)];
         let rule = gauss_legendre::<4>();
         for ((x, w), (got, weight)) in want.into_iter().zip([rule[2], rule[3]]) {
             assert!((2.0 * got - 1.0 - x).abs() < 1e-15 && (2.0 * weight - w).abs() < 1e-15);

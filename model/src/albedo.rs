@@ -104,13 +104,7 @@ impl AlbedoIntegrator {
             let root = shape.s().sqrt();
             (ln_cosh + libm::log1p((-libm::expm1(-2.0 * ln_cosh)).sqrt())).min(LARGEST_RAPIDITY) / root
         };
-        Self {
-            shape,
-            smith: SmithTable::new(&shape),
-            rules: rules(),
-            tolerance,
-            cut,
-        }
+        Self { shape, smith: SmithTable::new(&shape), rules: rules(), tolerance, cut }
     }
 
     /// The shape.

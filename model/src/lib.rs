@@ -32,8 +32,8 @@ pub use albedo::{Albedo, AlbedoIntegrator};
 pub use ellipsoid::{Ellipsoid, EllipsoidError};
 pub use error::ParameterError;
 pub use lune::Lune;
-pub use shape::{Shape, Unit};
 pub use microfacet_common::Masking;
+pub use shape::{Shape, Unit};
 pub use student_t::StudentT;
 pub use visible::{SignedUnit, UnitView, VisibleSlope, across_cdf, across_quantile};
 

@@ -10,50 +10,28 @@
 
 extern crate alloc;
 
-mod albedo;
-mod albedo_axes;
-mod axis;
-mod azimuth;
-mod batch;
-mod below;
-mod bind;
-mod bounded;
-mod cells;
-mod compensation;
-mod container;
-mod critical;
-mod dielectric_albedo;
-mod ellipsoid;
-mod error;
-mod fresnel_albedo;
-mod ggx;
-mod math;
-mod plain;
-mod radial;
-mod sample;
-mod student_t;
-mod table;
-mod table_pdf;
-mod tables;
-mod view_albedo;
+pub mod axis;
 
-pub use albedo::{Albedo, Moments};
+mod albedo;
+mod bsdf;
+mod error;
+mod format;
+mod lanes;
+mod material;
+mod math;
+mod tables;
+
+pub use albedo::{Albedo, DielectricAlbedo, FresnelAlbedo, Moments, ViewAlbedo, ViewCurve};
 pub use axis::{Axis, Interpolation, Mapping};
-pub use bounded::Bounded;
-pub use cells::limit_slopes;
-pub use compensation::{f82_tint_average, fresnel_average, schlick_average};
-pub use container::{
-    FORMAT, FresnelEntry, MaterialEntry, Precision, Provenance, VERSION, describe, encode, reassemble,
-};
-pub use dielectric_albedo::DielectricAlbedo;
-pub use ellipsoid::{Ellipsoid, Skew};
+pub use bsdf::{f82_tint_average, fresnel_average, schlick_average};
 pub use error::{BatchError, BindError, LoadError};
-pub use fresnel_albedo::{FresnelAlbedo, ViewCurve};
-pub use radial::Radial;
-pub use student_t::{Masking, Roughness, StudentT};
-pub use table::{Kind, Table};
+pub use format::{
+    Channels, FORMAT, FresnelEntry, Kind, MaterialEntry, Precision, Provenance, Table, VERSION, describe,
+    encode, reassemble, seal, seal_document,
+};
+pub use material::{Bounded, Ellipsoid, Radial, Roughness, Skew, StudentT};
+pub use microfacet_common::Masking;
 pub use tables::Tables;
-pub use view_albedo::ViewAlbedo;
 
 /// The README's example, so that it keeps compiling.
 #[cfg(all(doctest, feature = "embedded"))]

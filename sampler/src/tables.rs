@@ -4,13 +4,11 @@ use alloc::collections::BTreeMap;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use crate::bind::covers;
-use crate::container::{MaterialEntry, Provenance, decode};
-use crate::ellipsoid::{Ellipsoid, Skew};
+use microfacet_common::shape::s_of_gamma;
+
 use crate::error::{BindError, LoadError};
-use crate::radial::Radial;
-use crate::student_t::{Roughness, StudentT};
-use crate::table::{Kind, Table};
+use crate::format::{Kind, MaterialEntry, Provenance, Table, decode};
+use crate::material::{Ellipsoid, Radial, Roughness, Skew, StudentT, covers};
 
 /// A set of tables, loaded and checked.
 ///
@@ -90,7 +88,7 @@ impl Tables {
 
     /// Whether γ can be bound; γ = 2 always can.
     pub fn covers(&self, gamma: f64) -> bool {
-        let s = 1.0 / (gamma - 1.0);
+        let s = s_of_gamma(gamma);
         let has = |kind| self.tables.iter().any(|table| table.kind == kind && covers(table, s));
         let tabulated = has(Kind::Shadowing)
             && has(Kind::VisibleSlopeConditional)
@@ -140,9 +138,8 @@ impl Tables {
     /// # Errors
     /// [`BindError::NoSuchMaterial`] naming those that exist, or what [`student_t`](Self::student_t) reports.
     pub fn material(&self, name: &str) -> Result<StudentT, BindError> {
-        let MaterialEntry { sigma: [x, y], s, .. } = self.student_t_entry(name)?;
-        let middle = |[min, max]: [f64; 2]| 0.5 * (min + max);
-        self.student_t([middle(*x), middle(*y)], 1.0 + 1.0 / middle(*s))
+        let entry = self.student_t_entry(name)?;
+        self.student_t(entry.sigma(), entry.gamma())
     }
 
     /// Binds a material of the set's recipe that is an ellipsoid: one that states `theta`.
@@ -151,16 +148,8 @@ impl Tables {
     /// [`BindError::NoSuchMaterial`], [`BindError::OtherDistribution`] for another material, or what [`ellipsoid`](Self::ellipsoid) reports.
     pub fn material_ellipsoid(&self, name: &str) -> Result<Ellipsoid, BindError> {
         let entry = self.entry(name)?;
-        let Some(theta) = entry.theta else {
-            let distribution =
-                if entry.distribution.is_empty() { "student-t" } else { entry.distribution.as_str() };
-            return Err(BindError::OtherDistribution {
-                name: name.into(),
-                distribution: distribution.into(),
-            });
-        };
-        let [x, y] = entry.sigma;
-        self.ellipsoid(Skew::new([x[0], y[0]], theta)?, 1.0 + 1.0 / entry.s[0])
+        let Some(theta) = entry.theta else { return Err(other_lobe(entry)) };
+        self.ellipsoid(Skew::new(entry.sigma(), theta)?, entry.gamma())
     }
 
     /// Binds a material of the set's recipe that is no Student-t, such as a GTR or a measured one.
@@ -170,11 +159,7 @@ impl Tables {
     pub fn radial(&self, name: &str) -> Result<Radial, BindError> {
         let entry = self.entry(name)?;
         if entry.distribution.is_empty() {
-            let distribution = if entry.theta.is_some() { "ellipsoid" } else { "student-t" };
-            return Err(BindError::OtherDistribution {
-                name: name.into(),
-                distribution: distribution.into(),
-            });
+            return Err(other_lobe(entry));
         }
         Radial::bind(&self.tables, entry.sigma[0][0] as f32, &entry.table_suffix())
     }
@@ -182,12 +167,8 @@ impl Tables {
     /// The entry of a material that is a Student-t.
     pub(crate) fn student_t_entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
         let entry = self.entry(name)?;
-        let distribution = match entry.theta {
-            Some(_) => "ellipsoid",
-            None if entry.distribution.is_empty() => return Ok(entry),
-            None => &entry.distribution,
-        };
-        Err(BindError::OtherDistribution { name: name.into(), distribution: distribution.into() })
+        let plain = entry.theta.is_none() && entry.distribution.is_empty();
+        if plain { Ok(entry) } else { Err(other_lobe(entry)) }
     }
 
     pub(crate) fn entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
@@ -204,4 +185,9 @@ impl Tables {
             BindError::NoSuchMaterial { name: name.into(), known }
         })
     }
+}
+
+/// The material exists, but is of another kind than was asked for.
+fn other_lobe(entry: &MaterialEntry) -> BindError {
+    BindError::OtherDistribution { name: entry.name.clone(), distribution: entry.lobe().into() }
 }

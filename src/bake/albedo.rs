@@ -10,42 +10,20 @@ use rayon::prelude::*;
 
 use microfacet_model::fresnel::{f82_weight, schlick_weight};
 use microfacet_model::{Albedo, AlbedoIntegrator, ParameterError, Shape};
+use microfacet_sampler::axis::lagrange::nodes_read;
+use microfacet_sampler::axis::{LogShape, Roughness, ViewBlend, even_nodes};
 use microfacet_sampler::{
     Axis, FresnelEntry, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
 };
 
-use super::dielectric_albedo;
+use super::{dielectric_albedo, names};
 use crate::scene::Interval;
 use crate::spec::{GAMMA_MIN, Quality};
 
-/// scale of the γ coordinate ln(1 + scale/(2γ−3)).
-const SHAPE_SCALE: f64 = 17.0;
-/// offset, slow and linear of the σ coordinate ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ.
-const ROUGHNESS: (f64, f64, f64) = (0.015, 0.2, 1.0);
-/// Smallest σ node, the sampler's smallest; what is smoother is a mirror.
-const SIGMA_MIN: f64 = 1e-8;
-/// The coordinate of the view, found by measuring (`cargo run --release --example albedo_design`).
-pub(super) const VIEW: Mapping = view(10.0);
-
-/// That coordinate with a turn at normal incidence within `spread`·σ.
-const fn view(spread: f64) -> Mapping {
-    Mapping::ViewBlend {
-        weight: 0.3,
-        normal: 0.1,
-        share: 0.4,
-        scale: 3.0,
-        heavy: 0.5,
-        spread,
-        floor: 2e-5,
-        slope: 2e-3,
-    }
-}
-
+/// Smallest σ node; what is smoother is a mirror.
+const SIGMA_MIN: f64 = Roughness::BAKED.first;
 /// Largest σ of the general tables.
 pub const SIGMA_MAX: f64 = 3.0;
-/// Nodes that the polynomial between nodes goes through.
-const WINDOW: usize = 6;
-
 /// The materials that tables are baked for: they are measured there, and need hold nowhere else.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
@@ -119,16 +97,16 @@ impl AlbedoSpec {
     /// Draft tables err by up to 1e-2.
     pub fn general(quality: Quality, precision: Precision) -> Self {
         let ([shapes, roughnesses, views, indices], spread, tolerance) = match quality {
-            Quality::Draft => ([16, 22, 20, 20], 10.0, 1e-5),
-            Quality::Default => ([22, 35, 26, 32], 10.0, 1e-6),
+            Quality::Draft => ([16, 22, 20, 20], ViewBlend::BAKED.spread, 1e-5),
+            Quality::Default => ([22, 35, 26, 32], ViewBlend::BAKED.spread, 1e-6),
             Quality::High => ([44, 68, 58, 48], 1.0, 1e-7),
         };
         Self {
             domain: Domain::GENERAL,
             fresnel: None,
             maskings: Masking::ALL.into(),
-            shapes: even(shape(f64::INFINITY), shape(GAMMA_MIN), shapes),
-            roughnesses: even(roughness(SIGMA_MIN), roughness(SIGMA_MAX), roughnesses),
+            shapes: even_nodes(shape(f64::INFINITY), shape(GAMMA_MIN), shapes),
+            roughnesses: even_nodes(roughness(SIGMA_MIN), roughness(SIGMA_MAX), roughnesses),
             views,
             spread,
             indices,
@@ -151,6 +129,11 @@ impl AlbedoSpec {
         };
         let roughnesses = cut(&self.roughnesses, roughness(sigma.min), roughness(sigma.max));
         Self { domain, maskings: maskings.into(), shapes, roughnesses, ..self.clone() }
+    }
+
+    /// The coordinate of the view.
+    pub fn view(&self) -> ViewBlend {
+        ViewBlend { spread: self.spread, ..ViewBlend::BAKED }
     }
 
     /// Places (γ, σ, view) at which the albedo is integrated; of a dielectric (γ, σ, η, view), of both sides together.
@@ -177,51 +160,36 @@ impl AlbedoSpec {
 
     /// Bytes of the values as they are stored.
     pub fn bytes(&self) -> usize {
-        let one = match self.precision {
-            Precision::F32 => 4,
-            Precision::F16 | Precision::U16 => 2,
-        };
+        let one = self.precision.bytes();
         match &self.fresnel {
             None => {}
             Some(fresnel) if fresnel.indices().is_none() => {
-                return 3 * one * self.maskings.len() * self.nodes();
+                return Kind::RGB.len() * one * self.maskings.len() * self.nodes();
             }
-            // Two channels from one side, and as many and twice the views from the other.
-            Some(_) => return 2 * one * self.maskings.len() * self.nodes(),
+            // As many channels from one side as, with twice the views, from the other.
+            Some(_) => return Kind::ENTERING.len() * one * self.maskings.len() * self.nodes(),
         }
-        // Averages are always in single precision.
-        3 * self.maskings.len() * (one * self.nodes() + 4 * self.shapes.len() * self.roughnesses.len())
+        let averages = Precision::F32.bytes() * self.shapes.len() * self.roughnesses.len();
+        Kind::MOMENTS.len() * self.maskings.len() * (one * self.nodes() + averages)
     }
-}
-
-/// `count` values evenly from `low` to `high`.
-fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
-    let step = (high - low) / (count - 1) as f64;
-    (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect()
 }
 
 /// The nodes that the polynomial reads anywhere in [from, to]; a single value is a node itself.
 pub(super) fn cut(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
-    if from == to {
-        return vec![from];
-    }
-    let first = |t: f64| {
-        let above = nodes.partition_point(|&node| node <= t);
-        above.saturating_sub(WINDOW / 2).min(nodes.len().saturating_sub(WINDOW))
-    };
-    let last = (first(to) + WINDOW).min(nodes.len());
-    nodes[first(from)..last].to_vec()
+    if from == to { vec![from] } else { nodes_read(nodes, from, to, INTERPOLATION.window()).to_vec() }
 }
+
+/// Along every axis.
+pub(super) const INTERPOLATION: Interpolation = Interpolation::Lagrange6;
 
 /// The coordinate of a roughness.
 fn roughness(sigma: f64) -> f64 {
-    let (offset, slow, linear) = ROUGHNESS;
-    libm::log1p(sigma / offset) + slow * libm::log(sigma / SIGMA_MIN) + linear * sigma
+    Roughness::BAKED.coordinate(sigma)
 }
 
 /// The coordinate of a shape.
 fn shape(gamma: f64) -> f64 {
-    libm::log1p(SHAPE_SCALE / (2.0 * gamma - 3.0))
+    LogShape::BAKED.coordinate(gamma)
 }
 
 /// Why a bake gave up.
@@ -312,9 +280,7 @@ pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
 /// As [`bake`].
 pub fn bake_in(spec: &AlbedoSpec, precisions: &[Precision]) -> Result<Vec<Vec<Table>>, BakeError> {
     let axes = axes(spec);
-    let quantities =
-        |axis: &Axis| -> Vec<f64> { axis.nodes.iter().filter_map(|&t| axis.quantity(t)).collect() };
-    let (gammas, sigmas) = (quantities(&axes[0]), quantities(&axes[1]));
+    let (gammas, sigmas) = (axes[0].quantities(), axes[1].quantities());
     let integrators = gammas
         .par_iter()
         .map(|&gamma| Ok(AlbedoIntegrator::new(Shape::new(gamma)?, spec.tolerance)))
@@ -324,14 +290,9 @@ pub fn bake_in(spec: &AlbedoSpec, precisions: &[Precision]) -> Result<Vec<Vec<Ta
     let rows = pairs
         .par_iter()
         .map(|&(shape, sigma)| {
-            axes[2]
-                .nodes
-                .iter()
-                .map(|&t| {
-                    let cos = axes[2].view_cosine(sigma, shape.shape().gamma(), t).expect("a view axis");
-                    node(shape, sigma, cos, spec.tolerance)
-                })
-                .collect()
+            let view = spec.view().bind(sigma, shape.shape().gamma());
+            let at = |&t: &f64| node(shape, sigma, view.quantity(t), spec.tolerance);
+            axes[2].nodes.iter().map(at).collect()
         })
         .collect::<Result<Vec<Vec<(Node, f64)>>, BakeError>>()?;
     let error = rows.iter().flatten().map(|node| node.1).fold(0.0, f64::max);
@@ -362,10 +323,10 @@ pub fn bake_in(spec: &AlbedoSpec, precisions: &[Precision]) -> Result<Vec<Vec<Ta
 
 fn table(spec: &AlbedoSpec, kind: Kind, masking: Masking, axes: Vec<Axis>, values: Vec<f32>) -> Table {
     Table {
-        name: format!("{}_{}{}", kind.name(), masking.name().replace('-', "_"), spec.domain.suffix()),
+        name: kind.table_name(Some(masking), &spec.domain.suffix()),
         kind,
         axes,
-        channels: ["e", "bias", "f82"].map(String::from).into(),
+        channels: names(Kind::MOMENTS),
         masking: Some(masking),
         values,
         precision: spec.precision,
@@ -401,18 +362,10 @@ pub(super) fn residual(albedo: &Albedo<3>, at: [f64; 3], tolerance: f64) -> Resu
 
 /// The axes: γ, σ and the view.
 pub fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
-    let axis = |name: &str, mapping, nodes| Axis {
-        name: name.into(),
-        unit: "1".into(),
-        mapping,
-        interpolation: Interpolation::Lagrange6,
-        nodes,
-    };
-    let (offset, slow, linear) = ROUGHNESS;
-    let sigma = Mapping::Roughness { offset, first: SIGMA_MIN, slow, linear };
+    let axis = |name: &str, mapping, nodes: &[f64]| Axis::new(name, mapping, INTERPOLATION, nodes.to_vec());
     vec![
-        axis("gamma", Mapping::LogShape { scale: SHAPE_SCALE }, spec.shapes.clone()),
-        axis("sigma", sigma, spec.roughnesses.clone()),
-        axis("view", view(spec.spread), Axis::uniform_nodes(spec.views)),
+        axis("gamma", Mapping::LogShape(LogShape::BAKED), &spec.shapes),
+        axis("sigma", Mapping::Roughness(Roughness::BAKED), &spec.roughnesses),
+        Axis::placed("view", Mapping::ViewBlend(spec.view()), INTERPOLATION, spec.views),
     ]
 }

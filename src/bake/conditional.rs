@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use microfacet_model::{Shape, across_quantile};
-use microfacet_sampler::limit_slopes;
+use microfacet_sampler::axis::limit_slopes;
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
 use crate::spec::TableSpec;

@@ -5,10 +5,12 @@
 
 use microfacet_model::fresnel::Dielectric;
 use microfacet_model::{Albedo, AlbedoIntegrator, ParameterError};
-use microfacet_sampler::{Axis, FresnelEntry, Interpolation, Kind, Mapping, Masking, Table};
+use microfacet_sampler::axis::{CriticalBlend, ReflectanceRoot, even_nodes};
+use microfacet_sampler::{Axis, Channels, FresnelEntry, Kind, Mapping, Table};
 
-use super::albedo::{AlbedoSpec, BakeError, axes, cut};
+use super::albedo::{AlbedoSpec, BakeError, INTERPOLATION, axes, cut};
 use super::fresnel_albedo::shares;
+use super::names;
 
 /// From which side light comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,10 +26,10 @@ impl Side {
     pub const ALL: [Self; 2] = [Self::Entering, Self::Leaving];
 
     /// Names of the channels.
-    pub const fn channels(self) -> [&'static str; 2] {
+    pub const fn channels(self) -> Channels {
         match self {
-            Self::Entering => ["reflection", "transmission"],
-            Self::Leaving => ["reflection_leaving", "transmission_leaving"],
+            Self::Entering => Kind::ENTERING,
+            Self::Leaving => Kind::LEAVING,
         }
     }
 
@@ -63,30 +65,11 @@ impl Side {
     }
 }
 
-/// The coordinate of views from the dense side: knee, shares and floor as from outside; the root and the kink's width by measuring. With fourth roots above
-/// μ_c, too, where they are steep in η near 1, tables over all indices erred by 0.12 for 1e-3 (sigma 0.454, gamma 3, twenty indices).
-const VIEW: Mapping = Mapping::CriticalBlend {
-    share: 0.4,
-    scale: 3.0,
-    heavy: 0.5,
-    floor: 2e-5,
-    slope: 2e-3,
-    root: 0.5,
-    kink: 1.0,
-};
-
 /// Nodes of the axis of indices between two ends in [1, ∞]: one for a single index, else those of `count` even ones over [0, 1] that are read there.
 pub(super) fn indices(count: usize, ends: [f64; 2]) -> Axis {
-    let mut axis = Axis {
-        name: "eta".into(),
-        unit: "1".into(),
-        mapping: Mapping::ReflectanceRoot,
-        interpolation: Interpolation::Lagrange6,
-        nodes: Axis::uniform_nodes(count),
-    };
-    let [from, to] = ends.map(|eta| axis.coordinate(eta).expect("an axis of indices"));
-    axis.nodes = cut(&axis.nodes, from, to);
-    axis
+    let nodes = even_nodes(0.0, 1.0, count);
+    let [from, to] = ends.map(|eta| ReflectanceRoot.coordinate(eta));
+    Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&nodes, from, to))
 }
 
 /// Bakes one table for each form of masking, with `quadrature_error` in its certificate.
@@ -99,34 +82,37 @@ pub fn bake(spec: &AlbedoSpec, fresnel: &FresnelEntry, side: Side) -> Result<Vec
     axes.insert(2, indices(spec.indices, ends));
     if side == Side::Leaving {
         // An odd number, with the middle one shared by both halves.
-        axes[3] = Axis { mapping: VIEW, nodes: Axis::uniform_nodes(2 * spec.views - 1), ..axes[3].clone() };
+        let mapping = Mapping::CriticalBlend(CriticalBlend::BAKED);
+        axes[3] = Axis::placed("view", mapping, INTERPOLATION, 2 * spec.views - 1);
     }
     let etas: Vec<f64> = match ends {
         // Not through the coordinate and back.
         [min, max] if min == max => vec![min],
-        _ => axes[2].nodes.iter().filter_map(|&t| axes[2].quantity(t)).collect(),
+        _ => axes[2].quantities(),
     };
-    let views = |sigma, gamma, eta| {
-        let view = &axes[3];
-        let cos = |&t: &f64| match side {
-            Side::Entering => view.view_cosine(sigma, gamma, t),
-            Side::Leaving => view.critical_view_cosine(sigma, gamma, eta, t),
-        };
-        view.nodes.iter().filter_map(cos).collect()
+    let views = |sigma, gamma, eta: f64| -> Vec<f64> {
+        let nodes = axes[3].nodes.iter();
+        match side {
+            Side::Entering => {
+                let view = spec.view().bind(sigma, gamma);
+                nodes.map(|&t| view.quantity(t)).collect()
+            }
+            Side::Leaving => {
+                let view = CriticalBlend::BAKED.bind(sigma, gamma, 1.0 / eta);
+                nodes.map(|&t| view.quantity(t)).collect()
+            }
+        }
     };
     let albedo = |model: &AlbedoIntegrator, sigma, eta, cos| side.albedo(model, sigma, eta, cos);
     let tables = shares(spec, &axes, &etas, views, albedo)?;
     let leaving = if side == Side::Leaving { "_leaving" } else { "" };
-    let name = |masking: Masking| {
-        let (kind, form) = (Kind::DielectricAlbedo.name(), masking.name().replace('-', "_"));
-        format!("{kind}_{form}_{}{leaving}{}", fresnel.label(), spec.domain.suffix())
-    };
+    let suffix = format!("{}{leaving}{}", fresnel.label(), spec.domain.suffix());
     Ok(tables
         .into_iter()
         .map(|table| Table {
-            name: name(table.masking.expect("shares are for one form")),
+            name: Kind::DielectricAlbedo.table_name(table.masking, &suffix),
             kind: Kind::DielectricAlbedo,
-            channels: side.channels().map(String::from).into(),
+            channels: names(side.channels()),
             ..table
         })
         .collect())

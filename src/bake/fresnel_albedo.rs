@@ -8,9 +8,7 @@ use microfacet_model::{Albedo, AlbedoIntegrator, ParameterError, Shape};
 use microfacet_sampler::{Axis, FresnelEntry, Kind, Masking, Table};
 
 use super::albedo::{AlbedoSpec, BakeError, axes};
-
-/// Names of the channels.
-pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
+use super::names;
 
 /// The reflectances of the channels.
 pub struct Metal([Conductor; 3]);
@@ -47,22 +45,18 @@ impl Metal {
 pub fn bake(spec: &AlbedoSpec, fresnel: &FresnelEntry, metal: &Metal) -> Result<Vec<Table>, BakeError> {
     let axes = axes(spec);
     let views = |sigma, gamma, _| {
-        let view = &axes[2];
-        view.nodes.iter().map(|&t| view.view_cosine(sigma, gamma, t).expect("a view axis")).collect()
+        let view = spec.view().bind(sigma, gamma);
+        axes[2].nodes.iter().map(|&t| view.quantity(t)).collect()
     };
     let albedo = |model: &AlbedoIntegrator, sigma, _, cos| metal.albedo(model, sigma, cos);
     let tables = shares(spec, &axes, &[f64::NAN], views, albedo)?;
-    let name = |masking: Masking| {
-        let kind = Kind::FresnelAlbedo.name();
-        format!("{kind}_{}_{}{}", masking.name().replace('-', "_"), fresnel.label(), spec.domain.suffix())
-    };
-    let channels = CHANNELS.map(String::from);
+    let suffix = format!("{}{}", fresnel.label(), spec.domain.suffix());
     Ok(tables
         .into_iter()
         .map(|table| Table {
-            name: name(table.masking.expect("shares are for one form")),
+            name: Kind::FresnelAlbedo.table_name(table.masking, &suffix),
             kind: Kind::FresnelAlbedo,
-            channels: channels.to_vec(),
+            channels: names(Kind::RGB),
             ..table
         })
         .collect())
@@ -77,9 +71,7 @@ pub(super) fn shares<const N: usize>(
     views: impl Fn(f64, f64, f64) -> Vec<f64> + Sync,
     albedo: impl Fn(&AlbedoIntegrator, f64, f64, f64) -> Result<Albedo<N>, ParameterError> + Sync,
 ) -> Result<Vec<Table>, BakeError> {
-    let quantities =
-        |axis: &Axis| -> Vec<f64> { axis.nodes.iter().filter_map(|&t| axis.quantity(t)).collect() };
-    let (gammas, sigmas) = (quantities(&axes[0]), quantities(&axes[1]));
+    let (gammas, sigmas) = (axes[0].quantities(), axes[1].quantities());
     let integrators = gammas
         .par_iter()
         .map(|&gamma| Ok(AlbedoIntegrator::new(Shape::new(gamma)?, spec.tolerance)))

@@ -13,17 +13,15 @@ pub mod view_albedo;
 mod visible_slope;
 
 use microfacet_model::{Shape, SignedUnit};
-use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Table};
+use microfacet_sampler::axis::{MirroredRoot, half_tangent};
+use microfacet_sampler::{Axis, Channels, Interpolation, Kind, Mapping, Table};
 
-use crate::spec::TableSpec;
+use crate::spec::{ShapeAxis, TableSpec};
 
 pub use radial::{bake_radial, radial_axes, radial_bytes};
 
 /// Changes whenever the same specification would give other values: part of every file, and of every cache key.
-pub const NUMERICS: u32 = 1;
-
-/// The random numbers' axes: t = (2 min(u, 1−u))^(1/4).
-const POWER: u32 = 4;
+pub const NUMERICS: u32 = 2;
 
 /// u at which the ends of a mirrored axis are evaluated where u = 0 itself is an infinite slope: 2⁻⁴⁰. For Beckmann it keeps every
 /// stored slope finite (below 5.3); the CDF error it makes is itself.
@@ -41,7 +39,7 @@ pub fn bake(spec: &TableSpec) -> Table {
         name: spec.name.clone(),
         kind: spec.kind,
         axes: axes(spec),
-        channels: vec!["value".into(), "slope".into()],
+        channels: names(Kind::VALUE_AND_SLOPE),
         masking: None,
         values,
         precision: spec.precision,
@@ -52,26 +50,31 @@ pub fn bake(spec: &TableSpec) -> Table {
 
 /// The axes of a table, from its specification.
 pub fn axes(spec: &TableSpec) -> Vec<Axis> {
-    let axis = |name: &str, unit: &str, mapping, interpolation, nodes| Axis {
-        name: name.into(),
-        unit: unit.into(),
-        mapping,
-        interpolation,
-        nodes,
-    };
-    let numbers = |name: &str, odd| {
-        let mapping = Mapping::MirroredPower { power: POWER, odd };
-        axis(name, "1", mapping, Interpolation::Hermite, Axis::uniform_nodes(spec.numbers))
-    };
-    let shapes = spec.shapes.clone();
-    let gamma = axis("gamma", "1", Mapping::InverseShape, shapes.interpolation, shapes.nodes);
-    let view =
-        |mapping, interpolation| axis("view", "1", mapping, interpolation, Axis::uniform_nodes(spec.views));
+    let numbers = |name| numbers(name, spec.numbers);
+    let ShapeAxis { nodes, interpolation } = spec.shapes.clone();
+    let gamma = Axis::new("gamma", Mapping::InverseShape, interpolation, nodes);
+    let view = |mapping, interpolation| Axis::placed("view", mapping, interpolation, spec.views);
     match spec.kind {
-        Kind::Shadowing => vec![gamma, view(shadowing::view(spec), Interpolation::Hermite)],
-        Kind::VisibleSlopeConditional => vec![gamma, numbers("u2", true)],
-        _ => vec![gamma, view(visible_slope::view(spec.kind), Interpolation::Linear), numbers("u1", false)],
+        Kind::Shadowing => {
+            vec![gamma, view(Mapping::Rational(shadowing::view(spec)), Interpolation::Hermite)]
+        }
+        Kind::VisibleSlopeConditional => vec![gamma, numbers("u2")],
+        _ => {
+            let mapping = Mapping::HalfTangent(visible_slope::view(spec.kind));
+            vec![gamma, view(mapping, Interpolation::Linear), numbers("u1")]
+        }
     }
+}
+
+/// The axis of a random number: `u1`, along the plane of incidence, or `u2` across it, about which all slopes are odd.
+fn numbers(name: &str, count: usize) -> Axis {
+    let mapping = Mapping::MirroredRoot(MirroredRoot { odd: name == "u2" });
+    Axis::placed(name, mapping, Interpolation::Hermite, count)
+}
+
+/// Names as tables hold them.
+fn names(channels: Channels) -> Vec<String> {
+    channels.iter().map(|&name| name.into()).collect()
 }
 
 /// The shapes along the γ axis.
@@ -88,24 +91,20 @@ fn round(nodes: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f32; 2]> {
 /// u ≤ ½ at the coordinate t ∈ [0, 1] of a mirrored axis, and du/dt; not below [`END`].
 fn mirrored(t: f64) -> (f64, f64) {
     // (2 END)^(1/4) is not a power of two; t itself only enters the derivative, whose end value is limited anyway.
-    let t = t.max((2.0 * END).sqrt().sqrt());
-    (0.5 * t * t * t * t, 2.0 * t * t * t)
+    let t = t.max(MirroredRoot::of_number(END));
+    (MirroredRoot::number(t), MirroredRoot::rate(t))
 }
 
 /// Distance of the half tangent of a unit slope from the end −1 or 1, without cancellation.
 fn distance(shape: &Shape, x: SignedUnit, end: f64) -> f64 {
     let (sin, cos) = shape.unit_sin_cos(x.w);
-    if x.sign == end {
-        // (1 + cos − sin)/(1 + cos), and 1 − sin = cos²/(1 + sin).
-        (cos + cos * cos / (1.0 + sin)) / (1.0 + cos)
-    } else {
-        1.0 + sin / (1.0 + cos)
-    }
+    let [low, high] = half_tangent::ends(x.sign * sin, cos);
+    if end < 0.0 { low } else { high }
 }
 
-/// d h/d w of the half tangent: h = tan(α/2) with tan α = x, and dx/dw = √(1 + s x²).
+/// d h/d w of the half tangent h of a unit slope x(w), dx/dw = √(1 + s x²).
 fn half_tangent_rate(shape: &Shape, x: SignedUnit) -> f64 {
+    // dh/dx is cos²/(1 + cos), one cosine of which makes dx/dw finite.
     let (sin, cos) = shape.unit_sin_cos(x.w);
-    let h = sin / (1.0 + cos);
-    0.5 * (1.0 + h * h) * cos * (cos * cos + shape.s() * sin * sin).sqrt()
+    cos * (cos * cos + shape.s() * sin * sin).sqrt() / (1.0 + cos)
 }

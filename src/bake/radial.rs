@@ -4,10 +4,13 @@
 //! are integrals over the slope marginal and roots of them.
 
 use microfacet_model::classic::{Marginal, MarginalView};
-use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Precision, Table, limit_slopes};
+use microfacet_sampler::axis::half_tangent::{rate, slope_at};
+use microfacet_sampler::axis::{HalfTangent, Rational, limit_slopes};
+use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Precision, Table};
 use rayon::prelude::*;
 
-use super::{POWER, mirrored, round};
+use super::shadowing::ratios;
+use super::{mirrored, names, numbers, round};
 use crate::spec::Quality;
 
 /// Rows of in-plane slopes in the table of slopes across.
@@ -20,47 +23,45 @@ pub fn radial_axes(quality: Quality, kappa: f64, reach: f64) -> [(Kind, Vec<Axis
     let r = quality.resolution();
     // Twice as fine as the family's: a distribution at hand may have kinks and several scales, and there is one slice only.
     let [along_numbers, across_numbers] = [r.numbers, r.across_numbers].map(|n| 2 * n - 1);
-    let axis = |name: &str, mapping, interpolation, count: usize| Axis {
-        name: name.into(),
-        unit: "1".into(),
-        mapping,
-        interpolation,
-        nodes: Axis::uniform_nodes(count),
-    };
-    let numbers = |name, odd, count| {
-        axis(name, Mapping::MirroredPower { power: POWER, odd }, Interpolation::Hermite, count)
-    };
     let slopes = match reach {
-        reach if reach.is_finite() => Mapping::Rational { scale: reach, pole: 2.0 },
-        _ => Mapping::HalfTangent,
+        reach if reach.is_finite() => rational(reach),
+        _ => HALF_TANGENT,
     };
-    let view = Mapping::Rational { scale: kappa, pole: 2.0 };
     [
-        (Kind::RadialShadowing, vec![axis("view", view, Interpolation::Hermite, r.shadowing_views)]),
+        (
+            Kind::RadialShadowing,
+            vec![Axis::placed("view", rational(kappa), Interpolation::Hermite, r.shadowing_views)],
+        ),
         (
             Kind::RadialSlope,
             vec![
-                axis("view", Mapping::HalfTangent, Interpolation::Linear, r.views),
-                numbers("u1", false, along_numbers),
+                Axis::placed("view", HALF_TANGENT, Interpolation::Linear, r.views),
+                numbers("u1", along_numbers),
             ],
         ),
         (
             Kind::RadialConditional,
-            vec![axis("slope", slopes, Interpolation::Linear, SLOPES), numbers("u2", true, across_numbers)],
+            vec![Axis::placed("slope", slopes, Interpolation::Linear, SLOPES), numbers("u2", across_numbers)],
         ),
-        (Kind::RadialDensity, vec![axis("slope", Mapping::HalfTangent, Interpolation::Hermite, DENSITIES)]),
+        (Kind::RadialDensity, vec![Axis::placed("slope", HALF_TANGENT, Interpolation::Hermite, DENSITIES)]),
     ]
+}
+
+/// The coordinate of views, and of slopes that have no bound.
+const SLOPE: HalfTangent = HalfTangent { crowded: false };
+const HALF_TANGENT: Mapping = Mapping::HalfTangent(SLOPE);
+
+/// q with κ as given, for tables without a γ axis.
+fn rational(kappa: f64) -> Mapping {
+    Mapping::Rational(Rational { scale: kappa, crowded: false })
 }
 
 /// Bytes of the values of the four tables as they are stored.
 pub fn radial_bytes(quality: Quality, precision: Precision) -> usize {
-    let one = match precision {
-        Precision::F32 => 4,
-        Precision::F16 | Precision::U16 => 2,
-    };
     // None depends on the distribution.
-    let values = |(_, axes): &(Kind, Vec<Axis>)| 2 * axes.iter().map(Axis::len).product::<usize>();
-    radial_axes(quality, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * one
+    let channels = Kind::VALUE_AND_SLOPE.len();
+    let values = |(_, axes): &(Kind, Vec<Axis>)| channels * axes.iter().map(Axis::len).product::<usize>();
+    radial_axes(quality, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * precision.bytes()
 }
 
 /// The four tables, their names ending in `suffix`.
@@ -75,10 +76,10 @@ pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precisio
             _ => density(marginal),
         };
         let table = Table {
-            name: format!("{}_{suffix}", kind.name()),
+            name: kind.table_name(None, suffix),
             kind,
             axes,
-            channels: vec!["value".into(), "slope".into()],
+            channels: names(Kind::VALUE_AND_SLOPE),
             values: values.into_iter().flatten().collect(),
             precision,
             masking: None,
@@ -89,33 +90,13 @@ pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precisio
     radial_axes(quality, kappa, marginal.reach()).into_iter().map(table).collect()
 }
 
-/// The slope of a half tangent h = x/(1 + √(1+x²)) ∈ [0, 1].
-fn slope(h: f64) -> f64 {
-    if h >= 1.0 { f64::INFINITY } else { 2.0 * h / ((1.0 - h) * (1.0 + h)) }
-}
-
-/// dh/dx.
-fn rate(x: f64) -> f64 {
-    let root = (1.0 + x * x).sqrt();
-    1.0 / (root * (1.0 + root))
-}
-
 /// G1/q by q = z/(z + κ), with κ the area at grazing, as for the family.
 fn shadowing(marginal: &Marginal, kappa: f64, views: usize) -> Vec<[f32; 2]> {
-    let cells = (views - 1) as f64;
-    let node = |q: f64| {
-        let z = kappa * q / (1.0 - q);
+    let beyond = |z: f64| {
         let at = marginal.beyond(z);
-        let value = (z + kappa) / (z + at.excess);
-        let slope = (at.excess - kappa + (z + kappa) * at.tail) * value * value / kappa;
-        [value, slope / cells]
+        (at.excess, at.tail)
     };
-    let mut nodes: Vec<[f64; 2]> = (0..views - 1).into_par_iter().map(|i| node(i as f64 / cells)).collect();
-    // At normal incidence G1 = 1, with the slope that makes the last cubic exact in its middle.
-    let [before, rise] = nodes[views - 2];
-    let [middle, _] = node(1.0 - 0.5 / cells);
-    nodes.push([1.0, rise - 8.0 * (middle - 0.5 * (before + 1.0))]);
-    round(nodes)
+    round(ratios(&Rational { scale: kappa, crowded: false }, kappa, views, beyond))
 }
 
 /// Finds the distance g ∈ (0, 2) from an end at which a share that rises with g reaches `u`, from a first guess.
@@ -144,8 +125,8 @@ fn solve(u: f64, guess: f64, share: impl Fn(f64) -> (f64, f64)) -> f64 {
 
 /// The slope at the distance g from the end `sign` of the half tangent.
 fn slope_from(g: f64, sign: f64) -> f64 {
-    let x = 2.0 * (1.0 - g) / (g * (2.0 - g)).max(1e-300);
-    sign * x.clamp(-1e30, 1e30)
+    let [x, z] = slope_at(g);
+    sign * (x / z.max(1e-300)).clamp(-1e30, 1e30)
 }
 
 /// Slopes at the ends of a support are infinite; `limit_slopes` bounds them afterwards.
@@ -156,7 +137,7 @@ fn finite(slope: f64) -> f64 {
 fn along(marginal: &Marginal, views: usize, numbers: usize) -> Vec<[f32; 2]> {
     let row = |i: usize| {
         let tau = i as f64 / (views - 1) as f64;
-        let z = slope(tau);
+        let z = SLOPE.quantity(tau);
         let view = MarginalView::new(marginal, z);
         let mut row = Vec::with_capacity(2 * numbers);
         for sign in [-1.0, 1.0] {
@@ -166,7 +147,7 @@ fn along(marginal: &Marginal, views: usize, numbers: usize) -> Vec<[f32; 2]> {
                 let share = |g: f64| {
                     let x = slope_from(g, sign);
                     let at = view.shares(x);
-                    (if sign < 0.0 { at.below } else { at.above }, at.density / rate(x))
+                    (if sign < 0.0 { at.below } else { at.above }, at.density / rate(x, 1.0))
                 };
                 g = solve(u, g, share);
                 [g, finite(du_dt / share(g).1 / (numbers - 1) as f64)]
@@ -192,7 +173,7 @@ fn across(marginal: &Marginal, numbers: usize) -> Vec<[f32; 2]> {
             let part = (at / (1.0 - at)).min(1.0 - 1e-6);
             (reach * part, ((1.0 - part) * (1.0 + part)).sqrt())
         } else {
-            let x = slope(at.min(1.0 - 1e-5));
+            let x = SLOPE.quantity(at.min(1.0 - 1e-5));
             (x, (1.0 + x * x).sqrt())
         };
         let across = marginal.across_at(x);
@@ -204,7 +185,7 @@ fn across(marginal: &Marginal, numbers: usize) -> Vec<[f32; 2]> {
                 let tail = across.tail(t.abs() * scale);
                 // Symmetric about t = 0, where the half table ends.
                 let above = if t < 0.0 { 1.0 - tail } else { tail };
-                (above, scale * across.density(t.abs() * scale) / rate(t))
+                (above, scale * across.density(t.abs() * scale) / rate(t, 1.0))
             };
             g = solve(u, g, share);
             [g, finite(du_dt / share(g).1 / (numbers - 1) as f64)]
@@ -218,7 +199,7 @@ fn across(marginal: &Marginal, numbers: usize) -> Vec<[f32; 2]> {
 fn density(marginal: &Marginal) -> Vec<[f32; 2]> {
     let cells = (DENSITIES - 1) as f64;
     // At the horizon itself D is the limit of what is near it.
-    let root = |h: f64| marginal.d(slope(h.min(1.0 - 1e-9))).sqrt().sqrt();
+    let root = |h: f64| marginal.d(SLOPE.quantity(h.min(1.0 - 1e-9))).sqrt().sqrt();
     let step = 1e-4 / cells;
     let node = |i: usize| {
         let h = i as f64 / cells;

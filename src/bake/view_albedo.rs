@@ -9,9 +9,11 @@ use rayon::prelude::*;
 
 use microfacet_model::classic::{Marginal, RadialAlbedo};
 use microfacet_model::{Albedo, AlbedoIntegrator, Ellipsoid, EllipsoidError, ParameterError, Shape};
-use microfacet_sampler::{Axis, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table};
+use microfacet_sampler::axis::{Azimuth, BoundAzimuth, ViewBlend};
+use microfacet_sampler::{Axis, Channels, Kind, LoadError, Mapping, Masking, Precision, Table};
 
-use super::albedo::{BakeError, VIEW, residual, weights};
+use super::albedo::{BakeError, INTERPOLATION, residual, weights};
+use super::names;
 use crate::family::Distribution;
 use crate::spec::Quality;
 
@@ -51,13 +53,13 @@ impl Lobe {
     ///
     /// # Errors
     /// [`BakeError`] for an ellipsoid that is none.
-    fn azimuth(&self) -> Result<Mapping, BakeError> {
+    fn azimuth(&self) -> Result<Azimuth, BakeError> {
         Ok(match *self {
-            Self::StudentT { sigma, .. } => Mapping::Azimuth { sigma, turn: 0.0, fold: true },
-            Self::Radial { sigma, .. } => Mapping::Azimuth { sigma: [sigma; 2], turn: 0.0, fold: true },
+            Self::StudentT { sigma, .. } => Azimuth { sigma, turn: 0.0, fold: true },
+            Self::Radial { sigma, .. } => Azimuth { sigma: [sigma; 2], turn: 0.0, fold: true },
             Self::Ellipsoid { sigma, theta, gamma } => {
                 let (sigma, turn) = spread(&ellipsoid(sigma, theta, gamma)?);
-                Mapping::Azimuth { sigma, turn, fold: false }
+                Azimuth { sigma, turn, fold: false }
             }
         })
     }
@@ -244,22 +246,17 @@ impl ViewSpec {
 
     /// Bytes of the values as they are stored.
     pub fn bytes(&self) -> usize {
-        let one = match self.precision {
-            Precision::F32 => 4,
-            Precision::F16 | Precision::U16 => 2,
-        };
-        self.channels().len() * one * self.nodes()
+        self.channels().len() * self.precision.bytes() * self.nodes()
     }
 
     /// Names of the channels.
-    fn channels(&self) -> &'static [&'static str] {
-        let all = &["e", "bias", "f82", "clamp"];
-        if matches!(self.lobe, Lobe::Ellipsoid { .. }) { all } else { &all[..3] }
+    fn channels(&self) -> Channels {
+        if matches!(self.lobe, Lobe::Ellipsoid { .. }) { Kind::CLAMPED_MOMENTS } else { Kind::MOMENTS }
     }
 
     /// The name of the table.
     pub fn name(&self) -> String {
-        format!("{}_{}_{}", Kind::ViewAlbedo.name(), self.masking.name().replace('-', "_"), self.label)
+        Kind::ViewAlbedo.table_name(Some(self.masking), &self.label)
     }
 
     /// The axes: azimuth and view.
@@ -267,30 +264,24 @@ impl ViewSpec {
     /// # Errors
     /// [`BakeError`] for an ellipsoid that is none.
     pub fn axes(&self) -> Result<Vec<Axis>, BakeError> {
-        let axis = |name: &str, unit: &str, mapping, nodes| Axis {
-            name: name.into(),
-            unit: unit.into(),
-            mapping,
-            interpolation: Interpolation::Lagrange6,
-            nodes,
-        };
-        let view = match VIEW {
-            // γ is known: κ is a number, and readers need no γ.
-            Mapping::ViewBlend { weight, normal, share, scale, heavy, spread, floor, slope } => {
-                let scale = scale + heavy / (2.0 * self.lobe.gamma() - 3.0);
-                Mapping::ViewBlend { weight, normal, share, scale, heavy: 0.0, spread, floor, slope }
-            }
-            other => other,
-        };
-        let azimuth = self.lobe.azimuth()?;
-        let azimuths = match azimuth {
-            Mapping::Azimuth { fold: true, .. } if self.azimuths > 1 => Axis::uniform_nodes(self.azimuths),
-            _ => (0..self.azimuths).map(|i| i as f64 / self.azimuths as f64).collect(),
-        };
+        let azimuth = Mapping::Azimuth(self.lobe.azimuth()?);
         Ok(vec![
-            axis("azimuth", "rad", azimuth, azimuths),
-            axis("view", "1", view, Axis::uniform_nodes(self.views)),
+            Axis { unit: "rad".into(), ..Axis::placed("azimuth", azimuth, INTERPOLATION, self.azimuths) },
+            Axis::placed("view", Mapping::ViewBlend(self.view()), INTERPOLATION, self.views),
         ])
+    }
+
+    /// The coordinate of the azimuth.
+    ///
+    /// # Errors
+    /// [`BakeError`] for an ellipsoid that is none.
+    pub fn azimuth(&self) -> Result<BoundAzimuth, BakeError> {
+        Ok(self.lobe.azimuth()?.bind(self.azimuths))
+    }
+
+    /// The coordinate of the view: γ is known, so that readers need none.
+    fn view(&self) -> ViewBlend {
+        ViewBlend::BAKED.of_shape(self.lobe.gamma())
     }
 }
 
@@ -304,16 +295,20 @@ pub fn bake(spec: &ViewSpec) -> Result<Table, BakeError> {
 
 fn bake_with(spec: &ViewSpec, model: &LobeAlbedo<'_>) -> Result<Table, BakeError> {
     let axes = spec.axes()?;
+    let azimuths = spec.azimuth()?;
     let places: Vec<(f64, f64, f64)> = axes[0]
         .nodes
         .iter()
-        .map(|&t| axes[0].azimuth(t).expect("an azimuth axis"))
-        .flat_map(|(phi, sigma)| axes[1].nodes.iter().map(move |&t| (phi, sigma, t)))
+        .flat_map(|&t| {
+            let [c, s] = azimuths.direction(t);
+            let (phi, sigma) = (azimuths.quantity(t), azimuths.sigma(c, s));
+            let view = spec.view().bind(sigma, f64::INFINITY);
+            axes[1].nodes.iter().map(move |&t| (phi, sigma, view.quantity(t)))
+        })
         .collect();
     let nodes = places
         .par_iter()
-        .map(|&(phi, sigma, t)| {
-            let cos = axes[1].view_cosine(sigma, f64::INFINITY, t).expect("a view axis");
+        .map(|&(phi, sigma, cos)| {
             let node = node(spec, model, sigma, cos, phi);
             node.map_err(|why| BakeError::Azimuth { lobe: spec.label.clone(), phi, why: Box::new(why) })
         })
@@ -323,7 +318,7 @@ fn bake_with(spec: &ViewSpec, model: &LobeAlbedo<'_>) -> Result<Table, BakeError
         name: spec.name(),
         kind: Kind::ViewAlbedo,
         axes,
-        channels: spec.channels().iter().map(|name| (*name).to_owned()).collect(),
+        channels: names(spec.channels()),
         masking: Some(spec.masking),
         values: nodes.iter().flat_map(|node| &node.0).map(|&x| x as f32).collect(),
         precision: spec.precision,

@@ -22,15 +22,16 @@
 use rayon::prelude::*;
 
 use microfacet_model::{Shape, UnitView, VisibleSlope};
-use microfacet_sampler::{Kind, Mapping, limit_slopes};
+use microfacet_sampler::Kind;
+use microfacet_sampler::axis::{HalfTangent, limit_slopes};
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
 use crate::spec::TableSpec;
 
 /// The view axis: evenly in τ, or crowded towards normal incidence where the heavy part is peeled off: what is left
 /// depends on the tilt there like η^(1+2k), whose second derivative is infinite.
-pub(super) fn view(kind: Kind) -> Mapping {
-    if kind == Kind::VisibleSlopePeeled { Mapping::HalfTangentRoot } else { Mapping::HalfTangent }
+pub(super) fn view(kind: Kind) -> HalfTangent {
+    HalfTangent { crowded: kind == Kind::VisibleSlopePeeled }
 }
 
 /// How far inside the silhouette the first node stands: sixteen roundings of f32, so that m·v stays positive in single precision. The
@@ -38,21 +39,19 @@ pub(super) fn view(kind: Kind) -> Mapping {
 const INSIDE: f64 = 1.0 / 1_048_576.0;
 
 pub(super) fn bake(spec: &TableSpec) -> Vec<f32> {
-    let peeled = spec.kind == Kind::VisibleSlopePeeled;
+    let (view, peeled) = (view(spec.kind), spec.kind == Kind::VisibleSlopePeeled);
     let shapes = shapes(spec);
     let rows: Vec<(&Shape, usize)> =
         shapes.iter().flat_map(|shape| (0..spec.views).map(move |row| (shape, row))).collect();
     let of_row = |&(shape, row): &(&Shape, usize)| {
         let at = row as f64 / (spec.views - 1) as f64;
-        let tau = if peeled { 1.0 - (1.0 - at) * (1.0 - at) } else { at };
-        row_nodes(shape, tau, spec.numbers, peeled)
+        row_nodes(shape, [view.parts(at)[1], view.quantity(at)], spec.numbers, peeled)
     };
     rows.par_iter().flat_map_iter(of_row).flatten_iter().collect()
 }
 
 /// Both halves of a row: the nodes for u ≤ ½ from u = 0 up, then those for u > ½ from u = 1 down.
-fn row_nodes(shape: &Shape, tau: f64, numbers: usize, peeled: bool) -> Vec<[f32; 2]> {
-    let z = if tau == 1.0 { f64::INFINITY } else { 2.0 * tau / (1.0 - tau * tau) };
+fn row_nodes(shape: &Shape, [rest, z]: [f64; 2], numbers: usize, peeled: bool) -> Vec<[f32; 2]> {
     let view = UnitView::from_cotangent(z);
     let slopes = if peeled { VisibleSlope::peeled(shape, view) } else { VisibleSlope::new(shape, view) };
     let mut row = Vec::with_capacity(2 * numbers);
@@ -64,7 +63,7 @@ fn row_nodes(shape: &Shape, tau: f64, numbers: usize, peeled: bool) -> Vec<[f32;
         if end < 0.0 && z.is_finite() {
             // The silhouette, exactly: linear in τ (convex where the axis is crowded), so that between the rows it is as exact (on the
             // visible side) too and no sampled normal faces away.
-            half[0][0] = (1.0 - tau + INSIDE) as f32;
+            half[0][0] = (rest + INSIDE) as f32;
         }
         limit_slopes(&mut half);
         row.extend(half);

@@ -6,8 +6,8 @@ use std::time::Instant;
 use microfacet_sampler::{Kind, Tables};
 
 use super::paper::Approximation;
-use super::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM, TABLE, bind};
-use super::tables::Slices;
+use super::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM, bind};
+use super::tables::{Slices, TABLE};
 use super::{GAMMA, Quantity, Row, SIGMA, Settings, clock, masking};
 
 /// One figure with what it must be and aims to be; smaller is better.

@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use glam::{DVec3, Vec3};
 use microfacet_model as model;
-use microfacet_sampler::{Precision, StudentT, Tables};
+use microfacet_sampler::{StudentT, Table, Tables};
 
 use super::inputs::Stream;
 use super::rivals::bilinear::Bilinear;
@@ -14,7 +14,6 @@ use super::rivals::stream::Drawer;
 use super::rivals::{beckmann, ggx};
 use super::tables::Slices;
 use super::{GAMMA, SIGMA};
-use crate::spec::Quality;
 
 /// Normals for views and random numbers, as many as there are views.
 pub type Draw<'a> = Box<dyn Fn(&[Vec3], &[[f32; 2]], &mut [Vec3]) + 'a>;
@@ -97,7 +96,6 @@ fn streamed<'a>(seed: u64, one: impl Fn(Vec3, &mut Stream) -> Vec3 + 'a) -> Draw
 
 /// Names that figures refer to.
 pub(super) const CAPS: &str = "GGX, spherical caps";
-pub(super) const TABLE: &str = "table, default";
 pub(super) const BATCH: &str = "table, default, batch";
 pub(super) const INVERSION: &str = "inversion of the CDF, any gamma";
 pub(super) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
@@ -192,19 +190,6 @@ pub(super) fn bind(set: &Tables, gamma: f64) -> StudentT {
 
 /// Bytes that a file takes for what G1 and normals are looked up in.
 pub(super) fn stored(set: &Tables) -> usize {
-    let one = |precision| match precision {
-        Precision::F32 => 4,
-        Precision::F16 | Precision::U16 => 2,
-    };
     let lookups = set.tables().iter().filter(|table| !table.kind.is_albedo());
-    lookups.map(|table| table.values.len() * one(table.precision)).sum()
-}
-
-/// Names of the qualities.
-pub(super) fn name(quality: Quality) -> &'static str {
-    match quality {
-        Quality::Draft => "table, draft",
-        Quality::Default => TABLE,
-        Quality::High => "table, high",
-    }
+    lookups.map(Table::stored_bytes).sum()
 }

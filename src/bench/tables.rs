@@ -2,7 +2,9 @@
 
 use microfacet_sampler::{Precision, Provenance, Tables};
 
-use super::{GAMMA, sampler};
+use microfacet_common::shape::s_of_gamma;
+
+use super::GAMMA;
 use crate::bake;
 use crate::spec::{Quality, ShapeAxis, TableSpec, general_set};
 
@@ -38,9 +40,9 @@ impl Slices {
     /// Each with its name.
     pub(super) fn each(&self) -> impl Iterator<Item = (&'static str, &Tables)> {
         [
-            (sampler::name(Quality::Draft), &self.draft),
-            (sampler::name(Quality::Default), &self.default),
-            (sampler::name(Quality::High), &self.high),
+            (name(Quality::Draft), &self.draft),
+            (name(Quality::Default), &self.default),
+            (name(Quality::High), &self.high),
             ("table, default, f16", &self.f16),
             ("table, default, u16", &self.u16),
             ("table, default, of all gamma", &self.whole),
@@ -51,9 +53,21 @@ impl Slices {
 
 /// What lookups of one shape read, baked at that shape alone.
 fn slice(quality: Quality, precision: Precision, gamma: f64) -> Tables {
-    let s = 1.0 / (gamma - 1.0);
+    let s = s_of_gamma(gamma);
     let covers = |spec: &TableSpec| spec.shapes.nodes[0] <= s && spec.shapes.nodes.last() >= Some(&s);
     let at = |spec: TableSpec| bake::bake(&TableSpec { shapes: ShapeAxis::points([s]), ..spec });
     let tables = general_set(quality, precision).into_iter().filter(covers).map(at).collect();
     Tables::from_tables(Provenance::default(), tables).expect("a bake makes sound tables")
+}
+
+/// The name of the row that figures are about.
+pub(super) const TABLE: &str = "table, default";
+
+/// Names of the qualities.
+pub(super) fn name(quality: Quality) -> &'static str {
+    match quality {
+        Quality::Draft => "table, draft",
+        Quality::Default => TABLE,
+        Quality::High => "table, high",
+    }
 }

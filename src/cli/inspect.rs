@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use microfacet_bake::store;
-use microfacet_sampler::{Axis, Interpolation, Mapping, Table, describe};
+use microfacet_sampler::{Axis, Interpolation, Table, describe};
 
 use super::bake::largest_error;
 use super::{Done, Outcome, print, print_json};
@@ -73,15 +73,15 @@ fn describe_table(table: &Table) -> String {
 }
 
 fn describe_axis(axis: &Axis) -> String {
-    let (first, last) = (axis.nodes[0], axis.nodes[axis.nodes.len() - 1]);
-    let gamma = |s: f64| 1.0 + 1.0 / s;
-    let range = match axis.mapping {
-        Mapping::InverseShape if axis.interpolation == Interpolation::Nodes => {
-            let shapes: Vec<String> = axis.nodes.iter().rev().map(|&s| format!("{}", gamma(s))).collect();
-            format!("gamma = {}", shapes.join(", "))
+    let [first, last] = axis.ends();
+    let range = match (axis.quantities().as_slice(), axis.interpolation) {
+        ([], _) => format!("coordinate in [{first}, {last}]"),
+        (all, Interpolation::Nodes) => {
+            let all: Vec<String> = all.iter().rev().map(|x| format!("{x}")).collect();
+            format!("{} = {}", axis.name, all.join(", "))
         }
-        Mapping::InverseShape => format!("gamma in [{:.6}, {}]", gamma(last), gamma(first)),
-        _ => format!("coordinate in [{first}, {last}]"),
+        ([one], _) => format!("{} = {one}", axis.name),
+        ([a, .., b], _) => format!("{} in [{:.6}, {:.6}]", axis.name, a.min(*b), a.max(*b)),
     };
     format!(
         "{}: {} nodes, {range}, {:?}, {:?} between them",

@@ -80,9 +80,7 @@ pub(super) fn run(args: Args) -> Outcome {
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi: args.phi, seed: args.seed }]
         }
         // A set without any table holds GGX in closed form, which can be judged.
-        _ if !set.tables().is_empty()
-            && !set.tables().iter().any(|table| table.kind.axes()[0] == "gamma") =>
-        {
+        _ if !set.tables().is_empty() && !set.tables().iter().any(|table| table.axes[0].name == "gamma") => {
             return Err(Failure(
                 "the set has no Student-t tables to judge; name one configuration with --sigma, --gamma and --theta for the closed \
                  forms of GGX; tables of other distributions carry what was measured when they were baked: see `microfacet-bake inspect`"

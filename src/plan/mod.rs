@@ -16,15 +16,12 @@ pub use albedo::{AlbedoNeed, AlbedoVerdict, AlbedoWish, ViewNeed};
 pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, view_cost};
 pub use needs::Need;
 
+use microfacet_common::shape::s_of_gamma;
+
 use crate::bake::albedo::SIGMA_MAX;
 use crate::family::Distribution;
 use crate::scene::{Interval, Material, Scene};
 use crate::spec::GAMMA_MIN;
-
-/// s = 1/(γ−1) of a shape.
-fn s_of(gamma: f64) -> f64 {
-    1.0 / (gamma - 1.0)
-}
 
 /// γ of GGX.
 const GGX: f64 = 2.0;
@@ -216,7 +213,7 @@ fn entry(material: &Material) -> MaterialEntry {
     MaterialEntry {
         name: material.name.clone(),
         sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
-        s: [s_of(max), s_of(min)],
+        s: [s_of_gamma(max), s_of_gamma(min)],
         distribution: material.distribution.as_ref().map_or(String::new(), Distribution::label),
         theta: material.theta,
         masking: material.masking,

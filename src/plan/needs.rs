@@ -1,8 +1,8 @@
 //! Needs: single shapes and ranges of them, and the table specifications of each.
 
+use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::{Interpolation, Precision};
 
-use super::s_of;
 use crate::scene::Interval;
 use crate::spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, ShapeAxis, TableSpec, general_set};
 use crate::validate::certificate::ALL_SHAPES;
@@ -26,7 +26,7 @@ impl Need {
 
     /// The shapes as [min, max] of s = 1/(γ−1).
     pub fn s(&self) -> [f64; 2] {
-        [s_of(self.gamma.max), s_of(self.gamma.min)]
+        [s_of_gamma(self.gamma.max), s_of_gamma(self.gamma.min)]
     }
 
     /// Where in s its tables are measured.
@@ -58,27 +58,16 @@ impl Need {
         let nodes = &spec.shapes.nodes;
         let [low, high] = [nodes[0], nodes[nodes.len() - 1]];
         // At the seam γ = 1.8 the whole distribution is preferred.
-        let after_seam = low >= s_of(GAMMA_WHOLE);
+        let after_seam = low >= s_of_gamma(GAMMA_WHOLE);
         let shapes = if from == to {
             let here = if after_seam { from > low } else { from >= low } && from <= high;
             here.then(|| ShapeAxis { nodes: vec![from], interpolation: Interpolation::Nodes })
         } else {
-            (to > low && from < high).then(|| sub_range(nodes, from.max(low), to.min(high)))
+            (to > low && from < high).then(|| spec.shapes.part(from.max(low), to.min(high)))
         };
         let name = format!("{}{}", spec.name, self.suffix());
         shapes.map(|shapes| TableSpec { shapes, name, ..spec.clone() })
     }
-}
-
-/// The nodes that an interpolation through four of them reads anywhere in [from, to].
-fn sub_range(nodes: &[f64], from: f64, to: f64) -> ShapeAxis {
-    const WINDOW: usize = 4;
-    let first = |s: f64| {
-        let above = nodes.partition_point(|&node| node <= s);
-        above.saturating_sub(WINDOW / 2).min(nodes.len().saturating_sub(WINDOW))
-    };
-    let last = (first(to) + WINDOW).min(nodes.len());
-    ShapeAxis { nodes: nodes[first(from)..last].to_vec(), interpolation: Interpolation::Lagrange4 }
 }
 
 /// The needs that cover all `wants`, disjoint: overlapping ranges become one, single shapes inside them none. The ranges come first,

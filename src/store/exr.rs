@@ -8,7 +8,9 @@ use std::io::Cursor;
 use exr::prelude::*;
 use half::f16;
 
-use microfacet_sampler::{LoadError, Precision, Provenance, Table, Tables, describe, reassemble};
+use microfacet_sampler::{
+    LoadError, Precision, Provenance, Table, Tables, describe, reassemble, seal_document,
+};
 
 /// The first bytes of every OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -27,7 +29,8 @@ fn channel_name(channel: &str) -> &str {
 /// A message if the table is not sound or cannot be written.
 pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec<u8>, String> {
     let document = describe(provenance, std::slice::from_ref(table)).map_err(|why| why.to_string())?;
-    let document = with_checksum(&document, &table.values);
+    let document =
+        sealed(&ascii(&document), &table.values).ok_or("the description has no place for a checksum")?;
     let width = table.axes.last().map_or(1, microfacet_sampler::Axis::len);
     let count = table.channels.len();
     let height = table.values.len() / count / width;
@@ -95,7 +98,7 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     }
     let pixels = layer.size.area();
     let values: Vec<f32> = (0..pixels).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
-    if !checksum_matches(&document, &values) {
+    if sealed(&document, &values).is_none_or(|sealed| sealed != document) {
         return Err(invalid("checksum does not match: the file is damaged or was edited; bake again".into()));
     }
     let mut values = Some(values);
@@ -138,19 +141,17 @@ fn document_channels(document: &str) -> std::result::Result<Vec<String>, String>
         .ok_or_else(|| "the description names no channels".into())
 }
 
-const PREFIX: &str = "\"checksum\":\"";
-const ZEROS: &str = "00000000";
-
-/// CRC-32 of the description with zeros for the checksum, then of the values in table order as little-endian f32.
-fn checksum(zeroed: &str, values: &[f32]) -> String {
-    let mut hasher = crc32fast::Hasher::new();
-    hasher.update(zeroed.as_bytes());
-    values.iter().for_each(|x| hasher.update(&x.to_le_bytes()));
-    format!("{:08x}", hasher.finalize())
+/// A description sealed with its values: filled in are the eight digits of its checksum, whatever they were.
+fn sealed(document: &str, values: &[f32]) -> Option<String> {
+    let mut bytes = document.as_bytes().to_vec();
+    bytes.extend(values.iter().flat_map(|x| x.to_le_bytes()));
+    let found = seal_document(&mut bytes);
+    bytes.truncate(document.len());
+    found.then(|| String::from_utf8(bytes).ok()).flatten()
 }
 
-/// The description in pure ASCII (EXR text has no Unicode), with its checksum filled in.
-fn with_checksum(document: &str, values: &[f32]) -> String {
+/// The description in pure ASCII: EXR text has no Unicode.
+fn ascii(document: &str) -> String {
     let mut ascii = String::with_capacity(document.len());
     for c in document.chars() {
         if c.is_ascii() {
@@ -161,13 +162,5 @@ fn with_checksum(document: &str, values: &[f32]) -> String {
             c.encode_utf16(&mut units).iter().for_each(|unit| ascii.push_str(&format!("\\u{unit:04x}")));
         }
     }
-    let digits = checksum(&ascii, values);
-    ascii.replacen(&format!("{PREFIX}{ZEROS}"), &format!("{PREFIX}{digits}"), 1)
-}
-
-fn checksum_matches(document: &str, values: &[f32]) -> bool {
-    let Some(at) = document.find(PREFIX).map(|at| at + PREFIX.len()) else { return false };
-    let Some(digits) = document.get(at..at + 8) else { return false };
-    let zeroed = format!("{}{ZEROS}{}", &document[..at], &document[at + 8..]);
-    digits == checksum(&zeroed, values)
+    ascii
 }

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use microfacet_model::{Albedo, AlbedoIntegrator, Masking as ModelMasking, Shape};
+use microfacet_common::shape::s_of_gamma;
+use microfacet_model::{Albedo, AlbedoIntegrator, Shape};
+use microfacet_sampler::axis::Roughness;
 use microfacet_sampler::{BindError, Kind, Masking, Table, Tables};
 
 use super::certificate::{low_discrepancy, round_up};
@@ -20,7 +22,7 @@ const LEAST: usize = 480;
 /// Smallest σ and cos θ of the domain that the figures are promised for.
 pub(super) const DOMAIN: (f64, f64) = (0.01, 0.02);
 /// Smallest σ that is no mirror.
-const SMOOTHEST: f64 = 1e-8;
+const SMOOTHEST: f64 = Roughness::BAKED.first;
 
 /// Figures of one table, rounded up to three digits; those a bake has left there are kept.
 fn measure(
@@ -47,7 +49,7 @@ fn measure(
         figures.insert(format!("{name}_rms_error"), round_up((sum / inside().count() as f64).sqrt()));
         if name == "e" {
             figures.insert("worst_sigma".into(), worst.at[0]);
-            figures.insert("worst_s".into(), 1.0 / (worst.at[1] - 1.0));
+            figures.insert("worst_s".into(), s_of_gamma(worst.at[1]));
             if table.kind == Kind::Albedo {
                 figures.insert("worst_cos_theta".into(), worst.at[2]);
             }
@@ -66,8 +68,7 @@ fn measure(
 pub(super) fn stated(domain: Domain) -> BTreeMap<String, f64> {
     let mut figures = BTreeMap::new();
     if domain != Domain::GENERAL {
-        let s = |gamma: f64| 1.0 / (gamma - 1.0);
-        let ends = [("s_min", s(domain.gamma.max)), ("s_max", s(domain.gamma.min))];
+        let ends = [("s_min", s_of_gamma(domain.gamma.max)), ("s_max", s_of_gamma(domain.gamma.min))];
         let sigmas = [("sigma_min", domain.sigma.min), ("sigma_max", domain.sigma.max)];
         figures.extend(ends.into_iter().chain(sigmas).map(|(key, value)| (key.into(), value)));
     }
@@ -161,13 +162,6 @@ fn sigma_at(x: f64, Interval { min, max }: Interval) -> f64 {
     sigma.clamp(low, max)
 }
 
-pub(super) fn model_masking(masking: Masking) -> ModelMasking {
-    match masking {
-        Masking::Uncorrelated => ModelMasking::Uncorrelated,
-        Masking::HeightCorrelated => ModelMasking::HeightCorrelated,
-    }
-}
-
 /// σ and cos θ of the i-th point.
 pub(super) fn place(i: usize, sigma: Interval) -> (f64, f32) {
     let [a, b] = low_discrepancy(i);
@@ -202,7 +196,7 @@ fn directional(
     domain: Domain,
 ) -> Result<Point, BindError> {
     let &Reference { gamma, sigma, cos, exact } = at;
-    let exact = exact.of(model_masking(masking));
+    let exact = exact.of(masking);
     let got = tables.albedo(sigma, gamma, masking)?.moments(cos);
     let got = [got.scale, got.bias, got.f82].map(f64::from);
     let error = |i: usize| (got[i] - exact[i]).abs();

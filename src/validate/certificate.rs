@@ -8,11 +8,12 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use microfacet_common::shape::{S_END, gamma_of_s, s_of_gamma};
 use microfacet_model::{Shape, SignedUnit, UnitView, VisibleSlope, across_cdf};
+use microfacet_sampler::axis::HalfTangent;
 use microfacet_sampler::{BindError, Interpolation, Kind, StudentT, Table, Tables};
 
-/// γ from which the whole-distribution figures are reported.
-const GAMMA_WHOLE: f64 = 1.8;
+use crate::spec::GAMMA_WHOLE;
 
 /// Largest and root-mean-square error over a set of points, with the point of the largest.
 #[derive(Clone, Copy, Debug, Default)]
@@ -51,8 +52,8 @@ impl Error {
     }
 }
 
-/// The s = 1/(γ−1) of all shapes.
-pub const ALL_SHAPES: [f64; 2] = [0.0, 2.0];
+/// s of all shapes.
+pub const ALL_SHAPES: [f64; 2] = [0.0, S_END];
 
 /// Adds to each table the errors measured on it, `points` of them for each of a few γ between every two nodes.
 ///
@@ -104,7 +105,7 @@ pub(crate) fn measure(
     let mut figures = BTreeMap::from([
         (format!("{quantity}_max_error"), round_up(all.max)),
         (format!("{quantity}_rms_error"), round_up(all.rms)),
-        ("worst_s".into(), 1.0 / (gamma - 1.0)),
+        ("worst_s".into(), s_of_gamma(gamma)),
         ("points".into(), all.points as f64),
     ]);
     if z.is_finite() {
@@ -131,9 +132,8 @@ pub(super) fn round_up(x: f64) -> f64 {
 /// Shapes to measure at, none outside [from, to] in s: those of a list, and three between every two nodes of a range.
 fn gammas_between_nodes(table: &Table, [from, to]: [f64; 2]) -> Vec<f64> {
     let axis = &table.axes[0];
-    let gamma = |s: f64| 1.0 + 1.0 / s;
     if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
-        return axis.nodes.iter().map(|&s| gamma(s)).collect();
+        return axis.quantities();
     }
     let [low, high] = [axis.nodes[0].max(from), axis.nodes[axis.nodes.len() - 1].min(to)];
     let mut all: Vec<f64> = Vec::new();
@@ -146,7 +146,7 @@ fn gammas_between_nodes(table: &Table, [from, to]: [f64; 2]) -> Vec<f64> {
     }
     // The far end not as 1 + 1/s itself, which may round to just outside.
     all.push(high * (1.0 - 1e-15));
-    all.into_iter().map(gamma).collect()
+    all.into_iter().map(gamma_of_s).collect()
 }
 
 /// The i-th point of the additive recurrence with the plastic number (Roberts 2018), in [0, 1)².
@@ -166,7 +166,7 @@ fn towards_ends(x: f64) -> f64 {
 
 /// A view in the plane y = 0 with the half tangent of its elevation near τ, and its exact cotangent.
 fn view(tau: f64) -> (Vec3, f64) {
-    let z = 2.0 * tau / (1.0 - tau * tau);
+    let z = HalfTangent::default().quantity(tau);
     let UnitView { sin, cos } = UnitView::from_cotangent(z);
     let v = Vec3::new(sin as f32, 0.0, cos as f32);
     (v, f64::from(v.z) / f64::from(v.x))

@@ -5,6 +5,7 @@ use std::fmt;
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 
+use microfacet_common::shape::gamma_of_s;
 use microfacet_sampler::{Interpolation, Kind, Tables};
 
 /// One material seen from one direction.
@@ -60,7 +61,7 @@ pub fn configurations(tables: &Tables, count: usize, seed: u64) -> Vec<Configura
             Configuration {
                 sigma_x,
                 sigma_y: (sigma_x * ratio).clamp(1e-4, 10.0),
-                gamma: 1.0 + 1.0 / s,
+                gamma: gamma_of_s(s),
                 theta,
                 phi: random.random_range(-std::f64::consts::PI..std::f64::consts::PI),
                 seed: random.next_u64(),

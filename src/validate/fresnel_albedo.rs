@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use microfacet_common::shape::s_of_gamma;
 use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
 use microfacet_sampler::{
     Axis, BindError, FresnelAlbedo, FresnelEntry, Masking, MaterialEntry, Provenance, Table, Tables,
 };
 
-use super::albedo::{gammas, model_masking, outside, place, points_at, stated};
+use super::albedo::{gammas, outside, place, points_at, stated};
 use super::certificate::{low_discrepancy, round_up};
 use crate::bake::albedo::Domain;
 use crate::bake::dielectric_albedo::Side;
@@ -59,7 +60,7 @@ pub fn certified(table: Table, domain: Domain, fresnel: &FresnelEntry) -> Result
         ("e_max_error_outside".to_owned(), round_up(part(true).map(Point::largest).fold(0.0, f64::max))),
         ("points".to_owned(), errors.iter().flatten().count() as f64),
         ("worst_sigma".to_owned(), worst.at[0]),
-        ("worst_s".to_owned(), 1.0 / (worst.at[1] - 1.0)),
+        ("worst_s".to_owned(), s_of_gamma(worst.at[1])),
         ("worst_cos_theta".to_owned(), worst.at[2]),
     ]);
     if worst.at[3].is_finite() {
@@ -121,7 +122,6 @@ impl Surface {
         [sigma, eta]: [f64; 2],
         cos: f64,
     ) -> Result<Vec<f64>, ParameterError> {
-        let masking = model_masking(masking);
         Ok(match self {
             Self::Metal(metal, _) => metal.albedo(model, sigma, cos)?.of(masking).into(),
             Self::Interface(side, ..) => side.albedo(model, sigma, eta, cos)?.of(masking).into(),
@@ -134,7 +134,7 @@ impl Surface {
         let entry = MaterialEntry {
             name: String::new(),
             sigma: [[sigma; 2]; 2],
-            s: [1.0 / (gamma - 1.0); 2],
+            s: [s_of_gamma(gamma); 2],
             distribution: String::new(),
             theta: None,
             masking: table.masking,

@@ -2,7 +2,10 @@
 
 use glam::Vec3;
 
+use microfacet_common::gauss_legendre;
+use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::StudentT;
+use microfacet_sampler::axis::half_tangent::{ends, rate, slope_at};
 
 /// Each interval between joints is split into so many: 1/(a cubic's derivative) is not a polynomial.
 const PARTS: usize = 8;
@@ -15,7 +18,7 @@ const FAR: f64 = 1e12;
 /// it beyond all representable slopes is added in closed form, since no quadrature of an f32 density reaches it.
 pub fn integral(material: &StudentT, v: Vec3) -> f64 {
     let gamma = material.gamma();
-    let s = 1.0 / (gamma - 1.0);
+    let s = s_of_gamma(gamma);
     let [mut along, mut across] = material.table_joints(v);
     let peeled = f64::from(material.tabulated_share(v)) < 1.0;
     along.push(0.0);
@@ -65,31 +68,16 @@ pub fn integral(material: &StudentT, v: Vec3) -> f64 {
 /// Slopes and weights of a composite Gauss–Legendre rule between ascending joints (0 among them where they change sign), each
 /// interval in the distance of the half tangent from its end.
 fn nodes(joints: &[f64]) -> Vec<(f64, f64)> {
-    // Eight points, positive halves (Abramowitz & Stegun 25.4.30).
-    const RULE: [(f64, f64); 4] = [
-        (0.183434642495649805, 0.362683783378361983),
-        (0.525532409916328986, 0.313706645877887287),
-        (0.796666477413626740, 0.222381034453374471),
-        (0.960289856497536232, 0.101228536290376259),
-    ];
-    // Distance of the half tangent of |x| from 1: 1 − x/(1+r) with r − x = 1/(r + x).
-    let distance = |x: f64| {
-        let r = (1.0 + x * x).sqrt();
-        (1.0 + 1.0 / (r + x.abs())) / (1.0 + r)
-    };
+    const RULE: [(f64, f64); 8] = gauss_legendre();
     let mut all = Vec::new();
     for pair in joints.windows(2) {
         let sign = if pair[0] < 0.0 { -1.0 } else { 1.0 };
-        let (a, b) = (distance(pair[0]), distance(pair[1]));
-        let half = 0.5 * (b - a).abs() / PARTS as f64;
+        let [a, b] = [pair[0], pair[1]].map(|x| ends(x.abs(), 1.0)[1]);
+        let width = (b - a).abs() / PARTS as f64;
         for part in 0..PARTS {
-            let middle = a.min(b) + half * (2 * part + 1) as f64;
             for (node, weight) in RULE {
-                for g in [middle - half * node, middle + half * node] {
-                    // |x| = 2(1−g)/(g(2−g)), |dx/dg| = 2(1+h²)/(1−h²)² with h = 1−g.
-                    let (h, z) = (1.0 - g, g * (2.0 - g));
-                    all.push((sign * 2.0 * h / z, weight * half * 2.0 * (1.0 + h * h) / (z * z)));
-                }
+                let [x, z] = slope_at(a.min(b) + width * (part as f64 + node));
+                all.push((sign * x / z, weight * width / rate(x, z)));
             }
         }
     }

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use microfacet_sampler::{LoadError, Moments, Table, ViewAlbedo};
+use microfacet_sampler::{LoadError, Mapping, Moments, Table, ViewAlbedo};
 
-use super::albedo::{model_masking, outside, place};
+use super::albedo::{outside, place};
 use super::certificate::{low_discrepancy, round_up};
 use crate::bake::albedo::BakeError;
 use crate::bake::view_albedo::{LobeAlbedo, ViewSpec};
@@ -37,21 +37,20 @@ pub fn references(spec: &ViewSpec) -> Result<Vec<Reference>, BakeError> {
 }
 
 fn references_of(spec: &ViewSpec, model: &LobeAlbedo<'_>) -> Result<Vec<Reference>, BakeError> {
-    let axes = spec.axes()?;
-    let masking = model_masking(spec.masking);
+    let azimuths = spec.azimuth()?;
     let one = |i: usize| {
         let [a, _] = low_discrepancy(i);
         let quadrant = f64::from(i as u32 / 2 % 4);
-        let stretched = axes[0].azimuth(a).expect("an azimuth axis").0;
+        let stretched = azimuths.quantity(a);
         // Either end of either axis, so that a table that folds has to.
         let phi = if i.is_multiple_of(2) { TAU * a } else { stretched + 0.25 * TAU * quadrant };
-        let (_, sigma) = axes[0].azimuth(a).expect("an azimuth axis");
-        let (_, cos) = place(i, Interval::point(sigma));
+        let [c, s] = azimuths.direction(a);
+        let (_, cos) = place(i, Interval::point(azimuths.sigma(c, s)));
         let sin = (1.0 - f64::from(cos).powi(2)).max(0.0).sqrt();
         let v = Vec3::new((sin * libm::cos(phi)) as f32, (sin * libm::sin(phi)) as f32, cos);
         let cos = f64::from(cos);
-        let exact = model.at(cos, libm::atan2(f64::from(v.y), f64::from(v.x)))?.of(masking);
-        let stand_in = model.stand_in(cos)?.map(|albedo| albedo.of(masking));
+        let exact = model.at(cos, libm::atan2(f64::from(v.y), f64::from(v.x)))?.of(spec.masking);
+        let stand_in = model.stand_in(cos)?.map(|albedo| albedo.of(spec.masking));
         let total = |moments: [f64; 3]| moments[0] + moments[1];
         Ok(Reference {
             v,
@@ -106,11 +105,15 @@ pub fn missed_by_half(table: &Table) -> Result<[f64; 2], LoadError> {
     let missed = |axis: usize| -> Result<f64, LoadError> {
         let half = ViewAlbedo::new(&half(table, axis))?;
         let mut worst = 0.0_f32;
-        for &azimuth in &table.axes[0].nodes {
-            let (phi, sigma) = table.axes[0].azimuth(azimuth).expect("an azimuth axis");
-            let (s, c) = libm::sincos(phi);
-            for &view in &table.axes[1].nodes {
-                let cos = table.axes[1].view_cosine(sigma, f64::INFINITY, view).expect("a view axis");
+        let [azimuths, views] = &table.axes[..] else { unreachable!("validated by `new`") };
+        let (Mapping::Azimuth(azimuth), Mapping::ViewBlend(blend)) = (azimuths.mapping, views.mapping) else {
+            unreachable!("validated by `new`")
+        };
+        let azimuth = azimuth.bind(azimuths.len());
+        for &t in &azimuths.nodes {
+            let [c, s] = azimuth.direction(t);
+            let view = blend.bind(azimuth.sigma(c, s), f64::INFINITY);
+            for cos in views.nodes.iter().map(|&t| view.quantity(t)) {
                 let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
                 let v = Vec3::new((sin * c) as f32, (sin * s) as f32, cos as f32);
                 let (a, b) = (whole.moments(v), half.moments(v));

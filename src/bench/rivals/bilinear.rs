@@ -3,6 +3,7 @@
 //! The same values, axes and mappings as the real tables', but no slopes; what cubic interpolation along the random numbers is worth.
 
 use glam::Vec3;
+use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::{Kind, Tables};
 
 /// Bound to one shape.
@@ -24,7 +25,7 @@ impl Bilinear {
         let axes = &of(Kind::VisibleSlope).axes;
         Self {
             sigma: sigma as f32,
-            s: (1.0 / (gamma - 1.0)) as f32,
+            s: s_of_gamma(gamma) as f32,
             along: values(Kind::VisibleSlope),
             rows: axes[1].nodes.len() - 1,
             numbers: axes[2].nodes.len(),

@@ -3,9 +3,11 @@
 use glam::{DVec3, Vec3};
 
 use microfacet_model::{self as model, SignedUnit, VisibleSlope};
+use microfacet_sampler::axis::half_tangent::half_tangent;
 use microfacet_sampler::{BindError, Masking, Skew, StudentT, Tables};
 
 use super::{Point, Report, direction};
+use crate::spec::GAMMA_WHOLE;
 
 /// Four ulp of a unit vector's components.
 pub(super) const ULP4: f64 = 4.0 * f32::EPSILON as f64;
@@ -13,9 +15,6 @@ pub(super) const ULP4: f64 = 4.0 * f32::EPSILON as f64;
 const MODEL_EVERY: usize = 8;
 /// One view in this many is also put to what is built on the plain functions.
 const DERIVED_EVERY: usize = 4;
-/// γ from which the tilt towards the viewer rises with `u[0]` over the whole range.
-const GAMMA_WHOLE: f64 = 1.8;
-
 /// The tilt towards the viewer in unit space.
 struct Tilt {
     /// Unit slope.
@@ -185,7 +184,7 @@ impl Judge<'_> {
         let r = along.hypot(m.z);
         Tilt {
             slope: along / m.z,
-            half_tangent: along / (m.z + r),
+            half_tangent: half_tangent(along, m.z),
             rounding: 2.0 * ULP4 * across.hypot(r) / r,
         }
     }

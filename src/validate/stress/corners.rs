@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
+use microfacet_common::shape::{S_END, gamma_of_s};
 use microfacet_sampler::Tables;
 
 use super::Point;
@@ -114,7 +115,7 @@ pub(super) fn random_material(tables: &Tables, random: &mut StdRng) -> ([f32; 2]
             1 => 2.0 + log_uniform(random, 1e-12, 0.1) * if random.random() { 1.0 } else { -1.0 },
             2 => log_uniform(random, 4.0, 1e18),
             3 => [2.0, f64::INFINITY][random.random_range(0..2)],
-            _ => 1.0 + 1.0 / random.random_range(0.0..2.0),
+            _ => gamma_of_s(random.random_range(0.0..S_END)),
         };
         if tables.covers(gamma) {
             break gamma;

@@ -1,0 +1,207 @@
+//! The azimuth of views as an axis of a table: a closed circle, or its quarter with mirrors at both ends.
+
+use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, TAU};
+use core::f64::consts;
+
+use serde::{Deserialize, Serialize};
+
+use super::coordinate::Coordinate;
+use super::lagrange::{SIX, six_weights};
+use crate::math::sqrt64;
+
+/// The azimuth φ of a view (radians, from the x axis), by p = atan2(√σ₂ sin(φ − turn), √σ₁ cos(φ − turn)): t = p/2π modulo one,
+/// with nodes 0, 1/n, …, (n−1)/n; or where `fold`, with |sin| and |cos|, t = 2p/π ∈ [0, 1], with nodes 0, 1/(n−1), …, 1. One
+/// node stands for every azimuth.
+///
+/// σ_φ² = σ₁² cos²(φ − turn) + σ₂² sin²(φ − turn) is the square of the roughness seen from there, which takes the place of σ in
+/// [`ViewBlend`](super::ViewBlend). Half-way between the plain azimuth, on which a narrow lobe turns within its aspect, and that
+/// of unit space, on which everything else does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Azimuth {
+    /// σ₁ and σ₂ along the principal axes.
+    pub sigma: [f64; 2],
+    /// Azimuth of the first, radians.
+    pub turn: f64,
+    /// Whether what is tabulated is the same on both sides of either principal axis.
+    pub fold: bool,
+}
+
+impl Azimuth {
+    /// The coordinate with its sines and cosines at hand, for an axis of so many nodes.
+    pub fn bind(&self, nodes: usize) -> BoundAzimuth {
+        let (s, c) = libm::sincos(self.turn);
+        BoundAzimuth { sigma: self.sigma, turn: [c, s], fold: self.fold, nodes }
+    }
+}
+
+impl Coordinate for Azimuth {
+    fn check(&self) -> Result<(), &'static str> {
+        if self.sigma.iter().all(|x| (1e-12..=1e6).contains(x)) && self.turn.abs() <= 7.0 {
+            Ok(())
+        } else {
+            Err("sigma or turn out of range")
+        }
+    }
+
+    fn node(&self, i: usize, n: usize) -> Option<f64> {
+        let steps = if self.fold && n > 1 { n - 1 } else { n };
+        Some(i as f64 / steps as f64)
+    }
+
+    fn check_count(&self, _: usize) -> Result<(), &'static str> {
+        Ok(())
+    }
+}
+
+/// [`Azimuth`] along an axis of a number of nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct BoundAzimuth {
+    sigma: [f64; 2],
+    /// Cosine and sine of the first axis's azimuth.
+    turn: [f64; 2],
+    fold: bool,
+    nodes: usize,
+}
+
+impl BoundAzimuth {
+    /// A direction's components along the principal axes.
+    fn principal(&self, c: f64, s: f64) -> [f64; 2] {
+        let [ct, st] = self.turn;
+        [ct * c + st * s, ct * s - st * c]
+    }
+
+    /// √σ₁ and √σ₂ times these: the direction whose angle is p.
+    fn stretched(&self, c: f64, s: f64) -> [f64; 2] {
+        let [x, y] = self.principal(c, s);
+        [sqrt64(self.sigma[0]) * x, sqrt64(self.sigma[1]) * y]
+    }
+
+    /// σ_φ of the direction (cos φ, sin φ).
+    pub fn sigma(&self, c: f64, s: f64) -> f64 {
+        let [x, y] = self.principal(c, s);
+        libm::hypot(self.sigma[0] * x, self.sigma[1] * y)
+    }
+
+    /// t of the direction (cos φ, sin φ), below 1 unless folded.
+    pub fn coordinate(&self, c: f64, s: f64) -> f64 {
+        let [x, y] = self.stretched(c, s);
+        if self.fold {
+            return libm::atan2(y.abs(), x.abs()) / consts::FRAC_PI_2;
+        }
+        let t = libm::atan2(y, x) / consts::TAU;
+        if t < 0.0 { t + 1.0 } else { t }
+    }
+
+    /// (cos φ, sin φ) at t.
+    pub fn direction(&self, t: f64) -> [f64; 2] {
+        let (s, c) = libm::sincos(self.angle(t));
+        let (x, y) = (c / sqrt64(self.sigma[0]), s / sqrt64(self.sigma[1]));
+        let (length, [ct, st]) = (libm::hypot(x, y), self.turn);
+        [(ct * x - st * y) / length, (st * x + ct * y) / length]
+    }
+
+    /// φ ∈ [0, 2π) at t.
+    pub fn quantity(&self, t: f64) -> f64 {
+        let [c, s] = self.direction(t);
+        let phi = libm::atan2(s, c);
+        if phi < 0.0 { phi + consts::TAU } else { phi }
+    }
+
+    /// p at t.
+    fn angle(&self, t: f64) -> f64 {
+        if self.fold { consts::FRAC_PI_2 * t } else { consts::TAU * t }
+    }
+
+    /// dφ/dp at t, up to a factor: how much of the circle a step of the coordinate stands for.
+    fn share(&self, t: f64) -> f64 {
+        // φ = atan2(y, x) of (x, y) = (cos p/√σ₁, sin p/√σ₂) has the rate 1/(√σ₁ √σ₂ (x² + y²)).
+        let (s, c) = libm::sincos(self.angle(t));
+        1.0 / (c * c / self.sigma[0] + s * s / self.sigma[1])
+    }
+
+    /// Nodes and weights of the polynomial through the six nearest at (cos φ, sin φ), in single precision.
+    #[inline]
+    pub(crate) fn six(&self, c: f64, s: f64) -> [(usize, f32); SIX] {
+        if self.nodes == 1 {
+            let mut one = [(0, 0.0); SIX];
+            one[0].1 = 1.0;
+            return one;
+        }
+        let [x, y] = self.stretched(c, s).map(|x| x as f32);
+        let n = self.nodes as i64;
+        let at = if self.fold {
+            libm::atan2f(y.abs(), x.abs()).min(FRAC_PI_2) * FRAC_2_PI * (n - 1) as f32
+        } else {
+            let p = libm::atan2f(y, x);
+            (if p < 0.0 { p + TAU } else { p }) / TAU * n as f32
+        };
+        let start = libm::floorf(at) as i64 - SIX as i64 / 2 + 1;
+        let weights = six_weights(at - start as f32);
+        core::array::from_fn(|i| {
+            let i_node = start + i as i64;
+            let node = if self.fold {
+                // Mirrored at both ends, as often as it takes.
+                let round = i_node.rem_euclid(2 * (n - 1));
+                round.min(2 * (n - 1) - round)
+            } else {
+                i_node.rem_euclid(n)
+            };
+            (node as usize, weights[i])
+        })
+    }
+
+    /// Directions spread over the coordinate, with the share of the circle that each stands for; the shares add up to one.
+    ///
+    /// The midpoint rule, which on a closed circle is as good as any.
+    pub(crate) fn circle(&self) -> impl Iterator<Item = ([f64; 2], f64)> {
+        // Four between nodes; a limit for tables of any size.
+        let steps = if self.nodes == 1 { 1 } else { (4 * self.nodes).min(256) };
+        let middle = move |i: usize| (i as f64 + 0.5) / steps as f64;
+        let whole: f64 = (0..steps).map(|i| self.share(middle(i))).sum();
+        (0..steps).map(move |i| (self.direction(middle(i)), self.share(middle(i)) / whole))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AXES: [Azimuth; 3] = [
+        Azimuth { sigma: [0.3, 0.3], turn: 0.0, fold: true },
+        Azimuth { sigma: [0.02, 1.5], turn: 0.0, fold: true },
+        Azimuth { sigma: [0.9, 0.1], turn: 1.1, fold: false },
+    ];
+
+    #[test]
+    fn there_and_back() {
+        for axis in AXES {
+            let bound = axis.bind(9);
+            for t in [0.0, 0.05, 0.3, 0.5, 0.77, 0.999] {
+                let [c, s] = bound.direction(t);
+                assert!((bound.coordinate(c, s) - t).abs() < 1e-14, "{axis:?}, {t}");
+                let (sin, cos) = libm::sincos(bound.quantity(t));
+                assert!((sin - s).abs() < 1e-15 && (cos - c).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn the_fast_form_reads_the_nodes_about_the_coordinate() {
+        for axis in AXES {
+            let n = 17;
+            let bound = axis.bind(n);
+            for i in 0..400 {
+                let t = (f64::from(i) + 0.3) / 400.0;
+                let [c, s] = bound.direction(t);
+                // What has the axis's own symmetry, of low degree.
+                let f = |t: f64| libm::cos(bound.angle(t) * if axis.fold { 2.0 } else { 1.0 });
+                let at = |(i, w): (usize, f32)| f64::from(w) * f(axis.node(i, n).unwrap());
+                let got: f64 = bound.six(c, s).into_iter().map(at).sum();
+                assert!((got - f(t)).abs() < 1e-4, "{axis:?}, {t}: {got} for {}", f(t));
+            }
+            let shares: f64 = bound.circle().map(|(_, share)| share).sum();
+            assert!((shares - 1.0).abs() < 1e-14);
+        }
+    }
+}

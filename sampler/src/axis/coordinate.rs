@@ -1,0 +1,54 @@
+//! What every coordinate says of itself: to those who check a file, and to those who place the nodes of a new table.
+
+use alloc::vec::Vec;
+
+/// A coordinate t along an axis, with its parameters.
+pub(crate) trait Coordinate {
+    /// Whether the parameters are in range, or else what is wrong.
+    fn check(&self) -> Result<(), &'static str> {
+        Ok(())
+    }
+
+    /// Smallest and largest t.
+    fn range(&self) -> [f64; 2] {
+        [0.0, 1.0]
+    }
+
+    /// Where the i-th of n nodes stands; `None` if nodes may stand anywhere in the range.
+    ///
+    /// Evenly over [0, 1], unless it says otherwise.
+    fn node(&self, i: usize, n: usize) -> Option<f64> {
+        Some(i as f64 / (n - 1) as f64)
+    }
+
+    /// Whether it can have so many nodes, or else what is wrong; a number of 0 is refused before.
+    fn check_count(&self, n: usize) -> Result<(), &'static str> {
+        if n < 2 { Err("needs at least two nodes") } else { Ok(()) }
+    }
+
+    /// How many values stand along an axis of n nodes.
+    fn values(&self, n: usize) -> usize {
+        n
+    }
+}
+
+/// `count` ≥ 2 numbers evenly from `low` to `high`, both of which are met exactly.
+pub fn even_nodes(low: f64, high: f64, count: usize) -> Vec<f64> {
+    let step = (high - low) / (count - 1) as f64;
+    (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect()
+}
+
+/// Whether every one of some parameters is positive and not absurd; NaN is neither.
+pub(super) fn positive(parameters: &[f64]) -> bool {
+    parameters.iter().all(|&x| x > 0.0 && x < 1e6)
+}
+
+/// The t ∈ [low, high] at which an ascending function reaches `target`, by bisection down to the last bit.
+pub(super) fn bisect(mut low: f64, mut high: f64, target: f64, f: impl Fn(f64) -> f64) -> f64 {
+    // Eighty halvings of an interval within [0, 1] leave less than an ulp of anything above 1e-8.
+    for _ in 0..80 {
+        let middle = 0.5 * (low + high);
+        if f(middle) < target { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}

@@ -1,0 +1,28 @@
+//! Nodes crowded towards the upper end of a coordinate x ∈ [0, 1]: evenly in 1 − √(1−x) instead of x itself.
+//!
+//! Near normal incidence and for heavy tails, what is tabulated approaches its limit like a power of 1 − x below two, too slowly
+//! for even nodes. Everything is in terms of the rest 1 − x, which callers know without cancellation.
+
+use crate::math::sqrt;
+
+/// t of x and the rest 1 − x.
+pub(super) fn coordinate(x: f64, rest: f64) -> f64 {
+    // 1 − √rest without its cancellation near x = 0.
+    x / (1.0 + libm::sqrt(rest))
+}
+
+/// x and the rest 1 − x at t.
+pub(super) fn parts(t: f64) -> [f64; 2] {
+    [t * (2.0 - t), (1.0 - t) * (1.0 - t)]
+}
+
+/// dx/dt.
+pub(super) fn rate(t: f64) -> f64 {
+    2.0 * (1.0 - t)
+}
+
+/// [`coordinate`] in single precision, from the rest alone: right to the rounding of 1, as a position along an axis is.
+#[inline(always)]
+pub(super) fn fast(rest: f32) -> f32 {
+    1.0 - sqrt(rest)
+}

@@ -1,0 +1,173 @@
+//! The half tangent, h = x/(1 + √(1+x²)) of a slope or cotangent x: tan(α/2) of the angle with tan α = x.
+//!
+//! It is the coordinate of views, z = cot θ/σ ≥ 0, and what tables of slopes hold, x of either sign: there as the distance
+//! g = 1 − |h| from the nearer end of [−1, 1], so that both tails keep their digits. From g the slope follows without a
+//! division or a root, as the quotient ±2(1−g) : g(2−g); and the silhouette x = −cot θ is g = 1 − τ, linear in the view's own
+//! coordinate τ. Slopes are written x : z where z may be 0.
+
+use serde::{Deserialize, Serialize};
+use wide::f32x4;
+
+use super::coordinate::Coordinate;
+use super::crowded;
+use crate::math::{sqrt, sqrt64};
+
+/// τ = z/(1 + √(1+z²)) ∈ [0, 1] of z = cot θ_v/σ_v, the tangent of half the elevation in unit space: 0 is grazing, 1 normal
+/// incidence (or σ → 0). Where `crowded`, t = 1 − √(1−τ).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HalfTangent {
+    /// Whether the nodes crowd towards normal incidence.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub crowded: bool,
+}
+
+impl HalfTangent {
+    /// t of z ∈ [0, ∞].
+    pub fn coordinate(&self, z: f64) -> f64 {
+        if z == f64::INFINITY {
+            return 1.0;
+        }
+        let tau = half_tangent(z, 1.0);
+        if self.crowded { crowded::coordinate(tau, ends(z, 1.0)[1]) } else { tau }
+    }
+
+    /// τ and 1 − τ at t.
+    pub fn parts(&self, t: f64) -> [f64; 2] {
+        if self.crowded { crowded::parts(t) } else { [t, 1.0 - t] }
+    }
+
+    /// z = 2τ/(1 − τ²) at t; ∞ for 1.
+    pub fn quantity(&self, t: f64) -> f64 {
+        let [tau, rest] = self.parts(t);
+        2.0 * tau / (rest * (1.0 + tau))
+    }
+
+    /// t of a view by its stretched horizontal length ρ and vertical part z ≥ 0, not both 0.
+    #[inline(always)]
+    pub(crate) fn of_view(&self, rho: f32, z: f32) -> f32 {
+        let length = sqrt(rho * rho + z * z);
+        let r = 1.0 / (rho + length);
+        if self.crowded {
+            // 1 − τ = (ρ + (length − z)) r with length − z = ρ²/(length + z), which does not cancel.
+            crowded::fast((rho + rho * rho / (length + z)) * r)
+        } else {
+            z * r
+        }
+    }
+}
+
+/// τ times `cells` of uncrowded views, four at a time; `length` is √(ρ² + z²).
+#[inline(always)]
+pub(crate) fn of_views(rho: f32x4, z: f32x4, length: f32x4, cells: f32) -> f32x4 {
+    z * cells / (rho + length)
+}
+
+impl Coordinate for HalfTangent {}
+
+/// h ∈ [−1, 1] of the slope x : z, z ≥ 0.
+pub fn half_tangent(x: f64, z: f64) -> f64 {
+    x / (z + sqrt64(x * x + z * z))
+}
+
+/// 1 + h and 1 − h of the slope x : z, each without cancellation.
+pub fn ends(x: f64, z: f64) -> [f64; 2] {
+    let r = sqrt64(x * x + z * z);
+    let h = x / (z + r);
+    // 1 − |h| = (z + r − |x|)/(z + r), and r − |x| = z²/(r + |x|).
+    let near = (z + z * z / (r + x.abs())) / (z + r);
+    if h > 0.0 { [1.0 + h, near] } else { [near, 1.0 - h] }
+}
+
+/// dh/dx at the slope x : z, x being the quotient.
+pub fn rate(x: f64, z: f64) -> f64 {
+    let r = sqrt64(x * x + z * z);
+    z * z / (r * (z + r))
+}
+
+/// The slope whose half tangent is the distance g ∈ [0, 1] from 1, as x : z.
+pub fn slope_at(g: f64) -> [f64; 2] {
+    [2.0 * (1.0 - g), g * (2.0 - g)]
+}
+
+/// A slope x : z in single precision, as a lookup gives it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slope {
+    pub(crate) x: f32,
+    pub(crate) z: f32,
+}
+
+impl Slope {
+    /// [`slope_at`] the distance g from the end named by `sign` (∓1).
+    #[inline(always)]
+    pub(crate) fn from_end(g: f32, sign: f32) -> Self {
+        Self { x: sign * (2.0 - 2.0 * g), z: g * (2.0 - g) }
+    }
+}
+
+/// [`slope_at`] with half of x, and x as far from the other end: (g − 1) : g(2 − g), an operation less.
+#[inline(always)]
+pub(crate) fn half_slope_at(g: f32x4) -> [f32x4; 2] {
+    [g - 1.0, g * (2.0 - g)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SLOPES: [f64; 9] = [0.0, 1e-12, 1e-3, 0.4, 1.0, 2.5, 1e3, 1e8, f64::INFINITY];
+
+    #[test]
+    fn there_and_back() {
+        for crowded in [false, true] {
+            let axis = HalfTangent { crowded };
+            for t in [0.0, 1e-9, 0.1, 0.5, 0.9, 0.999, 1.0] {
+                let back = axis.coordinate(axis.quantity(t));
+                assert!((back - t).abs() < 1e-15, "{t}: {back}");
+            }
+            for z in SLOPES {
+                let back = axis.quantity(axis.coordinate(z));
+                // Towards infinity an ulp of t is 1/(1−t) ulps of z.
+                assert!(back == z || (back / z - 1.0).abs() < 1e-15 * (3.0 + z), "{z}: {back}");
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_follow_from_either_end() {
+        for x in SLOPES[..8].iter().flat_map(|&x| [-x, x]) {
+            let [low, high] = ends(x, 1.0);
+            let h = half_tangent(x, 1.0);
+            assert!((low - 1.0 - h).abs() < 1e-15 && (1.0 - high - h).abs() < 1e-15);
+            // The nearer end keeps every digit of the tail.
+            let [a, b] = slope_at(low.min(high));
+            assert!((a / b - x.abs()).abs() <= 4e-16 * x.abs() + 1e-15, "{x}: {}", a / b);
+            let step = 1e-6 * (1.0 + x.abs());
+            let difference = (half_tangent(x + step, 1.0) - half_tangent(x - step, 1.0)) / (2.0 * step);
+            assert!((difference - rate(x, 1.0)).abs() < 1e-9 && rate(x, 1.0) == rate(2.0 * x, 2.0));
+        }
+        assert_eq!([ends(1.0, 0.0), slope_at(0.0)], [[2.0, 0.0], [2.0, 0.0]]);
+    }
+
+    #[test]
+    fn fast_forms_are_the_exact_ones() {
+        for (rho, z) in [(1.0_f32, 0.0_f32), (0.7, 1e-5), (0.3, 0.9), (1e-4, 1.0), (0.0, 1.0)] {
+            let exact = |crowded| HalfTangent { crowded }.coordinate(f64::from(z) / f64::from(rho));
+            for crowded in [false, true] {
+                let got = f64::from(HalfTangent { crowded }.of_view(rho, z));
+                assert!((got - exact(crowded)).abs() < 2e-7, "{rho}, {z}: {got}");
+            }
+            let lanes = |x: f32| f32x4::splat(x);
+            let got = of_views(lanes(rho), lanes(z), lanes(sqrt(rho * rho + z * z)), 80.0);
+            assert!((f64::from(got.to_array()[2]) / 80.0 - exact(false)).abs() < 2e-7);
+        }
+        for g in [1e-6_f32, 0.2, 0.8, 1.0] {
+            let [x, z] = slope_at(f64::from(g));
+            let (slope, [half, same]) = (Slope::from_end(g, -1.0), half_slope_at(f32x4::splat(g)));
+            assert!(
+                (f64::from(slope.x) + x).abs() < 1e-7 * x + 1e-9 && (f64::from(slope.z) - z).abs() < 1e-6 * z
+            );
+            assert_eq!((2.0 * half.to_array()[0], same.to_array()[0]), (slope.x, slope.z));
+        }
+    }
+}

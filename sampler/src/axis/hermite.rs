@@ -1,0 +1,217 @@
+//! Cubic Hermite cells on even nodes: the one interpolation that lookups at speed use.
+//!
+//! The same cubic stands here in several forms: over nodes ([`hermite`], and in lanes [`basis`] and [`hermite_lanes`]), and
+//! over the coefficients of a bound material ([`horner`] with the fewest operations, [`cubic`] with the shortest chain of them).
+//! A test holds them together.
+
+use alloc::vec::Vec;
+
+use wide::{f32x4, i32x4};
+
+/// (value, slope) at a node, the slope per node index.
+pub(crate) type Node = [f32; 2];
+
+/// Splits a coordinate in [0, cells] into a cell and the position inside it.
+///
+/// The position is 1 at the last node, so that both ends are reached. A coordinate that is not a number gives cell 0.
+#[inline(always)]
+pub(crate) fn locate(x: f32, cells: usize) -> (usize, f32) {
+    // The cast saturates and sends NaN to 0; the cell is at most cells − 1 whatever x is.
+    let cell = (x as i32).clamp(0, cells as i32 - 1);
+    (cell as usize, x - cell as f32)
+}
+
+/// The cubic through two nodes at position w ∈ [0, 1] between them.
+#[inline(always)]
+pub(crate) fn hermite(a: Node, b: Node, w: f32) -> f32 {
+    let rise = b[0] - a[0];
+    let c2 = 3.0 * rise - 2.0 * a[1] - b[1];
+    let c3 = a[1] + b[1] - 2.0 * rise;
+    a[0] + w * (a[1] + w * (c2 + w * c3))
+}
+
+/// The weights of [value, slope, value, slope] of two nodes at w, the same in all lanes of it.
+#[inline(always)]
+pub(crate) fn basis(w: f32x4) -> f32x4 {
+    let [c0, c1] = [f32x4::new([1.0, 0.0, 0.0, 0.0]), f32x4::new([0.0, 1.0, 0.0, 0.0])];
+    let [c2, c3] = [f32x4::new([-3.0, -2.0, 3.0, -1.0]), f32x4::new([2.0, 1.0, -2.0, 1.0])];
+    c0 + w * (c1 + w * (c2 + w * c3))
+}
+
+/// [`hermite`] of four pairs of nodes at four positions, [value, slope, value, slope] in the order of the nodes.
+#[inline(always)]
+pub(crate) fn hermite_lanes([v0, s0, v1, s1]: [f32x4; 4], w: f32x4) -> f32x4 {
+    // The basis without its zeros, which changes no bit.
+    let b0 = 1.0 + w * (w * (w * 2.0 - 3.0));
+    let b1 = w * (1.0 + w * (w - 2.0));
+    let b2 = w * (w * (3.0 - w * 2.0));
+    let b3 = w * (w * (w - 1.0));
+    (v0 * b0 + v1 * b2) + (s0 * b1 + s1 * b3)
+}
+
+/// Coefficients of the cubic c₀ + w(c₁ + w(c₂ + w c₃)) of a cell.
+pub(crate) type Cell = [f32; 4];
+
+/// The cubics between nodes, values multiplied by `scale`, and behind them a *guard cell*: a coordinate at the upper end may fall
+/// into it, at position 0, so that fast lookups have no cell to limit.
+pub(crate) fn cells(nodes: &[Node], scale: f64) -> Vec<Cell> {
+    let guard = nodes.last().map(|node| [f64::from(node[0]), 0.0, 0.0, 0.0]);
+    let cubics = nodes.windows(2).map(|pair| Cubic::new(pair[0], pair[1]).c);
+    cubics.chain(guard).map(|c| c.map(|c| (c * scale) as f32)).collect()
+}
+
+/// The cubic of a cell at position w with the fewest operations.
+#[inline(always)]
+pub(crate) fn horner(c: &Cell, w: f32) -> f32 {
+    c[0] + w * (c[1] + w * (c[2] + w * c[3]))
+}
+
+/// The cubic of a cell at position w, in two halves that need not wait for each other.
+#[inline(always)]
+pub(crate) fn cubic(c: &Cell, w: f32) -> f32 {
+    (c[0] + w * c[1]) + (w * w) * (c[2] + w * c[3])
+}
+
+/// The cubics of four cells at four positions, as [`cubic`].
+#[inline(always)]
+pub(crate) fn cubic_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
+    (c0 + w * c1) + (w * w) * (c2 + w * c3)
+}
+
+/// The same as [`horner`].
+#[inline(always)]
+pub(crate) fn horner_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
+    c0 + w * (c1 + w * (c2 + w * c3))
+}
+
+/// Splits coordinates in [0, cells] into cells, the guard included, and the positions inside them.
+///
+/// The cast does not saturate where the hardware has none that does; NaN gives a cell outside, or a position that is NaN.
+#[inline(always)]
+pub(crate) fn split(x: f32x4) -> (i32x4, f32x4) {
+    let cell = x.fast_trunc_int();
+    (cell, x - f32x4::from_i32x4(cell))
+}
+
+/// Two neighbouring nodes, each interpolated linearly between the rows `low` and `high` of a table.
+#[inline(always)]
+pub(crate) fn between_rows(low: &[Node], high: &[Node], cell: usize, w: f32) -> (Node, Node) {
+    // A window of two nodes is 16 bytes: one load a row.
+    let (a, b) = (&low[cell..cell + 2], &high[cell..cell + 2]);
+    let mix = |a: Node, b: Node| [a[0] + w * (b[0] - a[0]), a[1] + w * (b[1] - a[1])];
+    (mix(a[0], b[0]), mix(a[1], b[1]))
+}
+
+/// A cubic on [0, 1] in double precision, for inverting what [`hermite`] evaluates.
+#[derive(Clone, Copy)]
+pub(crate) struct Cubic {
+    c: [f64; 4],
+}
+
+impl Cubic {
+    pub(crate) fn new(a: Node, b: Node) -> Self {
+        let [a0, a1, b0, b1] = [a[0], a[1], b[0], b[1]].map(f64::from);
+        let rise = b0 - a0;
+        Self { c: [a0, a1, 3.0 * rise - 2.0 * a1 - b1, a1 + b1 - 2.0 * rise] }
+    }
+
+    pub(crate) fn value(&self, w: f64) -> f64 {
+        self.c[0] + w * (self.c[1] + w * (self.c[2] + w * self.c[3]))
+    }
+
+    pub(crate) fn derivative(&self, w: f64) -> f64 {
+        self.c[1] + w * (2.0 * self.c[2] + w * 3.0 * self.c[3])
+    }
+
+    /// w ∈ [0, 1] with value `y`; the cubic ascends, as nodes are kept monotone.
+    pub(crate) fn solve(&self, y: f64) -> f64 {
+        let (mut lo, mut hi, mut w) = (0.0, 1.0, 0.5);
+        for _ in 0..60 {
+            let error = self.value(w) - y;
+            if error > 0.0 {
+                hi = w;
+            } else {
+                lo = w;
+            }
+            let newton = w - error / self.derivative(w);
+            let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
+            if (next - w).abs() < 1e-15 {
+                return next;
+            }
+            w = next;
+        }
+        w
+    }
+}
+
+/// Makes a run of nodes ascend in spite of rounding and of negative weights along other axes.
+pub(crate) fn make_monotone(run: &mut [Node]) {
+    let mut last = 0.0_f32;
+    for node in run.iter_mut() {
+        last = last.max(node[0]);
+        node[0] = last;
+    }
+    limit_slopes(run);
+}
+
+/// Limits slopes so that the cubic of every cell ascends with its nodes: each slope lies in [0, 3Δ] of both
+/// neighbouring rises Δ (Fritsch & Carlson 1980). The condition is linear, so it also holds between rows.
+pub fn limit_slopes(nodes: &mut [[f32; 2]]) {
+    for i in 0..nodes.len() {
+        let mut limit = f32::INFINITY;
+        if i > 0 {
+            limit = limit.min(3.0 * (nodes[i][0] - nodes[i - 1][0]));
+        }
+        if i + 1 < nodes.len() {
+            limit = limit.min(3.0 * (nodes[i + 1][0] - nodes[i][0]));
+        }
+        nodes[i][1] = nodes[i][1].min(limit).max(0.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NODES: [Node; 3] = [[0.1, 0.4], [0.6, 0.3], [0.7, 0.0]];
+
+    #[test]
+    fn all_forms_are_one_cubic() {
+        let coefficients = cells(&NODES, 1.0);
+        assert_eq!(coefficients.len(), 3);
+        for (i, pair) in NODES.windows(2).enumerate() {
+            let exact = Cubic::new(pair[0], pair[1]);
+            for w in [0.0, 0.25, 0.5, 0.9, 1.0_f32] {
+                let want = exact.value(f64::from(w)) as f32;
+                let lanes = f32x4::splat(w);
+                let nodes = [pair[0][0], pair[0][1], pair[1][0], pair[1][1]];
+                let sum: f32 = (basis(lanes) * f32x4::new(nodes)).to_array().iter().sum();
+                let four = hermite_lanes(nodes.map(f32x4::splat), lanes).to_array();
+                let cell = &coefficients[i];
+                let cells = cell.map(f32x4::splat);
+                let cubics = [cubic_lanes(cells, lanes), horner_lanes(cells, lanes)].map(|x| x.to_array()[2]);
+                let one = [hermite(pair[0], pair[1], w), horner(cell, w), cubic(cell, w)];
+                let all = [one[0], one[1], one[2], sum, four[1], cubics[0], cubics[1]];
+                assert!(all.iter().all(|got| (got - want).abs() < 2e-7), "{all:?} for {want}");
+            }
+        }
+        assert_eq!(horner(&coefficients[2], 0.0), 0.7);
+    }
+
+    #[test]
+    fn the_inverse_finds_the_position() {
+        let cubic = Cubic::new(NODES[0], NODES[1]);
+        for w in [0.0, 0.1, 0.5, 0.99, 1.0] {
+            assert!((cubic.solve(cubic.value(w)) - w).abs() < 1e-14, "{w}");
+        }
+    }
+
+    #[test]
+    fn nodes_are_made_to_ascend() {
+        let mut run = [[0.2, 9.0], [0.1, -1.0], [0.5, 9.0]];
+        make_monotone(&mut run);
+        assert_eq!(run, [[0.2, 0.0], [0.2, 0.0], [0.5, 3.0 * (0.5 - 0.2_f32)]]);
+        assert_eq!(locate(f32::NAN, 4).0, 0);
+        assert_eq!([locate(4.0, 4), locate(-0.5, 4), locate(9.0, 4)], [(3, 1.0), (0, -0.5), (3, 6.0)]);
+    }
+}

@@ -1,0 +1,57 @@
+//! The axis of indices of refraction.
+
+use core::f64::consts::FRAC_PI_2;
+
+use super::coordinate::Coordinate;
+use crate::math::sqrt64;
+
+/// t = acos(1 − 2x)/π ∈ [0, 1], x = F0^¼ = √((η−1)/(η+1)), of an index η ∈ [1, ∞] of the dense side over the thin one: finer
+/// towards both ends, where the reflectance of grazing views turns within √(η²−1) and 1/η of the horizon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReflectanceRoot;
+
+impl ReflectanceRoot {
+    /// t of η ∈ [1, ∞].
+    pub fn coordinate(&self, eta: f64) -> f64 {
+        // sin²(πt/2) = F0^¼.
+        let root = if eta == f64::INFINITY { 1.0 } else { sqrt64((eta - 1.0) / (eta + 1.0)) };
+        libm::asin(sqrt64(root)) / FRAC_PI_2
+    }
+
+    /// 1/η of t.
+    pub fn inverse_index(&self, t: f64) -> f64 {
+        let (sin, cos) = libm::sincos(FRAC_PI_2 * t);
+        let root = sin * sin;
+        if t < 1.0 { cos * cos * (1.0 + root) / (1.0 + root * root) } else { 0.0 }
+    }
+
+    /// η of t; ∞ for 1.
+    pub fn quantity(&self, t: f64) -> f64 {
+        1.0 / self.inverse_index(t)
+    }
+}
+
+impl Coordinate for ReflectanceRoot {
+    fn node(&self, _: usize, _: usize) -> Option<f64> {
+        None
+    }
+
+    fn check_count(&self, _: usize) -> Result<(), &'static str> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back() {
+        for eta in [1.0, 1.0001, 1.33, 1.5, 2.4, 40.0, f64::INFINITY] {
+            let back = ReflectanceRoot.quantity(ReflectanceRoot.coordinate(eta));
+            assert!(back == eta || (back / eta - 1.0).abs() < 1e-13, "{eta}: {back}");
+        }
+        let t = ReflectanceRoot.coordinate(1.5);
+        assert!((libm::acos(1.0 - 2.0 * sqrt64(0.2)) / core::f64::consts::PI - t).abs() < 1e-15);
+    }
+}

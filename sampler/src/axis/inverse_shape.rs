@@ -1,0 +1,76 @@
+//! The shape axis of G1 and visible normals: s = 1/(γ−1).
+
+use alloc::vec::Vec;
+
+use microfacet_common::shape::{S_END, gamma_of_s, s_of_gamma};
+
+use super::coordinate::{Coordinate, bisect, even_nodes};
+
+/// s = 1/(γ−1) ∈ [0, 2): 0 is Beckmann, 1 is GGX; γ → 3/2 is its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InverseShape;
+
+impl InverseShape {
+    /// s of γ.
+    pub fn coordinate(&self, gamma: f64) -> f64 {
+        s_of_gamma(gamma)
+    }
+
+    /// γ of s; ∞ for 0.
+    pub fn quantity(&self, s: f64) -> f64 {
+        gamma_of_s(s)
+    }
+
+    /// `count` nodes from `low` to `high` that crowd towards s = 2, evenly in s − ½ ln(1 − s/2): the projected area diverges
+    /// there as 1/(2 − s), and what depends on it changes by the logarithm of 2 − s.
+    pub fn crowded_nodes(low: f64, high: f64, count: usize) -> Vec<f64> {
+        let warp = |s: f64| s - 0.5 * libm::log(1.0 - s / S_END);
+        let inner = |y: f64| bisect(low, high, y, warp);
+        let nodes = even_nodes(warp(low), warp(high), count).into_iter().enumerate();
+        nodes
+            .map(|(i, y)| {
+                if i == 0 {
+                    low
+                } else if i + 1 == count {
+                    high
+                } else {
+                    inner(y)
+                }
+            })
+            .collect()
+    }
+}
+
+impl Coordinate for InverseShape {
+    fn range(&self) -> [f64; 2] {
+        [0.0, S_END - f64::EPSILON]
+    }
+
+    fn node(&self, _: usize, _: usize) -> Option<f64> {
+        None
+    }
+
+    fn check_count(&self, _: usize) -> Result<(), &'static str> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back() {
+        for gamma in [1.501, 1.8, 2.0, 5.0, 1e9, f64::INFINITY] {
+            let back = InverseShape.quantity(InverseShape.coordinate(gamma));
+            assert!(back == gamma || (back / gamma - 1.0).abs() < 1e-15, "{gamma}: {back}");
+        }
+    }
+
+    #[test]
+    fn nodes_crowd_towards_the_end() {
+        let nodes = InverseShape::crowded_nodes(1.25, 1.99, 9);
+        assert_eq!([nodes[0], nodes[8]], [1.25, 1.99]);
+        assert!(nodes.windows(3).all(|w| w[1] - w[0] > w[2] - w[1] && w[2] > w[1]), "{nodes:?}");
+    }
+}

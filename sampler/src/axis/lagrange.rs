@@ -1,0 +1,140 @@
+//! Lagrange polynomials through a few of the nodes: how tables are read along every axis that is not looked up at speed.
+
+use alloc::vec::Vec;
+
+/// Nodes that the polynomial of albedo tables goes through.
+pub(crate) const SIX: usize = 6;
+
+/// The first of the `window` nodes that a polynomial goes through: those with the cell in their middle, `above` being the
+/// node after it, or as near to that as the ends of `n` nodes allow. Windows at the ends are shifted, not shortened.
+fn first_node(above: usize, n: usize, window: usize) -> usize {
+    above.saturating_sub(window / 2).min(n - window)
+}
+
+/// Where the window about t begins; `nodes` ascend, and a t at a node belongs to the cell above it.
+fn window_at(nodes: &[f64], t: f64, window: usize) -> usize {
+    first_node(nodes.partition_point(|&node| node <= t), nodes.len(), window)
+}
+
+/// Nodes, by index, with their weights in the value at t; fewer than `window` where there are fewer nodes.
+pub fn weights(nodes: &[f64], t: f64, window: usize) -> Vec<(usize, f64)> {
+    let window = window.min(nodes.len());
+    let start = window_at(nodes, t, window);
+    let nodes = &nodes[start..start + window];
+    let weight = |i: usize| {
+        let others = (0..window).filter(|&j| j != i);
+        others.map(|j| (t - nodes[j]) / (nodes[i] - nodes[j])).product()
+    };
+    (0..window).map(|i| (start + i, weight(i))).collect()
+}
+
+/// The nodes that a polynomial through `window` of them reads anywhere in [from, to].
+pub fn nodes_read(nodes: &[f64], from: f64, to: f64, window: usize) -> &[f64] {
+    let window = window.min(nodes.len());
+    &nodes[window_at(nodes, from, window)..window_at(nodes, to, window) + window]
+}
+
+/// Whether nodes are spread evenly between the first and the last.
+pub(super) fn is_even(nodes: &[f64]) -> bool {
+    let [first, .., last] = nodes else { return true };
+    let step = (last - first) / (nodes.len() - 1) as f64;
+    let off = |(i, x): (usize, &f64)| (x - first - i as f64 * step).abs() > 1e-9 * step;
+    !nodes.iter().enumerate().any(off)
+}
+
+/// [`weights`] through six of `n` ≥ 6 nodes spread evenly over [0, 1], in single precision: the first, and the weights. A t
+/// outside is taken at the nearer end.
+#[inline]
+pub(crate) fn six(t: f32, n: usize) -> (usize, [f32; SIX]) {
+    let x = (t * (n - 1) as f32).clamp(0.0, (n - 1) as f32);
+    let start = first_node(x as usize + 1, n, SIX);
+    (start, six_weights(x - start as f32))
+}
+
+/// Weights of the polynomial through the nodes 0 … 5 at x.
+#[inline]
+pub(super) fn six_weights(x: f32) -> [f32; SIX] {
+    // Products from the left and from the right leave one factor out at each node.
+    const C: [f32; SIX] = [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
+    let mut weights = C;
+    let (mut left, mut right) = (1.0, 1.0);
+    for i in 0..SIX {
+        weights[i] *= left;
+        left *= x - i as f32;
+        let j = SIX - 1 - i;
+        weights[j] *= right;
+        right *= x - j as f32;
+    }
+    weights
+}
+
+/// Σ weightᵢ nodeᵢ over the six nodes from `start` on, by channel.
+#[inline]
+pub(crate) fn combine<const N: usize>(nodes: &[[f32; N]], start: usize, weights: &[f32; SIX]) -> [f32; N] {
+    let mut sum = [0.0; N];
+    for (node, w) in nodes[start..start + SIX].iter().zip(weights) {
+        for (sum, x) in sum.iter_mut().zip(node) {
+            *sum += w * x;
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_are_met_and_windows_shift_at_the_ends() {
+        let nodes = [0.0, 0.1, 0.25, 0.3, 0.6, 0.8, 1.0];
+        for window in [1, 4, 6] {
+            for t in [0.0, 0.05, 0.25, 0.4, 0.99, 1.0] {
+                let power = window as i32 - 1;
+                let all = weights(&nodes, t, window);
+                let sum: f64 = all.iter().map(|&(i, w)| w * nodes[i].powi(power)).sum();
+                // One node alone stands for itself.
+                assert!((sum - t.powi(power)).abs() < 1e-13, "{window}, {t}: {sum}");
+                assert_eq!((all.len(), all[window - 1].0 - all[0].0), (window, window - 1));
+            }
+        }
+        assert_eq!(weights(&nodes, 0.27, 4)[0].0, 1);
+        assert_eq!([0.0, 1.0].map(|t| weights(&nodes, t, 4)[0].0), [0, 3]);
+        assert_eq!(weights(&nodes[..3], 0.2, 6).len(), 3);
+    }
+
+    #[test]
+    fn what_is_read_is_what_a_part_needs() {
+        let nodes: Vec<f64> = (0..20).map(f64::from).collect();
+        for (from, to) in [(0.0, 0.5), (3.2, 7.9), (18.5, 19.0), (5.0, 5.0)] {
+            let part = nodes_read(&nodes, from, to, 6);
+            for t in [from, 0.5 * (from + to), to] {
+                let named = |nodes: &[f64]| -> Vec<(f64, f64)> {
+                    weights(nodes, t, 6).into_iter().map(|(i, w)| (nodes[i], w)).collect()
+                };
+                assert_eq!(named(part), named(&nodes), "[{from}, {to}] at {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_fast_form_is_the_exact_one() {
+        for n in [6, 7, 26] {
+            let nodes: Vec<f64> = (0..n).map(|i| i as f64 / (n - 1) as f64).collect();
+            for i in 0..=997 {
+                let t = i as f32 / 997.0;
+                let ((start, fast), exact) = (six(t, n), weights(&nodes, f64::from(t), SIX));
+                let slow = |node: usize| exact.iter().find(|at| at.0 == node).map_or(0.0, |at| at.1);
+                let got: f64 = (0..SIX).map(|i| (f64::from(fast[i]) - slow(start + i)).abs()).sum();
+                // The rounding of t, times n, moves the polynomial along.
+                assert!(got < 4e-6 * n as f64, "{n} nodes, {t}: off by {got}");
+            }
+            assert_eq!(six(f32::NAN, n).0, six(0.0, n).0);
+        }
+    }
+
+    #[test]
+    fn uneven_nodes_are_seen() {
+        assert!(is_even(&[0.3]) && is_even(&[]) && is_even(&[0.1, 0.2, 0.3]));
+        assert!(!is_even(&[0.1, 0.2, 0.31]));
+    }
+}

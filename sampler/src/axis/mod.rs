@@ -1,0 +1,338 @@
+//! Axes of tables: what runs along them, where their nodes are, and how a table is read between the nodes.
+//!
+//! One file a coordinate, with its formula, its inverse, the places of its nodes, what a file may say of it, and the forms that
+//! lookups at speed use, tested against the formula: [`InverseShape`] and [`LogShape`] of γ, [`Roughness`] of σ,
+//! [`ReflectanceRoot`] of η, [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the elevation of a view,
+//! [`Azimuth`] of its azimuth, [`MirroredRoot`] of a random number. Whoever bakes, reads, measures or exports a table calls
+//! these. Beside them the two interpolations: [`lagrange`], and Hermite cells.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::LoadError;
+
+mod azimuth;
+mod coordinate;
+mod critical;
+mod crowded;
+pub mod half_tangent;
+pub(crate) mod hermite;
+mod index;
+mod inverse_shape;
+pub mod lagrange;
+mod log_shape;
+mod number;
+mod rational;
+mod roughness;
+mod view;
+
+pub use azimuth::{Azimuth, BoundAzimuth};
+pub use coordinate::even_nodes;
+pub use critical::{BoundCritical, CriticalBlend};
+pub use half_tangent::HalfTangent;
+pub use hermite::limit_slopes;
+pub use index::ReflectanceRoot;
+pub use inverse_shape::InverseShape;
+pub use log_shape::LogShape;
+pub use number::MirroredRoot;
+pub use rational::Rational;
+pub use roughness::Roughness;
+pub use view::{BoundView, ViewBlend};
+
+pub(crate) use number::roots;
+
+use coordinate::Coordinate;
+
+/// How a physical quantity becomes the coordinate along an axis. The mapping is data in the file; readers need no other
+/// knowledge of it than the formula of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Mapping {
+    /// Of γ.
+    InverseShape,
+    /// Of γ.
+    LogShape(LogShape),
+    /// Of σ.
+    Roughness(Roughness),
+    /// Of η.
+    ReflectanceRoot,
+    /// Of a view, z = cot θ_v/σ_v, or a slope.
+    HalfTangent(HalfTangent),
+    /// Of a view, z = cot θ_v/σ_v, or a slope.
+    Rational(Rational),
+    /// Of a view, cos θ_v.
+    ViewBlend(ViewBlend),
+    /// Of a view from the dense side of an interface, cos θ_v.
+    CriticalBlend(CriticalBlend),
+    /// Of the azimuth of a view.
+    Azimuth(Azimuth),
+    /// Of a random number.
+    MirroredRoot(MirroredRoot),
+}
+
+impl Mapping {
+    /// The name of its kind in files.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::InverseShape => "inverse_shape",
+            Self::LogShape(_) => "log_shape",
+            Self::Roughness(_) => "roughness",
+            Self::ReflectanceRoot => "reflectance_root",
+            Self::HalfTangent(_) => "half_tangent",
+            Self::Rational(_) => "rational",
+            Self::ViewBlend(_) => "view_blend",
+            Self::CriticalBlend(_) => "critical_blend",
+            Self::Azimuth(_) => "azimuth",
+            Self::MirroredRoot(_) => "mirrored_root",
+        }
+    }
+
+    fn get(&self) -> &dyn Coordinate {
+        match self {
+            Self::InverseShape => &InverseShape,
+            Self::LogShape(coordinate) => coordinate,
+            Self::Roughness(coordinate) => coordinate,
+            Self::ReflectanceRoot => &ReflectanceRoot,
+            Self::HalfTangent(coordinate) => coordinate,
+            Self::Rational(coordinate) => coordinate,
+            Self::ViewBlend(coordinate) => coordinate,
+            Self::CriticalBlend(coordinate) => coordinate,
+            Self::Azimuth(coordinate) => coordinate,
+            Self::MirroredRoot(coordinate) => coordinate,
+        }
+    }
+}
+
+/// How values between nodes are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Interpolation {
+    /// Straight lines.
+    Linear,
+    /// Cubic Hermite from the channels `value` and `slope`, the slope being the derivative with respect to the node index.
+    Hermite,
+    /// The Lagrange polynomial through the four nearest nodes (fewer if the axis has fewer).
+    Lagrange4,
+    /// The polynomial through the six nearest nodes, evenly spaced in the coordinate (fewer if the axis has fewer).
+    Lagrange6,
+    /// None: only the nodes themselves are covered.
+    Nodes,
+}
+
+impl Interpolation {
+    /// How many nodes a polynomial goes through; 1 where there is none.
+    pub const fn window(self) -> usize {
+        match self {
+            Self::Linear | Self::Hermite => 2,
+            Self::Lagrange4 => 4,
+            Self::Lagrange6 => lagrange::SIX,
+            Self::Nodes => 1,
+        }
+    }
+}
+
+/// One axis of a table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    /// Short name, such as `gamma`, `view` or `u1`.
+    pub name: String,
+    /// Unit of the physical quantity; `1` for pure numbers.
+    pub unit: String,
+    /// From quantity to coordinate.
+    pub mapping: Mapping,
+    /// How values between nodes are made.
+    pub interpolation: Interpolation,
+    /// Node coordinates, ascending. Values sit at the nodes (not at cell centres).
+    pub nodes: Vec<f64>,
+}
+
+impl Axis {
+    /// An axis of a pure number with these nodes.
+    pub fn new(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: Vec<f64>) -> Self {
+        Self { name: name.into(), unit: "1".into(), mapping, interpolation, nodes }
+    }
+
+    /// An axis of `count` nodes where its mapping places them.
+    ///
+    /// # Panics
+    /// For a mapping whose nodes may stand anywhere.
+    pub fn placed(name: &str, mapping: Mapping, interpolation: Interpolation, count: usize) -> Self {
+        let node = |i| mapping.get().node(i, count).expect("a mapping that places its nodes");
+        Self::new(name, mapping, interpolation, (0..count).map(node).collect())
+    }
+
+    /// How many values stand along this axis.
+    pub fn len(&self) -> usize {
+        self.mapping.get().values(self.nodes.len())
+    }
+
+    /// Whether it has no nodes; never true for an axis that was validated.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// The coordinates of the first and the last node.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.nodes[0], self.nodes[self.nodes.len() - 1]]
+    }
+
+    /// The coordinate of a γ, σ or η, for axes of these; `None` for others.
+    pub fn coordinate(&self, quantity: f64) -> Option<f64> {
+        match self.mapping {
+            Mapping::InverseShape => Some(InverseShape.coordinate(quantity)),
+            Mapping::LogShape(axis) => Some(axis.coordinate(quantity)),
+            Mapping::Roughness(axis) => Some(axis.coordinate(quantity)),
+            Mapping::ReflectanceRoot => Some(ReflectanceRoot.coordinate(quantity)),
+            _ => None,
+        }
+    }
+
+    /// The γ, σ or η at a coordinate, for axes of these; `None` for others.
+    pub fn quantity(&self, t: f64) -> Option<f64> {
+        match self.mapping {
+            Mapping::InverseShape => Some(InverseShape.quantity(t)),
+            Mapping::LogShape(axis) => Some(axis.quantity(t)),
+            Mapping::Roughness(axis) => Some(axis.quantity(t)),
+            Mapping::ReflectanceRoot => Some(ReflectanceRoot.quantity(t)),
+            _ => None,
+        }
+    }
+
+    /// γ, σ or η of all nodes, for axes of these; empty for others.
+    pub fn quantities(&self) -> Vec<f64> {
+        self.nodes.iter().filter_map(|&t| self.quantity(t)).collect()
+    }
+
+    /// Nodes, by index, with their weights in the value at the coordinate t; `None` where the axis does not cover it.
+    ///
+    /// A t within rounding of a node is taken for it.
+    pub(crate) fn weights(&self, t: f64) -> Option<Vec<(usize, f64)>> {
+        let [first, last] = self.ends();
+        // t has come through logarithms and their inverses on some axes.
+        let same = match self.interpolation {
+            Interpolation::Lagrange6 => 1e-9 * (1.0 + last.abs()),
+            _ => 1e-12 * (1.0 + t.abs()),
+        };
+        if let Some(i) = self.nodes.iter().position(|node| (node - t).abs() <= same) {
+            return Some(alloc::vec![(i, 1.0)]);
+        }
+        let between = t > first && t < last && self.interpolation != Interpolation::Nodes;
+        between.then(|| lagrange::weights(&self.nodes, t, self.interpolation.window()))
+    }
+
+    /// Checks what every reader relies on: finite, strictly ascending nodes inside the mapping's range, where it places them,
+    /// and even ones where a polynomial needs that.
+    pub(crate) fn validate(&self) -> Result<(), LoadError> {
+        let fail = |why: &str| Err(LoadError::Invalid(format!("axis `{}`: {why}", self.name)));
+        let unsupported = |why: &str| Err(LoadError::Unsupported(format!("axis `{}`: {why}", self.name)));
+        let (mapping, n) = (self.mapping.get(), self.nodes.len());
+        if n == 0 {
+            return fail("no nodes");
+        }
+        if self.nodes.iter().any(|x| !x.is_finite()) {
+            return fail("a node is not finite");
+        }
+        if self.nodes.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return fail("nodes do not ascend");
+        }
+        if let Err(why) = mapping.check().and_then(|()| mapping.check_count(n)) {
+            return fail(why);
+        }
+        let ([low, high], [first, last]) = (mapping.range(), self.ends());
+        if first < low || last > high {
+            return fail("a node lies outside the range of its mapping");
+        }
+        let misplaced = |(i, x): (usize, &f64)| mapping.node(i, n).is_some_and(|at| (x - at).abs() > 1e-12);
+        if self.nodes.iter().enumerate().any(misplaced) {
+            return unsupported("this mapping needs nodes spread evenly over its range");
+        }
+        if self.interpolation == Interpolation::Lagrange6 && !lagrange::is_even(&self.nodes) {
+            return unsupported("this interpolation needs evenly spaced nodes");
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Mapping; 10] = [
+        Mapping::InverseShape,
+        Mapping::LogShape(LogShape::BAKED),
+        Mapping::Roughness(Roughness::BAKED),
+        Mapping::ReflectanceRoot,
+        Mapping::HalfTangent(HalfTangent { crowded: true }),
+        Mapping::Rational(Rational::BAKED),
+        Mapping::ViewBlend(ViewBlend::BAKED),
+        Mapping::CriticalBlend(CriticalBlend::BAKED),
+        Mapping::Azimuth(Azimuth { sigma: [0.1, 0.2], turn: 0.3, fold: false }),
+        Mapping::MirroredRoot(MirroredRoot { odd: true }),
+    ];
+
+    #[test]
+    fn descriptions_are_read_back_and_know_no_other_fields() {
+        for mapping in ALL {
+            let text = serde_json::to_string(&mapping).unwrap();
+            assert!(text.contains(&format!("\"kind\":\"{}\"", mapping.name())), "{text}");
+            assert_eq!(serde_json::from_str::<Mapping>(&text).unwrap(), mapping);
+            if !matches!(mapping, Mapping::InverseShape | Mapping::ReflectanceRoot) {
+                let more = text.replacen('{', "{\"more\":1,", 1);
+                assert!(serde_json::from_str::<Mapping>(&more).is_err(), "{more}");
+            }
+        }
+    }
+
+    #[test]
+    fn nodes_that_a_mapping_places_are_accepted_and_others_refused() {
+        for mapping in ALL.into_iter().filter(|mapping| mapping.get().node(0, 13).is_some()) {
+            let axis = Axis::placed("a", mapping, Interpolation::Linear, 13);
+            axis.validate().unwrap();
+            let mut moved = axis.clone();
+            moved.nodes[3] += 1e-3;
+            assert!(matches!(moved.validate(), Err(LoadError::Unsupported(_))), "{mapping:?}");
+        }
+    }
+
+    #[test]
+    fn parameters_out_of_range_are_refused() {
+        let bad = [
+            (Mapping::LogShape(LogShape { scale: f64::NAN }), 1),
+            (Mapping::Roughness(Roughness { offset: 0.0, ..Roughness::BAKED }), 1),
+            (Mapping::Rational(Rational { scale: -1.0, crowded: false }), 5),
+            (Mapping::ViewBlend(ViewBlend { weight: 0.95, ..ViewBlend::BAKED }), 7),
+            (Mapping::CriticalBlend(CriticalBlend { root: 1.0, ..CriticalBlend::BAKED }), 13),
+            (Mapping::Azimuth(Azimuth { sigma: [0.0, 1.0], turn: 0.0, fold: true }), 5),
+            // Too few nodes, or an even number for two halves.
+            (Mapping::HalfTangent(HalfTangent::default()), 1),
+            (Mapping::ViewBlend(ViewBlend::BAKED), 5),
+            (Mapping::CriticalBlend(CriticalBlend::BAKED), 12),
+        ];
+        for (mapping, count) in bad {
+            let nodes = (0..count).map(|i| i as f64 / (count - 1).max(1) as f64).collect();
+            let axis = Axis::new("a", mapping, Interpolation::Lagrange6, nodes);
+            assert!(matches!(axis.validate(), Err(LoadError::Invalid(_))), "{mapping:?}");
+        }
+    }
+
+    #[test]
+    fn weights_cover_nodes_and_what_is_between() {
+        let axis = |interpolation, nodes: &[f64]| {
+            Axis::new("gamma", Mapping::InverseShape, interpolation, nodes.to_vec())
+        };
+        let range = axis(Interpolation::Lagrange4, &[0.1, 0.2, 0.3, 0.4, 0.5]);
+        assert_eq!(range.weights(0.2), Some(alloc::vec![(1, 1.0)]));
+        assert_eq!(range.weights(0.11).unwrap().len(), 4);
+        assert_eq!([0.0, 0.6, f64::NAN].map(|t| range.weights(t)), [const { None }; 3]);
+        let points = axis(Interpolation::Nodes, &[0.1, 0.2]);
+        assert_eq!((points.weights(0.15), points.weights(0.1)), (None, Some(alloc::vec![(0, 1.0)])));
+        let one = axis(Interpolation::Lagrange6, &[0.7]);
+        assert_eq!((one.weights(0.7 + 1e-10), one.weights(0.71)), (Some(alloc::vec![(0, 1.0)]), None));
+    }
+}

@@ -1,0 +1,72 @@
+//! The roughness axis of albedos.
+
+use serde::{Deserialize, Serialize};
+
+use super::coordinate::{Coordinate, bisect, positive};
+
+/// t = ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ, ascending in σ: even ratios about the offset, wide ones far below it,
+/// where only a heavy tail still makes a difference, and finer steps where σ is large.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Roughness {
+    /// The σ about which the first term turns from even steps into even ratios.
+    pub offset: f64,
+    /// Where t vanishes (but for first/offset); a surface smoother than this is a mirror.
+    pub first: f64,
+    /// Weight of ln(σ/first).
+    pub slow: f64,
+    /// Weight of σ.
+    pub linear: f64,
+}
+
+impl Roughness {
+    /// Of the tables that are baked: found by measuring. It begins at the smallest σ that can be bound; the slow logarithm is
+    /// there for γ near 3/2, whose tail at that σ still takes most of the light of views a few σ above the horizon.
+    pub const BAKED: Self = Self { offset: 0.015, first: 1e-8, slow: 0.2, linear: 1.0 };
+
+    /// t of σ > 0.
+    pub fn coordinate(&self, sigma: f64) -> f64 {
+        libm::log1p(sigma / self.offset) + self.slow * libm::log(sigma / self.first) + self.linear * sigma
+    }
+
+    /// σ of t, between e⁻⁴⁰ and e¹⁴.
+    pub fn quantity(&self, t: f64) -> f64 {
+        libm::exp(bisect(-40.0, 14.0, t, |ln| self.coordinate(libm::exp(ln))))
+    }
+}
+
+impl Coordinate for Roughness {
+    fn check(&self) -> Result<(), &'static str> {
+        let Self { offset, first, slow, linear } = *self;
+        if positive(&[offset, first, slow]) && (0.0..1e6).contains(&linear) {
+            Ok(())
+        } else {
+            Err("offset, first, slow or linear out of range")
+        }
+    }
+
+    fn range(&self) -> [f64; 2] {
+        [0.0, f64::MAX]
+    }
+
+    fn node(&self, _: usize, _: usize) -> Option<f64> {
+        None
+    }
+
+    fn check_count(&self, _: usize) -> Result<(), &'static str> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back() {
+        for sigma in [1e-8, 1e-4, 0.015, 0.3, 3.0, 1e3] {
+            let back = Roughness::BAKED.quantity(Roughness::BAKED.coordinate(sigma));
+            assert!((back / sigma - 1.0).abs() < 1e-14, "{sigma}: {back}");
+        }
+    }
+}

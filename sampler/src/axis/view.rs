@@ -1,0 +1,183 @@
+//! The view axis of albedos. **To space it differently, change this file alone** and bake anew: baking, readers, certificates,
+//! examples and the description in every file follow.
+//!
+//! Why it is spaced so, `cargo run --release --example albedo_design` measures.
+
+use serde::{Deserialize, Serialize};
+
+use super::coordinate::{Coordinate, bisect, positive};
+use super::lagrange::SIX;
+use crate::math::sqrt64;
+
+/// t = (y(μ) − y(μ₀))/(1 − y(μ₀)) ∈ [0, 1] for μ = cos θ_v ≥ μ₀ = floor·slope·σ/(floor + slope·σ), where
+/// y = weight·x + normal·ν/(ν + √(1−μ²)) + (1 − weight − normal)(share·x^¼ + (1−share)·h^¼),
+/// x = μ/(μ + κσ√(1−μ²)), κ = scale + heavy/(2γ−3), h = μ/(1 + √(1−μ²)), ν = spread·σ.
+///
+/// h follows the view; x follows z = cot θ_v/σ and, as γ → 3/2, the ever wider reach of masking; ν resolves the turn at normal
+/// incidence, and the fourth roots grazing views.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ViewBlend {
+    /// Share of x itself.
+    pub weight: f64,
+    /// Share of the term with ν.
+    pub normal: f64,
+    /// Share of x among the fourth roots, in [0, 1].
+    pub share: f64,
+    /// κ for Beckmann.
+    pub scale: f64,
+    /// How κ grows with 1/(2γ−3).
+    pub heavy: f64,
+    /// ν/σ.
+    pub spread: f64,
+    /// Largest μ₀.
+    pub floor: f64,
+    /// μ₀/σ of smooth surfaces.
+    pub slope: f64,
+}
+
+impl ViewBlend {
+    /// Of the tables that are baked: found by measuring.
+    pub const BAKED: Self = Self {
+        weight: 0.3,
+        normal: 0.1,
+        share: 0.4,
+        scale: 3.0,
+        heavy: 0.5,
+        spread: 10.0,
+        floor: 2e-5,
+        slope: 2e-3,
+    };
+
+    /// The same for one shape γ: κ is a number, and readers need no γ.
+    #[must_use]
+    pub fn of_shape(&self, gamma: f64) -> Self {
+        Self { scale: kappa(self.scale, self.heavy, gamma), heavy: 0.0, ..*self }
+    }
+
+    /// The coordinate of one material, σ > 0.
+    pub fn bind(&self, sigma: f64, gamma: f64) -> BoundView {
+        let knee = kappa(self.scale, self.heavy, gamma) * sigma;
+        // Without the kink of a minimum, which would show in the nodes along σ.
+        let floor = harmonic(self.floor, self.slope * sigma);
+        let mut view = BoundView { blend: *self, knee, turn: self.spread * sigma, floor, start: 0.0 };
+        view.start = view.y(floor);
+        view
+    }
+}
+
+/// κ = scale + heavy/(2γ−3).
+pub(super) fn kappa(scale: f64, heavy: f64, gamma: f64) -> f64 {
+    scale + heavy / (2.0 * gamma - 3.0)
+}
+
+/// ab/(a + b), a smooth minimum of what is not below 0; 0 where either is.
+pub(super) fn harmonic(a: f64, b: f64) -> f64 {
+    if a > 0.0 && b > 0.0 { a * b / (a + b) } else { 0.0 }
+}
+
+/// sin θ, x and h of a view, κσ being the knee of x.
+pub(super) fn terms(cos: f64, knee: f64) -> (f64, f64, f64) {
+    let sin = sqrt64((1.0 - cos) * (1.0 + cos));
+    (sin, cos / (cos + knee * sin), cos / (1.0 + sin))
+}
+
+/// share·x^¼ + (1−share)·h^¼.
+pub(super) fn fourth_roots(share: f64, x: f64, h: f64) -> f64 {
+    let root = |x: f64| sqrt64(sqrt64(x));
+    share * root(x) + (1.0 - share) * root(h)
+}
+
+/// [`ViewBlend`] of one material.
+#[derive(Clone, Copy, Debug)]
+pub struct BoundView {
+    blend: ViewBlend,
+    /// κσ.
+    knee: f64,
+    /// ν.
+    turn: f64,
+    /// μ₀ and y(μ₀).
+    floor: f64,
+    start: f64,
+}
+
+impl BoundView {
+    /// μ₀: the view of the first node.
+    pub fn floor(&self) -> f64 {
+        self.floor
+    }
+
+    fn y(&self, cos: f64) -> f64 {
+        let ViewBlend { weight, normal, share, .. } = self.blend;
+        let (sin, x, h) = terms(cos, self.knee);
+        weight * x
+            + normal * self.turn / (self.turn + sin)
+            + (1.0 - weight - normal) * fourth_roots(share, x, h)
+    }
+
+    /// t of cos θ ∈ [μ₀, 1].
+    pub fn coordinate(&self, cos: f64) -> f64 {
+        (self.y(cos) - self.start) / (1.0 - self.start)
+    }
+
+    /// t of any cos θ ∈ [0, 1]: that of the first node below μ₀.
+    pub(crate) fn clamped(&self, cos: f32) -> f32 {
+        if cos > self.floor as f32 { self.coordinate(f64::from(cos)) as f32 } else { 0.0 }
+    }
+
+    /// cos θ of t ∈ [0, 1].
+    pub fn quantity(&self, t: f64) -> f64 {
+        if t >= 1.0 { 1.0 } else { bisect(self.floor, 1.0, t, |cos| self.coordinate(cos)) }
+    }
+}
+
+impl Coordinate for ViewBlend {
+    fn check(&self) -> Result<(), &'static str> {
+        let Self { weight, normal, share, scale, heavy, spread, floor, slope } = *self;
+        let sound = positive(&[weight, normal, scale, spread, floor, slope])
+            && weight + normal < 1.0
+            && (0.0..=1.0).contains(&share)
+            && (0.0..1e6).contains(&heavy)
+            && floor < 0.5;
+        if sound { Ok(()) } else { Err("a parameter of the view coordinate is out of range") }
+    }
+
+    fn check_count(&self, n: usize) -> Result<(), &'static str> {
+        if n < SIX { Err("has fewer than six nodes") } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back() {
+        for gamma in [1.501, 2.0, f64::INFINITY] {
+            for sigma in [1e-8, 1e-3, 0.3, 3.0] {
+                let view = ViewBlend::BAKED.bind(sigma, gamma);
+                assert_eq!(view.coordinate(1.0), 1.0);
+                assert_eq!(view.coordinate(view.floor()), 0.0);
+                for t in [0.0, 1e-3, 0.1, 0.5, 0.9, 1.0] {
+                    let cos = view.quantity(t);
+                    let (back, step) = (view.coordinate(cos), 1e-15);
+                    // Near the normal t turns with the sine: an ulp of cos θ is 1e-8 of it.
+                    let ulp = view.coordinate(cos) - view.coordinate((cos * (1.0 - step)).max(view.floor()));
+                    assert!(
+                        (back - t).abs() <= 1e-14 + 2.0 * ulp,
+                        "sigma {sigma}, gamma {gamma}, {t}: {back}"
+                    );
+                }
+                let alone = ViewBlend::BAKED.of_shape(gamma).bind(sigma, 7.0);
+                assert_eq!(alone.coordinate(0.4), view.coordinate(0.4));
+            }
+        }
+    }
+
+    #[test]
+    fn views_below_the_first_stand_with_it() {
+        let view = ViewBlend::BAKED.bind(0.3, 2.0);
+        assert_eq!([0.0, 1e-7].map(|cos| view.clamped(cos)), [0.0; 2]);
+        assert!((f64::from(view.clamped(0.4)) - view.coordinate(f64::from(0.4_f32))).abs() < 1e-7);
+    }
+}

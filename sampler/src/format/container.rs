@@ -1,0 +1,238 @@
+//! The safetensors container: one file, all tables of a set, described by one JSON document in its metadata.
+//!
+//! `docs/format.md` is the specification. Everything in the file is under one CRC-32, the header included: it is taken over
+//! the whole file with its own eight digits replaced by `0`, so that a damaged shape or axis is found like a damaged value.
+
+use alloc::borrow::ToOwned;
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use microfacet_common::Masking;
+use safetensors::{SafeTensors, tensor::TensorView};
+use serde::{Deserialize, Serialize};
+
+use super::checksum;
+use super::material::MaterialEntry;
+use super::precision::{Codec, Precision};
+use super::schema::Kind;
+use super::table::Table;
+use crate::axis::Axis;
+use crate::error::LoadError;
+
+/// `format` of the document.
+pub const FORMAT: &str = "microfacet-tables";
+/// Version of the format that this crate writes, and the newest that it reads.
+pub const VERSION: u32 = 2;
+/// Key of the document in the safetensors metadata.
+const KEY: &str = "microfacet";
+
+/// Where a set comes from and how its numbers are to be read.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Program and version that baked the set.
+    pub generator: String,
+    /// Number of the numeric method; it changes whenever the same recipe would give other bytes.
+    pub numerics: u32,
+    /// Licence of the data.
+    pub license: String,
+    /// The conventions a reader could get wrong, in words.
+    pub conventions: BTreeMap<String, String>,
+    /// The recipe the set was baked from, as TOML; empty for the general set.
+    pub recipe: String,
+    /// Named materials of the recipe.
+    pub materials: Vec<MaterialEntry>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Document {
+    format: String,
+    version: u32,
+    checksum: String,
+    #[serde(flatten)]
+    provenance: Provenance,
+    tables: Vec<Descriptor>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Descriptor {
+    name: String,
+    kind: Kind,
+    axes: Vec<Axis>,
+    channels: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    masking: Option<Masking>,
+    precision: Precision,
+    /// For `u16`: value = offset + scale·integer, by channel.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    scale: Vec<f32>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    offset: Vec<f32>,
+    certificate: BTreeMap<String, f64>,
+}
+
+fn fit(table: &Table) -> Codec {
+    Codec::fit(table.precision, &table.values, table.channels.len())
+}
+
+fn invalid(why: impl ToString) -> LoadError {
+    LoadError::Invalid(why.to_string())
+}
+
+/// The JSON document that describes a set, with zeros for its checksum: what [`encode`] embeds, and what other containers may carry.
+///
+/// # Errors
+/// [`LoadError::Invalid`] if a table would not load again.
+pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, LoadError> {
+    let mut descriptors = Vec::new();
+    for table in tables {
+        table.validate()?;
+        let (scale, offset) = fit(table).scale_offset();
+        descriptors.push(Descriptor {
+            name: table.name.clone(),
+            kind: table.kind,
+            axes: table.axes.clone(),
+            channels: table.channels.clone(),
+            masking: table.masking,
+            precision: table.precision,
+            scale,
+            offset,
+            certificate: table.certificate.clone(),
+        });
+    }
+    let document = Document {
+        format: FORMAT.into(),
+        version: VERSION,
+        checksum: checksum::NONE.into(),
+        provenance: provenance.clone(),
+        tables: descriptors,
+    };
+    serde_json::to_string(&document).map_err(invalid)
+}
+
+/// Writes a set as the bytes of a safetensors file; the same set always gives the same bytes.
+///
+/// # Errors
+/// [`LoadError::Invalid`] if a table would not load again.
+pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, LoadError> {
+    let json = describe(provenance, tables)?;
+    let data: Vec<Vec<u8>> = tables.iter().map(|table| fit(table).encode(&table.values)).collect();
+    let views = data
+        .iter()
+        .zip(tables)
+        .map(|(bytes, table)| {
+            TensorView::new(table.precision.dtype(), table.shape(), bytes)
+                .map(|view| (table.name.as_str(), view))
+        })
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(invalid)?;
+    // One key only: the library writes the metadata in the order of a hash map.
+    let metadata = [(KEY.to_owned(), json)].into_iter().collect();
+    let mut bytes = safetensors::serialize(views, Some(metadata)).map_err(invalid)?;
+    if checksum::seal(&mut bytes) { Ok(bytes) } else { Err(invalid("no place for the checksum")) }
+}
+
+/// Reads a set from the bytes of a safetensors file, checking everything; `verify` may skip the checksum where the bytes are known good.
+///
+/// # Errors
+/// [`LoadError`] saying what is wrong; never a panic, and never an allocation larger than a few times the input.
+pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Table>), LoadError> {
+    let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|why| {
+        invalid(format!("{why}; a table set is a safetensors file written by `microfacet-bake`"))
+    })?;
+    let json = metadata.metadata().as_ref().and_then(|map| map.get(KEY)).ok_or_else(|| {
+        invalid(format!("a safetensors file, but without the `{KEY}` document of a table set"))
+    })?;
+    check_version(json)?;
+    match if verify { checksum::is_sealed(bytes) } else { Some(true) } {
+        Some(true) => {}
+        Some(false) => {
+            return Err(invalid("checksum does not match: the file is damaged; copy it again or bake again"));
+        }
+        None => return Err(invalid("no checksum")),
+    }
+    let tensors = SafeTensors::deserialize(bytes).map_err(invalid)?;
+    let (provenance, tables) = assemble(json, |descriptor, codec| {
+        let tensor = tensors.tensor(&descriptor.name).map_err(|_| "no tensor of that name".to_string())?;
+        if tensor.dtype() != descriptor.precision.dtype() {
+            return Err(format!("stored as {:?}, described as {:?}", tensor.dtype(), descriptor.precision));
+        }
+        let shape: Vec<usize> =
+            descriptor.axes.iter().map(Axis::len).chain([descriptor.channels.len()]).collect();
+        if shape != tensor.shape() {
+            return Err(format!("tensor of shape {:?}, axes and channels of {shape:?}", tensor.shape()));
+        }
+        Ok(codec.decode(tensor.data()))
+    })?;
+    if tensors.len() != tables.len() {
+        return Err(invalid(format!("{} tensors for {} tables", tensors.len(), tables.len())));
+    }
+    Ok((provenance, tables))
+}
+
+/// Puts a set together again from the document of [`describe`] and the values of each table, decoded already.
+///
+/// # Errors
+/// [`LoadError`] if the document is not one, or a table is not sound.
+pub fn reassemble(
+    json: &str,
+    mut values: impl FnMut(&str) -> Result<Vec<f32>, String>,
+) -> Result<(Provenance, Vec<Table>), LoadError> {
+    check_version(json)?;
+    assemble(json, |descriptor, _| values(&descriptor.name))
+}
+
+/// The format and version of a document, before anything else of it: a newer one may not parse as this one.
+fn check_version(json: &str) -> Result<(), LoadError> {
+    #[derive(Deserialize)]
+    struct Head {
+        format: String,
+        version: u32,
+    }
+    let head: Head = serde_json::from_str(json).map_err(invalid)?;
+    if head.format != FORMAT {
+        return Err(invalid(format!("format \"{}\" where \"{FORMAT}\" is expected", head.format)));
+    }
+    if head.version != VERSION {
+        return Err(LoadError::Unsupported(format!(
+            "format version {} (this reader knows {VERSION}): update the reader or bake again",
+            head.version
+        )));
+    }
+    Ok(())
+}
+
+fn assemble(
+    json: &str,
+    mut values: impl FnMut(&Descriptor, &Codec) -> Result<Vec<f32>, String>,
+) -> Result<(Provenance, Vec<Table>), LoadError> {
+    let document: Document = serde_json::from_str(json).map_err(invalid)?;
+    let mut tables: Vec<Table> = Vec::with_capacity(document.tables.len());
+    for descriptor in document.tables {
+        let fail = |why: String| invalid(format!("table `{}`: {why}", descriptor.name));
+        if descriptor.channels.is_empty() {
+            return Err(fail("no channels".into()));
+        }
+        if tables.iter().any(|other| other.name == descriptor.name) {
+            return Err(fail("named twice".into()));
+        }
+        let Descriptor { precision, scale, offset, channels, .. } = &descriptor;
+        let codec = Codec::described(*precision, scale, offset, channels.len());
+        let codec = codec.map_err(|why| fail(why.into()))?;
+        let values = values(&descriptor, &codec).map_err(fail)?;
+        let table = Table {
+            values,
+            name: descriptor.name,
+            kind: descriptor.kind,
+            axes: descriptor.axes,
+            channels: descriptor.channels,
+            masking: descriptor.masking,
+            precision: descriptor.precision,
+            certificate: descriptor.certificate,
+        };
+        table.validate()?;
+        tables.push(table);
+    }
+    Ok((document.provenance, tables))
+}

@@ -1,0 +1,155 @@
+//! The materials of a recipe, as a set lists them.
+
+use alloc::format;
+use alloc::string::String;
+
+use microfacet_common::Masking;
+use microfacet_common::shape::gamma_of_s;
+use serde::{Deserialize, Serialize};
+
+use crate::axis::ReflectanceRoot;
+
+/// A named material of a recipe.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MaterialEntry {
+    /// Its name.
+    pub name: String,
+    /// σx and σy, as ranges [min, max] where a texture drives them.
+    pub sigma: [[f64; 2]; 2],
+    /// 1/(γ−1), so that γ = ∞ is the number 0; a range [min, max] likewise.
+    pub s: [f64; 2],
+    /// The distribution, such as `gtr:0.2,1.5`, of a material that is no Student-t; `sigma` is then the scale of its tables, which carry
+    /// the [`table_suffix`](Self::table_suffix), and `s` means nothing.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub distribution: String,
+    /// The turn of an ellipsoid, θx, θy, θz in radians as of [`Skew::new`](crate::Skew::new); its σ and s are single numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub theta: Option<[f64; 3]>,
+    /// The form of masking and shadowing it states, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub masking: Option<Masking>,
+    /// The reflectance of its facets, if it states one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fresnel: Option<FresnelEntry>,
+}
+
+/// The reflectance of a material's facets, as in its recipe.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FresnelEntry {
+    /// F = 1.
+    Mirror,
+    /// Schlick's approximation with this reflectance at normal incidence, in [0, 1]; the moments of `albedo` tables serve every value.
+    Schlick(f64),
+    /// A conductor of complex index of refraction η + ik relative to the outside, for red, green and blue.
+    Conductor {
+        /// η > 0.
+        eta: [f64; 3],
+        /// k ≥ 0.
+        k: [f64; 3],
+    },
+    /// A dielectric with this index of refraction, > 0, relative to the outside.
+    Dielectric(f64),
+    /// Dielectrics of all indices of refraction from 1 ≤ `min` on, relative to the outside.
+    Dielectrics {
+        /// Smallest.
+        min: f64,
+        /// Largest; `None` is ∞.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        max: Option<f64>,
+    },
+}
+
+impl FresnelEntry {
+    /// What the names of its own albedo tables hold; empty where the moments of `albedo` tables are enough.
+    pub fn label(&self) -> String {
+        let list = |x: &[f64; 3]| format!("{}_{}_{}", x[0], x[1], x[2]);
+        match self {
+            Self::Mirror | Self::Schlick(_) => String::new(),
+            Self::Conductor { eta, k } => format!("conductor_{}_k_{}", list(eta), list(k)),
+            Self::Dielectric(eta) => format!("eta_{eta}"),
+            Self::Dielectrics { min, max } => {
+                format!("eta_{min}_to_{}", max.unwrap_or(f64::INFINITY))
+            }
+        }
+    }
+
+    /// The indices [min, max] ⊂ [1, ∞] of the dense side over the thin one; `None` of what is no dielectric.
+    pub fn indices(&self) -> Option<[f64; 2]> {
+        match *self {
+            Self::Dielectric(eta) => Some([eta.max(1.0 / eta); 2]),
+            Self::Dielectrics { min, max } => Some([min, max.unwrap_or(f64::INFINITY)]),
+            _ => None,
+        }
+    }
+
+    /// The index of a dielectric, inside over outside, in the middle of the F0^¼ of several; `None` of what is no dielectric.
+    pub fn middle_index(&self) -> Option<f64> {
+        if let Self::Dielectric(eta) = self {
+            return Some(*eta);
+        }
+        let [a, b] = self.indices()?.map(|eta| ReflectanceRoot.coordinate(eta));
+        Some(ReflectanceRoot.quantity(0.5 * (a + b)))
+    }
+}
+
+/// The middle of a range.
+fn middle([min, max]: [f64; 2]) -> f64 {
+    if min == max { min } else { 0.5 * (min + max) }
+}
+
+impl MaterialEntry {
+    /// σx and σy, in the middle of their ranges.
+    pub fn sigma(&self) -> [f64; 2] {
+        self.sigma.map(middle)
+    }
+
+    /// γ, in the middle of the range of s.
+    pub fn gamma(&self) -> f64 {
+        gamma_of_s(middle(self.s))
+    }
+
+    /// σ of the isotropic lobe that stands in for an anisotropic one: √(σx σy).
+    pub fn round_sigma(&self) -> f64 {
+        let [x, y] = self.sigma();
+        if x == y { x } else { libm::sqrt(x * y) }
+    }
+
+    /// The form of masking it states; uncorrelated if none.
+    pub fn masking(&self) -> Masking {
+        self.masking.unwrap_or(Masking::Uncorrelated)
+    }
+
+    /// What kind of lobe it is: `student-t`, `ellipsoid`, or its distribution.
+    pub fn lobe(&self) -> &str {
+        match self.theta {
+            _ if !self.distribution.is_empty() => &self.distribution,
+            Some(_) => "ellipsoid",
+            None => "student-t",
+        }
+    }
+
+    /// What follows the kind in the names of this material's own tables; empty for a Student-t.
+    pub fn table_suffix(&self) -> String {
+        self.distribution.replace([':', ',', '/', '\\', ' '], "_")
+    }
+
+    /// What the name of this material's own albedo table ends in, after `view_albedo_`, the form of masking and `_`: of another
+    /// distribution its [`table_suffix`](Self::table_suffix), of an anisotropic material of single numbers `gamma_γ_sigma_σx_σy` with γ to nine
+    /// decimals, of an ellipsoid followed by `_theta_θx_θy_θz`. `None` if its albedo is that of the family's tables.
+    pub fn view_label(&self) -> Option<String> {
+        if !self.distribution.is_empty() {
+            return Some(self.table_suffix());
+        }
+        let [x, y] = self.sigma;
+        let single = |[min, max]: [f64; 2]| min == max;
+        let round = x == y && self.theta.is_none();
+        if round || ![x, y, self.s].into_iter().all(single) {
+            return None;
+        }
+        // γ of a γ with few digits has many, through s: rounded, they are the same again.
+        let gamma = libm::round(self.gamma() * 1e9) / 1e9;
+        let turn = self.theta.map_or_else(String::new, |[x, y, z]| format!("_theta_{x}_{y}_{z}"));
+        Some(format!("gamma_{gamma}_sigma_{}_{}{turn}", x[0], y[0]))
+    }
+}

@@ -1,0 +1,17 @@
+//! The file format: what a table holds and how, and the container of a set. `docs/format.md` is the specification.
+
+mod checksum;
+mod container;
+mod material;
+mod precision;
+mod schema;
+mod table;
+
+pub use checksum::{seal, seal_document};
+pub use container::{FORMAT, Provenance, VERSION, describe, encode, reassemble};
+pub use material::{FresnelEntry, MaterialEntry};
+pub use precision::Precision;
+pub use schema::{Channels, Kind};
+pub use table::Table;
+
+pub(crate) use container::decode;

@@ -1,0 +1,103 @@
+//! The in-memory table: axes, channels and values, with the certificate of what was measured on it.
+
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use microfacet_common::Masking;
+
+use super::precision::{Codec, Precision};
+use super::schema::Kind;
+use crate::axis::Axis;
+use crate::error::LoadError;
+
+/// A table: values at the nodes of named axes.
+///
+/// `values` is row-major with the axes slowest first and the channels fastest: shape
+/// `[axes[0].len(), …, axes[n−1].len(), channels.len()]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Name inside its set; the kind's name, with a suffix where a set holds several of a kind.
+    pub name: String,
+    /// What it holds.
+    pub kind: Kind,
+    /// Axes, slowest first.
+    pub axes: Vec<Axis>,
+    /// Channel names, such as `value` and `slope`.
+    pub channels: Vec<String>,
+    /// Form of G2 that the values are for; `None` where they are of one direction only.
+    pub masking: Option<Masking>,
+    /// Values in f32; rounded once, from f64, when they were stored.
+    pub values: Vec<f32>,
+    /// How the values are stored in a file.
+    pub precision: Precision,
+    /// Figures measured on this table by the bake that made it, off its grid and against the f64 model.
+    pub certificate: BTreeMap<String, f64>,
+}
+
+impl Table {
+    /// Lengths along the axes and the channels.
+    pub fn shape(&self) -> Vec<usize> {
+        self.axes.iter().map(Axis::len).chain([self.channels.len()]).collect()
+    }
+
+    /// Bytes of the values as they are stored.
+    pub fn stored_bytes(&self) -> usize {
+        self.precision.bytes() * self.values.len()
+    }
+
+    /// The table as it will be read back when stored at `precision`: rounding happens here and nowhere else, so that a
+    /// certificate can be measured on what a reader gets.
+    #[must_use]
+    pub fn rounded(mut self, precision: Precision) -> Self {
+        self.precision = precision;
+        self.values = Codec::round(precision, self.values, self.channels.len());
+        self
+    }
+
+    /// Checks everything that lookups rely on.
+    ///
+    /// # Errors
+    /// [`LoadError`] naming the table and what is wrong.
+    pub fn validate(&self) -> Result<(), LoadError> {
+        let fail = |why: String| Err(LoadError::Invalid(format!("table `{}`: {why}", self.name)));
+        let names: Vec<&str> = self.axes.iter().map(|axis| axis.name.as_str()).collect();
+        let expected: Vec<&str> = self.kind.axes().collect();
+        if names != expected {
+            return fail(format!("axes {names:?} where {expected:?} are expected"));
+        }
+        let layouts = self.kind.layouts();
+        let Some(layout) = layouts.iter().find(|layout| self.channels == layout.channels) else {
+            let expected: Vec<_> = layouts.iter().map(|layout| layout.channels).collect();
+            return fail(format!("channels {:?} where one of {expected:?} is expected", self.channels));
+        };
+        for (axis, rule) in self.axes.iter().zip(layout.axes) {
+            if !rule.mappings.contains(&axis.mapping.name()) {
+                let (got, want) = (axis.mapping.name(), rule.mappings.join("` or `"));
+                return fail(format!("axis `{}` is mapped by `{got}`, not by `{want}`", axis.name));
+            }
+            if !rule.interpolations.contains(&axis.interpolation) {
+                let (got, want) = (axis.interpolation, rule.interpolations);
+                return fail(format!("axis `{}` is read by {got:?}, not by one of {want:?}", axis.name));
+            }
+            axis.validate()?;
+        }
+        let expected = self.axes.iter().map(Axis::len).try_fold(self.channels.len(), usize::checked_mul);
+        if expected != Some(self.values.len()) {
+            return fail(format!("{} values for shape {:?}", self.values.len(), self.shape()));
+        }
+        if self.kind.is_albedo() != self.masking.is_some() {
+            return fail("an albedo names the form of masking it is for, and no other table does".into());
+        }
+        if self.values.iter().any(|x| !x.is_finite()) {
+            return fail("a value is not finite".into());
+        }
+        let [low, high] = layout.range;
+        let checked = self.values.chunks(self.channels.len()).flat_map(|node| &node[..layout.checked]);
+        match checked.into_iter().find(|x| !(low..=high).contains(*x)) {
+            Some(x) => fail(format!("a value of {x} is out of range, [{low:e}, {high}]")),
+            None => Ok(()),
+        }
+    }
+}

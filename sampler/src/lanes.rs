@@ -1,0 +1,37 @@
+//! Moves between the lanes of four numbers.
+
+use wide::f32x4;
+
+/// The sum of all lanes, in all lanes.
+#[inline(always)]
+pub(crate) fn sum(a: f32x4) -> f32x4 {
+    let a = a + swap_halves(a);
+    a + swap_pairs(a)
+}
+
+/// The first two lanes of either.
+#[inline(always)]
+pub(crate) fn pairs(a: f32x4, b: f32x4) -> f32x4 {
+    let ([a0, a1, ..], [b0, b1, ..]) = (a.to_array(), b.to_array());
+    f32x4::new([a0, a1, b0, b1])
+}
+
+/// The first lane of either, twice.
+#[inline(always)]
+pub(crate) fn pairs_of_firsts(a: f32x4, b: f32x4) -> f32x4 {
+    let ([a, ..], [b, ..]) = (a.to_array(), b.to_array());
+    f32x4::new([a, a, b, b])
+}
+
+#[inline(always)]
+fn swap_halves(a: f32x4) -> f32x4 {
+    let [a, b, c, d] = a.to_array();
+    f32x4::new([c, d, a, b])
+}
+
+/// Either pair of neighbours the other way round.
+#[inline(always)]
+pub(crate) fn swap_pairs(a: f32x4) -> f32x4 {
+    let [a, b, c, d] = a.to_array();
+    f32x4::new([b, a, d, c])
+}

@@ -1,0 +1,84 @@
+//! Visible normals that can reflect a view upwards: fewer samples lost below the horizon.
+//!
+//! In slopes about the macro normal, the light l = reflect(v, m) is above the horizon exactly where the slope lies in the disc
+//! of radius 1/cos θ about tan θ towards the viewer. The strip of in-plane slopes that the disc spans is an interval of u₁, since the
+//! inverse CDF ascends; sampling that interval leaves the density as it was but for a factor. Eto and Tokuyoshi 2023, "Bounded
+//! VNDF Sampling for Smith-GGX Reflections", do so for GGX by shrinking its cap; the interval does it for every γ.
+//! The variance of a white furnace falls to between a third and nine tenths (`cargo run -p microfacet-sampler --example bounded`).
+
+use glam::Vec3;
+
+use super::student_t::{NORMAL_INCIDENCE, StudentT};
+use crate::math::sqrt;
+
+/// Visible normals of a material and a view, without most of those that reflect the view below the horizon.
+///
+/// Every normal that reflects upwards keeps its place; of the others the slopes across the plane of incidence hide some. Estimators
+/// of reflection that weight with G2/G1 times [`share`](Self::share), or divide by a density of this type, are unbiased, and of lower variance
+/// than those of [`StudentT::sample_visible_normal`].
+#[derive(Clone, Copy, Debug)]
+pub struct Bounded<'a> {
+    material: &'a StudentT,
+    v: Vec3,
+    from: f32,
+    share: f32,
+}
+
+impl StudentT {
+    /// Prepares the visible normals of `v` for reflection; costs two searches in the table.
+    ///
+    /// The closed form of [`StudentT::ggx`] is not restricted, and of γ < 1.8 (in the default set) only the end away from the viewer is.
+    pub fn bounded(&self, v: Vec3) -> Bounded<'_> {
+        let [from, to] = self.upward(v);
+        Bounded { material: self, v, from, share: to - from }
+    }
+
+    /// The interval of u₁ in which a light can be above the horizon.
+    fn upward(&self, v: Vec3) -> [f32; 2] {
+        if self.closed_form {
+            return [0.0, 1.0];
+        }
+        let view = self.stretch(v);
+        let (sin, cos) = (sqrt(v.x * v.x + v.y * v.y), view.z);
+        // A unit of slope along the view's azimuth, in unit slopes along the stretched one.
+        let unit = if view.rho >= NORMAL_INCIDENCE { sin / view.rho } else { 1.0 / self.sigma_x };
+        let number = |x: f32, z: f32| self.number_along(&view, f64::from(unit * x), f64::from(z)) as f32;
+        // tan θ ∓ 1/cos θ, the nearer end without its cancellation. The rounding of all this may not lose a direction.
+        let low = (number(-cos, 1.0 + sin) * (1.0 - SLACK) - SLACK * SLACK).max(0.0);
+        if self.slices.peeled {
+            // Only the tabulated part has slopes away from the viewer, and it comes first.
+            return [low * self.tabulated_share(v), 1.0];
+        }
+        let high = number(1.0 + sin, cos);
+        [low, (high + (1.0 - high) * SLACK + SLACK * SLACK).min(1.0)]
+    }
+}
+
+/// Relative widening of the interval at either end.
+const SLACK: f32 = 1e-5;
+
+impl Bounded<'_> {
+    /// A normal from two numbers in [0, 1] (clamped to them).
+    #[inline]
+    pub fn sample(&self, u: [f32; 2]) -> Vec3 {
+        let along = (self.from + u[0].clamp(0.0, 1.0) * self.share).min(1.0);
+        self.material.sample_visible_normal(self.v, [along, u[1]])
+    }
+
+    /// Probability that an unbounded sample would be one of these, in (0, 1]: what the weight of a sample is multiplied with.
+    pub fn share(&self) -> f32 {
+        self.share
+    }
+
+    /// Density per steradian of normals with which [`sample`](Self::sample) draws `m`, for an `m` that reflects the view above the
+    /// horizon: the analytic one, with G1 from the table. Of reflected directions it is this over 4 v·m.
+    #[inline]
+    pub fn visible_normal_pdf(&self, m: Vec3) -> f32 {
+        self.material.visible_normal_pdf(self.v, m) / self.share
+    }
+
+    /// The same as the exact density of the table's samples, see [`StudentT::table_pdf`].
+    pub fn table_pdf(&self, m: Vec3) -> f32 {
+        self.material.table_pdf(self.v, m) / self.share
+    }
+}

@@ -1,0 +1,152 @@
+//! Isotropic distributions that are no members of the Student-t family, from tables of their own.
+
+use alloc::vec::Vec;
+
+use glam::Vec3;
+use microfacet_common::Masking;
+
+use super::slices::{Slice, Slices};
+use super::student_t::StudentT;
+use crate::axis::half_tangent::Slope;
+use crate::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
+use crate::axis::{HalfTangent, Mapping, MirroredRoot};
+use crate::error::BindError;
+use crate::format::{Kind, Table};
+use crate::math::sqrt;
+
+/// A material of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
+///
+/// Directions are unit vectors in the tangent frame, n = +z. As for the family, one lookup inverts the CDF of the in-plane slope and one that of the
+/// slope across; the latter depends here on the former.
+#[derive(Clone, Debug)]
+pub struct Radial {
+    /// σ, masking and the in-plane slope.
+    plane: StudentT,
+    /// Slopes across: rows by in-plane slope, the half for u > ½.
+    across: Vec<Node>,
+    /// Cells along a row, and between rows.
+    cells: usize,
+    rows: usize,
+    /// The coordinate of the in-plane slope, and the largest unit slope; ∞ where normals reach the horizon.
+    slope: Mapping,
+    reach: f32,
+    /// D^(1/4) by the half tangent of the slope.
+    density: Vec<Node>,
+    tilt: HalfTangent,
+}
+
+/// s in the formulas of tables without a γ axis: slopes across are in units of √(1 + x²), and κ is the scale of its axis.
+const ROUND: f64 = 1.0;
+
+impl Radial {
+    pub(crate) fn bind(tables: &[Table], sigma: f32, suffix: &str) -> Result<Self, BindError> {
+        if !(sigma > 0.0 && sigma < f32::INFINITY) {
+            return Err(BindError::Sigma(sigma));
+        }
+        let slice = |kind: Kind| {
+            let name = kind.table_name(None, suffix);
+            let found = tables.iter().find(|table| table.kind == kind && table.name == name);
+            found.map(Slice::whole).ok_or(BindError::NoTable(name))
+        };
+        let (shadowing, slope) = (slice(Kind::RadialShadowing)?, slice(Kind::RadialSlope)?);
+        let (conditional, density) = (slice(Kind::RadialConditional)?, slice(Kind::RadialDensity)?);
+        let slope_axis = conditional.axes[0].mapping;
+        let (Mapping::HalfTangent(tilt), reach) = (
+            density.axes[0].mapping,
+            if let Mapping::Rational(axis) = slope_axis { axis.kappa(ROUND) as f32 } else { f32::INFINITY },
+        ) else {
+            unreachable!("validated on load")
+        };
+        let width = conditional.axes[1].nodes.len();
+        let mut across = conditional.nodes;
+        across.chunks_exact_mut(width).for_each(make_monotone);
+        Ok(Self {
+            plane: StudentT::carrier(sigma, Slices::new([&shadowing, &slope], ROUND)),
+            across,
+            cells: width - 1,
+            rows: conditional.axes[0].nodes.len() - 1,
+            slope: slope_axis,
+            reach,
+            density: density.nodes,
+            tilt,
+        })
+    }
+
+    /// The scale of slopes in the tables, their median.
+    pub fn sigma(&self) -> f32 {
+        self.plane.sigma()[0]
+    }
+
+    /// Normal distribution function D(m) per steradian, interpolated; 0 for m at or below the horizon.
+    #[inline]
+    pub fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        let sigma = self.sigma();
+        let r = sqrt(m.x * m.x + m.y * m.y);
+        // The half tangent of the unit slope r/(σ z): of a view, with the parts the other way round.
+        let h = self.tilt.of_view(sigma * m.z, r);
+        let cells = self.density.len() - 1;
+        let (cell, w) = locate(h * cells as f32, cells);
+        let root = hermite(self.density[cell], self.density[cell + 1], w).max(0.0);
+        (root * root) * (root * root)
+    }
+
+    /// Smith masking G1(w) ∈ [0, 1]; 0 at and below the horizon.
+    #[inline]
+    pub fn g1(&self, w: Vec3) -> f32 {
+        self.plane.g1(w)
+    }
+
+    /// Λ(w) = 1/G1 − 1 ≥ 0; ∞ at and below the horizon.
+    #[inline]
+    pub fn lambda(&self, w: Vec3) -> f32 {
+        self.plane.lambda(w)
+    }
+
+    /// Masking and shadowing of view and light; 0 when either is at or below the horizon.
+    #[inline]
+    pub fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        self.plane.g2(v, l, masking)
+    }
+
+    /// A normal visible from `v`, from two numbers in [0, 1].
+    #[inline]
+    pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let view = self.plane.stretch(v);
+        let x = self.plane.sample_slope(&view, u[0]);
+        self.plane.assemble(&view, x, self.sample_across(x, u[1]))
+    }
+
+    /// The slope across in units of √(1 + x²), given the in-plane slope.
+    ///
+    /// Tabulated by the half tangent of that slope; where slopes are bounded by R, in units of √(1 − x²/R²) by x/(x + R), which
+    /// keeps the rows alike up to the bound.
+    #[inline(always)]
+    fn sample_across(&self, x: Slope, u: f32) -> Slope {
+        let a = x.x.abs();
+        let (coordinate, shrink) = match self.slope {
+            Mapping::Rational(axis) => {
+                let (z, length) = (self.reach * x.z, sqrt(a * a + x.z * x.z));
+                (axis.of_slope(a, z), sqrt((z - a).max(0.0) * (z + a)) / (self.reach * length))
+            }
+            Mapping::HalfTangent(axis) => (axis.of_view(x.z, a), 1.0),
+            _ => unreachable!("validated on load"),
+        };
+        let (row, between) = locate(coordinate * self.rows as f32, self.rows);
+        let (cell, w) = locate(MirroredRoot::coordinate(u) * self.cells as f32, self.cells);
+        let start = row * (self.cells + 1) + cell;
+        let below = start + self.cells + 1;
+        let (a, b) = between_rows(&self.across[start..start + 2], &self.across[below..below + 2], 0, between);
+        let t = Slope::from_end(hermite(a, b, w), if u > 0.5 { 1.0 } else { -1.0 });
+        Slope { x: t.x * shrink, z: t.z }
+    }
+
+    /// Density of visible normals (v·m)⁺ D(m) G1(v)/(v·n) per steradian, with the tables' D and G1.
+    #[inline]
+    pub fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        let facing = v.dot(m).max(0.0);
+        (facing * self.d(m) * self.plane.inverse_area(&self.plane.stretch(v))).min(f32::MAX)
+    }
+}

@@ -1,0 +1,194 @@
+//! Binding: the γ axis of a table collapsed at one shape, leaving the slice that lookups read.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use crate::axis::hermite::{Cell, Node, cells, make_monotone};
+use crate::axis::{Axis, HalfTangent, Interpolation, InverseShape, Mapping, MirroredRoot, Rational};
+use crate::error::BindError;
+use crate::format::{Kind, Table};
+
+/// Whether the table covers s.
+pub(crate) fn covers(table: &Table, s: f64) -> bool {
+    table.axes[0].weights(s).is_some()
+}
+
+/// A (value, slope) table without its γ axis.
+pub(crate) struct Slice<'a> {
+    pub(crate) kind: Kind,
+    pub(crate) nodes: Vec<Node>,
+    /// Axes of the table.
+    pub(crate) axes: &'a [Axis],
+}
+
+impl<'a> Slice<'a> {
+    /// A table that has no γ axis.
+    pub(crate) fn whole(table: &'a Table) -> Self {
+        Self { kind: table.kind, nodes: pairs(&table.values), axes: &table.axes }
+    }
+
+    /// The slice at s; `None` where the table does not cover it.
+    fn at(table: &'a Table, s: f64) -> Option<Self> {
+        Some(Self { kind: table.kind, nodes: slice(table, s)?, axes: &table.axes })
+    }
+}
+
+fn pairs(values: &[f32]) -> Vec<Node> {
+    values.chunks_exact(2).map(|node| [node[0], node[1]]).collect()
+}
+
+fn slice(table: &Table, s: f64) -> Option<Vec<Node>> {
+    let weights = table.axes[0].weights(s)?;
+    let size = table.values.len() / table.axes[0].nodes.len();
+    let mut sum = vec![0.0_f32; size];
+    for (i, weight) in weights {
+        let weight = weight as f32;
+        for (into, x) in sum.iter_mut().zip(&table.values[i * size..]) {
+            *into += weight * x;
+        }
+    }
+    Some(pairs(&sum))
+}
+
+/// Slices of one shape.
+#[derive(Clone, Debug)]
+pub(crate) struct Slices {
+    /// G1/q over the number of cells, by cell of the view coordinate; the coordinate in cells then needs no scaling of its own.
+    pub(crate) shadowing: Vec<Cell>,
+    /// Cells of that axis.
+    pub(crate) shadowing_cells: f32,
+    /// The view coordinate q there, and its κ.
+    pub(crate) shadowing_view: Rational,
+    pub(crate) kappa: f32,
+    /// In-plane slopes: rows by view, each `2 (cells + 1)` nodes, the half for u ≤ ½ first; and a node that is read with weight 0.
+    pub(crate) slope: Vec<Node>,
+    /// Cells of the view axis, and its coordinate.
+    pub(crate) rows: usize,
+    pub(crate) view: HalfTangent,
+    /// Cells of one half of the u₁ axis.
+    pub(crate) cells: usize,
+    /// Whether `slope` is without its heavy part.
+    pub(crate) peeled: bool,
+    /// Slopes across the plane, the half for u > ½.
+    pub(crate) across: Vec<Node>,
+    /// What the common case reads besides `slope`; absent where it does not apply.
+    pub(crate) plain: Option<Plain>,
+}
+
+/// The case that most materials are, laid out for speed: nothing peeled off, no crowded axis.
+#[derive(Clone, Debug)]
+pub(crate) struct Plain {
+    /// Slopes across by cell.
+    pub(crate) across: Vec<Cell>,
+    /// What takes min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
+    pub(crate) scales: [f32; 2],
+    /// Cells of the view axis.
+    pub(crate) rows: f32,
+    /// 1 over it.
+    pub(crate) row: f32,
+    /// Nodes of half a row of `slope`.
+    pub(crate) half: u32,
+}
+
+impl Slices {
+    pub(crate) fn bind(tables: &[Table], gamma: f64, s: f64) -> Result<Self, BindError> {
+        let shadowing = find(tables, &[Kind::Shadowing], gamma, s)?;
+        let kinds = [Kind::VisibleSlope, Kind::VisibleSlopePeeled];
+        let slope = find(tables, &kinds, gamma, s)?;
+        let across = find(tables, &[Kind::VisibleSlopeConditional], gamma, s)?;
+        let mut slices = Self::new([&shadowing, &slope], s);
+        slices.across = across.nodes;
+        make_monotone(&mut slices.across);
+        let (numbers, rows) = (slices.cells + 1, slices.rows);
+        slices.plain = (!slices.peeled && !slices.view.crowded).then(|| Plain {
+            scales: [slices.cells, slices.across.len() - 1].map(MirroredRoot::scale),
+            across: cells(&slices.across, 1.0),
+            rows: rows as f32,
+            row: (1.0 / rows as f64) as f32,
+            half: numbers as u32,
+        });
+        Ok(slices)
+    }
+
+    /// From slices of G1 and of in-plane slopes alone.
+    pub(crate) fn new([shadowing, slope]: [&Slice; 2], s: f64) -> Self {
+        let (Mapping::Rational(shadowing_view), [.., view, numbers]) =
+            (shadowing.axes[shadowing.axes.len() - 1].mapping, slope.axes)
+        else {
+            unreachable!("validated on load")
+        };
+        let Mapping::HalfTangent(coordinate) = view.mapping else { unreachable!("validated on load") };
+        let shadowing_cells = shadowing.nodes.len() - 1;
+        let mut slopes = slope.nodes.clone();
+        slopes.chunks_exact_mut(numbers.nodes.len()).for_each(make_monotone);
+        slopes.push([0.0; 2]);
+        Self {
+            shadowing: cells(&shadowing.nodes, 1.0 / shadowing_cells as f64),
+            shadowing_cells: shadowing_cells as f32,
+            kappa: shadowing_view.kappa(s) as f32,
+            shadowing_view,
+            slope: slopes,
+            rows: view.nodes.len() - 1,
+            view: coordinate,
+            cells: numbers.nodes.len() - 1,
+            peeled: slope.kind == Kind::VisibleSlopePeeled,
+            across: Vec::new(),
+            plain: None,
+        }
+    }
+
+    /// None: of closed forms, which read no table.
+    pub(crate) fn none() -> Self {
+        Self {
+            shadowing: Vec::new(),
+            shadowing_cells: 0.0,
+            kappa: 0.0,
+            shadowing_view: Rational::BAKED,
+            slope: Vec::new(),
+            rows: 0,
+            view: HalfTangent::default(),
+            cells: 0,
+            peeled: false,
+            across: Vec::new(),
+            plain: None,
+        }
+    }
+
+    /// Bytes that lookups of this material touch.
+    pub(crate) fn bytes(&self) -> usize {
+        let across = match &self.plain {
+            Some(plain) => size_of_val(&plain.across[..]),
+            None => size_of_val(&self.across[..]),
+        };
+        size_of_val(&self.shadowing[..]) + size_of_val(&self.slope[..]) + across
+    }
+}
+
+/// The slice of the first table of one of `kinds` that covers s; earlier kinds are preferred.
+fn find<'a>(tables: &'a [Table], kinds: &[Kind], gamma: f64, s: f64) -> Result<Slice<'a>, BindError> {
+    for &kind in kinds {
+        let mut of_kind = tables.iter().filter(|table| table.kind == kind);
+        if let Some(slice) = of_kind.find_map(|table| Slice::at(table, s)) {
+            return Ok(slice);
+        }
+    }
+    Err(BindError::NotCovered { kind: kinds[0].name(), gamma, covered: coverage(tables, kinds) })
+}
+
+/// What a set covers, in words.
+fn coverage(tables: &[Table], kinds: &[Kind]) -> String {
+    let mut parts = Vec::new();
+    for table in tables.iter().filter(|table| kinds.contains(&table.kind)) {
+        let axis = &table.axes[0];
+        let gamma = |s: f64| InverseShape.quantity(s);
+        if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
+            parts.extend(axis.nodes.iter().rev().map(|&s| format!("gamma = {}", gamma(s))));
+        } else {
+            // The larger s is the smaller gamma.
+            parts.push(format!("[{:.6}, {}]", gamma(axis.nodes[axis.nodes.len() - 1]), gamma(axis.nodes[0])));
+        }
+    }
+    if parts.is_empty() { "nothing".into() } else { parts.join(", ") }
+}

@@ -1,0 +1,291 @@
+//! A material bound to its tables: σ and γ fixed, only directions left.
+
+use core::f32::consts::PI;
+
+use glam::Vec3;
+use microfacet_common::Masking;
+use microfacet_common::shape::{gamma_of_s, s_of_gamma};
+use wide::f32x4;
+
+use super::slices::Slices;
+use crate::axis::hermite::{horner, split};
+use crate::error::BindError;
+use crate::format::Table;
+use crate::lanes::swap_pairs;
+use crate::math::sqrt;
+
+/// Roughness along the tangent frame's x and y: a number for an isotropic material, a pair for an anisotropic one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roughness(pub [f32; 2]);
+
+/// Outside this range squares of stretched directions, and of normals made from them, leave single precision.
+const SIGMAS: core::ops::RangeInclusive<f32> = 1e-8..=1e6;
+
+impl Roughness {
+    pub(crate) fn checked(self) -> Result<[f32; 2], BindError> {
+        match self.0.into_iter().find(|sigma| !SIGMAS.contains(sigma)) {
+            Some(sigma) => Err(BindError::Sigma(sigma)),
+            None => Ok(self.0),
+        }
+    }
+}
+
+impl From<f32> for Roughness {
+    fn from(sigma: f32) -> Self {
+        Self([sigma, sigma])
+    }
+}
+
+impl From<f64> for Roughness {
+    fn from(sigma: f64) -> Self {
+        Self([sigma as f32; 2])
+    }
+}
+
+impl From<[f32; 2]> for Roughness {
+    fn from(sigma: [f32; 2]) -> Self {
+        Self(sigma)
+    }
+}
+
+impl From<[f64; 2]> for Roughness {
+    fn from([x, y]: [f64; 2]) -> Self {
+        Self([x as f32, y as f32])
+    }
+}
+
+/// A Student-t material with fixed roughness and shape, holding only the slices of the tables it needs.
+///
+/// Directions are unit vectors in the tangent frame, n = +z, x and y along the principal roughness axes. A view or light at or below
+/// the horizon has `g1` = 0 and `lambda` = ∞; sampling takes such a view at the horizon. Functions of `f32` return numbers of the error
+/// that the tables' certificates state; `m` returned by samplers is of unit length to 4 ulp, above the
+/// horizon, and faces the view to rounding (v·m > −1.2e-7).
+#[derive(Clone, Debug)]
+pub struct StudentT {
+    pub(crate) sigma_x: f32,
+    pub(crate) sigma_y: f32,
+    pub(crate) gamma: f64,
+    pub(crate) s: f32,
+    /// 2γ − 3, from γ in double precision: near 3/2 a rounded γ would be another material.
+    pub(crate) two_k: f32,
+    pub(crate) slices: Slices,
+    /// Whether there are no slices, since GGX's closed forms need none.
+    pub(crate) closed_form: bool,
+}
+
+/// A direction stretched by (σx, σy, 1), with its azimuth there.
+#[derive(Clone, Copy)]
+pub(crate) struct Stretched {
+    /// Direction of the horizontal part, of length `frame`; (1, 0) at normal incidence.
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    /// Length of (x, y): that of the horizontal part, or 1 where that is short.
+    pub(crate) frame: f32,
+    /// Horizontal length, 0 at normal incidence.
+    pub(crate) rho: f32,
+    /// Vertical part, ≥ 0.
+    pub(crate) z: f32,
+}
+
+/// Horizontal lengths below this are taken as normal incidence: their squares leave the range of f32, and the azimuth with them.
+pub(crate) const NORMAL_INCIDENCE: f32 = 1e-18;
+
+/// Below this the azimuth is scaled to unit length: the square of a normal carrying it would leave the range of f32.
+pub(crate) const SHORT: f32 = 1e-6;
+
+/// s times the squared slope from which D takes double precision: few normals of any shape, yet no logarithm below exceeds a few units.
+const STEEP: f32 = 1e3;
+
+/// Below the area of any direction; its reciprocal times the number of cells stays finite.
+pub(crate) const LEAST_AREA: f32 = 1e-30;
+
+/// G1 of what is no number, out of the way of what is one.
+#[cold]
+fn outside() -> f32 {
+    0.0
+}
+
+impl StudentT {
+    pub(crate) fn bind(tables: &[Table], roughness: Roughness, gamma: f64) -> Result<Self, BindError> {
+        let [sigma_x, sigma_y] = roughness.checked()?;
+        if !(gamma > 1.5) {
+            return Err(BindError::Gamma(gamma));
+        }
+        let s = s_of_gamma(gamma);
+        let slices = Slices::bind(tables, gamma, s)?;
+        let two_k = (2.0 * gamma - 3.0) as f32;
+        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_k, slices, closed_form: false })
+    }
+
+    /// The carrier of another distribution's tables: unit slopes are slopes over σ, and those across scale with √(1 + x²).
+    pub(crate) fn carrier(sigma: f32, slices: Slices) -> Self {
+        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_k: 1.0, slices, closed_form: false }
+    }
+
+    /// The same shape with another roughness; the tables are not touched again.
+    ///
+    /// # Errors
+    /// [`BindError::Sigma`] unless both roughnesses lie in [1e-8, 1e6].
+    pub fn with_roughness(&self, roughness: impl Into<Roughness>) -> Result<Self, BindError> {
+        let [sigma_x, sigma_y] = roughness.into().checked()?;
+        Ok(Self { sigma_x, sigma_y, ..self.clone() })
+    }
+
+    /// σx and σy.
+    pub fn sigma(&self) -> [f32; 2] {
+        [self.sigma_x, self.sigma_y]
+    }
+
+    /// The shape γ.
+    pub fn gamma(&self) -> f64 {
+        self.gamma
+    }
+
+    /// Bytes of table that lookups of this material touch; 0 for closed forms.
+    pub fn bytes(&self) -> usize {
+        self.slices.bytes()
+    }
+
+    #[inline(always)]
+    pub(crate) fn stretch(&self, w: Vec3) -> Stretched {
+        let (x, y) = (self.sigma_x * w.x, self.sigma_y * w.y);
+        let rho = sqrt(x * x + y * y);
+        let z = w.z.max(0.0);
+        if rho >= SHORT {
+            Stretched { x, y, frame: rho, rho, z }
+        } else if rho >= NORMAL_INCIDENCE {
+            Stretched { x: x / rho, y: y / rho, frame: 1.0, rho, z }
+        } else {
+            // Straight down, or not a number: the horizon, as for every view below it, with an azimuth of its own.
+            Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: if z > 0.0 { 0.0 } else { 1.0 }, z }
+        }
+    }
+
+    /// 1/(area of the microsurface seen along the stretched direction) = G1/z, finite at grazing.
+    #[inline(always)]
+    pub(crate) fn inverse_area(&self, w: &Stretched) -> f32 {
+        if self.closed_form {
+            return Self::ggx_inverse_area(w);
+        }
+        let r = self.inverse_mean_area(w.rho, w.z);
+        self.shadowing(w.rho, w.z, r) * r
+    }
+
+    /// M₀ = ∫₀^∞ x p(x) dx: the area at grazing, κ over the first node.
+    pub(crate) fn first_moment(&self) -> f32 {
+        self.slices.kappa / (self.slices.shadowing[0][0] * self.slices.shadowing_cells)
+    }
+
+    /// cells/(z + κρ): the view coordinate q in cells, for each unit of z.
+    #[inline(always)]
+    fn inverse_mean_area(&self, rho: f32, z: f32) -> f32 {
+        // The sum vanishes for the null vector and straight below the surface only, where z·r is then 0 and not 0·∞.
+        self.slices.shadowing_cells / (z + self.slices.kappa * rho).max(LEAST_AREA)
+    }
+
+    /// G1/q over the number of cells, from the table.
+    #[inline(always)]
+    fn shadowing(&self, rho: f32, z: f32, r: f32) -> f32 {
+        let slices = &self.slices;
+        let at = slices.shadowing_view.of_view(rho, z, slices.kappa, r, slices.shadowing_cells);
+        let (cell, w) = split(f32x4::splat(at));
+        // Only what is no number can leave the table.
+        let cell = slices.shadowing.get(cell.to_array()[0] as u32 as usize);
+        cell.map_or(0.0, |cell| horner(cell, w.to_array()[0]))
+    }
+
+    /// Smith masking G1(w) ∈ [0, 1]: the visible share of the microsurface projected along `w`. 0 at and below the horizon.
+    #[inline(always)]
+    pub fn g1(&self, w: Vec3) -> f32 {
+        if self.closed_form {
+            let w = self.stretch(w);
+            return (w.z * Self::ggx_inverse_area(&w)).min(1.0);
+        }
+        // As `inverse_area`, without the azimuth that `stretch` finds, with κ within the roughness, and with nothing between the division
+        // and the lookup. The chain of a root, a division and a lookup is so long that the instructions of a few calls fill the processor's
+        // window, and each one less counts. Of 4.3 ns Horner's scheme, which no compiler turns into shuffles, took about 0.5, an area without
+        // a lower limit 0.2, and a root of all lanes, none of them to be set to zero, with the answer to what is no number out of the way 0.3;
+        // 3.1 are left.
+        let slices = &self.slices;
+        let scale = f32x4::new([slices.kappa * self.sigma_x, slices.kappa * self.sigma_y, 0.0, 0.0]);
+        let xy = f32x4::new([w.x, w.y, 0.0, 0.0]) * scale;
+        let squares = xy * xy;
+        let z = f32x4::new([w.z, 0.0, 0.0, 0.0]).fast_max(f32x4::ZERO);
+        let across = (squares + swap_pairs(squares)).sqrt();
+        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
+        let (cell, w) = split(at);
+        let Some(cell) = slices.shadowing.get(cell.to_array()[0] as u32 as usize) else {
+            return outside();
+        };
+        let g1 = q.to_array()[0] * horner(cell, w.to_array()[0]);
+        // The null vector gives 0/0, which leaves the table where the cast does not saturate, and is cell 0 where it does.
+        if cfg!(not(target_feature = "sse2")) && g1.is_nan() {
+            return 0.0;
+        }
+        // Interpolation may overshoot 1 by the table's error near normal incidence.
+        g1.min(1.0)
+    }
+
+    /// Smith's Λ(w) = 1/G1 − 1 ≥ 0; ∞ at and below the horizon. Absolute accuracy is that of G1: where Λ is below 1e-5 only its size is meant.
+    #[inline]
+    pub fn lambda(&self, w: Vec3) -> f32 {
+        1.0 / self.g1(w) - 1.0
+    }
+
+    /// Masking and shadowing of view and light; 0 when either is at or below the horizon.
+    #[inline]
+    pub fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        masking.g2(self.g1(v), self.g1(l))
+    }
+
+    /// Normal distribution function D(m) per steradian; 0 for m at or below the horizon.
+    ///
+    /// Relative error a few ulp times the exponent (about 1e-6 times |ln D σxσy|). For γ < 2 it grows without bound towards the
+    /// horizon and overflows to `f32::MAX` rather than to ∞.
+    #[inline]
+    pub fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        let scale = 1.0 / (PI * self.sigma_x * self.sigma_y);
+        self.d_of_unit(Vec3::new(m.x / self.sigma_x, m.y / self.sigma_y, m.z), scale)
+    }
+
+    /// D of a normal above the horizon whose horizontal part is divided by σ, with 1/(πσxσy).
+    #[inline(always)]
+    pub(crate) fn d_of_unit(&self, m: Vec3, scale: f32) -> f32 {
+        let r2 = m.x * m.x + m.y * m.y;
+        let z2 = m.z * m.z;
+        let s = self.s;
+        if s == 1.0 {
+            // GGX: 1/(πσxσy (z² + r²)²).
+            let b = z2 + r2;
+            return (scale / (b * b)).min(f32::MAX);
+        }
+        let ratio = r2 / z2;
+        let log = if s * ratio < 1e-4 {
+            // γ ln(1 + s r²/z²) = (1+s) r²/z² (1 − ½ s r²/z² …): Beckmann's limit, where 1/s would overflow.
+            let y = s * ratio;
+            -(1.0 + s) * ratio * (1.0 - y * (0.5 - y * (1.0 / 3.0))) - 2.0 * libm::logf(z2)
+        } else if s * ratio < STEEP {
+            -(1.0 + s) / s * libm::log1pf(s * ratio) - 2.0 * libm::logf(z2)
+        } else {
+            // cos^(2γ−4) (z² + s r²)^(−γ): towards the horizon both logarithms grow, and for small γ they cancel.
+            let (z, s, r2) = (f64::from(m.z), f64::from(s), f64::from(r2));
+            let gamma = gamma_of_s(s);
+            (2.0 * (gamma - 2.0) * libm::log(z) - gamma * libm::log(z * z + s * r2)) as f32
+        };
+        // In two halves: the whole power may underflow where 1/σ² brings D back.
+        let root = libm::expf(0.5 * log);
+        (scale * root * root).min(f32::MAX)
+    }
+
+    /// Density of visible normals G1(v) (v·m)⁺ D(m)/(v·n) per steradian: the exact one, with G1 from the table.
+    ///
+    /// 0 where m faces away or lies below the horizon; finite at grazing views.
+    #[inline]
+    pub fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        let facing = v.dot(m).max(0.0);
+        (facing * self.d(m) * self.inverse_area(&self.stretch(v))).min(f32::MAX)
+    }
+}

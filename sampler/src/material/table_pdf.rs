@@ -1,0 +1,178 @@
+//! The exact density of what the table sampler draws.
+//!
+//! An estimator that divides by it is unbiased at any resolution: it is the Jacobian of the sampler's own map, found by inverting
+//! the interpolated CDFs, and not the analytic density they approximate. Computed in f64 from the very nodes the sampler reads.
+
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use super::student_t::{Stretched, StudentT};
+use crate::axis::MirroredRoot;
+use crate::axis::half_tangent::{ends, rate, slope_at};
+use crate::axis::hermite::{Cubic, Node};
+use crate::math::sqrt64;
+
+/// How a slope splits into unit-space parts: in-plane (x : z) and across t/√(z² + s x²).
+struct UnitSlopes {
+    x: f64,
+    z: f64,
+    y: f64,
+}
+
+/// Two neighbouring rows of a table and the position between them.
+struct Rows<'a> {
+    low: &'a [Node],
+    high: &'a [Node],
+    between: f32,
+}
+
+impl Rows<'_> {
+    fn node(&self, i: usize) -> Node {
+        let (a, b) = (self.low[i], self.high[i]);
+        [a[0] + self.between * (b[0] - a[0]), a[1] + self.between * (b[1] - a[1])]
+    }
+}
+
+impl StudentT {
+    /// Density per steradian with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m` for `v`.
+    ///
+    /// Integrates to one over all m. 0 outside what the sampler can return. Costs two searches and a few square roots: use it where bias matters,
+    /// and [`visible_normal_pdf`](Self::visible_normal_pdf), which it approaches with the table's resolution, elsewhere.
+    pub fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        if self.closed_form {
+            return self.visible_normal_pdf(v, m);
+        }
+        let view = self.stretch(v);
+        let slopes = self.unit_slopes(&view, m);
+        let along = if self.slices.peeled {
+            let heavy = f64::from(self.heavy_share(&view));
+            (1.0 - heavy) * self.slope_density(&view, &slopes) + heavy * self.heavy_density(&slopes)
+        } else {
+            self.slope_density(&view, &slopes)
+        };
+        let UnitSlopes { x, z, y } = slopes;
+        let s = f64::from(self.s);
+        let norm = sqrt64(z * z + s * x * x);
+        let across = self.across_density(y / norm);
+        // p(x, y) = p(x) p(t)/√(1 + s x²); `along` is per unit of x/z. World slopes scale by σ, and dm = cos³θ per slope area.
+        let per_slope = along * across * z / norm / f64::from(self.sigma_x * self.sigma_y);
+        let density = per_slope / (z * z * z);
+        if density.is_finite() { (density as f32).min(f32::MAX) } else { 0.0 }
+    }
+
+    /// Where the tabulated density has its joints for a view: unit slopes x in the plane of incidence, ascending, and t ≥ 0 across it.
+    ///
+    /// Between them [`table_pdf`](Self::table_pdf) is smooth, so a quadrature that respects them converges fast. x may end at ±∞.
+    pub fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
+        let view = self.stretch(v);
+        if self.closed_form {
+            return Self::ggx_joints(&view);
+        }
+        let rows = self.rows_at(&view);
+        let half = self.slices.cells + 1;
+        let slope = |g: f64, sign: f64| {
+            let [x, z] = slope_at(g);
+            sign * x / z
+        };
+        let away = (0..half).map(|i| slope(f64::from(rows.node(i)[0]), -1.0));
+        let towards = (0..half).rev().map(|i| slope(f64::from(rows.node(half + i)[0]), 1.0));
+        let across = self.slices.across.iter().rev().map(|node| slope(f64::from(node[0]), 1.0));
+        [away.chain(towards).collect(), across.collect()]
+    }
+
+    /// The two rows of the view, interpolated as the sampler does.
+    fn rows_at(&self, view: &Stretched) -> Rows<'_> {
+        let slices = &self.slices;
+        let (row, between) = self.locate_row(view);
+        let stride = 2 * (slices.cells + 1);
+        let [low, high] =
+            [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
+        Rows { low, high, between }
+    }
+
+    fn unit_slopes(&self, view: &Stretched, m: Vec3) -> UnitSlopes {
+        let (a, b) = (f64::from(m.x) / f64::from(self.sigma_x), f64::from(m.y) / f64::from(self.sigma_y));
+        let r = 1.0 / sqrt64(f64::from(view.x) * f64::from(view.x) + f64::from(view.y) * f64::from(view.y));
+        let (cos, sin) = (f64::from(view.x) * r, f64::from(view.y) * r);
+        UnitSlopes { x: a * cos + b * sin, z: f64::from(m.z), y: b * cos - a * sin }
+    }
+
+    /// Density of the tabulated in-plane slope at x/z.
+    fn slope_density(&self, view: &Stretched, at: &UnitSlopes) -> f64 {
+        let place = self.place_along(view, at.x, at.z).1;
+        place.map_or(0.0, |place| place.density()) * rate(at.x, at.z)
+    }
+
+    /// The number at which the table has the in-plane slope x/z: the inverse of the lookup.
+    pub(crate) fn number_along(&self, view: &Stretched, x: f64, z: f64) -> f64 {
+        let (half, place) = self.place_along(view, x, z);
+        let u = place.map_or(0.0, |place| MirroredRoot::number(place.t));
+        if half == 0 { u } else { 1.0 - u }
+    }
+
+    /// The half of the row, and the place in it, that hold the in-plane slope x/z.
+    fn place_along(&self, view: &Stretched, x: f64, z: f64) -> (usize, Option<Place>) {
+        let rows = self.rows_at(view);
+        let [low, high] = ends(x, z);
+        // The half for u ≤ ½ ends where 1 + h reaches its last node; beyond, 1 − h is looked up in the other.
+        let nodes = self.slices.cells + 1;
+        let (half, g) = if low <= f64::from(rows.node(nodes - 1)[0]) { (0, low) } else { (1, high) };
+        (half, Place::find(|i| rows.node(half * nodes + i), self.slices.cells, g))
+    }
+
+    /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.
+    fn heavy_density(&self, at: &UnitSlopes) -> f64 {
+        if at.x <= 0.0 {
+            return 0.0;
+        }
+        let (s, two_k) = (f64::from(self.s), f64::from(self.two_k));
+        let x = at.x / at.z;
+        let base = 1.0 + s * x * x;
+        two_k * s * x / base * libm::exp(-0.5 * two_k * libm::log(base))
+    }
+
+    /// Density of the tabulated slope across at t.
+    fn across_density(&self, t: f64) -> f64 {
+        let nodes = &self.slices.across;
+        let [_, g] = ends(t.abs(), 1.0);
+        let place = Place::find(|i| nodes[i], nodes.len() - 1, g);
+        place.map_or(0.0, |place| place.density()) * rate(t, 1.0)
+    }
+}
+
+/// Where the interpolated inverse CDF over one half of a mirrored axis takes a value.
+struct Place {
+    /// Coordinate in [0, 1].
+    t: f64,
+    /// Rate of the value there.
+    dg_dt: f64,
+}
+
+impl Place {
+    /// Of the value g, given the half's `cells + 1` ascending nodes; `None` before the first.
+    fn find(node: impl Fn(usize) -> Node, cells: usize, g: f64) -> Option<Self> {
+        if g < f64::from(node(0)[0]) {
+            return None;
+        }
+        // The halves meet at u = ½ up to the rounding of their nodes; a normal in the gap, if there is one, is a rounded sample of its edge.
+        let g = g.min(f64::from(node(cells)[0]));
+        // The last cell whose first node is not above g.
+        let (mut low, mut high) = (0, cells);
+        while high - low > 1 {
+            let middle = (low + high) / 2;
+            if f64::from(node(middle)[0]) <= g { low = middle } else { high = middle }
+        }
+        let cubic = Cubic::new(node(low), node(low + 1));
+        let w = cubic.solve(g);
+        Some(Self { t: (low as f64 + w) / cells as f64, dg_dt: cubic.derivative(w) * cells as f64 })
+    }
+
+    /// du/dg.
+    fn density(&self) -> f64 {
+        if self.dg_dt > 0.0 { MirroredRoot::rate(self.t) / self.dg_dt } else { 0.0 }
+    }
+}
