@@ -4,16 +4,24 @@
 //! nearest, or lines through two, so that all error is the coordinate's. Columns are the parts of the domain that ask for different things.
 
 use microfacet_model::{AlbedoIntegrator, Shape};
+use microfacet_sampler::axis::{ViewBlend, even_nodes, lagrange};
 use rayon::prelude::*;
 
 const NODES: usize = 28;
 
-/// Where views stand, as t(μ) ascending to 1 at normal incidence; σ and γ are the material's.
+/// Where views stand, as t(μ) ascending to 1 at normal incidence.
+enum Coordinate {
+    /// Of the view alone.
+    Plain(fn(f64) -> f64),
+    /// Of view and material.
+    Blend(ViewBlend),
+}
+
 struct Design {
     name: &'static str,
     /// Nodes the polynomial goes through.
-    stencil: usize,
-    coordinate: fn(Material, f64) -> f64,
+    window: usize,
+    coordinate: Coordinate,
 }
 
 #[derive(Clone, Copy)]
@@ -22,45 +30,31 @@ struct Material {
     gamma: f64,
 }
 
-impl Material {
-    fn x(self, cos: f64) -> f64 {
-        let knee = (3.0 + 0.5 / (2.0 * self.gamma - 3.0)) * self.sigma;
-        cos / (cos + knee * sin(cos))
-    }
-
-    fn first(self) -> f64 {
-        (2e-3 * self.sigma).min(2e-5)
-    }
-}
-
-fn sin(cos: f64) -> f64 {
-    ((1.0 - cos) * (1.0 + cos)).sqrt()
-}
-
+/// h = μ/(1 + sin θ).
 fn h(cos: f64) -> f64 {
-    cos / (1.0 + sin(cos))
+    cos / (1.0 + ((1.0 - cos) * (1.0 + cos)).sqrt())
 }
 
-fn roots(material: Material, cos: f64) -> f64 {
-    0.4 * material.x(cos).powf(0.25) + 0.6 * h(cos).powf(0.25)
+/// Fourth roots of h and x alone.
+const ROOTS: ViewBlend = ViewBlend { weight: 0.0, normal: 0.0, ..ViewBlend::BAKED };
+
+const fn plain(name: &'static str, window: usize, coordinate: fn(f64) -> f64) -> Design {
+    Design { name, window, coordinate: Coordinate::Plain(coordinate) }
+}
+
+const fn blend(name: &'static str, blend: ViewBlend) -> Design {
+    Design { name, window: 6, coordinate: Coordinate::Blend(blend) }
 }
 
 const DESIGNS: [Design; 8] = [
-    Design { name: "cosine, lines", stencil: 2, coordinate: |_, cos| cos },
-    Design { name: "cosine", stencil: 6, coordinate: |_, cos| cos },
-    Design { name: "square root of the cosine", stencil: 6, coordinate: |_, cos| cos.sqrt() },
-    Design { name: "√h", stencil: 6, coordinate: |_, cos| h(cos).sqrt() },
-    Design { name: "h^¼", stencil: 6, coordinate: |_, cos| h(cos).powf(0.25) },
-    Design { name: "fourth roots of h and x", stencil: 6, coordinate: roots },
-    Design { name: "and x", stencil: 6, coordinate: |m, cos| 0.3 * m.x(cos) + 0.7 * roots(m, cos) },
-    Design {
-        name: "and the turn at the normal (baked)",
-        stencil: 6,
-        coordinate: |m, cos| {
-            let turn = 10.0 * m.sigma;
-            0.3 * m.x(cos) + 0.1 * turn / (turn + sin(cos)) + 0.6 * roots(m, cos)
-        },
-    },
+    plain("cosine, lines", 2, |cos| cos),
+    plain("cosine", 6, |cos| cos),
+    plain("square root of the cosine", 6, f64::sqrt),
+    plain("√h", 6, |cos| h(cos).sqrt()),
+    blend("h^¼", ViewBlend { share: 0.0, ..ROOTS }),
+    blend("fourth roots of h and x", ROOTS),
+    blend("and x", ViewBlend { weight: ViewBlend::BAKED.weight, ..ROOTS }),
+    blend("and the turn at the normal (baked)", ViewBlend::BAKED),
 ];
 
 /// Names of the columns, and whether a σ, a cosine belong.
@@ -99,20 +93,28 @@ fn errors(design: &Design, material: Material) -> [f64; 4] {
         let albedo = integrator.reflection(material.sigma, cos, |_| [1.0]).expect("in the domain");
         [albedo.uncorrelated[0], albedo.height_correlated[0]]
     };
-    let start = (design.coordinate)(material, material.first());
-    let at = |cos: f64| ((design.coordinate)(material, cos) - start) / (1.0 - start);
-    let node = |i: usize| exact(cosine(at, material.first(), i as f64 / (NODES - 1) as f64));
-    let nodes: Vec<[f64; 2]> = (0..NODES).map(node).collect();
+    let bound = |blend: &ViewBlend| blend.bind(material.sigma, material.gamma);
+    let first = bound(&ViewBlend::BAKED).floor();
+    let at = |cos: f64| match &design.coordinate {
+        Coordinate::Plain(t) => (t(cos) - t(first)) / (1.0 - t(first)),
+        Coordinate::Blend(blend) => bound(blend).coordinate(cos),
+    };
+    let nodes = even_nodes(0.0, 1.0, NODES);
+    let values: Vec<[f64; 2]> = nodes.iter().map(|&t| exact(cosine(at, first, t))).collect();
+    let got = |t: f64| {
+        let weights = lagrange::weights(&nodes, t.clamp(0.0, 1.0), design.window);
+        [0, 1].map(|form| weights.iter().map(|&(i, w)| w * values[i][form]).sum::<f64>())
+    };
     let mut worst = [0.0_f64; 4];
     for i in 0..60 {
         let u = (i as f64 + 0.5) / 60.0;
         // Evenly in the cosine, in its logarithm and near the normal.
         let cos = match i % 3 {
             0 => u,
-            1 => libm::pow(material.first(), 1.0 - u),
+            1 => libm::pow(first, 1.0 - u),
             _ => 1.0 - 0.02 * u * u,
         };
-        let (want, got) = (exact(cos), interpolate(&nodes, design.stencil, at(cos)));
+        let (want, got) = (exact(cos), got(at(cos)));
         let error = (want[0] - got[0]).abs().max((want[1] - got[1]).abs());
         for (worst, part) in worst.iter_mut().zip(PARTS) {
             if part.1(material.sigma, cos) {
@@ -130,16 +132,4 @@ fn cosine(at: impl Fn(f64) -> f64, first: f64, t: f64) -> f64 {
         if at(cos) < t { low = cos } else { high = cos }
     }
     0.5 * (low + high)
-}
-
-fn interpolate(nodes: &[[f64; 2]], stencil: usize, t: f64) -> [f64; 2] {
-    let x = t.clamp(0.0, 1.0) * (nodes.len() - 1) as f64;
-    let start = (x as usize + 1).saturating_sub(stencil / 2).min(nodes.len() - stencil);
-    let mut sum = [0.0; 2];
-    for (i, node) in nodes.iter().enumerate().skip(start).take(stencil) {
-        let others = (start..start + stencil).filter(|&j| j != i);
-        let weight: f64 = others.map(|j| (x - j as f64) / (i as f64 - j as f64)).product();
-        sum = [0, 1].map(|form| sum[form] + weight * node[form]);
-    }
-    sum
 }

@@ -5,6 +5,8 @@
 //! between views; errors are measured in double precision between the nodes of both axes.
 
 use microfacet_model::{Shape, SignedUnit, UnitView, VisibleSlope};
+use microfacet_sampler::axis::HalfTangent;
+use microfacet_sampler::axis::half_tangent::{half_tangent, slope_at};
 
 const VIEWS: usize = 64;
 const NUMBERS: usize = 16;
@@ -37,7 +39,7 @@ impl Design {
         UnitView::from_cotangent(match self.view {
             _ if at == 1.0 => f64::INFINITY,
             View::Cosine => at / (1.0 - at * at).sqrt(),
-            View::HalfTangent => 2.0 * at / (1.0 - at * at),
+            View::HalfTangent => HalfTangent::default().quantity(at),
         })
     }
 
@@ -50,7 +52,7 @@ impl Design {
         let (sin, cos) = shape.unit_sin_cos(x.w);
         let sin = x.sign * sin;
         match self.stored {
-            Stored::HalfTangent => sin / (1.0 + cos),
+            Stored::HalfTangent => half_tangent(sin, cos),
             Stored::GgxNumber => (1.0 + sin * view.cos - cos * view.sin) / (1.0 + view.cos),
         }
     }
@@ -58,8 +60,8 @@ impl Design {
     fn restore(&self, shape: &Shape, view: UnitView, value: f64) -> SignedUnit {
         let (sin, cos) = match self.stored {
             Stored::HalfTangent => {
-                let h = value.clamp(-1.0, 1.0);
-                (2.0 * h, 1.0 - h * h)
+                let [x, z] = slope_at(1.0 - value.clamp(-1.0, 1.0));
+                (x, z)
             }
             Stored::GgxNumber => {
                 let d = (value * (1.0 + view.cos) - 1.0).clamp(-1.0, 1.0);

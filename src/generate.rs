@@ -461,7 +461,10 @@ pub fn provenance(recipe: String, materials: Vec<MaterialEntry>) -> Provenance {
             "shadowing tables hold Smith's G1 of one direction; how two are combined is the reader's choice",
         ),
         ("slope_channel", "derivative of `value` with respect to the node index of the last axis"),
-        ("shadowing", "value = G1/q, q = z/(z+kappa), z = cot(theta)/sigma"),
+        (
+            "shadowing",
+            "value = G1/q, q that of the view's mapping before it is crowded, z = cot(theta)/sigma",
+        ),
         (
             "visible_slope",
             "value = distance of h = x/(1+sqrt(1+x^2)) from the nearer end: 1+h for u <= 1/2, 1-h above",

@@ -225,9 +225,7 @@ fn a_surface_smoother_than_the_promised_ones_has_a_certificate() {
     let normals = generate(&[], DRAFT, provenance(String::new(), Vec::new()), &Cache::none(), || ()).unwrap();
     let set = add_albedos(normals, &plan.albedos, DRAFT, &Cache::none(), || ()).unwrap().set;
     for table in set.tables() {
-        // The edge of total reflection inside the pond is narrower than any cell: that is an error, and said.
-        let [low, high] = if table.kind == Kind::FresnelAlbedo { [1e-3, 1.0] } else { [0.0, 1e-2] };
-        assert!((low..high).contains(&worst_error(table)), "{}: {:?}", table.name, table.certificate);
+        assert!(worst_error(table) < 1e-2, "{}: {:?}", table.name, table.certificate);
         assert!(table.certificate.values().all(|figure| !figure.is_nan()), "{:?}", table.certificate);
     }
 }

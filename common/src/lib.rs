@@ -14,7 +14,7 @@ pub mod schlick;
 pub mod shape;
 
 pub use gauss_legendre::{fill_gauss_legendre, gauss_legendre};
-pub use masking::Masking;
+pub use masking::{Masking, UnknownMasking};
 
 use core::ops::{Add, Div, Mul, Sub};
 

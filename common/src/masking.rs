@@ -1,12 +1,16 @@
 //! How masking and shadowing of a pair of directions are combined.
 
+use core::fmt;
+use core::str::FromStr;
+
 use crate::Real;
 
 /// The form of G2, the share of the microsurface that both view and light reach.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Masking {
-    /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12).
+    /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12), and of a material that states none.
+    #[default]
     Uncorrelated,
     /// G2 = 1/(1 + Λ(v) + Λ(l)), height-correlated (Heitz 2014, eq. 99): what most renderers use.
     HeightCorrelated,
@@ -40,6 +44,27 @@ impl Masking {
     }
 }
 
+/// A text that names no form of masking.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnknownMasking;
+
+impl fmt::Display for UnknownMasking {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [a, b] = Masking::ALL.map(Masking::name);
+        write!(f, "the form of masking must be \"{a}\" or \"{b}\"")
+    }
+}
+
+impl core::error::Error for UnknownMasking {}
+
+impl FromStr for Masking {
+    type Err = UnknownMasking;
+
+    fn from_str(name: &str) -> Result<Self, UnknownMasking> {
+        Self::ALL.into_iter().find(|masking| masking.name() == name).ok_or(UnknownMasking)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,5 +82,13 @@ mod tests {
             }
         }
         assert_eq!(Masking::HeightCorrelated.g2(0.0_f32, 0.0), 0.0);
+    }
+
+    #[test]
+    fn names_are_read_back() {
+        for masking in Masking::ALL {
+            assert_eq!(masking.name().parse(), Ok(masking));
+        }
+        assert_eq!("smith".parse::<Masking>(), Err(UnknownMasking));
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::json;
 
 use microfacet_bake::validate::furnace::{Furnace, TOLERANCE, Walk, furnace, walk};
@@ -28,9 +29,9 @@ pub(super) struct Args {
     /// Cosines of the view in [0, 1], comma separated.
     #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_cosine, default_value = "0.02,0.3,1")]
     cos_theta: Vec<f64>,
-    /// Form of masking; a walk is height-correlated.
-    #[arg(long, value_enum, default_value = "height-correlated")]
-    masking: MaskingArg,
+    /// Form of masking, G1(v) G1(l) or 1/(1 + lambda(v) + lambda(l)); a walk is height-correlated.
+    #[arg(long, value_parser = parse_masking(), default_value = Masking::HeightCorrelated.name())]
+    masking: Masking,
     /// `walk` adds the random walk (Heitz et al. 2016).
     #[arg(long, value_enum, default_value = "quadrature")]
     method: Method,
@@ -48,21 +49,9 @@ pub(super) struct Args {
     json: bool,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum MaskingArg {
-    /// G1(v) G1(l).
-    Uncorrelated,
-    /// 1/(1 + lambda(v) + lambda(l)).
-    HeightCorrelated,
-}
-
-impl From<MaskingArg> for Masking {
-    fn from(arg: MaskingArg) -> Self {
-        match arg {
-            MaskingArg::Uncorrelated => Self::Uncorrelated,
-            MaskingArg::HeightCorrelated => Self::HeightCorrelated,
-        }
-    }
+/// The forms of masking by name.
+fn parse_masking() -> impl TypedValueParser<Value = Masking> {
+    PossibleValuesParser::new(Masking::ALL.map(Masking::name)).try_map(|name| name.parse::<Masking>())
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -100,7 +89,7 @@ pub(super) fn run(args: Args) -> Outcome {
         return average(&args, &set);
     }
     let walking = args.method == Method::Walk;
-    let masking = args.masking.into();
+    let masking = args.masking;
     let mut rows = Vec::new();
     let mut passed = true;
     if !args.json {
@@ -190,7 +179,7 @@ fn average(args: &Args, set: &Tables) -> Outcome {
     for &gamma in &args.gamma {
         text += &format!("| {gamma} |");
         for &sigma in &args.sigma {
-            let albedo = set.albedo(sigma, gamma, args.masking.into()).map_err(Failure::from)?;
+            let albedo = set.albedo(sigma, gamma, args.masking).map_err(Failure::from)?;
             text += &format!(" {:.3} |", albedo.albedo_average());
         }
         text += "\n";

@@ -1,5 +1,7 @@
 //! `inspect`: what is in a table file.
 
+use std::collections::BTreeMap;
+
 use std::path::PathBuf;
 
 use serde_json::json;
@@ -36,6 +38,12 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     for table in set.tables() {
         text += &describe_table(table);
+    }
+    text += "\nmappings:\n";
+    let mappings = set.tables().iter().flat_map(|table| &table.axes).map(|axis| axis.mapping);
+    let formulas: BTreeMap<_, _> = mappings.map(|mapping| (mapping.name(), mapping.formula())).collect();
+    for (name, formula) in formulas {
+        text += &format!("  {name}: {formula}\n");
     }
     text += "\nconventions:\n";
     for (key, value) in &origin.conventions {
@@ -81,13 +89,19 @@ fn describe_axis(axis: &Axis) -> String {
             format!("{} = {}", axis.name, all.join(", "))
         }
         ([one], _) => format!("{} = {one}", axis.name),
-        ([a, .., b], _) => format!("{} in [{:.6}, {:.6}]", axis.name, a.min(*b), a.max(*b)),
+        ([a, .., b], _) => format!("{} in [{}, {}]", axis.name, short(a.min(*b)), short(a.max(*b))),
     };
     format!(
-        "{}: {} nodes, {range}, {:?}, {:?} between them",
+        "{}: {} nodes, {range}, {}, {:?} between them",
         axis.name,
         axis.len(),
-        axis.mapping,
+        serde_json::to_string(&axis.mapping).expect("numbers and names"),
         axis.interpolation
     )
+}
+
+/// Seven digits: an end of an axis has come through its coordinate and back.
+fn short(x: f64) -> String {
+    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
+    if rounded != 0.0 && rounded < 1e-3 { format!("{rounded:e}") } else { format!("{rounded}") }
 }

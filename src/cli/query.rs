@@ -246,18 +246,7 @@ impl Quantity for Normal {
 
 /// The form of masking that a field names.
 fn masking(text: &str) -> Result<Masking, String> {
-    Masking::ALL.into_iter().find(|masking| masking.name() == text).ok_or_else(|| {
-        let known = Masking::ALL.map(|masking| format!("\"{}\"", masking.name()));
-        format!("masking \"{text}\" must be {}", known.join(" or "))
-    })
-}
-
-/// The model's albedos of one form.
-fn of<const N: usize>(albedo: &model::Albedo<N>, masking: Masking) -> [f64; N] {
-    match masking {
-        Masking::Uncorrelated => albedo.uncorrelated,
-        Masking::HeightCorrelated => albedo.height_correlated,
-    }
+    text.parse().map_err(|why| format!("masking \"{text}\": {why}"))
 }
 
 /// Error aimed at by the exact values.
@@ -293,7 +282,7 @@ impl Quantity for Albedo {
                 let schlick = |cos| [1.0 - schlick_weight(cos), schlick_weight(cos)];
                 let albedo =
                     integrator(gamma)?.reflection(sigma, cos, schlick).map_err(|why| why.to_string())?;
-                let [scale, bias] = of(&albedo, masking);
+                let [scale, bias] = albedo.of(masking);
                 [scale + bias, scale, bias].map(|x| x.to_string()).into()
             }
         })
@@ -322,7 +311,7 @@ impl Quantity for AlbedoAverage {
             }
             Method::Exact => {
                 let albedo = integrator(gamma)?.average(sigma, |_| [1.0]).map_err(|why| why.to_string())?;
-                vec![of(&albedo, masking)[0].to_string()]
+                vec![albedo.of(masking)[0].to_string()]
             }
         })
     }

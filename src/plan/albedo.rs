@@ -89,12 +89,7 @@ fn view_need(material: &Material) -> Option<ViewNeed> {
         (_, Some(theta)) => Lobe::Ellipsoid { sigma, theta, gamma },
         _ => Lobe::StudentT { sigma, gamma },
     };
-    Some(ViewNeed { lobe, label, masking: masking(material) })
-}
-
-/// What the recipe leaves open is the form of the distribution's own paper.
-fn masking(material: &Material) -> Masking {
-    material.masking.unwrap_or(Masking::Uncorrelated)
+    Some(ViewNeed { lobe, label, masking: material.masking.unwrap_or_default() })
 }
 
 /// What becomes of a material's albedo.
@@ -192,7 +187,7 @@ fn want(
     if options.embedded_albedo {
         return Ok(Err(AlbedoVerdict::Embedded));
     }
-    Ok(Ok((Domain { gamma, sigma }, masking(material))))
+    Ok(Ok((Domain { gamma, sigma }, material.masking.unwrap_or_default())))
 }
 
 /// Why no albedo is wanted of a material, if none is.

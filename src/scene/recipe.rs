@@ -463,13 +463,9 @@ impl Source<'_> {
 
     fn masking(&self, value: &Value<'_>) -> Result<Masking, SceneError> {
         let name = value.get_ref().as_str().unwrap_or_default();
-        Masking::ALL.into_iter().find(|masking| masking.name() == name).ok_or_else(|| {
-            let names = Masking::ALL.map(Masking::name);
-            self.place(value.span()).invalid(format!(
-                "masking must be \"{}\"{}",
-                names.join("\" or \""),
-                did_you_mean(name, &names)
-            ))
+        name.parse().map_err(|why: microfacet_common::UnknownMasking| {
+            let hint = did_you_mean(name, &Masking::ALL.map(Masking::name));
+            self.place(value.span()).invalid(format!("{why}{hint}"))
         })
     }
 }

@@ -5,7 +5,7 @@ use core::f64::consts;
 
 use serde::{Deserialize, Serialize};
 
-use super::coordinate::Coordinate;
+use super::coordinate::{Coordinate, Placement};
 use super::lagrange::{SIX, six_weights};
 use crate::math::sqrt64;
 
@@ -36,6 +36,11 @@ impl Azimuth {
 }
 
 impl Coordinate for Azimuth {
+    fn formula(&self) -> &'static str {
+        "t = p/2π mod 1, p = atan2(√σ₂ sin δ, √σ₁ cos δ), δ = φ − turn, sigma = [σ₁, σ₂]; where fold, t = \
+         2p/π of |sin δ| and |cos δ|"
+    }
+
     fn check(&self) -> Result<(), &'static str> {
         if self.sigma.iter().all(|x| (1e-12..=1e6).contains(x)) && self.turn.abs() <= 7.0 {
             Ok(())
@@ -44,9 +49,8 @@ impl Coordinate for Azimuth {
         }
     }
 
-    fn node(&self, i: usize, n: usize) -> Option<f64> {
-        let steps = if self.fold && n > 1 { n - 1 } else { n };
-        Some(i as f64 / steps as f64)
+    fn placement(&self) -> Placement {
+        if self.fold { Placement::Even } else { Placement::Closed }
     }
 
     fn check_count(&self, _: usize) -> Result<(), &'static str> {
@@ -196,7 +200,7 @@ mod tests {
                 let [c, s] = bound.direction(t);
                 // What has the axis's own symmetry, of low degree.
                 let f = |t: f64| libm::cos(bound.angle(t) * if axis.fold { 2.0 } else { 1.0 });
-                let at = |(i, w): (usize, f32)| f64::from(w) * f(axis.node(i, n).unwrap());
+                let at = |(i, w): (usize, f32)| f64::from(w) * f(axis.placement().node(i, n).unwrap());
                 let got: f64 = bound.six(c, s).into_iter().map(at).sum();
                 assert!((got - f(t)).abs() < 1e-4, "{axis:?}, {t}: {got} for {}", f(t));
             }

@@ -4,6 +4,9 @@ use alloc::vec::Vec;
 
 /// A coordinate t along an axis, with its parameters.
 pub(crate) trait Coordinate {
+    /// The formula in one line, with the names of the parameters: what a file says of it, and `docs/format.md`.
+    fn formula(&self) -> &'static str;
+
     /// Whether the parameters are in range, or else what is wrong.
     fn check(&self) -> Result<(), &'static str> {
         Ok(())
@@ -14,21 +17,42 @@ pub(crate) trait Coordinate {
         [0.0, 1.0]
     }
 
-    /// Where the i-th of n nodes stands; `None` if nodes may stand anywhere in the range.
-    ///
-    /// Evenly over [0, 1], unless it says otherwise.
-    fn node(&self, i: usize, n: usize) -> Option<f64> {
-        Some(i as f64 / (n - 1) as f64)
+    /// Where its nodes stand.
+    fn placement(&self) -> Placement {
+        Placement::Even
     }
 
     /// Whether it can have so many nodes, or else what is wrong; a number of 0 is refused before.
     fn check_count(&self, n: usize) -> Result<(), &'static str> {
-        if n < 2 { Err("needs at least two nodes") } else { Ok(()) }
+        if n < 2 && self.placement() == Placement::Even { Err("needs at least two nodes") } else { Ok(()) }
     }
 
     /// How many values stand along an axis of n nodes.
     fn values(&self, n: usize) -> usize {
         n
+    }
+}
+
+/// Where the nodes of an axis stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Placement {
+    /// Anywhere in the coordinate's range.
+    Free,
+    /// Evenly over [0, 1], both of which are nodes.
+    Even,
+    /// Evenly over [0, 1), for 1 is 0 again.
+    Closed,
+}
+
+impl Placement {
+    /// Where the i-th of n nodes stands; `None` if anywhere.
+    pub(crate) fn node(self, i: usize, n: usize) -> Option<f64> {
+        match self {
+            Self::Free => None,
+            // A single node is 0.
+            Self::Even => Some(i as f64 / (n - 1).max(1) as f64),
+            Self::Closed => Some(i as f64 / n as f64),
+        }
     }
 }
 

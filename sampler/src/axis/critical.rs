@@ -136,6 +136,13 @@ impl BoundCritical {
 }
 
 impl Coordinate for CriticalBlend {
+    fn formula(&self) -> &'static str {
+        "below μ_c = √(1−1/η²) t = ½ (1−root) (y(μ)−y(μ₀))/(y(μ_c)−y(μ₀)) + ½ root (1 − S((μ_c−μ)/(μ_c−μ₀))), \
+         above t = ½ + ½ (1−root) (p(μ)−p(μ_c))/(1−p(μ_c)) + ½ root S((μ−μ_c)/(1−μ_c)); y = share·x^¼ + \
+         (1−share)·h^¼, p = share·x + (1−share)·h, S(q) = asinh(√q/δ)/asinh(1/δ), δ = √(kink·σ), μ₀ = \
+         1/(1/floor + 1/(slope·σ) + 1/μ_c), x, h and κ of view_blend"
+    }
+
     fn check(&self) -> Result<(), &'static str> {
         let Self { share, scale, heavy, floor, slope, root, kink } = *self;
         let sound = positive(&[scale, floor, slope, kink])

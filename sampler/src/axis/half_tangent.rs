@@ -63,7 +63,11 @@ pub(crate) fn of_views(rho: f32x4, z: f32x4, length: f32x4, cells: f32) -> f32x4
     z * cells / (rho + length)
 }
 
-impl Coordinate for HalfTangent {}
+impl Coordinate for HalfTangent {
+    fn formula(&self) -> &'static str {
+        "τ = z/(1 + √(1+z²)); where crowded, t = 1 − √(1−τ)"
+    }
+}
 
 /// h ∈ [−1, 1] of the slope x : z, z ≥ 0.
 pub fn half_tangent(x: f64, z: f64) -> f64 {

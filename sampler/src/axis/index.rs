@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use super::coordinate::Coordinate;
+use super::coordinate::{Coordinate, Placement};
 use crate::math::sqrt64;
 
 /// t = acos(1 − 2x)/π ∈ [0, 1], x = F0^¼ = √((η−1)/(η+1)), of an index η ∈ [1, ∞] of the dense side over the thin one: finer
@@ -32,12 +32,12 @@ impl ReflectanceRoot {
 }
 
 impl Coordinate for ReflectanceRoot {
-    fn node(&self, _: usize, _: usize) -> Option<f64> {
-        None
+    fn formula(&self) -> &'static str {
+        "t = acos(1 − 2x)/π, x = √((η−1)/(η+1))"
     }
 
-    fn check_count(&self, _: usize) -> Result<(), &'static str> {
-        Ok(())
+    fn placement(&self) -> Placement {
+        Placement::Free
     }
 }
 

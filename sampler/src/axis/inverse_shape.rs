@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use microfacet_common::shape::{S_END, gamma_of_s, s_of_gamma};
 
-use super::coordinate::{Coordinate, bisect, even_nodes};
+use super::coordinate::{Coordinate, Placement, bisect, even_nodes};
 
 /// s = 1/(γ−1) ∈ [0, 2): 0 is Beckmann, 1 is GGX; γ → 3/2 is its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,16 +42,16 @@ impl InverseShape {
 }
 
 impl Coordinate for InverseShape {
+    fn formula(&self) -> &'static str {
+        "s = 1/(γ−1), 0 for γ = ∞"
+    }
+
     fn range(&self) -> [f64; 2] {
         [0.0, S_END - f64::EPSILON]
     }
 
-    fn node(&self, _: usize, _: usize) -> Option<f64> {
-        None
-    }
-
-    fn check_count(&self, _: usize) -> Result<(), &'static str> {
-        Ok(())
+    fn placement(&self) -> Placement {
+        Placement::Free
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::coordinate::{Coordinate, positive};
+use super::coordinate::{Coordinate, Placement, positive};
 
 /// t = ln(1 + scale/(2γ−3)) ≥ 0: 0 is Beckmann, and γ → 3/2, where the projected area diverges, is reached slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +28,10 @@ impl LogShape {
 }
 
 impl Coordinate for LogShape {
+    fn formula(&self) -> &'static str {
+        "t = ln(1 + scale/(2γ−3))"
+    }
+
     fn check(&self) -> Result<(), &'static str> {
         if positive(&[self.scale]) { Ok(()) } else { Err("scale out of range") }
     }
@@ -36,12 +40,8 @@ impl Coordinate for LogShape {
         [0.0, f64::MAX]
     }
 
-    fn node(&self, _: usize, _: usize) -> Option<f64> {
-        None
-    }
-
-    fn check_count(&self, _: usize) -> Result<(), &'static str> {
-        Ok(())
+    fn placement(&self) -> Placement {
+        Placement::Free
     }
 }
 

@@ -75,6 +75,20 @@ pub enum Mapping {
 }
 
 impl Mapping {
+    /// One of every kind, with parameters as they are baked or might be.
+    pub const EVERY: [Self; 10] = [
+        Self::InverseShape,
+        Self::LogShape(LogShape::BAKED),
+        Self::Roughness(Roughness::BAKED),
+        Self::ReflectanceRoot,
+        Self::HalfTangent(HalfTangent { crowded: true }),
+        Self::Rational(Rational::BAKED),
+        Self::ViewBlend(ViewBlend::BAKED),
+        Self::CriticalBlend(CriticalBlend::BAKED),
+        Self::Azimuth(Azimuth { sigma: [0.1, 0.2], turn: 0.3, fold: false }),
+        Self::MirroredRoot(MirroredRoot { odd: true }),
+    ];
+
     /// The name of its kind in files.
     pub const fn name(&self) -> &'static str {
         match self {
@@ -89,6 +103,11 @@ impl Mapping {
             Self::Azimuth(_) => "azimuth",
             Self::MirroredRoot(_) => "mirrored_root",
         }
+    }
+
+    /// Its formula in one line, by the names of its parameters.
+    pub fn formula(&self) -> &'static str {
+        self.get().formula()
     }
 
     fn get(&self) -> &dyn Coordinate {
@@ -163,7 +182,7 @@ impl Axis {
     /// # Panics
     /// For a mapping whose nodes may stand anywhere.
     pub fn placed(name: &str, mapping: Mapping, interpolation: Interpolation, count: usize) -> Self {
-        let node = |i| mapping.get().node(i, count).expect("a mapping that places its nodes");
+        let node = |i| mapping.get().placement().node(i, count).expect("a mapping that places its nodes");
         Self::new(name, mapping, interpolation, (0..count).map(node).collect())
     }
 
@@ -248,7 +267,8 @@ impl Axis {
         if first < low || last > high {
             return fail("a node lies outside the range of its mapping");
         }
-        let misplaced = |(i, x): (usize, &f64)| mapping.node(i, n).is_some_and(|at| (x - at).abs() > 1e-12);
+        let misplaced =
+            |(i, x): (usize, &f64)| mapping.placement().node(i, n).is_some_and(|at| (x - at).abs() > 1e-12);
         if self.nodes.iter().enumerate().any(misplaced) {
             return unsupported("this mapping needs nodes spread evenly over its range");
         }
@@ -261,24 +281,12 @@ impl Axis {
 
 #[cfg(test)]
 mod tests {
+    use super::coordinate::Placement;
     use super::*;
-
-    const ALL: [Mapping; 10] = [
-        Mapping::InverseShape,
-        Mapping::LogShape(LogShape::BAKED),
-        Mapping::Roughness(Roughness::BAKED),
-        Mapping::ReflectanceRoot,
-        Mapping::HalfTangent(HalfTangent { crowded: true }),
-        Mapping::Rational(Rational::BAKED),
-        Mapping::ViewBlend(ViewBlend::BAKED),
-        Mapping::CriticalBlend(CriticalBlend::BAKED),
-        Mapping::Azimuth(Azimuth { sigma: [0.1, 0.2], turn: 0.3, fold: false }),
-        Mapping::MirroredRoot(MirroredRoot { odd: true }),
-    ];
 
     #[test]
     fn descriptions_are_read_back_and_know_no_other_fields() {
-        for mapping in ALL {
+        for mapping in Mapping::EVERY {
             let text = serde_json::to_string(&mapping).unwrap();
             assert!(text.contains(&format!("\"kind\":\"{}\"", mapping.name())), "{text}");
             assert_eq!(serde_json::from_str::<Mapping>(&text).unwrap(), mapping);
@@ -291,7 +299,9 @@ mod tests {
 
     #[test]
     fn nodes_that_a_mapping_places_are_accepted_and_others_refused() {
-        for mapping in ALL.into_iter().filter(|mapping| mapping.get().node(0, 13).is_some()) {
+        for mapping in
+            Mapping::EVERY.into_iter().filter(|mapping| mapping.get().placement() != Placement::Free)
+        {
             let axis = Axis::placed("a", mapping, Interpolation::Linear, 13);
             axis.validate().unwrap();
             let mut moved = axis.clone();

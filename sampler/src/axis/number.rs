@@ -56,6 +56,10 @@ pub(crate) fn roots(u: f32x4) -> f32x4 {
 }
 
 impl Coordinate for MirroredRoot {
+    fn formula(&self) -> &'static str {
+        "t = (2 min(u, 1−u))^¼"
+    }
+
     fn values(&self, n: usize) -> usize {
         if self.odd { n } else { 2 * n }
     }

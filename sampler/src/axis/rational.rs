@@ -80,6 +80,10 @@ impl Rational {
 }
 
 impl Coordinate for Rational {
+    fn formula(&self) -> &'static str {
+        "q = z/(z + κ), κ = scale/(2−s); where crowded, t = 1 − √(1−q)"
+    }
+
     fn check(&self) -> Result<(), &'static str> {
         if positive(&[self.scale]) { Ok(()) } else { Err("scale out of range") }
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::coordinate::{Coordinate, bisect, positive};
+use super::coordinate::{Coordinate, Placement, bisect, positive};
 
 /// t = ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ, ascending in σ: even ratios about the offset, wide ones far below it,
 /// where only a heavy tail still makes a difference, and finer steps where σ is large.
@@ -36,6 +36,10 @@ impl Roughness {
 }
 
 impl Coordinate for Roughness {
+    fn formula(&self) -> &'static str {
+        "t = ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ"
+    }
+
     fn check(&self) -> Result<(), &'static str> {
         let Self { offset, first, slow, linear } = *self;
         if positive(&[offset, first, slow]) && (0.0..1e6).contains(&linear) {
@@ -49,12 +53,8 @@ impl Coordinate for Roughness {
         [0.0, f64::MAX]
     }
 
-    fn node(&self, _: usize, _: usize) -> Option<f64> {
-        None
-    }
-
-    fn check_count(&self, _: usize) -> Result<(), &'static str> {
-        Ok(())
+    fn placement(&self) -> Placement {
+        Placement::Free
     }
 }
 

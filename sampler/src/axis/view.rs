@@ -132,6 +132,12 @@ impl BoundView {
 }
 
 impl Coordinate for ViewBlend {
+    fn formula(&self) -> &'static str {
+        "t = (y(μ)−y(μ₀))/(1−y(μ₀)), μ₀ = floor·slope·σ/(floor + slope·σ), y = weight·x + normal·ν/(ν + sin \
+         θ) + (1−weight−normal)·(share·x^¼ + (1−share)·h^¼), x = μ/(μ + κσ sin θ), h = μ/(1 + sin θ), κ = \
+         scale + heavy/(2γ−3), ν = spread·σ"
+    }
+
     fn check(&self) -> Result<(), &'static str> {
         let Self { weight, normal, share, scale, heavy, spread, floor, slope } = *self;
         let sound = positive(&[weight, normal, scale, spread, floor, slope])

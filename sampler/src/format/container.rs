@@ -52,6 +52,9 @@ struct Document {
     checksum: String,
     #[serde(flatten)]
     provenance: Provenance,
+    /// Formulas of the mappings that occur, by kind: for those who write a reader with the file before them.
+    #[serde(default)]
+    mappings: BTreeMap<String, String>,
     tables: Vec<Descriptor>,
 }
 
@@ -70,6 +73,10 @@ struct Descriptor {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     offset: Vec<f32>,
     certificate: BTreeMap<String, f64>,
+}
+
+fn formula(axis: &Axis) -> (String, String) {
+    (axis.mapping.name().into(), axis.mapping.formula().into())
 }
 
 fn fit(table: &Table) -> Codec {
@@ -106,6 +113,7 @@ pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, Loa
         version: VERSION,
         checksum: checksum::NONE.into(),
         provenance: provenance.clone(),
+        mappings: tables.iter().flat_map(|table| &table.axes).map(formula).collect(),
         tables: descriptors,
     };
     serde_json::to_string(&document).map_err(invalid)

@@ -117,7 +117,7 @@ impl MaterialEntry {
 
     /// The form of masking it states; uncorrelated if none.
     pub fn masking(&self) -> Masking {
-        self.masking.unwrap_or(Masking::Uncorrelated)
+        self.masking.unwrap_or_default()
     }
 
     /// What kind of lobe it is: `student-t`, `ellipsoid`, or its distribution.
