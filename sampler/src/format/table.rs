@@ -90,14 +90,16 @@ impl Table {
         if self.kind.is_albedo() != self.masking.is_some() {
             return fail("an albedo names the form of masking it is for, and no other table does".into());
         }
-        if self.values.iter().any(|x| !x.is_finite()) {
+        // Without an early end these run four values at a time: they are half of what loading the default set takes.
+        if !self.values.iter().fold(true, |sound, x| sound & x.is_finite()) {
             return fail("a value is not finite".into());
         }
         let [low, high] = layout.range;
-        let checked = self.values.chunks(self.channels.len()).flat_map(|node| &node[..layout.checked]);
-        match checked.into_iter().find(|x| !(low..=high).contains(*x)) {
-            Some(x) => fail(format!("a value of {x} is out of range, [{low:e}, {high}]")),
-            None => Ok(()),
+        let within = |sound, x: &f32| sound & (*x >= low) & (*x <= high);
+        let nodes = self.values.chunks_exact(self.channels.len());
+        if !nodes.fold(true, |sound, node| node[..layout.checked].iter().fold(sound, within)) {
+            return fail(format!("a value is out of range, [{low:e}, {high}]"));
         }
+        Ok(())
     }
 }

@@ -98,7 +98,7 @@ impl Slices {
         let kinds = [Kind::VisibleSlope, Kind::VisibleSlopePeeled];
         let slope = find(tables, &kinds, gamma, s)?;
         let across = find(tables, &[Kind::VisibleSlopeConditional], gamma, s)?;
-        let mut slices = Self::new([&shadowing, &slope], s);
+        let mut slices = Self::new([shadowing, slope], s);
         slices.across = across.nodes;
         make_monotone(&mut slices.across);
         let (numbers, rows) = (slices.cells + 1, slices.rows);
@@ -113,7 +113,7 @@ impl Slices {
     }
 
     /// From slices of G1 and of in-plane slopes alone.
-    pub(crate) fn new([shadowing, slope]: [&Slice; 2], s: f64) -> Self {
+    pub(crate) fn new([shadowing, slope]: [Slice; 2], s: f64) -> Self {
         let (Mapping::Rational(shadowing_view), [.., view, numbers]) =
             (shadowing.axes[shadowing.axes.len() - 1].mapping, slope.axes)
         else {
@@ -121,7 +121,7 @@ impl Slices {
         };
         let Mapping::HalfTangent(coordinate) = view.mapping else { unreachable!("validated on load") };
         let shadowing_cells = shadowing.nodes.len() - 1;
-        let mut slopes = slope.nodes.clone();
+        let mut slopes = slope.nodes;
         slopes.chunks_exact_mut(numbers.nodes.len()).for_each(make_monotone);
         slopes.push([0.0; 2]);
         Self {
