@@ -50,7 +50,6 @@ pub fn bake(spec: &TableSpec) -> Table {
 
 /// The axes of a table, from its specification.
 pub fn axes(spec: &TableSpec) -> Vec<Axis> {
-    let numbers = |name| numbers(name, spec.numbers);
     let ShapeAxis { nodes, interpolation } = spec.shapes.clone();
     let gamma = Axis::new("gamma", Mapping::InverseShape, interpolation, nodes);
     let view = |mapping, interpolation| Axis::placed("view", mapping, interpolation, spec.views);
@@ -58,18 +57,22 @@ pub fn axes(spec: &TableSpec) -> Vec<Axis> {
         Kind::Shadowing => {
             vec![gamma, view(Mapping::Rational(shadowing::view(spec)), Interpolation::Hermite)]
         }
-        Kind::VisibleSlopeConditional => vec![gamma, numbers("u2")],
+        Kind::VisibleSlopeConditional => vec![gamma, across(spec.numbers)],
         _ => {
             let mapping = Mapping::HalfTangent(visible_slope::view(spec.kind));
-            vec![gamma, view(mapping, Interpolation::Linear), numbers("u1")]
+            vec![gamma, view(mapping, Interpolation::Linear), along(spec.numbers)]
         }
     }
 }
 
-/// The axis of a random number: `u1`, along the plane of incidence, or `u2` across it, about which all slopes are odd.
-fn numbers(name: &str, count: usize) -> Axis {
-    let mapping = Mapping::MirroredRoot(MirroredRoot { odd: name == "u2" });
-    Axis::placed(name, mapping, Interpolation::Hermite, count)
+/// The axis of u₁, along the plane of incidence.
+fn along(count: usize) -> Axis {
+    Axis::placed("u1", Mapping::MirroredRoot, Interpolation::Hermite, count)
+}
+
+/// The axis of u₂, across it, about which all slopes are odd.
+fn across(count: usize) -> Axis {
+    Axis::placed("u2", Mapping::OddRoot, Interpolation::Hermite, count)
 }
 
 /// Names as tables hold them.

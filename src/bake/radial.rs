@@ -10,7 +10,7 @@ use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Precision, Table};
 use rayon::prelude::*;
 
 use super::shadowing::ratios;
-use super::{mirrored, names, numbers, round};
+use super::{mirrored, names, round};
 use crate::spec::Quality;
 
 /// Rows of in-plane slopes in the table of slopes across.
@@ -36,12 +36,12 @@ pub fn radial_axes(quality: Quality, kappa: f64, reach: f64) -> [(Kind, Vec<Axis
             Kind::RadialSlope,
             vec![
                 Axis::placed("view", HALF_TANGENT, Interpolation::Linear, r.views),
-                numbers("u1", along_numbers),
+                super::along(along_numbers),
             ],
         ),
         (
             Kind::RadialConditional,
-            vec![Axis::placed("slope", slopes, Interpolation::Linear, SLOPES), numbers("u2", across_numbers)],
+            vec![Axis::placed("slope", slopes, Interpolation::Linear, SLOPES), super::across(across_numbers)],
         ),
         (Kind::RadialDensity, vec![Axis::placed("slope", HALF_TANGENT, Interpolation::Hermite, DENSITIES)]),
     ]

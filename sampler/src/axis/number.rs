@@ -1,6 +1,5 @@
 //! The axes of random numbers: fourth roots from either end.
 
-use serde::{Deserialize, Serialize};
 use wide::f32x4;
 
 use super::coordinate::Coordinate;
@@ -9,14 +8,13 @@ use crate::math::sqrt;
 /// t = (2 min(u, 1−u))^¼ ∈ [0, 1] of a random number u: quantiles behave like powers of the distance from either end, and the
 /// fourth root makes those of every shape smooth.
 ///
-/// Along the axis stand first the nodes for u ≤ ½ (t ascending from u = 0), then as many for u > ½ (t ascending from u = 1),
-/// unless the axis is `odd`, when only the second half is stored.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MirroredRoot {
-    /// Whether the value at u is minus the value at 1−u, so that one half is enough.
-    pub odd: bool,
-}
+/// Along the axis stand first the nodes for u ≤ ½ (t ascending from u = 0), then as many for u > ½ (t ascending from u = 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MirroredRoot;
+
+/// The half for u > ½ of [`MirroredRoot`] alone: the quantile at u is minus the one at 1−u.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OddRoot;
 
 /// ⁴√2: the factor 2 may be taken out of the roots.
 const FOURTH_ROOT_OF_2: f64 = 1.189_207_115_002_721_1;
@@ -61,7 +59,13 @@ impl Coordinate for MirroredRoot {
     }
 
     fn values(&self, n: usize) -> usize {
-        if self.odd { n } else { 2 * n }
+        2 * n
+    }
+}
+
+impl Coordinate for OddRoot {
+    fn formula(&self) -> &'static str {
+        "t = (2 (1−u))^¼"
     }
 }
 

@@ -72,7 +72,7 @@ const fn axis(
 
 const SHAPE: AxisRule = axis("gamma", &["inverse_shape"], &[Lagrange4, Nodes]);
 const U1: AxisRule = axis("u1", &["mirrored_root"], &[Hermite]);
-const U2: AxisRule = axis("u2", &["mirrored_root"], &[Hermite]);
+const U2: AxisRule = axis("u2", &["odd_root"], &[Hermite]);
 const VIEW_OF_G1: AxisRule = axis("view", &["rational"], &[Hermite]);
 const VIEW_OF_SLOPES: AxisRule = axis("view", &["half_tangent"], &[Linear]);
 const ALBEDO_SHAPE: AxisRule = axis("gamma", &["log_shape"], &[Lagrange6]);
@@ -100,6 +100,23 @@ const DISTANCES: [f32; 2] = [0.0, 2.0];
 const ROOTS: [f32; 2] = [0.0, 1e9];
 
 impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 13] = [
+        Self::Shadowing,
+        Self::VisibleSlope,
+        Self::VisibleSlopePeeled,
+        Self::VisibleSlopeConditional,
+        Self::RadialShadowing,
+        Self::RadialSlope,
+        Self::RadialConditional,
+        Self::RadialDensity,
+        Self::Albedo,
+        Self::AlbedoAverage,
+        Self::FresnelAlbedo,
+        Self::DielectricAlbedo,
+        Self::ViewAlbedo,
+    ];
+
     /// Channels of tables that are read by Hermite cells: the value, and its derivative by the node index of the last axis.
     pub const VALUE_AND_SLOPE: Channels = &["value", "slope"];
     /// Channels of albedos with F = 1: E − 1, and what the other moments have over a mirror's times E, in which form they are
@@ -204,7 +221,26 @@ impl Kind {
 
 #[cfg(test)]
 mod tests {
+    use alloc::collections::BTreeSet;
+
     use super::*;
+    use crate::axis::Mapping;
+
+    #[test]
+    fn rules_name_mappings_that_exist_and_no_mapping_is_without_a_kind() {
+        let layouts = Kind::ALL.into_iter().flat_map(Kind::layouts);
+        let ruled: BTreeSet<_> =
+            layouts.flat_map(|layout| layout.axes).flat_map(|axis| axis.mappings).collect();
+        let known = Mapping::EVERY.map(|mapping| mapping.name());
+        assert_eq!(ruled, known.iter().collect());
+    }
+
+    #[test]
+    fn names_are_those_of_files() {
+        for kind in Kind::ALL {
+            assert_eq!(serde_json::to_string(&kind).unwrap(), format!("\"{}\"", kind.name()));
+        }
+    }
 
     #[test]
     fn forms_of_a_kind_differ_in_channels_and_share_axes() {
