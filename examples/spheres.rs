@@ -9,6 +9,7 @@
 use std::error::Error;
 
 use glam::{Mat3, Vec3, Vec4};
+use microfacet_common::schlick::schlick_weight;
 use microfacet_sampler::{BindError, Ellipsoid, Masking, Skew, StudentT, Tables};
 use rayon::prelude::*;
 
@@ -156,7 +157,7 @@ fn shade(material: &Material, x: f32, y: f32, u: [f32; 2]) -> Vec3 {
     if l.z <= 0.0 || v.z <= 0.0 {
         return Vec3::ZERO;
     }
-    let fresnel = material.f0 + (1.0 - material.f0) * (1.0 - v.dot(m)).clamp(0.0, 1.0).powi(5);
+    let fresnel = material.f0 + (1.0 - material.f0) * schlick_weight(v.dot(m).clamp(0.0, 1.0));
     let gain = material
         .compensation
         .as_ref()

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use etcetera::BaseStrategy;
 use sha2::{Digest, Sha256};
 
-use microfacet_sampler::{Provenance, Table, VERSION, encode};
+use microfacet_sampler::{Mapping, Provenance, Table, VERSION, encode};
 
 use crate::bake::NUMERICS;
 use crate::store::{self, replace};
@@ -14,7 +14,7 @@ use crate::store::{self, replace};
 /// A folder of finished tables, or none.
 ///
 /// An entry is a table set named by the SHA-256 of its key: the complete specification with all its numbers, the number of the numeric
-/// method and the version of the format. So an entry is never out of date, entries may be removed at any time, and several
+/// method, the version of the format and the coordinates along the axes. So an entry is never out of date, entries may be removed at any time, and several
 /// processes may share a folder. An entry that is damaged is as good as none.
 #[derive(Clone, Debug)]
 pub struct Cache {
@@ -80,7 +80,10 @@ impl Cache {
     }
 }
 
-/// A key with the versions that decide what it stands for.
+/// A key with all that decides what it stands for: versions, and the coordinates, whose formulas and constants a specification
+/// does not name.
 fn complete(key: &str) -> String {
-    format!("format {VERSION}, numerics {NUMERICS}, program {}\n{key}", env!("CARGO_PKG_VERSION"))
+    let mappings = Mapping::EVERY.map(|mapping| (mapping, mapping.formula()));
+    let program = env!("CARGO_PKG_VERSION");
+    format!("format {VERSION}, numerics {NUMERICS}, program {program}, {mappings:?}\n{key}")
 }

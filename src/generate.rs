@@ -463,7 +463,7 @@ pub fn provenance(recipe: String, materials: Vec<MaterialEntry>) -> Provenance {
         ("slope_channel", "derivative of `value` with respect to the node index of the last axis"),
         (
             "shadowing",
-            "value = G1/q, q that of the view's mapping before it is crowded, z = cot(theta)/sigma",
+            "value = G1/q, q = z/(z+kappa) whether or not the axis is crowded, z = cot(theta)/sigma",
         ),
         (
             "visible_slope",

@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake;
 use microfacet_bake::spec::{GAMMA_WHOLE, Quality, ShapeAxis, TableSpec};
+use microfacet_common::shape::s_of_gamma;
 use microfacet_model as model;
 use microfacet_model::statistics::{chi_square, sidak};
 use microfacet_sampler::{BindError, Kind, Masking, Precision, Provenance, Skew, Tables};
@@ -20,7 +21,7 @@ fn tables(gamma: f64) -> Tables {
     let spec = |kind: Kind, views, numbers| TableSpec {
         name: kind.name().into(),
         kind,
-        shapes: ShapeAxis::points([1.0 / (gamma - 1.0)]),
+        shapes: ShapeAxis::points([s_of_gamma(gamma)]),
         views,
         numbers,
         precision: Precision::F32,

@@ -4,7 +4,7 @@
 //!
 //! The sampler must not depend on the model, whose code a renderer does not need, nor the model on the sampler, which it
 //! judges. So these definitions stand below both. Formulas are generic over the number, so that both precisions run the same
-//! line. `no_std`, without dependencies, without allocation.
+//! line. `no_std`, without allocation; its one dependency is `serde`, for names in files, where the feature is on.
 
 #![no_std]
 

@@ -42,6 +42,19 @@ impl Masking {
             }
         }
     }
+
+    /// G2/G1(v) from the G1 ∈ [0, 1] of view and light, finite at grazing views, where both vanish: what a light sampled by visible
+    /// normals is worth. 0 where G1(l) is.
+    #[inline(always)]
+    pub fn g2_over_g1<T: Real>(self, v: T, l: T) -> T {
+        match self {
+            Self::Uncorrelated => l,
+            Self::HeightCorrelated => {
+                let zero = T::constant(0.0);
+                if l > zero { l / (l + v * (T::constant(1.0) - l)) } else { zero }
+            }
+        }
+    }
 }
 
 /// A text that names no form of masking.
@@ -82,6 +95,20 @@ mod tests {
             }
         }
         assert_eq!(Masking::HeightCorrelated.g2(0.0_f32, 0.0), 0.0);
+    }
+
+    #[test]
+    fn the_quotient_is_that_of_g2_and_finite_at_grazing() {
+        for masking in Masking::ALL {
+            for v in [1e-12, 0.1, 0.7, 1.0_f64] {
+                for l in [0.0, 1e-12, 0.3, 1.0] {
+                    let (got, want) = (masking.g2_over_g1(v, l), masking.g2(v, l) / v);
+                    assert!((got - want).abs() <= 4.0 * f64::EPSILON * want, "{v}, {l}: {got} for {want}");
+                }
+            }
+        }
+        assert_eq!(Masking::HeightCorrelated.g2_over_g1(0.0, 0.5), 1.0);
+        assert_eq!(Masking::HeightCorrelated.g2_over_g1(0.0, 0.0), 0.0);
     }
 
     #[test]

@@ -355,8 +355,8 @@ impl AlbedoIntegrator {
             }
             let fresnel = weight((facing / area.sqrt()).min(1.0));
             let mass = jacobian * measure * facing;
-            let correlated = mass * g1 / (g1 + view.g1 * (1.0 - g1));
-            let uncorrelated = mass * g1;
+            let [uncorrelated, correlated] =
+                Masking::ALL.map(|masking| mass * masking.g2_over_g1(view.g1, g1));
             for i in 0..N {
                 sum[0][i] += uncorrelated * fresnel[i];
                 sum[1][i] += correlated * fresnel[i];

@@ -132,11 +132,6 @@ impl F82Tint {
     pub fn reflectance(&self, cos_theta: f64) -> f64 {
         schlick(self.f0, 1.0, cos_theta) - f82_dip(self.f0, self.tint) * f82_weight(cos_theta)
     }
-
-    /// The directional albedo from the moments of the three weights: scale (1 − (1−μ)⁵), bias (1−μ)⁵ and F82.
-    pub fn albedo(&self, scale: f64, bias: f64, f82: f64) -> f64 {
-        self.f0 * scale + bias - f82_dip(self.f0, self.tint) * f82
-    }
 }
 
 fn check_eta(eta: f64) -> Result<(), ParameterError> {
@@ -218,9 +213,7 @@ mod tests {
         for i in 0..=100 {
             let cos = f64::from(i) / 100.0;
             assert!((0.0..=1.0).contains(&f82_weight(cos)));
-            let weight = schlick_weight(cos);
-            let sum = metal.albedo(1.0 - weight, weight, f82_weight(cos));
-            assert!((sum - metal.reflectance(cos)).abs() < 1e-15);
+            assert!((0.0..=1.0).contains(&metal.reflectance(cos)));
         }
     }
 }

@@ -13,6 +13,8 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
+use microfacet_common::Masking;
+
 use crate::albedo::{Albedo, AlbedoIntegrator, PANEL, ROOT, SECTOR};
 use crate::error::ParameterError;
 use crate::fresnel::Dielectric;
@@ -182,7 +184,7 @@ impl Pane<'_> {
         let across2 = reach * reach + ahead * ahead - 2.0 * reach * ahead * along;
         let g1 = self.model.smith.g1(depth, (a * across2).max(0.0));
         let mass = facing * (1.0 - self.dielectric.reflectance(mu));
-        Some([mass * g1, if g1 > 0.0 { mass * g1 / (g1 + self.g1 * (1.0 - g1)) } else { 0.0 }])
+        Some(Masking::ALL.map(|masking| mass * masking.g2_over_g1(self.g1, g1)))
     }
 
     /// Where a ray enters or leaves the domain, ascending, in the unit of w.

@@ -8,7 +8,8 @@ use core::fmt;
 pub enum LoadError {
     /// The bytes contradict the format: truncated, damaged, or describing something impossible.
     Invalid(String),
-    /// A valid file that this version cannot read: a newer format, or a mapping it does not know.
+    /// A file that may be valid but that this version cannot read: another version of the format, or nodes placed as no reader
+    /// here expects them.
     Unsupported(String),
 }
 

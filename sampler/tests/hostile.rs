@@ -131,8 +131,8 @@ fn lying_headers_are_refused_by_name() {
         (r#"\"scale\":0.5"#, r#"\"scale\":-0.5"#, "scale out of range"),
         (r#"\"scale\":0.5"#, r#"\"scale\":0.5,\"pole\":2.0"#, "unknown field `pole`"),
         (r#"\"interpolation\":\"hermite\""#, r#"\"interpolation\":\"linear\""#, "is read by Linear"),
-        (r#"\"kind\":\"odd_root\""#, r#"\"kind\":\"mirrored_root\""#, "not by `odd_root`"),
-        (r#"\"kind\":\"mirrored_root\""#, r#"\"kind\":\"odd_root\""#, "not by `mirrored_root`"),
+        (r#"\"kind\":\"odd_root\""#, r#"\"kind\":\"mirrored_root\""#, "shape"),
+        (r#"\"kind\":\"mirrored_root\""#, r#"\"kind\":\"odd_root\""#, "shape"),
         // Documents.
         (r#"\"channels\":[\"value\",\"slope\"]"#, r#"\"channels\":[]"#, "no channels"),
         (r#"\"channels\":[\"value\",\"slope\"]"#, r#"\"channels\":[\"slope\",\"value\"]"#, "channels"),
@@ -149,6 +149,23 @@ fn lying_headers_are_refused_by_name() {
     }
     // The forgery itself is sound.
     assert!(Tables::from_bytes(&forge("microfacet-tables", "microfacet-tables")).is_ok());
+}
+
+/// With values as many as the axes then have, so that only the mapping is wrong.
+#[test]
+fn halves_of_numbers_that_a_kind_does_not_have_are_refused() {
+    for (i, other) in [(1, Mapping::OddRoot), (2, Mapping::MirroredRoot)] {
+        let mut tables = small_tables();
+        let table = &mut tables[i];
+        let axis = table.axes.last_mut().unwrap();
+        let before = axis.len();
+        axis.mapping = other;
+        let count = table.values.len() * axis.len() / before;
+        table.values.resize(count, 1.0);
+        assert_eq!(table.shape().iter().product::<usize>(), table.values.len());
+        let why = encode(&Provenance::default(), &tables).unwrap_err().to_string();
+        assert!(why.contains(other.name()), "{why}");
+    }
 }
 
 #[test]

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use microfacet_model::fresnel::{f82_weight, schlick_weight};
 use microfacet_model::{Albedo, AlbedoIntegrator, ParameterError, Shape};
 use microfacet_sampler::axis::lagrange::nodes_read;
-use microfacet_sampler::axis::{LogShape, Roughness, ViewBlend, even_nodes};
+use microfacet_sampler::axis::{LogRoughness, LogShape, ViewBlend, even_nodes};
 use microfacet_sampler::{
     Axis, FresnelEntry, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Table, Tables,
 };
@@ -21,7 +21,7 @@ use crate::scene::Interval;
 use crate::spec::{GAMMA_MIN, Quality};
 
 /// Smallest σ node; what is smoother is a mirror.
-const SIGMA_MIN: f64 = Roughness::BAKED.first;
+const SIGMA_MIN: f64 = LogRoughness::BAKED.first;
 /// Largest σ of the general tables.
 pub const SIGMA_MAX: f64 = 3.0;
 /// The materials that tables are baked for: they are measured there, and need hold nowhere else.
@@ -80,9 +80,8 @@ pub struct AlbedoSpec {
     pub roughnesses: Vec<f64>,
     /// How many nodes the view axis has, six or more.
     pub views: usize,
-    /// ν/σ of the view axis: what is left to err by in tables of many nodes is the cusp at normal incidence, which takes closer ones. Of high
-    /// quality, gamma 1.55 to 1.65 and sigma 0.1 to 0.2 err by 4.3e-5 at 10, 3.0e-5 at 1.5 and 2.5e-5 at 1; below, smoother surfaces lose.
-    pub spread: f64,
+    /// The coordinate of the view.
+    pub view: ViewBlend,
     /// How many nodes an axis of all indices of refraction has.
     pub indices: usize,
     /// Error aimed at in every node.
@@ -96,10 +95,10 @@ impl AlbedoSpec {
     ///
     /// Draft tables err by up to 1e-2.
     pub fn general(quality: Quality, precision: Precision) -> Self {
-        let ([shapes, roughnesses, views, indices], spread, tolerance) = match quality {
-            Quality::Draft => ([16, 22, 20, 20], ViewBlend::BAKED.spread, 1e-5),
-            Quality::Default => ([22, 35, 26, 32], ViewBlend::BAKED.spread, 1e-6),
-            Quality::High => ([44, 68, 58, 48], 1.0, 1e-7),
+        let ([shapes, roughnesses, views, indices], view, tolerance) = match quality {
+            Quality::Draft => ([16, 22, 20, 20], ViewBlend::BAKED, 1e-5),
+            Quality::Default => ([22, 35, 26, 32], ViewBlend::BAKED, 1e-6),
+            Quality::High => ([44, 68, 58, 48], ViewBlend::CLOSE, 1e-7),
         };
         Self {
             domain: Domain::GENERAL,
@@ -108,7 +107,7 @@ impl AlbedoSpec {
             shapes: even_nodes(shape(f64::INFINITY), shape(GAMMA_MIN), shapes),
             roughnesses: even_nodes(roughness(SIGMA_MIN), roughness(SIGMA_MAX), roughnesses),
             views,
-            spread,
+            view,
             indices,
             tolerance,
             precision,
@@ -129,11 +128,6 @@ impl AlbedoSpec {
         };
         let roughnesses = cut(&self.roughnesses, roughness(sigma.min), roughness(sigma.max));
         Self { domain, maskings: maskings.into(), shapes, roughnesses, ..self.clone() }
-    }
-
-    /// The coordinate of the view.
-    pub fn view(&self) -> ViewBlend {
-        ViewBlend { spread: self.spread, ..ViewBlend::BAKED }
     }
 
     /// Places (γ, σ, view) at which the albedo is integrated; of a dielectric (γ, σ, η, view), of both sides together.
@@ -184,7 +178,7 @@ pub(super) const INTERPOLATION: Interpolation = Interpolation::Lagrange6;
 
 /// The coordinate of a roughness.
 fn roughness(sigma: f64) -> f64 {
-    Roughness::BAKED.coordinate(sigma)
+    LogRoughness::BAKED.coordinate(sigma)
 }
 
 /// The coordinate of a shape.
@@ -261,9 +255,6 @@ pub fn weights(cos: f64) -> [f64; 3] {
     [1.0 - bias, bias, f82_weight(cos)]
 }
 
-/// What a node holds for both forms of masking: E − 1, and what the other moments have over a mirror's times E.
-pub(super) type Node = [[f64; 3]; 2];
-
 /// Bakes `albedo` and `albedo_average` for both forms of masking, four tables in all.
 ///
 /// Each `albedo` table has `quadrature_error`, the largest error estimate of a node, in its certificate.
@@ -290,17 +281,16 @@ pub fn bake_in(spec: &AlbedoSpec, precisions: &[Precision]) -> Result<Vec<Vec<Ta
     let rows = pairs
         .par_iter()
         .map(|&(shape, sigma)| {
-            let view = spec.view().bind(sigma, shape.shape().gamma());
+            let view = spec.view.bind(sigma, shape.shape().gamma());
             let at = |&t: &f64| node(shape, sigma, view.quantity(t), spec.tolerance);
             axes[2].nodes.iter().map(at).collect()
         })
-        .collect::<Result<Vec<Vec<(Node, f64)>>, BakeError>>()?;
-    let error = rows.iter().flatten().map(|node| node.1).fold(0.0, f64::max);
+        .collect::<Result<Vec<Vec<Albedo<3>>>, BakeError>>()?;
+    let error = rows.iter().flatten().map(|node| node.error).fold(0.0, f64::max);
     let rounded = |&precision: &Precision| {
         let mut tables = Vec::new();
         for &masking in &spec.maskings {
-            let values =
-                rows.iter().flatten().flat_map(|node| node.0[masking as usize].map(|x| x as f32)).collect();
+            let values = rows.iter().flatten().flat_map(|node| node.of(masking).map(|x| x as f32)).collect();
             let stored = AlbedoSpec { precision, ..spec.clone() };
             let directional = Table {
                 certificate: [("quadrature_error".to_string(), error)].into(),
@@ -335,18 +325,18 @@ fn table(spec: &AlbedoSpec, kind: Kind, masking: Masking, axes: Vec<Axis>, value
     .rounded(spec.precision)
 }
 
-fn node(shape: &AlbedoIntegrator, sigma: f64, cos: f64, tolerance: f64) -> Result<(Node, f64), BakeError> {
+/// What a node holds at σ and cos θ.
+fn node(shape: &AlbedoIntegrator, sigma: f64, cos: f64, tolerance: f64) -> Result<Albedo<3>, BakeError> {
     residual(&shape.reflection(sigma, cos, weights)?, [sigma, shape.shape().gamma(), cos], tolerance)
 }
 
-/// What a node holds of an albedo, at σ, γ and cos θ.
-pub(super) fn residual(albedo: &Albedo<3>, at: [f64; 3], tolerance: f64) -> Result<(Node, f64), BakeError> {
+/// What a node holds of an albedo, at σ, γ and cos θ: E − 1, and what the other moments have over a mirror's times E.
+pub(super) fn residual(albedo: &Albedo<3>, at: [f64; 3], tolerance: f64) -> Result<Albedo<3>, BakeError> {
     if !(albedo.error <= tolerance) {
         return Err(BakeError::Accuracy { at, error: albedo.error });
     }
     let mirror = weights(at[2]);
-    let mut out = [albedo.uncorrelated, albedo.height_correlated];
-    for form in &mut out {
+    let less_mirror = |mut form: [f64; 3]| {
         let value = form[0] + form[1];
         // Not clamped: a wrong sum must be seen. Near normal incidence on a smooth surface 1 − E is far below what quadrature is asked for.
         if !(value >= 0.0 && value <= 1.0 + tolerance) {
@@ -356,8 +346,13 @@ pub(super) fn residual(albedo: &Albedo<3>, at: [f64; 3], tolerance: f64) -> Resu
             *x -= value * mirror;
         }
         form[0] = value - 1.0;
-    }
-    Ok((out, albedo.error))
+        Ok(form)
+    };
+    Ok(Albedo {
+        uncorrelated: less_mirror(albedo.uncorrelated)?,
+        height_correlated: less_mirror(albedo.height_correlated)?,
+        error: albedo.error,
+    })
 }
 
 /// The axes: γ, σ and the view.
@@ -365,7 +360,7 @@ pub fn axes(spec: &AlbedoSpec) -> Vec<Axis> {
     let axis = |name: &str, mapping, nodes: &[f64]| Axis::new(name, mapping, INTERPOLATION, nodes.to_vec());
     vec![
         axis("gamma", Mapping::LogShape(LogShape::BAKED), &spec.shapes),
-        axis("sigma", Mapping::Roughness(Roughness::BAKED), &spec.roughnesses),
-        Axis::placed("view", Mapping::ViewBlend(spec.view()), INTERPOLATION, spec.views),
+        axis("sigma", Mapping::LogRoughness(LogRoughness::BAKED), &spec.roughnesses),
+        Axis::placed("view", Mapping::ViewBlend(spec.view), INTERPOLATION, spec.views),
     ]
 }

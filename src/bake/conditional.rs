@@ -3,15 +3,16 @@
 use rayon::prelude::*;
 
 use microfacet_model::{Shape, across_quantile};
+use microfacet_sampler::Axis;
 use microfacet_sampler::axis::limit_slopes;
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
 use crate::spec::TableSpec;
 
-pub(super) fn bake(spec: &TableSpec) -> Vec<f32> {
-    let cells = spec.numbers - 1;
+pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
+    let numbers = &axes[1].nodes;
     let of_shape = |shape: &Shape| {
-        let mut half = round((0..=cells).map(|i| node(shape, i as f64 / cells as f64, cells)));
+        let mut half = round(numbers.iter().map(|&t| node(shape, t, numbers.len() - 1)));
         limit_slopes(&mut half);
         half
     };

@@ -1,6 +1,6 @@
 //! Directional albedo of rough dielectrics: the shares reflected and transmitted, seen from either side, for one index of refraction or a range.
 //!
-//! A range has an axis of F0^¼ = √((η−1)/(η+1)), which goes from 0 at η = 1 to 1 at ∞. From the dense side everything turns where total reflection sets in, which
+//! A range has an axis of [`ReflectanceRoot`], from 0 at η = 1 to 1 at ∞. From the dense side everything turns where total reflection sets in, which
 //! depends on η: the view axis is split there, so that neither views nor indices are interpolated across it.
 
 use microfacet_model::fresnel::Dielectric;
@@ -94,7 +94,7 @@ pub fn bake(spec: &AlbedoSpec, fresnel: &FresnelEntry, side: Side) -> Result<Vec
         let nodes = axes[3].nodes.iter();
         match side {
             Side::Entering => {
-                let view = spec.view().bind(sigma, gamma);
+                let view = spec.view.bind(sigma, gamma);
                 nodes.map(|&t| view.quantity(t)).collect()
             }
             Side::Leaving => {

@@ -45,7 +45,7 @@ impl Metal {
 pub fn bake(spec: &AlbedoSpec, fresnel: &FresnelEntry, metal: &Metal) -> Result<Vec<Table>, BakeError> {
     let axes = axes(spec);
     let views = |sigma, gamma, _| {
-        let view = spec.view().bind(sigma, gamma);
+        let view = spec.view.bind(sigma, gamma);
         axes[2].nodes.iter().map(|&t| view.quantity(t)).collect()
     };
     let albedo = |model: &AlbedoIntegrator, sigma, _, cos| metal.albedo(model, sigma, cos);
@@ -92,16 +92,16 @@ pub(super) fn shares<const N: usize>(
         let sound = |x: &&f64| **x >= -albedo.error && **x <= 1.0 + albedo.error;
         match forms.iter().flatten().find(|x| !sound(x)) {
             Some(&value) => Err(BakeError::Albedo { at, value }),
-            None => Ok((forms, albedo.error)),
+            None => Ok(albedo),
         }
     };
     let nodes = rows
         .par_iter()
         .map(|row| views(row.1, row.0.shape().gamma(), row.2).into_iter().map(|cos| node(row, cos)).collect())
         .collect::<Result<Vec<Vec<_>>, BakeError>>()?;
-    let error = nodes.iter().flatten().map(|node| node.1).fold(0.0, f64::max);
+    let error = nodes.iter().flatten().map(|node| node.error).fold(0.0, f64::max);
     let table = |&masking: &Masking| {
-        let values = nodes.iter().flatten().flat_map(|node| node.0[masking as usize]);
+        let values = nodes.iter().flatten().flat_map(|node| node.of(masking));
         Table {
             name: String::new(),
             kind: Kind::FresnelAlbedo,

@@ -29,16 +29,17 @@ const END: f64 = 1.0 / 1_099_511_627_776.0;
 
 /// Bakes one table.
 pub fn bake(spec: &TableSpec) -> Table {
+    let axes = axes(spec);
     let values = match spec.kind {
-        Kind::Shadowing => shadowing::bake(spec),
-        Kind::VisibleSlope | Kind::VisibleSlopePeeled => visible_slope::bake(spec),
-        Kind::VisibleSlopeConditional => conditional::bake(spec),
+        Kind::Shadowing => shadowing::bake(spec, &axes),
+        Kind::VisibleSlope | Kind::VisibleSlopePeeled => visible_slope::bake(spec, &axes),
+        Kind::VisibleSlopeConditional => conditional::bake(spec, &axes),
         _ => unreachable!("kinds are listed in `axes`, which comes first"),
     };
     let table = Table {
         name: spec.name.clone(),
         kind: spec.kind,
-        axes: axes(spec),
+        axes,
         channels: names(Kind::VALUE_AND_SLOPE),
         masking: None,
         values,
@@ -107,7 +108,7 @@ fn distance(shape: &Shape, x: SignedUnit, end: f64) -> f64 {
 
 /// d h/d w of the half tangent h of a unit slope x(w), dx/dw = √(1 + s x²).
 fn half_tangent_rate(shape: &Shape, x: SignedUnit) -> f64 {
-    // dh/dx is cos²/(1 + cos), one cosine of which makes dx/dw finite.
+    // dα/dx = cos² α, one cosine of which makes dx/dw finite.
     let (sin, cos) = shape.unit_sin_cos(x.w);
-    cos * (cos * cos + shape.s() * sin * sin).sqrt() / (1.0 + cos)
+    half_tangent::angle_rate(sin, cos) * cos * (cos * cos + shape.s() * sin * sin).sqrt()
 }

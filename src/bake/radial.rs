@@ -10,7 +10,7 @@ use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Precision, Table};
 use rayon::prelude::*;
 
 use super::shadowing::ratios;
-use super::{mirrored, names, round};
+use super::{across, along, mirrored, names, round};
 use crate::spec::Quality;
 
 /// Rows of in-plane slopes in the table of slopes across.
@@ -34,14 +34,11 @@ pub fn radial_axes(quality: Quality, kappa: f64, reach: f64) -> [(Kind, Vec<Axis
         ),
         (
             Kind::RadialSlope,
-            vec![
-                Axis::placed("view", HALF_TANGENT, Interpolation::Linear, r.views),
-                super::along(along_numbers),
-            ],
+            vec![Axis::placed("view", HALF_TANGENT, Interpolation::Linear, r.views), along(along_numbers)],
         ),
         (
             Kind::RadialConditional,
-            vec![Axis::placed("slope", slopes, Interpolation::Linear, SLOPES), super::across(across_numbers)],
+            vec![Axis::placed("slope", slopes, Interpolation::Linear, SLOPES), across(across_numbers)],
         ),
         (Kind::RadialDensity, vec![Axis::placed("slope", HALF_TANGENT, Interpolation::Hermite, DENSITIES)]),
     ]
@@ -68,12 +65,12 @@ pub fn radial_bytes(quality: Quality, precision: Precision) -> usize {
 pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precision: Precision) -> Vec<Table> {
     let kappa = marginal.beyond(0.0).excess;
     let table = |(kind, axes): (Kind, Vec<Axis>)| {
-        let [first, last] = [&axes[0], &axes[axes.len() - 1]].map(|axis| axis.nodes.len());
-        let values = match kind {
-            Kind::RadialShadowing => shadowing(marginal, kappa, first),
-            Kind::RadialSlope => along(marginal, first, last),
-            Kind::RadialConditional => across(marginal, last),
-            _ => density(marginal),
+        let values = match (kind, &axes[..]) {
+            (Kind::RadialShadowing, [views]) => shadowing(marginal, kappa, &views.nodes),
+            (Kind::RadialSlope, [views, numbers]) => in_plane(marginal, &views.nodes, &numbers.nodes),
+            (Kind::RadialConditional, [slopes, numbers]) => given_slope(marginal, slopes, &numbers.nodes),
+            (_, [slopes, ..]) => density(marginal, &slopes.nodes),
+            (_, []) => unreachable!("every kind has an axis"),
         };
         let table = Table {
             name: kind.table_name(None, suffix),
@@ -91,7 +88,7 @@ pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precisio
 }
 
 /// G1/q by q = z/(z + κ), with κ the area at grazing, as for the family.
-fn shadowing(marginal: &Marginal, kappa: f64, views: usize) -> Vec<[f32; 2]> {
+fn shadowing(marginal: &Marginal, kappa: f64, views: &[f64]) -> Vec<[f32; 2]> {
     let beyond = |z: f64| {
         let at = marginal.beyond(z);
         (at.excess, at.tail)
@@ -134,79 +131,80 @@ fn finite(slope: f64) -> f64 {
     if slope.is_finite() { slope } else { f64::from(f32::MAX) }
 }
 
-fn along(marginal: &Marginal, views: usize, numbers: usize) -> Vec<[f32; 2]> {
-    let row = |i: usize| {
-        let tau = i as f64 / (views - 1) as f64;
+fn in_plane(marginal: &Marginal, views: &[f64], numbers: &[f64]) -> Vec<[f32; 2]> {
+    let cells = (numbers.len() - 1) as f64;
+    let row = |&tau: &f64| {
         let z = SLOPE.quantity(tau);
         let view = MarginalView::new(marginal, z);
-        let mut row = Vec::with_capacity(2 * numbers);
+        let mut row = Vec::with_capacity(2 * numbers.len());
         for sign in [-1.0, 1.0] {
             let mut g = 1e-3;
-            let mut half = round((0..numbers).map(|j| {
-                let (u, du_dt) = mirrored(j as f64 / (numbers - 1) as f64);
+            let mut half = round(numbers.iter().map(|&t| {
+                let (u, du_dt) = mirrored(t);
                 let share = |g: f64| {
                     let x = slope_from(g, sign);
                     let at = view.shares(x);
                     (if sign < 0.0 { at.below } else { at.above }, at.density / rate(x, 1.0))
                 };
                 g = solve(u, g, share);
-                [g, finite(du_dt / share(g).1 / (numbers - 1) as f64)]
+                [g, finite(du_dt / share(g).1 / cells)]
             }));
             if sign < 0.0 && tau < 1.0 && z <= marginal.reach() {
                 // The silhouette, exactly, as in the family's tables.
-                half[0][0] = (1.0 - tau) as f32;
+                half[0][0] = SLOPE.parts(tau)[1] as f32;
             }
             limit_slopes(&mut half);
             row.extend(half);
         }
         row
     };
-    (0..views).into_par_iter().flat_map_iter(row).collect()
+    views.par_iter().flat_map_iter(row).collect()
 }
 
-fn across(marginal: &Marginal, numbers: usize) -> Vec<[f32; 2]> {
-    let row = |i: usize| {
-        let at = i as f64 / (SLOPES - 1) as f64;
-        let reach = marginal.reach();
+fn given_slope(marginal: &Marginal, slopes: &Axis, numbers: &[f64]) -> Vec<[f32; 2]> {
+    let cells = (numbers.len() - 1) as f64;
+    let row = |&at: &f64| {
         // A row at infinity, or at the bound R of the slopes and beyond, has no quadrature; one just before has reached the limit.
-        let (x, scale) = if reach.is_finite() {
-            let part = (at / (1.0 - at)).min(1.0 - 1e-6);
-            (reach * part, ((1.0 - part) * (1.0 + part)).sqrt())
-        } else {
-            let x = SLOPE.quantity(at.min(1.0 - 1e-5));
-            (x, (1.0 + x * x).sqrt())
+        let (x, scale) = match slopes.mapping {
+            Mapping::Rational(axis) => {
+                let part = axis.quantity(at, 1.0).min(1.0 - 1e-6);
+                (marginal.reach() * part, ((1.0 - part) * (1.0 + part)).sqrt())
+            }
+            _ => {
+                let x = SLOPE.quantity(at.min(1.0 - 1e-5));
+                (x, (1.0 + x * x).sqrt())
+            }
         };
-        let across = marginal.across_at(x);
+        let beside = marginal.across_at(x);
         let mut g = 1e-3;
-        let mut half = round((0..numbers).map(|j| {
-            let (u, du_dt) = mirrored(j as f64 / (numbers - 1) as f64);
+        let mut half = round(numbers.iter().map(|&t| {
+            let (u, du_dt) = mirrored(t);
             let share = |g: f64| {
                 let t = slope_from(g, 1.0);
-                let tail = across.tail(t.abs() * scale);
+                let tail = beside.tail(t.abs() * scale);
                 // Symmetric about t = 0, where the half table ends.
                 let above = if t < 0.0 { 1.0 - tail } else { tail };
-                (above, scale * across.density(t.abs() * scale) / rate(t, 1.0))
+                (above, scale * beside.density(t.abs() * scale) / rate(t, 1.0))
             };
             g = solve(u, g, share);
-            [g, finite(du_dt / share(g).1 / (numbers - 1) as f64)]
+            [g, finite(du_dt / share(g).1 / cells)]
         }));
         limit_slopes(&mut half);
         half
     };
-    (0..SLOPES).into_par_iter().flat_map_iter(row).collect()
+    slopes.nodes.par_iter().flat_map_iter(row).collect()
 }
 
-fn density(marginal: &Marginal) -> Vec<[f32; 2]> {
-    let cells = (DENSITIES - 1) as f64;
+fn density(marginal: &Marginal, slopes: &[f64]) -> Vec<[f32; 2]> {
+    let cells = (slopes.len() - 1) as f64;
     // At the horizon itself D is the limit of what is near it.
     let root = |h: f64| marginal.d(SLOPE.quantity(h.min(1.0 - 1e-9))).sqrt().sqrt();
     let step = 1e-4 / cells;
-    let node = |i: usize| {
-        let h = i as f64 / cells;
+    let node = |&h: &f64| {
         // D is even in h, and one-sided at the horizon.
         let (a, b) = (root((h - step).abs()), root(h + step));
         let width = if h + step > 1.0 { step } else { 2.0 * step };
         [root(h), (b - a) / width / cells]
     };
-    round((0..DENSITIES).map(node))
+    round(slopes.iter().map(node))
 }

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use microfacet_common::shape::s_of_gamma;
 use microfacet_model::{Shape, UnitView};
+use microfacet_sampler::Axis;
 use microfacet_sampler::axis::Rational;
 
 use super::{round, shapes};
@@ -20,26 +21,26 @@ pub(super) fn view(spec: &TableSpec) -> Rational {
     Rational { crowded, ..Rational::BAKED }
 }
 
-pub(super) fn bake(spec: &TableSpec) -> Vec<f32> {
+pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
     let view = view(spec);
     let of_shape = |shape: &Shape| {
         let beyond = |z: f64| {
             let w = shape.unit(z);
             (shape.excess(w), shape.tail(w))
         };
-        round(ratios(&view, view.kappa(shape.s()), spec.views, beyond))
+        round(ratios(&view, view.kappa(shape.s()), &axes[1].nodes, beyond))
     };
     shapes(spec).par_iter().flat_map_iter(of_shape).flatten_iter().collect()
 }
 
-/// G1/q = (z + κ)/(z + E[(X−z)⁺]) at so many views, and its derivative per node; `beyond` gives E[(X−z)⁺] and P(X > z).
+/// G1/q = (z + κ)/(z + E[(X−z)⁺]) at the nodes of the views, the last of which is z = ∞, and its derivative per node; `beyond` gives E[(X−z)⁺] and P(X > z).
 pub(super) fn ratios(
     view: &Rational,
     kappa: f64,
-    views: usize,
+    views: &[f64],
     beyond: impl Fn(f64) -> (f64, f64) + Sync,
 ) -> Vec<[f64; 2]> {
-    let cells = (views - 1) as f64;
+    let cells = (views.len() - 1) as f64;
     let node = |t: f64| {
         let z = view.quantity(t, kappa);
         let (excess, tail) = beyond(z);
@@ -50,10 +51,10 @@ pub(super) fn ratios(
         let slope = (excess - kappa + (z + kappa) * tail) * value * value / kappa;
         [value, slope * view.rate(t) / cells]
     };
-    let mut nodes: Vec<_> = (0..views - 1).into_par_iter().map(|i| node(i as f64 / cells)).collect();
+    let mut nodes: Vec<_> = views[..views.len() - 1].par_iter().map(|&t| node(t)).collect();
     // z = ∞, where G1 = 1. Near γ = 3/2 the excess fades like z^(−2k), so the derivative there says nothing about the cell; the
     // slope is the one that makes the cubic exact in the cell's middle instead.
-    let ([before, slope], [middle, _]) = (nodes[views - 2], node(1.0 - 0.5 / cells));
+    let ([before, slope], [middle, _]) = (nodes[views.len() - 2], node(1.0 - 0.5 / cells));
     nodes.push([1.0, slope - 8.0 * (middle - 0.5 * (before + 1.0))]);
     nodes
 }

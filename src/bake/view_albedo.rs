@@ -302,7 +302,7 @@ fn bake_with(spec: &ViewSpec, model: &LobeAlbedo<'_>) -> Result<Table, BakeError
         .flat_map(|&t| {
             let [c, s] = azimuths.direction(t);
             let (phi, sigma) = (azimuths.quantity(t), azimuths.sigma(c, s));
-            let view = spec.view().bind(sigma, f64::INFINITY);
+            let view = spec.view().bind_shaped(sigma);
             axes[1].nodes.iter().map(move |&t| (phi, sigma, view.quantity(t)))
         })
         .collect();
@@ -351,7 +351,7 @@ fn node(
             height_correlated: free(albedo.height_correlated),
             error: albedo.error / share,
         };
-        residual(&free, at, SLACK * spec.tolerance / share)?.0[spec.masking as usize]
+        residual(&free, at, SLACK * spec.tolerance / share)?.of(spec.masking)
     };
     let clamp = ratio.map(|ratio| 1.0 / (1.0 + ratio));
     Ok((moments.into_iter().chain(clamp).collect(), albedo.error))

@@ -22,8 +22,8 @@
 use rayon::prelude::*;
 
 use microfacet_model::{Shape, UnitView, VisibleSlope};
-use microfacet_sampler::Kind;
 use microfacet_sampler::axis::{HalfTangent, limit_slopes};
+use microfacet_sampler::{Axis, Kind};
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
 use crate::spec::TableSpec;
@@ -38,28 +38,25 @@ pub(super) fn view(kind: Kind) -> HalfTangent {
 /// density vanishes there, and the share of normals displaced is of the order of its square.
 const INSIDE: f64 = 1.0 / 1_048_576.0;
 
-pub(super) fn bake(spec: &TableSpec) -> Vec<f32> {
+pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
     let (view, peeled) = (view(spec.kind), spec.kind == Kind::VisibleSlopePeeled);
+    let [_, views, numbers] = axes else { unreachable!("the axes of this kind") };
     let shapes = shapes(spec);
-    let rows: Vec<(&Shape, usize)> =
-        shapes.iter().flat_map(|shape| (0..spec.views).map(move |row| (shape, row))).collect();
-    let of_row = |&(shape, row): &(&Shape, usize)| {
-        let at = row as f64 / (spec.views - 1) as f64;
-        row_nodes(shape, [view.parts(at)[1], view.quantity(at)], spec.numbers, peeled)
+    let rows: Vec<(&Shape, f64)> =
+        shapes.iter().flat_map(|shape| views.nodes.iter().map(move |&t| (shape, t))).collect();
+    let of_row = |&(shape, t): &(&Shape, f64)| {
+        row_nodes(shape, [view.parts(t)[1], view.quantity(t)], &numbers.nodes, peeled)
     };
     rows.par_iter().flat_map_iter(of_row).flatten_iter().collect()
 }
 
 /// Both halves of a row: the nodes for u ≤ ½ from u = 0 up, then those for u > ½ from u = 1 down.
-fn row_nodes(shape: &Shape, [rest, z]: [f64; 2], numbers: usize, peeled: bool) -> Vec<[f32; 2]> {
+fn row_nodes(shape: &Shape, [rest, z]: [f64; 2], numbers: &[f64], peeled: bool) -> Vec<[f32; 2]> {
     let view = UnitView::from_cotangent(z);
     let slopes = if peeled { VisibleSlope::peeled(shape, view) } else { VisibleSlope::new(shape, view) };
-    let mut row = Vec::with_capacity(2 * numbers);
+    let mut row = Vec::with_capacity(2 * numbers.len());
     for end in [-1.0, 1.0] {
-        let mut half = round((0..numbers).map(|i| {
-            let t = i as f64 / (numbers - 1) as f64;
-            node(shape, &slopes, end, t, numbers - 1)
-        }));
+        let mut half = round(numbers.iter().map(|&t| node(shape, &slopes, end, t, numbers.len() - 1)));
         if end < 0.0 && z.is_finite() {
             // The silhouette, exactly: linear in τ (convex where the axis is crowded), so that between the rows it is as exact (on the
             // visible side) too and no sampled normal faces away.

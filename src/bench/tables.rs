@@ -64,7 +64,7 @@ fn slice(quality: Quality, precision: Precision, gamma: f64) -> Tables {
 pub(super) const TABLE: &str = "table, default";
 
 /// Names of the qualities.
-pub(super) fn name(quality: Quality) -> &'static str {
+fn name(quality: Quality) -> &'static str {
     match quality {
         Quality::Draft => "table, draft",
         Quality::Default => TABLE,

@@ -1,6 +1,6 @@
 //! What a bake costs, before it is done.
 
-use microfacet_sampler::{Axis, Interpolation, Kind, Precision, Provenance, describe};
+use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Precision, Provenance, describe};
 
 use crate::bake::{self, albedo::AlbedoSpec, view_albedo::ViewSpec};
 use crate::family::Distribution;
@@ -24,9 +24,24 @@ impl std::iter::Sum for Cost {
     }
 }
 
-/// Estimates what a set without tables takes: its names, its recipe and its conventions.
+/// Estimates what a set without tables takes: its names, its recipe, its conventions, and the formulas of the axes that tables will
+/// have.
 pub fn bare_cost(provenance: &Provenance) -> Cost {
-    Cost { bytes: describe(provenance, &[]).map_or(0, |json| escaped(&json)), seconds: 0.0 }
+    let formulas = Mapping::EVERY.into_iter().filter(|mapping| {
+        // Those that have albedos have the conventions of albedos.
+        let convention = match mapping {
+            Mapping::LogShape(_) | Mapping::LogRoughness(_) | Mapping::ViewBlend(_) => "albedo",
+            Mapping::Azimuth(_) => "view_albedo",
+            // Of dielectrics alone, which are rare.
+            Mapping::ReflectanceRoot | Mapping::CriticalBlend(_) => return false,
+            _ => "visible_slope",
+        };
+        provenance.conventions.contains_key(convention)
+    });
+    // Quotes with their escapes, a colon and a comma.
+    let formulas: usize = formulas.map(|mapping| mapping.name().len() + mapping.formula().len() + 10).sum();
+    let bare = describe(provenance, &[]).map_or(0, |json| escaped(&json));
+    Cost { bytes: bare + formulas, seconds: 0.0 }
 }
 
 /// Bytes of the document, a string inside JSON.

@@ -29,8 +29,8 @@ fn channel_name(channel: &str) -> &str {
 /// A message if the table is not sound or cannot be written.
 pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec<u8>, String> {
     let document = describe(provenance, std::slice::from_ref(table)).map_err(|why| why.to_string())?;
-    let document =
-        sealed(&ascii(&document), &table.values).ok_or("the description has no place for a checksum")?;
+    let document = seal_document(&ascii(&document), &table.values)
+        .ok_or("the description has no place for a checksum")?;
     let width = table.axes.last().map_or(1, microfacet_sampler::Axis::len);
     let count = table.channels.len();
     let height = table.values.len() / count / width;
@@ -98,7 +98,7 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     }
     let pixels = layer.size.area();
     let values: Vec<f32> = (0..pixels).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
-    if sealed(&document, &values).is_none_or(|sealed| sealed != document) {
+    if seal_document(&document, &values).is_none_or(|sealed| sealed != document) {
         return Err(invalid("checksum does not match: the file is damaged or was edited; bake again".into()));
     }
     let mut values = Some(values);
@@ -139,15 +139,6 @@ fn document_channels(document: &str) -> std::result::Result<Vec<String>, String>
     names
         .filter(|names: &Vec<String>| !names.is_empty())
         .ok_or_else(|| "the description names no channels".into())
-}
-
-/// A description sealed with its values: filled in are the eight digits of its checksum, whatever they were.
-fn sealed(document: &str, values: &[f32]) -> Option<String> {
-    let mut bytes = document.as_bytes().to_vec();
-    bytes.extend(values.iter().flat_map(|x| x.to_le_bytes()));
-    let found = seal_document(&mut bytes);
-    bytes.truncate(document.len());
-    found.then(|| String::from_utf8(bytes).ok()).flatten()
 }
 
 /// The description in pure ASCII: EXR text has no Unicode.

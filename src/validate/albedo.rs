@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use microfacet_common::shape::s_of_gamma;
 use microfacet_model::{Albedo, AlbedoIntegrator, Shape};
-use microfacet_sampler::axis::Roughness;
+use microfacet_sampler::axis::LogRoughness;
 use microfacet_sampler::{BindError, Kind, Masking, Table, Tables};
 
 use super::certificate::{low_discrepancy, round_up};
@@ -22,7 +22,7 @@ const LEAST: usize = 480;
 /// Smallest σ and cos θ of the domain that the figures are promised for.
 pub(super) const DOMAIN: (f64, f64) = (0.01, 0.02);
 /// Smallest σ that is no mirror.
-const SMOOTHEST: f64 = Roughness::BAKED.first;
+const SMOOTHEST: f64 = LogRoughness::BAKED.first;
 
 /// Figures of one table, rounded up to three digits; those a bake has left there are kept.
 fn measure(

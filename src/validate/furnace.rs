@@ -71,10 +71,7 @@ pub fn furnace(
     let exact = model::AlbedoIntegrator::new(shape, 1e-6)
         .reflection(sigma, f64::from(cos), |_| [1.0])
         .map_err(|_| BindError::Sigma(sigma as f32))?;
-    let [single] = match masking {
-        Masking::Uncorrelated => exact.uncorrelated,
-        Masking::HeightCorrelated => exact.height_correlated,
-    };
+    let [single] = exact.of(masking);
     let turquin = single * f64::from(albedo.turquin(cos, 1.0));
     let kulla_conty = single + lobe(&albedo, cos);
     Ok(Furnace { sigma, gamma, cos_theta, single, turquin, kulla_conty })

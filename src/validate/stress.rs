@@ -15,6 +15,8 @@ use rayon::prelude::*;
 
 use microfacet_sampler::{BindError, Tables};
 
+use crate::spec::GAMMA_WHOLE;
+
 use corners::{corner_materials, corner_points, random_material, random_points};
 
 /// Points drawn for each random material.
@@ -130,7 +132,7 @@ pub struct Report {
 
 impl Report {
     fn region(&mut self, at: &Point) -> &mut Region {
-        let shape = [1.8, 4.0, 1e4].iter().filter(|&&gamma| at.gamma >= gamma).count();
+        let shape = [GAMMA_WHOLE, 4.0, 1e4].iter().filter(|&&gamma| at.gamma >= gamma).count();
         let cos = at.view().z;
         let view = match cos {
             _ if cos < 0.0 => 3,

@@ -112,7 +112,7 @@ pub fn missed_by_half(table: &Table) -> Result<[f64; 2], LoadError> {
         let azimuth = azimuth.bind(azimuths.len());
         for &t in &azimuths.nodes {
             let [c, s] = azimuth.direction(t);
-            let view = blend.bind(azimuth.sigma(c, s), f64::INFINITY);
+            let view = blend.bind_shaped(azimuth.sigma(c, s));
             for cos in views.nodes.iter().map(|&t| view.quantity(t)) {
                 let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
                 let v = Vec3::new((sin * c) as f32, (sin * s) as f32, cos as f32);

@@ -59,7 +59,16 @@ proptest! {
         let moved = &bytes[from..(from + inserted).min(bytes.len())];
         let damaged = [&bytes[..at], moved, &noise, rest].concat();
         if let Err(error) = Folder::new(&[(name, damaged)]).load(name) {
-            prop_assert!(error.to_string().contains(name));
+            prop_assert!(error.to_string().contains(name), "{error}");
         }
+    }
+}
+
+#[test]
+fn an_include_of_a_folder_is_refused_at_its_place() {
+    for include in ["", "."] {
+        let text = format!("AttributeBegin\nInclude \"{include}\"\n");
+        let error = Folder::new(&[("a.pbrt", text.into_bytes())]).load("a.pbrt").unwrap_err().to_string();
+        assert!(error.contains("a.pbrt:2") && error.contains("folder"), "{error}");
     }
 }

@@ -18,9 +18,10 @@
 //! the layer along the rim and, for long tails, the neighbourhood of l = n; the clamp of G1(l) at one is a kink along
 //! a curve, at which chords are divided.
 
+use microfacet_common::Masking;
+
 use super::{Albedo, AlbedoIntegrator, PANEL};
-use crate::converge::CUT;
-use crate::converge::converge;
+use crate::converge::{CUT, converge};
 use crate::ellipsoid::Ellipsoid;
 use crate::error::ParameterError;
 use crate::panels::{End, Gauss};
@@ -362,8 +363,9 @@ impl AlbedoIntegrator {
             }
             let g1 = if l.area > l.cos { l.cos / l.area } else { 1.0 };
             let fresnel = weight(l.facing.min(1.0));
-            let uncorrelated = jacobian * self.shape.across_density(w) * g1;
-            let correlated = uncorrelated / (g1 + view.g1 * (1.0 - g1));
+            let mass = jacobian * self.shape.across_density(w);
+            let [uncorrelated, correlated] =
+                Masking::ALL.map(|masking| mass * masking.g2_over_g1(view.g1, g1));
             for i in 0..N {
                 sum[0][i] += uncorrelated * fresnel[i];
                 sum[1][i] += correlated * fresnel[i];

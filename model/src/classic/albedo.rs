@@ -9,6 +9,8 @@
 //!
 //! The integral over r is outside, so that the slopes at which a measured D has its corners divide it once for all φ.
 
+use microfacet_common::Masking;
+
 use super::Marginal;
 use crate::albedo::Albedo;
 use crate::converge::{CUT, converge, rules};
@@ -165,8 +167,8 @@ impl<'a> RadialAlbedo<'a> {
                 return;
             }
             let fresnel = weight((facing / square.sqrt()).min(1.0));
-            let uncorrelated = jacobian * facing * g1;
-            let correlated = uncorrelated / (g1 + g1_v * (1.0 - g1));
+            let mass = jacobian * facing;
+            let [uncorrelated, correlated] = Masking::ALL.map(|masking| mass * masking.g2_over_g1(g1_v, g1));
             for i in 0..N {
                 sum[0][i] += uncorrelated * fresnel[i];
                 sum[1][i] += correlated * fresnel[i];

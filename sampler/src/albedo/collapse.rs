@@ -5,14 +5,11 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::axis::{Axis, Mapping, Roughness, ViewBlend};
+use crate::axis::{Axis, Mapping, ViewBlend};
 use crate::format::Table;
 
 /// Nodes of an axis with their weights.
 pub(super) type Weights = Vec<(usize, f64)>;
-
-/// First σ node, at most, of tables that serve all smaller σ as mirrors; those of a recipe may begin higher.
-const SMOOTHEST: f64 = 1.01 * Roughness::BAKED.first;
 
 /// Two σ that have come through a coordinate and back are the same within this.
 const SAME: f64 = 1e-9;
@@ -31,14 +28,18 @@ pub(super) fn last_sigma(table: &Table) -> f64 {
     quantity(&table.axes[1], table.axes[1].ends()[1])
 }
 
-/// Whether σ is smoother than the table's first node, and so a mirror.
-pub(super) fn is_mirror(table: &Table, sigma: f64) -> bool {
-    sigma < first_sigma(table) * (1.0 - SAME)
+/// Whether σ is smoother than a table's first node, and so a mirror.
+pub(super) fn is_mirror(sigma: f64, first: f64) -> bool {
+    sigma < first * (1.0 - SAME)
 }
 
-/// Whether a table goes down to σ.
-pub(super) fn reaches(table: &Table, sigma: f64) -> bool {
-    first_sigma(table) <= SMOOTHEST || !is_mirror(table, sigma)
+/// Whether a table begins with the coordinate itself, so that it serves all smaller σ as mirrors; those of a recipe may begin
+/// higher.
+pub(super) fn reaches_mirrors(table: &Table) -> bool {
+    match table.axes[1].mapping {
+        Mapping::LogRoughness(axis) => first_sigma(table) <= 1.01 * axis.first,
+        _ => unreachable!("validated on load"),
+    }
 }
 
 /// Weights along the axis γ; `None` where the table does not cover it.
@@ -48,14 +49,16 @@ pub(super) fn at_shape(table: &Table, gamma: f64) -> Option<Weights> {
 }
 
 /// Weights along the axes γ and σ, and the σ that they are at: no less than the first node of a table that serves smaller ones
-/// as mirrors. `None` where the table does not cover them.
+/// as mirrors. `None` where the table does not cover them, and for what is no roughness.
 pub(super) fn at_material(table: &Table, sigma: f64, gamma: f64) -> Option<(Vec<Weights>, f64)> {
-    if !reaches(table, sigma) {
+    let rows = at_shape(table, gamma)?;
+    let first = first_sigma(table);
+    if !(sigma >= 0.0) || is_mirror(sigma, first) && !reaches_mirrors(table) {
         return None;
     }
-    let (roughnesses, at) = (&table.axes[1], sigma.max(first_sigma(table)));
+    let (roughnesses, at) = (&table.axes[1], sigma.max(first));
     let columns = roughnesses.weights(roughnesses.coordinate(at).expect("validated on load"))?;
-    Some((vec![at_shape(table, gamma)?, columns], at))
+    Some((vec![rows, columns], at))
 }
 
 /// The values of a table of N channels along its last axis, the axes before it collapsed; one node where all are.

@@ -6,10 +6,10 @@ use alloc::vec::Vec;
 use microfacet_common::Masking;
 
 use super::collapse::{
-    at_material, at_shape, collapse, domains, first_sigma, is_mirror, last_sigma, reaches, view_blend,
+    at_material, at_shape, collapse, domains, first_sigma, is_mirror, last_sigma, reaches_mirrors, view_blend,
 };
 use super::curve::within;
-use super::moments::{Moments, less_mirror, over_views};
+use super::moments::{Moments, fade, less_mirror, over_views};
 use crate::axis::BoundView;
 use crate::axis::lagrange::{combine, six};
 use crate::error::BindError;
@@ -45,7 +45,7 @@ impl Tables {
     pub fn albedo(&self, sigma: f64, gamma: f64, masking: Masking) -> Result<Albedo, BindError> {
         Self::within_family(sigma, gamma)?;
         let (table, mut nodes) = self.collapse(Kind::Albedo, sigma, gamma, masking)?;
-        if is_mirror(table, sigma) {
+        if is_mirror(sigma, first_sigma(table)) {
             nodes.fill([0.0; 3]);
         }
         let power = match masking {
@@ -66,7 +66,11 @@ impl Tables {
     pub fn average_moments(&self, sigma: f64, gamma: f64, masking: Masking) -> Result<Moments, BindError> {
         Self::within_family(sigma, gamma)?;
         let (table, rest) = self.collapse(Kind::AlbedoAverage, sigma, gamma, masking)?;
-        Ok(Moments::mirror_average().plus(if is_mirror(table, sigma) { [0.0; 3] } else { rest[0] }))
+        Ok(Moments::mirror_average().plus(if is_mirror(sigma, first_sigma(table)) {
+            [0.0; 3]
+        } else {
+            rest[0]
+        }))
     }
 
     fn within_family(sigma: f64, gamma: f64) -> Result<(), BindError> {
@@ -93,7 +97,7 @@ impl Tables {
         if let Some((table, at)) = found {
             return Ok((table, collapse(table, &at)));
         }
-        if tables().any(|table| !reaches(table, 0.0)) {
+        if tables().any(|table| !reaches_mirrors(table)) {
             return Err(BindError::AlbedoNotCovered { sigma, gamma, covered: domains(tables()) });
         }
         let max = tables().filter(|table| at_shape(table, gamma).is_some()).map(last_sigma).reduce(f64::max);
@@ -166,10 +170,8 @@ impl Albedo {
         if cos >= floor || self.power == 0.0 {
             return [e, bias, f82];
         }
-        // Correlated masking lets through ever more of what is seen, up to all of it, and in the same mixture.
-        let less = e * libm::powf(cos / floor, self.power);
-        let more = (1.0 + less) / (1.0 + e).max(1e-6);
-        [less, bias * more, f82 * more]
+        // Correlated masking lets through ever more of what is seen, up to all of it.
+        fade([e, bias, f82], libm::powf(cos / floor, self.power))
     }
 
     fn interpolate(&self, t: f32) -> [f32; 3] {

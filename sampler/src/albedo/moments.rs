@@ -77,6 +77,13 @@ pub(super) fn over_views(floor: f64, rest: impl Fn(f32) -> [f32; 3]) -> [f64; 3]
     sum
 }
 
+/// Channels below the first view of a table, where E − 1 is `share` of what it is there: the mixture of the other moments stays.
+pub(super) fn fade([e, bias, f82]: [f32; 3], share: f32) -> [f32; 3] {
+    let less = e * share;
+    let more = (1.0 + less) / (1.0 + e).max(1e-6);
+    [less, bias * more, f82 * more]
+}
+
 /// Averages of whole moments in the form of the tables' channels.
 pub(super) fn less_mirror([e, bias, f82]: [f64; 3]) -> [f32; 3] {
     let mirror = Moments::mirror_average();

@@ -8,7 +8,7 @@ use microfacet_common::Masking;
 
 use super::collapse::view_blend;
 use super::curve::within;
-use super::moments::{Moments, less_mirror, over_views};
+use super::moments::{Moments, fade, less_mirror, over_views};
 use crate::axis::lagrange::{SIX, combine, six};
 use crate::axis::{BoundAzimuth, BoundView, Mapping, ViewBlend};
 use crate::error::{BindError, LoadError};
@@ -149,7 +149,7 @@ impl ViewAlbedo {
 
     /// The coordinate of views of an azimuth. What depends on γ is in the table's parameters.
     fn view_at(&self, c: f64, s: f64) -> BoundView {
-        self.view.bind(self.azimuth.sigma(c, s), f64::INFINITY)
+        self.view.bind_shaped(self.azimuth.sigma(c, s))
     }
 
     /// E − 1 in [−1, 0], and what the other moments have over E times a mirror's.
@@ -164,13 +164,11 @@ impl ViewAlbedo {
         if cos >= floor || self.masking == Masking::Uncorrelated || e == 0.0 {
             return [e, bias, f82];
         }
-        // Correlated masking lets through ever more of what is seen, and in the same mixture: of a plain lobe all of it in the end.
+        // Correlated masking lets through ever more of what is seen: of a plain lobe all of it in the end.
         let [above, ..] = self.interpolate(&rows, view.clamped(4.0 * floor));
         // NaN has no power, either.
         let power = if above / e > 1.0 { (libm::log2f(above / e) / 2.0).min(1.0) } else { 0.0 };
-        let less = e * libm::powf(cos / floor, power);
-        let more = (1.0 + less) / (1.0 + e).max(1e-6);
-        [less, bias * more, f82 * more]
+        fade([e, bias, f82], libm::powf(cos / floor, power))
     }
 
     fn interpolate(&self, rows: &[(usize, f32); SIX], t: f32) -> [f32; 3] {

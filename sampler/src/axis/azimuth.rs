@@ -87,7 +87,7 @@ impl BoundAzimuth {
         libm::hypot(self.sigma[0] * x, self.sigma[1] * y)
     }
 
-    /// t of the direction (cos φ, sin φ), below 1 unless folded.
+    /// t ∈ [0, 1] of the direction (cos φ, sin φ); 0 and 1 are one unless folded.
     pub fn coordinate(&self, c: f64, s: f64) -> f64 {
         let [x, y] = self.stretched(c, s);
         if self.fold {
@@ -105,7 +105,7 @@ impl BoundAzimuth {
         [(ct * x - st * y) / length, (st * x + ct * y) / length]
     }
 
-    /// φ ∈ [0, 2π) at t.
+    /// φ ∈ [0, 2π] at t.
     pub fn quantity(&self, t: f64) -> f64 {
         let [c, s] = self.direction(t);
         let phi = libm::atan2(s, c);
@@ -200,6 +200,9 @@ mod tests {
                 let [c, s] = bound.direction(t);
                 // What has the axis's own symmetry, of low degree.
                 let f = |t: f64| libm::cos(bound.angle(t) * if axis.fold { 2.0 } else { 1.0 });
+                // Three nodes on either side.
+                let cell = t * if axis.fold { n - 1 } else { n } as f64;
+                assert_eq!(bound.six(c, s)[2].0, cell as usize, "{axis:?}, {t}");
                 let at = |(i, w): (usize, f32)| f64::from(w) * f(axis.placement().node(i, n).unwrap());
                 let got: f64 = bound.six(c, s).into_iter().map(at).sum();
                 assert!((got - f(t)).abs() < 1e-4, "{axis:?}, {t}: {got} for {}", f(t));

@@ -62,9 +62,10 @@ pub fn even_nodes(low: f64, high: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect()
 }
 
-/// Whether every one of some parameters is positive and not absurd; NaN is neither.
+/// Whether every one of some parameters is positive and not absurd, so that no product of a few leaves the range of numbers;
+/// NaN is neither.
 pub(super) fn positive(parameters: &[f64]) -> bool {
-    parameters.iter().all(|&x| x > 0.0 && x < 1e6)
+    parameters.iter().all(|x| (1e-12..1e6).contains(x))
 }
 
 /// The x ∈ [low, high] at which an ascending function reaches `target`, by bisection down to the last bit.

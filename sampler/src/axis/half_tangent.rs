@@ -25,7 +25,8 @@ pub struct HalfTangent {
 impl HalfTangent {
     /// t of z ∈ [0, ∞].
     pub fn coordinate(&self, z: f64) -> f64 {
-        if z == f64::INFINITY {
+        // Its square would overflow.
+        if z > 1e150 {
             return 1.0;
         }
         let tau = half_tangent(z, 1.0);
@@ -69,7 +70,7 @@ impl Coordinate for HalfTangent {
     }
 }
 
-/// h ∈ [−1, 1] of the slope x : z, z ≥ 0.
+/// h ∈ [−1, 1] of the slope x : z, z ≥ 0, both below 1e150.
 pub fn half_tangent(x: f64, z: f64) -> f64 {
     x / (z + sqrt64(x * x + z * z))
 }
@@ -83,10 +84,16 @@ pub fn ends(x: f64, z: f64) -> [f64; 2] {
     if h > 0.0 { [1.0 + h, near] } else { [near, 1.0 - h] }
 }
 
+/// dh/dα at the slope x : z, α being the angle with tan α = x/z.
+pub fn angle_rate(x: f64, z: f64) -> f64 {
+    let r = sqrt64(x * x + z * z);
+    r / (z + r)
+}
+
 /// dh/dx at the slope x : z, x being the quotient.
 pub fn rate(x: f64, z: f64) -> f64 {
-    let r = sqrt64(x * x + z * z);
-    z * z / (r * (z + r))
+    // dα/dx is the square of cos α.
+    angle_rate(x, z) * (z * z / (x * x + z * z))
 }
 
 /// The slope whose half tangent is the distance g ∈ [0, 1] from 1, as x : z.
@@ -134,6 +141,7 @@ mod tests {
                 // Towards infinity an ulp of t is 1/(1−t) ulps of z.
                 assert!(back == z || (back / z - 1.0).abs() < 1e-15 * (3.0 + z), "{z}: {back}");
             }
+            assert_eq!((axis.coordinate(1e200), axis.quantity(1.0)), (1.0, f64::INFINITY));
         }
     }
 

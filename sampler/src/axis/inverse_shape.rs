@@ -25,19 +25,11 @@ impl InverseShape {
     /// there as 1/(2 − s), and what depends on it changes by the logarithm of 2 − s.
     pub fn crowded_nodes(low: f64, high: f64, count: usize) -> Vec<f64> {
         let warp = |s: f64| s - 0.5 * libm::log(1.0 - s / S_END);
-        let inner = |y: f64| bisect(low, high, y, warp);
-        let nodes = even_nodes(warp(low), warp(high), count).into_iter().enumerate();
+        let mut nodes = even_nodes(warp(low), warp(high), count);
+        nodes.iter_mut().for_each(|y| *y = bisect(low, high, *y, warp));
+        // Not through the warp and back.
+        (nodes[0], nodes[count - 1]) = (low, high);
         nodes
-            .map(|(i, y)| {
-                if i == 0 {
-                    low
-                } else if i + 1 == count {
-                    high
-                } else {
-                    inner(y)
-                }
-            })
-            .collect()
     }
 }
 

@@ -43,10 +43,11 @@ pub(super) fn is_even(nodes: &[f64]) -> bool {
 }
 
 /// [`weights`] through six of `n` ≥ 6 nodes spread evenly over [0, 1], in single precision: the first, and the weights. A t
-/// outside is taken at the nearer end.
+/// outside is taken at the nearer end, NaN at 0.
 #[inline]
 pub(crate) fn six(t: f32, n: usize) -> (usize, [f32; SIX]) {
-    let x = (t * (n - 1) as f32).clamp(0.0, (n - 1) as f32);
+    // `max` takes NaN to 0, which `clamp` would keep.
+    let x = (t * (n - 1) as f32).max(0.0).min((n - 1) as f32);
     let start = first_node(x as usize + 1, n, SIX);
     (start, six_weights(x - start as f32))
 }
@@ -128,7 +129,8 @@ mod tests {
                 // The rounding of t, times n, moves the polynomial along.
                 assert!(got < 4e-6 * n as f64, "{n} nodes, {t}: off by {got}");
             }
-            assert_eq!(six(f32::NAN, n).0, six(0.0, n).0);
+            assert_eq!([f32::NAN, -1.0].map(|t| six(t, n)), [six(0.0, n); 2]);
+            assert_eq!(six(7.0, n), six(1.0, n));
         }
     }
 

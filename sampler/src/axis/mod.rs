@@ -1,7 +1,7 @@
 //! Axes of tables: what runs along them, where their nodes are, and how a table is read between the nodes.
 //!
 //! One file a coordinate, with its formula, its inverse, the places of its nodes, what a file may say of it, and the forms that
-//! lookups at speed use, tested against the formula: [`InverseShape`] and [`LogShape`] of γ, [`Roughness`] of σ,
+//! lookups at speed use, tested against the formula: [`InverseShape`] and [`LogShape`] of γ, [`LogRoughness`] of σ,
 //! [`ReflectanceRoot`] of η, [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the elevation of a view,
 //! [`Azimuth`] of its azimuth, [`MirroredRoot`] and [`OddRoot`] of a random number. Whoever bakes, reads, measures or exports a table calls
 //! these. Beside them the two interpolations: [`lagrange`], and Hermite cells.
@@ -23,10 +23,10 @@ pub(crate) mod hermite;
 mod index;
 mod inverse_shape;
 pub mod lagrange;
+mod log_roughness;
 mod log_shape;
 mod number;
 mod rational;
-mod roughness;
 mod view;
 
 pub use azimuth::{Azimuth, BoundAzimuth};
@@ -36,10 +36,10 @@ pub use half_tangent::HalfTangent;
 pub use hermite::limit_slopes;
 pub use index::ReflectanceRoot;
 pub use inverse_shape::InverseShape;
+pub use log_roughness::LogRoughness;
 pub use log_shape::LogShape;
 pub use number::{MirroredRoot, OddRoot};
 pub use rational::Rational;
-pub use roughness::Roughness;
 pub use view::{BoundView, ViewBlend};
 
 pub(crate) use number::roots;
@@ -57,7 +57,7 @@ pub enum Mapping {
     /// Of γ.
     LogShape(LogShape),
     /// Of σ.
-    Roughness(Roughness),
+    LogRoughness(LogRoughness),
     /// Of η.
     ReflectanceRoot,
     /// Of a view, z = cot θ_v/σ_v, or a slope.
@@ -81,7 +81,7 @@ impl Mapping {
     pub const EVERY: [Self; 11] = [
         Self::InverseShape,
         Self::LogShape(LogShape::BAKED),
-        Self::Roughness(Roughness::BAKED),
+        Self::LogRoughness(LogRoughness::BAKED),
         Self::ReflectanceRoot,
         Self::HalfTangent(HalfTangent { crowded: true }),
         Self::Rational(Rational::BAKED),
@@ -97,7 +97,7 @@ impl Mapping {
         match self {
             Self::InverseShape => "inverse_shape",
             Self::LogShape(_) => "log_shape",
-            Self::Roughness(_) => "roughness",
+            Self::LogRoughness(_) => "log_roughness",
             Self::ReflectanceRoot => "reflectance_root",
             Self::HalfTangent(_) => "half_tangent",
             Self::Rational(_) => "rational",
@@ -118,7 +118,7 @@ impl Mapping {
         match self {
             Self::InverseShape => &InverseShape,
             Self::LogShape(coordinate) => coordinate,
-            Self::Roughness(coordinate) => coordinate,
+            Self::LogRoughness(coordinate) => coordinate,
             Self::ReflectanceRoot => &ReflectanceRoot,
             Self::HalfTangent(coordinate) => coordinate,
             Self::Rational(coordinate) => coordinate,
@@ -202,6 +202,9 @@ impl Axis {
     }
 
     /// The coordinates of the first and the last node.
+    ///
+    /// # Panics
+    /// Without nodes, which an axis that was validated has.
     pub fn ends(&self) -> [f64; 2] {
         [self.nodes[0], self.nodes[self.nodes.len() - 1]]
     }
@@ -211,7 +214,7 @@ impl Axis {
         match self.mapping {
             Mapping::InverseShape => Some(InverseShape.coordinate(quantity)),
             Mapping::LogShape(axis) => Some(axis.coordinate(quantity)),
-            Mapping::Roughness(axis) => Some(axis.coordinate(quantity)),
+            Mapping::LogRoughness(axis) => Some(axis.coordinate(quantity)),
             Mapping::ReflectanceRoot => Some(ReflectanceRoot.coordinate(quantity)),
             _ => None,
         }
@@ -222,7 +225,7 @@ impl Axis {
         match self.mapping {
             Mapping::InverseShape => Some(InverseShape.quantity(t)),
             Mapping::LogShape(axis) => Some(axis.quantity(t)),
-            Mapping::Roughness(axis) => Some(axis.quantity(t)),
+            Mapping::LogRoughness(axis) => Some(axis.quantity(t)),
             Mapping::ReflectanceRoot => Some(ReflectanceRoot.quantity(t)),
             _ => None,
         }
@@ -320,8 +323,11 @@ mod tests {
     fn parameters_out_of_range_are_refused() {
         let bad = [
             (Mapping::LogShape(LogShape { scale: f64::NAN }), 1),
-            (Mapping::Roughness(Roughness { offset: 0.0, ..Roughness::BAKED }), 1),
+            (Mapping::LogRoughness(LogRoughness { offset: 0.0, ..LogRoughness::BAKED }), 1),
             (Mapping::Rational(Rational { scale: -1.0, crowded: false }), 5),
+            // The product of these would be 0, and the number of panels about it without end.
+            (Mapping::ViewBlend(ViewBlend { floor: 1e-200, slope: 1e-200, ..ViewBlend::BAKED }), 7),
+            (Mapping::CriticalBlend(CriticalBlend { kink: 1e-320, ..CriticalBlend::BAKED }), 13),
             (Mapping::ViewBlend(ViewBlend { weight: 0.95, ..ViewBlend::BAKED }), 7),
             (Mapping::CriticalBlend(CriticalBlend { root: 1.0, ..CriticalBlend::BAKED }), 13),
             (Mapping::Azimuth(Azimuth { sigma: [0.0, 1.0], turn: 0.0, fold: true }), 5),

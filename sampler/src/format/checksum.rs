@@ -2,6 +2,8 @@
 //! that a damaged shape or axis is found like a damaged value.
 
 use alloc::format;
+use alloc::string::String;
+use core::iter;
 
 /// What precedes the digits in a document.
 const IN_DOCUMENT: &[u8] = br#""checksum":""#;
@@ -13,54 +15,74 @@ pub(super) const NONE: &str = "00000000";
 const DIGITS: usize = NONE.len();
 
 /// Where the digits stand.
-fn position(bytes: &[u8], prefix: &[u8]) -> Option<usize> {
-    let at = bytes.windows(prefix.len()).position(|window| window == prefix)? + prefix.len();
-    (at + DIGITS <= bytes.len()).then_some(at)
+fn position(head: &[u8], prefix: &[u8]) -> Option<usize> {
+    let at = head.windows(prefix.len()).position(|window| window == prefix)? + prefix.len();
+    (at + DIGITS <= head.len()).then_some(at)
 }
 
-/// CRC-32 (ISO-HDLC) of the bytes with the digits at `at` as zeros.
-fn digits(bytes: &[u8], at: usize) -> [u8; DIGITS] {
+/// Where they stand in a safetensors file: in its header, whose length comes first.
+fn position_in_file(file: &[u8]) -> Option<usize> {
+    let header = u64::from_le_bytes(file.get(..8)?.try_into().ok()?);
+    position(file.get(..usize::try_from(header).ok()?.checked_add(8)?)?, IN_HEADER)
+}
+
+/// CRC-32 (ISO-HDLC) of the bytes, those of the digits at `at` as zeros.
+fn digits(bytes: &[u8], at: usize, more: impl Iterator<Item = [u8; 4]>) -> [u8; DIGITS] {
     let mut hasher = crc32fast::Hasher::new();
     hasher.update(&bytes[..at]);
     hasher.update(NONE.as_bytes());
     hasher.update(&bytes[at + DIGITS..]);
+    more.for_each(|bytes| hasher.update(&bytes));
     let text = format!("{:08x}", hasher.finalize());
     text.as_bytes().try_into().expect("32 bits are eight digits")
-}
-
-fn fill(bytes: &mut [u8], prefix: &[u8]) -> bool {
-    let Some(at) = position(bytes, prefix) else { return false };
-    let digits = digits(bytes, at);
-    bytes[at..at + DIGITS].copy_from_slice(&digits);
-    true
 }
 
 /// Fills in the checksum of a safetensors file, whatever it was before: for tools that edit files. False if there is no place
 /// for it.
 pub fn seal(file: &mut [u8]) -> bool {
-    fill(file, IN_HEADER)
-}
-
-/// The same for a document followed by the values it describes, as little-endian f32 in table order: what an image carries.
-pub fn seal_document(document_and_values: &mut [u8]) -> bool {
-    fill(document_and_values, IN_DOCUMENT)
+    let Some(at) = position_in_file(file) else { return false };
+    let digits = digits(file, at, iter::empty());
+    file[at..at + DIGITS].copy_from_slice(&digits);
+    true
 }
 
 /// Whether the checksum of a safetensors file is that of its bytes; `None` if it has none.
 pub(super) fn is_sealed(file: &[u8]) -> Option<bool> {
-    let at = position(file, IN_HEADER)?;
-    Some(digits(file, at) == file[at..at + DIGITS])
+    let at = position_in_file(file)?;
+    Some(digits(file, at, iter::empty()) == file[at..at + DIGITS])
+}
+
+/// A document with the checksum over itself and the values it describes, as little-endian f32 in table order: what an image
+/// carries. `None` if there is no place for it.
+pub fn seal_document(document: &str, values: &[f32]) -> Option<String> {
+    let at = position(document.as_bytes(), IN_DOCUMENT)?;
+    let digits = digits(document.as_bytes(), at, values.iter().map(|x| x.to_le_bytes()));
+    let digits = core::str::from_utf8(&digits).expect("hexadecimal digits are ASCII");
+    // The place may be in the middle of a character of a damaged document.
+    Some(format!("{}{digits}{}", document.get(..at)?, document.get(at + DIGITS..)?))
 }
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
     use super::*;
+
+    /// A header and values, as in a file.
+    fn file(header: &str, values: &[u8]) -> Vec<u8> {
+        [&(header.len() as u64).to_le_bytes()[..], header.as_bytes(), values].concat()
+    }
 
     #[test]
     fn every_flipped_bit_is_seen() {
-        let mut file = br#"12345678{"a":"{\"checksum\":\"deadbeef\",\"b\":1}"} values"#.to_vec();
+        let mut file = file(r#"{"a":"{\"checksum\":\"deadbeef\",\"b\":1}"}"#, b"values");
         assert_eq!(is_sealed(&file), Some(false));
         assert!(seal(&mut file) && is_sealed(&file) == Some(true));
+        // As the format has it: that of the file with zeros in their place.
+        let at = position_in_file(&file).unwrap();
+        let mut zeroed = file.clone();
+        zeroed[at..at + DIGITS].fill(b'0');
+        assert_eq!(file[at..at + DIGITS], *format!("{:08x}", crc32fast::hash(&zeroed)).as_bytes());
         for bit in 0..8 * file.len() {
             file[bit / 8] ^= 1 << (bit % 8);
             assert_ne!(is_sealed(&file), Some(true), "bit {bit}");
@@ -69,9 +91,18 @@ mod tests {
     }
 
     #[test]
-    fn there_is_a_place_or_none() {
-        let mut document = br#"{"checksum":"00000000"}1234"#.to_vec();
-        assert!(!seal(&mut document) && seal_document(&mut document) && document[13..21] != *b"00000000");
-        assert_eq!(is_sealed(br#"\"checksum\":\"1234"#), None);
+    fn a_document_is_sealed_with_its_values() {
+        let sealed = seal_document(r#"{"checksum":"00000000"}"#, &[1.0, 2.0]).unwrap();
+        assert!(!sealed.contains("00000000"));
+        assert_eq!(seal_document(&sealed, &[1.0, 2.0]), Some(sealed.clone()));
+        assert_ne!(seal_document(&sealed, &[1.0, 2.5]), Some(sealed));
+    }
+
+    #[test]
+    fn what_looks_like_a_checksum_elsewhere_is_none() {
+        let digits = br#"\"checksum\":\"00000000"#;
+        assert_eq!(is_sealed(&file("{}", digits)), None);
+        assert!(!seal(&mut file("{}", digits)) && !seal(&mut digits.to_vec()));
+        assert_eq!(seal_document("{}", &[f32::from_le_bytes(*b"\"che")]), None);
     }
 }

@@ -1,7 +1,6 @@
 //! The safetensors container: one file, all tables of a set, described by one JSON document in its metadata.
 //!
-//! `docs/format.md` is the specification. Everything in the file is under one CRC-32, the header included: it is taken over
-//! the whole file with its own eight digits replaced by `0`, so that a damaged shape or axis is found like a damaged value.
+//! `docs/format.md` is the specification. Everything in the file is under one checksum, the header included.
 
 use alloc::borrow::ToOwned;
 use alloc::collections::BTreeMap;
@@ -23,7 +22,7 @@ use crate::error::LoadError;
 
 /// `format` of the document.
 pub const FORMAT: &str = "microfacet-tables";
-/// Version of the format that this crate writes, and the newest that it reads.
+/// Version of the format that this crate writes, and the only one that it reads.
 pub const VERSION: u32 = 2;
 /// Key of the document in the safetensors metadata.
 const KEY: &str = "microfacet";

@@ -57,7 +57,7 @@ pub(super) struct AxisRule {
 pub(super) struct Layout {
     pub(super) axes: &'static [AxisRule],
     pub(super) channels: Channels,
-    /// So many channels have their values in this range, ends included.
+    /// How many of the channels, from the first on, have their values in `range`, ends included.
     pub(super) checked: usize,
     pub(super) range: [f32; 2],
 }
@@ -76,7 +76,7 @@ const U2: AxisRule = axis("u2", &["odd_root"], &[Hermite]);
 const VIEW_OF_G1: AxisRule = axis("view", &["rational"], &[Hermite]);
 const VIEW_OF_SLOPES: AxisRule = axis("view", &["half_tangent"], &[Linear]);
 const ALBEDO_SHAPE: AxisRule = axis("gamma", &["log_shape"], &[Lagrange6]);
-const SIGMA: AxisRule = axis("sigma", &["roughness"], &[Lagrange6]);
+const SIGMA: AxisRule = axis("sigma", &["log_roughness"], &[Lagrange6]);
 const ETA: AxisRule = axis("eta", &["reflectance_root"], &[Lagrange6]);
 const VIEW: AxisRule = axis("view", &["view_blend"], &[Lagrange6]);
 const INNER_VIEW: AxisRule = axis("view", &["critical_blend"], &[Lagrange6]);
@@ -92,7 +92,7 @@ const fn moments(axes: &'static [AxisRule], channels: Channels) -> Layout {
     Layout { axes, channels, checked: channels.len(), range: [-1.0, 1.0] }
 }
 
-/// q ≤ G1 and G1/q ≤ (1 + κ/z)…: bounded by the limits of the projected area.
+/// G1/q is positive, and bounded as the ratio of κ to the projected area is.
 const RATIOS: [f32; 2] = [f32::MIN_POSITIVE, 1e3];
 /// Distances of a half tangent in [−1, 1] from its end.
 const DISTANCES: [f32; 2] = [0.0, 2.0];

@@ -9,7 +9,7 @@ use super::slices::{Slice, Slices};
 use super::student_t::StudentT;
 use crate::axis::half_tangent::Slope;
 use crate::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
-use crate::axis::{HalfTangent, Mapping, MirroredRoot};
+use crate::axis::{HalfTangent, Mapping, MirroredRoot, Rational};
 use crate::error::BindError;
 use crate::format::{Kind, Table};
 use crate::math::sqrt;
@@ -27,9 +27,8 @@ pub struct Radial {
     /// Cells along a row, and between rows.
     cells: usize,
     rows: usize,
-    /// The coordinate of the in-plane slope, and the largest unit slope; ∞ where normals reach the horizon.
-    slope: Mapping,
-    reach: f32,
+    /// The coordinate of the in-plane slope.
+    slope: Given,
     /// D^(1/4) by the half tangent of the slope.
     density: Vec<Node>,
     tilt: HalfTangent,
@@ -37,6 +36,15 @@ pub struct Radial {
 
 /// s in the formulas of tables without a γ axis: slopes across are in units of √(1 + x²), and κ is the scale of its axis.
 const ROUND: f64 = 1.0;
+
+/// The coordinate of the in-plane slope that the slope across is given by.
+#[derive(Clone, Copy, Debug)]
+enum Given {
+    /// Where normals reach the horizon.
+    Unbounded(HalfTangent),
+    /// Where there is a largest unit slope R, which is κ.
+    Bounded(Rational, f32),
+}
 
 impl Radial {
     pub(crate) fn bind(tables: &[Table], sigma: f32, suffix: &str) -> Result<Self, BindError> {
@@ -50,12 +58,11 @@ impl Radial {
         };
         let (shadowing, slope) = (slice(Kind::RadialShadowing)?, slice(Kind::RadialSlope)?);
         let (conditional, density) = (slice(Kind::RadialConditional)?, slice(Kind::RadialDensity)?);
-        let slope_axis = conditional.axes[0].mapping;
-        let (Mapping::HalfTangent(tilt), reach) = (
-            density.axes[0].mapping,
-            if let Mapping::Rational(axis) = slope_axis { axis.kappa(ROUND) as f32 } else { f32::INFINITY },
-        ) else {
-            unreachable!("validated on load")
+        let Mapping::HalfTangent(tilt) = density.axes[0].mapping else { unreachable!("validated on load") };
+        let given = match conditional.axes[0].mapping {
+            Mapping::HalfTangent(axis) => Given::Unbounded(axis),
+            Mapping::Rational(axis) => Given::Bounded(axis, axis.kappa(ROUND) as f32),
+            _ => unreachable!("validated on load"),
         };
         let width = conditional.axes[1].nodes.len();
         let mut across = conditional.nodes;
@@ -65,8 +72,7 @@ impl Radial {
             across,
             cells: width - 1,
             rows: conditional.axes[0].nodes.len() - 1,
-            slope: slope_axis,
-            reach,
+            slope: given,
             density: density.nodes,
             tilt,
         })
@@ -127,12 +133,11 @@ impl Radial {
     fn sample_across(&self, x: Slope, u: f32) -> Slope {
         let a = x.x.abs();
         let (coordinate, shrink) = match self.slope {
-            Mapping::Rational(axis) => {
-                let (z, length) = (self.reach * x.z, sqrt(a * a + x.z * x.z));
-                (axis.of_slope(a, z), sqrt((z - a).max(0.0) * (z + a)) / (self.reach * length))
+            Given::Unbounded(axis) => (axis.of_view(x.z, a), 1.0),
+            Given::Bounded(axis, reach) => {
+                let (z, length) = (reach * x.z, sqrt(a * a + x.z * x.z));
+                (axis.of_slope(a, z), sqrt((z - a).max(0.0) * (z + a)) / (reach * length))
             }
-            Mapping::HalfTangent(axis) => (axis.of_view(x.z, a), 1.0),
-            _ => unreachable!("validated on load"),
         };
         let (row, between) = locate(coordinate * self.rows as f32, self.rows);
         let (cell, w) = locate(MirroredRoot::coordinate(u) * self.cells as f32, self.cells);

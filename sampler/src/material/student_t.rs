@@ -8,6 +8,7 @@ use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 use wide::f32x4;
 
 use super::slices::Slices;
+use crate::axis::LogRoughness;
 use crate::axis::hermite::{horner, split};
 use crate::error::BindError;
 use crate::format::Table;
@@ -18,8 +19,9 @@ use crate::math::sqrt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roughness(pub [f32; 2]);
 
-/// Outside this range squares of stretched directions, and of normals made from them, leave single precision.
-const SIGMAS: core::ops::RangeInclusive<f32> = 1e-8..=1e6;
+/// Outside this range squares of stretched directions, and of normals made from them, leave single precision. Tables of albedos
+/// begin where it does.
+const SIGMAS: core::ops::RangeInclusive<f32> = LogRoughness::BAKED.first as f32..=1e6;
 
 impl Roughness {
     pub(crate) fn checked(self) -> Result<[f32; 2], BindError> {

@@ -47,7 +47,7 @@ pub(super) fn judge(
     judge.views(&views);
     // Any matrix will do: each is replaced.
     let lobe = tables.ellipsoid(Skew::new([1.0, 1.0], [0.0; 3])?, gamma)?;
-    let forms = [Masking::Uncorrelated, Masking::HeightCorrelated];
+    let forms = Masking::ALL;
     // Roughness outside the table, or a set without albedo, has none to judge.
     let albedos: Vec<_> =
         forms.iter().filter_map(|form| tables.albedo(sigma[0].into(), gamma, *form).ok()).collect();
@@ -124,7 +124,7 @@ impl Judge<'_> {
         }
         // Any other direction will do for the light.
         let l = direction(1.5 * f64::from(at.u[1]), at.phi + 2.0);
-        for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
+        for masking in Masking::ALL {
             let (g2, swapped) = (self.bound.g2(v, l, masking), self.bound.g2(l, v, masking));
             let bound = f64::from(g2) <= g1.min(self.bound.g1(l).into()) * (1.0 + ULP4);
             self.require(g2 >= 0.0 && bound, "g2 outside [0, min g1]", g2.into(), at);

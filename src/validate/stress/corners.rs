@@ -9,6 +9,7 @@ use microfacet_common::shape::{S_END, gamma_of_s};
 use microfacet_sampler::Tables;
 
 use super::Point;
+use crate::spec::{GAMMA_MIN, GAMMA_WHOLE};
 
 /// Roughnesses, both ends of what can be bound among them.
 const SIGMAS: [[f32; 2]; 16] = [
@@ -32,7 +33,7 @@ const SIGMAS: [[f32; 2]; 16] = [
 
 /// Every material at a corner that the tables cover.
 pub(super) fn corner_materials(tables: &Tables) -> Vec<([f32; 2], f64)> {
-    let joints = [1.501_f64, 1.6, 1.8, 2.0, 4.0];
+    let joints = [GAMMA_MIN, 1.6, GAMMA_WHOLE, 2.0, 4.0];
     let around = joints.into_iter().flat_map(|gamma| [gamma.next_down(), gamma, gamma.next_up()]);
     let single =
         [1.50101, 1.51, 1.9, 2.5, 3.0, 10.0, 60.0, 1e3, 1e4, 1e6, 1e8, 1e10, 1e14, 1e16, 1e17, 1e300];

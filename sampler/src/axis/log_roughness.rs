@@ -8,7 +8,7 @@ use super::coordinate::{Coordinate, Placement, bisect, positive};
 /// where only a heavy tail still makes a difference, and finer steps where σ is large.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Roughness {
+pub struct LogRoughness {
     /// The σ about which the first term turns from even steps into even ratios.
     pub offset: f64,
     /// Where t vanishes (but for first/offset); a surface smoother than this is a mirror.
@@ -19,7 +19,7 @@ pub struct Roughness {
     pub linear: f64,
 }
 
-impl Roughness {
+impl LogRoughness {
     /// Of the tables that are baked: found by measuring. It begins at the smallest σ that can be bound; the slow logarithm is
     /// there for γ near 3/2, whose tail at that σ still takes most of the light of views a few σ above the horizon.
     pub const BAKED: Self = Self { offset: 0.015, first: 1e-8, slow: 0.2, linear: 1.0 };
@@ -35,7 +35,7 @@ impl Roughness {
     }
 }
 
-impl Coordinate for Roughness {
+impl Coordinate for LogRoughness {
     fn formula(&self) -> &'static str {
         "t = ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ"
     }
@@ -65,7 +65,7 @@ mod tests {
     #[test]
     fn there_and_back() {
         for sigma in [1e-8, 1e-4, 0.015, 0.3, 3.0, 1e3] {
-            let back = Roughness::BAKED.quantity(Roughness::BAKED.coordinate(sigma));
+            let back = LogRoughness::BAKED.quantity(LogRoughness::BAKED.coordinate(sigma));
             assert!((back / sigma - 1.0).abs() < 1e-14, "{sigma}: {back}");
         }
     }
