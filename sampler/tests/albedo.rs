@@ -72,7 +72,8 @@ fn lights_of_the_compensation_have_its_density() {
     let albedo = Tables::embedded().albedo(0.5, 2.0, Masking::HeightCorrelated).unwrap();
     let pi = std::f64::consts::PI;
     // Integrals over the hemisphere that tell any other density: by height, by azimuth, and both.
-    let sums: [(f64, fn(Vec3) -> f32); 5] = [
+    type Integrand = fn(Vec3) -> f32;
+    let sums: [(f64, Integrand); 5] = [
         (pi, |l| l.z),
         (2.0 * pi / 3.0, |l| l.z * l.z),
         (pi / 4.0, |l| l.z * l.x * l.x),
