@@ -24,7 +24,7 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(164.4))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(441.4))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(434.9))]
 fn sample_visible_normal(inputs: Inputs) -> (Vec3, Inputs) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (black_box(calls.map(|(v, u)| black_box(inputs.material.sample_visible_normal(*v, *u))).sum()), inputs)
@@ -59,7 +59,7 @@ fn visible_normal_pdf(inputs: Inputs) -> (f32, Inputs) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(2509.4))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(2404.4))]
 fn table_pdf(inputs: Inputs) -> (f32, Inputs) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.material.table_pdf(*v, *m))).sum()), inputs)
