@@ -12,13 +12,37 @@ fn load(bytes: &[u8]) {
             let _ = (material.table_pdf(v, m), material.visible_normal_pdf(v, m), material.g1(m));
         }
     }
+    for material in &set.provenance().materials {
+        let v = glam::Vec3::new(0.6, 0.0, 0.8);
+        if let Ok(lobe) = set.radial(&material.name) {
+            let m = lobe.sample_visible_normal(v, [0.3, 0.7]);
+            let _ = (lobe.visible_normal_pdf(v, m), lobe.g1(m), lobe.d(m));
+        }
+        if let Ok(lobe) = set.material_ellipsoid(&material.name) {
+            let _ = lobe.visible_normal_pdf(v, lobe.sample_visible_normal(v, [0.3, 0.7]));
+        }
+    }
     albedos(&set);
 }
 
 /// Whatever the tables hold, an albedo is a share.
 fn albedos(set: &microfacet_sampler::Tables) {
     use microfacet_sampler::FresnelAlbedo;
+    use microfacet_sampler::Masking;
     let share = |x: f32| assert!((0.0..=1.0).contains(&x), "an albedo of {x}");
+    for (sigma, gamma) in [(0.0, 2.0), (1e-9, 1.501), (0.3, 2.0), (3.0, f64::INFINITY), (f64::NAN, 2.0)] {
+        for masking in Masking::ALL {
+            if let Ok(albedo) = set.albedo(sigma, gamma, masking) {
+                share(albedo.albedo(0.3));
+                share(albedo.albedo_average());
+            }
+            for eta in [1.5, 0.6] {
+                if let Ok(side) = set.interface_albedo(sigma, gamma, eta, masking) {
+                    side.eval(0.3).into_iter().for_each(share);
+                }
+            }
+        }
+    }
     for material in &set.provenance().materials {
         for cos in [0.0, 1e-7, 0.4, 0.75, 1.0] {
             if let Ok(albedo) = set.material_albedo(&material.name) {
