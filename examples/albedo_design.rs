@@ -1,13 +1,13 @@
-//! Why the view axis of albedo tables looks as it does: the largest error between 28 nodes for several coordinates.
+//! Why the view axis of albedo tables looks as it does: the largest errors between exact nodes for several coordinates.
 //!
-//! `cargo run --release --example albedo_design` prints the table that stands in `docs/albedo.md`. Nodes are exact (to 1e-7), the polynomial goes through the six
-//! nearest, or lines through two, so that all error is the coordinate's. Columns are the parts of the domain that ask for different things.
+//! `cargo run --release --example albedo_design` prints the table that stands in `docs/albedo.md`: errors of E, and of the worst of
+//! E and its Schlick and F82 moments. Nodes are exact (to 1e-7), the polynomial goes through the six nearest, or lines through
+//! two, so that all error is the coordinate's. Columns are the parts of the domain that ask for different things.
 
+use microfacet_bake::bake::albedo::weights;
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::axis::{ViewBlend, even_nodes, lagrange};
 use rayon::prelude::*;
-
-const NODES: usize = 28;
 
 /// Where views stand, as t(μ) ascending to 1 at normal incidence.
 enum Coordinate {
@@ -19,6 +19,7 @@ enum Coordinate {
 
 struct Design {
     name: &'static str,
+    nodes: usize,
     /// Nodes the polynomial goes through.
     window: usize,
     coordinate: Coordinate,
@@ -37,24 +38,33 @@ fn h(cos: f64) -> f64 {
 
 /// Fourth roots of h and x alone.
 const ROOTS: ViewBlend = ViewBlend { weight: 0.0, normal: 0.0, ..ViewBlend::BAKED };
+/// One term, x^¼, as its κ was found for E alone, and as it is best for all moments.
+const ONE: ViewBlend = ViewBlend { share: 1.0, scale: 6.0, heavy: 1.0, ..ROOTS };
+const BEST_ONE: ViewBlend = ViewBlend { scale: 8.8, heavy: 2.77, ..ONE };
 
 const fn plain(name: &'static str, window: usize, coordinate: fn(f64) -> f64) -> Design {
-    Design { name, window, coordinate: Coordinate::Plain(coordinate) }
+    Design { name, nodes: 33, window, coordinate: Coordinate::Plain(coordinate) }
 }
 
-const fn blend(name: &'static str, blend: ViewBlend) -> Design {
-    Design { name, window: 6, coordinate: Coordinate::Blend(blend) }
+const fn blend(name: &'static str, nodes: usize, blend: ViewBlend) -> Design {
+    Design { name, nodes, window: 6, coordinate: Coordinate::Blend(blend) }
 }
 
-const DESIGNS: [Design; 8] = [
+const DESIGNS: [Design; 14] = [
     plain("cosine, lines", 2, |cos| cos),
     plain("cosine", 6, |cos| cos),
     plain("square root of the cosine", 6, f64::sqrt),
     plain("√h", 6, |cos| h(cos).sqrt()),
-    blend("h^¼", ViewBlend { share: 0.0, ..ROOTS }),
-    blend("fourth roots of h and x", ROOTS),
-    blend("and x", ViewBlend { weight: ViewBlend::BAKED.weight, ..ROOTS }),
-    blend("and the turn at the normal (baked)", ViewBlend::BAKED),
+    blend("h^¼", 33, ViewBlend { share: 0.0, ..ROOTS }),
+    blend("fourth roots of h and x", 33, ROOTS),
+    blend("and x", 33, ViewBlend { weight: ViewBlend::BAKED.weight, ..ROOTS }),
+    blend("and the turn at the normal (default)", 33, ViewBlend::BAKED),
+    blend("the same", 28, ViewBlend::BAKED),
+    blend("x^¼ alone, κ = 6 + 1/(2γ−3)", 33, ONE),
+    blend("the same", 40, ONE),
+    blend("x^¼ alone, κ = 8.8 + 2.77/(2γ−3)", 48, BEST_ONE),
+    blend("the same", 58, BEST_ONE),
+    blend("four terms of high quality", 58, ViewBlend::CLOSE),
 ];
 
 /// Names of the columns, and whether a σ, a cosine belong.
@@ -67,31 +77,36 @@ const PARTS: [Part; 4] = [
 ];
 
 fn main() {
-    print!("| coordinate |");
+    print!("| coordinate | nodes |");
     PARTS.iter().for_each(|part| print!(" {} |", part.0));
-    println!("\n| --- |{}", " --- |".repeat(PARTS.len()));
-    let materials: Vec<Material> = [1.501, 1.505, 1.52, 1.56, 1.65, 2.0, 3.0, 8.0, f64::INFINITY]
+    println!("\n| --- | --- |{}", " --- |".repeat(PARTS.len()));
+    let materials: Vec<Material> = [1.501, 1.505, 1.52, 1.56, 1.65, 2.0, 3.0, 8.0, 50.0, f64::INFINITY]
         .into_iter()
         .flat_map(|gamma| {
-            [1e-6, 1e-4, 0.003, 0.011, 0.05, 0.3, 1.0, 3.0].map(|sigma| Material { sigma, gamma })
+            [1e-6, 1e-4, 0.003, 0.01, 0.02, 0.05, 0.3, 1.0, 3.0].map(|sigma| Material { sigma, gamma })
         })
         .collect();
     for design in &DESIGNS {
         let worst = materials
             .par_iter()
             .map(|&material| errors(design, material))
-            .reduce(|| [0.0; 4], |a, b| [0, 1, 2, 3].map(|i| a[i].max(b[i])));
-        println!("| {} | {} |", design.name, worst.map(|x| format!("{x:.0e}")).join(" | "));
+            .reduce(|| [[0.0; 2]; 4], |a, b| array(|i| array(|j| a[i][j].max(b[i][j]))));
+        let cells = worst.map(|[e, all]| format!("{e:.1e} / {all:.1e}"));
+        println!("| {} | {} | {} |", design.name, design.nodes, cells.join(" | "));
     }
 }
 
-/// Largest error of E, of either masking, in each part of the domain.
-fn errors(design: &Design, material: Material) -> [f64; 4] {
+fn array<T, const N: usize>(of: impl FnMut(usize) -> T) -> [T; N] {
+    std::array::from_fn(of)
+}
+
+/// Largest errors of E, and of any of E, scale, bias and F82, of either masking, in each part of the domain.
+fn errors(design: &Design, material: Material) -> [[f64; 2]; 4] {
     let shape = Shape::new(material.gamma).expect("in the family");
     let integrator = AlbedoIntegrator::new(shape, 1e-7);
     let exact = |cos: f64| {
-        let albedo = integrator.reflection(material.sigma, cos, |_| [1.0]).expect("in the domain");
-        [albedo.uncorrelated[0], albedo.height_correlated[0]]
+        let albedo = integrator.reflection(material.sigma, cos, weights).expect("in the domain");
+        [albedo.uncorrelated, albedo.height_correlated]
     };
     let bound = |blend: &ViewBlend| blend.bind(material.sigma, material.gamma);
     let first = bound(&ViewBlend::BAKED).floor();
@@ -99,26 +114,44 @@ fn errors(design: &Design, material: Material) -> [f64; 4] {
         Coordinate::Plain(t) => (t(cos) - t(first)) / (1.0 - t(first)),
         Coordinate::Blend(blend) => bound(blend).coordinate(cos),
     };
-    let nodes = even_nodes(0.0, 1.0, NODES);
-    let values: Vec<[f64; 2]> = nodes.iter().map(|&t| exact(cosine(at, first, t))).collect();
-    let got = |t: f64| {
-        let weights = lagrange::weights(&nodes, t.clamp(0.0, 1.0), design.window);
-        [0, 1].map(|form| weights.iter().map(|&(i, w)| w * values[i][form]).sum::<f64>())
+    let nodes = even_nodes(0.0, 1.0, design.nodes);
+    // What tables hold: moments less a mirror's times E.
+    let stored = |cos: f64, forms: [[f64; 3]; 2]| {
+        let mirror = weights(cos);
+        forms.map(|[scale, bias, f82]| {
+            let e = scale + bias;
+            [e, bias - e * mirror[1], f82 - e * mirror[2]]
+        })
     };
-    let mut worst = [0.0_f64; 4];
-    for i in 0..60 {
-        let u = (i as f64 + 0.5) / 60.0;
-        // Evenly in the cosine, in its logarithm and near the normal.
-        let cos = match i % 3 {
-            0 => u,
-            1 => libm::pow(first, 1.0 - u),
-            _ => 1.0 - 0.02 * u * u,
-        };
-        let (want, got) = (exact(cos), got(at(cos)));
-        let error = (want[0] - got[0]).abs().max((want[1] - got[1]).abs());
+    let node = |&t: &f64| {
+        let cos = cosine(at, first, t);
+        stored(cos, exact(cos))
+    };
+    let values: Vec<[[f64; 3]; 2]> = nodes.iter().map(node).collect();
+    let got = |cos: f64| -> [[f64; 3]; 2] {
+        let weights_at = lagrange::weights(&nodes, at(cos).clamp(0.0, 1.0), design.window);
+        let mirror = weights(cos);
+        array(|form| {
+            let [e, bias, f82] =
+                array(|k| weights_at.iter().map(|&(i, w)| w * values[i][form][k]).sum::<f64>());
+            let bias = bias + e * mirror[1];
+            [e - bias, bias, f82 + e * mirror[2]]
+        })
+    };
+    let mut worst = [[0.0_f64; 2]; 4];
+    // The middle of every cell, and two places beside it.
+    for i in 0..3 * (design.nodes - 1) {
+        let t = (i as f64 / 3.0 + 0.2) / (design.nodes - 1) as f64;
+        let cos = cosine(at, first, t);
+        let mut error = [0.0_f64; 2];
+        for (want, got) in exact(cos).into_iter().zip(got(cos)) {
+            let total = (want[0] + want[1] - got[0] - got[1]).abs();
+            let moments = want.iter().zip(got).map(|(a, b)| (a - b).abs()).fold(total, f64::max);
+            error = [error[0].max(total), error[1].max(moments)];
+        }
         for (worst, part) in worst.iter_mut().zip(PARTS) {
             if part.1(material.sigma, cos) {
-                *worst = worst.max(error);
+                *worst = [worst[0].max(error[0]), worst[1].max(error[1])];
             }
         }
     }

@@ -7,7 +7,7 @@ use microfacet_sampler::{Precision, Provenance, Table, Tables, encode};
 
 use crate::budget::{Memo, smallest};
 use crate::cache::Cache;
-use crate::generate::{BakeError, Baked, Job, add_albedo_conventions, add_view_albedo_conventions};
+use crate::generate::{BakeError, Baked, Job, add_albedo_conventions};
 use crate::graded::{Choice, Graded};
 use crate::plan::{Need, Plan};
 use crate::spec::Quality;
@@ -33,15 +33,11 @@ pub fn fill(
     if !plan.albedos.is_empty() {
         add_albedo_conventions(&mut provenance);
     }
-    if !plan.view_albedos.is_empty() {
-        add_view_albedo_conventions(&mut provenance);
-    }
     let graded: Vec<Graded> = plan
         .distributions
         .iter()
         .map(|distribution| Graded::distribution(distribution, &provenance))
         .chain(plan.albedos.iter().map(|need| Ok(Graded::Albedo(need))))
-        .chain(plan.view_albedos.iter().map(|need| Ok(Graded::View(need))))
         .collect::<Result<_, _>>()?;
     let bare = size(&provenance, &[]);
     // Each grade follows from any other.

@@ -5,24 +5,19 @@ use std::fmt;
 use std::io;
 
 use microfacet_model::classic::Marginal;
-use microfacet_sampler::{
-    FresnelEntry, Kind, LoadError, MaterialEntry, Precision, Provenance, Table, Tables,
-};
+use microfacet_sampler::{BindError, LoadError, MaterialEntry, Precision, Provenance, Table, Tables};
 
 use crate::bake::albedo::AlbedoSpec;
-use crate::bake::dielectric_albedo::Side;
-use crate::bake::fresnel_albedo::Metal;
-use crate::bake::view_albedo::{Lobe, ViewSpec};
 use crate::bake::{self, NUMERICS};
 use crate::budget::{self, Memo, OutOfReach};
 use crate::cache::Cache;
 use crate::family::Distribution;
 use crate::graded::{Choice, Graded};
-use crate::plan::{AlbedoNeed, Need, ViewNeed};
+use crate::plan::{AlbedoNeed, Need};
 use crate::spec::{Quality, TableSpec, general_set};
+use crate::validate::albedo;
 use crate::validate::certificate::certify;
 use crate::validate::radial;
-use crate::validate::{albedo, fresnel_albedo, view_albedo};
 
 /// Points measured at each γ for a certificate.
 pub(crate) const CERTIFICATE_POINTS: usize = 4000;
@@ -76,6 +71,12 @@ impl BakeError {
 impl From<LoadError> for BakeError {
     fn from(why: LoadError) -> Self {
         Self::Set(why)
+    }
+}
+
+impl From<BindError> for BakeError {
+    fn from(why: BindError) -> Self {
+        Self::invalid(why.to_string())
     }
 }
 
@@ -172,25 +173,6 @@ pub fn add_albedos(
     add(baked, &families, target, provenance, cache, &mut progress)
 }
 
-/// Adds the albedo tables of materials whose lobe is not round, one each, calling `progress` after each.
-///
-/// # Errors
-/// As [`add_albedos`].
-pub fn add_view_albedos(
-    baked: Baked,
-    needs: &[ViewNeed],
-    target: Target,
-    cache: &Cache,
-    mut progress: impl FnMut(),
-) -> Result<Baked, BakeError> {
-    let mut provenance = baked.set.provenance().clone();
-    if !needs.is_empty() {
-        add_view_albedo_conventions(&mut provenance);
-    }
-    let families: Vec<Graded> = needs.iter().map(Graded::View).collect();
-    add(baked, &families, target, provenance, cache, &mut progress)
-}
-
 fn add(
     baked: Baked,
     families: &[Graded],
@@ -219,78 +201,36 @@ fn add(
     })
 }
 
-/// The certified table of a lobe that is not round, with as many nodes as the quality's error takes: how many depends on both roughnesses.
-pub(crate) fn view_tables(spec: &ViewSpec, precisions: &[Precision]) -> Result<Vec<Vec<Table>>, BakeError> {
-    // What the clamp of G1(l) leaves of a kink in the albedo of a tilted lobe no number of nodes resolves well.
-    let doublings = if matches!(spec.lobe, Lobe::Ellipsoid { .. }) { 2 } else { 4 };
-    let references = view_albedo::references(spec).map_err(BakeError::Albedo)?;
-    let mut full = ViewSpec { precision: Precision::F32, ..spec.clone() };
-    for doubling in 0.. {
-        let table = bake::view_albedo::bake(&full).map_err(BakeError::Albedo)?;
-        let table = view_albedo::certified(table, &references)?;
-        // As of the tables of moments.
-        if worst_error(&table) <= 300.0 * spec.tolerance || doubling == doublings {
-            let at =
-                |&precision| Ok(vec![view_albedo::certified(table.clone().rounded(precision), &references)?]);
-            return precisions.iter().map(at).collect();
-        }
-        let [azimuths, views] = view_albedo::missed_by_half(&table)?;
-        full = if azimuths > views { full.with_more_azimuths() } else { full.with_more_views() };
-    }
-    unreachable!("the last doubling returns")
-}
-
-/// The certified albedo tables of a specification, in each of some precisions.
+/// The certified albedo tables of a specification in each of some precisions, with as many nodes of the view as the quality's error takes.
 pub(crate) fn albedo_tables(
     spec: &AlbedoSpec,
     precisions: &[Precision],
 ) -> Result<Vec<Vec<Table>>, BakeError> {
-    if let Some(fresnel) = &spec.fresnel {
-        let at = |&precision| fresnel_tables(&AlbedoSpec { precision, ..spec.clone() }, fresnel);
-        return precisions.iter().map(at).collect();
-    }
-    let baked = bake::albedo::bake_in(spec, precisions).map_err(BakeError::Albedo)?;
-    let sets = baked.into_iter().map(|tables| Tables::from_tables(Provenance::default(), tables));
-    let mut sets = sets.collect::<Result<Vec<_>, _>>()?;
-    albedo::certify_all(&mut sets, spec.domain)
-        .map_err(|why| BakeError::Set(LoadError::Invalid(why.to_string())))?;
-    Ok(sets.iter().map(|set| set.tables().to_vec()).collect())
-}
-
-/// The certified tables of an exact reflectance: of a conductor, or of both sides of a dielectric.
-fn fresnel_tables(spec: &AlbedoSpec, fresnel: &FresnelEntry) -> Result<Vec<Table>, BakeError> {
-    if let Some(metal) = Metal::new(fresnel).map_err(|why| BakeError::Albedo(why.into()))? {
-        return refined(spec, fresnel, |spec| bake::fresnel_albedo::bake(spec, fresnel, &metal));
-    }
-    // Without a difference of indices both sides are one.
-    let sides = if fresnel.indices() == Some([1.0; 2]) { &Side::ALL[..1] } else { &Side::ALL };
-    let of_side =
-        |side: &Side| refined(spec, fresnel, |spec| bake::dielectric_albedo::bake(spec, fresnel, *side));
-    Ok(sides.iter().map(of_side).collect::<Result<Vec<_>, _>>()?.concat())
-}
-
-/// The certified tables that `bake` makes, with as many view nodes as the quality's error takes: total reflection inside a dielectric sets in within
-/// the roughness, which on a smooth surface is narrower than the cells that serve everything else.
-fn refined(
-    spec: &AlbedoSpec,
-    fresnel: &FresnelEntry,
-    bake: impl Fn(&AlbedoSpec) -> Result<Vec<Table>, bake::albedo::BakeError>,
-) -> Result<Vec<Table>, BakeError> {
-    const DOUBLINGS: usize = 2;
+    let interior = albedo::interior_references(spec).map_err(BakeError::Albedo)?;
+    // Single precision decides, which hardly rounds.
+    let all = [&[Precision::F32], precisions].concat();
     let mut spec = spec.clone();
     for doubling in 0.. {
-        let tables = bake(&spec).map_err(BakeError::Albedo)?;
-        let certified = |table: Table| {
-            fresnel_albedo::certified(table.rounded(spec.precision), spec.domain, fresnel)
-                .map_err(|why| BakeError::Set(LoadError::Invalid(why.to_string())))
-        };
-        let tables = tables.into_iter().map(certified).collect::<Result<Vec<_>, _>>()?;
-        let error = tables.iter().map(worst_error).fold(0.0, f64::max);
-        // Three hundred times the error of a node is what a quality's tables of moments err by.
-        if error <= 300.0 * spec.tolerance || doubling == DOUBLINGS {
-            return Ok(tables);
+        let edges = albedo::edge_references(&spec).map_err(BakeError::Albedo)?;
+        let references = [&interior[..], &edges].concat();
+        let baked = bake::albedo::bake_in(&spec, &all).map_err(BakeError::Albedo)?;
+        let certify = |tables| Ok(albedo::certified(&spec, tables, &references)?);
+        let mut sets = baked.into_iter().map(certify).collect::<Result<Vec<_>, BakeError>>()?;
+        let full = sets.remove(0);
+        let error = full.iter().map(worst_error).fold(0.0, f64::max);
+        if error <= spec.target() || doubling == spec.doublings() {
+            return Ok(sets);
         }
-        spec.views = 2 * spec.views - 1;
+        let mut coarsest = (0.0, spec.axes.len() - 1);
+        let refinable = spec.refinable();
+        // Whether there is a choice.
+        for &axis in refinable.iter().filter(|_| refinable.len() > 1) {
+            let missed = albedo::missed_by_half(&spec, &full[0], axis)?;
+            if missed > coarsest.0 {
+                coarsest = (missed, axis);
+            }
+        }
+        spec = spec.refined(coarsest.1);
     }
     unreachable!("the last doubling returns")
 }
@@ -304,7 +244,7 @@ pub(crate) fn radial_tables(
 ) -> Result<Vec<Vec<Table>>, BakeError> {
     let built = distribution.build().map_err(|why| LoadError::Invalid(why.to_string()))?;
     let marginal = Marginal::new(&*built);
-    let full = bake::bake_radial(&marginal, &entry.table_suffix(), quality, Precision::F32);
+    let full = bake::bake_radial(&marginal, &entry.distribution, quality, Precision::F32);
     let certified = |&precision| {
         let mut tables: Vec<Table> = full.iter().map(|table| table.clone().rounded(precision)).collect();
         radial::certify(&mut tables, entry, &marginal)?;
@@ -313,17 +253,10 @@ pub(crate) fn radial_tables(
     precisions.iter().map(certified).collect()
 }
 
-/// The largest error that a table's certificate states, of albedos over all moments; ∞ if there is none.
+/// The largest error of any quantity that a table's certificate promises; ∞ if there is none.
 pub fn worst_error(table: &Table) -> f64 {
-    let keys = match table.kind {
-        Kind::Albedo
-        | Kind::AlbedoAverage
-        | Kind::FresnelAlbedo
-        | Kind::DielectricAlbedo
-        | Kind::ViewAlbedo => &["e_max_error", "scale_max_error", "bias_max_error", "f82_max_error"][..],
-        _ => &["g1_max_error", "cdf_max_error", "d_max_error"],
-    };
-    let figures = keys.iter().filter_map(|key| table.certificate.get(*key).copied());
+    let promised = |key: &str| key.ends_with("_max_error") && !key.starts_with("shortcut");
+    let figures = table.certificate.iter().filter(|(key, _)| promised(key)).map(|(_, figure)| *figure);
     figures.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
@@ -414,33 +347,26 @@ pub fn add_albedo_conventions(provenance: &mut Provenance) {
     let conventions = [
         (
             "albedo",
-            "E is the share of light that one bounce with F = 1 returns: the integral of G2/G1(v) over visible normals that reflect upwards. Channels: \
-             e = E-1; bias and f82, the same integral weighted with (1-v.m)^5 and 7^7/6^6 v.m (1-v.m)^6, less E times that weight at v.n. The \
-             weight 1-(1-v.m)^5 has E less the whole of bias. A sigma below the first node is a mirror",
+            "share of light that one bounce returns. Of reflectance `moments` E is that with F = 1, the integral of G2/G1(v) over visible normals \
+             that reflect upwards. Channels: e = E-1; bias and f82, the same integral weighted with (1-v.m)^5 and 7^7/6^6 v.m (1-v.m)^6, less E times \
+             that weight at v.n. The weight 1-(1-v.m)^5 has E less the whole of bias. A sigma below the first node is a mirror. Other \
+             reflectances have the shares themselves; eta is the index of the dense side over the other's",
         ),
         (
             "albedo_average",
             "2 int_0^1 x mu dmu of what is read from the albedo table, less E_avg times that of a mirror for bias and f82",
         ),
-        ("fresnel_albedo", "share of light that one bounce off a conductor reflects, by channel"),
-        (
-            "dielectric_albedo",
-            "shares of light that one bounce off a dielectric reflects and transmits, seen from the thin and (_leaving) from the dense side; eta is \
-             the index of the dense side over the other's",
-        ),
         (
             "albedo_masking",
             "each albedo table names its form of G2: uncorrelated G1(v) G1(l), height-correlated 1/(1+lambda(v)+lambda(l))",
         ),
+        (
+            "albedo_azimuth",
+            "of a lobe that is one material, over the azimuth of the view (radians, from the x axis) and the view; sigma in the view's coordinate is \
+             the roughness seen from the azimuth. A channel `clamp` c = mu/(mu+A) above 1/2 scales the others' shares, 1+e for e, by (1-c)/c",
+        ),
     ];
     provenance.conventions.extend(conventions.map(|(key, value)| (key.into(), value.into())));
-}
-
-/// Adds what albedo tables over all views mean to the conventions of a set that holds some.
-pub fn add_view_albedo_conventions(provenance: &mut Provenance) {
-    let text = "as albedo, for one material and its form of masking, over the azimuth of the view (radians, from the x axis) and the view; sigma in \
-                the view's coordinate is the roughness seen from the azimuth";
-    provenance.conventions.insert("view_albedo".into(), text.into());
 }
 
 /// Origin, licence and conventions of a set baked by this version.

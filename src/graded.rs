@@ -5,11 +5,10 @@
 
 use microfacet_sampler::{MaterialEntry, Precision, Provenance, Table};
 
-use crate::bake::albedo::AlbedoSpec;
-use crate::bake::radial_bytes;
+use crate::bake::{joined_name, radial_bytes};
 use crate::family::Distribution;
-use crate::generate::{BakeError, Job, albedo_tables, radial_tables, view_tables, worst_error};
-use crate::plan::{AlbedoNeed, ViewNeed};
+use crate::generate::{BakeError, Job, albedo_tables, radial_tables, worst_error};
+use crate::plan::AlbedoNeed;
 use crate::spec::Quality;
 
 const QUALITIES: [Quality; 3] = [Quality::Draft, Quality::Default, Quality::High];
@@ -17,11 +16,9 @@ const PRECISIONS: [Precision; 2] = [Precision::U16, Precision::F32];
 
 /// What such tables are of.
 pub(crate) enum Graded<'a> {
-    /// Albedos of the Student-t family.
+    /// Albedos.
     Albedo(&'a AlbedoNeed),
-    /// The albedo of a lobe that is not round, or of another distribution.
-    View(&'a ViewNeed),
-    /// A distribution outside it, and a material that has it.
+    /// A distribution outside the family, and a material that has it.
     Distribution(&'a Distribution, &'a MaterialEntry),
 }
 
@@ -42,8 +39,7 @@ impl<'a> Graded<'a> {
     /// What messages call it.
     pub(crate) fn name(&self) -> String {
         match self {
-            Self::Albedo(_) => "albedo".into(),
-            Self::View(need) => need.label.clone(),
+            Self::Albedo(need) => joined_name(&["albedo", &need.lobe.label()]),
             Self::Distribution(distribution, _) => distribution.label(),
         }
     }
@@ -51,8 +47,7 @@ impl<'a> Graded<'a> {
     /// What the tables are kept under; all that decides over their values.
     pub(crate) fn key(&self, quality: Quality, precision: Precision) -> String {
         match self {
-            Self::Albedo(need) => format!("{:?}", need.spec(&AlbedoSpec::general(quality, precision))),
-            Self::View(need) => format!("{:?}", need.spec(quality, precision)),
+            Self::Albedo(need) => format!("{:?}", need.spec(quality, precision)),
             // Its values, too: two measured files may have the same name.
             Self::Distribution(distribution, _) => {
                 format!("{distribution:?}, {}, {quality:?}, {precision:?}", distribution.label())
@@ -63,8 +58,8 @@ impl<'a> Graded<'a> {
     /// Bytes of the values, known before they are baked; a dielectric's, or those of a lobe that is not round, may become more.
     fn bytes(&self, quality: Quality, precision: Precision) -> usize {
         match self {
-            Self::Albedo(need) => need.spec(&AlbedoSpec::general(quality, precision)).bytes(),
-            Self::View(need) => need.spec(quality, precision).bytes(),
+            // What is no specification is no table either; baking says why.
+            Self::Albedo(need) => need.spec(quality, precision).map_or(0, |spec| spec.bytes()),
             Self::Distribution(..) => radial_bytes(quality, precision),
         }
     }
@@ -79,9 +74,9 @@ impl<'a> Graded<'a> {
         let keys: Vec<String> = precisions.iter().map(|&precision| self.key(quality, precision)).collect();
         job.kept_each(&keys, || match self {
             Self::Albedo(need) => {
-                albedo_tables(&need.spec(&AlbedoSpec::general(quality, Precision::F32)), precisions)
+                let spec = need.spec(quality, Precision::F32).map_err(BakeError::Albedo)?;
+                albedo_tables(&spec, precisions)
             }
-            Self::View(need) => view_tables(&need.spec(quality, Precision::F32), precisions),
             Self::Distribution(distribution, entry) => {
                 radial_tables(distribution, entry, quality, precisions)
             }

@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::bake::albedo::AlbedoSpec;
-use crate::bake::view_albedo::ViewSpec;
 use crate::spec::TableSpec;
 
 /// Bytes held per value while a set is made: the values while they are gathered, rounded and kept, and the files they are written to.
@@ -51,17 +50,10 @@ fn values(spec: &TableSpec) -> u128 {
 ///
 /// # Errors
 /// [`TooLarge`] with the estimate.
-pub fn check(
-    specs: &[TableSpec],
-    albedos: &[AlbedoSpec],
-    views: &[ViewSpec],
-    limit: u64,
-) -> Result<(), TooLarge> {
-    // Moments of both forms are held in double precision until all nodes are there.
-    let albedos = albedos.iter().map(|spec| 6 * spec.nodes() as u128);
-    // These may be refined sixteenfold.
-    let views = views.iter().map(|spec| 16 * 6 * spec.nodes() as u128);
-    let values = specs.iter().map(values).chain(albedos).chain(views).fold(0, u128::saturating_add);
+pub fn check(specs: &[TableSpec], albedos: &[AlbedoSpec], limit: u64) -> Result<(), TooLarge> {
+    // Channels of both forms are held in double precision until all nodes are there, and some are refined.
+    let albedos = albedos.iter().map(|spec| (8 * spec.nodes() as u128) << spec.doublings());
+    let values = specs.iter().map(values).chain(albedos).fold(0, u128::saturating_add);
     let needed = values.saturating_mul(BYTES_PER_VALUE).saturating_add(BASE);
     if needed <= limit.into() { Ok(()) } else { Err(TooLarge { values, needed, limit }) }
 }
@@ -84,11 +76,11 @@ mod tests {
     #[test]
     fn a_million_million_nodes_are_refused_untouched() {
         let mut specs = general_set(Quality::High, Precision::F32);
-        assert_eq!(check(&specs, &[], &[], 1 << 30), Ok(()));
+        assert_eq!(check(&specs, &[], 1 << 30), Ok(()));
         (specs[2].views, specs[2].numbers) = (1_000_000, 1_000_000);
-        let refused = check(&specs, &[], &[], 1 << 30).unwrap_err();
+        let refused = check(&specs, &[], 1 << 30).unwrap_err();
         assert!(refused.values > 66_000_000_000_000 && refused.to_string().contains("1024 MiB"), "{refused}");
         (specs[2].views, specs[2].numbers) = (usize::MAX, usize::MAX);
-        assert!(check(&specs, &[], &[], u64::MAX).is_err());
+        assert!(check(&specs, &[], u64::MAX).is_err());
     }
 }

@@ -31,6 +31,11 @@ impl ShapeAxis {
         Self { nodes, interpolation: Interpolation::Lagrange4 }
     }
 
+    /// The first and the last node.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.nodes[0], self.nodes[self.nodes.len() - 1]]
+    }
+
     /// The part of a range that [from, to] reads.
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
@@ -56,6 +61,8 @@ pub struct TableSpec {
     pub kind: Kind,
     /// The γ axis.
     pub shapes: ShapeAxis,
+    /// The shapes it is for, as [min, max] of s; the axis may have nodes beyond, which interpolation reads.
+    pub covers: [f64; 2],
     /// Nodes of the view axis; unused by kinds without one.
     pub views: usize,
     /// Nodes of a (half) axis of random numbers; unused by kinds without one.
@@ -161,9 +168,10 @@ pub fn general_set(quality: Quality, precision: Precision) -> Vec<TableSpec> {
 /// The general set with other numbers of nodes.
 pub fn general_set_at(r: Resolution, precision: Precision) -> Vec<TableSpec> {
     let (whole, heaviest) = (s_of_gamma(GAMMA_WHOLE), s_of_gamma(GAMMA_MIN));
-    let spec = |kind: Kind, shapes, views, numbers| TableSpec {
+    let spec = |kind: Kind, shapes: ShapeAxis, views, numbers| TableSpec {
         name: kind.name().into(),
         kind,
+        covers: shapes.ends(),
         shapes,
         views,
         numbers,

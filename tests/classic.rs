@@ -45,7 +45,7 @@ fn bound(name: &str, marginal: &Marginal) -> Radial {
         masking: None,
         fresnel: None,
     };
-    let tables = bake_radial(marginal, &entry.table_suffix(), Quality::Default, Precision::F32);
+    let tables = bake_radial(marginal, &entry.distribution, Quality::Default, Precision::F32);
     let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
     Tables::from_tables(provenance, tables).unwrap().radial("it").unwrap()
 }

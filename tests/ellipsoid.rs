@@ -22,6 +22,7 @@ fn tables(gamma: f64) -> Tables {
         name: kind.name().into(),
         kind,
         shapes: ShapeAxis::points([s_of_gamma(gamma)]),
+        covers: [s_of_gamma(gamma); 2],
         views,
         numbers,
         precision: Precision::F32,

@@ -11,6 +11,7 @@ fn small_table(precision: Precision) -> Tables {
         name: "shadowing".into(),
         kind: Kind::Shadowing,
         shapes: ShapeAxis::points([0.5, 1.0]),
+        covers: [0.5, 1.0],
         views: 4,
         numbers: 0,
         precision,

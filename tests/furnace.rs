@@ -3,10 +3,11 @@
 use std::sync::OnceLock;
 
 use glam::Vec3;
-use microfacet_bake::bake::albedo::{AlbedoSpec, Domain, bake};
+use microfacet_bake::bake::albedo::{Domain, Lobe, bake};
+use microfacet_bake::plan::AlbedoNeed;
 use microfacet_bake::scene::Interval;
 use microfacet_bake::spec::Quality;
-use microfacet_bake::validate::furnace::{TOLERANCE, furnace, survey};
+use microfacet_bake::validate::furnace::{TOLERANCE, direction, furnace, survey};
 use microfacet_sampler::{Masking, Precision, Table, Tables};
 
 /// Full tables of the two shapes, at the nodes of the default quality.
@@ -16,10 +17,10 @@ fn baked() -> &'static [Table] {
 }
 
 fn bake_at(quality: Quality) -> Vec<Table> {
-    let spec = AlbedoSpec::general(quality, Precision::F32);
     let part = |gamma: f64| {
-        let gamma = Interval { min: gamma, max: gamma };
-        bake(&spec.part(Domain { gamma, ..Domain::GENERAL }, &Masking::ALL)).unwrap()
+        let lobe = Lobe::Family(Domain { gamma: Interval::point(gamma), ..Domain::GENERAL });
+        let need = AlbedoNeed { lobe, ..AlbedoNeed::general() };
+        bake(&need.spec(quality, Precision::F32).unwrap()).unwrap()
     };
     [2.0, f64::INFINITY].map(part).concat()
 }
@@ -38,7 +39,7 @@ fn albedos_match_the_reference() {
         let n = |i: usize| f[i].parse::<f64>().unwrap();
         let masking = Masking::ALL.into_iter().find(|masking| masking.name() == f[3]).unwrap();
         let Ok(albedo) = set.albedo(n(0), n(1), masking) else { continue };
-        let got = albedo.moments(n(2) as f32);
+        let got = albedo.moments(direction(n(2) as f32));
         for (got, want) in [(got.scale, n(5)), (got.bias, n(6))] {
             assert!((f64::from(got) - want).abs() < 3e-4, "{row}: {got} against {want}");
         }

@@ -5,17 +5,17 @@ mod command;
 use std::sync::LazyLock;
 
 use glam::Vec3;
-use microfacet_bake::bake::view_albedo::{Lobe, LobeAlbedo, ViewSpec, bake};
+use microfacet_bake::bake::albedo::{AlbedoSpec, Lobe, Models, Site, bake, weights};
 use microfacet_bake::cache::Cache;
-use microfacet_bake::generate::{
-    Target, add_albedos, add_distributions, add_view_albedos, generate, provenance, worst_error,
-};
-use microfacet_bake::plan::{Options, Plan, entries, view_cost};
+use microfacet_bake::generate::{Target, add_albedos, add_distributions, generate, provenance, worst_error};
+use microfacet_bake::plan::{Options, Plan, albedo_cost, entries};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::spec::Quality;
 use microfacet_bake::store;
-use microfacet_bake::validate::view_albedo::{certified, missed_by_half, references};
-use microfacet_sampler::{BindError, Kind, Masking, Precision, Table, Tables, ViewAlbedo, encode};
+use microfacet_bake::validate::albedo::{certified, interior_references, missed_by_half};
+use microfacet_sampler::{
+    Albedo, BindError, FresnelAlbedo, LobeEntry, Masking, Precision, Reflectance, Table, Tables, encode,
+};
 
 use command::{json, run};
 
@@ -77,7 +77,7 @@ fn direction(cos: f64, phi: f64) -> Vec3 {
 }
 
 const CORRELATED: &str = "fresnel = { schlick = 0.04 }\nmasking = \"height-correlated\"";
-const PLAIN: &str = "fresnel = \"mirror\"";
+const PLAIN: &str = "fresnel = \"mirror\"\nmasking = \"uncorrelated\"";
 
 /// A recipe of materials: name, σ, γ, and further lines.
 fn recipe(materials: &[[&str; 4]]) -> String {
@@ -102,8 +102,7 @@ fn bake_all(text: &str, quality: Quality) -> Tables {
     let origin = provenance(scene.to_recipe(), entries(&scene));
     let target = Target::Quality(quality, Precision::F32);
     let set = generate(&plan.needs, target, origin, &Cache::none(), || ()).unwrap();
-    let set = add_albedos(set, &plan.albedos, target, &Cache::none(), || ()).unwrap();
-    let set = add_view_albedos(set, &plan.view_albedos, target, &Cache::none(), || ()).unwrap().set;
+    let set = add_albedos(set, &plan.albedos, target, &Cache::none(), || ()).unwrap().set;
     // As a renderer gets it.
     Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap()
 }
@@ -111,19 +110,23 @@ fn bake_all(text: &str, quality: Quality) -> Tables {
 static SET: LazyLock<Tables> = LazyLock::new(|| bake_all(&recipe(&MATERIALS), Quality::Draft));
 
 fn views(set: &Tables) -> Vec<&Table> {
-    set.tables().iter().filter(|table| table.kind == Kind::ViewAlbedo).collect()
+    let own = |table: &&Table| table.kind.is_albedo() && table.subject.lobe != LobeEntry::Family;
+    set.tables().iter().filter(own).collect()
 }
 
-fn brushed(masking: Masking, quality: Quality) -> ViewSpec {
-    let lobe = Lobe::StudentT { sigma: [0.6, 0.15], gamma: 2.7 };
-    ViewSpec::new(lobe, "gamma_2.7_sigma_0.6_0.15".into(), masking, quality, Precision::F32)
+fn spec(sigma: [f64; 2], gamma: f64, quality: Quality) -> AlbedoSpec {
+    let lobe = Lobe::StudentT { sigma, gamma };
+    let form = vec![Masking::HeightCorrelated];
+    AlbedoSpec::new(lobe, Reflectance::Moments, form, quality, Precision::F32).unwrap()
 }
 
 #[test]
 fn the_model_agrees_with_independent_values() {
     for (sigma, gamma, cos, phi, correlated, e) in REFERENCE {
         let lobe = Lobe::StudentT { sigma, gamma };
-        let albedo = LobeAlbedo::with(&lobe, 1e-8, |model| Ok(model.at(cos, phi)?)).unwrap();
+        let site = Site { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi, cos };
+        let albedo =
+            Models::with(&lobe, [], 1e-8, |models| models.at(&site).reflection(&site, weights)).unwrap();
         let [scale, bias, _] = if correlated { albedo.height_correlated } else { albedo.uncorrelated };
         assert!((scale + bias - e).abs() < 1e-7, "{sigma:?} {gamma}: {} for {e}", scale + bias);
     }
@@ -132,9 +135,8 @@ fn the_model_agrees_with_independent_values() {
 #[test]
 fn a_table_of_default_quality_agrees_with_independent_values() {
     let (sigma, gamma, cos, phi, _, e) = REFERENCE[1];
-    let (lobe, masking) = (Lobe::StudentT { sigma, gamma }, Masking::HeightCorrelated);
-    let spec = ViewSpec::new(lobe, "x".into(), masking, Quality::Default, Precision::F32);
-    let bound = ViewAlbedo::new(&bake(&spec).unwrap()).unwrap();
+    let table = bake(&spec(sigma, gamma, Quality::Default)).unwrap().remove(0);
+    let bound = Albedo::bind(&table, f64::NAN, f64::NAN).unwrap();
     let got = f64::from(bound.albedo(direction(cos, phi)));
     assert!((got - e).abs() < 1e-4, "{got} for {e}");
 }
@@ -143,8 +145,8 @@ fn a_table_of_default_quality_agrees_with_independent_values() {
 fn each_lobe_and_form_has_one_table_within_its_error() {
     let tables = views(&SET);
     let names: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();
-    let name = |form: &str| format!("view_albedo_{form}_gamma_2.7_sigma_0.6_0.15");
-    assert_eq!(names, [name("height_correlated"), name("uncorrelated")]);
+    let name = |form: Masking| format!("albedo_{}_gamma_2.7_sigma_0.6_0.15", form.name());
+    assert_eq!(names, [Masking::Uncorrelated, Masking::HeightCorrelated].map(name));
     for table in tables {
         assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
         assert!(table.certificate["quadrature_error"] <= 1e-4);
@@ -156,7 +158,7 @@ fn each_lobe_and_form_has_one_table_within_its_error() {
 #[test]
 fn opposite_and_mirrored_views_are_the_same_and_no_view_gains() {
     for name in ["brushed", "other form"] {
-        let albedo = SET.material_view_albedo(name).unwrap();
+        let albedo = SET.material_albedo(name).unwrap();
         for i in 0..400 {
             let (cos, phi) = ((f64::from(i) * 0.618).fract().powi(3), 0.01 * f64::from(i));
             let v = direction(cos, phi);
@@ -196,7 +198,7 @@ fn hemisphere(f: impl Fn(Vec3) -> f32) -> f64 {
 #[test]
 fn the_average_is_that_of_all_views_and_the_furnace_closes() {
     for name in ["brushed", "other form"] {
-        let albedo = SET.material_view_albedo(name).unwrap();
+        let albedo = SET.material_albedo(name).unwrap();
         let average = hemisphere(|v| albedo.albedo(v));
         assert!((average - f64::from(albedo.albedo_average())).abs() < 2e-5, "{average}");
         let bias = hemisphere(|v| albedo.moments(v).bias);
@@ -213,48 +215,50 @@ fn the_average_is_that_of_all_views_and_the_furnace_closes() {
 
 #[test]
 fn the_round_stand_in_is_off_by_what_the_certificate_says() {
-    let own = SET.material_view_albedo("brushed").unwrap();
-    let stand_in = SET.material_albedo("brushed").unwrap();
-    let said = views(&SET)[0].certificate["shortcut_max_error"];
+    let own = SET.material_albedo("brushed").unwrap();
+    let stand_in = Tables::embedded().albedo(0.3, 2.7, own.masking()).unwrap();
+    let said = views(&SET)[1].certificate["shortcut_max_error"];
     let views = (0..4000).map(|i| direction(0.02 + 0.98 * f64::from(i % 40) / 39.0, 0.01 * f64::from(i)));
-    let seen = views.map(|v| (own.albedo(v) - stand_in.albedo(v.z)).abs()).fold(0.0, f32::max);
+    let seen = views.map(|v| (own.albedo(v) - stand_in.albedo(v)).abs()).fold(0.0, f32::max);
     assert!((f64::from(seen) - said).abs() < 0.1 * said + 3e-3, "{seen}, certified {said}");
 }
 
 #[test]
 fn a_wrong_table_is_noticed() {
-    let spec = brushed(Masking::HeightCorrelated, Quality::Draft);
-    let references = references(&spec).unwrap();
-    let table = bake(&spec).unwrap();
-    let right = worst_error(&certified(table.clone(), &references).unwrap());
+    let right = spec([0.6, 0.15], 2.7, Quality::Draft);
+    let references = interior_references(&right).unwrap();
+    let table = bake(&right).unwrap().remove(0);
+    let error = |table: Table| worst_error(&certified(&right, vec![table], &references).unwrap()[0]);
     // Axes exchanged.
-    let swapped = ViewSpec { lobe: Lobe::StudentT { sigma: [0.15, 0.6], gamma: 2.7 }, ..spec.clone() };
-    assert!(worst_error(&certified(bake(&swapped).unwrap(), &references).unwrap()) > 0.1);
+    let swapped = spec([0.15, 0.6], 2.7, Quality::Draft);
+    assert!(error(bake(&swapped).unwrap().remove(0)) > 0.1);
     // One node.
     let mut wrong = table.clone();
     let middle = wrong.values.len() / 6 * 3;
     wrong.values[middle] = (wrong.values[middle] - 0.1).max(-1.0);
-    assert!(worst_error(&certified(wrong, &references).unwrap()) > 10.0 * right.max(3e-3));
-    // Which axis is the coarser one.
-    let few = ViewSpec { azimuths: 3, views: 65, ..spec.clone() };
-    let [azimuths, views] = missed_by_half(&bake(&few).unwrap()).unwrap();
-    assert!(azimuths > 10.0 * views, "{azimuths} {views}");
-    let few = ViewSpec { azimuths: 17, views: 11, ..spec };
-    let [azimuths, views] = missed_by_half(&bake(&few).unwrap()).unwrap();
-    assert!(views > 10.0 * azimuths, "{azimuths} {views}");
+    assert!(error(wrong) > 10.0 * error(table).max(3e-3));
+    // Which axis is the coarser one: an axis twice as dense is not.
+    for axis in [0, 1] {
+        let dense = right.refined(axis).refined(axis);
+        let table = bake(&dense).unwrap().remove(0);
+        let [missed, other] = [axis, 1 - axis].map(|i| missed_by_half(&dense, &table, i).unwrap());
+        assert!(other > 10.0 * missed, "{axis}: {other} {missed}");
+    }
 }
 
 #[test]
 fn materials_without_such_a_table_say_what_helps() {
-    for (name, word) in [("round", "material_albedo"), ("worn", "range"), ("silent", "fresnel")] {
-        let why = SET.material_view_albedo(name).unwrap_err();
-        assert!(matches!(why, BindError::NoViewAlbedo { .. }), "{why}");
+    for (name, word) in [("silent", "fresnel"), ("gold", "append")] {
+        let why = SET.material_albedo(name).unwrap_err();
         assert!(why.to_string().contains(name) && why.to_string().contains(word), "{why}");
     }
-    let unknown = SET.material_view_albedo("gold").unwrap_err();
-    assert!(matches!(unknown, BindError::NoSuchMaterial { .. }));
-    let other = SET.table(Kind::Albedo).unwrap();
-    assert!(ViewAlbedo::new(other).unwrap_err().to_string().contains("view_albedo"));
+    assert!(matches!(SET.material_albedo("silent"), Err(BindError::NoAlbedo { .. })));
+    // Of a range the middle of the round stand-in.
+    let worn = SET.material_albedo("worn").unwrap();
+    let round = SET.albedo((0.25_f64 * 0.1).sqrt(), 2.7, Masking::Uncorrelated).unwrap();
+    assert_eq!(worn.albedo(direction(0.3, 1.0)), round.albedo(direction(0.3, 2.0)));
+    // Moments are no shares, and the other way round.
+    assert!(microfacet_sampler::ViewCurve::<3>::bind(views(&SET)[0], 0.3, 2.7, 1.0).is_err());
 }
 
 #[test]
@@ -263,10 +267,12 @@ fn damaged_tables_are_refused() {
     let refused = |change: fn(&mut Table)| {
         let mut table = table.clone();
         change(&mut table);
-        ViewAlbedo::new(&table).unwrap_err().to_string()
+        table.validate().unwrap_err().to_string()
     };
     assert!(refused(|t| t.axes.swap(0, 1)).contains("axes"));
-    assert!(refused(|t| t.masking = None).contains("masking"));
+    assert!(refused(|t| t.subject.masking = None).contains("masking"));
+    assert!(refused(|t| t.subject.reflectance = None).contains("reflectance"));
+    assert!(refused(|t| t.subject.lobe = LobeEntry::Family).contains("axes"));
     assert!(refused(|t| t.values[0] = 1.5).contains("out of range"));
     assert!(refused(|t| t.axes[0].nodes[1] *= 1.01).contains("azimuth"));
     assert!(refused(|t| t.channels[0] = "value".into()).contains("channels"));
@@ -283,47 +289,52 @@ fn the_commands_list_bake_keep_and_show_them() {
     let at = folder.path();
     std::fs::write(at.join("r.toml"), recipe(&MATERIALS[..1])).unwrap();
     let shown = json(at, &["plan", "r.toml"]);
-    let listed = &shown["view_albedo"][0];
+    let listed = &shown["albedo"][0];
     assert_eq!(listed["materials"], serde_json::json!(["brushed"]));
     assert!(listed["cost"]["seconds"].as_f64().unwrap() > 0.0);
     let text = String::from_utf8(run(at, &["plan", "r.toml"]).stdout).unwrap();
-    assert!(text.contains("albedo over all views") && text.contains("sigma 0.6 0.15"), "{text}");
-    assert_eq!(json(at, &["plan", "r.toml", "--no-albedo"])["view_albedo"], serde_json::json!([]));
+    assert!(
+        text.contains("albedo, moments, gamma 2.7 sigma 0.6 0.15") && text.contains("at least"),
+        "{text}"
+    );
+    assert_eq!(json(at, &["plan", "r.toml", "--no-albedo"])["albedo"], serde_json::json!([]));
 
     let bake = ["bake", "r.toml", "--quality", "draft", "--out", "out", "--format", "safetensors,exr"];
     let baked = json(at, &bake);
     assert!(baked["baked"].as_u64().unwrap() > 0);
     assert_eq!(json(at, &bake)["baked"], 0);
     let text = String::from_utf8(run(at, &["inspect", "out"]).stdout).unwrap();
-    assert!(text.contains("view_albedo_height_correlated_gamma_2.7_sigma_0.6_0.15"), "{text}");
+    assert!(text.contains("albedo_height-correlated_gamma_2.7_sigma_0.6_0.15"), "{text}");
     assert!(text.contains("an isotropic table at sqrt(sigma_x sigma_y) in its place would be off by up to"));
     let set = store::read(&at.join("out")).unwrap();
-    assert!(set.material_view_albedo("brushed").is_ok());
-    assert!(set.provenance().conventions.contains_key("view_albedo"));
+    assert!(set.material_albedo("brushed").is_ok());
+    assert!(set.provenance().conventions.contains_key("albedo_azimuth"));
     let table = views(&set)[0];
     assert_eq!(store::read(&at.join(format!("out/{}.exr", table.name))).unwrap().tables()[0], *table);
     // The estimate is of the table that is tried first.
-    let spec = brushed(Masking::HeightCorrelated, Quality::Draft);
+    let spec = spec([0.6, 0.15], 2.7, Quality::Draft);
     let one = encode(&Default::default(), std::slice::from_ref(table)).unwrap().len();
     let none = encode(&Default::default(), &[]).unwrap().len();
     let nodes = table.values.len() / 3;
-    let real = one - none - 12 * (nodes - spec.nodes());
-    let estimate = view_cost(&spec).bytes;
+    // Of a set, the formulas are counted once.
+    let formulas: usize = table.axes.iter().map(|axis| axis.mapping.formula().len()).sum();
+    let real = one - none - formulas - 12 * (nodes - spec.nodes());
+    let estimate = albedo_cost(&spec).bytes;
     assert!((estimate as f64 / real as f64 - 1.0).abs() < 0.2, "{estimate} for {real}");
 
     let less = ["bake", "r.toml", "--quality", "draft", "--out", "less", "--no-albedo"];
-    assert!(json(at, &less)["tables"].as_array().unwrap().iter().all(|t| t["kind"] != "view_albedo"));
+    assert!(json(at, &less)["tables"].as_array().unwrap().iter().all(|t| t["kind"] != "albedo"));
     let few = json(at, &["bake", "r.toml", "--max-bytes", "14000", "--out", "few"]);
-    assert!(few["tables"].as_array().unwrap().iter().any(|t| t["kind"] == "view_albedo"));
+    assert!(few["tables"].as_array().unwrap().iter().any(|t| t["kind"] == "albedo"));
     assert!(std::fs::metadata(at.join("few/tables.safetensors")).unwrap().len() <= 14000);
 
     let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float uroughness\" 0.04 \
                  \"float vroughness\" 0.25\nWorldBegin\n";
     std::fs::write(at.join("s.pbrt"), scene).unwrap();
-    assert_eq!(json(at, &["plan", "s.pbrt"])["view_albedo"], serde_json::json!([]));
+    assert_eq!(json(at, &["plan", "s.pbrt"])["albedo"], serde_json::json!([]));
     let asked = json(at, &["plan", "s.pbrt", "--albedo"]);
-    assert_eq!(asked["view_albedo"][0]["materials"], serde_json::json!(["steel"]));
-    assert_eq!(asked["view_albedo"][0]["masking"], "height-correlated");
+    assert_eq!(asked["albedo"][0]["materials"], serde_json::json!(["steel"]));
+    assert_eq!(asked["albedo"][0]["masking"], serde_json::json!(["height-correlated"]));
 }
 
 const GTR: &str = "[[material]]\nname = \"paint\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.5\n\
@@ -352,13 +363,13 @@ fn other_distributions_have_an_albedo_over_the_cosine() {
     let target = Target::Quality(Quality::Draft, Precision::F32);
     let set = generate(&plan.needs, target, origin, &Cache::none(), || ()).unwrap();
     let set = add_distributions(set, &plan.distributions, target, &Cache::none(), || ()).unwrap();
-    let set = add_view_albedos(set, &plan.view_albedos, target, &Cache::none(), || ()).unwrap().set;
+    let set = add_albedos(set, &plan.albedos, target, &Cache::none(), || ()).unwrap().set;
     let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
     let table = views(&set)[0];
-    assert_eq!((table.name.as_str(), table.shape()[0]), ("view_albedo_height_correlated_gtr_0.2_1.5", 1));
+    assert_eq!((table.name.as_str(), table.shape()[0]), ("albedo_height-correlated_gtr_0.2_1.5", 1));
     assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
     assert!(!table.certificate.contains_key("shortcut_max_error"));
-    let (paint, albedo) = (set.radial("paint").unwrap(), set.material_view_albedo("paint").unwrap());
+    let (paint, albedo) = (set.radial("paint").unwrap(), set.material_albedo("paint").unwrap());
     for cos in [0.1, 0.4, 0.9] {
         let v = direction(cos, 0.0);
         assert_eq!(albedo.albedo(v), albedo.albedo(Vec3::new(0.0, v.x, v.z)));
@@ -366,7 +377,7 @@ fn other_distributions_have_an_albedo_over_the_cosine() {
         let want = estimate(v, paint.g1(v), sample, |l| paint.g2(v, l, Masking::HeightCorrelated));
         assert!((f64::from(albedo.albedo(v)) - want).abs() < 3e-3, "{cos}: {want}");
     }
-    assert!(set.material_albedo("paint").unwrap_err().to_string().contains("material_view_albedo"));
+    assert!(set.material_dielectric_albedo("paint", 1.5).unwrap_err().to_string().contains("radial"));
 }
 
 #[test]
@@ -375,14 +386,14 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
     let text = recipe(&[["tilted", "[0.4, 0.2]", "2.0", theta]]);
     let scene = Scene::from_recipe_str(&text).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
-    // Visible normals of its γ, even of GGX; no isotropic albedo.
-    assert_eq!((plan.needs.len(), plan.albedos.len(), plan.view_albedos.len()), (1, 0, 1));
+    // Visible normals of its γ, even of GGX; no albedo of a round lobe.
+    assert_eq!((plan.needs.len(), plan.albedos.len()), (1, 1));
     let set = bake_all(&text, Quality::Draft);
     let table = views(&set)[0];
     assert!(table.name.ends_with("gamma_2_sigma_0.4_0.2_theta_0.05_-0.1_0.5"), "{}", table.name);
     assert!(table.certificate["e_max_error"] <= 3e-3, "{:?}", table.certificate);
     let (tilted, albedo) =
-        (set.material_ellipsoid("tilted").unwrap(), set.material_view_albedo("tilted").unwrap());
+        (set.material_ellipsoid("tilted").unwrap(), set.material_albedo("tilted").unwrap());
     for i in 0..8 {
         let v = direction(0.3 + 0.08 * f64::from(i), 0.8 * f64::from(i));
         let sample = |u| tilted.sample_visible_normal(v, u);
@@ -408,4 +419,39 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
         assert!(why.to_string().contains("material_ellipsoid"), "{why}");
     }
     assert!(SET.material_ellipsoid("brushed").is_err());
+}
+
+#[test]
+fn an_anisotropic_conductor_has_the_albedo_of_its_own_lobe() {
+    const GOLD: &str = "fresnel = { conductor = { eta = [0.143, 0.375, 1.442], k = [3.983, 2.386, 1.603] } }";
+    let set = bake_all(&recipe(&[["gold", "[0.5, 0.1]", "2.2", GOLD]]), Quality::Draft);
+    let exact = |table: &&&Table| matches!(table.subject.reflectance, Some(Reflectance::Conductor { .. }));
+    let tables = views(&set);
+    let table = tables.iter().find(exact).unwrap();
+    assert_eq!((tables.len(), table.channels.join(" ").as_str()), (2, "red green blue"));
+    assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
+    let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else { panic!() };
+    let (material, all) = (set.material("gold").unwrap(), set.material_albedo("gold").unwrap());
+    let red = microfacet_model::fresnel::Conductor::new(0.143, 3.983).unwrap();
+    for i in 0..6 {
+        let v = direction(0.2 + 0.15 * f64::from(i), 0.9 * f64::from(i));
+        // G2/G1(v) F, what is unsaid being height-correlated.
+        let mut want = 0.0;
+        const STEPS: usize = 200;
+        for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+            let m = material.sample_visible_normal(v, [i, j].map(|i| (i as f32 + 0.5) / STEPS as f32));
+            let l = 2.0 * v.dot(m) * m - v;
+            if l.z > 0.0 {
+                let g = material.g2(v, l, Masking::HeightCorrelated) / material.g1(v);
+                want += f64::from(g) * red.reflectance(f64::from(v.dot(m)));
+            }
+        }
+        want /= (STEPS * STEPS) as f64;
+        let got = gold.eval(v);
+        assert!((f64::from(got[0]) - want).abs() < 4e-3, "{v}: {got:?} {want}");
+        assert!(got.iter().all(|&x| x <= all.albedo(v) + 1e-3), "{v}: {got:?} of {}", all.albedo(v));
+    }
+    // Neither azimuths nor channels are mixed up in the average.
+    let average = hemisphere(|v| gold.eval(v)[2]);
+    assert!((average - f64::from(gold.average()[2])).abs() < 5e-5, "{average}");
 }

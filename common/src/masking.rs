@@ -9,10 +9,10 @@ use crate::Real;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Masking {
-    /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12), and of a material that states none.
-    #[default]
+    /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12).
     Uncorrelated,
-    /// G2 = 1/(1 + Λ(v) + Λ(l)), height-correlated (Heitz 2014, eq. 99): what most renderers use.
+    /// G2 = 1/(1 + Λ(v) + Λ(l)), height-correlated (Heitz 2014, eq. 99): what renderers use, and a material that states none.
+    #[default]
     HeightCorrelated,
 }
 

@@ -30,33 +30,31 @@ fn albedos(set: &microfacet_sampler::Tables) {
     use microfacet_sampler::FresnelAlbedo;
     use microfacet_sampler::Masking;
     let share = |x: f32| assert!((0.0..=1.0).contains(&x), "an albedo of {x}");
+    let view = |cos: f32| glam::Vec3::new(0.0, (1.0_f32 - cos * cos).sqrt(), cos);
     for (sigma, gamma) in [(0.0, 2.0), (1e-9, 1.501), (0.3, 2.0), (3.0, f64::INFINITY), (f64::NAN, 2.0)] {
         for masking in Masking::ALL {
             if let Ok(albedo) = set.albedo(sigma, gamma, masking) {
-                share(albedo.albedo(0.3));
+                share(albedo.albedo(view(0.3)));
                 share(albedo.albedo_average());
             }
             for eta in [1.5, 0.6] {
                 if let Ok(side) = set.interface_albedo(sigma, gamma, eta, masking) {
-                    side.eval(0.3).into_iter().for_each(share);
+                    side.eval(view(0.3)).into_iter().for_each(share);
+                    side.average().into_iter().for_each(share);
                 }
             }
         }
     }
     for material in &set.provenance().materials {
-        for cos in [0.0, 1e-7, 0.4, 0.75, 1.0] {
+        for v in [0.0, 1e-7, 0.4, 0.75, 1.0].map(view) {
             if let Ok(albedo) = set.material_albedo(&material.name) {
-                share(albedo.albedo(cos));
-                share(albedo.albedo_average());
-            }
-            if let Ok(albedo) = set.material_view_albedo(&material.name) {
-                share(albedo.albedo(glam::Vec3::new(0.0, (1.0_f32 - cos * cos).sqrt(), cos)));
+                share(albedo.albedo(v));
                 share(albedo.albedo_average());
             }
             match set.material_fresnel_albedo(&material.name) {
-                Ok(FresnelAlbedo::Conductor(metal)) => metal.eval(cos).into_iter().for_each(share),
+                Ok(FresnelAlbedo::Conductor(metal)) => metal.eval(v).into_iter().for_each(share),
                 Ok(FresnelAlbedo::Dielectric(sides)) => {
-                    sides.outside.eval(cos).into_iter().chain(sides.inside.eval(cos)).for_each(share);
+                    sides.outside.eval(v).into_iter().chain(sides.inside.eval(v)).for_each(share);
                 }
                 Err(_) => {}
             }

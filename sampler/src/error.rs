@@ -73,8 +73,8 @@ pub enum BindError {
         /// The pairs that are covered.
         covered: String,
     },
-    /// A material without an albedo over the whole view in this set.
-    NoViewAlbedo {
+    /// A material that has no albedo of its own in this set.
+    NoAlbedo {
         /// The material.
         name: String,
         /// Why, and what helps.
@@ -102,7 +102,7 @@ impl fmt::Display for BindError {
             Self::OtherDistribution { name, distribution } => write!(
                 f,
                 "material \"{name}\" is of the kind {distribution}: bind a student-t with `student_t` or `material`, an ellipsoid with \
-                 `material_ellipsoid`, others with `radial`; albedos of these two with `material_view_albedo`"
+                 `material_ellipsoid`, others with `radial`"
             ),
             Self::NoTable(name) => write!(f, "table `{name}` is missing from this set; bake it again"),
             Self::Dielectric([eta, sigma, gamma]) => write!(
@@ -136,11 +136,8 @@ impl fmt::Display for BindError {
                 "sigma = {sigma} with gamma = {gamma} is not covered by the albedo tables of this set, which hold {covered}; bake a \
                  set that does: a recipe's material with `fresnel`, or `microfacet-bake bake` without a recipe for all"
             ),
-            Self::NoViewAlbedo { name, remedy } => {
-                write!(
-                    f,
-                    "material \"{name}\" has no albedo over the azimuth of the view in this set: {remedy}"
-                )
+            Self::NoAlbedo { name, remedy } => {
+                write!(f, "material \"{name}\" has no such albedo in this set: {remedy}")
             }
             Self::NoSuchMaterial { name, known } => write!(
                 f,

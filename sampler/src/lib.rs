@@ -21,13 +21,13 @@ mod material;
 mod math;
 mod tables;
 
-pub use albedo::{Albedo, DielectricAlbedo, FresnelAlbedo, Moments, ViewAlbedo, ViewCurve};
+pub use albedo::{Albedo, DielectricAlbedo, FresnelAlbedo, Moments, ViewCurve};
 pub use axis::{Axis, Interpolation, Mapping};
 pub use bsdf::{f82_tint_average, fresnel_average, schlick_average};
 pub use error::{BatchError, BindError, LoadError};
 pub use format::{
-    Channels, FORMAT, FresnelEntry, Kind, MaterialEntry, Precision, Provenance, Table, VERSION, describe,
-    encode, reassemble, seal, seal_document,
+    Channels, Covered, FORMAT, FresnelEntry, Kind, LobeEntry, MaterialEntry, Precision, Provenance,
+    Reflectance, Side, Subject, Table, VERSION, describe, encode, reassemble, seal, seal_document,
 };
 pub use material::{Bounded, Ellipsoid, Radial, Roughness, Skew, StudentT};
 pub use microfacet_common::Masking;

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use microfacet_common::shape::s_of_gamma;
 
 use crate::error::{BindError, LoadError};
-use crate::format::{Kind, MaterialEntry, Provenance, Table, decode};
+use crate::format::{Kind, LobeEntry, MaterialEntry, Provenance, Table, decode};
 use crate::material::{Ellipsoid, Radial, Roughness, Skew, StudentT, covers};
 
 /// A set of tables, loaded and checked.
@@ -161,13 +161,13 @@ impl Tables {
         if entry.distribution.is_empty() {
             return Err(other_lobe(entry));
         }
-        Radial::bind(&self.tables, entry.sigma[0][0] as f32, &entry.table_suffix())
+        Radial::bind(&self.tables, entry.sigma[0][0] as f32, &entry.lobe())
     }
 
     /// The entry of a material that is a Student-t.
     pub(crate) fn student_t_entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
         let entry = self.entry(name)?;
-        let plain = entry.theta.is_none() && entry.distribution.is_empty();
+        let plain = matches!(entry.lobe(), LobeEntry::Family | LobeEntry::StudentT { .. });
         if plain { Ok(entry) } else { Err(other_lobe(entry)) }
     }
 
@@ -189,5 +189,5 @@ impl Tables {
 
 /// The material exists, but is of another kind than was asked for.
 fn other_lobe(entry: &MaterialEntry) -> BindError {
-    BindError::OtherDistribution { name: entry.name.clone(), distribution: entry.lobe().into() }
+    BindError::OtherDistribution { name: entry.name.clone(), distribution: entry.lobe().name().into() }
 }

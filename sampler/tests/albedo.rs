@@ -7,7 +7,11 @@ use microfacet_sampler::{Albedo, Masking, Tables};
 
 const COSINES: [f32; 5] = [0.02, 0.1, 0.35, 0.8, 1.0];
 
-/// The certificate of the default set: E, scale and bias within 3e-4, and F82 within 1.3e-3.
+/// A view at this cosine.
+fn view(cos: f32) -> Vec3 {
+    Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)
+}
+
 fn for_each_albedo(mut check: impl FnMut(f64, f64, Masking, Albedo)) {
     let tables = Tables::embedded();
     for (sigma, gamma) in [(0.05, 1.6), (0.3, 2.0), (0.8, 5.0), (1.5, f64::INFINITY)] {
@@ -25,7 +29,7 @@ fn moments_make_the_albedo_of_every_schlick_reflectance() {
             for cos in COSINES {
                 let schlick = |mu| [f0 + (f90 - f0) * schlick_weight(mu)];
                 let want = model.reflection(sigma, cos.into(), schlick).unwrap().of(masking)[0];
-                let got = albedo.moments(cos).schlick(f0 as f32, f90 as f32);
+                let got = albedo.moments(view(cos)).schlick(f0 as f32, f90 as f32);
                 let at = format!("sigma {sigma}, gamma {gamma}, {masking:?}, {cos}, F0 {f0}, F90 {f90}");
                 assert!((f64::from(got) - want).abs() < 3e-4, "{at}: {got} for {want}");
             }
@@ -42,11 +46,11 @@ fn moments_make_the_albedo_of_every_tinted_metal() {
             for cos in COSINES {
                 let want = model.reflection(sigma, cos.into(), |mu| [metal.reflectance(mu)]);
                 let want = want.unwrap().of(masking)[0];
-                let got = albedo.moments(cos).f82_tint(f0 as f32, tint as f32);
+                let got = albedo.moments(view(cos)).f82_tint(f0 as f32, tint as f32);
                 let at = format!("sigma {sigma}, gamma {gamma}, {masking:?}, {cos}, F0 {f0}, tint {tint}");
-                assert!((f64::from(got) - want).abs() < 1.5e-3, "{at}: {got} for {want}");
+                assert!((f64::from(got) - want).abs() < 3e-4, "{at}: {got} for {want}");
                 // Without a tint it is Schlick's, and a tint takes light away.
-                let plain = albedo.moments(cos).schlick(f0 as f32, 1.0);
+                let plain = albedo.moments(view(cos)).schlick(f0 as f32, 1.0);
                 assert!(if tint == 1.0 { got == plain } else { got < plain }, "{at}");
             }
         }
@@ -96,9 +100,9 @@ fn lights_of_the_compensation_have_its_density() {
 fn the_compensation_returns_what_is_lost() {
     for_each_albedo(|sigma, gamma, masking, albedo| {
         for cos in COSINES {
-            let v = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+            let v = view(cos);
             let got = by_sampling(&albedo, |l| albedo.compensation(v, l) * l.z);
-            let want = f64::from(albedo.lost(cos));
+            let want = f64::from(albedo.lost(v));
             let at = format!("sigma {sigma}, gamma {gamma}, {masking:?}, {cos}");
             assert!((got / want - 1.0).abs() < 2e-4, "{at}: {got} for {want}");
         }

@@ -5,23 +5,20 @@
 
 pub mod albedo;
 mod conditional;
-pub mod dielectric_albedo;
-pub mod fresnel_albedo;
 mod radial;
 mod shadowing;
-pub mod view_albedo;
 mod visible_slope;
 
 use microfacet_model::{Shape, SignedUnit};
 use microfacet_sampler::axis::{MirroredRoot, half_tangent};
-use microfacet_sampler::{Axis, Channels, Interpolation, Kind, Mapping, Table};
+use microfacet_sampler::{Axis, Channels, Interpolation, Kind, Mapping, Subject, Table};
 
 use crate::spec::{ShapeAxis, TableSpec};
 
 pub use radial::{bake_radial, radial_axes, radial_bytes};
 
 /// Changes whenever the same specification would give other values: part of every file, and of every cache key.
-pub const NUMERICS: u32 = 2;
+pub const NUMERICS: u32 = 3;
 
 /// u at which the ends of a mirrored axis are evaluated where u = 0 itself is an infinite slope: 2⁻⁴⁰. For Beckmann it keeps every
 /// stored slope finite (below 5.3); the CDF error it makes is itself.
@@ -40,8 +37,8 @@ pub fn bake(spec: &TableSpec) -> Table {
         name: spec.name.clone(),
         kind: spec.kind,
         axes,
+        subject: Subject::shapes(spec.covers),
         channels: names(Kind::VALUE_AND_SLOPE),
-        masking: None,
         values,
         precision: spec.precision,
         certificate: Default::default(),
@@ -74,6 +71,17 @@ fn along(count: usize) -> Axis {
 /// The axis of u₂, across it, about which all slopes are odd.
 fn across(count: usize) -> Axis {
     Axis::placed("u2", Mapping::OddRoot, Interpolation::Hermite, count)
+}
+
+/// The name of a table from its parts, those that say nothing left out.
+pub(crate) fn joined_name(parts: &[&str]) -> String {
+    let parts: Vec<&str> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
+    parts.join("_")
+}
+
+/// A label as it stands in names, which become names of files.
+pub(crate) fn in_names(label: &str) -> String {
+    label.replace([':', ',', '/', '\\', ' '], "_")
 }
 
 /// Names as tables hold them.

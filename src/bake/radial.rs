@@ -6,11 +6,11 @@
 use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_sampler::axis::half_tangent::{rate, slope_at};
 use microfacet_sampler::axis::{HalfTangent, Rational, limit_slopes};
-use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Precision, Table};
+use microfacet_sampler::{Axis, Interpolation, Kind, LobeEntry, Mapping, Precision, Subject, Table};
 use rayon::prelude::*;
 
 use super::shadowing::ratios;
-use super::{across, along, mirrored, names, round};
+use super::{across, along, in_names, joined_name, mirrored, names, round};
 use crate::spec::Quality;
 
 /// Rows of in-plane slopes in the table of slopes across.
@@ -61,8 +61,8 @@ pub fn radial_bytes(quality: Quality, precision: Precision) -> usize {
     radial_axes(quality, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * precision.bytes()
 }
 
-/// The four tables, their names ending in `suffix`.
-pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precision: Precision) -> Vec<Table> {
+/// The four tables of the distribution of a label.
+pub fn bake_radial(marginal: &Marginal, label: &str, quality: Quality, precision: Precision) -> Vec<Table> {
     let kappa = marginal.beyond(0.0).excess;
     let table = |(kind, axes): (Kind, Vec<Axis>)| {
         let values = match (kind, &axes[..]) {
@@ -73,13 +73,13 @@ pub fn bake_radial(marginal: &Marginal, suffix: &str, quality: Quality, precisio
             (_, []) => unreachable!("every kind has an axis"),
         };
         let table = Table {
-            name: kind.table_name(None, suffix),
+            name: joined_name(&[kind.name(), &in_names(label)]),
             kind,
+            subject: Subject { lobe: LobeEntry::Distribution(label.into()), ..Subject::default() },
             axes,
             channels: names(Kind::VALUE_AND_SLOPE),
             values: values.into_iter().flatten().collect(),
             precision,
-            masking: None,
             certificate: Default::default(),
         };
         table.rounded(precision)

@@ -6,10 +6,9 @@ use std::time::Instant;
 use clap::ValueEnum;
 use serde_json::json;
 
-use microfacet_bake::bake::albedo::AlbedoSpec;
 use microfacet_bake::cache::Cache;
 use microfacet_bake::fill::fill;
-use microfacet_bake::generate::{Baked, Target, add_albedos, add_distributions, add_view_albedos, generate};
+use microfacet_bake::generate::{Baked, Target, add_albedos, add_distributions, generate, worst_error};
 use microfacet_bake::memory;
 use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::{self, Scene};
@@ -125,10 +124,9 @@ pub(super) fn run(args: Args) -> Outcome {
     };
     let general = general_set(quality, precision);
     let specs: Vec<_> = plan.needs.iter().flat_map(|need| need.specs(&general)).collect();
-    let albedo = AlbedoSpec::general(quality, precision);
-    let albedos: Vec<_> = plan.albedos.iter().map(|need| need.spec(&albedo)).collect();
-    let views: Vec<_> = plan.view_albedos.iter().map(|need| need.spec(quality, precision)).collect();
-    memory::check(&specs, &albedos, &views, args.max_memory)?;
+    let albedos: Vec<_> =
+        plan.albedos.iter().map(|need| need.spec(quality, precision)).collect::<Result<_, _>>()?;
+    memory::check(&specs, &albedos, args.max_memory)?;
     let steps = match target {
         // All at once.
         _ if args.max_bytes.is_some() => 0,
@@ -136,8 +134,7 @@ pub(super) fn run(args: Args) -> Outcome {
         Target::Quality(..) => specs.len() + plan.needs.len(),
         _ => plan.needs.len(),
     };
-    let albedos = plan.albedos.len() + plan.view_albedos.len();
-    let bar = progress(steps + plan.distributions.len() + albedos, "baking");
+    let bar = progress(steps + plan.distributions.len() + plan.albedos.len(), "baking");
     let provenance = provenance(scene.as_ref().map(|scene| (scene, &plan)));
     let cache = args.cache();
     let (result, families) = match args.max_bytes {
@@ -149,7 +146,6 @@ pub(super) fn run(args: Args) -> Outcome {
             let normals = normals.elapsed().as_secs_f64();
             let albedo = Instant::now();
             let result = add_albedos(result, &plan.albedos, target, &cache, || bar.inc(1))?;
-            let result = add_view_albedos(result, &plan.view_albedos, target, &cache, || bar.inc(1))?;
             let families = [("visible normals", normals), ("albedo", albedo.elapsed().as_secs_f64())];
             (result, Some(families))
         }
@@ -194,7 +190,10 @@ pub(super) fn largest_error(table: &Table) -> String {
             return format!("{name} error max {max:.2e}{rms}");
         }
     }
-    "not certified".into()
+    match worst_error(table) {
+        worst if worst.is_finite() => format!("albedo error max {worst:.2e}"),
+        _ => "not certified".into(),
+    }
 }
 
 /// Seconds that each family of tables took; unknown where they are chosen together.
@@ -222,8 +221,7 @@ fn summary(result: &Baked, plan: &Plan, written: &[Written], families: Families,
         (all, _) => format!("{all} tables"),
     };
     text += &format!("{baked} in {seconds:.3} s");
-    let albedos = !(plan.albedos.is_empty() && plan.view_albedos.is_empty());
-    if let Some(families) = families.filter(|_| albedos) {
+    if let Some(families) = families.filter(|_| !plan.albedos.is_empty()) {
         let parts = families.map(|(name, seconds)| format!("{name} {seconds:.3} s"));
         text += &format!(" ({})", parts.join(", "));
     }

@@ -7,7 +7,8 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use microfacet_bake::store;
-use microfacet_sampler::{Axis, Interpolation, Table, describe};
+use microfacet_common::shape::gamma_of_s;
+use microfacet_sampler::{Axis, Covered, Interpolation, LobeEntry, Subject, Table, describe};
 
 use super::bake::largest_error;
 use super::{Done, Outcome, print, print_json};
@@ -65,6 +66,7 @@ fn describe_table(table: &Table) -> String {
         table.values.len(),
         table.precision
     );
+    text += &format!("  {}\n", describe_subject(&table.subject));
     for axis in &table.axes {
         text += &format!("  {}\n", describe_axis(axis));
     }
@@ -78,6 +80,26 @@ fn describe_table(table: &Table) -> String {
         text += &format!("    {key} {value}\n");
     }
     text
+}
+
+/// Whose normals, under which masking and reflectance, for which materials.
+fn describe_subject(Subject { lobe, masking, reflectance, covers }: &Subject) -> String {
+    let sigmas = |[x, y]: &[f64; 2], s: &f64| format!("sigma {x} {y}, gamma {}", short(gamma_of_s(*s)));
+    let mut parts = vec![match lobe {
+        LobeEntry::Family => "student-t".to_owned(),
+        LobeEntry::StudentT { sigma, s } => format!("student-t, {}", sigmas(sigma, s)),
+        LobeEntry::Ellipsoid { sigma, theta: [x, y, z], s } => {
+            format!("ellipsoid, {}, theta {x} {y} {z}", sigmas(sigma, s))
+        }
+        LobeEntry::Distribution(label) => label.clone(),
+    }];
+    parts.extend(masking.map(|masking| masking.name().to_owned()));
+    parts.extend(reflectance.map(|reflectance| reflectance.label().replace('_', " ")));
+    if let Some(Covered { s: [low, high], sigma }) = covers {
+        parts.push(format!("gamma {} to {}", short(gamma_of_s(*high)), short(gamma_of_s(*low))));
+        parts.extend(sigma.map(|[min, max]| format!("sigma {min} to {max}")));
+    }
+    format!("of {}", parts.join("; "))
 }
 
 fn describe_axis(axis: &Axis) -> String {

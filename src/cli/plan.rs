@@ -6,15 +6,16 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use microfacet_bake::bake::albedo::{AlbedoSpec, Domain};
-use microfacet_bake::bake::view_albedo::ViewSpec;
+use microfacet_bake::bake::albedo::{AlbedoSpec, Domain, Lobe};
 use microfacet_bake::family::Distribution;
-use microfacet_bake::generate::{add_albedo_conventions, add_view_albedo_conventions};
+use microfacet_bake::generate::add_albedo_conventions;
 use microfacet_bake::plan::{
-    AlbedoVerdict, Cost, Need, Plan, Verdict, albedo_cost, bare_cost, cost, distribution_cost, view_cost,
+    AlbedoVerdict, Cost, Need, Plan, Verdict, albedo_cost, bare_cost, cost, distribution_cost,
 };
 use microfacet_bake::scene::{self, Interval, Material, Scene};
 use microfacet_bake::spec::{TableSpec, general_set};
+
+use microfacet_sampler::Kind;
 
 use super::request::{Request, provenance};
 use super::{Done, Outcome, print, print_json};
@@ -42,8 +43,6 @@ struct Report<'a> {
     albedos: Vec<(AlbedoSpec, Cost)>,
     /// Cost of each distribution outside the family.
     distributions: Vec<Cost>,
-    /// The same of tables over all views.
-    views: Vec<(ViewSpec, Cost)>,
     total: Cost,
     general: Cost,
     /// Milliseconds.
@@ -60,25 +59,15 @@ pub(super) fn run(args: Args) -> Outcome {
     let plan = args.request.plan(&scene, None)?;
     let general = general_set(args.request.quality(), args.request.precision());
     let mut origin = provenance(Some((&scene, &plan)));
-    let general_albedo = AlbedoSpec::general(args.request.quality(), args.request.precision());
-    let albedo_needs = plan.albedos.iter().map(|need| need.spec(&general_albedo));
-    let albedos: Vec<(AlbedoSpec, Cost)> = albedo_needs
-        .map(|spec| {
-            let cost = albedo_cost(&spec);
-            (spec, cost)
-        })
-        .collect();
+    let (quality, precision) = (args.request.quality(), args.request.precision());
+    let of_need = |spec: AlbedoSpec| {
+        let cost = albedo_cost(&spec);
+        (spec, cost)
+    };
+    let albedos = plan.albedos.iter().map(|need| need.spec(quality, precision).map(of_need));
+    let albedos = albedos.collect::<Result<Vec<(AlbedoSpec, Cost)>, _>>()?;
     if !albedos.is_empty() {
         add_albedo_conventions(&mut origin);
-    }
-    let views = plan.view_albedos.iter().map(|need| {
-        let spec = need.spec(args.request.quality(), args.request.precision());
-        let cost = view_cost(&spec);
-        (spec, cost)
-    });
-    let views: Vec<(ViewSpec, Cost)> = views.collect();
-    if !views.is_empty() {
-        add_view_albedo_conventions(&mut origin);
     }
     let tables: Vec<(Vec<TableSpec>, Cost)> = plan
         .needs
@@ -89,20 +78,18 @@ pub(super) fn run(args: Args) -> Outcome {
             (specs, cost)
         })
         .collect();
-    let (quality, precision) = (args.request.quality(), args.request.precision());
     let distributions: Vec<Cost> =
         plan.distributions.iter().map(|own| distribution_cost(own, quality, precision)).collect();
-    let albedo_costs = albedos.iter().map(|(_, cost)| *cost).chain(views.iter().map(|(_, cost)| *cost));
     let total = tables
         .iter()
         .map(|(_, cost)| *cost)
         .chain(distributions.iter().copied())
-        .chain(albedo_costs)
+        .chain(albedos.iter().map(|(_, cost)| *cost))
         .chain([bare_cost(&origin)])
         .sum();
     let mut everything = vec![cost(&general), bare_cost(&provenance(None))];
     if !args.request.general_plan().albedos.is_empty() {
-        everything.push(albedo_cost(&general_albedo));
+        everything.push(albedo_cost(&AlbedoSpec::general(quality, precision)));
     }
     let general = everything.into_iter().sum();
     let milliseconds = |time: std::time::Duration| 1e3 * time.as_secs_f64();
@@ -112,7 +99,6 @@ pub(super) fn run(args: Args) -> Outcome {
         plan: &plan,
         tables,
         albedos,
-        views,
         distributions,
         total,
         general,
@@ -150,13 +136,12 @@ fn shapes(gamma: Interval) -> String {
 }
 
 /// Why a material gets no albedo, in few words and in more.
-fn albedo_reason(verdict: AlbedoVerdict) -> [&'static str; 2] {
+fn albedo_reason(verdict: &AlbedoVerdict) -> [&'static str; 2] {
     match verdict {
         AlbedoVerdict::Bake(_) => ["baked", "albedo tables cover it"],
         AlbedoVerdict::NotAsked => ["no fresnel", "the recipe states no `fresnel`; --albedo bakes all"],
         AlbedoVerdict::Imported => ["not asked", "scenes other than recipes get albedos with --albedo"],
         AlbedoVerdict::Declined => ["declined", "--no-albedo"],
-        AlbedoVerdict::Own => ["own table", "no plain Student-t: its albedo has a table of its own"],
         AlbedoVerdict::Embedded => ["embedded", "the default set compiled into the sampler has its albedo"],
         AlbedoVerdict::NotNeeded => ["not needed", "it needs no tables at all"],
     }
@@ -168,6 +153,14 @@ fn domain(Domain { gamma, sigma }: Domain) -> String {
     let number = |x: f64| format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned();
     let end = if sigma.is_point() { String::new() } else { format!(" to {}", number(sigma.max)) };
     format!("{}, sigma {}{end}", shapes(gamma), number(sigma.min))
+}
+
+/// Which lobe, in words.
+fn lobe(lobe: &Lobe) -> String {
+    match lobe {
+        Lobe::Family(covered) => domain(*covered),
+        other => other.label().replace('_', " "),
+    }
 }
 
 /// The first few of many names.
@@ -196,44 +189,32 @@ impl Report<'_> {
         theirs.map(|(material, _)| material.name.as_str()).collect()
     }
 
-    /// Names of the materials whose albedo has this verdict.
-    fn albedo_names(&self, of: AlbedoVerdict) -> Vec<&str> {
+    /// Names of the materials whose albedo has such a verdict.
+    fn albedo_names(&self, of: impl Fn(&AlbedoVerdict) -> bool) -> Vec<&str> {
         let pairs = self.scene.materials.iter().zip(&self.plan.albedo_verdicts);
-        pairs.filter(|(_, verdict)| **verdict == of).map(|(material, _)| material.name.as_str()).collect()
+        pairs.filter(|(_, verdict)| of(verdict)).map(|(material, _)| material.name.as_str()).collect()
     }
 
-    /// Names of the materials with one table over all views.
-    fn view_names(&self, of: usize) -> Vec<&str> {
-        let pairs = self.scene.materials.iter().zip(&self.plan.view_indices);
-        pairs.filter(|(_, index)| **index == Some(of)).map(|(material, _)| material.name.as_str()).collect()
+    /// Names of the materials that albedo tables serve.
+    fn served(&self, need: usize) -> Vec<&str> {
+        self.albedo_names(|verdict| matches!(verdict, AlbedoVerdict::Bake(needs) if needs.contains(&need)))
     }
 
     fn albedo_text(&self) -> String {
         let mut text = String::new();
         for (i, (spec, cost)) in self.albedos.iter().enumerate() {
             let forms: Vec<&str> = spec.maskings.iter().map(|masking| masking.name()).collect();
-            let what = match &spec.fresnel {
-                None => format!(", for {}", list(self.albedo_names(AlbedoVerdict::Bake(i)).into_iter())),
-                Some(fresnel) => format!(" at least, for {}", fresnel.label()),
-            };
+            let reflectance = spec.reflectance.label().replace('_', " ");
             let tables = spec.tables();
             text += &format!(
-                "bake  albedo, {}, {}: {tables} table{}, {} bytes, about {:.3} s{what}\n",
-                domain(spec.domain),
+                "bake  albedo, {reflectance}, {}, {}: {tables} table{}, {} bytes{}, about {:.3} s, for {}\n",
+                lobe(&spec.lobe),
                 forms.join(" and "),
                 if tables == 1 { "" } else { "s" },
                 cost.bytes,
+                if spec.doublings() > 0 { " at least" } else { "" },
                 cost.seconds,
-            );
-        }
-        for (i, (spec, cost)) in self.views.iter().enumerate() {
-            text += &format!(
-                "bake  albedo over all views, {}, {}: 1 table, {} bytes at least, about {:.3} s, for {}\n",
-                spec.label.replace('_', " "),
-                spec.masking.name(),
-                cost.bytes,
-                cost.seconds,
-                list(self.view_names(i).into_iter())
+                list(self.served(i).into_iter()),
             );
         }
         for verdict in [
@@ -242,9 +223,9 @@ impl Report<'_> {
             AlbedoVerdict::Declined,
             AlbedoVerdict::Embedded,
         ] {
-            let names = self.albedo_names(verdict);
+            let names = self.albedo_names(|other| *other == verdict);
             if !names.is_empty() {
-                let [short, long] = albedo_reason(verdict);
+                let [short, long] = albedo_reason(&verdict);
                 text +=
                     &format!("skip  {:22} {long}: {}\n", format!("albedo, {short}"), list(names.into_iter()));
             }
@@ -324,11 +305,12 @@ impl Report<'_> {
             json!({ "shapes": ends(need), "tables": tables, "cost": cost(sum), "materials": self.names(|verdict| verdict.need() == Some(i)) })
         }).collect();
         let albedos: Vec<_> = self.albedos.iter().enumerate().map(|(i, (spec, sum))| {
-            let Domain { gamma, sigma } = spec.domain;
-            let nodes = [spec.shapes.len(), spec.roughnesses.len(), spec.views];
+            let names: Vec<_> = spec.maskings.iter().map(|&masking| spec.name(Kind::Albedo, masking)).collect();
+            let nodes: Vec<_> = spec.axes.iter().map(|axis| json!({ "name": axis.name, "length": axis.len() })).collect();
+            let covers = if let Lobe::Family(domain) = &spec.lobe { Some(domain.covered()) } else { None };
             json!({
-                "gamma": [gamma.min.to_string(), gamma.max.to_string()], "sigma": [sigma.min, sigma.max], "masking": spec.maskings, "fresnel": spec.fresnel,
-                "nodes": nodes, "cost": cost(sum), "materials": self.albedo_names(AlbedoVerdict::Bake(i)),
+                "names": names, "lobe": spec.lobe.entry(), "covers": covers, "masking": spec.maskings, "reflectance": spec.reflectance,
+                "axes": nodes, "cost": cost(sum), "materials": self.served(i),
             })
         }).collect();
         let distributions: Vec<_> = self
@@ -340,12 +322,6 @@ impl Report<'_> {
                 json!({ "distribution": distribution.label(), "tables": 4, "cost": cost(sum), "materials": self.wearers(distribution) })
             })
             .collect();
-        let views: Vec<_> = self.views.iter().enumerate().map(|(i, (spec, sum))| {
-            json!({
-                "name": spec.name(), "masking": spec.masking, "nodes": [spec.azimuths, spec.views], "cost": cost(sum),
-                "materials": self.view_names(i),
-            })
-        }).collect();
         let verdicts = self.plan.verdicts.iter().zip(&self.plan.albedo_verdicts);
         let materials: Vec<_> = self
             .scene
@@ -361,7 +337,7 @@ impl Report<'_> {
                     _ => None,
                 };
                 json!({ "name": material.name, "verdict": short, "why": long, "need": verdict.need(), "shares_with": other,
-                        "albedo": albedo_reason(*albedo) })
+                        "albedo": albedo_reason(albedo) })
             })
             .collect();
         let ignored: Vec<_> = self
@@ -371,7 +347,7 @@ impl Report<'_> {
             .map(|material| json!({ "name": material.name, "kind": material.kind, "why": material.reason }))
             .collect();
         json!({
-            "needs": needs, "distributions": distributions, "albedo": albedos, "view_albedo": views, "materials": materials, "ignored": ignored, "nothing_needed": self.plan.is_empty(),
+            "needs": needs, "distributions": distributions, "albedo": albedos, "materials": materials, "ignored": ignored, "nothing_needed": self.plan.is_empty(),
             "total": cost(&self.total), "general_set": cost(&self.general),
             "milliseconds": { "reading": self.reading, "planning": self.planning },
         })

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{Subcommand, ValueEnum};
 use glam::DVec3;
 
+use microfacet_bake::validate::furnace::direction;
 use microfacet_model as model;
 use microfacet_model::fresnel::schlick_weight;
 use microfacet_sampler::{Masking, Moments, StudentT, Tables};
@@ -275,8 +276,9 @@ impl Quantity for Albedo {
         Ok(match method {
             Method::Table => {
                 let albedo = set.albedo(sigma, gamma, masking).map_err(|why| why.to_string())?;
-                let Moments { scale, bias, .. } = albedo.moments(cos as f32);
-                [albedo.albedo(cos as f32), scale, bias].map(|x| x.to_string()).into()
+                let v = direction(cos as f32);
+                let Moments { scale, bias, .. } = albedo.moments(v);
+                [albedo.albedo(v), scale, bias].map(|x| x.to_string()).into()
             }
             Method::Exact => {
                 let schlick = |cos| [1.0 - schlick_weight(cos), schlick_weight(cos)];

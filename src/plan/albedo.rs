@@ -1,10 +1,9 @@
-//! Which albedo tables a scene needs: for the forms of masking, the shapes and the roughnesses of the materials that ask, and no others.
+//! Which albedo tables a scene needs: for the lobes, reflectances and forms of masking of the materials that ask, and no others.
 
-use microfacet_sampler::{FresnelEntry, Masking, Precision};
+use microfacet_sampler::{LobeEntry, Masking, Precision, Reflectance};
 
 use super::{NotCovered, Options, entry, is_rough};
-use crate::bake::albedo::{AlbedoSpec, Domain, SIGMA_MAX};
-use crate::bake::view_albedo::{Lobe, ViewSpec};
+use crate::bake::albedo::{AlbedoSpec, BakeError, Domain, Lobe, SIGMA_MAX};
 use crate::scene::{Format, Interval, Material, Scene};
 use crate::spec::Quality;
 
@@ -21,94 +20,65 @@ pub enum AlbedoWish {
     None,
 }
 
-/// Materials that albedo tables are to cover: the unit in which they are baked, measured and kept.
+/// Materials that albedo tables are to cover, one or many of the family: the unit in which they are baked, measured and kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlbedoNeed {
-    /// Shapes and roughnesses.
-    pub domain: Domain,
+    /// Their normals.
+    pub lobe: Lobe,
+    /// Their reflectance; the moments serve F = 1 and every Schlick approximation.
+    pub reflectance: Reflectance,
     /// Forms of masking.
     pub maskings: Vec<Masking>,
-    /// A conductor's or dielectric's exact reflectance; `None` are the moments that serve F = 1 and Schlick's approximation.
-    pub fresnel: Option<FresnelEntry>,
 }
 
 impl AlbedoNeed {
-    /// Everything that tables can cover.
+    /// The moments of everything that tables can cover.
     pub fn general() -> Self {
-        Self { domain: Domain::GENERAL, maskings: Masking::ALL.into(), fresnel: None }
+        let lobe = Lobe::Family(Domain::GENERAL);
+        Self { lobe, reflectance: Reflectance::Moments, maskings: Masking::ALL.into() }
     }
 
-    /// The specification that covers it, cut out of a general one.
-    pub fn spec(&self, general: &AlbedoSpec) -> AlbedoSpec {
-        AlbedoSpec { fresnel: self.fresnel, ..general.part(self.domain, &self.maskings) }
+    /// The tables that cover it.
+    ///
+    /// # Errors
+    /// [`BakeError`] for an ellipsoid that is none.
+    pub fn spec(&self, quality: Quality, precision: Precision) -> Result<AlbedoSpec, BakeError> {
+        let Self { lobe, reflectance, maskings } = self.clone();
+        AlbedoSpec::new(lobe, reflectance, maskings, quality, precision)
     }
-}
 
-/// A material whose albedo depends on the azimuth of the view, or on a distribution of its own, and gets a table of its own.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ViewNeed {
-    /// Its normals.
-    pub lobe: Lobe,
-    /// What the name of its table ends in; materials of one label and masking share the table.
-    pub label: String,
-    /// The form of masking.
-    pub masking: Masking,
-}
-
-impl ViewNeed {
-    /// The smallest table that is tried for it.
-    pub fn spec(&self, quality: Quality, precision: Precision) -> ViewSpec {
-        ViewSpec::new(self.lobe.clone(), self.label.clone(), self.masking, quality, precision)
+    fn covers(&self, want: &Want) -> bool {
+        let lobe = match (&self.lobe, &want.lobe) {
+            (Lobe::Family(domain), Lobe::Family(other)) => domain.contains(other),
+            (one, other) => one == other,
+        };
+        lobe && self.reflectance == want.reflectance && self.maskings.contains(&want.masking)
     }
-}
-
-/// The materials that get an albedo table over all views, each table once, and for each material of the scene the index of its own.
-pub(super) fn view_needs(scene: &Scene, options: Options) -> (Vec<ViewNeed>, Vec<Option<usize>>) {
-    let mut needs: Vec<ViewNeed> = Vec::new();
-    let mut index = |material: &Material| {
-        if unasked(material, options).is_some() {
-            return None;
-        }
-        let need = view_need(material)?;
-        let same = |other: &ViewNeed| (&other.label, other.masking) == (&need.label, need.masking);
-        Some(needs.iter().position(same).unwrap_or_else(|| {
-            needs.push(need);
-            needs.len() - 1
-        }))
-    };
-    let indices = scene.materials.iter().map(&mut index).collect();
-    (needs, indices)
-}
-
-fn view_need(material: &Material) -> Option<ViewNeed> {
-    let label = entry(material).view_label()?;
-    let sigma = [material.roughness.x().min, material.roughness.y().min];
-    let gamma = material.gamma.min;
-    let lobe = match (&material.distribution, material.theta) {
-        (Some(distribution), _) => Lobe::Radial { distribution: distribution.clone(), sigma: sigma[0] },
-        (_, Some(theta)) => Lobe::Ellipsoid { sigma, theta, gamma },
-        _ => Lobe::StudentT { sigma, gamma },
-    };
-    Some(ViewNeed { lobe, label, masking: material.masking.unwrap_or_default() })
 }
 
 /// What becomes of a material's albedo.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AlbedoVerdict {
-    /// Tables are baked that cover it: an index into [`Plan::albedos`](super::Plan::albedos).
-    Bake(usize),
+    /// Tables are baked that cover it: indices into [`Plan::albedos`](super::Plan::albedos).
+    Bake(Vec<usize>),
     /// Its recipe states no `fresnel`.
     NotAsked,
     /// It comes from a scene of another format, and those have to ask.
     Imported,
     /// Albedo tables were declined.
     Declined,
-    /// It is no plain Student-t, and has a table of its own alone: see [`Plan::view_indices`](super::Plan::view_indices).
-    Own,
     /// The default set that is compiled into the sampler crate covers it.
     Embedded,
     /// It has no microfacets, or no geometry wears it.
     NotNeeded,
+}
+
+/// One table that one material wants.
+#[derive(Clone)]
+struct Want {
+    lobe: Lobe,
+    reflectance: Reflectance,
+    masking: Masking,
 }
 
 /// The needs of a scene, and one verdict for each of its materials.
@@ -116,78 +86,89 @@ pub(super) fn needs(
     scene: &Scene,
     options: Options,
 ) -> Result<(Vec<AlbedoNeed>, Vec<AlbedoVerdict>), NotCovered> {
-    let wants: Vec<Result<(Domain, Masking), AlbedoVerdict>> =
-        scene.materials.iter().map(|material| want(material, options)).collect::<Result<_, _>>()?;
+    let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> =
+        scene.materials.iter().map(|material| wants(material, options)).collect::<Result<_, _>>()?;
     let mut needs: Vec<AlbedoNeed> = Vec::new();
-    for masking in Masking::ALL {
-        let of_form = wants.iter().flatten().filter(|want| want.1 == masking).map(|want| want.0);
-        for domain in joined(of_form.collect()) {
-            // Two forms at once cost little more than one.
-            match needs.iter_mut().find(|need| need.domain == domain) {
-                Some(need) => need.maskings.push(masking),
-                None => needs.push(AlbedoNeed { domain, maskings: vec![masking], fresnel: None }),
+    let mut add = |lobe: Lobe, reflectance, masking| {
+        // Two forms at once cost little more than one.
+        match needs.iter_mut().find(|need| need.lobe == lobe && need.reflectance == reflectance) {
+            Some(need) if need.maskings.contains(&masking) => {}
+            Some(need) => need.maskings.push(masking),
+            None => needs.push(AlbedoNeed { lobe, reflectance, maskings: vec![masking] }),
+        }
+    };
+    let all: Vec<&Want> = wants.iter().flatten().flatten().collect();
+    let mut reflectances: Vec<Reflectance> = Vec::new();
+    for want in &all {
+        if !reflectances.contains(&want.reflectance) {
+            reflectances.push(want.reflectance);
+        }
+    }
+    // The moments first, which serve most.
+    reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Moments);
+    for reflectance in reflectances {
+        for masking in Masking::ALL {
+            let same = all.iter().filter(|want| want.reflectance == reflectance && want.masking == masking);
+            let (family, own): (Vec<&Lobe>, Vec<&Lobe>) =
+                same.map(|want| &want.lobe).partition(|lobe| matches!(lobe, Lobe::Family(_)));
+            let domains = family
+                .into_iter()
+                .filter_map(|lobe| if let Lobe::Family(domain) = lobe { Some(*domain) } else { None });
+            for domain in joined(domains.collect()) {
+                add(Lobe::Family(domain), reflectance, masking);
             }
+            own.into_iter().for_each(|lobe| add(lobe.clone(), reflectance, masking));
         }
     }
-    // Besides these, the exact reflectances that are no combination of the moments.
-    let mut exact: Vec<(FresnelEntry, Masking)> = Vec::new();
-    let pairs = || {
-        scene
-            .materials
-            .iter()
-            .zip(&wants)
-            .filter_map(|(material, want)| Some((material, want.as_ref().ok()?)))
-    };
-    for (material, &(_, masking)) in pairs() {
-        if let Some(fresnel) = exact_fresnel(material)
-            && !exact.contains(&(fresnel, masking))
-        {
-            exact.push((fresnel, masking));
-        }
-    }
-    for (fresnel, masking) in exact {
-        let same = |(material, want): &(&Material, &(Domain, Masking))| {
-            want.1 == masking && exact_fresnel(material).as_ref() == Some(&fresnel)
-        };
-        let domains = joined(pairs().filter(same).map(|(_, want)| want.0).collect());
-        let need = |domain| AlbedoNeed { domain, maskings: vec![masking], fresnel: Some(fresnel) };
-        needs.extend(domains.into_iter().map(need));
-    }
-    let verdict = |want: &Result<(Domain, Masking), AlbedoVerdict>| match want {
-        Ok((domain, masking)) => {
-            let covers = |need: &AlbedoNeed| {
-                need.fresnel.is_none() && need.maskings.contains(masking) && need.domain.contains(domain)
-            };
-            AlbedoVerdict::Bake(needs.iter().position(covers).expect("the needs cover every want"))
-        }
-        Err(verdict) => *verdict,
-    };
-    let verdicts = wants.iter().map(verdict).collect();
+    let serving = |want: &Want| needs.iter().position(|need| need.covers(want)).expect("needs cover all");
+    let verdicts = wants.into_iter().map(|wants| match wants {
+        Ok(wants) => AlbedoVerdict::Bake(wants.iter().map(serving).collect()),
+        Err(verdict) => verdict,
+    });
+    let verdicts = verdicts.collect();
     Ok((needs, verdicts))
 }
 
 /// What a material needs, or why it needs nothing.
-fn want(
-    material: &Material,
-    options: Options,
-) -> Result<Result<(Domain, Masking), AlbedoVerdict>, NotCovered> {
+fn wants(material: &Material, options: Options) -> Result<Result<Vec<Want>, AlbedoVerdict>, NotCovered> {
     if let Some(verdict) = unasked(material, options) {
         return Ok(Err(verdict));
-    }
-    if material.distribution.is_some() || material.theta.is_some() {
-        return Ok(Err(AlbedoVerdict::Own));
     }
     let (gamma, [x, y]) = (material.gamma, [material.roughness.x(), material.roughness.y()]);
     // The usual stand-in for an anisotropic surface.
     let mean = |x: f64, y: f64| if x == y { x } else { (x * y).sqrt() };
-    let sigma = Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) };
-    if sigma.max > SIGMA_MAX {
-        return Err(NotCovered::Sigma { material: material.name.clone(), sigma: sigma.max });
+    let round =
+        Lobe::Family(Domain { gamma, sigma: Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) } });
+    let entry = entry(material);
+    let lobe = match (entry.lobe(), &material.distribution) {
+        (LobeEntry::Family, _) => round.clone(),
+        (LobeEntry::StudentT { sigma, .. }, _) => Lobe::StudentT { sigma, gamma: gamma.min },
+        (LobeEntry::Ellipsoid { sigma, theta, .. }, _) => Lobe::Ellipsoid { sigma, theta, gamma: gamma.min },
+        (LobeEntry::Distribution(_), Some(distribution)) => {
+            Lobe::Radial { distribution: distribution.clone(), sigma: x.min }
+        }
+        (LobeEntry::Distribution(_), None) => unreachable!("entries take it from the material"),
+    };
+    let refracts = matches!(entry.lobe(), LobeEntry::Family | LobeEntry::StudentT { .. });
+    let exact = material.fresnel.iter().flat_map(|fresnel| fresnel.tabulated());
+    let exact = exact.filter(|reflectance| *reflectance != Reflectance::Moments);
+    let of = |reflectance: Reflectance| {
+        // The model refracts at round lobes alone.
+        let lobe = if reflectance.indices().is_some() { &round } else { &lobe };
+        Want { lobe: lobe.clone(), reflectance, masking: entry.masking() }
+    };
+    let embedded = options.embedded_albedo && matches!(lobe, Lobe::Family(_));
+    let moments = (!embedded).then_some(Reflectance::Moments);
+    let exact = exact.filter(|reflectance| refracts || reflectance.indices().is_none());
+    let wants: Vec<Want> = moments.into_iter().chain(exact).map(of).collect();
+    for want in &wants {
+        if let Lobe::Family(Domain { sigma, .. }) = want.lobe
+            && sigma.max > SIGMA_MAX
+        {
+            return Err(NotCovered::Sigma { material: material.name.clone(), sigma: sigma.max });
+        }
     }
-    if options.embedded_albedo {
-        return Ok(Err(AlbedoVerdict::Embedded));
-    }
-    Ok(Ok((Domain { gamma, sigma }, material.masking.unwrap_or_default())))
+    Ok(if wants.is_empty() { Err(AlbedoVerdict::Embedded) } else { Ok(wants) })
 }
 
 /// Why no albedo is wanted of a material, if none is.
@@ -202,25 +183,18 @@ fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
     }
 }
 
-/// A reflectance that needs a table of its own.
-fn exact_fresnel(material: &Material) -> Option<FresnelEntry> {
-    let fresnel = material.fresnel.filter(|entry| !entry.label().is_empty())?;
-    // Tables hold both sides of an interface.
-    Some(match fresnel {
-        FresnelEntry::Dielectric(eta) if eta < 1.0 => FresnelEntry::Dielectric(1.0 / eta),
-        other => other,
-    })
-}
-
 /// Few domains that cover all of `wants` with no more nodes in all.
 fn joined(wants: Vec<Domain>) -> Vec<Domain> {
-    let general = AlbedoSpec::general(Quality::Default, Precision::F32);
-    let cost = |domain: Domain| general.part(domain, &[Masking::Uncorrelated]).nodes();
+    let need = |domain| AlbedoNeed { lobe: Lobe::Family(domain), ..AlbedoNeed::general() };
+    let cost =
+        |domain| need(domain).spec(Quality::Default, Precision::F32).map_or(usize::MAX, |spec| spec.nodes());
     // One domain in the place of several, if that is not more.
     let hull_if_cheaper = |domains: Vec<Domain>| -> Vec<Domain> {
         let hull = domains.iter().copied().reduce(|a, b| a.union(&b));
         match hull {
-            Some(hull) if cost(hull) <= domains.iter().map(|domain| cost(*domain)).sum() => vec![hull],
+            Some(hull) if cost(hull) <= domains.iter().map(|domain| cost(*domain)).sum::<usize>() => {
+                vec![hull]
+            }
             _ => domains,
         }
     };

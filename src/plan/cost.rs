@@ -1,12 +1,16 @@
 //! What a bake costs, before it is done.
 
-use microfacet_sampler::{Axis, Interpolation, Kind, Mapping, Precision, Provenance, describe};
+use microfacet_sampler::{
+    Axis, Interpolation, Kind, LobeEntry, Mapping, Masking, MaterialEntry, Precision, Provenance,
+    Reflectance, describe,
+};
 
-use crate::bake::{self, albedo::AlbedoSpec, view_albedo::ViewSpec};
+use crate::bake::albedo::{AlbedoSpec, Lobe};
+use crate::bake::{self};
 use crate::family::Distribution;
 use crate::generate::CERTIFICATE_POINTS;
 use crate::spec::{Quality, TableSpec};
-use crate::validate::{albedo, radial, view_albedo};
+use crate::validate::{points, radial};
 
 /// Bytes and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,16 +31,14 @@ impl std::iter::Sum for Cost {
 /// Estimates what a set without tables takes: its names, its recipe, its conventions, and the formulas of the axes that tables will
 /// have.
 pub fn bare_cost(provenance: &Provenance) -> Cost {
-    let formulas = Mapping::EVERY.into_iter().filter(|mapping| {
-        // Those that have albedos have the conventions of albedos.
-        let convention = match mapping {
-            Mapping::LogShape(_) | Mapping::LogRoughness(_) | Mapping::ViewBlend(_) => "albedo",
-            Mapping::Azimuth(_) => "view_albedo",
-            // Of dielectrics alone, which are rare.
-            Mapping::ReflectanceRoot | Mapping::CriticalBlend(_) => return false,
-            _ => "visible_slope",
-        };
-        provenance.conventions.contains_key(convention)
+    let has = |convention: &str| provenance.conventions.contains_key(convention);
+    let some = |of: &dyn Fn(&MaterialEntry) -> bool| has("albedo") && provenance.materials.iter().any(of);
+    let dielectric = |entry: &MaterialEntry| entry.fresnel.is_some_and(|f| f.indices().is_some());
+    let formulas = Mapping::EVERY.into_iter().filter(|mapping| match mapping {
+        Mapping::LogShape(_) | Mapping::LogRoughness(_) | Mapping::ViewBlend(_) => has("albedo"),
+        Mapping::Azimuth(_) => some(&|entry| entry.lobe() != LobeEntry::Family),
+        Mapping::ReflectanceRoot | Mapping::CriticalBlend(_) => some(&dielectric),
+        _ => has("visible_slope"),
     });
     // Quotes with their escapes, a colon and a comma.
     let formulas: usize = formulas.map(|mapping| mapping.name().len() + mapping.formula().len() + 10).sum();
@@ -63,16 +65,15 @@ pub fn cost(specs: &[TableSpec]) -> Cost {
     specs.iter().map(one).sum()
 }
 
-/// The same for albedo tables.
+/// The same for albedo tables, at the nodes that are tried first.
 pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
-    let axes = bake::albedo::axes(spec);
     let json = |axes: &[Axis]| serde_json::to_string(axes).map_or(0, |json| escaped(&json));
-    let headers = match spec.fresnel {
-        // Of the averages, too, over all axes but the view.
-        None => spec.maskings.len() * (json(&axes) + json(&axes[..2]) + 1400),
-        // The axis of indices, and an odd number of views from one side.
-        Some(_) => spec.tables() * (json(&axes) + 900),
-    };
+    // Name twice, kind, subject, channels, certificate, shape and offsets; of averages, over all axes but the view.
+    let name = |kind| 2 * spec.name(kind, Masking::HeightCorrelated).len();
+    let subject = serde_json::to_string(&spec.reflectance).map_or(0, |json| escaped(&json));
+    let one = json(&spec.axes) + name(Kind::Albedo) + subject + 800;
+    let average = json(&spec.axes[..2]) + name(Kind::AlbedoAverage) + subject + 680;
+    let headers = spec.maskings.len() * (one + if spec.has_averages() { average } else { 0 });
     let threads = rayon::current_num_threads() as f64;
     Cost { bytes: spec.bytes() + headers, seconds: albedo_seconds(spec) / threads }
 }
@@ -101,30 +102,17 @@ pub fn distribution_cost(distribution: &Distribution, quality: Quality, precisio
     Cost { bytes, seconds: seconds / rayon::current_num_threads() as f64 }
 }
 
-/// The same for an albedo table over all views, at the nodes that are tried first.
-pub fn view_cost(spec: &ViewSpec) -> Cost {
-    // Milliseconds a node or a point of the certificate, from `time microfacet-bake bake --threads 1 --no-cache` of an anisotropic material;
-    // long tails and narrow lobes take up to twice as long, and refinement comes on top.
-    const PLACE: f64 = 5.0;
-    let axes = spec.axes().ok().and_then(|axes| serde_json::to_string(&axes).ok());
-    let header = axes.map_or(0, |json| escaped(&json)) + 2 * spec.name().len() + 800;
-    let threads = rayon::current_num_threads() as f64;
-    let seconds = 1e-3 * PLACE * (spec.nodes() + view_albedo::POINTS) as f64;
-    Cost { bytes: spec.bytes() + header, seconds: seconds / threads }
-}
-
 /// Seconds that one thread bakes and certifies albedo tables.
 fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
-    // Microseconds a node and a point of the certificate: fitted to `time microfacet-bake bake --threads 1 --no-cache` of the draft and
-    // the default set, of one material and of a range of sigma, which they meet within an eighth.
-    let points = albedo::points(spec.shapes.len()) as f64;
-    // Both sides of a dielectric, what is reflected and what is transmitted, each with a kink; measured at half as many points each.
-    let ([node, point], points) = match spec.fresnel.as_ref() {
-        Some(fresnel) if fresnel.indices().is_some() => ([4500.0, 4500.0], points),
-        Some(_) => ([520.0, 720.0], 0.5 * points),
-        None => ([520.0, 720.0], points),
+    // Microseconds a node or a point of the certificate: fitted to `time microfacet-bake bake --threads 1 --no-cache` of the draft and
+    // the default set, of one material and of a range of sigma, which they meet within an eighth. A dielectric is reflected and
+    // transmitted, with a kink; long tails and narrow lobes take up to twice as long, and refinement comes on top.
+    let place = match (&spec.lobe, spec.reflectance) {
+        (_, Reflectance::Dielectric { .. }) => 2250.0,
+        (Lobe::Family(_), _) => 520.0,
+        _ => 5000.0,
     };
-    1e-6 * (node * spec.nodes() as f64 + point * points)
+    1e-6 * place * (spec.nodes() + points::count(spec)) as f64
 }
 
 /// Seconds that one thread bakes and certifies a table.

@@ -12,8 +12,8 @@ use std::fmt;
 
 use microfacet_sampler::MaterialEntry;
 
-pub use albedo::{AlbedoNeed, AlbedoVerdict, AlbedoWish, ViewNeed};
-pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, view_cost};
+pub use albedo::{AlbedoNeed, AlbedoVerdict, AlbedoWish};
+pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost};
 pub use needs::Need;
 
 use microfacet_common::shape::s_of_gamma;
@@ -93,10 +93,6 @@ pub struct Plan {
     pub albedos: Vec<AlbedoNeed>,
     /// One verdict on the albedo of each material, in order.
     pub albedo_verdicts: Vec<AlbedoVerdict>,
-    /// Albedo tables over all views, each of one or more equal materials.
-    pub view_albedos: Vec<ViewNeed>,
-    /// An index into those for each material, in order; `None` for most.
-    pub view_indices: Vec<Option<usize>>,
 }
 
 impl Plan {
@@ -144,9 +140,8 @@ impl Plan {
         };
         let verdicts = wants.iter().enumerate().map(verdict).collect();
         let (albedos, albedo_verdicts) = albedo::needs(scene, options)?;
-        let (view_albedos, view_indices) = albedo::view_needs(scene, options);
         let distributions = distributions(scene);
-        Ok(Self { needs, distributions, verdicts, albedos, albedo_verdicts, view_albedos, view_indices })
+        Ok(Self { needs, distributions, verdicts, albedos, albedo_verdicts })
     }
 
     /// Whether some material is left to closed forms: then even a set without tables is worth writing.
@@ -158,7 +153,6 @@ impl Plan {
     pub fn is_empty(&self) -> bool {
         self.needs.is_empty()
             && self.albedos.is_empty()
-            && self.view_albedos.is_empty()
             && self.verdicts.iter().all(|verdict| matches!(verdict, Verdict::NotRough | Verdict::NotUsed))
     }
 }

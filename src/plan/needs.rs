@@ -3,6 +3,7 @@
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::{Interpolation, Precision};
 
+use crate::bake::joined_name;
 use crate::scene::Interval;
 use crate::spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, ShapeAxis, TableSpec, general_set};
 use crate::validate::certificate::ALL_SHAPES;
@@ -35,14 +36,14 @@ impl Need {
     }
 
     /// What the names of its tables end in; nothing for the general set.
-    fn suffix(&self) -> String {
+    fn label(&self) -> String {
         let Interval { min, max } = self.gamma;
         if *self == Self::general() {
             String::new()
         } else if min == max {
-            format!("_gamma_{min}")
+            format!("gamma_{min}")
         } else {
-            format!("_gamma_{min}_to_{max}")
+            format!("gamma_{min}_to_{max}")
         }
     }
 
@@ -55,18 +56,18 @@ impl Need {
     /// What this need takes of one table, or nothing.
     pub fn cut(&self, spec: &TableSpec) -> Option<TableSpec> {
         let [from, to] = self.s();
-        let nodes = &spec.shapes.nodes;
-        let [low, high] = [nodes[0], nodes[nodes.len() - 1]];
+        let [low, high] = spec.shapes.ends();
         // At the seam γ = 1.8 the whole distribution is preferred.
         let after_seam = low >= s_of_gamma(GAMMA_WHOLE);
+        let covers = [from.max(low), to.min(high)];
         let shapes = if from == to {
             let here = if after_seam { from > low } else { from >= low } && from <= high;
             here.then(|| ShapeAxis { nodes: vec![from], interpolation: Interpolation::Nodes })
         } else {
-            (to > low && from < high).then(|| spec.shapes.part(from.max(low), to.min(high)))
+            (to > low && from < high).then(|| spec.shapes.part(covers[0], covers[1]))
         };
-        let name = format!("{}{}", spec.name, self.suffix());
-        shapes.map(|shapes| TableSpec { shapes, name, ..spec.clone() })
+        let name = joined_name(&[&spec.name, &self.label()]);
+        shapes.map(|shapes| TableSpec { shapes, covers, name, ..spec.clone() })
     }
 }
 

@@ -6,7 +6,7 @@
 //! sigma = 0.454                  # or [x, y], or { min = .., max = .. }; 0 is smooth
 //! gamma = 3.0                    # or "inf" (Beckmann), or { min = .., max = .. }
 //! fresnel = { dielectric = 1.5 } # or "mirror", { schlick = F0 }, { conductor = { eta = [..], k = [..] } }
-//! masking = "height-correlated"  # or "uncorrelated"
+//! masking = "height-correlated"  # or "uncorrelated"; height-correlated if absent
 //! ```
 //!
 //! `distribution` with its parameters stands in the place of σ and γ for a distribution by another name: `distribution =

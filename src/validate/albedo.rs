@@ -1,221 +1,264 @@
-//! Errors of albedo tables between their nodes, through the run-time lookup, against the model's quadrature.
+//! The certificate of albedo tables of whatever lobe and reflectance: errors between their nodes, through the run-time lookup, against
+//! the model's quadrature, at the places that [`points`](super::points) names.
 
 use std::collections::BTreeMap;
 
+use glam::Vec3;
 use rayon::prelude::*;
 
 use microfacet_common::shape::s_of_gamma;
-use microfacet_model::{Albedo, AlbedoIntegrator, Shape};
-use microfacet_sampler::axis::LogRoughness;
-use microfacet_sampler::{BindError, Kind, Masking, Table, Tables};
+use microfacet_model::Albedo;
+use microfacet_sampler::{
+    Albedo as Bound, Axis, BindError, Kind, Masking, Moments, Reflectance, Table, Tables, ViewCurve,
+};
 
-use super::certificate::{low_discrepancy, round_up};
-use crate::bake::albedo::{Domain, weights};
-use crate::scene::Interval;
+use super::certificate::round_up;
+use super::points::{Point, edges, interior};
+use crate::bake::albedo::{AlbedoSpec, BakeError, CHANNELS, Integrand, Lobe, Models, Site, weights};
 
-/// Accuracy of the model's values that tables are judged by.
-pub(super) const TOLERANCE: f64 = 1e-7;
-/// Views and roughnesses measured at each γ.
-const POINTS: usize = 96;
-/// So many are measured of the fewest shapes.
-const LEAST: usize = 480;
-/// Smallest σ and cos θ of the domain that the figures are promised for.
-pub(super) const DOMAIN: (f64, f64) = (0.01, 0.02);
-/// Smallest σ that is no mirror.
-const SMOOTHEST: f64 = LogRoughness::BAKED.first;
+/// Accuracy, in units of a node's, of the model's values that tables are judged by.
+const FINER: f64 = 0.1;
+/// A kink of the reflectance would take seconds beyond this.
+const FINEST_OF_KINKS: f64 = 1e-6;
 
-/// Figures of one table, rounded up to three digits; those a bake has left there are kept.
-fn measure(
-    tables: &Tables,
+/// What the model says of one material and view.
+#[derive(Clone)]
+pub struct Reference {
+    site: Site,
+    v: Vec3,
+    exact: Albedo<CHANNELS>,
+    /// |E − that of the round lobe that usually stands in|, if one does, by form of masking.
+    shortcut: Option<[f64; 2]>,
+    /// Whether the figures are promised there.
+    promised: bool,
+}
+
+/// The model's values of the places inside, which do not depend on how many nodes there are.
+///
+/// # Errors
+/// [`BakeError`] for a lobe out of the domain.
+pub fn interior_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, BakeError> {
+    references(spec, interior(spec))
+}
+
+/// Those of corners, and of the middle of every cell along every edge.
+///
+/// # Errors
+/// As [`interior_references`].
+pub fn edge_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, BakeError> {
+    references(spec, edges(spec))
+}
+
+fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, BakeError> {
+    let integrand = Integrand::new(&spec.reflectance)?;
+    let finest = if spec.reflectance.indices().is_some() { FINEST_OF_KINKS } else { 0.0 };
+    let tolerance = (FINER * spec.tolerance).max(finest);
+    let gammas = points.iter().map(|point| point.site.gamma);
+    let stand_in = spec.lobe.stand_in().filter(|_| spec.reflectance == Reflectance::Moments);
+    Models::with(&spec.lobe, gammas, tolerance, |models| {
+        let one = |Point { site, promised }: &Point| {
+            let model = models.at(site);
+            // As the run time gets it.
+            let v = site.view();
+            let phi = if v.z < 1.0 { libm::atan2(v.y.into(), v.x.into()) } else { site.phi };
+            let site = Site { cos: v.z.into(), phi, ..*site };
+            let exact = integrand.at(model, &site)?;
+            let round = stand_in.map(|sigma| model.stand_in(sigma, site.cos, weights)).transpose()?.flatten();
+            let off = |round: Albedo<CHANNELS>| {
+                let total = |albedo: &Albedo<CHANNELS>, form| albedo.of(form)[..2].iter().sum::<f64>();
+                Masking::ALL.map(|form| (total(&round, form) - total(&exact, form)).abs())
+            };
+            Ok(Reference { site, v, exact, shortcut: round.map(off), promised: *promised })
+        };
+        points.par_iter().map(one).collect()
+    })
+}
+
+/// The tables with their certificates: errors of every quantity that is read, where they are promised and outside, and by how much the
+/// round stand-in would be off. What a bake has left there is kept.
+///
+/// # Errors
+/// [`BindError`] if a table does not cover what it is for.
+pub fn certified(
+    spec: &AlbedoSpec,
+    tables: Vec<Table>,
+    references: &[Reference],
+) -> Result<Vec<Table>, BindError> {
+    let directional: Vec<Table> = tables.iter().filter(|table| table.kind == Kind::Albedo).cloned().collect();
+    let of_form = |table: &Table| {
+        let same = |other: &&Table| other.subject.masking == table.subject.masking;
+        directional.iter().find(same).ok_or_else(|| BindError::NoTable(table.name.clone()))
+    };
+    let certified = |table: Table| {
+        let figures = match table.kind {
+            Kind::Albedo => figures(spec, &table, references)?,
+            _ => averages(spec, &table, of_form(&table)?, references)?,
+        };
+        let mut certificate = table.certificate.clone();
+        certificate.extend(figures);
+        Ok(Table { certificate, ..table })
+    };
+    tables.into_iter().map(certified).collect()
+}
+
+/// The errors of all quantities at one place.
+type Errors<'a> = (&'a Reference, Vec<f64>);
+
+fn figures(
+    spec: &AlbedoSpec,
     table: &Table,
-    domain: Domain,
-    references: &[Vec<Reference>],
+    references: &[Reference],
 ) -> Result<BTreeMap<String, f64>, BindError> {
-    let mut figures = table.certificate.clone();
-    let masking = table.masking.expect("validated on load");
-    let errors = references
-        .par_iter()
-        .map(|references| match table.kind {
-            Kind::Albedo => references.iter().map(|at| directional(tables, masking, at, domain)).collect(),
-            _ => references.iter().step_by(4).map(|at| average(tables, masking, at, domain)).collect(),
-        })
-        .collect::<Result<Vec<Vec<Point>>, BindError>>()?;
-    let all: Vec<Point> = errors.into_iter().flatten().collect();
-    let inside = || all.iter().filter(|point| !point.outside);
-    for (i, name) in ["scale", "bias", "f82", "e"].into_iter().enumerate() {
-        let worst = inside().max_by(|a, b| a.error[i].total_cmp(&b.error[i])).expect("points were measured");
-        let sum: f64 = inside().map(|point| point.error[i] * point.error[i]).sum();
-        figures.insert(format!("{name}_max_error"), round_up(worst.error[i]));
-        figures.insert(format!("{name}_rms_error"), round_up((sum / inside().count() as f64).sqrt()));
-        if name == "e" {
-            figures.insert("worst_sigma".into(), worst.at[0]);
-            figures.insert("worst_s".into(), s_of_gamma(worst.at[1]));
-            if table.kind == Kind::Albedo {
-                figures.insert("worst_cos_theta".into(), worst.at[2]);
-            }
-        }
+    let masking = table.subject.masking.unwrap_or_default();
+    // One material is bound once.
+    let own = match (&spec.lobe, references.first()) {
+        (Lobe::Family(_), _) | (_, None) => None,
+        (_, Some(at)) => Some(Reading::bind(table, at.site)?),
+    };
+    let measured = |Reference { site, v, exact, .. }: &Reference| {
+        let got = match &own {
+            Some(own) => own.at(*v),
+            None => Reading::bind(table, *site)?.at(*v),
+        };
+        let exact = exact.of(masking);
+        let exact = match spec.reflectance {
+            Reflectance::Moments => [&exact[..], &[exact[0] + exact[1]]].concat(),
+            _ => exact.to_vec(),
+        };
+        Ok(got.iter().zip(&exact).map(|(got, exact)| (got - exact).abs()).collect())
+    };
+    let errors = measured_at(references, measured)?;
+    let mut figures = summary(spec, &errors);
+    let form = Masking::ALL.iter().position(|form| *form == masking).unwrap_or(0);
+    let shortcuts = references.iter().filter(|at| at.promised).filter_map(|at| at.shortcut);
+    if let Some(worst) = shortcuts.map(|forms| forms[form]).reduce(f64::max) {
+        figures.insert("shortcut_max_error".into(), round_up(worst));
     }
-    let outside = all.iter().filter(|point| point.outside).map(|point| point.error[3]).fold(0.0, f64::max);
-    if table.kind == Kind::Albedo {
-        figures.insert("e_max_error_outside".into(), round_up(outside));
-    }
-    figures.insert("points".into(), all.len() as f64);
-    figures.extend(stated(domain));
     Ok(figures)
 }
 
-/// What a certificate says of the domain it is about, unless that is everything.
-pub(super) fn stated(domain: Domain) -> BTreeMap<String, f64> {
-    let mut figures = BTreeMap::new();
-    if domain != Domain::GENERAL {
-        let ends = [("s_min", s_of_gamma(domain.gamma.max)), ("s_max", s_of_gamma(domain.gamma.min))];
-        let sigmas = [("sigma_min", domain.sigma.min), ("sigma_max", domain.sigma.max)];
-        figures.extend(ends.into_iter().chain(sigmas).map(|(key, value)| (key.into(), value)));
+fn measured_at(
+    references: &[Reference],
+    measured: impl Fn(&Reference) -> Result<Vec<f64>, BindError> + Send + Sync,
+) -> Result<Vec<Errors<'_>>, BindError> {
+    let errors = references.par_iter().map(measured).collect::<Result<Vec<_>, BindError>>()?;
+    Ok(references.iter().zip(errors).collect())
+}
+
+/// The quantities that are read, by name.
+fn quantities(spec: &AlbedoSpec) -> &'static [&'static str] {
+    match spec.reflectance {
+        Reflectance::Moments => &["scale", "bias", "f82", "e"],
+        _ => spec.reflectance.channels(),
+    }
+}
+
+/// Largest and root-mean-square errors of each quantity, and where the largest of all stands.
+fn summary(spec: &AlbedoSpec, errors: &[Errors<'_>]) -> BTreeMap<String, f64> {
+    let mut figures = BTreeMap::from([("points".to_owned(), errors.len() as f64)]);
+    let (inside, outside): (Vec<_>, Vec<_>) = errors.iter().partition(|errors| errors.0.promised);
+    // A NaN is the worst error there is.
+    let largest = |part: &[&Errors<'_>], i: usize| {
+        part.iter().map(|errors| errors.1[i]).max_by(f64::total_cmp).map(round_up)
+    };
+    for (i, name) in quantities(spec).iter().enumerate() {
+        let squares: f64 = inside.iter().map(|errors| errors.1[i] * errors.1[i]).sum();
+        let rms = (squares / inside.len().max(1) as f64).sqrt();
+        figures.insert(format!("{name}_rms_error"), round_up(rms));
+        let parts = [("max_error", &inside), ("max_error_outside", &outside)];
+        let max = |(what, part): (&str, &Vec<_>)| Some((format!("{name}_{what}"), largest(part, i)?));
+        figures.extend(parts.into_iter().filter_map(max));
+    }
+    let worst = |errors: &Errors<'_>| errors.1.iter().copied().max_by(f64::total_cmp);
+    let place = inside.iter().max_by(|a, b| worst(a).unwrap_or(0.0).total_cmp(&worst(b).unwrap_or(0.0)));
+    if let Some((Reference { site: Site { gamma, sigma, eta, phi, cos }, .. }, _)) = place {
+        let axis = |name: &str| spec.axes.iter().any(|axis| axis.name == name);
+        let all = [
+            ("gamma", "worst_s", s_of_gamma(*gamma)),
+            ("sigma", "worst_sigma", *sigma),
+            ("eta", "worst_eta", *eta),
+            ("azimuth", "worst_phi", *phi),
+            ("view", "worst_cos_theta", *cos),
+        ];
+        let there = all.into_iter().filter(|(name, _, x)| axis(name) && x.is_finite());
+        figures.extend(there.map(|(_, key, x)| (key.into(), x)));
     }
     figures
 }
 
-/// Errors of scale, bias, F82 and E at one (σ, γ, cos θ).
-struct Point {
-    error: [f64; 4],
-    at: [f64; 3],
-    /// Outside the domain of the figures: cos θ below 0.02.
-    outside: bool,
-}
-
-/// Adds to each table of a set of albedos the errors measured on it, over the domain it was baked for.
-///
-/// # Errors
-/// [`BindError`] if the tables do not cover the domain.
-pub fn certify(tables: &mut Tables, domain: Domain) -> Result<(), BindError> {
-    certify_all(std::slice::from_mut(tables), domain)
-}
-
-/// The same for sets with the same nodes, such as one set in several precisions: what they are judged by is integrated once.
-///
-/// # Errors
-/// As [`certify`].
-pub fn certify_all(sets: &mut [Tables], domain: Domain) -> Result<(), BindError> {
-    let Some(first) = sets.first().and_then(|set| set.table(Kind::Albedo)) else { return Ok(()) };
-    let gammas = gammas(first, domain);
-    let points = points_at(gammas.len());
-    // Once for both forms of masking.
-    let references = gammas
-        .par_iter()
-        .enumerate()
-        .map(|(i, &gamma)| {
-            let model =
-                AlbedoIntegrator::new(Shape::new(gamma).map_err(|_| BindError::Gamma(gamma))?, TOLERANCE);
-            let reference = |i| {
-                let (sigma, cos) = place(i, domain.sigma);
-                let exact = model.reflection(sigma, f64::from(cos), weights);
-                let exact = exact.map_err(|_| BindError::Sigma(sigma as f32))?;
-                Ok(Reference { gamma, sigma, cos, exact })
-            };
-            (i * points..(i + 1) * points).map(reference).collect()
-        })
-        .collect::<Result<Vec<Vec<Reference>>, BindError>>()?;
-    for set in sets {
-        let measured = set.tables().iter().map(|table| measure(set, table, domain, &references));
-        let figures: Vec<_> = measured.collect::<Result<_, _>>()?;
-        figures.into_iter().enumerate().for_each(|(i, figures)| set.set_certificate(i, figures));
-    }
-    Ok(())
-}
-
-/// Points at each of `shapes` measured shapes.
-pub(super) fn points_at(shapes: usize) -> usize {
-    POINTS.max(LEAST / shapes)
-}
-
-/// Albedos integrated to measure tables with so many γ nodes.
-pub(crate) fn points(nodes: usize) -> usize {
-    let shapes = 3 * nodes - 2;
-    shapes * points_at(shapes)
-}
-
-/// What the model says of one material and view.
-struct Reference {
-    gamma: f64,
-    sigma: f64,
-    cos: f32,
-    exact: Albedo<3>,
-}
-
-/// Shapes to measure at: two between every two nodes, and the nodes, as far as they are in the domain; and its ends.
-pub(super) fn gammas(table: &Table, domain: Domain) -> Vec<f64> {
-    let Interval { min, max } = domain.gamma;
-    let axis = &table.axes[0];
-    let nodes = &axis.nodes;
-    let between = nodes.windows(2).flat_map(|pair| [0.31, 0.57].map(|w| pair[0] + w * (pair[1] - pair[0])));
-    let all = nodes.iter().copied().chain(between).filter_map(|t| axis.quantity(t));
-    let mut all: Vec<f64> = all.filter(|gamma| *gamma > min && *gamma < max).chain([min, max]).collect();
-    all.dedup();
-    all
-}
-
-/// σ log-uniform over the domain for one half of the numbers, uniform for the other; from 0.01 on where the domain goes on.
-fn sigma_at(x: f64, Interval { min, max }: Interval) -> f64 {
-    let low = DOMAIN.0.min(max).max(min);
-    let sigma =
-        if x < 0.5 { low * libm::pow(max / low, 2.0 * x) } else { low + (max - low) * (2.0 * x - 1.0) };
-    sigma.clamp(low, max)
-}
-
-/// σ and cos θ of the i-th point.
-pub(super) fn place(i: usize, sigma: Interval) -> (f64, f32) {
-    let [a, b] = low_discrepancy(i);
-    // An eighth outside the domain: grazing, and of these a half of surfaces smoother than it, seen where they mask.
-    let sigma = match i % 16 {
-        8 if sigma.min <= SMOOTHEST => DOMAIN.0 * libm::pow(SMOOTHEST / DOMAIN.0, a),
-        _ => sigma_at(a, sigma),
-    };
-    // A half over the cosine, a quarter logarithmic and an eighth near the normal.
-    let cos = match i % 8 {
-        0 => {
-            let grazing = 1e-5 * sigma.min(0.1);
-            grazing * libm::pow(DOMAIN.1 / grazing, b)
-        }
-        1 => 1.0 - 0.02 * b * b,
-        2 | 3 => libm::pow(DOMAIN.1, b),
-        _ => DOMAIN.1 + (1.0 - DOMAIN.1) * b,
-    };
-    (sigma, cos as f32)
-}
-
-/// Whether a point is outside what the figures are promised for. Where all materials are smoother than that, it is the roughest that counts: without
-/// a point there would be no figures.
-pub(super) fn outside(sigma: f64, cos: f32, materials: Interval) -> bool {
-    f64::from(cos) < DOMAIN.1 || sigma < DOMAIN.0.min(materials.max)
-}
-
-fn directional(
-    tables: &Tables,
-    masking: Masking,
-    at: &Reference,
-    domain: Domain,
-) -> Result<Point, BindError> {
-    let &Reference { gamma, sigma, cos, exact } = at;
-    let exact = exact.of(masking);
-    let got = tables.albedo(sigma, gamma, masking)?.moments(cos);
-    let got = [got.scale, got.bias, got.f82].map(f64::from);
-    let error = |i: usize| (got[i] - exact[i]).abs();
-    let total = (got[0] + got[1] - exact[0] - exact[1]).abs();
-    let error = [error(0), error(1), error(2), total];
-    Ok(Point { error, at: [sigma, gamma, f64::from(cos)], outside: outside(sigma, cos, domain.sigma) })
-}
-
 /// Averages against quadrature of the directional albedo at the same material: what a furnace sees.
-fn average(tables: &Tables, masking: Masking, at: &Reference, domain: Domain) -> Result<Point, BindError> {
-    let &Reference { gamma, sigma, .. } = at;
-    let got = tables.average_moments(sigma, gamma, masking)?;
-    let exact = tables.albedo(sigma, gamma, masking)?.average_moments();
-    let error = |a: f32, b: f32| f64::from((a - b).abs());
-    let (scale, bias) = (error(got.scale, exact.scale), error(got.bias, exact.bias));
-    let (f82, total) = (error(got.f82, exact.f82), error(got.total(), exact.total()));
-    Ok(Point {
-        error: [scale, bias, f82, total],
-        at: [sigma, gamma, f64::NAN],
-        outside: outside(sigma, 1.0, domain.sigma),
-    })
+fn averages(
+    spec: &AlbedoSpec,
+    table: &Table,
+    directional: &Table,
+    references: &[Reference],
+) -> Result<BTreeMap<String, f64>, BindError> {
+    let set = Tables::from_tables(Default::default(), vec![table.clone()])
+        .map_err(|why| BindError::NoTable(why.to_string()))?;
+    let masking = table.subject.masking.unwrap_or_default();
+    let measured = |at: &Reference| {
+        let Site { sigma, gamma, .. } = at.site;
+        let got = all(set.average_moments(sigma, gamma, masking)?);
+        let exact = all(Bound::bind(directional, sigma, gamma)?.average_moments());
+        Ok(got.iter().zip(exact).map(|(got, exact)| (got - exact).abs()).collect())
+    };
+    let errors = measured_at(references, measured)?;
+    let mut figures = summary(spec, &errors);
+    figures.remove("worst_cos_theta");
+    Ok(figures)
+}
+
+/// Scale, bias, F82 and E.
+fn all(moments: Moments) -> [f64; 4] {
+    [moments.scale, moments.bias, moments.f82, moments.total()].map(f64::from)
+}
+
+/// What a renderer reads of one material.
+enum Reading {
+    Moments(Bound),
+    Shares(ViewCurve<CHANNELS>),
+}
+
+impl Reading {
+    fn bind(table: &Table, Site { sigma, gamma, eta, .. }: Site) -> Result<Self, BindError> {
+        Ok(match table.subject.reflectance {
+            Some(Reflectance::Moments) => Self::Moments(Bound::bind(table, sigma, gamma)?),
+            _ => Self::Shares(ViewCurve::bind(table, sigma, gamma, eta)?),
+        })
+    }
+
+    /// The quantities at a view.
+    fn at(&self, v: Vec3) -> Vec<f64> {
+        match self {
+            Self::Moments(albedo) => all(albedo.moments(v)).into(),
+            Self::Shares(curve) => curve.eval(v).map(f64::from).into(),
+        }
+    }
+}
+
+/// By how much the nodes of a table of one material are missed if every other one along an axis is left out: of several axes the one
+/// with the largest is the coarsest.
+///
+/// # Errors
+/// [`BindError`] if the table is not sound.
+pub fn missed_by_half(spec: &AlbedoSpec, table: &Table, axis: usize) -> Result<f64, BindError> {
+    let sites = Site::all(&spec.axes);
+    let half = half(table, axis);
+    let [whole, half] = [Reading::bind(table, sites[0])?, Reading::bind(&half, sites[0])?];
+    let missed = |site: &Site| {
+        let (a, b) = (whole.at(site.view()), half.at(site.view()));
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    Ok(sites.par_iter().map(missed).reduce(|| 0.0, f64::max))
+}
+
+/// Every other node along an axis.
+fn half(table: &Table, axis: usize) -> Table {
+    let mut thin = table.clone();
+    thin.axes[axis].nodes = table.axes[axis].nodes.iter().copied().step_by(2).collect();
+    let faster: usize = table.axes[axis + 1..].iter().map(Axis::len).product();
+    let kept = |i: &usize| (i / faster % table.axes[axis].len()).is_multiple_of(2);
+    let nodes = table.values.chunks_exact(table.channels.len()).enumerate().filter(|(i, _)| kept(i));
+    thin.values = nodes.flat_map(|(_, node)| node.iter().copied()).collect();
+    thin
 }

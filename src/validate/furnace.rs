@@ -7,8 +7,11 @@ use glam::{DVec3, Vec3};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
+use microfacet_common::shape::gamma_of_s;
 use microfacet_model as model;
-use microfacet_sampler::{Albedo, Axis, BindError, Kind, Masking, Tables};
+use microfacet_sampler::{
+    Albedo, Axis, BindError, Kind, LobeEntry, Masking, Reflectance, Subject, Table, Tables,
+};
 
 /// How far a furnace closed by the Kulla–Conty lobe may be from 1.
 pub const TOLERANCE: f64 = 2e-3;
@@ -72,7 +75,7 @@ pub fn furnace(
         .reflection(sigma, f64::from(cos), |_| [1.0])
         .map_err(|_| BindError::Sigma(sigma as f32))?;
     let [single] = exact.of(masking);
-    let turquin = single * f64::from(albedo.turquin(cos, 1.0));
+    let turquin = single * f64::from(albedo.turquin(direction(cos), 1.0));
     let kulla_conty = single + lobe(&albedo, cos);
     Ok(Furnace { sigma, gamma, cos_theta, single, turquin, kulla_conty })
 }
@@ -92,7 +95,8 @@ fn lobe(albedo: &Albedo, cos_theta: f32) -> f64 {
     2.0 * std::f64::consts::PI * (0..STEPS).map(at).sum::<f64>()
 }
 
-fn direction(cos: f32) -> Vec3 {
+/// A view at this cosine, for lobes that are round.
+pub fn direction(cos: f32) -> Vec3 {
     Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
 }
 
@@ -123,11 +127,19 @@ impl Survey {
 /// [`BindError`] if the set does not hold what it says it covers.
 pub fn survey(tables: &Tables) -> Result<Vec<Survey>, BindError> {
     const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1.0];
-    let directional = tables.tables().iter().filter(|table| table.kind == Kind::Albedo);
-    directional
-        .map(|table| {
-            let masking = table.masking.expect("validated on load");
-            let (gammas, sigmas) = (between(&table.axes[0], 11), between(&table.axes[1], 14));
+    let of_family = |table: &&Table| {
+        let Subject { lobe, reflectance, .. } = &table.subject;
+        table.kind == Kind::Albedo && (lobe, reflectance) == (&LobeEntry::Family, &Some(Reflectance::Moments))
+    };
+    tables
+        .tables()
+        .iter()
+        .filter(of_family)
+        .filter_map(|table| Some((table, table.subject.masking?, table.subject.covers?)))
+        .map(|(table, masking, covers)| {
+            let [shapes, roughnesses] = [&table.axes[0], &table.axes[1]];
+            let gammas = between(shapes, covers.s.map(gamma_of_s), 11);
+            let sigmas = between(roughnesses, covers.sigma.unwrap_or_default(), 14);
             let pairs: Vec<_> = gammas.iter().flat_map(|&g| sigmas.iter().map(move |&s| (g, s))).collect();
             let rows = pairs
                 .par_iter()
@@ -141,11 +153,14 @@ pub fn survey(tables: &Tables) -> Result<Vec<Survey>, BindError> {
         .collect()
 }
 
-/// `count` quantities between the ends of an axis, off its nodes; the one there is of a single node.
-fn between(axis: &Axis, count: usize) -> Vec<f64> {
-    let (first, last) = (axis.nodes[0], axis.nodes[axis.nodes.len() - 1]);
-    let count = if first == last { 1 } else { count };
-    let at = |i: usize| first + (last - first) * (i as f64 + 0.43) / count as f64;
+/// `count` quantities of an axis in a range, off its nodes; the one there is of a single node.
+fn between(axis: &Axis, range: [f64; 2], count: usize) -> Vec<f64> {
+    let [first, last] = axis.ends();
+    let mut ends = range.map(|x| axis.coordinate(x).unwrap_or(f64::NAN).clamp(first, last));
+    ends.sort_by(f64::total_cmp);
+    let [low, high] = ends;
+    let count = if low == high { 1 } else { count };
+    let at = |i: usize| low + (high - low) * (i as f64 + 0.43) / count as f64;
     (0..count).filter_map(|i| axis.quantity(at(i))).collect()
 }
 

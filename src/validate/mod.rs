@@ -3,12 +3,11 @@
 pub mod albedo;
 pub mod certificate;
 pub mod configuration;
-pub mod fresnel_albedo;
 pub mod furnace;
 pub mod pdf_integral;
+pub mod points;
 pub mod radial;
 mod run;
 pub mod stress;
-pub mod view_albedo;
 
 pub use run::{LEVEL, Options, Outcome, PDF_TOLERANCE, Report, run};

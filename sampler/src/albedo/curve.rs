@@ -1,60 +1,325 @@
-//! Albedos of one material as functions of the view.
+//! The albedos of one material as functions of the view: what is left of a table when the axes of the material are collapsed.
 
+use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::collapse::{Weights, collapse};
-use crate::axis::lagrange::{combine, six};
-use crate::axis::{BoundCritical, BoundView};
-use crate::format::Table;
+use glam::Vec3;
+use microfacet_common::gauss_legendre;
+use microfacet_common::shape::s_of_gamma;
+
+use crate::axis::lagrange::{SIX, combine, six};
+use crate::axis::{BoundAzimuth, BoundCritical, BoundView, Mapping, ViewBlend, Weights};
+use crate::error::BindError;
+use crate::format::{Covered, Kind, Reflectance, Table};
+
+/// Most channels that a table of albedos has.
+const CHANNELS: usize = 4;
+
+/// The material that the axes before those of the view are collapsed at; a table without such an axis ignores it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) sigma: f64,
+    pub(super) gamma: f64,
+    /// Index ≥ 1 of the dense side over the thin one.
+    pub(super) eta: f64,
+}
+
+/// Weights along the axes of a material.
+pub(super) struct Collapsed {
+    pub(super) weights: Vec<Weights>,
+    /// The roughness they are at, no less than the first node's.
+    sigma: f64,
+    /// Whether the material is smoother than that.
+    pub(super) is_mirror: bool,
+}
+
+impl Collapsed {
+    /// `None` where the table was not baked for the material.
+    pub(super) fn new(table: &Table, place: &Place) -> Option<Self> {
+        let mut collapsed = Self { weights: Vec::new(), sigma: place.sigma, is_mirror: false };
+        for axis in &table.axes {
+            let quantity = match axis.mapping {
+                Mapping::LogShape(_) => place.gamma,
+                Mapping::LogRoughness(_) => {
+                    if !covers(table.subject.covers?, place) {
+                        return None;
+                    }
+                    let first = axis.quantity(axis.nodes[0])?;
+                    collapsed.is_mirror = place.sigma < first * (1.0 - SAME);
+                    collapsed.sigma = place.sigma.max(first);
+                    collapsed.sigma
+                }
+                Mapping::ReflectanceRoot => place.eta,
+                _ => break,
+            };
+            collapsed.weights.push(axis.weights(axis.coordinate(quantity)?)?);
+        }
+        Some(collapsed)
+    }
+}
+
+/// Two numbers that have come through a coordinate and back are the same within this.
+const SAME: f64 = 1e-9;
+
+fn covers(Covered { s, sigma }: Covered, place: &Place) -> bool {
+    let within = |[min, max]: [f64; 2], x: f64| x >= min - SAME * min && x <= max + SAME * max;
+    // 1/(γ−1) of the largest s may round to just outside, too.
+    within(s, s_of_gamma(place.gamma)) && sigma.is_some_and(|sigma| within(sigma, place.sigma))
+}
+
+/// N albedos of one material as functions of the view.
+#[derive(Clone, Debug)]
+pub struct ViewCurve<const N: usize>(Curve);
+
+impl<const N: usize> ViewCurve<N> {
+    /// Of an albedo table at hand, such as one that a bake has just filled, that is under an exact reflectance; `eta` ≥ 1 is the index of a
+    /// dielectric's dense side, and lobes that are one material ignore σ and γ. Where the table has fewer channels the last are 0.
+    ///
+    /// # Errors
+    /// [`BindError::NoTable`] if the table has more channels, or moments, or does not cover the material.
+    pub fn bind(table: &Table, sigma: f64, gamma: f64, eta: f64) -> Result<Self, BindError> {
+        let shares = table.subject.reflectance.filter(|reflectance| *reflectance != Reflectance::Moments);
+        let place = Place { sigma, gamma, eta };
+        let curve = shares.filter(|reflectance| reflectance.channels().len() <= N);
+        let curve = curve.and_then(|_| Curve::new(table, &place));
+        curve.map(Self).ok_or_else(|| missing(table, &place))
+    }
+
+    pub(super) fn new(table: &Table, place: &Place) -> Option<Self> {
+        Curve::new(table, place).map(Self)
+    }
+
+    /// The albedos at a view, each in [0, 1]; `v` is a unit vector, z up. A view at or below the horizon is taken as the grazing one of its
+    /// azimuth, which only lobes that are not round depend on, NaN likewise. Beyond the table's last view, μ₀ of
+    /// [`ViewBlend`](crate::axis::ViewBlend), albedos are held constant.
+    pub fn eval(&self, v: Vec3) -> [f32; N] {
+        let cos = within(v.z);
+        self.0.seen(v, |rows, view| self.at(rows, view, cos))
+    }
+
+    fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; N] {
+        let all = self.0.interpolate(rows, view.six(cos, self.0.views));
+        // Interpolation may leave [0, 1] by the table's error.
+        core::array::from_fn(|i| all[i].clamp(0.0, 1.0))
+    }
+
+    /// Averages over the hemisphere of views, weighted by the cosine: 1/π ∫∫ E μ dμ dφ.
+    pub fn average(&self) -> [f32; N] {
+        self.0.average(|rows, view, cos| self.at(rows, view, cos).map(f64::from)).map(|x| x as f32)
+    }
+}
+
+/// Of a table that was to be bound and is of something else.
+pub(super) fn missing(table: &Table, place: &Place) -> BindError {
+    let Place { sigma, gamma, .. } = place;
+    BindError::NoTable(format!("{} for sigma {sigma} and gamma {gamma}", table.name))
+}
+
+/// All channels of a table, at one material.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    /// What the nodes hold, azimuths slowest; channels that the table has not are 0.
+    nodes: Vec<[f32; CHANNELS]>,
+    /// How many views there are at each azimuth.
+    views: usize,
+    view: View,
+    /// The channel by which the others are clamped.
+    clamp: Option<usize>,
+    /// Whether the first channel is E − 1, not a share of light.
+    moments: bool,
+}
+
+/// Where views stand.
+#[derive(Clone, Copy, Debug)]
+enum View {
+    /// The same at every azimuth.
+    Round(BoundView),
+    /// By the roughness seen from the azimuth. What depends on γ is in the parameters.
+    Turning(BoundAzimuth, ViewBlend),
+    /// From inside a dielectric.
+    Critical(BoundCritical),
+}
+
+/// Azimuths with their weights.
+pub(super) type Rows = [(usize, f32)];
+/// Those of a round lobe.
+const ROUND: &Rows = &[(0, 1.0)];
+
+/// The coordinate of views of one azimuth.
+pub(super) enum Elevation<'a> {
+    Blend(&'a BoundView),
+    Critical(&'a BoundCritical),
+}
+
+impl Elevation<'_> {
+    /// The first of six nodes about cos θ, of `n`, and their weights.
+    pub(super) fn six(&self, cos: f32, n: usize) -> (usize, [f32; SIX]) {
+        match self {
+            Self::Blend(view) => six(view.clamped(cos), n),
+            Self::Critical(view) => view.six(f64::from(cos), n),
+        }
+    }
+
+    /// The view of the first node.
+    pub(super) fn floor(&self) -> f64 {
+        match self {
+            Self::Blend(view) => view.floor(),
+            Self::Critical(view) => view.floor(),
+        }
+    }
+}
+
+impl Curve {
+    /// `None` where the table does not cover the material.
+    pub(super) fn new(table: &Table, place: &Place) -> Option<Self> {
+        let at = Collapsed::new(table, place)?;
+        let moments = table.subject.reflectance == Some(Reflectance::Moments);
+        let channels = table.channels.len();
+        let mut nodes: Vec<[f32; CHANNELS]> = Vec::new();
+        for node in table.collapsed::<f64>(&at.weights).chunks_exact(channels) {
+            nodes.push(core::array::from_fn(|i| node.get(i).map_or(0.0, |&x| x as f32)));
+        }
+        if at.is_mirror && moments {
+            nodes.fill([0.0; CHANNELS]);
+        }
+        let rest = &table.axes[at.weights.len()..];
+        let view = match (rest[0].mapping, rest[rest.len() - 1].mapping) {
+            (Mapping::Azimuth(azimuth), Mapping::ViewBlend(blend)) => {
+                View::Turning(azimuth.bind(rest[0].len()), blend)
+            }
+            (_, Mapping::ViewBlend(blend)) => View::Round(blend.bind(at.sigma, place.gamma)),
+            (_, Mapping::CriticalBlend(blend)) => {
+                View::Critical(blend.bind(at.sigma, place.gamma, 1.0 / place.eta))
+            }
+            _ => unreachable!("validated on load"),
+        };
+        let clamp = table.channels.iter().position(|channel| channel == Kind::CLAMP);
+        Some(Self { nodes, views: rest[rest.len() - 1].len(), view, clamp, moments })
+    }
+
+    /// What is seen of a view: its azimuths and its elevation.
+    pub(super) fn seen<R>(&self, v: Vec3, then: impl FnOnce(&Rows, &Elevation<'_>) -> R) -> R {
+        match &self.view {
+            View::Round(view) => then(ROUND, &Elevation::Blend(view)),
+            View::Critical(view) => then(ROUND, &Elevation::Critical(view)),
+            View::Turning(azimuth, blend) => {
+                let (x, y) = (f64::from(v.x), f64::from(v.y));
+                let r = libm::hypot(x, y);
+                // Seen along the normal every azimuth is as good; NaN fails the comparison, too.
+                let (c, s) = if r > 0.0 && r < f64::INFINITY { (x / r, y / r) } else { (1.0, 0.0) };
+                let view = blend.bind_shaped(azimuth.sigma(c, s));
+                then(&azimuth.six(c, s), &Elevation::Blend(&view))
+            }
+        }
+    }
+
+    /// The channels at some azimuths and views, clamped as G1(v) is.
+    pub(super) fn interpolate(&self, rows: &Rows, (start, weights): (usize, [f32; SIX])) -> [f32; CHANNELS] {
+        let mut sum = [0.0; CHANNELS];
+        // A table without azimuths has one row.
+        for &(row, a) in rows.iter().filter(|row| row.1 != 0.0) {
+            let node = combine(&self.nodes, row * self.views + start, &weights);
+            for (sum, x) in sum.iter_mut().zip(node) {
+                *sum += a * x;
+            }
+        }
+        if self.moments {
+            // E in [0, 1], so that what is lost and its average agree.
+            sum[0] = sum[0].clamp(-1.0, 0.0);
+        }
+        match self.clamp.map(|i| sum[i]) {
+            // A/μ below one: more is seen of the surface than of its microsurface.
+            Some(clamp) if clamp > 0.5 => {
+                let share = ((1.0 - clamp) / clamp).max(0.0);
+                let one = if self.moments { 1.0 } else { 0.0 };
+                let [first, rest @ ..] = sum.map(|x| share * x);
+                let [a, b, c] = rest;
+                [first + one * (share - 1.0), a, b, c]
+            }
+            _ => sum,
+        }
+    }
+
+    /// The channels of cos θ at some azimuths.
+    pub(super) fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; CHANNELS] {
+        self.interpolate(rows, view.six(cos, self.views))
+    }
+
+    /// Averages over the hemisphere of views, weighted by the cosine, of N quantities that are given by azimuths, elevation and cos θ.
+    pub(super) fn average<const N: usize>(
+        &self,
+        quantities: impl Fn(&Rows, &Elevation<'_>, f32) -> [f64; N],
+    ) -> [f64; N] {
+        match &self.view {
+            View::Round(view) => {
+                let view = Elevation::Blend(view);
+                over_views(view.floor(), WIDTH, |cos| quantities(ROUND, &view, cos))
+            }
+            View::Critical(view) => {
+                let view = Elevation::Critical(view);
+                // Total reflection sets in like a square root.
+                over_views(view.floor(), WIDTH / 8.0, |cos| quantities(ROUND, &view, cos))
+            }
+            View::Turning(azimuth, blend) => {
+                let mut sum = [0.0; N];
+                for ([c, s], share) in azimuth.circle() {
+                    let (rows, view) = (azimuth.six(c, s), blend.bind_shaped(azimuth.sigma(c, s)));
+                    let view = Elevation::Blend(&view);
+                    let part = over_views(view.floor(), WIDTH, |cos| quantities(&rows, &view, cos));
+                    for (sum, part) in sum.iter_mut().zip(part) {
+                        *sum += share * part;
+                    }
+                }
+                sum
+            }
+        }
+    }
+}
 
 /// cos θ in [0, 1]; NaN becomes 0.
 pub(super) fn within(cos_theta: f32) -> f32 {
     if cos_theta > 0.0 { cos_theta.min(1.0) } else { 0.0 }
 }
 
-/// N albedos as functions of the view, the other axes of their table collapsed.
-#[derive(Clone, Debug)]
-pub struct ViewCurve<const N: usize> {
-    nodes: Vec<[f32; N]>,
-    view: View,
-}
+/// Width of a panel of −ln h.
+const WIDTH: f64 = 0.35;
 
-/// The view axis at one material.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum View {
-    Blend(BoundView),
-    Critical(BoundCritical),
-}
-
-impl<const N: usize> ViewCurve<N> {
-    /// Of a table of N channels, at nodes of its axes but the last.
-    pub(super) fn new(table: &Table, at: &[Weights], view: View) -> Self {
-        Self { nodes: collapse(table, at), view }
-    }
-
-    /// The albedos at a view, each in [0, 1]; `cos_theta` outside [0, 1] is taken at the nearer end, NaN at grazing, and beyond
-    /// the table's last view, μ₀ of [`ViewBlend`](crate::axis::ViewBlend), they are held constant.
-    pub fn eval(&self, cos_theta: f32) -> [f32; N] {
-        let (cos, n) = (within(cos_theta), self.nodes.len());
-        let (start, weights) = match &self.view {
-            View::Blend(view) => six(view.clamped(cos), n),
-            View::Critical(view) => view.six(f64::from(cos), n),
-        };
-        // Interpolation may leave [0, 1] by the table's error.
-        combine(&self.nodes, start, &weights).map(|x| x.clamp(0.0, 1.0))
-    }
-
-    /// Cosine-weighted averages 2∫₀¹ E(μ) μ dμ, by the midpoint rule in √μ; right to about 1e-5.
-    pub fn average(&self) -> [f32; N] {
-        const STEPS: u32 = 512;
-        let mut sum = [0.0_f64; N];
-        for i in 0..STEPS {
-            let x = (f64::from(i) + 0.5) / f64::from(STEPS);
-            // 2 μ dμ = 4 x³ dx with μ = x², which resolves grazing views.
-            for (sum, value) in sum.iter_mut().zip(self.eval((x * x) as f32)) {
-                *sum += 4.0 * x * x * x / f64::from(STEPS) * f64::from(value);
+/// 2 ∫ μ dμ of functions of cos θ that are resolved down to `floor`, in panels of a width in y = −ln h.
+fn over_views<const N: usize>(floor: f64, width: f64, quantities: impl Fn(f32) -> [f64; N]) -> [f64; N] {
+    // With h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and in its logarithm where
+    // views graze and small roughness makes its difference. Views below the table's first weigh nothing.
+    const RULE: [(f64, f64); 4] = gauss_legendre();
+    let panels = libm::ceil(libm::log(2.0 / floor) / width) as usize;
+    let mut sum = [0.0_f64; N];
+    for panel in 0..panels {
+        for (node, weight) in RULE {
+            let h = libm::exp(-width * (panel as f64 + node));
+            let cos = 2.0 * h / (1.0 + h * h);
+            // 2 μ dμ, with dμ/dy = μ (1−h²)/(1+h²).
+            let measure = 2.0 * width * weight * cos * cos * (1.0 - h * h) / (1.0 + h * h);
+            for (sum, x) in sum.iter_mut().zip(quantities(cos as f32)) {
+                *sum += measure * x;
             }
         }
-        sum.map(|x| x as f32)
     }
+    sum
+}
+
+/// What tables cover, in words.
+pub(super) fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
+    let ends = |[a, b]: [f64; 2]| if a == b { format!("= {a:.6}") } else { format!("in [{a:.6}, {b:.6}]") };
+    let one = |table: &Table| {
+        let Covered { s: [low, high], sigma } = table.subject.covers?;
+        let gammas = [high, low].map(microfacet_common::shape::gamma_of_s);
+        Some(format!("gamma {} with sigma {}", ends(gammas), ends(sigma?)))
+    };
+    const SHOWN: usize = 8;
+    let mut all: Vec<String> = tables.filter_map(one).collect();
+    if all.len() > SHOWN {
+        let more = all.len() - SHOWN;
+        all.truncate(SHOWN);
+        all.push(format!("{more} more"));
+    }
+    all.join("; ")
 }

@@ -1,16 +1,15 @@
 //! Directional albedos from tables: the share of light that one bounce off the microsurface returns.
+//!
+//! One mechanism for every lobe and reflectance: [`find`] chooses the table by its description, [`curve`] collapses the axes of
+//! the material, which leaves a curve over the view, and [`directional`] or [`exact`] say what its channels mean.
 
-mod collapse;
 mod curve;
-mod dielectric;
-mod fresnel;
-mod isotropic;
+mod directional;
+mod exact;
+mod find;
 mod moments;
-mod over_azimuth;
 
 pub use curve::ViewCurve;
-pub use dielectric::DielectricAlbedo;
-pub use fresnel::FresnelAlbedo;
-pub use isotropic::Albedo;
+pub use directional::Albedo;
+pub use exact::{DielectricAlbedo, FresnelAlbedo};
 pub use moments::Moments;
-pub use over_azimuth::ViewAlbedo;

@@ -1,6 +1,6 @@
 //! Moments of Fresnel weights: from a few of them, the albedo of every Schlick reflectance and of OpenPBR's metals.
 
-use microfacet_common::gauss_legendre;
+use microfacet_common::Masking;
 use microfacet_common::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip, f82_weight, schlick_weight};
 
 /// Moments of one Fresnel reflectance F(v·m) over the visible normals whose reflections leave the surface, weighted by shadowing.
@@ -53,35 +53,36 @@ impl Moments {
     }
 }
 
-/// 2 ∫ μ dμ of E − 1 and of the whole moments, from what is stored as a function of cos θ, which is resolved down to `floor`.
-pub(super) fn over_views(floor: f64, rest: impl Fn(f32) -> [f32; 3]) -> [f64; 3] {
-    // In y = −ln h with h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and in its logarithm where
-    // views graze and small roughness makes its difference. Views below the table's first weigh nothing.
-    const RULE: [(f64, f64); 4] = gauss_legendre();
-    const WIDTH: f64 = 0.35;
-    let panels = libm::ceil(libm::log(2.0 / floor) / WIDTH) as usize;
-    let mut sum = [0.0_f64; 3];
-    for panel in 0..panels {
-        for (node, weight) in RULE {
-            let h = libm::exp(-WIDTH * (panel as f64 + node));
-            let cos = 2.0 * h / (1.0 + h * h);
-            // 2 μ dμ, with dμ/dy = μ (1−h²)/(1+h²).
-            let measure = 2.0 * WIDTH * weight * cos * cos * (1.0 - h * h) / (1.0 + h * h);
-            let [e, bias, f82] = rest(cos as f32).map(f64::from);
-            let mirror = Moments::mirror(cos as f32);
-            sum[0] += measure * e;
-            sum[1] += measure * (bias + e * f64::from(mirror.bias));
-            sum[2] += measure * (f82 + e * f64::from(mirror.f82));
-        }
-    }
-    sum
+/// Channels at cos θ as whole moments: E − 1, bias and F82.
+pub(super) fn whole(cos: f32, [e, bias, f82]: [f32; 3]) -> [f32; 3] {
+    let mirror = Moments::mirror(cos);
+    [e, bias + (1.0 + e) * mirror.bias, f82 + (1.0 + e) * mirror.f82]
 }
 
-/// Channels below the first view of a table, where E − 1 is `share` of what it is there: the mixture of the other moments stays.
-pub(super) fn fade([e, bias, f82]: [f32; 3], share: f32) -> [f32; 3] {
-    let less = e * share;
-    let more = (1.0 + less) / (1.0 + e).max(1e-6);
-    [less, bias * more, f82 * more]
+/// The channels at cos θ below the first view of a table, `floor`, from those there and at four times it.
+///
+/// Towards grazing every moment M nears its limit with one power p of the cosine,
+/// M(μ) = M(μ₀) + (M(μ₀) − M(4μ₀)) (1 − (μ/μ₀)^p)/(4^p − 1). For uncorrelated masking p is 1. Correlated masking lets through ever more
+/// of what is seen, of a plain lobe all of it in the end: p is that of 1 − E, and 0, where everything is held, if that does not fall.
+pub(super) fn below(masking: Masking, floor: f32, cos: f32, first: [f32; 3], above: [f32; 3]) -> [f32; 3] {
+    let power = match masking {
+        Masking::Uncorrelated => 1.0,
+        // NaN has no power, either.
+        Masking::HeightCorrelated if above[0] / first[0] > 1.0 => {
+            (0.5 * libm::log2f(above[0] / first[0])).min(1.0)
+        }
+        Masking::HeightCorrelated => 0.0,
+    };
+    let (first, above) = (whole(floor, first), whole(4.0 * floor, above));
+    let more = if power > 0.0 {
+        -libm::expm1f(power * libm::logf(cos / floor)) / libm::expm1f(power * 2.0 * core::f32::consts::LN_2)
+    } else {
+        0.0
+    };
+    let moved: [f32; 3] = core::array::from_fn(|i| first[i] + more * (first[i] - above[i]));
+    let e = moved[0].clamp(-1.0, 0.0);
+    let mirror = Moments::mirror(cos);
+    [e, moved[1] - (1.0 + e) * mirror.bias, moved[2] - (1.0 + e) * mirror.f82]
 }
 
 /// Averages of whole moments in the form of the tables' channels.

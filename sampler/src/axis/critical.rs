@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 
 use super::coordinate::{Coordinate, bisect, positive};
 use super::lagrange::{SIX, six};
-use super::view::{ViewBlend, fourth_roots, harmonic, kappa, terms};
+use super::view::{fourth_roots, harmonic, kappa, terms};
 use crate::math::sqrt64;
 
 /// t ∈ [0, 1] for the view from the dense side of an interface of index η, with ½ at μ_c = √(1 − 1/η²), where total reflection
 /// sets in; a polynomial reads nodes of one half alone. With p = share·x + (1−share)·h, y = share·x^¼ + (1−share)·h^¼ (x, h, κ
-/// as for [`ViewBlend`]), S(q) = asinh(√q/δ)/asinh(1/δ), δ² = kink·σ, and μ₀ the harmonic sum
+/// as for [`ViewBlend`](super::ViewBlend)), S(q) = asinh(√q/δ)/asinh(1/δ), δ² = kink·σ, and μ₀ the harmonic sum
 /// 1/(1/floor + 1/(slope·σ) + 1/μ_c):
 /// t = ½ (1−root)(y(μ)−y(μ₀))/(y(μ_c)−y(μ₀)) + ½ root (1 − S((μ_c−μ)/(μ_c−μ₀))) for μ₀ ≤ μ < μ_c, and
 /// t = ½ + ½ (1−root)(p(μ)−p(μ_c))/(1−p(μ_c)) + ½ root S((μ−μ_c)/(1−μ_c)) for μ ≥ μ_c.
@@ -37,11 +37,9 @@ pub struct CriticalBlend {
 }
 
 impl CriticalBlend {
-    /// Of the tables that are baked: knee, shares and floor as from outside, the root and the kink's width by measuring.
-    pub const BAKED: Self = {
-        let ViewBlend { share, scale, heavy, floor, slope, .. } = ViewBlend::BAKED;
-        Self { share, scale, heavy, floor, slope, root: 0.5, kink: 1.0 }
-    };
+    /// Of the tables that are baked: found by measuring.
+    pub const BAKED: Self =
+        Self { share: 0.4, scale: 3.0, heavy: 0.5, floor: 2e-5, slope: 2e-3, root: 0.5, kink: 1.0 };
 
     /// The coordinate of one material, σ > 0, and an index η ≥ 1 of the dense side, whose reciprocal is given.
     pub fn bind(&self, sigma: f64, gamma: f64, inverse_eta: f64) -> BoundCritical {
@@ -84,6 +82,11 @@ pub struct BoundCritical {
 }
 
 impl BoundCritical {
+    /// μ₀: the view of the first node.
+    pub fn floor(&self) -> f64 {
+        self.floor
+    }
+
     fn y(&self, cos: f64) -> f64 {
         let (_, x, h) = terms(cos, self.knee);
         fourth_roots(self.blend.share, x, h)

@@ -160,6 +160,9 @@ impl Interpolation {
     }
 }
 
+/// Nodes of an axis, by index, with their weights in a value.
+pub(crate) type Weights = Vec<(usize, f64)>;
+
 /// One axis of a table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -239,7 +242,7 @@ impl Axis {
     /// Nodes, by index, with their weights in the value at the coordinate t; `None` where the axis does not cover it.
     ///
     /// A t within rounding of a node is taken for it.
-    pub(crate) fn weights(&self, t: f64) -> Option<Vec<(usize, f64)>> {
+    pub(crate) fn weights(&self, t: f64) -> Option<Weights> {
         let [first, last] = self.ends();
         // t has come through logarithms and their inverses on some axes.
         let same = match self.interpolation {

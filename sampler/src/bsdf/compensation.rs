@@ -1,6 +1,6 @@
 //! Multiple scattering, put back: what a single bounce off the microsurface loses, as a scaling or as a lobe of its own.
 //!
-//! Both need the directional albedo E of the same masking that the single-scattering lobe is evaluated with. With F = 1 both return
+//! Both need the directional albedo E of the same lobe and masking that the single-scattering lobe is evaluated with. With F = 1 both return
 //! exactly what is lost, so that a white furnace shows nothing.
 
 use core::f32::consts::PI;
@@ -10,7 +10,7 @@ use glam::Vec3;
 use microfacet_common::gauss_legendre;
 use microfacet_common::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip};
 
-use crate::albedo::{Albedo, ViewAlbedo};
+use crate::albedo::Albedo;
 use crate::math::sqrt;
 
 /// Average of Schlick's reflectance, 2∫₀¹ F(μ) μ dμ = F0 + (F90 − F0)/21 (Kulla & Conty 2017, slide "average Fresnel").
@@ -32,12 +32,13 @@ pub fn fresnel_average(reflectance: impl Fn(f32) -> f32) -> f32 {
 
 impl Albedo {
     /// Factor on the single-scattering lobe, 1 + F0 (1 − E(v))/E(v) (Turquin 2019, *Practical multiple scattering compensation for
-    /// microfacet models*, eq. 16), for a view at cos θ and reflectance F0 at normal incidence (one channel).
+    /// microfacet models*, eq. 16), for a view and a reflectance F0 at normal incidence (one channel).
     ///
     /// Cheap, and keeps the lobe's shape; not reciprocal. Where E is 0 (γ near 3/2 at large σ) the factor is limited to 1e6.
     #[inline]
-    pub fn turquin(&self, cos_theta: f32, f0: f32) -> f32 {
-        turquin(self.lost(cos_theta), f0)
+    pub fn turquin(&self, v: Vec3, f0: f32) -> f32 {
+        let lost = self.lost(v);
+        1.0 + (f0 * lost / (1.0 - lost).max(1e-6)).min(1e6)
     }
 
     /// The lobe of all bounces after the first with F = 1, (1 − E(v))(1 − E(l))/(π(1 − E_avg)) (Kulla & Conty 2017, *Revisiting
@@ -47,14 +48,21 @@ impl Albedo {
     /// [`multiple_bounces`](Self::multiple_bounces) for coloured surfaces.
     #[inline]
     pub fn compensation(&self, v: Vec3, l: Vec3) -> f32 {
-        let both = v.z > 0.0 && l.z > 0.0;
-        if both { kulla_conty(self.lost(v.z), self.lost(l.z), self.lost_average()) } else { 0.0 }
+        let average = self.lost_average();
+        // σ = 0 loses nothing, and the quotient would be 0/0.
+        if !(v.z > 0.0 && l.z > 0.0) || average <= f32::MIN_POSITIVE {
+            return 0.0;
+        }
+        self.lost(v) * self.lost(l) / (PI * average)
     }
 
     /// Draws a light for [`compensation`](Self::compensation) from u ∈ [0, 1)²: cosine-weighted, which is close since 1 − E varies little.
     #[inline]
     pub fn sample_compensation(&self, u: [f32; 2]) -> Vec3 {
-        cosine_weighted(u)
+        // Malley's method on the polar disc; z from the radius keeps l of unit length at the horizon.
+        let r = sqrt(u[0]);
+        let phi = 2.0 * PI * u[1];
+        Vec3::new(r * libm::cosf(phi), r * libm::sinf(phi), sqrt((1.0 - u[0]).max(0.0)))
     }
 
     /// Density of [`sample_compensation`](Self::sample_compensation), cos θ_l/π per steradian; 0 below the horizon.
@@ -67,71 +75,10 @@ impl Albedo {
     /// the square that counts the first bounce; Hill 2018, *A multi-faceted exploration, part 2*), in [0, 1].
     #[inline]
     pub fn multiple_bounces(&self, fresnel_average: f32) -> f32 {
-        multiple_bounces(self.lost_average(), fresnel_average)
+        let below = 1.0 - fresnel_average * self.lost_average();
+        // F_avg = 1 and E_avg = 0: an endless number of bounces that lose nothing.
+        if below > 0.0 { fresnel_average * fresnel_average * self.albedo_average() / below } else { 1.0 }
     }
-}
-
-/// The same for a lobe that is not round: E of view and light each at its own azimuth.
-impl ViewAlbedo {
-    /// As [`Albedo::turquin`].
-    #[inline]
-    pub fn turquin(&self, v: Vec3, f0: f32) -> f32 {
-        turquin(self.lost(v), f0)
-    }
-
-    /// As [`Albedo::compensation`]; reciprocal as well.
-    #[inline]
-    pub fn compensation(&self, v: Vec3, l: Vec3) -> f32 {
-        let both = v.z > 0.0 && l.z > 0.0;
-        if both { kulla_conty(self.lost(v), self.lost(l), self.lost_average()) } else { 0.0 }
-    }
-
-    /// As [`Albedo::sample_compensation`].
-    #[inline]
-    pub fn sample_compensation(&self, u: [f32; 2]) -> Vec3 {
-        cosine_weighted(u)
-    }
-
-    /// As [`Albedo::compensation_pdf`].
-    #[inline]
-    pub fn compensation_pdf(&self, l: Vec3) -> f32 {
-        l.z.max(0.0) * (1.0 / PI)
-    }
-
-    /// As [`Albedo::multiple_bounces`].
-    #[inline]
-    pub fn multiple_bounces(&self, fresnel_average: f32) -> f32 {
-        multiple_bounces(self.lost_average(), fresnel_average)
-    }
-}
-
-/// From 1 − E of the view.
-#[inline]
-fn turquin(lost: f32, f0: f32) -> f32 {
-    1.0 + (f0 * lost / (1.0 - lost).max(1e-6)).min(1e6)
-}
-
-/// From 1 − E of view and light, and their average.
-#[inline]
-fn kulla_conty(view: f32, light: f32, average: f32) -> f32 {
-    // σ = 0 loses nothing, and the quotient would be 0/0.
-    if average <= f32::MIN_POSITIVE { 0.0 } else { view * light / (PI * average) }
-}
-
-/// Malley's method on the polar disc; z from the radius keeps l of unit length at the horizon.
-#[inline]
-fn cosine_weighted(u: [f32; 2]) -> Vec3 {
-    let r = sqrt(u[0]);
-    let phi = 2.0 * PI * u[1];
-    Vec3::new(r * libm::cosf(phi), r * libm::sinf(phi), sqrt((1.0 - u[0]).max(0.0)))
-}
-
-/// From 1 − E_avg.
-#[inline]
-fn multiple_bounces(lost: f32, f: f32) -> f32 {
-    let below = 1.0 - f * lost;
-    // F_avg = 1 and E_avg = 0: an endless number of bounces that lose nothing.
-    if below > 0.0 { f * f * (1.0 - lost) / below } else { 1.0 }
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ use super::checksum;
 use super::material::MaterialEntry;
 use super::precision::{Codec, Precision};
 use super::schema::Kind;
+use super::subject::{Covered, LobeEntry, Reflectance, Subject};
 use super::table::Table;
 use crate::axis::Axis;
 use crate::error::LoadError;
@@ -23,7 +24,7 @@ use crate::error::LoadError;
 /// `format` of the document.
 pub const FORMAT: &str = "microfacet-tables";
 /// Version of the format that this crate writes, and the only one that it reads.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// Key of the document in the safetensors metadata.
 const KEY: &str = "microfacet";
 
@@ -61,10 +62,15 @@ struct Document {
 struct Descriptor {
     name: String,
     kind: Kind,
-    axes: Vec<Axis>,
-    channels: Vec<String>,
+    lobe: LobeEntry,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     masking: Option<Masking>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    reflectance: Option<Reflectance>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    covers: Option<Covered>,
+    axes: Vec<Axis>,
+    channels: Vec<String>,
     precision: Precision,
     /// For `u16`: value = offset + scale·integer, by channel.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -95,12 +101,16 @@ pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, Loa
     for table in tables {
         table.validate()?;
         let (scale, offset) = fit(table).scale_offset();
+        let Subject { lobe, masking, reflectance, covers } = table.subject.clone();
         descriptors.push(Descriptor {
             name: table.name.clone(),
             kind: table.kind,
+            lobe,
+            masking,
+            reflectance,
+            covers,
             axes: table.axes.clone(),
             channels: table.channels.clone(),
-            masking: table.masking,
             precision: table.precision,
             scale,
             offset,
@@ -228,13 +238,14 @@ fn assemble(
         let codec = Codec::described(*precision, scale, offset, channels.len());
         let codec = codec.map_err(|why| fail(why.into()))?;
         let values = values(&descriptor, &codec).map_err(fail)?;
+        let Descriptor { lobe, masking, reflectance, covers, .. } = descriptor;
         let table = Table {
             values,
             name: descriptor.name,
             kind: descriptor.kind,
+            subject: Subject { lobe, masking, reflectance, covers },
             axes: descriptor.axes,
             channels: descriptor.channels,
-            masking: descriptor.masking,
             precision: descriptor.precision,
             certificate: descriptor.certificate,
         };

@@ -1,12 +1,14 @@
 //! The materials of a recipe, as a set lists them.
 
-use alloc::format;
 use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
 
 use microfacet_common::Masking;
 use microfacet_common::shape::gamma_of_s;
 use serde::{Deserialize, Serialize};
 
+use super::subject::{LobeEntry, Reflectance, Side};
 use crate::axis::ReflectanceRoot;
 
 /// A named material of a recipe.
@@ -18,8 +20,8 @@ pub struct MaterialEntry {
     pub sigma: [[f64; 2]; 2],
     /// 1/(γ−1), so that γ = ∞ is the number 0; a range [min, max] likewise.
     pub s: [f64; 2],
-    /// The distribution, such as `gtr:0.2,1.5`, of a material that is no Student-t; `sigma` is then the scale of its tables, which carry
-    /// the [`table_suffix`](Self::table_suffix), and `s` means nothing.
+    /// The distribution, such as `gtr:0.2,1.5`, of a material that is no Student-t; `sigma` is then the scale of its tables, and `s`
+    /// means nothing.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub distribution: String,
     /// The turn of an ellipsoid, θx, θy, θz in radians as of [`Skew::new`](crate::Skew::new); its σ and s are single numbers.
@@ -61,17 +63,17 @@ pub enum FresnelEntry {
 }
 
 impl FresnelEntry {
-    /// What the names of its own albedo tables hold; empty where the moments of `albedo` tables are enough.
-    pub fn label(&self) -> String {
-        let list = |x: &[f64; 3]| format!("{}_{}_{}", x[0], x[1], x[2]);
-        match self {
-            Self::Mirror | Self::Schlick(_) => String::new(),
-            Self::Conductor { eta, k } => format!("conductor_{}_k_{}", list(eta), list(k)),
-            Self::Dielectric(eta) => format!("eta_{eta}"),
-            Self::Dielectrics { min, max } => {
-                format!("eta_{min}_to_{}", max.unwrap_or(f64::INFINITY))
-            }
-        }
+    /// The reflectances of the albedo tables that hold its albedo: one, or of a dielectric one a side, unless both are the same.
+    pub fn tabulated(&self) -> Vec<Reflectance> {
+        let Some([min, max]) = self.indices() else {
+            return vec![match *self {
+                Self::Conductor { eta, k } => Reflectance::Conductor { eta, k },
+                // Every Schlick reflectance is made of the moments.
+                _ => Reflectance::Moments,
+            }];
+        };
+        let of = |side| Reflectance::Dielectric { side, min, max: (max < f64::INFINITY).then_some(max) };
+        if max == 1.0 { vec![of(Side::Thin)] } else { Side::ALL.map(of).into() }
     }
 
     /// The indices [min, max] ⊂ [1, ∞] of the dense side over the thin one; `None` of what is no dielectric.
@@ -115,41 +117,24 @@ impl MaterialEntry {
         if x == y { x } else { libm::sqrt(x * y) }
     }
 
-    /// The form of masking it states; uncorrelated if none.
+    /// The form of masking it states; height-correlated if none.
     pub fn masking(&self) -> Masking {
         self.masking.unwrap_or_default()
     }
 
-    /// What kind of lobe it is: `student-t`, `ellipsoid`, or its distribution.
-    pub fn lobe(&self) -> &str {
-        match self.theta {
-            _ if !self.distribution.is_empty() => &self.distribution,
-            Some(_) => "ellipsoid",
-            None => "student-t",
-        }
-    }
-
-    /// What follows the kind in the names of this material's own tables; empty for a Student-t.
-    pub fn table_suffix(&self) -> String {
-        self.distribution.replace([':', ',', '/', '\\', ' '], "_")
-    }
-
-    /// What the name of this material's own albedo table ends in, after `view_albedo_`, the form of masking and `_`: of another
-    /// distribution its [`table_suffix`](Self::table_suffix), of an anisotropic material of single numbers `gamma_γ_sigma_σx_σy` with γ to nine
-    /// decimals, of an ellipsoid followed by `_theta_θx_θy_θz`. `None` if its albedo is that of the family's tables.
-    pub fn view_label(&self) -> Option<String> {
+    /// Whose normals its albedo is of: the family's if it is round, or if a range leaves an anisotropic one to the round lobe of
+    /// [`round_sigma`](Self::round_sigma) that stands in for it.
+    pub fn lobe(&self) -> LobeEntry {
         if !self.distribution.is_empty() {
-            return Some(self.table_suffix());
+            return LobeEntry::Distribution(self.distribution.clone());
         }
         let [x, y] = self.sigma;
-        let single = |[min, max]: [f64; 2]| min == max;
-        let round = x == y && self.theta.is_none();
-        if round || ![x, y, self.s].into_iter().all(single) {
-            return None;
+        let (sigma, s) = ([x[0], y[0]], self.s[0]);
+        let single = [x, y, self.s].into_iter().all(|[min, max]| min == max);
+        match self.theta {
+            Some(theta) => LobeEntry::Ellipsoid { sigma, theta, s },
+            None if x != y && single => LobeEntry::StudentT { sigma, s },
+            None => LobeEntry::Family,
         }
-        // γ of a γ with few digits has many, through s: rounded, they are the same again.
-        let gamma = libm::round(self.gamma() * 1e9) / 1e9;
-        let turn = self.theta.map_or_else(String::new, |[x, y, z]| format!("_theta_{x}_{y}_{z}"));
-        Some(format!("gamma_{gamma}_sigma_{}_{}{turn}", x[0], y[0]))
     }
 }

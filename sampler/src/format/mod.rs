@@ -5,6 +5,7 @@ mod container;
 mod material;
 mod precision;
 mod schema;
+mod subject;
 mod table;
 
 pub use checksum::{seal, seal_document};
@@ -12,6 +13,7 @@ pub use container::{FORMAT, Provenance, VERSION, describe, encode, reassemble};
 pub use material::{FresnelEntry, MaterialEntry};
 pub use precision::Precision;
 pub use schema::{Channels, Kind};
+pub use subject::{Covered, LobeEntry, Reflectance, Side, Subject};
 pub use table::Table;
 
 pub(crate) use container::decode;

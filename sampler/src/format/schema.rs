@@ -2,12 +2,12 @@
 //!
 //! One description for all who need it: those who bake, those who check a file, those who read it.
 
-use alloc::format;
-use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
 
-use microfacet_common::Masking;
 use serde::{Deserialize, Serialize};
 
+use super::subject::{LobeEntry, Reflectance, Side, Subject};
 use crate::axis::Interpolation::{self, Hermite, Lagrange4, Lagrange6, Linear, Nodes};
 
 /// Names of the channels of a table, fastest in its values.
@@ -34,29 +34,26 @@ pub enum Kind {
     RadialConditional,
     /// Fourth root of D, over the slope of the normal.
     RadialDensity,
-    /// Directional albedo over γ × σ × view: E − 1, and moments of the Fresnel weights less E times those of a mirror.
+    /// Directional albedo over the material × view: over γ × σ × view for round members of the family, over azimuth × view for
+    /// one material of another lobe, with an axis of η before the view for dielectrics. What it is of, masking and reflectance
+    /// included, its description says.
     Albedo,
-    /// Its cosine-weighted average over γ × σ.
+    /// Cosine-weighted averages of albedos over γ × σ.
     AlbedoAverage,
-    /// Directional albedo over γ × σ × view under an exact Fresnel term, which its name holds.
-    FresnelAlbedo,
-    /// The same of a dielectric, reflected and transmitted, over γ × σ × η × view, seen from one of its sides.
-    DielectricAlbedo,
-    /// As `Albedo` for one material whose albedo depends on more than γ, σ and cos θ, over the azimuth of the view × view.
-    ViewAlbedo,
 }
 
 /// One axis of a kind: its name, and the kinds of mapping and the interpolations that readers know for it.
+#[derive(Clone, Copy)]
 pub(super) struct AxisRule {
     pub(super) name: &'static str,
     pub(super) mappings: &'static [&'static str],
     pub(super) interpolations: &'static [Interpolation],
 }
 
-/// One form that tables of a kind may have.
+/// What a table of a kind and subject looks like.
 pub(super) struct Layout {
-    pub(super) axes: &'static [AxisRule],
-    pub(super) channels: Channels,
+    pub(super) axes: Vec<AxisRule>,
+    pub(super) channels: Vec<&'static str>,
     /// How many of the channels, from the first on, have their values in `range`, ends included.
     pub(super) checked: usize,
     pub(super) range: [f32; 2],
@@ -81,16 +78,9 @@ const ETA: AxisRule = axis("eta", &["reflectance_root"], &[Lagrange6]);
 const VIEW: AxisRule = axis("view", &["view_blend"], &[Lagrange6]);
 const INNER_VIEW: AxisRule = axis("view", &["critical_blend"], &[Lagrange6]);
 const AZIMUTH: AxisRule = axis("azimuth", &["azimuth"], &[Lagrange6]);
-
-/// Read by Hermite cells; the values in a range.
-const fn lookup(axes: &'static [AxisRule], range: [f32; 2]) -> Layout {
-    Layout { axes, channels: Kind::VALUE_AND_SLOPE, checked: 1, range }
-}
-
-/// Moments less a mirror's, each of which is in [0, 1], or shares of light.
-const fn moments(axes: &'static [AxisRule], channels: Channels) -> Layout {
-    Layout { axes, channels, checked: channels.len(), range: [-1.0, 1.0] }
-}
+const SLOPE: AxisRule = axis("slope", &["half_tangent"], &[Hermite]);
+/// κ of `rational` is the largest slope of a distribution that has one.
+const SLOPE_OR_LARGEST: AxisRule = axis("slope", &["half_tangent", "rational"], &[Linear]);
 
 /// G1/q is positive, and bounded as the ratio of κ to the projected area is.
 const RATIOS: [f32; 2] = [f32::MIN_POSITIVE, 1e3];
@@ -101,7 +91,7 @@ const ROOTS: [f32; 2] = [0.0, 1e9];
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 10] = [
         Self::Shadowing,
         Self::VisibleSlope,
         Self::VisibleSlopePeeled,
@@ -112,9 +102,6 @@ impl Kind {
         Self::RadialDensity,
         Self::Albedo,
         Self::AlbedoAverage,
-        Self::FresnelAlbedo,
-        Self::DielectricAlbedo,
-        Self::ViewAlbedo,
     ];
 
     /// Channels of tables that are read by Hermite cells: the value, and its derivative by the node index of the last axis.
@@ -122,15 +109,13 @@ impl Kind {
     /// Channels of albedos with F = 1: E − 1, and what the other moments have over a mirror's times E, in which form they are
     /// smooth.
     pub const MOMENTS: Channels = &["e", "bias", "f82"];
-    /// Channels of albedos of lobes that may be tilted: moments without the clamp of G1(v) at one, and μ/(μ + A) with A the
-    /// area of the microsurface seen, by which it is clamped. The clamp is a kink in E; both of these are smooth.
-    pub const CLAMPED_MOMENTS: Channels = &["e", "bias", "f82", "clamp"];
     /// Channels of a conductor's albedo.
     pub const RGB: Channels = &["red", "green", "blue"];
-    /// Channels of a dielectric's albedo, seen from the thin side.
-    pub const ENTERING: Channels = &["reflection", "transmission"];
-    /// The same, seen from the dense side.
-    pub const LEAVING: Channels = &["reflection_leaving", "transmission_leaving"];
+    /// Channels of a dielectric's albedo: the shares of light.
+    pub const SHARES: Channels = &["reflection", "transmission"];
+    /// One more channel of albedos of lobes that may be tilted, μ/(μ + A) with A the area of the microsurface seen, by which
+    /// G1(v) is clamped at one. The other channels are without that clamp, which is a kink in E: apart, both are smooth.
+    pub const CLAMP: &'static str = "clamp";
 
     /// The name used in files.
     pub const fn name(self) -> &'static str {
@@ -145,78 +130,54 @@ impl Kind {
             Self::RadialDensity => "radial_density",
             Self::Albedo => "albedo",
             Self::AlbedoAverage => "albedo_average",
-            Self::FresnelAlbedo => "fresnel_albedo",
-            Self::DielectricAlbedo => "dielectric_albedo",
-            Self::ViewAlbedo => "view_albedo",
         }
     }
 
-    /// The forms that its tables may have; they differ in their channels.
-    pub(super) const fn layouts(self) -> &'static [Layout] {
+    /// What a table of this kind and subject looks like.
+    pub(super) fn layout(self, subject: &Subject) -> Layout {
+        // Read by Hermite cells; the values in a range.
+        let lookup = |axes: &[AxisRule], range| Layout {
+            axes: axes.into(),
+            channels: Self::VALUE_AND_SLOPE.into(),
+            checked: 1,
+            range,
+        };
         match self {
-            Self::Shadowing => const { &[lookup(&[SHAPE, VIEW_OF_G1], RATIOS)] },
-            Self::VisibleSlope | Self::VisibleSlopePeeled => {
-                const { &[lookup(&[SHAPE, VIEW_OF_SLOPES, U1], DISTANCES)] }
-            }
-            Self::VisibleSlopeConditional => const { &[lookup(&[SHAPE, U2], DISTANCES)] },
-            Self::RadialShadowing => const { &[lookup(&[VIEW_OF_G1], RATIOS)] },
-            Self::RadialSlope => const { &[lookup(&[VIEW_OF_SLOPES, U1], DISTANCES)] },
-            Self::RadialConditional => {
-                // κ of `rational` is the largest slope of a distribution that has one.
-                const SLOPE: AxisRule = axis("slope", &["half_tangent", "rational"], &[Linear]);
-                const { &[lookup(&[SLOPE, U2], DISTANCES)] }
-            }
-            Self::RadialDensity => {
-                const SLOPE: AxisRule = axis("slope", &["half_tangent"], &[Hermite]);
-                const { &[lookup(&[SLOPE], ROOTS)] }
-            }
-            Self::Albedo => const { &[moments(&[ALBEDO_SHAPE, SIGMA, VIEW], Self::MOMENTS)] },
-            Self::AlbedoAverage => const { &[moments(&[ALBEDO_SHAPE, SIGMA], Self::MOMENTS)] },
-            Self::FresnelAlbedo => const { &[moments(&[ALBEDO_SHAPE, SIGMA, VIEW], Self::RGB)] },
-            Self::DielectricAlbedo => {
-                const {
-                    &[
-                        moments(&[ALBEDO_SHAPE, SIGMA, ETA, VIEW], Self::ENTERING),
-                        moments(&[ALBEDO_SHAPE, SIGMA, ETA, INNER_VIEW], Self::LEAVING),
-                    ]
-                }
-            }
-            Self::ViewAlbedo => {
-                const {
-                    &[
-                        moments(&[AZIMUTH, VIEW], Self::MOMENTS),
-                        moments(&[AZIMUTH, VIEW], Self::CLAMPED_MOMENTS),
-                    ]
-                }
-            }
+            Self::Shadowing => lookup(&[SHAPE, VIEW_OF_G1], RATIOS),
+            Self::VisibleSlope | Self::VisibleSlopePeeled => lookup(&[SHAPE, VIEW_OF_SLOPES, U1], DISTANCES),
+            Self::VisibleSlopeConditional => lookup(&[SHAPE, U2], DISTANCES),
+            Self::RadialShadowing => lookup(&[VIEW_OF_G1], RATIOS),
+            Self::RadialSlope => lookup(&[VIEW_OF_SLOPES, U1], DISTANCES),
+            Self::RadialConditional => lookup(&[SLOPE_OR_LARGEST, U2], DISTANCES),
+            Self::RadialDensity => lookup(&[SLOPE], ROOTS),
+            Self::Albedo => albedo(subject),
+            Self::AlbedoAverage => moments(vec![ALBEDO_SHAPE, SIGMA], Self::MOMENTS.into()),
         }
     }
 
     /// Whether it is a directional albedo or the average of one: what depends on light and view, not on the view alone, so
-    /// that its tables are for one form of masking.
+    /// that its tables are for one form of masking and one reflectance.
     pub const fn is_albedo(self) -> bool {
-        matches!(
-            self,
-            Self::Albedo
-                | Self::AlbedoAverage
-                | Self::FresnelAlbedo
-                | Self::DielectricAlbedo
-                | Self::ViewAlbedo
-        )
+        matches!(self, Self::Albedo | Self::AlbedoAverage)
     }
+}
 
-    /// Names of the axes, slowest first.
-    pub fn axes(self) -> impl Iterator<Item = &'static str> {
-        self.layouts()[0].axes.iter().map(|axis| axis.name)
-    }
+/// The axes of the material, then those of the view.
+fn albedo(subject: &Subject) -> Layout {
+    let reflectance = subject.reflectance.unwrap_or(Reflectance::Moments);
+    let mut axes = match subject.lobe {
+        LobeEntry::Family => vec![ALBEDO_SHAPE, SIGMA],
+        _ => vec![AZIMUTH],
+    };
+    axes.extend(reflectance.indices().map(|_| ETA));
+    axes.push(if reflectance.side() == Some(Side::Dense) { INNER_VIEW } else { VIEW });
+    let clamp = subject.lobe.is_clamped().then_some(Kind::CLAMP);
+    moments(axes, reflectance.channels().iter().copied().chain(clamp).collect())
+}
 
-    /// What a table of this kind is called: the kind, the form of masking it is for, and a suffix of its own.
-    pub fn table_name(self, masking: Option<Masking>, suffix: &str) -> String {
-        let form =
-            masking.map_or_else(String::new, |masking| format!("_{}", masking.name().replace('-', "_")));
-        let separator = if suffix.is_empty() || suffix.starts_with('_') { "" } else { "_" };
-        format!("{}{form}{separator}{suffix}", self.name())
-    }
+/// Moments less a mirror's, each of which is in [0, 1], or shares of light.
+fn moments(axes: Vec<AxisRule>, channels: Vec<&'static str>) -> Layout {
+    Layout { axes, checked: channels.len(), channels, range: [-1.0, 1.0] }
 }
 
 #[cfg(test)]
@@ -226,9 +187,22 @@ mod tests {
     use super::*;
     use crate::axis::Mapping;
 
+    /// Subjects whose albedos have every axis that there is.
+    fn subjects() -> [Subject; 3] {
+        let of = |lobe, reflectance| Subject { lobe, reflectance: Some(reflectance), ..Subject::default() };
+        let tilted = LobeEntry::Ellipsoid { sigma: [0.1, 0.2], theta: [0.1; 3], s: 1.0 };
+        let pane = |side| Reflectance::Dielectric { side, min: 1.5, max: None };
+        [
+            of(LobeEntry::Family, pane(Side::Thin)),
+            of(LobeEntry::Family, pane(Side::Dense)),
+            of(tilted, Reflectance::Moments),
+        ]
+    }
+
     #[test]
     fn rules_name_mappings_that_exist_and_no_mapping_is_without_a_kind() {
-        let layouts = Kind::ALL.into_iter().flat_map(Kind::layouts);
+        let subjects = subjects();
+        let layouts = Kind::ALL.iter().flat_map(|kind| subjects.iter().map(|of| kind.layout(of)));
         let ruled: BTreeSet<_> =
             layouts.flat_map(|layout| layout.axes).flat_map(|axis| axis.mappings).collect();
         let known = Mapping::EVERY.map(|mapping| mapping.name());
@@ -243,19 +217,18 @@ mod tests {
     }
 
     #[test]
-    fn forms_of_a_kind_differ_in_channels_and_share_axes() {
-        for kind in [Kind::DielectricAlbedo, Kind::ViewAlbedo] {
-            let [a, b] = kind.layouts() else { panic!("two forms") };
-            assert!(a.channels != b.channels && a.axes.len() == b.axes.len());
-        }
-        assert_eq!(Kind::VisibleSlope.axes().collect::<alloc::vec::Vec<_>>(), ["gamma", "view", "u1"]);
-    }
-
-    #[test]
-    fn names_are_made_of_parts() {
-        let form = Some(Masking::HeightCorrelated);
-        assert_eq!(Kind::Shadowing.table_name(None, ""), "shadowing");
-        assert_eq!(Kind::Albedo.table_name(form, "_gamma_3"), "albedo_height_correlated_gamma_3");
-        assert_eq!(Kind::ViewAlbedo.table_name(form, "gtr_1"), "view_albedo_height_correlated_gtr_1");
+    fn an_albedo_looks_as_what_it_is_of() {
+        let shape = |subject: &Subject| {
+            let layout = Kind::Albedo.layout(subject);
+            let axes: Vec<_> = layout.axes.iter().map(|axis| (axis.name, axis.mappings[0])).collect();
+            (axes, layout.channels)
+        };
+        let [thin, dense, tilted] = subjects();
+        let front = vec![("gamma", "log_shape"), ("sigma", "log_roughness"), ("eta", "reflectance_root")];
+        let with = |view| [front.clone(), vec![("view", view)]].concat();
+        assert_eq!(shape(&thin), (with("view_blend"), Kind::SHARES.to_vec()));
+        assert_eq!(shape(&dense), (with("critical_blend"), Kind::SHARES.to_vec()));
+        let around = vec![("azimuth", "azimuth"), ("view", "view_blend")];
+        assert_eq!(shape(&tilted), (around, vec!["e", "bias", "f82", "clamp"]));
     }
 }

@@ -3,13 +3,15 @@
 use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::String;
+use alloc::vec;
 use alloc::vec::Vec;
 
-use microfacet_common::Masking;
+use microfacet_common::Real;
 
 use super::precision::{Codec, Precision};
 use super::schema::Kind;
-use crate::axis::Axis;
+use super::subject::Subject;
+use crate::axis::{Axis, Weights};
 use crate::error::LoadError;
 
 /// A table: values at the nodes of named axes.
@@ -18,16 +20,16 @@ use crate::error::LoadError;
 /// `[axes[0].len(), …, axes[n−1].len(), channels.len()]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Name inside its set; the kind's name, with a suffix where a set holds several of a kind.
+    /// Name inside its set, for people: what it says, `kind` and `subject` hold as data.
     pub name: String,
     /// What it holds.
     pub kind: Kind,
+    /// What it is of.
+    pub subject: Subject,
     /// Axes, slowest first.
     pub axes: Vec<Axis>,
     /// Channel names, such as `value` and `slope`.
     pub channels: Vec<String>,
-    /// Form of G2 that the values are for; `None` where they are of one direction only.
-    pub masking: Option<Masking>,
     /// Values in f32; rounded once, from f64, when they were stored.
     pub values: Vec<f32>,
     /// How the values are stored in a file.
@@ -56,23 +58,45 @@ impl Table {
         self
     }
 
+    /// The values with the first axes collapsed, each to some of its nodes with their weights.
+    pub(crate) fn collapsed<T: Real + From<f32>>(&self, at: &[Weights]) -> Vec<T> {
+        let zero = T::constant(0.0);
+        // All combinations of the nodes along the axes, as one index and the product of the weights.
+        let mut rows = vec![(0, 1.0)];
+        for (axis, weights) in self.axes.iter().zip(at) {
+            let along = |row: usize, a: f64| weights.iter().map(move |&(i, b)| (row * axis.len() + i, a * b));
+            rows = rows.into_iter().flat_map(|(row, a)| along(row, a)).collect();
+        }
+        let size = self.axes[at.len()..].iter().map(Axis::len).product::<usize>() * self.channels.len();
+        let mut sum = vec![zero; size];
+        for (row, weight) in rows {
+            let weight = T::constant(weight);
+            for (into, &x) in sum.iter_mut().zip(&self.values[row * size..]) {
+                *into = *into + weight * T::from(x);
+            }
+        }
+        sum
+    }
+
     /// Checks everything that lookups rely on.
     ///
     /// # Errors
     /// [`LoadError`] naming the table and what is wrong.
     pub fn validate(&self) -> Result<(), LoadError> {
         let fail = |why: String| Err(LoadError::Invalid(format!("table `{}`: {why}", self.name)));
+        if let Err(why) = self.subject.check(self.kind) {
+            return fail(why.into());
+        }
+        let layout = self.kind.layout(&self.subject);
         let names: Vec<&str> = self.axes.iter().map(|axis| axis.name.as_str()).collect();
-        let expected: Vec<&str> = self.kind.axes().collect();
+        let expected: Vec<&str> = layout.axes.iter().map(|axis| axis.name).collect();
         if names != expected {
             return fail(format!("axes {names:?} where {expected:?} are expected"));
         }
-        let layouts = self.kind.layouts();
-        let Some(layout) = layouts.iter().find(|layout| self.channels == layout.channels) else {
-            let expected: Vec<_> = layouts.iter().map(|layout| layout.channels).collect();
-            return fail(format!("channels {:?} where one of {expected:?} is expected", self.channels));
-        };
-        for (axis, rule) in self.axes.iter().zip(layout.axes) {
+        if self.channels != layout.channels {
+            return fail(format!("channels {:?} where {:?} are expected", self.channels, layout.channels));
+        }
+        for (axis, rule) in self.axes.iter().zip(&layout.axes) {
             if !rule.mappings.contains(&axis.mapping.name()) {
                 let (got, want) = (axis.mapping.name(), rule.mappings.join("` or `"));
                 return fail(format!("axis `{}` is mapped by `{got}`, not by `{want}`", axis.name));
@@ -86,9 +110,6 @@ impl Table {
         let expected = self.axes.iter().map(Axis::len).try_fold(self.channels.len(), usize::checked_mul);
         if expected != Some(self.values.len()) {
             return fail(format!("{} values for shape {:?}", self.values.len(), self.shape()));
-        }
-        if self.kind.is_albedo() != self.masking.is_some() {
-            return fail("an albedo names the form of masking it is for, and no other table does".into());
         }
         // Without an early end these run four values at a time: they are half of what loading the default set takes.
         if !self.values.iter().fold(true, |sound, x| sound & x.is_finite()) {

@@ -1,5 +1,6 @@
 //! Isotropic distributions that are no members of the Student-t family, from tables of their own.
 
+use alloc::format;
 use alloc::vec::Vec;
 
 use glam::Vec3;
@@ -11,7 +12,7 @@ use crate::axis::half_tangent::Slope;
 use crate::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
 use crate::axis::{HalfTangent, Mapping, MirroredRoot, Rational};
 use crate::error::BindError;
-use crate::format::{Kind, Table};
+use crate::format::{Kind, LobeEntry, Table};
 use crate::math::sqrt;
 
 /// A material of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
@@ -47,14 +48,14 @@ enum Given {
 }
 
 impl Radial {
-    pub(crate) fn bind(tables: &[Table], sigma: f32, suffix: &str) -> Result<Self, BindError> {
+    pub(crate) fn bind(tables: &[Table], sigma: f32, lobe: &LobeEntry) -> Result<Self, BindError> {
         if !(sigma > 0.0 && sigma < f32::INFINITY) {
             return Err(BindError::Sigma(sigma));
         }
         let slice = |kind: Kind| {
-            let name = kind.table_name(None, suffix);
-            let found = tables.iter().find(|table| table.kind == kind && table.name == name);
-            found.map(Slice::whole).ok_or(BindError::NoTable(name))
+            let found = tables.iter().find(|table| table.kind == kind && table.subject.lobe == *lobe);
+            let missing = || BindError::NoTable(format!("{} of {}", kind.name(), lobe.name()));
+            found.map(Slice::whole).ok_or_else(missing)
         };
         let (shadowing, slope) = (slice(Kind::RadialShadowing)?, slice(Kind::RadialSlope)?);
         let (conditional, density) = (slice(Kind::RadialConditional)?, slice(Kind::RadialDensity)?);

@@ -2,7 +2,6 @@
 
 use alloc::format;
 use alloc::string::String;
-use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::axis::hermite::{Cell, Node, cells, make_monotone};
@@ -40,16 +39,7 @@ fn pairs(values: &[f32]) -> Vec<Node> {
 }
 
 fn slice(table: &Table, s: f64) -> Option<Vec<Node>> {
-    let weights = table.axes[0].weights(s)?;
-    let size = table.values.len() / table.axes[0].nodes.len();
-    let mut sum = vec![0.0_f32; size];
-    for (i, weight) in weights {
-        let weight = weight as f32;
-        for (into, x) in sum.iter_mut().zip(&table.values[i * size..]) {
-            *into += weight * x;
-        }
-    }
-    Some(pairs(&sum))
+    Some(pairs(&table.collapsed(&[table.axes[0].weights(s)?])))
 }
 
 /// Slices of one shape.

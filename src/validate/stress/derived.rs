@@ -67,7 +67,7 @@ impl Judge<'_> {
     /// Albedo and compensation at a view; the number `u[1]` places the light.
     pub(super) fn albedo(&mut self, albedo: &Albedo, at: &Point) {
         let v = at.view();
-        let whole = f64::from(albedo.albedo(v.z));
+        let whole = f64::from(albedo.albedo(v));
         self.require((0.0..=1.0).contains(&whole), "albedo outside [0, 1]", whole, at);
         let average = f64::from(albedo.albedo_average());
         self.require((0.0..=1.0).contains(&average), "albedo_average outside [0, 1]", average, at);
@@ -76,7 +76,7 @@ impl Judge<'_> {
         self.require(lobe >= 0.0 && lobe.is_finite(), "compensation negative, NaN or inf", lobe.into(), at);
         let swapped = albedo.compensation(l, v);
         self.require(lobe == swapped, "compensation not symmetric", (lobe - swapped).into(), at);
-        let factor = f64::from(albedo.turquin(v.z, at.u[0]));
+        let factor = f64::from(albedo.turquin(v, at.u[0]));
         self.require((1.0..=1.1e6).contains(&factor), "turquin factor outside [1, 1e6]", factor, at);
         let kept = f64::from(albedo.multiple_bounces(at.u[0]));
         self.require((0.0..=1.0).contains(&kept), "multiple_bounces outside [0, 1]", kept, at);

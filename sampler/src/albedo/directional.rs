@@ -1,0 +1,106 @@
+//! The directional albedo of one material with F = 1, and its moments.
+
+use glam::Vec3;
+use microfacet_common::Masking;
+
+use super::curve::{Curve, Elevation, Place, Rows, missing, within};
+use super::moments::{Moments, below, less_mirror};
+use crate::error::BindError;
+use crate::format::{Reflectance, Table};
+
+/// The directional albedo of one material as a function of the view, with F = 1 and as moments of Fresnel weights.
+///
+/// Made by [`Tables::albedo`](crate::Tables::albedo) and [`Tables::material_albedo`](crate::Tables::material_albedo). `v` is a unit vector in the
+/// tangent frame, n = +z; its azimuth matters to lobes that are not round alone. A view at or below the horizon is taken as the grazing one of its
+/// azimuth, NaN in `v.z` likewise, and NaN in the other two as the x axis. Errors are those of the table's certificate: of E and each moment at
+/// most 3e-4 at default quality for cos θ ≥ 0.02 and σ ≥ 0.01. Beyond the table's last view, μ₀ of [`ViewBlend`](crate::axis::ViewBlend), albedos near
+/// their limits at grazing with the power of cos θ that they have there.
+#[derive(Clone, Debug)]
+pub struct Albedo {
+    masking: Masking,
+    curve: Curve,
+    /// The averages, in the form of the tables' channels.
+    average: [f32; 3],
+}
+
+impl Albedo {
+    /// Of a table of moments at hand, such as one that a bake has just filled; a table of one material ignores σ and γ.
+    ///
+    /// # Errors
+    /// [`BindError::NoTable`] for a table that holds no moments or does not cover the material.
+    pub fn bind(table: &Table, sigma: f64, gamma: f64) -> Result<Self, BindError> {
+        let place = Place { sigma, gamma, eta: f64::NAN };
+        let moments = table.subject.reflectance == Some(Reflectance::Moments);
+        moments.then(|| Self::new(table, &place)).flatten().ok_or_else(|| missing(table, &place))
+    }
+
+    /// `None` where the table does not cover the material.
+    pub(super) fn new(table: &Table, place: &Place) -> Option<Self> {
+        let curve = Curve::new(table, place)?;
+        let mut albedo = Self { masking: table.subject.masking?, curve, average: [0.0; 3] };
+        albedo.average = albedo.integrate();
+        Some(albedo)
+    }
+
+    /// The form of masking it is for.
+    pub fn masking(&self) -> Masking {
+        self.masking
+    }
+
+    /// Moments of the Fresnel weights at a view; each in [0, 1], their total at most 1.
+    pub fn moments(&self, v: Vec3) -> Moments {
+        Moments::mirror(within(v.z)).plus(self.rest(v))
+    }
+
+    /// E(v) with F = 1, in [0, 1].
+    pub fn albedo(&self, v: Vec3) -> f32 {
+        1.0 - self.lost(v)
+    }
+
+    /// 1 − E(v), with all its digits where E is close to 1.
+    pub fn lost(&self, v: Vec3) -> f32 {
+        -self.rest(v)[0]
+    }
+
+    /// Averages of the moments over the hemisphere of views, weighted by the cosine: 1/π ∫∫ · μ dμ dφ.
+    pub fn average_moments(&self) -> Moments {
+        Moments::mirror_average().plus(self.average)
+    }
+
+    /// E_avg = 1/π ∫∫ E μ dμ dφ with F = 1.
+    pub fn albedo_average(&self) -> f32 {
+        1.0 - self.lost_average()
+    }
+
+    /// 1 − E_avg, with all its digits.
+    pub fn lost_average(&self) -> f32 {
+        -self.average[0]
+    }
+
+    /// The averages by quadrature of the interpolated albedo, in the form of the tables' channels: what tables of averages are filled with.
+    pub fn integrate(&self) -> [f32; 3] {
+        less_mirror(self.curve.average(|rows, view, cos| {
+            let [e, bias, f82] = self.at(rows, view, cos).map(f64::from);
+            let mirror = Moments::mirror(cos);
+            [e, bias + e * f64::from(mirror.bias), f82 + e * f64::from(mirror.f82)]
+        }))
+    }
+
+    /// E − 1 in [−1, 0], and what the other moments have over E times a mirror's.
+    fn rest(&self, v: Vec3) -> [f32; 3] {
+        self.curve.seen(v, |rows, view| self.at(rows, view, within(v.z)))
+    }
+
+    fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; 3] {
+        let channels = |cos| {
+            let [e, bias, f82, _] = self.curve.at(rows, view, cos);
+            [e, bias, f82]
+        };
+        let (floor, here) = (view.floor() as f32, channels(cos));
+        // A mirror has no limit to near.
+        if cos >= floor || here[0] == 0.0 {
+            return here;
+        }
+        below(self.masking, floor, cos, here, channels(4.0 * floor))
+    }
+}

@@ -1,0 +1,195 @@
+//! Which table of a set holds the albedo that is asked for.
+
+use alloc::format;
+use alloc::vec::Vec;
+
+use microfacet_common::Masking;
+use microfacet_common::shape::gamma_of_s;
+
+use super::curve::{Collapsed, Place, ViewCurve, domains};
+use super::directional::Albedo;
+use super::exact::{DielectricAlbedo, FresnelAlbedo};
+use super::moments::Moments;
+use crate::error::BindError;
+use crate::format::{FresnelEntry, Kind, LobeEntry, MaterialEntry, Reflectance, Side, Table};
+use crate::tables::Tables;
+
+impl Tables {
+    /// The directional albedo of the round Student-t with σ ∈ [0, 3] and γ, for one form of masking.
+    ///
+    /// A surface smoother than the table's first node, σ = 1e-8, is a mirror, E = 1. The averages are integrated from the interpolated albedo of
+    /// just this material, so that a furnace closes to rounding. Takes some ten microseconds; keep the result.
+    ///
+    /// # Errors
+    /// [`BindError`] for a σ or γ outside the family, or one that the set's albedo tables do not cover.
+    pub fn albedo(&self, sigma: f64, gamma: f64, masking: Masking) -> Result<Albedo, BindError> {
+        self.moments_of(Kind::Albedo, sigma, gamma, masking, Albedo::new)
+    }
+
+    /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments from the table of averages alone; off its nodes they differ from those of
+    /// [`albedo`](Self::albedo) by the errors of its certificate.
+    ///
+    /// # Errors
+    /// As [`albedo`](Self::albedo).
+    pub fn average_moments(&self, sigma: f64, gamma: f64, masking: Masking) -> Result<Moments, BindError> {
+        self.moments_of(Kind::AlbedoAverage, sigma, gamma, masking, |table, place| {
+            let at = Collapsed::new(table, place)?;
+            let rest = table.collapsed::<f64>(&at.weights);
+            let rest = if at.is_mirror { [0.0; 3] } else { core::array::from_fn(|i| rest[i] as f32) };
+            Some(Moments::mirror_average().plus(rest))
+        })
+    }
+
+    /// The albedo with F = 1 of a named material, and its moments, for the form of masking that its recipe names, height-correlated if it names
+    /// none.
+    ///
+    /// An anisotropic Student-t whose σx, σy and γ are single numbers, an ellipsoid and a distribution outside the family have a table of their
+    /// own, of which averaging takes about a millisecond, so keep the result. Of ranges the middle is bound, and for an anisotropic material with
+    /// a range the round lobe of √(σx σy) stands in.
+    ///
+    /// # Errors
+    /// [`BindError::NoSuchMaterial`], [`BindError::NoAlbedo`] for a material that was baked without albedos, or what
+    /// [`albedo`](Self::albedo) reports.
+    pub fn material_albedo(&self, name: &str) -> Result<Albedo, BindError> {
+        let entry = self.entry(name)?;
+        if entry.lobe() == LobeEntry::Family {
+            return self.albedo(entry.round_sigma(), entry.gamma(), entry.masking());
+        }
+        self.own(entry, Albedo::new, |reflectance| *reflectance == Reflectance::Moments)
+    }
+
+    /// The albedo of a named conductor or dielectric under its exact reflectance, bound as by [`material_albedo`](Self::material_albedo); of a
+    /// range of indices the one in the middle of their F0^¼. That of a dielectric is of the round lobe of √(σx σy).
+    ///
+    /// Below σ = 1e-8 it is held at what it is there.
+    ///
+    /// # Errors
+    /// [`BindError::NoSuchMaterial`], [`BindError::NoAlbedo`] for a material that states no such reflectance or was baked without albedos.
+    pub fn material_fresnel_albedo(&self, name: &str) -> Result<FresnelAlbedo, BindError> {
+        let entry = self.entry(name)?;
+        if let Some(eta) = entry.fresnel.and_then(|fresnel| fresnel.middle_index()) {
+            return Ok(FresnelAlbedo::Dielectric(self.material_dielectric_albedo(name, eta)?));
+        }
+        let wanted = entry.fresnel.as_ref().map(FresnelEntry::tabulated).unwrap_or_default();
+        let conductor = |reflectance: &Reflectance| {
+            matches!(reflectance, Reflectance::Conductor { .. }) && wanted.contains(reflectance)
+        };
+        self.own(entry, ViewCurve::new, conductor).map(FresnelAlbedo::Conductor)
+    }
+
+    /// The albedo of a named material at an index η of the range that its recipe states.
+    ///
+    /// # Errors
+    /// [`BindError::NoSuchMaterial`], [`BindError::OtherDistribution`] for a lobe without one, or as
+    /// [`dielectric_albedo`](Self::dielectric_albedo).
+    pub fn material_dielectric_albedo(&self, name: &str, eta: f64) -> Result<DielectricAlbedo, BindError> {
+        let entry = self.student_t_entry(name)?;
+        self.dielectric_albedo(entry.round_sigma(), entry.gamma(), eta, entry.masking())
+    }
+
+    /// The albedo of a rough interface of index η ∈ (0, ∞], inside over outside, with σ and γ, for one form of masking. Takes some
+    /// microseconds; keep the result.
+    ///
+    /// # Errors
+    /// [`BindError::Dielectric`] if no table of the set covers it.
+    pub fn dielectric_albedo(
+        &self,
+        sigma: f64,
+        gamma: f64,
+        eta: f64,
+        masking: Masking,
+    ) -> Result<DielectricAlbedo, BindError> {
+        let side = |eta| self.interface_albedo(sigma, gamma, eta, masking);
+        Ok(DielectricAlbedo { outside: side(eta)?, inside: side(1.0 / eta)? })
+    }
+
+    /// The same from one side: [reflection, transmission] where η is the index beyond the interface over that on the viewer's side, in [0, ∞].
+    ///
+    /// # Errors
+    /// [`BindError::Dielectric`] if no table of that side covers it.
+    pub fn interface_albedo(
+        &self,
+        sigma: f64,
+        gamma: f64,
+        eta: f64,
+        masking: Masking,
+    ) -> Result<ViewCurve<2>, BindError> {
+        let (side, dense) = if eta < 1.0 { (Side::Dense, 1.0 / eta) } else { (Side::Thin, eta) };
+        let place = Place { sigma, gamma, eta: dense };
+        let mut tables = self.albedos(Kind::Albedo, &LobeEntry::Family, masking);
+        let found = tables.find_map(|table| {
+            let same = table.subject.reflectance?.side()? == side;
+            same.then(|| ViewCurve::new(table, &place)).flatten()
+        });
+        found.ok_or(BindError::Dielectric([eta, sigma, gamma]))
+    }
+
+    /// The albedo of a material's own lobe under a reflectance.
+    fn own<T>(
+        &self,
+        entry: &MaterialEntry,
+        bind: impl Fn(&Table, &Place) -> Option<T>,
+        serves: impl Fn(&Reflectance) -> bool,
+    ) -> Result<T, BindError> {
+        let place = Place { sigma: entry.round_sigma(), gamma: entry.gamma(), eta: f64::NAN };
+        let lobe = entry.lobe();
+        let mut tables = self.albedos(Kind::Albedo, &lobe, entry.masking());
+        let found = tables.find_map(|table| {
+            let serves = table.subject.reflectance.as_ref().is_some_and(&serves);
+            serves.then(|| bind(table, &place)).flatten()
+        });
+        let remedy = "state its `fresnel` in its recipe, or bake it with --albedo";
+        found.ok_or_else(|| BindError::NoAlbedo { name: entry.name.clone(), remedy })
+    }
+
+    fn albedos(&self, kind: Kind, lobe: &LobeEntry, masking: Masking) -> impl Iterator<Item = &Table> {
+        let of = move |table: &&Table| {
+            table.kind == kind && table.subject.masking == Some(masking) && table.subject.lobe == *lobe
+        };
+        self.tables().iter().filter(of)
+    }
+
+    /// What `bind` makes of the first table of moments of a kind and masking that covers (σ, γ).
+    fn moments_of<T>(
+        &self,
+        kind: Kind,
+        sigma: f64,
+        gamma: f64,
+        masking: Masking,
+        bind: impl Fn(&Table, &Place) -> Option<T>,
+    ) -> Result<T, BindError> {
+        if !(0.0..f64::INFINITY).contains(&sigma) {
+            return Err(BindError::Sigma(sigma as f32));
+        }
+        if !(gamma > 1.5) {
+            return Err(BindError::Gamma(gamma));
+        }
+        let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Moments);
+        let tables = || self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments);
+        let place = Place { sigma, gamma, eta: f64::NAN };
+        tables().find_map(|table| bind(table, &place)).ok_or_else(|| not_covered(tables, kind, sigma, gamma))
+    }
+}
+
+/// Why no table of moments covers (σ, γ), and what they cover.
+fn not_covered<'a, I: Iterator<Item = &'a Table>>(
+    tables: impl Fn() -> I,
+    kind: Kind,
+    sigma: f64,
+    gamma: f64,
+) -> BindError {
+    let ranges = || tables().filter_map(|table| table.subject.covers);
+    if ranges().any(|covers| covers.sigma.is_some_and(|[min, _]| min > 0.0)) {
+        return BindError::AlbedoNotCovered { sigma, gamma, covered: domains(tables()) };
+    }
+    let reaches = |[low, high]: [f64; 2]| (gamma_of_s(high)..=gamma_of_s(low)).contains(&gamma);
+    let of_shape = ranges().filter(|covers| reaches(covers.s)).filter_map(|covers| covers.sigma);
+    if let Some(max) = of_shape.map(|[_, max]| max).reduce(f64::max) {
+        return BindError::SigmaNotCovered { sigma, max };
+    }
+    let gammas: Vec<_> = ranges()
+        .map(|covers| format!("[{:.6}, {}]", gamma_of_s(covers.s[1]), gamma_of_s(covers.s[0])))
+        .collect();
+    let covered = if gammas.is_empty() { "nothing".into() } else { gammas.join(", ") };
+    BindError::NotCovered { kind: kind.name(), gamma, covered }
+}

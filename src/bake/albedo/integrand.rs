@@ -1,0 +1,78 @@
+//! The reflectances that albedos are baked under, one variant each: **to add one, add it here** and to
+//! [`Reflectance`], which names its channels.
+
+use microfacet_model::fresnel::{Conductor, Dielectric, f82_weight, schlick_weight};
+use microfacet_model::{Albedo, ParameterError};
+use microfacet_sampler::{Reflectance, Side};
+
+use super::{BakeError, CHANNELS, Model, Site};
+
+/// A reflectance, prepared.
+pub enum Integrand {
+    /// F = 1 in the parts of [`weights`].
+    Moments,
+    /// A conductor, by channel.
+    Metal([Conductor; 3]),
+    /// A dielectric from a side; the index is of the place.
+    Pane(Side),
+}
+
+/// The Fresnel weights of the moments: Schlick scale, Schlick bias and F82.
+pub fn weights(cos: f64) -> [f64; 3] {
+    let bias = schlick_weight(cos);
+    [1.0 - bias, bias, f82_weight(cos)]
+}
+
+impl Integrand {
+    /// Prepares a reflectance.
+    ///
+    /// # Errors
+    /// [`ParameterError`] for η ≤ 0 or k < 0.
+    pub fn new(reflectance: &Reflectance) -> Result<Self, ParameterError> {
+        Ok(match *reflectance {
+            Reflectance::Moments => Self::Moments,
+            Reflectance::Conductor { eta, k } => {
+                let channel = |i: usize| Conductor::new(eta[i], k[i]);
+                Self::Metal([channel(0)?, channel(1)?, channel(2)?])
+            }
+            Reflectance::Dielectric { side, .. } => Self::Pane(side),
+        })
+    }
+
+    /// Its albedos by quadrature for both forms of masking; of fewer channels the others are 0.
+    ///
+    /// # Errors
+    /// [`BakeError`] for a place outside the domain of the lobe, or a lobe that refracts no light.
+    pub fn at(&self, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, BakeError> {
+        match self {
+            Self::Moments => model.reflection(site, weights),
+            Self::Metal(metals) => model.reflection(site, |cos| metals.map(|metal| metal.reflectance(cos))),
+            Self::Pane(side) => pane(*side, model, site),
+        }
+    }
+}
+
+/// Reflection and transmission of a dielectric, whose index may be infinite.
+fn pane(side: Side, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, BakeError> {
+    if site.eta == f64::INFINITY {
+        return model.reflection(site, |_| [1.0, 0.0, 0.0]);
+    }
+    let eta = if side == Side::Dense { 1.0 / site.eta } else { site.eta };
+    let pane = Dielectric::new(eta)?;
+    // Where total reflection sets in.
+    let kink = if eta < 1.0 { ((1.0 - eta) * (1.0 + eta)).sqrt() } else { 0.0 };
+    let (model, sigma) = model.round(site)?;
+    let reflectance = |cos: f64| [pane.reflectance(cos)];
+    let reflected = if kink > 0.0 {
+        model.reflection_with_kink(sigma, site.cos, kink, reflectance)?
+    } else {
+        model.reflection(sigma, site.cos, reflectance)?
+    };
+    let transmitted = model.transmission(sigma, site.cos, pane)?;
+    let both = |r: [f64; 1], t: [f64; 1]| [r[0], t[0], 0.0];
+    Ok(Albedo {
+        uncorrelated: both(reflected.uncorrelated, transmitted.uncorrelated),
+        height_correlated: both(reflected.height_correlated, transmitted.height_correlated),
+        error: reflected.error.max(transmitted.error),
+    })
+}

@@ -1,0 +1,290 @@
+//! Directional albedo of whatever lobe under whatever reflectance, for both forms of masking in one pass.
+//!
+//! One loop over the nodes of a specification's axes: [`Model`] is the lobe by quadrature, [`Integrand`] the reflectance. Of F = 1
+//! and its parts E − 1 is stored, and of the other moments what they have over a mirror's times E, all of which vanish with σ;
+//! of exact reflectances the shares of light. Nodes stand evenly in coordinates found by measuring. Averages are integrated from
+//! the stored, interpolated albedo, so that a white furnace closes to rounding rather than to the interpolation error.
+
+mod integrand;
+mod lobe;
+mod spec;
+
+use std::fmt;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use microfacet_model::{Albedo, ParameterError};
+use microfacet_sampler::axis::ViewBlend;
+use microfacet_sampler::{
+    Albedo as Bound, Axis, Kind, LoadError, Mapping, Masking, Precision, Reflectance, Table,
+};
+
+pub use integrand::{Integrand, weights};
+pub use lobe::{Lobe, Model, Models};
+pub use spec::{AlbedoSpec, Domain, SIGMA_MAX};
+
+/// Most channels that an integrand has.
+pub const CHANNELS: usize = 3;
+
+/// A material and a view of it: a place on the axes of a table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// γ, on tables that have such an axis; else ∞, which their view does not depend on.
+    pub gamma: f64,
+    /// σ, or the roughness that a lobe shows to the azimuth.
+    pub sigma: f64,
+    /// Index of the dense side of a dielectric over the thin one.
+    pub eta: f64,
+    /// Azimuth of the view, radians.
+    pub phi: f64,
+    /// cos θ of the view.
+    pub cos: f64,
+}
+
+impl Site {
+    /// The place at a coordinate along each axis.
+    pub fn new(axes: &[Axis], at: &[f64]) -> Self {
+        let mut site = Self { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi: 0.0, cos: f64::NAN };
+        for (axis, &t) in axes.iter().zip(at) {
+            let quantity = || axis.quantity(t).expect("an axis of a quantity");
+            match axis.mapping {
+                Mapping::LogShape(_) => site.gamma = quantity(),
+                Mapping::LogRoughness(_) => site.sigma = quantity(),
+                Mapping::ReflectanceRoot => site.eta = quantity(),
+                Mapping::Azimuth(azimuth) => {
+                    let azimuth = azimuth.bind(axis.len());
+                    let [c, s] = azimuth.direction(t);
+                    (site.phi, site.sigma) = (azimuth.quantity(t), azimuth.sigma(c, s));
+                }
+                Mapping::ViewBlend(view) => site.cos = view.bind(site.sigma, site.gamma).quantity(t),
+                Mapping::CriticalBlend(view) => {
+                    site.cos = view.bind(site.sigma, site.gamma, 1.0 / site.eta).quantity(t);
+                }
+                _ => unreachable!("no axis of an albedo"),
+            }
+        }
+        site
+    }
+
+    /// The direction of the view.
+    pub fn view(&self) -> Vec3 {
+        let sin = ((1.0 - self.cos) * (1.0 + self.cos)).sqrt();
+        let (s, c) = libm::sincos(self.phi);
+        Vec3::new((sin * c) as f32, (sin * s) as f32, self.cos as f32)
+    }
+
+    /// All places of a table, the last axis fastest.
+    pub(crate) fn all(axes: &[Axis]) -> Vec<Self> {
+        let mut at: Vec<Vec<f64>> = vec![Vec::new()];
+        for axis in axes {
+            let longer = |t: &Vec<f64>| -> Vec<Vec<f64>> {
+                axis.nodes.iter().map(|&node| [&t[..], &[node]].concat()).collect()
+            };
+            at = at.iter().flat_map(longer).collect();
+        }
+        at.into_par_iter().map(|at| Self::new(axes, &at)).collect()
+    }
+}
+
+impl fmt::Display for Site {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { gamma, sigma, eta, phi, cos } = self;
+        write!(f, "sigma {sigma}, gamma {gamma}, cos_theta {cos}, azimuth {phi}")?;
+        if eta.is_nan() { Ok(()) } else { write!(f, ", eta {eta}") }
+    }
+}
+
+/// Why a bake gave up.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BakeError {
+    /// A parameter outside the domain of the model.
+    Parameter(ParameterError),
+    /// A node whose E is not a number, or above 1 by more than its error: a fault of the quadrature, which must not reach a table.
+    Albedo {
+        /// Where.
+        at: Site,
+        /// The value.
+        value: f64,
+    },
+    /// A node whose error estimate stayed above what is allowed.
+    Accuracy {
+        /// Where.
+        at: Site,
+        /// The estimate.
+        error: f64,
+    },
+    /// The lobe has no such albedo.
+    Lobe(String),
+    /// The tables would not load.
+    Table(LoadError),
+}
+
+impl fmt::Display for BakeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter(why) => why.fmt(f),
+            Self::Albedo { at, value } => {
+                write!(f, "albedo {value} at {at}: it must lie in [0, 1]; please report it")
+            }
+            Self::Accuracy { at, error } => {
+                write!(f, "quadrature error {error:e} at {at}: raise the tolerance")
+            }
+            Self::Lobe(why) => why.fmt(f),
+            Self::Table(why) => why.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for BakeError {}
+
+impl From<ParameterError> for BakeError {
+    fn from(why: ParameterError) -> Self {
+        Self::Parameter(why)
+    }
+}
+
+impl From<LoadError> for BakeError {
+    fn from(why: LoadError) -> Self {
+        Self::Table(why)
+    }
+}
+
+/// Bakes the tables of a specification: a directional albedo for each form of masking, and of the moments of the family the averages.
+///
+/// Each directional table has `quadrature_error`, the largest error estimate of a node, in its certificate.
+///
+/// # Errors
+/// [`BakeError`] if a node is not a sound albedo or not accurate enough, or the specification is out of the domain.
+pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
+    Ok(bake_in(spec, &[spec.precision])?.concat())
+}
+
+/// The same in each of some precisions, from one pass over the nodes, which takes nearly all the time.
+///
+/// # Errors
+/// As [`bake`].
+pub fn bake_in(spec: &AlbedoSpec, precisions: &[Precision]) -> Result<Vec<Vec<Table>>, BakeError> {
+    let sites = Site::all(&spec.axes);
+    let gammas = sites.iter().map(|site| site.gamma);
+    Models::with(&spec.lobe, gammas, spec.tolerance, |models| {
+        let integrand = Integrand::new(&spec.reflectance)?;
+        let nodes = sites
+            .par_iter()
+            .map(|site| node(spec, &integrand, models.at(site), site))
+            .collect::<Result<Vec<Node>, BakeError>>()?;
+        let rounded = |&precision: &Precision| {
+            let spec = AlbedoSpec { precision, ..spec.clone() };
+            let tables = spec.maskings.iter().map(|&masking| tables(&spec, &nodes, masking));
+            Ok(tables.collect::<Result<Vec<_>, BakeError>>()?.concat())
+        };
+        precisions.iter().map(rounded).collect()
+    })
+}
+
+/// What a node holds for both forms of masking, and its error estimate.
+struct Node {
+    values: Albedo<CHANNELS>,
+    /// μ/(μ + A), of lobes whose G1(v) is clamped.
+    clamp: Option<f64>,
+}
+
+/// Error allowed in a node, in units of the one aimed at: narrow lobes with long tails seen at grazing, kinks of masking that is
+/// clamped and of total reflection take the quadrature to its last order. What was reached stands in the certificate.
+const SLACK: f64 = 100.0;
+/// Less than this of the microsurface is seen, E is less still, and the quotient of the two is none.
+const UNSEEN: f64 = 1e-6;
+
+fn node(spec: &AlbedoSpec, integrand: &Integrand, model: &Model<'_>, site: &Site) -> Result<Node, BakeError> {
+    let mut values = integrand.at(model, site)?;
+    let ratio = model.area_ratio(site);
+    let clamp = ratio.map(|ratio| 1.0 / (1.0 + ratio));
+    // What the clamp of G1(v) leaves is taken out.
+    let share = ratio.unwrap_or(1.0).min(1.0);
+    if share < UNSEEN {
+        (values.uncorrelated, values.height_correlated) = Default::default();
+        return Ok(Node { values, clamp });
+    }
+    if !(values.error <= SLACK * spec.tolerance) {
+        return Err(BakeError::Accuracy { at: *site, error: values.error });
+    }
+    for form in [&mut values.uncorrelated, &mut values.height_correlated] {
+        form.iter_mut().for_each(|x| *x /= share);
+        let sound = |x: f64| x >= -values.error / share && x <= 1.0 + (values.error + spec.tolerance) / share;
+        // Not clamped before: a wrong sum must be seen.
+        match spec.reflectance {
+            Reflectance::Moments => {
+                let e = form[0] + form[1];
+                if !sound(e) {
+                    return Err(BakeError::Albedo { at: *site, value: e });
+                }
+                let mirror = weights(site.cos);
+                // Near normal incidence on a smooth surface 1 − E is far below what quadrature is asked for.
+                *form = [e - 1.0, form[1] - e * mirror[1], form[2] - e * mirror[2]];
+            }
+            _ => {
+                if let Some(&value) = form.iter().find(|x| !sound(**x)) {
+                    return Err(BakeError::Albedo { at: *site, value });
+                }
+                // Outside by less than the error of the quadrature is at the end.
+                form.iter_mut().for_each(|x| *x = x.clamp(0.0, 1.0));
+            }
+        }
+    }
+    Ok(Node { values, clamp })
+}
+
+/// The tables of one form of masking.
+fn tables(spec: &AlbedoSpec, nodes: &[Node], masking: Masking) -> Result<Vec<Table>, BakeError> {
+    let channels = spec.reflectance.channels().len();
+    let values = |node: &Node| {
+        node.values.of(masking)[..channels].iter().copied().chain(node.clamp).collect::<Vec<f64>>()
+    };
+    let directional = Table {
+        name: spec.name(Kind::Albedo, masking),
+        kind: Kind::Albedo,
+        subject: spec.subject(masking),
+        axes: spec.axes.clone(),
+        channels: spec.channels(),
+        values: nodes.iter().flat_map(values).map(|x| x as f32).collect(),
+        precision: Precision::F32,
+        certificate: [(
+            "quadrature_error".to_string(),
+            nodes.iter().map(|node| node.values.error).fold(0.0, f64::max),
+        )]
+        .into(),
+    }
+    .rounded(spec.precision);
+    let average = spec.has_averages().then(|| average(spec, &directional, masking)).transpose()?;
+    Ok([directional].into_iter().chain(average).collect())
+}
+
+/// The averages of a table of moments over γ, σ and the view.
+fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<Table, BakeError> {
+    directional.validate()?;
+    let axes = spec.axes[..2].to_vec();
+    let (gammas, sigmas) = (axes[0].quantities(), axes[1].quantities());
+    // Nodes beyond what is promised are bound as well.
+    let mut whole = directional.clone();
+    whole.subject.covers = spec.everywhere();
+    let at = |(gamma, sigma): (f64, f64)| {
+        let bound = Bound::bind(&whole, sigma, gamma);
+        bound.map(|bound| bound.integrate()).map_err(|why| BakeError::Lobe(why.to_string()))
+    };
+    let pairs = gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| (gamma, sigma)));
+    let values = pairs.map(at).collect::<Result<Vec<_>, _>>()?;
+    Ok(Table {
+        name: spec.name(Kind::AlbedoAverage, masking),
+        kind: Kind::AlbedoAverage,
+        axes,
+        values: values.concat(),
+        precision: Precision::F32,
+        certificate: Default::default(),
+        ..directional.clone()
+    })
+}
+
+/// The view coordinate of lobes that are one material: γ is known, so that readers need none.
+fn view_of(gamma: f64) -> ViewBlend {
+    ViewBlend::BAKED.of_shape(gamma)
+}

@@ -1,0 +1,293 @@
+//! What albedo tables are to be baked: the lobe, the reflectance, and the nodes.
+
+use microfacet_common::shape::s_of_gamma;
+use microfacet_sampler::axis::lagrange::nodes_read;
+use microfacet_sampler::axis::{
+    CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
+};
+use microfacet_sampler::{
+    Axis, Covered, Interpolation, Kind, Mapping, Masking, Precision, Reflectance, Side, Subject,
+};
+
+use super::{BakeError, Lobe, view_of};
+use crate::bake::{joined_name, names};
+use crate::scene::Interval;
+use crate::spec::{GAMMA_MIN, Quality};
+
+/// Smallest σ node; what is smoother is a mirror.
+const SIGMA_MIN: f64 = LogRoughness::BAKED.first;
+/// Largest σ of the general tables.
+pub const SIGMA_MAX: f64 = 3.0;
+/// Along every axis.
+const INTERPOLATION: Interpolation = Interpolation::Lagrange6;
+
+/// The round materials that tables are baked for: they are measured there, and need hold nowhere else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// Shapes.
+    pub gamma: Interval,
+    /// Roughnesses, σx = σy.
+    pub sigma: Interval,
+}
+
+impl Domain {
+    /// γ ∈ [1.501, ∞] and σ ∈ [0, 3].
+    pub const GENERAL: Self = Self {
+        gamma: Interval { min: GAMMA_MIN, max: f64::INFINITY },
+        sigma: Interval { min: 0.0, max: SIGMA_MAX },
+    };
+
+    /// Whether every material of `other` is one of this.
+    pub fn contains(&self, other: &Self) -> bool {
+        let within = |a: Interval, b: Interval| a.contains(b.min) && a.contains(b.max);
+        within(self.gamma, other.gamma) && within(self.sigma, other.sigma)
+    }
+
+    /// The smallest that contains both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self { gamma: self.gamma.union(other.gamma), sigma: self.sigma.union(other.sigma) }
+    }
+
+    /// What a table's description says of it.
+    pub fn covered(&self) -> Covered {
+        let s = [s_of_gamma(self.gamma.max), s_of_gamma(self.gamma.min)];
+        Covered { s, sigma: Some([self.sigma.min, self.sigma.max]) }
+    }
+
+    /// What names of tables say of it; nothing for the general ones.
+    pub(super) fn label(&self) -> String {
+        let part = |name: &str, Interval { min, max }: Interval| {
+            if min == max { format!("{name}_{min}") } else { format!("{name}_{min}_to_{max}") }
+        };
+        if *self == Self::GENERAL {
+            String::new()
+        } else {
+            format!("{}_{}", part("gamma", self.gamma), part("sigma", self.sigma))
+        }
+    }
+}
+
+/// Albedo tables to bake, one for each of some forms of masking, and of moments of the family one more of averages.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlbedoSpec {
+    /// Whose.
+    pub lobe: Lobe,
+    /// Under which reflectance.
+    pub reflectance: Reflectance,
+    /// The forms; both cost hardly more than one.
+    pub maskings: Vec<Masking>,
+    /// The axes, the view last.
+    pub axes: Vec<Axis>,
+    /// Error aimed at in every node.
+    pub tolerance: f64,
+    /// How values are stored.
+    pub precision: Precision,
+}
+
+/// Numbers of nodes that go with a quality, found by measuring.
+struct Counts {
+    /// Of the axes of the family.
+    shapes: usize,
+    roughnesses: usize,
+    views: usize,
+    /// Of all indices of refraction.
+    indices: usize,
+    /// Of a quarter of the azimuths, 2ᵏ + 1, and of the views at each: the smallest table of a lobe that is tried.
+    azimuths: usize,
+    views_of_lobes: usize,
+    /// Error aimed at in every node.
+    tolerance: f64,
+}
+
+impl Counts {
+    const fn of(quality: Quality) -> Self {
+        let ([shapes, roughnesses, views, indices], [azimuths, views_of_lobes], tolerance) = match quality {
+            Quality::Draft => ([16, 22, 20, 20], [5, 17], 1e-5),
+            Quality::Default => ([24, 38, 33, 32], [9, 33], 1e-6),
+            Quality::High => ([44, 68, 58, 48], [17, 65], 1e-7),
+        };
+        Self { shapes, roughnesses, views, indices, azimuths, views_of_lobes, tolerance }
+    }
+}
+
+impl AlbedoSpec {
+    /// Tables of a quality. Those of a part of the family are cut out of the general ones: one node for a single γ or σ, else the nodes that are
+    /// read there, so that the values in between are those of the general tables. Those of other lobes are the smallest that are tried.
+    ///
+    /// # Errors
+    /// [`BakeError`] for an ellipsoid that is none.
+    pub fn new(
+        lobe: Lobe,
+        reflectance: Reflectance,
+        maskings: Vec<Masking>,
+        quality: Quality,
+        precision: Precision,
+    ) -> Result<Self, BakeError> {
+        let counts = Counts::of(quality);
+        let mut axes = match (&lobe, lobe.azimuth()?) {
+            (Lobe::Family(domain), _) => materials(domain, &counts),
+            (_, Some(azimuth)) => {
+                let count = match (lobe.is_round(), azimuth.fold) {
+                    (true, _) => 1,
+                    (_, true) => counts.azimuths,
+                    _ => 4 * (counts.azimuths - 1),
+                };
+                let axis = Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count);
+                vec![Axis { unit: "rad".into(), ..axis }]
+            }
+            (_, None) => unreachable!("lobes that are one material have azimuths"),
+        };
+        axes.extend(reflectance.indices().map(|ends| {
+            let nodes = even_nodes(0.0, 1.0, counts.indices);
+            let [from, to] = ends.map(|eta| ReflectanceRoot.coordinate(eta));
+            Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&nodes, from, to))
+        }));
+        let (view, views) = match lobe {
+            Lobe::Family(_) if quality == Quality::High => (ViewBlend::CLOSE, counts.views),
+            Lobe::Family(_) => (ViewBlend::BAKED, counts.views),
+            _ => (view_of(lobe.tail()), counts.views_of_lobes),
+        };
+        axes.push(if reflectance.side() == Some(Side::Dense) {
+            // Everything turns where total reflection sets in: two halves that share the node there.
+            let mapping = Mapping::CriticalBlend(CriticalBlend::BAKED);
+            Axis::placed("view", mapping, INTERPOLATION, 2 * views - 1)
+        } else {
+            Axis::placed("view", Mapping::ViewBlend(view), INTERPOLATION, views)
+        });
+        Ok(Self { lobe, reflectance, maskings, axes, tolerance: counts.tolerance, precision })
+    }
+
+    /// The moments of the whole family, for both forms of masking.
+    pub fn general(quality: Quality, precision: Precision) -> Self {
+        let lobe = Lobe::Family(Domain::GENERAL);
+        Self::new(lobe, Reflectance::Moments, Masking::ALL.into(), quality, precision)
+            .expect("the family is no ellipsoid")
+    }
+
+    /// The same with an axis twice as dense.
+    #[must_use]
+    pub fn refined(&self, axis: usize) -> Self {
+        let mut finer = self.clone();
+        let Axis { name, unit, mapping, interpolation, nodes } = &self.axes[axis];
+        let closed = matches!(mapping, Mapping::Azimuth(azimuth) if !azimuth.fold);
+        let count = if closed { 2 * nodes.len() } else { 2 * nodes.len() - 1 };
+        finer.axes[axis] = Axis { unit: unit.clone(), ..Axis::placed(name, *mapping, *interpolation, count) };
+        finer
+    }
+
+    /// How many times an axis may be [`refined`](Self::refined): how many nodes it takes depends on the material, but for the moments of the
+    /// family, whose nodes were found by measuring.
+    pub fn doublings(&self) -> u32 {
+        match (&self.lobe, self.reflectance) {
+            (Lobe::Family(_), Reflectance::Moments) => 0,
+            // What the clamp of G1(l) leaves of a kink no number of nodes resolves well, nor the onset of total reflection on smooth surfaces.
+            (Lobe::Family(_) | Lobe::Ellipsoid { .. }, _) => 2,
+            _ => 4,
+        }
+    }
+
+    /// The error of the whole table that goes with that of a node.
+    pub fn target(&self) -> f64 {
+        300.0 * self.tolerance
+    }
+
+    /// Axes that can be [`refined`](Self::refined): those of the view, where there are several nodes.
+    pub fn refinable(&self) -> Vec<usize> {
+        let of_view = |axis: &Axis| {
+            axis.len() > 1
+                && matches!(
+                    axis.mapping,
+                    Mapping::Azimuth(_) | Mapping::ViewBlend(_) | Mapping::CriticalBlend(_)
+                )
+        };
+        (0..self.axes.len()).filter(|&i| of_view(&self.axes[i])).collect()
+    }
+
+    /// Places at which the albedo is integrated.
+    pub fn nodes(&self) -> usize {
+        self.axes.iter().map(Axis::len).product()
+    }
+
+    /// Names of the channels.
+    pub fn channels(&self) -> Vec<String> {
+        let clamp = matches!(self.lobe, Lobe::Ellipsoid { .. }).then(|| Kind::CLAMP.into());
+        names(self.reflectance.channels()).into_iter().chain(clamp).collect()
+    }
+
+    /// Whether there are tables of averages, too.
+    pub fn has_averages(&self) -> bool {
+        matches!(self.lobe, Lobe::Family(_)) && self.reflectance == Reflectance::Moments
+    }
+
+    /// How many tables it makes.
+    pub fn tables(&self) -> usize {
+        (1 + usize::from(self.has_averages())) * self.maskings.len()
+    }
+
+    /// Bytes of the values as they are stored.
+    pub fn bytes(&self) -> usize {
+        let one = self.channels().len() * self.precision.bytes() * self.nodes();
+        let averages = self.axes[..2].iter().map(Axis::len).product::<usize>()
+            * Kind::MOMENTS.len()
+            * Precision::F32.bytes();
+        self.maskings.len() * (one + if self.has_averages() { averages } else { 0 })
+    }
+
+    /// What the description of a table says.
+    pub fn subject(&self, masking: Masking) -> Subject {
+        let covers = if let Lobe::Family(domain) = &self.lobe { Some(domain.covered()) } else { None };
+        let (masking, reflectance) = (Some(masking), Some(self.reflectance));
+        Subject { lobe: self.lobe.entry(), masking, reflectance, covers }
+    }
+
+    /// All that the axes of the family reach, nodes that only interpolation reads included.
+    pub(super) fn everywhere(&self) -> Option<Covered> {
+        let ends = |i: usize| {
+            let mut ends = self.axes[i].ends().map(|t| self.axes[i].quantity(t).unwrap_or(f64::NAN));
+            ends.sort_by(f64::total_cmp);
+            ends
+        };
+        let ([low, high], sigma) = (ends(0), ends(1));
+        Some(Covered { s: [s_of_gamma(high), s_of_gamma(low)], sigma: Some(sigma) })
+    }
+
+    /// The name of a table.
+    pub fn name(&self, kind: Kind, masking: Masking) -> String {
+        // What nearly all tables are under need not be said.
+        let reflectance = match self.reflectance {
+            Reflectance::Moments => String::new(),
+            other => other.label(),
+        };
+        joined_name(&[kind.name(), masking.name(), &reflectance, &self.lobe.label()])
+    }
+}
+
+/// The axes of γ and σ that a domain needs.
+fn materials(domain: &Domain, counts: &Counts) -> Vec<Axis> {
+    let Domain { gamma, sigma } = domain;
+    let shape = |gamma: f64| LogShape::BAKED.coordinate(gamma);
+    let roughness = |sigma: f64| LogRoughness::BAKED.coordinate(sigma);
+    let shapes = even_nodes(shape(f64::INFINITY), shape(GAMMA_MIN), counts.shapes);
+    let roughnesses = even_nodes(roughness(SIGMA_MIN), roughness(SIGMA_MAX), counts.roughnesses);
+    // What is smoother than the first node is a mirror.
+    let [from, to] = if sigma.min < SIGMA_MIN {
+        [SIGMA_MIN, sigma.max.max(2.0 * SIGMA_MIN)]
+    } else {
+        [sigma.min, sigma.max]
+    };
+    let axis = |name: &str, mapping, nodes| Axis::new(name, mapping, INTERPOLATION, nodes);
+    vec![
+        axis("gamma", Mapping::LogShape(LogShape::BAKED), cut(&shapes, shape(gamma.max), shape(gamma.min))),
+        axis(
+            "sigma",
+            Mapping::LogRoughness(LogRoughness::BAKED),
+            cut(&roughnesses, roughness(from), roughness(to)),
+        ),
+    ]
+}
+
+/// The nodes that the polynomial reads anywhere in [from, to]; a single value is a node itself.
+fn cut(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
+    if from == to { vec![from] } else { nodes_read(nodes, from, to, INTERPOLATION.window()).to_vec() }
+}

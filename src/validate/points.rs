@@ -1,0 +1,231 @@
+//! Places at which tables of albedos are measured: corners, the middle of every cell along every edge, faces, and all over.
+//!
+//! Places drawn at random miss edges, where windows of a polynomial are one-sided and errors largest: so those are named. All are fixed, so that
+//! certificates are part of a table's reproducible bytes.
+
+use microfacet_sampler::axis::LogRoughness;
+use microfacet_sampler::{Axis, Mapping};
+
+use crate::bake::albedo::{AlbedoSpec, Lobe, Site};
+
+/// Smallest σ and cos θ of the domain that figures are promised for.
+const PROMISED: (f64, f64) = (0.01, 0.02);
+/// Smallest σ that is no mirror.
+const SMOOTHEST: f64 = LogRoughness::BAKED.first;
+/// Places inside: as many as a fraction of the nodes, within limits.
+const NODES_A_POINT: usize = 4;
+const FEWEST: usize = 480;
+const MOST: usize = 6144;
+
+/// So many of the last cells hold the cusp at the normal.
+const LAST_CELLS: f64 = 2.0;
+
+/// A place to measure at.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// Where.
+    pub site: Site,
+    /// Whether figures are promised there.
+    pub promised: bool,
+}
+
+/// What of an axis is promised, in its coordinate.
+struct Range {
+    ends: Vec<f64>,
+    /// The middles of the cells between.
+    cells: Vec<f64>,
+}
+
+impl Range {
+    fn new(axis: &Axis, spec: &AlbedoSpec) -> Self {
+        let of = |ends: [f64; 2]| {
+            let mut ends = ends.map(|x| axis.coordinate(x).unwrap_or(f64::NAN));
+            ends.sort_by(f64::total_cmp);
+            ends
+        };
+        let [low, high] = match (axis.mapping, &spec.lobe) {
+            (Mapping::LogShape(_), Lobe::Family(domain)) => of([domain.gamma.min, domain.gamma.max]),
+            (Mapping::LogRoughness(_), Lobe::Family(domain)) => {
+                let max = domain.sigma.max;
+                of([PROMISED.0.min(max).max(domain.sigma.min).max(SMOOTHEST), max.max(SMOOTHEST)])
+            }
+            (Mapping::ReflectanceRoot, _) => of(spec.reflectance.indices().unwrap_or([f64::NAN; 2])),
+            (Mapping::Azimuth(_), _) if axis.len() == 1 => [0.0; 2],
+            // The ends of a circle are one.
+            (Mapping::Azimuth(azimuth), _) => [0.0, if azimuth.fold { 1.0 } else { 0.25 }],
+            _ => [0.0, 1.0],
+        };
+        let whole = match axis.mapping {
+            Mapping::Azimuth(azimuth) if !azimuth.fold && axis.len() > 1 => [0.0, 1.0],
+            _ => [low, high],
+        };
+        let mut nodes = axis.nodes.clone();
+        nodes.push(whole[1]);
+        let middle = |pair: &[f64]| 0.5 * (pair[0].max(whole[0]) + pair[1].min(whole[1]));
+        let inside = |pair: &&[f64]| pair[1] > whole[0] && pair[0] < whole[1];
+        let cells = nodes.windows(2).filter(inside).map(middle).collect();
+        let ends = if low == high { vec![low] } else { vec![low, high] };
+        Self { ends, cells }
+    }
+
+    /// x ∈ [0, 1] of the way from end to end; all around a circle.
+    fn at(&self, x: f64) -> f64 {
+        let [first, last] = [self.ends[0], self.ends[self.ends.len() - 1]];
+        let last = self.cells.last().map_or(last, |cell| cell.max(last));
+        first + x * (last - first)
+    }
+
+    /// The middle of a cell, x ∈ [0, 1] of the way through them; the place itself where there are none.
+    fn cell(&self, x: f64) -> f64 {
+        let i = (x * self.cells.len() as f64) as usize;
+        self.cells.get(i).copied().unwrap_or(self.ends[0])
+    }
+}
+
+/// How many places a certificate has.
+pub fn count(spec: &AlbedoSpec) -> usize {
+    let ranges = ranges(spec);
+    let ends = |but: usize| -> usize {
+        ranges.iter().enumerate().filter(|(i, _)| *i != but).map(|(_, range)| range.ends.len()).product()
+    };
+    let along: usize = ranges.iter().enumerate().map(|(i, range)| range.cells.len() * ends(i)).sum();
+    // Three more views of each corner and edge are outside.
+    3 * ends(ranges.len()) + 3 * along + interior_count(spec)
+}
+
+fn interior_count(spec: &AlbedoSpec) -> usize {
+    (spec.nodes() / NODES_A_POINT).clamp(FEWEST, MOST)
+}
+
+fn ranges(spec: &AlbedoSpec) -> Vec<Range> {
+    spec.axes.iter().map(|axis| Range::new(axis, spec)).collect()
+}
+
+/// A view by its coordinate or its cosine.
+#[derive(Clone, Copy)]
+enum View {
+    At(f64),
+    Cos(f64),
+}
+
+fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
+    let t = if let View::At(t) = view { t } else { 1.0 };
+    let mut site = Site::new(&spec.axes, &[material, &[t]].concat());
+    if let View::Cos(cos) = view {
+        site.cos = cos;
+    }
+    let smoothest = match &spec.lobe {
+        // Where all materials are smoother, it is the roughest that counts: without a place there would be no figures.
+        Lobe::Family(domain) => PROMISED.0.min(domain.sigma.max) * (1.0 - 1e-9),
+        _ => 0.0,
+    };
+    let promised = site.cos as f32 >= PROMISED.1 as f32 && site.sigma >= smoothest;
+    Point { site, promised }
+}
+
+/// All corners of the promised domain, and along each of its edges the middle of every cell.
+pub fn edges(spec: &AlbedoSpec) -> Vec<Point> {
+    let ranges = ranges(spec);
+    let (view, materials) = ranges.split_last().expect("the view is an axis");
+    // The ends of what is promised, and grazing ones outside, down to the horizon itself.
+    let views = [1.0, PROMISED.1, 1e-4, 3e-7, 0.0].map(View::Cos);
+    let mut points = Vec::new();
+    let corners = product(materials, None);
+    for corner in &corners {
+        points.extend(views.iter().map(|&view| point(spec, corner, view)));
+        points.extend(view.cells.iter().map(|&t| point(spec, corner, View::At(t))));
+    }
+    for (i, _) in materials.iter().enumerate() {
+        for edge in product(materials, Some(i)) {
+            points.extend(views.iter().map(|&view| point(spec, &edge, view)));
+        }
+    }
+    points
+}
+
+/// All combinations of the ends, but of one axis of the middles of its cells.
+fn product(materials: &[Range], along: Option<usize>) -> Vec<Vec<f64>> {
+    let mut all: Vec<Vec<f64>> = vec![Vec::new()];
+    for (i, range) in materials.iter().enumerate() {
+        let here = if along == Some(i) { &range.cells } else { &range.ends };
+        let longer = |t: &Vec<f64>| here.iter().map(|&x| [&t[..], &[x]].concat()).collect::<Vec<_>>();
+        all = all.iter().flat_map(longer).collect();
+    }
+    all
+}
+
+/// Places all over: a third anywhere, a third on a face with the view in the middle of a cell, and a third with some axis in the middle of a
+/// cell; an eighth of all outside of what is promised. Where they are does not depend on how many views and azimuths there are, but for
+/// the middles of cells.
+pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
+    let ranges = ranges(spec);
+    let (view, materials) = ranges.split_last().expect("the view is an axis");
+    let place = |i: usize| {
+        let x = low_discrepancy(i);
+        let of = |k: usize, range: &Range| {
+            let x = x[k];
+            match (i % 3, i / 3 % (2 * ranges.len())) {
+                (1, j) if j / 2 == k => {
+                    if j % 2 == 0 {
+                        range.ends[0]
+                    } else {
+                        range.ends[range.ends.len() - 1]
+                    }
+                }
+                (2, j) if j / 2 == k => range.cell(x),
+                // Preparing a shape takes longer than a view of it: so there are a few.
+                _ if matches!(spec.axes[k].mapping, Mapping::LogShape(_)) => some_shape(range, x),
+                _ => range.at(x),
+            }
+        };
+        let material: Vec<f64> = materials.iter().enumerate().map(|(k, range)| of(k, range)).collect();
+        let b = x[materials.len()];
+        let at = match (i % 8, i % 3) {
+            (0, _) => return outside(spec, material, x, i % 16 == 8),
+            (_, 1) if i / 3 % (2 * ranges.len()) / 2 == materials.len() => View::Cos(PROMISED.1),
+            (_, 1) => View::At(view.cell(b)),
+            // Near the normal, where masking sets in with a cusp, in the logarithm, and all over.
+            (1 | 5, _) => View::At(1.0 - LAST_CELLS * b / (spec.axes[materials.len()].len() - 1) as f64),
+            (2 | 3, _) => View::Cos(libm::pow(PROMISED.1, b)),
+            _ => View::Cos(PROMISED.1 + (1.0 - PROMISED.1) * b),
+        };
+        point(spec, &material, at)
+    };
+    (0..interior_count(spec)).map(place).collect()
+}
+
+/// A shape: the ends, or one of three places in a cell.
+fn some_shape(range: &Range, x: f64) -> f64 {
+    let n = range.cells.len();
+    let i = (x * (2 * n + 1) as f64) as usize;
+    match range.cells.get(i / 2) {
+        // Between the middle of this cell and the one before.
+        Some(cell) if i % 2 == 0 && i > 0 => 0.62 * cell + 0.38 * range.cells[i / 2 - 1],
+        Some(cell) if i % 2 == 1 => *cell,
+        Some(_) => range.ends[0],
+        None => range.ends[range.ends.len() - 1],
+    }
+}
+
+/// A view that grazes, and if `smooth` of a surface smoother than is promised, where there are some, seen where it masks.
+fn outside(spec: &AlbedoSpec, mut material: Vec<f64>, x: [f64; 4], smooth: bool) -> Point {
+    if let Lobe::Family(domain) = spec.lobe
+        && domain.sigma.min <= SMOOTHEST
+        && smooth
+    {
+        let roughest = PROMISED.0.min(domain.sigma.max);
+        let sigma = roughest * libm::pow(SMOOTHEST / roughest, x[1]);
+        material[1] = spec.axes[1].coordinate(sigma).unwrap_or(material[1]);
+    }
+    let sigma = Site::new(&spec.axes, &[&material[..], &[1.0]].concat()).sigma;
+    let grazing = 1e-5 * sigma.min(0.1);
+    let cos = grazing * libm::pow(PROMISED.1 / grazing, x[material.len()]);
+    point(spec, &material, View::Cos(cos))
+}
+
+/// The i-th point of the additive recurrence in four dimensions (Roberts 2018), in [0, 1)⁴.
+fn low_discrepancy(i: usize) -> [f64; 4] {
+    // Powers of the reciprocal of the root of x⁵ = x + 1.
+    const ROOT: f64 = 1.167_303_978_261_418_7;
+    [1, 2, 3, 4].map(|k| (0.5 + libm::pow(ROOT, -f64::from(k)) * (i + 1) as f64).fract())
+}
