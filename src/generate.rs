@@ -201,6 +201,10 @@ fn add(
     })
 }
 
+/// Where views are all there is to refine, twice as many are kept if they err by no more than this share of what half as many do: else the error
+/// stands elsewhere, such as on an axis of the material.
+const WORTH: f64 = 0.8;
+
 /// The certified albedo tables of a specification in each of some precisions, with as many nodes of the view as the quality's error takes.
 pub(crate) fn albedo_tables(
     spec: &AlbedoSpec,
@@ -210,20 +214,22 @@ pub(crate) fn albedo_tables(
     // Single precision decides, which hardly rounds.
     let all = [&[Precision::F32], precisions].concat();
     let mut spec = spec.clone();
+    let mut coarser: Option<(f64, Vec<Vec<Table>>)> = None;
     for doubling in 0.. {
         let edges = albedo::edge_references(&spec).map_err(BakeError::Albedo)?;
         let references = [&interior[..], &edges].concat();
         let baked = bake::albedo::bake_in(&spec, &all).map_err(BakeError::Albedo)?;
-        let certify = |tables| Ok(albedo::certified(&spec, tables, &references)?);
+        let certify = |tables| albedo::certified(&spec, tables, &references).map_err(BakeError::Albedo);
         let mut sets = baked.into_iter().map(certify).collect::<Result<Vec<_>, BakeError>>()?;
         let full = sets.remove(0);
         let error = full.iter().map(worst_error).fold(0.0, f64::max);
-        if error <= spec.target() || doubling == spec.doublings() {
-            return Ok(sets);
+        let refinable = spec.refinable();
+        match coarser.take() {
+            Some((before, coarser)) if refinable.len() == 1 && error > WORTH * before => return Ok(coarser),
+            _ if error <= spec.target() || doubling == spec.doublings() => return Ok(sets),
+            _ => coarser = Some((error, sets)),
         }
         let mut coarsest = (0.0, spec.axes.len() - 1);
-        let refinable = spec.refinable();
-        // Whether there is a choice.
         for &axis in refinable.iter().filter(|_| refinable.len() > 1) {
             let missed = albedo::missed_by_half(&spec, &full[0], axis)?;
             if missed > coarsest.0 {

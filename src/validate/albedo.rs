@@ -13,7 +13,7 @@ use microfacet_sampler::{
 };
 
 use super::certificate::round_up;
-use super::points::{Point, edges, interior};
+use super::points::{Point, beside, edges, interior};
 use crate::bake::albedo::{AlbedoSpec, BakeError, CHANNELS, Integrand, Lobe, Models, Site, weights};
 
 /// Accuracy, in units of a node's, of the model's values that tables are judged by.
@@ -24,13 +24,13 @@ const FINEST_OF_KINKS: f64 = 1e-6;
 /// What the model says of one material and view.
 #[derive(Clone)]
 pub struct Reference {
+    point: Point,
+    /// As the run time gets it.
     site: Site,
     v: Vec3,
     exact: Albedo<CHANNELS>,
     /// |E − that of the round lobe that usually stands in|, if one does, by form of masking.
     shortcut: Option<[f64; 2]>,
-    /// Whether the figures are promised there.
-    promised: bool,
 }
 
 /// The model's values of the places inside, which do not depend on how many nodes there are.
@@ -56,9 +56,9 @@ fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, B
     let gammas = points.iter().map(|point| point.site.gamma);
     let stand_in = spec.lobe.stand_in().filter(|_| spec.reflectance == Reflectance::Moments);
     Models::with(&spec.lobe, gammas, tolerance, |models| {
-        let one = |Point { site, promised }: &Point| {
+        let one = |point: &Point| {
+            let site = &point.site;
             let model = models.at(site);
-            // As the run time gets it.
             let v = site.view();
             let phi = if v.z < 1.0 { libm::atan2(v.y.into(), v.x.into()) } else { site.phi };
             let site = Site { cos: v.z.into(), phi, ..*site };
@@ -68,7 +68,7 @@ fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, B
                 let total = |albedo: &Albedo<CHANNELS>, form| albedo.of(form)[..2].iter().sum::<f64>();
                 Masking::ALL.map(|form| (total(&round, form) - total(&exact, form)).abs())
             };
-            Ok(Reference { site, v, exact, shortcut: round.map(off), promised: *promised })
+            Ok(Reference { point: point.clone(), site, v, exact, shortcut: round.map(off) })
         };
         points.par_iter().map(one).collect()
     })
@@ -78,12 +78,12 @@ fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, B
 /// round stand-in would be off. What a bake has left there is kept.
 ///
 /// # Errors
-/// [`BindError`] if a table does not cover what it is for.
+/// [`BakeError`] if a table does not cover what it is for.
 pub fn certified(
     spec: &AlbedoSpec,
     tables: Vec<Table>,
     references: &[Reference],
-) -> Result<Vec<Table>, BindError> {
+) -> Result<Vec<Table>, BakeError> {
     let directional: Vec<Table> = tables.iter().filter(|table| table.kind == Kind::Albedo).cloned().collect();
     let of_form = |table: &Table| {
         let same = |other: &&Table| other.subject.masking == table.subject.masking;
@@ -108,7 +108,7 @@ fn figures(
     spec: &AlbedoSpec,
     table: &Table,
     references: &[Reference],
-) -> Result<BTreeMap<String, f64>, BindError> {
+) -> Result<BTreeMap<String, f64>, BakeError> {
     let masking = table.subject.masking.unwrap_or_default();
     // One material is bound once.
     let own = match (&spec.lobe, references.first()) {
@@ -128,13 +128,48 @@ fn figures(
         Ok(got.iter().zip(&exact).map(|(got, exact)| (got - exact).abs()).collect())
     };
     let errors = measured_at(references, measured)?;
-    let mut figures = summary(spec, &errors);
+    let found = climbed(spec, &errors, measured)?;
+    let found: Vec<Errors<'_>> = found.iter().map(|(at, errors)| (at, errors.clone())).collect();
+    let mut figures = summary(spec, &errors, &found);
     let form = Masking::ALL.iter().position(|form| *form == masking).unwrap_or(0);
-    let shortcuts = references.iter().filter(|at| at.promised).filter_map(|at| at.shortcut);
+    let shortcuts = references.iter().filter(|at| at.point.promised).filter_map(|at| at.shortcut);
     if let Some(worst) = shortcuts.map(|forms| forms[form]).reduce(f64::max) {
         figures.insert("shortcut_max_error".into(), round_up(worst));
     }
     Ok(figures)
+}
+
+/// The promised places that are seen on the way uphill from where each quantity errs most, with their errors: a largest error stands between
+/// the places that are named, and is found from the nearest.
+fn climbed(
+    spec: &AlbedoSpec,
+    errors: &[Errors<'_>],
+    measured: impl Fn(&Reference) -> Result<Vec<f64>, BindError> + Copy + Send + Sync,
+) -> Result<Vec<(Reference, Vec<f64>)>, BakeError> {
+    /// Steps in cells.
+    const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
+    let promised = || errors.iter().filter(|errors| errors.0.point.promised);
+    let tops = (0..quantities(spec).len()).filter_map(|i| {
+        let top = promised().max_by(|a, b| a.1[i].total_cmp(&b.1[i]))?;
+        Some((i, top.0.point.clone(), top.1[i]))
+    });
+    let mut tops: Vec<(usize, Point, f64)> = tops.collect();
+    let mut seen: Vec<(Reference, Vec<f64>)> = Vec::new();
+    for step in STEPS {
+        let around = tops.iter().flat_map(|(_, point, _)| beside(spec, point, step)).collect();
+        let references = references(spec, around)?;
+        let errors = measured_at(&references, measured)?;
+        for (i, point, error) in &mut tops {
+            if let Some(top) = errors.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))
+                && top.1[*i] > *error
+            {
+                (*point, *error) = (top.0.point.clone(), top.1[*i]);
+            }
+        }
+        let errors: Vec<Vec<f64>> = errors.into_iter().map(|(_, errors)| errors).collect();
+        seen.extend(references.into_iter().zip(errors));
+    }
+    Ok(seen)
 }
 
 fn measured_at(
@@ -153,18 +188,22 @@ fn quantities(spec: &AlbedoSpec) -> &'static [&'static str] {
     }
 }
 
-/// Largest and root-mean-square errors of each quantity, and where the largest of all stands.
-fn summary(spec: &AlbedoSpec, errors: &[Errors<'_>]) -> BTreeMap<String, f64> {
-    let mut figures = BTreeMap::from([("points".to_owned(), errors.len() as f64)]);
-    let (inside, outside): (Vec<_>, Vec<_>) = errors.iter().partition(|errors| errors.0.promised);
+/// Largest and root-mean-square errors of each quantity, and where the largest of all stands; the means are without the places `found` uphill.
+fn summary(spec: &AlbedoSpec, errors: &[Errors<'_>], found: &[Errors<'_>]) -> BTreeMap<String, f64> {
+    let points = errors.len() + found.len();
+    let mut figures = BTreeMap::from([("points".to_owned(), points as f64)]);
+    let (mut inside, outside): (Vec<_>, Vec<_>) = errors.iter().partition(|errors| errors.0.point.promised);
+    for (i, name) in quantities(spec).iter().enumerate() {
+        let squares: f64 = inside.iter().map(|errors| errors.1[i] * errors.1[i]).sum();
+        let rms = (squares / inside.len().max(1) as f64).sqrt();
+        figures.insert(format!("{name}_rms_error"), round_up(rms));
+    }
+    inside.extend(found);
     // A NaN is the worst error there is.
     let largest = |part: &[&Errors<'_>], i: usize| {
         part.iter().map(|errors| errors.1[i]).max_by(f64::total_cmp).map(round_up)
     };
     for (i, name) in quantities(spec).iter().enumerate() {
-        let squares: f64 = inside.iter().map(|errors| errors.1[i] * errors.1[i]).sum();
-        let rms = (squares / inside.len().max(1) as f64).sqrt();
-        figures.insert(format!("{name}_rms_error"), round_up(rms));
         let parts = [("max_error", &inside), ("max_error_outside", &outside)];
         let max = |(what, part): (&str, &Vec<_>)| Some((format!("{name}_{what}"), largest(part, i)?));
         figures.extend(parts.into_iter().filter_map(max));
@@ -203,7 +242,7 @@ fn averages(
         Ok(got.iter().zip(exact).map(|(got, exact)| (got - exact).abs()).collect())
     };
     let errors = measured_at(references, measured)?;
-    let mut figures = summary(spec, &errors);
+    let mut figures = summary(spec, &errors, &[]);
     figures.remove("worst_cos_theta");
     Ok(figures)
 }

@@ -13,17 +13,19 @@ const PROMISED: (f64, f64) = (0.01, 0.02);
 /// Smallest σ that is no mirror.
 const SMOOTHEST: f64 = LogRoughness::BAKED.first;
 /// Places inside: as many as a fraction of the nodes, within limits.
-const NODES_A_POINT: usize = 4;
-const FEWEST: usize = 480;
+const NODES_A_POINT: usize = 8;
+const FEWEST: usize = 240;
 const MOST: usize = 6144;
 
 /// So many of the last cells hold the cusp at the normal.
 const LAST_CELLS: f64 = 2.0;
 
 /// A place to measure at.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Point {
-    /// Where.
+    /// Where, as coordinates along the axes.
+    at: Vec<f64>,
+    /// The same in quantities.
     pub site: Site,
     /// Whether figures are promised there.
     pub promised: bool,
@@ -110,9 +112,11 @@ enum View {
 
 fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
     let t = if let View::At(t) = view { t } else { 1.0 };
-    let mut site = Site::new(&spec.axes, &[material, &[t]].concat());
+    let mut at = [material, &[t]].concat();
+    let mut site = Site::new(&spec.axes, &at);
     if let View::Cos(cos) = view {
         site.cos = cos;
+        at[material.len()] = coordinate(&spec.axes[material.len()], &site);
     }
     let smoothest = match &spec.lobe {
         // Where all materials are smoother, it is the roughest that counts: without a place there would be no figures.
@@ -120,7 +124,41 @@ fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
         _ => 0.0,
     };
     let promised = site.cos as f32 >= PROMISED.1 as f32 && site.sigma >= smoothest;
-    Point { site, promised }
+    Point { at, site, promised }
+}
+
+/// The coordinate of a view, that of the first node below it.
+fn coordinate(axis: &Axis, Site { gamma, sigma, eta, cos, .. }: &Site) -> f64 {
+    match axis.mapping {
+        Mapping::ViewBlend(view) => {
+            let view = view.bind(*sigma, *gamma);
+            view.coordinate(cos.max(view.floor()))
+        }
+        Mapping::CriticalBlend(view) => {
+            let view = view.bind(*sigma, *gamma, 1.0 / eta);
+            view.coordinate(cos.max(view.floor()))
+        }
+        _ => unreachable!("the last axis is the view"),
+    }
+}
+
+/// Promised places beside one, a part of a cell away along each axis.
+pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
+    let mut points = Vec::new();
+    for (k, (axis, range)) in spec.axes.iter().zip(ranges(spec)).enumerate() {
+        let [first, last] = axis.ends();
+        let cell = (last - first) / (axis.nodes.len() - 1).max(1) as f64;
+        let [low, high] = [range.ends[0], range.ends[range.ends.len() - 1]];
+        let high = range.cells.last().map_or(high, |cell| cell.max(high));
+        for step in [-cells, cells] {
+            let mut at = point.at.clone();
+            at[k] = (at[k] + step * cell).clamp(low, high);
+            let (material, view) = at.split_at(at.len() - 1);
+            points.push(self::point(spec, material, View::At(view[0])));
+        }
+    }
+    points.retain(|other| other.promised && other.at != point.at);
+    points
 }
 
 /// All corners of the promised domain, and along each of its edges the middle of every cell.

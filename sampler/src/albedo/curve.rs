@@ -282,6 +282,8 @@ pub(super) fn within(cos_theta: f32) -> f32 {
     if cos_theta > 0.0 { cos_theta.min(1.0) } else { 0.0 }
 }
 
+/// Views below weigh less than rounding.
+const LOWEST: f64 = 1e-9;
 /// Width of a panel of −ln h.
 const WIDTH: f64 = 0.35;
 
@@ -290,7 +292,8 @@ fn over_views<const N: usize>(floor: f64, width: f64, quantities: impl Fn(f32) -
     // With h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and in its logarithm where
     // views graze and small roughness makes its difference. Views below the table's first weigh nothing.
     const RULE: [(f64, f64); 4] = gauss_legendre();
-    let panels = libm::ceil(libm::log(2.0 / floor) / width) as usize;
+    // A dielectric of index 1 seen from its dense side has no critical angle, and its first view is the horizon.
+    let panels = libm::ceil(libm::log(2.0 / floor.max(LOWEST)) / width) as usize;
     let mut sum = [0.0_f64; N];
     for panel in 0..panels {
         for (node, weight) in RULE {
@@ -322,4 +325,17 @@ pub(super) fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
         all.push(format!("{more} more"));
     }
     all.join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_average_down_to_the_horizon_ends() {
+        for floor in [0.0, 1e-12, 1e-5] {
+            let [one, cos] = over_views(floor, WIDTH, |cos| [1.0, f64::from(cos)]);
+            assert!((one - 1.0).abs() < 1e-6 && (cos - 2.0 / 3.0).abs() < 1e-6, "{floor}: {one} {cos}");
+        }
+    }
 }

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use microfacet_model::{Albedo, ParameterError};
 use microfacet_sampler::axis::ViewBlend;
 use microfacet_sampler::{
-    Albedo as Bound, Axis, Kind, LoadError, Mapping, Masking, Precision, Reflectance, Table,
+    Albedo as Bound, Axis, BindError, Kind, LoadError, Mapping, Masking, Precision, Reflectance, Table,
 };
 
 pub use integrand::{Integrand, weights};
@@ -116,6 +116,8 @@ pub enum BakeError {
     },
     /// The lobe has no such albedo.
     Lobe(String),
+    /// A table does not hold what it was baked for.
+    Bind(BindError),
     /// The tables would not load.
     Table(LoadError),
 }
@@ -131,6 +133,7 @@ impl fmt::Display for BakeError {
                 write!(f, "quadrature error {error:e} at {at}: raise the tolerance")
             }
             Self::Lobe(why) => why.fmt(f),
+            Self::Bind(why) => why.fmt(f),
             Self::Table(why) => why.fmt(f),
         }
     }
@@ -141,6 +144,12 @@ impl std::error::Error for BakeError {}
 impl From<ParameterError> for BakeError {
     fn from(why: ParameterError) -> Self {
         Self::Parameter(why)
+    }
+}
+
+impl From<BindError> for BakeError {
+    fn from(why: BindError) -> Self {
+        Self::Bind(why)
     }
 }
 
@@ -267,12 +276,9 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
     // Nodes beyond what is promised are bound as well.
     let mut whole = directional.clone();
     whole.subject.covers = spec.everywhere();
-    let at = |(gamma, sigma): (f64, f64)| {
-        let bound = Bound::bind(&whole, sigma, gamma);
-        bound.map(|bound| bound.integrate()).map_err(|why| BakeError::Lobe(why.to_string()))
-    };
+    let at = |(gamma, sigma): (f64, f64)| Ok(Bound::bind(&whole, sigma, gamma)?.integrate());
     let pairs = gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| (gamma, sigma)));
-    let values = pairs.map(at).collect::<Result<Vec<_>, _>>()?;
+    let values = pairs.map(at).collect::<Result<Vec<_>, BindError>>()?;
     Ok(Table {
         name: spec.name(Kind::AlbedoAverage, masking),
         kind: Kind::AlbedoAverage,
