@@ -1,8 +1,12 @@
-//! The interpolation error of tables, measured off their grid through the run-time sampler itself in f32.
+//! The interpolation error of tables, measured off their grid through the run-time sampler itself
+//! in f32.
 //!
-//! A table carries the figures found here as its certificate. The points are a fixed low-discrepancy sequence, so
-//! the certificate is part of the table's reproducible bytes.
+//! A table carries the figures found here as its certificate. All places are fixed, so the
+//! certificate is part of the table's reproducible bytes: the ends of the axes and the middles of
+//! cells by name, a low-discrepancy sequence, and climbs from the worst of these to the summits
+//! beside them, since the summit of a cell is where no sequence looks.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use glam::Vec3;
@@ -10,55 +14,206 @@ use rayon::prelude::*;
 
 use microfacet_common::shape::{S_END, gamma_of_s, s_of_gamma};
 use microfacet_model::{Shape, SignedUnit, UnitView, VisibleSlope, across_cdf};
-use microfacet_sampler::axis::HalfTangent;
-use microfacet_sampler::{BindError, Interpolation, Kind, StudentT, Table, Tables};
+use microfacet_sampler::axis::{HalfTangent, MirroredRoot};
+use microfacet_sampler::{Axis, BindError, Interpolation, Kind, Mapping, StudentT, Table, Tables};
 
 use crate::spec::GAMMA_WHOLE;
-
-/// Largest and root-mean-square error over a set of points, with the point of the largest.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Error {
-    /// Largest absolute error.
-    pub max: f64,
-    /// Root mean square.
-    pub rms: f64,
-    /// γ, z = cot θ/σ and u where the largest was seen; u is NaN for quantities without one.
-    pub at: [f64; 3],
-    /// How many points were measured.
-    pub points: usize,
-}
-
-impl Error {
-    fn new(points: impl IntoIterator<Item = (f64, [f64; 3])>) -> Self {
-        let mut all = Self::default();
-        let mut sum = 0.0;
-        for (error, at) in points {
-            // A NaN is the worst error there is.
-            if !(error <= all.max) {
-                (all.max, all.at) = (error, at);
-            }
-            sum += error * error;
-            all.points += 1;
-        }
-        all.rms = (sum / all.points.max(1) as f64).sqrt();
-        all
-    }
-
-    fn join(a: Self, b: Self) -> Self {
-        let points = a.points + b.points;
-        let sum = a.rms * a.rms * a.points as f64 + b.rms * b.rms * b.points as f64;
-        let worst = if b.max <= a.max { a } else { b };
-        Self { rms: (sum / points.max(1) as f64).sqrt(), points, ..worst }
-    }
-}
 
 /// s of all shapes.
 pub const ALL_SHAPES: [f64; 2] = [0.0, S_END];
 
-/// Adds to each table the errors measured on it, `points` of them for each of a few γ between every two nodes.
+/// Half a unit in the last place of the largest numbers below 1. The rounding of single precision
+/// differs from point to point; so much is left for points that were not measured.
+pub(super) const ROUNDING: f64 = 1.0 / 16_777_216.0;
+
+/// A place in a table: how many cells along the axes of shapes, of views and of numbers.
 ///
-/// `s` limits the shapes to those that were asked for: a sub-range has nodes beyond its ends, for the interpolation only, and what lies
-/// between those is less accurate. Unless it is [`ALL_SHAPES`], certificates state it as `s_min` and `s_max`.
+/// Halves of a mirrored axis are joined at u = ½, so that u = 0 and 1 are its ends.
+pub(super) type Place = [f64; 3];
+
+/// Where to look along one axis.
+#[derive(Clone, Debug)]
+pub(super) struct Along {
+    /// How many cells there are; 0 where there is no axis.
+    pub(super) cells: f64,
+    /// Places by name.
+    names: Vec<f64>,
+}
+
+impl Along {
+    /// An axis that is not there.
+    pub(super) fn none() -> Self {
+        Self { cells: 0.0, names: vec![0.0] }
+    }
+
+    /// An axis with so many nodes, both ends of which count.
+    pub(super) fn whole(nodes: usize) -> Self {
+        let cells = (nodes - 1) as f64;
+        let near = 1e-7 * cells;
+        Self { cells, names: vec![0.0, near, cells - near, cells] }
+    }
+
+    /// A mirrored axis with so many nodes in either half: u = 0, ½ and 1, the numbers next to them,
+    /// and 1e-7.
+    pub(super) fn mirrored(nodes: usize) -> Self {
+        let half = (nodes - 1) as f64;
+        let near = |u: f64| half * MirroredRoot::of_number(u);
+        let low = [0.0, near(1e-7), half * (1.0 - ROUNDING)];
+        let high = [2.0 * half, 2.0 * half - near(ROUNDING), half * (1.0 + ROUNDING)];
+        Self { cells: 2.0 * half, names: [&low[..], &[half], &high].concat() }
+    }
+
+    /// The same with more names, as shares of the whole axis.
+    pub(super) fn and(mut self, names: impl IntoIterator<Item = f64>) -> Self {
+        let cells = self.cells;
+        self.names.extend(names.into_iter().map(|share| (share * cells).clamp(0.0, cells)));
+        self
+    }
+
+    /// The part of it up to a share of the whole.
+    pub(super) fn up_to(mut self, share: f64) -> Self {
+        self.cells = (self.cells * share).ceil();
+        self.names.iter_mut().for_each(|name| *name *= share);
+        self
+    }
+
+    fn middles(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.cells as usize).map(|cell| cell as f64 + 0.5)
+    }
+
+    /// The place of the number x in [0, 1).
+    fn place(&self, within: Within, x: f64) -> f64 {
+        match within {
+            _ if self.cells == 0.0 => 0.0,
+            Within::Node => (x * (self.cells + 1.0)).floor(),
+            Within::Middle => (x * self.cells).floor() + 0.5,
+            Within::Anywhere => towards_ends(x) * self.cells,
+        }
+    }
+}
+
+/// Where in the cells of an axis.
+#[derive(Clone, Copy)]
+enum Within {
+    /// At their nodes, where errors of neighbouring rows do not mix.
+    Node,
+    Middle,
+    Anywhere,
+}
+
+/// What points of the sequence take in turn, on two axes and on one.
+const TURNS: [[Within; 2]; 4] = [
+    [Within::Middle, Within::Middle],
+    [Within::Node, Within::Middle],
+    [Within::Anywhere, Within::Middle],
+    [Within::Anywhere, Within::Anywhere],
+];
+const TURNS_ALONE: [[Within; 2]; 4] = [TURNS[0], TURNS[3], TURNS[3], TURNS[3]];
+
+/// u at a place on a mirrored axis with so many cells in each half.
+pub(super) fn number(place: f64, half: f64) -> f32 {
+    let of_half = |t: f64| MirroredRoot::number(t / half);
+    let u = if place <= half { of_half(place) } else { 1.0 - of_half(2.0 * half - place) };
+    u as f32
+}
+
+/// About so many places on two axes: pairs of names, names beside middles of cells, and the
+/// sequence.
+pub(super) fn places([a, b]: [&Along; 2], points: usize) -> Vec<[f64; 2]> {
+    let corners = a.names.iter().flat_map(|&x| b.names.iter().map(move |&y| [x, y]));
+    let edges = a.names.iter().flat_map(|&x| b.middles().map(move |y| [x, y]));
+    let others = b.names.iter().flat_map(|&y| a.middles().map(move |x| [x, y]));
+    let edges: Vec<[f64; 2]> = edges.chain(others).collect();
+    // Of a third of all points; where there are more cells than that, evenly some of them.
+    let kept = edges.len().min(points / 3);
+    let edges = (0..kept).map(|i| edges[i * edges.len() / kept]);
+    let named: Vec<[f64; 2]> = corners.chain(edges).collect();
+    let turns = if a.cells > 0.0 && b.cells > 0.0 { TURNS } else { TURNS_ALONE };
+    let sequence = (0..points.saturating_sub(named.len())).map(|i| {
+        let ([x, y], [of_a, of_b]) = (low_discrepancy(i), turns[i % turns.len()]);
+        [a.place(of_a, x), b.place(of_b, y)]
+    });
+    named.iter().copied().chain(sequence).collect()
+}
+
+/// An error, and where it was seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub(super) error: f64,
+    pub(super) at: Place,
+}
+
+impl Seen {
+    /// Errors in their order: none is below 0, and a NaN, of either sign, is the worst there is.
+    fn rank(&self) -> u64 {
+        self.error.abs().to_bits()
+    }
+
+    pub(super) fn exceeds(&self, other: &Self) -> bool {
+        self.rank() > other.rank()
+    }
+}
+
+/// What was found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    /// The largest error.
+    pub(super) worst: Seen,
+    /// Root mean square, without the climbs.
+    pub(super) rms: f64,
+    /// How many points were measured.
+    pub(super) points: usize,
+}
+
+/// Climbs from the worst of what was seen, `climbs` times and from places a cell or more apart,
+/// along axes of so many cells, 0 for one that is not there.
+pub(super) fn climbed(
+    mut seen: Vec<Seen>,
+    climbs: usize,
+    cells: Place,
+    error: impl Fn(Place) -> f64 + Sync,
+) -> Found {
+    let sum: f64 = seen.iter().map(|seen| seen.error * seen.error).sum();
+    let rms = (sum / seen.len().max(1) as f64).sqrt();
+    seen.sort_by_key(|seen| Reverse(seen.rank()));
+    let mut starts: Vec<Seen> = Vec::new();
+    for one in &seen {
+        let apart = |a: &Seen| (0..3).any(|k| (a.at[k] - one.at[k]).abs() >= 1.0);
+        if starts.len() < climbs && starts.iter().all(apart) {
+            starts.push(*one);
+        }
+    }
+    let tops: Vec<(Seen, usize)> = starts.par_iter().map(|start| climb(*start, cells, &error)).collect();
+    let points = seen.len() + tops.iter().map(|(_, points)| points).sum::<usize>();
+    let worst = tops.iter().map(|(top, _)| *top).reduce(|a, b| if b.exceeds(&a) { b } else { a });
+    Found { worst: worst.unwrap_or(Seen { error: 0.0, at: [0.0; 3] }), rms, points }
+}
+
+/// The top of the hill on which `start` is, to a hundredth of a cell, and how many points it took.
+fn climb(start: Seen, cells: Place, error: &impl Fn(Place) -> f64) -> (Seen, usize) {
+    let (mut top, mut step, mut points) = (start, 0.25, 0);
+    while step > 0.005 {
+        let mut best = top;
+        for (k, sign) in (0..3).flat_map(|k| [(k, -1.0), (k, 1.0)]) {
+            let mut at = top.at;
+            at[k] = (at[k] + sign * step).clamp(0.0, cells[k]);
+            if cells[k] > 0.0 && at != top.at {
+                points += 1;
+                let next = Seen { error: error(at), at };
+                best = if next.exceeds(&best) { next } else { best };
+            }
+        }
+        if best.exceeds(&top) { top = best } else { step *= 0.5 }
+    }
+    (top, points)
+}
+
+/// Adds to each table the errors measured on it, at about `points` places for each of a few γ
+/// between every two nodes.
+///
+/// `s` limits the shapes to those that were asked for: a sub-range has nodes beyond its ends, for
+/// the interpolation only, and what lies between those is less accurate. Unless it is
+/// [`ALL_SHAPES`], certificates state it as `s_min` and `s_max`.
 ///
 /// # Errors
 /// [`BindError`] if the tables are not a complete set.
@@ -82,31 +237,18 @@ pub(crate) fn measure(
         // Measured over their own domain, by `super::albedo::certify`.
         return Ok(table.certificate.clone());
     }
-    let gammas = gammas_between_nodes(table, s);
-    let all = gammas
-        .par_iter()
-        .map(|&gamma| {
-            let bound = tables.student_t(1.0, gamma)?;
-            let shape = Shape::new(gamma).map_err(|_| BindError::Gamma(gamma))?;
-            Ok(match table.kind {
-                Kind::Shadowing => g1_error(&bound, &shape, points),
-                Kind::VisibleSlopeConditional => across_error(&bound, &shape, points),
-                _ => along_error(&bound, &shape, points),
-            })
-        })
-        .collect::<Result<Vec<Error>, BindError>>()?
-        .into_iter()
-        .fold(Error::default(), Error::join);
+    let ruler = Ruler::new(tables, table, s);
+    let found = ruler.measured(points)?;
     let quantity = match table.kind {
         Kind::Shadowing => "g1",
         _ => "cdf",
     };
-    let [gamma, z, u] = all.at;
+    let [s_worst, z, u] = ruler.named(found.worst.at);
     let mut figures = BTreeMap::from([
-        (format!("{quantity}_max_error"), round_up(all.max)),
-        (format!("{quantity}_rms_error"), round_up(all.rms)),
-        ("worst_s".into(), s_of_gamma(gamma)),
-        ("points".into(), all.points as f64),
+        (format!("{quantity}_max_error"), round_up(found.worst.error + ROUNDING)),
+        (format!("{quantity}_rms_error"), round_up(found.rms)),
+        ("worst_s".into(), s_worst),
+        ("points".into(), found.points as f64),
     ]);
     if z.is_finite() {
         figures.insert("worst_view_cotangent".into(), z);
@@ -129,24 +271,149 @@ pub(super) fn round_up(x: f64) -> f64 {
     text.parse().expect("a number just printed")
 }
 
-/// Shapes to measure at, none outside [from, to] in s: those of a list, and three between every two nodes of a range.
-fn gammas_between_nodes(table: &Table, [from, to]: [f64; 2]) -> Vec<f64> {
-    let axis = &table.axes[0];
-    if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
-        return axis.quantities();
+/// Views and first numbers that slopes across are drawn with: they depend on neither, apart from
+/// rounding.
+const BESIDE: [([f32; 2], f32); 4] =
+    [([0.0, 1.0], 0.4), ([1.0, 0.0], 1.0), ([0.6, 0.8], 0.0), ([1.0, 0.0], 0.5)];
+
+/// What measures one table.
+struct Ruler<'a> {
+    tables: &'a Tables,
+    table: &'a Table,
+    /// The ends of the shapes to measure.
+    s: [f64; 2],
+    views: Along,
+    numbers: Along,
+}
+
+/// A shape, bound.
+type Bound = (StudentT, Shape);
+
+impl<'a> Ruler<'a> {
+    fn new(tables: &'a Tables, table: &'a Table, s: [f64; 2]) -> Self {
+        let nodes = |axis: usize| table.axes[axis].nodes.len();
+        let (views, numbers) = match table.kind {
+            Kind::Shadowing => (Along::whole(nodes(1)), Along::none()),
+            Kind::VisibleSlopeConditional => (Along::none(), Along::mirrored(nodes(1))),
+            _ => (Along::whole(nodes(1)), Along::mirrored(nodes(2))),
+        };
+        let [first, last] = table.axes[0].ends();
+        // The far end not as 1 + 1/s itself, which may round to just outside.
+        let s = [first.max(s[0]), last.min(s[1]) * (1.0 - 1e-15)];
+        Self { tables, table, s, views, numbers }
     }
-    let [low, high] = [axis.nodes[0].max(from), axis.nodes[axis.nodes.len() - 1].min(to)];
-    let mut all: Vec<f64> = Vec::new();
-    for pair in axis.nodes.windows(2) {
-        all.extend([0.0, 0.21, 0.5, 0.83].map(|w| pair[0] + w * (pair[1] - pair[0])));
+
+    /// Whether shapes between nodes are covered.
+    fn is_range(&self) -> bool {
+        let Axis { interpolation, nodes, .. } = &self.table.axes[0];
+        *interpolation != Interpolation::Nodes && nodes.len() > 1
     }
-    all.retain(|s| (low..high).contains(s));
-    if all.first() != Some(&low) {
-        all.push(low);
+
+    fn measured(&self, points: usize) -> Result<Found, BindError> {
+        // A summit that is missed at one γ is seen beside it; where there is nothing beside, more
+        // points are needed.
+        let points = if self.is_range() { points } else { 3 * points };
+        let points = match self.table.kind {
+            Kind::VisibleSlopeConditional => points / BESIDE.len(),
+            _ => points,
+        };
+        // A quarter is for the climbs.
+        let places = places([&self.views, &self.numbers], points - points / 4);
+        let at_shape = |&place: &f64| {
+            let bound = self.bound(place)?;
+            let seen = places.iter().map(|&[a, b]| {
+                let at = [place, a, b];
+                Seen { error: self.error(&bound, at), at }
+            });
+            Ok(seen.collect::<Vec<_>>())
+        };
+        let shapes = self.shapes();
+        let seen = shapes.par_iter().map(at_shape).collect::<Result<Vec<_>, BindError>>()?;
+        let shape_cells = if self.is_range() { (self.table.axes[0].nodes.len() - 1) as f64 } else { 0.0 };
+        let cells = [shape_cells, self.views.cells, self.numbers.cells];
+        // What was swept is covered, and with it all that is between.
+        let error = |at: Place| self.bound(at[0]).map_or(f64::NAN, |bound| self.error(&bound, at));
+        Ok(climbed(seen.concat(), (points / 200).max(2), cells, error))
     }
-    // The far end not as 1 + 1/s itself, which may round to just outside.
-    all.push(high * (1.0 - 1e-15));
-    all.into_iter().map(gamma_of_s).collect()
+
+    /// Places of the shapes to measure: those of a list, and three between every two nodes of a
+    /// range.
+    fn shapes(&self) -> Vec<f64> {
+        let nodes = &self.table.axes[0].nodes;
+        let (count, [low, high]) = (nodes.len(), self.s);
+        if !self.is_range() {
+            return (0..count).map(|i| i as f64).collect();
+        }
+        let place = |s: f64| {
+            let cell = nodes.partition_point(|&node| node <= s).clamp(1, count - 1) - 1;
+            cell as f64 + (s - nodes[cell]) / (nodes[cell + 1] - nodes[cell])
+        };
+        // Just beside the lower end, too: the end itself may be the end of another table, which is
+        // preferred.
+        let ends = [low, low + 1e-9, high].map(place);
+        let between = (0..count - 1).flat_map(|i| [0.0, 0.21, 0.5, 0.83].map(|w| i as f64 + w));
+        let inside = between.filter(|&place| place > ends[0] && place < ends[2]);
+        inside.chain(ends).collect()
+    }
+
+    /// s at a place, inside the ends.
+    fn s(&self, place: f64) -> f64 {
+        let nodes = &self.table.axes[0].nodes;
+        if !self.is_range() {
+            return nodes[place as usize];
+        }
+        let cell = (place as usize).min(nodes.len() - 2);
+        let s = nodes[cell] + (place - cell as f64) * (nodes[cell + 1] - nodes[cell]);
+        s.clamp(self.s[0], self.s[1])
+    }
+
+    fn bound(&self, place: f64) -> Result<Bound, BindError> {
+        let gamma = gamma_of_s(self.s(place));
+        let shape = Shape::new(gamma).map_err(|_| BindError::Gamma(gamma))?;
+        Ok((self.tables.student_t(1.0, gamma)?, shape))
+    }
+
+    fn error(&self, (bound, shape): &Bound, [_, a, b]: Place) -> f64 {
+        let u = number(b, 0.5 * self.numbers.cells);
+        match self.table.kind {
+            Kind::Shadowing => g1_error(bound, shape, self.view(shape.s(), a)),
+            Kind::VisibleSlopeConditional => across_error(bound, shape, u),
+            _ => along_error(bound, shape, self.view(shape.s(), a), u),
+        }
+    }
+
+    /// A view in the plane y = 0.
+    fn view(&self, s: f64, place: f64) -> Vec3 {
+        view(cotangent(&self.table.axes[1], s, place / self.views.cells))
+    }
+
+    /// s, z = cot θ/σ and u; NaN for those that there are not.
+    fn named(&self, [shape, a, b]: Place) -> [f64; 3] {
+        let s = self.s(shape);
+        let z = if self.views.cells > 0.0 { exact_cotangent(self.view(s, a)) } else { f64::NAN };
+        let half = 0.5 * self.numbers.cells;
+        [s_of_gamma(gamma_of_s(s)), z, if half > 0.0 { number(b, half).into() } else { f64::NAN }]
+    }
+}
+
+/// z at the coordinate t of an axis of views.
+pub(super) fn cotangent(axis: &Axis, s: f64, t: f64) -> f64 {
+    match axis.mapping {
+        Mapping::Rational(mapping) => mapping.quantity(t, mapping.kappa(s)),
+        Mapping::HalfTangent(mapping) => mapping.quantity(t),
+        _ => HalfTangent::default().quantity(t),
+    }
+}
+
+/// The view in the plane y = 0 with the cotangent z of its polar angle.
+pub(super) fn view(z: f64) -> Vec3 {
+    let UnitView { sin, cos } = UnitView::from_cotangent(z);
+    Vec3::new(sin as f32, 0.0, cos as f32)
+}
+
+/// The cotangent that a view has after rounding.
+pub(super) fn exact_cotangent(v: Vec3) -> f64 {
+    f64::from(v.z) / f64::from(v.x)
 }
 
 /// The i-th point of the additive recurrence with the plastic number (Roberts 2018), in [0, 1)².
@@ -164,64 +431,53 @@ fn towards_ends(x: f64) -> f64 {
     }
 }
 
-/// A view in the plane y = 0 with the half tangent of its elevation near τ, and its exact cotangent.
-fn view(tau: f64) -> (Vec3, f64) {
-    let z = HalfTangent::default().quantity(tau);
-    let UnitView { sin, cos } = UnitView::from_cotangent(z);
-    let v = Vec3::new(sin as f32, 0.0, cos as f32);
-    (v, f64::from(v.z) / f64::from(v.x))
-}
-
-fn g1_error(bound: &StudentT, shape: &Shape, points: usize) -> Error {
-    Error::new((0..points).map(|i| {
-        let (v, z) = view(towards_ends(low_discrepancy(i)[0]));
-        let exact = 1.0 / (1.0 + shape.lambda(shape.unit(z)));
-        ((f64::from(bound.g1(v)) - exact).abs(), [shape.gamma(), z, f64::NAN])
-    }))
+fn g1_error(bound: &StudentT, shape: &Shape, v: Vec3) -> f64 {
+    let exact = 1.0 / (1.0 + shape.lambda(shape.unit(exact_cotangent(v))));
+    (f64::from(bound.g1(v)) - exact).abs()
 }
 
 /// How far the CDF of the sampled slope is from the number it was sampled with.
 ///
-/// Where the heavy part is peeled off, the sum of the error of the remaining part, weighted by its share, and of that share.
-fn along_error(bound: &StudentT, shape: &Shape, points: usize) -> Error {
-    let peeled = shape.gamma() < GAMMA_WHOLE && bound.tabulated_share(Vec3::X) < 1.0;
-    Error::new((0..points).map(|i| {
-        let [a, b] = low_discrepancy(i);
-        let ((v, z), u) = (view(towards_ends(a)), towards_ends(b) as f32);
-        let at = UnitView::from_cotangent(z);
-        let whole = VisibleSlope::new(shape, at);
-        let error = if peeled {
-            let share = bound.tabulated_share(v);
-            let rest = VisibleSlope::peeled(shape, at);
-            let exact_share = 1.0 - at.sin * shape.first_moment(0.0) / whole.area();
-            let m = bound.sample_visible_normal(v, [u * share, 0.5]);
-            let inside = (rest.cdf(slope_of(shape, m)) - f64::from(u * share) / f64::from(share)).abs();
-            // At grazing the share vanishes, and with it what its part is worth.
-            f64::from(share) * if share > 0.0 { inside } else { 0.0 } + (f64::from(share) - exact_share).abs()
-        } else {
-            let m = bound.sample_visible_normal(v, [u, 0.5]);
-            (whole.cdf(slope_of(shape, m)) - f64::from(u)).abs()
-        };
-        (error, [shape.gamma(), z, f64::from(u)])
-    }))
+/// Where the heavy part is peeled off, the sum of the error of the remaining part, weighted by its
+/// share, and of that share.
+fn along_error(bound: &StudentT, shape: &Shape, v: Vec3, u: f32) -> f64 {
+    let at = UnitView::from_cotangent(exact_cotangent(v));
+    let whole = VisibleSlope::new(shape, at);
+    if shape.gamma() >= GAMMA_WHOLE || bound.tabulated_share(Vec3::X) >= 1.0 {
+        let m = bound.sample_visible_normal(v, [u, 0.5]);
+        return (whole.cdf(slope_of(shape, m)) - f64::from(u)).abs();
+    }
+    let share = bound.tabulated_share(v);
+    let exact_share = 1.0 - at.sin * shape.first_moment(0.0) / whole.area();
+    let of_share = (f64::from(share) - exact_share).abs();
+    if !(share > 0.0) {
+        // At grazing the share vanishes, and with it what its part is worth.
+        return of_share;
+    }
+    let rest = VisibleSlope::peeled(shape, at);
+    let m = bound.sample_visible_normal(v, [u * share, 0.5]);
+    let inside = (rest.cdf(slope_of(shape, m)) - f64::from(u * share) / f64::from(share)).abs();
+    f64::from(share) * inside + of_share
 }
 
 /// The in-plane unit slope of a normal sampled with σ = 1 and a view in the plane y = 0.
 fn slope_of(shape: &Shape, m: Vec3) -> SignedUnit {
-    let x = f64::from(m.x) / f64::from(m.z);
+    signed(shape, f64::from(m.x) / f64::from(m.z))
+}
+
+fn signed(shape: &Shape, x: f64) -> SignedUnit {
     SignedUnit { w: shape.unit(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } }
 }
 
-fn across_error(bound: &StudentT, shape: &Shape, points: usize) -> Error {
-    // The view is normal to the surface; u₁ only scales y/√(z² + s x²), which is t again.
-    let u1 = 0.4_f32;
-    Error::new((0..points).map(|i| {
-        let u = towards_ends(low_discrepancy(i)[0]) as f32;
-        let m = bound.sample_visible_normal(Vec3::Z, [u1, u]);
+/// The largest beside all of [`BESIDE`].
+fn across_error(bound: &StudentT, shape: &Shape, u: f32) -> f64 {
+    let error = |([x, z], u1): ([f32; 2], f32)| {
+        let m = bound.sample_visible_normal(Vec3::new(x, 0.0, z), [u1, u]);
+        // The number u₁ only scales y/√(z² + s x²), which is t again.
         let [x, y, z] = [m.x, m.y, m.z].map(f64::from);
         let t = y / (z * z + shape.s() * x * x).sqrt();
-        let got =
-            across_cdf(shape, SignedUnit { w: shape.unit(t.abs()), sign: if t < 0.0 { -1.0 } else { 1.0 } });
-        ((got - f64::from(u)).abs(), [shape.gamma(), f64::NAN, f64::from(u)])
-    }))
+        (across_cdf(shape, signed(shape, t)) - f64::from(u)).abs()
+    };
+    // Not by `max`, which would drop a NaN.
+    BESIDE.map(error).into_iter().fold(0.0, |worst, error| if error <= worst { worst } else { error })
 }

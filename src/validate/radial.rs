@@ -1,19 +1,43 @@
-//! Errors of the tables of a distribution outside the family, through the run-time sampler, against quadrature.
+//! Errors of the tables of a distribution outside the family, through the run-time sampler, against
+//! quadrature.
+//!
+//! Places are those of the tables' own axes, as in [`certificate`](super::certificate): even steps
+//! of θ would miss a narrow distribution nearly everywhere.
 
 use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
 use microfacet_model::classic::{Marginal, MarginalView};
-use microfacet_sampler::{Kind, LoadError, MaterialEntry, Provenance, Radial, Table, Tables};
+use microfacet_sampler::axis::HalfTangent;
+use microfacet_sampler::{Axis, Kind, LoadError, Mapping, MaterialEntry, Provenance, Radial, Table, Tables};
 use rayon::prelude::*;
 
-use super::certificate::{low_discrepancy, round_up};
+use super::certificate::{
+    Along, Found, ROUNDING, Seen, climbed, cotangent, exact_cotangent, number, places, round_up, view,
+};
+use crate::bake::radial_axes;
+use crate::spec::Quality;
 
-/// Views, and normals drawn at each.
-const VIEWS: usize = 200;
-const NORMALS: usize = 40;
-/// Normals drawn for a certificate.
-pub(crate) const POINTS: usize = VIEWS * NORMALS;
+/// Normals drawn for either certificate of slopes, of which a quarter is left for climbs.
+pub(crate) const POINTS: usize = 8000;
+/// Climbs of each certificate; three times as many where there are several ways to draw.
+const CLIMBS: usize = 32;
+/// Places in each cell of the tables with one axis.
+const PER_CELL: usize = 12;
+
+/// Slopes across are judged beside in-plane slopes that a random number at least so far from 0 and
+/// 1 draws, as far as single precision can tell: beside rarer ones the distribution across is
+/// hardly ever asked for.
+const RARE: f64 = ROUNDING;
+
+/// Cotangents, in units of σ, of views that see the steepest slopes. Random numbers just below 1
+/// are so coarse that one view alone would draw but a few of these.
+const SLANTS: [f64; 5] = [0.0, 0.03, 0.1, 0.3, 1.0];
+/// So many of the last random numbers below 1 are tried themselves.
+const LAST: f64 = 16.0;
+/// Ways to draw slopes across: by the row of the in-plane slope or by the last numbers, from each
+/// view.
+const WAYS: usize = 2 * SLANTS.len();
 
 /// Largest errors seen.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,51 +46,169 @@ pub struct Errors {
     pub g1: f64,
     /// Of the CDF of the in-plane slope.
     pub along: f64,
-    /// Of the CDF of the slope across.
+    /// Of the CDF of the slope across, given in-plane slopes that random numbers no closer to 0 and
+    /// 1 than 2⁻²⁴ draw.
     pub across: f64,
     /// Of D/D(0).
     pub density: f64,
 }
 
-impl Errors {
-    fn worse(self, other: Self) -> Self {
-        Self {
-            g1: self.g1.max(other.g1),
-            along: self.along.max(other.along),
-            across: self.across.max(other.across),
-            density: self.density.max(other.density),
+/// Measures a bound material against the distribution it was baked from, by the nodes of default
+/// quality.
+pub fn measure(radial: &Radial, marginal: &Marginal) -> Errors {
+    let kappa = marginal.beyond(0.0).excess;
+    let axes = radial_axes(Quality::Default, kappa, marginal.reach());
+    let error = |kind: Kind| {
+        let of_kind = axes.iter().find(|(of, _)| *of == kind);
+        of_kind.map_or(0.0, |(_, axes)| found(radial, marginal, kind, axes).worst.error)
+    };
+    Errors {
+        g1: error(Kind::RadialShadowing),
+        along: error(Kind::RadialSlope),
+        across: error(Kind::RadialConditional),
+        density: error(Kind::RadialDensity),
+    }
+}
+
+/// What is found on one table with these axes.
+fn found(radial: &Radial, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found {
+    let slanted = SLANTS.map(|z| (view(z * marginal.sigma()), MarginalView::new(marginal, z)));
+    let ruler = Ruler { radial, marginal, slanted, axes };
+    let cells = |axis: &Axis| (axis.nodes.len() - 1) as f64;
+    let first = Along::whole(axes[0].nodes.len());
+    let first = match axes[0].mapping {
+        // In-plane slopes end at their bound R, which is κ of this axis: rows beyond are not read.
+        Mapping::Rational(_) if kind == Kind::RadialConditional => first.up_to(0.5),
+        _ => first,
+    };
+    match kind {
+        Kind::RadialSlope | Kind::RadialConditional => {
+            let half = cells(&axes[1]);
+            let numbers = Along::mirrored(axes[1].nodes.len());
+            let error = |[way, a, b]: [f64; 3]| match kind {
+                Kind::RadialSlope => ruler.along(a, number(b, half)),
+                _ => {
+                    let first = ruler.first_number(way as usize, a, a / first.cells);
+                    ruler.across(way as usize, first, number(b, half))
+                }
+            };
+            let sweep = places([&first, &numbers], POINTS - POINTS / 4);
+            let ways = if kind == Kind::RadialConditional { WAYS } else { 1 };
+            searched(sweep, [first.cells, 2.0 * half], ways, error)
+        }
+        _ => {
+            let error = |[_, a, _]: [f64; 3]| match kind {
+                Kind::RadialShadowing => ruler.g1(a),
+                _ => ruler.density(a),
+            };
+            // Where slopes end D has a kink.
+            let end = HalfTangent::default().coordinate(marginal.reach());
+            let names = [end * (1.0 - 1e-5), end * (1.0 - 1e-6), end];
+            let first = if kind == Kind::RadialDensity { first.and(names) } else { first };
+            let points = PER_CELL * (axes[0].nodes.len() - 1);
+            searched(places([&first, &Along::none()], points), [first.cells, 0.0], 1, error)
         }
     }
 }
 
-/// Measures a bound material against the distribution it was baked from.
-pub fn measure(radial: &Radial, marginal: &Marginal) -> Errors {
-    let at_view = |i: usize| {
-        let theta = (i as f64 + 0.37) / VIEWS as f64 * std::f64::consts::FRAC_PI_2;
-        let (sin, cos) = (libm::sin(theta), libm::cos(theta));
-        let v = Vec3::new(sin as f32, 0.0, cos as f32);
-        let (tangent, sigma) = (f64::from(v.x) / f64::from(v.z), marginal.sigma());
-        let exact = MarginalView::new(marginal, 1.0 / (tangent * sigma));
-        let mut worst = Errors {
-            g1: (f64::from(radial.g1(v)) - marginal.g1(theta)).abs(),
-            density: ((f64::from(radial.d(v)) - marginal.d(tangent / sigma)) / marginal.d(0.0)).abs(),
-            ..Errors::default()
-        };
-        for j in 0..NORMALS {
-            let u = low_discrepancy(i * NORMALS + j);
-            let DVec3 { x, y, z } = radial.sample_visible_normal(v, u.map(|u| u as f32)).as_dvec3();
-            let (x, y) = (x / (z * marginal.sigma()), y / (z * marginal.sigma()));
-            let tail = marginal.across_at(x.abs()).tail(y.abs());
-            let across = if y < 0.0 { tail } else { 1.0 - tail };
-            worst.along = worst.along.max((exact.shares(x).below - u[0]).abs());
-            worst.across = worst.across.max((across - u[1]).abs());
-        }
-        worst
+/// The sweep over places, drawn in one of so many ways in turn, and climbs from the worst.
+fn searched(
+    sweep: Vec<[f64; 2]>,
+    [a, b]: [f64; 2],
+    ways: usize,
+    error: impl Fn([f64; 3]) -> f64 + Sync,
+) -> Found {
+    let at = |i: usize, [x, y]: [f64; 2]| {
+        // The way stands in the place of a shape.
+        let way = i % ways;
+        // A number has one place, so that climbs do not start from it more than once.
+        let x = if way < SLANTS.len() { x } else { last(x / a) / LAST * a };
+        let at = [way as f64, x, y];
+        Seen { error: error(at), at }
     };
-    (0..VIEWS).into_par_iter().map(at_view).reduce(Errors::default, Errors::worse)
+    let seen: Vec<Seen> = sweep.into_par_iter().enumerate().map(|(i, place)| at(i, place)).collect();
+    let cells = [0.0, a, b];
+    let found = climbed(seen, if ways > 1 { 3 * CLIMBS } else { CLIMBS }, cells, &error);
+    // And the summit drawn in all ways.
+    let [_, a, b] = found.worst.at;
+    let seen: Vec<Seen> = (0..ways).map(|i| at(i, [a, b])).collect();
+    let again = climbed(seen, ways, cells, &error);
+    let worst = if again.worst.exceeds(&found.worst) { again.worst } else { found.worst };
+    Found { worst, points: found.points + again.points, ..found }
 }
 
-/// Writes what [`measure`] finds into the four tables of one distribution.
+/// How many numbers before the last one below 1, at a share of an axis.
+fn last(share: f64) -> f64 {
+    (LAST * share).round()
+}
+
+/// A distribution and its tables, one of which has these axes.
+struct Ruler<'a> {
+    radial: &'a Radial,
+    marginal: &'a Marginal<'a>,
+    slanted: [(Vec3, MarginalView<'a>); SLANTS.len()],
+    axes: &'a [Axis],
+}
+
+impl Ruler<'_> {
+    /// The cotangent, or slope, that is `place` cells along the first axis, in units of the tables.
+    fn quantity(&self, place: f64) -> f64 {
+        // Without a γ axis s is 1.
+        cotangent(&self.axes[0], 1.0, place / (self.axes[0].nodes.len() - 1) as f64)
+    }
+
+    fn view(&self, place: f64) -> Vec3 {
+        view(self.quantity(place) * self.marginal.sigma())
+    }
+
+    fn g1(&self, place: f64) -> f64 {
+        let v = self.view(place);
+        let theta = f64::from(v.x).atan2(v.z.into());
+        (f64::from(self.radial.g1(v)) - self.marginal.g1(theta)).abs()
+    }
+
+    fn density(&self, place: f64) -> f64 {
+        let (marginal, sigma) = (self.marginal, self.marginal.sigma());
+        // As if the slope were the tangent of a view.
+        let m = view(1.0 / (self.quantity(place) * sigma));
+        let exact = marginal.d(1.0 / (exact_cotangent(m) * sigma));
+        ((f64::from(self.radial.d(m)) - exact) / marginal.d(0.0)).abs()
+    }
+
+    /// In-plane slope and slope across of a normal.
+    fn slopes(&self, v: Vec3, u: [f32; 2]) -> [f64; 2] {
+        let DVec3 { x, y, z } = self.radial.sample_visible_normal(v, u).as_dvec3();
+        [x, y].map(|slope| slope / (z * self.marginal.sigma()))
+    }
+
+    fn along(&self, place: f64, u: f32) -> f64 {
+        let v = self.view(place);
+        let exact = MarginalView::new(self.marginal, exact_cotangent(v) / self.marginal.sigma());
+        let [x, _] = self.slopes(v, [u, 0.5]);
+        (exact.shares(x).below - f64::from(u)).abs()
+    }
+
+    /// The first random number that draws the in-plane slope at a place, or one of the last below 1
+    /// by that place's share of the axis.
+    fn first_number(&self, way: usize, place: f64, share: f64) -> f32 {
+        let u = match self.slanted.get(way) {
+            Some((_, seen)) => 1.0 - seen.shares(self.quantity(place)).above,
+            None => 1.0 - RARE * (1.0 + last(share)),
+        };
+        u.clamp(RARE, 1.0 - RARE) as f32
+    }
+
+    /// Of the slope across beside the in-plane slope of a first number, from one of [`SLANTS`].
+    fn across(&self, way: usize, first: f32, u: f32) -> f64 {
+        let v = self.slanted[way % SLANTS.len()].0;
+        let [x, y] = self.slopes(v, [first, u]);
+        let tail = self.marginal.across_at(x.abs()).tail(y.abs());
+        let got = if y < 0.0 { tail } else { 1.0 - tail };
+        (got - f64::from(u)).abs()
+    }
+}
+
+/// Writes what is found into the four tables of one distribution.
 ///
 /// # Errors
 /// [`LoadError::Invalid`] if the tables do not bind.
@@ -75,16 +217,15 @@ pub fn certify(tables: &mut [Table], entry: &MaterialEntry, marginal: &Marginal)
     let radial = Tables::from_tables(provenance, tables.to_vec())?
         .radial(&entry.name)
         .map_err(|why| LoadError::Invalid(why.to_string()))?;
-    let errors = measure(&radial, marginal);
     for table in tables {
-        let (key, error) = match table.kind {
-            Kind::RadialShadowing => ("g1_max_error", errors.g1),
-            Kind::RadialSlope => ("cdf_max_error", errors.along),
-            Kind::RadialConditional => ("cdf_max_error", errors.across),
-            _ => ("d_max_error", errors.density),
+        let key = match table.kind {
+            Kind::RadialShadowing => "g1_max_error",
+            Kind::RadialDensity => "d_max_error",
+            _ => "cdf_max_error",
         };
-        let points = if key == "cdf_max_error" { POINTS } else { VIEWS };
-        table.certificate = BTreeMap::from([(key.into(), round_up(error)), ("points".into(), points as f64)]);
+        let found = found(&radial, marginal, table.kind, &table.axes);
+        let error = round_up(found.worst.error + ROUNDING);
+        table.certificate = BTreeMap::from([(key.into(), error), ("points".into(), found.points as f64)]);
     }
     Ok(())
 }
