@@ -163,8 +163,7 @@ impl<'a> Own<'a> {
             masking: None,
             fresnel: None,
         };
-        let suffix = entry.table_suffix();
-        let mut tables = bake_radial(marginal, &suffix, Quality::Draft, Precision::F32);
+        let mut tables = bake_radial(marginal, &entry.distribution, Quality::Draft, Precision::F32);
         certify(&mut tables, &entry, marginal).unwrap();
         let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
         let radial = Tables::from_tables(provenance, tables.clone()).unwrap().radial("it").unwrap();

@@ -13,7 +13,7 @@ use microfacet_sampler::{
 };
 
 use super::certificate::round_up;
-use super::points::{Point, beside, edges, interior};
+use super::points::{Point, are_apart, beside, edges, interior};
 use crate::bake::albedo::{AlbedoSpec, BakeError, CHANNELS, Integrand, Lobe, Models, Site, weights};
 
 /// Accuracy, in units of a node's, of the model's values that tables are judged by.
@@ -148,12 +148,20 @@ fn climbed(
 ) -> Result<Vec<(Reference, Vec<f64>)>, BakeError> {
     /// Steps in cells.
     const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
-    let promised = || errors.iter().filter(|errors| errors.0.point.promised);
-    let tops = (0..quantities(spec).len()).filter_map(|i| {
-        let top = promised().max_by(|a, b| a.1[i].total_cmp(&b.1[i]))?;
-        Some((i, top.0.point.clone(), top.1[i]))
-    });
-    let mut tops: Vec<(usize, Point, f64)> = tops.collect();
+    /// Hills climbed for each quantity.
+    const HILLS: usize = 4;
+    let mut tops: Vec<(usize, Point, f64)> = Vec::new();
+    for i in 0..quantities(spec).len() {
+        let mut worst: Vec<&Errors<'_>> = errors.iter().filter(|errors| errors.0.point.promised).collect();
+        worst.sort_by(|a, b| b.1[i].total_cmp(&a.1[i]));
+        let start = tops.len();
+        for (at, errors) in worst {
+            let apart = tops[start..].iter().all(|(_, point, _)| are_apart(spec, point, &at.point));
+            if tops.len() < start + HILLS && apart {
+                tops.push((i, at.point.clone(), errors[i]));
+            }
+        }
+    }
     let mut seen: Vec<(Reference, Vec<f64>)> = Vec::new();
     for step in STEPS {
         let around = tops.iter().flat_map(|(_, point, _)| beside(spec, point, step)).collect();

@@ -212,8 +212,8 @@ fn climb(start: Seen, cells: Place, error: &impl Fn(Place) -> f64) -> (Seen, usi
 /// between every two nodes.
 ///
 /// `s` limits the shapes to those that were asked for: a sub-range has nodes beyond its ends, for
-/// the interpolation only, and what lies between those is less accurate. Unless it is
-/// [`ALL_SHAPES`], certificates state it as `s_min` and `s_max`.
+/// the interpolation only, and what lies between those is less accurate. The table's description says
+/// which it covers.
 ///
 /// # Errors
 /// [`BindError`] if the tables are not a complete set.
@@ -255,9 +255,6 @@ pub(crate) fn measure(
     }
     if u.is_finite() {
         figures.insert("worst_u".into(), u);
-    }
-    if s != ALL_SHAPES {
-        figures.extend([("s_min".into(), s[0]), ("s_max".into(), s[1])]);
     }
     Ok(figures)
 }

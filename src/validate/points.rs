@@ -13,7 +13,7 @@ const PROMISED: (f64, f64) = (0.01, 0.02);
 /// Smallest σ that is no mirror.
 const SMOOTHEST: f64 = LogRoughness::BAKED.first;
 /// Places inside: as many as a fraction of the nodes, within limits.
-const NODES_A_POINT: usize = 8;
+const NODES_A_POINT: usize = 4;
 const FEWEST: usize = 240;
 const MOST: usize = 6144;
 
@@ -142,12 +142,23 @@ fn coordinate(axis: &Axis, Site { gamma, sigma, eta, cos, .. }: &Site) -> f64 {
     }
 }
 
+/// Whether two places are a cell or more apart along some axis.
+pub fn are_apart(spec: &AlbedoSpec, a: &Point, b: &Point) -> bool {
+    let apart = |(k, axis): (usize, &Axis)| (a.at[k] - b.at[k]).abs() >= cell(axis);
+    spec.axes.iter().enumerate().any(|(k, axis)| axis.nodes.len() > 1 && apart((k, axis)))
+}
+
+/// The width of a cell; nodes are spread evenly.
+fn cell(axis: &Axis) -> f64 {
+    let [first, last] = axis.ends();
+    (last - first) / (axis.nodes.len() - 1).max(1) as f64
+}
+
 /// Promised places beside one, a part of a cell away along each axis.
 pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
     let mut points = Vec::new();
     for (k, (axis, range)) in spec.axes.iter().zip(ranges(spec)).enumerate() {
-        let [first, last] = axis.ends();
-        let cell = (last - first) / (axis.nodes.len() - 1).max(1) as f64;
+        let cell = cell(axis);
         let [low, high] = [range.ends[0], range.ends[range.ends.len() - 1]];
         let high = range.cells.last().map_or(high, |cell| cell.max(high));
         for step in [-cells, cells] {
