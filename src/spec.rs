@@ -97,7 +97,7 @@ pub enum Quality {
     /// CDF error below 1e-4 where γ ≥ 1.8, G1 below 1e-5.
     #[default]
     Default,
-    /// CDF error below 1e-5, G1 below 2e-6.
+    /// CDF error below 1.2e-5 where γ ≥ 1.8, G1 below 2e-6.
     High,
 }
 

@@ -4,7 +4,7 @@ use glam::Vec3;
 use microfacet_sampler::axis::{HalfTangent, Rational};
 use microfacet_sampler::{
     Axis, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Provenance, StudentT, Subject, Table,
-    Tables, encode, seal,
+    Tables, VERSION, encode, seal,
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {

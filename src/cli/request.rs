@@ -48,7 +48,7 @@ enum QualityArg {
     Draft,
     /// CDF error below 1e-4 (gamma >= 1.8), G1 error below 1e-5.
     Default,
-    /// CDF error below 1e-5, G1 error below 2e-6; ten times the bytes.
+    /// CDF error below 1.2e-5 (gamma >= 1.8), G1 error below 2e-6; eight times the bytes.
     High,
 }
 

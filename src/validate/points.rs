@@ -249,7 +249,7 @@ fn some_shape(range: &Range, x: f64) -> f64 {
     let i = (x * (2 * n + 1) as f64) as usize;
     match range.cells.get(i / 2) {
         // Between the middle of this cell and the one before.
-        Some(cell) if i % 2 == 0 && i > 0 => 0.62 * cell + 0.38 * range.cells[i / 2 - 1],
+        Some(cell) if i.is_multiple_of(2) && i > 0 => 0.62 * cell + 0.38 * range.cells[i / 2 - 1],
         Some(cell) if i % 2 == 1 => *cell,
         Some(_) => range.ends[0],
         None => range.ends[range.ends.len() - 1],
