@@ -130,7 +130,7 @@ pub(super) fn places([a, b]: [&Along; 2], points: usize) -> Vec<[f64; 2]> {
     let named: Vec<[f64; 2]> = corners.chain(edges).collect();
     let turns = if a.cells > 0.0 && b.cells > 0.0 { TURNS } else { TURNS_ALONE };
     let sequence = (0..points.saturating_sub(named.len())).map(|i| {
-        let ([x, y], [of_a, of_b]) = (low_discrepancy(i), turns[i % turns.len()]);
+        let ([x, y], [of_a, of_b]) = (low_discrepancy(PLASTIC, i), turns[i % turns.len()]);
         [a.place(of_a, x), b.place(of_b, y)]
     });
     named.iter().copied().chain(sequence).collect()
@@ -413,9 +413,12 @@ pub(super) fn exact_cotangent(v: Vec3) -> f64 {
     f64::from(v.z) / f64::from(v.x)
 }
 
-/// The i-th point of the additive recurrence with the plastic number (Roberts 2018), in [0, 1)².
-pub(super) fn low_discrepancy(i: usize) -> [f64; 2] {
-    [0.7548776662466927, 0.5698402909980532].map(|a| (0.5 + a * (i + 1) as f64).fract())
+/// Steps of the additive recurrence in the plane: powers of the reciprocal of the plastic number.
+const PLASTIC: [f64; 2] = [0.7548776662466927, 0.5698402909980532];
+
+/// The i-th point of the additive recurrence with so long steps (Roberts 2018), in [0, 1)ᴺ.
+pub(super) fn low_discrepancy<const N: usize>(steps: [f64; N], i: usize) -> [f64; N] {
+    steps.map(|a| (0.5 + a * (i + 1) as f64).fract())
 }
 
 /// Spreads x ∈ [0, 1) so that two fifths of it go to the ends, logarithmically down to 1e-7.

@@ -54,7 +54,7 @@ impl Moments {
 }
 
 /// Channels at cos θ as whole moments: E − 1, bias and F82.
-pub(super) fn whole(cos: f32, [e, bias, f82]: [f32; 3]) -> [f32; 3] {
+fn whole(cos: f32, [e, bias, f82]: [f32; 3]) -> [f32; 3] {
     let mirror = Moments::mirror(cos);
     [e, bias + (1.0 + e) * mirror.bias, f82 + (1.0 + e) * mirror.f82]
 }
