@@ -6,14 +6,11 @@
 
 pub mod bake;
 pub mod bench;
-pub mod budget;
 pub mod cache;
 pub mod convert;
 pub mod family;
-pub mod fill;
 pub mod fit;
 pub mod generate;
-pub mod graded;
 pub mod memory;
 pub mod plan;
 pub mod plot;

@@ -39,21 +39,25 @@ impl fmt::Display for TooLarge {
 impl std::error::Error for TooLarge {}
 
 /// Values of a table; in 128 bits, where no product of three lengths overflows.
-fn values(spec: &TableSpec) -> u128 {
+pub fn values(spec: &TableSpec) -> u128 {
     // Lengths only: `axes` would make room for the nodes.
     let (views, numbers) = (spec.views.max(1) as u128, spec.numbers.max(1) as u128);
     let halves = if spec.views > 0 && spec.numbers > 0 { 2 } else { 1 };
     [views, halves, numbers].into_iter().fold(2 * spec.shapes.nodes.len() as u128, u128::saturating_mul)
 }
 
-/// Checks that a set can be baked within `limit` bytes; the estimate is above the truth, by half for large sets.
+/// The same of albedo tables: channels of both forms are held in double precision until all nodes are
+/// there, and some are refined.
+pub fn of_albedo(spec: &AlbedoSpec) -> u128 {
+    (8 * spec.nodes() as u128) << spec.doublings()
+}
+
+/// Checks that tables of so many values can be baked within `limit` bytes; the estimate is above the truth,
+/// by half for large sets.
 ///
 /// # Errors
 /// [`TooLarge`] with the estimate.
-pub fn check(specs: &[TableSpec], albedos: &[AlbedoSpec], limit: u64) -> Result<(), TooLarge> {
-    // Channels of both forms are held in double precision until all nodes are there, and some are refined.
-    let albedos = albedos.iter().map(|spec| (8 * spec.nodes() as u128) << spec.doublings());
-    let values = specs.iter().map(values).chain(albedos).fold(0, u128::saturating_add);
+pub fn check(values: u128, limit: u64) -> Result<(), TooLarge> {
     let needed = values.saturating_mul(BYTES_PER_VALUE).saturating_add(BASE);
     if needed <= limit.into() { Ok(()) } else { Err(TooLarge { values, needed, limit }) }
 }
@@ -76,11 +80,12 @@ mod tests {
     #[test]
     fn a_million_million_nodes_are_refused_untouched() {
         let mut specs = general_set(Quality::High, Precision::F32);
-        assert_eq!(check(&specs, &[], 1 << 30), Ok(()));
+        let all = |specs: &[TableSpec]| specs.iter().map(values).fold(0, u128::saturating_add);
+        assert_eq!(check(all(&specs), 1 << 30), Ok(()));
         (specs[2].views, specs[2].numbers) = (1_000_000, 1_000_000);
-        let refused = check(&specs, &[], 1 << 30).unwrap_err();
+        let refused = check(all(&specs), 1 << 30).unwrap_err();
         assert!(refused.values > 66_000_000_000_000 && refused.to_string().contains("1024 MiB"), "{refused}");
         (specs[2].views, specs[2].numbers) = (usize::MAX, usize::MAX);
-        assert!(check(&specs, &[], u64::MAX).is_err());
+        assert!(check(all(&specs), u64::MAX).is_err());
     }
 }

@@ -7,12 +7,12 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake_radial;
-use microfacet_bake::cache::Cache;
 use microfacet_bake::family::Named;
-use microfacet_bake::generate::{Target, add_distributions, generate, provenance, worst_error};
-use microfacet_bake::plan::{Cost, Options, Plan, bare_cost, cost, distribution_cost, entries};
+use microfacet_bake::generate::{Target, bake};
+use microfacet_bake::plan::{Cost, Options, Plan, bare_cost, cost, distribution_cost};
 use microfacet_bake::scene::{Scene, load};
 use microfacet_bake::spec::{Quality, general_set};
+use microfacet_bake::validate::certificate::worst_error;
 use microfacet_bake::validate::radial::measure;
 use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
 use microfacet_model::statistics::chi_square;
@@ -150,11 +150,7 @@ fn a_recipe_bakes_all_kinds() {
     let scene = load(&recipe).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
     assert_eq!((plan.needs.len(), plan.distributions.len()), (1, 2));
-    let bake = |target| {
-        let origin = provenance(scene.to_recipe(), entries(&scene));
-        let baked = generate(&plan.needs, target, origin, &Cache::none(), || ()).unwrap();
-        add_distributions(baked, &plan.distributions, target, &Cache::none(), || ())
-    };
+    let bake = |target| bake(&plan, target);
     // Fixed point is enough for that, in half the bytes.
     let rough = bake(Target::MaxError(1e-3)).unwrap().set;
     assert!(

@@ -1,20 +1,15 @@
 //! The committed default set is what this code bakes, byte for byte.
 
-use microfacet_bake::cache::Cache;
-use microfacet_bake::generate::{Target, add_albedos, generate, provenance};
+use microfacet_bake::generate::{Target, bake};
 use microfacet_bake::plan::Plan;
-use microfacet_bake::spec::Quality;
-use microfacet_sampler::{Kind, Precision, encode};
+use microfacet_sampler::{Kind, encode};
 
 const COMMITTED: &[u8] = include_bytes!("../tables/default.safetensors");
 
 #[test]
 fn the_default_set_is_reproducible() {
-    let target = Target::Quality(Quality::Default, Precision::F32);
-    let origin = provenance(String::new(), Vec::new());
-    let Plan { needs, albedos, .. } = Plan::general();
-    let baked = generate(&needs, target, origin, &Cache::none(), || ()).unwrap();
-    let set = add_albedos(baked, &albedos, target, &Cache::none(), || ()).unwrap().set;
+    let plan = Plan::general();
+    let set = bake(&plan, Target::default()).unwrap().set;
     let bytes = encode(set.provenance(), set.tables()).unwrap();
     assert!(
         bytes == COMMITTED,
@@ -37,5 +32,5 @@ fn the_default_set_is_reproducible() {
         assert!(worst(Kind::Albedo, &format!("{quantity}_max_error_outside")) < 2.2e-3, "{quantity}");
     }
     assert!(worst(Kind::Albedo, "quadrature_error") < 1e-6);
-    assert_eq!(set.tables().iter().filter(|table| table.kind.is_albedo()).count(), 4 * albedos.len());
+    assert_eq!(set.tables().iter().filter(|table| table.kind.is_albedo()).count(), 4 * plan.albedos.len());
 }

@@ -1,7 +1,7 @@
 //! Damaged images: every truncation and every flipped bit of a small table gives an error or the identical table.
 
 use microfacet_bake::bake::bake;
-use microfacet_bake::generate::provenance;
+use microfacet_bake::plan::Plan;
 use microfacet_bake::spec::{ShapeAxis, TableSpec};
 use microfacet_bake::store::{decode_exr, encode_exr};
 use microfacet_sampler::{Kind, LoadError, Precision, Tables};
@@ -16,7 +16,7 @@ fn small_table(precision: Precision) -> Tables {
         numbers: 0,
         precision,
     };
-    let mut origin = provenance(String::new(), Vec::new());
+    let mut origin = Plan::default().provenance();
     origin.conventions.clear();
     Tables::from_tables(origin, vec![bake(&spec)]).unwrap()
 }

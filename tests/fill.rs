@@ -1,10 +1,10 @@
 //! A budget of bytes for tables of all kinds: filled, never exceeded, and refused with the smallest one there is.
 
 use microfacet_bake::cache::Cache;
-use microfacet_bake::fill::fill;
-use microfacet_bake::generate::{BakeError, Baked, provenance, worst_error};
-use microfacet_bake::plan::{Options, Plan, entries};
+use microfacet_bake::generate::{BakeError, Baked, Settings, Target, bake_with};
+use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
+use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables, encode};
 
 const GOLD: &str = "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0\nfresnel = \"mirror\"\n";
@@ -14,7 +14,7 @@ const GLASS: &str = "[[material]]\nname = \"glass\"\nsigma = 0.454\ngamma = 3.0\
 fn within(recipe: &str, max_bytes: usize, cache: &Cache) -> Result<Baked, BakeError> {
     let scene = Scene::from_recipe_str(recipe).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
-    fill(&plan, max_bytes, provenance(scene.to_recipe(), entries(&scene)), cache)
+    bake_with(&plan, Target::MaxBytes(max_bytes), Settings { cache: cache.clone(), ..Settings::default() })
 }
 
 fn bytes(set: &Tables) -> Vec<u8> {

@@ -6,11 +6,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use glam::Vec3;
 use microfacet_bake::cache::Cache;
-use microfacet_bake::fill::fill;
-use microfacet_bake::generate::{BakeError, Baked, Target, generate, provenance, worst_error};
+use microfacet_bake::generate::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_bake::plan::{Options, Plan, Verdict, bare_cost, cost};
 use microfacet_bake::scene::{Interval, Scene};
 use microfacet_bake::spec::{Quality, general_set};
+use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Tables, encode};
 
 use command::{json, ok, refused, run};
@@ -35,7 +35,12 @@ fn plan(scene: &Scene) -> Plan {
 }
 
 fn bake(plan: &Plan, target: Target, cache: &Cache) -> Result<Baked, BakeError> {
-    generate(&plan.needs, target, provenance(String::new(), Vec::new()), cache, || ())
+    bake_with(&normals_of(plan), target, Settings { cache: cache.clone(), ..Settings::default() })
+}
+
+/// Without what takes long.
+fn normals_of(plan: &Plan) -> Plan {
+    Plan { albedos: Vec::new(), ..plan.clone() }
 }
 
 fn bytes(set: &Tables) -> Vec<u8> {
@@ -157,15 +162,14 @@ fn more_shapes_than_a_range_has_nodes_are_a_range() {
 #[test]
 fn estimated_bytes_are_those_of_the_file() {
     for materials in [&MIXED[..2], &MIXED[..]] {
-        let (scene, origin) = (scene(materials), provenance("x".repeat(500), Vec::new()));
-        let plan = plan(&scene);
+        let plan = Plan { recipe: "x".repeat(500), materials: Vec::new(), ..plan(&scene(materials)) };
         for precision in [Precision::F32, Precision::U16] {
             let general = general_set(Quality::Draft, precision);
             let specs: Vec<_> = plan.needs.iter().flat_map(|need| need.specs(&general)).collect();
             let target = Target::Quality(Quality::Draft, precision);
-            let set = generate(&plan.needs, target, origin.clone(), &Cache::none(), || ()).unwrap().set;
+            let set = bake(&plan, target, &Cache::none()).unwrap().set;
             let (estimate, real) =
-                ((cost(&specs).bytes + bare_cost(&origin).bytes) as f64, bytes(&set).len() as f64);
+                ((cost(&specs).bytes + bare_cost(&plan.provenance()).bytes) as f64, bytes(&set).len() as f64);
             assert!((estimate / real - 1.0).abs() < 0.04, "{estimate} for {real}");
         }
     }
@@ -203,13 +207,14 @@ fn what_is_finished_is_not_baked_again() {
 fn an_interrupted_bake_goes_on_where_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let cache = Cache::new(folder.path().into());
-    let plan = Plan::general();
+    let plan = normals_of(&Plan::general());
     let mut left = 3;
     let interrupted = catch_unwind(AssertUnwindSafe(|| {
-        generate(&plan.needs, DRAFT, provenance(String::new(), Vec::new()), &cache, || {
+        let progress = Box::new(|_| {
             left -= 1;
             assert!(left > 0, "interrupted");
-        })
+        });
+        bake_with(&plan, DRAFT, Settings { cache: cache.clone(), progress, ..Settings::default() })
     }));
     assert!(interrupted.is_err());
     let resumed = bake(&plan, DRAFT, &cache).unwrap();
@@ -243,7 +248,7 @@ fn an_error_budget_is_met_by_less() {
 #[test]
 fn a_byte_budget_is_filled_and_not_exceeded() {
     let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
-    let at = |max_bytes| fill(&plan, max_bytes, provenance(String::new(), Vec::new()), &Cache::none());
+    let at = |max_bytes| bake(&plan, Target::MaxBytes(max_bytes), &Cache::none());
     let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
     let [small, large] = [5_000, 8_000].map(|limit| {
         let set = at(limit).unwrap().set;

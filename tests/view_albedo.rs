@@ -6,13 +6,13 @@ use std::sync::LazyLock;
 
 use glam::Vec3;
 use microfacet_bake::bake::albedo::{AlbedoSpec, Lobe, Models, Site, bake, weights};
-use microfacet_bake::cache::Cache;
-use microfacet_bake::generate::{Target, add_albedos, add_distributions, generate, provenance, worst_error};
-use microfacet_bake::plan::{Options, Plan, albedo_cost, entries};
+use microfacet_bake::generate::{self, Target};
+use microfacet_bake::plan::{Options, Plan, albedo_cost};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::spec::Quality;
 use microfacet_bake::store;
 use microfacet_bake::validate::albedo::{certified, interior_references, missed_by_half};
+use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{
     Albedo, BindError, FresnelAlbedo, LobeEntry, Masking, Precision, Reflectance, Table, Tables, encode,
 };
@@ -99,10 +99,7 @@ const MATERIALS: [[&str; 4]; 6] = [
 fn bake_all(text: &str, quality: Quality) -> Tables {
     let scene = Scene::from_recipe_str(text).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
-    let origin = provenance(scene.to_recipe(), entries(&scene));
-    let target = Target::Quality(quality, Precision::F32);
-    let set = generate(&plan.needs, target, origin, &Cache::none(), || ()).unwrap();
-    let set = add_albedos(set, &plan.albedos, target, &Cache::none(), || ()).unwrap().set;
+    let set = generate::bake(&plan, Target::Quality(quality, Precision::F32)).unwrap().set;
     // As a renderer gets it.
     Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap()
 }
@@ -359,11 +356,7 @@ fn estimate(v: Vec3, g1: f32, sample: impl Fn([f32; 2]) -> Vec3, g2: impl Fn(Vec
 fn other_distributions_have_an_albedo_over_the_cosine() {
     let scene = Scene::from_recipe_str(GTR).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
-    let origin = provenance(scene.to_recipe(), entries(&scene));
-    let target = Target::Quality(Quality::Draft, Precision::F32);
-    let set = generate(&plan.needs, target, origin, &Cache::none(), || ()).unwrap();
-    let set = add_distributions(set, &plan.distributions, target, &Cache::none(), || ()).unwrap();
-    let set = add_albedos(set, &plan.albedos, target, &Cache::none(), || ()).unwrap().set;
+    let set = generate::bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set;
     let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
     let table = views(&set)[0];
     assert_eq!((table.name.as_str(), table.shape()[0]), ("albedo_height-correlated_gtr_0.2_1.5", 1));

@@ -17,8 +17,8 @@ use crate::spec::{ShapeAxis, TableSpec};
 
 pub use radial::{bake_radial, radial_axes, radial_bytes};
 
-/// Changes whenever the same specification would give other values: part of every file, and of every cache key.
-pub const NUMERICS: u32 = 3;
+/// Changes whenever the same specification would give other values or certificates: part of every file, and of every cache key.
+pub const NUMERICS: u32 = 4;
 
 /// u at which the ends of a mirrored axis are evaluated where u = 0 itself is an infinite slope: 2⁻⁴⁰. For Beckmann it keeps every
 /// stored slope finite (below 5.3); the CDF error it makes is itself.

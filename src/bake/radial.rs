@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::shadowing::ratios;
 use super::{across, along, in_names, joined_name, mirrored, names, round};
-use crate::spec::Quality;
+use crate::spec::Level;
 
 /// Rows of in-plane slopes in the table of slopes across.
 const SLOPES: usize = 193;
@@ -19,8 +19,8 @@ const SLOPES: usize = 193;
 const DENSITIES: usize = 257;
 
 /// Kinds and axes of the four tables, for a distribution whose projected area at grazing is `kappa` and whose slopes reach to `reach`.
-pub fn radial_axes(quality: Quality, kappa: f64, reach: f64) -> [(Kind, Vec<Axis>); 4] {
-    let r = quality.resolution();
+pub fn radial_axes(level: Level, kappa: f64, reach: f64) -> [(Kind, Vec<Axis>); 4] {
+    let r = level.resolution();
     // Twice as fine as the family's: a distribution at hand may have kinks and several scales, and there is one slice only.
     let [along_numbers, across_numbers] = [r.numbers, r.across_numbers].map(|n| 2 * n - 1);
     let slopes = match reach {
@@ -54,15 +54,20 @@ fn rational(kappa: f64) -> Mapping {
 }
 
 /// Bytes of the values of the four tables as they are stored.
-pub fn radial_bytes(quality: Quality, precision: Precision) -> usize {
+pub fn radial_bytes(level: Level, precision: Precision) -> usize {
     // None depends on the distribution.
     let channels = Kind::VALUE_AND_SLOPE.len();
     let values = |(_, axes): &(Kind, Vec<Axis>)| channels * axes.iter().map(Axis::len).product::<usize>();
-    radial_axes(quality, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * precision.bytes()
+    radial_axes(level, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * precision.bytes()
 }
 
 /// The four tables of the distribution of a label.
-pub fn bake_radial(marginal: &Marginal, label: &str, quality: Quality, precision: Precision) -> Vec<Table> {
+pub fn bake_radial(
+    marginal: &Marginal,
+    label: &str,
+    level: impl Into<Level>,
+    precision: Precision,
+) -> Vec<Table> {
     let kappa = marginal.beyond(0.0).excess;
     let table = |(kind, axes): (Kind, Vec<Axis>)| {
         let values = match (kind, &axes[..]) {
@@ -84,7 +89,7 @@ pub fn bake_radial(marginal: &Marginal, label: &str, quality: Quality, precision
         };
         table.rounded(precision)
     };
-    radial_axes(quality, kappa, marginal.reach()).into_iter().map(table).collect()
+    radial_axes(level.into(), kappa, marginal.reach()).into_iter().map(table).collect()
 }
 
 /// G1/q by q = z/(z + κ), with κ the area at grazing, as for the family.

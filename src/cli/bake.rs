@@ -7,16 +7,14 @@ use clap::ValueEnum;
 use serde_json::json;
 
 use microfacet_bake::cache::Cache;
-use microfacet_bake::fill::fill;
-use microfacet_bake::generate::{Baked, Target, add_albedos, add_distributions, generate, worst_error};
-use microfacet_bake::memory;
+use microfacet_bake::generate::{Baked, Progress, Settings, Target, bake_with};
 use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::{self, Scene};
-use microfacet_bake::spec::{Quality, general_set};
 use microfacet_bake::store::{Format, OutputFolder, Written};
-use microfacet_sampler::{Precision, Table};
+use microfacet_bake::validate::certificate::worst_error;
+use microfacet_sampler::Table;
 
-use super::request::{Request, provenance};
+use super::request::Request;
 use super::{Done, Outcome, print, print_json, progress};
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
@@ -33,13 +31,17 @@ pub(super) struct Args {
     format: Vec<FormatArg>,
     #[command(flatten)]
     request: Request,
-    /// Choose each table's nodes and precision instead: the smallest whose error, measured, is not above this (of G1, the CDFs of slopes, and
+    /// Choose each table's nodes and precision instead: small ones whose error, measured, is not above this (of G1, the CDFs of slopes, and
     /// albedos).
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_error, conflicts_with_all = ["quality", "precision", "max_bytes"])]
     max_error: Option<f64>,
     /// The most accurate tables of all kinds whose safetensors file is not larger than this.
     #[arg(long, value_name = "BYTES", conflicts_with_all = ["quality", "precision"])]
     max_bytes: Option<usize>,
+    /// Choose tables for --max-error or --max-bytes even where that takes long: more than three times the bake of default quality, and more
+    /// than ten seconds.
+    #[arg(long)]
+    patient: bool,
     /// Folder of finished tables, which are not baked again; in the user's cache folder by default.
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
@@ -85,9 +87,10 @@ fn parse_error(text: &str) -> Result<f64, String> {
 
 impl Args {
     fn target(&self) -> Target {
-        match self.max_error {
-            Some(max_error) => Target::MaxError(max_error),
-            None => Target::Quality(self.request.quality(), self.request.precision()),
+        match (self.max_error, self.max_bytes) {
+            (Some(max_error), _) => Target::MaxError(max_error),
+            (_, Some(max_bytes)) => Target::MaxBytes(max_bytes),
+            _ => Target::Quality(self.request.quality(), self.request.precision()),
         }
     }
 
@@ -116,40 +119,17 @@ pub(super) fn run(args: Args) -> Outcome {
         print("Nothing to bake: no material in use is rough.\n")?;
         return Ok(Done::Ok);
     }
-    let target = args.target();
-    let (quality, precision) = match target {
-        Target::Quality(quality, precision) if args.max_bytes.is_none() => (quality, precision),
-        // Where a search ends is not known; hardly ever beyond this.
-        _ => (Quality::High, Precision::F32),
+    let bar = progress(0, "baking");
+    let settings = Settings {
+        cache: args.cache(),
+        max_memory: args.max_memory,
+        patient: args.patient,
+        progress: Box::new(|Progress { done, steps }| {
+            bar.set_length(steps as u64);
+            bar.set_position(done as u64);
+        }),
     };
-    let general = general_set(quality, precision);
-    let specs: Vec<_> = plan.needs.iter().flat_map(|need| need.specs(&general)).collect();
-    let albedos: Vec<_> =
-        plan.albedos.iter().map(|need| need.spec(quality, precision)).collect::<Result<_, _>>()?;
-    memory::check(&specs, &albedos, args.max_memory)?;
-    let steps = match target {
-        // All at once.
-        _ if args.max_bytes.is_some() => 0,
-        // The tables of each need, and its certificate.
-        Target::Quality(..) => specs.len() + plan.needs.len(),
-        _ => plan.needs.len(),
-    };
-    let bar = progress(steps + plan.distributions.len() + plan.albedos.len(), "baking");
-    let provenance = provenance(scene.as_ref().map(|scene| (scene, &plan)));
-    let cache = args.cache();
-    let (result, families) = match args.max_bytes {
-        Some(max_bytes) => (fill(&plan, max_bytes, provenance, &cache)?, None),
-        None => {
-            let normals = Instant::now();
-            let result = generate(&plan.needs, target, provenance, &cache, || bar.inc(1))?;
-            let result = add_distributions(result, &plan.distributions, target, &cache, || bar.inc(1))?;
-            let normals = normals.elapsed().as_secs_f64();
-            let albedo = Instant::now();
-            let result = add_albedos(result, &plan.albedos, target, &cache, || bar.inc(1))?;
-            let families = [("visible normals", normals), ("albedo", albedo.elapsed().as_secs_f64())];
-            (result, Some(families))
-        }
-    };
+    let result = bake_with(&plan, args.target(), settings)?;
     bar.finish_and_clear();
     if let Some(why) = &result.cache_error {
         eprintln!(
@@ -167,9 +147,9 @@ pub(super) fn run(args: Args) -> Outcome {
     let written = out.write(&result.set, &formats)?;
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
-        print_json(&as_json(&result, &written, families, seconds))?
+        print_json(&as_json(&result, &written, seconds))?
     } else {
-        print(&summary(&result, &plan, &written, families, seconds))?
+        print(&summary(&result, &plan, &written, seconds))?
     }
     Ok(Done::Ok)
 }
@@ -196,10 +176,10 @@ pub(super) fn largest_error(table: &Table) -> String {
     }
 }
 
-/// Seconds that each family of tables took; unknown where they are chosen together.
-type Families = Option<[(&'static str, f64); 2]>;
+/// What [`Baked::seconds`] are of.
+const FAMILIES: [&str; 2] = ["visible normals", "albedo"];
 
-fn summary(result: &Baked, plan: &Plan, written: &[Written], families: Families, seconds: f64) -> String {
+fn summary(result: &Baked, plan: &Plan, written: &[Written], seconds: f64) -> String {
     let mut text = String::new();
     let tables = result.set.tables();
     let width = tables.iter().map(|table| table.name.len()).max().unwrap_or(0);
@@ -221,14 +201,15 @@ fn summary(result: &Baked, plan: &Plan, written: &[Written], families: Families,
         (all, _) => format!("{all} tables"),
     };
     text += &format!("{baked} in {seconds:.3} s");
-    if let Some(families) = families.filter(|_| !plan.albedos.is_empty()) {
-        let parts = families.map(|(name, seconds)| format!("{name} {seconds:.3} s"));
-        text += &format!(" ({})", parts.join(", "));
+    if !plan.albedos.is_empty() {
+        let parts =
+            FAMILIES.iter().zip(result.seconds).map(|(name, seconds)| format!("{name} {seconds:.3} s"));
+        text += &format!(" ({})", parts.collect::<Vec<_>>().join(", "));
     }
     text + "\n"
 }
 
-fn as_json(result: &Baked, written: &[Written], families: Families, seconds: f64) -> serde_json::Value {
+fn as_json(result: &Baked, written: &[Written], seconds: f64) -> serde_json::Value {
     let tables: Vec<_> = result
         .set
         .tables()
@@ -247,6 +228,6 @@ fn as_json(result: &Baked, written: &[Written], families: Families, seconds: f64
         .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }))
         .collect();
     let families: serde_json::Map<_, _> =
-        families.into_iter().flatten().map(|(name, seconds)| (name.into(), json!(seconds))).collect();
+        FAMILIES.iter().zip(result.seconds).map(|(&name, seconds)| (name.into(), json!(seconds))).collect();
     json!({ "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families })
 }

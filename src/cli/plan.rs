@@ -8,7 +8,6 @@ use serde_json::json;
 
 use microfacet_bake::bake::albedo::{AlbedoSpec, Domain, Lobe};
 use microfacet_bake::family::Distribution;
-use microfacet_bake::generate::add_albedo_conventions;
 use microfacet_bake::plan::{
     AlbedoVerdict, Cost, Need, Plan, Verdict, albedo_cost, bare_cost, cost, distribution_cost,
 };
@@ -17,7 +16,7 @@ use microfacet_bake::spec::{TableSpec, general_set};
 
 use microfacet_sampler::Kind;
 
-use super::request::{Request, provenance};
+use super::request::Request;
 use super::{Done, Outcome, print, print_json};
 
 /// Show what a scene needs baked and what it does not, with bytes and seconds.
@@ -58,7 +57,6 @@ pub(super) fn run(args: Args) -> Outcome {
     let start = Instant::now();
     let plan = args.request.plan(&scene, None)?;
     let general = general_set(args.request.quality(), args.request.precision());
-    let mut origin = provenance(Some((&scene, &plan)));
     let (quality, precision) = (args.request.quality(), args.request.precision());
     let of_need = |spec: AlbedoSpec| {
         let cost = albedo_cost(&spec);
@@ -66,9 +64,6 @@ pub(super) fn run(args: Args) -> Outcome {
     };
     let albedos = plan.albedos.iter().map(|need| need.spec(quality, precision).map(of_need));
     let albedos = albedos.collect::<Result<Vec<(AlbedoSpec, Cost)>, _>>()?;
-    if !albedos.is_empty() {
-        add_albedo_conventions(&mut origin);
-    }
     let tables: Vec<(Vec<TableSpec>, Cost)> = plan
         .needs
         .iter()
@@ -85,10 +80,12 @@ pub(super) fn run(args: Args) -> Outcome {
         .map(|(_, cost)| *cost)
         .chain(distributions.iter().copied())
         .chain(albedos.iter().map(|(_, cost)| *cost))
-        .chain([bare_cost(&origin)])
+        .chain([bare_cost(&plan.provenance())])
         .sum();
-    let mut everything = vec![cost(&general), bare_cost(&provenance(None))];
-    if !args.request.general_plan().albedos.is_empty() {
+    let everything = args.request.general_plan();
+    let has_albedos = !everything.albedos.is_empty();
+    let mut everything = vec![cost(&general), bare_cost(&everything.provenance())];
+    if has_albedos {
         everything.push(albedo_cost(&AlbedoSpec::general(quality, precision)));
     }
     let general = everything.into_iter().sum();

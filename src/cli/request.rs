@@ -2,11 +2,11 @@
 
 use clap::ValueEnum;
 
-use microfacet_bake::generate::{self, worst_error};
-use microfacet_bake::plan::{self, AlbedoWish, Options, Plan};
+use microfacet_bake::plan::{AlbedoWish, Options, Plan};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::spec::Quality;
-use microfacet_sampler::{Precision, Provenance, Table, Tables};
+use microfacet_bake::validate::certificate::worst_error;
+use microfacet_sampler::{Precision, Table, Tables};
 
 use super::Failure;
 
@@ -112,16 +112,4 @@ impl Request {
         };
         Ok(Plan::new(scene, options)?)
     }
-}
-
-/// What a file says about where it comes from; `None` is the general set.
-pub(super) fn provenance(scene: Option<(&Scene, &Plan)>) -> Provenance {
-    let Some((scene, plan)) = scene else { return generate::provenance(String::new(), Vec::new()) };
-    let mut provenance = generate::provenance(scene.to_recipe(), plan::entries(scene));
-    if plan.has_closed_forms() {
-        let text = "a material with gamma = 2 that no table covers has closed forms: G1 = 2/(1 + sqrt(1 + (sigma/cot theta)^2)), \
-                    visible normals by spherical caps (Dupuy and Benyoub 2023)";
-        provenance.conventions.insert("ggx".into(), text.into());
-    }
-    provenance
 }

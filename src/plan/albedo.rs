@@ -5,7 +5,7 @@ use microfacet_sampler::{LobeEntry, Masking, Precision, Reflectance};
 use super::{NotCovered, Options, entry, is_rough};
 use crate::bake::albedo::{AlbedoSpec, BakeError, Domain, Lobe, SIGMA_MAX};
 use crate::scene::{Format, Interval, Material, Scene};
-use crate::spec::Quality;
+use crate::spec::{Level, Quality};
 
 /// Which materials get albedo tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,9 +42,9 @@ impl AlbedoNeed {
     ///
     /// # Errors
     /// [`BakeError`] for an ellipsoid that is none.
-    pub fn spec(&self, quality: Quality, precision: Precision) -> Result<AlbedoSpec, BakeError> {
+    pub fn spec(&self, level: impl Into<Level>, precision: Precision) -> Result<AlbedoSpec, BakeError> {
         let Self { lobe, reflectance, maskings } = self.clone();
-        AlbedoSpec::new(lobe, reflectance, maskings, quality, precision)
+        AlbedoSpec::new(lobe, reflectance, maskings, level, precision)
     }
 
     fn covers(&self, want: &Want) -> bool {

@@ -8,8 +8,8 @@ use microfacet_sampler::{
 use crate::bake::albedo::{AlbedoSpec, Lobe};
 use crate::bake::{self};
 use crate::family::Distribution;
-use crate::generate::CERTIFICATE_POINTS;
-use crate::spec::{Quality, TableSpec};
+use crate::spec::{Level, TableSpec};
+use crate::validate::certificate::POINTS;
 use crate::validate::{points, radial};
 
 /// Bytes and seconds.
@@ -59,10 +59,13 @@ pub fn cost(specs: &[TableSpec]) -> Cost {
         // Name twice, kind, channels, certificate, shape and offsets.
         axes + 2 * spec.name.len() + 440
     };
-    let threads = rayon::current_num_threads() as f64;
-    let one =
-        |spec: &TableSpec| Cost { bytes: spec.bytes() + header(spec), seconds: seconds(spec) / threads };
-    specs.iter().map(one).sum()
+    let bytes = specs.iter().map(|spec| spec.bytes() + header(spec)).sum();
+    Cost { bytes, seconds: seconds(specs) }
+}
+
+/// The seconds of [`cost`] alone, which take no time to estimate.
+pub fn seconds(specs: &[TableSpec]) -> f64 {
+    specs.iter().map(seconds_of).sum::<f64>() / rayon::current_num_threads() as f64
 }
 
 /// The same for albedo tables, at the nodes that are tried first.
@@ -79,16 +82,17 @@ pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
 }
 
 /// The same for the four tables of a distribution outside the family.
-pub fn distribution_cost(distribution: &Distribution, quality: Quality, precision: Precision) -> Cost {
+pub fn distribution_cost(distribution: &Distribution, level: impl Into<Level>, precision: Precision) -> Cost {
+    let level = level.into();
     // The name ends in the label, or as many other characters; kind, channels, certificate, shape and offsets.
     let suffix = distribution.label().len();
     // Where its scale and reach stand in axes, another number is as long.
-    let tables = bake::radial_axes(quality, std::f64::consts::PI, f64::INFINITY);
+    let tables = bake::radial_axes(level, std::f64::consts::PI, f64::INFINITY);
     let header = |(kind, axes): &(Kind, Vec<Axis>)| {
         let axes = serde_json::to_string(axes).map_or(0, |json| escaped(&json));
         axes + 2 * (kind.name().len() + suffix) + 330
     };
-    let bytes = tables.iter().map(header).sum::<usize>() + bake::radial_bytes(quality, precision);
+    let bytes = tables.iter().map(header).sum::<usize>() + bake::radial_bytes(level, precision);
     // Microseconds a node of either slope table, the others being far smaller, and a normal of the certificate: fitted to the processor
     // time of `microfacet-bake bake --threads 1 --no-cache --quality Q` for a Gauss, a GTR, a Schlick and a measured distribution, whose mean it meets
     // within a twentieth at each quality; a single one, within a third.
@@ -116,7 +120,7 @@ fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
 }
 
 /// Seconds that one thread bakes and certifies a table.
-fn seconds(spec: &TableSpec) -> f64 {
+fn seconds_of(spec: &TableSpec) -> f64 {
     // Nanoseconds a node and a point of the certificate: fitted to `time microfacet-bake bake --threads 1 --no-cache --quality Q` of the
     // three qualities, which it meets within a tenth.
     let [node, point] = match spec.kind {
@@ -126,5 +130,5 @@ fn seconds(spec: &TableSpec) -> f64 {
     };
     let shapes = spec.shapes.nodes.len();
     let measured = if spec.shapes.interpolation == Interpolation::Nodes { shapes } else { 4 * shapes - 3 };
-    1e-9 * (node * spec.nodes() as f64 + point * (measured * CERTIFICATE_POINTS) as f64)
+    1e-9 * (node * spec.nodes() as f64 + point * (measured * POINTS) as f64)
 }

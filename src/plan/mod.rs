@@ -7,13 +7,14 @@
 mod albedo;
 mod cost;
 mod needs;
+mod provenance;
 
 use std::fmt;
 
 use microfacet_sampler::MaterialEntry;
 
 pub use albedo::{AlbedoNeed, AlbedoVerdict, AlbedoWish};
-pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost};
+pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, seconds};
 pub use needs::Need;
 
 use microfacet_common::shape::s_of_gamma;
@@ -93,6 +94,10 @@ pub struct Plan {
     pub albedos: Vec<AlbedoNeed>,
     /// One verdict on the albedo of each material, in order.
     pub albedo_verdicts: Vec<AlbedoVerdict>,
+    /// The scene as a recipe, and its materials, as the set will name them; nothing for the general set.
+    pub recipe: String,
+    /// See `recipe`.
+    pub materials: Vec<MaterialEntry>,
 }
 
 impl Plan {
@@ -141,7 +146,8 @@ impl Plan {
         let verdicts = wants.iter().enumerate().map(verdict).collect();
         let (albedos, albedo_verdicts) = albedo::needs(scene, options)?;
         let distributions = distributions(scene);
-        Ok(Self { needs, distributions, verdicts, albedos, albedo_verdicts })
+        let (recipe, materials) = (scene.to_recipe(), entries(scene));
+        Ok(Self { needs, distributions, verdicts, albedos, albedo_verdicts, recipe, materials })
     }
 
     /// Whether some material is left to closed forms: then even a set without tables is worth writing.
@@ -196,7 +202,7 @@ fn is_rough(material: &Material) -> bool {
 }
 
 /// The named materials of a scene as a set records them: those in use that are rough.
-pub fn entries(scene: &Scene) -> Vec<MaterialEntry> {
+fn entries(scene: &Scene) -> Vec<MaterialEntry> {
     scene.materials.iter().filter(|material| material.used && is_rough(material)).map(entry).collect()
 }
 

@@ -19,6 +19,9 @@ use microfacet_sampler::{Axis, BindError, Interpolation, Kind, Mapping, StudentT
 
 use crate::spec::GAMMA_WHOLE;
 
+/// Points measured at each γ.
+pub const POINTS: usize = 4000;
+
 /// s of all shapes.
 pub const ALL_SHAPES: [f64; 2] = [0.0, S_END];
 
@@ -259,6 +262,13 @@ pub(crate) fn measure(
     Ok(figures)
 }
 
+/// The largest error of any quantity that a table's certificate promises; ∞ if there is none.
+pub fn worst_error(table: &Table) -> f64 {
+    let promised = |key: &str| key.ends_with("_max_error") && !key.starts_with("shortcut");
+    let figures = table.certificate.iter().filter(|(key, _)| promised(key)).map(|(_, figure)| *figure);
+    figures.reduce(f64::max).unwrap_or(f64::INFINITY)
+}
+
 /// Three significant digits, upwards: a certificate must not promise more than was measured.
 pub(super) fn round_up(x: f64) -> f64 {
     if !(x > 0.0) {
@@ -272,6 +282,9 @@ pub(super) fn round_up(x: f64) -> f64 {
 /// rounding.
 const BESIDE: [([f32; 2], f32); 4] =
     [([0.0, 1.0], 0.4), ([1.0, 0.0], 1.0), ([0.6, 0.8], 0.0), ([1.0, 0.0], 0.5)];
+
+/// How far from the seam tables of peeled slopes are first measured, in s.
+const BESIDE_SEAM: f64 = 1e-9;
 
 /// What measures one table.
 struct Ruler<'a> {
@@ -295,9 +308,11 @@ impl<'a> Ruler<'a> {
             _ => (Along::whole(nodes(1)), Along::mirrored(nodes(2))),
         };
         let [first, last] = table.axes[0].ends();
+        let [low, high] = [first.max(s[0]), last.min(s[1])];
+        // At the seam itself, γ = 1.8, the tables of the whole distribution are read, not those that begin there.
+        let low = if low == s_of_gamma(GAMMA_WHOLE) && high > low { low + BESIDE_SEAM } else { low };
         // The far end not as 1 + 1/s itself, which may round to just outside.
-        let s = [first.max(s[0]), last.min(s[1]) * (1.0 - 1e-15)];
-        Self { tables, table, s, views, numbers }
+        Self { tables, table, s: [low, high * (1.0 - 1e-15)], views, numbers }
     }
 
     /// Whether shapes between nodes are covered.
@@ -345,11 +360,9 @@ impl<'a> Ruler<'a> {
             let cell = nodes.partition_point(|&node| node <= s).clamp(1, count - 1) - 1;
             cell as f64 + (s - nodes[cell]) / (nodes[cell + 1] - nodes[cell])
         };
-        // Just beside the lower end, too: the end itself may be the end of another table, which is
-        // preferred.
-        let ends = [low, low + 1e-9, high].map(place);
+        let ends = [low, high].map(place);
         let between = (0..count - 1).flat_map(|i| [0.0, 0.21, 0.5, 0.83].map(|w| i as f64 + w));
-        let inside = between.filter(|&place| place > ends[0] && place < ends[2]);
+        let inside = between.filter(|&place| place > ends[0] && place < ends[1]);
         inside.chain(ends).collect()
     }
 

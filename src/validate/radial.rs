@@ -57,7 +57,7 @@ pub struct Errors {
 /// quality.
 pub fn measure(radial: &Radial, marginal: &Marginal) -> Errors {
     let kappa = marginal.beyond(0.0).excess;
-    let axes = radial_axes(Quality::Default, kappa, marginal.reach());
+    let axes = radial_axes(Quality::Default.into(), kappa, marginal.reach());
     let error = |kind: Kind| {
         let of_kind = axes.iter().find(|(of, _)| *of == kind);
         of_kind.map_or(0.0, |(_, axes)| found(radial, marginal, kind, axes).worst.error)

@@ -12,7 +12,7 @@ use microfacet_sampler::{
 use super::{BakeError, Lobe, view_of};
 use crate::bake::{joined_name, names};
 use crate::scene::Interval;
-use crate::spec::{GAMMA_MIN, Quality};
+use crate::spec::{GAMMA_MIN, Level};
 
 /// Smallest σ node; what is smoother is a mirror.
 const SIGMA_MIN: f64 = LogRoughness::BAKED.first;
@@ -85,7 +85,10 @@ pub struct AlbedoSpec {
     pub precision: Precision,
 }
 
-/// Numbers of nodes that go with a quality, found by measuring.
+/// Level from which views stand closer to the normal.
+const CLOSE_FROM: Level = Level(24);
+
+/// Numbers of nodes that go with a level, found by measuring.
 struct Counts {
     /// Of the axes of the family.
     shapes: usize,
@@ -101,18 +104,25 @@ struct Counts {
 }
 
 impl Counts {
-    const fn of(quality: Quality) -> Self {
-        let ([shapes, roughnesses, views, indices], [azimuths, views_of_lobes], tolerance) = match quality {
-            Quality::Draft => ([16, 22, 20, 20], [5, 17], 1e-5),
-            Quality::Default => ([24, 38, 33, 32], [9, 33], 1e-6),
-            Quality::High => ([44, 68, 58, 48], [17, 65], 1e-7),
-        };
-        Self { shapes, roughnesses, views, indices, azimuths, views_of_lobes, tolerance }
+    fn at(level: Level) -> Self {
+        // The polynomial reads six nodes.
+        let nodes = |counts| level.nodes(counts, 6);
+        let quality = level.quality() as usize;
+        Self {
+            shapes: nodes([16, 24, 44]),
+            roughnesses: nodes([22, 38, 68]),
+            views: nodes([20, 33, 58]),
+            indices: nodes([20, 32, 48]),
+            // They are doubled from here on, as far as the error takes.
+            azimuths: [5, 9, 17][quality],
+            views_of_lobes: [17, 33, 65][quality],
+            tolerance: level.between([1e-5, 1e-6, 1e-7]),
+        }
     }
 }
 
 impl AlbedoSpec {
-    /// Tables of a quality. Those of a part of the family are cut out of the general ones: one node for a single γ or σ, else the nodes that are
+    /// Tables of a level. Those of a part of the family are cut out of the general ones: one node for a single γ or σ, else the nodes that are
     /// read there, so that the values in between are those of the general tables. Those of other lobes are the smallest that are tried.
     ///
     /// # Errors
@@ -121,10 +131,11 @@ impl AlbedoSpec {
         lobe: Lobe,
         reflectance: Reflectance,
         maskings: Vec<Masking>,
-        quality: Quality,
+        level: impl Into<Level>,
         precision: Precision,
     ) -> Result<Self, BakeError> {
-        let counts = Counts::of(quality);
+        let level = level.into();
+        let counts = Counts::at(level);
         let mut axes = match (&lobe, lobe.azimuth()?) {
             (Lobe::Family(domain), _) => materials(domain, &counts),
             (_, Some(azimuth)) => {
@@ -144,7 +155,7 @@ impl AlbedoSpec {
             Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&nodes, from, to))
         }));
         let (view, views) = match lobe {
-            Lobe::Family(_) if quality == Quality::High => (ViewBlend::CLOSE, counts.views),
+            Lobe::Family(_) if level >= CLOSE_FROM => (ViewBlend::CLOSE, counts.views),
             Lobe::Family(_) => (ViewBlend::BAKED, counts.views),
             _ => (view_of(lobe.tail()), counts.views_of_lobes),
         };
@@ -159,9 +170,9 @@ impl AlbedoSpec {
     }
 
     /// The moments of the whole family, for both forms of masking.
-    pub fn general(quality: Quality, precision: Precision) -> Self {
+    pub fn general(level: impl Into<Level>, precision: Precision) -> Self {
         let lobe = Lobe::Family(Domain::GENERAL);
-        Self::new(lobe, Reflectance::Moments, Masking::ALL.into(), quality, precision)
+        Self::new(lobe, Reflectance::Moments, Masking::ALL.into(), level, precision)
             .expect("the family is no ellipsoid")
     }
 

@@ -1,9 +1,13 @@
 //! What is to be baked: one specification a table, pure data.
 
+mod quality;
+
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::axis::lagrange::nodes_read;
 use microfacet_sampler::axis::{InverseShape, even_nodes};
 use microfacet_sampler::{Interpolation, Kind, Precision};
+
+pub use quality::{Level, Quality, Resolution};
 
 /// γ of the smallest shape that tables cover; below it almost every visible normal lies beyond any floating-point slope.
 pub const GAMMA_MIN: f64 = 1.501;
@@ -89,84 +93,9 @@ impl TableSpec {
     }
 }
 
-/// How fine the tables are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Quality {
-    /// Small and rough: previews, tests.
-    Draft,
-    /// CDF error below 1e-4 where γ ≥ 1.8, G1 below 1e-5.
-    #[default]
-    Default,
-    /// CDF error below 1.2e-5 where γ ≥ 1.8, G1 below 2e-6.
-    High,
-}
-
-/// Numbers of nodes that go with a quality.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Resolution {
-    /// γ nodes over the whole-distribution range.
-    pub shapes: usize,
-    /// γ nodes over the peeled range.
-    pub peeled_shapes: usize,
-    /// γ nodes of either shadowing table.
-    pub shadowing_shapes: usize,
-    /// γ nodes of the table of slopes across.
-    pub across_shapes: usize,
-    /// View nodes of the shadowing table.
-    pub shadowing_views: usize,
-    /// View nodes of the slope tables.
-    pub views: usize,
-    /// Nodes of one half of u₁.
-    pub numbers: usize,
-    /// Nodes of one half of u₂.
-    pub across_numbers: usize,
-}
-
-impl Quality {
-    /// The numbers of nodes, each found by measuring (`examples/table_design.rs`).
-    pub fn resolution(self) -> Resolution {
-        match self {
-            Self::Draft => Resolution {
-                shapes: 9,
-                peeled_shapes: 7,
-                shadowing_shapes: 17,
-                across_shapes: 17,
-                shadowing_views: 65,
-                views: 25,
-                numbers: 11,
-                across_numbers: 17,
-            },
-            Self::Default => Resolution {
-                shapes: 21,
-                peeled_shapes: 13,
-                shadowing_shapes: 25,
-                across_shapes: 33,
-                shadowing_views: 97,
-                views: 81,
-                numbers: 17,
-                across_numbers: 33,
-            },
-            Self::High => Resolution {
-                shapes: 33,
-                peeled_shapes: 25,
-                shadowing_shapes: 49,
-                across_shapes: 65,
-                shadowing_views: 193,
-                views: 321,
-                numbers: 29,
-                across_numbers: 65,
-            },
-        }
-    }
-}
-
 /// The general set: every γ ∈ [1.501, ∞] (and through shape invariance every σ).
-pub fn general_set(quality: Quality, precision: Precision) -> Vec<TableSpec> {
-    general_set_at(quality.resolution(), precision)
-}
-
-/// The general set with other numbers of nodes.
-pub fn general_set_at(r: Resolution, precision: Precision) -> Vec<TableSpec> {
+pub fn general_set(level: impl Into<Level>, precision: Precision) -> Vec<TableSpec> {
+    let r = level.into().resolution();
     let (whole, heaviest) = (s_of_gamma(GAMMA_WHOLE), s_of_gamma(GAMMA_MIN));
     let spec = |kind: Kind, shapes: ShapeAxis, views, numbers| TableSpec {
         name: kind.name().into(),

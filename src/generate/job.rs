@@ -1,0 +1,65 @@
+//! What goes along with a bake: the cache, the count of what was done, and who is told of it.
+
+use std::collections::HashSet;
+use std::io;
+
+use microfacet_sampler::Table;
+
+use super::{Progress, Settings};
+use crate::cache::Cache;
+
+pub(super) struct Job<'a> {
+    cache: Cache,
+    progress: Box<dyn FnMut(Progress) + 'a>,
+    pub(super) max_memory: u64,
+    pub(super) patient: bool,
+    /// Names of tables that were baked, not read from the cache.
+    fresh: HashSet<String>,
+    pub(super) cache_error: Option<io::Error>,
+    done: usize,
+    pub(super) steps: usize,
+    pub(super) seconds: [f64; 2],
+}
+
+impl<'a> Job<'a> {
+    pub(super) fn new(settings: Settings<'a>) -> Self {
+        let Settings { cache, max_memory, patient, progress } = settings;
+        let (fresh, cache_error, seconds) = Default::default();
+        Self { cache, progress, max_memory, patient, fresh, cache_error, done: 0, steps: 0, seconds }
+    }
+
+    /// Steps are done.
+    pub(super) fn advance(&mut self, steps: usize) {
+        for _ in 0..steps {
+            self.done += 1;
+            (self.progress)(Progress { done: self.done, steps: self.steps.max(self.done) });
+        }
+    }
+
+    /// The tables under a key.
+    pub(super) fn get(&self, key: &str) -> Option<Vec<Table>> {
+        self.cache.get(key)
+    }
+
+    /// Keeps tables under a key.
+    pub(super) fn keep(&mut self, key: &str, tables: &[Table]) {
+        if let Err(why) = self.cache.put(key, tables) {
+            self.cache_error.get_or_insert(why);
+        }
+    }
+
+    /// Forgets what is kept under a key.
+    pub(super) fn forget(&self, key: &str) {
+        self.cache.remove(key);
+    }
+
+    /// Tables of these names are new.
+    pub(super) fn made<'t>(&mut self, tables: impl IntoIterator<Item = &'t Table>) {
+        self.fresh.extend(tables.into_iter().map(|table| table.name.clone()));
+    }
+
+    /// How many of the tables were baked now.
+    pub(super) fn baked_of(&self, tables: &[Table]) -> usize {
+        tables.iter().filter(|table| self.fresh.contains(&table.name)).count()
+    }
+}

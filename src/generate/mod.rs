@@ -1,0 +1,225 @@
+//! The whole bake, one way through: a plan and a target in, a certified set out.
+//!
+//! [`bake_with`] cuts the plan into units, the tables that are refined together; for a
+//! [quality](Target::Quality) each is baked at it, for the other targets `search` chooses their levels.
+//! A unit bakes its tables, certifies them and keeps them in the cache, through one
+//! door.
+
+mod job;
+mod refine;
+mod search;
+mod unit;
+
+use std::fmt;
+use std::io;
+
+use microfacet_sampler::{BindError, LoadError, Precision, Table, Tables};
+
+use crate::bake;
+use crate::cache::Cache;
+use crate::memory::{self, TooLarge};
+use crate::plan::Plan;
+use crate::spec::Quality;
+
+use job::Job;
+use search::Search;
+use unit::Unit;
+
+/// How good the tables are to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// A quality's numbers of nodes.
+    Quality(Quality, Precision),
+    /// Small tables with no larger error: of G1, absolute, of the CDF of slopes, of D/D(0) and of albedos.
+    MaxError(f64),
+    /// Accurate tables whose safetensors file has no more bytes.
+    MaxBytes(usize),
+}
+
+impl Default for Target {
+    fn default() -> Self {
+        Self::Quality(Quality::Default, Precision::F32)
+    }
+}
+
+/// What a bake may use, and whom it tells.
+pub struct Settings<'a> {
+    /// Where finished tables are kept; by default nowhere.
+    pub cache: Cache,
+    /// Bytes of memory that it may take; more is refused before any is taken. By default 4 GiB.
+    pub max_memory: u64,
+    /// Whether to choose tables even where that takes more than thrice as long as the plain bake, and more
+    /// than [`PATIENCE`] seconds. By default not.
+    pub patient: bool,
+    /// Called after each step.
+    pub progress: Box<dyn FnMut(Progress) + 'a>,
+}
+
+impl Default for Settings<'_> {
+    fn default() -> Self {
+        Self { cache: Cache::none(), max_memory: 4 << 30, patient: false, progress: Box::new(|_| ()) }
+    }
+}
+
+/// Seconds that choosing tables may take without being asked for, however fast the plain bake is.
+pub const PATIENCE: f64 = 10.0;
+
+/// How far a bake is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Steps done: tables and certificates.
+    pub done: usize,
+    /// All that are known of; more may come where tables are chosen.
+    pub steps: usize,
+}
+
+/// A set, and what was done for it.
+#[derive(Debug)]
+pub struct Baked {
+    /// The set.
+    pub set: Tables,
+    /// How many of its tables were baked now; the others come from the cache.
+    pub baked: usize,
+    /// Why the cache could not keep something.
+    pub cache_error: Option<io::Error>,
+    /// Seconds that visible normals took, and albedos.
+    pub seconds: [f64; 2],
+}
+
+/// Why there is no set.
+#[derive(Debug)]
+pub enum BakeError {
+    /// The tables do not make a set; a fault of the plan.
+    Set(LoadError),
+    /// Baking would take too much memory.
+    Memory(TooLarge),
+    /// [`Target::MaxError`] is too small for some tables.
+    OutOfReach {
+        /// What was asked for.
+        max_error: f64,
+        /// Which tables do not get there.
+        name: String,
+        /// The least error they were measured to have.
+        reached: f64,
+    },
+    /// [`Target::MaxBytes`] is too small.
+    TooSmall {
+        /// What was allowed.
+        max_bytes: usize,
+        /// What the smallest set takes.
+        smallest: usize,
+    },
+    /// Choosing the tables would take long, and [`Settings::patient`] is not set.
+    TooSlow {
+        /// About how many seconds it would take.
+        search: f64,
+        /// About how many a bake of default quality takes.
+        plain: f64,
+    },
+    /// An albedo that is not sound, or not accurate enough.
+    Albedo(bake::albedo::BakeError),
+}
+
+impl BakeError {
+    fn invalid(why: impl Into<String>) -> Self {
+        Self::Set(LoadError::Invalid(why.into()))
+    }
+}
+
+impl From<LoadError> for BakeError {
+    fn from(why: LoadError) -> Self {
+        Self::Set(why)
+    }
+}
+
+impl From<BindError> for BakeError {
+    fn from(why: BindError) -> Self {
+        Self::invalid(why.to_string())
+    }
+}
+
+impl From<TooLarge> for BakeError {
+    fn from(why: TooLarge) -> Self {
+        Self::Memory(why)
+    }
+}
+
+impl From<bake::albedo::BakeError> for BakeError {
+    fn from(why: bake::albedo::BakeError) -> Self {
+        Self::Albedo(why)
+    }
+}
+
+impl fmt::Display for BakeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Set(why) => why.fmt(f),
+            Self::Memory(why) => why.fmt(f),
+            Self::Albedo(why) => why.fmt(f),
+            Self::OutOfReach { max_error, name, reached } => write!(
+                f,
+                "no resolution meets an error of {max_error:e}: {name} reaches {reached:.1e} at best; \
+                 allow that much"
+            ),
+            Self::TooSmall { max_bytes, smallest } => write!(
+                f,
+                "no set of these materials fits into {max_bytes} bytes: the smallest, of the coarsest \
+                 tables, has {smallest}"
+            ),
+            Self::TooSlow { search, plain } => write!(
+                f,
+                "choosing these tables would take about {search:.0} s, the bake of default quality \
+                 about {plain:.0} s: go on with --patient, or allow a larger error or fewer bytes"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for BakeError {}
+
+/// Bakes and certifies the tables of a plan, in memory, with the default [`Settings`].
+///
+/// ```
+/// use microfacet_bake::generate::{Target, bake};
+/// use microfacet_bake::plan::{Options, Plan};
+/// use microfacet_bake::scene::Scene;
+///
+/// let recipe = "[[material]]\nname = \"glass\"\nsigma = 0.454\ngamma = 3.0\n";
+/// let plan = Plan::new(&Scene::from_recipe_str(recipe).unwrap(), Options::default()).unwrap();
+/// let tables = bake(&plan, Target::MaxError(1e-3)).unwrap().set;
+/// let glass = tables.student_t(0.454, 3.0).unwrap();
+/// assert!(glass.g1(glam::Vec3::Z) == 1.0);
+/// ```
+///
+/// # Errors
+/// [`BakeError`] for a target that cannot be met, or not soon.
+pub fn bake(plan: &Plan, target: Target) -> Result<Baked, BakeError> {
+    bake_with(plan, target, Settings::default())
+}
+
+/// The same with a cache, limits, and a report of the progress.
+///
+/// What is finished goes into the cache, and so does each table of a range of shapes, until all of the range
+/// are: a bake that was interrupted goes on where it was. Every set comes out in the same bytes, whatever
+/// was kept and however many threads there are.
+///
+/// # Errors
+/// [`BakeError`] for a target that cannot be met within the settings.
+pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Baked, BakeError> {
+    let provenance = plan.provenance();
+    let mut job = Job::new(settings);
+    let tables: Vec<Table> = match target {
+        Target::Quality(quality, precision) => {
+            let units = Unit::whole(plan)?;
+            memory::check(units.iter().map(|unit| unit.values(quality.into())).sum(), job.max_memory)?;
+            job.steps = units.iter().map(Unit::steps).sum();
+            let each = units.iter().map(|unit| unit.bake(quality.into(), &[precision], &mut job));
+            each.collect::<Result<Vec<_>, _>>()?.concat().concat()
+        }
+        Target::MaxError(max_error) => Search::new(plan)?.meeting(max_error, &mut job)?,
+        Target::MaxBytes(max_bytes) => Search::new(plan)?.within(max_bytes, &provenance, &mut job)?,
+    };
+    let baked = job.baked_of(&tables);
+    let set = Tables::from_tables(provenance, tables)?;
+    Ok(Baked { set, baked, cache_error: job.cache_error, seconds: job.seconds })
+}

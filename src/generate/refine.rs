@@ -1,0 +1,56 @@
+//! Albedo tables with as many nodes of the view as their error takes.
+
+use microfacet_sampler::{Precision, Table};
+
+use crate::bake;
+use crate::bake::albedo::{AlbedoSpec, BakeError};
+use crate::validate::albedo;
+use crate::validate::certificate::worst_error;
+
+/// Where views are all there is to refine, twice as many are kept if they err by no more than this
+/// share of what half as many do: else the error stands elsewhere, such as on an axis of the material.
+/// Six-point polynomials on a smooth curve would come to a sixtieth; of indices near 1
+/// (`docs/albedo.md`) 5.94e-3 became 5.89e-3.
+const WORTH: f64 = 0.8;
+
+/// The certified albedo tables of a specification in each of some precisions.
+pub(super) fn albedo_tables(
+    spec: &AlbedoSpec,
+    precisions: &[Precision],
+) -> Result<Vec<Vec<Table>>, BakeError> {
+    let interior = albedo::interior_references(spec)?;
+    // Single precision decides, which hardly rounds; it is certified once where it is asked for, too.
+    let mut all = vec![Precision::F32];
+    all.extend(precisions.iter().filter(|precision| **precision != Precision::F32));
+    let asked = |sets: Vec<Vec<Table>>| {
+        let of = |precision| all.iter().position(|other| other == precision).map(|i| sets[i].clone());
+        precisions.iter().filter_map(of).collect()
+    };
+    let mut spec = spec.clone();
+    let mut coarser: Option<(f64, Vec<Vec<Table>>)> = None;
+    for doubling in 0.. {
+        let references = [&interior[..], &albedo::edge_references(&spec)?].concat();
+        let baked = bake::albedo::bake_in(&spec, &all)?;
+        let certify = |tables| albedo::certified(&spec, tables, &references);
+        let sets = baked.into_iter().map(certify).collect::<Result<Vec<_>, BakeError>>()?;
+        let full = sets[0].clone();
+        let error = full.iter().map(worst_error).fold(0.0, f64::max);
+        let refinable = spec.refinable();
+        match coarser.take() {
+            Some((before, coarser)) if refinable.len() == 1 && error > WORTH * before => {
+                return Ok(asked(coarser));
+            }
+            _ if error <= spec.target() || doubling == spec.doublings() => return Ok(asked(sets)),
+            _ => coarser = Some((error, sets)),
+        }
+        let mut coarsest = (0.0, spec.axes.len() - 1);
+        for &axis in refinable.iter().filter(|_| refinable.len() > 1) {
+            let missed = albedo::missed_by_half(&spec, &full[0], axis)?;
+            if missed > coarsest.0 {
+                coarsest = (missed, axis);
+            }
+        }
+        spec = spec.refined(coarsest.1);
+    }
+    unreachable!("the last doubling returns")
+}

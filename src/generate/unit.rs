@@ -1,0 +1,323 @@
+//! The tables that are refined together: the unit in which they are chosen, baked, measured and kept.
+
+use std::time::Instant;
+
+use microfacet_model::classic::Marginal;
+use microfacet_sampler::{LoadError, MaterialEntry, Precision, Provenance, Table, Tables};
+
+use super::BakeError;
+use super::job::Job;
+use super::refine::albedo_tables;
+use crate::bake;
+use crate::bake::joined_name;
+use crate::family::Distribution;
+use crate::memory;
+use crate::plan::{AlbedoNeed, Cost, Need, Plan, albedo_cost, cost, distribution_cost, seconds};
+use crate::spec::{Level, Quality, TableSpec, general_set};
+use crate::validate::certificate::{POINTS, measure};
+use crate::validate::radial;
+
+/// What the tables are of.
+pub(super) enum Unit<'a> {
+    /// Visible normals and masking of a need.
+    Normals(&'a Need, Parts),
+    /// A distribution outside the family, and a material that has it.
+    Distribution(&'a Distribution, MaterialEntry),
+    /// Albedos.
+    Albedo(&'a AlbedoNeed),
+}
+
+/// Some of the tables of the general set.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Parts {
+    All,
+    Shadowing,
+    Slope,
+    /// The shares of light that slopes are peeled by come from the masking: both together.
+    Peeled,
+    Across,
+}
+
+impl Parts {
+    /// Those that can be refined apart from each other: what each is measured by does not depend on the others.
+    const APART: [Self; 4] = [Self::Shadowing, Self::Peeled, Self::Slope, Self::Across];
+
+    /// Indices into the general set.
+    fn indices(self) -> &'static [usize] {
+        match self {
+            Self::All => &[0, 1, 2, 3, 4],
+            Self::Shadowing => &[0],
+            Self::Peeled => &[1, 3],
+            Self::Slope => &[2],
+            Self::Across => &[4],
+        }
+    }
+
+    /// Those that a material needs beside them to be bound; no others, or the seam between two tables would be
+    /// measured on the other one.
+    fn beside(self) -> &'static [usize] {
+        match self {
+            Self::All => &[],
+            Self::Shadowing => &[2, 4],
+            Self::Peeled => &[4],
+            Self::Slope => &[0, 4],
+            Self::Across => &[0, 1, 2, 3],
+        }
+    }
+}
+
+impl<'a> Unit<'a> {
+    /// The units of a plan at one quality.
+    pub(super) fn whole(plan: &'a Plan) -> Result<Vec<Self>, BakeError> {
+        let normals = plan.needs.iter().map(|need| Self::Normals(need, Parts::All));
+        Ok(normals.chain(Self::others(plan)?).collect())
+    }
+
+    /// As many units of a plan as there can be.
+    pub(super) fn apart(plan: &'a Plan) -> Result<Vec<Self>, BakeError> {
+        let parts = |need| Parts::APART.map(|parts| Self::Normals(need, parts));
+        let normals = plan.needs.iter().flat_map(parts);
+        let some = |unit: &Self| unit.values(Level::DEFAULT) > 0;
+        Ok(normals.filter(some).chain(Self::others(plan)?).collect())
+    }
+
+    fn others(plan: &'a Plan) -> Result<Vec<Self>, BakeError> {
+        let of = |distribution: &'a Distribution| {
+            let label = distribution.label();
+            let entry = plan.materials.iter().find(|entry| entry.distribution == label);
+            let entry = entry.ok_or_else(|| BakeError::invalid(format!("no material has {label}")))?;
+            Ok(Self::Distribution(distribution, entry.clone()))
+        };
+        let albedos = plan.albedos.iter().map(|need| Ok(Self::Albedo(need)));
+        plan.distributions.iter().map(of).chain(albedos).collect()
+    }
+
+    /// What messages call it.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Normals(..) => {
+                let names: Vec<String> =
+                    self.specs(Level::DEFAULT).into_iter().map(|spec| spec.name).collect();
+                names.join(" with ")
+            }
+            Self::Distribution(distribution, _) => distribution.label(),
+            Self::Albedo(need) => joined_name(&["albedo", &need.lobe.label()]),
+        }
+    }
+
+    /// Levels that there are to choose from: as coarse as is worth storing at all, and as fine as single
+    /// precision resolves, or as time allows.
+    pub(super) fn levels(&self) -> std::ops::RangeInclusive<i32> {
+        match self {
+            Self::Normals(..) => -5 * Level::STEP..=3 * Level::STEP,
+            _ => Level::from(Quality::Draft).0..=Level::from(Quality::High).0,
+        }
+    }
+
+    /// The error to expect, before anything is measured: of the general set in the three qualities, as
+    /// `microfacet-bake bake --out out --quality Q --precision P` prints it, and what fixed point adds.
+    pub(super) fn expected(&self, level: Level, precision: Precision) -> f64 {
+        let [single, fixed] = match self {
+            Self::Normals(_, Parts::Shadowing) => [[7.5e-6, 4.0e-6, 1.4e-6], [2.5e-6; 3]],
+            Self::Normals(_, Parts::Peeled) => [[5.8e-4, 2.1e-4, 3.2e-5], [5e-6; 3]],
+            Self::Normals(_, Parts::Across) => [[2.9e-5, 2.6e-6, 4.0e-7], [1e-5; 3]],
+            Self::Albedo(_) => [[2.3e-3, 1.8e-4, 2.6e-5], [1e-5; 3]],
+            _ => [[2.4e-3, 8.5e-5, 1.1e-5], [5e-5, 5.5e-4, 1e-3]],
+        };
+        level.between(single) + if precision == Precision::F32 { 0.0 } else { level.between(fixed) }
+    }
+
+    /// Whether measuring all precisions at once costs hardly more than one: where the exact values that they are
+    /// compared with are dear.
+    pub(super) fn shares_measuring(&self) -> bool {
+        !matches!(self, Self::Normals(..))
+    }
+
+    /// Specifications of the tables of visible normals; none of other units.
+    fn specs(&self, level: Level) -> Vec<TableSpec> {
+        let Self::Normals(need, parts) = self else { return Vec::new() };
+        let general = general_set(level, Precision::F32);
+        parts.indices().iter().filter_map(|&i| need.cut(&general[i])).collect()
+    }
+
+    /// What a level is estimated to cost.
+    pub(super) fn cost(&self, level: Level, precision: Precision) -> Cost {
+        match self {
+            Self::Normals(..) => {
+                let at = |spec: TableSpec| TableSpec { precision, ..spec };
+                cost(&self.specs(level).into_iter().map(at).collect::<Vec<_>>())
+            }
+            Self::Distribution(distribution, _) => distribution_cost(distribution, level, precision),
+            // What is no specification is no table either; baking says why.
+            Self::Albedo(need) => {
+                need.spec(level, precision).map_or(Cost { bytes: 0, seconds: 0.0 }, |spec| albedo_cost(&spec))
+            }
+        }
+    }
+
+    /// Seconds that a level is estimated to take.
+    pub(super) fn seconds(&self, level: Level) -> f64 {
+        match self {
+            Self::Normals(..) => seconds(&self.specs(level)),
+            _ => self.cost(level, Precision::F32).seconds,
+        }
+    }
+
+    /// Bytes of the values alone; those of an albedo that is refined become more.
+    pub(super) fn bytes(&self, level: Level, precision: Precision) -> usize {
+        match self {
+            Self::Normals(..) => {
+                let at = |spec: TableSpec| TableSpec { precision, ..spec }.bytes();
+                self.specs(level).into_iter().map(at).sum()
+            }
+            Self::Distribution(..) => bake::radial_bytes(level, precision),
+            Self::Albedo(need) => need.spec(level, precision).map_or(0, |spec| spec.bytes()),
+        }
+    }
+
+    /// Values that are held in memory while it is baked.
+    pub(super) fn values(&self, level: Level) -> u128 {
+        match self {
+            Self::Normals(..) => self.specs(level).iter().map(memory::values).sum(),
+            Self::Distribution(..) => (bake::radial_bytes(level, Precision::F32) / 4) as u128,
+            Self::Albedo(need) => need.spec(level, Precision::F32).map_or(0, |spec| memory::of_albedo(&spec)),
+        }
+    }
+
+    /// Steps of its progress.
+    pub(super) fn steps(&self) -> usize {
+        match self {
+            // Each table, and the certificate.
+            Self::Normals(need, parts) => {
+                let general = general_set(Quality::Draft, Precision::F32);
+                parts.indices().iter().filter(|&&i| need.cut(&general[i]).is_some()).count() + 1
+            }
+            _ => 1,
+        }
+    }
+
+    /// What the tables are kept under; all that decides over their values.
+    fn key(&self, level: Level, precision: Precision) -> String {
+        match self {
+            Self::Normals(need, _) => {
+                let at = |spec: TableSpec| TableSpec { precision, ..spec };
+                let specs: Vec<_> = self.specs(level).into_iter().map(at).collect();
+                format!("{specs:?}, {POINTS} points at s in {:?}", need.certified_s())
+            }
+            // Its values, too: two measured files may have the same name.
+            Self::Distribution(distribution, _) => {
+                format!("{distribution:?}, {}, {level:?}, {precision:?}", distribution.label())
+            }
+            Self::Albedo(need) => format!("{:?}", need.spec(level, precision)),
+        }
+    }
+
+    /// The certified tables of a level, kept or new, in each of some precisions.
+    pub(super) fn bake(
+        &self,
+        level: Level,
+        precisions: &[Precision],
+        job: &mut Job,
+    ) -> Result<Vec<Vec<Table>>, BakeError> {
+        let start = Instant::now();
+        let keys: Vec<String> = precisions.iter().map(|&precision| self.key(level, precision)).collect();
+        let kept: Option<Vec<Vec<Table>>> = keys.iter().map(|key| job.get(key)).collect();
+        let sets = match (kept, self) {
+            (Some(sets), _) => {
+                job.advance(self.steps());
+                sets
+            }
+            (None, &Self::Normals(need, parts)) => {
+                self.normals((need, parts), level, precisions, &keys, job)?
+            }
+            (None, Self::Distribution(distribution, entry)) => {
+                let sets = radial_tables(distribution, entry, level, precisions)?;
+                self.finish(&keys, sets, job)
+            }
+            (None, Self::Albedo(need)) => {
+                let sets = albedo_tables(&need.spec(level, Precision::F32)?, precisions)?;
+                self.finish(&keys, sets, job)
+            }
+        };
+        job.seconds[usize::from(matches!(self, Self::Albedo(_)))] += start.elapsed().as_secs_f64();
+        Ok(sets)
+    }
+
+    /// New tables are kept.
+    fn finish(&self, keys: &[String], sets: Vec<Vec<Table>>, job: &mut Job) -> Vec<Vec<Table>> {
+        for (key, tables) in keys.iter().zip(&sets) {
+            job.made(tables);
+            job.keep(key, tables);
+        }
+        job.advance(1);
+        sets
+    }
+
+    /// Tables of visible normals, one by one, so that a bake that is interrupted can go on.
+    fn normals(
+        &self,
+        (need, parts): (&Need, Parts),
+        level: Level,
+        precisions: &[Precision],
+        keys: &[String],
+        job: &mut Job,
+    ) -> Result<Vec<Vec<Table>>, BakeError> {
+        let mut waiting = Vec::new();
+        let mut full = Vec::new();
+        for spec in self.specs(level) {
+            // Kept in full precision, which storing does not change.
+            let key = format!("{spec:?}");
+            let table = job.get(&key).and_then(|mut tables| tables.pop());
+            let table = table.unwrap_or_else(|| {
+                let table = bake::bake(&spec);
+                job.made([&table]);
+                // A slice is baked again as fast as it is read.
+                if !need.gamma().is_point() {
+                    job.keep(&key, std::slice::from_ref(&table));
+                }
+                table
+            });
+            waiting.push(key);
+            full.push(table);
+            job.advance(1);
+        }
+        let draft = general_set(Level::DRAFT, Precision::F32);
+        let beside = parts.beside().iter().filter_map(|&i| need.cut(&draft[i]));
+        let beside: Vec<Table> = beside.map(|spec| bake::bake(&spec)).collect();
+        let certified = |&precision: &Precision| {
+            let rounded = full.iter().map(|table| table.clone().rounded(precision));
+            let all = rounded.chain(beside.iter().cloned()).collect();
+            let set = Tables::from_tables(Provenance::default(), all)?;
+            let measured = set.tables()[..full.len()].iter().map(|table| {
+                let certificate = measure(&set, table, POINTS, need.certified_s())?;
+                Ok(Table { certificate, ..table.clone() })
+            });
+            measured.collect()
+        };
+        let sets = precisions.iter().map(certified).collect::<Result<Vec<Vec<Table>>, BakeError>>()?;
+        for (key, tables) in keys.iter().zip(&sets) {
+            job.keep(key, tables);
+        }
+        waiting.iter().for_each(|key| job.forget(key));
+        job.advance(1);
+        Ok(sets)
+    }
+}
+
+/// The certified tables of one distribution outside the family, in each of some precisions.
+fn radial_tables(
+    distribution: &Distribution,
+    entry: &MaterialEntry,
+    level: Level,
+    precisions: &[Precision],
+) -> Result<Vec<Vec<Table>>, BakeError> {
+    let built = distribution.build().map_err(|why| LoadError::Invalid(why.to_string()))?;
+    let marginal = Marginal::new(&*built);
+    let full = bake::bake_radial(&marginal, &entry.distribution, level, Precision::F32);
+    let certified = |&precision| {
+        let mut tables: Vec<Table> = full.iter().map(|table| table.clone().rounded(precision)).collect();
+        radial::certify(&mut tables, entry, &marginal)?;
+        Ok(tables)
+    };
+    precisions.iter().map(certified).collect()
+}

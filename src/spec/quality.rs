@@ -1,0 +1,127 @@
+//! How fine tables are: three named qualities, and every level between and beside them.
+
+/// How fine the tables are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Quality {
+    /// Small and rough: previews, tests.
+    Draft,
+    /// CDF error below 1e-4 where γ ≥ 1.8, G1 below 1e-5.
+    #[default]
+    Default,
+    /// CDF error below 1.2e-5 where γ ≥ 1.8, G1 below 2e-6.
+    High,
+}
+
+/// A place on the scale of qualities, in sixteenths of the step from one to the next: [`Quality::Draft`]
+/// is level 0, [`Quality::Default`] 16 and [`Quality::High`] 32.
+///
+/// The numbers of nodes that belong to the qualities were found by measuring; those of a level between two
+/// of them are geometric means, and beyond them they go on by the same ratio. So the axes of a table stay in
+/// balance, and one number says how fine it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Level(pub i32);
+
+impl Level {
+    /// Levels from one quality to the next.
+    pub const STEP: i32 = 16;
+    /// The level of [`Quality::Draft`].
+    pub const DRAFT: Self = Self(0);
+    /// The level of [`Quality::Default`].
+    pub const DEFAULT: Self = Self(Self::STEP);
+
+    /// Nodes at this level of an axis that has `counts` in the three qualities, and no fewer than `least`.
+    pub fn nodes(self, counts: [usize; 3], least: usize) -> usize {
+        let count = self.between(counts.map(|count| count as f64)).round();
+        (count as usize).max(least)
+    }
+
+    /// The geometric mean of a quantity whose values in the three qualities are `at`.
+    pub fn between(self, at: [f64; 3]) -> f64 {
+        let first = usize::from(self.0 >= Self::STEP);
+        let t = f64::from(self.0 - first as i32 * Self::STEP) / f64::from(Self::STEP);
+        match t {
+            // The power would round.
+            0.0 => at[first],
+            1.0 => at[first + 1],
+            _ => at[first] * libm::pow(at[first + 1] / at[first], t),
+        }
+    }
+
+    /// The best quality that is no finer, or [`Quality::Draft`].
+    pub fn quality(self) -> Quality {
+        match self.0 / Self::STEP {
+            ..=0 => Quality::Draft,
+            1 => Quality::Default,
+            _ => Quality::High,
+        }
+    }
+
+    /// Numbers of nodes of the tables of the family.
+    pub fn resolution(self) -> Resolution {
+        Resolution {
+            shapes: self.nodes([9, 21, 33], 5),
+            peeled_shapes: self.nodes([7, 13, 25], 5),
+            shadowing_shapes: self.nodes([17, 25, 49], 5),
+            across_shapes: self.nodes([17, 33, 65], 5),
+            shadowing_views: self.nodes([65, 97, 193], 9),
+            views: self.nodes([25, 81, 321], 9),
+            numbers: self.nodes([11, 17, 29], 5),
+            across_numbers: self.nodes([17, 33, 65], 5),
+        }
+    }
+}
+
+impl From<Quality> for Level {
+    fn from(quality: Quality) -> Self {
+        Self(quality as i32 * Self::STEP)
+    }
+}
+
+/// Numbers of nodes that go with a level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Resolution {
+    /// γ nodes over the whole-distribution range.
+    pub shapes: usize,
+    /// γ nodes over the peeled range.
+    pub peeled_shapes: usize,
+    /// γ nodes of either shadowing table.
+    pub shadowing_shapes: usize,
+    /// γ nodes of the table of slopes across.
+    pub across_shapes: usize,
+    /// View nodes of the shadowing table.
+    pub shadowing_views: usize,
+    /// View nodes of the slope tables.
+    pub views: usize,
+    /// Nodes of one half of u₁.
+    pub numbers: usize,
+    /// Nodes of one half of u₂.
+    pub across_numbers: usize,
+}
+
+impl Quality {
+    /// The numbers of nodes, each found by measuring (`examples/table_design.rs`).
+    pub fn resolution(self) -> Resolution {
+        Level::from(self).resolution()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_meet_the_qualities_and_rise_between_and_beyond() {
+        for (quality, views) in [(Quality::Draft, 25), (Quality::Default, 81), (Quality::High, 321)] {
+            assert_eq!(quality.resolution().views, views);
+            assert_eq!(Level::from(quality).quality(), quality);
+        }
+        let views: Vec<usize> = (-64..64).map(|level| Level(level).resolution().views).collect();
+        assert!(views.is_sorted() && views[0] == 9 && views[127] > 1000);
+        assert_eq!(Level(8).nodes([25, 100, 400], 5), 50);
+        // Between qualities it is the coarser one's.
+        assert_eq!(
+            [Level(-1), Level(15), Level(31)].map(Level::quality),
+            [0, 0, 1].map(|q| [Quality::Draft, Quality::Default][q])
+        );
+    }
+}
