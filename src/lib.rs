@@ -5,7 +5,6 @@
 //! with what `microfacet-model` says.
 
 pub mod bake;
-pub mod bench;
 pub mod cache;
 pub mod convert;
 pub mod family;

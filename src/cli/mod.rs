@@ -1,7 +1,6 @@
 //! The command line: one file a subcommand. The only place that prints or shows progress.
 
 mod bake;
-mod bench;
 mod convert;
 mod fit;
 mod furnace;
@@ -49,7 +48,6 @@ enum Command {
     Convert(convert::Args),
     Fit(fit::Args),
     Plot(plot::Args),
-    Bench(bench::Args),
 }
 
 /// How a command ends when it does not fail.
@@ -88,7 +86,6 @@ pub(crate) fn main() -> ExitCode {
         Command::Convert(args) => convert::run(args),
         Command::Fit(args) => fit::run(args),
         Command::Plot(args) => plot::run(args),
-        Command::Bench(args) => bench::run(args),
     };
     match outcome {
         Ok(Done::Ok) => ExitCode::SUCCESS,

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 fn run(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
-    command.arg("bench").args(args).current_dir(folder).output().expect("runs")
+    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bench"));
+    command.args(args).current_dir(folder).output().expect("runs")
 }
 
 type Record = BTreeMap<String, String>;

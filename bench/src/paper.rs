@@ -4,16 +4,17 @@
 use std::cell::RefCell;
 
 use glam::Vec3;
+use microfacet_bake::plot::{self, Curve, Legend, Panel, PlotError};
 use microfacet_model::{StudentT, printed};
 use microfacet_sampler::Tables;
 
-use super::clock::{self, Calls};
-use super::inputs::{Inputs, Stream};
-use super::masking::Evaluate;
-use super::rivals::rational::Rational;
-use super::sampler::Draw;
-use super::{GAMMA, Quantity, SIGMA, Settings, masking, normals, sampler, values};
-use crate::plot::{self, Curve, Legend, Panel, PlotError};
+use crate::clock::{self, Calls};
+use crate::inputs::{Inputs, Stream};
+use crate::masking::{self, Evaluate};
+use crate::rivals::rational::Rational;
+use crate::rows::{Quantity, normals, values};
+use crate::sampler::{self, Draw};
+use crate::settings::{GAMMA, SIGMA, Settings};
 
 /// Shapes at [`SIGMA`], and roughnesses at [`GAMMA`].
 const GAMMAS: [f64; 12] = [1.6, 1.8, 2.0, 2.5, 3.0, 4.0, 5.5, 8.0, 12.0, 20.0, 30.0, 40.0];
@@ -21,19 +22,19 @@ const SIGMAS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
 
 /// The time of one method for one material.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Timing {
+pub(crate) struct Timing {
     /// What it computes.
-    pub quantity: Quantity,
+    pub(crate) quantity: Quantity,
     /// How.
-    pub method: &'static str,
+    pub(crate) method: &'static str,
     /// Whether this is a point over γ (else over σ).
-    pub by_gamma: bool,
+    pub(crate) by_gamma: bool,
     /// Its shape.
-    pub gamma: f64,
+    pub(crate) gamma: f64,
     /// Its roughness.
-    pub sigma: f64,
+    pub(crate) sigma: f64,
     /// Nanoseconds a call.
-    pub ns: f64,
+    pub(crate) ns: f64,
 }
 
 /// A method on the clock: G1, or normals.
@@ -43,7 +44,7 @@ enum Method<'a> {
 }
 
 /// Every method at every material, taking turns.
-pub fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
+pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
     let inputs = Inputs::new(settings.seed, settings.calls);
     let by_gamma = GAMMAS.map(|gamma| (true, gamma, SIGMA));
     let by_sigma = SIGMAS.map(|sigma| (false, GAMMA, sigma));
@@ -111,7 +112,7 @@ fn methods(set: &Tables, gamma: f64, sigma: f64, seed: u64) -> Vec<(&'static str
 ///
 /// # Errors
 /// [`PlotError::Drawing`].
-pub fn times_svg(times: &[Timing]) -> Result<String, PlotError> {
+pub(crate) fn times_svg(times: &[Timing]) -> Result<String, PlotError> {
     let panel = |quantity: Quantity, by_gamma| {
         let mut curves: Vec<Curve> = Vec::new();
         for at in times.iter().filter(|at| at.quantity == quantity && at.by_gamma == by_gamma) {
@@ -147,21 +148,21 @@ pub fn times_svg(times: &[Timing]) -> Result<String, PlotError> {
 
 /// How wrong the rational approximation of G1 is for one view, and how wrong the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Approximation {
+pub(crate) struct Approximation {
     /// The shape.
-    pub gamma: f64,
+    pub(crate) gamma: f64,
     /// Polar angle of the view, degrees.
-    pub degrees: f64,
+    pub(crate) degrees: f64,
     /// The exact G1.
-    pub g1: f64,
+    pub(crate) g1: f64,
     /// Approximation minus exact.
-    pub rational_error: f64,
+    pub(crate) rational_error: f64,
     /// Table minus exact.
-    pub table_error: f64,
+    pub(crate) table_error: f64,
 }
 
 /// Over θ by half degrees, for the shapes that the approximation was made for, at σ = [`SIGMA`].
-pub fn approximation(set: &Tables) -> Vec<Approximation> {
+pub(crate) fn approximation(set: &Tables) -> Vec<Approximation> {
     let of_shape = |gamma: f64| {
         let truth = StudentT::isotropic(SIGMA, gamma).expect("constants");
         let bound = set.student_t(SIGMA, gamma).expect("the general set covers all shapes");
@@ -183,7 +184,7 @@ pub fn approximation(set: &Tables) -> Vec<Approximation> {
 ///
 /// # Errors
 /// [`PlotError::Drawing`].
-pub fn approximation_svg(all: &[Approximation]) -> Result<String, PlotError> {
+pub(crate) fn approximation_svg(all: &[Approximation]) -> Result<String, PlotError> {
     let panel = |title: &str, error: fn(&Approximation) -> f64| {
         let mut curves: Vec<Curve> = Vec::new();
         for at in all {

@@ -7,23 +7,23 @@ use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_sampler::{StudentT, Table, Tables};
 
-use super::inputs::Stream;
-use super::rivals::bilinear::Bilinear;
-use super::rivals::lobe::Lobe;
-use super::rivals::stream::Drawer;
-use super::rivals::{beckmann, ggx};
-use super::tables::Slices;
-use super::{GAMMA, SIGMA};
+use crate::inputs::Stream;
+use crate::rivals::bilinear::Bilinear;
+use crate::rivals::lobe::Lobe;
+use crate::rivals::stream::Drawer;
+use crate::rivals::{beckmann, ggx};
+use crate::settings::{GAMMA, SIGMA};
+use crate::tables::Slices;
 
 /// Normals for views and random numbers, as many as there are views.
-pub type Draw<'a> = Box<dyn Fn(&[Vec3], &[[f32; 2]], &mut [Vec3]) + 'a>;
+pub(crate) type Draw<'a> = Box<dyn Fn(&[Vec3], &[[f32; 2]], &mut [Vec3]) + 'a>;
 
 /// The normal of a view at two random numbers, in double precision.
-pub(super) type Exactly = fn(f64, DVec3, [f64; 2]) -> DVec3;
+pub(crate) type Exactly = fn(f64, DVec3, [f64; 2]) -> DVec3;
 
 /// What the normals of a sampler are compared with.
 #[derive(Clone, Copy)]
-pub(super) enum Check {
+pub(crate) enum Check {
     /// The CDFs along and across the plane of incidence are the random numbers.
     Cdf,
     /// The same, but the tilt falls with the first number.
@@ -35,7 +35,7 @@ pub(super) enum Check {
 }
 
 /// What density it draws from, for the weights of an estimator.
-pub(super) enum Density {
+pub(crate) enum Density {
     /// Visible normals.
     Visible,
     /// All normals, D(m)(m·n).
@@ -45,19 +45,19 @@ pub(super) enum Density {
 }
 
 /// A sampler.
-pub struct Sampler<'a> {
+pub(crate) struct Sampler<'a> {
     /// Its name.
-    pub name: String,
+    pub(crate) name: String,
     /// The shape it draws from; roughness is [`SIGMA`].
-    pub gamma: f64,
+    pub(crate) gamma: f64,
     /// Bytes of table that lookups touch.
-    pub bytes: usize,
+    pub(crate) bytes: usize,
     /// Bytes of those tables as stored in a file.
-    pub stored: usize,
+    pub(crate) stored: usize,
     /// Draws.
-    pub draw: Draw<'a>,
-    pub(super) check: Check,
-    pub(super) density: Density,
+    pub(crate) draw: Draw<'a>,
+    pub(crate) check: Check,
+    pub(crate) density: Density,
 }
 
 impl<'a> Sampler<'a> {
@@ -65,7 +65,7 @@ impl<'a> Sampler<'a> {
         Self { name: name.into(), gamma, bytes: 0, stored: 0, draw, check, density: Density::Visible }
     }
 
-    pub(super) fn draws_visible_normals(&self) -> bool {
+    pub(crate) fn draws_visible_normals(&self) -> bool {
         matches!(self.density, Density::Visible)
     }
 
@@ -76,7 +76,7 @@ impl<'a> Sampler<'a> {
 
 /// One call after the other. Each result is used, so that none is left out and no loop becomes one over lanes, which the calls of a
 /// renderer are not.
-pub(super) fn each<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
+pub(crate) fn each<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
     Box::new(move |v, u, m| {
         for ((v, u), m) in v.iter().zip(u).zip(m) {
             *m = black_box(one(*v, *u));
@@ -95,13 +95,13 @@ fn streamed<'a>(seed: u64, one: impl Fn(Vec3, &mut Stream) -> Vec3 + 'a) -> Draw
 }
 
 /// Names that figures refer to.
-pub(super) const CAPS: &str = "GGX, spherical caps";
-pub(super) const BATCH: &str = "table, default, batch";
-pub(super) const INVERSION: &str = "inversion of the CDF, any gamma";
-pub(super) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
+pub(crate) const CAPS: &str = "GGX, spherical caps";
+pub(crate) const BATCH: &str = "table, default, batch";
+pub(crate) const INVERSION: &str = "inversion of the CDF, any gamma";
+pub(crate) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
 
 /// All of them, over the given tables.
-pub fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
+pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
     let sigma = SIGMA as f32;
     let truth = model::StudentT::isotropic(SIGMA, GAMMA).expect("constants");
     let drawer = || Drawer::new(SIGMA);
@@ -184,12 +184,12 @@ fn table<'a>(name: &str, set: &Tables) -> Sampler<'a> {
 }
 
 /// A material of a set that covers γ.
-pub(super) fn bind(set: &Tables, gamma: f64) -> StudentT {
+pub(crate) fn bind(set: &Tables, gamma: f64) -> StudentT {
     set.student_t(SIGMA, gamma).expect("the sets were made for this shape")
 }
 
 /// Bytes that a file takes for what G1 and normals are looked up in.
-pub(super) fn stored(set: &Tables) -> usize {
+pub(crate) fn stored(set: &Tables) -> usize {
     let lookups = set.tables().iter().filter(|table| !table.kind.is_albedo());
     lookups.map(Table::stored_bytes).sum()
 }

@@ -1,26 +1,25 @@
 //! Tables of several sizes and precisions, for one shape.
 
+use microfacet_bake::bake;
+use microfacet_bake::spec::{Quality, ShapeAxis, TableSpec, general_set};
+use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::{Precision, Provenance, Tables};
 
-use microfacet_common::shape::s_of_gamma;
+use crate::settings::GAMMA;
 
-use super::GAMMA;
-use crate::bake;
-use crate::spec::{Quality, ShapeAxis, TableSpec, general_set};
-
-/// Slices at [`GAMMA`](super::GAMMA), and the compiled-in set for all shapes.
-pub struct Slices {
-    pub(super) draft: Tables,
-    pub(super) default: Tables,
-    pub(super) high: Tables,
-    pub(super) f16: Tables,
-    pub(super) u16: Tables,
-    pub(super) whole: Tables,
+/// Slices at [`GAMMA`], and the compiled-in set for all shapes.
+pub(crate) struct Slices {
+    pub(crate) draft: Tables,
+    pub(crate) default: Tables,
+    pub(crate) high: Tables,
+    pub(crate) f16: Tables,
+    pub(crate) u16: Tables,
+    pub(crate) whole: Tables,
 }
 
 impl Slices {
     /// Bakes them; a fraction of a second.
-    pub fn bake() -> Self {
+    pub(crate) fn bake() -> Self {
         let f32 = Precision::F32;
         Self {
             draft: slice(Quality::Draft, f32, GAMMA),
@@ -33,12 +32,12 @@ impl Slices {
     }
 
     /// The compiled-in set.
-    pub fn whole(&self) -> &Tables {
+    pub(crate) fn whole(&self) -> &Tables {
         &self.whole
     }
 
     /// Each with its name.
-    pub(super) fn each(&self) -> impl Iterator<Item = (&'static str, &Tables)> {
+    pub(crate) fn each(&self) -> impl Iterator<Item = (&'static str, &Tables)> {
         [
             (name(Quality::Draft), &self.draft),
             (name(Quality::Default), &self.default),
@@ -61,7 +60,7 @@ fn slice(quality: Quality, precision: Precision, gamma: f64) -> Tables {
 }
 
 /// The name of the row that figures are about.
-pub(super) const TABLE: &str = "table, default";
+pub(crate) const TABLE: &str = "table, default";
 
 /// Names of the qualities.
 fn name(quality: Quality) -> &'static str {

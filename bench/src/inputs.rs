@@ -11,19 +11,19 @@ use rand::{RngExt, SeedableRng};
 ///
 /// Many enough that a branch predictor cannot learn them: 16 384 of either, 320 KiB, read in order.
 #[derive(Clone, Debug)]
-pub struct Inputs {
+pub(crate) struct Inputs {
     /// Unit vectors, n = +z.
-    pub views: Vec<Vec3>,
+    pub(crate) views: Vec<Vec3>,
     /// u₁ and u₂.
-    pub numbers: Vec<[f32; 2]>,
+    pub(crate) numbers: Vec<[f32; 2]>,
 }
 
 /// How many views and pairs of numbers there are.
-pub const COUNT: usize = 16_384;
+pub(crate) const COUNT: usize = 16_384;
 
 impl Inputs {
     /// `count` of either.
-    pub fn new(seed: u64, count: usize) -> Self {
+    pub(crate) fn new(seed: u64, count: usize) -> Self {
         let mut random = StdRng::seed_from_u64(seed);
         let view = |u: [f32; 2]| {
             let cos = 1.0 - u[0];
@@ -43,20 +43,20 @@ const STREAM: usize = 1 << 16;
 /// Random numbers uniform in [0, 1) for rivals that need no fixed number of them: drawn beforehand, as the others' are, so that no one
 /// pays for a generator.
 #[derive(Clone, Debug)]
-pub(super) struct Stream {
+pub(crate) struct Stream {
     numbers: Box<[f32; STREAM]>,
     at: u16,
 }
 
 impl Stream {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         let mut random = StdRng::seed_from_u64(seed);
         let numbers: Vec<f32> = (0..STREAM).map(|_| random.random()).collect();
         Self { numbers: numbers.try_into().expect("so many were made"), at: 0 }
     }
 
     #[inline(always)]
-    pub(super) fn next(&mut self) -> f32 {
+    pub(crate) fn next(&mut self) -> f32 {
         // The index wraps round by itself, and no bound is to be checked.
         self.at = self.at.wrapping_add(1);
         self.numbers[usize::from(self.at)]

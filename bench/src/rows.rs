@@ -1,67 +1,18 @@
-//! Run time against error: this crate's tables and their rivals, timed in one process, on one thread, with the same inputs.
-//!
-//! A time is a throughput: of independent calls in a row, each of which the compiler may inline, with views and random numbers
-//! drawn beforehand ([`Inputs`]). Everything is in single precision unless its name says otherwise.
-
-mod clock;
-mod figures;
-mod inputs;
-mod judge;
-mod masking;
-mod paper;
-mod plot;
-mod rivals;
-mod sampler;
-mod tables;
+//! What is timed and judged: one row a rival, each with the same inputs.
 
 use glam::Vec3;
 
-pub use figures::{Figure, figures};
-pub use inputs::{COUNT, Inputs};
-pub use judge::Error;
-pub use masking::{Evaluate, Masking, maskings};
-pub use paper::{Approximation, Timing, approximation, approximation_svg, times, times_svg};
-pub use plot::svg;
-pub use sampler::{Draw, Sampler, samplers};
-pub use tables::Slices;
-
-/// Roughness of the materials compared.
-pub const SIGMA: f64 = 0.5;
-/// Shape of the Student-t materials compared: an integer, so that the sums take part, and no node of the general set.
-pub const GAMMA: f64 = 4.0;
-
-/// How much is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
-    /// Views and pairs of numbers that calls and errors are taken over; at most [`COUNT`].
-    pub calls: usize,
-    /// Batches, of whose times the median is taken.
-    pub rounds: usize,
-    /// Views of the white furnace.
-    pub views: usize,
-    /// Draws for each.
-    pub draws: usize,
-    /// Seed of the inputs.
-    pub seed: u64,
-}
-
-impl Settings {
-    /// A minute or so.
-    pub const FULL: Self = Self { calls: COUNT, rounds: 801, views: 128, draws: 2048, seed: 1 };
-    /// Some seconds.
-    pub const QUICK: Self = Self { rounds: 101, views: 32, draws: 1024, ..Self::FULL };
-
-    /// The same over `calls` inputs, and no more than that of anything else.
-    pub fn with_calls(self, calls: usize) -> Self {
-        let calls = calls.clamp(1, COUNT);
-        let few = |n: usize| n.min(calls);
-        Self { calls, rounds: few(self.rounds), views: few(self.views), draws: few(self.draws), ..self }
-    }
-}
+use crate::clock;
+use crate::inputs::Inputs;
+use crate::judge::{self, Error};
+use crate::masking::{Evaluate, Masking, maskings};
+use crate::sampler::{Draw, Sampler, samplers};
+use crate::settings::Settings;
+use crate::tables::Slices;
 
 /// What a row is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub(crate) enum Quantity {
     /// A sampled normal.
     Normal,
     /// Smith's G1.
@@ -70,7 +21,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// The name used in files.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Normal => "normal",
             Self::G1 => "g1",
@@ -80,36 +31,36 @@ impl Quantity {
 
 /// One rival, measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub(crate) struct Row {
     /// What it computes.
-    pub quantity: Quantity,
+    pub(crate) quantity: Quantity,
     /// Its name.
-    pub name: String,
+    pub(crate) name: String,
     /// Its shape; ∞ is Beckmann.
-    pub gamma: f64,
+    pub(crate) gamma: f64,
     /// Whether it draws visible normals, all of them, or evaluates G1: what can be compared by its error.
-    pub complete: bool,
+    pub(crate) complete: bool,
     /// Nanoseconds a call.
-    pub ns: f64,
+    pub(crate) ns: f64,
     /// Bytes of table that a bound material's lookups touch; 0 for closed forms.
-    pub bytes: usize,
+    pub(crate) bytes: usize,
     /// Bytes of those tables as stored in a file.
-    pub stored: usize,
+    pub(crate) stored: usize,
     /// Error of the CDFs, or of G1, absolute; `None` for a sampler whose random numbers have no CDF of their own.
-    pub error: Option<Error>,
+    pub(crate) error: Option<Error>,
     /// Variance of a white-furnace estimator; `None` for G1.
-    pub variance: Option<f64>,
+    pub(crate) variance: Option<f64>,
 }
 
 impl Row {
     /// Variance times nanoseconds: what a given noise costs.
-    pub fn cost(&self) -> Option<f64> {
+    pub(crate) fn cost(&self) -> Option<f64> {
         self.variance.map(|variance| variance * self.ns)
     }
 }
 
 /// Times and judges all rivals.
-pub fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
+pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
     let inputs = Inputs::new(settings.seed, settings.calls);
     let (samplers, maskings) = (samplers(slices, settings.seed), maskings(slices));
     let mut runs: Vec<clock::Calls> =
@@ -143,7 +94,7 @@ pub fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
 }
 
 /// A sampler as what the clock runs.
-fn normals<'a>(draw: &'a Draw<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
+pub(crate) fn normals<'a>(draw: &'a Draw<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
     let mut normals = vec![Vec3::ZERO; inputs.views.len()];
     Box::new(move |at| {
         draw(&inputs.views[at.clone()], &inputs.numbers[at.clone()], &mut normals[at]);
@@ -152,7 +103,7 @@ fn normals<'a>(draw: &'a Draw<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
 }
 
 /// A form of G1 likewise.
-fn values<'a>(evaluate: &'a Evaluate<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
+pub(crate) fn values<'a>(evaluate: &'a Evaluate<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
     let mut values = vec![0.0; inputs.views.len()];
     Box::new(move |at| {
         evaluate(&inputs.views[at.clone()], &mut values[at]);

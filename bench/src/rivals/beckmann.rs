@@ -9,7 +9,7 @@ const SQRT_PI_INV: f32 = 0.564_189_6;
 
 /// The error function to 1.5e-7, Abramowitz and Stegun 7.1.26.
 #[inline(always)]
-pub(super) fn erf(x: f32) -> f32 {
+pub(crate) fn erf(x: f32) -> f32 {
     let t = 1.0 / (1.0 + 0.327_591_1 * x.abs());
     let p = 1.061_405_429_f32;
     let p = (((p * t - 1.453_152_027) * t + 1.421_413_741) * t - 0.284_496_736) * t + 0.254_829_592;
@@ -18,7 +18,7 @@ pub(super) fn erf(x: f32) -> f32 {
 
 /// The inverse error function by Giles 2010, "Approximating the erfinv function", single precision.
 #[inline(always)]
-pub(super) fn erf_inv(x: f32) -> f32 {
+pub(crate) fn erf_inv(x: f32) -> f32 {
     // At ±1 itself the logarithm would be infinite.
     let x = x.clamp(-0.999_99, 0.999_99);
     let w = -((1.0 - x) * (1.0 + x)).ln();
@@ -57,7 +57,7 @@ pub(super) fn erf_inv(x: f32) -> f32 {
 /// Jakob 2014, "An Improved Visible Normal Sampling Routine for the Beckmann Distribution": Newton steps within a bracket, over
 /// the error function of the slope, until the CDF is within 1e-5 of `u[0]`.
 #[inline(always)]
-pub(super) fn slopes(cot: f32, u: [f32; 2]) -> [f32; 2] {
+pub(crate) fn slopes(cot: f32, u: [f32; 2]) -> [f32; 2] {
     let (tan, theta) = (1.0 / cot, (1.0 / cot).atan());
     let (mut low, mut high) = (-1.0, erf(cot));
     let number = u[0].max(1e-6);
@@ -97,13 +97,13 @@ pub(crate) fn sample(sigma: f32, v: Vec3, u: [f32; 2]) -> Vec3 {
 
 /// The unit normal of unit slopes towards the viewer and across, turned to the view's azimuth and stretched.
 #[inline(always)]
-pub(super) fn normal(sigma: f32, [cos, sin]: [f32; 2], [x, y]: [f32; 2]) -> Vec3 {
+pub(crate) fn normal(sigma: f32, [cos, sin]: [f32; 2], [x, y]: [f32; 2]) -> Vec3 {
     let m = Vec3::new(sigma * (x * cos - y * sin), sigma * (x * sin + y * cos), 1.0);
     m * (1.0 / m.dot(m).sqrt())
 }
 
 #[inline(always)]
-pub(super) fn cotangent(sigma: f32, w: Vec3) -> f32 {
+pub(crate) fn cotangent(sigma: f32, w: Vec3) -> f32 {
     w.z / (sigma * (w.x * w.x + w.y * w.y).sqrt())
 }
 

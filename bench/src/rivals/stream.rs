@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::beckmann;
 use super::lobe::Lobe;
 use super::tail::{ArcSum, Sum};
-use crate::bench::inputs::Stream;
+use crate::inputs::Stream;
 
 /// A Student-t with γ = 4, whose masking is a short sum.
 pub(crate) struct Drawer {

@@ -3,22 +3,22 @@
 use glam::{DVec3, Vec3};
 use microfacet_model::{Masking, SignedUnit, StudentT, VisibleSlope, across_cdf};
 
-use super::SIGMA;
-use super::inputs::Inputs;
-use super::masking::Evaluate;
-use super::sampler::{Check, Density, Sampler};
+use crate::inputs::Inputs;
+use crate::masking::Evaluate;
+use crate::sampler::{Check, Density, Sampler};
+use crate::settings::SIGMA;
 
 /// Largest and root-mean-square error over the inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Error {
+pub(crate) struct Error {
     /// Largest.
-    pub max: f64,
+    pub(crate) max: f64,
     /// Root mean square.
-    pub rms: f64,
+    pub(crate) rms: f64,
 }
 
 impl Error {
-    pub(super) fn of(errors: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn of(errors: impl IntoIterator<Item = f64>) -> Self {
         let (mut max, mut sum, mut count) = (0.0, 0.0, 0.0_f64);
         for error in errors {
             // No number is the worst error there is.
@@ -33,13 +33,13 @@ impl Error {
 }
 
 /// The material of a shape.
-pub(super) fn truth(gamma: f64) -> StudentT {
+pub(crate) fn truth(gamma: f64) -> StudentT {
     StudentT::isotropic(SIGMA, gamma).expect("sigma is a constant, and so are the shapes")
 }
 
 /// The error of a sampler: how far the CDFs along and across the plane of incidence are from those they should have, the larger of the two. `None`
 /// where the random numbers have no CDF of their own.
-pub(super) fn sampler_error(sampler: &Sampler, inputs: &Inputs) -> Option<Error> {
+pub(crate) fn sampler_error(sampler: &Sampler, inputs: &Inputs) -> Option<Error> {
     if matches!(sampler.check, Check::Distribution) {
         return None;
     }
@@ -71,7 +71,7 @@ fn cdfs(truth: &StudentT, v: DVec3, m: DVec3) -> [f64; 2] {
 }
 
 /// The error of a form of G1, absolute.
-pub(super) fn masking_error(evaluate: &Evaluate, gamma: f64, inputs: &Inputs) -> Error {
+pub(crate) fn masking_error(evaluate: &Evaluate, gamma: f64, inputs: &Inputs) -> Error {
     let truth = truth(gamma);
     let mut g1 = vec![0.0; inputs.views.len()];
     evaluate(&inputs.views, &mut g1);
@@ -83,7 +83,7 @@ pub(super) fn masking_error(evaluate: &Evaluate, gamma: f64, inputs: &Inputs) ->
 ///
 /// Weights are the model's in double precision, so that samplers differ by their normals alone. `views` of the inputs take part, with
 /// `draws` of the numbers each.
-pub(super) fn furnace_variance(sampler: &Sampler, inputs: &Inputs, views: usize, draws: usize) -> f64 {
+pub(crate) fn furnace_variance(sampler: &Sampler, inputs: &Inputs, views: usize, draws: usize) -> f64 {
     let truth = truth(sampler.gamma);
     let mut normals = vec![Vec3::ZERO; draws];
     let n = draws as f64;
@@ -132,8 +132,10 @@ pub(super) fn furnace_variance(sampler: &Sampler, inputs: &Inputs, views: usize,
 mod tests {
     use microfacet_model::statistics::{judge_visible_normals, sidak};
 
-    use super::super::{Slices, maskings, samplers};
     use super::*;
+    use crate::masking::maskings;
+    use crate::sampler::samplers;
+    use crate::tables::Slices;
 
     const SAMPLES: usize = 20_000;
     /// Of samplers that take their numbers from a stream, which is not to repeat.

@@ -5,32 +5,32 @@ use std::hint::black_box;
 use glam::Vec3;
 use microfacet_model as model;
 
-use super::rivals::lobe::Lobe;
-use super::rivals::rational::Rational;
-use super::rivals::{beckmann, ggx};
-use super::sampler::{bind, stored};
-use super::tables::Slices;
-use super::{GAMMA, SIGMA};
+use crate::rivals::lobe::Lobe;
+use crate::rivals::rational::Rational;
+use crate::rivals::{beckmann, ggx};
+use crate::sampler::{bind, stored};
+use crate::settings::{GAMMA, SIGMA};
+use crate::tables::Slices;
 
 /// G1 of directions, as many as there is room for.
-pub type Evaluate<'a> = Box<dyn Fn(&[Vec3], &mut [f32]) + 'a>;
+pub(crate) type Evaluate<'a> = Box<dyn Fn(&[Vec3], &mut [f32]) + 'a>;
 
 /// One form.
-pub struct Masking<'a> {
+pub(crate) struct Masking<'a> {
     /// Its name.
-    pub name: String,
+    pub(crate) name: String,
     /// The shape; roughness is [`SIGMA`].
-    pub gamma: f64,
+    pub(crate) gamma: f64,
     /// Bytes of table that lookups touch.
-    pub bytes: usize,
+    pub(crate) bytes: usize,
     /// Bytes of those tables as stored in a file.
-    pub stored: usize,
+    pub(crate) stored: usize,
     /// Evaluates.
-    pub evaluate: Evaluate<'a>,
+    pub(crate) evaluate: Evaluate<'a>,
 }
 
 /// One call after the other, as for samplers.
-pub(super) fn each<'a>(one: impl Fn(Vec3) -> f32 + 'a) -> Evaluate<'a> {
+pub(crate) fn each<'a>(one: impl Fn(Vec3) -> f32 + 'a) -> Evaluate<'a> {
     Box::new(move |w, g1| {
         for (w, g1) in w.iter().zip(g1) {
             *g1 = black_box(one(*w));
@@ -39,10 +39,10 @@ pub(super) fn each<'a>(one: impl Fn(Vec3) -> f32 + 'a) -> Evaluate<'a> {
 }
 
 /// Names that figures refer to.
-pub(super) const GGX: &str = "GGX, closed form";
+pub(crate) const GGX: &str = "GGX, closed form";
 
 /// All of them, over the given tables.
-pub fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
+pub(crate) fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
     let sigma = SIGMA as f32;
     let form =
         |name: &str, gamma, evaluate| Masking { name: name.into(), gamma, bytes: 0, stored: 0, evaluate };

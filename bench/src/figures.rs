@@ -5,28 +5,30 @@ use std::time::Instant;
 
 use microfacet_sampler::{Kind, Tables};
 
-use super::paper::Approximation;
-use super::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM, bind};
-use super::tables::{Slices, TABLE};
-use super::{GAMMA, Quantity, Row, SIGMA, Settings, clock, masking};
+use crate::paper::Approximation;
+use crate::rows::{Quantity, Row};
+use crate::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM, bind};
+use crate::settings::{GAMMA, SIGMA, Settings};
+use crate::tables::{Slices, TABLE};
+use crate::{clock, masking};
 
 /// One figure with what it must be and aims to be; smaller is better.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
+pub(crate) struct Figure {
     /// What is compared.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Its unit; nothing for a ratio.
-    pub unit: &'static str,
+    pub(crate) unit: &'static str,
     /// No more than this.
-    pub must: f64,
+    pub(crate) must: f64,
     /// If it can be.
-    pub aim: f64,
+    pub(crate) aim: f64,
     /// What was measured; `None` where a rival is missing.
-    pub reached: Option<f64>,
+    pub(crate) reached: Option<f64>,
 }
 
 /// All figures, from measured rows and the errors of the rational approximation.
-pub fn figures(
+pub(crate) fn figures(
     rows: &[Row],
     approximation: &[Approximation],
     slices: &Slices,

@@ -7,14 +7,14 @@ use std::ops::Range;
 use std::time::Instant;
 
 /// A rival that makes one call for each of a range of the inputs.
-pub(super) type Calls<'a> = Box<dyn FnMut(Range<usize>) + 'a>;
+pub(crate) type Calls<'a> = Box<dyn FnMut(Range<usize>) + 'a>;
 
 /// About how long a batch takes: long against the clock's own call, short against the slices of time that a busy system gives to others,
 /// so that most batches are not interrupted.
 const BATCH_NS: f64 = 1e5;
 
 /// Nanoseconds a call of each, over `rounds` batches of inputs from `count`.
-pub(super) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<f64> {
+pub(crate) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<f64> {
     let time = |rival: &mut Calls, range: Range<usize>| {
         let calls = range.len() as f64;
         let start = Instant::now();
@@ -43,7 +43,7 @@ pub(super) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<
 }
 
 /// The middle one.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }

@@ -1,9 +1,10 @@
 //! Run time against error, with the front that no rival is both faster and more accurate than.
 
+use microfacet_bake::plot::PlotError;
 use plotters::prelude::*;
 
-use super::{GAMMA, Quantity, Row};
-use crate::plot::PlotError;
+use crate::rows::{Quantity, Row};
+use crate::settings::GAMMA;
 
 /// Size on the page, and fine units a unit of it.
 const PAGE: (u32, u32) = (760, 940);
@@ -17,7 +18,7 @@ const EXACT: f64 = 1e-8;
 ///
 /// # Errors
 /// [`PlotError::Drawing`].
-pub fn svg(rows: &[Row]) -> Result<String, PlotError> {
+pub(crate) fn svg(rows: &[Row]) -> Result<String, PlotError> {
     let size = (FINE * PAGE.0, FINE * PAGE.1);
     let mut text = String::new();
     {

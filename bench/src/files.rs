@@ -1,0 +1,128 @@
+//! What is written: tables as CSV, all of it as JSON, and drawings.
+
+use std::path::Path;
+
+use microfacet_bake::store::replace;
+use serde_json::{Value, json};
+
+use crate::Failure;
+use crate::figures::Figure;
+use crate::paper::{self, Approximation, Timing};
+use crate::plot;
+use crate::rows::Row;
+use crate::settings::{GAMMA, SIGMA, Settings};
+
+/// Everything into a folder that is there.
+pub(crate) fn write(
+    folder: &Path,
+    document: &Value,
+    rows: &[Row],
+    times: &[Timing],
+    approximation: &[Approximation],
+) -> Result<(), Failure> {
+    let write = |name: &str, bytes: Vec<u8>| {
+        let path = folder.join(name);
+        replace(&path, &bytes).map_err(|why| Failure(format!("writing {}: {why}", path.display())))
+    };
+    write("bench.csv", csv(&ROW, rows.iter().map(row_fields))?)?;
+    write("bench.json", format!("{document:#}\n").into_bytes())?;
+    write("bench.svg", plot::svg(rows)?.into_bytes())?;
+    write("figure-4.csv", csv(&TIMING, times.iter().map(timing_fields))?)?;
+    write("figure-4.svg", paper::times_svg(times)?.into_bytes())?;
+    write("figure-5.csv", csv(&APPROXIMATION, approximation.iter().map(approximation_fields))?)?;
+    write("figure-5.svg", paper::approximation_svg(approximation)?.into_bytes())
+}
+const ROW: [&str; 10] = [
+    "quantity",
+    "name",
+    "gamma",
+    "ns",
+    "bytes",
+    "stored_bytes",
+    "error_max",
+    "error_rms",
+    "furnace_variance",
+    "variance_ns",
+];
+const TIMING: [&str; 6] = ["quantity", "by", "method", "gamma", "sigma", "ns"];
+const APPROXIMATION: [&str; 5] = ["gamma", "theta_degrees", "g1", "rational_error", "table_error"];
+
+fn csv<const N: usize>(
+    header: &[&str; N],
+    records: impl Iterator<Item = [String; N]>,
+) -> Result<Vec<u8>, Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    for record in records {
+        writer.write_record(&record)?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+fn optional(x: Option<f64>) -> String {
+    x.map_or(String::new(), |x| format!("{x:e}"))
+}
+
+fn row_fields(row: &Row) -> [String; 10] {
+    [
+        row.quantity.name().into(),
+        row.name.clone(),
+        row.gamma.to_string(),
+        format!("{:.3}", row.ns),
+        row.bytes.to_string(),
+        row.stored.to_string(),
+        optional(row.error.map(|error| error.max)),
+        optional(row.error.map(|error| error.rms)),
+        optional(row.variance),
+        optional(row.cost()),
+    ]
+}
+
+fn timing_fields(at: &Timing) -> [String; 6] {
+    let by = if at.by_gamma { "gamma" } else { "sigma" };
+    [
+        at.quantity.name().into(),
+        by.into(),
+        at.method.into(),
+        at.gamma.to_string(),
+        at.sigma.to_string(),
+        format!("{:.3}", at.ns),
+    ]
+}
+
+fn approximation_fields(at: &Approximation) -> [String; 5] {
+    [
+        at.gamma.to_string(),
+        at.degrees.to_string(),
+        at.g1.to_string(),
+        format!("{:e}", at.rational_error),
+        format!("{:e}", at.table_error),
+    ]
+}
+
+/// All of it.
+pub(crate) fn document(settings: &Settings, rows: &[Row], figures: &[Figure]) -> Value {
+    let row = |row: &Row| {
+        json!({
+            "quantity": row.quantity.name(), "name": row.name,
+            // Infinity is no JSON number.
+            "gamma": if row.gamma.is_finite() { json!(row.gamma) } else { json!("inf") },
+            "ns": row.ns, "bytes": row.bytes, "stored_bytes": row.stored,
+            "error_max": row.error.map(|error| error.max), "error_rms": row.error.map(|error| error.rms),
+            "furnace_variance": row.variance, "variance_ns": row.cost(),
+        })
+    };
+    let figure = |figure: &Figure| {
+        json!({
+            "name": figure.name, "unit": figure.unit,
+            "must": figure.must, "aim": figure.aim, "reached": figure.reached,
+        })
+    };
+    json!({
+        "sigma": SIGMA, "gamma": GAMMA,
+        "inputs": "views evenly over the hemisphere, random numbers uniform in [0, 1)",
+        "calls": settings.calls, "rounds": settings.rounds, "seed": settings.seed,
+        "rows": rows.iter().map(row).collect::<Vec<_>>(),
+        "figures": figures.iter().map(figure).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,9 @@
+//! Everything that is timed, each in single precision and in its best published form.
+
+pub(crate) mod beckmann;
+pub(crate) mod bilinear;
+pub(crate) mod ggx;
+pub(crate) mod lobe;
+pub(crate) mod rational;
+pub(crate) mod stream;
+pub(crate) mod tail;

@@ -1,0 +1,37 @@
+//! Which materials are compared, and how much is measured.
+
+use crate::inputs::COUNT;
+
+/// Roughness of the materials compared.
+pub(crate) const SIGMA: f64 = 0.5;
+/// Shape of the Student-t materials compared: an integer, so that the sums take part, and no node of the general set.
+pub(crate) const GAMMA: f64 = 4.0;
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Settings {
+    /// Views and pairs of numbers that calls and errors are taken over; at most [`COUNT`].
+    pub(crate) calls: usize,
+    /// Batches, of whose times the median is taken.
+    pub(crate) rounds: usize,
+    /// Views of the white furnace.
+    pub(crate) views: usize,
+    /// Draws for each.
+    pub(crate) draws: usize,
+    /// Seed of the inputs.
+    pub(crate) seed: u64,
+}
+
+impl Settings {
+    /// A minute or so.
+    pub(crate) const FULL: Self = Self { calls: COUNT, rounds: 801, views: 128, draws: 2048, seed: 1 };
+    /// Some seconds.
+    pub(crate) const QUICK: Self = Self { rounds: 101, views: 32, draws: 1024, ..Self::FULL };
+
+    /// The same over `calls` inputs, and no more than that of anything else.
+    pub(crate) fn with_calls(self, calls: usize) -> Self {
+        let calls = calls.clamp(1, COUNT);
+        let few = |n: usize| n.min(calls);
+        Self { calls, rounds: few(self.rounds), views: few(self.views), draws: few(self.draws), ..self }
+    }
+}

@@ -1,0 +1,62 @@
+//! The same for the terminal, in columns.
+
+use crate::figures::Figure;
+use crate::rows::{Quantity, Row};
+use crate::settings::SIGMA;
+
+/// The rows.
+pub(crate) fn table(rows: &[Row]) -> String {
+    let mut text = format!("sigma {}; errors are of the CDFs, or of G1, absolute\n", SIGMA);
+    for quantity in [Quantity::Normal, Quantity::G1] {
+        let title = if quantity == Quantity::Normal { "visible normals" } else { "G1" };
+        text += &format!(
+            "\n{title:42} {:>5} {:>9} {:>8} {:>8} {:>9} {:>9}",
+            "gamma", "ns", "bytes", "stored", "max", "rms"
+        );
+        text += if quantity == Quantity::Normal { "  variance  var x ns\n" } else { "\n" };
+        for row in rows.iter().filter(|row| row.quantity == quantity) {
+            let error = |x: Option<f64>| x.map_or("-".into(), |x| format!("{x:.1e}"));
+            text += &format!(
+                "{:42} {:>5} {:>9.2} {:>8} {:>8} {:>9} {:>9}",
+                row.name,
+                row.gamma,
+                row.ns,
+                row.bytes,
+                row.stored,
+                error(row.error.map(|error| error.max)),
+                error(row.error.map(|error| error.rms)),
+            );
+            if let (Some(variance), Some(cost)) = (row.variance, row.cost()) {
+                text += &format!(" {variance:>9.5} {cost:>9.3}");
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// The figures with what they must be and aim to be.
+pub(crate) fn block(figures: &[Figure]) -> String {
+    let mut text =
+        format!("{:48} {:>9} {:>9} {:>9}\n", "figures (smaller is better)", "must", "aim", "reached");
+    for figure in figures {
+        let number = |x: f64| if x < 0.01 { format!("{x:.1e}") } else { format!("{x:.3}") };
+        let name = match figure.unit {
+            "" => figure.name.into(),
+            unit => format!("{}, {unit}", figure.name),
+        };
+        let reached = figure.reached.map_or("-".into(), number);
+        let verdict = match figure.reached {
+            Some(x) if x <= figure.aim => "aim",
+            Some(x) if x <= figure.must => "must",
+            Some(_) => "MISSED",
+            None => "",
+        };
+        text += &format!(
+            "{name:48} {:>9} {:>9} {reached:>9}  {verdict}\n",
+            number(figure.must),
+            number(figure.aim)
+        );
+    }
+    text
+}
