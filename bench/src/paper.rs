@@ -76,7 +76,7 @@ pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
 fn methods(set: &Tables, gamma: f64, sigma: f64, seed: u64) -> Vec<(&'static str, Method<'static>)> {
     let truth = StudentT::isotropic(sigma, gamma).expect("constants");
     let bound = set.student_t(sigma, gamma).expect("the general set covers all shapes");
-    let z = move |w: Vec3| f64::from(w.z) / (sigma * f64::from(w.x.hypot(w.y)));
+    let z = move |w: Vec3| f64::from(w.z) / (sigma * f64::from((w.x * w.x + w.y * w.y).sqrt()));
     let g1 = |lambda: f64| (1.0 / (1.0 + lambda)) as f32;
     let mut all: Vec<(&str, Method)> = vec![(
         "eq. 13-15, hypergeometric",

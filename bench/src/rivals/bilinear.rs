@@ -5,6 +5,7 @@
 use glam::Vec3;
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::{Kind, Tables};
+use wide::f32x4;
 
 /// Bound to one shape.
 pub(crate) struct Bilinear {
@@ -40,16 +41,22 @@ impl Bilinear {
     #[inline(always)]
     pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let (x, y) = (self.sigma * v.x, self.sigma * v.y);
-        let rho = (x * x + y * y).sqrt();
-        let (cos, sin) = if rho > 0.0 { (x / rho, y / rho) } else { (1.0, 0.0) };
-        let tau = v.z / (rho + (rho * rho + v.z * v.z).sqrt());
+        let rho2 = x * x + y * y;
+        // Of the view, and the first of two of (2 min(u, 1−u))^(1/4): as the real tables do, in lanes.
+        let ends = u.map(|u| (2.0 * u.min(1.0 - u)).max(0.0));
+        let roots = f32x4::new([rho2, rho2 + v.z * v.z, ends[0], ends[1]]).sqrt();
+        let [rho, length, ..] = roots.to_array();
+        let [.., t0, t1] = roots.sqrt().to_array();
+        let ratios = f32x4::new([x, y, v.z, 0.0]) / f32x4::new([rho, rho, rho + length, 1.0]);
+        let [cos, sin, tau, _] = ratios.to_array();
+        let (cos, sin) = if rho > 0.0 { (cos, sin) } else { (1.0, 0.0) };
         let (row, between) = locate(tau * self.rows as f32, self.rows);
-        let (cell, w) = locate(root(u[0]) * (self.numbers - 1) as f32, self.numbers - 1);
-        let at = row * 2 * self.numbers + if u[0] > 0.5 { self.numbers } else { 0 } + cell;
+        let (cell, w) = locate(t0 * (self.numbers - 1) as f32, self.numbers - 1);
+        let at = row * 2 * self.numbers + half(u[0]) * self.numbers + cell;
         let (low, high) = (&self.along[at..at + 2], &self.along[at + 2 * self.numbers..][..2]);
         let (low, high) = (mix(low, w), mix(high, w));
         let (x, z) = slope(mix(&[low, high], between), u[0]);
-        let (cell, w) = locate(root(u[1]) * (self.across.len() - 1) as f32, self.across.len() - 1);
+        let (cell, w) = locate(t1 * (self.across.len() - 1) as f32, self.across.len() - 1);
         let (tx, tz) = slope(mix(&self.across[cell..cell + 2], w), u[1]);
         let y = (z * z + self.s * x * x).sqrt() * tx;
         let (x, z) = (x * tz, z * tz);
@@ -69,14 +76,14 @@ fn locate(x: f32, cells: usize) -> (usize, f32) {
     (cell, x - cell as f32)
 }
 
-/// (2 min(u, 1−u))^(1/4).
+/// Which half of the numbers: a number, not a branch, which half of all calls would mispredict.
 #[inline(always)]
-fn root(u: f32) -> f32 {
-    (2.0 * u.min(1.0 - u)).max(0.0).sqrt().sqrt()
+fn half(u: f32) -> usize {
+    usize::from(u > 0.5)
 }
 
 /// A slope x : z from the distance of its half tangent from the end that u is next to.
 #[inline(always)]
 fn slope(g: f32, u: f32) -> (f32, f32) {
-    ((2.0 - 2.0 * g) * if u > 0.5 { 1.0 } else { -1.0 }, g * (2.0 - g))
+    ((2.0 - 2.0 * g) * (2.0 * half(u) as f32 - 1.0), g * (2.0 - g))
 }

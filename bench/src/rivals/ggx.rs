@@ -9,38 +9,46 @@ macro_rules! in_precision {
 
             use glam::$vec as Vector;
 
-            /// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 1: `u[1]` is the height on the cap.
+            /// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 1: `u[1]` is the height on
+            /// the cap. All is as long as the stretched view, which need not be of unit length: the half vector is made so.
             #[inline(always)]
             pub(crate) fn caps(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
                 let w = Vector::new(sigma * v.x, sigma * v.y, v.z);
-                let w = w * (1.0 / w.dot(w).sqrt());
-                let z = (1.0 - u[1]) * (1.0 + w.z) - w.z;
-                let sin_theta = (1.0 - z * z).clamp(0.0, 1.0).sqrt();
+                let square = w.dot(w);
+                let height = (1.0 - u[1]) * (square.sqrt() + w.z);
+                let z = height - w.z;
+                let radius = (square - z * z).max(0.0).sqrt();
                 let (sin, cos) = (TAU * u[0]).sin_cos();
-                let (x, y, z) = (w.x + sin_theta * cos, w.y + sin_theta * sin, w.z + z);
-                let m = Vector::new(sigma * x, sigma * y, z);
+                let m = Vector::new(sigma * (w.x + radius * cos), sigma * (w.y + radius * sin), height);
                 m * (1.0 / m.dot(m).sqrt())
             }
 
-            /// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", listing 1.
+            /// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", listing 1, with its cross product written out
+            /// and one division for both lengths.
             #[inline(always)]
             pub(crate) fn heitz(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
-                let w = Vector::new(sigma * v.x, sigma * v.y, v.z);
-                let w = w * (1.0 / w.dot(w).sqrt());
-                let across = w.x * w.x + w.y * w.y;
-                let t1 = if across > 0.0 {
-                    Vector::new(-w.y, w.x, 0.0) * (1.0 / across.sqrt())
-                } else {
-                    Vector::X
-                };
-                let t2 = w.cross(t1);
+                let (x, y) = (sigma * v.x, sigma * v.y);
+                let across = x * x + y * y;
+                let (rho, length) = (across.sqrt(), (across + v.z * v.z).sqrt());
+                let inverse = 1.0 / (rho * length);
+                // The azimuth and the elevation of the view.
+                let (cos_phi, sin_phi) =
+                    if across > 0.0 { (x * length * inverse, y * length * inverse) } else { (1.0, 0.0) };
+                let (sin_theta, cos_theta) =
+                    if across > 0.0 { (across * inverse, v.z * rho * inverse) } else { (0.0, 1.0) };
                 let r = u[0].sqrt();
                 let (sin, cos) = (TAU * u[1]).sin_cos();
-                let (p1, s) = (r * cos, 0.5 * (1.0 + w.z));
-                let p2 = (1.0 - s) * (1.0 - p1 * p1).max(0.0).sqrt() + s * (r * sin);
-                let up = (1.0 - p1 * p1 - p2 * p2).max(0.0).sqrt();
-                let m = p1 * t1 + p2 * t2 + up * w;
-                let m = Vector::new(sigma * m.x, sigma * m.y, m.z.max(0.0));
+                let (p1, s) = (r * cos, 0.5 * (1.0 + cos_theta));
+                let rest = 1.0 - p1 * p1;
+                let p2 = (1.0 - s) * rest.max(0.0).sqrt() + s * (r * sin);
+                let up = (rest - p2 * p2).max(0.0).sqrt();
+                // p₁ along (−sin φ, cos φ, 0), p₂ along the view's cross product with that.
+                let out = up * sin_theta - p2 * cos_theta;
+                let m = Vector::new(
+                    sigma * (out * cos_phi - p1 * sin_phi),
+                    sigma * (out * sin_phi + p1 * cos_phi),
+                    (p2 * sin_theta + up * cos_theta).max(0.0),
+                );
                 m * (1.0 / m.dot(m).sqrt())
             }
         }

@@ -2,171 +2,164 @@
 
 use glam::Vec3;
 
-use super::tail::{ArcSum, Beta, Sum, Tail, whole};
+use super::form::{self, AnyGamma, Area, HalfIntegerGamma, IntegerGamma, Tails, View};
+use super::tail::whole;
 
-/// A bound lobe; `A` and `B` are the tails along and across the plane of incidence.
-pub(crate) struct Lobe<A, B> {
+/// A bound lobe.
+pub(crate) struct Lobe<F> {
     sigma: f32,
     /// √(γ−1): slopes over σ and this are those of the lobe's own space.
     root: f32,
-    exponent: Exponent,
-    along: A,
-    across: B,
-    /// 1/∫(1−t²)^(γ−2) and 1/∫(1−t²)^(γ−3/2).
+    /// σ√(γ−1).
+    stretch: f32,
+    form: F,
+    /// 1/∫(1−t²)^(γ−2) and 1/∫(1−t²)^(γ−3/2), and of the second its inverse.
     density: [f32; 2],
-    /// 1/(2γ−3).
-    heavy: f32,
-}
-
-/// 2γ − 5.
-#[derive(Clone, Copy)]
-enum Exponent {
-    Any(f32),
-    /// Whether it is odd, and half of it.
-    Whole(bool, u32),
-}
-
-impl Exponent {
-    /// cos^(2γ−5).
-    #[inline(always)]
-    fn of(self, cos: f32) -> f32 {
-        match self {
-            Self::Any(exponent) => cos.powf(exponent),
-            Self::Whole(odd, half) => {
-                (0..half).fold(if odd { cos } else { 1.0 }, |power, _| power * cos * cos)
-            }
-        }
-    }
+    whole: f32,
+    /// What slopes weigh in the area seen, see [`form::edge`].
+    edge: f32,
+    /// 2γ−5 and 2γ−3.
+    exponents: [f32; 2],
+    /// The sine across the plane of incidence as q + c₀q³ + c₁q⁵, q = (u − ½) ∫(1−t²)^(γ−3/2).
+    series: [f32; 2],
 }
 
 /// Both CDFs are met within this, as by the other rival that iterates.
 const TOLERANCE: f32 = 1e-5;
 
-impl Lobe<Beta, Beta> {
+/// How many tolerances, and how far from a straight line, a function may be for the last step to bring it within one.
+const CLOSE: f32 = 100.0;
+const NEARLY_STRAIGHT: f32 = 0.03;
+
+impl Lobe<AnyGamma> {
     /// Any γ.
     pub(crate) fn any(sigma: f64, gamma: f64) -> Self {
-        let exponent = Exponent::Any((2.0 * gamma - 5.0) as f32);
-        Self::new(sigma, gamma, exponent, Beta::new(gamma - 2.0), Beta::new(gamma - 1.5))
+        Self::new(sigma, gamma, AnyGamma::new(gamma))
     }
 }
 
-impl Lobe<Sum<3>, ArcSum<3>> {
+impl Lobe<IntegerGamma<3>> {
     /// γ = 4.
     pub(crate) fn four(sigma: f64) -> Self {
-        Self::new(sigma, 4.0, Exponent::Whole(true, 1), Sum::new(), ArcSum::new())
+        Self::new(sigma, 4.0, IntegerGamma::new())
     }
 }
 
-impl Lobe<ArcSum<2>, Sum<3>> {
+impl Lobe<HalfIntegerGamma<2>> {
     /// γ = 3.5.
     pub(crate) fn three_and_a_half(sigma: f64) -> Self {
-        Self::new(sigma, 3.5, Exponent::Whole(false, 1), ArcSum::new(), Sum::new())
+        Self::new(sigma, 3.5, HalfIntegerGamma::new())
     }
 }
 
-impl<A: Tail, B: Tail> Lobe<A, B> {
-    fn new(sigma: f64, gamma: f64, exponent: Exponent, along: A, across: B) -> Self {
-        let density = [whole(gamma - 2.0), whole(gamma - 1.5)].map(|whole| (1.0 / whole) as f32);
-        let heavy = (1.0 / (2.0 * gamma - 3.0)) as f32;
+impl<F: Area> Lobe<F> {
+    fn new(sigma: f64, gamma: f64, closed: F) -> Self {
+        let wholes = [gamma - 2.0, gamma - 1.5].map(whole);
+        let p = gamma - 1.5;
         Self {
             sigma: sigma as f32,
             root: (gamma - 1.0).sqrt() as f32,
-            exponent,
-            along,
-            across,
-            density,
-            heavy,
+            stretch: (sigma * (gamma - 1.0).sqrt()) as f32,
+            form: closed,
+            density: wholes.map(|whole| (1.0 / whole) as f32),
+            whole: wholes[1] as f32,
+            edge: form::edge(gamma) as f32,
+            exponents: [(2.0 * gamma - 5.0) as f32, (2.0 * gamma - 3.0) as f32],
+            series: [(p / 3.0) as f32, (p * (7.0 * p + 3.0) / 30.0) as f32],
         }
     }
 
-    /// Mass of the tilts whose sine is above `sin`, for a view with (sin θ, cos θ) in the lobe's space.
+    /// The elevation of a direction in the lobe's space.
     #[inline(always)]
-    fn mass(&self, view: [f32; 2], sin: f32, cos: f32, power: f32) -> f32 {
-        let cubed = power * cos * cos;
-        view[1] * self.along.upper(sin, cos, cubed) + view[0] * self.density[0] * self.heavy * cubed
-    }
-
-    /// (sin θ, cos θ) of a direction in the lobe's space.
-    #[inline(always)]
-    fn elevation(&self, w: Vec3) -> [f32; 2] {
-        let stretch = self.sigma * self.root;
-        let rho = stretch * (w.x * w.x + w.y * w.y).sqrt();
-        let r = 1.0 / (rho * rho + w.z * w.z).sqrt();
-        [rho * r, w.z * r]
-    }
-
-    /// The area seen, of which (mass above the silhouette) the clamped slopes are left out.
-    #[inline(always)]
-    fn area(&self, [sin, cos]: [f32; 2]) -> f32 {
-        self.mass([sin, cos], -cos, sin, self.exponent.of(sin))
+    fn view(&self, w: Vec3) -> View {
+        let rho = self.stretch * (w.x * w.x + w.y * w.y).sqrt();
+        let rho2 = self.stretch * self.stretch * (w.x * w.x + w.y * w.y);
+        let r = 1.0 / (rho2 + w.z * w.z).sqrt();
+        View { sin: rho * r, cos: w.z * r, square: rho2 * r * r }
     }
 
     /// Smith's G1: the share of the area that its projection takes.
     #[inline(always)]
     pub(crate) fn g1(&self, w: Vec3) -> f32 {
-        let view = self.elevation(w);
-        view[1] / self.area(view)
+        let view = self.view(w);
+        view.cos / self.form.area(view)
     }
+}
 
+impl<F: Tails> Lobe<F> {
     /// The visible normal at both numbers: they rise as those of the tables do.
     #[inline(always)]
     pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        let view = self.elevation(v);
-        let (sin_a, cos_a) = self.along(v, view, u[0]);
-        let (sin_b, cos_b) = self.across(u[1]);
-        let across = (v.x * v.x + v.y * v.y).sqrt();
-        let (cos, sin) = if across > 0.0 { (v.x / across, v.y / across) } else { (1.0, 0.0) };
-        let (x, y, z) = (cos_b * sin_a, sin_b, cos_b * cos_a);
-        let stretch = self.sigma * self.root;
-        let m = Vec3::new(stretch * (x * cos - y * sin), stretch * (x * sin + y * cos), z);
+        let horizontal = (v.x * v.x + v.y * v.y).sqrt();
+        let [sin_a, cos_a] = self.along(horizontal, v, u[0]);
+        let [sin_b, cos_b] = self.across(u[1]);
+        let inverse = 1.0 / horizontal;
+        let (cos, sin) = if horizontal > 0.0 { (v.x * inverse, v.y * inverse) } else { (1.0, 0.0) };
+        let (x, y, z) = (self.stretch * cos_b * sin_a, self.stretch * sin_b, cos_b * cos_a);
+        let m = Vec3::new(x * cos - y * sin, x * sin + y * cos, z);
         m * (1.0 / m.dot(m).sqrt())
     }
 
     /// Sine and cosine of the tilt in the plane of incidence.
     #[inline(always)]
-    fn along(&self, v: Vec3, view: [f32; 2], u: f32) -> (f32, f32) {
-        let [sin, cos] = view;
-        let area = self.area(view);
+    fn along(&self, horizontal: f32, v: Vec3, u: f32) -> [f32; 2] {
+        let view = self.view(v);
+        let View { sin, cos, .. } = view;
+        let area = self.form.area(view);
+        let target = (1.0 - u) * area;
+        let edge = sin * self.edge;
         // GGX has the quantile in closed form, sin(α − θ) = u (1 + cos θ) − 1; its unit slope is near that of other shapes.
-        let rho = self.sigma * (v.x * v.x + v.y * v.y).sqrt();
+        let rho = self.sigma * horizontal;
         let r = 1.0 / (rho * rho + v.z * v.z).sqrt();
         let (ggx_sin, ggx_cos) = (rho * r, v.z * r);
         let q = u * (1.0 + ggx_cos) - 1.0;
         let other = (1.0 - q * q).max(0.0).sqrt();
         let slope = [q * ggx_cos + other * ggx_sin, self.root * (other * ggx_cos - q * ggx_sin)];
         let start = slope[0] / (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
-        let at = newton(start, [-cos, 1.0], TOLERANCE * area, |x| {
-            let c = (1.0 - x * x).max(1e-12).sqrt();
-            let power = self.exponent.of(c);
-            let rate = power * (cos * c + sin * x) * self.density[0];
-            (self.mass(view, x, c, power) - (1.0 - u) * area, rate)
-        });
-        (at, (1.0 - at * at).max(0.0).sqrt())
+        invert(start, [-cos, 1.0], TOLERANCE * area, |x| {
+            let y = (1.0 - x * x).max(1e-12);
+            let c = y.sqrt();
+            let (power, over) = (self.form.power(c, y), x / y);
+            let facing = cos * c + sin * x;
+            let mass = cos * self.form.along(x, c, power * y * c) + edge * power * y;
+            let density = self.density[0] * power;
+            let bend = sin - cos * over * c - self.exponents[0] * over * facing;
+            [mass - target, density * facing, density * bend]
+        })
     }
 
     /// Sine and cosine of the tilt across it.
     #[inline(always)]
-    fn across(&self, u: f32) -> (f32, f32) {
+    fn across(&self, u: f32) -> [f32; 2] {
         let target = u.min(1.0 - u);
-        let start = (0.5 - target) / self.density[1];
-        let at = newton(start, [0.0, 1.0], TOLERANCE, |y| {
-            let c = (1.0 - y * y).max(1e-12).sqrt();
-            // cos^(2γ−3) is the density, cos^(2γ−2) what the tail takes.
-            let density = self.exponent.of(c) * c * c;
-            (self.across.upper(y, c, density * c) - target, density * self.density[1])
+        let q = (0.5 - target) * self.whole;
+        let start = q * (1.0 + q * q * (self.series[0] + q * q * self.series[1]));
+        let [sin, cos] = invert(start, [0.0, 1.0], TOLERANCE, |x| {
+            let y = (1.0 - x * x).max(1e-12);
+            let c = y.sqrt();
+            let power = self.form.power(c, y);
+            let density = self.density[1] * power;
+            let tail = self.form.across(x, c, power * y * y);
+            [tail - target, density * y, -self.exponents[1] * x * density]
         });
-        (if u < 0.5 { -at } else { at }, (1.0 - at * at).max(0.0).sqrt())
+        [sin.copysign(u - 0.5), cos]
     }
 }
 
-/// Where a decreasing function is 0 within `tolerance`: Newton steps inside a bracket. `f` gives the value and minus the derivative.
+/// The sine at which a decreasing function is 0 within `tolerance`, and the cosine: Halley's steps inside a bracket. `f` gives the
+/// value, minus the derivative, and the derivative of that.
 #[inline(always)]
-fn newton(mut x: f32, [mut low, mut high]: [f32; 2], tolerance: f32, f: impl Fn(f32) -> (f32, f32)) -> f32 {
+fn invert(
+    mut x: f32,
+    [mut low, mut high]: [f32; 2],
+    tolerance: f32,
+    f: impl Fn(f32) -> [f32; 3],
+) -> [f32; 2] {
     for _ in 0..30 {
         if !(x > low && x < high) {
             x = 0.5 * (low + high);
         }
-        let (value, rate) = f(x);
+        let [value, rate, bend] = f(x);
         if value.abs() < tolerance {
             break;
         }
@@ -175,7 +168,13 @@ fn newton(mut x: f32, [mut low, mut high]: [f32; 2], tolerance: f32, f: impl Fn(
         } else {
             high = x;
         }
-        x += value / rate;
+        let (square, curved) = (rate * rate, value * bend);
+        x += value * rate / (square + 0.5 * curved);
+        // The step multiplies a small residual by about the square of curved/square: nobody need look at what it leaves.
+        if value.abs() < CLOSE * tolerance && curved.abs() < NEARLY_STRAIGHT * square {
+            x = x.max(low).min(high);
+            break;
+        }
     }
-    x
+    [x, (1.0 - x * x).max(0.0).sqrt()]
 }

@@ -2,6 +2,8 @@
 
 pub(crate) mod beckmann;
 pub(crate) mod bilinear;
+pub(crate) mod elementary;
+pub(crate) mod form;
 pub(crate) mod ggx;
 pub(crate) mod lobe;
 pub(crate) mod rational;

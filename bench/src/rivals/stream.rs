@@ -1,83 +1,68 @@
 //! Samplers of Student-t normals without tables, which take as many random numbers as they need.
 
-use std::f32::consts::{PI, TAU};
-
 use glam::Vec3;
 
 use super::beckmann;
+use super::elementary::turn;
+use super::form::IntegerGamma;
 use super::lobe::Lobe;
-use super::tail::{ArcSum, Sum};
 use crate::inputs::Stream;
 
 /// A Student-t with γ = 4, whose masking is a short sum.
 pub(crate) struct Drawer {
     sigma: f32,
-    gamma: f32,
-    masking: Lobe<Sum<3>, ArcSum<3>>,
-    /// √(γ−1) Γ(γ−3/2)/Γ(γ−1), the mean of τ^(−½) over precisions τ.
-    mean_deviation: f32,
+    /// 1/σ.
+    steepness: f32,
+    masking: Lobe<IntegerGamma<3>>,
+    /// √(γ−1) Γ(γ−3/2)/Γ(γ−1), the mean of τ^(−½) over precisions τ; over 2√π, so that with ρ it is ρ E[x⁺].
+    grazing: f32,
 }
+
+const GAMMA: f32 = 4.0;
+
+/// E[x⁺] of a unit Beckmann, ½/√π.
+const HALF: f32 = 0.282_094_8;
 
 impl Drawer {
     pub(crate) fn new(sigma: f64) -> Self {
-        let gamma: f64 = 4.0;
+        let gamma = f64::from(GAMMA);
         let mean = (gamma - 1.0).sqrt() * libm::tgamma(gamma - 1.5) / libm::tgamma(gamma - 1.0);
         Self {
             sigma: sigma as f32,
-            gamma: gamma as f32,
+            steepness: (1.0 / sigma) as f32,
             masking: Lobe::four(sigma),
-            mean_deviation: mean as f32,
+            grazing: HALF * mean as f32,
         }
     }
 
     /// A normal distributed as D(m)(m·n), whatever the view (Ribardière et al. 2017, eq. 16–17).
     #[inline(always)]
     pub(crate) fn ndf(&self, u: [f32; 2]) -> Vec3 {
-        let (sin, cos) = (TAU * u[1]).sin_cos();
-        let r = self.radius(u[0]);
-        beckmann::normal(self.sigma, [1.0, 0.0], [r * cos, r * sin])
-    }
-
-    /// The radius of a unit slope: r² = (γ−1)((1−u)^(−1/(γ−1)) − 1).
-    #[inline(always)]
-    fn radius(&self, u: f32) -> f32 {
-        let s = 1.0 / (self.gamma - 1.0);
-        (((1.0 - u).powf(-s) - 1.0).max(0.0) / s).sqrt()
+        let [sin, cos] = turn(u[1]);
+        let square = self.sigma * self.sigma * square(u[0]);
+        let z = 1.0 / (1.0 + square).sqrt();
+        let r = square.sqrt() * z;
+        Vec3::new(r * cos, r * sin, z)
     }
 
     /// A visible normal: an NDF's turned to the viewer with probability G1, else one of the excess beyond the silhouette.
     #[inline(always)]
     pub(crate) fn exact(&self, v: Vec3, stream: &mut Stream) -> Vec3 {
         let horizontal = (v.x * v.x + v.y * v.y).sqrt();
-        let (cos, sin) = if horizontal > 0.0 { (v.x / horizontal, v.y / horizontal) } else { (1.0, 0.0) };
-        let z = v.z / (self.sigma * horizontal);
+        let inverse = 1.0 / horizontal;
+        let (cos, sin) = if horizontal > 0.0 { (v.x * inverse, v.y * inverse) } else { (1.0, 0.0) };
+        let z = v.z * inverse * self.steepness;
         let slopes = if stream.next() < self.masking.g1(v) {
-            let (sin, cos) = (TAU * stream.next()).sin_cos();
-            let r = self.radius(stream.next());
+            let [sin, cos] = turn(stream.next());
+            let r = square(stream.next()).sqrt();
             let x = (r * cos).abs();
-            let keeps = x > z || stream.next() < 0.5 * (1.0 + x / z);
+            // Kept with probability ½(1 + x/z), which beyond the silhouette is above 1.
+            let keeps = (2.0 * stream.next() - 1.0) * z < x;
             [if keeps { x } else { -x }, r * sin]
         } else {
-            self.excess(z, stream)
+            excess(z, stream)
         };
         beckmann::normal(self.sigma, [cos, sin], slopes)
-    }
-
-    /// Unit slopes with x > z of density ∝ (x − z) p(x).
-    #[inline(always)]
-    fn excess(&self, z: f32, stream: &mut Stream) -> [f32; 2] {
-        let root = (self.gamma - 1.0).sqrt();
-        let a = z / root;
-        let x = loop {
-            let grow = (1.0 - stream.next()).powf(-1.0 / (self.gamma - 1.5));
-            let x = ((1.0 + a * a) * grow - 1.0).max(0.0).sqrt();
-            if stream.next() * x >= a {
-                break x;
-            }
-        };
-        let radius = ((1.0 - stream.next()).powf(1.0 / (0.5 - self.gamma)) - 1.0).max(0.0).sqrt();
-        let y = (1.0 + x * x).sqrt() * radius * (TAU * stream.next()).cos();
-        [root * x, root * y]
     }
 
     /// A visible normal of one of the Beckmanns that Student-t is a mixture of: precision τ ∼ Gamma(γ−1), σ/√τ.
@@ -87,41 +72,57 @@ impl Drawer {
     #[inline(always)]
     pub(crate) fn mixture(&self, v: Vec3, stream: &mut Stream) -> Vec3 {
         let horizontal = (v.x * v.x + v.y * v.y).sqrt();
-        let (cos, sin) = if horizontal > 0.0 { (v.x / horizontal, v.y / horizontal) } else { (1.0, 0.0) };
+        let inverse = 1.0 / horizontal.max(1e-9);
+        let (cos, sin) = if horizontal > 0.0 { (v.x * inverse, v.y * inverse) } else { (1.0, 0.0) };
         let rho = self.sigma * horizontal;
-        // E[x⁺] of a unit Beckmann is ½/√π.
-        let half = 0.5 / PI.sqrt();
-        let grazing = half * rho * self.mean_deviation;
-        let deviation = loop {
-            let shape = if stream.next() * (v.z + grazing) < v.z { 0.0 } else { 0.5 };
-            let precision = gamma(self.gamma - 1.0 - shape, stream) / (self.gamma - 1.0);
-            let deviation = 1.0 / precision.sqrt();
-            let z = v.z / (rho * deviation);
-            let seen = 0.5 * v.z * (1.0 + beckmann::erf(z)) + half * rho * deviation * (-z * z).exp();
-            if stream.next() * (v.z + half * rho * deviation) <= seen {
-                break deviation;
+        let (cot, half) = (v.z * inverse * self.steepness, HALF * rho);
+        let all = v.z + self.grazing * rho;
+        let (root, [erf, gauss]) = loop {
+            // √τ, 1 over which the slopes are scaled by.
+            let root = (precision(stream.next() * all >= v.z, stream) * (1.0 / (GAMMA - 1.0))).sqrt();
+            let [erf, gauss] = beckmann::erf(cot * root);
+            // Times √τ, both sides.
+            let z = v.z * root;
+            if stream.next() * (z + half) <= 0.5 * z * (1.0 + erf) + half * gauss {
+                break (root, [erf, gauss]);
             }
         };
-        let z = v.z / (rho * deviation).max(1e-9);
-        let [away, across] = beckmann::slopes(z, [stream.next(), stream.next()]);
-        beckmann::normal(self.sigma * deviation, [cos, sin], [-away, across])
+        let [away, across] = beckmann::slopes_of(cot * root, [erf, gauss], [stream.next(), stream.next()]);
+        beckmann::normal(self.sigma / root, [cos, sin], [-away, across])
     }
 }
 
-/// A Gamma-distributed number of shape ≥ 1 and scale 1 (Marsaglia and Tsang 2000, "A Simple Method for Generating Gamma Variables").
+/// The square of the radius of a unit slope: r² = (γ−1)((1−u)^(−1/(γ−1)) − 1).
 #[inline(always)]
-fn gamma(shape: f32, stream: &mut Stream) -> f32 {
-    let d = shape - 1.0 / 3.0;
-    let c = 1.0 / (9.0 * d).sqrt();
-    loop {
-        let normal = (-2.0 * (1.0 - stream.next()).ln()).sqrt() * (TAU * stream.next()).cos();
-        let t = 1.0 + c * normal;
-        if t <= 0.0 {
-            continue;
+fn square(u: f32) -> f32 {
+    (GAMMA - 1.0) * ((1.0 - u).powf(-1.0 / (GAMMA - 1.0)) - 1.0).max(0.0)
+}
+
+/// Unit slopes with x > z of density ∝ (x − z) p(x).
+#[inline(always)]
+fn excess(z: f32, stream: &mut Stream) -> [f32; 2] {
+    let root = (GAMMA - 1.0).sqrt();
+    let a = z * (1.0 / root);
+    let x = loop {
+        let grow = (1.0 - stream.next()).powf(-1.0 / (GAMMA - 1.5));
+        let x = ((1.0 + a * a) * grow - 1.0).max(0.0).sqrt();
+        if stream.next() * x >= a {
+            break x;
         }
-        let cubed = t * t * t;
-        if (1.0 - stream.next()).ln() < 0.5 * normal * normal + d - d * cubed + d * cubed.ln() {
-            return d * cubed;
-        }
+    };
+    let square = ((1.0 - stream.next()).powf(1.0 / (0.5 - GAMMA)) - 1.0).max(0.0);
+    let y = ((1.0 + x * x) * square).sqrt() * turn(stream.next())[1];
+    [root * x, root * y]
+}
+
+/// A Gamma-distributed number of shape γ−1 = 3, or `less` by ½, and scale 1: exponentials, and half the square of a normal.
+#[inline(always)]
+fn precision(less: bool, stream: &mut Stream) -> f32 {
+    let mut next = || 1.0 - stream.next();
+    let two = next() * next();
+    if less {
+        let cos = turn(next())[1];
+        return -two.ln() - next().ln() * cos * cos;
     }
+    -(two * next()).ln()
 }

@@ -2,9 +2,11 @@
 //!
 //! x is the sine of the tilt in the lobe's own space. Along the plane of incidence p = γ−2, across it p = γ−3/2.
 
+use super::elementary::{arc, polynomial};
+
 /// One way to evaluate the tail.
 pub(crate) trait Tail {
-    /// The tail at x = `sin` ∈ [−1, 1], given cos = √(1−x²) and `power` = cos^(2p+1).
+    /// The tail at x = `sin` ∈ [−1, 1], given cos = √(1−x²) and `power` = cos^(2p+2).
     fn upper(&self, sin: f32, cos: f32, power: f32) -> f32;
 }
 
@@ -15,53 +17,72 @@ pub(crate) fn whole(p: f64) -> f64 {
 
 /// Any p: half the regularised incomplete beta function I(p+1, ½) of cos², by its continued fraction to 3e-7.
 pub(crate) struct Beta {
-    a: f32,
-    /// Γ(a+½)/(Γ(a) Γ(½)), a = p+1.
-    scale: f32,
+    /// Γ(a+½)/(Γ(a) Γ(½)), a = p+1, and half of it over a.
+    scale: [f32; 2],
+    /// Where either fraction ends sooner than the other: (a+1)/(a+5/2).
+    middle: f32,
+    /// Of I(a, ½) and of I(½, a).
+    fractions: [Fraction; 2],
 }
 
 impl Beta {
     pub(crate) fn new(p: f64) -> Self {
-        Self { a: (p + 1.0) as f32, scale: (1.0 / whole(p)) as f32 }
+        let (a, scale) = (p + 1.0, 1.0 / whole(p));
+        Self {
+            scale: [scale as f32, (0.5 * scale / a) as f32],
+            middle: ((a + 1.0) / (a + 2.5)) as f32,
+            fractions: [Fraction::new(a, 0.5), Fraction::new(0.5, a)],
+        }
     }
 }
 
 impl Tail for Beta {
     #[inline(always)]
     fn upper(&self, sin: f32, cos: f32, power: f32) -> f32 {
-        let (a, y) = (self.a, cos * cos);
-        let front = self.scale * power * cos * sin.abs();
-        let tail = 0.5
-            * if y < (a + 1.0) / (a + 2.5) {
-                front * fraction(a, 0.5, y) / a
-            } else {
-                // Not 1 − y, which has lost its digits where γ is large and the tail is within.
-                1.0 - 2.0 * front * fraction(0.5, a, sin * sin)
-            };
+        let (y, front) = (cos * cos, power * sin.abs());
+        let tail = if y < self.middle {
+            self.scale[1] * front * self.fractions[0].at(y)
+        } else {
+            // Not 1 − y, which has lost its digits where γ is large and the tail is within.
+            0.5 - self.scale[0] * front * self.fractions[1].at(sin * sin)
+        };
         if sin < 0.0 { 1.0 - tail } else { tail }
     }
 }
 
-/// The continued fraction of the incomplete beta function (DLMF 8.17.22) by the modified Lentz recurrence.
-#[inline(always)]
-fn fraction(a: f32, b: f32, x: f32) -> f32 {
-    let (mut c, mut d) = (1.0, 1.0 / (1.0 - (a + b) * x / (a + 1.0)));
-    let mut h = d;
-    for m in 1..100 {
-        let m = m as f32;
-        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
-        d = 1.0 / (1.0 + even * d);
-        c = 1.0 + even / c;
-        h *= d * c;
-        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
-        d = 1.0 / (1.0 + odd * d);
-        c = 1.0 + odd / c;
-        h *= d * c;
-        if (d * c - 1.0).abs() < 3e-7 {
-            break;
-        }
+/// The continued fraction 1/(1 + d₁x/(1 + d₂x/(1 + …))) of the incomplete beta function (DLMF 8.17.22).
+struct Fraction {
+    first: f32,
+    /// d₂ₘ and d₂ₘ₊₁.
+    pairs: [[f32; 2]; 32],
+}
+
+impl Fraction {
+    fn new(a: f64, b: f64) -> Self {
+        let pair = |i: usize| {
+            let m = i as f64 + 1.0;
+            let even = m * (b - m) / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
+            let odd = -(a + m) * (a + b + m) / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
+            [even as f32, odd as f32]
+        };
+        Self { first: (-(a + b) / (a + 1.0)) as f32, pairs: std::array::from_fn(pair) }
     }
-    h
+
+    /// By the recurrence of its convergents' numerators and denominators, so that all is divided once.
+    #[inline(always)]
+    fn at(&self, x: f32) -> f32 {
+        let (mut old, mut new) = ([1.0, 1.0], [1.0 + self.first * x, 1.0]);
+        for [even, odd] in &self.pairs {
+            let next = |[old, new]: [[f32; 2]; 2], d: f32| [new[0] + d * x * old[0], new[1] + d * x * old[1]];
+            old = next([old, new], *even);
+            new = next([new, old], *odd);
+            let (a, b) = (new[0] * old[1], old[0] * new[1]);
+            if (a - b).abs() < 3e-7 * a {
+                break;
+            }
+        }
+        new[1] / new[0]
+    }
 }
 
 /// Whole p = N − 1: a polynomial in the sine (the sum of Ribardière et al. 2017, eq. 21, for integer γ).
@@ -71,23 +92,26 @@ pub(crate) struct Sum<const N: usize> {
 
 impl<const N: usize> Sum<N> {
     pub(crate) fn new() -> Self {
+        Self { c: Self::coefficients().map(|c| c as f32) }
+    }
+
+    /// Those of the odd powers of the sine.
+    pub(crate) fn coefficients() -> [f64; N] {
         let (mut binomial, p) = (1.0, (N - 1) as f64);
         let norm = whole(p);
-        let c = std::array::from_fn(|j| {
+        std::array::from_fn(|j| {
             let j = j as f64;
             let term = binomial / (2.0 * j + 1.0) / norm;
             binomial *= -(p - j) / (j + 1.0);
-            term as f32
-        });
-        Self { c }
+            term
+        })
     }
 }
 
 impl<const N: usize> Tail for Sum<N> {
     #[inline(always)]
     fn upper(&self, sin: f32, _: f32, _: f32) -> f32 {
-        let y = sin * sin;
-        0.5 - sin * self.c.iter().rev().fold(0.0, |sum, c| sum * y + c)
+        0.5 - sin * polynomial(sin * sin, &self.c)
     }
 }
 
@@ -98,23 +122,25 @@ pub(crate) struct ArcSum<const N: usize> {
 
 impl<const N: usize> ArcSum<N> {
     pub(crate) fn new() -> Self {
+        Self { c: Self::coefficients().map(|c| c as f32) }
+    }
+
+    /// Those of the even powers of the cosine.
+    pub(crate) fn coefficients() -> [f64; N] {
         // ∫₀^φ cos^(2N) = whole/π · (φ + sin φ cos φ Σ (2j)!!/(2j+1)!! cos^(2j) φ).
         let mut term = std::f64::consts::FRAC_1_PI;
-        let c = std::array::from_fn(|j| {
+        std::array::from_fn(|j| {
             let now = term;
             term *= (2.0 * j as f64 + 2.0) / (2.0 * j as f64 + 3.0);
-            now as f32
-        });
-        Self { c }
+            now
+        })
     }
 }
 
 impl<const N: usize> Tail for ArcSum<N> {
     #[inline(always)]
     fn upper(&self, sin: f32, cos: f32, _: f32) -> f32 {
-        let y = cos * cos;
-        let sum = self.c.iter().rev().fold(0.0, |sum, c| sum * y + c);
-        0.5 - (sin.clamp(-1.0, 1.0).asin() * std::f32::consts::FRAC_1_PI + sin * cos * sum)
+        0.5 - (arc(sin, cos) + sin * cos * polynomial(cos * cos, &self.c))
     }
 }
 
@@ -137,7 +163,7 @@ mod tests {
                 let w = shape.unit(sin.abs() / cos / shape.s().sqrt());
                 let one = if across { shape.across_tail(w) } else { shape.tail(w) };
                 let want = if sin < 0.0 { 1.0 - one } else { one };
-                let power = cos.powf(2.0 * p + 1.0) as f32;
+                let power = cos.powf(2.0 * p + 2.0) as f32;
                 let got = tail.upper(sin as f32, cos as f32, power);
                 assert!((f64::from(got) - want).abs() < 1e-6, "p {p}, sine {sin}: {got} against {want}");
             }
