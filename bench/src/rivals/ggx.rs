@@ -3,10 +3,8 @@
 //! In single precision as renderers have them, and in double as the truth that their rounding is measured against.
 
 macro_rules! in_precision {
-    ($name:ident, $float:ident, $vec:ident) => {
+    ($name:ident, $float:ident, $vec:ident, $turn:expr) => {
         pub(crate) mod $name {
-            use std::$float::consts::TAU;
-
             use glam::$vec as Vector;
 
             /// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 1: `u[1]` is the height on
@@ -18,7 +16,7 @@ macro_rules! in_precision {
                 let height = (1.0 - u[1]) * (square.sqrt() + w.z);
                 let z = height - w.z;
                 let radius = (square - z * z).max(0.0).sqrt();
-                let (sin, cos) = (TAU * u[0]).sin_cos();
+                let [sin, cos] = $turn(u[0]);
                 let m = Vector::new(sigma * (w.x + radius * cos), sigma * (w.y + radius * sin), height);
                 m * (1.0 / m.dot(m).sqrt())
             }
@@ -37,7 +35,7 @@ macro_rules! in_precision {
                 let (sin_theta, cos_theta) =
                     if across > 0.0 { (across * inverse, v.z * rho * inverse) } else { (0.0, 1.0) };
                 let r = u[0].sqrt();
-                let (sin, cos) = (TAU * u[1]).sin_cos();
+                let [sin, cos] = $turn(u[1]);
                 let (p1, s) = (r * cos, 0.5 * (1.0 + cos_theta));
                 let rest = 1.0 - p1 * p1;
                 let p2 = (1.0 - s) * rest.max(0.0).sqrt() + s * (r * sin);
@@ -55,8 +53,13 @@ macro_rules! in_precision {
     };
 }
 
-in_precision!(single, f32, Vec3);
-in_precision!(double, f64, DVec3);
+in_precision!(single, f32, Vec3, crate::rivals::elementary::turn);
+in_precision!(double, f64, DVec3, super::turn);
+
+/// The sine and the cosine of 2πu.
+fn turn(u: f64) -> [f64; 2] {
+    (std::f64::consts::TAU * u).sin_cos().into()
+}
 
 /// G1 = 2 cos θ/(cos θ + √(cos²θ + σ² sin²θ)) (Walter et al. 2007, eq. 34), without its tangent.
 #[inline(always)]
