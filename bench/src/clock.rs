@@ -1,7 +1,7 @@
 //! The time of a call, as the median over batches of rivals that take turns.
 //!
-//! One batch of each in every round: what disturbs the machine for a while disturbs all of them, so that their ratios are
-//! steadier than their times.
+//! One batch of each in every round: what disturbs the machine for a while disturbs all of them, so
+//! that their ratios are steadier than their times.
 
 use std::ops::Range;
 use std::time::Instant;
@@ -9,8 +9,8 @@ use std::time::Instant;
 /// A rival that makes one call for each of a range of the inputs.
 pub(crate) type Calls<'a> = Box<dyn FnMut(Range<usize>) + 'a>;
 
-/// About how long a batch takes: long against the clock's own call, short against the slices of time that a busy system gives to others,
-/// so that most batches are not interrupted.
+/// About how long a batch takes: long against the clock's own call, short against the slices of
+/// time that a busy system gives to others, so that most batches are not interrupted.
 const BATCH_NS: f64 = 1e5;
 
 /// Nanoseconds a call of each, over `rounds` batches of inputs from `count`.
@@ -24,7 +24,8 @@ pub(crate) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<
     let batches: Vec<usize> = rivals
         .iter_mut()
         .map(|rival| {
-            // The first few touch its data, the others tell how long it takes; the least is the one that was not interrupted.
+            // The first few touch its data, the others tell how long it takes; the least is the one
+            // that was not interrupted.
             let least = (0..5).map(|_| time(rival, 0..16.min(count))).fold(f64::INFINITY, f64::min);
             ((BATCH_NS / least) as usize).clamp(8.min(count), count)
         })

@@ -69,7 +69,8 @@ pub(crate) fn figures(
     ]
 }
 
-/// The largest CDF error, between nodes and over all γ from 1.8 on, that the set's certificates state.
+/// The largest CDF error, between nodes and over all γ from 1.8 on, that the set's certificates
+/// state.
 fn certified(set: &Tables) -> f64 {
     let whole = |kind| matches!(kind, Kind::VisibleSlope | Kind::VisibleSlopeConditional);
     let tables = set.tables().iter().filter(|table| whole(table.kind));

@@ -1,4 +1,5 @@
-//! What every rival is fed: the same views and random numbers, drawn once and resident in the caches.
+//! What every rival is fed: the same views and random numbers, drawn once and resident in the
+//! caches.
 
 use std::f32::consts::TAU;
 
@@ -6,8 +7,8 @@ use glam::Vec3;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-/// Views spread evenly over the solid angle above the surface (cos θ uniform in (0, 1], φ in [0, 2π)), and pairs of random numbers uniform in
-/// [0, 1)².
+/// Views spread evenly over the solid angle above the surface (cos θ uniform in (0, 1], φ in [0,
+/// 2π)), and pairs of random numbers uniform in [0, 1)².
 ///
 /// Many enough that a branch predictor cannot learn them: 16 384 of either, 320 KiB, read in order.
 #[derive(Clone, Debug)]
@@ -40,8 +41,8 @@ impl Inputs {
 /// How many numbers a [`Stream`] repeats.
 const STREAM: usize = 1 << 16;
 
-/// Random numbers uniform in [0, 1) for rivals that need no fixed number of them: drawn beforehand, as the others' are, so that no one
-/// pays for a generator.
+/// Random numbers uniform in [0, 1) for rivals that need no fixed number of them: drawn beforehand,
+/// as the others' are, so that no one pays for a generator.
 #[derive(Clone, Debug)]
 pub(crate) struct Stream {
     numbers: Box<[f32; STREAM]>,

@@ -37,8 +37,9 @@ pub(crate) fn truth(gamma: f64) -> StudentT {
     StudentT::isotropic(SIGMA, gamma).expect("sigma is a constant, and so are the shapes")
 }
 
-/// The error of a sampler: how far the CDFs along and across the plane of incidence are from those they should have, the larger of the two. `None`
-/// where the random numbers have no CDF of their own.
+/// The error of a sampler: how far the CDFs along and across the plane of incidence are from those
+/// they should have, the larger of the two. `None` where the random numbers have no CDF of their
+/// own.
 pub(crate) fn sampler_error(sampler: &Sampler, inputs: &Inputs) -> Option<Error> {
     if matches!(sampler.check, Check::Distribution) {
         return None;
@@ -78,11 +79,11 @@ pub(crate) fn masking_error(evaluate: &Evaluate, gamma: f64, inputs: &Inputs) ->
     Error::of(inputs.views.iter().zip(g1).map(|(w, g1)| (f64::from(g1) - truth.g1(w.as_dvec3())).abs()))
 }
 
-/// The mean over views of the variance of a white-furnace estimator: the weight f cos/pdf of one reflected light, with G2 height-correlated
-/// and no Fresnel term, 0 for a light below the horizon.
+/// The mean over views of the variance of a white-furnace estimator: the weight f cos/pdf of one
+/// reflected light, with G2 height-correlated and no Fresnel term, 0 for a light below the horizon.
 ///
-/// Weights are the model's in double precision, so that samplers differ by their normals alone. `views` of the inputs take part, with
-/// `draws` of the numbers each.
+/// Weights are the model's in double precision, so that samplers differ by their normals alone.
+/// `views` of the inputs take part, with `draws` of the numbers each.
 pub(crate) fn furnace_variance(sampler: &Sampler, inputs: &Inputs, views: usize, draws: usize) -> f64 {
     let truth = truth(sampler.gamma);
     let mut normals = vec![Vec3::ZERO; draws];

@@ -1,8 +1,9 @@
-//! Run time against error: the tables of `microfacet-bake` and their rivals, timed in one process, on one thread, with the
-//! same inputs.
+//! Run time against error: the tables of `microfacet-bake` and their rivals, timed in one process,
+//! on one thread, with the same inputs.
 //!
-//! A time is a throughput: of independent calls in a row, each of which the compiler may inline, with views and random
-//! numbers drawn beforehand ([`inputs`]). Everything is in single precision unless its name says otherwise.
+//! A time is a throughput: of independent calls in a row, each of which the compiler may inline,
+//! with views and random numbers drawn beforehand ([`inputs`]). Everything is in single precision
+//! unless its name says otherwise.
 
 mod clock;
 mod figures;
@@ -32,8 +33,9 @@ use crate::tables::Slices;
 
 /// Time the samplers and the forms of G1 there are, and say how wrong each is.
 ///
-/// One thread; views evenly over the hemisphere and uniform random numbers, drawn beforehand; times are medians over
-/// batches of rivals that take turns. Close other programs: ratios are steadier than times, but not immune.
+/// One thread; views evenly over the hemisphere and uniform random numbers, drawn beforehand; times
+/// are medians over batches of rivals that take turns. Close other programs: ratios are steadier
+/// than times, but not immune.
 #[derive(Parser)]
 #[command(version)]
 #[command(
@@ -49,8 +51,9 @@ struct Args {
     /// Seed of views and random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Folder for bench.csv, bench.json, bench.svg and, after Ribardière et al. 2017, the times by gamma and sigma
-    /// (figure-4.csv, .svg) and the error of the rational approximation (figure-5.csv, .svg).
+    /// Folder for bench.csv, bench.json, bench.svg and, after Ribardière et al. 2017, the times by
+    /// gamma and sigma (figure-4.csv, .svg) and the error of the rational approximation
+    /// (figure-5.csv, .svg).
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Print JSON instead of tables.

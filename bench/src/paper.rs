@@ -1,5 +1,5 @@
-//! Two comparisons of Ribardière et al. 2017, done again with tables beside them: the time by γ and by σ (after figure 4), and the error of
-//! the rational approximation of masking (after figure 5).
+//! Two comparisons of Ribardière et al. 2017, done again with tables beside them: the time by γ and
+//! by σ (after figure 4), and the error of the rational approximation of masking (after figure 5).
 
 use std::cell::RefCell;
 

@@ -13,8 +13,8 @@ const FINE: u32 = 8;
 /// Error at which rivals without one, exact in distribution, are drawn.
 const EXACT: f64 = 1e-8;
 
-/// Two panels, visible normals above and G1 below. Filled points are Student-t with γ = [`GAMMA`], and the front is theirs; rings are other
-/// distributions.
+/// Two panels, visible normals above and G1 below. Filled points are Student-t with γ = [`GAMMA`],
+/// and the front is theirs; rings are other distributions.
 ///
 /// # Errors
 /// [`PlotError::Drawing`].
@@ -38,7 +38,8 @@ fn failed(why: impl std::fmt::Display) -> PlotError {
     PlotError::Drawing(why.to_string())
 }
 
-/// Where a row is drawn: log₁₀ of time and of error. `None` for a sampler of other normals than all that are visible.
+/// Where a row is drawn: log₁₀ of time and of error. `None` for a sampler of other normals than all
+/// that are visible.
 fn place(row: &Row) -> Option<(f64, f64)> {
     if !row.complete {
         return None;
@@ -129,7 +130,8 @@ impl Box {
     }
 }
 
-/// How far down from its point at (x, y) a name of so many letters hides nothing, the nearest such place, and takes it.
+/// How far down from its point at (x, y) a name of so many letters hides nothing, the nearest such
+/// place, and takes it.
 fn free(taken: &mut Vec<Box>, x: i32, y: i32, letters: usize) -> i32 {
     let line = 11 * FINE as i32;
     let width = letters as i32 * 11 * FINE as i32 / 2;

@@ -38,7 +38,8 @@ pub(crate) struct Row {
     pub(crate) name: String,
     /// Its shape; ∞ is Beckmann.
     pub(crate) gamma: f64,
-    /// Whether it draws visible normals, all of them, or evaluates G1: what can be compared by its error.
+    /// Whether it draws visible normals, all of them, or evaluates G1: what can be compared by its
+    /// error.
     pub(crate) complete: bool,
     /// Nanoseconds a call.
     pub(crate) ns: f64,
@@ -46,7 +47,8 @@ pub(crate) struct Row {
     pub(crate) bytes: usize,
     /// Bytes of those tables as stored in a file.
     pub(crate) stored: usize,
-    /// Error of the CDFs, or of G1, absolute; `None` for a sampler whose random numbers have no CDF of their own.
+    /// Error of the CDFs, or of G1, absolute; `None` for a sampler whose random numbers have no CDF
+    /// of their own.
     pub(crate) error: Option<Error>,
     /// Variance of a white-furnace estimator; `None` for G1.
     pub(crate) variance: Option<f64>,

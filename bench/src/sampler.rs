@@ -30,7 +30,8 @@ pub(crate) enum Check {
     Falling,
     /// The normal that the same formula gives in double precision.
     Formula(Exactly),
-    /// Nothing: the numbers it takes have no CDF of their own. Exact in distribution, or not a sampler of visible normals at all.
+    /// Nothing: the numbers it takes have no CDF of their own. Exact in distribution, or not a
+    /// sampler of visible normals at all.
     Distribution,
 }
 
@@ -74,8 +75,8 @@ impl<'a> Sampler<'a> {
     }
 }
 
-/// One call after the other. Each result is used, so that none is left out and no loop becomes one over lanes, which the calls of a
-/// renderer are not.
+/// One call after the other. Each result is used, so that none is left out and no loop becomes one
+/// over lanes, which the calls of a renderer are not.
 pub(crate) fn each<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
     Box::new(move |v, u, m| {
         for ((v, u), m) in v.iter().zip(u).zip(m) {

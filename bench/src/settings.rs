@@ -4,7 +4,8 @@ use crate::inputs::COUNT;
 
 /// Roughness of the materials compared.
 pub(crate) const SIGMA: f64 = 0.5;
-/// Shape of the Student-t materials compared: an integer, so that the sums take part, and no node of the general set.
+/// Shape of the Student-t materials compared: an integer, so that the sums take part, and no node
+/// of the general set.
 pub(crate) const GAMMA: f64 = 4.0;
 
 /// How much is measured.

@@ -1,4 +1,5 @@
-//! The benchmark as a command: what it writes and what its values are, never how long anything takes.
+//! The benchmark as a command: what it writes and what its values are, never how long anything
+//! takes.
 
 use std::collections::BTreeMap;
 use std::path::Path;

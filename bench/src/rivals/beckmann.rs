@@ -9,7 +9,8 @@ use super::elementary::{nine, polynomial};
 /// 1/√π.
 const SQRT_PI_INV: f32 = 0.564_189_6;
 
-/// The error function of x ≥ 0 to 1.5e-7, Abramowitz and Stegun 7.1.26, and exp(−x²), which it is made of.
+/// The error function of x ≥ 0 to 1.5e-7, Abramowitz and Stegun 7.1.26, and exp(−x²), which it is
+/// made of.
 #[inline(always)]
 pub(super) fn erf(x: f32) -> [f32; 2] {
     let gauss = (-x * x).exp();
@@ -53,10 +54,12 @@ pub(crate) fn erf_inv(x: f32) -> f32 {
     }
 }
 
-/// The slope away from the viewer and the slope across, in units of σ, of a view whose unit cotangent is `cot` = cot θ/σ.
+/// The slope away from the viewer and the slope across, in units of σ, of a view whose unit
+/// cotangent is `cot` = cot θ/σ.
 ///
-/// Jakob 2014, "An Improved Visible Normal Sampling Routine for the Beckmann Distribution": Newton steps within a bracket, over
-/// the error function of the slope, until the CDF is within 1e-5 of `u[0]`.
+/// Jakob 2014, "An Improved Visible Normal Sampling Routine for the Beckmann Distribution": Newton
+/// steps within a bracket, over the error function of the slope, until the CDF is within 1e-5 of
+/// `u[0]`.
 #[inline(always)]
 pub(super) fn slopes(cot: f32, u: [f32; 2]) -> [f32; 2] {
     slopes_of(cot, erf(cot), u)
@@ -116,7 +119,8 @@ pub(crate) fn sample(sigma: f32, v: Vec3, u: [f32; 2]) -> Vec3 {
     normal(sigma, [cos, sin], [-away, across])
 }
 
-/// The unit normal of unit slopes towards the viewer and across, turned to the view's azimuth and stretched.
+/// The unit normal of unit slopes towards the viewer and across, turned to the view's azimuth and
+/// stretched.
 #[inline(always)]
 pub(crate) fn normal(sigma: f32, [cos, sin]: [f32; 2], [x, y]: [f32; 2]) -> Vec3 {
     let m = Vec3::new(sigma * (x * cos - y * sin), sigma * (x * sin + y * cos), 1.0);
@@ -137,8 +141,8 @@ pub(crate) fn g1(sigma: f32, w: Vec3) -> f32 {
     2.0 * a / (a * (1.0 + erf) + SQRT_PI_INV * gauss)
 }
 
-/// Its rational fit (Walter et al. 2007, eq. 27), as a fraction of σ sin θ and cos θ. It is 1 at a = 1.6, from where on G1 is
-/// taken for 1: limiting both is no branch.
+/// Its rational fit (Walter et al. 2007, eq. 27), as a fraction of σ sin θ and cos θ. It is 1 at a
+/// = 1.6, from where on G1 is taken for 1: limiting both is no branch.
 #[inline(always)]
 pub(crate) fn g1_rational(sigma: f32, w: Vec3) -> f32 {
     let rho = radius(sigma, w);

@@ -1,6 +1,8 @@
-//! The plainest table: the inverse CDFs read by straight lines along every axis, at any number of nodes.
+//! The plainest table: the inverse CDFs read by straight lines along every axis, at any number of
+//! nodes.
 //!
-//! The same values, axes and mappings as the real tables', but no slopes; what cubic interpolation along the random numbers is worth.
+//! The same values, axes and mappings as the real tables', but no slopes; what cubic interpolation
+//! along the random numbers is worth.
 
 use glam::Vec3;
 use microfacet_common::shape::s_of_gamma;
@@ -19,7 +21,8 @@ pub(crate) struct Bilinear {
 }
 
 impl Bilinear {
-    /// From a set that holds slices at γ alone, with evenly spaced views and fourth roots of the numbers.
+    /// From a set that holds slices at γ alone, with evenly spaced views and fourth roots of the
+    /// numbers.
     pub(crate) fn new(sigma: f64, gamma: f64, set: &Tables) -> Self {
         let of = |kind| set.table(kind).expect("a slice has tables of both kinds");
         let values = |kind| of(kind).values.iter().step_by(2).copied().collect::<Vec<f32>>();
@@ -42,7 +45,8 @@ impl Bilinear {
     pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let (x, y) = (self.sigma * v.x, self.sigma * v.y);
         let rho2 = x * x + y * y;
-        // Of the view, and the first of two of (2 min(u, 1−u))^(1/4): as the real tables do, in lanes.
+        // Of the view, and the first of two of (2 min(u, 1−u))^(1/4): as the real tables do, in
+        // lanes.
         let ends = u.map(|u| (2.0 * u.min(1.0 - u)).max(0.0));
         let roots = f32x4::new([rho2, rho2 + v.z * v.z, ends[0], ends[1]]).sqrt();
         let [rho, length, ..] = roots.to_array();

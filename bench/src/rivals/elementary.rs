@@ -1,5 +1,5 @@
-//! Elementary functions over the ranges that rivals need, in single precision and without branches; the platform's serve
-//! every range.
+//! Elementary functions over the ranges that rivals need, in single precision and without branches;
+//! the platform's serve every range.
 //!
 //! The polynomials are interpolations at Chebyshev's points.
 
@@ -17,7 +17,8 @@ pub(crate) fn polynomial<T: Copy + Add<Output = T> + Mul<Output = T>, const N: u
     sum
 }
 
-/// The same of nine coefficients, in two chains that a processor runs at once: half as long to wait for.
+/// The same of nine coefficients, in two chains that a processor runs at once: half as long to wait
+/// for.
 #[inline(always)]
 pub(crate) fn nine(x: f32, c: &[f32; 9]) -> f32 {
     let square = x * x;
@@ -35,8 +36,8 @@ pub(crate) fn turn(u: f32) -> [f32; 2] {
     [sine((0.25 - quarter.abs()).copysign(x)), sine(quarter)]
 }
 
-/// The angle in [−π/2, π/2] of a sine and a cosine, over π, to 1.5e-7: twice the arc tangent of the half
-/// angle's tangent.
+/// The angle in [−π/2, π/2] of a sine and a cosine, over π, to 1.5e-7: twice the arc tangent of the
+/// half angle's tangent.
 #[inline(always)]
 pub(crate) fn arc(sin: f32, cos: f32) -> f32 {
     // The arc tangent from −1 to 1, to 1e-8.

@@ -1,4 +1,5 @@
-//! The closed forms of a Student-t lobe of one shape, in the lobe's own space, for any γ and for those that have sums.
+//! The closed forms of a Student-t lobe of one shape, in the lobe's own space, for any γ and for
+//! those that have sums.
 
 use super::elementary::{arc, polynomial};
 use super::tail::{ArcSum, Beta, Sum, Tail, whole};

@@ -1,14 +1,16 @@
 //! GGX, γ = 2: both closed-form samplers of visible normals, and G1.
 //!
-//! In single precision as renderers have them, and in double as the truth that their rounding is measured against.
+//! In single precision as renderers have them, and in double as the truth that their rounding is
+//! measured against.
 
 macro_rules! in_precision {
     ($name:ident, $float:ident, $vec:ident, $turn:expr) => {
         pub(crate) mod $name {
             use glam::$vec as Vector;
 
-            /// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 1: `u[1]` is the height on
-            /// the cap. All is as long as the stretched view, which need not be of unit length: the half vector is made so.
+            /// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing
+            /// 1: `u[1]` is the height on the cap. All is as long as the stretched view, which need
+            /// not be of unit length: the half vector is made so.
             #[inline(always)]
             pub(crate) fn caps(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
                 let w = Vector::new(sigma * v.x, sigma * v.y, v.z);
@@ -21,8 +23,8 @@ macro_rules! in_precision {
                 m * (1.0 / m.dot(m).sqrt())
             }
 
-            /// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", listing 1, with its cross product written out
-            /// and one division for both lengths.
+            /// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", listing 1, with its
+            /// cross product written out and one division for both lengths.
             #[inline(always)]
             pub(crate) fn heitz(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
                 let (x, y) = (sigma * v.x, sigma * v.y);

@@ -1,4 +1,5 @@
-//! Student-t through closed forms of its lobe in single precision: G1, and visible normals by inverting the CDFs numerically.
+//! Student-t through closed forms of its lobe in single precision: G1, and visible normals by
+//! inverting the CDFs numerically.
 
 use glam::Vec3;
 
@@ -27,7 +28,8 @@ pub(crate) struct Lobe<F> {
 /// Both CDFs are met within this, as by the other rival that iterates.
 const TOLERANCE: f32 = 1e-5;
 
-/// How many tolerances, and how far from a straight line, a function may be for the last step to bring it within one.
+/// How many tolerances, and how far from a straight line, a function may be for the last step to
+/// bring it within one.
 const CLOSE: f32 = 100.0;
 const NEARLY_STRAIGHT: f32 = 0.03;
 
@@ -108,7 +110,8 @@ impl<F: Tails> Lobe<F> {
         let area = self.form.area(view);
         let target = (1.0 - u) * area;
         let edge = sin * self.edge;
-        // GGX has the quantile in closed form, sin(α − θ) = u (1 + cos θ) − 1; its unit slope is near that of other shapes.
+        // GGX has the quantile in closed form, sin(α − θ) = u (1 + cos θ) − 1; its unit slope is
+        // near that of other shapes.
         let rho = self.sigma * horizontal;
         let r = 1.0 / (rho * rho + v.z * v.z).sqrt();
         let (ggx_sin, ggx_cos) = (rho * r, v.z * r);
@@ -146,8 +149,8 @@ impl<F: Tails> Lobe<F> {
     }
 }
 
-/// The sine at which a decreasing function is 0 within `tolerance`, and the cosine: Halley's steps inside a bracket. `f` gives the
-/// value, minus the derivative, and the derivative of that.
+/// The sine at which a decreasing function is 0 within `tolerance`, and the cosine: Halley's steps
+/// inside a bracket. `f` gives the value, minus the derivative, and the derivative of that.
 #[inline(always)]
 fn invert(
     mut x: f32,
@@ -170,7 +173,8 @@ fn invert(
         }
         let (square, curved) = (rate * rate, value * bend);
         x += value * rate / (square + 0.5 * curved);
-        // The step multiplies a small residual by about the square of curved/square: nobody need look at what it leaves.
+        // The step multiplies a small residual by about the square of curved/square: nobody need
+        // look at what it leaves.
         if value.abs() < CLOSE * tolerance && curved.abs() < NEARLY_STRAIGHT * square {
             x = x.max(low).min(high);
             break;

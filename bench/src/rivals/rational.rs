@@ -1,4 +1,5 @@
-//! The paper's rational approximation of masking (Ribardière et al. 2017, eq. 22–23), with all that depends on γ bound beforehand.
+//! The paper's rational approximation of masking (Ribardière et al. 2017, eq. 22–23), with all that
+//! depends on γ bound beforehand.
 
 use glam::Vec3;
 
@@ -12,7 +13,8 @@ pub(crate) struct Rational {
     exponent: f32,
     /// Factor of the first term.
     first: f32,
-    /// Factor of the second, F₂₂ and F₂₃ in one: what multiplies F₂₁ is this polynomial over the denominator of F₂₄.
+    /// Factor of the second, F₂₂ and F₂₃ in one: what multiplies F₂₁ is this polynomial over the
+    /// denominator of F₂₄.
     second: [f32; 4],
 }
 

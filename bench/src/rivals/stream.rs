@@ -14,7 +14,8 @@ pub(crate) struct Drawer {
     /// 1/σ.
     steepness: f32,
     masking: Lobe<IntegerGamma<3>>,
-    /// √(γ−1) Γ(γ−3/2)/Γ(γ−1), the mean of τ^(−½) over precisions τ; over 2√π, so that with ρ it is ρ E[x⁺].
+    /// √(γ−1) Γ(γ−3/2)/Γ(γ−1), the mean of τ^(−½) over precisions τ; over 2√π, so that with ρ it is
+    /// ρ E[x⁺].
     grazing: f32,
 }
 
@@ -45,7 +46,8 @@ impl Drawer {
         Vec3::new(r * cos, r * sin, z)
     }
 
-    /// A visible normal: an NDF's turned to the viewer with probability G1, else one of the excess beyond the silhouette.
+    /// A visible normal: an NDF's turned to the viewer with probability G1, else one of the excess
+    /// beyond the silhouette.
     #[inline(always)]
     pub(crate) fn exact(&self, v: Vec3, stream: &mut Stream) -> Vec3 {
         let horizontal = (v.x * v.x + v.y * v.y).sqrt();
@@ -65,10 +67,12 @@ impl Drawer {
         beckmann::normal(self.sigma, [cos, sin], slopes)
     }
 
-    /// A visible normal of one of the Beckmanns that Student-t is a mixture of: precision τ ∼ Gamma(γ−1), σ/√τ.
+    /// A visible normal of one of the Beckmanns that Student-t is a mixture of: precision τ ∼
+    /// Gamma(γ−1), σ/√τ.
     ///
-    /// Exact for every view if the precision is drawn in proportion to the area seen, z(1 + Λ). That is at most z + ρ E[x⁺], whose two terms
-    /// have Gamma-distributed precisions, and at least half of it, so that fewer than two tries are needed.
+    /// Exact for every view if the precision is drawn in proportion to the area seen, z(1 + Λ).
+    /// That is at most z + ρ E[x⁺], whose two terms have Gamma-distributed precisions, and at least
+    /// half of it, so that fewer than two tries are needed.
     #[inline(always)]
     pub(crate) fn mixture(&self, v: Vec3, stream: &mut Stream) -> Vec3 {
         let horizontal = (v.x * v.x + v.y * v.y).sqrt();
@@ -115,7 +119,8 @@ fn excess(z: f32, stream: &mut Stream) -> [f32; 2] {
     [root * x, root * y]
 }
 
-/// A Gamma-distributed number of shape γ−1 = 3, or `less` by ½, and scale 1: exponentials, and half the square of a normal.
+/// A Gamma-distributed number of shape γ−1 = 3, or `less` by ½, and scale 1: exponentials, and half
+/// the square of a normal.
 #[inline(always)]
 fn precision(less: bool, stream: &mut Stream) -> f32 {
     let mut next = || 1.0 - stream.next();

@@ -1,6 +1,8 @@
-//! Upper tails ∫ₓ¹ (1−t²)ᵖ dt over the whole ∫₋₁¹, in single precision: what every closed form of Student-t is made of.
+//! Upper tails ∫ₓ¹ (1−t²)ᵖ dt over the whole ∫₋₁¹, in single precision: what every closed form of
+//! Student-t is made of.
 //!
-//! x is the sine of the tilt in the lobe's own space. Along the plane of incidence p = γ−2, across it p = γ−3/2.
+//! x is the sine of the tilt in the lobe's own space. Along the plane of incidence p = γ−2, across
+//! it p = γ−3/2.
 
 use super::elementary::{arc, polynomial};
 
@@ -15,7 +17,8 @@ pub(crate) fn whole(p: f64) -> f64 {
     std::f64::consts::PI.sqrt() * (libm::lgamma(p + 1.0) - libm::lgamma(p + 1.5)).exp()
 }
 
-/// Any p: half the regularised incomplete beta function I(p+1, ½) of cos², by its continued fraction to 3e-7.
+/// Any p: half the regularised incomplete beta function I(p+1, ½) of cos², by its continued
+/// fraction to 3e-7.
 pub(crate) struct Beta {
     /// Γ(a+½)/(Γ(a) Γ(½)), a = p+1, and half of it over a.
     scale: [f32; 2],
@@ -50,7 +53,8 @@ impl Tail for Beta {
     }
 }
 
-/// The continued fraction 1/(1 + d₁x/(1 + d₂x/(1 + …))) of the incomplete beta function (DLMF 8.17.22).
+/// The continued fraction 1/(1 + d₁x/(1 + d₂x/(1 + …))) of the incomplete beta function (DLMF
+/// 8.17.22).
 struct Fraction {
     first: f32,
     /// d₂ₘ and d₂ₘ₊₁.
@@ -68,7 +72,8 @@ impl Fraction {
         Self { first: (-(a + b) / (a + 1.0)) as f32, pairs: std::array::from_fn(pair) }
     }
 
-    /// By the recurrence of its convergents' numerators and denominators, so that all is divided once.
+    /// By the recurrence of its convergents' numerators and denominators, so that all is divided
+    /// once.
     #[inline(always)]
     fn at(&self, x: f32) -> f32 {
         let (mut old, mut new) = ([1.0, 1.0], [1.0 + self.first * x, 1.0]);
@@ -85,7 +90,8 @@ impl Fraction {
     }
 }
 
-/// Whole p = N − 1: a polynomial in the sine (the sum of Ribardière et al. 2017, eq. 21, for integer γ).
+/// Whole p = N − 1: a polynomial in the sine (the sum of Ribardière et al. 2017, eq. 21, for
+/// integer γ).
 pub(crate) struct Sum<const N: usize> {
     c: [f32; N],
 }
