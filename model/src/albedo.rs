@@ -12,6 +12,7 @@
 //! quotient, finite at grazing. Everything is smooth inside the disc; what varies quickly are a layer of width σ along the rim, where l grazes,
 //! and near grazing views the turn of R(φ) at right angles to v. Both are stretched by a hyperbolic sine whose scale is known.
 
+mod average;
 mod skewed;
 
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -54,6 +55,12 @@ impl<const N: usize> Albedo<N> {
             Masking::HeightCorrelated => self.height_correlated,
         }
     }
+
+    /// The largest difference between the albedos of two.
+    fn furthest(&self, other: &Self) -> f64 {
+        let pairs = Masking::ALL.into_iter().flat_map(|form| self.of(form).into_iter().zip(other.of(form)));
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
 }
 
 /// Integrates albedos for one shape γ and any roughness, view and Fresnel reflectance.
@@ -62,7 +69,7 @@ pub struct AlbedoIntegrator {
     shape: Shape,
     pub(crate) smith: SmithTable,
     rules: Vec<Gauss>,
-    tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Where the lobe ends for the purpose, in the unit of [`Shape::unit`].
     pub(crate) cut: f64,
 }
@@ -124,6 +131,17 @@ impl AlbedoIntegrator {
         cos_theta: f64,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Result<Albedo<N>, ParameterError> {
+        self.reflection_to(self.tolerance, sigma, cos_theta, weight)
+    }
+
+    /// The same with another error aimed at, no smaller than the one prepared for.
+    fn reflection_to<const N: usize>(
+        &self,
+        tolerance: f64,
+        sigma: f64,
+        cos_theta: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
         if !(0.0..=1.0).contains(&cos_theta) {
             return Err(ParameterError::CosTheta(cos_theta));
         }
@@ -131,7 +149,7 @@ impl AlbedoIntegrator {
             let mirror = weight(cos_theta);
             return Ok(Albedo { uncorrelated: mirror, height_correlated: mirror, error: 0.0 });
         }
-        self.reflection_anisotropic([sigma, sigma], cos_theta, 0.0, weight)
+        Ok(self.converged(tolerance, &self.view([sigma, sigma], cos_theta, 0.0)?, weight))
     }
 
     /// The same for roughness σx, σy > 0 and a view of azimuth φ (radians, from the x axis).
@@ -145,7 +163,7 @@ impl AlbedoIntegrator {
         phi: f64,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Result<Albedo<N>, ParameterError> {
-        Ok(self.converged(&self.view(sigma, cos_theta, phi)?, weight))
+        Ok(self.converged(self.tolerance, &self.view(sigma, cos_theta, phi)?, weight))
     }
 
     /// As [`reflection`](Self::reflection), for reflectances that are singular like a square root at v·m = `kink` ∈ (0, 1): where total
@@ -164,61 +182,31 @@ impl AlbedoIntegrator {
             return self.reflection(sigma, cos_theta, weight);
         }
         let view = View { kink, ..self.view([sigma, sigma], cos_theta, 0.0)? };
-        Ok(self.converged(&view, weight))
+        Ok(self.converged(self.tolerance, &view, weight))
     }
 
     /// The integral of one view at the first order that is accurate enough, or else the last.
-    fn converged<const N: usize>(&self, view: &View, weight: impl Fn(f64) -> [f64; N]) -> Albedo<N> {
-        self.refined(view.kink > 0.0, |rule| self.quadrature(rule, view, &weight))
+    fn converged<const N: usize>(
+        &self,
+        tolerance: f64,
+        view: &View,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Albedo<N> {
+        self.refined(tolerance, view.kink > 0.0, |rule| self.quadrature(rule, view, &weight))
     }
 
     /// The same of any `quadrature`, which may have a kink inside.
     pub(crate) fn refined<const N: usize>(
         &self,
+        tolerance: f64,
         kink: bool,
         quadrature: impl Fn(&Gauss) -> [[f64; N]; 2],
     ) -> Albedo<N> {
         // At a kink orders converge algebraically, and the last difference says less about the rest; else twice it, because two orders may agree.
         let factor = if kink { 10.0 } else { 2.0 };
         let ([uncorrelated, height_correlated], error) =
-            converge(&self.rules, self.tolerance, factor, quadrature);
+            converge(&self.rules, tolerance, factor, quadrature);
         Albedo { uncorrelated, height_correlated, error }
-    }
-
-    /// Cosine-weighted average 2∫₀¹ E(μ) μ dμ of the reflection albedo, for equal roughness σ ≥ 0.
-    ///
-    /// # Errors
-    /// [`ParameterError::Sigma`] unless 0 ≤ σ < ∞.
-    pub fn average<const N: usize>(
-        &self,
-        sigma: f64,
-        weight: impl Fn(f64) -> [f64; N],
-    ) -> Result<Albedo<N>, ParameterError> {
-        let integrate = |rule: &Gauss| -> Result<([[f64; N]; 2], f64), ParameterError> {
-            let (mut sum, mut error) = ([[0.0; N]; 2], Ok(0.0_f64));
-            // In θ: quick at normal incidence, where masking sets in with a cusp, and at grazing within the roughness.
-            let low = End { at: 0.0, scale: 0.02 };
-            let high = End { at: FRAC_PI_2, scale: (0.1 * sigma).clamp(1e-5, 0.1) };
-            rule.graded(low, high, 0.5, |theta, measure| {
-                let (sin, cos) = libm::sincos(theta);
-                match self.reflection(sigma, cos, &weight) {
-                    Ok(albedo) => {
-                        error = error.map(|error| error.max(albedo.error));
-                        let forms = [albedo.uncorrelated, albedo.height_correlated];
-                        for (sum, x) in sum.iter_mut().flatten().zip(forms.iter().flatten()) {
-                            *sum += 2.0 * sin * cos * measure * x;
-                        }
-                    }
-                    Err(why) => error = Err(why),
-                }
-            });
-            Ok((sum, error?))
-        };
-        let (coarse, _) = integrate(&self.rules[1])?;
-        let (fine, error) = integrate(&self.rules[3])?;
-        let change = |(a, b): (&f64, &f64)| (a - b).abs();
-        let change = fine.iter().flatten().zip(coarse.iter().flatten()).map(change).fold(0.0, f64::max);
-        Ok(Albedo { uncorrelated: fine[0], height_correlated: fine[1], error: change + error })
     }
 
     pub(crate) fn view(&self, sigma: [f64; 2], cos: f64, phi: f64) -> Result<View, ParameterError> {

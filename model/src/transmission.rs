@@ -71,7 +71,7 @@ impl AlbedoIntegrator {
             g1: view.g1,
             critical,
         };
-        Ok(self.refined(critical > 0.0, |rule| pane.quadrature(rule)))
+        Ok(self.refined(self.tolerance, critical > 0.0, |rule| pane.quadrature(rule)))
     }
 }
 
