@@ -204,8 +204,7 @@ impl AlbedoIntegrator {
     ) -> Albedo<N> {
         // At a kink orders converge algebraically, and the last difference says less about the rest; else twice it, because two orders may agree.
         let factor = if kink { 10.0 } else { 2.0 };
-        let ([uncorrelated, height_correlated], error) =
-            converge(&self.rules, tolerance, factor, quadrature);
+        let ([uncorrelated, height_correlated], error) = converge(&self.rules, tolerance, factor, quadrature);
         Albedo { uncorrelated, height_correlated, error }
     }
 

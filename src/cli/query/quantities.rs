@@ -1,0 +1,234 @@
+//! What can be asked of a point, from the tables and from the model.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+
+use microfacet_bake::validate::furnace::direction;
+use microfacet_model as model;
+use microfacet_model::fresnel::schlick_weight;
+use microfacet_sampler::{Masking, Moments, StudentT, Tables};
+
+use super::Method;
+
+/// Something that can be asked of a point.
+pub(super) trait Quantity: Sync {
+    fn inputs(&self) -> &'static [&'static str];
+    fn output_stems(&self) -> &'static [&'static str];
+    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String>;
+
+    fn outputs(&self, method: Method) -> Vec<String> {
+        let suffix = match method {
+            Method::Table => "table",
+            Method::Exact => "exact",
+        };
+        self.output_stems().iter().map(|stem| format!("{stem}_{suffix}")).collect()
+    }
+}
+
+/// What is asked: tables, and what the model has prepared for the shapes that were asked for last.
+pub(super) struct Known {
+    set: Tables,
+    integrators: Mutex<HashMap<u64, Arc<model::AlbedoIntegrator>>>,
+}
+
+/// Error aimed at by the exact values.
+const EXACT: f64 = 1e-10;
+/// Shapes that are kept prepared; as many rows as there are of one are then answered twice as fast.
+const SHAPES: usize = 64;
+
+impl Known {
+    pub(super) fn new(set: Tables) -> Self {
+        Self { set, integrators: Mutex::default() }
+    }
+
+    fn integrator(&self, gamma: f64) -> Result<Arc<model::AlbedoIntegrator>, String> {
+        let kept = || self.integrators.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(integrator) = kept().get(&gamma.to_bits()) {
+            return Ok(integrator.clone());
+        }
+        let shape = model::Shape::new(gamma).map_err(|why| why.to_string())?;
+        let integrator = Arc::new(model::AlbedoIntegrator::new(shape, EXACT));
+        let mut kept = kept();
+        if kept.len() == SHAPES {
+            kept.clear();
+        }
+        kept.insert(gamma.to_bits(), integrator.clone());
+        Ok(integrator)
+    }
+}
+
+fn parse(text: &str, name: &str) -> Result<f64, String> {
+    let x: f64 = text.parse().map_err(|_| format!("{name} \"{text}\" is not a number"))?;
+    let (low, high) = match name {
+        "theta" => (0.0, std::f64::consts::FRAC_PI_2 + 1e-6),
+        "u1" | "u2" | "cos_theta" => (0.0, 1.0),
+        "phi" => (f64::MIN, f64::MAX),
+        // σ and γ are judged, with their own messages, by the constructors.
+        _ => return Ok(x),
+    };
+    if (low..=high).contains(&x) { Ok(x) } else { Err(format!("{name} = {x} must lie in [{low}, {high}]")) }
+}
+
+/// The fields of a row as numbers.
+fn numbers(fields: &[&str], names: &[&str]) -> Result<Vec<f64>, String> {
+    fields.iter().zip(names).map(|(text, name)| parse(text, name)).collect()
+}
+
+/// A material and a view, and for normals two random numbers.
+struct Point<'a> {
+    sigma: [f64; 2],
+    gamma: f64,
+    theta: f64,
+    phi: f64,
+    u: [f64; 2],
+    set: &'a Tables,
+}
+
+impl<'a> Point<'a> {
+    fn new(fields: &[&str], names: &[&str], set: &'a Tables) -> Result<Self, String> {
+        let values = numbers(fields, names)?;
+        let &[x, y, gamma, theta, phi, ref rest @ ..] = &values[..] else {
+            unreachable!("five columns were found")
+        };
+        model::StudentT::anisotropic(x, y, gamma).map_err(|why| why.to_string())?;
+        let u = if let &[a, b] = rest { [a, b] } else { [0.5; 2] };
+        Ok(Self { sigma: [x, y], gamma, theta, phi, u, set })
+    }
+
+    fn view(&self) -> DVec3 {
+        let (sin, cos) = self.theta.sin_cos();
+        DVec3::new(sin * self.phi.cos(), sin * self.phi.sin(), cos)
+    }
+
+    fn bound(&self) -> Result<StudentT, String> {
+        self.set.student_t(self.sigma, self.gamma).map_err(|why| why.to_string())
+    }
+
+    fn exact(&self) -> model::StudentT {
+        model::StudentT::anisotropic(self.sigma[0], self.sigma[1], self.gamma).expect("checked in `new`")
+    }
+}
+
+pub(super) struct G1;
+
+impl Quantity for G1 {
+    fn inputs(&self) -> &'static [&'static str] {
+        &["sigma_x", "sigma_y", "gamma", "theta", "phi"]
+    }
+
+    fn output_stems(&self) -> &'static [&'static str] {
+        &["lambda", "g1"]
+    }
+
+    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String> {
+        let at = Point::new(fields, self.inputs(), &known.set)?;
+        let v = at.view();
+        Ok(match method {
+            Method::Table => {
+                let bound = at.bound()?;
+                vec![bound.lambda(v.as_vec3()).to_string(), bound.g1(v.as_vec3()).to_string()]
+            }
+            Method::Exact => vec![at.exact().lambda(v).to_string(), at.exact().g1(v).to_string()],
+        })
+    }
+}
+
+pub(super) struct Normal;
+
+impl Quantity for Normal {
+    fn inputs(&self) -> &'static [&'static str] {
+        &["sigma_x", "sigma_y", "gamma", "theta", "phi", "u1", "u2"]
+    }
+
+    fn output_stems(&self) -> &'static [&'static str] {
+        &["m_x", "m_y", "m_z", "pdf"]
+    }
+
+    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String> {
+        let at = Point::new(fields, self.inputs(), &known.set)?;
+        let v = at.view();
+        Ok(match method {
+            Method::Table => {
+                let bound = at.bound()?;
+                let m = bound.sample_visible_normal(v.as_vec3(), at.u.map(|u| u as f32));
+                [m.x, m.y, m.z, bound.visible_normal_pdf(v.as_vec3(), m)].map(|x| x.to_string()).into()
+            }
+            Method::Exact => {
+                let m = at.exact().visible_normal(v, at.u);
+                [m.x, m.y, m.z, at.exact().visible_normal_pdf(v, m)].map(|x| x.to_string()).into()
+            }
+        })
+    }
+}
+
+/// The form of masking that a field names.
+fn masking(text: &str) -> Result<Masking, String> {
+    text.parse().map_err(|why| format!("masking \"{text}\": {why}"))
+}
+
+pub(super) struct Albedo;
+
+impl Quantity for Albedo {
+    fn inputs(&self) -> &'static [&'static str] {
+        &["sigma", "gamma", "cos_theta", "masking"]
+    }
+
+    fn output_stems(&self) -> &'static [&'static str] {
+        &["E", "schlick_scale", "schlick_bias"]
+    }
+
+    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String> {
+        let values = numbers(&fields[..3], self.inputs())?;
+        let &[sigma, gamma, cos] = &values[..] else { unreachable!("three columns were found") };
+        let masking = masking(fields[3])?;
+        Ok(match method {
+            Method::Table => {
+                let albedo = known.set.albedo(sigma, gamma, masking).map_err(|why| why.to_string())?;
+                let v = direction(cos as f32);
+                let Moments { scale, bias, .. } = albedo.moments(v);
+                [albedo.albedo(v), scale, bias].map(|x| x.to_string()).into()
+            }
+            Method::Exact => {
+                let schlick = |cos| [1.0 - schlick_weight(cos), schlick_weight(cos)];
+                let albedo = known
+                    .integrator(gamma)?
+                    .reflection(sigma, cos, schlick)
+                    .map_err(|why| why.to_string())?;
+                let [scale, bias] = albedo.of(masking);
+                [scale + bias, scale, bias].map(|x| x.to_string()).into()
+            }
+        })
+    }
+}
+
+pub(super) struct AlbedoAverage;
+
+impl Quantity for AlbedoAverage {
+    fn inputs(&self) -> &'static [&'static str] {
+        &["sigma", "gamma", "masking"]
+    }
+
+    fn output_stems(&self) -> &'static [&'static str] {
+        &["E_avg"]
+    }
+
+    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String> {
+        let values = numbers(&fields[..2], self.inputs())?;
+        let &[sigma, gamma] = &values[..] else { unreachable!("two columns were found") };
+        let masking = masking(fields[2])?;
+        Ok(match method {
+            Method::Table => {
+                let average =
+                    known.set.average_moments(sigma, gamma, masking).map_err(|why| why.to_string())?;
+                vec![average.total().to_string()]
+            }
+            Method::Exact => {
+                let albedo =
+                    known.integrator(gamma)?.average(sigma, |_| [1.0]).map_err(|why| why.to_string())?;
+                vec![albedo.of(masking)[0].to_string()]
+            }
+        })
+    }
+}
