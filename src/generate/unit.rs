@@ -127,10 +127,10 @@ impl<'a> Unit<'a> {
         level.between(single) + if precision == Precision::F32 { 0.0 } else { level.between(fixed) }
     }
 
-    /// Whether measuring all precisions at once costs hardly more than one: where the exact values that they are
-    /// compared with are dear.
+    /// Whether all precisions are measured at once: where the exact values that they are compared with are dear, and of
+    /// single shapes, whose rounding differs much from that of the general set.
     pub(super) fn shares_measuring(&self) -> bool {
-        !matches!(self, Self::Normals(..))
+        !matches!(self, Self::Normals(need, _) if !need.gamma().is_point())
     }
 
     /// Specifications of the tables of visible normals; none of other units.

@@ -108,15 +108,16 @@ pub fn distribution_cost(distribution: &Distribution, level: impl Into<Level>, p
 
 /// Seconds that one thread bakes and certifies albedo tables.
 fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
-    // Microseconds a node or a point of the certificate: fitted to `time microfacet-bake bake --threads 1 --no-cache` of the draft and
-    // the default set, of one material and of a range of sigma, which they meet within an eighth. A dielectric is reflected and
-    // transmitted, with a kink; long tails and narrow lobes take up to twice as long, and refinement comes on top.
-    let place = match (&spec.lobe, spec.reflectance) {
-        (_, Reflectance::Dielectric { .. }) => 2250.0,
-        (Lobe::Family(_), _) => 520.0,
-        _ => 5000.0,
-    };
-    1e-6 * place * (spec.nodes() + points::count(spec)) as f64
+    // Microseconds a node or a point of the certificate: fitted to `microfacet-bake bake --threads 1 --no-cache --out out` of the draft, the
+    // default and the high general set, which they meet within a tenth; of single materials, dielectrics and other lobes, within a half.
+    // Long tails and narrow lobes take up to twice as long, and so does refinement.
+    let (nodes, points) = (spec.nodes() as f64, points::count(spec) as f64);
+    1e-6 * match (&spec.lobe, spec.reflectance) {
+        (_, Reflectance::Dielectric { .. }) => 3300.0 * (nodes + points),
+        // Each decade of accuracy takes twice as long, and certificates are a decade finer.
+        (Lobe::Family(_), _) => 895.0 * libm::pow(1e-6 / spec.tolerance, 0.32) * (nodes + 2.1 * points),
+        _ => 10_000.0 * (nodes + points),
+    }
 }
 
 /// Seconds that one thread bakes and certifies a table.

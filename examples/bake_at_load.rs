@@ -1,0 +1,54 @@
+//! What a renderer does that bakes when it loads a scene: materials in, tables in memory, no file in between.
+//!
+//! `cargo run --release --example bake_at_load` bakes what the embedded set does not have, an albedo of brushed gold, joins
+//! it with the embedded set, and samples.
+
+use std::time::Instant;
+
+use glam::Vec3;
+use microfacet_bake::cache::Cache;
+use microfacet_bake::generate::{Settings, Target, bake_with};
+use microfacet_bake::plan::{Options, Plan};
+use microfacet_bake::scene::Scene;
+use microfacet_sampler::Masking;
+
+/// What the renderer knows of its materials, in the words of a recipe; `microfacet_bake::scene::load` reads scenes as well.
+const MATERIALS: &str = r#"
+[[material]]
+name = "brushed gold"
+sigma = [0.1, 0.4]
+gamma = 2.5
+fresnel = "mirror"
+
+[[material]]
+name = "frosted glass"
+sigma = 0.454
+gamma = 3.0
+"#;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let start = Instant::now();
+    let scene = Scene::from_recipe_str(MATERIALS)?;
+    // The sampler crate brings tables of every sigma and gamma along: only what they lack is baked.
+    let options = Options { embedded: true, embedded_albedo: true, ..Options::default() };
+    let plan = Plan::new(&scene, options)?;
+    // Kept in the user's cache folder: the next time it is there at once.
+    let settings = Settings { cache: Cache::user(), ..Settings::default() };
+    let baked = bake_with(&plan, Target::MaxError(1e-3), settings)?;
+    println!(
+        "{} tables, {} of them baked now, in {:.3} s",
+        baked.set.tables().len(),
+        baked.baked,
+        start.elapsed().as_secs_f64()
+    );
+
+    let tables = baked.set.or_embedded();
+    let gold = tables.material("brushed gold")?;
+    let albedo = tables.material_albedo("brushed gold")?;
+    let v = Vec3::new(0.6, 0.0, 0.8);
+    let m = gold.sample_visible_normal(v, [0.3, 0.7]);
+    let l = 2.0 * v.dot(m) * m - v;
+    println!("normal {m}, light {l}, g2 {}", gold.g2(v, l, Masking::HeightCorrelated));
+    println!("of white light this view returns {}", albedo.albedo(v));
+    Ok(())
+}
