@@ -1,8 +1,9 @@
 //! Bakes, certifies and validates tables for Student-t microfacet materials.
 //!
-//! Data flows one way: a scene or recipe says what is needed, [`spec`] what is to be baked, [`bake`] fills
-//! the tables, [`store`] writes them, and `microfacet-sampler` reads them at run time. [`validate`] stands beside it and compares what the sampler draws
-//! with what `microfacet-model` says.
+//! Data flows one way. A [`scene`] or recipe says what its materials are, a [`plan`] what they need, and
+//! [`generate::bake`] makes the certified set: it asks [`spec`] for nodes, [`mod@bake`] for values and
+//! [`validate`] for their errors. [`store`] writes the set, or a renderer keeps it in memory and reads it
+//! with `microfacet-sampler`.
 
 pub mod bake;
 pub mod cache;

@@ -87,6 +87,25 @@ fn query_passes_columns_through_and_agrees_with_the_model() {
 }
 
 #[test]
+fn query_answers_in_order_up_to_a_row_that_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |i: usize| format!("{i},0.{},3,{}", 1 + i % 9, if i == 700 { "1.5" } else { "0.5" });
+    let rows: Vec<String> = (0..800).map(row).collect();
+    let table = format!("id,sigma,gamma,cos_theta,masking\n{},uncorrelated\n", rows.join(",uncorrelated\n"));
+    std::fs::write(folder.path().join("views.csv"), table).unwrap();
+    let query = ["query", "albedo", "--input", "views.csv", "--method", "table"];
+    let output = run(folder.path(), &query);
+    let (text, message) =
+        (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert_eq!(output.status.code(), Some(2));
+    // The header is line 1.
+    assert!(message.contains("line 702") && message.contains("1.5"), "{message}");
+    let ids: Vec<usize> =
+        text.lines().skip(1).map(|line| line.split(',').next().unwrap().parse().unwrap()).collect();
+    assert_eq!(ids, (0..700).collect::<Vec<_>>());
+}
+
+#[test]
 fn validation_rejects_a_wrong_gamma() {
     let folder = tempfile::tempdir().unwrap();
     let one = [

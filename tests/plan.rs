@@ -246,6 +246,36 @@ fn an_error_budget_is_met_by_less() {
 }
 
 #[test]
+fn budgets_of_the_general_set_end() {
+    let plan = normals_of(&Plan::general());
+    let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
+    let met = bake(&plan, Target::MaxError(2e-3), &Cache::none()).unwrap().set;
+    assert!(met.tables().len() == 5 && worst(&met) <= 2e-3, "{}", worst(&met));
+    let filled = bake(&plan, Target::MaxBytes(100_000), &Cache::none()).unwrap().set;
+    assert!(bytes(&filled).len() <= 100_000);
+    // With more bytes than that error takes, there is less error.
+    assert!(bytes(&met).len() < 100_000 && worst(&filled) < worst(&met), "{}", worst(&filled));
+    // Masking that serves to peel is as fine as what it is peeled from.
+    let peeled = |name: &str| filled.tables().iter().find(|table| table.name == name).unwrap();
+    assert!(peeled("shadowing_peeled").certificate["g1_max_error"] < 0.1 * worst(&filled));
+}
+
+#[test]
+fn what_would_take_long_says_so_before_anything_is_baked() {
+    for target in [Target::MaxError(1e-5), Target::MaxBytes(20_000_000)] {
+        let progress = Box::new(|_| panic!("it was begun"));
+        let settings = Settings { progress, ..Settings::default() };
+        let refused = bake_with(&Plan::general(), target, settings).unwrap_err();
+        let BakeError::TooSlow { search, plain } = refused else { panic!("{refused}") };
+        assert!(search > 3.0 * plain && plain > 1.0, "{refused}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let message = refused(folder.path(), &["bake", "--max-error", "1e-5", "--out", "out"]);
+    assert!(message.contains("--patient") && message.contains(" s"), "{message}");
+    assert!(!folder.path().join("out/tables.safetensors").exists());
+}
+
+#[test]
 fn a_byte_budget_is_filled_and_not_exceeded() {
     let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
     let at = |max_bytes| bake(&plan, Target::MaxBytes(max_bytes), &Cache::none());

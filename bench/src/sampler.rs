@@ -1,6 +1,7 @@
 //! The samplers that are compared, each as a function over slices, with what is needed to judge it.
 
 use std::cell::RefCell;
+use std::f32::consts::TAU;
 use std::hint::black_box;
 
 use glam::{DVec3, Vec3};
@@ -113,6 +114,12 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
     let caps: Exactly = ggx::double::caps;
     let mut all = vec![
         Sampler::new(CAPS, 2.0, Check::Formula(caps), each(move |v, u| ggx::single::caps(sigma, v, u))),
+        Sampler::new(
+            "GGX, spherical caps, platform's sine",
+            2.0,
+            Check::Formula(caps),
+            each(move |v, u| ggx::single::caps_at(sigma, v, (TAU * u[0]).sin_cos().into(), u[1])),
+        ),
         Sampler::new(
             "GGX, Heitz 2018",
             2.0,

@@ -5,6 +5,7 @@
 //! A unit bakes its tables, certifies them and keeps them in the cache, through one
 //! door.
 
+mod candidate;
 mod job;
 mod refine;
 mod search;

@@ -13,12 +13,17 @@ macro_rules! in_precision {
             /// not be of unit length: the half vector is made so.
             #[inline(always)]
             pub(crate) fn caps(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
+                caps_at(sigma, v, $turn(u[0]), u[1])
+            }
+
+            /// The same with the sine and the cosine of the azimuth given.
+            #[inline(always)]
+            pub(crate) fn caps_at(sigma: $float, v: Vector, [sin, cos]: [$float; 2], u: $float) -> Vector {
                 let w = Vector::new(sigma * v.x, sigma * v.y, v.z);
                 let square = w.dot(w);
-                let height = (1.0 - u[1]) * (square.sqrt() + w.z);
+                let height = (1.0 - u) * (square.sqrt() + w.z);
                 let z = height - w.z;
                 let radius = (square - z * z).max(0.0).sqrt();
-                let [sin, cos] = $turn(u[0]);
                 let m = Vector::new(sigma * (w.x + radius * cos), sigma * (w.y + radius * sin), height);
                 m * (1.0 / m.dot(m).sqrt())
             }

@@ -1,0 +1,171 @@
+//! One unit in a search: what each of its levels is predicted to be, and what was measured.
+
+use std::collections::BTreeMap;
+
+use microfacet_sampler::{Precision, Table};
+
+use super::BakeError;
+use super::job::Job;
+use super::unit::Unit;
+use crate::memory;
+use crate::spec::Level;
+use crate::validate::certificate::worst_error;
+
+/// 16-bit fixed point is the only small precision to choose: half precision takes the same bytes, and its
+/// error, 3e-4 to 1e-3 of a value, is that of fixed point at best.
+const PRECISIONS: [Precision; 2] = [Precision::U16, Precision::F32];
+/// Fewer bytes than this share are not worth another bake.
+const WORTH: f64 = 0.9;
+/// What a unit may spend on being measured more than once, in units of its bake at default quality.
+const ALLOWANCE: f64 = 2.0;
+/// A level in one of [`PRECISIONS`], by its index.
+pub(super) type Grade = (Level, usize);
+
+/// A grade, what it is predicted or was measured to be, and whether it was.
+#[derive(Clone, Copy)]
+pub(super) struct Pick {
+    pub(super) grade: Grade,
+    /// Bytes of the values before refinement, and seconds to bake it, as estimated.
+    values: f64,
+    seconds: f64,
+    pub(super) error: f64,
+    pub(super) bytes: f64,
+    pub(super) measured: bool,
+}
+
+/// What was measured of a grade.
+struct Measured {
+    tables: Vec<Table>,
+    error: f64,
+    bytes: f64,
+    /// How many times as many values as estimated there are, of an albedo that was refined.
+    growth: f64,
+}
+
+/// A unit and what is known of it.
+pub(super) struct Candidate<'a> {
+    pub(super) unit: Unit<'a>,
+    /// By precision.
+    measured: [BTreeMap<Level, Measured>; 2],
+    /// Bytes of what is no value, about.
+    header: f64,
+    /// Seconds of a bake at default quality, and those that were spent, as estimated.
+    pub(super) plain: f64,
+    spent: f64,
+    /// All grades, the coarsest first.
+    menu: Vec<Pick>,
+}
+
+impl<'a> Candidate<'a> {
+    pub(super) fn new(unit: Unit<'a>) -> Self {
+        let cost = unit.cost(Level::DEFAULT, Precision::F32);
+        let header = cost.bytes.saturating_sub(unit.bytes(Level::DEFAULT, Precision::F32)) as f64;
+        let at = |level: i32| {
+            let (level, seconds) = (Level(level), unit.seconds(Level(level)));
+            [0, 1].map(|precision| Pick {
+                grade: (level, precision),
+                values: unit.bytes(level, PRECISIONS[precision]) as f64,
+                seconds,
+                error: f64::INFINITY,
+                bytes: f64::INFINITY,
+                measured: false,
+            })
+        };
+        let menu = unit.levels().flat_map(at).collect();
+        let mut new =
+            Self { unit, measured: Default::default(), header, plain: cost.seconds, spent: 0.0, menu };
+        new.predict();
+        new
+    }
+
+    /// Errors and bytes of the menu, from what is expected and what was measured.
+    fn predict(&mut self) {
+        let mut menu = std::mem::take(&mut self.menu);
+        for pick in &mut menu {
+            (pick.error, pick.bytes, pick.measured) = self.prediction(pick);
+        }
+        self.menu = menu;
+    }
+
+    fn prediction(&self, &Pick { grade: (level, precision), values, .. }: &Pick) -> (f64, f64, bool) {
+        let measured = &self.measured[precision];
+        if let Some(&Measured { error, bytes, .. }) = measured.get(&level) {
+            return (error, bytes, true);
+        }
+        let expected = |level: Level| self.unit.expected(level, PRECISIONS[precision]);
+        // How much worse, and larger, than expected.
+        let off = |(at, measured): (&Level, &Measured)| [measured.error / expected(*at), measured.growth];
+        let below = measured.range(..level).next_back();
+        let above = measured.range(level..).next();
+        let [worse, growth] = match (below, above) {
+            (None, None) => [1.0; 2],
+            (Some(one), None) | (None, Some(one)) => off(one),
+            (Some(a), Some(b)) => {
+                let t = f64::from(level.0 - a.0.0) / f64::from(b.0.0 - a.0.0);
+                let ([low, _], [high, growth]) = (off(a), off(b));
+                [low * libm::pow(high / low, t), growth]
+            }
+        };
+        (worse * expected(level), growth * values + self.header, false)
+    }
+
+    /// The smallest grade that errs by no more than `max_error`, of those that satisfy a condition.
+    pub(super) fn smallest(&self, max_error: f64, of: impl Fn(&Pick) -> bool) -> Option<Pick> {
+        let meets = self.menu.iter().filter(|pick| pick.error <= max_error && of(pick));
+        meets.min_by(|a, b| a.bytes.total_cmp(&b.bytes)).copied()
+    }
+
+    /// Whether a grade is known, or may be measured beside what was measured already.
+    pub(super) fn is_affordable(&self, pick: &Pick) -> bool {
+        let limit = ALLOWANCE * self.plain.max(self.spent);
+        pick.measured || self.spent == 0.0 || self.spent + pick.seconds <= limit
+    }
+
+    /// Bakes and measures a grade, and others of its level where that costs hardly more.
+    pub(super) fn measure(&mut self, (level, precision): Grade, job: &mut Job) -> Result<(), BakeError> {
+        memory::check(self.unit.values(level), job.max_memory)?;
+        job.steps += self.unit.steps();
+        let all = if self.unit.shares_measuring() { vec![0, 1] } else { vec![precision] };
+        let precisions: Vec<Precision> = all.iter().map(|&i| PRECISIONS[i]).collect();
+        for (i, tables) in all.into_iter().zip(self.unit.bake(level, &precisions, job)?) {
+            let error = tables.iter().map(worst_error).fold(0.0, f64::max);
+            let values = tables.iter().map(Table::stored_bytes).sum::<usize>() as f64;
+            let growth = values / self.unit.bytes(level, PRECISIONS[i]) as f64;
+            self.measured[i].insert(level, Measured { tables, error, bytes: values + self.header, growth });
+        }
+        self.spent += self.unit.seconds(level);
+        self.predict();
+        Ok(())
+    }
+
+    pub(super) fn finest(&self) -> Grade {
+        (Level(*self.unit.levels().end()), PRECISIONS.len() - 1)
+    }
+
+    pub(super) fn tables(&self, (level, precision): Grade) -> &[Table] {
+        &self.measured[precision][&level].tables
+    }
+
+    /// The small grade with an error that was measured to be no larger than `max_error`.
+    pub(super) fn meeting(&mut self, max_error: f64, job: &mut Job) -> Result<Grade, BakeError> {
+        loop {
+            let best = self.smallest(max_error, |pick| pick.measured);
+            let next = self.smallest(max_error, |pick| self.is_affordable(pick));
+            let next = next.or_else(|| self.smallest(max_error, |_| true));
+            let next = match (best, next) {
+                (Some(best), Some(next)) if next.measured || next.bytes > WORTH * best.bytes => {
+                    return Ok(best.grade);
+                }
+                (_, Some(next)) => next.grade,
+                // The finest has the last word.
+                _ => self.finest(),
+            };
+            if self.measured[next.1].contains_key(&next.0) {
+                let measured = self.measured.iter().flat_map(BTreeMap::values);
+                let reached = measured.map(|measured| measured.error).fold(f64::INFINITY, f64::min);
+                return Err(BakeError::OutOfReach { max_error, name: self.unit.name(), reached });
+            }
+            self.measure(next, job)?;
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! A unit's tables: read from the cache, or baked, certified and kept.
+
+use std::time::Instant;
+
+use microfacet_model::classic::Marginal;
+use microfacet_sampler::{LoadError, MaterialEntry, Precision, Provenance, Table, Tables};
+
+use super::super::BakeError;
+use super::super::job::Job;
+use super::super::refine::albedo_tables;
+use super::{Parts, Unit};
+use crate::bake;
+use crate::family::Distribution;
+use crate::plan::Need;
+use crate::spec::{Level, TableSpec, general_set};
+use crate::validate::certificate::{POINTS, measure};
+use crate::validate::radial;
+
+impl Unit<'_> {
+    /// What the tables are kept under; all that decides over their values.
+    fn key(&self, level: Level, precision: Precision) -> String {
+        match self {
+            Self::Normals(need, _) => {
+                let at = |spec: TableSpec| TableSpec { precision, ..spec };
+                let specs: Vec<_> = self.specs(level).into_iter().map(at).collect();
+                format!("{specs:?}, {POINTS} points at s in {:?}", need.certified_s())
+            }
+            // Its values, too: two measured files may have the same name.
+            Self::Distribution(distribution, _) => {
+                format!("{distribution:?}, {}, {level:?}, {precision:?}", distribution.label())
+            }
+            Self::Albedo(need) => format!("{:?}", need.spec(level, precision)),
+        }
+    }
+
+    /// The certified tables of a level, kept or new, in each of some precisions.
+    pub(in crate::generate) fn bake(
+        &self,
+        level: Level,
+        precisions: &[Precision],
+        job: &mut Job,
+    ) -> Result<Vec<Vec<Table>>, BakeError> {
+        let start = Instant::now();
+        let keys: Vec<String> = precisions.iter().map(|&precision| self.key(level, precision)).collect();
+        let kept: Option<Vec<Vec<Table>>> = keys.iter().map(|key| job.get(key)).collect();
+        let sets = match (kept, self) {
+            (Some(sets), _) => {
+                job.advance(self.steps());
+                sets
+            }
+            (None, &Self::Normals(need, parts)) => {
+                self.normals((need, parts), level, precisions, &keys, job)?
+            }
+            (None, Self::Distribution(distribution, entry)) => {
+                let sets = radial_tables(distribution, entry, level, precisions)?;
+                self.finish(&keys, sets, job)
+            }
+            (None, Self::Albedo(need)) => {
+                let sets = albedo_tables(&need.spec(level, Precision::F32)?, precisions)?;
+                self.finish(&keys, sets, job)
+            }
+        };
+        job.seconds[usize::from(matches!(self, Self::Albedo(_)))] += start.elapsed().as_secs_f64();
+        Ok(sets)
+    }
+
+    /// New tables are kept.
+    fn finish(&self, keys: &[String], sets: Vec<Vec<Table>>, job: &mut Job) -> Vec<Vec<Table>> {
+        for (key, tables) in keys.iter().zip(&sets) {
+            job.made(tables);
+            job.keep(key, tables);
+        }
+        job.advance(1);
+        sets
+    }
+
+    /// Tables of visible normals, one by one, so that a bake that is interrupted can go on.
+    fn normals(
+        &self,
+        (need, parts): (&Need, Parts),
+        level: Level,
+        precisions: &[Precision],
+        keys: &[String],
+        job: &mut Job,
+    ) -> Result<Vec<Vec<Table>>, BakeError> {
+        let mut waiting = Vec::new();
+        let mut full = Vec::new();
+        for spec in self.specs(level) {
+            // Kept in full precision, which storing does not change.
+            let key = format!("{spec:?}");
+            let table = job.get(&key).and_then(|mut tables| tables.pop());
+            let table = table.unwrap_or_else(|| {
+                let table = bake::bake(&spec);
+                job.made([&table]);
+                // A slice is baked again as fast as it is read.
+                if !need.gamma().is_point() {
+                    job.keep(&key, std::slice::from_ref(&table));
+                }
+                table
+            });
+            waiting.push(key);
+            full.push(table);
+            job.advance(1);
+        }
+        let draft = general_set(Level::DRAFT, Precision::F32);
+        let beside = parts.beside().iter().filter_map(|&i| need.cut(&draft[i]));
+        let beside: Vec<Table> = beside.map(|spec| bake::bake(&spec)).collect();
+        let certified = |&precision: &Precision| {
+            let rounded = full.iter().map(|table| table.clone().rounded(precision));
+            let all = rounded.chain(beside.iter().cloned()).collect();
+            let set = Tables::from_tables(Provenance::default(), all)?;
+            let measured = set.tables()[..full.len()].iter().map(|table| {
+                let certificate = measure(&set, table, POINTS, need.certified_s())?;
+                Ok(Table { certificate, ..table.clone() })
+            });
+            measured.collect()
+        };
+        let sets = precisions.iter().map(certified).collect::<Result<Vec<Vec<Table>>, BakeError>>()?;
+        for (key, tables) in keys.iter().zip(&sets) {
+            job.keep(key, tables);
+        }
+        waiting.iter().for_each(|key| job.forget(key));
+        job.advance(1);
+        Ok(sets)
+    }
+}
+
+/// The certified tables of one distribution outside the family, in each of some precisions.
+fn radial_tables(
+    distribution: &Distribution,
+    entry: &MaterialEntry,
+    level: Level,
+    precisions: &[Precision],
+) -> Result<Vec<Vec<Table>>, BakeError> {
+    let built = distribution.build().map_err(|why| LoadError::Invalid(why.to_string()))?;
+    let marginal = Marginal::new(&*built);
+    let full = bake::bake_radial(&marginal, &entry.distribution, level, Precision::F32);
+    let certified = |&precision| {
+        let mut tables: Vec<Table> = full.iter().map(|table| table.clone().rounded(precision)).collect();
+        radial::certify(&mut tables, entry, &marginal)?;
+        Ok(tables)
+    };
+    precisions.iter().map(certified).collect()
+}
