@@ -1,7 +1,8 @@
-//! What a renderer does that bakes when it loads a scene: materials in, tables in memory, no file in between.
+//! What a renderer does that bakes when it loads a scene: materials in, tables in memory, no file
+//! in between.
 //!
-//! `cargo run --release --example bake_at_load` bakes what the embedded set does not have, an albedo of brushed gold, joins
-//! it with the embedded set, and samples.
+//! `cargo run --release --example bake_at_load` bakes what the embedded set does not have, an
+//! albedo of brushed gold, joins it with the embedded set, and samples.
 
 use std::time::Instant;
 
@@ -12,7 +13,8 @@ use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
 use microfacet_sampler::Masking;
 
-/// What the renderer knows of its materials, in the words of a recipe; `microfacet_bake::scene::load` reads scenes as well.
+/// What the renderer knows of its materials, in the words of a recipe;
+/// `microfacet_bake::scene::load` reads scenes as well.
 const MATERIALS: &str = r#"
 [[material]]
 name = "brushed gold"

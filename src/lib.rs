@@ -1,9 +1,9 @@
 //! Bakes, certifies and validates tables for Student-t microfacet materials.
 //!
-//! Data flows one way. A [`scene`] or recipe says what its materials are, a [`plan`] what they need, and
-//! [`generate::bake`] makes the certified set: it asks [`spec`] for nodes, [`mod@bake`] for values and
-//! [`validate`] for their errors. [`store`] writes the set, or a renderer keeps it in memory and reads it
-//! with `microfacet-sampler`.
+//! Data flows one way. A [`scene`] or recipe says what its materials are, a [`plan`] what they
+//! need, and [`generate::bake`] makes the certified set: it asks [`spec`] for nodes, [`mod@bake`]
+//! for values and [`validate`] for their errors. [`store`] writes the set, or a renderer keeps it
+//! in memory and reads it with `microfacet-sampler`.
 
 pub mod bake;
 pub mod cache;
@@ -14,6 +14,7 @@ pub mod generate;
 pub mod memory;
 pub mod plan;
 pub mod plot;
+mod quality;
 pub mod scene;
 pub mod spec;
 pub mod store;

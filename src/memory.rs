@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::bake::albedo::AlbedoSpec;
-use crate::spec::TableSpec;
 
 /// Bytes held per value while a set is made: the values while they are gathered, rounded and kept, and the files they are written to.
 /// `docs/reliability.md` has what was measured.
@@ -38,15 +37,7 @@ impl fmt::Display for TooLarge {
 
 impl std::error::Error for TooLarge {}
 
-/// Values of a table; in 128 bits, where no product of three lengths overflows.
-pub fn values(spec: &TableSpec) -> u128 {
-    // Lengths only: `axes` would make room for the nodes.
-    let (views, numbers) = (spec.views.max(1) as u128, spec.numbers.max(1) as u128);
-    let halves = if spec.views > 0 && spec.numbers > 0 { 2 } else { 1 };
-    [views, halves, numbers].into_iter().fold(2 * spec.shapes.nodes.len() as u128, u128::saturating_mul)
-}
-
-/// The same of albedo tables: channels of both forms are held in double precision until all nodes are
+/// Values of albedo tables while they are made: channels of both forms are held in double precision until all nodes are
 /// there, and some are refined.
 pub fn of_albedo(spec: &AlbedoSpec) -> u128 {
     (8 * spec.nodes() as u128) << spec.doublings()
@@ -66,21 +57,21 @@ pub fn check(values: u128, limit: u64) -> Result<(), TooLarge> {
 mod tests {
     use super::*;
     use crate::bake::axes;
-    use crate::spec::{Quality, general_set};
+    use crate::spec::{Quality, TableSpec, general_set};
     use microfacet_sampler::Precision;
 
     #[test]
     fn values_are_counted_as_they_are_baked() {
         for spec in general_set(Quality::Default, Precision::F32) {
             let shape = axes(&spec).iter().map(|axis| axis.len() as u128).product::<u128>();
-            assert_eq!(values(&spec), 2 * shape, "{}", spec.name);
+            assert_eq!(spec.values(), 2 * shape, "{}", spec.name);
         }
     }
 
     #[test]
     fn a_million_million_nodes_are_refused_untouched() {
         let mut specs = general_set(Quality::High, Precision::F32);
-        let all = |specs: &[TableSpec]| specs.iter().map(values).fold(0, u128::saturating_add);
+        let all = |specs: &[TableSpec]| specs.iter().map(TableSpec::values).fold(0, u128::saturating_add);
         assert_eq!(check(all(&specs), 1 << 30), Ok(()));
         (specs[2].views, specs[2].numbers) = (1_000_000, 1_000_000);
         let refused = check(all(&specs), 1 << 30).unwrap_err();

@@ -5,35 +5,22 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
-use microfacet_bake::bake::bake;
-use microfacet_bake::spec::{GAMMA_WHOLE, Quality, ShapeAxis, TableSpec};
-use microfacet_common::shape::s_of_gamma;
+use microfacet_bake::generate::{Target, bake};
+use microfacet_bake::plan::{Options, Plan};
+use microfacet_bake::scene::Scene;
 use microfacet_model as model;
 use microfacet_model::statistics::{chi_square, sidak};
-use microfacet_sampler::{BindError, Kind, Masking, Precision, Provenance, Skew, Tables};
+use microfacet_sampler::{BindError, Masking, Skew, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
 /// A set with the single shape γ.
 fn tables(gamma: f64) -> Tables {
-    let r = Quality::Default.resolution();
-    let spec = |kind: Kind, views, numbers| TableSpec {
-        name: kind.name().into(),
-        kind,
-        shapes: ShapeAxis::points([s_of_gamma(gamma)]),
-        covers: [s_of_gamma(gamma); 2],
-        views,
-        numbers,
-        precision: Precision::F32,
-    };
-    let slope = if gamma < GAMMA_WHOLE { Kind::VisibleSlopePeeled } else { Kind::VisibleSlope };
-    let specs = [
-        spec(Kind::Shadowing, r.shadowing_views, 0),
-        spec(slope, r.views, r.numbers),
-        spec(Kind::VisibleSlopeConditional, 0, r.across_numbers),
-    ];
-    Tables::from_tables(Provenance::default(), specs.iter().map(bake).collect()).unwrap()
+    let recipe = format!("[[material]]\nname = \"it\"\nsigma = 0.3\ngamma = {gamma:?}\n");
+    let scene = Scene::from_recipe_str(&recipe).unwrap();
+    let plan = Plan::new(&scene, Options { tabulate_ggx: true, ..Options::default() }).unwrap();
+    bake(&plan, Target::default()).unwrap().set
 }
 
 /// A moderately tilted ellipsoid in both forms.

@@ -1,11 +1,12 @@
 //! Tables of several sizes and precisions, for one shape.
 
-use microfacet_bake::bake;
-use microfacet_bake::spec::{Quality, ShapeAxis, TableSpec, general_set};
-use microfacet_common::shape::s_of_gamma;
-use microfacet_sampler::{Precision, Provenance, Tables};
+use microfacet_bake::generate::{Target, bake};
+use microfacet_bake::plan::{Options, Plan};
+use microfacet_bake::scene::Scene;
+use microfacet_bake::spec::Quality;
+use microfacet_sampler::{Precision, Tables};
 
-use crate::settings::GAMMA;
+use crate::settings::{GAMMA, SIGMA};
 
 /// Slices at [`GAMMA`], and the compiled-in set for all shapes.
 pub(crate) struct Slices {
@@ -50,13 +51,12 @@ impl Slices {
     }
 }
 
-/// What lookups of one shape read, baked at that shape alone.
+/// The set of one material, as any scene that has it gets it.
 fn slice(quality: Quality, precision: Precision, gamma: f64) -> Tables {
-    let s = s_of_gamma(gamma);
-    let covers = |spec: &TableSpec| spec.shapes.nodes[0] <= s && spec.shapes.nodes.last() >= Some(&s);
-    let at = |spec: TableSpec| bake::bake(&TableSpec { shapes: ShapeAxis::points([s]), ..spec });
-    let tables = general_set(quality, precision).into_iter().filter(covers).map(at).collect();
-    Tables::from_tables(Provenance::default(), tables).expect("a bake makes sound tables")
+    let recipe = format!("[[material]]\nname = \"it\"\nsigma = {SIGMA}\ngamma = {gamma}\n");
+    let scene = Scene::from_recipe_str(&recipe).expect("a sound recipe");
+    let plan = Plan::new(&scene, Options::default()).expect("gamma is covered");
+    bake(&plan, Target::Quality(quality, precision)).expect("a quality is always met").set
 }
 
 /// The name of the row that figures are about.

@@ -11,8 +11,8 @@ use crate::memory;
 use crate::spec::Level;
 use crate::validate::certificate::worst_error;
 
-/// 16-bit fixed point is the only small precision to choose: half precision takes the same bytes, and its
-/// error, 3e-4 to 1e-3 of a value, is that of fixed point at best.
+/// 16-bit fixed point is the only small precision to choose: half precision takes the same bytes,
+/// and its error, 3e-4 to 1e-3 of a value, is that of fixed point at best.
 const PRECISIONS: [Precision; 2] = [Precision::U16, Precision::F32];
 /// Fewer bytes than this share are not worth another bake.
 const WORTH: f64 = 0.9;

@@ -1,9 +1,8 @@
 //! The whole bake, one way through: a plan and a target in, a certified set out.
 //!
 //! [`bake_with`] cuts the plan into units, the tables that are refined together; for a
-//! [quality](Target::Quality) each is baked at it, for the other targets `search` chooses their levels.
-//! A unit bakes its tables, certifies them and keeps them in the cache, through one
-//! door.
+//! [quality](Target::Quality) each is baked at it, for the other targets `search` chooses their
+//! levels. A unit bakes its tables, certifies them and keeps them in the cache, through one door.
 
 mod candidate;
 mod job;
@@ -31,7 +30,8 @@ use unit::Unit;
 pub enum Target {
     /// A quality's numbers of nodes.
     Quality(Quality, Precision),
-    /// Small tables with no larger error: of G1, absolute, of the CDF of slopes, of D/D(0) and of albedos.
+    /// Small tables with no larger error: of G1, absolute, of the CDF of slopes, of D/D(0) and of
+    /// albedos.
     MaxError(f64),
     /// Accurate tables whose safetensors file has no more bytes.
     MaxBytes(usize),
@@ -49,8 +49,8 @@ pub struct Settings<'a> {
     pub cache: Cache,
     /// Bytes of memory that it may take; more is refused before any is taken. By default 4 GiB.
     pub max_memory: u64,
-    /// Whether to choose tables even where that takes more than thrice as long as the plain bake, and more
-    /// than [`PATIENCE`] seconds. By default not.
+    /// Whether to choose tables even where that takes more than thrice as long as the plain bake,
+    /// and more than [`PATIENCE`] seconds. By default not.
     pub patient: bool,
     /// Called after each step.
     pub progress: Box<dyn FnMut(Progress) + 'a>,
@@ -200,9 +200,9 @@ pub fn bake(plan: &Plan, target: Target) -> Result<Baked, BakeError> {
 
 /// The same with a cache, limits, and a report of the progress.
 ///
-/// What is finished goes into the cache, and so does each table of a range of shapes, until all of the range
-/// are: a bake that was interrupted goes on where it was. Every set comes out in the same bytes, whatever
-/// was kept and however many threads there are.
+/// What is finished goes into the cache, and so does each table of a range of shapes, until all of
+/// the range are: a bake that was interrupted goes on where it was. Every set comes out in the same
+/// bytes, whatever was kept and however many threads there are.
 ///
 /// # Errors
 /// [`BakeError`] for a target that cannot be met within the settings.

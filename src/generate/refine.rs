@@ -8,8 +8,8 @@ use crate::validate::albedo;
 use crate::validate::certificate::worst_error;
 
 /// Where views are all there is to refine, twice as many are kept if they err by no more than this
-/// share of what half as many do: else the error stands elsewhere, such as on an axis of the material.
-/// Six-point polynomials on a smooth curve would come to a sixtieth; of indices near 1
+/// share of what half as many do: else the error stands elsewhere, such as on an axis of the
+/// material. Six-point polynomials on a smooth curve would come to a sixtieth; of indices near 1
 /// (`docs/albedo.md`) 5.94e-3 became 5.89e-3.
 const WORTH: f64 = 0.8;
 
@@ -19,7 +19,8 @@ pub(super) fn albedo_tables(
     precisions: &[Precision],
 ) -> Result<Vec<Vec<Table>>, BakeError> {
     let interior = albedo::interior_references(spec)?;
-    // Single precision decides, which hardly rounds; it is certified once where it is asked for, too.
+    // Single precision decides, which hardly rounds; it is certified once where it is asked for,
+    // too.
     let mut all = vec![Precision::F32];
     all.extend(precisions.iter().filter(|precision| **precision != Precision::F32));
     let asked = |sets: Vec<Vec<Table>>| {

@@ -1,8 +1,8 @@
 //! Levels and precisions for a budget of error or of bytes: predicted by a formula, then measured.
 //!
-//! Errors fall with the level as those of the general set do; that is the formula. A unit is baked where it
-//! says that the budget is met, and what its certificate measures corrects the formula, until what is
-//! chosen has been measured. So nothing is baked to learn what a neighbour tells.
+//! Errors fall with the level as those of the general set do; that is the formula. A unit is baked
+//! where it says that the budget is met, and what its certificate measures corrects the formula,
+//! until what is chosen has been measured. So nothing is baked to learn what a neighbour tells.
 
 use microfacet_sampler::{Provenance, Table, encode};
 
@@ -88,8 +88,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The grades with the least common error that fit into `room` bytes, if any do, of those that satisfy a
-    /// condition. What units leave that have no better grade goes to the others.
+    /// The grades with the least common error that fit into `room` bytes, if any do, of those that
+    /// satisfy a condition. What units leave that have no better grade goes to the others.
     fn fitting(&self, room: f64, of: impl Fn(&Candidate, &Pick) -> bool) -> Option<Vec<Pick>> {
         let bytes = |picks: &[Pick]| picks.iter().map(|pick| pick.bytes).sum::<f64>();
         let mut picks = self.coarsest(&of).filter(|picks| bytes(picks) <= room)?;

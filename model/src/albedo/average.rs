@@ -16,9 +16,9 @@ const RARE: f64 = 0.02;
 impl AlbedoIntegrator {
     /// Cosine-weighted average 2∫₀¹ E(μ) μ dμ of the reflection albedo, for equal roughness σ ≥ 0.
     ///
-    /// By the tanh-sinh rule over θ (Takahasi and Mori 1974, doi:10.2977/prims/1195192451), whose nodes crowd at both ends: E has a
-    /// cusp at normal incidence and varies within the roughness at grazing. Steps are halved until three of them say that the
-    /// error aimed at is reached.
+    /// By the tanh-sinh rule over θ (Takahasi and Mori 1974, doi:10.2977/prims/1195192451), whose
+    /// nodes crowd at both ends: E has a cusp at normal incidence and varies within the roughness
+    /// at grazing. Steps are halved until three of them say that the error aimed at is reached.
     ///
     /// # Errors
     /// [`ParameterError::Sigma`] unless 0 ≤ σ < ∞.

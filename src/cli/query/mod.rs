@@ -26,9 +26,11 @@ pub(super) struct Args {
 enum What {
     /// Smith's lambda and G1 of a view. Columns: sigma_x, sigma_y, gamma, theta, phi.
     G1(Io),
-    /// The visible normal at random numbers u1, u2, and its density. Columns: those of g1, and u1, u2.
+    /// The visible normal at random numbers u1, u2, and its density. Columns: those of g1, and u1,
+    /// u2.
     Normal(Io),
-    /// Directional albedo with F = 1 and its Schlick parts. Columns: sigma, gamma, cos_theta, masking.
+    /// Directional albedo with F = 1 and its Schlick parts. Columns: sigma, gamma, cos_theta,
+    /// masking.
     Albedo(Io),
     /// Cosine-weighted average of the albedo. Columns: sigma, gamma, masking.
     AlbedoAverage(Io),

@@ -1,4 +1,5 @@
-//! The tables that are refined together: the unit in which they are chosen, baked, measured and kept.
+//! The tables that are refined together: the unit in which they are chosen, baked, measured and
+//! kept.
 
 mod bake;
 
@@ -33,7 +34,8 @@ pub(super) enum Parts {
 }
 
 impl Parts {
-    /// Those that can be refined apart from each other: what each is measured by does not depend on the others.
+    /// Those that can be refined apart from each other: what each is measured by does not depend on
+    /// the others.
     const APART: [Self; 4] = [Self::Shadowing, Self::Peeled, Self::Slope, Self::Across];
 
     /// Indices into the general set.
@@ -47,8 +49,8 @@ impl Parts {
         }
     }
 
-    /// Those that a material needs beside them to be bound; no others, or the seam between two tables would be
-    /// measured on the other one.
+    /// Those that a material needs beside them to be bound; no others, or the seam between two
+    /// tables would be measured on the other one.
     fn beside(self) -> &'static [usize] {
         match self {
             Self::All => &[],
@@ -99,8 +101,8 @@ impl<'a> Unit<'a> {
         }
     }
 
-    /// Levels that there are to choose from: as coarse as is worth storing at all, and as fine as single
-    /// precision resolves, or as time allows.
+    /// Levels that there are to choose from: as coarse as is worth storing at all, and as fine as
+    /// single precision resolves, or as time allows.
     pub(super) fn levels(&self) -> std::ops::RangeInclusive<i32> {
         match self {
             Self::Normals(..) => -5 * Level::STEP..=3 * Level::STEP,
@@ -108,8 +110,9 @@ impl<'a> Unit<'a> {
         }
     }
 
-    /// The error to expect, before anything is measured: of the general set in the three qualities, as
-    /// `microfacet-bake bake --out out --quality Q --precision P` prints it, and what fixed point adds.
+    /// The error to expect, before anything is measured: of the general set in the three qualities,
+    /// as `microfacet-bake bake --out out --quality Q --precision P` prints it, and what fixed
+    /// point adds.
     pub(super) fn expected(&self, level: Level, precision: Precision) -> f64 {
         let [single, fixed] = match self {
             Self::Normals(_, Parts::Shadowing) => [[7.5e-6, 4.0e-6, 1.4e-6], [2.5e-6; 3]],
@@ -121,8 +124,9 @@ impl<'a> Unit<'a> {
         level.between(single) + if precision == Precision::F32 { 0.0 } else { level.between(fixed) }
     }
 
-    /// Whether all precisions are measured at once: where the exact values that they are compared with are dear, and of
-    /// single shapes, whose rounding differs much from that of the general set.
+    /// Whether all precisions are measured at once: where the exact values that they are compared
+    /// with are dear, and of single shapes, whose rounding differs much from that of the general
+    /// set.
     pub(super) fn shares_measuring(&self) -> bool {
         !matches!(self, Self::Normals(need, _) if !need.gamma().is_point())
     }
@@ -172,7 +176,7 @@ impl<'a> Unit<'a> {
     /// Values that are held in memory while it is baked.
     pub(super) fn values(&self, level: Level) -> u128 {
         match self {
-            Self::Normals(..) => self.specs(level).iter().map(memory::values).sum(),
+            Self::Normals(..) => self.specs(level).iter().map(TableSpec::values).sum(),
             Self::Distribution(..) => (radial_bytes(level, Precision::F32) / 4) as u128,
             Self::Albedo(need) => need.spec(level, Precision::F32).map_or(0, |spec| memory::of_albedo(&spec)),
         }

@@ -12,12 +12,12 @@ pub enum Quality {
     High,
 }
 
-/// A place on the scale of qualities, in sixteenths of the step from one to the next: [`Quality::Draft`]
-/// is level 0, [`Quality::Default`] 16 and [`Quality::High`] 32.
+/// A place on the scale of qualities, in sixteenths of the step from one to the next:
+/// [`Quality::Draft`] is level 0, [`Quality::Default`] 16 and [`Quality::High`] 32.
 ///
-/// The numbers of nodes that belong to the qualities were found by measuring; those of a level between two
-/// of them are geometric means, and beyond them they go on by the same ratio. So the axes of a table stay in
-/// balance, and one number says how fine it is.
+/// The numbers of nodes that belong to the qualities were found by measuring; those of a level
+/// between two of them are geometric means, and beyond them they go on by the same ratio. So the
+/// axes of a table stay in balance, and one number says how fine it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Level(pub i32);
 
@@ -29,7 +29,8 @@ impl Level {
     /// The level of [`Quality::Default`].
     pub const DEFAULT: Self = Self(Self::STEP);
 
-    /// Nodes at this level of an axis that has `counts` in the three qualities, and no fewer than `least`.
+    /// Nodes at this level of an axis that has `counts` in the three qualities, and no fewer than
+    /// `least`.
     pub fn nodes(self, counts: [usize; 3], least: usize) -> usize {
         let count = self.between(counts.map(|count| count as f64)).round();
         (count as usize).max(least)

@@ -1,13 +1,11 @@
 //! What is to be baked: one specification a table, pure data.
 
-mod quality;
-
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::axis::lagrange::nodes_read;
 use microfacet_sampler::axis::{InverseShape, even_nodes};
 use microfacet_sampler::{Interpolation, Kind, Precision};
 
-pub use quality::{Level, Quality, Resolution};
+pub use crate::quality::{Level, Quality, Resolution};
 
 /// γ of the smallest shape that tables cover; below it almost every visible normal lies beyond any floating-point slope.
 pub const GAMMA_MIN: f64 = 1.501;
@@ -76,20 +74,27 @@ pub struct TableSpec {
 }
 
 impl TableSpec {
-    /// How many pairs of value and slope the table holds.
-    pub fn nodes(&self) -> usize {
+    /// How many pairs of value and slope the table holds; in 128 bits, where no product of three lengths overflows.
+    pub fn nodes(&self) -> u128 {
+        let (views, numbers) = (self.views as u128, self.numbers as u128);
         let per_shape = match self.kind {
-            Kind::Shadowing => self.views,
-            Kind::VisibleSlopeConditional => self.numbers,
+            Kind::Shadowing => views,
+            Kind::VisibleSlopeConditional => numbers,
             // Both halves of u₁.
-            _ => self.views * 2 * self.numbers,
+            _ => views.saturating_mul(2 * numbers),
         };
-        self.shapes.nodes.len() * per_shape
+        per_shape.saturating_mul(self.shapes.nodes.len() as u128)
+    }
+
+    /// How many values it holds.
+    pub fn values(&self) -> u128 {
+        self.nodes().saturating_mul(Kind::VALUE_AND_SLOPE.len() as u128)
     }
 
     /// Bytes of its values as they are stored.
     pub fn bytes(&self) -> usize {
-        Kind::VALUE_AND_SLOPE.len() * self.precision.bytes() * self.nodes()
+        let bytes = self.values().saturating_mul(self.precision.bytes() as u128);
+        bytes.try_into().unwrap_or(usize::MAX)
     }
 }
 
