@@ -57,7 +57,7 @@ impl Level {
         }
     }
 
-    /// Numbers of nodes of the tables of the family.
+    /// Numbers of nodes of the tables of the family, those of the qualities each found by measuring.
     pub fn resolution(self) -> Resolution {
         Resolution {
             shapes: self.nodes([9, 21, 33], 5),
@@ -99,13 +99,6 @@ pub struct Resolution {
     pub across_numbers: usize,
 }
 
-impl Quality {
-    /// The numbers of nodes, each found by measuring (`examples/table_design.rs`).
-    pub fn resolution(self) -> Resolution {
-        Level::from(self).resolution()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -113,7 +106,7 @@ mod tests {
     #[test]
     fn levels_meet_the_qualities_and_rise_between_and_beyond() {
         for (quality, views) in [(Quality::Draft, 25), (Quality::Default, 81), (Quality::High, 321)] {
-            assert_eq!(quality.resolution().views, views);
+            assert_eq!(Level::from(quality).resolution().views, views);
             assert_eq!(Level::from(quality).quality(), quality);
         }
         let views: Vec<usize> = (-64..64).map(|level| Level(level).resolution().views).collect();

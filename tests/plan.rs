@@ -243,6 +243,10 @@ fn an_error_budget_is_met_by_less() {
     }
     let error = bake(&plan, Target::MaxError(1e-12), &Cache::none()).unwrap_err().to_string();
     assert!(error.contains("1e-12") && error.contains("reaches"), "{error}");
+    for nonsense in [0.0, -1e-4, f64::NAN] {
+        let error = bake(&plan, Target::MaxError(nonsense), &Cache::none()).unwrap_err().to_string();
+        assert!(error.contains("above 0"), "{error}");
+    }
 }
 
 #[test]

@@ -1,6 +1,5 @@
 //! A set of tables, and what can be asked of it.
 
-use alloc::collections::BTreeMap;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
@@ -71,14 +70,6 @@ impl Tables {
     /// The first table of a kind.
     pub fn table(&self, kind: Kind) -> Option<&Table> {
         self.tables.iter().find(|table| table.kind == kind)
-    }
-
-    /// Replaces the certificate of the table at `index`; for a bake that has just measured it.
-    ///
-    /// # Panics
-    /// If there is no such table.
-    pub fn set_certificate(&mut self, index: usize, certificate: BTreeMap<String, f64>) {
-        self.tables[index].certificate = certificate;
     }
 
     /// Where the set comes from.

@@ -94,6 +94,8 @@ pub enum BakeError {
     Set(LoadError),
     /// Baking would take too much memory.
     Memory(TooLarge),
+    /// [`Target::MaxError`] is not above 0.
+    NoError(f64),
     /// [`Target::MaxError`] is too small for some tables.
     OutOfReach {
         /// What was asked for.
@@ -157,6 +159,9 @@ impl fmt::Display for BakeError {
             Self::Set(why) => why.fmt(f),
             Self::Memory(why) => why.fmt(f),
             Self::Albedo(why) => why.fmt(f),
+            Self::NoError(max_error) => {
+                write!(f, "an error of {max_error} cannot be asked for: it must be above 0, such as 1e-4")
+            }
             Self::OutOfReach { max_error, name, reached } => write!(
                 f,
                 "no resolution meets an error of {max_error:e}: {name} reaches {reached:.1e} at best; \
@@ -216,6 +221,10 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
             job.steps = units.iter().map(Unit::steps).sum();
             let each = units.iter().map(|unit| unit.bake(quality.into(), &[precision], &mut job));
             each.collect::<Result<Vec<_>, _>>()?.concat().concat()
+        }
+        // Nothing would meet it, not even what takes minutes to find that out.
+        Target::MaxError(max_error) if !(max_error > 0.0) => {
+            return Err(BakeError::NoError(max_error));
         }
         Target::MaxError(max_error) => Search::new(plan)?.meeting(max_error, &mut job)?,
         Target::MaxBytes(max_bytes) => Search::new(plan)?.within(max_bytes, &provenance, &mut job)?,

@@ -211,8 +211,9 @@ fn climb(start: Seen, cells: Place, error: &impl Fn(Place) -> f64) -> (Seen, usi
     (top, points)
 }
 
-/// Adds to each table the errors measured on it, at about `points` places for each of a few γ
-/// between every two nodes.
+/// The errors of one table of visible normals or masking in a set that has all a material needs,
+/// measured at about [`POINTS`] places for each of a few γ between every two nodes, and rounded up to
+/// three digits.
 ///
 /// `s` limits the shapes to those that were asked for: a sub-range has nodes beyond its ends, for
 /// the interpolation only, and what lies between those is less accurate. The table's description says
@@ -220,28 +221,13 @@ fn climb(start: Seen, cells: Place, error: &impl Fn(Place) -> f64) -> (Seen, usi
 ///
 /// # Errors
 /// [`BindError`] if the tables are not a complete set.
-pub fn certify(tables: &mut Tables, points: usize, s: [f64; 2]) -> Result<(), BindError> {
-    let measured: Vec<BTreeMap<String, f64>> =
-        tables.tables().iter().map(|table| measure(tables, table, points, s)).collect::<Result<_, _>>()?;
-    for (i, certificate) in measured.into_iter().enumerate() {
-        tables.set_certificate(i, certificate);
-    }
-    Ok(())
-}
-
-/// Figures of one table, rounded up to three digits.
 pub(crate) fn measure(
     tables: &Tables,
     table: &Table,
-    points: usize,
     s: [f64; 2],
 ) -> Result<BTreeMap<String, f64>, BindError> {
-    if table.kind.is_albedo() {
-        // Measured over their own domain, by `super::albedo::certify`.
-        return Ok(table.certificate.clone());
-    }
     let ruler = Ruler::new(tables, table, s);
-    let found = ruler.measured(points)?;
+    let found = ruler.measured(POINTS)?;
     let quantity = match table.kind {
         Kind::Shadowing => "g1",
         _ => "cdf",

@@ -110,7 +110,7 @@ impl Unit<'_> {
             let all = rounded.chain(beside.iter().cloned()).collect();
             let set = Tables::from_tables(Provenance::default(), all)?;
             let measured = set.tables()[..full.len()].iter().map(|table| {
-                let certificate = measure(&set, table, POINTS, need.certified_s())?;
+                let certificate = measure(&set, table, need.certified_s())?;
                 Ok(Table { certificate, ..table.clone() })
             });
             measured.collect()
