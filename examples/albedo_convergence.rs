@@ -11,12 +11,20 @@ use microfacet_sampler::{Masking, Tables};
 use rand::{RngExt, SeedableRng};
 
 /// σ, γ and cos θ_v.
-const VIEWS: [(f64, f64, f64); 6] =
-    [(0.1, 2.0, 0.8), (0.5, 2.0, 0.4), (1.0, 3.0, 0.2), (0.3, 1.7, 0.6), (0.7, 40.0, 0.1), (2.0, 2.5, 0.9)];
+const VIEWS: [(f64, f64, f64); 6] = [
+    (0.1, 2.0, 0.8),
+    (0.5, 2.0, 0.4),
+    (1.0, 3.0, 0.2),
+    (0.3, 1.7, 0.6),
+    (0.7, 40.0, 0.1),
+    (2.0, 2.5, 0.9),
+];
 
 fn main() {
     let truth: Vec<f64> = VIEWS.iter().map(|&view| quadrature(view, 1e-13)).collect();
-    println!("| method | nodes or samples | RMS error | time of one albedo, ms |\n| --- | --- | --- | --- |");
+    println!(
+        "| method | nodes or samples | RMS error | time of one albedo, ms |\n| --- | --- | --- | --- |"
+    );
     for tolerance in [1e-3, 1e-5, 1e-6, 1e-7, 1e-9, 1e-11] {
         let (error, time) = run(&truth, |view| quadrature(view, tolerance));
         println!("| quadrature | tolerance {tolerance:.0e} | {error:.1e} | {time:.3} |");

@@ -80,12 +80,14 @@ fn main() {
     print!("| coordinate | nodes |");
     PARTS.iter().for_each(|part| print!(" {} |", part.0));
     println!("\n| --- | --- |{}", " --- |".repeat(PARTS.len()));
-    let materials: Vec<Material> = [1.501, 1.505, 1.52, 1.56, 1.65, 2.0, 3.0, 8.0, 50.0, f64::INFINITY]
-        .into_iter()
-        .flat_map(|gamma| {
-            [1e-6, 1e-4, 0.003, 0.01, 0.02, 0.05, 0.3, 1.0, 3.0].map(|sigma| Material { sigma, gamma })
-        })
-        .collect();
+    let materials: Vec<Material> =
+        [1.501, 1.505, 1.52, 1.56, 1.65, 2.0, 3.0, 8.0, 50.0, f64::INFINITY]
+            .into_iter()
+            .flat_map(|gamma| {
+                [1e-6, 1e-4, 0.003, 0.01, 0.02, 0.05, 0.3, 1.0, 3.0]
+                    .map(|sigma| Material { sigma, gamma })
+            })
+            .collect();
     for design in &DESIGNS {
         let worst = materials
             .par_iter()

@@ -21,8 +21,10 @@ fn inputs() -> Vec<(Vec3, [f32; 2])> {
     let step = |i: usize, a: f64| (0.5 + a * i as f64).fract();
     (0..4096)
         .map(|i| {
-            let (z, phi) =
-                (0.05 + 0.95 * step(i, 0.8566748838545), std::f64::consts::TAU * step(i, 0.733891856627));
+            let (z, phi) = (
+                0.05 + 0.95 * step(i, 0.8566748838545),
+                std::f64::consts::TAU * step(i, 0.733891856627),
+            );
             let r = (1.0 - z * z).sqrt();
             let v = DVec3::new(r * phi.cos(), r * phi.sin(), z).as_vec3();
             (v, [step(i, 0.628706721216) as f32, step(i, 0.538597257213) as f32])
@@ -51,8 +53,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sigma = [0.2, 0.5];
     for theta in [[0.0, 0.0, 0.3], [0.02, 0.01, 0.3], [0.1, 0.05, 0.3]] {
         let exact = model::Ellipsoid::new(sigma[0], sigma[1], theta, 2.0)?;
-        let below = inputs.iter().filter(|(v, _)| (exact.unit_matrix() * v.as_dvec3()).z < 0.0).count();
-        println!("turned by {theta:?}: {:.1}% of the views below the lobe's horizon", below as f64 / 40.96);
+        let below =
+            inputs.iter().filter(|(v, _)| (exact.unit_matrix() * v.as_dvec3()).z < 0.0).count();
+        println!(
+            "turned by {theta:?}: {:.1}% of the views below the lobe's horizon",
+            below as f64 / 40.96
+        );
         compare(&tables, &inputs, sigma, theta)?;
         let lune = exact.lune().expect("gamma is 2");
         let draw = |v: Vec3, u: [f32; 2]| lune.sample_lune(v.as_dvec3(), u.map(f64::from)).z as f32;
@@ -64,7 +70,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 type Inputs = [(Vec3, [f32; 2])];
 
-fn compare(tables: &Tables, inputs: &Inputs, sigma: [f64; 2], theta: [f64; 3]) -> Result<(), Box<dyn Error>> {
+fn compare(
+    tables: &Tables,
+    inputs: &Inputs,
+    sigma: [f64; 2],
+    theta: [f64; 3],
+) -> Result<(), Box<dyn Error>> {
     println!("gamma     plain  ellipsoid  ratio   with density: plain  ellipsoid  ratio");
     for gamma in [1.6, 2.0, 4.0, f64::INFINITY] {
         let plain = tables.student_t(sigma, gamma)?;
@@ -75,7 +86,11 @@ fn compare(tables: &Tables, inputs: &Inputs, sigma: [f64; 2], theta: [f64; 3]) -
         );
         let [c, d] = least(
             || round(inputs, |v, u| plain.visible_normal_pdf(v, plain.sample_visible_normal(v, u))),
-            || round(inputs, |v, u| skewed.visible_normal_pdf(v, skewed.sample_visible_normal(v, u))),
+            || {
+                round(inputs, |v, u| {
+                    skewed.visible_normal_pdf(v, skewed.sample_visible_normal(v, u))
+                })
+            },
         );
         println!("{gamma:<8} {a:>6.1} {b:>10.1} {:>6.2} {c:>21.1} {d:>10.1} {:>6.2}", b / a, d / c);
     }

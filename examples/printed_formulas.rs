@@ -29,7 +29,10 @@ fn main() {
     for (name, form) in FORMS {
         for gamma in GAMMAS {
             if form(gamma, 1.0).is_some() {
-                println!("| {name} | {gamma} | {} |", row(gamma, |z| form(gamma, z).unwrap_or(f64::NAN)));
+                println!(
+                    "| {name} | {gamma} | {} |",
+                    row(gamma, |z| form(gamma, z).unwrap_or(f64::NAN))
+                );
             }
         }
     }
@@ -38,7 +41,8 @@ fn main() {
 /// The cells of one form at one γ.
 fn row(gamma: f64, form: impl Fn(f64) -> f64) -> String {
     let shape = Shape::new(gamma).expect("above 3/2");
-    let (mut error, mut at, mut high, mut low, mut lost) = (0.0, 0.0, f64::NEG_INFINITY, f64::INFINITY, None);
+    let (mut error, mut at, mut high, mut low, mut lost) =
+        (0.0, 0.0, f64::NEG_INFINITY, f64::INFINITY, None);
     for z in cotangents() {
         let (printed, truth) = (form(z), shape.lambda(shape.unit(z)));
         let (g1, true_g1) = (1.0 / (1.0 + printed), 1.0 / (1.0 + truth));

@@ -119,7 +119,8 @@ fn reflect(v: Vec3, m: Vec3) -> Vec3 {
 /// The i-th point of the four-dimensional additive recurrence, shifted by a hash of `seed`.
 fn sequence(i: usize, seed: u32) -> [f32; 4] {
     // Powers of 1/x for x⁵ = x + 1.
-    const STEPS: [f64; 4] = [0.856674883854503, 0.733891856627126, 0.628706721215577, 0.538597257213057];
+    const STEPS: [f64; 4] =
+        [0.856674883854503, 0.733891856627126, 0.628706721215577, 0.538597257213057];
     let mut hash = seed;
     STEPS.map(|step| {
         hash = (hash ^ (hash >> 16)).wrapping_add(0x9e37_79b9).wrapping_mul(0x85eb_ca6b);
@@ -158,10 +159,9 @@ fn shade(material: &Material, x: f32, y: f32, u: [f32; 2]) -> Vec3 {
         return Vec3::ZERO;
     }
     let fresnel = material.f0 + (1.0 - material.f0) * schlick_weight(v.dot(m).clamp(0.0, 1.0));
-    let gain = material
-        .compensation
-        .as_ref()
-        .map_or(Vec3::ONE, |albedo| Vec3::ONE + material.f0 * (1.0 / albedo.at(v).clamp(0.05, 1.0) - 1.0));
+    let gain = material.compensation.as_ref().map_or(Vec3::ONE, |albedo| {
+        Vec3::ONE + material.f0 * (1.0 / albedo.at(v).clamp(0.05, 1.0) - 1.0)
+    });
     fresnel * gain * material.lobe.weight(v, l) * sky(frame * l)
 }
 

@@ -109,9 +109,11 @@ impl Design {
                     let (a, b) = (rows[row][i][channel], rows[row + 1][i][channel]);
                     a + between * (b - a)
                 };
-                let (a, b, da, db) = (node(cell, 0), node(cell + 1, 0), node(cell, 1), node(cell + 1, 1));
+                let (a, b, da, db) =
+                    (node(cell, 0), node(cell + 1, 0), node(cell, 1), node(cell + 1, 1));
                 let rise = b - a;
-                let value = a + w * (da + w * (3.0 * rise - 2.0 * da - db + w * (da + db - 2.0 * rise)));
+                let value =
+                    a + w * (da + w * (3.0 * rise - 2.0 * da - db + w * (da + db - 2.0 * rise)));
                 let u = self.number(at / NUMBERS as f64);
                 worst = worst.max((slopes.cdf(self.restore(shape, view, value)) - u).abs());
             }
@@ -121,11 +123,16 @@ impl Design {
 }
 
 fn main() {
-    println!("| stored | view axis | u | γ = 1.8 | 2 | 4 | ∞ |\n| --- | --- | --- | --- | --- | --- | --- |");
+    println!(
+        "| stored | view axis | u | γ = 1.8 | 2 | 4 | ∞ |\n| --- | --- | --- | --- | --- | --- | --- |"
+    );
     for stored in [Stored::HalfTangent, Stored::GgxNumber] {
-        for (view, power) in
-            [(View::Cosine, 4), (View::HalfTangent, 1), (View::HalfTangent, 2), (View::HalfTangent, 4)]
-        {
+        for (view, power) in [
+            (View::Cosine, 4),
+            (View::HalfTangent, 1),
+            (View::HalfTangent, 2),
+            (View::HalfTangent, 4),
+        ] {
             let design = Design { stored, view, power };
             let errors: Vec<String> = [1.8, 2.0, 4.0, f64::INFINITY]
                 .map(|gamma| format!("{:.1e}", design.error(&Shape::new(gamma).expect("in range"))))

@@ -35,8 +35,9 @@ impl Cache {
     /// The folder `microfacet-bake` in the user's cache folder (`$XDG_CACHE_HOME`, or what the system has in its place); none if the
     /// user has no home.
     pub fn user() -> Self {
-        let folder =
-            etcetera::choose_base_strategy().ok().map(|base| base.cache_dir().join("microfacet-bake"));
+        let folder = etcetera::choose_base_strategy()
+            .ok()
+            .map(|base| base.cache_dir().join("microfacet-bake"));
         Self { folder }
     }
 

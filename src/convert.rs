@@ -136,7 +136,11 @@ impl<'a> Target<'a> {
     ///
     /// # Errors
     /// [`ConvertError`] where either has no such angle, or `shape` is missing.
-    pub fn by_half_angle(&self, to: Family, shape: Option<f64>) -> Result<Replacement, ConvertError> {
+    pub fn by_half_angle(
+        &self,
+        to: Family,
+        shape: Option<f64>,
+    ) -> Result<Replacement, ConvertError> {
         let named = |y: f64| {
             let mut values = to.at(&vec![y; to.dimension()]);
             if to.dimension() == 2 {
@@ -145,8 +149,10 @@ impl<'a> Target<'a> {
             Ok::<_, ConvertError>(Named { family: to, values })
         };
         named(0.5)?.build()?;
-        let angle =
-            self.from.half_angle().ok_or_else(|| ConvertError::NoHalfAngle("the distribution".into()))?;
+        let angle = self
+            .from
+            .half_angle()
+            .ok_or_else(|| ConvertError::NoHalfAngle("the distribution".into()))?;
         // The half angle is monotone in the width; a lobe too wide to have one counts as beyond any.
         let excess = |y: f64| {
             let half = named(y)?.build()?.half_angle();
@@ -189,10 +195,12 @@ impl<'a> Target<'a> {
             .1;
         let h = 1.0 / steps as f64;
         let best = if to.dimension() == 1 {
-            let solver =
-                BrentOpt::new((start[0] - h).max(0.0), (start[0] + h).min(1.0)).set_tolerance(1e-9, 1e-10);
-            let run =
-                Executor::new(&problem, solver).configure(|s| s.max_iters(200)).run().map_err(failed)?;
+            let solver = BrentOpt::new((start[0] - h).max(0.0), (start[0] + h).min(1.0))
+                .set_tolerance(1e-9, 1e-10);
+            let run = Executor::new(&problem, solver)
+                .configure(|s| s.max_iters(200))
+                .run()
+                .map_err(failed)?;
             vec![*run.state().get_best_param().unwrap_or(&start[0])]
         } else {
             // Away from an edge of the square, where the simplex would be flat.
@@ -273,7 +281,9 @@ mod tests {
 
     #[test]
     fn every_family_finds_itself() {
-        for text in ["beckmann:0.2", "gauss:0.15", "trowbridge-reitz:0.3", "blinn-phong:40", "schlick:0.1"] {
+        for text in
+            ["beckmann:0.2", "gauss:0.15", "trowbridge-reitz:0.3", "blinn-phong:40", "schlick:0.1"]
+        {
             let from = named(text);
             let built = from.build().unwrap();
             let target = Target::new(&*built);
@@ -282,7 +292,11 @@ mod tests {
                 target.by_half_angle(from.family, None).unwrap(),
             ] {
                 let (a, b) = (found.to.values[0], from.values[0]);
-                assert!((a / b - 1.0).abs() < 1e-6 && found.rmse[0] < 1e-7, "{text} became {}", found.to);
+                assert!(
+                    (a / b - 1.0).abs() < 1e-6 && found.rmse[0] < 1e-7,
+                    "{text} became {}",
+                    found.to
+                );
             }
         }
         for text in ["student-t:0.3,2.5", "gtr:0.2,1.3", "hyper-cauchy:0.4,3"] {
@@ -305,7 +319,11 @@ mod tests {
         }
         let built = named("beckmann:0.2").build().unwrap();
         let found = Target::new(&*built).by_rmse(Family::StudentT, Form::Unit).unwrap();
-        assert!(found.to.values[1] > 1e3 && (found.to.values[0] - 0.2).abs() < 1e-3, "{}", found.to);
+        assert!(
+            found.to.values[1] > 1e3 && (found.to.values[0] - 0.2).abs() < 1e-3,
+            "{}",
+            found.to
+        );
     }
 
     #[test]
@@ -329,7 +347,10 @@ mod tests {
             ConvertError::ShapeNeeded(Family::Gtr)
         );
         target.by_half_angle(Family::Gtr, Some(2.0)).unwrap();
-        assert!(matches!(by_formula(&named("gauss:0.1"), Family::Gtr), Err(ConvertError::NoFormula(..))));
+        assert!(matches!(
+            by_formula(&named("gauss:0.1"), Family::Gtr),
+            Err(ConvertError::NoFormula(..))
+        ));
         let flat = named("blinn-phong:0").build().unwrap();
         assert!(matches!(
             Target::new(&*flat).by_half_angle(Family::Gauss, None),

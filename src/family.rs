@@ -4,7 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 
 use microfacet_common::shape::gamma_of_s;
-use microfacet_model::classic::{AshikhminShirley, Gauss, Gtr, Isotropic, Member, Schlick, Tabulated};
+use microfacet_model::classic::{
+    AshikhminShirley, Gauss, Gtr, Isotropic, Member, Schlick, Tabulated,
+};
 
 /// A named distribution of one or two parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -185,8 +187,12 @@ impl Family {
             (Self::StudentT, &[sigma, gamma]) => member(Member::student_t(sigma, gamma)),
             (Self::HyperCauchy, &[sigma, gamma]) => member(Member::hyper_cauchy(sigma, gamma)),
             (Self::Gauss, &[m]) => Gauss::new(m).map(|d| Box::new(d) as _).map_err(|e| range(&e)),
-            (Self::Schlick, &[m]) => Schlick::new(m).map(|d| Box::new(d) as _).map_err(|e| range(&e)),
-            (Self::Gtr, &[c, gamma]) => Gtr::new(c, gamma).map(|d| Box::new(d) as _).map_err(|e| range(&e)),
+            (Self::Schlick, &[m]) => {
+                Schlick::new(m).map(|d| Box::new(d) as _).map_err(|e| range(&e))
+            }
+            (Self::Gtr, &[c, gamma]) => {
+                Gtr::new(c, gamma).map(|d| Box::new(d) as _).map_err(|e| range(&e))
+            }
             (Self::AshikhminShirley, &[nx, ny]) => {
                 AshikhminShirley::new(nx, ny).map_err(|e| range(&e))?;
                 if nx != ny {

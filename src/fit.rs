@@ -21,7 +21,10 @@ impl fmt::Display for MeasuredError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Row(line, why) => {
-                write!(f, "line {line}: {why}; each line holds an angle and a D, separated by a comma")
+                write!(
+                    f,
+                    "line {line}: {why}; each line holds an angle and a D, separated by a comma"
+                )
             }
             Self::Distribution(e) => write!(f, "{e} (rows are counted from 0, without the header)"),
         }
@@ -53,7 +56,10 @@ pub fn read_csv(input: impl Read, angles: Angles) -> Result<Tabulated, MeasuredE
     let mut rows = Vec::new();
     for (i, record) in reader.records().enumerate() {
         let record = record.map_err(|e| {
-            MeasuredError::Row(e.position().map_or(0, csv::Position::line), "not readable text".into())
+            MeasuredError::Row(
+                e.position().map_or(0, csv::Position::line),
+                "not readable text".into(),
+            )
         })?;
         let line = record.position().map_or(0, csv::Position::line);
         if record.len() != 2 {
@@ -66,8 +72,12 @@ pub fn read_csv(input: impl Read, angles: Angles) -> Result<Tabulated, MeasuredE
             }
             // Only a first line without any number is a header.
             (Err(_), Err(_)) if i == 0 => {}
-            (Err(_), _) => return Err(MeasuredError::Row(line, format!("`{}` is not a number", &record[0]))),
-            (_, Err(_)) => return Err(MeasuredError::Row(line, format!("`{}` is not a number", &record[1]))),
+            (Err(_), _) => {
+                return Err(MeasuredError::Row(line, format!("`{}` is not a number", &record[0])));
+            }
+            (_, Err(_)) => {
+                return Err(MeasuredError::Row(line, format!("`{}` is not a number", &record[1])));
+            }
         }
     }
     Tabulated::new(&rows).map_err(MeasuredError::Distribution)
@@ -126,7 +136,8 @@ mod tests {
 
     #[test]
     fn bad_rows_are_named() {
-        let message = |text: &str| read_csv(text.as_bytes(), Angles::Radians).unwrap_err().to_string();
+        let message =
+            |text: &str| read_csv(text.as_bytes(), Angles::Radians).unwrap_err().to_string();
         assert!(message("0,1\n0.1,x\n").contains("line 2"));
         assert!(message("0,1\n0.1\n").contains("line 2: 1 columns"));
         assert!(message("0,1\n0.1,\n0.2,1\n").contains("line 2"));

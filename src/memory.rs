@@ -71,11 +71,15 @@ mod tests {
     #[test]
     fn a_million_million_nodes_are_refused_untouched() {
         let mut specs = general_set(Quality::High, Precision::F32);
-        let all = |specs: &[TableSpec]| specs.iter().map(TableSpec::values).fold(0, u128::saturating_add);
+        let all =
+            |specs: &[TableSpec]| specs.iter().map(TableSpec::values).fold(0, u128::saturating_add);
         assert_eq!(check(all(&specs), 1 << 30), Ok(()));
         (specs[2].views, specs[2].numbers) = (1_000_000, 1_000_000);
         let refused = check(all(&specs), 1 << 30).unwrap_err();
-        assert!(refused.values > 66_000_000_000_000 && refused.to_string().contains("1024 MiB"), "{refused}");
+        assert!(
+            refused.values > 66_000_000_000_000 && refused.to_string().contains("1024 MiB"),
+            "{refused}"
+        );
         (specs[2].views, specs[2].numbers) = (usize::MAX, usize::MAX);
         assert!(check(all(&specs), u64::MAX).is_err());
     }

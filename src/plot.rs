@@ -95,7 +95,10 @@ fn drawing(e: impl fmt::Display) -> PlotError {
     PlotError::Drawing(e.to_string())
 }
 
-fn draw(area: &DrawingArea<SVGBackend, plotters::coord::Shift>, panel: &Panel) -> Result<(), PlotError> {
+fn draw(
+    area: &DrawingArea<SVGBackend, plotters::coord::Shift>,
+    panel: &Panel,
+) -> Result<(), PlotError> {
     let xs = || panel.curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.0));
     let (low, high) = (xs().fold(f64::INFINITY, f64::min), xs().fold(f64::NEG_INFINITY, f64::max));
     let mut chart = ChartBuilder::on(area)
@@ -166,8 +169,11 @@ mod tests {
             assert!(!panels.is_empty());
             for panel in &panels {
                 for curve in &panel.curves {
-                    let inside =
-                        curve.points.iter().filter(|p| (panel.y.0..=panel.y.1).contains(&p.1)).count();
+                    let inside = curve
+                        .points
+                        .iter()
+                        .filter(|p| (panel.y.0..=panel.y.1).contains(&p.1))
+                        .count();
                     assert!(
                         inside * 4 > curve.points.len(),
                         "{name}, {}: {} leaves the panel",

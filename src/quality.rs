@@ -105,7 +105,8 @@ mod tests {
 
     #[test]
     fn levels_meet_the_qualities_and_rise_between_and_beyond() {
-        for (quality, views) in [(Quality::Draft, 25), (Quality::Default, 81), (Quality::High, 321)] {
+        for (quality, views) in [(Quality::Draft, 25), (Quality::Default, 81), (Quality::High, 321)]
+        {
             assert_eq!(Level::from(quality).resolution().views, views);
             assert_eq!(Level::from(quality).quality(), quality);
         }

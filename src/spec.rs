@@ -112,7 +112,12 @@ pub fn general_set(level: impl Into<Level>, precision: Precision) -> Vec<TableSp
         precision,
     };
     vec![
-        spec(Kind::Shadowing, ShapeAxis::range(0.0, whole, r.shadowing_shapes), r.shadowing_views, 0),
+        spec(
+            Kind::Shadowing,
+            ShapeAxis::range(0.0, whole, r.shadowing_shapes),
+            r.shadowing_views,
+            0,
+        ),
         TableSpec {
             name: "shadowing_peeled".into(),
             ..spec(

@@ -5,7 +5,9 @@ mod command;
 use glam::Vec3;
 use microfacet_bake::bake::albedo::{self, Domain, Lobe};
 use microfacet_bake::generate::{Settings, Target, bake, bake_with};
-use microfacet_bake::plan::{AlbedoNeed, AlbedoVerdict, AlbedoWish, Options, Plan, albedo_cost, bare_cost};
+use microfacet_bake::plan::{
+    AlbedoNeed, AlbedoVerdict, AlbedoWish, Options, Plan, albedo_cost, bare_cost,
+};
 use microfacet_bake::scene::{Interval, Scene};
 use microfacet_bake::spec::Quality;
 use microfacet_bake::store;
@@ -14,7 +16,8 @@ use microfacet_bake::validate::furnace::direction;
 use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::{
-    FresnelAlbedo, Kind, Masking, Precision, Provenance, Reflectance, StudentT, Table, Tables, encode,
+    FresnelAlbedo, Kind, Masking, Precision, Provenance, Reflectance, StudentT, Table, Tables,
+    encode,
 };
 use serde_json::Value;
 
@@ -102,7 +105,8 @@ fn many_roughnesses_are_a_range_and_what_lies_inside_is_there() {
 #[test]
 fn a_part_reads_as_the_whole_does() {
     let of = |lobe| {
-        let need = AlbedoNeed { lobe, maskings: vec![Masking::HeightCorrelated], ..AlbedoNeed::general() };
+        let need =
+            AlbedoNeed { lobe, maskings: vec![Masking::HeightCorrelated], ..AlbedoNeed::general() };
         let tables = albedo::bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap();
         Tables::from_tables(Provenance::default(), tables).unwrap()
     };
@@ -111,12 +115,15 @@ fn a_part_reads_as_the_whole_does() {
     assert!(part.tables()[0].values.len() < whole.tables()[0].values.len());
     for gamma in [2.6, 2.77, 2.9] {
         for sigma in [0.003, 0.02, 0.08] {
-            let [a, b] =
-                [&part, &whole].map(|set| set.albedo(sigma, gamma, Masking::HeightCorrelated).unwrap());
+            let [a, b] = [&part, &whole]
+                .map(|set| set.albedo(sigma, gamma, Masking::HeightCorrelated).unwrap());
             for cos in [0.01, 0.3, 0.77, 1.0] {
                 let [a, b] = [&a, &b].map(|albedo| albedo.moments(direction(cos)));
                 // Node distances round differently.
-                assert!((a.scale - b.scale).abs() < 1e-6 && (a.bias - b.bias).abs() < 1e-6, "{a:?} {b:?}");
+                assert!(
+                    (a.scale - b.scale).abs() < 1e-6 && (a.bias - b.bias).abs() < 1e-6,
+                    "{a:?} {b:?}"
+                );
             }
             assert!((a.albedo_average() - b.albedo_average()).abs() < 1e-6);
         }
@@ -167,8 +174,7 @@ fn a_single_material_has_its_albedo_and_no_other() {
 fn imported_scenes_have_to_ask() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let scene =
-        "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float roughness\" 0.04\nWorldBegin\n";
+    let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float roughness\" 0.04\nWorldBegin\n";
     std::fs::write(at.join("s.pbrt"), scene).unwrap();
     let shown = json(at, &["plan", "s.pbrt"]);
     assert_eq!(shown["albedo"], Value::Array(Vec::new()));
@@ -188,7 +194,8 @@ fn targets_are_met_or_refused() {
     let plan = albedos_of(plan);
     let patient = || Settings { patient: true, ..Settings::default() };
     let bake = |target| bake_with(&plan, target, patient());
-    let worst = |target| bake(target).unwrap().set.tables().iter().map(worst_error).fold(0.0, f64::max);
+    let worst =
+        |target| bake(target).unwrap().set.tables().iter().map(worst_error).fold(0.0, f64::max);
     let draft = worst(DRAFT);
     let least = bake(Target::MaxError(1.1 * draft)).unwrap().set;
     assert!(least.tables().iter().map(worst_error).fold(0.0, f64::max) <= 1.1 * draft);
@@ -202,7 +209,8 @@ fn targets_are_met_or_refused() {
     assert!(refused.contains("albedo") && refused.contains("at best"), "{refused}");
 
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("r.toml"), recipe(&[["wild", "3.5", "2.0", MIRROR]])).unwrap();
+    std::fs::write(folder.path().join("r.toml"), recipe(&[["wild", "3.5", "2.0", MIRROR]]))
+        .unwrap();
     for (args, words) in [
         (&["--max-bytes", "9000"][..], &["3.5", "fresnel"][..]),
         (&[], &["\"wild\"", "3.5", "above 3", "--no-albedo"]),
@@ -225,7 +233,11 @@ fn a_surface_smoother_than_the_promised_ones_has_a_certificate() {
     let set = bake(&plan, DRAFT).unwrap().set;
     for table in set.tables() {
         assert!(worst_error(table) < 1e-2, "{}: {:?}", table.name, table.certificate);
-        assert!(table.certificate.values().all(|figure| !figure.is_nan()), "{:?}", table.certificate);
+        assert!(
+            table.certificate.values().all(|figure| !figure.is_nan()),
+            "{:?}",
+            table.certificate
+        );
     }
 }
 
@@ -234,7 +246,8 @@ fn estimated_bytes_are_those_of_the_file() {
     // Without the one whose views are refined.
     let plan = albedos_of(plan(&MIXED[..4], AlbedoWish::Recipes));
     let set = bake(&plan, DRAFT).unwrap().set;
-    let bytes = |need: &AlbedoNeed| albedo_cost(&need.spec(Quality::Draft, Precision::F32).unwrap()).bytes;
+    let bytes =
+        |need: &AlbedoNeed| albedo_cost(&need.spec(Quality::Draft, Precision::F32).unwrap()).bytes;
     let tables: usize = plan.albedos.iter().map(bytes).sum();
     let estimate = (tables + bare_cost(set.provenance()).bytes) as f64;
     let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
@@ -265,7 +278,13 @@ fn mean(set: &Tables, name: &str, cos: f32, worth: impl Fn(&StudentT, Vec3, Vec3
 }
 
 /// The albedo of reflection: F G2/G1.
-fn reflected(set: &Tables, name: &str, masking: Masking, cos: f32, fresnel: impl Fn(f64) -> f64) -> f64 {
+fn reflected(
+    set: &Tables,
+    name: &str,
+    masking: Masking,
+    cos: f32,
+    fresnel: impl Fn(f64) -> f64,
+) -> f64 {
     mean(set, name, cos, |material, v, m| {
         let l = 2.0 * v.dot(m) * m - v;
         let g = if l.z > 0.0 { material.g2(v, l, masking) / material.g1(v) } else { 0.0 };
@@ -320,12 +339,17 @@ fn a_range_of_indices_has_an_axis() {
     for eta in [1.2, 1.37, 1.7] {
         let bound = set.material_dielectric_albedo("any", eta).unwrap();
         for cos in [0.1, 0.4, 0.9] {
-            for (got, eta) in
-                [(bound.outside.eval(direction(cos)), eta), (bound.inside.eval(direction(cos)), 1.0 / eta)]
-            {
+            for (got, eta) in [
+                (bound.outside.eval(direction(cos)), eta),
+                (bound.inside.eval(direction(cos)), 1.0 / eta),
+            ] {
                 let pane = Dielectric::new(eta).unwrap();
-                let want = integrator.transmission(0.5, f64::from(cos), pane).unwrap().uncorrelated[0];
-                assert!((f64::from(got[1]) - want).abs() < 2e-3, "eta {eta}, {cos}: {got:?}, {want}");
+                let want =
+                    integrator.transmission(0.5, f64::from(cos), pane).unwrap().uncorrelated[0];
+                assert!(
+                    (f64::from(got[1]) - want).abs() < 2e-3,
+                    "eta {eta}, {cos}: {got:?}, {want}"
+                );
             }
         }
     }
@@ -333,7 +357,9 @@ fn a_range_of_indices_has_an_axis() {
     let bound = set.material_dielectric_albedo("any", 1.5).unwrap();
     let critical = (1.0_f32 - 1.0 / 2.25).sqrt();
     for curve in [&bound.outside, &bound.inside] {
-        for cos in [f32::NAN, -1.0, 0.0, 1e-40, 1e-7, critical, 1.0 - f32::EPSILON, 1.0, f32::INFINITY] {
+        for cos in
+            [f32::NAN, -1.0, 0.0, 1e-40, 1e-7, critical, 1.0 - f32::EPSILON, 1.0, f32::INFINITY]
+        {
             assert!(
                 curve.eval(direction(cos)).iter().all(|x| (0.0..=1.0).contains(x)),
                 "{cos}: {:?}",
@@ -351,7 +377,8 @@ fn a_range_of_indices_has_an_axis() {
         ("{ min = \"inf\", max = \"inf\" }", "inf"),
         ("{ min = 1.5, max = 1.5 }", "1.5"),
     ] {
-        let text = recipe(&[["any", "0.5", "3.0", &format!("fresnel = {{ dielectric = {range} }}")]]);
+        let text =
+            recipe(&[["any", "0.5", "3.0", &format!("fresnel = {{ dielectric = {range} }}")]]);
         let why = Scene::from_recipe_str(&text).unwrap_err().to_string();
         assert!(why.contains(told), "{range}: {why}");
     }
@@ -370,12 +397,15 @@ fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
         assert!(table.certificate["quadrature_error"] < 1e-5);
     }
 
-    let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else { panic!() };
-    let metal =
-        [(0.143, 3.983), (0.375, 2.386), (1.442, 1.603)].map(|(eta, k)| Conductor::new(eta, k).unwrap());
+    let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else {
+        panic!()
+    };
+    let metal = [(0.143, 3.983), (0.375, 2.386), (1.442, 1.603)]
+        .map(|(eta, k)| Conductor::new(eta, k).unwrap());
     for cos in [0.05, 0.3, 0.8, 1.0] {
         for (got, metal) in gold.eval(direction(cos)).into_iter().zip(metal) {
-            let want = reflected(&set, "gold", Masking::HeightCorrelated, cos, |x| metal.reflectance(x));
+            let want =
+                reflected(&set, "gold", Masking::HeightCorrelated, cos, |x| metal.reflectance(x));
             assert!((f64::from(got) - want).abs() < 2e-3, "gold at {cos}: {got}, {want}");
         }
         // Bounded by what F = 1 returns.
@@ -393,22 +423,36 @@ fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
     let interface = Dielectric::new(1.6).unwrap();
     let all = set.material_albedo("glass").unwrap();
     for cos in [0.05, 0.3, 0.6, 0.8, 1.0] {
-        let (entering, leaving) = (glass.outside.eval(direction(cos)), glass.inside.eval(direction(cos)));
+        let (entering, leaving) =
+            (glass.outside.eval(direction(cos)), glass.inside.eval(direction(cos)));
         for (got, face) in [(entering, interface), (leaving, interface.reversed())] {
-            let want = reflected(&set, "glass", Masking::Uncorrelated, cos, |x| face.reflectance(x));
+            let want =
+                reflected(&set, "glass", Masking::Uncorrelated, cos, |x| face.reflectance(x));
             assert!((f64::from(got[0]) - want).abs() < 2e-3, "glass at {cos}: {got:?}, {want}");
             let want = transmitted(&set, "glass", Masking::Uncorrelated, cos, face);
-            assert!((f64::from(got[1]) - want).abs() < 3e-3, "through glass at {cos}: {got:?}, {want}");
-            assert!(got[0] <= all.albedo(direction(cos)) + 1e-4 && got[0] + got[1] <= 1.0 + 1e-4, "{got:?}");
+            assert!(
+                (f64::from(got[1]) - want).abs() < 3e-3,
+                "through glass at {cos}: {got:?}, {want}"
+            );
+            assert!(
+                got[0] <= all.albedo(direction(cos)) + 1e-4 && got[0] + got[1] <= 1.0 + 1e-4,
+                "{got:?}"
+            );
         }
         assert!(entering[0] < leaving[0] && entering[1] > leaving[1]);
         // The other side of the same interface, from the same tables.
-        assert_eq!((air.outside.eval(direction(cos)), air.inside.eval(direction(cos))), (leaving, entering));
+        assert_eq!(
+            (air.outside.eval(direction(cos)), air.inside.eval(direction(cos))),
+            (leaving, entering)
+        );
         assert_eq!(nothing.outside.eval(direction(cos))[0], 0.0);
         assert_eq!(nothing.outside.eval(direction(cos)), nothing.inside.eval(direction(cos)));
     }
     // What enters and what leaves is the same up to the squeezing of solid angles, η².
     let (enters, leaves) = (glass.outside.average()[1], glass.inside.average()[1]);
     assert!((enters - 2.56 * leaves).abs() < 1e-4, "{enters} and {leaves}");
-    assert!(set.material_fresnel_albedo("glass").is_ok() && set.material_fresnel_albedo("copper").is_err());
+    assert!(
+        set.material_fresnel_albedo("glass").is_ok()
+            && set.material_fresnel_albedo("copper").is_err()
+    );
 }

@@ -93,7 +93,8 @@ fn along_error(table: &Table, bound: &StudentT, shape: &Shape) -> f64 {
     let numbers = numbers(&table.axes[2]);
     let errors = along(&table.axes[1]).into_iter().map(|t| {
         let v = view(cotangent(&table.axes[1], shape.s(), t));
-        let exact = VisibleSlope::new(shape, UnitView::from_cotangent(f64::from(v.z) / f64::from(v.x)));
+        let exact =
+            VisibleSlope::new(shape, UnitView::from_cotangent(f64::from(v.z) / f64::from(v.x)));
         let errors = numbers.iter().map(|&u| {
             let m = bound.sample_visible_normal(v, [u, 0.5]).as_dvec3();
             (exact.cdf(signed(shape, m.x / m.z)) - f64::from(u)).abs()
@@ -123,7 +124,8 @@ fn hold(set: &Tables) {
         };
         // Not beyond the last node by a rounding of 1 + 1/s.
         let last = table.axes[0].ends()[1] * (1.0 - 1e-15);
-        let found = along(&table.axes[0]).into_iter().map(|s| error(s.min(last))).fold(0.0, f64::max);
+        let found =
+            along(&table.axes[0]).into_iter().map(|s| error(s.min(last))).fold(0.0, f64::max);
         let says = worst_error(table);
         println!("{} {:?}: says {says:.2e}, errs by {found:.3e}", table.name, table.precision);
         assert!(found <= says, "{} says {says:e} and errs by {found:e}", table.name);
@@ -213,7 +215,8 @@ impl<'a> Own<'a> {
             along(axis).into_iter().map(quantity).map(error).fold(0.0, f64::max)
         };
         // First numbers between 0 and 1, beside which the slope across need not be right.
-        let first = numbers(&self.tables[1].axes[1]).into_iter().filter(|u| (6e-8..1.0).contains(u));
+        let first =
+            numbers(&self.tables[1].axes[1]).into_iter().filter(|u| (6e-8..1.0).contains(u));
         let first = first.step_by(7).chain([1_f32.next_down()]);
         let found = [
             worst(&self.tables[0].axes[0], &|z| self.g1_error(z)),
@@ -231,7 +234,9 @@ impl<'a> Own<'a> {
 
 #[test]
 fn of_other_distributions_however_narrow() {
-    for name in ["gtr:0.2,1.5", "gtr:0.001,3", "gauss:0.3", "gauss:0.01", "schlick:0.3", "schlick:0.001"] {
+    for name in
+        ["gtr:0.2,1.5", "gtr:0.001,3", "gauss:0.3", "gauss:0.01", "schlick:0.3", "schlick:0.001"]
+    {
         let built = name.parse::<Named>().unwrap().build().unwrap();
         let marginal = Marginal::new(&*built);
         Own::new(name, &marginal).hold(name);

@@ -22,15 +22,24 @@ use rand::{RngExt, SeedableRng};
 
 /// Distributions of every kind, by name.
 fn all() -> Vec<(String, Box<dyn Isotropic>)> {
-    let names =
-        ["gauss:0.1", "gauss:0.4", "gtr:0.1,1.2", "gtr:0.3,3", "gtr:0.5,0.7", "schlick:0.05", "schlick:0.3"];
+    let names = [
+        "gauss:0.1",
+        "gauss:0.4",
+        "gtr:0.1,1.2",
+        "gtr:0.3,3",
+        "gtr:0.5,0.7",
+        "schlick:0.05",
+        "schlick:0.3",
+    ];
     let mut all: Vec<(String, Box<dyn Isotropic>)> = names
         .iter()
         .map(|text| (text.to_string(), text.parse::<Named>().unwrap().build().unwrap()))
         .collect();
     let smooth = "gauss:0.25".parse::<Named>().unwrap().build().unwrap();
-    let rows: Vec<_> =
-        (0..=450).map(|i| f64::from(i) * 0.5 * PI / 450.0).map(|t| (t, smooth.d(t) + 0.02)).collect();
+    let rows: Vec<_> = (0..=450)
+        .map(|i| f64::from(i) * 0.5 * PI / 450.0)
+        .map(|t| (t, smooth.d(t) + 0.02))
+        .collect();
     all.push(("measured:wide".into(), Box::new(Tabulated::new(&rows).unwrap())));
     all
 }
@@ -62,7 +71,10 @@ fn view(theta: f64) -> Vec3 {
 fn tables_follow_the_quadrature() {
     for ((name, d), radial) in all().into_iter().zip(BOUND.iter()) {
         let e = measure(radial, &Marginal::new(&*d));
-        assert!(e.g1 < 1e-4 && e.along < 5e-4 && e.across < 5e-4 && e.density < 1e-3, "{name}: {e:?}");
+        assert!(
+            e.g1 < 1e-4 && e.along < 5e-4 && e.across < 5e-4 && e.density < 1e-3,
+            "{name}: {e:?}"
+        );
     }
 }
 
@@ -124,7 +136,9 @@ fn recipes_name_distributions() {
     assert!(refused("distribution = \"gtr\"\nc = 0.2").contains("has no `gamma`"));
     assert!(refused("distribution = \"gtr\"\nc = 2.0\ngamma = 3").contains("(0, 1]"));
     assert!(refused("distribution = \"phong\"\nn = 3").contains("there are beckmann"));
-    assert!(refused("distribution = \"gauss\"\nm = 0.2\nsigma = 0.1").contains("unknown key `sigma`"));
+    assert!(
+        refused("distribution = \"gauss\"\nm = 0.2\nsigma = 0.1").contains("unknown key `sigma`")
+    );
     assert!(refused("distribution = { measured = \"nowhere.csv\" }").contains("nowhere.csv"));
     assert!(refused("distribution = 3").contains("name in quotes"));
 }
@@ -149,14 +163,18 @@ fn a_recipe_bakes_all_kinds() {
     // Fixed point is enough for that, in half the bytes.
     let rough = bake(Target::MaxError(1e-3)).unwrap().set;
     assert!(
-        rough.tables().iter().all(|table| table.precision == Precision::U16 && worst_error(table) <= 1e-3)
+        rough
+            .tables()
+            .iter()
+            .all(|table| table.precision == Precision::U16 && worst_error(table) <= 1e-3)
     );
     let [full, fixed] = [Precision::F32, Precision::U16]
         .map(|precision| bake(Target::Quality(Quality::Draft, precision)).unwrap().set);
     for (precision, set) in [(Precision::F32, &full), (Precision::U16, &fixed)] {
         let general = general_set(Quality::Draft, precision);
         let normals = plan.needs.iter().map(|need| cost(&need.specs(&general)));
-        let own = plan.distributions.iter().map(|own| distribution_cost(own, Quality::Draft, precision));
+        let own =
+            plan.distributions.iter().map(|own| distribution_cost(own, Quality::Draft, precision));
         let estimate: Cost = normals.chain(own).chain([bare_cost(set.provenance())]).sum();
         let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
         assert!((estimate.bytes as f64 / real - 1.0).abs() < 0.02, "{estimate:?} for {real}");

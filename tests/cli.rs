@@ -32,8 +32,12 @@ fn from_a_recipe_to_normals() {
     }
 
     let shown = ok(at, &["inspect", "out"]);
-    assert!(shown.contains("gamma = 3") && shown.contains("CC0-1.0") && shown.contains("glass"), "{shown}");
-    let json: serde_json::Value = serde_json::from_str(&ok(at, &["inspect", "out", "--json"])).unwrap();
+    assert!(
+        shown.contains("gamma = 3") && shown.contains("CC0-1.0") && shown.contains("glass"),
+        "{shown}"
+    );
+    let json: serde_json::Value =
+        serde_json::from_str(&ok(at, &["inspect", "out", "--json"])).unwrap();
     assert_eq!(json["format"], "microfacet-tables");
 
     ok(
@@ -64,8 +68,7 @@ fn from_a_recipe_to_normals() {
 #[test]
 fn query_passes_columns_through_and_agrees_with_the_model() {
     let folder = tempfile::tempdir().unwrap();
-    let points =
-        "id,sigma_x,sigma_y,gamma,theta,phi,u1,u2\na,0.3,0.3,3,1.2,0,0.2,0.7\nb,0.3,0.1,inf,1.5,2,0.9,0.1\n";
+    let points = "id,sigma_x,sigma_y,gamma,theta,phi,u1,u2\na,0.3,0.3,3,1.2,0,0.2,0.7\nb,0.3,0.1,inf,1.5,2,0.9,0.1\n";
     std::fs::write(folder.path().join("points.csv"), points).unwrap();
     let table = ok(folder.path(), &["query", "g1", "--input", "points.csv"]);
     let mut rows = csv::Reader::from_reader(table.as_bytes());
@@ -73,13 +76,15 @@ fn query_passes_columns_through_and_agrees_with_the_model() {
     for row in rows.records() {
         let row = row.unwrap();
         assert!(["a", "b"].contains(&&row[0]));
-        let [lambda, g1, exact_lambda, exact_g1] = [8, 9, 10, 11].map(|i| row[i].parse::<f64>().unwrap());
+        let [lambda, g1, exact_lambda, exact_g1] =
+            [8, 9, 10, 11].map(|i| row[i].parse::<f64>().unwrap());
         assert!(
             (g1 - exact_g1).abs() < 5e-6
                 && (lambda - exact_lambda).abs() < 1e-5 * (1.0 + exact_lambda).powi(2)
         );
     }
-    let normals = ok(folder.path(), &["query", "normal", "--input", "points.csv", "--method", "exact"]);
+    let normals =
+        ok(folder.path(), &["query", "normal", "--input", "points.csv", "--method", "exact"]);
     assert!(
         normals.lines().next().unwrap().ends_with("u2,m_x_exact,m_y_exact,m_z_exact,pdf_exact"),
         "{normals}"
@@ -91,7 +96,10 @@ fn query_answers_in_order_up_to_a_row_that_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let row = |i: usize| format!("{i},0.{},3,{}", 1 + i % 9, if i == 700 { "1.5" } else { "0.5" });
     let rows: Vec<String> = (0..800).map(row).collect();
-    let table = format!("id,sigma,gamma,cos_theta,masking\n{},uncorrelated\n", rows.join(",uncorrelated\n"));
+    let table = format!(
+        "id,sigma,gamma,cos_theta,masking\n{},uncorrelated\n",
+        rows.join(",uncorrelated\n")
+    );
     std::fs::write(folder.path().join("views.csv"), table).unwrap();
     let query = ["query", "albedo", "--input", "views.csv", "--method", "table"];
     let output = run(folder.path(), &query);
@@ -167,7 +175,10 @@ fn bad_input_is_named_and_nothing_is_written() {
     assert!(
         refused(
             at,
-            &["sample", "--sigma", "0", "--gamma", "2", "--theta", "1", "--count", "1", "--out", "n"]
+            &[
+                "sample", "--sigma", "0", "--gamma", "2", "--theta", "1", "--count", "1", "--out",
+                "n"
+            ]
         )
         .contains("sigma")
     );

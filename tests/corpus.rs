@@ -9,8 +9,10 @@ include!("../fuzz/fuzz_targets/common.rs");
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz");
     let list = |kind: &str| fs::read_dir(fuzz.join(kind).join(target)).into_iter().flatten();
-    let files: Vec<_> =
-        list("seeds").chain(list("corpus")).map(|entry| fs::read(entry.unwrap().path()).unwrap()).collect();
+    let files: Vec<_> = list("seeds")
+        .chain(list("corpus"))
+        .map(|entry| fs::read(entry.unwrap().path()).unwrap())
+        .collect();
     assert!(!files.is_empty(), "no seeds for {target}");
     files
 }
@@ -23,7 +25,8 @@ fn seeds_of_table_files_are_of_this_version() {
     for target in ["loader", "image"] {
         for entry in fs::read_dir(folder.join(target)).unwrap() {
             let path = entry.unwrap().path();
-            microfacet_bake::store::read(&path).unwrap_or_else(|why| panic!("{}: {why}", path.display()));
+            microfacet_bake::store::read(&path)
+                .unwrap_or_else(|why| panic!("{}: {why}", path.display()));
         }
     }
 }

@@ -29,8 +29,14 @@ fn the_default_set_is_reproducible() {
     assert!(worst(Kind::VisibleSlopeConditional, "cdf_max_error") < 1e-4);
     for quantity in ["e", "scale", "bias", "f82"] {
         assert!(worst(Kind::Albedo, &format!("{quantity}_max_error")) < 3e-4, "{quantity}");
-        assert!(worst(Kind::Albedo, &format!("{quantity}_max_error_outside")) < 2.2e-3, "{quantity}");
+        assert!(
+            worst(Kind::Albedo, &format!("{quantity}_max_error_outside")) < 2.2e-3,
+            "{quantity}"
+        );
     }
     assert!(worst(Kind::Albedo, "quadrature_error") < 1e-6);
-    assert_eq!(set.tables().iter().filter(|table| table.kind.is_albedo()).count(), 4 * plan.albedos.len());
+    assert_eq!(
+        set.tables().iter().filter(|table| table.kind.is_albedo()).count(),
+        4 * plan.albedos.len()
+    );
 }

@@ -11,7 +11,11 @@ fn flat(text: &str) -> String {
 fn the_page_of_the_format_has_every_mapping_and_its_formula() {
     let page = flat(include_str!("../docs/format.md"));
     for mapping in Mapping::EVERY {
-        assert!(page.contains(&format!("`{}`", mapping.name())), "docs/format.md: no `{}`", mapping.name());
+        assert!(
+            page.contains(&format!("`{}`", mapping.name())),
+            "docs/format.md: no `{}`",
+            mapping.name()
+        );
         assert!(
             page.contains(&flat(mapping.formula())),
             "docs/format.md: the formula of `{}` is {}",
@@ -24,8 +28,14 @@ fn the_page_of_the_format_has_every_mapping_and_its_formula() {
 #[test]
 fn the_page_of_the_format_is_of_this_version() {
     let page = include_str!("../docs/format.md");
-    assert!(page.starts_with(&format!("# The table format, version {}\n", microfacet_sampler::VERSION)));
+    assert!(
+        page.starts_with(&format!("# The table format, version {}\n", microfacet_sampler::VERSION))
+    );
     for kind in Kind::ALL {
-        assert!(page.contains(&format!("`{}`", kind.name())), "docs/format.md: no `{}`", kind.name());
+        assert!(
+            page.contains(&format!("`{}`", kind.name())),
+            "docs/format.md: no `{}`",
+            kind.name()
+        );
     }
 }

@@ -27,7 +27,8 @@ fn tables(gamma: f64) -> Tables {
 fn random(rng: &mut StdRng, gamma: f64) -> (model::Ellipsoid, Skew) {
     loop {
         let sigma = [(); 2].map(|()| 10.0_f64.powf(rng.random_range(-1.5..0.3)));
-        let theta = [rng.random_range(-0.6..0.6), rng.random_range(-0.6..0.6), rng.random_range(-PI..PI)];
+        let theta =
+            [rng.random_range(-0.6..0.6), rng.random_range(-0.6..0.6), rng.random_range(-PI..PI)];
         let ellipsoid = model::Ellipsoid::new(sigma[0], sigma[1], theta, gamma).unwrap();
         let u = ellipsoid.unit_matrix();
         if u.x_axis.z.hypot(u.y_axis.z) < 2.0 {
@@ -64,11 +65,19 @@ fn values_follow_the_model() {
             let v64 = v.as_dvec3();
             below += usize::from((truth.unit_matrix() * v64).z < 0.0);
             let g1 = truth.g1(v64);
-            assert!((f64::from(e.g1(v)) - g1).abs() < 2e-5, "gamma {gamma}, {v}: {} against {g1}", e.g1(v));
+            assert!(
+                (f64::from(e.g1(v)) - g1).abs() < 2e-5,
+                "gamma {gamma}, {v}: {} against {g1}",
+                e.g1(v)
+            );
             for _ in 0..20 {
                 let m = e.sample_visible_normal(v, [rng.random(), rng.random()]);
-                assert!((m.length() - 1.0).abs() < 1e-6 && m.z > 0.0 && m.dot(v) > -1e-6, "{m} from {v}");
-                let (got, want) = (e.visible_normal_pdf(v, m), truth.visible_normal_pdf(v64, m.as_dvec3()));
+                assert!(
+                    (m.length() - 1.0).abs() < 1e-6 && m.z > 0.0 && m.dot(v) > -1e-6,
+                    "{m} from {v}"
+                );
+                let (got, want) =
+                    (e.visible_normal_pdf(v, m), truth.visible_normal_pdf(v64, m.as_dvec3()));
                 // D at f32 has the exponent times an ulp of its argument; grazing facets lose digits of v·m.
                 if m.z > 1e-3 && m.dot(v) > 1e-3 && (1e-30..1e30).contains(&want) {
                     let error = (f64::from(got) / want - 1.0).abs();
@@ -94,7 +103,10 @@ fn plain_matrices_give_plain_normals() {
         for _ in 0..10_000 {
             let (v, u) = (above(&mut rng), [rng.random(), rng.random()]);
             let (m, expected) = (e.sample_visible_normal(v, u), plain.sample_visible_normal(v, u));
-            assert!((m - expected).length() < 2e-6, "gamma {gamma}, {v}, {u:?}: {m} against {expected}");
+            assert!(
+                (m - expected).length() < 2e-6,
+                "gamma {gamma}, {v}, {u:?}: {m} against {expected}"
+            );
         }
     }
 }
@@ -113,7 +125,10 @@ fn matrices_almost_singular_give_normals() {
                     let (v, u) = (above(&mut rng), [ends[i % 5], ends[i / 5 % 5]]);
                     let m = e.sample_visible_normal(v, u);
                     let unit = (m.length() - 1.0).abs() < 1e-6 && m.z > 0.0;
-                    assert!(unit, "gamma {gamma}, sigma {sigma:?}, theta {theta:?}, {v}, {u:?}: {m}");
+                    assert!(
+                        unit,
+                        "gamma {gamma}, sigma {sigma:?}, theta {theta:?}, {v}, {u:?}: {m}"
+                    );
                 }
             }
         }

@@ -32,7 +32,10 @@ fn small_image() -> (Tables, Vec<u8>) {
 fn every_truncation_of_an_image_is_refused() {
     let (_, file) = small_image();
     for length in 0..file.len() {
-        assert!(matches!(decode_exr(&file[..length]), Err(LoadError::Invalid(_))), "{length} bytes");
+        assert!(
+            matches!(decode_exr(&file[..length]), Err(LoadError::Invalid(_))),
+            "{length} bytes"
+        );
     }
 }
 

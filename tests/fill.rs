@@ -7,14 +7,19 @@ use microfacet_bake::scene::Scene;
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables, encode};
 
-const GOLD: &str = "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0\nfresnel = \"mirror\"\n";
+const GOLD: &str =
+    "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0\nfresnel = \"mirror\"\n";
 const CLOTH: &str = "[[material]]\nname = \"cloth\"\ndistribution = \"gauss\"\nm = 0.25\n";
 const GLASS: &str = "[[material]]\nname = \"glass\"\nsigma = 0.454\ngamma = 3.0\n";
 
 fn within(recipe: &str, max_bytes: usize, cache: &Cache) -> Result<Baked, BakeError> {
     let scene = Scene::from_recipe_str(recipe).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
-    bake_with(&plan, Target::MaxBytes(max_bytes), Settings { cache: cache.clone(), ..Settings::default() })
+    bake_with(
+        &plan,
+        Target::MaxBytes(max_bytes),
+        Settings { cache: cache.clone(), ..Settings::default() },
+    )
 }
 
 fn bytes(set: &Tables) -> Vec<u8> {
@@ -41,8 +46,10 @@ fn all_kinds_of_tables_share_a_budget() {
         let file = bytes(&set);
         assert!(file.len() <= max_bytes, "{} bytes of {max_bytes}", file.len());
         // Visible normals take what is left.
-        let (graded, normals): (Vec<_>, Vec<_>) =
-            set.tables().iter().partition(|table| table.kind.is_albedo() || table.name.contains("radial"));
+        let (graded, normals): (Vec<_>, Vec<_>) = set
+            .tables()
+            .iter()
+            .partition(|table| table.kind.is_albedo() || table.name.contains("radial"));
         assert_eq!((graded.len(), normals.len()), (6, 3));
         let error = worst(graded.iter().chain(&normals).copied());
         assert!(

@@ -108,7 +108,8 @@ fn a_slice_has_no_axis_of_shapes_and_a_smooth_scene_nothing() {
 #[test]
 fn sub_ranges_draw_the_very_normals_of_the_general_set() {
     let general = bake(&Plan::general(), DRAFT, &Cache::none()).unwrap().set;
-    let size = general_set(Quality::Draft, Precision::F32).iter().map(|spec| spec.bytes()).sum::<usize>();
+    let size =
+        general_set(Quality::Draft, Precision::F32).iter().map(|spec| spec.bytes()).sum::<usize>();
     for (range, gammas) in [
         ("{ min = 1.51, max = 2.2 }", [1.51, 1.5432, 1.7999, 1.8, 2.2]),
         ("{ min = 2.9, max = 3.2 }", [2.9, 2.95, 3.0, 3.1, 3.2]),
@@ -126,7 +127,12 @@ fn sub_ranges_draw_the_very_normals_of_the_general_set() {
         }
         // And is worth no less: its certificate is about what was asked for, not about the margins.
         let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
-        assert!(worst(&part) <= worst(&general) * 1.01, "{range}: {} {}", worst(&part), worst(&general));
+        assert!(
+            worst(&part) <= worst(&general) * 1.01,
+            "{range}: {} {}",
+            worst(&part),
+            worst(&general)
+        );
     }
 }
 
@@ -134,14 +140,16 @@ fn sub_ranges_draw_the_very_normals_of_the_general_set() {
 fn a_thousand_materials_come_down_to_their_distinct_shapes() {
     let names: Vec<String> = (0..1000).map(|i| format!("material {i}")).collect();
     let sigmas: Vec<String> = (0..1000).map(|i| format!("{}", 0.001 * f64::from(i + 1))).collect();
-    let gammas: Vec<String> = (0..1000).map(|i| format!("{}", 1.6 + 0.1 * f64::from(i % 23))).collect();
+    let gammas: Vec<String> =
+        (0..1000).map(|i| format!("{}", 1.6 + 0.1 * f64::from(i % 23))).collect();
     let materials: Vec<[&str; 3]> =
         (0..1000).map(|i| [names[i].as_str(), sigmas[i].as_str(), gammas[i].as_str()]).collect();
     let plan = plan(&scene(&materials));
     // One of the 23 is GGX.
     assert_eq!(plan.needs.len(), 22);
     let baked = plan.verdicts.iter().filter(|verdict| matches!(verdict, Verdict::Bake(_))).count();
-    let shared = plan.verdicts.iter().filter(|verdict| matches!(verdict, Verdict::Same { .. })).count();
+    let shared =
+        plan.verdicts.iter().filter(|verdict| matches!(verdict, Verdict::Same { .. })).count();
     let closed = plan.verdicts.iter().filter(|verdict| **verdict == Verdict::ClosedForm).count();
     assert_eq!((baked, closed, baked + shared + closed), (22, 44, 1000));
 }
@@ -162,14 +170,17 @@ fn more_shapes_than_a_range_has_nodes_are_a_range() {
 #[test]
 fn estimated_bytes_are_those_of_the_file() {
     for materials in [&MIXED[..2], &MIXED[..]] {
-        let plan = Plan { recipe: "x".repeat(500), materials: Vec::new(), ..plan(&scene(materials)) };
+        let plan =
+            Plan { recipe: "x".repeat(500), materials: Vec::new(), ..plan(&scene(materials)) };
         for precision in [Precision::F32, Precision::U16] {
             let general = general_set(Quality::Draft, precision);
             let specs: Vec<_> = plan.needs.iter().flat_map(|need| need.specs(&general)).collect();
             let target = Target::Quality(Quality::Draft, precision);
             let set = bake(&plan, target, &Cache::none()).unwrap().set;
-            let (estimate, real) =
-                ((cost(&specs).bytes + bare_cost(&plan.provenance()).bytes) as f64, bytes(&set).len() as f64);
+            let (estimate, real) = (
+                (cost(&specs).bytes + bare_cost(&plan.provenance()).bytes) as f64,
+                bytes(&set).len() as f64,
+            );
             assert!((estimate / real - 1.0).abs() < 0.04, "{estimate} for {real}");
         }
     }
@@ -185,14 +196,19 @@ fn what_is_finished_is_not_baked_again() {
         let first = bake(&plan(&scene(&two)), target, &cache).unwrap();
         let second = bake(&plan(&scene(&two)), target, &cache).unwrap();
         assert_eq!((first.baked, second.baked), (6, 0));
-        assert!(bytes(&first.set) == bytes(&second.set), "{precision:?}: kept tables give another file");
+        assert!(
+            bytes(&first.set) == bytes(&second.set),
+            "{precision:?}: kept tables give another file"
+        );
     }
     // Another shape is baked alone; another roughness is not even a change.
-    let other = bake(&plan(&scene(&[["a", "0.9", "3.0"], ["b", "0.3", "4.5"]])), DRAFT, &cache).unwrap();
+    let other =
+        bake(&plan(&scene(&[["a", "0.9", "3.0"], ["b", "0.3", "4.5"]])), DRAFT, &cache).unwrap();
     assert_eq!(other.baked, 3);
     // A damaged entry is baked again, and so is one that lies about what it is.
-    let entries =
-        || std::fs::read_dir(folder.path().join("cache")).unwrap().map(|entry| entry.unwrap().path());
+    let entries = || {
+        std::fs::read_dir(folder.path().join("cache")).unwrap().map(|entry| entry.unwrap().path())
+    };
     let all: Vec<_> = entries().collect();
     assert_eq!(all.len(), 7);
     let genuine = std::fs::read(&all[0]).unwrap();
@@ -244,7 +260,8 @@ fn an_error_budget_is_met_by_less() {
     let error = bake(&plan, Target::MaxError(1e-12), &Cache::none()).unwrap_err().to_string();
     assert!(error.contains("1e-12") && error.contains("reaches"), "{error}");
     for nonsense in [0.0, -1e-4, f64::NAN] {
-        let error = bake(&plan, Target::MaxError(nonsense), &Cache::none()).unwrap_err().to_string();
+        let error =
+            bake(&plan, Target::MaxError(nonsense), &Cache::none()).unwrap_err().to_string();
         assert!(error.contains("above 0"), "{error}");
     }
 }
@@ -313,8 +330,12 @@ fn a_pavilion_needs_names_and_no_tables() {
     std::fs::write(at.join("pavilion.pbrt"), PAVILION).unwrap();
     let shown = json(at, &["plan", "pavilion.pbrt"]);
     assert_eq!(shown["needs"].as_array().unwrap().len(), 0);
-    let verdicts: Vec<&str> =
-        shown["materials"].as_array().unwrap().iter().map(|m| m["verdict"].as_str().unwrap()).collect();
+    let verdicts: Vec<&str> = shown["materials"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| m["verdict"].as_str().unwrap())
+        .collect();
     assert_eq!(verdicts.iter().filter(|verdict| **verdict == "closed form").count(), 6);
     assert_eq!(verdicts.iter().filter(|verdict| **verdict == "not rough").count(), 1);
     assert_eq!(shown["ignored"].as_array().unwrap().len(), 1);
@@ -332,7 +353,8 @@ fn a_pavilion_needs_names_and_no_tables() {
     let normals = general.tables().iter().filter(|table| !table.kind.is_albedo());
     let worst = normals.map(worst_error).fold(0.0, f64::max);
     let budget = format!("{worst:e}");
-    let tabulated = ["bake", "pavilion.pbrt", "--tabulate-ggx", "--max-error", &budget, "--out", "tables"];
+    let tabulated =
+        ["bake", "pavilion.pbrt", "--tabulate-ggx", "--max-error", &budget, "--out", "tables"];
     assert_eq!(json(at, &tabulated)["tables"].as_array().unwrap().len(), 3);
     let file = std::fs::read(at.join("tables/tables.safetensors")).unwrap();
     assert!(50 * file.len() < GENERAL.len(), "{} bytes", file.len());
@@ -355,7 +377,10 @@ fn distributions_have_their_part_in_the_totals() {
         let total = shown["total"][name].as_f64().unwrap();
         // What is left is the file's own description.
         let rest = if name == "bytes" { 3000.0 } else { 1e-9 };
-        assert!(figure(own, name) > 0.0 && (0.0..rest).contains(&(total - tables)), "{name}: {shown}");
+        assert!(
+            figure(own, name) > 0.0 && (0.0..rest).contains(&(total - tables)),
+            "{name}: {shown}"
+        );
     }
     assert!(ok(at, &["plan", "r.toml"]).contains("gtr:0.2,1.3            4 tables, "));
 }
@@ -364,12 +389,16 @@ fn distributions_have_their_part_in_the_totals() {
 fn the_command_says_what_it_did_not_do() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let write = |materials: &[[&str; 3]]| std::fs::write(at.join("r.toml"), recipe(materials)).unwrap();
+    let write =
+        |materials: &[[&str; 3]]| std::fs::write(at.join("r.toml"), recipe(materials)).unwrap();
     let draft = ["bake", "r.toml", "--out", "out", "--quality", "draft"];
     write(&MIXED[..2]);
     assert_eq!(json(at, &draft)["baked"], 3);
     let second = run(at, &draft);
-    assert!(String::from_utf8_lossy(&second.stdout).contains("nothing to bake: all 3 tables"), "{second:?}");
+    assert!(
+        String::from_utf8_lossy(&second.stdout).contains("nothing to bake: all 3 tables"),
+        "{second:?}"
+    );
     write(&[MIXED[0], MIXED[7]]);
     assert_eq!(json(at, &draft)["baked"], 3);
     assert_eq!(json(at, &[&draft[..], &["--no-cache"]].concat())["baked"], 6);
@@ -402,7 +431,8 @@ fn budgets_that_cannot_be_met_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("r.toml"), recipe(&MIXED[..1])).unwrap();
-    let with = |more: &[&str]| refused(at, &[&["bake", "r.toml", "--out", "out"][..], more].concat());
+    let with =
+        |more: &[&str]| refused(at, &[&["bake", "r.toml", "--out", "out"][..], more].concat());
     assert!(with(&["--max-error", "0"]).contains("(0, 0.1]"));
     assert!(with(&["--max-error", "nan"]).contains("(0, 0.1]"));
     assert!(with(&["--max-error", "1e-3", "--quality", "high"]).contains("--quality"));

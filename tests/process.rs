@@ -53,7 +53,10 @@ fn content(folder: &Path) -> (Files, Vec<String>) {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         if name.starts_with('.') {
-            assert!(name.starts_with(".microfacet-bake"), "a leftover that does not say whose it is: {name}");
+            assert!(
+                name.starts_with(".microfacet-bake"),
+                "a leftover that does not say whose it is: {name}"
+            );
             hidden.push(name);
         } else {
             files.insert(name, fs::read(&path).unwrap());
@@ -98,11 +101,13 @@ fn killed_at_any_moment_one_whole_set_is_there() {
         } else {
             // In the last step some files of the new set may not have their names yet, and a journal says so.
             assert!(hidden.iter().any(|name| name == ".microfacet-bake.commit"), "mixture at {i}");
-            let part_of = |set: &Files| files.iter().all(|(name, bytes)| set.get(name) == Some(bytes));
+            let part_of =
+                |set: &Files| files.iter().all(|(name, bytes)| set.get(name) == Some(bytes));
             assert!(part_of(&old) || part_of(&new), "mixture at {i}");
             // Whoever opens the folder next, be it to look, gets a whole set: the one of this bake, or of the one before if this
             // bake was killed while it completed that.
-            let look = Command::new(PROGRAM).arg("inspect").arg(&out).stdout(Stdio::null()).status();
+            let look =
+                Command::new(PROGRAM).arg("inspect").arg(&out).stdout(Stdio::null()).status();
             assert!(look.unwrap().success());
             let (files, hidden) = content(&out);
             assert!((files == old || files == new) && hidden.is_empty(), "not completed at {i}");
@@ -235,7 +240,8 @@ fn inspecting_a_lie_takes_little_memory() {
 #[test]
 fn more_memory_than_allowed_is_refused_with_the_estimate() {
     let workshop = workshop();
-    let wide = "[[material]]\nname = \"any\"\nsigma = 0.3\ngamma = { min = 1.501, max = \"inf\" }\n";
+    let wide =
+        "[[material]]\nname = \"any\"\nsigma = 0.3\ngamma = { min = 1.501, max = \"inf\" }\n";
     fs::write(workshop.path().join("wide.toml"), wide).unwrap();
     let out = workshop.path().join("out");
     let output = bake(&workshop, "wide", &out).args(["--max-memory", "1M"]).output().unwrap();

@@ -12,7 +12,10 @@ fn a_million_points_break_no_rule() {
     let total = report.total();
     assert!(total.points >= 1_000_000);
     if let Some((rule, found)) = total.violations.iter().next() {
-        panic!("{rule}: {} times, first {:e} at\n{}", found.count, found.worst.value, found.worst.at);
+        panic!(
+            "{rule}: {} times, first {:e} at\n{}",
+            found.count, found.worst.value, found.worst.at
+        );
     }
     for region in report.regions.as_flattened().iter().map(|by_sigma| &by_sigma[0]) {
         for ((worst, promised), name) in region.errors.iter().zip(PROMISED).zip(stress::ERRORS) {
@@ -35,11 +38,13 @@ fn damaged(kind: Kind, damage: impl Fn(usize, &mut f32)) -> Report {
 #[test]
 fn damaged_tables_are_caught() {
     // Every other node of G1/q two per cent up.
-    let total = damaged(Kind::Shadowing, |i, value| *value *= if i % 4 == 0 { 1.02 } else { 1.0 }).total();
+    let total =
+        damaged(Kind::Shadowing, |i, value| *value *= if i % 4 == 0 { 1.02 } else { 1.0 }).total();
     assert!(total.violations.contains_key("g1 rises with theta"), "{total:?}");
     assert!(total.errors[0].value > 1e-3);
     // All tilts a thousandth closer to the end.
     let total =
-        damaged(Kind::VisibleSlope, |i, value| *value *= if i % 2 == 0 { 0.999 } else { 1.0 }).total();
+        damaged(Kind::VisibleSlope, |i, value| *value *= if i % 2 == 0 { 0.999 } else { 1.0 })
+            .total();
     assert!(total.errors[3].value > PROMISED[3], "{total:?}");
 }

@@ -14,7 +14,8 @@ use microfacet_bake::store;
 use microfacet_bake::validate::albedo::{certified, interior_references, missed_by_half};
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{
-    Albedo, BindError, FresnelAlbedo, LobeEntry, Masking, Precision, Reflectance, Table, Tables, encode,
+    Albedo, BindError, FresnelAlbedo, LobeEntry, Masking, Precision, Reflectance, Table, Tables,
+    encode,
 };
 
 use command::{json, run};
@@ -123,8 +124,10 @@ fn the_model_agrees_with_independent_values() {
         let lobe = Lobe::StudentT { sigma, gamma };
         let site = Site { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi, cos };
         let albedo =
-            Models::with(&lobe, [], 1e-8, |models| models.at(&site).reflection(&site, weights)).unwrap();
-        let [scale, bias, _] = if correlated { albedo.height_correlated } else { albedo.uncorrelated };
+            Models::with(&lobe, [], 1e-8, |models| models.at(&site).reflection(&site, weights))
+                .unwrap();
+        let [scale, bias, _] =
+            if correlated { albedo.height_correlated } else { albedo.uncorrelated };
         assert!((scale + bias - e).abs() < 1e-7, "{sigma:?} {gamma}: {} for {e}", scale + bias);
     }
 }
@@ -148,7 +151,11 @@ fn each_lobe_and_form_has_one_table_within_its_error() {
         assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
         assert!(table.certificate["quadrature_error"] <= 1e-4);
         // Of single materials the round stand-in is off by this much.
-        assert!((0.05..0.3).contains(&table.certificate["shortcut_max_error"]), "{:?}", table.certificate);
+        assert!(
+            (0.05..0.3).contains(&table.certificate["shortcut_max_error"]),
+            "{:?}",
+            table.certificate
+        );
     }
 }
 
@@ -160,9 +167,13 @@ fn opposite_and_mirrored_views_are_the_same_and_no_view_gains() {
             let (cos, phi) = ((f64::from(i) * 0.618).fract().powi(3), 0.01 * f64::from(i));
             let v = direction(cos, phi);
             let [e, mirrored, opposite] =
-                [v, Vec3::new(v.x, -v.y, v.z), Vec3::new(-v.x, -v.y, v.z)].map(|v| albedo.albedo(v));
+                [v, Vec3::new(v.x, -v.y, v.z), Vec3::new(-v.x, -v.y, v.z)]
+                    .map(|v| albedo.albedo(v));
             assert!((0.0..=1.0).contains(&e), "{e} at {v}");
-            assert!((e - mirrored).abs() < 1e-6 && (e - opposite).abs() < 1e-6, "{e} {mirrored} {opposite}");
+            assert!(
+                (e - mirrored).abs() < 1e-6 && (e - opposite).abs() < 1e-6,
+                "{e} {mirrored} {opposite}"
+            );
             let moments = albedo.moments(v);
             assert!(moments.scale >= 0.0 && moments.bias >= 0.0 && moments.total() <= 1.0 + 1e-6);
         }
@@ -215,7 +226,8 @@ fn the_round_stand_in_is_off_by_what_the_certificate_says() {
     let own = SET.material_albedo("brushed").unwrap();
     let stand_in = Tables::embedded().albedo(0.3, 2.7, own.masking()).unwrap();
     let said = views(&SET)[1].certificate["shortcut_max_error"];
-    let views = (0..4000).map(|i| direction(0.02 + 0.98 * f64::from(i % 40) / 39.0, 0.01 * f64::from(i)));
+    let views =
+        (0..4000).map(|i| direction(0.02 + 0.98 * f64::from(i % 40) / 39.0, 0.01 * f64::from(i)));
     let seen = views.map(|v| (own.albedo(v) - stand_in.albedo(v)).abs()).fold(0.0, f32::max);
     assert!((f64::from(seen) - said).abs() < 0.1 * said + 3e-3, "{seen}, certified {said}");
 }
@@ -225,7 +237,8 @@ fn a_wrong_table_is_noticed() {
     let right = spec([0.6, 0.15], 2.7, Quality::Draft);
     let references = interior_references(&right).unwrap();
     let table = bake(&right).unwrap().remove(0);
-    let error = |table: Table| worst_error(&certified(&right, vec![table], &references).unwrap()[0]);
+    let error =
+        |table: Table| worst_error(&certified(&right, vec![table], &references).unwrap()[0]);
     // Axes exchanged.
     let swapped = spec([0.15, 0.6], 2.7, Quality::Draft);
     assert!(error(bake(&swapped).unwrap().remove(0)) > 0.1);
@@ -274,7 +287,9 @@ fn damaged_tables_are_refused() {
     assert!(refused(|t| t.axes[0].nodes[1] *= 1.01).contains("azimuth"));
     assert!(refused(|t| t.channels[0] = "value".into()).contains("channels"));
     let sigma = |t: &mut Table| {
-        let microfacet_sampler::Mapping::Azimuth(azimuth) = &mut t.axes[0].mapping else { panic!() };
+        let microfacet_sampler::Mapping::Azimuth(azimuth) = &mut t.axes[0].mapping else {
+            panic!()
+        };
         azimuth.sigma[1] = 0.0;
     };
     assert!(refused(sigma).contains("sigma"));
@@ -296,18 +311,24 @@ fn the_commands_list_bake_keep_and_show_them() {
     );
     assert_eq!(json(at, &["plan", "r.toml", "--no-albedo"])["albedo"], serde_json::json!([]));
 
-    let bake = ["bake", "r.toml", "--quality", "draft", "--out", "out", "--format", "safetensors,exr"];
+    let bake =
+        ["bake", "r.toml", "--quality", "draft", "--out", "out", "--format", "safetensors,exr"];
     let baked = json(at, &bake);
     assert!(baked["baked"].as_u64().unwrap() > 0);
     assert_eq!(json(at, &bake)["baked"], 0);
     let text = String::from_utf8(run(at, &["inspect", "out"]).stdout).unwrap();
     assert!(text.contains("albedo_height-correlated_gamma_2.7_sigma_0.6_0.15"), "{text}");
-    assert!(text.contains("an isotropic table at sqrt(sigma_x sigma_y) in its place would be off by up to"));
+    assert!(text.contains(
+        "an isotropic table at sqrt(sigma_x sigma_y) in its place would be off by up to"
+    ));
     let set = store::read(&at.join("out")).unwrap();
     assert!(set.material_albedo("brushed").is_ok());
     assert!(set.provenance().conventions.contains_key("albedo_azimuth"));
     let table = views(&set)[0];
-    assert_eq!(store::read(&at.join(format!("out/{}.exr", table.name))).unwrap().tables()[0], *table);
+    assert_eq!(
+        store::read(&at.join(format!("out/{}.exr", table.name))).unwrap().tables()[0],
+        *table
+    );
     // The estimate is of the table that is tried first.
     let spec = spec([0.6, 0.15], 2.7, Quality::Draft);
     let one = encode(&Default::default(), std::slice::from_ref(table)).unwrap().len();
@@ -359,7 +380,10 @@ fn other_distributions_have_an_albedo_over_the_cosine() {
     let set = generate::bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set;
     let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
     let table = views(&set)[0];
-    assert_eq!((table.name.as_str(), table.shape()[0]), ("albedo_height-correlated_gtr_0.2_1.5", 1));
+    assert_eq!(
+        (table.name.as_str(), table.shape()[0]),
+        ("albedo_height-correlated_gtr_0.2_1.5", 1)
+    );
     assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
     assert!(!table.certificate.contains_key("shortcut_max_error"));
     let (paint, albedo) = (set.radial("paint").unwrap(), set.material_albedo("paint").unwrap());
@@ -370,7 +394,9 @@ fn other_distributions_have_an_albedo_over_the_cosine() {
         let want = estimate(v, paint.g1(v), sample, |l| paint.g2(v, l, Masking::HeightCorrelated));
         assert!((f64::from(albedo.albedo(v)) - want).abs() < 3e-3, "{cos}: {want}");
     }
-    assert!(set.material_dielectric_albedo("paint", 1.5).unwrap_err().to_string().contains("radial"));
+    assert!(
+        set.material_dielectric_albedo("paint", 1.5).unwrap_err().to_string().contains("radial")
+    );
 }
 
 #[test]
@@ -401,10 +427,15 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
             }
         }
         want /= (STEPS * STEPS) as f64;
-        assert!((f64::from(albedo.albedo(v)) - want).abs() < 4e-3, "{v}: {} {want}", albedo.albedo(v));
+        assert!(
+            (f64::from(albedo.albedo(v)) - want).abs() < 4e-3,
+            "{v}: {} {want}",
+            albedo.albedo(v)
+        );
     }
     // It is tilted: the opposite view sees something else.
-    let [a, b] = [direction(0.4, 1.0), direction(0.4, 1.0 + std::f64::consts::PI)].map(|v| albedo.albedo(v));
+    let [a, b] =
+        [direction(0.4, 1.0), direction(0.4, 1.0 + std::f64::consts::PI)].map(|v| albedo.albedo(v));
     assert!((a - b).abs() > 0.01, "{a} {b}");
     let average = hemisphere(|v| albedo.albedo(v));
     assert!((average - f64::from(albedo.albedo_average())).abs() < 1e-4, "{average}");
@@ -416,14 +447,18 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
 
 #[test]
 fn an_anisotropic_conductor_has_the_albedo_of_its_own_lobe() {
-    const GOLD: &str = "fresnel = { conductor = { eta = [0.143, 0.375, 1.442], k = [3.983, 2.386, 1.603] } }";
+    const GOLD: &str =
+        "fresnel = { conductor = { eta = [0.143, 0.375, 1.442], k = [3.983, 2.386, 1.603] } }";
     let set = bake_all(&recipe(&[["gold", "[0.5, 0.1]", "2.2", GOLD]]), Quality::Draft);
-    let exact = |table: &&&Table| matches!(table.subject.reflectance, Some(Reflectance::Conductor { .. }));
+    let exact =
+        |table: &&&Table| matches!(table.subject.reflectance, Some(Reflectance::Conductor { .. }));
     let tables = views(&set);
     let table = tables.iter().find(exact).unwrap();
     assert_eq!((tables.len(), table.channels.join(" ").as_str()), (2, "red green blue"));
     assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
-    let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else { panic!() };
+    let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else {
+        panic!()
+    };
     let (material, all) = (set.material("gold").unwrap(), set.material_albedo("gold").unwrap());
     let red = microfacet_model::fresnel::Conductor::new(0.143, 3.983).unwrap();
     for i in 0..6 {
@@ -432,7 +467,8 @@ fn an_anisotropic_conductor_has_the_albedo_of_its_own_lobe() {
         let mut want = 0.0;
         const STEPS: usize = 200;
         for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
-            let m = material.sample_visible_normal(v, [i, j].map(|i| (i as f32 + 0.5) / STEPS as f32));
+            let m =
+                material.sample_visible_normal(v, [i, j].map(|i| (i as f32 + 0.5) / STEPS as f32));
             let l = 2.0 * v.dot(m) * m - v;
             if l.z > 0.0 {
                 let g = material.g2(v, l, Masking::HeightCorrelated) / material.g1(v);
@@ -442,7 +478,11 @@ fn an_anisotropic_conductor_has_the_albedo_of_its_own_lobe() {
         want /= (STEPS * STEPS) as f64;
         let got = gold.eval(v);
         assert!((f64::from(got[0]) - want).abs() < 4e-3, "{v}: {got:?} {want}");
-        assert!(got.iter().all(|&x| x <= all.albedo(v) + 1e-3), "{v}: {got:?} of {}", all.albedo(v));
+        assert!(
+            got.iter().all(|&x| x <= all.albedo(v) + 1e-3),
+            "{v}: {got:?} of {}",
+            all.albedo(v)
+        );
     }
     // Neither azimuths nor channels are mixed up in the average.
     let average = hemisphere(|v| gold.eval(v)[2]);

@@ -39,14 +39,27 @@ pub(crate) fn figures(
     };
     let ratio = |quantity, a, b| Some(ns(quantity, a)? / ns(quantity, b)?);
     let normals = |a, b| ratio(Quantity::Normal, a, b);
-    let worst = |error: fn(&Approximation) -> f64| approximation.iter().map(error).fold(0.0, f64::max);
+    let worst =
+        |error: fn(&Approximation) -> f64| approximation.iter().map(error).fold(0.0, f64::max);
     let bytes = bind(&slices.default, GAMMA).bytes() as f64;
     let figure = |name, unit, must, aim, reached| Figure { name, unit, must, aim, reached };
     vec![
         figure("sample, table / GGX spherical caps", "", 1.3, 1.0, normals(TABLE, CAPS)),
         figure("sample_batch, table / GGX spherical caps", "", 0.6, 0.35, normals(BATCH, CAPS)),
-        figure("g1, table / GGX closed form", "", 2.0, 1.2, ratio(Quantity::G1, TABLE, masking::GGX)),
-        figure("sample, table / inversion, any gamma", "", 1.0 / 20.0, 1.0 / 40.0, normals(TABLE, INVERSION)),
+        figure(
+            "g1, table / GGX closed form",
+            "",
+            2.0,
+            1.2,
+            ratio(Quantity::G1, TABLE, masking::GGX),
+        ),
+        figure(
+            "sample, table / inversion, any gamma",
+            "",
+            1.0 / 20.0,
+            1.0 / 40.0,
+            normals(TABLE, INVERSION),
+        ),
         figure(
             "sample, table / inversion, integer gamma only",
             "",
@@ -54,7 +67,13 @@ pub(crate) fn figures(
             1.0 / 40.0,
             normals(TABLE, INVERSION_SUM),
         ),
-        figure("CDF error, default tables, gamma >= 1.8", "", 1e-4, 2e-5, Some(certified(&slices.whole))),
+        figure(
+            "CDF error, default tables, gamma >= 1.8",
+            "",
+            1e-4,
+            2e-5,
+            Some(certified(&slices.whole)),
+        ),
         figure(
             "G1 error, table / rational approximation",
             "",
@@ -74,7 +93,9 @@ pub(crate) fn figures(
 fn certified(set: &Tables) -> f64 {
     let whole = |kind| matches!(kind, Kind::VisibleSlope | Kind::VisibleSlopeConditional);
     let tables = set.tables().iter().filter(|table| whole(table.kind));
-    tables.filter_map(|table| table.certificate.get("cdf_max_error")).fold(0.0, |worst, &x| x.max(worst))
+    tables
+        .filter_map(|table| table.certificate.get("cdf_max_error"))
+        .fold(0.0, |worst, &x| x.max(worst))
 }
 
 /// The median time of decoding the compiled-in set.
@@ -92,7 +113,8 @@ fn bind_ns(set: &Tables, settings: &Settings) -> f64 {
     let times = (0..settings.rounds.max(40)).map(|i| {
         let gamma = 2.1 + 0.37 * (i % 40) as f64;
         let start = Instant::now();
-        black_box(set.student_t(black_box(SIGMA), black_box(gamma))).expect("all gamma are covered");
+        black_box(set.student_t(black_box(SIGMA), black_box(gamma)))
+            .expect("all gamma are covered");
         start.elapsed().as_nanos() as f64
     });
     clock::median(times.collect())

@@ -32,7 +32,8 @@ impl Inputs {
             let sin = (1.0 - cos * cos).max(0.0).sqrt();
             Vec3::new(sin * x, sin * y, cos)
         };
-        let mut pairs = || (0..count).map(|_| [random.random(), random.random()]).collect::<Vec<[f32; 2]>>();
+        let mut pairs =
+            || (0..count).map(|_| [random.random(), random.random()]).collect::<Vec<[f32; 2]>>();
         let views = pairs().into_iter().map(view).collect();
         Self { views, numbers: pairs() }
     }

@@ -67,7 +67,8 @@ fn cdfs(truth: &StudentT, v: DVec3, m: DVec3) -> [f64; 2] {
     let (a, b) = (m.x / SIGMA, m.y / SIGMA);
     let (x, y) = (a * cos + b * sin, b * cos - a * sin);
     let t = y / (m.z * m.z + shape.s() * x * x).sqrt();
-    let signed = |x: f64| SignedUnit { w: shape.unit(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } };
+    let signed =
+        |x: f64| SignedUnit { w: shape.unit(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } };
     [VisibleSlope::new(shape, view).cdf(signed(x / m.z)), across_cdf(shape, signed(t))]
 }
 
@@ -76,7 +77,9 @@ pub(crate) fn masking_error(evaluate: &Evaluate, gamma: f64, inputs: &Inputs) ->
     let truth = truth(gamma);
     let mut g1 = vec![0.0; inputs.views.len()];
     evaluate(&inputs.views, &mut g1);
-    Error::of(inputs.views.iter().zip(g1).map(|(w, g1)| (f64::from(g1) - truth.g1(w.as_dvec3())).abs()))
+    Error::of(
+        inputs.views.iter().zip(g1).map(|(w, g1)| (f64::from(g1) - truth.g1(w.as_dvec3())).abs()),
+    )
 }
 
 /// The mean over views of the variance of a white-furnace estimator: the weight f cos/pdf of one
@@ -84,7 +87,12 @@ pub(crate) fn masking_error(evaluate: &Evaluate, gamma: f64, inputs: &Inputs) ->
 ///
 /// Weights are the model's in double precision, so that samplers differ by their normals alone.
 /// `views` of the inputs take part, with `draws` of the numbers each.
-pub(crate) fn furnace_variance(sampler: &Sampler, inputs: &Inputs, views: usize, draws: usize) -> f64 {
+pub(crate) fn furnace_variance(
+    sampler: &Sampler,
+    inputs: &Inputs,
+    views: usize,
+    draws: usize,
+) -> f64 {
     let truth = truth(sampler.gamma);
     let mut normals = vec![Vec3::ZERO; draws];
     let n = draws as f64;
@@ -199,10 +207,12 @@ mod tests {
         let (slices, inputs) = (Slices::bake(), Inputs::new(1, 4096));
         let all = samplers(&slices, 1);
         let variance = |name: &str| {
-            let sampler = all.iter().find(|sampler| sampler.name == name).expect("a name of the list");
+            let sampler =
+                all.iter().find(|sampler| sampler.name == name).expect("a name of the list");
             furnace_variance(sampler, &inputs, 16, 256)
         };
-        let (table, inversion) = (variance("table, default"), variance("inversion of the CDF, any gamma"));
+        let (table, inversion) =
+            (variance("table, default"), variance("inversion of the CDF, any gamma"));
         assert!((table / inversion - 1.0).abs() < 1e-2, "{table} against {inversion}");
         assert!(variance("all normals (NDF)") > 3.0 * table);
         assert!(variance("table, default, bounded to reflections") < 0.9 * table);

@@ -44,17 +44,31 @@ pub(crate) const GGX: &str = "GGX, closed form";
 /// All of them, over the given tables.
 pub(crate) fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
     let sigma = SIGMA as f32;
-    let form =
-        |name: &str, gamma, evaluate| Masking { name: name.into(), gamma, bytes: 0, stored: 0, evaluate };
-    let (any, four, half) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA), Lobe::three_and_a_half(SIGMA));
+    let form = |name: &str, gamma, evaluate| Masking {
+        name: name.into(),
+        gamma,
+        bytes: 0,
+        stored: 0,
+        evaluate,
+    };
+    let (any, four, half) =
+        (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA), Lobe::three_and_a_half(SIGMA));
     let rational = Rational::new(SIGMA, GAMMA);
     let truth = model::StudentT::isotropic(SIGMA, GAMMA).expect("constants");
     let mut all = vec![
         form(GGX, 2.0, each(move |w| ggx::g1(sigma, w))),
         form("Beckmann, closed form", f64::INFINITY, each(move |w| beckmann::g1(sigma, w))),
-        form("Beckmann, rational fit", f64::INFINITY, each(move |w| beckmann::g1_rational(sigma, w))),
+        form(
+            "Beckmann, rational fit",
+            f64::INFINITY,
+            each(move |w| beckmann::g1_rational(sigma, w)),
+        ),
         form("beta function, any gamma", GAMMA, each(move |w| any.g1(w))),
-        form("beta function, to rounding in f64", GAMMA, each(move |w| truth.g1(w.as_dvec3()) as f32)),
+        form(
+            "beta function, to rounding in f64",
+            GAMMA,
+            each(move |w| truth.g1(w.as_dvec3()) as f32),
+        ),
         form("sum for integer gamma", GAMMA, each(move |w| four.g1(w))),
         form("sum for half-integer gamma", 3.5, each(move |w| half.g1(w))),
         form("rational approximation (eq. 22-23)", GAMMA, each(move |w| rational.g1(w))),
@@ -62,7 +76,11 @@ pub(crate) fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
     let batch = bind(&slices.default, GAMMA);
     let (bytes, stored_bytes) = (batch.bytes(), stored(&slices.default));
     let evaluate: Evaluate = Box::new(move |w, g1| batch.g1_batch(w, g1).expect("of one length"));
-    all.push(Masking { bytes, stored: stored_bytes, ..form("table, default, batch", GAMMA, evaluate) });
+    all.push(Masking {
+        bytes,
+        stored: stored_bytes,
+        ..form("table, default, batch", GAMMA, evaluate)
+    });
     for (name, set) in slices.each() {
         let bound = bind(set, GAMMA);
         let (bytes, stored) = (bound.bytes(), stored(set));

@@ -73,7 +73,12 @@ pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
 }
 
 /// All methods that are defined for a material.
-fn methods(set: &Tables, gamma: f64, sigma: f64, seed: u64) -> Vec<(&'static str, Method<'static>)> {
+fn methods(
+    set: &Tables,
+    gamma: f64,
+    sigma: f64,
+    seed: u64,
+) -> Vec<(&'static str, Method<'static>)> {
     let truth = StudentT::isotropic(sigma, gamma).expect("constants");
     let bound = set.student_t(sigma, gamma).expect("the general set covers all shapes");
     let z = move |w: Vec3| f64::from(w.z) / (sigma * f64::from((w.x * w.x + w.y * w.y).sqrt()));
@@ -174,7 +179,13 @@ pub(crate) fn approximation(set: &Tables) -> Vec<Approximation> {
             let g1 = truth.g1(v.as_dvec3());
             let z = f64::from(v.z) / (SIGMA * f64::from(v.x));
             let rational_error = 1.0 / (1.0 + printed::lambda_rational(gamma, z)) - g1;
-            Approximation { gamma, degrees, g1, rational_error, table_error: f64::from(bound.g1(v)) - g1 }
+            Approximation {
+                gamma,
+                degrees,
+                g1,
+                rational_error,
+                table_error: f64::from(bound.g1(v)) - g1,
+            }
         })
     };
     [1.6, 1.8, 2.2, 3.0, 5.0, 10.0, 20.0, 40.0].into_iter().flat_map(of_shape).collect()

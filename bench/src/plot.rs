@@ -66,7 +66,8 @@ fn panel(
     y_label: &str,
     rows: &[&Row],
 ) -> Result<(), PlotError> {
-    let places: Vec<((f64, f64), &Row)> = rows.iter().filter_map(|row| Some((place(row)?, *row))).collect();
+    let places: Vec<((f64, f64), &Row)> =
+        rows.iter().filter_map(|row| Some((place(row)?, *row))).collect();
     let mut chart = ChartBuilder::on(area)
         .caption(title, ("sans-serif", 16 * FINE))
         .margin(12 * FINE)
@@ -99,7 +100,8 @@ fn panel(
         let color = if ours { RGBColor(20, 90, 190) } else { RGBColor(70, 70, 70) };
         let filled = row.gamma == GAMMA;
         let style = if filled { color.filled() } else { color.stroke_width(FINE) };
-        let label = if row.error.is_some() { row.name.clone() } else { format!("{} (exact)", row.name) };
+        let label =
+            if row.error.is_some() { row.name.clone() } else { format!("{} (exact)", row.name) };
         let down = free(&mut taken, x, y, label.chars().count());
         let font = ("sans-serif", 10 * FINE).into_font().color(&color);
         let dot = EmptyElement::at(at)
@@ -140,13 +142,20 @@ fn free(taken: &mut Vec<Box>, x: i32, y: i32, letters: usize) -> i32 {
         y: [y + down - line / 2, y + down + line / 2],
     };
     let steps = (0..24).map(|i| if i % 2 == 0 { i / 2 } else { -(i + 1) / 2 } * line / 2);
-    let down = steps.into_iter().find(|&down| !taken.iter().any(|other| other.meets(&at(down)))).unwrap_or(0);
+    let down = steps
+        .into_iter()
+        .find(|&down| !taken.iter().any(|other| other.meets(&at(down))))
+        .unwrap_or(0);
     taken.push(at(down));
     down
 }
 
 /// The range of a coordinate with room for names.
-fn range(places: &[((f64, f64), &Row)], of: fn(&(f64, f64)) -> f64, room: f64) -> std::ops::Range<f64> {
+fn range(
+    places: &[((f64, f64), &Row)],
+    of: fn(&(f64, f64)) -> f64,
+    room: f64,
+) -> std::ops::Range<f64> {
     let values = || places.iter().map(|(at, _)| of(at));
     values().fold(f64::INFINITY, f64::min) - 0.2..values().fold(f64::NEG_INFINITY, f64::max) + room
 }

@@ -92,7 +92,12 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
         variance: None,
     };
     let (first, second) = times.split_at(samplers.len());
-    samplers.iter().zip(first).map(of_sampler).chain(maskings.iter().zip(second).map(of_masking)).collect()
+    samplers
+        .iter()
+        .zip(first)
+        .map(of_sampler)
+        .chain(maskings.iter().zip(second).map(of_masking))
+        .collect()
 }
 
 /// A sampler as what the clock runs.

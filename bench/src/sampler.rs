@@ -64,7 +64,15 @@ pub(crate) struct Sampler<'a> {
 
 impl<'a> Sampler<'a> {
     fn new(name: &str, gamma: f64, check: Check, draw: Draw<'a>) -> Self {
-        Self { name: name.into(), gamma, bytes: 0, stored: 0, draw, check, density: Density::Visible }
+        Self {
+            name: name.into(),
+            gamma,
+            bytes: 0,
+            stored: 0,
+            draw,
+            check,
+            density: Density::Visible,
+        }
     }
 
     pub(crate) fn draws_visible_normals(&self) -> bool {
@@ -109,11 +117,17 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
     let drawer = || Drawer::new(SIGMA);
     let (any, four) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA));
     let (exact, mixture, ndf) = (drawer(), drawer(), drawer());
-    let doubles = move |v: Vec3, u: [f32; 2]| truth.visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3();
+    let doubles =
+        move |v: Vec3, u: [f32; 2]| truth.visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3();
     let closed = StudentT::ggx(SIGMA).expect("a constant");
     let caps: Exactly = ggx::double::caps;
     let mut all = vec![
-        Sampler::new(CAPS, 2.0, Check::Formula(caps), each(move |v, u| ggx::single::caps(sigma, v, u))),
+        Sampler::new(
+            CAPS,
+            2.0,
+            Check::Formula(caps),
+            each(move |v, u| ggx::single::caps(sigma, v, u)),
+        ),
         Sampler::new(
             "GGX, spherical caps, platform's sine",
             2.0,
@@ -130,7 +144,9 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
             "GGX, closed form of the sampler crate",
             2.0,
             // Its numbers are those of the listing the other way round: height first.
-            Check::Formula(|sigma, v, [height, azimuth]| ggx::double::caps(sigma, v, [azimuth, height])),
+            Check::Formula(|sigma, v, [height, azimuth]| {
+                ggx::double::caps(sigma, v, [azimuth, height])
+            }),
             each(move |v, u| closed.sample_visible_normal(v, u)),
         ),
         Sampler::new(
@@ -156,17 +172,24 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
         ),
         Sampler {
             density: Density::Ndf,
-            ..Sampler::new("all normals (NDF)", GAMMA, Check::Distribution, each(move |_, u| ndf.ndf(u)))
+            ..Sampler::new(
+                "all normals (NDF)",
+                GAMMA,
+                Check::Distribution,
+                each(move |_, u| ndf.ndf(u)),
+            )
         },
     ];
     all.extend(slices.each().map(|(name, set)| table(name, set)));
     all.extend(variants(&slices.default));
-    for (name, set) in [("bilinear, default nodes", &slices.default), ("bilinear, high nodes", &slices.high)]
+    for (name, set) in
+        [("bilinear, default nodes", &slices.default), ("bilinear, high nodes", &slices.high)]
     {
         let plain = Bilinear::new(SIGMA, GAMMA, set);
         let bytes = plain.bytes();
         all.push(
-            Sampler::new(name, GAMMA, Check::Cdf, each(move |v, u| plain.sample(v, u))).tables(bytes, bytes),
+            Sampler::new(name, GAMMA, Check::Cdf, each(move |v, u| plain.sample(v, u)))
+                .tables(bytes, bytes),
         );
     }
     all
@@ -179,7 +202,8 @@ fn variants<'a>(set: &Tables) -> [Sampler<'a>; 2] {
     let density = Density::Bounded(bounded.clone());
     let draw: Draw = Box::new(move |v, u, m| batch.sample_batch(v, u, m).expect("of one length"));
     let one = each(move |v, u| bounded.bounded(v).sample(u));
-    let bounded = Sampler::new("table, default, bounded to reflections", GAMMA, Check::Distribution, one);
+    let bounded =
+        Sampler::new("table, default, bounded to reflections", GAMMA, Check::Distribution, one);
     [Sampler::new(BATCH, GAMMA, Check::Cdf, draw), Sampler { density, ..bounded }]
         .map(|sampler| sampler.tables(bytes, stored))
 }

@@ -25,7 +25,8 @@ pub(crate) struct Settings {
 
 impl Settings {
     /// A minute or so.
-    pub(crate) const FULL: Self = Self { calls: COUNT, rounds: 801, views: 128, draws: 2048, seed: 1 };
+    pub(crate) const FULL: Self =
+        Self { calls: COUNT, rounds: 801, views: 128, draws: 2048, seed: 1 };
     /// Some seconds.
     pub(crate) const QUICK: Self = Self { rounds: 101, views: 32, draws: 1024, ..Self::FULL };
 
@@ -33,6 +34,12 @@ impl Settings {
     pub(crate) fn with_calls(self, calls: usize) -> Self {
         let calls = calls.clamp(1, COUNT);
         let few = |n: usize| n.min(calls);
-        Self { calls, rounds: few(self.rounds), views: few(self.views), draws: few(self.draws), ..self }
+        Self {
+            calls,
+            rounds: few(self.rounds),
+            views: few(self.views),
+            draws: few(self.draws),
+            ..self
+        }
     }
 }

@@ -37,8 +37,10 @@ pub(crate) fn table(rows: &[Row]) -> String {
 
 /// The figures with what they must be and aim to be.
 pub(crate) fn block(figures: &[Figure]) -> String {
-    let mut text =
-        format!("{:48} {:>9} {:>9} {:>9}\n", "figures (smaller is better)", "must", "aim", "reached");
+    let mut text = format!(
+        "{:48} {:>9} {:>9} {:>9}\n",
+        "figures (smaller is better)", "must", "aim", "reached"
+    );
     for figure in figures {
         let number = |x: f64| if x < 0.01 { format!("{x:.1e}") } else { format!("{x:.3}") };
         let name = match figure.unit {

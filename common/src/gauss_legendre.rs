@@ -72,7 +72,10 @@ mod tests {
             for degree in [0, 1, 7, n, 2 * n - 1] {
                 if degree < 2 * n {
                     let sum: f64 = rule.iter().map(|&(x, w)| w * power(x, degree)).sum();
-                    assert!((sum * (degree + 1) as f64 - 1.0).abs() < 1e-13, "{n} points, x^{degree}: {sum}");
+                    assert!(
+                        (sum * (degree + 1) as f64 - 1.0).abs() < 1e-13,
+                        "{n} points, x^{degree}: {sum}"
+                    );
                 }
             }
             assert!(rule.windows(2).all(|pair| pair[0].0 < pair[1].0));
@@ -85,8 +88,10 @@ mod tests {
     #[test]
     fn nodes_are_those_of_the_literature() {
         // Abramowitz & Stegun 25.4.30, n = 4, on [−1, 1].
-        let want =
-            [(0.339981043584856265, 0.652145154862546143), (0.861136311594052575, 0.347854845137453857)];
+        let want = [
+            (0.339981043584856265, 0.652145154862546143),
+            (0.861136311594052575, 0.347854845137453857),
+        ];
         let rule = gauss_legendre::<4>();
         for ((x, w), (got, weight)) in want.into_iter().zip([rule[2], rule[3]]) {
             assert!((2.0 * got - 1.0 - x).abs() < 1e-15 && (2.0 * weight - w).abs() < 1e-15);

@@ -20,7 +20,12 @@ use core::ops::{Add, Div, Mul, Sub};
 
 /// A floating-point number: `f32` or `f64`.
 pub trait Real:
-    Copy + PartialOrd + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+    Copy
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
 {
     /// The nearest number to a constant given in double precision.
     fn constant(x: f64) -> Self;

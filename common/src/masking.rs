@@ -7,7 +7,11 @@ use crate::Real;
 
 /// The form of G2, the share of the microsurface that both view and light reach.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Masking {
     /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12).
     Uncorrelated,
@@ -90,7 +94,10 @@ mod tests {
                 let lambda = |g1: f64| 1.0 / g1 - 1.0;
                 let want = 1.0 / (1.0 + lambda(a) + lambda(b));
                 let got = Masking::HeightCorrelated.g2(a, b);
-                assert!((got - want).abs() <= 4.0 * f64::EPSILON * want, "{a}, {b}: {got} for {want}");
+                assert!(
+                    (got - want).abs() <= 4.0 * f64::EPSILON * want,
+                    "{a}, {b}: {got} for {want}"
+                );
                 assert_eq!(Masking::Uncorrelated.g2(a, b), a * b);
             }
         }
@@ -103,7 +110,10 @@ mod tests {
             for v in [1e-12, 0.1, 0.7, 1.0_f64] {
                 for l in [0.0, 1e-12, 0.3, 1.0] {
                     let (got, want) = (masking.g2_over_g1(v, l), masking.g2(v, l) / v);
-                    assert!((got - want).abs() <= 4.0 * f64::EPSILON * want, "{v}, {l}: {got} for {want}");
+                    assert!(
+                        (got - want).abs() <= 4.0 * f64::EPSILON * want,
+                        "{v}, {l}: {got} for {want}"
+                    );
                 }
             }
         }

@@ -27,7 +27,12 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
 #[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(434.9))]
 fn sample_visible_normal(inputs: Inputs) -> (Vec3, Inputs) {
     let calls = inputs.v.iter().zip(&inputs.u);
-    (black_box(calls.map(|(v, u)| black_box(inputs.material.sample_visible_normal(*v, *u))).sum()), inputs)
+    (
+        black_box(
+            calls.map(|(v, u)| black_box(inputs.material.sample_visible_normal(*v, *u))).sum(),
+        ),
+        inputs,
+    )
 }
 
 #[library_benchmark]
@@ -55,7 +60,10 @@ fn g1_batch(mut inputs: Inputs) -> Inputs {
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(284.1))]
 fn visible_normal_pdf(inputs: Inputs) -> (f32, Inputs) {
     let calls = inputs.v.iter().zip(&inputs.m);
-    (black_box(calls.map(|(v, m)| black_box(inputs.material.visible_normal_pdf(*v, *m))).sum()), inputs)
+    (
+        black_box(calls.map(|(v, m)| black_box(inputs.material.visible_normal_pdf(*v, *m))).sum()),
+        inputs,
+    )
 }
 
 #[library_benchmark]
@@ -80,7 +88,12 @@ fn ggx_g1(inputs: Inputs) -> (f32, Inputs) {
 #[bench::closed_form(setup = closed_form, config = at_most(192.8))]
 fn ggx_sample_visible_normal(inputs: Inputs) -> (Vec3, Inputs) {
     let calls = inputs.v.iter().zip(&inputs.u);
-    (black_box(calls.map(|(v, u)| black_box(inputs.material.sample_visible_normal(*v, *u))).sum()), inputs)
+    (
+        black_box(
+            calls.map(|(v, u)| black_box(inputs.material.sample_visible_normal(*v, *u))).sum(),
+        ),
+        inputs,
+    )
 }
 
 library_benchmark_group!(

@@ -29,11 +29,13 @@ impl Inputs {
     pub fn of(material: StudentT) -> Self {
         let at = |i: usize, step: f64| (i as f64 * step).fract() as f32;
         let views = (0..CALLS).map(|i| {
-            let (z, t) = (at(i, 0.819_172_513_396_164_4), 2.0 * at(i, 0.671_043_606_703_789_2) - 1.0);
+            let (z, t) =
+                (at(i, 0.819_172_513_396_164_4), 2.0 * at(i, 0.671_043_606_703_789_2) - 1.0);
             let r = (1.0 - z * z).sqrt() / (1.0 + t * t);
             Vec3::new(r * (1.0 - t * t), r * 2.0 * t, z)
         });
-        let numbers = (0..CALLS).map(|i| [at(i, 0.754_877_666_246_692_7), at(i, 0.569_840_290_998_053_3)]);
+        let numbers =
+            (0..CALLS).map(|i| [at(i, 0.754_877_666_246_692_7), at(i, 0.569_840_290_998_053_3)]);
         let (v, u): (Vec<_>, Vec<_>) = (views.collect(), numbers.collect());
         let m = v.iter().zip(&u).map(|(v, u)| material.sample_visible_normal(*v, *u)).collect();
         Self { material, v, u, m, g1: vec![0.0; CALLS] }

@@ -58,7 +58,8 @@ impl<const N: usize> Albedo<N> {
 
     /// The largest difference between the albedos of two.
     fn furthest(&self, other: &Self) -> f64 {
-        let pairs = Masking::ALL.into_iter().flat_map(|form| self.of(form).into_iter().zip(other.of(form)));
+        let pairs =
+            Masking::ALL.into_iter().flat_map(|form| self.of(form).into_iter().zip(other.of(form)));
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
 }
@@ -109,7 +110,8 @@ impl AlbedoIntegrator {
         } else {
             let ln_cosh = 0.5 * log / (shape.gamma() - 1.5);
             let root = shape.s().sqrt();
-            (ln_cosh + libm::log1p((-libm::expm1(-2.0 * ln_cosh)).sqrt())).min(LARGEST_RAPIDITY) / root
+            (ln_cosh + libm::log1p((-libm::expm1(-2.0 * ln_cosh)).sqrt())).min(LARGEST_RAPIDITY)
+                / root
         };
         Self { shape, smith: SmithTable::new(&shape), rules: rules(), tolerance, cut }
     }
@@ -204,7 +206,8 @@ impl AlbedoIntegrator {
     ) -> Albedo<N> {
         // At a kink orders converge algebraically, and the last difference says less about the rest; else twice it, because two orders may agree.
         let factor = if kink { 10.0 } else { 2.0 };
-        let ([uncorrelated, height_correlated], error) = converge(&self.rules, tolerance, factor, quadrature);
+        let ([uncorrelated, height_correlated], error) =
+            converge(&self.rules, tolerance, factor, quadrature);
         Albedo { uncorrelated, height_correlated, error }
     }
 
@@ -289,8 +292,13 @@ impl AlbedoIntegrator {
         // Where the ellipse of the roughness is narrow, its width turns within the aspect.
         let minor = if view.sigma[0] < view.sigma[1] { 0.0 } else { FRAC_PI_2 };
         let narrow = |at: f64| End { at, scale: view.aspect };
-        let mut ends =
-            [turn(phi_0 + FRAC_PI_2), turn(phi_0 - FRAC_PI_2), normal, narrow(minor), narrow(minor + PI)];
+        let mut ends = [
+            turn(phi_0 + FRAC_PI_2),
+            turn(phi_0 - FRAC_PI_2),
+            normal,
+            narrow(minor),
+            narrow(minor + PI),
+        ];
         for end in &mut ends {
             end.at -= 2.0 * PI * libm::floor(end.at / (2.0 * PI));
         }
@@ -352,7 +360,11 @@ impl AlbedoIntegrator {
         // Distances from the branch point at l = n, in the unit of w.
         let cone = |distance: f64| {
             let scale = view.aspect * distance / (1.0 + s * view.r_normal * view.r_normal).sqrt();
-            if self.has_cone(view) && scale < 0.5 { scale.max(0.01 * view.aspect) } else { f64::INFINITY }
+            if self.has_cone(view) && scale < 0.5 {
+                scale.max(0.01 * view.aspect)
+            } else {
+                f64::INFINITY
+            }
         };
         let aside = cone(view.r_normal * libm::fabs(libm::sin(phi - view.phi_normal)));
         let w_normal = self.shape.unit(view.r_normal);
@@ -381,8 +393,8 @@ impl AlbedoIntegrator {
             // At grazing nothing ends the power law r^(−2k−1), and correlated masking (G2/G1 = 1) keeps all of it.
             let k = self.shape.gamma() - 1.5;
             let fresnel = weight(-b / a.sqrt());
-            let tail =
-                libm::exp(-2.0 * k * LARGEST_RAPIDITY) * libm::exp2(2.0 * k) / (2.0 * k * s * s.sqrt());
+            let tail = libm::exp(-2.0 * k * LARGEST_RAPIDITY) * libm::exp2(2.0 * k)
+                / (2.0 * k * s * s.sqrt());
             for i in 0..N {
                 sum[1][i] -= b * tail * fresnel[i];
             }
@@ -419,7 +431,15 @@ impl AlbedoIntegrator {
     }
 
     /// Where a ray meets the cone v·m = `kink`, in the unit of w, ascending; (cos θ − r b)² = kink² (1 + a r²).
-    pub(crate) fn conic(&self, cos: f64, kink: f64, a: f64, b: f64, last: f64, scale: f64) -> Vec<End> {
+    pub(crate) fn conic(
+        &self,
+        cos: f64,
+        kink: f64,
+        a: f64,
+        b: f64,
+        last: f64,
+        scale: f64,
+    ) -> Vec<End> {
         if kink == 0.0 {
             return Vec::new();
         }

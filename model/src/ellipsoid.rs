@@ -34,7 +34,9 @@ impl fmt::Display for EllipsoidError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Parameter(e) => e.fmt(f),
-            Self::NotFinite(x) => write!(f, "{x}: angles (radians) and matrix entries must be finite"),
+            Self::NotFinite(x) => {
+                write!(f, "{x}: angles (radians) and matrix entries must be finite")
+            }
             Self::Singular(r) => write!(
                 f,
                 "the matrix is singular to a ratio of {r:e}; its columns must span space with a ratio above {SINGULAR:e}"
@@ -111,7 +113,12 @@ impl Ellipsoid {
     ///
     /// # Errors
     /// [`EllipsoidError`], see there.
-    pub fn new(sigma_x: f64, sigma_y: f64, theta: [f64; 3], gamma: f64) -> Result<Self, EllipsoidError> {
+    pub fn new(
+        sigma_x: f64,
+        sigma_y: f64,
+        theta: [f64; 3],
+        gamma: f64,
+    ) -> Result<Self, EllipsoidError> {
         for sigma in [sigma_x, sigma_y] {
             if !(sigma > 0.0 && sigma < f64::INFINITY) {
                 return Err(ParameterError::Sigma(sigma).into());
@@ -124,7 +131,10 @@ impl Ellipsoid {
         let rx = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.1, x.0), DVec3::new(0.0, -x.0, x.1));
         let ry = DMat3::from_cols(DVec3::new(y.1, 0.0, -y.0), DVec3::Y, DVec3::new(y.0, 0.0, y.1));
         let rz = DMat3::from_cols(DVec3::new(z.1, z.0, 0.0), DVec3::new(-z.0, z.1, 0.0), DVec3::Z);
-        Self::from_matrix(DMat3::from_diagonal(DVec3::new(sigma_x, sigma_y, 1.0)) * rx * ry * rz, gamma)
+        Self::from_matrix(
+            DMat3::from_diagonal(DVec3::new(sigma_x, sigma_y, 1.0)) * rx * ry * rz,
+            gamma,
+        )
     }
 
     /// From the matrix U into unit space; for γ = 2 it is the A of the Ellipsoid NDF.
@@ -157,7 +167,8 @@ impl Ellipsoid {
             return Err(EllipsoidError::Silhouette(tilt));
         }
         let (p, q, r) = (l11 / l33, l21 / l33, l22 / l33);
-        let unit = DMat3::from_cols(DVec3::new(p, q, l31 / l33), DVec3::new(0.0, r, l32 / l33), DVec3::Z);
+        let unit =
+            DMat3::from_cols(DVec3::new(p, q, l31 / l33), DVec3::new(0.0, r, l32 / l33), DVec3::Z);
         Ok(Self { unit, shape })
     }
 
@@ -195,7 +206,8 @@ impl Ellipsoid {
             return 0.0;
         }
         let u = self.normal_to_unit(m);
-        self.shape.unit_d(u.x * u.x + u.y * u.y, m.z * m.z) / (self.unit.x_axis.x * self.unit.y_axis.y)
+        self.shape.unit_d(u.x * u.x + u.y * u.y, m.z * m.z)
+            / (self.unit.x_axis.x * self.unit.y_axis.y)
     }
 
     /// A normal in unit space, U⁻ᵀm; its z is that of m.
@@ -208,7 +220,8 @@ impl Ellipsoid {
     pub(crate) fn view(&self, v: DVec3) -> View {
         let w = self.unit * v;
         let across = libm::hypot(w.x, w.y);
-        let (cos_phi, sin_phi) = if across > 0.0 { (w.x / across, w.y / across) } else { (1.0, 0.0) };
+        let (cos_phi, sin_phi) =
+            if across > 0.0 { (w.x / across, w.y / across) } else { (1.0, 0.0) };
         View { across, up: w.z, cos_phi, sin_phi }
     }
 

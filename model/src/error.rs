@@ -40,9 +40,14 @@ impl fmt::Display for ParameterError {
                 )
             }
             Self::Gamma(x) => {
-                write!(f, "gamma = {x}: the shape must lie in (1.5, inf]; use 2 for GGX and inf for Beckmann")
+                write!(
+                    f,
+                    "gamma = {x}: the shape must lie in (1.5, inf]; use 2 for GGX and inf for Beckmann"
+                )
             }
-            Self::Exponent(x) => write!(f, "exponent = {x}: a Blinn-Phong exponent must lie in [0, inf)"),
+            Self::Exponent(x) => {
+                write!(f, "exponent = {x}: a Blinn-Phong exponent must lie in [0, inf)")
+            }
             Self::CosTheta(x) => {
                 write!(
                     f,
@@ -62,7 +67,9 @@ impl fmt::Display for ParameterError {
                     "k = {x}: an extinction coefficient must lie in [0, inf); give its magnitude, whatever the sign convention"
                 )
             }
-            Self::Reflectance(x) => write!(f, "reflectance = {x}: a reflectance or tint must lie in [0, 1]"),
+            Self::Reflectance(x) => {
+                write!(f, "reflectance = {x}: a reflectance or tint must lie in [0, 1]")
+            }
             Self::OtherGamma { given, prepared } => {
                 write!(
                     f,

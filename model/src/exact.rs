@@ -29,7 +29,10 @@ impl StudentT {
         // Slopes may be infinite near γ = 3/2; scaled by the largest they are not.
         let scale = 1.0 / x.abs().max(y.abs()).max(1.0);
         let (x, y) = if scale == 0.0 {
-            (if x.is_infinite() { x.signum() } else { 0.0 }, if y.is_infinite() { y.signum() } else { 0.0 })
+            (
+                if x.is_infinite() { x.signum() } else { 0.0 },
+                if y.is_infinite() { y.signum() } else { 0.0 },
+            )
         } else {
             (x * scale, y * scale)
         };
@@ -70,7 +73,8 @@ fn excess_slope(shape: &Shape, z: f64, uniform: &mut impl FnMut() -> f64) -> (f6
     // t has density ∝ (1 + s t²)^(−γ): Bailey's polar form for Student's t.
     let e = -libm::log1p(-uniform());
     let exponent = 1.0 / (shape.gamma() - 0.5);
-    let radius = if shape.is_beckmann() { e.sqrt() } else { (libm::expm1(e * exponent) / s).sqrt() };
+    let radius =
+        if shape.is_beckmann() { e.sqrt() } else { (libm::expm1(e * exponent) / s).sqrt() };
     let t = radius * libm::cos(2.0 * PI * uniform());
     (x, if t == 0.0 { 0.0 } else { (1.0 + s * x * x).sqrt() * t })
 }

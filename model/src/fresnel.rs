@@ -158,7 +158,8 @@ mod tests {
     #[test]
     fn conductor_without_absorption_is_the_dielectric() {
         for eta in [0.3, 0.75, 1.0, 1.33, 1.5, 2.4, 50.0] {
-            let (conductor, dielectric) = (Conductor::new(eta, 0.0).unwrap(), Dielectric::new(eta).unwrap());
+            let (conductor, dielectric) =
+                (Conductor::new(eta, 0.0).unwrap(), Dielectric::new(eta).unwrap());
             for cos in COSINES {
                 // At η = 1 and grazing the conductor's limit is 1, the dielectric's is 0 by definition.
                 if eta == 1.0 && cos == 0.0 {
@@ -200,7 +201,10 @@ mod tests {
             assert!((out - back).abs() < 1e-14);
         }
         assert_eq!(glass.reversed().reflectance(0.5), 1.0);
-        assert!((glass.reflectance(1.0) - glass.f0()).abs() < 1e-16 && (glass.f0() - 0.04).abs() < 1e-16);
+        assert!(
+            (glass.reflectance(1.0) - glass.f0()).abs() < 1e-16
+                && (glass.f0() - 0.04).abs() < 1e-16
+        );
     }
 
     #[test]

@@ -67,7 +67,8 @@ impl Lune<'_> {
     /// The random numbers at which [`sample_lune`](Self::sample_lune) gives m: uniform on [0, 1]² for visible normals.
     pub fn invert_lune(&self, v: DVec3, m: DVec3) -> [f64; 2] {
         let (view, frame) = Frame::of(self.ellipsoid, v);
-        let m = ellipsoid::turn(self.ellipsoid.normal_to_unit(m), view.cos_phi, -view.sin_phi).normalize();
+        let m = ellipsoid::turn(self.ellipsoid.normal_to_unit(m), view.cos_phi, -view.sin_phi)
+            .normalize();
         let (up, side) = (m.z * frame.sin - m.x * frame.cos, m.y);
         let reach = (1.0 - side * side).max(0.0).sqrt();
         let up = reach - 2.0 * (reach - up) / (1.0 + frame.cos);

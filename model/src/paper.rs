@@ -24,12 +24,14 @@ pub fn lambda_rational(gamma: f64, z: f64) -> f64 {
     let g1 = gamma - 1.0;
     let ratio = 1.0 / (1.0 + z * z / g1);
     let s1 = g1 * g1.sqrt() / ((2.0 * gamma - 3.0) * z) * libm::pow(ratio, gamma - 1.5);
-    let f21 = polynomial(z, [0.0, 1.066, 2.655, 4.892]) / polynomial(z, [1.038, 2.969, 4.305, 4.418]);
+    let f21 =
+        polynomial(z, [0.0, 1.066, 2.655, 4.892]) / polynomial(z, [1.038, 2.969, 4.305, 4.418]);
     let f22 = polynomial(gamma, [14.402, -27.145, 20.574, -2.745])
         / polynomial(gamma, [-30.612, 86.567, -84.341, 29.938]);
     let f23 = polynomial(gamma, [-129.404, 324.987, -299.305, 93.268])
         / polynomial(gamma, [-92.609, 256.006, -245.663, 86.064]);
-    let f24 = polynomial(z, [6.537, 6.074, -0.623, 5.223]) / polynomial(z, [6.538, 6.103, -3.218, 6.347]);
+    let f24 =
+        polynomial(z, [6.537, 6.074, -0.623, 5.223]) / polynomial(z, [6.538, 6.103, -3.218, 6.347]);
     prefactor(gamma) * (s1 + g1.sqrt() * f21 * (f22 + f23 * f24)) - 0.5
 }
 
@@ -84,7 +86,8 @@ pub fn lambda_half_integer(gamma: f64, z: f64) -> Option<f64> {
         j += 1.0;
     }
     let central = (libm::atan(a) + a * cos2 * sum) / PI;
-    let first = libm::pow(1.0 + a * a, 1.5 - gamma) / ((2.0 * gamma - 3.0) * a) / (PI * double_factorials);
+    let first =
+        libm::pow(1.0 + a * a, 1.5 - gamma) / ((2.0 * gamma - 3.0) * a) / (PI * double_factorials);
     Some(first + central - 0.5)
 }
 
@@ -125,15 +128,24 @@ mod tests {
         for z in [0.05, 0.4, 1.0, 2.5] {
             for gamma in [1.6, 2.0, 2.5, 3.0, 7.3, 20.0] {
                 let error = (lambda_hypergeometric(gamma, z) - exact(gamma, z)).abs();
-                assert!(error < 1e-11 * (1.0 + exact(gamma, z)), "eq. 13 at gamma {gamma}, z {z}: {error}");
+                assert!(
+                    error < 1e-11 * (1.0 + exact(gamma, z)),
+                    "eq. 13 at gamma {gamma}, z {z}: {error}"
+                );
             }
             for gamma in [2.0, 3.0, 4.0, 10.0] {
                 let error = (lambda_integer(gamma, z).unwrap() - exact(gamma, z)).abs();
-                assert!(error < 1e-13 * (1.0 + exact(gamma, z)), "eq. 21 at gamma {gamma}, z {z}: {error}");
+                assert!(
+                    error < 1e-13 * (1.0 + exact(gamma, z)),
+                    "eq. 21 at gamma {gamma}, z {z}: {error}"
+                );
             }
             for gamma in [2.5, 3.5, 8.5, 40.5] {
                 let error = (lambda_half_integer(gamma, z).unwrap() - exact(gamma, z)).abs();
-                assert!(error < 1e-14 * (1.0 + exact(gamma, z)), "eq. 21 at gamma {gamma}, z {z}: {error}");
+                assert!(
+                    error < 1e-14 * (1.0 + exact(gamma, z)),
+                    "eq. 21 at gamma {gamma}, z {z}: {error}"
+                );
             }
         }
         assert!(lambda_integer(2.5, 1.0).is_none() && lambda_half_integer(3.0, 1.0).is_none());

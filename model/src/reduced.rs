@@ -132,7 +132,8 @@ pub(crate) fn lambda(k: f64, c: f64, v: f64) -> f64 {
         return first - (0.5 - central(k, c, v, ln_cosh));
     }
     let fraction = gauss_fraction(1.5, k + 1.5, inverse_square(v));
-    c / (4.0 * k * (k + 0.5)) * libm::exp(-(2.0 * k + 1.0) * ln_cosh) / (tanh * tanh * tanh) * fraction
+    c / (4.0 * k * (k + 0.5)) * libm::exp(-(2.0 * k + 1.0) * ln_cosh) / (tanh * tanh * tanh)
+        * fraction
 }
 
 #[cfg(test)]

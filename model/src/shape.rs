@@ -54,7 +54,14 @@ impl Shape {
             return Ok(Self { gamma, s: 0.0, sqrt_s: 0.0, k: inf, c: inf, c_across: inf });
         }
         let (k, s) = (gamma - 1.5, s_of_gamma(gamma));
-        Ok(Self { gamma, s, sqrt_s: s.sqrt(), k, c: reduced::norm(k), c_across: reduced::norm(k + 0.5) })
+        Ok(Self {
+            gamma,
+            s,
+            sqrt_s: s.sqrt(),
+            k,
+            c: reduced::norm(k),
+            c_across: reduced::norm(k + 0.5),
+        })
     }
 
     /// The shape with the given s = 1/(γ−1) ∈ [0, 2); s = 0 is Beckmann. This is the axis tables use.
@@ -135,7 +142,11 @@ impl Shape {
 
     /// Upper tail Q(x) = P(X > x) of the in-plane unit slope for x ≥ 0.
     pub fn tail(&self, w: Unit) -> f64 {
-        if self.is_beckmann() { 0.5 * libm::erfc(w) } else { reduced::tail(self.k, self.c, self.sqrt_s * w) }
+        if self.is_beckmann() {
+            0.5 * libm::erfc(w)
+        } else {
+            reduced::tail(self.k, self.c, self.sqrt_s * w)
+        }
     }
 
     /// First moment beyond x ≥ 0: ∫ₓ^∞ ξ p(ξ) dξ = M₀ (1 + s x²)^(−k), in closed form.
@@ -214,7 +225,9 @@ mod tests {
             assert!(Shape::new(gamma).is_err());
         }
         assert!(
-            Shape::from_s(2.0).is_err() && Shape::from_s(-0.1).is_err() && Shape::from_s(f64::NAN).is_err()
+            Shape::from_s(2.0).is_err()
+                && Shape::from_s(-0.1).is_err()
+                && Shape::from_s(f64::NAN).is_err()
         );
         assert!(Shape::from_s(0.0).unwrap().is_beckmann());
         assert!(Shape::new(f64::INFINITY).unwrap().is_beckmann());

@@ -99,14 +99,16 @@ fn interpolate(f: impl Fn(f64) -> f64) -> [f64; DEGREE + 1] {
     current[1] = 1.0;
     let mut powers = [0.0; N];
     for j in 0..N {
-        let a: f64 = values.iter().enumerate().map(|(i, v)| v * libm::cos(j as f64 * angle(i))).sum::<f64>()
-            * 2.0
-            / N as f64;
+        let a: f64 =
+            values.iter().enumerate().map(|(i, v)| v * libm::cos(j as f64 * angle(i))).sum::<f64>()
+                * 2.0
+                / N as f64;
         let a = if j == 0 { 0.5 * a } else { a };
         for (power, p) in powers.iter_mut().zip(previous) {
             *power += a * p;
         }
-        let next = core::array::from_fn(|i| if i == 0 { 0.0 } else { 2.0 * current[i - 1] } - previous[i]);
+        let next =
+            core::array::from_fn(|i| if i == 0 { 0.0 } else { 2.0 * current[i - 1] } - previous[i]);
         (previous, current) = (current, next);
     }
     powers

@@ -113,7 +113,8 @@ impl Pane<'_> {
         let strong = self.model.shape().gamma() < 3.5 || self.sigma > 0.7;
         // m = ±(v − ηn), below the surface or turned away for the views in between.
         let there = self.eta * self.cos > 1.0 || self.eta < self.cos;
-        (strong && there && self.eta != 1.0).then(|| self.sin / ((self.eta - self.cos) * self.sigma))
+        (strong && there && self.eta != 1.0)
+            .then(|| self.sin / ((self.eta - self.cos) * self.sigma))
     }
 
     /// The integral along one ray of slopes from m = n.

@@ -150,7 +150,8 @@ impl<'a> VisibleSlope<'a> {
         let facing = if x.sign < 0.0 {
             if x.w >= self.w_silhouette { 0.0 } else { self.facing_density(x.w) }
         } else {
-            self.towards.0 * self.shape.density(x.w) + self.towards.1 * self.shape.first_moment_density(x.w)
+            self.towards.0 * self.shape.density(x.w)
+                + self.towards.1 * self.shape.first_moment_density(x.w)
         };
         facing / self.area
     }
@@ -167,7 +168,9 @@ impl<'a> VisibleSlope<'a> {
             let w = if target <= 0.0 {
                 self.w_silhouette
             } else {
-                solve_decreasing(target, 0.0, self.w_silhouette, |w| (self.lower(w), self.facing_density(w)))
+                solve_decreasing(target, 0.0, self.w_silhouette, |w| {
+                    (self.lower(w), self.facing_density(w))
+                })
             };
             return SignedUnit { w, sign: -1.0 };
         }
@@ -208,7 +211,9 @@ pub fn across_quantile(shape: &Shape, u: f64) -> SignedUnit {
     let w = if target <= 0.0 {
         f64::INFINITY
     } else {
-        solve_decreasing(target, 0.0, f64::INFINITY, |w| (shape.across_tail(w), shape.across_density(w)))
+        solve_decreasing(target, 0.0, f64::INFINITY, |w| {
+            (shape.across_tail(w), shape.across_density(w))
+        })
     };
     SignedUnit { w, sign }
 }
@@ -223,7 +228,12 @@ pub fn across_cdf(shape: &Shape, t: SignedUnit) -> f64 {
 ///
 /// Newton on ln f, which is nearly linear in the tails, inside a bracket that is bisected whenever a step leaves it; an
 /// infinite upper end is first replaced by doubling.
-pub(crate) fn solve_decreasing(target: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+pub(crate) fn solve_decreasing(
+    target: f64,
+    mut lo: f64,
+    mut hi: f64,
+    f: impl Fn(f64) -> (f64, f64),
+) -> f64 {
     let mut w = if hi.is_infinite() { lo + 1.0 } else { 0.5 * (lo + hi) };
     for _ in 0..200 {
         let (value, rate) = f(w);

@@ -14,7 +14,12 @@ impl StudentT {
     ///
     /// Its distribution is the whole BRDF with F = 1, cosine included: the share that leaves after one bounce is the height-correlated
     /// albedo E(v), and all of it leaves.
-    pub fn walk(&self, v: DVec3, limit: usize, uniform: &mut impl FnMut() -> f64) -> Option<(DVec3, usize)> {
+    pub fn walk(
+        &self,
+        v: DVec3,
+        limit: usize,
+        uniform: &mut impl FnMut() -> f64,
+    ) -> Option<(DVec3, usize)> {
         let mut w = -v;
         // The ray starts above everything.
         let mut below = 1.0;
@@ -54,7 +59,9 @@ mod tests {
             let material = StudentT::isotropic(sigma, gamma).unwrap();
             let v = DVec3::new(f64::sqrt(1.0 - cos * cos), 0.0, cos);
             let integrator = AlbedoIntegrator::new(*material.shape(), 1e-6);
-            let e = integrator.reflection(sigma, cos, |_| [1.0]).unwrap().of(Masking::HeightCorrelated)[0];
+            let e =
+                integrator.reflection(sigma, cos, |_| [1.0]).unwrap().of(Masking::HeightCorrelated)
+                    [0];
             let walks = 100_000;
             let (mut out, mut first) = (0, 0);
             for _ in 0..walks {
@@ -67,7 +74,10 @@ mod tests {
             assert_eq!(out, walks, "sigma {sigma}, gamma {gamma}");
             let share = f64::from(first) / f64::from(walks);
             let deviation = (e * (1.0 - e) / f64::from(walks)).sqrt();
-            assert!((share - e).abs() < 4.0 * deviation, "sigma {sigma}, gamma {gamma}: {share} against {e}");
+            assert!(
+                (share - e).abs() < 4.0 * deviation,
+                "sigma {sigma}, gamma {gamma}: {share} against {e}"
+            );
         }
     }
 }

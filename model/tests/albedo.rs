@@ -11,7 +11,8 @@ fn rows(name: &str) -> Vec<Vec<String>> {
     let folder = std::env::var("MICROFACET_REFERENCE")
         .unwrap_or_else(|_| format!("{}/tests/data", env!("CARGO_MANIFEST_DIR")));
     let text = std::fs::read_to_string(format!("{folder}/{name}")).expect("reference file");
-    let rows: Vec<_> = text.lines().skip(1).map(|row| row.split(',').map(String::from).collect()).collect();
+    let rows: Vec<_> =
+        text.lines().skip(1).map(|row| row.split(',').map(String::from).collect()).collect();
     assert!(rows.len() >= 25, "{name} has too few rows to mean anything");
     rows
 }
@@ -51,9 +52,14 @@ fn anisotropic_views_match_the_reference() {
     for row in rows("albedo_aniso.csv") {
         let f = |i: usize| row[i].parse::<f64>().expect("number");
         let integrator = AlbedoIntegrator::new(Shape::new(f(2)).unwrap(), 1e-6);
-        let albedo = integrator.reflection_anisotropic([f(0), f(1)], f(3), f(4), |_| [1.0]).unwrap();
+        let albedo =
+            integrator.reflection_anisotropic([f(0), f(1)], f(3), f(4), |_| [1.0]).unwrap();
         let error = (albedo.of(masking(&row[5]))[0] - f(6)).abs();
-        assert!(albedo.error < 1e-6 && error < 1e-6, "{row:?}: error {error:e}, estimate {:e}", albedo.error);
+        assert!(
+            albedo.error < 1e-6 && error < 1e-6,
+            "{row:?}: error {error:e}, estimate {:e}",
+            albedo.error
+        );
     }
 }
 
@@ -103,7 +109,10 @@ fn albedo_is_the_integral_over_light_directions() {
             let want = brute_force(&material, v, masking);
             let got = albedo.of(masking)[0];
             // The midpoint rule is of second order in steps of 2e-3.
-            assert!((got - want).abs() < 2e-5, "sigma {sigma:?}, gamma {gamma}: {got} against {want}");
+            assert!(
+                (got - want).abs() < 2e-5,
+                "sigma {sigma:?}, gamma {gamma}: {got} against {want}"
+            );
         }
     }
 }
@@ -125,15 +134,22 @@ fn the_domain_has_an_estimate_that_holds() {
     let weights = |cos| [1.0 - schlick_weight(cos), schlick_weight(cos), fresnel::f82_weight(cos)];
     for gamma in [1.501, 1.6, 2.0, 3.6, 20.0, f64::INFINITY] {
         let shape = Shape::new(gamma).unwrap();
-        let (coarse, fine) = (AlbedoIntegrator::new(shape, 1e-6), AlbedoIntegrator::new(shape, 1e-8));
+        let (coarse, fine) =
+            (AlbedoIntegrator::new(shape, 1e-6), AlbedoIntegrator::new(shape, 1e-8));
         for sigma in [1e-4, 0.01, 0.1, 0.7, 3.0] {
             for cos in [1e-6, 1e-3, 0.02, 0.3, 0.9, 1.0] {
                 let a = coarse.reflection(sigma, cos, weights).unwrap();
                 let b = fine.reflection(sigma, cos, weights).unwrap();
-                assert!(a.error < 1e-6 && b.error < 1e-8, "gamma {gamma}, sigma {sigma}, cos {cos}");
+                assert!(
+                    a.error < 1e-6 && b.error < 1e-8,
+                    "gamma {gamma}, sigma {sigma}, cos {cos}"
+                );
                 for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
                     for (x, y) in a.of(masking).iter().zip(b.of(masking)) {
-                        assert!((x - y).abs() < a.error + b.error, "gamma {gamma}, sigma {sigma}, cos {cos}");
+                        assert!(
+                            (x - y).abs() < a.error + b.error,
+                            "gamma {gamma}, sigma {sigma}, cos {cos}"
+                        );
                     }
                     let e = a.of(masking)[0] + a.of(masking)[1];
                     assert!(e > 0.0 && e <= 1.0 + 1e-9, "E = {e}");
@@ -160,7 +176,10 @@ fn grazing_and_smooth_limits() {
 fn refuses_what_is_outside_the_domain() {
     let integrator = AlbedoIntegrator::new(Shape::new(2.0).unwrap(), 1e-6);
     for sigma in [-0.1, f64::NAN, f64::INFINITY] {
-        assert!(matches!(integrator.reflection(sigma, 0.5, schlick), Err(ParameterError::Sigma(_))));
+        assert!(matches!(
+            integrator.reflection(sigma, 0.5, schlick),
+            Err(ParameterError::Sigma(_))
+        ));
     }
     for cos in [-0.1, 1.1, f64::NAN] {
         for sigma in [0.0, 0.3] {

@@ -2,7 +2,9 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use microfacet_model::classic::{Gauss, Gtr, Isotropic, Marginal, Member, RadialAlbedo, Schlick, Tabulated};
+use microfacet_model::classic::{
+    Gauss, Gtr, Isotropic, Marginal, Member, RadialAlbedo, Schlick, Tabulated,
+};
 use microfacet_model::fresnel::schlick_weight;
 use microfacet_model::{AlbedoIntegrator, Masking, ParameterError};
 
@@ -34,7 +36,8 @@ fn members_have_the_family_s_albedo() {
         Member::blinn_phong(12.0).unwrap(),
     ] {
         let (marginal, t) = (Marginal::new(&member), member.student_t().unwrap());
-        let (radial, family) = (RadialAlbedo::new(&marginal, 1e-6), AlbedoIntegrator::new(*t.shape(), 1e-9));
+        let (radial, family) =
+            (RadialAlbedo::new(&marginal, 1e-6), AlbedoIntegrator::new(*t.shape(), 1e-9));
         for cos in COSINES {
             let got = radial.reflection(cos, schlick).unwrap();
             let want = family.reflection(t.sigma_x(), cos, schlick).unwrap();
@@ -42,7 +45,11 @@ fn members_have_the_family_s_albedo() {
                 for (a, b) in got.of(form).iter().zip(want.of(form)) {
                     let error = (a - b).abs();
                     // Measured 1.3e-7.
-                    assert!(error < 1e-6, "{member:?}, cos {cos}: {a} against {b}, estimate {:e}", got.error);
+                    assert!(
+                        error < 1e-6,
+                        "{member:?}, cos {cos}: {a} against {b}, estimate {:e}",
+                        got.error
+                    );
                 }
             }
         }
@@ -75,9 +82,15 @@ fn brute_force(d: &dyn Isotropic, marginal: &Marginal, cos_v: f64) -> [f64; 2] {
 #[test]
 fn it_is_the_integral_over_light_directions() {
     let (gauss, wide) = (Gauss::new(0.25).unwrap(), Gauss::new(1.2).unwrap());
-    let (rational, gtr, table) = (Schlick::new(0.3).unwrap(), Gtr::new(0.3, 1.0).unwrap(), measured(45));
-    let all: [(&str, &dyn Isotropic); 5] =
-        [("gauss", &gauss), ("wide gauss", &wide), ("schlick", &rational), ("gtr", &gtr), ("table", &table)];
+    let (rational, gtr, table) =
+        (Schlick::new(0.3).unwrap(), Gtr::new(0.3, 1.0).unwrap(), measured(45));
+    let all: [(&str, &dyn Isotropic); 5] = [
+        ("gauss", &gauss),
+        ("wide gauss", &wide),
+        ("schlick", &rational),
+        ("gtr", &gtr),
+        ("table", &table),
+    ];
     for (name, d) in all {
         let marginal = Marginal::new(d);
         let radial = RadialAlbedo::new(&marginal, 1e-6);
@@ -87,7 +100,11 @@ fn it_is_the_integral_over_light_directions() {
                 let [got] = albedo.of(form);
                 let error = (got - want).abs();
                 // The midpoint rule is of second order in steps of 2e-3 and 6e-3; measured 7.6e-7.
-                assert!(error < 2e-6, "{name}, cos {cos}: {got} against {want}, estimate {:e}", albedo.error);
+                assert!(
+                    error < 2e-6,
+                    "{name}, cos {cos}: {got} against {want}, estimate {:e}",
+                    albedo.error
+                );
             }
         }
     }
@@ -104,13 +121,17 @@ fn energy_is_not_gained_and_estimates_hold() {
     }
     for (name, d) in all {
         let marginal = Marginal::new(&*d);
-        let (coarse, fine) = (RadialAlbedo::new(&marginal, 1e-5), RadialAlbedo::new(&marginal, 1e-7));
+        let (coarse, fine) =
+            (RadialAlbedo::new(&marginal, 1e-5), RadialAlbedo::new(&marginal, 1e-7));
         for cos in COSINES {
             let [a, b] = [&coarse, &fine].map(|x| x.reflection(cos, schlick).unwrap());
             assert!(a.error < 1e-5, "{name}, cos {cos}: estimate {:e}", a.error);
             for form in FORMS {
                 for (x, y) in a.of(form).iter().zip(b.of(form)) {
-                    assert!((x - y).abs() < a.error + b.error, "{name}, cos {cos}: {x} against {y}");
+                    assert!(
+                        (x - y).abs() < a.error + b.error,
+                        "{name}, cos {cos}: {x} against {y}"
+                    );
                 }
                 let e = a.of(form)[0] + a.of(form)[1];
                 assert!((0.0..=1.0 + 1e-5).contains(&e), "{name}, cos {cos}: E = {e}");

@@ -29,13 +29,16 @@ fn skewed(gamma: f64, p: f64, r: f64, mean: [f64; 2]) -> Ellipsoid {
 fn without_a_tilt_it_is_the_anisotropic_albedo() {
     for gamma in [1.52, 2.0, 3.6, f64::INFINITY] {
         let shape = Shape::new(gamma).unwrap();
-        let (plain, integrator) = (AlbedoIntegrator::new(shape, 1e-10), AlbedoIntegrator::new(shape, 1e-7));
+        let (plain, integrator) =
+            (AlbedoIntegrator::new(shape, 1e-10), AlbedoIntegrator::new(shape, 1e-7));
         for sigma in [[0.3, 0.3], [0.1, 0.6], [2.0, 0.7]] {
             for turn in [0.0, 0.8] {
-                let ellipsoid = Ellipsoid::new(sigma[0], sigma[1], [0.0, 0.0, turn], gamma).unwrap();
+                let ellipsoid =
+                    Ellipsoid::new(sigma[0], sigma[1], [0.0, 0.0, turn], gamma).unwrap();
                 for (cos, phi) in [(0.0, 0.3), (0.02, 2.0), (0.4, 0.9), (0.9, 4.0), (1.0, 0.0)] {
                     // θz turns directions into the principal frame.
-                    let want = plain.reflection_anisotropic(sigma, cos, phi + turn, schlick).unwrap();
+                    let want =
+                        plain.reflection_anisotropic(sigma, cos, phi + turn, schlick).unwrap();
                     let got = integrator.reflection_skewed(&ellipsoid, cos, phi, schlick).unwrap();
                     for form in FORMS {
                         for (a, b) in got.of(form).iter().zip(want.of(form)) {
@@ -90,7 +93,10 @@ fn it_is_the_integral_over_light_directions() {
                 let got = albedo.of(form)[0] + albedo.of(form)[1];
                 let error = (got - want).abs();
                 // The midpoint rule is of second order in steps of 3e-3 and 1.3e-2.
-                assert!(error < 6e-6, "gamma {gamma}, mean {mean:?}, cos {cos}: {got} against {want}");
+                assert!(
+                    error < 6e-6,
+                    "gamma {gamma}, mean {mean:?}, cos {cos}: {got} against {want}"
+                );
             }
         }
     }
@@ -138,13 +144,14 @@ fn it_is_the_mean_weight_of_sampled_reflections() {
 fn the_domain_has_an_estimate_that_holds() {
     for gamma in [1.501, 1.6, 2.0, 3.6, f64::INFINITY] {
         let shape = Shape::new(gamma).unwrap();
-        let (coarse, fine) = (AlbedoIntegrator::new(shape, 1e-5), AlbedoIntegrator::new(shape, 1e-6));
+        let (coarse, fine) =
+            (AlbedoIntegrator::new(shape, 1e-5), AlbedoIntegrator::new(shape, 1e-6));
         for (p, r) in [(0.01, 0.01), (0.6, 0.05), (3.0, 2.0)] {
             for mean in [[0.1, 0.0], [-0.6, 0.8], [1.5, 3.0]] {
                 let ellipsoid = skewed(gamma, p, r, mean);
                 for (cos, phi) in [(0.0, 1.0), (0.01, 3.0), (0.1, 5.0), (0.7, 2.0), (1.0, 0.0)] {
-                    let [a, b] =
-                        [&coarse, &fine].map(|x| x.reflection_skewed(&ellipsoid, cos, phi, schlick).unwrap());
+                    let [a, b] = [&coarse, &fine]
+                        .map(|x| x.reflection_skewed(&ellipsoid, cos, phi, schlick).unwrap());
                     let name = format!("gamma {gamma}, sigma {p} {r}, mean {mean:?}, cos {cos}");
                     assert!(a.error < 1e-4, "{name}: estimate {:e}", a.error);
                     for form in FORMS {
@@ -170,7 +177,8 @@ fn what_cannot_be_seen_has_no_albedo() {
         assert_eq!((albedo.uncorrelated, albedo.height_correlated), ([0.0; 2], [0.0; 2]));
     }
     assert!(
-        integrator.reflection_skewed(&ellipsoid, 0.0, 0.0, |_| [1.0]).unwrap().height_correlated[0] > 0.99
+        integrator.reflection_skewed(&ellipsoid, 0.0, 0.0, |_| [1.0]).unwrap().height_correlated[0]
+            > 0.99
     );
 }
 
@@ -197,10 +205,14 @@ fn accuracy_over_the_domain() {
     let (mut estimate, mut worst, mut points) = (0.0_f64, 0.0_f64, 0);
     for gamma in [1.501, 1.6, 2.0, 4.0, f64::INFINITY] {
         let shape = Shape::new(gamma).unwrap();
-        let (coarse, fine) = (AlbedoIntegrator::new(shape, 1e-5), AlbedoIntegrator::new(shape, 1e-7));
+        let (coarse, fine) =
+            (AlbedoIntegrator::new(shape, 1e-5), AlbedoIntegrator::new(shape, 1e-7));
         for (p, r) in [(0.01, 0.01), (0.05, 0.3), (0.5, 0.3), (1.0, 0.1), (3.0, 3.0)] {
-            for (length, turn) in (0..10).map(|i| ([0.0, 0.1, 0.5, 2.0, 4.0][i / 2], [0.3, 2.0][i % 2])) {
-                let ellipsoid = skewed(gamma, p, r, [length * libm::cos(turn), length * libm::sin(turn)]);
+            for (length, turn) in
+                (0..10).map(|i| ([0.0, 0.1, 0.5, 2.0, 4.0][i / 2], [0.3, 2.0][i % 2]))
+            {
+                let ellipsoid =
+                    skewed(gamma, p, r, [length * libm::cos(turn), length * libm::sin(turn)]);
                 for cos in [0.0, 1e-3, 0.02, 0.1, 0.3, 0.6, 0.95, 1.0] {
                     for phi in [0.1, 1.7, 3.3, 5.0] {
                         let count = core::cell::Cell::new(0);
@@ -216,7 +228,8 @@ fn accuracy_over_the_domain() {
                             assert!((0.0..=1.0 + 1e-6).contains(&a.of(form)[0]), "{:?}", a);
                         }
                         if views % 7 == 0 {
-                            let b = fine.reflection_skewed(&ellipsoid, cos, phi, |_| [1.0]).unwrap();
+                            let b =
+                                fine.reflection_skewed(&ellipsoid, cos, phi, |_| [1.0]).unwrap();
                             let error = FORMS.map(|form| (a.of(form)[0] - b.of(form)[0]).abs());
                             let error = error[0].max(error[1]);
                             worst = worst.max(error);

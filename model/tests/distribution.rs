@@ -1,6 +1,9 @@
 //! The model against its own definitions: normalisations, defining integrals, and samplers by χ².
 
-#![allow(clippy::disallowed_methods, reason = "only what is baked must be the same on every system")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "only what is baked must be the same on every system"
+)]
 
 use glam::{DVec3, Vec3};
 use microfacet_model::statistics::judge_visible_normals;
@@ -24,10 +27,12 @@ fn over_hemisphere(material: &StudentT, f: impl Fn(DVec3) -> f64) -> f64 {
         let dr = 4.0 * t * t * t / (rest * rest) / f64::from(radial);
         for j in 0..angular {
             let psi = (f64::from(j) + 0.5) / f64::from(angular) * 2.0 * std::f64::consts::PI;
-            let (x, y) = (material.sigma_x() * r * libm::cos(psi), material.sigma_y() * r * libm::sin(psi));
+            let (x, y) =
+                (material.sigma_x() * r * libm::cos(psi), material.sigma_y() * r * libm::sin(psi));
             let m = DVec3::new(x, y, 1.0).normalize();
-            let area = material.sigma_x() * material.sigma_y() * r * dr * 2.0 * std::f64::consts::PI
-                / f64::from(angular);
+            let area =
+                material.sigma_x() * material.sigma_y() * r * dr * 2.0 * std::f64::consts::PI
+                    / f64::from(angular);
             sum += f(m) * m.z * m.z * m.z * area;
         }
     }
@@ -69,7 +74,8 @@ fn beckmann_g1_is_the_closed_form() {
     let material = StudentT::beckmann(0.5).unwrap();
     for theta in [0.2_f64, 0.9, 1.3, 1.5] {
         let a = 1.0 / (0.5 * theta.tan());
-        let lambda = 0.5 * (libm::erf(a) - 1.0) + libm::exp(-a * a) / (2.0 * a * std::f64::consts::PI.sqrt());
+        let lambda = 0.5 * (libm::erf(a) - 1.0)
+            + libm::exp(-a * a) / (2.0 * a * std::f64::consts::PI.sqrt());
         let v = DVec3::new(theta.sin(), 0.0, theta.cos());
         assert!((material.lambda(v) - lambda).abs() < 1e-15 + 1e-13 * lambda);
         let l = DVec3::new(0.0, 0.6, 0.8);
@@ -120,7 +126,8 @@ fn samplers_draw_the_visible_normals() {
         for theta in [0.1_f64, 1.0, 1.55] {
             let v = DVec3::new(theta.sin() * 0.8, theta.sin() * -0.6, theta.cos());
             let mut random = StdRng::seed_from_u64(3);
-            let exact = |_: [f32; 2]| material.sample_visible_exact(v, &mut || random.random()).as_vec3();
+            let exact =
+                |_: [f32; 2]| material.sample_visible_exact(v, &mut || random.random()).as_vec3();
             let judgement = judge_visible_normals(&material, v, 100_000, 5, exact);
             assert!(judgement.p() > 1e-4, "exact, gamma {gamma}, theta {theta}: {judgement:?}");
             let inverse = |u: [f32; 2]| material.visible_normal(v, u.map(f64::from)).as_vec3();

@@ -17,7 +17,8 @@ use rand::{RngExt, SeedableRng};
 fn random(rng: &mut StdRng, gamma: f64) -> Ellipsoid {
     loop {
         let sigma = [(); 2].map(|()| 10.0_f64.powf(rng.random_range(-1.5..0.3)));
-        let theta = [rng.random_range(-0.6..0.6), rng.random_range(-0.6..0.6), rng.random_range(-PI..PI)];
+        let theta =
+            [rng.random_range(-0.6..0.6), rng.random_range(-0.6..0.6), rng.random_range(-PI..PI)];
         let ellipsoid = Ellipsoid::new(sigma[0], sigma[1], theta, gamma).unwrap();
         let u = ellipsoid.unit_matrix();
         if u.x_axis.z.hypot(u.y_axis.z) < 3.0 {
@@ -50,7 +51,10 @@ fn nodes(a: f64, b: f64) -> Vec<(f64, f64)> {
             // tanh, measured from the nearer end.
             let (e, half) = ((-2.0 * u.abs()).exp(), 0.5 * (b - a));
             let from_end = 2.0 * half * e / (1.0 + e);
-            (if u < 0.0 { a + from_end } else { b - from_end }, half * 4.0 * e / ((1.0 + e) * (1.0 + e)) * du)
+            (
+                if u < 0.0 { a + from_end } else { b - from_end },
+                half * 4.0 * e / ((1.0 + e) * (1.0 + e)) * du,
+            )
         }
     };
     (-60..=60).map(at).filter(|(x, w)| x.abs() < 1e60 && *w > 0.0).collect()
@@ -156,20 +160,33 @@ fn plain_matrices_are_student_t() {
             assert!((e.g1(v) - t.g1(v)).abs() < 1e-14);
             assert!((e.visible_normal(v, u) - t.visible_normal(v, u)).length() < 1e-13);
             let back = e.invert_visible_normal(v, e.visible_normal(v, u));
-            assert!((back[0] - u[0]).abs() < 1e-10 && (back[1] - u[1]).abs() < 1e-10, "{u:?} {back:?}");
+            assert!(
+                (back[0] - u[0]).abs() < 1e-10 && (back[1] - u[1]).abs() < 1e-10,
+                "{u:?} {back:?}"
+            );
         }
     }
 }
 
 #[test]
 fn refusals_say_why() {
-    let refused = |a: [f64; 9]| Ellipsoid::from_matrix(DMat3::from_cols_array(&a), 2.0).unwrap_err();
+    let refused =
+        |a: [f64; 9]| Ellipsoid::from_matrix(DMat3::from_cols_array(&a), 2.0).unwrap_err();
     assert!(matches!(refused([f64::NAN; 9]), EllipsoidError::NotFinite(_)));
     assert!(matches!(refused([0.0; 9]), EllipsoidError::Singular(_)));
-    assert!(matches!(refused([1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0]), EllipsoidError::Singular(_)));
-    assert!(matches!(refused([1.0, 0.0, 1e9, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]), EllipsoidError::Singular(_)));
+    assert!(matches!(
+        refused([1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0]),
+        EllipsoidError::Singular(_)
+    ));
+    assert!(matches!(
+        refused([1.0, 0.0, 1e9, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]),
+        EllipsoidError::Singular(_)
+    ));
     let tilted = Ellipsoid::new(1e-9, 1e-9, [0.5 * PI - 1e-9, 0.0, 0.0], 2.0);
-    assert!(matches!(tilted, Err(EllipsoidError::Silhouette(_) | EllipsoidError::Singular(_))), "{tilted:?}");
+    assert!(
+        matches!(tilted, Err(EllipsoidError::Silhouette(_) | EllipsoidError::Singular(_))),
+        "{tilted:?}"
+    );
     assert!(matches!(Ellipsoid::new(0.0, 1.0, [0.0; 3], 2.0), Err(EllipsoidError::Parameter(_))));
     assert!(matches!(
         Ellipsoid::from_lobe_matrix(DMat3::IDENTITY, f64::INFINITY),
@@ -193,7 +210,11 @@ fn the_clamp_is_needed() {
 }
 
 /// Pearson's p-value of draws binned on a 16 × 16 grid by the random numbers that `invert` finds, where every bin expects the same.
-fn p_value(draws: usize, mut draw: impl FnMut() -> DVec3, invert: impl Fn(DVec3) -> [f64; 2]) -> f64 {
+fn p_value(
+    draws: usize,
+    mut draw: impl FnMut() -> DVec3,
+    invert: impl Fn(DVec3) -> [f64; 2],
+) -> f64 {
     const BINS: usize = 16;
     let mut counts = [0; BINS * BINS];
     for _ in 0..draws {
@@ -272,7 +293,8 @@ fn visible_normals_match_their_density() {
             for j in 0..N * FINE {
                 let phi = 2.0 * PI * (j as f64 + 0.5) * step;
                 let m = DVec3::new(r * phi.cos(), r * phi.sin(), z);
-                expected[i / FINE * N + j / FINE] += e.visible_normal_pdf(v, m) * 2.0 * PI * step * step;
+                expected[i / FINE * N + j / FINE] +=
+                    e.visible_normal_pdf(v, m) * 2.0 * PI * step * step;
             }
         }
         let draws = 20_000;

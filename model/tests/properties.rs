@@ -1,6 +1,9 @@
 //! Laws that the model obeys for every roughness, shape and direction; edge values are generated as often as ordinary ones.
 
-#![allow(clippy::disallowed_methods, reason = "only what is baked must be the same on every system")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "only what is baked must be the same on every system"
+)]
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -12,7 +15,19 @@ use proptest::prelude::*;
 
 /// Shapes from just above 3/2 to Beckmann.
 fn gamma() -> impl Strategy<Value = f64> {
-    let edges = [1.5_f64.next_up(), 1.5 + 1e-6, 1.501, 1.8, 2.0, 2.5, 1e4, 1e15, 1e16, 1e300, f64::INFINITY];
+    let edges = [
+        1.5_f64.next_up(),
+        1.5 + 1e-6,
+        1.501,
+        1.8,
+        2.0,
+        2.5,
+        1e4,
+        1e15,
+        1e16,
+        1e300,
+        f64::INFINITY,
+    ];
     prop_oneof![
         prop::sample::select(edges.to_vec()),
         1.5001..12.0,

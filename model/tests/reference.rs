@@ -24,13 +24,16 @@ fn rows(name: &str) -> Vec<Vec<f64>> {
 fn lambda_and_g1() {
     let mut worst: (f64, String) = (0.0, String::new());
     for row in rows("lambda_g1.csv") {
-        let &[sigma_x, sigma_y, gamma, theta, phi, lambda, g1] = row.as_slice() else { panic!("columns") };
+        let &[sigma_x, sigma_y, gamma, theta, phi, lambda, g1] = row.as_slice() else {
+            panic!("columns")
+        };
         let (sin, cos) = (libm::sin(theta), libm::cos(theta));
         let v = DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos);
         let material = StudentT::anisotropic(sigma_x, sigma_y, gamma).unwrap();
         let (got, got_g1) = (material.lambda(v), material.g1(v));
         // 1e-12 relative or 1e-15 absolute.
-        let error = ((got - lambda).abs() / (1e-12 * lambda + 1e-15)).max((got_g1 - g1).abs() / 1e-12);
+        let error =
+            ((got - lambda).abs() / (1e-12 * lambda + 1e-15)).max((got_g1 - g1).abs() / 1e-12);
         if error > worst.0 {
             worst = (error, format!("{row:?}: {got} {got_g1}"));
         }

@@ -132,7 +132,8 @@ fn with_reflection_at_most_everything() {
                 for cos in [0.0, 1e-3, 0.1, 0.5, 0.9, 1.0] {
                     let passed = integrator.transmission(sigma, cos, pane).unwrap();
                     let weight = |mu: f64| [pane.reflectance(mu)];
-                    let reflected = integrator.reflection_with_kink(sigma, cos, kink, weight).unwrap();
+                    let reflected =
+                        integrator.reflection_with_kink(sigma, cos, kink, weight).unwrap();
                     assert!(
                         passed.error < 1e-4,
                         "gamma {gamma}, eta {eta}, sigma {sigma}, cos {cos}: {passed:?}"
@@ -146,7 +147,10 @@ fn with_reflection_at_most_everything() {
                         );
                         if sigma == 1e-6 && gamma == f64::INFINITY && cos > 1e-3 {
                             let smooth = 1.0 - pane.reflectance(cos);
-                            assert!((t - smooth).abs() < 1e-4, "eta {eta}, cos {cos}: {t} for {smooth}");
+                            assert!(
+                                (t - smooth).abs() < 1e-4,
+                                "eta {eta}, cos {cos}: {t} for {smooth}"
+                            );
                         }
                     }
                 }

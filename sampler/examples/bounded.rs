@@ -36,7 +36,9 @@ fn main() {
                 let v = Vec3::new(sin, 0.0, cos);
                 let bounded = material.bounded(v);
                 let share = f64::from(bounded.share());
-                let all = variance(|| weight(&material, v, material.sample_visible_normal(v, rng.random())));
+                let all = variance(|| {
+                    weight(&material, v, material.sample_visible_normal(v, rng.random()))
+                });
                 let fewer = variance(|| share * weight(&material, v, bounded.sample(rng.random())));
                 println!("{gamma:>6} {sigma:>6} {theta:>6} {share:>8.3} {:>10.3}", fewer / all);
             }

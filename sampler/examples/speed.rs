@@ -80,7 +80,11 @@ fn main() {
     let [bind] = medians([&mut || {
         black_box(tables.student_t(black_box(alpha), black_box(gamma)).unwrap());
     }]);
-    println!("bind: {:.1} us; a bound material reads {} bytes", bind * COUNT as f64 / 1e3, table.bytes());
+    println!(
+        "bind: {:.1} us; a bound material reads {} bytes",
+        bind * COUNT as f64 / 1e3,
+        table.bytes()
+    );
 }
 
 /// Fills `out` one call at a time: an index that the compiler does not see keeps it from joining calls into vectors, so

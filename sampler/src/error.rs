@@ -97,14 +97,19 @@ impl fmt::Display for BindError {
                 "sigma = {x}: a roughness must lie in [1e-8, 1e6]; below, treat the surface as smooth"
             ),
             Self::Gamma(x) => {
-                write!(f, "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann")
+                write!(
+                    f,
+                    "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann"
+                )
             }
             Self::OtherDistribution { name, distribution } => write!(
                 f,
                 "material \"{name}\" is of the kind {distribution}: bind a student-t with `student_t` or `material`, an ellipsoid with \
                  `material_ellipsoid`, others with `radial`"
             ),
-            Self::NoTable(name) => write!(f, "table `{name}` is missing from this set; bake it again"),
+            Self::NoTable(name) => {
+                write!(f, "table `{name}` is missing from this set; bake it again")
+            }
             Self::Dielectric([eta, sigma, gamma]) => write!(
                 f,
                 "no table of this set holds the albedo of a dielectric of index {eta} (more than 0) with sigma {sigma} and gamma {gamma}; add \

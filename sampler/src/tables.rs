@@ -95,7 +95,11 @@ impl Tables {
     ///
     /// # Errors
     /// [`BindError`] for a σ or γ outside the family, or a γ that this set does not cover.
-    pub fn student_t(&self, sigma: impl Into<Roughness>, gamma: f64) -> Result<StudentT, BindError> {
+    pub fn student_t(
+        &self,
+        sigma: impl Into<Roughness>,
+        gamma: f64,
+    ) -> Result<StudentT, BindError> {
         let sigma = sigma.into();
         match StudentT::bind(&self.tables, sigma, gamma) {
             Err(BindError::NotCovered { .. }) if gamma == 2.0 => StudentT::ggx(sigma),
@@ -167,12 +171,16 @@ impl Tables {
         materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
             // A scene may have thousands.
             const SHOWN: usize = 12;
-            let mut known: Vec<String> =
-                materials.iter().take(SHOWN).map(|entry| alloc::format!("\"{}\"", entry.name)).collect();
+            let mut known: Vec<String> = materials
+                .iter()
+                .take(SHOWN)
+                .map(|entry| alloc::format!("\"{}\"", entry.name))
+                .collect();
             if materials.len() > SHOWN {
                 known.push(alloc::format!("{} more", materials.len() - SHOWN));
             }
-            let known = if known.is_empty() { "no named materials".to_string() } else { known.join(", ") };
+            let known =
+                if known.is_empty() { "no named materials".to_string() } else { known.join(", ") };
             BindError::NoSuchMaterial { name: name.into(), known }
         })
     }
@@ -180,5 +188,8 @@ impl Tables {
 
 /// The material exists, but is of another kind than was asked for.
 fn other_lobe(entry: &MaterialEntry) -> BindError {
-    BindError::OtherDistribution { name: entry.name.clone(), distribution: entry.lobe().name().into() }
+    BindError::OtherDistribution {
+        name: entry.name.clone(),
+        distribution: entry.lobe().name().into(),
+    }
 }

@@ -30,7 +30,8 @@ fn moments_make_the_albedo_of_every_schlick_reflectance() {
                 let schlick = |mu| [f0 + (f90 - f0) * schlick_weight(mu)];
                 let want = model.reflection(sigma, cos.into(), schlick).unwrap().of(masking)[0];
                 let got = albedo.moments(view(cos)).schlick(f0 as f32, f90 as f32);
-                let at = format!("sigma {sigma}, gamma {gamma}, {masking:?}, {cos}, F0 {f0}, F90 {f90}");
+                let at =
+                    format!("sigma {sigma}, gamma {gamma}, {masking:?}, {cos}, F0 {f0}, F90 {f90}");
                 assert!((f64::from(got) - want).abs() < 3e-4, "{at}: {got} for {want}");
             }
         }
@@ -47,7 +48,9 @@ fn moments_make_the_albedo_of_every_tinted_metal() {
                 let want = model.reflection(sigma, cos.into(), |mu| [metal.reflectance(mu)]);
                 let want = want.unwrap().of(masking)[0];
                 let got = albedo.moments(view(cos)).f82_tint(f0 as f32, tint as f32);
-                let at = format!("sigma {sigma}, gamma {gamma}, {masking:?}, {cos}, F0 {f0}, tint {tint}");
+                let at = format!(
+                    "sigma {sigma}, gamma {gamma}, {masking:?}, {cos}, F0 {f0}, tint {tint}"
+                );
                 assert!((f64::from(got) - want).abs() < 3e-4, "{at}: {got} for {want}");
                 // Without a tint it is Schlick's, and a tint takes light away.
                 let plain = albedo.moments(view(cos)).schlick(f0 as f32, 1.0);
@@ -62,8 +65,8 @@ fn by_sampling(albedo: &Albedo, f: impl Fn(Vec3) -> f32) -> f64 {
     // Heights need many, towards the horizon; of azimuths a few integrate trigonometric polynomials exactly.
     const STEPS: [usize; 2] = [1 << 14, 8];
     let step = |i: usize, n: usize| (i as f32 + 0.5) / n as f32;
-    let numbers =
-        (0..STEPS[0]).flat_map(|i| (0..STEPS[1]).map(move |j| [step(i, STEPS[0]), step(j, STEPS[1])]));
+    let numbers = (0..STEPS[0])
+        .flat_map(|i| (0..STEPS[1]).map(move |j| [step(i, STEPS[0]), step(j, STEPS[1])]));
     let worth = |u| {
         let l = albedo.sample_compensation(u);
         f64::from(f(l)) / f64::from(albedo.compensation_pdf(l))

@@ -8,7 +8,14 @@ use rand::{RngExt, SeedableRng};
 /// Views of the whole hemisphere and a little below it, the axes, and what is no direction; numbers with both ends and beyond.
 fn inputs(count: usize) -> (Vec<Vec3>, Vec<[f32; 2]>) {
     let mut rng = StdRng::seed_from_u64(5);
-    let odd = [Vec3::Z, Vec3::X, -Vec3::Z, Vec3::new(1e-20, 0.0, 1.0), Vec3::new(0.6, 0.0, -0.8), Vec3::NAN];
+    let odd = [
+        Vec3::Z,
+        Vec3::X,
+        -Vec3::Z,
+        Vec3::new(1e-20, 0.0, 1.0),
+        Vec3::new(0.6, 0.0, -0.8),
+        Vec3::NAN,
+    ];
     let ends = [0.0, 1.0, 0.5, 1e-12, 1.0 - f32::EPSILON / 2.0, -0.5, 1.5, 0.25];
     let views = (0..count).map(|i| match odd.get(i % 23) {
         Some(v) => *v,

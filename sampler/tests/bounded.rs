@@ -13,7 +13,9 @@ fn materials() -> impl Iterator<Item = StudentT> {
 
 fn views() -> impl Iterator<Item = Vec3> {
     [0.0, 0.1, 0.6, 1.1, 1.45, 1.57].into_iter().flat_map(|theta: f32| {
-        [0.3, 2.0].map(|phi: f32| Vec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()))
+        [0.3, 2.0].map(|phi: f32| {
+            Vec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
+        })
     })
 }
 
@@ -24,7 +26,11 @@ fn reflect(v: Vec3, m: Vec3) -> Vec3 {
 /// White-furnace weight of a reflection.
 fn weight(material: &StudentT, v: Vec3, m: Vec3) -> f64 {
     let l = reflect(v, m);
-    if l.z > 0.0 { f64::from(material.g2(v, l, Masking::HeightCorrelated) / material.g1(v)) } else { 0.0 }
+    if l.z > 0.0 {
+        f64::from(material.g2(v, l, Masking::HeightCorrelated) / material.g1(v))
+    } else {
+        0.0
+    }
 }
 
 /// Midpoints of an n × n grid of the unit square.
@@ -99,7 +105,8 @@ fn densities_are_those_of_visible_normals_over_the_share() {
         for v in views() {
             let bounded = material.bounded(v);
             let m = bounded.sample([0.4, 0.3]);
-            let ratio = bounded.visible_normal_pdf(m) * bounded.share() / material.visible_normal_pdf(v, m);
+            let ratio =
+                bounded.visible_normal_pdf(m) * bounded.share() / material.visible_normal_pdf(v, m);
             assert!((ratio - 1.0).abs() < 1e-6);
             let ratio = bounded.table_pdf(m) * bounded.share() / material.table_pdf(v, m);
             assert!((ratio - 1.0).abs() < 1e-6, "{v}");

@@ -35,15 +35,19 @@ fn values_are_those_of_the_model() {
 #[test]
 fn normals_have_the_analytic_distribution() {
     const SAMPLES: usize = 200_000;
-    let cases: Vec<_> =
-        SIGMAS[..3].iter().flat_map(|sigma| VIEWS.iter().map(move |view| (*sigma, *view))).collect();
+    let cases: Vec<_> = SIGMAS[..3]
+        .iter()
+        .flat_map(|sigma| VIEWS.iter().map(move |view| (*sigma, *view)))
+        .collect();
     let level = sidak(0.01, 2 * cases.len());
     let judge = |sigma: [f64; 2], view, gamma| {
         let ggx = StudentT::ggx(sigma).unwrap();
         let [x, y] = ggx.sigma().map(f64::from);
         let truth = model::StudentT::anisotropic(x, y, gamma).unwrap();
         let v = direction(view).as_vec3();
-        judge_visible_normals(&truth, v.as_dvec3(), SAMPLES, 11, |u| ggx.sample_visible_normal(v, u))
+        judge_visible_normals(&truth, v.as_dvec3(), SAMPLES, 11, |u| {
+            ggx.sample_visible_normal(v, u)
+        })
     };
     for (sigma, view) in cases {
         let judgement = judge(sigma, view, 2.0);
@@ -59,7 +63,9 @@ fn normals_are_visible_at_every_corner() {
     for sigma in SIGMAS {
         let ggx = StudentT::ggx(sigma).unwrap();
         let directions = VIEWS.map(|view| direction(view).as_vec3());
-        for v in directions.into_iter().chain([Vec3::X, Vec3::Z, -Vec3::Z, Vec3::new(0.6, 0.0, -0.8)]) {
+        for v in
+            directions.into_iter().chain([Vec3::X, Vec3::Z, -Vec3::Z, Vec3::new(0.6, 0.0, -0.8)])
+        {
             for u in corners.into_iter().flat_map(|a| corners.map(|b| [a, b])) {
                 let m = ggx.sample_visible_normal(v, u);
                 assert!((m.length() - 1.0).abs() < 1e-6 && m.z > 0.0, "{sigma:?} {v} {u:?}: {m}");

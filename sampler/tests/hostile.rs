@@ -3,8 +3,8 @@
 use glam::Vec3;
 use microfacet_sampler::axis::{HalfTangent, Rational};
 use microfacet_sampler::{
-    Axis, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Provenance, StudentT, Subject, Table,
-    Tables, VERSION, encode, seal,
+    Axis, Interpolation, Kind, LoadError, Mapping, Masking, Precision, Provenance, StudentT,
+    Subject, Table, Tables, VERSION, encode, seal,
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {
@@ -60,7 +60,8 @@ fn small_tables() -> Vec<Table> {
 }
 
 fn small_file() -> Vec<u8> {
-    encode(&Provenance { generator: "test".into(), ..Provenance::default() }, &small_tables()).unwrap()
+    encode(&Provenance { generator: "test".into(), ..Provenance::default() }, &small_tables())
+        .unwrap()
 }
 
 #[test]
@@ -68,7 +69,10 @@ fn every_truncation_is_refused() {
     let file = small_file();
     assert!(Tables::from_bytes(&file).unwrap().student_t(0.3, 2.0).is_ok());
     for length in 0..file.len() {
-        assert!(matches!(Tables::from_bytes(&file[..length]), Err(LoadError::Invalid(_))), "{length} bytes");
+        assert!(
+            matches!(Tables::from_bytes(&file[..length]), Err(LoadError::Invalid(_))),
+            "{length} bytes"
+        );
     }
     let longer = [&file[..], &[0]].concat();
     assert!(Tables::from_bytes(&longer).is_err());
@@ -126,16 +130,28 @@ fn lying_headers_are_refused_by_name() {
         (nodes, r#"\"nodes\":[0.0,1.0]"#, "shape"),
         (r#"\"nodes\":[1.0]"#, r#"\"nodes\":[2.0]"#, "outside the range"),
         (r#"\"nodes\":[1.0]"#, r#"\"nodes\":[-1.0]"#, "outside the range"),
-        (r#"\"kind\":\"inverse_shape\""#, r#"\"kind\":\"reflectance_root\""#, "not by `inverse_shape`"),
+        (
+            r#"\"kind\":\"inverse_shape\""#,
+            r#"\"kind\":\"reflectance_root\""#,
+            "not by `inverse_shape`",
+        ),
         (r#"\"kind\":\"half_tangent\""#, r#"\"kind\":\"cube_root\""#, "cube_root"),
         (r#"\"scale\":0.5"#, r#"\"scale\":-0.5"#, "scale out of range"),
         (r#"\"scale\":0.5"#, r#"\"scale\":0.5,\"pole\":2.0"#, "unknown field `pole`"),
-        (r#"\"interpolation\":\"hermite\""#, r#"\"interpolation\":\"linear\""#, "is read by Linear"),
+        (
+            r#"\"interpolation\":\"hermite\""#,
+            r#"\"interpolation\":\"linear\""#,
+            "is read by Linear",
+        ),
         (r#"\"kind\":\"odd_root\""#, r#"\"kind\":\"mirrored_root\""#, "shape"),
         (r#"\"kind\":\"mirrored_root\""#, r#"\"kind\":\"odd_root\""#, "shape"),
         // Documents.
         (r#"\"channels\":[\"value\",\"slope\"]"#, r#"\"channels\":[]"#, "no channels"),
-        (r#"\"channels\":[\"value\",\"slope\"]"#, r#"\"channels\":[\"slope\",\"value\"]"#, "channels"),
+        (
+            r#"\"channels\":[\"value\",\"slope\"]"#,
+            r#"\"channels\":[\"slope\",\"value\"]"#,
+            "channels",
+        ),
         (r#"\"kind\":\"visible_slope\""#, r#"\"kind\":\"albatross\""#, "albatross"),
         (r#"\"name\":\"visible_slope_conditional\""#, r#"\"name\":\"shadowing\""#, "named twice"),
         (r#"\"name\":\"shadowing\""#, r#"\"name\":\"elsewhere\""#, "no tensor of that name"),
@@ -175,7 +191,8 @@ fn a_newer_version_says_so() {
     let newer = forge(&now, &format!(r#"\"version\":{},\"weather\":\"fine\""#, VERSION + 1));
     let Err(LoadError::Unsupported(why)) = Tables::from_bytes(&newer) else { panic!("loaded") };
     assert!(
-        why.contains(&format!("version {}", VERSION + 1)) && why.contains(&format!("knows {VERSION}")),
+        why.contains(&format!("version {}", VERSION + 1))
+            && why.contains(&format!("knows {VERSION}")),
         "{why}"
     );
 }
@@ -208,7 +225,9 @@ fn headers_longer_than_files_and_towers_of_brackets_are_refused() {
         assert!(Tables::from_bytes(&file).is_err(), "{length}");
     }
     let tower = "[".repeat(100_000);
-    assert!(Tables::from_bytes(&forge(r#"\"tables\":["#, &format!(r#"\"tables\":[{tower}"#))).is_err());
+    assert!(
+        Tables::from_bytes(&forge(r#"\"tables\":["#, &format!(r#"\"tables\":[{tower}"#))).is_err()
+    );
 }
 
 /// Whatever it is given, the sampler answers; and for finite views of some length with numbers in range and normals above the horizon.
@@ -220,14 +239,21 @@ fn directions_and_numbers_out_of_their_domain_are_answered() {
     for gamma in [1.501, 1.7, 2.0, 3.0, f64::INFINITY, f64::NAN] {
         for sigma in [[1e-8_f32, 1e-8], [0.3, 0.3], [1e-8, 1e6], [1e6, 1e6]] {
             // NaN stands for the closed forms of GGX.
-            let material = if gamma.is_nan() { StudentT::ggx(sigma).unwrap() } else { bind(sigma, gamma) };
-            for v in odd.iter().flat_map(|&x| odd.iter().flat_map(move |&y| odd.map(|z| Vec3::new(x, y, z))))
+            let material =
+                if gamma.is_nan() { StudentT::ggx(sigma).unwrap() } else { bind(sigma, gamma) };
+            for v in odd
+                .iter()
+                .flat_map(|&x| odd.iter().flat_map(move |&y| odd.map(|z| Vec3::new(x, y, z))))
             {
                 let v = if v.length() > 1e-3 { v.normalize() } else { v };
                 let defined = v.is_finite() && v.length() > 1e-3;
-                for u in
-                    [[0.0, 0.5], [1.0, 1.0], [0.3, f32::NAN], [f32::NEG_INFINITY, f32::INFINITY], [-3.0, 7.0]]
-                {
+                for u in [
+                    [0.0, 0.5],
+                    [1.0, 1.0],
+                    [0.3, f32::NAN],
+                    [f32::NEG_INFINITY, f32::INFINITY],
+                    [-3.0, 7.0],
+                ] {
                     let m = material.sample_visible_normal(v, u);
                     let sound = (m.length() - 1.0).abs() < 5e-7 && m.z > 0.0;
                     assert!(sound || !defined, "{gamma} {sigma:?} {v} {u:?}: {m}");
@@ -241,8 +267,15 @@ fn directions_and_numbers_out_of_their_domain_are_answered() {
                         "{gamma} {sigma:?} {v}: {g1}"
                     );
                     assert!(material.lambda(v) >= 0.0);
-                    assert!(material.d(v) >= 0.0 && material.d(v).is_finite(), "{gamma} {sigma:?} {v}");
-                    assert!((0.0..=1.0).contains(&material.g2(v, Vec3::Z, Masking::HeightCorrelated)));
+                    assert!(
+                        material.d(v) >= 0.0 && material.d(v).is_finite(),
+                        "{gamma} {sigma:?} {v}"
+                    );
+                    assert!((0.0..=1.0).contains(&material.g2(
+                        v,
+                        Vec3::Z,
+                        Masking::HeightCorrelated
+                    )));
                 }
             }
         }

@@ -11,7 +11,8 @@ fn material() -> impl Strategy<Value = StudentT> {
     let gamma = prop_oneof![prop::sample::select(edges), 1.501..10.0];
     let sigma = || prop_oneof![prop::sample::select(vec![1e-4_f32, 0.3, 10.0]), 0.01..3.0_f32];
     let tables = Tables::embedded();
-    (sigma(), sigma(), gamma).prop_map(move |(x, y, gamma)| tables.student_t([x, y], gamma).unwrap())
+    (sigma(), sigma(), gamma)
+        .prop_map(move |(x, y, gamma)| tables.student_t([x, y], gamma).unwrap())
 }
 
 fn theta() -> impl Strategy<Value = f32> {
@@ -28,7 +29,10 @@ fn at(theta: f32, phi: f32) -> Vec3 {
 }
 
 fn number() -> impl Strategy<Value = f32> {
-    prop_oneof![prop::sample::select(vec![0.0, 1e-45, 1e-12, 0.5, 1.0_f32.next_down(), 1.0]), 0.0..1.0_f32]
+    prop_oneof![
+        prop::sample::select(vec![0.0, 1e-45, 1e-12, 0.5, 1.0_f32.next_down(), 1.0]),
+        0.0..1.0_f32
+    ]
 }
 
 fn close(a: f32, b: f32, relative: f32) -> bool {

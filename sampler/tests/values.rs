@@ -71,7 +71,8 @@ fn densities_are_the_models() {
                     continue;
                 }
                 // Rounding of the exponent: |ln D| times a few ulp.
-                let scale = 1.0 + (exact * f64::from(bound.sigma()[0] * bound.sigma()[1])).ln().abs();
+                let scale =
+                    1.0 + (exact * f64::from(bound.sigma()[0] * bound.sigma()[1])).ln().abs();
                 assert!(
                     (d / exact - 1.0).abs() < 2e-6 * scale || exact < 1e-35,
                     "{truth:?} {m}: {d} {exact}"
@@ -83,7 +84,10 @@ fn densities_are_the_models() {
                 // The certificate bounds the absolute error of G1; the density divides by the area, 1/G1.
                 let g1 = truth.g1(v.as_dvec3());
                 let tolerance = 4.2e-6 / g1 + 2e-6 * scale + 3e-7 / facing.max(1e-9);
-                assert!((pdf - exact).abs() <= tolerance * exact + 1e-30, "{truth:?} {v} {m}: {pdf} {exact}");
+                assert!(
+                    (pdf - exact).abs() <= tolerance * exact + 1e-30,
+                    "{truth:?} {v} {m}: {pdf} {exact}"
+                );
             }
         }
     }
@@ -122,7 +126,10 @@ fn sampled_normals_are_unit_upward_and_facing_and_rise_with_u() {
                 let [x, y] = bound.sigma();
                 if x == y && bound.gamma() >= 1.8 && azimuth.length() > 0.0 {
                     let tilt = m.dot(azimuth / azimuth.length()) / m.z;
-                    assert!(tilt >= last - 1e-6 * tilt.abs(), "{truth:?} {v} {u}: {tilt} after {last}");
+                    assert!(
+                        tilt >= last - 1e-6 * tilt.abs(),
+                        "{truth:?} {v} {u}: {tilt} after {last}"
+                    );
                     last = tilt;
                 }
             }
@@ -141,7 +148,9 @@ fn refuses_what_it_cannot_bind() {
     }
     let error = tables.student_t(0.3, 1.5005).unwrap_err().to_string();
     assert!(
-        error.contains("1.5005") && error.contains("1.501") && error.contains("microfacet-bake bake"),
+        error.contains("1.5005")
+            && error.contains("1.501")
+            && error.contains("microfacet-bake bake"),
         "{error}"
     );
     assert!(tables.material("glass").unwrap_err().to_string().contains("no named materials"));

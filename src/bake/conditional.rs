@@ -23,5 +23,8 @@ pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
 fn node(shape: &Shape, t: f64, cells: usize) -> [f64; 2] {
     let (u, du_dt) = mirrored(t);
     let x = across_quantile(shape, 1.0 - u);
-    [distance(shape, x, 1.0), du_dt / shape.across_density(x.w) * half_tangent_rate(shape, x) / cells as f64]
+    [
+        distance(shape, x, 1.0),
+        du_dt / shape.across_density(x.w) * half_tangent_rate(shape, x) / cells as f64,
+    ]
 }

@@ -6,7 +6,9 @@
 use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_sampler::axis::half_tangent::{rate, slope_at};
 use microfacet_sampler::axis::{HalfTangent, Rational, limit_slopes};
-use microfacet_sampler::{Axis, Interpolation, Kind, LobeEntry, Mapping, Precision, Subject, Table};
+use microfacet_sampler::{
+    Axis, Interpolation, Kind, LobeEntry, Mapping, Precision, Subject, Table,
+};
 use rayon::prelude::*;
 
 use super::shadowing::ratios;
@@ -34,13 +36,22 @@ pub fn radial_axes(level: Level, kappa: f64, reach: f64) -> [(Kind, Vec<Axis>); 
         ),
         (
             Kind::RadialSlope,
-            vec![Axis::placed("view", HALF_TANGENT, Interpolation::Linear, r.views), along(along_numbers)],
+            vec![
+                Axis::placed("view", HALF_TANGENT, Interpolation::Linear, r.views),
+                along(along_numbers),
+            ],
         ),
         (
             Kind::RadialConditional,
-            vec![Axis::placed("slope", slopes, Interpolation::Linear, SLOPES), across(across_numbers)],
+            vec![
+                Axis::placed("slope", slopes, Interpolation::Linear, SLOPES),
+                across(across_numbers),
+            ],
         ),
-        (Kind::RadialDensity, vec![Axis::placed("slope", HALF_TANGENT, Interpolation::Hermite, DENSITIES)]),
+        (
+            Kind::RadialDensity,
+            vec![Axis::placed("slope", HALF_TANGENT, Interpolation::Hermite, DENSITIES)],
+        ),
     ]
 }
 
@@ -57,7 +68,8 @@ fn rational(kappa: f64) -> Mapping {
 pub fn radial_bytes(level: Level, precision: Precision) -> usize {
     // None depends on the distribution.
     let channels = Kind::VALUE_AND_SLOPE.len();
-    let values = |(_, axes): &(Kind, Vec<Axis>)| channels * axes.iter().map(Axis::len).product::<usize>();
+    let values =
+        |(_, axes): &(Kind, Vec<Axis>)| channels * axes.iter().map(Axis::len).product::<usize>();
     radial_axes(level, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * precision.bytes()
 }
 
@@ -72,8 +84,12 @@ pub fn bake_radial(
     let table = |(kind, axes): (Kind, Vec<Axis>)| {
         let values = match (kind, &axes[..]) {
             (Kind::RadialShadowing, [views]) => shadowing(marginal, kappa, &views.nodes),
-            (Kind::RadialSlope, [views, numbers]) => in_plane(marginal, &views.nodes, &numbers.nodes),
-            (Kind::RadialConditional, [slopes, numbers]) => given_slope(marginal, slopes, &numbers.nodes),
+            (Kind::RadialSlope, [views, numbers]) => {
+                in_plane(marginal, &views.nodes, &numbers.nodes)
+            }
+            (Kind::RadialConditional, [slopes, numbers]) => {
+                given_slope(marginal, slopes, &numbers.nodes)
+            }
             (_, [slopes, ..]) => density(marginal, &slopes.nodes),
             (_, []) => unreachable!("every kind has an axis"),
         };

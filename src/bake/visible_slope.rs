@@ -53,10 +53,12 @@ pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
 /// Both halves of a row: the nodes for u ≤ ½ from u = 0 up, then those for u > ½ from u = 1 down.
 fn row_nodes(shape: &Shape, [rest, z]: [f64; 2], numbers: &[f64], peeled: bool) -> Vec<[f32; 2]> {
     let view = UnitView::from_cotangent(z);
-    let slopes = if peeled { VisibleSlope::peeled(shape, view) } else { VisibleSlope::new(shape, view) };
+    let slopes =
+        if peeled { VisibleSlope::peeled(shape, view) } else { VisibleSlope::new(shape, view) };
     let mut row = Vec::with_capacity(2 * numbers.len());
     for end in [-1.0, 1.0] {
-        let mut half = round(numbers.iter().map(|&t| node(shape, &slopes, end, t, numbers.len() - 1)));
+        let mut half =
+            round(numbers.iter().map(|&t| node(shape, &slopes, end, t, numbers.len() - 1)));
         if end < 0.0 && z.is_finite() {
             // The silhouette, exactly: linear in τ (convex where the axis is crowded), so that between the rows it is as exact (on the
             // visible side) too and no sampled normal faces away.

@@ -19,7 +19,9 @@ use super::{Done, Outcome, print, print_json, progress};
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  microfacet-bake bake tables/recipes/frosted-glass.toml --out glass")]
+#[command(
+    after_help = "Example:\n  microfacet-bake bake tables/recipes/frosted-glass.toml --out glass"
+)]
 pub(super) struct Args {
     /// A recipe (.toml) or scene (.pbrt, .xml, .gltf, .glb, .mtlx); without one, the general set: all sigma, gamma in [1.501, inf].
     recipe: Option<PathBuf>,
@@ -66,8 +68,11 @@ fn parse_bytes(text: &str) -> Result<u64, String> {
         "G" => Some(30),
         _ => None,
     };
-    let bytes = digits.parse::<u64>().ok().zip(shift).and_then(|(n, shift)| n.checked_mul(1 << shift));
-    bytes.ok_or_else(|| format!("\"{text}\" must be a whole number of bytes, such as 536870912 or 512M"))
+    let bytes =
+        digits.parse::<u64>().ok().zip(shift).and_then(|(n, shift)| n.checked_mul(1 << shift));
+    bytes.ok_or_else(|| {
+        format!("\"{text}\" must be a whole number of bytes, such as 536870912 or 512M")
+    })
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -187,7 +192,8 @@ fn summary(result: &Baked, plan: &Plan, written: &[Written], seconds: f64) -> St
         let axes: Vec<String> =
             table.axes.iter().map(|axis| format!("{} {}", axis.name, axis.len())).collect();
         let (axes, precision) = (axes.join(" x "), format!("{:?}", table.precision).to_lowercase());
-        text += &format!("{:width$}  {axes:34} {precision}  {}\n", table.name, largest_error(table));
+        text +=
+            &format!("{:width$}  {axes:34} {precision}  {}\n", table.name, largest_error(table));
     }
     for file in written {
         text += &format!("{} ({} bytes)\n", file.path.display(), file.bytes);
@@ -197,13 +203,17 @@ fn summary(result: &Baked, plan: &Plan, written: &[Written], seconds: f64) -> St
     }
     let baked = match (tables.len(), result.baked) {
         (all, 0) if all > 0 => format!("nothing to bake: all {all} tables were finished before"),
-        (all, baked) if baked < all => format!("{baked} tables baked, {} finished before,", all - baked),
+        (all, baked) if baked < all => {
+            format!("{baked} tables baked, {} finished before,", all - baked)
+        }
         (all, _) => format!("{all} tables"),
     };
     text += &format!("{baked} in {seconds:.3} s");
     if !plan.albedos.is_empty() {
-        let parts =
-            FAMILIES.iter().zip(result.seconds).map(|(name, seconds)| format!("{name} {seconds:.3} s"));
+        let parts = FAMILIES
+            .iter()
+            .zip(result.seconds)
+            .map(|(name, seconds)| format!("{name} {seconds:.3} s"));
         text += &format!(" ({})", parts.collect::<Vec<_>>().join(", "));
     }
     text + "\n"
@@ -227,7 +237,10 @@ fn as_json(result: &Baked, written: &[Written], seconds: f64) -> serde_json::Val
         .iter()
         .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }))
         .collect();
-    let families: serde_json::Map<_, _> =
-        FAMILIES.iter().zip(result.seconds).map(|(&name, seconds)| (name.into(), json!(seconds))).collect();
+    let families: serde_json::Map<_, _> = FAMILIES
+        .iter()
+        .zip(result.seconds)
+        .map(|(&name, seconds)| (name.into(), json!(seconds)))
+        .collect();
     json!({ "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families })
 }

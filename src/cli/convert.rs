@@ -85,8 +85,10 @@ impl Args {
             By::Rmse => target.by_rmse(to, self.on.into()),
             By::Formula => by_formula(from, to),
         };
-        let mut text =
-            format!("{:<12}{:<40}{:>14}{:>16}\n", "by", "replacement", "RMSE of unit", "RMSE of D, 1/sr");
+        let mut text = format!(
+            "{:<12}{:<40}{:>14}{:>16}\n",
+            "by", "replacement", "RMSE of unit", "RMSE of D, 1/sr"
+        );
         let mut line = |name: &str, found: &Replacement| {
             writeln!(
                 text,
@@ -101,7 +103,8 @@ impl Args {
             match replace(*by) {
                 Ok(found) => line(name.get_name(), &found)?,
                 // Without a choice, ways that do not exist for this pair are left out.
-                Err(ConvertError::NoFormula(..) | ConvertError::ShapeNeeded(_)) if self.by.is_none() => {}
+                Err(ConvertError::NoFormula(..) | ConvertError::ShapeNeeded(_))
+                    if self.by.is_none() => {}
                 Err(e) => return Err(e.into()),
             }
         }
@@ -157,11 +160,20 @@ mod tests {
     #[test]
     fn prints_all_ways_or_one() {
         let all = run("--from blinn-phong:50 --to beckmann").unwrap();
-        assert!(all.contains("half-angle") && all.contains("rmse") && all.contains("formula"), "{all}");
+        assert!(
+            all.contains("half-angle") && all.contains("rmse") && all.contains("formula"),
+            "{all}"
+        );
         assert_eq!(run("--from blinn-phong:50 --to student-t").unwrap().lines().count(), 2);
-        assert!(run("--from gauss:0.1 --to schlick --by formula").unwrap_err().contains("no formula"));
-        assert!(run("--from gauss:0.1 --to student-t --by half-angle").unwrap_err().contains("--shape"));
-        assert!(run("--from ashikhmin-shirley:10,90 --to gauss").unwrap_err().contains("anisotropic"));
+        assert!(
+            run("--from gauss:0.1 --to schlick --by formula").unwrap_err().contains("no formula")
+        );
+        assert!(
+            run("--from gauss:0.1 --to student-t --by half-angle").unwrap_err().contains("--shape")
+        );
+        assert!(
+            run("--from ashikhmin-shirley:10,90 --to gauss").unwrap_err().contains("anisotropic")
+        );
         assert!(run("--from gauss:0.1").is_err());
     }
 }

@@ -32,14 +32,24 @@ pub(super) fn run(args: Args) -> Outcome {
     let mut text = String::new();
     let (first, last) = measured.assumed();
     if first > 0.0 {
-        writeln!(text, "nothing below {:.3} degrees: D is taken as constant there", first.to_degrees())?;
+        writeln!(
+            text,
+            "nothing below {:.3} degrees: D is taken as constant there",
+            first.to_degrees()
+        )?;
     }
     if last < std::f64::consts::FRAC_PI_2 - 0.01 {
         writeln!(text, "nothing above {:.3} degrees: D is taken as zero there", last.to_degrees())?;
     }
     writeln!(text, "{:<44}{:>14}{:>16}", "fit", "RMSE of unit", "RMSE of D, 1/sr")?;
     for found in [&found.student_t, &found.beckmann, &found.ggx] {
-        writeln!(text, "{:<44}{:>14.4e}{:>16.4e}", found.to.to_string(), found.rmse[0], found.rmse[1])?;
+        writeln!(
+            text,
+            "{:<44}{:>14.4e}{:>16.4e}",
+            found.to.to_string(),
+            found.rmse[0],
+            found.rmse[1]
+        )?;
     }
     print(&text)?;
     Ok(Done::Ok)

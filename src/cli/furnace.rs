@@ -51,7 +51,8 @@ pub(super) struct Args {
 
 /// The forms of masking by name.
 fn parse_masking() -> impl TypedValueParser<Value = Masking> {
-    PossibleValuesParser::new(Masking::ALL.map(Masking::name)).try_map(|name| name.parse::<Masking>())
+    PossibleValuesParser::new(Masking::ALL.map(Masking::name))
+        .try_map(|name| name.parse::<Masking>())
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -107,7 +108,8 @@ pub(super) fn run(args: Args) -> Outcome {
                 };
                 // A NaN fails.
                 passed &= (row.kulla_conty - 1.0).abs() <= TOLERANCE;
-                passed &= walked.is_none_or(|walk| conserves(&walk) && agrees(&row, &walk, masking));
+                passed &=
+                    walked.is_none_or(|walk| conserves(&walk) && agrees(&row, &walk, masking));
                 if args.json {
                     rows.push(as_json(&row, walked));
                 } else {
@@ -154,7 +156,9 @@ fn line(row: &Furnace, walk: Option<Walk>) -> String {
             single.mean, single.error, total.mean, total.error
         )
     });
-    format!("{gamma:>8} {sigma:>6} {cos_theta:>9} {single:9.5} {turquin:9.5} {kulla_conty:11.5}{walk}\n")
+    format!(
+        "{gamma:>8} {sigma:>6} {cos_theta:>9} {single:9.5} {turquin:9.5} {kulla_conty:11.5}{walk}\n"
+    )
 }
 
 fn as_json(row: &Furnace, walk: Option<Walk>) -> serde_json::Value {

@@ -27,13 +27,16 @@ pub(super) struct Args {
 pub(super) fn run(args: Args) -> Outcome {
     let set = store::read(&args.file)?;
     if args.json {
-        let document: serde_json::Value = serde_json::from_str(&describe(set.provenance(), set.tables())?)?;
+        let document: serde_json::Value =
+            serde_json::from_str(&describe(set.provenance(), set.tables())?)?;
         print_json(&json!(document))?;
         return Ok(Done::Ok);
     }
     let origin = set.provenance();
-    let mut text =
-        format!("baked by {} (numerics {}), {}\n", origin.generator, origin.numerics, origin.license);
+    let mut text = format!(
+        "baked by {} (numerics {}), {}\n",
+        origin.generator, origin.numerics, origin.license
+    );
     for material in &origin.materials {
         text += &format!("material \"{}\"\n", material.name);
     }
@@ -42,7 +45,8 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     text += "\nmappings:\n";
     let mappings = set.tables().iter().flat_map(|table| &table.axes).map(|axis| axis.mapping);
-    let formulas: BTreeMap<_, _> = mappings.map(|mapping| (mapping.name(), mapping.formula())).collect();
+    let formulas: BTreeMap<_, _> =
+        mappings.map(|mapping| (mapping.name(), mapping.formula())).collect();
     for (name, formula) in formulas {
         text += &format!("  {name}: {formula}\n");
     }
@@ -84,7 +88,8 @@ fn describe_table(table: &Table) -> String {
 
 /// Whose normals, under which masking and reflectance, for which materials.
 fn describe_subject(Subject { lobe, masking, reflectance, covers }: &Subject) -> String {
-    let sigmas = |[x, y]: &[f64; 2], s: &f64| format!("sigma {x} {y}, gamma {}", short(gamma_of_s(*s)));
+    let sigmas =
+        |[x, y]: &[f64; 2], s: &f64| format!("sigma {x} {y}, gamma {}", short(gamma_of_s(*s)));
     let mut parts = vec![match lobe {
         LobeEntry::Family => "student-t".to_owned(),
         LobeEntry::StudentT { sigma, s } => format!("student-t, {}", sigmas(sigma, s)),

@@ -112,8 +112,8 @@ fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
 
 /// A progress bar of `steps`, on a terminal only.
 fn progress(steps: usize, what: &'static str) -> ProgressBar {
-    let style =
-        ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}").expect("a constant template");
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}")
+        .expect("a constant template");
     ProgressBar::new(steps as u64).with_style(style).with_message(what)
 }
 
@@ -145,7 +145,9 @@ fn parse_sigma(text: &str) -> Result<[f64; 2], String> {
 fn parse_gamma(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(gamma) if gamma > 1.5 => Ok(gamma),
-        _ => Err(format!("gamma \"{text}\" must be a number in (1.5, inf]; 2 is GGX, inf is Beckmann")),
+        _ => Err(format!(
+            "gamma \"{text}\" must be a number in (1.5, inf]; 2 is GGX, inf is Beckmann"
+        )),
     }
 }
 

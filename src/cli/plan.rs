@@ -115,8 +115,12 @@ fn reason(verdict: &Verdict) -> [&'static str; 2] {
     match verdict {
         Verdict::Bake(_) => ["baked", "tables are baked for it"],
         Verdict::Same { .. } => ["same", "another material needs the same tables"],
-        Verdict::Within { .. } => ["within", "its gamma lies in a range that is baked for another material"],
-        Verdict::ClosedForm => ["closed form", "GGX: D, G1 and visible normals have closed forms; no table"],
+        Verdict::Within { .. } => {
+            ["within", "its gamma lies in a range that is baked for another material"]
+        }
+        Verdict::ClosedForm => {
+            ["closed form", "GGX: D, G1 and visible normals have closed forms; no table"]
+        }
         Verdict::Own => ["own tables", "no Student-t: tables of its own"],
         Verdict::Embedded => ["embedded", "covered by the default set compiled into the sampler"],
         Verdict::NotRough => ["not rough", "no microfacets"],
@@ -136,10 +140,16 @@ fn shapes(gamma: Interval) -> String {
 fn albedo_reason(verdict: &AlbedoVerdict) -> [&'static str; 2] {
     match verdict {
         AlbedoVerdict::Bake(_) => ["baked", "albedo tables cover it"],
-        AlbedoVerdict::NotAsked => ["no fresnel", "the recipe states no `fresnel`; --albedo bakes all"],
-        AlbedoVerdict::Imported => ["not asked", "scenes other than recipes get albedos with --albedo"],
+        AlbedoVerdict::NotAsked => {
+            ["no fresnel", "the recipe states no `fresnel`; --albedo bakes all"]
+        }
+        AlbedoVerdict::Imported => {
+            ["not asked", "scenes other than recipes get albedos with --albedo"]
+        }
         AlbedoVerdict::Declined => ["declined", "--no-albedo"],
-        AlbedoVerdict::Embedded => ["embedded", "the default set compiled into the sampler has its albedo"],
+        AlbedoVerdict::Embedded => {
+            ["embedded", "the default set compiled into the sampler has its albedo"]
+        }
         AlbedoVerdict::NotNeeded => ["not needed", "it needs no tables at all"],
     }
 }
@@ -175,26 +185,35 @@ impl Report<'_> {
     /// Names of the materials whose verdict satisfies a condition.
     fn names(&self, of: impl Fn(&Verdict) -> bool) -> Vec<&str> {
         let pairs = self.scene.materials.iter().zip(&self.plan.verdicts);
-        pairs.filter(|(_, verdict)| of(verdict)).map(|(material, _)| material.name.as_str()).collect()
+        pairs
+            .filter(|(_, verdict)| of(verdict))
+            .map(|(material, _)| material.name.as_str())
+            .collect()
     }
 
     /// Names of the materials in use that have a distribution outside the family.
     fn wearers(&self, distribution: &Distribution) -> Vec<&str> {
         let pairs = self.scene.materials.iter().zip(&self.plan.verdicts);
         let wears = |material: &Material| material.distribution.as_ref() == Some(distribution);
-        let theirs = pairs.filter(|(material, verdict)| **verdict == Verdict::Own && wears(material));
+        let theirs =
+            pairs.filter(|(material, verdict)| **verdict == Verdict::Own && wears(material));
         theirs.map(|(material, _)| material.name.as_str()).collect()
     }
 
     /// Names of the materials whose albedo has such a verdict.
     fn albedo_names(&self, of: impl Fn(&AlbedoVerdict) -> bool) -> Vec<&str> {
         let pairs = self.scene.materials.iter().zip(&self.plan.albedo_verdicts);
-        pairs.filter(|(_, verdict)| of(verdict)).map(|(material, _)| material.name.as_str()).collect()
+        pairs
+            .filter(|(_, verdict)| of(verdict))
+            .map(|(material, _)| material.name.as_str())
+            .collect()
     }
 
     /// Names of the materials that albedo tables serve.
     fn served(&self, need: usize) -> Vec<&str> {
-        self.albedo_names(|verdict| matches!(verdict, AlbedoVerdict::Bake(needs) if needs.contains(&need)))
+        self.albedo_names(
+            |verdict| matches!(verdict, AlbedoVerdict::Bake(needs) if needs.contains(&need)),
+        )
     }
 
     fn albedo_text(&self) -> String {
@@ -223,8 +242,11 @@ impl Report<'_> {
             let names = self.albedo_names(|other| *other == verdict);
             if !names.is_empty() {
                 let [short, long] = albedo_reason(&verdict);
-                text +=
-                    &format!("skip  {:22} {long}: {}\n", format!("albedo, {short}"), list(names.into_iter()));
+                text += &format!(
+                    "skip  {:22} {long}: {}\n",
+                    format!("albedo, {short}"),
+                    list(names.into_iter())
+                );
             }
         }
         text
@@ -252,7 +274,8 @@ impl Report<'_> {
                 list(self.wearers(distribution).into_iter())
             );
         }
-        for verdict in [Verdict::ClosedForm, Verdict::Embedded, Verdict::NotRough, Verdict::NotUsed] {
+        for verdict in [Verdict::ClosedForm, Verdict::Embedded, Verdict::NotRough, Verdict::NotUsed]
+        {
             let names = self.names(|other| *other == verdict);
             if !names.is_empty() {
                 let [short, long] = reason(&verdict);
@@ -276,7 +299,10 @@ impl Report<'_> {
             } else {
                 "and nothing to bake".into()
             };
-            let share = format!("; {:.1} times smaller, {share}", general.bytes as f64 / total.bytes as f64);
+            let share = format!(
+                "; {:.1} times smaller, {share}",
+                general.bytes as f64 / total.bytes as f64
+            );
             format!(
                 "total {} bytes, about {:.3} s; the general set {} bytes, about {:.3} s{share}\n",
                 total.bytes, total.seconds, general.bytes, general.seconds

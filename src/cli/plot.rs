@@ -22,7 +22,8 @@ pub(super) fn run(args: Args) -> Outcome {
     let text = plot::svg(&plot::figure(&args.name)?)?;
     match args.output {
         Some(path) => {
-            std::fs::write(&path, text).map_err(|why| format!("writing {}: {why}", path.display()))?;
+            std::fs::write(&path, text)
+                .map_err(|why| format!("writing {}: {why}", path.display()))?;
         }
         None => print(&text)?,
     }

@@ -85,10 +85,13 @@ impl Request {
             let embedded = Tables::embedded();
             let (albedos, others): (Vec<&Table>, Vec<&Table>) =
                 embedded.tables().iter().partition(|table| table.kind.is_albedo());
-            let worst = |tables: &[&Table]| tables.iter().map(|table| worst_error(table)).fold(0.0, f64::max);
+            let worst = |tables: &[&Table]| {
+                tables.iter().map(|table| worst_error(table)).fold(0.0, f64::max)
+            };
             if matches!(self.quality(), Quality::High) {
                 return Err(Failure(
-                    "--embedded: the set compiled in is of default quality; drop --quality high".into(),
+                    "--embedded: the set compiled in is of default quality; drop --quality high"
+                        .into(),
                 ));
             }
             let worst_of_others = worst(&others);
@@ -98,7 +101,8 @@ impl Request {
                 )));
             }
             // Where its albedos are not good enough, better ones are baked.
-            embedded_albedo = !albedos.is_empty() && max_error.is_none_or(|max| max >= worst(&albedos));
+            embedded_albedo =
+                !albedos.is_empty() && max_error.is_none_or(|max| max >= worst(&albedos));
         }
         let options = Options {
             tabulate_ggx: self.tabulate_ggx,

@@ -12,7 +12,9 @@ use microfacet_bake::store::replace;
 use microfacet_bake::validate::configuration::Configuration;
 use microfacet_model as model;
 
-use super::{Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, tables};
+use super::{
+    Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, tables,
+};
 
 /// Draw normals for one material and view into a safetensors file: `normals` [N,3] and `pdf` [N], f32.
 #[derive(clap::Args)]

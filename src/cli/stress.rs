@@ -21,10 +21,12 @@ pub(super) fn stress(tables: &Tables, points: u64, seed: u64, as_json: bool) -> 
 fn regions(report: &Report) -> impl Iterator<Item = ([&'static str; 3], &Region)> {
     let of_view = |shape: usize, view: usize| {
         let row = &report.regions[shape][view];
-        row.iter().zip(ROUGHNESSES).map(move |(region, rough)| ([SHAPES[shape], VIEWS[view], rough], region))
+        row.iter()
+            .zip(ROUGHNESSES)
+            .map(move |(region, rough)| ([SHAPES[shape], VIEWS[view], rough], region))
     };
-    let all =
-        (0..SHAPES.len()).flat_map(move |shape| (0..VIEWS.len()).flat_map(move |view| of_view(shape, view)));
+    let all = (0..SHAPES.len())
+        .flat_map(move |shape| (0..VIEWS.len()).flat_map(move |view| of_view(shape, view)));
     all.filter(|(_, region)| region.points > 0)
 }
 
@@ -42,14 +44,18 @@ fn summary(report: &Report) -> String {
     text += "\nsigma: ordinary is [1e-4, 10], extreme [1e-8, 1e6]\nlargest errors among ordinary sigma:\n";
     for (i, error) in ERRORS.iter().enumerate() {
         let ordinary = regions(report).filter(|(name, _)| name[2] == ROUGHNESSES[0]);
-        let worst = ordinary.map(|(_, region)| region.errors[i]).max_by(|a, b| a.value.total_cmp(&b.value));
+        let worst =
+            ordinary.map(|(_, region)| region.errors[i]).max_by(|a, b| a.value.total_cmp(&b.value));
         if let Some(worst) = worst {
             text += &format!("  {error} {:.2e}: {}\n", worst.value, worst.at);
         }
     }
     let total = report.total();
     for (rule, violation) in &total.violations {
-        text += &format!("BROKEN {} times: {rule}, at worst {:e}", violation.count, violation.worst.value);
+        text += &format!(
+            "BROKEN {} times: {rule}, at worst {:e}",
+            violation.count, violation.worst.value
+        );
         text += &format!("\n  {}\n", violation.worst.at);
     }
     let verdict = if total.violations.is_empty() { "PASSED" } else { "REJECTED" };

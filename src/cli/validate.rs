@@ -6,16 +6,20 @@ use serde_json::json;
 
 use microfacet_bake::validate::configuration::{Configuration, configurations};
 use microfacet_bake::validate::furnace::{Furnace, Survey, TOLERANCE as FURNACE_TOLERANCE, survey};
-use microfacet_bake::validate::{LEVEL, Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all};
+use microfacet_bake::validate::{
+    LEVEL, Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all,
+};
 
 use super::{
-    Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, print_json, progress,
-    tables,
+    Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, print_json,
+    progress, tables,
 };
 
 /// Test what tables draw against the analytic densities by chi-square.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  microfacet-bake validate --configurations 50 --samples 1000000")]
+#[command(
+    after_help = "Example:\n  microfacet-bake validate --configurations 50 --samples 1000000"
+)]
 pub(super) struct Args {
     /// A table file, or a folder with one; the embedded default if absent.
     tables: Option<PathBuf>,
@@ -80,7 +84,9 @@ pub(super) fn run(args: Args) -> Outcome {
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi: args.phi, seed: args.seed }]
         }
         // A set without any table holds GGX in closed form, which can be judged.
-        _ if !set.tables().is_empty() && !set.tables().iter().any(|table| table.axes[0].name == "gamma") => {
+        _ if !set.tables().is_empty()
+            && !set.tables().iter().any(|table| table.axes[0].name == "gamma") =>
+        {
             return Err(Failure(
                 "the set has no Student-t tables to judge; name one configuration with --sigma, --gamma and --theta for the closed \
                  forms of GGX; tables of other distributions carry what was measured when they were baked: see `microfacet-bake inspect`"
@@ -96,7 +102,8 @@ pub(super) fn run(args: Args) -> Outcome {
     // One named configuration asks about its lobe alone.
     let furnaces = if args.sigma.is_none() { survey(&set)? } else { Vec::new() };
     let passed = result.passed() && furnaces.iter().all(Survey::passed);
-    let source = args.tables.as_deref().map_or(String::new(), |path| format!("{} ", path.display()));
+    let source =
+        args.tables.as_deref().map_or(String::new(), |path| format!("{} ", path.display()));
     if args.json {
         print_json(&as_json(&result, options, &furnaces, passed))?
     } else {
@@ -154,7 +161,12 @@ fn white(furnaces: &[Survey]) -> String {
     furnaces.iter().map(line).collect()
 }
 
-fn as_json(result: &Result, options: Options, furnaces: &[Survey], passed: bool) -> serde_json::Value {
+fn as_json(
+    result: &Result,
+    options: Options,
+    furnaces: &[Survey],
+    passed: bool,
+) -> serde_json::Value {
     let reports: Vec<_> = result
         .reports
         .iter()

@@ -72,8 +72,14 @@ impl<'a> Candidate<'a> {
             })
         };
         let menu = unit.levels().flat_map(at).collect();
-        let mut new =
-            Self { unit, measured: Default::default(), header, plain: cost.seconds, spent: 0.0, menu };
+        let mut new = Self {
+            unit,
+            measured: Default::default(),
+            header,
+            plain: cost.seconds,
+            spent: 0.0,
+            menu,
+        };
         new.predict();
         new
     }
@@ -87,14 +93,18 @@ impl<'a> Candidate<'a> {
         self.menu = menu;
     }
 
-    fn prediction(&self, &Pick { grade: (level, precision), values, .. }: &Pick) -> (f64, f64, bool) {
+    fn prediction(
+        &self,
+        &Pick { grade: (level, precision), values, .. }: &Pick,
+    ) -> (f64, f64, bool) {
         let measured = &self.measured[precision];
         if let Some(&Measured { error, bytes, .. }) = measured.get(&level) {
             return (error, bytes, true);
         }
         let expected = |level: Level| self.unit.expected(level, PRECISIONS[precision]);
         // How much worse, and larger, than expected.
-        let off = |(at, measured): (&Level, &Measured)| [measured.error / expected(*at), measured.growth];
+        let off =
+            |(at, measured): (&Level, &Measured)| [measured.error / expected(*at), measured.growth];
         let below = measured.range(..level).next_back();
         let above = measured.range(level..).next();
         let [worse, growth] = match (below, above) {
@@ -122,7 +132,11 @@ impl<'a> Candidate<'a> {
     }
 
     /// Bakes and measures a grade, and others of its level where that costs hardly more.
-    pub(super) fn measure(&mut self, (level, precision): Grade, job: &mut Job) -> Result<(), BakeError> {
+    pub(super) fn measure(
+        &mut self,
+        (level, precision): Grade,
+        job: &mut Job,
+    ) -> Result<(), BakeError> {
         memory::check(self.unit.values(level), job.max_memory)?;
         job.steps += self.unit.steps();
         let all = if self.unit.shares_measuring() { vec![0, 1] } else { vec![precision] };
@@ -131,7 +145,8 @@ impl<'a> Candidate<'a> {
             let error = tables.iter().map(worst_error).fold(0.0, f64::max);
             let values = tables.iter().map(Table::stored_bytes).sum::<usize>() as f64;
             let growth = values / self.unit.bytes(level, PRECISIONS[i]) as f64;
-            self.measured[i].insert(level, Measured { tables, error, bytes: values + self.header, growth });
+            self.measured[i]
+                .insert(level, Measured { tables, error, bytes: values + self.header, growth });
         }
         self.spent += self.unit.seconds(level);
         self.predict();

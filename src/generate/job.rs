@@ -25,7 +25,17 @@ impl<'a> Job<'a> {
     pub(super) fn new(settings: Settings<'a>) -> Self {
         let Settings { cache, max_memory, patient, progress } = settings;
         let (fresh, cache_error, seconds) = Default::default();
-        Self { cache, progress, max_memory, patient, fresh, cache_error, done: 0, steps: 0, seconds }
+        Self {
+            cache,
+            progress,
+            max_memory,
+            patient,
+            fresh,
+            cache_error,
+            done: 0,
+            steps: 0,
+            seconds,
+        }
     }
 
     /// Steps are done.

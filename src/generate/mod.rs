@@ -58,7 +58,12 @@ pub struct Settings<'a> {
 
 impl Default for Settings<'_> {
     fn default() -> Self {
-        Self { cache: Cache::none(), max_memory: 4 << 30, patient: false, progress: Box::new(|_| ()) }
+        Self {
+            cache: Cache::none(),
+            max_memory: 4 << 30,
+            patient: false,
+            progress: Box::new(|_| ()),
+        }
     }
 }
 
@@ -160,7 +165,10 @@ impl fmt::Display for BakeError {
             Self::Memory(why) => why.fmt(f),
             Self::Albedo(why) => why.fmt(f),
             Self::NoError(max_error) => {
-                write!(f, "an error of {max_error} cannot be asked for: it must be above 0, such as 1e-4")
+                write!(
+                    f,
+                    "an error of {max_error} cannot be asked for: it must be above 0, such as 1e-4"
+                )
             }
             Self::OutOfReach { max_error, name, reached } => write!(
                 f,
@@ -217,7 +225,10 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
     let tables: Vec<Table> = match target {
         Target::Quality(quality, precision) => {
             let units = Unit::whole(plan)?;
-            memory::check(units.iter().map(|unit| unit.values(quality.into())).sum(), job.max_memory)?;
+            memory::check(
+                units.iter().map(|unit| unit.values(quality.into())).sum(),
+                job.max_memory,
+            )?;
             job.steps = units.iter().map(Unit::steps).sum();
             let each = units.iter().map(|unit| unit.bake(quality.into(), &[precision], &mut job));
             each.collect::<Result<Vec<_>, _>>()?.concat().concat()
@@ -227,7 +238,9 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
             return Err(BakeError::NoError(max_error));
         }
         Target::MaxError(max_error) => Search::new(plan)?.meeting(max_error, &mut job)?,
-        Target::MaxBytes(max_bytes) => Search::new(plan)?.within(max_bytes, &provenance, &mut job)?,
+        Target::MaxBytes(max_bytes) => {
+            Search::new(plan)?.within(max_bytes, &provenance, &mut job)?
+        }
     };
     let baked = job.baked_of(&tables);
     let set = Tables::from_tables(provenance, tables)?;

@@ -24,7 +24,8 @@ pub(super) fn albedo_tables(
     let mut all = vec![Precision::F32];
     all.extend(precisions.iter().filter(|precision| **precision != Precision::F32));
     let asked = |sets: Vec<Vec<Table>>| {
-        let of = |precision| all.iter().position(|other| other == precision).map(|i| sets[i].clone());
+        let of =
+            |precision| all.iter().position(|other| other == precision).map(|i| sets[i].clone());
         precisions.iter().filter_map(of).collect()
     };
     let mut spec = spec.clone();

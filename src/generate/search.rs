@@ -33,7 +33,11 @@ impl<'a> Search<'a> {
     }
 
     /// Small tables that err by no more than `max_error`.
-    pub(super) fn meeting(mut self, max_error: f64, job: &mut Job) -> Result<Vec<Table>, BakeError> {
+    pub(super) fn meeting(
+        mut self,
+        max_error: f64,
+        job: &mut Job,
+    ) -> Result<Vec<Table>, BakeError> {
         let first = |candidate: &Candidate| {
             candidate.smallest(max_error, |_| true).map_or(candidate.finest(), |pick| pick.grade)
         };
@@ -81,7 +85,8 @@ impl<'a> Search<'a> {
                 room = room.min(taken) - (bytes - max_bytes) as f64;
                 continue;
             }
-            for (candidate, pick) in self.candidates.iter_mut().zip(picks).filter(|(_, pick)| !pick.measured)
+            for (candidate, pick) in
+                self.candidates.iter_mut().zip(picks).filter(|(_, pick)| !pick.measured)
             {
                 candidate.measure(pick.grade, job)?;
             }
@@ -95,7 +100,8 @@ impl<'a> Search<'a> {
         let mut picks = self.coarsest(&of).filter(|picks| bytes(picks) <= room)?;
         let mut free: Vec<usize> = (0..self.candidates.len()).collect();
         while !free.is_empty() {
-            let fixed: f64 = (0..picks.len()).filter(|i| !free.contains(i)).map(|i| picks[i].bytes).sum();
+            let fixed: f64 =
+                (0..picks.len()).filter(|i| !free.contains(i)).map(|i| picks[i].bytes).sum();
             let fits = |max_error: f64| {
                 let each = free.iter().map(|&i| {
                     let candidate = &self.candidates[i];
@@ -123,7 +129,8 @@ impl<'a> Search<'a> {
 
     /// The smallest grades that satisfy a condition, if each unit has one.
     fn coarsest(&self, of: impl Fn(&Candidate, &Pick) -> bool) -> Option<Vec<Pick>> {
-        let least = |candidate: &Candidate| candidate.smallest(f64::INFINITY, |pick| of(candidate, pick));
+        let least =
+            |candidate: &Candidate| candidate.smallest(f64::INFINITY, |pick| of(candidate, pick));
         self.candidates.iter().map(least).collect()
     }
 

@@ -42,7 +42,11 @@ impl AlbedoNeed {
     ///
     /// # Errors
     /// [`BakeError`] for an ellipsoid that is none.
-    pub fn spec(&self, level: impl Into<Level>, precision: Precision) -> Result<AlbedoSpec, BakeError> {
+    pub fn spec(
+        &self,
+        level: impl Into<Level>,
+        precision: Precision,
+    ) -> Result<AlbedoSpec, BakeError> {
         let Self { lobe, reflectance, maskings } = self.clone();
         AlbedoSpec::new(lobe, reflectance, maskings, level, precision)
     }
@@ -86,8 +90,11 @@ pub(super) fn needs(
     scene: &Scene,
     options: Options,
 ) -> Result<(Vec<AlbedoNeed>, Vec<AlbedoVerdict>), NotCovered> {
-    let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> =
-        scene.materials.iter().map(|material| wants(material, options)).collect::<Result<_, _>>()?;
+    let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> = scene
+        .materials
+        .iter()
+        .map(|material| wants(material, options))
+        .collect::<Result<_, _>>()?;
     let mut needs: Vec<AlbedoNeed> = Vec::new();
     let mut add = |lobe: Lobe, reflectance, masking| {
         // Two forms at once cost little more than one.
@@ -108,19 +115,22 @@ pub(super) fn needs(
     reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Moments);
     for reflectance in reflectances {
         for masking in Masking::ALL {
-            let same = all.iter().filter(|want| want.reflectance == reflectance && want.masking == masking);
+            let same = all
+                .iter()
+                .filter(|want| want.reflectance == reflectance && want.masking == masking);
             let (family, own): (Vec<&Lobe>, Vec<&Lobe>) =
                 same.map(|want| &want.lobe).partition(|lobe| matches!(lobe, Lobe::Family(_)));
-            let domains = family
-                .into_iter()
-                .filter_map(|lobe| if let Lobe::Family(domain) = lobe { Some(*domain) } else { None });
+            let domains = family.into_iter().filter_map(|lobe| {
+                if let Lobe::Family(domain) = lobe { Some(*domain) } else { None }
+            });
             for domain in joined(domains.collect()) {
                 add(Lobe::Family(domain), reflectance, masking);
             }
             own.into_iter().for_each(|lobe| add(lobe.clone(), reflectance, masking));
         }
     }
-    let serving = |want: &Want| needs.iter().position(|need| need.covers(want)).expect("needs cover all");
+    let serving =
+        |want: &Want| needs.iter().position(|need| need.covers(want)).expect("needs cover all");
     let verdicts = wants.into_iter().map(|wants| match wants {
         Ok(wants) => AlbedoVerdict::Bake(wants.iter().map(serving).collect()),
         Err(verdict) => verdict,
@@ -130,20 +140,27 @@ pub(super) fn needs(
 }
 
 /// What a material needs, or why it needs nothing.
-fn wants(material: &Material, options: Options) -> Result<Result<Vec<Want>, AlbedoVerdict>, NotCovered> {
+fn wants(
+    material: &Material,
+    options: Options,
+) -> Result<Result<Vec<Want>, AlbedoVerdict>, NotCovered> {
     if let Some(verdict) = unasked(material, options) {
         return Ok(Err(verdict));
     }
     let (gamma, [x, y]) = (material.gamma, [material.roughness.x(), material.roughness.y()]);
     // The usual stand-in for an anisotropic surface.
     let mean = |x: f64, y: f64| if x == y { x } else { (x * y).sqrt() };
-    let round =
-        Lobe::Family(Domain { gamma, sigma: Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) } });
+    let round = Lobe::Family(Domain {
+        gamma,
+        sigma: Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) },
+    });
     let entry = entry(material);
     let lobe = match (entry.lobe(), &material.distribution) {
         (LobeEntry::Family, _) => round.clone(),
         (LobeEntry::StudentT { sigma, .. }, _) => Lobe::StudentT { sigma, gamma: gamma.min },
-        (LobeEntry::Ellipsoid { sigma, theta, .. }, _) => Lobe::Ellipsoid { sigma, theta, gamma: gamma.min },
+        (LobeEntry::Ellipsoid { sigma, theta, .. }, _) => {
+            Lobe::Ellipsoid { sigma, theta, gamma: gamma.min }
+        }
         (LobeEntry::Distribution(_), Some(distribution)) => {
             Lobe::Radial { distribution: distribution.clone(), sigma: x.min }
         }
@@ -186,13 +203,16 @@ fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
 /// Few domains that cover all of `wants` with no more nodes in all.
 fn joined(wants: Vec<Domain>) -> Vec<Domain> {
     let need = |domain| AlbedoNeed { lobe: Lobe::Family(domain), ..AlbedoNeed::general() };
-    let cost =
-        |domain| need(domain).spec(Quality::Default, Precision::F32).map_or(usize::MAX, |spec| spec.nodes());
+    let cost = |domain| {
+        need(domain).spec(Quality::Default, Precision::F32).map_or(usize::MAX, |spec| spec.nodes())
+    };
     // One domain in the place of several, if that is not more.
     let hull_if_cheaper = |domains: Vec<Domain>| -> Vec<Domain> {
         let hull = domains.iter().copied().reduce(|a, b| a.union(&b));
         match hull {
-            Some(hull) if cost(hull) <= domains.iter().map(|domain| cost(*domain)).sum::<usize>() => {
+            Some(hull)
+                if cost(hull) <= domains.iter().map(|domain| cost(*domain)).sum::<usize>() =>
+            {
                 vec![hull]
             }
             _ => domains,
@@ -211,11 +231,14 @@ fn joined(wants: Vec<Domain>) -> Vec<Domain> {
     let all = hull_if_cheaper(all);
     // What lies inside another is there.
     let inside = |i: usize| {
-        let holds =
-            |(j, other): (usize, &Domain)| i != j && other.contains(&all[i]) && (*other != all[i] || j < i);
+        let holds = |(j, other): (usize, &Domain)| {
+            i != j && other.contains(&all[i]) && (*other != all[i] || j < i)
+        };
         all.iter().enumerate().any(holds)
     };
     let mut kept: Vec<Domain> = (0..all.len()).filter(|&i| !inside(i)).map(|i| all[i]).collect();
-    kept.sort_by(|a, b| b.gamma.max.total_cmp(&a.gamma.max).then(a.sigma.min.total_cmp(&b.sigma.min)));
+    kept.sort_by(|a, b| {
+        b.gamma.max.total_cmp(&a.gamma.max).then(a.sigma.min.total_cmp(&b.sigma.min))
+    });
     kept
 }

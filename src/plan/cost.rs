@@ -32,7 +32,8 @@ impl std::iter::Sum for Cost {
 /// have.
 pub fn bare_cost(provenance: &Provenance) -> Cost {
     let has = |convention: &str| provenance.conventions.contains_key(convention);
-    let some = |of: &dyn Fn(&MaterialEntry) -> bool| has("albedo") && provenance.materials.iter().any(of);
+    let some =
+        |of: &dyn Fn(&MaterialEntry) -> bool| has("albedo") && provenance.materials.iter().any(of);
     let dielectric = |entry: &MaterialEntry| entry.fresnel.is_some_and(|f| f.indices().is_some());
     let formulas = Mapping::EVERY.into_iter().filter(|mapping| match mapping {
         Mapping::LogShape(_) | Mapping::LogRoughness(_) | Mapping::ViewBlend(_) => has("albedo"),
@@ -41,7 +42,8 @@ pub fn bare_cost(provenance: &Provenance) -> Cost {
         _ => has("visible_slope"),
     });
     // Quotes with their escapes, a colon and a comma.
-    let formulas: usize = formulas.map(|mapping| mapping.name().len() + mapping.formula().len() + 10).sum();
+    let formulas: usize =
+        formulas.map(|mapping| mapping.name().len() + mapping.formula().len() + 10).sum();
     let bare = describe(provenance, &[]).map_or(0, |json| escaped(&json));
     Cost { bytes: bare + formulas, seconds: 0.0 }
 }
@@ -82,7 +84,11 @@ pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
 }
 
 /// The same for the four tables of a distribution outside the family.
-pub fn distribution_cost(distribution: &Distribution, level: impl Into<Level>, precision: Precision) -> Cost {
+pub fn distribution_cost(
+    distribution: &Distribution,
+    level: impl Into<Level>,
+    precision: Precision,
+) -> Cost {
     let level = level.into();
     // The name ends in the label, or as many other characters; kind, channels, certificate, shape and offsets.
     let suffix = distribution.label().len();
@@ -115,7 +121,9 @@ fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
     1e-6 * match (&spec.lobe, spec.reflectance) {
         (_, Reflectance::Dielectric { .. }) => 3300.0 * (nodes + points),
         // Each decade of accuracy takes twice as long, and certificates are a decade finer.
-        (Lobe::Family(_), _) => 895.0 * libm::pow(1e-6 / spec.tolerance, 0.32) * (nodes + 2.1 * points),
+        (Lobe::Family(_), _) => {
+            895.0 * libm::pow(1e-6 / spec.tolerance, 0.32) * (nodes + 2.1 * points)
+        }
         _ => 10_000.0 * (nodes + points),
     }
 }
@@ -130,6 +138,7 @@ fn seconds_of(spec: &TableSpec) -> f64 {
         _ => [5800.0, 580.0],
     };
     let shapes = spec.shapes.nodes.len();
-    let measured = if spec.shapes.interpolation == Interpolation::Nodes { shapes } else { 4 * shapes - 3 };
+    let measured =
+        if spec.shapes.interpolation == Interpolation::Nodes { shapes } else { 4 * shapes - 3 };
     1e-9 * (node * spec.nodes() as f64 + point * (measured * POINTS) as f64)
 }

@@ -103,7 +103,11 @@ pub struct Plan {
 impl Plan {
     /// Everything: all γ that tables cover, and all σ that albedo tables do.
     pub fn general() -> Self {
-        Self { needs: vec![Need::general()], albedos: vec![AlbedoNeed::general()], ..Self::default() }
+        Self {
+            needs: vec![Need::general()],
+            albedos: vec![AlbedoNeed::general()],
+            ..Self::default()
+        }
     }
 
     /// The plan of a scene.
@@ -111,13 +115,17 @@ impl Plan {
     /// # Errors
     /// [`NotCovered`] for a γ, or a σ that an albedo is asked of, that no table covers.
     pub fn new(scene: &Scene, options: Options) -> Result<Self, NotCovered> {
-        let wants: Vec<Result<Interval, Verdict>> =
-            scene.materials.iter().map(|material| want(material, options)).collect::<Result<_, _>>()?;
+        let wants: Vec<Result<Interval, Verdict>> = scene
+            .materials
+            .iter()
+            .map(|material| want(material, options))
+            .collect::<Result<_, _>>()?;
         let mut needs = needs::disjoint(wants.iter().flatten().copied());
         if let Some(range) = needs::cheaper_range(&needs) {
             needs = needs::disjoint(wants.iter().flatten().copied().chain([range]));
         }
-        let find = |want: &Interval| needs::find(&needs, *want).expect("the needs cover every want");
+        let find =
+            |want: &Interval| needs::find(&needs, *want).expect("the needs cover every want");
         // A need is baked for the first material that asks for exactly it, else for the first inside.
         let mut owner: Vec<Option<usize>> = vec![None; needs.len()];
         for exact in [true, false] {
@@ -159,7 +167,10 @@ impl Plan {
     pub fn is_empty(&self) -> bool {
         self.needs.is_empty()
             && self.albedos.is_empty()
-            && self.verdicts.iter().all(|verdict| matches!(verdict, Verdict::NotRough | Verdict::NotUsed))
+            && self
+                .verdicts
+                .iter()
+                .all(|verdict| matches!(verdict, Verdict::NotRough | Verdict::NotUsed))
     }
 }
 
@@ -203,7 +214,12 @@ fn is_rough(material: &Material) -> bool {
 
 /// The named materials of a scene as a set records them: those in use that are rough.
 fn entries(scene: &Scene) -> Vec<MaterialEntry> {
-    scene.materials.iter().filter(|material| material.used && is_rough(material)).map(entry).collect()
+    scene
+        .materials
+        .iter()
+        .filter(|material| material.used && is_rough(material))
+        .map(entry)
+        .collect()
 }
 
 /// A material as a set records it.

@@ -74,7 +74,8 @@ impl Need {
 /// The needs that cover all `wants`, disjoint: overlapping ranges become one, single shapes inside them none. The ranges come first,
 /// and either part descends.
 pub(super) fn disjoint(wants: impl Iterator<Item = Interval>) -> Vec<Need> {
-    let (mut points, mut ranges): (Vec<Interval>, Vec<Interval>) = wants.partition(|want| want.is_point());
+    let (mut points, mut ranges): (Vec<Interval>, Vec<Interval>) =
+        wants.partition(|want| want.is_point());
     let descending = |a: &Interval, b: &Interval| b.max.total_cmp(&a.max);
     ranges.sort_by(descending);
     let mut needs: Vec<Need> = Vec::new();

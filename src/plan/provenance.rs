@@ -8,21 +8,36 @@ use crate::bake::NUMERICS;
 /// Of every set.
 const CONVENTIONS: [(&str, &str); 10] = [
     ("placement", "values sit at the nodes of the axes, not at cell centres"),
-    ("gamma", "Student-t shape gamma > 3/2; the axis coordinate is s = 1/(gamma-1), 0 is Beckmann, 1 is GGX"),
-    ("sigma", "GGX and Beckmann roughness alpha; slopes are divided by sigma, nothing else, before a lookup"),
+    (
+        "gamma",
+        "Student-t shape gamma > 3/2; the axis coordinate is s = 1/(gamma-1), 0 is Beckmann, 1 is GGX",
+    ),
+    (
+        "sigma",
+        "GGX and Beckmann roughness alpha; slopes are divided by sigma, nothing else, before a lookup",
+    ),
     ("frame", "tangent space, n = +z; angles in radians; slopes positive towards the viewer"),
     (
         "masking",
         "shadowing tables hold Smith's G1 of one direction; how two are combined is the reader's choice",
     ),
     ("slope_channel", "derivative of `value` with respect to the node index of the last axis"),
-    ("shadowing", "value = G1/q, q = z/(z+kappa) whether or not the axis is crowded, z = cot(theta)/sigma"),
+    (
+        "shadowing",
+        "value = G1/q, q = z/(z+kappa) whether or not the axis is crowded, z = cot(theta)/sigma",
+    ),
     (
         "visible_slope",
         "value = distance of h = x/(1+sqrt(1+x^2)) from the nearer end: 1+h for u <= 1/2, 1-h above",
     ),
-    ("visible_slope_peeled", "as visible_slope, for the density without its term x sin(theta) p(x), x > 0"),
-    ("visible_slope_conditional", "value = 1-h of t = y/sqrt(1+s x^2) for u > 1/2; odd about u = 1/2"),
+    (
+        "visible_slope_peeled",
+        "as visible_slope, for the density without its term x sin(theta) p(x), x > 0",
+    ),
+    (
+        "visible_slope_conditional",
+        "value = 1-h of t = y/sqrt(1+s x^2) for u > 1/2; odd about u = 1/2",
+    ),
 ];
 
 /// Of one with albedo tables.

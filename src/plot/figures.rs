@@ -33,7 +33,9 @@ pub fn figure(name: &str) -> Result<Vec<Panel>, PlotError> {
         "student-t" => Ok(student_t()),
         "distributions" => Ok(WIDTHS.iter().map(|&m| unit_forms(m)).collect()),
         "relative-error" => Ok(WIDTHS.iter().map(|&m| deviations(m)).collect()),
-        "printed-formulas" => Ok([3.0, 10.5, 40.0, 150.0].into_iter().map(printed_formulas).collect()),
+        "printed-formulas" => {
+            Ok([3.0, 10.5, 40.0, 150.0].into_iter().map(printed_formulas).collect())
+        }
         "highlights" => Ok(WIDTHS.iter().map(|&m| highlight(m)).collect()),
         _ => Err(PlotError::Unknown(name.into())),
     }
@@ -57,7 +59,8 @@ fn student_t() -> Vec<Panel> {
     let gammas = [1.6, 2.0, 3.0, 5.0, 40.0];
     let sigmas = [0.2, 0.35, 0.5, 0.75, 1.0];
     let slopes = |name: String, t: StudentT| curve(name, -2.0, 2.0, move |x| t.p22(x, 0.0));
-    let masking = |name: String, t: StudentT| curve(name, 0.0, 90.0, move |theta| t.g1(degrees(theta)));
+    let masking =
+        |name: String, t: StudentT| curve(name, 0.0, 90.0, move |theta| t.g1(degrees(theta)));
     let by_gamma = |f: &dyn Fn(String, StudentT) -> Curve| {
         gammas.iter().map(|&g| f(format!("γ = {g}"), of(0.5, g))).collect::<Vec<_>>()
     };
@@ -90,13 +93,15 @@ fn printed_formulas(gamma: f64) -> Panel {
         ("21, half-integer", printed::lambda_half_integer),
         ("22–23", |gamma, z| Some(printed::lambda_rational(gamma, z))),
     ];
-    let defined = forms.into_iter().filter(|(_, form)| form(gamma, 1.0).is_some_and(f64::is_finite));
+    let defined =
+        forms.into_iter().filter(|(_, form)| form(gamma, 1.0).is_some_and(f64::is_finite));
     let digits = |(name, form): (&str, PrintedLambda)| {
         curve(name.into(), -2.0, 3.0, |log_z| {
             let z = libm::exp10(log_z);
             let truth = shape.lambda(shape.unit(z));
             // No error at all is drawn as that of a half ulp.
-            let error = form(gamma, z).map_or(f64::NAN, |lambda| (lambda - truth).abs() / truth.max(1e-300));
+            let error = form(gamma, z)
+                .map_or(f64::NAN, |lambda| (lambda - truth).abs() / truth.max(1e-300));
             libm::log10(error.max(1.1e-16)).min(5.0)
         })
     };
@@ -116,8 +121,10 @@ fn nearest_to_beckmann(m: f64) -> Vec<(Named, Box<dyn Isotropic>)> {
     let from = beckmann.build().expect("m is positive");
     let others = [Family::BlinnPhong, Family::Gauss, Family::TrowbridgeReitz, Family::Schlick];
     let nearest = others.map(|family| {
-        let found =
-            Target::new(&*from).by_rmse(family, Form::Unit).expect("a smooth problem of one variable").to;
+        let found = Target::new(&*from)
+            .by_rmse(family, Form::Unit)
+            .expect("a smooth problem of one variable")
+            .to;
         let built = found.build().expect("it was built to be judged");
         (found, built)
     });
@@ -144,7 +151,8 @@ fn deviations(m: f64) -> Panel {
     let mut all = nearest_to_beckmann(m);
     let (_, beckmann) = all.remove(0);
     let one = |(name, d): (Named, Box<dyn Isotropic>)| {
-        let deviation = |theta: f64| d.unit(theta.to_radians()) / beckmann.unit(theta.to_radians()) - 1.0;
+        let deviation =
+            |theta: f64| d.unit(theta.to_radians()) / beckmann.unit(theta.to_radians()) - 1.0;
         curve(label(&name), 0.0, reach, deviation)
     };
     Panel {
@@ -168,7 +176,11 @@ fn highlight(m: f64) -> Panel {
         let brightness = |x: f64| {
             let normal = x.asin();
             let (cos_v, cos_l) = (normal.cos(), (normal - light).cos());
-            if cos_v > 0.0 && cos_l > 0.0 { d.d((normal - 0.5 * light).abs()) / (4.0 * cos_v) } else { 0.0 }
+            if cos_v > 0.0 && cos_l > 0.0 {
+                d.d((normal - 0.5 * light).abs()) / (4.0 * cos_v)
+            } else {
+                0.0
+            }
         };
         let at_half = brightness((0.5 * light).sin());
         curve(label(&name), -0.7, 0.995, |x| brightness(x) / at_half)

@@ -27,7 +27,9 @@ pub(super) fn dielectric(eta: f64, place: &Place) -> Result<Fresnel, SceneError>
     if eta > 0.0 && eta < f64::INFINITY {
         Ok(Fresnel::Dielectric(eta))
     } else {
-        Err(place.invalid(format!("the index of refraction is {eta}; it must be finite and more than 0")))
+        Err(place.invalid(format!(
+            "the index of refraction is {eta}; it must be finite and more than 0"
+        )))
     }
 }
 

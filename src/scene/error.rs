@@ -44,7 +44,10 @@ pub(super) struct Lines {
 impl Lines {
     pub(super) fn new(file: &Path, text: &str) -> Self {
         let after_breaks = text.bytes().enumerate().filter(|&(_, b)| b == b'\n');
-        Self { file: file.into(), starts: [0].into_iter().chain(after_breaks.map(|(i, _)| i + 1)).collect() }
+        Self {
+            file: file.into(),
+            starts: [0].into_iter().chain(after_breaks.map(|(i, _)| i + 1)).collect(),
+        }
     }
 
     pub(super) fn place(&self, offset: usize) -> Place {
@@ -101,7 +104,9 @@ impl fmt::Display for SceneError {
                  .pbrt.gz (pbrt-v4), .xml (Mitsuba 3), .gltf and .glb (glTF 2.0), .mtlx (MaterialX)",
                 extension.display()
             ),
-            SceneErrorKind::Syntax(message) | SceneErrorKind::Invalid(message) => f.write_str(message),
+            SceneErrorKind::Syntax(message) | SceneErrorKind::Invalid(message) => {
+                f.write_str(message)
+            }
         }
     }
 }
@@ -120,8 +125,9 @@ impl std::error::Error for SceneError {
 ///
 /// Close enough is one edit in three letters, a transposition counting as one.
 pub(super) fn did_you_mean(word: &str, candidates: &[&str]) -> String {
-    let distance =
-        |candidate: &str| strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase());
+    let distance = |candidate: &str| {
+        strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase())
+    };
     candidates
         .iter()
         .map(|&candidate| (distance(candidate), candidate))

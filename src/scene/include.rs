@@ -23,9 +23,10 @@ impl Includes {
         };
         // The empty name is the folder of the scene.
         if path.is_dir() {
-            return Err(
-                place.invalid(format!("includes \"{}\", which is a folder: name a file", file.display()))
-            );
+            return Err(place.invalid(format!(
+                "includes \"{}\", which is a folder: name a file",
+                file.display()
+            )));
         }
         if let Some(first) = self.open.iter().position(|open| *open == path) {
             let names: Vec<String> = self.open[first..]

@@ -31,9 +31,9 @@ impl<K: Eq + Hash> Memo<K> {
             None => {}
         }
         if self.depth == MAX_DEPTH {
-            return Err(
-                place.invalid(format!("textures or nodes depend on each other more than {MAX_DEPTH} deep"))
-            );
+            return Err(place.invalid(format!(
+                "textures or nodes depend on each other more than {MAX_DEPTH} deep"
+            )));
         }
         self.depth += 1;
         self.values.insert(key, None);

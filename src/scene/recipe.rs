@@ -35,7 +35,8 @@ use crate::fit::{Angles, read_csv};
 
 use super::{Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, SceneError};
 
-const MATERIAL_KEYS: [&str; 7] = ["name", "sigma", "gamma", "theta", "distribution", "fresnel", "masking"];
+const MATERIAL_KEYS: [&str; 7] =
+    ["name", "sigma", "gamma", "theta", "distribution", "fresnel", "masking"];
 const FRESNEL_KEYS: [&str; 3] = ["schlick", "conductor", "dielectric"];
 
 /// Reads the materials of the recipe `text`, the content of `file`.
@@ -65,7 +66,8 @@ fn entry(material: &Material) -> String {
         Some(Distribution::Named(named)) => {
             let number = |x: f64| range(Interval::point(x));
             let pairs = named.family.parameters().iter().zip(&named.values);
-            let values: String = pairs.map(|(key, x)| format!("\n{key} = {}", number(*x))).collect();
+            let values: String =
+                pairs.map(|(key, x)| format!("\n{key} = {}", number(*x))).collect();
             writeln!(text, "distribution = {}{values}", quoted(named.family.name()))
         }
     };
@@ -176,7 +178,9 @@ impl Source<'_> {
         };
         let required = |key: &str, example: &str| {
             table.get(key).ok_or_else(|| {
-                place.invalid(format!("the material has no `{key}`; add for example {key} = {example}"))
+                place.invalid(format!(
+                    "the material has no `{key}`; add for example {key} = {example}"
+                ))
             })
         };
 
@@ -184,7 +188,9 @@ impl Source<'_> {
         let name = match name.get_ref().as_str() {
             Some(text) if !text.is_empty() => text.to_owned(),
             _ => {
-                return Err(self.place(name.span()).invalid("`name` must be a text that is not empty"));
+                return Err(self
+                    .place(name.span())
+                    .invalid("`name` must be a text that is not empty"));
             }
         };
         let (roughness, gamma, distribution) = match lobe {
@@ -238,10 +244,11 @@ impl Source<'_> {
             let file = file.ok_or_else(|| place.invalid(forms))?;
             // Relative to the recipe.
             let path = self.file.parent().unwrap_or(Path::new("")).join(file);
-            let input =
-                std::fs::File::open(&path).map_err(|e| place.invalid(format!("{}: {e}", path.display())))?;
+            let input = std::fs::File::open(&path)
+                .map_err(|e| place.invalid(format!("{}: {e}", path.display())))?;
             let measured = read_csv(input, Angles::Radians);
-            let measured = measured.map_err(|e| place.invalid(format!("{}: {e}", path.display())))?;
+            let measured =
+                measured.map_err(|e| place.invalid(format!("{}: {e}", path.display())))?;
             Distribution::Measured { file: file.to_owned(), table: measured }
         };
         let built = distribution.build().map_err(|e| place.invalid(e.to_string()))?;
@@ -286,9 +293,10 @@ impl Source<'_> {
         };
         let place = self.place(value.span());
         let [x, y] = &pair[..] else {
-            return Err(
-                place.invalid(format!("sigma has {} values; an anisotropic roughness is [x, y]", pair.len()))
-            );
+            return Err(place.invalid(format!(
+                "sigma has {} values; an anisotropic roughness is [x, y]",
+                pair.len()
+            )));
         };
         let (x, y) = (valid(x)?, valid(y)?);
         match Roughness::anisotropic(x, y) {
@@ -322,7 +330,9 @@ impl Source<'_> {
     ) -> Result<[f64; 3], SceneError> {
         let place = self.place(value.span());
         let theta = match value.get_ref().as_array().map(|array| &array[..]) {
-            Some([x, y, z]) => [self.number(x, "theta")?, self.number(y, "theta")?, self.number(z, "theta")?],
+            Some([x, y, z]) => {
+                [self.number(x, "theta")?, self.number(y, "theta")?, self.number(z, "theta")?]
+            }
             _ => {
                 return Err(place.invalid(
                     "theta must be three angles in radians, about x, y and z: theta = [0.1, -0.2, 0.5]",
@@ -399,7 +409,12 @@ impl Source<'_> {
         match form.get_ref().as_ref() {
             "schlick" => {
                 let f0 = self.number(value, "schlick")?;
-                self.check(value, (0.0..=1.0).contains(&f0), "schlick", "a reflectance from 0 to 1")?;
+                self.check(
+                    value,
+                    (0.0..=1.0).contains(&f0),
+                    "schlick",
+                    "a reflectance from 0 to 1",
+                )?;
                 Ok(Fresnel::Schlick(f0))
             }
             "dielectric" if value.get_ref().is_table() => {
@@ -407,7 +422,10 @@ impl Source<'_> {
                 let valid = eta.min >= 1.0 && eta.min < f64::INFINITY && eta.min < eta.max;
                 let what = "a range of indices inside over outside, from 1 or more up to \"inf\"; both sides are baked";
                 self.check(value, valid, "dielectric", what)?;
-                Ok(Fresnel::Dielectrics { min: eta.min, max: (eta.max < f64::INFINITY).then_some(eta.max) })
+                Ok(Fresnel::Dielectrics {
+                    min: eta.min,
+                    max: (eta.max < f64::INFINITY).then_some(eta.max),
+                })
             }
             "dielectric" => {
                 let eta = self.index(value, "dielectric")?;
@@ -417,14 +435,21 @@ impl Source<'_> {
                 let table = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
                 self.only_keys(table, &["eta", "k"])?;
                 let (Some(eta), Some(k)) = (table.get("eta"), table.get("k")) else {
-                    return Err(place.invalid("a conductor needs both eta = [r, g, b] and k = [r, g, b]"));
+                    return Err(
+                        place.invalid("a conductor needs both eta = [r, g, b] and k = [r, g, b]")
+                    );
                 };
                 Ok(Fresnel::Conductor {
                     eta: self.rgb(eta, "eta", |value| self.index(value, "eta"))?,
                     k: self.rgb(k, "k", |value| {
                         let k = self.number(value, "k")?;
                         let valid = (0.0..f64::INFINITY).contains(&k);
-                        self.check(value, valid, "k", "an extinction coefficient, finite and 0 or more")?;
+                        self.check(
+                            value,
+                            valid,
+                            "k",
+                            "an extinction coefficient, finite and 0 or more",
+                        )?;
                         Ok(k)
                     })?,
                 })
@@ -439,12 +464,20 @@ impl Source<'_> {
         Ok(eta)
     }
 
-    fn check(&self, value: &Value<'_>, valid: bool, key: &str, what: &str) -> Result<(), SceneError> {
+    fn check(
+        &self,
+        value: &Value<'_>,
+        valid: bool,
+        key: &str,
+        what: &str,
+    ) -> Result<(), SceneError> {
         if valid {
             return Ok(());
         }
         let text = self.text.get(value.span()).unwrap_or_default();
-        Err(self.place(value.span()).invalid(format!("{key} = {text} is out of range; it must be {what}")))
+        Err(self
+            .place(value.span())
+            .invalid(format!("{key} = {text} is out of range; it must be {what}")))
     }
 
     fn rgb(

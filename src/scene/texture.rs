@@ -59,7 +59,11 @@ impl Textures {
 }
 
 /// As [`Textures::range`], of an image file in memory.
-pub(super) fn range_of_bytes(bytes: &[u8], channel: Channel, encoding: Encoding) -> Result<Interval, String> {
+pub(super) fn range_of_bytes(
+    bytes: &[u8],
+    channel: Channel,
+    encoding: Encoding,
+) -> Result<Interval, String> {
     let image = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
         .map_err(|error| format!("cannot be read ({error})"))?;
@@ -174,7 +178,8 @@ mod tests {
         let error = range_of_bytes(b"no image", Channel::Red, Encoding::Linear).unwrap_err();
         assert!(error.contains("cannot be decoded"), "{error}");
         let mut textures = Textures::default();
-        let error = textures.range(Path::new("absent.png"), Channel::Red, Encoding::Linear).unwrap_err();
+        let error =
+            textures.range(Path::new("absent.png"), Channel::Red, Encoding::Linear).unwrap_err();
         assert!(error.contains("cannot be read"), "{error}");
     }
 }

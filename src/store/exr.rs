@@ -28,7 +28,8 @@ fn channel_name(channel: &str) -> &str {
 /// # Errors
 /// A message if the table is not sound or cannot be written.
 pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec<u8>, String> {
-    let document = describe(provenance, std::slice::from_ref(table)).map_err(|why| why.to_string())?;
+    let document =
+        describe(provenance, std::slice::from_ref(table)).map_err(|why| why.to_string())?;
     let document = seal_document(&ascii(&document), &table.values)
         .ok_or("the description has no place for a checksum")?;
     let width = table.axes.last().map_or(1, microfacet_sampler::Axis::len);
@@ -59,7 +60,11 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
         AnyChannels::sort(channels.collect()),
     );
     let mut bytes = Cursor::new(Vec::new());
-    Image::from_layer(layer).write().non_parallel().to_buffered(&mut bytes).map_err(|why| why.to_string())?;
+    Image::from_layer(layer)
+        .write()
+        .non_parallel()
+        .to_buffered(&mut bytes)
+        .map_err(|why| why.to_string())?;
     Ok(bytes.into_inner())
 }
 
@@ -97,9 +102,12 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
         columns.push(found.sample_data.values_as_f32().collect::<Vec<f32>>());
     }
     let pixels = layer.size.area();
-    let values: Vec<f32> = (0..pixels).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+    let values: Vec<f32> =
+        (0..pixels).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
     if seal_document(&document, &values).is_none_or(|sealed| sealed != document) {
-        return Err(invalid("checksum does not match: the file is damaged or was edited; bake again".into()));
+        return Err(invalid(
+            "checksum does not match: the file is damaged or was edited; bake again".into(),
+        ));
     }
     let mut values = Some(values);
     let (provenance, tables) =
@@ -112,13 +120,14 @@ const EXPANSION: usize = 64;
 
 /// Refuses a header that promises more pixels than the file can hold, before the library makes room for them.
 fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
-    let meta =
-        exr::meta::MetaData::read_from_buffered(bytes, false).map_err(|why| format!("OpenEXR: {why}"))?;
+    let meta = exr::meta::MetaData::read_from_buffered(bytes, false)
+        .map_err(|why| format!("OpenEXR: {why}"))?;
     let promised = |header: &exr::meta::header::Header| {
         let Vec2(width, height) = header.layer_size;
         width.checked_mul(height)?.checked_mul(header.channels.bytes_per_pixel)
     };
-    let total = meta.headers.iter().map(promised).try_fold(0_usize, |sum, bytes| sum.checked_add(bytes?));
+    let total =
+        meta.headers.iter().map(promised).try_fold(0_usize, |sum, bytes| sum.checked_add(bytes?));
     if total.is_some_and(|total| total <= EXPANSION * bytes.len()) {
         return Ok(());
     }
@@ -133,9 +142,11 @@ fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
 
 /// Channel names of the one table that a document describes.
 fn document_channels(document: &str) -> std::result::Result<Vec<String>, String> {
-    let document: serde_json::Value = serde_json::from_str(document).map_err(|why| why.to_string())?;
+    let document: serde_json::Value =
+        serde_json::from_str(document).map_err(|why| why.to_string())?;
     let channels = document.pointer("/tables/0/channels").and_then(|list| list.as_array());
-    let names = channels.map(|list| list.iter().filter_map(|name| name.as_str().map(String::from)).collect());
+    let names = channels
+        .map(|list| list.iter().filter_map(|name| name.as_str().map(String::from)).collect());
     names
         .filter(|names: &Vec<String>| !names.is_empty())
         .ok_or_else(|| "the description names no channels".into())
@@ -150,7 +161,9 @@ fn ascii(document: &str) -> String {
         } else {
             // Only strings hold such characters, and there JSON allows the escape.
             let mut units = [0; 2];
-            c.encode_utf16(&mut units).iter().for_each(|unit| ascii.push_str(&format!("\\u{unit:04x}")));
+            c.encode_utf16(&mut units)
+                .iter()
+                .for_each(|unit| ascii.push_str(&format!("\\u{unit:04x}")));
         }
     }
     ascii

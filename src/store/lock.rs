@@ -30,7 +30,10 @@ impl OutputFolder {
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let failed = |why| StoreError::Io(path.into(), why);
         if path.exists() && !path.is_dir() {
-            return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, "is a file; name a folder")));
+            return Err(failed(io::Error::new(
+                io::ErrorKind::NotADirectory,
+                "is a file; name a folder",
+            )));
         }
         let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
@@ -67,8 +70,10 @@ impl OutputFolder {
         let stale = self.stale(&files).map_err(|why| StoreError::Io(self.path.clone(), why))?;
         replace_all(&self.path, &files, &stale)
             .map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
-        let written =
-            |(name, bytes): &(String, Vec<u8>)| Written { path: self.path.join(name), bytes: bytes.len() };
+        let written = |(name, bytes): &(String, Vec<u8>)| Written {
+            path: self.path.join(name),
+            bytes: bytes.len(),
+        };
         Ok(files.iter().map(written).collect())
     }
 
@@ -79,7 +84,9 @@ impl OutputFolder {
             let Ok(name) = entry?.file_name().into_string() else { continue };
             let ours = name == SET_FILE || name.ends_with(".exr");
             // Whatever does not load as a table is somebody else's.
-            if ours && files.iter().all(|(new, _)| *new != name) && read_file(&self.path.join(&name)).is_ok()
+            if ours
+                && files.iter().all(|(new, _)| *new != name)
+                && read_file(&self.path.join(&name)).is_ok()
             {
                 stale.push(name);
             }

@@ -96,8 +96,8 @@ fn files(set: &Tables, formats: &[Format]) -> Result<Vec<(String, Vec<u8>)>, Sto
         }
     }
     if formats.contains(&Format::Safetensors) {
-        let bytes =
-            encode(set.provenance(), set.tables()).map_err(|why| StoreError::Load(SET_FILE.into(), why))?;
+        let bytes = encode(set.provenance(), set.tables())
+            .map_err(|why| StoreError::Load(SET_FILE.into(), why))?;
         files.push((SET_FILE.into(), bytes));
     }
     Ok(files)
@@ -122,6 +122,10 @@ pub fn read(path: &Path) -> Result<Tables, StoreError> {
 fn read_file(path: &Path) -> Result<Tables, StoreError> {
     let path = path.to_path_buf();
     let bytes = std::fs::read(&path).map_err(|why| StoreError::Io(path.clone(), why))?;
-    let set = if bytes.starts_with(&exr::MAGIC) { decode_exr(&bytes) } else { Tables::from_bytes(&bytes) };
+    let set = if bytes.starts_with(&exr::MAGIC) {
+        decode_exr(&bytes)
+    } else {
+        Tables::from_bytes(&bytes)
+    };
     set.map_err(|why| StoreError::Load(path, why))
 }

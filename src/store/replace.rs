@@ -22,7 +22,8 @@ const STALE: &str = "-";
 /// # Errors
 /// What the operating system reports; the old file is then untouched.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder =
+        path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     stage(folder, bytes)?.persist(path).map_err(|error| error.error)?;
     sync(folder)
 }
@@ -64,7 +65,8 @@ pub(super) fn replace_all(
     let mut staged = Vec::new();
     for (name, bytes) in files {
         let blocked = folder.join(name).is_dir();
-        let file = if blocked { Err(io::ErrorKind::IsADirectory.into()) } else { stage(folder, bytes) };
+        let file =
+            if blocked { Err(io::ErrorKind::IsADirectory.into()) } else { stage(folder, bytes) };
         staged.push(file.map_err(|why| (name.clone(), why))?);
     }
     let failed = |why| (JOURNAL.to_string(), why);
@@ -102,8 +104,9 @@ pub(super) fn finish(folder: &Path) -> io::Result<()> {
         // What is no longer under its temporary name stands in its place already.
         .filter(|(partial, _)| partial.exists())
         .collect();
-    let stale =
-        lines().filter(|(partial, name)| *partial == STALE && plain(name)).map(|(_, name)| folder.join(name));
+    let stale = lines()
+        .filter(|(partial, name)| *partial == STALE && plain(name))
+        .map(|(_, name)| folder.join(name));
     for path in stale.chain(exchanges.iter().map(|(_, path)| path.clone())) {
         match fs::remove_file(&path) {
             Err(why) if why.kind() != io::ErrorKind::NotFound => return Err(why),
@@ -142,7 +145,9 @@ mod tests {
         let mut all: Vec<_> = fs::read_dir(folder)
             .unwrap()
             .map(|entry| entry.unwrap())
-            .map(|entry| (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap()))
+            .map(|entry| {
+                (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())
+            })
             .collect();
         all.sort();
         all
@@ -170,7 +175,11 @@ mod tests {
                 }
                 fs::write(path(JOURNAL), journal).unwrap();
                 finish(folder.path()).unwrap();
-                assert_eq!(content(folder.path()), set("new"), "{removed} removed, {renamed} renamed");
+                assert_eq!(
+                    content(folder.path()),
+                    set("new"),
+                    "{removed} removed, {renamed} renamed"
+                );
             }
         }
     }
@@ -203,7 +212,8 @@ mod tests {
         fs::create_dir(&inner).unwrap();
         fs::write(folder.path().join("precious"), "precious").unwrap();
         fs::write(inner.join(format!("{PREFIX}x{SUFFIX}")), "").unwrap();
-        fs::write(inner.join(JOURNAL), format!("{PREFIX}x{SUFFIX} ../precious\n- ../precious\n")).unwrap();
+        fs::write(inner.join(JOURNAL), format!("{PREFIX}x{SUFFIX} ../precious\n- ../precious\n"))
+            .unwrap();
         finish(&inner).unwrap();
         assert_eq!(fs::read(folder.path().join("precious")).unwrap(), b"precious");
         assert_eq!(content(&inner), []);

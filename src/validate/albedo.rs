@@ -14,7 +14,9 @@ use microfacet_sampler::{
 
 use super::certificate::round_up;
 use super::points::{Point, are_apart, beside, edges, interior};
-use crate::bake::albedo::{AlbedoSpec, BakeError, CHANNELS, Integrand, Lobe, Models, Site, weights};
+use crate::bake::albedo::{
+    AlbedoSpec, BakeError, CHANNELS, Integrand, Lobe, Models, Site, weights,
+};
 
 /// Accuracy, in units of a node's, of the model's values that tables are judged by.
 const FINER: f64 = 0.1;
@@ -63,9 +65,13 @@ fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, B
             let phi = if v.z < 1.0 { libm::atan2(v.y.into(), v.x.into()) } else { site.phi };
             let site = Site { cos: v.z.into(), phi, ..*site };
             let exact = integrand.at(model, &site)?;
-            let round = stand_in.map(|sigma| model.stand_in(sigma, site.cos, weights)).transpose()?.flatten();
+            let round = stand_in
+                .map(|sigma| model.stand_in(sigma, site.cos, weights))
+                .transpose()?
+                .flatten();
             let off = |round: Albedo<CHANNELS>| {
-                let total = |albedo: &Albedo<CHANNELS>, form| albedo.of(form)[..2].iter().sum::<f64>();
+                let total =
+                    |albedo: &Albedo<CHANNELS>, form| albedo.of(form)[..2].iter().sum::<f64>();
                 Masking::ALL.map(|form| (total(&round, form) - total(&exact, form)).abs())
             };
             Ok(Reference { point: point.clone(), site, v, exact, shortcut: round.map(off) })
@@ -84,7 +90,8 @@ pub fn certified(
     tables: Vec<Table>,
     references: &[Reference],
 ) -> Result<Vec<Table>, BakeError> {
-    let directional: Vec<Table> = tables.iter().filter(|table| table.kind == Kind::Albedo).cloned().collect();
+    let directional: Vec<Table> =
+        tables.iter().filter(|table| table.kind == Kind::Albedo).cloned().collect();
     let of_form = |table: &Table| {
         let same = |other: &&Table| other.subject.masking == table.subject.masking;
         directional.iter().find(same).ok_or_else(|| BindError::NoTable(table.name.clone()))
@@ -152,7 +159,8 @@ fn climbed(
     const HILLS: usize = 4;
     let mut tops: Vec<(usize, Point, f64)> = Vec::new();
     for i in 0..quantities(spec).len() {
-        let mut worst: Vec<&Errors<'_>> = errors.iter().filter(|errors| errors.0.point.promised).collect();
+        let mut worst: Vec<&Errors<'_>> =
+            errors.iter().filter(|errors| errors.0.point.promised).collect();
         worst.sort_by(|a, b| b.1[i].total_cmp(&a.1[i]));
         let start = tops.len();
         for (at, errors) in worst {
@@ -197,10 +205,15 @@ fn quantities(spec: &AlbedoSpec) -> &'static [&'static str] {
 }
 
 /// Largest and root-mean-square errors of each quantity, and where the largest of all stands; the means are without the places `found` uphill.
-fn summary(spec: &AlbedoSpec, errors: &[Errors<'_>], found: &[Errors<'_>]) -> BTreeMap<String, f64> {
+fn summary(
+    spec: &AlbedoSpec,
+    errors: &[Errors<'_>],
+    found: &[Errors<'_>],
+) -> BTreeMap<String, f64> {
     let points = errors.len() + found.len();
     let mut figures = BTreeMap::from([("points".to_owned(), points as f64)]);
-    let (mut inside, outside): (Vec<_>, Vec<_>) = errors.iter().partition(|errors| errors.0.point.promised);
+    let (mut inside, outside): (Vec<_>, Vec<_>) =
+        errors.iter().partition(|errors| errors.0.point.promised);
     for (i, name) in quantities(spec).iter().enumerate() {
         let squares: f64 = inside.iter().map(|errors| errors.1[i] * errors.1[i]).sum();
         let rms = (squares / inside.len().max(1) as f64).sqrt();
@@ -213,11 +226,13 @@ fn summary(spec: &AlbedoSpec, errors: &[Errors<'_>], found: &[Errors<'_>]) -> BT
     };
     for (i, name) in quantities(spec).iter().enumerate() {
         let parts = [("max_error", &inside), ("max_error_outside", &outside)];
-        let max = |(what, part): (&str, &Vec<_>)| Some((format!("{name}_{what}"), largest(part, i)?));
+        let max =
+            |(what, part): (&str, &Vec<_>)| Some((format!("{name}_{what}"), largest(part, i)?));
         figures.extend(parts.into_iter().filter_map(max));
     }
     let worst = |errors: &Errors<'_>| errors.1.iter().copied().max_by(f64::total_cmp);
-    let place = inside.iter().max_by(|a, b| worst(a).unwrap_or(0.0).total_cmp(&worst(b).unwrap_or(0.0)));
+    let place =
+        inside.iter().max_by(|a, b| worst(a).unwrap_or(0.0).total_cmp(&worst(b).unwrap_or(0.0)));
     if let Some((Reference { site: Site { gamma, sigma, eta, phi, cos }, .. }, _)) = place {
         let axis = |name: &str| spec.axes.iter().any(|axis| axis.name == name);
         let all = [
@@ -305,7 +320,8 @@ fn half(table: &Table, axis: usize) -> Table {
     thin.axes[axis].nodes = table.axes[axis].nodes.iter().copied().step_by(2).collect();
     let faster: usize = table.axes[axis + 1..].iter().map(Axis::len).product();
     let kept = |i: &usize| (i / faster % table.axes[axis].len()).is_multiple_of(2);
-    let nodes = table.values.chunks_exact(table.channels.len()).enumerate().filter(|(i, _)| kept(i));
+    let nodes =
+        table.values.chunks_exact(table.channels.len()).enumerate().filter(|(i, _)| kept(i));
     thin.values = nodes.flat_map(|(_, node)| node.iter().copied()).collect();
     thin
 }

@@ -186,7 +186,8 @@ pub(super) fn climbed(
             starts.push(*one);
         }
     }
-    let tops: Vec<(Seen, usize)> = starts.par_iter().map(|start| climb(*start, cells, &error)).collect();
+    let tops: Vec<(Seen, usize)> =
+        starts.par_iter().map(|start| climb(*start, cells, &error)).collect();
     let points = seen.len() + tops.iter().map(|(_, points)| points).sum::<usize>();
     let worst = tops.iter().map(|(top, _)| *top).reduce(|a, b| if b.exceeds(&a) { b } else { a });
     Found { worst: worst.unwrap_or(Seen { error: 0.0, at: [0.0; 3] }), rms, points }
@@ -251,7 +252,8 @@ pub(crate) fn measure(
 /// The largest error of any quantity that a table's certificate promises; ∞ if there is none.
 pub fn worst_error(table: &Table) -> f64 {
     let promised = |key: &str| key.ends_with("_max_error") && !key.starts_with("shortcut");
-    let figures = table.certificate.iter().filter(|(key, _)| promised(key)).map(|(_, figure)| *figure);
+    let figures =
+        table.certificate.iter().filter(|(key, _)| promised(key)).map(|(_, figure)| *figure);
     figures.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
@@ -296,7 +298,8 @@ impl<'a> Ruler<'a> {
         let [first, last] = table.axes[0].ends();
         let [low, high] = [first.max(s[0]), last.min(s[1])];
         // At the seam itself, γ = 1.8, the tables of the whole distribution are read, not those that begin there.
-        let low = if low == s_of_gamma(GAMMA_WHOLE) && high > low { low + BESIDE_SEAM } else { low };
+        let low =
+            if low == s_of_gamma(GAMMA_WHOLE) && high > low { low + BESIDE_SEAM } else { low };
         // The far end not as 1 + 1/s itself, which may round to just outside.
         Self { tables, table, s: [low, high * (1.0 - 1e-15)], views, numbers }
     }
@@ -327,7 +330,8 @@ impl<'a> Ruler<'a> {
         };
         let shapes = self.shapes();
         let seen = shapes.par_iter().map(at_shape).collect::<Result<Vec<_>, BindError>>()?;
-        let shape_cells = if self.is_range() { (self.table.axes[0].nodes.len() - 1) as f64 } else { 0.0 };
+        let shape_cells =
+            if self.is_range() { (self.table.axes[0].nodes.len() - 1) as f64 } else { 0.0 };
         let cells = [shape_cells, self.views.cells, self.numbers.cells];
         // What was swept is covered, and with it all that is between.
         let error = |at: Place| self.bound(at[0]).map_or(f64::NAN, |bound| self.error(&bound, at));
@@ -478,5 +482,8 @@ fn across_error(bound: &StudentT, shape: &Shape, u: f32) -> f64 {
         (across_cdf(shape, signed(shape, t)) - f64::from(u)).abs()
     };
     // Not by `max`, which would drop a NaN.
-    BESIDE.map(error).into_iter().fold(0.0, |worst, error| if error <= worst { worst } else { error })
+    BESIDE
+        .map(error)
+        .into_iter()
+        .fold(0.0, |worst, error| if error <= worst { worst } else { error })
 }

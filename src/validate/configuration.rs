@@ -38,7 +38,10 @@ impl Configuration {
 impl fmt::Display for Configuration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { sigma_x, sigma_y, gamma, theta, phi, seed } = self;
-        write!(f, "--sigma {sigma_x},{sigma_y} --gamma {gamma} --theta {theta} --phi {phi} --seed {seed}")
+        write!(
+            f,
+            "--sigma {sigma_x},{sigma_y} --gamma {gamma} --theta {theta} --phi {phi} --seed {seed}"
+        )
     }
 }
 

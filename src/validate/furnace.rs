@@ -129,7 +129,8 @@ pub fn survey(tables: &Tables) -> Result<Vec<Survey>, BindError> {
     const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1.0];
     let of_family = |table: &&Table| {
         let Subject { lobe, reflectance, .. } = &table.subject;
-        table.kind == Kind::Albedo && (lobe, reflectance) == (&LobeEntry::Family, &Some(Reflectance::Moments))
+        table.kind == Kind::Albedo
+            && (lobe, reflectance) == (&LobeEntry::Family, &Some(Reflectance::Moments))
     };
     tables
         .tables()
@@ -140,7 +141,8 @@ pub fn survey(tables: &Tables) -> Result<Vec<Survey>, BindError> {
             let [shapes, roughnesses] = [&table.axes[0], &table.axes[1]];
             let gammas = between(shapes, covers.s.map(gamma_of_s), 11);
             let sigmas = between(roughnesses, covers.sigma.unwrap_or_default(), 14);
-            let pairs: Vec<_> = gammas.iter().flat_map(|&g| sigmas.iter().map(move |&s| (g, s))).collect();
+            let pairs: Vec<_> =
+                gammas.iter().flat_map(|&g| sigmas.iter().map(move |&s| (g, s))).collect();
             let rows = pairs
                 .par_iter()
                 .flat_map_iter(|&(g, s)| VIEWS.map(|cos| furnace(tables, masking, s, g, cos)))
@@ -190,10 +192,15 @@ pub fn walk(
         counts
     };
     let add = |a: [usize; 3], b: [usize; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-    let [first, out, bounces] = (0..walks.div_ceil(BATCH)).into_par_iter().map(batch).reduce(|| [0; 3], add);
+    let [first, out, bounces] =
+        (0..walks.div_ceil(BATCH)).into_par_iter().map(batch).reduce(|| [0; 3], add);
     let estimate = |count: usize| {
         let mean = count as f64 / walks as f64;
         Estimate { mean, error: (mean * (1.0 - mean) / walks as f64).sqrt() }
     };
-    Ok(Walk { single: estimate(first), total: estimate(out), bounces: bounces as f64 / walks as f64 })
+    Ok(Walk {
+        single: estimate(first),
+        total: estimate(out),
+        bounces: bounces as f64 / walks as f64,
+    })
 }

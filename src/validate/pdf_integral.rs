@@ -56,7 +56,8 @@ pub fn integral(material: &StudentT, v: Vec3) -> f64 {
         below >= 0.5 * along_sum && *dx > 1e-4
     });
     let Some(top) = median else { return f64::NAN };
-    let across_sum: f64 = nodes(&across).iter().map(|&(t, dt)| density(x_nodes[top].0, t) * dt).sum();
+    let across_sum: f64 =
+        nodes(&across).iter().map(|&(t, dt)| density(x_nodes[top].0, t) * dt).sum();
     let mut sum = along_sum * across_sum / row[top];
     if peeled {
         let heavy = 1.0 - f64::from(material.tabulated_share(v));

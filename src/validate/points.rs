@@ -48,12 +48,16 @@ impl Range {
             ends
         };
         let [low, high] = match (axis.mapping, &spec.lobe) {
-            (Mapping::LogShape(_), Lobe::Family(domain)) => of([domain.gamma.min, domain.gamma.max]),
+            (Mapping::LogShape(_), Lobe::Family(domain)) => {
+                of([domain.gamma.min, domain.gamma.max])
+            }
             (Mapping::LogRoughness(_), Lobe::Family(domain)) => {
                 let max = domain.sigma.max;
                 of([PROMISED.0.min(max).max(domain.sigma.min).max(SMOOTHEST), max.max(SMOOTHEST)])
             }
-            (Mapping::ReflectanceRoot, _) => of(spec.reflectance.indices().unwrap_or([f64::NAN; 2])),
+            (Mapping::ReflectanceRoot, _) => {
+                of(spec.reflectance.indices().unwrap_or([f64::NAN; 2]))
+            }
             (Mapping::Azimuth(_), _) if axis.len() == 1 => [0.0; 2],
             // The ends of a circle are one.
             (Mapping::Azimuth(azimuth), _) => [0.0, if azimuth.fold { 1.0 } else { 0.25 }],
@@ -90,9 +94,15 @@ impl Range {
 pub fn count(spec: &AlbedoSpec) -> usize {
     let ranges = ranges(spec);
     let ends = |but: usize| -> usize {
-        ranges.iter().enumerate().filter(|(i, _)| *i != but).map(|(_, range)| range.ends.len()).product()
+        ranges
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| *i != but)
+            .map(|(_, range)| range.ends.len())
+            .product()
     };
-    let along: usize = ranges.iter().enumerate().map(|(i, range)| range.cells.len() * ends(i)).sum();
+    let along: usize =
+        ranges.iter().enumerate().map(|(i, range)| range.cells.len() * ends(i)).sum();
     // Three more views of each corner and edge are outside.
     3 * ends(ranges.len()) + 3 * along + interior_count(spec)
 }
@@ -199,7 +209,8 @@ fn product(materials: &[Range], along: Option<usize>) -> Vec<Vec<f64>> {
     let mut all: Vec<Vec<f64>> = vec![Vec::new()];
     for (i, range) in materials.iter().enumerate() {
         let here = if along == Some(i) { &range.cells } else { &range.ends };
-        let longer = |t: &Vec<f64>| here.iter().map(|&x| [&t[..], &[x]].concat()).collect::<Vec<_>>();
+        let longer =
+            |t: &Vec<f64>| here.iter().map(|&x| [&t[..], &[x]].concat()).collect::<Vec<_>>();
         all = all.iter().flat_map(longer).collect();
     }
     all
@@ -229,14 +240,17 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
                 _ => range.at(x),
             }
         };
-        let material: Vec<f64> = materials.iter().enumerate().map(|(k, range)| of(k, range)).collect();
+        let material: Vec<f64> =
+            materials.iter().enumerate().map(|(k, range)| of(k, range)).collect();
         let b = x[materials.len()];
         let at = match (i % 8, i % 3) {
             (0, _) => return outside(spec, material, x, i % 16 == 8),
             (_, 1) if i / 3 % (2 * ranges.len()) / 2 == materials.len() => View::Cos(PROMISED.1),
             (_, 1) => View::At(view.cell(b)),
             // Near the normal, where masking sets in with a cusp, in the logarithm, and all over.
-            (1 | 5, _) => View::At(1.0 - LAST_CELLS * b / (spec.axes[materials.len()].len() - 1) as f64),
+            (1 | 5, _) => {
+                View::At(1.0 - LAST_CELLS * b / (spec.axes[materials.len()].len() - 1) as f64)
+            }
             (2 | 3, _) => View::Cos(libm::pow(PROMISED.1, b)),
             _ => View::Cos(PROMISED.1 + (1.0 - PROMISED.1) * b),
         };

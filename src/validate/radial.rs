@@ -9,11 +9,14 @@ use std::collections::BTreeMap;
 use glam::{DVec3, Vec3};
 use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_sampler::axis::HalfTangent;
-use microfacet_sampler::{Axis, Kind, LoadError, Mapping, MaterialEntry, Provenance, Radial, Table, Tables};
+use microfacet_sampler::{
+    Axis, Kind, LoadError, Mapping, MaterialEntry, Provenance, Radial, Table, Tables,
+};
 use rayon::prelude::*;
 
 use super::certificate::{
-    Along, Found, ROUNDING, Seen, climbed, cotangent, exact_cotangent, number, places, round_up, view,
+    Along, Found, ROUNDING, Seen, climbed, cotangent, exact_cotangent, number, places, round_up,
+    view,
 };
 use crate::bake::radial_axes;
 use crate::spec::Quality;
@@ -126,7 +129,8 @@ fn searched(
         let at = [way as f64, x, y];
         Seen { error: error(at), at }
     };
-    let seen: Vec<Seen> = sweep.into_par_iter().enumerate().map(|(i, place)| at(i, place)).collect();
+    let seen: Vec<Seen> =
+        sweep.into_par_iter().enumerate().map(|(i, place)| at(i, place)).collect();
     let cells = [0.0, a, b];
     let found = climbed(seen, if ways > 1 { 3 * CLIMBS } else { CLIMBS }, cells, &error);
     // And the summit drawn in all ways.
@@ -212,7 +216,11 @@ impl Ruler<'_> {
 ///
 /// # Errors
 /// [`LoadError::Invalid`] if the tables do not bind.
-pub fn certify(tables: &mut [Table], entry: &MaterialEntry, marginal: &Marginal) -> Result<(), LoadError> {
+pub fn certify(
+    tables: &mut [Table],
+    entry: &MaterialEntry,
+    marginal: &Marginal,
+) -> Result<(), LoadError> {
     let provenance = Provenance { materials: vec![entry.clone()], ..Provenance::default() };
     let radial = Tables::from_tables(provenance, tables.to_vec())?
         .radial(&entry.name)
@@ -225,7 +233,8 @@ pub fn certify(tables: &mut [Table], entry: &MaterialEntry, marginal: &Marginal)
         };
         let found = found(&radial, marginal, table.kind, &table.axes);
         let error = round_up(found.worst.error + ROUNDING);
-        table.certificate = BTreeMap::from([(key.into(), error), ("points".into(), found.points as f64)]);
+        table.certificate =
+            BTreeMap::from([(key.into(), error), ("points".into(), found.points as f64)]);
     }
     Ok(())
 }

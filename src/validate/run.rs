@@ -90,7 +90,11 @@ pub fn run(
     Ok(Outcome { level: sidak(LEVEL, 2 * reports.len()), reports })
 }
 
-fn one(tables: &Tables, configuration: &Configuration, options: Options) -> Result<Report, BindError> {
+fn one(
+    tables: &Tables,
+    configuration: &Configuration,
+    options: Options,
+) -> Result<Report, BindError> {
     let Configuration { sigma_x, sigma_y, gamma, seed, .. } = *configuration;
     let bound = tables.student_t([sigma_x, sigma_y], gamma)?;
     // The model gets the roughness that the run time has rounded to.

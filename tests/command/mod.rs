@@ -9,13 +9,23 @@ use serde_json::Value;
 
 pub(crate) fn run(folder: &Path, args: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
-    command.env("XDG_CACHE_HOME", folder.join("home")).args(args).current_dir(folder).output().unwrap()
+    command
+        .env("XDG_CACHE_HOME", folder.join("home"))
+        .args(args)
+        .current_dir(folder)
+        .output()
+        .unwrap()
 }
 
 /// Standard output of a run that must succeed.
 pub(crate) fn ok(folder: &Path, args: &[&str]) -> String {
     let output = run(folder, args);
-    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{args:?}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     String::from_utf8(output.stdout).expect("text")
 }
 

@@ -4,7 +4,9 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use microfacet_bake::scene::{Format, Fresnel, Interval, Roughness};
 
-use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png};
+use crate::{
+    Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
+};
 
 fn document(materials: &str, rest: &str) -> String {
     format!("{{\"asset\": {{\"version\": \"2.0\"}},\n\"materials\": [{materials}]{rest}}}")
@@ -35,8 +37,13 @@ fn roughness_is_squared_and_the_rest_is_ggx() {
         assert!(material.used, "there are no meshes");
     }
     let roughness: Vec<_> = scene.materials.iter().map(|m| m.roughness).collect();
-    let expected =
-        [isotropic(0.25), isotropic(1.0), Roughness::Smooth, isotropic(0.1 * 0.1), isotropic(0.5625)];
+    let expected = [
+        isotropic(0.25),
+        isotropic(1.0),
+        Roughness::Smooth,
+        isotropic(0.1 * 0.1),
+        isotropic(0.5625),
+    ];
     assert_eq!(roughness, expected);
     let Some(Fresnel::Schlick(f0)) = scene.materials[0].fresnel else {
         panic!("{:?}", scene.materials[0].fresnel)
@@ -96,7 +103,8 @@ const TEXTURED: &str = r#"
 #[track_caller]
 fn assert_textured(scene: &microfacet_bake::scene::Scene) {
     assert_eq!(scene.warnings, [""; 0]);
-    let check = |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(scene, name).roughness, x, y);
+    let check =
+        |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(scene, name).roughness, x, y);
     check("rough", [0.04, 0.16], [0.04, 0.16]);
     check("coated", [0.25, 0.4375], [0.25, 0.25]);
     check("coated.clearcoat", [0.16, 0.64], [0.16, 0.64]);
@@ -109,7 +117,10 @@ fn images_are_read_from_wherever_they_are() {
     let images = |image: &str| {
         document(TEXTURED, &format!(", \"textures\": [{{\"source\": 0}}], \"images\": [{image}]"))
     };
-    let file = Folder::new(&[("a b.png", png()), ("a.gltf", images(r#"{"uri": "a%20b.png"}"#).into_bytes())]);
+    let file = Folder::new(&[
+        ("a b.png", png()),
+        ("a.gltf", images(r#"{"uri": "a%20b.png"}"#).into_bytes()),
+    ]);
     assert_textured(&file.load("a.gltf").unwrap());
 
     let base64 = STANDARD.encode(png());
@@ -125,8 +136,10 @@ fn images_are_read_from_wherever_they_are() {
         images(&view)
     };
     let bytes = [&b"xxx"[..], &png()].concat();
-    let buffer =
-        Folder::new(&[("a.bin", bytes.clone()), ("a.gltf", in_buffer("\"uri\": \"a.bin\", ").into_bytes())]);
+    let buffer = Folder::new(&[
+        ("a.bin", bytes.clone()),
+        ("a.gltf", in_buffer("\"uri\": \"a.bin\", ").into_bytes()),
+    ]);
     assert_textured(&buffer.load("a.gltf").unwrap());
 
     let base64 = STANDARD.encode(&bytes);
@@ -179,9 +192,13 @@ fn an_image_that_cannot_be_read_is_the_full_range() {
 
 #[test]
 fn what_is_not_gltf_is_refused() {
-    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("a.gltf", text, place, parts);
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("a.gltf", text, place, parts);
     let rough = |r: &str| {
-        document(&format!("{{\"name\": \"m\", \"pbrMetallicRoughness\": {{\"roughnessFactor\": {r}}}}}"), "")
+        document(
+            &format!("{{\"name\": \"m\", \"pbrMetallicRoughness\": {{\"roughnessFactor\": {r}}}}}"),
+            "",
+        )
     };
     case(&rough("1.5"), "", &["\"m\"", "roughnessFactor", "1.5", "0 to 1"]);
     case(&rough("-0.5"), "", &["\"m\"", "-0.5", "0 to 1"]);

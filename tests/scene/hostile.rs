@@ -68,7 +68,8 @@ proptest! {
 fn an_include_of_a_folder_is_refused_at_its_place() {
     for include in ["", "."] {
         let text = format!("AttributeBegin\nInclude \"{include}\"\n");
-        let error = Folder::new(&[("a.pbrt", text.into_bytes())]).load("a.pbrt").unwrap_err().to_string();
+        let error =
+            Folder::new(&[("a.pbrt", text.into_bytes())]).load("a.pbrt").unwrap_err().to_string();
         assert!(error.contains("a.pbrt:2") && error.contains("folder"), "{error}");
     }
 }

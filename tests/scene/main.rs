@@ -11,7 +11,9 @@ use std::fs;
 use std::path::PathBuf;
 
 use image::{ImageFormat, Rgb, RgbImage};
-use microfacet_bake::scene::{self, Interval, Material, Roughness, Scene, SceneError, SceneErrorKind};
+use microfacet_bake::scene::{
+    self, Interval, Material, Roughness, Scene, SceneError, SceneErrorKind,
+};
 use tempfile::TempDir;
 
 /// A folder with a scene in it.

@@ -31,10 +31,12 @@ fn standard_surface_follows_its_definition() {
     assert_eq!(mirror.materials[0].roughness, Roughness::Smooth);
     assert_eq!(mirror.materials[0].fresnel, None);
 
-    let brushed = shader("standard_surface", &[("specular_roughness", 0.6), ("specular_anisotropy", 0.36)]);
+    let brushed =
+        shader("standard_surface", &[("specular_roughness", 0.6), ("specular_anisotropy", 0.36)]);
     // aspect = sqrt(1 - 0.36) = 0.8
     assert_close(brushed.materials[0].roughness, [0.45; 2], [0.288; 2]);
-    let extreme = shader("standard_surface", &[("specular_roughness", 1.0), ("specular_anisotropy", 1.0)]);
+    let extreme =
+        shader("standard_surface", &[("specular_roughness", 1.0), ("specular_anisotropy", 1.0)]);
     assert_close(extreme.materials[0].roughness, [1.0; 2], [0.02f64.sqrt(); 2]);
 
     let layered = shader(
@@ -50,7 +52,8 @@ fn standard_surface_follows_its_definition() {
         ],
     );
     assert_eq!(names(&layered), ["a", "a.transmission", "a.coat"]);
-    let roughness = |i: usize, r: f64| assert_close(layered.materials[i].roughness, [r * r; 2], [r * r; 2]);
+    let roughness =
+        |i: usize, r: f64| assert_close(layered.materials[i].roughness, [r * r; 2], [r * r; 2]);
     // The coat roughens by t = 0.5 * 0.4 * 1 = 0.2.
     roughness(0, 0.5 + 0.5 * 0.2);
     roughness(1, 0.75 + 0.25 * 0.2);
@@ -68,13 +71,17 @@ fn open_pbr_surface_follows_its_definition() {
     assert_close(plain.materials[0].roughness, [0.09; 2], [0.09; 2]);
     assert_eq!(plain.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
 
-    let brushed =
-        shader("open_pbr_surface", &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 0.5)]);
+    let brushed = shader(
+        "open_pbr_surface",
+        &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 0.5)],
+    );
     // sqrt(2 / (1 + 0.25))
     let along = 0.25 * 1.6f64.sqrt();
     assert_close(brushed.materials[0].roughness, [along; 2], [0.5 * along; 2]);
-    let line =
-        shader("open_pbr_surface", &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 1.0)]);
+    let line = shader(
+        "open_pbr_surface",
+        &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 1.0)],
+    );
     assert_close(line.materials[0].roughness, [0.25 * 2f64.sqrt(); 2], [1e-6; 2]);
 
     let coated = shader(
@@ -156,11 +163,15 @@ fn node_graphs_are_followed() {
     };
     let image = r#"<image name="i" type="float"><input name="file" type="filename" value="a.png"/></image>"#;
     let colour = r#"<tiledimage name="i" type="color3"><input name="file" type="filename" value="a.png" colorspace="lin_rec709"/></tiledimage>"#;
-    let node = |tag: &str, inputs: &str| format!("<{tag} name=\"end\" type=\"float\">{inputs}</{tag}>");
+    let node =
+        |tag: &str, inputs: &str| format!("<{tag} name=\"end\" type=\"float\">{inputs}</{tag}>");
     let with = |source: &str, tag: &str, inputs: &str| source.to_owned() + &node(tag, inputs);
 
     check(&node("constant", r#"<input name="value" type="float" value="0.3"/>"#), [0.3; 2]);
-    check(&node("constant", r#"<input name="value" type="float" interfacename="amount"/>"#), [0.25; 2]);
+    check(
+        &node("constant", r#"<input name="value" type="float" interfacename="amount"/>"#),
+        [0.25; 2],
+    );
     check(&with(image, "dot", r#"<input name="in" type="float" nodename="i"/>"#), [0.2, 0.4]);
     check(
         &with(
@@ -211,8 +222,7 @@ fn node_graphs_are_followed() {
         ),
         [0.3, 0.4],
     );
-    let green =
-        r#"<input name="in" type="color3" nodename="i"/><input name="index" type="integer" value="1"/>"#;
+    let green = r#"<input name="in" type="color3" nodename="i"/><input name="index" type="integer" value="1"/>"#;
     check(&with(colour, "extract", green), [0.4, 0.8]);
     let separate = colour.to_owned()
         + r#"<separate3 name="s" type="multioutput"><input name="in" type="color3" nodename="i"/></separate3>"#;
@@ -229,7 +239,10 @@ fn node_graphs_are_followed() {
 fn what_a_graph_does_otherwise_is_the_full_range() {
     for (nodes, part) in [
         (r#"<fractal3d name="end" type="float"/>"#, "fractal3d"),
-        (r#"<image name="end" type="float"><input name="file" value="absent.png"/></image>"#, "absent.png"),
+        (
+            r#"<image name="end" type="float"><input name="file" value="absent.png"/></image>"#,
+            "absent.png",
+        ),
         (r#"<image name="end" type="float"/>"#, "names no file"),
     ] {
         let scene = load("a.mtlx", &graph(nodes));
@@ -263,14 +276,17 @@ fn values_out_of_range_are_moved_and_warned_of() {
     assert_eq!(scene.materials[0].roughness, isotropic(1.0));
     assert_eq!(scene.warnings.len(), 2);
     assert!(scene.warnings[0].contains("specular_roughness is 1.5, outside [0, 1]"));
-    let both =
-        shader("open_pbr_surface", &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 0.0)]);
+    let both = shader(
+        "open_pbr_surface",
+        &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 0.0)],
+    );
     assert_ne!(both.materials[0].roughness, anisotropic(0.25, 0.25));
 }
 
 #[test]
 fn broken_documents_are_refused_at_their_place() {
-    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("a.mtlx", text, place, parts);
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("a.mtlx", text, place, parts);
     case("<scene/>", ":1:1", &["<scene>", "<materialx>"]);
     case("<materialx>\n<a></materialx>", ":2:4", &["a"]);
     let input = |attributes: &str, parts: &[&str]| {

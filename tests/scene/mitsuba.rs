@@ -2,7 +2,9 @@
 
 use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
 
-use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png};
+use crate::{
+    Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
+};
 
 fn scene(content: &str) -> String {
     format!("<scene version=\"3.0.0\">{content}</scene>")
@@ -141,7 +143,8 @@ fn nested_bsdfs_are_found_and_used_where_shapes_refer_to_them() {
         ),
     );
     let used: Vec<_> = scene.materials.iter().map(|m| (&m.name[..], m.used)).collect();
-    let expected = [("door", false), ("base", true), ("spare", false), ("box", true), ("box (2)", true)];
+    let expected =
+        [("door", false), ("base", true), ("spare", false), ("box", true), ("box (2)", true)];
     assert_eq!(used, expected);
 }
 
@@ -235,7 +238,8 @@ fn zero_alpha_is_raised_and_warned_of() {
 
 #[test]
 fn what_mitsuba_refuses_is_refused_here() {
-    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("a.xml", text, place, parts);
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("a.xml", text, place, parts);
     let property = |class: &str, text: &str, place: &str, parts: &[&str]| {
         case(&bsdf(class, text), place, parts);
     };
@@ -247,19 +251,45 @@ fn what_mitsuba_refuses_is_refused_here() {
         &["phong", "beckmann", "ggx"],
     );
     property(rough, "\n<float name=\"alpha\" value=\"x\"/>", ":2:1", &["alpha", "number", "\"x\""]);
-    property(rough, "\n<float name=\"alpha\" value=\"$a\"/>", ":2:1", &["$a", "<default name=\"a\""]);
+    property(
+        rough,
+        "\n<float name=\"alpha\" value=\"$a\"/>",
+        ":2:1",
+        &["$a", "<default name=\"a\""],
+    );
     property(rough, "\n<float name=\"alpha\"/>", ":2:1", &["no attribute \"value\""]);
     property(rough, "<float name=\"alpha\" value=\"-1\"/>", ":1:24", &["-1", "more than 0"]);
-    property(rough, "<float name=\"alpha_u\" value=\"1\"/>", ":1:24", &["both alpha_u and alpha_v"]);
+    property(
+        rough,
+        "<float name=\"alpha_u\" value=\"1\"/>",
+        ":1:24",
+        &["both alpha_u and alpha_v"],
+    );
     property(rough, "\n<ref name=\"alpha\" id=\"b\"/>", ":2:1", &["id \"b\""]);
-    property("principled", "<float name=\"roughness\" value=\"1.5\"/>", ":1:24", &["1.5", "0 to 1"]);
-    property("roughdielectric", "\n<string name=\"int_ior\" value=\"watr\"/>", ":2:1", &["watr", "`water`"]);
-    property("roughdielectric", "<float name=\"int_ior\" value=\"-1\"/>", ":1:24", &["more than 0"]);
+    property(
+        "principled",
+        "<float name=\"roughness\" value=\"1.5\"/>",
+        ":1:24",
+        &["1.5", "0 to 1"],
+    );
+    property(
+        "roughdielectric",
+        "\n<string name=\"int_ior\" value=\"watr\"/>",
+        ":2:1",
+        &["watr", "`water`"],
+    );
+    property(
+        "roughdielectric",
+        "<float name=\"int_ior\" value=\"-1\"/>",
+        ":1:24",
+        &["more than 0"],
+    );
     case("<scene version=\"3.0.0\">\n<bsdf id=\"a\"></scene>", ":2:14", &["bsdf"]);
     case(&scene("\n<bsdf id=\"a\"/>"), ":2:1", &["no attribute \"type\""]);
     case(&scene("\n<shape type=\"cube\"><ref id=\"b\"/></shape>"), ":2:20", &["id \"b\""]);
     case("<mesh/>", ":1:1", &["<mesh>", "<scene>"]);
-    let circle = "\n<texture type=\"checkerboard\" id=\"t\"><ref name=\"color0\" id=\"t\"/></texture>
+    let circle =
+        "\n<texture type=\"checkerboard\" id=\"t\"><ref name=\"color0\" id=\"t\"/></texture>
                   <bsdf type=\"roughconductor\"><ref name=\"alpha\" id=\"t\"/></bsdf>";
     case(&scene(circle), ":2:1", &["depends on itself"]);
 }

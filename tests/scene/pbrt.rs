@@ -6,7 +6,9 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
 
-use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png};
+use crate::{
+    Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
+};
 
 /// A house of one distribution at a few roughnesses, as exporters write them.
 const HOUSE: &str = r#"
@@ -75,8 +77,14 @@ fn below_a_thousandth_alpha_is_smooth() {
     assert_eq!(material("\"float roughness\" 0.001"), isotropic(0.001));
     // One rough axis makes the other rough, too.
     assert_eq!(material("\"float uroughness\" 0.5"), anisotropic(0.5, 1e-4));
-    assert_eq!(material("\"float uroughness\" 0.0005 \"float vroughness\" 0.0009"), Roughness::Smooth);
-    assert_eq!(material("\"float uroughness\" 0.5 \"float roughness\" 0.25"), anisotropic(0.5, 0.25));
+    assert_eq!(
+        material("\"float uroughness\" 0.0005 \"float vroughness\" 0.0009"),
+        Roughness::Smooth
+    );
+    assert_eq!(
+        material("\"float uroughness\" 0.5 \"float roughness\" 0.25"),
+        anisotropic(0.5, 0.25)
+    );
 }
 
 #[test]
@@ -183,7 +191,8 @@ fn textures_give_ranges() {
     ]);
     let scene = folder.load("a.pbrt").unwrap();
     assert_eq!(scene.warnings, [""; 0]);
-    let check = |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(&scene, name).roughness, x, y);
+    let check =
+        |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(&scene, name).roughness, x, y);
     check("scaled", [0.1, 0.2], [0.1, 0.2]);
     check("inverted", [0.2, 0.6], [0.2, 0.6]);
     check("remapped", [0.2f64.sqrt(), 0.4f64.sqrt()], [0.2f64.sqrt(), 0.4f64.sqrt()]);
@@ -244,7 +253,8 @@ fn included_files_belong_to_the_scene() {
     let folder = Folder::new(&[
         (
             "a.pbrt",
-            &br#"Include "materials.pbrt" NamedMaterial "a" Import "shapes.pbrt.gz" Shape "disk""#[..],
+            &br#"Include "materials.pbrt" NamedMaterial "a" Import "shapes.pbrt.gz" Shape "disk""#
+                [..],
         ),
         (
             "materials.pbrt",
@@ -279,7 +289,8 @@ fn a_missing_include_leaves_everything_in_use() {
 
 #[test]
 fn files_that_include_each_other_are_refused() {
-    let folder = Folder::new(&[("a.pbrt", "Include \"b.pbrt\""), ("b.pbrt", "\n  Import \"a.pbrt\"")]);
+    let folder =
+        Folder::new(&[("a.pbrt", "Include \"b.pbrt\""), ("b.pbrt", "\n  Import \"a.pbrt\"")]);
     let message = folder.load("a.pbrt").unwrap_err().to_string();
     assert!(message.contains("b.pbrt:2:3: "), "{message}");
     assert!(message.contains("a.pbrt -> b.pbrt -> a.pbrt"), "{message}");
@@ -287,12 +298,17 @@ fn files_that_include_each_other_are_refused() {
 
 #[test]
 fn bad_syntax_is_refused_at_its_place() {
-    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
     case("WorldBegin\n Shpe \"sphere\"", ":2:2", &["Shpe", "did you mean `Shape`?"]);
     case("Film \"rgb\n\"", ":1:6", &["closing quote"]);
     case("Film \"r\\gb\"", ":1:6", &["escape"]);
     case("Shape \"a\" \"point3 P\" [ 1 2\n 3", ":1:22", &["closing bracket"]);
-    case("Shape \"a\" \"point3 P\" [ 1 2\nShape \"b\" \"point3 P\" [ 1 ]", ":1:22", &["closing bracket"]);
+    case(
+        "Shape \"a\" \"point3 P\" [ 1 2\nShape \"b\" \"point3 P\" [ 1 ]",
+        ":1:22",
+        &["closing bracket"],
+    );
     case("Material \"conductor\" \"float roughness\" [ 1 \"b", ":1:44", &["closing quote"]);
     case("Material \"conductor\" \"float roughness\" [ 1", ":1:40", &["closing bracket"]);
     case("Material \"conductor\" \"float roughness\"", ":1:22", &["no value"]);
@@ -308,7 +324,8 @@ fn bad_syntax_is_refused_at_its_place() {
 
 #[test]
 fn impossible_values_are_refused_at_their_place() {
-    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
     let named = "MakeNamedMaterial \"a\" \"string type\" \"conductor\"";
     case(&format!("{named} \"float roughness\" -0.5"), ":1:49", &["-0.5", "0 or more", "\"a\""]);
     case(&format!("{named} \"float roughness\" \"rough\""), ":1:49", &["number", "rough"]);
@@ -318,7 +335,11 @@ fn impossible_values_are_refused_at_their_place() {
     case(&format!("{named}\n{named}"), ":2:1", &["twice", "a.pbrt:1:1"]);
     case(&format!("{named}\nNamedMaterial \"A\""), ":2:1", &["\"A\" is not defined", "`a`"]);
     case("MakeNamedMaterial \"a\" \"float roughness\" 1", ":1:1", &["no type"]);
-    case("Material \"mix\" \"string materials\" [ \"x\" \"y\" ]", ":1:16", &["\"x\" is not defined"]);
+    case(
+        "Material \"mix\" \"string materials\" [ \"x\" \"y\" ]",
+        ":1:16",
+        &["\"x\" is not defined"],
+    );
     case("Material \"dielectric\" \"float eta\" 0", ":1:23", &["0", "more than 0"]);
     case(
         "Texture \"t\" \"float\" \"scale\" \"texture tex\" \"t\"\nMaterial \"conductor\" \"texture roughness\" \"t\"",

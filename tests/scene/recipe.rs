@@ -141,7 +141,8 @@ fn values_out_of_range_are_refused_with_the_range() {
 
 #[test]
 fn unknown_keys_are_named_with_the_nearest_known_one() {
-    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
     case(&entry("sigma = 0.3\ngama = 2.0"), ":4:1", &["`gama`", "did you mean `gamma`?"]);
     case("[[materials]]\nname = \"a\"", ":1:3", &["`materials`", "did you mean `material`?"]);
     case(&entry("sigma = { min = 0.1, maxx = 0.2 }\ngamma = 2.0"), ":3:22", &["`maxx`", "`max`"]);
@@ -150,7 +151,8 @@ fn unknown_keys_are_named_with_the_nearest_known_one() {
 
 #[test]
 fn recipes_that_say_nothing_or_twice_the_same_are_refused() {
-    let case = |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
+    let case =
+        |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
     case("", "", &["no materials", "[[material]]"]);
     case("material = []", "", &["no materials"]);
     case("material = 3", ":1:12", &["[[material]]"]);
@@ -195,8 +197,14 @@ fn ellipsoids_have_a_turn_and_single_numbers() {
         ("sigma = 0.3\ngamma = 2.0\ntheta = [0.1, 0.2]", "three angles"),
         ("sigma = 0.3\ngamma = 2.0\ntheta = 0.1", "three angles"),
         ("sigma = 0.3\ngamma = 2.0\ntheta = [0.1, \"inf\", 0.0]", "finite"),
-        ("sigma = 0.3\ngamma = { min = 2.0, max = 3.0 }\ntheta = [0.1, 0.2, 0.0]", "range of gamma"),
-        ("sigma = { min = 0.1, max = 0.3 }\ngamma = 2.0\ntheta = [0.1, 0.2, 0.0]", "range of sigma"),
+        (
+            "sigma = 0.3\ngamma = { min = 2.0, max = 3.0 }\ntheta = [0.1, 0.2, 0.0]",
+            "range of gamma",
+        ),
+        (
+            "sigma = { min = 0.1, max = 0.3 }\ngamma = 2.0\ntheta = [0.1, 0.2, 0.0]",
+            "range of sigma",
+        ),
         ("sigma = 0\ngamma = 2.0\ntheta = [0.1, 0.2, 0.0]", "sigma"),
         ("sigma = 1e-9\ngamma = 2.0\ntheta = [0.0, 1.5707963267948966, 0.0]", "theta"),
         ("distribution = \"gauss\"\nm = 0.2\ntheta = [0.1, 0.2, 0.0]", "unknown key `theta`"),
@@ -215,7 +223,8 @@ fn unused_materials_are_no_part_of_the_recipe() {
 }
 
 fn interval(ends: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = Interval> {
-    let range = (ends.clone(), ends.clone()).prop_map(|(a, b)| Interval { min: a.min(b), max: a.max(b) });
+    let range =
+        (ends.clone(), ends.clone()).prop_map(|(a, b)| Interval { min: a.min(b), max: a.max(b) });
     prop_oneof![ends.prop_map(Interval::point), range]
 }
 

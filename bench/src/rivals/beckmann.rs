@@ -104,7 +104,8 @@ pub(super) fn slopes_of(cot: f32, [erf, gauss]: [f32; 2], u: [f32; 2]) -> [f32; 
 #[inline(always)]
 fn arc_tangent(tan: f32, cot: f32) -> f32 {
     let t = tan.min(cot);
-    let arc = t * polynomial(t * t, &[0.999_964_8, -0.331_544_6, 0.184_463_6, -0.090_752_0, 0.023_286_0]);
+    let arc =
+        t * polynomial(t * t, &[0.999_964_8, -0.331_544_6, 0.184_463_6, -0.090_752_0, 0.023_286_0]);
     if tan > cot { FRAC_PI_2 - arc } else { arc }
 }
 

@@ -8,7 +8,10 @@ use std::ops::{Add, Mul};
 
 /// c₀ + c₁x + c₂x² + … by Horner's rule.
 #[inline(always)]
-pub(crate) fn polynomial<T: Copy + Add<Output = T> + Mul<Output = T>, const N: usize>(x: T, c: &[T; N]) -> T {
+pub(crate) fn polynomial<T: Copy + Add<Output = T> + Mul<Output = T>, const N: usize>(
+    x: T,
+    c: &[T; N],
+) -> T {
     // Not a fold from 0: its first step would stay.
     let mut sum = c[N - 1];
     for i in (0..N - 1).rev() {
@@ -22,7 +25,8 @@ pub(crate) fn polynomial<T: Copy + Add<Output = T> + Mul<Output = T>, const N: u
 #[inline(always)]
 pub(crate) fn nine(x: f32, c: &[f32; 9]) -> f32 {
     let square = x * x;
-    polynomial(square, &[c[0], c[2], c[4], c[6], c[8]]) + x * polynomial(square, &[c[1], c[3], c[5], c[7]])
+    polynomial(square, &[c[0], c[2], c[4], c[6], c[8]])
+        + x * polynomial(square, &[c[1], c[3], c[5], c[7]])
 }
 
 /// The sine and the cosine of 2πu, u ∈ [0, 1], to 1e-7.

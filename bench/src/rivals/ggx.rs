@@ -18,13 +18,19 @@ macro_rules! in_precision {
 
             /// The same with the sine and the cosine of the azimuth given.
             #[inline(always)]
-            pub(crate) fn caps_at(sigma: $float, v: Vector, [sin, cos]: [$float; 2], u: $float) -> Vector {
+            pub(crate) fn caps_at(
+                sigma: $float,
+                v: Vector,
+                [sin, cos]: [$float; 2],
+                u: $float,
+            ) -> Vector {
                 let w = Vector::new(sigma * v.x, sigma * v.y, v.z);
                 let square = w.dot(w);
                 let height = (1.0 - u) * (square.sqrt() + w.z);
                 let z = height - w.z;
                 let radius = (square - z * z).max(0.0).sqrt();
-                let m = Vector::new(sigma * (w.x + radius * cos), sigma * (w.y + radius * sin), height);
+                let m =
+                    Vector::new(sigma * (w.x + radius * cos), sigma * (w.y + radius * sin), height);
                 m * (1.0 / m.dot(m).sqrt())
             }
 
@@ -37,8 +43,11 @@ macro_rules! in_precision {
                 let (rho, length) = (across.sqrt(), (across + v.z * v.z).sqrt());
                 let inverse = 1.0 / (rho * length);
                 // The azimuth and the elevation of the view.
-                let (cos_phi, sin_phi) =
-                    if across > 0.0 { (x * length * inverse, y * length * inverse) } else { (1.0, 0.0) };
+                let (cos_phi, sin_phi) = if across > 0.0 {
+                    (x * length * inverse, y * length * inverse)
+                } else {
+                    (1.0, 0.0)
+                };
                 let (sin_theta, cos_theta) =
                     if across > 0.0 { (across * inverse, v.z * rho * inverse) } else { (0.0, 1.0) };
                 let r = u[0].sqrt();

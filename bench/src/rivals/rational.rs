@@ -30,7 +30,8 @@ const LARGEST: f32 = 1e5;
 impl Rational {
     pub(crate) fn new(sigma: f64, gamma: f64) -> Self {
         let g1 = gamma - 1.0;
-        let prefactor = (libm::lgamma(gamma - 0.5) - libm::lgamma(gamma)).exp() / std::f64::consts::PI.sqrt();
+        let prefactor =
+            (libm::lgamma(gamma - 0.5) - libm::lgamma(gamma)).exp() / std::f64::consts::PI.sqrt();
         let f22 = polynomial(gamma, &[14.402, -27.145, 20.574, -2.745])
             / polynomial(gamma, &[-30.612, 86.567, -84.341, 29.938]);
         let f23 = polynomial(gamma, &[-129.404, 324.987, -299.305, 93.268])
@@ -69,9 +70,13 @@ mod tests {
             let bound = Rational::new(0.5, gamma);
             for degrees in [5.0_f32, 30.0, 60.0, 80.0, 89.0] {
                 let (sin, cos) = degrees.to_radians().sin_cos();
-                let want = 1.0 / (1.0 + lambda_rational(gamma, f64::from(cos) / (0.5 * f64::from(sin))));
+                let want =
+                    1.0 / (1.0 + lambda_rational(gamma, f64::from(cos) / (0.5 * f64::from(sin))));
                 let got = f64::from(bound.g1(Vec3::new(sin, 0.0, cos)));
-                assert!((got - want).abs() < 1e-6, "gamma {gamma}, {degrees} degrees: {got} against {want}");
+                assert!(
+                    (got - want).abs() < 1e-6,
+                    "gamma {gamma}, {degrees} degrees: {got} against {want}"
+                );
             }
         }
     }

@@ -83,7 +83,8 @@ impl Drawer {
         let all = v.z + self.grazing * rho;
         let (root, [erf, gauss]) = loop {
             // √τ, 1 over which the slopes are scaled by.
-            let root = (precision(stream.next() * all >= v.z, stream) * (1.0 / (GAMMA - 1.0))).sqrt();
+            let root =
+                (precision(stream.next() * all >= v.z, stream) * (1.0 / (GAMMA - 1.0))).sqrt();
             let [erf, gauss] = beckmann::erf(cot * root);
             // Times √τ, both sides.
             let z = v.z * root;
@@ -91,7 +92,8 @@ impl Drawer {
                 break (root, [erf, gauss]);
             }
         };
-        let [away, across] = beckmann::slopes_of(cot * root, [erf, gauss], [stream.next(), stream.next()]);
+        let [away, across] =
+            beckmann::slopes_of(cot * root, [erf, gauss], [stream.next(), stream.next()]);
         beckmann::normal(self.sigma / root, [cos, sin], [-away, across])
     }
 }

@@ -78,7 +78,9 @@ impl Fraction {
     fn at(&self, x: f32) -> f32 {
         let (mut old, mut new) = ([1.0, 1.0], [1.0 + self.first * x, 1.0]);
         for [even, odd] in &self.pairs {
-            let next = |[old, new]: [[f32; 2]; 2], d: f32| [new[0] + d * x * old[0], new[1] + d * x * old[1]];
+            let next = |[old, new]: [[f32; 2]; 2], d: f32| {
+                [new[0] + d * x * old[0], new[1] + d * x * old[1]]
+            };
             old = next([old, new], *even);
             new = next([new, old], *odd);
             let (a, b) = (new[0] * old[1], old[0] * new[1]);
@@ -171,7 +173,10 @@ mod tests {
                 let want = if sin < 0.0 { 1.0 - one } else { one };
                 let power = cos.powf(2.0 * p + 2.0) as f32;
                 let got = tail.upper(sin as f32, cos as f32, power);
-                assert!((f64::from(got) - want).abs() < 1e-6, "p {p}, sine {sin}: {got} against {want}");
+                assert!(
+                    (f64::from(got) - want).abs() < 1e-6,
+                    "p {p}, sine {sin}: {got} against {want}"
+                );
             }
         };
         for gamma in [2.2, 3.0, 4.0, 9.7, 40.0] {

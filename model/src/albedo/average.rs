@@ -52,7 +52,8 @@ impl AlbedoIntegrator {
             };
             let change = now.furthest(&before);
             // It falls faster than geometrically.
-            let ahead = if change == 0.0 { 0.0 } else { change * (10.0 * change / last_change).min(1.0) };
+            let ahead =
+                if change == 0.0 { 0.0 } else { change * (10.0 * change / last_change).min(1.0) };
             before = Albedo { error: now.error + ahead, ..now };
             if halving > 1 && ahead < self.tolerance {
                 break;

@@ -150,7 +150,11 @@ impl AlbedoIntegrator {
         let mut width = PANEL;
         while from.at < end.at {
             width = (1.5 * width).min(slow.max(PANEL));
-            let to = if from.at + 2.0 * width < end.at { End { at: from.at + width, ..end } } else { end };
+            let to = if from.at + 2.0 * width < end.at {
+                End { at: from.at + width, ..end }
+            } else {
+                end
+            };
             rule.graded(from, to, width, &mut add);
             from = to;
         }
@@ -176,7 +180,8 @@ impl AlbedoIntegrator {
         let plain = |at: f64| End { at, scale: f64::INFINITY };
         let cut = self.cut_across();
         rule.graded(plain(-cut), plain(cut), PANEL, |w, jacobian| {
-            let ratio = (view.lambda + view.mu * self.shape.s().sqrt() * self.signed_slope(w)) / view.beta;
+            let ratio =
+                (view.lambda + view.mu * self.shape.s().sqrt() * self.signed_slope(w)) / view.beta;
             let fresnel = weight(1.0 / (1.0 + ratio * ratio).sqrt());
             for (sum, fresnel) in sum.iter_mut().zip(fresnel) {
                 *sum += jacobian * self.shape.across_density(w) * fresnel;
@@ -195,8 +200,9 @@ impl AlbedoIntegrator {
         let edge = |at: f64| End { at: at.clamp(-cut, cut), scale: opening.clamp(1e-4, 0.05) };
         let (low, high) = (edge(low), edge(high));
         // Where n is far behind, the tail is left to panels of its own.
-        let ordinary =
-            self.signed_unit((1.0 + view.mean[0].abs() + view.mean[1].abs()) / view.beta.min(view.mu)) + 4.0;
+        let ordinary = self
+            .signed_unit((1.0 + view.mean[0].abs() + view.mean[1].abs()) / view.beta.min(view.mu))
+            + 4.0;
         let tail = high.at > low.at.max(ordinary) && view.cos == 0.0;
         let mut stops = vec![low];
         if self.has_skewed_cone(view) {
@@ -205,7 +211,11 @@ impl AlbedoIntegrator {
                 stops.push(End { at: normal, scale: 0.02 });
             }
         }
-        stops.push(if tail { End { at: low.at.max(ordinary), scale: f64::INFINITY } } else { high });
+        stops.push(if tail {
+            End { at: low.at.max(ordinary), scale: f64::INFINITY }
+        } else {
+            high
+        });
         if view.mean != [0.0; 2] {
             self.tangents(view, &mut stops);
         }
@@ -240,8 +250,9 @@ impl AlbedoIntegrator {
             found
         });
         for &at in &crossings[1] {
-            let nearest =
-                |others: &Vec<f64>| others.iter().map(|x| (x - at).abs()).fold(f64::INFINITY, f64::min);
+            let nearest = |others: &Vec<f64>| {
+                others.iter().map(|x| (x - at).abs()).fold(f64::INFINITY, f64::min)
+            };
             let scale = nearest(&crossings[0]).max(nearest(&crossings[2]));
             if scale < 0.5 * PANEL {
                 stops.push(End { at, scale: scale.max(1e-4) });
@@ -300,7 +311,8 @@ impl AlbedoIntegrator {
     fn search_points(&self, view: &View, chord: &Chord, [low, high]: [f64; 2]) -> Vec<f64> {
         let mut points = steps(low, high, CLAMPS);
         let centre = self.chord_centre(view, chord);
-        let near = [-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0].map(|x| centre.at + x * centre.scale);
+        let near =
+            [-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0].map(|x| centre.at + x * centre.scale);
         if centre.scale < 1.0 {
             points.extend(near.into_iter().filter(|w| low < *w && *w < high));
             points.sort_by(f64::total_cmp);
@@ -330,7 +342,8 @@ impl AlbedoIntegrator {
     ) -> [[f64; N]; 2] {
         let mut sum = [[0.0; N]; 2];
         let s = self.shape.s();
-        let reflected = |w: f64| view.reflect(self, chord, chord.eta + chord.rate * self.signed_slope(w));
+        let reflected =
+            |w: f64| view.reflect(self, chord, chord.eta + chord.rate * self.signed_slope(w));
         let half = view.half_chord(chord.xi);
         let [low, high] = self.chord_ends(view, chord).map(|w| {
             if w.abs() >= self.cut_across() {
@@ -425,7 +438,8 @@ impl View {
     fn chord(&self, x: f64, stretch: f64) -> Option<Chord> {
         let xi = self.mean[0] + self.beta * x;
         let facing = self.cos + self.sin * xi;
-        let chord = Chord { xi, facing, eta: self.mean[1] + self.lambda * x, rate: self.mu * stretch };
+        let chord =
+            Chord { xi, facing, eta: self.mean[1] + self.lambda * x, rate: self.mu * stretch };
         (facing > 0.0 && self.half_chord(xi) > 0.0).then_some(chord)
     }
 

@@ -92,7 +92,9 @@ impl<'a> RadialAlbedo<'a> {
         let rho = self.marginal.sigma() * sin;
         let view = View { cos, sin, scale: 1.0 / self.smith.area(cos, rho * rho) };
         let ([uncorrelated, height_correlated], error) =
-            converge(&self.rules, self.tolerance, 2.0, |rule| self.quadrature(rule, &view, &weight));
+            converge(&self.rules, self.tolerance, 2.0, |rule| {
+                self.quadrature(rule, &view, &weight)
+            });
         Ok(Albedo { uncorrelated, height_correlated, error })
     }
 
@@ -130,7 +132,8 @@ impl<'a> RadialAlbedo<'a> {
         let plain = |at: f64| End { at, scale: f64::INFINITY };
         let last = self.corners[self.corners.len() - 1];
         let corners = self.corners.iter().copied().filter(|w| *w < far).map(plain);
-        let mut stops: Vec<End> = [End { at: 0.0, scale: self.peak }].into_iter().chain(corners).collect();
+        let mut stops: Vec<End> =
+            [End { at: 0.0, scale: self.peak }].into_iter().chain(corners).collect();
         stops.extend([near, far].into_iter().filter(|w| *w < last).map(rim));
         stops.sort_by(|a, b| a.at.total_cmp(&b.at));
         stops
@@ -168,7 +171,8 @@ impl<'a> RadialAlbedo<'a> {
             }
             let fresnel = weight((facing / square.sqrt()).min(1.0));
             let mass = jacobian * facing;
-            let [uncorrelated, correlated] = Masking::ALL.map(|masking| mass * masking.g2_over_g1(g1_v, g1));
+            let [uncorrelated, correlated] =
+                Masking::ALL.map(|masking| mass * masking.g2_over_g1(g1_v, g1));
             for i in 0..N {
                 sum[0][i] += uncorrelated * fresnel[i];
                 sum[1][i] += correlated * fresnel[i];

@@ -56,7 +56,8 @@ impl AshikhminShirley {
     pub fn sample_ndf(&self, u: [f64; 2]) -> DVec3 {
         // tan φ = √((Nx+2)/(Ny+2)) tan 2πu₂, every quadrant kept.
         let angle = 2.0 * PI * u[1];
-        let (x, y) = ((self.ny + 2.0).sqrt() * libm::cos(angle), (self.nx + 2.0).sqrt() * libm::sin(angle));
+        let (x, y) =
+            ((self.ny + 2.0).sqrt() * libm::cos(angle), (self.nx + 2.0).sqrt() * libm::sin(angle));
         let r = libm::hypot(x, y);
         let e = -2.0 * libm::log1p(-u[0]) / (self.exponent(x, y) + 2.0);
         // cos²θ = exp(−e).
@@ -66,7 +67,8 @@ impl AshikhminShirley {
 
     /// Blinn–Phong when both exponents are equal.
     pub fn student_t(&self) -> Option<StudentT> {
-        (self.nx == self.ny).then(|| StudentT::blinn_phong(self.nx).expect("exponents were checked"))
+        (self.nx == self.ny)
+            .then(|| StudentT::blinn_phong(self.nx).expect("exponents were checked"))
     }
 }
 
@@ -101,8 +103,11 @@ mod tests {
             assert!((1.0 - libm::pow(m.z, n + 2.0) - u[0]).abs() < 1e-13, "{u:?}");
         }
         let half = d.half_angle(0.3).unwrap();
-        let m =
-            DVec3::new(libm::sin(half) * libm::cos(0.3), libm::sin(half) * libm::sin(0.3), libm::cos(half));
+        let m = DVec3::new(
+            libm::sin(half) * libm::cos(0.3),
+            libm::sin(half) * libm::sin(0.3),
+            libm::cos(half),
+        );
         assert!((d.unit(m) - 0.5).abs() < 1e-14);
     }
 }

@@ -156,7 +156,11 @@ impl Across<'_> {
 
     /// Density at y; 0 where there are no slopes.
     pub fn density(&self, y: f64) -> f64 {
-        if self.half > 0.0 { 0.5 * self.marginal.p22(libm::hypot(self.x, y)) / self.half } else { 0.0 }
+        if self.half > 0.0 {
+            0.5 * self.marginal.p22(libm::hypot(self.x, y)) / self.half
+        } else {
+            0.0
+        }
     }
 }
 
@@ -248,13 +252,22 @@ mod tests {
             for z in [0.0, 0.2, 1.0, 4.0] {
                 let w = shape.unit(z * ratio);
                 let at = marginal.beyond(z);
-                assert!((at.tail - shape.tail(w)).abs() < 1e-9, "tail at {z}: {} {}", at.tail, shape.tail(w));
+                assert!(
+                    (at.tail - shape.tail(w)).abs() < 1e-9,
+                    "tail at {z}: {} {}",
+                    at.tail,
+                    shape.tail(w)
+                );
                 assert!((at.excess * ratio - shape.excess(w)).abs() < 1e-9, "excess at {z}");
                 let visible = MarginalView::new(&marginal, z);
                 let exact = VisibleSlope::new(shape, UnitView::from_cotangent(z * ratio));
                 for x in [-1.0, -0.1, 0.3, 2.0] {
-                    let slope = SignedUnit { w: shape.unit(f64::abs(x * ratio)), sign: f64::signum(x) };
-                    assert!((visible.shares(x).below - exact.cdf(slope)).abs() < 1e-8, "z {z}, x {x}");
+                    let slope =
+                        SignedUnit { w: shape.unit(f64::abs(x * ratio)), sign: f64::signum(x) };
+                    assert!(
+                        (visible.shares(x).below - exact.cdf(slope)).abs() < 1e-8,
+                        "z {z}, x {x}"
+                    );
                 }
             }
         }
@@ -271,12 +284,16 @@ mod tests {
             assert!((marginal.beyond(0.0).tail - 0.5).abs() < tolerance);
             // p is minus the derivative of the tail, and the tail that of the excess.
             for x in [0.3, 0.9, 1.7] {
-                let (a, b, at) = (marginal.beyond(x - 1e-4), marginal.beyond(x + 1e-4), marginal.beyond(x));
+                let (a, b, at) =
+                    (marginal.beyond(x - 1e-4), marginal.beyond(x + 1e-4), marginal.beyond(x));
                 assert!(((a.tail - b.tail) / 2e-4 - at.density).abs() < 1e-6, "density at {x}");
                 assert!(((a.excess - b.excess) / 2e-4 - at.tail).abs() < 1e-6, "tail at {x}");
                 let across = marginal.across_at(x);
                 let rate = (across.tail(0.4 - 1e-4) - across.tail(0.4 + 1e-4)) / 2e-4;
-                assert!((0.0..0.5).contains(&across.tail(0.4)) && (rate - across.density(0.4)).abs() < 1e-5);
+                assert!(
+                    (0.0..0.5).contains(&across.tail(0.4))
+                        && (rate - across.density(0.4)).abs() < 1e-5
+                );
             }
         }
     }

@@ -133,7 +133,12 @@ fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// Checks `value` against an open-below, closed-above or open-above range in words.
-fn check(ok: bool, name: &'static str, value: f64, range: &'static str) -> Result<(), ClassicError> {
+fn check(
+    ok: bool,
+    name: &'static str,
+    value: f64,
+    range: &'static str,
+) -> Result<(), ClassicError> {
     if ok { Ok(()) } else { Err(ClassicError { name, value, range }) }
 }
 
@@ -186,7 +191,10 @@ mod tests {
             for u in [1e-6, 0.2, 0.5, 0.9, 0.999] {
                 let theta = d.sample_theta(u);
                 let back = projected(|t| d.d(t), d.half_angle().unwrap_or(1.0), theta);
-                assert!((back - u).abs() < 1e-8, "{name}: {u} gives {theta}, whose share is {back}");
+                assert!(
+                    (back - u).abs() < 1e-8,
+                    "{name}: {u} gives {theta}, whose share is {back}"
+                );
             }
         }
     }

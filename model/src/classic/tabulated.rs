@@ -28,7 +28,10 @@ impl fmt::Display for TabulatedError {
         match self {
             Self::TooFew(n) => write!(f, "{n} rows: a distribution needs at least 3"),
             Self::Angle(i, x) => {
-                write!(f, "row {i}: angle {x} must be in radians, within [0, pi/2], and above the row before")
+                write!(
+                    f,
+                    "row {i}: angle {x} must be in radians, within [0, pi/2], and above the row before"
+                )
             }
             Self::Value(i, x) => write!(f, "row {i}: D = {x} must be finite and not negative"),
             Self::Gap(a, b) => write!(
@@ -169,8 +172,10 @@ mod tests {
     #[test]
     fn follows_what_it_was_sampled_from() {
         let beckmann = Member::beckmann(0.3).unwrap();
-        let rows: Vec<_> =
-            (0..=900).map(|i| f64::from(i) * FRAC_PI_2 / 900.0).map(|t| (t, 7.0 * beckmann.d(t))).collect();
+        let rows: Vec<_> = (0..=900)
+            .map(|i| f64::from(i) * FRAC_PI_2 / 900.0)
+            .map(|t| (t, 7.0 * beckmann.d(t)))
+            .collect();
         let table = Tabulated::new(&rows).unwrap();
         for u in [0.01, 0.3, 0.7, 0.99] {
             let theta = table.sample_theta(u);

@@ -25,7 +25,8 @@ pub struct ChiSquare {
 /// If the two differ in length.
 pub fn chi_square(observed: &[u64], expected: &[f64]) -> ChiSquare {
     assert_eq!(observed.len(), expected.len());
-    let impossible = observed.iter().zip(expected).any(|(&count, &mean)| count > 0 && !(mean > 0.0));
+    let impossible =
+        observed.iter().zip(expected).any(|(&count, &mean)| count > 0 && !(mean > 0.0));
     let mut groups: Vec<(f64, f64)> = Vec::new();
     let mut pool = (0.0, 0.0);
     for (&count, &mean) in observed.iter().zip(expected) {

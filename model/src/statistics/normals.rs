@@ -59,8 +59,11 @@ pub fn judge_visible_normals(
         world_counts[world.cell(m)] += 1;
     }
     let n = samples as f64;
-    let lobe_expected: Vec<f64> =
-        grid.along_share.iter().flat_map(|a| grid.across_share.iter().map(move |b| a * b * n)).collect();
+    let lobe_expected: Vec<f64> = grid
+        .along_share
+        .iter()
+        .flat_map(|a| grid.across_share.iter().map(move |b| a * b * n))
+        .collect();
     // A cell of which only a corner faces the view can slip through the quadrature: it is pooled, not taken as impossible.
     let world_expected: Vec<f64> = world.share.iter().map(|share| share.max(1e-12) * n).collect();
     let mut below = 0;
@@ -98,7 +101,8 @@ impl LobeGrid {
         let (view, azimuth) = truth.unit_view(v);
         let shape = truth.shape();
         let slopes = VisibleSlope::new(shape, view);
-        let along = |count: usize| upper_edges(count, |u| slopes.quantile(u), |x| slopes.cdf(x), shape);
+        let along =
+            |count: usize| upper_edges(count, |u| slopes.quantile(u), |x| slopes.cdf(x), shape);
         let (along_edges, along_cdf) = along(CELLS[0]);
         let (ks, ks_cdf) = along(KS_EDGES);
         let (across, across_cdf) =
@@ -227,5 +231,7 @@ fn integrate(a: [f64; 2], b: [f64; 2], f: impl Fn(f64, f64) -> f64) -> f64 {
     let (da, db) = ((a[1] - a[0]) / POINTS as f64, (b[1] - b[0]) / POINTS as f64);
     let at = |from: f64, step: f64, i: usize| from + (i as f64 + 0.5) * step;
     let row = |i| (0..POINTS).map(move |j| (i, j));
-    (0..POINTS).flat_map(row).map(|(i, j)| f(at(a[0], da, i), at(b[0], db, j))).sum::<f64>() * da * db
+    (0..POINTS).flat_map(row).map(|(i, j)| f(at(a[0], da, i), at(b[0], db, j))).sum::<f64>()
+        * da
+        * db
 }

@@ -79,7 +79,8 @@ impl<const N: usize> ViewCurve<N> {
     /// # Errors
     /// [`BindError::NoTable`] if the table has more channels, or moments, or does not cover the material.
     pub fn bind(table: &Table, sigma: f64, gamma: f64, eta: f64) -> Result<Self, BindError> {
-        let shares = table.subject.reflectance.filter(|reflectance| *reflectance != Reflectance::Moments);
+        let shares =
+            table.subject.reflectance.filter(|reflectance| *reflectance != Reflectance::Moments);
         let place = Place { sigma, gamma, eta };
         let curve = shares.filter(|reflectance| reflectance.channels().len() <= N);
         let curve = curve.and_then(|_| Curve::new(table, &place));
@@ -215,7 +216,11 @@ impl Curve {
     }
 
     /// The channels at some azimuths and views, clamped as G1(v) is.
-    pub(super) fn interpolate(&self, rows: &Rows, (start, weights): (usize, [f32; SIX])) -> [f32; CHANNELS] {
+    pub(super) fn interpolate(
+        &self,
+        rows: &Rows,
+        (start, weights): (usize, [f32; SIX]),
+    ) -> [f32; CHANNELS] {
         let mut sum = [0.0; CHANNELS];
         // A table without azimuths has one row.
         for &(row, a) in rows.iter().filter(|row| row.1 != 0.0) {
@@ -288,7 +293,11 @@ const LOWEST: f64 = 1e-9;
 const WIDTH: f64 = 0.35;
 
 /// 2 ∫ μ dμ of functions of cos θ that are resolved down to `floor`, in panels of a width in y = −ln h.
-fn over_views<const N: usize>(floor: f64, width: f64, quantities: impl Fn(f32) -> [f64; N]) -> [f64; N] {
+fn over_views<const N: usize>(
+    floor: f64,
+    width: f64,
+    quantities: impl Fn(f32) -> [f64; N],
+) -> [f64; N] {
     // With h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and in its logarithm where
     // views graze and small roughness makes its difference. Views below the table's first weigh nothing.
     const RULE: [(f64, f64); 4] = gauss_legendre();
@@ -311,7 +320,9 @@ fn over_views<const N: usize>(floor: f64, width: f64, quantities: impl Fn(f32) -
 
 /// What tables cover, in words.
 pub(super) fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
-    let ends = |[a, b]: [f64; 2]| if a == b { format!("= {a:.6}") } else { format!("in [{a:.6}, {b:.6}]") };
+    let ends = |[a, b]: [f64; 2]| {
+        if a == b { format!("= {a:.6}") } else { format!("in [{a:.6}, {b:.6}]") }
+    };
     let one = |table: &Table| {
         let Covered { s: [low, high], sigma } = table.subject.covers?;
         let gammas = [high, low].map(microfacet_common::shape::gamma_of_s);
@@ -335,7 +346,10 @@ mod tests {
     fn an_average_down_to_the_horizon_ends() {
         for floor in [0.0, 1e-12, 1e-5] {
             let [one, cos] = over_views(floor, WIDTH, |cos| [1.0, f64::from(cos)]);
-            assert!((one - 1.0).abs() < 1e-6 && (cos - 2.0 / 3.0).abs() < 1e-6, "{floor}: {one} {cos}");
+            assert!(
+                (one - 1.0).abs() < 1e-6 && (cos - 2.0 / 3.0).abs() < 1e-6,
+                "{floor}: {one} {cos}"
+            );
         }
     }
 }

@@ -31,11 +31,17 @@ impl Tables {
     ///
     /// # Errors
     /// As [`albedo`](Self::albedo).
-    pub fn average_moments(&self, sigma: f64, gamma: f64, masking: Masking) -> Result<Moments, BindError> {
+    pub fn average_moments(
+        &self,
+        sigma: f64,
+        gamma: f64,
+        masking: Masking,
+    ) -> Result<Moments, BindError> {
         self.moments_of(Kind::AlbedoAverage, sigma, gamma, masking, |table, place| {
             let at = Collapsed::new(table, place)?;
             let rest = table.collapsed::<f64>(&at.weights);
-            let rest = if at.is_mirror { [0.0; 3] } else { core::array::from_fn(|i| rest[i] as f32) };
+            let rest =
+                if at.is_mirror { [0.0; 3] } else { core::array::from_fn(|i| rest[i] as f32) };
             Some(Moments::mirror_average().plus(rest))
         })
     }
@@ -82,7 +88,11 @@ impl Tables {
     /// # Errors
     /// [`BindError::NoSuchMaterial`], [`BindError::OtherDistribution`] for a lobe without one, or as
     /// [`dielectric_albedo`](Self::dielectric_albedo).
-    pub fn material_dielectric_albedo(&self, name: &str, eta: f64) -> Result<DielectricAlbedo, BindError> {
+    pub fn material_dielectric_albedo(
+        &self,
+        name: &str,
+        eta: f64,
+    ) -> Result<DielectricAlbedo, BindError> {
         let entry = self.student_t_entry(name)?;
         self.dielectric_albedo(entry.round_sigma(), entry.gamma(), eta, entry.masking())
     }
@@ -142,9 +152,16 @@ impl Tables {
         found.ok_or_else(|| BindError::NoAlbedo { name: entry.name.clone(), remedy })
     }
 
-    fn albedos(&self, kind: Kind, lobe: &LobeEntry, masking: Masking) -> impl Iterator<Item = &Table> {
+    fn albedos(
+        &self,
+        kind: Kind,
+        lobe: &LobeEntry,
+        masking: Masking,
+    ) -> impl Iterator<Item = &Table> {
         let of = move |table: &&Table| {
-            table.kind == kind && table.subject.masking == Some(masking) && table.subject.lobe == *lobe
+            table.kind == kind
+                && table.subject.masking == Some(masking)
+                && table.subject.lobe == *lobe
         };
         self.tables().iter().filter(of)
     }
@@ -167,7 +184,9 @@ impl Tables {
         let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Moments);
         let tables = || self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments);
         let place = Place { sigma, gamma, eta: f64::NAN };
-        tables().find_map(|table| bind(table, &place)).ok_or_else(|| not_covered(tables, kind, sigma, gamma))
+        tables()
+            .find_map(|table| bind(table, &place))
+            .ok_or_else(|| not_covered(tables, kind, sigma, gamma))
     }
 }
 

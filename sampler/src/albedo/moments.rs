@@ -1,7 +1,9 @@
 //! Moments of Fresnel weights: from a few of them, the albedo of every Schlick reflectance and of OpenPBR's metals.
 
 use microfacet_common::Masking;
-use microfacet_common::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip, f82_weight, schlick_weight};
+use microfacet_common::schlick::{
+    F82_AVERAGE, SCHLICK_AVERAGE, f82_dip, f82_weight, schlick_weight,
+};
 
 /// Moments of one Fresnel reflectance F(v·m) over the visible normals whose reflections leave the surface, weighted by shadowing.
 ///
@@ -41,7 +43,11 @@ impl Moments {
 
     /// 2 ∫ μ dμ of a mirror's moments.
     pub(super) fn mirror_average() -> Self {
-        Self { scale: (1.0 - SCHLICK_AVERAGE) as f32, bias: SCHLICK_AVERAGE as f32, f82: F82_AVERAGE as f32 }
+        Self {
+            scale: (1.0 - SCHLICK_AVERAGE) as f32,
+            bias: SCHLICK_AVERAGE as f32,
+            f82: F82_AVERAGE as f32,
+        }
     }
 
     /// From what is stored, `self` being the mirror's.
@@ -64,7 +70,13 @@ fn whole(cos: f32, [e, bias, f82]: [f32; 3]) -> [f32; 3] {
 /// Towards grazing every moment M nears its limit with one power p of the cosine,
 /// M(μ) = M(μ₀) + (M(μ₀) − M(4μ₀)) (1 − (μ/μ₀)^p)/(4^p − 1). For uncorrelated masking p is 1. Correlated masking lets through ever more
 /// of what is seen, of a plain lobe all of it in the end: p is that of 1 − E, and 0, where everything is held, if that does not fall.
-pub(super) fn below(masking: Masking, floor: f32, cos: f32, first: [f32; 3], above: [f32; 3]) -> [f32; 3] {
+pub(super) fn below(
+    masking: Masking,
+    floor: f32,
+    cos: f32,
+    first: [f32; 3],
+    above: [f32; 3],
+) -> [f32; 3] {
     let power = match masking {
         Masking::Uncorrelated => 1.0,
         // NaN has no power, either.
@@ -75,7 +87,8 @@ pub(super) fn below(masking: Masking, floor: f32, cos: f32, first: [f32; 3], abo
     };
     let (first, above) = (whole(floor, first), whole(4.0 * floor, above));
     let more = if power > 0.0 {
-        -libm::expm1f(power * libm::logf(cos / floor)) / libm::expm1f(power * 2.0 * core::f32::consts::LN_2)
+        -libm::expm1f(power * libm::logf(cos / floor))
+            / libm::expm1f(power * 2.0 * core::f32::consts::LN_2)
     } else {
         0.0
     };

@@ -203,7 +203,8 @@ mod tests {
                 // Three nodes on either side.
                 let cell = t * if axis.fold { n - 1 } else { n } as f64;
                 assert_eq!(bound.six(c, s)[2].0, cell as usize, "{axis:?}, {t}");
-                let at = |(i, w): (usize, f32)| f64::from(w) * f(axis.placement().node(i, n).unwrap());
+                let at =
+                    |(i, w): (usize, f32)| f64::from(w) * f(axis.placement().node(i, n).unwrap());
                 let got: f64 = bound.six(c, s).into_iter().map(at).sum();
                 assert!((got - f(t)).abs() < 1e-4, "{axis:?}, {t}: {got} for {}", f(t));
             }

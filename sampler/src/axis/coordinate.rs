@@ -24,7 +24,11 @@ pub(crate) trait Coordinate {
 
     /// Whether it can have so many nodes, or else what is wrong; a number of 0 is refused before.
     fn check_count(&self, n: usize) -> Result<(), &'static str> {
-        if n < 2 && self.placement() == Placement::Even { Err("needs at least two nodes") } else { Ok(()) }
+        if n < 2 && self.placement() == Placement::Even {
+            Err("needs at least two nodes")
+        } else {
+            Ok(())
+        }
     }
 
     /// How many values stand along an axis of n nodes.

@@ -131,8 +131,11 @@ impl BoundCritical {
 
     /// cos θ of t ∈ [0, 1].
     pub fn quantity(&self, t: f64) -> f64 {
-        let (low, high, t) =
-            if t < 0.5 { (self.floor, self.critical, 2.0 * t) } else { (self.critical, 1.0, 2.0 * t - 1.0) };
+        let (low, high, t) = if t < 0.5 {
+            (self.floor, self.critical, 2.0 * t)
+        } else {
+            (self.critical, 1.0, 2.0 * t - 1.0)
+        };
         // The upper end of the lower half is its own; at μ_c itself the other half begins.
         bisect(low, high, t, |cos| if cos < high { self.half(cos) } else { f64::INFINITY })
     }
@@ -178,9 +181,14 @@ mod tests {
                 assert_eq!(view.coordinate(1.0), 1.0);
                 for t in [0.0, 0.1, 0.4, 0.5, 0.6, 0.9, 1.0] {
                     let cos = view.quantity(t);
-                    let ulp = (view.coordinate(cos.min(1.0)) - view.coordinate(cos * (1.0 - 1e-15))).abs();
+                    let ulp = (view.coordinate(cos.min(1.0))
+                        - view.coordinate(cos * (1.0 - 1e-15)))
+                    .abs();
                     let back = view.coordinate(cos);
-                    assert!((back - t).abs() < 1e-12 + 2.0 * ulp, "eta {eta}, sigma {sigma}, {t}: {back}");
+                    assert!(
+                        (back - t).abs() < 1e-12 + 2.0 * ulp,
+                        "eta {eta}, sigma {sigma}, {t}: {back}"
+                    );
                 }
             }
         }

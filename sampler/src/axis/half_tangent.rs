@@ -155,7 +155,8 @@ mod tests {
             let [a, b] = slope_at(low.min(high));
             assert!((a / b - x.abs()).abs() <= 4e-16 * x.abs() + 1e-15, "{x}: {}", a / b);
             let step = 1e-6 * (1.0 + x.abs());
-            let difference = (half_tangent(x + step, 1.0) - half_tangent(x - step, 1.0)) / (2.0 * step);
+            let difference =
+                (half_tangent(x + step, 1.0) - half_tangent(x - step, 1.0)) / (2.0 * step);
             assert!((difference - rate(x, 1.0)).abs() < 1e-9 && rate(x, 1.0) == rate(2.0 * x, 2.0));
         }
         assert_eq!([ends(1.0, 0.0), slope_at(0.0)], [[2.0, 0.0], [2.0, 0.0]]);
@@ -177,7 +178,8 @@ mod tests {
             let [x, z] = slope_at(f64::from(g));
             let (slope, [half, same]) = (Slope::from_end(g, -1.0), half_slope_at(f32x4::splat(g)));
             assert!(
-                (f64::from(slope.x) + x).abs() < 1e-7 * x + 1e-9 && (f64::from(slope.z) - z).abs() < 1e-6 * z
+                (f64::from(slope.x) + x).abs() < 1e-7 * x + 1e-9
+                    && (f64::from(slope.z) - z).abs() < 1e-6 * z
             );
             assert_eq!((2.0 * half.to_array()[0], same.to_array()[0]), (slope.x, slope.z));
         }

@@ -189,7 +189,8 @@ mod tests {
                 let four = hermite_lanes(nodes.map(f32x4::splat), lanes).to_array();
                 let cell = &coefficients[i];
                 let cells = cell.map(f32x4::splat);
-                let cubics = [cubic_lanes(cells, lanes), horner_lanes(cells, lanes)].map(|x| x.to_array()[2]);
+                let cubics = [cubic_lanes(cells, lanes), horner_lanes(cells, lanes)]
+                    .map(|x| x.to_array()[2]);
                 let one = [hermite(pair[0], pair[1], w), horner(cell, w), cubic(cell, w)];
                 let all = [one[0], one[1], one[2], sum, four[1], cubics[0], cubics[1]];
                 assert!(all.iter().all(|got| (got - want).abs() < 2e-7), "{all:?} for {want}");
@@ -212,6 +213,9 @@ mod tests {
         make_monotone(&mut run);
         assert_eq!(run, [[0.2, 0.0], [0.2, 0.0], [0.5, 3.0 * (0.5 - 0.2_f32)]]);
         assert_eq!(locate(f32::NAN, 4).0, 0);
-        assert_eq!([locate(4.0, 4), locate(-0.5, 4), locate(9.0, 4)], [(3, 1.0), (0, -0.5), (3, 6.0)]);
+        assert_eq!(
+            [locate(4.0, 4), locate(-0.5, 4), locate(9.0, 4)],
+            [(3, 1.0), (0, -0.5), (3, 6.0)]
+        );
     }
 }

@@ -56,7 +56,8 @@ pub(crate) fn six(t: f32, n: usize) -> (usize, [f32; SIX]) {
 #[inline]
 pub(super) fn six_weights(x: f32) -> [f32; SIX] {
     // Products from the left and from the right leave one factor out at each node.
-    const C: [f32; SIX] = [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
+    const C: [f32; SIX] =
+        [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
     let mut weights = C;
     let (mut left, mut right) = (1.0, 1.0);
     for i in 0..SIX {
@@ -71,7 +72,11 @@ pub(super) fn six_weights(x: f32) -> [f32; SIX] {
 
 /// Σ weightᵢ nodeᵢ over the six nodes from `start` on, by channel.
 #[inline]
-pub(crate) fn combine<const N: usize>(nodes: &[[f32; N]], start: usize, weights: &[f32; SIX]) -> [f32; N] {
+pub(crate) fn combine<const N: usize>(
+    nodes: &[[f32; N]],
+    start: usize,
+    weights: &[f32; SIX],
+) -> [f32; N] {
     let mut sum = [0.0; N];
     for (node, w) in nodes[start..start + SIX].iter().zip(weights) {
         for (sum, x) in sum.iter_mut().zip(node) {
@@ -124,7 +129,8 @@ mod tests {
             for i in 0..=997 {
                 let t = i as f32 / 997.0;
                 let ((start, fast), exact) = (six(t, n), weights(&nodes, f64::from(t), SIX));
-                let slow = |node: usize| exact.iter().find(|at| at.0 == node).map_or(0.0, |at| at.1);
+                let slow =
+                    |node: usize| exact.iter().find(|at| at.0 == node).map_or(0.0, |at| at.1);
                 let got: f64 = (0..SIX).map(|i| (f64::from(fast[i]) - slow(start + i)).abs()).sum();
                 // The rounding of t, times n, moves the polynomial along.
                 assert!(got < 4e-6 * n as f64, "{n} nodes, {t}: off by {got}");

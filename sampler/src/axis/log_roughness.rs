@@ -26,7 +26,9 @@ impl LogRoughness {
 
     /// t of σ > 0.
     pub fn coordinate(&self, sigma: f64) -> f64 {
-        libm::log1p(sigma / self.offset) + self.slow * libm::log(sigma / self.first) + self.linear * sigma
+        libm::log1p(sigma / self.offset)
+            + self.slow * libm::log(sigma / self.first)
+            + self.linear * sigma
     }
 
     /// σ of t, between e⁻⁴⁰ and e¹⁴.

@@ -181,7 +181,12 @@ pub struct Axis {
 
 impl Axis {
     /// An axis of a pure number with these nodes.
-    pub fn new(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: Vec<f64>) -> Self {
+    pub fn new(
+        name: &str,
+        mapping: Mapping,
+        interpolation: Interpolation,
+        nodes: Vec<f64>,
+    ) -> Self {
         Self { name: name.into(), unit: "1".into(), mapping, interpolation, nodes }
     }
 
@@ -189,8 +194,14 @@ impl Axis {
     ///
     /// # Panics
     /// For a mapping whose nodes may stand anywhere.
-    pub fn placed(name: &str, mapping: Mapping, interpolation: Interpolation, count: usize) -> Self {
-        let node = |i| mapping.get().placement().node(i, count).expect("a mapping that places its nodes");
+    pub fn placed(
+        name: &str,
+        mapping: Mapping,
+        interpolation: Interpolation,
+        count: usize,
+    ) -> Self {
+        let node =
+            |i| mapping.get().placement().node(i, count).expect("a mapping that places its nodes");
         Self::new(name, mapping, interpolation, (0..count).map(node).collect())
     }
 
@@ -260,7 +271,8 @@ impl Axis {
     /// and even ones where a polynomial needs that.
     pub(crate) fn validate(&self) -> Result<(), LoadError> {
         let fail = |why: &str| Err(LoadError::Invalid(format!("axis `{}`: {why}", self.name)));
-        let unsupported = |why: &str| Err(LoadError::Unsupported(format!("axis `{}`: {why}", self.name)));
+        let unsupported =
+            |why: &str| Err(LoadError::Unsupported(format!("axis `{}`: {why}", self.name)));
         let (mapping, n) = (self.mapping.get(), self.nodes.len());
         if n == 0 {
             return fail("no nodes");
@@ -278,8 +290,9 @@ impl Axis {
         if first < low || last > high {
             return fail("a node lies outside the range of its mapping");
         }
-        let misplaced =
-            |(i, x): (usize, &f64)| mapping.placement().node(i, n).is_some_and(|at| (x - at).abs() > 1e-12);
+        let misplaced = |(i, x): (usize, &f64)| {
+            mapping.placement().node(i, n).is_some_and(|at| (x - at).abs() > 1e-12)
+        };
         if self.nodes.iter().enumerate().any(misplaced) {
             return unsupported("this mapping needs nodes spread evenly over its range");
         }
@@ -311,8 +324,9 @@ mod tests {
 
     #[test]
     fn nodes_that_a_mapping_places_are_accepted_and_others_refused() {
-        for mapping in
-            Mapping::EVERY.into_iter().filter(|mapping| mapping.get().placement() != Placement::Free)
+        for mapping in Mapping::EVERY
+            .into_iter()
+            .filter(|mapping| mapping.get().placement() != Placement::Free)
         {
             let axis = Axis::placed("a", mapping, Interpolation::Linear, 13);
             axis.validate().unwrap();
@@ -356,8 +370,14 @@ mod tests {
         assert_eq!(range.weights(0.11).unwrap().len(), 4);
         assert_eq!([0.0, 0.6, f64::NAN].map(|t| range.weights(t)), [const { None }; 3]);
         let points = axis(Interpolation::Nodes, &[0.1, 0.2]);
-        assert_eq!((points.weights(0.15), points.weights(0.1)), (None, Some(alloc::vec![(0, 1.0)])));
+        assert_eq!(
+            (points.weights(0.15), points.weights(0.1)),
+            (None, Some(alloc::vec![(0, 1.0)]))
+        );
         let one = axis(Interpolation::Lagrange6, &[0.7]);
-        assert_eq!((one.weights(0.7 + 1e-10), one.weights(0.71)), (Some(alloc::vec![(0, 1.0)]), None));
+        assert_eq!(
+            (one.weights(0.7 + 1e-10), one.weights(0.71)),
+            (Some(alloc::vec![(0, 1.0)]), None)
+        );
     }
 }

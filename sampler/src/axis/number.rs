@@ -96,7 +96,10 @@ mod tests {
             let got = roots(f32x4::new(u)).to_array();
             let scale = MirroredRoot::scale(16);
             let want: [f32; 4] = core::array::from_fn(|i| 16.0 * MirroredRoot::coordinate(u[i]));
-            assert!((0..4).all(|i| (got[i] * scale - want[i]).abs() < 4e-6), "{got:?} for {want:?}");
+            assert!(
+                (0..4).all(|i| (got[i] * scale - want[i]).abs() < 4e-6),
+                "{got:?} for {want:?}"
+            );
         }
     }
 }

@@ -121,12 +121,20 @@ mod tests {
                 let exact = axis.coordinate(f64::from(z) / f64::from(rho), f64::from(kappa));
                 let one = axis.of_view(rho, z, kappa, cells / (z + kappa * rho), cells);
                 let [q, t] = axis.of_views(f32x4::splat(kappa * rho), f32x4::splat(z), cells);
-                let plain =
-                    Rational { crowded: false, ..axis }.coordinate(f64::from(z / rho), f64::from(kappa));
+                let plain = Rational { crowded: false, ..axis }
+                    .coordinate(f64::from(z / rho), f64::from(kappa));
                 let slope = axis.of_slope(z, kappa * rho) * cells;
-                let all = [(one, exact), (t.to_array()[1], exact), (q.to_array()[1], plain), (slope, exact)];
+                let all = [
+                    (one, exact),
+                    (t.to_array()[1], exact),
+                    (q.to_array()[1], plain),
+                    (slope, exact),
+                ];
                 for (got, want) in all {
-                    assert!((f64::from(got / cells) - want).abs() < 2e-7, "{rho}, {z}: {got} for {want}");
+                    assert!(
+                        (f64::from(got / cells) - want).abs() < 2e-7,
+                        "{rho}, {z}: {got} for {want}"
+                    );
                 }
             }
         }

@@ -70,7 +70,8 @@ impl ViewBlend {
         let knee = kappa(self.scale, self.heavy, gamma) * sigma;
         // Without the kink of a minimum, which would show in the nodes along σ.
         let floor = harmonic(self.floor, self.slope * sigma);
-        let mut view = BoundView { blend: *self, knee, turn: self.spread * sigma, floor, start: 0.0 };
+        let mut view =
+            BoundView { blend: *self, knee, turn: self.spread * sigma, floor, start: 0.0 };
         view.start = view.y(floor);
         view
     }
@@ -178,7 +179,8 @@ mod tests {
                     let cos = view.quantity(t);
                     let (back, step) = (view.coordinate(cos), 1e-15);
                     // Near the normal t turns with the sine: an ulp of cos θ is 1e-8 of it.
-                    let ulp = view.coordinate(cos) - view.coordinate((cos * (1.0 - step)).max(view.floor()));
+                    let ulp = view.coordinate(cos)
+                        - view.coordinate((cos * (1.0 - step)).max(view.floor()));
                     assert!(
                         (back - t).abs() <= 1e-14 + 2.0 * ulp,
                         "sigma {sigma}, gamma {gamma}, {t}: {back}"

@@ -77,7 +77,11 @@ impl Albedo {
     pub fn multiple_bounces(&self, fresnel_average: f32) -> f32 {
         let below = 1.0 - fresnel_average * self.lost_average();
         // F_avg = 1 and E_avg = 0: an endless number of bounces that lose nothing.
-        if below > 0.0 { fresnel_average * fresnel_average * self.albedo_average() / below } else { 1.0 }
+        if below > 0.0 {
+            fresnel_average * fresnel_average * self.albedo_average() / below
+        } else {
+            1.0
+        }
     }
 }
 

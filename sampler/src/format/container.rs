@@ -165,20 +165,30 @@ pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Tabl
     match if verify { checksum::is_sealed(bytes) } else { Some(true) } {
         Some(true) => {}
         Some(false) => {
-            return Err(invalid("checksum does not match: the file is damaged; copy it again or bake again"));
+            return Err(invalid(
+                "checksum does not match: the file is damaged; copy it again or bake again",
+            ));
         }
         None => return Err(invalid("no checksum")),
     }
     let tensors = SafeTensors::deserialize(bytes).map_err(invalid)?;
     let (provenance, tables) = assemble(json, |descriptor, codec| {
-        let tensor = tensors.tensor(&descriptor.name).map_err(|_| "no tensor of that name".to_string())?;
+        let tensor =
+            tensors.tensor(&descriptor.name).map_err(|_| "no tensor of that name".to_string())?;
         if tensor.dtype() != descriptor.precision.dtype() {
-            return Err(format!("stored as {:?}, described as {:?}", tensor.dtype(), descriptor.precision));
+            return Err(format!(
+                "stored as {:?}, described as {:?}",
+                tensor.dtype(),
+                descriptor.precision
+            ));
         }
         let shape: Vec<usize> =
             descriptor.axes.iter().map(Axis::len).chain([descriptor.channels.len()]).collect();
         if shape != tensor.shape() {
-            return Err(format!("tensor of shape {:?}, axes and channels of {shape:?}", tensor.shape()));
+            return Err(format!(
+                "tensor of shape {:?}, axes and channels of {shape:?}",
+                tensor.shape()
+            ));
         }
         Ok(codec.decode(tensor.data()))
     })?;

@@ -72,7 +72,8 @@ impl FresnelEntry {
                 _ => Reflectance::Moments,
             }];
         };
-        let of = |side| Reflectance::Dielectric { side, min, max: (max < f64::INFINITY).then_some(max) };
+        let of =
+            |side| Reflectance::Dielectric { side, min, max: (max < f64::INFINITY).then_some(max) };
         if max == 1.0 { vec![of(Side::Thin)] } else { Side::ALL.map(of).into() }
     }
 

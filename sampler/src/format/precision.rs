@@ -56,7 +56,8 @@ impl Codec {
             Precision::F32 => Self::F32,
             Precision::F16 => Self::F16,
             Precision::U16 => {
-                let (mut low, mut high) = (vec![f32::INFINITY; channels], vec![f32::NEG_INFINITY; channels]);
+                let (mut low, mut high) =
+                    (vec![f32::INFINITY; channels], vec![f32::NEG_INFINITY; channels]);
                 for (i, &x) in values.iter().enumerate() {
                     low[i % channels] = low[i % channels].min(x);
                     high[i % channels] = high[i % channels].max(x);
@@ -112,10 +113,13 @@ impl Codec {
 
     pub(super) fn decode(&self, bytes: &[u8]) -> Vec<f32> {
         match self {
-            Self::F32 => {
-                bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+            Self::F32 => bytes
+                .chunks_exact(4)
+                .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+                .collect(),
+            Self::F16 => {
+                bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect()
             }
-            Self::F16 => bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect(),
             Self::U16 { scale, offset } => {
                 let n = scale.len();
                 let value = |(i, b): (usize, &[u8])| {
@@ -150,7 +154,9 @@ mod tests {
     fn stored_values_stay_what_they_are() {
         let values: Vec<f32> =
             (0..60).map(|i| libm::sinf(i as f32) * if i % 2 == 0 { 3.0 } else { 1e-3 }).collect();
-        for (precision, error) in [(Precision::F32, 0.0), (Precision::F16, 1.5e-3), (Precision::U16, 5e-5)] {
+        for (precision, error) in
+            [(Precision::F32, 0.0), (Precision::F16, 1.5e-3), (Precision::U16, 5e-5)]
+        {
             let once = Codec::round(precision, values.clone(), 2);
             assert!(once.iter().zip(&values).all(|(a, b)| (a - b).abs() <= error));
             assert_eq!(Codec::round(precision, once.clone(), 2), once);

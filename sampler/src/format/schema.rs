@@ -144,7 +144,9 @@ impl Kind {
         };
         match self {
             Self::Shadowing => lookup(&[SHAPE, VIEW_OF_G1], RATIOS),
-            Self::VisibleSlope | Self::VisibleSlopePeeled => lookup(&[SHAPE, VIEW_OF_SLOPES, U1], DISTANCES),
+            Self::VisibleSlope | Self::VisibleSlopePeeled => {
+                lookup(&[SHAPE, VIEW_OF_SLOPES, U1], DISTANCES)
+            }
             Self::VisibleSlopeConditional => lookup(&[SHAPE, U2], DISTANCES),
             Self::RadialShadowing => lookup(&[VIEW_OF_G1], RATIOS),
             Self::RadialSlope => lookup(&[VIEW_OF_SLOPES, U1], DISTANCES),
@@ -189,7 +191,11 @@ mod tests {
 
     /// Subjects whose albedos have every axis that there is.
     fn subjects() -> [Subject; 3] {
-        let of = |lobe, reflectance| Subject { lobe, reflectance: Some(reflectance), ..Subject::default() };
+        let of = |lobe, reflectance| Subject {
+            lobe,
+            reflectance: Some(reflectance),
+            ..Subject::default()
+        };
         let tilted = LobeEntry::Ellipsoid { sigma: [0.1, 0.2], theta: [0.1; 3], s: 1.0 };
         let pane = |side| Reflectance::Dielectric { side, min: 1.5, max: None };
         [
@@ -220,11 +226,13 @@ mod tests {
     fn an_albedo_looks_as_what_it_is_of() {
         let shape = |subject: &Subject| {
             let layout = Kind::Albedo.layout(subject);
-            let axes: Vec<_> = layout.axes.iter().map(|axis| (axis.name, axis.mappings[0])).collect();
+            let axes: Vec<_> =
+                layout.axes.iter().map(|axis| (axis.name, axis.mappings[0])).collect();
             (axes, layout.channels)
         };
         let [thin, dense, tilted] = subjects();
-        let front = vec![("gamma", "log_shape"), ("sigma", "log_roughness"), ("eta", "reflectance_root")];
+        let front =
+            vec![("gamma", "log_shape"), ("sigma", "log_roughness"), ("eta", "reflectance_root")];
         let with = |view| [front.clone(), vec![("view", view)]].concat();
         assert_eq!(shape(&thin), (with("view_blend"), Kind::SHARES.to_vec()));
         assert_eq!(shape(&dense), (with("critical_blend"), Kind::SHARES.to_vec()));

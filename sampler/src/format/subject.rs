@@ -118,7 +118,9 @@ impl Reflectance {
             Self::Conductor { eta, k } => format!("conductor_{}_k_{}", list(eta), list(k)),
             Self::Dielectric { side, min, max } => match max {
                 Some(max) if max == min => format!("dielectric_{min}_{}", side.name()),
-                _ => format!("dielectric_{min}_to_{}_{}", max.unwrap_or(f64::INFINITY), side.name()),
+                _ => {
+                    format!("dielectric_{min}_to_{}_{}", max.unwrap_or(f64::INFINITY), side.name())
+                }
             },
         }
     }
@@ -173,7 +175,9 @@ impl Subject {
     pub(super) fn check(&self, kind: Kind) -> Result<(), &'static str> {
         let albedo = kind.is_albedo();
         if albedo != self.masking.is_some() || albedo != self.reflectance.is_some() {
-            return Err("an albedo names the masking and the reflectance it is for, and no other table does");
+            return Err(
+                "an albedo names the masking and the reflectance it is for, and no other table does",
+            );
         }
         if let Some([min, max]) = self.reflectance.and_then(|reflectance| reflectance.indices())
             && !(1.0 <= min && min <= max)

@@ -64,10 +64,13 @@ impl Table {
         // All combinations of the nodes along the axes, as one index and the product of the weights.
         let mut rows = vec![(0, 1.0)];
         for (axis, weights) in self.axes.iter().zip(at) {
-            let along = |row: usize, a: f64| weights.iter().map(move |&(i, b)| (row * axis.len() + i, a * b));
+            let along = |row: usize, a: f64| {
+                weights.iter().map(move |&(i, b)| (row * axis.len() + i, a * b))
+            };
             rows = rows.into_iter().flat_map(|(row, a)| along(row, a)).collect();
         }
-        let size = self.axes[at.len()..].iter().map(Axis::len).product::<usize>() * self.channels.len();
+        let size =
+            self.axes[at.len()..].iter().map(Axis::len).product::<usize>() * self.channels.len();
         let mut sum = vec![zero; size];
         for (row, weight) in rows {
             let weight = T::constant(weight);
@@ -94,7 +97,10 @@ impl Table {
             return fail(format!("axes {names:?} where {expected:?} are expected"));
         }
         if self.channels != layout.channels {
-            return fail(format!("channels {:?} where {:?} are expected", self.channels, layout.channels));
+            return fail(format!(
+                "channels {:?} where {:?} are expected",
+                self.channels, layout.channels
+            ));
         }
         for (axis, rule) in self.axes.iter().zip(&layout.axes) {
             if !rule.mappings.contains(&axis.mapping.name()) {
@@ -103,11 +109,15 @@ impl Table {
             }
             if !rule.interpolations.contains(&axis.interpolation) {
                 let (got, want) = (axis.interpolation, rule.interpolations);
-                return fail(format!("axis `{}` is read by {got:?}, not by one of {want:?}", axis.name));
+                return fail(format!(
+                    "axis `{}` is read by {got:?}, not by one of {want:?}",
+                    axis.name
+                ));
             }
             axis.validate()?;
         }
-        let expected = self.axes.iter().map(Axis::len).try_fold(self.channels.len(), usize::checked_mul);
+        let expected =
+            self.axes.iter().map(Axis::len).try_fold(self.channels.len(), usize::checked_mul);
         if expected != Some(self.values.len()) {
             return fail(format!("{} values for shape {:?}", self.values.len(), self.shape()));
         }

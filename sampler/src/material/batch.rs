@@ -25,7 +25,12 @@ impl StudentT {
     ///
     /// # Errors
     /// [`BatchError`] if the slices are not of one length; `m` is then untouched.
-    pub fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
+    pub fn sample_batch(
+        &self,
+        v: &[Vec3],
+        u: &[[f32; 2]],
+        m: &mut [Vec3],
+    ) -> Result<(), BatchError> {
         same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len())])?;
         let Some(plain) = &self.slices.plain else {
             self.sample_each(v, u, m);
@@ -141,7 +146,8 @@ impl StudentT {
         let x = x ^ at.along.sign();
         // In the order of the function for one: a strong anisotropy magnifies every rounding.
         let (sx, sy) = (2.0 * self.sigma_x, 2.0 * self.sigma_y);
-        let (x, y) = (x * (at.x * sx) + norm * (at.y * -sx * t), x * (at.y * sy) + norm * (at.x * sy * t));
+        let (x, y) =
+            (x * (at.x * sx) + norm * (at.y * -sx * t), x * (at.y * sy) + norm * (at.x * sy * t));
         let z = z * at.rho;
         // Two divisions fewer for a last bit.
         let r = 1.0 / (x * x + z * z + y * y).sqrt();
@@ -222,6 +228,8 @@ fn same_lengths(slices: &[(&'static str, usize)]) -> Result<(), BatchError> {
     let (first, expected) = slices[0];
     match slices.iter().find(|(_, length)| *length != expected) {
         None => Ok(()),
-        Some(&(other, length)) => Err(BatchError { slices: [first, other], lengths: [expected, length] }),
+        Some(&(other, length)) => {
+            Err(BatchError { slices: [first, other], lengths: [expected, length] })
+        }
     }
 }

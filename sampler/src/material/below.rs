@@ -83,7 +83,8 @@ fn excess_share(s: f64, a: f64) -> f64 {
     for _ in 0..500 {
         let odd = (1.5 + n) * (1.0 + n * s) / ((1.0 + 2.0 * n * s) * (1.0 + s + 2.0 * n * s)) * w;
         n += 1.0;
-        let even = n * (1.0 + s * (n - 1.5)) / ((1.0 + s * (2.0 * n - 1.0)) * (1.0 + 2.0 * n * s)) * w;
+        let even =
+            n * (1.0 + s * (n - 1.5)) / ((1.0 + s * (2.0 * n - 1.0)) * (1.0 + 2.0 * n * s)) * w;
         let mut change = 1.0;
         for term in [odd, even] {
             d = 1.0 / (1.0 + term * d);

@@ -42,7 +42,8 @@ impl StudentT {
         let (sin, cos) = (sqrt(v.x * v.x + v.y * v.y), view.z);
         // A unit of slope along the view's azimuth, in unit slopes along the stretched one.
         let unit = if view.rho >= NORMAL_INCIDENCE { sin / view.rho } else { 1.0 / self.sigma_x };
-        let number = |x: f32, z: f32| self.number_along(&view, f64::from(unit * x), f64::from(z)) as f32;
+        let number =
+            |x: f32, z: f32| self.number_along(&view, f64::from(unit * x), f64::from(z)) as f32;
         // tan θ ∓ 1/cos θ, the nearer end without its cancellation. The rounding of all this may not lose a direction.
         let low = (number(-cos, 1.0 + sin) * (1.0 - SLACK) - SLACK * SLACK).max(0.0);
         if self.slices.peeled {

@@ -184,7 +184,8 @@ impl Ellipsoid {
     /// A normal visible from `v`, from two numbers in [0, 1].
     #[inline(always)]
     pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        let [x, y, z] = self.sample_plain(v, u).unwrap_or_else(|| self.sample_any(v.x, v.y, v.z, u));
+        let [x, y, z] =
+            self.sample_plain(v, u).unwrap_or_else(|| self.sample_any(v.x, v.y, v.z, u));
         Vec3::new(x, y, z)
     }
 
@@ -206,7 +207,8 @@ impl Ellipsoid {
                 + lanes(my) * f32x4::new([q, r, 0.0, 0.0])
                 + lanes(mz) * f32x4::new([x, y, 1.0, 0.0])
         };
-        let m = self.lobe.sample_common(f32x4::new([w.x, w.y, 0.0, 0.0]), w.z, u, [1.0; 2], back)?;
+        let m =
+            self.lobe.sample_common(f32x4::new([w.x, w.y, 0.0, 0.0]), w.z, u, [1.0; 2], back)?;
         // Not where a matrix almost singular has taken squares out of range, or a normal below the smallest cosine.
         (m[2] >= HORIZON).then_some(m)
     }
@@ -216,8 +218,11 @@ impl Ellipsoid {
     fn sample_any(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
         let w = self.to_unit(Vec3::new(x, y, z));
         let view = self.lobe.stretch(w);
-        let along =
-            if w.z >= 0.0 { self.lobe.sample_along(&view, u[0]) } else { self.sample_below(w, &view, u) };
+        let along = if w.z >= 0.0 {
+            self.lobe.sample_along(&view, u[0])
+        } else {
+            self.sample_below(w, &view, u)
+        };
         let m = self.lobe.unit_normal(&view, along, self.lobe.sample_across(u[1]));
         let Skew { p, q, r, x, y } = self.skew;
         above_horizon(Vec3::new(p * m.x + q * m.y + x * m.z, r * m.y + y * m.z, m.z)).to_array()

@@ -51,7 +51,11 @@ impl StudentT {
         let radius = sqrt(((1.0 - z) * (1.0 + z)).max(0.0));
         // `max` takes what is no number to 0, which `clamp` alone would keep.
         let (sin, cos) = libm::sincosf(TAU * u[1].max(0.0).clamp(0.0, 1.0));
-        let m = Vec3::new(self.sigma_x * (w.x + radius * cos), self.sigma_y * (w.y + radius * sin), height);
+        let m = Vec3::new(
+            self.sigma_x * (w.x + radius * cos),
+            self.sigma_y * (w.y + radius * sin),
+            height,
+        );
         face(above_horizon(m), Vec3::new(v.x, v.y, v.z.max(0.0)))
     }
 

@@ -53,13 +53,16 @@ impl Radial {
             return Err(BindError::Sigma(sigma));
         }
         let slice = |kind: Kind| {
-            let found = tables.iter().find(|table| table.kind == kind && table.subject.lobe == *lobe);
+            let found =
+                tables.iter().find(|table| table.kind == kind && table.subject.lobe == *lobe);
             let missing = || BindError::NoTable(format!("{} of {}", kind.name(), lobe.name()));
             found.map(Slice::whole).ok_or_else(missing)
         };
         let (shadowing, slope) = (slice(Kind::RadialShadowing)?, slice(Kind::RadialSlope)?);
         let (conditional, density) = (slice(Kind::RadialConditional)?, slice(Kind::RadialDensity)?);
-        let Mapping::HalfTangent(tilt) = density.axes[0].mapping else { unreachable!("validated on load") };
+        let Mapping::HalfTangent(tilt) = density.axes[0].mapping else {
+            unreachable!("validated on load")
+        };
         let given = match conditional.axes[0].mapping {
             Mapping::HalfTangent(axis) => Given::Unbounded(axis),
             Mapping::Rational(axis) => Given::Bounded(axis, axis.kappa(ROUND) as f32),
@@ -144,7 +147,12 @@ impl Radial {
         let (cell, w) = locate(MirroredRoot::coordinate(u) * self.cells as f32, self.cells);
         let start = row * (self.cells + 1) + cell;
         let below = start + self.cells + 1;
-        let (a, b) = between_rows(&self.across[start..start + 2], &self.across[below..below + 2], 0, between);
+        let (a, b) = between_rows(
+            &self.across[start..start + 2],
+            &self.across[below..below + 2],
+            0,
+            between,
+        );
         let t = Slope::from_end(hermite(a, b, w), if u > 0.5 { 1.0 } else { -1.0 });
         Slope { x: t.x * shrink, z: t.z }
     }

@@ -24,8 +24,9 @@ impl StudentT {
     #[inline(always)]
     pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         // Plain numbers in and out keep those of the common case in registers next to the call of the other.
-        let [x, y, z] =
-            self.sample_plain([v.x, v.y, v.z], u).unwrap_or_else(|| self.sample_any(v.x, v.y, v.z, u));
+        let [x, y, z] = self
+            .sample_plain([v.x, v.y, v.z], u)
+            .unwrap_or_else(|| self.sample_any(v.x, v.y, v.z, u));
         Vec3::new(x, y, z)
     }
 
@@ -60,8 +61,12 @@ impl StudentT {
         let stride = 2 * (slices.cells + 1);
         let start = row * stride + if towards { slices.cells + 1 } else { 0 } + cell;
         let nodes = &slices.slope[..];
-        let (a, b) =
-            between_rows(&nodes[start..start + 2], &nodes[start + stride..start + stride + 2], 0, between);
+        let (a, b) = between_rows(
+            &nodes[start..start + 2],
+            &nodes[start + stride..start + stride + 2],
+            0,
+            between,
+        );
         Slope::from_end(hermite(a, b, w), if towards { 1.0 } else { -1.0 })
     }
 

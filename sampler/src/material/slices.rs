@@ -5,7 +5,9 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use crate::axis::hermite::{Cell, Node, cells, make_monotone};
-use crate::axis::{Axis, HalfTangent, Interpolation, InverseShape, Mapping, MirroredRoot, Rational};
+use crate::axis::{
+    Axis, HalfTangent, Interpolation, InverseShape, Mapping, MirroredRoot, Rational,
+};
 use crate::error::BindError;
 use crate::format::{Kind, Table};
 
@@ -109,7 +111,9 @@ impl Slices {
         else {
             unreachable!("validated on load")
         };
-        let Mapping::HalfTangent(coordinate) = view.mapping else { unreachable!("validated on load") };
+        let Mapping::HalfTangent(coordinate) = view.mapping else {
+            unreachable!("validated on load")
+        };
         let shadowing_cells = shadowing.nodes.len() - 1;
         let mut slopes = slope.nodes;
         slopes.chunks_exact_mut(numbers.nodes.len()).for_each(make_monotone);
@@ -157,7 +161,12 @@ impl Slices {
 }
 
 /// The slice of the first table of one of `kinds` that covers s; earlier kinds are preferred.
-fn find<'a>(tables: &'a [Table], kinds: &[Kind], gamma: f64, s: f64) -> Result<Slice<'a>, BindError> {
+fn find<'a>(
+    tables: &'a [Table],
+    kinds: &[Kind],
+    gamma: f64,
+    s: f64,
+) -> Result<Slice<'a>, BindError> {
     for &kind in kinds {
         let mut of_kind = tables.iter().filter(|table| table.kind == kind);
         if let Some(slice) = of_kind.find_map(|table| Slice::at(table, s)) {
@@ -177,7 +186,11 @@ fn coverage(tables: &[Table], kinds: &[Kind]) -> String {
             parts.extend(axis.nodes.iter().rev().map(|&s| format!("gamma = {}", gamma(s))));
         } else {
             // The larger s is the smaller gamma.
-            parts.push(format!("[{:.6}, {}]", gamma(axis.nodes[axis.nodes.len() - 1]), gamma(axis.nodes[0])));
+            parts.push(format!(
+                "[{:.6}, {}]",
+                gamma(axis.nodes[axis.nodes.len() - 1]),
+                gamma(axis.nodes[0])
+            ));
         }
     }
     if parts.is_empty() { "nothing".into() } else { parts.join(", ") }

@@ -108,7 +108,11 @@ fn outside() -> f32 {
 }
 
 impl StudentT {
-    pub(crate) fn bind(tables: &[Table], roughness: Roughness, gamma: f64) -> Result<Self, BindError> {
+    pub(crate) fn bind(
+        tables: &[Table],
+        roughness: Roughness,
+        gamma: f64,
+    ) -> Result<Self, BindError> {
         let [sigma_x, sigma_y] = roughness.checked()?;
         if !(gamma > 1.5) {
             return Err(BindError::Gamma(gamma));
@@ -121,7 +125,15 @@ impl StudentT {
 
     /// The carrier of another distribution's tables: unit slopes are slopes over σ, and those across scale with √(1 + x²).
     pub(crate) fn carrier(sigma: f32, slices: Slices) -> Self {
-        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_k: 1.0, slices, closed_form: false }
+        Self {
+            sigma_x: sigma,
+            sigma_y: sigma,
+            gamma: 2.0,
+            s: 1.0,
+            two_k: 1.0,
+            slices,
+            closed_form: false,
+        }
     }
 
     /// The same shape with another roughness; the tables are not touched again.
@@ -209,7 +221,8 @@ impl StudentT {
         // a lower limit 0.2, and a root of all lanes, none of them to be set to zero, with the answer to what is no number out of the way 0.3;
         // 3.1 are left.
         let slices = &self.slices;
-        let scale = f32x4::new([slices.kappa * self.sigma_x, slices.kappa * self.sigma_y, 0.0, 0.0]);
+        let scale =
+            f32x4::new([slices.kappa * self.sigma_x, slices.kappa * self.sigma_y, 0.0, 0.0]);
         let xy = f32x4::new([w.x, w.y, 0.0, 0.0]) * scale;
         let squares = xy * xy;
         let z = f32x4::new([w.z, 0.0, 0.0, 0.0]).fast_max(f32x4::ZERO);

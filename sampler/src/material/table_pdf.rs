@@ -95,8 +95,10 @@ impl StudentT {
     }
 
     fn unit_slopes(&self, view: &Stretched, m: Vec3) -> UnitSlopes {
-        let (a, b) = (f64::from(m.x) / f64::from(self.sigma_x), f64::from(m.y) / f64::from(self.sigma_y));
-        let r = 1.0 / sqrt64(f64::from(view.x) * f64::from(view.x) + f64::from(view.y) * f64::from(view.y));
+        let (a, b) =
+            (f64::from(m.x) / f64::from(self.sigma_x), f64::from(m.y) / f64::from(self.sigma_y));
+        let r = 1.0
+            / sqrt64(f64::from(view.x) * f64::from(view.x) + f64::from(view.y) * f64::from(view.y));
         let (cos, sin) = (f64::from(view.x) * r, f64::from(view.y) * r);
         UnitSlopes { x: a * cos + b * sin, z: f64::from(m.z), y: b * cos - a * sin }
     }
@@ -120,7 +122,8 @@ impl StudentT {
         let [low, high] = ends(x, z);
         // The half for u ≤ ½ ends where 1 + h reaches its last node; beyond, 1 − h is looked up in the other.
         let nodes = self.slices.cells + 1;
-        let (half, g) = if low <= f64::from(rows.node(nodes - 1)[0]) { (0, low) } else { (1, high) };
+        let (half, g) =
+            if low <= f64::from(rows.node(nodes - 1)[0]) { (0, low) } else { (1, high) };
         (half, Place::find(|i| rows.node(half * nodes + i), self.slices.cells, g))
     }
 

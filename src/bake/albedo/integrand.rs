@@ -46,7 +46,9 @@ impl Integrand {
     pub fn at(&self, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, BakeError> {
         match self {
             Self::Moments => model.reflection(site, weights),
-            Self::Metal(metals) => model.reflection(site, |cos| metals.map(|metal| metal.reflectance(cos))),
+            Self::Metal(metals) => {
+                model.reflection(site, |cos| metals.map(|metal| metal.reflectance(cos)))
+            }
             Self::Pane(side) => pane(*side, model, site),
         }
     }

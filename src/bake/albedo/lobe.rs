@@ -122,7 +122,8 @@ fn ellipsoid([x, y]: [f64; 2], theta: [f64; 3], gamma: f64) -> Result<Ellipsoid,
 /// A lobe that leans away masks, and one that leans forward reflects below the horizon, about where cot θ is its mean slope.
 fn spread(ellipsoid: &Ellipsoid) -> ([f64; 2], f64) {
     let unit = ellipsoid.unit_matrix();
-    let (p, q, r, [x, y]) = (unit.x_axis.x, unit.x_axis.y, unit.y_axis.y, [unit.x_axis.z, unit.y_axis.z]);
+    let (p, q, r, [x, y]) =
+        (unit.x_axis.x, unit.x_axis.y, unit.y_axis.y, [unit.x_axis.z, unit.y_axis.z]);
     let (a, b, c) = (p * p + q * q + x * x, q * r + x * y, r * r + y * y);
     let half = libm::hypot(0.5 * (a - c), b);
     let first = 0.5 * (a + c) + half;
@@ -148,7 +149,8 @@ impl Models<'_> {
         tolerance: f64,
         then: impl FnOnce(&Models<'_>) -> Result<T, BakeError>,
     ) -> Result<T, BakeError> {
-        let integrator = |gamma| Ok::<_, BakeError>(AlbedoIntegrator::new(Shape::new(gamma)?, tolerance));
+        let integrator =
+            |gamma| Ok::<_, BakeError>(AlbedoIntegrator::new(Shape::new(gamma)?, tolerance));
         // Sites of lobes that are one material have no γ.
         let one = |model| Models([(f64::INFINITY.to_bits(), model)].into());
         match lobe {
@@ -156,10 +158,13 @@ impl Models<'_> {
                 let mut all: Vec<f64> = gammas.into_iter().collect();
                 all.sort_by(f64::total_cmp);
                 all.dedup();
-                let model = |&gamma: &f64| Ok((gamma.to_bits(), Model::StudentT(None, integrator(gamma)?)));
+                let model =
+                    |&gamma: &f64| Ok((gamma.to_bits(), Model::StudentT(None, integrator(gamma)?)));
                 then(&Models(all.par_iter().map(model).collect::<Result<_, BakeError>>()?))
             }
-            &Lobe::StudentT { sigma, gamma } => then(&one(Model::StudentT(Some(sigma), integrator(gamma)?))),
+            &Lobe::StudentT { sigma, gamma } => {
+                then(&one(Model::StudentT(Some(sigma), integrator(gamma)?)))
+            }
             &Lobe::Ellipsoid { sigma, theta, gamma } => {
                 let ellipsoid = ellipsoid(sigma, theta, gamma)?;
                 then(&one(Model::Ellipsoid(ellipsoid, integrator(gamma)?)))
@@ -220,7 +225,9 @@ impl Model<'_> {
     pub(super) fn round(&self, site: &Site) -> Result<(&AlbedoIntegrator, f64), BakeError> {
         match self {
             Self::StudentT(None, model) => Ok((model, site.sigma)),
-            _ => Err(BakeError::Lobe("only round Student-t lobes refract light, by their own model".into())),
+            _ => Err(BakeError::Lobe(
+                "only round Student-t lobes refract light, by their own model".into(),
+            )),
         }
     }
 

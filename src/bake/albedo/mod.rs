@@ -17,7 +17,8 @@ use rayon::prelude::*;
 use microfacet_model::{Albedo, ParameterError};
 use microfacet_sampler::axis::ViewBlend;
 use microfacet_sampler::{
-    Albedo as Bound, Axis, BindError, Kind, LoadError, Mapping, Masking, Precision, Reflectance, Table,
+    Albedo as Bound, Axis, BindError, Kind, LoadError, Mapping, Masking, Precision, Reflectance,
+    Table,
 };
 
 pub use integrand::{Integrand, weights};
@@ -45,7 +46,8 @@ pub struct Site {
 impl Site {
     /// The place at a coordinate along each axis.
     pub fn new(axes: &[Axis], at: &[f64]) -> Self {
-        let mut site = Self { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi: 0.0, cos: f64::NAN };
+        let mut site =
+            Self { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi: 0.0, cos: f64::NAN };
         for (axis, &t) in axes.iter().zip(at) {
             let quantity = || axis.quantity(t).expect("an axis of a quantity");
             match axis.mapping {
@@ -57,7 +59,9 @@ impl Site {
                     let [c, s] = azimuth.direction(t);
                     (site.phi, site.sigma) = (azimuth.quantity(t), azimuth.sigma(c, s));
                 }
-                Mapping::ViewBlend(view) => site.cos = view.bind(site.sigma, site.gamma).quantity(t),
+                Mapping::ViewBlend(view) => {
+                    site.cos = view.bind(site.sigma, site.gamma).quantity(t)
+                }
                 Mapping::CriticalBlend(view) => {
                     site.cos = view.bind(site.sigma, site.gamma, 1.0 / site.eta).quantity(t);
                 }
@@ -205,7 +209,12 @@ const SLACK: f64 = 100.0;
 /// Less than this of the microsurface is seen, E is less still, and the quotient of the two is none.
 const UNSEEN: f64 = 1e-6;
 
-fn node(spec: &AlbedoSpec, integrand: &Integrand, model: &Model<'_>, site: &Site) -> Result<Node, BakeError> {
+fn node(
+    spec: &AlbedoSpec,
+    integrand: &Integrand,
+    model: &Model<'_>,
+    site: &Site,
+) -> Result<Node, BakeError> {
     let mut values = integrand.at(model, site)?;
     let ratio = model.area_ratio(site);
     let clamp = ratio.map(|ratio| 1.0 / (1.0 + ratio));
@@ -220,7 +229,9 @@ fn node(spec: &AlbedoSpec, integrand: &Integrand, model: &Model<'_>, site: &Site
     }
     for form in [&mut values.uncorrelated, &mut values.height_correlated] {
         form.iter_mut().for_each(|x| *x /= share);
-        let sound = |x: f64| x >= -values.error / share && x <= 1.0 + (values.error + spec.tolerance) / share;
+        let sound = |x: f64| {
+            x >= -values.error / share && x <= 1.0 + (values.error + spec.tolerance) / share
+        };
         // Not clamped before: a wrong sum must be seen.
         match spec.reflectance {
             Reflectance::Moments => {

@@ -183,7 +183,8 @@ impl AlbedoSpec {
         let Axis { name, unit, mapping, interpolation, nodes } = &self.axes[axis];
         let closed = matches!(mapping, Mapping::Azimuth(azimuth) if !azimuth.fold);
         let count = if closed { 2 * nodes.len() } else { 2 * nodes.len() - 1 };
-        finer.axes[axis] = Axis { unit: unit.clone(), ..Axis::placed(name, *mapping, *interpolation, count) };
+        finer.axes[axis] =
+            Axis { unit: unit.clone(), ..Axis::placed(name, *mapping, *interpolation, count) };
         finer
     }
 
@@ -247,7 +248,8 @@ impl AlbedoSpec {
 
     /// What the description of a table says.
     pub fn subject(&self, masking: Masking) -> Subject {
-        let covers = if let Lobe::Family(domain) = &self.lobe { Some(domain.covered()) } else { None };
+        let covers =
+            if let Lobe::Family(domain) = &self.lobe { Some(domain.covered()) } else { None };
         let (masking, reflectance) = (Some(masking), Some(self.reflectance));
         Subject { lobe: self.lobe.entry(), masking, reflectance, covers }
     }
@@ -255,7 +257,8 @@ impl AlbedoSpec {
     /// All that the axes of the family reach, nodes that only interpolation reads included.
     pub(super) fn everywhere(&self) -> Option<Covered> {
         let ends = |i: usize| {
-            let mut ends = self.axes[i].ends().map(|t| self.axes[i].quantity(t).unwrap_or(f64::NAN));
+            let mut ends =
+                self.axes[i].ends().map(|t| self.axes[i].quantity(t).unwrap_or(f64::NAN));
             ends.sort_by(f64::total_cmp);
             ends
         };
@@ -289,7 +292,11 @@ fn materials(domain: &Domain, counts: &Counts) -> Vec<Axis> {
     };
     let axis = |name: &str, mapping, nodes| Axis::new(name, mapping, INTERPOLATION, nodes);
     vec![
-        axis("gamma", Mapping::LogShape(LogShape::BAKED), cut(&shapes, shape(gamma.max), shape(gamma.min))),
+        axis(
+            "gamma",
+            Mapping::LogShape(LogShape::BAKED),
+            cut(&shapes, shape(gamma.max), shape(gamma.min)),
+        ),
         axis(
             "sigma",
             Mapping::LogRoughness(LogRoughness::BAKED),
@@ -300,5 +307,9 @@ fn materials(domain: &Domain, counts: &Counts) -> Vec<Axis> {
 
 /// The nodes that the polynomial reads anywhere in [from, to]; a single value is a node itself.
 fn cut(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
-    if from == to { vec![from] } else { nodes_read(nodes, from, to, INTERPOLATION.window()).to_vec() }
+    if from == to {
+        vec![from]
+    } else {
+        nodes_read(nodes, from, to, INTERPOLATION.window()).to_vec()
+    }
 }

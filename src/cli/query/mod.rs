@@ -87,11 +87,12 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
         .collect::<Result<Vec<_>, _>>()?;
     let mut writer = csv::Writer::from_writer(io::stdout());
     let names = io.method.iter().flat_map(|method| quantity.outputs(*method));
-    let write = |writer: &mut csv::Writer<io::Stdout>, row: Vec<String>| match writer.write_record(&row) {
-        Err(error) if is_broken_pipe(&error) => Ok(false),
-        Err(error) => Err(Failure::from(error)),
-        Ok(()) => Ok(true),
-    };
+    let write =
+        |writer: &mut csv::Writer<io::Stdout>, row: Vec<String>| match writer.write_record(&row) {
+            Err(error) if is_broken_pipe(&error) => Ok(false),
+            Err(error) => Err(Failure::from(error)),
+            Ok(()) => Ok(true),
+        };
     if !write(&mut writer, header.iter().map(String::from).chain(names).collect())? {
         return Ok(Done::Ok);
     }

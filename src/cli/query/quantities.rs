@@ -16,7 +16,8 @@ use super::Method;
 pub(super) trait Quantity: Sync {
     fn inputs(&self) -> &'static [&'static str];
     fn output_stems(&self) -> &'static [&'static str];
-    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String>;
+    fn values(&self, fields: &[&str], known: &Known, method: Method)
+    -> Result<Vec<String>, String>;
 
     fn outputs(&self, method: Method) -> Vec<String> {
         let suffix = match method {
@@ -68,7 +69,11 @@ fn parse(text: &str, name: &str) -> Result<f64, String> {
         // σ and γ are judged, with their own messages, by the constructors.
         _ => return Ok(x),
     };
-    if (low..=high).contains(&x) { Ok(x) } else { Err(format!("{name} = {x} must lie in [{low}, {high}]")) }
+    if (low..=high).contains(&x) {
+        Ok(x)
+    } else {
+        Err(format!("{name} = {x} must lie in [{low}, {high}]"))
+    }
 }
 
 /// The fields of a row as numbers.
@@ -107,7 +112,8 @@ impl<'a> Point<'a> {
     }
 
     fn exact(&self) -> model::StudentT {
-        model::StudentT::anisotropic(self.sigma[0], self.sigma[1], self.gamma).expect("checked in `new`")
+        model::StudentT::anisotropic(self.sigma[0], self.sigma[1], self.gamma)
+            .expect("checked in `new`")
     }
 }
 
@@ -122,7 +128,12 @@ impl Quantity for G1 {
         &["lambda", "g1"]
     }
 
-    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String> {
+    fn values(
+        &self,
+        fields: &[&str],
+        known: &Known,
+        method: Method,
+    ) -> Result<Vec<String>, String> {
         let at = Point::new(fields, self.inputs(), &known.set)?;
         let v = at.view();
         Ok(match method {
@@ -146,14 +157,21 @@ impl Quantity for Normal {
         &["m_x", "m_y", "m_z", "pdf"]
     }
 
-    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String> {
+    fn values(
+        &self,
+        fields: &[&str],
+        known: &Known,
+        method: Method,
+    ) -> Result<Vec<String>, String> {
         let at = Point::new(fields, self.inputs(), &known.set)?;
         let v = at.view();
         Ok(match method {
             Method::Table => {
                 let bound = at.bound()?;
                 let m = bound.sample_visible_normal(v.as_vec3(), at.u.map(|u| u as f32));
-                [m.x, m.y, m.z, bound.visible_normal_pdf(v.as_vec3(), m)].map(|x| x.to_string()).into()
+                [m.x, m.y, m.z, bound.visible_normal_pdf(v.as_vec3(), m)]
+                    .map(|x| x.to_string())
+                    .into()
             }
             Method::Exact => {
                 let m = at.exact().visible_normal(v, at.u);
@@ -179,13 +197,19 @@ impl Quantity for Albedo {
         &["E", "schlick_scale", "schlick_bias"]
     }
 
-    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String> {
+    fn values(
+        &self,
+        fields: &[&str],
+        known: &Known,
+        method: Method,
+    ) -> Result<Vec<String>, String> {
         let values = numbers(&fields[..3], self.inputs())?;
         let &[sigma, gamma, cos] = &values[..] else { unreachable!("three columns were found") };
         let masking = masking(fields[3])?;
         Ok(match method {
             Method::Table => {
-                let albedo = known.set.albedo(sigma, gamma, masking).map_err(|why| why.to_string())?;
+                let albedo =
+                    known.set.albedo(sigma, gamma, masking).map_err(|why| why.to_string())?;
                 let v = direction(cos as f32);
                 let Moments { scale, bias, .. } = albedo.moments(v);
                 [albedo.albedo(v), scale, bias].map(|x| x.to_string()).into()
@@ -214,19 +238,28 @@ impl Quantity for AlbedoAverage {
         &["E_avg"]
     }
 
-    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Result<Vec<String>, String> {
+    fn values(
+        &self,
+        fields: &[&str],
+        known: &Known,
+        method: Method,
+    ) -> Result<Vec<String>, String> {
         let values = numbers(&fields[..2], self.inputs())?;
         let &[sigma, gamma] = &values[..] else { unreachable!("two columns were found") };
         let masking = masking(fields[2])?;
         Ok(match method {
             Method::Table => {
-                let average =
-                    known.set.average_moments(sigma, gamma, masking).map_err(|why| why.to_string())?;
+                let average = known
+                    .set
+                    .average_moments(sigma, gamma, masking)
+                    .map_err(|why| why.to_string())?;
                 vec![average.total().to_string()]
             }
             Method::Exact => {
-                let albedo =
-                    known.integrator(gamma)?.average(sigma, |_| [1.0]).map_err(|why| why.to_string())?;
+                let albedo = known
+                    .integrator(gamma)?
+                    .average(sigma, |_| [1.0])
+                    .map_err(|why| why.to_string())?;
                 vec![albedo.of(masking)[0].to_string()]
             }
         })

@@ -41,7 +41,8 @@ impl Unit<'_> {
         job: &mut Job,
     ) -> Result<Vec<Vec<Table>>, BakeError> {
         let start = Instant::now();
-        let keys: Vec<String> = precisions.iter().map(|&precision| self.key(level, precision)).collect();
+        let keys: Vec<String> =
+            precisions.iter().map(|&precision| self.key(level, precision)).collect();
         let kept: Option<Vec<Vec<Table>>> = keys.iter().map(|key| job.get(key)).collect();
         let sets = match (kept, self) {
             (Some(sets), _) => {
@@ -115,7 +116,8 @@ impl Unit<'_> {
             });
             measured.collect()
         };
-        let sets = precisions.iter().map(certified).collect::<Result<Vec<Vec<Table>>, BakeError>>()?;
+        let sets =
+            precisions.iter().map(certified).collect::<Result<Vec<Vec<Table>>, BakeError>>()?;
         for (key, tables) in keys.iter().zip(&sets) {
             job.keep(key, tables);
         }
@@ -136,7 +138,8 @@ fn radial_tables(
     let marginal = Marginal::new(&*built);
     let full = bake::bake_radial(&marginal, &entry.distribution, level, Precision::F32);
     let certified = |&precision| {
-        let mut tables: Vec<Table> = full.iter().map(|table| table.clone().rounded(precision)).collect();
+        let mut tables: Vec<Table> =
+            full.iter().map(|table| table.clone().rounded(precision)).collect();
         radial::certify(&mut tables, entry, &marginal)?;
         Ok(tables)
     };

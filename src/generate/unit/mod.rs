@@ -81,7 +81,8 @@ impl<'a> Unit<'a> {
         let of = |distribution: &'a Distribution| {
             let label = distribution.label();
             let entry = plan.materials.iter().find(|entry| entry.distribution == label);
-            let entry = entry.ok_or_else(|| BakeError::invalid(format!("no material has {label}")))?;
+            let entry =
+                entry.ok_or_else(|| BakeError::invalid(format!("no material has {label}")))?;
             Ok(Self::Distribution(distribution, entry.clone()))
         };
         let albedos = plan.albedos.iter().map(|need| Ok(Self::Albedo(need)));
@@ -145,11 +146,13 @@ impl<'a> Unit<'a> {
                 let at = |spec: TableSpec| TableSpec { precision, ..spec };
                 cost(&self.specs(level).into_iter().map(at).collect::<Vec<_>>())
             }
-            Self::Distribution(distribution, _) => distribution_cost(distribution, level, precision),
-            // What is no specification is no table either; baking says why.
-            Self::Albedo(need) => {
-                need.spec(level, precision).map_or(Cost { bytes: 0, seconds: 0.0 }, |spec| albedo_cost(&spec))
+            Self::Distribution(distribution, _) => {
+                distribution_cost(distribution, level, precision)
             }
+            // What is no specification is no table either; baking says why.
+            Self::Albedo(need) => need
+                .spec(level, precision)
+                .map_or(Cost { bytes: 0, seconds: 0.0 }, |spec| albedo_cost(&spec)),
         }
     }
 
@@ -178,7 +181,9 @@ impl<'a> Unit<'a> {
         match self {
             Self::Normals(..) => self.specs(level).iter().map(TableSpec::values).sum(),
             Self::Distribution(..) => (radial_bytes(level, Precision::F32) / 4) as u128,
-            Self::Albedo(need) => need.spec(level, Precision::F32).map_or(0, |spec| memory::of_albedo(&spec)),
+            Self::Albedo(need) => {
+                need.spec(level, Precision::F32).map_or(0, |spec| memory::of_albedo(&spec))
+            }
         }
     }
 

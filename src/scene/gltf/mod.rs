@@ -40,10 +40,16 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         let number = |n: usize| u32::try_from(n).ok();
         Place { line: number(error.line()), column: number(error.column()), ..place.clone() }
             // The place stands before the message already.
-            .syntax(error.to_string().rsplit_once(" at line ").map_or("no JSON", |(message, _)| message))
+            .syntax(
+                error
+                    .to_string()
+                    .rsplit_once(" at line ")
+                    .map_or("no JSON", |(message, _)| message),
+            )
     })?;
     if !document.asset.version.starts_with("2.") {
-        return Err(place.invalid(format!("this is glTF {}; only version 2 is read", document.asset.version)));
+        return Err(place
+            .invalid(format!("this is glTF {}; only version 2 is read", document.asset.version)));
     }
     let mut importer = Importer {
         builder: Builder::new(Format::Gltf),
@@ -98,8 +104,9 @@ impl Importer<'_> {
     fn materials(&mut self) -> Result<(), SceneError> {
         let document = self.document;
         let primitives = || document.meshes.iter().flat_map(|mesh| &mesh.primitives);
-        let used: HashSet<usize> =
-            primitives().flat_map(|p| p.material.into_iter().chain(p.extensions.variants())).collect();
+        let used: HashSet<usize> = primitives()
+            .flat_map(|p| p.material.into_iter().chain(p.extensions.variants()))
+            .collect();
         if let Some(index) = used.iter().find(|&&i| i >= document.materials.len()) {
             return Err(self.place.invalid(format!(
                 "a mesh refers to material {index}, but there are {} materials, counted from 0",
@@ -136,8 +143,14 @@ impl Importer<'_> {
             }
             Some(pbr) => {
                 let texture = pbr.specular_glossiness_texture.as_ref();
-                self.factor(name, "glossinessFactor", pbr.glossiness_factor, texture, Channel::Alpha)?
-                    .map_falling(|glossiness| 1.0 - glossiness)
+                self.factor(
+                    name,
+                    "glossinessFactor",
+                    pbr.glossiness_factor,
+                    texture,
+                    Channel::Alpha,
+                )?
+                .map_falling(|glossiness| 1.0 - glossiness)
             }
         };
         let alpha = roughness.map_rising(|r| r * r);
@@ -145,14 +158,23 @@ impl Importer<'_> {
             None => Interval::point(0.0),
             Some(a) => {
                 let texture = a.anisotropy_texture.as_ref();
-                self.factor(name, "anisotropyStrength", a.anisotropy_strength, texture, Channel::Blue)?
+                self.factor(
+                    name,
+                    "anisotropyStrength",
+                    a.anisotropy_strength,
+                    texture,
+                    Channel::Blue,
+                )?
             }
         };
         let roughness = if strength.max == 0.0 {
             Roughness::isotropic(alpha)
         } else {
             let along = |alpha: f64, s: f64| alpha + (1.0 - alpha) * s * s;
-            let along = Interval { min: along(alpha.min, strength.min), max: along(alpha.max, strength.max) };
+            let along = Interval {
+                min: along(alpha.min, strength.min),
+                max: along(alpha.max, strength.max),
+            };
             Roughness::anisotropic(along, alpha)
         };
         let ior = extensions.ior.as_ref().map_or(1.5, |extension| extension.ior);
@@ -160,20 +182,27 @@ impl Importer<'_> {
         let amplitude = (ior - 1.0) / (ior + 1.0);
         let f0 = amplitude * amplitude;
         if !(ior >= 1.0 || ior == 0.0) {
-            return Err(
-                place.invalid(format!("material \"{name}\": ior is {ior}; it must be 0, or at least 1"))
-            );
+            return Err(place.invalid(format!(
+                "material \"{name}\": ior is {ior}; it must be 0, or at least 1"
+            )));
         }
         let iridescent = extensions.iridescence.is_some();
-        let lobe =
-            |lobe, roughness, fresnel| Lobe { name: lobe, roughness, gamma: GGX, fresnel, masking: None };
+        let lobe = |lobe, roughness, fresnel| Lobe {
+            name: lobe,
+            roughness,
+            gamma: GGX,
+            fresnel,
+            masking: None,
+        };
         let main = lobe(None, roughness, (!iridescent).then_some(Fresnel::Schlick(f0)));
         self.builder.add(name, &place, used, main);
 
-        if let Some(coat) = extensions.clearcoat.as_ref().filter(|coat| coat.clearcoat_factor > 0.0) {
+        if let Some(coat) = extensions.clearcoat.as_ref().filter(|coat| coat.clearcoat_factor > 0.0)
+        {
             let texture = coat.clearcoat_roughness_texture.as_ref();
             let factor = coat.clearcoat_roughness_factor;
-            let roughness = self.factor(name, "clearcoatRoughnessFactor", factor, texture, Channel::Green)?;
+            let roughness =
+                self.factor(name, "clearcoatRoughnessFactor", factor, texture, Channel::Green)?;
             let roughness = Roughness::isotropic(roughness.map_rising(|r| r * r));
             // The coat's index of refraction is fixed at 1.5 (KHR_materials_clearcoat).
             let coat = lobe(Some("clearcoat"), roughness, Some(Fresnel::Schlick(0.04)));
@@ -197,9 +226,9 @@ impl Importer<'_> {
         channel: Channel,
     ) -> Result<Interval, SceneError> {
         if !(0.0..=1.0).contains(&factor) {
-            return Err(self
-                .place
-                .invalid(format!("material \"{material}\": {key} is {factor}; it must be from 0 to 1")));
+            return Err(self.place.invalid(format!(
+                "material \"{material}\": {key} is {factor}; it must be from 0 to 1"
+            )));
         }
         let range = match texture {
             Some(texture) => self.image(texture.index, channel),
@@ -210,8 +239,11 @@ impl Importer<'_> {
 
     fn image(&mut self, texture: usize, channel: Channel) -> Interval {
         let name = format!("{texture}");
-        let image =
-            self.document.textures.get(texture).and_then(|texture| self.document.images.get(texture.source?));
+        let image = self
+            .document
+            .textures
+            .get(texture)
+            .and_then(|texture| self.document.images.get(texture.source?));
         let place = self.place.clone();
         let Some(image) = image else {
             let reason = "has no PNG or JPEG image";
@@ -234,15 +266,19 @@ impl Importer<'_> {
             return data_uri(uri);
         }
         let missing = || io::Error::other("no such buffer");
-        let view =
-            image.buffer_view.and_then(|view| self.document.buffer_views.get(view)).ok_or_else(missing)?;
+        let view = image
+            .buffer_view
+            .and_then(|view| self.document.buffer_views.get(view))
+            .ok_or_else(missing)?;
         let buffer = self.document.buffers.get(view.buffer).ok_or_else(missing)?;
         let (file, start) = match (&buffer.uri, &self.binary) {
             (Some(uri), _) if uri.starts_with("data:") => {
                 let bytes = data_uri(uri)?;
-                let range =
-                    usize::try_from(view.byte_offset).ok().zip(usize::try_from(view.byte_length).ok());
-                let bytes = range.and_then(|(start, length)| bytes.get(start..start.checked_add(length)?));
+                let range = usize::try_from(view.byte_offset)
+                    .ok()
+                    .zip(usize::try_from(view.byte_length).ok());
+                let bytes =
+                    range.and_then(|(start, length)| bytes.get(start..start.checked_add(length)?));
                 return bytes.map(<[u8]>::to_vec).ok_or_else(missing);
             }
             (Some(uri), _) => (self.folder.join(decode_uri(uri)), 0),
@@ -259,8 +295,9 @@ impl Importer<'_> {
 
 /// The content of a `data:` URI, which glTF wants in base64.
 fn data_uri(uri: &str) -> io::Result<Vec<u8>> {
-    let (_, text) =
-        uri.split_once(";base64,").ok_or_else(|| io::Error::other("the data URI is not in base64"))?;
+    let (_, text) = uri
+        .split_once(";base64,")
+        .ok_or_else(|| io::Error::other("the data URI is not in base64"))?;
     base64::engine::general_purpose::STANDARD.decode(text).map_err(io::Error::other)
 }
 

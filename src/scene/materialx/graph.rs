@@ -7,7 +7,11 @@ use crate::scene::{Interval, SceneError};
 
 impl<'a> Reader<'a> {
     /// What an `<input>` of a node in `scope` may be.
-    pub(super) fn value(&mut self, input: &'a Element, scope: &'a Element) -> Result<Interval, SceneError> {
+    pub(super) fn value(
+        &mut self,
+        input: &'a Element,
+        scope: &'a Element,
+    ) -> Result<Interval, SceneError> {
         self.connected(input, scope, Channel::Red)
     }
 
@@ -45,7 +49,8 @@ impl<'a> Reader<'a> {
             };
         }
         if let Some(name) = input.attribute("nodegraph") {
-            let graph = root.child_named(name).ok_or_else(|| undefined(input, "nodegraph", name))?;
+            let graph =
+                root.child_named(name).ok_or_else(|| undefined(input, "nodegraph", name))?;
             return self.output(input, graph, channel);
         }
         if let Some(name) = input.attribute("nodename") {
@@ -104,7 +109,8 @@ impl<'a> Reader<'a> {
                 Interval { min: of(a.min, b.min), max: of(a.max, b.max) }
             }
             "clamp" => {
-                let (value, low, high) = (input("in", 0.0)?, input("low", 0.0)?, input("high", 1.0)?);
+                let (value, low, high) =
+                    (input("in", 0.0)?, input("low", 0.0)?, input("high", 1.0)?);
                 let clamp = |x: f64, low: f64, high: f64| x.max(low).min(high);
                 Interval {
                     min: clamp(value.min, low.min, high.min),
@@ -129,7 +135,9 @@ impl<'a> Reader<'a> {
                     _ => self.unknown(node),
                 }
             }
-            "image" | "tiledimage" | "hextiledimage" | "gltf_image" => self.image(node, scope, channel),
+            "image" | "tiledimage" | "hextiledimage" | "gltf_image" => {
+                self.image(node, scope, channel)
+            }
             _ => self.unknown(node),
         })
     }
@@ -142,11 +150,13 @@ impl<'a> Reader<'a> {
 
     fn image(&mut self, node: &'a Element, scope: &'a Element, channel: Channel) -> Interval {
         let place = &node.place;
-        let input = node.child_named("file").and_then(|file| match file.attribute("interfacename") {
-            Some(name) => scope.child_named(name),
-            None => Some(file),
-        });
-        let Some((input, file)) = input.and_then(|input| Some((input, input.attribute("value")?))) else {
+        let input =
+            node.child_named("file").and_then(|file| match file.attribute("interfacename") {
+                Some(name) => scope.child_named(name),
+                None => Some(file),
+            });
+        let Some((input, file)) = input.and_then(|input| Some((input, input.attribute("value")?)))
+        else {
             let name = node.attribute("name").unwrap_or(&node.tag);
             return self.builder.unread(name, "names no file", place);
         };

@@ -47,7 +47,8 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut builder = Builder::new(Format::MaterialX);
     let folder = path.parent().unwrap_or(Path::new(""));
     expand(&mut root, folder, &mut includes, &mut builder)?;
-    let mut reader = Reader { root: &root, folder: folder.to_owned(), builder, ranges: Memo::default() };
+    let mut reader =
+        Reader { root: &root, folder: folder.to_owned(), builder, ranges: Memo::default() };
     reader.shaders()?;
     Ok(reader.builder.finish())
 }
@@ -124,8 +125,8 @@ impl<'a> Reader<'a> {
                     (class, Some("surfaceshader")) => {
                         let own = node.attribute("name").unwrap_or(class);
                         let materials = self.materials(own);
-                        let used =
-                            assigned.is_empty() || materials.iter().any(|name| assigned.contains(name));
+                        let used = assigned.is_empty()
+                            || materials.iter().any(|name| assigned.contains(name));
                         // One material gives the shader its name; several share it.
                         let name = if let [material] = materials[..] { material } else { own };
                         self.shader(name, class, &shader, used)?;
@@ -144,7 +145,9 @@ impl<'a> Reader<'a> {
             input.is_some_and(|input| {
                 input.attribute("nodename") == Some(shader)
                     || input.attribute("nodegraph").is_some_and(|graph| {
-                        self.root.child_named(graph).is_some_and(|graph| graph.child_named(shader).is_some())
+                        self.root
+                            .child_named(graph)
+                            .is_some_and(|graph| graph.child_named(shader).is_some())
                     })
             })
         };
@@ -155,7 +158,13 @@ impl<'a> Reader<'a> {
             .collect()
     }
 
-    fn shader(&mut self, name: &str, class: &str, shader: &Shader<'a>, used: bool) -> Result<(), SceneError> {
+    fn shader(
+        &mut self,
+        name: &str,
+        class: &str,
+        shader: &Shader<'a>,
+        used: bool,
+    ) -> Result<(), SceneError> {
         let lobes = match class {
             "standard_surface" => self.standard_surface(shader)?,
             "open_pbr_surface" => self.open_pbr_surface(shader)?,
@@ -184,7 +193,12 @@ impl<'a> Reader<'a> {
     fn standard_surface(&mut self, shader: &Shader<'a>) -> Result<Vec<Lobe>, SceneError> {
         let alpha = |roughness: Interval, anisotropy: Interval| {
             let aspect = anisotropy.map_falling(|a| (1.0 - a.min(0.98)).sqrt());
-            axes(roughness, anisotropy, [1.0 / aspect.max, 1.0 / aspect.min], [aspect.min, aspect.max])
+            axes(
+                roughness,
+                anisotropy,
+                [1.0 / aspect.max, 1.0 / aspect.min],
+                [aspect.min, aspect.max],
+            )
         };
         let roughness = self.unit(shader, "specular_roughness", 0.2)?;
         let anisotropy = self.unit(shader, "specular_anisotropy", 0.0)?;
@@ -195,7 +209,8 @@ impl<'a> Reader<'a> {
         let coat_roughness = self.unit(shader, "coat_roughness", 0.1)?;
         let coat_anisotropy = self.unit(shader, "coat_anisotropy", 0.0)?;
         let affect = self.unit(shader, "coat_affect_roughness", 0.0)?;
-        let roughening = coat.map_bilinear(affect, |a, b| a * b).map_bilinear(coat_roughness, |a, b| a * b);
+        let roughening =
+            coat.map_bilinear(affect, |a, b| a * b).map_bilinear(coat_roughness, |a, b| a * b);
         let under_coat = |r: Interval| r.map_bilinear(roughening, |r, t| r + (1.0 - r) * t);
 
         let mut lobes = Vec::new();
@@ -206,7 +221,8 @@ impl<'a> Reader<'a> {
             };
             lobes.push(lobe(None, alpha(under_coat(roughness), anisotropy), fresnel));
             if transmission.max > 0.0 && extra != Interval::point(0.0) {
-                let roughness = Interval { min: roughness.min + extra.min, max: roughness.max + extra.max };
+                let roughness =
+                    Interval { min: roughness.min + extra.min, max: roughness.max + extra.max };
                 let roughness = under_coat(roughness.clamp(0.0, 1.0));
                 lobes.push(lobe(Some("transmission"), alpha(roughness, anisotropy), fresnel));
             }
@@ -260,7 +276,12 @@ impl<'a> Reader<'a> {
     }
 
     /// An input from 0 to 1; what lies outside is moved there, as the shaders do.
-    fn unit(&mut self, shader: &Shader<'a>, name: &str, default: f64) -> Result<Interval, SceneError> {
+    fn unit(
+        &mut self,
+        shader: &Shader<'a>,
+        name: &str,
+        default: f64,
+    ) -> Result<Interval, SceneError> {
         let value = self.input(shader, name, default)?;
         if value.min < 0.0 || value.max > 1.0 {
             let worst = if value.min < 0.0 { value.min } else { value.max };
@@ -282,7 +303,12 @@ impl<'a> Reader<'a> {
         eta.is_point().then(|| dielectric(eta.min, &shader.node.place)).transpose()
     }
 
-    fn input(&mut self, shader: &Shader<'a>, name: &str, default: f64) -> Result<Interval, SceneError> {
+    fn input(
+        &mut self,
+        shader: &Shader<'a>,
+        name: &str,
+        default: f64,
+    ) -> Result<Interval, SceneError> {
         match shader.node.child_named(name) {
             Some(input) => self.value(input, shader.scope),
             None => Ok(Interval::point(default)),
@@ -303,7 +329,8 @@ fn axes(r: Interval, anisotropy: Interval, x: [f64; 2], y: [f64; 2]) -> Roughnes
         return Roughness::Smooth;
     }
     let alpha = |factor: [f64; 2]| {
-        Interval { min: r.min * r.min * factor[0], max: r.max * r.max * factor[1] }.clamp(LEAST_ALPHA, 1.0)
+        Interval { min: r.min * r.min * factor[0], max: r.max * r.max * factor[1] }
+            .clamp(LEAST_ALPHA, 1.0)
     };
     Roughness::anisotropic(alpha(x), alpha(y))
 }

@@ -51,7 +51,13 @@ impl<'a> Reader<'a> {
         let unnamed = || format!("{class} at line {}", bsdf.place.line.unwrap_or_default());
         let name = name.map_or_else(unnamed, str::to_owned);
         let lobe = |reader: &mut Self, suffix, roughness, gamma, fresnel| {
-            let lobe = Lobe { name: suffix, roughness, gamma, fresnel, masking: Some(Masking::Uncorrelated) };
+            let lobe = Lobe {
+                name: suffix,
+                roughness,
+                gamma,
+                fresnel,
+                masking: Some(Masking::Uncorrelated),
+            };
             reader.builder.add(&name, &bsdf.place, used, lobe);
         };
         let reason = match class {
@@ -120,11 +126,14 @@ impl<'a> Reader<'a> {
     fn one_alpha(&mut self, bsdf: &'a Element, name: &str) -> Result<Interval, SceneError> {
         let alpha = self.property(bsdf, name, 0.1)?;
         if alpha.min < 0.0 {
-            return Err(bsdf.place.invalid(format!("{name} is {}; it must be more than 0", alpha.min)));
+            return Err(bsdf
+                .place
+                .invalid(format!("{name} is {}; it must be more than 0", alpha.min)));
         }
         if alpha == Interval::point(0.0) {
-            let message =
-                format!("{name} is 0, which Mitsuba raises to {LEAST_ALPHA:e}; a smooth BSDF is meant");
+            let message = format!(
+                "{name} is 0, which Mitsuba raises to {LEAST_ALPHA:e}; a smooth BSDF is meant"
+            );
             self.builder.warn(&bsdf.place, message);
         }
         Ok(alpha.map_rising(|alpha| alpha.max(LEAST_ALPHA)))
@@ -139,8 +148,8 @@ impl<'a> Reader<'a> {
             let worst = if value.min < 0.0 { value.min } else { value.max };
             Err(bsdf.place.invalid(format!("{name} is {worst}; it must be from 0 to 1")))
         };
-        let roughness =
-            unit(self.property(bsdf, "roughness", 0.5)?, "roughness")?.map_bilinear(scale, |r, s| r * s);
+        let roughness = unit(self.property(bsdf, "roughness", 0.5)?, "roughness")?
+            .map_bilinear(scale, |r, s| r * s);
         let anisotropic = unit(self.weight(bsdf, "anisotropic")?, "anisotropic")?;
         let alpha = |r: f64, aspect: f64| (r * r * aspect).max(LEAST_PRINCIPLED_ALPHA);
         if anisotropic.max == 0.0 {
@@ -152,7 +161,10 @@ impl<'a> Reader<'a> {
                 min: alpha(roughness.min, 1.0 / aspect.max),
                 max: alpha(roughness.max, 1.0 / aspect.min),
             },
-            Interval { min: alpha(roughness.min, aspect.min), max: alpha(roughness.max, aspect.max) },
+            Interval {
+                min: alpha(roughness.min, aspect.min),
+                max: alpha(roughness.max, aspect.max),
+            },
         ))
     }
 
@@ -175,7 +187,12 @@ impl<'a> Reader<'a> {
         self.property(bsdf, name, 0.0)
     }
 
-    fn property(&mut self, element: &'a Element, name: &str, default: f64) -> Result<Interval, SceneError> {
+    fn property(
+        &mut self,
+        element: &'a Element,
+        name: &str,
+        default: f64,
+    ) -> Result<Interval, SceneError> {
         match element.child_named(name) {
             Some(property) => self.value(property),
             None => Ok(Interval::point(default)),
@@ -195,7 +212,11 @@ impl<'a> Reader<'a> {
                 Some(texture) => self.value(texture),
                 None => {
                     let id = property.attribute("id").unwrap_or_default();
-                    Ok(self.builder.unread(id, "is not in the files that were found", &property.place))
+                    Ok(self.builder.unread(
+                        id,
+                        "is not in the files that were found",
+                        &property.place,
+                    ))
                 }
             },
             "texture" => {
@@ -206,7 +227,9 @@ impl<'a> Reader<'a> {
                 let range = self.texture(property)?;
                 Ok(self.ranges.end(key, range))
             }
-            tag => Err(property.place.invalid(format!("<{tag}> gives no number where one is expected"))),
+            tag => Err(property
+                .place
+                .invalid(format!("<{tag}> gives no number where one is expected"))),
         }
     }
 
@@ -218,7 +241,8 @@ impl<'a> Reader<'a> {
                 let Some(file) = value("filename") else {
                     return Ok(self.builder.unread("bitmap", "names no file", place));
                 };
-                let encoding = if value("raw") == Some("true") { Encoding::Linear } else { Encoding::Srgb };
+                let encoding =
+                    if value("raw") == Some("true") { Encoding::Linear } else { Encoding::Srgb };
                 let file = find(&self.folders, file);
                 Ok(self.builder.image(&file, Channel::Luminance, encoding, place))
             }
@@ -292,8 +316,11 @@ fn number(property: &Element) -> Result<f64, SceneError> {
 
 fn rgb(property: &Element) -> Option<[f64; 3]> {
     let text = property.attribute("value")?;
-    let numbers: Option<Vec<f64>> =
-        text.split([',', ' ']).filter(|part| !part.is_empty()).map(|part| part.parse().ok()).collect();
+    let numbers: Option<Vec<f64>> = text
+        .split([',', ' '])
+        .filter(|part| !part.is_empty())
+        .map(|part| part.parse().ok())
+        .collect();
     match numbers?[..] {
         [grey] => Some([grey; 3]),
         [r, g, b] => Some([r, g, b]),

@@ -45,15 +45,17 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     expansion.includes.enter(path, &Place::file(path))?;
     let mut root = xml::read(path)?;
     if root.tag != "scene" && root.tag != "bsdf" {
-        return Err(root
-            .place
-            .invalid(format!("<{}> is not the root of a Mitsuba scene; expected <scene>", root.tag)));
+        return Err(root.place.invalid(format!(
+            "<{}> is not the root of a Mitsuba scene; expected <scene>",
+            root.tag
+        )));
     }
     expansion.element(&mut root)?;
     let incomplete = expansion.incomplete;
     let folders = expansion.folders;
 
-    let mut reader = Reader { ids: ids(&root), builder, folders, incomplete, ranges: Memo::default() };
+    let mut reader =
+        Reader { ids: ids(&root), builder, folders, incomplete, ranges: Memo::default() };
     let used = reader.used(&root)?;
     reader.bsdfs(&root, None, &used)?;
     Ok(reader.builder.finish())
@@ -110,7 +112,9 @@ impl Expansion<'_> {
             self.incomplete = true;
             self.builder.warn(
                 &element.place,
-                format!("{name} is missing; its materials are not seen, and all others count as used"),
+                format!(
+                    "{name} is missing; its materials are not seen, and all others count as used"
+                ),
             );
             return Ok(Vec::new());
         }

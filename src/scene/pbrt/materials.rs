@@ -22,7 +22,12 @@ pub(super) struct Definition {
 }
 
 impl Definition {
-    pub(super) fn new(name: String, class: String, parameters: Vec<Parameter>, place: Place) -> Self {
+    pub(super) fn new(
+        name: String,
+        class: String,
+        parameters: Vec<Parameter>,
+        place: Place,
+    ) -> Self {
         Self { name, class, parameters, place }
     }
 
@@ -70,8 +75,12 @@ impl Reader {
             Ok(())
         };
         let interfaces: &[(Option<&'static str>, &str)] = match &material.class[..] {
-            "conductor" | "dielectric" | "coateddiffuse" | "subsurface" | "thindielectric" => &[(None, "")],
-            "coatedconductor" => &[(Some("interface"), "interface."), (Some("conductor"), "conductor.")],
+            "conductor" | "dielectric" | "coateddiffuse" | "subsurface" | "thindielectric" => {
+                &[(None, "")]
+            }
+            "coatedconductor" => {
+                &[(Some("interface"), "interface."), (Some("conductor"), "conductor.")]
+            }
             "mix" => return ignore("a mixture; its parts are listed by themselves"),
             "diffuse" | "diffusetransmission" => return ignore("diffuse, without microfacets"),
             "hair" => return ignore("a fibre model, not a microfacet one"),
@@ -161,11 +170,15 @@ impl Reader {
             return Ok(self.ranges.end(texture.name, range));
         }
         if self.incomplete {
-            let (name, reason) = (format!("\"{name}\""), "is not defined in the files that were found");
+            let (name, reason) =
+                (format!("\"{name}\""), "is not defined in the files that were found");
             return Ok(self.builder.unread(&name, reason, place));
         }
         let names: Vec<&str> = self.textures.keys().map(|name| &name[..]).collect();
-        Err(place.invalid(format!("float texture \"{name}\" is not defined{}", did_you_mean(name, &names))))
+        Err(place.invalid(format!(
+            "float texture \"{name}\" is not defined{}",
+            did_you_mean(name, &names)
+        )))
     }
 
     fn texture(&mut self, texture: &Definition) -> Result<Interval, SceneError> {

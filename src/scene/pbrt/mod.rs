@@ -268,7 +268,10 @@ impl Reader {
             directive if PASSED_OVER.contains(&directive) => skip_arguments(tokens),
             directive => {
                 let known = [&PASSED_OVER[..], &FOLLOWED[..]].concat();
-                Err(place.syntax(format!("unknown directive {directive}{}", did_you_mean(directive, &known))))
+                Err(place.syntax(format!(
+                    "unknown directive {directive}{}",
+                    did_you_mean(directive, &known)
+                )))
             }
         }
     }
@@ -279,7 +282,9 @@ impl Reader {
             self.incomplete = true;
             self.builder.warn(
                 place,
-                format!("{name} is missing; its materials are not seen, and all others count as used"),
+                format!(
+                    "{name} is missing; its materials are not seen, and all others count as used"
+                ),
             );
             return Ok(());
         }
@@ -345,8 +350,10 @@ impl Reader {
             if !self.incomplete {
                 return Err(self.undefined(name, place));
             }
-            self.builder
-                .warn(place, format!("material \"{name}\" is not defined in the files that were found"));
+            self.builder.warn(
+                place,
+                format!("material \"{name}\" is not defined in the files that were found"),
+            );
         }
         Ok(())
     }
@@ -364,10 +371,14 @@ impl Reader {
     /// Marks what used mixtures consist of as used.
     fn use_parts_of_mixtures(&mut self) -> Result<(), SceneError> {
         let is_mixture = |slot: &Slot| slot.definition.as_ref().is_some_and(|d| d.class == "mix");
-        let mut pending: Vec<usize> = (0..self.slots.len()).filter(|&i| is_mixture(&self.slots[i])).collect();
+        let mut pending: Vec<usize> =
+            (0..self.slots.len()).filter(|&i| is_mixture(&self.slots[i])).collect();
         for &slot in &pending {
             for (name, place) in self.parts(slot) {
-                let known = self.names.get(&name).is_some_and(|&part| self.slots[part].definition.is_some());
+                let known = self
+                    .names
+                    .get(&name)
+                    .is_some_and(|&part| self.slots[part].definition.is_some());
                 if !known && !self.incomplete {
                     return Err(self.undefined(&name, &place));
                 }
@@ -380,7 +391,9 @@ impl Reader {
                     continue;
                 };
                 // Marking before descending ends a mixture that contains itself.
-                if !std::mem::replace(&mut self.slots[part].used, true) && is_mixture(&self.slots[part]) {
+                if !std::mem::replace(&mut self.slots[part].used, true)
+                    && is_mixture(&self.slots[part])
+                {
                     pending.push(part);
                 }
             }
@@ -393,7 +406,9 @@ impl Reader {
         let definition = self.slots[slot].definition.as_ref();
         definition
             .and_then(|definition| definition.parameter("materials"))
-            .map_or_else(Vec::new, |p| p.values.iter().map(|name| (name.clone(), p.place.clone())).collect())
+            .map_or_else(Vec::new, |p| {
+                p.values.iter().map(|name| (name.clone(), p.place.clone())).collect()
+            })
     }
 }
 

@@ -22,7 +22,9 @@ pub(super) struct Parameter {
 pub(super) fn quoted<R: Read>(tokens: &mut Tokens<R>, what: &str) -> Result<String, SceneError> {
     match tokens.next()? {
         Some(Token::Text) => Ok(tokens.text().to_owned()),
-        Some(_) => Err(tokens.place().syntax(format!("expected {what} in quotes, not {}", tokens.text()))),
+        Some(_) => {
+            Err(tokens.place().syntax(format!("expected {what} in quotes, not {}", tokens.text())))
+        }
         None => Err(tokens.place().syntax(format!("the file ends where {what} is expected"))),
     }
 }
@@ -89,8 +91,8 @@ pub(super) fn skip_arguments<R: Read>(tokens: &mut Tokens<R>) -> Result<(), Scen
             // Numbers and truth values are arguments; any other word is the next directive.
             Token::Word => {
                 let word = tokens.text();
-                let is_directive =
-                    word.starts_with(|c: char| c.is_ascii_alphabetic()) && !matches!(word, "true" | "false");
+                let is_directive = word.starts_with(|c: char| c.is_ascii_alphabetic())
+                    && !matches!(word, "true" | "false");
                 if is_directive {
                     tokens.push_back(token);
                     break;

@@ -119,7 +119,9 @@ impl<R: Read> Tokens<R> {
                     if byte == b']' {
                         return Ok(());
                     }
-                    return Err(open.syntax("this list has another list in it, or no closing bracket"));
+                    return Err(
+                        open.syntax("this list has another list in it, or no closing bracket")
+                    );
                 }
             }
         }
@@ -214,7 +216,8 @@ impl<R: Read> Tokens<R> {
 }
 
 fn text(bytes: Vec<u8>) -> String {
-    String::from_utf8(bytes).unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
+    String::from_utf8(bytes)
+        .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
 }
 
 /// The bytes that wait, read anew if none do; empty at the end.

@@ -64,7 +64,8 @@ impl<'a> Judge<'a> {
     /// `rises`: whether the tilt towards the viewer rises with `u[0]` and is its quantile.
     fn new(bound: StudentT, rises: bool, report: &'a mut Report) -> Result<Self, BindError> {
         let ([x, y], gamma) = (bound.sigma().map(f64::from), bound.gamma());
-        let exact = model::StudentT::anisotropic(x, y, gamma).map_err(|_| BindError::Gamma(gamma))?;
+        let exact =
+            model::StudentT::anisotropic(x, y, gamma).map_err(|_| BindError::Gamma(gamma))?;
         Ok(Self { bound, rises, exact, report })
     }
 
@@ -112,15 +113,29 @@ impl Judge<'_> {
         self.require(unit(truth), "model g1 outside [0, 1]", truth, at);
         let lambda = self.exact.lambda(precise);
         self.require(lambda >= 0.0, "model lambda negative or NaN", lambda, at);
-        let area =
-            self.exact.inverse_area(if v.z < 0.0 { DVec3::new(precise.x, precise.y, 0.0) } else { precise });
-        self.require(area >= 0.0 && area.is_finite(), "model inverse_area negative, NaN or inf", area, at);
+        let area = self.exact.inverse_area(if v.z < 0.0 {
+            DVec3::new(precise.x, precise.y, 0.0)
+        } else {
+            precise
+        });
+        self.require(
+            area >= 0.0 && area.is_finite(),
+            "model inverse_area negative, NaN or inf",
+            area,
+            at,
+        );
         self.report.region(at).errors[0].see((g1 - truth).abs(), at);
 
         // A little further from the normal, as far again from the horizon, and half way to it.
         for factor in [1.0 + 1e-6, 1.01, 1.5] {
-            let further = self.bound.g1(direction((at.theta * factor).min(std::f64::consts::PI), at.phi));
-            self.require(f64::from(further) <= g1 + ULP4, "g1 rises with theta", f64::from(further) - g1, at);
+            let further =
+                self.bound.g1(direction((at.theta * factor).min(std::f64::consts::PI), at.phi));
+            self.require(
+                f64::from(further) <= g1 + ULP4,
+                "g1 rises with theta",
+                f64::from(further) - g1,
+                at,
+            );
         }
         // Any other direction will do for the light.
         let l = direction(1.5 * f64::from(at.u[1]), at.phi + 2.0);
@@ -144,7 +159,12 @@ impl Judge<'_> {
 
         let Tilt { half_tangent, rounding, .. } = self.tilt(v, m);
         if self.rises {
-            self.require(!(half_tangent < *last - rounding), "tilt falls with u1", *last - half_tangent, at);
+            self.require(
+                !(half_tangent < *last - rounding),
+                "tilt falls with u1",
+                *last - half_tangent,
+                at,
+            );
         }
         *last = half_tangent;
 
@@ -154,9 +174,15 @@ impl Judge<'_> {
         self.require(sound(d), "d negative, NaN or inf", d.into(), at);
         self.require(sound(pdf), "visible_normal_pdf negative, NaN or inf", pdf.into(), at);
         self.require(sound(table), "table_pdf negative, NaN or inf", table.into(), at);
-        let truth = [self.exact.d(m.as_dvec3()), self.exact.visible_normal_pdf(v.as_dvec3(), m.as_dvec3())];
+        let truth =
+            [self.exact.d(m.as_dvec3()), self.exact.visible_normal_pdf(v.as_dvec3(), m.as_dvec3())];
         for (i, (got, want)) in [d, pdf].into_iter().zip(truth).enumerate() {
-            self.require(want >= 0.0, ["model d negative or NaN", "model pdf negative or NaN"][i], want, at);
+            self.require(
+                want >= 0.0,
+                ["model d negative or NaN", "model pdf negative or NaN"][i],
+                want,
+                at,
+            );
             // Elsewhere f32 cannot hold it; and v·m itself is rounding at the silhouette.
             if (1e-30..1e30).contains(&want) && (i == 0 || facing > 1e-3) {
                 self.report.region(at).errors[1 + i].see((f64::from(got) / want - 1.0).abs(), at);
@@ -166,7 +192,12 @@ impl Judge<'_> {
 
     pub(super) fn unit_and_above(&mut self, m: Vec3, at: &Point) {
         let length = m.as_dvec3().length();
-        self.require((length - 1.0).abs() <= ULP4, "sampled normal not of unit length", length - 1.0, at);
+        self.require(
+            (length - 1.0).abs() <= ULP4,
+            "sampled normal not of unit length",
+            length - 1.0,
+            at,
+        );
         self.require(m.z > 0.0, "sampled normal not above the horizon", m.z.into(), at);
     }
 
@@ -202,7 +233,12 @@ impl Judge<'_> {
         );
         self.require(m.z >= 0.0, "model normal below the horizon", m.z, at);
         let facing = v.as_dvec3().dot(m);
-        self.require(v.z < 0.0 || facing >= -2.0 * ULP4 * ULP4 - ulp4, "model normal faces away", facing, at);
+        self.require(
+            v.z < 0.0 || facing >= -2.0 * ULP4 * ULP4 - ulp4,
+            "model normal faces away",
+            facing,
+            at,
+        );
         let pdf = self.exact.visible_normal_pdf(v.as_dvec3(), m);
         self.require(pdf >= 0.0, "model pdf negative or NaN", pdf, at);
         self.cdf_error(at);
@@ -216,7 +252,8 @@ impl Judge<'_> {
             return;
         }
         let shape = self.exact.shape();
-        let (view, _) = self.exact.unit_view(DVec3::new(v.x.into(), v.y.into(), v.z.max(0.0).into()));
+        let (view, _) =
+            self.exact.unit_view(DVec3::new(v.x.into(), v.y.into(), v.z.max(0.0).into()));
         let x = SignedUnit { w: shape.unit(tilt.slope.abs()), sign: tilt.slope.signum() };
         let cdf = VisibleSlope::new(shape, view).cdf(x);
         self.report.region(at).errors[3].see((cdf - f64::from(at.u[0])).abs(), at);

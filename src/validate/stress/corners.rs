@@ -35,8 +35,9 @@ const SIGMAS: [[f32; 2]; 16] = [
 pub(super) fn corner_materials(tables: &Tables) -> Vec<([f32; 2], f64)> {
     let joints = [GAMMA_MIN, 1.6, GAMMA_WHOLE, 2.0, 4.0];
     let around = joints.into_iter().flat_map(|gamma| [gamma.next_down(), gamma, gamma.next_up()]);
-    let single =
-        [1.50101, 1.51, 1.9, 2.5, 3.0, 10.0, 60.0, 1e3, 1e4, 1e6, 1e8, 1e10, 1e14, 1e16, 1e17, 1e300];
+    let single = [
+        1.50101, 1.51, 1.9, 2.5, 3.0, 10.0, 60.0, 1e3, 1e4, 1e6, 1e8, 1e10, 1e14, 1e16, 1e17, 1e300,
+    ];
     let near_two = [2.0 - 1e-9, 2.0 + 1e-9, 2.0 - 1e-7, 2.0 + 1e-7];
     let gammas: Vec<f64> = around.chain(single).chain(near_two).chain([f64::INFINITY]).collect();
     let gammas = gammas.into_iter().filter(|&gamma| tables.covers(gamma));
@@ -130,7 +131,12 @@ pub(super) fn random_material(tables: &Tables, random: &mut StdRng) -> ([f32; 2]
 }
 
 /// Random views, each with ascending `u[0]`, one number in four within 1e-9 … 1e-2 of an end.
-pub(super) fn random_points(sigma: [f32; 2], gamma: f64, count: u64, random: &mut StdRng) -> Vec<Vec<Point>> {
+pub(super) fn random_points(
+    sigma: [f32; 2],
+    gamma: f64,
+    count: u64,
+    random: &mut StdRng,
+) -> Vec<Vec<Point>> {
     const PER_VIEW: u64 = 16;
     let number = |random: &mut StdRng| match random.random_range(0..8) {
         0 => log_uniform(random, 1e-12, 1e-2) as f32,

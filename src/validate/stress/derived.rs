@@ -20,7 +20,12 @@ impl Judge<'_> {
         let mut g1 = [0.0; 5];
         let g1_done = self.bound.g1_batch(&[v; 5], &mut g1).is_ok();
         let apart = g1.iter().map(|g1| (g1 - self.bound.g1(v)).abs()).fold(0.0, f32::max);
-        self.require(g1_done && f64::from(apart) <= 0.5 * ULP4, "g1_batch differs", apart.into(), &points[0]);
+        self.require(
+            g1_done && f64::from(apart) <= 0.5 * ULP4,
+            "g1_batch differs",
+            apart.into(),
+            &points[0],
+        );
 
         let bounded = self.bound.bounded(v);
         let share = f64::from(bounded.share());
@@ -29,10 +34,20 @@ impl Judge<'_> {
             .map(|&u| bounded.sample(u))
             .map(|m| (m, [bounded.visible_normal_pdf(m), bounded.table_pdf(m)]))
             .collect();
-        self.require(share > 0.0 && share <= 1.0, "bounded share outside (0, 1]", share, &points[0]);
+        self.require(
+            share > 0.0 && share <= 1.0,
+            "bounded share outside (0, 1]",
+            share,
+            &points[0],
+        );
         for ((at, m), (bounded, densities)) in points.iter().zip(normals).zip(drawn) {
             let apart = (m - self.bound.sample_visible_normal(v, at.u)).abs().max_element();
-            self.require(done && f64::from(apart) <= 0.5 * ULP4, "sample_batch differs", apart.into(), at);
+            self.require(
+                done && f64::from(apart) <= 0.5 * ULP4,
+                "sample_batch differs",
+                apart.into(),
+                at,
+            );
             self.unit_and_above(bounded, at);
             for pdf in densities {
                 let sound = pdf >= 0.0 && pdf.is_finite();
@@ -44,14 +59,21 @@ impl Judge<'_> {
     /// A view and normals of the ellipsoids with the material's roughness; none where a matrix would be singular in single precision.
     pub(super) fn ellipsoids(&mut self, lobe: &Ellipsoid, points: &[Point]) {
         let [x, y] = self.bound.sigma().map(f64::from);
-        for lobe in TURNS.iter().filter_map(|turn| Some(lobe.with_skew(Skew::new([x, y], *turn).ok()?))) {
+        for lobe in
+            TURNS.iter().filter_map(|turn| Some(lobe.with_skew(Skew::new([x, y], *turn).ok()?)))
+        {
             let v = points[0].view();
             let g1 = f64::from(lobe.g1(v));
             self.require((0.0..=1.0).contains(&g1), "ellipsoid g1 outside [0, 1]", g1, &points[0]);
             for at in points {
                 let m = lobe.sample_visible_normal(v, at.u);
                 let length = m.as_dvec3().length();
-                self.require((length - 1.0).abs() <= ULP4, "ellipsoid normal not of unit length", length, at);
+                self.require(
+                    (length - 1.0).abs() <= ULP4,
+                    "ellipsoid normal not of unit length",
+                    length,
+                    at,
+                );
                 let l = 2.0 * v.dot(m) * m - v;
                 let weight = f64::from(lobe.reflection_weight(v, l, Masking::Uncorrelated));
                 let sound = (0.0..=1.0 + ULP4).contains(&weight);
@@ -73,11 +95,21 @@ impl Judge<'_> {
         self.require((0.0..=1.0).contains(&average), "albedo_average outside [0, 1]", average, at);
         let l = direction(1.6 * f64::from(at.u[1]), at.phi + 1.0);
         let lobe = albedo.compensation(v, l);
-        self.require(lobe >= 0.0 && lobe.is_finite(), "compensation negative, NaN or inf", lobe.into(), at);
+        self.require(
+            lobe >= 0.0 && lobe.is_finite(),
+            "compensation negative, NaN or inf",
+            lobe.into(),
+            at,
+        );
         let swapped = albedo.compensation(l, v);
         self.require(lobe == swapped, "compensation not symmetric", (lobe - swapped).into(), at);
         let factor = f64::from(albedo.turquin(v, at.u[0]));
-        self.require((1.0..=1.1e6).contains(&factor), "turquin factor outside [1, 1e6]", factor, at);
+        self.require(
+            (1.0..=1.1e6).contains(&factor),
+            "turquin factor outside [1, 1e6]",
+            factor,
+            at,
+        );
         let kept = f64::from(albedo.multiple_bounces(at.u[0]));
         self.require((0.0..=1.0).contains(&kept), "multiple_bounces outside [0, 1]", kept, at);
         self.unit_and_above_or_level(albedo.sample_compensation(at.u), at);
@@ -85,7 +117,12 @@ impl Judge<'_> {
 
     fn unit_and_above_or_level(&mut self, l: Vec3, at: &Point) {
         let length = l.as_dvec3().length();
-        self.require((length - 1.0).abs() <= ULP4, "compensation light not of unit length", length, at);
+        self.require(
+            (length - 1.0).abs() <= ULP4,
+            "compensation light not of unit length",
+            length,
+            at,
+        );
         self.require(l.z >= 0.0, "compensation light below the horizon", l.z.into(), at);
     }
 }
