@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use microfacet_model::{AlbedoIntegrator, Shape};
-use microfacet_sampler::{Masking, Tables};
+use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
 use rand::{RngExt, SeedableRng};
 
 /// σ, γ and cos θ_v.

@@ -110,7 +110,7 @@ fn errors(design: &Design, material: Material) -> [[f64; 2]; 4] {
         let albedo = integrator.reflection(material.sigma, cos, weights).expect("in the domain");
         [albedo.uncorrelated, albedo.height_correlated]
     };
-    let bound = |blend: &ViewBlend| blend.bind(material.sigma, material.gamma);
+    let bound = |blend: &ViewBlend| blend.prepare(material.sigma, material.gamma);
     let first = bound(&ViewBlend::BAKED).floor();
     let at = |cos: f64| match &design.coordinate {
         Coordinate::Plain(t) => (t(cos) - t(first)) / (1.0 - t(first)),

@@ -8,10 +8,10 @@ use std::time::Instant;
 
 use glam::Vec3;
 use microfacet_bake::cache::Cache;
-use microfacet_bake::generate::{Settings, Target, bake_with};
 use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
-use microfacet_sampler::Masking;
+use microfacet_bake::table_set::{Settings, Target, bake_with};
+use microfacet_sampler::{Masking, MicrofacetDistribution};
 
 /// What the renderer knows of its materials, in the words of a recipe;
 /// `microfacet_bake::scene::load` reads scenes as well.

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 use microfacet_model as model;
-use microfacet_sampler::{Skew, Tables};
+use microfacet_sampler::{MicrofacetDistribution, Skew, Tables};
 
 /// Draws of each input in a round, and rounds.
 const PASSES: usize = 4;
@@ -52,14 +52,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (tables, inputs) = (Tables::embedded(), inputs());
     let sigma = [0.2, 0.5];
     for theta in [[0.0, 0.0, 0.3], [0.02, 0.01, 0.3], [0.1, 0.05, 0.3]] {
-        let exact = model::Ellipsoid::new(sigma[0], sigma[1], theta, 2.0)?;
+        let skew = Skew::new(sigma, theta)?;
         let below =
-            inputs.iter().filter(|(v, _)| (exact.unit_matrix() * v.as_dvec3()).z < 0.0).count();
+            inputs.iter().filter(|(v, _)| skew.direction(v.as_dvec3().to_array())[2] < 0.0).count();
         println!(
             "turned by {theta:?}: {:.1}% of the views below the lobe's horizon",
             below as f64 / 40.96
         );
-        compare(&tables, &inputs, sigma, theta)?;
+        compare(&tables, &inputs, sigma, skew)?;
+        let exact = model::Ellipsoid::new(skew, 2.0)?;
         let lune = exact.lune().expect("gamma is 2");
         let draw = |v: Vec3, u: [f32; 2]| lune.sample_lune(v.as_dvec3(), u.map(f64::from)).z as f32;
         let time = (0..ROUNDS).fold(f64::INFINITY, |least, _| least.min(round(&inputs, draw)));
@@ -74,12 +75,12 @@ fn compare(
     tables: &Tables,
     inputs: &Inputs,
     sigma: [f64; 2],
-    theta: [f64; 3],
+    skew: Skew,
 ) -> Result<(), Box<dyn Error>> {
     println!("gamma     plain  ellipsoid  ratio   with density: plain  ellipsoid  ratio");
     for gamma in [1.6, 2.0, 4.0, f64::INFINITY] {
         let plain = tables.student_t(sigma, gamma)?;
-        let skewed = tables.ellipsoid(Skew::new(sigma, theta)?, gamma)?;
+        let skewed = tables.ellipsoid(skew, gamma)?;
         let [a, b] = least(
             || round(inputs, |v, u| plain.sample_visible_normal(v, u).z),
             || round(inputs, |v, u| skewed.sample_visible_normal(v, u).z),

@@ -44,7 +44,7 @@ fn row(gamma: f64, form: impl Fn(f64) -> f64) -> String {
     let (mut error, mut at, mut high, mut low, mut lost) =
         (0.0, 0.0, f64::NEG_INFINITY, f64::INFINITY, None);
     for z in cotangents() {
-        let (printed, truth) = (form(z), shape.lambda(shape.unit(z)));
+        let (printed, truth) = (form(z), shape.lambda(shape.asinh_slope(z)));
         let (g1, true_g1) = (1.0 / (1.0 + printed), 1.0 / (1.0 + truth));
         if !g1.is_finite() {
             return format!("not a number from z = {z:.1e} | | | |");

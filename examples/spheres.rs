@@ -10,7 +10,7 @@ use std::error::Error;
 
 use glam::{Mat3, Vec3, Vec4};
 use microfacet_common::schlick::schlick_weight;
-use microfacet_sampler::{BindError, Ellipsoid, Masking, Skew, StudentT, Tables};
+use microfacet_sampler::{Lobe, Masking, MaterialError, MicrofacetDistribution, Skew, Tables};
 use rayon::prelude::*;
 
 /// Reflectance at normal incidence in linear sRGB.
@@ -19,28 +19,6 @@ const ALUMINIUM: Vec3 = Vec3::new(0.913, 0.921, 0.925);
 
 const COLUMNS: usize = 6;
 const ROWS: usize = 3;
-
-enum Lobe {
-    Plain(StudentT),
-    Skewed(Ellipsoid),
-}
-
-impl Lobe {
-    fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        match self {
-            Self::Plain(lobe) => lobe.sample_visible_normal(v, u),
-            Self::Skewed(lobe) => lobe.sample_visible_normal(v, u),
-        }
-    }
-
-    /// f·cos θ_l/pdf without Fresnel.
-    fn weight(&self, v: Vec3, l: Vec3) -> f32 {
-        match self {
-            Self::Plain(lobe) => lobe.g2(v, l, Masking::HeightCorrelated) / lobe.g1(v),
-            Self::Skewed(lobe) => lobe.reflection_weight(v, l, Masking::HeightCorrelated),
-        }
-    }
-}
 
 /// Directional albedo over (cos θ, φ) for total reflection: a skewed lobe depends on both.
 struct Albedo(Vec<f32>);
@@ -61,8 +39,8 @@ impl Albedo {
             let sum: f32 = (0..samples)
                 .map(|i| {
                     let [a, b, ..] = sequence(i, 0);
-                    let l = reflect(v, lobe.sample(v, [a, b]));
-                    if l.z > 0.0 { lobe.weight(v, l) } else { 0.0 }
+                    let l = reflect(v, lobe.sample_visible_normal(v, [a, b]));
+                    lobe.reflection_weight(v, l, Masking::HeightCorrelated)
                 })
                 .sum();
             sum / samples as f32
@@ -88,11 +66,11 @@ struct Material {
     compensation: Option<Albedo>,
 }
 
-fn materials(tables: &Tables) -> Result<Vec<Material>, BindError> {
+fn materials(tables: &Tables) -> Result<Vec<Material>, MaterialError> {
     let mut all = Vec::new();
     for compensate in [false, true] {
         for gamma in [1.51, 1.65, 2.0, 4.0, 10.0, 50.0] {
-            let lobe = Lobe::Plain(tables.student_t(0.3, gamma)?);
+            let lobe = tables.lobe(0.3, gamma)?;
             let compensation = compensate.then(|| Albedo::new(&lobe));
             all.push(Material { lobe, f0: GOLD, compensation });
         }
@@ -101,9 +79,9 @@ fn materials(tables: &Tables) -> Result<Vec<Material>, BindError> {
     for tilted in [false, true] {
         for gamma in [1.65, 2.0, 10.0] {
             let lobe = if tilted {
-                Lobe::Skewed(tables.ellipsoid(Skew::new(brushed, [0.5, 0.0, 0.0])?, gamma)?)
+                tables.ellipsoid(Skew::new(brushed, [0.5, 0.0, 0.0])?, gamma)?.into()
             } else {
-                Lobe::Plain(tables.student_t(brushed, gamma)?)
+                tables.lobe(brushed, gamma)?
             };
             let compensation = Some(Albedo::new(&lobe));
             all.push(Material { lobe, f0: ALUMINIUM, compensation });
@@ -153,7 +131,7 @@ fn shade(material: &Material, x: f32, y: f32, u: [f32; 2]) -> Vec3 {
     let tangent = Vec3::Y.cross(n).normalize_or(Vec3::X);
     let frame = Mat3::from_cols(tangent, n.cross(tangent), n);
     let v = frame.transpose() * Vec3::Z;
-    let m = material.lobe.sample(v, u);
+    let m = material.lobe.sample_visible_normal(v, u);
     let l = reflect(v, m);
     if l.z <= 0.0 || v.z <= 0.0 {
         return Vec3::ZERO;
@@ -162,7 +140,8 @@ fn shade(material: &Material, x: f32, y: f32, u: [f32; 2]) -> Vec3 {
     let gain = material.compensation.as_ref().map_or(Vec3::ONE, |albedo| {
         Vec3::ONE + material.f0 * (1.0 / albedo.at(v).clamp(0.05, 1.0) - 1.0)
     });
-    fresnel * gain * material.lobe.weight(v, l) * sky(frame * l)
+    let weight = material.lobe.reflection_weight(v, l, Masking::HeightCorrelated);
+    fresnel * gain * weight * sky(frame * l)
 }
 
 /// A pixel: premultiplied radiance and coverage.

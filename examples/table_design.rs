@@ -4,7 +4,7 @@
 //! Every design has 65 views by 2·17 random numbers, exact values and slopes at its nodes, cubic Hermite along u₁ and lines
 //! between views; errors are measured in double precision between the nodes of both axes.
 
-use microfacet_model::{Shape, SignedUnit, UnitView, VisibleSlope};
+use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope};
 use microfacet_sampler::axis::HalfTangent;
 use microfacet_sampler::axis::half_tangent::{half_tangent, slope_at};
 
@@ -48,7 +48,7 @@ impl Design {
         if t <= 1.0 { 0.5 * t.powi(self.power) } else { 1.0 - 0.5 * (2.0 - t).powi(self.power) }
     }
 
-    fn store(&self, shape: &Shape, view: UnitView, x: SignedUnit) -> f64 {
+    fn store(&self, shape: &Shape, view: UnitView, x: SignedSlope) -> f64 {
         let (sin, cos) = shape.unit_sin_cos(x.w);
         let sin = x.sign * sin;
         match self.stored {
@@ -57,7 +57,7 @@ impl Design {
         }
     }
 
-    fn restore(&self, shape: &Shape, view: UnitView, value: f64) -> SignedUnit {
+    fn restore(&self, shape: &Shape, view: UnitView, value: f64) -> SignedSlope {
         let (sin, cos) = match self.stored {
             Stored::HalfTangent => {
                 let [x, z] = slope_at(1.0 - value.clamp(-1.0, 1.0));
@@ -69,7 +69,10 @@ impl Design {
                 (d * view.cos + c * view.sin, (c * view.cos - d * view.sin).max(0.0))
             }
         };
-        SignedUnit { w: shape.unit((sin / cos).abs()), sign: if sin < 0.0 { -1.0 } else { 1.0 } }
+        SignedSlope {
+            w: shape.asinh_slope((sin / cos).abs()),
+            sign: if sin < 0.0 { -1.0 } else { 1.0 },
+        }
     }
 
     /// Values and slopes of one row, the slopes limited so that every cell ascends.

@@ -11,13 +11,13 @@ use argmin::solver::brent::BrentOpt;
 use argmin::solver::neldermead::NelderMead;
 use microfacet_model::classic::{Isotropic, Tabulated};
 
-use crate::family::{Family, FamilyError, Named};
+use crate::distribution::{DistributionError, DistributionKind, Named};
 
 /// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// D(θ)/D(0): the shape of the highlight.
-    Unit,
+    Relative,
     /// D(θ) itself, normalised.
     Density,
 }
@@ -27,7 +27,7 @@ pub enum Form {
 pub struct Replacement {
     /// The distribution found.
     pub to: Named,
-    /// RMSE of the unit form, and of D in 1/sr.
+    /// RMSE of D/D(0), and of D in 1/sr.
     pub rmse: [f64; 2],
 }
 
@@ -35,15 +35,15 @@ pub struct Replacement {
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConvertError {
     /// A distribution could not be made.
-    Family(FamilyError),
+    Family(DistributionError),
     /// The distribution nowhere falls to half of D(0).
     NoHalfAngle(String),
     /// No parameter of the family gives that half angle, in radians.
-    OutOfReach(Family, f64),
+    OutOfReach(DistributionKind, f64),
     /// A half angle fixes one parameter; the family has two, and the second must be given.
-    ShapeNeeded(Family),
+    ShapeNeeded(DistributionKind),
     /// No published formula is known for this pair.
-    NoFormula(Family, Family),
+    NoFormula(DistributionKind, DistributionKind),
     /// The minimiser's message.
     Minimiser(String),
 }
@@ -77,8 +77,8 @@ impl fmt::Display for ConvertError {
 
 impl std::error::Error for ConvertError {}
 
-impl From<FamilyError> for ConvertError {
-    fn from(e: FamilyError) -> Self {
+impl From<DistributionError> for ConvertError {
+    fn from(e: DistributionError) -> Self {
         Self::Family(e)
     }
 }
@@ -115,7 +115,7 @@ impl<'a> Target<'a> {
     /// Root mean square of the difference over the grid.
     pub fn rmse(&self, to: &dyn Isotropic, form: Form) -> f64 {
         let (a, b) = match form {
-            Form::Unit => (1.0 / self.peak, 1.0 / to.peak()),
+            Form::Relative => (1.0 / self.peak, 1.0 / to.peak()),
             Form::Density => (1.0, 1.0),
         };
         let square = |(&t, &d): (&f64, &f64)| {
@@ -128,7 +128,7 @@ impl<'a> Target<'a> {
 
     fn judged(&self, to: Named) -> Result<Replacement, ConvertError> {
         let built = to.build()?;
-        let rmse = [Form::Unit, Form::Density].map(|form| self.rmse(&*built, form));
+        let rmse = [Form::Relative, Form::Density].map(|form| self.rmse(&*built, form));
         Ok(Replacement { to, rmse })
     }
 
@@ -138,7 +138,7 @@ impl<'a> Target<'a> {
     /// [`ConvertError`] where either has no such angle, or `shape` is missing.
     pub fn by_half_angle(
         &self,
-        to: Family,
+        to: DistributionKind,
         shape: Option<f64>,
     ) -> Result<Replacement, ConvertError> {
         let named = |y: f64| {
@@ -178,7 +178,7 @@ impl<'a> Target<'a> {
     ///
     /// # Errors
     /// [`ConvertError::Minimiser`] with the minimiser's own message.
-    pub fn by_rmse(&self, to: Family, form: Form) -> Result<Replacement, ConvertError> {
+    pub fn by_rmse(&self, to: DistributionKind, form: Form) -> Result<Replacement, ConvertError> {
         let problem = Problem { target: self, to, form };
         let failed = |e: Error| ConvertError::Minimiser(e.to_string());
         // A coarse scan finds the valley, which several local minima may surround.
@@ -220,7 +220,7 @@ impl<'a> Target<'a> {
 /// RMSE as a function on the family's search square.
 struct Problem<'a> {
     target: &'a Target<'a>,
-    to: Family,
+    to: DistributionKind,
     form: Form,
 }
 
@@ -262,10 +262,14 @@ impl CostFunction for Simplex<'_> {
 ///
 /// # Errors
 /// [`ConvertError::NoFormula`] for other pairs; [`ConvertError::Family`] where the formula leaves the range.
-pub fn by_formula(from: &Named, to: Family) -> Result<Replacement, ConvertError> {
+pub fn by_formula(from: &Named, to: DistributionKind) -> Result<Replacement, ConvertError> {
     let values = match (from.family, to, from.values.as_slice()) {
-        (Family::Beckmann, Family::BlinnPhong, &[m]) => vec![2.0 / (m * m) - 2.0],
-        (Family::BlinnPhong, Family::Beckmann, &[n]) => vec![(2.0 / (n + 2.0)).sqrt()],
+        (DistributionKind::Beckmann, DistributionKind::BlinnPhong, &[m]) => {
+            vec![2.0 / (m * m) - 2.0]
+        }
+        (DistributionKind::BlinnPhong, DistributionKind::Beckmann, &[n]) => {
+            vec![(2.0 / (n + 2.0)).sqrt()]
+        }
         _ => return Err(ConvertError::NoFormula(from.family, to)),
     };
     Target::new(&*from.build()?).judged(Named { family: to, values })
@@ -288,7 +292,7 @@ mod tests {
             let built = from.build().unwrap();
             let target = Target::new(&*built);
             for found in [
-                target.by_rmse(from.family, Form::Unit).unwrap(),
+                target.by_rmse(from.family, Form::Relative).unwrap(),
                 target.by_half_angle(from.family, None).unwrap(),
             ] {
                 let (a, b) = (found.to.values[0], from.values[0]);
@@ -314,11 +318,13 @@ mod tests {
     fn student_t_recognises_its_members() {
         for (text, gamma) in [("trowbridge-reitz:0.2", 2.0), ("blinn-phong:20", 12.0)] {
             let built = named(text).build().unwrap();
-            let found = Target::new(&*built).by_rmse(Family::StudentT, Form::Unit).unwrap();
+            let found =
+                Target::new(&*built).by_rmse(DistributionKind::StudentT, Form::Relative).unwrap();
             assert!((found.to.values[1] / gamma - 1.0).abs() < 1e-2, "{text} became {}", found.to);
         }
         let built = named("beckmann:0.2").build().unwrap();
-        let found = Target::new(&*built).by_rmse(Family::StudentT, Form::Unit).unwrap();
+        let found =
+            Target::new(&*built).by_rmse(DistributionKind::StudentT, Form::Relative).unwrap();
         assert!(
             found.to.values[1] > 1e3 && (found.to.values[0] - 0.2).abs() < 1e-3,
             "{}",
@@ -331,9 +337,9 @@ mod tests {
         let from = named("blinn-phong:50");
         let built = from.build().unwrap();
         let target = Target::new(&*built);
-        let best = target.by_rmse(Family::Beckmann, Form::Unit).unwrap();
-        let half = target.by_half_angle(Family::Beckmann, None).unwrap();
-        let formula = by_formula(&from, Family::Beckmann).unwrap();
+        let best = target.by_rmse(DistributionKind::Beckmann, Form::Relative).unwrap();
+        let half = target.by_half_angle(DistributionKind::Beckmann, None).unwrap();
+        let formula = by_formula(&from, DistributionKind::Beckmann).unwrap();
         assert!(best.rmse[0] <= half.rmse[0] && best.rmse[0] <= formula.rmse[0]);
         assert!((best.to.values[0] / formula.to.values[0] - 1.0).abs() < 0.02);
     }
@@ -343,17 +349,17 @@ mod tests {
         let built = named("blinn-phong:50").build().unwrap();
         let target = Target::new(&*built);
         assert_eq!(
-            target.by_half_angle(Family::Gtr, None).unwrap_err(),
-            ConvertError::ShapeNeeded(Family::Gtr)
+            target.by_half_angle(DistributionKind::Gtr, None).unwrap_err(),
+            ConvertError::ShapeNeeded(DistributionKind::Gtr)
         );
-        target.by_half_angle(Family::Gtr, Some(2.0)).unwrap();
+        target.by_half_angle(DistributionKind::Gtr, Some(2.0)).unwrap();
         assert!(matches!(
-            by_formula(&named("gauss:0.1"), Family::Gtr),
+            by_formula(&named("gauss:0.1"), DistributionKind::Gtr),
             Err(ConvertError::NoFormula(..))
         ));
         let flat = named("blinn-phong:0").build().unwrap();
         assert!(matches!(
-            Target::new(&*flat).by_half_angle(Family::Gauss, None),
+            Target::new(&*flat).by_half_angle(DistributionKind::Gauss, None),
             Err(ConvertError::NoHalfAngle(_))
         ));
     }

@@ -6,7 +6,7 @@ use std::io::Read;
 use microfacet_model::classic::{Tabulated, TabulatedError};
 
 use crate::convert::{ConvertError, Form, Replacement, Target};
-use crate::family::Family;
+use crate::distribution::DistributionKind;
 
 /// Why a measurement could not be read.
 #[derive(Debug)]
@@ -101,9 +101,9 @@ pub struct Fit {
 pub fn fit(measured: &Tabulated, form: Form) -> Result<Fit, ConvertError> {
     let target = Target::measured(measured);
     Ok(Fit {
-        student_t: target.by_rmse(Family::StudentT, form)?,
-        beckmann: target.by_rmse(Family::Beckmann, form)?,
-        ggx: target.by_rmse(Family::TrowbridgeReitz, form)?,
+        student_t: target.by_rmse(DistributionKind::StudentT, form)?,
+        beckmann: target.by_rmse(DistributionKind::Beckmann, form)?,
+        ggx: target.by_rmse(DistributionKind::TrowbridgeReitz, form)?,
     })
 }
 
@@ -124,7 +124,7 @@ mod tests {
     fn finds_what_was_measured() {
         for (sigma, gamma) in [(0.3, 2.6), (0.15, 5.0), (0.2, 1.8)] {
             let table = read_csv(measured(sigma, gamma, 89.9).as_bytes(), Angles::Degrees).unwrap();
-            let fit = fit(&table, Form::Unit).unwrap();
+            let fit = fit(&table, Form::Relative).unwrap();
             let [s, g] = fit.student_t.to.values[..] else { panic!() };
             assert!(
                 (s / sigma - 1.0).abs() < 1e-2 && (g / gamma - 1.0).abs() < 2e-2,

@@ -57,7 +57,7 @@ pub fn check(values: u128, limit: u64) -> Result<(), TooLarge> {
 mod tests {
     use super::*;
     use crate::bake::axes;
-    use crate::spec::{Quality, TableSpec, general_set};
+    use crate::table_spec::{Quality, TableSpec, general_set};
     use microfacet_sampler::Precision;
 
     #[test]

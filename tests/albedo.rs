@@ -3,21 +3,21 @@
 mod command;
 
 use glam::Vec3;
-use microfacet_bake::bake::albedo::{self, Domain, Lobe};
-use microfacet_bake::generate::{Settings, Target, bake, bake_with};
+use microfacet_bake::bake::albedo::{self, AlbedoLobe, Domain};
 use microfacet_bake::plan::{
-    AlbedoNeed, AlbedoVerdict, AlbedoWish, Options, Plan, albedo_cost, bare_cost,
+    AlbedoVerdict, AlbedoWish, Options, Plan, RequiredAlbedo, albedo_cost, bare_cost,
 };
 use microfacet_bake::scene::{Interval, Scene};
-use microfacet_bake::spec::Quality;
 use microfacet_bake::store;
+use microfacet_bake::table_set::{Settings, Target, bake, bake_with};
+use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_bake::validate::furnace::direction;
 use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::{
-    FresnelAlbedo, Kind, Masking, Precision, Provenance, Reflectance, StudentT, Table, Tables,
-    encode,
+    FresnelAlbedo, Kind, Lobe, Masking, MicrofacetDistribution, Precision, Provenance, Reflectance,
+    Table, Tables, encode,
 };
 use serde_json::Value;
 
@@ -25,9 +25,9 @@ use command::{json, run};
 
 const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
 
-fn domain(gamma: [f64; 2], sigma: [f64; 2]) -> Lobe {
+fn domain(gamma: [f64; 2], sigma: [f64; 2]) -> AlbedoLobe {
     let interval = |[min, max]: [f64; 2]| Interval { min, max };
-    Lobe::Family(Domain { gamma: interval(gamma), sigma: interval(sigma) })
+    AlbedoLobe::Family(Domain { gamma: interval(gamma), sigma: interval(sigma) })
 }
 
 /// A recipe of materials: name, σ, γ, and further lines.
@@ -45,7 +45,7 @@ fn plan(materials: &[[&str; 4]], albedo: AlbedoWish) -> Plan {
 
 /// The part of a plan that is about albedos.
 fn albedos_of(plan: Plan) -> Plan {
-    Plan { needs: Vec::new(), distributions: Vec::new(), ..plan }
+    Plan { shapes: Vec::new(), distributions: Vec::new(), ..plan }
 }
 
 const MIRROR: &str = "fresnel = \"mirror\"";
@@ -64,13 +64,13 @@ const MIXED: [[&str; 4]; 6] = [
 fn those_who_ask_get_the_form_they_name() {
     let plan_of = |albedo| plan(&MIXED, albedo);
     let asked = plan_of(AlbedoWish::Recipes);
-    let need = |lobe, maskings: &[Masking]| AlbedoNeed {
+    let need = |lobe, maskings: &[Masking]| RequiredAlbedo {
         lobe,
         reflectance: Reflectance::Moments,
         maskings: maskings.into(),
     };
     // Of the anisotropic one that of its own lobe, not that of a round stand-in.
-    let brushed = Lobe::StudentT { sigma: [0.6, 0.15], gamma: 2.0 };
+    let brushed = AlbedoLobe::StudentT { sigma: [0.6, 0.15], gamma: 2.0 };
     let wanted = [
         need(domain([3.0; 2], [0.454; 2]), &Masking::ALL),
         need(domain([2.0; 2], [0.3; 2]), &[Masking::HeightCorrelated]),
@@ -84,7 +84,7 @@ fn those_who_ask_get_the_form_they_name() {
     assert!(matches!(plan_of(AlbedoWish::All).albedo_verdicts[0], Bake(_)));
     // GGX needs no other table, but its albedo is one.
     let gold = plan(&MIXED[3..4], AlbedoWish::Recipes);
-    assert!(gold.needs.is_empty() && !gold.is_empty());
+    assert!(gold.shapes.is_empty() && !gold.is_empty());
 }
 
 #[test]
@@ -105,8 +105,11 @@ fn many_roughnesses_are_a_range_and_what_lies_inside_is_there() {
 #[test]
 fn a_part_reads_as_the_whole_does() {
     let of = |lobe| {
-        let need =
-            AlbedoNeed { lobe, maskings: vec![Masking::HeightCorrelated], ..AlbedoNeed::general() };
+        let need = RequiredAlbedo {
+            lobe,
+            maskings: vec![Masking::HeightCorrelated],
+            ..RequiredAlbedo::general()
+        };
         let tables = albedo::bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap();
         Tables::from_tables(Provenance::default(), tables).unwrap()
     };
@@ -246,8 +249,9 @@ fn estimated_bytes_are_those_of_the_file() {
     // Without the one whose views are refined.
     let plan = albedos_of(plan(&MIXED[..4], AlbedoWish::Recipes));
     let set = bake(&plan, DRAFT).unwrap().set;
-    let bytes =
-        |need: &AlbedoNeed| albedo_cost(&need.spec(Quality::Draft, Precision::F32).unwrap()).bytes;
+    let bytes = |need: &RequiredAlbedo| {
+        albedo_cost(&need.spec(Quality::Draft, Precision::F32).unwrap()).bytes
+    };
     let tables: usize = plan.albedos.iter().map(bytes).sum();
     let estimate = (tables + bare_cost(set.provenance()).bytes) as f64;
     let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
@@ -267,7 +271,7 @@ const EXACT: [[&str; 4]; 4] = [
 ];
 
 /// The mean over a grid of visible normals of what `worth` makes of view and normal, in single precision: as a renderer would estimate it.
-fn mean(set: &Tables, name: &str, cos: f32, worth: impl Fn(&StudentT, Vec3, Vec3) -> f64) -> f64 {
+fn mean(set: &Tables, name: &str, cos: f32, worth: impl Fn(&Lobe, Vec3, Vec3) -> f64) -> f64 {
     const STEPS: usize = 300;
     let material = set.material(name).unwrap();
     let v = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);

@@ -6,18 +6,19 @@
 
 use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake_radial;
-use microfacet_bake::family::Named;
-use microfacet_bake::generate::{Target, bake};
+use microfacet_bake::distribution::Named;
 use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
-use microfacet_bake::spec::Quality;
+use microfacet_bake::table_set::{Target, bake};
+use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_bake::validate::radial::certify;
 use microfacet_model::classic::{Marginal, MarginalView};
-use microfacet_model::{Shape, SignedUnit, UnitView, VisibleSlope, across_cdf};
+use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope, across_cdf};
 use microfacet_sampler::axis::MirroredRoot;
 use microfacet_sampler::{
-    Axis, Kind, Mapping, MaterialEntry, Precision, Provenance, Radial, StudentT, Table, Tables,
+    Axis, Kind, Lobe, Mapping, MaterialEntry, MicrofacetDistribution, Precision, Provenance,
+    StudentT, Table, Tables,
 };
 
 /// Parts of a cell.
@@ -52,8 +53,8 @@ fn cotangent(axis: &Axis, s: f64, t: f64) -> f64 {
     }
 }
 
-fn signed(shape: &Shape, x: f64) -> SignedUnit {
-    SignedUnit { w: shape.unit(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } }
+fn signed(shape: &Shape, x: f64) -> SignedSlope {
+    SignedSlope { w: shape.asinh_slope(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } }
 }
 
 fn baked(plan: &Plan, precision: Precision) -> Tables {
@@ -71,7 +72,7 @@ fn g1_error(table: &Table, bound: &StudentT, shape: &Shape) -> f64 {
     let errors = along(&table.axes[1]).into_iter().map(|t| {
         let v = view(cotangent(&table.axes[1], shape.s(), t));
         let z = f64::from(v.z) / f64::from(v.x);
-        (f64::from(bound.g1(v)) - 1.0 / (1.0 + shape.lambda(shape.unit(z)))).abs()
+        (f64::from(bound.g1(v)) - 1.0 / (1.0 + shape.lambda(shape.asinh_slope(z)))).abs()
     });
     errors.fold(0.0, f64::max)
 }
@@ -148,7 +149,7 @@ fn of_single_shapes() {
 /// A distribution by name, with certified tables.
 struct Own<'a> {
     tables: Vec<Table>,
-    radial: Radial,
+    radial: Lobe,
     marginal: &'a Marginal<'a>,
 }
 
@@ -166,7 +167,8 @@ impl<'a> Own<'a> {
         let mut tables = bake_radial(marginal, &entry.distribution, Quality::Draft, Precision::F32);
         certify(&mut tables, &entry, marginal).unwrap();
         let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
-        let radial = Tables::from_tables(provenance, tables.clone()).unwrap().radial("it").unwrap();
+        let radial =
+            Tables::from_tables(provenance, tables.clone()).unwrap().material("it").unwrap();
         Self { tables, radial, marginal }
     }
 

@@ -7,16 +7,18 @@ use std::sync::LazyLock;
 
 use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake_radial;
-use microfacet_bake::family::Named;
-use microfacet_bake::generate::{Target, bake};
+use microfacet_bake::distribution::Named;
 use microfacet_bake::plan::{Cost, Options, Plan, bare_cost, cost, distribution_cost};
 use microfacet_bake::scene::{Scene, load};
-use microfacet_bake::spec::{Quality, general_set};
+use microfacet_bake::table_set::{Target, bake};
+use microfacet_bake::table_spec::{Quality, general_set};
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_bake::validate::radial::measure;
 use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
 use microfacet_model::statistics::chi_square;
-use microfacet_sampler::{Kind, MaterialEntry, Precision, Provenance, Radial, Tables, encode};
+use microfacet_sampler::{
+    Kind, Lobe, MaterialEntry, MicrofacetDistribution, Precision, Provenance, Tables, encode,
+};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -44,7 +46,7 @@ fn all() -> Vec<(String, Box<dyn Isotropic>)> {
     all
 }
 
-fn bound(name: &str, marginal: &Marginal) -> Radial {
+fn tabulated(name: &str, marginal: &Marginal) -> Lobe {
     let entry = MaterialEntry {
         name: "it".into(),
         sigma: [[marginal.sigma(); 2]; 2],
@@ -56,12 +58,12 @@ fn bound(name: &str, marginal: &Marginal) -> Radial {
     };
     let tables = bake_radial(marginal, &entry.distribution, Quality::Default, Precision::F32);
     let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
-    Tables::from_tables(provenance, tables).unwrap().radial("it").unwrap()
+    Tables::from_tables(provenance, tables).unwrap().material("it").unwrap()
 }
 
-/// The tables of [`all`], bound.
-static BOUND: LazyLock<Vec<Radial>> =
-    LazyLock::new(|| all().iter().map(|(name, d)| bound(name, &Marginal::new(&**d))).collect());
+/// The lobes of [`all`] from their tables.
+static LOBES: LazyLock<Vec<Lobe>> =
+    LazyLock::new(|| all().iter().map(|(name, d)| tabulated(name, &Marginal::new(&**d))).collect());
 
 fn view(theta: f64) -> Vec3 {
     DVec3::new(theta.sin(), 0.0, theta.cos()).as_vec3()
@@ -69,7 +71,7 @@ fn view(theta: f64) -> Vec3 {
 
 #[test]
 fn tables_follow_the_quadrature() {
-    for ((name, d), radial) in all().into_iter().zip(BOUND.iter()) {
+    for ((name, d), radial) in all().into_iter().zip(LOBES.iter()) {
         let e = measure(radial, &Marginal::new(&*d));
         assert!(
             e.g1 < 1e-4 && e.along < 5e-4 && e.across < 5e-4 && e.density < 1e-3,
@@ -83,7 +85,7 @@ fn draws_pass_chi_square() {
     let mut rng = StdRng::seed_from_u64(17);
     let mut smallest = (1.0_f64, String::new());
     let mut tests = 0;
-    for ((name, d), radial) in all().into_iter().zip(BOUND.iter()) {
+    for ((name, d), radial) in all().into_iter().zip(LOBES.iter()) {
         let marginal = Marginal::new(&*d);
         for theta in [0.0, 0.7, 1.3, 1.55] {
             let v = view(theta);
@@ -158,7 +160,7 @@ fn a_recipe_bakes_all_kinds() {
     std::fs::write(&recipe, text).unwrap();
     let scene = load(&recipe).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
-    assert_eq!((plan.needs.len(), plan.distributions.len()), (1, 2));
+    assert_eq!((plan.shapes.len(), plan.distributions.len()), (1, 2));
     let bake = |target| bake(&plan, target);
     // Fixed point is enough for that, in half the bytes.
     let rough = bake(Target::MaxError(1e-3)).unwrap().set;
@@ -172,7 +174,7 @@ fn a_recipe_bakes_all_kinds() {
         .map(|precision| bake(Target::Quality(Quality::Draft, precision)).unwrap().set);
     for (precision, set) in [(Precision::F32, &full), (Precision::U16, &fixed)] {
         let general = general_set(Quality::Draft, precision);
-        let normals = plan.needs.iter().map(|need| cost(&need.specs(&general)));
+        let normals = plan.shapes.iter().map(|need| cost(&need.specs(&general)));
         let own =
             plan.distributions.iter().map(|own| distribution_cost(own, Quality::Draft, precision));
         let estimate: Cost = normals.chain(own).chain([bare_cost(set.provenance())]).sum();
@@ -184,11 +186,11 @@ fn a_recipe_bakes_all_kinds() {
     let v = Vec3::new(0.6, 0.0, 0.8);
     assert!(set.material("gold").unwrap().g1(v) > 0.9);
     for name in ["paint", "steel"] {
-        let m = set.radial(name).unwrap().sample_visible_normal(v, [0.4, 0.6]);
+        let m = set.material(name).unwrap().sample_visible_normal(v, [0.4, 0.6]);
         assert!(m.dot(v) > 0.0 && m.z > 0.0, "{name}: {m}");
-        assert!(set.material(name).unwrap_err().to_string().contains("radial"));
+        assert!(matches!(set.material(name), Ok(Lobe::Radial(_))));
     }
-    assert!(set.radial("gold").is_err());
+    assert!(matches!(set.material("gold"), Ok(Lobe::StudentT(_))));
     let figures = set.tables().iter().find(|table| table.kind == Kind::RadialShadowing).unwrap();
     assert!(figures.certificate["g1_max_error"] < 1e-3);
 }

@@ -1,10 +1,10 @@
 //! The committed default set is what this code bakes, byte for byte.
 
-use microfacet_bake::generate::{Target, bake};
 use microfacet_bake::plan::Plan;
+use microfacet_bake::table_set::{Target, bake};
 use microfacet_sampler::{Kind, encode};
 
-const COMMITTED: &[u8] = include_bytes!("../tables/default.safetensors");
+const COMMITTED: &[u8] = include_bytes!("../sampler/data/default.safetensors");
 
 #[test]
 fn the_default_set_is_reproducible() {
@@ -13,7 +13,7 @@ fn the_default_set_is_reproducible() {
     let bytes = encode(set.provenance(), set.tables()).unwrap();
     assert!(
         bytes == COMMITTED,
-        "the baked set differs from tables/default.safetensors; if the change is meant, raise bake::NUMERICS, run \
+        "the baked set differs from sampler/data/default.safetensors; if the change is meant, raise bake::NUMERICS, run \
          `cargo run --release -- bake --out out`, copy out/tables.safetensors there, and note it as value-breaking"
     );
     assert!(COMMITTED.len() < 2 << 20);

@@ -2,8 +2,8 @@
 
 use microfacet_bake::bake::bake;
 use microfacet_bake::plan::Plan;
-use microfacet_bake::spec::{ShapeAxis, TableSpec};
 use microfacet_bake::store::{decode_exr, encode_exr};
+use microfacet_bake::table_spec::{ShapeAxis, TableSpec};
 use microfacet_sampler::{Kind, LoadError, Precision, Tables};
 
 fn small_table(precision: Precision) -> Tables {

@@ -1,9 +1,9 @@
 //! A budget of bytes for tables of all kinds: filled, never exceeded, and refused with the smallest one there is.
 
 use microfacet_bake::cache::Cache;
-use microfacet_bake::generate::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
+use microfacet_bake::table_set::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables, encode};
 

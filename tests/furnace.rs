@@ -3,10 +3,10 @@
 use std::sync::OnceLock;
 
 use glam::Vec3;
-use microfacet_bake::bake::albedo::{Domain, Lobe, bake};
-use microfacet_bake::plan::AlbedoNeed;
+use microfacet_bake::bake::albedo::{AlbedoLobe, Domain, bake};
+use microfacet_bake::plan::RequiredAlbedo;
 use microfacet_bake::scene::Interval;
-use microfacet_bake::spec::Quality;
+use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::furnace::{TOLERANCE, direction, furnace, survey};
 use microfacet_sampler::{Masking, Precision, Table, Tables};
 
@@ -18,8 +18,8 @@ fn baked() -> &'static [Table] {
 
 fn bake_at(quality: Quality) -> Vec<Table> {
     let part = |gamma: f64| {
-        let lobe = Lobe::Family(Domain { gamma: Interval::point(gamma), ..Domain::GENERAL });
-        let need = AlbedoNeed { lobe, ..AlbedoNeed::general() };
+        let lobe = AlbedoLobe::Family(Domain { gamma: Interval::point(gamma), ..Domain::GENERAL });
+        let need = RequiredAlbedo { lobe, ..RequiredAlbedo::general() };
         bake(&need.spec(quality, Precision::F32).unwrap()).unwrap()
     };
     [2.0, f64::INFINITY].map(part).concat()

@@ -1,7 +1,7 @@
 //! The same bits for any number of threads and in every build: run this in debug and with `--release`.
 
 use microfacet_bake::bake::bake;
-use microfacet_bake::spec::{Quality, general_set};
+use microfacet_bake::table_spec::{Quality, general_set};
 use microfacet_sampler::{Precision, Table, Tables};
 
 fn baked(threads: usize) -> Vec<Table> {

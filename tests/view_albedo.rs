@@ -5,17 +5,17 @@ mod command;
 use std::sync::LazyLock;
 
 use glam::Vec3;
-use microfacet_bake::bake::albedo::{AlbedoSpec, Lobe, Models, Site, bake, weights};
-use microfacet_bake::generate::{self, Target};
+use microfacet_bake::bake::albedo::{AlbedoLobe, AlbedoSpec, Models, Site, bake, weights};
 use microfacet_bake::plan::{Options, Plan, albedo_cost};
 use microfacet_bake::scene::Scene;
-use microfacet_bake::spec::Quality;
 use microfacet_bake::store;
+use microfacet_bake::table_set::{self, Target};
+use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::albedo::{certified, interior_references, missed_by_half};
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{
-    Albedo, BindError, FresnelAlbedo, LobeEntry, Masking, Precision, Reflectance, Table, Tables,
-    encode,
+    Albedo, FresnelAlbedo, Lobe, LobeEntry, Masking, MaterialError, MicrofacetDistribution,
+    Precision, Reflectance, Table, Tables, encode,
 };
 
 use command::{json, run};
@@ -100,7 +100,7 @@ const MATERIALS: [[&str; 4]; 6] = [
 fn bake_all(text: &str, quality: Quality) -> Tables {
     let scene = Scene::from_recipe_str(text).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
-    let set = generate::bake(&plan, Target::Quality(quality, Precision::F32)).unwrap().set;
+    let set = table_set::bake(&plan, Target::Quality(quality, Precision::F32)).unwrap().set;
     // As a renderer gets it.
     Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap()
 }
@@ -113,7 +113,7 @@ fn views(set: &Tables) -> Vec<&Table> {
 }
 
 fn spec(sigma: [f64; 2], gamma: f64, quality: Quality) -> AlbedoSpec {
-    let lobe = Lobe::StudentT { sigma, gamma };
+    let lobe = AlbedoLobe::StudentT { sigma, gamma };
     let form = vec![Masking::HeightCorrelated];
     AlbedoSpec::new(lobe, Reflectance::Moments, form, quality, Precision::F32).unwrap()
 }
@@ -121,7 +121,7 @@ fn spec(sigma: [f64; 2], gamma: f64, quality: Quality) -> AlbedoSpec {
 #[test]
 fn the_model_agrees_with_independent_values() {
     for (sigma, gamma, cos, phi, correlated, e) in REFERENCE {
-        let lobe = Lobe::StudentT { sigma, gamma };
+        let lobe = AlbedoLobe::StudentT { sigma, gamma };
         let site = Site { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi, cos };
         let albedo =
             Models::with(&lobe, [], 1e-8, |models| models.at(&site).reflection(&site, weights))
@@ -136,7 +136,7 @@ fn the_model_agrees_with_independent_values() {
 fn a_table_of_default_quality_agrees_with_independent_values() {
     let (sigma, gamma, cos, phi, _, e) = REFERENCE[1];
     let table = bake(&spec(sigma, gamma, Quality::Default)).unwrap().remove(0);
-    let bound = Albedo::bind(&table, f64::NAN, f64::NAN).unwrap();
+    let bound = Albedo::from_table(&table, f64::NAN, f64::NAN).unwrap();
     let got = f64::from(bound.albedo(direction(cos, phi)));
     assert!((got - e).abs() < 1e-4, "{got} for {e}");
 }
@@ -262,13 +262,13 @@ fn materials_without_such_a_table_say_what_helps() {
         let why = SET.material_albedo(name).unwrap_err();
         assert!(why.to_string().contains(name) && why.to_string().contains(word), "{why}");
     }
-    assert!(matches!(SET.material_albedo("silent"), Err(BindError::NoAlbedo { .. })));
+    assert!(matches!(SET.material_albedo("silent"), Err(MaterialError::NoAlbedo { .. })));
     // Of a range the middle of the round stand-in.
     let worn = SET.material_albedo("worn").unwrap();
     let round = SET.albedo((0.25_f64 * 0.1).sqrt(), 2.7, Masking::Uncorrelated).unwrap();
     assert_eq!(worn.albedo(direction(0.3, 1.0)), round.albedo(direction(0.3, 2.0)));
     // Moments are no shares, and the other way round.
-    assert!(microfacet_sampler::ViewCurve::<3>::bind(views(&SET)[0], 0.3, 2.7, 1.0).is_err());
+    assert!(microfacet_sampler::ViewCurve::<3>::from_table(views(&SET)[0], 0.3, 2.7, 1.0).is_err());
 }
 
 #[test]
@@ -377,7 +377,7 @@ fn estimate(v: Vec3, g1: f32, sample: impl Fn([f32; 2]) -> Vec3, g2: impl Fn(Vec
 fn other_distributions_have_an_albedo_over_the_cosine() {
     let scene = Scene::from_recipe_str(GTR).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
-    let set = generate::bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set;
+    let set = table_set::bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set;
     let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
     let table = views(&set)[0];
     assert_eq!(
@@ -386,7 +386,7 @@ fn other_distributions_have_an_albedo_over_the_cosine() {
     );
     assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
     assert!(!table.certificate.contains_key("shortcut_max_error"));
-    let (paint, albedo) = (set.radial("paint").unwrap(), set.material_albedo("paint").unwrap());
+    let (paint, albedo) = (set.material("paint").unwrap(), set.material_albedo("paint").unwrap());
     for cos in [0.1, 0.4, 0.9] {
         let v = direction(cos, 0.0);
         assert_eq!(albedo.albedo(v), albedo.albedo(Vec3::new(0.0, v.x, v.z)));
@@ -395,7 +395,10 @@ fn other_distributions_have_an_albedo_over_the_cosine() {
         assert!((f64::from(albedo.albedo(v)) - want).abs() < 3e-3, "{cos}: {want}");
     }
     assert!(
-        set.material_dielectric_albedo("paint", 1.5).unwrap_err().to_string().contains("radial")
+        set.material_dielectric_albedo("paint", 1.5)
+            .unwrap_err()
+            .to_string()
+            .contains("only round Student-t lobes refract")
     );
 }
 
@@ -406,13 +409,13 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
     let scene = Scene::from_recipe_str(&text).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
     // Visible normals of its γ, even of GGX; no albedo of a round lobe.
-    assert_eq!((plan.needs.len(), plan.albedos.len()), (1, 1));
+    assert_eq!((plan.shapes.len(), plan.albedos.len()), (1, 1));
     let set = bake_all(&text, Quality::Draft);
     let table = views(&set)[0];
     assert!(table.name.ends_with("gamma_2_sigma_0.4_0.2_theta_0.05_-0.1_0.5"), "{}", table.name);
     assert!(table.certificate["e_max_error"] <= 3e-3, "{:?}", table.certificate);
     let (tilted, albedo) =
-        (set.material_ellipsoid("tilted").unwrap(), set.material_albedo("tilted").unwrap());
+        (set.material("tilted").unwrap(), set.material_albedo("tilted").unwrap());
     for i in 0..8 {
         let v = direction(0.3 + 0.08 * f64::from(i), 0.8 * f64::from(i));
         let sample = |u| tilted.sample_visible_normal(v, u);
@@ -439,10 +442,8 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
     assert!((a - b).abs() > 0.01, "{a} {b}");
     let average = hemisphere(|v| albedo.albedo(v));
     assert!((average - f64::from(albedo.albedo_average())).abs() < 1e-4, "{average}");
-    for why in [set.material("tilted").unwrap_err(), set.radial("tilted").unwrap_err()] {
-        assert!(why.to_string().contains("material_ellipsoid"), "{why}");
-    }
-    assert!(SET.material_ellipsoid("brushed").is_err());
+    assert!(matches!(tilted, Lobe::Ellipsoid(_)));
+    assert!(matches!(SET.material("brushed"), Ok(Lobe::StudentT(_))));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use microfacet_sampler::{Kind, Tables};
+use microfacet_sampler::{Kind, MicrofacetDistribution, Tables};
 
 use crate::paper::Approximation;
 use crate::rows::{Quantity, Row};

@@ -6,10 +6,10 @@
 //! unless its name says otherwise.
 
 mod clock;
+mod error;
 mod figures;
 mod files;
 mod inputs;
-mod judge;
 mod masking;
 mod paper;
 mod plot;

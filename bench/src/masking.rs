@@ -4,6 +4,8 @@ use std::hint::black_box;
 
 use glam::Vec3;
 use microfacet_model as model;
+use microfacet_model::MicrofacetDistribution as _;
+use microfacet_sampler::MicrofacetDistribution as _;
 
 use crate::rivals::lobe::Lobe;
 use crate::rivals::rational::Rational;
@@ -54,7 +56,7 @@ pub(crate) fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
     let (any, four, half) =
         (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA), Lobe::three_and_a_half(SIGMA));
     let rational = Rational::new(SIGMA, GAMMA);
-    let truth = model::StudentT::isotropic(SIGMA, GAMMA).expect("constants");
+    let truth = model::StudentT::new(SIGMA, GAMMA).expect("constants");
     let mut all = vec![
         form(GGX, 2.0, each(move |w| ggx::g1(sigma, w))),
         form("Beckmann, closed form", f64::INFINITY, each(move |w| beckmann::g1(sigma, w))),

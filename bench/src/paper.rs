@@ -5,7 +5,9 @@ use std::cell::RefCell;
 
 use glam::Vec3;
 use microfacet_bake::plot::{self, Curve, Legend, Panel, PlotError};
+use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::{StudentT, printed};
+use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::Tables;
 
 use crate::clock::{self, Calls};
@@ -79,7 +81,7 @@ fn methods(
     sigma: f64,
     seed: u64,
 ) -> Vec<(&'static str, Method<'static>)> {
-    let truth = StudentT::isotropic(sigma, gamma).expect("constants");
+    let truth = StudentT::new(sigma, gamma).expect("constants");
     let bound = set.student_t(sigma, gamma).expect("the general set covers all shapes");
     let z = move |w: Vec3| f64::from(w.z) / (sigma * f64::from((w.x * w.x + w.y * w.y).sqrt()));
     let g1 = |lambda: f64| (1.0 / (1.0 + lambda)) as f32;
@@ -99,13 +101,14 @@ fn methods(
     all.push(("eq. 22-23, rational", Method::G1(masking::each(move |w| rational.g1(w)))));
     let table = bound.clone();
     all.push(("table", Method::G1(masking::each(move |w| table.g1(w)))));
-    let inversion =
-        move |v: Vec3, u: [f32; 2]| truth.visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3();
+    let inversion = move |v: Vec3, u: [f32; 2]| {
+        truth.sample_visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3()
+    };
     all.push(("inversion of the CDF, f64", Method::Normal(sampler::each(inversion))));
     let stream = RefCell::new(Stream::new(seed));
     let exact = move |v: Vec3, _| {
         let stream = &mut *stream.borrow_mut();
-        truth.sample_visible_exact(v.as_dvec3(), &mut || f64::from(stream.next())).as_vec3()
+        truth.sample_visible_by_rejection(v.as_dvec3(), &mut || f64::from(stream.next())).as_vec3()
     };
     all.push(("exact by rejection, f64", Method::Normal(sampler::each(exact))));
     let table = move |v: Vec3, u| bound.sample_visible_normal(v, u);
@@ -169,7 +172,7 @@ pub(crate) struct Approximation {
 /// Over θ by half degrees, for the shapes that the approximation was made for, at σ = [`SIGMA`].
 pub(crate) fn approximation(set: &Tables) -> Vec<Approximation> {
     let of_shape = |gamma: f64| {
-        let truth = StudentT::isotropic(SIGMA, gamma).expect("constants");
+        let truth = StudentT::new(SIGMA, gamma).expect("constants");
         let bound = set.student_t(SIGMA, gamma).expect("the general set covers all shapes");
         (1..180).map(move |i| {
             let degrees = 0.5 * f64::from(i);

@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use crate::clock;
+use crate::error::{self, Error};
 use crate::inputs::Inputs;
-use crate::judge::{self, Error};
 use crate::masking::{Evaluate, Masking, maskings};
 use crate::sampler::{Draw, Sampler, samplers};
 use crate::settings::Settings;
@@ -77,8 +77,8 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
         ns,
         bytes: sampler.bytes,
         stored: sampler.stored,
-        error: judge::sampler_error(sampler, &inputs),
-        variance: Some(judge::furnace_variance(sampler, &inputs, settings.views, settings.draws)),
+        error: error::sampler_error(sampler, &inputs),
+        variance: Some(error::furnace_variance(sampler, &inputs, settings.views, settings.draws)),
     };
     let of_masking = |(masking, &ns): (&Masking, &f64)| Row {
         quantity: Quantity::G1,
@@ -88,7 +88,7 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
         ns,
         bytes: masking.bytes,
         stored: masking.stored,
-        error: Some(judge::masking_error(&masking.evaluate, masking.gamma, &inputs)),
+        error: Some(error::masking_error(&masking.evaluate, masking.gamma, &inputs)),
         variance: None,
     };
     let (first, second) = times.split_at(samplers.len());

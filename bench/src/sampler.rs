@@ -6,7 +6,9 @@ use std::hint::black_box;
 
 use glam::{DVec3, Vec3};
 use microfacet_model as model;
-use microfacet_sampler::{StudentT, Table, Tables};
+use microfacet_model::MicrofacetDistribution as _;
+use microfacet_sampler::MicrofacetDistribution as _;
+use microfacet_sampler::{Ggx, StudentT, Table, Tables};
 
 use crate::inputs::Stream;
 use crate::rivals::bilinear::Bilinear;
@@ -113,13 +115,14 @@ pub(crate) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
 /// All of them, over the given tables.
 pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
     let sigma = SIGMA as f32;
-    let truth = model::StudentT::isotropic(SIGMA, GAMMA).expect("constants");
+    let truth = model::StudentT::new(SIGMA, GAMMA).expect("constants");
     let drawer = || Drawer::new(SIGMA);
     let (any, four) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA));
     let (exact, mixture, ndf) = (drawer(), drawer(), drawer());
-    let doubles =
-        move |v: Vec3, u: [f32; 2]| truth.visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3();
-    let closed = StudentT::ggx(SIGMA).expect("a constant");
+    let doubles = move |v: Vec3, u: [f32; 2]| {
+        truth.sample_visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3()
+    };
+    let closed = Ggx::new(SIGMA).expect("a constant");
     let caps: Exactly = ggx::double::caps;
     let mut all = vec![
         Sampler::new(

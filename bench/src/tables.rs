@@ -1,9 +1,9 @@
 //! Tables of several sizes and precisions, for one shape.
 
-use microfacet_bake::generate::{Target, bake};
 use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
-use microfacet_bake::spec::Quality;
+use microfacet_bake::table_set::{Target, bake};
+use microfacet_bake::table_spec::Quality;
 use microfacet_sampler::{Precision, Tables};
 
 use crate::settings::{GAMMA, SIGMA};

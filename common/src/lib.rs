@@ -10,11 +10,15 @@
 
 mod gauss_legendre;
 mod masking;
+mod roughness;
 pub mod schlick;
 pub mod shape;
+mod skew;
 
 pub use gauss_legendre::{fill_gauss_legendre, gauss_legendre};
 pub use masking::{Masking, UnknownMasking};
+pub use roughness::Roughness;
+pub use skew::{Skew, SkewError};
 
 use core::ops::{Add, Div, Mul, Sub};
 

@@ -1,8 +1,10 @@
 /// Loads a set with a checksum that fits whatever the bytes are, and uses what it holds.
 #[allow(dead_code)]
 fn load(bytes: &[u8]) {
+    use microfacet_sampler::MicrofacetDistribution;
+
     let mut bytes = bytes.to_vec();
-    microfacet_sampler::seal(&mut bytes);
+    microfacet_sampler::internals::seal(&mut bytes);
     let Ok(set) = microfacet_sampler::Tables::from_bytes(&bytes) else { return };
     for gamma in [1.501, 1.8, 2.0, 3.0, f64::INFINITY] {
         let Ok(material) = set.student_t(0.3_f32, gamma) else { continue };
@@ -14,12 +16,9 @@ fn load(bytes: &[u8]) {
     }
     for material in &set.provenance().materials {
         let v = glam::Vec3::new(0.6, 0.0, 0.8);
-        if let Ok(lobe) = set.radial(&material.name) {
+        if let Ok(lobe) = set.material(&material.name) {
             let m = lobe.sample_visible_normal(v, [0.3, 0.7]);
             let _ = (lobe.visible_normal_pdf(v, m), lobe.g1(m), lobe.d(m));
-        }
-        if let Ok(lobe) = set.material_ellipsoid(&material.name) {
-            let _ = lobe.visible_normal_pdf(v, lobe.sample_visible_normal(v, [0.3, 0.7]));
         }
     }
     albedos(&set);

@@ -7,7 +7,7 @@ use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
 use microfacet_guard::{CALLS, Inputs};
-use microfacet_sampler::StudentT;
+use microfacet_sampler::{Ggx, MicrofacetDistribution, StudentT};
 
 /// The baseline: instructions a call that this commit takes. A count 1 % above it fails, which is one instruction in the short paths.
 fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
@@ -25,11 +25,11 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(164.4))]
 #[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(434.9))]
-fn sample_visible_normal(inputs: Inputs) -> (Vec3, Inputs) {
+fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
         black_box(
-            calls.map(|(v, u)| black_box(inputs.material.sample_visible_normal(*v, *u))).sum(),
+            calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum(),
         ),
         inputs,
     )
@@ -37,60 +37,60 @@ fn sample_visible_normal(inputs: Inputs) -> (Vec3, Inputs) {
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(99.9))]
-fn sample_batch(mut inputs: Inputs) -> Inputs {
-    inputs.material.sample_batch(&inputs.v, &inputs.u, &mut inputs.m).expect("equal lengths");
+fn sample_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
+    inputs.lobe.sample_batch(&inputs.v, &inputs.u, &mut inputs.m).expect("equal lengths");
     black_box(inputs)
 }
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(37.1))]
 #[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(42.1))]
-fn g1(inputs: Inputs) -> (f32, Inputs) {
-    (black_box(inputs.v.iter().map(|v| black_box(inputs.material.g1(*v))).sum()), inputs)
+fn g1(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
+    (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
 }
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(23.6))]
-fn g1_batch(mut inputs: Inputs) -> Inputs {
-    inputs.material.g1_batch(&inputs.v, &mut inputs.g1).expect("equal lengths");
+fn g1_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
+    inputs.lobe.g1_batch(&inputs.v, &mut inputs.g1).expect("equal lengths");
     black_box(inputs)
 }
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(284.1))]
-fn visible_normal_pdf(inputs: Inputs) -> (f32, Inputs) {
+fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (
-        black_box(calls.map(|(v, m)| black_box(inputs.material.visible_normal_pdf(*v, *m))).sum()),
+        black_box(calls.map(|(v, m)| black_box(inputs.lobe.visible_normal_pdf(*v, *m))).sum()),
         inputs,
     )
 }
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(2404.4))]
-fn table_pdf(inputs: Inputs) -> (f32, Inputs) {
+fn table_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
-    (black_box(calls.map(|(v, m)| black_box(inputs.material.table_pdf(*v, *m))).sum()), inputs)
+    (black_box(calls.map(|(v, m)| black_box(inputs.lobe.table_pdf(*v, *m))).sum()), inputs)
 }
 
 /// GGX without tables.
-fn closed_form() -> Inputs {
-    Inputs::of(StudentT::ggx(microfacet_guard::SIGMA).expect("in range"))
+fn closed_form() -> Inputs<Ggx> {
+    Inputs::of(Ggx::new(microfacet_guard::SIGMA).expect("in range"))
 }
 
 #[library_benchmark]
 #[bench::closed_form(setup = closed_form, config = at_most(34.1))]
-fn ggx_g1(inputs: Inputs) -> (f32, Inputs) {
-    (black_box(inputs.v.iter().map(|v| black_box(inputs.material.g1(*v))).sum()), inputs)
+fn ggx_g1(inputs: Inputs<Ggx>) -> (f32, Inputs<Ggx>) {
+    (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
 }
 
 #[library_benchmark]
 #[bench::closed_form(setup = closed_form, config = at_most(192.8))]
-fn ggx_sample_visible_normal(inputs: Inputs) -> (Vec3, Inputs) {
+fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
         black_box(
-            calls.map(|(v, u)| black_box(inputs.material.sample_visible_normal(*v, *u))).sum(),
+            calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum(),
         ),
         inputs,
     )

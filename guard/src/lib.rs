@@ -1,7 +1,7 @@
 //! What the instruction counts of `benches/instructions.rs` are taken over.
 
 use glam::Vec3;
-use microfacet_sampler::{StudentT, Tables};
+use microfacet_sampler::{MicrofacetDistribution, StudentT, Tables};
 
 /// Calls of each function; a count over it is instructions a call.
 pub const CALLS: usize = 1000;
@@ -9,24 +9,26 @@ pub const CALLS: usize = 1000;
 /// Roughness of the material.
 pub const SIGMA: [f32; 2] = [0.3, 0.5];
 
-/// A bound material, views, pairs of numbers and the normals they give, the same on every machine; and room for G1 of the views.
-pub struct Inputs {
-    pub material: StudentT,
+/// A lobe, views, pairs of numbers and the normals they give, the same on every machine; and room for G1 of the views.
+pub struct Inputs<L> {
+    pub lobe: L,
     pub v: Vec<Vec3>,
     pub u: Vec<[f32; 2]>,
     pub m: Vec<Vec3>,
     pub g1: Vec<f32>,
 }
 
-impl Inputs {
+impl Inputs<StudentT> {
     /// Of the default tables at γ.
     pub fn new(gamma: f64) -> Self {
         Self::of(Tables::embedded().student_t(SIGMA, gamma).expect("covered by the default set"))
     }
+}
 
+impl<L: MicrofacetDistribution> Inputs<L> {
     /// Views and numbers from the golden ratio's like in higher dimensions (Roberts 2018); cosines of views even in (0, 1), their azimuths
     /// without trigonometry and therefore not even.
-    pub fn of(material: StudentT) -> Self {
+    pub fn of(lobe: L) -> Self {
         let at = |i: usize, step: f64| (i as f64 * step).fract() as f32;
         let views = (0..CALLS).map(|i| {
             let (z, t) =
@@ -37,7 +39,7 @@ impl Inputs {
         let numbers =
             (0..CALLS).map(|i| [at(i, 0.754_877_666_246_692_7), at(i, 0.569_840_290_998_053_3)]);
         let (v, u): (Vec<_>, Vec<_>) = (views.collect(), numbers.collect());
-        let m = v.iter().zip(&u).map(|(v, u)| material.sample_visible_normal(*v, *u)).collect();
-        Self { material, v, u, m, g1: vec![0.0; CALLS] }
+        let m = v.iter().zip(&u).map(|(v, u)| lobe.sample_visible_normal(*v, *u)).collect();
+        Self { lobe, v, u, m, g1: vec![0.0; CALLS] }
     }
 }

@@ -22,8 +22,8 @@ use microfacet_common::Masking;
 use crate::converge::{CUT, converge, rules};
 use crate::error::ParameterError;
 use crate::panels::{End, Gauss};
-use crate::reduced;
 use crate::shape::Shape;
+use crate::slope_integrals;
 use crate::smith_table::SmithTable;
 
 /// Slopes beyond e³⁴⁰ have no square.
@@ -223,7 +223,8 @@ impl AlbedoIntegrator {
         let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
         let (sin_phi, cos_phi) = libm::sincos(phi);
         let rho = sin * libm::hypot(sigma[0] * cos_phi, sigma[1] * sin_phi);
-        let excess = if rho == 0.0 { 0.0 } else { self.shape.excess(self.shape.unit(cos / rho)) };
+        let excess =
+            if rho == 0.0 { 0.0 } else { self.shape.excess(self.shape.asinh_slope(cos / rho)) };
         let area = cos + rho * excess;
         let [sx, sy] = sigma;
         let phi_0 = libm::atan2(sy * sin_phi, sx * cos_phi);
@@ -327,7 +328,7 @@ impl AlbedoIntegrator {
         let q = (b * b + a * view.cos * view.cos).sqrt();
         let s = self.shape.s();
         let rim = if b > 0.0 { view.cos / (b + q) } else { (q - b) / (a * view.cos) };
-        let w_rim = self.shape.unit(rim);
+        let w_rim = self.shape.asinh_slope(rim);
         let end = if w_rim <= self.cut {
             // l_z falls by 2q/(1 + ar²) a unit of slope, to the height √a at which masking sets in and to zero.
             let layer = a.sqrt() * (1.0 + a * rim * rim) / (2.0 * q * (1.0 + s * rim * rim).sqrt());
@@ -367,7 +368,7 @@ impl AlbedoIntegrator {
             }
         };
         let aside = cone(view.r_normal * libm::fabs(libm::sin(phi - view.phi_normal)));
-        let w_normal = self.shape.unit(view.r_normal);
+        let w_normal = self.shape.asinh_slope(view.r_normal);
         let kinks = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
         if !kinks.is_empty() {
             let plain = |at: f64| End { at, scale: f64::INFINITY };
@@ -455,7 +456,7 @@ impl AlbedoIntegrator {
         let facing = |r: &f64| *r > 0.0 && r.is_finite() && cos - r * b > 0.0;
         let roots = [sum / p, rest / sum].into_iter().filter(facing);
         let mut ends: Vec<End> = roots
-            .map(|r| End { at: self.shape.unit(r), scale })
+            .map(|r| End { at: self.shape.asinh_slope(r), scale })
             .filter(|end| end.at > 0.0 && end.at < last)
             .collect();
         ends.sort_by(|x, y| x.at.total_cmp(&y.at));
@@ -469,7 +470,8 @@ impl AlbedoIntegrator {
         }
         let root = self.shape.s().sqrt();
         let r = libm::sinh(root * w) / root;
-        let power = libm::exp(-(2.0 * self.shape.gamma() - 1.0) * reduced::ln_cosh(root * w));
+        let power =
+            libm::exp(-(2.0 * self.shape.gamma() - 1.0) * slope_integrals::ln_cosh(root * w));
         (r, r * power)
     }
 }

@@ -6,20 +6,21 @@
 //! or a root found to rounding, and uses the `libm` crate, so that results are the same bits on every system.
 
 mod albedo;
-mod below;
+mod below_horizon;
 pub mod classic;
 mod converge;
+mod distribution;
 mod ellipsoid;
 mod error;
-mod exact;
 pub mod fresnel;
 mod lune;
 mod ndf;
 mod panels;
 mod paper;
 mod quadrature;
-mod reduced;
+mod rejection;
 mod shape;
+mod slope_integrals;
 mod smith_table;
 #[cfg(feature = "statistics")]
 pub mod statistics;
@@ -29,13 +30,14 @@ mod visible;
 mod walk;
 
 pub use albedo::{Albedo, AlbedoIntegrator};
+pub use distribution::MicrofacetDistribution;
 pub use ellipsoid::{Ellipsoid, EllipsoidError};
 pub use error::ParameterError;
 pub use lune::Lune;
-pub use microfacet_common::Masking;
-pub use shape::{Shape, Unit};
+pub use microfacet_common::{Masking, Roughness, Skew, SkewError};
+pub use shape::{AsinhSlope, Shape};
 pub use student_t::StudentT;
-pub use visible::{SignedUnit, UnitView, VisibleSlope, across_cdf, across_quantile};
+pub use visible::{SignedSlope, UnitView, VisibleSlope, across_cdf, across_quantile};
 
 /// The formulas as the paper prints them, for comparison only; see each for where it fails.
 pub mod printed {

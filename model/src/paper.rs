@@ -120,7 +120,7 @@ mod tests {
 
     fn exact(gamma: f64, z: f64) -> f64 {
         let shape = Shape::new(gamma).unwrap();
-        shape.lambda(shape.unit(z))
+        shape.lambda(shape.asinh_slope(z))
     }
 
     #[test]

@@ -5,7 +5,7 @@ use core::f64::consts::{FRAC_2_SQRT_PI, PI};
 use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 
 use crate::error::ParameterError;
-use crate::reduced;
+use crate::slope_integrals;
 
 /// Above this γ the Beckmann limit is used: the two differ by O(1/γ), below the rounding of a double.
 const BECKMANN_FROM: f64 = 1e16;
@@ -20,7 +20,7 @@ const BECKMANN_FROM: f64 = 1e16;
 /// ```
 ///
 /// which for s = 0 is exp(−x²)/√π (mathematically eq. 11 of Ribardière et al. 2017 integrated over one slope).
-/// Everything Smith's model needs is one of its integrals. The slope enters as [`Unit`], which survives tails that no
+/// Everything Smith's model needs is one of its integrals. The slope enters as [`AsinhSlope`], which survives tails that no
 /// floating-point slope can reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
@@ -38,7 +38,7 @@ pub struct Shape {
 /// A unit slope x ≥ 0 written as w with x = sinh(√s w)/√s (x = w for Beckmann).
 ///
 /// w is finite wherever a probability is: near γ = 3/2 slopes of 10³⁰⁰ are not rare.
-pub type Unit = f64;
+pub type AsinhSlope = f64;
 
 impl Shape {
     /// The shape γ; γ = ∞ is Beckmann.
@@ -59,8 +59,8 @@ impl Shape {
             s,
             sqrt_s: s.sqrt(),
             k,
-            c: reduced::norm(k),
-            c_across: reduced::norm(k + 0.5),
+            c: slope_integrals::norm(k),
+            c_across: slope_integrals::norm(k + 0.5),
         })
     }
 
@@ -91,36 +91,36 @@ impl Shape {
     }
 
     /// w of a unit slope x ≥ 0 (∞ for ∞).
-    pub fn unit(&self, x: f64) -> Unit {
+    pub fn asinh_slope(&self, x: f64) -> AsinhSlope {
         if self.is_beckmann() { x } else { libm::asinh(self.sqrt_s * x) / self.sqrt_s }
     }
 
     /// The unit slope x of w; overflows to ∞ where the slope does.
-    pub fn slope(&self, w: Unit) -> f64 {
+    pub fn slope(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() { w } else { libm::sinh(self.sqrt_s * w) / self.sqrt_s }
     }
 
     /// (sin, cos) of the angle of the unit slope x(w), kept accurate for slopes that overflow.
-    pub fn unit_sin_cos(&self, w: Unit) -> (f64, f64) {
+    pub fn unit_sin_cos(&self, w: AsinhSlope) -> (f64, f64) {
         if self.is_beckmann() {
             let r = 1.0 / (1.0 + w * w).sqrt();
             return if w.is_infinite() { (1.0, 0.0) } else { (w * r, r) };
         }
         // In the lobe's space sin α = tanh v, cos α = 1/cosh v; the unit space is stretched by √s.
         let v = self.sqrt_s * w;
-        let (sin, cos) = (libm::tanh(v) / self.sqrt_s, libm::exp(-reduced::ln_cosh(v)));
+        let (sin, cos) = (libm::tanh(v) / self.sqrt_s, libm::exp(-slope_integrals::ln_cosh(v)));
         let r = 1.0 / (sin * sin + cos * cos).sqrt();
         (sin * r, cos * r)
     }
 
     /// ln(1 + s x²) = 2 ln cosh(√s w).
-    fn ln_kernel(&self, w: Unit) -> f64 {
-        2.0 * reduced::ln_cosh(self.sqrt_s * w)
+    fn ln_kernel(&self, w: AsinhSlope) -> f64 {
+        2.0 * slope_integrals::ln_cosh(self.sqrt_s * w)
     }
 
     /// Normal distribution function of unit roughness at a normal ∝ (x, y, z), r² = x² + y², z > 0, |(x, y, z)| not necessarily 1:
     /// (1 + s r²/z²)^(−γ) / (π z⁴).
-    pub(crate) fn unit_d(&self, r2: f64, z2: f64) -> f64 {
+    pub(crate) fn d_in_unit_space(&self, r2: f64, z2: f64) -> f64 {
         let log = if self.is_beckmann() {
             -r2 / z2 - 2.0 * libm::log(z2)
         } else if self.s * r2 > z2 {
@@ -133,7 +133,7 @@ impl Shape {
     }
 
     /// Marginal density p(x) of the in-plane unit slope times dx/dw: the density with respect to w.
-    pub fn density(&self, w: Unit) -> f64 {
+    pub fn density(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             return 0.5 * FRAC_2_SQRT_PI * libm::exp(-w * w);
         }
@@ -141,16 +141,16 @@ impl Shape {
     }
 
     /// Upper tail Q(x) = P(X > x) of the in-plane unit slope for x ≥ 0.
-    pub fn tail(&self, w: Unit) -> f64 {
+    pub fn tail(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             0.5 * libm::erfc(w)
         } else {
-            reduced::tail(self.k, self.c, self.sqrt_s * w)
+            slope_integrals::tail(self.k, self.c, self.sqrt_s * w)
         }
     }
 
     /// First moment beyond x ≥ 0: ∫ₓ^∞ ξ p(ξ) dξ = M₀ (1 + s x²)^(−k), in closed form.
-    pub fn first_moment(&self, w: Unit) -> f64 {
+    pub fn first_moment(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             return 0.25 * FRAC_2_SQRT_PI * libm::exp(-w * w);
         }
@@ -158,7 +158,7 @@ impl Shape {
     }
 
     /// x p(x) dx/dw for x ≥ 0: minus the derivative of [`first_moment`](Self::first_moment), finite where x overflows.
-    pub fn first_moment_density(&self, w: Unit) -> f64 {
+    pub fn first_moment_density(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             return w * self.density(w);
         }
@@ -169,14 +169,14 @@ impl Shape {
     ///
     /// `w` is `unit(z)`. Λ = E[(X − z)⁺]/z; ∞ at z = 0 and 0 at z = ∞. Relative accuracy 1e-12 wherever Λ is a normal
     /// number (measured 8e-16 against 200-digit values where no power is large).
-    pub fn lambda(&self, w: Unit) -> f64 {
+    pub fn lambda(&self, w: AsinhSlope) -> f64 {
         if w == 0.0 {
             return f64::INFINITY;
         }
         if self.is_beckmann() {
             return self.beckmann_lambda(w);
         }
-        reduced::lambda(self.k, self.c, self.sqrt_s * w)
+        slope_integrals::lambda(self.k, self.c, self.sqrt_s * w)
     }
 
     /// (exp(−z²)/(z√π) − erfc z)/2. It cancels to one part in 2z² for large z, where Λ itself is exp(−z²): at
@@ -189,7 +189,7 @@ impl Shape {
     }
 
     /// Mean positive part above z: E[(X − z)⁺] = z Λ(z), finite down to z = 0.
-    pub fn excess(&self, w: Unit) -> f64 {
+    pub fn excess(&self, w: AsinhSlope) -> f64 {
         if w == 0.0 {
             return self.first_moment(0.0);
         }
@@ -198,16 +198,16 @@ impl Shape {
     }
 
     /// Upper tail of the slope across the plane, in units of √(1 + s x²): t with density ∝ (1 + s t²)^(−γ), t ≥ 0.
-    pub fn across_tail(&self, w: Unit) -> f64 {
+    pub fn across_tail(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             0.5 * libm::erfc(w)
         } else {
-            reduced::tail(self.k + 0.5, self.c_across, self.sqrt_s * w)
+            slope_integrals::tail(self.k + 0.5, self.c_across, self.sqrt_s * w)
         }
     }
 
     /// Density of that t with respect to w.
-    pub fn across_density(&self, w: Unit) -> f64 {
+    pub fn across_density(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             return 0.5 * FRAC_2_SQRT_PI * libm::exp(-w * w);
         }
@@ -238,10 +238,10 @@ mod tests {
         let (near, limit) = (Shape::new(1e9).unwrap(), Shape::new(f64::INFINITY).unwrap());
         for x in [0.0, 0.1, 0.9, 1.1, 2.0, 4.0] {
             let pairs = [
-                (near.density(near.unit(x)), limit.density(x)),
-                (near.tail(near.unit(x)), limit.tail(x)),
-                (near.first_moment(near.unit(x)), limit.first_moment(x)),
-                (near.excess(near.unit(x)), limit.excess(x)),
+                (near.density(near.asinh_slope(x)), limit.density(x)),
+                (near.tail(near.asinh_slope(x)), limit.tail(x)),
+                (near.first_moment(near.asinh_slope(x)), limit.first_moment(x)),
+                (near.excess(near.asinh_slope(x)), limit.excess(x)),
             ];
             for (a, b) in pairs {
                 assert!((a / b - 1.0).abs() < 1e-6, "x = {x}: {a} against {b}");
@@ -254,7 +254,7 @@ mod tests {
         let ggx = Shape::new(2.0).unwrap();
         for z in [1e-8, 1e-3, 0.3, 1.0, 3.0, 1e3] {
             let want = 0.5 * (libm::sqrt(1.0 + 1.0 / (z * z)) - 1.0);
-            let got = ggx.lambda(ggx.unit(z));
+            let got = ggx.lambda(ggx.asinh_slope(z));
             assert!((got - want).abs() < 1e-15 + 2e-15 * want, "z = {z}: {got} against {want}");
         }
     }

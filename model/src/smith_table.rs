@@ -23,7 +23,7 @@ pub(crate) struct SmithTable {
 
 impl SmithTable {
     pub(crate) fn new(shape: &Shape) -> Self {
-        Self::from_excess(|z| shape.excess(shape.unit(z)), 1e-13)
+        Self::from_excess(|z| shape.excess(shape.asinh_slope(z)), 1e-13)
     }
 
     /// The same from E[(X − z)⁺] = z Λ(z) of any symmetric distribution of unit slopes; from where Λ falls below `unmasked` on, G1 is 1.
@@ -126,7 +126,7 @@ mod tests {
             let table = SmithTable::new(&shape);
             for i in 0..4000 {
                 let z = libm::exp2(f64::from(i) * 0.012345 - 20.0);
-                let want = 1.0 / (1.0 + shape.lambda(shape.unit(z)));
+                let want = 1.0 / (1.0 + shape.lambda(shape.asinh_slope(z)));
                 let got = table.g1(z, 1.0);
                 worst = worst.max((got - want).abs());
                 assert!((got - want).abs() < 2e-13, "gamma {gamma}, z {z}: {got} against {want}");

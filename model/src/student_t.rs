@@ -3,21 +3,24 @@
 use core::f64::consts::PI;
 
 use glam::DVec3;
-use microfacet_common::Masking;
+use microfacet_common::Roughness;
 
+use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::shape::Shape;
-use crate::visible::{self, SignedUnit, UnitView, VisibleSlope};
+use crate::visible::{self, SignedSlope, UnitView, VisibleSlope};
 
-/// Student-t microfacet normals (Ribardière et al. 2017).
+/// Student-t microfacet normals (Ribardière, Bringier, Meneveaux, Simonot 2017, *STD: Student's
+/// t-Distribution of Slopes for Microfacet Based BSDFs*, <https://doi.org/10.1111/cgf.13137>, whose
+/// equations are meant below).
 ///
 /// Directions are unit vectors in the tangent frame (macro normal n = +z, x and y along the principal roughness axes);
 /// angles are in radians, slopes dimensionless. γ = 2 is GGX with α = σ, γ = ∞ is Beckmann with α = σ.
 ///
 /// ```
 /// use glam::DVec3;
-/// use microfacet_model::StudentT;
-/// let gold = StudentT::isotropic(0.3, 4.0)?;
+/// use microfacet_model::{MicrofacetDistribution, StudentT};
+/// let gold = StudentT::new(0.3, 4.0)?;
 /// let v = DVec3::new(0.8, 0.0, 0.6);
 /// assert!(gold.g1(v) < 1.0 && gold.g1(v) > 0.98);
 /// # Ok::<(), microfacet_model::ParameterError>(())
@@ -38,24 +41,16 @@ pub(crate) struct Stretched {
 }
 
 impl StudentT {
-    /// Equal roughness σ > 0 along both axes.
+    /// Roughness σ, a number or a pair for x and y, and shape γ.
     ///
     /// # Errors
-    /// [`ParameterError`] unless 0 < σ < ∞ and γ > 3/2.
-    pub fn isotropic(sigma: f64, gamma: f64) -> Result<Self, ParameterError> {
-        Self::anisotropic(sigma, sigma, gamma)
-    }
-
-    /// Roughness σx along x and σy along y.
-    ///
-    /// # Errors
-    /// [`ParameterError`] unless both lie in (0, ∞) and γ > 3/2.
-    pub fn anisotropic(sigma_x: f64, sigma_y: f64, gamma: f64) -> Result<Self, ParameterError> {
-        for sigma in [sigma_x, sigma_y] {
-            if !(sigma > 0.0 && sigma < f64::INFINITY) {
-                return Err(ParameterError::Sigma(sigma));
-            }
+    /// [`ParameterError`] unless every σ lies in (0, ∞) and γ > 3/2.
+    pub fn new(sigma: impl Into<Roughness>, gamma: f64) -> Result<Self, ParameterError> {
+        let Roughness(sigma) = sigma.into();
+        if let Some(sigma) = sigma.into_iter().find(|x| !(*x > 0.0 && *x < f64::INFINITY)) {
+            return Err(ParameterError::Sigma(sigma));
         }
+        let [sigma_x, sigma_y] = sigma;
         Ok(Self { sigma_x, sigma_y, shape: Shape::new(gamma)? })
     }
 
@@ -64,7 +59,7 @@ impl StudentT {
     /// # Errors
     /// [`ParameterError::Sigma`] unless 0 < α < ∞.
     pub fn ggx(alpha: f64) -> Result<Self, ParameterError> {
-        Self::isotropic(alpha, 2.0)
+        Self::new(alpha, 2.0)
     }
 
     /// Beckmann with roughness α: γ = ∞, σ = α.
@@ -72,7 +67,7 @@ impl StudentT {
     /// # Errors
     /// [`ParameterError::Sigma`] unless 0 < α < ∞.
     pub fn beckmann(alpha: f64) -> Result<Self, ParameterError> {
-        Self::isotropic(alpha, f64::INFINITY)
+        Self::new(alpha, f64::INFINITY)
     }
 
     /// Blinn–Phong with exponent N, D = (N+2)/(2π) cosᴺθ: γ = (N+4)/2 and σ = √(2/(N+2)), an identity and not a fit.
@@ -83,7 +78,7 @@ impl StudentT {
         if !(0.0..f64::INFINITY).contains(&exponent) {
             return Err(ParameterError::Exponent(exponent));
         }
-        Self::isotropic((2.0 / (exponent + 2.0)).sqrt(), 0.5 * (exponent + 4.0))
+        Self::new((2.0 / (exponent + 2.0)).sqrt(), 0.5 * (exponent + 4.0))
     }
 
     /// Hyper-Cauchy with D ∝ (1 + tan²θ/σ₀²)^(−γ)/cos⁴θ: σ = σ₀/√(γ−1).
@@ -94,7 +89,7 @@ impl StudentT {
         if !(gamma > 1.5 && gamma < f64::INFINITY) {
             return Err(ParameterError::Gamma(gamma));
         }
-        Self::isotropic(sigma_0 / (gamma - 1.0).sqrt(), gamma)
+        Self::new(sigma_0 / (gamma - 1.0).sqrt(), gamma)
     }
 
     /// σx.
@@ -110,18 +105,6 @@ impl StudentT {
     /// The shape γ and its slope marginal.
     pub fn shape(&self) -> &Shape {
         &self.shape
-    }
-
-    /// Normal distribution function D(m) per steradian, ∫ D(m) (m·n) dm = 1 (eq. 18 with 11); 0 for m·n ≤ 0.
-    ///
-    /// For γ < 2 it grows without bound towards the horizon, as cos^(2γ−4).
-    pub fn d(&self, m: DVec3) -> f64 {
-        if !(m.z > 0.0) {
-            return 0.0;
-        }
-        let (x, y) = (m.x / self.sigma_x, m.y / self.sigma_y);
-        let (r2, z2) = (x * x + y * y, m.z * m.z);
-        self.shape.unit_d(r2, z2) / (self.sigma_x * self.sigma_y)
     }
 
     /// Density of slopes P22(x̃, ỹ), ∫∫ P22 = 1 (eq. 11). The slopes of m are (−m_x/m_z, −m_y/m_z).
@@ -144,38 +127,6 @@ impl StudentT {
         Stretched { view: UnitView::from_cotangent(w.z / length), cos_phi, sin_phi }
     }
 
-    /// Smith's Λ(w) for w above the horizon (eq. 13–15 in a well-conditioned form); 0 at normal incidence, ∞ at and below
-    /// the horizon.
-    pub fn lambda(&self, w: DVec3) -> f64 {
-        if !(w.z > 0.0) {
-            return f64::INFINITY;
-        }
-        let z = w.z / libm::hypot(self.sigma_x * w.x, self.sigma_y * w.y);
-        if z.is_infinite() { 0.0 } else { self.shape.lambda(self.shape.unit(z)) }
-    }
-
-    /// Smith masking G1(w) = 1/(1 + Λ(w)) ∈ [0, 1]; 0 at and below the horizon.
-    pub fn g1(&self, w: DVec3) -> f64 {
-        1.0 / (1.0 + self.lambda(w))
-    }
-
-    /// Masking and shadowing of a pair of directions; 0 when either is at or below the horizon.
-    pub fn g2(&self, v: DVec3, l: DVec3, masking: Masking) -> f64 {
-        masking.g2(self.g1(v), self.g1(l))
-    }
-
-    /// Density of visible normals, G1(v) (v·m)⁺ D(m) / (v·n), per steradian (Heitz & d'Eon 2014, eq. 2).
-    ///
-    /// 0 for views at or below the horizon and for normals facing away.
-    pub fn visible_normal_pdf(&self, v: DVec3, m: DVec3) -> f64 {
-        let facing = v.dot(m);
-        // Decided first, for D may be infinite on the horizon.
-        if !(v.z > 0.0 && facing > 0.0) {
-            return 0.0;
-        }
-        facing * self.d(m) * self.inverse_area(v)
-    }
-
     /// G1(v)/(v·n): one over the projected area of the microsurface towards `v`, finite at grazing where both vanish.
     ///
     /// The density of visible normals is (v·m)⁺ D(m) times this, so it need not be evaluated again for every m.
@@ -191,17 +142,8 @@ impl StudentT {
         (view, [cos_phi, sin_phi])
     }
 
-    /// The visible normal at random numbers u₁ (in the plane of incidence, rising from away from the viewer to towards it)
-    /// and u₂ (across it), by inverting both CDFs: the map that tables approximate. Views below the horizon are taken at it.
-    pub fn visible_normal(&self, v: DVec3, u: [f64; 2]) -> DVec3 {
-        let stretched = self.stretch(DVec3::new(v.x, v.y, v.z.max(0.0)));
-        let x = VisibleSlope::new(&self.shape, stretched.view).quantile(u[0]);
-        let t = visible::across_quantile(&self.shape, u[1]);
-        self.assemble(&stretched, x, t)
-    }
-
     /// Builds the world normal from the unit slopes x (towards the viewer) and t = y/√(1 + s x²).
-    pub(crate) fn assemble(&self, at: &Stretched, x: SignedUnit, t: SignedUnit) -> DVec3 {
+    pub(crate) fn assemble(&self, at: &Stretched, x: SignedSlope, t: SignedSlope) -> DVec3 {
         let DVec3 { x, y, z } = visible::unit_normal(&self.shape, x, t);
         DVec3::new(
             self.sigma_x * (x * at.cos_phi - y * at.sin_phi),
@@ -209,5 +151,42 @@ impl StudentT {
             z,
         )
         .normalize()
+    }
+}
+
+impl MicrofacetDistribution for StudentT {
+    /// Eq. 18 with 11. For γ < 2 it grows without bound towards the horizon, as cos^(2γ−4).
+    fn d(&self, m: DVec3) -> f64 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        let (x, y) = (m.x / self.sigma_x, m.y / self.sigma_y);
+        let (r2, z2) = (x * x + y * y, m.z * m.z);
+        self.shape.d_in_unit_space(r2, z2) / (self.sigma_x * self.sigma_y)
+    }
+
+    /// Eq. 13–15 in a well-conditioned form.
+    fn lambda(&self, v: DVec3) -> f64 {
+        if !(v.z > 0.0) {
+            return f64::INFINITY;
+        }
+        let z = v.z / libm::hypot(self.sigma_x * v.x, self.sigma_y * v.y);
+        if z.is_infinite() { 0.0 } else { self.shape.lambda(self.shape.asinh_slope(z)) }
+    }
+
+    fn sample_visible_normal(&self, v: DVec3, u: [f64; 2]) -> DVec3 {
+        let stretched = self.stretch(DVec3::new(v.x, v.y, v.z.max(0.0)));
+        let x = VisibleSlope::new(&self.shape, stretched.view).quantile(u[0]);
+        let t = visible::across_quantile(&self.shape, u[1]);
+        self.assemble(&stretched, x, t)
+    }
+
+    fn visible_normal_pdf(&self, v: DVec3, m: DVec3) -> f64 {
+        let facing = v.dot(m);
+        // Decided first, for D may be infinite on the horizon.
+        if !(v.z > 0.0 && facing > 0.0) {
+            return 0.0;
+        }
+        facing * self.d(m) * self.inverse_area(v)
     }
 }

@@ -123,7 +123,8 @@ impl Pane<'_> {
         let b = self.sigma * self.sin * libm::cos(phi);
         let s = self.model.shape().s();
         // From where m turns its back, if anywhere.
-        let rim = if b > 0.0 { self.model.shape().unit(self.cos / b) } else { f64::INFINITY };
+        let rim =
+            if b > 0.0 { self.model.shape().asinh_slope(self.cos / b) } else { f64::INFINITY };
         let scale = if rim < self.model.cut && self.eta > 1.0 {
             // cos θ_t turns within v·m of √(η²−1).
             let across = ((self.eta - 1.0) * (self.eta + 1.0)).sqrt();
@@ -138,7 +139,7 @@ impl Pane<'_> {
         if let Some(normal) = self.branch() {
             let r = libm::fabs(normal);
             let aside = r * libm::fabs(libm::sin(phi)) / (1.0 + s * r * r).sqrt();
-            let at = self.model.shape().unit(r);
+            let at = self.model.shape().asinh_slope(r);
             if b * normal > 0.0 && aside < 0.5 && at < end.at {
                 stops.push(End { at, scale: aside.max(0.01) });
                 stops.sort_by(|x, y| x.at.total_cmp(&y.at));
@@ -199,7 +200,7 @@ impl Pane<'_> {
         if b < 0.0 && outside > 0.0 && root >= 0.0 && self.cos > 0.0 {
             // The nearer of the ray's meetings with the circle; there l grazes, and masking sets in within σ of it.
             let r = outside / (self.cos * (root.sqrt() - b));
-            let w = self.model.shape().unit(r);
+            let w = self.model.shape().asinh_slope(r);
             let depth = |r: f64| {
                 let length = (1.0 + a * r * r).sqrt();
                 let mu = (self.cos - r * b) / length;

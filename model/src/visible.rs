@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use crate::quadrature;
-use crate::shape::{Shape, Unit};
+use crate::shape::{AsinhSlope, Shape};
 
 /// The elevation of a view in unit space, as a unit vector (sin θ, cos θ) in the plane of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,9 +44,9 @@ impl UnitView {
 
 /// A unit slope with its sign: x = ±slope(w).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SignedUnit {
-    /// Magnitude, see [`Unit`].
-    pub w: Unit,
+pub struct SignedSlope {
+    /// Magnitude, see [`AsinhSlope`].
+    pub w: AsinhSlope,
     /// −1.0 (away from the viewer) or 1.0 (towards).
     pub sign: f64,
 }
@@ -59,7 +59,7 @@ pub struct VisibleSlope<'a> {
     /// Weights of p(x) and x p(x) for slopes towards the viewer; (cos θ, sin θ) unless peeled.
     towards: (f64, f64),
     /// w of the silhouette x = −cot θ (∞ at normal incidence).
-    w_silhouette: Unit,
+    w_silhouette: AsinhSlope,
     /// E[(X − z)⁺] at the silhouette.
     excess: f64,
     /// Projected area cos θ (1 + Λ) = ∫ (cos θ + x sin θ)⁺ p(x) dx in unit space.
@@ -69,7 +69,7 @@ pub struct VisibleSlope<'a> {
 impl<'a> VisibleSlope<'a> {
     /// Prepares the distribution; costs one evaluation of Λ.
     pub fn new(shape: &'a Shape, view: UnitView) -> Self {
-        let w_silhouette = shape.unit(view.cotangent());
+        let w_silhouette = shape.asinh_slope(view.cotangent());
         let excess = shape.excess(w_silhouette);
         let area = view.cos + view.sin * excess;
         Self { shape, view, towards: (view.cos, view.sin), w_silhouette, excess, area }
@@ -94,12 +94,12 @@ impl<'a> VisibleSlope<'a> {
     }
 
     /// Mass of slopes above x ≥ 0, not normalised.
-    fn upper(&self, w: Unit) -> f64 {
+    fn upper(&self, w: AsinhSlope) -> f64 {
         self.towards.0 * self.shape.tail(w) + self.towards.1 * self.shape.first_moment(w)
     }
 
     /// Mass of slopes between the silhouette and −q ≤ 0, not normalised.
-    fn lower(&self, w: Unit) -> f64 {
+    fn lower(&self, w: AsinhSlope) -> f64 {
         if w >= self.w_silhouette {
             return 0.0;
         }
@@ -118,12 +118,12 @@ impl<'a> VisibleSlope<'a> {
 
     /// Near the silhouette the closed form subtracts nearly equal areas, while the integrand is positive and, over a gap
     /// of a fraction of its own scale, a polynomial to all digits.
-    fn lower_by_quadrature(&self, w: Unit, gap: f64) -> f64 {
+    fn lower_by_quadrature(&self, w: AsinhSlope, gap: f64) -> f64 {
         quadrature::panel(w, w + gap, |w| self.facing(w) * self.shape.density(w))
     }
 
     /// cos θ − q sin θ for a slope −q between the silhouette and 0, without cancellation near the silhouette.
-    fn facing(&self, w: Unit) -> f64 {
+    fn facing(&self, w: AsinhSlope) -> f64 {
         if self.shape.is_beckmann() {
             return self.view.sin * (self.w_silhouette - w);
         }
@@ -134,19 +134,19 @@ impl<'a> VisibleSlope<'a> {
     }
 
     /// CDF of the in-plane slope: the probability of slopes below (further from the viewer than) `x`.
-    pub fn cdf(&self, x: SignedUnit) -> f64 {
+    pub fn cdf(&self, x: SignedSlope) -> f64 {
         let share = if x.sign < 0.0 { self.lower(x.w) } else { self.area - self.upper(x.w) };
         (share / self.area).clamp(0.0, 1.0)
     }
 
     /// 1 − CDF, accurate where the CDF is close to 1.
-    pub fn complement(&self, x: SignedUnit) -> f64 {
+    pub fn complement(&self, x: SignedSlope) -> f64 {
         let share = if x.sign < 0.0 { self.area - self.lower(x.w) } else { self.upper(x.w) };
         (share / self.area).clamp(0.0, 1.0)
     }
 
     /// Density of the CDF with respect to w at a slope of either sign.
-    pub fn density(&self, x: SignedUnit) -> f64 {
+    pub fn density(&self, x: SignedSlope) -> f64 {
         let facing = if x.sign < 0.0 {
             if x.w >= self.w_silhouette { 0.0 } else { self.facing_density(x.w) }
         } else {
@@ -160,7 +160,7 @@ impl<'a> VisibleSlope<'a> {
     ///
     /// u = 0 gives the silhouette, u = 1 an infinite slope (the horizon on the viewer's side). Solved by safeguarded Newton
     /// steps on the logarithm of the smaller side; the angle is right to about 1e-15.
-    pub fn quantile(&self, u: f64) -> SignedUnit {
+    pub fn quantile(&self, u: f64) -> SignedSlope {
         let above_zero = self.upper(0.0);
         let below_zero = self.area - above_zero;
         if u * self.area < below_zero {
@@ -172,19 +172,19 @@ impl<'a> VisibleSlope<'a> {
                     (self.lower(w), self.facing_density(w))
                 })
             };
-            return SignedUnit { w, sign: -1.0 };
+            return SignedSlope { w, sign: -1.0 };
         }
         let target = (1.0 - u) * self.area;
         let w = if target <= 0.0 {
             f64::INFINITY
         } else {
-            let slope = |w| self.density(SignedUnit { w, sign: 1.0 }) * self.area;
+            let slope = |w| self.density(SignedSlope { w, sign: 1.0 }) * self.area;
             solve_decreasing(target, 0.0, f64::INFINITY, |w| (self.upper(w), slope(w)))
         };
-        SignedUnit { w, sign: 1.0 }
+        SignedSlope { w, sign: 1.0 }
     }
 
-    fn facing_density(&self, w: Unit) -> f64 {
+    fn facing_density(&self, w: AsinhSlope) -> f64 {
         if self.view.sin == 0.0 {
             return self.view.cos * self.shape.density(w);
         }
@@ -193,7 +193,7 @@ impl<'a> VisibleSlope<'a> {
 }
 
 /// The unnormalised normal in unit space of the in-plane slope x and the slope across t = y/√(1 + s x²); no slope is ever formed.
-pub(crate) fn unit_normal(shape: &Shape, x: SignedUnit, t: SignedUnit) -> DVec3 {
+pub(crate) fn unit_normal(shape: &Shape, x: SignedSlope, t: SignedSlope) -> DVec3 {
     let (sin_x, cos_x) = shape.unit_sin_cos(x.w);
     let (sin_t, cos_t) = shape.unit_sin_cos(t.w);
     let side = x.sign;
@@ -206,7 +206,7 @@ pub(crate) fn unit_normal(shape: &Shape, x: SignedUnit, t: SignedUnit) -> DVec3 
 }
 
 /// Inverse CDF of the slope across the plane (in units of √(1 + s x²)): odd about u = ½, ±∞ at u = 0 and 1.
-pub fn across_quantile(shape: &Shape, u: f64) -> SignedUnit {
+pub fn across_quantile(shape: &Shape, u: f64) -> SignedSlope {
     let (target, sign) = if u < 0.5 { (u, -1.0) } else { (1.0 - u, 1.0) };
     let w = if target <= 0.0 {
         f64::INFINITY
@@ -215,11 +215,11 @@ pub fn across_quantile(shape: &Shape, u: f64) -> SignedUnit {
             (shape.across_tail(w), shape.across_density(w))
         })
     };
-    SignedUnit { w, sign }
+    SignedSlope { w, sign }
 }
 
 /// CDF of the slope across the plane.
-pub fn across_cdf(shape: &Shape, t: SignedUnit) -> f64 {
+pub fn across_cdf(shape: &Shape, t: SignedSlope) -> f64 {
     let tail = shape.across_tail(t.w);
     if t.sign < 0.0 { tail } else { 1.0 - tail }
 }

@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use crate::distribution::MicrofacetDistribution;
 use crate::student_t::StudentT;
 
 impl StudentT {
@@ -37,7 +38,7 @@ impl StudentT {
                 // Λ(w) = −1 − Λ(−w) downwards: the ray meets the surface for certain.
                 below *= libm::pow(u, 1.0 / (1.0 + self.lambda(-w)));
             }
-            let m = self.sample_visible_exact(-w, uniform);
+            let m = self.sample_visible_by_rejection(-w, uniform);
             w = (2.0 * w.dot(m) * -m + w).normalize();
         }
         None
@@ -56,7 +57,7 @@ mod tests {
         for (sigma, gamma, cos) in
             [(0.5, 2.0, 0.9), (1.5, 3.0, 0.3), (0.8, f64::INFINITY, 0.05), (0.4, 1.7, 0.6)]
         {
-            let material = StudentT::isotropic(sigma, gamma).unwrap();
+            let material = StudentT::new(sigma, gamma).unwrap();
             let v = DVec3::new(f64::sqrt(1.0 - cos * cos), 0.0, cos);
             let integrator = AlbedoIntegrator::new(*material.shape(), 1e-6);
             let e =

@@ -4,7 +4,9 @@ use core::f64::consts::PI;
 
 use glam::DVec3;
 use microfacet_model::fresnel::{self, Dielectric, schlick_weight};
-use microfacet_model::{AlbedoIntegrator, Masking, ParameterError, Shape, StudentT};
+use microfacet_model::{
+    AlbedoIntegrator, Masking, MicrofacetDistribution, ParameterError, Shape, StudentT,
+};
 
 /// The rows of a data file as text, header dropped; see `reference.rs` for the folder.
 fn rows(name: &str) -> Vec<Vec<String>> {
@@ -99,7 +101,7 @@ fn albedo_is_the_integral_over_light_directions() {
     for (sigma, gamma, cos) in
         [([0.5, 0.5], 2.0, 0.6), ([0.8, 0.3], 3.0, 0.35), ([0.4, 0.4], f64::INFINITY, 0.8)]
     {
-        let material = StudentT::anisotropic(sigma[0], sigma[1], gamma).unwrap();
+        let material = StudentT::new([sigma[0], sigma[1]], gamma).unwrap();
         let (sin, phi) = (f64::sqrt(1.0 - cos * cos), 0.7);
         let (sin_phi, cos_phi) = libm::sincos(phi);
         let v = DVec3::new(sin * cos_phi, sin * sin_phi, cos);

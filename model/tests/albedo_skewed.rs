@@ -4,9 +4,11 @@
 
 use core::f64::consts::PI;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use microfacet_model::fresnel::schlick_weight;
-use microfacet_model::{AlbedoIntegrator, Ellipsoid, Masking, ParameterError, Shape};
+use microfacet_model::{
+    AlbedoIntegrator, Ellipsoid, Masking, MicrofacetDistribution, ParameterError, Shape, Skew,
+};
 
 const FORMS: [Masking; 2] = [Masking::Uncorrelated, Masking::HeightCorrelated];
 
@@ -21,8 +23,8 @@ fn direction(cos: f64, phi: f64) -> DVec3 {
 
 /// Roughness p and r along two axes, a shear, and the mean slope in units of them.
 fn skewed(gamma: f64, p: f64, r: f64, mean: [f64; 2]) -> Ellipsoid {
-    let columns = (DVec3::new(p, 0.3 * p, mean[0] * p), DVec3::new(0.0, r, mean[1] * r), DVec3::Z);
-    Ellipsoid::from_matrix(DMat3::from_cols(columns.0, columns.1, columns.2), gamma).unwrap()
+    let rows = [[p, 0.0, 0.0], [0.3 * p, r, 0.0], [mean[0] * p, mean[1] * r, 1.0]];
+    Ellipsoid::new(Skew::from_matrix(rows).unwrap(), gamma).unwrap()
 }
 
 #[test]
@@ -34,7 +36,7 @@ fn without_a_tilt_it_is_the_anisotropic_albedo() {
         for sigma in [[0.3, 0.3], [0.1, 0.6], [2.0, 0.7]] {
             for turn in [0.0, 0.8] {
                 let ellipsoid =
-                    Ellipsoid::new(sigma[0], sigma[1], [0.0, 0.0, turn], gamma).unwrap();
+                    Ellipsoid::new(Skew::new(sigma, [0.0, 0.0, turn]).unwrap(), gamma).unwrap();
                 for (cos, phi) in [(0.0, 0.3), (0.02, 2.0), (0.4, 0.9), (0.9, 4.0), (1.0, 0.0)] {
                     // θz turns directions into the principal frame.
                     let want =
@@ -120,7 +122,7 @@ fn it_is_the_mean_weight_of_sampled_reflections() {
                 // The lattice of the plastic number: steps of its inverse and its inverse square.
                 let i = i as f64 + 0.5;
                 let u = [(i * 0.754877666246692760) % 1.0, (i * 0.569840290998053266) % 1.0];
-                let m = ellipsoid.visible_normal(v, u);
+                let m = ellipsoid.sample_visible_normal(v, u);
                 let l = 2.0 * v.dot(m) * m - v;
                 for (sum, form) in sum.iter_mut().zip(FORMS) {
                     *sum += ellipsoid.g2(v, l, form) * area / v.z / POINTS as f64;

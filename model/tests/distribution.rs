@@ -6,9 +6,10 @@
 )]
 
 use glam::{DVec3, Vec3};
-use microfacet_model::statistics::judge_visible_normals;
+use microfacet_model::statistics::test_visible_normals;
 use microfacet_model::{
-    Masking, Shape, SignedUnit, StudentT, UnitView, VisibleSlope, across_cdf, across_quantile,
+    Masking, MicrofacetDistribution, Shape, SignedSlope, StudentT, UnitView, VisibleSlope,
+    across_cdf, across_quantile,
 };
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -42,7 +43,7 @@ fn over_hemisphere(material: &StudentT, f: impl Fn(DVec3) -> f64) -> f64 {
 #[test]
 fn d_is_normalised_and_p22_is_its_density_of_slopes() {
     for gamma in GAMMAS {
-        let material = StudentT::anisotropic(0.3, 0.8, gamma).unwrap();
+        let material = StudentT::new([0.3, 0.8], gamma).unwrap();
         let total = over_hemisphere(&material, |m| material.d(m) * m.z);
         assert!((total - 1.0).abs() < 1e-5, "gamma {gamma}: {total}");
         let m = DVec3::new(0.3, -0.2, 0.7).normalize();
@@ -55,7 +56,7 @@ fn d_is_normalised_and_p22_is_its_density_of_slopes() {
 fn g1_is_its_defining_integral() {
     // cos θ_v = G1 ∫ (v·m)⁺ D dm; a heavy tail beyond the grid is why γ starts at 2 here.
     for gamma in [2.0, 2.5, 3.0, 20.0, f64::INFINITY] {
-        let material = StudentT::anisotropic(0.4, 0.9, gamma).unwrap();
+        let material = StudentT::new([0.4, 0.9], gamma).unwrap();
         for theta in [0.3_f64, 1.0, 1.4] {
             let v = DVec3::new(theta.sin() * 0.6, theta.sin() * 0.8, theta.cos());
             let seen = over_hemisphere(&material, |m| v.dot(m).max(0.0) * material.d(m));
@@ -112,7 +113,7 @@ fn quantiles_invert_their_cdfs() {
             }
         }
         for u in [1e-9, 0.1, 0.5, 0.9] {
-            let t: SignedUnit = across_quantile(&shape, u);
+            let t: SignedSlope = across_quantile(&shape, u);
             assert!((across_cdf(&shape, t) - u).abs() < 1e-14);
         }
     }
@@ -122,21 +123,23 @@ fn quantiles_invert_their_cdfs() {
 #[test]
 fn samplers_draw_the_visible_normals() {
     for gamma in GAMMAS {
-        let material = StudentT::anisotropic(0.5, 0.2, gamma).unwrap();
+        let material = StudentT::new([0.5, 0.2], gamma).unwrap();
         for theta in [0.1_f64, 1.0, 1.55] {
             let v = DVec3::new(theta.sin() * 0.8, theta.sin() * -0.6, theta.cos());
             let mut random = StdRng::seed_from_u64(3);
-            let exact =
-                |_: [f32; 2]| material.sample_visible_exact(v, &mut || random.random()).as_vec3();
-            let judgement = judge_visible_normals(&material, v, 100_000, 5, exact);
+            let exact = |_: [f32; 2]| {
+                material.sample_visible_by_rejection(v, &mut || random.random()).as_vec3()
+            };
+            let judgement = test_visible_normals(&material, v, 100_000, 5, exact);
             assert!(judgement.p() > 1e-4, "exact, gamma {gamma}, theta {theta}: {judgement:?}");
-            let inverse = |u: [f32; 2]| material.visible_normal(v, u.map(f64::from)).as_vec3();
-            let judgement = judge_visible_normals(&material, v, 20_000, 5, inverse);
+            let inverse =
+                |u: [f32; 2]| material.sample_visible_normal(v, u.map(f64::from)).as_vec3();
+            let judgement = test_visible_normals(&material, v, 20_000, 5, inverse);
             assert!(judgement.p() > 1e-4, "inverse, gamma {gamma}, theta {theta}: {judgement:?}");
         }
         // Straight from above, visible normals are the NDF weighted by m·n: what sample_ndf draws.
         let draw = |u: [f32; 2]| -> Vec3 { material.sample_ndf(u.map(f64::from)).as_vec3() };
-        let judgement = judge_visible_normals(&material, DVec3::Z, 100_000, 5, draw);
+        let judgement = test_visible_normals(&material, DVec3::Z, 100_000, 5, draw);
         assert!(judgement.p() > 1e-4, "ndf, gamma {gamma}: {judgement:?}");
     }
 }

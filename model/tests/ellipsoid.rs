@@ -9,7 +9,9 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 use microfacet_model::statistics::chi_square;
-use microfacet_model::{Ellipsoid, EllipsoidError, StudentT};
+use microfacet_model::{
+    Ellipsoid, EllipsoidError, MicrofacetDistribution, ParameterError, Skew, SkewError, StudentT,
+};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -19,9 +21,9 @@ fn random(rng: &mut StdRng, gamma: f64) -> Ellipsoid {
         let sigma = [(); 2].map(|()| 10.0_f64.powf(rng.random_range(-1.5..0.3)));
         let theta =
             [rng.random_range(-0.6..0.6), rng.random_range(-0.6..0.6), rng.random_range(-PI..PI)];
-        let ellipsoid = Ellipsoid::new(sigma[0], sigma[1], theta, gamma).unwrap();
-        let u = ellipsoid.unit_matrix();
-        if u.x_axis.z.hypot(u.y_axis.z) < 3.0 {
+        let ellipsoid = Ellipsoid::new(Skew::new(sigma, theta).unwrap(), gamma).unwrap();
+        let Skew { x, y, .. } = ellipsoid.skew();
+        if x.hypot(y) < 3.0 {
             return ellipsoid;
         }
     }
@@ -91,7 +93,8 @@ fn integrate(e: &Ellipsoid, frame: &DMat3, from: f64, g: impl Fn(DVec3) -> f64) 
 
 /// Errors of ∫ D (m·n) and of the projected area for one ellipsoid and one view.
 fn quadrature_errors(e: &Ellipsoid, v: DVec3) -> (f64, f64) {
-    let u = e.unit_matrix();
+    let Skew { p, q, r, x, y } = e.skew();
+    let u = DMat3::from_cols(DVec3::new(p, q, x), DVec3::new(0.0, r, y), DVec3::Z);
     let normalisation = integrate(e, &u, f64::NEG_INFINITY, |m| m.z) - 1.0;
     // The frame turned towards the view, x from its silhouette on.
     let w = u * v;
@@ -127,13 +130,18 @@ fn d_and_g1_by_quadrature_1000() {
     println!("1000 ellipsoids: worst |int D - 1| {d:e}, worst |G1 - integral| {g1:e}");
 }
 
+/// The rows of a matrix that is kept by its columns.
+fn rows(a: DMat3) -> [[f64; 3]; 3] {
+    a.transpose().to_cols_array_2d()
+}
+
 #[test]
 fn d_and_g1_are_the_printed_formulas() {
     let mut rng = StdRng::seed_from_u64(11);
     for i in 0..200 {
         let gamma = gamma_of(&mut rng, i);
         let a = DMat3::from_cols_array(&std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
-        let Ok(e) = Ellipsoid::from_lobe_matrix(a, gamma) else { continue };
+        let Ok(e) = Ellipsoid::from_lobe_matrix(rows(a), gamma) else { continue };
         let (m, v) = (above(&mut rng), above(&mut rng));
         let (an, back) = (a * DVec3::Z, a.inverse().transpose() * m);
         let cos = m.z / (back.length() * an.length());
@@ -151,15 +159,17 @@ fn d_and_g1_are_the_printed_formulas() {
 #[test]
 fn plain_matrices_are_student_t() {
     for gamma in [1.7, 2.0, 5.0, f64::INFINITY] {
-        let e = Ellipsoid::new(0.3, 0.7, [0.0; 3], gamma).unwrap();
-        let t = StudentT::anisotropic(0.3, 0.7, gamma).unwrap();
+        let e = Ellipsoid::new(Skew::new([0.3, 0.7], [0.0; 3]).unwrap(), gamma).unwrap();
+        let t = StudentT::new([0.3, 0.7], gamma).unwrap();
         let mut rng = StdRng::seed_from_u64(3);
         for _ in 0..50 {
             let (m, v, u) = (above(&mut rng), above(&mut rng), [rng.random(), rng.random()]);
             assert!((e.d(m) - t.d(m)).abs() <= 1e-13 * t.d(m));
             assert!((e.g1(v) - t.g1(v)).abs() < 1e-14);
-            assert!((e.visible_normal(v, u) - t.visible_normal(v, u)).length() < 1e-13);
-            let back = e.invert_visible_normal(v, e.visible_normal(v, u));
+            assert!(
+                (e.sample_visible_normal(v, u) - t.sample_visible_normal(v, u)).length() < 1e-13
+            );
+            let back = e.invert_visible_normal(v, e.sample_visible_normal(v, u));
             assert!(
                 (back[0] - u[0]).abs() < 1e-10 && (back[1] - u[1]).abs() < 1e-10,
                 "{u:?} {back:?}"
@@ -170,29 +180,19 @@ fn plain_matrices_are_student_t() {
 
 #[test]
 fn refusals_say_why() {
-    let refused =
-        |a: [f64; 9]| Ellipsoid::from_matrix(DMat3::from_cols_array(&a), 2.0).unwrap_err();
-    assert!(matches!(refused([f64::NAN; 9]), EllipsoidError::NotFinite(_)));
-    assert!(matches!(refused([0.0; 9]), EllipsoidError::Singular(_)));
-    assert!(matches!(
-        refused([1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0]),
-        EllipsoidError::Singular(_)
-    ));
-    assert!(matches!(
-        refused([1.0, 0.0, 1e9, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]),
-        EllipsoidError::Singular(_)
-    ));
-    let tilted = Ellipsoid::new(1e-9, 1e-9, [0.5 * PI - 1e-9, 0.0, 0.0], 2.0);
-    assert!(
-        matches!(tilted, Err(EllipsoidError::Silhouette(_) | EllipsoidError::Singular(_))),
-        "{tilted:?}"
-    );
-    assert!(matches!(Ellipsoid::new(0.0, 1.0, [0.0; 3], 2.0), Err(EllipsoidError::Parameter(_))));
-    assert!(matches!(
-        Ellipsoid::from_lobe_matrix(DMat3::IDENTITY, f64::INFINITY),
-        Err(EllipsoidError::LobeWithoutWidth)
-    ));
-    for e in [EllipsoidError::Singular(1e-9), EllipsoidError::Silhouette(1e9)] {
+    let refused = |a: [f64; 9]| Skew::from_matrix(rows(DMat3::from_cols_array(&a))).unwrap_err();
+    assert!(matches!(refused([f64::NAN; 9]), SkewError::NotFinite(_)));
+    assert!(matches!(refused([0.0; 9]), SkewError::Singular(_)));
+    for a in [
+        [1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        [1.0, 0.0, 1e9, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+    ] {
+        assert!(matches!(refused(a), SkewError::Singular(_)), "{a:?}");
+    }
+    let lobe = |gamma| Ellipsoid::from_lobe_matrix(rows(DMat3::IDENTITY), gamma);
+    assert_eq!(lobe(f64::INFINITY), Err(EllipsoidError::LobeWithoutWidth));
+    assert!(matches!(lobe(1.5), Err(EllipsoidError::Parameter(ParameterError::Gamma(_)))));
+    for e in [SkewError::Singular(1e-9), SkewError::Silhouette(1e9)] {
         assert!(e.to_string().contains("e9") || e.to_string().contains("e-9"), "{e}");
     }
 }
@@ -200,7 +200,7 @@ fn refusals_say_why() {
 #[test]
 fn the_clamp_is_needed() {
     // A lobe that leans away from a grazing view shows less area than the surface below it.
-    let e = Ellipsoid::new(0.1, 0.1, [0.0, 0.3, 0.0], 2.0).unwrap();
+    let e = Ellipsoid::new(Skew::new([0.1, 0.1], [0.0, 0.3, 0.0]).unwrap(), 2.0).unwrap();
     let ratios = [-1.0, 1.0].map(|x| {
         let v = DVec3::new(0.8 * x, 0.0, 0.6);
         assert!(e.g1(v) <= 1.0 && e.lambda(v) >= 0.0);
@@ -238,16 +238,16 @@ fn smallest_p(count: usize, draws: usize) -> [f64; 4] {
         let lune = e.lune().expect("gamma is 2");
         let v = (0..200)
             .map(|_| above(&mut rng))
-            .find(|v| i % 4 != 0 || (e.unit_matrix() * *v).z < 0.0)
+            .find(|v| i % 4 != 0 || e.skew().direction(v.to_array())[2] < 0.0)
             .unwrap_or(DVec3::Z);
-        below += usize::from((e.unit_matrix() * v).z < 0.0);
+        below += usize::from(e.skew().direction(v.to_array())[2] < 0.0);
         let mut uniform = StdRng::seed_from_u64(i as u64);
         let mut u = || uniform.random::<f64>();
         let p = [
             p_value(draws, || lune.sample_sphere(v, &mut u), |m| lune.invert_lune(v, m)),
             p_value(draws, || lune.sample_silhouette(v, &mut u), |m| lune.invert_lune(v, m)),
             p_value(few, || lune.sample_lune(v, [u(), u()]), |m| e.invert_visible_normal(v, m)),
-            p_value(few, || e.visible_normal(v, [u(), u()]), |m| lune.invert_lune(v, m)),
+            p_value(few, || e.sample_visible_normal(v, [u(), u()]), |m| lune.invert_lune(v, m)),
         ];
         for (s, p) in smallest.iter_mut().zip(p) {
             *s = s.min(p);
@@ -280,7 +280,7 @@ fn visible_normals_match_their_density() {
     // Counts in cells of the world hemisphere against the integral of the density there, with no use of the CDFs.
     let mut rng = StdRng::seed_from_u64(31);
     for gamma in [1.8, 2.0, 6.0, f64::INFINITY] {
-        let e = Ellipsoid::new(0.6, 0.3, [0.25, -0.2, 0.7], gamma).unwrap();
+        let e = Ellipsoid::new(Skew::new([0.6, 0.3], [0.25, -0.2, 0.7]).unwrap(), gamma).unwrap();
         let v = above(&mut rng);
         const N: usize = 12;
         const FINE: usize = 24;
@@ -300,7 +300,7 @@ fn visible_normals_match_their_density() {
         let draws = 20_000;
         let mut counts = [0; N * N];
         for _ in 0..draws {
-            let m = e.visible_normal(v, [rng.random(), rng.random()]);
+            let m = e.sample_visible_normal(v, [rng.random(), rng.random()]);
             let phi = m.y.atan2(m.x).rem_euclid(2.0 * PI);
             let cell = |x: f64| ((x * N as f64) as usize).min(N - 1);
             counts[cell(m.z) * N + cell(phi / (2.0 * PI))] += 1;

@@ -9,7 +9,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 use microfacet_model::{
-    Masking, Shape, SignedUnit, StudentT, UnitView, VisibleSlope, across_cdf, across_quantile,
+    Masking, MicrofacetDistribution, Shape, SignedSlope, StudentT, UnitView, VisibleSlope,
+    across_cdf, across_quantile,
 };
 use proptest::prelude::*;
 
@@ -78,7 +79,7 @@ proptest! {
     fn masking_is_reciprocal_and_ordered(
         x in sigma(), y in sigma(), gamma in gamma(), v in direction(), l in direction(),
     ) {
-        let t = StudentT::anisotropic(x, y, gamma).unwrap();
+        let t = StudentT::new([x, y], gamma).unwrap();
         let [separate, joint] = [Masking::Uncorrelated, Masking::HeightCorrelated].map(|masking| t.g2(v, l, masking));
         prop_assert_eq!(separate, t.g2(l, v, Masking::Uncorrelated));
         prop_assert!(close(joint, t.g2(l, v, Masking::HeightCorrelated), 1e-15));
@@ -93,7 +94,7 @@ proptest! {
         theta in 0.001..1.57_f64, phi in -PI..PI,
     ) {
         let (t, wide) =
-            (StudentT::anisotropic(x, y, gamma).unwrap(), StudentT::anisotropic(x * scale, y * scale, gamma).unwrap());
+            (StudentT::new([x, y], gamma).unwrap(), StudentT::new([x * scale, y * scale], gamma).unwrap());
         let [a, b] = slope.map(|unit| unit * x.min(y));
         // The exponent magnifies rounding: γ ln(1 + s r²) may be large.
         let density = t.p22(a, b);
@@ -108,9 +109,9 @@ proptest! {
     fn turning_view_and_material_together_changes_nothing(
         x in sigma(), y in sigma(), gamma in gamma(), theta in theta(), phi in -PI..PI, m in direction(),
     ) {
-        let round = StudentT::isotropic(x, gamma).unwrap();
+        let round = StudentT::new(x, gamma).unwrap();
         prop_assert!(close(round.g1(at(theta, phi)), round.g1(at(theta, 0.0)), 1e-11));
-        let (t, turned) = (StudentT::anisotropic(x, y, gamma).unwrap(), StudentT::anisotropic(y, x, gamma).unwrap());
+        let (t, turned) = (StudentT::new([x, y], gamma).unwrap(), StudentT::new([y, x], gamma).unwrap());
         let quarter = |w: DVec3| DVec3::new(-w.y, w.x, w.z);
         let v = at(theta, phi);
         prop_assert_eq!(t.g1(v), turned.g1(quarter(v)));
@@ -127,10 +128,10 @@ proptest! {
         x in sigma(), y in sigma(), gamma in gamma(), theta in 1e-6..FRAC_PI_2, phi in -PI..PI, u in number(),
         across in prop::sample::select(vec![0.0, 0.125, 0.25, 0.5, 0.75, 1.0]),
     ) {
-        let t = StudentT::anisotropic(x, y, gamma).unwrap();
+        let t = StudentT::new([x, y], gamma).unwrap();
         let flip = DVec3::new(1.0, -1.0, 1.0);
         let v = at(theta, phi);
-        let (a, b) = (t.visible_normal(v, [u, across]), t.visible_normal(v * flip, [u, 1.0 - across]));
+        let (a, b) = (t.sample_visible_normal(v, [u, across]), t.sample_visible_normal(v * flip, [u, 1.0 - across]));
         prop_assert!((a - b * flip).length() < 1e-13, "{a} {b}");
         prop_assert!((a.length() - 1.0).abs() < 1e-15 && a.z >= 0.0);
         prop_assert!(a.dot(v) > -hidden(&t, v), "{a}");
@@ -139,29 +140,29 @@ proptest! {
     #[test]
     fn the_silhouette_of_smooth_surfaces_is_met(gamma in gamma(), theta in 1e-6..FRAC_PI_2, phi in -PI..PI) {
         // u = 0 is the silhouette itself, here at a unit slope of some 1e12.
-        let (t, v) = (StudentT::isotropic(1e-12, gamma).unwrap(), at(theta, phi));
+        let (t, v) = (StudentT::new(1e-12, gamma).unwrap(), at(theta, phi));
         for across in [0.125, 0.5] {
-            prop_assert!(t.visible_normal(v, [0.0, across]).dot(v).abs() <= hidden(&t, v));
+            prop_assert!(t.sample_visible_normal(v, [0.0, across]).dot(v).abs() <= hidden(&t, v));
         }
     }
 
     #[test]
     fn ggx_and_beckmann_are_limits(alpha in 1e-3..10.0_f64, v in direction(), nearness in 1e-13..1e-9_f64) {
         let tan = v.truncate().length() / v.z;
-        let ggx = StudentT::isotropic(alpha, 2.0).unwrap();
+        let ggx = StudentT::new(alpha, 2.0).unwrap();
         let closed = 2.0 / (1.0 + (1.0 + alpha * alpha * tan * tan).sqrt());
         prop_assert!(close(ggx.g1(v), closed, 1e-13) || v.z < 1e-15);
         for near in [2.0 - nearness, 2.0 + nearness] {
-            prop_assert!(close(StudentT::isotropic(alpha, near).unwrap().g1(v), ggx.g1(v), 1e-8));
+            prop_assert!(close(StudentT::new(alpha, near).unwrap().g1(v), ggx.g1(v), 1e-8));
         }
-        let (far, limit) = (StudentT::isotropic(alpha, 1e12).unwrap(), StudentT::beckmann(alpha).unwrap());
+        let (far, limit) = (StudentT::new(alpha, 1e12).unwrap(), StudentT::beckmann(alpha).unwrap());
         prop_assert!(close(far.g1(v), limit.g1(v), 1e-11));
     }
 
     #[test]
     fn a_smooth_surface_hides_nothing(gamma in 1.6..1e17_f64, theta in 0.0..1.5_f64) {
         // G1 = 1 − O(σ^(2γ−3)) for heavy tails, faster than any power for Beckmann.
-        let g1 = StudentT::isotropic(1e-60, gamma).unwrap().g1(at(theta, 0.3));
+        let g1 = StudentT::new(1e-60, gamma).unwrap().g1(at(theta, 0.3));
         prop_assert!(1.0 - g1 < 1e-10, "{g1}");
     }
 
@@ -188,7 +189,7 @@ proptest! {
         prop_assert!((across_cdf(&shape, across_quantile(&shape, u)) - u).abs() < 1e-13);
         // Five points' difference in w; away from x = 0, where the sign changes.
         let h = 1e-3 * x.w;
-        let to = |step: f64| slopes.cdf(SignedUnit { w: x.w + step * h, ..x });
+        let to = |step: f64| slopes.cdf(SignedSlope { w: x.w + step * h, ..x });
         let derivative = (8.0 * (to(1.0) - to(-1.0)) - (to(2.0) - to(-2.0))) / (12.0 * h) * x.sign;
         if x.w > 1e-2 && to(-2.0 * x.sign) > 1e-6 {
             prop_assert!((derivative - slopes.density(x)).abs() < 1e-6 * slopes.density(x) + 1e-8, "{derivative}");

@@ -4,7 +4,9 @@
 //! against those instead.
 
 use glam::DVec3;
-use microfacet_model::{Shape, StudentT, UnitView, VisibleSlope, across_quantile};
+use microfacet_model::{
+    MicrofacetDistribution, Shape, StudentT, UnitView, VisibleSlope, across_quantile,
+};
 
 /// The rows of a data file as numbers, header dropped.
 fn rows(name: &str) -> Vec<Vec<f64>> {
@@ -29,7 +31,7 @@ fn lambda_and_g1() {
         };
         let (sin, cos) = (libm::sin(theta), libm::cos(theta));
         let v = DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos);
-        let material = StudentT::anisotropic(sigma_x, sigma_y, gamma).unwrap();
+        let material = StudentT::new([sigma_x, sigma_y], gamma).unwrap();
         let (got, got_g1) = (material.lambda(v), material.g1(v));
         // 1e-12 relative or 1e-15 absolute.
         let error =

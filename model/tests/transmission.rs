@@ -1,7 +1,7 @@
 //! Albedos of transmission against brute force, limits and reciprocity.
 
 use microfacet_model::fresnel::Dielectric;
-use microfacet_model::{AlbedoIntegrator, Masking, Shape, StudentT};
+use microfacet_model::{AlbedoIntegrator, Masking, MicrofacetDistribution, Shape, StudentT};
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ fn brute_force(material: &StudentT, pane: Dielectric, v: DVec3, masking: Masking
     for i in 0..STEPS {
         for j in 0..STEPS {
             let u = [i, j].map(|i| (f64::from(i) + 0.5) / f64::from(STEPS));
-            let m = material.visible_normal(v, u);
+            let m = material.sample_visible_normal(v, u);
             let mu = v.dot(m);
             let Some(inside) = pane.refracted_cos(mu) else { continue };
             let l = (mu / pane.eta() - inside) * m - v / pane.eta();
@@ -44,7 +44,7 @@ fn agrees_with_brute_force() {
         (f64::INFINITY, 4.0, 1.0, 0.7),
     ] {
         let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);
-        let material = StudentT::isotropic(sigma, gamma).unwrap();
+        let material = StudentT::new(sigma, gamma).unwrap();
         let pane = Dielectric::new(eta).unwrap();
         let got = integrator.transmission(sigma, cos, pane).unwrap();
         assert!(got.error < 2e-6, "{gamma} {eta} {sigma} {cos}: estimate {:e}", got.error);
@@ -103,7 +103,7 @@ fn without_a_difference_all_that_is_not_shadowed_passes() {
     for gamma in GAMMAS {
         let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-7);
         for (sigma, cos) in [(0.01, 0.2), (0.3, 0.05), (1.0, 0.6), (3.0, 1.0)] {
-            let material = StudentT::isotropic(sigma, gamma).unwrap();
+            let material = StudentT::new(sigma, gamma).unwrap();
             let lambda = material.lambda(view(cos));
             let got = integrator.transmission(sigma, cos, pane).unwrap();
             for (masking, want) in [

@@ -4,7 +4,7 @@
 //! over that of all visible ones.
 
 use glam::Vec3;
-use microfacet_sampler::{Masking, StudentT, Tables};
+use microfacet_sampler::{Masking, MicrofacetDistribution, StudentT, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 

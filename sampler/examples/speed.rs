@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use glam::Vec3;
-use microfacet_sampler::Tables;
+use microfacet_sampler::{MicrofacetDistribution, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 

@@ -3,6 +3,8 @@
 use alloc::string::String;
 use core::fmt;
 
+use microfacet_common::SkewError;
+
 /// Why bytes are not a table set that this crate can use.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoadError {
@@ -24,14 +26,14 @@ impl fmt::Display for LoadError {
 
 impl core::error::Error for LoadError {}
 
-/// Why a material cannot be bound to the tables at hand.
+/// Why the tables at hand cannot give what was asked for: a lobe, or an albedo.
 #[derive(Clone, Debug, PartialEq)]
-pub enum BindError {
+pub enum MaterialError {
     /// `sigma` outside [1e-8, 1e6] or NaN.
-    Sigma(f32),
+    Sigma(f64),
     /// γ ≤ 3/2 or NaN: no member of the family.
     Gamma(f64),
-    /// The material exists, but as another distribution than the one it was asked for as.
+    /// The material's distribution has no albedo of the kind that was asked for.
     OtherDistribution {
         /// The material.
         name: String,
@@ -42,12 +44,8 @@ pub enum BindError {
     NoTable(String),
     /// A dielectric whose albedo no table of the set holds: its index, σ and γ.
     Dielectric([f64; 3]),
-    /// An ellipsoid's angle or matrix entry that is infinite or NaN.
-    NotFinite(f64),
-    /// An ellipsoid's matrix whose columns are linearly dependent to a ratio below 1e-8; the ratio.
-    Singular(f64),
-    /// An ellipsoid with the macro normal almost in its silhouette: the tangent of the lobe's tilt exceeds 1e8.
-    Silhouette(f64),
+    /// A matrix, or roughness and angles, that make no ellipsoid.
+    Skew(SkewError),
     /// γ is legal but no table of `kind` covers it; `covered` lists what the set holds.
     NotCovered {
         /// The table kind that was looked for.
@@ -89,7 +87,7 @@ pub enum BindError {
     },
 }
 
-impl fmt::Display for BindError {
+impl fmt::Display for MaterialError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Sigma(x) => write!(
@@ -104,8 +102,8 @@ impl fmt::Display for BindError {
             }
             Self::OtherDistribution { name, distribution } => write!(
                 f,
-                "material \"{name}\" is of the kind {distribution}: bind a student-t with `student_t` or `material`, an ellipsoid with \
-                 `material_ellipsoid`, others with `radial`"
+                "material \"{name}\" is of the kind {distribution}, which has no dielectric albedo of \
+                 its own; only round Student-t lobes refract"
             ),
             Self::NoTable(name) => {
                 write!(f, "table `{name}` is missing from this set; bake it again")
@@ -115,17 +113,7 @@ impl fmt::Display for BindError {
                 "no table of this set holds the albedo of a dielectric of index {eta} (more than 0) with sigma {sigma} and gamma {gamma}; add \
                  `fresnel = {{ dielectric = {eta} }}` to the recipe's material, or a range of indices, and bake it again"
             ),
-            Self::NotFinite(x) => {
-                write!(f, "{x}: an ellipsoid's angles (radians) and matrix entries must be finite")
-            }
-            Self::Singular(ratio) => write!(
-                f,
-                "the ellipsoid's matrix is singular (ratio {ratio:e}, at least 1e-8): its columns must span space"
-            ),
-            Self::Silhouette(tilt) => write!(
-                f,
-                "the macro normal is almost in the ellipsoid's silhouette (mean slope {tilt:e}, at most 1e8): turn it less"
-            ),
+            Self::Skew(why) => why.fmt(f),
             Self::NotCovered { kind, gamma, covered } => write!(
                 f,
                 "gamma = {gamma} is not covered by the `{kind}` tables of this set, which hold {covered}; bake a set that \
@@ -154,7 +142,13 @@ impl fmt::Display for BindError {
     }
 }
 
-impl core::error::Error for BindError {}
+impl core::error::Error for MaterialError {}
+
+impl From<SkewError> for MaterialError {
+    fn from(why: SkewError) -> Self {
+        Self::Skew(why)
+    }
+}
 
 /// Slices of a batch that are not of one length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

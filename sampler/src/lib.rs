@@ -16,6 +16,8 @@ mod albedo;
 mod bsdf;
 mod error;
 mod format;
+#[doc(hidden)]
+pub mod internals;
 mod lanes;
 mod material;
 mod math;
@@ -24,13 +26,13 @@ mod tables;
 pub use albedo::{Albedo, DielectricAlbedo, FresnelAlbedo, Moments, ViewCurve};
 pub use axis::{Axis, Interpolation, Mapping};
 pub use bsdf::{f82_tint_average, fresnel_average, schlick_average};
-pub use error::{BatchError, BindError, LoadError};
+pub use error::{BatchError, LoadError, MaterialError};
 pub use format::{
     Channels, Covered, FORMAT, FresnelEntry, Kind, LobeEntry, MaterialEntry, Precision, Provenance,
-    Reflectance, Side, Subject, Table, VERSION, describe, encode, reassemble, seal, seal_document,
+    Reflectance, Side, Subject, Table, VERSION, encode,
 };
-pub use material::{Bounded, Ellipsoid, Radial, Roughness, Skew, StudentT};
-pub use microfacet_common::Masking;
+pub use material::{Bounded, Ellipsoid, Ggx, Lobe, MicrofacetDistribution, Radial, StudentT};
+pub use microfacet_common::{Masking, Roughness, Skew, SkewError};
 pub use tables::Tables;
 
 /// The README's example, so that it keeps compiling.

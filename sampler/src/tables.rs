@@ -4,24 +4,25 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use microfacet_common::shape::s_of_gamma;
+use microfacet_common::{Roughness, Skew};
 
-use crate::error::{BindError, LoadError};
-use crate::format::{Kind, LobeEntry, MaterialEntry, Provenance, Table, decode};
-use crate::material::{Ellipsoid, Radial, Roughness, Skew, StudentT, covers};
+use crate::error::{LoadError, MaterialError};
+use crate::format::{Kind, MaterialEntry, Provenance, Table, decode};
+use crate::material::{Ellipsoid, Ggx, Lobe, Radial, StudentT, covers};
 
 /// A set of tables, loaded and checked.
 ///
 /// ```
 /// use glam::Vec3;
-/// use microfacet_sampler::Tables;
+/// use microfacet_sampler::{MicrofacetDistribution, Tables};
 /// # #[cfg(feature = "embedded")] {
 /// let tables = Tables::embedded();
 /// let glass = tables.student_t(0.454, 3.0)?;
 /// let v = Vec3::new(0.6, 0.0, 0.8);
-/// let m = glass.sample_visible_normal(v, [0.3, 0.7]);
-/// assert!(v.dot(m) > 0.0 && glass.visible_normal_pdf(v, m) > 0.0);
+/// let (m, pdf) = glass.sample_with_pdf(v, [0.3, 0.7]);
+/// assert!(v.dot(m) > 0.0 && pdf > 0.0);
 /// # }
-/// # Ok::<(), microfacet_sampler::BindError>(())
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tables {
@@ -36,7 +37,7 @@ impl Tables {
     /// the program.
     #[cfg(feature = "embedded")]
     pub fn embedded() -> Self {
-        let bytes = include_bytes!("../../tables/default.safetensors");
+        let bytes = include_bytes!("../data/default.safetensors");
         let (provenance, tables) = decode(bytes, false).expect("the embedded tables are tested");
         Self { provenance, tables }
     }
@@ -77,7 +78,7 @@ impl Tables {
         &self.provenance
     }
 
-    /// Whether γ can be bound; γ = 2 always can.
+    /// Whether [`lobe`](Self::lobe) serves γ; γ = 2 it always does.
     pub fn covers(&self, gamma: f64) -> bool {
         let s = s_of_gamma(gamma);
         let has = |kind| self.tables.iter().any(|table| table.kind == kind && covers(table, s));
@@ -87,34 +88,68 @@ impl Tables {
         gamma == 2.0 || gamma > 1.5 && tabulated
     }
 
-    /// Binds a material: σ ∈ [1e-8, 1e6] (one number, or a pair for x and y) and γ ∈ (3/2, ∞] are fixed, and the γ axis is collapsed there.
+    /// The Student-t lobe of roughness σ ∈ [1e-8, 1e6] (one number, or a pair for x and y) and shape
+    /// γ ∈ (3/2, ∞], read from the tables.
     ///
-    /// γ = 2 is GGX with α = σ, γ = `f64::INFINITY` is Beckmann. Where no table covers γ = 2 the material is [`StudentT::ggx`]. γ is
-    /// taken in double precision, since near 3/2 single precision is too coarse for it. Takes some microseconds and holds about
-    /// 20 KiB; [`StudentT::with_roughness`] is cheaper for a material that differs in σ only.
+    /// γ = 2 is GGX with α = σ, γ = `f64::INFINITY` is Beckmann. γ is taken in double precision,
+    /// since near 3/2 single precision is too coarse for it. The γ axis is collapsed here, which
+    /// takes some microseconds and about 20 KiB; [`StudentT::with_roughness`] is cheaper for a
+    /// material that differs in σ only.
     ///
     /// # Errors
-    /// [`BindError`] for a σ or γ outside the family, or a γ that this set does not cover.
+    /// [`MaterialError`] for a σ or γ outside the family, or a γ that this set does not cover; a set
+    /// of a scene of GGX alone has no tables, see [`lobe`](Self::lobe).
     pub fn student_t(
         &self,
         sigma: impl Into<Roughness>,
         gamma: f64,
-    ) -> Result<StudentT, BindError> {
+    ) -> Result<StudentT, MaterialError> {
+        StudentT::from_tables(&self.tables, sigma.into(), gamma)
+    }
+
+    /// The same, or [`Ggx`] in closed form for γ = 2 where no table covers it.
+    ///
+    /// # Errors
+    /// As [`student_t`](Self::student_t).
+    pub fn lobe(&self, sigma: impl Into<Roughness>, gamma: f64) -> Result<Lobe, MaterialError> {
         let sigma = sigma.into();
-        match StudentT::bind(&self.tables, sigma, gamma) {
-            Err(BindError::NotCovered { .. }) if gamma == 2.0 => StudentT::ggx(sigma),
-            bound => bound,
+        match self.student_t(sigma, gamma) {
+            Err(MaterialError::NotCovered { .. }) if gamma == 2.0 => Ok(Ggx::new(sigma)?.into()),
+            lobe => Ok(lobe?.into()),
         }
     }
 
-    /// Binds an ellipsoid: a lobe of shape γ ∈ (3/2, ∞] seen through a matrix, tilted and turned; see [`Ellipsoid`].
+    /// An ellipsoid: a lobe of shape γ ∈ (3/2, ∞] seen through a matrix, tilted and turned.
     ///
     /// It reads the same tables as [`student_t`](Self::student_t), at γ = 2 too.
     ///
     /// # Errors
-    /// [`BindError`] for a matrix that is not finite or (almost) singular, a γ outside the family, or one that this set does not cover.
-    pub fn ellipsoid(&self, skew: Skew, gamma: f64) -> Result<Ellipsoid, BindError> {
-        Ellipsoid::bind(StudentT::bind(&self.tables, 1.0.into(), gamma)?, skew)
+    /// [`MaterialError`] for a γ outside the family, or one that this set does not cover.
+    pub fn ellipsoid(&self, skew: Skew, gamma: f64) -> Result<Ellipsoid, MaterialError> {
+        Ellipsoid::new(self.student_t(1.0, gamma)?, skew)
+    }
+
+    /// The lobe of a material of the set's recipe, by its name, whatever its distribution is.
+    ///
+    /// Where the recipe gives ranges, it is the middle of σ and of s = 1/(γ−1); use
+    /// [`lobe`](Self::lobe) for others.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoSuchMaterial`] naming those that exist, or what [`lobe`](Self::lobe) and
+    /// [`ellipsoid`](Self::ellipsoid) report.
+    pub fn material(&self, name: &str) -> Result<Lobe, MaterialError> {
+        let entry = self.entry(name)?;
+        match (entry.theta, entry.distribution.is_empty()) {
+            (Some(theta), _) => {
+                let skew = Skew::new(entry.sigma(), theta)?;
+                Ok(self.ellipsoid(skew, entry.gamma())?.into())
+            }
+            (None, true) => self.lobe(entry.sigma(), entry.gamma()),
+            (None, false) => {
+                let sigma = entry.sigma[0][0] as f32;
+                Ok(Radial::from_tables(&self.tables, sigma, &entry.lobe())?.into())
+            }
+        }
     }
 
     /// This set with the default set behind it: shapes that its own tables do not cover are read from those compiled in.
@@ -126,47 +161,7 @@ impl Tables {
         self
     }
 
-    /// Binds a material of the set's recipe by its name.
-    ///
-    /// Where the recipe gives ranges, the middle of σ and of s = 1/(γ−1) is bound; use [`student_t`](Self::student_t) for others.
-    ///
-    /// # Errors
-    /// [`BindError::NoSuchMaterial`] naming those that exist, or what [`student_t`](Self::student_t) reports.
-    pub fn material(&self, name: &str) -> Result<StudentT, BindError> {
-        let entry = self.student_t_entry(name)?;
-        self.student_t(entry.sigma(), entry.gamma())
-    }
-
-    /// Binds a material of the set's recipe that is an ellipsoid: one that states `theta`.
-    ///
-    /// # Errors
-    /// [`BindError::NoSuchMaterial`], [`BindError::OtherDistribution`] for another material, or what [`ellipsoid`](Self::ellipsoid) reports.
-    pub fn material_ellipsoid(&self, name: &str) -> Result<Ellipsoid, BindError> {
-        let entry = self.entry(name)?;
-        let Some(theta) = entry.theta else { return Err(other_lobe(entry)) };
-        self.ellipsoid(Skew::new(entry.sigma(), theta)?, entry.gamma())
-    }
-
-    /// Binds a material of the set's recipe that is no Student-t, such as a GTR or a measured one.
-    ///
-    /// # Errors
-    /// [`BindError::NoSuchMaterial`], or [`BindError::OtherDistribution`] for a Student-t.
-    pub fn radial(&self, name: &str) -> Result<Radial, BindError> {
-        let entry = self.entry(name)?;
-        if entry.distribution.is_empty() {
-            return Err(other_lobe(entry));
-        }
-        Radial::bind(&self.tables, entry.sigma[0][0] as f32, &entry.lobe())
-    }
-
-    /// The entry of a material that is a Student-t.
-    pub(crate) fn student_t_entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
-        let entry = self.entry(name)?;
-        let plain = matches!(entry.lobe(), LobeEntry::Family | LobeEntry::StudentT { .. });
-        if plain { Ok(entry) } else { Err(other_lobe(entry)) }
-    }
-
-    pub(crate) fn entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
+    pub(crate) fn entry(&self, name: &str) -> Result<&MaterialEntry, MaterialError> {
         let materials = &self.provenance.materials;
         materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
             // A scene may have thousands.
@@ -181,15 +176,7 @@ impl Tables {
             }
             let known =
                 if known.is_empty() { "no named materials".to_string() } else { known.join(", ") };
-            BindError::NoSuchMaterial { name: name.into(), known }
+            MaterialError::NoSuchMaterial { name: name.into(), known }
         })
-    }
-}
-
-/// The material exists, but is of another kind than was asked for.
-fn other_lobe(entry: &MaterialEntry) -> BindError {
-    BindError::OtherDistribution {
-        name: entry.name.clone(),
-        distribution: entry.lobe().name().into(),
     }
 }

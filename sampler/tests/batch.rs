@@ -1,7 +1,7 @@
 //! The functions over slices against the functions for one.
 
 use glam::Vec3;
-use microfacet_sampler::{BatchError, StudentT, Tables};
+use microfacet_sampler::{BatchError, MicrofacetDistribution, StudentT, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 

@@ -4,8 +4,8 @@
 
 use glam::DVec3;
 use microfacet_model as model;
-use microfacet_model::statistics::{Judgement, judge_visible_normals, sidak};
-use microfacet_sampler::Tables;
+use microfacet_model::statistics::{NormalsTest, sidak, test_visible_normals};
+use microfacet_sampler::{MicrofacetDistribution, Tables};
 
 /// σx, σy, γ, θ, φ: both ends of γ, the seam at 1.8, closed-form members, views at the normal and at grazing.
 const CASES: [[f64; 5]; 12] = [
@@ -26,14 +26,14 @@ const SAMPLES: usize = 200_000;
 /// Probability that a correct sampler fails this file's tests: seeds are fixed, so it was spent once.
 const LEVEL: f64 = 0.01;
 
-fn judge(case: &[f64; 5], gamma_of_truth: f64, samples: usize) -> Judgement {
+fn judge(case: &[f64; 5], gamma_of_truth: f64, samples: usize) -> NormalsTest {
     let &[sigma_x, sigma_y, gamma, theta, phi] = case;
     let tables = Tables::embedded();
     let bound = tables.student_t([sigma_x, sigma_y], gamma).unwrap();
     let [x, y] = bound.sigma().map(f64::from);
-    let truth = model::StudentT::anisotropic(x, y, gamma_of_truth).unwrap();
+    let truth = model::StudentT::new([x, y], gamma_of_truth).unwrap();
     let v = DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()).as_vec3();
-    judge_visible_normals(&truth, v.as_dvec3(), samples, 7, |u| bound.sample_visible_normal(v, u))
+    test_visible_normals(&truth, v.as_dvec3(), samples, 7, |u| bound.sample_visible_normal(v, u))
 }
 
 #[test]
@@ -61,9 +61,9 @@ fn a_gamma_one_per_cent_off_is_rejected() {
 fn a_turned_frame_is_rejected_by_the_world_test() {
     let tables = Tables::embedded();
     let bound = tables.student_t([0.5, 0.2], 3.0).unwrap();
-    let truth = model::StudentT::anisotropic(0.5, 0.2, 3.0).unwrap();
+    let truth = model::StudentT::new([0.5, 0.2], 3.0).unwrap();
     let v = DVec3::new(0.5, 0.4, 0.768_114_574_786_860_8);
-    let judgement = judge_visible_normals(&truth, v, SAMPLES, 7, |u| {
+    let judgement = test_visible_normals(&truth, v, SAMPLES, 7, |u| {
         let m = bound.sample_visible_normal(v.as_vec3(), u);
         glam::Vec3::new(m.x, -m.y, m.z)
     });

@@ -3,7 +3,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
-use microfacet_sampler::{Masking, StudentT, Tables};
+use microfacet_sampler::{Masking, MicrofacetDistribution, StudentT, Tables};
 use proptest::prelude::*;
 
 fn material() -> impl Strategy<Value = StudentT> {

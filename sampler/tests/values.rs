@@ -2,7 +2,9 @@
 
 use glam::{DVec3, Vec3};
 use microfacet_model as model;
-use microfacet_sampler::{BindError, Masking, StudentT, Tables};
+use microfacet_model::MicrofacetDistribution as _;
+use microfacet_sampler::MicrofacetDistribution as _;
+use microfacet_sampler::{Masking, MaterialError, StudentT, Tables};
 
 const GAMMAS: [f64; 9] = [1.501, 1.55, 1.799_99, 1.8, 2.0, 3.0, 8.5, 1e5, f64::INFINITY];
 
@@ -24,7 +26,7 @@ fn pairs() -> impl Iterator<Item = (StudentT, model::StudentT)> {
         roughness.into_iter().map(move |sigma: [f64; 2]| {
             let bound = tables.student_t(sigma, gamma).unwrap();
             let [x, y] = bound.sigma().map(f64::from);
-            (bound, model::StudentT::anisotropic(x, y, gamma).unwrap())
+            (bound, model::StudentT::new([x, y], gamma).unwrap())
         })
     })
 }
@@ -141,10 +143,10 @@ fn sampled_normals_are_unit_upward_and_facing_and_rise_with_u() {
 fn refuses_what_it_cannot_bind() {
     let tables = Tables::embedded();
     for sigma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(tables.student_t(sigma, 3.0), Err(BindError::Sigma(_))));
+        assert!(matches!(tables.student_t(sigma, 3.0), Err(MaterialError::Sigma(_))));
     }
     for gamma in [1.5, 0.0, f64::NAN, f64::NEG_INFINITY] {
-        assert!(matches!(tables.student_t(0.3, gamma), Err(BindError::Gamma(_))));
+        assert!(matches!(tables.student_t(0.3, gamma), Err(MaterialError::Gamma(_))));
     }
     let error = tables.student_t(0.3, 1.5005).unwrap_err().to_string();
     assert!(

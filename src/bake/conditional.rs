@@ -4,10 +4,10 @@ use rayon::prelude::*;
 
 use microfacet_model::{Shape, across_quantile};
 use microfacet_sampler::Axis;
-use microfacet_sampler::axis::limit_slopes;
+use microfacet_sampler::internals::limit_slopes;
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
-use crate::spec::TableSpec;
+use crate::table_spec::TableSpec;
 
 pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
     let numbers = &axes[1].nodes;

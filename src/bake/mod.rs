@@ -9,11 +9,11 @@ mod radial;
 mod shadowing;
 mod visible_slope;
 
-use microfacet_model::{Shape, SignedUnit};
+use microfacet_model::{Shape, SignedSlope};
 use microfacet_sampler::axis::{MirroredRoot, half_tangent};
 use microfacet_sampler::{Axis, Channels, Interpolation, Kind, Mapping, Subject, Table};
 
-use crate::spec::{ShapeAxis, TableSpec};
+use crate::table_spec::{ShapeAxis, TableSpec};
 
 pub use radial::{bake_radial, radial_axes, radial_bytes};
 
@@ -108,14 +108,14 @@ fn mirrored(t: f64) -> (f64, f64) {
 }
 
 /// Distance of the half tangent of a unit slope from the end −1 or 1, without cancellation.
-fn distance(shape: &Shape, x: SignedUnit, end: f64) -> f64 {
+fn distance(shape: &Shape, x: SignedSlope, end: f64) -> f64 {
     let (sin, cos) = shape.unit_sin_cos(x.w);
     let [low, high] = half_tangent::ends(x.sign * sin, cos);
     if end < 0.0 { low } else { high }
 }
 
 /// d h/d w of the half tangent h of a unit slope x(w), dx/dw = √(1 + s x²).
-fn half_tangent_rate(shape: &Shape, x: SignedUnit) -> f64 {
+fn half_tangent_rate(shape: &Shape, x: SignedSlope) -> f64 {
     // dα/dx = cos² α, one cosine of which makes dx/dw finite.
     let (sin, cos) = shape.unit_sin_cos(x.w);
     half_tangent::angle_rate(sin, cos) * cos * (cos * cos + shape.s() * sin * sin).sqrt()

@@ -5,7 +5,8 @@
 
 use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_sampler::axis::half_tangent::{rate, slope_at};
-use microfacet_sampler::axis::{HalfTangent, Rational, limit_slopes};
+use microfacet_sampler::axis::{HalfTangent, Rational};
+use microfacet_sampler::internals::limit_slopes;
 use microfacet_sampler::{
     Axis, Interpolation, Kind, LobeEntry, Mapping, Precision, Subject, Table,
 };
@@ -13,7 +14,7 @@ use rayon::prelude::*;
 
 use super::shadowing::ratios;
 use super::{across, along, in_names, joined_name, mirrored, names, round};
-use crate::spec::Level;
+use crate::table_spec::Level;
 
 /// Rows of in-plane slopes in the table of slopes across.
 const SLOPES: usize = 193;

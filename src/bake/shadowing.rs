@@ -12,7 +12,7 @@ use microfacet_sampler::Axis;
 use microfacet_sampler::axis::Rational;
 
 use super::{round, shapes};
-use crate::spec::{GAMMA_WHOLE, TableSpec};
+use crate::table_spec::{GAMMA_WHOLE, TableSpec};
 
 /// The view axis: q, crowded towards normal incidence for a table that reaches below γ = 1.8, where the ratio approaches its
 /// limit there like (1−q)^(1+2k), too slowly for even nodes.
@@ -25,7 +25,7 @@ pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
     let view = view(spec);
     let of_shape = |shape: &Shape| {
         let beyond = |z: f64| {
-            let w = shape.unit(z);
+            let w = shape.asinh_slope(z);
             (shape.excess(w), shape.tail(w))
         };
         round(ratios(&view, view.kappa(shape.s()), &axes[1].nodes, beyond))

@@ -22,11 +22,12 @@
 use rayon::prelude::*;
 
 use microfacet_model::{Shape, UnitView, VisibleSlope};
-use microfacet_sampler::axis::{HalfTangent, limit_slopes};
+use microfacet_sampler::axis::HalfTangent;
+use microfacet_sampler::internals::limit_slopes;
 use microfacet_sampler::{Axis, Kind};
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
-use crate::spec::TableSpec;
+use crate::table_spec::TableSpec;
 
 /// The view axis: evenly in τ, or crowded towards normal incidence where the heavy part is peeled off: what is left
 /// depends on the tilt there like η^(1+2k), whose second derivative is infinite.

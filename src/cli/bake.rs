@@ -7,10 +7,10 @@ use clap::ValueEnum;
 use serde_json::json;
 
 use microfacet_bake::cache::Cache;
-use microfacet_bake::generate::{Baked, Progress, Settings, Target, bake_with};
 use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::{self, Scene};
 use microfacet_bake::store::{Format, OutputFolder, Written};
+use microfacet_bake::table_set::{Baked, Progress, Settings, Target, bake_with};
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::Table;
 

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use clap::ValueEnum;
 
 use microfacet_bake::convert::{ConvertError, Form, Replacement, Target, by_formula};
-use microfacet_bake::family::{Family, Named};
+use microfacet_bake::distribution::{DistributionKind, Named};
 
 use super::{Done, Failure, Outcome, print};
 
@@ -25,7 +25,7 @@ enum By {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum On {
     /// D/D(0), the shape of the highlight.
-    Unit,
+    Relative,
     /// D itself.
     Density,
 }
@@ -33,7 +33,7 @@ pub(super) enum On {
 impl From<On> for Form {
     fn from(on: On) -> Self {
         match on {
-            On::Unit => Self::Unit,
+            On::Relative => Self::Relative,
             On::Density => Self::Density,
         }
     }
@@ -56,7 +56,7 @@ pub(super) struct Args {
     #[arg(long)]
     shape: Option<f64>,
     /// What the least-error replacement minimises.
-    #[arg(long, default_value = "unit")]
+    #[arg(long, default_value = "relative")]
     on: On,
     /// Print the replacements of 17 Beckmann distributions by Blinn-Phong, Gauss, Schlick and Trowbridge-Reitz.
     #[arg(long, conflicts_with_all = ["from", "to", "by", "shape"])]
@@ -72,12 +72,12 @@ pub(super) fn run(args: Args) -> Outcome {
 impl Args {
     fn text(&self) -> Result<String, Box<dyn Error>> {
         match (&self.from, &self.to) {
-            (Some(from), Some(to)) => self.pair(&from.parse()?, Family::by_name(to)?),
+            (Some(from), Some(to)) => self.pair(&from.parse()?, DistributionKind::by_name(to)?),
             _ => table(self.on.into()),
         }
     }
 
-    fn pair(&self, from: &Named, to: Family) -> Result<String, Box<dyn Error>> {
+    fn pair(&self, from: &Named, to: DistributionKind) -> Result<String, Box<dyn Error>> {
         let built = from.build()?;
         let target = Target::new(&*built);
         let replace = |by| match by {
@@ -114,7 +114,12 @@ impl Args {
 
 /// Least-error replacements of Beckmann with m from 0.05 to 0.45.
 fn table(form: Form) -> Result<String, Box<dyn Error>> {
-    let families = [Family::BlinnPhong, Family::Gauss, Family::Schlick, Family::TrowbridgeReitz];
+    let families = [
+        DistributionKind::BlinnPhong,
+        DistributionKind::Gauss,
+        DistributionKind::Schlick,
+        DistributionKind::TrowbridgeReitz,
+    ];
     let mut text = format!("{:>8}", "m");
     for family in families {
         let name = format!("{} {}", family.name(), family.parameters()[0]);
@@ -123,7 +128,7 @@ fn table(form: Form) -> Result<String, Box<dyn Error>> {
     text.push('\n');
     for i in 0..17 {
         let m = 0.05 + 0.025 * f64::from(i);
-        let built = Family::Beckmann.build(&[m])?;
+        let built = DistributionKind::Beckmann.build(&[m])?;
         let target = Target::new(&*built);
         write!(text, "{m:>8.3}")?;
         for family in families {

@@ -19,7 +19,7 @@ pub(super) struct Args {
     #[arg(long)]
     degrees: bool,
     /// What the fit minimises.
-    #[arg(long, default_value = "unit")]
+    #[arg(long, default_value = "relative")]
     on: On,
 }
 

@@ -8,7 +8,8 @@ use serde_json::json;
 
 use microfacet_bake::store;
 use microfacet_common::shape::gamma_of_s;
-use microfacet_sampler::{Axis, Covered, Interpolation, LobeEntry, Subject, Table, describe};
+use microfacet_sampler::internals::describe;
+use microfacet_sampler::{Axis, Covered, Interpolation, LobeEntry, Subject, Table};
 
 use super::bake::largest_error;
 use super::{Done, Outcome, print, print_json};

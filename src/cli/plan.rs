@@ -6,13 +6,14 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use microfacet_bake::bake::albedo::{AlbedoSpec, Domain, Lobe};
-use microfacet_bake::family::Distribution;
+use microfacet_bake::bake::albedo::{AlbedoLobe, AlbedoSpec, Domain};
+use microfacet_bake::distribution::Distribution;
 use microfacet_bake::plan::{
-    AlbedoVerdict, Cost, Need, Plan, Verdict, albedo_cost, bare_cost, cost, distribution_cost,
+    AlbedoVerdict, Cost, Plan, RequiredShapes, Verdict, albedo_cost, bare_cost, cost,
+    distribution_cost,
 };
 use microfacet_bake::scene::{self, Interval, Material, Scene};
-use microfacet_bake::spec::{TableSpec, general_set};
+use microfacet_bake::table_spec::{TableSpec, general_set};
 
 use microfacet_sampler::Kind;
 
@@ -65,7 +66,7 @@ pub(super) fn run(args: Args) -> Outcome {
     let albedos = plan.albedos.iter().map(|need| need.spec(quality, precision).map(of_need));
     let albedos = albedos.collect::<Result<Vec<(AlbedoSpec, Cost)>, _>>()?;
     let tables: Vec<(Vec<TableSpec>, Cost)> = plan
-        .needs
+        .shapes
         .iter()
         .map(|need| need.specs(&general))
         .map(|specs| {
@@ -163,9 +164,9 @@ fn domain(Domain { gamma, sigma }: Domain) -> String {
 }
 
 /// Which lobe, in words.
-fn lobe(lobe: &Lobe) -> String {
+fn lobe(lobe: &AlbedoLobe) -> String {
     match lobe {
-        Lobe::Family(covered) => domain(*covered),
+        AlbedoLobe::Family(covered) => domain(*covered),
         other => other.label().replace('_', " "),
     }
 }
@@ -254,7 +255,7 @@ impl Report<'_> {
 
     fn text(&self) -> String {
         let mut text = String::new();
-        for (i, (need, (specs, cost))) in self.plan.needs.iter().zip(&self.tables).enumerate() {
+        for (i, (need, (specs, cost))) in self.plan.shapes.iter().zip(&self.tables).enumerate() {
             let names = self.names(|verdict| verdict.need() == Some(i));
             text += &format!(
                 "bake  {:22} {} tables, {} bytes, about {:.3} s, for {}\n",
@@ -319,8 +320,8 @@ impl Report<'_> {
     fn json(&self) -> serde_json::Value {
         let cost = |cost: &Cost| json!({ "bytes": cost.bytes, "seconds": cost.seconds });
         // JSON has no infinity.
-        let ends = |need: &Need| json!({ "gamma": [need.gamma().min.to_string(), need.gamma().max.to_string()], "s": need.s() });
-        let needs: Vec<_> = self.plan.needs.iter().zip(&self.tables).enumerate().map(|(i, (need, (specs, sum)))| {
+        let ends = |need: &RequiredShapes| json!({ "gamma": [need.gamma().min.to_string(), need.gamma().max.to_string()], "s": need.s() });
+        let needs: Vec<_> = self.plan.shapes.iter().zip(&self.tables).enumerate().map(|(i, (need, (specs, sum)))| {
             let tables: Vec<_> = specs
                 .iter()
                 .map(|spec| json!({ "name": spec.name, "kind": spec.kind.name(), "shapes": spec.shapes.nodes.len(), "views": spec.views, "numbers": spec.numbers }))
@@ -330,7 +331,7 @@ impl Report<'_> {
         let albedos: Vec<_> = self.albedos.iter().enumerate().map(|(i, (spec, sum))| {
             let names: Vec<_> = spec.maskings.iter().map(|&masking| spec.name(Kind::Albedo, masking)).collect();
             let nodes: Vec<_> = spec.axes.iter().map(|axis| json!({ "name": axis.name, "length": axis.len() })).collect();
-            let covers = if let Lobe::Family(domain) = &spec.lobe { Some(domain.covered()) } else { None };
+            let covers = if let AlbedoLobe::Family(domain) = &spec.lobe { Some(domain.covered()) } else { None };
             json!({
                 "names": names, "lobe": spec.lobe.entry(), "covers": covers, "masking": spec.maskings, "reflectance": spec.reflectance,
                 "axes": nodes, "cost": cost(sum), "materials": self.served(i),

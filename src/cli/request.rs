@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 use microfacet_bake::plan::{AlbedoWish, Options, Plan};
 use microfacet_bake::scene::Scene;
-use microfacet_bake::spec::Quality;
+use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables};
 

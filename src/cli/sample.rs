@@ -11,6 +11,8 @@ use safetensors::tensor::TensorView;
 use microfacet_bake::store::replace;
 use microfacet_bake::validate::configuration::Configuration;
 use microfacet_model as model;
+use microfacet_model::MicrofacetDistribution as _;
+use microfacet_sampler::MicrofacetDistribution as _;
 
 use super::{
     Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, tables,
@@ -63,7 +65,7 @@ enum Method {
 
 pub(super) fn run(args: Args) -> Outcome {
     let [sigma_x, sigma_y] = args.sigma;
-    let truth = model::StudentT::anisotropic(sigma_x, sigma_y, args.gamma)?;
+    let truth = model::StudentT::new([sigma_x, sigma_y], args.gamma)?;
     let at = Configuration {
         sigma_x,
         sigma_y,
@@ -76,14 +78,14 @@ pub(super) fn run(args: Args) -> Outcome {
     let mut random = rand::rngs::StdRng::seed_from_u64(args.seed);
     let mut draw: Box<dyn FnMut() -> (Vec3, f32)> = match args.method {
         Method::Table => {
-            let bound = tables(args.tables.as_deref())?.student_t(args.sigma, args.gamma)?;
+            let lobe = tables(args.tables.as_deref())?.lobe(args.sigma, args.gamma)?;
             Box::new(move || {
-                let m = bound.sample_visible_normal(v, [random.random(), random.random()]);
-                (m, bound.table_pdf(v, m))
+                let m = lobe.sample_visible_normal(v, [random.random(), random.random()]);
+                (m, lobe.table_pdf(v, m))
             })
         }
         Method::Exact => Box::new(move || {
-            let m = truth.sample_visible_exact(v.as_dvec3(), &mut || random.random());
+            let m = truth.sample_visible_by_rejection(v.as_dvec3(), &mut || random.random());
             (m.as_vec3(), truth.visible_normal_pdf(v.as_dvec3(), m) as f32)
         }),
         Method::Ndf => Box::new(move || {

@@ -3,9 +3,9 @@
 use microfacet_sampler::{LobeEntry, Masking, Precision, Reflectance};
 
 use super::{NotCovered, Options, entry, is_rough};
-use crate::bake::albedo::{AlbedoSpec, BakeError, Domain, Lobe, SIGMA_MAX};
+use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, SIGMA_MAX};
 use crate::scene::{Format, Interval, Material, Scene};
-use crate::spec::{Level, Quality};
+use crate::table_spec::{Level, Quality};
 
 /// Which materials get albedo tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,38 +22,38 @@ pub enum AlbedoWish {
 
 /// Materials that albedo tables are to cover, one or many of the family: the unit in which they are baked, measured and kept.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AlbedoNeed {
+pub struct RequiredAlbedo {
     /// Their normals.
-    pub lobe: Lobe,
+    pub lobe: AlbedoLobe,
     /// Their reflectance; the moments serve F = 1 and every Schlick approximation.
     pub reflectance: Reflectance,
     /// Forms of masking.
     pub maskings: Vec<Masking>,
 }
 
-impl AlbedoNeed {
+impl RequiredAlbedo {
     /// The moments of everything that tables can cover.
     pub fn general() -> Self {
-        let lobe = Lobe::Family(Domain::GENERAL);
+        let lobe = AlbedoLobe::Family(Domain::GENERAL);
         Self { lobe, reflectance: Reflectance::Moments, maskings: Masking::ALL.into() }
     }
 
     /// The tables that cover it.
     ///
     /// # Errors
-    /// [`BakeError`] for an ellipsoid that is none.
+    /// [`AlbedoError`] for an ellipsoid that is none.
     pub fn spec(
         &self,
         level: impl Into<Level>,
         precision: Precision,
-    ) -> Result<AlbedoSpec, BakeError> {
+    ) -> Result<AlbedoSpec, AlbedoError> {
         let Self { lobe, reflectance, maskings } = self.clone();
         AlbedoSpec::new(lobe, reflectance, maskings, level, precision)
     }
 
     fn covers(&self, want: &Want) -> bool {
         let lobe = match (&self.lobe, &want.lobe) {
-            (Lobe::Family(domain), Lobe::Family(other)) => domain.contains(other),
+            (AlbedoLobe::Family(domain), AlbedoLobe::Family(other)) => domain.contains(other),
             (one, other) => one == other,
         };
         lobe && self.reflectance == want.reflectance && self.maskings.contains(&want.masking)
@@ -80,7 +80,7 @@ pub enum AlbedoVerdict {
 /// One table that one material wants.
 #[derive(Clone)]
 struct Want {
-    lobe: Lobe,
+    lobe: AlbedoLobe,
     reflectance: Reflectance,
     masking: Masking,
 }
@@ -89,19 +89,19 @@ struct Want {
 pub(super) fn needs(
     scene: &Scene,
     options: Options,
-) -> Result<(Vec<AlbedoNeed>, Vec<AlbedoVerdict>), NotCovered> {
+) -> Result<(Vec<RequiredAlbedo>, Vec<AlbedoVerdict>), NotCovered> {
     let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> = scene
         .materials
         .iter()
         .map(|material| wants(material, options))
         .collect::<Result<_, _>>()?;
-    let mut needs: Vec<AlbedoNeed> = Vec::new();
-    let mut add = |lobe: Lobe, reflectance, masking| {
+    let mut needs: Vec<RequiredAlbedo> = Vec::new();
+    let mut add = |lobe: AlbedoLobe, reflectance, masking| {
         // Two forms at once cost little more than one.
         match needs.iter_mut().find(|need| need.lobe == lobe && need.reflectance == reflectance) {
             Some(need) if need.maskings.contains(&masking) => {}
             Some(need) => need.maskings.push(masking),
-            None => needs.push(AlbedoNeed { lobe, reflectance, maskings: vec![masking] }),
+            None => needs.push(RequiredAlbedo { lobe, reflectance, maskings: vec![masking] }),
         }
     };
     let all: Vec<&Want> = wants.iter().flatten().flatten().collect();
@@ -118,13 +118,13 @@ pub(super) fn needs(
             let same = all
                 .iter()
                 .filter(|want| want.reflectance == reflectance && want.masking == masking);
-            let (family, own): (Vec<&Lobe>, Vec<&Lobe>) =
-                same.map(|want| &want.lobe).partition(|lobe| matches!(lobe, Lobe::Family(_)));
+            let (family, own): (Vec<&AlbedoLobe>, Vec<&AlbedoLobe>) =
+                same.map(|want| &want.lobe).partition(|lobe| matches!(lobe, AlbedoLobe::Family(_)));
             let domains = family.into_iter().filter_map(|lobe| {
-                if let Lobe::Family(domain) = lobe { Some(*domain) } else { None }
+                if let AlbedoLobe::Family(domain) = lobe { Some(*domain) } else { None }
             });
             for domain in joined(domains.collect()) {
-                add(Lobe::Family(domain), reflectance, masking);
+                add(AlbedoLobe::Family(domain), reflectance, masking);
             }
             own.into_iter().for_each(|lobe| add(lobe.clone(), reflectance, masking));
         }
@@ -150,19 +150,19 @@ fn wants(
     let (gamma, [x, y]) = (material.gamma, [material.roughness.x(), material.roughness.y()]);
     // The usual stand-in for an anisotropic surface.
     let mean = |x: f64, y: f64| if x == y { x } else { (x * y).sqrt() };
-    let round = Lobe::Family(Domain {
+    let round = AlbedoLobe::Family(Domain {
         gamma,
         sigma: Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) },
     });
     let entry = entry(material);
     let lobe = match (entry.lobe(), &material.distribution) {
         (LobeEntry::Family, _) => round.clone(),
-        (LobeEntry::StudentT { sigma, .. }, _) => Lobe::StudentT { sigma, gamma: gamma.min },
+        (LobeEntry::StudentT { sigma, .. }, _) => AlbedoLobe::StudentT { sigma, gamma: gamma.min },
         (LobeEntry::Ellipsoid { sigma, theta, .. }, _) => {
-            Lobe::Ellipsoid { sigma, theta, gamma: gamma.min }
+            AlbedoLobe::Ellipsoid { sigma, theta, gamma: gamma.min }
         }
         (LobeEntry::Distribution(_), Some(distribution)) => {
-            Lobe::Radial { distribution: distribution.clone(), sigma: x.min }
+            AlbedoLobe::Radial { distribution: distribution.clone(), sigma: x.min }
         }
         (LobeEntry::Distribution(_), None) => unreachable!("entries take it from the material"),
     };
@@ -174,12 +174,12 @@ fn wants(
         let lobe = if reflectance.indices().is_some() { &round } else { &lobe };
         Want { lobe: lobe.clone(), reflectance, masking: entry.masking() }
     };
-    let embedded = options.embedded_albedo && matches!(lobe, Lobe::Family(_));
+    let embedded = options.embedded_albedo && matches!(lobe, AlbedoLobe::Family(_));
     let moments = (!embedded).then_some(Reflectance::Moments);
     let exact = exact.filter(|reflectance| refracts || reflectance.indices().is_none());
     let wants: Vec<Want> = moments.into_iter().chain(exact).map(of).collect();
     for want in &wants {
-        if let Lobe::Family(Domain { sigma, .. }) = want.lobe
+        if let AlbedoLobe::Family(Domain { sigma, .. }) = want.lobe
             && sigma.max > SIGMA_MAX
         {
             return Err(NotCovered::Sigma { material: material.name.clone(), sigma: sigma.max });
@@ -202,7 +202,8 @@ fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
 
 /// Few domains that cover all of `wants` with no more nodes in all.
 fn joined(wants: Vec<Domain>) -> Vec<Domain> {
-    let need = |domain| AlbedoNeed { lobe: Lobe::Family(domain), ..AlbedoNeed::general() };
+    let need =
+        |domain| RequiredAlbedo { lobe: AlbedoLobe::Family(domain), ..RequiredAlbedo::general() };
     let cost = |domain| {
         need(domain).spec(Quality::Default, Precision::F32).map_or(usize::MAX, |spec| spec.nodes())
     };

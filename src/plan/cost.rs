@@ -1,14 +1,15 @@
 //! What a bake costs, before it is done.
 
+use microfacet_sampler::internals::describe;
 use microfacet_sampler::{
     Axis, Interpolation, Kind, LobeEntry, Mapping, Masking, MaterialEntry, Precision, Provenance,
-    Reflectance, describe,
+    Reflectance,
 };
 
-use crate::bake::albedo::{AlbedoSpec, Lobe};
+use crate::bake::albedo::{AlbedoLobe, AlbedoSpec};
 use crate::bake::{self};
-use crate::family::Distribution;
-use crate::spec::{Level, TableSpec};
+use crate::distribution::Distribution;
+use crate::table_spec::{Level, TableSpec};
 use crate::validate::certificate::POINTS;
 use crate::validate::{points, radial};
 
@@ -121,7 +122,7 @@ fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
     1e-6 * match (&spec.lobe, spec.reflectance) {
         (_, Reflectance::Dielectric { .. }) => 3300.0 * (nodes + points),
         // Each decade of accuracy takes twice as long, and certificates are a decade finer.
-        (Lobe::Family(_), _) => {
+        (AlbedoLobe::Family(_), _) => {
             895.0 * libm::pow(1e-6 / spec.tolerance, 0.32) * (nodes + 2.1 * points)
         }
         _ => 10_000.0 * (nodes + points),

@@ -6,23 +6,23 @@
 
 mod albedo;
 mod cost;
-mod needs;
 mod provenance;
+mod required_shapes;
 
 use std::fmt;
 
 use microfacet_sampler::MaterialEntry;
 
-pub use albedo::{AlbedoNeed, AlbedoVerdict, AlbedoWish};
+pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
 pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, seconds};
-pub use needs::Need;
+pub use required_shapes::RequiredShapes;
 
 use microfacet_common::shape::s_of_gamma;
 
 use crate::bake::albedo::SIGMA_MAX;
-use crate::family::Distribution;
+use crate::distribution::Distribution;
 use crate::scene::{Interval, Material, Scene};
-use crate::spec::GAMMA_MIN;
+use crate::table_spec::GAMMA_MIN;
 
 /// γ of GGX.
 const GGX: f64 = 2.0;
@@ -43,18 +43,18 @@ pub struct Options {
 /// What becomes of a material.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// Tables are baked for it: an index into [`Plan::needs`].
+    /// Tables are baked for it: an index into [`Plan::shapes`].
     Bake(usize),
     /// Tables that another material needs serve it too.
     Same {
-        /// Index into [`Plan::needs`].
+        /// Index into [`Plan::shapes`].
         need: usize,
         /// Index of the other material.
         as_material: usize,
     },
     /// Its γ lies in a range that is baked for another material.
     Within {
-        /// Index into [`Plan::needs`].
+        /// Index into [`Plan::shapes`].
         need: usize,
         /// Index of the other material.
         of_material: usize,
@@ -85,13 +85,13 @@ impl Verdict {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
     /// Disjoint needs, from Beckmann to heavy tails: the ranges first, then the single shapes.
-    pub needs: Vec<Need>,
+    pub shapes: Vec<RequiredShapes>,
     /// Distributions outside the family that materials have, each once.
     pub distributions: Vec<Distribution>,
     /// One verdict for each material of the scene, in order.
     pub verdicts: Vec<Verdict>,
     /// What albedo tables are to cover.
-    pub albedos: Vec<AlbedoNeed>,
+    pub albedos: Vec<RequiredAlbedo>,
     /// One verdict on the albedo of each material, in order.
     pub albedo_verdicts: Vec<AlbedoVerdict>,
     /// The scene as a recipe, and its materials, as the set will name them; nothing for the general set.
@@ -104,8 +104,8 @@ impl Plan {
     /// Everything: all γ that tables cover, and all σ that albedo tables do.
     pub fn general() -> Self {
         Self {
-            needs: vec![Need::general()],
-            albedos: vec![AlbedoNeed::general()],
+            shapes: vec![RequiredShapes::general()],
+            albedos: vec![RequiredAlbedo::general()],
             ..Self::default()
         }
     }
@@ -120,12 +120,13 @@ impl Plan {
             .iter()
             .map(|material| want(material, options))
             .collect::<Result<_, _>>()?;
-        let mut needs = needs::disjoint(wants.iter().flatten().copied());
-        if let Some(range) = needs::cheaper_range(&needs) {
-            needs = needs::disjoint(wants.iter().flatten().copied().chain([range]));
+        let mut needs = required_shapes::disjoint(wants.iter().flatten().copied());
+        if let Some(range) = required_shapes::cheaper_range(&needs) {
+            needs = required_shapes::disjoint(wants.iter().flatten().copied().chain([range]));
         }
-        let find =
-            |want: &Interval| needs::find(&needs, *want).expect("the needs cover every want");
+        let find = |want: &Interval| {
+            required_shapes::find(&needs, *want).expect("the needs cover every want")
+        };
         // A need is baked for the first material that asks for exactly it, else for the first inside.
         let mut owner: Vec<Option<usize>> = vec![None; needs.len()];
         for exact in [true, false] {
@@ -145,7 +146,7 @@ impl Plan {
         let verdict = |(i, want): (usize, &Result<Interval, Verdict>)| match want {
             Ok(want) => within(find(want), i, want),
             // Where a table covers γ = 2 anyway, it is what the run time reads.
-            Err(Verdict::ClosedForm) => match needs::find(&needs, Interval::point(GGX)) {
+            Err(Verdict::ClosedForm) => match required_shapes::find(&needs, Interval::point(GGX)) {
                 Some(need) => within(need, i, &Interval::point(GGX)),
                 None => Verdict::ClosedForm,
             },
@@ -155,7 +156,15 @@ impl Plan {
         let (albedos, albedo_verdicts) = albedo::needs(scene, options)?;
         let distributions = distributions(scene);
         let (recipe, materials) = (scene.to_recipe(), entries(scene));
-        Ok(Self { needs, distributions, verdicts, albedos, albedo_verdicts, recipe, materials })
+        Ok(Self {
+            shapes: needs,
+            distributions,
+            verdicts,
+            albedos,
+            albedo_verdicts,
+            recipe,
+            materials,
+        })
     }
 
     /// Whether some material is left to closed forms: then even a set without tables is worth writing.
@@ -165,7 +174,7 @@ impl Plan {
 
     /// Whether no material in use is rough.
     pub fn is_empty(&self) -> bool {
-        self.needs.is_empty()
+        self.shapes.is_empty()
             && self.albedos.is_empty()
             && self
                 .verdicts

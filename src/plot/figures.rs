@@ -4,11 +4,11 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
 use microfacet_model::classic::Isotropic;
-use microfacet_model::{Shape, StudentT, printed};
+use microfacet_model::{MicrofacetDistribution, Shape, StudentT, printed};
 
 use super::{Curve, Legend, Panel, PlotError};
 use crate::convert::{Form, Target};
-use crate::family::{Family, Named};
+use crate::distribution::{DistributionKind, Named};
 
 /// Λ(γ, z) in one of the arrangements compared.
 type PrintedLambda = fn(f64, f64) -> Option<f64>;
@@ -55,7 +55,7 @@ fn degrees(theta: f64) -> DVec3 {
 }
 
 fn student_t() -> Vec<Panel> {
-    let of = |sigma, gamma| StudentT::isotropic(sigma, gamma).expect("the figures' own parameters");
+    let of = |sigma, gamma| StudentT::new(sigma, gamma).expect("the figures' own parameters");
     let gammas = [1.6, 2.0, 3.0, 5.0, 40.0];
     let sigmas = [0.2, 0.35, 0.5, 0.75, 1.0];
     let slopes = |name: String, t: StudentT| curve(name, -2.0, 2.0, move |x| t.p22(x, 0.0));
@@ -98,7 +98,7 @@ fn printed_formulas(gamma: f64) -> Panel {
     let digits = |(name, form): (&str, PrintedLambda)| {
         curve(name.into(), -2.0, 3.0, |log_z| {
             let z = libm::exp10(log_z);
-            let truth = shape.lambda(shape.unit(z));
+            let truth = shape.lambda(shape.asinh_slope(z));
             // No error at all is drawn as that of a half ulp.
             let error = form(gamma, z)
                 .map_or(f64::NAN, |lambda| (lambda - truth).abs() / truth.max(1e-300));
@@ -117,12 +117,17 @@ fn printed_formulas(gamma: f64) -> Panel {
 
 /// A Beckmann and the members of the other families nearest to it.
 fn nearest_to_beckmann(m: f64) -> Vec<(Named, Box<dyn Isotropic>)> {
-    let beckmann = Named { family: Family::Beckmann, values: vec![m] };
+    let beckmann = Named { family: DistributionKind::Beckmann, values: vec![m] };
     let from = beckmann.build().expect("m is positive");
-    let others = [Family::BlinnPhong, Family::Gauss, Family::TrowbridgeReitz, Family::Schlick];
+    let others = [
+        DistributionKind::BlinnPhong,
+        DistributionKind::Gauss,
+        DistributionKind::TrowbridgeReitz,
+        DistributionKind::Schlick,
+    ];
     let nearest = others.map(|family| {
         let found = Target::new(&*from)
-            .by_rmse(family, Form::Unit)
+            .by_rmse(family, Form::Relative)
             .expect("a smooth problem of one variable")
             .to;
         let built = found.build().expect("it was built to be judged");
@@ -134,10 +139,10 @@ fn nearest_to_beckmann(m: f64) -> Vec<(Named, Box<dyn Isotropic>)> {
 fn unit_forms(m: f64) -> Panel {
     let reach = (3.0 * m).min(FRAC_PI_2).to_degrees();
     let one = |(name, d): (Named, Box<dyn Isotropic>)| {
-        curve(label(&name), 0.0, reach, |theta| d.unit(theta.to_radians()))
+        curve(label(&name), 0.0, reach, |theta| d.relative_d(theta.to_radians()))
     };
     Panel {
-        title: format!("Unit forms nearest to Beckmann, m = {m}"),
+        title: format!("Relative D nearest to Beckmann, m = {m}"),
         x_label: "β in degrees",
         y_label: "D(β)/D(0)",
         y: (0.0, 1.05),
@@ -151,8 +156,9 @@ fn deviations(m: f64) -> Panel {
     let mut all = nearest_to_beckmann(m);
     let (_, beckmann) = all.remove(0);
     let one = |(name, d): (Named, Box<dyn Isotropic>)| {
-        let deviation =
-            |theta: f64| d.unit(theta.to_radians()) / beckmann.unit(theta.to_radians()) - 1.0;
+        let deviation = |theta: f64| {
+            d.relative_d(theta.to_radians()) / beckmann.relative_d(theta.to_radians()) - 1.0
+        };
         curve(label(&name), 0.0, reach, deviation)
     };
     Panel {

@@ -5,7 +5,7 @@ use std::fmt;
 pub use microfacet_sampler::{FresnelEntry as Fresnel, Masking};
 
 use super::{Interval, Place};
-use crate::family::Distribution;
+use crate::distribution::Distribution;
 
 /// The slope roughness σ of a microfacet lobe, along the tangent (x) and the bitangent (y).
 ///

@@ -24,13 +24,13 @@ use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
-use microfacet_model::Ellipsoid;
+use microfacet_model::Skew;
 use microfacet_model::classic::Marginal;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Lines, did_you_mean};
-use crate::family::{Distribution, Family, Named};
+use crate::distribution::{Distribution, DistributionKind, Named};
 use crate::fit::{Angles, read_csv};
 
 use super::{Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, SceneError};
@@ -222,7 +222,8 @@ impl Source<'_> {
         let place = self.place(value.span());
         let common = ["name", "distribution", "fresnel", "masking"];
         let distribution = if let Some(name) = value.get_ref().as_str() {
-            let family = Family::by_name(name).map_err(|e| place.invalid(e.to_string()))?;
+            let family =
+                DistributionKind::by_name(name).map_err(|e| place.invalid(e.to_string()))?;
             let keys: Vec<&str> = common.iter().chain(family.parameters()).copied().collect();
             self.only_keys(table, &keys)?;
             let parameter = |key: &&str| {
@@ -348,8 +349,7 @@ impl Source<'_> {
                 )));
             }
         }
-        let ellipsoid = Ellipsoid::new(x.min, y.min, theta, gamma.min);
-        match ellipsoid {
+        match Skew::new([x.min, y.min], theta) {
             Ok(_) => Ok(theta),
             Err(why) => Err(place.invalid(format!("theta = {theta:?} with its sigma: {why}"))),
         }

@@ -8,9 +8,8 @@ use std::io::Cursor;
 use exr::prelude::*;
 use half::f16;
 
-use microfacet_sampler::{
-    LoadError, Precision, Provenance, Table, Tables, describe, reassemble, seal_document,
-};
+use microfacet_sampler::internals::{describe, reassemble, seal_document};
+use microfacet_sampler::{LoadError, Precision, Provenance, Table, Tables};
 
 /// The first bytes of every OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];

@@ -9,13 +9,14 @@ use rayon::prelude::*;
 use microfacet_common::shape::s_of_gamma;
 use microfacet_model::Albedo;
 use microfacet_sampler::{
-    Albedo as Bound, Axis, BindError, Kind, Masking, Moments, Reflectance, Table, Tables, ViewCurve,
+    Albedo as Bound, Axis, Kind, Masking, MaterialError, Moments, Reflectance, Table, Tables,
+    ViewCurve,
 };
 
 use super::certificate::round_up;
 use super::points::{Point, are_apart, beside, edges, interior};
 use crate::bake::albedo::{
-    AlbedoSpec, BakeError, CHANNELS, Integrand, Lobe, Models, Site, weights,
+    AlbedoError, AlbedoLobe, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights,
 };
 
 /// Accuracy, in units of a node's, of the model's values that tables are judged by.
@@ -38,8 +39,8 @@ pub struct Reference {
 /// The model's values of the places inside, which do not depend on how many nodes there are.
 ///
 /// # Errors
-/// [`BakeError`] for a lobe out of the domain.
-pub fn interior_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, BakeError> {
+/// [`AlbedoError`] for a lobe out of the domain.
+pub fn interior_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, AlbedoError> {
     references(spec, interior(spec))
 }
 
@@ -47,11 +48,11 @@ pub fn interior_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, BakeErro
 ///
 /// # Errors
 /// As [`interior_references`].
-pub fn edge_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, BakeError> {
+pub fn edge_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, AlbedoError> {
     references(spec, edges(spec))
 }
 
-fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, BakeError> {
+fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, AlbedoError> {
     let integrand = Integrand::new(&spec.reflectance)?;
     let finest = if spec.reflectance.indices().is_some() { FINEST_OF_KINKS } else { 0.0 };
     let tolerance = (FINER * spec.tolerance).max(finest);
@@ -84,17 +85,17 @@ fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, B
 /// round stand-in would be off. What a bake has left there is kept.
 ///
 /// # Errors
-/// [`BakeError`] if a table does not cover what it is for.
+/// [`AlbedoError`] if a table does not cover what it is for.
 pub fn certified(
     spec: &AlbedoSpec,
     tables: Vec<Table>,
     references: &[Reference],
-) -> Result<Vec<Table>, BakeError> {
+) -> Result<Vec<Table>, AlbedoError> {
     let directional: Vec<Table> =
         tables.iter().filter(|table| table.kind == Kind::Albedo).cloned().collect();
     let of_form = |table: &Table| {
         let same = |other: &&Table| other.subject.masking == table.subject.masking;
-        directional.iter().find(same).ok_or_else(|| BindError::NoTable(table.name.clone()))
+        directional.iter().find(same).ok_or_else(|| MaterialError::NoTable(table.name.clone()))
     };
     let certified = |table: Table| {
         let figures = match table.kind {
@@ -115,17 +116,17 @@ fn figures(
     spec: &AlbedoSpec,
     table: &Table,
     references: &[Reference],
-) -> Result<BTreeMap<String, f64>, BakeError> {
+) -> Result<BTreeMap<String, f64>, AlbedoError> {
     let masking = table.subject.masking.unwrap_or_default();
     // One material is bound once.
     let own = match (&spec.lobe, references.first()) {
-        (Lobe::Family(_), _) | (_, None) => None,
-        (_, Some(at)) => Some(Reading::bind(table, at.site)?),
+        (AlbedoLobe::Family(_), _) | (_, None) => None,
+        (_, Some(at)) => Some(Reading::from_table(table, at.site)?),
     };
     let measured = |Reference { site, v, exact, .. }: &Reference| {
         let got = match &own {
             Some(own) => own.at(*v),
-            None => Reading::bind(table, *site)?.at(*v),
+            None => Reading::from_table(table, *site)?.at(*v),
         };
         let exact = exact.of(masking);
         let exact = match spec.reflectance {
@@ -151,8 +152,8 @@ fn figures(
 fn climbed(
     spec: &AlbedoSpec,
     errors: &[Errors<'_>],
-    measured: impl Fn(&Reference) -> Result<Vec<f64>, BindError> + Copy + Send + Sync,
-) -> Result<Vec<(Reference, Vec<f64>)>, BakeError> {
+    measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Copy + Send + Sync,
+) -> Result<Vec<(Reference, Vec<f64>)>, AlbedoError> {
     /// Steps in cells.
     const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
     /// Hills climbed for each quantity.
@@ -190,9 +191,9 @@ fn climbed(
 
 fn measured_at(
     references: &[Reference],
-    measured: impl Fn(&Reference) -> Result<Vec<f64>, BindError> + Send + Sync,
-) -> Result<Vec<Errors<'_>>, BindError> {
-    let errors = references.par_iter().map(measured).collect::<Result<Vec<_>, BindError>>()?;
+    measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Send + Sync,
+) -> Result<Vec<Errors<'_>>, MaterialError> {
+    let errors = references.par_iter().map(measured).collect::<Result<Vec<_>, MaterialError>>()?;
     Ok(references.iter().zip(errors).collect())
 }
 
@@ -254,14 +255,14 @@ fn averages(
     table: &Table,
     directional: &Table,
     references: &[Reference],
-) -> Result<BTreeMap<String, f64>, BindError> {
+) -> Result<BTreeMap<String, f64>, MaterialError> {
     let set = Tables::from_tables(Default::default(), vec![table.clone()])
-        .map_err(|why| BindError::NoTable(why.to_string()))?;
+        .map_err(|why| MaterialError::NoTable(why.to_string()))?;
     let masking = table.subject.masking.unwrap_or_default();
     let measured = |at: &Reference| {
         let Site { sigma, gamma, .. } = at.site;
         let got = all(set.average_moments(sigma, gamma, masking)?);
-        let exact = all(Bound::bind(directional, sigma, gamma)?.average_moments());
+        let exact = all(Bound::from_table(directional, sigma, gamma)?.average_moments());
         Ok(got.iter().zip(exact).map(|(got, exact)| (got - exact).abs()).collect())
     };
     let errors = measured_at(references, measured)?;
@@ -282,10 +283,13 @@ enum Reading {
 }
 
 impl Reading {
-    fn bind(table: &Table, Site { sigma, gamma, eta, .. }: Site) -> Result<Self, BindError> {
+    fn from_table(
+        table: &Table,
+        Site { sigma, gamma, eta, .. }: Site,
+    ) -> Result<Self, MaterialError> {
         Ok(match table.subject.reflectance {
-            Some(Reflectance::Moments) => Self::Moments(Bound::bind(table, sigma, gamma)?),
-            _ => Self::Shares(ViewCurve::bind(table, sigma, gamma, eta)?),
+            Some(Reflectance::Moments) => Self::Moments(Bound::from_table(table, sigma, gamma)?),
+            _ => Self::Shares(ViewCurve::from_table(table, sigma, gamma, eta)?),
         })
     }
 
@@ -302,11 +306,12 @@ impl Reading {
 /// with the largest is the coarsest.
 ///
 /// # Errors
-/// [`BindError`] if the table is not sound.
-pub fn missed_by_half(spec: &AlbedoSpec, table: &Table, axis: usize) -> Result<f64, BindError> {
+/// [`MaterialError`] if the table is not sound.
+pub fn missed_by_half(spec: &AlbedoSpec, table: &Table, axis: usize) -> Result<f64, MaterialError> {
     let sites = Site::all(&spec.axes);
     let half = half(table, axis);
-    let [whole, half] = [Reading::bind(table, sites[0])?, Reading::bind(&half, sites[0])?];
+    let [whole, half] =
+        [Reading::from_table(table, sites[0])?, Reading::from_table(&half, sites[0])?];
     let missed = |site: &Site| {
         let (a, b) = (whole.at(site.view()), half.at(site.view()));
         a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

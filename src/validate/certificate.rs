@@ -13,11 +13,14 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use microfacet_common::shape::{S_END, gamma_of_s, s_of_gamma};
-use microfacet_model::{Shape, SignedUnit, UnitView, VisibleSlope, across_cdf};
+use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope, across_cdf};
 use microfacet_sampler::axis::{HalfTangent, MirroredRoot};
-use microfacet_sampler::{Axis, BindError, Interpolation, Kind, Mapping, StudentT, Table, Tables};
+use microfacet_sampler::{
+    Axis, Interpolation, Kind, Mapping, MaterialError, MicrofacetDistribution, StudentT, Table,
+    Tables,
+};
 
-use crate::spec::GAMMA_WHOLE;
+use crate::table_spec::GAMMA_WHOLE;
 
 /// Points measured at each γ.
 pub const POINTS: usize = 4000;
@@ -221,12 +224,12 @@ fn climb(start: Seen, cells: Place, error: &impl Fn(Place) -> f64) -> (Seen, usi
 /// which it covers.
 ///
 /// # Errors
-/// [`BindError`] if the tables are not a complete set.
+/// [`MaterialError`] if the tables are not a complete set.
 pub(crate) fn measure(
     tables: &Tables,
     table: &Table,
     s: [f64; 2],
-) -> Result<BTreeMap<String, f64>, BindError> {
+) -> Result<BTreeMap<String, f64>, MaterialError> {
     let ruler = Ruler::new(tables, table, s);
     let found = ruler.measured(POINTS)?;
     let quantity = match table.kind {
@@ -310,7 +313,7 @@ impl<'a> Ruler<'a> {
         *interpolation != Interpolation::Nodes && nodes.len() > 1
     }
 
-    fn measured(&self, points: usize) -> Result<Found, BindError> {
+    fn measured(&self, points: usize) -> Result<Found, MaterialError> {
         // A summit that is missed at one γ is seen beside it; where there is nothing beside, more
         // points are needed.
         let points = if self.is_range() { points } else { 3 * points };
@@ -329,7 +332,7 @@ impl<'a> Ruler<'a> {
             Ok(seen.collect::<Vec<_>>())
         };
         let shapes = self.shapes();
-        let seen = shapes.par_iter().map(at_shape).collect::<Result<Vec<_>, BindError>>()?;
+        let seen = shapes.par_iter().map(at_shape).collect::<Result<Vec<_>, MaterialError>>()?;
         let shape_cells =
             if self.is_range() { (self.table.axes[0].nodes.len() - 1) as f64 } else { 0.0 };
         let cells = [shape_cells, self.views.cells, self.numbers.cells];
@@ -367,9 +370,9 @@ impl<'a> Ruler<'a> {
         s.clamp(self.s[0], self.s[1])
     }
 
-    fn bound(&self, place: f64) -> Result<Bound, BindError> {
+    fn bound(&self, place: f64) -> Result<Bound, MaterialError> {
         let gamma = gamma_of_s(self.s(place));
-        let shape = Shape::new(gamma).map_err(|_| BindError::Gamma(gamma))?;
+        let shape = Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
         Ok((self.tables.student_t(1.0, gamma)?, shape))
     }
 
@@ -435,7 +438,7 @@ fn towards_ends(x: f64) -> f64 {
 }
 
 fn g1_error(bound: &StudentT, shape: &Shape, v: Vec3) -> f64 {
-    let exact = 1.0 / (1.0 + shape.lambda(shape.unit(exact_cotangent(v))));
+    let exact = 1.0 / (1.0 + shape.lambda(shape.asinh_slope(exact_cotangent(v))));
     (f64::from(bound.g1(v)) - exact).abs()
 }
 
@@ -464,12 +467,12 @@ fn along_error(bound: &StudentT, shape: &Shape, v: Vec3, u: f32) -> f64 {
 }
 
 /// The in-plane unit slope of a normal sampled with σ = 1 and a view in the plane y = 0.
-fn slope_of(shape: &Shape, m: Vec3) -> SignedUnit {
+fn slope_of(shape: &Shape, m: Vec3) -> SignedSlope {
     signed(shape, f64::from(m.x) / f64::from(m.z))
 }
 
-fn signed(shape: &Shape, x: f64) -> SignedUnit {
-    SignedUnit { w: shape.unit(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } }
+fn signed(shape: &Shape, x: f64) -> SignedSlope {
+    SignedSlope { w: shape.asinh_slope(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } }
 }
 
 /// The largest beside all of [`BESIDE`].

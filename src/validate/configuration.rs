@@ -6,7 +6,7 @@ use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 
 use microfacet_common::shape::gamma_of_s;
-use microfacet_sampler::{Interpolation, Kind, Tables};
+use microfacet_sampler::{Interpolation, Kind, Lobe, Tables};
 
 /// One material seen from one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +115,7 @@ fn covered_shapes(tables: &Tables) -> Shapes {
     // GGX in closed form: where materials are left to it, and where there is nothing else to judge.
     let ggx = tables.provenance().materials.iter().any(|material| material.s == [1.0, 1.0]);
     let empty = shapes.ranges.is_empty() && shapes.points.is_empty();
-    let closed_form = tables.student_t(1.0, 2.0).is_ok_and(|bound| bound.bytes() == 0);
+    let closed_form = matches!(tables.lobe(1.0, 2.0), Ok(Lobe::Ggx(_)));
     if closed_form && (ggx || empty) {
         shapes.points.push(1.0);
     }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use microfacet_common::shape::gamma_of_s;
 use microfacet_model as model;
 use microfacet_sampler::{
-    Albedo, Axis, BindError, Kind, LobeEntry, Masking, Reflectance, Subject, Table, Tables,
+    Albedo, Axis, Kind, LobeEntry, Masking, MaterialError, Reflectance, Subject, Table, Tables,
 };
 
 /// How far a furnace closed by the Kulla–Conty lobe may be from 1.
@@ -60,20 +60,20 @@ pub struct Walk {
 /// Puts one material and view into the furnace; σ = 0 is a mirror, and a view at the horizon itself stands 1e-30 above it.
 ///
 /// # Errors
-/// [`BindError`] for what the tables do not cover.
+/// [`MaterialError`] for what the tables do not cover.
 pub fn furnace(
     tables: &Tables,
     masking: Masking,
     sigma: f64,
     gamma: f64,
     cos_theta: f64,
-) -> Result<Furnace, BindError> {
+) -> Result<Furnace, MaterialError> {
     let albedo = tables.albedo(sigma, gamma, masking)?;
     let cos = (cos_theta as f32).max(1e-30);
-    let shape = model::Shape::new(gamma).map_err(|_| BindError::Gamma(gamma))?;
+    let shape = model::Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
     let exact = model::AlbedoIntegrator::new(shape, 1e-6)
         .reflection(sigma, f64::from(cos), |_| [1.0])
-        .map_err(|_| BindError::Sigma(sigma as f32))?;
+        .map_err(|_| MaterialError::Sigma(sigma))?;
     let [single] = exact.of(masking);
     let turquin = single * f64::from(albedo.turquin(direction(cos), 1.0));
     let kulla_conty = single + lobe(&albedo, cos);
@@ -124,8 +124,8 @@ impl Survey {
 /// Puts a grid of materials between the nodes of each albedo table, and views from grazing to normal, into the furnace.
 ///
 /// # Errors
-/// [`BindError`] if the set does not hold what it says it covers.
-pub fn survey(tables: &Tables) -> Result<Vec<Survey>, BindError> {
+/// [`MaterialError`] if the set does not hold what it says it covers.
+pub fn survey(tables: &Tables) -> Result<Vec<Survey>, MaterialError> {
     const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1.0];
     let of_family = |table: &&Table| {
         let Subject { lobe, reflectance, .. } = &table.subject;
@@ -146,7 +146,7 @@ pub fn survey(tables: &Tables) -> Result<Vec<Survey>, BindError> {
             let rows = pairs
                 .par_iter()
                 .flat_map_iter(|&(g, s)| VIEWS.map(|cos| furnace(tables, masking, s, g, cos)))
-                .collect::<Result<Vec<_>, BindError>>()?;
+                .collect::<Result<Vec<_>, MaterialError>>()?;
             let order = |a: &&Furnace, b: &&Furnace| a.kulla_conty.total_cmp(&b.kulla_conty);
             let lowest = *rows.iter().min_by(order).expect("a grid has points");
             let highest = *rows.iter().max_by(order).expect("a grid has points");
@@ -177,7 +177,7 @@ pub fn walk(
     walks: usize,
     seed: u64,
 ) -> Result<Walk, model::ParameterError> {
-    let material = model::StudentT::isotropic(sigma, gamma)?;
+    let material = model::StudentT::new(sigma, gamma)?;
     let v = DVec3::new((1.0 - cos_theta * cos_theta).max(0.0).sqrt(), 0.0, cos_theta);
     let batch = |i: usize| {
         let mut random = rand::rngs::StdRng::seed_from_u64(seed.wrapping_add(i as u64));

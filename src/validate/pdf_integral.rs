@@ -1,26 +1,35 @@
 //! Does `table_pdf` integrate to one? Quadrature over the pieces on which it is smooth.
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::Vec3;
 
 use microfacet_common::gauss_legendre;
 use microfacet_common::shape::s_of_gamma;
-use microfacet_sampler::StudentT;
 use microfacet_sampler::axis::half_tangent::{ends, rate, slope_at};
+use microfacet_sampler::internals::table_joints;
+use microfacet_sampler::{Lobe, MicrofacetDistribution};
 
 /// Each interval between joints is split into so many: 1/(a cubic's derivative) is not a polynomial.
 const PARTS: usize = 8;
 /// Slopes beyond this are left to the closed form of the tail.
 const FAR: f64 = 1e12;
 
-/// ∫ table_pdf(v, m) dm for a material with σ = 1 and a view in the plane y = 0.
+/// Into how many pieces the density of closed forms is split, which has no joints of its own.
+const PIECES: usize = 32;
+
+/// ∫ table_pdf(v, m) dm for a member of the family with σ = 1 and a view in the plane y = 0.
 ///
-/// The tabulated part is integrated between its joints, in the half tangent, by Gauss–Legendre; where a heavy tail was peeled off, the part of
-/// it beyond all representable slopes is added in closed form, since no quadrature of an f32 density reaches it.
-pub fn integral(material: &StudentT, v: Vec3) -> f64 {
-    let gamma = material.gamma();
+/// The tabulated part is integrated between its joints, in the half tangent, by Gauss–Legendre; where
+/// a heavy tail was peeled off, the part of it beyond all representable slopes is added in closed
+/// form, since no quadrature of an f32 density reaches it.
+pub fn integral(lobe: &Lobe, gamma: f64, v: Vec3) -> f64 {
     let s = s_of_gamma(gamma);
-    let [mut along, mut across] = material.table_joints(v);
-    let peeled = f64::from(material.tabulated_share(v)) < 1.0;
+    let ([mut along, mut across], tabulated) = match lobe {
+        Lobe::StudentT(lobe) => (table_joints(lobe, v), lobe.tabulated_share(v)),
+        _ => (ggx_joints(v), 1.0),
+    };
+    let peeled = tabulated < 1.0;
     along.push(0.0);
     // The outermost cells hold decades of slope, in which the density falls like a power of the distance from the end.
     let (first, last) = (along[0].max(-FAR), along[along.len() - 2].min(FAR));
@@ -41,7 +50,7 @@ pub fn integral(material: &StudentT, v: Vec3) -> f64 {
         let r = (1.0 + x * x + y * y).sqrt();
         let m = Vec3::new((x / r) as f32, (y / r) as f32, (1.0 / r) as f32);
         // dm = cos³θ dx dy, dy = √(1 + s x²) dt; both signs of t.
-        2.0 * f64::from(material.table_pdf(v, m)) * root / (r * r * r)
+        2.0 * f64::from(lobe.table_pdf(v, m)) * root / (r * r * r)
     };
     // The density is a function of x times one of t, so the sum over the grid is that of a row times that of a column over their
     // common point. (That x and t are independent in what is drawn, the χ² tests see.)
@@ -60,10 +69,23 @@ pub fn integral(material: &StudentT, v: Vec3) -> f64 {
         nodes(&across).iter().map(|&(t, dt)| density(x_nodes[top].0, t) * dt).sum();
     let mut sum = along_sum * across_sum / row[top];
     if peeled {
-        let heavy = 1.0 - f64::from(material.tabulated_share(v));
+        let heavy = 1.0 - f64::from(tabulated);
         sum += heavy * (-(gamma - 1.5) * (s * FAR * FAR).ln_1p()).exp();
     }
     sum
+}
+
+/// Quantiles of the in-plane slope of GGX with α = 1 and, for t ≥ 0, slopes across.
+fn ggx_joints(v: Vec3) -> [Vec<f64>; 2] {
+    let (sin_theta, cos_theta) = (f64::from(v.x), f64::from(v.z));
+    let theta = libm::atan2(sin_theta, cos_theta);
+    let share = |i: usize| i as f64 / PIECES as f64;
+    // sin(α − θ) of the tilt α is uniform between the silhouette, α = θ − π/2, and the horizon,
+    // α = π/2.
+    let tilt = |i| theta + libm::asin((share(i) * (1.0 + cos_theta) - 1.0).clamp(-1.0, 1.0));
+    let along = (0..PIECES).map(|i| libm::tan(tilt(i))).chain([f64::INFINITY]);
+    let across = (0..PIECES).map(|i| libm::tan(share(i) * FRAC_PI_2)).chain([f64::INFINITY]);
+    [along.collect(), across.collect()]
 }
 
 /// Slopes and weights of a composite Gauss–Legendre rule between ascending joints (0 among them where they change sign), each

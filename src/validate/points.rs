@@ -7,7 +7,7 @@ use microfacet_sampler::axis::LogRoughness;
 use microfacet_sampler::{Axis, Mapping};
 
 use super::certificate::low_discrepancy;
-use crate::bake::albedo::{AlbedoSpec, Lobe, Site};
+use crate::bake::albedo::{AlbedoLobe, AlbedoSpec, Site};
 
 /// Smallest σ and cos θ of the domain that figures are promised for.
 const PROMISED: (f64, f64) = (0.01, 0.02);
@@ -48,10 +48,10 @@ impl Range {
             ends
         };
         let [low, high] = match (axis.mapping, &spec.lobe) {
-            (Mapping::LogShape(_), Lobe::Family(domain)) => {
+            (Mapping::LogShape(_), AlbedoLobe::Family(domain)) => {
                 of([domain.gamma.min, domain.gamma.max])
             }
-            (Mapping::LogRoughness(_), Lobe::Family(domain)) => {
+            (Mapping::LogRoughness(_), AlbedoLobe::Family(domain)) => {
                 let max = domain.sigma.max;
                 of([PROMISED.0.min(max).max(domain.sigma.min).max(SMOOTHEST), max.max(SMOOTHEST)])
             }
@@ -132,7 +132,7 @@ fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
     }
     let smoothest = match &spec.lobe {
         // Where all materials are smoother, it is the roughest that counts: without a place there would be no figures.
-        Lobe::Family(domain) => PROMISED.0.min(domain.sigma.max) * (1.0 - 1e-9),
+        AlbedoLobe::Family(domain) => PROMISED.0.min(domain.sigma.max) * (1.0 - 1e-9),
         _ => 0.0,
     };
     let promised = site.cos as f32 >= PROMISED.1 as f32 && site.sigma >= smoothest;
@@ -143,11 +143,11 @@ fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
 fn coordinate(axis: &Axis, Site { gamma, sigma, eta, cos, .. }: &Site) -> f64 {
     match axis.mapping {
         Mapping::ViewBlend(view) => {
-            let view = view.bind(*sigma, *gamma);
+            let view = view.prepare(*sigma, *gamma);
             view.coordinate(cos.max(view.floor()))
         }
         Mapping::CriticalBlend(view) => {
-            let view = view.bind(*sigma, *gamma, 1.0 / eta);
+            let view = view.prepare(*sigma, *gamma, 1.0 / eta);
             view.coordinate(cos.max(view.floor()))
         }
         _ => unreachable!("the last axis is the view"),
@@ -274,7 +274,7 @@ fn some_shape(range: &Range, x: f64) -> f64 {
 
 /// A view that grazes, and if `smooth` of a surface smoother than is promised, where there are some, seen where it masks.
 fn outside(spec: &AlbedoSpec, mut material: Vec<f64>, x: [f64; 4], smooth: bool) -> Point {
-    if let Lobe::Family(domain) = spec.lobe
+    if let AlbedoLobe::Family(domain) = spec.lobe
         && domain.sigma.min <= SMOOTHEST
         && smooth
     {

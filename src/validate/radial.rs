@@ -10,7 +10,8 @@ use glam::{DVec3, Vec3};
 use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_sampler::axis::HalfTangent;
 use microfacet_sampler::{
-    Axis, Kind, LoadError, Mapping, MaterialEntry, Provenance, Radial, Table, Tables,
+    Axis, Kind, LoadError, Lobe, Mapping, MaterialEntry, MicrofacetDistribution, Provenance, Table,
+    Tables,
 };
 use rayon::prelude::*;
 
@@ -19,7 +20,7 @@ use super::certificate::{
     view,
 };
 use crate::bake::radial_axes;
-use crate::spec::Quality;
+use crate::table_spec::Quality;
 
 /// Normals drawn for either certificate of slopes, of which a quarter is left for climbs.
 pub(crate) const POINTS: usize = 8000;
@@ -58,7 +59,7 @@ pub struct Errors {
 
 /// Measures a bound material against the distribution it was baked from, by the nodes of default
 /// quality.
-pub fn measure(radial: &Radial, marginal: &Marginal) -> Errors {
+pub fn measure(radial: &Lobe, marginal: &Marginal) -> Errors {
     let kappa = marginal.beyond(0.0).excess;
     let axes = radial_axes(Quality::Default.into(), kappa, marginal.reach());
     let error = |kind: Kind| {
@@ -74,7 +75,7 @@ pub fn measure(radial: &Radial, marginal: &Marginal) -> Errors {
 }
 
 /// What is found on one table with these axes.
-fn found(radial: &Radial, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found {
+fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found {
     let slanted = SLANTS.map(|z| (view(z * marginal.sigma()), MarginalView::new(marginal, z)));
     let ruler = Ruler { radial, marginal, slanted, axes };
     let cells = |axis: &Axis| (axis.nodes.len() - 1) as f64;
@@ -148,7 +149,7 @@ fn last(share: f64) -> f64 {
 
 /// A distribution and its tables, one of which has these axes.
 struct Ruler<'a> {
-    radial: &'a Radial,
+    radial: &'a Lobe,
     marginal: &'a Marginal<'a>,
     slanted: [(Vec3, MarginalView<'a>); SLANTS.len()],
     axes: &'a [Axis],
@@ -215,7 +216,7 @@ impl Ruler<'_> {
 /// Writes what is found into the four tables of one distribution.
 ///
 /// # Errors
-/// [`LoadError::Invalid`] if the tables do not bind.
+/// [`LoadError::Invalid`] if the tables do not make a lobe.
 pub fn certify(
     tables: &mut [Table],
     entry: &MaterialEntry,
@@ -223,7 +224,7 @@ pub fn certify(
 ) -> Result<(), LoadError> {
     let provenance = Provenance { materials: vec![entry.clone()], ..Provenance::default() };
     let radial = Tables::from_tables(provenance, tables.to_vec())?
-        .radial(&entry.name)
+        .material(&entry.name)
         .map_err(|why| LoadError::Invalid(why.to_string()))?;
     for table in tables {
         let key = match table.kind {

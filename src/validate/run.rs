@@ -4,9 +4,11 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use microfacet_model as model;
-use microfacet_sampler::{BindError, Tables};
+use microfacet_model::MicrofacetDistribution as _;
+use microfacet_sampler::MicrofacetDistribution as _;
+use microfacet_sampler::{MaterialError, Tables};
 
-use microfacet_model::statistics::{Judgement, judge_visible_normals, sidak};
+use microfacet_model::statistics::{NormalsTest, sidak, test_visible_normals};
 
 use super::configuration::Configuration;
 use super::pdf_integral;
@@ -31,7 +33,7 @@ pub struct Report {
     /// Material and view.
     pub configuration: Configuration,
     /// The statistical tests of the normals drawn.
-    pub normals: Judgement,
+    pub normals: NormalsTest,
     /// Error of G1 for the view.
     pub g1_error: f64,
     /// Integral of `table_pdf` over all normals, with the configuration's γ and θ.
@@ -70,13 +72,13 @@ impl Outcome {
 /// Judges all `configurations` in parallel, calling `progress` after each.
 ///
 /// # Errors
-/// [`BindError`] if the set does not hold what it says it covers.
+/// [`MaterialError`] if the set does not hold what it says it covers.
 pub fn run(
     tables: &Tables,
     configurations: &[Configuration],
     options: Options,
     progress: impl Fn() + Sync,
-) -> Result<Outcome, BindError> {
+) -> Result<Outcome, MaterialError> {
     let mut reports = configurations
         .par_iter()
         .map(|configuration| {
@@ -84,7 +86,7 @@ pub fn run(
             progress();
             report
         })
-        .collect::<Result<Vec<_>, BindError>>()?;
+        .collect::<Result<Vec<_>, MaterialError>>()?;
     reports.sort_by(|a, b| a.normals.p().total_cmp(&b.normals.p()));
     // Two tests a configuration.
     Ok(Outcome { level: sidak(LEVEL, 2 * reports.len()), reports })
@@ -94,23 +96,23 @@ fn one(
     tables: &Tables,
     configuration: &Configuration,
     options: Options,
-) -> Result<Report, BindError> {
+) -> Result<Report, MaterialError> {
     let Configuration { sigma_x, sigma_y, gamma, seed, .. } = *configuration;
-    let bound = tables.student_t([sigma_x, sigma_y], gamma)?;
+    let lobe = tables.lobe([sigma_x, sigma_y], gamma)?;
     // The model gets the roughness that the run time has rounded to.
-    let [x, y] = bound.sigma().map(f64::from);
+    let sigma = [sigma_x as f32, sigma_y as f32];
     let judged = gamma * options.gamma_factor;
-    let truth = model::StudentT::anisotropic(x, y, judged).map_err(|_| BindError::Gamma(judged))?;
+    let truth = model::StudentT::new(sigma, judged).map_err(|_| MaterialError::Gamma(judged))?;
     let v = configuration.view();
-    let normals = judge_visible_normals(&truth, v.as_dvec3(), options.samples, seed, |u| {
-        bound.sample_visible_normal(v, u)
+    let normals = test_visible_normals(&truth, v.as_dvec3(), options.samples, seed, |u| {
+        lobe.sample_visible_normal(v, u)
     });
     let theta = configuration.theta as f32;
     let in_plane = Vec3::new(theta.sin(), 0.0, theta.cos().max(0.0));
     Ok(Report {
         configuration: *configuration,
         normals,
-        g1_error: (f64::from(bound.g1(v)) - truth.g1(v.as_dvec3())).abs(),
-        pdf_integral: pdf_integral::integral(&bound.with_roughness(1.0)?, in_plane),
+        g1_error: (f64::from(lobe.g1(v)) - truth.g1(v.as_dvec3())).abs(),
+        pdf_integral: pdf_integral::integral(&tables.lobe(1.0, gamma)?, gamma, in_plane),
     })
 }

@@ -13,9 +13,9 @@ use std::fmt;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use microfacet_sampler::{BindError, Tables};
+use microfacet_sampler::{MaterialError, Tables};
 
-use crate::spec::GAMMA_WHOLE;
+use crate::table_spec::GAMMA_WHOLE;
 
 use corners::{corner_materials, corner_points, random_material, random_points};
 
@@ -161,15 +161,15 @@ impl Report {
 /// Visits all corners and then random points until `points` are judged; the same `seed` visits the same ones.
 ///
 /// # Errors
-/// [`BindError`] if the set does not hold what it says it covers.
-pub fn run(tables: &Tables, points: u64, seed: u64) -> Result<Report, BindError> {
+/// [`MaterialError`] if the set does not hold what it says it covers.
+pub fn run(tables: &Tables, points: u64, seed: u64) -> Result<Report, MaterialError> {
     let corners = corner_materials(tables)
         .par_iter()
         .enumerate()
         .map(|(i, &(sigma, gamma))| {
             let mut report = Report::default();
-            checks::judge(tables, sigma, gamma, corner_points(sigma, gamma, i), &mut report)?;
-            Ok(report)
+            checks::check(tables, sigma, gamma, corner_points(sigma, gamma, i), &mut report)?;
+            Ok::<_, MaterialError>(report)
         })
         .try_reduce(Report::default, |a, b| Ok(a.merge(b)))?;
     let left = points.saturating_sub(corners.total().points).div_ceil(POINTS_PER_MATERIAL);
@@ -177,12 +177,12 @@ pub fn run(tables: &Tables, points: u64, seed: u64) -> Result<Report, BindError>
         .into_par_iter()
         .fold(
             || Ok(Report::default()),
-            |report: Result<Report, BindError>, i| {
+            |report: Result<Report, MaterialError>, i| {
                 let mut report = report?;
                 let mut numbers = corners::numbers(seed, i);
                 let (sigma, gamma) = random_material(tables, &mut numbers);
                 let points = random_points(sigma, gamma, POINTS_PER_MATERIAL, &mut numbers);
-                checks::judge(tables, sigma, gamma, points, &mut report)?;
+                checks::check(tables, sigma, gamma, points, &mut report)?;
                 Ok(report)
             },
         )

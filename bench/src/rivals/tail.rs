@@ -168,7 +168,7 @@ mod tests {
                 let sin = f64::from(i) / 20.0;
                 let cos = (1.0 - sin * sin).sqrt();
                 // The reduced slope is √s times the unit slope.
-                let w = shape.unit(sin.abs() / cos / shape.s().sqrt());
+                let w = shape.asinh_slope(sin.abs() / cos / shape.s().sqrt());
                 let one = if across { shape.across_tail(w) } else { shape.tail(w) };
                 let want = if sin < 0.0 { 1.0 - one } else { one };
                 let power = cos.powf(2.0 * p + 2.0) as f32;

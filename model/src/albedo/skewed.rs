@@ -18,14 +18,14 @@
 //! the layer along the rim and, for long tails, the neighbourhood of l = n; the clamp of G1(l) at one is a kink along
 //! a curve, at which chords are divided.
 
-use microfacet_common::Masking;
+use microfacet_common::{Masking, Skew};
 
 use super::{Albedo, AlbedoIntegrator, PANEL};
 use crate::converge::{CUT, converge};
 use crate::ellipsoid::Ellipsoid;
 use crate::error::ParameterError;
 use crate::panels::{End, Gauss};
-use crate::reduced;
+use crate::slope_integrals;
 
 /// Slopes beyond e³⁰⁰ along the view have no square together with those across it.
 const LARGEST_RAPIDITY: f64 = 300.0;
@@ -280,7 +280,8 @@ impl AlbedoIntegrator {
             return (log + from * from).sqrt();
         }
         let root = self.shape.s().sqrt();
-        let ln_cosh = reduced::ln_cosh(root * from) + 0.5 * log / (self.shape.gamma() - 1.5);
+        let ln_cosh =
+            slope_integrals::ln_cosh(root * from) + 0.5 * log / (self.shape.gamma() - 1.5);
         inverse_ln_cosh(ln_cosh).min(LARGEST_RAPIDITY) / root
     }
 
@@ -325,7 +326,7 @@ impl AlbedoIntegrator {
     }
 
     fn signed_unit(&self, x: f64) -> f64 {
-        self.shape.unit(x.abs()).copysign(x)
+        self.shape.asinh_slope(x.abs()).copysign(x)
     }
 
     fn signed_slope(&self, w: f64) -> f64 {
@@ -402,8 +403,7 @@ impl View {
     fn new(ellipsoid: &Ellipsoid, cos: f64, phi: f64) -> Self {
         let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
         let (sin_phi, cos_phi) = libm::sincos(phi);
-        let u = ellipsoid.unit_matrix();
-        let (p, q, r) = (u.x_axis.x, u.x_axis.y, u.y_axis.y);
+        let Skew { p, q, r, x, y } = ellipsoid.skew();
         let turn = |x: f64, y: f64| [x * cos_phi + y * sin_phi, y * cos_phi - x * sin_phi];
         // The slopes' map ((p, q), (0, r)) with its rows turned to the azimuth, its columns to the view in unit space.
         let ([a, c], [b, d]) = (turn(p, 0.0), turn(q, r));
@@ -413,7 +413,7 @@ impl View {
         Self {
             cos,
             sin,
-            mean: turn(u.x_axis.z, u.y_axis.z),
+            mean: turn(x, y),
             beta,
             lambda: (a * c + b * d) / beta,
             mu: p * r / beta,

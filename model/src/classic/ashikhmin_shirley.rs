@@ -37,11 +37,11 @@ impl AshikhminShirley {
 
     /// D(m) per steradian; 0 for m at or below the horizon.
     pub fn d(&self, m: DVec3) -> f64 {
-        ((self.nx + 2.0) * (self.ny + 2.0)).sqrt() / (2.0 * PI) * self.unit(m)
+        ((self.nx + 2.0) * (self.ny + 2.0)).sqrt() / (2.0 * PI) * self.relative_d(m)
     }
 
     /// The unit form D(m)/D(n) ∈ [0, 1].
-    pub fn unit(&self, m: DVec3) -> f64 {
+    pub fn relative_d(&self, m: DVec3) -> f64 {
         if m.z > 0.0 { libm::pow(m.z, self.exponent(m.x, m.y)) } else { 0.0 }
     }
 
@@ -108,6 +108,6 @@ mod tests {
             libm::sin(half) * libm::sin(0.3),
             libm::cos(half),
         );
-        assert!((d.unit(m) - 0.5).abs() < 1e-14);
+        assert!((d.relative_d(m) - 0.5).abs() < 1e-14);
     }
 }

@@ -33,7 +33,7 @@ impl Isotropic for Gauss {
         self.peak
     }
 
-    fn unit(&self, theta: f64) -> f64 {
+    fn relative_d(&self, theta: f64) -> f64 {
         libm::exp(-(theta / self.m) * (theta / self.m))
     }
 

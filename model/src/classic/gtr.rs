@@ -48,7 +48,7 @@ impl Isotropic for Gtr {
         1.0 / (PI * self.integral(1.0))
     }
 
-    fn unit(&self, theta: f64) -> f64 {
+    fn relative_d(&self, theta: f64) -> f64 {
         let sin = libm::sin(theta);
         libm::exp(-self.gamma * libm::log1p(self.b() * sin * sin))
     }

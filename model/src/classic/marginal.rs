@@ -232,7 +232,7 @@ pub fn resolved(marginal: &Marginal) -> f64 {
 mod tests {
     use super::*;
     use crate::classic::{Gauss, Gtr, Member, Schlick};
-    use crate::{SignedUnit, UnitView, VisibleSlope};
+    use crate::{SignedSlope, UnitView, VisibleSlope};
 
     #[test]
     fn members_have_the_family_s_closed_forms() {
@@ -250,7 +250,7 @@ mod tests {
             // The family's unit slopes are divided by its own σ.
             let ratio = marginal.sigma() / t.sigma_x();
             for z in [0.0, 0.2, 1.0, 4.0] {
-                let w = shape.unit(z * ratio);
+                let w = shape.asinh_slope(z * ratio);
                 let at = marginal.beyond(z);
                 assert!(
                     (at.tail - shape.tail(w)).abs() < 1e-9,
@@ -262,8 +262,10 @@ mod tests {
                 let visible = MarginalView::new(&marginal, z);
                 let exact = VisibleSlope::new(shape, UnitView::from_cotangent(z * ratio));
                 for x in [-1.0, -0.1, 0.3, 2.0] {
-                    let slope =
-                        SignedUnit { w: shape.unit(f64::abs(x * ratio)), sign: f64::signum(x) };
+                    let slope = SignedSlope {
+                        w: shape.asinh_slope(f64::abs(x * ratio)),
+                        sign: f64::signum(x),
+                    };
                     assert!(
                         (visible.shares(x).below - exact.cdf(slope)).abs() < 1e-8,
                         "z {z}, x {x}"

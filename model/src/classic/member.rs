@@ -5,6 +5,7 @@ use core::f64::consts::FRAC_PI_2;
 use glam::DVec3;
 
 use super::{Isotropic, search_half};
+use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::student_t::StudentT;
 
@@ -50,7 +51,7 @@ impl Member {
     /// # Errors
     /// [`ParameterError`] unless 0 < σ < ∞ and γ > 3/2.
     pub fn student_t(sigma: f64, gamma: f64) -> Result<Self, ParameterError> {
-        StudentT::isotropic(sigma, gamma).map(Self)
+        StudentT::new(sigma, gamma).map(Self)
     }
 }
 
@@ -59,7 +60,7 @@ impl Isotropic for Member {
         self.0.d(DVec3::Z)
     }
 
-    fn unit(&self, theta: f64) -> f64 {
+    fn relative_d(&self, theta: f64) -> f64 {
         self.0.d(DVec3::new(libm::sin(theta), 0.0, libm::cos(theta))) / self.peak()
     }
 
@@ -71,7 +72,7 @@ impl Isotropic for Member {
             let sin2 = (2.0_f64.sqrt() - 1.0) / (1.0 / (sigma * sigma) - 1.0);
             return (sin2 > 0.0 && sin2 <= 1.0).then(|| libm::asin(sin2.sqrt()));
         }
-        search_half(|theta| self.unit(theta), FRAC_PI_2)
+        search_half(|theta| self.relative_d(theta), FRAC_PI_2)
     }
 
     fn cdf(&self, theta: f64) -> f64 {

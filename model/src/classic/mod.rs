@@ -52,11 +52,11 @@ pub trait Isotropic: Sync {
     fn peak(&self) -> f64;
 
     /// The unit form D(θ)/D(0); it is 1 at θ = 0 and may exceed 1 elsewhere for rough surfaces.
-    fn unit(&self, theta: f64) -> f64;
+    fn relative_d(&self, theta: f64) -> f64;
 
     /// D(θ) per steradian; 0 outside [0, π/2).
     fn d(&self, theta: f64) -> f64 {
-        if (0.0..FRAC_PI_2).contains(&theta) { self.peak() * self.unit(theta) } else { 0.0 }
+        if (0.0..FRAC_PI_2).contains(&theta) { self.peak() * self.relative_d(theta) } else { 0.0 }
     }
 
     /// The largest θ at which D is not zero.
@@ -73,7 +73,7 @@ pub trait Isotropic: Sync {
     ///
     /// To 1e-15 relative. Found by search where no closed form overrides it.
     fn half_angle(&self) -> Option<f64> {
-        search_half(|theta| self.unit(theta), self.support())
+        search_half(|theta| self.relative_d(theta), self.support())
     }
 
     /// The share of the projected area whose normals are within θ of n: ∫₀^θ 2π D(t) cos t sin t dt.
@@ -181,7 +181,7 @@ mod tests {
                 }
             }
             assert!((sum - 1.0).abs() < 1e-10, "{name}: integrates to {sum}");
-            assert!((d.unit(0.0) - 1.0).abs() < 1e-15, "{name}: unit form");
+            assert!((d.relative_d(0.0) - 1.0).abs() < 1e-15, "{name}: unit form");
         }
     }
 
@@ -202,11 +202,11 @@ mod tests {
     #[test]
     fn half_angles() {
         for (name, d) in all() {
-            let searched = search_half(|theta| d.unit(theta), d.support());
+            let searched = search_half(|theta| d.relative_d(theta), d.support());
             match (d.half_angle(), searched) {
                 (Some(a), Some(b)) => {
                     assert!((a / b - 1.0).abs() < 1e-7, "{name}: {a} against {b}");
-                    assert!((d.unit(a) - 0.5).abs() < 1e-9, "{name}");
+                    assert!((d.relative_d(a) - 0.5).abs() < 1e-9, "{name}");
                 }
                 (a, b) => assert!(a.is_none() && b.is_none(), "{name}: {a:?} {b:?}"),
             }

@@ -34,7 +34,7 @@ impl Isotropic for Schlick {
         1.0 / (PI * self.m * self.m)
     }
 
-    fn unit(&self, theta: f64) -> f64 {
+    fn relative_d(&self, theta: f64) -> f64 {
         let half = libm::sin(0.5 * theta);
         // 1 − cos θ without cancellation, and the same in m x² + (m² − x²).
         let rest = 2.0 * half * half;

@@ -135,7 +135,7 @@ impl Isotropic for Tabulated {
         self.d[0]
     }
 
-    fn unit(&self, theta: f64) -> f64 {
+    fn relative_d(&self, theta: f64) -> f64 {
         if theta > self.support() {
             return 0.0;
         }

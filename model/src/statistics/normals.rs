@@ -5,7 +5,8 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
 use super::chi_square::{ChiSquare, chi_square};
-use crate::{Shape, SignedUnit, StudentT, VisibleSlope, across_cdf, across_quantile};
+use crate::distribution::MicrofacetDistribution;
+use crate::{Shape, SignedSlope, StudentT, VisibleSlope, across_cdf, across_quantile};
 
 /// Cells along α and β of the χ² in the lobe's space.
 const CELLS: [usize; 2] = [32, 16];
@@ -18,7 +19,7 @@ const LARGEST_SLOPE: f64 = 1e15;
 
 /// What was found for one material and view.
 #[derive(Clone, Copy, Debug)]
-pub struct Judgement {
+pub struct NormalsTest {
     /// χ² over (α, β), with exact expected counts.
     pub lobe: ChiSquare,
     /// χ² over the hemisphere of world normals, with expected counts by quadrature of the analytic density.
@@ -27,7 +28,7 @@ pub struct Judgement {
     pub ks: f64,
 }
 
-impl Judgement {
+impl NormalsTest {
     /// The smaller p of the two tests.
     pub fn p(&self) -> f64 {
         self.lobe.p.min(self.world.p)
@@ -38,13 +39,13 @@ impl Judgement {
 /// view `v`.
 ///
 /// Any sampler can be judged, from tables or not. The truth may deliberately be another than was drawn from, to see the tests reject.
-pub fn judge_visible_normals(
+pub fn test_visible_normals(
     truth: &StudentT,
     v: DVec3,
     samples: usize,
     seed: u64,
     mut draw: impl FnMut([f32; 2]) -> Vec3,
-) -> Judgement {
+) -> NormalsTest {
     let grid = LobeGrid::new(truth, v);
     let world = WorldGrid::new(truth, v);
     let mut lobe_counts = vec![0_u64; grid.along.len() * grid.across.len()];
@@ -71,7 +72,7 @@ pub fn judge_visible_normals(
         below += count;
         worst.max((below as f64 / n - cdf).abs())
     });
-    Judgement {
+    NormalsTest {
         lobe: chi_square(&lobe_counts, &lobe_expected),
         world: chi_square(&world_counts, &world_expected),
         ks,
@@ -132,8 +133,8 @@ impl LobeGrid {
 /// Upper edges of `count` cells of equal probability and the CDF there, both ending at (∞, 1).
 fn upper_edges(
     count: usize,
-    quantile: impl Fn(f64) -> SignedUnit,
-    cdf: impl Fn(SignedUnit) -> f64,
+    quantile: impl Fn(f64) -> SignedSlope,
+    cdf: impl Fn(SignedSlope) -> f64,
     shape: &Shape,
 ) -> (Vec<f64>, Vec<f64>) {
     let (mut edges, mut values) = (Vec::new(), Vec::new());

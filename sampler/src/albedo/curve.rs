@@ -9,8 +9,8 @@ use microfacet_common::gauss_legendre;
 use microfacet_common::shape::s_of_gamma;
 
 use crate::axis::lagrange::{SIX, combine, six};
-use crate::axis::{BoundAzimuth, BoundCritical, BoundView, Mapping, ViewBlend, Weights};
-use crate::error::BindError;
+use crate::axis::{Mapping, PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend, Weights};
+use crate::error::MaterialError;
 use crate::format::{Covered, Kind, Reflectance, Table};
 
 /// Most channels that a table of albedos has.
@@ -77,8 +77,13 @@ impl<const N: usize> ViewCurve<N> {
     /// dielectric's dense side, and lobes that are one material ignore σ and γ. Where the table has fewer channels the last are 0.
     ///
     /// # Errors
-    /// [`BindError::NoTable`] if the table has more channels, or moments, or does not cover the material.
-    pub fn bind(table: &Table, sigma: f64, gamma: f64, eta: f64) -> Result<Self, BindError> {
+    /// [`MaterialError::NoTable`] if the table has more channels, or moments, or does not cover the material.
+    pub fn from_table(
+        table: &Table,
+        sigma: f64,
+        gamma: f64,
+        eta: f64,
+    ) -> Result<Self, MaterialError> {
         let shares =
             table.subject.reflectance.filter(|reflectance| *reflectance != Reflectance::Moments);
         let place = Place { sigma, gamma, eta };
@@ -112,9 +117,9 @@ impl<const N: usize> ViewCurve<N> {
 }
 
 /// Of a table that was to be bound and is of something else.
-pub(super) fn missing(table: &Table, place: &Place) -> BindError {
+pub(super) fn missing(table: &Table, place: &Place) -> MaterialError {
     let Place { sigma, gamma, .. } = place;
-    BindError::NoTable(format!("{} for sigma {sigma} and gamma {gamma}", table.name))
+    MaterialError::NoTable(format!("{} for sigma {sigma} and gamma {gamma}", table.name))
 }
 
 /// All channels of a table, at one material.
@@ -135,11 +140,11 @@ pub(super) struct Curve {
 #[derive(Clone, Copy, Debug)]
 enum View {
     /// The same at every azimuth.
-    Round(BoundView),
+    Round(PreparedView),
     /// By the roughness seen from the azimuth. What depends on γ is in the parameters.
-    Turning(BoundAzimuth, ViewBlend),
+    Turning(PreparedAzimuth, ViewBlend),
     /// From inside a dielectric.
-    Critical(BoundCritical),
+    Critical(PreparedCritical),
 }
 
 /// Azimuths with their weights.
@@ -149,8 +154,8 @@ const ROUND: &Rows = &[(0, 1.0)];
 
 /// The coordinate of views of one azimuth.
 pub(super) enum Elevation<'a> {
-    Blend(&'a BoundView),
-    Critical(&'a BoundCritical),
+    Blend(&'a PreparedView),
+    Critical(&'a PreparedCritical),
 }
 
 impl Elevation<'_> {
@@ -187,11 +192,11 @@ impl Curve {
         let rest = &table.axes[at.weights.len()..];
         let view = match (rest[0].mapping, rest[rest.len() - 1].mapping) {
             (Mapping::Azimuth(azimuth), Mapping::ViewBlend(blend)) => {
-                View::Turning(azimuth.bind(rest[0].len()), blend)
+                View::Turning(azimuth.prepare(rest[0].len()), blend)
             }
-            (_, Mapping::ViewBlend(blend)) => View::Round(blend.bind(at.sigma, place.gamma)),
+            (_, Mapping::ViewBlend(blend)) => View::Round(blend.prepare(at.sigma, place.gamma)),
             (_, Mapping::CriticalBlend(blend)) => {
-                View::Critical(blend.bind(at.sigma, place.gamma, 1.0 / place.eta))
+                View::Critical(blend.prepare(at.sigma, place.gamma, 1.0 / place.eta))
             }
             _ => unreachable!("validated on load"),
         };
@@ -209,7 +214,7 @@ impl Curve {
                 let r = libm::hypot(x, y);
                 // Seen along the normal every azimuth is as good; NaN fails the comparison, too.
                 let (c, s) = if r > 0.0 && r < f64::INFINITY { (x / r, y / r) } else { (1.0, 0.0) };
-                let view = blend.bind_shaped(azimuth.sigma(c, s));
+                let view = blend.prepare_shaped(azimuth.sigma(c, s));
                 then(&azimuth.six(c, s), &Elevation::Blend(&view))
             }
         }
@@ -269,7 +274,8 @@ impl Curve {
             View::Turning(azimuth, blend) => {
                 let mut sum = [0.0; N];
                 for ([c, s], share) in azimuth.circle() {
-                    let (rows, view) = (azimuth.six(c, s), blend.bind_shaped(azimuth.sigma(c, s)));
+                    let (rows, view) =
+                        (azimuth.six(c, s), blend.prepare_shaped(azimuth.sigma(c, s)));
                     let view = Elevation::Blend(&view);
                     let part = over_views(view.floor(), WIDTH, |cos| quantities(&rows, &view, cos));
                     for (sum, part) in sum.iter_mut().zip(part) {

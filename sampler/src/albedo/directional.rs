@@ -5,7 +5,7 @@ use microfacet_common::Masking;
 
 use super::curve::{Curve, Elevation, Place, Rows, missing, within};
 use super::moments::{Moments, below, less_mirror};
-use crate::error::BindError;
+use crate::error::MaterialError;
 use crate::format::{Reflectance, Table};
 
 /// The directional albedo of one material as a function of the view, with F = 1 and as moments of Fresnel weights.
@@ -27,8 +27,8 @@ impl Albedo {
     /// Of a table of moments at hand, such as one that a bake has just filled; a table of one material ignores σ and γ.
     ///
     /// # Errors
-    /// [`BindError::NoTable`] for a table that holds no moments or does not cover the material.
-    pub fn bind(table: &Table, sigma: f64, gamma: f64) -> Result<Self, BindError> {
+    /// [`MaterialError::NoTable`] for a table that holds no moments or does not cover the material.
+    pub fn from_table(table: &Table, sigma: f64, gamma: f64) -> Result<Self, MaterialError> {
         let place = Place { sigma, gamma, eta: f64::NAN };
         let moments = table.subject.reflectance == Some(Reflectance::Moments);
         moments.then(|| Self::new(table, &place)).flatten().ok_or_else(|| missing(table, &place))

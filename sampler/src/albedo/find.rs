@@ -8,9 +8,9 @@ use microfacet_common::shape::gamma_of_s;
 
 use super::curve::{Collapsed, Place, ViewCurve, domains};
 use super::directional::Albedo;
-use super::exact::{DielectricAlbedo, FresnelAlbedo};
+use super::fresnel::{DielectricAlbedo, FresnelAlbedo};
 use super::moments::Moments;
-use crate::error::BindError;
+use crate::error::MaterialError;
 use crate::format::{FresnelEntry, Kind, LobeEntry, MaterialEntry, Reflectance, Side, Table};
 use crate::tables::Tables;
 
@@ -21,8 +21,13 @@ impl Tables {
     /// just this material, so that a furnace closes to rounding. Takes some ten microseconds; keep the result.
     ///
     /// # Errors
-    /// [`BindError`] for a σ or γ outside the family, or one that the set's albedo tables do not cover.
-    pub fn albedo(&self, sigma: f64, gamma: f64, masking: Masking) -> Result<Albedo, BindError> {
+    /// [`MaterialError`] for a σ or γ outside the family, or one that the set's albedo tables do not cover.
+    pub fn albedo(
+        &self,
+        sigma: f64,
+        gamma: f64,
+        masking: Masking,
+    ) -> Result<Albedo, MaterialError> {
         self.moments_of(Kind::Albedo, sigma, gamma, masking, Albedo::new)
     }
 
@@ -36,7 +41,7 @@ impl Tables {
         sigma: f64,
         gamma: f64,
         masking: Masking,
-    ) -> Result<Moments, BindError> {
+    ) -> Result<Moments, MaterialError> {
         self.moments_of(Kind::AlbedoAverage, sigma, gamma, masking, |table, place| {
             let at = Collapsed::new(table, place)?;
             let rest = table.collapsed::<f64>(&at.weights);
@@ -54,9 +59,9 @@ impl Tables {
     /// a range the round lobe of √(σx σy) stands in.
     ///
     /// # Errors
-    /// [`BindError::NoSuchMaterial`], [`BindError::NoAlbedo`] for a material that was baked without albedos, or what
+    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that was baked without albedos, or what
     /// [`albedo`](Self::albedo) reports.
-    pub fn material_albedo(&self, name: &str) -> Result<Albedo, BindError> {
+    pub fn material_albedo(&self, name: &str) -> Result<Albedo, MaterialError> {
         let entry = self.entry(name)?;
         if entry.lobe() == LobeEntry::Family {
             return self.albedo(entry.round_sigma(), entry.gamma(), entry.masking());
@@ -70,8 +75,8 @@ impl Tables {
     /// Below σ = 1e-8 it is held at what it is there.
     ///
     /// # Errors
-    /// [`BindError::NoSuchMaterial`], [`BindError::NoAlbedo`] for a material that states no such reflectance or was baked without albedos.
-    pub fn material_fresnel_albedo(&self, name: &str) -> Result<FresnelAlbedo, BindError> {
+    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that states no such reflectance or was baked without albedos.
+    pub fn material_fresnel_albedo(&self, name: &str) -> Result<FresnelAlbedo, MaterialError> {
         let entry = self.entry(name)?;
         if let Some(eta) = entry.fresnel.and_then(|fresnel| fresnel.middle_index()) {
             return Ok(FresnelAlbedo::Dielectric(self.material_dielectric_albedo(name, eta)?));
@@ -86,14 +91,18 @@ impl Tables {
     /// The albedo of a named material at an index η of the range that its recipe states.
     ///
     /// # Errors
-    /// [`BindError::NoSuchMaterial`], [`BindError::OtherDistribution`] for a lobe without one, or as
+    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::OtherDistribution`] for a lobe without one, or as
     /// [`dielectric_albedo`](Self::dielectric_albedo).
     pub fn material_dielectric_albedo(
         &self,
         name: &str,
         eta: f64,
-    ) -> Result<DielectricAlbedo, BindError> {
-        let entry = self.student_t_entry(name)?;
+    ) -> Result<DielectricAlbedo, MaterialError> {
+        let entry = self.entry(name)?;
+        if !matches!(entry.lobe(), LobeEntry::Family | LobeEntry::StudentT { .. }) {
+            let distribution = entry.lobe().name().into();
+            return Err(MaterialError::OtherDistribution { name: name.into(), distribution });
+        }
         self.dielectric_albedo(entry.round_sigma(), entry.gamma(), eta, entry.masking())
     }
 
@@ -101,14 +110,14 @@ impl Tables {
     /// microseconds; keep the result.
     ///
     /// # Errors
-    /// [`BindError::Dielectric`] if no table of the set covers it.
+    /// [`MaterialError::Dielectric`] if no table of the set covers it.
     pub fn dielectric_albedo(
         &self,
         sigma: f64,
         gamma: f64,
         eta: f64,
         masking: Masking,
-    ) -> Result<DielectricAlbedo, BindError> {
+    ) -> Result<DielectricAlbedo, MaterialError> {
         let side = |eta| self.interface_albedo(sigma, gamma, eta, masking);
         Ok(DielectricAlbedo { outside: side(eta)?, inside: side(1.0 / eta)? })
     }
@@ -116,14 +125,14 @@ impl Tables {
     /// The same from one side: [reflection, transmission] where η is the index beyond the interface over that on the viewer's side, in [0, ∞].
     ///
     /// # Errors
-    /// [`BindError::Dielectric`] if no table of that side covers it.
+    /// [`MaterialError::Dielectric`] if no table of that side covers it.
     pub fn interface_albedo(
         &self,
         sigma: f64,
         gamma: f64,
         eta: f64,
         masking: Masking,
-    ) -> Result<ViewCurve<2>, BindError> {
+    ) -> Result<ViewCurve<2>, MaterialError> {
         let (side, dense) = if eta < 1.0 { (Side::Dense, 1.0 / eta) } else { (Side::Thin, eta) };
         let place = Place { sigma, gamma, eta: dense };
         let mut tables = self.albedos(Kind::Albedo, &LobeEntry::Family, masking);
@@ -131,7 +140,7 @@ impl Tables {
             let same = table.subject.reflectance?.side()? == side;
             same.then(|| ViewCurve::new(table, &place)).flatten()
         });
-        found.ok_or(BindError::Dielectric([eta, sigma, gamma]))
+        found.ok_or(MaterialError::Dielectric([eta, sigma, gamma]))
     }
 
     /// The albedo of a material's own lobe under a reflectance.
@@ -140,7 +149,7 @@ impl Tables {
         entry: &MaterialEntry,
         bind: impl Fn(&Table, &Place) -> Option<T>,
         serves: impl Fn(&Reflectance) -> bool,
-    ) -> Result<T, BindError> {
+    ) -> Result<T, MaterialError> {
         let place = Place { sigma: entry.round_sigma(), gamma: entry.gamma(), eta: f64::NAN };
         let lobe = entry.lobe();
         let mut tables = self.albedos(Kind::Albedo, &lobe, entry.masking());
@@ -149,7 +158,7 @@ impl Tables {
             serves.then(|| bind(table, &place)).flatten()
         });
         let remedy = "state its `fresnel` in its recipe, or bake it with --albedo";
-        found.ok_or_else(|| BindError::NoAlbedo { name: entry.name.clone(), remedy })
+        found.ok_or_else(|| MaterialError::NoAlbedo { name: entry.name.clone(), remedy })
     }
 
     fn albedos(
@@ -174,12 +183,12 @@ impl Tables {
         gamma: f64,
         masking: Masking,
         bind: impl Fn(&Table, &Place) -> Option<T>,
-    ) -> Result<T, BindError> {
+    ) -> Result<T, MaterialError> {
         if !(0.0..f64::INFINITY).contains(&sigma) {
-            return Err(BindError::Sigma(sigma as f32));
+            return Err(MaterialError::Sigma(sigma));
         }
         if !(gamma > 1.5) {
-            return Err(BindError::Gamma(gamma));
+            return Err(MaterialError::Gamma(gamma));
         }
         let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Moments);
         let tables = || self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments);
@@ -196,19 +205,19 @@ fn not_covered<'a, I: Iterator<Item = &'a Table>>(
     kind: Kind,
     sigma: f64,
     gamma: f64,
-) -> BindError {
+) -> MaterialError {
     let ranges = || tables().filter_map(|table| table.subject.covers);
     if ranges().any(|covers| covers.sigma.is_some_and(|[min, _]| min > 0.0)) {
-        return BindError::AlbedoNotCovered { sigma, gamma, covered: domains(tables()) };
+        return MaterialError::AlbedoNotCovered { sigma, gamma, covered: domains(tables()) };
     }
     let reaches = |[low, high]: [f64; 2]| (gamma_of_s(high)..=gamma_of_s(low)).contains(&gamma);
     let of_shape = ranges().filter(|covers| reaches(covers.s)).filter_map(|covers| covers.sigma);
     if let Some(max) = of_shape.map(|[_, max]| max).reduce(f64::max) {
-        return BindError::SigmaNotCovered { sigma, max };
+        return MaterialError::SigmaNotCovered { sigma, max };
     }
     let gammas: Vec<_> = ranges()
         .map(|covers| format!("[{:.6}, {}]", gamma_of_s(covers.s[1]), gamma_of_s(covers.s[0])))
         .collect();
     let covered = if gammas.is_empty() { "nothing".into() } else { gammas.join(", ") };
-    BindError::NotCovered { kind: kind.name(), gamma, covered }
+    MaterialError::NotCovered { kind: kind.name(), gamma, covered }
 }

@@ -1,15 +1,15 @@
 //! Directional albedos from tables: the share of light that one bounce off the microsurface returns.
 //!
 //! One mechanism for every lobe and reflectance: [`find`] chooses the table by its description, [`curve`] collapses the axes of
-//! the material, which leaves a curve over the view, and [`directional`] or [`exact`] say what its channels mean.
+//! the material, which leaves a curve over the view, and [`directional`] or [`fresnel`] say what its channels mean.
 
 mod curve;
 mod directional;
-mod exact;
 mod find;
+mod fresnel;
 mod moments;
 
 pub use curve::ViewCurve;
 pub use directional::Albedo;
-pub use exact::{DielectricAlbedo, FresnelAlbedo};
+pub use fresnel::{DielectricAlbedo, FresnelAlbedo};
 pub use moments::Moments;

@@ -29,9 +29,9 @@ pub struct Azimuth {
 
 impl Azimuth {
     /// The coordinate with its sines and cosines at hand, for an axis of so many nodes.
-    pub fn bind(&self, nodes: usize) -> BoundAzimuth {
+    pub fn prepare(&self, nodes: usize) -> PreparedAzimuth {
         let (s, c) = libm::sincos(self.turn);
-        BoundAzimuth { sigma: self.sigma, turn: [c, s], fold: self.fold, nodes }
+        PreparedAzimuth { sigma: self.sigma, turn: [c, s], fold: self.fold, nodes }
     }
 }
 
@@ -60,7 +60,7 @@ impl Coordinate for Azimuth {
 
 /// [`Azimuth`] along an axis of a number of nodes.
 #[derive(Clone, Copy, Debug)]
-pub struct BoundAzimuth {
+pub struct PreparedAzimuth {
     sigma: [f64; 2],
     /// Cosine and sine of the first axis's azimuth.
     turn: [f64; 2],
@@ -68,7 +68,7 @@ pub struct BoundAzimuth {
     nodes: usize,
 }
 
-impl BoundAzimuth {
+impl PreparedAzimuth {
     /// A direction's components along the principal axes.
     fn principal(&self, c: f64, s: f64) -> [f64; 2] {
         let [ct, st] = self.turn;
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn there_and_back() {
         for axis in AXES {
-            let bound = axis.bind(9);
+            let bound = axis.prepare(9);
             for t in [0.0, 0.05, 0.3, 0.5, 0.77, 0.999] {
                 let [c, s] = bound.direction(t);
                 assert!((bound.coordinate(c, s) - t).abs() < 1e-14, "{axis:?}, {t}");
@@ -194,7 +194,7 @@ mod tests {
     fn the_fast_form_reads_the_nodes_about_the_coordinate() {
         for axis in AXES {
             let n = 17;
-            let bound = axis.bind(n);
+            let bound = axis.prepare(n);
             for i in 0..400 {
                 let t = (f64::from(i) + 0.3) / 400.0;
                 let [c, s] = bound.direction(t);

@@ -54,7 +54,7 @@ pub(crate) type Cell = [f32; 4];
 
 /// The cubics between nodes, values multiplied by `scale`, and behind them a *guard cell*: a coordinate at the upper end may fall
 /// into it, at position 0, so that fast lookups have no cell to limit.
-pub(crate) fn cells(nodes: &[Node], scale: f64) -> Vec<Cell> {
+pub(crate) fn cubic_cells(nodes: &[Node], scale: f64) -> Vec<Cell> {
     let guard = nodes.last().map(|node| [f64::from(node[0]), 0.0, 0.0, 0.0]);
     let cubics = nodes.windows(2).map(|pair| Cubic::new(pair[0], pair[1]).c);
     cubics.chain(guard).map(|c| c.map(|c| (c * scale) as f32)).collect()
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn all_forms_are_one_cubic() {
-        let coefficients = cells(&NODES, 1.0);
+        let coefficients = cubic_cells(&NODES, 1.0);
         assert_eq!(coefficients.len(), 3);
         for (i, pair) in NODES.windows(2).enumerate() {
             let exact = Cubic::new(pair[0], pair[1]);

@@ -16,33 +16,32 @@ use crate::error::LoadError;
 
 mod azimuth;
 mod coordinate;
-mod critical;
+mod critical_angle;
 mod crowded;
 pub mod half_tangent;
 pub(crate) mod hermite;
-mod index;
 mod inverse_shape;
 pub mod lagrange;
 mod log_roughness;
 mod log_shape;
-mod number;
+mod random_number;
 mod rational;
-mod view;
+mod refractive_index;
+mod view_blend;
 
-pub use azimuth::{Azimuth, BoundAzimuth};
+pub use azimuth::{Azimuth, PreparedAzimuth};
 pub use coordinate::even_nodes;
-pub use critical::{BoundCritical, CriticalBlend};
+pub use critical_angle::{CriticalBlend, PreparedCritical};
 pub use half_tangent::HalfTangent;
-pub use hermite::limit_slopes;
-pub use index::ReflectanceRoot;
 pub use inverse_shape::InverseShape;
 pub use log_roughness::LogRoughness;
 pub use log_shape::LogShape;
-pub use number::{MirroredRoot, OddRoot};
+pub use random_number::{MirroredRoot, OddRoot};
 pub use rational::Rational;
-pub use view::{BoundView, ViewBlend};
+pub use refractive_index::ReflectanceRoot;
+pub use view_blend::{PreparedView, ViewBlend};
 
-pub(crate) use number::roots;
+pub(crate) use random_number::roots;
 
 use coordinate::Coordinate;
 

@@ -8,8 +8,9 @@
 use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
-use super::plain::{HIDDEN, HIDDEN_ACROSS, pair, start};
-use super::slices::Plain;
+use super::distribution::MicrofacetDistribution;
+use super::fast_path::{HIDDEN, HIDDEN_ACROSS, pair, start};
+use super::slices::FastPath;
 use super::student_t::{SHORT, StudentT};
 use crate::axis::half_tangent::{half_slope_at, of_views};
 use crate::axis::hermite::{Cell, cubic_lanes, hermite_lanes, horner_lanes, split};
@@ -21,74 +22,52 @@ const LANES: usize = 4;
 const GROUPS: usize = 8;
 
 impl StudentT {
-    /// [`sample_visible_normal`](Self::sample_visible_normal) for each view and pair of numbers, into `m`: the same normals, to 2 ulp.
-    ///
-    /// # Errors
-    /// [`BatchError`] if the slices are not of one length; `m` is then untouched.
-    pub fn sample_batch(
-        &self,
-        v: &[Vec3],
-        u: &[[f32; 2]],
-        m: &mut [Vec3],
-    ) -> Result<(), BatchError> {
-        same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len())])?;
-        let Some(plain) = &self.slices.plain else {
-            self.sample_each(v, u, m);
-            return Ok(());
+    /// As many normals as there are views; the slices have one length.
+    pub(crate) fn sample_all(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) {
+        let Some(fast) = &self.slices.fast else {
+            return self.sample_each(v, u, m);
         };
         let ((v, v_rest), (u, u_rest)) = (v.as_chunks(), u.as_chunks());
         let (m, m_rest) = m.as_chunks_mut();
         for ((v, u), m) in v.chunks(GROUPS).zip(u.chunks(GROUPS)).zip(m.chunks_mut(GROUPS)) {
-            self.sample_groups(plain, v, u, m);
+            self.sample_groups(fast, v, u, m);
         }
         self.sample_each(v_rest, u_rest, m_rest);
-        Ok(())
     }
 
     fn sample_each(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) {
         for ((v, u), m) in v.iter().zip(u).zip(m) {
-            *m = self.sample_visible_normal(*v, *u);
+            *m = self.sample(*v, *u);
         }
     }
 
-    /// [`g1`](Self::g1) for each direction, into `g1`: the same numbers.
-    ///
-    /// # Errors
-    /// [`BatchError`] if the slices are not of one length; `g1` is then untouched.
-    pub fn g1_batch(&self, w: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
-        same_lengths(&[("w", w.len()), ("g1", g1.len())])?;
-        let (w, w_rest) = w.as_chunks::<LANES>();
+    /// G1 of each view; the slices have one length.
+    pub(crate) fn g1_all(&self, v: &[Vec3], g1: &mut [f32]) {
+        let (v, v_rest) = v.as_chunks::<LANES>();
         let (g1, g1_rest) = g1.as_chunks_mut::<LANES>();
-        if self.closed_form {
-            for (w, g1) in w.as_flattened().iter().zip(g1.as_flattened_mut()) {
-                *g1 = self.g1(*w);
-            }
-        } else {
-            for (w, g1) in w.iter().zip(g1) {
-                *g1 = self.g1_lanes(w);
-            }
+        for (v, g1) in v.iter().zip(g1) {
+            *g1 = self.g1_lanes(v);
         }
-        for (w, g1) in w_rest.iter().zip(g1_rest) {
-            *g1 = self.g1(*w);
+        for (v, g1) in v_rest.iter().zip(g1_rest) {
+            *g1 = self.g1(*v);
         }
-        Ok(())
     }
 
     /// At most [`GROUPS`] fours, stage by stage.
     fn sample_groups(
         &self,
-        plain: &Plain,
+        fast: &FastPath,
         v: &[[Vec3; LANES]],
         u: &[[[f32; 2]; LANES]],
         m: &mut [[Vec3; LANES]],
     ) {
         let mut located = [Located::default(); GROUPS];
         for ((at, v), u) in located.iter_mut().zip(v).zip(u) {
-            *at = self.locate(plain, v, u);
+            *at = self.locate(fast, v, u);
         }
         let mut slopes = [[f32x4::ZERO; 2]; GROUPS];
         for (slope, at) in slopes.iter_mut().zip(&located[..v.len()]) {
-            *slope = self.look_up(plain, at);
+            *slope = self.look_up(fast, at);
         }
         for (i, m) in m.iter_mut().enumerate() {
             let common = self.assemble_lanes(&located[i], slopes[i], m);
@@ -99,26 +78,26 @@ impl StudentT {
     }
 
     #[inline(always)]
-    fn locate(&self, plain: &Plain, v: &[Vec3; LANES], u: &[[f32; 2]; LANES]) -> Located {
+    fn locate(&self, fast: &FastPath, v: &[Vec3; LANES], u: &[[f32; 2]; LANES]) -> Located {
         let [vx, vy, vz] = transpose(v);
         let (x, y) = (vx * self.sigma_x, vy * self.sigma_y);
         let z = vz & vz.simd_gt(0.0);
         let rho2 = x * x + y * y;
         let (rho, length) = (rho2.sqrt(), (rho2 + z * z).sqrt());
-        let at = of_views(rho, z, length, plain.rows);
+        let at = of_views(rho, z, length, fast.rows);
         let (row, between) = split(at);
-        let silhouette = 1.0 - at * plain.row;
-        let along = Number::new([u[0][0], u[1][0], u[2][0], u[3][0]], plain.scales[0]);
-        let across = Number::new([u[0][1], u[1][1], u[2][1], u[3][1]], plain.scales[1]);
+        let silhouette = 1.0 - at * fast.row;
+        let along = Number::new([u[0][0], u[1][0], u[2][0], u[3][0]], fast.scales[0]);
+        let across = Number::new([u[0][1], u[1][1], u[2][1], u[3][1]], fast.scales[1]);
         Located { x, y, rho, silhouette, row, between, along, across }
     }
 
     /// The distances from the ends, along and across.
     #[inline(always)]
-    fn look_up(&self, plain: &Plain, at: &Located) -> [f32x4; 2] {
-        let stride = 2 * plain.half;
+    fn look_up(&self, fast: &FastPath, at: &Located) -> [f32x4; 2] {
+        let stride = 2 * fast.half;
         let half: i32x4 = bytemuck::cast(at.along.towards);
-        let cell = at.along.cell + (half & i32x4::splat(plain.half as i32));
+        let cell = at.along.cell + (half & i32x4::splat(fast.half as i32));
         let (row, cell, between) = (at.row.to_array(), cell.to_array(), at.between.to_array());
         let nodes = &self.slices.slope[..];
         let node = |i: usize| {
@@ -131,7 +110,7 @@ impl StudentT {
             low + f32x4::splat(between[i]) * (high - low)
         };
         let g = hermite_lanes(f32x4::transpose(core::array::from_fn(node)), at.along.w);
-        let cells = coefficients(&plain.across, at.across.cell.to_array());
+        let cells = coefficients(&fast.across, at.across.cell.to_array());
         [g, cubic_lanes(cells, at.across.w)]
     }
 
@@ -224,7 +203,8 @@ fn transpose(v: &[Vec3; LANES]) -> [f32x4; 3] {
     ]
 }
 
-fn same_lengths(slices: &[(&'static str, usize)]) -> Result<(), BatchError> {
+/// Whether all slices of a batch have the length of the first.
+pub(crate) fn same_lengths(slices: &[(&'static str, usize)]) -> Result<(), BatchError> {
     let (first, expected) = slices[0];
     match slices.iter().find(|(_, length)| *length != expected) {
         None => Ok(()),

@@ -8,6 +8,7 @@
 
 use glam::Vec3;
 
+use super::distribution::MicrofacetDistribution;
 use super::student_t::{NORMAL_INCIDENCE, StudentT};
 use crate::math::sqrt;
 
@@ -15,7 +16,7 @@ use crate::math::sqrt;
 ///
 /// Every normal that reflects upwards keeps its place; of the others the slopes across the plane of incidence hide some. Estimators
 /// of reflection that weight with G2/G1 times [`share`](Self::share), or divide by a density of this type, are unbiased, and of lower variance
-/// than those of [`StudentT::sample_visible_normal`].
+/// than those of [`MicrofacetDistribution::sample_visible_normal`].
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded<'a> {
     material: &'a StudentT,
@@ -27,7 +28,7 @@ pub struct Bounded<'a> {
 impl StudentT {
     /// Prepares the visible normals of `v` for reflection; costs two searches in the table.
     ///
-    /// The closed form of [`StudentT::ggx`] is not restricted, and of γ < 1.8 (in the default set) only the end away from the viewer is.
+    /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
     pub fn bounded(&self, v: Vec3) -> Bounded<'_> {
         let [from, to] = self.upward(v);
         Bounded { material: self, v, from, share: to - from }
@@ -35,9 +36,6 @@ impl StudentT {
 
     /// The interval of u₁ in which a light can be above the horizon.
     fn upward(&self, v: Vec3) -> [f32; 2] {
-        if self.closed_form {
-            return [0.0, 1.0];
-        }
         let view = self.stretch(v);
         let (sin, cos) = (sqrt(v.x * v.x + v.y * v.y), view.z);
         // A unit of slope along the view's azimuth, in unit slopes along the stretched one.
@@ -78,7 +76,7 @@ impl Bounded<'_> {
         self.material.visible_normal_pdf(self.v, m) / self.share
     }
 
-    /// The same as the exact density of the table's samples, see [`StudentT::table_pdf`].
+    /// The same as the exact density of the table's samples, see [`MicrofacetDistribution::table_pdf`].
     pub fn table_pdf(&self, m: Vec3) -> f32 {
         self.material.table_pdf(self.v, m) / self.share
     }

@@ -3,25 +3,19 @@
 use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
-use microfacet_common::Masking;
+use microfacet_common::{Masking, Skew};
 use wide::f32x4;
 
-use super::below::{Below, Numbers};
+use super::below_horizon::{Numbers, SlopeBelowHorizon};
+use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::sample::{HORIZON, above_horizon};
 use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::Slope;
-use crate::error::BindError;
-use crate::math::sqrt64;
+use crate::error::MaterialError;
 
-/// A matrix is singular below this ratio, and tilted into the silhouette above its reciprocal.
-const SINGULAR: f64 = 1e-8;
-
-/// The matrix U of an ellipsoid, directions v ↦ Uv, as its lower-triangular equivalent ((p, 0, 0), (q, r, 0), (x, y, 1)).
-///
-/// A rotation on the left of U and a factor change nothing, so every regular U has such a form, with p, r > 0. Slopes of the surface are
-/// those of the plain lobe times a 2×2 matrix, minus (x, y).
+/// The entries of a [`Skew`] in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Skew {
+struct Matrix {
     p: f32,
     q: f32,
     r: f32,
@@ -29,71 +23,20 @@ pub struct Skew {
     y: f32,
 }
 
-impl Skew {
-    /// From U, rows first; for γ = 2 it is the A of the Ellipsoid NDF (Walter et al. 2015).
-    ///
-    /// # Errors
-    /// [`BindError::NotFinite`], [`BindError::Singular`], or [`BindError::Silhouette`] when n is almost in the silhouette.
-    pub fn from_matrix(u: [[f64; 3]; 3]) -> Result<Self, BindError> {
-        if let Some(x) = u.iter().flatten().find(|x| !x.is_finite()) {
-            return Err(BindError::NotFinite(*x));
-        }
-        let largest = u.iter().flatten().fold(0.0_f64, |a, x| a.max(x.abs()));
-        if largest == 0.0 {
-            return Err(BindError::Singular(0.0));
-        }
-        let column = |j: usize| [u[0][j] / largest, u[1][j] / largest, u[2][j] / largest];
-        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        // What is left of a column without its part along a unit vector.
-        let without = |a: [f64; 3], along: [f64; 3]| {
-            let part = dot(a, along);
-            [a[0] - part * along[0], a[1] - part * along[1], a[2] - part * along[2]]
-        };
-        let unit = |a: [f64; 3], whole: f64| {
-            let length = sqrt64(dot(a, a));
-            if length > SINGULAR * whole {
-                Ok((a.map(|x| x / length), length))
-            } else {
-                Err(BindError::Singular(if whole > 0.0 { length / whole } else { 0.0 }))
-            }
-        };
-        let [c1, c2, c3] = [0, 1, 2].map(column);
-        let (q3, l33) = unit(c3, 1.0)?;
-        let (q2, l22) = unit(without(c2, q3), sqrt64(dot(c2, c2)))?;
-        let rest = without(c1, q3);
-        let (_, l11) = unit(without(rest, q2), sqrt64(dot(c1, c1)))?;
-        let [x, y] = [dot(q3, c1) / l33, dot(q3, c2) / l33];
-        let tilt = sqrt64(x * x + y * y);
-        if !(tilt < 1.0 / SINGULAR) {
-            return Err(BindError::Silhouette(tilt));
-        }
-        let [p, q, r, x, y] = [l11 / l33, dot(q2, rest) / l33, l22 / l33, x, y].map(|x| x as f32);
-        Ok(Self { p, q, r, x, y })
-    }
+/// Outside this range squares of the entries, times those of slopes, leave single precision.
+const ENTRIES: core::ops::RangeInclusive<f64> = 1e-18..=1e18;
 
-    /// From roughness along two axes and a turn: U = diag(σx, σy, 1)·Rx·Ry·Rz, a direction being turned by θz about z first, then by θy,
-    /// then by θx (right-handed, radians).
-    ///
-    /// # Errors
-    /// [`BindError::Sigma`] unless both σ are positive and finite, and as [`from_matrix`](Self::from_matrix).
-    pub fn new(sigma: [f64; 2], theta: [f64; 3]) -> Result<Self, BindError> {
-        for s in sigma {
-            if !(s > 0.0 && s < f64::INFINITY) {
-                return Err(BindError::Sigma(s as f32));
+impl TryFrom<Skew> for Matrix {
+    type Error = MaterialError;
+
+    fn try_from(Skew { p, q, r, x, y }: Skew) -> Result<Self, MaterialError> {
+        match [p, r].into_iter().find(|entry| !ENTRIES.contains(entry)) {
+            Some(entry) => Err(MaterialError::Sigma(entry)),
+            None => {
+                let [p, q, r, x, y] = [p, q, r, x, y].map(|entry| entry as f32);
+                Ok(Self { p, q, r, x, y })
             }
         }
-        if let Some(angle) = theta.iter().find(|x| !x.is_finite()) {
-            return Err(BindError::NotFinite(*angle));
-        }
-        let [(sx, cx), (sy, cy), (sz, cz)] = theta.map(libm::sincos);
-        // Rx·Ry·Rz.
-        let rows = [
-            [cy * cz, -cy * sz, sy],
-            [cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy],
-            [sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy],
-        ];
-        let scale = [sigma[0], sigma[1], 1.0];
-        Self::from_matrix([0, 1, 2].map(|i| rows[i].map(|x| scale[i] * x)))
     }
 }
 
@@ -106,12 +49,12 @@ impl Skew {
 pub struct Ellipsoid {
     /// The lobe with σ = 1.
     lobe: StudentT,
-    skew: Skew,
+    matrix: Matrix,
 }
 
 impl Ellipsoid {
-    pub(crate) fn bind(lobe: StudentT, skew: Skew) -> Result<Self, BindError> {
-        Ok(Self { lobe: lobe.with_roughness(1.0_f32)?, skew })
+    pub(crate) fn new(lobe: StudentT, skew: Skew) -> Result<Self, MaterialError> {
+        Ok(Self { lobe: lobe.with_roughness(1.0)?, matrix: skew.try_into()? })
     }
 
     /// The shape γ.
@@ -120,14 +63,17 @@ impl Ellipsoid {
     }
 
     /// The same lobe through another matrix; the tables are not touched again.
-    pub fn with_skew(&self, skew: Skew) -> Self {
-        Self { skew, ..self.clone() }
+    ///
+    /// # Errors
+    /// [`MaterialError::Sigma`] for a roughness that leaves single precision.
+    pub fn with_skew(&self, skew: Skew) -> Result<Self, MaterialError> {
+        Ok(Self { matrix: skew.try_into()?, ..self.clone() })
     }
 
     /// Uv.
     #[inline(always)]
     fn to_unit(&self, v: Vec3) -> Vec3 {
-        let Skew { p, q, r, x, y } = self.skew;
+        let Matrix { p, q, r, x, y } = self.matrix;
         Vec3::new(p * v.x, q * v.x + r * v.y, x * v.x + y * v.y + v.z)
     }
 
@@ -139,54 +85,8 @@ impl Ellipsoid {
 
     #[cold]
     fn inverse_area_below(&self, w: Vec3, at: &Stretched) -> f32 {
-        let area = at.rho * Below::new(&self.lobe, at.rho, -w.z).excess();
+        let area = at.rho * SlopeBelowHorizon::new(&self.lobe, at.rho, -w.z).excess();
         if area > 0.0 { 1.0 / area } else { f32::MAX }
-    }
-
-    /// Normal distribution function D(m) per steradian, ∫ D(m) (m·n) dm = 1; 0 for m at or below the horizon.
-    #[inline]
-    pub fn d(&self, m: Vec3) -> f32 {
-        if !(m.z > 0.0) {
-            return 0.0;
-        }
-        let Skew { p, q, r, x, y } = self.skew;
-        // Reciprocals do not wait for the normal, as four divisions of it, one after the other, would: 10 of 80 ns for a normal and its density.
-        let (along, aside) = (1.0 / p, 1.0 / r);
-        let uy = (m.y - y * m.z) * aside;
-        let ux = (m.x - x * m.z - q * uy) * along;
-        self.lobe.d_of_unit(Vec3::new(ux, uy, m.z), FRAC_1_PI * along * aside)
-    }
-
-    /// Smith masking G1(v) = min(1, (v·n)/area); 0 at and below the horizon.
-    ///
-    /// The clamp keeps a lobe that leans away from returning more than it receives.
-    #[inline]
-    pub fn g1(&self, v: Vec3) -> f32 {
-        if !(v.z > 0.0) {
-            return 0.0;
-        }
-        let w = self.to_unit(v);
-        (v.z * self.inverse_area(w, &self.lobe.stretch(w))).min(1.0)
-    }
-
-    /// Λ(v) = 1/G1 − 1 ≥ 0; ∞ at and below the horizon.
-    #[inline]
-    pub fn lambda(&self, v: Vec3) -> f32 {
-        1.0 / self.g1(v) - 1.0
-    }
-
-    /// Masking and shadowing of view and light; 0 when either is at or below the horizon.
-    #[inline]
-    pub fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
-        masking.g2(self.g1(v), self.g1(l))
-    }
-
-    /// A normal visible from `v`, from two numbers in [0, 1].
-    #[inline(always)]
-    pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        let [x, y, z] =
-            self.sample_plain(v, u).unwrap_or_else(|| self.sample_any(v.x, v.y, v.z, u));
-        Vec3::new(x, y, z)
     }
 
     /// The lobe's [common case](StudentT::sample_common) between U and Uᵀ; `None` elsewhere, and where views are below its horizon.
@@ -194,8 +94,8 @@ impl Ellipsoid {
     /// A normal from it takes 1.2 times as long as one of the plain anisotropic lobe, 1.1 to 1.2 times with its density; by the way that
     /// always works it took twice as long (`cargo run --release --example ellipsoid_cost`).
     #[inline(always)]
-    fn sample_plain(&self, v: Vec3, u: [f32; 2]) -> Option<[f32; 3]> {
-        let Skew { p, q, r, x, y } = self.skew;
+    fn sample_fast(&self, v: Vec3, u: [f32; 2]) -> Option<[f32; 3]> {
+        let Matrix { p, q, r, x, y } = self.matrix;
         let w = self.to_unit(v);
         if !(w.z >= 0.0) {
             return None;
@@ -213,9 +113,9 @@ impl Ellipsoid {
         (m[2] >= HORIZON).then_some(m)
     }
 
-    /// What [`sample_visible_normal`](Self::sample_visible_normal) returns, by the way that always works.
+    /// A visible normal of every material and view.
     #[inline(never)]
-    fn sample_any(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
+    fn sample_general(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
         let w = self.to_unit(Vec3::new(x, y, z));
         let view = self.lobe.stretch(w);
         let along = if w.z >= 0.0 {
@@ -224,18 +124,54 @@ impl Ellipsoid {
             self.sample_below(w, &view, u)
         };
         let m = self.lobe.unit_normal(&view, along, self.lobe.sample_across(u[1]));
-        let Skew { p, q, r, x, y } = self.skew;
+        let Matrix { p, q, r, x, y } = self.matrix;
         above_horizon(Vec3::new(p * m.x + q * m.y + x * m.z, r * m.y + y * m.z, m.z)).to_array()
     }
 
     #[cold]
     fn sample_below(&self, w: Vec3, view: &Stretched, u: [f32; 2]) -> Slope {
-        Below::new(&self.lobe, view.rho, -w.z).sample(u[0], &mut Numbers::new(u))
+        SlopeBelowHorizon::new(&self.lobe, view.rho, -w.z).sample(u[0], &mut Numbers::new(u))
+    }
+}
+
+impl MicrofacetDistribution for Ellipsoid {
+    /// Normal distribution function D(m) per steradian, ∫ D(m) (m·n) dm = 1; 0 for m at or below the horizon.
+    #[inline]
+    fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        let Matrix { p, q, r, x, y } = self.matrix;
+        // Reciprocals do not wait for the normal, as four divisions of it, one after the other, would: 10 of 80 ns for a normal and its density.
+        let (along, aside) = (1.0 / p, 1.0 / r);
+        let uy = (m.y - y * m.z) * aside;
+        let ux = (m.x - x * m.z - q * uy) * along;
+        self.lobe.d_of_unit(Vec3::new(ux, uy, m.z), FRAC_1_PI * along * aside)
+    }
+
+    /// Smith masking G1(v) = min(1, (v·n)/area); 0 at and below the horizon.
+    ///
+    /// The clamp keeps a lobe that leans away from returning more than it receives.
+    #[inline]
+    fn g1(&self, v: Vec3) -> f32 {
+        if !(v.z > 0.0) {
+            return 0.0;
+        }
+        let w = self.to_unit(v);
+        (v.z * self.inverse_area(w, &self.lobe.stretch(w))).min(1.0)
+    }
+
+    /// A normal visible from `v`, from two numbers in [0, 1].
+    #[inline(always)]
+    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let [x, y, z] =
+            self.sample_fast(v, u).unwrap_or_else(|| self.sample_general(v.x, v.y, v.z, u));
+        Vec3::new(x, y, z)
     }
 
     /// Density of visible normals (v·m)⁺ D(m)/area per steradian; 0 where m faces away or lies below the horizon.
     #[inline]
-    pub fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
         let w = self.to_unit(v);
         (facing * self.d(m) * self.inverse_area(w, &self.lobe.stretch(w))).min(f32::MAX)
@@ -244,7 +180,7 @@ impl Ellipsoid {
     /// What a reflection sampled by [`sample_visible_normal`](Self::sample_visible_normal) is worth without Fresnel:
     /// f·cos θ_l/pdf = G2(v, l)·area/(v·n), never above one.
     #[inline]
-    pub fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+    fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
         if !(v.z > 0.0) {
             return 0.0;
         }
@@ -252,5 +188,14 @@ impl Ellipsoid {
         let unclamped = v.z * self.inverse_area(w, &self.lobe.stretch(w));
         // G2 ≤ min(1, unclamped), hence at most one.
         masking.g2(unclamped.min(1.0), self.g1(l)) / unclamped
+    }
+
+    fn is_effectively_smooth(&self) -> bool {
+        let Matrix { p, q, r, x, y } = self.matrix;
+        [p, q, r, x, y].into_iter().all(|entry| entry.abs() < SMOOTH)
+    }
+
+    fn bytes(&self) -> usize {
+        self.lobe.bytes()
     }
 }

@@ -1,47 +1,83 @@
 //! GGX without tables: at γ = 2 masking and visible normals have closed forms.
 
-use alloc::vec::Vec;
-use core::f32::consts::TAU;
-use core::f64::consts::FRAC_PI_2;
+use core::f32::consts::{FRAC_1_PI, TAU};
 
 use glam::Vec3;
+use microfacet_common::Roughness;
 
+use super::distribution::{MicrofacetDistribution, SMOOTH};
+use super::roughness::checked;
 use super::sample::{above_horizon, face};
-use super::slices::Slices;
-use super::student_t::{Roughness, Stretched, StudentT};
-use crate::error::BindError;
-use crate::math::{sqrt, sqrt64};
-
-/// Where [`StudentT::table_joints`] splits closed forms, which have no joints of their own.
-const PIECES: usize = 32;
+use crate::error::MaterialError;
+use crate::math::sqrt;
 
 /// The smallest 1 − u₁: keeps a normal off the horizon, where its length may vanish.
 const LAST: f32 = 1.0 / 16_777_216.0;
 
-impl StudentT {
-    /// GGX, γ = 2, from closed forms alone: no table is needed, none is read, and nothing is interpolated.
-    ///
-    /// G1 is Walter et al. 2007, eq. 34. Visible normals are drawn by spherical caps (Dupuy and Benyoub 2023, "Sampling Visible GGX
-    /// Normals with Spherical Caps", listing 1): `u[0]` chooses the height of a point on a cap and `u[1]` its azimuth about n, so
-    /// the map from `u` to normals is another one than that of tables, of the same density.
+/// GGX (Trowbridge–Reitz), the member γ = 2 of the family, from closed forms alone: no table is
+/// needed, none is read, and nothing is interpolated.
+///
+/// G1 is Walter et al. 2007, eq. 34 (<https://doi.org/10.2312/EGWR/EGSR07/195-206>). Visible normals
+/// are drawn by spherical caps (Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical
+/// Caps*, listing 1, <https://doi.org/10.1111/cgf.14867>): `u[0]` chooses the height of a point on a
+/// cap and `u[1]` its azimuth about n, so the map from `u` to normals is another one than that of
+/// tables, of the same density.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    alpha_x: f32,
+    alpha_y: f32,
+}
+
+impl Ggx {
+    /// From the roughness α, a number or a pair for x and y; it is the σ of the family.
     ///
     /// # Errors
-    /// [`BindError::Sigma`] unless both roughnesses lie in [1e-8, 1e6].
-    pub fn ggx(sigma: impl Into<Roughness>) -> Result<Self, BindError> {
-        let [sigma_x, sigma_y] = sigma.into().checked()?;
-        let slices = Slices::none();
-        Ok(Self { sigma_x, sigma_y, gamma: 2.0, s: 1.0, two_k: 1.0, slices, closed_form: true })
+    /// [`MaterialError::Sigma`] unless every α lies in [1e-8, 1e6].
+    pub fn new(alpha: impl Into<Roughness>) -> Result<Self, MaterialError> {
+        let [alpha_x, alpha_y] = checked(alpha.into())?;
+        Ok(Self { alpha_x, alpha_y })
+    }
+
+    /// αx and αy.
+    pub fn alpha(&self) -> [f32; 2] {
+        [self.alpha_x, self.alpha_y]
+    }
+
+    /// A direction with its horizontal part times α; one below the horizon is taken at it.
+    #[inline(always)]
+    fn stretch(&self, v: Vec3) -> Vec3 {
+        Vec3::new(self.alpha_x * v.x, self.alpha_y * v.y, v.z.max(0.0))
     }
 
     /// G1/z = 2/(z + √(ρ² + z²)), finite at grazing.
     #[inline(always)]
-    pub(crate) fn ggx_inverse_area(view: &Stretched) -> f32 {
-        2.0 / (view.z + sqrt(view.rho * view.rho + view.z * view.z))
+    fn inverse_area(&self, v: Vec3) -> f32 {
+        let w = self.stretch(v);
+        let length = sqrt(w.dot(w));
+        // The null vector, and views straight from below, have no area: any positive one will do.
+        2.0 / (w.z + length).max(f32::MIN_POSITIVE)
+    }
+}
+
+impl MicrofacetDistribution for Ggx {
+    #[inline]
+    fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        let scale = FRAC_1_PI / (self.alpha_x * self.alpha_y);
+        d_of_stretched(m.x / self.alpha_x, m.y / self.alpha_y, m.z, scale)
     }
 
-    /// The half vector of the stretched view and a point of the cap z > −w.z of the unit sphere, stretched back.
-    pub(crate) fn sample_ggx(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        let w = Vec3::new(self.sigma_x * v.x, self.sigma_y * v.y, v.z.max(0.0));
+    #[inline]
+    fn g1(&self, v: Vec3) -> f32 {
+        (v.z.max(0.0) * self.inverse_area(v)).min(1.0)
+    }
+
+    /// The half vector of the stretched view and a point of the cap z > −w.z of the unit sphere,
+    /// stretched back.
+    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let w = self.stretch(v);
         let length = sqrt(w.dot(w));
         // The null vector gives no direction: taken as normal incidence.
         let w = if length > 0.0 { w / length } else { Vec3::Z };
@@ -49,27 +85,31 @@ impl StudentT {
         let height = (1.0 - u[0].clamp(0.0, 1.0)).max(LAST) * (1.0 + w.z);
         let z = height - w.z;
         let radius = sqrt(((1.0 - z) * (1.0 + z)).max(0.0));
-        // `max` takes what is no number to 0, which `clamp` alone would keep.
+        // `max` takes NaN to 0, which `clamp` alone would keep.
         let (sin, cos) = libm::sincosf(TAU * u[1].max(0.0).clamp(0.0, 1.0));
-        let m = Vec3::new(
-            self.sigma_x * (w.x + radius * cos),
-            self.sigma_y * (w.y + radius * sin),
-            height,
-        );
+        let (x, y) = (w.x + radius * cos, w.y + radius * sin);
+        let m = Vec3::new(self.alpha_x * x, self.alpha_y * y, height);
         face(above_horizon(m), Vec3::new(v.x, v.y, v.z.max(0.0)))
     }
 
-    /// Quantiles of the in-plane slope and, for t ≥ 0, slopes across: what a quadrature of the density may be split at.
-    pub(crate) fn ggx_joints(view: &Stretched) -> [Vec<f64>; 2] {
-        let (rho, z) = (f64::from(view.rho), f64::from(view.z));
-        let length = sqrt64(rho * rho + z * z);
-        let (sin_theta, cos_theta) = (rho / length, z / length);
-        let theta = libm::atan2(sin_theta, cos_theta);
-        let share = |i: usize| i as f64 / PIECES as f64;
-        // sin(α − θ) of the tilt α is uniform between the silhouette, α = θ − π/2, and the horizon, α = π/2.
-        let tilt = |i| theta + libm::asin((share(i) * (1.0 + cos_theta) - 1.0).clamp(-1.0, 1.0));
-        let along = (0..PIECES).map(|i| libm::tan(tilt(i))).chain([f64::INFINITY]);
-        let across = (0..PIECES).map(|i| libm::tan(share(i) * FRAC_PI_2)).chain([f64::INFINITY]);
-        [along.collect(), across.collect()]
+    #[inline]
+    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        let facing = v.dot(m).max(0.0);
+        (facing * self.d(m) * self.inverse_area(v)).min(f32::MAX)
     }
+
+    fn is_effectively_smooth(&self) -> bool {
+        self.alpha_x.max(self.alpha_y) < SMOOTH
+    }
+
+    fn bytes(&self) -> usize {
+        0
+    }
+}
+
+/// 1/(παxαy (z² + r²)²): D of a normal whose horizontal part is divided by α, with 1/(παxαy).
+#[inline(always)]
+pub(crate) fn d_of_stretched(x: f32, y: f32, z: f32, scale: f32) -> f32 {
+    let b = z * z + (x * x + y * y);
+    (scale / (b * b)).min(f32::MAX)
 }

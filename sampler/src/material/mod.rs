@@ -1,20 +1,33 @@
-//! Materials bound to their tables: a distribution of normals with roughness and shape fixed, only directions left.
+//! The lobes of materials: distributions of normals whose parameters are fixed, so that only
+//! directions are left.
+//!
+//! [`distribution`] says what each can be asked. [`student_t`] reads slices of the tables
+//! ([`slices`]): masking there, visible normals in [`sample`], the common case of them at speed in
+//! [`fast_path`], four at a time in [`batch`]; [`table_pdf`] is the density of what is drawn, and
+//! [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`] takes directions through a
+//! matrix to a Student-t, [`radial`] has tables of its own, and [`ggx`] needs none.
 
 mod batch;
-mod below;
+mod below_horizon;
 mod bounded;
+mod distribution;
 mod ellipsoid;
+mod fast_path;
 mod ggx;
-mod plain;
+mod lobe;
 mod radial;
+mod roughness;
 mod sample;
 mod slices;
 mod student_t;
 mod table_pdf;
 
 pub use bounded::Bounded;
-pub use ellipsoid::{Ellipsoid, Skew};
+pub use distribution::MicrofacetDistribution;
+pub use ellipsoid::Ellipsoid;
+pub use ggx::Ggx;
+pub use lobe::Lobe;
 pub use radial::Radial;
-pub use student_t::{Roughness, StudentT};
+pub use student_t::StudentT;
 
 pub(crate) use slices::covers;

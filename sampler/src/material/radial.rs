@@ -4,14 +4,14 @@ use alloc::format;
 use alloc::vec::Vec;
 
 use glam::Vec3;
-use microfacet_common::Masking;
 
+use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::slices::{Slice, Slices};
 use super::student_t::StudentT;
 use crate::axis::half_tangent::Slope;
 use crate::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
 use crate::axis::{HalfTangent, Mapping, MirroredRoot, Rational};
-use crate::error::BindError;
+use crate::error::MaterialError;
 use crate::format::{Kind, LobeEntry, Table};
 use crate::math::sqrt;
 
@@ -48,14 +48,18 @@ enum Given {
 }
 
 impl Radial {
-    pub(crate) fn bind(tables: &[Table], sigma: f32, lobe: &LobeEntry) -> Result<Self, BindError> {
+    pub(crate) fn from_tables(
+        tables: &[Table],
+        sigma: f32,
+        lobe: &LobeEntry,
+    ) -> Result<Self, MaterialError> {
         if !(sigma > 0.0 && sigma < f32::INFINITY) {
-            return Err(BindError::Sigma(sigma));
+            return Err(MaterialError::Sigma(sigma.into()));
         }
         let slice = |kind: Kind| {
             let found =
                 tables.iter().find(|table| table.kind == kind && table.subject.lobe == *lobe);
-            let missing = || BindError::NoTable(format!("{} of {}", kind.name(), lobe.name()));
+            let missing = || MaterialError::NoTable(format!("{} of {}", kind.name(), lobe.name()));
             found.map(Slice::whole).ok_or_else(missing)
         };
         let (shadowing, slope) = (slice(Kind::RadialShadowing)?, slice(Kind::RadialSlope)?);
@@ -87,48 +91,6 @@ impl Radial {
         self.plane.sigma()[0]
     }
 
-    /// Normal distribution function D(m) per steradian, interpolated; 0 for m at or below the horizon.
-    #[inline]
-    pub fn d(&self, m: Vec3) -> f32 {
-        if !(m.z > 0.0) {
-            return 0.0;
-        }
-        let sigma = self.sigma();
-        let r = sqrt(m.x * m.x + m.y * m.y);
-        // The half tangent of the unit slope r/(σ z): of a view, with the parts the other way round.
-        let h = self.tilt.of_view(sigma * m.z, r);
-        let cells = self.density.len() - 1;
-        let (cell, w) = locate(h * cells as f32, cells);
-        let root = hermite(self.density[cell], self.density[cell + 1], w).max(0.0);
-        (root * root) * (root * root)
-    }
-
-    /// Smith masking G1(w) ∈ [0, 1]; 0 at and below the horizon.
-    #[inline]
-    pub fn g1(&self, w: Vec3) -> f32 {
-        self.plane.g1(w)
-    }
-
-    /// Λ(w) = 1/G1 − 1 ≥ 0; ∞ at and below the horizon.
-    #[inline]
-    pub fn lambda(&self, w: Vec3) -> f32 {
-        self.plane.lambda(w)
-    }
-
-    /// Masking and shadowing of view and light; 0 when either is at or below the horizon.
-    #[inline]
-    pub fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
-        self.plane.g2(v, l, masking)
-    }
-
-    /// A normal visible from `v`, from two numbers in [0, 1].
-    #[inline]
-    pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        let view = self.plane.stretch(v);
-        let x = self.plane.sample_slope(&view, u[0]);
-        self.plane.assemble(&view, x, self.sample_across(x, u[1]))
-    }
-
     /// The slope across in units of √(1 + x²), given the in-plane slope.
     ///
     /// Tabulated by the half tangent of that slope; where slopes are bounded by R, in units of √(1 − x²/R²) by x/(x + R), which
@@ -156,11 +118,51 @@ impl Radial {
         let t = Slope::from_end(hermite(a, b, w), if u > 0.5 { 1.0 } else { -1.0 });
         Slope { x: t.x * shrink, z: t.z }
     }
+}
+
+impl MicrofacetDistribution for Radial {
+    /// Normal distribution function D(m) per steradian, interpolated; 0 for m at or below the horizon.
+    #[inline]
+    fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        let sigma = self.sigma();
+        let r = sqrt(m.x * m.x + m.y * m.y);
+        // The half tangent of the unit slope r/(σ z): of a view, with the parts the other way round.
+        let h = self.tilt.of_view(sigma * m.z, r);
+        let cells = self.density.len() - 1;
+        let (cell, w) = locate(h * cells as f32, cells);
+        let root = hermite(self.density[cell], self.density[cell + 1], w).max(0.0);
+        (root * root) * (root * root)
+    }
+
+    /// Smith masking G1(w) ∈ [0, 1]; 0 at and below the horizon.
+    #[inline]
+    fn g1(&self, v: Vec3) -> f32 {
+        self.plane.g1(v)
+    }
+
+    /// A normal visible from `v`, from two numbers in [0, 1].
+    #[inline]
+    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let view = self.plane.stretch(v);
+        let x = self.plane.sample_slope(&view, u[0]);
+        self.plane.assemble(&view, x, self.sample_across(x, u[1]))
+    }
 
     /// Density of visible normals (v·m)⁺ D(m) G1(v)/(v·n) per steradian, with the tables' D and G1.
     #[inline]
-    pub fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
         (facing * self.d(m) * self.plane.inverse_area(&self.plane.stretch(v))).min(f32::MAX)
+    }
+
+    fn is_effectively_smooth(&self) -> bool {
+        self.sigma() < SMOOTH
+    }
+
+    fn bytes(&self) -> usize {
+        self.plane.bytes() + size_of_val(&self.across[..]) + size_of_val(&self.density[..])
     }
 }

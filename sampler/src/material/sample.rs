@@ -16,27 +16,20 @@ use crate::math::sqrt;
 pub(crate) const HORIZON: f32 = 1e-18;
 
 impl StudentT {
-    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them).
-    ///
-    /// Both coordinates are inverse CDFs. Where the whole distribution is tabulated (γ ≥ 1.8 in the default set)
-    /// the tilt towards the viewer rises with `u[0]` and the tilt across with `u[1]`; below, `u[0]` is first used to choose
-    /// between the tabulated part and the closed-form heavy tail, and rises within each. Without tables see [`ggx`](Self::ggx).
+    /// The fast path where it serves, the general one elsewhere.
     #[inline(always)]
-    pub fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+    pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         // Plain numbers in and out keep those of the common case in registers next to the call of the other.
         let [x, y, z] = self
-            .sample_plain([v.x, v.y, v.z], u)
-            .unwrap_or_else(|| self.sample_any(v.x, v.y, v.z, u));
+            .sample_fast([v.x, v.y, v.z], u)
+            .unwrap_or_else(|| self.sample_general(v.x, v.y, v.z, u));
         Vec3::new(x, y, z)
     }
 
-    /// What [`sample_visible_normal`](Self::sample_visible_normal) returns, by the way that always works.
+    /// The same for every material and view.
     #[inline(never)]
-    pub(crate) fn sample_any(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
+    pub(crate) fn sample_general(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
         let v = Vec3::new(x, y, z);
-        if self.closed_form {
-            return self.sample_ggx(v, u).to_array();
-        }
         let view = self.stretch(v);
         let x = self.sample_along(&view, u[0]);
         let t = self.sample_across(u[1]);
@@ -93,7 +86,7 @@ impl StudentT {
         Slope { x: sqrt(-libm::expm1f(2.0 * log)), z: sqrt(self.s) * libm::expf(log) }
     }
 
-    /// Share of `u[0]` that [`sample_visible_normal`](Self::sample_visible_normal) reads from the table, from 0 up; the rest
+    /// Share of `u[0]` that [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads from the table, from 0 up; the rest
     /// draws from the closed-form heavy tail. 1 where the whole distribution is tabulated.
     pub fn tabulated_share(&self, v: Vec3) -> f32 {
         if self.slices.peeled { 1.0 - self.heavy_share(&self.stretch(v)) } else { 1.0 }

@@ -1,14 +1,14 @@
-//! Binding: the γ axis of a table collapsed at one shape, leaving the slice that lookups read.
+//! The γ axis of a table collapsed at one shape, which leaves the slice that lookups read.
 
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use crate::axis::hermite::{Cell, Node, cells, make_monotone};
+use crate::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
 use crate::axis::{
     Axis, HalfTangent, Interpolation, InverseShape, Mapping, MirroredRoot, Rational,
 };
-use crate::error::BindError;
+use crate::error::MaterialError;
 use crate::format::{Kind, Table};
 
 /// Whether the table covers s.
@@ -66,12 +66,12 @@ pub(crate) struct Slices {
     /// Slopes across the plane, the half for u > ½.
     pub(crate) across: Vec<Node>,
     /// What the common case reads besides `slope`; absent where it does not apply.
-    pub(crate) plain: Option<Plain>,
+    pub(crate) fast: Option<FastPath>,
 }
 
 /// The case that most materials are, laid out for speed: nothing peeled off, no crowded axis.
 #[derive(Clone, Debug)]
-pub(crate) struct Plain {
+pub(crate) struct FastPath {
     /// Slopes across by cell.
     pub(crate) across: Vec<Cell>,
     /// What takes min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
@@ -85,7 +85,7 @@ pub(crate) struct Plain {
 }
 
 impl Slices {
-    pub(crate) fn bind(tables: &[Table], gamma: f64, s: f64) -> Result<Self, BindError> {
+    pub(crate) fn from_tables(tables: &[Table], gamma: f64, s: f64) -> Result<Self, MaterialError> {
         let shadowing = find(tables, &[Kind::Shadowing], gamma, s)?;
         let kinds = [Kind::VisibleSlope, Kind::VisibleSlopePeeled];
         let slope = find(tables, &kinds, gamma, s)?;
@@ -94,9 +94,9 @@ impl Slices {
         slices.across = across.nodes;
         make_monotone(&mut slices.across);
         let (numbers, rows) = (slices.cells + 1, slices.rows);
-        slices.plain = (!slices.peeled && !slices.view.crowded).then(|| Plain {
+        slices.fast = (!slices.peeled && !slices.view.crowded).then(|| FastPath {
             scales: [slices.cells, slices.across.len() - 1].map(MirroredRoot::scale),
-            across: cells(&slices.across, 1.0),
+            across: cubic_cells(&slices.across, 1.0),
             rows: rows as f32,
             row: (1.0 / rows as f64) as f32,
             half: numbers as u32,
@@ -119,7 +119,7 @@ impl Slices {
         slopes.chunks_exact_mut(numbers.nodes.len()).for_each(make_monotone);
         slopes.push([0.0; 2]);
         Self {
-            shadowing: cells(&shadowing.nodes, 1.0 / shadowing_cells as f64),
+            shadowing: cubic_cells(&shadowing.nodes, 1.0 / shadowing_cells as f64),
             shadowing_cells: shadowing_cells as f32,
             kappa: shadowing_view.kappa(s) as f32,
             shadowing_view,
@@ -129,31 +129,14 @@ impl Slices {
             cells: numbers.nodes.len() - 1,
             peeled: slope.kind == Kind::VisibleSlopePeeled,
             across: Vec::new(),
-            plain: None,
-        }
-    }
-
-    /// None: of closed forms, which read no table.
-    pub(crate) fn none() -> Self {
-        Self {
-            shadowing: Vec::new(),
-            shadowing_cells: 0.0,
-            kappa: 0.0,
-            shadowing_view: Rational::BAKED,
-            slope: Vec::new(),
-            rows: 0,
-            view: HalfTangent::default(),
-            cells: 0,
-            peeled: false,
-            across: Vec::new(),
-            plain: None,
+            fast: None,
         }
     }
 
     /// Bytes that lookups of this material touch.
     pub(crate) fn bytes(&self) -> usize {
-        let across = match &self.plain {
-            Some(plain) => size_of_val(&plain.across[..]),
+        let across = match &self.fast {
+            Some(fast) => size_of_val(&fast.across[..]),
             None => size_of_val(&self.across[..]),
         };
         size_of_val(&self.shadowing[..]) + size_of_val(&self.slope[..]) + across
@@ -166,14 +149,18 @@ fn find<'a>(
     kinds: &[Kind],
     gamma: f64,
     s: f64,
-) -> Result<Slice<'a>, BindError> {
+) -> Result<Slice<'a>, MaterialError> {
     for &kind in kinds {
         let mut of_kind = tables.iter().filter(|table| table.kind == kind);
         if let Some(slice) = of_kind.find_map(|table| Slice::at(table, s)) {
             return Ok(slice);
         }
     }
-    Err(BindError::NotCovered { kind: kinds[0].name(), gamma, covered: coverage(tables, kinds) })
+    Err(MaterialError::NotCovered {
+        kind: kinds[0].name(),
+        gamma,
+        covered: coverage(tables, kinds),
+    })
 }
 
 /// What a set covers, in words.

@@ -3,58 +3,20 @@
 use core::f32::consts::PI;
 
 use glam::Vec3;
-use microfacet_common::Masking;
+use microfacet_common::Roughness;
 use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 use wide::f32x4;
 
+use super::batch::same_lengths;
+use super::distribution::{MicrofacetDistribution, SMOOTH};
+use super::ggx::d_of_stretched;
+use super::roughness::checked;
 use super::slices::Slices;
-use crate::axis::LogRoughness;
 use crate::axis::hermite::{horner, split};
-use crate::error::BindError;
+use crate::error::{BatchError, MaterialError};
 use crate::format::Table;
 use crate::lanes::swap_pairs;
 use crate::math::sqrt;
-
-/// Roughness along the tangent frame's x and y: a number for an isotropic material, a pair for an anisotropic one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Roughness(pub [f32; 2]);
-
-/// Outside this range squares of stretched directions, and of normals made from them, leave single precision. Tables of albedos
-/// begin where it does.
-const SIGMAS: core::ops::RangeInclusive<f32> = LogRoughness::BAKED.first as f32..=1e6;
-
-impl Roughness {
-    pub(crate) fn checked(self) -> Result<[f32; 2], BindError> {
-        match self.0.into_iter().find(|sigma| !SIGMAS.contains(sigma)) {
-            Some(sigma) => Err(BindError::Sigma(sigma)),
-            None => Ok(self.0),
-        }
-    }
-}
-
-impl From<f32> for Roughness {
-    fn from(sigma: f32) -> Self {
-        Self([sigma, sigma])
-    }
-}
-
-impl From<f64> for Roughness {
-    fn from(sigma: f64) -> Self {
-        Self([sigma as f32; 2])
-    }
-}
-
-impl From<[f32; 2]> for Roughness {
-    fn from(sigma: [f32; 2]) -> Self {
-        Self(sigma)
-    }
-}
-
-impl From<[f64; 2]> for Roughness {
-    fn from([x, y]: [f64; 2]) -> Self {
-        Self([x as f32, y as f32])
-    }
-}
 
 /// A Student-t material with fixed roughness and shape, holding only the slices of the tables it needs.
 ///
@@ -71,8 +33,6 @@ pub struct StudentT {
     /// 2γ − 3, from γ in double precision: near 3/2 a rounded γ would be another material.
     pub(crate) two_k: f32,
     pub(crate) slices: Slices,
-    /// Whether there are no slices, since GGX's closed forms need none.
-    pub(crate) closed_form: bool,
 }
 
 /// A direction stretched by (σx, σy, 1), with its azimuth there.
@@ -108,40 +68,32 @@ fn outside() -> f32 {
 }
 
 impl StudentT {
-    pub(crate) fn bind(
+    pub(crate) fn from_tables(
         tables: &[Table],
         roughness: Roughness,
         gamma: f64,
-    ) -> Result<Self, BindError> {
-        let [sigma_x, sigma_y] = roughness.checked()?;
+    ) -> Result<Self, MaterialError> {
+        let [sigma_x, sigma_y] = checked(roughness)?;
         if !(gamma > 1.5) {
-            return Err(BindError::Gamma(gamma));
+            return Err(MaterialError::Gamma(gamma));
         }
         let s = s_of_gamma(gamma);
-        let slices = Slices::bind(tables, gamma, s)?;
+        let slices = Slices::from_tables(tables, gamma, s)?;
         let two_k = (2.0 * gamma - 3.0) as f32;
-        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_k, slices, closed_form: false })
+        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_k, slices })
     }
 
     /// The carrier of another distribution's tables: unit slopes are slopes over σ, and those across scale with √(1 + x²).
     pub(crate) fn carrier(sigma: f32, slices: Slices) -> Self {
-        Self {
-            sigma_x: sigma,
-            sigma_y: sigma,
-            gamma: 2.0,
-            s: 1.0,
-            two_k: 1.0,
-            slices,
-            closed_form: false,
-        }
+        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_k: 1.0, slices }
     }
 
     /// The same shape with another roughness; the tables are not touched again.
     ///
     /// # Errors
-    /// [`BindError::Sigma`] unless both roughnesses lie in [1e-8, 1e6].
-    pub fn with_roughness(&self, roughness: impl Into<Roughness>) -> Result<Self, BindError> {
-        let [sigma_x, sigma_y] = roughness.into().checked()?;
+    /// [`MaterialError::Sigma`] unless both roughnesses lie in [1e-8, 1e6].
+    pub fn with_roughness(&self, roughness: impl Into<Roughness>) -> Result<Self, MaterialError> {
+        let [sigma_x, sigma_y] = checked(roughness.into())?;
         Ok(Self { sigma_x, sigma_y, ..self.clone() })
     }
 
@@ -153,11 +105,6 @@ impl StudentT {
     /// The shape γ.
     pub fn gamma(&self) -> f64 {
         self.gamma
-    }
-
-    /// Bytes of table that lookups of this material touch; 0 for closed forms.
-    pub fn bytes(&self) -> usize {
-        self.slices.bytes()
     }
 
     #[inline(always)]
@@ -178,9 +125,6 @@ impl StudentT {
     /// 1/(area of the microsurface seen along the stretched direction) = G1/z, finite at grazing.
     #[inline(always)]
     pub(crate) fn inverse_area(&self, w: &Stretched) -> f32 {
-        if self.closed_form {
-            return Self::ggx_inverse_area(w);
-        }
         let r = self.inverse_mean_area(w.rho, w.z);
         self.shadowing(w.rho, w.z, r) * r
     }
@@ -208,64 +152,6 @@ impl StudentT {
         cell.map_or(0.0, |cell| horner(cell, w.to_array()[0]))
     }
 
-    /// Smith masking G1(w) ∈ [0, 1]: the visible share of the microsurface projected along `w`. 0 at and below the horizon.
-    #[inline(always)]
-    pub fn g1(&self, w: Vec3) -> f32 {
-        if self.closed_form {
-            let w = self.stretch(w);
-            return (w.z * Self::ggx_inverse_area(&w)).min(1.0);
-        }
-        // As `inverse_area`, without the azimuth that `stretch` finds, with κ within the roughness, and with nothing between the division
-        // and the lookup. The chain of a root, a division and a lookup is so long that the instructions of a few calls fill the processor's
-        // window, and each one less counts. Of 4.3 ns Horner's scheme, which no compiler turns into shuffles, took about 0.5, an area without
-        // a lower limit 0.2, and a root of all lanes, none of them to be set to zero, with the answer to what is no number out of the way 0.3;
-        // 3.1 are left.
-        let slices = &self.slices;
-        let scale =
-            f32x4::new([slices.kappa * self.sigma_x, slices.kappa * self.sigma_y, 0.0, 0.0]);
-        let xy = f32x4::new([w.x, w.y, 0.0, 0.0]) * scale;
-        let squares = xy * xy;
-        let z = f32x4::new([w.z, 0.0, 0.0, 0.0]).fast_max(f32x4::ZERO);
-        let across = (squares + swap_pairs(squares)).sqrt();
-        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
-        let (cell, w) = split(at);
-        let Some(cell) = slices.shadowing.get(cell.to_array()[0] as u32 as usize) else {
-            return outside();
-        };
-        let g1 = q.to_array()[0] * horner(cell, w.to_array()[0]);
-        // The null vector gives 0/0, which leaves the table where the cast does not saturate, and is cell 0 where it does.
-        if cfg!(not(target_feature = "sse2")) && g1.is_nan() {
-            return 0.0;
-        }
-        // Interpolation may overshoot 1 by the table's error near normal incidence.
-        g1.min(1.0)
-    }
-
-    /// Smith's Λ(w) = 1/G1 − 1 ≥ 0; ∞ at and below the horizon. Absolute accuracy is that of G1: where Λ is below 1e-5 only its size is meant.
-    #[inline]
-    pub fn lambda(&self, w: Vec3) -> f32 {
-        1.0 / self.g1(w) - 1.0
-    }
-
-    /// Masking and shadowing of view and light; 0 when either is at or below the horizon.
-    #[inline]
-    pub fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
-        masking.g2(self.g1(v), self.g1(l))
-    }
-
-    /// Normal distribution function D(m) per steradian; 0 for m at or below the horizon.
-    ///
-    /// Relative error a few ulp times the exponent (about 1e-6 times |ln D σxσy|). For γ < 2 it grows without bound towards the
-    /// horizon and overflows to `f32::MAX` rather than to ∞.
-    #[inline]
-    pub fn d(&self, m: Vec3) -> f32 {
-        if !(m.z > 0.0) {
-            return 0.0;
-        }
-        let scale = 1.0 / (PI * self.sigma_x * self.sigma_y);
-        self.d_of_unit(Vec3::new(m.x / self.sigma_x, m.y / self.sigma_y, m.z), scale)
-    }
-
     /// D of a normal above the horizon whose horizontal part is divided by σ, with 1/(πσxσy).
     #[inline(always)]
     pub(crate) fn d_of_unit(&self, m: Vec3, scale: f32) -> f32 {
@@ -273,9 +159,7 @@ impl StudentT {
         let z2 = m.z * m.z;
         let s = self.s;
         if s == 1.0 {
-            // GGX: 1/(πσxσy (z² + r²)²).
-            let b = z2 + r2;
-            return (scale / (b * b)).min(f32::MAX);
+            return d_of_stretched(m.x, m.y, m.z, scale);
         }
         let ratio = r2 / z2;
         let log = if s * ratio < 1e-4 {
@@ -294,13 +178,87 @@ impl StudentT {
         let root = libm::expf(0.5 * log);
         (scale * root * root).min(f32::MAX)
     }
+}
 
-    /// Density of visible normals G1(v) (v·m)⁺ D(m)/(v·n) per steradian: the exact one, with G1 from the table.
-    ///
-    /// 0 where m faces away or lies below the horizon; finite at grazing views.
+impl MicrofacetDistribution for StudentT {
+    /// Relative error a few ulp times the exponent (about 1e-6 times |ln D σxσy|). For γ < 2 it grows without bound towards the
+    /// horizon and overflows to `f32::MAX` rather than to ∞.
     #[inline]
-    pub fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        let scale = 1.0 / (PI * self.sigma_x * self.sigma_y);
+        self.d_of_unit(Vec3::new(m.x / self.sigma_x, m.y / self.sigma_y, m.z), scale)
+    }
+
+    #[inline(always)]
+    fn g1(&self, v: Vec3) -> f32 {
+        // As `inverse_area`, without the azimuth that `stretch` finds, with κ within the roughness, and with nothing between the division
+        // and the lookup. The chain of a root, a division and a lookup is so long that the instructions of a few calls fill the processor's
+        // window, and each one less counts. Of 4.3 ns Horner's scheme, which no compiler turns into shuffles, took about 0.5, an area without
+        // a lower limit 0.2, and a root of all lanes, none of them to be set to zero, with the answer to what is no number out of the way 0.3;
+        // 3.1 are left.
+        let slices = &self.slices;
+        let scale =
+            f32x4::new([slices.kappa * self.sigma_x, slices.kappa * self.sigma_y, 0.0, 0.0]);
+        let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * scale;
+        let squares = xy * xy;
+        let z = f32x4::new([v.z, 0.0, 0.0, 0.0]).fast_max(f32x4::ZERO);
+        let across = (squares + swap_pairs(squares)).sqrt();
+        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
+        let (cell, w) = split(at);
+        let Some(cell) = slices.shadowing.get(cell.to_array()[0] as u32 as usize) else {
+            return outside();
+        };
+        let g1 = q.to_array()[0] * horner(cell, w.to_array()[0]);
+        // The null vector gives 0/0, which leaves the table where the cast does not saturate, and is cell 0 where it does.
+        if cfg!(not(target_feature = "sse2")) && g1.is_nan() {
+            return 0.0;
+        }
+        // Interpolation may overshoot 1 by the table's error near normal incidence.
+        g1.min(1.0)
+    }
+
+    /// `u[0]` and `u[1]` are inverse CDFs. Where the whole distribution is tabulated (γ ≥ 1.8 in the
+    /// default set) the tilt towards the viewer rises with `u[0]` and the tilt across with `u[1]`;
+    /// below, `u[0]` is first used to choose between the tabulated part and the closed-form heavy
+    /// tail, and the tilt rises within each.
+    #[inline(always)]
+    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        self.sample(v, u)
+    }
+
+    #[inline]
+    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
         (facing * self.d(m) * self.inverse_area(&self.stretch(v))).min(f32::MAX)
+    }
+
+    /// The Jacobian of the sampler's own map: an estimator that divides by it is unbiased at any
+    /// resolution of the tables. It integrates to 1 over all m and costs two searches and a few square
+    /// roots: use it where bias matters.
+    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        self.density_of_samples(v, m)
+    }
+
+    fn is_effectively_smooth(&self) -> bool {
+        self.sigma_x.max(self.sigma_y) < SMOOTH
+    }
+
+    fn bytes(&self) -> usize {
+        self.slices.bytes()
+    }
+
+    fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len())])?;
+        self.sample_all(v, u, m);
+        Ok(())
+    }
+
+    fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("g1", g1.len())])?;
+        self.g1_all(v, g1);
+        Ok(())
     }
 }

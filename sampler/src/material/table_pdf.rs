@@ -35,16 +35,11 @@ impl Rows<'_> {
 }
 
 impl StudentT {
-    /// Density per steradian with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m` for `v`.
-    ///
-    /// Integrates to one over all m. 0 outside what the sampler can return. Costs two searches and a few square roots: use it where bias matters,
-    /// and [`visible_normal_pdf`](Self::visible_normal_pdf), which it approaches with the table's resolution, elsewhere.
-    pub fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    /// Costs two searches and a few square roots; see
+    /// [`MicrofacetDistribution::table_pdf`](crate::MicrofacetDistribution::table_pdf).
+    pub(crate) fn density_of_samples(&self, v: Vec3, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
             return 0.0;
-        }
-        if self.closed_form {
-            return self.visible_normal_pdf(v, m);
         }
         let view = self.stretch(v);
         let slopes = self.unit_slopes(&view, m);
@@ -64,14 +59,9 @@ impl StudentT {
         if density.is_finite() { (density as f32).min(f32::MAX) } else { 0.0 }
     }
 
-    /// Where the tabulated density has its joints for a view: unit slopes x in the plane of incidence, ascending, and t ≥ 0 across it.
-    ///
-    /// Between them [`table_pdf`](Self::table_pdf) is smooth, so a quadrature that respects them converges fast. x may end at ±∞.
-    pub fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
+    /// See [`internals::table_joints`](crate::internals::table_joints).
+    pub(crate) fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
         let view = self.stretch(v);
-        if self.closed_form {
-            return Self::ggx_joints(&view);
-        }
         let rows = self.rows_at(&view);
         let half = self.slices.cells + 1;
         let slope = |g: f64, sign: f64| {

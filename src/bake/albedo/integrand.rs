@@ -5,7 +5,7 @@ use microfacet_model::fresnel::{Conductor, Dielectric, f82_weight, schlick_weigh
 use microfacet_model::{Albedo, ParameterError};
 use microfacet_sampler::{Reflectance, Side};
 
-use super::{BakeError, CHANNELS, Model, Site};
+use super::{AlbedoError, CHANNELS, Model, Site};
 
 /// A reflectance, prepared.
 pub enum Integrand {
@@ -42,8 +42,8 @@ impl Integrand {
     /// Its albedos by quadrature for both forms of masking; of fewer channels the others are 0.
     ///
     /// # Errors
-    /// [`BakeError`] for a place outside the domain of the lobe, or a lobe that refracts no light.
-    pub fn at(&self, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, BakeError> {
+    /// [`AlbedoError`] for a place outside the domain of the lobe, or a lobe that refracts no light.
+    pub fn at(&self, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, AlbedoError> {
         match self {
             Self::Moments => model.reflection(site, weights),
             Self::Metal(metals) => {
@@ -55,7 +55,7 @@ impl Integrand {
 }
 
 /// Reflection and transmission of a dielectric, whose index may be infinite.
-fn pane(side: Side, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, BakeError> {
+fn pane(side: Side, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, AlbedoError> {
     if site.eta == f64::INFINITY {
         return model.reflection(site, |_| [1.0, 0.0, 0.0]);
     }

@@ -8,16 +8,18 @@ use rayon::prelude::*;
 
 use microfacet_common::shape::s_of_gamma;
 use microfacet_model::classic::{Marginal, RadialAlbedo};
-use microfacet_model::{Albedo, AlbedoIntegrator, Ellipsoid, ParameterError, Shape};
+use microfacet_model::{
+    Albedo, AlbedoIntegrator, Ellipsoid, EllipsoidError, ParameterError, Shape, Skew,
+};
 use microfacet_sampler::LobeEntry;
 use microfacet_sampler::axis::Azimuth;
 
-use super::{BakeError, CHANNELS, Domain, Site};
-use crate::family::Distribution;
+use super::{AlbedoError, CHANNELS, Domain, Site};
+use crate::distribution::Distribution;
 
 /// Whose normals.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Lobe {
+pub enum AlbedoLobe {
     /// Round members of the Student-t family.
     Family(Domain),
     /// An anisotropic one.
@@ -29,7 +31,7 @@ pub enum Lobe {
     },
     /// A tilted one.
     Ellipsoid {
-        /// σx and σy, and the turn, radians; see [`Ellipsoid::new`].
+        /// σx and σy, and the turn, radians; see [`Skew::new`].
         sigma: [f64; 2],
         /// θx, θy and θz.
         theta: [f64; 3],
@@ -45,7 +47,7 @@ pub enum Lobe {
     },
 }
 
-impl Lobe {
+impl AlbedoLobe {
     /// What the description of its tables says.
     pub fn entry(&self) -> LobeEntry {
         match *self {
@@ -74,8 +76,8 @@ impl Lobe {
     /// The mapping of its azimuths; `None` of the family, whose albedo does not depend on any.
     ///
     /// # Errors
-    /// [`BakeError`] for an ellipsoid that is none.
-    pub(super) fn azimuth(&self) -> Result<Option<Azimuth>, BakeError> {
+    /// [`AlbedoError`] for an ellipsoid that is none.
+    pub(super) fn azimuth(&self) -> Result<Option<Azimuth>, AlbedoError> {
         let plain = |sigma| Some(Azimuth { sigma, turn: 0.0, fold: true });
         Ok(match *self {
             Self::Family(_) => None,
@@ -113,17 +115,17 @@ impl Lobe {
     }
 }
 
-fn ellipsoid([x, y]: [f64; 2], theta: [f64; 3], gamma: f64) -> Result<Ellipsoid, BakeError> {
-    Ellipsoid::new(x, y, theta, gamma).map_err(|why| BakeError::Lobe(why.to_string()))
+fn ellipsoid(sigma: [f64; 2], theta: [f64; 3], gamma: f64) -> Result<Ellipsoid, AlbedoError> {
+    let refused = |why: EllipsoidError| AlbedoError::Lobe(why.to_string());
+    let skew = Skew::new(sigma, theta).map_err(|why| refused(why.into()))?;
+    Ellipsoid::new(skew, gamma).map_err(refused)
 }
 
 /// How slopes spread about zero: the principal axes of σ_φ² + t_φ², roughness and mean slope seen from an azimuth, and the turn of the first.
 ///
 /// A lobe that leans away masks, and one that leans forward reflects below the horizon, about where cot θ is its mean slope.
 fn spread(ellipsoid: &Ellipsoid) -> ([f64; 2], f64) {
-    let unit = ellipsoid.unit_matrix();
-    let (p, q, r, [x, y]) =
-        (unit.x_axis.x, unit.x_axis.y, unit.y_axis.y, [unit.x_axis.z, unit.y_axis.z]);
+    let Skew { p, q, r, x, y } = ellipsoid.skew();
     let (a, b, c) = (p * p + q * q + x * x, q * r + x * y, r * r + y * y);
     let half = libm::hypot(0.5 * (a - c), b);
     let first = 0.5 * (a + c) + half;
@@ -142,35 +144,36 @@ impl Models<'_> {
     /// [`AlbedoIntegrator::new`].
     ///
     /// # Errors
-    /// [`BakeError`] for parameters outside the domain, and what `then` reports.
+    /// [`AlbedoError`] for parameters outside the domain, and what `then` reports.
     pub fn with<T>(
-        lobe: &Lobe,
+        lobe: &AlbedoLobe,
         gammas: impl IntoIterator<Item = f64>,
         tolerance: f64,
-        then: impl FnOnce(&Models<'_>) -> Result<T, BakeError>,
-    ) -> Result<T, BakeError> {
+        then: impl FnOnce(&Models<'_>) -> Result<T, AlbedoError>,
+    ) -> Result<T, AlbedoError> {
         let integrator =
-            |gamma| Ok::<_, BakeError>(AlbedoIntegrator::new(Shape::new(gamma)?, tolerance));
+            |gamma| Ok::<_, AlbedoError>(AlbedoIntegrator::new(Shape::new(gamma)?, tolerance));
         // Sites of lobes that are one material have no γ.
         let one = |model| Models([(f64::INFINITY.to_bits(), model)].into());
         match lobe {
-            Lobe::Family(_) => {
+            AlbedoLobe::Family(_) => {
                 let mut all: Vec<f64> = gammas.into_iter().collect();
                 all.sort_by(f64::total_cmp);
                 all.dedup();
                 let model =
                     |&gamma: &f64| Ok((gamma.to_bits(), Model::StudentT(None, integrator(gamma)?)));
-                then(&Models(all.par_iter().map(model).collect::<Result<_, BakeError>>()?))
+                then(&Models(all.par_iter().map(model).collect::<Result<_, AlbedoError>>()?))
             }
-            &Lobe::StudentT { sigma, gamma } => {
+            &AlbedoLobe::StudentT { sigma, gamma } => {
                 then(&one(Model::StudentT(Some(sigma), integrator(gamma)?)))
             }
-            &Lobe::Ellipsoid { sigma, theta, gamma } => {
+            &AlbedoLobe::Ellipsoid { sigma, theta, gamma } => {
                 let ellipsoid = ellipsoid(sigma, theta, gamma)?;
                 then(&one(Model::Ellipsoid(ellipsoid, integrator(gamma)?)))
             }
-            Lobe::Radial { distribution, .. } => {
-                let built = distribution.build().map_err(|why| BakeError::Lobe(why.to_string()))?;
+            AlbedoLobe::Radial { distribution, .. } => {
+                let built =
+                    distribution.build().map_err(|why| AlbedoError::Lobe(why.to_string()))?;
                 let marginal = Marginal::new(&*built);
                 then(&one(Model::Radial(RadialAlbedo::new(&marginal, tolerance))))
             }
@@ -205,7 +208,7 @@ impl Model<'_> {
         &self,
         site: &Site,
         weights: impl Fn(f64) -> [f64; CHANNELS],
-    ) -> Result<Albedo<CHANNELS>, BakeError> {
+    ) -> Result<Albedo<CHANNELS>, AlbedoError> {
         Ok(match self {
             Self::StudentT(None, model) => model.reflection(site.sigma, site.cos, weights)?,
             Self::StudentT(Some(sigma), model) => {
@@ -221,11 +224,11 @@ impl Model<'_> {
     /// The round member of the family with the σ of the place, which refracts as well.
     ///
     /// # Errors
-    /// [`BakeError::Lobe`] of other lobes.
-    pub(super) fn round(&self, site: &Site) -> Result<(&AlbedoIntegrator, f64), BakeError> {
+    /// [`AlbedoError::Lobe`] of other lobes.
+    pub(super) fn round(&self, site: &Site) -> Result<(&AlbedoIntegrator, f64), AlbedoError> {
         match self {
             Self::StudentT(None, model) => Ok((model, site.sigma)),
-            _ => Err(BakeError::Lobe(
+            _ => Err(AlbedoError::Lobe(
                 "only round Student-t lobes refract light, by their own model".into(),
             )),
         }

@@ -5,9 +5,9 @@
 //! of exact reflectances the shares of light. Nodes stand evenly in coordinates found by measuring. Averages are integrated from
 //! the stored, interpolated albedo, so that a white furnace closes to rounding rather than to the interpolation error.
 
+mod albedo_spec;
 mod integrand;
 mod lobe;
-mod spec;
 
 use std::fmt;
 
@@ -17,13 +17,13 @@ use rayon::prelude::*;
 use microfacet_model::{Albedo, ParameterError};
 use microfacet_sampler::axis::ViewBlend;
 use microfacet_sampler::{
-    Albedo as Bound, Axis, BindError, Kind, LoadError, Mapping, Masking, Precision, Reflectance,
-    Table,
+    Albedo as Bound, Axis, Kind, LoadError, Mapping, Masking, MaterialError, Precision,
+    Reflectance, Table,
 };
 
+pub use albedo_spec::{AlbedoSpec, Domain, SIGMA_MAX};
 pub use integrand::{Integrand, weights};
-pub use lobe::{Lobe, Model, Models};
-pub use spec::{AlbedoSpec, Domain, SIGMA_MAX};
+pub use lobe::{AlbedoLobe, Model, Models};
 
 /// Most channels that an integrand has.
 pub const CHANNELS: usize = 3;
@@ -55,15 +55,15 @@ impl Site {
                 Mapping::LogRoughness(_) => site.sigma = quantity(),
                 Mapping::ReflectanceRoot => site.eta = quantity(),
                 Mapping::Azimuth(azimuth) => {
-                    let azimuth = azimuth.bind(axis.len());
+                    let azimuth = azimuth.prepare(axis.len());
                     let [c, s] = azimuth.direction(t);
                     (site.phi, site.sigma) = (azimuth.quantity(t), azimuth.sigma(c, s));
                 }
                 Mapping::ViewBlend(view) => {
-                    site.cos = view.bind(site.sigma, site.gamma).quantity(t)
+                    site.cos = view.prepare(site.sigma, site.gamma).quantity(t)
                 }
                 Mapping::CriticalBlend(view) => {
-                    site.cos = view.bind(site.sigma, site.gamma, 1.0 / site.eta).quantity(t);
+                    site.cos = view.prepare(site.sigma, site.gamma, 1.0 / site.eta).quantity(t);
                 }
                 _ => unreachable!("no axis of an albedo"),
             }
@@ -101,7 +101,7 @@ impl fmt::Display for Site {
 
 /// Why a bake gave up.
 #[derive(Clone, Debug, PartialEq)]
-pub enum BakeError {
+pub enum AlbedoError {
     /// A parameter outside the domain of the model.
     Parameter(ParameterError),
     /// A node whose E is not a number, or above 1 by more than its error: a fault of the quadrature, which must not reach a table.
@@ -121,12 +121,12 @@ pub enum BakeError {
     /// The lobe has no such albedo.
     Lobe(String),
     /// A table does not hold what it was baked for.
-    Bind(BindError),
+    Bind(MaterialError),
     /// The tables would not load.
     Table(LoadError),
 }
 
-impl fmt::Display for BakeError {
+impl fmt::Display for AlbedoError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Parameter(why) => why.fmt(f),
@@ -143,21 +143,21 @@ impl fmt::Display for BakeError {
     }
 }
 
-impl std::error::Error for BakeError {}
+impl std::error::Error for AlbedoError {}
 
-impl From<ParameterError> for BakeError {
+impl From<ParameterError> for AlbedoError {
     fn from(why: ParameterError) -> Self {
         Self::Parameter(why)
     }
 }
 
-impl From<BindError> for BakeError {
-    fn from(why: BindError) -> Self {
+impl From<MaterialError> for AlbedoError {
+    fn from(why: MaterialError) -> Self {
         Self::Bind(why)
     }
 }
 
-impl From<LoadError> for BakeError {
+impl From<LoadError> for AlbedoError {
     fn from(why: LoadError) -> Self {
         Self::Table(why)
     }
@@ -168,8 +168,8 @@ impl From<LoadError> for BakeError {
 /// Each directional table has `quadrature_error`, the largest error estimate of a node, in its certificate.
 ///
 /// # Errors
-/// [`BakeError`] if a node is not a sound albedo or not accurate enough, or the specification is out of the domain.
-pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
+/// [`AlbedoError`] if a node is not a sound albedo or not accurate enough, or the specification is out of the domain.
+pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, AlbedoError> {
     Ok(bake_in(spec, &[spec.precision])?.concat())
 }
 
@@ -177,7 +177,10 @@ pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, BakeError> {
 ///
 /// # Errors
 /// As [`bake`].
-pub fn bake_in(spec: &AlbedoSpec, precisions: &[Precision]) -> Result<Vec<Vec<Table>>, BakeError> {
+pub fn bake_in(
+    spec: &AlbedoSpec,
+    precisions: &[Precision],
+) -> Result<Vec<Vec<Table>>, AlbedoError> {
     let sites = Site::all(&spec.axes);
     let gammas = sites.iter().map(|site| site.gamma);
     Models::with(&spec.lobe, gammas, spec.tolerance, |models| {
@@ -185,11 +188,11 @@ pub fn bake_in(spec: &AlbedoSpec, precisions: &[Precision]) -> Result<Vec<Vec<Ta
         let nodes = sites
             .par_iter()
             .map(|site| node(spec, &integrand, models.at(site), site))
-            .collect::<Result<Vec<Node>, BakeError>>()?;
+            .collect::<Result<Vec<Node>, AlbedoError>>()?;
         let rounded = |&precision: &Precision| {
             let spec = AlbedoSpec { precision, ..spec.clone() };
             let tables = spec.maskings.iter().map(|&masking| tables(&spec, &nodes, masking));
-            Ok(tables.collect::<Result<Vec<_>, BakeError>>()?.concat())
+            Ok(tables.collect::<Result<Vec<_>, AlbedoError>>()?.concat())
         };
         precisions.iter().map(rounded).collect()
     })
@@ -214,7 +217,7 @@ fn node(
     integrand: &Integrand,
     model: &Model<'_>,
     site: &Site,
-) -> Result<Node, BakeError> {
+) -> Result<Node, AlbedoError> {
     let mut values = integrand.at(model, site)?;
     let ratio = model.area_ratio(site);
     let clamp = ratio.map(|ratio| 1.0 / (1.0 + ratio));
@@ -225,7 +228,7 @@ fn node(
         return Ok(Node { values, clamp });
     }
     if !(values.error <= SLACK * spec.tolerance) {
-        return Err(BakeError::Accuracy { at: *site, error: values.error });
+        return Err(AlbedoError::Accuracy { at: *site, error: values.error });
     }
     for form in [&mut values.uncorrelated, &mut values.height_correlated] {
         form.iter_mut().for_each(|x| *x /= share);
@@ -237,7 +240,7 @@ fn node(
             Reflectance::Moments => {
                 let e = form[0] + form[1];
                 if !sound(e) {
-                    return Err(BakeError::Albedo { at: *site, value: e });
+                    return Err(AlbedoError::Albedo { at: *site, value: e });
                 }
                 let mirror = weights(site.cos);
                 // Near normal incidence on a smooth surface 1 − E is far below what quadrature is asked for.
@@ -245,7 +248,7 @@ fn node(
             }
             _ => {
                 if let Some(&value) = form.iter().find(|x| !sound(**x)) {
-                    return Err(BakeError::Albedo { at: *site, value });
+                    return Err(AlbedoError::Albedo { at: *site, value });
                 }
                 // Outside by less than the error of the quadrature is at the end.
                 form.iter_mut().for_each(|x| *x = x.clamp(0.0, 1.0));
@@ -256,7 +259,7 @@ fn node(
 }
 
 /// The tables of one form of masking.
-fn tables(spec: &AlbedoSpec, nodes: &[Node], masking: Masking) -> Result<Vec<Table>, BakeError> {
+fn tables(spec: &AlbedoSpec, nodes: &[Node], masking: Masking) -> Result<Vec<Table>, AlbedoError> {
     let channels = spec.reflectance.channels().len();
     let values = |node: &Node| {
         node.values.of(masking)[..channels].iter().copied().chain(node.clamp).collect::<Vec<f64>>()
@@ -281,16 +284,16 @@ fn tables(spec: &AlbedoSpec, nodes: &[Node], masking: Masking) -> Result<Vec<Tab
 }
 
 /// The averages of a table of moments over γ, σ and the view.
-fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<Table, BakeError> {
+fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<Table, AlbedoError> {
     directional.validate()?;
     let axes = spec.axes[..2].to_vec();
     let (gammas, sigmas) = (axes[0].quantities(), axes[1].quantities());
     // Nodes beyond what is promised are bound as well.
     let mut whole = directional.clone();
     whole.subject.covers = spec.everywhere();
-    let at = |(gamma, sigma): (f64, f64)| Ok(Bound::bind(&whole, sigma, gamma)?.integrate());
+    let at = |(gamma, sigma): (f64, f64)| Ok(Bound::from_table(&whole, sigma, gamma)?.integrate());
     let pairs = gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| (gamma, sigma)));
-    let values = pairs.map(at).collect::<Result<Vec<_>, BindError>>()?;
+    let values = pairs.map(at).collect::<Result<Vec<_>, MaterialError>>()?;
     Ok(Table {
         name: spec.name(Kind::AlbedoAverage, masking),
         kind: Kind::AlbedoAverage,

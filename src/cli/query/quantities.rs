@@ -7,7 +7,9 @@ use glam::DVec3;
 
 use microfacet_bake::validate::furnace::direction;
 use microfacet_model as model;
+use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::fresnel::schlick_weight;
+use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{Masking, Moments, StudentT, Tables};
 
 use super::Method;
@@ -97,7 +99,7 @@ impl<'a> Point<'a> {
         let &[x, y, gamma, theta, phi, ref rest @ ..] = &values[..] else {
             unreachable!("five columns were found")
         };
-        model::StudentT::anisotropic(x, y, gamma).map_err(|why| why.to_string())?;
+        model::StudentT::new([x, y], gamma).map_err(|why| why.to_string())?;
         let u = if let &[a, b] = rest { [a, b] } else { [0.5; 2] };
         Ok(Self { sigma: [x, y], gamma, theta, phi, u, set })
     }
@@ -112,8 +114,7 @@ impl<'a> Point<'a> {
     }
 
     fn exact(&self) -> model::StudentT {
-        model::StudentT::anisotropic(self.sigma[0], self.sigma[1], self.gamma)
-            .expect("checked in `new`")
+        model::StudentT::new([self.sigma[0], self.sigma[1]], self.gamma).expect("checked in `new`")
     }
 }
 
@@ -174,7 +175,7 @@ impl Quantity for Normal {
                     .into()
             }
             Method::Exact => {
-                let m = at.exact().visible_normal(v, at.u);
+                let m = at.exact().sample_visible_normal(v, at.u);
                 [m.x, m.y, m.z, at.exact().visible_normal_pdf(v, m)].map(|x| x.to_string()).into()
             }
         })

@@ -2,12 +2,14 @@
 
 use glam::{DVec3, Vec3};
 
-use microfacet_model::{self as model, SignedUnit, VisibleSlope};
+use microfacet_model::MicrofacetDistribution as _;
+use microfacet_model::{self as model, SignedSlope, VisibleSlope};
+use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::axis::half_tangent::half_tangent;
-use microfacet_sampler::{BindError, Masking, Skew, StudentT, Tables};
+use microfacet_sampler::{Ggx, Lobe, Masking, MaterialError, Skew, Tables};
 
 use super::{Point, Report, direction};
-use crate::spec::GAMMA_WHOLE;
+use crate::table_spec::GAMMA_WHOLE;
 
 /// Four ulp of a unit vector's components.
 pub(super) const ULP4: f64 = 4.0 * f32::EPSILON as f64;
@@ -25,48 +27,58 @@ struct Tilt {
     rounding: f64,
 }
 
-pub(super) struct Judge<'a> {
-    pub(super) bound: StudentT,
+pub(super) struct Checker<'a> {
+    pub(super) lobe: Lobe,
     rises: bool,
     exact: model::StudentT,
     report: &'a mut Report,
 }
 
 /// Judges a material at `views`, each a list of points that differ in `u` only, `u[0]` ascending; GGX by its closed forms too.
-pub(super) fn judge(
+pub(super) fn check(
     tables: &Tables,
     sigma: [f32; 2],
     gamma: f64,
     views: Vec<Vec<Point>>,
     report: &mut Report,
-) -> Result<(), BindError> {
+) -> Result<(), MaterialError> {
     if gamma == 2.0 {
-        Judge::new(StudentT::ggx(sigma)?, false, report)?.views(&views);
+        Checker::new(Ggx::new(sigma)?.into(), sigma, gamma, false, report)?.views(&views);
     }
-    let mut judge = Judge::new(tables.student_t(sigma, gamma)?, gamma >= GAMMA_WHOLE, report)?;
-    judge.views(&views);
+    let tabulated = tables.student_t(sigma, gamma)?.into();
+    let mut checker = Checker::new(tabulated, sigma, gamma, gamma >= GAMMA_WHOLE, report)?;
+    checker.views(&views);
     // Any matrix will do: each is replaced.
     let lobe = tables.ellipsoid(Skew::new([1.0, 1.0], [0.0; 3])?, gamma)?;
     let forms = Masking::ALL;
-    // Roughness outside the table, or a set without albedo, has none to judge.
+    // Roughness outside the table, or a set without albedo, has none to checker.
     let albedos: Vec<_> =
         forms.iter().filter_map(|form| tables.albedo(sigma[0].into(), gamma, *form).ok()).collect();
     for points in views.iter().step_by(DERIVED_EVERY) {
-        judge.ellipsoids(&lobe, points);
+        checker.ellipsoids(&lobe, points);
         for albedo in &albedos {
-            judge.albedo(albedo, &points[points.len() / 2]);
+            checker.albedo(albedo, &points[points.len() / 2]);
         }
     }
     Ok(())
 }
 
-impl<'a> Judge<'a> {
+impl<'a> Checker<'a> {
     /// `rises`: whether the tilt towards the viewer rises with `u[0]` and is its quantile.
-    fn new(bound: StudentT, rises: bool, report: &'a mut Report) -> Result<Self, BindError> {
-        let ([x, y], gamma) = (bound.sigma().map(f64::from), bound.gamma());
-        let exact =
-            model::StudentT::anisotropic(x, y, gamma).map_err(|_| BindError::Gamma(gamma))?;
-        Ok(Self { bound, rises, exact, report })
+    fn new(
+        lobe: Lobe,
+        sigma: [f32; 2],
+        gamma: f64,
+        rises: bool,
+        report: &'a mut Report,
+    ) -> Result<Self, MaterialError> {
+        let exact = model::StudentT::new(sigma, gamma).map_err(|_| MaterialError::Gamma(gamma))?;
+        Ok(Self { lobe, rises, exact, report })
+    }
+
+    /// σx and σy.
+    pub(super) fn sigma(&self) -> [f64; 2] {
+        [self.exact.sigma_x(), self.exact.sigma_y()]
     }
 
     fn views(&mut self, views: &[Vec<Point>]) {
@@ -86,7 +98,7 @@ impl<'a> Judge<'a> {
     }
 }
 
-impl Judge<'_> {
+impl Checker<'_> {
     /// Notes a broken rule; `value` is the offending number.
     pub(super) fn require(&mut self, holds: bool, rule: &'static str, value: f64, at: &Point) {
         if !holds {
@@ -99,14 +111,16 @@ impl Judge<'_> {
     /// Functions of directions alone.
     fn view(&mut self, at: &Point) {
         let v = at.view();
-        let g1 = f64::from(self.bound.g1(v));
+        let g1 = f64::from(self.lobe.g1(v));
         let unit = |x: f64| (0.0..=1.0).contains(&x);
         self.require(unit(g1), "g1 outside [0, 1]", g1, at);
         self.require((g1 > 0.0) == (v.z > 0.0), "g1 = 0 above the horizon, or not below", g1, at);
-        let lambda = self.bound.lambda(v);
+        let lambda = self.lobe.lambda(v);
         self.require(lambda >= 0.0, "lambda negative or NaN", lambda.into(), at);
-        let share = self.bound.tabulated_share(v);
-        self.require(unit(share.into()), "tabulated_share outside [0, 1]", share.into(), at);
+        if let Lobe::StudentT(lobe) = &self.lobe {
+            let share = lobe.tabulated_share(v);
+            self.require(unit(share.into()), "tabulated_share outside [0, 1]", share.into(), at);
+        }
 
         let precise = v.as_dvec3();
         let truth = self.exact.g1(precise);
@@ -129,7 +143,7 @@ impl Judge<'_> {
         // A little further from the normal, as far again from the horizon, and half way to it.
         for factor in [1.0 + 1e-6, 1.01, 1.5] {
             let further =
-                self.bound.g1(direction((at.theta * factor).min(std::f64::consts::PI), at.phi));
+                self.lobe.g1(direction((at.theta * factor).min(std::f64::consts::PI), at.phi));
             self.require(
                 f64::from(further) <= g1 + ULP4,
                 "g1 rises with theta",
@@ -140,8 +154,8 @@ impl Judge<'_> {
         // Any other direction will do for the light.
         let l = direction(1.5 * f64::from(at.u[1]), at.phi + 2.0);
         for masking in Masking::ALL {
-            let (g2, swapped) = (self.bound.g2(v, l, masking), self.bound.g2(l, v, masking));
-            let bound = f64::from(g2) <= g1.min(self.bound.g1(l).into()) * (1.0 + ULP4);
+            let (g2, swapped) = (self.lobe.g2(v, l, masking), self.lobe.g2(l, v, masking));
+            let bound = f64::from(g2) <= g1.min(self.lobe.g1(l).into()) * (1.0 + ULP4);
             self.require(g2 >= 0.0 && bound, "g2 outside [0, min g1]", g2.into(), at);
             self.require(g2 == swapped, "g2 not symmetric", (g2 - swapped).into(), at);
         }
@@ -151,7 +165,7 @@ impl Judge<'_> {
     fn normal(&mut self, at: &Point, last: &mut f64) {
         self.report.region(at).points += 1;
         let v = at.view();
-        let m = self.bound.sample_visible_normal(v, at.u);
+        let m = self.lobe.sample_visible_normal(v, at.u);
         self.unit_and_above(m, at);
         let facing = v.as_dvec3().dot(m.as_dvec3());
         let seen = v.z < 0.0 || facing >= -ULP4;
@@ -168,8 +182,8 @@ impl Judge<'_> {
         }
         *last = half_tangent;
 
-        let bound = &self.bound;
-        let (d, pdf, table) = (bound.d(m), bound.visible_normal_pdf(v, m), bound.table_pdf(v, m));
+        let lobe = &self.lobe;
+        let (d, pdf, table) = (lobe.d(m), lobe.visible_normal_pdf(v, m), lobe.table_pdf(v, m));
         let sound = |x: f32| x >= 0.0 && x.is_finite();
         self.require(sound(d), "d negative, NaN or inf", d.into(), at);
         self.require(sound(pdf), "visible_normal_pdf negative, NaN or inf", pdf.into(), at);
@@ -203,7 +217,7 @@ impl Judge<'_> {
 
     /// What m says about the tilt that was drawn.
     fn tilt(&self, v: Vec3, m: Vec3) -> Tilt {
-        let [sx, sy] = self.bound.sigma();
+        let [sx, sy] = self.sigma().map(|sigma| sigma as f32);
         let rho = ((sx * v.x) * (sx * v.x) + (sy * v.y) * (sy * v.y)).sqrt();
         let [sx, sy] = [sx, sy].map(f64::from);
         let (v, m) = (v.as_dvec3(), m.as_dvec3());
@@ -223,7 +237,7 @@ impl Judge<'_> {
     /// The model's own sampler, and how far the table's normal is from its.
     fn model_normal(&mut self, at: &Point) {
         let v = at.view();
-        let m = self.exact.visible_normal(v.as_dvec3(), at.u.map(f64::from));
+        let m = self.exact.sample_visible_normal(v.as_dvec3(), at.u.map(f64::from));
         let ulp4 = 4.0 * f64::EPSILON;
         self.require(
             (m.length() - 1.0).abs() <= ulp4,
@@ -247,14 +261,14 @@ impl Judge<'_> {
     /// The share of visible normals tilted less than the one drawn, against u₁.
     fn cdf_error(&mut self, at: &Point) {
         let v = at.view();
-        let tilt = self.tilt(v, self.bound.sample_visible_normal(v, at.u));
+        let tilt = self.tilt(v, self.lobe.sample_visible_normal(v, at.u));
         if !self.rises || tilt.rounding > 1e-5 {
             return;
         }
         let shape = self.exact.shape();
         let (view, _) =
             self.exact.unit_view(DVec3::new(v.x.into(), v.y.into(), v.z.max(0.0).into()));
-        let x = SignedUnit { w: shape.unit(tilt.slope.abs()), sign: tilt.slope.signum() };
+        let x = SignedSlope { w: shape.asinh_slope(tilt.slope.abs()), sign: tilt.slope.signum() };
         let cdf = VisibleSlope::new(shape, view).cdf(x);
         self.report.region(at).errors[3].see((cdf - f64::from(at.u[0])).abs(), at);
     }

@@ -9,7 +9,7 @@ use microfacet_common::shape::{S_END, gamma_of_s};
 use microfacet_sampler::Tables;
 
 use super::Point;
-use crate::spec::{GAMMA_MIN, GAMMA_WHOLE};
+use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE};
 
 /// Roughnesses, both ends of what can be bound among them.
 const SIGMAS: [[f32; 2]; 16] = [

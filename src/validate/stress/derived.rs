@@ -2,24 +2,24 @@
 
 use glam::Vec3;
 
-use microfacet_sampler::{Albedo, Ellipsoid, Masking, Skew};
+use microfacet_sampler::{Albedo, Ellipsoid, Lobe, Masking, MicrofacetDistribution, Skew};
 
-use super::checks::{Judge, ULP4};
+use super::checks::{Checker, ULP4};
 use super::{Point, direction};
 
 /// Angles of the ellipsoids that are tried with the roughness of each material.
 const TURNS: [[f64; 3]; 2] = [[0.3, 0.0, 0.0], [0.7, -0.4, 2.0]];
 
-impl Judge<'_> {
+impl Checker<'_> {
     /// The same normals from the batch, and bounded ones, of one view.
     pub(super) fn batch_and_bounded(&mut self, points: &[Point]) {
         let v = points[0].view();
         let numbers: Vec<_> = points.iter().map(|at| at.u).collect();
         let mut normals = vec![Vec3::ZERO; points.len()];
-        let done = self.bound.sample_batch(&vec![v; points.len()], &numbers, &mut normals).is_ok();
+        let done = self.lobe.sample_batch(&vec![v; points.len()], &numbers, &mut normals).is_ok();
         let mut g1 = [0.0; 5];
-        let g1_done = self.bound.g1_batch(&[v; 5], &mut g1).is_ok();
-        let apart = g1.iter().map(|g1| (g1 - self.bound.g1(v)).abs()).fold(0.0, f32::max);
+        let g1_done = self.lobe.g1_batch(&[v; 5], &mut g1).is_ok();
+        let apart = g1.iter().map(|g1| (g1 - self.lobe.g1(v)).abs()).fold(0.0, f32::max);
         self.require(
             g1_done && f64::from(apart) <= 0.5 * ULP4,
             "g1_batch differs",
@@ -27,7 +27,17 @@ impl Judge<'_> {
             &points[0],
         );
 
-        let bounded = self.bound.bounded(v);
+        for (at, m) in points.iter().zip(normals) {
+            let apart = (m - self.lobe.sample_visible_normal(v, at.u)).abs().max_element();
+            self.require(
+                done && f64::from(apart) <= 0.5 * ULP4,
+                "sample_batch differs",
+                apart.into(),
+                at,
+            );
+        }
+        let Lobe::StudentT(lobe) = &self.lobe else { return };
+        let bounded = lobe.bounded(v);
         let share = f64::from(bounded.share());
         let drawn: Vec<_> = numbers
             .iter()
@@ -40,15 +50,8 @@ impl Judge<'_> {
             share,
             &points[0],
         );
-        for ((at, m), (bounded, densities)) in points.iter().zip(normals).zip(drawn) {
-            let apart = (m - self.bound.sample_visible_normal(v, at.u)).abs().max_element();
-            self.require(
-                done && f64::from(apart) <= 0.5 * ULP4,
-                "sample_batch differs",
-                apart.into(),
-                at,
-            );
-            self.unit_and_above(bounded, at);
+        for (at, (m, densities)) in points.iter().zip(drawn) {
+            self.unit_and_above(m, at);
             for pdf in densities {
                 let sound = pdf >= 0.0 && pdf.is_finite();
                 self.require(sound, "bounded pdf negative, NaN or inf", pdf.into(), at);
@@ -58,9 +61,9 @@ impl Judge<'_> {
 
     /// A view and normals of the ellipsoids with the material's roughness; none where a matrix would be singular in single precision.
     pub(super) fn ellipsoids(&mut self, lobe: &Ellipsoid, points: &[Point]) {
-        let [x, y] = self.bound.sigma().map(f64::from);
+        let [x, y] = self.sigma();
         for lobe in
-            TURNS.iter().filter_map(|turn| Some(lobe.with_skew(Skew::new([x, y], *turn).ok()?)))
+            TURNS.iter().filter_map(|turn| lobe.with_skew(Skew::new([x, y], *turn).ok()?).ok())
         {
             let v = points[0].view();
             let g1 = f64::from(lobe.g1(v));

@@ -3,7 +3,7 @@
 use microfacet_sampler::{Precision, Table};
 
 use crate::bake;
-use crate::bake::albedo::{AlbedoSpec, BakeError};
+use crate::bake::albedo::{AlbedoError, AlbedoSpec};
 use crate::validate::albedo;
 use crate::validate::certificate::worst_error;
 
@@ -17,7 +17,7 @@ const WORTH: f64 = 0.8;
 pub(super) fn albedo_tables(
     spec: &AlbedoSpec,
     precisions: &[Precision],
-) -> Result<Vec<Vec<Table>>, BakeError> {
+) -> Result<Vec<Vec<Table>>, AlbedoError> {
     let interior = albedo::interior_references(spec)?;
     // Single precision decides, which hardly rounds; it is certified once where it is asked for,
     // too.
@@ -34,7 +34,7 @@ pub(super) fn albedo_tables(
         let references = [&interior[..], &albedo::edge_references(&spec)?].concat();
         let baked = bake::albedo::bake_in(&spec, &all)?;
         let certify = |tables| albedo::certified(&spec, tables, &references);
-        let sets = baked.into_iter().map(certify).collect::<Result<Vec<_>, BakeError>>()?;
+        let sets = baked.into_iter().map(certify).collect::<Result<Vec<_>, AlbedoError>>()?;
         let full = sets[0].clone();
         let error = full.iter().map(worst_error).fold(0.0, f64::max);
         let refinable = spec.refinable();

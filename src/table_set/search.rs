@@ -1,14 +1,14 @@
 //! Levels and precisions for a budget of error or of bytes: predicted by a formula, then measured.
 //!
-//! Errors fall with the level as those of the general set do; that is the formula. A unit is baked
+//! Errors fall with the level as those of the general set do; that is the formula. A group is baked
 //! where it says that the budget is met, and what its certificate measures corrects the formula,
 //! until what is chosen has been measured. So nothing is baked to learn what a neighbour tells.
 
 use microfacet_sampler::{Provenance, Table, encode};
 
 use super::candidate::{Candidate, Grade, Pick};
+use super::group::TableGroup;
 use super::job::Job;
-use super::unit::Unit;
 use super::{BakeError, PATIENCE};
 use crate::plan::{Plan, bare_cost};
 
@@ -22,14 +22,14 @@ const ANY_ERROR: f64 = 1.0;
 /// A larger error than could be, by this factor, is not worth another bake.
 const CLOSE: f64 = 1.12;
 
-/// The units of a plan, to be chosen for a budget.
+/// The groups of a plan, to be chosen for a budget.
 pub(super) struct Search<'a> {
     candidates: Vec<Candidate<'a>>,
 }
 
 impl<'a> Search<'a> {
     pub(super) fn new(plan: &'a Plan) -> Result<Self, BakeError> {
-        Ok(Self { candidates: Unit::apart(plan)?.into_iter().map(Candidate::new).collect() })
+        Ok(Self { candidates: TableGroup::apart(plan)?.into_iter().map(Candidate::new).collect() })
     }
 
     /// Small tables that err by no more than `max_error`.
@@ -65,7 +65,7 @@ impl<'a> Search<'a> {
             let picks = match (known, next) {
                 (Some(known), Some(next)) if worst(&known) <= CLOSE * worst(&next) => known,
                 (_, Some(next)) => next,
-                _ => self.coarsest(|_, _| true).expect("every unit has levels"),
+                _ => self.coarsest(|_, _| true).expect("every group has levels"),
             };
             let grades: Vec<Grade> = picks.iter().map(|pick| pick.grade).collect();
             if std::mem::take(&mut is_first) {
@@ -94,7 +94,7 @@ impl<'a> Search<'a> {
     }
 
     /// The grades with the least common error that fit into `room` bytes, if any do, of those that
-    /// satisfy a condition. What units leave that have no better grade goes to the others.
+    /// satisfy a condition. What groups leave that have no better grade goes to the others.
     fn fitting(&self, room: f64, of: impl Fn(&Candidate, &Pick) -> bool) -> Option<Vec<Pick>> {
         let bytes = |picks: &[Pick]| picks.iter().map(|pick| pick.bytes).sum::<f64>();
         let mut picks = self.coarsest(&of).filter(|picks| bytes(picks) <= room)?;
@@ -127,7 +127,7 @@ impl<'a> Search<'a> {
         Some(picks)
     }
 
-    /// The smallest grades that satisfy a condition, if each unit has one.
+    /// The smallest grades that satisfy a condition, if each group has one.
     fn coarsest(&self, of: impl Fn(&Candidate, &Pick) -> bool) -> Option<Vec<Pick>> {
         let least =
             |candidate: &Candidate| candidate.smallest(f64::INFINITY, |pick| of(candidate, pick));
@@ -136,7 +136,7 @@ impl<'a> Search<'a> {
 
     /// Whether a search that begins with these grades takes no longer than it may.
     fn check_time(&self, grades: &[Grade], job: &Job) -> Result<(), BakeError> {
-        let seconds = |(candidate, grade): (&Candidate, &Grade)| candidate.unit.seconds(grade.0);
+        let seconds = |(candidate, grade): (&Candidate, &Grade)| candidate.group.seconds(grade.0);
         let search = OFTEN * self.candidates.iter().zip(grades).map(seconds).sum::<f64>();
         let plain: f64 = self.candidates.iter().map(|candidate| candidate.plain).sum();
         if !job.patient && search > PATIENCE.max(3.0 * plain) {

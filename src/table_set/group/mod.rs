@@ -1,4 +1,4 @@
-//! The tables that are refined together: the unit in which they are chosen, baked, measured and
+//! The tables that are refined together: the group in which they are chosen, baked, measured and
 //! kept.
 
 mod bake;
@@ -7,19 +7,21 @@ use microfacet_sampler::{MaterialEntry, Precision};
 
 use super::BakeError;
 use crate::bake::{joined_name, radial_bytes};
-use crate::family::Distribution;
+use crate::distribution::Distribution;
 use crate::memory;
-use crate::plan::{AlbedoNeed, Cost, Need, Plan, albedo_cost, cost, distribution_cost, seconds};
-use crate::spec::{Level, Quality, TableSpec, general_set};
+use crate::plan::{
+    Cost, Plan, RequiredAlbedo, RequiredShapes, albedo_cost, cost, distribution_cost, seconds,
+};
+use crate::table_spec::{Level, Quality, TableSpec, general_set};
 
 /// What the tables are of.
-pub(super) enum Unit<'a> {
+pub(super) enum TableGroup<'a> {
     /// Visible normals and masking of a need.
-    Normals(&'a Need, Parts),
+    Normals(&'a RequiredShapes, Parts),
     /// A distribution outside the family, and a material that has it.
     Distribution(&'a Distribution, MaterialEntry),
     /// Albedos.
-    Albedo(&'a AlbedoNeed),
+    Albedo(&'a RequiredAlbedo),
 }
 
 /// Some of the tables of the general set.
@@ -62,18 +64,18 @@ impl Parts {
     }
 }
 
-impl<'a> Unit<'a> {
-    /// The units of a plan at one quality.
+impl<'a> TableGroup<'a> {
+    /// The groups of a plan at one quality.
     pub(super) fn whole(plan: &'a Plan) -> Result<Vec<Self>, BakeError> {
-        let normals = plan.needs.iter().map(|need| Self::Normals(need, Parts::All));
+        let normals = plan.shapes.iter().map(|need| Self::Normals(need, Parts::All));
         Ok(normals.chain(Self::others(plan)?).collect())
     }
 
-    /// As many units of a plan as there can be.
+    /// As many groups of a plan as there can be.
     pub(super) fn apart(plan: &'a Plan) -> Result<Vec<Self>, BakeError> {
         let parts = |need| Parts::APART.map(|parts| Self::Normals(need, parts));
-        let normals = plan.needs.iter().flat_map(parts);
-        let some = |unit: &Self| unit.values(Level::DEFAULT) > 0;
+        let normals = plan.shapes.iter().flat_map(parts);
+        let some = |group: &Self| group.values(Level::DEFAULT) > 0;
         Ok(normals.filter(some).chain(Self::others(plan)?).collect())
     }
 
@@ -132,7 +134,7 @@ impl<'a> Unit<'a> {
         !matches!(self, Self::Normals(need, _) if !need.gamma().is_point())
     }
 
-    /// Specifications of the tables of visible normals; none of other units.
+    /// Specifications of the tables of visible normals; none of other groups.
     fn specs(&self, level: Level) -> Vec<TableSpec> {
         let Self::Normals(need, parts) = self else { return Vec::new() };
         let general = general_set(level, Precision::F32);

@@ -53,25 +53,25 @@ impl ViewBlend {
     /// closer ones.
     pub const CLOSE: Self = Self { normal: 0.2, scale: 6.0, spread: 1.3, ..Self::BAKED };
 
-    /// The same for one shape γ: κ is a number, and readers need no γ, see [`bind_shaped`](Self::bind_shaped).
+    /// The same for one shape γ: κ is a number, and readers need no γ, see [`prepare_shaped`](Self::prepare_shaped).
     #[must_use]
     pub fn of_shape(&self, gamma: f64) -> Self {
         Self { scale: kappa(self.scale, self.heavy, gamma), heavy: 0.0, ..*self }
     }
 
     /// The coordinate of one roughness, of a table for one shape.
-    pub fn bind_shaped(&self, sigma: f64) -> BoundView {
+    pub fn prepare_shaped(&self, sigma: f64) -> PreparedView {
         // With `heavy` = 0 every γ is the same.
-        self.bind(sigma, f64::INFINITY)
+        self.prepare(sigma, f64::INFINITY)
     }
 
     /// The coordinate of one material, σ > 0.
-    pub fn bind(&self, sigma: f64, gamma: f64) -> BoundView {
+    pub fn prepare(&self, sigma: f64, gamma: f64) -> PreparedView {
         let knee = kappa(self.scale, self.heavy, gamma) * sigma;
         // Without the kink of a minimum, which would show in the nodes along σ.
         let floor = harmonic(self.floor, self.slope * sigma);
         let mut view =
-            BoundView { blend: *self, knee, turn: self.spread * sigma, floor, start: 0.0 };
+            PreparedView { blend: *self, knee, turn: self.spread * sigma, floor, start: 0.0 };
         view.start = view.y(floor);
         view
     }
@@ -101,7 +101,7 @@ pub(super) fn fourth_roots(share: f64, x: f64, h: f64) -> f64 {
 
 /// [`ViewBlend`] of one material.
 #[derive(Clone, Copy, Debug)]
-pub struct BoundView {
+pub struct PreparedView {
     blend: ViewBlend,
     /// κσ.
     knee: f64,
@@ -112,7 +112,7 @@ pub struct BoundView {
     start: f64,
 }
 
-impl BoundView {
+impl PreparedView {
     /// μ₀: the view of the first node.
     pub fn floor(&self) -> f64 {
         self.floor
@@ -172,7 +172,7 @@ mod tests {
     fn there_and_back() {
         for gamma in [1.501, 2.0, f64::INFINITY] {
             for sigma in [1e-8, 1e-3, 0.3, 3.0] {
-                let view = ViewBlend::BAKED.bind(sigma, gamma);
+                let view = ViewBlend::BAKED.prepare(sigma, gamma);
                 assert_eq!(view.coordinate(1.0), 1.0);
                 assert_eq!(view.coordinate(view.floor()), 0.0);
                 for t in [0.0, 1e-3, 0.1, 0.5, 0.9, 1.0] {
@@ -186,7 +186,7 @@ mod tests {
                         "sigma {sigma}, gamma {gamma}, {t}: {back}"
                     );
                 }
-                let alone = ViewBlend::BAKED.of_shape(gamma).bind_shaped(sigma);
+                let alone = ViewBlend::BAKED.of_shape(gamma).prepare_shaped(sigma);
                 assert_eq!(alone.coordinate(0.4), view.coordinate(0.4));
             }
         }
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn views_below_the_first_stand_with_it() {
-        let view = ViewBlend::BAKED.bind(0.3, 2.0);
+        let view = ViewBlend::BAKED.prepare(0.3, 2.0);
         assert_eq!([0.0, 1e-7].map(|cos| view.clamped(cos)), [0.0; 2]);
         assert!((f64::from(view.clamped(0.4)) - view.coordinate(f64::from(0.4_f32))).abs() < 1e-7);
     }

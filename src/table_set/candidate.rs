@@ -1,14 +1,14 @@
-//! One unit in a search: what each of its levels is predicted to be, and what was measured.
+//! One group in a search: what each of its levels is predicted to be, and what was measured.
 
 use std::collections::BTreeMap;
 
 use microfacet_sampler::{Precision, Table};
 
 use super::BakeError;
+use super::group::TableGroup;
 use super::job::Job;
-use super::unit::Unit;
 use crate::memory;
-use crate::spec::Level;
+use crate::table_spec::Level;
 use crate::validate::certificate::worst_error;
 
 /// 16-bit fixed point is the only small precision to choose: half precision takes the same bytes,
@@ -16,7 +16,7 @@ use crate::validate::certificate::worst_error;
 const PRECISIONS: [Precision; 2] = [Precision::U16, Precision::F32];
 /// Fewer bytes than this share are not worth another bake.
 const WORTH: f64 = 0.9;
-/// What a unit may spend on being measured more than once, in units of its bake at default quality.
+/// What a group may spend on being measured more than once, in groups of its bake at default quality.
 const ALLOWANCE: f64 = 2.0;
 /// A level in one of [`PRECISIONS`], by its index.
 pub(super) type Grade = (Level, usize);
@@ -42,9 +42,9 @@ struct Measured {
     growth: f64,
 }
 
-/// A unit and what is known of it.
+/// A group and what is known of it.
 pub(super) struct Candidate<'a> {
-    pub(super) unit: Unit<'a>,
+    pub(super) group: TableGroup<'a>,
     /// By precision.
     measured: [BTreeMap<Level, Measured>; 2],
     /// Bytes of what is no value, about.
@@ -57,23 +57,23 @@ pub(super) struct Candidate<'a> {
 }
 
 impl<'a> Candidate<'a> {
-    pub(super) fn new(unit: Unit<'a>) -> Self {
-        let cost = unit.cost(Level::DEFAULT, Precision::F32);
-        let header = cost.bytes.saturating_sub(unit.bytes(Level::DEFAULT, Precision::F32)) as f64;
+    pub(super) fn new(group: TableGroup<'a>) -> Self {
+        let cost = group.cost(Level::DEFAULT, Precision::F32);
+        let header = cost.bytes.saturating_sub(group.bytes(Level::DEFAULT, Precision::F32)) as f64;
         let at = |level: i32| {
-            let (level, seconds) = (Level(level), unit.seconds(Level(level)));
+            let (level, seconds) = (Level(level), group.seconds(Level(level)));
             [0, 1].map(|precision| Pick {
                 grade: (level, precision),
-                values: unit.bytes(level, PRECISIONS[precision]) as f64,
+                values: group.bytes(level, PRECISIONS[precision]) as f64,
                 seconds,
                 error: f64::INFINITY,
                 bytes: f64::INFINITY,
                 measured: false,
             })
         };
-        let menu = unit.levels().flat_map(at).collect();
+        let menu = group.levels().flat_map(at).collect();
         let mut new = Self {
-            unit,
+            group,
             measured: Default::default(),
             header,
             plain: cost.seconds,
@@ -101,7 +101,7 @@ impl<'a> Candidate<'a> {
         if let Some(&Measured { error, bytes, .. }) = measured.get(&level) {
             return (error, bytes, true);
         }
-        let expected = |level: Level| self.unit.expected(level, PRECISIONS[precision]);
+        let expected = |level: Level| self.group.expected(level, PRECISIONS[precision]);
         // How much worse, and larger, than expected.
         let off =
             |(at, measured): (&Level, &Measured)| [measured.error / expected(*at), measured.growth];
@@ -137,24 +137,24 @@ impl<'a> Candidate<'a> {
         (level, precision): Grade,
         job: &mut Job,
     ) -> Result<(), BakeError> {
-        memory::check(self.unit.values(level), job.max_memory)?;
-        job.steps += self.unit.steps();
-        let all = if self.unit.shares_measuring() { vec![0, 1] } else { vec![precision] };
+        memory::check(self.group.values(level), job.max_memory)?;
+        job.steps += self.group.steps();
+        let all = if self.group.shares_measuring() { vec![0, 1] } else { vec![precision] };
         let precisions: Vec<Precision> = all.iter().map(|&i| PRECISIONS[i]).collect();
-        for (i, tables) in all.into_iter().zip(self.unit.bake(level, &precisions, job)?) {
+        for (i, tables) in all.into_iter().zip(self.group.bake(level, &precisions, job)?) {
             let error = tables.iter().map(worst_error).fold(0.0, f64::max);
             let values = tables.iter().map(Table::stored_bytes).sum::<usize>() as f64;
-            let growth = values / self.unit.bytes(level, PRECISIONS[i]) as f64;
+            let growth = values / self.group.bytes(level, PRECISIONS[i]) as f64;
             self.measured[i]
                 .insert(level, Measured { tables, error, bytes: values + self.header, growth });
         }
-        self.spent += self.unit.seconds(level);
+        self.spent += self.group.seconds(level);
         self.predict();
         Ok(())
     }
 
     pub(super) fn finest(&self) -> Grade {
-        (Level(*self.unit.levels().end()), PRECISIONS.len() - 1)
+        (Level(*self.group.levels().end()), PRECISIONS.len() - 1)
     }
 
     pub(super) fn tables(&self, (level, precision): Grade) -> &[Table] {
@@ -178,7 +178,7 @@ impl<'a> Candidate<'a> {
             if self.measured[next.1].contains_key(&next.0) {
                 let measured = self.measured.iter().flat_map(BTreeMap::values);
                 let reached = measured.map(|measured| measured.error).fold(f64::INFINITY, f64::min);
-                return Err(BakeError::OutOfReach { max_error, name: self.unit.name(), reached });
+                return Err(BakeError::OutOfReach { max_error, name: self.group.name(), reached });
             }
             self.measure(next, job)?;
         }

@@ -1,29 +1,29 @@
 //! The whole bake, one way through: a plan and a target in, a certified set out.
 //!
-//! [`bake_with`] cuts the plan into units, the tables that are refined together; for a
+//! [`bake_with`] cuts the plan into groups, the tables that are refined together; for a
 //! [quality](Target::Quality) each is baked at it, for the other targets `search` chooses their
-//! levels. A unit bakes its tables, certifies them and keeps them in the cache, through one door.
+//! levels. A group bakes its tables, certifies them and keeps them in the cache, through one door.
 
 mod candidate;
+mod group;
 mod job;
 mod refine;
 mod search;
-mod unit;
 
 use std::fmt;
 use std::io;
 
-use microfacet_sampler::{BindError, LoadError, Precision, Table, Tables};
+use microfacet_sampler::{LoadError, MaterialError, Precision, Table, Tables};
 
 use crate::bake;
 use crate::cache::Cache;
 use crate::memory::{self, TooLarge};
 use crate::plan::Plan;
-use crate::spec::Quality;
+use crate::table_spec::Quality;
 
+use group::TableGroup;
 use job::Job;
 use search::Search;
-use unit::Unit;
 
 /// How good the tables are to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,7 +125,7 @@ pub enum BakeError {
         plain: f64,
     },
     /// An albedo that is not sound, or not accurate enough.
-    Albedo(bake::albedo::BakeError),
+    Albedo(bake::albedo::AlbedoError),
 }
 
 impl BakeError {
@@ -140,8 +140,8 @@ impl From<LoadError> for BakeError {
     }
 }
 
-impl From<BindError> for BakeError {
-    fn from(why: BindError) -> Self {
+impl From<MaterialError> for BakeError {
+    fn from(why: MaterialError) -> Self {
         Self::invalid(why.to_string())
     }
 }
@@ -152,8 +152,8 @@ impl From<TooLarge> for BakeError {
     }
 }
 
-impl From<bake::albedo::BakeError> for BakeError {
-    fn from(why: bake::albedo::BakeError) -> Self {
+impl From<bake::albedo::AlbedoError> for BakeError {
+    fn from(why: bake::albedo::AlbedoError) -> Self {
         Self::Albedo(why)
     }
 }
@@ -194,7 +194,7 @@ impl std::error::Error for BakeError {}
 /// Bakes and certifies the tables of a plan, in memory, with the default [`Settings`].
 ///
 /// ```
-/// use microfacet_bake::generate::{Target, bake};
+/// use microfacet_bake::table_set::{Target, bake};
 /// use microfacet_bake::plan::{Options, Plan};
 /// use microfacet_bake::scene::Scene;
 ///
@@ -224,13 +224,14 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
     let mut job = Job::new(settings);
     let tables: Vec<Table> = match target {
         Target::Quality(quality, precision) => {
-            let units = Unit::whole(plan)?;
+            let groups = TableGroup::whole(plan)?;
             memory::check(
-                units.iter().map(|unit| unit.values(quality.into())).sum(),
+                groups.iter().map(|group| group.values(quality.into())).sum(),
                 job.max_memory,
             )?;
-            job.steps = units.iter().map(Unit::steps).sum();
-            let each = units.iter().map(|unit| unit.bake(quality.into(), &[precision], &mut job));
+            job.steps = groups.iter().map(TableGroup::steps).sum();
+            let each =
+                groups.iter().map(|group| group.bake(quality.into(), &[precision], &mut job));
             each.collect::<Result<Vec<_>, _>>()?.concat().concat()
         }
         // Nothing would meet it, not even what takes minutes to find that out.

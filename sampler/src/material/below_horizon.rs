@@ -11,13 +11,13 @@ use crate::math::sqrt64;
 const NEAR: f64 = 0.8;
 
 /// The slopes beyond a, for a bound lobe.
-pub(crate) struct Below<'a> {
+pub(crate) struct SlopeBelowHorizon<'a> {
     lobe: &'a StudentT,
     a: f64,
     s: f64,
 }
 
-impl<'a> Below<'a> {
+impl<'a> SlopeBelowHorizon<'a> {
     /// For a view `rho` across and `depth` ≥ 0 below the horizon of the lobe.
     pub(crate) fn new(lobe: &'a StudentT, rho: f32, depth: f32) -> Self {
         Self { lobe, a: f64::from(depth) / f64::from(rho), s: f64::from(lobe.s) }

@@ -17,10 +17,14 @@ impl StudentT {
     ///
     /// 1 + (3 or more) numbers a draw; the rejection accepts 1 in 1.1–2.8. At grazing every draw is an excess draw, and so it is for a
     /// view below the horizon, which sees the microsurface from within; there the rejection accepts ever less the steeper the view.
-    pub fn sample_visible_exact(&self, v: DVec3, uniform: &mut impl FnMut() -> f64) -> DVec3 {
+    pub fn sample_visible_by_rejection(
+        &self,
+        v: DVec3,
+        uniform: &mut impl FnMut() -> f64,
+    ) -> DVec3 {
         let at = self.stretch(DVec3::new(v.x, v.y, v.z.abs()));
         let (shape, z) = (self.shape(), at.view.cotangent());
-        let lambda = if z.is_infinite() { 0.0 } else { shape.lambda(shape.unit(z)) };
+        let lambda = if z.is_infinite() { 0.0 } else { shape.lambda(shape.asinh_slope(z)) };
         let (x, y) = if uniform() * (1.0 + lambda) < 1.0 && v.z >= 0.0 {
             flipped_slope(shape, z, uniform)
         } else {

@@ -10,7 +10,7 @@ use microfacet_model::classic::{
 
 /// A named distribution of one or two parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Family {
+pub enum DistributionKind {
     /// Beckmann, slope parameter m.
     Beckmann,
     /// Gaussian of the angle (Torrance–Sparrow), width m in radians.
@@ -35,8 +35,8 @@ pub enum Family {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named {
     /// Which.
-    pub family: Family,
-    /// Its parameters, in the order of [`Family::parameters`].
+    pub family: DistributionKind,
+    /// Its parameters, in the order of [`DistributionKind::parameters`].
     pub values: Vec<f64>,
 }
 
@@ -58,8 +58,8 @@ impl Distribution {
     /// The distribution itself.
     ///
     /// # Errors
-    /// As [`Family::build`].
-    pub fn build(&self) -> Result<Box<dyn Isotropic>, FamilyError> {
+    /// As [`DistributionKind::build`].
+    pub fn build(&self) -> Result<Box<dyn Isotropic>, DistributionError> {
         match self {
             Self::Named(named) => named.build(),
             Self::Measured { table, .. } => Ok(Box::new(table.clone())),
@@ -80,22 +80,23 @@ impl Distribution {
 
 /// Why a distribution could not be made.
 #[derive(Clone, Debug, PartialEq)]
-pub enum FamilyError {
+pub enum DistributionError {
     /// No distribution has this name.
     Unknown(String),
     /// The wrong number of parameters, or one that is no number.
-    Parameters(Family, String),
+    Parameters(DistributionKind, String),
     /// A parameter outside its range; the message of the model.
-    Range(Family, String),
+    Range(DistributionKind, String),
     /// An anisotropic distribution where an isotropic one is needed.
     Dimension(f64, f64),
 }
 
-impl fmt::Display for FamilyError {
+impl fmt::Display for DistributionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unknown(name) => {
-                let names: Vec<&str> = Family::ALL.iter().map(|family| family.name()).collect();
+                let names: Vec<&str> =
+                    DistributionKind::ALL.iter().map(|family| family.name()).collect();
                 write!(f, "distribution `{name}` is not known; there are {}", names.join(", "))
             }
             Self::Parameters(family, given) => {
@@ -112,9 +113,9 @@ impl fmt::Display for FamilyError {
     }
 }
 
-impl std::error::Error for FamilyError {}
+impl std::error::Error for DistributionError {}
 
-impl Family {
+impl DistributionKind {
     /// All of them.
     pub const ALL: [Self; 9] = [
         Self::Beckmann,
@@ -146,15 +147,15 @@ impl Family {
     /// The family of this name; `ggx` and `torrance-sparrow` are understood too.
     ///
     /// # Errors
-    /// [`FamilyError::Unknown`], listing the names.
-    pub fn by_name(name: &str) -> Result<Self, FamilyError> {
+    /// [`DistributionError::Unknown`], listing the names.
+    pub fn by_name(name: &str) -> Result<Self, DistributionError> {
         let plain = match name {
             "ggx" => "trowbridge-reitz",
             "torrance-sparrow" => "gauss",
             other => other,
         };
         let found = Self::ALL.into_iter().find(|family| family.name() == plain);
-        found.ok_or_else(|| FamilyError::Unknown(name.into()))
+        found.ok_or_else(|| DistributionError::Unknown(name.into()))
     }
 
     /// Names of its parameters.
@@ -173,11 +174,11 @@ impl Family {
     /// The distribution with these parameters.
     ///
     /// # Errors
-    /// [`FamilyError`] for a wrong number of parameters, one out of range, or anisotropy.
-    pub fn build(self, values: &[f64]) -> Result<Box<dyn Isotropic>, FamilyError> {
-        let range = |e: &dyn fmt::Display| FamilyError::Range(self, e.to_string());
+    /// [`DistributionError`] for a wrong number of parameters, one out of range, or anisotropy.
+    pub fn build(self, values: &[f64]) -> Result<Box<dyn Isotropic>, DistributionError> {
+        let range = |e: &dyn fmt::Display| DistributionError::Range(self, e.to_string());
         let member =
-            |m: Result<Member, microfacet_model::ParameterError>| -> Result<Box<dyn Isotropic>, FamilyError> {
+            |m: Result<Member, microfacet_model::ParameterError>| -> Result<Box<dyn Isotropic>, DistributionError> {
                 m.map(|m| Box::new(m) as _).map_err(|e| range(&e))
             };
         match (self, values) {
@@ -196,11 +197,11 @@ impl Family {
             (Self::AshikhminShirley, &[nx, ny]) => {
                 AshikhminShirley::new(nx, ny).map_err(|e| range(&e))?;
                 if nx != ny {
-                    return Err(FamilyError::Dimension(nx, ny));
+                    return Err(DistributionError::Dimension(nx, ny));
                 }
                 member(Member::blinn_phong(nx))
             }
-            _ => Err(FamilyError::Parameters(self, format!("{values:?}"))),
+            _ => Err(DistributionError::Parameters(self, format!("{values:?}"))),
         }
     }
 
@@ -235,23 +236,23 @@ impl Named {
     /// The distribution itself.
     ///
     /// # Errors
-    /// As [`Family::build`].
-    pub fn build(&self) -> Result<Box<dyn Isotropic>, FamilyError> {
+    /// As [`DistributionKind::build`].
+    pub fn build(&self) -> Result<Box<dyn Isotropic>, DistributionError> {
         self.family.build(&self.values)
     }
 }
 
 impl FromStr for Named {
-    type Err = FamilyError;
+    type Err = DistributionError;
 
     /// Parses `name:value` or `name:value,value`; `inf` is a number.
-    fn from_str(text: &str) -> Result<Self, FamilyError> {
+    fn from_str(text: &str) -> Result<Self, DistributionError> {
         let (name, rest) = text.split_once(':').unwrap_or((text, ""));
-        let family = Family::by_name(name)?;
+        let family = DistributionKind::by_name(name)?;
         let values: Result<Vec<f64>, _> = rest.split(',').map(|x| x.trim().parse()).collect();
-        let values = values.map_err(|_| FamilyError::Parameters(family, text.into()))?;
+        let values = values.map_err(|_| DistributionError::Parameters(family, text.into()))?;
         if values.len() != family.parameters().len() {
-            return Err(FamilyError::Parameters(family, text.into()));
+            return Err(DistributionError::Parameters(family, text.into()));
         }
         Ok(Self { family, values })
     }
@@ -270,7 +271,7 @@ mod tests {
 
     #[test]
     fn names_parse_and_print() {
-        for family in Family::ALL {
+        for family in DistributionKind::ALL {
             let point = vec![0.6; family.dimension()];
             let named = Named { family, values: family.at(&point) };
             let back: Named = named.to_string().parse().unwrap();
@@ -279,7 +280,7 @@ mod tests {
         }
         let beckmann: Named = "student-t:0.3,inf".parse().unwrap();
         assert!(beckmann.build().unwrap().student_t().unwrap().shape().is_beckmann());
-        assert_eq!("ggx:0.1".parse::<Named>().unwrap().family, Family::TrowbridgeReitz);
+        assert_eq!("ggx:0.1".parse::<Named>().unwrap().family, DistributionKind::TrowbridgeReitz);
     }
 
     #[test]

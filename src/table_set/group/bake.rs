@@ -1,4 +1,4 @@
-//! A unit's tables: read from the cache, or baked, certified and kept.
+//! A group's tables: read from the cache, or baked, certified and kept.
 
 use std::time::Instant;
 
@@ -8,15 +8,15 @@ use microfacet_sampler::{LoadError, MaterialEntry, Precision, Provenance, Table,
 use super::super::BakeError;
 use super::super::job::Job;
 use super::super::refine::albedo_tables;
-use super::{Parts, Unit};
+use super::{Parts, TableGroup};
 use crate::bake;
-use crate::family::Distribution;
-use crate::plan::Need;
-use crate::spec::{Level, TableSpec, general_set};
+use crate::distribution::Distribution;
+use crate::plan::RequiredShapes;
+use crate::table_spec::{Level, TableSpec, general_set};
 use crate::validate::certificate::{POINTS, measure};
 use crate::validate::radial;
 
-impl Unit<'_> {
+impl TableGroup<'_> {
     /// What the tables are kept under; all that decides over their values.
     fn key(&self, level: Level, precision: Precision) -> String {
         match self {
@@ -34,7 +34,7 @@ impl Unit<'_> {
     }
 
     /// The certified tables of a level, kept or new, in each of some precisions.
-    pub(in crate::generate) fn bake(
+    pub(in crate::table_set) fn bake(
         &self,
         level: Level,
         precisions: &[Precision],
@@ -78,7 +78,7 @@ impl Unit<'_> {
     /// Tables of visible normals, one by one, so that a bake that is interrupted can go on.
     fn normals(
         &self,
-        (need, parts): (&Need, Parts),
+        (need, parts): (&RequiredShapes, Parts),
         level: Level,
         precisions: &[Precision],
         keys: &[String],

@@ -9,10 +9,10 @@ use microfacet_sampler::{
     Axis, Covered, Interpolation, Kind, Mapping, Masking, Precision, Reflectance, Side, Subject,
 };
 
-use super::{BakeError, Lobe, view_of};
+use super::{AlbedoError, AlbedoLobe, view_of};
 use crate::bake::{joined_name, names};
 use crate::scene::Interval;
-use crate::spec::{GAMMA_MIN, Level};
+use crate::table_spec::{GAMMA_MIN, Level};
 
 /// Smallest σ node; what is smoother is a mirror.
 const SIGMA_MIN: f64 = LogRoughness::BAKED.first;
@@ -72,7 +72,7 @@ impl Domain {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlbedoSpec {
     /// Whose.
-    pub lobe: Lobe,
+    pub lobe: AlbedoLobe,
     /// Under which reflectance.
     pub reflectance: Reflectance,
     /// The forms; both cost hardly more than one.
@@ -126,18 +126,18 @@ impl AlbedoSpec {
     /// read there, so that the values in between are those of the general tables. Those of other lobes are the smallest that are tried.
     ///
     /// # Errors
-    /// [`BakeError`] for an ellipsoid that is none.
+    /// [`AlbedoError`] for an ellipsoid that is none.
     pub fn new(
-        lobe: Lobe,
+        lobe: AlbedoLobe,
         reflectance: Reflectance,
         maskings: Vec<Masking>,
         level: impl Into<Level>,
         precision: Precision,
-    ) -> Result<Self, BakeError> {
+    ) -> Result<Self, AlbedoError> {
         let level = level.into();
         let counts = Counts::at(level);
         let mut axes = match (&lobe, lobe.azimuth()?) {
-            (Lobe::Family(domain), _) => materials(domain, &counts),
+            (AlbedoLobe::Family(domain), _) => materials(domain, &counts),
             (_, Some(azimuth)) => {
                 let count = match (lobe.is_round(), azimuth.fold) {
                     (true, _) => 1,
@@ -155,8 +155,8 @@ impl AlbedoSpec {
             Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&nodes, from, to))
         }));
         let (view, views) = match lobe {
-            Lobe::Family(_) if level >= CLOSE_FROM => (ViewBlend::CLOSE, counts.views),
-            Lobe::Family(_) => (ViewBlend::BAKED, counts.views),
+            AlbedoLobe::Family(_) if level >= CLOSE_FROM => (ViewBlend::CLOSE, counts.views),
+            AlbedoLobe::Family(_) => (ViewBlend::BAKED, counts.views),
             _ => (view_of(lobe.tail()), counts.views_of_lobes),
         };
         axes.push(if reflectance.side() == Some(Side::Dense) {
@@ -171,7 +171,7 @@ impl AlbedoSpec {
 
     /// The moments of the whole family, for both forms of masking.
     pub fn general(level: impl Into<Level>, precision: Precision) -> Self {
-        let lobe = Lobe::Family(Domain::GENERAL);
+        let lobe = AlbedoLobe::Family(Domain::GENERAL);
         Self::new(lobe, Reflectance::Moments, Masking::ALL.into(), level, precision)
             .expect("the family is no ellipsoid")
     }
@@ -192,9 +192,9 @@ impl AlbedoSpec {
     /// family, whose nodes were found by measuring.
     pub fn doublings(&self) -> u32 {
         match (&self.lobe, self.reflectance) {
-            (Lobe::Family(_), Reflectance::Moments) => 0,
+            (AlbedoLobe::Family(_), Reflectance::Moments) => 0,
             // What the clamp of G1(l) leaves of a kink no number of nodes resolves well, nor the onset of total reflection on smooth surfaces.
-            (Lobe::Family(_) | Lobe::Ellipsoid { .. }, _) => 2,
+            (AlbedoLobe::Family(_) | AlbedoLobe::Ellipsoid { .. }, _) => 2,
             _ => 4,
         }
     }
@@ -223,13 +223,13 @@ impl AlbedoSpec {
 
     /// Names of the channels.
     pub fn channels(&self) -> Vec<String> {
-        let clamp = matches!(self.lobe, Lobe::Ellipsoid { .. }).then(|| Kind::CLAMP.into());
+        let clamp = matches!(self.lobe, AlbedoLobe::Ellipsoid { .. }).then(|| Kind::CLAMP.into());
         names(self.reflectance.channels()).into_iter().chain(clamp).collect()
     }
 
     /// Whether there are tables of averages, too.
     pub fn has_averages(&self) -> bool {
-        matches!(self.lobe, Lobe::Family(_)) && self.reflectance == Reflectance::Moments
+        matches!(self.lobe, AlbedoLobe::Family(_)) && self.reflectance == Reflectance::Moments
     }
 
     /// How many tables it makes.
@@ -249,7 +249,7 @@ impl AlbedoSpec {
     /// What the description of a table says.
     pub fn subject(&self, masking: Masking) -> Subject {
         let covers =
-            if let Lobe::Family(domain) = &self.lobe { Some(domain.covered()) } else { None };
+            if let AlbedoLobe::Family(domain) = &self.lobe { Some(domain.covered()) } else { None };
         let (masking, reflectance) = (Some(masking), Some(self.reflectance));
         Subject { lobe: self.lobe.entry(), masking, reflectance, covers }
     }

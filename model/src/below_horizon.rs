@@ -4,24 +4,24 @@
 //! [`VisibleSlope`](crate::VisibleSlope) that remains when the elevation passes through zero, kept apart because every quantity there is a
 //! difference of nearly equal areas when written for elevations above.
 
-use crate::shape::{Shape, Unit};
+use crate::shape::{AsinhSlope, Shape};
 use crate::visible::solve_decreasing;
 
 /// The in-plane slopes that a view below the lobe's horizon sees.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SlopeBelow<'a> {
+pub(crate) struct SlopeBelowHorizon<'a> {
     shape: &'a Shape,
     /// The silhouette x = a ≥ 0 and its w.
     a: f64,
-    w_a: Unit,
+    w_a: AsinhSlope,
     /// ∫ (x − a)⁺ p(x) dx.
     excess: f64,
 }
 
-impl<'a> SlopeBelow<'a> {
+impl<'a> SlopeBelowHorizon<'a> {
     /// `a` = −cot of the view's elevation in unit space, a ≥ 0 and finite.
     pub(crate) fn new(shape: &'a Shape, a: f64) -> Self {
-        let w_a = shape.unit(a);
+        let w_a = shape.asinh_slope(a);
         Self { shape, a, w_a, excess: shape.excess(w_a) }
     }
 
@@ -31,7 +31,7 @@ impl<'a> SlopeBelow<'a> {
     }
 
     /// Mass of slopes above x ≥ a: ∫ₓ^∞ (ξ − a) p(ξ) dξ.
-    fn upper(&self, w: Unit) -> f64 {
+    fn upper(&self, w: AsinhSlope) -> f64 {
         let x = self.shape.slope(w);
         if x < 2.0 * self.a {
             // (ξ − x) + (x − a): two positive parts, where M(x) − a Q(x) would cancel.
@@ -42,7 +42,7 @@ impl<'a> SlopeBelow<'a> {
         }
     }
 
-    fn density(&self, w: Unit) -> f64 {
+    fn density(&self, w: AsinhSlope) -> f64 {
         let x = self.shape.slope(w);
         if x < 2.0 * self.a {
             (x - self.a).max(0.0) * self.shape.density(w)
@@ -52,12 +52,12 @@ impl<'a> SlopeBelow<'a> {
     }
 
     /// 1 − CDF at the slope of `w`.
-    pub(crate) fn complement(&self, w: Unit) -> f64 {
+    pub(crate) fn complement(&self, w: AsinhSlope) -> f64 {
         if w <= self.w_a { 1.0 } else { (self.upper(w) / self.excess).clamp(0.0, 1.0) }
     }
 
     /// Inverse CDF; u = 0 is the silhouette, u = 1 an infinite slope.
-    pub(crate) fn quantile(&self, u: f64) -> Unit {
+    pub(crate) fn quantile(&self, u: f64) -> AsinhSlope {
         let target = (1.0 - u) * self.excess;
         // Where the excess underflows (a > 27 for Beckmann) all slopes within reach lie at the silhouette.
         if u <= 0.0 || self.excess == 0.0 {
@@ -79,7 +79,7 @@ mod tests {
         for gamma in [1.55, 2.0, 4.0, 60.0, f64::INFINITY] {
             let shape = Shape::new(gamma).unwrap();
             for a in [0.0, 1e-6, 0.3, 2.0, 5.0] {
-                let below = SlopeBelow::new(&shape, a);
+                let below = SlopeBelowHorizon::new(&shape, a);
                 for u in [1e-9, 0.01, 0.5, 0.99, 1.0 - 1e-9] {
                     let back = 1.0 - below.complement(below.quantile(u));
                     assert!((back - u).abs() < 1e-13, "gamma {gamma}, a {a}, u {u}: {back}");
@@ -92,7 +92,7 @@ mod tests {
     fn ggx_median_is_the_closed_form() {
         // γ = 2, a = 0: density ∝ x (1+x²)^(−3/2), survival (1+x²)^(−1/2).
         let shape = Shape::new(2.0).unwrap();
-        let x = shape.slope(SlopeBelow::new(&shape, 0.0).quantile(0.5));
+        let x = shape.slope(SlopeBelowHorizon::new(&shape, 0.0).quantile(0.5));
         assert!((x - 3.0_f64.sqrt()).abs() < 1e-14);
     }
 }

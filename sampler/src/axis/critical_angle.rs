@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::coordinate::{Coordinate, bisect, positive};
 use super::lagrange::{SIX, six};
-use super::view::{fourth_roots, harmonic, kappa, terms};
+use super::view_blend::{fourth_roots, harmonic, kappa, terms};
 use crate::math::sqrt64;
 
 /// t ∈ [0, 1] for the view from the dense side of an interface of index η, with ½ at μ_c = √(1 − 1/η²), where total reflection
@@ -42,11 +42,11 @@ impl CriticalBlend {
         Self { share: 0.4, scale: 3.0, heavy: 0.5, floor: 2e-5, slope: 2e-3, root: 0.5, kink: 1.0 };
 
     /// The coordinate of one material, σ > 0, and an index η ≥ 1 of the dense side, whose reciprocal is given.
-    pub fn bind(&self, sigma: f64, gamma: f64, inverse_eta: f64) -> BoundCritical {
+    pub fn prepare(&self, sigma: f64, gamma: f64, inverse_eta: f64) -> PreparedCritical {
         let critical = sqrt64((1.0 - inverse_eta) * (1.0 + inverse_eta));
         let floor = harmonic(harmonic(self.floor, self.slope * sigma), critical);
         let kink = sqrt64(self.kink * sigma);
-        let mut view = BoundCritical {
+        let mut view = PreparedCritical {
             blend: *self,
             knee: kappa(self.scale, self.heavy, gamma) * sigma,
             kink,
@@ -65,7 +65,7 @@ impl CriticalBlend {
 
 /// [`CriticalBlend`] of one material and index.
 #[derive(Clone, Copy, Debug)]
-pub struct BoundCritical {
+pub struct PreparedCritical {
     blend: CriticalBlend,
     /// κσ.
     knee: f64,
@@ -81,7 +81,7 @@ pub struct BoundCritical {
     second: f64,
 }
 
-impl BoundCritical {
+impl PreparedCritical {
     /// μ₀: the view of the first node.
     pub fn floor(&self) -> f64 {
         self.floor
@@ -177,7 +177,7 @@ mod tests {
     fn there_and_back() {
         for eta in [1.0001, 1.5, 4.0] {
             for (sigma, gamma) in [(1e-6, 2.0), (0.3, 1.501), (2.0, f64::INFINITY)] {
-                let view = CriticalBlend::BAKED.bind(sigma, gamma, 1.0 / eta);
+                let view = CriticalBlend::BAKED.prepare(sigma, gamma, 1.0 / eta);
                 assert_eq!(view.coordinate(1.0), 1.0);
                 for t in [0.0, 0.1, 0.4, 0.5, 0.6, 0.9, 1.0] {
                     let cos = view.quantity(t);
@@ -196,12 +196,12 @@ mod tests {
 
     #[test]
     fn halves_do_not_share_windows() {
-        let view = CriticalBlend::BAKED.bind(0.3, 2.0, 1.0 / 1.5);
+        let view = CriticalBlend::BAKED.prepare(0.3, 2.0, 1.0 / 1.5);
         let critical = sqrt64(1.0 - 1.0 / 2.25);
         assert_eq!(view.six(critical - 1e-9, 21).0, 5);
         assert_eq!(view.six(critical + 1e-9, 21).0, 10);
         // Without a difference of indices the lower half is a point.
-        let none = CriticalBlend::BAKED.bind(0.3, 2.0, 1.0);
+        let none = CriticalBlend::BAKED.prepare(0.3, 2.0, 1.0);
         assert_eq!((none.six(0.0, 21).0, none.quantity(0.0)), (10, 0.0));
     }
 }

@@ -5,16 +5,16 @@ use microfacet_sampler::{Interpolation, Precision};
 
 use crate::bake::joined_name;
 use crate::scene::Interval;
-use crate::spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, ShapeAxis, TableSpec, general_set};
+use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, ShapeAxis, TableSpec, general_set};
 use crate::validate::certificate::ALL_SHAPES;
 
 /// A γ, or a range of them, that tables are to cover: the unit in which tables are baked, measured and kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Need {
+pub struct RequiredShapes {
     gamma: Interval,
 }
 
-impl Need {
+impl RequiredShapes {
     /// Everything that tables can cover.
     pub(super) fn general() -> Self {
         Self { gamma: Interval { min: GAMMA_MIN, max: f64::INFINITY } }
@@ -73,43 +73,44 @@ impl Need {
 
 /// The needs that cover all `wants`, disjoint: overlapping ranges become one, single shapes inside them none. The ranges come first,
 /// and either part descends.
-pub(super) fn disjoint(wants: impl Iterator<Item = Interval>) -> Vec<Need> {
+pub(super) fn disjoint(wants: impl Iterator<Item = Interval>) -> Vec<RequiredShapes> {
     let (mut points, mut ranges): (Vec<Interval>, Vec<Interval>) =
         wants.partition(|want| want.is_point());
     let descending = |a: &Interval, b: &Interval| b.max.total_cmp(&a.max);
     ranges.sort_by(descending);
-    let mut needs: Vec<Need> = Vec::new();
+    let mut needs: Vec<RequiredShapes> = Vec::new();
     for range in ranges {
         match needs.last_mut() {
             Some(last) if range.max >= last.gamma.min => last.gamma = last.gamma.union(range),
-            _ => needs.push(Need { gamma: range }),
+            _ => needs.push(RequiredShapes { gamma: range }),
         }
     }
     points.sort_by(descending);
     points.dedup();
     points.retain(|&point| holder(&needs, point).is_none());
-    needs.extend(points.into_iter().map(|gamma| Need { gamma }));
+    needs.extend(points.into_iter().map(|gamma| RequiredShapes { gamma }));
     needs
 }
 
 /// The range over all single shapes, if its tables are smaller than so many slices.
-pub(super) fn cheaper_range(needs: &[Need]) -> Option<Interval> {
-    let points: Vec<&Need> = needs.iter().filter(|need| need.gamma.is_point()).collect();
+pub(super) fn cheaper_range(needs: &[RequiredShapes]) -> Option<Interval> {
+    let points: Vec<&RequiredShapes> = needs.iter().filter(|need| need.gamma.is_point()).collect();
     let hull = points.iter().map(|need| need.gamma).reduce(Interval::union)?;
     let general = general_set(Quality::Default, Precision::F32);
-    let bytes = |need: &Need| need.specs(&general).iter().map(TableSpec::bytes).sum::<usize>();
+    let bytes =
+        |need: &RequiredShapes| need.specs(&general).iter().map(TableSpec::bytes).sum::<usize>();
     let slices: usize = points.into_iter().map(bytes).sum();
-    (bytes(&Need { gamma: hull }) < slices).then_some(hull)
+    (bytes(&RequiredShapes { gamma: hull }) < slices).then_some(hull)
 }
 
 /// The need, of those that [`disjoint`] made, that covers `want`.
-pub(super) fn find(needs: &[Need], want: Interval) -> Option<usize> {
+pub(super) fn find(needs: &[RequiredShapes], want: Interval) -> Option<usize> {
     let ranges = needs.partition_point(|need| !need.gamma.is_point());
     holder(&needs[..ranges], want).or_else(|| holder(&needs[ranges..], want).map(|i| ranges + i))
 }
 
 /// Which of descending, disjoint needs holds `want`.
-fn holder(needs: &[Need], want: Interval) -> Option<usize> {
+fn holder(needs: &[RequiredShapes], want: Interval) -> Option<usize> {
     // The first that reaches down to it.
     let i = needs.partition_point(|need| need.gamma.min > want.min);
     needs.get(i).filter(|need| need.gamma.max >= want.max).map(|_| i)

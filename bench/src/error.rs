@@ -1,7 +1,9 @@
 //! How wrong a rival is, and how noisy an estimator that uses it.
 
 use glam::{DVec3, Vec3};
-use microfacet_model::{Masking, SignedUnit, StudentT, VisibleSlope, across_cdf};
+use microfacet_model::{
+    Masking, MicrofacetDistribution, SignedSlope, StudentT, VisibleSlope, across_cdf,
+};
 
 use crate::inputs::Inputs;
 use crate::masking::Evaluate;
@@ -34,7 +36,7 @@ impl Error {
 
 /// The material of a shape.
 pub(crate) fn truth(gamma: f64) -> StudentT {
-    StudentT::isotropic(SIGMA, gamma).expect("sigma is a constant, and so are the shapes")
+    StudentT::new(SIGMA, gamma).expect("sigma is a constant, and so are the shapes")
 }
 
 /// The error of a sampler: how far the CDFs along and across the plane of incidence are from those
@@ -67,8 +69,10 @@ fn cdfs(truth: &StudentT, v: DVec3, m: DVec3) -> [f64; 2] {
     let (a, b) = (m.x / SIGMA, m.y / SIGMA);
     let (x, y) = (a * cos + b * sin, b * cos - a * sin);
     let t = y / (m.z * m.z + shape.s() * x * x).sqrt();
-    let signed =
-        |x: f64| SignedUnit { w: shape.unit(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } };
+    let signed = |x: f64| SignedSlope {
+        w: shape.asinh_slope(x.abs()),
+        sign: if x < 0.0 { -1.0 } else { 1.0 },
+    };
     [VisibleSlope::new(shape, view).cdf(signed(x / m.z)), across_cdf(shape, signed(t))]
 }
 
@@ -139,7 +143,7 @@ pub(crate) fn furnace_variance(
 
 #[cfg(test)]
 mod tests {
-    use microfacet_model::statistics::{judge_visible_normals, sidak};
+    use microfacet_model::statistics::{sidak, test_visible_normals};
 
     use super::*;
     use crate::masking::maskings;
@@ -165,7 +169,7 @@ mod tests {
                 };
                 let streamed = matches!(sampler.check, Check::Distribution);
                 let samples = if streamed { STREAMED } else { SAMPLES };
-                judge_visible_normals(&truth(sampler.gamma), v, samples, 7, draw).p()
+                test_visible_normals(&truth(sampler.gamma), v, samples, 7, draw).p()
             });
             if !sampler.draws_visible_normals() {
                 // Seen where the view is oblique but does not graze.

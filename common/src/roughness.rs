@@ -1,0 +1,32 @@
+//! Roughness along the two axes of the tangent frame.
+
+/// Roughness σx, σy along the tangent frame's x and y, dimensionless (the α of GGX and Beckmann).
+///
+/// Made from a number for an isotropic surface, or from a pair. Both precisions are accepted; a
+/// single-precision number comes back unchanged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roughness(pub [f64; 2]);
+
+impl From<f64> for Roughness {
+    fn from(sigma: f64) -> Self {
+        Self([sigma; 2])
+    }
+}
+
+impl From<f32> for Roughness {
+    fn from(sigma: f32) -> Self {
+        Self([sigma.into(); 2])
+    }
+}
+
+impl From<[f64; 2]> for Roughness {
+    fn from(sigma: [f64; 2]) -> Self {
+        Self(sigma)
+    }
+}
+
+impl From<[f32; 2]> for Roughness {
+    fn from(sigma: [f32; 2]) -> Self {
+        Self(sigma.map(f64::from))
+    }
+}

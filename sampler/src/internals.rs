@@ -1,0 +1,20 @@
+//! What the generator, `microfacet-bake`, needs beyond the public interface, so that a formula or a
+//! mechanism has one home. It may change in any release.
+
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use crate::StudentT;
+
+pub use crate::axis::hermite::limit_slopes;
+pub use crate::format::{describe, reassemble, seal, seal_document};
+
+/// Where the tabulated density has its joints for a view: unit slopes x in the plane of incidence,
+/// ascending, and t ≥ 0 across it.
+///
+/// Between them the density of the samples is smooth, so a quadrature that respects them converges
+/// fast. x may end at ±∞.
+pub fn table_joints(lobe: &StudentT, v: Vec3) -> [Vec<f64>; 2] {
+    lobe.table_joints(v)
+}

@@ -1,0 +1,129 @@
+//! What every lobe can be asked: one trait for all of them.
+
+use glam::Vec3;
+use microfacet_common::Masking;
+
+use super::batch::same_lengths;
+use crate::error::BatchError;
+
+/// Below this roughness a surface counts as a mirror: single precision and path tracers gain nothing
+/// from its lobe, which is narrower than 0.06°. The limit of pbrt's `EffectivelySmooth`.
+pub(crate) const SMOOTH: f32 = 1e-3;
+
+/// A distribution of microfacet normals whose parameters are fixed, under Smith's model.
+///
+/// It is what renderers know as `TrowbridgeReitzDistribution` (pbrt) or `MicrofacetDistribution`
+/// (Mitsuba). The trait of the same name in `microfacet-model` has the same functions in double
+/// precision, with the same arguments in the same order.
+///
+/// Directions are unit vectors in the tangent frame, n = +z. `v` is the view, `l` the light, `m` a
+/// microfacet normal; densities are per steradian. Views and lights at or below the horizon have
+/// G1 = 0 and Λ = ∞; sampling takes such a view at the horizon. A vector that is not of unit length
+/// gives finite numbers without meaning. Smith's model: Heitz 2014, *Understanding the
+/// masking-shadowing function in microfacet-based BRDFs*, <https://jcgt.org/published/0003/02/03/>.
+///
+/// ```
+/// use glam::Vec3;
+/// use microfacet_sampler::{Ggx, Masking, MicrofacetDistribution};
+///
+/// /// The weight f cos / pdf of one reflection, without Fresnel, and its direction.
+/// fn reflect(lobe: &impl MicrofacetDistribution, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+///     let m = lobe.sample_visible_normal(v, u);
+///     let l = 2.0 * v.dot(m) * m - v;
+///     (l, lobe.reflection_weight(v, l, Masking::HeightCorrelated))
+/// }
+///
+/// let (l, weight) = reflect(&Ggx::new(0.3)?, Vec3::new(0.6, 0.0, 0.8), [0.3, 0.7]);
+/// assert!(l.z > 0.0 && weight > 0.9 && weight <= 1.0);
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+pub trait MicrofacetDistribution {
+    /// Normal distribution function D(m), with ∫ D(m) (m·n) dm = 1; 0 for m at or below the horizon.
+    fn d(&self, m: Vec3) -> f32;
+
+    /// Smith masking G1(v) ∈ [0, 1]: the visible share of the microsurface projected along `v`.
+    fn g1(&self, v: Vec3) -> f32;
+
+    /// Smith's Λ(v) = 1/G1 − 1 ≥ 0. Its absolute accuracy is that of G1: where Λ is below 1e-5 only
+    /// its order of magnitude is meaningful.
+    #[inline]
+    fn lambda(&self, v: Vec3) -> f32 {
+        1.0 / self.g1(v) - 1.0
+    }
+
+    /// Masking and shadowing G2 of view and light; 0 when either is at or below the horizon.
+    #[inline]
+    fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        masking.g2(self.g1(v), self.g1(l))
+    }
+
+    /// The weight f·cos θ_l/pdf of a light reflected off a [sampled](Self::sample_visible_normal)
+    /// visible normal, without Fresnel: G2(v, l)/G1(v) ∈ [0, 1].
+    ///
+    /// Formed as that and not as a quotient of densities, both of which overflow near the horizon.
+    /// 0 when `v` or `l` is at or below the horizon.
+    #[inline]
+    fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        if v.z > 0.0 { masking.g2_over_g1(self.g1(v), self.g1(l)) } else { 0.0 }
+    }
+
+    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them).
+    ///
+    /// It has unit length to 4 ulp, lies above the horizon, and faces the view to rounding
+    /// (v·m > −5e-7).
+    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3;
+
+    /// Density of visible normals, G1(v) (v·m)⁺ D(m)/(v·n) (Heitz & d'Eon 2014, eq. 2,
+    /// <https://doi.org/10.1111/cgf.12417>). That of reflected lights is this over 4 v·m.
+    ///
+    /// 0 where `m` faces away or lies below the horizon; finite at grazing views. It is the analytic
+    /// density with the G1 of the tables.
+    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32;
+
+    /// Density with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m`: exact for
+    /// [`StudentT`](crate::StudentT), whose tables approximate
+    /// [`visible_normal_pdf`](Self::visible_normal_pdf), and that for all others.
+    #[inline]
+    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        self.visible_normal_pdf(v, m)
+    }
+
+    /// A visible normal and its density.
+    #[inline]
+    fn sample_with_pdf(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        let m = self.sample_visible_normal(v, u);
+        (m, self.visible_normal_pdf(v, m))
+    }
+
+    /// Whether the lobe is so narrow that a renderer should treat the surface as a mirror: all
+    /// roughnesses, and the mean slope of a tilted lobe, are below 1e-3.
+    fn is_effectively_smooth(&self) -> bool;
+
+    /// Bytes of table that lookups touch; 0 for closed forms.
+    fn bytes(&self) -> usize;
+
+    /// [`sample_visible_normal`](Self::sample_visible_normal) for each view and pair of numbers,
+    /// into `m`: the same normals, to 2 ulp.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `m` is then untouched.
+    fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len())])?;
+        for ((v, u), m) in v.iter().zip(u).zip(m) {
+            *m = self.sample_visible_normal(*v, *u);
+        }
+        Ok(())
+    }
+
+    /// [`g1`](Self::g1) for each view, into `g1`: the same numbers.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `g1` is then untouched.
+    fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("g1", g1.len())])?;
+        for (v, g1) in v.iter().zip(g1) {
+            *g1 = self.g1(*v);
+        }
+        Ok(())
+    }
+}
