@@ -72,8 +72,8 @@ impl Drawer {
     /// Gamma(γ−1), roughness σ/√τ.
     ///
     /// Exact for every view if the precision is drawn in proportion to the projected area,
-    /// z(1 + Λ). That is at most z + ρ E[x⁺], whose two terms have Gamma-distributed precisions, and
-    /// at least half of it, so that fewer than two tries are needed on average.
+    /// z(1 + Λ). That is at most z + ρ E[x⁺], whose two terms have Gamma-distributed precisions,
+    /// and at least half of it, so that fewer than two tries are needed on average.
     #[inline(always)]
     pub(crate) fn mixture(&self, v: Vec3, stream: &mut Stream) -> Vec3 {
         let horizontal = (v.x * v.x + v.y * v.y).sqrt();
