@@ -1,7 +1,9 @@
-//! Error against time of one directional albedo: deterministic quadrature and Monte Carlo with the table's own sampler.
+//! Error against time of one directional albedo: deterministic quadrature and Monte Carlo with the
+//! table's own sampler.
 //!
-//! `cargo run --release --example albedo_convergence` prints the table that stands in `docs/albedo.md`. Both see the same materials,
-//! views and masking in one run; errors are root mean squares over these, against quadrature at a tolerance of 1e-13.
+//! `cargo run --release --example albedo_convergence` prints the table in `docs/albedo.md`. Both
+//! methods use the same materials, views and masking in one run; errors are root mean squares over
+//! these, against quadrature at a tolerance of 1e-13.
 
 use std::time::Instant;
 
@@ -36,7 +38,8 @@ fn main() {
     }
 }
 
-/// Root-mean-square error over the views, and the mean time in milliseconds, everything that one albedo needs included.
+/// Root-mean-square error over the views, and the mean time in milliseconds, including everything
+/// that one albedo needs.
 fn run(truth: &[f64], albedo: impl Fn((f64, f64, f64)) -> f64) -> (f64, f64) {
     let start = Instant::now();
     let errors = VIEWS.iter().zip(truth).map(|(&view, truth)| albedo(view) - truth);

@@ -1,26 +1,28 @@
-//! Why the view axis of albedo tables looks as it does: the largest errors between exact nodes for several coordinates.
+//! Why albedo tables use their coordinate of the view: the largest errors between exact nodes for
+//! several coordinates.
 //!
-//! `cargo run --release --example albedo_design` prints the table that stands in `docs/albedo.md`: errors of E, and of the worst of
-//! E and its Schlick and F82 moments. Nodes are exact (to 1e-7), the polynomial goes through the six nearest, or lines through
-//! two, so that all error is the coordinate's. Columns are the parts of the domain that ask for different things.
+//! `cargo run --release --example albedo_design` prints the table in `docs/albedo.md`: errors of E,
+//! and of the worst of E and its Schlick and F82 moments. Nodes are exact (to 1e-7) and the
+//! polynomial goes through the six nearest, or lines through two, so all error comes from the
+//! coordinate. The columns are parts of the domain with different requirements.
 
 use microfacet_bake::bake::albedo::weights;
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::axis::{ViewBlend, even_nodes, lagrange};
 use rayon::prelude::*;
 
-/// Where views stand, as t(μ) ascending to 1 at normal incidence.
+/// The coordinate of the view, t(μ), ascending to 1 at normal incidence.
 enum Coordinate {
-    /// Of the view alone.
+    /// A function of the view alone.
     Plain(fn(f64) -> f64),
-    /// Of view and material.
+    /// A function of view and material.
     Blend(ViewBlend),
 }
 
 struct Design {
     name: &'static str,
     nodes: usize,
-    /// Nodes the polynomial goes through.
+    /// Number of nodes that the polynomial goes through.
     window: usize,
     coordinate: Coordinate,
 }
@@ -38,7 +40,7 @@ fn h(cos: f64) -> f64 {
 
 /// Fourth roots of h and x alone.
 const ROOTS: ViewBlend = ViewBlend { weight: 0.0, normal: 0.0, ..ViewBlend::BAKED };
-/// One term, x^¼, as its κ was found for E alone, and as it is best for all moments.
+/// One term, x^¼, with κ as found for E alone, and with the best κ for all moments.
 const ONE: ViewBlend = ViewBlend { share: 1.0, scale: 6.0, heavy: 1.0, ..ROOTS };
 const BEST_ONE: ViewBlend = ViewBlend { scale: 8.8, heavy: 2.77, ..ONE };
 
@@ -67,7 +69,7 @@ const DESIGNS: [Design; 14] = [
     blend("four terms of high quality", 58, ViewBlend::CLOSE),
 ];
 
-/// Names of the columns, and whether a σ, a cosine belong.
+/// Names of the columns, and which σ and cosine belong to each.
 type Part = (&'static str, fn(f64, f64) -> bool);
 const PARTS: [Part; 4] = [
     ("σ ≥ 0.01, μ ≥ 0.02", |sigma, cos| sigma >= 0.01 && (0.02..0.98).contains(&cos)),
@@ -102,7 +104,8 @@ fn array<T, const N: usize>(of: impl FnMut(usize) -> T) -> [T; N] {
     std::array::from_fn(of)
 }
 
-/// Largest errors of E, and of any of E, scale, bias and F82, of either masking, in each part of the domain.
+/// Largest errors of E, and of any of E, scale, bias and F82, of either form of masking, in each
+/// part of the domain.
 fn errors(design: &Design, material: Material) -> [[f64; 2]; 4] {
     let shape = Shape::new(material.gamma).expect("in the family");
     let integrator = AlbedoIntegrator::new(shape, 1e-7);
@@ -117,7 +120,7 @@ fn errors(design: &Design, material: Material) -> [[f64; 2]; 4] {
         Coordinate::Blend(blend) => bound(blend).coordinate(cos),
     };
     let nodes = even_nodes(0.0, 1.0, design.nodes);
-    // What tables hold: moments less a mirror's times E.
+    // Tables store the moments less E times a mirror's.
     let stored = |cos: f64, forms: [[f64; 3]; 2]| {
         let mirror = weights(cos);
         forms.map(|[scale, bias, f82]| {

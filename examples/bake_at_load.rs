@@ -1,8 +1,7 @@
-//! What a renderer does that bakes when it loads a scene: materials in, tables in memory, no file
-//! in between.
+//! A renderer that bakes when it loads a scene: materials in, tables in memory, no file in between.
 //!
-//! `cargo run --release --example bake_at_load` bakes what the embedded set does not have, an
-//! albedo of brushed gold, joins it with the embedded set, and samples.
+//! `cargo run --release --example bake_at_load` bakes what the embedded set lacks, an albedo of
+//! brushed gold, joins it with the embedded set, and samples.
 
 use std::time::Instant;
 
@@ -13,8 +12,8 @@ use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{Settings, Target, bake_with};
 use microfacet_sampler::{Masking, MicrofacetDistribution};
 
-/// What the renderer knows of its materials, in the words of a recipe;
-/// `microfacet_bake::scene::load` reads scenes as well.
+/// The renderer's materials, written as a recipe; `microfacet_bake::scene::load` reads scene files
+/// as well.
 const MATERIALS: &str = r#"
 [[material]]
 name = "brushed gold"
@@ -31,10 +30,10 @@ gamma = 3.0
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let scene = Scene::from_recipe_str(MATERIALS)?;
-    // The sampler crate brings tables of every sigma and gamma along: only what they lack is baked.
+    // The sampler crate contains tables of every sigma and gamma: only what they lack is baked.
     let options = Options { embedded: true, embedded_albedo: true, ..Options::default() };
     let plan = Plan::new(&scene, options)?;
-    // Kept in the user's cache folder: the next time it is there at once.
+    // Kept in the user's cache folder, so the next run finds it there.
     let settings = Settings { cache: Cache::user(), ..Settings::default() };
     let baked = bake_with(&plan, Target::MaxError(1e-3), settings)?;
     println!(

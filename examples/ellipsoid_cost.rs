@@ -1,8 +1,11 @@
-//! Time of one visible normal and its density: plain anisotropic against ellipsoid, and the lune sampler as the rival at γ = 2.
+//! Time of one visible normal and its density: untilted anisotropic lobe against ellipsoid, with
+//! the lune sampler as the rival at γ = 2.
 //!
-//! `cargo run --release --example ellipsoid_cost` prints nanoseconds a draw, the least of many short rounds by turns. Measured: a normal of
-//! the ellipsoid takes 1.19 to 1.24 times the plain one for γ ≥ 2 (19 ns), and with its density 1.05 to 1.17 times; for γ = 1.6, where the
-//! heavy tail's closed form takes most of the time, 0.80 and 1.04 times. The lune takes 60 to 84 ns.
+//! `cargo run --release --example ellipsoid_cost` prints nanoseconds per draw, the least of many
+//! short rounds in turns. Measured: a normal of the ellipsoid takes 1.19 to 1.24 times as long as
+//! the untilted one for γ ≥ 2 (19 ns), and with its density 1.05 to 1.17 times; for γ = 1.6, where
+//! the heavy tail's closed form takes most of the time, 0.80 and 1.04 times. The lune takes 60 to
+//! 84 ns.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -32,7 +35,7 @@ fn inputs() -> Vec<(Vec3, [f32; 2])> {
         .collect()
 }
 
-/// Nanoseconds a draw of one short round.
+/// Nanoseconds per draw of one short round.
 fn round(inputs: &Inputs, mut draw: impl FnMut(Vec3, [f32; 2]) -> f32) -> f64 {
     let start = Instant::now();
     for _ in 0..PASSES {
@@ -43,7 +46,7 @@ fn round(inputs: &Inputs, mut draw: impl FnMut(Vec3, [f32; 2]) -> f32) -> f64 {
     start.elapsed().as_secs_f64() * 1e9 / (PASSES * inputs.len()) as f64
 }
 
-/// The least time of either in rounds by turns, so that whatever else the machine does strikes both.
+/// The least time of each in alternating rounds, so that other load on the machine affects both.
 fn least(mut a: impl FnMut() -> f64, mut b: impl FnMut() -> f64) -> [f64; 2] {
     (0..ROUNDS).fold([f64::INFINITY; 2], |[x, y], _| [x.min(a()), y.min(b())])
 }

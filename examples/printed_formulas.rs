@@ -1,6 +1,8 @@
-//! The formulas for Λ as Ribardière et al. 2017 print them, beside the conditioned form: the table of `docs/formulas.md`.
+//! The formulas for Λ as printed by Ribardière et al. 2017 (doi:10.1111/cgf.13137), beside the
+//! conditioned form: the table of `docs/formulas.md`.
 //!
-//! `cargo run --release --example printed_formulas`; the curves are `microfacet-bake plot printed-formulas`.
+//! `cargo run --release --example printed_formulas` prints it;
+//! `microfacet-bake plot printed-formulas` draws the curves.
 
 use microfacet_model::{Shape, printed};
 

@@ -1,10 +1,12 @@
 //! Metal spheres under a simple sky, rendered with the sampler crate and its embedded tables alone.
 //!
-//! `cargo run --release --example spheres -- OUTPUT [WIDTH] [SAMPLES]` writes OUTPUT.exr (linear radiance) and OUTPUT.png.
+//! `cargo run --release --example spheres -- OUTPUT [WIDTH] [SAMPLES]` writes OUTPUT.exr (linear
+//! radiance) and OUTPUT.png.
 //!
-//! Rows: the gold of Ribardière et al. 2017, σ = 0.3 and γ = 1.51, 1.65, 2, 4, 10 and 50, single scattering; the same with
-//! multiple-scattering compensation; brushed aluminium of σ = (0.3, 0.7), and the same tilted by half a radian about the brushing
-//! as generalised ellipsoids, both for γ = 1.65, 2 and 10.
+//! Rows: the gold of Ribardière et al. 2017 (doi:10.1111/cgf.13137), σ = 0.3 and γ = 1.51, 1.65, 2,
+//! 4, 10 and 50, single scattering; the same with multiple-scattering compensation; brushed
+//! aluminium of σ = (0.3, 0.7), and the same tilted by half a radian about the brushing as
+//! generalised ellipsoids, both for γ = 1.65, 2 and 10.
 
 use std::error::Error;
 
@@ -20,7 +22,7 @@ const ALUMINIUM: Vec3 = Vec3::new(0.913, 0.921, 0.925);
 const COLUMNS: usize = 6;
 const ROWS: usize = 3;
 
-/// Directional albedo over (cos θ, φ) for total reflection: a skewed lobe depends on both.
+/// Directional albedo over (cos θ, φ) for total reflection: that of a skewed lobe depends on both.
 struct Albedo(Vec<f32>);
 
 impl Albedo {
@@ -62,7 +64,8 @@ impl Albedo {
 struct Material {
     lobe: Lobe,
     f0: Vec3,
-    /// Where energy lost to masking is given back: f·(1 + F0 (1/E − 1)) (Turquin 2019).
+    /// Compensation for the energy lost to masking: f·(1 + F0 (1/E − 1)) (Turquin 2019,
+    /// <https://blog.selfshadow.com/publications/turquin/ms_comp_final.pdf>).
     compensation: Option<Albedo>,
 }
 
@@ -108,7 +111,8 @@ fn sequence(i: usize, seed: u32) -> [f32; 4] {
     })
 }
 
-/// Radiance of the sky: blue towards the zenith, bright at the horizon, a sun and a lamp with soft edges, a brown ground.
+/// Radiance of the sky: blue towards the zenith, bright at the horizon, a sun and a lamp with soft
+/// edges, a brown ground.
 fn sky(d: Vec3) -> Vec3 {
     let lamp = |at: Vec3, degrees: f32, radiance: Vec3| {
         let off = (1.0 - d.dot(at.normalize())).max(0.0) / (1.0 - degrees.to_radians().cos());
@@ -152,7 +156,7 @@ fn pixel(materials: &[Material], x: usize, y: usize, cell: f32, samples: usize) 
         let [a, b, u1, u2] = sequence(i, seed);
         let (px, py) = ((x as f32 + a) / cell, (y as f32 + b) / cell);
         let (column, row) = (px as usize, py as usize);
-        // A margin of a twelfth of the cell.
+        // Leaves a margin of a twelfth of the cell.
         let at = |p: f32| (2.0 * p.fract() - 1.0) * 1.2;
         let (sx, sy) = (at(px), -at(py));
         if sx * sx + sy * sy < 1.0 && column < COLUMNS && row < ROWS {

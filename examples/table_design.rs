@@ -1,8 +1,10 @@
-//! Why the table of visible slopes looks as it does: the largest CDF error of several designs of the same size.
+//! Why the table of visible slopes has its form: the largest CDF error of several designs of the
+//! same size.
 //!
-//! `cargo run --release --example table_design` prints the table that stands in the docs of `microfacet_bake::bake`.
-//! Every design has 65 views by 2·17 random numbers, exact values and slopes at its nodes, cubic Hermite along u₁ and lines
-//! between views; errors are measured in double precision between the nodes of both axes.
+//! `cargo run --release --example table_design` prints the table in the docs of
+//! `microfacet_bake::bake`. Every design has 65 views by 2·17 random numbers, exact values and
+//! slopes at its nodes, cubic Hermite along u₁ and lines between views; errors are measured in
+//! double precision between the nodes of both axes.
 
 use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope};
 use microfacet_sampler::axis::HalfTangent;
@@ -11,7 +13,7 @@ use microfacet_sampler::axis::half_tangent::{half_tangent, slope_at};
 const VIEWS: usize = 64;
 const NUMBERS: usize = 16;
 
-/// What a node holds.
+/// The quantity at a node.
 #[derive(Clone, Copy, Debug)]
 enum Stored {
     /// h = x/(1 + √(1+x²)).
@@ -20,7 +22,7 @@ enum Stored {
     GgxNumber,
 }
 
-/// Where views stand.
+/// The coordinate of the view.
 #[derive(Clone, Copy, Debug)]
 enum View {
     Cosine,
@@ -30,7 +32,7 @@ enum View {
 struct Design {
     stored: Stored,
     view: View,
-    /// u = ½ t^power in either half.
+    /// u = ½ t^power in each half.
     power: i32,
 }
 

@@ -1,7 +1,7 @@
 //! The time of a call, as the median over batches of rivals that take turns.
 //!
-//! One batch of each in every round: what disturbs the machine for a while disturbs all of them, so
-//! that their ratios are steadier than their times.
+//! Every round runs one batch of each rival. A temporary disturbance of the machine affects all of
+//! them, so their ratios are steadier than their times.
 
 use std::ops::Range;
 use std::time::Instant;
@@ -9,8 +9,8 @@ use std::time::Instant;
 /// A rival that makes one call for each of a range of the inputs.
 pub(crate) type Calls<'a> = Box<dyn FnMut(Range<usize>) + 'a>;
 
-/// About how long a batch takes: long against the clock's own call, short against the slices of
-/// time that a busy system gives to others, so that most batches are not interrupted.
+/// Approximate duration of a batch: long compared with a call of the clock, short compared with a
+/// scheduler's time slice, so that most batches are not interrupted.
 const BATCH_NS: f64 = 1e5;
 
 /// Nanoseconds a call of each, over `rounds` batches of inputs from `count`.
@@ -24,8 +24,8 @@ pub(crate) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<
     let batches: Vec<usize> = rivals
         .iter_mut()
         .map(|rival| {
-            // The first few touch its data, the others tell how long it takes; the least is the one
-            // that was not interrupted.
+            // The first calls warm the caches, the others measure. The least time is one without
+            // interruption.
             let least = (0..5).map(|_| time(rival, 0..16.min(count))).fold(f64::INFINITY, f64::min);
             ((BATCH_NS / least) as usize).clamp(8.min(count), count)
         })
@@ -33,9 +33,9 @@ pub(crate) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<
     let mut times = vec![Vec::with_capacity(rounds); rivals.len()];
     for round in 0..rounds {
         for ((rival, &calls), times) in rivals.iter_mut().zip(&batches).zip(&mut times) {
-            // Other inputs each time, or a branch predictor would learn a short batch.
+            // Other inputs each time: a branch predictor would learn a short batch.
             let start = round * calls % (count - calls + 1);
-            // Its code and tables back into the caches.
+            // Brings its code and tables back into the caches.
             rival(0..(calls / 4).max(1));
             times.push(time(rival, start..start + calls));
         }
@@ -43,7 +43,7 @@ pub(crate) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<
     times.into_iter().map(median).collect()
 }
 
-/// The middle one.
+/// The median.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]

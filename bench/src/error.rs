@@ -1,4 +1,4 @@
-//! How wrong a rival is, and how noisy an estimator that uses it.
+//! The error of a rival, and the noise of an estimator that uses it.
 
 use glam::{DVec3, Vec3};
 use microfacet_model::{
@@ -23,7 +23,7 @@ impl Error {
     pub(crate) fn of(errors: impl IntoIterator<Item = f64>) -> Self {
         let (mut max, mut sum, mut count) = (0.0, 0.0, 0.0_f64);
         for error in errors {
-            // No number is the worst error there is.
+            // NaN counts as the largest error.
             if !(error <= max) {
                 max = error;
             }
@@ -39,9 +39,8 @@ pub(crate) fn truth(gamma: f64) -> StudentT {
     StudentT::new(SIGMA, gamma).expect("sigma is a constant, and so are the shapes")
 }
 
-/// The error of a sampler: how far the CDFs along and across the plane of incidence are from those
-/// they should have, the larger of the two. `None` where the random numbers have no CDF of their
-/// own.
+/// The error of a sampler: how far the CDFs along and across the plane of incidence are from their
+/// exact values, the larger of the two. `None` where the random numbers do not correspond to CDFs.
 pub(crate) fn sampler_error(sampler: &Sampler, inputs: &Inputs) -> Option<Error> {
     if matches!(sampler.check, Check::Distribution) {
         return None;
@@ -103,7 +102,7 @@ pub(crate) fn furnace_variance(
     let mut total = 0.0;
     let views = &inputs.views[..views.min(inputs.views.len())];
     for (i, v) in views.iter().enumerate() {
-        // Other numbers for every view, the last few of which may be the first again.
+        // Other numbers for every view; the last few views may reuse the first numbers.
         let numbers: Vec<[f32; 2]> = inputs
             .numbers
             .iter()
@@ -151,7 +150,7 @@ mod tests {
     use crate::tables::Slices;
 
     const SAMPLES: usize = 20_000;
-    /// Of samplers that take their numbers from a stream, which is not to repeat.
+    /// For samplers that take their numbers from a stream, which must not repeat.
     const STREAMED: usize = 4000;
 
     #[test]
@@ -172,7 +171,7 @@ mod tests {
                 test_visible_normals(&truth(sampler.gamma), v, samples, 7, draw).p()
             });
             if !sampler.draws_visible_normals() {
-                // Seen where the view is oblique but does not graze.
+                // The difference shows where the view is oblique but does not graze.
                 assert!(p[1] < level, "{}: {p:?}", sampler.name);
             } else {
                 assert!(p.iter().all(|&p| p > level), "{}: {p:?}", sampler.name);

@@ -12,18 +12,18 @@ use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::tables::{Slices, TABLE};
 use crate::{clock, masking};
 
-/// One figure with what it must be and aims to be; smaller is better.
+/// One figure with its limit and its goal; smaller is better.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Figure {
-    /// What is compared.
+    /// What it compares.
     pub(crate) name: &'static str,
-    /// Its unit; nothing for a ratio.
+    /// Its unit; empty for a ratio.
     pub(crate) unit: &'static str,
-    /// No more than this.
+    /// The limit.
     pub(crate) must: f64,
-    /// If it can be.
+    /// The goal.
     pub(crate) aim: f64,
-    /// What was measured; `None` where a rival is missing.
+    /// The measured value; `None` where a rival is missing.
     pub(crate) reached: Option<f64>,
 }
 
@@ -83,7 +83,7 @@ pub(crate) fn figures(
         ),
         figure("a bound material", "KiB", 32.0, 16.0, Some(bytes / 1024.0)),
         figure("bind a material", "us", 50.0, 10.0, Some(1e-3 * bind_ns(&slices.whole, settings))),
-        // Nothing beyond is aimed at: it happens once in a process.
+        // No stricter goal: this happens once per process.
         figure("the embedded set, ready", "ms", 1.0, 1.0, Some(1e-6 * embedded_ns(settings))),
     ]
 }

@@ -1,4 +1,4 @@
-//! What is written: tables as CSV, all of it as JSON, and drawings.
+//! The output files: tables as CSV, everything as JSON, and plots.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::plot;
 use crate::rows::Row;
 use crate::settings::{GAMMA, SIGMA, Settings};
 
-/// Everything into a folder that is there.
+/// Writes everything into an existing folder.
 pub(crate) fn write(
     folder: &Path,
     document: &Value,
@@ -100,12 +100,12 @@ fn approximation_fields(at: &Approximation) -> [String; 5] {
     ]
 }
 
-/// All of it.
+/// Everything as one JSON document.
 pub(crate) fn document(settings: &Settings, rows: &[Row], figures: &[Figure]) -> Value {
     let row = |row: &Row| {
         json!({
             "quantity": row.quantity.name(), "name": row.name,
-            // Infinity is no JSON number.
+            // JSON has no infinity.
             "gamma": if row.gamma.is_finite() { json!(row.gamma) } else { json!("inf") },
             "ns": row.ns, "bytes": row.bytes, "stored_bytes": row.stored,
             "error_max": row.error.map(|error| error.max), "error_rms": row.error.map(|error| error.rms),

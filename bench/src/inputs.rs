@@ -1,4 +1,4 @@
-//! What every rival is fed: the same views and random numbers, drawn once and resident in the
+//! The inputs of every rival: the same views and random numbers, drawn once and resident in the
 //! caches.
 
 use std::f32::consts::TAU;
@@ -10,7 +10,7 @@ use rand::{RngExt, SeedableRng};
 /// Views spread evenly over the solid angle above the surface (cos θ uniform in (0, 1], φ in [0,
 /// 2π)), and pairs of random numbers uniform in [0, 1)².
 ///
-/// Many enough that a branch predictor cannot learn them: 16 384 of either, 320 KiB, read in order.
+/// Enough that a branch predictor cannot learn them: 16 384 of each, 320 KiB, read in order.
 #[derive(Clone, Debug)]
 pub(crate) struct Inputs {
     /// Unit vectors, n = +z.
@@ -23,7 +23,7 @@ pub(crate) struct Inputs {
 pub(crate) const COUNT: usize = 16_384;
 
 impl Inputs {
-    /// `count` of either.
+    /// `count` of each.
     pub(crate) fn new(seed: u64, count: usize) -> Self {
         let mut random = StdRng::seed_from_u64(seed);
         let view = |u: [f32; 2]| {
@@ -42,8 +42,8 @@ impl Inputs {
 /// How many numbers a [`Stream`] repeats.
 const STREAM: usize = 1 << 16;
 
-/// Random numbers uniform in [0, 1) for rivals that need no fixed number of them: drawn beforehand,
-/// as the others' are, so that no one pays for a generator.
+/// Random numbers uniform in [0, 1) for rivals that need a varying number of them: drawn
+/// beforehand, as the others' are, so that no rival pays for a generator.
 #[derive(Clone, Debug)]
 pub(crate) struct Stream {
     numbers: Box<[f32; STREAM]>,
@@ -59,7 +59,7 @@ impl Stream {
 
     #[inline(always)]
     pub(crate) fn next(&mut self) -> f32 {
-        // The index wraps round by itself, and no bound is to be checked.
+        // The index wraps around by itself, so no bounds check is needed.
         self.at = self.at.wrapping_add(1);
         self.numbers[usize::from(self.at)]
     }

@@ -31,7 +31,7 @@ use crate::inputs::COUNT;
 use crate::settings::Settings;
 use crate::tables::Slices;
 
-/// Time the samplers and the forms of G1 there are, and say how wrong each is.
+/// Time the samplers and the forms of G1, and measure the error of each.
 ///
 /// One thread; views evenly over the hemisphere and uniform random numbers, drawn beforehand; times
 /// are medians over batches of rivals that take turns. Close other programs: ratios are steadier
@@ -85,7 +85,7 @@ fn run(args: Args) -> Result<(), Failure> {
     let settings = Settings { seed: args.seed, ..settings };
     let settings = args.calls.map_or(settings, |calls| settings.with_calls(calls as usize));
     if let Some(folder) = &args.out {
-        // Before the work, not after it.
+        // Fail before the work, not after it.
         std::fs::create_dir_all(folder)
             .map_err(|why| Failure(format!("making the folder {}: {why}", folder.display())))?;
     }
@@ -105,7 +105,7 @@ fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Writes to standard output; a reader that has gone away (`| head`) is no error.
+/// Writes to standard output; a closed pipe (`| head`) is not an error.
 fn print(text: &str) -> Result<(), Failure> {
     match io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),

@@ -14,10 +14,10 @@ use crate::sampler::{bind, stored};
 use crate::settings::{GAMMA, SIGMA};
 use crate::tables::Slices;
 
-/// G1 of directions, as many as there is room for.
+/// G1 of directions, as many as the output slice holds.
 pub(crate) type Evaluate<'a> = Box<dyn Fn(&[Vec3], &mut [f32]) + 'a>;
 
-/// One form.
+/// One form of G1.
 pub(crate) struct Masking<'a> {
     /// Its name.
     pub(crate) name: String,
@@ -43,7 +43,7 @@ pub(crate) fn each<'a>(one: impl Fn(Vec3) -> f32 + 'a) -> Evaluate<'a> {
 /// Names that figures refer to.
 pub(crate) const GGX: &str = "GGX, closed form";
 
-/// All of them, over the given tables.
+/// All forms, over the given tables.
 pub(crate) fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
     let sigma = SIGMA as f32;
     let form = |name: &str, gamma, evaluate| Masking {

@@ -1,5 +1,6 @@
-//! Two comparisons of Ribardière et al. 2017, done again with tables beside them: the time by γ and
-//! by σ (after figure 4), and the error of the rational approximation of masking (after figure 5).
+//! Two comparisons of Ribardière et al. 2017 (doi:10.1111/cgf.13137), repeated with tables: the
+//! time by γ and by σ (after figure 4), and the error of the rational approximation of masking
+//! (after figure 5).
 
 use std::cell::RefCell;
 
@@ -27,7 +28,7 @@ const SIGMAS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
 pub(crate) struct Timing {
     /// What it computes.
     pub(crate) quantity: Quantity,
-    /// How.
+    /// The method.
     pub(crate) method: &'static str,
     /// Whether this is a point over γ (else over σ).
     pub(crate) by_gamma: bool,
@@ -39,13 +40,13 @@ pub(crate) struct Timing {
     pub(crate) ns: f64,
 }
 
-/// A method on the clock: G1, or normals.
+/// A method as the clock runs it: G1, or normals.
 enum Method<'a> {
     G1(Evaluate<'a>),
     Normal(Draw<'a>),
 }
 
-/// Every method at every material, taking turns.
+/// Every method at every material, in turns.
 pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
     let inputs = Inputs::new(settings.seed, settings.calls);
     let by_gamma = GAMMAS.map(|gamma| (true, gamma, SIGMA));
@@ -69,7 +70,7 @@ pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
             Method::Normal(draw) => normals(draw, &inputs),
         })
         .collect();
-    // So many that fewer rounds must do.
+    // There are so many that fewer rounds must suffice.
     let times = clock::medians(&mut runs, settings.rounds.div_ceil(8), settings.calls);
     all.iter().zip(times).map(|((at, _), ns)| Timing { ns, ..at.clone() }).collect()
 }
@@ -154,7 +155,7 @@ pub(crate) fn times_svg(times: &[Timing]) -> Result<String, PlotError> {
     plot::svg(&panels)
 }
 
-/// How wrong the rational approximation of G1 is for one view, and how wrong the table.
+/// The errors of the rational approximation of G1 and of the table for one view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Approximation {
     /// The shape.
@@ -177,7 +178,7 @@ pub(crate) fn approximation(set: &Tables) -> Vec<Approximation> {
         (1..180).map(move |i| {
             let degrees = 0.5 * f64::from(i);
             let (sin, cos) = degrees.to_radians().sin_cos();
-            // The view as single precision has it.
+            // The view as rounded to single precision.
             let v = Vec3::new(sin as f32, 0.0, cos as f32);
             let g1 = truth.g1(v.as_dvec3());
             let z = f64::from(v.z) / (SIGMA * f64::from(v.x));
@@ -203,7 +204,7 @@ pub(crate) fn approximation_svg(all: &[Approximation]) -> Result<String, PlotErr
         let mut curves: Vec<Curve> = Vec::new();
         for at in all {
             let name = format!("γ = {}", at.gamma);
-            // Below the rounding of single precision there is nothing to see.
+            // Smaller errors are below the rounding of single precision.
             let point = (at.degrees, error(at).abs().max(1e-9).log10());
             match curves.last_mut().filter(|curve| curve.name == name) {
                 Some(curve) => curve.points.push(point),

@@ -1,4 +1,4 @@
-//! Run time against error, with the front that no rival is both faster and more accurate than.
+//! Run time against error, with the Pareto front: no rival is both faster and more accurate.
 
 use microfacet_bake::plot::PlotError;
 use plotters::prelude::*;
@@ -6,7 +6,7 @@ use plotters::prelude::*;
 use crate::rows::{Quantity, Row};
 use crate::settings::GAMMA;
 
-/// Size on the page, and fine units a unit of it.
+/// Size of the page, and fine units per unit of the page.
 const PAGE: (u32, u32) = (760, 940);
 const FINE: u32 = 8;
 
@@ -38,8 +38,8 @@ fn failed(why: impl std::fmt::Display) -> PlotError {
     PlotError::Drawing(why.to_string())
 }
 
-/// Where a row is drawn: log₁₀ of time and of error. `None` for a sampler of other normals than all
-/// that are visible.
+/// Where a row is drawn: log₁₀ of time and of error. `None` for a sampler that draws anything but
+/// all visible normals.
 fn place(row: &Row) -> Option<(f64, f64)> {
     if !row.complete {
         return None;
@@ -48,7 +48,7 @@ fn place(row: &Row) -> Option<(f64, f64)> {
     Some((row.ns.max(0.1).log10(), error.log10()))
 }
 
-/// The points that no other is at least as fast and as accurate as, by time.
+/// The Pareto front: the points for which no other is at least as fast and as accurate, by time.
 fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut lowest = f64::INFINITY;
@@ -115,7 +115,7 @@ fn panel(
 /// Radius of a point.
 const DOT: i32 = 4 * FINE as i32;
 
-/// A rectangle that nothing else should be drawn on: [left, right] and [top, bottom].
+/// A rectangle in which nothing else should be drawn: [left, right] and [top, bottom].
 struct Box {
     x: [i32; 2],
     y: [i32; 2],
@@ -132,8 +132,8 @@ impl Box {
     }
 }
 
-/// How far down from its point at (x, y) a name of so many letters hides nothing, the nearest such
-/// place, and takes it.
+/// The nearest vertical offset from the point at (x, y) at which a name of so many letters hides
+/// nothing; reserves that place.
 fn free(taken: &mut Vec<Box>, x: i32, y: i32, letters: usize) -> i32 {
     let line = 11 * FINE as i32;
     let width = letters as i32 * 11 * FINE as i32 / 2;

@@ -1,4 +1,4 @@
-//! What is timed and judged: one row a rival, each with the same inputs.
+//! The result: one row per rival, all timed and judged with the same inputs.
 
 use glam::Vec3;
 
@@ -10,7 +10,7 @@ use crate::sampler::{Draw, Sampler, samplers};
 use crate::settings::Settings;
 use crate::tables::Slices;
 
-/// What a row is about.
+/// The quantity of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Quantity {
     /// A sampled normal.
@@ -38,8 +38,7 @@ pub(crate) struct Row {
     pub(crate) name: String,
     /// Its shape; ∞ is Beckmann.
     pub(crate) gamma: f64,
-    /// Whether it draws visible normals, all of them, or evaluates G1: what can be compared by its
-    /// error.
+    /// Whether it draws all visible normals or evaluates G1, so that its error can be compared.
     pub(crate) complete: bool,
     /// Nanoseconds a call.
     pub(crate) ns: f64,
@@ -47,15 +46,15 @@ pub(crate) struct Row {
     pub(crate) bytes: usize,
     /// Bytes of those tables as stored in a file.
     pub(crate) stored: usize,
-    /// Error of the CDFs, or of G1, absolute; `None` for a sampler whose random numbers have no CDF
-    /// of their own.
+    /// Error of the CDFs, or of G1, absolute; `None` for a sampler whose random numbers do not
+    /// correspond to CDFs.
     pub(crate) error: Option<Error>,
     /// Variance of a white-furnace estimator; `None` for G1.
     pub(crate) variance: Option<f64>,
 }
 
 impl Row {
-    /// Variance times nanoseconds: what a given noise costs.
+    /// Variance times nanoseconds: the cost of a given noise level.
     pub(crate) fn cost(&self) -> Option<f64> {
         self.variance.map(|variance| variance * self.ns)
     }
@@ -100,7 +99,7 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
         .collect()
 }
 
-/// A sampler as what the clock runs.
+/// A sampler as the clock runs it.
 pub(crate) fn normals<'a>(draw: &'a Draw<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
     let mut normals = vec![Vec3::ZERO; inputs.views.len()];
     Box::new(move |at| {
@@ -109,7 +108,7 @@ pub(crate) fn normals<'a>(draw: &'a Draw<'a>, inputs: &'a Inputs) -> clock::Call
     })
 }
 
-/// A form of G1 likewise.
+/// A form of G1 as the clock runs it.
 pub(crate) fn values<'a>(evaluate: &'a Evaluate<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
     let mut values = vec![0.0; inputs.views.len()];
     Box::new(move |at| {

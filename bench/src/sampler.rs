@@ -1,4 +1,4 @@
-//! The samplers that are compared, each as a function over slices, with what is needed to judge it.
+//! The samplers that are compared, each as a function over slices, with the data to judge it.
 
 use std::cell::RefCell;
 use std::f32::consts::TAU;
@@ -24,7 +24,7 @@ pub(crate) type Draw<'a> = Box<dyn Fn(&[Vec3], &[[f32; 2]], &mut [Vec3]) + 'a>;
 /// The normal of a view at two random numbers, in double precision.
 pub(crate) type Exactly = fn(f64, DVec3, [f64; 2]) -> DVec3;
 
-/// What the normals of a sampler are compared with.
+/// The reference for the normals of a sampler.
 #[derive(Clone, Copy)]
 pub(crate) enum Check {
     /// The CDFs along and across the plane of incidence are the random numbers.
@@ -33,12 +33,12 @@ pub(crate) enum Check {
     Falling,
     /// The normal that the same formula gives in double precision.
     Formula(Exactly),
-    /// Nothing: the numbers it takes have no CDF of their own. Exact in distribution, or not a
-    /// sampler of visible normals at all.
+    /// None: its random numbers do not correspond to CDFs. It is exact in distribution, or does not
+    /// draw visible normals at all.
     Distribution,
 }
 
-/// What density it draws from, for the weights of an estimator.
+/// The density it draws from, for the weights of an estimator.
 pub(crate) enum Density {
     /// Visible normals.
     Visible,
@@ -86,8 +86,8 @@ impl<'a> Sampler<'a> {
     }
 }
 
-/// One call after the other. Each result is used, so that none is left out and no loop becomes one
-/// over lanes, which the calls of a renderer are not.
+/// One call after the other. Each result is used by itself, so that the compiler neither drops a
+/// call nor vectorises the loop: a renderer's calls are scalar.
 pub(crate) fn each<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
     Box::new(move |v, u, m| {
         for ((v, u), m) in v.iter().zip(u).zip(m) {
@@ -112,7 +112,7 @@ pub(crate) const BATCH: &str = "table, default, batch";
 pub(crate) const INVERSION: &str = "inversion of the CDF, any gamma";
 pub(crate) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
 
-/// All of them, over the given tables.
+/// All samplers, over the given tables.
 pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
     let sigma = SIGMA as f32;
     let truth = model::StudentT::new(SIGMA, GAMMA).expect("constants");
@@ -146,7 +146,7 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
         Sampler::new(
             "GGX, closed form of the sampler crate",
             2.0,
-            // Its numbers are those of the listing the other way round: height first.
+            // It takes the listing's numbers in the other order: height first.
             Check::Formula(|sigma, v, [height, azimuth]| {
                 ggx::double::caps(sigma, v, [azimuth, height])
             }),
@@ -198,7 +198,7 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
     all
 }
 
-/// Over slices, and bounded to reflections.
+/// The batch over slices, and the sampler bounded to reflections.
 fn variants<'a>(set: &Tables) -> [Sampler<'a>; 2] {
     let (batch, bounded) = (bind(set, GAMMA), bind(set, GAMMA));
     let (bytes, stored) = (batch.bytes(), stored(set));
@@ -223,7 +223,7 @@ pub(crate) fn bind(set: &Tables, gamma: f64) -> StudentT {
     set.student_t(SIGMA, gamma).expect("the sets were made for this shape")
 }
 
-/// Bytes that a file takes for what G1 and normals are looked up in.
+/// Bytes that the tables for G1 and normals take in a file.
 pub(crate) fn stored(set: &Tables) -> usize {
     let lookups = set.tables().iter().filter(|table| !table.kind.is_albedo());
     lookups.map(Table::stored_bytes).sum()

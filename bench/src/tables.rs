@@ -51,7 +51,7 @@ impl Slices {
     }
 }
 
-/// The set of one material, as any scene that has it gets it.
+/// The set of one material, as any scene with that material gets it.
 fn slice(quality: Quality, precision: Precision, gamma: f64) -> Tables {
     let recipe = format!("[[material]]\nname = \"it\"\nsigma = {SIGMA}\ngamma = {gamma}\n");
     let scene = Scene::from_recipe_str(&recipe).expect("a sound recipe");
@@ -59,7 +59,7 @@ fn slice(quality: Quality, precision: Precision, gamma: f64) -> Tables {
     bake(&plan, Target::Quality(quality, precision)).expect("a quality is always met").set
 }
 
-/// The name of the row that figures are about.
+/// The name of the row that the figures use.
 pub(crate) const TABLE: &str = "table, default";
 
 /// Names of the qualities.

@@ -1,4 +1,4 @@
-//! The same for the terminal, in columns.
+//! Rows and figures for the terminal, in columns.
 
 use crate::figures::Figure;
 use crate::rows::{Quantity, Row};
@@ -35,7 +35,7 @@ pub(crate) fn table(rows: &[Row]) -> String {
     text
 }
 
-/// The figures with what they must be and aim to be.
+/// The figures with their limits and goals.
 pub(crate) fn block(figures: &[Figure]) -> String {
     let mut text = format!(
         "{:48} {:>9} {:>9} {:>9}\n",

@@ -1,5 +1,4 @@
-//! The benchmark as a command: what it writes and what its values are, never how long anything
-//! takes.
+//! The benchmark as a command: the files it writes and their values, never the times.
 
 use std::collections::BTreeMap;
 use std::path::Path;

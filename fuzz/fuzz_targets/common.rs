@@ -1,4 +1,4 @@
-/// Loads a set with a checksum that fits whatever the bytes are, and uses what it holds.
+/// Loads a set after repairing its checksum, whatever the bytes are, and uses its contents.
 #[allow(dead_code)]
 fn load(bytes: &[u8]) {
     use microfacet_sampler::MicrofacetDistribution;
@@ -24,7 +24,7 @@ fn load(bytes: &[u8]) {
     albedos(&set);
 }
 
-/// Whatever the tables hold, an albedo is a share.
+/// An albedo is a share of light, whatever the tables hold.
 fn albedos(set: &microfacet_sampler::Tables) {
     use microfacet_sampler::FresnelAlbedo;
     use microfacet_sampler::Masking;
@@ -61,7 +61,7 @@ fn albedos(set: &microfacet_sampler::Tables) {
     }
 }
 
-/// Loads a scene from a file of that name in a folder of its own, and plans its tables.
+/// Loads a scene from a file of that name in a folder of its own, and writes its recipe.
 #[allow(dead_code)]
 fn scene(name: &str, bytes: &[u8]) {
     thread_local! {

@@ -1,4 +1,4 @@
-//! The loader of table sets: any bytes are refused or give tables that can be used.
+//! The loader of table sets: any bytes are refused or give usable tables.
 
 #![no_main]
 

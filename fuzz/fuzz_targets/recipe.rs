@@ -1,4 +1,4 @@
-//! Recipes: any text is refused or written and read again as the same.
+//! Recipes: any text is refused, or gives the same recipe after writing and reading again.
 
 #![no_main]
 

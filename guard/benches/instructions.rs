@@ -1,4 +1,4 @@
-//! Instructions of the hot paths, counted by Callgrind, against the committed ones.
+//! Instructions of the hot paths, counted by Callgrind and compared with the committed counts.
 
 use std::hint::black_box;
 
@@ -9,7 +9,8 @@ use gungraun::{
 use microfacet_guard::{CALLS, Inputs};
 use microfacet_sampler::{Ggx, MicrofacetDistribution, StudentT};
 
-/// The baseline: instructions a call that this commit takes. A count 1 % above it fails, which is one instruction in the short paths.
+/// The baseline: instructions per call at this commit. A count 1 % above it fails, which is one
+/// instruction in the short paths.
 fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
     const TOLERANCE: f64 = 1.01;
     let limit = (instructions * TOLERANCE * CALLS as f64) as u64;
@@ -18,9 +19,11 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
     config
 }
 
-// Nothing is allocated, and inputs are returned, not freed: what the allocator takes depends on whatever it was asked for before.
+// Nothing is allocated, and inputs are returned, not freed: the cost of an allocation depends on
+// the earlier ones.
 
-// `common` shapes read the tables alone; `heavy` ones draw the tail that their tables leave out from its closed form.
+// `common` shapes read the tables alone; `heavy` ones draw the tail that their tables leave out
+// from its closed form.
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(164.4))]

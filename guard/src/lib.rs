@@ -1,15 +1,16 @@
-//! What the instruction counts of `benches/instructions.rs` are taken over.
+//! The inputs for the instruction counts of `benches/instructions.rs`.
 
 use glam::Vec3;
 use microfacet_sampler::{MicrofacetDistribution, StudentT, Tables};
 
-/// Calls of each function; a count over it is instructions a call.
+/// Calls of each function; a count divided by it is instructions per call.
 pub const CALLS: usize = 1000;
 
 /// Roughness of the material.
 pub const SIGMA: [f32; 2] = [0.3, 0.5];
 
-/// A lobe, views, pairs of numbers and the normals they give, the same on every machine; and room for G1 of the views.
+/// A lobe, views, pairs of numbers and the normals they give, the same on every machine; and room
+/// for G1 of the views.
 pub struct Inputs<L> {
     pub lobe: L,
     pub v: Vec<Vec3>,
@@ -19,15 +20,18 @@ pub struct Inputs<L> {
 }
 
 impl Inputs<StudentT> {
-    /// Of the default tables at γ.
+    /// From the default tables at γ.
     pub fn new(gamma: f64) -> Self {
         Self::of(Tables::embedded().student_t(SIGMA, gamma).expect("covered by the default set"))
     }
 }
 
 impl<L: MicrofacetDistribution> Inputs<L> {
-    /// Views and numbers from the golden ratio's like in higher dimensions (Roberts 2018); cosines of views even in (0, 1), their azimuths
-    /// without trigonometry and therefore not even.
+    /// Views and numbers from additive recurrences of the golden ratio's generalisation to higher
+    /// dimensions (Roberts 2018,
+    /// <https://extremelearning.com.au/unreasonable-effectiveness-of-quasirandom-sequences/>).
+    /// Cosines of views are even in (0, 1); their azimuths avoid trigonometry and are therefore not
+    /// even.
     pub fn of(lobe: L) -> Self {
         let at = |i: usize, step: f64| (i as f64 * step).fract() as f32;
         let views = (0..CALLS).map(|i| {

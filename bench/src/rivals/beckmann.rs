@@ -9,8 +9,8 @@ use super::elementary::{nine, polynomial};
 /// 1/√π.
 const SQRT_PI_INV: f32 = 0.564_189_6;
 
-/// The error function of x ≥ 0 to 1.5e-7, Abramowitz and Stegun 7.1.26, and exp(−x²), which it is
-/// made of.
+/// The error function of x ≥ 0 to 1.5e-7, Abramowitz and Stegun 7.1.26, and the exp(−x²) that it
+/// contains.
 #[inline(always)]
 pub(super) fn erf(x: f32) -> [f32; 2] {
     let gauss = (-x * x).exp();
@@ -57,9 +57,9 @@ pub(crate) fn erf_inv(x: f32) -> f32 {
 /// The slope away from the viewer and the slope across, in units of σ, of a view whose unit
 /// cotangent is `cot` = cot θ/σ.
 ///
-/// Jakob 2014, "An Improved Visible Normal Sampling Routine for the Beckmann Distribution": Newton
-/// steps within a bracket, over the error function of the slope, until the CDF is within 1e-5 of
-/// `u[0]`.
+/// Jakob 2014, "An Improved Visible Normal Sampling Routine for the Beckmann Distribution"
+/// (<http://www.mitsuba-renderer.org/~wenzel/files/visnormal.pdf>): Newton steps within a bracket,
+/// over the error function of the slope, until the CDF is within 1e-5 of `u[0]`.
 #[inline(always)]
 pub(super) fn slopes(cot: f32, u: [f32; 2]) -> [f32; 2] {
     slopes_of(cot, erf(cot), u)
@@ -75,13 +75,13 @@ pub(super) fn slopes_of(cot: f32, [erf, gauss]: [f32; 2], u: [f32; 2]) -> [f32; 
     let number = u[0].max(1e-6);
     let (target, tolerance) = (number * area - 1.0, 1e-5 * area);
     let (mut low, mut high) = (-1.0, erf);
-    // His starting value: the inverse of a fit to the CDF.
+    // Jakob's starting value: the inverse of a fit to the CDF.
     let theta = arc_tangent(tan, cot);
     let fit = polynomial(theta, &[1.0, -0.876, 0.4265, -0.0594]);
     let mut b = erf - (1.0 + erf) * (1.0 - number).powf(fit);
     let mut slope = 0.0;
     for _ in 1..10 {
-        // Catches what is no number, too.
+        // Also catches NaN.
         if !(b >= low && b <= high) {
             b = 0.5 * (low + high);
         }
@@ -134,7 +134,8 @@ fn radius(sigma: f32, w: Vec3) -> f32 {
     (sigma * (w.x * w.x + w.y * w.y).sqrt()).max(1e-9)
 }
 
-/// G1 = 2/(1 + erf a + exp(−a²)/(a√π)), a = cot θ/σ (Walter et al. 2007, eq. 26).
+/// G1 = 2/(1 + erf a + exp(−a²)/(a√π)), a = cot θ/σ (Walter et al. 2007,
+/// doi:10.2312/EGWR/EGSR07/195-206, eq. 26).
 #[inline(always)]
 pub(crate) fn g1(sigma: f32, w: Vec3) -> f32 {
     let a = w.z / radius(sigma, w);
@@ -142,8 +143,8 @@ pub(crate) fn g1(sigma: f32, w: Vec3) -> f32 {
     2.0 * a / (a * (1.0 + erf) + SQRT_PI_INV * gauss)
 }
 
-/// Its rational fit (Walter et al. 2007, eq. 27), as a fraction of σ sin θ and cos θ. It is 1 at a
-/// = 1.6, from where on G1 is taken for 1: limiting both is no branch.
+/// Its rational fit (Walter et al. 2007, eq. 27), as a fraction of σ sin θ and cos θ. The fit is 1
+/// at a = 1.6, and G1 is taken as 1 beyond: clamping z and the result avoids a branch.
 #[inline(always)]
 pub(crate) fn g1_rational(sigma: f32, w: Vec3) -> f32 {
     let rho = radius(sigma, w);

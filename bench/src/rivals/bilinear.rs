@@ -1,8 +1,8 @@
-//! The plainest table: the inverse CDFs read by straight lines along every axis, at any number of
+//! The simplest table: the inverse CDFs, interpolated linearly along every axis, at any number of
 //! nodes.
 //!
-//! The same values, axes and mappings as the real tables', but no slopes; what cubic interpolation
-//! along the random numbers is worth.
+//! The values, axes and mappings are those of the real tables, but without slopes: this shows what
+//! cubic interpolation along the random numbers is worth.
 
 use glam::Vec3;
 use microfacet_common::shape::s_of_gamma;
@@ -45,8 +45,8 @@ impl Bilinear {
     pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let (x, y) = (self.sigma * v.x, self.sigma * v.y);
         let rho2 = x * x + y * y;
-        // Of the view, and the first of two of (2 min(u, 1−u))^(1/4): as the real tables do, in
-        // lanes.
+        // The roots of the view, and the first of the two roots of (2 min(u, 1−u))^(1/4), in lanes
+        // as in the real tables.
         let ends = u.map(|u| (2.0 * u.min(1.0 - u)).max(0.0));
         let roots = f32x4::new([rho2, rho2 + v.z * v.z, ends[0], ends[1]]).sqrt();
         let [rho, length, ..] = roots.to_array();
@@ -80,13 +80,13 @@ fn locate(x: f32, cells: usize) -> (usize, f32) {
     (cell, x - cell as f32)
 }
 
-/// Which half of the numbers: a number, not a branch, which half of all calls would mispredict.
+/// Which half of the numbers, without a branch: it would be mispredicted in half of all calls.
 #[inline(always)]
 fn half(u: f32) -> usize {
     usize::from(u > 0.5)
 }
 
-/// A slope x : z from the distance of its half tangent from the end that u is next to.
+/// A slope x : z from the distance of its half tangent from the end that is nearer for u.
 #[inline(always)]
 fn slope(g: f32, u: f32) -> (f32, f32) {
     ((2.0 - 2.0 * g) * (2.0 * half(u) as f32 - 1.0), g * (2.0 - g))

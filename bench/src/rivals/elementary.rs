@@ -1,5 +1,5 @@
 //! Elementary functions over the ranges that rivals need, in single precision and without branches;
-//! the platform's serve every range.
+//! the platform's functions cover every range.
 //!
 //! The polynomials are interpolations at Chebyshev's points.
 
@@ -12,7 +12,7 @@ pub(crate) fn polynomial<T: Copy + Add<Output = T> + Mul<Output = T>, const N: u
     x: T,
     c: &[T; N],
 ) -> T {
-    // Not a fold from 0: its first step would stay.
+    // Not a fold from 0: the compiler would keep its first step.
     let mut sum = c[N - 1];
     for i in (0..N - 1).rev() {
         sum = sum * x + c[i];
@@ -20,8 +20,8 @@ pub(crate) fn polynomial<T: Copy + Add<Output = T> + Mul<Output = T>, const N: u
     sum
 }
 
-/// The same of nine coefficients, in two chains that a processor runs at once: half as long to wait
-/// for.
+/// The same for nine coefficients, as two chains that a processor runs in parallel: half the
+/// latency.
 #[inline(always)]
 pub(crate) fn nine(x: f32, c: &[f32; 9]) -> f32 {
     let square = x * x;

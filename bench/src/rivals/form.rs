@@ -9,17 +9,17 @@ use super::tail::{ArcSum, Beta, Sum, Tail, whole};
 pub(crate) struct View {
     pub(crate) sin: f32,
     pub(crate) cos: f32,
-    /// sin², which takes no root.
+    /// sin², computed without a root.
     pub(crate) square: f32,
 }
 
-/// What Smith's masking needs.
+/// The area for Smith's masking.
 pub(crate) trait Area {
-    /// The area seen, cos θ (1 + Λ).
+    /// The projected area, cos θ (1 + Λ).
     fn area(&self, view: View) -> f32;
 }
 
-/// What the CDFs of visible normals need besides.
+/// The functions that the CDFs of visible normals need as well.
 pub(crate) trait Tails: Area {
     /// cos^(2γ−5), given the cosine and its square.
     fn power(&self, cos: f32, square: f32) -> f32;
@@ -31,7 +31,7 @@ pub(crate) trait Tails: Area {
     fn across(&self, sin: f32, cos: f32, power: f32) -> f32;
 }
 
-/// 1/((2γ−3) ∫(1−t²)^(γ−2)): what slopes weigh against the cosine in the area seen.
+/// 1/((2γ−3) ∫(1−t²)^(γ−2)): the weight of slopes relative to the cosine in the projected area.
 pub(crate) fn edge(gamma: f64) -> f64 {
     1.0 / ((2.0 * gamma - 3.0) * whole(gamma - 2.0))
 }
@@ -81,7 +81,7 @@ impl Tails for AnyGamma {
     }
 }
 
-/// γ = N + 1: the area seen is ½ cos θ and a polynomial in cos² θ.
+/// γ = N + 1: the projected area is ½ cos θ and a polynomial in cos² θ.
 pub(crate) struct IntegerGamma<const N: usize> {
     area: [f32; N],
     along: Sum<N>,
@@ -126,7 +126,7 @@ impl<const N: usize> Tails for IntegerGamma<N> {
     }
 }
 
-/// γ = N + 3/2: the area seen has an arc, and a polynomial in sin² θ.
+/// γ = N + 3/2: the projected area has an arc, and a polynomial in sin² θ.
 pub(crate) struct HalfIntegerGamma<const N: usize> {
     area: [f32; N],
 }

@@ -1,16 +1,15 @@
 //! GGX, γ = 2: both closed-form samplers of visible normals, and G1.
 //!
-//! In single precision as renderers have them, and in double as the truth that their rounding is
-//! measured against.
+//! In single precision as renderers have them, and in double as the reference for their rounding.
 
 macro_rules! in_precision {
     ($name:ident, $float:ident, $vec:ident, $turn:expr) => {
         pub(crate) mod $name {
             use glam::$vec as Vector;
 
-            /// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing
-            /// 1: `u[1]` is the height on the cap. All is as long as the stretched view, which need
-            /// not be of unit length: the half vector is made so.
+            /// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps"
+            /// (doi:10.1111/cgf.14867), listing 1: `u[1]` is the height on the cap. The stretched
+            /// view is not normalised, only the half vector.
             #[inline(always)]
             pub(crate) fn caps(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
                 caps_at(sigma, v, $turn(u[0]), u[1])
@@ -34,8 +33,9 @@ macro_rules! in_precision {
                 m * (1.0 / m.dot(m).sqrt())
             }
 
-            /// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", listing 1, with its
-            /// cross product written out and one division for both lengths.
+            /// Heitz 2018, "Sampling the GGX Distribution of Visible Normals"
+            /// (<https://jcgt.org/published/0007/04/01/>), listing 1, with its cross product
+            /// written out and one division for both lengths.
             #[inline(always)]
             pub(crate) fn heitz(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
                 let (x, y) = (sigma * v.x, sigma * v.y);
@@ -77,7 +77,8 @@ fn turn(u: f64) -> [f64; 2] {
     (std::f64::consts::TAU * u).sin_cos().into()
 }
 
-/// G1 = 2 cos θ/(cos θ + √(cos²θ + σ² sin²θ)) (Walter et al. 2007, eq. 34), without its tangent.
+/// G1 = 2 cos θ/(cos θ + √(cos²θ + σ² sin²θ)) (Walter et al. 2007, doi:10.2312/EGWR/EGSR07/195-206,
+/// eq. 34), without its tangent.
 #[inline(always)]
 pub(crate) fn g1(sigma: f32, w: glam::Vec3) -> f32 {
     let (x, y) = (sigma * w.x, sigma * w.y);

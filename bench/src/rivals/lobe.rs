@@ -17,7 +17,7 @@ pub(crate) struct Lobe<F> {
     /// 1/∫(1−t²)^(γ−2) and 1/∫(1−t²)^(γ−3/2), and of the second its inverse.
     density: [f32; 2],
     whole: f32,
-    /// What slopes weigh in the area seen, see [`form::edge`].
+    /// The weight of slopes in the projected area, see [`form::edge`].
     edge: f32,
     /// 2γ−5 and 2γ−3.
     exponents: [f32; 2],
@@ -25,11 +25,11 @@ pub(crate) struct Lobe<F> {
     series: [f32; 2],
 }
 
-/// Both CDFs are met within this, as by the other rival that iterates.
+/// Tolerance of both CDFs, the same as that of the other rival that iterates.
 const TOLERANCE: f32 = 1e-5;
 
-/// How many tolerances, and how far from a straight line, a function may be for the last step to
-/// bring it within one.
+/// The last step of an inversion ends within one tolerance if the value is below [`CLOSE`]
+/// tolerances and the relative curvature below [`NEARLY_STRAIGHT`].
 const CLOSE: f32 = 100.0;
 const NEARLY_STRAIGHT: f32 = 0.03;
 
@@ -80,7 +80,7 @@ impl<F: Area> Lobe<F> {
         View { sin: rho * r, cos: w.z * r, square: rho2 * r * r }
     }
 
-    /// Smith's G1: the share of the area that its projection takes.
+    /// Smith's G1: the projected area of the flat surface over that of the microsurface.
     #[inline(always)]
     pub(crate) fn g1(&self, w: Vec3) -> f32 {
         let view = self.view(w);
@@ -89,7 +89,7 @@ impl<F: Area> Lobe<F> {
 }
 
 impl<F: Tails> Lobe<F> {
-    /// The visible normal at both numbers: they rise as those of the tables do.
+    /// The visible normal at both numbers, which it follows in the same sense as the tables.
     #[inline(always)]
     pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let horizontal = (v.x * v.x + v.y * v.y).sqrt();
@@ -111,7 +111,7 @@ impl<F: Tails> Lobe<F> {
         let target = (1.0 - u) * area;
         let edge = sin * self.edge;
         // GGX has the quantile in closed form, sin(α − θ) = u (1 + cos θ) − 1; its unit slope is
-        // near that of other shapes.
+        // close to that of other shapes.
         let rho = self.sigma * horizontal;
         let r = 1.0 / (rho * rho + v.z * v.z).sqrt();
         let (ggx_sin, ggx_cos) = (rho * r, v.z * r);
@@ -173,8 +173,8 @@ fn invert(
         }
         let (square, curved) = (rate * rate, value * bend);
         x += value * rate / (square + 0.5 * curved);
-        // The step multiplies a small residual by about the square of curved/square: nobody need
-        // look at what it leaves.
+        // The step multiplies a small residual by about the square of curved/square, so the new
+        // residual need not be checked.
         if value.abs() < CLOSE * tolerance && curved.abs() < NEARLY_STRAIGHT * square {
             x = x.max(low).min(high);
             break;

@@ -1,4 +1,4 @@
-//! Everything that is timed, each in single precision and in its best published form.
+//! All rivals that are timed, each in single precision and in its best published form.
 
 pub(crate) mod beckmann;
 pub(crate) mod bilinear;

@@ -1,5 +1,5 @@
-//! The paper's rational approximation of masking (Ribardière et al. 2017, eq. 22–23), with all that
-//! depends on γ bound beforehand.
+//! The rational approximation of masking by Ribardière et al. 2017 (doi:10.1111/cgf.13137), eq.
+//! 22–23, with everything that depends on γ bound beforehand.
 
 use glam::Vec3;
 
@@ -24,7 +24,8 @@ const OVER_F21: [f32; 4] = [1.038, 2.969, 4.305, 4.418];
 const F24: [f64; 4] = [6.537, 6.074, -0.623, 5.223];
 const OVER_F24: [f64; 4] = [6.538, 6.103, -3.218, 6.347];
 
-/// Here the approximation has its limit for normal incidence, and powers of z are finite numbers.
+/// At this z the approximation has its limit for normal incidence, and powers of z are still
+/// finite.
 const LARGEST: f32 = 1e5;
 
 impl Rational {
@@ -46,7 +47,7 @@ impl Rational {
         }
     }
 
-    /// As printed, above 1 in places, but over one denominator.
+    /// As printed, above 1 in places, but with one denominator.
     #[inline(always)]
     pub(crate) fn g1(&self, w: Vec3) -> f32 {
         let z = (w.z / (self.sigma * (w.x * w.x + w.y * w.y).sqrt())).min(LARGEST);

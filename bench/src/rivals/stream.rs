@@ -36,7 +36,8 @@ impl Drawer {
         }
     }
 
-    /// A normal distributed as D(m)(m·n), whatever the view (Ribardière et al. 2017, eq. 16–17).
+    /// A normal distributed as D(m)(m·n), whatever the view (Ribardière et al. 2017,
+    /// doi:10.1111/cgf.13137, eq. 16–17).
     #[inline(always)]
     pub(crate) fn ndf(&self, u: [f32; 2]) -> Vec3 {
         let [sin, cos] = turn(u[1]);
@@ -46,8 +47,8 @@ impl Drawer {
         Vec3::new(r * cos, r * sin, z)
     }
 
-    /// A visible normal: an NDF's turned to the viewer with probability G1, else one of the excess
-    /// beyond the silhouette.
+    /// A visible normal: with probability G1 a normal of the NDF turned to the viewer, else one of
+    /// the excess beyond the silhouette.
     #[inline(always)]
     pub(crate) fn exact(&self, v: Vec3, stream: &mut Stream) -> Vec3 {
         let horizontal = (v.x * v.x + v.y * v.y).sqrt();
@@ -58,7 +59,7 @@ impl Drawer {
             let [sin, cos] = turn(stream.next());
             let r = square(stream.next()).sqrt();
             let x = (r * cos).abs();
-            // Kept with probability ½(1 + x/z), which beyond the silhouette is above 1.
+            // Kept with probability ½(1 + x/z), which is above 1 beyond the silhouette.
             let keeps = (2.0 * stream.next() - 1.0) * z < x;
             [if keeps { x } else { -x }, r * sin]
         } else {
@@ -67,12 +68,12 @@ impl Drawer {
         beckmann::normal(self.sigma, [cos, sin], slopes)
     }
 
-    /// A visible normal of one of the Beckmanns that Student-t is a mixture of: precision τ ∼
-    /// Gamma(γ−1), σ/√τ.
+    /// A visible normal of one of the Beckmanns whose mixture is Student-t: precision τ ∼
+    /// Gamma(γ−1), roughness σ/√τ.
     ///
-    /// Exact for every view if the precision is drawn in proportion to the area seen, z(1 + Λ).
-    /// That is at most z + ρ E[x⁺], whose two terms have Gamma-distributed precisions, and at least
-    /// half of it, so that fewer than two tries are needed.
+    /// Exact for every view if the precision is drawn in proportion to the projected area,
+    /// z(1 + Λ). That is at most z + ρ E[x⁺], whose two terms have Gamma-distributed precisions,
+    /// and at least half of it, so that fewer than two tries are needed on average.
     #[inline(always)]
     pub(crate) fn mixture(&self, v: Vec3, stream: &mut Stream) -> Vec3 {
         let horizontal = (v.x * v.x + v.y * v.y).sqrt();
@@ -82,11 +83,11 @@ impl Drawer {
         let (cot, half) = (v.z * inverse * self.steepness, HALF * rho);
         let all = v.z + self.grazing * rho;
         let (root, [erf, gauss]) = loop {
-            // √τ, 1 over which the slopes are scaled by.
+            // √τ; its inverse scales the slopes.
             let root =
                 (precision(stream.next() * all >= v.z, stream) * (1.0 / (GAMMA - 1.0))).sqrt();
             let [erf, gauss] = beckmann::erf(cot * root);
-            // Times √τ, both sides.
+            // Both sides are multiplied by √τ.
             let z = v.z * root;
             if stream.next() * (z + half) <= 0.5 * z * (1.0 + erf) + half * gauss {
                 break (root, [erf, gauss]);

@@ -1,5 +1,5 @@
-//! Upper tails ∫ₓ¹ (1−t²)ᵖ dt over the whole ∫₋₁¹, in single precision: what every closed form of
-//! Student-t is made of.
+//! Upper tails ∫ₓ¹ (1−t²)ᵖ dt over the whole ∫₋₁¹, in single precision: every closed form of
+//! Student-t contains them.
 //!
 //! x is the sine of the tilt in the lobe's own space. Along the plane of incidence p = γ−2, across
 //! it p = γ−3/2.
@@ -22,9 +22,9 @@ pub(crate) fn whole(p: f64) -> f64 {
 pub(crate) struct Beta {
     /// Γ(a+½)/(Γ(a) Γ(½)), a = p+1, and half of it over a.
     scale: [f32; 2],
-    /// Where either fraction ends sooner than the other: (a+1)/(a+5/2).
+    /// Below this the first fraction ends sooner, above it the second: (a+1)/(a+5/2).
     middle: f32,
-    /// Of I(a, ½) and of I(½, a).
+    /// The fractions of I(a, ½) and of I(½, a).
     fractions: [Fraction; 2],
 }
 
@@ -46,7 +46,7 @@ impl Tail for Beta {
         let tail = if y < self.middle {
             self.scale[1] * front * self.fractions[0].at(y)
         } else {
-            // Not 1 − y, which has lost its digits where γ is large and the tail is within.
+            // Not 1 − y, which has lost its digits for a tail inside the lobe at large γ.
             0.5 - self.scale[0] * front * self.fractions[1].at(sin * sin)
         };
         if sin < 0.0 { 1.0 - tail } else { tail }
@@ -72,8 +72,7 @@ impl Fraction {
         Self { first: (-(a + b) / (a + 1.0)) as f32, pairs: std::array::from_fn(pair) }
     }
 
-    /// By the recurrence of its convergents' numerators and denominators, so that all is divided
-    /// once.
+    /// By the recurrence of its convergents' numerators and denominators, with a single division.
     #[inline(always)]
     fn at(&self, x: f32) -> f32 {
         let (mut old, mut new) = ([1.0, 1.0], [1.0 + self.first * x, 1.0]);
@@ -92,8 +91,8 @@ impl Fraction {
     }
 }
 
-/// Whole p = N − 1: a polynomial in the sine (the sum of Ribardière et al. 2017, eq. 21, for
-/// integer γ).
+/// Integer p = N − 1: a polynomial in the sine (the sum of Ribardière et al. 2017,
+/// doi:10.1111/cgf.13137, eq. 21, for integer γ).
 pub(crate) struct Sum<const N: usize> {
     c: [f32; N],
 }
@@ -103,7 +102,7 @@ impl<const N: usize> Sum<N> {
         Self { c: Self::coefficients().map(|c| c as f32) }
     }
 
-    /// Those of the odd powers of the sine.
+    /// Coefficients of the odd powers of the sine.
     pub(crate) fn coefficients() -> [f64; N] {
         let (mut binomial, p) = (1.0, (N - 1) as f64);
         let norm = whole(p);
@@ -133,7 +132,7 @@ impl<const N: usize> ArcSum<N> {
         Self { c: Self::coefficients().map(|c| c as f32) }
     }
 
-    /// Those of the even powers of the cosine.
+    /// Coefficients of the even powers of the cosine.
     pub(crate) fn coefficients() -> [f64; N] {
         // ∫₀^φ cos^(2N) = whole/π · (φ + sin φ cos φ Σ (2j)!!/(2j+1)!! cos^(2j) φ).
         let mut term = std::f64::consts::FRAC_1_PI;
