@@ -231,8 +231,6 @@ fn weights_never_exceed_one_10_million() {
 #[test]
 fn matrices_beyond_single_precision_are_refused() {
     let set = tables(3.0);
-    for sigma in [1e-20, 1e20] {
-        let skew = Skew::new(sigma, [0.0; 3]).unwrap();
-        assert!(matches!(set.ellipsoid(skew, 3.0), Err(MaterialError::Sigma(x)) if x == sigma));
-    }
+    let skew = Skew::new(1e-20, [0.0; 3]).unwrap();
+    assert!(matches!(set.ellipsoid(skew, 3.0), Err(MaterialError::Sigma(1e-20))));
 }
