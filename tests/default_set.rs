@@ -2,9 +2,8 @@
 
 use microfacet_bake::plan::Plan;
 use microfacet_bake::table_set::{Target, bake};
-use microfacet_sampler::{Kind, encode};
+use microfacet_sampler::{DEFAULT_SET as COMMITTED, Kind, encode};
 
-const COMMITTED: &[u8] = include_bytes!("../sampler/data/default.safetensors");
 
 #[test]
 fn the_default_set_is_reproducible() {

@@ -11,11 +11,10 @@ use microfacet_bake::scene::{Interval, Scene};
 use microfacet_bake::table_set::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_bake::table_spec::{Quality, general_set};
 use microfacet_bake::validate::certificate::worst_error;
-use microfacet_sampler::{Lobe, MicrofacetDistribution, Precision, Tables, encode};
+use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Precision, Tables, encode};
 
 use command::{json, ok, refused, run};
 
-const GENERAL: &[u8] = include_bytes!("../sampler/data/default.safetensors");
 const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
 
 /// A recipe of materials: name, σ and γ as TOML.

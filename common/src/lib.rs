@@ -1,10 +1,27 @@
-//! What the analytic model (in double precision) and the run-time sampler (in single) have to agree on: how masking and
-//! shadowing combine, the two ways to write the shape, the weights of Schlick's and the F82 reflectance, and Gauss–Legendre
-//! rules.
+//! What the analytic model (`microfacet-model`, double precision) and the run-time sampler
+//! (`microfacet-sampler`, single precision) have to agree on.
 //!
-//! The sampler must not depend on the model, whose code a renderer does not need, nor the model on the sampler, which it
-//! judges. So these definitions stand below both. Formulas are generic over the number, so that both precisions run the same
-//! line. `no_std`, without allocation; its one dependency is `serde`, for names in files, where the feature is on.
+//! | | |
+//! | --- | --- |
+//! | [`Masking`] | how masking and shadowing combine |
+//! | [`Roughness`], [`Skew`] | what a lobe is made from: roughness, and the matrix of an ellipsoid |
+//! | [`shape`] | the two ways to write the shape, γ and s = 1/(γ−1) |
+//! | [`schlick`] | the weights of Schlick's reflectance and of the F82 tint |
+//! | [`gauss_legendre()`] | quadrature rules, at compile time too |
+//!
+//! The sampler must not depend on the model, whose code a renderer does not need, nor the model on
+//! the sampler, which it judges. So these definitions stand below both. Formulas are generic over
+//! the number, so that both precisions run the same line.
+//!
+//! ```
+//! use microfacet_common::Masking;
+//! // G2 from the G1 of view and light, and what a sampled light is worth.
+//! assert_eq!(Masking::Uncorrelated.g2(0.5, 0.5), 0.25);
+//! assert!((Masking::HeightCorrelated.g2(0.5, 0.5) - 1.0_f32 / 3.0).abs() < 1e-7);
+//! assert_eq!(Masking::Uncorrelated.g2_over_g1(0.5, 0.25), 0.25);
+//! ```
+//!
+//! `no_std`, without allocation. Feature: `serde`, names of the forms of masking as files write them.
 
 #![no_std]
 

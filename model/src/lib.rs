@@ -1,9 +1,56 @@
-//! The Student-t microfacet model in double precision: the truth that tables are baked from and judged by.
+//! The Student-t microfacet model in double precision: the truth that tables are baked from and
+//! judged by.
 //!
-//! [`StudentT`] is the distribution of normals with roughness σx, σy and shape γ (Ribardière et al. 2017, *STD: Student's
-//! t-distribution of slopes for microfacet based BSDFs*); GGX and Beckmann are its members γ = 2 and γ = ∞. Directions are unit
-//! vectors in the tangent frame, n = +z, angles in radians. No tables and no files; every function is a formula
-//! or a root found to rounding, and uses the `libm` crate, so that results are the same bits on every system.
+//! [`StudentT`] is the distribution of normals with roughness σx, σy and shape γ (Ribardière,
+//! Bringier, Meneveaux, Simonot 2017, *STD: Student's t-Distribution of Slopes for Microfacet Based
+//! BSDFs*, <https://doi.org/10.1111/cgf.13137>); GGX and Beckmann are its members γ = 2 and γ = ∞.
+//! Directions are unit vectors in the tangent frame, n = +z, angles in radians. There are no tables
+//! and no files; every function is a formula or a root found to rounding, and uses the `libm` crate,
+//! so that results are the same bits on every system.
+//!
+//! | to | use |
+//! | --- | --- |
+//! | evaluate and sample a lobe | [`MicrofacetDistribution`] of [`StudentT`] and [`Ellipsoid`] |
+//! | draw visible normals without inverting a CDF | [`StudentT::sample_visible_by_rejection`] |
+//! | integrate an albedo | [`AlbedoIntegrator`], [`classic::RadialAlbedo`] |
+//! | scatter more than once | [`StudentT::walk`] |
+//! | reflect at conductors and dielectrics | [`fresnel`] |
+//! | use GTR, Gauss, Schlick or a measured D | [`classic`] |
+//! | look into one shape: marginals, CDFs, quantiles | [`Shape`], [`VisibleSlope`] |
+//! | test a sampler of your own | `statistics` |
+//!
+//! # D, masking, visible normals
+//!
+//! ```
+//! use glam::DVec3;
+//! use microfacet_model::{Masking, MicrofacetDistribution, StudentT};
+//!
+//! let gold = StudentT::new([0.3, 0.1], 4.0)?; // sigma; gamma
+//! let v = DVec3::new(0.6, 0.0, 0.8);
+//! let (m, pdf) = gold.sample_with_pdf(v, [0.3, 0.7]);
+//! let l = 2.0 * v.dot(m) * m - v;
+//! assert!((pdf / (gold.g1(v) * v.dot(m) * gold.d(m) / v.z) - 1.0).abs() < 1e-12);
+//! assert!(gold.reflection_weight(v, l, Masking::HeightCorrelated) <= 1.0);
+//! # Ok::<(), microfacet_model::ParameterError>(())
+//! ```
+//!
+//! # Albedos
+//!
+//! By quadrature, to the tolerance that is asked for; the weight is any function of v·m.
+//!
+//! ```
+//! use microfacet_model::{AlbedoIntegrator, Masking, Shape};
+//!
+//! let integrator = AlbedoIntegrator::new(Shape::new(3.0)?, 1e-9); // tolerance
+//! let albedo = integrator.reflection(0.5, 0.8, |_| [1.0])?; // sigma, cos theta, weights
+//! let [e] = albedo.of(Masking::HeightCorrelated);
+//! assert!(e > 0.9 && e < 1.0);
+//! # Ok::<(), microfacet_model::ParameterError>(())
+//! ```
+//!
+//! # Feature
+//!
+//! `statistics`: chi-square and Kolmogorov–Smirnov tests of samplers against the model.
 
 mod albedo;
 mod below_horizon;
@@ -43,3 +90,8 @@ pub use visible::{SignedSlope, UnitView, VisibleSlope, across_cdf, across_quanti
 pub mod printed {
     pub use crate::paper::*;
 }
+
+/// The example of this crate's README, so that it keeps compiling.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

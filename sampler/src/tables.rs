@@ -10,6 +10,10 @@ use crate::error::{LoadError, MaterialError};
 use crate::format::{Kind, MaterialEntry, Provenance, Table, decode};
 use crate::material::{Ellipsoid, Ggx, Lobe, Radial, StudentT, covers};
 
+/// The default set as the bytes of a safetensors file, for those who pass it on.
+#[cfg(feature = "embedded")]
+pub const DEFAULT_SET: &[u8] = include_bytes!("../data/default.safetensors");
+
 /// A set of tables, loaded and checked.
 ///
 /// ```
@@ -37,8 +41,7 @@ impl Tables {
     /// the program.
     #[cfg(feature = "embedded")]
     pub fn embedded() -> Self {
-        let bytes = include_bytes!("../data/default.safetensors");
-        let (provenance, tables) = decode(bytes, false).expect("the embedded tables are tested");
+        let (provenance, tables) = decode(DEFAULT_SET, false).expect("the embedded tables are tested");
         Self { provenance, tables }
     }
 
