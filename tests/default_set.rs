@@ -4,7 +4,6 @@ use microfacet_bake::plan::Plan;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_sampler::{DEFAULT_SET as COMMITTED, Kind, encode};
 
-
 #[test]
 fn the_default_set_is_reproducible() {
     let plan = Plan::general();

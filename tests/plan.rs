@@ -11,7 +11,9 @@ use microfacet_bake::scene::{Interval, Scene};
 use microfacet_bake::table_set::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_bake::table_spec::{Quality, general_set};
 use microfacet_bake::validate::certificate::worst_error;
-use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Precision, Tables, encode};
+use microfacet_sampler::{
+    DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Precision, Tables, encode,
+};
 
 use command::{json, ok, refused, run};
 

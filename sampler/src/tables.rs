@@ -41,7 +41,8 @@ impl Tables {
     /// the program.
     #[cfg(feature = "embedded")]
     pub fn embedded() -> Self {
-        let (provenance, tables) = decode(DEFAULT_SET, false).expect("the embedded tables are tested");
+        let (provenance, tables) =
+            decode(DEFAULT_SET, false).expect("the embedded tables are tested");
         Self { provenance, tables }
     }
 

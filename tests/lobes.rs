@@ -1,0 +1,196 @@
+//! The one trait: every lobe answers alike, as itself, as a [`Lobe`] and as a trait object, and what
+//! has a counterpart in the model agrees with it.
+
+use glam::{DVec3, Vec3};
+use microfacet_bake::plan::{Options, Plan};
+use microfacet_bake::scene::Scene;
+use microfacet_bake::table_set::{Target, bake};
+use microfacet_bake::table_spec::Quality;
+use microfacet_model as model;
+use microfacet_sampler::{
+    Ggx, Lobe, Masking, MicrofacetDistribution, Precision, Skew, StudentT, Tables,
+};
+
+const RECIPE: &str = "
+[[material]]
+name = \"glass\"
+sigma = [0.3, 0.5]
+gamma = 3.0
+
+[[material]]
+name = \"steel\"
+sigma = 0.2
+gamma = 2.0
+
+[[material]]
+name = \"brushed\"
+sigma = [0.4, 0.2]
+gamma = 3.0
+theta = [0.05, -0.1, 0.5]
+
+[[material]]
+name = \"paint\"
+distribution = \"gtr\"
+c = 0.2
+gamma = 1.5
+";
+
+/// A set with a lobe of each kind. GGX is left to its closed forms.
+fn set() -> Tables {
+    let scene = Scene::from_recipe_str(RECIPE).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set
+}
+
+fn directions() -> impl Iterator<Item = Vec3> {
+    let angles = [0.0, 0.4, 1.0, 1.4, 1.57, 1.7].into_iter();
+    angles.flat_map(|theta: f32| {
+        [0.3_f32, 2.0, -2.5].map(|phi| {
+            let (sin, cos) = theta.sin_cos();
+            Vec3::new(sin * phi.cos(), sin * phi.sin(), cos)
+        })
+    })
+}
+
+const NUMBERS: [[f32; 2]; 5] = [[0.0, 0.5], [0.2, 0.9], [0.5, 0.5], [0.8, 0.1], [1.0, 1.0]];
+
+#[test]
+fn a_name_gives_the_lobe_that_the_recipe_states() {
+    let set = set();
+    assert!(matches!(set.material("glass"), Ok(Lobe::StudentT(_))));
+    assert!(matches!(set.material("steel"), Ok(Lobe::Ggx(_))));
+    assert!(matches!(set.material("brushed"), Ok(Lobe::Ellipsoid(_))));
+    assert!(matches!(set.material("paint"), Ok(Lobe::Radial(_))));
+    assert!(set.material("wood").unwrap_err().to_string().contains("\"paint\""));
+}
+
+#[test]
+fn the_laws_hold_for_every_lobe() {
+    let set = set();
+    for name in ["glass", "steel", "brushed", "paint"] {
+        let lobe = set.material(name).unwrap();
+        let dynamic: &dyn MicrofacetDistribution = &lobe;
+        for v in directions() {
+            let g1 = lobe.g1(v);
+            assert!((0.0..=1.0).contains(&g1) && (g1 > 0.0) == (v.z > 0.0), "{name} {v}: {g1}");
+            assert_eq!(lobe.lambda(v), 1.0 / g1 - 1.0);
+            for u in NUMBERS {
+                let (m, pdf) = dynamic.sample_with_pdf(v, u);
+                assert_eq!(m, lobe.sample_visible_normal(v, u), "{name} {v} {u:?}");
+                assert_eq!(pdf, lobe.visible_normal_pdf(v, m));
+                assert!((m.length() - 1.0).abs() < 5e-7 && m.z > 0.0, "{name} {v} {u:?}: {m}");
+                let l = 2.0 * v.dot(m) * m - v;
+                for masking in Masking::ALL {
+                    let weight = lobe.reflection_weight(v, l, masking);
+                    assert!((0.0..=1.0 + 1e-6).contains(&weight), "{name} {v} {u:?}: {weight}");
+                    assert!(weight == 0.0 || l.z > 0.0 && v.z > 0.0);
+                    let (g2, quotient) = (lobe.g2(v, l, masking), weight * g1);
+                    // A tilted lobe's G1 is clamped, and its weight is below G2/G1 there.
+                    let clamped = name == "brushed" && g1 == 1.0;
+                    assert!((g2 - quotient).abs() < 1e-6 || clamped, "{name} {v}: {g2} {quotient}");
+                }
+            }
+        }
+        let v: Vec<Vec3> = directions().collect();
+        let u: Vec<_> = (0..v.len()).map(|i| NUMBERS[i % NUMBERS.len()]).collect();
+        let (mut m, mut g1) = (vec![Vec3::ZERO; v.len()], vec![0.0; v.len()]);
+        lobe.sample_batch(&v, &u, &mut m).unwrap();
+        lobe.g1_batch(&v, &mut g1).unwrap();
+        for i in 0..v.len() {
+            let one = lobe.sample_visible_normal(v[i], u[i]);
+            assert!((m[i] - one).length() < 5e-7, "{name} {}: {} {one}", v[i], m[i]);
+            assert!((g1[i] - lobe.g1(v[i])).abs() < 3e-7, "{name} {}", v[i]);
+        }
+        let error = lobe.g1_batch(&v, &mut g1[1..]).unwrap_err().to_string();
+        assert!(error.contains("same length"), "{error}");
+    }
+}
+
+#[test]
+fn the_enum_answers_as_the_lobe_in_it() {
+    let one: StudentT = Tables::embedded().student_t([0.3, 0.5], 1.6).unwrap();
+    let any = Lobe::from(one.clone());
+    for v in directions() {
+        for u in NUMBERS {
+            let m = any.sample_visible_normal(v, u);
+            assert_eq!(m, one.sample_visible_normal(v, u));
+            let all = |lobe: &dyn MicrofacetDistribution| {
+                let l = 2.0 * v.dot(m) * m - v;
+                let weight = lobe.reflection_weight(v, l, Masking::HeightCorrelated);
+                [lobe.d(m), lobe.g1(v), lobe.visible_normal_pdf(v, m), lobe.table_pdf(v, m), weight]
+            };
+            assert_eq!(all(&any), all(&one));
+        }
+    }
+    assert_eq!(any.bytes(), one.bytes());
+}
+
+/// Largest differences of G1, D, the density of normals and weights from the model's, relative.
+fn apart(
+    lobe: &impl MicrofacetDistribution,
+    truth: &impl model::MicrofacetDistribution,
+) -> [f64; 4] {
+    let mut worst = [0.0_f64; 4];
+    for v in directions().filter(|v| v.z > 0.01) {
+        for u in NUMBERS {
+            let m = lobe.sample_visible_normal(v, u);
+            let (v64, m64) = (v.as_dvec3(), m.as_dvec3());
+            let l: DVec3 = 2.0 * v64.dot(m64) * m64 - v64;
+            if v64.dot(m64) < 1e-3 || m.z < 1e-6 || l.z < 1e-3 {
+                continue;
+            }
+            let masking = Masking::HeightCorrelated;
+            let pairs = [
+                (lobe.g1(v), truth.g1(v64)),
+                (lobe.d(m), truth.d(m64)),
+                (lobe.visible_normal_pdf(v, m), truth.visible_normal_pdf(v64, m64)),
+                (
+                    lobe.reflection_weight(v, l.as_vec3(), masking),
+                    truth.reflection_weight(v64, l, masking),
+                ),
+            ];
+            for (worst, (got, want)) in worst.iter_mut().zip(pairs) {
+                *worst = worst.max((f64::from(got) / want - 1.0).abs());
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn both_precisions_mean_the_same() {
+    let tables = Tables::embedded();
+    // G1 and what is made of it by the error of the tables; D by that of single precision.
+    let close =
+        |[g1, d, pdf, weight]: [f64; 4]| g1 < 3e-5 && d < 1e-5 && pdf < 6e-5 && weight < 3e-5;
+    for gamma in [1.6, 2.0, 3.0, f64::INFINITY] {
+        let sigma = [0.3_f32, 0.5];
+        let (lobe, truth) =
+            (tables.student_t(sigma, gamma).unwrap(), model::StudentT::new(sigma, gamma).unwrap());
+        let errors = apart(&lobe, &truth);
+        assert!(close(errors), "gamma {gamma}: {errors:?}");
+        let skew = Skew::new(sigma, [0.3, -0.2, 0.5]).unwrap();
+        let (lobe, truth) =
+            (tables.ellipsoid(skew, gamma).unwrap(), model::Ellipsoid::new(skew, gamma).unwrap());
+        let errors = apart(&lobe, &truth);
+        assert!(close(errors), "ellipsoid, gamma {gamma}: {errors:?}");
+    }
+    let (ggx, truth) = (Ggx::new(0.3_f32).unwrap(), model::StudentT::new(0.3_f32, 2.0).unwrap());
+    let errors = apart(&ggx, &truth);
+    assert!(errors.iter().all(|error| *error < 3e-6), "{errors:?}");
+    // It can fail: another roughness is another lobe.
+    let other = model::StudentT::new(0.301, 2.0).unwrap();
+    assert!(!close(apart(&ggx, &other)));
+}
+
+#[test]
+fn narrow_lobes_say_that_they_are_mirrors() {
+    let tables = Tables::embedded();
+    assert!(tables.student_t(9.9e-4, 3.0).unwrap().is_effectively_smooth());
+    assert!(!tables.student_t([9.9e-4, 0.1], 3.0).unwrap().is_effectively_smooth());
+    assert!(Ggx::new(9.9e-4).unwrap().is_effectively_smooth());
+    let tilted = |turn| tables.ellipsoid(Skew::new(5e-4, [turn, 0.0, 0.0]).unwrap(), 3.0).unwrap();
+    assert!(tilted(0.0).is_effectively_smooth());
+    // A mirror, but another one than the surface.
+    assert!(!tilted(0.1).is_effectively_smooth());
+}
