@@ -95,6 +95,13 @@ impl Row {
         (2.0 * v.dot(m) * m - v).as_vec3()
     }
 
+    /// Whether tables take the view for normal incidence, where any azimuth will do, though it has
+    /// one.
+    fn is_upright(&self) -> bool {
+        let across = self.v.x.abs().max(self.v.y.abs());
+        across > 0.0 && across < 1e-18
+    }
+
     /// The roughness of a round lobe, which the embedded albedos are of, where they cover it.
     fn round_sigma(&self) -> Option<f64> {
         let [x, y] = self.sigma;
@@ -166,7 +173,7 @@ impl Truth {
         ];
         let albedo = row.round_sigma().map(|sigma| self.albedo(&model, sigma, row));
         let mut all = all(directional, albedo);
-        if row.gamma < PEELED_BELOW {
+        if row.gamma < PEELED_BELOW || row.is_upright() {
             all[3..6].fill(None);
         }
         all
