@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use glam::{DVec3, Vec3};
 use microfacet_common::Masking::{self, HeightCorrelated, Uncorrelated};
 use microfacet_common::schlick::{f82_weight, schlick_weight};
-use microfacet_model::{AlbedoIntegrator, StudentT};
+use microfacet_model::{Albedo, AlbedoIntegrator, StudentT};
 use microfacet_sampler::{Moments, Tables};
 
 const USAGE: &str = "usage: cargo run --release --example reference -- docs/reference.csv";
@@ -37,8 +37,14 @@ fn main() -> ExitCode {
 /// Columns of a row's inputs.
 const INPUTS: &str = "case,sigma_x,sigma_y,gamma,masking,vx,vy,vz,u1,u2,mx,my,mz,lx,ly,lz";
 /// Columns of what follows from them, each first as `…_exact`, then as `…_table`.
-const RESULTS: [&str; 12] =
-    ["g1", "g2", "d", "nx", "ny", "nz", "density", "e", "scale", "bias", "f82", "e_avg"];
+const RESULTS: [&str; COUNT] = [
+    "g1", "g2", "d", "nx", "ny", "nz", "density", "e", "scale", "bias", "f82", "e_avg", "bias_avg",
+    "f82_avg",
+];
+/// How many there are: of directions, and of albedos.
+const COUNT: usize = DIRECTIONAL + ALBEDOS;
+const DIRECTIONAL: usize = 7;
+const ALBEDOS: usize = 7;
 
 /// Error aimed at by the quadrature of exact albedos.
 const TOLERANCE: f64 = 1e-11;
@@ -112,7 +118,7 @@ impl Row {
 // What the run-time crate says.
 
 /// The results of a row from tables.
-fn read(tables: &Tables, row: &Row) -> [Option<f32>; 12] {
+fn read(tables: &Tables, row: &Row) -> [Option<f32>; COUNT] {
     let material = tables.student_t(row.sigma, row.gamma).expect("embedded tables cover it");
     let n = material.sample_visible_normal(row.v, row.u);
     let directional = [
@@ -128,20 +134,21 @@ fn read(tables: &Tables, row: &Row) -> [Option<f32>; 12] {
     all(directional, albedo)
 }
 
-/// E, scale, bias and F82 of the view, and the average of E.
-fn read_albedo(tables: &Tables, sigma: f64, row: &Row) -> [f32; 5] {
+/// E, scale, bias and F82 of the view, and the averages of E, bias and F82.
+fn read_albedo(tables: &Tables, sigma: f64, row: &Row) -> [f32; ALBEDOS] {
     let (gamma, masking) = (row.gamma, row.masking);
     let albedo = tables.albedo(sigma, gamma, masking).expect("embedded tables cover it");
     let average = tables.average_moments(sigma, gamma, masking).expect("embedded tables cover it");
     let Moments { scale, bias, f82 } = albedo.moments(row.v);
-    [albedo.albedo(row.v), scale, bias, f82, average.total()]
+    let e = albedo.albedo(row.v);
+    [e, scale, bias, f82, average.total(), average.bias, average.f82]
 }
 
-fn all<T: Copy>(directional: [T; 7], albedo: Option<[T; 5]>) -> [Option<T>; 12] {
-    let albedo = albedo.map_or([None; 5], |albedo| albedo.map(Some));
-    let mut all = [None; 12];
-    all[..7].copy_from_slice(&directional.map(Some));
-    all[7..].copy_from_slice(&albedo);
+fn all<T: Copy>(directional: [T; DIRECTIONAL], albedo: Option<[T; ALBEDOS]>) -> [Option<T>; COUNT] {
+    let albedo = albedo.map_or([None; ALBEDOS], |albedo| albedo.map(Some));
+    let mut all = [None; COUNT];
+    all[..DIRECTIONAL].copy_from_slice(&directional.map(Some));
+    all[DIRECTIONAL..].copy_from_slice(&albedo);
     all
 }
 
@@ -151,12 +158,12 @@ fn all<T: Copy>(directional: [T; 7], albedo: Option<[T; 5]>) -> [Option<T>; 12] 
 #[derive(Default)]
 struct Truth {
     integrators: HashMap<u64, AlbedoIntegrator>,
-    averages: HashMap<[u64; 2], [f64; 2]>,
+    averages: HashMap<[u64; 2], Albedo<3>>,
 }
 
 impl Truth {
     /// The exact results of a row.
-    fn of(&mut self, row: &Row) -> [Option<f64>; 12] {
+    fn of(&mut self, row: &Row) -> [Option<f64>; COUNT] {
         let [sx, sy] = row.sigma.map(f64::from);
         let model = StudentT::anisotropic(sx, sy, row.gamma).expect("a Student-t");
         let (v, m, l) = (row.v.as_dvec3(), row.m.as_dvec3(), row.light().as_dvec3());
@@ -179,7 +186,7 @@ impl Truth {
         all
     }
 
-    fn albedo(&mut self, model: &StudentT, sigma: f64, row: &Row) -> [f64; 5] {
+    fn albedo(&mut self, model: &StudentT, sigma: f64, row: &Row) -> [f64; ALBEDOS] {
         let bits = row.gamma.to_bits();
         let prepare = || AlbedoIntegrator::new(*model.shape(), TOLERANCE);
         let integrator = self.integrators.entry(bits).or_insert_with(prepare);
@@ -187,12 +194,11 @@ impl Truth {
         let cos = f64::from(row.v.z).clamp(0.0, 1.0);
         let seen = integrator.reflection(sigma, cos, weights).expect("in range");
         let [e, bias, f82] = seen.of(row.masking);
-        let averages = self.averages.entry([bits, sigma.to_bits()]).or_insert_with(|| {
-            let average = integrator.average(sigma, |_| [1.0]).expect("in range");
-            Masking::ALL.map(|masking| average.of(masking)[0])
-        });
-        let place = Masking::ALL.iter().position(|masking| *masking == row.masking);
-        [e, e - bias, bias, f82, averages[place.expect("one of both")]]
+        let average = self.averages.entry([bits, sigma.to_bits()]);
+        let average =
+            average.or_insert_with(|| integrator.average(sigma, weights).expect("in range"));
+        let [e_avg, bias_avg, f82_avg] = average.of(row.masking);
+        [e, e - bias, bias, f82, e_avg, bias_avg, f82_avg]
     }
 }
 
@@ -266,11 +272,19 @@ fn rows() -> Vec<Row> {
     let row = rows.next("u out of range", [0.4; 2], 3.0, HeightCorrelated);
     rows.push(Row { v: direction(0.5, 2.5), u: [-0.5, 1.5], ..row });
     // The ends of the shape axis, where tables meet, and the shapes with names.
-    for gamma in [1.501, 1.502, 1.51, 1.799_999, 1.8, 1.800_001, 2.0, 1e9, INFINITE] {
+    for gamma in [1.501, 1.502, 1.51, 1.799_999, 1.8, 2.0, 1e9, INFINITE] {
         for masking in BOTH {
             rows.round("shape", 0.35, gamma, masking, 0.4);
         }
     }
+    // The heavy part of the distribution, just beyond what is tabulated.
+    for (gamma, u) in [(1.501, [0.046, 0.45]), (1.51, [0.316, 0.6])] {
+        let row = rows.next("heavy part", [0.35; 2], gamma, HeightCorrelated);
+        rows.push(Row { v: direction(0.9, 5.0), u, ..row });
+    }
+    // A slope between nodes that has to be limited.
+    let row = rows.next("limited slope", [0.4; 2], 31.78, HeightCorrelated);
+    rows.push(Row { v: direction(0.948, 1.0), u: [1e-6, 0.4], ..row });
     // The ends of the roughness axis; beyond its end there are no albedos.
     for (i, sigma) in [1e-8, 1e-4, 0.01, 3.0, 10.0, 1e4].into_iter().enumerate() {
         let case = if sigma < 1.0 { "small sigma" } else { "large sigma" };
@@ -284,8 +298,10 @@ fn rows() -> Vec<Row> {
             let row = rows.next("normal near the horizon", [0.5; 2], gamma, Uncorrelated);
             rows.push(Row { v: direction(0.2, 1.0), m: direction(z, 1.3), ..row });
         }
-        let row = rows.next("normal below the horizon", [0.5; 2], gamma, Uncorrelated);
-        rows.push(Row { v: direction(0.2, 1.0), m: direction(-0.1, 1.3), ..row });
+        if gamma <= 2.0 {
+            let row = rows.next("normal below the horizon", [0.5; 2], gamma, Uncorrelated);
+            rows.push(Row { v: direction(0.2, 1.0), m: direction(-0.1, 1.3), ..row });
+        }
     }
     rows.0
 }
