@@ -202,7 +202,7 @@ class Albedo:
         def coordinates(table):
             shape, rough = (axis["mapping"] for axis in table["axes"][:2])
             t = log1p(sigma / rough["offset"]) + rough["linear"] * sigma
-            t += rough["slow"] * log(sigma / rough["first"])
+            t += rough["slow"] * (log(sigma / rough["first"]) if sigma > 0 else -inf)
             first = table["axes"][1]["nodes"][0]
             self.mirror = t < first
             return log1p(shape["scale"] / (2 * gamma - 3)), max(t, first)
@@ -212,7 +212,7 @@ class Albedo:
         average = tables.bind("albedo_average", coordinates, covers, **wanted)
         if not (directional and average):
             raise ValueError(f"no albedo for sigma {sigma} and gamma {gamma}")
-        self.nodes, self.averages = (x[1] * (not self.mirror) for x in (directional, average))
+        self.nodes, self.averages = directional[1], average[1] * (not self.mirror)
         p = self.view = directional[0]["axes"][2]["mapping"]
         self.kappa = p["scale"] + p["heavy"] / (2 * gamma - 3)
         self.floor = p["floor"] * p["slope"] * sigma / (p["floor"] + p["slope"] * sigma)
@@ -234,8 +234,10 @@ class Albedo:
     def moments(self, mu):
         """E, scale, bias and F82 at the cosine mu of a view."""
         mu = min(max(mu, 0), 1)
+        if self.mirror:
+            return limited(whole(mu, (0, 0, 0)))
         channels = self._channels(max(mu, self.floor))
-        if mu >= self.floor or channels[0] == 0:
+        if mu >= self.floor or channels[0] == 0:  # what loses nothing is a mirror, too
             return limited(whole(mu, channels))
         above, p = self._channels(4 * self.floor), 1.0
         if self.masking == "height-correlated":
