@@ -61,7 +61,7 @@ pub(crate) fn text() -> String {
         let inputs = [v.to_array(), [u1, u2, m.x], [m.y, m.z, row.light().x]].concat();
         text.push_str(&joined(inputs.into_iter().chain([row.light().y, row.light().z]).map(Some)));
         let exact = truth.of(&row).map(|x| x.map(Digits));
-        write!(text, ",{},{}\n", joined(exact), joined(read(&tables, &row))).expect("memory");
+        writeln!(text, ",{},{}", joined(exact), joined(read(&tables, &row))).expect("memory");
     }
     text
 }
