@@ -13,8 +13,10 @@ use std::process::ExitCode;
 use glam::{DVec3, Vec3};
 use microfacet_common::Masking::{self, HeightCorrelated, Uncorrelated};
 use microfacet_common::schlick::{f82_weight, schlick_weight};
+use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::{Albedo, AlbedoIntegrator, StudentT};
-use microfacet_sampler::{Moments, Tables};
+use microfacet_sampler::MicrofacetDistribution as _;
+use microfacet_sampler::{MicrofacetDistribution, Moments, Tables};
 
 const USAGE: &str = "usage: cargo run --release --example reference -- docs/reference.csv";
 
@@ -165,9 +167,9 @@ impl Truth {
     /// The exact results of a row.
     fn of(&mut self, row: &Row) -> [Option<f64>; COUNT] {
         let [sx, sy] = row.sigma.map(f64::from);
-        let model = StudentT::anisotropic(sx, sy, row.gamma).expect("a Student-t");
+        let model = StudentT::new([sx, sy], row.gamma).expect("a Student-t");
         let (v, m, l) = (row.v.as_dvec3(), row.m.as_dvec3(), row.light().as_dvec3());
-        let n = model.visible_normal(v, row.u.map(f64::from));
+        let n = model.sample_visible_normal(v, row.u.map(f64::from));
         let seen = DVec3::new(v.x, v.y, v.z.max(0.0));
         let directional = [
             model.g1(v),

@@ -13,7 +13,7 @@ import numpy as np
 from microfacet_reader import Albedo, StudentT, Tables
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-SETS = [ROOT / "tables/default.safetensors", ROOT / "sampler/data/default.safetensors"]
+SET = ROOT / "sampler/data/default.safetensors"
 
 # The run-time crate works in single precision, which rounds by up to 6e-8 of a number, and the
 # reader in double. A lookup adds up ten to thirty such roundings. Numbers of any size are compared
@@ -59,8 +59,8 @@ def results(row, tables):
     return {name: float(value) for name, value in got.items()}
 
 
-def main(tables=None, reference=ROOT / "docs/reference.csv"):
-    tables = Tables(tables or next((path for path in SETS if path.exists()), SETS[0]))
+def main(tables=SET, reference=ROOT / "docs/reference.csv"):
+    tables = Tables(tables)
     with open(reference, newline="") as file:
         rows = list(csv.DictReader(file))
     got = [results(row, tables) for row in rows]

@@ -35,7 +35,7 @@ class Tables:
                 values = np.array(table["offset"]) + np.array(table["scale"]) * values
             table["values"] = values
 
-    def bind(self, kind, coordinates, covers=lambda table: True, **wanted):
+    def find(self, kind, coordinates, covers=lambda table: True, **wanted):
         """The first table that fits, its first axes collapsed at what `coordinates` says of it."""
         wanted |= {"kind": kind, "lobe": "family"}
         for table in self.document["tables"]:
@@ -108,7 +108,7 @@ class StudentT:
     def __init__(self, tables, sigma, gamma):
         self.sigma, self.gamma, self.s = np.broadcast_to(sigma, 2), gamma, 1 / (gamma - 1)
         kinds = ["shadowing", "visible_slope", "visible_slope_peeled", "visible_slope_conditional"]
-        g1, whole, peeled, across = (tables.bind(kind, lambda table: [self.s]) for kind in kinds)
+        g1, whole, peeled, across = (tables.find(kind, lambda table: [self.s]) for kind in kinds)
         if not (g1 and (whole or peeled) and across):
             raise ValueError(f"no tables for gamma {gamma}")
         view, self.g = g1[0]["axes"][1]["mapping"], g1[1]
@@ -208,8 +208,8 @@ class Albedo:
             return log1p(shape["scale"] / (2 * gamma - 3)), max(t, first)
 
         wanted = {"reflectance": "moments", "masking": masking}
-        directional = tables.bind("albedo", coordinates, covers, **wanted)
-        average = tables.bind("albedo_average", coordinates, covers, **wanted)
+        directional = tables.find("albedo", coordinates, covers, **wanted)
+        average = tables.find("albedo_average", coordinates, covers, **wanted)
         if not (directional and average):
             raise ValueError(f"no albedo for sigma {sigma} and gamma {gamma}")
         self.nodes, self.averages = directional[1], average[1] * (not self.mirror)

@@ -254,6 +254,7 @@ fn directions_and_numbers_out_of_their_domain_are_answered() {
                     [0.0, 0.5],
                     [1.0, 1.0],
                     [0.3, f32::NAN],
+                    [f32::NAN, 0.3],
                     [f32::NEG_INFINITY, f32::INFINITY],
                     [-3.0, 7.0],
                 ] {

@@ -157,3 +157,14 @@ fn refuses_what_it_cannot_bind() {
     );
     assert!(tables.material("glass").unwrap_err().to_string().contains("no named materials"));
 }
+
+/// Slopes whose square overflows: Beckmann's D is 0 there, and not 0·∞.
+#[test]
+fn beckmann_is_zero_on_the_horizon() {
+    let tables = Tables::embedded();
+    for (sigma, z) in [(0.01, 1e-18), (0.4, 1e-19), (1e-8, 1e-12), (0.3, 1e-30), (0.3, 1e-45)] {
+        let lobe = tables.student_t(sigma, f64::INFINITY).unwrap();
+        let (m, v) = (Vec3::new(1.0, 0.0, z), Vec3::new(0.8, 0.0, 0.6));
+        assert_eq!((lobe.d(m), lobe.visible_normal_pdf(v, m)), (0.0, 0.0), "{sigma} {z}");
+    }
+}

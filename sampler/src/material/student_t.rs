@@ -168,6 +168,9 @@ impl StudentT {
             -(1.0 + s) * ratio * (1.0 - y * (0.5 - y * (1.0 / 3.0))) - 2.0 * libm::logf(z2)
         } else if s * ratio < STEEP {
             -(1.0 + s) / s * libm::log1pf(s * ratio) - 2.0 * libm::logf(z2)
+        } else if s == 0.0 {
+            // r²/z² overflows: exp(−r²/z²) = 0.
+            return 0.0;
         } else {
             // cos^(2γ−4) (z² + s r²)^(−γ): towards the horizon both logarithms grow, and for small γ they cancel.
             let (z, s, r2) = (f64::from(m.z), f64::from(s), f64::from(r2));
