@@ -15,7 +15,6 @@ use microfacet_common::Masking::{self, HeightCorrelated, Uncorrelated};
 use microfacet_common::schlick::{f82_weight, schlick_weight};
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::{Albedo, AlbedoIntegrator, StudentT};
-use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{MicrofacetDistribution, Moments, Tables};
 
 const USAGE: &str = "usage: cargo run --release --example reference -- docs/reference.csv";

@@ -75,7 +75,7 @@ impl StudentT {
     fn sample_peeled(&self, view: &Stretched, u: f32) -> Slope {
         let heavy = self.heavy_share(view);
         // `max` takes NaN to 0, which `clamp` alone would keep.
-        let u = u.max(0.0).min(1.0);
+        let u = u.max(0.0).clamp(0.0, 1.0);
         let rest = 1.0 - heavy;
         // Straight from above nothing is heavy, and u = 1 still belongs to the table.
         if u <= rest {
