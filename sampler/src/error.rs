@@ -42,7 +42,7 @@ pub enum MaterialError {
     },
     /// A table of a material's own distribution is missing from the set.
     NoTable(String),
-    /// A dielectric whose albedo no table of the set holds: its index, σ and γ.
+    /// No table of the set holds the albedo of this dielectric: its index, σ and γ.
     Dielectric([f64; 3]),
     /// A matrix, or a roughness and angles, of no ellipsoid.
     Skew(SkewError),

@@ -45,7 +45,7 @@ impl Tables {
     /// Reads a set from the bytes of a safetensors file written by `microfacet-bake`.
     ///
     /// # Errors
-    /// [`LoadError::Invalid`] for bytes that are damaged, truncated or something else,
+    /// [`LoadError::Invalid`] for bytes that are damaged, truncated or no table set,
     /// [`LoadError::Unsupported`] for another version of the format. Every part is checked, the
     /// checksum included; no input makes it panic or allocate more than a few times its size.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, LoadError> {

@@ -68,7 +68,7 @@ fn densities_are_the_models() {
                 let exact = truth.d(m.as_dvec3());
                 let d = f64::from(bound.d(m));
                 if exact > 1e35 {
-                    // Next to the horizon at γ < 2: the order of magnitude is all that f32 holds.
+                    // Next to the horizon at γ < 2, f32 holds the order of magnitude only.
                     assert!(d > 1e34, "{truth:?} {m}: {d} {exact}");
                     continue;
                 }
@@ -81,7 +81,7 @@ fn densities_are_the_models() {
                 );
                 let exact = truth.visible_normal_pdf(v.as_dvec3(), m.as_dvec3());
                 let pdf = f64::from(bound.visible_normal_pdf(v, m));
-                // v·m cancels where m is nearly turned away.
+                // v·m cancels where m almost faces away.
                 let facing = v.as_dvec3().dot(m.as_dvec3());
                 // The certificate limits the absolute error of G1; the density divides by the area,
                 // 1/G1.

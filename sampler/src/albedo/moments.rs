@@ -21,7 +21,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// E with F = 1: scale + bias.
+    /// The directional albedo E with F = 1: scale + bias.
     pub fn total(&self) -> f32 {
         self.scale + self.bias
     }

@@ -1,4 +1,4 @@
-//! The γ axis of a table collapsed at one shape, which leaves the slice that lookups read.
+//! A table's γ axis collapsed at one shape, which leaves the slice that lookups read.
 
 use alloc::format;
 use alloc::string::String;
@@ -50,15 +50,15 @@ pub(crate) struct Slices {
     /// G1/q over the number of cells, by cell of the view coordinate, so that the coordinate in
     /// cells needs no scaling of its own.
     pub(crate) shadowing: Vec<Cell>,
-    /// Cells of that axis.
+    /// Cells of the view axis of G1.
     pub(crate) shadowing_cells: f32,
-    /// The view coordinate q there, and its κ.
+    /// The view coordinate q of G1, and its κ.
     pub(crate) shadowing_view: Rational,
     pub(crate) kappa: f32,
     /// In-plane slopes: rows by view, each of `2 (cells + 1)` nodes with the half for u ≤ ½ first;
     /// then a node that is read with weight 0.
     pub(crate) slope: Vec<Node>,
-    /// Cells of the view axis, and its coordinate.
+    /// Cells of the view axis of slopes, and its coordinate.
     pub(crate) rows: usize,
     pub(crate) view: HalfTangent,
     /// Cells of one half of the u₁ axis.
