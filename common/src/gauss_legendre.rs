@@ -1,8 +1,10 @@
-//! Gauss–Legendre rules on [0, 1], made where they are needed, at compile time too.
+//! Gauss–Legendre rules on [0, 1], computed where they are needed, at compile time too.
 
 use core::f64::consts::PI;
 
-/// The rule of N points on [0, 1], as (node, weight), ascending; exact for polynomials up to degree 2N − 1.
+/// The Gauss–Legendre rule of N points on [0, 1], as (node, weight) with ascending nodes.
+///
+/// It integrates polynomials up to degree 2N − 1 without error.
 ///
 /// ```
 /// const RULE: [(f64, f64); 4] = microfacet_common::gauss_legendre();
@@ -15,13 +17,13 @@ pub const fn gauss_legendre<const N: usize>() -> [(f64, f64); N] {
     rule
 }
 
-/// The same for a number of points, one or more, known at run time: all of `rule` is filled.
+/// Fills `rule` with the rule of its length, one or more: for a number of points known at run time.
 pub const fn fill_gauss_legendre(rule: &mut [(f64, f64)]) {
     let (n, order) = (rule.len(), rule.len() as f64);
     let mut i = 0;
     while i < n {
-        // A root of the Legendre polynomial Pₙ by Newton's method. Six steps: Tricomi's estimate has four digits, and each
-        // step doubles them.
+        // A root of the Legendre polynomial Pₙ by Newton's method. Six steps: Tricomi's estimate
+        // has four digits, and each step doubles them.
         let mut x = -cos(PI * (i as f64 + 0.75) / (order + 0.5));
         let mut slope = 1.0;
         let mut step = 0;
@@ -42,7 +44,8 @@ pub const fn fill_gauss_legendre(rule: &mut [(f64, f64)]) {
     }
 }
 
-/// cos x for x ∈ [0, π], to a few roundings: the library's is not `const`. sin(π/2 − x) by its Taylor series.
+/// cos x for x ∈ [0, π], to a few roundings, as sin(π/2 − x) by its Taylor series: the library's is
+/// not `const`.
 const fn cos(x: f64) -> f64 {
     let y = 0.5 * PI - x;
     let (mut term, mut sum, mut k) = (y, y, 1.0);
@@ -80,7 +83,7 @@ mod tests {
             }
             assert!(rule.windows(2).all(|pair| pair[0].0 < pair[1].0));
         }
-        // One degree more is not: the check can fail.
+        // One degree more has an error: the check can fail.
         let sum: f64 = gauss_legendre::<2>().iter().map(|&(x, w)| w * power(x, 4)).sum();
         assert!((sum * 5.0 - 1.0).abs() > 1e-3);
     }

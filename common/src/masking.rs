@@ -5,7 +5,8 @@ use core::str::FromStr;
 
 use crate::Real;
 
-/// The form of G2, the share of the microsurface that both view and light reach.
+/// The form of masking and shadowing, G2: the share of the microsurface that both view and light
+/// reach.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -13,9 +14,12 @@ use crate::Real;
     serde(rename_all = "kebab-case")
 )]
 pub enum Masking {
-    /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12).
+    /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12,
+    /// <https://doi.org/10.1111/cgf.13137>).
     Uncorrelated,
-    /// G2 = 1/(1 + Λ(v) + Λ(l)), height-correlated (Heitz 2014, eq. 99): what renderers use, and a material that states none.
+    /// G2 = 1/(1 + Λ(v) + Λ(l)), height-correlated (Heitz 2014, eq. 99,
+    /// <https://jcgt.org/published/0003/02/03/>): the form of renderers, and of a material that
+    /// states none.
     #[default]
     HeightCorrelated,
 }
@@ -32,7 +36,7 @@ impl Masking {
         }
     }
 
-    /// G2 from the G1 ∈ [0, 1] of view and light; 0 where either is.
+    /// G2 from the G1 ∈ [0, 1] of view and light; 0 where either is 0.
     #[inline(always)]
     pub fn g2<T: Real>(self, v: T, l: T) -> T {
         let both = v * l;
@@ -47,8 +51,10 @@ impl Masking {
         }
     }
 
-    /// G2/G1(v) from the G1 ∈ [0, 1] of view and light, finite at grazing views, where both vanish: what a light sampled by visible
-    /// normals is worth. 0 where G1(l) is.
+    /// G2/G1(v) from the G1 ∈ [0, 1] of view and light: the weight of a light sampled by visible
+    /// normals.
+    ///
+    /// It is finite at grazing views, where both vanish, and 0 where G1(l) is 0.
     #[inline(always)]
     pub fn g2_over_g1<T: Real>(self, v: T, l: T) -> T {
         match self {
@@ -61,7 +67,7 @@ impl Masking {
     }
 }
 
-/// A text that names no form of masking.
+/// The error for a text that names no form of masking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnknownMasking;
 

@@ -1,15 +1,16 @@
-//! The two ways to write the shape: γ ∈ (3/2, ∞], as the Student-t paper does, and s = 1/(γ−1) ∈ [0, 2), in which nothing is
+//! The two ways to write the shape: γ ∈ (3/2, ∞], as the Student-t paper does (Ribardière et al.
+//! 2017, <https://doi.org/10.1111/cgf.13137>), and s = 1/(γ−1) ∈ [0, 2), in which nothing is
 //! infinite (Beckmann is s = 0, GGX s = 1) and everything tabulated is smooth.
 
-/// Where s ends: as γ → 3/2 the projected area diverges.
+/// The end of s: as γ → 3/2 the projected area diverges.
 pub const S_END: f64 = 2.0;
 
-/// s = 1/(γ−1); 0 for γ = ∞.
+/// The shape s = 1/(γ−1) of γ; 0 for γ = ∞.
 pub fn s_of_gamma(gamma: f64) -> f64 {
     1.0 / (gamma - 1.0)
 }
 
-/// γ = 1 + 1/s; ∞ for s = 0.
+/// The shape γ = 1 + 1/s of s; ∞ for s = 0.
 pub fn gamma_of_s(s: f64) -> f64 {
     1.0 + 1.0 / s
 }

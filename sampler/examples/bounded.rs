@@ -1,7 +1,8 @@
-//! What bounding visible normals gains an estimator of reflection: `cargo run --release -p microfacet-sampler --example bounded`.
+//! What bounding visible normals gains an estimator of reflection:
+//! `cargo run --release -p microfacet-sampler --example bounded`.
 //!
-//! The variance of a white furnace's weight, G2/G1 where the light is above the horizon and 0 where not, of bounded normals
-//! over that of all visible ones.
+//! Prints the variance of a white furnace's weight for bounded normals over that for all visible
+//! ones. The weight is G2/G1 where the light is above the horizon and 0 elsewhere.
 
 use glam::Vec3;
 use microfacet_sampler::{Masking, MicrofacetDistribution, StudentT, Tables};

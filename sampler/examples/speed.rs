@@ -1,7 +1,8 @@
-//! What the tables cost next to the closed forms of GGX: `cargo run --release -p microfacet-sampler --example speed`.
+//! What the tables cost next to the closed forms of GGX:
+//! `cargo run --release -p microfacet-sampler --example speed`.
 //!
-//! All contestants take turns in one thread over the same random views and numbers, which stay in the cache. A row is the
-//! median of many turns; ratios of a run mean more than nanoseconds.
+//! All contestants take turns in one thread over the same random views and numbers, which stay in
+//! the cache. A row is the median of many turns; ratios within a run mean more than nanoseconds.
 
 use std::f32::consts::TAU;
 use std::hint::black_box;
@@ -12,7 +13,7 @@ use microfacet_sampler::{MicrofacetDistribution, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-/// Directions, and how often every contestant takes them all.
+/// The number of directions, and how often every contestant takes them all.
 const COUNT: usize = 4096;
 const TURNS: usize = 400;
 
@@ -22,7 +23,8 @@ struct Ggx {
 }
 
 impl Ggx {
-    /// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listings 1 and 3.
+    /// Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical Caps*, listings 1 and 3,
+    /// <https://doi.org/10.1111/cgf.14867>.
     #[inline(always)]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let [x, y] = self.alpha;
@@ -34,7 +36,8 @@ impl Ggx {
         Vec3::new(x * m.x, y * m.y, m.z).normalize()
     }
 
-    /// Walter et al. 2007, eq. 34, with the tangent cleared from it.
+    /// Walter et al. 2007, eq. 34, with the tangent cleared from it,
+    /// <https://doi.org/10.2312/EGWR/EGSR07/195-206>.
     #[inline(always)]
     fn g1(&self, v: Vec3) -> f32 {
         let (x, y) = (self.alpha[0] * v.x, self.alpha[1] * v.y);
@@ -87,15 +90,15 @@ fn main() {
     );
 }
 
-/// Fills `out` one call at a time: an index that the compiler does not see keeps it from joining calls into vectors, so
-/// that scalar functions are compared with scalar functions.
+/// Fills `out` one call at a time: an index that the compiler does not see keeps it from joining
+/// calls into vectors, so that scalar functions are compared with scalar functions.
 fn each<T>(out: &mut [T], f: impl Fn(usize) -> T) {
     for i in 0..out.len() {
         out[black_box(i)] = f(i);
     }
 }
 
-/// Median nanoseconds a direction of each contestant, all taking turns.
+/// Median nanoseconds per direction of each contestant, all taking turns.
 fn medians<const N: usize>(mut contestants: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut times = [const { Vec::new() }; N];
     for _ in 0..TURNS {

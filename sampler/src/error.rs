@@ -1,4 +1,4 @@
-//! What can be wrong with a table file, or with a request to the tables it holds.
+//! Errors of a table file, and of requests to the tables it holds.
 
 use alloc::string::String;
 use core::fmt;
@@ -10,8 +10,8 @@ use microfacet_common::SkewError;
 pub enum LoadError {
     /// The bytes contradict the format: truncated, damaged, or describing something impossible.
     Invalid(String),
-    /// A file that may be valid but that this version cannot read: another version of the format, or nodes placed as no reader
-    /// here expects them.
+    /// A file that may be valid but that this version cannot read: another version of the format,
+    /// or nodes at places that no reader here expects.
     Unsupported(String),
 }
 
@@ -26,7 +26,7 @@ impl fmt::Display for LoadError {
 
 impl core::error::Error for LoadError {}
 
-/// Why the tables at hand cannot give what was asked for: a lobe, or an albedo.
+/// Why a set cannot give what was asked for: a lobe or an albedo.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialError {
     /// `sigma` outside [1e-8, 1e6] or NaN.
@@ -42,9 +42,9 @@ pub enum MaterialError {
     },
     /// A table of a material's own distribution is missing from the set.
     NoTable(String),
-    /// A dielectric whose albedo no table of the set holds: its index, σ and γ.
+    /// No table of the set holds the albedo of this dielectric: its index, σ and γ.
     Dielectric([f64; 3]),
-    /// A matrix, or roughness and angles, that make no ellipsoid.
+    /// A matrix, or a roughness and angles, of no ellipsoid.
     Skew(SkewError),
     /// γ is legal but no table of `kind` covers it; `covered` lists what the set holds.
     NotCovered {
@@ -62,7 +62,8 @@ pub enum MaterialError {
         /// The largest that is covered.
         max: f64,
     },
-    /// No albedo table of this set covers the pair of σ and γ; `covered` lists what they do.
+    /// No albedo table of this set covers the pair of σ and γ; `covered` lists the pairs that are
+    /// covered.
     AlbedoNotCovered {
         /// The σ asked for.
         sigma: f64,
@@ -150,7 +151,7 @@ impl From<SkewError> for MaterialError {
     }
 }
 
-/// Slices of a batch that are not of one length.
+/// The slices of a batch differ in length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BatchError {
     /// Names of two parameters that differ.

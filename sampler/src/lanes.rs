@@ -1,4 +1,4 @@
-//! Moves between the lanes of four numbers.
+//! Moves numbers between the lanes of a SIMD vector.
 
 use wide::f32x4;
 
@@ -9,14 +9,14 @@ pub(crate) fn sum(a: f32x4) -> f32x4 {
     a + swap_pairs(a)
 }
 
-/// The first two lanes of either.
+/// The first two lanes of each.
 #[inline(always)]
 pub(crate) fn pairs(a: f32x4, b: f32x4) -> f32x4 {
     let ([a0, a1, ..], [b0, b1, ..]) = (a.to_array(), b.to_array());
     f32x4::new([a0, a1, b0, b1])
 }
 
-/// The first lane of either, twice.
+/// The first lane of each, twice.
 #[inline(always)]
 pub(crate) fn pairs_of_firsts(a: f32x4, b: f32x4) -> f32x4 {
     let ([a, ..], [b, ..]) = (a.to_array(), b.to_array());
@@ -29,7 +29,7 @@ fn swap_halves(a: f32x4) -> f32x4 {
     f32x4::new([c, d, a, b])
 }
 
-/// Either pair of neighbours the other way round.
+/// Swaps the lanes of either pair of neighbours.
 #[inline(always)]
 pub(crate) fn swap_pairs(a: f32x4) -> f32x4 {
     let [a, b, c, d] = a.to_array();

@@ -1,7 +1,8 @@
-//! Elementary functions: the hardware's square root where `std` is there, `libm` otherwise, and `libm` always for the
-//! transcendental ones, so that a sampled normal is the same bits on every system.
+//! Elementary functions: the square root of `std` where it is available, otherwise of `libm`;
+//! transcendental ones always of `libm`, so that a sampled normal has the same bits on every
+//! system.
 
-/// Square root, exactly rounded either way.
+/// Square root, correctly rounded either way.
 #[inline(always)]
 pub(crate) fn sqrt(x: f32) -> f32 {
     #[cfg(feature = "std")]

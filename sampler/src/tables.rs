@@ -1,4 +1,4 @@
-//! A set of tables, and what can be asked of it.
+//! A set of tables, and the lobes made from it.
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -37,8 +37,8 @@ pub struct Tables {
 impl Tables {
     /// The default set, compiled in: all γ ∈ [1.501, ∞].
     ///
-    /// Decodes about 1 MB in well under a millisecond; keep the result. The checksum is skipped, since the bytes are part of
-    /// the program.
+    /// The call decodes about 1 MB in well under a millisecond; keep the result. The checksum is
+    /// skipped, since the bytes are part of the program.
     #[cfg(feature = "embedded")]
     pub fn embedded() -> Self {
         let (provenance, tables) =
@@ -49,17 +49,18 @@ impl Tables {
     /// Reads a set from the bytes of a safetensors file written by `microfacet-bake`.
     ///
     /// # Errors
-    /// [`LoadError::Invalid`] for bytes that are damaged, truncated or something else, [`LoadError::Unsupported`] for another version of the
-    /// format. Every part is checked, the checksum included; no input makes it panic or allocate more than a few times its size.
+    /// [`LoadError::Invalid`] for bytes that are damaged, truncated or no table set,
+    /// [`LoadError::Unsupported`] for another version of the format. Every part is checked, the
+    /// checksum included; no input makes it panic or allocate more than a few times its size.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, LoadError> {
         let (provenance, tables) = decode(bytes, true)?;
         Ok(Self { provenance, tables })
     }
 
-    /// A set made of tables at hand, such as those a bake has just filled.
+    /// Makes a set from tables, such as those that a bake has just filled.
     ///
     /// # Errors
-    /// [`LoadError::Invalid`] if one of them is not sound.
+    /// [`LoadError::Invalid`] if one of them is not valid.
     pub fn from_tables(provenance: Provenance, tables: Vec<Table>) -> Result<Self, LoadError> {
         for table in &tables {
             table.validate()?;
@@ -82,7 +83,7 @@ impl Tables {
         &self.provenance
     }
 
-    /// Whether [`lobe`](Self::lobe) serves γ; γ = 2 it always does.
+    /// Whether [`lobe`](Self::lobe) serves the shape γ; it always serves γ = 2.
     pub fn covers(&self, gamma: f64) -> bool {
         let s = s_of_gamma(gamma);
         let has = |kind| self.tables.iter().any(|table| table.kind == kind && covers(table, s));
@@ -92,17 +93,17 @@ impl Tables {
         gamma == 2.0 || gamma > 1.5 && tabulated
     }
 
-    /// The Student-t lobe of roughness σ ∈ [1e-8, 1e6] (one number, or a pair for x and y) and shape
-    /// γ ∈ (3/2, ∞], read from the tables.
+    /// The Student-t lobe of roughness σ ∈ [1e-8, 1e6] (one number, or a pair for x and y) and
+    /// shape γ ∈ (3/2, ∞], read from the tables.
     ///
-    /// γ = 2 is GGX with α = σ, γ = `f64::INFINITY` is Beckmann. γ is taken in double precision,
-    /// since near 3/2 single precision is too coarse for it. The γ axis is collapsed here, which
-    /// takes some microseconds and about 20 KiB; [`StudentT::with_roughness`] is cheaper for a
-    /// material that differs in σ only.
+    /// γ = 2 is GGX with α = σ, γ = `f64::INFINITY` is Beckmann. γ is taken in double precision
+    /// because single precision is too coarse near 3/2. The γ axis is collapsed here, which takes
+    /// some microseconds and about 20 KiB; [`StudentT::with_roughness`] is cheaper for a lobe that
+    /// differs in σ only.
     ///
     /// # Errors
-    /// [`MaterialError`] for a σ or γ outside the family, or a γ that this set does not cover; a set
-    /// of a scene of GGX alone has no tables, see [`lobe`](Self::lobe).
+    /// [`MaterialError`] for a σ or γ outside the family, or a γ that this set does not cover; the
+    /// set of a scene of GGX alone has no tables, see [`lobe`](Self::lobe).
     pub fn student_t(
         &self,
         sigma: impl Into<Roughness>,
@@ -111,7 +112,8 @@ impl Tables {
         StudentT::from_tables(&self.tables, sigma.into(), gamma)
     }
 
-    /// The same, or [`Ggx`] in closed form for γ = 2 where no table covers it.
+    /// The lobe of [`student_t`](Self::student_t), or [`Ggx`] in closed form for γ = 2 where no
+    /// table covers it.
     ///
     /// # Errors
     /// As [`student_t`](Self::student_t).
@@ -123,7 +125,8 @@ impl Tables {
         }
     }
 
-    /// An ellipsoid: a lobe of shape γ ∈ (3/2, ∞] seen through a matrix, tilted and turned.
+    /// An ellipsoid: a Student-t lobe of shape γ ∈ (3/2, ∞] seen through a matrix, tilted and
+    /// turned.
     ///
     /// It reads the same tables as [`student_t`](Self::student_t), at γ = 2 too.
     ///
@@ -133,10 +136,10 @@ impl Tables {
         Ellipsoid::new(self.student_t(1.0, gamma)?, skew)
     }
 
-    /// The lobe of a material of the set's recipe, by its name, whatever its distribution is.
+    /// The lobe of a named material of the set's recipe, whatever its distribution.
     ///
-    /// Where the recipe gives ranges, it is the middle of σ and of s = 1/(γ−1); use
-    /// [`lobe`](Self::lobe) for others.
+    /// A range in the recipe is taken at its middle, of σ and of s = 1/(γ−1); use
+    /// [`lobe`](Self::lobe) for other values.
     ///
     /// # Errors
     /// [`MaterialError::NoSuchMaterial`] naming those that exist, or what [`lobe`](Self::lobe) and
@@ -156,7 +159,8 @@ impl Tables {
         }
     }
 
-    /// This set with the default set behind it: shapes that its own tables do not cover are read from those compiled in.
+    /// This set with the default set behind it: shapes that its own tables do not cover are read
+    /// from the default set.
     ///
     /// For lookups; names of tables may then repeat, which a file does not allow.
     #[cfg(feature = "embedded")]
@@ -168,7 +172,7 @@ impl Tables {
     pub(crate) fn entry(&self, name: &str) -> Result<&MaterialEntry, MaterialError> {
         let materials = &self.provenance.materials;
         materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
-            // A scene may have thousands.
+            // A scene may have thousands of materials.
             const SHOWN: usize = 12;
             let mut known: Vec<String> = materials
                 .iter()

@@ -60,9 +60,11 @@ fn moments_make_the_albedo_of_every_tinted_metal() {
     });
 }
 
-/// Σ of f(l)/pdf(l) over a grid of numbers, divided by their count: ∫ f over the hemisphere, if the density is that of the lights.
+/// Mean of f(l)/pdf(l) over a grid of random numbers: ∫ f over the hemisphere, if the density is
+/// that of the lights.
 fn by_sampling(albedo: &Albedo, f: impl Fn(Vec3) -> f32) -> f64 {
-    // Heights need many, towards the horizon; of azimuths a few integrate trigonometric polynomials exactly.
+    // Heights need many steps towards the horizon; a few azimuths integrate trigonometric
+    // polynomials without error.
     const STEPS: [usize; 2] = [1 << 14, 8];
     let step = |i: usize, n: usize| (i as f32 + 0.5) / n as f32;
     let numbers = (0..STEPS[0])
@@ -78,7 +80,8 @@ fn by_sampling(albedo: &Albedo, f: impl Fn(Vec3) -> f32) -> f64 {
 fn lights_of_the_compensation_have_its_density() {
     let albedo = Tables::embedded().albedo(0.5, 2.0, Masking::HeightCorrelated).unwrap();
     let pi = std::f64::consts::PI;
-    // Integrals over the hemisphere that tell any other density: by height, by azimuth, and both.
+    // Integrals over the hemisphere that any other density would miss: by height, by azimuth, and
+    // both.
     type Integrand = fn(Vec3) -> f32;
     let sums: [(f64, Integrand); 5] = [
         (pi, |l| l.z),

@@ -1,11 +1,12 @@
-//! The functions over slices against the functions for one.
+//! The functions over slices against the functions for one direction.
 
 use glam::Vec3;
 use microfacet_sampler::{BatchError, MicrofacetDistribution, StudentT, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-/// Views of the whole hemisphere and a little below it, the axes, and what is no direction; numbers with both ends and beyond.
+/// Views of the whole hemisphere and a little below it, the axes, and vectors that are no
+/// directions; random numbers with both ends and beyond.
 fn inputs(count: usize) -> (Vec<Vec3>, Vec<[f32; 2]>) {
     let mut rng = StdRng::seed_from_u64(5);
     let odd = [

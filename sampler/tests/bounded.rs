@@ -59,7 +59,8 @@ fn bounding_changes_no_mean_and_lowers_the_variance() {
                 }
             }
             let what = format!("{:?} {} {v}: {means:?}", material.sigma(), material.gamma());
-            // A midpoint rule with a jump along a curve errs by a part of the cells that the curve crosses.
+            // The midpoint rule errs at a jump along a curve by a part of the cells that the curve
+            // crosses.
             assert!((means[0] - means[1]).abs() < 2.0 / f64::from(n), "{what}");
             let variance = |i: usize| squares[i] - means[i] * means[i];
             assert!(variance(1) <= variance(0) + 0.01, "{what} {} {}", variance(0), variance(1));
@@ -74,7 +75,8 @@ fn nothing_that_reflects_upwards_is_lost() {
     for material in materials() {
         for v in views() {
             let bounded = material.bounded(v);
-            // The bound's ends are the first and last normal of the interval: upward reflections lie between them.
+            // The ends of the interval are its first and last normal: upward reflections lie
+            // between them.
             let tilt = |m: Vec3| {
                 // In unit space, along the stretched azimuth.
                 let [sx, sy] = material.sigma();

@@ -1,13 +1,16 @@
-//! What the embedded tables draw against the analytic densities: χ² in the lobe's space and on the hemisphere.
+//! χ² of what the embedded tables draw against the analytic densities, in the lobe's space and on
+//! the hemisphere.
 //!
-//! Whoever links the crate can run these against the tables compiled in: `cargo test -p microfacet-sampler`.
+//! Users of the crate can run these against the tables compiled in:
+//! `cargo test -p microfacet-sampler`.
 
 use glam::DVec3;
 use microfacet_model as model;
 use microfacet_model::statistics::{NormalsTest, sidak, test_visible_normals};
 use microfacet_sampler::{MicrofacetDistribution, Tables};
 
-/// σx, σy, γ, θ, φ: both ends of γ, the seam at 1.8, closed-form members, views at the normal and at grazing.
+/// σx, σy, γ, θ, φ: both ends of γ, the seam at 1.8, members with closed forms, views at the normal
+/// and at grazing.
 const CASES: [[f64; 5]; 12] = [
     [0.3, 0.3, 1.501, 0.9, 0.3],
     [0.1, 0.5, 1.51, 1.5, -2.0],
@@ -23,7 +26,8 @@ const CASES: [[f64; 5]; 12] = [
     [0.4, 0.1, f64::INFINITY, 1.3, -0.7],
 ];
 const SAMPLES: usize = 200_000;
-/// Probability that a correct sampler fails this file's tests: seeds are fixed, so it was spent once.
+/// Probability that a correct sampler would fail this file's tests; with fixed seeds it was spent
+/// once.
 const LEVEL: f64 = 0.01;
 
 fn judge(case: &[f64; 5], gamma_of_truth: f64, samples: usize) -> NormalsTest {
@@ -50,7 +54,8 @@ fn tables_draw_the_analytic_distribution() {
 #[test]
 fn a_gamma_one_per_cent_off_is_rejected() {
     let level = sidak(LEVEL, 2 * CASES.len());
-    // Where a percent of γ changes the distribution by more than the samples can miss: not at γ ≥ 7, nor straight from above.
+    // Where one per cent of γ changes the distribution by more than the samples can miss: not at
+    // γ ≥ 7, nor straight from above.
     for case in CASES.iter().filter(|case| case[2] < 2.6 && case[3] > 0.5) {
         let judgement = judge(case, case[2] * 1.01, 1_500_000);
         assert!(judgement.p() < level, "{case:?} was accepted: {judgement:?}");

@@ -1,4 +1,4 @@
-//! GGX without tables: exact values, the analytic distribution, and sets that leave it to closed forms.
+//! GGX without tables: values, the analytic distribution, and sets that leave it to closed forms.
 
 use glam::{DVec3, Vec3};
 use microfacet_model as model;
@@ -27,7 +27,7 @@ fn values_are_those_of_the_model() {
             assert!((f64::from(ggx.g1(v)) - exact).abs() < 3e-7, "{sigma:?} {view:?}");
             let m = ggx.sample_visible_normal(v, [0.4, 0.8]);
             let density = truth.visible_normal_pdf(v.as_dvec3(), m.as_dvec3());
-            // Relative, and as the rounding of v·m allows.
+            // Relative error, and what the rounding of v·m allows.
             let error = (f64::from(ggx.visible_normal_pdf(v, m)) - density).abs() / density;
             assert!(error < 2e-6 + 2e-7 / f64::from(v.dot(m)), "{sigma:?} {view:?}: {error}");
             assert_eq!(ggx.table_pdf(v, m), ggx.visible_normal_pdf(v, m));
@@ -54,7 +54,7 @@ fn normals_have_the_analytic_distribution() {
         let judgement = judge(sigma, view, 2.0);
         assert!(judgement.p() > level, "{sigma:?} {view:?}: {judgement:?}");
     }
-    // The test has teeth: another shape is seen.
+    // The test can fail: it sees another shape.
     assert!(judge([0.3, 0.3], [0.8, -2.5], 2.1).p() < level);
 }
 
@@ -77,7 +77,7 @@ fn normals_are_visible_at_every_corner() {
     }
 }
 
-/// A set as a plan makes it where all is GGX: a name, and no table.
+/// A set as a plan makes it for a scene of GGX alone: a name, and no table.
 fn without_tables() -> Tables {
     let gold = MaterialEntry {
         name: "gold".into(),

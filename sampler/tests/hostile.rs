@@ -1,4 +1,5 @@
-//! Hostile bytes and hostile arguments: damaged, truncated and lying table files; directions and numbers out of their domain.
+//! Hostile bytes and arguments: damaged, truncated and lying table files; directions and numbers
+//! out of their domain.
 
 use glam::Vec3;
 use microfacet_sampler::axis::{HalfTangent, Rational};
@@ -27,7 +28,7 @@ fn table(kind: Kind, precision: Precision, mut axes: Vec<Axis>, values: &[f32]) 
     table.rounded(precision)
 }
 
-/// The smallest set that binds GGX, with each way of storing values.
+/// The smallest set that serves GGX, with each way of storing values.
 fn small_tables() -> Vec<Table> {
     let view = Mapping::Rational(Rational::BAKED);
     vec![
@@ -90,7 +91,7 @@ fn every_flipped_bit_is_refused() {
     assert!(Tables::from_bytes(&file).is_ok());
 }
 
-/// The file with `from` replaced in its header, as often as it stands there, and a checksum that fits again.
+/// The file with every `from` in its header replaced, and a checksum that fits again.
 fn forge(from: &str, to: &str) -> Vec<u8> {
     let file = small_file();
     let length = u64::from_le_bytes(file[..8].try_into().unwrap()) as usize;
@@ -164,11 +165,11 @@ fn lying_headers_are_refused_by_name() {
         let error = Tables::from_bytes(&forge(from, to)).expect_err(to).to_string();
         assert!(error.to_lowercase().contains(&part.to_lowercase()), "{to}: {error}");
     }
-    // The forgery itself is sound.
+    // The forgery itself loads.
     assert!(Tables::from_bytes(&forge("microfacet-tables", "microfacet-tables")).is_ok());
 }
 
-/// With values as many as the axes then have, so that only the mapping is wrong.
+/// There are as many values as the axes then have, so that only the mapping is wrong.
 #[test]
 fn halves_of_numbers_that_a_kind_does_not_have_are_refused() {
     for (i, other) in [(1, Mapping::OddRoot), (2, Mapping::MirroredRoot)] {
@@ -201,7 +202,8 @@ fn a_newer_version_says_so() {
 #[test]
 fn values_that_no_lookup_survives_are_refused() {
     let last = small_file().len();
-    // All tensors: each value but those of fixed point in turn not a number, infinite and negative.
+    // In all tensors, each value but those of fixed point is made NaN, infinite and negative in
+    // turn.
     let mut refused = 0;
     for at in (last - 64..last).step_by(2) {
         for bits in [f32::NAN, f32::INFINITY, -1.0].map(f32::to_le_bytes) {
@@ -231,7 +233,8 @@ fn headers_longer_than_files_and_towers_of_brackets_are_refused() {
     );
 }
 
-/// Whatever it is given, the sampler answers; and for finite views of some length with numbers in range and normals above the horizon.
+/// The sampler answers whatever it is given; for finite views of some length, with values in range
+/// and normals above the horizon.
 #[test]
 fn directions_and_numbers_out_of_their_domain_are_answered() {
     let tables = Tables::embedded();
@@ -297,6 +300,6 @@ fn roughness_and_shape_out_of_range_are_refused_by_value() {
     for gamma in [f64::NAN, 1.5, 1.0, 0.0, -3.0, f64::NEG_INFINITY] {
         assert!(tables.student_t(0.3_f32, gamma).unwrap_err().to_string().contains("(1.5, inf]"));
     }
-    // Legal, but heavier than any table.
+    // Legal, but with a heavier tail than any table.
     assert!(tables.student_t(0.3_f32, 1.5005).unwrap_err().to_string().contains("not covered"));
 }

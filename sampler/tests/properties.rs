@@ -1,4 +1,5 @@
-//! Laws that the run-time sampler obeys in single precision, for every table, view and number.
+//! Laws that the run-time sampler obeys in single precision, for every table, view and random
+//! number.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -53,7 +54,8 @@ proptest! {
 
     #[test]
     fn only_stretched_directions_matter(t in material(), theta in 0.01..1.55_f32, phi in -PI..PI) {
-        // G1 of an anisotropic material is that of the roughness along the view.
+        // G1 of an anisotropic material is G1 of an isotropic one with the roughness along the
+        // view.
         let v = at(theta, phi);
         let [x, y] = t.sigma();
         let along = (x * phi.cos()).hypot(y * phi.sin());
@@ -72,7 +74,7 @@ proptest! {
         }
         let flip = Vec3::new(1.0, -1.0, 1.0);
         let (a, b) = (t.sample_visible_normal(v, [u, across]), t.sample_visible_normal(v * flip, [u, 1.0 - across]));
-        // At normal incidence the frame is the tangent's own; the mirror keeps it.
+        // At normal incidence the azimuth is that of the tangent frame, which the mirror keeps.
         prop_assert!((a - b * flip).length() < 1e-5, "{a} {b}");
     }
 

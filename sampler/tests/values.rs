@@ -68,7 +68,7 @@ fn densities_are_the_models() {
                 let exact = truth.d(m.as_dvec3());
                 let d = f64::from(bound.d(m));
                 if exact > 1e35 {
-                    // Next to the horizon at γ < 2: the order of magnitude is all that f32 holds.
+                    // Next to the horizon at γ < 2, f32 holds the order of magnitude only.
                     assert!(d > 1e34, "{truth:?} {m}: {d} {exact}");
                     continue;
                 }
@@ -81,9 +81,10 @@ fn densities_are_the_models() {
                 );
                 let exact = truth.visible_normal_pdf(v.as_dvec3(), m.as_dvec3());
                 let pdf = f64::from(bound.visible_normal_pdf(v, m));
-                // v·m cancels where m is nearly turned away.
+                // v·m cancels where m almost faces away.
                 let facing = v.as_dvec3().dot(m.as_dvec3());
-                // The certificate bounds the absolute error of G1; the density divides by the area, 1/G1.
+                // The certificate limits the absolute error of G1; the density divides by the area,
+                // 1/G1.
                 let g1 = truth.g1(v.as_dvec3());
                 let tolerance = 4.2e-6 / g1 + 2e-6 * scale + 3e-7 / facing.max(1e-9);
                 assert!(
@@ -123,7 +124,8 @@ fn sampled_normals_are_unit_upward_and_facing_and_rise_with_u() {
                     assert!((m.length() - 1.0).abs() < 4.0 * f32::EPSILON && m.z > 0.0, "{what}");
                     assert!(v.dot(m) > -1.2e-7, "{what} faces away by {:e}", v.dot(m));
                 }
-                // In the plane of incidence (u₂ = ½) of an isotropic material the tilt towards the viewer rises.
+                // In the plane of incidence (u₂ = ½) of an isotropic material, the tilt towards the
+                // viewer rises.
                 let m = bound.sample_visible_normal(v, [u, 0.5]);
                 let [x, y] = bound.sigma();
                 if x == y && bound.gamma() >= 1.8 && azimuth.length() > 0.0 {

@@ -1,4 +1,5 @@
-//! The albedos of one material as functions of the view: what is left of a table when the axes of the material are collapsed.
+//! The albedos of one material as functions of the view: a table with the axes of the material
+//! collapsed.
 
 use alloc::format;
 use alloc::string::String;
@@ -13,24 +14,25 @@ use crate::axis::{Mapping, PreparedAzimuth, PreparedCritical, PreparedView, View
 use crate::error::MaterialError;
 use crate::format::{Covered, Kind, Reflectance, Table};
 
-/// Most channels that a table of albedos has.
+/// The largest number of channels of an albedo table.
 const CHANNELS: usize = 4;
 
-/// The material that the axes before those of the view are collapsed at; a table without such an axis ignores it.
+/// Where the axes before that of the view are collapsed; a table without one of these axes ignores
+/// its quantity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) sigma: f64,
     pub(super) gamma: f64,
-    /// Index ≥ 1 of the dense side over the thin one.
+    /// Index of refraction ≥ 1 of the dense side over the thin one.
     pub(super) eta: f64,
 }
 
 /// Weights along the axes of a material.
 pub(super) struct Collapsed {
     pub(super) weights: Vec<Weights>,
-    /// The roughness they are at, no less than the first node's.
+    /// The roughness of the weights, no less than the first node's.
     sigma: f64,
-    /// Whether the material is smoother than that.
+    /// Whether the material is smoother than the first node.
     pub(super) is_mirror: bool,
 }
 
@@ -59,7 +61,7 @@ impl Collapsed {
     }
 }
 
-/// Two numbers that have come through a coordinate and back are the same within this.
+/// Two numbers are the same within this after a coordinate and its inverse.
 const SAME: f64 = 1e-9;
 
 fn covers(Covered { s, sigma }: Covered, place: &Place) -> bool {
@@ -73,11 +75,14 @@ fn covers(Covered { s, sigma }: Covered, place: &Place) -> bool {
 pub struct ViewCurve<const N: usize>(Curve);
 
 impl<const N: usize> ViewCurve<N> {
-    /// Of an albedo table at hand, such as one that a bake has just filled, that is under an exact reflectance; `eta` ≥ 1 is the index of a
-    /// dielectric's dense side, and lobes that are one material ignore σ and γ. Where the table has fewer channels the last are 0.
+    /// Reads an albedo table under an exact reflectance, such as one that a bake has just filled.
+    ///
+    /// `eta` ≥ 1 is the index of a dielectric's dense side; tables of one material ignore σ and γ.
+    /// Where the table has fewer than N channels, the last albedos are 0.
     ///
     /// # Errors
-    /// [`MaterialError::NoTable`] if the table has more channels, or moments, or does not cover the material.
+    /// [`MaterialError::NoTable`] if the table has more channels, holds moments, or does not cover
+    /// the material.
     pub fn from_table(
         table: &Table,
         sigma: f64,
@@ -96,8 +101,11 @@ impl<const N: usize> ViewCurve<N> {
         Curve::new(table, place).map(Self)
     }
 
-    /// The albedos at a view, each in [0, 1]; `v` is a unit vector, z up. A view at or below the horizon is taken as the grazing one of its
-    /// azimuth, which only lobes that are not round depend on, NaN likewise. Beyond the table's last view, μ₀ of
+    /// The albedos at a view, each in [0, 1].
+    ///
+    /// `v` is a unit vector in the tangent frame, n = +z. A view at or below the horizon is taken
+    /// as the grazing one of its azimuth, NaN likewise; only lobes that are not round depend on the
+    /// azimuth. Closer to grazing than the table's first view, μ₀ of
     /// [`ViewBlend`](crate::axis::ViewBlend), albedos are held constant.
     pub fn eval(&self, v: Vec3) -> [f32; N] {
         let cos = within(v.z);
@@ -110,13 +118,13 @@ impl<const N: usize> ViewCurve<N> {
         core::array::from_fn(|i| all[i].clamp(0.0, 1.0))
     }
 
-    /// Averages over the hemisphere of views, weighted by the cosine: 1/π ∫∫ E μ dμ dφ.
+    /// Cosine-weighted averages over the hemisphere of views: 1/π ∫∫ E μ dμ dφ.
     pub fn average(&self) -> [f32; N] {
         self.0.average(|rows, view, cos| self.at(rows, view, cos).map(f64::from)).map(|x| x as f32)
     }
 }
 
-/// Of a table that was to be bound and is of something else.
+/// The error for a table that does not hold what was asked for.
 pub(super) fn missing(table: &Table, place: &Place) -> MaterialError {
     let Place { sigma, gamma, .. } = place;
     MaterialError::NoTable(format!("{} for sigma {sigma} and gamma {gamma}", table.name))
@@ -125,9 +133,9 @@ pub(super) fn missing(table: &Table, place: &Place) -> MaterialError {
 /// All channels of a table, at one material.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
-    /// What the nodes hold, azimuths slowest; channels that the table has not are 0.
+    /// The values at the nodes, azimuths slowest; channels that the table lacks are 0.
     nodes: Vec<[f32; CHANNELS]>,
-    /// How many views there are at each azimuth.
+    /// The number of views at each azimuth.
     views: usize,
     view: View,
     /// The channel by which the others are clamped.
@@ -136,30 +144,30 @@ pub(super) struct Curve {
     moments: bool,
 }
 
-/// Where views stand.
+/// The coordinates of the views.
 #[derive(Clone, Copy, Debug)]
 enum View {
     /// The same at every azimuth.
     Round(PreparedView),
-    /// By the roughness seen from the azimuth. What depends on γ is in the parameters.
+    /// By the roughness seen from the azimuth. γ is already in the parameters.
     Turning(PreparedAzimuth, ViewBlend),
     /// From inside a dielectric.
     Critical(PreparedCritical),
 }
 
-/// Azimuths with their weights.
+/// Azimuths, by index, with their weights.
 pub(super) type Rows = [(usize, f32)];
-/// Those of a round lobe.
+/// The single azimuth of a round lobe.
 const ROUND: &Rows = &[(0, 1.0)];
 
-/// The coordinate of views of one azimuth.
+/// The coordinate of views at one azimuth.
 pub(super) enum Elevation<'a> {
     Blend(&'a PreparedView),
     Critical(&'a PreparedCritical),
 }
 
 impl Elevation<'_> {
-    /// The first of six nodes about cos θ, of `n`, and their weights.
+    /// The first of the six of `n` nodes about cos θ, and their weights.
     pub(super) fn six(&self, cos: f32, n: usize) -> (usize, [f32; SIX]) {
         match self {
             Self::Blend(view) => six(view.clamped(cos), n),
@@ -204,7 +212,7 @@ impl Curve {
         Some(Self { nodes, views: rest[rest.len() - 1].len(), view, clamp, moments })
     }
 
-    /// What is seen of a view: its azimuths and its elevation.
+    /// Calls `then` with the azimuths and the elevation of a view.
     pub(super) fn seen<R>(&self, v: Vec3, then: impl FnOnce(&Rows, &Elevation<'_>) -> R) -> R {
         match &self.view {
             View::Round(view) => then(ROUND, &Elevation::Blend(view)),
@@ -212,7 +220,7 @@ impl Curve {
             View::Turning(azimuth, blend) => {
                 let (x, y) = (f64::from(v.x), f64::from(v.y));
                 let r = libm::hypot(x, y);
-                // Seen along the normal every azimuth is as good; NaN fails the comparison, too.
+                // Along the normal any azimuth will do; NaN fails the comparison, too.
                 let (c, s) = if r > 0.0 && r < f64::INFINITY { (x / r, y / r) } else { (1.0, 0.0) };
                 let view = blend.prepare_shaped(azimuth.sigma(c, s));
                 then(&azimuth.six(c, s), &Elevation::Blend(&view))
@@ -227,7 +235,7 @@ impl Curve {
         (start, weights): (usize, [f32; SIX]),
     ) -> [f32; CHANNELS] {
         let mut sum = [0.0; CHANNELS];
-        // A table without azimuths has one row.
+        // A table without an azimuth axis has one row.
         for &(row, a) in rows.iter().filter(|row| row.1 != 0.0) {
             let node = combine(&self.nodes, row * self.views + start, &weights);
             for (sum, x) in sum.iter_mut().zip(node) {
@@ -239,7 +247,7 @@ impl Curve {
             sum[0] = sum[0].clamp(-1.0, 0.0);
         }
         match self.clamp.map(|i| sum[i]) {
-            // A/μ below one: more is seen of the surface than of its microsurface.
+            // A/μ < 1: more is seen of the surface than of its microsurface.
             Some(clamp) if clamp > 0.5 => {
                 let share = ((1.0 - clamp) / clamp).max(0.0);
                 let one = if self.moments { 1.0 } else { 0.0 };
@@ -256,7 +264,8 @@ impl Curve {
         self.interpolate(rows, view.six(cos, self.views))
     }
 
-    /// Averages over the hemisphere of views, weighted by the cosine, of N quantities that are given by azimuths, elevation and cos θ.
+    /// Cosine-weighted averages, over the hemisphere of views, of N quantities that are functions
+    /// of azimuths, elevation and cos θ.
     pub(super) fn average<const N: usize>(
         &self,
         quantities: impl Fn(&Rows, &Elevation<'_>, f32) -> [f64; N],
@@ -293,21 +302,24 @@ pub(super) fn within(cos_theta: f32) -> f32 {
     if cos_theta > 0.0 { cos_theta.min(1.0) } else { 0.0 }
 }
 
-/// Views below weigh less than rounding.
+/// Views of smaller cosine weigh less than rounding.
 const LOWEST: f64 = 1e-9;
-/// Width of a panel of −ln h.
+/// Width of a quadrature panel in −ln h.
 const WIDTH: f64 = 0.35;
 
-/// 2 ∫ μ dμ of functions of cos θ that are resolved down to `floor`, in panels of a width in y = −ln h.
+/// 2 ∫ μ dμ of functions of cos θ that are resolved down to `floor`, in panels of `width` in
+/// y = −ln h.
 fn over_views<const N: usize>(
     floor: f64,
     width: f64,
     quantities: impl Fn(f32) -> [f64; N],
 ) -> [f64; N] {
-    // With h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and in its logarithm where
-    // views graze and small roughness makes its difference. Views below the table's first weigh nothing.
+    // With h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and in its
+    // logarithm at grazing views, where small roughness makes its difference. Views below the
+    // table's first weigh nothing.
     const RULE: [(f64, f64); 4] = gauss_legendre();
-    // A dielectric of index 1 seen from its dense side has no critical angle, and its first view is the horizon.
+    // Seen from its dense side, a dielectric of index 1 has no critical angle, and its first view
+    // is the horizon.
     let panels = libm::ceil(libm::log(2.0 / floor.max(LOWEST)) / width) as usize;
     let mut sum = [0.0_f64; N];
     for panel in 0..panels {
@@ -324,7 +336,7 @@ fn over_views<const N: usize>(
     sum
 }
 
-/// What tables cover, in words.
+/// The materials that tables cover, in words.
 pub(super) fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
     let ends = |[a, b]: [f64; 2]| {
         if a == b { format!("= {a:.6}") } else { format!("in [{a:.6}, {b:.6}]") }

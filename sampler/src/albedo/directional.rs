@@ -8,13 +8,17 @@ use super::moments::{Moments, below, less_mirror};
 use crate::error::MaterialError;
 use crate::format::{Reflectance, Table};
 
-/// The directional albedo of one material as a function of the view, with F = 1 and as moments of Fresnel weights.
+/// The directional albedo of one material as a function of the view, with F = 1 and as moments of
+/// Fresnel weights.
 ///
-/// Made by [`Tables::albedo`](crate::Tables::albedo) and [`Tables::material_albedo`](crate::Tables::material_albedo). `v` is a unit vector in the
-/// tangent frame, n = +z; its azimuth matters to lobes that are not round alone. A view at or below the horizon is taken as the grazing one of its
-/// azimuth, NaN in `v.z` likewise, and NaN in the other two as the x axis. Errors are those of the table's certificate: of E and each moment at
-/// most 3e-4 at default quality for cos θ ≥ 0.02 and σ ≥ 0.01. Beyond the table's last view, μ₀ of [`ViewBlend`](crate::axis::ViewBlend), albedos near
-/// their limits at grazing with the power of cos θ that they have there.
+/// It is made by [`Tables::albedo`](crate::Tables::albedo) and
+/// [`Tables::material_albedo`](crate::Tables::material_albedo). `v` is a unit vector in the tangent
+/// frame, n = +z; its azimuth matters only to lobes that are not round. A view at or below the
+/// horizon is taken as the grazing one of its azimuth, NaN in `v.z` likewise, and NaN in the other
+/// two as the x axis. Errors are those of the table's certificate: in E and each moment at most
+/// 3e-4 at default quality for cos θ ≥ 0.02 and σ ≥ 0.01. Closer to grazing than the table's first
+/// view, μ₀ of [`ViewBlend`](crate::axis::ViewBlend), albedos near their limits with the power of
+/// cos θ that they have there.
 #[derive(Clone, Debug)]
 pub struct Albedo {
     masking: Masking,
@@ -24,7 +28,8 @@ pub struct Albedo {
 }
 
 impl Albedo {
-    /// Of a table of moments at hand, such as one that a bake has just filled; a table of one material ignores σ and γ.
+    /// Reads a table of moments, such as one that a bake has just filled; a table of one material
+    /// ignores σ and γ.
     ///
     /// # Errors
     /// [`MaterialError::NoTable`] for a table that holds no moments or does not cover the material.
@@ -42,42 +47,43 @@ impl Albedo {
         Some(albedo)
     }
 
-    /// The form of masking it is for.
+    /// The form of masking that the albedo is for.
     pub fn masking(&self) -> Masking {
         self.masking
     }
 
-    /// Moments of the Fresnel weights at a view; each in [0, 1], their total at most 1.
+    /// Moments of the Fresnel weights at a view, each in [0, 1], with a total of at most 1.
     pub fn moments(&self, v: Vec3) -> Moments {
         Moments::mirror(within(v.z)).plus(self.rest(v))
     }
 
-    /// E(v) with F = 1, in [0, 1].
+    /// The directional albedo E(v) with F = 1, in [0, 1].
     pub fn albedo(&self, v: Vec3) -> f32 {
         1.0 - self.lost(v)
     }
 
-    /// 1 − E(v), with all its digits where E is close to 1.
+    /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.
     pub fn lost(&self, v: Vec3) -> f32 {
         -self.rest(v)[0]
     }
 
-    /// Averages of the moments over the hemisphere of views, weighted by the cosine: 1/π ∫∫ · μ dμ dφ.
+    /// Cosine-weighted averages of the moments over the hemisphere of views: 1/π ∫∫ · μ dμ dφ.
     pub fn average_moments(&self) -> Moments {
         Moments::mirror_average().plus(self.average)
     }
 
-    /// E_avg = 1/π ∫∫ E μ dμ dφ with F = 1.
+    /// The average albedo E_avg = 1/π ∫∫ E μ dμ dφ with F = 1.
     pub fn albedo_average(&self) -> f32 {
         1.0 - self.lost_average()
     }
 
-    /// 1 − E_avg, with all its digits.
+    /// The average share of light lost, 1 − E_avg, with all its digits.
     pub fn lost_average(&self) -> f32 {
         -self.average[0]
     }
 
-    /// The averages by quadrature of the interpolated albedo, in the form of the tables' channels: what tables of averages are filled with.
+    /// The averages by quadrature of the interpolated albedo, in the form of the tables' channels:
+    /// the values of tables of averages.
     pub fn integrate(&self) -> [f32; 3] {
         less_mirror(self.curve.average(|rows, view, cos| {
             let [e, bias, f82] = self.at(rows, view, cos).map(f64::from);
@@ -86,7 +92,7 @@ impl Albedo {
         }))
     }
 
-    /// E − 1 in [−1, 0], and what the other moments have over E times a mirror's.
+    /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
     fn rest(&self, v: Vec3) -> [f32; 3] {
         self.curve.seen(v, |rows, view| self.at(rows, view, within(v.z)))
     }

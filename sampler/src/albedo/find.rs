@@ -1,4 +1,4 @@
-//! Which table of a set holds the albedo that is asked for.
+//! Finds the table of a set that holds an albedo.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -15,13 +15,16 @@ use crate::format::{FresnelEntry, Kind, LobeEntry, MaterialEntry, Reflectance, S
 use crate::tables::Tables;
 
 impl Tables {
-    /// The directional albedo of the round Student-t with σ ∈ [0, 3] and γ, for one form of masking.
+    /// The directional albedo of the round Student-t lobe with σ ∈ [0, 3] and γ, for one form of
+    /// masking.
     ///
-    /// A surface smoother than the table's first node, σ = 1e-8, is a mirror, E = 1. The averages are integrated from the interpolated albedo of
-    /// just this material, so that a furnace closes to rounding. Takes some ten microseconds; keep the result.
+    /// A surface smoother than the table's first node, σ = 1e-8, is a mirror, E = 1. The averages
+    /// are integrated from the interpolated albedo of just this material, so that a white furnace
+    /// closes to rounding. The call takes some ten microseconds; keep the result.
     ///
     /// # Errors
-    /// [`MaterialError`] for a σ or γ outside the family, or one that the set's albedo tables do not cover.
+    /// [`MaterialError`] for a σ or γ outside the family, or one that the set's albedo tables do
+    /// not cover.
     pub fn albedo(
         &self,
         sigma: f64,
@@ -31,8 +34,10 @@ impl Tables {
         self.moments_of(Kind::Albedo, sigma, gamma, masking, Albedo::new)
     }
 
-    /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments from the table of averages alone; off its nodes they differ from those of
-    /// [`albedo`](Self::albedo) by the errors of its certificate.
+    /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments, from the table of averages alone.
+    ///
+    /// Off its nodes they differ from those of [`albedo`](Self::albedo) by the errors of its
+    /// certificate.
     ///
     /// # Errors
     /// As [`albedo`](Self::albedo).
@@ -51,16 +56,17 @@ impl Tables {
         })
     }
 
-    /// The albedo with F = 1 of a named material, and its moments, for the form of masking that its recipe names, height-correlated if it names
-    /// none.
+    /// The albedo with F = 1 of a named material, and its moments, for the form of masking of its
+    /// recipe (height-correlated if it names none).
     ///
-    /// An anisotropic Student-t whose σx, σy and γ are single numbers, an ellipsoid and a distribution outside the family have a table of their
-    /// own, of which averaging takes about a millisecond, so keep the result. Of ranges the middle is bound, and for an anisotropic material with
-    /// a range the round lobe of √(σx σy) stands in.
+    /// An anisotropic Student-t whose σx, σy and γ are single numbers, an ellipsoid and a
+    /// distribution outside the family have tables of their own; averaging one takes about a
+    /// millisecond, so keep the result. A range is taken at its middle, and for an anisotropic
+    /// material with a range the round lobe of √(σx σy) stands in.
     ///
     /// # Errors
-    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that was baked without albedos, or what
-    /// [`albedo`](Self::albedo) reports.
+    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that was baked
+    /// without albedos, or what [`albedo`](Self::albedo) reports.
     pub fn material_albedo(&self, name: &str) -> Result<Albedo, MaterialError> {
         let entry = self.entry(name)?;
         if entry.lobe() == LobeEntry::Family {
@@ -69,13 +75,16 @@ impl Tables {
         self.own(entry, Albedo::new, |reflectance| *reflectance == Reflectance::Moments)
     }
 
-    /// The albedo of a named conductor or dielectric under its exact reflectance, bound as by [`material_albedo`](Self::material_albedo); of a
-    /// range of indices the one in the middle of their F0^¼. That of a dielectric is of the round lobe of √(σx σy).
+    /// The albedo of a named conductor or dielectric under its exact reflectance.
     ///
-    /// Below σ = 1e-8 it is held at what it is there.
+    /// Ranges are taken as by [`material_albedo`](Self::material_albedo), that of an index of
+    /// refraction at the middle of its coordinate
+    /// [`ReflectanceRoot`](crate::axis::ReflectanceRoot). A dielectric has the round lobe of
+    /// √(σx σy). For σ < 1e-8 the albedo is that of 1e-8.
     ///
     /// # Errors
-    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that states no such reflectance or was baked without albedos.
+    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that states no
+    /// such reflectance or was baked without albedos.
     pub fn material_fresnel_albedo(&self, name: &str) -> Result<FresnelAlbedo, MaterialError> {
         let entry = self.entry(name)?;
         if let Some(eta) = entry.fresnel.and_then(|fresnel| fresnel.middle_index()) {
@@ -88,11 +97,12 @@ impl Tables {
         self.own(entry, ViewCurve::new, conductor).map(FresnelAlbedo::Conductor)
     }
 
-    /// The albedo of a named material at an index η of the range that its recipe states.
+    /// The albedo of a named material at an index of refraction η in the range that its recipe
+    /// states.
     ///
     /// # Errors
-    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::OtherDistribution`] for a lobe without one, or as
-    /// [`dielectric_albedo`](Self::dielectric_albedo).
+    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::OtherDistribution`] for a lobe that has
+    /// none, or as [`dielectric_albedo`](Self::dielectric_albedo).
     pub fn material_dielectric_albedo(
         &self,
         name: &str,
@@ -106,8 +116,10 @@ impl Tables {
         self.dielectric_albedo(entry.round_sigma(), entry.gamma(), eta, entry.masking())
     }
 
-    /// The albedo of a rough interface of index η ∈ (0, ∞], inside over outside, with σ and γ, for one form of masking. Takes some
-    /// microseconds; keep the result.
+    /// The albedo of a rough dielectric of index η ∈ (0, ∞], inside over outside, with σ and γ, for
+    /// one form of masking.
+    ///
+    /// The call takes some microseconds; keep the result.
     ///
     /// # Errors
     /// [`MaterialError::Dielectric`] if no table of the set covers it.
@@ -122,7 +134,8 @@ impl Tables {
         Ok(DielectricAlbedo { outside: side(eta)?, inside: side(1.0 / eta)? })
     }
 
-    /// The same from one side: [reflection, transmission] where η is the index beyond the interface over that on the viewer's side, in [0, ∞].
+    /// The same from one side: [reflection, transmission], where η ∈ [0, ∞] is the index of
+    /// refraction beyond the interface over that on the viewer's side.
     ///
     /// # Errors
     /// [`MaterialError::Dielectric`] if no table of that side covers it.

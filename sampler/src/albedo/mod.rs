@@ -1,7 +1,9 @@
-//! Directional albedos from tables: the share of light that one bounce off the microsurface returns.
+//! Directional albedos from tables: the share of light that one bounce off the microsurface
+//! returns.
 //!
-//! One mechanism for every lobe and reflectance: [`find`] chooses the table by its description, [`curve`] collapses the axes of
-//! the material, which leaves a curve over the view, and [`directional`] or [`fresnel`] say what its channels mean.
+//! One mechanism serves every lobe and reflectance: [`find`] chooses the table by its description,
+//! [`curve`] collapses the axes of the material, which leaves a curve over the view, and
+//! [`directional`] or [`fresnel`] say what its channels mean.
 
 mod curve;
 mod directional;

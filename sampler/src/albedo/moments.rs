@@ -1,25 +1,27 @@
-//! Moments of Fresnel weights: from a few of them, the albedo of every Schlick reflectance and of OpenPBR's metals.
+//! Moments of Fresnel weights: a few of them give the albedo of every Schlick reflectance and of
+//! OpenPBR's metals.
 
 use microfacet_common::Masking;
 use microfacet_common::schlick::{
     F82_AVERAGE, SCHLICK_AVERAGE, f82_dip, f82_weight, schlick_weight,
 };
 
-/// Moments of one Fresnel reflectance F(v·m) over the visible normals whose reflections leave the surface, weighted by shadowing.
+/// Moments of a Fresnel reflectance F(v·m) over the visible normals whose reflections leave the
+/// surface, weighted by shadowing.
 ///
-/// They make the albedo of every Schlick reflectance, and of OpenPBR's metals, from one table.
+/// From one table they give the albedo of every Schlick reflectance and of OpenPBR's metals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
-    /// Of 1 − (1−v·m)⁵.
+    /// The moment of 1 − (1−v·m)⁵.
     pub scale: f32,
-    /// Of (1−v·m)⁵.
+    /// The moment of (1−v·m)⁵.
     pub bias: f32,
-    /// Of the F82 tint's μ(1−μ)⁶, divided by its peak at μ = 1/7.
+    /// The moment of the F82 tint's μ(1−μ)⁶ at μ = v·m, divided by its peak at μ = 1/7.
     pub f82: f32,
 }
 
 impl Moments {
-    /// E with F = 1: scale + bias.
+    /// The directional albedo E with F = 1: scale + bias.
     pub fn total(&self) -> f32 {
         self.scale + self.bias
     }
@@ -29,8 +31,8 @@ impl Moments {
         f0 * self.scale + f90 * self.bias
     }
 
-    /// Albedo of OpenPBR's metal: Schlick with F90 = 1 and the tint, in [0, 1], of its reflectance at μ = 1/7 (Kutz, Hašan & Edmondson
-    /// 2021, eq. 2–5); tint = 1 is Schlick.
+    /// Albedo of OpenPBR's metal: Schlick's reflectance with F90 = 1 and a tint, in [0, 1], of the
+    /// reflectance at μ = 1/7 (Kutz, Hašan & Edmondson 2021, eq. 2–5); tint = 1 is Schlick's.
     pub fn f82_tint(&self, f0: f32, tint: f32) -> f32 {
         self.schlick(f0, 1.0) - f82_dip(f0, tint) * self.f82
     }
@@ -50,26 +52,29 @@ impl Moments {
         }
     }
 
-    /// From what is stored, `self` being the mirror's.
+    /// The moments from the stored channels and those of a mirror, `self`.
     pub(super) fn plus(self, [e, bias, f82]: [f32; 3]) -> Self {
-        // Interpolation and 16-bit rounding may leave [0, 1] and [0, E] by the table's error; below 0 there is no [0, E].
+        // Interpolation and 16-bit rounding may leave [0, 1] and [0, E] by the table's error; a
+        // negative E is taken as 0.
         let e = (1.0 + e).max(0.0);
         let bias = (bias + e * self.bias).clamp(0.0, e);
         Self { scale: e - bias, bias, f82: (f82 + e * self.f82).clamp(0.0, 1.0) }
     }
 }
 
-/// Channels at cos θ as whole moments: E − 1, bias and F82.
+/// Turns the channels at cos θ into whole moments: E − 1, bias and F82.
 fn whole(cos: f32, [e, bias, f82]: [f32; 3]) -> [f32; 3] {
     let mirror = Moments::mirror(cos);
     [e, bias + (1.0 + e) * mirror.bias, f82 + (1.0 + e) * mirror.f82]
 }
 
-/// The channels at cos θ below the first view of a table, `floor`, from those there and at four times it.
+/// The channels at cos θ < `floor`, the first view of a table, from those at `floor` and four times
+/// it.
 ///
-/// Towards grazing every moment M nears its limit with one power p of the cosine,
-/// M(μ) = M(μ₀) + (M(μ₀) − M(4μ₀)) (1 − (μ/μ₀)^p)/(4^p − 1). For uncorrelated masking p is 1. Correlated masking lets through ever more
-/// of what is seen, of a plain lobe all of it in the end: p is that of 1 − E, and 0, where everything is held, if that does not fall.
+/// Towards grazing every moment M nears its limit with one power p of the cosine, M(μ) = M(μ₀) +
+/// (M(μ₀) − M(4μ₀)) (1 − (μ/μ₀)^p)/(4^p − 1). For uncorrelated masking p is 1. Height-correlated
+/// masking lets through ever more of what is seen, and for an untilted lobe all of it in the limit:
+/// p is that of 1 − E, or 0, which holds everything constant, if 1 − E does not fall.
 pub(super) fn below(
     masking: Masking,
     floor: f32,
@@ -79,7 +84,7 @@ pub(super) fn below(
 ) -> [f32; 3] {
     let power = match masking {
         Masking::Uncorrelated => 1.0,
-        // NaN has no power, either.
+        // NaN fails the comparison, too, and everything is held.
         Masking::HeightCorrelated if above[0] / first[0] > 1.0 => {
             (0.5 * libm::log2f(above[0] / first[0])).min(1.0)
         }
@@ -98,7 +103,7 @@ pub(super) fn below(
     [e, moved[1] - (1.0 + e) * mirror.bias, moved[2] - (1.0 + e) * mirror.f82]
 }
 
-/// Averages of whole moments in the form of the tables' channels.
+/// Turns averages of whole moments into the tables' channels.
 pub(super) fn less_mirror([e, bias, f82]: [f64; 3]) -> [f32; 3] {
     let mirror = Moments::mirror_average();
     [e, bias - e * f64::from(mirror.bias), f82 - e * f64::from(mirror.f82)].map(|x| x as f32)

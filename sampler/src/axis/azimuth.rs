@@ -1,4 +1,4 @@
-//! The azimuth of views as an axis of a table: a closed circle, or its quarter with mirrors at both ends.
+//! The azimuth of views as an axis: a closed circle, or a quarter of it mirrored at both ends.
 
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, TAU};
 use core::f64::consts;
@@ -9,26 +9,29 @@ use super::coordinate::{Coordinate, Placement};
 use super::lagrange::{SIX, six_weights};
 use crate::math::sqrt64;
 
-/// The azimuth φ of a view (radians, from the x axis), by p = atan2(√σ₂ sin(φ − turn), √σ₁ cos(φ − turn)): t = p/2π modulo one,
-/// with nodes 0, 1/n, …, (n−1)/n; or where `fold`, with |sin| and |cos|, t = 2p/π ∈ [0, 1], with nodes 0, 1/(n−1), …, 1. One
-/// node stands for every azimuth.
+/// The azimuth φ of a view, in radians from the x axis, as a coordinate t ∈ [0, 1].
 ///
-/// σ_φ² = σ₁² cos²(φ − turn) + σ₂² sin²(φ − turn) is the square of the roughness seen from there, which takes the place of σ in
-/// [`ViewBlend`](super::ViewBlend). Half-way between the plain azimuth, on which a narrow lobe turns within its aspect, and that
-/// of unit space, on which everything else does.
+/// With p = atan2(√σ₂ sin(φ − turn), √σ₁ cos(φ − turn)), t = p/2π modulo one, and the nodes are 0,
+/// 1/n, …, (n−1)/n. Where `fold`, with |sin| and |cos|, t = 2p/π, and the nodes are 0, 1/(n−1),
+/// …, 1. A single node stands for every azimuth.
+///
+/// p lies half-way between φ, on which a narrow lobe varies within its aspect, and the azimuth in
+/// unit space, on which everything else varies. σ_φ² = σ₁² cos²(φ − turn) + σ₂² sin²(φ − turn) is
+/// the square of the roughness seen from φ; σ_φ takes the place of σ in
+/// [`ViewBlend`](super::ViewBlend).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Azimuth {
     /// σ₁ and σ₂ along the principal axes.
     pub sigma: [f64; 2],
-    /// Azimuth of the first, radians.
+    /// Azimuth of the first principal axis, in radians.
     pub turn: f64,
-    /// Whether what is tabulated is the same on both sides of either principal axis.
+    /// Whether the tabulated quantity is symmetric about both principal axes.
     pub fold: bool,
 }
 
 impl Azimuth {
-    /// The coordinate with its sines and cosines at hand, for an axis of so many nodes.
+    /// Prepares the coordinate for an axis of `nodes` nodes.
     pub fn prepare(&self, nodes: usize) -> PreparedAzimuth {
         let (s, c) = libm::sincos(self.turn);
         PreparedAzimuth { sigma: self.sigma, turn: [c, s], fold: self.fold, nodes }
@@ -58,7 +61,7 @@ impl Coordinate for Azimuth {
     }
 }
 
-/// [`Azimuth`] along an axis of a number of nodes.
+/// [`Azimuth`] prepared for an axis of a number of nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedAzimuth {
     sigma: [f64; 2],
@@ -69,25 +72,25 @@ pub struct PreparedAzimuth {
 }
 
 impl PreparedAzimuth {
-    /// A direction's components along the principal axes.
+    /// The components of a direction along the principal axes.
     fn principal(&self, c: f64, s: f64) -> [f64; 2] {
         let [ct, st] = self.turn;
         [ct * c + st * s, ct * s - st * c]
     }
 
-    /// √σ₁ and √σ₂ times these: the direction whose angle is p.
+    /// These components times √σ₁ and √σ₂: the direction whose angle is p.
     fn stretched(&self, c: f64, s: f64) -> [f64; 2] {
         let [x, y] = self.principal(c, s);
         [sqrt64(self.sigma[0]) * x, sqrt64(self.sigma[1]) * y]
     }
 
-    /// σ_φ of the direction (cos φ, sin φ).
+    /// σ_φ of the direction (cos φ, sin φ): the roughness seen from there.
     pub fn sigma(&self, c: f64, s: f64) -> f64 {
         let [x, y] = self.principal(c, s);
         libm::hypot(self.sigma[0] * x, self.sigma[1] * y)
     }
 
-    /// t ∈ [0, 1] of the direction (cos φ, sin φ); 0 and 1 are one unless folded.
+    /// t ∈ [0, 1] of the direction (cos φ, sin φ); unless folded, 0 and 1 are the same azimuth.
     pub fn coordinate(&self, c: f64, s: f64) -> f64 {
         let [x, y] = self.stretched(c, s);
         if self.fold {
@@ -117,14 +120,16 @@ impl PreparedAzimuth {
         if self.fold { consts::FRAC_PI_2 * t } else { consts::TAU * t }
     }
 
-    /// dφ/dp at t, up to a factor: how much of the circle a step of the coordinate stands for.
+    /// dφ/dp at t, up to a factor: the share of the circle that a step of the coordinate covers.
     fn share(&self, t: f64) -> f64 {
-        // φ = atan2(y, x) of (x, y) = (cos p/√σ₁, sin p/√σ₂) has the rate 1/(√σ₁ √σ₂ (x² + y²)).
+        // φ = atan2(y, x) of (x, y) = (cos p/√σ₁, sin p/√σ₂) has the derivative 1/(√σ₁ √σ₂
+        // (x² + y²)).
         let (s, c) = libm::sincos(self.angle(t));
         1.0 / (c * c / self.sigma[0] + s * s / self.sigma[1])
     }
 
-    /// Nodes and weights of the polynomial through the six nearest at (cos φ, sin φ), in single precision.
+    /// The six nodes nearest to (cos φ, sin φ) with their weights in the polynomial, in single
+    /// precision.
     #[inline]
     pub(crate) fn six(&self, c: f64, s: f64) -> [(usize, f32); SIX] {
         if self.nodes == 1 {
@@ -145,7 +150,7 @@ impl PreparedAzimuth {
         core::array::from_fn(|i| {
             let i_node = start + i as i64;
             let node = if self.fold {
-                // Mirrored at both ends, as often as it takes.
+                // Mirrored at both ends, as often as needed.
                 let round = i_node.rem_euclid(2 * (n - 1));
                 round.min(2 * (n - 1) - round)
             } else {
@@ -155,11 +160,12 @@ impl PreparedAzimuth {
         })
     }
 
-    /// Directions spread over the coordinate, with the share of the circle that each stands for; the shares add up to one.
+    /// Directions spread over the coordinate, each with its share of the circle; the shares add up
+    /// to one.
     ///
-    /// The midpoint rule, which on a closed circle is as good as any.
+    /// This is the midpoint rule, which on a closed circle is as good as any.
     pub(crate) fn circle(&self) -> impl Iterator<Item = ([f64; 2], f64)> {
-        // Four between nodes; a limit for tables of any size.
+        // Four points between nodes, limited for tables of any size.
         let steps = if self.nodes == 1 { 1 } else { (4 * self.nodes).min(256) };
         let middle = move |i: usize| (i as f64 + 0.5) / steps as f64;
         let whole: f64 = (0..steps).map(|i| self.share(middle(i))).sum();
@@ -198,7 +204,7 @@ mod tests {
             for i in 0..400 {
                 let t = (f64::from(i) + 0.3) / 400.0;
                 let [c, s] = bound.direction(t);
-                // What has the axis's own symmetry, of low degree.
+                // A function of low degree with the axis's own symmetry.
                 let f = |t: f64| libm::cos(bound.angle(t) * if axis.fold { 2.0 } else { 1.0 });
                 // Three nodes on either side.
                 let cell = t * if axis.fold { n - 1 } else { n } as f64;

@@ -1,13 +1,13 @@
-//! What every coordinate says of itself: to those who check a file, and to those who place the nodes of a new table.
+//! What checking a file and placing the nodes of a new table need to know of a coordinate.
 
 use alloc::vec::Vec;
 
 /// A coordinate t along an axis, with its parameters.
 pub(crate) trait Coordinate {
-    /// The formula in one line, with the names of the parameters: what a file says of it, and `docs/format.md`.
+    /// The formula in one line, with the names of the parameters, as in files and `docs/format.md`.
     fn formula(&self) -> &'static str;
 
-    /// Whether the parameters are in range, or else what is wrong.
+    /// Checks that the parameters are in range; the error says what is wrong.
     fn check(&self) -> Result<(), &'static str> {
         Ok(())
     }
@@ -17,12 +17,12 @@ pub(crate) trait Coordinate {
         [0.0, 1.0]
     }
 
-    /// Where its nodes stand.
+    /// Where the nodes stand.
     fn placement(&self) -> Placement {
         Placement::Even
     }
 
-    /// Whether it can have so many nodes, or else what is wrong; a number of 0 is refused before.
+    /// Checks a number of nodes other than 0; the error says what is wrong.
     fn check_count(&self, n: usize) -> Result<(), &'static str> {
         if n < 2 && self.placement() == Placement::Even {
             Err("needs at least two nodes")
@@ -31,7 +31,7 @@ pub(crate) trait Coordinate {
         }
     }
 
-    /// How many values stand along an axis of n nodes.
+    /// The number of values along an axis of n nodes.
     fn values(&self, n: usize) -> usize {
         n
     }
@@ -44,12 +44,12 @@ pub(crate) enum Placement {
     Free,
     /// Evenly over [0, 1], both of which are nodes.
     Even,
-    /// Evenly over [0, 1), for 1 is 0 again.
+    /// Evenly over [0, 1), a circle that closes at 1.
     Closed,
 }
 
 impl Placement {
-    /// Where the i-th of n nodes stands; `None` if anywhere.
+    /// The place of the i-th of n nodes; `None` if nodes may stand anywhere.
     pub(crate) fn node(self, i: usize, n: usize) -> Option<f64> {
         match self {
             Self::Free => None,
@@ -60,21 +60,22 @@ impl Placement {
     }
 }
 
-/// `count` ≥ 2 numbers evenly from `low` to `high`, both of which are met exactly.
+/// `count` ≥ 2 numbers spaced evenly from `low` to `high`; both ends are met to the bit.
 pub fn even_nodes(low: f64, high: f64, count: usize) -> Vec<f64> {
     let step = (high - low) / (count - 1) as f64;
     (0..count).map(|i| if i + 1 == count { high } else { low + i as f64 * step }).collect()
 }
 
-/// Whether every one of some parameters is positive and not absurd, so that no product of a few leaves the range of numbers;
-/// NaN is neither.
+/// Whether all parameters are positive and moderate, so that products of a few of them neither
+/// overflow nor vanish; false for NaN.
 pub(super) fn positive(parameters: &[f64]) -> bool {
     parameters.iter().all(|x| (1e-12..1e6).contains(x))
 }
 
-/// The x ∈ [low, high] at which an ascending function reaches `target`, by bisection down to the last bit.
+/// Finds the x ∈ [low, high] where an ascending function reaches `target`, by bisection to the last
+/// bit.
 pub(super) fn bisect(mut low: f64, mut high: f64, target: f64, f: impl Fn(f64) -> f64) -> f64 {
-    // Some 55 halvings, more for a root close to 0.
+    // About 55 halvings, more for a root close to 0.
     loop {
         let middle = 0.5 * (low + high);
         if !(middle > low && middle < high) {

@@ -1,5 +1,6 @@
-//! The view axis of what is seen from inside a dielectric: two halves that meet where total reflection sets in, so that no
-//! polynomial crosses that kink, wherever the index puts it.
+//! The view axis of albedos seen from inside a dielectric: two halves that meet where total
+//! reflection sets in, so that no polynomial crosses that kink, wherever the index of refraction
+//! puts it.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,15 +9,17 @@ use super::lagrange::{SIX, six};
 use super::view_blend::{fourth_roots, harmonic, kappa, terms};
 use crate::math::sqrt64;
 
-/// t ∈ [0, 1] for the view from the dense side of an interface of index η, with ½ at μ_c = √(1 − 1/η²), where total reflection
-/// sets in; a polynomial reads nodes of one half alone. With p = share·x + (1−share)·h, y = share·x^¼ + (1−share)·h^¼ (x, h, κ
-/// as for [`ViewBlend`](super::ViewBlend)), S(q) = asinh(√q/δ)/asinh(1/δ), δ² = kink·σ, and μ₀ the harmonic sum
-/// 1/(1/floor + 1/(slope·σ) + 1/μ_c):
-/// t = ½ (1−root)(y(μ)−y(μ₀))/(y(μ_c)−y(μ₀)) + ½ root (1 − S((μ_c−μ)/(μ_c−μ₀))) for μ₀ ≤ μ < μ_c, and
+/// The view coordinate of the dense side of an interface of index η, t ∈ [0, 1].
+///
+/// t = ½ at μ_c = √(1 − 1/η²), where total reflection sets in; a polynomial reads nodes of one half
+/// only. With x, h and κ as for [`ViewBlend`](super::ViewBlend), p = share·x + (1−share)·h,
+/// y = share·x^¼ + (1−share)·h^¼, S(q) = asinh(√q/δ)/asinh(1/δ), δ² = kink·σ, and the harmonic sum
+/// μ₀ = 1/(1/floor + 1/(slope·σ) + 1/μ_c):
+/// t = ½ (1−root)(y(μ)−y(μ₀))/(y(μ_c)−y(μ₀)) + ½ root (1 − S((μ_c−μ)/(μ_c−μ₀))) for μ₀ ≤ μ < μ_c,
 /// t = ½ + ½ (1−root)(p(μ)−p(μ_c))/(1−p(μ_c)) + ½ root S((μ−μ_c)/(1−μ_c)) for μ ≥ μ_c.
 ///
-/// Above μ_c without fourth roots, which are steep in η near 1: with them tables over all indices erred by 0.12 for 1e-3
-/// (σ 0.454, γ 3, twenty indices).
+/// For μ ≥ μ_c there are no fourth roots, which are steep in η near 1: with them tables over all
+/// indices erred by 0.12 instead of 1e-3 (σ 0.454, γ 3, twenty indices).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CriticalBlend {
@@ -24,11 +27,11 @@ pub struct CriticalBlend {
     pub share: f64,
     /// κ for Beckmann.
     pub scale: f64,
-    /// How κ grows with 1/(2γ−3).
+    /// Factor of 1/(2γ−3) in κ.
     pub heavy: f64,
     /// Largest μ₀.
     pub floor: f64,
-    /// μ₀/σ of smooth surfaces.
+    /// μ₀/σ as σ → 0.
     pub slope: f64,
     /// Share of S, in (0, 1).
     pub root: f64,
@@ -37,11 +40,11 @@ pub struct CriticalBlend {
 }
 
 impl CriticalBlend {
-    /// Of the tables that are baked: found by measuring.
+    /// The parameters of baked tables, found by measuring.
     pub const BAKED: Self =
         Self { share: 0.4, scale: 3.0, heavy: 0.5, floor: 2e-5, slope: 2e-3, root: 0.5, kink: 1.0 };
 
-    /// The coordinate of one material, σ > 0, and an index η ≥ 1 of the dense side, whose reciprocal is given.
+    /// Prepares the coordinate for σ > 0, γ and an index η ≥ 1 of the dense side, given as 1/η.
     pub fn prepare(&self, sigma: f64, gamma: f64, inverse_eta: f64) -> PreparedCritical {
         let critical = sqrt64((1.0 - inverse_eta) * (1.0 + inverse_eta));
         let floor = harmonic(harmonic(self.floor, self.slope * sigma), critical);
@@ -63,7 +66,7 @@ impl CriticalBlend {
     }
 }
 
-/// [`CriticalBlend`] of one material and index.
+/// [`CriticalBlend`] prepared for one material and index of refraction.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedCritical {
     blend: CriticalBlend,
@@ -82,7 +85,7 @@ pub struct PreparedCritical {
 }
 
 impl PreparedCritical {
-    /// μ₀: the view of the first node.
+    /// μ₀, the view of the first node.
     pub fn floor(&self) -> f64 {
         self.floor
     }
@@ -97,14 +100,14 @@ impl PreparedCritical {
         self.blend.share * x + (1.0 - self.blend.share) * h
     }
 
-    /// S of a share in [0, 1].
+    /// S of a number in [0, 1].
     fn near(&self, share: f64) -> f64 {
         libm::asinh(sqrt64(share.max(0.0)) / self.kink) / self.range
     }
 
-    /// The coordinate of cos θ in its half, [0, 1] below μ_c as above.
+    /// The coordinate of cos θ within its half, in [0, 1].
     fn half(&self, cos: f64) -> f64 {
-        // A half without width is one point.
+        // A half without width is a single point.
         let part = |a: f64, b: f64, whole: f64| if whole > 0.0 { (a - b) / whole } else { 0.0 };
         let (smooth, near) = if cos < self.critical {
             let rest = part(self.critical, cos, self.critical - self.floor);
@@ -121,7 +124,8 @@ impl PreparedCritical {
         0.5 * self.half(cos) + if cos < self.critical { 0.0 } else { 0.5 }
     }
 
-    /// The first of six nodes about cos θ ∈ [0, 1], of `n` spread evenly, an odd number, and their weights: all in one half.
+    /// The first of the six nodes about cos θ ∈ [0, 1], all in one half, and their weights; `n`
+    /// nodes, an odd number, are spread evenly.
     pub(crate) fn six(&self, cos: f64, n: usize) -> (usize, [f32; SIX]) {
         let half = n / 2 + 1;
         let cos = cos.max(self.floor);
@@ -136,7 +140,7 @@ impl PreparedCritical {
         } else {
             (self.critical, 1.0, 2.0 * t - 1.0)
         };
-        // The upper end of the lower half is its own; at μ_c itself the other half begins.
+        // μ_c itself belongs to the upper half, and the lower half ends just before it.
         bisect(low, high, t, |cos| if cos < high { self.half(cos) } else { f64::INFINITY })
     }
 }
@@ -200,7 +204,7 @@ mod tests {
         let critical = sqrt64(1.0 - 1.0 / 2.25);
         assert_eq!(view.six(critical - 1e-9, 21).0, 5);
         assert_eq!(view.six(critical + 1e-9, 21).0, 10);
-        // Without a difference of indices the lower half is a point.
+        // For η = 1 the lower half is a point.
         let none = CriticalBlend::BAKED.prepare(0.3, 2.0, 1.0);
         assert_eq!((none.six(0.0, 21).0, none.quantity(0.0)), (10, 0.0));
     }

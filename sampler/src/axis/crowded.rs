@@ -1,7 +1,8 @@
-//! Nodes crowded towards the upper end of a coordinate x ∈ [0, 1]: evenly in 1 − √(1−x) instead of x itself.
+//! Nodes crowded towards the upper end of a coordinate x ∈ [0, 1]: even in 1 − √(1−x) instead of x.
 //!
-//! Near normal incidence and for heavy tails, what is tabulated approaches its limit like a power of 1 − x below two, too slowly
-//! for even nodes. Everything is in terms of the rest 1 − x, which callers know without cancellation.
+//! Near normal incidence and for heavy tails, tabulated quantities approach their limits like a
+//! power of 1 − x less than two, too slowly for even nodes. The functions use the rest 1 − x, which
+//! callers know without cancellation.
 
 use crate::math::sqrt;
 
@@ -21,7 +22,8 @@ pub(super) fn rate(t: f64) -> f64 {
     2.0 * (1.0 - t)
 }
 
-/// [`coordinate`] in single precision, from the rest alone: right to the rounding of 1, as a position along an axis is.
+/// [`coordinate`] in single precision from the rest alone, to the rounding of 1, as any position
+/// along an axis.
 #[inline(always)]
 pub(super) fn fast(rest: f32) -> f32 {
     1.0 - sqrt(rest)

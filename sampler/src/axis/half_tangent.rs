@@ -1,9 +1,11 @@
-//! The half tangent, h = x/(1 + √(1+x²)) of a slope or cotangent x: tan(α/2) of the angle with tan α = x.
+//! The half tangent h = x/(1 + √(1+x²)) of a slope or cotangent x: tan(α/2) of the angle α with tan
+//! α = x.
 //!
-//! It is the coordinate of views, z = cot θ/σ ≥ 0, and what tables of slopes hold, x of either sign: there as the distance
-//! g = 1 − |h| from the nearer end of [−1, 1], so that both tails keep their digits. From g the slope follows without a
-//! division or a root, as the quotient ±2(1−g) : g(2−g); and the silhouette x = −cot θ is g = 1 − τ, linear in the view's own
-//! coordinate τ. Slopes are written x : z where z may be 0.
+//! It is the coordinate of views, for z = cot θ/σ ≥ 0, and what tables of slopes hold, for x of
+//! either sign: there as the distance g = 1 − |h| from the nearer end of [−1, 1], so that both
+//! tails keep their digits. The slope follows from g without a division or a root, as the quotient
+//! ±2(1−g) : g(2−g), and the silhouette x = −cot θ is g = 1 − τ, linear in the coordinate τ of the
+//! view. Slopes are written x : z where z may be 0.
 
 use serde::{Deserialize, Serialize};
 use wide::f32x4;
@@ -12,8 +14,11 @@ use super::coordinate::Coordinate;
 use super::crowded;
 use crate::math::{sqrt, sqrt64};
 
-/// τ = z/(1 + √(1+z²)) ∈ [0, 1] of z = cot θ_v/σ_v, the tangent of half the elevation in unit space: 0 is grazing, 1 normal
-/// incidence (or σ → 0). Where `crowded`, t = 1 − √(1−τ).
+/// The half tangent τ = z/(1 + √(1+z²)) ∈ [0, 1] of a view's unit cotangent z = cot θ_v/σ_v ∈
+/// [0, ∞].
+///
+/// τ is the tangent of half the elevation in unit space: 0 is grazing, 1 normal incidence (or
+/// σ → 0). Where `crowded`, t = 1 − √(1−τ).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HalfTangent {
@@ -25,7 +30,7 @@ pub struct HalfTangent {
 impl HalfTangent {
     /// t of z ∈ [0, ∞].
     pub fn coordinate(&self, z: f64) -> f64 {
-        // Its square would overflow.
+        // z² would overflow.
         if z > 1e150 {
             return 1.0;
         }
@@ -44,13 +49,13 @@ impl HalfTangent {
         2.0 * tau / (rest * (1.0 + tau))
     }
 
-    /// t of a view by its stretched horizontal length ρ and vertical part z ≥ 0, not both 0.
+    /// t of a view from its stretched horizontal length ρ and vertical part z ≥ 0, not both 0.
     #[inline(always)]
     pub(crate) fn of_view(&self, rho: f32, z: f32) -> f32 {
         let length = sqrt(rho * rho + z * z);
         let r = 1.0 / (rho + length);
         if self.crowded {
-            // 1 − τ = (ρ + (length − z)) r with length − z = ρ²/(length + z), which does not cancel.
+            // 1 − τ = (ρ + (length − z)) r, where length − z = ρ²/(length + z) does not cancel.
             crowded::fast((rho + rho * rho / (length + z)) * r)
         } else {
             z * r
@@ -58,7 +63,7 @@ impl HalfTangent {
     }
 }
 
-/// τ times `cells` of uncrowded views, four at a time; `length` is √(ρ² + z²).
+/// τ times `cells` of four uncrowded views; `length` is √(ρ² + z²).
 #[inline(always)]
 pub(crate) fn of_views(rho: f32x4, z: f32x4, length: f32x4, cells: f32) -> f32x4 {
     z * cells / (rho + length)
@@ -70,7 +75,7 @@ impl Coordinate for HalfTangent {
     }
 }
 
-/// h ∈ [−1, 1] of the slope x : z, z ≥ 0, both below 1e150.
+/// The half tangent h ∈ [−1, 1] of the slope x : z, with z ≥ 0 and both less than 1e150.
 pub fn half_tangent(x: f64, z: f64) -> f64 {
     x / (z + sqrt64(x * x + z * z))
 }
@@ -84,24 +89,24 @@ pub fn ends(x: f64, z: f64) -> [f64; 2] {
     if h > 0.0 { [1.0 + h, near] } else { [near, 1.0 - h] }
 }
 
-/// dh/dα at the slope x : z, α being the angle with tan α = x/z.
+/// dh/dα at the slope x : z, for the angle α with tan α = x/z.
 pub fn angle_rate(x: f64, z: f64) -> f64 {
     let r = sqrt64(x * x + z * z);
     r / (z + r)
 }
 
-/// dh/dx at the slope x : z, x being the quotient.
+/// dh/d(x/z) at the slope x : z.
 pub fn rate(x: f64, z: f64) -> f64 {
-    // dα/dx is the square of cos α.
+    // dα/d(x/z) is cos² α.
     angle_rate(x, z) * (z * z / (x * x + z * z))
 }
 
-/// The slope whose half tangent is the distance g ∈ [0, 1] from 1, as x : z.
+/// The slope x : z whose half tangent is the distance g ∈ [0, 1] from 1.
 pub fn slope_at(g: f64) -> [f64; 2] {
     [2.0 * (1.0 - g), g * (2.0 - g)]
 }
 
-/// A slope x : z in single precision, as a lookup gives it.
+/// A slope x : z in single precision, as lookups return it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slope {
     pub(crate) x: f32,
@@ -109,14 +114,14 @@ pub(crate) struct Slope {
 }
 
 impl Slope {
-    /// [`slope_at`] the distance g from the end named by `sign` (∓1).
+    /// [`slope_at`] the distance g from the end h = `sign`, 1 or −1.
     #[inline(always)]
     pub(crate) fn from_end(g: f32, sign: f32) -> Self {
         Self { x: sign * (2.0 - 2.0 * g), z: g * (2.0 - g) }
     }
 }
 
-/// [`slope_at`] with half of x, and x as far from the other end: (g − 1) : g(2 − g), an operation less.
+/// [`slope_at`] with −x/2 in the place of x: (g − 1) : g(2 − g), one operation less.
 #[inline(always)]
 pub(crate) fn half_slope_at(g: f32x4) -> [f32x4; 2] {
     [g - 1.0, g * (2.0 - g)]

@@ -1,8 +1,8 @@
-//! Cubic Hermite cells on even nodes: the one interpolation that lookups at speed use.
+//! Cubic Hermite cells on even nodes, the one interpolation of the fast lookups.
 //!
-//! The same cubic stands here in several forms: over nodes ([`hermite`], and in lanes [`basis`] and [`hermite_lanes`]), and
-//! over the coefficients of a bound material ([`horner`] with the fewest operations, [`cubic`] with the shortest chain of them).
-//! A test holds them together.
+//! The same cubic has several forms here: over nodes ([`hermite`], and in SIMD lanes [`basis`] and
+//! [`hermite_lanes`]), and over the coefficients that a lobe prepares ([`horner`] with the fewest
+//! operations, [`cubic`] with the shortest chain of them). A test holds them together.
 
 use alloc::vec::Vec;
 
@@ -13,10 +13,10 @@ pub(crate) type Node = [f32; 2];
 
 /// Splits a coordinate in [0, cells] into a cell and the position inside it.
 ///
-/// The position is 1 at the last node, so that both ends are reached. A coordinate that is not a number gives cell 0.
+/// The position is 1 at the last node, so that both ends are reached. NaN gives cell 0.
 #[inline(always)]
 pub(crate) fn locate(x: f32, cells: usize) -> (usize, f32) {
-    // The cast saturates and sends NaN to 0; the cell is at most cells − 1 whatever x is.
+    // The cast saturates and takes NaN to 0; the cell is at most cells − 1 whatever x is.
     let cell = (x as i32).clamp(0, cells as i32 - 1);
     (cell as usize, x - cell as f32)
 }
@@ -30,7 +30,7 @@ pub(crate) fn hermite(a: Node, b: Node, w: f32) -> f32 {
     a[0] + w * (a[1] + w * (c2 + w * c3))
 }
 
-/// The weights of [value, slope, value, slope] of two nodes at w, the same in all lanes of it.
+/// The weights of [value, slope, value, slope] of two nodes at w, which is the same in all lanes.
 #[inline(always)]
 pub(crate) fn basis(w: f32x4) -> f32x4 {
     let [c0, c1] = [f32x4::new([1.0, 0.0, 0.0, 0.0]), f32x4::new([0.0, 1.0, 0.0, 0.0])];
@@ -38,10 +38,11 @@ pub(crate) fn basis(w: f32x4) -> f32x4 {
     c0 + w * (c1 + w * (c2 + w * c3))
 }
 
-/// [`hermite`] of four pairs of nodes at four positions, [value, slope, value, slope] in the order of the nodes.
+/// [`hermite`] of four pairs of nodes at four positions; the nodes are
+/// [value, slope, value, slope].
 #[inline(always)]
 pub(crate) fn hermite_lanes([v0, s0, v1, s1]: [f32x4; 4], w: f32x4) -> f32x4 {
-    // The basis without its zeros, which changes no bit.
+    // `basis` without its zero terms, which changes no bit.
     let b0 = 1.0 + w * (w * (w * 2.0 - 3.0));
     let b1 = w * (1.0 + w * (w - 2.0));
     let b2 = w * (w * (3.0 - w * 2.0));
@@ -52,8 +53,8 @@ pub(crate) fn hermite_lanes([v0, s0, v1, s1]: [f32x4; 4], w: f32x4) -> f32x4 {
 /// Coefficients of the cubic c₀ + w(c₁ + w(c₂ + w c₃)) of a cell.
 pub(crate) type Cell = [f32; 4];
 
-/// The cubics between nodes, values multiplied by `scale`, and behind them a *guard cell*: a coordinate at the upper end may fall
-/// into it, at position 0, so that fast lookups have no cell to limit.
+/// The cubics between nodes, multiplied by `scale`, and after them a *guard cell*: a coordinate at
+/// the upper end may fall into it, at position 0, so that fast lookups need not clamp the cell.
 pub(crate) fn cubic_cells(nodes: &[Node], scale: f64) -> Vec<Cell> {
     let guard = nodes.last().map(|node| [f64::from(node[0]), 0.0, 0.0, 0.0]);
     let cubics = nodes.windows(2).map(|pair| Cubic::new(pair[0], pair[1]).c);
@@ -66,27 +67,29 @@ pub(crate) fn horner(c: &Cell, w: f32) -> f32 {
     c[0] + w * (c[1] + w * (c[2] + w * c[3]))
 }
 
-/// The cubic of a cell at position w, in two halves that need not wait for each other.
+/// The cubic of a cell at position w, in two halves that do not wait for each other.
 #[inline(always)]
 pub(crate) fn cubic(c: &Cell, w: f32) -> f32 {
     (c[0] + w * c[1]) + (w * w) * (c[2] + w * c[3])
 }
 
-/// The cubics of four cells at four positions, as [`cubic`].
+/// [`cubic`] of four cells at four positions.
 #[inline(always)]
 pub(crate) fn cubic_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
     (c0 + w * c1) + (w * w) * (c2 + w * c3)
 }
 
-/// The same as [`horner`].
+/// [`horner`] of four cells at four positions.
 #[inline(always)]
 pub(crate) fn horner_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
     c0 + w * (c1 + w * (c2 + w * c3))
 }
 
-/// Splits coordinates in [0, cells] into cells, the guard included, and the positions inside them.
+/// Splits coordinates in [0, cells] into cells, the guard cell included, and the positions inside
+/// them.
 ///
-/// The cast does not saturate where the hardware has none that does; NaN gives a cell outside, or a position that is NaN.
+/// The cast saturates only where the hardware's does; NaN gives a cell outside the table, or a NaN
+/// position.
 #[inline(always)]
 pub(crate) fn split(x: f32x4) -> (i32x4, f32x4) {
     let cell = x.fast_trunc_int();
@@ -96,13 +99,13 @@ pub(crate) fn split(x: f32x4) -> (i32x4, f32x4) {
 /// Two neighbouring nodes, each interpolated linearly between the rows `low` and `high` of a table.
 #[inline(always)]
 pub(crate) fn between_rows(low: &[Node], high: &[Node], cell: usize, w: f32) -> (Node, Node) {
-    // A window of two nodes is 16 bytes: one load a row.
+    // A window of two nodes is 16 bytes: one load per row.
     let (a, b) = (&low[cell..cell + 2], &high[cell..cell + 2]);
     let mix = |a: Node, b: Node| [a[0] + w * (b[0] - a[0]), a[1] + w * (b[1] - a[1])];
     (mix(a[0], b[0]), mix(a[1], b[1]))
 }
 
-/// A cubic on [0, 1] in double precision, for inverting what [`hermite`] evaluates.
+/// A cubic on [0, 1] in double precision, for inverting [`hermite`].
 #[derive(Clone, Copy)]
 pub(crate) struct Cubic {
     c: [f64; 4],
@@ -123,7 +126,7 @@ impl Cubic {
         self.c[1] + w * (2.0 * self.c[2] + w * 3.0 * self.c[3])
     }
 
-    /// w ∈ [0, 1] with value `y`; the cubic ascends, as nodes are kept monotone.
+    /// The w ∈ [0, 1] where the cubic is `y`; the cubic ascends, as nodes are kept monotone.
     pub(crate) fn solve(&self, y: f64) -> f64 {
         let (mut lo, mut hi, mut w) = (0.0, 1.0, 0.5);
         for _ in 0..60 {
@@ -144,7 +147,7 @@ impl Cubic {
     }
 }
 
-/// Makes a run of nodes ascend in spite of rounding and of negative weights along other axes.
+/// Makes a row of nodes ascend despite rounding and negative weights along other axes.
 pub(crate) fn make_monotone(run: &mut [Node]) {
     let mut last = 0.0_f32;
     for node in run.iter_mut() {
@@ -154,8 +157,9 @@ pub(crate) fn make_monotone(run: &mut [Node]) {
     limit_slopes(run);
 }
 
-/// Limits slopes so that the cubic of every cell ascends with its nodes: each slope lies in [0, 3Δ] of both
-/// neighbouring rises Δ (Fritsch & Carlson 1980). The condition is linear, so it also holds between rows.
+/// Limits slopes so that the cubic of every cell ascends with its nodes: each slope lies in [0, 3Δ]
+/// for both neighbouring rises Δ (Fritsch & Carlson 1980). The condition is linear, so it also
+/// holds between rows.
 pub fn limit_slopes(nodes: &mut [[f32; 2]]) {
     for i in 0..nodes.len() {
         let mut limit = f32::INFINITY;

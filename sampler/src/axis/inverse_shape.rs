@@ -1,4 +1,4 @@
-//! The shape axis of G1 and visible normals: s = 1/(γ−1).
+//! The shape axis of G1 and of visible normals: s = 1/(γ−1).
 
 use alloc::vec::Vec;
 
@@ -6,7 +6,7 @@ use microfacet_common::shape::{S_END, gamma_of_s, s_of_gamma};
 
 use super::coordinate::{Coordinate, Placement, bisect, even_nodes};
 
-/// s = 1/(γ−1) ∈ [0, 2): 0 is Beckmann, 1 is GGX; γ → 3/2 is its end.
+/// The coordinate s = 1/(γ−1) ∈ [0, 2) of a shape: 0 is Beckmann, 1 is GGX; it ends with γ → 3/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseShape;
 
@@ -21,13 +21,15 @@ impl InverseShape {
         gamma_of_s(s)
     }
 
-    /// `count` nodes from `low` to `high` that crowd towards s = 2, evenly in s − ½ ln(1 − s/2): the projected area diverges
-    /// there as 1/(2 − s), and what depends on it changes by the logarithm of 2 − s.
+    /// `count` nodes from `low` to `high` that crowd towards s = 2, even in s − ½ ln(1 − s/2).
+    ///
+    /// The projected area diverges there as 1/(2 − s), and what depends on it changes with the
+    /// logarithm of 2 − s.
     pub fn crowded_nodes(low: f64, high: f64, count: usize) -> Vec<f64> {
         let warp = |s: f64| s - 0.5 * libm::log(1.0 - s / S_END);
         let mut nodes = even_nodes(warp(low), warp(high), count);
         nodes.iter_mut().for_each(|y| *y = bisect(low, high, *y, warp));
-        // Not through the warp and back.
+        // The ends themselves, without the rounding of the warp and its inverse.
         (nodes[0], nodes[count - 1]) = (low, high);
         nodes
     }

@@ -1,22 +1,26 @@
-//! Lagrange polynomials through a few of the nodes: how tables are read along every axis that is not looked up at speed.
+//! Lagrange polynomials through a few nodes: the interpolation along every axis without fast
+//! lookups.
 
 use alloc::vec::Vec;
 
-/// Nodes that the polynomial of albedo tables goes through.
+/// The number of nodes that the polynomial of albedo tables goes through.
 pub(crate) const SIX: usize = 6;
 
-/// The first of the `window` nodes that a polynomial goes through: those with the cell in their middle, `above` being the
-/// node after it, or as near to that as the ends of `n` nodes allow. Windows at the ends are shifted, not shortened.
+/// The first of the `window` of `n` nodes that a polynomial goes through. The cell that ends at
+/// node `above` is in their middle, or as near to it as the ends allow: windows at the ends are
+/// shifted, not shortened.
 fn first_node(above: usize, n: usize, window: usize) -> usize {
     above.saturating_sub(window / 2).min(n - window)
 }
 
-/// Where the window about t begins; `nodes` ascend, and a t at a node belongs to the cell above it.
+/// The first node of the window about t; `nodes` ascend, and a t at a node belongs to the cell
+/// above it.
 fn window_at(nodes: &[f64], t: f64, window: usize) -> usize {
     first_node(nodes.partition_point(|&node| node <= t), nodes.len(), window)
 }
 
-/// Nodes, by index, with their weights in the value at t; fewer than `window` where there are fewer nodes.
+/// Nodes, by index, with their weights in the value at t; fewer than `window` where there are fewer
+/// nodes.
 pub fn weights(nodes: &[f64], t: f64, window: usize) -> Vec<(usize, f64)> {
     let window = window.min(nodes.len());
     let start = window_at(nodes, t, window);
@@ -42,8 +46,8 @@ pub(super) fn is_even(nodes: &[f64]) -> bool {
     !nodes.iter().enumerate().any(off)
 }
 
-/// [`weights`] through six of `n` ≥ 6 nodes spread evenly over [0, 1], in single precision: the first, and the weights. A t
-/// outside is taken at the nearer end, NaN at 0.
+/// [`weights`] of six of `n` ≥ 6 nodes spread evenly over [0, 1], in single precision: the first
+/// node, and the weights. A t outside [0, 1] is taken at the nearer end, NaN at 0.
 #[inline]
 pub(crate) fn six(t: f32, n: usize) -> (usize, [f32; SIX]) {
     // `max` takes NaN to 0, which `clamp` would keep.
@@ -55,7 +59,7 @@ pub(crate) fn six(t: f32, n: usize) -> (usize, [f32; SIX]) {
 /// Weights of the polynomial through the nodes 0 … 5 at x.
 #[inline]
 pub(super) fn six_weights(x: f32) -> [f32; SIX] {
-    // Products from the left and from the right leave one factor out at each node.
+    // Products from the left and from the right together leave out one factor at each node.
     const C: [f32; SIX] =
         [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
     let mut weights = C;
@@ -70,7 +74,7 @@ pub(super) fn six_weights(x: f32) -> [f32; SIX] {
     weights
 }
 
-/// Σ weightᵢ nodeᵢ over the six nodes from `start` on, by channel.
+/// Σ weightᵢ nodeᵢ over the six nodes from `start` on, for each channel.
 #[inline]
 pub(crate) fn combine<const N: usize>(
     nodes: &[[f32; N]],
@@ -98,7 +102,7 @@ mod tests {
                 let power = window as i32 - 1;
                 let all = weights(&nodes, t, window);
                 let sum: f64 = all.iter().map(|&(i, w)| w * nodes[i].powi(power)).sum();
-                // One node alone stands for itself.
+                // A single node stands for itself.
                 assert!((sum - t.powi(power)).abs() < 1e-13, "{window}, {t}: {sum}");
                 assert_eq!((all.len(), all[window - 1].0 - all[0].0), (window, window - 1));
             }
@@ -132,7 +136,7 @@ mod tests {
                 let slow =
                     |node: usize| exact.iter().find(|at| at.0 == node).map_or(0.0, |at| at.1);
                 let got: f64 = (0..SIX).map(|i| (f64::from(fast[i]) - slow(start + i)).abs()).sum();
-                // The rounding of t, times n, moves the polynomial along.
+                // The rounding of t, times n, shifts the polynomial.
                 assert!(got < 4e-6 * n as f64, "{n} nodes, {t}: off by {got}");
             }
             assert_eq!([f32::NAN, -1.0].map(|t| six(t, n)), [six(0.0, n); 2]);

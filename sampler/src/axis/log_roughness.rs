@@ -1,17 +1,20 @@
-//! The roughness axis of albedos.
+//! The roughness axis of albedo tables.
 
 use serde::{Deserialize, Serialize};
 
 use super::coordinate::{Coordinate, Placement, bisect, positive};
 
-/// t = ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ, ascending in σ: even ratios about the offset, wide ones far below it,
-/// where only a heavy tail still makes a difference, and finer steps where σ is large.
+/// The coordinate of a roughness, t = ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ, ascending in
+/// σ.
+///
+/// Steps are even ratios about the offset, wide ratios far below it, where only a heavy tail still
+/// makes a difference, and finer where σ is large.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LogRoughness {
-    /// The σ about which the first term turns from even steps into even ratios.
+    /// The σ about which the first term turns from even steps to even ratios.
     pub offset: f64,
-    /// Where t vanishes (but for first/offset); a surface smoother than this is a mirror.
+    /// Where t vanishes (but for first/offset); a surface of smaller σ is a mirror.
     pub first: f64,
     /// Weight of ln(σ/first).
     pub slow: f64,
@@ -20,8 +23,9 @@ pub struct LogRoughness {
 }
 
 impl LogRoughness {
-    /// Of the tables that are baked: found by measuring. It begins at the smallest σ that can be bound; the slow logarithm is
-    /// there for γ near 3/2, whose tail at that σ still takes most of the light of views a few σ above the horizon.
+    /// The parameters of baked tables, found by measuring. `first` is the smallest σ that a lobe
+    /// can have; the slow logarithm serves γ near 3/2, whose tail at that σ still takes most of the
+    /// light of views a few σ above the horizon.
     pub const BAKED: Self = Self { offset: 0.015, first: 1e-8, slow: 0.2, linear: 1.0 };
 
     /// t of σ > 0.
@@ -31,7 +35,7 @@ impl LogRoughness {
             + self.linear * sigma
     }
 
-    /// σ of t, between e⁻⁴⁰ and e¹⁴.
+    /// σ of t, in the range from e⁻⁴⁰ to e¹⁴.
     pub fn quantity(&self, t: f64) -> f64 {
         libm::exp(bisect(-40.0, 14.0, t, |ln| self.coordinate(libm::exp(ln))))
     }

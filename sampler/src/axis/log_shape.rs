@@ -1,10 +1,12 @@
-//! The shape axis of albedos: γ by the logarithm of its distance from 3/2.
+//! The shape axis of albedo tables: the logarithm of the distance of γ from 3/2.
 
 use serde::{Deserialize, Serialize};
 
 use super::coordinate::{Coordinate, Placement, positive};
 
-/// t = ln(1 + scale/(2γ−3)) ≥ 0: 0 is Beckmann, and γ → 3/2, where the projected area diverges, is reached slowly.
+/// The coordinate of a shape, t = ln(1 + scale/(2γ−3)) ≥ 0.
+///
+/// 0 is Beckmann; γ → 3/2, where the projected area diverges, is reached slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LogShape {
@@ -13,7 +15,7 @@ pub struct LogShape {
 }
 
 impl LogShape {
-    /// Of the tables that are baked: found by measuring.
+    /// The parameters of baked tables, found by measuring.
     pub const BAKED: Self = Self { scale: 17.0 };
 
     /// t of γ ∈ (3/2, ∞].

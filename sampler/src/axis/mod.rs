@@ -1,10 +1,13 @@
-//! Axes of tables: what runs along them, where their nodes are, and how a table is read between the nodes.
+//! Axes of tables: the quantity along an axis, the places of its nodes, and interpolation between
+//! them.
 //!
-//! One file a coordinate, with its formula, its inverse, the places of its nodes, what a file may say of it, and the forms that
-//! lookups at speed use, tested against the formula: [`InverseShape`] and [`LogShape`] of γ, [`LogRoughness`] of σ,
-//! [`ReflectanceRoot`] of η, [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the elevation of a view,
-//! [`Azimuth`] of its azimuth, [`MirroredRoot`] and [`OddRoot`] of a random number. Whoever bakes, reads, measures or exports a table calls
-//! these. Beside them the two interpolations: [`lagrange`], and Hermite cells.
+//! Each coordinate has a file with its formula, its inverse, the places of its nodes, the checks of
+//! its parameters, and the fast forms that lookups use, which tests hold to the formula:
+//! [`InverseShape`] and [`LogShape`] of γ, [`LogRoughness`] of σ, [`ReflectanceRoot`] of η,
+//! [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the elevation of a view,
+//! [`Azimuth`] of its azimuth, [`MirroredRoot`] and [`OddRoot`] of a random number. Baking,
+//! lookups, measurement and export all call these. There are two interpolations: [`lagrange`], and
+//! Hermite cells.
 
 use alloc::format;
 use alloc::string::String;
@@ -45,38 +48,39 @@ pub(crate) use random_number::roots;
 
 use coordinate::Coordinate;
 
-/// How a physical quantity becomes the coordinate along an axis. The mapping is data in the file; readers need no other
-/// knowledge of it than the formula of its kind.
+/// How a physical quantity maps to the coordinate along an axis.
+///
+/// The mapping is data in the file; a reader needs to know only the formula of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Mapping {
-    /// Of γ.
+    /// The shape γ.
     InverseShape,
-    /// Of γ.
+    /// The shape γ.
     LogShape(LogShape),
-    /// Of σ.
+    /// The roughness σ.
     LogRoughness(LogRoughness),
-    /// Of η.
+    /// The index of refraction η.
     ReflectanceRoot,
-    /// Of a view, z = cot θ_v/σ_v, or a slope.
+    /// A view, by z = cot θ_v/σ_v, or a slope.
     HalfTangent(HalfTangent),
-    /// Of a view, z = cot θ_v/σ_v, or a slope.
+    /// A view, by z = cot θ_v/σ_v, or a slope.
     Rational(Rational),
-    /// Of a view, cos θ_v.
+    /// A view, by cos θ_v.
     ViewBlend(ViewBlend),
-    /// Of a view from the dense side of an interface, cos θ_v.
+    /// A view from the dense side of an interface, by cos θ_v.
     CriticalBlend(CriticalBlend),
-    /// Of the azimuth of a view.
+    /// The azimuth of a view.
     Azimuth(Azimuth),
-    /// Of a random number.
+    /// A random number u.
     MirroredRoot,
-    /// Of a random number about which what is tabulated is odd.
+    /// A random number u, where the tabulated quantity is odd about u = ½.
     OddRoot,
 }
 
 impl Mapping {
-    /// One of every kind, with parameters as they are baked or might be.
+    /// One mapping of every kind, with the parameters of baked tables or possible ones.
     pub const EVERY: [Self; 11] = [
         Self::InverseShape,
         Self::LogShape(LogShape::BAKED),
@@ -91,7 +95,7 @@ impl Mapping {
         Self::OddRoot,
     ];
 
-    /// The name of its kind in files.
+    /// The name of the mapping's kind in files.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::InverseShape => "inverse_shape",
@@ -108,7 +112,7 @@ impl Mapping {
         }
     }
 
-    /// Its formula in one line, by the names of its parameters.
+    /// The formula in one line, in terms of the parameters' names.
     pub fn formula(&self) -> &'static str {
         self.get().formula()
     }
@@ -130,25 +134,27 @@ impl Mapping {
     }
 }
 
-/// How values between nodes are made.
+/// How values between nodes are interpolated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Interpolation {
-    /// Straight lines.
+    /// Linear.
     Linear,
-    /// Cubic Hermite from the channels `value` and `slope`, the slope being the derivative with respect to the node index.
+    /// The cubic Hermite polynomial of the channels `value` and `slope`, the slope being the
+    /// derivative with respect to the node index.
     Hermite,
     /// The Lagrange polynomial through the four nearest nodes (fewer if the axis has fewer).
     Lagrange4,
-    /// The polynomial through the six nearest nodes, evenly spaced in the coordinate (fewer if the axis has fewer).
+    /// The Lagrange polynomial through the six nearest nodes, evenly spaced in the coordinate
+    /// (fewer if the axis has fewer).
     Lagrange6,
     /// None: only the nodes themselves are covered.
     Nodes,
 }
 
 impl Interpolation {
-    /// How many nodes a polynomial goes through; 1 where there is none.
+    /// The number of nodes that an interpolated value depends on; 1 for [`Nodes`](Self::Nodes).
     pub const fn window(self) -> usize {
         match self {
             Self::Linear | Self::Hermite => 2,
@@ -159,7 +165,7 @@ impl Interpolation {
     }
 }
 
-/// Nodes of an axis, by index, with their weights in a value.
+/// Nodes of an axis, by index, with their weights in an interpolated value.
 pub(crate) type Weights = Vec<(usize, f64)>;
 
 /// One axis of a table.
@@ -170,16 +176,16 @@ pub struct Axis {
     pub name: String,
     /// Unit of the physical quantity; `1` for pure numbers.
     pub unit: String,
-    /// From quantity to coordinate.
+    /// The map from the quantity to the coordinate.
     pub mapping: Mapping,
-    /// How values between nodes are made.
+    /// How values between nodes are interpolated.
     pub interpolation: Interpolation,
     /// Node coordinates, ascending. Values sit at the nodes (not at cell centres).
     pub nodes: Vec<f64>,
 }
 
 impl Axis {
-    /// An axis of a pure number with these nodes.
+    /// An axis of a dimensionless quantity with the given nodes.
     pub fn new(
         name: &str,
         mapping: Mapping,
@@ -189,10 +195,10 @@ impl Axis {
         Self { name: name.into(), unit: "1".into(), mapping, interpolation, nodes }
     }
 
-    /// An axis of `count` nodes where its mapping places them.
+    /// An axis of `count` nodes at the places that its mapping prescribes.
     ///
     /// # Panics
-    /// For a mapping whose nodes may stand anywhere.
+    /// If the mapping lets nodes stand anywhere.
     pub fn placed(
         name: &str,
         mapping: Mapping,
@@ -204,7 +210,7 @@ impl Axis {
         Self::new(name, mapping, interpolation, (0..count).map(node).collect())
     }
 
-    /// How many values stand along this axis.
+    /// The number of values along this axis.
     pub fn len(&self) -> usize {
         self.mapping.get().values(self.nodes.len())
     }
@@ -217,12 +223,12 @@ impl Axis {
     /// The coordinates of the first and the last node.
     ///
     /// # Panics
-    /// Without nodes, which an axis that was validated has.
+    /// Without nodes; an axis that was validated has some.
     pub fn ends(&self) -> [f64; 2] {
         [self.nodes[0], self.nodes[self.nodes.len() - 1]]
     }
 
-    /// The coordinate of a γ, σ or η, for axes of these; `None` for others.
+    /// The coordinate of γ, σ or η on an axis of that quantity; `None` for other axes.
     pub fn coordinate(&self, quantity: f64) -> Option<f64> {
         match self.mapping {
             Mapping::InverseShape => Some(InverseShape.coordinate(quantity)),
@@ -233,7 +239,7 @@ impl Axis {
         }
     }
 
-    /// The γ, σ or η at a coordinate, for axes of these; `None` for others.
+    /// The γ, σ or η at a coordinate on an axis of that quantity; `None` for other axes.
     pub fn quantity(&self, t: f64) -> Option<f64> {
         match self.mapping {
             Mapping::InverseShape => Some(InverseShape.quantity(t)),
@@ -244,17 +250,18 @@ impl Axis {
         }
     }
 
-    /// γ, σ or η of all nodes, for axes of these; empty for others.
+    /// The γ, σ or η of all nodes on an axis of that quantity; empty for other axes.
     pub fn quantities(&self) -> Vec<f64> {
         self.nodes.iter().filter_map(|&t| self.quantity(t)).collect()
     }
 
-    /// Nodes, by index, with their weights in the value at the coordinate t; `None` where the axis does not cover it.
+    /// Nodes, by index, with their weights in the value at the coordinate t; `None` where the axis
+    /// does not cover t.
     ///
-    /// A t within rounding of a node is taken for it.
+    /// A t within rounding of a node is taken as that node.
     pub(crate) fn weights(&self, t: f64) -> Option<Weights> {
         let [first, last] = self.ends();
-        // t has come through logarithms and their inverses on some axes.
+        // On some axes t has come through logarithms and their inverses.
         let same = match self.interpolation {
             Interpolation::Lagrange6 => 1e-9 * (1.0 + last.abs()),
             _ => 1e-12 * (1.0 + t.abs()),
@@ -266,8 +273,8 @@ impl Axis {
         between.then(|| lagrange::weights(&self.nodes, t, self.interpolation.window()))
     }
 
-    /// Checks what every reader relies on: finite, strictly ascending nodes inside the mapping's range, where it places them,
-    /// and even ones where a polynomial needs that.
+    /// Checks what every reader relies on: finite, strictly ascending nodes within the mapping's
+    /// range, at the places that it prescribes, and evenly spaced where a polynomial needs that.
     pub(crate) fn validate(&self) -> Result<(), LoadError> {
         let fail = |why: &str| Err(LoadError::Invalid(format!("axis `{}`: {why}", self.name)));
         let unsupported =
@@ -313,7 +320,7 @@ mod tests {
             let text = serde_json::to_string(&mapping).unwrap();
             assert!(text.contains(&format!("\"kind\":\"{}\"", mapping.name())), "{text}");
             assert_eq!(serde_json::from_str::<Mapping>(&text).unwrap(), mapping);
-            // Those without parameters are their name alone, and ignore whatever else is said.
+            // A mapping without parameters is its name alone, and ignores other fields.
             if text.contains(',') {
                 let more = text.replacen('{', "{\"more\":1,", 1);
                 assert!(serde_json::from_str::<Mapping>(&more).is_err(), "{more}");
@@ -341,7 +348,7 @@ mod tests {
             (Mapping::LogShape(LogShape { scale: f64::NAN }), 1),
             (Mapping::LogRoughness(LogRoughness { offset: 0.0, ..LogRoughness::BAKED }), 1),
             (Mapping::Rational(Rational { scale: -1.0, crowded: false }), 5),
-            // The product of these would be 0, and the number of panels about it without end.
+            // The product of these would be 0, and the number of quadrature panels infinite.
             (Mapping::ViewBlend(ViewBlend { floor: 1e-200, slope: 1e-200, ..ViewBlend::BAKED }), 7),
             (Mapping::CriticalBlend(CriticalBlend { kink: 1e-320, ..CriticalBlend::BAKED }), 13),
             (Mapping::ViewBlend(ViewBlend { weight: 0.95, ..ViewBlend::BAKED }), 7),

@@ -1,22 +1,23 @@
-//! The axes of random numbers: fourth roots from either end.
+//! The axes of random numbers: fourth roots of the distance from either end.
 
 use wide::f32x4;
 
 use super::coordinate::Coordinate;
 use crate::math::sqrt;
 
-/// t = (2 min(u, 1−u))^¼ ∈ [0, 1] of a random number u: quantiles behave like powers of the distance from either end, and the
-/// fourth root makes those of every shape smooth.
+/// The coordinate t = (2 min(u, 1−u))^¼ ∈ [0, 1] of a random number u.
 ///
-/// Along the axis stand first the nodes for u ≤ ½ (t ascending from u = 0), then as many for u > ½ (t ascending from u = 1).
+/// Quantiles behave like powers of the distance from either end, and the fourth root makes those of
+/// every shape smooth. An axis holds first the nodes for u ≤ ½ (t ascending from u = 0), then as
+/// many for u > ½ (t ascending from u = 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirroredRoot;
 
-/// The half for u > ½ of [`MirroredRoot`] alone: the quantile at u is minus the one at 1−u.
+/// The half u > ½ of [`MirroredRoot`] alone: the quantile at u is minus the one at 1−u.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OddRoot;
 
-/// ⁴√2: the factor 2 may be taken out of the roots.
+/// ⁴√2: the factor 2 taken out of the roots.
 const FOURTH_ROOT_OF_2: f64 = 1.189_207_115_002_721_1;
 
 impl MirroredRoot {
@@ -31,23 +32,23 @@ impl MirroredRoot {
         0.5 * ((t * t) * (t * t))
     }
 
-    /// du/dt there.
+    /// du/dt at t, for u ≤ ½.
     pub fn rate(t: f64) -> f64 {
         2.0 * t * t * t
     }
 
-    /// t of a small number u ≥ 0.
+    /// t of a number u ∈ [0, ½].
     pub fn of_number(u: f64) -> f64 {
         libm::sqrt(libm::sqrt(2.0 * u))
     }
 
-    /// What takes [`roots`] to cells.
+    /// The factor from [`roots`] to cells.
     pub(crate) fn scale(cells: usize) -> f32 {
         (cells as f64 * FOURTH_ROOT_OF_2) as f32
     }
 }
 
-/// min(u, 1−u)^¼ of four numbers; t over ⁴√2.
+/// min(u, 1−u)^¼ of four random numbers: t/⁴√2.
 #[inline(always)]
 pub(crate) fn roots(u: f32x4) -> f32x4 {
     u.fast_min(1.0 - u).fast_max(f32x4::ZERO).sqrt().sqrt()
@@ -83,7 +84,7 @@ mod tests {
             assert!((change / (2.0 * step) - MirroredRoot::rate(t)).abs() < 1e-9);
             let fast = |u: f32| f64::from(MirroredRoot::coordinate(u));
             assert!((fast(u as f32) - t).abs() < 1e-6, "{t}");
-            // Of 1 − u single precision keeps 6e-8, the fourth root of which is 0.02.
+            // Single precision resolves 1 − u to 6e-8, the fourth root of which is 0.02.
             assert!((fast(1.0 - u as f32) - t).abs() < if t < 0.1 { 0.02 } else { 1e-4 }, "{t}");
         }
         assert_eq!([-0.1, 0.0, 1.0, 1.5, f32::NAN].map(MirroredRoot::coordinate), [0.0; 5]);

@@ -1,4 +1,4 @@
-//! The view axis of G1, and the slope axis of bounded distributions: x/(x + κ).
+//! The view axis of G1 and the slope axis of bounded distributions: x/(x + κ).
 
 use serde::{Deserialize, Serialize};
 use wide::f32x4;
@@ -8,11 +8,12 @@ use microfacet_common::shape::S_END;
 use super::coordinate::{Coordinate, positive};
 use super::crowded;
 
-/// q = x/(x + κ) ∈ [0, 1] of a cotangent z = cot θ_v/σ_v or a slope, x ∈ [0, ∞], with κ = scale/(2 − s); for tables without a
-/// γ axis s = 1, so that κ is the scale itself. Where `crowded`, t = 1 − √(1−q).
+/// The coordinate q = x/(x + κ) ∈ [0, 1] of x ∈ [0, ∞], a unit cotangent z = cot θ_v/σ_v or a
+/// slope.
 ///
-/// Of G1 it takes the zero at grazing, the limit at normal incidence, and through κ the divergence of the projected area as
-/// γ → 3/2.
+/// κ = scale/(2 − s); for tables without a γ axis s = 1, so that κ is the scale itself. Where
+/// `crowded`, t = 1 − √(1−q). In G1, q takes up the zero at grazing, the limit at normal incidence
+/// and, through κ, the divergence of the projected area as γ → 3/2.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rational {
@@ -24,7 +25,8 @@ pub struct Rational {
 }
 
 impl Rational {
-    /// Of the G1 tables that are baked: within 10 % of the mean positive slope c√s/(2−s), the projected area at grazing.
+    /// The parameters of baked G1 tables: κ is within 10 % of the mean positive slope c√s/(2−s),
+    /// the projected area at grazing.
     pub const BAKED: Self = Self { scale: 0.5, crowded: false };
 
     /// κ for the shape s.
@@ -57,20 +59,20 @@ impl Rational {
         kappa * q / rest
     }
 
-    /// t of the slope x : z ≥ 0, with `kappa_z` = κz.
+    /// t of the slope x : z with x, z ≥ 0, given `kappa_z` = κz.
     #[inline(always)]
     pub(crate) fn of_slope(&self, x: f32, kappa_z: f32) -> f32 {
         let whole = x + kappa_z;
         if self.crowded { crowded::fast(kappa_z / whole) } else { x / whole }
     }
 
-    /// t times `cells` where x = z/ρ: from z and r = cells/(z + κρ).
+    /// t times `cells` of x = z/ρ, given r = cells/(z + κρ).
     #[inline(always)]
     pub(crate) fn of_view(&self, rho: f32, z: f32, kappa: f32, r: f32, cells: f32) -> f32 {
         if self.crowded { crowded::fast(kappa * rho * r / cells) * cells } else { z * r }
     }
 
-    /// q and t, both times `cells`, of four views with `across` = κρ.
+    /// q and t, both times `cells`, of four views, given `across` = κρ.
     #[inline(always)]
     pub(crate) fn of_views(&self, across: f32x4, z: f32x4, cells: f32) -> [f32x4; 2] {
         let area = z + across;

@@ -5,8 +5,11 @@ use core::f64::consts::FRAC_PI_2;
 use super::coordinate::{Coordinate, Placement};
 use crate::math::sqrt64;
 
-/// t = acos(1 − 2x)/π ∈ [0, 1], x = F0^¼ = √((η−1)/(η+1)), of an index η ∈ [1, ∞] of the dense side over the thin one: finer
-/// towards both ends, where the reflectance of grazing views turns within √(η²−1) and 1/η of the horizon.
+/// The coordinate of an index of refraction η ∈ [1, ∞], dense side over thin: t = acos(1 − 2x)/π ∈
+/// [0, 1] with x = F0^¼ = √((η−1)/(η+1)).
+///
+/// It is finer towards both ends, where the reflectance of grazing views changes within √(η²−1) and
+/// 1/η of the horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReflectanceRoot;
 

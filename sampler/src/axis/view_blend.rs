@@ -1,7 +1,7 @@
-//! The view axis of albedos. **To space it differently, change this file alone** and bake anew: baking, readers, certificates,
-//! examples and the description in every file follow.
+//! The view axis of albedo tables. **To space it differently, change this file alone** and bake
+//! again: baking, readers, certificates, examples and the description in every file follow.
 //!
-//! Why it is spaced so, `cargo run --release --example albedo_design` measures.
+//! `cargo run --release --example albedo_design` measures the reasons for this spacing.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,16 +9,18 @@ use super::coordinate::{Coordinate, bisect, positive};
 use super::lagrange::SIX;
 use crate::math::sqrt64;
 
-/// t = (y(μ) − y(μ₀))/(1 − y(μ₀)) ∈ [0, 1] for μ = cos θ_v ≥ μ₀ = floor·slope·σ/(floor + slope·σ), where
+/// The view coordinate of albedo tables, t ∈ [0, 1] of μ = cos θ_v ∈ [μ₀, 1].
+///
+/// t = (y(μ) − y(μ₀))/(1 − y(μ₀)) with μ₀ = floor·slope·σ/(floor + slope·σ),
 /// y = weight·x + normal·ν/(ν + √(1−μ²)) + (1 − weight − normal)(share·x^¼ + (1−share)·h^¼),
 /// x = μ/(μ + κσ√(1−μ²)), κ = scale + heavy/(2γ−3), h = μ/(1 + √(1−μ²)), ν = spread·σ.
 ///
-/// h follows the view; x follows z = cot θ_v/σ and, as γ → 3/2, the ever wider reach of masking; ν resolves the turn at normal
-/// incidence, and the fourth roots grazing views.
+/// h follows the view; x follows z = cot θ_v/σ and, as γ → 3/2, the ever wider reach of masking; ν
+/// resolves the change at normal incidence, and the fourth roots resolve grazing views.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViewBlend {
-    /// Share of x itself.
+    /// Share of x.
     pub weight: f64,
     /// Share of the term with ν.
     pub normal: f64,
@@ -26,18 +28,19 @@ pub struct ViewBlend {
     pub share: f64,
     /// κ for Beckmann.
     pub scale: f64,
-    /// How κ grows with 1/(2γ−3).
+    /// Factor of 1/(2γ−3) in κ.
     pub heavy: f64,
     /// ν/σ.
     pub spread: f64,
     /// Largest μ₀.
     pub floor: f64,
-    /// μ₀/σ of smooth surfaces.
+    /// μ₀/σ as σ → 0.
     pub slope: f64,
 }
 
 impl ViewBlend {
-    /// Of the tables that are baked: found by searching for the least error of E and its moments between 33 exact nodes.
+    /// The parameters of baked tables, found by searching for the least error of E and its moments
+    /// between 33 exact nodes.
     pub const BAKED: Self = Self {
         weight: 0.17,
         normal: 0.08,
@@ -49,26 +52,27 @@ impl ViewBlend {
         slope: 2e-3,
     };
 
-    /// The same for tables of many nodes: what is left to err by there is the cusp at normal incidence, of γ 1.5 to 1.6, which takes
-    /// closer ones.
+    /// The parameters for tables of many nodes. The largest error left there is at the cusp at
+    /// normal incidence, for γ from 1.5 to 1.6, which needs closer nodes.
     pub const CLOSE: Self = Self { normal: 0.2, scale: 6.0, spread: 1.3, ..Self::BAKED };
 
-    /// The same for one shape γ: κ is a number, and readers need no γ, see [`prepare_shaped`](Self::prepare_shaped).
+    /// The same coordinate for one shape γ: κ is a constant, and readers need no γ, see
+    /// [`prepare_shaped`](Self::prepare_shaped).
     #[must_use]
     pub fn of_shape(&self, gamma: f64) -> Self {
         Self { scale: kappa(self.scale, self.heavy, gamma), heavy: 0.0, ..*self }
     }
 
-    /// The coordinate of one roughness, of a table for one shape.
+    /// Prepares the coordinate of a table of one shape for a roughness σ > 0.
     pub fn prepare_shaped(&self, sigma: f64) -> PreparedView {
-        // With `heavy` = 0 every γ is the same.
+        // With `heavy` = 0, γ does not matter.
         self.prepare(sigma, f64::INFINITY)
     }
 
-    /// The coordinate of one material, σ > 0.
+    /// Prepares the coordinate for a roughness σ > 0 and a shape γ.
     pub fn prepare(&self, sigma: f64, gamma: f64) -> PreparedView {
         let knee = kappa(self.scale, self.heavy, gamma) * sigma;
-        // Without the kink of a minimum, which would show in the nodes along σ.
+        // A minimum would have a kink, which would show in the nodes along σ.
         let floor = harmonic(self.floor, self.slope * sigma);
         let mut view =
             PreparedView { blend: *self, knee, turn: self.spread * sigma, floor, start: 0.0 };
@@ -82,12 +86,12 @@ pub(super) fn kappa(scale: f64, heavy: f64, gamma: f64) -> f64 {
     scale + heavy / (2.0 * gamma - 3.0)
 }
 
-/// ab/(a + b), a smooth minimum of what is not below 0; 0 where either is.
+/// ab/(a + b), a smooth minimum of numbers ≥ 0; 0 if either is 0.
 pub(super) fn harmonic(a: f64, b: f64) -> f64 {
     if a > 0.0 && b > 0.0 { a * b / (a + b) } else { 0.0 }
 }
 
-/// sin θ, x and h of a view, κσ being the knee of x.
+/// sin θ, x and h of a view; `knee` is κσ.
 pub(super) fn terms(cos: f64, knee: f64) -> (f64, f64, f64) {
     let sin = sqrt64((1.0 - cos) * (1.0 + cos));
     (sin, cos / (cos + knee * sin), cos / (1.0 + sin))
@@ -99,7 +103,7 @@ pub(super) fn fourth_roots(share: f64, x: f64, h: f64) -> f64 {
     share * root(x) + (1.0 - share) * root(h)
 }
 
-/// [`ViewBlend`] of one material.
+/// [`ViewBlend`] prepared for one material.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedView {
     blend: ViewBlend,
@@ -113,7 +117,7 @@ pub struct PreparedView {
 }
 
 impl PreparedView {
-    /// μ₀: the view of the first node.
+    /// μ₀, the view of the first node.
     pub fn floor(&self) -> f64 {
         self.floor
     }
@@ -131,7 +135,7 @@ impl PreparedView {
         (self.y(cos) - self.start) / (1.0 - self.start)
     }
 
-    /// t of any cos θ ∈ [0, 1]: that of the first node below μ₀.
+    /// t of any cos θ ∈ [0, 1]; a view with cos θ < μ₀ is taken at the first node.
     pub(crate) fn clamped(&self, cos: f32) -> f32 {
         if cos > self.floor as f32 { self.coordinate(f64::from(cos)) as f32 } else { 0.0 }
     }
@@ -178,7 +182,7 @@ mod tests {
                 for t in [0.0, 1e-3, 0.1, 0.5, 0.9, 1.0] {
                     let cos = view.quantity(t);
                     let (back, step) = (view.coordinate(cos), 1e-15);
-                    // Near the normal t turns with the sine: an ulp of cos θ is 1e-8 of it.
+                    // Near the normal t changes with sin θ, in which an ulp of cos θ is 1e-8.
                     let ulp = view.coordinate(cos)
                         - view.coordinate((cos * (1.0 - step)).max(view.floor()));
                     assert!(

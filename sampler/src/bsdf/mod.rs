@@ -1,4 +1,4 @@
-//! What a renderer builds from lobes and albedos.
+//! What a renderer builds from lobes and albedos: energy compensation.
 
 mod compensation;
 

@@ -1,16 +1,17 @@
-//! The checksum of a set: eight hexadecimal digits in its document, a CRC-32 taken over everything with these digits as zeros, so
-//! that a damaged shape or axis is found like a damaged value.
+//! The checksum of a set: a CRC-32 over everything, its own eight hexadecimal digits in the
+//! document taken as zeros, so that a damaged shape or axis is found like a damaged value.
 
 use alloc::format;
 use alloc::string::String;
 use core::iter;
 
-/// What precedes the digits in a document.
+/// The bytes before the digits in a document.
 const IN_DOCUMENT: &[u8] = br#""checksum":""#;
-/// And in the header of a safetensors file, where the document is a JSON string inside JSON.
+/// The bytes before the digits in the header of a safetensors file, where the document is a JSON
+/// string inside JSON.
 const IN_HEADER: &[u8] = br#"\"checksum\":\""#;
 
-/// The digits of a document that is not sealed.
+/// The digits of an unsealed document.
 pub(super) const NONE: &str = "00000000";
 const DIGITS: usize = NONE.len();
 
@@ -26,7 +27,7 @@ fn position_in_file(file: &[u8]) -> Option<usize> {
     position(file.get(..usize::try_from(header).ok()?.checked_add(8)?)?, IN_HEADER)
 }
 
-/// CRC-32 (ISO-HDLC) of the bytes, those of the digits at `at` as zeros.
+/// CRC-32 (ISO-HDLC) of the bytes and of `more`, with the digits at `at` taken as zeros.
 fn digits(bytes: &[u8], at: usize, more: impl Iterator<Item = [u8; 4]>) -> [u8; DIGITS] {
     let mut hasher = crc32fast::Hasher::new();
     hasher.update(&bytes[..at]);
@@ -37,8 +38,8 @@ fn digits(bytes: &[u8], at: usize, more: impl Iterator<Item = [u8; 4]>) -> [u8; 
     text.as_bytes().try_into().expect("32 bits are eight digits")
 }
 
-/// Fills in the checksum of a safetensors file, whatever it was before: for tools that edit files. False if there is no place
-/// for it.
+/// Fills in the checksum of a safetensors file, for tools that edit files; false if the file has no
+/// place for it.
 pub fn seal(file: &mut [u8]) -> bool {
     let Some(at) = position_in_file(file) else { return false };
     let digits = digits(file, at, iter::empty());
@@ -46,19 +47,21 @@ pub fn seal(file: &mut [u8]) -> bool {
     true
 }
 
-/// Whether the checksum of a safetensors file is that of its bytes; `None` if it has none.
+/// Whether the checksum of a safetensors file matches its bytes; `None` if it has none.
 pub(super) fn is_sealed(file: &[u8]) -> Option<bool> {
     let at = position_in_file(file)?;
     Some(digits(file, at, iter::empty()) == file[at..at + DIGITS])
 }
 
-/// A document with the checksum over itself and the values it describes, as little-endian f32 in table order: what an image
-/// carries. `None` if there is no place for it.
+/// A document with its checksum, over itself and the values it describes, as little-endian f32 in
+/// table order.
+///
+/// It is what an image carries. `None` if there is no place for the checksum.
 pub fn seal_document(document: &str, values: &[f32]) -> Option<String> {
     let at = position(document.as_bytes(), IN_DOCUMENT)?;
     let digits = digits(document.as_bytes(), at, values.iter().map(|x| x.to_le_bytes()));
     let digits = core::str::from_utf8(&digits).expect("hexadecimal digits are ASCII");
-    // The place may be in the middle of a character of a damaged document.
+    // In a damaged document the place may be in the middle of a character.
     Some(format!("{}{digits}{}", document.get(..at)?, document.get(at + DIGITS..)?))
 }
 
@@ -78,7 +81,7 @@ mod tests {
         let mut file = file(r#"{"a":"{\"checksum\":\"deadbeef\",\"b\":1}"}"#, b"values");
         assert_eq!(is_sealed(&file), Some(false));
         assert!(seal(&mut file) && is_sealed(&file) == Some(true));
-        // As the format has it: that of the file with zeros in their place.
+        // As the format has it: the checksum of the file with zeros in place of the digits.
         let at = position_in_file(&file).unwrap();
         let mut zeroed = file.clone();
         zeroed[at..at + DIGITS].fill(b'0');

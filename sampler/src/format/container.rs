@@ -1,6 +1,7 @@
-//! The safetensors container: one file, all tables of a set, described by one JSON document in its metadata.
+//! The safetensors container: one file holds all tables of a set and one JSON document that
+//! describes them, in its metadata.
 //!
-//! `docs/format.md` is the specification. Everything in the file is under one checksum, the header included.
+//! `docs/format.md` is the specification. One checksum covers the whole file, header included.
 
 use alloc::borrow::ToOwned;
 use alloc::collections::BTreeMap;
@@ -21,14 +22,14 @@ use super::table::Table;
 use crate::axis::Axis;
 use crate::error::LoadError;
 
-/// `format` of the document.
+/// The `format` entry of the document.
 pub const FORMAT: &str = "microfacet-tables";
 /// Version of the format that this crate writes, and the only one that it reads.
 pub const VERSION: u32 = 3;
 /// Key of the document in the safetensors metadata.
 const KEY: &str = "microfacet";
 
-/// Where a set comes from and how its numbers are to be read.
+/// Where a set comes from, and how its numbers are to be read.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Program and version that baked the set.
@@ -37,9 +38,9 @@ pub struct Provenance {
     pub numerics: u32,
     /// Licence of the data.
     pub license: String,
-    /// The conventions a reader could get wrong, in words.
+    /// The conventions that a reader could get wrong, in words.
     pub conventions: BTreeMap<String, String>,
-    /// The recipe the set was baked from, as TOML; empty for the general set.
+    /// The recipe that the set was baked from, as TOML; empty for the general set.
     pub recipe: String,
     /// Named materials of the recipe.
     pub materials: Vec<MaterialEntry>,
@@ -52,7 +53,7 @@ struct Document {
     checksum: String,
     #[serde(flatten)]
     provenance: Provenance,
-    /// Formulas of the mappings that occur, by kind: for those who write a reader with the file before them.
+    /// Formulas of the mappings that occur, by kind, for authors of readers.
     #[serde(default)]
     mappings: BTreeMap<String, String>,
     tables: Vec<Descriptor>,
@@ -72,7 +73,7 @@ struct Descriptor {
     axes: Vec<Axis>,
     channels: Vec<String>,
     precision: Precision,
-    /// For `u16`: value = offset + scale·integer, by channel.
+    /// For `u16`: value = offset + scale·integer, per channel.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     scale: Vec<f32>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -92,7 +93,9 @@ fn invalid(why: impl ToString) -> LoadError {
     LoadError::Invalid(why.to_string())
 }
 
-/// The JSON document that describes a set, with zeros for its checksum: what [`encode`] embeds, and what other containers may carry.
+/// The JSON document that describes a set, with zeros for its checksum.
+///
+/// It is what [`encode`] embeds, and what other containers may carry.
 ///
 /// # Errors
 /// [`LoadError::Invalid`] if a table would not load again.
@@ -144,16 +147,18 @@ pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, Load
         })
         .collect::<Result<Vec<_>, _>>()
         .map_err(invalid)?;
-    // One key only: the library writes the metadata in the order of a hash map.
+    // One key only: the library writes the metadata in hash-map order.
     let metadata = [(KEY.to_owned(), json)].into_iter().collect();
     let mut bytes = safetensors::serialize(views, Some(metadata)).map_err(invalid)?;
     if checksum::seal(&mut bytes) { Ok(bytes) } else { Err(invalid("no place for the checksum")) }
 }
 
-/// Reads a set from the bytes of a safetensors file, checking everything; `verify` may skip the checksum where the bytes are known good.
+/// Reads a set from the bytes of a safetensors file and checks everything; without `verify`, for
+/// bytes known to be good, all but the checksum.
 ///
 /// # Errors
-/// [`LoadError`] saying what is wrong; never a panic, and never an allocation larger than a few times the input.
+/// [`LoadError`] saying what is wrong; it never panics, and never allocates more than a few times
+/// the input.
 pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Table>), LoadError> {
     let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|why| {
         invalid(format!("{why}; a table set is a safetensors file written by `microfacet-bake`"))
@@ -198,10 +203,10 @@ pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Tabl
     Ok((provenance, tables))
 }
 
-/// Puts a set together again from the document of [`describe`] and the values of each table, decoded already.
+/// Reassembles a set from the document of [`describe`] and the decoded values of each table.
 ///
 /// # Errors
-/// [`LoadError`] if the document is not one, or a table is not sound.
+/// [`LoadError`] if the document is not that of a set, or a table is not valid.
 pub fn reassemble(
     json: &str,
     mut values: impl FnMut(&str) -> Result<Vec<f32>, String>,
@@ -210,7 +215,8 @@ pub fn reassemble(
     assemble(json, |descriptor, _| values(&descriptor.name))
 }
 
-/// The format and version of a document, before anything else of it: a newer one may not parse as this one.
+/// Checks the format and version of a document before anything else: a newer document may not parse
+/// as this version.
 fn check_version(json: &str) -> Result<(), LoadError> {
     #[derive(Deserialize)]
     struct Head {

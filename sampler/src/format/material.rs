@@ -20,14 +20,15 @@ pub struct MaterialEntry {
     pub sigma: [[f64; 2]; 2],
     /// 1/(γ−1), so that γ = ∞ is the number 0; a range [min, max] likewise.
     pub s: [f64; 2],
-    /// The distribution, such as `gtr:0.2,1.5`, of a material that is no Student-t; `sigma` is then the scale of its tables, and `s`
-    /// means nothing.
+    /// The distribution, such as `gtr:0.2,1.5`, of a material outside the Student-t family; `sigma`
+    /// is then the scale of its tables, and `s` means nothing.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub distribution: String,
-    /// The turn of an ellipsoid, θx, θy, θz in radians as of [`Skew::new`](crate::Skew::new); its σ and s are single numbers.
+    /// The turn of an ellipsoid, θx, θy, θz in radians as for [`Skew::new`](crate::Skew::new); its
+    /// σ and s are single numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub theta: Option<[f64; 3]>,
-    /// The form of masking and shadowing it states, if any.
+    /// The form of masking and shadowing that it states, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub masking: Option<Masking>,
     /// The reflectance of its facets, if it states one.
@@ -41,9 +42,11 @@ pub struct MaterialEntry {
 pub enum FresnelEntry {
     /// F = 1.
     Mirror,
-    /// Schlick's approximation with this reflectance at normal incidence, in [0, 1]; the moments of `albedo` tables serve every value.
+    /// Schlick's approximation with this reflectance at normal incidence, in [0, 1]; the moments of
+    /// `albedo` tables serve every value.
     Schlick(f64),
-    /// A conductor of complex index of refraction η + ik relative to the outside, for red, green and blue.
+    /// A conductor of complex index of refraction η + ik, relative to the outside, for red, green
+    /// and blue.
     Conductor {
         /// η > 0.
         eta: [f64; 3],
@@ -52,7 +55,7 @@ pub enum FresnelEntry {
     },
     /// A dielectric with this index of refraction, > 0, relative to the outside.
     Dielectric(f64),
-    /// Dielectrics of all indices of refraction from 1 ≤ `min` on, relative to the outside.
+    /// Dielectrics of all indices of refraction from `min` ≥ 1 to `max`, relative to the outside.
     Dielectrics {
         /// Smallest.
         min: f64,
@@ -63,7 +66,8 @@ pub enum FresnelEntry {
 }
 
 impl FresnelEntry {
-    /// The reflectances of the albedo tables that hold its albedo: one, or of a dielectric one a side, unless both are the same.
+    /// The reflectances of the tables that hold its albedo: one, or for a dielectric one per side,
+    /// unless both sides are the same.
     pub fn tabulated(&self) -> Vec<Reflectance> {
         let Some([min, max]) = self.indices() else {
             return vec![match *self {
@@ -77,7 +81,8 @@ impl FresnelEntry {
         if max == 1.0 { vec![of(Side::Thin)] } else { Side::ALL.map(of).into() }
     }
 
-    /// The indices [min, max] ⊂ [1, ∞] of the dense side over the thin one; `None` of what is no dielectric.
+    /// The indices [min, max] ⊂ [1, ∞] of the dense side over the thin one; `None` unless it is a
+    /// dielectric.
     pub fn indices(&self) -> Option<[f64; 2]> {
         match *self {
             Self::Dielectric(eta) => Some([eta.max(1.0 / eta); 2]),
@@ -86,7 +91,8 @@ impl FresnelEntry {
         }
     }
 
-    /// The index of a dielectric, inside over outside, in the middle of the F0^¼ of several; `None` of what is no dielectric.
+    /// The index of a dielectric, inside over outside; of a range, the middle in the coordinate
+    /// [`ReflectanceRoot`]; `None` unless it is a dielectric.
     pub fn middle_index(&self) -> Option<f64> {
         if let Self::Dielectric(eta) = self {
             return Some(*eta);
@@ -102,12 +108,12 @@ fn middle([min, max]: [f64; 2]) -> f64 {
 }
 
 impl MaterialEntry {
-    /// σx and σy, in the middle of their ranges.
+    /// σx and σy, at the middle of their ranges.
     pub fn sigma(&self) -> [f64; 2] {
         self.sigma.map(middle)
     }
 
-    /// γ, in the middle of the range of s.
+    /// γ, at the middle of the range of s.
     pub fn gamma(&self) -> f64 {
         gamma_of_s(middle(self.s))
     }
@@ -118,13 +124,13 @@ impl MaterialEntry {
         if x == y { x } else { libm::sqrt(x * y) }
     }
 
-    /// The form of masking it states; height-correlated if none.
+    /// The form of masking that it states; height-correlated if it states none.
     pub fn masking(&self) -> Masking {
         self.masking.unwrap_or_default()
     }
 
-    /// Whose normals its albedo is of: the family's if it is round, or if a range leaves an anisotropic one to the round lobe of
-    /// [`round_sigma`](Self::round_sigma) that stands in for it.
+    /// The lobe of its albedo: the family's if it is round, or if it is anisotropic with a range,
+    /// for which the round lobe of [`round_sigma`](Self::round_sigma) stands in.
     pub fn lobe(&self) -> LobeEntry {
         if !self.distribution.is_empty() {
             return LobeEntry::Distribution(self.distribution.clone());

@@ -1,4 +1,5 @@
-//! The file format: what a table holds and how, and the container of a set. `docs/format.md` is the specification.
+//! The file format: what a table holds and how, and the container of a set; `docs/format.md`
+//! specifies it.
 
 mod checksum;
 mod container;

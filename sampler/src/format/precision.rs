@@ -1,4 +1,4 @@
-//! How values are stored.
+//! How values are stored: number formats, and conversion to and from bytes.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -16,7 +16,8 @@ pub enum Precision {
     F32,
     /// IEEE half precision.
     F16,
-    /// Sixteen-bit fixed point, value = offset + scale·integer with one offset and scale a channel.
+    /// Sixteen-bit fixed point, value = offset + scale·integer, with one offset and scale per
+    /// channel.
     U16,
 }
 
@@ -38,11 +39,11 @@ impl Precision {
     }
 }
 
-/// Between f32 values and stored bytes, little-endian.
+/// Converts between f32 values and stored bytes, little-endian.
 pub(super) enum Codec {
     F32,
     F16,
-    /// One scale and offset a channel.
+    /// One scale and offset per channel.
     U16 {
         scale: Vec<f32>,
         offset: Vec<f32>,
@@ -86,7 +87,7 @@ impl Codec {
         }
     }
 
-    /// What a description says of it; empty but for fixed point.
+    /// The scale and offset of a description; empty but for fixed point.
     pub(super) fn scale_offset(&self) -> (Vec<f32>, Vec<f32>) {
         match self {
             Self::U16 { scale, offset } => (scale.clone(), offset.clone()),
@@ -102,7 +103,8 @@ impl Codec {
                 let n = scale.len();
                 let quantise = |(i, &x): (usize, &f32)| {
                     let step = scale[i % n];
-                    // A constant channel has no step; half a step is added since the cast truncates.
+                    // A constant channel has no step; half a step is added because the cast
+                    // truncates.
                     let q = if step > 0.0 { ((x - offset[i % n]) / step + 0.5) as u16 } else { 0 };
                     q.to_le_bytes()
                 };
@@ -130,10 +132,11 @@ impl Codec {
         }
     }
 
-    /// The values as they are read back after having been stored at `precision`.
+    /// The values as they are read back after being stored at `precision`.
     pub(super) fn round(precision: Precision, mut values: Vec<f32>, channels: usize) -> Vec<f32> {
-        // Storing fits scale and offset to the values once more, which after rounding may differ by an ulp: until they do not.
-        // Two rounds have always been enough; the limit is against a cycle.
+        // Storing fits scale and offset to the values again, which may differ by an ulp after
+        // rounding: repeat until they do not. Two rounds have always been enough; the limit
+        // prevents a cycle.
         for _ in 0..16 {
             let codec = Self::fit(precision, &values, channels);
             let stored = codec.decode(&codec.encode(&values));

@@ -1,6 +1,7 @@
-//! What each kind of table looks like: its axes, how they may be mapped and read, its channels, and the range of its values.
+//! The layout of each kind of table: its axes, how they may be mapped and interpolated, its
+//! channels, and the range of its values.
 //!
-//! One description for all who need it: those who bake, those who check a file, those who read it.
+//! Baking, checking a file and reading it all use this one description.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -10,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::subject::{LobeEntry, Reflectance, Side, Subject};
 use crate::axis::Interpolation::{self, Hermite, Lagrange4, Lagrange6, Linear, Nodes};
 
-/// Names of the channels of a table, fastest in its values.
+/// Names of a table's channels, which run fastest in its values.
 pub type Channels = &'static [&'static str];
 
 /// What a table holds.
@@ -18,31 +19,35 @@ pub type Channels = &'static [&'static str];
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Kind {
-    /// G1/q over γ × view, q being the view coordinate.
+    /// G1/q over γ × view, where q is the view coordinate.
     Shadowing,
-    /// In-plane slope of visible normals over γ × view × u₁, for γ where the whole distribution is tabulated.
+    /// In-plane slope of visible normals over γ × view × u₁, for γ where the whole distribution is
+    /// tabulated.
     VisibleSlope,
-    /// The same without its heavy part, for γ near 3/2 (see `docs/format.md`).
+    /// `VisibleSlope` without its heavy part, for γ near 3/2 (see `docs/format.md`).
     VisibleSlopePeeled,
-    /// Slope across the plane given the in-plane one, over γ × u₂.
+    /// Slope across, given the in-plane slope, over γ × u₂.
     VisibleSlopeConditional,
-    /// As `Shadowing` for one distribution that is no member of the family, over view.
+    /// As `Shadowing` for one distribution outside the family, over view.
     RadialShadowing,
     /// As `VisibleSlope` for one such distribution, over view × u₁.
     RadialSlope,
-    /// Slope across over the in-plane slope x × u₂, in units of √(1 + x²), or of √(1 − x²/R²) where no slope exceeds R.
+    /// Slope across over the in-plane slope x × u₂, in units of √(1 + x²), or of √(1 − x²/R²) where
+    /// no slope exceeds R.
     RadialConditional,
     /// Fourth root of D, over the slope of the normal.
     RadialDensity,
-    /// Directional albedo over the material × view: over γ × σ × view for round members of the family, over azimuth × view for
-    /// one material of another lobe, with an axis of η before the view for dielectrics. What it is of, masking and reflectance
-    /// included, its description says.
+    /// Directional albedo over material × view.
+    ///
+    /// It is over γ × σ × view for round members of the family, over azimuth × view for one
+    /// material of another lobe, and has an axis of η before the view for dielectrics. The table's
+    /// description says what it is of, masking and reflectance included.
     Albedo,
     /// Cosine-weighted averages of albedos over γ × σ.
     AlbedoAverage,
 }
 
-/// One axis of a kind: its name, and the kinds of mapping and the interpolations that readers know for it.
+/// One axis of a kind: its name, and the mappings and interpolations that readers know for it.
 #[derive(Clone, Copy)]
 pub(super) struct AxisRule {
     pub(super) name: &'static str,
@@ -54,7 +59,7 @@ pub(super) struct AxisRule {
 pub(super) struct Layout {
     pub(super) axes: Vec<AxisRule>,
     pub(super) channels: Vec<&'static str>,
-    /// How many of the channels, from the first on, have their values in `range`, ends included.
+    /// How many of the channels, from the first on, have values in `range`, ends included.
     pub(super) checked: usize,
     pub(super) range: [f32; 2],
 }
@@ -82,15 +87,15 @@ const SLOPE: AxisRule = axis("slope", &["half_tangent"], &[Hermite]);
 /// κ of `rational` is the largest slope of a distribution that has one.
 const SLOPE_OR_LARGEST: AxisRule = axis("slope", &["half_tangent", "rational"], &[Linear]);
 
-/// G1/q is positive, and bounded as the ratio of κ to the projected area is.
+/// G1/q is positive, and limited as the ratio of κ to the projected area is.
 const RATIOS: [f32; 2] = [f32::MIN_POSITIVE, 1e3];
 /// Distances of a half tangent in [−1, 1] from its end.
 const DISTANCES: [f32; 2] = [0.0, 2.0];
-/// The fourth power of a root of D must be a number.
+/// The fourth power of a root of D must be finite.
 const ROOTS: [f32; 2] = [0.0, 1e9];
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 10] = [
         Self::Shadowing,
         Self::VisibleSlope,
@@ -104,17 +109,20 @@ impl Kind {
         Self::AlbedoAverage,
     ];
 
-    /// Channels of tables that are read by Hermite cells: the value, and its derivative by the node index of the last axis.
+    /// Channels of tables of Hermite cells: the value, and its derivative with respect to the node
+    /// index of the last axis.
     pub const VALUE_AND_SLOPE: Channels = &["value", "slope"];
-    /// Channels of albedos with F = 1: E − 1, and what the other moments have over a mirror's times E, in which form they are
-    /// smooth.
+    /// Channels of albedos with F = 1: E − 1, and the excess of the other moments over E times a
+    /// mirror's, a form in which they are smooth.
     pub const MOMENTS: Channels = &["e", "bias", "f82"];
     /// Channels of a conductor's albedo.
     pub const RGB: Channels = &["red", "green", "blue"];
     /// Channels of a dielectric's albedo: the shares of light.
     pub const SHARES: Channels = &["reflection", "transmission"];
-    /// One more channel of albedos of lobes that may be tilted, μ/(μ + A) with A the area of the microsurface seen, by which
-    /// G1(v) is clamped at one. The other channels are without that clamp, which is a kink in E: apart, both are smooth.
+    /// One more channel, for albedos of lobes that may be tilted: μ/(μ + A), where A is the area of
+    /// the microsurface seen, by which G1(v) is clamped at one.
+    ///
+    /// The other channels are without that clamp, which is a kink in E: apart, both are smooth.
     pub const CLAMP: &'static str = "clamp";
 
     /// The name used in files.
@@ -133,9 +141,9 @@ impl Kind {
         }
     }
 
-    /// What a table of this kind and subject looks like.
+    /// The layout of a table of this kind and subject.
     pub(super) fn layout(self, subject: &Subject) -> Layout {
-        // Read by Hermite cells; the values in a range.
+        // Read by Hermite cells, with values in a range.
         let lookup = |axes: &[AxisRule], range| Layout {
             axes: axes.into(),
             channels: Self::VALUE_AND_SLOPE.into(),
@@ -157,8 +165,10 @@ impl Kind {
         }
     }
 
-    /// Whether it is a directional albedo or the average of one: what depends on light and view, not on the view alone, so
-    /// that its tables are for one form of masking and one reflectance.
+    /// Whether it holds directional albedos or averages of them.
+    ///
+    /// These depend on light and view, not on the view alone, so that each table is for one form of
+    /// masking and one reflectance.
     pub const fn is_albedo(self) -> bool {
         matches!(self, Self::Albedo | Self::AlbedoAverage)
     }
@@ -177,7 +187,7 @@ fn albedo(subject: &Subject) -> Layout {
     moments(axes, reflectance.channels().iter().copied().chain(clamp).collect())
 }
 
-/// Moments less a mirror's, each of which is in [0, 1], or shares of light.
+/// The layout of moments less a mirror's, each of which is in [0, 1], or of shares of light.
 fn moments(axes: Vec<AxisRule>, channels: Vec<&'static str>) -> Layout {
     Layout { axes, checked: channels.len(), channels, range: [-1.0, 1.0] }
 }

@@ -1,5 +1,5 @@
-//! What a table is of, as data in its description: whose normals, under which masking and reflectance, for which materials.
-//! Readers find tables by this; names are for people.
+//! The subject of a table, as data in its description: whose normals, under which masking and
+//! reflectance, for which materials. Readers find tables by it; names are for people.
 
 use alloc::format;
 use alloc::string::String;
@@ -9,25 +9,25 @@ use serde::{Deserialize, Serialize};
 
 use super::schema::{Channels, Kind};
 
-/// Whose normals.
+/// Whose normals a table is of.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LobeEntry {
-    /// The members of the Student-t family that the axes reach; of albedos the round ones.
+    /// The members of the Student-t family that the axes reach; for albedos, the round ones.
     #[default]
     Family,
-    /// One anisotropic Student-t.
+    /// One anisotropic Student-t lobe.
     StudentT {
         /// σx and σy.
         sigma: [f64; 2],
         /// 1/(γ−1).
         s: f64,
     },
-    /// One that is tilted and turned.
+    /// One lobe that is tilted and turned.
     Ellipsoid {
         /// σx and σy.
         sigma: [f64; 2],
-        /// θx, θy, θz in radians, as of [`Skew::new`](crate::Skew::new).
+        /// θx, θy, θz in radians, as for [`Skew::new`](crate::Skew::new).
         theta: [f64; 3],
         /// 1/(γ−1).
         s: f64,
@@ -37,7 +37,7 @@ pub enum LobeEntry {
 }
 
 impl LobeEntry {
-    /// What kind of lobe it is, in a word; the label of a distribution.
+    /// The kind of lobe in a word, or the label of a distribution.
     pub fn name(&self) -> &str {
         match self {
             Self::Family | Self::StudentT { .. } => "student-t",
@@ -46,24 +46,25 @@ impl LobeEntry {
         }
     }
 
-    /// Whether its masking is clamped: of a tilted lobe, which may show more than the macrosurface.
+    /// Whether G1 is clamped at one, as for a tilted lobe, of which less may be seen than of the
+    /// macrosurface.
     pub(crate) const fn is_clamped(&self) -> bool {
         matches!(self, Self::Ellipsoid { .. })
     }
 }
 
-/// From which side of a dielectric one looks.
+/// The side from which a dielectric is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// From where the index of refraction is smaller; refraction enters the dense side.
+    /// The side of the smaller index of refraction; refraction enters the dense side.
     Thin,
-    /// From where it is larger, with total reflection beyond the critical angle.
+    /// The side of the larger index, with total reflection beyond the critical angle.
     Dense,
 }
 
 impl Side {
-    /// Both.
+    /// Both sides.
     pub const ALL: [Self; 2] = [Self::Thin, Self::Dense];
 
     /// The name used in files.
@@ -75,22 +76,23 @@ impl Side {
     }
 }
 
-/// The reflectance of the facets that an albedo is under.
+/// The reflectance of the facets that an albedo is for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reflectance {
-    /// F = 1 and its parts, of which every Schlick reflectance and OpenPBR's metals are made.
+    /// F = 1 and its parts, which give every Schlick reflectance and OpenPBR's metals.
     Moments,
-    /// A conductor of complex index of refraction η + ik relative to the outside, for red, green and blue.
+    /// A conductor of complex index of refraction η + ik, relative to the outside, for red, green
+    /// and blue.
     Conductor {
         /// η > 0.
         eta: [f64; 3],
         /// k ≥ 0.
         k: [f64; 3],
     },
-    /// A dielectric, or all of a range, by the index of the dense side over the thin one.
+    /// A dielectric, or a range of them, by the index of the dense side over the thin one.
     Dielectric {
-        /// From which side it is seen.
+        /// The side from which it is seen.
         side: Side,
         /// Smallest index, ≥ 1.
         min: f64,
@@ -101,7 +103,7 @@ pub enum Reflectance {
 }
 
 impl Reflectance {
-    /// Channels of tables under it.
+    /// Channels of albedo tables under this reflectance.
     pub const fn channels(&self) -> Channels {
         match self {
             Self::Moments => Kind::MOMENTS,
@@ -110,7 +112,7 @@ impl Reflectance {
         }
     }
 
-    /// What tells it from others, for people and in names.
+    /// A label that tells it from others, for people and in names.
     pub fn label(&self) -> String {
         let list = |[r, g, b]: &[f64; 3]| format!("{r}_{g}_{b}");
         match self {
@@ -125,7 +127,8 @@ impl Reflectance {
         }
     }
 
-    /// Indices [min, max] ⊂ [1, ∞] of the dense side over the thin one; `None` of what is no dielectric.
+    /// Indices [min, max] ⊂ [1, ∞] of the dense side over the thin one; `None` unless it is a
+    /// dielectric.
     pub fn indices(&self) -> Option<[f64; 2]> {
         match *self {
             Self::Dielectric { min, max, .. } => Some([min, max.unwrap_or(f64::INFINITY)]),
@@ -133,7 +136,7 @@ impl Reflectance {
         }
     }
 
-    /// The side it is seen from; `None` of what is no dielectric.
+    /// The side from which it is seen; `None` unless it is a dielectric.
     pub const fn side(&self) -> Option<Side> {
         match *self {
             Self::Dielectric { side, .. } => Some(side),
@@ -142,12 +145,13 @@ impl Reflectance {
     }
 }
 
-/// The materials that a table was baked and measured for. Axes may have nodes beyond, which interpolation reads.
+/// The materials that a table was baked and measured for; its axes may have nodes beyond, which
+/// interpolation reads.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Covered {
     /// Shapes, as [min, max] of 1/(γ−1).
     pub s: [f64; 2],
-    /// Roughnesses, of tables that have an axis of σ.
+    /// Roughnesses, for tables that have an axis of σ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma: Option<[f64; 2]>,
 }
@@ -155,23 +159,23 @@ pub struct Covered {
 /// What a table is of, besides its kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Subject {
-    /// Whose normals.
+    /// Whose normals it is of.
     pub lobe: LobeEntry,
-    /// The form of G2 of an albedo; `None` where values are of one direction only.
+    /// The form of G2 of an albedo; `None` where values depend on one direction only.
     pub masking: Option<Masking>,
     /// The reflectance of an albedo.
     pub reflectance: Option<Reflectance>,
-    /// The materials, of tables that are of more than one.
+    /// The materials, for tables of more than one.
     pub covers: Option<Covered>,
 }
 
 impl Subject {
-    /// A range of shapes, of a table of one direction.
+    /// The subject of a table of one direction over a range of shapes.
     pub fn shapes(s: [f64; 2]) -> Self {
         Self { covers: Some(Covered { s, sigma: None }), ..Self::default() }
     }
 
-    /// What is wrong with it for a kind, if anything is.
+    /// Checks the subject against a kind of table; the error says what is wrong.
     pub(super) fn check(&self, kind: Kind) -> Result<(), &'static str> {
         let albedo = kind.is_albedo();
         if albedo != self.masking.is_some() || albedo != self.reflectance.is_some() {

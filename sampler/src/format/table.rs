@@ -1,4 +1,4 @@
-//! The in-memory table: axes, channels and values, with the certificate of what was measured on it.
+//! The table in memory: axes, channels and values, with a certificate of the errors measured on it.
 
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -14,13 +14,13 @@ use super::subject::Subject;
 use crate::axis::{Axis, Weights};
 use crate::error::LoadError;
 
-/// A table: values at the nodes of named axes.
+/// A table of values at the nodes of named axes.
 ///
 /// `values` is row-major with the axes slowest first and the channels fastest: shape
 /// `[axes[0].len(), …, axes[n−1].len(), channels.len()]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Name inside its set, for people: what it says, `kind` and `subject` hold as data.
+    /// Name inside its set, for people; `kind` and `subject` hold what it says as data.
     pub name: String,
     /// What it holds.
     pub kind: Kind,
@@ -34,12 +34,13 @@ pub struct Table {
     pub values: Vec<f32>,
     /// How the values are stored in a file.
     pub precision: Precision,
-    /// Figures measured on this table by the bake that made it, off its grid and against the f64 model.
+    /// Errors measured on this table by the bake that made it, off its nodes and against the f64
+    /// model.
     pub certificate: BTreeMap<String, f64>,
 }
 
 impl Table {
-    /// Lengths along the axes and the channels.
+    /// Lengths along the axes, then the number of channels.
     pub fn shape(&self) -> Vec<usize> {
         self.axes.iter().map(Axis::len).chain([self.channels.len()]).collect()
     }
@@ -49,8 +50,10 @@ impl Table {
         self.precision.bytes() * self.values.len()
     }
 
-    /// The table as it will be read back when stored at `precision`: rounding happens here and nowhere else, so that a
-    /// certificate can be measured on what a reader gets.
+    /// The table as it will be read back after being stored at `precision`.
+    ///
+    /// Rounding happens here and nowhere else, so that a certificate can be measured on what a
+    /// reader gets.
     #[must_use]
     pub fn rounded(mut self, precision: Precision) -> Self {
         self.precision = precision;
@@ -61,7 +64,7 @@ impl Table {
     /// The values with the first axes collapsed, each to some of its nodes with their weights.
     pub(crate) fn collapsed<T: Real + From<f32>>(&self, at: &[Weights]) -> Vec<T> {
         let zero = T::constant(0.0);
-        // All combinations of the nodes along the axes, as one index and the product of the weights.
+        // All combinations of the nodes along the axes, as an index and the product of the weights.
         let mut rows = vec![(0, 1.0)];
         for (axis, weights) in self.axes.iter().zip(at) {
             let along = |row: usize, a: f64| {
@@ -121,7 +124,8 @@ impl Table {
         if expected != Some(self.values.len()) {
             return fail(format!("{} values for shape {:?}", self.values.len(), self.shape()));
         }
-        // Without an early end these run four values at a time: they are half of what loading the default set takes.
+        // Without an early exit these loops run four values at a time: they take half of the time
+        // that loading the default set takes.
         if !self.values.iter().fold(true, |sound, x| sound & x.is_finite()) {
             return fail("a value is not finite".into());
         }

@@ -1,9 +1,10 @@
-//! The same functions over slices, four at a time.
+//! The functions over slices, four directions at a time.
 //!
-//! Every lane does what the function for one does, in the same order, so the results are the same, to the last bits of the
-//! normalisation. A batch saves by sharing: a root, a division and a polynomial serve four normals (18 ns become 8), and several
-//! fours go through each stage together, so that the processor has independent work next to each wait (8 become 6). Only
-//! the reads from the table are made one by one.
+//! Every lane does what the function for one direction does, in the same order, so the results are
+//! the same, to the last bits of the normalisation. A batch saves by sharing: one root, division or
+//! polynomial serves four normals (18 ns become 8), and several groups of four go through each
+//! stage together, so that the processor has independent work during each wait (8 become 6). Only
+//! the table reads are made one by one.
 
 use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
@@ -18,11 +19,11 @@ use crate::axis::roots;
 use crate::error::BatchError;
 
 const LANES: usize = 4;
-/// How many fours go through each stage together.
+/// How many groups of four go through each stage together.
 const GROUPS: usize = 8;
 
 impl StudentT {
-    /// As many normals as there are views; the slices have one length.
+    /// As many normals as there are views; the slices are of the same length.
     pub(crate) fn sample_all(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) {
         let Some(fast) = &self.slices.fast else {
             return self.sample_each(v, u, m);
@@ -41,7 +42,7 @@ impl StudentT {
         }
     }
 
-    /// G1 of each view; the slices have one length.
+    /// G1 of each view; the slices are of the same length.
     pub(crate) fn g1_all(&self, v: &[Vec3], g1: &mut [f32]) {
         let (v, v_rest) = v.as_chunks::<LANES>();
         let (g1, g1_rest) = g1.as_chunks_mut::<LANES>();
@@ -53,7 +54,7 @@ impl StudentT {
         }
     }
 
-    /// At most [`GROUPS`] fours, stage by stage.
+    /// At most [`GROUPS`] groups of four, stage by stage.
     fn sample_groups(
         &self,
         fast: &FastPath,
@@ -92,7 +93,8 @@ impl StudentT {
         Located { x, y, rho, silhouette, row, between, along, across }
     }
 
-    /// The distances from the ends, along and across.
+    /// The distances of the half tangents from their ends, for the in-plane slope and the slope
+    /// across.
     #[inline(always)]
     fn look_up(&self, fast: &FastPath, at: &Located) -> [f32x4; 2] {
         let stride = 2 * fast.half;
@@ -114,7 +116,7 @@ impl StudentT {
         [g, cubic_lanes(cells, at.across.w)]
     }
 
-    /// Writes the normals; false where one of them is not of the common case.
+    /// Writes the normals; false where one of them is outside the common case.
     #[inline(always)]
     fn assemble_lanes(&self, at: &Located, [g, h]: [f32x4; 2], m: &mut [Vec3; LANES]) -> bool {
         let t = (h - 1.0) / (h * (2.0 - h));
@@ -123,12 +125,13 @@ impl StudentT {
         let [x, z] = half_slope_at(g);
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
         let x = x ^ at.along.sign();
-        // In the order of the function for one: a strong anisotropy magnifies every rounding.
+        // In the order of the function for one direction: strong anisotropy magnifies every
+        // rounding.
         let (sx, sy) = (2.0 * self.sigma_x, 2.0 * self.sigma_y);
         let (x, y) =
             (x * (at.x * sx) + norm * (at.y * -sx * t), x * (at.y * sy) + norm * (at.x * sy * t));
         let z = z * at.rho;
-        // Two divisions fewer for a last bit.
+        // Two divisions fewer, at the cost of a last bit.
         let r = 1.0 / (x * x + z * z + y * y).sqrt();
         let (x, y, z) = ((x * r).to_array(), (y * r).to_array(), (z * r).to_array());
         *m = core::array::from_fn(|i| Vec3::new(x[i], y[i], z[i]));
@@ -145,12 +148,12 @@ impl StudentT {
         let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
         let (cell, w) = split(at);
         let g1 = q * horner_lanes(coefficients(&slices.shadowing, cell.to_array()), w);
-        // What is no number is 0 here, too.
+        // NaN gives 0 here, too.
         (g1.fast_min(f32x4::ONE) & g1.simd_ge(0.0)).to_array()
     }
 }
 
-/// Four views and pairs of numbers, and where they fall in the tables.
+/// Four views and pairs of random numbers, located in the tables.
 #[derive(Clone, Copy, Default)]
 struct Located {
     x: f32x4,
@@ -203,7 +206,8 @@ fn transpose(v: &[Vec3; LANES]) -> [f32x4; 3] {
     ]
 }
 
-/// Whether all slices of a batch have the length of the first.
+/// Checks that all slices of a batch have the length of the first; the error names one that has
+/// not.
 pub(crate) fn same_lengths(slices: &[(&'static str, usize)]) -> Result<(), BatchError> {
     let (first, expected) = slices[0];
     match slices.iter().find(|(_, length)| *length != expected) {

@@ -1,16 +1,19 @@
-//! In-plane slopes seen from below the lobe's horizon, which only a skewed lobe meets: x > a with density ∝ (x − a) p(x).
+//! In-plane slopes seen from below the lobe's horizon, as only a skewed lobe can be: x > a with
+//! density ∝ (x − a) p(x).
 //!
-//! No table holds them. With (1 + s x²)^(−k) = (1 + s a²)^(−k) e^(−y) the density is e^(−y) (1 − a/x(y)), a concave factor, so that
-//! either an exponential or a gamma variate bounds it tightly; drawn by rejection in double precision.
+//! No table holds them; they are drawn by rejection in double precision. With (1 + s x²)^(−k) =
+//! (1 + s a²)^(−k) e^(−y) the density is e^(−y) (1 − a/x(y)), whose second factor is concave, so
+//! that either an exponential or a gamma variate bounds it tightly.
 
 use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::Slope;
 use crate::math::sqrt64;
 
-/// Up to this a the excess is the difference that the shadowing table gives; above, that difference loses digits and the fraction is short.
+/// Up to this a the excess is a difference from the shadowing table; for larger a that difference
+/// loses digits, and the continued fraction is short.
 const NEAR: f64 = 0.8;
 
-/// The slopes beyond a, for a bound lobe.
+/// The slopes greater than a, of a lobe.
 pub(crate) struct SlopeBelowHorizon<'a> {
     lobe: &'a StudentT,
     a: f64,
@@ -36,7 +39,7 @@ impl<'a> SlopeBelowHorizon<'a> {
         (1.0 / f64::from(lobe.inverse_area(&above)) - a) as f32
     }
 
-    /// A slope, from a first number in [0, 1) and as many more as needed.
+    /// A slope, from a first random number in [0, 1) and as many more as needed.
     pub(crate) fn sample(&self, u: f32, more: &mut Numbers) -> Slope {
         let Self { a, s, .. } = *self;
         let base = 1.0 + s * a * a;
@@ -74,9 +77,10 @@ fn decay(s: f64, x2: f64) -> f64 {
     libm::exp(if s == 0.0 { -x2 } else { (0.5 - 1.0 / s) * libm::log1p(s * x2) })
 }
 
-/// E[(X−a)⁺]/E[X; X>a] = (1 + s a²)/(2a²)·₂F₁(1, 3/2; 1+1/s; −1/(s a²)), by Gauss's fraction written so that s = 0 is regular.
+/// E[(X−a)⁺]/E[X; X>a] = (1 + s a²)/(2a²)·₂F₁(1, 3/2; 1+1/s; −1/(s a²)), by Gauss's continued
+/// fraction, written so that s = 0 is regular.
 ///
-/// All terms are positive; at a = 0.8 it takes about 100 of them, and few where a is large.
+/// All terms are positive; it takes about 100 of them at a = 0.8, and few for large a.
 fn excess_share(s: f64, a: f64) -> f64 {
     let w = 1.0 / (a * a);
     let (mut f, mut c, mut d, mut n) = (1.0, 1.0, 0.0, 0.0);
@@ -99,7 +103,7 @@ fn excess_share(s: f64, a: f64) -> f64 {
     0.5 * (1.0 + s * a * a) * w / f
 }
 
-/// Further numbers in [0, 1), a function of the two that the caller gave (splitmix64).
+/// Further random numbers in [0, 1), a function of the two that the caller gave (splitmix64).
 pub(crate) struct Numbers(u64);
 
 impl Numbers {

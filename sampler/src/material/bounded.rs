@@ -1,10 +1,12 @@
-//! Visible normals that can reflect a view upwards: fewer samples lost below the horizon.
+//! Visible normals that can reflect a view upwards, so that fewer samples are lost below the
+//! horizon.
 //!
-//! In slopes about the macro normal, the light l = reflect(v, m) is above the horizon exactly where the slope lies in the disc
-//! of radius 1/cos θ about tan θ towards the viewer. The strip of in-plane slopes that the disc spans is an interval of u₁, since the
-//! inverse CDF ascends; sampling that interval leaves the density as it was but for a factor. Eto and Tokuyoshi 2023, "Bounded
-//! VNDF Sampling for Smith-GGX Reflections", do so for GGX by shrinking its cap; the interval does it for every γ.
-//! The variance of a white furnace falls to between a third and nine tenths (`cargo run -p microfacet-sampler --example bounded`).
+//! In slopes about the macro normal, the light l = reflect(v, m) is above the horizon just where
+//! the slope lies in the disc of radius 1/cos θ about tan θ towards the viewer. The in-plane slopes
+//! of the disc are an interval of u₁, since the inverse CDF ascends; sampling that interval changes
+//! the density by a factor only. Eto & Tokuyoshi 2023 do so for GGX by shrinking its cap; the
+//! interval does it for every γ. The variance of a white furnace falls to between a third and nine
+//! tenths (`cargo run -p microfacet-sampler --example bounded`).
 
 use glam::Vec3;
 
@@ -12,11 +14,15 @@ use super::distribution::MicrofacetDistribution;
 use super::student_t::{NORMAL_INCIDENCE, StudentT};
 use crate::math::sqrt;
 
-/// Visible normals of a material and a view, without most of those that reflect the view below the horizon.
+/// The visible normals of a lobe and a view, without most of those that reflect the view below the
+/// horizon.
 ///
-/// Every normal that reflects upwards keeps its place; of the others the slopes across the plane of incidence hide some. Estimators
-/// of reflection that weight with G2/G1 times [`share`](Self::share), or divide by a density of this type, are unbiased, and of lower variance
-/// than those of [`MicrofacetDistribution::sample_visible_normal`].
+/// Every normal that reflects upwards keeps its place; some of the others remain, as the slope
+/// across the plane of incidence is not restricted. Estimators of reflection that weight with G2/G1
+/// times [`share`](Self::share), or divide by a density of this type, are unbiased, and of lower
+/// variance than those of [`MicrofacetDistribution::sample_visible_normal`]. After Eto & Tokuyoshi
+/// 2023, *Bounded VNDF Sampling for Smith-GGX Reflections*,
+/// <https://doi.org/10.1145/3610543.3626163>.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded<'a> {
     material: &'a StudentT,
@@ -38,11 +44,12 @@ impl StudentT {
     fn upward(&self, v: Vec3) -> [f32; 2] {
         let view = self.stretch(v);
         let (sin, cos) = (sqrt(v.x * v.x + v.y * v.y), view.z);
-        // A unit of slope along the view's azimuth, in unit slopes along the stretched one.
+        // A unit of slope along the view's azimuth, in unit slopes along the stretched azimuth.
         let unit = if view.rho >= NORMAL_INCIDENCE { sin / view.rho } else { 1.0 / self.sigma_x };
         let number =
             |x: f32, z: f32| self.number_along(&view, f64::from(unit * x), f64::from(z)) as f32;
-        // tan θ ∓ 1/cos θ, the nearer end without its cancellation. The rounding of all this may not lose a direction.
+        // tan θ ∓ 1/cos θ, the nearer end without its cancellation. The interval is widened so that
+        // rounding loses no direction.
         let low = (number(-cos, 1.0 + sin) * (1.0 - SLACK) - SLACK * SLACK).max(0.0);
         if self.slices.peeled {
             // Only the tabulated part has slopes away from the viewer, and it comes first.
@@ -53,30 +60,34 @@ impl StudentT {
     }
 }
 
-/// Relative widening of the interval at either end.
+/// Relative widening of either end of the interval.
 const SLACK: f32 = 1e-5;
 
 impl Bounded<'_> {
-    /// A normal from two numbers in [0, 1] (clamped to them).
+    /// A normal from two random numbers, which are clamped to [0, 1].
     #[inline]
     pub fn sample(&self, u: [f32; 2]) -> Vec3 {
         let along = (self.from + u[0].clamp(0.0, 1.0) * self.share).min(1.0);
         self.material.sample_visible_normal(self.v, [along, u[1]])
     }
 
-    /// Probability that an unbounded sample would be one of these, in (0, 1]: what the weight of a sample is multiplied with.
+    /// Probability that an unbounded sample would be one of these, in (0, 1]: the factor on a
+    /// sample's weight.
     pub fn share(&self) -> f32 {
         self.share
     }
 
-    /// Density per steradian of normals with which [`sample`](Self::sample) draws `m`, for an `m` that reflects the view above the
-    /// horizon: the analytic one, with G1 from the table. Of reflected directions it is this over 4 v·m.
+    /// Density per steradian with which [`sample`](Self::sample) draws `m`, for an `m` that
+    /// reflects the view above the horizon: the analytic one, with G1 from the table.
+    ///
+    /// The density of reflected directions is this over 4 v·m.
     #[inline]
     pub fn visible_normal_pdf(&self, m: Vec3) -> f32 {
         self.material.visible_normal_pdf(self.v, m) / self.share
     }
 
-    /// The same as the exact density of the table's samples, see [`MicrofacetDistribution::table_pdf`].
+    /// The density of the table's samples for such an `m`, see
+    /// [`MicrofacetDistribution::table_pdf`].
     pub fn table_pdf(&self, m: Vec3) -> f32 {
         self.material.table_pdf(self.v, m) / self.share
     }

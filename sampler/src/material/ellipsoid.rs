@@ -1,4 +1,4 @@
-//! The Ellipsoid distribution at run time: a bound lobe seen through a matrix.
+//! The Ellipsoid distribution at run time: a Student-t lobe seen through a matrix.
 
 use core::f32::consts::FRAC_1_PI;
 
@@ -23,7 +23,7 @@ struct Matrix {
     y: f32,
 }
 
-/// Outside this range squares of the entries, times those of slopes, leave single precision.
+/// Outside this range the squares of entries times those of slopes leave single precision.
 const ENTRIES: core::ops::RangeInclusive<f64> = 1e-18..=1e18;
 
 impl TryFrom<Skew> for Matrix {
@@ -40,11 +40,15 @@ impl TryFrom<Skew> for Matrix {
     }
 }
 
-/// An Ellipsoid material: Walter et al. 2015 at γ = 2, a skewed Student-t for other γ, a skewed Beckmann at γ = ∞.
+/// An Ellipsoid lobe: that of Walter et al. 2015 (supplemental material of
+/// <https://doi.org/10.1145/2815618>) at γ = 2, a skewed Student-t for other γ, a skewed Beckmann
+/// at γ = ∞.
 ///
-/// Reads the same tables as [`StudentT`]: a direction is taken through the matrix, looked up, and the normal taken back. Directions
-/// are unit vectors in the tangent frame, n = +z. From a view that is above the surface but below the lobe's own horizon (the lobe leans
-/// away, and the view grazes) no table is used: such normals are drawn by rejection with numbers derived from the two given.
+/// It reads the same tables as [`StudentT`]: a direction is taken through the matrix and looked up,
+/// and the normal is taken back. Directions are unit vectors in the tangent frame, n = +z. A view
+/// above the surface but below the lobe's own horizon (the lobe leans away, and the view grazes)
+/// uses no table: its normals are drawn by rejection, with random numbers derived from the two
+/// given.
 #[derive(Clone, Debug)]
 pub struct Ellipsoid {
     /// The lobe with σ = 1.
@@ -62,7 +66,7 @@ impl Ellipsoid {
         self.lobe.gamma()
     }
 
-    /// The same lobe through another matrix; the tables are not touched again.
+    /// The same lobe through another matrix; the tables are not read again.
     ///
     /// # Errors
     /// [`MaterialError::Sigma`] for a roughness that leaves single precision.
@@ -70,14 +74,14 @@ impl Ellipsoid {
         Ok(Self { matrix: skew.try_into()?, ..self.clone() })
     }
 
-    /// Uv.
+    /// Uv, the direction in the lobe's own space.
     #[inline(always)]
     fn to_unit(&self, v: Vec3) -> Vec3 {
         let Matrix { p, q, r, x, y } = self.matrix;
         Vec3::new(p * v.x, q * v.x + r * v.y, x * v.x + y * v.y + v.z)
     }
 
-    /// 1/(area of the microsurface seen along v), both outside and inside the reach of the table.
+    /// 1/(area of the microsurface seen along v), within the reach of the table and outside it.
     #[inline(always)]
     fn inverse_area(&self, w: Vec3, at: &Stretched) -> f32 {
         if w.z >= 0.0 { self.lobe.inverse_area(at) } else { self.inverse_area_below(w, at) }
@@ -89,10 +93,12 @@ impl Ellipsoid {
         if area > 0.0 { 1.0 / area } else { f32::MAX }
     }
 
-    /// The lobe's [common case](StudentT::sample_common) between U and Uᵀ; `None` elsewhere, and where views are below its horizon.
+    /// The lobe's [common case](StudentT::sample_common) between U and Uᵀ; `None` elsewhere, and
+    /// for views below the lobe's horizon.
     ///
-    /// A normal from it takes 1.2 times as long as one of the plain anisotropic lobe, 1.1 to 1.2 times with its density; by the way that
-    /// always works it took twice as long (`cargo run --release --example ellipsoid_cost`).
+    /// A normal takes 1.2 times as long as one of the untilted anisotropic lobe, 1.1 to 1.2 times
+    /// with its density; by the general path it took twice as long
+    /// (`cargo run --release --example ellipsoid_cost`).
     #[inline(always)]
     fn sample_fast(&self, v: Vec3, u: [f32; 2]) -> Option<[f32; 3]> {
         let Matrix { p, q, r, x, y } = self.matrix;
@@ -109,11 +115,12 @@ impl Ellipsoid {
         };
         let m =
             self.lobe.sample_common(f32x4::new([w.x, w.y, 0.0, 0.0]), w.z, u, [1.0; 2], back)?;
-        // Not where a matrix almost singular has taken squares out of range, or a normal below the smallest cosine.
+        // Not where an almost singular matrix has taken squares out of range, or a normal below the
+        // smallest cosine.
         (m[2] >= HORIZON).then_some(m)
     }
 
-    /// A visible normal of every material and view.
+    /// A visible normal for every matrix and view.
     #[inline(never)]
     fn sample_general(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
         let w = self.to_unit(Vec3::new(x, y, z));
@@ -135,14 +142,16 @@ impl Ellipsoid {
 }
 
 impl MicrofacetDistribution for Ellipsoid {
-    /// Normal distribution function D(m) per steradian, ∫ D(m) (m·n) dm = 1; 0 for m at or below the horizon.
+    /// Normal distribution function D(m) per steradian, with ∫ D(m) (m·n) dm = 1; 0 for m at or
+    /// below the horizon.
     #[inline]
     fn d(&self, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
             return 0.0;
         }
         let Matrix { p, q, r, x, y } = self.matrix;
-        // Reciprocals do not wait for the normal, as four divisions of it, one after the other, would: 10 of 80 ns for a normal and its density.
+        // Reciprocals do not wait for the normal, as four successive divisions of it would: 10 of
+        // 80 ns for a normal and its density.
         let (along, aside) = (1.0 / p, 1.0 / r);
         let uy = (m.y - y * m.z) * aside;
         let ux = (m.x - x * m.z - q * uy) * along;
@@ -151,7 +160,7 @@ impl MicrofacetDistribution for Ellipsoid {
 
     /// Smith masking G1(v) = min(1, (v·n)/area); 0 at and below the horizon.
     ///
-    /// The clamp keeps a lobe that leans away from returning more than it receives.
+    /// The clamp keeps a lobe that leans away from returning more light than it receives.
     #[inline]
     fn g1(&self, v: Vec3) -> f32 {
         if !(v.z > 0.0) {
@@ -169,7 +178,8 @@ impl MicrofacetDistribution for Ellipsoid {
         Vec3::new(x, y, z)
     }
 
-    /// Density of visible normals (v·m)⁺ D(m)/area per steradian; 0 where m faces away or lies below the horizon.
+    /// Density of visible normals (v·m)⁺ D(m)/area per steradian; 0 where m faces away or lies
+    /// below the horizon.
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
@@ -177,8 +187,8 @@ impl MicrofacetDistribution for Ellipsoid {
         (facing * self.d(m) * self.inverse_area(w, &self.lobe.stretch(w))).min(f32::MAX)
     }
 
-    /// What a reflection sampled by [`sample_visible_normal`](Self::sample_visible_normal) is worth without Fresnel:
-    /// f·cos θ_l/pdf = G2(v, l)·area/(v·n), never above one.
+    /// The weight f·cos θ_l/pdf of a light reflected off a [sampled](Self::sample_visible_normal)
+    /// visible normal, without Fresnel: G2(v, l)·area/(v·n) ≤ 1.
     #[inline]
     fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
         if !(v.z > 0.0) {

@@ -1,13 +1,19 @@
-//! Sampling visible normals as [`sample`](super::sample) does, at speed, for the materials and views that are common; an
-//! [`Ellipsoid`](crate::Ellipsoid) takes the same way from its own view to its own normal.
+//! Visible normals as [`sample`](super::sample) draws them, faster, for common lobes and views. An
+//! [`Ellipsoid`](crate::Ellipsoid) takes the same path from its own view to its own normal.
 //!
-//! What it does to be fast, and what each step gained of the 34 ns that the fast way takes: masks instead of branches for the
-//! halves of u₁ and u₂ (a random number is above ½ as often as not, and a missed guess costs as much as the lookup), and one
-//! conversion of coordinates to cells for both numbers: 11 ns; square roots side by side, and none of them in a chain with another
-//! where the formulas allow: 3 ns; a bound on g that no rounding hides behind the silhouette, known before the normal is, instead
-//! of v·m of the finished normal: 1.5 ns; one test for all reads from the tables, behind all index arithmetic, so that the chain from
-//! the view through its row to the normal starts at once: 1 ns; the cubic along u₁ as a weighted sum, half as long a chain as Horner's: 1 ns.
-//! A processor works on two or three calls at once, as many as its queues hold, so that fewer instructions gain more than shorter waits.
+//! What makes it fast, and what each step gained of the 34 ns of the general path:
+//! - Masks instead of branches for the halves of u₁ and u₂ (a random number is above ½ as often as
+//!   not, and a mispredicted branch costs as much as the lookup), and one conversion of coordinates
+//!   to cells for both numbers: 11 ns.
+//! - Square roots side by side, none in a chain with another where the formulas allow: 3 ns.
+//! - A limit on g that keeps the normal clear of the silhouette whatever the rounding, known before
+//!   the normal is, instead of v·m of the finished normal: 1.5 ns.
+//! - One test for all table reads, after all index arithmetic, so that the chain from the view
+//!   through its row to the normal starts at once: 1 ns.
+//! - The cubic along u₁ as a weighted sum, a chain half as long as Horner's: 1 ns.
+//!
+//! A processor works on two or three calls at once, as many as its queues hold, so that fewer
+//! instructions gain more than shorter waits.
 
 use wide::{bytemuck, f32x4, i32x4};
 
@@ -22,15 +28,17 @@ impl StudentT {
     #[inline(always)]
     pub(crate) fn sample_fast(&self, v: [f32; 3], u: [f32; 2]) -> Option<[f32; 3]> {
         let sigma = [self.sigma_x, self.sigma_y];
-        // Lanes that are not named carry copies, zeros or what is no number.
+        // Unnamed lanes carry copies, zeros or NaN.
         let xy = f32x4::new([v[0], v[1], 0.0, 0.0]) * f32x4::new([sigma[0], sigma[1], 0.0, 0.0]);
         self.sample_common(xy, v[2], u, sigma, |m| m)
     }
 
-    /// The normal visible along a stretched view: drawn there, stretched by `sigma`, then taken through `back` and normalised.
+    /// The normal visible along a stretched view: drawn there, stretched by `sigma`, then taken
+    /// through `back` and normalised.
     ///
-    /// `None` where the case is not common: materials without a [`FastPath`](super::slices::FastPath) part, views straight from above or below,
-    /// normals that rounding may have put behind the silhouette, and whatever is out of its range or no number.
+    /// `None` outside the common case: lobes without a [`FastPath`](super::slices::FastPath), views
+    /// straight from above or below, normals that rounding may have put behind the silhouette, and
+    /// arguments that are out of range or NaN.
     #[inline(always)]
     pub(crate) fn sample_common(
         &self,
@@ -51,7 +59,7 @@ impl StudentT {
         let (row, between) = split(at);
         let (row, between) = (row.to_array()[0] as u32, f32x4::splat(between.to_array()[0]));
 
-        // Both numbers in two lanes: fourth roots, cells and positions.
+        // Both random numbers in two lanes: fourth roots, cells and positions.
         let u = f32x4::new([u[0], u[1], 0.0, 0.0]);
         let t = roots(u) * f32x4::new([fast.scales[0], fast.scales[1], 0.0, 0.0]);
         let (cell, w) = split(t);
@@ -61,7 +69,8 @@ impl StudentT {
         let half: i32x4 = bytemuck::cast(towards);
         let cell = (cell + (half & i32x4::new([fast.half as i32, 0, 0, 0]))).to_array();
 
-        // A guard makes every number's cell good. Straight from above there is no next row. What is no number fails here or, where it converts to 0, below.
+        // The guard cell makes every random number's cell valid. Straight from above there is no
+        // next row. NaN fails here or, where it converts to 0, in the test of g.
         let stride = 2 * fast.half;
         let low = start(row, stride, cell[0]);
         let (high, across) = (low + stride as usize, cell[1] as u32 as usize);
@@ -70,7 +79,7 @@ impl StudentT {
             return None;
         }
 
-        // The slope across; what multiplies the in-plane slope, and what its length.
+        // The slope across; then the factors of the in-plane slope and of its norm.
         let h = cubic(&fast.across[across], w[1]);
         let t = f32x4::splat((h - 1.0) / (h * (2.0 - h)));
         let view = pairs(xy, rho);
@@ -81,13 +90,13 @@ impl StudentT {
         let silhouette = !towards & (1.0 - at * fast.row);
         let least = silhouette + (HIDDEN - t * HIDDEN_ACROSS);
 
-        // Between the rows, then along u₁.
+        // Interpolation between the rows, then along u₁.
         let (low, high) = (pair(nodes, low), pair(nodes, high));
         let g = sum((low + between * (high - low)) * basis(f32x4::splat(w[0])));
         if !(g.to_array()[0] >= least.to_array()[0]) {
             return None;
         }
-        // Half of x, z, and √(z² + s x²).
+        // Half of x, then z, and the norm √(z² + s x²).
         let [x, z] = half_slope_at(g);
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
         let m = back(pairs_of_firsts(x ^ sign, z) * ahead + norm * aside);
@@ -96,14 +105,17 @@ impl StudentT {
     }
 }
 
-/// How far, in g, a normal is from the silhouette where no rounding can hide it: with t = tan/2 of the tilt across,
-/// v·m = (g − g₀)(ρ + …) ρ/|m| ≥ (g − g₀) ρ length/|m| against ten roundings of terms that sum to at most ρ length (3 + 6 |t|)/|m|, whatever σ is.
-/// It also keeps normals off the horizon, and all squares in range.
+/// How far, in g, a normal must be from the silhouette so that no rounding can hide it.
+///
+/// With t half the tangent of the tilt across, v·m = (g − g₀)(ρ + …) ρ/|m| ≥ (g − g₀) ρ length/|m|
+/// stands against ten roundings of terms that sum to at most ρ length (3 + 6 |t|)/|m|, whatever σ
+/// is. The margin also keeps normals off the horizon and all squares in range.
 pub(crate) const HIDDEN: f32 = 2e-6;
-/// The part of it that grows with |t|.
+/// The part of the margin that grows with |t|.
 pub(crate) const HIDDEN_ACROSS: f32 = 4e-6;
 
-/// The index of a cell in a row, below 2³¹, so that sums with it fit; anything where either was no number.
+/// The index of a cell in a row, less than 2³¹ so that sums with it fit; arbitrary where either was
+/// NaN.
 #[inline(always)]
 pub(crate) fn start(row: u32, stride: u32, cell: i32) -> usize {
     (row.wrapping_mul(stride).wrapping_add(cell as u32) & (u32::MAX >> 1)) as usize

@@ -1,9 +1,9 @@
 //! The lobes of materials: distributions of normals whose parameters are fixed, so that only
 //! directions are left.
 //!
-//! [`distribution`] says what each can be asked. [`student_t`] reads slices of the tables
-//! ([`slices`]): masking there, visible normals in [`sample`], the common case of them at speed in
-//! [`fast_path`], four at a time in [`batch`]; [`table_pdf`] is the density of what is drawn, and
+//! [`distribution`] is the trait of them all. [`student_t`] reads slices of the tables ([`slices`])
+//! for masking and visible normals: [`sample`] draws them, [`fast_path`] draws the common case
+//! faster, and [`batch`] four at a time; [`table_pdf`] is the density of what is drawn, and
 //! [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`] takes directions through a
 //! matrix to a Student-t, [`radial`] has tables of its own, and [`ggx`] needs none.
 

@@ -1,4 +1,4 @@
-//! Isotropic distributions that are no members of the Student-t family, from tables of their own.
+//! Isotropic distributions outside the Student-t family, from tables of their own.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -15,10 +15,11 @@ use crate::error::MaterialError;
 use crate::format::{Kind, LobeEntry, Table};
 use crate::math::sqrt;
 
-/// A material of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
+/// A lobe of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
 ///
-/// Directions are unit vectors in the tangent frame, n = +z. As for the family, one lookup inverts the CDF of the in-plane slope and one that of the
-/// slope across; the latter depends here on the former.
+/// Directions are unit vectors in the tangent frame, n = +z. As for the family, one lookup inverts
+/// the CDF of the in-plane slope and one that of the slope across, which here depends on the
+/// former.
 #[derive(Clone, Debug)]
 pub struct Radial {
     /// σ, masking and the in-plane slope.
@@ -35,15 +36,16 @@ pub struct Radial {
     tilt: HalfTangent,
 }
 
-/// s in the formulas of tables without a γ axis: slopes across are in units of √(1 + x²), and κ is the scale of its axis.
+/// s in the formulas of tables without a γ axis: slopes across are in units of √(1 + x²), and κ is
+/// the scale of its axis.
 const ROUND: f64 = 1.0;
 
-/// The coordinate of the in-plane slope that the slope across is given by.
+/// The coordinate of the in-plane slope, on which the slope across depends.
 #[derive(Clone, Copy, Debug)]
 enum Given {
     /// Where normals reach the horizon.
     Unbounded(HalfTangent),
-    /// Where there is a largest unit slope R, which is κ.
+    /// Where unit slopes have a largest value R, which is κ.
     Bounded(Rational, f32),
 }
 
@@ -86,15 +88,15 @@ impl Radial {
         })
     }
 
-    /// The scale of slopes in the tables, their median.
+    /// The scale σ of slopes in the tables: their median.
     pub fn sigma(&self) -> f32 {
         self.plane.sigma()[0]
     }
 
     /// The slope across in units of √(1 + x²), given the in-plane slope.
     ///
-    /// Tabulated by the half tangent of that slope; where slopes are bounded by R, in units of √(1 − x²/R²) by x/(x + R), which
-    /// keeps the rows alike up to the bound.
+    /// It is tabulated by the half tangent of that slope; where slopes are bounded by R, in units
+    /// of √(1 − x²/R²) by x/(x + R), which keeps the rows alike up to R.
     #[inline(always)]
     fn sample_across(&self, x: Slope, u: f32) -> Slope {
         let a = x.x.abs();
@@ -121,7 +123,8 @@ impl Radial {
 }
 
 impl MicrofacetDistribution for Radial {
-    /// Normal distribution function D(m) per steradian, interpolated; 0 for m at or below the horizon.
+    /// Normal distribution function D(m) per steradian, interpolated; 0 for m at or below the
+    /// horizon.
     #[inline]
     fn d(&self, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
@@ -129,7 +132,7 @@ impl MicrofacetDistribution for Radial {
         }
         let sigma = self.sigma();
         let r = sqrt(m.x * m.x + m.y * m.y);
-        // The half tangent of the unit slope r/(σ z): of a view, with the parts the other way round.
+        // The half tangent of the unit slope r/(σ z): as of a view, with the two parts exchanged.
         let h = self.tilt.of_view(sigma * m.z, r);
         let cells = self.density.len() - 1;
         let (cell, w) = locate(h * cells as f32, cells);
@@ -137,7 +140,7 @@ impl MicrofacetDistribution for Radial {
         (root * root) * (root * root)
     }
 
-    /// Smith masking G1(w) ∈ [0, 1]; 0 at and below the horizon.
+    /// Smith masking G1(v) ∈ [0, 1]; 0 at and below the horizon.
     #[inline]
     fn g1(&self, v: Vec3) -> f32 {
         self.plane.g1(v)

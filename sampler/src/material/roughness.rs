@@ -1,12 +1,12 @@
-//! The roughness that single precision can hold.
+//! The range of roughness that single precision can hold.
 
 use microfacet_common::Roughness;
 
 use crate::axis::LogRoughness;
 use crate::error::MaterialError;
 
-/// Outside this range squares of stretched directions, and of normals made from them, leave single
-/// precision. Tables of albedos begin where it does.
+/// Outside this range the squares of stretched directions, and of normals made from them, leave
+/// single precision. Albedo tables begin at its lower end.
 const SIGMAS: core::ops::RangeInclusive<f32> = LogRoughness::BAKED.first as f32..=1e6;
 
 /// σx and σy in single precision.

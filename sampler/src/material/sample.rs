@@ -1,8 +1,9 @@
 //! Sampling visible normals by two table lookups.
 //!
-//! The in-plane slope x and the slope across t are independent (see the model crate), so one lookup inverts each CDF. A table
-//! holds the distance of the slope's half tangent from the nearer end, see [`half_tangent`](crate::axis::half_tangent); the
-//! silhouette is linear in the view coordinate there, so no sampled normal faces away, however coarse the table.
+//! The in-plane slope x and the slope across t are independent (see the model crate), so one lookup
+//! inverts each CDF. A table holds the distance of the slope's half tangent from the nearer end,
+//! see [`half_tangent`](crate::axis::half_tangent); there the silhouette is linear in the view
+//! coordinate, so no sampled normal faces away, however coarse the table.
 
 use glam::Vec3;
 
@@ -12,21 +13,22 @@ use crate::axis::half_tangent::Slope;
 use crate::axis::hermite::{between_rows, hermite, locate};
 use crate::math::sqrt;
 
-/// Smallest cosine of a sampled normal: keeps D finite on the horizon, where for γ < 2 it is not.
+/// Smallest cosine of a sampled normal: keeps D finite, which for γ < 2 it is not on the horizon.
 pub(crate) const HORIZON: f32 = 1e-18;
 
 impl StudentT {
-    /// The fast path where it serves, the general one elsewhere.
+    /// A visible normal, by the fast path where it serves and by the general path elsewhere.
     #[inline(always)]
     pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        // Plain numbers in and out keep those of the common case in registers next to the call of the other.
+        // Scalar arguments and results keep the common case in registers next to the call of the
+        // general path.
         let [x, y, z] = self
             .sample_fast([v.x, v.y, v.z], u)
             .unwrap_or_else(|| self.sample_general(v.x, v.y, v.z, u));
         Vec3::new(x, y, z)
     }
 
-    /// The same for every material and view.
+    /// The general path: a visible normal for every material and view.
     #[inline(never)]
     pub(crate) fn sample_general(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
         let v = Vec3::new(x, y, z);
@@ -36,7 +38,7 @@ impl StudentT {
         face(self.assemble(&view, x, t), Vec3::new(v.x, v.y, view.z)).to_array()
     }
 
-    /// The in-plane slope, from the table or, where it lacks the heavy part, from either.
+    /// The in-plane slope: from the table, or of a peeled table from it or the heavy part.
     #[inline(always)]
     pub(crate) fn sample_along(&self, view: &Stretched, u: f32) -> Slope {
         if self.slices.peeled { self.sample_peeled(view, u) } else { self.sample_slope(view, u) }
@@ -70,14 +72,15 @@ impl StudentT {
         locate(slices.view.of_view(view.rho, view.z) * slices.rows as f32, slices.rows)
     }
 
-    /// As [`sample_slope`](Self::sample_slope) where the table lacks the heavy part, whose share of the visible area is ρ·M₀/area.
+    /// As [`sample_slope`](Self::sample_slope) with a peeled table, which lacks the heavy part of
+    /// share ρ·M₀/area of the visible area.
     #[inline(always)]
     fn sample_peeled(&self, view: &Stretched, u: f32) -> Slope {
         let heavy = self.heavy_share(view);
         // `max` takes NaN to 0, which `clamp` alone would keep.
         let u = u.max(0.0).clamp(0.0, 1.0);
         let rest = 1.0 - heavy;
-        // Straight from above nothing is heavy, and u = 1 still belongs to the table.
+        // Straight from above the heavy part has no share, and u = 1 still belongs to the table.
         if u <= rest {
             return self.sample_slope(view, u / rest);
         }
@@ -87,19 +90,23 @@ impl StudentT {
         Slope { x: sqrt(-libm::expm1f(2.0 * log)), z: sqrt(self.s) * libm::expf(log) }
     }
 
-    /// Share of `u[0]` that [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads from the table, from 0 up; the rest
-    /// draws from the closed-form heavy tail. 1 where the whole distribution is tabulated.
+    /// Share of `u[0]`, from 0 up, that
+    /// [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads from
+    /// the table; the rest draws from the closed-form heavy part.
+    ///
+    /// 1 where the whole distribution is tabulated.
     pub fn tabulated_share(&self, v: Vec3) -> f32 {
         if self.slices.peeled { 1.0 - self.heavy_share(&self.stretch(v)) } else { 1.0 }
     }
 
-    /// Share of the visible area that the term x sin θ p(x), x > 0, takes: M₀ρ/area with M₀ = κ/(G1/q at grazing).
+    /// Share of the visible area that the heavy part, the term x sin θ p(x) for x > 0, takes:
+    /// M₀ρ/area with M₀ = κ/(G1/q at grazing).
     #[inline(always)]
     pub(crate) fn heavy_share(&self, view: &Stretched) -> f32 {
         (self.first_moment() * view.rho * self.inverse_area(view)).clamp(0.0, 1.0)
     }
 
-    /// The slope across the plane in units of √(1 + s x²).
+    /// The slope across in units of √(1 + s x²).
     #[inline(always)]
     pub(crate) fn sample_across(&self, u: f32) -> Slope {
         let slices = &self.slices;
@@ -110,14 +117,15 @@ impl StudentT {
         Slope::from_end(hermite(pair[0], pair[1], w), if u > 0.5 { 1.0 } else { -1.0 })
     }
 
-    /// The world normal of unit slopes, stretched back from unit space.
+    /// The normal in the tangent frame of two slopes in unit space.
     #[inline(always)]
     pub(crate) fn assemble(&self, view: &Stretched, x: Slope, t: Slope) -> Vec3 {
         let m = self.unit_normal(view, x, t);
         above_horizon(Vec3::new(self.sigma_x * m.x, self.sigma_y * m.y, m.z))
     }
 
-    /// The unnormalised normal in unit space: y = √(1 + s x²)·t, turned to the view's azimuth, all in homogeneous form.
+    /// The unnormalised normal in unit space: y = √(1 + s x²)·t, turned to the view's azimuth, all
+    /// in homogeneous form.
     #[inline(always)]
     pub(crate) fn unit_normal(&self, view: &Stretched, x: Slope, t: Slope) -> Vec3 {
         let y = sqrt(x.z * x.z + self.s * x.x * x.x) * t.x;
@@ -128,8 +136,8 @@ impl StudentT {
 
 /// Turns a normal that rounding has put behind the silhouette back onto it.
 ///
-/// The silhouette's slope has the rounding of the view coordinate, which is coarse where σ is far below the view's tilt, and the
-/// stretch of a strongly anisotropic material lets the tilt across spoil the tilt along.
+/// The silhouette's slope has the rounding of the view coordinate, which is coarse where σ is far
+/// below the view's tilt, and strong anisotropy lets the tilt across spoil the tilt along.
 #[inline(always)]
 pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
     let facing = v.dot(m);
@@ -139,7 +147,7 @@ pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
     above_horizon(m - facing * v)
 }
 
-/// Unit length, and not below the smallest cosine.
+/// Normalises a normal and raises it to the smallest cosine where it is lower.
 #[inline(always)]
 pub(crate) fn above_horizon(m: Vec3) -> Vec3 {
     let m = m * (1.0 / sqrt(m.dot(m)));

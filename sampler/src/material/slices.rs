@@ -1,4 +1,4 @@
-//! The γ axis of a table collapsed at one shape, which leaves the slice that lookups read.
+//! A table's γ axis collapsed at one shape, which leaves the slice that lookups read.
 
 use alloc::format;
 use alloc::string::String;
@@ -47,38 +47,40 @@ fn slice(table: &Table, s: f64) -> Option<Vec<Node>> {
 /// Slices of one shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Slices {
-    /// G1/q over the number of cells, by cell of the view coordinate; the coordinate in cells then needs no scaling of its own.
+    /// G1/q over the number of cells, by cell of the view coordinate, so that the coordinate in
+    /// cells needs no scaling of its own.
     pub(crate) shadowing: Vec<Cell>,
-    /// Cells of that axis.
+    /// Cells of the view axis of G1.
     pub(crate) shadowing_cells: f32,
-    /// The view coordinate q there, and its κ.
+    /// The view coordinate q of G1, and its κ.
     pub(crate) shadowing_view: Rational,
     pub(crate) kappa: f32,
-    /// In-plane slopes: rows by view, each `2 (cells + 1)` nodes, the half for u ≤ ½ first; and a node that is read with weight 0.
+    /// In-plane slopes: rows by view, each of `2 (cells + 1)` nodes with the half for u ≤ ½ first;
+    /// then a node that is read with weight 0.
     pub(crate) slope: Vec<Node>,
-    /// Cells of the view axis, and its coordinate.
+    /// Cells of the view axis of slopes, and its coordinate.
     pub(crate) rows: usize,
     pub(crate) view: HalfTangent,
     /// Cells of one half of the u₁ axis.
     pub(crate) cells: usize,
-    /// Whether `slope` is without its heavy part.
+    /// Whether `slope` is peeled.
     pub(crate) peeled: bool,
-    /// Slopes across the plane, the half for u > ½.
+    /// Slopes across, the half for u > ½.
     pub(crate) across: Vec<Node>,
-    /// What the common case reads besides `slope`; absent where it does not apply.
+    /// What the fast path reads besides `slope`; `None` where that path does not apply.
     pub(crate) fast: Option<FastPath>,
 }
 
-/// The case that most materials are, laid out for speed: nothing peeled off, no crowded axis.
+/// The layout of the fast path, which most lobes have: no peeled table, no crowded axis.
 #[derive(Clone, Debug)]
 pub(crate) struct FastPath {
     /// Slopes across by cell.
     pub(crate) across: Vec<Cell>,
-    /// What takes min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
+    /// Factors from min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
     pub(crate) scales: [f32; 2],
     /// Cells of the view axis.
     pub(crate) rows: f32,
-    /// 1 over it.
+    /// 1/`rows`.
     pub(crate) row: f32,
     /// Nodes of half a row of `slope`.
     pub(crate) half: u32,
@@ -104,7 +106,7 @@ impl Slices {
         Ok(slices)
     }
 
-    /// From slices of G1 and of in-plane slopes alone.
+    /// From the slices of G1 and of in-plane slopes alone.
     pub(crate) fn new([shadowing, slope]: [Slice; 2], s: f64) -> Self {
         let (Mapping::Rational(shadowing_view), [.., view, numbers]) =
             (shadowing.axes[shadowing.axes.len() - 1].mapping, slope.axes)
@@ -133,7 +135,7 @@ impl Slices {
         }
     }
 
-    /// Bytes that lookups of this material touch.
+    /// Bytes that lookups of this lobe touch.
     pub(crate) fn bytes(&self) -> usize {
         let across = match &self.fast {
             Some(fast) => size_of_val(&fast.across[..]),

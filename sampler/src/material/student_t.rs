@@ -1,4 +1,4 @@
-//! A material bound to its tables: σ and γ fixed, only directions left.
+//! A Student-t lobe prepared from tables: σ and γ are fixed, only directions are left.
 
 use core::f32::consts::PI;
 
@@ -18,24 +18,25 @@ use crate::format::Table;
 use crate::lanes::swap_pairs;
 use crate::math::sqrt;
 
-/// A Student-t material with fixed roughness and shape, holding only the slices of the tables it needs.
+/// A Student-t lobe with fixed roughness and shape, holding only the slices of the tables it needs.
 ///
-/// Directions are unit vectors in the tangent frame, n = +z, x and y along the principal roughness axes. A view or light at or below
-/// the horizon has `g1` = 0 and `lambda` = ∞; sampling takes such a view at the horizon. Functions of `f32` return numbers of the error
-/// that the tables' certificates state; `m` returned by samplers is of unit length to 4 ulp, above the
-/// horizon, and faces the view to rounding (v·m > −1.2e-7).
+/// Directions are unit vectors in the tangent frame, n = +z, x and y along the principal axes of
+/// roughness. A view or light at or below the horizon has `g1` = 0 and `lambda` = ∞; sampling takes
+/// such a view at the horizon. Functions of `f32` have the error that the tables' certificates
+/// state. Normals from samplers are of unit length to 4 ulp, lie above the horizon, and face the
+/// view to rounding (v·m > −1.2e-7).
 #[derive(Clone, Debug)]
 pub struct StudentT {
     pub(crate) sigma_x: f32,
     pub(crate) sigma_y: f32,
     pub(crate) gamma: f64,
     pub(crate) s: f32,
-    /// 2γ − 3, from γ in double precision: near 3/2 a rounded γ would be another material.
+    /// 2γ − 3, from γ in double precision: near 3/2 a rounded γ would be another lobe.
     pub(crate) two_k: f32,
     pub(crate) slices: Slices,
 }
 
-/// A direction stretched by (σx, σy, 1), with its azimuth there.
+/// A direction stretched by (σx, σy, 1), with its azimuth in unit space.
 #[derive(Clone, Copy)]
 pub(crate) struct Stretched {
     /// Direction of the horizontal part, of length `frame`; (1, 0) at normal incidence.
@@ -49,19 +50,22 @@ pub(crate) struct Stretched {
     pub(crate) z: f32,
 }
 
-/// Horizontal lengths below this are taken as normal incidence: their squares leave the range of f32, and the azimuth with them.
+/// Shorter horizontal parts are taken as normal incidence: their squares, and the azimuth with
+/// them, leave the range of f32.
 pub(crate) const NORMAL_INCIDENCE: f32 = 1e-18;
 
-/// Below this the azimuth is scaled to unit length: the square of a normal carrying it would leave the range of f32.
+/// For shorter horizontal parts the azimuth is scaled to unit length: otherwise the square of a
+/// normal carrying it would leave the range of f32.
 pub(crate) const SHORT: f32 = 1e-6;
 
-/// s times the squared slope from which D takes double precision: few normals of any shape, yet no logarithm below exceeds a few units.
+/// s times the squared slope from which D takes double precision: few normals of any shape reach
+/// it, yet no logarithm up to it exceeds a few units.
 const STEEP: f32 = 1e3;
 
-/// Below the area of any direction; its reciprocal times the number of cells stays finite.
+/// Less than the area of any direction; its reciprocal times the number of cells stays finite.
 pub(crate) const LEAST_AREA: f32 = 1e-30;
 
-/// G1 of what is no number, out of the way of what is one.
+/// Returns 0, the G1 of NaN; kept cold and out of line so that the common path stays short.
 #[cold]
 fn outside() -> f32 {
     0.0
@@ -83,12 +87,13 @@ impl StudentT {
         Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_k, slices })
     }
 
-    /// The carrier of another distribution's tables: unit slopes are slopes over σ, and those across scale with √(1 + x²).
+    /// The carrier of another distribution's tables: unit slopes are slopes over σ, and slopes
+    /// across scale with √(1 + x²).
     pub(crate) fn carrier(sigma: f32, slices: Slices) -> Self {
         Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_k: 1.0, slices }
     }
 
-    /// The same shape with another roughness; the tables are not touched again.
+    /// The same shape with another roughness; the tables are not read again.
     ///
     /// # Errors
     /// [`MaterialError::Sigma`] unless both roughnesses lie in [1e-8, 1e6].
@@ -117,7 +122,8 @@ impl StudentT {
         } else if rho >= NORMAL_INCIDENCE {
             Stretched { x: x / rho, y: y / rho, frame: 1.0, rho, z }
         } else {
-            // Straight down, or not a number: the horizon, as for every view below it, with an azimuth of its own.
+            // Normal incidence, straight down, or NaN: without z > 0 it is taken at the horizon, as
+            // every view below it, with an arbitrary azimuth.
             Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: if z > 0.0 { 0.0 } else { 1.0 }, z }
         }
     }
@@ -129,15 +135,16 @@ impl StudentT {
         self.shadowing(w.rho, w.z, r) * r
     }
 
-    /// M₀ = ∫₀^∞ x p(x) dx: the area at grazing, κ over the first node.
+    /// M₀ = ∫₀^∞ x p(x) dx, the area at grazing: κ over the first node.
     pub(crate) fn first_moment(&self) -> f32 {
         self.slices.kappa / (self.slices.shadowing[0][0] * self.slices.shadowing_cells)
     }
 
-    /// cells/(z + κρ): the view coordinate q in cells, for each unit of z.
+    /// cells/(z + κρ): times z, it is the view coordinate q in cells.
     #[inline(always)]
     fn inverse_mean_area(&self, rho: f32, z: f32) -> f32 {
-        // The sum vanishes for the null vector and straight below the surface only, where z·r is then 0 and not 0·∞.
+        // The sum vanishes only for the null vector and straight below the surface, where z·r is
+        // then 0 and not 0·∞.
         self.slices.shadowing_cells / (z + self.slices.kappa * rho).max(LEAST_AREA)
     }
 
@@ -147,12 +154,12 @@ impl StudentT {
         let slices = &self.slices;
         let at = slices.shadowing_view.of_view(rho, z, slices.kappa, r, slices.shadowing_cells);
         let (cell, w) = split(f32x4::splat(at));
-        // Only what is no number can leave the table.
+        // Only NaN can leave the table.
         let cell = slices.shadowing.get(cell.to_array()[0] as u32 as usize);
         cell.map_or(0.0, |cell| horner(cell, w.to_array()[0]))
     }
 
-    /// D of a normal above the horizon whose horizontal part is divided by σ, with 1/(πσxσy).
+    /// D of a normal above the horizon whose horizontal part is divided by σ; `scale` is 1/(πσxσy).
     #[inline(always)]
     pub(crate) fn d_of_unit(&self, m: Vec3, scale: f32) -> f32 {
         let r2 = m.x * m.x + m.y * m.y;
@@ -163,7 +170,8 @@ impl StudentT {
         }
         let ratio = r2 / z2;
         let log = if s * ratio < 1e-4 {
-            // γ ln(1 + s r²/z²) = (1+s) r²/z² (1 − ½ s r²/z² …): Beckmann's limit, where 1/s would overflow.
+            // γ ln(1 + s r²/z²) = (1+s) r²/z² (1 − ½ s r²/z² …): the limit to Beckmann, where 1/s
+            // would overflow.
             let y = s * ratio;
             -(1.0 + s) * ratio * (1.0 - y * (0.5 - y * (1.0 / 3.0))) - 2.0 * libm::logf(z2)
         } else if s * ratio < STEEP {
@@ -172,20 +180,22 @@ impl StudentT {
             // r²/z² overflows: exp(−r²/z²) = 0.
             return 0.0;
         } else {
-            // cos^(2γ−4) (z² + s r²)^(−γ): towards the horizon both logarithms grow, and for small γ they cancel.
+            // cos^(2γ−4) (z² + s r²)^(−γ): towards the horizon both logarithms grow, and for small
+            // γ they cancel.
             let (z, s, r2) = (f64::from(m.z), f64::from(s), f64::from(r2));
             let gamma = gamma_of_s(s);
             (2.0 * (gamma - 2.0) * libm::log(z) - gamma * libm::log(z * z + s * r2)) as f32
         };
-        // In two halves: the whole power may underflow where 1/σ² brings D back.
+        // Squares the root of the power: the whole power may underflow where 1/σ² brings D back.
         let root = libm::expf(0.5 * log);
         (scale * root * root).min(f32::MAX)
     }
 }
 
 impl MicrofacetDistribution for StudentT {
-    /// Relative error a few ulp times the exponent (about 1e-6 times |ln D σxσy|). For γ < 2 it grows without bound towards the
-    /// horizon and overflows to `f32::MAX` rather than to ∞.
+    /// D(m), with a relative error of a few ulp times its exponent (about 1e-6 times |ln D σxσy|).
+    ///
+    /// For γ < 2 it grows without limit towards the horizon and overflows to `f32::MAX`, not to ∞.
     #[inline]
     fn d(&self, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
@@ -197,11 +207,13 @@ impl MicrofacetDistribution for StudentT {
 
     #[inline(always)]
     fn g1(&self, v: Vec3) -> f32 {
-        // As `inverse_area`, without the azimuth that `stretch` finds, with κ within the roughness, and with nothing between the division
-        // and the lookup. The chain of a root, a division and a lookup is so long that the instructions of a few calls fill the processor's
-        // window, and each one less counts. Of 4.3 ns Horner's scheme, which no compiler turns into shuffles, took about 0.5, an area without
-        // a lower limit 0.2, and a root of all lanes, none of them to be set to zero, with the answer to what is no number out of the way 0.3;
-        // 3.1 are left.
+        // As `inverse_area`, without the azimuth that `stretch` finds, with κ folded into the
+        // roughness, and with nothing between the division and the lookup. The chain of a root, a
+        // division and a lookup is so long that the instructions of a few calls fill the
+        // processor's window, and each one less counts. Of 4.3 ns, Horner's scheme, which no
+        // compiler turns into shuffles, saved about 0.5, an area without a lower limit 0.2, and a
+        // root of all lanes, none of which is set to zero, with NaN handled out of line, 0.3; 3.1
+        // are left.
         let slices = &self.slices;
         let scale =
             f32x4::new([slices.kappa * self.sigma_x, slices.kappa * self.sigma_y, 0.0, 0.0]);
@@ -215,7 +227,8 @@ impl MicrofacetDistribution for StudentT {
             return outside();
         };
         let g1 = q.to_array()[0] * horner(cell, w.to_array()[0]);
-        // The null vector gives 0/0, which leaves the table where the cast does not saturate, and is cell 0 where it does.
+        // The null vector gives 0/0, which leaves the table where the cast does not saturate, and
+        // is cell 0 where it does.
         if cfg!(not(target_feature = "sse2")) && g1.is_nan() {
             return 0.0;
         }
@@ -223,10 +236,12 @@ impl MicrofacetDistribution for StudentT {
         g1.min(1.0)
     }
 
-    /// `u[0]` and `u[1]` are inverse CDFs. Where the whole distribution is tabulated (γ ≥ 1.8 in the
-    /// default set) the tilt towards the viewer rises with `u[0]` and the tilt across with `u[1]`;
-    /// below, `u[0]` is first used to choose between the tabulated part and the closed-form heavy
-    /// tail, and the tilt rises within each.
+    /// A normal visible from `v`, by the inverse CDFs of two slopes at `u[0]` and `u[1]`.
+    ///
+    /// Where the whole distribution is tabulated (γ ≥ 1.8 in the default set), the tilt towards the
+    /// viewer rises with `u[0]` and the tilt across with `u[1]`. For smaller γ, `u[0]` first
+    /// chooses between the tabulated part and the closed-form heavy part, and the tilt rises within
+    /// each.
     #[inline(always)]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         self.sample(v, u)
@@ -238,9 +253,10 @@ impl MicrofacetDistribution for StudentT {
         (facing * self.d(m) * self.inverse_area(&self.stretch(v))).min(f32::MAX)
     }
 
-    /// The Jacobian of the sampler's own map: an estimator that divides by it is unbiased at any
-    /// resolution of the tables. It integrates to 1 over all m and costs two searches and a few square
-    /// roots: use it where bias matters.
+    /// The density with which the sampler draws `m`, the Jacobian of its own map.
+    ///
+    /// An estimator that divides by it is unbiased at any resolution of the tables. It integrates
+    /// to 1 over all m and costs two searches and a few square roots: use it where bias matters.
     fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         self.density_of_samples(v, m)
     }

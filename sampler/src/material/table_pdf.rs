@@ -1,7 +1,8 @@
-//! The exact density of what the table sampler draws.
+//! The density of the normals that the table sampler draws.
 //!
-//! An estimator that divides by it is unbiased at any resolution: it is the Jacobian of the sampler's own map, found by inverting
-//! the interpolated CDFs, and not the analytic density they approximate. Computed in f64 from the very nodes the sampler reads.
+//! An estimator that divides by it is unbiased at any resolution: it is the Jacobian of the
+//! sampler's own map, found by inverting the interpolated CDFs, and not the analytic density that
+//! they approximate. It is computed in f64 from the same nodes that the sampler reads.
 
 use alloc::vec::Vec;
 
@@ -13,7 +14,7 @@ use crate::axis::half_tangent::{ends, rate, slope_at};
 use crate::axis::hermite::{Cubic, Node};
 use crate::math::sqrt64;
 
-/// How a slope splits into unit-space parts: in-plane (x : z) and across t/√(z² + s x²).
+/// A normal's slopes in unit space: in-plane x : z, and across y : z, with t = y/√(z² + s x²).
 struct UnitSlopes {
     x: f64,
     z: f64,
@@ -53,7 +54,8 @@ impl StudentT {
         let s = f64::from(self.s);
         let norm = sqrt64(z * z + s * x * x);
         let across = self.across_density(y / norm);
-        // p(x, y) = p(x) p(t)/√(1 + s x²); `along` is per unit of x/z. World slopes scale by σ, and dm = cos³θ per slope area.
+        // p(x, y) = p(x) p(t)/√(1 + s x²); `along` is per unit of x/z. Slopes in the tangent frame
+        // scale by σ, and dm = cos³θ per slope area.
         let per_slope = along * across * z / norm / f64::from(self.sigma_x * self.sigma_y);
         let density = per_slope / (z * z * z);
         if density.is_finite() { (density as f32).min(f32::MAX) } else { 0.0 }
@@ -99,18 +101,19 @@ impl StudentT {
         place.map_or(0.0, |place| place.density()) * rate(at.x, at.z)
     }
 
-    /// The number at which the table has the in-plane slope x/z: the inverse of the lookup.
+    /// The random number at which the table has the in-plane slope x/z: the inverse of the lookup.
     pub(crate) fn number_along(&self, view: &Stretched, x: f64, z: f64) -> f64 {
         let (half, place) = self.place_along(view, x, z);
         let u = place.map_or(0.0, |place| MirroredRoot::number(place.t));
         if half == 0 { u } else { 1.0 - u }
     }
 
-    /// The half of the row, and the place in it, that hold the in-plane slope x/z.
+    /// The half of the row that holds the in-plane slope x/z, and the place in it.
     fn place_along(&self, view: &Stretched, x: f64, z: f64) -> (usize, Option<Place>) {
         let rows = self.rows_at(view);
         let [low, high] = ends(x, z);
-        // The half for u ≤ ½ ends where 1 + h reaches its last node; beyond, 1 − h is looked up in the other.
+        // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
+        // 1 − h in the other half.
         let nodes = self.slices.cells + 1;
         let (half, g) =
             if low <= f64::from(rows.node(nodes - 1)[0]) { (0, low) } else { (1, high) };
@@ -137,21 +140,22 @@ impl StudentT {
     }
 }
 
-/// Where the interpolated inverse CDF over one half of a mirrored axis takes a value.
+/// Where the interpolated inverse CDF of one half of a mirrored axis takes a value.
 struct Place {
     /// Coordinate in [0, 1].
     t: f64,
-    /// Rate of the value there.
+    /// Derivative of the value there.
     dg_dt: f64,
 }
 
 impl Place {
-    /// Of the value g, given the half's `cells + 1` ascending nodes; `None` before the first.
+    /// Finds the value g among the half's `cells + 1` ascending nodes; `None` before the first.
     fn find(node: impl Fn(usize) -> Node, cells: usize, g: f64) -> Option<Self> {
         if g < f64::from(node(0)[0]) {
             return None;
         }
-        // The halves meet at u = ½ up to the rounding of their nodes; a normal in the gap, if there is one, is a rounded sample of its edge.
+        // The halves meet at u = ½ up to the rounding of their nodes; a normal in a gap between
+        // them is a rounded sample of its edge.
         let g = g.min(f64::from(node(cells)[0]));
         // The last cell whose first node is not above g.
         let (mut low, mut high) = (0, cells);

@@ -1,4 +1,5 @@
-//! Builds only if `microfacet-sampler` without default features brings no standard library: a second panic handler would clash.
+//! Builds only if `microfacet-sampler` without default features brings no standard library: its
+//! panic handler would clash with this one.
 #![no_std]
 
 use core::alloc::{GlobalAlloc, Layout};
