@@ -59,7 +59,8 @@ impl<'a> SlopeBelowHorizon<'a> {
     /// Inverse CDF; u = 0 is the silhouette, u = 1 an infinite slope.
     pub(crate) fn quantile(&self, u: f64) -> AsinhSlope {
         let target = (1.0 - u) * self.excess;
-        // Where the excess underflows (a > 27 for Beckmann) all slopes within reach lie at the silhouette.
+        // Where the excess underflows (a > 27 for Beckmann) all slopes within reach lie at the
+        // silhouette.
         if u <= 0.0 || self.excess == 0.0 {
             return self.w_a;
         }

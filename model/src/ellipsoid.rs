@@ -1,4 +1,5 @@
-//! The Ellipsoid distribution of normals of any shape γ: a Student-t lobe seen through a 3×3 matrix.
+//! The Ellipsoid distribution of normals of any shape γ: a Student-t lobe seen through a 3×3
+//! matrix.
 
 use core::f64::consts::PI;
 use core::fmt;

@@ -18,7 +18,8 @@ pub struct Conductor {
 }
 
 impl Conductor {
-    /// A conductor of index η > 0 and extinction k ≥ 0, both relative to the outer medium's (real) index.
+    /// A conductor of index η > 0 and extinction k ≥ 0, both relative to the outer medium's (real)
+    /// index.
     ///
     /// # Errors
     /// [`ParameterError::Eta`] and [`ParameterError::Extinction`] outside these domains.
@@ -178,7 +179,8 @@ mod tests {
 
     #[test]
     fn conductor_matches_complex_arithmetic() {
-        // r_s = (cos − w)/(cos + w), r_p = (ñ² cos − w)/(ñ² cos + w), w = √(ñ² − sin²) in complex numbers.
+        // r_s = (cos − w)/(cos + w), r_p = (ñ² cos − w)/(ñ² cos + w), w = √(ñ² − sin²) in complex
+        // numbers.
         type C = (f64, f64);
         let mul = |a: C, b: C| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
         let norm = |a: C| a.0 * a.0 + a.1 * a.1;

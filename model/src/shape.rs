@@ -7,7 +7,8 @@ use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 use crate::error::ParameterError;
 use crate::slope_integrals;
 
-/// Above this γ the Beckmann limit is used: the two differ by O(1/γ), below the rounding of a double.
+/// Above this γ the Beckmann limit is used: the two differ by O(1/γ), less than a double's
+/// rounding.
 const BECKMANN_FROM: f64 = 1e16;
 
 /// A validated shape γ ∈ (3/2, ∞] and the in-plane marginal of its *unit slopes*.

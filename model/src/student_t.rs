@@ -15,8 +15,9 @@ use crate::visible::{self, SignedSlope, UnitView, VisibleSlope};
 /// Equations are those of Ribardière, Bringier, Meneveaux, Simonot 2017, *STD: Student's
 /// t-Distribution of Slopes for Microfacet Based BSDFs*, <https://doi.org/10.1111/cgf.13137>.
 ///
-/// Directions are unit vectors in the tangent frame (macro normal n = +z, x and y along the principal roughness axes);
-/// angles are in radians, slopes dimensionless. γ = 2 is GGX with α = σ, γ = ∞ is Beckmann with α = σ.
+/// Directions are unit vectors in the tangent frame (macro normal n = +z, x and y along the
+/// principal roughness axes); angles are in radians, slopes dimensionless. γ = 2 is GGX with α = σ,
+/// γ = ∞ is Beckmann with α = σ.
 ///
 /// ```
 /// use glam::DVec3;
@@ -71,7 +72,8 @@ impl StudentT {
         Self::new(alpha, f64::INFINITY)
     }
 
-    /// Blinn–Phong with exponent N, D = (N+2)/(2π) cosᴺθ: γ = (N+4)/2 and σ = √(2/(N+2)), an identity and not a fit.
+    /// Blinn–Phong with exponent N, D = (N+2)/(2π) cosᴺθ: γ = (N+4)/2 and σ = √(2/(N+2)), an
+    /// identity and not a fit.
     ///
     /// # Errors
     /// [`ParameterError::Exponent`] unless 0 ≤ N < ∞.

@@ -1,4 +1,5 @@
-//! Directional albedo of transmission through a rough dielectric, by deterministic quadrature over slopes.
+//! Directional albedo of transmission through a rough dielectric, by deterministic quadrature over
+//! slopes.
 //!
 //! As for reflection, polar coordinates r, φ of the unit slopes about m = n:
 //!
@@ -176,7 +177,8 @@ impl Pane<'_> {
         sum
     }
 
-    /// (cos θ − r b) (1 − F) S at the unit slope r of a ray; `None` where nothing is refracted downwards.
+    /// (cos θ − r b) (1 − F) S at the unit slope r of a ray; `None` where nothing is refracted
+    /// downwards.
     fn refracted(&self, a: f64, b: f64, r: f64) -> Option<[f64; 2]> {
         let facing = self.cos - r * b;
         if facing <= 0.0 {

@@ -11,7 +11,8 @@ use glam::DVec3;
 use crate::quadrature;
 use crate::shape::{AsinhSlope, Shape};
 
-/// The elevation of a view in unit space, as a unit vector (sin θ, cos θ) in the plane of incidence.
+/// The elevation of a view in unit space, as a unit vector (sin θ, cos θ) in the plane of
+/// incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitView {
     /// sin θ ∈ [0, 1].
@@ -126,7 +127,8 @@ impl<'a> VisibleSlope<'a> {
         quadrature::panel(w, w + gap, |w| self.facing(w) * self.shape.density(w))
     }
 
-    /// cos θ − q sin θ for a slope −q between the silhouette and 0, without cancellation near the silhouette.
+    /// cos θ − q sin θ for a slope −q between the silhouette and 0, without cancellation near the
+    /// silhouette.
     fn facing(&self, w: AsinhSlope) -> f64 {
         if self.shape.is_beckmann() {
             return self.view.sin * (self.w_silhouette - w);
@@ -137,7 +139,7 @@ impl<'a> VisibleSlope<'a> {
         self.view.sin / root * 2.0 * libm::cosh(0.5 * (a + b)) * libm::sinh(0.5 * (a - b))
     }
 
-    /// CDF of the in-plane slope: the probability of slopes below (further from the viewer than) `x`.
+    /// CDF of the in-plane slope: the probability of slopes less than `x`, further from the viewer.
     pub fn cdf(&self, x: SignedSlope) -> f64 {
         let share = if x.sign < 0.0 { self.lower(x.w) } else { self.area - self.upper(x.w) };
         (share / self.area).clamp(0.0, 1.0)
@@ -234,8 +236,8 @@ pub fn across_cdf(shape: &Shape, t: SignedSlope) -> f64 {
 /// Solves f(w) = target for a decreasing f on [lo, hi], where `f` gives the value and minus the
 /// derivative.
 ///
-/// Newton on ln f, which is nearly linear in the tails, inside a bracket that is bisected whenever a step leaves it; an
-/// infinite upper end is first replaced by doubling.
+/// Newton on ln f, which is nearly linear in the tails, inside a bracket that is bisected whenever
+/// a step leaves it; an infinite upper end is first replaced by doubling.
 pub(crate) fn solve_decreasing(
     target: f64,
     mut lo: f64,

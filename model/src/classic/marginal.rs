@@ -39,7 +39,8 @@ impl<'a> Marginal<'a> {
     pub fn new(d: &'a dyn Isotropic) -> Self {
         let sigma = libm::tan(d.sample_theta(0.5));
         let reach = libm::tan(d.support()) / sigma;
-        // A support that ends within rounding of the horizon (tan negative or huge) is the whole hemisphere.
+        // A support that ends within rounding of the horizon (tan negative or huge) is the whole
+        // hemisphere.
         let reach = if (0.0..1e6).contains(&reach) { reach } else { f64::INFINITY };
         Self { d, sigma, reach }
     }
@@ -78,7 +79,8 @@ impl<'a> Marginal<'a> {
         self.sigma * self.sigma * self.d.d(libm::atan(slope)) * cos2 * cos2
     }
 
-    /// Calls `add(y, weight)` at the nodes of ∫ over y from `from` to the end of the support, at in-plane slope x.
+    /// Calls `add(y, weight)` at the nodes of ∫ over y from `from` to the end of the support, at
+    /// in-plane slope x.
     fn across(&self, x: f64, from: f64, mut add: impl FnMut(f64, f64)) {
         let whole = if self.reach.is_finite() {
             let left = self.reach * self.reach - x * x;

@@ -87,7 +87,8 @@ fn cell(upper_edges: &[f64], x: f64) -> usize {
     upper_edges.partition_point(|&edge| edge < x).min(upper_edges.len() - 1)
 }
 
-/// Cells in the plane of incidence and across it, as upper edges in unit slopes, with their probabilities.
+/// Cells in the plane of incidence and across it, as upper edges in unit slopes, with their
+/// probabilities.
 struct LobeGrid {
     sigma: [f64; 2],
     s: f64,
