@@ -402,8 +402,8 @@ impl AlbedoIntegrator {
             rule.graded(End { at: 0.0, scale }, end, PANEL, &mut add);
         }
         if view.cos == 0.0 && b < 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY {
-            // At grazing the power law r^(−2k−1) has no end, and height-correlated masking (G2/G1 =
-            // 1) keeps all of it.
+            // At grazing the power law r^(−2k−1) has no end, and height-correlated masking
+            // (G2/G1 = 1) keeps all of it.
             let k = self.shape.gamma() - 1.5;
             let fresnel = weight(-b / a.sqrt());
             let tail = libm::exp(-2.0 * k * LARGEST_RAPIDITY) * libm::exp2(2.0 * k)
@@ -445,8 +445,8 @@ impl AlbedoIntegrator {
         vec![(first, asymptote), (asymptote, towards)]
     }
 
-    /// Where a ray meets the cone v·m = `kink`, in w, ascending: the roots of (cos θ − r b)² =
-    /// kink² (1 + a r²).
+    /// Where a ray meets the cone v·m = `kink`, in w, ascending: the roots of (cos θ − r
+    /// b)² = kink² (1 + a r²).
     pub(crate) fn conic(
         &self,
         cos: f64,

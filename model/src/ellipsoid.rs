@@ -99,12 +99,12 @@ impl Ellipsoid {
         Ok(Self { skew, shape: Shape::new(gamma)? })
     }
 
-    /// The ellipsoid of a cosine-power lobe with matrix A, rows first: D′ ∝ (m′·n′)^(2γ−4) with n′
-    /// = An/‖An‖. An untilted Student-t has A = diag(σx√(γ−1), σy√(γ−1), 1).
+    /// The ellipsoid of a cosine-power lobe with matrix A, rows first: D′ ∝ (m′·n′)^(2γ−4) with
+    /// n′ = An/‖An‖. An untilted Student-t has A = diag(σx√(γ−1), σy√(γ−1), 1).
     ///
     /// # Errors
-    /// [`EllipsoidError::Skew`] if A describes no ellipsoid, [`EllipsoidError::Parameter`] unless γ
-    /// > 3/2, [`EllipsoidError::LobeWithoutWidth`] for γ = ∞.
+    /// [`EllipsoidError::Skew`] if A describes no ellipsoid, [`EllipsoidError::Parameter`] unless
+    /// γ > 3/2, [`EllipsoidError::LobeWithoutWidth`] for γ = ∞.
     pub fn from_lobe_matrix(a: [[f64; 3]; 3], gamma: f64) -> Result<Self, EllipsoidError> {
         let mut ellipsoid = Self::new(Skew::from_matrix(a)?, gamma)?;
         if ellipsoid.shape.is_beckmann() {

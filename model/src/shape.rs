@@ -203,8 +203,8 @@ impl Shape {
         if z.is_infinite() { 0.0 } else { z * self.lambda(w) }
     }
 
-    /// Upper tail of the slope across, in units of √(1 + s x²): P(T > t), t ≥ 0, for a density ∝ (1
-    /// + s t²)^(−γ).
+    /// Upper tail of the slope across, in units of √(1 + s x²): P(T > t), t ≥ 0, for a
+    /// density ∝ (1 + s t²)^(−γ).
     pub fn across_tail(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             0.5 * libm::erfc(w)

@@ -37,8 +37,8 @@ pub(crate) fn gamma_ratio(mut k: f64) -> f64 {
     }
     let w = k + 0.25;
     let r = 1.0 / (w * w);
-    // −E₂ₘ / (m 4^(2m+1)) with the Euler numbers E₂…E₁₂; the next term is less than 1e-17 at w =
-    // 16.
+    // −E₂ₘ / (m 4^(2m+1)) with the Euler numbers E₂…E₁₂; the next term is less than 1e-17 at
+    // w = 16.
     let log = r
         * (1.0 / 64.0
             + r * (-5.0 / 2048.0
@@ -133,9 +133,9 @@ pub(crate) fn tail(k: f64, c: f64, v: f64) -> f64 {
 /// Λ = ∫_a^∞ (x − a) p(x) dx / a at a = sinh v, v > 0: Smith's Λ at the cotangent a in the lobe's
 /// own space.
 ///
-/// Away from the centre it is c/(4k(k+½)) · t^(k+½) (1−t)^(−3/2) · 2F1(1, 3/2; k+3/2; −1/a²) with t
-/// = 1/(1+a²), which has no cancellation; the textbook form T₁ − Q, with T₁ the first moment beyond
-/// a divided by a, subtracts nearly equal numbers there.
+/// Away from the centre it is c/(4k(k+½)) · t^(k+½) (1−t)^(−3/2) · 2F1(1, 3/2; k+3/2; −1/a²) with
+/// t = 1/(1+a²), which has no cancellation; the textbook form T₁ − Q, with T₁ the first moment
+/// beyond a divided by a, subtracts nearly equal numbers there.
 pub(crate) fn lambda(k: f64, c: f64, v: f64) -> f64 {
     let ln_cosh = ln_cosh(v);
     let tanh = libm::tanh(v);

@@ -8,11 +8,11 @@
 //! ```
 //!
 //! with l the refracted direction. Entering the denser side (η > 1), every m that faces the view
-//! sends l below the surface, and the domain is the half-plane of visible slopes. Leaving it (η <
-//! 1), two sets of slopes are left out: those of total reflection, v·m < √(1−η²), beyond a conic
-//! where 1 − F is singular like a square root; and those whose l would come out above the surface,
-//! which with p the slope lie outside the circle |p + v_xy/cos θ| = η/cos θ on the side towards the
-//! view. Along that circle l grazes.
+//! sends l below the surface, and the domain is the half-plane of visible slopes. Leaving it
+//! (η < 1), two sets of slopes are left out: those of total reflection, v·m < √(1−η²), beyond a
+//! conic where 1 − F is singular like a square root; and those whose l would come out above the
+//! surface, which with p the slope lie outside the circle |p + v_xy/cos θ| = η/cos θ on the side
+//! towards the view. Along that circle l grazes.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 

@@ -199,8 +199,8 @@ impl<'a> VisibleSlope<'a> {
     }
 }
 
-/// The unnormalised normal in unit space from the in-plane slope x and the slope across t = y/√(1 +
-/// s x²); it forms no slope, which might overflow.
+/// The unnormalised normal in unit space from the in-plane slope x and the slope across
+/// t = y/√(1 + s x²); it forms no slope, which might overflow.
 pub(crate) fn unit_normal(shape: &Shape, x: SignedSlope, t: SignedSlope) -> DVec3 {
     let (sin_x, cos_x) = shape.unit_sin_cos(x.w);
     let (sin_t, cos_t) = shape.unit_sin_cos(t.w);

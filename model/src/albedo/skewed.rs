@@ -1,7 +1,7 @@
 //! Directional albedo of skewed lobes by deterministic quadrature over unit slopes.
 //!
-//! In unit space, turned so that the view lies over the first axis, slopes x along the view and y =
-//! √(1 + s x²)·t across it have the density p(x) p⊥(t), and the slopes of the surface along and
+//! In unit space, turned so that the view lies over the first axis, slopes x along the view and
+//! y = √(1 + s x²)·t across it have the density p(x) p⊥(t), and the slopes of the surface along and
 //! across the view's azimuth are
 //!
 //! ```text

@@ -1,7 +1,7 @@
 //! Directional albedo of any isotropic distribution, by quadrature over its slopes.
 //!
-//! In polar coordinates (r, φ) of the slopes about m = n, φ from the azimuth of v, both v·m ∝ cos θ
-//! + r sin θ cos φ and l_z = 2 (cos θ + r sin θ cos φ)/(1 + r²) − cos θ fall with |φ|, so that l
+//! In polar coordinates (r, φ) of the slopes about m = n, φ from the azimuth of v, both v·m ∝ cos
+//! θ + r sin θ cos φ and l_z = 2 (cos θ + r sin θ cos φ)/(1 + r²) − cos θ fall with |φ|, so that l
 //! stays above the surface on one arc |φ| < φ₁(r):
 //!
 //! ```text
@@ -78,8 +78,8 @@ impl<'a> RadialAlbedo<'a> {
         }
     }
 
-    /// Albedo of reflection for a view at cos θ ∈ [0, 1]; `weight` gives the reflectances at v·m ∈
-    /// [0, 1], in which they must be smooth.
+    /// Albedo of reflection for a view at cos θ ∈ [0, 1]; `weight` gives the reflectances at
+    /// v·m ∈ [0, 1], in which they must be smooth.
     ///
     /// cos θ = 0 is the limit of grazing views.
     ///

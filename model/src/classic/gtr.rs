@@ -34,8 +34,8 @@ impl Gtr {
         (1.0 - self.c) * (1.0 + self.c) / (self.c * self.c)
     }
 
-    /// ((1 + b x)^(1−γ) − 1)/((1−γ) b) = ∫₀ˣ (1 + b t)^(−γ) dt for x ∈ [0, 1]; ln(1 + bx)/b at γ =
-    /// 1 and x at b = 0.
+    /// ((1 + b x)^(1−γ) − 1)/((1−γ) b) = ∫₀ˣ (1 + b t)^(−γ) dt for x ∈ [0, 1]; ln(1 + bx)/b at
+    /// γ = 1 and x at b = 0.
     fn integral(&self, x: f64) -> f64 {
         let (b, g) = (self.b(), 1.0 - self.gamma);
         if b == 0.0 {

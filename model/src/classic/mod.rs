@@ -172,8 +172,8 @@ mod tests {
     #[test]
     fn all_are_normalised() {
         for (name, d) in all() {
-            // Independent of the distribution's own CDF: double-exponential quadrature over θ =
-            // support/(1 + e).
+            // Independent of the distribution's own CDF: double-exponential quadrature over
+            // θ = support/(1 + e).
             let support = d.support();
             let h = 1.0 / 256.0;
             let mut sum = 0.0;

@@ -4,9 +4,9 @@ use core::f64::consts::PI;
 
 use super::{ClassicError, Isotropic, check};
 
-/// Schlick's rational distribution, D = m³ x / (π t (m x² − x² + m²)²) with t = cos θ and x = t + m
-/// − 1 ≥ 0; zero where t < 1 − m (Schlick 1994, *An Inexpensive BRDF Model for Physically-based
-/// Rendering*, <https://doi.org/10.1111/1467-8659.1330233>).
+/// Schlick's rational distribution, D = m³ x / (π t (m x² − x² + m²)²) with t = cos θ and
+/// x = t + m − 1 ≥ 0; zero where t < 1 − m (Schlick 1994, *An Inexpensive BRDF Model for
+/// Physically-based Rendering*, <https://doi.org/10.1111/1467-8659.1330233>).
 ///
 /// On this support ∫ D (m·n) dm = 1 holds without a further constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
