@@ -175,8 +175,9 @@ impl AlbedoIntegrator {
         Ok(self.converged(self.tolerance, &self.view(sigma, cos_theta, phi)?, weight))
     }
 
-    /// Albedo of reflection for reflectances with a square-root singularity at v·m = `kink` ∈ (0,
-    /// 1), where total reflection sets in; otherwise as [`reflection`](Self::reflection).
+    /// Albedo of reflection for reflectances with a square-root singularity at
+    /// v·m = `kink` ∈ (0, 1), where total reflection sets in; otherwise as
+    /// [`reflection`](Self::reflection).
     ///
     /// # Errors
     /// As [`reflection`](Self::reflection).
@@ -445,8 +446,8 @@ impl AlbedoIntegrator {
         vec![(first, asymptote), (asymptote, towards)]
     }
 
-    /// Where a ray meets the cone v·m = `kink`, in w, ascending: the roots of (cos θ − r
-    /// b)² = kink² (1 + a r²).
+    /// Where a ray meets the cone v·m = `kink`, in w, ascending: the roots of
+    /// (cos θ − r b)² = kink² (1 + a r²).
     pub(crate) fn conic(
         &self,
         cos: f64,

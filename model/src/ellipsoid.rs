@@ -157,8 +157,8 @@ impl Ellipsoid {
         }
     }
 
-    /// Projected area of the whole microsurface, ∫ (v·m)⁺ D(m) dm, for any direction v (Walter et
-    /// al. 2015, eq. 24 and 26, at γ = 2, where it is ½(‖Av‖ + Av·An/‖An‖)/‖An‖). 0 where it
+    /// Projected area of the whole microsurface, ∫ (v·m)⁺ D(m) dm, for any direction v (Walter
+    /// et al. 2015, eq. 24 and 26, at γ = 2, where it is ½(‖Av‖ + Av·An/‖An‖)/‖An‖). 0 where it
     /// underflows.
     pub fn projected_area(&self, v: DVec3) -> f64 {
         let view = self.view(v);

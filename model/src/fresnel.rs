@@ -1,5 +1,5 @@
-//! Fresnel reflectance of conductors and dielectrics, and Schlick's approximation (1994,
-//! <https://doi.org/10.1111/1467-8659.1330233>) with its F82 tint.
+//! Fresnel reflectance of conductors and dielectrics, and Schlick's approximation
+//! (1994, <https://doi.org/10.1111/1467-8659.1330233>) with its F82 tint.
 //!
 //! `cos_theta` is the cosine between the view and the microfacet normal, in [0, 1]. Light is
 //! unpolarised. Constructors check their arguments, so that evaluation cannot fail.

@@ -2,8 +2,8 @@
 //! of their equations.
 //!
 //! Kept to show where each form loses digits or overflows; use
-//! [`Shape::lambda`](crate::Shape::lambda) instead. Arguments: γ and the unit cotangent z = cot
-//! θ/σ > 0. The example `printed_formulas` compares each with the well-conditioned form.
+//! [`Shape::lambda`](crate::Shape::lambda) instead. Arguments: γ and the unit cotangent
+//! z = cot θ/σ > 0. The example `printed_formulas` compares each with the well-conditioned form.
 
 use core::f64::consts::PI;
 

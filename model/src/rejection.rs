@@ -14,8 +14,8 @@ use crate::shape::Shape;
 use crate::student_t::StudentT;
 
 impl StudentT {
-    /// Draws a visible normal by rejection, for any view; `uniform` gives uniform numbers in [0,
-    /// 1).
+    /// Draws a visible normal by rejection, for any view; `uniform` gives uniform numbers in
+    /// [0, 1).
     ///
     /// A draw takes 1 + (3 or more) numbers; the rejection accepts 1 in 1.1–2.8. Every draw is an
     /// excess draw at grazing and for views below the horizon, which see the microsurface from

@@ -71,8 +71,8 @@ fn gauss_fraction(b: f64, c: f64, w: f64) -> f64 {
     // because all terms are positive.
     let (mut f, mut big_c, mut big_d) = (1.0_f64, 1.0_f64, 0.0_f64);
     let mut n = 0.0;
-    // The number of terms grows towards the centre; it is less than 150 where `CENTRE` allows the
-    // call.
+    // Towards the centre the number of terms grows like 1/a, for large k like 1/a²; it is less than
+    // 150 where `CENTRE` allows the call.
     for _ in 0..1000 {
         let odd = (b + n) * (c - 1.0 + n) / ((c + 2.0 * n - 1.0) * (c + 2.0 * n)) * w;
         n += 1.0;

@@ -160,7 +160,7 @@ impl StudentT {
 }
 
 impl MicrofacetDistribution for StudentT {
-    /// D(m) by eq. 18 with 11; for γ < 2 it grows without bound towards the horizon, as cos^(2γ−4)
+    /// D(m) by eq. 18 with 11. For γ < 2 it grows towards the horizon without bound, as cos^(2γ−4)
     /// θ.
     fn d(&self, m: DVec3) -> f64 {
         if !(m.z > 0.0) {

@@ -119,7 +119,8 @@ impl Pane<'_> {
     }
 
     /// The unit slope of the m that refracts v to −n, positive where it leans away from the view;
-    /// `None` unless the branch point of Λ(l) is strong enough to need panels of its own.
+    /// `None` without such an m, or if the branch point of Λ(l) is too weak to need panels of its
+    /// own.
     fn branch(&self) -> Option<f64> {
         let strong = self.model.shape().gamma() < 3.5 || self.sigma > 0.7;
         // m = ±(v − ηn), below the surface or turned away for the views in between.
@@ -133,7 +134,7 @@ impl Pane<'_> {
         let a = self.sigma * self.sigma;
         let b = self.sigma * self.sin * libm::cos(phi);
         let s = self.model.shape().s();
-        // The slope from which on m faces away from the view, if any.
+        // The slope from which on m faces away from the view; ∞ if there is none.
         let rim =
             if b > 0.0 { self.model.shape().asinh_slope(self.cos / b) } else { f64::INFINITY };
         let scale = if rim < self.model.cut && self.eta > 1.0 {

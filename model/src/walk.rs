@@ -3,8 +3,8 @@
 //!
 //! A ray at height h travels by Smith's Λ until it leaves or meets the surface, where it is
 //! reflected off a normal visible from where it came. Heights enter only as C = P(height below h),
-//! so that their distribution need not be chosen (Heitz, Hanika, d'Eon & Dachsbacher 2016, eq.
-//! 14–16).
+//! so that their distribution need not be chosen (Heitz, Hanika, d'Eon & Dachsbacher 2016,
+//! eq. 14–16).
 
 use glam::DVec3;
 

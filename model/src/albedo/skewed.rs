@@ -34,8 +34,8 @@ use crate::slope_integrals;
 const LARGEST_RAPIDITY: f64 = 300.0;
 /// Stands for area − l_z where a chord has no length: positive, because l_z is 0 there.
 const RIM: f64 = 1.0;
-/// Error estimate over the difference between the last two orders: where chords touch the kink,
-/// orders converge algebraically.
+/// Ratio of the error estimate to the difference between the last two orders: where chords touch
+/// the kink, orders converge algebraically.
 const FACTOR: f64 = 5.0;
 /// Points on a chord between which the clamp of G1(l) is searched for.
 const CLAMPS: usize = 16;
@@ -74,8 +74,8 @@ struct Chord {
     rate: f64,
 }
 
-/// A reflected direction: its cosine, the area of the microsurface it sees, v·m, and 1 + ‖slope of
-/// m‖².
+/// A reflected direction: its cosine, the area of the microsurface it sees, v·m, and 1 + r² with r
+/// the slope of m.
 struct Reflected {
     cos: f64,
     area: f64,
@@ -85,8 +85,8 @@ struct Reflected {
 
 impl AlbedoIntegrator {
     /// Albedo of reflection by a skewed lobe for a view at cos θ ∈ [0, 1] and azimuth φ (radians
-    /// from the x axis of the macrosurface); `weight` gives the reflectances, smooth in v·m ∈ [0,
-    /// 1].
+    /// from the x axis of the macrosurface); `weight` gives the reflectances, smooth in
+    /// v·m ∈ [0, 1].
     ///
     /// G1 of view and light are clamped at one, as in [`Ellipsoid::g1`], so that E ≤ 1 for weights
     /// of one. cos θ = 0 is the limit of grazing views. From below the lobe's own horizon E
@@ -368,8 +368,8 @@ impl AlbedoIntegrator {
             if w.abs() >= self.cut_across() {
                 return End { at: w, scale: f64::INFINITY };
             }
-            // l_z falls by 2 cos θ |η|/(1 + ‖slope‖²) per η: to the area that l sees, and then to
-            // zero.
+            // l_z falls by 2 cos θ |η|/(1 + r²) per η, r being the slope: to the area that l sees,
+            // and then to zero.
             let (l, t) = (reflected(w), self.signed_slope(w));
             let layer = l.area * l.square / (2.0 * view.cos * half);
             End { at: w, scale: (layer / (chord.rate * (1.0 + s * t * t).sqrt())).max(1e-6) }

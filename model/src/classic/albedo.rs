@@ -1,8 +1,8 @@
 //! Directional albedo of any isotropic distribution, by quadrature over its slopes.
 //!
-//! In polar coordinates (r, φ) of the slopes about m = n, φ from the azimuth of v, both v·m ∝ cos
-//! θ + r sin θ cos φ and l_z = 2 (cos θ + r sin θ cos φ)/(1 + r²) − cos θ fall with |φ|, so that l
-//! stays above the surface on one arc |φ| < φ₁(r):
+//! In polar coordinates (r, φ) of the slopes about m = n, φ from the azimuth of v, both
+//! v·m ∝ cos θ + r sin θ cos φ and l_z = 2 (cos θ + r sin θ cos φ)/(1 + r²) − cos θ fall with |φ|,
+//! so that l stays above the surface on one arc |φ| < φ₁(r):
 //!
 //! ```text
 //! E = 2/area ∫dr r P22(r) ∫₀^φ₁ dφ (cos θ + r sin θ cos φ) F(v·m) S(l).

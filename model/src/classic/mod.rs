@@ -79,8 +79,7 @@ pub trait Isotropic: Sync {
         search_half(|theta| self.relative_d(theta), self.support())
     }
 
-    /// The share of the projected area whose normals are within θ of n: ∫₀^θ 2π D(t) cos t sin t
-    /// dt.
+    /// The share of the projected area with normals within θ of n: ∫₀^θ 2π D(t) cos t sin t dt.
     fn cdf(&self, theta: f64) -> f64 {
         let theta = theta.clamp(0.0, self.support());
         projected(|t| self.d(t), self.half_angle().unwrap_or(1.0), theta)
