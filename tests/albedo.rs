@@ -1,4 +1,5 @@
-//! Albedo tables end to end: baked for those who ask, restricted to what they ask for, read back, and refused elsewhere.
+//! Albedo tables end to end: baked for recipes that ask, restricted to what they ask for, read
+//! back, and refused elsewhere.
 
 mod command;
 
@@ -69,7 +70,7 @@ fn those_who_ask_get_the_form_they_name() {
         reflectance: Reflectance::Moments,
         maskings: maskings.into(),
     };
-    // Of the anisotropic one that of its own lobe, not that of a round stand-in.
+    // The anisotropic material needs the albedo of its own lobe, not that of an isotropic stand-in.
     let brushed = AlbedoLobe::StudentT { sigma: [0.6, 0.15], gamma: 2.0 };
     let wanted = [
         need(domain([3.0; 2], [0.454; 2]), &Masking::ALL),
@@ -82,7 +83,7 @@ fn those_who_ask_get_the_form_they_name() {
     assert_eq!(asked.albedo_verdicts, [NotAsked, bake(0), bake(0), bake(1), bake(2), NotNeeded]);
     assert!(plan_of(AlbedoWish::None).albedos.is_empty());
     assert!(matches!(plan_of(AlbedoWish::All).albedo_verdicts[0], Bake(_)));
-    // GGX needs no other table, but its albedo is one.
+    // GGX needs a table of its albedo, and no other.
     let gold = plan(&MIXED[3..4], AlbedoWish::Recipes);
     assert!(gold.shapes.is_empty() && !gold.is_empty());
 }
@@ -113,7 +114,8 @@ fn a_part_reads_as_the_whole_does() {
         let tables = albedo::bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap();
         Tables::from_tables(Provenance::default(), tables).unwrap()
     };
-    // Nodes on every side of the part's, so that its windows are the same.
+    // The whole has nodes on every side of the part's, so that the interpolation windows are the
+    // same.
     let (part, whole) = (of(domain([2.6, 2.9], [0.0, 0.08])), of(domain([2.2, 3.6], [0.0, 0.2])));
     assert!(part.tables()[0].values.len() < whole.tables()[0].values.len());
     for gamma in [2.6, 2.77, 2.9] {
@@ -154,7 +156,7 @@ fn a_single_material_has_its_albedo_and_no_other() {
         table.certificate["quadrature_error"] < 1e-6
             && table.subject.covers.unwrap().sigma == Some([0.454; 2])
     );
-    // Another roughness, shape or form is not there, and the message says what is.
+    // Another roughness, shape or form of masking is not there, and the message says what is.
     for (sigma, gamma, masking) in [
         (0.3, 3.0, Masking::Uncorrelated),
         (0.5, 3.0, Masking::Uncorrelated),
@@ -167,7 +169,7 @@ fn a_single_material_has_its_albedo_and_no_other() {
     // The same as an image.
     let image = store::read(&at.join("out/albedo_uncorrelated_gamma_3_sigma_0.454.exr")).unwrap();
     assert_eq!(image.tables()[0], *table);
-    // Baked once.
+    // The second bake takes all from the cache.
     assert_eq!(json(at, &["bake", "r.toml", "--out", "out"])["baked"], 0);
     let less = json(at, &["bake", "r.toml", "--out", "less", "--no-albedo"]);
     assert_eq!(less["tables"].as_array().unwrap().len(), 3);
@@ -202,7 +204,7 @@ fn targets_are_met_or_refused() {
     let draft = worst(DRAFT);
     let least = bake(Target::MaxError(1.1 * draft)).unwrap().set;
     assert!(least.tables().iter().map(worst_error).fold(0.0, f64::max) <= 1.1 * draft);
-    // In fixed point, which is fewer bytes than the draft has, even with some more nodes.
+    // In fixed point it takes fewer bytes than the draft, even with some more nodes.
     let stored = |set: &Tables| set.tables().iter().map(Table::stored_bytes).sum::<usize>();
     assert_eq!(least.tables()[0].precision, Precision::U16);
     assert!(stored(&least) < stored(&bake(DRAFT).unwrap().set));
@@ -246,7 +248,7 @@ fn a_surface_smoother_than_the_promised_ones_has_a_certificate() {
 
 #[test]
 fn estimated_bytes_are_those_of_the_file() {
-    // Without the one whose views are refined.
+    // Without the albedo whose views are refined.
     let plan = albedos_of(plan(&MIXED[..4], AlbedoWish::Recipes));
     let set = bake(&plan, DRAFT).unwrap().set;
     let bytes = |need: &RequiredAlbedo| {
@@ -270,7 +272,8 @@ const EXACT: [[&str; 4]; 4] = [
     ["nothing", "0.454", "3.0", "fresnel = { dielectric = 1.0 }\nmasking = \"uncorrelated\""],
 ];
 
-/// The mean over a grid of visible normals of what `worth` makes of view and normal, in single precision: as a renderer would estimate it.
+/// The mean of `worth` of view and normal over a grid of visible normals, in single precision: as a
+/// renderer would estimate it.
 fn mean(set: &Tables, name: &str, cos: f32, worth: impl Fn(&Lobe, Vec3, Vec3) -> f64) -> f64 {
     const STEPS: usize = 300;
     let material = set.material(name).unwrap();
@@ -296,7 +299,7 @@ fn reflected(
     })
 }
 
-/// The albedo of transmission, with the exact refraction of each normal.
+/// The albedo of transmission, with the refraction at each normal computed.
 fn transmitted(set: &Tables, name: &str, masking: Masking, cos: f32, face: Dielectric) -> f64 {
     mean(set, name, cos, |material, v, m| {
         let mu = f64::from(v.dot(m));
@@ -357,7 +360,7 @@ fn a_range_of_indices_has_an_axis() {
             }
         }
     }
-    // Everywhere something in [0, 1], and no step where total reflection sets in.
+    // Everywhere a value in [0, 1], and no step where total reflection sets in.
     let bound = set.material_dielectric_albedo("any", 1.5).unwrap();
     let critical = (1.0_f32 - 1.0 / 2.25).sqrt();
     for curve in [&bound.outside, &bound.inside] {
@@ -394,7 +397,8 @@ fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
     let plan = Plan::new(&scene, Options::default()).unwrap();
     let set = bake(&plan, Target::default()).unwrap().set;
     let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
-    // Gold, glass from both sides, which serves air, and nothing from the only one.
+    // Gold; glass from both sides, which serves air; and one table for the index-matched interface,
+    // which is the same from both sides.
     assert_eq!(set.tables().iter().filter(is_exact).count(), 4);
     for table in set.tables().iter().filter(is_exact) {
         assert!(worst_error(table) < 3e-4, "{}: {:?}", table.name, table.certificate);
@@ -452,7 +456,7 @@ fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
         assert_eq!(nothing.outside.eval(direction(cos))[0], 0.0);
         assert_eq!(nothing.outside.eval(direction(cos)), nothing.inside.eval(direction(cos)));
     }
-    // What enters and what leaves is the same up to the squeezing of solid angles, η².
+    // Average transmission is the same both ways up to the ratio of solid angles, η².
     let (enters, leaves) = (glass.outside.average()[1], glass.inside.average()[1]);
     assert!((enters - 2.56 * leaves).abs() < 1e-4, "{enters} and {leaves}");
     assert!(

@@ -1,8 +1,8 @@
 //! Certificates hold where a search at random would not look: on edges, at corners and in the
 //! middle of every cell.
 //!
-//! The points here are chosen apart from those of the certificates, and are judged by code of their
-//! own.
+//! The points here are chosen independently of those of the certificates, and the errors are
+//! computed by code of this test.
 
 use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake_radial;
@@ -21,7 +21,7 @@ use microfacet_sampler::{
     StudentT, Table, Tables,
 };
 
-/// Parts of a cell.
+/// Places in a cell, as parts of its width.
 const PARTS: [f64; 7] = [0.0, 0.125, 0.3, 0.375, 0.5, 0.625, 0.8];
 
 /// Both ends of an axis and some places in each of its cells.
@@ -30,7 +30,8 @@ fn along(axis: &Axis) -> Vec<f64> {
     axis.nodes.windows(2).flat_map(cell).chain([axis.ends()[1]]).collect()
 }
 
-/// The same of a mirrored axis, and the numbers about its ends and its middle.
+/// Random numbers for a mirrored axis: those of the same places, and others near its ends and its
+/// middle.
 fn numbers(axis: &Axis) -> Vec<f32> {
     let half: f32 = 0.5;
     let mut all = vec![0.0, 1e-7, half.next_down(), half, half.next_up(), 1_f32.next_down(), 1.0];
@@ -39,7 +40,7 @@ fn numbers(axis: &Axis) -> Vec<f32> {
     all
 }
 
-/// A view by its cotangent; the first of an axis is the horizon, the last the normal.
+/// The view of a unit cotangent z.
 fn view(z: f64) -> Vec3 {
     let UnitView { sin, cos } = UnitView::from_cotangent(z);
     Vec3::new(sin as f32, 0.0, cos as f32)
@@ -89,7 +90,7 @@ fn across_error(table: &Table, bound: &StudentT, shape: &Shape) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// Of the whole distribution.
+/// Error of the in-plane slope's CDF, of the whole distribution (not peeled).
 fn along_error(table: &Table, bound: &StudentT, shape: &Shape) -> f64 {
     let numbers = numbers(&table.axes[2]);
     let errors = along(&table.axes[1]).into_iter().map(|t| {
@@ -105,12 +106,12 @@ fn along_error(table: &Table, bound: &StudentT, shape: &Shape) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// Asserts that no table errs by more than it says, at all shapes of its axis in turn.
+/// Asserts that no table errs by more than its certificate says, at all shapes of its axis in turn.
 ///
-/// Rounding differs from point to point: beyond what is measured a certificate leaves half an ulp
-/// for that.
+/// Rounding differs from point to point: a certificate adds half an ulp for it to the measured
+/// error.
 fn hold(set: &Tables) {
-    // The error where the heavy part is peeled off has two parts, which the certificate alone adds
+    // Where the heavy part is peeled off the error has two parts, which only the certificate adds
     // up.
     let whole = |table: &&Table| table.kind != Kind::VisibleSlopePeeled;
     for table in set.tables().iter().filter(whole) {
@@ -123,7 +124,7 @@ fn hold(set: &Tables) {
                 _ => along_error(table, &bound, &shape),
             }
         };
-        // Not beyond the last node by a rounding of 1 + 1/s.
+        // Keeps the rounding of 1 + 1/s from leading beyond the last node.
         let last = table.axes[0].ends()[1] * (1.0 - 1e-15);
         let found =
             along(&table.axes[0]).into_iter().map(|s| error(s.min(last))).fold(0.0, f64::max);
@@ -189,7 +190,7 @@ impl<'a> Own<'a> {
         [x, y].map(|slope| slope / (z * self.marginal.sigma()))
     }
 
-    /// Along the plane, at one view and every third number.
+    /// Error of the in-plane slope's CDF at one view and every third random number.
     fn along_error(&self, z: f64) -> f64 {
         let v = view(z * self.marginal.sigma());
         let z = f64::from(v.z) / f64::from(v.x) / self.marginal.sigma();
@@ -201,7 +202,7 @@ impl<'a> Own<'a> {
         errors.fold(0.0, f64::max)
     }
 
-    /// Across it, beside the in-plane slope of a first number.
+    /// Error of the CDF of slopes across, at the in-plane slope that the first random number gives.
     fn across_error(&self, u1: f32) -> f64 {
         let errors = numbers(&self.tables[2].axes[1]).into_iter().step_by(5).map(|u| {
             let [x, y] = self.slopes(Vec3::X, [u1, u]);
@@ -216,7 +217,7 @@ impl<'a> Own<'a> {
             let quantity = |t: f64| cotangent(axis, 1.0, t);
             along(axis).into_iter().map(quantity).map(error).fold(0.0, f64::max)
         };
-        // First numbers between 0 and 1, beside which the slope across need not be right.
+        // First random numbers inside (0, 1): at the ends the slope across need not be right.
         let first =
             numbers(&self.tables[1].axes[1]).into_iter().filter(|u| (6e-8..1.0).contains(u));
         let first = first.step_by(7).chain([1_f32.next_down()]);

@@ -1,4 +1,5 @@
-//! Distributions outside the family: baked tables against the model's quadrature, by value and by chi-square.
+//! Distributions outside the family: baked tables against the model's quadrature, by value and by
+//! chi-square.
 //!
 //! `cargo test --release --test classic -- --nocapture` prints the figures.
 
@@ -124,12 +125,12 @@ fn recipes_name_distributions() {
         let recipe = format!("[[material]]\nname = \"it\"\n{text}\n");
         Scene::from_recipe_str(&recipe).map(|scene| (scene.materials[0].clone(), scene.to_recipe()))
     };
-    // An exact member is read as the family.
+    // A member of the family is read as the family.
     let (beckmann, _) = material("distribution = \"beckmann\"\nm = 0.3").unwrap();
     assert!(beckmann.distribution.is_none() && beckmann.gamma.min == f64::INFINITY);
     let (ggx, _) = material("distribution = \"gtr\"\nc = 0.2\ngamma = 2").unwrap();
     assert!(ggx.distribution.is_none() && (ggx.roughness.x().min - 0.2).abs() < 1e-15);
-    // Another one keeps its name, through the recipe that is written and read again.
+    // Another distribution keeps its name when the recipe is written and read again.
     let (gtr, text) = material("distribution = \"gtr\"\nc = 0.2\ngamma = 1.3").unwrap();
     assert_eq!(gtr.distribution.as_ref().unwrap().label(), "gtr:0.2,1.3");
     let again = Scene::from_recipe_str(&text).unwrap();
@@ -162,7 +163,7 @@ fn a_recipe_bakes_all_kinds() {
     let plan = Plan::new(&scene, Options::default()).unwrap();
     assert_eq!((plan.shapes.len(), plan.distributions.len()), (1, 2));
     let bake = |target| bake(&plan, target);
-    // Fixed point is enough for that, in half the bytes.
+    // Fixed point is enough for this error, in half the bytes.
     let rough = bake(Target::MaxError(1e-3)).unwrap().set;
     assert!(
         rough

@@ -160,7 +160,7 @@ fn bad_input_is_named_and_nothing_is_written() {
     assert!(refused(at, &["bake", "r.toml", "--out", "file"]).contains("is a file"));
     assert!(refused(at, &["bake", "absent.toml", "--out", "out"]).contains("absent.toml"));
     assert!(refused(at, &["inspect", "file"]).contains("not a valid table set"));
-    // A value that begins like an option is a value.
+    // A value may begin like an option.
     for (args, value) in [
         (["furnace", "--sigma", "-1"], "\"-1\""),
         (["furnace", "--cos-theta", "-0.5"], "\"-0.5\""),

@@ -1,11 +1,12 @@
-//! The seeds of the fuzz targets, and what fuzzing has found since, on a stable compiler: each is read or refused.
+//! The seeds of the fuzz targets and what fuzzing has found since, on a stable compiler: each is
+//! read or refused.
 
 use std::fs;
 use std::path::Path;
 
 include!("../fuzz/fuzz_targets/common.rs");
 
-/// Files of a folder of seeds; those of a corpus that fuzzing has left beside them too.
+/// The files of a target's folder of seeds, and of its corpus if fuzzing has left one beside it.
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz");
     let list = |kind: &str| fs::read_dir(fuzz.join(kind).join(target)).into_iter().flatten();
@@ -17,8 +18,8 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
     files
 }
 
-/// A seed that is refused at its first byte leads a fuzzer nowhere: bake it anew when the format changes, as `docs/reliability.md`
-/// says.
+/// A seed that is refused at its first byte teaches a fuzzer nothing: bake seeds anew when the
+/// format changes, as `docs/reliability.md` says.
 #[test]
 fn seeds_of_table_files_are_of_this_version() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");

@@ -1,8 +1,8 @@
-//! What the pages say is what the code does.
+//! The pages say what the code does.
 
 use microfacet_sampler::{Kind, Mapping};
 
-/// With every run of white space as one space, so that a page may break its lines anywhere.
+/// `text` with every run of white space as one space, so that a page may break its lines anywhere.
 fn flat(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

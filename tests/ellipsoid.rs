@@ -1,6 +1,7 @@
-//! The run-time Ellipsoid against the model: values, chi-square of its draws, weights, and refusals.
+//! The run-time Ellipsoid against the model: values, chi-square of draws, weights, and refusals.
 //!
-//! `cargo test --release --test ellipsoid -- --ignored --nocapture` runs the large counts and prints the figures.
+//! `cargo test --release --test ellipsoid -- --ignored --nocapture` runs the large counts and
+//! prints the figures.
 
 use std::f64::consts::PI;
 
@@ -25,7 +26,7 @@ fn tables(gamma: f64) -> Tables {
     bake(&plan, Target::default()).unwrap().set
 }
 
-/// A moderately tilted ellipsoid in both forms.
+/// A moderately tilted ellipsoid, for the model and for the run time.
 fn random(rng: &mut StdRng, gamma: f64) -> (model::Ellipsoid, Skew) {
     loop {
         let sigma = [(); 2].map(|()| 10.0_f64.powf(rng.random_range(-1.5..0.3)));
@@ -79,7 +80,8 @@ fn values_follow_the_model() {
                 );
                 let (got, want) =
                     (e.visible_normal_pdf(v, m), truth.visible_normal_pdf(v64, m.as_dvec3()));
-                // D at f32 has the exponent times an ulp of its argument; grazing facets lose digits of v·m.
+                // The relative error of D in f32 is its exponent times an ulp; grazing facets lose
+                // digits of v·m.
                 if m.z > 1e-3 && m.dot(v) > 1e-3 && (1e-30..1e30).contains(&want) {
                     let error = (f64::from(got) / want - 1.0).abs();
                     assert!(error < 3e-3, "gamma {gamma}, {v}, {m}: {got} against {want}");
@@ -90,7 +92,8 @@ fn values_follow_the_model() {
     assert!(below > 60, "only {below} views below the lobe's horizon");
 }
 
-/// Without tilt and turn the matrix is a plain lobe's roughness, and the normals are its normals.
+/// Without tilt and turn the matrix is the roughness of an untilted lobe, and the normals are the
+/// same.
 #[test]
 fn plain_matrices_give_plain_normals() {
     let mut rng = StdRng::seed_from_u64(9);
@@ -112,7 +115,8 @@ fn plain_matrices_give_plain_normals() {
     }
 }
 
-/// Entries of the matrix from 1e-7 to 9e7, with which squares leave single precision: unit normals above the horizon still.
+/// Matrices with entries from 1e-7 to 9e7, whose squares leave single precision, still give unit
+/// normals above the horizon.
 #[test]
 fn matrices_almost_singular_give_normals() {
     let mut rng = StdRng::seed_from_u64(10);
@@ -136,7 +140,8 @@ fn matrices_almost_singular_give_normals() {
     }
 }
 
-/// Smallest p-value of `count` ellipsoids, binned 16 × 16 by the numbers the exact map inverts to.
+/// Smallest p-value of `count` ellipsoids, binned 16 × 16 by the random numbers to which the exact
+/// map inverts the normals.
 fn smallest_p(count: usize, draws: usize, gammas: &[f64]) -> f64 {
     const BINS: usize = 16;
     let sets: Vec<Tables> = gammas.iter().map(|&gamma| tables(gamma)).collect();
@@ -183,7 +188,8 @@ fn draws_pass_chi_square_200() {
     println!("200 ellipsoids at gamma {GAMMAS:?} x 1e5: smallest p {p:.4}");
 }
 
-/// The largest reflection weight seen, and the mean over all (the albedo averaged over what was drawn).
+/// The largest reflection weight seen, and the mean over all (the albedo averaged over the lobes
+/// and views drawn).
 fn weights(draws: usize) -> (f32, f64) {
     let of_gamma = |&gamma: &f64| {
         let set = tables(gamma);

@@ -1,4 +1,5 @@
-//! Damaged images: every truncation and every flipped bit of a small table gives an error or the identical table.
+//! Damaged images: every truncation and every flipped bit of a small table gives an error or the
+//! identical table.
 
 use microfacet_bake::bake::bake;
 use microfacet_bake::plan::Plan;

@@ -1,4 +1,5 @@
-//! A budget of bytes for tables of all kinds: filled, never exceeded, and refused with the smallest one there is.
+//! A budget of bytes for tables of all kinds is filled, never exceeded, and refused with the
+//! smallest one that is possible.
 
 use microfacet_bake::cache::Cache;
 use microfacet_bake::plan::{Options, Plan};
@@ -45,7 +46,7 @@ fn all_kinds_of_tables_share_a_budget() {
         let set = within(&recipe, max_bytes, &cache).unwrap().set;
         let file = bytes(&set);
         assert!(file.len() <= max_bytes, "{} bytes of {max_bytes}", file.len());
-        // Visible normals take what is left.
+        // Visible normals take the bytes that are left.
         let (graded, normals): (Vec<_>, Vec<_>) = set
             .tables()
             .iter()
@@ -57,12 +58,12 @@ fn all_kinds_of_tables_share_a_budget() {
             "{max_bytes}: {error} after {before}"
         );
         before = error;
-        // What is kept is what was baked.
+        // The cache gives the same set.
         let again = within(&recipe, max_bytes, &cache).unwrap();
         assert!(again.baked == 0 && bytes(&again.set) == file);
         assert_eq!(Tables::from_bytes(&file).unwrap(), set);
     }
-    // The larger budget is worth it: a better quality of the distribution, which takes most of it.
+    // The larger budget pays: it buys a better quality of the distribution, which takes most of it.
     assert!(before < 1e-4, "{before}");
 }
 

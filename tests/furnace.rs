@@ -1,4 +1,5 @@
-//! Albedo tables and the compensation built on them, for two shapes with independent references: GGX and Beckmann.
+//! Albedo tables and the compensation built on them, for two shapes with independent references:
+//! GGX and Beckmann.
 
 use std::sync::OnceLock;
 
@@ -56,7 +57,8 @@ fn the_furnace_closes() {
     for masking in Masking::ALL {
         for sigma in [0.0, 1e-9, 1e-3, 0.2, 3.0] {
             for cos in [0.0, 1e-6, 0.3, 1.0] {
-                // A surface smoother than the first node is taken for a mirror; seen from within its slopes it is none.
+                // A surface smoother than the first node is taken for a mirror; at elevations
+                // within its slopes it is not one.
                 if sigma == 1e-9 && cos < 1e-6 {
                     continue;
                 }
@@ -77,7 +79,8 @@ fn a_wrong_table_does_not_close() {
     assert!(survey(&set).unwrap().iter().all(|survey| !survey.passed()));
 }
 
-/// Nothing comes back that did not go in, but for the error of E: of high tables, inside the promised domain.
+/// Compensation adds no energy apart from the error of E: for tables of high quality, inside the
+/// promised domain.
 #[test]
 fn compensation_makes_no_energy() {
     let set = Tables::from_tables(Default::default(), bake_at(Quality::High)).unwrap();

@@ -1,4 +1,4 @@
-//! Planning, the cache and error budgets: no more is baked than a scene needs, and nothing twice.
+//! Planning, the cache and error budgets: only what a scene needs is baked, and nothing twice.
 
 mod command;
 
@@ -39,7 +39,7 @@ fn bake(plan: &Plan, target: Target, cache: &Cache) -> Result<Baked, BakeError> 
     bake_with(&normals_of(plan), target, Settings { cache: cache.clone(), ..Settings::default() })
 }
 
-/// Without what takes long.
+/// The plan without its albedos, which take long.
 fn normals_of(plan: &Plan) -> Plan {
     Plan { albedos: Vec::new(), ..plan.clone() }
 }
@@ -66,7 +66,8 @@ fn every_material_gets_its_verdict() {
     scene.materials[7].used = false;
     let plan = plan(&scene);
     let gammas: Vec<Interval> = plan.shapes.iter().map(|need| need.gamma()).collect();
-    // Overlapping ranges are one, which takes Beckmann in; equal shapes are one, whatever their roughness.
+    // Overlapping ranges become one, which here includes Beckmann; equal shapes become one,
+    // whatever their roughness.
     assert_eq!(gammas, [Interval { min: 5.0, max: f64::INFINITY }, Interval::point(3.0)]);
     let expected = [
         Verdict::Bake(1),
@@ -100,7 +101,7 @@ fn a_slice_has_no_axis_of_shapes_and_a_smooth_scene_nothing() {
     let specs = plan(&scene(&[["glass", "0.454", "3.0"]])).shapes[0].specs(&general);
     let shapes: Vec<usize> = specs.iter().map(|spec| spec.shapes.nodes.len()).collect();
     assert_eq!(shapes, [1, 1, 1]);
-    // γ = 1.8 itself is the whole distribution's.
+    // γ = 1.8 itself belongs to the whole distribution's tables, not to the peeled ones.
     let seam = plan(&scene(&[["seam", "0.3", "1.8"]])).shapes[0].specs(&general);
     assert!(seam.iter().all(|spec| !spec.name.contains("peeled")));
     assert!(plan(&scene(&[["mirror", "0.0", "3.0"]])).is_empty());
@@ -126,7 +127,8 @@ fn sub_ranges_draw_the_very_normals_of_the_general_set() {
                 assert_eq!(a.g1(v), b.g1(v));
             }
         }
-        // And is worth no less: its certificate is about what was asked for, not about the margins.
+        // And it is no less accurate: its certificate is about the range asked for, without the
+        // margins.
         let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
         assert!(
             worst(&part) <= worst(&general) * 1.01,
@@ -238,7 +240,7 @@ fn an_interrupted_bake_goes_on_where_it_was() {
     assert_eq!(resumed.baked, 2, "three of five tables were finished");
     let fresh = bake(&plan, DRAFT, &Cache::none()).unwrap();
     assert!(bytes(&resumed.set) == bytes(&fresh.set));
-    // The finished need stands for its tables.
+    // One cache entry of the finished shapes replaces those of their tables.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
@@ -254,7 +256,7 @@ fn an_error_budget_is_met_by_less() {
         assert!(worst(&set) <= max_error, "{max_error}: {}", worst(&set));
         let size = bytes(&set).len();
         assert!(size < before, "{size} bytes for an error of {max_error}, {before} for less");
-        // The certificates are about what a reader gets.
+        // The certificates hold for the set that a reader gets.
         assert_eq!(Tables::from_bytes(&bytes(&set)).unwrap(), set);
         before = size;
     }
@@ -275,9 +277,9 @@ fn budgets_of_the_general_set_end() {
     assert!(met.tables().len() == 5 && worst(&met) <= 2e-3, "{}", worst(&met));
     let filled = bake(&plan, Target::MaxBytes(100_000), &Cache::none()).unwrap().set;
     assert!(bytes(&filled).len() <= 100_000);
-    // With more bytes than that error takes, there is less error.
+    // With more bytes than that error takes, the error is less.
     assert!(bytes(&met).len() < 100_000 && worst(&filled) < worst(&met), "{}", worst(&filled));
-    // Masking that serves to peel is as fine as what it is peeled from.
+    // Masking that peeling uses is as fine as what it is peeled from requires.
     let peeled = |name: &str| filled.tables().iter().find(|table| table.name == name).unwrap();
     assert!(peeled("shadowing_peeled").certificate["g1_max_error"] < 0.1 * worst(&filled));
 }
@@ -312,7 +314,8 @@ fn a_byte_budget_is_filled_and_not_exceeded() {
     assert!(error.contains("2000 bytes"), "{error}");
 }
 
-/// Coated and metallic GGX at five roughnesses, as an architectural scene has them, and what needs nothing.
+/// Coated and metallic GGX at five roughnesses, as an architectural scene has them, and materials
+/// that need no table.
 const PAVILION: &str = r#"
 MakeNamedMaterial "polished" "string type" "coateddiffuse" "float roughness" 0.0104
 MakeNamedMaterial "plaster" "string type" "coateddiffuse" "float roughness" 0.0104 "rgb reflectance" [ 0.6 0.6 0.6 ]
@@ -349,7 +352,7 @@ fn a_pavilion_needs_names_and_no_tables() {
     let verdict = run(at, &["validate", "out", "--configurations", "4", "--samples", "20000"]);
     assert!(String::from_utf8_lossy(&verdict.stdout).ends_with("PASSED\n"), "{verdict:?}");
 
-    // With tables at no larger an error than the general set's, for a run time that wants them.
+    // For a run time that wants tables: with no larger an error than the general set's.
     let general = Tables::from_bytes(GENERAL).unwrap();
     let normals = general.tables().iter().filter(|table| !table.kind.is_albedo());
     let worst = normals.map(worst_error).fold(0.0, f64::max);
@@ -376,7 +379,7 @@ fn distributions_have_their_part_in_the_totals() {
     for name in ["bytes", "seconds"] {
         let tables = figure(own, name) + figure(&shown["needs"][0], name);
         let total = shown["total"][name].as_f64().unwrap();
-        // What is left is the file's own description.
+        // The rest is the file's own description.
         let rest = if name == "bytes" { 3000.0 } else { 1e-9 };
         assert!(
             figure(own, name) > 0.0 && (0.0..rest).contains(&(total - tables)),
@@ -414,7 +417,7 @@ fn the_command_says_what_it_did_not_do() {
         "{output:?}"
     );
 
-    // Nothing rough: said, and no error.
+    // A scene without a rough material is reported, and is no error.
     write(&[["mirror", "0.0", "3.0"]]);
     for command in [&["plan", "r.toml"][..], &["bake", "r.toml", "--out", "empty"]] {
         let output = run(at, command);
@@ -462,7 +465,7 @@ fn a_refused_bake_leaves_no_folder_behind() {
             to(out);
             assert!(!at.join("new").exists() && !at.join("mine/new").exists(), "{refusal:?} {out}");
         }
-        // What was there before stays.
+        // The folder that was there before stays.
         to("mine");
         assert!(at.join("mine").is_dir(), "{refusal:?}");
     }

@@ -1,4 +1,5 @@
-//! The program as a process: killed, out of disk, denied, in competition, asked for too much.
+//! The program as a process: killed, out of disk, denied access, run in parallel, asked for too
+//! much.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -14,7 +15,8 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_microfacet-bake");
 /// A folder with two recipes whose sets differ in every file.
 fn workshop() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    // The same tables, and so the same file names, of materials with other names, which every file records.
+    // The same tables, and so the same file names, for materials with other names, which every file
+    // records.
     for name in ["old", "new"] {
         let recipe = format!("[[material]]\nname = \"{name}\"\nsigma = 0.3\ngamma = 3.0\n");
         fs::write(folder.path().join(format!("{name}.toml")), recipe).unwrap();
@@ -99,13 +101,14 @@ fn killed_at_any_moment_one_whole_set_is_there() {
         } else if files == new {
             1
         } else {
-            // In the last step some files of the new set may not have their names yet, and a journal says so.
+            // In the last step some files of the new set may not have their names yet, and a
+            // journal says so.
             assert!(hidden.iter().any(|name| name == ".microfacet-bake.commit"), "mixture at {i}");
             let part_of =
                 |set: &Files| files.iter().all(|(name, bytes)| set.get(name) == Some(bytes));
             assert!(part_of(&old) || part_of(&new), "mixture at {i}");
-            // Whoever opens the folder next, be it to look, gets a whole set: the one of this bake, or of the one before if this
-            // bake was killed while it completed that.
+            // Whoever opens the folder next, even only to look, gets a whole set: that of this
+            // bake, or the one before if this bake was killed while it completed that.
             let look =
                 Command::new(PROGRAM).arg("inspect").arg(&out).stdout(Stdio::null()).status();
             assert!(look.unwrap().success());
@@ -126,7 +129,8 @@ fn a_full_disk_leaves_the_old_set_and_says_so() {
     let workshop = workshop();
     let (out, old) = baked(&workshop, "old");
     let recipe = workshop.path().join("new.toml");
-    // A limit on the size of files stands for a full disk; without the trap the kernel kills the process, which is tried too.
+    // A limit on the size of files stands for a full disk. Without the trap the kernel kills the
+    // process, which is tried too.
     for (trap, expected) in [("trap '' XFSZ; ", true), ("", false)] {
         let script = format!(
             "{trap}ulimit -f 4; exec \"$0\" bake --quality draft --format exr,safetensors --out \"$1\" \"$2\""
@@ -212,7 +216,8 @@ fn folders_and_links_in_place_of_files() {
     assert_eq!(content(&out), (old, Vec::new()));
 }
 
-/// Headers that promise more than the file holds must not cost memory: half a gigabyte of address space is enough to refuse them.
+/// Headers that promise more than the file holds must not cost memory: half a gigabyte of address
+/// space is enough to refuse them.
 #[test]
 fn inspecting_a_lie_takes_little_memory() {
     let workshop = workshop();

@@ -1,9 +1,11 @@
-//! A million corners and random points, and a proof that the judge can reject.
+//! The stress test at a million corners and random points, and proof that it rejects damaged
+//! tables.
 
 use microfacet_bake::validate::stress::{self, Report};
 use microfacet_sampler::{Kind, Tables};
 
-/// What the documentation promises for σ ∈ [1e-4, 10]: G1, D, visible density, CDF; see `docs/reliability.md`.
+/// Errors that the documentation promises for σ ∈ [1e-4, 10]: G1, D, visible density, CDF; see
+/// `docs/reliability.md`.
 const PROMISED: [f64; 4] = [1e-5, 1e-4, 1e-3, 1e-4];
 
 #[test]
@@ -37,7 +39,7 @@ fn damaged(kind: Kind, damage: impl Fn(usize, &mut f32)) -> Report {
 
 #[test]
 fn damaged_tables_are_caught() {
-    // Every other node of G1/q two per cent up.
+    // Every other node of G1/q two per cent too large.
     let total =
         damaged(Kind::Shadowing, |i, value| *value *= if i % 4 == 0 { 1.02 } else { 1.0 }).total();
     assert!(total.violations.contains_key("g1 rises with theta"), "{total:?}");

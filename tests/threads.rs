@@ -1,4 +1,5 @@
-//! The same bits for any number of threads and in every build: run this in debug and with `--release`.
+//! The same bits for any number of threads and in every build: run this in debug and with
+//! `--release`.
 
 use microfacet_bake::bake::bake;
 use microfacet_bake::table_spec::{Quality, general_set};

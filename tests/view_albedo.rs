@@ -1,4 +1,5 @@
-//! Albedo tables over all views, end to end: for lobes that are not round, and for those outside the family.
+//! Albedo tables over all views, end to end: for lobes that are not isotropic, and for those
+//! outside the family.
 
 mod command;
 
@@ -101,7 +102,7 @@ fn bake_all(text: &str, quality: Quality) -> Tables {
     let scene = Scene::from_recipe_str(text).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
     let set = table_set::bake(&plan, Target::Quality(quality, Precision::F32)).unwrap().set;
-    // As a renderer gets it.
+    // Encoded and read back, as a renderer gets it.
     Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap()
 }
 
@@ -150,7 +151,7 @@ fn each_lobe_and_form_has_one_table_within_its_error() {
     for table in tables {
         assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
         assert!(table.certificate["quadrature_error"] <= 1e-4);
-        // Of single materials the round stand-in is off by this much.
+        // For single materials the isotropic stand-in is off by this much.
         assert!(
             (0.05..0.3).contains(&table.certificate["shortcut_max_error"]),
             "{:?}",
@@ -177,7 +178,8 @@ fn opposite_and_mirrored_views_are_the_same_and_no_view_gains() {
             let moments = albedo.moments(v);
             assert!(moments.scale >= 0.0 && moments.bias >= 0.0 && moments.total() <= 1.0 + 1e-6);
         }
-        // Every azimuth is the normal's; below the horizon is grazing, as is NaN.
+        // At the normal every azimuth gives the same; views below the horizon are taken as grazing,
+        // and so is NaN.
         let normal = albedo.albedo(Vec3::Z);
         assert!((albedo.albedo(Vec3::new(1e-30, -1e-30, 1.0)) - normal).abs() < 1e-6);
         let grazing = albedo.albedo(Vec3::X);
@@ -194,7 +196,7 @@ fn hemisphere(f: impl Fn(Vec3) -> f32) -> f64 {
     const N: usize = 200;
     let mut sum = 0.0;
     for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
-        // sin² θ evenly weighs by the cosine; its square crowds views at grazing.
+        // Even steps of x = √cos θ crowd views at grazing; 4x³ dx = 2 cos θ d(cos θ).
         let x = (i as f64 + 0.5) / N as f64;
         let cos = x * x;
         let phi = std::f64::consts::TAU * (j as f64 + 0.5) / N as f64;
@@ -239,15 +241,15 @@ fn a_wrong_table_is_noticed() {
     let table = bake(&right).unwrap().remove(0);
     let error =
         |table: Table| worst_error(&certified(&right, vec![table], &references).unwrap()[0]);
-    // Axes exchanged.
+    // A table with its axes exchanged.
     let swapped = spec([0.15, 0.6], 2.7, Quality::Draft);
     assert!(error(bake(&swapped).unwrap().remove(0)) > 0.1);
-    // One node.
+    // A table with one wrong node.
     let mut wrong = table.clone();
     let middle = wrong.values.len() / 6 * 3;
     wrong.values[middle] = (wrong.values[middle] - 0.1).max(-1.0);
     assert!(error(wrong) > 10.0 * error(table).max(3e-3));
-    // Which axis is the coarser one: an axis twice as dense is not.
+    // Tells which axis is the coarser: not the one that is twice as dense.
     for axis in [0, 1] {
         let dense = right.refined(axis).refined(axis);
         let table = bake(&dense).unwrap().remove(0);
@@ -263,11 +265,11 @@ fn materials_without_such_a_table_say_what_helps() {
         assert!(why.to_string().contains(name) && why.to_string().contains(word), "{why}");
     }
     assert!(matches!(SET.material_albedo("silent"), Err(MaterialError::NoAlbedo { .. })));
-    // Of a range the middle of the round stand-in.
+    // For a range, the middle of the isotropic stand-in.
     let worn = SET.material_albedo("worn").unwrap();
     let round = SET.albedo((0.25_f64 * 0.1).sqrt(), 2.7, Masking::Uncorrelated).unwrap();
     assert_eq!(worn.albedo(direction(0.3, 1.0)), round.albedo(direction(0.3, 2.0)));
-    // Moments are no shares, and the other way round.
+    // A table of moments is not taken for one of shares, nor the other way round.
     assert!(microfacet_sampler::ViewCurve::<3>::from_table(views(&SET)[0], 0.3, 2.7, 1.0).is_err());
 }
 
@@ -329,12 +331,12 @@ fn the_commands_list_bake_keep_and_show_them() {
         store::read(&at.join(format!("out/{}.exr", table.name))).unwrap().tables()[0],
         *table
     );
-    // The estimate is of the table that is tried first.
+    // The estimate is that of the table that is tried first.
     let spec = spec([0.6, 0.15], 2.7, Quality::Draft);
     let one = encode(&Default::default(), std::slice::from_ref(table)).unwrap().len();
     let none = encode(&Default::default(), &[]).unwrap().len();
     let nodes = table.values.len() / 3;
-    // Of a set, the formulas are counted once.
+    // A set's formulas are counted once.
     let formulas: usize = table.axes.iter().map(|axis| axis.mapping.formula().len()).sum();
     let real = one - none - formulas - 12 * (nodes - spec.nodes());
     let estimate = albedo_cost(&spec).bytes;
@@ -408,7 +410,7 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
     let text = recipe(&[["tilted", "[0.4, 0.2]", "2.0", theta]]);
     let scene = Scene::from_recipe_str(&text).unwrap();
     let plan = Plan::new(&scene, Options::default()).unwrap();
-    // Visible normals of its γ, even of GGX; no albedo of a round lobe.
+    // The plan has the visible normals of its γ, even for GGX, and no albedo of an isotropic lobe.
     assert_eq!((plan.shapes.len(), plan.albedos.len()), (1, 1));
     let set = bake_all(&text, Quality::Draft);
     let table = views(&set)[0];
@@ -419,7 +421,8 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
     for i in 0..8 {
         let v = direction(0.3 + 0.08 * f64::from(i), 0.8 * f64::from(i));
         let sample = |u| tilted.sample_visible_normal(v, u);
-        // Normals are drawn with their density over the area, of which G1 is the clamped share.
+        // Normals are drawn with density (v·m)⁺ D/(projected area); G1 is the clamped ratio of v·n
+        // to it.
         let mut want = 0.0;
         const STEPS: usize = 200;
         for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
@@ -436,7 +439,7 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
             albedo.albedo(v)
         );
     }
-    // It is tilted: the opposite view sees something else.
+    // The lobe is tilted, so that the opposite view sees another albedo.
     let [a, b] =
         [direction(0.4, 1.0), direction(0.4, 1.0 + std::f64::consts::PI)].map(|v| albedo.albedo(v));
     assert!((a - b).abs() > 0.01, "{a} {b}");
@@ -464,7 +467,7 @@ fn an_anisotropic_conductor_has_the_albedo_of_its_own_lobe() {
     let red = microfacet_model::fresnel::Conductor::new(0.143, 3.983).unwrap();
     for i in 0..6 {
         let v = direction(0.2 + 0.15 * f64::from(i), 0.9 * f64::from(i));
-        // G2/G1(v) F, what is unsaid being height-correlated.
+        // G2/G1(v) F; masking that the recipe leaves out is height-correlated.
         let mut want = 0.0;
         const STEPS: usize = 200;
         for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {

@@ -1,16 +1,19 @@
 //! Directional albedo by deterministic quadrature over slopes.
 //!
-//! Let r, φ be polar coordinates of the unit slopes (slopes divided by σ), about the normal m = n. Reflection off m
-//! stays above the surface exactly inside a disc of slopes (an ellipse in unit slopes), which contains the origin, so that
+//! Let r, φ be polar coordinates of the unit slopes (slopes divided by σ), about the normal m = n.
+//! Reflection off m stays above the surface if and only if its slope lies in a certain disc (an
+//! ellipse in unit slopes), which contains the origin, so that
 //!
 //! ```text
 //! E = 1/(cos θ + ρ e(z)) ∫dφ ∫₀^{R(φ)} r dr P22(r) (cos θ − r b(φ)) F(v·m) S(l)
 //! ```
 //!
-//! with ρ the σ-stretched horizontal length of v, ρ e(z) = cos θ Λ(v), r b the slope towards v times sin θ (negative where m faces v), and
-//! S = G1(l) or G1(l)/(G1(l) + G1(v)(1 − G1(l))) for the two forms of masking. The factor in front is G1(v)/cos θ as one
-//! quotient, finite at grazing. Everything is smooth inside the disc; what varies quickly are a layer of width σ along the rim, where l grazes,
-//! and near grazing views the turn of R(φ) at right angles to v. Both are stretched by a hyperbolic sine whose scale is known.
+//! with ρ the σ-stretched horizontal length of v, ρ e(z) = cos θ Λ(v), r b the slope towards v
+//! times sin θ (negative where m faces v), and S = G1(l) or G1(l)/(G1(l) + G1(v)(1 − G1(l))) for
+//! the two forms of masking. The factor in front is G1(v)/cos θ as one quotient, finite at grazing.
+//! The integrand is smooth inside the disc. It varies quickly in a layer of width σ along the rim,
+//! where l grazes, and, for views near grazing, where R(φ) turns, at right angles to v. Both are
+//! stretched by a hyperbolic sine whose scale is known.
 
 mod average;
 mod skewed;
@@ -26,9 +29,10 @@ use crate::shape::Shape;
 use crate::slope_integrals;
 use crate::smith_table::SmithTable;
 
-/// Slopes beyond e³⁴⁰ have no square.
+/// Largest rapidity of a slope, so that its square, e⁶⁸⁰, does not overflow.
 const LARGEST_RAPIDITY: f64 = 340.0;
-/// Widest panel along a ray, in the unit of [`Shape::unit`]; the lobe's own singularities are at ±iπ/(2√s), 1.1 or more away.
+/// Widest panel along a ray, in the asinh slope w; the lobe's own singularities are at ±iπ/(2√s),
+/// 1.1 or more away.
 pub(crate) const PANEL: f64 = 1.5;
 /// Widest panel of φ.
 pub(crate) const SECTOR: f64 = 1.6;
@@ -42,13 +46,13 @@ pub struct Albedo<const N: usize> {
     pub uncorrelated: [f64; N],
     /// With G2 = 1/(1 + Λ(v) + Λ(l)).
     pub height_correlated: [f64; N],
-    /// Estimate of the largest error, from above: twice the difference between the last two orders of quadrature, and
-    /// what is cut off.
+    /// Upper estimate of the largest error: 2 to 10 times the difference between the last two
+    /// orders of quadrature, plus what is cut off.
     pub error: f64,
 }
 
 impl<const N: usize> Albedo<N> {
-    /// The albedos of one form.
+    /// The albedos for one form of masking.
     pub fn of(&self, masking: Masking) -> [f64; N] {
         match masking {
             Masking::Uncorrelated => self.uncorrelated,
@@ -56,7 +60,7 @@ impl<const N: usize> Albedo<N> {
         }
     }
 
-    /// The largest difference between the albedos of two.
+    /// The largest difference to the albedos of `other`.
     fn furthest(&self, other: &Self) -> f64 {
         let pairs =
             Masking::ALL.into_iter().flat_map(|form| self.of(form).into_iter().zip(other.of(form)));
@@ -71,7 +75,7 @@ pub struct AlbedoIntegrator {
     pub(crate) smith: SmithTable,
     rules: Vec<Gauss>,
     pub(crate) tolerance: f64,
-    /// Where the lobe ends for the purpose, in the unit of [`Shape::unit`].
+    /// Asinh slope at which integrals over the lobe are cut off.
     pub(crate) cut: f64,
 }
 
@@ -100,10 +104,11 @@ pub(crate) struct View {
 }
 
 impl AlbedoIntegrator {
-    /// Prepares the shape; `tolerance` ∈ [1e-13, 1e-2] is the error aimed at, absolute.
+    /// Prepares an integrator for `shape`; `tolerance` is the absolute error aimed at, clamped to
+    /// [1e-13, 1e-2].
     pub fn new(shape: Shape, tolerance: f64) -> Self {
         let tolerance = tolerance.clamp(1e-13, 1e-2);
-        // The share of visible slopes beyond is below cosh^(−2k) of the rapidity.
+        // The share of visible slopes beyond a rapidity v is less than cosh^(−2k) v.
         let log = -libm::log(CUT * tolerance);
         let cut = if shape.is_beckmann() {
             log.sqrt()
@@ -116,12 +121,13 @@ impl AlbedoIntegrator {
         Self { shape, smith: SmithTable::new(&shape), rules: rules(), tolerance, cut }
     }
 
-    /// The shape.
+    /// The shape it was prepared for.
     pub fn shape(&self) -> &Shape {
         &self.shape
     }
 
-    /// Albedo of reflection for equal roughness σ ≥ 0 along both axes, with `weight` the reflectances at a given v·m ∈ [0, 1].
+    /// Albedo of reflection for roughness σ ≥ 0 along both axes and a view at cos θ ∈ [0, 1];
+    /// `weight` gives the reflectances at v·m ∈ [0, 1].
     ///
     /// σ = 0 is a mirror. cos θ = 0 is the limit of grazing views.
     ///
@@ -136,7 +142,7 @@ impl AlbedoIntegrator {
         self.reflection_to(self.tolerance, sigma, cos_theta, weight)
     }
 
-    /// The same with another error aimed at, no smaller than the one prepared for.
+    /// The same with another error aimed at, no smaller than the one it was prepared for.
     fn reflection_to<const N: usize>(
         &self,
         tolerance: f64,
@@ -154,7 +160,8 @@ impl AlbedoIntegrator {
         Ok(self.converged(tolerance, &self.view([sigma, sigma], cos_theta, 0.0)?, weight))
     }
 
-    /// The same for roughness σx, σy > 0 and a view of azimuth φ (radians, from the x axis).
+    /// Albedo of reflection for roughness σx, σy > 0 and a view at cos θ ∈ [0, 1] and azimuth φ
+    /// (radians from the x axis); otherwise as [`reflection`](Self::reflection).
     ///
     /// # Errors
     /// [`ParameterError`] unless both σ are positive and finite and cos θ ∈ [0, 1].
@@ -168,8 +175,9 @@ impl AlbedoIntegrator {
         Ok(self.converged(self.tolerance, &self.view(sigma, cos_theta, phi)?, weight))
     }
 
-    /// As [`reflection`](Self::reflection), for reflectances that are singular like a square root at v·m = `kink` ∈ (0, 1): where total
-    /// reflection sets in.
+    /// Albedo of reflection for reflectances with a square-root singularity at
+    /// v·m = `kink` ∈ (0, 1), where total reflection sets in; otherwise as
+    /// [`reflection`](Self::reflection).
     ///
     /// # Errors
     /// As [`reflection`](Self::reflection).
@@ -197,14 +205,15 @@ impl AlbedoIntegrator {
         self.refined(tolerance, view.kink > 0.0, |rule| self.quadrature(rule, view, &weight))
     }
 
-    /// The same of any `quadrature`, which may have a kink inside.
+    /// The same for any `quadrature`; `kink` says whether a kink lies inside its domain.
     pub(crate) fn refined<const N: usize>(
         &self,
         tolerance: f64,
         kink: bool,
         quadrature: impl Fn(&Gauss) -> [[f64; N]; 2],
     ) -> Albedo<N> {
-        // At a kink orders converge algebraically, and the last difference says less about the rest; else twice it, because two orders may agree.
+        // At a kink orders converge algebraically, and their last difference says less about the
+        // error. Elsewhere twice that difference, because two orders may agree by chance.
         let factor = if kink { 10.0 } else { 2.0 };
         let ([uncorrelated, height_correlated], error) =
             converge(&self.rules, tolerance, factor, quadrature);
@@ -248,7 +257,7 @@ impl AlbedoIntegrator {
         })
     }
 
-    /// Both forms' integrals at one order.
+    /// The integrals for both forms of masking at one order of quadrature.
     fn quadrature<const N: usize>(
         &self,
         rule: &Gauss,
@@ -268,7 +277,8 @@ impl AlbedoIntegrator {
         sum.map(|form| form.map(|x| x * fold * view.scale / PI))
     }
 
-    /// The intervals of φ, with what is quick at their ends; half a turn if the other half is the same.
+    /// The intervals of φ with the scales of variation at their ends; half a turn where the other
+    /// half is the same.
     fn sectors(&self, view: &View) -> Vec<(End, End)> {
         let plain = |at: f64| End { at, scale: f64::INFINITY };
         // b(φ) vanishes a right angle from φ₀; there R(φ) turns from the near rim to the far one.
@@ -290,7 +300,8 @@ impl AlbedoIntegrator {
             };
             return [before, conic].concat();
         }
-        // Where the ellipse of the roughness is narrow, its width turns within the aspect.
+        // At the minor axis of the roughness ellipse its radius changes within an angle of the
+        // aspect.
         let minor = if view.sigma[0] < view.sigma[1] { 0.0 } else { FRAC_PI_2 };
         let narrow = |at: f64| End { at, scale: view.aspect };
         let mut ends = [
@@ -330,7 +341,8 @@ impl AlbedoIntegrator {
         let rim = if b > 0.0 { view.cos / (b + q) } else { (q - b) / (a * view.cos) };
         let w_rim = self.shape.asinh_slope(rim);
         let end = if w_rim <= self.cut {
-            // l_z falls by 2q/(1 + ar²) a unit of slope, to the height √a at which masking sets in and to zero.
+            // l_z falls by 2q/(1 + a r²) per slope r: to √a, where masking sets in, and then to
+            // zero.
             let layer = a.sqrt() * (1.0 + a * rim * rim) / (2.0 * q * (1.0 + s * rim * rim).sqrt());
             End { at: w_rim, scale: layer }
         } else {
@@ -358,7 +370,7 @@ impl AlbedoIntegrator {
                 sum[1][i] += correlated * fresnel[i];
             }
         };
-        // Distances from the branch point at l = n, in the unit of w.
+        // Distances from the branch point at l = n, in w.
         let cone = |distance: f64| {
             let scale = view.aspect * distance / (1.0 + s * view.r_normal * view.r_normal).sqrt();
             if self.has_cone(view) && scale < 0.5 {
@@ -391,7 +403,8 @@ impl AlbedoIntegrator {
             rule.graded(End { at: 0.0, scale }, end, PANEL, &mut add);
         }
         if view.cos == 0.0 && b < 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY {
-            // At grazing nothing ends the power law r^(−2k−1), and correlated masking (G2/G1 = 1) keeps all of it.
+            // At grazing the power law r^(−2k−1) has no end, and height-correlated masking
+            // (G2/G1 = 1) keeps all of it.
             let k = self.shape.gamma() - 1.5;
             let fresnel = weight(-b / a.sqrt());
             let tail = libm::exp(-2.0 * k * LARGEST_RAPIDITY) * libm::exp2(2.0 * k)
@@ -403,8 +416,9 @@ impl AlbedoIntegrator {
         sum
     }
 
-    /// The intervals of φ on the side towards the view in which rays from m = n may meet the cone v·m = `kink`, from `right`, at right angles
-    /// to the view, or else their tangent, to `towards`.
+    /// The intervals of φ, on the side towards the view, in which rays from m = n may meet the cone
+    /// v·m = `kink`. They run from `right`, at right angles to the view, or else from the cone's
+    /// tangent, to `towards`.
     pub(crate) fn conic_sectors(
         &self,
         cos: f64,
@@ -413,25 +427,27 @@ impl AlbedoIntegrator {
         right: End,
         towards: End,
     ) -> Vec<(End, End)> {
-        // Seen from m = n the cone turns its near side within this angle of the right one.
+        // Seen from m = n, the near side of the cone turns within this angle of the right angle.
         let across = (kink - cos) * (kink + cos);
         let angle = (libm::fabs(across).sqrt() / sin).min(1.0);
         let first = if across <= 0.0 {
             End { at: right.at, scale: right.scale.min(angle.max(1e-6)) }
         } else {
-            // Rays meet it twice on one side of its tangent, and not at all on the other.
+            // Rays meet the cone twice on one side of its tangent, and not at all on the other.
             End { at: right.at + libm::asin(angle), scale: (0.3 * angle).max(1e-6) }
         };
         if sin <= kink {
             return vec![(first, towards)];
         }
-        // Beside this asymptote of the cone rays meet it ever further out, where heavy tails still have mass: a power 2γ−3 of the angle.
+        // Near this asymptote rays meet the cone ever further out, where heavy tails still have
+        // mass: as the power 2γ−3 of the angle.
         let scale = libm::exp(-14.0 / (2.0 * self.shape.gamma() - 2.0));
         let asymptote = End { at: right.at + libm::asin(kink / sin), scale };
         vec![(first, asymptote), (asymptote, towards)]
     }
 
-    /// Where a ray meets the cone v·m = `kink`, in the unit of w, ascending; (cos θ − r b)² = kink² (1 + a r²).
+    /// Where a ray meets the cone v·m = `kink`, in w, ascending: the roots of
+    /// (cos θ − r b)² = kink² (1 + a r²).
     pub(crate) fn conic(
         &self,
         cos: f64,

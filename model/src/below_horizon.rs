@@ -1,8 +1,8 @@
-//! Visible slopes for views below the horizon of the lobe, which only a skewed distribution meets.
+//! Visible slopes for views below the horizon of the lobe, which occur for skewed lobes only.
 //!
-//! A view whose unit cotangent is −a sees the slopes x > a with density ∝ (x − a) p(x). It is the part of
-//! [`VisibleSlope`](crate::VisibleSlope) that remains when the elevation passes through zero, kept apart because every quantity there is a
-//! difference of nearly equal areas when written for elevations above.
+//! A view whose unit cotangent is −a sees the slopes x > a with density ∝ (x − a) p(x). It is what
+//! remains of [`VisibleSlope`](crate::VisibleSlope) when the view passes below the horizon; it has
+//! formulas of its own because those for views above would subtract nearly equal areas.
 
 use crate::shape::{AsinhSlope, Shape};
 use crate::visible::solve_decreasing;
@@ -19,7 +19,7 @@ pub(crate) struct SlopeBelowHorizon<'a> {
 }
 
 impl<'a> SlopeBelowHorizon<'a> {
-    /// `a` = −cot of the view's elevation in unit space, a ≥ 0 and finite.
+    /// `a` = −cot of the view's polar angle in unit space, a ≥ 0 and finite.
     pub(crate) fn new(shape: &'a Shape, a: f64) -> Self {
         let w_a = shape.asinh_slope(a);
         Self { shape, a, w_a, excess: shape.excess(w_a) }
@@ -34,7 +34,7 @@ impl<'a> SlopeBelowHorizon<'a> {
     fn upper(&self, w: AsinhSlope) -> f64 {
         let x = self.shape.slope(w);
         if x < 2.0 * self.a {
-            // (ξ − x) + (x − a): two positive parts, where M(x) − a Q(x) would cancel.
+            // (ξ − x) + (x − a): the sum of two positive parts, where M(x) − a Q(x) would cancel.
             self.shape.excess(w) + (x - self.a).max(0.0) * self.shape.tail(w)
         } else {
             // At least half of the moment remains, and no overflowing slope is formed.
@@ -59,7 +59,8 @@ impl<'a> SlopeBelowHorizon<'a> {
     /// Inverse CDF; u = 0 is the silhouette, u = 1 an infinite slope.
     pub(crate) fn quantile(&self, u: f64) -> AsinhSlope {
         let target = (1.0 - u) * self.excess;
-        // Where the excess underflows (a > 27 for Beckmann) all slopes within reach lie at the silhouette.
+        // Where the excess underflows (a > 27 for Beckmann) all slopes within reach lie at the
+        // silhouette.
         if u <= 0.0 || self.excess == 0.0 {
             return self.w_a;
         }

@@ -1,21 +1,23 @@
-//! Quadrature at rising orders, until two of them agree.
+//! Quadrature at rising orders until two successive ones agree.
 
 use crate::panels::Gauss;
 
-/// Points a panel at successive levels of accuracy; a level's error is estimated from the one before.
+/// Points per panel at successive orders; the error of an order is estimated from the one before.
 const LEVELS: [usize; 7] = [5, 7, 10, 14, 20, 28, 40];
 
 /// Share of the visible slopes that is left out, relative to the tolerance.
 pub(crate) const CUT: f64 = 1e-3;
 
-/// The rules of all levels.
+/// The rules of all orders.
 pub(crate) fn rules() -> Vec<Gauss> {
     LEVELS.iter().map(|&n| Gauss::new(n)).collect()
 }
 
-/// The integral at the first order that is accurate enough, or else the last, and an estimate of its error from above.
+/// The integral at the first order that is accurate enough, or else at the last, and an upper
+/// estimate of its error.
 ///
-/// The estimate is `factor` times the largest difference between the last two orders, and what the cut leaves out, which no order sees.
+/// The estimate is `factor` times the largest difference between the last two orders, plus what the
+/// cut leaves out, which no order sees.
 pub(crate) fn converge<const N: usize>(
     rules: &[Gauss],
     tolerance: f64,

@@ -1,4 +1,5 @@
-//! The Ellipsoid distribution of normals of any shape γ: a Student-t lobe seen through a 3×3 matrix.
+//! The Ellipsoid distribution of normals of any shape γ: a Student-t lobe seen through a 3×3
+//! matrix.
 
 use core::f64::consts::PI;
 use core::fmt;
@@ -17,7 +18,7 @@ use crate::visible::{self, SignedSlope, UnitView, VisibleSlope};
 pub enum EllipsoidError {
     /// The shape is outside its domain.
     Parameter(ParameterError),
-    /// The matrix makes no ellipsoid.
+    /// The matrix describes no ellipsoid.
     Skew(SkewError),
     /// A lobe matrix was given with γ = ∞, where the lobe is infinitely narrow in its own space.
     LobeWithoutWidth,
@@ -98,11 +99,12 @@ impl Ellipsoid {
         Ok(Self { skew, shape: Shape::new(gamma)? })
     }
 
-    /// From the matrix A of the cosine-power lobe, rows first: D′ ∝ (m′·n′)^(2γ−4) with
-    /// n′ = An/‖An‖, where an untilted Student-t has A = diag(σx√(γ−1), σy√(γ−1), 1).
+    /// The ellipsoid of a cosine-power lobe with matrix A, rows first: D′ ∝ (m′·n′)^(2γ−4) with
+    /// n′ = An/‖An‖. An untilted Student-t has A = diag(σx√(γ−1), σy√(γ−1), 1).
     ///
     /// # Errors
-    /// [`EllipsoidError`]; [`EllipsoidError::LobeWithoutWidth`] for γ = ∞.
+    /// [`EllipsoidError::Skew`] if A describes no ellipsoid, [`EllipsoidError::Parameter`] unless
+    /// γ > 3/2, [`EllipsoidError::LobeWithoutWidth`] for γ = ∞.
     pub fn from_lobe_matrix(a: [[f64; 3]; 3], gamma: f64) -> Result<Self, EllipsoidError> {
         let mut ellipsoid = Self::new(Skew::from_matrix(a)?, gamma)?;
         if ellipsoid.shape.is_beckmann() {
@@ -155,8 +157,9 @@ impl Ellipsoid {
         }
     }
 
-    /// Projected area of the whole microsurface, ∫ (v·m)⁺ D(m) dm, for any direction v (Walter et al. 2015, eq. 24 and 26, at
-    /// γ = 2, where it is ½(‖Av‖ + Av·An/‖An‖)/‖An‖). 0 where it underflows.
+    /// Projected area of the whole microsurface, ∫ (v·m)⁺ D(m) dm, for any direction v (Walter
+    /// et al. 2015, eq. 24 and 26, at γ = 2, where it is ½(‖Av‖ + Av·An/‖An‖)/‖An‖). 0 where it
+    /// underflows.
     pub fn projected_area(&self, v: DVec3) -> f64 {
         let view = self.view(v);
         self.area(&view, &self.in_plane(&view))
@@ -185,7 +188,7 @@ impl Ellipsoid {
         let r = self.shape.slope_radius(u[0]);
         let phi = 2.0 * PI * u[1];
         let (x, y) = (libm::cos(phi), libm::sin(phi));
-        // The horizon: r² would overflow in the normalisation.
+        // At the horizon r² would overflow in the normalisation.
         let m = if r > 1e150 { DVec3::new(x, y, 1.0 / r) } else { DVec3::new(r * x, r * y, 1.0) };
         self.normal_from_unit(m)
     }
@@ -197,10 +200,12 @@ impl Ellipsoid {
     }
 }
 
-/// D, G1 and Λ are clamped as in Walter et al. 2015, eq. 6: G1(v) = min(1, (v·n)/projected area). A
-/// lobe that leans away from v would otherwise show less area than the surface it stands on.
+/// G1(v) = min(1, (v·n)/projected area), and Λ and G2 accordingly, as in Walter et al. 2015, eq. 6:
+/// without the clamp a lobe that leans away from v would show less area than the surface it stands
+/// on.
 impl MicrofacetDistribution for Ellipsoid {
-    /// At γ = 2 this is 1/(π |A| ‖An‖ ‖A⁻ᵀm‖⁴) (Walter et al. 2015, eq. 1).
+    /// D(m), 0 at and below the horizon; at γ = 2 it is 1/(π |A| ‖An‖ ‖A⁻ᵀm‖⁴) (Walter et al. 2015,
+    /// eq. 1).
     fn d(&self, m: DVec3) -> f64 {
         if !(m.z > 0.0) {
             return 0.0;
@@ -217,7 +222,7 @@ impl MicrofacetDistribution for Ellipsoid {
         if v.z > 0.0 { (v.z / self.projected_area(v)).min(1.0) } else { 0.0 }
     }
 
-    /// G2(v, l)·area/(v·n), which is G2/G1 where G1 is not clamped, and never above 1.
+    /// G2(v, l)·(projected area)/(v·n): G2/G1 where G1 is not clamped, and never above 1.
     fn reflection_weight(&self, v: DVec3, l: DVec3, masking: Masking) -> f64 {
         if !(v.z > 0.0) {
             return 0.0;
@@ -237,7 +242,8 @@ impl MicrofacetDistribution for Ellipsoid {
         self.normal_from_unit(turn(m, view.cos_phi, view.sin_phi))
     }
 
-    /// 0 as well where the visible area underflows (Walter et al. 2015, eq. 30).
+    /// (v·m)⁺ D(m)/(projected area) (Walter et al. 2015, eq. 30); 0 also where that area
+    /// underflows.
     fn visible_normal_pdf(&self, v: DVec3, m: DVec3) -> f64 {
         let facing = v.dot(m);
         let area = self.projected_area(v);

@@ -7,7 +7,8 @@ use core::fmt;
 pub enum ParameterError {
     /// `!(sigma > 0)` or `sigma` infinite: the roughness must be a positive finite number.
     Sigma(f64),
-    /// `!(gamma > 3/2)`: at 3/2 the projected area diverges and the distribution has no Smith masking.
+    /// `!(gamma > 3/2)`: at 3/2 the projected area diverges and the distribution has no Smith
+    /// masking.
     Gamma(f64),
     /// `!(exponent >= 0)` or infinite, for Blinn–Phong.
     Exponent(f64),

@@ -1,7 +1,8 @@
-//! Fresnel reflectance of the surfaces that scenes use: conductors, dielectrics, Schlick's approximation and its F82 tint.
+//! Fresnel reflectance of conductors and dielectrics, and Schlick's approximation
+//! (1994, <https://doi.org/10.1111/1467-8659.1330233>) with its F82 tint.
 //!
-//! `cos_theta` is the cosine between the view and the microfacet normal, in [0, 1]. Light is unpolarised. The types validate when they
-//! are made, so that evaluation cannot fail.
+//! `cos_theta` is the cosine between the view and the microfacet normal, in [0, 1]. Light is
+//! unpolarised. Constructors check their arguments, so that evaluation cannot fail.
 
 use microfacet_common::schlick::{f82_dip, schlick};
 
@@ -17,7 +18,8 @@ pub struct Conductor {
 }
 
 impl Conductor {
-    /// A conductor of index η > 0 and extinction k ≥ 0, both relative to the outer medium's (real) index.
+    /// A conductor of index η > 0 and extinction k ≥ 0, both relative to the outer medium's (real)
+    /// index.
     ///
     /// # Errors
     /// [`ParameterError::Eta`] and [`ParameterError::Extinction`] outside these domains.
@@ -31,11 +33,12 @@ impl Conductor {
 
     /// Exact reflectance ∈ [0, 1] (Born & Wolf 1999, §14.4); 1 at grazing.
     ///
-    /// The refracted wave's a + ib is formed so that neither part cancels: its smaller part comes from the product ab = ηk. With
-    /// k = 0 it is the dielectric's reflectance.
+    /// The refracted wave's a + ib is formed so that neither part cancels: the smaller part comes
+    /// from the product ab = ηk. With k = 0 it is the dielectric's reflectance.
     pub fn reflectance(&self, cos_theta: f64) -> f64 {
         let (cos, sin2) = (cos_theta, 1.0 - cos_theta * cos_theta);
-        // (a + ib)² = η² − k² − sin²θ + 2iηk; as written, 1 − sin²θ would lose a small cosine where η is near 1.
+        // (a + ib)² = η² − k² − sin²θ + 2iηk; evaluated as it stands, 1 − sin²θ would lose a small
+        // cosine where η is near 1.
         let real = (self.eta - 1.0) * (self.eta + 1.0) - self.k * self.k + cos * cos;
         let product = self.eta * self.k;
         let modulus = libm::hypot(real, 2.0 * product);
@@ -62,8 +65,8 @@ pub struct Dielectric {
 }
 
 impl Dielectric {
-    /// An interface with η = index beyond it over index on the viewer's side: η > 1 when entering glass from air, η < 1 when
-    /// leaving it. η = 1 is legal: nothing is reflected and nothing bent.
+    /// An interface of relative index η, the index beyond it over that on the viewer's side: η > 1
+    /// when entering glass from air, η < 1 when leaving it. At η = 1 nothing is reflected or bent.
     ///
     /// # Errors
     /// [`ParameterError::Eta`] unless 0 < η < ∞.
@@ -82,14 +85,16 @@ impl Dielectric {
         Self { eta: 1.0 / self.eta }
     }
 
-    /// Cosine of the refracted ray to the normal, in (0, 1]; `None` where all light is reflected (Snell).
+    /// Cosine between the refracted ray and the normal, in (0, 1], by Snell's law; `None` where all
+    /// light is reflected.
     pub fn refracted_cos(&self, cos_theta: f64) -> Option<f64> {
         // η² cos²θ_t = η² − 1 + cos²θ, which keeps a small cosine where η is near 1.
         let square = (self.eta - 1.0) * (self.eta + 1.0) + cos_theta * cos_theta;
         if square > 0.0 { Some(square.sqrt() / self.eta) } else { None }
     }
 
-    /// Exact reflectance ∈ [0, 1] (Fresnel); transmittance is 1 − reflectance. 1 beyond the critical angle and at grazing.
+    /// Exact reflectance ∈ [0, 1] (Fresnel): 1 beyond the critical angle and at grazing, 0
+    /// everywhere if η = 1. Transmittance is 1 − reflectance.
     pub fn reflectance(&self, cos_theta: f64) -> f64 {
         if self.eta == 1.0 {
             return 0.0; // also at grazing, where the formula is 0/0
@@ -115,7 +120,7 @@ pub struct F82Tint {
 }
 
 impl F82Tint {
-    /// F0 and tint, both in [0, 1]; tint = 1 is Schlick's approximation.
+    /// A metal of the given F0 and tint, both in [0, 1]; tint = 1 is Schlick's approximation.
     ///
     /// # Errors
     /// [`ParameterError::Reflectance`] outside [0, 1].
@@ -161,7 +166,8 @@ mod tests {
             let (conductor, dielectric) =
                 (Conductor::new(eta, 0.0).unwrap(), Dielectric::new(eta).unwrap());
             for cos in COSINES {
-                // At η = 1 and grazing the conductor's limit is 1, the dielectric's is 0 by definition.
+                // At η = 1 and grazing the conductor's limit is 1, the dielectric's is 0 by
+                // definition.
                 if eta == 1.0 && cos == 0.0 {
                     continue;
                 }
@@ -173,7 +179,8 @@ mod tests {
 
     #[test]
     fn conductor_matches_complex_arithmetic() {
-        // r_s = (cos − w)/(cos + w), r_p = (ñ² cos − w)/(ñ² cos + w), w = √(ñ² − sin²) in complex numbers.
+        // r_s = (cos − w)/(cos + w), r_p = (ñ² cos − w)/(ñ² cos + w), w = √(ñ² − sin²) in complex
+        // numbers.
         type C = (f64, f64);
         let mul = |a: C, b: C| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
         let norm = |a: C| a.0 * a.0 + a.1 * a.1;

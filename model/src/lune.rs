@@ -1,7 +1,9 @@
-//! Visible normals of the Ellipsoid NDF proper, γ = 2, by the three ways of Walter et al. 2015: references and rivals.
+//! Visible normals of the Ellipsoid NDF (γ = 2) by the three samplers of Walter et al. 2015, as
+//! references and for comparison.
 //!
-//! At γ = 2 the lobe is a hemisphere with equal weight everywhere, and visible normals are the points of it that a view sees,
-//! uniform in the plane across the view. That silhouette is half a disc and half an ellipse whose axes are 1 and |cos θ|.
+//! At γ = 2 the lobe in unit space is a hemisphere of equal weight everywhere. The visible normals
+//! are the points of it that a view sees, uniform when projected onto the plane across the view.
+//! The silhouette in that plane is half a disc and half an ellipse with half-axes 1 and |cos θ|.
 
 use core::f64::consts::PI;
 
@@ -9,23 +11,27 @@ use glam::DVec3;
 
 use crate::ellipsoid::{self, Ellipsoid, View};
 
-/// The samplers of an [`Ellipsoid`] whose γ is 2; from [`Ellipsoid::lune`].
+/// The samplers of visible normals that an [`Ellipsoid`] has for γ = 2 only, from
+/// [`Ellipsoid::lune`] (Walter et al. 2015, supplemental material of
+/// <https://doi.org/10.1145/2815618>).
 #[derive(Clone, Copy, Debug)]
 pub struct Lune<'a> {
     ellipsoid: &'a Ellipsoid,
 }
 
 impl Ellipsoid {
-    /// The samplers that exist for γ = 2 only; `None` for other shapes.
+    /// The samplers for γ = 2; `None` for other shapes.
     pub fn lune(&self) -> Option<Lune<'_>> {
         (self.shape().gamma() == 2.0).then_some(Lune { ellipsoid: self })
     }
 }
 
 impl Lune<'_> {
-    /// Version 1, bounding sphere: a visible point of the whole sphere, drawn anew while it is below the horizon of n.
+    /// A visible normal by version 1, bounding sphere: visible points of the whole sphere are drawn
+    /// until one is above the horizon of n.
     ///
-    /// Accepts (1 + cos θ)/2 of the draws, θ the angle between view and n in unit space: few when the lobe leans away.
+    /// Accepts (1 + cos θ)/2 of the draws, θ being the angle between view and n in unit space: few
+    /// when the lobe leans away from the view.
     pub fn sample_sphere(&self, v: DVec3, uniform: &mut impl FnMut() -> f64) -> DVec3 {
         let (view, frame) = Frame::of(self.ellipsoid, v);
         loop {
@@ -37,13 +43,16 @@ impl Lune<'_> {
         }
     }
 
-    /// Version 2, silhouette: a point of the rectangle around the silhouette, drawn anew while outside it.
+    /// A visible normal by version 2, silhouette: points of the rectangle around the silhouette are
+    /// drawn until one is inside it.
     ///
-    /// Accepts π/4 of the draws for views above the lobe's horizon, π/4·(1 + cos θ) below it.
+    /// Accepts π/4 of the draws for views above the lobe's horizon, π/4·(1 + cos θ) for views below
+    /// it.
     pub fn sample_silhouette(&self, v: DVec3, uniform: &mut impl FnMut() -> f64) -> DVec3 {
         let (view, frame) = Frame::of(self.ellipsoid, v);
         loop {
-            // Down to the ellipse's lower rim; for a view from below a crescent remains, whose horns lie at 0.
+            // Down to the ellipse's lower rim; for a view from below, a crescent remains whose
+            // horns lie at 0.
             let up = 1.0 - uniform() * (1.0 + frame.cos.max(0.0));
             let side = 2.0 * uniform() - 1.0;
             let reach = (1.0 - side * side).max(0.0).sqrt();
@@ -53,7 +62,8 @@ impl Lune<'_> {
         }
     }
 
-    /// Version 3, lune: a point of the disc squeezed onto the silhouette column by column, two random numbers for one normal.
+    /// A visible normal by version 3, lune: a point of the disc squeezed onto the silhouette column
+    /// by column. u ∈ [0, 1]²; two random numbers make one normal.
     pub fn sample_lune(&self, v: DVec3, u: [f64; 2]) -> DVec3 {
         let (view, frame) = Frame::of(self.ellipsoid, v);
         let (r, phi) = (u[0].sqrt(), 2.0 * PI * u[1]);
@@ -64,7 +74,8 @@ impl Lune<'_> {
         self.finish(&view, frame.point(up, side))
     }
 
-    /// The random numbers at which [`sample_lune`](Self::sample_lune) gives m: uniform on [0, 1]² for visible normals.
+    /// The random numbers at which [`sample_lune`](Self::sample_lune) gives m: uniform on [0, 1]²
+    /// for visible normals.
     pub fn invert_lune(&self, v: DVec3, m: DVec3) -> [f64; 2] {
         let (view, frame) = Frame::of(self.ellipsoid, v);
         let m = ellipsoid::turn(self.ellipsoid.normal_to_unit(m), view.cos_phi, -view.sin_phi)

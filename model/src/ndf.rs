@@ -1,4 +1,5 @@
-//! Sampling the distribution of normals in closed form (Ribardière et al. 2017, eq. 16–17 and 19–20).
+//! Sampling the distribution of normals in closed form (Ribardière et al. 2017,
+//! <https://doi.org/10.1111/cgf.13137>, eq. 16–17 and 19–20).
 
 use core::f64::consts::PI;
 
@@ -8,24 +9,26 @@ use crate::shape::Shape;
 use crate::student_t::StudentT;
 
 impl Shape {
-    /// Radius of a unit slope: r with P(R > r) = 1 − u, r² = ((1−u)^(−1/(γ−1)) − 1)/s (eq. 16); −ln(1−u) for Beckmann.
+    /// The length r ∈ [0, ∞] of a unit slope at which P(R > r) = 1 − u, for u ∈ [0, 1].
     ///
-    /// ∞ at u = 1.
+    /// r² = ((1−u)^(−1/(γ−1)) − 1)/s (Ribardière et al. 2017, <https://doi.org/10.1111/cgf.13137>,
+    /// eq. 16); −ln(1−u) for Beckmann. ∞ at u = 1.
     pub fn slope_radius(&self, u: f64) -> f64 {
-        // expm1 keeps small radii, and is the form that has the Beckmann limit.
+        // expm1 keeps the digits of small radii and has the Beckmann limit.
         let e = -libm::log1p(-u);
         if self.is_beckmann() { e.sqrt() } else { (libm::expm1(self.s() * e) / self.s()).sqrt() }
     }
 }
 
 impl StudentT {
-    /// A normal distributed as D(m)(m·n) from u ∈ [0, 1)² (eq. 16–17, anisotropic 19–20 with the quadrant of 2πu₂ kept).
+    /// A normal distributed as D(m)(m·n) from u ∈ [0, 1)² (eq. 16–17; if anisotropic eq. 19–20, in
+    /// the quadrant of 2πu₂).
     pub fn sample_ndf(&self, u: [f64; 2]) -> DVec3 {
         let r = self.shape().slope_radius(u[0]);
         let phi = 2.0 * PI * u[1];
         let (x, y) = (self.sigma_x() * libm::cos(phi), self.sigma_y() * libm::sin(phi));
         if r > 1e150 {
-            // The horizon: r² would overflow in the normalisation.
+            // At the horizon r² would overflow in the normalisation.
             return DVec3::new(x, y, 1.0 / r).normalize();
         }
         DVec3::new(r * x, r * y, 1.0).normalize()

@@ -2,7 +2,7 @@
 
 use microfacet_common::fill_gauss_legendre;
 
-/// Nodes and weights of a rule on [0, 1].
+/// Nodes and weights of a Gauss–Legendre rule on [0, 1].
 #[derive(Clone, Debug)]
 pub(crate) struct Gauss {
     /// (node, weight), ascending; the weights sum to 1.
@@ -10,7 +10,7 @@ pub(crate) struct Gauss {
 }
 
 impl Gauss {
-    /// The rule with n ≥ 1 points, exact for polynomials of degree 2n−1.
+    /// The rule with n ≥ 1 points, without error for polynomials up to degree 2n−1.
     pub(crate) fn new(n: usize) -> Self {
         let mut points = vec![(0.0, 0.0); n];
         fill_gauss_legendre(&mut points);
@@ -18,17 +18,19 @@ impl Gauss {
     }
 }
 
-/// An end of an interval of integration, and the distance from it within which the integrand varies quickly.
+/// An end of an interval of integration, and the distance from it within which the integrand varies
+/// quickly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct End {
     pub(crate) at: f64,
-    /// Of the quick variation; ∞ where there is none.
+    /// That distance; ∞ where nothing varies quickly.
     pub(crate) scale: f64,
 }
 
 impl Gauss {
-    /// Calls `add(node, weight)` over [low.at, high.at] with panels no wider than `width` and graded geometrically
-    /// towards the ends that ask for it: there the variable is end ± scale·sinh τ, in which the integrand is regular.
+    /// Calls `add(node, weight)` over [low.at, high.at] with panels no wider than `width`. Panels
+    /// shrink geometrically towards an end whose scale is less than `width`: there the variable is
+    /// end ± scale·sinh τ, in which the integrand is regular.
     pub(crate) fn graded(&self, low: End, high: End, width: f64, mut add: impl FnMut(f64, f64)) {
         let length = high.at - low.at;
         if length <= 0.0 {
@@ -43,7 +45,7 @@ impl Gauss {
                 continue;
             }
             let t = libm::asinh(reach / end.scale);
-            // e² from panel to panel.
+            // Panels grow by e² from one to the next.
             let panels = libm::ceil(0.5 * t);
             self.uniform(0.0, t, panels, |tau, weight| {
                 let e = libm::exp(tau);
@@ -52,7 +54,7 @@ impl Gauss {
             });
             if sign > 0.0 { from += reach } else { to -= reach }
         }
-        // What a rounding error leaves is not worth a panel.
+        // A remainder as small as a rounding error gets no panel.
         if to - from > 1e-9 * length {
             self.uniform(from, to, libm::ceil((to - from) / width), &mut add);
         }

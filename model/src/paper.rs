@@ -1,14 +1,18 @@
-//! Λ as Ribardière et al. 2017 print it, in the arrangement of their equations.
+//! Λ as Ribardière et al. 2017 (<https://doi.org/10.1111/cgf.13137>) print it, in the arrangement
+//! of their equations.
 //!
-//! Kept to show where each form loses digits or leaves its range; [`Shape::lambda`](crate::Shape::lambda) is the
-//! one to use. Arguments: γ and the unit cotangent z = cot θ / σ > 0; `printed` shows each beside the conditioned form.
+//! Kept to show where each form loses digits or overflows; use
+//! [`Shape::lambda`](crate::Shape::lambda) instead. Arguments: γ and the unit cotangent
+//! z = cot θ/σ > 0. The example `printed_formulas` compares each with the well-conditioned form.
 
 use core::f64::consts::PI;
 
-/// Eq. 13–15: Λ = Γ(γ−½)/(√π Γ(γ)) · [ (γ−1)^γ/((2γ−3) z) · (γ−1+z²)^(3/2−γ) + √(γ−1) z·₂F₁(½, γ−½; 3/2; −z²/(γ−1)) ] − ½.
+/// Λ by eq. 13–15: Γ(γ−½)/(√π Γ(γ)) · [ (γ−1)^γ/((2γ−3) z) · (γ−1+z²)^(3/2−γ) + √(γ−1) z·₂F₁(½,
+/// γ−½; 3/2; −z²/(γ−1)) ] − ½.
 ///
-/// Fails by overflow of Γ from γ = 171, of (γ−1)^γ from γ = 144, and by cancellation against ½ wherever Λ is small: the absolute error
-/// stays near 1e-16 × the terms, so that G1 may exceed 1 by that much and no digit of a small Λ is right.
+/// Γ(γ) overflows from γ = 171.7, (γ−1)^γ from γ = 144. Wherever Λ is small, cancellation against ½
+/// leaves an absolute error of about 1e-16 × the terms, so that G1 may exceed 1 by that much and no
+/// digit of a small Λ is right.
 pub fn lambda_hypergeometric(gamma: f64, z: f64) -> f64 {
     let g1 = gamma - 1.0;
     let s1 = libm::pow(g1, gamma) / ((2.0 * gamma - 3.0) * z) * libm::pow(g1 + z * z, 1.5 - gamma);
@@ -16,10 +20,11 @@ pub fn lambda_hypergeometric(gamma: f64, z: f64) -> f64 {
     prefactor(gamma) * (s1 + s2) - 0.5
 }
 
-/// Eq. 22–23: the same with z·₂F₁ replaced by the rational functions F₂₁(z)·(F₂₂(γ) + F₂₃(γ) F₂₄(z)).
+/// Λ by eq. 22–23: eq. 13–15 with z·₂F₁ replaced by the rational functions F₂₁(z)·(F₂₂(γ) + F₂₃(γ)
+/// F₂₄(z)).
 ///
-/// Can be negative, so that G1 exceeds 1 (1.002 at γ = 3, z = 3): clamp it. Γ and the powers are taken in logarithms here; the
-/// error shown is the approximation's own.
+/// Can be negative, so that G1 exceeds 1 (1.002 at γ = 3, z = 3): clamp it. The powers are arranged
+/// here so that they do not overflow; Γ(γ) does from γ = 171.7.
 pub fn lambda_rational(gamma: f64, z: f64) -> f64 {
     let g1 = gamma - 1.0;
     let ratio = 1.0 / (1.0 + z * z / g1);
@@ -35,10 +40,11 @@ pub fn lambda_rational(gamma: f64, z: f64) -> f64 {
     prefactor(gamma) * (s1 + g1.sqrt() * f21 * (f22 + f23 * f24)) - 0.5
 }
 
-/// Eq. 21 for integer γ ≥ 2: the hypergeometric function becomes an alternating sum with γ−1 terms, prefactor
-/// (2γ−2)!/(4^(γ−1) ((γ−1)!)²).
+/// Λ by eq. 21 for integer γ ≥ 2: the hypergeometric function becomes an alternating sum of γ−1
+/// terms, with prefactor (2γ−2)!/(4^(γ−1) ((γ−1)!)²).
 ///
-/// `None` for other γ. The sum cancels as γ grows: already 2e-7 absolute in Λ at γ = 40 and z = 30.
+/// `None` for other γ and above 1000. The sum cancels as γ grows: at γ = 40 and z = 30 the absolute
+/// error of Λ is already 2e-7.
 pub fn lambda_integer(gamma: f64, z: f64) -> Option<f64> {
     if gamma < 2.0 || gamma.fract() != 0.0 || gamma > 1e3 {
         return None;
@@ -65,9 +71,10 @@ pub fn lambda_integer(gamma: f64, z: f64) -> Option<f64> {
     Some(prefactor * g1 * (first + sum) - 0.5)
 }
 
-/// Eq. 21 for half-integer γ ≥ 5/2: an arctangent and a sum that runs to γ − 3/2.
+/// Λ by eq. 21 for half-integer γ ≥ 5/2: an arctangent and a sum that runs to γ − 3/2.
 ///
-/// `None` for other γ. All terms are positive, so it is limited by the cancellation against ½ only.
+/// `None` for other γ and above 1000. All terms are positive, so that only the cancellation against
+/// ½ limits the accuracy.
 pub fn lambda_half_integer(gamma: f64, z: f64) -> Option<f64> {
     let order = gamma - 1.5;
     if order < 1.0 || order.fract() != 0.0 || gamma > 1e3 {
@@ -75,8 +82,8 @@ pub fn lambda_half_integer(gamma: f64, z: f64) -> Option<f64> {
     }
     let a = z / (gamma - 1.0).sqrt();
     let cos2 = 1.0 / (1.0 + a * a);
-    // ∫₀^φ cos^(2m) = (2m−1)!!/(2m)!! · (φ + sin φ cos φ Σ_{j<m} (2j)!!/(2j+1)!! cos^(2j) φ), and the
-    // normalisation is twice the reciprocal of the whole's ½π (2m−1)!!/(2m)!!.
+    // ∫₀^φ cos^(2m) = (2m−1)!!/(2m)!! · (φ + sin φ cos φ Σ_{j<m} (2j)!!/(2j+1)!! cos^(2j) φ), and
+    // the normalisation is the reciprocal of twice the whole, ½π (2m−1)!!/(2m)!!.
     let (mut term, mut sum, mut j) = (1.0, 0.0, 0.0);
     let mut double_factorials = 1.0;
     while j < order {
@@ -95,7 +102,7 @@ fn polynomial(x: f64, c: [f64; 4]) -> f64 {
     c[0] + x * (c[1] + x * (c[2] + x * c[3]))
 }
 
-/// Γ(γ−½)/(√π Γ(γ)), with the Γ of the paper; the ratio is ∞/∞ from γ = 171.5.
+/// Γ(γ−½)/(√π Γ(γ)) by the paper's Γ; Γ(γ) overflows from γ = 171.7.
 fn prefactor(gamma: f64) -> f64 {
     libm::tgamma(gamma - 0.5) / (PI.sqrt() * libm::tgamma(gamma))
 }

@@ -1,9 +1,10 @@
-//! An exact sampler of visible normals without tables: pseudo-visible normals plus an excess.
+//! The sampler of visible normals by rejection, without tables: flipped normals plus an excess.
 //!
-//! For slopes that are centrally symmetric, visible normals = G1 · (flipped NDF) + (1 − G1) · (excess). The flipped NDF draws
-//! a slope from the NDF and turns it towards the viewer where it must be; the excess beyond the silhouette has a density ∝ (x − z) p(x),
-//! drawn by rejection from the closed-form ∝ x p(x). It is what tables are tested against; its price is a variable
-//! number of random numbers.
+//! For centrally symmetric slopes, visible normals = G1 · (flipped NDF) + (1 − G1) · (excess). The
+//! flipped NDF is a slope of the NDF, turned towards the viewer as often as visibility requires.
+//! The excess beyond the silhouette has a density ∝ (x − z) p(x), drawn by rejection from ∝ x p(x),
+//! whose CDF inverts in closed form. Tables are tested against this sampler; its price is a
+//! variable number of random numbers.
 
 use core::f64::consts::PI;
 
@@ -13,10 +14,12 @@ use crate::shape::Shape;
 use crate::student_t::StudentT;
 
 impl StudentT {
-    /// Draws a visible normal, taking uniform numbers in [0, 1) from `uniform`.
+    /// Draws a visible normal by rejection, for any view; `uniform` gives uniform numbers in
+    /// [0, 1).
     ///
-    /// 1 + (3 or more) numbers a draw; the rejection accepts 1 in 1.1–2.8. At grazing every draw is an excess draw, and so it is for a
-    /// view below the horizon, which sees the microsurface from within; there the rejection accepts ever less the steeper the view.
+    /// A draw takes 1 + (3 or more) numbers; the rejection accepts 1 in 1.1–2.8. Every draw is an
+    /// excess draw at grazing and for views below the horizon, which see the microsurface from
+    /// within; for those the rejection accepts the less, the steeper the view.
     pub fn sample_visible_by_rejection(
         &self,
         v: DVec3,
@@ -30,7 +33,7 @@ impl StudentT {
         } else {
             excess_slope(shape, z, uniform)
         };
-        // Slopes may be infinite near γ = 3/2; scaled by the largest they are not.
+        // Slopes may be infinite near γ = 3/2; scaling by the largest keeps the normal finite.
         let scale = 1.0 / x.abs().max(y.abs()).max(1.0);
         let (x, y) = if scale == 0.0 {
             (
@@ -49,7 +52,8 @@ impl StudentT {
     }
 }
 
-/// A slope of the NDF, turned towards the viewer: always beyond the silhouette, with probability (1 + |x|/z)/2 within.
+/// A slope of the NDF turned towards the viewer: always if beyond the silhouette, with probability
+/// (1 + |x|/z)/2 if within it.
 fn flipped_slope(shape: &Shape, z: f64, uniform: &mut impl FnMut() -> f64) -> (f64, f64) {
     let r = shape.slope_radius(uniform());
     let phi = 2.0 * PI * uniform();

@@ -7,21 +7,23 @@ use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 use crate::error::ParameterError;
 use crate::slope_integrals;
 
-/// Above this γ the Beckmann limit is used: the two differ by O(1/γ), below the rounding of a double.
+/// Above this γ the Beckmann limit is used: the two differ by O(1/γ), less than a double's
+/// rounding.
 const BECKMANN_FROM: f64 = 1e16;
 
 /// A validated shape γ ∈ (3/2, ∞] and the in-plane marginal of its *unit slopes*.
 ///
-/// Unit slopes are slopes divided by their σ (without the √(γ−1) of the lobe's own space), so that the whole range of
-/// γ is regular, Beckmann included. Their marginal along any direction is
+/// Unit slopes are slopes divided by σ, without the further √(γ−1) of the lobe's own space, so that
+/// the whole range of γ is regular, Beckmann included. Their marginal along any direction is
 ///
 /// ```text
 /// p(x) = p(0) (1 + s x²)^(−k−1),   s = 1/(γ−1) ∈ [0, 2),   k = γ − 3/2,
 /// ```
 ///
-/// which for s = 0 is exp(−x²)/√π (mathematically eq. 11 of Ribardière et al. 2017 integrated over one slope).
-/// Everything Smith's model needs is one of its integrals. The slope enters as [`AsinhSlope`], which survives tails that no
-/// floating-point slope can reach.
+/// which for s = 0 is exp(−x²)/√π: eq. 11 of Ribardière et al. 2017
+/// (<https://doi.org/10.1111/cgf.13137>) integrated over one slope. All that Smith's model needs
+/// are integrals of p. Slopes enter as [`AsinhSlope`], which stays finite in tails where a
+/// floating-point slope overflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
     gamma: f64,
@@ -29,15 +31,15 @@ pub struct Shape {
     s: f64,
     sqrt_s: f64,
     k: f64,
-    /// Normalisation of the reduced marginal of the in-plane slope (exponent −k−1).
+    /// Normalisation of the in-plane slope's marginal in the lobe's own space (exponent −k−1).
     c: f64,
-    /// The same for the slope across the plane, conditioned on the first: exponent −k−3/2.
+    /// The same for the slope across, given the in-plane slope (exponent −k−3/2).
     c_across: f64,
 }
 
 /// A unit slope x ≥ 0 written as w with x = sinh(√s w)/√s (x = w for Beckmann).
 ///
-/// w is finite wherever a probability is: near γ = 3/2 slopes of 10³⁰⁰ are not rare.
+/// w is finite wherever there is probability: near γ = 3/2 slopes of 10³⁰⁰ are not rare.
 pub type AsinhSlope = f64;
 
 impl Shape {
@@ -64,7 +66,7 @@ impl Shape {
         })
     }
 
-    /// The shape with the given s = 1/(γ−1) ∈ [0, 2); s = 0 is Beckmann. This is the axis tables use.
+    /// The shape with the given s = 1/(γ−1) ∈ [0, 2); s = 0 is Beckmann. Tables have s as an axis.
     ///
     /// # Errors
     /// [`ParameterError::Gamma`] outside that interval.
@@ -80,7 +82,7 @@ impl Shape {
         self.gamma
     }
 
-    /// s = 1/(γ−1) ∈ [0, 2); exactly 0 for Beckmann.
+    /// s = 1/(γ−1) ∈ [0, 2); 0 for Beckmann.
     pub fn s(&self) -> f64 {
         self.s
     }
@@ -90,23 +92,25 @@ impl Shape {
         self.s == 0.0
     }
 
-    /// w of a unit slope x ≥ 0 (∞ for ∞).
+    /// The asinh slope w of a unit slope x ≥ 0; ∞ for ∞.
     pub fn asinh_slope(&self, x: f64) -> AsinhSlope {
         if self.is_beckmann() { x } else { libm::asinh(self.sqrt_s * x) / self.sqrt_s }
     }
 
-    /// The unit slope x of w; overflows to ∞ where the slope does.
+    /// The unit slope x of an asinh slope w ≥ 0; ∞ where x overflows.
     pub fn slope(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() { w } else { libm::sinh(self.sqrt_s * w) / self.sqrt_s }
     }
 
-    /// (sin, cos) of the angle of the unit slope x(w), kept accurate for slopes that overflow.
+    /// Sine and cosine of the angle whose tangent is the unit slope of w; accurate where that
+    /// overflows.
     pub fn unit_sin_cos(&self, w: AsinhSlope) -> (f64, f64) {
         if self.is_beckmann() {
             let r = 1.0 / (1.0 + w * w).sqrt();
             return if w.is_infinite() { (1.0, 0.0) } else { (w * r, r) };
         }
-        // In the lobe's space sin α = tanh v, cos α = 1/cosh v; the unit space is stretched by √s.
+        // In the lobe's own space sin α = tanh v and cos α = 1/cosh v; unit slopes are 1/√s times
+        // larger.
         let v = self.sqrt_s * w;
         let (sin, cos) = (libm::tanh(v) / self.sqrt_s, libm::exp(-slope_integrals::ln_cosh(v)));
         let r = 1.0 / (sin * sin + cos * cos).sqrt();
@@ -118,8 +122,8 @@ impl Shape {
         2.0 * slope_integrals::ln_cosh(self.sqrt_s * w)
     }
 
-    /// Normal distribution function of unit roughness at a normal ∝ (x, y, z), r² = x² + y², z > 0, |(x, y, z)| not necessarily 1:
-    /// (1 + s r²/z²)^(−γ) / (π z⁴).
+    /// D for roughness 1 at a normal ∝ (x, y, z), z > 0, whose length need not be 1: (1 + s
+    /// r²/z²)^(−γ)/(π z⁴) with r² = x² + y².
     pub(crate) fn d_in_unit_space(&self, r2: f64, z2: f64) -> f64 {
         let log = if self.is_beckmann() {
             -r2 / z2 - 2.0 * libm::log(z2)
@@ -132,7 +136,7 @@ impl Shape {
         libm::exp(log) / PI
     }
 
-    /// Marginal density p(x) of the in-plane unit slope times dx/dw: the density with respect to w.
+    /// Density of the in-plane unit slope with respect to w: p(x) dx/dw.
     pub fn density(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             return 0.5 * FRAC_2_SQRT_PI * libm::exp(-w * w);
@@ -157,7 +161,8 @@ impl Shape {
         self.c / (2.0 * self.k * self.sqrt_s) * libm::exp(-self.k * self.ln_kernel(w))
     }
 
-    /// x p(x) dx/dw for x ≥ 0: minus the derivative of [`first_moment`](Self::first_moment), finite where x overflows.
+    /// x p(x) dx/dw for x ≥ 0: minus the derivative of [`first_moment`](Self::first_moment), finite
+    /// where x overflows.
     pub fn first_moment_density(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             return w * self.density(w);
@@ -167,8 +172,9 @@ impl Shape {
 
     /// Smith's Λ for a view whose unit cotangent is z = cot θ_v / σ_v ≥ 0.
     ///
-    /// `w` is `unit(z)`. Λ = E[(X − z)⁺]/z; ∞ at z = 0 and 0 at z = ∞. Relative accuracy 1e-12 wherever Λ is a normal
-    /// number (measured 8e-16 against 200-digit values where no power is large).
+    /// `w` is [`asinh_slope(z)`](Self::asinh_slope). Λ = E[(X − z)⁺]/z; ∞ at z = 0 and 0 at z = ∞.
+    /// Relative accuracy 1e-12 wherever Λ is a normal double (measured 8e-16 against 200-digit
+    /// values where no power is large).
     pub fn lambda(&self, w: AsinhSlope) -> f64 {
         if w == 0.0 {
             return f64::INFINITY;
@@ -179,8 +185,8 @@ impl Shape {
         slope_integrals::lambda(self.k, self.c, self.sqrt_s * w)
     }
 
-    /// (exp(−z²)/(z√π) − erfc z)/2. It cancels to one part in 2z² for large z, where Λ itself is exp(−z²): at
-    /// z = 8 it is 1e-29 with thirteen digits.
+    /// (exp(−z²)/(z√π) − erfc z)/2. The difference cancels to one part in 2z² for large z, where Λ
+    /// itself is of the order of exp(−z²): at z = 8 Λ is 1e-29, with thirteen digits.
     fn beckmann_lambda(&self, z: f64) -> f64 {
         if z > 27.5 {
             return 0.0; // below the smallest subnormal
@@ -188,7 +194,7 @@ impl Shape {
         (0.5 * (libm::exp(-z * z) / (z * PI.sqrt()) - libm::erfc(z))).max(0.0)
     }
 
-    /// Mean positive part above z: E[(X − z)⁺] = z Λ(z), finite down to z = 0.
+    /// Mean excess over the unit slope z of w: E[(X − z)⁺] = z Λ(z), finite down to z = 0.
     pub fn excess(&self, w: AsinhSlope) -> f64 {
         if w == 0.0 {
             return self.first_moment(0.0);
@@ -197,7 +203,8 @@ impl Shape {
         if z.is_infinite() { 0.0 } else { z * self.lambda(w) }
     }
 
-    /// Upper tail of the slope across the plane, in units of √(1 + s x²): t with density ∝ (1 + s t²)^(−γ), t ≥ 0.
+    /// Upper tail of the slope across, in units of √(1 + s x²): P(T > t), t ≥ 0, for a
+    /// density ∝ (1 + s t²)^(−γ).
     pub fn across_tail(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             0.5 * libm::erfc(w)
@@ -206,7 +213,7 @@ impl Shape {
         }
     }
 
-    /// Density of that t with respect to w.
+    /// Density with respect to w of the slope across, in units of √(1 + s x²).
     pub fn across_density(&self, w: AsinhSlope) -> f64 {
         if self.is_beckmann() {
             return 0.5 * FRAC_2_SQRT_PI * libm::exp(-w * w);

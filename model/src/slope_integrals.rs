@@ -1,30 +1,34 @@
-//! The slope marginal of the canonical lobe: Student's t in reduced form.
+//! Integrals of the slope marginal: Student's t without its scale.
 //!
-//! In the lobe's own space (slopes divided by σ√(γ−1)) every member with finite γ has the in-plane slope marginal
+//! In the lobe's own space (slopes divided by σ√(γ−1)) every member of the family with finite γ has
+//! the in-plane slope marginal
 //!
 //! ```text
 //! p(a) = c (1 + a²)^(−k−1),   k = γ − 3/2 > 0,   c = Γ(k+1) / (√π Γ(k+½)),
 //! ```
 //!
-//! Student's t with 2k+1 degrees of freedom, without its scale. The functions here take a slope as its *rapidity* v,
-//! a = sinh v, because the heaviest tails (k → 0) put half of the probability beyond any floating point a: with
-//! k = 0.001 the median visible slope at grazing is 2⁵⁰⁰. In terms of the slope's angle α, sin α = tanh v and
-//! cos α = 1/cosh v.
+//! which is Student's t with 2k+1 degrees of freedom, without its scale. Slopes are passed as their
+//! *rapidity* v, a = sinh v, because the heaviest tails (k → 0) put half of the probability beyond
+//! any floating-point a: with k = 0.001 the median visible slope at grazing is 2⁵⁰⁰. The slope's
+//! angle α has sin α = tanh v and cos α = 1/cosh v.
 //!
-//! Both tail integrals are hypergeometric functions 2F1(1, b; c; −1/a²), evaluated away from the centre by Gauss's continued
-//! fraction, all of whose terms are positive, and near the centre by a series of positive terms; no step subtracts nearly
-//! equal numbers, apart from ½ − Q near the centre, where Q is of the order of ½.
+//! Both tail integrals are hypergeometric functions 2F1(1, b; c; −1/a²), evaluated away from the
+//! centre by Gauss's continued fraction and near the centre by a series. All terms of both are
+//! positive. No step subtracts nearly equal numbers, apart from ½ − Q near the centre, where Q is
+//! of the order of ½.
 
 use core::f64::consts::PI;
 
-/// Below this value of (k + 3/2)·tanh²v the central series is used. At 1 the series needs about 25 terms, the continued
-/// fraction about 80 (large k), and T₁ − Q in [`excess`] has lost less than one decimal digit.
+/// The central series is used where (k + 3/2)·tanh²v is less than this. At 1 the series needs about
+/// 25 terms, the continued fraction about 80 (large k), and T₁ − Q in [`lambda`] has lost less than
+/// one decimal digit.
 const CENTRE: f64 = 1.0;
 
 /// Γ(k+1) / Γ(k+½) for k ≥ 0, to a few ulp.
 ///
-/// Differences of log-gammas lose digits as k grows (1e-10 at 1e6), so the ratio is taken from its asymptotic series in
-/// 1/(k+¼)², DLMF 5.11.15 in the symmetric form, whose odd terms vanish. Smaller arguments are raised to k ≥ 16 by the recurrence first.
+/// Differences of log-gammas lose digits as k grows (1e-10 at 1e6), so the ratio is taken from its
+/// asymptotic series in 1/(k+¼)², DLMF 5.11.15 in the symmetric form, whose odd terms vanish. The
+/// recurrence first raises k to at least 16.
 pub(crate) fn gamma_ratio(mut k: f64) -> f64 {
     let mut lift = 1.0;
     while k < 16.0 {
@@ -33,7 +37,8 @@ pub(crate) fn gamma_ratio(mut k: f64) -> f64 {
     }
     let w = k + 0.25;
     let r = 1.0 / (w * w);
-    // −E₂ₘ / (m 4^(2m+1)) with the Euler numbers E₂…E₁₂; the next term is below 1e-17 at w = 16.
+    // −E₂ₘ / (m 4^(2m+1)) with the Euler numbers E₂…E₁₂; the next term is less than 1e-17 at
+    // w = 16.
     let log = r
         * (1.0 / 64.0
             + r * (-5.0 / 2048.0
@@ -48,7 +53,7 @@ pub(crate) fn norm(k: f64) -> f64 {
     gamma_ratio(k) / PI.sqrt()
 }
 
-/// ln cosh v, for any v including those where cosh overflows, with full relative accuracy near 0.
+/// ln cosh v for any v, also where cosh overflows, with full relative accuracy near 0.
 pub(crate) fn ln_cosh(v: f64) -> f64 {
     let v = v.abs();
     if v < 1.0 {
@@ -59,12 +64,15 @@ pub(crate) fn ln_cosh(v: f64) -> f64 {
     }
 }
 
-/// 2F1(1, b; c; −w) for w ≥ 0 and 0 < b ≤ c by Gauss's continued fraction (DLMF 15.7.5 with a = 1), all terms positive.
+/// 2F1(1, b; c; −w) for w ≥ 0 and 0 < b ≤ c by Gauss's continued fraction (DLMF 15.7.5 with a = 1),
+/// all of whose terms are positive.
 fn gauss_fraction(b: f64, c: f64, w: f64) -> f64 {
-    // 1/(1 + d₁w/(1 + d₂w/(1 + …))) by the modified Lentz recurrence; nothing can vanish as all terms are positive.
+    // 1/(1 + d₁w/(1 + d₂w/(1 + …))) by the modified Lentz recurrence; no denominator vanishes
+    // because all terms are positive.
     let (mut f, mut big_c, mut big_d) = (1.0_f64, 1.0_f64, 0.0_f64);
     let mut n = 0.0;
-    // The number of terms grows like 1/z² towards the centre and is below 150 where `CENTRE` lets it be called.
+    // Towards the centre the number of terms grows like 1/a, for large k like 1/a²; it is less than
+    // 150 where `CENTRE` allows the call.
     for _ in 0..1000 {
         let odd = (b + n) * (c - 1.0 + n) / ((c + 2.0 * n - 1.0) * (c + 2.0 * n)) * w;
         n += 1.0;
@@ -84,7 +92,8 @@ fn gauss_fraction(b: f64, c: f64, w: f64) -> f64 {
     1.0 / f
 }
 
-/// ∫₀^v p over the central part, as c·tanh v·cosh^(−2k−1) v·2F1(k+1, 1; 3/2; tanh²v): a series of positive terms.
+/// ∫ p(a) da from 0 to sinh v near the centre, as c·tanh v·cosh^(−2k−1) v·2F1(k+1, 1; 3/2; tanh²v):
+/// a series of positive terms.
 fn central(k: f64, c: f64, v: f64, ln_cosh: f64) -> f64 {
     let tanh = libm::tanh(v);
     let y = tanh * tanh;
@@ -102,7 +111,7 @@ fn is_central(k: f64, v: f64) -> bool {
     (k + 1.5) * tanh * tanh < CENTRE
 }
 
-/// 1/sinh²v, which fades to 0 instead of overflowing for large v.
+/// 1/sinh²v; tends to 0 for large v, where sinh²v would overflow.
 fn inverse_square(v: f64) -> f64 {
     let sinh = libm::sinh(v.min(400.0));
     1.0 / (sinh * sinh)
@@ -110,7 +119,8 @@ fn inverse_square(v: f64) -> f64 {
 
 /// The upper tail Q(v) = ∫_{sinh v}^∞ p(a) da for v ≥ 0.
 ///
-/// Relative accuracy about 1e-15 · (1 + (2k+1) ln cosh v), the second part being the conditioning of the power itself.
+/// Relative accuracy about 1e-15 · (1 + (2k+1) ln cosh v), whose second part is the conditioning of
+/// the power itself.
 pub(crate) fn tail(k: f64, c: f64, v: f64) -> f64 {
     let ln_cosh = ln_cosh(v);
     if is_central(k, v) {
@@ -120,10 +130,12 @@ pub(crate) fn tail(k: f64, c: f64, v: f64) -> f64 {
     c / (2.0 * k + 1.0) * libm::exp(-(2.0 * k + 1.0) * ln_cosh) / libm::tanh(v) * fraction
 }
 
-/// Λ = ∫_a^∞ (x − a) p(x) dx / a at a = sinh v, v > 0: the Smith auxiliary function of the reduced cotangent a.
+/// Λ = ∫_a^∞ (x − a) p(x) dx / a at a = sinh v, v > 0: Smith's Λ at the cotangent a in the lobe's
+/// own space.
 ///
-/// Away from the centre it is c/(4k(k+½)) · t^(k+½) (1−t)^(−3/2) · 2F1(1, 3/2; k+3/2; −1/a²) with t = 1/(1+a²), which has no
-/// cancellation; the form of mathematics "T₁ − Q" subtracts nearly equal numbers there.
+/// Away from the centre it is c/(4k(k+½)) · t^(k+½) (1−t)^(−3/2) · 2F1(1, 3/2; k+3/2; −1/a²) with
+/// t = 1/(1+a²), which has no cancellation; the textbook form T₁ − Q, with T₁ the first moment
+/// beyond a divided by a, subtracts nearly equal numbers there.
 pub(crate) fn lambda(k: f64, c: f64, v: f64) -> f64 {
     let ln_cosh = ln_cosh(v);
     let tanh = libm::tanh(v);

@@ -1,21 +1,23 @@
-//! Smith's G1 for one shape as a piecewise polynomial: as exact as quadrature can use, and fifty times faster than Λ itself.
+//! Smith's G1 for one shape as a piecewise polynomial: accurate enough for quadrature, and fifty
+//! times faster than Λ itself.
 
 use crate::shape::Shape;
 
-/// Pieces in an octave of y; the pieces' coefficients are found by the leading bits of y as a double.
+/// Pieces per octave of y; the leading bits of y as a double select a piece.
 const PIECES: usize = 16;
 /// Degree of a piece's polynomial.
 const DEGREE: usize = 6;
-/// Octaves of y at most: beyond z = 2⁴⁵, 1 − G1 is below 1e-10 for every γ ≥ 1.5001.
+/// Largest number of octaves of y: beyond z = 2⁴⁵, 1 − G1 is less than 1e-10 for every γ ≥ 1.5001.
 const OCTAVES: usize = 90;
 /// Exponent and leading mantissa bits of 1.0.
 const FIRST: u64 = 0x3ff0;
 
 /// G1 of one shape as a function of direction, for integrands.
 ///
-/// With z the unit cotangent, h(z) = E|X − z|/2 = z Λ + z/2 is even and analytic in z, so h/√y is smooth in y = 1 + z² = 1/sin²θ on
-/// [1, ∞), and G1 = cos θ/(h/√y + cos θ/2), θ being the elevation in unit space. The polynomials interpolate h/√y at Chebyshev points,
-/// sixteen to an octave; G1 is right to 1e-13 (measured in the tests against Λ over γ from 1.501 to ∞).
+/// With z the unit cotangent, h(z) = E|X − z|/2 = z Λ + z/2 is even and analytic in z. So h/√y is
+/// smooth in y = 1 + z² = 1/sin²θ on [1, ∞), and G1 = cos θ/(h/√y + cos θ/2), θ being the polar
+/// angle in unit space. The polynomials interpolate h/√y at Chebyshev points, sixteen to an octave;
+/// G1 is right to 1e-13 (measured in the tests against Λ over γ from 1.501 to ∞).
 #[derive(Clone, Debug)]
 pub(crate) struct SmithTable {
     pieces: Vec<[f64; DEGREE + 1]>,
@@ -26,7 +28,8 @@ impl SmithTable {
         Self::from_excess(|z| shape.excess(shape.asinh_slope(z)), 1e-13)
     }
 
-    /// The same from E[(X − z)⁺] = z Λ(z) of any symmetric distribution of unit slopes; from where Λ falls below `unmasked` on, G1 is 1.
+    /// The same for any symmetric distribution of unit slopes, from its E[(X − z)⁺] = z Λ(z); G1 is
+    /// 1 from where Λ falls below `unmasked`.
     pub(crate) fn from_excess(excess: impl Fn(f64) -> f64, unmasked: f64) -> Self {
         let mut pieces = Vec::new();
         let mut low = 1.0;
@@ -37,7 +40,7 @@ impl SmithTable {
                 pieces.push(interpolate(|t| smooth(&excess, start + width * 0.5 * (1.0 + t))));
             }
             low *= 2.0;
-            // From here on 1 − G1 = Λ is nothing.
+            // From here on 1 − G1 ≈ Λ is negligible.
             let z = low.sqrt();
             if excess(z) < unmasked * z {
                 break;
@@ -46,7 +49,8 @@ impl SmithTable {
         Self { pieces }
     }
 
-    /// G1 of a direction with cosine `cos` > 0 and σ-stretched horizontal length squared `rho2`; 0 at and below the horizon.
+    /// G1 of a direction with cosine `cos` > 0 and σ-stretched horizontal length squared `rho2`; 0
+    /// at and below the horizon.
     #[inline]
     pub(crate) fn g1(&self, cos: f64, rho2: f64) -> f64 {
         if cos <= 0.0 {
@@ -54,12 +58,12 @@ impl SmithTable {
         }
         let length2 = cos * cos + rho2;
         let cos_unit = cos / length2.sqrt();
-        // Beyond the last piece h is z/2: nothing is masked any more.
+        // Beyond the last piece h is z/2: nothing is masked.
         self.smooth(length2 / rho2).map_or(1.0, |h| cos_unit / (h + 0.5 * cos_unit))
     }
 
-    /// Projected area of the microsurface, ∫ (w·m)⁺ D, for a direction w of any height `cos` in unit space and horizontal length
-    /// squared `rho2`, not both 0; to 1e-13 of its length.
+    /// Projected area of the microsurface, ∫ (w·m)⁺ D, for a direction w of any height `cos` in
+    /// unit space and horizontal length squared `rho2`, not both 0; to 1e-13 of its length.
     #[inline]
     pub(crate) fn area(&self, cos: f64, rho2: f64) -> f64 {
         let length2 = cos * cos + rho2;

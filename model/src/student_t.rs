@@ -10,12 +10,14 @@ use crate::error::ParameterError;
 use crate::shape::Shape;
 use crate::visible::{self, SignedSlope, UnitView, VisibleSlope};
 
-/// Student-t microfacet normals (Ribardière, Bringier, Meneveaux, Simonot 2017, *STD: Student's
-/// t-Distribution of Slopes for Microfacet Based BSDFs*, <https://doi.org/10.1111/cgf.13137>, whose
-/// equations are meant below).
+/// The Student-t distribution of microfacet normals, of roughness σx, σy and shape γ.
 ///
-/// Directions are unit vectors in the tangent frame (macro normal n = +z, x and y along the principal roughness axes);
-/// angles are in radians, slopes dimensionless. γ = 2 is GGX with α = σ, γ = ∞ is Beckmann with α = σ.
+/// Equations are those of Ribardière, Bringier, Meneveaux, Simonot 2017, *STD: Student's
+/// t-Distribution of Slopes for Microfacet Based BSDFs*, <https://doi.org/10.1111/cgf.13137>.
+///
+/// Directions are unit vectors in the tangent frame (macro normal n = +z, x and y along the
+/// principal roughness axes); angles are in radians, slopes dimensionless. γ = 2 is GGX with α = σ,
+/// γ = ∞ is Beckmann with α = σ.
 ///
 /// ```
 /// use glam::DVec3;
@@ -32,7 +34,7 @@ pub struct StudentT {
     shape: Shape,
 }
 
-/// A direction stretched into unit space: its elevation there and the azimuth of the stretched direction.
+/// A direction in unit space: its elevation, and its azimuth as cosine and sine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stretched {
     pub(crate) view: UnitView,
@@ -41,7 +43,7 @@ pub(crate) struct Stretched {
 }
 
 impl StudentT {
-    /// Roughness σ, a number or a pair for x and y, and shape γ.
+    /// A distribution of roughness σ (a number, or a pair for x and y) and shape γ.
     ///
     /// # Errors
     /// [`ParameterError`] unless every σ lies in (0, ∞) and γ > 3/2.
@@ -70,7 +72,8 @@ impl StudentT {
         Self::new(alpha, f64::INFINITY)
     }
 
-    /// Blinn–Phong with exponent N, D = (N+2)/(2π) cosᴺθ: γ = (N+4)/2 and σ = √(2/(N+2)), an identity and not a fit.
+    /// Blinn–Phong with exponent N, D = (N+2)/(2π) cosᴺθ: γ = (N+4)/2 and σ = √(2/(N+2)), an
+    /// identity and not a fit.
     ///
     /// # Errors
     /// [`ParameterError::Exponent`] unless 0 ≤ N < ∞.
@@ -92,12 +95,12 @@ impl StudentT {
         Self::new(sigma_0 / (gamma - 1.0).sqrt(), gamma)
     }
 
-    /// σx.
+    /// Roughness σx along the x axis.
     pub fn sigma_x(&self) -> f64 {
         self.sigma_x
     }
 
-    /// σy.
+    /// Roughness σy along the y axis.
     pub fn sigma_y(&self) -> f64 {
         self.sigma_y
     }
@@ -127,16 +130,18 @@ impl StudentT {
         Stretched { view: UnitView::from_cotangent(w.z / length), cos_phi, sin_phi }
     }
 
-    /// G1(v)/(v·n): one over the projected area of the microsurface towards `v`, finite at grazing where both vanish.
+    /// G1(v)/(v·n), the reciprocal of the microsurface's projected area towards `v`: finite at
+    /// grazing, where both G1(v) and v·n vanish.
     ///
-    /// The density of visible normals is (v·m)⁺ D(m) times this, so it need not be evaluated again for every m.
+    /// The density of visible normals is (v·m)⁺ D(m) times this factor, which is the same for every
+    /// m.
     pub fn inverse_area(&self, v: DVec3) -> f64 {
         let Stretched { view, .. } = self.stretch(v);
         let length = libm::hypot(libm::hypot(self.sigma_x * v.x, self.sigma_y * v.y), v.z);
         1.0 / (VisibleSlope::new(&self.shape, view).area() * length)
     }
 
-    /// The frame of a view: its elevation in unit space, and the cosine and sine of the azimuth of the stretched direction.
+    /// The elevation of `v` in unit space, and the cosine and sine of its azimuth there.
     pub fn unit_view(&self, v: DVec3) -> (UnitView, [f64; 2]) {
         let Stretched { view, cos_phi, sin_phi } = self.stretch(v);
         (view, [cos_phi, sin_phi])
@@ -155,7 +160,8 @@ impl StudentT {
 }
 
 impl MicrofacetDistribution for StudentT {
-    /// Eq. 18 with 11. For γ < 2 it grows without bound towards the horizon, as cos^(2γ−4).
+    /// D(m) by eq. 18 with 11. For γ < 2 it grows towards the horizon without bound, as cos^(2γ−4)
+    /// θ.
     fn d(&self, m: DVec3) -> f64 {
         if !(m.z > 0.0) {
             return 0.0;
@@ -165,7 +171,7 @@ impl MicrofacetDistribution for StudentT {
         self.shape.d_in_unit_space(r2, z2) / (self.sigma_x * self.sigma_y)
     }
 
-    /// Eq. 13–15 in a well-conditioned form.
+    /// Smith's Λ: eq. 13–15 in a well-conditioned form.
     fn lambda(&self, v: DVec3) -> f64 {
         if !(v.z > 0.0) {
             return f64::INFINITY;
@@ -183,7 +189,7 @@ impl MicrofacetDistribution for StudentT {
 
     fn visible_normal_pdf(&self, v: DVec3, m: DVec3) -> f64 {
         let facing = v.dot(m);
-        // Decided first, for D may be infinite on the horizon.
+        // Tested first because D may be infinite on the horizon.
         if !(v.z > 0.0 && facing > 0.0) {
             return 0.0;
         }

@@ -1,4 +1,5 @@
-//! Directional albedo of transmission through a rough dielectric, by deterministic quadrature over slopes.
+//! Directional albedo of transmission through a rough dielectric, by deterministic quadrature over
+//! slopes.
 //!
 //! As for reflection, polar coordinates r, φ of the unit slopes about m = n:
 //!
@@ -6,10 +7,12 @@
 //! T = 1/(cos θ + ρ e(z)) ∫dφ ∫ r dr P22(r) (cos θ − r b(φ)) (1 − F(v·m)) S(l)
 //! ```
 //!
-//! with l the refracted direction. Entering the denser side (η > 1) every m that faces the view sends l below the surface, and the
-//! domain is the half-plane of visible slopes. Leaving it (η < 1) the slopes of total reflection are left out, v·m < √(1−η²), beyond a conic
-//! where 1 − F is singular like a square root, and those whose l would come out above the surface: with p the slopes,
-//! those outside the circle |p + v_xy/cos θ| = η/cos θ on the side towards the view, along which l grazes.
+//! with l the refracted direction. Entering the denser side (η > 1), every m that faces the view
+//! sends l below the surface, and the domain is the half-plane of visible slopes. Leaving it
+//! (η < 1), two sets of slopes are left out: those of total reflection, v·m < √(1−η²), beyond a
+//! conic where 1 − F is singular like a square root; and those whose l would come out above the
+//! surface, which with p the slope lie outside the circle |p + v_xy/cos θ| = η/cos θ on the side
+//! towards the view. Along that circle l grazes.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -36,11 +39,16 @@ struct Pane<'a> {
 }
 
 impl AlbedoIntegrator {
-    /// Share of the light from a direction of cosine cos θ ∈ [0, 1] that one refraction at the rough interface sends on below it, for
-    /// equal roughness σ ≥ 0 along both axes. The density of l is that of Walter et al. 2007, eq. 21, with radiance scaled to energy; masking and
-    /// shadowing are those of |l·n|, for the correlated form 1/(1 + Λ(v) + Λ(l)) as for reflection.
+    /// Albedo of transmission: the share of the light from a direction at cos θ ∈ [0, 1] that one
+    /// refraction at the rough interface sends on below it, for roughness σ ≥ 0 along both axes.
     ///
-    /// With the reflection it adds up to less than one: the rest is shadowed. σ = 0 is a pane, cos θ = 0 the limit of grazing views.
+    /// The density of l is that of Walter et al. 2007
+    /// (<https://doi.org/10.2312/EGWR/EGSR07/195-206>), eq. 21, with radiance scaled to energy.
+    /// Masking and shadowing are those of |l·n|; the height-correlated form is 1/(1 + Λ(v) + Λ(l)),
+    /// as for reflection.
+    ///
+    /// Reflection and transmission add up to less than one: the rest is shadowed. σ = 0 is a smooth
+    /// interface, cos θ = 0 the limit of grazing views.
     ///
     /// # Errors
     /// [`ParameterError`] unless 0 ≤ σ < ∞ and cos θ ∈ [0, 1].
@@ -89,11 +97,13 @@ impl Pane<'_> {
         sum.map(|x| [2.0 * x * self.scale / PI])
     }
 
-    /// Half a turn of φ from the azimuth of the view, where slopes lean away from it, with what is quick at the ends.
+    /// The intervals of φ over half a turn, from the azimuth where slopes lean away from the view,
+    /// with the scales of variation at their ends.
     fn sectors(&self) -> Vec<(End, End)> {
         let turn = self.cos / (self.sin * self.sigma.max(1.0));
         let right = End { at: FRAC_PI_2, scale: turn.max(1e-9) };
-        // Λ(l) has a branch point at l = −n, straight away from the view or towards it.
+        // Λ(l) has a branch point at l = −n, whose m leans straight away from the view or towards
+        // it.
         let axis = |at: f64, sign: f64| {
             let here = self.branch().is_some_and(|r| r * sign > 0.0);
             End { at, scale: if here { 0.05 } else { f64::INFINITY } }
@@ -103,12 +113,14 @@ impl Pane<'_> {
             return vec![(away, right), (right, towards)];
         }
         let conic = self.model.conic_sectors(self.cos, self.sin, self.critical, right, towards);
-        // Rays cut the conic and the circle on one side of their common tangent, and neither on the other, where all light is reflected.
+        // On one side of their common tangent rays cut the conic and the circle; on the other they
+        // cut neither, and all light is reflected.
         if self.cos < self.critical { conic } else { [vec![(away, conic[0].0)], conic].concat() }
     }
 
-    /// The unit slope of the m that refracts v to −n, positive where it leans away from the view; only if the branch point of Λ(l) is strong
-    /// enough to need panels of its own.
+    /// The unit slope of the m that refracts v to −n, positive where it leans away from the view;
+    /// `None` without such an m, or if the branch point of Λ(l) is too weak to need panels of its
+    /// own.
     fn branch(&self) -> Option<f64> {
         let strong = self.model.shape().gamma() < 3.5 || self.sigma > 0.7;
         // m = ±(v − ηn), below the surface or turned away for the views in between.
@@ -122,7 +134,7 @@ impl Pane<'_> {
         let a = self.sigma * self.sigma;
         let b = self.sigma * self.sin * libm::cos(phi);
         let s = self.model.shape().s();
-        // From where m turns its back, if anywhere.
+        // The slope from which on m faces away from the view; ∞ if there is none.
         let rim =
             if b > 0.0 { self.model.shape().asinh_slope(self.cos / b) } else { f64::INFINITY };
         let scale = if rim < self.model.cut && self.eta > 1.0 {
@@ -149,7 +161,8 @@ impl Pane<'_> {
         }
         let mut sum = [0.0; 2];
         for stop in stops.into_iter().chain([end]) {
-            // Nothing comes through where one point inside says so: the stops are where that changes.
+            // One point tells whether light passes in the whole interval: this changes only at the
+            // stops.
             let middle = self.model.measure(0.5 * (from.at + stop.at)).0;
             if self.refracted(a, b, middle).is_some() {
                 rule.graded(from, stop, PANEL, |w, jacobian| {
@@ -165,7 +178,8 @@ impl Pane<'_> {
         sum
     }
 
-    /// (cos θ − r b) (1 − F) S at the unit slope r of a ray; `None` where nothing is refracted downwards.
+    /// (cos θ − r b) (1 − F) S at the unit slope r of a ray; `None` where nothing is refracted
+    /// downwards.
     fn refracted(&self, a: f64, b: f64, r: f64) -> Option<[f64; 2]> {
         let facing = self.cos - r * b;
         if facing <= 0.0 {
@@ -189,7 +203,7 @@ impl Pane<'_> {
         Some(Masking::ALL.map(|masking| mass * masking.g2_over_g1(self.g1, g1)))
     }
 
-    /// Where a ray enters or leaves the domain, ascending, in the unit of w.
+    /// Where a ray enters or leaves the domain, in w, ascending.
     fn stops(&self, a: f64, b: f64, s: f64, last: f64) -> Vec<End> {
         if self.critical == 0.0 {
             return Vec::new();
@@ -198,7 +212,8 @@ impl Pane<'_> {
         let outside = (self.sin - self.eta) * (self.sin + self.eta);
         let root = b * b - a * outside;
         if b < 0.0 && outside > 0.0 && root >= 0.0 && self.cos > 0.0 {
-            // The nearer of the ray's meetings with the circle; there l grazes, and masking sets in within σ of it.
+            // The nearer of the ray's intersections with the circle; there l grazes, and masking
+            // sets in within σ of it.
             let r = outside / (self.cos * (root.sqrt() - b));
             let w = self.model.shape().asinh_slope(r);
             let depth = |r: f64| {

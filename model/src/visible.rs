@@ -1,16 +1,18 @@
-//! Visible normals in unit space: two independent one-dimensional distributions, their CDFs and inverses.
+//! Visible normals in unit space: two independent one-dimensional distributions, their CDFs and
+//! inverses.
 //!
-//! In the space where slopes are divided by σ, a view at unit angle θ sees the in-plane slope x (positive towards the
-//! viewer) with density ∝ (cos θ + x sin θ) p(x) on x > −cot θ, and the slope across the plane as
-//! y = √(1 + s x²)·t with t ∝ (1 + s t²)^(−γ), independent of the view and of x. This is the separation into α and β of
-//! the canonical lobe, tan α = √s x and tan β = √s t, written so that it survives s → 0.
+//! In unit space a view at polar angle θ sees the in-plane slope x (positive towards the viewer)
+//! with density ∝ (cos θ + x sin θ) p(x) on x > −cot θ, and the slope across y = √(1 + s x²)·t with
+//! t of density ∝ (1 + s t²)^(−γ), independent of the view and of x. These are the angles α and β
+//! of the canonical lobe, tan α = √s x and tan β = √s t, in a form that has the limit s → 0.
 
 use glam::DVec3;
 
 use crate::quadrature;
 use crate::shape::{AsinhSlope, Shape};
 
-/// The elevation of a view in unit space, as a unit vector (sin θ, cos θ) in the plane of incidence.
+/// The elevation of a view in unit space, as a unit vector (sin θ, cos θ) in the plane of
+/// incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitView {
     /// sin θ ∈ [0, 1].
@@ -25,7 +27,7 @@ impl UnitView {
         if z.is_infinite() {
             return Self { sin: 0.0, cos: 1.0 };
         }
-        // z² would overflow above 1e154; scaling by the larger leg keeps every case.
+        // z² would overflow above 1e154; dividing by the larger of z and 1 avoids that.
         if z > 1.0 {
             let r = 1.0 / z;
             let cos = 1.0 / (1.0 + r * r).sqrt();
@@ -36,7 +38,7 @@ impl UnitView {
         }
     }
 
-    /// z = cot θ ∈ [0, ∞].
+    /// The unit cotangent z = cot θ ∈ [0, ∞].
     pub fn cotangent(&self) -> f64 {
         if self.sin == 0.0 { f64::INFINITY } else { self.cos / self.sin }
     }
@@ -75,12 +77,13 @@ impl<'a> VisibleSlope<'a> {
         Self { shape, view, towards: (view.cos, view.sin), w_silhouette, excess, area }
     }
 
-    /// The same without its *heavy part*, the term x sin θ p(x) on x > 0, whose mass is sin θ·M₀ and whose
-    /// inverse is closed-form.
+    /// The same distribution *peeled*: without its *heavy part*, the term x sin θ p(x) on x > 0,
+    /// whose mass is sin θ·M₀ and whose inverse is closed-form.
     ///
-    /// Near γ = 3/2 the heavy part takes all but a sliver of the probability into slopes beyond any table, with a boundary layer at
-    /// normal incidence where it fades; what is left is regular there. At grazing it vanishes, and the limit is returned: the
-    /// NDF's own slopes towards the viewer.
+    /// Near γ = 3/2 the heavy part takes all but a sliver of the probability into slopes beyond any
+    /// table, with a boundary layer at normal incidence where it fades; what is left is regular
+    /// there. At grazing nothing is left, and the limit is returned: the NDF's own slopes towards
+    /// the viewer.
     pub fn peeled(shape: &'a Shape, view: UnitView) -> Self {
         let mut rest = Self::new(shape, view);
         rest.towards = (if view.cos > 0.0 { view.cos } else { 1.0 }, 0.0);
@@ -88,7 +91,8 @@ impl<'a> VisibleSlope<'a> {
         rest
     }
 
-    /// Projected area of the microsurface per unit of projected macrosurface scale: cos θ (1 + Λ) in unit space.
+    /// Projected area of the microsurface in unit space, cos θ (1 + Λ); if peeled, the part that is
+    /// left.
     pub fn area(&self) -> f64 {
         self.area
     }
@@ -116,13 +120,15 @@ impl<'a> VisibleSlope<'a> {
         closed.max(0.0)
     }
 
-    /// Near the silhouette the closed form subtracts nearly equal areas, while the integrand is positive and, over a gap
-    /// of a fraction of its own scale, a polynomial to all digits.
+    /// `lower` by quadrature near the silhouette, where the closed form subtracts nearly equal
+    /// areas. The integrand is positive and, over a gap of a fraction of its own scale, a
+    /// polynomial to all digits.
     fn lower_by_quadrature(&self, w: AsinhSlope, gap: f64) -> f64 {
         quadrature::panel(w, w + gap, |w| self.facing(w) * self.shape.density(w))
     }
 
-    /// cos θ − q sin θ for a slope −q between the silhouette and 0, without cancellation near the silhouette.
+    /// cos θ − q sin θ for a slope −q between the silhouette and 0, without cancellation near the
+    /// silhouette.
     fn facing(&self, w: AsinhSlope) -> f64 {
         if self.shape.is_beckmann() {
             return self.view.sin * (self.w_silhouette - w);
@@ -133,7 +139,7 @@ impl<'a> VisibleSlope<'a> {
         self.view.sin / root * 2.0 * libm::cosh(0.5 * (a + b)) * libm::sinh(0.5 * (a - b))
     }
 
-    /// CDF of the in-plane slope: the probability of slopes below (further from the viewer than) `x`.
+    /// CDF of the in-plane slope: the probability of slopes less than `x`, further from the viewer.
     pub fn cdf(&self, x: SignedSlope) -> f64 {
         let share = if x.sign < 0.0 { self.lower(x.w) } else { self.area - self.upper(x.w) };
         (share / self.area).clamp(0.0, 1.0)
@@ -145,7 +151,7 @@ impl<'a> VisibleSlope<'a> {
         (share / self.area).clamp(0.0, 1.0)
     }
 
-    /// Density of the CDF with respect to w at a slope of either sign.
+    /// Density of the in-plane slope with respect to w, at a slope of either sign.
     pub fn density(&self, x: SignedSlope) -> f64 {
         let facing = if x.sign < 0.0 {
             if x.w >= self.w_silhouette { 0.0 } else { self.facing_density(x.w) }
@@ -158,8 +164,9 @@ impl<'a> VisibleSlope<'a> {
 
     /// Inverse CDF: the slope below which the share u ∈ [0, 1] of the visible normals lies.
     ///
-    /// u = 0 gives the silhouette, u = 1 an infinite slope (the horizon on the viewer's side). Solved by safeguarded Newton
-    /// steps on the logarithm of the smaller side; the angle is right to about 1e-15.
+    /// u = 0 gives the silhouette, u = 1 an infinite slope (the horizon on the viewer's side).
+    /// Solved by safeguarded Newton steps on the logarithm of the smaller tail; the angle is right
+    /// to about 1e-15.
     pub fn quantile(&self, u: f64) -> SignedSlope {
         let above_zero = self.upper(0.0);
         let below_zero = self.area - above_zero;
@@ -192,7 +199,8 @@ impl<'a> VisibleSlope<'a> {
     }
 }
 
-/// The unnormalised normal in unit space of the in-plane slope x and the slope across t = y/√(1 + s x²); no slope is ever formed.
+/// The unnormalised normal in unit space from the in-plane slope x and the slope across
+/// t = y/√(1 + s x²); it forms no slope, which might overflow.
 pub(crate) fn unit_normal(shape: &Shape, x: SignedSlope, t: SignedSlope) -> DVec3 {
     let (sin_x, cos_x) = shape.unit_sin_cos(x.w);
     let (sin_t, cos_t) = shape.unit_sin_cos(t.w);
@@ -201,11 +209,12 @@ pub(crate) fn unit_normal(shape: &Shape, x: SignedSlope, t: SignedSlope) -> DVec
     // (x : y : z) in homogeneous form, y = √(z² + s x²)·t, everything times cos_t.
     let y = (z * z + shape.s() * x * x).sqrt() * t.sign * sin_t;
     let m = DVec3::new(x * cos_t, y, z * cos_t);
-    // Beckmann's slopes are independent, so that two infinite ones leave their ratio open.
+    // Beckmann's slopes are independent, so that two infinite ones have no definite ratio.
     if m == DVec3::ZERO { DVec3::new(side, t.sign, 0.0) } else { m }
 }
 
-/// Inverse CDF of the slope across the plane (in units of √(1 + s x²)): odd about u = ½, ±∞ at u = 0 and 1.
+/// Inverse CDF of the slope across, in units of √(1 + s x²), for u ∈ [0, 1]: odd about u = ½, ±∞ at
+/// u = 1 and 0.
 pub fn across_quantile(shape: &Shape, u: f64) -> SignedSlope {
     let (target, sign) = if u < 0.5 { (u, -1.0) } else { (1.0 - u, 1.0) };
     let w = if target <= 0.0 {
@@ -218,16 +227,17 @@ pub fn across_quantile(shape: &Shape, u: f64) -> SignedSlope {
     SignedSlope { w, sign }
 }
 
-/// CDF of the slope across the plane.
+/// CDF of the slope across, in units of √(1 + s x²).
 pub fn across_cdf(shape: &Shape, t: SignedSlope) -> f64 {
     let tail = shape.across_tail(t.w);
     if t.sign < 0.0 { tail } else { 1.0 - tail }
 }
 
-/// Solves f(w) = target for a decreasing f on [lo, hi], where `f` gives the value and minus the derivative.
+/// Solves f(w) = target for a decreasing f on [lo, hi], where `f` gives the value and minus the
+/// derivative.
 ///
-/// Newton on ln f, which is nearly linear in the tails, inside a bracket that is bisected whenever a step leaves it; an
-/// infinite upper end is first replaced by doubling.
+/// Newton on ln f, which is nearly linear in the tails, inside a bracket that is bisected whenever
+/// a step leaves it; an infinite upper end is first replaced by doubling.
 pub(crate) fn solve_decreasing(
     target: f64,
     mut lo: f64,

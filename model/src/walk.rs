@@ -1,8 +1,10 @@
-//! The random walk of light on the Smith microsurface: multiple scattering without a table, as a reference.
+//! The random walk of light on the Smith microsurface: multiple scattering without a table, as a
+//! reference.
 //!
-//! Heitz, Hanika, d'Eon & Dachsbacher 2016, *Multiple-scattering microfacet BSDFs with the Smith model*, with F = 1. A ray at height h
-//! goes on by Smith's Λ until it meets the surface or leaves, and is reflected there off a normal visible from where it came. Heights
-//! enter only as C = P(height below h), so that their distribution need not be chosen (eq. 14–16 there).
+//! A ray at height h travels by Smith's Λ until it leaves or meets the surface, where it is
+//! reflected off a normal visible from where it came. Heights enter only as C = P(height below h),
+//! so that their distribution need not be chosen (Heitz, Hanika, d'Eon & Dachsbacher 2016,
+//! eq. 14–16).
 
 use glam::DVec3;
 
@@ -10,11 +12,14 @@ use crate::distribution::MicrofacetDistribution;
 use crate::student_t::StudentT;
 
 impl StudentT {
-    /// Follows light back from a view above the horizon: the direction in which it leaves and the number of bounces, or `None` if it has not
-    /// left after `limit` bounces. Uniform numbers in [0, 1) are taken from `uniform`.
+    /// Follows light back from a view above the horizon by a random walk: the direction in which it
+    /// leaves and the number of bounces, or `None` if it has not left after `limit` bounces.
+    /// `uniform` gives uniform numbers in [0, 1).
     ///
-    /// Its distribution is the whole BRDF with F = 1, cosine included: the share that leaves after one bounce is the height-correlated
-    /// albedo E(v), and all of it leaves.
+    /// Heitz, Hanika, d'Eon & Dachsbacher 2016, *Multiple-scattering microfacet BSDFs with the
+    /// Smith model*, <https://doi.org/10.1145/2897824.2925943>, with F = 1. The directions are
+    /// distributed as the multiple-scattering BRDF times the cosine: the share that leaves after
+    /// one bounce is the height-correlated albedo E(v), and all light leaves.
     pub fn walk(
         &self,
         v: DVec3,
@@ -22,7 +27,7 @@ impl StudentT {
         uniform: &mut impl FnMut() -> f64,
     ) -> Option<(DVec3, usize)> {
         let mut w = -v;
-        // The ray starts above everything.
+        // The ray starts above the whole surface.
         let mut below = 1.0;
         for bounce in 0..=limit {
             let u = 1.0 - uniform();

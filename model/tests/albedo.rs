@@ -80,7 +80,8 @@ fn averages_match_the_reference() {
     }
 }
 
-/// E by brute force: f cos θ_l with F = 1 over the hemisphere of l, in solid angle, by the midpoint rule.
+/// E by brute force: f cos θ_l with F = 1 over the hemisphere of l, in solid angle, by the midpoint
+/// rule.
 fn brute_force(material: &StudentT, v: DVec3, masking: Masking) -> f64 {
     let (rings, sectors) = (800, 800);
     let mut sum = 0.0;
@@ -123,7 +124,7 @@ fn albedo_is_the_integral_over_light_directions() {
 fn equal_roughness_takes_no_notice_of_azimuth() {
     let integrator = AlbedoIntegrator::new(Shape::new(1.7).unwrap(), 1e-8);
     let plain = integrator.reflection(0.4, 0.3, schlick).unwrap();
-    // Nearly equal roughness takes the anisotropic path round the whole circle.
+    // Nearly equal roughnesses take the anisotropic path round the whole circle.
     let near = integrator.reflection_anisotropic([0.4, 0.4 + 1e-12], 0.3, 2.0, schlick).unwrap();
     for i in 0..2 {
         assert!((plain.uncorrelated[i] - near.uncorrelated[i]).abs() < 1e-8);
@@ -166,7 +167,8 @@ fn grazing_and_smooth_limits() {
     for gamma in [1.501, 2.0, f64::INFINITY] {
         let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);
         let grazing = integrator.reflection(0.5, 0.0, |_| [1.0]).unwrap();
-        // Nothing is masked at grazing incidence once the view's own masking is divided out, if heights are correlated.
+        // At grazing incidence height-correlated masking masks nothing once the view's own masking
+        // is divided out.
         assert!((grazing.height_correlated[0] - 1.0).abs() < 1e-6, "gamma {gamma}: {grazing:?}");
         assert!(grazing.uncorrelated[0] < 0.99);
         let mirror = integrator.reflection(0.0, 0.3, schlick).unwrap();
@@ -191,7 +193,8 @@ fn refuses_what_is_outside_the_domain() {
     }
 }
 
-/// Total reflection sets in with a square root, which quadrature must be told of: then its order changes nothing.
+/// Total reflection sets in with a square root: quadrature that is told of it no longer depends on
+/// its order.
 #[test]
 fn leaving_a_dielectric_converges() {
     let inside = Dielectric::new(1.0 / 1.5).unwrap();
@@ -211,7 +214,8 @@ fn leaving_a_dielectric_converges() {
                     off <= a.error + b.error && off < 1e-5,
                     "gamma {gamma}, sigma {sigma}, cos {cos}: {off}"
                 );
-                // What knows nothing of the kink agrees as far as it goes, which its estimate overstates.
+                // Quadrature that is not told of the kink agrees less closely than its error
+                // estimate claims.
                 let blind = fine.reflection(sigma, cos, |c| [inside.reflectance(c)]).unwrap();
                 let off = (blind.height_correlated[0] - b.height_correlated[0]).abs();
                 assert!(off < 1e-3, "gamma {gamma}, sigma {sigma}, cos {cos}: {off}");

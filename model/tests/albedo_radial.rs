@@ -1,4 +1,4 @@
-//! Directional albedos of generic isotropic distributions against the family's, brute force and bounds.
+//! Directional albedos of isotropic distributions against the family's, brute force and bounds.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -15,7 +15,7 @@ fn schlick(cos: f64) -> [f64; 2] {
     [1.0 - schlick_weight(cos), schlick_weight(cos)]
 }
 
-/// A distribution as a measurement would give it, with a bump of its own.
+/// A distribution as a measurement would give it, with an added bump.
 fn measured(rows: u32) -> Tabulated {
     let source = Gtr::new(0.25, 1.5).unwrap();
     let rows: Vec<_> = (0..=rows)
@@ -56,7 +56,8 @@ fn members_have_the_family_s_albedo() {
     }
 }
 
-/// E by brute force: f cos θ_l with F = 1 over the hemisphere of l, in solid angle, by the midpoint rule.
+/// E by brute force: f cos θ_l with F = 1 over the hemisphere of l, in solid angle, by the midpoint
+/// rule.
 fn brute_force(d: &dyn Isotropic, marginal: &Marginal, cos_v: f64) -> [f64; 2] {
     let (rings, sectors) = (1000, 500);
     let sin_v = (1.0 - cos_v * cos_v).sqrt();

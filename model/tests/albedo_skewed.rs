@@ -1,6 +1,7 @@
-//! Directional albedos of skewed lobes against plain ones, brute force, sampling and identities.
+//! Directional albedos of skewed lobes against untilted ones, brute force, sampling and identities.
 //!
-//! `cargo test --release -p microfacet-model --test albedo_skewed -- --ignored --nocapture` prints the documented accuracy.
+//! `cargo test --release -p microfacet-model --test albedo_skewed -- --ignored --nocapture` prints
+//! the documented accuracy.
 
 use core::f64::consts::PI;
 
@@ -58,7 +59,8 @@ fn without_a_tilt_it_is_the_anisotropic_albedo() {
     }
 }
 
-/// E by brute force: f cos θ_l with F = 1 over the hemisphere of l, in solid angle, by the midpoint rule.
+/// E by brute force: f cos θ_l with F = 1 over the hemisphere of l, in solid angle, by the midpoint
+/// rule.
 fn brute_force(ellipsoid: &Ellipsoid, v: DVec3, weight: impl Fn(f64) -> f64) -> [f64; 2] {
     let (rings, sectors) = (500, 500);
     let mut sum = [0.0; 2];
@@ -111,7 +113,7 @@ fn it_is_the_mean_weight_of_sampled_reflections() {
         let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);
         for (p, r, mean, cos, phi) in [
             (0.3, 0.3, [1.0, 0.0], 0.7, 0.4),
-            // From below the lobe's own horizon.
+            // A view below the lobe's own horizon.
             (0.2, 0.1, [2.0, -1.5], 0.1, 2.8),
             (2.5, 1.0, [-1.0, 2.0], 0.3, 1.0),
         ] {
@@ -119,7 +121,8 @@ fn it_is_the_mean_weight_of_sampled_reflections() {
             let area = ellipsoid.projected_area(v);
             let mut sum = [0.0; 2];
             for i in 0..POINTS {
-                // The lattice of the plastic number: steps of its inverse and its inverse square.
+                // The lattice of the plastic number: steps of its inverse and of its inverse
+                // square.
                 let i = i as f64 + 0.5;
                 let u = [(i * 0.754877666246692760) % 1.0, (i * 0.569840290998053266) % 1.0];
                 let m = ellipsoid.sample_visible_normal(v, u);
@@ -171,7 +174,7 @@ fn the_domain_has_an_estimate_that_holds() {
 
 #[test]
 fn what_cannot_be_seen_has_no_albedo() {
-    // At grazing the lobe leans away by forty of its widths: its area underflows.
+    // At grazing the lobe leans away by forty of its widths: the projected area underflows.
     let ellipsoid = skewed(f64::INFINITY, 0.05, 0.05, [40.0, 0.0]);
     let integrator = AlbedoIntegrator::new(*ellipsoid.shape(), 1e-6);
     for cos in [0.0, 1e-3] {

@@ -16,12 +16,12 @@ use rand::{RngExt, SeedableRng};
 
 const GAMMAS: [f64; 7] = [1.55, 1.8, 2.0, 2.5, 3.0, 20.0, f64::INFINITY];
 
-/// ∫ f(m) dm over the upper hemisphere by Gauss–Legendre-free midpoints in (r, ψ) of unit slopes, r = w/(1−w).
+/// ∫ f(m) dm over the upper hemisphere by the midpoint rule in (r, ψ) of unit slopes, r = w/(1−w).
 fn over_hemisphere(material: &StudentT, f: impl Fn(DVec3) -> f64) -> f64 {
     let (radial, angular) = (4000, 64);
     let mut sum = 0.0;
     for i in 0..radial {
-        // w⁴ in the complement carries the heavy tails.
+        // 1 − w = t⁴ resolves the heavy tails.
         let t = (f64::from(i) + 0.5) / f64::from(radial);
         let rest = t * t * t * t;
         let r = (1.0 - rest) / rest;
@@ -54,7 +54,7 @@ fn d_is_normalised_and_p22_is_its_density_of_slopes() {
 
 #[test]
 fn g1_is_its_defining_integral() {
-    // cos θ_v = G1 ∫ (v·m)⁺ D dm; a heavy tail beyond the grid is why γ starts at 2 here.
+    // cos θ_v = G1 ∫ (v·m)⁺ D dm; γ starts at 2 because heavier tails extend beyond the grid.
     for gamma in [2.0, 2.5, 3.0, 20.0, f64::INFINITY] {
         let material = StudentT::new([0.4, 0.9], gamma).unwrap();
         for theta in [0.3_f64, 1.0, 1.4] {
@@ -119,7 +119,7 @@ fn quantiles_invert_their_cdfs() {
     }
 }
 
-/// The three ways to draw normals: the exact sampler, the inverse CDFs, and (for its own density) the NDF.
+/// Three samplers: by rejection, by inverse CDFs, and (for its own density) that of the NDF.
 #[test]
 fn samplers_draw_the_visible_normals() {
     for gamma in GAMMAS {
@@ -137,7 +137,7 @@ fn samplers_draw_the_visible_normals() {
             let judgement = test_visible_normals(&material, v, 20_000, 5, inverse);
             assert!(judgement.p() > 1e-4, "inverse, gamma {gamma}, theta {theta}: {judgement:?}");
         }
-        // Straight from above, visible normals are the NDF weighted by m·n: what sample_ndf draws.
+        // At normal incidence visible normals are the NDF weighted by m·n, which sample_ndf draws.
         let draw = |u: [f32; 2]| -> Vec3 { material.sample_ndf(u.map(f64::from)).as_vec3() };
         let judgement = test_visible_normals(&material, DVec3::Z, 100_000, 5, draw);
         assert!(judgement.p() > 1e-4, "ndf, gamma {gamma}: {judgement:?}");

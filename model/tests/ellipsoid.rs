@@ -1,6 +1,8 @@
-//! The Ellipsoid against its printed formulas, against quadrature, and every sampler against the same chi-square.
+//! The Ellipsoid against its printed formulas and quadrature, and every sampler against the same
+//! chi-square.
 //!
-//! `cargo test --release -p microfacet-model --test ellipsoid -- --ignored --nocapture` runs the large counts and prints the figures.
+//! `cargo test --release -p microfacet-model --test ellipsoid -- --ignored --nocapture` runs the
+//! large counts and prints the figures.
 
 // Bits may differ between systems here: nothing is baked from it.
 #![allow(clippy::disallowed_methods)]
@@ -29,7 +31,8 @@ fn random(rng: &mut StdRng, gamma: f64) -> Ellipsoid {
     }
 }
 
-/// γ = 2 for even numbers, else s = 1/(γ−1) uniform up to γ = 1.6, so that Beckmann-like and heavy tails are both met.
+/// γ = 2 for even i, else s = 1/(γ−1) uniform in [0, 1.66), γ > 1.6, so that both Beckmann-like and
+/// heavy tails occur.
 fn gamma_of(rng: &mut StdRng, i: usize) -> f64 {
     if i.is_multiple_of(2) { 2.0 } else { 1.0 + 1.0 / rng.random_range(0.0..1.66_f64) }
 }
@@ -40,7 +43,8 @@ fn above(rng: &mut StdRng) -> DVec3 {
     DVec3::new(r * phi.cos(), r * phi.sin(), z)
 }
 
-/// Nodes and weights of double-exponential quadrature: from a to b, or from a to ±∞ in the direction of b when b is infinite.
+/// Nodes and weights of double-exponential quadrature: from a to b, or from a to ±∞ in the
+/// direction of b when b is infinite.
 fn nodes(a: f64, b: f64) -> Vec<(f64, f64)> {
     let h = 0.08;
     let at = |i: i32| {
@@ -62,9 +66,11 @@ fn nodes(a: f64, b: f64) -> Vec<(f64, f64)> {
     (-60..=60).map(at).filter(|(x, w)| x.abs() < 1e60 && *w > 0.0).collect()
 }
 
-/// ∫ g(m) D(m) dm over the hemisphere by double-exponential quadrature in slopes, for a g that vanishes below the slope `from`.
+/// ∫ g(m) D(m) dm over the hemisphere by double-exponential quadrature in slopes, for a g that
+/// vanishes up to the slope `from`.
 ///
-/// Only D itself is used; the frame of the slopes is a change of variables whose Jacobian is a determinant.
+/// Only D itself is used; the frame of the slopes is a change of variables whose Jacobian is a
+/// determinant.
 fn integrate(e: &Ellipsoid, frame: &DMat3, from: f64, g: impl Fn(DVec3) -> f64) -> f64 {
     let normals = frame.transpose();
     let jacobian = frame.determinant().abs();
@@ -209,7 +215,8 @@ fn the_clamp_is_needed() {
     assert!(ratios.iter().any(|r| *r > 1.2) && ratios.iter().any(|r| *r < 0.9), "{ratios:?}");
 }
 
-/// Pearson's p-value of draws binned on a 16 × 16 grid by the random numbers that `invert` finds, where every bin expects the same.
+/// Pearson's p-value of draws binned on a 16 × 16 grid by the random numbers that `invert` finds:
+/// every bin expects the same count.
 fn p_value(
     draws: usize,
     mut draw: impl FnMut() -> DVec3,
@@ -225,8 +232,9 @@ fn p_value(
     chi_square(&counts, &[draws as f64 / (BINS * BINS) as f64; BINS * BINS]).p
 }
 
-/// The four ways of drawing at γ = 2 and the smallest p-value over `count` ellipsoids; every fourth view is below the lobe's
-/// horizon. The first two and the map are judged by the lune's inverse, the lune by that of the map.
+/// Smallest p-value of each of the four samplers at γ = 2 over `count` ellipsoids; every fourth
+/// view is below the lobe's horizon. The inverse of the lune bins the first two and the map; the
+/// inverse of the map bins the lune.
 fn smallest_p(count: usize, draws: usize) -> [f64; 4] {
     let mut rng = StdRng::seed_from_u64(23);
     let mut smallest = [1.0_f64; 4];
@@ -277,7 +285,8 @@ fn all_samplers_pass_chi_square_200() {
 
 #[test]
 fn visible_normals_match_their_density() {
-    // Counts in cells of the world hemisphere against the integral of the density there, with no use of the CDFs.
+    // Counts in cells of the hemisphere against the integral of the density there, with no use of
+    // the CDFs.
     let mut rng = StdRng::seed_from_u64(31);
     for gamma in [1.8, 2.0, 6.0, f64::INFINITY] {
         let e = Ellipsoid::new(Skew::new([0.6, 0.3], [0.25, -0.2, 0.7]).unwrap(), gamma).unwrap();

@@ -1,4 +1,5 @@
-//! Laws that the model obeys for every roughness, shape and direction; edge values are generated as often as ordinary ones.
+//! Laws that the model obeys for every roughness, shape and direction; edge values are generated as
+//! often as ordinary ones.
 
 #![allow(
     clippy::disallowed_methods,
@@ -65,8 +66,8 @@ fn close(a: f64, b: f64, relative: f64) -> bool {
     a == b || (a - b).abs() <= relative * a.abs().max(b.abs()) + 1e-290
 }
 
-/// How far behind the silhouette rounding may put a normal: a slope z is held as a rapidity asinh(√s z), an ulp of which is
-/// so many of z.
+/// How far behind the silhouette rounding may put a normal: a slope z is held as a rapidity
+/// asinh(√s z), whose rounding is a relative error of this size in z.
 fn hidden(t: &StudentT, v: DVec3) -> f64 {
     let (view, _) = t.unit_view(v);
     1e-15 + f64::EPSILON * (t.shape().s().sqrt() * view.cos / view.sin).asinh()
@@ -83,7 +84,8 @@ proptest! {
         let [separate, joint] = [Masking::Uncorrelated, Masking::HeightCorrelated].map(|masking| t.g2(v, l, masking));
         prop_assert_eq!(separate, t.g2(l, v, Masking::Uncorrelated));
         prop_assert!(close(joint, t.g2(l, v, Masking::HeightCorrelated), 1e-15));
-        // What hides from one direction tends to hide from the other: correlation only helps, up to the worse of the two.
+        // A facet hidden from one direction tends to be hidden from the other: correlation raises
+        // G2, at most to the smaller G1.
         prop_assert!(0.0 <= separate && separate <= joint * (1.0 + 1e-14));
         prop_assert!(joint <= t.g1(v).min(t.g1(l)) * (1.0 + 1e-14) && joint <= 1.0);
     }
@@ -100,7 +102,7 @@ proptest! {
         let density = t.p22(a, b);
         let tolerance = 1e-13 * (10.0 + density.max(1e-300).ln().abs());
         prop_assert!(close(wide.p22(a * scale, b * scale) * scale * scale, density, tolerance) || density < 1e-250);
-        // A view whose tangent is as much larger sees the same share.
+        // A view whose tangent is smaller by the same factor sees the same share.
         let steep = libm::atan(theta.tan() / scale);
         prop_assert!(close(wide.g1(at(steep, phi)), t.g1(at(theta, phi)), 1e-9));
     }
@@ -116,7 +118,7 @@ proptest! {
         let v = at(theta, phi);
         prop_assert_eq!(t.g1(v), turned.g1(quarter(v)));
         prop_assert_eq!(t.d(m), turned.d(quarter(m)));
-        // Mirrors: the distribution is even in either slope.
+        // Mirror images: the distribution is even in either slope.
         for mirror in [DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, 1.0)] {
             prop_assert_eq!(t.g1(v), t.g1(v * mirror));
             prop_assert_eq!(t.d(m), t.d(m * mirror));
@@ -168,7 +170,8 @@ proptest! {
 
     #[test]
     fn the_projected_area_obeys_jensen(gamma in gamma(), z in (-12.0..12.0_f64).prop_map(|x| 10_f64.powf(x))) {
-        // E[(cos + x sin)⁺] lies between the positive part of the mean and the sum of the positive parts.
+        // E[(cos + x sin)⁺] lies between the positive part of the mean and the sum of the positive
+        // parts.
         let shape = Shape::new(gamma).unwrap();
         let view = UnitView::from_cotangent(z);
         let area = VisibleSlope::new(&shape, view).area();
@@ -187,7 +190,7 @@ proptest! {
         prop_assert!((slopes.cdf(x) - u).abs() < 1e-13);
         prop_assert!((slopes.complement(x) - (1.0 - u)).abs() < 1e-13);
         prop_assert!((across_cdf(&shape, across_quantile(&shape, u)) - u).abs() < 1e-13);
-        // Five points' difference in w; away from x = 0, where the sign changes.
+        // Five-point difference in w, away from x = 0, where the sign changes.
         let h = 1e-3 * x.w;
         let to = |step: f64| slopes.cdf(SignedSlope { w: x.w + step * h, ..x });
         let derivative = (8.0 * (to(1.0) - to(-1.0)) - (to(2.0) - to(-2.0))) / (12.0 * h) * x.sign;

@@ -1,7 +1,7 @@
 //! The model against values computed elsewhere with 60 to 200 digits.
 //!
-//! `tests/data` holds excerpts. Set `MICROFACET_REFERENCE` to a folder with the complete files of the same names to test
-//! against those instead.
+//! `tests/data` holds excerpts. Set `MICROFACET_REFERENCE` to a folder with the complete files of
+//! the same names to test against those.
 
 use glam::DVec3;
 use microfacet_model::{
@@ -50,7 +50,7 @@ fn visible_slope_quantiles() {
     for row in rows("visible_cdf.csv") {
         let (gamma, cos_l, u, alpha) = (row[0], row[1], row[2], row[3]);
         let shape = Shape::new(gamma).unwrap();
-        // cot of the lobe's angle, times √(γ−1), is the unit cotangent.
+        // The cotangent of the angle in the lobe's own space, times √(γ−1), is the unit cotangent.
         let z = cos_l / (1.0 - cos_l * cos_l).sqrt() * (gamma - 1.0).sqrt();
         let slope = VisibleSlope::new(&shape, UnitView::from_cotangent(z)).quantile(u);
         let v = slope.w * shape.s().sqrt();
@@ -58,7 +58,7 @@ fn visible_slope_quantiles() {
         worst = worst.max((got - alpha).abs());
         assert!((got - alpha).abs() < 1e-12, "{row:?}: {got}, off by {:e}", got - alpha);
         if let Some(&cos_alpha) = row.get(4) {
-            // The digits that alpha near π/2 loses; the conditioning of the tail is 1/(2k).
+            // The digits that alpha loses near π/2; the conditioning of the tail is 1/(2k).
             let got = 1.0 / libm::cosh(v);
             let tolerance = 1e-12 * (1.0 + 1.0 / (2.0 * gamma - 3.0)) * cos_alpha + 1e-300;
             assert!((got - cos_alpha).abs() < tolerance, "{row:?}: cos {got}");

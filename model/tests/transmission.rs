@@ -12,7 +12,7 @@ fn view(cos: f64) -> DVec3 {
     DVec3::new(((1.0 - cos) * (1.0 + cos)).sqrt(), 0.0, cos)
 }
 
-/// T by the midpoint rule over the two numbers of the visible normal.
+/// T by the midpoint rule over the two random numbers of a visible normal.
 fn brute_force(material: &StudentT, pane: Dielectric, v: DVec3, masking: Masking) -> f64 {
     const STEPS: u32 = 240;
     let mut sum = 0.0;
@@ -51,7 +51,7 @@ fn agrees_with_brute_force() {
         for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
             let want = brute_force(&material, pane, view(cos), masking);
             let error = (got.of(masking)[0] - want).abs();
-            // The midpoint rule's own error at the edges of the domain.
+            // The midpoint rule's error at the edges of the domain.
             assert!(
                 error < 1e-3,
                 "gamma {gamma}, eta {eta}, sigma {sigma}, cos {cos}: {want}, off by {error:e}"
@@ -73,12 +73,13 @@ fn average(f: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
 
 #[test]
 fn as_much_passes_either_way() {
-    // f(v, l)/η² is the same both ways (Veach 1997, eq. 5.14), so that the average of what enters is η² times that of what leaves.
+    // f(v, l)/η² is the same both ways (Veach 1997, eq. 5.14), so that the average of what enters
+    // is η² times that of what leaves.
     for gamma in [1.6, 3.0, f64::INFINITY] {
         let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);
         for (sigma, eta) in [(0.2, 1.5), (1.0, 3.0)] {
             let pane = Dielectric::new(eta).unwrap();
-            // Both forms at once.
+            // Both forms of masking at once.
             let of = |pane: Dielectric| {
                 average(|cos| {
                     let passed = integrator.transmission(sigma, cos, pane).unwrap();
@@ -87,7 +88,7 @@ fn as_much_passes_either_way() {
             };
             for (enters, leaves) in of(pane).into_iter().zip(of(pane.reversed())) {
                 let error = (enters - eta * eta * leaves).abs();
-                // The midpoint rule's at the kink of what leaves, times η².
+                // The midpoint rule's error at the kink of what leaves, times η².
                 assert!(
                     error < 2e-5 * eta * eta,
                     "gamma {gamma}, sigma {sigma}, eta {eta}: {enters}, off by {error:e}"

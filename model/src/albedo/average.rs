@@ -5,20 +5,21 @@ use core::f64::consts::FRAC_PI_2;
 use super::{Albedo, AlbedoIntegrator};
 use crate::error::ParameterError;
 
-/// Steps of the rule that averages: the first, and how often it is halved.
+/// Steps of the averaging rule: the first, and how often it is halved at most.
 const COARSEST_STEP: f64 = 0.4;
 const HALVINGS: i32 = 4;
-/// Beyond it a node of that rule counts for less than 1e-13.
+/// Nodes of that rule beyond this t count for less than 1e-13.
 const LAST_NODE: f64 = 2.3;
-/// Share of an average up to which a node may err in proportion.
+/// Nodes whose share of the average is less than this may err more, in inverse proportion.
 const RARE: f64 = 0.02;
 
 impl AlbedoIntegrator {
     /// Cosine-weighted average 2∫₀¹ E(μ) μ dμ of the reflection albedo, for equal roughness σ ≥ 0.
     ///
-    /// By the tanh-sinh rule over θ (Takahasi and Mori 1974, doi:10.2977/prims/1195192451), whose
-    /// nodes crowd at both ends: E has a cusp at normal incidence and varies within the roughness
-    /// at grazing. Steps are halved until three of them say that the error aimed at is reached.
+    /// By the tanh-sinh rule over θ (Takahasi and Mori 1974,
+    /// <https://doi.org/10.2977/prims/1195192451>), whose nodes crowd at both ends: E has a cusp at
+    /// normal incidence and varies within the roughness at grazing. The step is halved until three
+    /// successive sums show that the error aimed at is reached.
     ///
     /// # Errors
     /// [`ParameterError::Sigma`] unless 0 ≤ σ < ∞.
@@ -32,11 +33,11 @@ impl AlbedoIntegrator {
         let mut step = COARSEST_STEP;
         for halving in 0..=HALVINGS {
             let nodes = libm::floor(LAST_NODE / step) as i32;
-            // After the first time only those between the ones that are there.
+            // After the first pass only the new nodes, which lie between the old ones.
             for node in (-nodes..=nodes).filter(|node| halving == 0 || node % 2 != 0) {
                 let (sin, cos, measure) = tanh_sinh(step * f64::from(node));
                 let share = 2.0 * sin * cos * measure;
-                // What counts for little need not be as accurate.
+                // Nodes of little weight need less accuracy.
                 let tolerance = self.tolerance * (RARE / share).clamp(1.0, 1e4);
                 let albedo = self.reflection_to(tolerance, sigma, cos, &weight)?;
                 for i in 0..N {
@@ -51,7 +52,7 @@ impl AlbedoIntegrator {
                 error: step * sum.error,
             };
             let change = now.furthest(&before);
-            // It falls faster than geometrically.
+            // The change falls faster than geometrically.
             let ahead =
                 if change == 0.0 { 0.0 } else { change * (10.0 * change / last_change).min(1.0) };
             before = Albedo { error: now.error + ahead, ..now };
@@ -67,7 +68,7 @@ impl AlbedoIntegrator {
 /// sin θ, cos θ and dθ/dt of θ = π/4 (1 + tanh(π/2 sinh t)) ∈ (0, π/2).
 fn tanh_sinh(t: f64) -> (f64, f64, f64) {
     let q = FRAC_PI_2 * libm::sinh(t);
-    // Of the distance from either end, which keeps its digits there.
+    // From the distance to either end, which keeps its digits there.
     let [low, high] = [-2.0 * q, 2.0 * q].map(|x| FRAC_PI_2 / (1.0 + libm::exp(x)));
     let cosh = libm::cosh(q);
     (libm::sin(low), libm::sin(high), 0.5 * FRAC_PI_2 * FRAC_PI_2 * libm::cosh(t) / (cosh * cosh))

@@ -1,22 +1,24 @@
 //! Directional albedo of skewed lobes by deterministic quadrature over unit slopes.
 //!
-//! In unit space, turned so that the view lies over the first axis, slopes x along the view and y = √(1 + s x²)·t across it have the
-//! density p(x) p⊥(t), and the slopes of the surface along and across the view's azimuth are
+//! In unit space, turned so that the view lies over the first axis, slopes x along the view and
+//! y = √(1 + s x²)·t across it have the density p(x) p⊥(t), and the slopes of the surface along and
+//! across the view's azimuth are
 //!
 //! ```text
 //! ξ = ξ₀ + βx,   η = η₀ + λx + μy.
 //! ```
 //!
-//! Normals face the view by cos θ + ξ sin θ, whatever y is, and reflection stays above the surface exactly inside the disc
-//! η² < (ξ − ξ₁)(ξ₂ − ξ) with ξ₁ = −cos θ/(1 + sin θ) and ξ₂ = (1 + sin θ)/cos θ. Hence
+//! Normals face the view by cos θ + ξ sin θ, whatever y is, and reflection stays above the surface
+//! if and only if (ξ, η) is inside the disc η² < (ξ − ξ₁)(ξ₂ − ξ) with ξ₁ = −cos θ/(1 + sin θ) and
+//! ξ₂ = (1 + sin θ)/cos θ. Hence
 //!
 //! ```text
 //! E = 1/max(area, cos θ) ∫dx p(x) (cos θ + ξ sin θ) ∫dt p⊥(t) F(v·m) S(l)
 //! ```
 //!
-//! over chords of the disc, wherever in it or beside it the mean slope (ξ₀, η₀) lies. S is as for plain lobes. What varies quickly are
-//! the layer along the rim and, for long tails, the neighbourhood of l = n; the clamp of G1(l) at one is a kink along
-//! a curve, at which chords are divided.
+//! over chords of the disc, whether the mean slope (ξ₀, η₀) lies inside it or outside. S is as for
+//! untilted lobes. The integrand varies quickly in the layer along the rim and, for long tails,
+//! near l = n. The clamp of G1(l) at one is a kink along a curve, at which chords are divided.
 
 use microfacet_common::{Masking, Skew};
 
@@ -27,15 +29,17 @@ use crate::error::ParameterError;
 use crate::panels::{End, Gauss};
 use crate::slope_integrals;
 
-/// Slopes beyond e³⁰⁰ along the view have no square together with those across it.
+/// Largest rapidity of a slope along the view, so that its square does not overflow together with
+/// slopes across.
 const LARGEST_RAPIDITY: f64 = 300.0;
-/// Sign of area − l_z where a chord has no length: l_z is 0 there.
+/// Stands for area − l_z where a chord has no length: positive, because l_z is 0 there.
 const RIM: f64 = 1.0;
-/// The error in terms of the last change of order: where chords touch the kink orders converge algebraically.
+/// Ratio of the error estimate to the difference between the last two orders: where chords touch
+/// the kink, orders converge algebraically.
 const FACTOR: f64 = 5.0;
-/// Points on a chord between which the clamp of G1(l) is looked for.
+/// Points on a chord between which the clamp of G1(l) is searched for.
 const CLAMPS: usize = 16;
-/// Chords between which those that touch the clamp's curve are looked for.
+/// Chords between which those that touch the clamp's curve are searched for.
 const TANGENTS: usize = 24;
 
 /// A view of a skewed lobe and what depends on it alone; see the module for the symbols.
@@ -52,11 +56,11 @@ struct View {
     g1: f64,
 }
 
-/// The slopes along the view, in w.
+/// The interval of slopes along the view, in w.
 struct Along {
-    /// What is quick, ascending, up to where the tail begins.
+    /// Where the integrand varies quickly, ascending, up to where the tail begins.
     stops: Vec<End>,
-    /// Of the tail.
+    /// End of the tail.
     end: End,
 }
 
@@ -65,12 +69,13 @@ struct Chord {
     /// Slope of the surface along the view.
     xi: f64,
     facing: f64,
-    /// η at y = 0, and its rate by t.
+    /// η at y = 0, and dη/dt.
     eta: f64,
     rate: f64,
 }
 
-/// A reflected direction: its cosine, the area of the microsurface it sees, v·m, and 1 + ‖slope of m‖².
+/// A reflected direction: its cosine, the area of the microsurface it sees, v·m, and 1 + r² with r
+/// the slope of m.
 struct Reflected {
     cos: f64,
     area: f64,
@@ -79,20 +84,25 @@ struct Reflected {
 }
 
 impl AlbedoIntegrator {
-    /// Albedo of reflection by a skewed lobe for a view at cos θ ∈ [0, 1] and azimuth φ (radians from the x axis of the
-    /// macrosurface), with `weight` the reflectances, smooth in v·m ∈ [0, 1].
+    /// Albedo of reflection by a skewed lobe for a view at cos θ ∈ [0, 1] and azimuth φ (radians
+    /// from the x axis of the macrosurface); `weight` gives the reflectances, smooth in
+    /// v·m ∈ [0, 1].
     ///
-    /// G1 of view and light are clamped at one, as in [`Ellipsoid::g1`], so that E ≤ 1 for weights of one. cos θ = 0 is the limit of
-    /// grazing views; from below the lobe's own horizon it is approached only where cos θ falls below the projected area, which may be
-    /// minute, and it is taken as 0 where that area underflows.
+    /// G1 of view and light are clamped at one, as in [`Ellipsoid::g1`], so that E ≤ 1 for weights
+    /// of one. cos θ = 0 is the limit of grazing views. From below the lobe's own horizon E
+    /// approaches it only where cos θ is less than the projected area, which may be minute; where
+    /// that area underflows, E is taken as 0.
     ///
-    /// The clamp is a kink, and a few views miss the tolerance even at the highest order; `error` says so. Measured at 1e-5 over 8,000
-    /// views (σ from 0.01 to 3, γ from 1.501 to ∞, mean slopes up to four times σ): 5 estimates above it, 3.6e-5 the largest. Of 1,142
-    /// views compared with finer quadrature none differs by more than 6.7e-6, and 3 by more than their estimate.
+    /// The clamp is a kink, and a few views miss the tolerance even at the highest order; `error`
+    /// says so. Measured at tolerance 1e-5 over 8,000 views (σ from 0.01 to 3, γ from 1.501 to ∞,
+    /// mean slopes up to four times σ): 5 estimates exceed it, the largest is 3.6e-5. Of 1,142
+    /// views compared with finer quadrature none differs by more than 6.7e-6, and 3 by more than
+    /// their estimate.
     ///
     /// # Errors
-    /// [`ParameterError::OtherGamma`] if the ellipsoid has another shape than the integrator, [`ParameterError::CosTheta`] unless
-    /// cos θ ∈ [0, 1], [`ParameterError::Phi`] unless φ is finite.
+    /// [`ParameterError::OtherGamma`] if the ellipsoid has another shape than the integrator,
+    /// [`ParameterError::CosTheta`] unless cos θ ∈ [0, 1], [`ParameterError::Phi`] unless φ is
+    /// finite.
     pub fn reflection_skewed<const N: usize>(
         &self,
         ellipsoid: &Ellipsoid,
@@ -122,7 +132,7 @@ impl AlbedoIntegrator {
         Ok(Albedo { uncorrelated, height_correlated, error })
     }
 
-    /// Both forms' integrals at one order.
+    /// The integrals for both forms of masking at one order of quadrature.
     fn skewed_quadrature<const N: usize>(
         &self,
         rule: &Gauss,
@@ -144,7 +154,8 @@ impl AlbedoIntegrator {
         for pair in stops.windows(2) {
             rule.graded(pair[0], pair[1], PANEL, &mut add);
         }
-        // In the tail of a power law all but the power itself fades exponentially, and panels may grow.
+        // In a power-law tail everything but the power itself fades exponentially, so that panels
+        // may grow.
         let mut from = stops[stops.len() - 1];
         let slow = 3.0 / (2.0 * (self.shape.gamma() - 1.5) * self.shape.s().sqrt());
         let mut width = PANEL;
@@ -159,7 +170,8 @@ impl AlbedoIntegrator {
             from = to;
         }
         if view.cos == 0.0 && end.at * self.shape.s().sqrt() >= LARGEST_RAPIDITY {
-            // At grazing nothing ends the power law, and correlated masking (G2/G1 = 1) keeps all of it.
+            // At grazing the power law has no end, and height-correlated masking (G2/G1 = 1) keeps
+            // all of it.
             let mass = view.scale * view.sin * view.beta * self.shape.first_moment(end.at);
             let tail = self.grazing_tail(rule, view, weight);
             for i in 0..N {
@@ -169,7 +181,8 @@ impl AlbedoIntegrator {
         sum
     }
 
-    /// The mean reflectance of m at the horizon on the viewer's side, at grazing: (ξ, η) → ∞ at a ratio that t alone gives.
+    /// The mean reflectance, for grazing views, of normals at the horizon on the viewer's side,
+    /// where (ξ, η) → ∞ at a ratio that depends on t alone.
     fn grazing_tail<const N: usize>(
         &self,
         rule: &Gauss,
@@ -190,16 +203,16 @@ impl AlbedoIntegrator {
         sum
     }
 
-    /// The interval of w along the view, with what is quick at its ends and at l = n.
+    /// The interval of w along the view, with the scales of variation at its ends and at l = n.
     fn along(&self, view: &View) -> Along {
         let [low, high] = [-view.cos / (1.0 + view.sin), (1.0 + view.sin) / view.cos]
             .map(|xi| self.signed_unit((xi - view.mean[0]) / view.beta));
         let cut = self.cut_along(low.max(0.0));
-        // The chord opens like a square root, until it is as wide as the lobe.
+        // Chords open like a square root, until they are as wide as the lobe.
         let opening = view.mu * view.mu * view.cos / (view.beta * view.beta);
         let edge = |at: f64| End { at: at.clamp(-cut, cut), scale: opening.clamp(1e-4, 0.05) };
         let (low, high) = (edge(low), edge(high));
-        // Where n is far behind, the tail is left to panels of its own.
+        // Far beyond the slopes about l = n, the tail gets panels of its own.
         let ordinary = self
             .signed_unit((1.0 + view.mean[0].abs() + view.mean[1].abs()) / view.beta.min(view.mu))
             + 4.0;
@@ -222,9 +235,10 @@ impl AlbedoIntegrator {
         Along { stops, end: End { scale: f64::INFINITY, ..high } }
     }
 
-    /// Adds to `stops` the chords that touch the curve at which G1(l) is clamped, and those it nearly follows.
+    /// Adds to `stops` the chords that touch the curve at which the clamp of G1(l) sets in, and
+    /// those that the curve nearly follows.
     fn tangents(&self, view: &View, stops: &mut Vec<End>) {
-        // The least of area − l_z along a chord: positive where nothing is clamped.
+        // The least of area − l_z along a chord: positive if nothing on it is clamped.
         let least = |w: f64| {
             let x = self.signed_slope(w);
             let Some(chord) = view.chord(x, self.stretch(x)) else { return RIM };
@@ -236,7 +250,8 @@ impl AlbedoIntegrator {
         let (low, high) = (stops[0].at, stops[stops.len() - 1].at);
         let points = steps(low, high, TANGENTS);
         changes(&points, least, |at| stops.push(End { at, scale: 0.02 }));
-        // Where the curve crosses the bulk of the lobe between neighbouring chords, their integrals turn within that distance.
+        // Where the curve crosses the bulk of the lobe (|t| ≤ 1) within a short interval of w, the
+        // integrals along chords vary on the scale of that interval.
         let crossings = [-1.0, 0.0, 1.0].map(|t| {
             let excess = |w: f64| {
                 let x = self.signed_slope(w);
@@ -266,14 +281,14 @@ impl AlbedoIntegrator {
         (1.0 + self.shape.s() * x * x).sqrt()
     }
 
-    /// The ends of a chord in w, inside the cut.
+    /// The ends of a chord, in w, within the cut.
     fn chord_ends(&self, view: &View, chord: &Chord) -> [f64; 2] {
         let (half, cut) = (view.half_chord(chord.xi), self.cut_across());
         [-half, half].map(|eta| self.signed_unit((eta - chord.eta) / chord.rate).clamp(-cut, cut))
     }
 
-    /// Where the lobe ends for the purpose, in w, for normals that are visible beyond `from` only: the share
-    /// beyond is below (cosh w/cosh from)^(−2k).
+    /// The w at which the integral is cut off, for normals that are visible beyond `from` only: the
+    /// share beyond it is less than (cosh w/cosh from)^(−2k).
     fn cut_along(&self, from: f64) -> f64 {
         let log = -libm::log(CUT * self.tolerance);
         if self.shape.is_beckmann() {
@@ -285,7 +300,7 @@ impl AlbedoIntegrator {
         inverse_ln_cosh(ln_cosh).min(LARGEST_RAPIDITY) / root
     }
 
-    /// The same across the view, where tails are shorter: cosh^(−2k−1).
+    /// The same across the view, where tails are shorter: the share is less than cosh^(−2k−1) w.
     fn cut_across(&self) -> f64 {
         let log = -libm::log(CUT * self.tolerance);
         if self.shape.is_beckmann() {
@@ -294,12 +309,14 @@ impl AlbedoIntegrator {
         inverse_ln_cosh(0.5 * log / (self.shape.gamma() - 1.0)) / self.shape.s().sqrt()
     }
 
-    /// Where l is nearest to n along a chord, and the distance within which l turns away: all in w.
+    /// Where l is nearest to n along a chord, and the distance within which l turns away from n,
+    /// both in w.
     fn chord_centre(&self, view: &View, chord: &Chord) -> End {
         let away = chord.xi - view.normal_slope();
         let (mut eta, mut scale) = (0.0, (1.0 + chord.xi * chord.xi).sqrt());
         if self.has_skewed_cone(view) {
-            // The distance of l from n in the metric of the lobe is least here, and √2 of that after `spread`.
+            // In the metric of the lobe l is nearest to n here, and √2 times as far from it after
+            // `scale`.
             let metric = view.lambda * view.lambda + view.mu * view.mu;
             eta = -view.beta * view.lambda * away / metric;
             scale = scale.min(view.beta * view.mu * away.abs() / metric);
@@ -308,7 +325,8 @@ impl AlbedoIntegrator {
         End { at: self.signed_unit(t), scale: scale / (chord.rate * self.stretch(t)) }
     }
 
-    /// Points of a chord between which the clamp of G1(l) changes at most once, but for what is too small to matter.
+    /// Points of a chord between which G1(l) enters or leaves the clamp at most once, apart from
+    /// intervals too small to matter.
     fn search_points(&self, view: &View, chord: &Chord, [low, high]: [f64; 2]) -> Vec<f64> {
         let mut points = steps(low, high, CLAMPS);
         let centre = self.chord_centre(view, chord);
@@ -350,7 +368,8 @@ impl AlbedoIntegrator {
             if w.abs() >= self.cut_across() {
                 return End { at: w, scale: f64::INFINITY };
             }
-            // l_z falls by 2 cos θ |η|/(1 + ‖slope‖²) a unit of η, to the height of the area that l sees and to zero.
+            // l_z falls by 2 cos θ |η|/(1 + r²) per η, r being the slope: to the area that l sees,
+            // and then to zero.
             let (l, t) = (reflected(w), self.signed_slope(w));
             let layer = l.area * l.square / (2.0 * view.cos * half);
             End { at: w, scale: (layer / (chord.rate * (1.0 + s * t * t).sqrt())).max(1e-6) }
@@ -405,7 +424,8 @@ impl View {
         let (sin_phi, cos_phi) = libm::sincos(phi);
         let Skew { p, q, r, x, y } = ellipsoid.skew();
         let turn = |x: f64, y: f64| [x * cos_phi + y * sin_phi, y * cos_phi - x * sin_phi];
-        // The slopes' map ((p, q), (0, r)) with its rows turned to the azimuth, its columns to the view in unit space.
+        // The map ((p, q), (0, r)) of slopes, its rows turned to the view's azimuth, its columns to
+        // the view in unit space.
         let ([a, c], [b, d]) = (turn(p, 0.0), turn(q, r));
         let beta = libm::hypot(a, b);
         let area = ellipsoid.projected_area(glam::DVec3::new(sin * cos_phi, sin * sin_phi, cos));
@@ -434,7 +454,8 @@ impl View {
         (near * far).sqrt()
     }
 
-    /// The chord at x, where slopes across are `stretch` times t; `None` beyond the disc by a rounding.
+    /// The chord at x, where slopes across are `stretch` times t; `None` if rounding puts x outside
+    /// the disc.
     fn chord(&self, x: f64, stretch: f64) -> Option<Chord> {
         let xi = self.mean[0] + self.beta * x;
         let facing = self.cos + self.sin * xi;
@@ -459,14 +480,16 @@ fn inverse_ln_cosh(x: f64) -> f64 {
     x + libm::log1p((-libm::expm1(-2.0 * x)).sqrt())
 }
 
-/// The ends and what divides an interval of w into parts that are narrow in the bulk of the lobe and grow in its tails.
+/// The ends of an interval of w and the points that divide it into parts, narrow in the bulk of the
+/// lobe and wider in its tails.
 fn steps(low: f64, high: f64, parts: usize) -> Vec<f64> {
     let [a, b] = [low, high].map(|w| libm::asinh(2.0 * w));
     let inside = (1..parts).map(|i| 0.5 * libm::sinh(a + (b - a) * (i as f64 / parts as f64)));
     [low].into_iter().chain(inside).chain([high]).collect()
 }
 
-/// Calls `found` with the roots of f that the ascending points tell apart.
+/// Calls `found` with a root of f between any neighbours of the ascending points at which f has
+/// different signs.
 fn changes(points: &[f64], f: impl Fn(f64) -> f64, mut found: impl FnMut(f64)) {
     let mut a = (points[0], f(points[0]));
     for &at in &points[1..] {
@@ -478,7 +501,7 @@ fn changes(points: &[f64], f: impl Fn(f64) -> f64, mut found: impl FnMut(f64)) {
     }
 }
 
-/// The least value of f, by golden sections about the least at the ascending points.
+/// The least value of f, by golden sections about the least value at the ascending points.
 fn minimum(points: &[f64], f: impl Fn(f64) -> f64) -> f64 {
     const GOLDEN: f64 = 0.618033988749894848;
     let (mut i, mut least) = (0, f64::INFINITY);
@@ -498,8 +521,8 @@ fn minimum(points: &[f64], f: impl Fn(f64) -> f64) -> f64 {
     least
 }
 
-/// A root of f between two points of different sign, by the Illinois variant of false position, to 1e-7 of their distance: at a kink the
-/// error that remains is of second order.
+/// A root of f between two points of different sign, by the Illinois variant of false position, to
+/// 1e-7 of their distance: at a kink the error that remains is of second order.
 fn root(mut a: (f64, f64), mut b: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
     let close = 1e-7 * (b.0 - a.0);
     let mut middle = 0.5 * (a.0 + b.0);

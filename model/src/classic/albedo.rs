@@ -1,13 +1,14 @@
 //! Directional albedo of any isotropic distribution, by quadrature over its slopes.
 //!
-//! In polar coordinates (r, φ) of the slopes about m = n, φ from the azimuth of v, both v·m ∝ cos θ + r sin θ cos φ and
-//! l_z = 2 (cos θ + r sin θ cos φ)/(1 + r²) − cos θ fall with φ, so that l stays above the surface on one arc |φ| < φ₁(r):
+//! In polar coordinates (r, φ) of the slopes about m = n, φ from the azimuth of v, both
+//! v·m ∝ cos θ + r sin θ cos φ and l_z = 2 (cos θ + r sin θ cos φ)/(1 + r²) − cos θ fall with |φ|,
+//! so that l stays above the surface on one arc |φ| < φ₁(r):
 //!
 //! ```text
 //! E = 2/area ∫dr r P22(r) ∫₀^φ₁ dφ (cos θ + r sin θ cos φ) F(v·m) S(l).
 //! ```
 //!
-//! The integral over r is outside, so that the slopes at which a measured D has its corners divide it once for all φ.
+//! The outer integral is that over r, so that the corners of a measured D divide it once for all φ.
 
 use microfacet_common::Masking;
 
@@ -18,11 +19,12 @@ use crate::error::ParameterError;
 use crate::panels::{End, Gauss};
 use crate::smith_table::SmithTable;
 
-/// Widest panel of asinh of the unit slope: smooth distributions have their singularities at ±iπ/2.
+/// Widest panel of the asinh of a unit slope; smooth distributions have their singularities at
+/// ±iπ/2.
 const PANEL: f64 = 1.0;
 /// Widest panel of φ.
 const SECTOR: f64 = 1.6;
-/// 1 − G1 is taken as nothing where Λ is below this.
+/// G1 is taken as 1 where Λ is less than this.
 const UNMASKED: f64 = 1e-11;
 
 /// Integrates albedos of reflection for one isotropic distribution and any view and reflectance.
@@ -33,7 +35,7 @@ pub struct RadialAlbedo<'a> {
     tolerance: f64,
     /// asinh of the unit slopes at which D has a corner, and where it ends; ascending.
     corners: Vec<f64>,
-    /// Width of the peak, which may be a small part of the median slope.
+    /// Width of the peak in unit slopes; it may be far less than the median slope.
     peak: f64,
 }
 
@@ -46,10 +48,12 @@ struct View {
 }
 
 impl<'a> RadialAlbedo<'a> {
-    /// Tabulates G1, which takes up to a tenth of a second; `tolerance` ∈ [1e-9, 1e-2] is the error aimed at, absolute.
+    /// Tabulates G1 for `marginal`, which takes up to a tenth of a second. `tolerance` is the
+    /// absolute error aimed at, clamped to [1e-9, 1e-2].
     ///
-    /// The masking is that of [`Marginal`]: where D has corners its quadrature is good to about 1e-4 (45 rows) or 1e-6 (900 rows), and the
-    /// albedo no better. D must be bounded: a power law that diverges towards the horizon (Student-t with γ < 2) is left to
+    /// The masking is that of [`Marginal`]: where D has corners its quadrature is good to about
+    /// 1e-4 (45 rows) or 1e-6 (900 rows), and the albedo is no better. D must be bounded: for a
+    /// power law that diverges towards the horizon (Student-t with γ < 2) use
     /// [`AlbedoIntegrator`](crate::AlbedoIntegrator).
     pub fn new(marginal: &'a Marginal<'a>, tolerance: f64) -> Self {
         let tolerance = tolerance.clamp(1e-9, 1e-2);
@@ -74,7 +78,8 @@ impl<'a> RadialAlbedo<'a> {
         }
     }
 
-    /// Albedo of reflection for a view at cos θ ∈ [0, 1], with `weight` the reflectances, smooth in v·m ∈ [0, 1].
+    /// Albedo of reflection for a view at cos θ ∈ [0, 1]; `weight` gives the reflectances at
+    /// v·m ∈ [0, 1], in which they must be smooth.
     ///
     /// cos θ = 0 is the limit of grazing views.
     ///
@@ -98,7 +103,7 @@ impl<'a> RadialAlbedo<'a> {
         Ok(Albedo { uncorrelated, height_correlated, error })
     }
 
-    /// Both forms' integrals at one order.
+    /// The integrals for both forms of masking at one order of quadrature.
     fn quadrature<const N: usize>(
         &self,
         rule: &Gauss,
@@ -123,9 +128,9 @@ impl<'a> RadialAlbedo<'a> {
         sum
     }
 
-    /// Where the integral over slopes is divided.
+    /// Where the integral over slopes is divided, in asinh of the unit slope.
     fn stops(&self, view: &View) -> Vec<End> {
-        // Up to the first all φ reflect above the surface, from the second on none does.
+        // Up to the slope `near` every φ reflects above the surface, from `far` on none does.
         let [near, far] = [view.cos / (1.0 + view.sin), (1.0 + view.sin) / view.cos]
             .map(|slope| libm::asinh(slope / self.marginal.sigma()));
         let rim = |at: f64| End { at, scale: near.clamp(1e-5, 0.05) };
@@ -151,7 +156,7 @@ impl<'a> RadialAlbedo<'a> {
         let sigma = self.marginal.sigma();
         let square = 1.0 + r * r;
         let g1_v = view.cos * view.scale;
-        // Its cosine is −∞ or ∞ for views along n.
+        // For views along n the cosine of `end` is −∞ or ∞ before the clamp.
         let end = libm::acos((view.cos * (r - 1.0 / r) / (2.0 * view.sin)).clamp(-1.0, 1.0));
         let light = |phi: f64| {
             let facing = view.cos + r * view.sin * libm::cos(phi);

@@ -1,4 +1,4 @@
-//! The anisotropic cosine power of Ashikhmin & Shirley (2000, *An Anisotropic Phong BRDF Model*), as a distribution of normals.
+//! The anisotropic cosine power of Ashikhmin & Shirley as a distribution of normals.
 
 use core::f64::consts::PI;
 
@@ -7,10 +7,13 @@ use glam::DVec3;
 use super::{ClassicError, check};
 use crate::student_t::StudentT;
 
-/// D = √((Nx+2)(Ny+2))/(2π) · cos^(Nx cos²φ + Ny sin²φ) θ.
+/// Anisotropic cosine power, D = √((Nx+2)(Ny+2))/(2π) · cos^(Nx cos²φ + Ny sin²φ) θ (Ashikhmin &
+/// Shirley 2000, *An Anisotropic Phong BRDF Model*,
+/// <https://doi.org/10.1080/10867651.2000.10487522>).
 ///
-/// The constant normalises ∫ D (m·n) dm, where the paper's √((Nx+1)(Ny+1))/(2π) normalises ∫ D dm. For Nx = Ny it is Blinn–Phong;
-/// otherwise its slopes are no linear image of an isotropic distribution, so it is evaluated and drawn from, but has no table.
+/// The constant normalises ∫ D (m·n) dm, where the paper's √((Nx+1)(Ny+1))/(2π) normalises ∫ D dm.
+/// For Nx = Ny it is Blinn–Phong. Otherwise no linear map of slopes makes it isotropic, so that it
+/// can be evaluated and sampled but has no tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AshikhminShirley {
     nx: f64,
@@ -18,7 +21,7 @@ pub struct AshikhminShirley {
 }
 
 impl AshikhminShirley {
-    /// Exponents along x and y.
+    /// The distribution with exponents Nx along x and Ny along y.
     ///
     /// # Errors
     /// [`ClassicError`] unless both lie in [0, ∞).
@@ -40,12 +43,13 @@ impl AshikhminShirley {
         ((self.nx + 2.0) * (self.ny + 2.0)).sqrt() / (2.0 * PI) * self.relative_d(m)
     }
 
-    /// The unit form D(m)/D(n) ∈ [0, 1].
+    /// D relative to its peak, D(m)/D(n) ∈ [0, 1].
     pub fn relative_d(&self, m: DVec3) -> f64 {
         if m.z > 0.0 { libm::pow(m.z, self.exponent(m.x, m.y)) } else { 0.0 }
     }
 
-    /// Angle from n, towards the azimuth φ, at which D has fallen to half; `None` where the exponent is 0.
+    /// Angle from n (radians), in the azimuth φ, at which D has fallen to half; `None` where the
+    /// exponent is 0.
     pub fn half_angle(&self, phi: f64) -> Option<f64> {
         let n = self.exponent(libm::cos(phi), libm::sin(phi));
         // acos(2^(−1/N)) as asin √(1 − 2^(−2/N)), which keeps the digits of large N.
@@ -54,7 +58,7 @@ impl AshikhminShirley {
 
     /// A normal distributed as D(m)(m·n) from u ∈ [0, 1)².
     pub fn sample_ndf(&self, u: [f64; 2]) -> DVec3 {
-        // tan φ = √((Nx+2)/(Ny+2)) tan 2πu₂, every quadrant kept.
+        // tan φ = √((Nx+2)/(Ny+2)) tan 2πu₂, in the quadrant of 2πu₂.
         let angle = 2.0 * PI * u[1];
         let (x, y) =
             ((self.ny + 2.0).sqrt() * libm::cos(angle), (self.nx + 2.0).sqrt() * libm::sin(angle));
@@ -65,7 +69,8 @@ impl AshikhminShirley {
         DVec3::new(sin * x / r, sin * y / r, cos)
     }
 
-    /// Blinn–Phong when both exponents are equal.
+    /// The equal member of the Student-t family: Blinn–Phong if both exponents are equal, else
+    /// `None`.
     pub fn student_t(&self) -> Option<StudentT> {
         (self.nx == self.ny)
             .then(|| StudentT::blinn_phong(self.nx).expect("exponents were checked"))
@@ -94,7 +99,8 @@ mod tests {
             })
         };
         assert!((share(0.5 * PI, 2.0 * PI) - 1.0).abs() < 1e-11);
-        // The share of azimuths below that of u₂ is u₂, and of angles below that of u₁ at that azimuth u₁.
+        // The share of azimuths up to the drawn one is u₂; at that azimuth the share of angles up
+        // to the drawn one is u₁.
         for u in [[0.3, 0.1], [0.9, 0.4], [0.5, 0.8]] {
             let m = d.sample_ndf(u);
             let phi = libm::atan2(m.y, m.x).rem_euclid(2.0 * PI);

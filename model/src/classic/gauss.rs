@@ -1,13 +1,13 @@
-//! The Gaussian of the angle (Torrance & Sparrow 1967), with its constant by quadrature.
+//! The Gaussian of the polar angle (Torrance & Sparrow 1967), with its constant by quadrature.
 
 use core::f64::consts::FRAC_PI_2;
 
 use super::{ClassicError, Isotropic, check, projected};
 
-/// D ∝ exp(−(θ/m)²), m in radians.
+/// Gaussian of the polar angle, D ∝ exp(−(θ/m)²), with m in radians.
 ///
-/// The usual constant 1/(π m²) is the small-angle limit: against ∫ D (m·n) dm = 1 it is low by about ⅔ m² (0.7% at m = 0.1). The
-/// one used here is found by quadrature.
+/// The usual constant 1/(π m²) is the small-angle limit: it is too low for ∫ D (m·n) dm = 1, by
+/// about ⅔ m² (0.7% at m = 0.1). The constant used here is found by quadrature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gauss {
     m: f64,
@@ -15,14 +15,14 @@ pub struct Gauss {
 }
 
 impl Gauss {
-    /// Width m: D falls to 1/e at θ = m radians.
+    /// The distribution of width m: D falls to 1/e at θ = m radians.
     ///
     /// # Errors
     /// [`ClassicError`] unless 0 < m < ∞.
     pub fn new(m: f64) -> Result<Self, ClassicError> {
         check(m > 0.0 && m < f64::INFINITY, "m", m, "(0, inf) radians")?;
         let unit = |t: f64| libm::exp(-(t / m) * (t / m));
-        // Beyond 7 m the tail is below 1e-21.
+        // Beyond 7 m the tail is less than 1e-21.
         let whole = projected(unit, m, FRAC_PI_2.min(7.0 * m));
         Ok(Self { m, peak: 1.0 / whole })
     }

@@ -1,14 +1,17 @@
-//! Generalised Trowbridge–Reitz (Burley 2012, *Physically Based Shading at Disney*, appendix B).
+//! Burley's generalised Trowbridge–Reitz distribution.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use super::{ClassicError, Isotropic, check};
 use crate::student_t::StudentT;
 
-/// D ∝ (cos²θ (C² − 1) + 1)^(−γ), of which γ = 2 is Trowbridge–Reitz and γ = 1 the Berry distribution.
+/// Generalised Trowbridge–Reitz, D ∝ (cos²θ (C² − 1) + 1)^(−γ): γ = 2 is Trowbridge–Reitz, γ = 1
+/// the Berry distribution (Burley 2012, *Physically Based Shading at Disney*, appendix B,
+/// <https://disneyanimation.com/publications/physically-based-shading-at-disney/>).
 ///
-/// Its constant is (γ−1)(C²−1)/(π(1 − C^(2−2γ))); tables that print C²/π for every γ are right at γ = 2 only. Its slopes fall like r⁻⁴
-/// whatever γ is, unlike those of Student-t.
+/// Its constant is (γ−1)(C²−1)/(π(1 − C^(2−2γ))); lists in the literature that give C²/π for every
+/// γ are right at γ = 2 only. The density of its slopes falls like r⁻⁴ for every γ, unlike
+/// Student-t's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gtr {
     c: f64,
@@ -16,7 +19,7 @@ pub struct Gtr {
 }
 
 impl Gtr {
-    /// Roughness C and exponent γ.
+    /// The distribution of roughness C and exponent γ.
     ///
     /// # Errors
     /// [`ClassicError`] unless 0 < C ≤ 1 and 0 < γ < ∞.
@@ -31,14 +34,15 @@ impl Gtr {
         (1.0 - self.c) * (1.0 + self.c) / (self.c * self.c)
     }
 
-    /// ((1 + b x)^(1−γ) − 1)/((1−γ) b) = ∫₀ˣ (1 + b t)^(−γ) dt for x ∈ [0, 1]; ln(1 + bx)/b at γ = 1 and x at b = 0.
+    /// ((1 + b x)^(1−γ) − 1)/((1−γ) b) = ∫₀ˣ (1 + b t)^(−γ) dt for x ∈ [0, 1]; ln(1 + bx)/b at
+    /// γ = 1 and x at b = 0.
     fn integral(&self, x: f64) -> f64 {
         let (b, g) = (self.b(), 1.0 - self.gamma);
         if b == 0.0 {
             return x;
         }
         let log = libm::log1p(b * x);
-        // expm1 keeps γ → 1.
+        // expm1 keeps the digits as γ → 1.
         if g == 0.0 { log / b } else { libm::expm1(g * log) / (g * b) }
     }
 }

@@ -1,15 +1,16 @@
 //! Masking and visible normals of any isotropic distribution, by quadrature over its slopes.
 //!
-//! Slopes are divided by a scale σ. With r² = x² + y², and the slope across written as y, every function of the in-plane slope x is an
-//! integral of the slope density P22(r) over y alone: p = 2∫P22 dy, Q = 2∫P22 atan(y/x) y dy, and so on, smooth integrands all.
+//! Slopes are divided by a scale σ. With r² = x² + y², and the slope across written as y, every
+//! function of the in-plane slope x is an integral of the slope density P22(r) over y alone, with a
+//! smooth integrand: p = 2∫P22 dy, Q = 2∫P22 atan(y/x) y dy, and so on.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use super::Isotropic;
 
-/// Nodes of one integral, each side of the middle.
+/// Nodes of one integral on each side of the middle.
 const NODES: i32 = 48;
-/// Their step. The rule is double exponential; on smooth distributions it is good to 1e-12.
+/// Step between them. The rule is double exponential; on smooth distributions it is good to 1e-12.
 const STEP: f64 = 4.0 / NODES as f64;
 
 /// The slope marginal of an isotropic distribution in units of a scale σ.
@@ -34,11 +35,12 @@ pub struct Beyond {
 }
 
 impl<'a> Marginal<'a> {
-    /// With the median slope as the scale, which for Trowbridge–Reitz is C.
+    /// The marginal of `d` with the median slope as its scale σ, which for Trowbridge–Reitz is C.
     pub fn new(d: &'a dyn Isotropic) -> Self {
         let sigma = libm::tan(d.sample_theta(0.5));
         let reach = libm::tan(d.support()) / sigma;
-        // A support that ends within rounding of the horizon (tan negative or huge) is the whole hemisphere.
+        // A support that ends within rounding of the horizon (tan negative or huge) is the whole
+        // hemisphere.
         let reach = if (0.0..1e6).contains(&reach) { reach } else { f64::INFINITY };
         Self { d, sigma, reach }
     }
@@ -60,7 +62,7 @@ impl<'a> Marginal<'a> {
 
     /// The unit slope at which D has fallen to half of its peak; ∞ if it never does.
     pub(crate) fn half_slope(&self) -> f64 {
-        // A half angle within rounding of the horizon may have a negative tangent.
+        // β_half within rounding of the horizon may have a negative tangent.
         let slope = self.d.half_angle().map(libm::tan).filter(|slope| *slope > 0.0);
         slope.map_or(f64::INFINITY, |slope| slope / self.sigma)
     }
@@ -70,14 +72,15 @@ impl<'a> Marginal<'a> {
         self.d.d(libm::atan(self.sigma * r))
     }
 
-    /// Density of unit slopes at the given distance from 0.
+    /// Density of unit slopes at the distance r from 0.
     pub fn p22(&self, r: f64) -> f64 {
         let slope = self.sigma * r;
         let cos2 = 1.0 / (1.0 + slope * slope);
         self.sigma * self.sigma * self.d.d(libm::atan(slope)) * cos2 * cos2
     }
 
-    /// Calls `add(y, weight)` at the nodes of ∫ over y from `from` to the end of the support, at in-plane slope x.
+    /// Calls `add(y, weight)` at the nodes of ∫ over y from `from` to the end of the support, at
+    /// in-plane slope x.
     fn across(&self, x: f64, from: f64, mut add: impl FnMut(f64, f64)) {
         let whole = if self.reach.is_finite() {
             let left = self.reach * self.reach - x * x;
@@ -126,21 +129,21 @@ impl<'a> Marginal<'a> {
         Across { marginal: self, x, half: self.p22_beyond(x, 0.0) }
     }
 
-    /// ∫ P22 over slopes across above y.
+    /// ∫ P22 over the slopes across that exceed y.
     fn p22_beyond(&self, x: f64, y: f64) -> f64 {
         let mut sum = 0.0;
         self.across(x, y, |y, weight| sum += weight * self.p22(libm::hypot(x, y)));
         sum
     }
 
-    /// Smith's G1 of a view at polar angle θ < π/2.
+    /// Smith's G1 of a view at polar angle θ ∈ [0, π/2) (radians).
     pub fn g1(&self, theta: f64) -> f64 {
         let (sin, cos) = (self.sigma * libm::sin(theta), libm::cos(theta));
         if sin == 0.0 { 1.0 } else { cos / (cos + sin * self.beyond(cos / sin).excess) }
     }
 }
 
-/// Slopes across the plane of incidence at one in-plane slope; symmetric, independent of the view.
+/// The distribution of slopes across at one in-plane slope; symmetric, and independent of the view.
 pub struct Across<'a> {
     marginal: &'a Marginal<'a>,
     x: f64,
@@ -149,12 +152,12 @@ pub struct Across<'a> {
 }
 
 impl Across<'_> {
-    /// The share that exceeds y ≥ 0; 0 where there are no slopes.
+    /// The share that exceeds y ≥ 0; 0 where the in-plane slope is beyond the support.
     pub fn tail(&self, y: f64) -> f64 {
         if self.half > 0.0 { 0.5 * self.marginal.p22_beyond(self.x, y) / self.half } else { 0.0 }
     }
 
-    /// Density at y; 0 where there are no slopes.
+    /// Density at y; 0 where the in-plane slope is beyond the support.
     pub fn density(&self, y: f64) -> f64 {
         if self.half > 0.0 {
             0.5 * self.marginal.p22(libm::hypot(self.x, y)) / self.half
@@ -164,12 +167,13 @@ impl Across<'_> {
     }
 }
 
-/// In-plane slopes that a view sees: density ∝ (cos θ + x sin θ) p(x) beyond the silhouette, θ the unit angle.
+/// The in-plane slopes that a view sees: density ∝ (cos θ + x sin θ) p(x) beyond the silhouette, θ
+/// being the polar angle in unit space.
 pub struct MarginalView<'a> {
     marginal: &'a Marginal<'a>,
     sin: f64,
     cos: f64,
-    /// Cotangent, and the excess beyond it.
+    /// Unit cotangent, and the excess beyond it.
     z: f64,
     excess: f64,
     area: f64,
@@ -188,7 +192,8 @@ impl<'a> MarginalView<'a> {
         self.area
     }
 
-    /// The shares of visible normals with a slope below and above x, each accurate where it is small, and the density of either by x.
+    /// The shares of visible normals with in-plane slopes less and greater than x, each accurate
+    /// where it is small, and the density at x.
     pub fn shares(&self, x: f64) -> Shares {
         if x <= -self.z {
             return Shares { below: 0.0, above: 1.0, density: 0.0 };
@@ -210,18 +215,18 @@ impl<'a> MarginalView<'a> {
     }
 }
 
-/// How visible normals split at a slope.
+/// How visible normals split at an in-plane slope.
 #[derive(Clone, Copy, Debug)]
 pub struct Shares {
-    /// Share below.
+    /// Share of smaller slopes.
     pub below: f64,
-    /// Share above.
+    /// Share of larger slopes.
     pub above: f64,
     /// Density at the slope.
     pub density: f64,
 }
 
-/// ∫ D (m·n) over the hemisphere by way of the slopes: 1 when the marginal's quadrature resolves the distribution.
+/// ∫ D (m·n) dm by the marginal's quadrature over slopes: 1 when that resolves the distribution.
 pub fn resolved(marginal: &Marginal) -> f64 {
     let mut sum = 0.0;
     marginal.across(0.0, 0.0, |r, weight| sum += 2.0 * PI * r * weight * marginal.p22(r));

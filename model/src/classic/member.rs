@@ -1,4 +1,4 @@
-//! The classic distributions that are exact members of the Student-t family.
+//! The classic distributions that are members of the Student-t family.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -9,7 +9,8 @@ use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::student_t::StudentT;
 
-/// An isotropic Student-t under one of its classic names; masking and visible normals of each come with the family.
+/// An isotropic Student-t under one of its classic names; masking and visible normals are the
+/// family's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Member(StudentT);
 
@@ -64,7 +65,7 @@ impl Isotropic for Member {
         self.0.d(DVec3::new(libm::sin(theta), 0.0, libm::cos(theta))) / self.peak()
     }
 
-    /// In closed form for the cosine power σ²(γ−1) = 1 and for Trowbridge–Reitz.
+    /// In closed form for Trowbridge–Reitz (γ = 2), else by search.
     fn half_angle(&self) -> Option<f64> {
         let (sigma, shape) = (self.0.sigma_x(), self.0.shape());
         if shape.gamma() == 2.0 {

@@ -1,7 +1,8 @@
 //! The classic distributions of microfacet normals, normalised alike: ∫ D(m) (m·n) dm = 1.
 //!
-//! Those that are members of the Student-t family (Beckmann, Trowbridge–Reitz, Blinn–Phong, Hyper-Cauchy) are a [`Member`]; the others
-//! have a file each. [`Isotropic`] is what they have in common.
+//! Those that are members of the Student-t family (Beckmann, Trowbridge–Reitz, Blinn–Phong,
+//! Hyper-Cauchy) are a [`Member`]; the others have a type each. The isotropic ones implement
+//! [`Isotropic`].
 
 mod albedo;
 mod ashikhmin_shirley;
@@ -30,9 +31,9 @@ pub use tabulated::{Tabulated, TabulatedError};
 /// A distribution's parameter outside its range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClassicError {
-    /// Which parameter.
+    /// Name of the parameter.
     pub name: &'static str,
-    /// What was given.
+    /// Value that was given.
     pub value: f64,
     /// The allowed range, in words.
     pub range: &'static str,
@@ -46,12 +47,13 @@ impl fmt::Display for ClassicError {
 
 impl core::error::Error for ClassicError {}
 
-/// An isotropic distribution of normals, a function of the polar angle θ ∈ [0, π/2] of the normal (radians).
+/// An isotropic distribution of normals, a function of the polar angle θ ∈ [0, π/2] of the normal
+/// (radians).
 pub trait Isotropic: Sync {
     /// D(0), per steradian.
     fn peak(&self) -> f64;
 
-    /// The unit form D(θ)/D(0); it is 1 at θ = 0 and may exceed 1 elsewhere for rough surfaces.
+    /// D relative to its peak, D(θ)/D(0): 1 at θ = 0; it may exceed 1 elsewhere for rough surfaces.
     fn relative_d(&self, theta: f64) -> f64;
 
     /// D(θ) per steradian; 0 outside [0, π/2).
@@ -69,31 +71,33 @@ pub trait Isotropic: Sync {
         Vec::new()
     }
 
-    /// β_half: the smallest angle at which D has fallen to half of D(0); `None` if it never does.
+    /// β_half: the smallest angle (radians) at which D has fallen to half of D(0); `None` if it
+    /// never does.
     ///
-    /// To 1e-15 relative. Found by search where no closed form overrides it.
+    /// Relative error 1e-15. By search, unless an implementation has a closed form.
     fn half_angle(&self) -> Option<f64> {
         search_half(|theta| self.relative_d(theta), self.support())
     }
 
-    /// The share of the projected area whose normals are within θ of n: ∫₀^θ 2π D(t) cos t sin t dt.
+    /// The share of the projected area with normals within θ of n: ∫₀^θ 2π D(t) cos t sin t dt.
     fn cdf(&self, theta: f64) -> f64 {
         let theta = theta.clamp(0.0, self.support());
         projected(|t| self.d(t), self.half_angle().unwrap_or(1.0), theta)
     }
 
-    /// θ of a normal distributed as D(m)(m·n): the θ within which the share u ∈ [0, 1] lies.
+    /// θ of a normal distributed as D(m)(m·n): the inverse of [`cdf`](Self::cdf) at u ∈ [0, 1].
     fn sample_theta(&self, u: f64) -> f64 {
         bisect(0.0, self.support(), |theta| self.cdf(theta) - u)
     }
 
-    /// The member of the Student-t family that this distribution is, exactly; `None` if it is none.
+    /// The member of the Student-t family that equals this distribution; `None` if none does.
     fn student_t(&self) -> Option<StudentT> {
         None
     }
 }
 
-/// ∫₀^θ 2π d(t) cos t sin t dt in panels that double from a quarter of `scale` on, where d changes over `scale` and more slowly outside.
+/// ∫₀^θ 2π d(t) cos t sin t dt in panels that grow by half, from a quarter of `scale` up to 0.5; d
+/// changes over `scale`, and more slowly further out.
 fn projected(d: impl Fn(f64) -> f64, scale: f64, theta: f64) -> f64 {
     let integrand = |t: f64| 2.0 * PI * d(t) * libm::cos(t) * libm::sin(t);
     let (mut sum, mut a, mut width) = (0.0, 0.0, 0.25 * scale);
@@ -132,7 +136,7 @@ fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Checks `value` against an open-below, closed-above or open-above range in words.
+/// Refuses `value` unless `ok`; `range` says in words what is allowed.
 fn check(
     ok: bool,
     name: &'static str,
@@ -167,7 +171,8 @@ mod tests {
     #[test]
     fn all_are_normalised() {
         for (name, d) in all() {
-            // Independent of the distribution's own CDF: trapezium after θ = π/2·(1 − e)/(1 + e), doubly exponential.
+            // Independent of the distribution's own CDF: double-exponential quadrature over
+            // θ = support/(1 + e).
             let support = d.support();
             let h = 1.0 / 256.0;
             let mut sum = 0.0;

@@ -1,19 +1,21 @@
-//! Schlick's rational distribution (1994, *An Inexpensive BRDF Model for Physically-based Rendering*).
+//! Schlick's rational distribution.
 
 use core::f64::consts::PI;
 
 use super::{ClassicError, Isotropic, check};
 
-/// D = m³ x / (π t (m x² − x² + m²)²) with t = cos θ, x = t + m − 1 ≥ 0; zero where t < 1 − m.
+/// Schlick's rational distribution, D = m³ x / (π t (m x² − x² + m²)²) with t = cos θ and
+/// x = t + m − 1 ≥ 0; zero where t < 1 − m (Schlick 1994, *An Inexpensive BRDF Model for
+/// Physically-based Rendering*, <https://doi.org/10.1111/1467-8659.1330233>).
 ///
-/// Normalised exactly on its support.
+/// On this support ∫ D (m·n) dm = 1 holds without a further constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schlick {
     m: f64,
 }
 
 impl Schlick {
-    /// Roughness m; normals reach as far as acos(1 − m).
+    /// The distribution of roughness m; normals reach as far as acos(1 − m).
     ///
     /// # Errors
     /// [`ClassicError`] unless 0 < m ≤ 1.
@@ -22,7 +24,7 @@ impl Schlick {
         Ok(Self { m })
     }
 
-    /// The share of normals with x above the given one, y = x²/m² ∈ [0, 1]: m(1 − y)/(m + (1−m)(1 − y)).
+    /// The share of normals with x above the given one, y = x²/m² ∈ [0, 1]: (1 − y)/(m y + 1 − y).
     fn share(&self, y: f64) -> f64 {
         let rest = 1.0 - y;
         rest / (self.m * (1.0 - rest) + rest)
@@ -36,7 +38,7 @@ impl Isotropic for Schlick {
 
     fn relative_d(&self, theta: f64) -> f64 {
         let half = libm::sin(0.5 * theta);
-        // 1 − cos θ without cancellation, and the same in m x² + (m² − x²).
+        // 1 − cos θ without cancellation, and likewise q = m x² + (m² − x²).
         let rest = 2.0 * half * half;
         let (m, t, x) = (self.m, 1.0 - rest, self.m - rest);
         if x <= 0.0 {

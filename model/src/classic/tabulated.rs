@@ -1,11 +1,12 @@
-//! A measured distribution: D at angles, straight lines between them.
+//! A measured distribution: D at given angles, linear between them.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::fmt;
 
 use super::{Isotropic, bisect};
 
-/// Neighbouring angles further apart than this, and than four times the typical step, are a gap.
+/// Neighbouring angles leave a gap if they are further apart than this (radians) and than four
+/// times the median step.
 const GAP: f64 = 0.1;
 
 /// Why a measured distribution was refused. Rows count from 0.
@@ -13,9 +14,10 @@ const GAP: f64 = 0.1;
 pub enum TabulatedError {
     /// Fewer than three rows; how many.
     TooFew(usize),
-    /// An angle outside [0, π/2], or not above the one before; the row and the angle in radians.
+    /// An angle outside [0, π/2], or not above that of the row before; the row and the angle in
+    /// radians.
     Angle(usize, f64),
-    /// A negative, infinite or missing D; the row and the value.
+    /// A negative, infinite or NaN D; the row and the value.
     Value(usize, f64),
     /// Two neighbouring angles in radians with a gap between them.
     Gap(f64, f64),
@@ -45,22 +47,23 @@ impl fmt::Display for TabulatedError {
 
 impl core::error::Error for TabulatedError {}
 
-/// A distribution given by its values D(θᵢ) up to a factor, with straight lines between, normalised exactly.
+/// A distribution given by its values D(θᵢ) up to a factor, linear between them, with its
+/// normalisation in closed form.
 ///
-/// Below the first angle D is taken as constant; above the last as zero. [`assumed`](Self::assumed) tells how much of
-/// [0, π/2] that concerns.
+/// D is taken as constant up to the first angle and as zero beyond the last.
+/// [`assumed`](Self::assumed) tells how much of [0, π/2] that concerns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabulated {
     theta: Vec<f64>,
     /// Normalised.
     d: Vec<f64>,
-    /// Projected share below each angle.
+    /// Share of the projected area whose normals are within each angle.
     below: Vec<f64>,
     given: (f64, f64),
 }
 
 impl Tabulated {
-    /// From rows (θ in radians ascending, D in any unit).
+    /// The distribution through rows of θ (radians, ascending) and D in any unit.
     ///
     /// # Errors
     /// [`TabulatedError`] with the row and value.
@@ -103,7 +106,8 @@ impl Tabulated {
         Ok(this)
     }
 
-    /// First and last angle that were given, in radians: D is assumed constant below the first and zero above the last.
+    /// First and last angle that were given, in radians: D is assumed constant up to the first and
+    /// zero beyond the last.
     pub fn assumed(&self) -> (f64, f64) {
         self.given
     }
@@ -117,7 +121,8 @@ impl Tabulated {
     fn segment(&self, i: usize, to: f64) -> f64 {
         let (a, d) = (self.theta[i], self.d[i]);
         let rate = (self.d[i + 1] - d) / (self.theta[i + 1] - a);
-        // ∫ (d + rate (t − a)) sin 2t = −(d + rate (t − a)) cos 2t/2 + rate sin 2t/4; with differences of cosines as products.
+        // ∫ (d + rate (t − a)) sin 2t = −(d + rate (t − a)) cos 2t/2 + rate sin 2t/4; with
+        // differences of cosines as products.
         let (h, m) = (to - a, to + a);
         let constant = d * libm::sin(h) * libm::sin(m);
         let ramp = 0.5 * rate * (libm::sin(h) * libm::cos(m) - h * libm::cos(2.0 * to));
@@ -183,7 +188,7 @@ mod tests {
             assert!((table.cdf(theta) - u).abs() < 1e-14);
         }
         assert!((table.peak() / beckmann.peak() - 1.0).abs() < 1e-4);
-        // The segments' closed form against quadrature that knows nothing of segments.
+        // The segments' closed form against quadrature that does not know the segments.
         assert!((projected(|t| table.d(t), 0.01, 0.4) - table.cdf(0.4)).abs() < 1e-5);
     }
 

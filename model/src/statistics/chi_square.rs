@@ -5,12 +5,12 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 /// Cells expected to hold fewer than this are pooled, the usual condition for the χ² approximation.
 const LEAST_EXPECTED: f64 = 5.0;
 
-/// Outcome of a test.
+/// Outcome of a χ² test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChiSquare {
     /// Σ (observed − expected)²/expected over the pooled cells.
     pub statistic: f64,
-    /// Cells after pooling, less one.
+    /// Degrees of freedom: cells after pooling, less one.
     pub degrees: usize,
     /// Probability of a larger statistic if the counts do come from the expected distribution.
     pub p: f64,
@@ -18,8 +18,8 @@ pub struct ChiSquare {
 
 /// Tests `observed` counts against `expected` ones, cell by cell.
 ///
-/// Small cells are gathered until they hold enough together; what remains joins the last group. Counts in cells that should be empty
-/// (expected 0) reject: p = 0.
+/// Cells expected to hold fewer than 5 are pooled until they hold 5 together; a remainder joins the
+/// last group. A count in a cell of expectation 0 rejects: p = 0.
 ///
 /// # Panics
 /// If the two differ in length.
@@ -50,13 +50,14 @@ pub fn chi_square(observed: &[u64], expected: &[f64]) -> ChiSquare {
     let p = match ChiSquared::new(degrees as f64) {
         _ if impossible => 0.0,
         Ok(distribution) => distribution.sf(statistic),
-        // A single group says nothing.
+        // A single group tests nothing.
         Err(_) => 1.0,
     };
     ChiSquare { statistic, degrees, p }
 }
 
-/// Level for each of `tests` so that all together falsely reject with probability `level` (Šidák).
+/// Significance level for each of `tests` tests so that all together falsely reject with
+/// probability `level` (Šidák).
 pub fn sidak(level: f64, tests: usize) -> f64 {
     -libm::expm1(libm::log1p(-level) / tests.max(1) as f64)
 }

@@ -1,4 +1,4 @@
-//! Statistical tests of samplers against the model. They judge what is drawn, wherever it comes from.
+//! Statistical tests of samplers against the model, wherever the drawn normals come from.
 
 mod chi_square;
 mod normals;

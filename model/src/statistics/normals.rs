@@ -1,4 +1,4 @@
-//! Is what a sampler draws distributed as the model says? One material and view at a time.
+//! Tests whether drawn normals have the model's distribution, for one lobe and view at a time.
 
 use glam::{DVec3, Vec3};
 use rand::rngs::StdRng;
@@ -8,37 +8,39 @@ use super::chi_square::{ChiSquare, chi_square};
 use crate::distribution::MicrofacetDistribution;
 use crate::{Shape, SignedSlope, StudentT, VisibleSlope, across_cdf, across_quantile};
 
-/// Cells along α and β of the χ² in the lobe's space.
+/// Cells of the χ² in unit space, along the plane of incidence and across it.
 const CELLS: [usize; 2] = [32, 16];
-/// Edges along α at which the empirical CDF is compared.
+/// Cells of the in-plane slope at whose edges the empirical CDF is compared.
 const KS_EDGES: usize = 256;
-/// Cells along the radius and the azimuth of the χ² in world space.
+/// Cells of the χ² in the tangent frame, along radius and azimuth.
 const WORLD: [usize; 2] = [10, 16];
-/// Unit slopes beyond this end in the last cell: the sampler keeps normals a little above the horizon.
+/// Unit slopes beyond this go to the last cell: samplers keep normals a little above the horizon.
 const LARGEST_SLOPE: f64 = 1e15;
 
-/// What was found for one material and view.
+/// Outcome of the tests for one lobe and view.
 #[derive(Clone, Copy, Debug)]
 pub struct NormalsTest {
-    /// χ² over (α, β), with exact expected counts.
+    /// χ² over in-plane slope and slope across, with expected counts by the model's CDFs.
     pub lobe: ChiSquare,
-    /// χ² over the hemisphere of world normals, with expected counts by quadrature of the analytic density.
+    /// χ² over the hemisphere of normals in the tangent frame, with expected counts by quadrature
+    /// of the analytic density.
     pub world: ChiSquare,
-    /// Kolmogorov–Smirnov distance of the tilt in the plane of incidence, over 256 edges.
+    /// Kolmogorov–Smirnov distance of the in-plane slope, over 256 edges.
     pub ks: f64,
 }
 
 impl NormalsTest {
-    /// The smaller p of the two tests.
+    /// The smaller p-value of the two χ² tests.
     pub fn p(&self) -> f64 {
         self.lobe.p.min(self.world.p)
     }
 }
 
-/// Draws `samples` normals with `draw(u)`, u uniform in [0, 1)², and tests them against the visible normals of `truth` for the
-/// view `v`.
+/// Draws `samples` normals with `draw(u)`, u uniform in [0, 1)², and tests them against the visible
+/// normals of `truth` for the view `v`, a unit vector in the tangent frame.
 ///
-/// Any sampler can be judged, from tables or not. The truth may deliberately be another than was drawn from, to see the tests reject.
+/// Any sampler can be tested, with tables or without. `truth` may deliberately differ from the lobe
+/// that is drawn from, to see the tests reject.
 pub fn test_visible_normals(
     truth: &StudentT,
     v: DVec3,
@@ -65,7 +67,8 @@ pub fn test_visible_normals(
         .iter()
         .flat_map(|a| grid.across_share.iter().map(move |b| a * b * n))
         .collect();
-    // A cell of which only a corner faces the view can slip through the quadrature: it is pooled, not taken as impossible.
+    // The quadrature can miss a cell of which only a corner faces the view: such a cell is pooled,
+    // not taken as impossible.
     let world_expected: Vec<f64> = world.share.iter().map(|share| share.max(1e-12) * n).collect();
     let mut below = 0;
     let ks = ks_counts.iter().zip(&grid.ks_cdf).fold(0.0, |worst: f64, (&count, cdf)| {
@@ -79,12 +82,13 @@ pub fn test_visible_normals(
     }
 }
 
-/// Index of the first upper edge not below x; the last edge is ∞.
+/// Index of the first upper edge ≥ x; the last edge is ∞.
 fn cell(upper_edges: &[f64], x: f64) -> usize {
     upper_edges.partition_point(|&edge| edge < x).min(upper_edges.len() - 1)
 }
 
-/// Cells in the plane of incidence and across it, as upper edges in unit slopes, with their probabilities.
+/// Cells in the plane of incidence and across it, as upper edges in unit slopes, with their
+/// probabilities.
 struct LobeGrid {
     sigma: [f64; 2],
     s: f64,
@@ -121,7 +125,7 @@ impl LobeGrid {
         }
     }
 
-    /// Unit slopes of a world normal: x towards the viewer, and y/√(1 + s x²) across.
+    /// Unit slopes of a normal: x towards the viewer, and y/√(1 + s x²) across.
     fn slopes(&self, m: DVec3) -> [f64; 2] {
         let (a, b) = (m.x / self.sigma[0], m.y / self.sigma[1]);
         let [cos, sin] = self.azimuth;
@@ -161,8 +165,8 @@ fn shares(cdf: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Cells of the hemisphere in the tangent frame: rings of unit slope by azimuth, fixed to the surface and not to the view, so that a
-/// wrong frame, rotation or sign shows.
+/// Cells of the hemisphere in the tangent frame, rings of unit slope by azimuth. They are fixed to
+/// the surface and not to the view, so that a wrong frame, rotation or sign shows.
 struct WorldGrid {
     sigma: [f64; 2],
     rings: Vec<f64>,
@@ -201,8 +205,8 @@ impl WorldGrid {
                 });
             }
         }
-        // Near γ = 3/2 the tail is too heavy for this quadrature, which loses what lies next to the horizon: the outermost ring is then
-        // taken as one cell that holds the rest.
+        // Near γ = 3/2 the tail is too heavy for this quadrature, which misses what lies next to
+        // the horizon: the outermost ring is then one cell that holds the rest.
         let inside: f64 = share[..(WORLD[0] - 1) * WORLD[1]].iter().sum();
         let total: f64 = share.iter().sum();
         let whole_last_ring = (total - 1.0).abs() > 1e-4;
@@ -226,7 +230,8 @@ impl WorldGrid {
     }
 }
 
-/// Midpoint rule with 32² points: the integrand has a kink where normals turn away, so a higher order gains nothing.
+/// Midpoint rule with 32² points: the integrand has a kink where normals turn away from the view,
+/// so that a higher order gains nothing.
 fn integrate(a: [f64; 2], b: [f64; 2], f: impl Fn(f64, f64) -> f64) -> f64 {
     const POINTS: usize = 32;
     let (da, db) = ((a[1] - a[0]) / POINTS as f64, (b[1] - b[0]) / POINTS as f64);
