@@ -75,7 +75,7 @@ pub enum AlbedoVerdict {
     Declined,
     /// The default set that is compiled into the sampler crate covers it.
     Embedded,
-    /// It has no microfacets, or no geometry wears it.
+    /// It has no microfacets, or no geometry uses it.
     NotNeeded,
 }
 

@@ -69,7 +69,7 @@ pub enum Verdict {
     Embedded,
     /// It has no microfacets.
     NotRough,
-    /// No geometry wears it.
+    /// No geometry uses it.
     NotUsed,
 }
 

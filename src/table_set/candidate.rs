@@ -43,7 +43,7 @@ struct Measured {
     growth: f64,
 }
 
-/// A table group and what is known of its grades.
+/// A table group with the predictions and measurements of its grades.
 pub(super) struct Candidate<'a> {
     pub(super) group: TableGroup<'a>,
     /// Measurements by precision.

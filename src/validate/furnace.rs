@@ -61,7 +61,7 @@ pub struct Walk {
 /// raised to cos θ = 1e-30.
 ///
 /// # Errors
-/// [`MaterialError`] for what the tables do not cover.
+/// [`MaterialError`] for a material that the tables do not cover.
 pub fn furnace(
     tables: &Tables,
     masking: Masking,
@@ -85,7 +85,7 @@ pub fn furnace(
 /// logarithm of the cosine, since a smooth surface loses its light at grazing.
 fn lobe(albedo: &Albedo, cos_theta: f32) -> f64 {
     const STEPS: usize = 4000;
-    /// Lights below e⁻³⁰ bring nothing.
+    /// Range of the logarithm: lights with cos θ < e⁻³⁰ contribute nothing.
     const RANGE: f64 = 30.0;
     let v = direction(cos_theta);
     let step = RANGE / STEPS as f64;

@@ -174,7 +174,7 @@ impl Ruler<'_> {
 
     fn density(&self, place: f64) -> f64 {
         let (marginal, sigma) = (self.marginal, self.marginal.sigma());
-        // The view function also gives the normal whose slope is this tangent.
+        // The normal of this slope, as a view whose cotangent is the reciprocal.
         let m = view(1.0 / (self.quantity(place) * sigma));
         let exact = marginal.d(1.0 / (exact_cotangent(m) * sigma));
         ((f64::from(self.radial.d(m)) - exact) / marginal.d(0.0)).abs()
