@@ -49,7 +49,24 @@ pub struct Panel {
 pub enum PlotError {
     /// No figure has this name.
     Unknown(String),
-    /// The drawing library places points on integers; this many steps make one pixel of the page, so
+    /// The drawing library's message.
+    Drawing(String),
+}
+
+impl fmt::Display for PlotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(name) => write!(f, "no figure `{name}`; there are {}", NAMES.join(", ")),
+            Self::Drawing(why) => write!(f, "the figure could not be drawn: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for PlotError {}
+
+/// Size of a panel on the page, in pixels.
+const PANEL: (u32, u32) = (560, 420);
+/// The drawing library places points on integers; this many steps make one pixel of the page, so
 /// that curves are smooth.
 const FINE: u32 = 8;
 

@@ -58,7 +58,7 @@ pub(super) struct Args {
     /// Quantity whose error the least-error replacement minimises.
     #[arg(long, default_value = "relative")]
     on: On,
-    /// Print the replacements of 17 Beckmann distributions by Blinn-Phong, Gauss, Schlick and Trowbridge-Reitz.
+    /// Print replacements of 17 Beckmanns by Blinn-Phong, Gauss, Schlick and Trowbridge-Reitz.
     #[arg(long, conflicts_with_all = ["from", "to", "by", "shape"])]
     table: bool,
 }

@@ -18,7 +18,7 @@ use super::{
     Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, tables,
 };
 
-/// Draw normals for one material and view into a safetensors file: `normals` [N,3] and `pdf` [N], f32.
+/// Draw normals for one material and view into a safetensors file: `normals` [N,3], `pdf` [N], f32.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  microfacet-bake sample --sigma 0.454 --gamma 3 --theta 1.0 --count 100000 --out normals.safetensors"

@@ -316,7 +316,7 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
     })
 }
 
-/// The view coordinate of a single lobe: its γ is a constant here, so that readers do not supply it.
+/// The view coordinate of a single lobe: its γ is a constant here, so that readers supply none.
 fn view_of(gamma: f64) -> ViewBlend {
     ViewBlend::BAKED.of_shape(gamma)
 }
