@@ -264,7 +264,8 @@ impl CostFunction for Simplex<'_> {
 }
 
 /// The published formula from one distribution to another: N = 2/m² − 2 between Beckmann and
-/// Blinn–Phong (Walter et al. 2007, doi:10.2312/EGWR/EGSR07/195-206, section 5.2).
+/// Blinn–Phong (Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*,
+/// doi:10.2312/EGWR/EGSR07/195-206, section 5.2).
 ///
 /// # Errors
 /// [`ConvertError::NoFormula`] for other pairs; [`ConvertError::Family`] if the result is out of

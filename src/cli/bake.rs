@@ -140,7 +140,7 @@ pub(super) fn run(args: Args) -> Outcome {
     bar.finish_and_clear();
     if let Some(why) = &result.cache_error {
         eprintln!(
-            "warning: finished tables cannot be cached: {why}; name a folder with --cache, or use --no-cache"
+            "warning: finished tables are not kept: {why}; name a folder with --cache, or use --no-cache"
         );
     }
     let formats: Vec<Format> = args

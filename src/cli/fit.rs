@@ -1,4 +1,4 @@
-//! `fit`: σ and γ of a measured distribution.
+//! `fit`: fits σ and γ to a measured distribution.
 
 use std::fmt::Write;
 use std::path::PathBuf;

@@ -91,13 +91,14 @@ impl Request {
             };
             if matches!(self.quality(), Quality::High) {
                 return Err(Failure(
-                    "--embedded: the embedded set has default quality; drop --quality high".into(),
+                    "--embedded: the set compiled in is of default quality; drop --quality high"
+                        .into(),
                 ));
             }
             let worst_of_others = worst(&others);
             if max_error.is_some_and(|max| max < worst_of_others) {
                 return Err(Failure(format!(
-                    "--embedded: the embedded set has an error of {worst_of_others:.1e}; allow as much"
+                    "--embedded: the set compiled in has an error of {worst_of_others:.1e}; allow as much"
                 )));
             }
             // If its albedos are not accurate enough, better ones are baked.

@@ -13,7 +13,8 @@ use microfacet_sampler::{
     Albedo, Axis, Kind, LobeEntry, Masking, MaterialError, Reflectance, Subject, Table, Tables,
 };
 
-/// Allowed deviation from 1 with the Kulla–Conty lobe.
+/// Allowed deviation from 1 with the Kulla–Conty lobe
+/// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).
 pub const TOLERANCE: f64 = 2e-3;
 /// Bounces after which a walk is abandoned; it then counts as energy lost.
 const LIMIT: usize = 1_000_000;
@@ -31,7 +32,8 @@ pub struct Furnace {
     pub cos_theta: f64,
     /// E by the model's quadrature: the share of light that one bounce returns.
     pub single: f64,
-    /// The share with Turquin's scaling.
+    /// The share with Turquin's scaling
+    /// ([2019](https://blog.selfshadow.com/publications/turquin/ms_comp_final.pdf)).
     pub turquin: f64,
     /// The share with the Kulla–Conty lobe.
     pub kulla_conty: f64,

@@ -45,14 +45,14 @@ const WAYS: usize = 2 * SLANTS.len();
 /// Largest errors measured.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
-    /// Of G1.
+    /// Error of G1.
     pub g1: f64,
-    /// Of the CDF of the in-plane slope.
+    /// Error of the CDF of the in-plane slope.
     pub along: f64,
-    /// Of the CDF of the slope across, given in-plane slopes that random numbers no closer to 0 and
-    /// 1 than 2⁻²⁴ draw.
+    /// Error of the CDF of the slope across, given in-plane slopes that random numbers no closer to
+    /// 0 and 1 than 2⁻²⁴ draw.
     pub across: f64,
-    /// Of D/D(0).
+    /// Error of D/D(0).
     pub density: f64,
 }
 
