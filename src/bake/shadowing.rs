@@ -55,7 +55,7 @@ pub(super) fn ratios(
     };
     let mut nodes: Vec<_> = views[..views.len() - 1].par_iter().map(|&t| node(t)).collect();
     // z = ∞, where G1 = 1. Near γ = 3/2 the excess falls like z^(−2k), so the derivative there says
-    // nothing about the cell; this slope makes the cubic exact in the cell's middle instead.
+    // nothing about the cell; this slope makes the cubic meet the ratio in the cell's middle.
     let ([before, slope], [middle, _]) = (nodes[views.len() - 2], node(1.0 - 0.5 / cells));
     nodes.push([1.0, slope - 8.0 * (middle - 0.5 * (before + 1.0))]);
     nodes

@@ -2,11 +2,11 @@
 //! pass.
 //!
 //! One loop runs over the nodes of a specification's axes: [`Model`] is the lobe by quadrature,
-//! [`Integrand`] the reflectance. Stored are E − 1 for F = 1 and its parts, for the other moments
-//! their excess over E times a mirror's (all of these vanish with σ), and for exact reflectances
-//! the shares of light. Nodes are spaced evenly in coordinates found by measuring. Averages are
-//! integrated from the stored, interpolated albedo, so that a white furnace closes to rounding
-//! rather than to the interpolation error.
+//! [`Integrand`] the reflectance. For the moments (F = 1 and its parts) a table holds E − 1 and, of
+//! the other moments, their excess over E times a mirror's, all of which vanish with σ; for exact
+//! reflectances it holds the shares of light. Nodes are spaced evenly in coordinates found by
+//! measuring. Averages are integrated from the stored, interpolated albedo, so that a white furnace
+//! closes to rounding rather than to the interpolation error.
 
 mod albedo_spec;
 mod integrand;
@@ -231,7 +231,7 @@ fn node(
     let mut values = integrand.at(model, site)?;
     let ratio = model.area_ratio(site);
     let clamp = ratio.map(|ratio| 1.0 / (1.0 + ratio));
-    // Divides the factor that the clamp of G1(v) leaves out of the shares.
+    // The factor that the clamp of G1(v) leaves in the shares is divided out.
     let share = ratio.unwrap_or(1.0).min(1.0);
     if share < UNSEEN {
         (values.uncorrelated, values.height_correlated) = Default::default();

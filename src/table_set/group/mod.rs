@@ -19,7 +19,7 @@ pub(super) enum TableGroup<'a> {
     Normals(&'a RequiredShapes, Parts),
     /// A distribution outside the family, and a material that has it.
     Distribution(&'a Distribution, MaterialEntry),
-    /// Albedos.
+    /// A required albedo.
     Albedo(&'a RequiredAlbedo),
 }
 
