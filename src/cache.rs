@@ -1,4 +1,4 @@
-//! Finished tables kept between runs, under the content of what they were baked from.
+//! A cache of finished tables, under the content of what they were baked from.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -11,29 +11,30 @@ use microfacet_sampler::{Mapping, Provenance, Table, VERSION, encode};
 use crate::bake::NUMERICS;
 use crate::store::{self, replace};
 
-/// A folder of finished tables, or none.
+/// A folder of finished tables, or no cache at all.
 ///
-/// An entry is a table set named by the SHA-256 of its key: the complete specification with all its numbers, the number of the numeric
-/// method, the version of the format and the coordinates along the axes. So an entry is never out of date, entries may be removed at any time, and several
-/// processes may share a folder. An entry that is damaged is as good as none.
+/// An entry is a table set named by the SHA-256 of its key: the complete specification with all its
+/// numbers, the number of the numeric method, the version of the format and the coordinates along
+/// the axes. So an entry is never out of date, entries may be removed at any time, and several
+/// processes may share a folder. A damaged entry counts as missing.
 #[derive(Clone, Debug)]
 pub struct Cache {
     folder: Option<PathBuf>,
 }
 
 impl Cache {
-    /// A cache in this folder, which is made when something is put into it.
+    /// A cache in this folder, which is created with the first entry.
     pub fn new(folder: PathBuf) -> Self {
         Self { folder: Some(folder) }
     }
 
-    /// One that keeps nothing.
+    /// A cache that keeps nothing.
     pub fn none() -> Self {
         Self { folder: None }
     }
 
-    /// The folder `microfacet-bake` in the user's cache folder (`$XDG_CACHE_HOME`, or what the system has in its place); none if the
-    /// user has no home.
+    /// The folder `microfacet-bake` in the user's cache folder (`$XDG_CACHE_HOME`, or the system's
+    /// equivalent); no cache if the user has no home.
     pub fn user() -> Self {
         let folder = etcetera::choose_base_strategy()
             .ok()
@@ -41,7 +42,7 @@ impl Cache {
         Self { folder }
     }
 
-    /// Where it is.
+    /// The folder, if there is one.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
@@ -50,14 +51,14 @@ impl Cache {
     pub fn get(&self, key: &str) -> Option<Vec<Table>> {
         let key = complete(key);
         let set = store::read(&self.path(&key)?).ok()?;
-        // The key itself is in the entry: whatever else bears this name is not it.
+        // The entry holds its key: a file of this name with another key does not count.
         (set.provenance().recipe == key).then(|| set.tables().to_vec())
     }
 
     /// Keeps tables under a key.
     ///
     /// # Errors
-    /// What the operating system reports, such as a folder that cannot be written.
+    /// Any error of the operating system, such as a folder that cannot be written.
     pub fn put(&self, key: &str, tables: &[Table]) -> io::Result<()> {
         let key = complete(key);
         let (Some(path), Some(folder)) = (self.path(&key), &self.folder) else { return Ok(()) };
@@ -67,10 +68,10 @@ impl Cache {
         replace(&path, &bytes)
     }
 
-    /// Forgets what is kept under a key.
+    /// Removes what is kept under a key.
     pub fn remove(&self, key: &str) {
         if let Some(path) = self.path(&complete(key)) {
-            // Gone already is as good.
+            // A file that is gone already is no error.
             let _ = std::fs::remove_file(path);
         }
     }
@@ -81,8 +82,8 @@ impl Cache {
     }
 }
 
-/// A key with all that decides what it stands for: versions, and the coordinates, whose formulas and constants a specification
-/// does not name.
+/// A key with everything that its meaning depends on: versions, and the coordinates, whose formulas
+/// and constants a specification does not name.
 fn complete(key: &str) -> String {
     let mappings = Mapping::EVERY.map(|mapping| (mapping, mapping.formula()));
     let program = env!("CARGO_PKG_VERSION");

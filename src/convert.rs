@@ -1,7 +1,9 @@
-//! Replacing one distribution by another: equal half angles, least squares, and the formulas in print.
+//! Replaces one distribution by another: by equal half angles, by least squares, or by published
+//! formulas.
 //!
-//! After Sawicki 2021, *Microfacet Distribution Function: To Change or Not to Change, That Is the Question*: the error of a replacement
-//! is the root mean square of the difference over a uniform grid of θ in [0, π/2).
+//! After Sawicki 2021, *Microfacet Distribution Function: To Change or Not to Change, That Is the
+//! Question*: the error of a replacement is the root mean square of the difference over a uniform
+//! grid of θ in [0, π/2).
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
@@ -13,7 +15,7 @@ use microfacet_model::classic::{Isotropic, Tabulated};
 
 use crate::distribution::{DistributionError, DistributionKind, Named};
 
-/// What is compared.
+/// The quantity that is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// D(θ)/D(0): the shape of the highlight.
@@ -36,11 +38,12 @@ pub struct Replacement {
 pub enum ConvertError {
     /// A distribution could not be made.
     Family(DistributionError),
-    /// The distribution nowhere falls to half of D(0).
+    /// D does not fall to half of D(0) at any angle.
     NoHalfAngle(String),
-    /// No parameter of the family gives that half angle, in radians.
+    /// No parameter of this kind of distribution gives that half angle, in radians.
     OutOfReach(DistributionKind, f64),
-    /// A half angle fixes one parameter; the family has two, and the second must be given.
+    /// A half angle fixes one parameter; this kind of distribution has two, and the second must be
+    /// given.
     ShapeNeeded(DistributionKind),
     /// No published formula is known for this pair.
     NoFormula(DistributionKind, DistributionKind),
@@ -83,7 +86,7 @@ impl From<DistributionError> for ConvertError {
     }
 }
 
-/// The uniform grid over which errors are taken, with the distribution to be replaced on it.
+/// The distribution to be replaced, on the uniform grid over which errors are taken.
 pub struct Target<'a> {
     from: &'a dyn Isotropic,
     theta: Vec<f64>,
@@ -92,7 +95,7 @@ pub struct Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// Prepares the grid: 900 steps, or as many as put 64 into the half angle.
+    /// Prepares the grid: 900 steps, or as many as give 64 within the half angle.
     pub fn new(from: &'a dyn Isotropic) -> Self {
         let half = from.half_angle().unwrap_or(FRAC_PI_2);
         let steps = (64.0 * FRAC_PI_2 / half).clamp(900.0, 200_000.0).ceil() as usize;
@@ -132,10 +135,11 @@ impl<'a> Target<'a> {
         Ok(Replacement { to, rmse })
     }
 
-    /// The member of a family with the same half angle. `shape` is the second parameter of a family that has two.
+    /// The distribution of kind `to` with the same half angle. `shape` is the second parameter of a
+    /// kind that has two.
     ///
     /// # Errors
-    /// [`ConvertError`] where either has no such angle, or `shape` is missing.
+    /// [`ConvertError`] if either distribution has no such angle, or `shape` is missing.
     pub fn by_half_angle(
         &self,
         to: DistributionKind,
@@ -153,7 +157,8 @@ impl<'a> Target<'a> {
             .from
             .half_angle()
             .ok_or_else(|| ConvertError::NoHalfAngle("the distribution".into()))?;
-        // The half angle is monotone in the width; a lobe too wide to have one counts as beyond any.
+        // The half angle is monotone in the width; a lobe too wide to have one is wider than any
+        // with one.
         let excess = |y: f64| {
             let half = named(y)?.build()?.half_angle();
             Ok::<_, ConvertError>(half.map_or(f64::INFINITY, |half| half - angle))
@@ -174,14 +179,14 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// The member of a family with the least RMSE, all parameters fitted together.
+    /// The distribution of kind `to` with the least RMSE, all parameters fitted together.
     ///
     /// # Errors
     /// [`ConvertError::Minimiser`] with the minimiser's own message.
     pub fn by_rmse(&self, to: DistributionKind, form: Form) -> Result<Replacement, ConvertError> {
         let problem = Problem { target: self, to, form };
         let failed = |e: Error| ConvertError::Minimiser(e.to_string());
-        // A coarse scan finds the valley, which several local minima may surround.
+        // A coarse scan finds the basin of the global minimum among several local ones.
         let steps = if to.dimension() == 1 { 200 } else { 48 };
         let scale = |i: usize| i as f64 / steps as f64;
         let start = (0..=steps)
@@ -217,7 +222,7 @@ impl<'a> Target<'a> {
     }
 }
 
-/// RMSE as a function on the family's search square.
+/// The RMSE as a function on the search square of a kind of distribution.
 struct Problem<'a> {
     target: &'a Target<'a>,
     to: DistributionKind,
@@ -227,7 +232,8 @@ struct Problem<'a> {
 impl Problem<'_> {
     fn error(&self, point: &[f64]) -> f64 {
         let rmse = self.to.build(&self.to.at(point)).map(|to| self.target.rmse(&*to, self.form));
-        // Points outside the square stand for its edge; the slope leads the simplex back.
+        // A point outside the square has the value at its edge plus a slope that leads the simplex
+        // back.
         let outside: f64 = point.iter().map(|y| (y - y.clamp(0.0, 1.0)).abs()).sum();
         match rmse {
             Ok(rmse) if rmse.is_finite() => rmse * (1.0 + outside) + 1e-12 * outside,
@@ -257,11 +263,13 @@ impl CostFunction for Simplex<'_> {
     }
 }
 
-/// The published formula from one distribution to another: N = 2/m² − 2 between Beckmann and Blinn–Phong (Walter et al. 2007,
-/// *Microfacet Models for Refraction through Rough Surfaces*, section 5.2).
+/// The published formula from one distribution to another: N = 2/m² − 2 between Beckmann and
+/// Blinn–Phong (Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*,
+/// doi:10.2312/EGWR/EGSR07/195-206, section 5.2).
 ///
 /// # Errors
-/// [`ConvertError::NoFormula`] for other pairs; [`ConvertError::Family`] where the formula leaves the range.
+/// [`ConvertError::NoFormula`] for other pairs; [`ConvertError::Family`] if the result is out of
+/// range.
 pub fn by_formula(from: &Named, to: DistributionKind) -> Result<Replacement, ConvertError> {
     let values = match (from.family, to, from.values.as_slice()) {
         (DistributionKind::Beckmann, DistributionKind::BlinnPhong, &[m]) => {

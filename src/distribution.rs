@@ -1,4 +1,5 @@
-//! The distributions by name, as recipes and the command line give them: `blinn-phong:50`, `student-t:0.3,2.5`.
+//! Distributions by name, as recipes and the command line give them: `blinn-phong:50`,
+//! `student-t:0.3,2.5`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -34,28 +35,28 @@ pub enum DistributionKind {
 /// A distribution with its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named {
-    /// Which.
+    /// The kind.
     pub family: DistributionKind,
     /// Its parameters, in the order of [`DistributionKind::parameters`].
     pub values: Vec<f64>,
 }
 
-/// A distribution that a material may have of its own, outside the Student-t family.
+/// A distribution outside the Student-t family that a material may have.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Distribution {
-    /// By name and parameters.
+    /// Given by name and parameters.
     Named(Named),
-    /// From a file of angles (radians) and D.
+    /// Read from a file of angles (radians) and D.
     Measured {
         /// The file as the recipe names it.
         file: String,
-        /// What it holds.
+        /// The angles and D that it holds.
         table: Tabulated,
     },
 }
 
 impl Distribution {
-    /// The distribution itself.
+    /// Builds the distribution.
     ///
     /// # Errors
     /// As [`DistributionKind::build`].
@@ -66,7 +67,7 @@ impl Distribution {
         }
     }
 
-    /// One text for one distribution, such as `gtr:0.2,1.5` or `measured:steel.csv`, with every digit.
+    /// The distribution as text, with every digit: `gtr:0.2,1.5` or `measured:steel.csv`.
     pub fn label(&self) -> String {
         match self {
             Self::Named(named) => {
@@ -83,11 +84,11 @@ impl Distribution {
 pub enum DistributionError {
     /// No distribution has this name.
     Unknown(String),
-    /// The wrong number of parameters, or one that is no number.
+    /// The wrong number of parameters, or a parameter that is not a number.
     Parameters(DistributionKind, String),
-    /// A parameter outside its range; the message of the model.
+    /// A parameter outside its range, with the model's message.
     Range(DistributionKind, String),
-    /// An anisotropic distribution where an isotropic one is needed.
+    /// An anisotropic distribution where an isotropic one is required.
     Dimension(f64, f64),
 }
 
@@ -116,7 +117,7 @@ impl fmt::Display for DistributionError {
 impl std::error::Error for DistributionError {}
 
 impl DistributionKind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 9] = [
         Self::Beckmann,
         Self::Gauss,
@@ -144,7 +145,7 @@ impl DistributionKind {
         }
     }
 
-    /// The family of this name; `ggx` and `torrance-sparrow` are understood too.
+    /// The kind of this name; `ggx` and `torrance-sparrow` are understood too.
     ///
     /// # Errors
     /// [`DistributionError::Unknown`], listing the names.
@@ -171,7 +172,7 @@ impl DistributionKind {
         }
     }
 
-    /// The distribution with these parameters.
+    /// Builds the distribution with these parameters.
     ///
     /// # Errors
     /// [`DistributionError`] for a wrong number of parameters, one out of range, or anisotropy.
@@ -205,8 +206,8 @@ impl DistributionKind {
         }
     }
 
-    /// Parameters at a point of the search space [0, 1]ⁿ: logarithmic along the width, in s = 1/(γ−1) (Student-t, with Beckmann
-    /// at 0) or ln γ (GTR) along the shape.
+    /// Parameters at a point of the search space [0, 1]ⁿ: logarithmic in the width; in s = 1/(γ−1)
+    /// (Student-t, with Beckmann at 0) or ln γ (GTR) for the shape.
     pub(crate) fn at(self, point: &[f64]) -> Vec<f64> {
         let log = |y: f64, low: f64, high: f64| {
             (low * (y.clamp(0.0, 1.0) * (high / low).ln()).exp()).clamp(low, high)
@@ -219,21 +220,21 @@ impl DistributionKind {
             (Self::BlinnPhong, &[y]) => vec![log(y, 1e-2, 1e6)],
             (Self::AshikhminShirley, &[y]) => vec![log(y, 1e-2, 1e6); 2],
             (Self::StudentT, &[y, z]) => vec![log(y, 1e-4, 10.0), gamma(z)],
-            // Without a Beckmann limit: σ₀ would diverge.
+            // No Beckmann limit: σ₀ would diverge.
             (Self::HyperCauchy, &[y, z]) => vec![log(y, 1e-4, 1e3), gamma(z.max(1e-4))],
             (Self::Gtr, &[y, z]) => vec![log(y, 1e-5, 1.0), log(z, 0.1, 100.0)],
             _ => unreachable!("points have `dimension` coordinates"),
         }
     }
 
-    /// How many parameters an isotropic member of it has.
+    /// Number of parameters of its isotropic members.
     pub(crate) fn dimension(self) -> usize {
         if self == Self::AshikhminShirley { 1 } else { self.parameters().len() }
     }
 }
 
 impl Named {
-    /// The distribution itself.
+    /// Builds the distribution.
     ///
     /// # Errors
     /// As [`DistributionKind::build`].

@@ -1,4 +1,4 @@
-//! Fitting (σ, γ) to a measured distribution of normals.
+//! Fits (σ, γ) to a measured distribution of normals.
 
 use std::fmt;
 use std::io::Read;
@@ -11,9 +11,9 @@ use crate::distribution::DistributionKind;
 /// Why a measurement could not be read.
 #[derive(Debug)]
 pub enum MeasuredError {
-    /// The file is no CSV of two numbers a row; the line (from 1) and what is wrong.
+    /// The file is not a CSV of two numbers a row: the line (from 1) and the reason.
     Row(u64, String),
-    /// The rows make no distribution.
+    /// The rows are not a distribution.
     Distribution(TabulatedError),
 }
 
@@ -83,7 +83,7 @@ pub fn read_csv(input: impl Read, angles: Angles) -> Result<Tabulated, MeasuredE
     Tabulated::new(&rows).map_err(MeasuredError::Distribution)
 }
 
-/// The best Student-t, and the best of its two well-known members for comparison.
+/// The best Student-t, and its two well-known special cases for comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// σ and γ fitted together.
@@ -94,7 +94,7 @@ pub struct Fit {
     pub ggx: Replacement,
 }
 
-/// Least squares over the measured angles.
+/// Fits by least squares over the measured angles.
 ///
 /// # Errors
 /// [`ConvertError::Minimiser`].

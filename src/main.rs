@@ -1,4 +1,4 @@
-//! The `microfacet-bake` command: parses, dispatches, and turns the result into an exit code.
+//! The `microfacet-bake` command: parses the arguments, runs the subcommand, returns an exit code.
 
 mod cli;
 
@@ -11,7 +11,7 @@ fn main() -> ExitCode {
     cli::main()
 }
 
-/// What a user is told of a panic, in one line: it is never their fault.
+/// A panic as a message to the user in one line: it is never their fault.
 fn bug(panic: &str) -> String {
     let what = panic.lines().collect::<Vec<_>>().join(" ");
     let version = env!("CARGO_PKG_VERSION");

@@ -1,23 +1,23 @@
-//! What a bake will hold in memory, known before any of it is taken.
+//! Estimates the memory of a bake before any is taken.
 
 use std::fmt;
 
 use crate::bake::albedo::AlbedoSpec;
 
-/// Bytes held per value while a set is made: the values while they are gathered, rounded and kept, and the files they are written to.
-/// `docs/reliability.md` has what was measured.
+/// Bytes held per value while a set is made: the values as they are gathered, rounded and kept, and
+/// the files they are written to. `docs/reliability.md` has the measurements.
 const BYTES_PER_VALUE: u128 = 24;
-/// What the program itself takes.
+/// Bytes of the program itself.
 const BASE: u128 = 32 << 20;
 
-/// A set that would not fit.
+/// The error for a set that would exceed the memory limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLarge {
-    /// Values of all tables together.
+    /// Number of values of all tables together.
     pub values: u128,
-    /// Bytes that baking them would take.
+    /// Estimated bytes to bake them.
     pub needed: u128,
-    /// Bytes it may take.
+    /// Bytes allowed.
     pub limit: u64,
 }
 
@@ -37,14 +37,14 @@ impl fmt::Display for TooLarge {
 
 impl std::error::Error for TooLarge {}
 
-/// Values of albedo tables while they are made: channels of both forms are held in double precision until all nodes are
-/// there, and some are refined.
+/// Number of values of albedo tables while they are made: channels of both forms of masking are
+/// held in double precision until all nodes are done, and some tables are refined.
 pub fn of_albedo(spec: &AlbedoSpec) -> u128 {
     (8 * spec.nodes() as u128) << spec.doublings()
 }
 
-/// Checks that tables of so many values can be baked within `limit` bytes; the estimate is above the truth,
-/// by half for large sets.
+/// Checks that tables of so many values can be baked within `limit` bytes. The estimate is too
+/// high, by half for large sets.
 ///
 /// # Errors
 /// [`TooLarge`] with the estimate.

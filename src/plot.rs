@@ -1,4 +1,5 @@
-//! Figures of the literature as data and as SVG: pure, no files and no fonts of the system.
+//! Draws figures of the literature as data and as SVG: pure functions, without files or system
+//! fonts.
 
 mod figures;
 
@@ -35,9 +36,9 @@ pub struct Panel {
     pub x_label: &'static str,
     /// Quantity and unit along y.
     pub y_label: &'static str,
-    /// Range of y; that of x is that of the points.
+    /// Range of y; the range of x is that of the points.
     pub y: (f64, f64),
-    /// Where the legend is out of the way.
+    /// Where the legend hides no curve.
     pub legend: Legend,
     /// Curves.
     pub curves: Vec<Curve>,
@@ -63,9 +64,10 @@ impl fmt::Display for PlotError {
 
 impl std::error::Error for PlotError {}
 
-/// Size of a panel in units of the page.
+/// Size of a panel on the page, in pixels.
 const PANEL: (u32, u32) = (560, 420);
-/// The drawing library places points on whole units; this many make one of the page, so that curves are smooth.
+/// The drawing library places points on integers; this many steps make one pixel of the page, so
+/// that curves are smooth.
 const FINE: u32 = 8;
 
 /// Draws panels side by side, two in a row.
@@ -86,7 +88,7 @@ pub fn svg(panels: &[Panel]) -> Result<String, PlotError> {
         }
         root.present().map_err(drawing)?;
     }
-    // The view box keeps the fine units; only the size on the page is the plain one.
+    // The view box keeps the fine coordinates; only the size on the page is the panel's own.
     let fine = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
     Ok(text.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", page.0, page.1), 1))
 }
@@ -125,7 +127,7 @@ fn draw(
         // Evenly round the colour circle, dark enough for white paper.
         let color = HSLColor(i as f64 / panel.curves.len() as f64, 0.75, 0.42);
         let style = color.stroke_width(2 * FINE);
-        // A curve that leaves the panel is broken there, not joined across.
+        // A curve that leaves the panel is interrupted there, not joined across.
         let inside = |p: &(f64, f64)| (panel.y.0..=panel.y.1).contains(&p.1);
         for run in curve.points.split(|p| !inside(p)).filter(|run| !run.is_empty()) {
             chart.draw_series(LineSeries::new(run.iter().copied(), style)).map_err(drawing)?;

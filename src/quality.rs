@@ -1,6 +1,6 @@
-//! How fine tables are: three named qualities, and every level between and beside them.
+//! How fine tables are: three named qualities, and levels between and beyond them.
 
-/// How fine the tables are.
+/// A named quality of tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
     /// Small and rough: previews, tests.
@@ -15,9 +15,9 @@ pub enum Quality {
 /// A place on the scale of qualities, in sixteenths of the step from one to the next:
 /// [`Quality::Draft`] is level 0, [`Quality::Default`] 16 and [`Quality::High`] 32.
 ///
-/// The numbers of nodes that belong to the qualities were found by measuring; those of a level
-/// between two of them are geometric means, and beyond them they go on by the same ratio. So the
-/// axes of a table stay in balance, and one number says how fine it is.
+/// The numbers of nodes of the qualities were found by measuring; those of a level between two
+/// qualities are geometric means, and beyond them they continue with the same ratio. So the axes of
+/// a table stay in balance, and one number says how fine it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Level(pub i32);
 
@@ -29,26 +29,26 @@ impl Level {
     /// The level of [`Quality::Default`].
     pub const DEFAULT: Self = Self(Self::STEP);
 
-    /// Nodes at this level of an axis that has `counts` in the three qualities, and no fewer than
-    /// `least`.
+    /// Number of nodes at this level of an axis that has `counts` in the three qualities, but at
+    /// least `least`.
     pub fn nodes(self, counts: [usize; 3], least: usize) -> usize {
         let count = self.between(counts.map(|count| count as f64)).round();
         (count as usize).max(least)
     }
 
-    /// The geometric mean of a quantity whose values in the three qualities are `at`.
+    /// The geometric mean at this level of a quantity whose values in the three qualities are `at`.
     pub fn between(self, at: [f64; 3]) -> f64 {
         let first = usize::from(self.0 >= Self::STEP);
         let t = f64::from(self.0 - first as i32 * Self::STEP) / f64::from(Self::STEP);
         match t {
-            // The power would round.
+            // `pow` would round.
             0.0 => at[first],
             1.0 => at[first + 1],
             _ => at[first] * libm::pow(at[first + 1] / at[first], t),
         }
     }
 
-    /// The best quality that is no finer, or [`Quality::Draft`].
+    /// The finest quality that is no finer than this level, or [`Quality::Draft`].
     pub fn quality(self) -> Quality {
         match self.0 / Self::STEP {
             ..=0 => Quality::Draft,
@@ -57,7 +57,8 @@ impl Level {
         }
     }
 
-    /// Numbers of nodes of the tables of the family, those of the qualities each found by measuring.
+    /// Numbers of nodes of the family's tables; those of the qualities were each found by
+    /// measuring.
     pub fn resolution(self) -> Resolution {
         Resolution {
             shapes: self.nodes([9, 21, 33], 5),
@@ -78,12 +79,12 @@ impl From<Quality> for Level {
     }
 }
 
-/// Numbers of nodes that go with a level.
+/// Numbers of nodes at a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Resolution {
-    /// γ nodes over the whole-distribution range.
+    /// γ nodes where the whole distribution is tabulated.
     pub shapes: usize,
-    /// γ nodes over the peeled range.
+    /// γ nodes where the heavy part is peeled.
     pub peeled_shapes: usize,
     /// γ nodes of either shadowing table.
     pub shadowing_shapes: usize,
@@ -113,7 +114,7 @@ mod tests {
         let views: Vec<usize> = (-64..64).map(|level| Level(level).resolution().views).collect();
         assert!(views.is_sorted() && views[0] == 9 && views[127] > 1000);
         assert_eq!(Level(8).nodes([25, 100, 400], 5), 50);
-        // Between qualities it is the coarser one's.
+        // A level between qualities belongs to the coarser one.
         assert_eq!(
             [Level(-1), Level(15), Level(31)].map(Level::quality),
             [0, 0, 1].map(|q| [Quality::Draft, Quality::Default][q])

@@ -1,4 +1,4 @@
-//! What is to be baked: one specification a table, pure data.
+//! Table specifications: what is to be baked, as pure data.
 
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::axis::lagrange::nodes_read;
@@ -7,9 +7,11 @@ use microfacet_sampler::{Interpolation, Kind, Precision};
 
 pub use crate::quality::{Level, Quality, Resolution};
 
-/// γ of the smallest shape that tables cover; below it almost every visible normal lies beyond any floating-point slope.
+/// Smallest shape γ that tables cover; for smaller γ almost every visible normal has a slope beyond
+/// any floating-point number.
 pub const GAMMA_MIN: f64 = 1.501;
-/// γ from which the whole visible distribution is tabulated; below, its heavy part is peeled off.
+/// γ from which the whole visible distribution is tabulated; for smaller γ its heavy part is
+/// peeled.
 pub const GAMMA_WHOLE: f64 = 1.8;
 
 /// The γ axis of a table, as nodes in s = 1/(γ−1).
@@ -27,7 +29,7 @@ impl ShapeAxis {
         Self { nodes: even_nodes(low, high, count), interpolation: Interpolation::Lagrange4 }
     }
 
-    /// The same, crowded towards s = 2 as by [`InverseShape::crowded_nodes`].
+    /// Nodes over [low, high] crowded towards s = 2 by [`InverseShape::crowded_nodes`].
     pub fn crowded(low: f64, high: f64, count: usize) -> Self {
         let nodes = InverseShape::crowded_nodes(low, high, count);
         Self { nodes, interpolation: Interpolation::Lagrange4 }
@@ -38,7 +40,7 @@ impl ShapeAxis {
         [self.nodes[0], self.nodes[self.nodes.len() - 1]]
     }
 
-    /// The part of a range that [from, to] reads.
+    /// The part of a range that interpolation in [from, to] reads.
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
         let nodes = nodes_read(&self.nodes, from, to, self.interpolation.window()).to_vec();
@@ -63,7 +65,8 @@ pub struct TableSpec {
     pub kind: Kind,
     /// The γ axis.
     pub shapes: ShapeAxis,
-    /// The shapes it is for, as [min, max] of s; the axis may have nodes beyond, which interpolation reads.
+    /// The shapes it covers, as [min, max] of s; the axis may have nodes beyond, which
+    /// interpolation reads.
     pub covers: [f64; 2],
     /// Nodes of the view axis; unused by kinds without one.
     pub views: usize,
@@ -74,7 +77,8 @@ pub struct TableSpec {
 }
 
 impl TableSpec {
-    /// How many pairs of value and slope the table holds; in 128 bits, where no product of three lengths overflows.
+    /// Number of pairs of value and slope; in 128 bits, where no product of three lengths
+    /// overflows.
     pub fn nodes(&self) -> u128 {
         let (views, numbers) = (self.views as u128, self.numbers as u128);
         let per_shape = match self.kind {
@@ -86,7 +90,7 @@ impl TableSpec {
         per_shape.saturating_mul(self.shapes.nodes.len() as u128)
     }
 
-    /// How many values it holds.
+    /// Number of values.
     pub fn values(&self) -> u128 {
         self.nodes().saturating_mul(Kind::VALUE_AND_SLOPE.len() as u128)
     }
@@ -98,7 +102,7 @@ impl TableSpec {
     }
 }
 
-/// The general set: every γ ∈ [1.501, ∞] (and through shape invariance every σ).
+/// The general set: every γ ∈ [1.501, ∞], and by shape invariance every σ.
 pub fn general_set(level: impl Into<Level>, precision: Precision) -> Vec<TableSpec> {
     let r = level.into().resolution();
     let (whole, heaviest) = (s_of_gamma(GAMMA_WHOLE), s_of_gamma(GAMMA_MIN));

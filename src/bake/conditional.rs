@@ -1,4 +1,5 @@
-//! The inverse CDF of the slope across the plane of incidence, in units of √(1 + s x²): independent of the view.
+//! The inverse CDF of the slope across the plane of incidence, divided by √(1 + s x²) so that it
+//! does not depend on the view.
 
 use rayon::prelude::*;
 
@@ -19,7 +20,8 @@ pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
     shapes(spec).par_iter().flat_map_iter(of_shape).flatten_iter().collect()
 }
 
-/// The half for u > ½: distance of the half tangent from 1, and its derivative by t, per node.
+/// A node of the half u > ½: the distance of the half tangent from 1, and its derivative by t, per
+/// node.
 fn node(shape: &Shape, t: f64, cells: usize) -> [f64; 2] {
     let (u, du_dt) = mirrored(t);
     let x = across_quantile(shape, 1.0 - u);

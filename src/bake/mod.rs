@@ -1,7 +1,7 @@
-//! From a specification to a table: pure functions, one file a kind, parallel over γ and view.
+//! Bakes tables from specifications: pure functions, one file a kind, parallel over γ and view.
 //!
-//! Everything is computed in f64 with the `libm` crate's functions and rounded once, to f32, at the end: the bytes
-//! are the same on every system, with any number of threads and in every build.
+//! Values are computed in f64 with the functions of the `libm` crate and rounded to f32 once, at
+//! the end: the bytes are the same on every system, with any number of threads and in every build.
 
 pub mod albedo;
 mod conditional;
@@ -17,11 +17,12 @@ use crate::table_spec::{ShapeAxis, TableSpec};
 
 pub use radial::{bake_radial, radial_axes, radial_bytes};
 
-/// Changes whenever the same specification would give other values or certificates: part of every file, and of every cache key.
+/// Number of the numeric method: raised when the same specification gives other values or
+/// certificates. It is part of every file and of every cache key.
 pub const NUMERICS: u32 = 4;
 
-/// u at which the ends of a mirrored axis are evaluated where u = 0 itself is an infinite slope: 2⁻⁴⁰. For Beckmann it keeps every
-/// stored slope finite (below 5.3); the CDF error it makes is itself.
+/// u at which the ends of a mirrored axis are evaluated where u = 0 itself is an infinite slope:
+/// 2⁻⁴⁰. For Beckmann it keeps every stored slope below 5.3; the CDF error it causes is 2⁻⁴⁰ too.
 const END: f64 = 1.0 / 1_099_511_627_776.0;
 
 /// Bakes one table.
@@ -63,28 +64,28 @@ pub fn axes(spec: &TableSpec) -> Vec<Axis> {
     }
 }
 
-/// The axis of u₁, along the plane of incidence.
+/// The axis of u₁, for the in-plane slope.
 fn along(count: usize) -> Axis {
     Axis::placed("u1", Mapping::MirroredRoot, Interpolation::Hermite, count)
 }
 
-/// The axis of u₂, across it, about which all slopes are odd.
+/// The axis of u₂, for the slope across, in which all quantiles are odd.
 fn across(count: usize) -> Axis {
     Axis::placed("u2", Mapping::OddRoot, Interpolation::Hermite, count)
 }
 
-/// The name of a table from its parts, those that say nothing left out.
+/// The name of a table from its parts, without the empty ones.
 pub(crate) fn joined_name(parts: &[&str]) -> String {
     let parts: Vec<&str> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
     parts.join("_")
 }
 
-/// A label as it stands in names, which become names of files.
+/// A label with the characters replaced that file names cannot have.
 pub(crate) fn in_names(label: &str) -> String {
     label.replace([':', ',', '/', '\\', ' '], "_")
 }
 
-/// Names as tables hold them.
+/// Channel names as tables hold them.
 fn names(channels: Channels) -> Vec<String> {
     channels.iter().map(|&name| name.into()).collect()
 }
@@ -95,14 +96,15 @@ fn shapes(spec: &TableSpec) -> Vec<Shape> {
     spec.shapes.nodes.iter().map(shape).collect()
 }
 
-/// Rounds (value, slope) pairs to f32, the one place where a bake does.
+/// Rounds (value, slope) pairs to f32: the only place where a bake rounds.
 fn round(nodes: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f32; 2]> {
     nodes.into_iter().map(|[value, slope]| [value as f32, slope as f32]).collect()
 }
 
-/// u ≤ ½ at the coordinate t ∈ [0, 1] of a mirrored axis, and du/dt; not below [`END`].
+/// u ≤ ½ at the coordinate t ∈ [0, 1] of a mirrored axis, at least [`END`], and du/dt.
 fn mirrored(t: f64) -> (f64, f64) {
-    // (2 END)^(1/4) is not a power of two; t itself only enters the derivative, whose end value is limited anyway.
+    // (2 END)^(1/4) is not a power of two; t itself enters only the derivative, whose end value is
+    // limited anyway.
     let t = t.max(MirroredRoot::of_number(END));
     (MirroredRoot::number(t), MirroredRoot::rate(t))
 }

@@ -1,7 +1,8 @@
-//! The four tables of an isotropic distribution that is no member of the Student-t family.
+//! The four tables of an isotropic distribution outside the Student-t family.
 //!
-//! The same coordinates as the family's tables, without its γ: slopes are divided by their median σ, and the slope across, by √(1 + x²). All values
-//! are integrals over the slope marginal and roots of them.
+//! The coordinates are those of the family's tables without γ: slopes are divided by their median
+//! σ, and the slope across also by √(1 + x²). All values are integrals over the slope marginal, or
+//! roots of such integrals.
 
 use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_sampler::axis::half_tangent::{rate, slope_at};
@@ -16,15 +17,17 @@ use super::shadowing::ratios;
 use super::{across, along, in_names, joined_name, mirrored, names, round};
 use crate::table_spec::Level;
 
-/// Rows of in-plane slopes in the table of slopes across.
+/// Rows, one for each in-plane slope, of the table of slopes across.
 const SLOPES: usize = 193;
-/// Nodes of D.
+/// Nodes of the table of D.
 const DENSITIES: usize = 257;
 
-/// Kinds and axes of the four tables, for a distribution whose projected area at grazing is `kappa` and whose slopes reach to `reach`.
+/// Kinds and axes of the four tables, for a distribution whose projected area at grazing is `kappa`
+/// and whose largest slope is `reach`.
 pub fn radial_axes(level: Level, kappa: f64, reach: f64) -> [(Kind, Vec<Axis>); 4] {
     let r = level.resolution();
-    // Twice as fine as the family's: a distribution at hand may have kinks and several scales, and there is one slice only.
+    // Twice as fine as the family's: any distribution may have kinks and several scales, and there
+    // is one slice only.
     let [along_numbers, across_numbers] = [r.numbers, r.across_numbers].map(|n| 2 * n - 1);
     let slopes = match reach {
         reach if reach.is_finite() => rational(reach),
@@ -60,21 +63,21 @@ pub fn radial_axes(level: Level, kappa: f64, reach: f64) -> [(Kind, Vec<Axis>); 
 const SLOPE: HalfTangent = HalfTangent { crowded: false };
 const HALF_TANGENT: Mapping = Mapping::HalfTangent(SLOPE);
 
-/// q with κ as given, for tables without a γ axis.
+/// q with the given κ, for tables without a γ axis.
 fn rational(kappa: f64) -> Mapping {
     Mapping::Rational(Rational { scale: kappa, crowded: false })
 }
 
 /// Bytes of the values of the four tables as they are stored.
 pub fn radial_bytes(level: Level, precision: Precision) -> usize {
-    // None depends on the distribution.
+    // The sizes do not depend on the distribution.
     let channels = Kind::VALUE_AND_SLOPE.len();
     let values =
         |(_, axes): &(Kind, Vec<Axis>)| channels * axes.iter().map(Axis::len).product::<usize>();
     radial_axes(level, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * precision.bytes()
 }
 
-/// The four tables of the distribution of a label.
+/// The four tables of the distribution named by a label.
 pub fn bake_radial(
     marginal: &Marginal,
     label: &str,
@@ -109,7 +112,7 @@ pub fn bake_radial(
     radial_axes(level.into(), kappa, marginal.reach()).into_iter().map(table).collect()
 }
 
-/// G1/q by q = z/(z + κ), with κ the area at grazing, as for the family.
+/// G1/q with q = z/(z + κ), where κ is the projected area at grazing, as for the family.
 fn shadowing(marginal: &Marginal, kappa: f64, views: &[f64]) -> Vec<[f32; 2]> {
     let beyond = |z: f64| {
         let at = marginal.beyond(z);
@@ -118,10 +121,11 @@ fn shadowing(marginal: &Marginal, kappa: f64, views: &[f64]) -> Vec<[f32; 2]> {
     round(ratios(&Rational { scale: kappa, crowded: false }, kappa, views, beyond))
 }
 
-/// Finds the distance g ∈ (0, 2) from an end at which a share that rises with g reaches `u`, from a first guess.
+/// Finds the distance g ∈ (0, 2) from an end at which `share`, which rises with g, equals `u`, from
+/// a first guess.
 ///
-/// `share` also gives its derivative. Newton on the logarithms of both, for the share is nearly a power of g, in a bracket that is halved where a
-/// step leaves it.
+/// `share` also returns its derivative. Newton's method on the logarithms of both, since the share
+/// is nearly a power of g; where a step leaves the bracket, the bracket is halved instead.
 fn solve(u: f64, guess: f64, share: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut high, mut g) = (0.0, 2.0, guess);
     for _ in 0..80 {
@@ -133,7 +137,7 @@ fn solve(u: f64, guess: f64, share: impl Fn(f64) -> (f64, f64)) -> f64 {
         }
         let step = g * libm::exp(value / (rate * g) * libm::log(u / value));
         let next = if step > low && step < high { step } else { 0.5 * (low + high) };
-        // A tenth of the last bit of what is stored.
+        // A tenth of the last stored bit.
         if (next - g).abs() < 1e-9 * g || high - low < 1e-14 {
             return next;
         }
@@ -172,7 +176,7 @@ fn in_plane(marginal: &Marginal, views: &[f64], numbers: &[f64]) -> Vec<[f32; 2]
                 [g, finite(du_dt / share(g).1 / cells)]
             }));
             if sign < 0.0 && tau < 1.0 && z <= marginal.reach() {
-                // The silhouette, exactly, as in the family's tables.
+                // The silhouette in closed form, as in the family's tables.
                 half[0][0] = SLOPE.parts(tau)[1] as f32;
             }
             limit_slopes(&mut half);
@@ -186,7 +190,8 @@ fn in_plane(marginal: &Marginal, views: &[f64], numbers: &[f64]) -> Vec<[f32; 2]
 fn given_slope(marginal: &Marginal, slopes: &Axis, numbers: &[f64]) -> Vec<[f32; 2]> {
     let cells = (numbers.len() - 1) as f64;
     let row = |&at: &f64| {
-        // A row at infinity, or at the bound R of the slopes and beyond, has no quadrature; one just before has reached the limit.
+        // A row at infinity, or at or beyond the bound R of the slopes, has no quadrature; a row
+        // just before it is close to the limit.
         let (x, scale) = match slopes.mapping {
             Mapping::Rational(axis) => {
                 let part = axis.quantity(at, 1.0).min(1.0 - 1e-6);
@@ -219,11 +224,11 @@ fn given_slope(marginal: &Marginal, slopes: &Axis, numbers: &[f64]) -> Vec<[f32;
 
 fn density(marginal: &Marginal, slopes: &[f64]) -> Vec<[f32; 2]> {
     let cells = (slopes.len() - 1) as f64;
-    // At the horizon itself D is the limit of what is near it.
+    // D at the horizon is the limit from just above it.
     let root = |h: f64| marginal.d(SLOPE.quantity(h.min(1.0 - 1e-9))).sqrt().sqrt();
     let step = 1e-4 / cells;
     let node = |&h: &f64| {
-        // D is even in h, and one-sided at the horizon.
+        // D is even in h; at the horizon the difference is one-sided.
         let (a, b) = (root((h - step).abs()), root(h + step));
         let width = if h + step > 1.0 { step } else { 2.0 * step };
         [root(h), (b - a) / width / cells]

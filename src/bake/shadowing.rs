@@ -1,8 +1,8 @@
-//! Smith's G1, as the ratio G1/q to a rational function q that has its limits.
+//! Smith's G1, stored as the ratio G1/q to a rational function q with the same limits.
 //!
-//! With q of [`Rational::BAKED`] the ratio stays within [0.75, 1.6] over the whole domain: q takes the zero at grazing, the limit at
-//! normal incidence, and the divergence of the projected area at γ → 3/2. G1 then has a small *relative* error at grazing, where
-//! it is divided by cos θ.
+//! With q of [`Rational::BAKED`] the ratio stays within [0.75, 1.6] over the whole domain: q takes
+//! up the zero at grazing, the limit at normal incidence, and the divergence of the projected area
+//! at γ → 3/2. So G1 has a small *relative* error at grazing, where it is divided by cos θ.
 
 use rayon::prelude::*;
 
@@ -14,8 +14,8 @@ use microfacet_sampler::axis::Rational;
 use super::{round, shapes};
 use crate::table_spec::{GAMMA_WHOLE, TableSpec};
 
-/// The view axis: q, crowded towards normal incidence for a table that reaches below γ = 1.8, where the ratio approaches its
-/// limit there like (1−q)^(1+2k), too slowly for even nodes.
+/// The view axis: q, crowded towards normal incidence for a table that reaches γ < 1.8, where the
+/// ratio approaches its limit there like (1−q)^(1+2k), too slowly for even nodes.
 pub(super) fn view(spec: &TableSpec) -> Rational {
     let crowded = spec.shapes.nodes.iter().any(|&s| s > s_of_gamma(GAMMA_WHOLE));
     Rational { crowded, ..Rational::BAKED }
@@ -33,7 +33,8 @@ pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
     shapes(spec).par_iter().flat_map_iter(of_shape).flatten_iter().collect()
 }
 
-/// G1/q = (z + κ)/(z + E[(X−z)⁺]) at the nodes of the views, the last of which is z = ∞, and its derivative per node; `beyond` gives E[(X−z)⁺] and P(X > z).
+/// The ratio G1/q = (z + κ)/(z + E[(X−z)⁺]) at the nodes of the views, the last of which is z = ∞,
+/// and its derivative per node; `beyond` returns E[(X−z)⁺] and P(X > z).
 pub(super) fn ratios(
     view: &Rational,
     kappa: f64,
@@ -44,16 +45,17 @@ pub(super) fn ratios(
     let node = |t: f64| {
         let z = view.quantity(t, kappa);
         let (excess, tail) = beyond(z);
-        // Both sums over √(1 + z²), which z itself may overflow.
+        // Both sums are divided by √(1 + z²), since z itself may overflow.
         let UnitView { sin, cos } = UnitView::from_cotangent(z);
         let value = (cos + kappa * sin) / (cos + excess * sin);
-        // d/dz of the area is 1 − Q(z); times dz/dq = (z+κ)²/κ the quotient rule collapses to this, finite for z → ∞.
+        // d/dz of the area is 1 − Q(z); times dz/dq = (z+κ)²/κ the quotient rule gives this, finite
+        // for z → ∞.
         let slope = (excess - kappa + (z + kappa) * tail) * value * value / kappa;
         [value, slope * view.rate(t) / cells]
     };
     let mut nodes: Vec<_> = views[..views.len() - 1].par_iter().map(|&t| node(t)).collect();
-    // z = ∞, where G1 = 1. Near γ = 3/2 the excess fades like z^(−2k), so the derivative there says nothing about the cell; the
-    // slope is the one that makes the cubic exact in the cell's middle instead.
+    // z = ∞, where G1 = 1. Near γ = 3/2 the excess falls like z^(−2k), so the derivative there says
+    // nothing about the cell; this slope makes the cubic meet the ratio in the cell's middle.
     let ([before, slope], [middle, _]) = (nodes[views.len() - 2], node(1.0 - 0.5 / cells));
     nodes.push([1.0, slope - 8.0 * (middle - 0.5 * (before + 1.0))]);
     nodes

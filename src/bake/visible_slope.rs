@@ -1,8 +1,9 @@
 //! The inverse CDF of the in-plane slope of visible normals, over view and u₁.
 //!
-//! A node holds the distance g of the half tangent h = x/(1 + √(1+x²)) of the unit slope from its nearer end, and the exact
-//! derivative. Largest CDF error between the nodes of several designs, all of 65 views by 2·17 numbers, cubic Hermite along u and lines
-//! between views, as `cargo run --release --example table_design` prints it:
+//! A node holds the distance g of the half tangent h = x/(1 + √(1+x²)) of the unit slope from its
+//! nearer end, and the exact derivative. The largest CDF error between the nodes, for several
+//! designs of 65 views by 2·17 random numbers with cubic Hermite interpolation along u and linear
+//! interpolation between views, as `cargo run --release --example table_design` prints it:
 //!
 //! | stored | view axis | u | γ = 1.8 | 2 | 4 | ∞ |
 //! | --- | --- | --- | --- | --- | --- | --- |
@@ -15,9 +16,10 @@
 //! | u of GGX | tan ½(π/2−θ) | t² | 7.6e-5 | 4.6e-7 | 4.8e-4 | 4.5e-4 |
 //! | u of GGX | tan ½(π/2−θ) | t⁴ | 5.1e-5 | 2.3e-6 | 2.4e-5 | 2.9e-5 |
 //!
-//! The number of a GGX sampler is as good, and exact at γ = 2, but costs a rotation and two square roots more at run time. The half tangent has
-//! the silhouette x = −cot θ at h = −τ, linear in the view coordinate τ, so that no interpolated slope faces away; and measured from its ends it
-//! keeps its digits in both tails.
+//! Storing the random number of a GGX sampler is as accurate, and exact at γ = 2, but costs a
+//! rotation and two square roots more at run time. The half tangent has the silhouette x = −cot θ
+//! at h = −τ, linear in the view coordinate τ, so that no interpolated slope faces away; and
+//! measured from its ends it keeps its digits in both tails.
 
 use rayon::prelude::*;
 
@@ -29,14 +31,15 @@ use microfacet_sampler::{Axis, Kind};
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
 use crate::table_spec::TableSpec;
 
-/// The view axis: evenly in τ, or crowded towards normal incidence where the heavy part is peeled off: what is left
-/// depends on the tilt there like η^(1+2k), whose second derivative is infinite.
+/// The view axis: even in τ, or crowded towards normal incidence where the heavy part is peeled
+/// off: there the rest depends on the tilt η like η^(1+2k), whose second derivative is infinite.
 pub(super) fn view(kind: Kind) -> HalfTangent {
     HalfTangent { crowded: kind == Kind::VisibleSlopePeeled }
 }
 
-/// How far inside the silhouette the first node stands: sixteen roundings of f32, so that m·v stays positive in single precision. The
-/// density vanishes there, and the share of normals displaced is of the order of its square.
+/// Distance of the first node from the silhouette: sixteen roundings of f32, so that m·v stays
+/// positive in single precision. The density vanishes at the silhouette, and the share of normals
+/// displaced is of the order of this distance squared.
 const INSIDE: f64 = 1.0 / 1_048_576.0;
 
 pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
@@ -61,8 +64,9 @@ fn row_nodes(shape: &Shape, [rest, z]: [f64; 2], numbers: &[f64], peeled: bool) 
         let mut half =
             round(numbers.iter().map(|&t| node(shape, &slopes, end, t, numbers.len() - 1)));
         if end < 0.0 && z.is_finite() {
-            // The silhouette, exactly: linear in τ (convex where the axis is crowded), so that between the rows it is as exact (on the
-            // visible side) too and no sampled normal faces away.
+            // The silhouette in closed form: it is linear in τ (convex where the axis is crowded),
+            // so that interpolation between rows meets it too (or errs to the visible side), and no
+            // sampled normal faces away.
             half[0][0] = (rest + INSIDE) as f32;
         }
         limit_slopes(&mut half);

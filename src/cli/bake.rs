@@ -1,4 +1,4 @@
-//! `bake`: a recipe or scene in, a certified set of tables out.
+//! `bake`: bakes a recipe or scene into a certified set of tables.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -23,9 +23,10 @@ use super::{Done, Outcome, print, print_json, progress};
     after_help = "Example:\n  microfacet-bake bake tables/recipes/frosted-glass.toml --out glass"
 )]
 pub(super) struct Args {
-    /// A recipe (.toml) or scene (.pbrt, .xml, .gltf, .glb, .mtlx); without one, the general set: all sigma, gamma in [1.501, inf].
+    /// A recipe (.toml) or scene (.pbrt, .xml, .gltf, .glb, .mtlx); without one, the general set:
+    /// all sigma, gamma in [1.501, inf].
     recipe: Option<PathBuf>,
-    /// Folder to write into; made if it is not there.
+    /// Folder to write into; created if missing.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Container formats, comma separated.
@@ -33,24 +34,25 @@ pub(super) struct Args {
     format: Vec<FormatArg>,
     #[command(flatten)]
     request: Request,
-    /// Choose each table's nodes and precision instead: small ones whose error, measured, is not above this (of G1, the CDFs of slopes, and
-    /// albedos).
+    /// Choose each table's nodes and precision instead: small tables whose measured error (of G1,
+    /// the CDFs of slopes, and albedos) is at most this.
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_error, conflicts_with_all = ["quality", "precision", "max_bytes"])]
     max_error: Option<f64>,
-    /// The most accurate tables of all kinds whose safetensors file is not larger than this.
+    /// Choose the most accurate tables instead whose safetensors file is at most this large.
     #[arg(long, value_name = "BYTES", conflicts_with_all = ["quality", "precision"])]
     max_bytes: Option<usize>,
-    /// Choose tables for --max-error or --max-bytes even where that takes long: more than three times the bake of default quality, and more
-    /// than ten seconds.
+    /// Choose tables for --max-error or --max-bytes even if that takes more than ten seconds and
+    /// more than three times the bake of default quality.
     #[arg(long)]
     patient: bool,
-    /// Folder of finished tables, which are not baked again; in the user's cache folder by default.
+    /// Folder that caches finished tables; in the user's cache folder by default.
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// Bake everything, and keep nothing for the next time.
+    /// Bake everything, and cache nothing.
     #[arg(long, conflicts_with = "cache")]
     no_cache: bool,
-    /// Memory that baking may take, in bytes or with K, M or G; more is refused before any is taken.
+    /// Limit of the memory for baking, in bytes or with K, M or G; a larger bake is refused at the
+    /// start.
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes, default_value = "4G")]
     max_memory: u64,
     /// Print the summary as JSON.
@@ -138,7 +140,7 @@ pub(super) fn run(args: Args) -> Outcome {
     bar.finish_and_clear();
     if let Some(why) = &result.cache_error {
         eprintln!(
-            "warning: finished tables are not kept for the next time: {why}; name a folder with --cache, or use --no-cache"
+            "warning: finished tables are not kept: {why}; name a folder with --cache, or use --no-cache"
         );
     }
     let formats: Vec<Format> = args
@@ -165,7 +167,7 @@ fn report_ignored(scene: &Scene) {
     }
 }
 
-/// What a table's certificate says about its largest error.
+/// The largest error that a table's certificate states.
 pub(super) fn largest_error(table: &Table) -> String {
     let figure = |key: &str| table.certificate.get(key);
     for (quantity, name) in [("g1", "G1"), ("cdf", "CDF"), ("d", "D/D(0)"), ("e", "E")] {
@@ -181,7 +183,7 @@ pub(super) fn largest_error(table: &Table) -> String {
     }
 }
 
-/// What [`Baked::seconds`] are of.
+/// The two parts that [`Baked::seconds`] are of.
 const FAMILIES: [&str; 2] = ["visible normals", "albedo"];
 
 fn summary(result: &Baked, plan: &Plan, written: &[Written], seconds: f64) -> String {

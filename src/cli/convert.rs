@@ -1,4 +1,4 @@
-//! `convert`: replace one distribution by another.
+//! `convert`: replaces one distribution by another.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -10,18 +10,18 @@ use microfacet_bake::distribution::{DistributionKind, Named};
 
 use super::{Done, Failure, Outcome, print};
 
-/// Which replacement is asked for.
+/// How the replacement is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum By {
     /// Equal angle at which D falls to half.
     HalfAngle,
     /// Least root mean square error over a uniform grid of angles.
     Rmse,
-    /// The formula in print, where there is one.
+    /// The published formula, where there is one.
     Formula,
 }
 
-/// What the error is taken of.
+/// The quantity whose error is minimised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum On {
     /// D/D(0), the shape of the highlight.
@@ -39,26 +39,26 @@ impl From<On> for Form {
     }
 }
 
-/// Replace one distribution of normals by another, and say how far apart they are.
+/// Replace one distribution of normals by another, and print how much they differ.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  microfacet-bake convert --from blinn-phong:50 --to beckmann")]
 pub(super) struct Args {
     /// Distribution to be replaced, such as `blinn-phong:50` or `student-t:0.3,2.5`.
     #[arg(long, required_unless_present = "table")]
     from: Option<String>,
-    /// Family to take its place, such as `beckmann`.
+    /// Distribution to replace it with, such as `beckmann`.
     #[arg(long, required_unless_present = "table")]
     to: Option<String>,
-    /// One way only; all that exist by default.
+    /// Use only this way of choosing; by default all that apply.
     #[arg(long)]
     by: Option<By>,
-    /// The second parameter of a family that has two, for `half-angle`.
+    /// Set the second parameter of a distribution that has two, for `half-angle`.
     #[arg(long)]
     shape: Option<f64>,
-    /// What the least-error replacement minimises.
+    /// Quantity whose error the least-error replacement minimises.
     #[arg(long, default_value = "relative")]
     on: On,
-    /// Print the replacements of 17 Beckmann distributions by Blinn-Phong, Gauss, Schlick and Trowbridge-Reitz.
+    /// Print replacements of 17 Beckmanns by Blinn-Phong, Gauss, Schlick and Trowbridge-Reitz.
     #[arg(long, conflicts_with_all = ["from", "to", "by", "shape"])]
     table: bool,
 }
@@ -102,7 +102,7 @@ impl Args {
             let name = by.to_possible_value().expect("no variant is skipped");
             match replace(*by) {
                 Ok(found) => line(name.get_name(), &found)?,
-                // Without a choice, ways that do not exist for this pair are left out.
+                // Without a choice, the ways that do not apply to this pair are left out.
                 Err(ConvertError::NoFormula(..) | ConvertError::ShapeNeeded(_))
                     if self.by.is_none() => {}
                 Err(e) => return Err(e.into()),

@@ -1,4 +1,4 @@
-//! `fit`: σ and γ of a measured distribution.
+//! `fit`: fits σ and γ to a measured distribution.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -18,7 +18,7 @@ pub(super) struct Args {
     /// Angles are in degrees instead of radians.
     #[arg(long)]
     degrees: bool,
-    /// What the fit minimises.
+    /// Quantity whose error the fit minimises.
     #[arg(long, default_value = "relative")]
     on: On,
 }

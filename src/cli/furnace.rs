@@ -1,4 +1,4 @@
-//! `furnace`: how much light comes back with F = 1, and what compensation restores.
+//! `furnace`: the light that comes back with F = 1, without and with compensation.
 
 use std::path::PathBuf;
 
@@ -11,10 +11,11 @@ use microfacet_sampler::{Masking, Tables};
 
 use super::{Done, Failure, Outcome, parse_gamma, print, print_json, tables};
 
-/// White furnace: single scattering, with each compensation, and the random walk on the microsurface.
+/// Run a white furnace: single scattering, each compensation, and the random walk on the
+/// microsurface.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Exit status 1 if the Kulla-Conty lobe misses 1 by more than 2e-3, or a walk by more than three standard errors.\n\
+    after_help = "Exit status 1 if the Kulla-Conty lobe differs from 1 by more than 2e-3, or a walk by more than three standard errors.\n\
     Examples:\n  microfacet-bake furnace\n  microfacet-bake furnace --sigma 1 --gamma 2 --method walk"
 )]
 pub(super) struct Args {
@@ -29,13 +30,13 @@ pub(super) struct Args {
     /// Cosines of the view in [0, 1], comma separated.
     #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_cosine, default_value = "0.02,0.3,1")]
     cos_theta: Vec<f64>,
-    /// Form of masking, G1(v) G1(l) or 1/(1 + lambda(v) + lambda(l)); a walk is height-correlated.
+    /// Form of masking: G1(v) G1(l) or 1/(1 + lambda(v) + lambda(l)); a walk is height-correlated.
     #[arg(long, value_parser = parse_masking(), default_value = Masking::HeightCorrelated.name())]
     masking: Masking,
-    /// `walk` adds the random walk (Heitz et al. 2016).
+    /// Method; `walk` adds the random walk (Heitz et al. 2016).
     #[arg(long, value_enum, default_value = "quadrature")]
     method: Method,
-    /// Rays of a walk.
+    /// Number of rays of each walk.
     #[arg(long, default_value_t = 100_000, allow_negative_numbers = true, value_parser = parse_walks)]
     walks: usize,
     /// Seed of the walks.
@@ -57,9 +58,9 @@ fn parse_masking() -> impl TypedValueParser<Value = Masking> {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Method {
-    /// Deterministic.
+    /// By quadrature.
     Quadrature,
-    /// The random walk as well.
+    /// By quadrature and by the random walk.
     Walk,
 }
 
@@ -106,7 +107,7 @@ pub(super) fn run(args: Args) -> Outcome {
                 } else {
                     None
                 };
-                // A NaN fails.
+                // Written so that a NaN fails.
                 passed &= (row.kulla_conty - 1.0).abs() <= TOLERANCE;
                 passed &=
                     walked.is_none_or(|walk| conserves(&walk) && agrees(&row, &walk, masking));
@@ -131,9 +132,10 @@ fn conserves(walk: &Walk) -> bool {
     (walk.total.mean - 1.0).abs() <= 3.0 * walk.total.error
 }
 
-/// Whether the walk's first bounce is E. Four standard errors: a grid holds hundreds of tests.
+/// Whether the share of light that leaves after the first bounce is E, within four standard errors,
+/// since a grid has hundreds of tests.
 fn agrees(row: &Furnace, walk: &Walk, masking: Masking) -> bool {
-    // Where nearly all or nearly nothing returns, the counts say less than one walk.
+    // Where nearly all or nearly no light returns, the counts resolve less than one walk.
     masking != Masking::HeightCorrelated
         || (walk.single.mean - row.single).abs()
             <= 4.0 * walk.single.error.max((row.single / 1e5).sqrt() * 1e-2) + 1e-5
@@ -175,7 +177,8 @@ fn as_json(row: &Furnace, walk: Option<Walk>) -> serde_json::Value {
     })
 }
 
-/// The average albedo, γ down and σ across: what the STD paper's figure 9 shows as spheres.
+/// The average albedo, γ down and σ across: the quantity that figure 9 of Ribardière et al. 2017
+/// shows as spheres.
 fn average(args: &Args, set: &Tables) -> Outcome {
     let mut text = String::from("| gamma |");
     args.sigma.iter().for_each(|sigma| text += &format!(" sigma = {sigma} |"));

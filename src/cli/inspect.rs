@@ -1,4 +1,4 @@
-//! `inspect`: what is in a table file.
+//! `inspect`: shows what a table file holds.
 
 use std::collections::BTreeMap;
 
@@ -87,7 +87,7 @@ fn describe_table(table: &Table) -> String {
     text
 }
 
-/// Whose normals, under which masking and reflectance, for which materials.
+/// The lobe, masking and reflectance of a table, and the materials it covers.
 fn describe_subject(Subject { lobe, masking, reflectance, covers }: &Subject) -> String {
     let sigmas =
         |[x, y]: &[f64; 2], s: &f64| format!("sigma {x} {y}, gamma {}", short(gamma_of_s(*s)));
@@ -128,7 +128,7 @@ fn describe_axis(axis: &Axis) -> String {
     )
 }
 
-/// Seven digits: an end of an axis has come through its coordinate and back.
+/// Rounds to seven digits: an end of an axis has passed through its coordinate and back.
 fn short(x: f64) -> String {
     let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
     if rounded != 0.0 && rounded < 1e-3 { format!("{rounded:e}") } else { format!("{rounded}") }

@@ -1,4 +1,4 @@
-//! The command line: one file a subcommand. The only place that prints or shows progress.
+//! The command line: one file a subcommand. Only this folder prints or shows progress.
 
 mod bake;
 mod convert;
@@ -50,7 +50,7 @@ enum Command {
     Plot(plot::Args),
 }
 
-/// How a command ends when it does not fail.
+/// How a command ends without an error.
 enum Done {
     /// Exit status 0.
     Ok,
@@ -72,7 +72,7 @@ type Outcome = Result<Done, Failure>;
 pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
     if let Some(threads) = cli.threads {
-        // Fails only if a pool exists already, and none does.
+        // Fails only if a thread pool exists already, and none does.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
     }
     let outcome = match cli.command {
@@ -97,7 +97,7 @@ pub(crate) fn main() -> ExitCode {
     }
 }
 
-/// Writes to standard output; a reader that has gone away (`| head`) is no error.
+/// Writes to standard output; a reader that has closed the pipe (`| head`) is no error.
 fn print(text: &str) -> Result<(), Failure> {
     match io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
@@ -154,7 +154,7 @@ fn parse_gamma(text: &str) -> Result<f64, String> {
 /// Parses a polar angle in [0, π/2].
 fn parse_theta(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
-        // A little above π/2 is a rounded π/2.
+        // Up to 1e-6 above π/2 is taken for a rounded π/2.
         Ok(theta) if (0.0..=std::f64::consts::FRAC_PI_2 + 1e-6).contains(&theta) => Ok(theta),
         _ => Err(format!(
             "theta \"{text}\" must be an angle in [0, 1.5708] radians, measured from the macro normal"

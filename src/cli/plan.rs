@@ -1,4 +1,4 @@
-//! `plan`: what a bake of a scene would do, and why not more.
+//! `plan`: shows what a bake of a scene would do, and why.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ use microfacet_sampler::Kind;
 use super::request::Request;
 use super::{Done, Outcome, print, print_json};
 
-/// Show what a scene needs baked and what it does not, with bytes and seconds.
+/// Show what must be baked for a scene and what not, with bytes and seconds.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  microfacet-bake plan tables/recipes/gold-series.toml")]
 pub(super) struct Args {
@@ -33,13 +33,13 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// A plan with all that is said about it.
+/// A plan with the figures that are reported on it.
 struct Report<'a> {
     scene: &'a Scene,
     plan: &'a Plan,
-    /// Tables of each need, and what they cost on their own.
+    /// Tables of each entry of the required shapes, and their cost.
     tables: Vec<(Vec<TableSpec>, Cost)>,
-    /// Specification and cost of each albedo need.
+    /// Specification and cost of each required albedo.
     albedos: Vec<(AlbedoSpec, Cost)>,
     /// Cost of each distribution outside the family.
     distributions: Vec<Cost>,
@@ -111,7 +111,7 @@ pub(super) fn run(args: Args) -> Outcome {
     Ok(Done::Ok)
 }
 
-/// Why a material needs no tables of its own, in few words and in more.
+/// Why a material gets no tables of its own, in short and in full.
 fn reason(verdict: &Verdict) -> [&'static str; 2] {
     match verdict {
         Verdict::Bake(_) => ["baked", "tables are baked for it"],
@@ -120,12 +120,12 @@ fn reason(verdict: &Verdict) -> [&'static str; 2] {
             ["within", "its gamma lies in a range that is baked for another material"]
         }
         Verdict::ClosedForm => {
-            ["closed form", "GGX: D, G1 and visible normals have closed forms; no table"]
+            ["closed form", "GGX: D, G1 and visible normals have closed forms; no tables"]
         }
-        Verdict::Own => ["own tables", "no Student-t: tables of its own"],
+        Verdict::Own => ["own tables", "not a Student-t lobe: tables of its own"],
         Verdict::Embedded => ["embedded", "covered by the default set compiled into the sampler"],
         Verdict::NotRough => ["not rough", "no microfacets"],
-        Verdict::NotUsed => ["not used", "no geometry wears it"],
+        Verdict::NotUsed => ["not used", "no geometry uses it"],
     }
 }
 
@@ -137,25 +137,25 @@ fn shapes(gamma: Interval) -> String {
     }
 }
 
-/// Why a material gets no albedo, in few words and in more.
+/// Why a material gets no albedo tables, in short and in full.
 fn albedo_reason(verdict: &AlbedoVerdict) -> [&'static str; 2] {
     match verdict {
         AlbedoVerdict::Bake(_) => ["baked", "albedo tables cover it"],
         AlbedoVerdict::NotAsked => {
-            ["no fresnel", "the recipe states no `fresnel`; --albedo bakes all"]
+            ["no fresnel", "the recipe states no `fresnel`; --albedo bakes albedos for all"]
         }
         AlbedoVerdict::Imported => {
-            ["not asked", "scenes other than recipes get albedos with --albedo"]
+            ["not asked", "only --albedo bakes albedos for scenes other than recipes"]
         }
         AlbedoVerdict::Declined => ["declined", "--no-albedo"],
         AlbedoVerdict::Embedded => {
             ["embedded", "the default set compiled into the sampler has its albedo"]
         }
-        AlbedoVerdict::NotNeeded => ["not needed", "it needs no tables at all"],
+        AlbedoVerdict::NotNeeded => ["not needed", "it gets no tables at all"],
     }
 }
 
-/// "gamma 3, sigma 0.1 to 0.4".
+/// A domain in words: "gamma 3, sigma 0.1 to 0.4".
 fn domain(Domain { gamma, sigma }: Domain) -> String {
     // Means of anisotropic roughnesses have many digits.
     let number = |x: f64| format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned();
@@ -163,7 +163,7 @@ fn domain(Domain { gamma, sigma }: Domain) -> String {
     format!("{}, sigma {}{end}", shapes(gamma), number(sigma.min))
 }
 
-/// Which lobe, in words.
+/// A lobe in words.
 fn lobe(lobe: &AlbedoLobe) -> String {
     match lobe {
         AlbedoLobe::Family(covered) => domain(*covered),
@@ -171,7 +171,7 @@ fn lobe(lobe: &AlbedoLobe) -> String {
     }
 }
 
-/// The first few of many names.
+/// The first few of a list of names.
 fn list<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 4;
     let more = names.len().saturating_sub(SHOWN);
@@ -293,7 +293,7 @@ impl Report<'_> {
         }
         let (total, general) = (self.total, self.general);
         text += &if self.plan.is_empty() {
-            "Nothing is needed: no material in use is rough.\n".into()
+            "Nothing to bake: no material in use is rough.\n".into()
         } else {
             let share = if total.seconds > 0.0 {
                 format!("{:.1} times faster", general.seconds / total.seconds)

@@ -1,4 +1,4 @@
-//! `plot`: figures of the literature as SVG.
+//! `plot`: draws figures of the literature as SVG.
 
 use std::path::PathBuf;
 
@@ -10,10 +10,10 @@ use super::{Done, Outcome, print};
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  microfacet-bake plot student-t --output student-t.svg")]
 pub(super) struct Args {
-    /// Which one.
+    /// Name of the figure.
     #[arg(value_parser = plot::NAMES)]
     name: String,
-    /// File to write; standard output without it.
+    /// File to write; standard output by default.
     #[arg(long, short, value_name = "SVG")]
     output: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! What `plan` and `bake` have in common: how fine, and what the run time brings along.
+//! Options that `plan` and `bake` share: quality, and what the renderer has already.
 
 use clap::ValueEnum;
 
@@ -12,22 +12,23 @@ use super::Failure;
 
 #[derive(clap::Args)]
 pub(super) struct Request {
-    /// How values are stored.
+    /// Precision of the stored values.
     #[arg(long, value_enum, default_value = "f32")]
     precision: PrecisionArg,
-    /// How fine the tables are.
+    /// Quality: how fine the tables are.
     #[arg(long, value_enum, default_value = "default")]
     quality: QualityArg,
-    /// Tabulate GGX (gamma = 2) as well, for a run time without its closed forms.
+    /// Tabulate GGX (gamma = 2) as well, for a renderer without its closed forms.
     #[arg(long)]
     tabulate_ggx: bool,
-    /// Bake directional albedos for every rough material of a scene; without it, for the materials of a recipe that state `fresnel`.
+    /// Bake directional albedos for every rough material of a scene; by default only for those of a
+    /// recipe that state `fresnel`.
     #[arg(long)]
     albedo: bool,
     /// Bake no directional albedos, which take most of the time.
     #[arg(long, conflicts_with = "albedo")]
     no_albedo: bool,
-    /// The run time has the sampler crate's default set compiled in (`Tables::or_embedded`): skip what it covers.
+    /// Skip what the sampler crate's default set covers (`Tables::or_embedded`).
     #[arg(long)]
     embedded: bool,
 }
@@ -44,7 +45,7 @@ enum PrecisionArg {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum QualityArg {
-    /// Small and rough.
+    /// Small, inaccurate tables.
     Draft,
     /// CDF error below 1e-4 (gamma >= 1.8), G1 error below 1e-5.
     Default,
@@ -69,7 +70,7 @@ impl Request {
         }
     }
 
-    /// The plan of everything.
+    /// The plan of the general set.
     pub(super) fn general_plan(&self) -> Plan {
         let mut plan = Plan::general();
         if self.no_albedo {
@@ -78,7 +79,7 @@ impl Request {
         plan
     }
 
-    /// The plan of a scene; `max_error` if there is a budget.
+    /// The plan of a scene; `max_error` is the budget of error, if there is one.
     pub(super) fn plan(&self, scene: &Scene, max_error: Option<f64>) -> Result<Plan, Failure> {
         let mut embedded_albedo = false;
         if self.embedded {
@@ -97,10 +98,10 @@ impl Request {
             let worst_of_others = worst(&others);
             if max_error.is_some_and(|max| max < worst_of_others) {
                 return Err(Failure(format!(
-                    "--embedded: the set compiled in errs by {worst_of_others:.1e}; allow that much"
+                    "--embedded: the set compiled in has an error of {worst_of_others:.1e}; allow as much"
                 )));
             }
-            // Where its albedos are not good enough, better ones are baked.
+            // If its albedos are not accurate enough, better ones are baked.
             embedded_albedo =
                 !albedos.is_empty() && max_error.is_none_or(|max| max >= worst(&albedos));
         }

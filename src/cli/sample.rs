@@ -1,4 +1,4 @@
-//! `sample`: visible normals of one material and view, as tensors.
+//! `sample`: draws visible normals of one material and view into a safetensors file.
 
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ use super::{
     Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, tables,
 };
 
-/// Draw normals for one material and view into a safetensors file: `normals` [N,3] and `pdf` [N], f32.
+/// Draw normals for one material and view into a safetensors file: `normals` [N,3], `pdf` [N], f32.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  microfacet-bake sample --sigma 0.454 --gamma 3 --theta 1.0 --count 100000 --out normals.safetensors"
@@ -36,13 +36,13 @@ pub(super) struct Args {
     /// Azimuth of the view, radians.
     #[arg(long, value_name = "P", value_parser = parse_phi, default_value = "0", allow_hyphen_values = true)]
     phi: f64,
-    /// How many.
+    /// Number of normals.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     count: u64,
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How they are drawn, and whose density is given.
+    /// How normals are drawn; also decides the density that is written.
     #[arg(long, value_enum, default_value = "table")]
     method: Method,
     /// Tables to draw from; the embedded default if absent.
@@ -55,11 +55,11 @@ pub(super) struct Args {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Method {
-    /// Visible normals from tables, with the exact density of what the table draws.
+    /// Visible normals from tables, with the density that the table samples.
     Table,
-    /// Visible normals by the model's exact sampler, with the analytic density.
+    /// Visible normals by the model's sampler, with the analytic density.
     Exact,
-    /// Normals of the NDF, eq. 16-17 and 19-20, with density D(m) (m.n); the view is not used.
+    /// Normals of D, eq. 16-17 and 19-20, with density D(m) (m.n); the view is not used.
     Ndf,
 }
 

@@ -1,4 +1,4 @@
-//! `validate --stress`: the report as a table by region.
+//! `validate --stress`: prints the report as a table by region.
 
 use serde_json::json;
 
@@ -17,7 +17,7 @@ pub(super) fn stress(tables: &Tables, points: u64, seed: u64, as_json: bool) -> 
     Ok(if report.total().violations.is_empty() { Done::Ok } else { Done::Rejected })
 }
 
-/// Regions that hold points, with their names.
+/// Regions with at least one point, and their names.
 fn regions(report: &Report) -> impl Iterator<Item = ([&'static str; 3], &Region)> {
     let of_view = |shape: usize, view: usize| {
         let row = &report.regions[shape][view];

@@ -1,4 +1,4 @@
-//! `validate`: does what the sampler draws come from the analytic densities?
+//! `validate`: tests the sampler's normals against the analytic densities.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ use super::{
     progress, tables,
 };
 
-/// Test what tables draw against the analytic densities by chi-square.
+/// Test normals drawn from tables against the analytic densities by chi-square.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  microfacet-bake validate --configurations 50 --samples 1000000"
@@ -26,13 +26,13 @@ pub(super) struct Args {
     /// Normals drawn for each configuration.
     #[arg(long, value_name = "N", default_value_t = 100_000, allow_negative_numbers = true, value_parser = parse_samples)]
     samples: usize,
-    /// Materials and views drawn over the covered domain.
+    /// Number of materials and views, drawn over the covered domain.
     #[arg(long, value_name = "K", default_value_t = 100, allow_negative_numbers = true, value_parser = parse_configurations)]
     configurations: usize,
     /// Seed of everything random.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Judge one configuration instead: its roughness, `X` or `X,Y`.
+    /// Test one configuration instead: its roughness, `X` or `X,Y`.
     #[arg(long, value_name = "X[,Y]", allow_negative_numbers = true, value_parser = parse_sigma, requires_all = ["gamma", "theta"])]
     sigma: Option<[f64; 2]>,
     /// Shape of the one configuration.
@@ -44,10 +44,11 @@ pub(super) struct Args {
     /// Azimuth of its view, radians.
     #[arg(long, value_name = "P", value_parser = parse_phi, default_value = "0", allow_hyphen_values = true)]
     phi: f64,
-    /// Multiply the model's gamma: 1.01 shows that the tests reject.
+    /// Multiply the model's gamma by this; 1.01 shows that the tests reject.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     perturb_gamma: f64,
-    /// Judge every public function at corners and random points instead: no NaN, nothing out of range.
+    /// Test every public function at corners and random points instead: no NaN, nothing out of
+    /// range.
     #[arg(long, conflicts_with_all = ["sigma", "gamma", "theta", "perturb_gamma"])]
     stress: bool,
     /// Points of the stress run; never fewer than its corners, about a million.
@@ -62,7 +63,7 @@ fn parse_samples(text: &str) -> std::result::Result<usize, String> {
     match text.parse() {
         Ok(n @ 1_000..=10_000_000_000) => Ok(n),
         _ => Err(format!(
-            "\"{text}\" samples: must be a whole number in [1000, 1e10], to fill the cells of a chi-square"
+            "\"{text}\" samples: must be a whole number in [1000, 1e10], to populate the cells of a chi-square test"
         )),
     }
 }
@@ -83,7 +84,7 @@ pub(super) fn run(args: Args) -> Outcome {
         (Some([sigma_x, sigma_y]), Some(gamma), Some(theta)) => {
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi: args.phi, seed: args.seed }]
         }
-        // A set without any table holds GGX in closed form, which can be judged.
+        // A set without tables has GGX in closed form, which can be tested.
         _ if !set.tables().is_empty()
             && !set.tables().iter().any(|table| table.axes[0].name == "gamma") =>
         {
@@ -99,7 +100,7 @@ pub(super) fn run(args: Args) -> Outcome {
     let bar = progress(chosen.len(), "validating");
     let result = run_all(&set, &chosen, options, || bar.inc(1))?;
     bar.finish_and_clear();
-    // One named configuration asks about its lobe alone.
+    // A single configuration tests its lobe only.
     let furnaces = if args.sigma.is_none() { survey(&set)? } else { Vec::new() };
     let passed = result.passed() && furnaces.iter().all(Survey::passed);
     let source =
@@ -129,7 +130,7 @@ fn summary(result: &Result, options: Options, source: &str) -> String {
     );
     if let Some(worst) = result.worst_integral() {
         let (off, gamma) = (worst.pdf_integral - 1.0, worst.configuration.gamma);
-        text += &format!("table_pdf integrates to 1 {off:+.2e} at worst (gamma {gamma})\n");
+        text += &format!("integral of table_pdf: 1 {off:+.2e} at worst (gamma {gamma})\n");
     }
     text += "worst configurations:\n";
     for report in reports.iter().take(5) {
@@ -145,7 +146,7 @@ fn summary(result: &Result, options: Options, source: &str) -> String {
     text
 }
 
-/// The white furnaces, one line a table of albedos.
+/// The white furnaces, one line for each table of albedos.
 fn white(furnaces: &[Survey]) -> String {
     let line = |survey: &Survey| {
         let row = |row: &Furnace| {

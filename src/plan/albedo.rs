@@ -1,4 +1,5 @@
-//! Which albedo tables a scene needs: for the lobes, reflectances and forms of masking of the materials that ask, and no others.
+//! Which albedo tables a scene requires: only for lobes, reflectances and forms of masking of
+//! materials that ask for albedos.
 
 use microfacet_sampler::{LobeEntry, Masking, Precision, Reflectance};
 
@@ -10,8 +11,8 @@ use crate::table_spec::{Level, Quality};
 /// Which materials get albedo tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AlbedoWish {
-    /// Those of a native recipe that state `fresnel`. Scenes of other formats state a Fresnel term of nearly every material, whether or
-    /// not their renderer wants albedos.
+    /// Those of a native recipe that state `fresnel`. Scenes of other formats state a Fresnel term
+    /// for nearly every material, whether or not their renderer uses albedos.
     #[default]
     Recipes,
     /// Every rough material in use.
@@ -20,28 +21,29 @@ pub enum AlbedoWish {
     None,
 }
 
-/// Materials that albedo tables are to cover, one or many of the family: the unit in which they are baked, measured and kept.
+/// Albedos that one table group covers, of one lobe or a range of the family; they are baked,
+/// measured and kept together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequiredAlbedo {
-    /// Their normals.
+    /// The lobes.
     pub lobe: AlbedoLobe,
-    /// Their reflectance; the moments serve F = 1 and every Schlick approximation.
+    /// The reflectance; the moments serve F = 1 and every Schlick approximation.
     pub reflectance: Reflectance,
-    /// Forms of masking.
+    /// The forms of masking.
     pub maskings: Vec<Masking>,
 }
 
 impl RequiredAlbedo {
-    /// The moments of everything that tables can cover.
+    /// The moments of the whole domain of the tables.
     pub fn general() -> Self {
         let lobe = AlbedoLobe::Family(Domain::GENERAL);
         Self { lobe, reflectance: Reflectance::Moments, maskings: Masking::ALL.into() }
     }
 
-    /// The tables that cover it.
+    /// The specification of the tables that cover it.
     ///
     /// # Errors
-    /// [`AlbedoError`] for an ellipsoid that is none.
+    /// [`AlbedoError`] for parameters that describe no ellipsoid.
     pub fn spec(
         &self,
         level: impl Into<Level>,
@@ -60,24 +62,24 @@ impl RequiredAlbedo {
     }
 }
 
-/// What becomes of a material's albedo.
+/// What the plan decides on a material's albedo.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AlbedoVerdict {
-    /// Tables are baked that cover it: indices into [`Plan::albedos`](super::Plan::albedos).
+    /// Tables are baked for it: indices into [`Plan::albedos`](super::Plan::albedos).
     Bake(Vec<usize>),
     /// Its recipe states no `fresnel`.
     NotAsked,
-    /// It comes from a scene of another format, and those have to ask.
+    /// It comes from a scene of another format, and for those albedos must be asked for.
     Imported,
-    /// Albedo tables were declined.
+    /// The user declined albedo tables.
     Declined,
     /// The default set that is compiled into the sampler crate covers it.
     Embedded,
-    /// It has no microfacets, or no geometry wears it.
+    /// It has no microfacets, or no geometry uses it.
     NotNeeded,
 }
 
-/// One table that one material wants.
+/// One table that one material asks for.
 #[derive(Clone)]
 struct Want {
     lobe: AlbedoLobe,
@@ -85,7 +87,7 @@ struct Want {
     masking: Masking,
 }
 
-/// The needs of a scene, and one verdict for each of its materials.
+/// The required albedos of a scene, and one verdict for each of its materials.
 pub(super) fn needs(
     scene: &Scene,
     options: Options,
@@ -97,7 +99,7 @@ pub(super) fn needs(
         .collect::<Result<_, _>>()?;
     let mut needs: Vec<RequiredAlbedo> = Vec::new();
     let mut add = |lobe: AlbedoLobe, reflectance, masking| {
-        // Two forms at once cost little more than one.
+        // Both forms in one table group cost little more than one.
         match needs.iter_mut().find(|need| need.lobe == lobe && need.reflectance == reflectance) {
             Some(need) if need.maskings.contains(&masking) => {}
             Some(need) => need.maskings.push(masking),
@@ -111,7 +113,7 @@ pub(super) fn needs(
             reflectances.push(want.reflectance);
         }
     }
-    // The moments first, which serve most.
+    // The moments first, since they serve most materials.
     reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Moments);
     for reflectance in reflectances {
         for masking in Masking::ALL {
@@ -139,7 +141,7 @@ pub(super) fn needs(
     Ok((needs, verdicts))
 }
 
-/// What a material needs, or why it needs nothing.
+/// The tables that a material asks for, or the reason why it gets none.
 fn wants(
     material: &Material,
     options: Options,
@@ -170,7 +172,7 @@ fn wants(
     let exact = material.fresnel.iter().flat_map(|fresnel| fresnel.tabulated());
     let exact = exact.filter(|reflectance| *reflectance != Reflectance::Moments);
     let of = |reflectance: Reflectance| {
-        // The model refracts at round lobes alone.
+        // The model has refraction for isotropic lobes of the family only.
         let lobe = if reflectance.indices().is_some() { &round } else { &lobe };
         Want { lobe: lobe.clone(), reflectance, masking: entry.masking() }
     };
@@ -188,7 +190,7 @@ fn wants(
     Ok(if wants.is_empty() { Err(AlbedoVerdict::Embedded) } else { Ok(wants) })
 }
 
-/// Why no albedo is wanted of a material, if none is.
+/// The reason why no albedo is asked for, or `None` if one is.
 fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
     let native = material.origin.format == Format::Recipe;
     match options.albedo {
@@ -200,14 +202,14 @@ fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
     }
 }
 
-/// Few domains that cover all of `wants` with no more nodes in all.
+/// A small number of domains that cover all of `wants` with no more nodes in all.
 fn joined(wants: Vec<Domain>) -> Vec<Domain> {
     let need =
         |domain| RequiredAlbedo { lobe: AlbedoLobe::Family(domain), ..RequiredAlbedo::general() };
     let cost = |domain| {
         need(domain).spec(Quality::Default, Precision::F32).map_or(usize::MAX, |spec| spec.nodes())
     };
-    // One domain in the place of several, if that is not more.
+    // One domain in the place of several, if it has no more nodes.
     let hull_if_cheaper = |domains: Vec<Domain>| -> Vec<Domain> {
         let hull = domains.iter().copied().reduce(|a, b| a.union(&b));
         match hull {
@@ -219,7 +221,7 @@ fn joined(wants: Vec<Domain>) -> Vec<Domain> {
             _ => domains,
         }
     };
-    // All roughnesses of one shape, then all shapes.
+    // Joins all roughnesses of one shape, then all shapes.
     let mut groups: Vec<Vec<Domain>> = Vec::new();
     for want in wants {
         match groups.iter_mut().find(|group| group[0].gamma == want.gamma) {
@@ -230,7 +232,7 @@ fn joined(wants: Vec<Domain>) -> Vec<Domain> {
     }
     let all = groups.into_iter().flat_map(hull_if_cheaper).collect();
     let all = hull_if_cheaper(all);
-    // What lies inside another is there.
+    // A domain inside another is covered by it.
     let inside = |i: usize| {
         let holds = |(j, other): (usize, &Domain)| {
             i != j && other.contains(&all[i]) && (*other != all[i] || j < i)

@@ -1,4 +1,4 @@
-//! What a bake costs, before it is done.
+//! Estimates what a bake costs before it is done.
 
 use microfacet_sampler::internals::describe;
 use microfacet_sampler::{
@@ -18,7 +18,7 @@ use crate::validate::{points, radial};
 pub struct Cost {
     /// Size of the set's safetensors file.
     pub bytes: usize,
-    /// Time to bake and certify it on the threads at hand.
+    /// Time to bake and certify it on the current threads.
     pub seconds: f64,
 }
 
@@ -29,8 +29,8 @@ impl std::iter::Sum for Cost {
     }
 }
 
-/// Estimates what a set without tables takes: its names, its recipe, its conventions, and the formulas of the axes that tables will
-/// have.
+/// Estimates the bytes of a set without tables: its names, its recipe, its conventions, and the
+/// formulas of the axes that its tables will have.
 pub fn bare_cost(provenance: &Provenance) -> Cost {
     let has = |convention: &str| provenance.conventions.contains_key(convention);
     let some =
@@ -42,20 +42,21 @@ pub fn bare_cost(provenance: &Provenance) -> Cost {
         Mapping::ReflectanceRoot | Mapping::CriticalBlend(_) => some(&dielectric),
         _ => has("visible_slope"),
     });
-    // Quotes with their escapes, a colon and a comma.
+    // Two quotes with their escapes, a colon and a comma.
     let formulas: usize =
         formulas.map(|mapping| mapping.name().len() + mapping.formula().len() + 10).sum();
     let bare = describe(provenance, &[]).map_or(0, |json| escaped(&json));
     Cost { bytes: bare + formulas, seconds: 0.0 }
 }
 
-/// Bytes of the document, a string inside JSON.
+/// Bytes of a document as a string inside JSON.
 fn escaped(json: &str) -> usize {
     json.len() + json.bytes().filter(|byte| matches!(byte, b'"' | b'\\')).count()
 }
 
-/// Estimates what tables add to a set: the bytes to a few per cent, since only the digits of certificates are unknown; the seconds on the
-/// threads at hand from times measured on one machine, so that their ratios mean more than themselves.
+/// Estimates what tables add to a set. The bytes are right to a few per cent, since only the digits
+/// of certificates are unknown. The seconds, on the current threads, are scaled from times measured
+/// on one machine: their ratios are more reliable than their values.
 pub fn cost(specs: &[TableSpec]) -> Cost {
     let header = |spec: &TableSpec| {
         let axes = serde_json::to_string(&bake::axes(spec)).map_or(0, |json| escaped(&json));
@@ -66,15 +67,16 @@ pub fn cost(specs: &[TableSpec]) -> Cost {
     Cost { bytes, seconds: seconds(specs) }
 }
 
-/// The seconds of [`cost`] alone, which take no time to estimate.
+/// The seconds of [`cost`] alone, which are quick to estimate.
 pub fn seconds(specs: &[TableSpec]) -> f64 {
     specs.iter().map(seconds_of).sum::<f64>() / rayon::current_num_threads() as f64
 }
 
-/// The same for albedo tables, at the nodes that are tried first.
+/// The cost of albedo tables, with the nodes that are tried first.
 pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
     let json = |axes: &[Axis]| serde_json::to_string(axes).map_or(0, |json| escaped(&json));
-    // Name twice, kind, subject, channels, certificate, shape and offsets; of averages, over all axes but the view.
+    // Name twice, kind, subject, channels, certificate, shape and offsets; for averages, over all
+    // axes but the view.
     let name = |kind| 2 * spec.name(kind, Masking::HeightCorrelated).len();
     let subject = serde_json::to_string(&spec.reflectance).map_or(0, |json| escaped(&json));
     let one = json(&spec.axes) + name(Kind::Albedo) + subject + 800;
@@ -84,25 +86,27 @@ pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
     Cost { bytes: spec.bytes() + headers, seconds: albedo_seconds(spec) / threads }
 }
 
-/// The same for the four tables of a distribution outside the family.
+/// The cost of the four tables of a distribution outside the family.
 pub fn distribution_cost(
     distribution: &Distribution,
     level: impl Into<Level>,
     precision: Precision,
 ) -> Cost {
     let level = level.into();
-    // The name ends in the label, or as many other characters; kind, channels, certificate, shape and offsets.
+    // The name ends in the label, or as many other characters; kind, channels, certificate, shape
+    // and offsets.
     let suffix = distribution.label().len();
-    // Where its scale and reach stand in axes, another number is as long.
+    // Another number of the same length stands for the scale and the reach in the axes.
     let tables = bake::radial_axes(level, std::f64::consts::PI, f64::INFINITY);
     let header = |(kind, axes): &(Kind, Vec<Axis>)| {
         let axes = serde_json::to_string(axes).map_or(0, |json| escaped(&json));
         axes + 2 * (kind.name().len() + suffix) + 330
     };
     let bytes = tables.iter().map(header).sum::<usize>() + bake::radial_bytes(level, precision);
-    // Microseconds a node of either slope table, the others being far smaller, and a normal of the certificate: fitted to the processor
-    // time of `microfacet-bake bake --threads 1 --no-cache --quality Q` for a Gauss, a GTR, a Schlick and a measured distribution, whose mean it meets
-    // within a twentieth at each quality; a single one, within a third.
+    // Microseconds for a node of either slope table (the other tables are far smaller) and for a
+    // normal of the certificate: fitted to the processor time of `microfacet-bake bake --threads 1
+    // --no-cache --quality Q` for a Gauss, a GTR, a Schlick and a measured distribution. Their mean
+    // is met within a twentieth at each quality, a single one within a third.
     let [node, normal] = [65.0, 30.0];
     let nodes = |(_, axes): &(Kind, Vec<Axis>)| match &axes[..] {
         [first, last] => first.len() * last.len(),
@@ -113,11 +117,12 @@ pub fn distribution_cost(
     Cost { bytes, seconds: seconds / rayon::current_num_threads() as f64 }
 }
 
-/// Seconds that one thread bakes and certifies albedo tables.
+/// Seconds for one thread to bake and certify albedo tables.
 fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
-    // Microseconds a node or a point of the certificate: fitted to `microfacet-bake bake --threads 1 --no-cache --out out` of the draft, the
-    // default and the high general set, which they meet within a tenth; of single materials, dielectrics and other lobes, within a half.
-    // Long tails and narrow lobes take up to twice as long, and so does refinement.
+    // Microseconds for a node or a point of the certificate: fitted to `microfacet-bake bake
+    // --threads 1 --no-cache --out out` of the draft, the default and the high general set, which
+    // are met within a tenth; single materials, dielectrics and other lobes within a half. Long
+    // tails and narrow lobes take up to twice as long, and so does refinement.
     let (nodes, points) = (spec.nodes() as f64, points::count(spec) as f64);
     1e-6 * match (&spec.lobe, spec.reflectance) {
         (_, Reflectance::Dielectric { .. }) => 3300.0 * (nodes + points),
@@ -129,10 +134,11 @@ fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
     }
 }
 
-/// Seconds that one thread bakes and certifies a table.
+/// Seconds for one thread to bake and certify a table.
 fn seconds_of(spec: &TableSpec) -> f64 {
-    // Nanoseconds a node and a point of the certificate: fitted to `time microfacet-bake bake --threads 1 --no-cache --quality Q` of the
-    // three qualities, which it meets within a tenth.
+    // Nanoseconds for a node and for a point of the certificate: fitted to `time microfacet-bake
+    // bake --threads 1 --no-cache --quality Q` at the three qualities, which are met within a
+    // tenth.
     let [node, point] = match spec.kind {
         Kind::Shadowing => [400.0, 250.0],
         Kind::VisibleSlopeConditional => [2000.0, 350.0],

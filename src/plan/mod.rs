@@ -1,8 +1,9 @@
-//! From what a scene asks for to what is to be baked: pure, and as little as possible.
+//! Plans what to bake for a scene: pure functions, and as few tables as possible.
 //!
-//! Tables of visible normals have no σ axis (mathematically, slopes divide by σ before any lookup), so what a material needs is its shape γ alone: one
-//! γ is a slice, 1D for masking and across the plane, 2D along it; a range of γ is a sub-range of the general set. Albedos do depend on σ, and are
-//! baked for those who ask.
+//! Tables of visible normals have no σ axis (slopes are divided by σ before a lookup), so a
+//! material requires only its shape γ: one γ is a slice, 1D for masking and the slope across, 2D
+//! for the in-plane slope; a range of γ is a sub-range of the general set. Albedos do depend on σ,
+//! and are baked for materials that ask for them.
 
 mod albedo;
 mod cost;
@@ -27,25 +28,25 @@ use crate::table_spec::GAMMA_MIN;
 /// γ of GGX.
 const GGX: f64 = 2.0;
 
-/// What the run time brings along, so that it need not be baked.
+/// What the renderer has at run time already, so that it need not be baked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// Tabulate GGX as well, for a run time without its closed forms.
+    /// Tabulate GGX as well, for a renderer without its closed forms.
     pub tabulate_ggx: bool,
-    /// The default set is compiled in and good enough.
+    /// The default set is compiled in and accurate enough.
     pub embedded: bool,
-    /// And it holds albedo tables that are good enough, too.
+    /// The default set also holds albedo tables that are accurate enough.
     pub embedded_albedo: bool,
     /// Which materials get albedo tables.
     pub albedo: AlbedoWish,
 }
 
-/// What becomes of a material.
+/// What the plan decides on a material.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// Tables are baked for it: an index into [`Plan::shapes`].
     Bake(usize),
-    /// Tables that another material needs serve it too.
+    /// Tables that are baked for another material serve it too.
     Same {
         /// Index into [`Plan::shapes`].
         need: usize,
@@ -59,20 +60,21 @@ pub enum Verdict {
         /// Index of the other material.
         of_material: usize,
     },
-    /// GGX: D, G1 and visible normals have closed forms, which the sampler crate uses where there is no table.
+    /// GGX: D, G1 and visible normals have closed forms, which the sampler crate uses where there
+    /// is no table.
     ClosedForm,
-    /// It is no Student-t: tables of its own are baked for it.
+    /// It is not a Student-t lobe: tables of its own are baked for it.
     Own,
     /// The default set that is compiled into the sampler crate covers it.
     Embedded,
     /// It has no microfacets.
     NotRough,
-    /// No geometry wears it.
+    /// No geometry uses it.
     NotUsed,
 }
 
 impl Verdict {
-    /// The set of tables that serves the material.
+    /// The index of the required shapes that cover the material, if any do.
     pub fn need(&self) -> Option<usize> {
         match *self {
             Self::Bake(need) | Self::Same { need, .. } | Self::Within { need, .. } => Some(need),
@@ -81,27 +83,28 @@ impl Verdict {
     }
 }
 
-/// What is to be baked for a scene, and why not more.
+/// What is to be baked for a scene, with the reason for each material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
-    /// Disjoint needs, from Beckmann to heavy tails: the ranges first, then the single shapes.
+    /// Disjoint required shapes, from Beckmann to heavy tails: the ranges first, then the single
+    /// shapes.
     pub shapes: Vec<RequiredShapes>,
     /// Distributions outside the family that materials have, each once.
     pub distributions: Vec<Distribution>,
     /// One verdict for each material of the scene, in order.
     pub verdicts: Vec<Verdict>,
-    /// What albedo tables are to cover.
+    /// The albedos that tables are to cover.
     pub albedos: Vec<RequiredAlbedo>,
     /// One verdict on the albedo of each material, in order.
     pub albedo_verdicts: Vec<AlbedoVerdict>,
-    /// The scene as a recipe, and its materials, as the set will name them; nothing for the general set.
+    /// The scene as a recipe, as the set will state it; empty for the general set.
     pub recipe: String,
-    /// See `recipe`.
+    /// The scene's materials, as the set will list them; empty for the general set.
     pub materials: Vec<MaterialEntry>,
 }
 
 impl Plan {
-    /// Everything: all γ that tables cover, and all σ that albedo tables do.
+    /// The plan of the general set: all γ that tables cover, and all σ that albedo tables cover.
     pub fn general() -> Self {
         Self {
             shapes: vec![RequiredShapes::general()],
@@ -113,7 +116,8 @@ impl Plan {
     /// The plan of a scene.
     ///
     /// # Errors
-    /// [`NotCovered`] for a γ, or a σ that an albedo is asked of, that no table covers.
+    /// [`NotCovered`] for a γ that no table covers, or a σ that no albedo table covers if an albedo
+    /// is asked for.
     pub fn new(scene: &Scene, options: Options) -> Result<Self, NotCovered> {
         let wants: Vec<Result<Interval, Verdict>> = scene
             .materials
@@ -127,7 +131,8 @@ impl Plan {
         let find = |want: &Interval| {
             required_shapes::find(&needs, *want).expect("the needs cover every want")
         };
-        // A need is baked for the first material that asks for exactly it, else for the first inside.
+        // Each range is baked for the first material that asks for exactly it, else for the first
+        // inside.
         let mut owner: Vec<Option<usize>> = vec![None; needs.len()];
         for exact in [true, false] {
             for (i, want) in wants.iter().enumerate() {
@@ -145,7 +150,7 @@ impl Plan {
         };
         let verdict = |(i, want): (usize, &Result<Interval, Verdict>)| match want {
             Ok(want) => within(find(want), i, want),
-            // Where a table covers γ = 2 anyway, it is what the run time reads.
+            // Where a table covers γ = 2 anyway, the sampler reads it.
             Err(Verdict::ClosedForm) => match required_shapes::find(&needs, Interval::point(GGX)) {
                 Some(need) => within(need, i, &Interval::point(GGX)),
                 None => Verdict::ClosedForm,
@@ -167,12 +172,12 @@ impl Plan {
         })
     }
 
-    /// Whether some material is left to closed forms: then even a set without tables is worth writing.
+    /// Whether closed forms serve some material: then even a set without tables is worth writing.
     pub fn has_closed_forms(&self) -> bool {
         self.verdicts.contains(&Verdict::ClosedForm)
     }
 
-    /// Whether no material in use is rough.
+    /// Whether nothing has to be baked, since no material in use is rough.
     pub fn is_empty(&self) -> bool {
         self.shapes.is_empty()
             && self.albedos.is_empty()
@@ -183,7 +188,7 @@ impl Plan {
     }
 }
 
-/// The range of γ that a material needs tables for, or why it needs none.
+/// The range of γ that a material requires tables for, or the reason why it requires none.
 fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdict>, NotCovered> {
     if !material.used {
         return Ok(Err(Verdict::NotUsed));
@@ -205,7 +210,7 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
     Ok(if options.embedded { Err(Verdict::Embedded) } else { Ok(gamma) })
 }
 
-/// The distributions of materials that are no Student-t, in order and without repetition.
+/// The distributions outside the Student-t family, in order and without repetition.
 fn distributions(scene: &Scene) -> Vec<Distribution> {
     let mut all: Vec<Distribution> = Vec::new();
     for material in scene.materials.iter().filter(|material| material.used) {
@@ -216,12 +221,12 @@ fn distributions(scene: &Scene) -> Vec<Distribution> {
     all
 }
 
-/// Whether there are microfacets at some point at least.
+/// Whether there are microfacets at any point at all.
 fn is_rough(material: &Material) -> bool {
     material.roughness.x().max > 0.0 && material.roughness.y().max > 0.0
 }
 
-/// The named materials of a scene as a set records them: those in use that are rough.
+/// The materials of a scene as a set lists them: those in use that are rough.
 fn entries(scene: &Scene) -> Vec<MaterialEntry> {
     scene
         .materials
@@ -231,7 +236,7 @@ fn entries(scene: &Scene) -> Vec<MaterialEntry> {
         .collect()
 }
 
-/// A material as a set records it.
+/// A material as a set lists it.
 fn entry(material: &Material) -> MaterialEntry {
     let pair = |interval: Interval| [interval.min, interval.max];
     let Interval { min, max } = material.gamma;

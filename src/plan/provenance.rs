@@ -1,11 +1,11 @@
-//! What a set says of itself: origin, licence, and what its tables mean.
+//! What a set states about itself: origin, licence, and the meaning of its tables.
 
 use microfacet_sampler::Provenance;
 
 use super::Plan;
 use crate::bake::NUMERICS;
 
-/// Of every set.
+/// Conventions of every set.
 const CONVENTIONS: [(&str, &str); 10] = [
     ("placement", "values sit at the nodes of the axes, not at cell centres"),
     (
@@ -40,7 +40,7 @@ const CONVENTIONS: [(&str, &str); 10] = [
     ),
 ];
 
-/// Of one with albedo tables.
+/// Conventions of a set with albedo tables.
 const ALBEDO: [(&str, &str); 4] = [
     (
         "albedo",
@@ -64,7 +64,7 @@ const ALBEDO: [(&str, &str); 4] = [
     ),
 ];
 
-/// Of one that leaves a material to closed forms.
+/// The convention of a set that leaves a material to closed forms.
 const GGX: (&str, &str) = (
     "ggx",
     "a material with gamma = 2 that no table covers has closed forms: G1 = 2/(1 + sqrt(1 + (sigma/cot theta)^2)), \

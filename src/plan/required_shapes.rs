@@ -1,4 +1,4 @@
-//! Needs: single shapes and ranges of them, and the table specifications of each.
+//! Required shapes: single γ and ranges of γ, and the table specifications for each.
 
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::{Interpolation, Precision};
@@ -8,19 +8,19 @@ use crate::scene::Interval;
 use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, ShapeAxis, TableSpec, general_set};
 use crate::validate::certificate::ALL_SHAPES;
 
-/// A γ, or a range of them, that tables are to cover: the unit in which tables are baked, measured and kept.
+/// A γ, or a range of γ, that tables are to cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RequiredShapes {
     gamma: Interval,
 }
 
 impl RequiredShapes {
-    /// Everything that tables can cover.
+    /// All shapes that tables can cover.
     pub(super) fn general() -> Self {
         Self { gamma: Interval { min: GAMMA_MIN, max: f64::INFINITY } }
     }
 
-    /// The shapes.
+    /// The range of γ.
     pub fn gamma(&self) -> Interval {
         self.gamma
     }
@@ -30,12 +30,12 @@ impl RequiredShapes {
         [s_of_gamma(self.gamma.max), s_of_gamma(self.gamma.min)]
     }
 
-    /// Where in s its tables are measured.
+    /// The range of s in which its tables are measured.
     pub(crate) fn certified_s(&self) -> [f64; 2] {
         if *self == Self::general() { ALL_SHAPES } else { self.s() }
     }
 
-    /// What the names of its tables end in; nothing for the general set.
+    /// The end of its tables' names; empty for the general set.
     fn label(&self) -> String {
         let Interval { min, max } = self.gamma;
         if *self == Self::general() {
@@ -47,17 +47,18 @@ impl RequiredShapes {
         }
     }
 
-    /// The tables that cover it, cut out of a general set: slices for one shape, else sub-ranges with the general spacing, so that the
-    /// values in between are the same bits.
+    /// The specifications of the tables that cover it, cut out of a general set: slices for one
+    /// shape, else sub-ranges with the general spacing, so that the values in between are the same
+    /// bits.
     pub fn specs(&self, general: &[TableSpec]) -> Vec<TableSpec> {
         general.iter().filter_map(|spec| self.cut(spec)).collect()
     }
 
-    /// What this need takes of one table, or nothing.
+    /// The part of one table that these shapes require, or `None`.
     pub fn cut(&self, spec: &TableSpec) -> Option<TableSpec> {
         let [from, to] = self.s();
         let [low, high] = spec.shapes.ends();
-        // At the seam γ = 1.8 the whole distribution is preferred.
+        // At the seam γ = 1.8 the table of the whole distribution is preferred.
         let after_seam = low >= s_of_gamma(GAMMA_WHOLE);
         let covers = [from.max(low), to.min(high)];
         let shapes = if from == to {
@@ -71,8 +72,9 @@ impl RequiredShapes {
     }
 }
 
-/// The needs that cover all `wants`, disjoint: overlapping ranges become one, single shapes inside them none. The ranges come first,
-/// and either part descends.
+/// The required shapes that cover all `wants`, disjoint: overlapping ranges become one, and single
+/// shapes inside a range are dropped. The ranges come first; ranges and single shapes each descend
+/// in γ.
 pub(super) fn disjoint(wants: impl Iterator<Item = Interval>) -> Vec<RequiredShapes> {
     let (mut points, mut ranges): (Vec<Interval>, Vec<Interval>) =
         wants.partition(|want| want.is_point());
@@ -92,7 +94,7 @@ pub(super) fn disjoint(wants: impl Iterator<Item = Interval>) -> Vec<RequiredSha
     needs
 }
 
-/// The range over all single shapes, if its tables are smaller than so many slices.
+/// The range over all single shapes, if its tables are smaller than all those slices.
 pub(super) fn cheaper_range(needs: &[RequiredShapes]) -> Option<Interval> {
     let points: Vec<&RequiredShapes> = needs.iter().filter(|need| need.gamma.is_point()).collect();
     let hull = points.iter().map(|need| need.gamma).reduce(Interval::union)?;
@@ -103,13 +105,13 @@ pub(super) fn cheaper_range(needs: &[RequiredShapes]) -> Option<Interval> {
     (bytes(&RequiredShapes { gamma: hull }) < slices).then_some(hull)
 }
 
-/// The need, of those that [`disjoint`] made, that covers `want`.
+/// Which of the required shapes that [`disjoint`] made covers `want`.
 pub(super) fn find(needs: &[RequiredShapes], want: Interval) -> Option<usize> {
     let ranges = needs.partition_point(|need| !need.gamma.is_point());
     holder(&needs[..ranges], want).or_else(|| holder(&needs[ranges..], want).map(|i| ranges + i))
 }
 
-/// Which of descending, disjoint needs holds `want`.
+/// Which of descending, disjoint required shapes contains `want`.
 fn holder(needs: &[RequiredShapes], want: Interval) -> Option<usize> {
     // The first that reaches down to it.
     let i = needs.partition_point(|need| need.gamma.min > want.min);

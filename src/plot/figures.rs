@@ -1,4 +1,4 @@
-//! What each figure shows.
+//! The content of each figure.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -10,10 +10,10 @@ use super::{Curve, Legend, Panel, PlotError};
 use crate::convert::{Form, Target};
 use crate::distribution::{DistributionKind, Named};
 
-/// Λ(γ, z) in one of the arrangements compared.
+/// One of the printed forms of Λ(γ, z) that are compared.
 type PrintedLambda = fn(f64, f64) -> Option<f64>;
 
-/// The figures there are.
+/// Names of the figures.
 pub const NAMES: [&str; 5] =
     ["student-t", "distributions", "relative-error", "highlights", "printed-formulas"];
 
@@ -22,9 +22,11 @@ const POINTS: usize = 400;
 
 /// A figure by name.
 ///
-/// `student-t`: P22 and G1 by γ and by σ (Ribardière et al. 2017, figure 3). `distributions` and `relative-error`: the unit
-/// forms of least RMSE to a Beckmann, and their deviation from it (after Sawicki 2021, figures 1–2). `highlights`: the brightness across a
-/// sphere (after figures 3–5). `printed-formulas`: the error of Λ as Ribardière et al. 2017 print it.
+/// `student-t`: P22 and G1 by γ and by σ (Ribardière et al. 2017, doi:10.1111/cgf.13137, figure 3).
+/// `distributions` and `relative-error`: the distributions of least RMSE to a Beckmann, and their
+/// deviation from it (after Sawicki 2021, figures 1–2). `highlights`: the brightness across a
+/// sphere (after figures 3–5). `printed-formulas`: the error of Λ as Ribardière et al. 2017 print
+/// it.
 ///
 /// # Errors
 /// [`PlotError::Unknown`], listing the names.
@@ -84,7 +86,8 @@ fn student_t() -> Vec<Panel> {
     ]
 }
 
-/// Decimal digits of Λ's error by each printed form that is defined at γ, over log₁₀ of z = cot θ/σ.
+/// The decimal logarithm of Λ's relative error in each printed form that is defined at γ, over
+/// log₁₀ of z = cot θ/σ.
 fn printed_formulas(gamma: f64) -> Panel {
     let shape = Shape::new(gamma).expect("the figure's own parameters");
     let forms: [(&str, PrintedLambda); 4] = [
@@ -99,7 +102,7 @@ fn printed_formulas(gamma: f64) -> Panel {
         curve(name.into(), -2.0, 3.0, |log_z| {
             let z = libm::exp10(log_z);
             let truth = shape.lambda(shape.asinh_slope(z));
-            // No error at all is drawn as that of a half ulp.
+            // No error at all is drawn as half an ulp.
             let error = form(gamma, z)
                 .map_or(f64::NAN, |lambda| (lambda - truth).abs() / truth.max(1e-300));
             libm::log10(error.max(1.1e-16)).min(5.0)
@@ -115,7 +118,7 @@ fn printed_formulas(gamma: f64) -> Panel {
     }
 }
 
-/// A Beckmann and the members of the other families nearest to it.
+/// A Beckmann and the nearest distribution of each other kind.
 fn nearest_to_beckmann(m: f64) -> Vec<(Named, Box<dyn Isotropic>)> {
     let beckmann = Named { family: DistributionKind::Beckmann, values: vec![m] };
     let from = beckmann.build().expect("m is positive");
@@ -174,8 +177,8 @@ fn deviations(m: f64) -> Panel {
 /// The angle between the view and the light that makes the highlight.
 const LIGHT_DEGREES: f64 = 45.0;
 
-/// Brightness D/(4 cos θ_v) along the equator of a sphere seen from afar, view, light and normals in one plane, masking left out, as a share of
-/// the value where the half vector is the normal.
+/// Brightness D/(4 cos θ_v) along the equator of a distant sphere, with view, light and normals in
+/// one plane and without masking, relative to the value where the half vector is the normal.
 fn highlight(m: f64) -> Panel {
     let light = LIGHT_DEGREES.to_radians();
     let one = |(name, d): (Named, Box<dyn Isotropic>)| {

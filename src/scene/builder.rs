@@ -1,4 +1,4 @@
-//! What the importers share: a scene in the making.
+//! The scene under construction, shared by the importers.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -12,7 +12,7 @@ pub(super) const GGX: Interval = Interval::point(2.0);
 /// γ of Beckmann.
 pub(super) const BECKMANN: Interval = Interval::point(f64::INFINITY);
 
-/// A lobe of the material at hand, as [`Builder::add`] takes it.
+/// A lobe of the material being read, as [`Builder::add`] takes it.
 pub(super) struct Lobe {
     /// What distinguishes it from the material's other lobes, if anything.
     pub(super) name: Option<&'static str>,
@@ -49,7 +49,7 @@ pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Fre
 pub(super) struct Builder {
     format: Format,
     scene: Scene,
-    /// How often each name was asked for.
+    /// How often each name was requested.
     names: HashMap<String, u32>,
     warned: HashSet<String>,
     textures: Textures,

@@ -1,4 +1,4 @@
-//! Where something stands in a scene description, and what can be wrong with it.
+//! Places in a scene description, and its errors.
 
 use std::fmt;
 use std::io;
@@ -8,9 +8,9 @@ use std::sync::Arc;
 /// A place in a scene description.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
-    /// The file, as it was named.
+    /// The path of the file, as it was given.
     pub file: Arc<Path>,
-    /// The line, from 1; `None` where the syntax keeps none (glTF) or the whole file is meant.
+    /// The line, from 1; `None` where the syntax keeps none (glTF) or the place is the whole file.
     pub line: Option<u32>,
     /// The column in bytes, from 1.
     pub column: Option<u32>,
@@ -73,9 +73,9 @@ impl fmt::Display for Place {
 /// Why a scene description was refused.
 #[derive(Debug)]
 pub struct SceneError {
-    /// Where.
+    /// The place of the error.
     pub place: Place,
-    /// Why.
+    /// The cause.
     pub kind: SceneErrorKind,
 }
 
@@ -120,10 +120,10 @@ impl std::error::Error for SceneError {
     }
 }
 
-/// The sentence "; did you mean `x`?" for the candidate that is close enough to `word` to be
-/// what was meant, else nothing.
+/// The text "; did you mean `x`?" for the candidate closest to `word`, if one is close enough; else
+/// empty.
 ///
-/// Close enough is one edit in three letters, a transposition counting as one.
+/// Close enough is one edit in three letters; a transposition counts as one edit.
 pub(super) fn did_you_mean(word: &str, candidates: &[&str]) -> String {
     let distance = |candidate: &str| {
         strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase())

@@ -1,10 +1,10 @@
-//! Files that include files.
+//! Included files, and checks for circular inclusion.
 
 use std::path::{Path, PathBuf};
 
 use super::{Place, SceneError};
 
-/// Deeper nesting than this is taken for a mistake.
+/// Deeper nesting than this is refused as a mistake.
 const MAX_DEPTH: usize = 64;
 
 /// The files being read, from the scene's own to the innermost included one.

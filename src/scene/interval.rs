@@ -23,7 +23,7 @@ impl Interval {
         Self { min: x, max: x }
     }
 
-    /// The smallest interval that holds all of `values`; `None` of no values or of NaN.
+    /// The smallest interval that holds all of `values`; `None` if there are none or one is NaN.
     pub fn hull(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         values.into_iter().try_fold(None, |hull: Option<Self>, x| {
             (!x.is_nan()).then(|| Some(hull.map_or(Self::point(x), |h| h.union(Self::point(x)))))
@@ -60,8 +60,8 @@ impl Interval {
         Self { min: f(self.max), max: f(self.min) }
     }
 
-    /// The image of both intervals under a function that is linear in each argument, hence takes
-    /// its extremes where both are at an end. Ends must be finite.
+    /// The image of both intervals under a function that is linear in each argument, so that its
+    /// extremes are at the ends. Ends must be finite.
     #[must_use]
     pub fn map_bilinear(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let rows = |y| {
@@ -71,7 +71,7 @@ impl Interval {
         rows(other.min).union(rows(other.max))
     }
 
-    /// All `self (1 - t) + other t`; both mixed with the same `t`.
+    /// All `self (1 - t) + other t`, with the same `t` in both terms.
     #[must_use]
     pub fn mix(self, other: Self, t: Self) -> Self {
         let ends = |a: f64, b: f64| t.map_bilinear(Self::point(0.0), |t, _| a * (1.0 - t) + b * t);

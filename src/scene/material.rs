@@ -1,4 +1,4 @@
-//! What a scene asks for: microfacet lobes with a roughness, a shape and a Fresnel term.
+//! The materials of a scene: microfacet lobes with a roughness, a shape and a Fresnel term.
 
 use std::fmt;
 
@@ -9,9 +9,9 @@ use crate::distribution::Distribution;
 
 /// The slope roughness σ of a microfacet lobe, along the tangent (x) and the bitangent (y).
 ///
-/// σ is dimensionless: the scale of the surface's slopes in the Student-t distribution
-/// (Ribardière et al. 2017, eq. 11 and 18), equal to the α of GGX (γ = 2) and of Beckmann (γ = ∞).
-/// A range may start at 0, for a texture that leaves some points smooth.
+/// σ is dimensionless: the scale of the surface's slopes in the Student-t distribution (Ribardière
+/// et al. 2017, doi:10.1111/cgf.13137, eq. 11 and 18), equal to the α of GGX (γ = 2) and of
+/// Beckmann (γ = ∞). A range may start at 0, for a texture with smooth points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roughness {
     /// σ = 0 everywhere: a mirror or a pane, with no microfacets to sample.
@@ -28,12 +28,12 @@ pub enum Roughness {
 }
 
 impl Roughness {
-    /// The isotropic roughness of range `sigma`, [`Roughness::Smooth`] when that is 0 alone.
+    /// The isotropic roughness of range `sigma`; [`Roughness::Smooth`] if that is 0 alone.
     pub(super) fn isotropic(sigma: Interval) -> Self {
         if sigma.max > 0.0 { Self::Isotropic(sigma) } else { Self::Smooth }
     }
 
-    /// Two roughnesses of independent origin; isotropic when both are the same single number.
+    /// A roughness with independent σx and σy; isotropic if both are the same single number.
     pub(super) fn anisotropic(x: Interval, y: Interval) -> Self {
         if x.is_point() && x == y { Self::isotropic(x) } else { Self::Anisotropic { x, y } }
     }
@@ -97,7 +97,7 @@ pub struct Origin {
     pub format: Format,
     /// The place of its definition.
     pub place: Place,
-    /// Which lobe of a layered material it is, for instance "coat"; `None` for the only or main one.
+    /// The lobe of a layered material, for instance "coat"; `None` for the only or main one.
     pub lobe: Option<&'static str>,
 }
 
@@ -112,22 +112,24 @@ pub struct Material {
     pub roughness: Roughness,
     /// The shape γ > 3/2; `INFINITY` is Beckmann, 2 is GGX.
     pub gamma: Interval,
-    /// A distribution outside the Student-t family; σ is then the median slope of its normals, and γ means nothing.
+    /// A distribution outside the Student-t family; σ is then the median slope of its normals, and
+    /// γ has no meaning.
     pub distribution: Option<Distribution>,
-    /// The turn of an ellipsoid, θx, θy, θz in radians (`microfacet_model::Ellipsoid::new`); σ and γ are then single numbers.
+    /// The tilt and turn of an ellipsoid, θx, θy, θz in radians
+    /// (`microfacet_model::Ellipsoid::new`); σ and γ are then single numbers.
     pub theta: Option<[f64; 3]>,
-    /// The facets' reflectance; `None` where the scene states none, or none of these forms.
+    /// The facets' reflectance; `None` if the scene states none, or none of these forms.
     pub fresnel: Option<Fresnel>,
-    /// The form of G2 that the scene's renderer evaluates; `None` where the format leaves it open.
+    /// The form of G2 that the scene's renderer uses; `None` where the format leaves it open.
     pub masking: Option<Masking>,
     /// Where it was described.
     pub origin: Origin,
-    /// Whether any geometry wears it. True where that cannot be known.
+    /// Whether any geometry uses it; true if that cannot be known.
     pub used: bool,
 }
 
 impl Material {
-    /// Whether both ask for the same lobe under the same name, wherever they were described.
+    /// Whether both state the same lobe under the same name, wherever they were described.
     #[must_use]
     pub fn asks_the_same(&self, other: &Self) -> bool {
         self.name == other.name

@@ -1,17 +1,17 @@
-//! Values of things that refer to each other, such as textures.
+//! Memoised values of nodes that refer to each other, such as textures.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
 use super::{Interval, Place, SceneError};
 
-/// Longer chains of references than this are refused; it bounds the stack that recursion needs.
+/// Longer chains of references than this are refused, which bounds the stack for the recursion.
 const MAX_DEPTH: usize = 128;
 
-/// Works each value out once, so that time stays linear however often it is referred to, and
-/// notices when a value depends on itself.
+/// Computes each value once, so that time stays linear however often it is referred to, and detects
+/// a value that depends on itself.
 pub(super) struct Memo<K> {
-    /// `None` is a value that is being worked out.
+    /// `None` is a value that is being computed.
     values: HashMap<K, Option<Interval>>,
     depth: usize,
 }
@@ -23,7 +23,7 @@ impl<K> Default for Memo<K> {
 }
 
 impl<K: Eq + Hash> Memo<K> {
-    /// The value if it is known; if not, it must be worked out and given to [`Self::end`].
+    /// The value if it is known; if not, it must be computed and given to [`Self::end`].
     pub(super) fn begin(&mut self, key: K, place: &Place) -> Result<Option<Interval>, SceneError> {
         match self.values.get(&key) {
             Some(&Some(value)) => return Ok(Some(value)),

@@ -1,21 +1,24 @@
-//! What a scene asks for: the native recipe, and importers that read other formats into it.
+//! Scene descriptions: the native recipe, and importers of other formats.
 //!
-//! [`load`] reads a scene description and lists the microfacet lobes in it. A table set is
-//! planned from that list alone; geometry, lights and cameras are passed over.
+//! [`load`] reads a scene description and lists the microfacet lobes in it. A table set is planned
+//! from that list alone; geometry, lights and cameras are skipped.
 //!
 //! | format | file | roughness to σ | γ | G2 |
 //! | --- | --- | --- | --- | --- |
 //! | recipe | `.toml` | as written | as written | as written |
-//! | [pbrt-v4] | `.pbrt`, `.pbrt.gz` | √roughness, or as written with `remaproughness` false; under 1e-3 smooth | 2 | height-correlated |
-//! | [Mitsuba 3] | `.xml` | α as written, at least 1e-4; `principled` roughness² | ∞ for `beckmann`, 2 for `ggx` | uncorrelated |
+//! | [pbrt-v4] | `.pbrt`, `.pbrt.gz` | √roughness | 2 | height-correlated |
+//! | [Mitsuba 3] | `.xml` | α; `principled` roughness² | ∞ or 2 | uncorrelated |
 //! | [glTF 2.0] | `.gltf`, `.glb` | roughness² | 2 | left open |
 //! | [MaterialX] | `.mtlx` | roughness² with the shading model's anisotropy | 2 | left open |
+//!
+//! In pbrt σ is the roughness as written with `remaproughness` false, and a surface is smooth under
+//! 1e-3. In Mitsuba α is as written, but at least 1e-4; γ is ∞ for `beckmann` and 2 for `ggx`.
 //!
 //! A roughness that comes from an image is the range of that image's pixels, with the scene's
 //! scales and offsets applied. An image that cannot be read counts as [0, 1], with a warning.
 //! Materials that are not microfacet models, or that this crate does not know, are listed in
-//! [`Scene::ignored`]; they are not errors. An included file that is missing is a warning too,
-//! since scenes often travel without their geometry; then every material counts as used.
+//! [`Scene::ignored`]; they are not errors. A missing included file gives a warning too, since
+//! scenes often travel without their geometry; then every material counts as used.
 //!
 //! [pbrt-v4]: https://pbrt.org/fileformat-v4
 //! [Mitsuba 3]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
@@ -43,14 +46,14 @@ pub use error::{Place, SceneError, SceneErrorKind};
 pub use interval::Interval;
 pub use material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
 
-/// A scene, seen by the tables it needs.
+/// The microfacet lobes of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// The microfacet lobes, in the order of their definition; names are unique.
     pub materials: Vec<Material>,
     /// Materials for which there is nothing to bake.
     pub ignored: Vec<Ignored>,
-    /// What was assumed where the scene could not be followed, each with its place.
+    /// Assumptions made where the scene could not be read in full, each with its place.
     pub warnings: Vec<String>,
 }
 
@@ -60,7 +63,7 @@ impl Scene {
     /// # Errors
     ///
     /// [`SceneErrorKind::Syntax`] for text that is not TOML, [`SceneErrorKind::Invalid`] for an
-    /// unknown key, a name given twice, no material at all, or a value out of its range.
+    /// unknown key, a duplicate name, no material at all, or a value out of its range.
     ///
     /// # Example
     ///
@@ -81,9 +84,9 @@ impl Scene {
         Ok(Self { materials: recipe::read(text, file)?, ..Self::default() })
     }
 
-    /// The native recipe of the materials in use: the canonical statement of what this scene asks for.
+    /// The native recipe of the materials in use: the canonical form of this scene.
     ///
-    /// It reads back to materials that [ask the same](Material::asks_the_same), bit for bit. A
+    /// It reads back to materials that [are the same](Material::asks_the_same), bit for bit. A
     /// scene that uses no material gives an empty text, which is not a valid recipe.
     #[must_use]
     pub fn to_recipe(&self) -> String {
@@ -91,14 +94,13 @@ impl Scene {
     }
 }
 
-/// Reads the scene description in `path`; the extension tells the format.
+/// Reads the scene description in `path`; the extension determines the format.
 ///
 /// # Errors
 ///
-/// [`SceneErrorKind::UnknownExtension`] for an extension of no known format,
-/// [`SceneErrorKind::Io`] if the file cannot be read, [`SceneErrorKind::Syntax`] and
-/// [`SceneErrorKind::Invalid`] with the place of what is wrong in it. A missing image or included
-/// file is a warning.
+/// [`SceneErrorKind::UnknownExtension`] for an extension of no known format, [`SceneErrorKind::Io`]
+/// if the file cannot be read, [`SceneErrorKind::Syntax`] and [`SceneErrorKind::Invalid`] with the
+/// place of the error in it. A missing image or included file is a warning.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let name = name.strip_suffix(".pbrt.gz").map_or(name.clone(), |stem| format!("{stem}.pbrt"));

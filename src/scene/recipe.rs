@@ -5,19 +5,22 @@
 //! name = "frosted glass"
 //! sigma = 0.454                  # or [x, y], or { min = .., max = .. }; 0 is smooth
 //! gamma = 3.0                    # or "inf" (Beckmann), or { min = .., max = .. }
-//! fresnel = { dielectric = 1.5 } # or "mirror", { schlick = F0 }, { conductor = { eta = [..], k = [..] } }
+//! fresnel = { dielectric = 1.5 } # or "mirror", { schlick = F0 },
+//!                                # { conductor = { eta = [..], k = [..] } }
 //! masking = "height-correlated"  # or "uncorrelated"; height-correlated if absent
 //! ```
 //!
-//! `distribution` with its parameters stands in the place of σ and γ for a distribution by another name: `distribution =
-//! "gtr"`, `c = 0.2`, `gamma = 1.5`, or `distribution = { measured = "steel.csv" }` for a CSV of angles in radians and D. Exact members of the
+//! For a distribution outside the family, `distribution` with its parameters takes the place of σ
+//! and γ: `distribution = "gtr"`, `c = 0.2`, `gamma = 1.5`, or `distribution = { measured =
+//! "steel.csv" }` for a CSV of angles in radians and D. Distributions that are members of the
 //! family (Beckmann, Trowbridge–Reitz, Blinn–Phong, Hyper-Cauchy) are read as such.
 //!
-//! `theta = [0.1, -0.2, 0.5]` beside single numbers of σ and γ tilts and turns the lobe: an ellipsoid, by the angles θx, θy, θz in radians.
+//! `theta = [0.1, -0.2, 0.5]` beside single numbers of σ and γ tilts and turns the lobe: an
+//! ellipsoid with the angles θx, θy, θz in radians.
 //!
-//! The index of a dielectric may be a range, `{ dielectric = { min = 1.0, max = "inf" } }`, whose tables have an axis of indices.
-//! `fresnel` and `masking` may be absent. The ends of an anisotropic roughness may be ranges as
-//! well: `sigma = [{ min = 0.1, max = 0.2 }, 0.3]`.
+//! The index of a dielectric may be a range, `{ dielectric = { min = 1.0, max = "inf" } }`, whose
+//! tables have an axis of indices. `fresnel` and `masking` may be absent. The ends of an
+//! anisotropic roughness may be ranges as well: `sigma = [{ min = 0.1, max = 0.2 }, 0.3]`.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -111,7 +114,7 @@ fn range(interval: Interval) -> String {
     }
 }
 
-/// Roughness, shape, and what replaces them.
+/// Roughness, shape, and the distribution that replaces them.
 type Lobe = (Roughness, Interval, Option<Distribution>);
 
 struct Source<'a> {
@@ -217,7 +220,7 @@ impl Source<'_> {
         })
     }
 
-    /// The lobe of a material with a distribution by name: as a Student-t where it is one.
+    /// The lobe of a material with a named distribution; as a Student-t if it is one.
     fn distribution(&self, table: &Table<'_>, value: &Value<'_>) -> Result<Lobe, SceneError> {
         let place = self.place(value.span());
         let common = ["name", "distribution", "fresnel", "masking"];
@@ -243,7 +246,7 @@ impl Source<'_> {
             self.only_keys(source, &["measured"])?;
             let file = source.get("measured").and_then(|file| file.get_ref().as_str());
             let file = file.ok_or_else(|| place.invalid(forms))?;
-            // Relative to the recipe.
+            // Relative to the recipe's folder.
             let path = self.file.parent().unwrap_or(Path::new("")).join(file);
             let input = std::fs::File::open(&path)
                 .map_err(|e| place.invalid(format!("{}: {e}", path.display())))?;
@@ -301,8 +304,8 @@ impl Source<'_> {
         };
         let (x, y) = (valid(x)?, valid(y)?);
         match Roughness::anisotropic(x, y) {
-            // A lobe that is rough along one axis alone has no density: the distribution
-            // degenerates to a line.
+            // A lobe that is rough along one axis only has no density: the distribution degenerates
+            // to a line.
             Roughness::Anisotropic { .. } if x.max == 0.0 || y.max == 0.0 => Err(place.invalid(
                 "sigma is 0 along one axis alone; make both more than 0, or write sigma = 0 for a smooth surface",
             )),
@@ -322,7 +325,7 @@ impl Source<'_> {
         )))
     }
 
-    /// The turn of an ellipsoid, checked with its σ and γ.
+    /// The angles of an ellipsoid, checked together with its σ and γ.
     fn theta(
         &self,
         value: &Value<'_>,

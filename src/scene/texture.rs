@@ -1,4 +1,4 @@
-//! The range of values in an image.
+//! Ranges of the values in images.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -8,7 +8,7 @@ use image::{DynamicImage, ImageReader};
 
 use super::Interval;
 
-/// Which number of a pixel is meant.
+/// The number of a pixel to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Channel {
     /// Red, or grey.
@@ -17,13 +17,13 @@ pub(super) enum Channel {
     Green,
     /// Blue, or grey.
     Blue,
-    /// Opacity; 1 in an image without.
+    /// Opacity; 1 in an image without it.
     Alpha,
     /// The luminance of linear sRGB, or grey.
     Luminance,
 }
 
-/// What the numbers of an integer image mean. Images of floats are linear always.
+/// Encoding of the numbers of an integer image. Images of floats are always linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Encoding {
     /// Proportional to the value.
@@ -58,7 +58,7 @@ impl Textures {
     }
 }
 
-/// As [`Textures::range`], of an image file in memory.
+/// As [`Textures::range`], for an image file in memory.
 pub(super) fn range_of_bytes(
     bytes: &[u8],
     channel: Channel,

@@ -1,4 +1,5 @@
-//! XML as a tree of owned elements that know their places: what Mitsuba and MaterialX share.
+//! XML as a tree of owned elements with their places, shared by the readers of Mitsuba and
+//! MaterialX.
 
 use std::fs;
 use std::path::Path;
@@ -8,10 +9,10 @@ use roxmltree::{Document, Node};
 use super::error::Lines;
 use super::{Place, SceneError};
 
-/// Deeper nesting than this is taken for a mistake; it bounds the stack that recursion needs.
+/// Deeper nesting than this is refused as a mistake, which bounds the stack for the recursion.
 const MAX_DEPTH: usize = 256;
 
-/// An element; text, comments and namespaces are left out.
+/// An element, without text, comments and namespaces.
 #[derive(Debug)]
 pub(super) struct Element {
     pub(super) tag: String,
@@ -36,7 +37,7 @@ impl Element {
         self.children.iter().find(|child| child.attribute("name") == Some(name))
     }
 
-    /// Calls `visit` for this element and everything below it, in document order.
+    /// Calls `visit` for this element and all its descendants, in document order.
     pub(super) fn walk<'a>(&'a self, visit: &mut impl FnMut(&'a Element)) {
         visit(self);
         for child in &self.children {
@@ -52,7 +53,7 @@ pub(super) fn read(file: &Path) -> Result<Element, SceneError> {
     let document = Document::parse(&text).map_err(|error| {
         let at = error.pos();
         Place { line: Some(at.row), column: Some(at.col), ..place }
-            // The place stands before the message already.
+            // The message has the place before it already.
             .syntax(error.to_string().trim_end_matches(&format!(" at {at}")))
     })?;
     element(document.root_element(), &Lines::new(file, &text), 0)

@@ -1,7 +1,9 @@
-//! One table as an OpenEXR image: the last axis along x, the others stacked along y, channels as channels.
+//! One table as an OpenEXR image: the last axis along x, the others stacked along y, table channels
+//! as image channels.
 //!
-//! A table read by Hermite cells has its values in the luminance channel `Y`, which every viewer shows, and its slopes in `slope`. The
-//! description of the set is the string attribute `microfacet`.
+//! A table interpolated by Hermite cubics has its values in the luminance channel `Y`, which every
+//! viewer shows, and its derivatives in `slope`. The string attribute `microfacet` holds the
+//! description of the set.
 
 use std::io::Cursor;
 
@@ -22,10 +24,11 @@ fn channel_name(channel: &str) -> &str {
     if channel == "value" { "Y" } else { channel }
 }
 
-/// An image of the table, compressed without loss; half-precision tables give half channels, all others f32.
+/// Encodes a table as an image, compressed without loss; half-precision tables give half channels,
+/// all others f32.
 ///
 /// # Errors
-/// A message if the table is not sound or cannot be written.
+/// A message if the table is invalid or cannot be written.
 pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec<u8>, String> {
     let document =
         describe(provenance, std::slice::from_ref(table)).map_err(|why| why.to_string())?;
@@ -40,7 +43,7 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
             Precision::F16 => FlatSamples::F16(samples.map(|&x| f16::from_f32(x)).collect()),
             _ => FlatSamples::F32(samples.copied().collect()),
         };
-        // Numbers, not light: lossy compression elsewhere should quantise them evenly.
+        // The samples are not light intensities: a lossy compressor should quantise them evenly.
         AnyChannel {
             name: Text::new_or_panic(channel_name(channel)),
             sample_data: samples,
@@ -50,7 +53,7 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
     });
     let mut attributes = LayerAttributes::named(Text::new_or_panic(&table.name));
     let text = Text::new_or_none(&document).ok_or("the description cannot be stored in EXR")?;
-    // One custom attribute only: the library writes them in the order of a hash map.
+    // Only one custom attribute: the library writes them in the order of a hash map.
     attributes.other.insert(Text::new_or_panic(ATTRIBUTE), AttributeValue::Text(text));
     let layer = Layer::new(
         (width, height),
@@ -114,10 +117,12 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     Tables::from_tables(provenance, tables)
 }
 
-/// How many times larger than its file an image may be. Tables compress by less than four; DEFLATE alone could by a thousand.
+/// Largest allowed ratio of image size to file size. Tables compress by less than four; DEFLATE
+/// alone could reach a thousand.
 const EXPANSION: usize = 64;
 
-/// Refuses a header that promises more pixels than the file can hold, before the library makes room for them.
+/// Refuses a header that declares more pixels than the file can hold, before the library allocates
+/// them.
 fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
     let meta = exr::meta::MetaData::read_from_buffered(bytes, false)
         .map_err(|why| format!("OpenEXR: {why}"))?;
@@ -151,14 +156,14 @@ fn document_channels(document: &str) -> std::result::Result<Vec<String>, String>
         .ok_or_else(|| "the description names no channels".into())
 }
 
-/// The description in pure ASCII: EXR text has no Unicode.
+/// The description in ASCII, since EXR text has no Unicode.
 fn ascii(document: &str) -> String {
     let mut ascii = String::with_capacity(document.len());
     for c in document.chars() {
         if c.is_ascii() {
             ascii.push(c);
         } else {
-            // Only strings hold such characters, and there JSON allows the escape.
+            // Such characters occur in strings only, where JSON allows the escape.
             let mut units = [0; 2];
             c.encode_utf16(&mut units)
                 .iter()

@@ -1,4 +1,4 @@
-//! An output folder held by one bake at a time.
+//! Locks an output folder for one bake at a time.
 
 use std::fs::{File, TryLockError};
 use std::io;
@@ -11,22 +11,24 @@ use super::{Format, SET_FILE, StoreError, Written, files, read_file};
 
 /// A folder to write a set into, locked against every other bake until it is dropped.
 ///
-/// The lock ends with the process, however it ends, and leaves nothing behind. A folder that was made for the set and got none, since the
-/// bake was refused, goes when this is dropped.
+/// The lock ends with the process, however it ends, and leaves nothing behind. A folder that was
+/// made for the set is removed again on drop if the bake was refused and nothing was written.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// Folders that were not there before, the innermost first.
+    /// Folders that did not exist before, the innermost first.
     made: Vec<PathBuf>,
     lock: Option<File>,
 }
 
 impl OutputFolder {
-    /// Makes the folder if it is not there, locks it, checks that it can be written to, and tidies up after a bake that was
-    /// interrupted in it: a set whose last step had begun is completed, files half written are removed.
+    /// Makes the folder if it does not exist, locks it, checks that it can be written to, and
+    /// cleans up after an interrupted bake: if the last step of replacing a set had begun, it is
+    /// completed, and partial files are removed.
     ///
     /// # Errors
-    /// [`StoreError::InUse`] if another bake holds the folder, [`StoreError::Io`] if it is none or cannot be written to.
+    /// [`StoreError::InUse`] if another bake has locked the folder, [`StoreError::Io`] if the path
+    /// is no folder or cannot be written to.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let failed = |why| StoreError::Io(path.into(), why);
         if path.exists() && !path.is_dir() {
@@ -43,28 +45,29 @@ impl OutputFolder {
         match lock.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                // Whoever holds it needs it.
+                // The bake that holds the lock uses these folders.
                 this.made.clear();
                 return Err(StoreError::InUse(path.into()));
             }
-            // Some network file systems have no locks; the files are still replaced as a whole.
+            // Some network file systems have no locks; files are still replaced as a whole.
             Err(TryLockError::Error(why)) if why.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(why)) => return Err(failed(why)),
         }
         finish(path).map_err(failed)?;
-        // Now rather than after an hour of baking.
+        // Fail now rather than after an hour of baking.
         tempfile::tempfile_in(path).map_err(failed)?;
         Ok(this)
     }
 
-    /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table. A folder holds one set: tables of an earlier one go, other
-    /// files stay.
+    /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table. A folder holds one set:
+    /// tables of an earlier set are removed, other files stay.
     ///
-    /// Everything is prepared in memory and beside the old files first. One file is then replaced in one step; of several, the old
-    /// ones are removed before the first new one appears, so that the two never mix.
+    /// First all new files are written beside the old ones. A single file is then replaced in one
+    /// step; with several, the old ones are removed before the first new one appears, so that the
+    /// two sets never mix.
     ///
     /// # Errors
-    /// [`StoreError`] naming the path; the old set is then still there.
+    /// [`StoreError`] naming the path; the old set is then unchanged.
     pub fn write(&self, set: &Tables, formats: &[Format]) -> Result<Vec<Written>, StoreError> {
         let files = files(set, formats).map_err(|why| why.inside(&self.path))?;
         let stale = self.stale(&files).map_err(|why| StoreError::Io(self.path.clone(), why))?;
@@ -83,7 +86,7 @@ impl OutputFolder {
         for entry in std::fs::read_dir(&self.path)? {
             let Ok(name) = entry?.file_name().into_string() else { continue };
             let ours = name == SET_FILE || name.ends_with(".exr");
-            // Whatever does not load as a table is somebody else's.
+            // A file that does not load as a table is not ours.
             if ours
                 && files.iter().all(|(new, _)| *new != name)
                 && read_file(&self.path.join(&name)).is_ok()
@@ -97,7 +100,7 @@ impl OutputFolder {
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        // A folder that holds anything cannot be removed, and stays as it is.
+        // A folder with any content cannot be removed, and stays.
         if !cfg!(unix) && !self.made.is_empty() {
             self.lock = None;
             let _ = std::fs::remove_file(self.path.join(LOCK_FILE));
@@ -109,13 +112,13 @@ impl Drop for OutputFolder {
 /// Name of the file that is locked where a folder itself cannot be.
 const LOCK_FILE: &str = ".microfacet-bake.lock";
 
-/// What the lock is taken on: the folder itself, which needs no file of its own.
+/// Opens what the lock is taken on: on Unix the folder itself.
 #[cfg(unix)]
 fn lock_file(folder: &Path) -> io::Result<File> {
     File::open(folder)
 }
 
-/// Elsewhere folders cannot be opened.
+/// On other systems, where folders cannot be opened, a file in the folder.
 #[cfg(not(unix))]
 fn lock_file(folder: &Path) -> io::Result<File> {
     File::create(folder.join(LOCK_FILE))

@@ -1,4 +1,5 @@
-//! Tables on disk: safetensors and OpenEXR. The only place of the generator that touches table files.
+//! Tables on disk, as safetensors and OpenEXR. Only this folder of the crate reads and writes table
+//! files.
 
 mod exr;
 mod lock;
@@ -28,7 +29,7 @@ pub enum Format {
 /// Why a set could not be read or written.
 #[derive(Debug)]
 pub enum StoreError {
-    /// The operating system refused.
+    /// The operating system reported an error.
     Io(PathBuf, std::io::Error),
     /// The file is not a table set, damaged, or of a newer version.
     Load(PathBuf, LoadError),
@@ -39,7 +40,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// The same with its path taken relative to a folder.
+    /// The same error with its path taken relative to a folder.
     fn inside(self, folder: &Path) -> Self {
         match self {
             Self::Io(path, why) => Self::Io(folder.join(path), why),
@@ -70,16 +71,16 @@ impl std::error::Error for StoreError {}
 /// A file that was written.
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// Where.
+    /// Its path.
     pub path: PathBuf,
-    /// How large.
+    /// Its size.
     pub bytes: usize,
 }
 
-/// Writes a set into a folder; [`OutputFolder::open`] and [`OutputFolder::write`] in one.
+/// Writes a set into a folder: [`OutputFolder::open`], then [`OutputFolder::write`].
 ///
 /// # Errors
-/// As those.
+/// As [`OutputFolder::open`] and [`OutputFolder::write`].
 pub fn write(folder: &Path, set: &Tables, formats: &[Format]) -> Result<Vec<Written>, StoreError> {
     OutputFolder::open(folder)?.write(set, formats)
 }
@@ -103,16 +104,17 @@ fn files(set: &Tables, formats: &[Format]) -> Result<Vec<(String, Vec<u8>)>, Sto
     Ok(files)
 }
 
-/// Reads a set from a safetensors file, a folder that holds one, or a single table from an EXR file.
+/// Reads a set from a safetensors file or a folder that holds one, or a single table from an EXR
+/// file.
 ///
-/// Where a bake was killed while it exchanged several files, the exchange is completed first.
+/// If a bake was killed while it replaced several files, the replacement is completed first.
 ///
 /// # Errors
 /// [`StoreError`] naming the path and what is wrong.
 pub fn read(path: &Path) -> Result<Tables, StoreError> {
     let folder = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
     if replace::is_interrupted(folder) {
-        // Opening completes what a bake that was killed in its last step had begun.
+        // Opening the folder completes a replacement that was interrupted.
         OutputFolder::open(folder)?;
     }
     read_file(&if path.is_dir() { path.join(SET_FILE) } else { path.to_path_buf() })

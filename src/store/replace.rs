@@ -1,4 +1,4 @@
-//! Replacing files as a whole, one or several.
+//! Replaces files as a whole, one or several.
 
 use std::fs;
 use std::io::{self, Write};
@@ -6,21 +6,23 @@ use std::path::Path;
 
 use tempfile::NamedTempFile;
 
-/// How files that are not complete are named; whatever is named so is a leftover when no bake holds the folder.
+/// Prefix and suffix of the names of incomplete files; while no bake locks the folder, such a file
+/// is a leftover.
 const PREFIX: &str = ".microfacet-bake-";
 const SUFFIX: &str = ".partial";
 
-/// Lists the exchanges of a set of several files while they are being made: `PARTIAL NAME` by line, `- NAME` for a file that goes.
+/// Journal of the replacement of several files while it is under way: a line `PARTIAL NAME` for
+/// each new file, `- NAME` for each removed one.
 const JOURNAL: &str = ".microfacet-bake.commit";
 
-/// Stands for the new file of one that goes.
+/// Marks a removed file in the journal.
 const STALE: &str = "-";
 
-/// Writes `bytes` to `path` so that at every moment either the old file or the complete new one is there: into a temporary file in the same
-/// folder, to disk, then renamed over it.
+/// Writes `bytes` to `path` so that at every moment either the old file or the complete new one is
+/// there: into a temporary file in the same folder, synchronised to disk, then renamed over it.
 ///
 /// # Errors
-/// What the operating system reports; the old file is then untouched.
+/// The operating system's error; the old file is then untouched.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder =
         path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -28,7 +30,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     sync(folder)
 }
 
-/// A complete temporary file in `folder`, on disk.
+/// A complete temporary file in `folder`, synchronised to disk.
 fn stage(folder: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     let mut file = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).tempfile_in(folder)?;
     file.write_all(bytes)?;
@@ -42,18 +44,21 @@ fn stage(folder: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     Ok(file)
 }
 
-/// Makes renames in a folder last.
+/// Makes renames in a folder durable.
 fn sync(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { fs::File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
-/// Replaces several files of a folder, by name, and removes those in `stale`, so that old and new ones never stand side by side.
+/// Replaces several files of a folder, by name, and removes those in `stale`, so that old and new
+/// files never coexist.
 ///
-/// No file system exchanges several files in one step. The new ones are completed under temporary names, a journal of the exchange is
-/// written in one step, and from there on [`finish`] leads to the new set, now or after an interruption.
+/// No file system replaces several files in one step. The new ones are completed under temporary
+/// names, then a journal of the replacement is written in one step. From then on [`finish`] leads
+/// to the new set, now or after an interruption.
 ///
 /// # Errors
-/// The name and what the operating system reports; before the journal is written the old files are untouched.
+/// The name and the operating system's error; before the journal is written the old files are
+/// untouched.
 pub(super) fn replace_all(
     folder: &Path,
     files: &[(String, Vec<u8>)],
@@ -77,18 +82,19 @@ pub(super) fn replace_all(
     }
     replace(&folder.join(JOURNAL), journal.as_bytes()).map_err(failed)?;
     for file in staged {
-        // From here on the journal decides over these files.
+        // From here on the journal decides about these files.
         file.keep().map_err(|error| failed(error.error))?;
     }
     finish(folder).map_err(failed)
 }
 
-/// Whether an exchange in the folder was begun and not completed.
+/// Whether a replacement in the folder was begun and not completed.
 pub(super) fn is_interrupted(folder: &Path) -> bool {
     folder.join(JOURNAL).exists()
 }
 
-/// Completes the exchange that a journal lists, if there is one, and removes leftovers. Can itself be interrupted and repeated.
+/// Completes the replacement that a journal lists, if there is one, and removes leftovers. It can
+/// itself be interrupted and repeated.
 pub(super) fn finish(folder: &Path) -> io::Result<()> {
     let journal = folder.join(JOURNAL);
     let text = match fs::read_to_string(&journal) {
@@ -98,10 +104,10 @@ pub(super) fn finish(folder: &Path) -> io::Result<()> {
     let plain = |name: &str| !name.contains(['/', '\\']) && name != "..";
     let lines = || text.lines().filter_map(|line| line.split_once(' '));
     let exchanges: Vec<_> = lines()
-        // A journal that someone else has written may name anything.
+        // A journal written by someone else may name any path.
         .filter(|(partial, name)| plain(partial) && partial.starts_with(PREFIX) && plain(name))
         .map(|(partial, name)| (folder.join(partial), folder.join(name)))
-        // What is no longer under its temporary name stands in its place already.
+        // A file no longer under its temporary name has been moved already.
         .filter(|(partial, _)| partial.exists())
         .collect();
     let stale = lines()
@@ -153,7 +159,8 @@ mod tests {
         all
     }
 
-    /// Every state that an exchange of three files passes through, and what the next run makes of it.
+    /// Every state that a replacement of three files passes through, and what the next run makes of
+    /// it.
     #[test]
     fn an_exchange_interrupted_anywhere_is_completed() {
         for removed in 0..=3 {

@@ -1,4 +1,4 @@
-//! One group in a search: what each of its levels is predicted to be, and what was measured.
+//! One table group in a search: the predicted error and size of each level, and those measured.
 
 use std::collections::BTreeMap;
 
@@ -11,21 +11,22 @@ use crate::memory;
 use crate::table_spec::Level;
 use crate::validate::certificate::worst_error;
 
-/// 16-bit fixed point is the only small precision to choose: half precision takes the same bytes,
-/// and its error, 3e-4 to 1e-3 of a value, is that of fixed point at best.
+/// 16-bit fixed point is the only small precision to choose from: half precision takes the same
+/// bytes, and its error, 3e-4 to 1e-3 of a value, is that of fixed point at best.
 const PRECISIONS: [Precision; 2] = [Precision::U16, Precision::F32];
-/// Fewer bytes than this share are not worth another bake.
+/// Another bake is worth it only if its size is at most this share of the best so far.
 const WORTH: f64 = 0.9;
-/// What a group may spend on being measured more than once, in groups of its bake at default quality.
+/// Limit of a group's measuring time, in bakes of it at default quality or, if longer, in the time
+/// spent so far.
 const ALLOWANCE: f64 = 2.0;
-/// A level in one of [`PRECISIONS`], by its index.
+/// A grade: a level, and the index of one of [`PRECISIONS`].
 pub(super) type Grade = (Level, usize);
 
-/// A grade, what it is predicted or was measured to be, and whether it was.
+/// A grade with its predicted or measured error and size, and whether they were measured.
 #[derive(Clone, Copy)]
 pub(super) struct Pick {
     pub(super) grade: Grade,
-    /// Bytes of the values before refinement, and seconds to bake it, as estimated.
+    /// Estimated bytes of the values before refinement, and estimated seconds to bake them.
     values: f64,
     seconds: f64,
     pub(super) error: f64,
@@ -33,23 +34,23 @@ pub(super) struct Pick {
     pub(super) measured: bool,
 }
 
-/// What was measured of a grade.
+/// The measurements of a grade.
 struct Measured {
     tables: Vec<Table>,
     error: f64,
     bytes: f64,
-    /// How many times as many values as estimated there are, of an albedo that was refined.
+    /// Ratio of the number of values to the estimated one, for an albedo that was refined.
     growth: f64,
 }
 
-/// A group and what is known of it.
+/// A table group with the predictions and measurements of its grades.
 pub(super) struct Candidate<'a> {
     pub(super) group: TableGroup<'a>,
-    /// By precision.
+    /// Measurements by precision.
     measured: [BTreeMap<Level, Measured>; 2],
-    /// Bytes of what is no value, about.
+    /// Estimated bytes of names, axes and certificates.
     header: f64,
-    /// Seconds of a bake at default quality, and those that were spent, as estimated.
+    /// Estimated seconds of a bake at default quality, and of those done so far.
     pub(super) plain: f64,
     spent: f64,
     /// All grades, the coarsest first.
@@ -84,7 +85,7 @@ impl<'a> Candidate<'a> {
         new
     }
 
-    /// Errors and bytes of the menu, from what is expected and what was measured.
+    /// Predicts errors and bytes of the menu, from the expected errors and the measured ones.
     fn predict(&mut self) {
         let mut menu = std::mem::take(&mut self.menu);
         for pick in &mut menu {
@@ -102,7 +103,7 @@ impl<'a> Candidate<'a> {
             return (error, bytes, true);
         }
         let expected = |level: Level| self.group.expected(level, PRECISIONS[precision]);
-        // How much worse, and larger, than expected.
+        // Ratio of the measured error and size to those expected.
         let off =
             |(at, measured): (&Level, &Measured)| [measured.error / expected(*at), measured.growth];
         let below = measured.range(..level).next_back();
@@ -119,13 +120,14 @@ impl<'a> Candidate<'a> {
         (worse * expected(level), growth * values + self.header, false)
     }
 
-    /// The smallest grade that errs by no more than `max_error`, of those that satisfy a condition.
+    /// The smallest grade that errs by no more than `max_error`, among those that satisfy a
+    /// condition.
     pub(super) fn smallest(&self, max_error: f64, of: impl Fn(&Pick) -> bool) -> Option<Pick> {
         let meets = self.menu.iter().filter(|pick| pick.error <= max_error && of(pick));
         meets.min_by(|a, b| a.bytes.total_cmp(&b.bytes)).copied()
     }
 
-    /// Whether a grade is known, or may be measured beside what was measured already.
+    /// Whether a grade is measured already, or may still be measured within the allowance.
     pub(super) fn is_affordable(&self, pick: &Pick) -> bool {
         let limit = ALLOWANCE * self.plain.max(self.spent);
         pick.measured || self.spent == 0.0 || self.spent + pick.seconds <= limit
@@ -161,7 +163,7 @@ impl<'a> Candidate<'a> {
         &self.measured[precision][&level].tables
     }
 
-    /// The small grade with an error that was measured to be no larger than `max_error`.
+    /// A small grade whose measured error is at most `max_error`.
     pub(super) fn meeting(&mut self, max_error: f64, job: &mut Job) -> Result<Grade, BakeError> {
         loop {
             let best = self.smallest(max_error, |pick| pick.measured);
@@ -172,7 +174,7 @@ impl<'a> Candidate<'a> {
                     return Ok(best.grade);
                 }
                 (_, Some(next)) => next.grade,
-                // The finest has the last word.
+                // The finest grade decides whether the error can be met.
                 _ => self.finest(),
             };
             if self.measured[next.1].contains_key(&next.0) {

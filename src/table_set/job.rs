@@ -1,4 +1,4 @@
-//! What goes along with a bake: the cache, the count of what was done, and who is told of it.
+//! What accompanies a bake: the cache, the counts of what was done, and the report of progress.
 
 use std::collections::HashSet;
 use std::io;
@@ -38,7 +38,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Steps are done.
+    /// Counts steps as done and reports the progress.
     pub(super) fn advance(&mut self, steps: usize) {
         for _ in 0..steps {
             self.done += 1;
@@ -46,29 +46,29 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// The tables under a key.
+    /// The cached tables under a key.
     pub(super) fn get(&self, key: &str) -> Option<Vec<Table>> {
         self.cache.get(key)
     }
 
-    /// Keeps tables under a key.
+    /// Caches tables under a key.
     pub(super) fn keep(&mut self, key: &str, tables: &[Table]) {
         if let Err(why) = self.cache.put(key, tables) {
             self.cache_error.get_or_insert(why);
         }
     }
 
-    /// Forgets what is kept under a key.
+    /// Removes a key from the cache.
     pub(super) fn forget(&self, key: &str) {
         self.cache.remove(key);
     }
 
-    /// Tables of these names are new.
+    /// Counts tables of these names as newly baked.
     pub(super) fn made<'t>(&mut self, tables: impl IntoIterator<Item = &'t Table>) {
         self.fresh.extend(tables.into_iter().map(|table| table.name.clone()));
     }
 
-    /// How many of the tables were baked now.
+    /// Number of the tables that were newly baked.
     pub(super) fn baked_of(&self, tables: &[Table]) -> usize {
         tables.iter().filter(|table| self.fresh.contains(&table.name)).count()
     }

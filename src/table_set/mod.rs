@@ -1,8 +1,8 @@
-//! The whole bake, one way through: a plan and a target in, a certified set out.
+//! The whole bake: from a plan and a target to a certified set.
 //!
-//! [`bake_with`] cuts the plan into groups, the tables that are refined together; for a
-//! [quality](Target::Quality) each is baked at it, for the other targets `search` chooses their
-//! levels. A group bakes its tables, certifies them and keeps them in the cache, through one door.
+//! [`bake_with`] splits the plan into table groups, the tables that are refined together. For a
+//! [quality](Target::Quality) each group is baked at it; for the other targets `search` chooses the
+//! levels. A group bakes its tables, certifies them and keeps them in the cache.
 
 mod candidate;
 mod group;
@@ -25,12 +25,12 @@ use group::TableGroup;
 use job::Job;
 use search::Search;
 
-/// How good the tables are to be.
+/// The accuracy or size that the tables are to have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// A quality's numbers of nodes.
+    /// The numbers of nodes of a quality.
     Quality(Quality, Precision),
-    /// Small tables with no larger error: of G1, absolute, of the CDF of slopes, of D/D(0) and of
+    /// Small tables with no larger error: absolute, of G1, of the CDF of slopes, of D/D(0) and of
     /// albedos.
     MaxError(f64),
     /// Accurate tables whose safetensors file has no more bytes.
@@ -43,14 +43,15 @@ impl Default for Target {
     }
 }
 
-/// What a bake may use, and whom it tells.
+/// Cache, limits and progress report of a bake.
 pub struct Settings<'a> {
     /// Where finished tables are kept; by default nowhere.
     pub cache: Cache,
-    /// Bytes of memory that it may take; more is refused before any is taken. By default 4 GiB.
+    /// Bytes of memory that the bake may take; a larger bake is refused before any is taken. By
+    /// default 4 GiB.
     pub max_memory: u64,
-    /// Whether to choose tables even where that takes more than thrice as long as the plain bake,
-    /// and more than [`PATIENCE`] seconds. By default not.
+    /// Whether to choose tables even where that takes more than three times as long as a bake at
+    /// default quality, and more than [`PATIENCE`] seconds. By default not.
     pub patient: bool,
     /// Called after each step.
     pub progress: Box<dyn FnMut(Progress) + 'a>,
@@ -67,15 +68,15 @@ impl Default for Settings<'_> {
     }
 }
 
-/// Seconds that choosing tables may take without being asked for, however fast the plain bake is.
+/// Seconds that choosing tables may always take, however fast the bake at default quality is.
 pub const PATIENCE: f64 = 10.0;
 
-/// How far a bake is.
+/// The progress of a bake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
     /// Steps done: tables and certificates.
     pub done: usize,
-    /// All that are known of; more may come where tables are chosen.
+    /// Steps known so far; more may come where tables are chosen.
     pub steps: usize,
 }
 
@@ -84,18 +85,18 @@ pub struct Progress {
 pub struct Baked {
     /// The set.
     pub set: Tables,
-    /// How many of its tables were baked now; the others come from the cache.
+    /// Number of its tables that were newly baked; the others come from the cache.
     pub baked: usize,
-    /// Why the cache could not keep something.
+    /// Why the cache could not keep some tables.
     pub cache_error: Option<io::Error>,
-    /// Seconds that visible normals took, and albedos.
+    /// Seconds for visible normals, and for albedos.
     pub seconds: [f64; 2],
 }
 
-/// Why there is no set.
+/// Why no set could be made.
 #[derive(Debug)]
 pub enum BakeError {
-    /// The tables do not make a set; a fault of the plan.
+    /// The tables do not make a set: a fault of the plan.
     Set(LoadError),
     /// Baking would take too much memory.
     Memory(TooLarge),
@@ -105,9 +106,9 @@ pub enum BakeError {
     OutOfReach {
         /// What was asked for.
         max_error: f64,
-        /// Which tables do not get there.
+        /// The tables that do not meet it.
         name: String,
-        /// The least error they were measured to have.
+        /// Their smallest measured error.
         reached: f64,
     },
     /// [`Target::MaxBytes`] is too small.
@@ -119,12 +120,12 @@ pub enum BakeError {
     },
     /// Choosing the tables would take long, and [`Settings::patient`] is not set.
     TooSlow {
-        /// About how many seconds it would take.
+        /// Estimated seconds to choose them.
         search: f64,
-        /// About how many a bake of default quality takes.
+        /// Estimated seconds of a bake at default quality.
         plain: f64,
     },
-    /// An albedo that is not sound, or not accurate enough.
+    /// An albedo that is invalid, or not accurate enough.
     Albedo(bake::albedo::AlbedoError),
 }
 
@@ -206,16 +207,16 @@ impl std::error::Error for BakeError {}
 /// ```
 ///
 /// # Errors
-/// [`BakeError`] for a target that cannot be met, or not soon.
+/// [`BakeError`] for a target that cannot be met, or not within the default time limit.
 pub fn bake(plan: &Plan, target: Target) -> Result<Baked, BakeError> {
     bake_with(plan, target, Settings::default())
 }
 
-/// The same with a cache, limits, and a report of the progress.
+/// Bakes and certifies the tables of a plan with a cache, limits, and a report of the progress.
 ///
-/// What is finished goes into the cache, and so does each table of a range of shapes, until all of
-/// the range are: a bake that was interrupted goes on where it was. Every set comes out in the same
-/// bytes, whatever was kept and however many threads there are.
+/// Finished tables go into the cache, and so does each table of a range of shapes until the whole
+/// range is done: an interrupted bake resumes where it stopped. The bytes of a set do not depend on
+/// the cache or the number of threads.
 ///
 /// # Errors
 /// [`BakeError`] for a target that cannot be met within the settings.
@@ -234,7 +235,7 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
                 groups.iter().map(|group| group.bake(quality.into(), &[precision], &mut job));
             each.collect::<Result<Vec<_>, _>>()?.concat().concat()
         }
-        // Nothing would meet it, not even what takes minutes to find that out.
+        // Nothing can meet it, and trying would take minutes.
         Target::MaxError(max_error) if !(max_error > 0.0) => {
             return Err(BakeError::NoError(max_error));
         }

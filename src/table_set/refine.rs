@@ -1,4 +1,4 @@
-//! Albedo tables with as many nodes of the view as their error takes.
+//! Refines albedo tables: adds nodes of the view until the error is met.
 
 use microfacet_sampler::{Precision, Table};
 
@@ -7,20 +7,20 @@ use crate::bake::albedo::{AlbedoError, AlbedoSpec};
 use crate::validate::albedo;
 use crate::validate::certificate::worst_error;
 
-/// Where views are all there is to refine, twice as many are kept if they err by no more than this
-/// share of what half as many do: else the error stands elsewhere, such as on an axis of the
-/// material. Six-point polynomials on a smooth curve would come to a sixtieth; of indices near 1
-/// (`docs/albedo.md`) 5.94e-3 became 5.89e-3.
+/// Where only views can be refined, a doubling is kept if its error is at most this share of the
+/// error before: otherwise the error comes from elsewhere, such as an axis of the material. On a
+/// smooth curve six-point polynomials would reach a sixtieth; for indices near 1 (`docs/albedo.md`)
+/// 5.94e-3 became 5.89e-3.
 const WORTH: f64 = 0.8;
 
-/// The certified albedo tables of a specification in each of some precisions.
+/// The certified albedo tables of a specification in several precisions.
 pub(super) fn albedo_tables(
     spec: &AlbedoSpec,
     precisions: &[Precision],
 ) -> Result<Vec<Vec<Table>>, AlbedoError> {
     let interior = albedo::interior_references(spec)?;
-    // Single precision decides, which hardly rounds; it is certified once where it is asked for,
-    // too.
+    // Single precision, which hardly rounds, decides; it is certified only once where it is also
+    // asked for.
     let mut all = vec![Precision::F32];
     all.extend(precisions.iter().filter(|precision| **precision != Precision::F32));
     let asked = |sets: Vec<Vec<Table>>| {

@@ -1,8 +1,9 @@
-//! Levels and precisions for a budget of error or of bytes: predicted by a formula, then measured.
+//! Chooses levels and precisions for a budget of error or of bytes: predicted by a formula, then
+//! measured.
 //!
-//! Errors fall with the level as those of the general set do; that is the formula. A group is baked
-//! where it says that the budget is met, and what its certificate measures corrects the formula,
-//! until what is chosen has been measured. So nothing is baked to learn what a neighbour tells.
+//! The formula: errors fall with the level as those of the general set do. A group is baked where
+//! the formula meets the budget, and the error in its certificate corrects the formula, until the
+//! chosen grade has been measured. So no level is baked that a measured neighbour predicts.
 
 use microfacet_sampler::{Provenance, Table, encode};
 
@@ -12,14 +13,15 @@ use super::job::Job;
 use super::{BakeError, PATIENCE};
 use crate::plan::{Plan, bare_cost};
 
-/// How many times as long as its first grades a search takes, all in all.
+/// Estimated duration of a whole search, as a multiple of that of its first grades.
 const OFTEN: f64 = 1.7;
-/// Errors that are told apart: by one per cent.
+/// Ratio of two errors that count as different: one per cent.
 const RATIO: f64 = 1.01;
-/// So many of them, from more than any table errs by down to less than single precision can tell.
+/// Number of errors that are tried, from [`ANY_ERROR`], more than that of any table, down to less
+/// than single precision resolves.
 const ERRORS: i32 = 2000;
 const ANY_ERROR: f64 = 1.0;
-/// A larger error than could be, by this factor, is not worth another bake.
+/// No further bake is worth it if the error measured is within this factor of the best predicted.
 const CLOSE: f64 = 1.12;
 
 /// The groups of a plan, to be chosen for a budget.
@@ -80,7 +82,7 @@ impl<'a> Search<'a> {
                 if self.fitting(room, |_, _| true).is_none() {
                     return Err(BakeError::TooSmall { max_bytes, smallest: bytes });
                 }
-                // What was estimated of names and certificates was too little.
+                // The estimate for names and certificates was too small.
                 let taken: f64 = picks.iter().map(|pick| pick.bytes).sum();
                 room = room.min(taken) - (bytes - max_bytes) as f64;
                 continue;
@@ -93,8 +95,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The grades with the least common error that fit into `room` bytes, if any do, of those that
-    /// satisfy a condition. What groups leave that have no better grade goes to the others.
+    /// The grades with the smallest common error that fit into `room` bytes, among those that
+    /// satisfy a condition. Groups without a better grade leave their bytes to the others.
     fn fitting(&self, room: f64, of: impl Fn(&Candidate, &Pick) -> bool) -> Option<Vec<Pick>> {
         let bytes = |picks: &[Pick]| picks.iter().map(|pick| pick.bytes).sum::<f64>();
         let mut picks = self.coarsest(&of).filter(|picks| bytes(picks) <= room)?;
@@ -120,7 +122,7 @@ impl<'a> Search<'a> {
             if let Some(found) = found {
                 free.iter().zip(found).for_each(|(&i, pick)| picks[i] = pick);
             }
-            // Those that hold the others back stay as they are.
+            // Groups that hold the others back stay as they are.
             let worst = free.iter().map(|&i| picks[i].error).fold(0.0, f64::max);
             free.retain(|&i| picks[i].error < worst / RATIO);
         }
@@ -134,7 +136,7 @@ impl<'a> Search<'a> {
         self.candidates.iter().map(least).collect()
     }
 
-    /// Whether a search that begins with these grades takes no longer than it may.
+    /// Whether a search that begins with these grades takes no longer than allowed.
     fn check_time(&self, grades: &[Grade], job: &Job) -> Result<(), BakeError> {
         let seconds = |(candidate, grade): (&Candidate, &Grade)| candidate.group.seconds(grade.0);
         let search = OFTEN * self.candidates.iter().zip(grades).map(seconds).sum::<f64>();

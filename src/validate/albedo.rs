@@ -1,5 +1,6 @@
-//! The certificate of albedo tables of whatever lobe and reflectance: errors between their nodes, through the run-time lookup, against
-//! the model's quadrature, at the places that [`points`](super::points) names.
+//! The certificate of albedo tables for any lobe and reflectance: errors between nodes, through the
+//! run-time lookup, against the model's quadrature, at the places that [`points`](super::points)
+//! lists.
 
 use std::collections::BTreeMap;
 
@@ -19,32 +20,32 @@ use crate::bake::albedo::{
     AlbedoError, AlbedoLobe, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights,
 };
 
-/// Accuracy, in units of a node's, of the model's values that tables are judged by.
+/// Accuracy of the model's values that tables are compared with, as a multiple of that of a node.
 const FINER: f64 = 0.1;
-/// A kink of the reflectance would take seconds beyond this.
+/// With a kink of the reflectance a smaller tolerance would take seconds.
 const FINEST_OF_KINKS: f64 = 1e-6;
 
-/// What the model says of one material and view.
+/// The model's values for one material and view.
 #[derive(Clone)]
 pub struct Reference {
     point: Point,
-    /// As the run time gets it.
+    /// The place after rounding to the sampler's inputs.
     site: Site,
     v: Vec3,
     exact: Albedo<CHANNELS>,
-    /// |E − that of the round lobe that usually stands in|, if one does, by form of masking.
+    /// |E − E of the isotropic lobe that usually stands in|, if there is one, by form of masking.
     shortcut: Option<[f64; 2]>,
 }
 
-/// The model's values of the places inside, which do not depend on how many nodes there are.
+/// The model's values at the interior places, which do not depend on the number of nodes.
 ///
 /// # Errors
-/// [`AlbedoError`] for a lobe out of the domain.
+/// [`AlbedoError`] for a lobe outside the domain.
 pub fn interior_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, AlbedoError> {
     references(spec, interior(spec))
 }
 
-/// Those of corners, and of the middle of every cell along every edge.
+/// The model's values at corners, and in the middle of every cell along every edge.
 ///
 /// # Errors
 /// As [`interior_references`].
@@ -81,11 +82,12 @@ fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, A
     })
 }
 
-/// The tables with their certificates: errors of every quantity that is read, where they are promised and outside, and by how much the
-/// round stand-in would be off. What a bake has left there is kept.
+/// The tables with their certificates: errors of every quantity that is read, inside the promised
+/// domain and outside, and the error that the isotropic stand-in would have. Entries of the bake
+/// are kept.
 ///
 /// # Errors
-/// [`AlbedoError`] if a table does not cover what it is for.
+/// [`AlbedoError`] if a table does not cover its own domain.
 pub fn certified(
     spec: &AlbedoSpec,
     tables: Vec<Table>,
@@ -118,7 +120,7 @@ fn figures(
     references: &[Reference],
 ) -> Result<BTreeMap<String, f64>, AlbedoError> {
     let masking = table.subject.masking.unwrap_or_default();
-    // One material is bound once.
+    // A table of a single lobe is read once.
     let own = match (&spec.lobe, references.first()) {
         (AlbedoLobe::Family(_), _) | (_, None) => None,
         (_, Some(at)) => Some(Reading::from_table(table, at.site)?),
@@ -147,8 +149,8 @@ fn figures(
     Ok(figures)
 }
 
-/// The promised places that are seen on the way uphill from where each quantity errs most, with their errors: a largest error stands between
-/// the places that are named, and is found from the nearest.
+/// The promised places on the way uphill from where each quantity has its largest errors, with
+/// their errors: the largest error lies between the listed places, and is found from the nearest.
 fn climbed(
     spec: &AlbedoSpec,
     errors: &[Errors<'_>],
@@ -205,7 +207,8 @@ fn quantities(spec: &AlbedoSpec) -> &'static [&'static str] {
     }
 }
 
-/// Largest and root-mean-square errors of each quantity, and where the largest of all stands; the means are without the places `found` uphill.
+/// Largest and root-mean-square errors of each quantity, and the place of the largest of all; the
+/// means leave out the places `found` uphill.
 fn summary(
     spec: &AlbedoSpec,
     errors: &[Errors<'_>],
@@ -221,7 +224,7 @@ fn summary(
         figures.insert(format!("{name}_rms_error"), round_up(rms));
     }
     inside.extend(found);
-    // A NaN is the worst error there is.
+    // A NaN counts as the worst error.
     let largest = |part: &[&Errors<'_>], i: usize| {
         part.iter().map(|errors| errors.1[i]).max_by(f64::total_cmp).map(round_up)
     };
@@ -249,7 +252,8 @@ fn summary(
     figures
 }
 
-/// Averages against quadrature of the directional albedo at the same material: what a furnace sees.
+/// Errors of averages against quadrature of the directional albedo of the same material, as a
+/// furnace sees them.
 fn averages(
     spec: &AlbedoSpec,
     table: &Table,
@@ -276,7 +280,7 @@ fn all(moments: Moments) -> [f64; 4] {
     [moments.scale, moments.bias, moments.f82, moments.total()].map(f64::from)
 }
 
-/// What a renderer reads of one material.
+/// What a renderer reads for one material.
 enum Reading {
     Moments(Bound),
     Shares(ViewCurve<CHANNELS>),
@@ -302,11 +306,11 @@ impl Reading {
     }
 }
 
-/// By how much the nodes of a table of one material are missed if every other one along an axis is left out: of several axes the one
-/// with the largest is the coarsest.
+/// The error of a single lobe's table if every other node along an axis is left out. Of several
+/// axes, the one with the largest error is the coarsest.
 ///
 /// # Errors
-/// [`MaterialError`] if the table is not sound.
+/// [`MaterialError`] if the table is invalid.
 pub fn missed_by_half(spec: &AlbedoSpec, table: &Table, axis: usize) -> Result<f64, MaterialError> {
     let sites = Site::all(&spec.axes);
     let half = half(table, axis);

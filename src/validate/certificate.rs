@@ -1,10 +1,9 @@
-//! The interpolation error of tables, measured off their grid through the run-time sampler itself
-//! in f32.
+//! Interpolation errors of tables, measured between their nodes through the f32 sampler itself.
 //!
-//! A table carries the figures found here as its certificate. All places are fixed, so the
-//! certificate is part of the table's reproducible bytes: the ends of the axes and the middles of
-//! cells by name, a low-discrepancy sequence, and climbs from the worst of these to the summits
-//! beside them, since the summit of a cell is where no sequence looks.
+//! The errors found here are the table's certificate. All places are fixed, so that the certificate
+//! is part of the table's reproducible bytes: listed places (ends of axes, middles of cells), a
+//! low-discrepancy sequence, and climbs from the worst of these to the maxima nearby, which no
+//! sequence meets.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -25,42 +24,42 @@ use crate::table_spec::GAMMA_WHOLE;
 /// Points measured at each γ.
 pub const POINTS: usize = 4000;
 
-/// s of all shapes.
+/// The range of s of all shapes.
 pub const ALL_SHAPES: [f64; 2] = [0.0, S_END];
 
-/// Half a unit in the last place of the largest numbers below 1. The rounding of single precision
-/// differs from point to point; so much is left for points that were not measured.
+/// Half an ulp of the largest numbers below 1. The rounding of single precision differs from point
+/// to point; this margin is left for points that were not measured.
 pub(super) const ROUNDING: f64 = 1.0 / 16_777_216.0;
 
-/// A place in a table: how many cells along the axes of shapes, of views and of numbers.
+/// A place in a table, in cells along the axes of shapes, of views and of random numbers.
 ///
 /// Halves of a mirrored axis are joined at u = ½, so that u = 0 and 1 are its ends.
 pub(super) type Place = [f64; 3];
 
-/// Where to look along one axis.
+/// Places to measure along one axis.
 #[derive(Clone, Debug)]
 pub(super) struct Along {
-    /// How many cells there are; 0 where there is no axis.
+    /// Number of cells; 0 where there is no axis.
     pub(super) cells: f64,
-    /// Places by name.
+    /// Listed places.
     names: Vec<f64>,
 }
 
 impl Along {
-    /// An axis that is not there.
+    /// For an axis that the table does not have.
     pub(super) fn none() -> Self {
         Self { cells: 0.0, names: vec![0.0] }
     }
 
-    /// An axis with so many nodes, both ends of which count.
+    /// An axis with so many nodes; both ends are listed.
     pub(super) fn whole(nodes: usize) -> Self {
         let cells = (nodes - 1) as f64;
         let near = 1e-7 * cells;
         Self { cells, names: vec![0.0, near, cells - near, cells] }
     }
 
-    /// A mirrored axis with so many nodes in either half: u = 0, ½ and 1, the numbers next to them,
-    /// and 1e-7.
+    /// A mirrored axis with so many nodes in either half; u = 0, ½ and 1, the numbers next to them,
+    /// and 1e-7 are listed.
     pub(super) fn mirrored(nodes: usize) -> Self {
         let half = (nodes - 1) as f64;
         let near = |u: f64| half * MirroredRoot::of_number(u);
@@ -69,14 +68,14 @@ impl Along {
         Self { cells: 2.0 * half, names: [&low[..], &[half], &high].concat() }
     }
 
-    /// The same with more names, as shares of the whole axis.
+    /// The same with more listed places, given as shares of the whole axis.
     pub(super) fn and(mut self, names: impl IntoIterator<Item = f64>) -> Self {
         let cells = self.cells;
         self.names.extend(names.into_iter().map(|share| (share * cells).clamp(0.0, cells)));
         self
     }
 
-    /// The part of it up to a share of the whole.
+    /// The first part of the axis, up to a share of the whole.
     pub(super) fn up_to(mut self, share: f64) -> Self {
         self.cells = (self.cells * share).ceil();
         self.names.iter_mut().for_each(|name| *name *= share);
@@ -98,16 +97,16 @@ impl Along {
     }
 }
 
-/// Where in the cells of an axis.
+/// Where places stand within the cells of an axis.
 #[derive(Clone, Copy)]
 enum Within {
-    /// At their nodes, where errors of neighbouring rows do not mix.
+    /// At the nodes, where errors of neighbouring rows do not mix.
     Node,
     Middle,
     Anywhere,
 }
 
-/// What points of the sequence take in turn, on two axes and on one.
+/// Combinations that points of the sequence take in turn, on two axes and on one.
 const TURNS: [[Within; 2]; 4] = [
     [Within::Middle, Within::Middle],
     [Within::Node, Within::Middle],
@@ -123,14 +122,14 @@ pub(super) fn number(place: f64, half: f64) -> f32 {
     u as f32
 }
 
-/// About so many places on two axes: pairs of names, names beside middles of cells, and the
-/// sequence.
+/// About so many places on two axes: pairs of listed places, listed places with middles of cells,
+/// and the sequence.
 pub(super) fn places([a, b]: [&Along; 2], points: usize) -> Vec<[f64; 2]> {
     let corners = a.names.iter().flat_map(|&x| b.names.iter().map(move |&y| [x, y]));
     let edges = a.names.iter().flat_map(|&x| b.middles().map(move |y| [x, y]));
     let others = b.names.iter().flat_map(|&y| a.middles().map(move |x| [x, y]));
     let edges: Vec<[f64; 2]> = edges.chain(others).collect();
-    // Of a third of all points; where there are more cells than that, evenly some of them.
+    // At most a third of all points; of more, an evenly spaced subset.
     let kept = edges.len().min(points / 3);
     let edges = (0..kept).map(|i| edges[i * edges.len() / kept]);
     let named: Vec<[f64; 2]> = corners.chain(edges).collect();
@@ -142,7 +141,7 @@ pub(super) fn places([a, b]: [&Along; 2], points: usize) -> Vec<[f64; 2]> {
     named.iter().copied().chain(sequence).collect()
 }
 
-/// An error, and where it was seen.
+/// An error, and its place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub(super) error: f64,
@@ -150,7 +149,7 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// Errors in their order: none is below 0, and a NaN, of either sign, is the worst there is.
+    /// Key to sort errors by: none is below 0, and a NaN of either sign is the worst.
     fn rank(&self) -> u64 {
         self.error.abs().to_bits()
     }
@@ -160,19 +159,19 @@ impl Seen {
     }
 }
 
-/// What was found.
+/// The result of a search for the largest error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     /// The largest error.
     pub(super) worst: Seen,
-    /// Root mean square, without the climbs.
+    /// Root mean square error, without the climbs.
     pub(super) rms: f64,
-    /// How many points were measured.
+    /// Number of points measured.
     pub(super) points: usize,
 }
 
-/// Climbs from the worst of what was seen, `climbs` times and from places a cell or more apart,
-/// along axes of so many cells, 0 for one that is not there.
+/// Climbs from the worst of `seen`, `climbs` times and from places at least a cell apart, along
+/// axes of so many cells (0 for a missing axis).
 pub(super) fn climbed(
     mut seen: Vec<Seen>,
     climbs: usize,
@@ -196,7 +195,8 @@ pub(super) fn climbed(
     Found { worst: worst.unwrap_or(Seen { error: 0.0, at: [0.0; 3] }), rms, points }
 }
 
-/// The top of the hill on which `start` is, to a hundredth of a cell, and how many points it took.
+/// The maximum uphill from `start`, to a hundredth of a cell, and the number of points measured on
+/// the way.
 fn climb(start: Seen, cells: Place, error: &impl Fn(Place) -> f64) -> (Seen, usize) {
     let (mut top, mut step, mut points) = (start, 0.25, 0);
     while step > 0.005 {
@@ -215,13 +215,13 @@ fn climb(start: Seen, cells: Place, error: &impl Fn(Place) -> f64) -> (Seen, usi
     (top, points)
 }
 
-/// The errors of one table of visible normals or masking in a set that has all a material needs,
-/// measured at about [`POINTS`] places for each of a few γ between every two nodes, and rounded up to
-/// three digits.
+/// The errors of one table of visible normals or masking, in a set with all tables that a material
+/// is made from, measured at about [`POINTS`] places for each of a few γ between every two nodes,
+/// and rounded up to three digits.
 ///
 /// `s` limits the shapes to those that were asked for: a sub-range has nodes beyond its ends, for
-/// the interpolation only, and what lies between those is less accurate. The table's description says
-/// which it covers.
+/// interpolation only, and between those it is less accurate. The table's description states the
+/// range it covers.
 ///
 /// # Errors
 /// [`MaterialError`] if the tables are not a complete set.
@@ -252,7 +252,7 @@ pub(crate) fn measure(
     Ok(figures)
 }
 
-/// The largest error of any quantity that a table's certificate promises; ∞ if there is none.
+/// The largest error of any quantity in a table's certificate; ∞ if there is none.
 pub fn worst_error(table: &Table) -> f64 {
     let promised = |key: &str| key.ends_with("_max_error") && !key.starts_with("shortcut");
     let figures =
@@ -260,7 +260,7 @@ pub fn worst_error(table: &Table) -> f64 {
     figures.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
-/// Three significant digits, upwards: a certificate must not promise more than was measured.
+/// Rounds up to three significant digits: a certificate must not promise more than was measured.
 pub(super) fn round_up(x: f64) -> f64 {
     if !(x > 0.0) {
         return x;
@@ -269,25 +269,25 @@ pub(super) fn round_up(x: f64) -> f64 {
     text.parse().expect("a number just printed")
 }
 
-/// Views and first numbers that slopes across are drawn with: they depend on neither, apart from
-/// rounding.
+/// Views and first random numbers with which slopes across are drawn: slopes across depend on
+/// neither, apart from rounding.
 const BESIDE: [([f32; 2], f32); 4] =
     [([0.0, 1.0], 0.4), ([1.0, 0.0], 1.0), ([0.6, 0.8], 0.0), ([1.0, 0.0], 0.5)];
 
-/// How far from the seam tables of peeled slopes are first measured, in s.
+/// Distance in s from the seam at which tables of peeled slopes are first measured.
 const BESIDE_SEAM: f64 = 1e-9;
 
-/// What measures one table.
+/// Measures one table.
 struct Ruler<'a> {
     tables: &'a Tables,
     table: &'a Table,
-    /// The ends of the shapes to measure.
+    /// The ends of the range of shapes to measure.
     s: [f64; 2],
     views: Along,
     numbers: Along,
 }
 
-/// A shape, bound.
+/// A material made from the tables, and its shape in the model.
 type Bound = (StudentT, Shape);
 
 impl<'a> Ruler<'a> {
@@ -300,28 +300,29 @@ impl<'a> Ruler<'a> {
         };
         let [first, last] = table.axes[0].ends();
         let [low, high] = [first.max(s[0]), last.min(s[1])];
-        // At the seam itself, γ = 1.8, the tables of the whole distribution are read, not those that begin there.
+        // At the seam itself, γ = 1.8, the tables of the whole distribution are read, not the
+        // peeled ones.
         let low =
             if low == s_of_gamma(GAMMA_WHOLE) && high > low { low + BESIDE_SEAM } else { low };
-        // The far end not as 1 + 1/s itself, which may round to just outside.
+        // Slightly inside the far end, since 1 + 1/s may round to just outside.
         Self { tables, table, s: [low, high * (1.0 - 1e-15)], views, numbers }
     }
 
-    /// Whether shapes between nodes are covered.
+    /// Whether the table covers shapes between its nodes.
     fn is_range(&self) -> bool {
         let Axis { interpolation, nodes, .. } = &self.table.axes[0];
         *interpolation != Interpolation::Nodes && nodes.len() > 1
     }
 
     fn measured(&self, points: usize) -> Result<Found, MaterialError> {
-        // A summit that is missed at one γ is seen beside it; where there is nothing beside, more
-        // points are needed.
+        // A maximum that is missed at one γ is found at a neighbouring γ; a single γ has none and
+        // takes more points.
         let points = if self.is_range() { points } else { 3 * points };
         let points = match self.table.kind {
             Kind::VisibleSlopeConditional => points / BESIDE.len(),
             _ => points,
         };
-        // A quarter is for the climbs.
+        // A quarter of the points is left for the climbs.
         let places = places([&self.views, &self.numbers], points - points / 4);
         let at_shape = |&place: &f64| {
             let bound = self.bound(place)?;
@@ -336,12 +337,12 @@ impl<'a> Ruler<'a> {
         let shape_cells =
             if self.is_range() { (self.table.axes[0].nodes.len() - 1) as f64 } else { 0.0 };
         let cells = [shape_cells, self.views.cells, self.numbers.cells];
-        // What was swept is covered, and with it all that is between.
+        // The sweep was covered by the tables, and so is all that lies between its points.
         let error = |at: Place| self.bound(at[0]).map_or(f64::NAN, |bound| self.error(&bound, at));
         Ok(climbed(seen.concat(), (points / 200).max(2), cells, error))
     }
 
-    /// Places of the shapes to measure: those of a list, and three between every two nodes of a
+    /// Places of the shapes to measure: those of a list, or three between every two nodes of a
     /// range.
     fn shapes(&self) -> Vec<f64> {
         let nodes = &self.table.axes[0].nodes;
@@ -390,7 +391,7 @@ impl<'a> Ruler<'a> {
         view(cotangent(&self.table.axes[1], s, place / self.views.cells))
     }
 
-    /// s, z = cot θ/σ and u; NaN for those that there are not.
+    /// s, z = cot θ/σ and u; NaN for axes that the table does not have.
     fn named(&self, [shape, a, b]: Place) -> [f64; 3] {
         let s = self.s(shape);
         let z = if self.views.cells > 0.0 { exact_cotangent(self.view(s, a)) } else { f64::NAN };
@@ -414,7 +415,7 @@ pub(super) fn view(z: f64) -> Vec3 {
     Vec3::new(sin as f32, 0.0, cos as f32)
 }
 
-/// The cotangent that a view has after rounding.
+/// The cotangent of a view after rounding to f32.
 pub(super) fn exact_cotangent(v: Vec3) -> f64 {
     f64::from(v.z) / f64::from(v.x)
 }
@@ -422,12 +423,12 @@ pub(super) fn exact_cotangent(v: Vec3) -> f64 {
 /// Steps of the additive recurrence in the plane: powers of the reciprocal of the plastic number.
 const PLASTIC: [f64; 2] = [0.7548776662466927, 0.5698402909980532];
 
-/// The i-th point of the additive recurrence with so long steps (Roberts 2018), in [0, 1)ᴺ.
+/// The i-th point of the additive recurrence with these steps (Roberts 2018), in [0, 1)ᴺ.
 pub(super) fn low_discrepancy<const N: usize>(steps: [f64; N], i: usize) -> [f64; N] {
     steps.map(|a| (0.5 + a * (i + 1) as f64).fract())
 }
 
-/// Spreads x ∈ [0, 1) so that two fifths of it go to the ends, logarithmically down to 1e-7.
+/// Maps x ∈ [0, 1) so that two fifths of it go to the ends, logarithmically down to 1e-7.
 fn towards_ends(x: f64) -> f64 {
     let tail = |y: f64| 0.1 * libm::exp(-13.8 * y);
     match x {
@@ -442,10 +443,10 @@ fn g1_error(bound: &StudentT, shape: &Shape, v: Vec3) -> f64 {
     (f64::from(bound.g1(v)) - exact).abs()
 }
 
-/// How far the CDF of the sampled slope is from the number it was sampled with.
+/// Difference between the CDF of the sampled slope and the random number it was sampled with.
 ///
-/// Where the heavy part is peeled off, the sum of the error of the remaining part, weighted by its
-/// share, and of that share.
+/// Where the heavy part is peeled, it is the error of the remaining part, weighted by its share,
+/// plus the error of that share.
 fn along_error(bound: &StudentT, shape: &Shape, v: Vec3, u: f32) -> f64 {
     let at = UnitView::from_cotangent(exact_cotangent(v));
     let whole = VisibleSlope::new(shape, at);
@@ -457,7 +458,7 @@ fn along_error(bound: &StudentT, shape: &Shape, v: Vec3, u: f32) -> f64 {
     let exact_share = 1.0 - at.sin * shape.first_moment(0.0) / whole.area();
     let of_share = (f64::from(share) - exact_share).abs();
     if !(share > 0.0) {
-        // At grazing the share vanishes, and with it what its part is worth.
+        // At grazing the share vanishes, and the error of its part no longer matters.
         return of_share;
     }
     let rest = VisibleSlope::peeled(shape, at);
@@ -475,16 +476,16 @@ fn signed(shape: &Shape, x: f64) -> SignedSlope {
     SignedSlope { w: shape.asinh_slope(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } }
 }
 
-/// The largest beside all of [`BESIDE`].
+/// The largest error of slopes across over all of [`BESIDE`].
 fn across_error(bound: &StudentT, shape: &Shape, u: f32) -> f64 {
     let error = |([x, z], u1): ([f32; 2], f32)| {
         let m = bound.sample_visible_normal(Vec3::new(x, 0.0, z), [u1, u]);
-        // The number u₁ only scales y/√(z² + s x²), which is t again.
+        // The random number u₁ only scales y/√(z² + s x²), which is t again.
         let [x, y, z] = [m.x, m.y, m.z].map(f64::from);
         let t = y / (z * z + shape.s() * x * x).sqrt();
         (across_cdf(shape, signed(shape, t)) - f64::from(u)).abs()
     };
-    // Not by `max`, which would drop a NaN.
+    // `max` would drop a NaN.
     BESIDE
         .map(error)
         .into_iter()

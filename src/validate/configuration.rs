@@ -1,4 +1,4 @@
-//! Materials and views to test, spread over the domain that tables promise.
+//! Materials and views to test, spread over the domain that tables cover.
 
 use std::fmt;
 
@@ -26,7 +26,7 @@ pub struct Configuration {
 }
 
 impl Configuration {
-    /// The view, rounded to what the sampler gets.
+    /// The view, rounded as the sampler gets it.
     pub fn view(&self) -> glam::Vec3 {
         let (sin, cos) = self.theta.sin_cos();
         let v = DVec3::new(sin * self.phi.cos(), sin * self.phi.sin(), cos.max(0.0));
@@ -34,7 +34,7 @@ impl Configuration {
     }
 }
 
-/// The options of `validate` and `sample` that reproduce it.
+/// Prints the options of `validate` and `sample` that reproduce it.
 impl fmt::Display for Configuration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { sigma_x, sigma_y, gamma, theta, phi, seed } = self;
@@ -45,8 +45,9 @@ impl fmt::Display for Configuration {
     }
 }
 
-/// `count` configurations over what the tables cover: γ evenly in s (or from its list), σ log-uniform in [1e-4, 10] with
-/// up to tenfold anisotropy, views over the whole hemisphere, one in eight within 0.01 of grazing or of the normal.
+/// `count` configurations over the domain of the tables: γ evenly in s (or from its list), σ
+/// log-uniform in [1e-4, 10] with up to tenfold anisotropy, views over the whole hemisphere, one in
+/// eight within 0.01 of grazing or of the normal.
 pub fn configurations(tables: &Tables, count: usize, seed: u64) -> Vec<Configuration> {
     let shapes = covered_shapes(tables);
     let mut random = rand::rngs::StdRng::seed_from_u64(seed);
@@ -77,7 +78,7 @@ fn log_uniform(random: &mut impl Rng, low: f64, high: f64) -> f64 {
     (random.random_range(low.ln()..high.ln())).exp()
 }
 
-/// The values of s that a set holds: ranges, and single ones.
+/// The values of s that a set covers: ranges, and single ones.
 struct Shapes {
     ranges: Vec<[f64; 2]>,
     points: Vec<f64>,
@@ -88,7 +89,8 @@ impl Shapes {
         let total = self.ranges.len() + self.points.len();
         let i = random.random_range(0..total);
         match self.ranges.get(i) {
-            // The first sixteenth of the draws at each end: Beckmann and the heaviest tails are where tables fail first.
+            // One draw in sixteen at each end: tables fail first at Beckmann and at the heaviest
+            // tails.
             Some([low, high]) => match random.random_range(0..16) {
                 0 => *low,
                 1 => *high,
@@ -112,7 +114,8 @@ fn covered_shapes(tables: &Tables) -> Shapes {
             shapes.ranges.push([axis.nodes[0], axis.nodes[axis.nodes.len() - 1]]);
         }
     }
-    // GGX in closed form: where materials are left to it, and where there is nothing else to judge.
+    // GGX in closed form is included where a material uses it, and where there is nothing else to
+    // test.
     let ggx = tables.provenance().materials.iter().any(|material| material.s == [1.0, 1.0]);
     let empty = shapes.ranges.is_empty() && shapes.points.is_empty();
     let closed_form = matches!(tables.lobe(1.0, 2.0), Ok(Lobe::Ggx(_)));

@@ -1,7 +1,7 @@
-//! The white furnace: with F = 1 all light must come back, and what is missing is an error.
+//! The white furnace: with F = 1 all light must come back, and any deviation is an error.
 //!
-//! Single scattering is the model's, by quadrature; what compensates for the rest comes from tables, as in a renderer. The walk is the
-//! reference that needs neither.
+//! Single scattering is computed with the model, by quadrature; the compensation comes from tables,
+//! as in a renderer. The random walk is a reference independent of both.
 
 use glam::{DVec3, Vec3};
 use rand::{RngExt, SeedableRng};
@@ -13,11 +13,12 @@ use microfacet_sampler::{
     Albedo, Axis, Kind, LobeEntry, Masking, MaterialError, Reflectance, Subject, Table, Tables,
 };
 
-/// How far a furnace closed by the Kulla–Conty lobe may be from 1.
+/// Allowed deviation from 1 with the Kulla–Conty lobe
+/// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).
 pub const TOLERANCE: f64 = 2e-3;
-/// Bounces after which a walk is given up; it then counts as energy lost.
+/// Bounces after which a walk is abandoned; it then counts as energy lost.
 const LIMIT: usize = 1_000_000;
-/// Walks that share a generator of random numbers.
+/// Walks that share a random number generator.
 const BATCH: usize = 1000;
 
 /// One material and view in the furnace.
@@ -29,11 +30,12 @@ pub struct Furnace {
     pub gamma: f64,
     /// Cosine of the view.
     pub cos_theta: f64,
-    /// E by the model's quadrature: what one bounce returns.
+    /// E by the model's quadrature: the share of light that one bounce returns.
     pub single: f64,
-    /// With Turquin's scaling.
+    /// The share with Turquin's scaling
+    /// ([2019](https://blog.selfshadow.com/publications/turquin/ms_comp_final.pdf)).
     pub turquin: f64,
-    /// With the Kulla–Conty lobe.
+    /// The share with the Kulla–Conty lobe.
     pub kulla_conty: f64,
 }
 
@@ -46,21 +48,22 @@ pub struct Estimate {
     pub error: f64,
 }
 
-/// What the random walk found.
+/// The result of the random walk.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
     /// Light that left after its first bounce: the height-correlated E.
     pub single: Estimate,
-    /// Light that left at all.
+    /// All light that left.
     pub total: Estimate,
     /// Mean number of bounces.
     pub bounces: f64,
 }
 
-/// Puts one material and view into the furnace; σ = 0 is a mirror, and a view at the horizon itself stands 1e-30 above it.
+/// Runs the furnace for one material and view; σ = 0 is a mirror, and a view at the horizon is
+/// raised to cos θ = 1e-30.
 ///
 /// # Errors
-/// [`MaterialError`] for what the tables do not cover.
+/// [`MaterialError`] for a material that the tables do not cover.
 pub fn furnace(
     tables: &Tables,
     masking: Masking,
@@ -80,11 +83,11 @@ pub fn furnace(
     Ok(Furnace { sigma, gamma, cos_theta, single, turquin, kulla_conty })
 }
 
-/// ∫ of the compensating lobe times the cosine over all lights, by the midpoint rule in the logarithm of the cosine: what a smooth surface
-/// loses, it loses at grazing.
+/// ∫ of the compensating lobe times the cosine over all lights, by the midpoint rule in the
+/// logarithm of the cosine, since a smooth surface loses its light at grazing.
 fn lobe(albedo: &Albedo, cos_theta: f32) -> f64 {
     const STEPS: usize = 4000;
-    /// Lights below e⁻³⁰ bring nothing.
+    /// Range of the logarithm: lights with cos θ < e⁻³⁰ contribute nothing.
     const RANGE: f64 = 30.0;
     let v = direction(cos_theta);
     let step = RANGE / STEPS as f64;
@@ -95,36 +98,37 @@ fn lobe(albedo: &Albedo, cos_theta: f32) -> f64 {
     2.0 * std::f64::consts::PI * (0..STEPS).map(at).sum::<f64>()
 }
 
-/// A view at this cosine, for lobes that are round.
+/// A view at this cosine, for isotropic lobes.
 pub fn direction(cos: f32) -> Vec3 {
     Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
 }
 
-/// The furnace over what one albedo table covers.
+/// The furnace over the domain of one albedo table.
 #[derive(Clone, Copy, Debug)]
 pub struct Survey {
     /// The form of masking.
     pub masking: Masking,
-    /// Materials and views.
+    /// Number of materials and views.
     pub points: usize,
-    /// Where the least light came back with the Kulla–Conty lobe.
+    /// Where the Kulla–Conty lobe brings back the least light.
     pub lowest: Furnace,
-    /// Where the most did.
+    /// Where it brings back the most.
     pub highest: Furnace,
 }
 
 impl Survey {
-    /// Whether all of it is within [`TOLERANCE`] of 1.
+    /// Whether every point is within [`TOLERANCE`] of 1.
     pub fn passed(&self) -> bool {
-        // A NaN fails.
+        // Written so that a NaN fails.
         [self.lowest, self.highest].iter().all(|row| (row.kulla_conty - 1.0).abs() <= TOLERANCE)
     }
 }
 
-/// Puts a grid of materials between the nodes of each albedo table, and views from grazing to normal, into the furnace.
+/// Runs the furnace for a grid of materials between the nodes of each albedo table, with views from
+/// grazing to normal.
 ///
 /// # Errors
-/// [`MaterialError`] if the set does not hold what it says it covers.
+/// [`MaterialError`] if the set does not hold what it declares to cover.
 pub fn survey(tables: &Tables) -> Result<Vec<Survey>, MaterialError> {
     const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1.0];
     let of_family = |table: &&Table| {
@@ -155,7 +159,8 @@ pub fn survey(tables: &Tables) -> Result<Vec<Survey>, MaterialError> {
         .collect()
 }
 
-/// `count` quantities of an axis in a range, off its nodes; the one there is of a single node.
+/// `count` quantities of an axis in a range, between its nodes; for an axis of a single node, that
+/// node.
 fn between(axis: &Axis, range: [f64; 2], count: usize) -> Vec<f64> {
     let [first, last] = axis.ends();
     let mut ends = range.map(|x| axis.coordinate(x).unwrap_or(f64::NAN).clamp(first, last));
@@ -166,7 +171,8 @@ fn between(axis: &Axis, range: [f64; 2], count: usize) -> Vec<f64> {
     (0..count).filter_map(|i| axis.quantity(at(i))).collect()
 }
 
-/// Follows `walks` rays on the microsurface itself, in parallel; the same seed gives the same result on any number of threads.
+/// Follows `walks` rays on the microsurface, in parallel; the same seed gives the same result on
+/// any number of threads.
 ///
 /// # Errors
 /// [`model::ParameterError`] for parameters outside the family.

@@ -1,4 +1,5 @@
-//! Judges of tables: what the sampler draws and returns against what the model says. They report and never repair.
+//! Tests of tables: what the sampler draws and returns, against the model. They report errors and
+//! never repair.
 
 pub mod albedo;
 pub mod certificate;

@@ -1,4 +1,4 @@
-//! Does `table_pdf` integrate to one? Quadrature over the pieces on which it is smooth.
+//! Tests that `table_pdf` integrates to one, by quadrature over the pieces on which it is smooth.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -10,18 +10,18 @@ use microfacet_sampler::axis::half_tangent::{ends, rate, slope_at};
 use microfacet_sampler::internals::table_joints;
 use microfacet_sampler::{Lobe, MicrofacetDistribution};
 
-/// Each interval between joints is split into so many: 1/(a cubic's derivative) is not a polynomial.
+/// Parts of each interval between joints, since 1/(a cubic's derivative) is not a polynomial.
 const PARTS: usize = 8;
 /// Slopes beyond this are left to the closed form of the tail.
 const FAR: f64 = 1e12;
 
-/// Into how many pieces the density of closed forms is split, which has no joints of its own.
+/// Number of pieces for the density of closed forms, which has no joints.
 const PIECES: usize = 32;
 
-/// ∫ table_pdf(v, m) dm for a member of the family with σ = 1 and a view in the plane y = 0.
+/// ∫ table_pdf(v, m) dm for a lobe of the family with σ = 1 and a view in the plane y = 0.
 ///
-/// The tabulated part is integrated between its joints, in the half tangent, by Gauss–Legendre; where
-/// a heavy tail was peeled off, the part of it beyond all representable slopes is added in closed
+/// The tabulated part is integrated between its joints, in the half tangent, by Gauss–Legendre.
+/// Where the heavy part is peeled, its share beyond all representable slopes is added in closed
 /// form, since no quadrature of an f32 density reaches it.
 pub fn integral(lobe: &Lobe, gamma: f64, v: Vec3) -> f64 {
     let s = s_of_gamma(gamma);
@@ -31,7 +31,8 @@ pub fn integral(lobe: &Lobe, gamma: f64, v: Vec3) -> f64 {
     };
     let peeled = tabulated < 1.0;
     along.push(0.0);
-    // The outermost cells hold decades of slope, in which the density falls like a power of the distance from the end.
+    // The outermost cells hold decades of slope, in which the density falls like a power of the
+    // distance from the end.
     let (first, last) = (along[0].max(-FAR), along[along.len() - 2].min(FAR));
     let decades = (2..24).map(|i| 10f64.powf(f64::from(i) * 0.5));
     along.extend(decades.flat_map(|x| [-x, x]).filter(|&x| x > first && x < last));
@@ -52,16 +53,19 @@ pub fn integral(lobe: &Lobe, gamma: f64, v: Vec3) -> f64 {
         // dm = cos³θ dx dy, dy = √(1 + s x²) dt; both signs of t.
         2.0 * f64::from(lobe.table_pdf(v, m)) * root / (r * r * r)
     };
-    // The density is a function of x times one of t, so the sum over the grid is that of a row times that of a column over their
-    // common point. (That x and t are independent in what is drawn, the χ² tests see.)
+    // The density is a function of x times a function of t, so the sum over the grid is that of a
+    // row times that of a column, divided by the value where they cross. (The χ² tests check that x
+    // and t are drawn independently.)
     let (t0, x_nodes) = (0.3, nodes(&along));
     let row: Vec<f64> = x_nodes.iter().map(|&(x, _)| density(x, t0)).collect();
     let along_sum: f64 = row.iter().zip(&x_nodes).map(|(f, (_, dx))| f * dx).sum();
-    // The median: at the largest density there may be a spike as narrow as the rounding of m.
+    // The row's median is used: at the largest density there may be a spike as narrow as the
+    // rounding of m.
     let mut below = 0.0;
     let median = row.iter().zip(&x_nodes).position(|(f, (_, dx))| {
         below += f * dx;
-        // The halves of a row meet in an interval as narrow as rounding, no place for a node to stand for all.
+        // The halves of a row meet in an interval as narrow as rounding, where one node cannot
+        // represent the density.
         below >= 0.5 * along_sum && *dx > 1e-4
     });
     let Some(top) = median else { return f64::NAN };
@@ -88,8 +92,8 @@ fn ggx_joints(v: Vec3) -> [Vec<f64>; 2] {
     [along.collect(), across.collect()]
 }
 
-/// Slopes and weights of a composite Gauss–Legendre rule between ascending joints (0 among them where they change sign), each
-/// interval in the distance of the half tangent from its end.
+/// Slopes and weights of a composite Gauss–Legendre rule between ascending joints (0 among them
+/// where they change sign), in each interval over the distance of the half tangent from its end.
 fn nodes(joints: &[f64]) -> Vec<(f64, f64)> {
     const RULE: [(f64, f64); 8] = gauss_legendre();
     let mut all = Vec::new();

@@ -1,7 +1,9 @@
-//! Places at which tables of albedos are measured: corners, the middle of every cell along every edge, faces, and all over.
+//! Places at which albedo tables are measured: corners, the middle of every cell along every edge,
+//! faces, and the interior.
 //!
-//! Places drawn at random miss edges, where windows of a polynomial are one-sided and errors largest: so those are named. All are fixed, so that
-//! certificates are part of a table's reproducible bytes.
+//! Random places miss edges, where the windows of a polynomial are one-sided and errors largest: so
+//! those are listed. All places are fixed, so that certificates are part of a table's reproducible
+//! bytes.
 
 use microfacet_sampler::axis::LogRoughness;
 use microfacet_sampler::{Axis, Mapping};
@@ -9,34 +11,34 @@ use microfacet_sampler::{Axis, Mapping};
 use super::certificate::low_discrepancy;
 use crate::bake::albedo::{AlbedoLobe, AlbedoSpec, Site};
 
-/// Smallest σ and cos θ of the domain that figures are promised for.
+/// Smallest σ and cos θ of the domain that certificates promise errors for.
 const PROMISED: (f64, f64) = (0.01, 0.02);
-/// Smallest σ that is no mirror.
+/// Smallest σ that is not a mirror.
 const SMOOTHEST: f64 = LogRoughness::BAKED.first;
-/// Places inside: as many as a fraction of the nodes, within limits. With half as many the climbs missed a summit of the default set, an F82
-/// of 8.4e-5 among 7.3e-5.
+/// Interior places: one for so many nodes, within limits. With half as many places the climbs
+/// missed a maximum of the default set, an F82 error of 8.4e-5 where 7.3e-5 was found.
 const NODES_A_POINT: usize = 4;
 const FEWEST: usize = 240;
 const MOST: usize = 6144;
 
-/// So many of the last cells hold the cusp at the normal.
+/// Number of last cells that hold the cusp at the normal.
 const LAST_CELLS: f64 = 2.0;
 
 /// A place to measure at.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Where, as coordinates along the axes.
+    /// Coordinates along the axes.
     at: Vec<f64>,
-    /// The same in quantities.
+    /// The same place in quantities.
     pub site: Site,
-    /// Whether figures are promised there.
+    /// Whether it lies in the promised domain.
     pub promised: bool,
 }
 
-/// What of an axis is promised, in its coordinate.
+/// The promised range of an axis, in its coordinate.
 struct Range {
     ends: Vec<f64>,
-    /// The middles of the cells between.
+    /// The middles of the cells in the range.
     cells: Vec<f64>,
 }
 
@@ -59,7 +61,7 @@ impl Range {
                 of(spec.reflectance.indices().unwrap_or([f64::NAN; 2]))
             }
             (Mapping::Azimuth(_), _) if axis.len() == 1 => [0.0; 2],
-            // The ends of a circle are one.
+            // The ends of a full circle coincide: a quarter turn is the other corner.
             (Mapping::Azimuth(azimuth), _) => [0.0, if azimuth.fold { 1.0 } else { 0.25 }],
             _ => [0.0, 1.0],
         };
@@ -76,21 +78,21 @@ impl Range {
         Self { ends, cells }
     }
 
-    /// x ∈ [0, 1] of the way from end to end; all around a circle.
+    /// The coordinate at the share x ∈ [0, 1] of the range; around the full circle for an azimuth.
     fn at(&self, x: f64) -> f64 {
         let [first, last] = [self.ends[0], self.ends[self.ends.len() - 1]];
         let last = self.cells.last().map_or(last, |cell| cell.max(last));
         first + x * (last - first)
     }
 
-    /// The middle of a cell, x ∈ [0, 1] of the way through them; the place itself where there are none.
+    /// The middle of a cell, at the share x ∈ [0, 1] of all cells; without cells, the place itself.
     fn cell(&self, x: f64) -> f64 {
         let i = (x * self.cells.len() as f64) as usize;
         self.cells.get(i).copied().unwrap_or(self.ends[0])
     }
 }
 
-/// How many places a certificate has.
+/// Number of places of a certificate.
 pub fn count(spec: &AlbedoSpec) -> usize {
     let ranges = ranges(spec);
     let ends = |but: usize| -> usize {
@@ -131,7 +133,8 @@ fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
         at[material.len()] = coordinate(&spec.axes[material.len()], &site);
     }
     let smoothest = match &spec.lobe {
-        // Where all materials are smoother, it is the roughest that counts: without a place there would be no figures.
+        // If all materials are smoother, the roughest counts: otherwise there would be no promised
+        // place.
         AlbedoLobe::Family(domain) => PROMISED.0.min(domain.sigma.max) * (1.0 - 1e-9),
         _ => 0.0,
     };
@@ -139,7 +142,7 @@ fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
     Point { at, site, promised }
 }
 
-/// The coordinate of a view, that of the first node below it.
+/// The coordinate of a view; for a view below the first node, that of the first node.
 fn coordinate(axis: &Axis, Site { gamma, sigma, eta, cos, .. }: &Site) -> f64 {
     match axis.mapping {
         Mapping::ViewBlend(view) => {
@@ -160,13 +163,13 @@ pub fn are_apart(spec: &AlbedoSpec, a: &Point, b: &Point) -> bool {
     spec.axes.iter().enumerate().any(|(k, axis)| axis.nodes.len() > 1 && apart((k, axis)))
 }
 
-/// The width of a cell; nodes are spread evenly.
+/// The width of a cell; nodes are evenly spaced.
 fn cell(axis: &Axis) -> f64 {
     let [first, last] = axis.ends();
     (last - first) / (axis.nodes.len() - 1).max(1) as f64
 }
 
-/// Promised places beside one, a part of a cell away along each axis.
+/// Promised neighbours of a place, `cells` away along each axis.
 pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
     let mut points = Vec::new();
     for (k, (axis, range)) in spec.axes.iter().zip(ranges(spec)).enumerate() {
@@ -188,7 +191,7 @@ pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
 pub fn edges(spec: &AlbedoSpec) -> Vec<Point> {
     let ranges = ranges(spec);
     let (view, materials) = ranges.split_last().expect("the view is an axis");
-    // The ends of what is promised, and grazing ones outside, down to the horizon itself.
+    // The ends of the promised range, and grazing views outside, down to the horizon itself.
     let views = [1.0, PROMISED.1, 1e-4, 3e-7, 0.0].map(View::Cos);
     let mut points = Vec::new();
     let corners = product(materials, None);
@@ -204,7 +207,7 @@ pub fn edges(spec: &AlbedoSpec) -> Vec<Point> {
     points
 }
 
-/// All combinations of the ends, but of one axis of the middles of its cells.
+/// All combinations of the axes' ends; for the axis `along`, the middles of its cells instead.
 fn product(materials: &[Range], along: Option<usize>) -> Vec<Vec<f64>> {
     let mut all: Vec<Vec<f64>> = vec![Vec::new()];
     for (i, range) in materials.iter().enumerate() {
@@ -216,9 +219,10 @@ fn product(materials: &[Range], along: Option<usize>) -> Vec<Vec<f64>> {
     all
 }
 
-/// Places all over: a third anywhere, a third on a face with the view in the middle of a cell, and a third with some axis in the middle of a
-/// cell; an eighth of all outside of what is promised. Where they are does not depend on how many views and azimuths there are, but for
-/// the middles of cells.
+/// Interior places: a third anywhere, a third on a face with the view in the middle of a cell, and
+/// a third with some axis in the middle of a cell; an eighth of all lies outside the promised
+/// domain. Apart from the middles of cells, they do not depend on the numbers of views and
+/// azimuths.
 pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
     let ranges = ranges(spec);
     let (view, materials) = ranges.split_last().expect("the view is an axis");
@@ -235,7 +239,7 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
                     }
                 }
                 (2, j) if j / 2 == k => range.cell(x),
-                // Preparing a shape takes longer than a view of it: so there are a few.
+                // Preparing a shape takes longer than a view of it: so only a few shapes are used.
                 _ if matches!(spec.axes[k].mapping, Mapping::LogShape(_)) => some_shape(range, x),
                 _ => range.at(x),
             }
@@ -247,7 +251,7 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
             (0, _) => return outside(spec, material, x, i % 16 == 8),
             (_, 1) if i / 3 % (2 * ranges.len()) / 2 == materials.len() => View::Cos(PROMISED.1),
             (_, 1) => View::At(view.cell(b)),
-            // Near the normal, where masking sets in with a cusp, in the logarithm, and all over.
+            // Near the normal, where masking sets in with a cusp: logarithmically, and evenly.
             (1 | 5, _) => {
                 View::At(1.0 - LAST_CELLS * b / (spec.axes[materials.len()].len() - 1) as f64)
             }
@@ -264,7 +268,7 @@ fn some_shape(range: &Range, x: f64) -> f64 {
     let n = range.cells.len();
     let i = (x * (2 * n + 1) as f64) as usize;
     match range.cells.get(i / 2) {
-        // Between the middle of this cell and the one before.
+        // Between the middle of this cell and that of the one before.
         Some(cell) if i.is_multiple_of(2) && i > 0 => 0.62 * cell + 0.38 * range.cells[i / 2 - 1],
         Some(cell) if i % 2 == 1 => *cell,
         Some(_) => range.ends[0],
@@ -272,7 +276,8 @@ fn some_shape(range: &Range, x: f64) -> f64 {
     }
 }
 
-/// A view that grazes, and if `smooth` of a surface smoother than is promised, where there are some, seen where it masks.
+/// A grazing view and, if `smooth`, a surface smoother than the promised ones, if there are any, at
+/// a view where it masks.
 fn outside(spec: &AlbedoSpec, mut material: Vec<f64>, x: [f64; 4], smooth: bool) -> Point {
     if let AlbedoLobe::Family(domain) = spec.lobe
         && domain.sigma.min <= SMOOTHEST
@@ -288,7 +293,8 @@ fn outside(spec: &AlbedoSpec, mut material: Vec<f64>, x: [f64; 4], smooth: bool)
     point(spec, &material, View::Cos(cos))
 }
 
-/// Steps of the low-discrepancy sequence in four dimensions: powers of the reciprocal of the root of x⁵ = x + 1.
+/// Steps of the low-discrepancy sequence in four dimensions: powers of the reciprocal of the root
+/// of x⁵ = x + 1.
 fn steps() -> [f64; 4] {
     const ROOT: f64 = 1.167_303_978_261_418_7;
     [1, 2, 3, 4].map(|k| libm::pow(ROOT, -f64::from(k)))

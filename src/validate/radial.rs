@@ -1,8 +1,8 @@
 //! Errors of the tables of a distribution outside the family, through the run-time sampler, against
 //! quadrature.
 //!
-//! Places are those of the tables' own axes, as in [`certificate`](super::certificate): even steps
-//! of θ would miss a narrow distribution nearly everywhere.
+//! Places are spaced along the tables' own axes, as in [`certificate`](super::certificate): even
+//! steps of θ would nearly all miss a narrow distribution.
 
 use std::collections::BTreeMap;
 
@@ -22,43 +22,42 @@ use super::certificate::{
 use crate::bake::radial_axes;
 use crate::table_spec::Quality;
 
-/// Normals drawn for either certificate of slopes, of which a quarter is left for climbs.
+/// Normals drawn for either certificate of slopes; a quarter is left for climbs.
 pub(crate) const POINTS: usize = 8000;
 /// Climbs of each certificate; three times as many where there are several ways to draw.
 const CLIMBS: usize = 32;
 /// Places in each cell of the tables with one axis.
 const PER_CELL: usize = 12;
 
-/// Slopes across are judged beside in-plane slopes that a random number at least so far from 0 and
-/// 1 draws, as far as single precision can tell: beside rarer ones the distribution across is
-/// hardly ever asked for.
+/// Slopes across are tested at in-plane slopes that random numbers at least this far from 0 and 1
+/// draw, in single precision: rarer in-plane slopes are hardly ever drawn.
 const RARE: f64 = ROUNDING;
 
-/// Cotangents, in units of σ, of views that see the steepest slopes. Random numbers just below 1
-/// are so coarse that one view alone would draw but a few of these.
+/// Cotangents, divided by σ, of views that see the steepest slopes. Random numbers just below 1 are
+/// so coarse that a single view would draw few of these.
 const SLANTS: [f64; 5] = [0.0, 0.03, 0.1, 0.3, 1.0];
-/// So many of the last random numbers below 1 are tried themselves.
+/// Number of the last random numbers below 1 that are all tried.
 const LAST: f64 = 16.0;
-/// Ways to draw slopes across: by the row of the in-plane slope or by the last numbers, from each
-/// view.
+/// Ways to draw slopes across: from each view, by the row of the in-plane slope or by the last
+/// random numbers.
 const WAYS: usize = 2 * SLANTS.len();
 
-/// Largest errors seen.
+/// Largest errors measured.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
-    /// Of G1.
+    /// Error of G1.
     pub g1: f64,
-    /// Of the CDF of the in-plane slope.
+    /// Error of the CDF of the in-plane slope.
     pub along: f64,
-    /// Of the CDF of the slope across, given in-plane slopes that random numbers no closer to 0 and
-    /// 1 than 2⁻²⁴ draw.
+    /// Error of the CDF of the slope across, given in-plane slopes that random numbers no closer to
+    /// 0 and 1 than 2⁻²⁴ draw.
     pub across: f64,
-    /// Of D/D(0).
+    /// Error of D/D(0).
     pub density: f64,
 }
 
-/// Measures a bound material against the distribution it was baked from, by the nodes of default
-/// quality.
+/// Measures a material made from tables against the distribution they were baked from, at places
+/// spaced by the nodes of default quality.
 pub fn measure(radial: &Lobe, marginal: &Marginal) -> Errors {
     let kappa = marginal.beyond(0.0).excess;
     let axes = radial_axes(Quality::Default.into(), kappa, marginal.reach());
@@ -74,14 +73,15 @@ pub fn measure(radial: &Lobe, marginal: &Marginal) -> Errors {
     }
 }
 
-/// What is found on one table with these axes.
+/// The largest error of one table with these axes.
 fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found {
     let slanted = SLANTS.map(|z| (view(z * marginal.sigma()), MarginalView::new(marginal, z)));
     let ruler = Ruler { radial, marginal, slanted, axes };
     let cells = |axis: &Axis| (axis.nodes.len() - 1) as f64;
     let first = Along::whole(axes[0].nodes.len());
     let first = match axes[0].mapping {
-        // In-plane slopes end at their bound R, which is κ of this axis: rows beyond are not read.
+        // In-plane slopes end at their bound R, which is κ of this axis: rows beyond it are not
+        // read.
         Mapping::Rational(_) if kind == Kind::RadialConditional => first.up_to(0.5),
         _ => first,
     };
@@ -105,7 +105,7 @@ fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found
                 Kind::RadialShadowing => ruler.g1(a),
                 _ => ruler.density(a),
             };
-            // Where slopes end D has a kink.
+            // D has a kink where the slopes end.
             let end = HalfTangent::default().coordinate(marginal.reach());
             let names = [end * (1.0 - 1e-5), end * (1.0 - 1e-6), end];
             let first = if kind == Kind::RadialDensity { first.and(names) } else { first };
@@ -115,7 +115,7 @@ fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found
     }
 }
 
-/// The sweep over places, drawn in one of so many ways in turn, and climbs from the worst.
+/// Measures the sweep of places, drawing in each of `ways` in turn, and climbs from the worst.
 fn searched(
     sweep: Vec<[f64; 2]>,
     [a, b]: [f64; 2],
@@ -123,9 +123,9 @@ fn searched(
     error: impl Fn([f64; 3]) -> f64 + Sync,
 ) -> Found {
     let at = |i: usize, [x, y]: [f64; 2]| {
-        // The way stands in the place of a shape.
+        // The way takes the place of a shape.
         let way = i % ways;
-        // A number has one place, so that climbs do not start from it more than once.
+        // Each random number gets one place, so that climbs start from it only once.
         let x = if way < SLANTS.len() { x } else { last(x / a) / LAST * a };
         let at = [way as f64, x, y];
         Seen { error: error(at), at }
@@ -134,7 +134,7 @@ fn searched(
         sweep.into_par_iter().enumerate().map(|(i, place)| at(i, place)).collect();
     let cells = [0.0, a, b];
     let found = climbed(seen, if ways > 1 { 3 * CLIMBS } else { CLIMBS }, cells, &error);
-    // And the summit drawn in all ways.
+    // The maximum is measured again with all ways.
     let [_, a, b] = found.worst.at;
     let seen: Vec<Seen> = (0..ways).map(|i| at(i, [a, b])).collect();
     let again = climbed(seen, ways, cells, &error);
@@ -156,7 +156,7 @@ struct Ruler<'a> {
 }
 
 impl Ruler<'_> {
-    /// The cotangent, or slope, that is `place` cells along the first axis, in units of the tables.
+    /// The cotangent or slope that is `place` cells along the first axis, divided by σ.
     fn quantity(&self, place: f64) -> f64 {
         // Without a γ axis s is 1.
         cotangent(&self.axes[0], 1.0, place / (self.axes[0].nodes.len() - 1) as f64)
@@ -174,7 +174,7 @@ impl Ruler<'_> {
 
     fn density(&self, place: f64) -> f64 {
         let (marginal, sigma) = (self.marginal, self.marginal.sigma());
-        // As if the slope were the tangent of a view.
+        // The normal of this slope, as a view whose cotangent is the reciprocal.
         let m = view(1.0 / (self.quantity(place) * sigma));
         let exact = marginal.d(1.0 / (exact_cotangent(m) * sigma));
         ((f64::from(self.radial.d(m)) - exact) / marginal.d(0.0)).abs()
@@ -193,8 +193,8 @@ impl Ruler<'_> {
         (exact.shares(x).below - f64::from(u)).abs()
     }
 
-    /// The first random number that draws the in-plane slope at a place, or one of the last below 1
-    /// by that place's share of the axis.
+    /// The first random number that draws the in-plane slope at a place, or one of the last numbers
+    /// below 1, chosen by that place's share of the axis.
     fn first_number(&self, way: usize, place: f64, share: f64) -> f32 {
         let u = match self.slanted.get(way) {
             Some((_, seen)) => 1.0 - seen.shares(self.quantity(place)).above,
@@ -203,7 +203,7 @@ impl Ruler<'_> {
         u.clamp(RARE, 1.0 - RARE) as f32
     }
 
-    /// Of the slope across beside the in-plane slope of a first number, from one of [`SLANTS`].
+    /// Error of the slope across at the in-plane slope of a first number, from one of [`SLANTS`].
     fn across(&self, way: usize, first: f32, u: f32) -> f64 {
         let v = self.slanted[way % SLANTS.len()].0;
         let [x, y] = self.slopes(v, [first, u]);
@@ -213,7 +213,7 @@ impl Ruler<'_> {
     }
 }
 
-/// Writes what is found into the four tables of one distribution.
+/// Measures the four tables of one distribution and writes their certificates.
 ///
 /// # Errors
 /// [`LoadError::Invalid`] if the tables do not make a lobe.

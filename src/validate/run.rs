@@ -15,19 +15,19 @@ use super::pdf_integral;
 
 /// Probability with which a run rejects a correct set.
 pub const LEVEL: f64 = 0.01;
-/// How far the integral of `table_pdf` may be from one.
+/// Allowed deviation of the integral of `table_pdf` from one.
 pub const PDF_TOLERANCE: f64 = 1e-6;
 
-/// What to do.
+/// Options of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Normals drawn for each configuration.
     pub samples: usize,
-    /// Factor on γ of the model that tables are judged against; 1 unless one wants to see them rejected.
+    /// Factor on γ of the model that tables are compared with; other than 1 to see them rejected.
     pub gamma_factor: f64,
 }
 
-/// What was found for one configuration.
+/// The result for one configuration.
 #[derive(Clone, Copy, Debug)]
 pub struct Report {
     /// Material and view.
@@ -40,10 +40,10 @@ pub struct Report {
     pub pdf_integral: f64,
 }
 
-/// What was found.
+/// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// All configurations, the least probable first.
+    /// One report a configuration, the smallest p first.
     pub reports: Vec<Report>,
     /// Level of a single test after Šidák's correction.
     pub level: f64,
@@ -61,18 +61,18 @@ impl Outcome {
         self.reports.iter().max_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
-    /// Whether nothing rejects.
+    /// Whether all tests pass.
     pub fn passed(&self) -> bool {
-        // A NaN fails.
+        // Written so that a NaN fails.
         let sound = |report: &Report| (report.pdf_integral - 1.0).abs() <= PDF_TOLERANCE;
         self.rejected() == 0 && self.reports.iter().all(sound)
     }
 }
 
-/// Judges all `configurations` in parallel, calling `progress` after each.
+/// Tests all `configurations` in parallel, calling `progress` after each.
 ///
 /// # Errors
-/// [`MaterialError`] if the set does not hold what it says it covers.
+/// [`MaterialError`] if the set does not hold what it declares to cover.
 pub fn run(
     tables: &Tables,
     configurations: &[Configuration],
@@ -99,7 +99,7 @@ fn one(
 ) -> Result<Report, MaterialError> {
     let Configuration { sigma_x, sigma_y, gamma, seed, .. } = *configuration;
     let lobe = tables.lobe([sigma_x, sigma_y], gamma)?;
-    // The model gets the roughness that the run time has rounded to.
+    // The model gets the roughness as rounded for the sampler.
     let sigma = [sigma_x as f32, sigma_y as f32];
     let judged = gamma * options.gamma_factor;
     let truth = model::StudentT::new(sigma, judged).map_err(|_| MaterialError::Gamma(judged))?;

@@ -1,7 +1,9 @@
-//! Stress: every public function of sampler and model at generated corners and random points, counting what must never happen.
+//! Stress test: runs every public function of sampler and model at generated corners and random
+//! points, and counts violations.
 //!
-//! A violation is a NaN, an infinity, a value out of its range, a normal that is not of unit length, below the horizon or facing away, or a
-//! broken monotonicity. Errors of the single-precision sampler against the model are measured along the way, by region.
+//! A violation is a NaN, an infinity, a value out of range, a normal that is not of unit length,
+//! lies below the horizon or faces away, or a broken monotonicity. Errors of the single-precision
+//! sampler against the model are measured along the way, by region.
 
 mod checks;
 mod corners;
@@ -49,7 +51,7 @@ fn direction(theta: f64, phi: f64) -> Vec3 {
     DVec3::new(sin * phi.cos(), sin * phi.sin(), cos).as_vec3()
 }
 
-/// The command that shows the point.
+/// Prints the command that shows the point.
 impl fmt::Display for Point {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { sigma: [x, y], gamma, theta, phi, u: [u1, u2] } = self;
@@ -61,44 +63,44 @@ impl fmt::Display for Point {
     }
 }
 
-/// The largest of something, and where it was seen.
+/// The largest of some values, and its point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
     /// The largest value.
     pub value: f64,
-    /// Where.
+    /// Its point.
     pub at: Point,
 }
 
 impl Worst {
     fn see(&mut self, value: f64, at: &Point) {
-        // A NaN is the worst there is.
+        // A NaN counts as the worst.
         if !(value <= self.value) {
             *self = Self { value, at: *at };
         }
     }
 }
 
-/// A rule that was broken.
+/// A broken rule.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Violation {
-    /// How often.
+    /// Number of times.
     pub count: u64,
     /// The offending value that was largest in magnitude.
     pub worst: Worst,
 }
 
-/// Errors of the sampler against the model: what is compared, in the order of [`Region::errors`].
+/// Quantities whose error against the model is measured, in the order of [`Region::errors`].
 pub const ERRORS: [&str; 4] = ["g1 abs", "d rel", "pdf rel", "cdf abs"];
 
-/// What was found in a part of the domain.
+/// The result for a part of the domain.
 #[derive(Clone, Debug, Default)]
 pub struct Region {
-    /// Points judged.
+    /// Points tested.
     pub points: u64,
-    /// Largest errors, see [`ERRORS`].
+    /// Largest errors, in the order of [`ERRORS`].
     pub errors: [Worst; 4],
-    /// Rules that were broken, by name.
+    /// Broken rules, by name.
     pub violations: BTreeMap<&'static str, Violation>,
 }
 
@@ -116,14 +118,14 @@ impl Region {
     }
 }
 
-/// Names of the parts into which the domain is divided: by shape, by view, by roughness.
+/// Names of the parts of the domain by shape.
 pub const SHAPES: [&str; 4] = ["gamma < 1.8", "gamma < 4", "gamma < 1e4", "to inf"];
-/// See [`SHAPES`].
+/// Names of the parts of the domain by view.
 pub const VIEWS: [&str; 4] = ["near n", "between", "grazing", "below horizon"];
-/// See [`SHAPES`].
+/// Names of the parts of the domain by roughness.
 pub const ROUGHNESSES: [&str; 2] = ["ordinary", "extreme"];
 
-/// What a stress run found, region by region.
+/// The result of a stress run, by region.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// Indexed by position in [`SHAPES`], [`VIEWS`] and [`ROUGHNESSES`].
@@ -158,10 +160,11 @@ impl Report {
     }
 }
 
-/// Visits all corners and then random points until `points` are judged; the same `seed` visits the same ones.
+/// Tests all corners and then random points until `points` are tested; the same `seed` gives the
+/// same points.
 ///
 /// # Errors
-/// [`MaterialError`] if the set does not hold what it says it covers.
+/// [`MaterialError`] if the set does not hold what it declares to cover.
 pub fn run(tables: &Tables, points: u64, seed: u64) -> Result<Report, MaterialError> {
     let corners = corner_materials(tables)
         .par_iter()

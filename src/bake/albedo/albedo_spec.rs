@@ -1,4 +1,4 @@
-//! What albedo tables are to be baked: the lobe, the reflectance, and the nodes.
+//! The specification of albedo tables: the lobe, the reflectance, and the nodes.
 
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::axis::lagrange::nodes_read;
@@ -14,19 +14,19 @@ use crate::bake::{joined_name, names};
 use crate::scene::Interval;
 use crate::table_spec::{GAMMA_MIN, Level};
 
-/// Smallest σ node; what is smoother is a mirror.
+/// Smallest σ node; smoother surfaces count as mirrors.
 const SIGMA_MIN: f64 = LogRoughness::BAKED.first;
 /// Largest σ of the general tables.
 pub const SIGMA_MAX: f64 = 3.0;
-/// Along every axis.
+/// The interpolation along every axis.
 const INTERPOLATION: Interpolation = Interpolation::Lagrange6;
 
-/// The round materials that tables are baked for: they are measured there, and need hold nowhere else.
+/// The isotropic materials that tables are baked for; certificates hold for these only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
-    /// Shapes.
+    /// Range of shapes.
     pub gamma: Interval,
-    /// Roughnesses, σx = σy.
+    /// Range of roughnesses, σx = σy.
     pub sigma: Interval,
 }
 
@@ -37,25 +37,25 @@ impl Domain {
         sigma: Interval { min: 0.0, max: SIGMA_MAX },
     };
 
-    /// Whether every material of `other` is one of this.
+    /// Whether every material of `other` lies in this domain.
     pub fn contains(&self, other: &Self) -> bool {
         let within = |a: Interval, b: Interval| a.contains(b.min) && a.contains(b.max);
         within(self.gamma, other.gamma) && within(self.sigma, other.sigma)
     }
 
-    /// The smallest that contains both.
+    /// The smallest domain that contains both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self { gamma: self.gamma.union(other.gamma), sigma: self.sigma.union(other.sigma) }
     }
 
-    /// What a table's description says of it.
+    /// The domain as a table's description states it.
     pub fn covered(&self) -> Covered {
         let s = [s_of_gamma(self.gamma.max), s_of_gamma(self.gamma.min)];
         Covered { s, sigma: Some([self.sigma.min, self.sigma.max]) }
     }
 
-    /// What names of tables say of it; nothing for the general ones.
+    /// The domain as part of table names; empty for the general domain.
     pub(super) fn label(&self) -> String {
         let part = |name: &str, Interval { min, max }: Interval| {
             if min == max { format!("{name}_{min}") } else { format!("{name}_{min}_to_{max}") }
@@ -68,16 +68,17 @@ impl Domain {
     }
 }
 
-/// Albedo tables to bake, one for each of some forms of masking, and of moments of the family one more of averages.
+/// Albedo tables to bake: one for each form of masking, and with the moments of the family also a
+/// table of averages for each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlbedoSpec {
-    /// Whose.
+    /// The lobes that the tables are baked for.
     pub lobe: AlbedoLobe,
-    /// Under which reflectance.
+    /// The reflectance of the microfacets.
     pub reflectance: Reflectance,
-    /// The forms; both cost hardly more than one.
+    /// The forms of masking; both together cost hardly more than one.
     pub maskings: Vec<Masking>,
-    /// The axes, the view last.
+    /// The axes, that of the view last.
     pub axes: Vec<Axis>,
     /// Error aimed at in every node.
     pub tolerance: f64,
@@ -85,18 +86,19 @@ pub struct AlbedoSpec {
     pub precision: Precision,
 }
 
-/// Level from which views stand closer to the normal.
+/// Level from which the view nodes are crowded towards the normal.
 const CLOSE_FROM: Level = Level(24);
 
-/// Numbers of nodes that go with a level, found by measuring.
+/// Numbers of nodes at a level, found by measuring.
 struct Counts {
-    /// Of the axes of the family.
+    /// Nodes of the axes of the family: γ, σ and view.
     shapes: usize,
     roughnesses: usize,
     views: usize,
-    /// Of all indices of refraction.
+    /// Nodes of an axis of all indices of refraction.
     indices: usize,
-    /// Of a quarter of the azimuths, 2ᵏ + 1, and of the views at each: the smallest table of a lobe that is tried.
+    /// Nodes of a quarter of the azimuths, 2ᵏ + 1, and of the views at each azimuth, in the
+    /// smallest table of a lobe that is tried.
     azimuths: usize,
     views_of_lobes: usize,
     /// Error aimed at in every node.
@@ -105,7 +107,7 @@ struct Counts {
 
 impl Counts {
     fn at(level: Level) -> Self {
-        // The polynomial reads six nodes.
+        // The interpolating polynomial reads six nodes.
         let nodes = |counts| level.nodes(counts, 6);
         let quality = level.quality() as usize;
         Self {
@@ -113,7 +115,7 @@ impl Counts {
             roughnesses: nodes([22, 38, 68]),
             views: nodes([20, 33, 58]),
             indices: nodes([20, 32, 48]),
-            // They are doubled from here on, as far as the error takes.
+            // Starting numbers: they are doubled until the error is met.
             azimuths: [5, 9, 17][quality],
             views_of_lobes: [17, 33, 65][quality],
             tolerance: level.between([1e-5, 1e-6, 1e-7]),
@@ -122,11 +124,14 @@ impl Counts {
 }
 
 impl AlbedoSpec {
-    /// Tables of a level. Those of a part of the family are cut out of the general ones: one node for a single γ or σ, else the nodes that are
-    /// read there, so that the values in between are those of the general tables. Those of other lobes are the smallest that are tried.
+    /// The specification at a level.
+    ///
+    /// Tables for a part of the family are cut out of the general ones: one node for a single γ or
+    /// σ, else the nodes that interpolation reads in that range, so that values in between equal
+    /// those of the general tables. For other lobes it is the smallest table that is tried.
     ///
     /// # Errors
-    /// [`AlbedoError`] for an ellipsoid that is none.
+    /// [`AlbedoError`] for parameters that describe no ellipsoid.
     pub fn new(
         lobe: AlbedoLobe,
         reflectance: Reflectance,
@@ -160,7 +165,7 @@ impl AlbedoSpec {
             _ => (view_of(lobe.tail()), counts.views_of_lobes),
         };
         axes.push(if reflectance.side() == Some(Side::Dense) {
-            // Everything turns where total reflection sets in: two halves that share the node there.
+            // E changes fast where total reflection sets in: two halves share a node there.
             let mapping = Mapping::CriticalBlend(CriticalBlend::BAKED);
             Axis::placed("view", mapping, INTERPOLATION, 2 * views - 1)
         } else {
@@ -176,7 +181,7 @@ impl AlbedoSpec {
             .expect("the family is no ellipsoid")
     }
 
-    /// The same with an axis twice as dense.
+    /// The same specification with one axis twice as dense.
     #[must_use]
     pub fn refined(&self, axis: usize) -> Self {
         let mut finer = self.clone();
@@ -188,23 +193,24 @@ impl AlbedoSpec {
         finer
     }
 
-    /// How many times an axis may be [`refined`](Self::refined): how many nodes it takes depends on the material, but for the moments of the
-    /// family, whose nodes were found by measuring.
+    /// How many times an axis may be [`refined`](Self::refined). How many nodes it takes depends on
+    /// the material, except for the moments of the family, whose nodes were found by measuring.
     pub fn doublings(&self) -> u32 {
         match (&self.lobe, self.reflectance) {
             (AlbedoLobe::Family(_), Reflectance::Moments) => 0,
-            // What the clamp of G1(l) leaves of a kink no number of nodes resolves well, nor the onset of total reflection on smooth surfaces.
+            // No number of nodes resolves well the kink that the clamp of G1(l) leaves, nor the
+            // onset of total reflection on smooth surfaces.
             (AlbedoLobe::Family(_) | AlbedoLobe::Ellipsoid { .. }, _) => 2,
             _ => 4,
         }
     }
 
-    /// The error of the whole table that goes with that of a node.
+    /// The error aimed at for the whole table, given that of a node.
     pub fn target(&self) -> f64 {
         300.0 * self.tolerance
     }
 
-    /// Axes that can be [`refined`](Self::refined): those of the view, where there are several nodes.
+    /// Axes that can be [`refined`](Self::refined): those of the view with more than one node.
     pub fn refinable(&self) -> Vec<usize> {
         let of_view = |axis: &Axis| {
             axis.len() > 1
@@ -216,7 +222,7 @@ impl AlbedoSpec {
         (0..self.axes.len()).filter(|&i| of_view(&self.axes[i])).collect()
     }
 
-    /// Places at which the albedo is integrated.
+    /// Number of nodes at which the albedo is integrated.
     pub fn nodes(&self) -> usize {
         self.axes.iter().map(Axis::len).product()
     }
@@ -227,12 +233,12 @@ impl AlbedoSpec {
         names(self.reflectance.channels()).into_iter().chain(clamp).collect()
     }
 
-    /// Whether there are tables of averages, too.
+    /// Whether tables of averages are baked as well.
     pub fn has_averages(&self) -> bool {
         matches!(self.lobe, AlbedoLobe::Family(_)) && self.reflectance == Reflectance::Moments
     }
 
-    /// How many tables it makes.
+    /// Number of tables.
     pub fn tables(&self) -> usize {
         (1 + usize::from(self.has_averages())) * self.maskings.len()
     }
@@ -246,7 +252,7 @@ impl AlbedoSpec {
         self.maskings.len() * (one + if self.has_averages() { averages } else { 0 })
     }
 
-    /// What the description of a table says.
+    /// The subject in the description of a table.
     pub fn subject(&self, masking: Masking) -> Subject {
         let covers =
             if let AlbedoLobe::Family(domain) = &self.lobe { Some(domain.covered()) } else { None };
@@ -254,7 +260,7 @@ impl AlbedoSpec {
         Subject { lobe: self.lobe.entry(), masking, reflectance, covers }
     }
 
-    /// All that the axes of the family reach, nodes that only interpolation reads included.
+    /// The whole extent of the family's axes, with the outer nodes that only interpolation reads.
     pub(super) fn everywhere(&self) -> Option<Covered> {
         let ends = |i: usize| {
             let mut ends =
@@ -268,7 +274,7 @@ impl AlbedoSpec {
 
     /// The name of a table.
     pub fn name(&self, kind: Kind, masking: Masking) -> String {
-        // What nearly all tables are under need not be said.
+        // The moments, which nearly all tables hold, are left out of the name.
         let reflectance = match self.reflectance {
             Reflectance::Moments => String::new(),
             other => other.label(),
@@ -277,14 +283,14 @@ impl AlbedoSpec {
     }
 }
 
-/// The axes of γ and σ that a domain needs.
+/// The axes of γ and σ for a domain.
 fn materials(domain: &Domain, counts: &Counts) -> Vec<Axis> {
     let Domain { gamma, sigma } = domain;
     let shape = |gamma: f64| LogShape::BAKED.coordinate(gamma);
     let roughness = |sigma: f64| LogRoughness::BAKED.coordinate(sigma);
     let shapes = even_nodes(shape(f64::INFINITY), shape(GAMMA_MIN), counts.shapes);
     let roughnesses = even_nodes(roughness(SIGMA_MIN), roughness(SIGMA_MAX), counts.roughnesses);
-    // What is smoother than the first node is a mirror.
+    // Surfaces smoother than the first node count as mirrors.
     let [from, to] = if sigma.min < SIGMA_MIN {
         [SIGMA_MIN, sigma.max.max(2.0 * SIGMA_MIN)]
     } else {

@@ -1,4 +1,4 @@
-//! The reflectances that albedos are baked under, one variant each: **to add one, add it here** and to
+//! The reflectances that albedos are baked under, one variant each. **A new one goes here** and in
 //! [`Reflectance`], which names its channels.
 
 use microfacet_model::fresnel::{Conductor, Dielectric, f82_weight, schlick_weight};
@@ -7,13 +7,13 @@ use microfacet_sampler::{Reflectance, Side};
 
 use super::{AlbedoError, CHANNELS, Model, Site};
 
-/// A reflectance, prepared.
+/// A reflectance with its constants computed.
 pub enum Integrand {
-    /// F = 1 in the parts of [`weights`].
+    /// F = 1, split into the parts of [`weights`].
     Moments,
-    /// A conductor, by channel.
+    /// A conductor, one for each colour channel.
     Metal([Conductor; 3]),
-    /// A dielectric from a side; the index is of the place.
+    /// A dielectric seen from one side; its index is that of the place.
     Pane(Side),
 }
 
@@ -24,7 +24,7 @@ pub fn weights(cos: f64) -> [f64; 3] {
 }
 
 impl Integrand {
-    /// Prepares a reflectance.
+    /// Computes the constants of a reflectance.
     ///
     /// # Errors
     /// [`ParameterError`] for η ≤ 0 or k < 0.
@@ -39,10 +39,11 @@ impl Integrand {
         })
     }
 
-    /// Its albedos by quadrature for both forms of masking; of fewer channels the others are 0.
+    /// The albedos at a place by quadrature, for both forms of masking; channels that the
+    /// reflectance lacks are 0.
     ///
     /// # Errors
-    /// [`AlbedoError`] for a place outside the domain of the lobe, or a lobe that refracts no light.
+    /// [`AlbedoError`] for a place outside the domain of the lobe, or a lobe without refraction.
     pub fn at(&self, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, AlbedoError> {
         match self {
             Self::Moments => model.reflection(site, weights),
@@ -54,7 +55,7 @@ impl Integrand {
     }
 }
 
-/// Reflection and transmission of a dielectric, whose index may be infinite.
+/// Reflection and transmission of a dielectric; the index may be infinite.
 fn pane(side: Side, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, AlbedoError> {
     if site.eta == f64::INFINITY {
         return model.reflection(site, |_| [1.0, 0.0, 0.0]);

@@ -1,4 +1,4 @@
-//! The lobes that albedos are baked of, and their quadrature: **to add one, add it here** and to
+//! The lobes that albedos are baked for, and their quadrature. **A new one goes here** and in
 //! [`LobeEntry`](microfacet_sampler::LobeEntry).
 
 use std::collections::HashMap;
@@ -17,21 +17,21 @@ use microfacet_sampler::axis::Azimuth;
 use super::{AlbedoError, CHANNELS, Domain, Site};
 use crate::distribution::Distribution;
 
-/// Whose normals.
+/// The lobe, or range of lobes, that one table of albedos is baked for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AlbedoLobe {
-    /// Round members of the Student-t family.
+    /// Isotropic lobes of the Student-t family.
     Family(Domain),
-    /// An anisotropic one.
+    /// One anisotropic Student-t lobe.
     StudentT {
         /// σx and σy.
         sigma: [f64; 2],
         /// γ.
         gamma: f64,
     },
-    /// A tilted one.
+    /// One ellipsoid: a tilted Student-t lobe.
     Ellipsoid {
-        /// σx and σy, and the turn, radians; see [`Skew::new`].
+        /// σx and σy, and the turn in radians; see [`Skew::new`].
         sigma: [f64; 2],
         /// θx, θy and θz.
         theta: [f64; 3],
@@ -40,7 +40,7 @@ pub enum AlbedoLobe {
     },
     /// An isotropic distribution outside the family.
     Radial {
-        /// Which.
+        /// The distribution.
         distribution: Distribution,
         /// Its median slope.
         sigma: f64,
@@ -48,7 +48,7 @@ pub enum AlbedoLobe {
 }
 
 impl AlbedoLobe {
-    /// What the description of its tables says.
+    /// The lobe as the description of its tables states it.
     pub fn entry(&self) -> LobeEntry {
         match *self {
             Self::Family(_) => LobeEntry::Family,
@@ -60,7 +60,7 @@ impl AlbedoLobe {
         }
     }
 
-    /// What tells it from others, in names of tables and for people; nothing for the general family.
+    /// The lobe as part of table names and in messages; empty for the general family.
     pub fn label(&self) -> String {
         let turn = |[x, y, z]: [f64; 3]| format!("_theta_{x}_{y}_{z}");
         match self {
@@ -73,10 +73,11 @@ impl AlbedoLobe {
         }
     }
 
-    /// The mapping of its azimuths; `None` of the family, whose albedo does not depend on any.
+    /// The mapping of its azimuth axis; `None` for the family, whose albedo does not depend on
+    /// azimuth.
     ///
     /// # Errors
-    /// [`AlbedoError`] for an ellipsoid that is none.
+    /// [`AlbedoError`] for parameters that describe no ellipsoid.
     pub(super) fn azimuth(&self) -> Result<Option<Azimuth>, AlbedoError> {
         let plain = |sigma| Some(Azimuth { sigma, turn: 0.0, fold: true });
         Ok(match *self {
@@ -90,13 +91,13 @@ impl AlbedoLobe {
         })
     }
 
-    /// Whether one azimuth is as good as another.
+    /// Whether the albedo is the same at every azimuth.
     pub(super) fn is_round(&self) -> bool {
         matches!(self, Self::Family(_) | Self::Radial { .. })
     }
 
-    /// The shape whose tail masking has, of one material; κ of the view's coordinate follows it. Of distributions outside the family it is not
-    /// known, and that of a short one serves.
+    /// The shape γ that sets κ of the view's coordinate: that of the masking's tail, for a single
+    /// lobe. Outside the family the tail is not known, and γ of a short tail serves.
     pub(super) fn tail(&self) -> f64 {
         match *self {
             Self::StudentT { gamma, .. } | Self::Ellipsoid { gamma, .. } => gamma,
@@ -104,7 +105,7 @@ impl AlbedoLobe {
         }
     }
 
-    /// σ of the round member of the family that usually stands in for it.
+    /// σ of the isotropic lobe of the family that usually stands in for it.
     pub fn stand_in(&self) -> Option<f64> {
         match *self {
             Self::StudentT { sigma: [x, y], .. } | Self::Ellipsoid { sigma: [x, y], .. } => {
@@ -121,9 +122,11 @@ fn ellipsoid(sigma: [f64; 2], theta: [f64; 3], gamma: f64) -> Result<Ellipsoid, 
     Ellipsoid::new(skew, gamma).map_err(refused)
 }
 
-/// How slopes spread about zero: the principal axes of σ_φ² + t_φ², roughness and mean slope seen from an azimuth, and the turn of the first.
+/// The spread of slopes about zero: the principal values of σ_φ² + t_φ² (roughness and mean slope
+/// seen from the azimuth φ), and the azimuth of the first.
 ///
-/// A lobe that leans away masks, and one that leans forward reflects below the horizon, about where cot θ is its mean slope.
+/// Where cot θ is about the mean slope, a lobe that leans away masks, and one that leans forward
+/// reflects below the horizon.
 fn spread(ellipsoid: &Ellipsoid) -> ([f64; 2], f64) {
     let Skew { p, q, r, x, y } = ellipsoid.skew();
     let (a, b, c) = (p * p + q * q + x * x, q * r + x * y, r * r + y * y);
@@ -136,15 +139,15 @@ fn spread(ellipsoid: &Ellipsoid) -> ([f64; 2], f64) {
     ([first.sqrt(), second.sqrt()], 0.5 * libm::atan2(2.0 * b, a - c))
 }
 
-/// The lobes of a table by quadrature: one, or of the family one for each shape.
+/// The lobes of a table by quadrature: a single one, or one for each shape of the family.
 pub struct Models<'a>(HashMap<u64, Model<'a>>);
 
 impl Models<'_> {
-    /// Prepares the lobe for some shapes, which only the family heeds, and does something with it; `tolerance` as of
-    /// [`AlbedoIntegrator::new`].
+    /// Prepares the lobe, for the family at each of `gammas`, and calls `then` with it; `tolerance`
+    /// as in [`AlbedoIntegrator::new`].
     ///
     /// # Errors
-    /// [`AlbedoError`] for parameters outside the domain, and what `then` reports.
+    /// [`AlbedoError`] for parameters outside the domain, and any error of `then`.
     pub fn with<T>(
         lobe: &AlbedoLobe,
         gammas: impl IntoIterator<Item = f64>,
@@ -153,7 +156,7 @@ impl Models<'_> {
     ) -> Result<T, AlbedoError> {
         let integrator =
             |gamma| Ok::<_, AlbedoError>(AlbedoIntegrator::new(Shape::new(gamma)?, tolerance));
-        // Sites of lobes that are one material have no γ.
+        // Places of a single lobe have no γ.
         let one = |model| Models([(f64::INFINITY.to_bits(), model)].into());
         match lobe {
             AlbedoLobe::Family(_) => {
@@ -191,16 +194,16 @@ impl Models<'_> {
 
 /// One lobe by quadrature.
 pub enum Model<'a> {
-    /// A Student-t with these σx and σy, or with the σ of the place.
+    /// A Student-t lobe with these σx and σy, or with the σ of the place.
     StudentT(Option<[f64; 2]>, AlbedoIntegrator),
-    /// A tilted one.
+    /// An ellipsoid.
     Ellipsoid(Ellipsoid, AlbedoIntegrator),
-    /// One outside the family.
+    /// An isotropic lobe outside the family.
     Radial(RadialAlbedo<'a>),
 }
 
 impl Model<'_> {
-    /// The albedo of reflection under some weights.
+    /// The albedo of reflection, weighted with some Fresnel weights.
     ///
     /// # Errors
     /// [`ParameterError`] for a roughness outside the family or cos θ outside [0, 1].
@@ -221,10 +224,10 @@ impl Model<'_> {
         })
     }
 
-    /// The round member of the family with the σ of the place, which refracts as well.
+    /// The isotropic lobe of the family with the σ of the place; it has a model of refraction.
     ///
     /// # Errors
-    /// [`AlbedoError::Lobe`] of other lobes.
+    /// [`AlbedoError::Lobe`] for other lobes.
     pub(super) fn round(&self, site: &Site) -> Result<(&AlbedoIntegrator, f64), AlbedoError> {
         match self {
             Self::StudentT(None, model) => Ok((model, site.sigma)),
@@ -234,7 +237,8 @@ impl Model<'_> {
         }
     }
 
-    /// The share A/μ of the macrosurface's area that the microsurface shows, of a lobe that may be tilted; below one G1 is clamped.
+    /// The ratio A/μ of the microsurface's visible area to the macrosurface's, for an ellipsoid;
+    /// where it is below 1, G1 is clamped.
     pub(super) fn area_ratio(&self, site: &Site) -> Option<f64> {
         let Self::Ellipsoid(ellipsoid, _) = self else { return None };
         let sin = ((1.0 - site.cos) * (1.0 + site.cos)).sqrt();
@@ -242,7 +246,7 @@ impl Model<'_> {
         Some(ellipsoid.projected_area(DVec3::new(sin * c, sin * s, site.cos)) / site.cos)
     }
 
-    /// The albedo of the round lobe of its shape and this roughness.
+    /// The albedo of the isotropic lobe with the same shape and this roughness.
     ///
     /// # Errors
     /// As [`reflection`](Self::reflection).

@@ -1,9 +1,12 @@
-//! Directional albedo of whatever lobe under whatever reflectance, for both forms of masking in one pass.
+//! Bakes directional albedos of any lobe under any reflectance, for both forms of masking in one
+//! pass.
 //!
-//! One loop over the nodes of a specification's axes: [`Model`] is the lobe by quadrature, [`Integrand`] the reflectance. Of F = 1
-//! and its parts E − 1 is stored, and of the other moments what they have over a mirror's times E, all of which vanish with σ;
-//! of exact reflectances the shares of light. Nodes stand evenly in coordinates found by measuring. Averages are integrated from
-//! the stored, interpolated albedo, so that a white furnace closes to rounding rather than to the interpolation error.
+//! One loop runs over the nodes of a specification's axes: [`Model`] is the lobe by quadrature,
+//! [`Integrand`] the reflectance. For the moments (F = 1 and its parts) a table holds E − 1 and, of
+//! the other moments, their excess over E times a mirror's, all of which vanish with σ; for exact
+//! reflectances it holds the shares of light. Nodes are spaced evenly in coordinates found by
+//! measuring. Averages are integrated from the stored, interpolated albedo, so that a white furnace
+//! closes to rounding rather than to the interpolation error.
 
 mod albedo_spec;
 mod integrand;
@@ -25,17 +28,17 @@ pub use albedo_spec::{AlbedoSpec, Domain, SIGMA_MAX};
 pub use integrand::{Integrand, weights};
 pub use lobe::{AlbedoLobe, Model, Models};
 
-/// Most channels that an integrand has.
+/// Most channels of any integrand.
 pub const CHANNELS: usize = 3;
 
-/// A material and a view of it: a place on the axes of a table.
+/// A material and a view: a place on the axes of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
-    /// γ, on tables that have such an axis; else ∞, which their view does not depend on.
+    /// γ, for tables with such an axis; else ∞, on which their view coordinate does not depend.
     pub gamma: f64,
-    /// σ, or the roughness that a lobe shows to the azimuth.
+    /// σ, or the roughness that a lobe shows at the azimuth.
     pub sigma: f64,
-    /// Index of the dense side of a dielectric over the thin one.
+    /// Index of the dense side of a dielectric over that of the thin side.
     pub eta: f64,
     /// Azimuth of the view, radians.
     pub phi: f64,
@@ -99,30 +102,31 @@ impl fmt::Display for Site {
     }
 }
 
-/// Why a bake gave up.
+/// Why a bake of albedos failed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AlbedoError {
     /// A parameter outside the domain of the model.
     Parameter(ParameterError),
-    /// A node whose E is not a number, or above 1 by more than its error: a fault of the quadrature, which must not reach a table.
+    /// A node whose E is NaN, or above 1 by more than its error estimate: a fault of the
+    /// quadrature, which must not reach a table.
     Albedo {
-        /// Where.
+        /// The place.
         at: Site,
         /// The value.
         value: f64,
     },
-    /// A node whose error estimate stayed above what is allowed.
+    /// A node whose error estimate exceeds what is allowed.
     Accuracy {
-        /// Where.
+        /// The place.
         at: Site,
         /// The estimate.
         error: f64,
     },
     /// The lobe has no such albedo.
     Lobe(String),
-    /// A table does not hold what it was baked for.
+    /// A table does not cover the material it was baked for.
     Bind(MaterialError),
-    /// The tables would not load.
+    /// The tables could not be loaded.
     Table(LoadError),
 }
 
@@ -163,17 +167,21 @@ impl From<LoadError> for AlbedoError {
     }
 }
 
-/// Bakes the tables of a specification: a directional albedo for each form of masking, and of the moments of the family the averages.
+/// Bakes the tables of a specification: a directional albedo for each form of masking and, for the
+/// moments of the family, their averages.
 ///
-/// Each directional table has `quadrature_error`, the largest error estimate of a node, in its certificate.
+/// The certificate of each directional table has `quadrature_error`, the largest error estimate of
+/// a node.
 ///
 /// # Errors
-/// [`AlbedoError`] if a node is not a sound albedo or not accurate enough, or the specification is out of the domain.
+/// [`AlbedoError`] if a node is no valid albedo or not accurate enough, or the specification lies
+/// outside the domain.
 pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, AlbedoError> {
     Ok(bake_in(spec, &[spec.precision])?.concat())
 }
 
-/// The same in each of some precisions, from one pass over the nodes, which takes nearly all the time.
+/// Bakes the tables in several precisions from one pass over the nodes, which takes nearly all the
+/// time.
 ///
 /// # Errors
 /// As [`bake`].
@@ -198,18 +206,20 @@ pub fn bake_in(
     })
 }
 
-/// What a node holds for both forms of masking, and its error estimate.
+/// The values of a node for both forms of masking, and their error estimate.
 struct Node {
     values: Albedo<CHANNELS>,
-    /// μ/(μ + A), of lobes whose G1(v) is clamped.
+    /// μ/(μ + A), for lobes whose G1(v) is clamped.
     clamp: Option<f64>,
 }
 
-/// Error allowed in a node, in units of the one aimed at: narrow lobes with long tails seen at grazing, kinks of masking that is
-/// clamped and of total reflection take the quadrature to its last order, the worst of
-/// `tables/recipes/brushed-metals.toml` at 26. What was reached stands in the certificate.
+/// Error allowed in a node, as a multiple of the one aimed at. Narrow lobes with long tails at
+/// grazing views, and the kinks of clamped masking and of total reflection, take the quadrature to
+/// its last order; the worst of `tables/recipes/brushed-metals.toml` reaches 26. The certificate
+/// states what was reached.
 const SLACK: f64 = 100.0;
-/// Less than this of the microsurface is seen, E is less still, and the quotient of the two is none.
+/// Where less than this share of the microsurface is visible, E is smaller still, and their
+/// quotient is not meaningful.
 const UNSEEN: f64 = 1e-6;
 
 fn node(
@@ -221,7 +231,7 @@ fn node(
     let mut values = integrand.at(model, site)?;
     let ratio = model.area_ratio(site);
     let clamp = ratio.map(|ratio| 1.0 / (1.0 + ratio));
-    // What the clamp of G1(v) leaves is taken out.
+    // The factor that the clamp of G1(v) leaves in the shares is divided out.
     let share = ratio.unwrap_or(1.0).min(1.0);
     if share < UNSEEN {
         (values.uncorrelated, values.height_correlated) = Default::default();
@@ -235,7 +245,7 @@ fn node(
         let sound = |x: f64| {
             x >= -values.error / share && x <= 1.0 + (values.error + spec.tolerance) / share
         };
-        // Not clamped before: a wrong sum must be seen.
+        // Checked before clamping: a wrong sum must be seen.
         match spec.reflectance {
             Reflectance::Moments => {
                 let e = form[0] + form[1];
@@ -243,14 +253,15 @@ fn node(
                     return Err(AlbedoError::Albedo { at: *site, value: e });
                 }
                 let mirror = weights(site.cos);
-                // Near normal incidence on a smooth surface 1 − E is far below what quadrature is asked for.
+                // Near normal incidence on a smooth surface 1 − E is far below the quadrature's
+                // tolerance.
                 *form = [e - 1.0, form[1] - e * mirror[1], form[2] - e * mirror[2]];
             }
             _ => {
                 if let Some(&value) = form.iter().find(|x| !sound(**x)) {
                     return Err(AlbedoError::Albedo { at: *site, value });
                 }
-                // Outside by less than the error of the quadrature is at the end.
+                // Out of range by no more than the error of the quadrature.
                 form.iter_mut().for_each(|x| *x = x.clamp(0.0, 1.0));
             }
         }
@@ -288,7 +299,7 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
     directional.validate()?;
     let axes = spec.axes[..2].to_vec();
     let (gammas, sigmas) = (axes[0].quantities(), axes[1].quantities());
-    // Nodes beyond what is promised are bound as well.
+    // The averages also cover the outer nodes, which the table's own range leaves out.
     let mut whole = directional.clone();
     whole.subject.covers = spec.everywhere();
     let at = |(gamma, sigma): (f64, f64)| Ok(Bound::from_table(&whole, sigma, gamma)?.integrate());
@@ -305,7 +316,7 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
     })
 }
 
-/// The view coordinate of lobes that are one material: γ is known, so that readers need none.
+/// The view coordinate of a single lobe: its γ is a constant here, so that readers supply none.
 fn view_of(gamma: f64) -> ViewBlend {
     ViewBlend::BAKED.of_shape(gamma)
 }

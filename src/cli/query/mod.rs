@@ -1,4 +1,4 @@
-//! `query`: table and exact values at points from a CSV file.
+//! `query`: appends table and exact values to points from a CSV file.
 
 mod quantities;
 
@@ -41,17 +41,17 @@ struct Io {
     /// CSV file with named columns, `-` for standard input; other columns are passed through.
     #[arg(long, value_name = "CSV")]
     input: PathBuf,
-    /// Tables to ask; the embedded default if absent.
+    /// Tables to read; the embedded default if absent.
     #[arg(long, value_name = "PATH")]
     tables: Option<PathBuf>,
-    /// Whose values to append.
+    /// Source of the appended values.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "table,exact")]
     method: Vec<Method>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Method {
-    /// The run-time crate's, in single precision.
+    /// The sampler's, in single precision.
     Table,
     /// The model's, in double precision.
     Exact,
@@ -66,7 +66,7 @@ pub(super) fn run(args: Args) -> Outcome {
     }
 }
 
-/// Rows that are answered at once, on all cores.
+/// Rows that are computed at once, on all cores.
 const ROWS: usize = 256;
 
 /// Passes the rows of a file through, with the quantity's values appended.
@@ -113,7 +113,7 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
             break;
         }
         let rows: Vec<_> = some.into_par_iter().map(|record| answered(record?)).collect();
-        // In order, and those before one that is refused all the same.
+        // Written in order; the rows before a refused one are still written.
         for row in rows {
             if !write(&mut writer, row?)? {
                 return Ok(Done::Ok);
@@ -134,7 +134,7 @@ fn find_column(header: &csv::StringRecord, name: &str, all: &[&str]) -> Result<u
     header.iter().position(|column| column == name).ok_or_else(|| {
         let have: Vec<&str> = header.iter().collect();
         Failure(format!(
-            "no column `{name}`; needed are {}, the file has {}",
+            "no column `{name}`; the columns are {}, the file has {}",
             all.join(", "),
             have.join(", ")
         ))

@@ -1,4 +1,4 @@
-//! What can be asked of a point, from the tables and from the model.
+//! Quantities at a point, from the tables and from the model.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,7 +14,7 @@ use microfacet_sampler::{Masking, Moments, StudentT, Tables};
 
 use super::Method;
 
-/// Something that can be asked of a point.
+/// A quantity that `query` computes at a point.
 pub(super) trait Quantity: Sync {
     fn inputs(&self) -> &'static [&'static str];
     fn output_stems(&self) -> &'static [&'static str];
@@ -30,15 +30,16 @@ pub(super) trait Quantity: Sync {
     }
 }
 
-/// What is asked: tables, and what the model has prepared for the shapes that were asked for last.
+/// The tables, and the model's integrators for the shapes that were queried last.
 pub(super) struct Known {
     set: Tables,
     integrators: Mutex<HashMap<u64, Arc<model::AlbedoIntegrator>>>,
 }
 
-/// Error aimed at by the exact values.
+/// Error aimed at by the model's albedos.
 const EXACT: f64 = 1e-10;
-/// Shapes that are kept prepared; as many rows as there are of one are then answered twice as fast.
+/// Number of shapes whose integrators are kept; repeated rows of one shape are then computed twice
+/// as fast.
 const SHAPES: usize = 64;
 
 impl Known {
@@ -68,7 +69,7 @@ fn parse(text: &str, name: &str) -> Result<f64, String> {
         "theta" => (0.0, std::f64::consts::FRAC_PI_2 + 1e-6),
         "u1" | "u2" | "cos_theta" => (0.0, 1.0),
         "phi" => (f64::MIN, f64::MAX),
-        // σ and γ are judged, with their own messages, by the constructors.
+        // The constructors check σ and γ, with their own messages.
         _ => return Ok(x),
     };
     if (low..=high).contains(&x) {
@@ -182,7 +183,7 @@ impl Quantity for Normal {
     }
 }
 
-/// The form of masking that a field names.
+/// The form of masking named in a field.
 fn masking(text: &str) -> Result<Masking, String> {
     text.parse().map_err(|why| format!("masking \"{text}\": {why}"))
 }

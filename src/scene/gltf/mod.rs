@@ -9,12 +9,13 @@
 //! - `KHR_materials_clearcoat`: a second, isotropic GGX lobe with `clearcoatRoughnessFactor`
 //!   (default 0) times the green channel of its texture, if `clearcoatFactor` is not 0.
 //! - `KHR_materials_transmission` and `KHR_materials_volume` transmit through the same lobe.
-//! - `KHR_materials_pbrSpecularGlossiness` (archived): r = 1 − glossiness, from the opacity of its texture.
-//! - The reflectance is Schlick's, F0 = ((ior − 1)/(ior + 1))² with `KHR_materials_ior` (default 1.5),
-//!   and the base colour in metals; one Schlick table serves both.
+//! - `KHR_materials_pbrSpecularGlossiness` (archived): r = 1 − glossiness, with the glossiness in
+//!   the opacity channel of its texture.
+//! - The reflectance is Schlick's, F0 = ((ior − 1)/(ior + 1))² with `KHR_materials_ior` (default
+//!   1.5), and the base colour in metals; one Schlick table serves both.
 //! - `KHR_materials_sheen` has a distribution of its own; `KHR_materials_unlit` has no lobe.
-//! - How shadowing and masking correlate is left to the renderer: appendix B and the anisotropy
-//!   extension show one form each.
+//! - The form of G2 is left to the renderer: appendix B and the anisotropy extension show one form
+//!   each.
 //!
 //! [spec]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 
@@ -39,7 +40,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let document: Document = serde_json::from_slice(&json).map_err(|error| {
         let number = |n: usize| u32::try_from(n).ok();
         Place { line: number(error.line()), column: number(error.column()), ..place.clone() }
-            // The place stands before the message already.
+            // The message has the place before it already.
             .syntax(
                 error
                     .to_string()
@@ -62,7 +63,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     Ok(importer.builder.finish())
 }
 
-/// Bytes in a file.
+/// A range of bytes in a file.
 struct Section {
     file: PathBuf,
     start: u64,
@@ -178,7 +179,8 @@ impl Importer<'_> {
             Roughness::anisotropic(along, alpha)
         };
         let ior = extensions.ior.as_ref().map_or(1.5, |extension| extension.ior);
-        // An index of 0 asks for total reflection (KHR_materials_ior); the formula gives 1 there.
+        // An index of 0 asks for total reflection (KHR_materials_ior); the formula gives F0 = 1
+        // there.
         let amplitude = (ior - 1.0) / (ior + 1.0);
         let f0 = amplitude * amplitude;
         if !(ior >= 1.0 || ior == 0.0) {
@@ -293,7 +295,7 @@ impl Importer<'_> {
     }
 }
 
-/// The content of a `data:` URI, which glTF wants in base64.
+/// The content of a `data:` URI, which glTF requires to be in base64.
 fn data_uri(uri: &str) -> io::Result<Vec<u8>> {
     let (_, text) = uri
         .split_once(";base64,")
@@ -301,7 +303,7 @@ fn data_uri(uri: &str) -> io::Result<Vec<u8>> {
     base64::engine::general_purpose::STANDARD.decode(text).map_err(io::Error::other)
 }
 
-/// Undoes percent encoding; what is not valid stays as it is.
+/// Undoes percent encoding; invalid sequences stay as they are.
 fn decode_uri(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

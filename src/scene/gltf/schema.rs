@@ -1,4 +1,4 @@
-//! The parts of the glTF schema that matter here, under the schema's names.
+//! The parts of the glTF schema that are read, under the schema's names.
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;

@@ -1,4 +1,4 @@
-//! Values that come out of MaterialX node graphs, as ranges.
+//! Ranges of the values that MaterialX node graphs compute.
 
 use super::Reader;
 use crate::scene::texture::{Channel, Encoding};
@@ -6,7 +6,7 @@ use crate::scene::xml::Element;
 use crate::scene::{Interval, SceneError};
 
 impl<'a> Reader<'a> {
-    /// What an `<input>` of a node in `scope` may be.
+    /// The range of an `<input>` of a node in `scope`.
     pub(super) fn value(
         &mut self,
         input: &'a Element,
@@ -15,7 +15,7 @@ impl<'a> Reader<'a> {
         self.connected(input, scope, Channel::Red)
     }
 
-    /// As [`Self::value`], of one channel. Every circle of connections passes through an input.
+    /// As [`Self::value`], for one channel. Every cycle of connections passes through an input.
     fn connected(
         &mut self,
         input: &'a Element,
@@ -36,14 +36,15 @@ impl<'a> Reader<'a> {
         scope: &'a Element,
         channel: Channel,
     ) -> Result<Interval, SceneError> {
-        // Documents before 1.39 take channels where they connect; separate nodes have an output each.
+        // Documents before 1.39 select channels at the connection; separate nodes have an output
+        // each.
         let of_node = input.attribute("output").filter(|_| input.attribute("nodename").is_some());
         let taken = input.attribute("channels").or(of_node);
         let channel = taken.and_then(channel_named).unwrap_or(channel);
         let root = self.root;
         if let Some(name) = input.attribute("interfacename") {
             return match scope.child_named(name) {
-                // In the document's own scope an input would be its own outside.
+                // An input in the document's own scope would refer to itself.
                 Some(outer) if !std::ptr::eq(scope, root) => self.connected(outer, root, channel),
                 _ => Err(undefined(input, "interface", name)),
             };
@@ -64,7 +65,7 @@ impl<'a> Reader<'a> {
         number(input, channel).map(Interval::point)
     }
 
-    /// The output of `graph` that `input` takes.
+    /// The output of `graph` that `input` is connected to.
     fn output(
         &mut self,
         input: &'a Element,
@@ -127,7 +128,7 @@ impl<'a> Reader<'a> {
                         let names = node.child_named("channels").and_then(|c| c.attribute("value"));
                         names.and_then(channel_named)
                     }
-                    // Which output was taken is in `channel` already.
+                    // The output is already selected in `channel`.
                     _ => Some(channel),
                 };
                 match (channel, node.child_named("in")) {
@@ -190,7 +191,7 @@ fn undefined(input: &Element, what: &str, name: &str) -> SceneError {
     ))
 }
 
-/// The number in the attribute "value"; of a colour or a vector, that of the channel.
+/// The number in the attribute "value"; for a colour or a vector, that of the channel.
 fn number(input: &Element, channel: Channel) -> Result<f64, SceneError> {
     let text = input.required("value")?;
     let mut parts = text.split(',').map(|part| part.trim().parse::<f64>().ok());
@@ -215,7 +216,7 @@ fn channel_at(index: &str) -> Option<Channel> {
     channels.get(index.parse::<usize>().ok()?).copied()
 }
 
-/// The channel of "r", "x", "outr" or "outx" and the like.
+/// The channel named "r", "x", "outr", "outx" and the like.
 fn channel_named(name: &str) -> Option<Channel> {
     match name.strip_prefix("out").unwrap_or(name) {
         "r" | "x" => Some(Channel::Red),

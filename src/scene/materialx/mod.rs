@@ -3,18 +3,19 @@
 //! Conventions, from the graphs that define the two shading models (`libraries/bxdf` of MaterialX,
 //! the [OpenPBR specification][openpbr]) and the node `roughness_anisotropy` (`libraries/pbrlib`):
 //!
-//! - All lobes are GGX (γ = 2) with α from the roughness r and the anisotropy a, and α in [1e-6, 1]:
+//! - All lobes are GGX (γ = 2) with α from the roughness r and the anisotropy a, limited to [1e-6,
+//!   1]:
 //!   - `standard_surface`: αx = r²/A, αy = r² A, with A = √(1 − min(a, 0.98));
 //!   - `open_pbr_surface`: αx = r² √(2 / (1 + (1 − a)²)), αy = (1 − a) αx.
 //! - The coat, if its weight is not 0, is a lobe of its own. It roughens the base: in
 //!   `standard_surface` to r + (1 − r) `coat` · `coat_affect_roughness` · `coat_roughness`, in
 //!   `open_pbr_surface` to (min(1, r⁴ + 2 `coat_roughness`⁴))^¼, mixed in by the coat's weight.
 //! - `transmission_extra_roughness` gives transmission a lobe of its own.
-//! - Sheen and fuzz have distributions of their own. How shadowing and masking correlate is left open.
-//! - Defaults are those of the definitions' nodes, version 1.0.1 and 1.1.
-//! - A material is used if a `materialassign` names it, or if there are none.
-//! - An image counts as its first channel where it is a float, else as the channel that is taken
-//!   from it; it is decoded from sRGB if it is a colour in the colour space `srgb_texture`.
+//! - Sheen and fuzz have distributions of their own. The form of G2 is left open.
+//! - Defaults are those of the node definitions, version 1.0.1 and 1.1.
+//! - A material is used if a `materialassign` names it, or if the document has none.
+//! - An image is read in its first channel if it is a float, else in the channel that is taken from
+//!   it; it is decoded from sRGB if it is a colour in the colour space `srgb_texture`.
 //!
 //! [openpbr]: https://academysoftwarefoundation.github.io/OpenPBR/
 
@@ -30,7 +31,7 @@ use super::texture::Channel;
 use super::xml::{self, Element};
 use super::{Format, Fresnel, Interval, Place, Roughness, Scene, SceneError};
 
-/// `M_FLOAT_EPS` of the shaders: α is raised to it.
+/// `M_FLOAT_EPS` of the shaders: the lower limit of α.
 const LEAST_ALPHA: f64 = 1e-6;
 
 /// Reads a MaterialX document.
@@ -83,7 +84,7 @@ struct Reader<'a> {
     root: &'a Element,
     folder: PathBuf,
     builder: Builder,
-    /// Ranges of the inputs and outputs that were asked for.
+    /// Ranges of the inputs and outputs that were evaluated.
     ranges: Memo<(*const Element, Channel)>,
 }
 
@@ -103,7 +104,7 @@ impl<'a> Reader<'a> {
                 assigned.extend(element.attribute("material"));
             }
         });
-        // A graph with a definition is how a shading model works, not a use of it.
+        // A graph with a definition implements a shading model and does not use it.
         let graphs = root
             .children
             .iter()
@@ -127,7 +128,7 @@ impl<'a> Reader<'a> {
                         let materials = self.materials(own);
                         let used = assigned.is_empty()
                             || materials.iter().any(|name| assigned.contains(name));
-                        // One material gives the shader its name; several share it.
+                        // A shader of one material takes its name; a shared one keeps its own.
                         let name = if let [material] = materials[..] { material } else { own };
                         self.shader(name, class, &shader, used)?;
                     }
@@ -138,7 +139,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The names of the materials that wear the shader.
+    /// The names of the materials that use the shader.
     fn materials(&self, shader: &str) -> Vec<&'a str> {
         let wears = |material: &Element| {
             let input = material.child_named("surfaceshader");
@@ -275,7 +276,7 @@ impl<'a> Reader<'a> {
         Ok(lobes)
     }
 
-    /// An input from 0 to 1; what lies outside is moved there, as the shaders do.
+    /// An input from 0 to 1; values outside are clamped, as the shaders do.
     fn unit(
         &mut self,
         shader: &Shader<'a>,
@@ -320,7 +321,7 @@ fn lobe(name: Option<&'static str>, roughness: Roughness, fresnel: Option<Fresne
     Lobe { name, roughness, gamma: GGX, fresnel, masking: None }
 }
 
-/// The roughness of r² times factors, least and greatest, along both axes.
+/// The roughness along both axes: r² times a factor from `x` and from `y`, least and greatest.
 fn axes(r: Interval, anisotropy: Interval, x: [f64; 2], y: [f64; 2]) -> Roughness {
     if anisotropy.max == 0.0 {
         return Roughness::isotropic(r.map_rising(|r| r * r));

@@ -1,4 +1,4 @@
-//! What Mitsuba's BSDF plugins ask for.
+//! The lobes of Mitsuba's BSDF plugins.
 
 use super::{Reader, find};
 use crate::scene::builder::{BECKMANN, GGX, Lobe, conductor, dielectric};
@@ -7,9 +7,9 @@ use crate::scene::texture::{Channel, Encoding};
 use crate::scene::xml::Element;
 use crate::scene::{Fresnel, Interval, Masking, Roughness, SceneError};
 
-/// `MicrofacetDistribution::configure` raises α to this.
+/// Lower limit of α, from `MicrofacetDistribution::configure`.
 const LEAST_ALPHA: f64 = 1e-4;
-/// `calc_dist_params` of the principled BSDFs raises α to this.
+/// Lower limit of α for the principled BSDFs, from `calc_dist_params`.
 const LEAST_PRINCIPLED_ALPHA: f64 = 1e-3;
 
 /// Indices of refraction by name (`render/ior.h`; Hecht, Optics, 4th edition, at 589 nm).
@@ -40,7 +40,7 @@ const INDICES: [(&str, f64); 23] = [
 ];
 
 impl<'a> Reader<'a> {
-    /// Adds the lobes of one BSDF, without those of the BSDFs in it.
+    /// Adds the lobes of one BSDF, without those of the BSDFs inside it.
     pub(super) fn bsdf(
         &mut self,
         bsdf: &'a Element,
@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
                 lobe(self, Some("transmission"), transmission, GGX, fresnel);
                 return Ok(());
             }
-            // What they contain is listed by itself.
+            // The BSDFs inside are listed by themselves.
             "twosided" | "mask" | "bumpmap" | "normalmap" | "blendbsdf" => return Ok(()),
             "principledthin" | "diffuse" => "diffuse, without microfacets",
             "hair" => "a fibre model, not a microfacet one",
@@ -139,7 +139,7 @@ impl<'a> Reader<'a> {
         Ok(alpha.map_rising(|alpha| alpha.max(LEAST_ALPHA)))
     }
 
-    /// The roughness of the principled BSDFs, `scale` being that of the thin one's transmission.
+    /// The roughness of the principled BSDFs; `scale` is that of the thin BSDF's transmission.
     fn principled(&mut self, bsdf: &'a Element, scale: Interval) -> Result<Roughness, SceneError> {
         let unit = |value: Interval, name: &str| {
             if value.min >= 0.0 && value.max <= 1.0 {
@@ -199,7 +199,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A number, or what a texture covers.
+    /// A number, or the range of a texture.
     fn value(&mut self, property: &'a Element) -> Result<Interval, SceneError> {
         match &property.tag[..] {
             "float" | "integer" | "spectrum" => number(property).map(Interval::point),
@@ -208,7 +208,7 @@ impl<'a> Reader<'a> {
                 None => Err(property.place.invalid("an rgb value is three numbers")),
             },
             "ref" => match self.referred(property)? {
-                // A reference has no id of its own, so this is none.
+                // A reference has no id of its own, so the element found is no reference.
                 Some(texture) => self.value(texture),
                 None => {
                     let id = property.attribute("id").unwrap_or_default();
@@ -259,7 +259,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The Fresnel term of the BSDFs that are one interface.
+/// The Fresnel term of the BSDFs of a single interface.
 fn fresnel(bsdf: &Element, class: &str) -> Result<Option<Fresnel>, SceneError> {
     if class.ends_with("conductor") {
         let material = bsdf.child_named("material").and_then(|m| m.attribute("value"));
@@ -277,7 +277,7 @@ fn fresnel(bsdf: &Element, class: &str) -> Result<Option<Fresnel>, SceneError> {
     dielectric(eta, &bsdf.place).map(Some)
 }
 
-/// The Fresnel term of an index of refraction, unless a texture varies it.
+/// The Fresnel term of an index of refraction, or `None` if a texture varies it.
 fn constant_dielectric(eta: Interval, bsdf: &Element) -> Result<Option<Fresnel>, SceneError> {
     eta.is_point().then(|| dielectric(eta.min, &bsdf.place)).transpose()
 }

@@ -6,15 +6,15 @@
 //! - `roughconductor`, `roughdielectric`, `roughplastic` and `pplastic` take `alpha` (default 0.1)
 //!   or `alpha_u` and `alpha_v`, as written and at least 1e-4. `distribution` is `beckmann` by
 //!   default (γ = ∞), or `ggx` (γ = 2); σ = α in both.
-//! - `principled` takes `roughness` r (default 0.5) and `anisotropic` a (default 0): with
-//!   A = √(1 − 0.9 a) its GGX lobe has αx = r²/A and αy = r² A, each at least 1e-3. Its clearcoat is
-//!   GTR1, which has heavier tails than any Student-t distribution (γ = 1) and is listed as ignored.
-//! - `principledthin` has the same reflection lobe, and one for transmission with
-//!   r (0.65 η − 0.35) in the place of r; both only if `spec_trans` is not 0.
+//! - `principled` takes `roughness` r (default 0.5) and `anisotropic` a (default 0): with A = √(1 −
+//!   0.9 a) its GGX lobe has αx = r²/A and αy = r² A, each at least 1e-3. Its clearcoat is GTR1,
+//!   which has heavier tails than any Student-t distribution (γ = 1) and is listed as ignored.
+//! - `principledthin` has the same reflection lobe, and one for transmission with r (0.65 η − 0.35)
+//!   instead of r; both only if `spec_trans` is not 0.
 //! - `conductor`, `dielectric`, `thindielectric` and `plastic` are smooth.
 //! - G2 is uncorrelated (`MicrofacetDistribution::G`).
-//! - `twosided`, `mask`, `bumpmap`, `normalmap` and `blendbsdf` pass on to what they contain.
-//! - A `bitmap` texture is decoded from sRGB unless it is `raw`; its luminance counts.
+//! - `twosided`, `mask`, `bumpmap`, `normalmap` and `blendbsdf` stand for the BSDFs inside them.
+//! - A `bitmap` texture is decoded from sRGB unless it is `raw`; its luminance is used.
 //! - `$name` in an attribute stands for the value that `<default>` gives it.
 //!
 //! [bsdfs]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
@@ -61,12 +61,12 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     Ok(reader.builder.finish())
 }
 
-/// Replaces `<include>` by what it includes, and `$name` by its value.
+/// Replaces each `<include>` by its content, and `$name` by its value.
 struct Expansion<'a> {
     builder: &'a mut Builder,
     includes: Includes,
     defaults: Vec<(String, String)>,
-    /// Where files are looked for: the scene's own folder, then those of `<path>`.
+    /// Folders in which files are looked up: the scene's own, then those of `<path>`.
     folders: Vec<PathBuf>,
     incomplete: bool,
 }
@@ -160,7 +160,7 @@ fn ids(root: &Element) -> HashMap<&str, &Element> {
     ids
 }
 
-/// Elements told apart by where they are in memory.
+/// Elements, distinguished by their address.
 type Set = HashSet<*const Element>;
 
 struct Reader<'a> {
@@ -168,12 +168,12 @@ struct Reader<'a> {
     builder: Builder,
     folders: Vec<PathBuf>,
     incomplete: bool,
-    /// Ranges of the textures that were asked for.
+    /// Ranges of the textures that were evaluated.
     ranges: Memo<*const Element>,
 }
 
 impl<'a> Reader<'a> {
-    /// The BSDFs that shapes wear, themselves or inside others; `None` if that cannot be known.
+    /// The BSDFs that shapes use, themselves or inside others; `None` if that cannot be known.
     fn used(&self, root: &'a Element) -> Result<Option<Set>, SceneError> {
         let mut shapes = Vec::new();
         root.walk(&mut |element| {

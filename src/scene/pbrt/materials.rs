@@ -1,4 +1,4 @@
-//! What pbrt's materials and float textures ask for.
+//! The lobes of pbrt's materials, and the ranges of its float textures.
 
 use super::Reader;
 use super::syntax::Parameter;
@@ -7,10 +7,11 @@ use crate::scene::error::did_you_mean;
 use crate::scene::texture::{Channel, Encoding};
 use crate::scene::{Fresnel, Interval, Masking, Place, Roughness, SceneError};
 
-/// When no α reaches this, pbrt treats the surface as smooth
+/// If no α reaches this, pbrt treats the surface as smooth
 /// (`TrowbridgeReitzDistribution::EffectivelySmooth`).
 const SMOOTH: f64 = 1e-3;
-/// The least α along one axis of a surface that is rough along the other (same class, constructor).
+/// Lower limit of α along one axis of a surface that is rough along the other (constructor of the
+/// same class).
 const LEAST: f64 = 1e-4;
 /// A material or a float texture: a class with parameters.
 #[derive(Clone, Debug)]
@@ -230,7 +231,7 @@ impl Reader {
     }
 }
 
-/// The Fresnel term, where it is a number (or a colour) rather than a spectrum or a texture.
+/// The Fresnel term if it is given by a number or a colour, rather than a spectrum or a texture.
 fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, SceneError> {
     let parameter = |name: &str| material.parameter(&format!("{prefix}{name}"));
     if material.class == "conductor" || prefix == "conductor." {
@@ -240,7 +241,7 @@ fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, Scene
         };
         return conductor(eta, k, &material.place).map(Some);
     }
-    // The defaults of materials.cpp.
+    // The defaults in materials.cpp.
     let default = if material.class == "subsurface" { 1.33 } else { 1.5 };
     match parameter("eta") {
         None => Ok(Some(Fresnel::Dielectric(default))),

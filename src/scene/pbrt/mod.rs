@@ -3,20 +3,21 @@
 //! Conventions, from the [file format's description][format] and pbrt's sources
 //! (`materials.cpp`, `materials.h`, `util/scattering.h`, `textures.cpp`):
 //!
-//! - `conductor`, `dielectric`, `coateddiffuse` and `subsurface` take `uroughness` and `vroughness`,
-//!   each of which defaults to `roughness`, which defaults to 0. `coatedconductor` takes
-//!   `interface.` and `conductor.` before these names, and has two rough interfaces.
+//! - `conductor`, `dielectric`, `coateddiffuse` and `subsurface` take `uroughness` and
+//!   `vroughness`, each of which defaults to `roughness`, which defaults to 0. `coatedconductor`
+//!   takes `interface.` and `conductor.` before these names, and has two rough interfaces.
 //!   `thindielectric` is smooth.
-//! - α = √roughness unless `remaproughness` is false. The distribution is Trowbridge-Reitz's: γ = 2,
+//! - α = √roughness unless `remaproughness` is false. The distribution is Trowbridge-Reitz: γ = 2,
 //!   σ = α. When both α are below 1e-3 the surface is smooth, else both are at least 1e-4.
 //! - G2 is height-correlated.
 //! - `mix` uses two named materials; `Attribute "material"` gives defaults to the ones that follow.
-//! - A float image texture is the first channel, decoded from sRGB if its samples are integers and
-//!   `encoding` is not "linear", times `scale`, and `invert` makes it 1 minus that.
-//! - Included files are looked for beside the scene's own file. `Import` is an `Include` whose
-//!   graphics state is forgotten.
+//! - A float image texture is read in its first channel, decoded from sRGB if its samples are
+//!   integers and `encoding` is not "linear", and multiplied by `scale`; `invert` makes it 1 minus
+//!   that.
+//! - Included files are looked up beside the scene's own file. `Import` is an `Include` that leaves
+//!   the graphics state unchanged.
 //!
-//! The file is read as a stream. Whatever belongs to shapes is passed over without being stored.
+//! The file is read as a stream. Everything that belongs to shapes is skipped without being stored.
 //!
 //! [format]: https://pbrt.org/fileformat-v4
 
@@ -40,7 +41,7 @@ use super::include::Includes;
 use super::memo::Memo;
 use super::{Format, Place, Scene, SceneError};
 
-/// All directives but those that [`Reader::statement`] follows.
+/// All directives except those that [`Reader::statement`] handles.
 const PASSED_OVER: [&str; 29] = [
     "Accelerator",
     "ActiveTransform",
@@ -111,7 +112,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     reader.finish()
 }
 
-/// The part of pbrt's graphics state that decides which material a shape wears.
+/// The part of pbrt's graphics state that decides which material a shape uses.
 #[derive(Clone, Default)]
 struct State {
     /// Index in `slots`.
@@ -129,7 +130,7 @@ struct Slot {
 }
 
 struct Reader {
-    /// Where relative names of files start.
+    /// The folder that relative file names start from.
     folder: PathBuf,
     builder: Builder,
     includes: Includes,
@@ -143,10 +144,10 @@ struct Reader {
     defined: Vec<usize>,
     /// Float textures by name.
     textures: HashMap<String, Definition>,
-    /// Ranges of the textures that were asked for.
+    /// Ranges of the textures that were evaluated.
     ranges: Memo<String>,
     shapes: bool,
-    /// An included file is missing.
+    /// Whether an included file is missing.
     incomplete: bool,
 }
 
@@ -246,7 +247,7 @@ impl Reader {
             "NamedMaterial" => {
                 let name = quoted(tokens, "the name of a material")?;
                 self.state.material = Some(self.named(&name, &place));
-                // A parameter list is grammatical, and without meaning.
+                // A parameter list is allowed by the grammar here, and has no meaning.
                 parameters(tokens).map(drop)
             }
             "Texture" => {
@@ -261,7 +262,7 @@ impl Reader {
                 Ok(())
             }
             "ActiveTransform" => {
-                // Its argument is a word, not a text.
+                // Its argument is a word, without quotes.
                 tokens.next()?;
                 Ok(())
             }
@@ -295,7 +296,7 @@ impl Reader {
     }
 
     fn with_attributes(&self, mut parameters: Vec<Parameter>) -> Vec<Parameter> {
-        // The first of a name counts, so that a material's own parameter precedes the default.
+        // The first parameter of a name counts: a material's own comes before the default.
         parameters.extend(self.state.attributes.iter().cloned());
         parameters
     }
@@ -368,7 +369,7 @@ impl Reader {
         place.invalid(format!("material \"{name}\" is not defined{}", did_you_mean(name, &names)))
     }
 
-    /// Marks what used mixtures consist of as used.
+    /// Marks the parts of used mixtures as used.
     fn use_parts_of_mixtures(&mut self) -> Result<(), SceneError> {
         let is_mixture = |slot: &Slot| slot.definition.as_ref().is_some_and(|d| d.class == "mix");
         let mut pending: Vec<usize> =
@@ -390,7 +391,7 @@ impl Reader {
                 let Some(&part) = self.names.get(&name) else {
                     continue;
                 };
-                // Marking before descending ends a mixture that contains itself.
+                // Marking before descending ends the recursion of a mixture that contains itself.
                 if !std::mem::replace(&mut self.slots[part].used, true)
                     && is_mixture(&self.slots[part])
                 {
@@ -412,13 +413,13 @@ impl Reader {
     }
 }
 
-/// The name of a place in the scene's folder, short enough for a material's name.
+/// A place relative to the scene's folder, short enough for a material's name.
 fn within(folder: &Path, place: &Place) -> String {
     let file = place.file.strip_prefix(folder).unwrap_or(&place.file);
     format!("{}:{}", file.display(), place.line.unwrap_or_default())
 }
 
-/// The types that say that a surface is only the border of a medium.
+/// Whether a type says that a surface is only the boundary of a medium.
 fn is_no_material(class: &str) -> bool {
     matches!(class, "" | "none" | "interface")
 }

@@ -5,7 +5,7 @@ use std::io::Read;
 use super::token::{Token, Tokens};
 use crate::scene::{Place, SceneError};
 
-/// Longer parameter lists are spectra or geometry; none that matters here is.
+/// Longer parameter lists are spectra or geometry, none of which is read.
 const MAX_VALUES: usize = 16;
 
 /// A parameter: `"type name" value` or `"type name" [ values ]`.
@@ -79,7 +79,7 @@ fn values<R: Read>(tokens: &mut Tokens<R>, name: &str) -> Result<Vec<String>, Sc
     Ok(values)
 }
 
-/// Passes over everything up to the next directive.
+/// Skips everything up to the next directive.
 pub(super) fn skip_arguments<R: Read>(tokens: &mut Tokens<R>) -> Result<(), SceneError> {
     while let Some(token) = tokens.next()? {
         match token {

@@ -1,4 +1,4 @@
-//! The words of a pbrt file, read as a stream: memory is bounded by the longest word.
+//! Tokens of a pbrt file, read as a stream: memory is bounded by the longest word.
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use crate::scene::{Place, SceneError};
 
-/// A longer word than this is no pbrt file; it bounds memory where a file has no spaces.
+/// A longer word is not from a pbrt file; the limit bounds memory where a file has no spaces.
 const MAX_WORD: usize = 1 << 12;
 
-/// What a token is; its text is in [`Tokens::text`].
+/// The kind of a token; its text is in [`Tokens::text`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Token {
     /// A directive, a number, `true` or `false`.
@@ -27,19 +27,19 @@ pub(super) struct Tokens<R> {
     input: BufReader<R>,
     file: Arc<Path>,
     line: u64,
-    /// Bytes of the current line that were taken.
+    /// Bytes of the current line that were consumed.
     column: u64,
     text: String,
-    /// Where the last token began.
+    /// Line and column at which the last token began.
     start: (u64, u64),
-    /// The last token is to be given again.
+    /// The last token, if it is to be returned again.
     again: Option<Token>,
 }
 
 impl<R: Read> Tokens<R> {
     pub(super) fn new(input: R, file: &Path) -> Self {
         Self {
-            // Large enough that the cost of a refill vanishes beside the scan.
+            // Large enough that the cost of a refill vanishes beside that of the scan.
             input: BufReader::with_capacity(1 << 18, input),
             file: file.into(),
             line: 1,
@@ -64,7 +64,7 @@ impl<R: Read> Tokens<R> {
         }
     }
 
-    /// Gives the last token again.
+    /// Makes [`Self::next`] return the last token again.
     pub(super) fn push_back(&mut self, token: Token) {
         self.again = Some(token);
     }
@@ -92,7 +92,7 @@ impl<R: Read> Tokens<R> {
         }
     }
 
-    /// Passes over a list whose opening bracket was the last token, without storing it.
+    /// Skips a list whose opening bracket was the last token, without storing it.
     ///
     /// Almost all bytes of a large scene are numbers in such lists.
     pub(super) fn skip_list(&mut self) -> Result<(), SceneError> {
@@ -185,7 +185,7 @@ impl<R: Read> Tokens<R> {
         Ok(Token::Word)
     }
 
-    /// The last token's memory, to be used again.
+    /// The last token's buffer, emptied for reuse.
     fn cleared(&mut self) -> Vec<u8> {
         let mut bytes = std::mem::take(&mut self.text).into_bytes();
         bytes.clear();
@@ -203,7 +203,7 @@ impl<R: Read> Tokens<R> {
         Ok(fill(&mut self.input, &self.file)?.first().copied())
     }
 
-    /// Takes the byte that [`Self::peek`] saw.
+    /// Consumes the byte that [`Self::peek`] saw.
     fn take(&mut self) {
         if self.input.buffer().first() == Some(&b'\n') {
             self.line += 1;
@@ -220,7 +220,7 @@ fn text(bytes: Vec<u8>) -> String {
         .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
 }
 
-/// The bytes that wait, read anew if none do; empty at the end.
+/// The buffered bytes, read anew if there are none; empty at the end.
 fn fill<'a>(input: &'a mut BufReader<impl Read>, file: &Path) -> Result<&'a [u8], SceneError> {
     input.fill_buf().map_err(|error| Place::file(file).io(error))
 }

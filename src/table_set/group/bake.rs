@@ -1,4 +1,4 @@
-//! A group's tables: read from the cache, or baked, certified and kept.
+//! The tables of a group: read from the cache, or baked, certified and kept.
 
 use std::time::Instant;
 
@@ -17,7 +17,7 @@ use crate::validate::certificate::{POINTS, measure};
 use crate::validate::radial;
 
 impl TableGroup<'_> {
-    /// What the tables are kept under; all that decides over their values.
+    /// The cache key of the tables: everything that their values depend on.
     fn key(&self, level: Level, precision: Precision) -> String {
         match self {
             Self::Normals(need, _) => {
@@ -25,7 +25,7 @@ impl TableGroup<'_> {
                 let specs: Vec<_> = self.specs(level).into_iter().map(at).collect();
                 format!("{specs:?}, {POINTS} points at s in {:?}", need.certified_s())
             }
-            // Its values, too: two measured files may have the same name.
+            // Its values are part of the key, since two measured files may have the same name.
             Self::Distribution(distribution, _) => {
                 format!("{distribution:?}, {}, {level:?}, {precision:?}", distribution.label())
             }
@@ -33,7 +33,7 @@ impl TableGroup<'_> {
         }
     }
 
-    /// The certified tables of a level, kept or new, in each of some precisions.
+    /// The certified tables of a level in several precisions, from the cache or newly baked.
     pub(in crate::table_set) fn bake(
         &self,
         level: Level,
@@ -65,7 +65,7 @@ impl TableGroup<'_> {
         Ok(sets)
     }
 
-    /// New tables are kept.
+    /// Keeps new tables in the cache.
     fn finish(&self, keys: &[String], sets: Vec<Vec<Table>>, job: &mut Job) -> Vec<Vec<Table>> {
         for (key, tables) in keys.iter().zip(&sets) {
             job.made(tables);
@@ -75,7 +75,7 @@ impl TableGroup<'_> {
         sets
     }
 
-    /// Tables of visible normals, one by one, so that a bake that is interrupted can go on.
+    /// Tables of visible normals, baked one by one so that an interrupted bake can be resumed.
     fn normals(
         &self,
         (need, parts): (&RequiredShapes, Parts),
@@ -87,13 +87,13 @@ impl TableGroup<'_> {
         let mut waiting = Vec::new();
         let mut full = Vec::new();
         for spec in self.specs(level) {
-            // Kept in full precision, which storing does not change.
+            // Kept in full precision: storing does not change the values.
             let key = format!("{spec:?}");
             let table = job.get(&key).and_then(|mut tables| tables.pop());
             let table = table.unwrap_or_else(|| {
                 let table = bake::bake(&spec);
                 job.made([&table]);
-                // A slice is baked again as fast as it is read.
+                // A slice is baked as fast as it is read.
                 if !need.gamma().is_point() {
                     job.keep(&key, std::slice::from_ref(&table));
                 }
@@ -127,7 +127,7 @@ impl TableGroup<'_> {
     }
 }
 
-/// The certified tables of one distribution outside the family, in each of some precisions.
+/// The certified tables of one distribution outside the family, in several precisions.
 fn radial_tables(
     distribution: &Distribution,
     entry: &MaterialEntry,

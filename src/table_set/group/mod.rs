@@ -1,5 +1,4 @@
-//! The tables that are refined together: the group in which they are chosen, baked, measured and
-//! kept.
+//! Table groups: tables that are chosen, baked, measured and kept together.
 
 mod bake;
 
@@ -14,13 +13,13 @@ use crate::plan::{
 };
 use crate::table_spec::{Level, Quality, TableSpec, general_set};
 
-/// What the tables are of.
+/// A group of tables, by what they hold.
 pub(super) enum TableGroup<'a> {
-    /// Visible normals and masking of a need.
+    /// Visible normals and masking of some required shapes.
     Normals(&'a RequiredShapes, Parts),
     /// A distribution outside the family, and a material that has it.
     Distribution(&'a Distribution, MaterialEntry),
-    /// Albedos.
+    /// A required albedo.
     Albedo(&'a RequiredAlbedo),
 }
 
@@ -30,14 +29,14 @@ pub(super) enum Parts {
     All,
     Shadowing,
     Slope,
-    /// The shares of light that slopes are peeled by come from the masking: both together.
+    /// The shares of light that the peeled slopes use come from the masking: both go together.
     Peeled,
     Across,
 }
 
 impl Parts {
-    /// Those that can be refined apart from each other: what each is measured by does not depend on
-    /// the others.
+    /// Parts that can be refined apart from each other: the error of each does not depend on the
+    /// others.
     const APART: [Self; 4] = [Self::Shadowing, Self::Peeled, Self::Slope, Self::Across];
 
     /// Indices into the general set.
@@ -51,8 +50,8 @@ impl Parts {
         }
     }
 
-    /// Those that a material needs beside them to be bound; no others, or the seam between two
-    /// tables would be measured on the other one.
+    /// The other tables that are required to make a material from these; no more, or the error at
+    /// the seam between two tables would be that of the other one.
     fn beside(self) -> &'static [usize] {
         match self {
             Self::All => &[],
@@ -71,7 +70,7 @@ impl<'a> TableGroup<'a> {
         Ok(normals.chain(Self::others(plan)?).collect())
     }
 
-    /// As many groups of a plan as there can be.
+    /// The largest number of groups that a plan can be split into.
     pub(super) fn apart(plan: &'a Plan) -> Result<Vec<Self>, BakeError> {
         let parts = |need| Parts::APART.map(|parts| Self::Normals(need, parts));
         let normals = plan.shapes.iter().flat_map(parts);
@@ -91,7 +90,7 @@ impl<'a> TableGroup<'a> {
         plan.distributions.iter().map(of).chain(albedos).collect()
     }
 
-    /// What messages call it.
+    /// The group's name in messages.
     pub(super) fn name(&self) -> String {
         match self {
             Self::Normals(..) => {
@@ -104,8 +103,8 @@ impl<'a> TableGroup<'a> {
         }
     }
 
-    /// Levels that there are to choose from: as coarse as is worth storing at all, and as fine as
-    /// single precision resolves, or as time allows.
+    /// Levels to choose from: from the coarsest that is worth storing to the finest that single
+    /// precision resolves, or that time allows.
     pub(super) fn levels(&self) -> std::ops::RangeInclusive<i32> {
         match self {
             Self::Normals(..) => -5 * Level::STEP..=3 * Level::STEP,
@@ -113,9 +112,9 @@ impl<'a> TableGroup<'a> {
         }
     }
 
-    /// The error to expect, before anything is measured: of the general set in the three qualities,
-    /// as `microfacet-bake bake --out out --quality Q --precision P` prints it, and what fixed
-    /// point adds.
+    /// The error expected before anything is measured: that of the general set in the three
+    /// qualities, as `microfacet-bake bake --out out --quality Q --precision P` prints it, and what
+    /// fixed point adds.
     pub(super) fn expected(&self, level: Level, precision: Precision) -> f64 {
         let [single, fixed] = match self {
             Self::Normals(_, Parts::Shadowing) => [[7.5e-6, 4.0e-6, 1.4e-6], [2.5e-6; 3]],
@@ -127,21 +126,21 @@ impl<'a> TableGroup<'a> {
         level.between(single) + if precision == Precision::F32 { 0.0 } else { level.between(fixed) }
     }
 
-    /// Whether all precisions are measured at once: where the exact values that they are compared
-    /// with are dear, and of single shapes, whose rounding differs much from that of the general
+    /// Whether all precisions are measured at once: where the exact values to compare with are
+    /// expensive, and for single shapes, whose rounding error differs much from that of the general
     /// set.
     pub(super) fn shares_measuring(&self) -> bool {
         !matches!(self, Self::Normals(need, _) if !need.gamma().is_point())
     }
 
-    /// Specifications of the tables of visible normals; none of other groups.
+    /// Specifications of the tables of visible normals; empty for other groups.
     fn specs(&self, level: Level) -> Vec<TableSpec> {
         let Self::Normals(need, parts) = self else { return Vec::new() };
         let general = general_set(level, Precision::F32);
         parts.indices().iter().filter_map(|&i| need.cut(&general[i])).collect()
     }
 
-    /// What a level is estimated to cost.
+    /// The estimated cost of a level.
     pub(super) fn cost(&self, level: Level, precision: Precision) -> Cost {
         match self {
             Self::Normals(..) => {
@@ -151,14 +150,14 @@ impl<'a> TableGroup<'a> {
             Self::Distribution(distribution, _) => {
                 distribution_cost(distribution, level, precision)
             }
-            // What is no specification is no table either; baking says why.
+            // An invalid specification costs nothing here; the bake reports what is wrong with it.
             Self::Albedo(need) => need
                 .spec(level, precision)
                 .map_or(Cost { bytes: 0, seconds: 0.0 }, |spec| albedo_cost(&spec)),
         }
     }
 
-    /// Seconds that a level is estimated to take.
+    /// The estimated seconds of a level.
     pub(super) fn seconds(&self, level: Level) -> f64 {
         match self {
             Self::Normals(..) => seconds(&self.specs(level)),
@@ -166,7 +165,7 @@ impl<'a> TableGroup<'a> {
         }
     }
 
-    /// Bytes of the values alone; those of an albedo that is refined become more.
+    /// Bytes of the values alone; refinement of an albedo adds to them.
     pub(super) fn bytes(&self, level: Level, precision: Precision) -> usize {
         match self {
             Self::Normals(..) => {
@@ -178,7 +177,7 @@ impl<'a> TableGroup<'a> {
         }
     }
 
-    /// Values that are held in memory while it is baked.
+    /// Number of values held in memory during the bake.
     pub(super) fn values(&self, level: Level) -> u128 {
         match self {
             Self::Normals(..) => self.specs(level).iter().map(TableSpec::values).sum(),
@@ -189,10 +188,10 @@ impl<'a> TableGroup<'a> {
         }
     }
 
-    /// Steps of its progress.
+    /// Number of its steps of progress.
     pub(super) fn steps(&self) -> usize {
         match self {
-            // Each table, and the certificate.
+            // One step for each table, and one for the certificate.
             Self::Normals(need, parts) => {
                 let general = general_set(Quality::Draft, Precision::F32);
                 parts.indices().iter().filter(|&&i| need.cut(&general[i]).is_some()).count() + 1

@@ -1,4 +1,4 @@
-//! The rules. Each is named by the function and what must not happen to it.
+//! The rules, each named by a function and what must not happen to its result.
 
 use glam::{DVec3, Vec3};
 
@@ -13,9 +13,9 @@ use crate::table_spec::GAMMA_WHOLE;
 
 /// Four ulp of a unit vector's components.
 pub(super) const ULP4: f64 = 4.0 * f32::EPSILON as f64;
-/// One view in this many is also put to the model's inverse CDFs, which cost a hundred lookups.
+/// One view in this many also tests the model's inverse CDFs, which cost a hundred lookups.
 const MODEL_EVERY: usize = 8;
-/// One view in this many is also put to what is built on the plain functions.
+/// One view in this many also tests batches, bounded normals, ellipsoids and albedo.
 const DERIVED_EVERY: usize = 4;
 /// The tilt towards the viewer in unit space.
 struct Tilt {
@@ -23,7 +23,7 @@ struct Tilt {
     slope: f64,
     /// tan(α/2) ∈ [−1, 1].
     half_tangent: f64,
-    /// What four ulp of m make of it: much, where m is tilted across more than along.
+    /// The error of the half tangent from four ulp of m: large where m is tilted mostly across.
     rounding: f64,
 }
 
@@ -34,7 +34,8 @@ pub(super) struct Checker<'a> {
     report: &'a mut Report,
 }
 
-/// Judges a material at `views`, each a list of points that differ in `u` only, `u[0]` ascending; GGX by its closed forms too.
+/// Tests a material at `views`, each a list of points that differ in `u` only, `u[0]` ascending;
+/// GGX also by its closed forms.
 pub(super) fn check(
     tables: &Tables,
     sigma: [f32; 2],
@@ -48,10 +49,10 @@ pub(super) fn check(
     let tabulated = tables.student_t(sigma, gamma)?.into();
     let mut checker = Checker::new(tabulated, sigma, gamma, gamma >= GAMMA_WHOLE, report)?;
     checker.views(&views);
-    // Any matrix will do: each is replaced.
+    // Any matrix will do, since each is replaced.
     let lobe = tables.ellipsoid(Skew::new([1.0, 1.0], [0.0; 3])?, gamma)?;
     let forms = Masking::ALL;
-    // Roughness outside the table, or a set without albedo, has none to checker.
+    // A roughness outside the table, or a set without albedo, has none to check.
     let albedos: Vec<_> =
         forms.iter().filter_map(|form| tables.albedo(sigma[0].into(), gamma, *form).ok()).collect();
     for points in views.iter().step_by(DERIVED_EVERY) {
@@ -99,7 +100,7 @@ impl<'a> Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// Notes a broken rule; `value` is the offending number.
+    /// Records a broken rule; `value` is the offending number.
     pub(super) fn require(&mut self, holds: bool, rule: &'static str, value: f64, at: &Point) {
         if !holds {
             let violation = self.report.region(at).violations.entry(rule).or_default();
@@ -108,7 +109,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Functions of directions alone.
+    /// Tests functions of directions alone.
     fn view(&mut self, at: &Point) {
         let v = at.view();
         let g1 = f64::from(self.lobe.g1(v));
@@ -140,7 +141,7 @@ impl Checker<'_> {
         );
         self.report.region(at).errors[0].see((g1 - truth).abs(), at);
 
-        // A little further from the normal, as far again from the horizon, and half way to it.
+        // A little further from the normal, one per cent further, and half as far again.
         for factor in [1.0 + 1e-6, 1.01, 1.5] {
             let further =
                 self.lobe.g1(direction((at.theta * factor).min(std::f64::consts::PI), at.phi));
@@ -161,7 +162,8 @@ impl Checker<'_> {
         }
     }
 
-    /// A sampled normal and the densities at it. `last` is the tilt at the number before.
+    /// Tests a sampled normal and the densities at it. `last` is the tilt at the random number
+    /// before.
     fn normal(&mut self, at: &Point, last: &mut f64) {
         self.report.region(at).points += 1;
         let v = at.view();
@@ -197,7 +199,7 @@ impl Checker<'_> {
                 want,
                 at,
             );
-            // Elsewhere f32 cannot hold it; and v·m itself is rounding at the silhouette.
+            // Elsewhere f32 cannot hold it; and v·m at the silhouette is nothing but rounding.
             if (1e-30..1e30).contains(&want) && (i == 0 || facing > 1e-3) {
                 self.report.region(at).errors[1 + i].see((f64::from(got) / want - 1.0).abs(), at);
             }
@@ -215,13 +217,13 @@ impl Checker<'_> {
         self.require(m.z > 0.0, "sampled normal not above the horizon", m.z.into(), at);
     }
 
-    /// What m says about the tilt that was drawn.
+    /// The tilt that was drawn, recovered from m.
     fn tilt(&self, v: Vec3, m: Vec3) -> Tilt {
         let [sx, sy] = self.sigma().map(|sigma| sigma as f32);
         let rho = ((sx * v.x) * (sx * v.x) + (sy * v.y) * (sy * v.y)).sqrt();
         let [sx, sy] = [sx, sy].map(f64::from);
         let (v, m) = (v.as_dvec3(), m.as_dvec3());
-        // The sampler takes such views as the normal, whose azimuth is free.
+        // The sampler treats such views as the normal, whose azimuth is arbitrary.
         let (vx, vy) = if rho < 1e-18 { (1.0, 0.0) } else { (sx * v.x, sy * v.y) };
         let rho = vx.hypot(vy);
         let (x, y) = (m.x / sx, m.y / sy);
@@ -234,7 +236,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The model's own sampler, and how far the table's normal is from its.
+    /// Tests the model's own sampler, and the distance of the table's normal from the model's.
     fn model_normal(&mut self, at: &Point) {
         let v = at.view();
         let m = self.exact.sample_visible_normal(v.as_dvec3(), at.u.map(f64::from));
@@ -258,7 +260,7 @@ impl Checker<'_> {
         self.cdf_error(at);
     }
 
-    /// The share of visible normals tilted less than the one drawn, against u₁.
+    /// Difference between u₁ and the share of visible normals tilted less than the one drawn.
     fn cdf_error(&mut self, at: &Point) {
         let v = at.view();
         let tilt = self.tilt(v, self.lobe.sample_visible_normal(v, at.u));

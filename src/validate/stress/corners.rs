@@ -1,4 +1,5 @@
-//! Where functions break: ends of every axis, one ulp to either side, powers of ten, subnormals, cell borders.
+//! Values at which functions are likely to fail: ends of every axis, one ulp to either side, powers
+//! of ten, subnormals, cell borders.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -11,7 +12,7 @@ use microfacet_sampler::Tables;
 use super::Point;
 use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE};
 
-/// Roughnesses, both ends of what can be bound among them.
+/// Roughnesses, among them both ends of the allowed range.
 const SIGMAS: [[f32; 2]; 16] = [
     [1e-8, 1e-8],
     [1e-6, 1e-6],
@@ -31,7 +32,7 @@ const SIGMAS: [[f32; 2]; 16] = [
     [3.0, 0.01],
 ];
 
-/// Every material at a corner that the tables cover.
+/// Every material at a corner of the tables' domain.
 pub(super) fn corner_materials(tables: &Tables) -> Vec<([f32; 2], f64)> {
     let joints = [GAMMA_MIN, 1.6, GAMMA_WHOLE, 2.0, 4.0];
     let around = joints.into_iter().flat_map(|gamma| [gamma.next_down(), gamma, gamma.next_up()]);
@@ -50,7 +51,7 @@ fn corner_thetas() -> Vec<f64> {
     for exponent in [-38, -30, -20, -19, -18, -17, -15, -12, -10, -8, -7, -6, -5, -4, -3, -2] {
         let small = 10.0_f64.powi(exponent);
         thetas.push(small);
-        // The horizon from above, and from below as far as a rounded π/2 may lie.
+        // The horizon from above, and from below by at most the error of a rounded π/2.
         thetas.push(FRAC_PI_2 - small);
         if exponent <= -6 {
             thetas.push(FRAC_PI_2 + small);
@@ -61,7 +62,8 @@ fn corner_thetas() -> Vec<f64> {
     thetas
 }
 
-/// Numbers in [0, 1] where a lookup changes cells (17 and 33 nodes, t = (2 min(u, 1−u))^¼), halves or exponents.
+/// Numbers in [0, 1] where a lookup changes cells (17 and 33 nodes, t = (2 min(u, 1−u))^¼), halves
+/// or exponents.
 fn corner_numbers() -> Vec<f32> {
     let mut u = vec![0.0, 1.0, 0.5, 1e-45, f32::MIN_POSITIVE, 0.25, 0.1, 0.9];
     u.extend([1e-30, 1e-20, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3]);
@@ -79,9 +81,10 @@ fn corner_numbers() -> Vec<f32> {
     u
 }
 
-/// Corner views of a material, each with some of the corner pairs of random numbers; which ones rotates with `turn`.
+/// Corner views of a material, each with some of the corner pairs of random numbers; `turn` rotates
+/// which.
 ///
-/// Along a view `u[0]` ascends, which is what the check of monotonicity expects.
+/// At each view `u[0]` ascends, as the check of monotonicity requires.
 pub(super) fn corner_points(sigma: [f32; 2], gamma: f64, turn: usize) -> Vec<Vec<Point>> {
     let (thetas, numbers) = (corner_thetas(), corner_numbers());
     let azimuths = [0.0, FRAC_PI_2, PI / 4.0, -2.0, 1e-10];
@@ -97,7 +100,7 @@ pub(super) fn corner_points(sigma: [f32; 2], gamma: f64, turn: usize) -> Vec<Vec
         .collect()
 }
 
-/// The random numbers of the `i`th random material.
+/// The random number generator of the `i`th random material.
 pub(super) fn numbers(seed: u64, i: u64) -> StdRng {
     let mut key = [0; 32];
     key[..8].copy_from_slice(&seed.to_le_bytes());
@@ -109,7 +112,8 @@ fn log_uniform(random: &mut StdRng, low: f64, high: f64) -> f64 {
     random.random_range(low.ln()..high.ln()).exp()
 }
 
-/// A material that the tables cover: s evenly, or γ close to 3/2, to 2 or to ∞; σ over all that can be bound.
+/// A material that the tables cover: s evenly, or γ close to 3/2, to 2 or to ∞; σ over the whole
+/// allowed range.
 pub(super) fn random_material(tables: &Tables, random: &mut StdRng) -> ([f32; 2], f64) {
     let gamma = loop {
         let gamma = match random.random_range(0..8) {

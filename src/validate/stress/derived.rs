@@ -1,4 +1,4 @@
-//! The rules of what is built on a bound material: batches, bounded normals, ellipsoids, albedo.
+//! The rules of batches, bounded normals, ellipsoids and albedo.
 
 use glam::Vec3;
 
@@ -11,7 +11,7 @@ use super::{Point, direction};
 const TURNS: [[f64; 3]; 2] = [[0.3, 0.0, 0.0], [0.7, -0.4, 2.0]];
 
 impl Checker<'_> {
-    /// The same normals from the batch, and bounded ones, of one view.
+    /// Tests that a batch gives the same normals, and tests bounded normals, at one view.
     pub(super) fn batch_and_bounded(&mut self, points: &[Point]) {
         let v = points[0].view();
         let numbers: Vec<_> = points.iter().map(|at| at.u).collect();
@@ -59,7 +59,8 @@ impl Checker<'_> {
         }
     }
 
-    /// A view and normals of the ellipsoids with the material's roughness; none where a matrix would be singular in single precision.
+    /// Tests a view and normals of the ellipsoids with the material's roughness; none where a
+    /// matrix would be singular in single precision.
     pub(super) fn ellipsoids(&mut self, lobe: &Ellipsoid, points: &[Point]) {
         let [x, y] = self.sigma();
         for lobe in
@@ -89,7 +90,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Albedo and compensation at a view; the number `u[1]` places the light.
+    /// Tests albedo and compensation at a view; the random number `u[1]` places the light.
     pub(super) fn albedo(&mut self, albedo: &Albedo, at: &Point) {
         let v = at.view();
         let whole = f64::from(albedo.albedo(v));
