@@ -44,7 +44,7 @@ const ROOTS: ViewBlend = ViewBlend { weight: 0.0, normal: 0.0, ..ViewBlend::BAKE
 const ONE: ViewBlend = ViewBlend { share: 1.0, scale: 6.0, heavy: 1.0, ..ROOTS };
 const BEST_ONE: ViewBlend = ViewBlend { scale: 8.8, heavy: 2.77, ..ONE };
 
-const fn plain(name: &'static str, window: usize, coordinate: fn(f64) -> f64) -> Design {
+const fn of_cosine(name: &'static str, window: usize, coordinate: fn(f64) -> f64) -> Design {
     Design { name, nodes: 33, window, coordinate: Coordinate::Plain(coordinate) }
 }
 
@@ -53,10 +53,10 @@ const fn blend(name: &'static str, nodes: usize, blend: ViewBlend) -> Design {
 }
 
 const DESIGNS: [Design; 14] = [
-    plain("cosine, lines", 2, |cos| cos),
-    plain("cosine", 6, |cos| cos),
-    plain("square root of the cosine", 6, f64::sqrt),
-    plain("√h", 6, |cos| h(cos).sqrt()),
+    of_cosine("cosine, lines", 2, |cos| cos),
+    of_cosine("cosine", 6, |cos| cos),
+    of_cosine("square root of the cosine", 6, f64::sqrt),
+    of_cosine("√h", 6, |cos| h(cos).sqrt()),
     blend("h^¼", 33, ViewBlend { share: 0.0, ..ROOTS }),
     blend("fourth roots of h and x", 33, ROOTS),
     blend("and x", 33, ViewBlend { weight: ViewBlend::BAKED.weight, ..ROOTS }),
@@ -113,11 +113,11 @@ fn errors(design: &Design, material: Material) -> [[f64; 2]; 4] {
         let albedo = integrator.reflection(material.sigma, cos, weights).expect("in the domain");
         [albedo.uncorrelated, albedo.height_correlated]
     };
-    let bound = |blend: &ViewBlend| blend.prepare(material.sigma, material.gamma);
-    let first = bound(&ViewBlend::BAKED).floor();
+    let prepared = |blend: &ViewBlend| blend.prepare(material.sigma, material.gamma);
+    let first = prepared(&ViewBlend::BAKED).floor();
     let at = |cos: f64| match &design.coordinate {
         Coordinate::Plain(t) => (t(cos) - t(first)) / (1.0 - t(first)),
-        Coordinate::Blend(blend) => bound(blend).coordinate(cos),
+        Coordinate::Blend(blend) => prepared(blend).coordinate(cos),
     };
     let nodes = even_nodes(0.0, 1.0, design.nodes);
     // Tables store the moments less E times a mirror's.

@@ -80,16 +80,20 @@ fn compare(
     sigma: [f64; 2],
     skew: Skew,
 ) -> Result<(), Box<dyn Error>> {
-    println!("gamma     plain  ellipsoid  ratio   with density: plain  ellipsoid  ratio");
+    println!("gamma  untilted  ellipsoid  ratio   with density: untilted  ellipsoid  ratio");
     for gamma in [1.6, 2.0, 4.0, f64::INFINITY] {
-        let plain = tables.student_t(sigma, gamma)?;
+        let untilted = tables.student_t(sigma, gamma)?;
         let skewed = tables.ellipsoid(skew, gamma)?;
         let [a, b] = least(
-            || round(inputs, |v, u| plain.sample_visible_normal(v, u).z),
+            || round(inputs, |v, u| untilted.sample_visible_normal(v, u).z),
             || round(inputs, |v, u| skewed.sample_visible_normal(v, u).z),
         );
         let [c, d] = least(
-            || round(inputs, |v, u| plain.visible_normal_pdf(v, plain.sample_visible_normal(v, u))),
+            || {
+                round(inputs, |v, u| {
+                    untilted.visible_normal_pdf(v, untilted.sample_visible_normal(v, u))
+                })
+            },
             || {
                 round(inputs, |v, u| {
                     skewed.visible_normal_pdf(v, skewed.sample_visible_normal(v, u))

@@ -37,7 +37,7 @@ pub struct Replacement {
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConvertError {
     /// A distribution could not be made.
-    Family(DistributionError),
+    Distribution(DistributionError),
     /// D does not fall to half of D(0) at any angle.
     NoHalfAngle(String),
     /// No parameter of this kind of distribution gives that half angle, in radians.
@@ -54,7 +54,7 @@ pub enum ConvertError {
 impl fmt::Display for ConvertError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Family(e) => e.fmt(f),
+            Self::Distribution(e) => e.fmt(f),
             Self::NoHalfAngle(name) => {
                 write!(f, "{name} is so wide that D nowhere falls to half of D(0); use rmse")
             }
@@ -82,7 +82,7 @@ impl std::error::Error for ConvertError {}
 
 impl From<DistributionError> for ConvertError {
     fn from(e: DistributionError) -> Self {
-        Self::Family(e)
+        Self::Distribution(e)
     }
 }
 
@@ -150,7 +150,7 @@ impl<'a> Target<'a> {
             if to.dimension() == 2 {
                 values[1] = shape.ok_or(ConvertError::ShapeNeeded(to))?;
             }
-            Ok::<_, ConvertError>(Named { family: to, values })
+            Ok::<_, ConvertError>(Named { kind: to, values })
         };
         named(0.5)?.build()?;
         let angle = self
@@ -218,7 +218,7 @@ impl<'a> Target<'a> {
                 .map_err(failed)?;
             run.state().get_best_param().cloned().unwrap_or(vec![x, y])
         };
-        self.judged(Named { family: to, values: to.at(&best) })
+        self.judged(Named { kind: to, values: to.at(&best) })
     }
 }
 
@@ -268,19 +268,19 @@ impl CostFunction for Simplex<'_> {
 /// doi:10.2312/EGWR/EGSR07/195-206, section 5.2).
 ///
 /// # Errors
-/// [`ConvertError::NoFormula`] for other pairs; [`ConvertError::Family`] if the result is out of
-/// range.
+/// [`ConvertError::NoFormula`] for other pairs; [`ConvertError::Distribution`] if the result is out
+/// of range.
 pub fn by_formula(from: &Named, to: DistributionKind) -> Result<Replacement, ConvertError> {
-    let values = match (from.family, to, from.values.as_slice()) {
+    let values = match (from.kind, to, from.values.as_slice()) {
         (DistributionKind::Beckmann, DistributionKind::BlinnPhong, &[m]) => {
             vec![2.0 / (m * m) - 2.0]
         }
         (DistributionKind::BlinnPhong, DistributionKind::Beckmann, &[n]) => {
             vec![(2.0 / (n + 2.0)).sqrt()]
         }
-        _ => return Err(ConvertError::NoFormula(from.family, to)),
+        _ => return Err(ConvertError::NoFormula(from.kind, to)),
     };
-    Target::new(&*from.build()?).judged(Named { family: to, values })
+    Target::new(&*from.build()?).judged(Named { kind: to, values })
 }
 
 #[cfg(test)]
@@ -300,8 +300,8 @@ mod tests {
             let built = from.build().unwrap();
             let target = Target::new(&*built);
             for found in [
-                target.by_rmse(from.family, Form::Relative).unwrap(),
-                target.by_half_angle(from.family, None).unwrap(),
+                target.by_rmse(from.kind, Form::Relative).unwrap(),
+                target.by_half_angle(from.kind, None).unwrap(),
             ] {
                 let (a, b) = (found.to.values[0], from.values[0]);
                 assert!(
@@ -314,7 +314,7 @@ mod tests {
         for text in ["student-t:0.3,2.5", "gtr:0.2,1.3", "hyper-cauchy:0.4,3"] {
             let from = named(text);
             let built = from.build().unwrap();
-            let found = Target::new(&*built).by_rmse(from.family, Form::Density).unwrap();
+            let found = Target::new(&*built).by_rmse(from.kind, Form::Density).unwrap();
             for (a, b) in found.to.values.iter().zip(&from.values) {
                 assert!((a / b - 1.0).abs() < 1e-3, "{text} became {}", found.to);
             }

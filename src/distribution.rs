@@ -36,7 +36,7 @@ pub enum DistributionKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named {
     /// The kind.
-    pub family: DistributionKind,
+    pub kind: DistributionKind,
     /// Its parameters, in the order of [`DistributionKind::parameters`].
     pub values: Vec<f64>,
 }
@@ -72,7 +72,7 @@ impl Distribution {
         match self {
             Self::Named(named) => {
                 let values: Vec<String> = named.values.iter().map(|x| format!("{x}")).collect();
-                format!("{}:{}", named.family.name(), values.join(","))
+                format!("{}:{}", named.kind.name(), values.join(","))
             }
             Self::Measured { file, .. } => format!("measured:{file}"),
         }
@@ -97,14 +97,14 @@ impl fmt::Display for DistributionError {
         match self {
             Self::Unknown(name) => {
                 let names: Vec<&str> =
-                    DistributionKind::ALL.iter().map(|family| family.name()).collect();
+                    DistributionKind::ALL.iter().map(|kind| kind.name()).collect();
                 write!(f, "distribution `{name}` is not known; there are {}", names.join(", "))
             }
-            Self::Parameters(family, given) => {
-                let names = family.parameters().join(",");
-                write!(f, "`{given}`: {} is written {0}:{names}, each a number", family.name())
+            Self::Parameters(kind, given) => {
+                let names = kind.parameters().join(",");
+                write!(f, "`{given}`: {} is written {0}:{names}, each a number", kind.name())
             }
-            Self::Range(family, why) => write!(f, "{}: {why}", family.name()),
+            Self::Range(kind, why) => write!(f, "{}: {why}", kind.name()),
             Self::Dimension(nx, ny) => write!(
                 f,
                 "ashikhmin-shirley with exponents {nx} and {ny} is anisotropic: its D depends on two angles and that of the \
@@ -150,12 +150,12 @@ impl DistributionKind {
     /// # Errors
     /// [`DistributionError::Unknown`], listing the names.
     pub fn by_name(name: &str) -> Result<Self, DistributionError> {
-        let plain = match name {
+        let known = match name {
             "ggx" => "trowbridge-reitz",
             "torrance-sparrow" => "gauss",
             other => other,
         };
-        let found = Self::ALL.into_iter().find(|family| family.name() == plain);
+        let found = Self::ALL.into_iter().find(|kind| kind.name() == known);
         found.ok_or_else(|| DistributionError::Unknown(name.into()))
     }
 
@@ -239,7 +239,7 @@ impl Named {
     /// # Errors
     /// As [`DistributionKind::build`].
     pub fn build(&self) -> Result<Box<dyn Isotropic>, DistributionError> {
-        self.family.build(&self.values)
+        self.kind.build(&self.values)
     }
 }
 
@@ -249,20 +249,20 @@ impl FromStr for Named {
     /// Parses `name:value` or `name:value,value`; `inf` is a number.
     fn from_str(text: &str) -> Result<Self, DistributionError> {
         let (name, rest) = text.split_once(':').unwrap_or((text, ""));
-        let family = DistributionKind::by_name(name)?;
+        let kind = DistributionKind::by_name(name)?;
         let values: Result<Vec<f64>, _> = rest.split(',').map(|x| x.trim().parse()).collect();
-        let values = values.map_err(|_| DistributionError::Parameters(family, text.into()))?;
-        if values.len() != family.parameters().len() {
-            return Err(DistributionError::Parameters(family, text.into()));
+        let values = values.map_err(|_| DistributionError::Parameters(kind, text.into()))?;
+        if values.len() != kind.parameters().len() {
+            return Err(DistributionError::Parameters(kind, text.into()));
         }
-        Ok(Self { family, values })
+        Ok(Self { kind, values })
     }
 }
 
 impl fmt::Display for Named {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values: Vec<String> = self.values.iter().map(|x| format!("{x:.6}")).collect();
-        write!(f, "{}:{}", self.family.name(), values.join(","))
+        write!(f, "{}:{}", self.kind.name(), values.join(","))
     }
 }
 
@@ -272,16 +272,16 @@ mod tests {
 
     #[test]
     fn names_parse_and_print() {
-        for family in DistributionKind::ALL {
-            let point = vec![0.6; family.dimension()];
-            let named = Named { family, values: family.at(&point) };
+        for kind in DistributionKind::ALL {
+            let point = vec![0.6; kind.dimension()];
+            let named = Named { kind, values: kind.at(&point) };
             let back: Named = named.to_string().parse().unwrap();
-            assert_eq!(back.family, family);
+            assert_eq!(back.kind, kind);
             assert!(back.build().is_ok(), "{named}");
         }
         let beckmann: Named = "student-t:0.3,inf".parse().unwrap();
         assert!(beckmann.build().unwrap().student_t().unwrap().shape().is_beckmann());
-        assert_eq!("ggx:0.1".parse::<Named>().unwrap().family, DistributionKind::TrowbridgeReitz);
+        assert_eq!("ggx:0.1".parse::<Named>().unwrap().kind, DistributionKind::TrowbridgeReitz);
     }
 
     #[test]

@@ -31,13 +31,13 @@
 //! # Judge a set
 //!
 //! Every table carries the errors measured when it was baked: [`validate::certificate`].
-//! [`validate::run`] draws normals and tests them by chi-square, [`validate::stress`] visits corners,
-//! and [`validate::furnace`] is a white furnace.
+//! [`validate::run`] draws normals and tests them by chi-square, [`validate::stress`] visits
+//! corners, and [`validate::furnace`] is a white furnace.
 //!
 //! # Study the model
 //!
-//! [`distribution`] has the distributions by name, [`mod@convert`] replaces one by another, [`fit`] fits
-//! them to measurements, [`plot`] draws them, and [`microfacet_model`] has every formula.
+//! [`distribution`] has the distributions by name, [`mod@convert`] replaces one by another, [`fit`]
+//! fits them to measurements, [`plot`] draws them, and [`microfacet_model`] has every formula.
 
 pub mod bake;
 pub mod cache;

@@ -119,8 +119,8 @@ fn draw(
         .axis_style(BLACK.stroke_width(FINE))
         .set_all_tick_mark_size(4 * FINE)
         .label_style(("sans-serif", 11 * FINE))
-        .x_label_formatter(&plain)
-        .y_label_formatter(&plain)
+        .x_label_formatter(&tick_label)
+        .y_label_formatter(&tick_label)
         .draw()
         .map_err(drawing)?;
     for (i, curve) in panel.curves.iter().enumerate() {
@@ -155,7 +155,7 @@ fn draw(
 }
 
 /// A number on an axis, without superfluous zeros.
-fn plain(x: &f64) -> String {
+fn tick_label(x: &f64) -> String {
     // Adding 0 turns −0 into 0.
     format!("{}", (x * 1e6).round() / 1e6 + 0.0)
 }

@@ -344,11 +344,11 @@ fn a_range_of_indices_has_an_axis() {
     }
     let integrator = AlbedoIntegrator::new(Shape::new(3.0).unwrap(), 1e-6);
     for eta in [1.2, 1.37, 1.7] {
-        let bound = set.material_dielectric_albedo("any", eta).unwrap();
+        let albedo = set.material_dielectric_albedo("any", eta).unwrap();
         for cos in [0.1, 0.4, 0.9] {
             for (got, eta) in [
-                (bound.outside.eval(direction(cos)), eta),
-                (bound.inside.eval(direction(cos)), 1.0 / eta),
+                (albedo.outside.eval(direction(cos)), eta),
+                (albedo.inside.eval(direction(cos)), 1.0 / eta),
             ] {
                 let pane = Dielectric::new(eta).unwrap();
                 let want =
@@ -361,9 +361,9 @@ fn a_range_of_indices_has_an_axis() {
         }
     }
     // Everywhere a value in [0, 1], and no step where total reflection sets in.
-    let bound = set.material_dielectric_albedo("any", 1.5).unwrap();
+    let albedo = set.material_dielectric_albedo("any", 1.5).unwrap();
     let critical = (1.0_f32 - 1.0 / 2.25).sqrt();
-    for curve in [&bound.outside, &bound.inside] {
+    for curve in [&albedo.outside, &albedo.inside] {
         for cos in
             [f32::NAN, -1.0, 0.0, 1e-40, 1e-7, critical, 1.0 - f32::EPSILON, 1.0, f32::INFINITY]
         {

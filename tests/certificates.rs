@@ -69,20 +69,20 @@ fn single(gamma: f64, precision: Precision) -> Tables {
     baked(&Plan::new(&scene, Options::default()).unwrap(), precision)
 }
 
-fn g1_error(table: &Table, bound: &StudentT, shape: &Shape) -> f64 {
+fn g1_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
     let errors = along(&table.axes[1]).into_iter().map(|t| {
         let v = view(cotangent(&table.axes[1], shape.s(), t));
         let z = f64::from(v.z) / f64::from(v.x);
-        (f64::from(bound.g1(v)) - 1.0 / (1.0 + shape.lambda(shape.asinh_slope(z)))).abs()
+        (f64::from(lobe.g1(v)) - 1.0 / (1.0 + shape.lambda(shape.asinh_slope(z)))).abs()
     });
     errors.fold(0.0, f64::max)
 }
 
-fn across_error(table: &Table, bound: &StudentT, shape: &Shape) -> f64 {
+fn across_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
     let beside = [(Vec3::Z, 0.0), (Vec3::X, 1.0), (Vec3::new(0.6, 0.0, 0.8), 0.5)];
     let errors = numbers(&table.axes[1]).into_iter().flat_map(|u| {
         beside.map(|(v, u1)| {
-            let m = bound.sample_visible_normal(v, [u1, u]).as_dvec3();
+            let m = lobe.sample_visible_normal(v, [u1, u]).as_dvec3();
             let t = m.y / (m.z * m.z + shape.s() * m.x * m.x).sqrt();
             (across_cdf(shape, signed(shape, t)) - f64::from(u)).abs()
         })
@@ -91,14 +91,14 @@ fn across_error(table: &Table, bound: &StudentT, shape: &Shape) -> f64 {
 }
 
 /// Error of the in-plane slope's CDF, of the whole distribution (not peeled).
-fn along_error(table: &Table, bound: &StudentT, shape: &Shape) -> f64 {
+fn along_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
     let numbers = numbers(&table.axes[2]);
     let errors = along(&table.axes[1]).into_iter().map(|t| {
         let v = view(cotangent(&table.axes[1], shape.s(), t));
         let exact =
             VisibleSlope::new(shape, UnitView::from_cotangent(f64::from(v.z) / f64::from(v.x)));
         let errors = numbers.iter().map(|&u| {
-            let m = bound.sample_visible_normal(v, [u, 0.5]).as_dvec3();
+            let m = lobe.sample_visible_normal(v, [u, 0.5]).as_dvec3();
             (exact.cdf(signed(shape, m.x / m.z)) - f64::from(u)).abs()
         });
         errors.fold(0.0, f64::max)
@@ -117,11 +117,11 @@ fn hold(set: &Tables) {
     for table in set.tables().iter().filter(whole) {
         let error = |s: f64| {
             let shape = Shape::from_s(s).unwrap();
-            let bound = set.student_t(1.0, shape.gamma()).unwrap();
+            let lobe = set.student_t(1.0, shape.gamma()).unwrap();
             match table.kind {
-                Kind::Shadowing => g1_error(table, &bound, &shape),
-                Kind::VisibleSlopeConditional => across_error(table, &bound, &shape),
-                _ => along_error(table, &bound, &shape),
+                Kind::Shadowing => g1_error(table, &lobe, &shape),
+                Kind::VisibleSlopeConditional => across_error(table, &lobe, &shape),
+                _ => along_error(table, &lobe, &shape),
             }
         };
         // Keeps the rounding of 1 + 1/s from leading beyond the last node.

@@ -1,5 +1,5 @@
-//! The one trait: every lobe answers alike, as itself, as a [`Lobe`] and as a trait object, and what
-//! has a counterpart in the model agrees with it.
+//! The one trait: every lobe answers alike, as itself, as a [`Lobe`] and as a trait object, and
+//! what has a counterpart in the model agrees with it.
 
 use glam::{DVec3, Vec3};
 use microfacet_bake::plan::{Options, Plan};

@@ -137,8 +137,8 @@ fn the_model_agrees_with_independent_values() {
 fn a_table_of_default_quality_agrees_with_independent_values() {
     let (sigma, gamma, cos, phi, _, e) = REFERENCE[1];
     let table = bake(&spec(sigma, gamma, Quality::Default)).unwrap().remove(0);
-    let bound = Albedo::from_table(&table, f64::NAN, f64::NAN).unwrap();
-    let got = f64::from(bound.albedo(direction(cos, phi)));
+    let albedo = Albedo::from_table(&table, f64::NAN, f64::NAN).unwrap();
+    let got = f64::from(albedo.albedo(direction(cos, phi)));
     assert!((got - e).abs() < 1e-4, "{got} for {e}");
 }
 

@@ -21,7 +21,8 @@
 //! assert_eq!(Masking::Uncorrelated.g2_over_g1(0.5, 0.25), 0.25);
 //! ```
 //!
-//! `no_std`, without allocation. Feature: `serde`, names of the forms of masking as files write them.
+//! `no_std`, without allocation. Feature: `serde`, names of the forms of masking as files write
+//! them.
 
 #![no_std]
 

@@ -280,7 +280,7 @@ impl AlbedoIntegrator {
     /// The intervals of φ with the scales of variation at their ends; half a turn where the other
     /// half is the same.
     fn sectors(&self, view: &View) -> Vec<(End, End)> {
-        let plain = |at: f64| End { at, scale: f64::INFINITY };
+        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
         // b(φ) vanishes a right angle from φ₀; there R(φ) turns from the near rim to the far one.
         let turn = |at: f64| End { at, scale: view.turn.max(1e-9) };
         let scale = if self.has_cone(view) { 0.05 * view.aspect } else { f64::INFINITY };
@@ -289,10 +289,10 @@ impl AlbedoIntegrator {
         if view.aspect == 1.0 {
             let right = turn(phi_0 + FRAC_PI_2);
             if view.kink == 0.0 {
-                return vec![(plain(phi_0), right), (right, normal)];
+                return vec![(ungraded(phi_0), right), (right, normal)];
             }
             let conic = self.conic_sectors(view.cos, view.sin, view.kink, right, normal);
-            let (first, tangent) = (plain(phi_0), conic[0].0);
+            let (first, tangent) = (ungraded(phi_0), conic[0].0);
             let before = if view.cos < view.kink {
                 vec![(first, right), (right, tangent)]
             } else {
@@ -383,8 +383,8 @@ impl AlbedoIntegrator {
         let w_normal = self.shape.asinh_slope(view.r_normal);
         let kinks = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
         if !kinks.is_empty() {
-            let plain = |at: f64| End { at, scale: f64::INFINITY };
-            let mut from = plain(0.0);
+            let ungraded = |at: f64| End { at, scale: f64::INFINITY };
+            let mut from = ungraded(0.0);
             let mut stops = kinks;
             if b < 0.0 && aside.is_finite() && w_normal < end.at {
                 stops.push(End { at: w_normal, scale: aside });

@@ -217,9 +217,9 @@ mod tests {
     #[test]
     fn f82_tint_has_its_value_at_the_peak() {
         let metal = F82Tint::new(0.7, 0.5).unwrap();
-        let plain = F82Tint::new(0.7, 1.0).unwrap();
+        let schlick = F82Tint::new(0.7, 1.0).unwrap();
         assert!((f82_weight(F82_COS) - 1.0).abs() < 1e-15);
-        assert!((metal.reflectance(F82_COS) - 0.5 * plain.reflectance(F82_COS)).abs() < 1e-15);
+        assert!((metal.reflectance(F82_COS) - 0.5 * schlick.reflectance(F82_COS)).abs() < 1e-15);
         assert_eq!((metal.reflectance(1.0), metal.reflectance(0.0)), (0.7, 1.0));
         for i in 0..=100 {
             let cos = f64::from(i) / 100.0;

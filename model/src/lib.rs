@@ -5,8 +5,8 @@
 //! Bringier, Meneveaux, Simonot 2017, *STD: Student's t-Distribution of Slopes for Microfacet Based
 //! BSDFs*, <https://doi.org/10.1111/cgf.13137>); GGX and Beckmann are its members γ = 2 and γ = ∞.
 //! Directions are unit vectors in the tangent frame, n = +z, angles in radians. There are no tables
-//! and no files; every function is a formula or a root found to rounding, and uses the `libm` crate,
-//! so that results are the same bits on every system.
+//! and no files; every function is a formula or a root found to rounding, and uses the `libm`
+//! crate, so that results are the same bits on every system.
 //!
 //! | to | use |
 //! | --- | --- |

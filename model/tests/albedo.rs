@@ -123,12 +123,12 @@ fn albedo_is_the_integral_over_light_directions() {
 #[test]
 fn equal_roughness_takes_no_notice_of_azimuth() {
     let integrator = AlbedoIntegrator::new(Shape::new(1.7).unwrap(), 1e-8);
-    let plain = integrator.reflection(0.4, 0.3, schlick).unwrap();
+    let isotropic = integrator.reflection(0.4, 0.3, schlick).unwrap();
     // Nearly equal roughnesses take the anisotropic path round the whole circle.
     let near = integrator.reflection_anisotropic([0.4, 0.4 + 1e-12], 0.3, 2.0, schlick).unwrap();
     for i in 0..2 {
-        assert!((plain.uncorrelated[i] - near.uncorrelated[i]).abs() < 1e-8);
-        assert!((plain.height_correlated[i] - near.height_correlated[i]).abs() < 1e-8);
+        assert!((isotropic.uncorrelated[i] - near.uncorrelated[i]).abs() < 1e-8);
+        assert!((isotropic.height_correlated[i] - near.height_correlated[i]).abs() < 1e-8);
     }
 }
 

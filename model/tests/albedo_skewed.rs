@@ -32,7 +32,7 @@ fn skewed(gamma: f64, p: f64, r: f64, mean: [f64; 2]) -> Ellipsoid {
 fn without_a_tilt_it_is_the_anisotropic_albedo() {
     for gamma in [1.52, 2.0, 3.6, f64::INFINITY] {
         let shape = Shape::new(gamma).unwrap();
-        let (plain, integrator) =
+        let (isotropic, integrator) =
             (AlbedoIntegrator::new(shape, 1e-10), AlbedoIntegrator::new(shape, 1e-7));
         for sigma in [[0.3, 0.3], [0.1, 0.6], [2.0, 0.7]] {
             for turn in [0.0, 0.8] {
@@ -41,7 +41,7 @@ fn without_a_tilt_it_is_the_anisotropic_albedo() {
                 for (cos, phi) in [(0.0, 0.3), (0.02, 2.0), (0.4, 0.9), (0.9, 4.0), (1.0, 0.0)] {
                     // θz turns directions into the principal frame.
                     let want =
-                        plain.reflection_anisotropic(sigma, cos, phi + turn, schlick).unwrap();
+                        isotropic.reflection_anisotropic(sigma, cos, phi + turn, schlick).unwrap();
                     let got = integrator.reflection_skewed(&ellipsoid, cos, phi, schlick).unwrap();
                     for form in FORMS {
                         for (a, b) in got.of(form).iter().zip(want.of(form)) {

@@ -76,8 +76,8 @@
 //!
 //! # Ellipsoids
 //!
-//! A lobe of any γ may be tilted and turned, or have slopes under any linear map: the Ellipsoid NDF,
-//! generalised. It reads the same tables.
+//! A lobe of any γ may be tilted and turned, or have slopes under any linear map: the Ellipsoid
+//! NDF, generalised. It reads the same tables.
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {

@@ -24,23 +24,23 @@ fn pairs() -> impl Iterator<Item = (StudentT, model::StudentT)> {
     GAMMAS.into_iter().flat_map(move |gamma| {
         let tables = tables.clone();
         roughness.into_iter().map(move |sigma: [f64; 2]| {
-            let bound = tables.student_t(sigma, gamma).unwrap();
-            let [x, y] = bound.sigma().map(f64::from);
-            (bound, model::StudentT::new([x, y], gamma).unwrap())
+            let lobe = tables.student_t(sigma, gamma).unwrap();
+            let [x, y] = lobe.sigma().map(f64::from);
+            (lobe, model::StudentT::new([x, y], gamma).unwrap())
         })
     })
 }
 
 #[test]
 fn g1_and_g2_are_the_models() {
-    for (bound, truth) in pairs() {
+    for (lobe, truth) in pairs() {
         for v in directions() {
             let exact = truth.g1(v.as_dvec3());
             // The certificate's 4e-6 and the rounding of f32.
             assert!(
-                (f64::from(bound.g1(v)) - exact).abs() < 4.2e-6,
+                (f64::from(lobe.g1(v)) - exact).abs() < 4.2e-6,
                 "{truth:?} {v}: {} {exact}",
-                bound.g1(v)
+                lobe.g1(v)
             );
             let l = Vec3::new(0.36, -0.48, 0.8);
             for (ours, theirs) in [
@@ -48,39 +48,38 @@ fn g1_and_g2_are_the_models() {
                 (Masking::HeightCorrelated, model::Masking::HeightCorrelated),
             ] {
                 let exact = truth.g2(v.as_dvec3(), l.as_dvec3(), theirs);
-                assert!((f64::from(bound.g2(v, l, ours)) - exact).abs() < 1e-5, "{truth:?} {v}");
+                assert!((f64::from(lobe.g2(v, l, ours)) - exact).abs() < 1e-5, "{truth:?} {v}");
             }
         }
         for below in [Vec3::X, -Vec3::Z, Vec3::new(0.6, 0.0, -0.8)] {
-            assert_eq!(bound.g1(below), 0.0);
-            assert_eq!(bound.lambda(below), f32::INFINITY);
-            assert_eq!(bound.g2(below, Vec3::Z, Masking::HeightCorrelated), 0.0);
+            assert_eq!(lobe.g1(below), 0.0);
+            assert_eq!(lobe.lambda(below), f32::INFINITY);
+            assert_eq!(lobe.g2(below, Vec3::Z, Masking::HeightCorrelated), 0.0);
         }
     }
 }
 
 #[test]
 fn densities_are_the_models() {
-    for (bound, truth) in pairs() {
+    for (lobe, truth) in pairs() {
         for v in directions() {
             for u in [[0.02, 0.3], [0.4, 0.9], [0.77, 0.51], [0.99, 0.04]] {
-                let m = bound.sample_visible_normal(v, u);
+                let m = lobe.sample_visible_normal(v, u);
                 let exact = truth.d(m.as_dvec3());
-                let d = f64::from(bound.d(m));
+                let d = f64::from(lobe.d(m));
                 if exact > 1e35 {
                     // Next to the horizon at γ < 2, f32 holds the order of magnitude only.
                     assert!(d > 1e34, "{truth:?} {m}: {d} {exact}");
                     continue;
                 }
                 // Rounding of the exponent: |ln D| times a few ulp.
-                let scale =
-                    1.0 + (exact * f64::from(bound.sigma()[0] * bound.sigma()[1])).ln().abs();
+                let scale = 1.0 + (exact * f64::from(lobe.sigma()[0] * lobe.sigma()[1])).ln().abs();
                 assert!(
                     (d / exact - 1.0).abs() < 2e-6 * scale || exact < 1e-35,
                     "{truth:?} {m}: {d} {exact}"
                 );
                 let exact = truth.visible_normal_pdf(v.as_dvec3(), m.as_dvec3());
-                let pdf = f64::from(bound.visible_normal_pdf(v, m));
+                let pdf = f64::from(lobe.visible_normal_pdf(v, m));
                 // v·m cancels where m almost faces away.
                 let facing = v.as_dvec3().dot(m.as_dvec3());
                 // The certificate limits the absolute error of G1; the density divides by the area,
@@ -98,11 +97,11 @@ fn densities_are_the_models() {
 
 #[test]
 fn table_pdf_approaches_the_analytic_density() {
-    for (bound, truth) in pairs() {
+    for (lobe, truth) in pairs() {
         for v in directions().filter(|v| v.z > 0.1) {
             for u in [[0.2, 0.3], [0.4, 0.9], [0.77, 0.51], [0.6, 0.2]] {
-                let m = bound.sample_visible_normal(v, u);
-                let table = f64::from(bound.table_pdf(v, m));
+                let m = lobe.sample_visible_normal(v, u);
+                let table = f64::from(lobe.table_pdf(v, m));
                 let exact = truth.visible_normal_pdf(v.as_dvec3(), m.as_dvec3());
                 assert!((table / exact - 1.0).abs() < 0.02, "{truth:?} {v} {u:?}: {table} {exact}");
             }
@@ -112,23 +111,23 @@ fn table_pdf_approaches_the_analytic_density() {
 
 #[test]
 fn sampled_normals_are_unit_upward_and_facing_and_rise_with_u() {
-    for (bound, truth) in pairs() {
+    for (lobe, truth) in pairs() {
         for v in directions() {
             let azimuth = Vec3::new(v.x, v.y, 0.0);
             let mut last = f32::NEG_INFINITY;
             for i in 0..=64 {
                 let u = i as f32 / 64.0;
                 for other in [0.0, 0.3, 1.0] {
-                    let m = bound.sample_visible_normal(v, [u, other]);
+                    let m = lobe.sample_visible_normal(v, [u, other]);
                     let what = format!("{truth:?} {v} u {u} {other}: {m}");
                     assert!((m.length() - 1.0).abs() < 4.0 * f32::EPSILON && m.z > 0.0, "{what}");
                     assert!(v.dot(m) > -1.2e-7, "{what} faces away by {:e}", v.dot(m));
                 }
                 // In the plane of incidence (u₂ = ½) of an isotropic material, the tilt towards the
                 // viewer rises.
-                let m = bound.sample_visible_normal(v, [u, 0.5]);
-                let [x, y] = bound.sigma();
-                if x == y && bound.gamma() >= 1.8 && azimuth.length() > 0.0 {
+                let m = lobe.sample_visible_normal(v, [u, 0.5]);
+                let [x, y] = lobe.sigma();
+                if x == y && lobe.gamma() >= 1.8 && azimuth.length() > 0.0 {
                     let tilt = m.dot(azimuth / azimuth.length()) / m.z;
                     assert!(
                         tilt >= last - 1e-6 * tilt.abs(),

@@ -114,15 +114,15 @@ impl Args {
 
 /// Least-error replacements of Beckmann with m from 0.05 to 0.45.
 fn table(form: Form) -> Result<String, Box<dyn Error>> {
-    let families = [
+    let kinds = [
         DistributionKind::BlinnPhong,
         DistributionKind::Gauss,
         DistributionKind::Schlick,
         DistributionKind::TrowbridgeReitz,
     ];
     let mut text = format!("{:>8}", "m");
-    for family in families {
-        let name = format!("{} {}", family.name(), family.parameters()[0]);
+    for kind in kinds {
+        let name = format!("{} {}", kind.name(), kind.parameters()[0]);
         write!(text, "{name:>20}{:>10}", "RMSE")?;
     }
     text.push('\n');
@@ -131,8 +131,8 @@ fn table(form: Form) -> Result<String, Box<dyn Error>> {
         let built = DistributionKind::Beckmann.build(&[m])?;
         let target = Target::new(&*built);
         write!(text, "{m:>8.3}")?;
-        for family in families {
-            let found = target.by_rmse(family, form)?;
+        for kind in kinds {
+            let found = target.by_rmse(kind, form)?;
             write!(
                 text,
                 "{:>20.5}{:>10.2e}",

@@ -120,7 +120,7 @@ fn printed_formulas(gamma: f64) -> Panel {
 
 /// A Beckmann and the nearest distribution of each other kind.
 fn nearest_to_beckmann(m: f64) -> Vec<(Named, Box<dyn Isotropic>)> {
-    let beckmann = Named { family: DistributionKind::Beckmann, values: vec![m] };
+    let beckmann = Named { kind: DistributionKind::Beckmann, values: vec![m] };
     let from = beckmann.build().expect("m is positive");
     let others = [
         DistributionKind::BlinnPhong,
@@ -128,9 +128,9 @@ fn nearest_to_beckmann(m: f64) -> Vec<(Named, Box<dyn Isotropic>)> {
         DistributionKind::TrowbridgeReitz,
         DistributionKind::Schlick,
     ];
-    let nearest = others.map(|family| {
+    let nearest = others.map(|kind| {
         let found = Target::new(&*from)
-            .by_rmse(family, Form::Relative)
+            .by_rmse(kind, Form::Relative)
             .expect("a smooth problem of one variable")
             .to;
         let built = found.build().expect("it was built to be judged");
@@ -206,5 +206,5 @@ fn highlight(m: f64) -> Panel {
 
 fn label(named: &Named) -> String {
     let values: Vec<String> = named.values.iter().map(|x| format!("{x:.4}")).collect();
-    format!("{} {}", named.family.name(), values.join(", "))
+    format!("{} {}", named.kind.name(), values.join(", "))
 }

@@ -68,10 +68,10 @@ fn entry(material: &Material) -> String {
         }
         Some(Distribution::Named(named)) => {
             let number = |x: f64| range(Interval::point(x));
-            let pairs = named.family.parameters().iter().zip(&named.values);
+            let pairs = named.kind.parameters().iter().zip(&named.values);
             let values: String =
                 pairs.map(|(key, x)| format!("\n{key} = {}", number(*x))).collect();
-            writeln!(text, "distribution = {}{values}", quoted(named.family.name()))
+            writeln!(text, "distribution = {}{values}", quoted(named.kind.name()))
         }
     };
     if let Some(theta) = material.theta {
@@ -225,9 +225,8 @@ impl Source<'_> {
         let place = self.place(value.span());
         let common = ["name", "distribution", "fresnel", "masking"];
         let distribution = if let Some(name) = value.get_ref().as_str() {
-            let family =
-                DistributionKind::by_name(name).map_err(|e| place.invalid(e.to_string()))?;
-            let keys: Vec<&str> = common.iter().chain(family.parameters()).copied().collect();
+            let kind = DistributionKind::by_name(name).map_err(|e| place.invalid(e.to_string()))?;
+            let keys: Vec<&str> = common.iter().chain(kind.parameters()).copied().collect();
             self.only_keys(table, &keys)?;
             let parameter = |key: &&str| {
                 let value = table.get(*key).ok_or_else(|| {
@@ -237,8 +236,8 @@ impl Source<'_> {
                 })?;
                 self.number(value, key)
             };
-            let values = family.parameters().iter().map(parameter).collect::<Result<_, _>>()?;
-            Distribution::Named(Named { family, values })
+            let values = kind.parameters().iter().map(parameter).collect::<Result<_, _>>()?;
+            Distribution::Named(Named { kind, values })
         } else {
             let forms = "distribution must be a name in quotes or { measured = \"file.csv\" }";
             let source = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;

@@ -101,17 +101,19 @@ pub(super) fn finish(folder: &Path) -> io::Result<()> {
         Err(why) if why.kind() == io::ErrorKind::NotFound => return remove_leftovers(folder),
         text => text?,
     };
-    let plain = |name: &str| !name.contains(['/', '\\']) && name != "..";
+    let is_file_name = |name: &str| !name.contains(['/', '\\']) && name != "..";
     let lines = || text.lines().filter_map(|line| line.split_once(' '));
     let exchanges: Vec<_> = lines()
         // A journal written by someone else may name any path.
-        .filter(|(partial, name)| plain(partial) && partial.starts_with(PREFIX) && plain(name))
+        .filter(|(partial, name)| {
+            is_file_name(partial) && partial.starts_with(PREFIX) && is_file_name(name)
+        })
         .map(|(partial, name)| (folder.join(partial), folder.join(name)))
         // A file no longer under its temporary name has been moved already.
         .filter(|(partial, _)| partial.exists())
         .collect();
     let stale = lines()
-        .filter(|(partial, name)| *partial == STALE && plain(name))
+        .filter(|(partial, name)| *partial == STALE && is_file_name(name))
         .map(|(_, name)| folder.join(name));
     for path in stale.chain(exchanges.iter().map(|(_, path)| path.clone())) {
         match fs::remove_file(&path) {

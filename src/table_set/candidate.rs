@@ -51,7 +51,7 @@ pub(super) struct Candidate<'a> {
     /// Estimated bytes of names, axes and certificates.
     header: f64,
     /// Estimated seconds of a bake at default quality, and of those done so far.
-    pub(super) plain: f64,
+    pub(super) default_seconds: f64,
     spent: f64,
     /// All grades, the coarsest first.
     menu: Vec<Pick>,
@@ -77,7 +77,7 @@ impl<'a> Candidate<'a> {
             group,
             measured: Default::default(),
             header,
-            plain: cost.seconds,
+            default_seconds: cost.seconds,
             spent: 0.0,
             menu,
         };
@@ -129,7 +129,7 @@ impl<'a> Candidate<'a> {
 
     /// Whether a grade is measured already, or may still be measured within the allowance.
     pub(super) fn is_affordable(&self, pick: &Pick) -> bool {
-        let limit = ALLOWANCE * self.plain.max(self.spent);
+        let limit = ALLOWANCE * self.default_seconds.max(self.spent);
         pick.measured || self.spent == 0.0 || self.spent + pick.seconds <= limit
     }
 

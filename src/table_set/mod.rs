@@ -123,7 +123,7 @@ pub enum BakeError {
         /// Estimated seconds to choose them.
         search: f64,
         /// Estimated seconds of a bake at default quality.
-        plain: f64,
+        default_seconds: f64,
     },
     /// An albedo that is invalid, or not accurate enough.
     Albedo(bake::albedo::AlbedoError),
@@ -181,10 +181,10 @@ impl fmt::Display for BakeError {
                 "no set of these materials fits into {max_bytes} bytes: the smallest, of the coarsest \
                  tables, has {smallest}"
             ),
-            Self::TooSlow { search, plain } => write!(
+            Self::TooSlow { search, default_seconds } => write!(
                 f,
                 "choosing these tables would take about {search:.0} s, the bake of default quality \
-                 about {plain:.0} s: go on with --patient, or allow a larger error or fewer bytes"
+                 about {default_seconds:.0} s: go on with --patient, or allow a larger error or fewer bytes"
             ),
         }
     }

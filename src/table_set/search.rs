@@ -140,9 +140,10 @@ impl<'a> Search<'a> {
     fn check_time(&self, grades: &[Grade], job: &Job) -> Result<(), BakeError> {
         let seconds = |(candidate, grade): (&Candidate, &Grade)| candidate.group.seconds(grade.0);
         let search = OFTEN * self.candidates.iter().zip(grades).map(seconds).sum::<f64>();
-        let plain: f64 = self.candidates.iter().map(|candidate| candidate.plain).sum();
-        if !job.patient && search > PATIENCE.max(3.0 * plain) {
-            return Err(BakeError::TooSlow { search, plain });
+        let default_seconds: f64 =
+            self.candidates.iter().map(|candidate| candidate.default_seconds).sum();
+        if !job.patient && search > PATIENCE.max(3.0 * default_seconds) {
+            return Err(BakeError::TooSlow { search, default_seconds });
         }
         Ok(())
     }

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use microfacet_common::shape::s_of_gamma;
 use microfacet_model::Albedo;
 use microfacet_sampler::{
-    Albedo as Bound, Axis, Kind, Masking, MaterialError, Moments, Reflectance, Table, Tables,
-    ViewCurve,
+    Albedo as TabulatedAlbedo, Axis, Kind, Masking, MaterialError, Moments, Reflectance, Table,
+    Tables, ViewCurve,
 };
 
 use super::certificate::round_up;
@@ -266,7 +266,7 @@ fn averages(
     let measured = |at: &Reference| {
         let Site { sigma, gamma, .. } = at.site;
         let got = all(set.average_moments(sigma, gamma, masking)?);
-        let exact = all(Bound::from_table(directional, sigma, gamma)?.average_moments());
+        let exact = all(TabulatedAlbedo::from_table(directional, sigma, gamma)?.average_moments());
         Ok(got.iter().zip(exact).map(|(got, exact)| (got - exact).abs()).collect())
     };
     let errors = measured_at(references, measured)?;
@@ -282,7 +282,7 @@ fn all(moments: Moments) -> [f64; 4] {
 
 /// What a renderer reads for one material.
 enum Reading {
-    Moments(Bound),
+    Moments(TabulatedAlbedo),
     Shares(ViewCurve<CHANNELS>),
 }
 
@@ -292,7 +292,9 @@ impl Reading {
         Site { sigma, gamma, eta, .. }: Site,
     ) -> Result<Self, MaterialError> {
         Ok(match table.subject.reflectance {
-            Some(Reflectance::Moments) => Self::Moments(Bound::from_table(table, sigma, gamma)?),
+            Some(Reflectance::Moments) => {
+                Self::Moments(TabulatedAlbedo::from_table(table, sigma, gamma)?)
+            }
             _ => Self::Shares(ViewCurve::from_table(table, sigma, gamma, eta)?),
         })
     }

@@ -288,7 +288,7 @@ struct Ruler<'a> {
 }
 
 /// A material made from the tables, and its shape in the model.
-type Bound = (StudentT, Shape);
+type LobeAndShape = (StudentT, Shape);
 
 impl<'a> Ruler<'a> {
     fn new(tables: &'a Tables, table: &'a Table, s: [f64; 2]) -> Self {
@@ -325,10 +325,10 @@ impl<'a> Ruler<'a> {
         // A quarter of the points is left for the climbs.
         let places = places([&self.views, &self.numbers], points - points / 4);
         let at_shape = |&place: &f64| {
-            let bound = self.bound(place)?;
+            let lobe = self.lobe(place)?;
             let seen = places.iter().map(|&[a, b]| {
                 let at = [place, a, b];
-                Seen { error: self.error(&bound, at), at }
+                Seen { error: self.error(&lobe, at), at }
             });
             Ok(seen.collect::<Vec<_>>())
         };
@@ -338,7 +338,7 @@ impl<'a> Ruler<'a> {
             if self.is_range() { (self.table.axes[0].nodes.len() - 1) as f64 } else { 0.0 };
         let cells = [shape_cells, self.views.cells, self.numbers.cells];
         // The sweep was covered by the tables, and so is all that lies between its points.
-        let error = |at: Place| self.bound(at[0]).map_or(f64::NAN, |bound| self.error(&bound, at));
+        let error = |at: Place| self.lobe(at[0]).map_or(f64::NAN, |lobe| self.error(&lobe, at));
         Ok(climbed(seen.concat(), (points / 200).max(2), cells, error))
     }
 
@@ -371,18 +371,18 @@ impl<'a> Ruler<'a> {
         s.clamp(self.s[0], self.s[1])
     }
 
-    fn bound(&self, place: f64) -> Result<Bound, MaterialError> {
+    fn lobe(&self, place: f64) -> Result<LobeAndShape, MaterialError> {
         let gamma = gamma_of_s(self.s(place));
         let shape = Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
         Ok((self.tables.student_t(1.0, gamma)?, shape))
     }
 
-    fn error(&self, (bound, shape): &Bound, [_, a, b]: Place) -> f64 {
+    fn error(&self, (lobe, shape): &LobeAndShape, [_, a, b]: Place) -> f64 {
         let u = number(b, 0.5 * self.numbers.cells);
         match self.table.kind {
-            Kind::Shadowing => g1_error(bound, shape, self.view(shape.s(), a)),
-            Kind::VisibleSlopeConditional => across_error(bound, shape, u),
-            _ => along_error(bound, shape, self.view(shape.s(), a), u),
+            Kind::Shadowing => g1_error(lobe, shape, self.view(shape.s(), a)),
+            Kind::VisibleSlopeConditional => across_error(lobe, shape, u),
+            _ => along_error(lobe, shape, self.view(shape.s(), a), u),
         }
     }
 
@@ -438,23 +438,23 @@ fn towards_ends(x: f64) -> f64 {
     }
 }
 
-fn g1_error(bound: &StudentT, shape: &Shape, v: Vec3) -> f64 {
+fn g1_error(lobe: &StudentT, shape: &Shape, v: Vec3) -> f64 {
     let exact = 1.0 / (1.0 + shape.lambda(shape.asinh_slope(exact_cotangent(v))));
-    (f64::from(bound.g1(v)) - exact).abs()
+    (f64::from(lobe.g1(v)) - exact).abs()
 }
 
 /// Difference between the CDF of the sampled slope and the random number it was sampled with.
 ///
 /// Where the heavy part is peeled, it is the error of the remaining part, weighted by its share,
 /// plus the error of that share.
-fn along_error(bound: &StudentT, shape: &Shape, v: Vec3, u: f32) -> f64 {
+fn along_error(lobe: &StudentT, shape: &Shape, v: Vec3, u: f32) -> f64 {
     let at = UnitView::from_cotangent(exact_cotangent(v));
     let whole = VisibleSlope::new(shape, at);
-    if shape.gamma() >= GAMMA_WHOLE || bound.tabulated_share(Vec3::X) >= 1.0 {
-        let m = bound.sample_visible_normal(v, [u, 0.5]);
+    if shape.gamma() >= GAMMA_WHOLE || lobe.tabulated_share(Vec3::X) >= 1.0 {
+        let m = lobe.sample_visible_normal(v, [u, 0.5]);
         return (whole.cdf(slope_of(shape, m)) - f64::from(u)).abs();
     }
-    let share = bound.tabulated_share(v);
+    let share = lobe.tabulated_share(v);
     let exact_share = 1.0 - at.sin * shape.first_moment(0.0) / whole.area();
     let of_share = (f64::from(share) - exact_share).abs();
     if !(share > 0.0) {
@@ -462,7 +462,7 @@ fn along_error(bound: &StudentT, shape: &Shape, v: Vec3, u: f32) -> f64 {
         return of_share;
     }
     let rest = VisibleSlope::peeled(shape, at);
-    let m = bound.sample_visible_normal(v, [u * share, 0.5]);
+    let m = lobe.sample_visible_normal(v, [u * share, 0.5]);
     let inside = (rest.cdf(slope_of(shape, m)) - f64::from(u * share) / f64::from(share)).abs();
     f64::from(share) * inside + of_share
 }
@@ -477,9 +477,9 @@ fn signed(shape: &Shape, x: f64) -> SignedSlope {
 }
 
 /// The largest error of slopes across over all of [`BESIDE`].
-fn across_error(bound: &StudentT, shape: &Shape, u: f32) -> f64 {
+fn across_error(lobe: &StudentT, shape: &Shape, u: f32) -> f64 {
     let error = |([x, z], u1): ([f32; 2], f32)| {
-        let m = bound.sample_visible_normal(Vec3::new(x, 0.0, z), [u1, u]);
+        let m = lobe.sample_visible_normal(Vec3::new(x, 0.0, z), [u1, u]);
         // The random number u₁ only scales y/√(z² + s x²), which is t again.
         let [x, y, z] = [m.x, m.y, m.z].map(f64::from);
         let t = y / (z * z + shape.s() * x * x).sqrt();

@@ -19,13 +19,13 @@ fn shader(class: &str, inputs: &[(&str, f64)]) -> Scene {
 
 #[test]
 fn standard_surface_follows_its_definition() {
-    let plain = shader("standard_surface", &[]);
-    assert_eq!(names(&plain), ["a"]);
-    assert_close(plain.materials[0].roughness, [0.04; 2], [0.04; 2]);
-    assert_eq!(plain.materials[0].gamma, Interval::point(2.0));
-    assert_eq!(plain.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
-    assert_eq!(plain.materials[0].masking, None);
-    assert_eq!(plain.materials[0].origin.format, Format::MaterialX);
+    let default = shader("standard_surface", &[]);
+    assert_eq!(names(&default), ["a"]);
+    assert_close(default.materials[0].roughness, [0.04; 2], [0.04; 2]);
+    assert_eq!(default.materials[0].gamma, Interval::point(2.0));
+    assert_eq!(default.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
+    assert_eq!(default.materials[0].masking, None);
+    assert_eq!(default.materials[0].origin.format, Format::MaterialX);
 
     let mirror = shader("standard_surface", &[("specular_roughness", 0.0), ("metalness", 1.0)]);
     assert_eq!(mirror.materials[0].roughness, Roughness::Smooth);
@@ -67,9 +67,9 @@ fn standard_surface_follows_its_definition() {
 
 #[test]
 fn open_pbr_surface_follows_its_definition() {
-    let plain = shader("open_pbr_surface", &[]);
-    assert_close(plain.materials[0].roughness, [0.09; 2], [0.09; 2]);
-    assert_eq!(plain.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
+    let default = shader("open_pbr_surface", &[]);
+    assert_close(default.materials[0].roughness, [0.09; 2], [0.09; 2]);
+    assert_eq!(default.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
 
     let brushed = shader(
         "open_pbr_surface",

@@ -79,12 +79,12 @@ fn rough_plugins_take_alpha_as_written() {
 #[test]
 fn principled_squares_the_roughness() {
     let first = |class: &str, properties: &str| load("a.xml", &bsdf(class, properties));
-    let plain = first("principled", "");
-    assert_eq!(plain.materials[0].roughness, isotropic(0.25));
-    assert_eq!(plain.materials[0].gamma, Interval::point(2.0));
+    let default = first("principled", "");
+    assert_eq!(default.materials[0].roughness, isotropic(0.25));
+    assert_eq!(default.materials[0].gamma, Interval::point(2.0));
     // The documented default, specular = 0.5, is an index of 1.5.
-    let Some(Fresnel::Dielectric(eta)) = plain.materials[0].fresnel else {
-        panic!("{:?}", plain.materials[0].fresnel)
+    let Some(Fresnel::Dielectric(eta)) = default.materials[0].fresnel else {
+        panic!("{:?}", default.materials[0].fresnel)
     };
     assert!((eta - 1.5).abs() < 1e-15, "{eta}");
 

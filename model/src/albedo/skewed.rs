@@ -88,7 +88,7 @@ impl AlbedoIntegrator {
     /// from the x axis of the macrosurface); `weight` gives the reflectances, smooth in
     /// v·m ∈ [0, 1].
     ///
-    /// G1 of view and light are clamped at one, as in [`Ellipsoid::g1`], so that E ≤ 1 for weights
+    /// G1 of view and light are clamped at one, as in [`Ellipsoid`], so that E ≤ 1 for weights
     /// of one. cos θ = 0 is the limit of grazing views. From below the lobe's own horizon E
     /// approaches it only where cos θ is less than the projected area, which may be minute; where
     /// that area underflows, E is taken as 0.
@@ -190,9 +190,9 @@ impl AlbedoIntegrator {
         weight: &impl Fn(f64) -> [f64; N],
     ) -> [f64; N] {
         let mut sum = [0.0; N];
-        let plain = |at: f64| End { at, scale: f64::INFINITY };
+        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
         let cut = self.cut_across();
-        rule.graded(plain(-cut), plain(cut), PANEL, |w, jacobian| {
+        rule.graded(ungraded(-cut), ungraded(cut), PANEL, |w, jacobian| {
             let ratio =
                 (view.lambda + view.mu * self.shape.s().sqrt() * self.signed_slope(w)) / view.beta;
             let fresnel = weight(1.0 / (1.0 + ratio * ratio).sqrt());
@@ -379,9 +379,9 @@ impl AlbedoIntegrator {
         }
         let mut stops = vec![low];
         if view.mean != [0.0; 2] {
-            let plain = |at: f64| End { at, scale: f64::INFINITY };
+            let ungraded = |at: f64| End { at, scale: f64::INFINITY };
             let points = self.search_points(view, chord, [low.at, high.at]);
-            changes(&points, |w| reflected(w).excess(), |at| stops.push(plain(at)));
+            changes(&points, |w| reflected(w).excess(), |at| stops.push(ungraded(at)));
         }
         let centre = self.chord_centre(view, chord);
         if centre.scale < 0.5 * PANEL && low.at < centre.at && centre.at < high.at {

@@ -134,9 +134,9 @@ impl<'a> RadialAlbedo<'a> {
         let [near, far] = [view.cos / (1.0 + view.sin), (1.0 + view.sin) / view.cos]
             .map(|slope| libm::asinh(slope / self.marginal.sigma()));
         let rim = |at: f64| End { at, scale: near.clamp(1e-5, 0.05) };
-        let plain = |at: f64| End { at, scale: f64::INFINITY };
+        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
         let last = self.corners[self.corners.len() - 1];
-        let corners = self.corners.iter().copied().filter(|w| *w < far).map(plain);
+        let corners = self.corners.iter().copied().filter(|w| *w < far).map(ungraded);
         let mut stops: Vec<End> =
             [End { at: 0.0, scale: self.peak }].into_iter().chain(corners).collect();
         stops.extend([near, far].into_iter().filter(|w| *w < last).map(rim));

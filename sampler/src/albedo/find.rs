@@ -160,7 +160,7 @@ impl Tables {
     fn own<T>(
         &self,
         entry: &MaterialEntry,
-        bind: impl Fn(&Table, &Place) -> Option<T>,
+        read: impl Fn(&Table, &Place) -> Option<T>,
         serves: impl Fn(&Reflectance) -> bool,
     ) -> Result<T, MaterialError> {
         let place = Place { sigma: entry.round_sigma(), gamma: entry.gamma(), eta: f64::NAN };
@@ -168,7 +168,7 @@ impl Tables {
         let mut tables = self.albedos(Kind::Albedo, &lobe, entry.masking());
         let found = tables.find_map(|table| {
             let serves = table.subject.reflectance.as_ref().is_some_and(&serves);
-            serves.then(|| bind(table, &place)).flatten()
+            serves.then(|| read(table, &place)).flatten()
         });
         let remedy = "state its `fresnel` in its recipe, or bake it with --albedo";
         found.ok_or_else(|| MaterialError::NoAlbedo { name: entry.name.clone(), remedy })
@@ -188,14 +188,14 @@ impl Tables {
         self.tables().iter().filter(of)
     }
 
-    /// What `bind` makes of the first table of moments of a kind and masking that covers (σ, γ).
+    /// What `read` makes of the first table of moments of a kind and masking that covers (σ, γ).
     fn moments_of<T>(
         &self,
         kind: Kind,
         sigma: f64,
         gamma: f64,
         masking: Masking,
-        bind: impl Fn(&Table, &Place) -> Option<T>,
+        read: impl Fn(&Table, &Place) -> Option<T>,
     ) -> Result<T, MaterialError> {
         if !(0.0..f64::INFINITY).contains(&sigma) {
             return Err(MaterialError::Sigma(sigma));
@@ -207,7 +207,7 @@ impl Tables {
         let tables = || self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments);
         let place = Place { sigma, gamma, eta: f64::NAN };
         tables()
-            .find_map(|table| bind(table, &place))
+            .find_map(|table| read(table, &place))
             .ok_or_else(|| not_covered(tables, kind, sigma, gamma))
     }
 }

@@ -186,11 +186,11 @@ mod tests {
     #[test]
     fn there_and_back() {
         for axis in AXES {
-            let bound = axis.prepare(9);
+            let prepared = axis.prepare(9);
             for t in [0.0, 0.05, 0.3, 0.5, 0.77, 0.999] {
-                let [c, s] = bound.direction(t);
-                assert!((bound.coordinate(c, s) - t).abs() < 1e-14, "{axis:?}, {t}");
-                let (sin, cos) = libm::sincos(bound.quantity(t));
+                let [c, s] = prepared.direction(t);
+                assert!((prepared.coordinate(c, s) - t).abs() < 1e-14, "{axis:?}, {t}");
+                let (sin, cos) = libm::sincos(prepared.quantity(t));
                 assert!((sin - s).abs() < 1e-15 && (cos - c).abs() < 1e-15);
             }
         }
@@ -200,21 +200,21 @@ mod tests {
     fn the_fast_form_reads_the_nodes_about_the_coordinate() {
         for axis in AXES {
             let n = 17;
-            let bound = axis.prepare(n);
+            let prepared = axis.prepare(n);
             for i in 0..400 {
                 let t = (f64::from(i) + 0.3) / 400.0;
-                let [c, s] = bound.direction(t);
+                let [c, s] = prepared.direction(t);
                 // A function of low degree with the axis's own symmetry.
-                let f = |t: f64| libm::cos(bound.angle(t) * if axis.fold { 2.0 } else { 1.0 });
+                let f = |t: f64| libm::cos(prepared.angle(t) * if axis.fold { 2.0 } else { 1.0 });
                 // Three nodes on either side.
                 let cell = t * if axis.fold { n - 1 } else { n } as f64;
-                assert_eq!(bound.six(c, s)[2].0, cell as usize, "{axis:?}, {t}");
+                assert_eq!(prepared.six(c, s)[2].0, cell as usize, "{axis:?}, {t}");
                 let at =
                     |(i, w): (usize, f32)| f64::from(w) * f(axis.placement().node(i, n).unwrap());
-                let got: f64 = bound.six(c, s).into_iter().map(at).sum();
+                let got: f64 = prepared.six(c, s).into_iter().map(at).sum();
                 assert!((got - f(t)).abs() < 1e-4, "{axis:?}, {t}: {got} for {}", f(t));
             }
-            let shares: f64 = bound.circle().map(|(_, share)| share).sum();
+            let shares: f64 = prepared.circle().map(|(_, share)| share).sum();
             assert!((shares - 1.0).abs() < 1e-14);
         }
     }

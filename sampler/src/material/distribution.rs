@@ -6,8 +6,8 @@ use microfacet_common::Masking;
 use super::batch::same_lengths;
 use crate::error::BatchError;
 
-/// Below this roughness a surface counts as a mirror: single precision and path tracers gain nothing
-/// from its lobe, which is narrower than 0.06°. The limit of pbrt's `EffectivelySmooth`.
+/// Below this roughness a surface counts as a mirror: single precision and path tracers gain
+/// nothing from its lobe, which is narrower than 0.06°. The limit of pbrt's `EffectivelySmooth`.
 pub(crate) const SMOOTH: f32 = 1e-3;
 
 /// A distribution of microfacet normals whose parameters are fixed, under Smith's model.
@@ -38,7 +38,8 @@ pub(crate) const SMOOTH: f32 = 1e-3;
 /// # Ok::<(), microfacet_sampler::MaterialError>(())
 /// ```
 pub trait MicrofacetDistribution {
-    /// Normal distribution function D(m), with ∫ D(m) (m·n) dm = 1; 0 for m at or below the horizon.
+    /// Normal distribution function D(m), with ∫ D(m) (m·n) dm = 1; 0 for m at or below the
+    /// horizon.
     fn d(&self, m: Vec3) -> f32;
 
     /// Smith masking G1(v) ∈ [0, 1]: the visible share of the microsurface projected along `v`.
@@ -76,12 +77,12 @@ pub trait MicrofacetDistribution {
     /// Density of visible normals, G1(v) (v·m)⁺ D(m)/(v·n) (Heitz & d'Eon 2014, eq. 2,
     /// <https://doi.org/10.1111/cgf.12417>). That of reflected lights is this over 4 v·m.
     ///
-    /// 0 where `m` faces away or lies below the horizon; finite at grazing views. It is the analytic
-    /// density with the G1 of the tables.
+    /// 0 where `m` faces away or lies below the horizon; finite at grazing views. It is the
+    /// analytic density with the G1 of the tables.
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32;
 
-    /// Density with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m`: exact for
-    /// [`StudentT`](crate::StudentT), whose tables approximate
+    /// Density with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m`: exact
+    /// for [`StudentT`](crate::StudentT), whose tables approximate
     /// [`visible_normal_pdf`](Self::visible_normal_pdf), and that for all others.
     #[inline]
     fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {

@@ -79,11 +79,11 @@ impl AlbedoLobe {
     /// # Errors
     /// [`AlbedoError`] for parameters that describe no ellipsoid.
     pub(super) fn azimuth(&self) -> Result<Option<Azimuth>, AlbedoError> {
-        let plain = |sigma| Some(Azimuth { sigma, turn: 0.0, fold: true });
+        let untilted = |sigma| Some(Azimuth { sigma, turn: 0.0, fold: true });
         Ok(match *self {
             Self::Family(_) => None,
-            Self::StudentT { sigma, .. } => plain(sigma),
-            Self::Radial { sigma, .. } => plain([sigma; 2]),
+            Self::StudentT { sigma, .. } => untilted(sigma),
+            Self::Radial { sigma, .. } => untilted([sigma; 2]),
             Self::Ellipsoid { sigma, theta, gamma } => {
                 let (sigma, turn) = spread(&ellipsoid(sigma, theta, gamma)?);
                 Some(Azimuth { sigma, turn, fold: false })

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use microfacet_model::{Albedo, ParameterError};
 use microfacet_sampler::axis::ViewBlend;
 use microfacet_sampler::{
-    Albedo as Bound, Axis, Kind, LoadError, Mapping, Masking, MaterialError, Precision,
+    Albedo as TabulatedAlbedo, Axis, Kind, LoadError, Mapping, Masking, MaterialError, Precision,
     Reflectance, Table,
 };
 
@@ -125,7 +125,7 @@ pub enum AlbedoError {
     /// The lobe has no such albedo.
     Lobe(String),
     /// A table does not cover the material it was baked for.
-    Bind(MaterialError),
+    Material(MaterialError),
     /// The tables could not be loaded.
     Table(LoadError),
 }
@@ -141,7 +141,7 @@ impl fmt::Display for AlbedoError {
                 write!(f, "quadrature error {error:e} at {at}: raise the tolerance")
             }
             Self::Lobe(why) => why.fmt(f),
-            Self::Bind(why) => why.fmt(f),
+            Self::Material(why) => why.fmt(f),
             Self::Table(why) => why.fmt(f),
         }
     }
@@ -157,7 +157,7 @@ impl From<ParameterError> for AlbedoError {
 
 impl From<MaterialError> for AlbedoError {
     fn from(why: MaterialError) -> Self {
-        Self::Bind(why)
+        Self::Material(why)
     }
 }
 
@@ -302,7 +302,9 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
     // The averages also cover the outer nodes, which the table's own range leaves out.
     let mut whole = directional.clone();
     whole.subject.covers = spec.everywhere();
-    let at = |(gamma, sigma): (f64, f64)| Ok(Bound::from_table(&whole, sigma, gamma)?.integrate());
+    let at = |(gamma, sigma): (f64, f64)| {
+        Ok(TabulatedAlbedo::from_table(&whole, sigma, gamma)?.integrate())
+    };
     let pairs = gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| (gamma, sigma)));
     let values = pairs.map(at).collect::<Result<Vec<_>, MaterialError>>()?;
     Ok(Table {

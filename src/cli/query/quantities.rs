@@ -110,7 +110,7 @@ impl<'a> Point<'a> {
         DVec3::new(sin * self.phi.cos(), sin * self.phi.sin(), cos)
     }
 
-    fn bound(&self) -> Result<StudentT, String> {
+    fn lobe(&self) -> Result<StudentT, String> {
         self.set.student_t(self.sigma, self.gamma).map_err(|why| why.to_string())
     }
 
@@ -140,8 +140,8 @@ impl Quantity for G1 {
         let v = at.view();
         Ok(match method {
             Method::Table => {
-                let bound = at.bound()?;
-                vec![bound.lambda(v.as_vec3()).to_string(), bound.g1(v.as_vec3()).to_string()]
+                let lobe = at.lobe()?;
+                vec![lobe.lambda(v.as_vec3()).to_string(), lobe.g1(v.as_vec3()).to_string()]
             }
             Method::Exact => vec![at.exact().lambda(v).to_string(), at.exact().g1(v).to_string()],
         })
@@ -169,9 +169,9 @@ impl Quantity for Normal {
         let v = at.view();
         Ok(match method {
             Method::Table => {
-                let bound = at.bound()?;
-                let m = bound.sample_visible_normal(v.as_vec3(), at.u.map(|u| u as f32));
-                [m.x, m.y, m.z, bound.visible_normal_pdf(v.as_vec3(), m)]
+                let lobe = at.lobe()?;
+                let m = lobe.sample_visible_normal(v.as_vec3(), at.u.map(|u| u as f32));
+                [m.x, m.y, m.z, lobe.visible_normal_pdf(v.as_vec3(), m)]
                     .map(|x| x.to_string())
                     .into()
             }

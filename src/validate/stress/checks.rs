@@ -156,8 +156,8 @@ impl Checker<'_> {
         let l = direction(1.5 * f64::from(at.u[1]), at.phi + 2.0);
         for masking in Masking::ALL {
             let (g2, swapped) = (self.lobe.g2(v, l, masking), self.lobe.g2(l, v, masking));
-            let bound = f64::from(g2) <= g1.min(self.lobe.g1(l).into()) * (1.0 + ULP4);
-            self.require(g2 >= 0.0 && bound, "g2 outside [0, min g1]", g2.into(), at);
+            let limited = f64::from(g2) <= g1.min(self.lobe.g1(l).into()) * (1.0 + ULP4);
+            self.require(g2 >= 0.0 && limited, "g2 outside [0, min g1]", g2.into(), at);
             self.require(g2 == swapped, "g2 not symmetric", (g2 - swapped).into(), at);
         }
     }
