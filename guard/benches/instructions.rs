@@ -27,7 +27,7 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(164.4))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(434.9))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(423.0))]
 fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
@@ -60,7 +60,7 @@ fn g1_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(284.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(278.1))]
 fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (
@@ -70,7 +70,7 @@ fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(2404.4))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(2458.9))]
 fn table_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.table_pdf(*v, *m))).sum()), inputs)
@@ -82,13 +82,13 @@ fn closed_form() -> Inputs<Ggx> {
 }
 
 #[library_benchmark]
-#[bench::closed_form(setup = closed_form, config = at_most(34.1))]
+#[bench::closed_form(setup = closed_form, config = at_most(23.0))]
 fn ggx_g1(inputs: Inputs<Ggx>) -> (f32, Inputs<Ggx>) {
     (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::closed_form(setup = closed_form, config = at_most(192.8))]
+#[bench::closed_form(setup = closed_form, config = at_most(174.8))]
 fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
