@@ -44,7 +44,7 @@
 //! let integrator = AlbedoIntegrator::new(Shape::new(3.0)?, 1e-9); // tolerance
 //! let albedo = integrator.reflection(0.5, 0.8, |_| [1.0])?; // sigma, cos theta, weights
 //! let [e] = albedo.of(Masking::HeightCorrelated);
-//! assert!(e > 0.9 && e < 1.0);
+//! assert!(e > 0.8 && e < 1.0);
 //! # Ok::<(), microfacet_model::ParameterError>(())
 //! ```
 //!

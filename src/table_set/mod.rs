@@ -195,9 +195,10 @@ impl std::error::Error for BakeError {}
 /// Bakes and certifies the tables of a plan, in memory, with the default [`Settings`].
 ///
 /// ```
-/// use microfacet_bake::table_set::{Target, bake};
 /// use microfacet_bake::plan::{Options, Plan};
 /// use microfacet_bake::scene::Scene;
+/// use microfacet_bake::table_set::{Target, bake};
+/// use microfacet_sampler::MicrofacetDistribution;
 ///
 /// let recipe = "[[material]]\nname = \"glass\"\nsigma = 0.454\ngamma = 3.0\n";
 /// let plan = Plan::new(&Scene::from_recipe_str(recipe).unwrap(), Options::default()).unwrap();
