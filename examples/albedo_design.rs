@@ -72,9 +72,9 @@ const DESIGNS: [Design; 14] = [
 /// Names of the columns, and which σ and cosine belong to each.
 type Part = (&'static str, fn(f64, f64) -> bool);
 const PARTS: [Part; 4] = [
-    ("σ ≥ 0.01, μ ≥ 0.02", |sigma, cos| sigma >= 0.01 && (0.02..0.98).contains(&cos)),
-    ("σ ≥ 0.01, μ > 0.98", |sigma, cos| sigma >= 0.01 && cos >= 0.98),
-    ("μ < 0.02", |sigma, cos| sigma >= 0.01 && cos < 0.02),
+    ("σ ≥ 0.01, 0.02 ≤ μ < 0.98", |sigma, cos| sigma >= 0.01 && (0.02..0.98).contains(&cos)),
+    ("σ ≥ 0.01, μ ≥ 0.98", |sigma, cos| sigma >= 0.01 && cos >= 0.98),
+    ("σ ≥ 0.01, μ < 0.02", |sigma, cos| sigma >= 0.01 && cos < 0.02),
     ("σ < 0.01", |sigma, _| sigma < 0.01),
 ];
 

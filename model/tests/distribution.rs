@@ -130,16 +130,16 @@ fn samplers_draw_the_visible_normals() {
             let exact = |_: [f32; 2]| {
                 material.sample_visible_by_rejection(v, &mut || random.random()).as_vec3()
             };
-            let judgement = test_visible_normals(&material, v, 100_000, 5, exact);
-            assert!(judgement.p() > 1e-4, "exact, gamma {gamma}, theta {theta}: {judgement:?}");
+            let outcome = test_visible_normals(&material, v, 100_000, 5, exact);
+            assert!(outcome.p() > 1e-4, "exact, gamma {gamma}, theta {theta}: {outcome:?}");
             let inverse =
                 |u: [f32; 2]| material.sample_visible_normal(v, u.map(f64::from)).as_vec3();
-            let judgement = test_visible_normals(&material, v, 20_000, 5, inverse);
-            assert!(judgement.p() > 1e-4, "inverse, gamma {gamma}, theta {theta}: {judgement:?}");
+            let outcome = test_visible_normals(&material, v, 20_000, 5, inverse);
+            assert!(outcome.p() > 1e-4, "inverse, gamma {gamma}, theta {theta}: {outcome:?}");
         }
         // At normal incidence visible normals are the NDF weighted by m·n, which sample_ndf draws.
         let draw = |u: [f32; 2]| -> Vec3 { material.sample_ndf(u.map(f64::from)).as_vec3() };
-        let judgement = test_visible_normals(&material, DVec3::Z, 100_000, 5, draw);
-        assert!(judgement.p() > 1e-4, "ndf, gamma {gamma}: {judgement:?}");
+        let outcome = test_visible_normals(&material, DVec3::Z, 100_000, 5, draw);
+        assert!(outcome.p() > 1e-4, "ndf, gamma {gamma}: {outcome:?}");
     }
 }

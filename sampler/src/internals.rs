@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use crate::StudentT;
+use crate::{Albedo, StudentT};
 
 pub use crate::axis::hermite::limit_slopes;
 pub use crate::format::{describe, reassemble, seal, seal_document};
@@ -17,4 +17,10 @@ pub use crate::format::{describe, reassemble, seal, seal_document};
 /// fast. x may end at ±∞.
 pub fn table_joints(lobe: &StudentT, v: Vec3) -> [Vec<f64>; 2] {
     lobe.table_joints(v)
+}
+
+/// The averages by quadrature of the interpolated albedo, in the form of the channels of
+/// `albedo_average` tables.
+pub fn average_channels(albedo: &Albedo) -> [f32; 3] {
+    albedo.integrate()
 }

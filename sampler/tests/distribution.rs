@@ -44,10 +44,10 @@ fn judge(case: &[f64; 5], gamma_of_truth: f64, samples: usize) -> NormalsTest {
 fn tables_draw_the_analytic_distribution() {
     let level = sidak(LEVEL, 2 * CASES.len());
     for case in &CASES {
-        let judgement = judge(case, case[2], SAMPLES);
-        assert!(judgement.p() > level, "{case:?}: {judgement:?}");
+        let outcome = judge(case, case[2], SAMPLES);
+        assert!(outcome.p() > level, "{case:?}: {outcome:?}");
         // 1.95/√n is the 0.1 per cent point of the Kolmogorov distribution.
-        assert!(judgement.ks < 1.95 / (SAMPLES as f64).sqrt(), "{case:?}: {judgement:?}");
+        assert!(outcome.ks < 1.95 / (SAMPLES as f64).sqrt(), "{case:?}: {outcome:?}");
     }
 }
 
@@ -57,8 +57,8 @@ fn a_gamma_one_per_cent_off_is_rejected() {
     // Where one per cent of γ changes the distribution by more than the samples can miss: not at
     // γ ≥ 7, nor straight from above.
     for case in CASES.iter().filter(|case| case[2] < 2.6 && case[3] > 0.5) {
-        let judgement = judge(case, case[2] * 1.01, 1_500_000);
-        assert!(judgement.p() < level, "{case:?} was accepted: {judgement:?}");
+        let outcome = judge(case, case[2] * 1.01, 1_500_000);
+        assert!(outcome.p() < level, "{case:?} was accepted: {outcome:?}");
     }
 }
 
@@ -68,9 +68,9 @@ fn a_turned_frame_is_rejected_by_the_world_test() {
     let bound = tables.student_t([0.5, 0.2], 3.0).unwrap();
     let truth = model::StudentT::new([0.5, 0.2], 3.0).unwrap();
     let v = DVec3::new(0.5, 0.4, 0.768_114_574_786_860_8);
-    let judgement = test_visible_normals(&truth, v, SAMPLES, 7, |u| {
+    let outcome = test_visible_normals(&truth, v, SAMPLES, 7, |u| {
         let m = bound.sample_visible_normal(v.as_vec3(), u);
         glam::Vec3::new(m.x, -m.y, m.z)
     });
-    assert!(judgement.world.p < 1e-10, "{judgement:?}");
+    assert!(outcome.world.p < 1e-10, "{outcome:?}");
 }

@@ -51,8 +51,8 @@ fn normals_have_the_analytic_distribution() {
         test_visible_normals(&truth, v.as_dvec3(), SAMPLES, 11, |u| ggx.sample_visible_normal(v, u))
     };
     for (sigma, view) in cases {
-        let judgement = judge(sigma, view, 2.0);
-        assert!(judgement.p() > level, "{sigma:?} {view:?}: {judgement:?}");
+        let outcome = judge(sigma, view, 2.0);
+        assert!(outcome.p() > level, "{sigma:?} {view:?}: {outcome:?}");
     }
     // The test can fail: it sees another shape.
     assert!(judge([0.3, 0.3], [0.8, -2.5], 2.1).p() < level);

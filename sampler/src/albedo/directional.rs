@@ -84,7 +84,7 @@ impl Albedo {
 
     /// The averages by quadrature of the interpolated albedo, in the form of the tables' channels:
     /// the values of tables of averages.
-    pub fn integrate(&self) -> [f32; 3] {
+    pub(crate) fn integrate(&self) -> [f32; 3] {
         less_mirror(self.curve.average(|rows, view, cos| {
             let [e, bias, f82] = self.at(rows, view, cos).map(f64::from);
             let mirror = Moments::mirror(cos);
