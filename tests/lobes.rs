@@ -7,6 +7,7 @@ use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
 use microfacet_model as model;
+use microfacet_model::classic::Gtr;
 use microfacet_sampler::{
     Ggx, Lobe, Masking, MicrofacetDistribution, Precision, Skew, StudentT, Tables,
 };
@@ -178,6 +179,11 @@ fn both_precisions_mean_the_same() {
     let (ggx, truth) = (Ggx::new(0.3_f32).unwrap(), model::StudentT::new(0.3_f32, 2.0).unwrap());
     let errors = apart(&ggx, &truth);
     assert!(errors.iter().all(|error| *error < 3e-6), "{errors:?}");
+    // A distribution outside the family has tables of its own.
+    let gtr = Gtr::new(0.2, 1.5).unwrap();
+    let truth = model::classic::Radial::new(&gtr);
+    let [g1, .., weight] = apart(&set().material("paint").unwrap(), &truth);
+    assert!(g1 < 1e-5 && weight < 1e-5, "{g1} {weight}");
     // It can fail: another roughness is another lobe.
     let other = model::StudentT::new(0.301, 2.0).unwrap();
     assert!(!close(apart(&ggx, &other)));

@@ -10,7 +10,7 @@
 //!
 //! | to | use |
 //! | --- | --- |
-//! | evaluate and sample a lobe | [`MicrofacetDistribution`] of [`StudentT`] and [`Ellipsoid`] |
+//! | evaluate and sample a lobe | [`MicrofacetDistribution`] of [`StudentT`], [`Ellipsoid`] and [`classic::Radial`] |
 //! | draw visible normals without inverting a CDF | [`StudentT::sample_visible_by_rejection`] |
 //! | integrate an albedo | [`AlbedoIntegrator`], [`classic::RadialAlbedo`] |
 //! | scatter more than once | [`StudentT::walk`] |

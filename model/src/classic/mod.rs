@@ -10,6 +10,7 @@ mod gauss;
 mod gtr;
 mod marginal;
 mod member;
+mod radial;
 mod schlick;
 mod tabulated;
 
@@ -25,6 +26,7 @@ pub use gauss::Gauss;
 pub use gtr::Gtr;
 pub use marginal::{Across, Beyond, Marginal, MarginalView, Shares, resolved};
 pub use member::Member;
+pub use radial::Radial;
 pub use schlick::Schlick;
 pub use tabulated::{Tabulated, TabulatedError};
 
