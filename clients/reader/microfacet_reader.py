@@ -49,6 +49,11 @@ class Tables:
         return None
 
 
+def inside(x, ends):
+    """Whether x is in a range, but for rounding."""
+    return ends[0] * (1 - 1e-9) <= x <= ends[1] * (1 + 1e-9)
+
+
 def window(nodes, k, t):
     """The first of the k nodes about t, and their Lagrange weights."""
     start = min(max(np.searchsorted(nodes, t, "right") - k // 2, 0), len(nodes) - k)
@@ -108,7 +113,9 @@ class StudentT:
     def __init__(self, tables, sigma, gamma):
         self.sigma, self.gamma, self.s = np.broadcast_to(sigma, 2), gamma, 1 / (gamma - 1)
         kinds = ["shadowing", "visible_slope", "visible_slope_peeled", "visible_slope_conditional"]
-        g1, whole, peeled, across = (tables.find(kind, lambda table: [self.s]) for kind in kinds)
+        covers = lambda table: inside(self.s, table["covers"]["s"])
+        found = (tables.find(kind, lambda table: [self.s], covers) for kind in kinds)
+        g1, whole, peeled, across = found
         if not (g1 and (whole or peeled) and across):
             raise ValueError(f"no tables for gamma {gamma}")
         view, self.g = g1[0]["axes"][1]["mapping"], g1[1]
@@ -193,7 +200,6 @@ class Albedo:
 
     def __init__(self, tables, sigma, gamma, masking):
         self.sigma, self.masking, self.mirror = sigma, masking, False
-        inside = lambda x, ends: ends[0] * (1 - 1e-9) <= x <= ends[1] * (1 + 1e-9)
 
         def covers(table):
             ranges = table["covers"]

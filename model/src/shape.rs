@@ -174,7 +174,8 @@ impl Shape {
     ///
     /// `w` is [`asinh_slope(z)`](Self::asinh_slope). Λ = E[(X − z)⁺]/z; ∞ at z = 0 and 0 at z = ∞.
     /// Relative accuracy 1e-12 wherever Λ is a normal double (measured 8e-16 against 200-digit
-    /// values where no power is large).
+    /// values where no power is large); of Beckmann 5e-13 up to z = 8, where Λ is 4e-32, and 8e-11
+    /// where it ends, at z = 26.
     pub fn lambda(&self, w: AsinhSlope) -> f64 {
         if w == 0.0 {
             return f64::INFINITY;
@@ -186,7 +187,7 @@ impl Shape {
     }
 
     /// (exp(−z²)/(z√π) − erfc z)/2. The difference cancels to one part in 2z² for large z, where Λ
-    /// itself is of the order of exp(−z²): at z = 8 Λ is 1e-29, with thirteen digits.
+    /// itself is of the order of exp(−z²): at z = 8 Λ is 4e-32, with twelve digits.
     fn beckmann_lambda(&self, z: f64) -> f64 {
         if z > 27.5 {
             return 0.0; // below the smallest subnormal

@@ -1,9 +1,10 @@
 //! The inverse CDF of the in-plane slope of visible normals, over view and u₁.
 //!
-//! A node holds the distance g of the half tangent h = x/(1 + √(1+x²)) of the unit slope from its
-//! nearer end, and the exact derivative. The largest CDF error between the nodes, for several
-//! designs of 65 views by 2·17 random numbers with cubic Hermite interpolation along u and linear
-//! interpolation between views, as `cargo run --release --example table_design` prints it:
+//! A node holds the distance g of the half tangent h = x/(1 + √(1+x²)) of the unit slope from the
+//! end of its half, g = 1 + h for u ≤ ½ and 1 − h above, and the exact derivative. The largest CDF
+//! error between the nodes, for several designs of 65 views by 2·17 random numbers with cubic
+//! Hermite interpolation along u and linear interpolation between views, as `cargo run --release
+//! --example table_design` prints it:
 //!
 //! | stored | view axis | u | γ = 1.8 | 2 | 4 | ∞ |
 //! | --- | --- | --- | --- | --- | --- | --- |

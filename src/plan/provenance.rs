@@ -28,7 +28,7 @@ const CONVENTIONS: [(&str, &str); 10] = [
     ),
     (
         "visible_slope",
-        "value = distance of h = x/(1+sqrt(1+x^2)) from the nearer end: 1+h for u <= 1/2, 1-h above",
+        "value = distance of h = x/(1+sqrt(1+x^2)) from the end of its half: 1+h for u <= 1/2, 1-h above",
     ),
     (
         "visible_slope_peeled",

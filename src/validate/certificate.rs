@@ -27,7 +27,7 @@ pub const POINTS: usize = 4000;
 /// The range of s of all shapes.
 pub const ALL_SHAPES: [f64; 2] = [0.0, S_END];
 
-/// Half an ulp of the largest numbers below 1. The rounding of single precision differs from point
+/// One ulp of f32 just below 1. The rounding of single precision differs from point
 /// to point; this margin is left for points that were not measured.
 pub(super) const ROUNDING: f64 = 1.0 / 16_777_216.0;
 

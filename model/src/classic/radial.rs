@@ -8,8 +8,8 @@ use crate::distribution::MicrofacetDistribution;
 /// An isotropic distribution outside the Student-t family as a lobe, such as GTR or a measured one.
 ///
 /// Every function integrates D over slopes, and sampling inverts such integrals by bisection, to
-/// 1e-10 of the CDFs: a visible normal takes a fraction of a millisecond. `microfacet-sampler` has a
-/// `Radial` of the same functions from tables.
+/// 1e-10 of the CDFs: a visible normal takes a fraction of a millisecond. `microfacet-sampler` has
+/// a `Radial` of the same functions from tables.
 ///
 /// ```
 /// use glam::DVec3;

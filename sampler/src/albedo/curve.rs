@@ -12,7 +12,7 @@ use microfacet_common::shape::s_of_gamma;
 use crate::axis::lagrange::{SIX, combine, six};
 use crate::axis::{Mapping, PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend, Weights};
 use crate::error::MaterialError;
-use crate::format::{Covered, Kind, Reflectance, Table};
+use crate::format::{Covered, Kind, Reflectance, SAME, Table};
 
 /// The largest number of channels of an albedo table.
 const CHANNELS: usize = 4;
@@ -44,7 +44,9 @@ impl Collapsed {
             let quantity = match axis.mapping {
                 Mapping::LogShape(_) => place.gamma,
                 Mapping::LogRoughness(_) => {
-                    if !covers(table.subject.covers?, place) {
+                    let covers = table.subject.covers?;
+                    let s = s_of_gamma(place.gamma);
+                    if !(covers.contains_shape(s) && covers.contains_sigma(place.sigma)) {
                         return None;
                     }
                     let first = axis.quantity(axis.nodes[0])?;
@@ -59,15 +61,6 @@ impl Collapsed {
         }
         Some(collapsed)
     }
-}
-
-/// Two numbers are the same within this after a coordinate and its inverse.
-const SAME: f64 = 1e-9;
-
-fn covers(Covered { s, sigma }: Covered, place: &Place) -> bool {
-    let within = |[min, max]: [f64; 2], x: f64| x >= min - SAME * min && x <= max + SAME * max;
-    // 1/(γ−1) of the largest s may round to just outside, too.
-    within(s, s_of_gamma(place.gamma)) && sigma.is_some_and(|sigma| within(sigma, place.sigma))
 }
 
 /// N albedos of one material as functions of the view.

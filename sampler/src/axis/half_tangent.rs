@@ -2,10 +2,11 @@
 //! α = x.
 //!
 //! It is the coordinate of views, for z = cot θ/σ ≥ 0, and what tables of slopes hold, for x of
-//! either sign: there as the distance g = 1 − |h| from the nearer end of [−1, 1], so that both
-//! tails keep their digits. The slope follows from g without a division or a root, as the quotient
-//! ±2(1−g) : g(2−g), and the silhouette x = −cot θ is g = 1 − τ, linear in the coordinate τ of the
-//! view. Slopes are written x : z where z may be 0.
+//! either sign: there as the distance g from an end of [−1, 1], 1 + h for the half u ≤ ½ of the
+//! random numbers and 1 − h for the other, so that both tails keep their digits. The slope follows
+//! from g without a division or a root, as the quotient ±2(1−g) : g(2−g), and the silhouette x =
+//! −cot θ is g = 1 − τ, linear in the coordinate τ of the view. Slopes are written x : z where z
+//! may be 0.
 
 use serde::{Deserialize, Serialize};
 use wide::f32x4;
@@ -101,7 +102,7 @@ pub fn rate(x: f64, z: f64) -> f64 {
     angle_rate(x, z) * (z * z / (x * x + z * z))
 }
 
-/// The slope x : z whose half tangent is the distance g ∈ [0, 1] from 1.
+/// The slope x : z whose half tangent is the distance g ∈ [0, 2] from 1.
 pub fn slope_at(g: f64) -> [f64; 2] {
     [2.0 * (1.0 - g), g * (2.0 - g)]
 }

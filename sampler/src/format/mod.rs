@@ -18,3 +18,4 @@ pub use subject::{Covered, LobeEntry, Reflectance, Side, Subject};
 pub use table::Table;
 
 pub(crate) use container::decode;
+pub(crate) use subject::SAME;

@@ -156,6 +156,26 @@ pub struct Covered {
     pub sigma: Option<[f64; 2]>,
 }
 
+/// Two numbers are the same within this after a coordinate and its inverse: 1/(γ−1) of the end of a
+/// range may round to just outside it.
+pub(crate) const SAME: f64 = 1e-9;
+
+impl Covered {
+    /// Whether the shape s = 1/(γ−1) is among them.
+    pub(crate) fn contains_shape(&self, s: f64) -> bool {
+        within(self.s, s)
+    }
+
+    /// Whether the roughness σ is; false of tables without an axis of σ.
+    pub(crate) fn contains_sigma(&self, sigma: f64) -> bool {
+        self.sigma.is_some_and(|range| within(range, sigma))
+    }
+}
+
+fn within([min, max]: [f64; 2], x: f64) -> bool {
+    x >= min - SAME * min && x <= max + SAME * max
+}
+
 /// What a table is of, besides its kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Subject {

@@ -32,7 +32,8 @@ pub struct Bounded<'a> {
 }
 
 impl StudentT {
-    /// Prepares the visible normals of `v` for reflection; costs two searches in the table.
+    /// Prepares the visible normals of `v` for reflection; costs two searches in the table, as much
+    /// as some thirty samples.
     ///
     /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
     pub fn bounded(&self, v: Vec3) -> Bounded<'_> {

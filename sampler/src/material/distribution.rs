@@ -6,21 +6,23 @@ use microfacet_common::Masking;
 use super::batch::same_lengths;
 use crate::error::BatchError;
 
-/// Below this roughness a surface counts as a mirror: single precision and path tracers gain
-/// nothing from its lobe, which is narrower than 0.06°. The limit of pbrt's `EffectivelySmooth`.
+/// Below this mean absolute slope a surface counts as a mirror. For GGX it is α, which pbrt's
+/// `EffectivelySmooth` compares with the same number; for γ near 3/2 it is much larger than σ,
+/// since a few steep normals take much of what is seen.
 pub(crate) const SMOOTH: f32 = 1e-3;
 
-/// A distribution of microfacet normals whose parameters are fixed, under Smith's model.
+/// A lobe: a distribution of microfacet normals whose parameters are fixed, under Smith's model.
 ///
 /// It is what renderers know as `TrowbridgeReitzDistribution` (pbrt) or `MicrofacetDistribution`
-/// (Mitsuba). The trait of the same name in `microfacet-model` has the same functions in double
-/// precision, with the same arguments in the same order.
+/// (Mitsuba); σ is their α. The trait of the same name in `microfacet-model` has D, G1, Λ, G2,
+/// weights, visible normals and densities in double precision, with the same arguments in the same
+/// order. Smith's model: Heitz 2014, *Understanding the masking-shadowing function in
+/// microfacet-based BRDFs*, <https://jcgt.org/published/0003/02/03/>.
 ///
 /// Directions are unit vectors in the tangent frame, n = +z. `v` is the view, `l` the light, `m` a
-/// microfacet normal; densities are per steradian. Views and lights at or below the horizon have
-/// G1 = 0 and Λ = ∞; sampling takes such a view at the horizon. A vector that is not of unit length
-/// gives finite numbers without meaning. Smith's model: Heitz 2014, *Understanding the
-/// masking-shadowing function in microfacet-based BRDFs*, <https://jcgt.org/published/0003/02/03/>.
+/// microfacet normal; densities are per steradian. Everything is one-sided: views and lights at or
+/// below the horizon have G1 = 0 and Λ = ∞, so flip a direction on the other side of a transmitting
+/// surface. Sampling, and the density of what is sampled, take a view below the horizon at it.
 ///
 /// ```
 /// use glam::Vec3;
@@ -61,8 +63,8 @@ pub trait MicrofacetDistribution {
     /// The weight f·cos θ_l/pdf of a light reflected off a [sampled](Self::sample_visible_normal)
     /// visible normal, without Fresnel: G2(v, l)/G1(v) ∈ [0, 1].
     ///
-    /// Formed as that and not as a quotient of densities, both of which overflow near the horizon.
-    /// 0 when `v` or `l` is at or below the horizon.
+    /// Computed as G2/G1; dividing f·cos θ_l by the density would overflow near the horizon. 0 when
+    /// `v` or `l` is at or below the horizon.
     #[inline]
     fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
         if v.z > 0.0 { masking.g2_over_g1(self.g1(v), self.g1(l)) } else { 0.0 }
@@ -70,34 +72,44 @@ pub trait MicrofacetDistribution {
 
     /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them).
     ///
-    /// It has unit length to 4 ulp, lies above the horizon, and faces the view to rounding
+    /// From tables `u[0]` chooses the slope along the azimuth of the view and `u[1]` that across,
+    /// both rising, so that stratified numbers give stratified normals; each lobe says more. It has
+    /// unit length to 4 ulp, lies above the horizon, and faces the view to rounding
     /// (v·m > −5e-7).
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3;
 
-    /// Density of visible normals, G1(v) (v·m)⁺ D(m)/(v·n) (Heitz & d'Eon 2014, eq. 2,
-    /// <https://doi.org/10.1111/cgf.12417>). That of reflected lights is this over 4 v·m.
+    /// Density of visible normals, (v·m)⁺ D(m)/A(v), with A the projected area of the microsurface
+    /// (Heitz & d'Eon 2014, eq. 2, <https://doi.org/10.1111/cgf.12417>). 1/A is G1(v)/(v·n), but
+    /// for a tilted lobe where its G1 is clamped to 1. The density of reflected lights is this over
+    /// 4 v·m.
     ///
     /// 0 where `m` faces away or lies below the horizon; finite at grazing views. It is the
-    /// analytic density with the G1 of the tables.
+    /// analytic density with the area from the tables.
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32;
 
-    /// Density with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m`: exact
-    /// for [`StudentT`](crate::StudentT), whose tables approximate
-    /// [`visible_normal_pdf`](Self::visible_normal_pdf), and that for all others.
+    /// Density with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m`, the
+    /// tables' errors included: an estimator that divides by it is unbiased.
+    ///
+    /// [`Radial`](crate::Radial) alone returns [`visible_normal_pdf`](Self::visible_normal_pdf)
+    /// here, from which its samples differ by the errors of its tables.
     #[inline]
     fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         self.visible_normal_pdf(v, m)
     }
 
-    /// A visible normal and its density.
+    /// A visible normal and its analytic density, [`visible_normal_pdf`](Self::visible_normal_pdf).
+    ///
+    /// The samples differ from it by the errors of the tables, some 1e-4 of the CDF; where that
+    /// bias matters divide by [`table_pdf`](Self::table_pdf).
     #[inline]
     fn sample_with_pdf(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
         let m = self.sample_visible_normal(v, u);
         (m, self.visible_normal_pdf(v, m))
     }
 
-    /// Whether the lobe is so narrow that a renderer should treat the surface as a mirror: all
-    /// roughnesses, and the mean slope of a tilted lobe, are below 1e-3.
+    /// Whether the lobe is so narrow that a renderer should treat the surface as a mirror: its mean
+    /// absolute slope, in the rougher direction, is below 1e-3 (for GGX: α < 1e-3), and so is the
+    /// slope of its mean normal.
     fn is_effectively_smooth(&self) -> bool;
 
     /// Bytes of table that lookups touch; 0 for closed forms.

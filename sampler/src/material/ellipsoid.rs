@@ -12,6 +12,7 @@ use super::sample::{HORIZON, above_horizon};
 use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::Slope;
 use crate::error::MaterialError;
+use crate::math::sqrt;
 
 /// The entries of a [`Skew`] in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -200,9 +201,26 @@ impl MicrofacetDistribution for Ellipsoid {
         masking.g2(unclamped.min(1.0), self.g1(l)) / unclamped
     }
 
+    /// The lobe's own, taken through the matrix. Views below the lobe's horizon draw from the
+    /// analytic density.
+    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        let w = self.to_unit(v);
+        if !(m.z > 0.0 && w.z >= 0.0) {
+            return self.visible_normal_pdf(v, m);
+        }
+        let Matrix { p, q, r, x, y } = self.matrix;
+        // U⁻ᵀm, whose length cubed is the ratio of solid angles.
+        let uy = (m.y - y * m.z) / r;
+        let unit = Vec3::new((m.x - x * m.z - q * uy) / p, uy, m.z);
+        let length = sqrt(unit.dot(unit));
+        let stretch = 1.0 / (p * r * length) / (length * length);
+        (self.lobe.table_pdf(w, unit / length) * stretch).min(f32::MAX)
+    }
+
     fn is_effectively_smooth(&self) -> bool {
         let Matrix { p, q, r, x, y } = self.matrix;
-        [p, q, r, x, y].into_iter().all(|entry| entry.abs() < SMOOTH)
+        let spread = self.lobe.mean_slope() * p.max(q.abs()).max(r);
+        [spread, x, y].into_iter().all(|slope| slope.abs() < SMOOTH)
     }
 
     fn bytes(&self) -> usize {

@@ -162,7 +162,7 @@ impl MicrofacetDistribution for Radial {
     }
 
     fn is_effectively_smooth(&self) -> bool {
-        self.sigma() < SMOOTH
+        self.sigma() * self.plane.mean_slope() < SMOOTH
     }
 
     fn bytes(&self) -> usize {

@@ -1,7 +1,7 @@
 //! Sampling visible normals by two table lookups.
 //!
 //! The in-plane slope x and the slope across t are independent (see the model crate), so one lookup
-//! inverts each CDF. A table holds the distance of the slope's half tangent from the nearer end,
+//! inverts each CDF. A table holds the distance of the slope's half tangent from an end,
 //! see [`half_tangent`](crate::axis::half_tangent); there the silhouette is linear in the view
 //! coordinate, so no sampled normal faces away, however coarse the table.
 

@@ -6,14 +6,21 @@ use alloc::vec::Vec;
 
 use crate::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
 use crate::axis::{
-    Axis, HalfTangent, Interpolation, InverseShape, Mapping, MirroredRoot, Rational,
+    Axis, HalfTangent, Interpolation, InverseShape, Mapping, MirroredRoot, Rational, Weights,
 };
 use crate::error::MaterialError;
 use crate::format::{Kind, Table};
 
+/// Weights along the γ axis at s; `None` for a shape that the table was not baked and measured for,
+/// though its axis may reach there.
+fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
+    let covered = table.subject.covers.is_none_or(|covers| covers.contains_shape(s));
+    if covered { table.axes[0].weights(s) } else { None }
+}
+
 /// Whether the table covers s.
 pub(crate) fn covers(table: &Table, s: f64) -> bool {
-    table.axes[0].weights(s).is_some()
+    shape_weights(table, s).is_some()
 }
 
 /// A (value, slope) table without its γ axis.
@@ -41,7 +48,7 @@ fn pairs(values: &[f32]) -> Vec<Node> {
 }
 
 fn slice(table: &Table, s: f64) -> Option<Vec<Node>> {
-    Some(pairs(&table.collapsed(&[table.axes[0].weights(s)?])))
+    Some(pairs(&table.collapsed(&[shape_weights(table, s)?])))
 }
 
 /// Slices of one shape.
@@ -174,12 +181,9 @@ fn coverage(tables: &[Table], kinds: &[Kind]) -> String {
         if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
             parts.extend(axis.nodes.iter().rev().map(|&s| format!("gamma = {}", gamma(s))));
         } else {
+            let [low, high] = table.subject.covers.map_or(axis.ends(), |covers| covers.s);
             // The larger s is the smaller gamma.
-            parts.push(format!(
-                "[{:.6}, {}]",
-                gamma(axis.nodes[axis.nodes.len() - 1]),
-                gamma(axis.nodes[0])
-            ));
+            parts.push(format!("[{:.6}, {}]", gamma(high), gamma(low)));
         }
     }
     if parts.is_empty() { "nothing".into() } else { parts.join(", ") }

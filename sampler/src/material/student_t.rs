@@ -22,9 +22,9 @@ use crate::math::sqrt;
 ///
 /// Directions are unit vectors in the tangent frame, n = +z, x and y along the principal axes of
 /// roughness. A view or light at or below the horizon has `g1` = 0 and `lambda` = ∞; sampling takes
-/// such a view at the horizon. Functions of `f32` have the error that the tables' certificates
-/// state. Normals from samplers are of unit length to 4 ulp, lie above the horizon, and face the
-/// view to rounding (v·m > −1.2e-7).
+/// such a view at the horizon. G1 and sampled normals have the errors that the tables' certificates
+/// state; D is in closed form. Normals from samplers are of unit length to 4 ulp, lie above the
+/// horizon, and face the view to rounding (v·m > −1.2e-7).
 #[derive(Clone, Debug)]
 pub struct StudentT {
     pub(crate) sigma_x: f32,
@@ -135,9 +135,14 @@ impl StudentT {
         self.shadowing(w.rho, w.z, r) * r
     }
 
-    /// M₀ = ∫₀^∞ x p(x) dx, the area at grazing: κ over the first node.
+    /// M₀ = ∫₀^∞ x p(x) dx, the projected area per ρ at grazing: κ over the first value of G1/q.
     pub(crate) fn first_moment(&self) -> f32 {
         self.slices.kappa / (self.slices.shadowing[0][0] * self.slices.shadowing_cells)
+    }
+
+    /// The mean of |x| over unit slopes x: 1 for GGX, and without limit towards γ = 3/2.
+    pub(crate) fn mean_slope(&self) -> f32 {
+        2.0 * self.first_moment()
     }
 
     /// cells/(z + κρ): times z, it is the view coordinate q in cells.
@@ -180,8 +185,8 @@ impl StudentT {
             // r²/z² overflows: exp(−r²/z²) = 0.
             return 0.0;
         } else {
-            // cos^(2γ−4) (z² + s r²)^(−γ): towards the horizon both logarithms grow, and for small
-            // γ they cancel.
+            // The form above cancels here for γ < 2, its logarithms both growing towards the
+            // horizon: cos^(2γ−4) (z² + s r²)^(−γ) does not.
             let (z, s, r2) = (f64::from(m.z), f64::from(s), f64::from(r2));
             let gamma = gamma_of_s(s);
             (2.0 * (gamma - 2.0) * libm::log(z) - gamma * libm::log(z * z + s * r2)) as f32
@@ -262,7 +267,7 @@ impl MicrofacetDistribution for StudentT {
     }
 
     fn is_effectively_smooth(&self) -> bool {
-        self.sigma_x.max(self.sigma_y) < SMOOTH
+        self.sigma_x.max(self.sigma_y) * self.mean_slope() < SMOOTH
     }
 
     fn bytes(&self) -> usize {
