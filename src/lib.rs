@@ -28,9 +28,10 @@
 //! [`table_set::bake_with`] adds a cache, a limit of memory and progress. [`store::write`] puts the
 //! set into a folder in one step, and [`store::read`] reads it back.
 //!
-//! # Judge a set
+//! # Test a set
 //!
-//! Every table carries the errors measured when it was baked: [`validate::certificate`].
+//! Every table carries the errors measured when it was baked ([`validate::certificate`] and, for
+//! albedos, [`validate::albedo`]).
 //! [`validate::run`] draws normals and tests them by chi-square, [`validate::stress`] visits
 //! corners, and [`validate::furnace`] is a white furnace.
 //!

@@ -122,7 +122,7 @@ impl Skew {
         Self::from_matrix([0, 1, 2].map(|i| rows[i].map(|x| scale[i] * x)))
     }
 
-    /// Uv: the direction `v` in the lobe's own space, not normalised. Its third component is
+    /// Uv: the direction `v` in unit space, not normalised. Its third component is
     /// negative where `v` is below the lobe's own horizon.
     pub fn direction(&self, v: [f64; 3]) -> [f64; 3] {
         let Self { p, q, r, x, y } = *self;

@@ -20,7 +20,7 @@ pub enum EllipsoidError {
     Parameter(ParameterError),
     /// The matrix describes no ellipsoid.
     Skew(SkewError),
-    /// A lobe matrix was given with γ = ∞, where the lobe is infinitely narrow in its own space.
+    /// A lobe matrix was given with γ = ∞, where the lobe is infinitely narrow in canonical space.
     LobeWithoutWidth,
 }
 

@@ -13,7 +13,7 @@ const BECKMANN_FROM: f64 = 1e16;
 
 /// A validated shape γ ∈ (3/2, ∞] and the in-plane marginal of its *unit slopes*.
 ///
-/// Unit slopes are slopes divided by σ, without the further √(γ−1) of the lobe's own space, so that
+/// Unit slopes are slopes divided by σ, without the further √(γ−1) of canonical space, so that
 /// the whole range of γ is regular, Beckmann included. Their marginal along any direction is
 ///
 /// ```text
@@ -31,7 +31,7 @@ pub struct Shape {
     s: f64,
     sqrt_s: f64,
     k: f64,
-    /// Normalisation of the in-plane slope's marginal in the lobe's own space (exponent −k−1).
+    /// Normalisation of the in-plane slope's marginal in canonical space (exponent −k−1).
     c: f64,
     /// The same for the slope across, given the in-plane slope (exponent −k−3/2).
     c_across: f64,
@@ -109,7 +109,7 @@ impl Shape {
             let r = 1.0 / (1.0 + w * w).sqrt();
             return if w.is_infinite() { (1.0, 0.0) } else { (w * r, r) };
         }
-        // In the lobe's own space sin α = tanh v and cos α = 1/cosh v; unit slopes are 1/√s times
+        // In canonical space sin α = tanh v and cos α = 1/cosh v; unit slopes are 1/√s times
         // larger.
         let v = self.sqrt_s * w;
         let (sin, cos) = (libm::tanh(v) / self.sqrt_s, libm::exp(-slope_integrals::ln_cosh(v)));

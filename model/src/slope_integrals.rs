@@ -1,6 +1,6 @@
 //! Integrals of the slope marginal: Student's t without its scale.
 //!
-//! In the lobe's own space (slopes divided by σ√(γ−1)) every member of the family with finite γ has
+//! In canonical space (slopes divided by σ√(γ−1)) every member of the family with finite γ has
 //! the in-plane slope marginal
 //!
 //! ```text
@@ -131,7 +131,7 @@ pub(crate) fn tail(k: f64, c: f64, v: f64) -> f64 {
 }
 
 /// Λ = ∫_a^∞ (x − a) p(x) dx / a at a = sinh v, v > 0: Smith's Λ at the cotangent a in the lobe's
-/// own space.
+/// canonical space.
 ///
 /// Away from the centre it is c/(4k(k+½)) · t^(k+½) (1−t)^(−3/2) · 2F1(1, 3/2; k+3/2; −1/a²) with
 /// t = 1/(1+a²), which has no cancellation; the textbook form T₁ − Q, with T₁ the first moment

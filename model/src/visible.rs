@@ -80,10 +80,10 @@ impl<'a> VisibleSlope<'a> {
     /// The same distribution *peeled*: without its *heavy part*, the term x sin θ p(x) on x > 0,
     /// whose mass is sin θ·M₀ and whose inverse is closed-form.
     ///
-    /// Near γ = 3/2 the heavy part takes all but a sliver of the probability into slopes beyond any
-    /// table, with a boundary layer at normal incidence where it fades; what is left is regular
-    /// there. At grazing nothing is left, and the limit is returned: the NDF's own slopes towards
-    /// the viewer.
+    /// Near γ = 3/2 the heavy part holds almost all of the probability, at slopes beyond any table,
+    /// except very close to normal incidence, where it fades: a table of the whole distribution
+    /// would have a jump there. What is left is smooth. At grazing its mass is 0; its limiting
+    /// shape is returned, the NDF's own slopes towards the viewer, with area ½.
     pub fn peeled(shape: &'a Shape, view: UnitView) -> Self {
         let mut rest = Self::new(shape, view);
         rest.towards = (if view.cos > 0.0 { view.cos } else { 1.0 }, 0.0);
@@ -91,8 +91,8 @@ impl<'a> VisibleSlope<'a> {
         rest
     }
 
-    /// Projected area of the microsurface in unit space, cos θ (1 + Λ); if peeled, the part that is
-    /// left.
+    /// Projected area of the microsurface in unit space, cos θ (1 + Λ); if peeled, that of the part
+    /// that is left, ½ at grazing.
     pub fn area(&self) -> f64 {
         self.area
     }
@@ -165,8 +165,8 @@ impl<'a> VisibleSlope<'a> {
     /// Inverse CDF: the slope below which the share u ∈ [0, 1] of the visible normals lies.
     ///
     /// u = 0 gives the silhouette, u = 1 an infinite slope (the horizon on the viewer's side).
-    /// Solved by safeguarded Newton steps on the logarithm of the smaller tail; the angle is right
-    /// to about 1e-15.
+    /// Solved by safeguarded Newton steps on the logarithm of the tail on the slope's side of 0;
+    /// the angle is right to about 1e-15.
     pub fn quantile(&self, u: f64) -> SignedSlope {
         let above_zero = self.upper(0.0);
         let below_zero = self.area - above_zero;

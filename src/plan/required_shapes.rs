@@ -58,7 +58,7 @@ impl RequiredShapes {
     pub fn cut(&self, spec: &TableSpec) -> Option<TableSpec> {
         let [from, to] = self.s();
         let [low, high] = spec.shapes.ends();
-        // At the seam γ = 1.8 the table of the whole distribution is preferred.
+        // At the seam, γ = 1.8, `visible_slope` is preferred to `visible_slope_peeled`.
         let after_seam = low >= s_of_gamma(GAMMA_WHOLE);
         let covers = [from.max(low), to.min(high)];
         let shapes = if from == to {

@@ -1,9 +1,10 @@
 //! Chooses levels and precisions for a budget of error or of bytes: predicted by a formula, then
 //! measured.
 //!
-//! The formula: errors fall with the level as those of the general set do. A group is baked where
-//! the formula meets the budget, and the error in its certificate corrects the formula, until the
-//! chosen grade has been measured. So no level is baked that a measured neighbour predicts.
+//! A *grade* is a level and a precision. `Candidate` predicts the error of each grade of a table
+//! group by scaling how the errors of the general set fall with the level. A group is baked at the
+//! coarsest grade that is predicted to meet the budget, and the error in its certificate corrects
+//! the prediction, until the chosen grade has been measured.
 
 use microfacet_sampler::{Provenance, Table, encode};
 
@@ -14,7 +15,7 @@ use super::{BakeError, PATIENCE};
 use crate::plan::{Plan, bare_cost};
 
 /// Estimated duration of a whole search, as a multiple of that of its first grades.
-const OFTEN: f64 = 1.7;
+const SEARCH_OVER_FIRST: f64 = 1.7;
 /// Ratio of two errors that count as different: one per cent.
 const RATIO: f64 = 1.01;
 /// Number of errors that are tried, from [`ANY_ERROR`], more than that of any table, down to less
@@ -34,7 +35,7 @@ impl<'a> Search<'a> {
         Ok(Self { candidates: TableGroup::apart(plan)?.into_iter().map(Candidate::new).collect() })
     }
 
-    /// Small tables that err by no more than `max_error`.
+    /// The smallest tables whose errors are at most `max_error`.
     pub(super) fn meeting(
         mut self,
         max_error: f64,
@@ -49,7 +50,8 @@ impl<'a> Search<'a> {
         Ok(self.tables(&grades))
     }
 
-    /// Accurate tables whose file, with its provenance, has no more than `max_bytes`.
+    /// The tables with the smallest worst error whose file, with its provenance, has at most
+    /// `max_bytes`.
     pub(super) fn within(
         mut self,
         max_bytes: usize,
@@ -122,7 +124,8 @@ impl<'a> Search<'a> {
             if let Some(found) = found {
                 free.iter().zip(found).for_each(|(&i, pick)| picks[i] = pick);
             }
-            // Groups that hold the others back stay as they are.
+            // The groups with the worst error have no better grade that fits: they keep theirs, and
+            // the error of the others is lowered further.
             let worst = free.iter().map(|&i| picks[i].error).fold(0.0, f64::max);
             free.retain(|&i| picks[i].error < worst / RATIO);
         }
@@ -136,10 +139,11 @@ impl<'a> Search<'a> {
         self.candidates.iter().map(least).collect()
     }
 
-    /// Whether a search that begins with these grades takes no longer than allowed.
+    /// Refuses a search that begins with these grades and would take longer than allowed.
     fn check_time(&self, grades: &[Grade], job: &Job) -> Result<(), BakeError> {
         let seconds = |(candidate, grade): (&Candidate, &Grade)| candidate.group.seconds(grade.0);
-        let search = OFTEN * self.candidates.iter().zip(grades).map(seconds).sum::<f64>();
+        let search =
+            SEARCH_OVER_FIRST * self.candidates.iter().zip(grades).map(seconds).sum::<f64>();
         let default_seconds: f64 =
             self.candidates.iter().map(|candidate| candidate.default_seconds).sum();
         if !job.patient && search > PATIENCE.max(3.0 * default_seconds) {

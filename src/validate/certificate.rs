@@ -21,7 +21,7 @@ use microfacet_sampler::{
 
 use crate::table_spec::GAMMA_WHOLE;
 
-/// Points measured at each γ.
+/// Points measured at each γ of a range; a single γ takes three times as many.
 pub const POINTS: usize = 4000;
 
 /// The range of s of all shapes.
@@ -252,7 +252,8 @@ pub(crate) fn measure(
     Ok(figures)
 }
 
-/// The largest error of any quantity in a table's certificate; ∞ if there is none.
+/// The largest error of any quantity in a table's certificate, over the part of its domain that
+/// quality promises (keys ending in `_max_error`); ∞ if there is none.
 pub fn worst_error(table: &Table) -> f64 {
     let promised = |key: &str| key.ends_with("_max_error") && !key.starts_with("shortcut");
     let figures =
@@ -337,7 +338,7 @@ impl<'a> Ruler<'a> {
         let shape_cells =
             if self.is_range() { (self.table.axes[0].nodes.len() - 1) as f64 } else { 0.0 };
         let cells = [shape_cells, self.views.cells, self.numbers.cells];
-        // The sweep was covered by the tables, and so is all that lies between its points.
+        // `lobe` does not fail here: it has not at the points of the sweep on either side.
         let error = |at: Place| self.lobe(at[0]).map_or(f64::NAN, |lobe| self.error(&lobe, at));
         Ok(climbed(seen.concat(), (points / 200).max(2), cells, error))
     }

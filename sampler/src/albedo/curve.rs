@@ -20,7 +20,7 @@ const CHANNELS: usize = 4;
 /// Where the axes before that of the view are collapsed; a table without one of these axes ignores
 /// its quantity.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct MaterialPoint {
     pub(super) sigma: f64,
     pub(super) gamma: f64,
     /// Index of refraction ≥ 1 of the dense side over the thin one.
@@ -28,7 +28,7 @@ pub(super) struct Place {
 }
 
 /// Weights along the axes of a material.
-pub(super) struct Collapsed {
+pub(super) struct MaterialWeights {
     pub(super) weights: Vec<Weights>,
     /// The roughness of the weights, no less than the first node's.
     sigma: f64,
@@ -36,25 +36,25 @@ pub(super) struct Collapsed {
     pub(super) is_mirror: bool,
 }
 
-impl Collapsed {
+impl MaterialWeights {
     /// `None` where the table was not baked for the material.
-    pub(super) fn new(table: &Table, place: &Place) -> Option<Self> {
-        let mut collapsed = Self { weights: Vec::new(), sigma: place.sigma, is_mirror: false };
+    pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
+        let mut collapsed = Self { weights: Vec::new(), sigma: point.sigma, is_mirror: false };
         for axis in &table.axes {
             let quantity = match axis.mapping {
-                Mapping::LogShape(_) => place.gamma,
+                Mapping::LogShape(_) => point.gamma,
                 Mapping::LogRoughness(_) => {
                     let covers = table.subject.covers?;
-                    let s = s_of_gamma(place.gamma);
-                    if !(covers.contains_shape(s) && covers.contains_sigma(place.sigma)) {
+                    let s = s_of_gamma(point.gamma);
+                    if !(covers.contains_shape(s) && covers.contains_sigma(point.sigma)) {
                         return None;
                     }
                     let first = axis.quantity(axis.nodes[0])?;
-                    collapsed.is_mirror = place.sigma < first * (1.0 - SAME);
-                    collapsed.sigma = place.sigma.max(first);
+                    collapsed.is_mirror = point.sigma < first * (1.0 - SAME);
+                    collapsed.sigma = point.sigma.max(first);
                     collapsed.sigma
                 }
-                Mapping::ReflectanceRoot => place.eta,
+                Mapping::ReflectanceRoot => point.eta,
                 _ => break,
             };
             collapsed.weights.push(axis.weights(axis.coordinate(quantity)?)?);
@@ -68,7 +68,7 @@ impl Collapsed {
 pub struct ViewCurve<const N: usize>(Curve);
 
 impl<const N: usize> ViewCurve<N> {
-    /// Reads an albedo table under an exact reflectance, such as one that a bake has just filled.
+    /// Prepares a table of conductors or dielectrics, not one of moments, for one material.
     ///
     /// `eta` ≥ 1 is the index of a dielectric's dense side; tables of one material ignore σ and γ.
     /// Where the table has fewer than N channels, the last albedos are 0.
@@ -84,14 +84,14 @@ impl<const N: usize> ViewCurve<N> {
     ) -> Result<Self, MaterialError> {
         let shares =
             table.subject.reflectance.filter(|reflectance| *reflectance != Reflectance::Moments);
-        let place = Place { sigma, gamma, eta };
+        let point = MaterialPoint { sigma, gamma, eta };
         let curve = shares.filter(|reflectance| reflectance.channels().len() <= N);
-        let curve = curve.and_then(|_| Curve::new(table, &place));
-        curve.map(Self).ok_or_else(|| missing(table, &place))
+        let curve = curve.and_then(|_| Curve::new(table, &point));
+        curve.map(Self).ok_or_else(|| missing(table, &point))
     }
 
-    pub(super) fn new(table: &Table, place: &Place) -> Option<Self> {
-        Curve::new(table, place).map(Self)
+    pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
+        Curve::new(table, point).map(Self)
     }
 
     /// The albedos at a view, each in [0, 1].
@@ -102,7 +102,7 @@ impl<const N: usize> ViewCurve<N> {
     /// [`ViewBlend`](crate::axis::ViewBlend), albedos are held constant.
     pub fn eval(&self, v: Vec3) -> [f32; N] {
         let cos = within(v.z);
-        self.0.seen(v, |rows, view| self.at(rows, view, cos))
+        self.0.with_view(v, |rows, view| self.at(rows, view, cos))
     }
 
     fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; N] {
@@ -118,8 +118,8 @@ impl<const N: usize> ViewCurve<N> {
 }
 
 /// The error for a table that does not hold what was asked for.
-pub(super) fn missing(table: &Table, place: &Place) -> MaterialError {
-    let Place { sigma, gamma, .. } = place;
+pub(super) fn missing(table: &Table, point: &MaterialPoint) -> MaterialError {
+    let MaterialPoint { sigma, gamma, .. } = point;
     MaterialError::NoTable(format!("{} for sigma {sigma} and gamma {gamma}", table.name))
 }
 
@@ -179,8 +179,8 @@ impl Elevation<'_> {
 
 impl Curve {
     /// `None` where the table does not cover the material.
-    pub(super) fn new(table: &Table, place: &Place) -> Option<Self> {
-        let at = Collapsed::new(table, place)?;
+    pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
+        let at = MaterialWeights::new(table, point)?;
         let moments = table.subject.reflectance == Some(Reflectance::Moments);
         let channels = table.channels.len();
         let mut nodes: Vec<[f32; CHANNELS]> = Vec::new();
@@ -195,9 +195,9 @@ impl Curve {
             (Mapping::Azimuth(azimuth), Mapping::ViewBlend(blend)) => {
                 View::Turning(azimuth.prepare(rest[0].len()), blend)
             }
-            (_, Mapping::ViewBlend(blend)) => View::Round(blend.prepare(at.sigma, place.gamma)),
+            (_, Mapping::ViewBlend(blend)) => View::Round(blend.prepare(at.sigma, point.gamma)),
             (_, Mapping::CriticalBlend(blend)) => {
-                View::Critical(blend.prepare(at.sigma, place.gamma, 1.0 / place.eta))
+                View::Critical(blend.prepare(at.sigma, point.gamma, 1.0 / point.eta))
             }
             _ => unreachable!("validated on load"),
         };
@@ -206,7 +206,7 @@ impl Curve {
     }
 
     /// Calls `then` with the azimuths and the elevation of a view.
-    pub(super) fn seen<R>(&self, v: Vec3, then: impl FnOnce(&Rows, &Elevation<'_>) -> R) -> R {
+    pub(super) fn with_view<R>(&self, v: Vec3, then: impl FnOnce(&Rows, &Elevation<'_>) -> R) -> R {
         match &self.view {
             View::Round(view) => then(ROUND, &Elevation::Blend(view)),
             View::Critical(view) => then(ROUND, &Elevation::Critical(view)),
@@ -240,7 +240,8 @@ impl Curve {
             sum[0] = sum[0].clamp(-1.0, 0.0);
         }
         match self.clamp.map(|i| sum[i]) {
-            // A/μ < 1: more is seen of the surface than of its microsurface.
+            // The channel is c = μ/(μ + A): above ½ the microsurface shows less area A than the
+            // surface on which it stands.
             Some(clamp) if clamp > 0.5 => {
                 let share = ((1.0 - clamp) / clamp).max(0.0);
                 let one = if self.moments { 1.0 } else { 0.0 };
@@ -270,7 +271,7 @@ impl Curve {
             }
             View::Critical(view) => {
                 let view = Elevation::Critical(view);
-                // Total reflection sets in like a square root.
+                // The albedo has a square-root kink at the critical angle: narrower panels there.
                 over_views(view.floor(), WIDTH / 8.0, |cos| quantities(ROUND, &view, cos))
             }
             View::Turning(azimuth, blend) => {

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use microfacet_common::Masking;
 
-use super::curve::{Curve, Elevation, Place, Rows, missing, within};
+use super::curve::{Curve, Elevation, MaterialPoint, Rows, missing, within};
 use super::moments::{Moments, below, less_mirror};
 use crate::error::MaterialError;
 use crate::format::{Reflectance, Table};
@@ -34,14 +34,14 @@ impl Albedo {
     /// # Errors
     /// [`MaterialError::NoTable`] for a table that holds no moments or does not cover the material.
     pub fn from_table(table: &Table, sigma: f64, gamma: f64) -> Result<Self, MaterialError> {
-        let place = Place { sigma, gamma, eta: f64::NAN };
+        let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
         let moments = table.subject.reflectance == Some(Reflectance::Moments);
-        moments.then(|| Self::new(table, &place)).flatten().ok_or_else(|| missing(table, &place))
+        moments.then(|| Self::new(table, &point)).flatten().ok_or_else(|| missing(table, &point))
     }
 
     /// `None` where the table does not cover the material.
-    pub(super) fn new(table: &Table, place: &Place) -> Option<Self> {
-        let curve = Curve::new(table, place)?;
+    pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
+        let curve = Curve::new(table, point)?;
         let mut albedo = Self { masking: table.subject.masking?, curve, average: [0.0; 3] };
         albedo.average = albedo.integrate();
         Some(albedo)
@@ -94,7 +94,7 @@ impl Albedo {
 
     /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
     fn rest(&self, v: Vec3) -> [f32; 3] {
-        self.curve.seen(v, |rows, view| self.at(rows, view, within(v.z)))
+        self.curve.with_view(v, |rows, view| self.at(rows, view, within(v.z)))
     }
 
     fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; 3] {

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use microfacet_common::Masking;
 use microfacet_common::shape::gamma_of_s;
 
-use super::curve::{Collapsed, Place, ViewCurve, domains};
+use super::curve::{MaterialPoint, MaterialWeights, ViewCurve, domains};
 use super::directional::Albedo;
 use super::fresnel::{DielectricAlbedo, FresnelAlbedo};
 use super::moments::Moments;
@@ -47,8 +47,8 @@ impl Tables {
         gamma: f64,
         masking: Masking,
     ) -> Result<Moments, MaterialError> {
-        self.moments_of(Kind::AlbedoAverage, sigma, gamma, masking, |table, place| {
-            let at = Collapsed::new(table, place)?;
+        self.moments_of(Kind::AlbedoAverage, sigma, gamma, masking, |table, point| {
+            let at = MaterialWeights::new(table, point)?;
             let rest = table.collapsed::<f64>(&at.weights);
             let rest =
                 if at.is_mirror { [0.0; 3] } else { core::array::from_fn(|i| rest[i] as f32) };
@@ -147,11 +147,11 @@ impl Tables {
         masking: Masking,
     ) -> Result<ViewCurve<2>, MaterialError> {
         let (side, dense) = if eta < 1.0 { (Side::Dense, 1.0 / eta) } else { (Side::Thin, eta) };
-        let place = Place { sigma, gamma, eta: dense };
+        let point = MaterialPoint { sigma, gamma, eta: dense };
         let mut tables = self.albedos(Kind::Albedo, &LobeEntry::Family, masking);
         let found = tables.find_map(|table| {
             let same = table.subject.reflectance?.side()? == side;
-            same.then(|| ViewCurve::new(table, &place)).flatten()
+            same.then(|| ViewCurve::new(table, &point)).flatten()
         });
         found.ok_or(MaterialError::Dielectric([eta, sigma, gamma]))
     }
@@ -160,15 +160,16 @@ impl Tables {
     fn own<T>(
         &self,
         entry: &MaterialEntry,
-        read: impl Fn(&Table, &Place) -> Option<T>,
+        read: impl Fn(&Table, &MaterialPoint) -> Option<T>,
         serves: impl Fn(&Reflectance) -> bool,
     ) -> Result<T, MaterialError> {
-        let place = Place { sigma: entry.round_sigma(), gamma: entry.gamma(), eta: f64::NAN };
+        let point =
+            MaterialPoint { sigma: entry.round_sigma(), gamma: entry.gamma(), eta: f64::NAN };
         let lobe = entry.lobe();
         let mut tables = self.albedos(Kind::Albedo, &lobe, entry.masking());
         let found = tables.find_map(|table| {
             let serves = table.subject.reflectance.as_ref().is_some_and(&serves);
-            serves.then(|| read(table, &place)).flatten()
+            serves.then(|| read(table, &point)).flatten()
         });
         let remedy = "state its `fresnel` in its recipe, or bake it with --albedo";
         found.ok_or_else(|| MaterialError::NoAlbedo { name: entry.name.clone(), remedy })
@@ -195,7 +196,7 @@ impl Tables {
         sigma: f64,
         gamma: f64,
         masking: Masking,
-        read: impl Fn(&Table, &Place) -> Option<T>,
+        read: impl Fn(&Table, &MaterialPoint) -> Option<T>,
     ) -> Result<T, MaterialError> {
         if !(0.0..f64::INFINITY).contains(&sigma) {
             return Err(MaterialError::Sigma(sigma));
@@ -205,9 +206,9 @@ impl Tables {
         }
         let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Moments);
         let tables = || self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments);
-        let place = Place { sigma, gamma, eta: f64::NAN };
+        let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
         tables()
-            .find_map(|table| read(table, &place))
+            .find_map(|table| read(table, &point))
             .ok_or_else(|| not_covered(tables, kind, sigma, gamma))
     }
 }

@@ -10,7 +10,7 @@ use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
 use super::distribution::MicrofacetDistribution;
-use super::fast_path::{HIDDEN, HIDDEN_ACROSS, pair, start};
+use super::fast_path::{SILHOUETTE_MARGIN, SILHOUETTE_MARGIN_ACROSS, pair, start};
 use super::slices::FastPath;
 use super::student_t::{SHORT, StudentT};
 use crate::axis::half_tangent::{half_slope_at, of_views};
@@ -87,7 +87,7 @@ impl StudentT {
         let (rho, length) = (rho2.sqrt(), (rho2 + z * z).sqrt());
         let at = of_views(rho, z, length, fast.rows);
         let (row, between) = split(at);
-        let silhouette = 1.0 - at * fast.row;
+        let silhouette = 1.0 - at * fast.inverse_rows;
         let along = Number::new([u[0][0], u[1][0], u[2][0], u[3][0]], fast.scales[0]);
         let across = Number::new([u[0][1], u[1][1], u[2][1], u[3][1]], fast.scales[1]);
         Located { x, y, rho, silhouette, row, between, along, across }
@@ -120,7 +120,8 @@ impl StudentT {
     #[inline(always)]
     fn assemble_lanes(&self, at: &Located, [g, h]: [f32x4; 2], m: &mut [Vec3; LANES]) -> bool {
         let t = (h - 1.0) / (h * (2.0 - h));
-        let least = (!at.along.towards & at.silhouette) + (HIDDEN - t * HIDDEN_ACROSS);
+        let min_g = (!at.along.towards & at.silhouette)
+            + (SILHOUETTE_MARGIN - t * SILHOUETTE_MARGIN_ACROSS);
         let t = t ^ at.across.sign();
         let [x, z] = half_slope_at(g);
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
@@ -135,7 +136,7 @@ impl StudentT {
         let r = 1.0 / (x * x + z * z + y * y).sqrt();
         let (x, y, z) = ((x * r).to_array(), (y * r).to_array(), (z * r).to_array());
         *m = core::array::from_fn(|i| Vec3::new(x[i], y[i], z[i]));
-        (g.simd_ge(least) & at.rho.simd_ge(SHORT)).all()
+        (g.simd_ge(min_g) & at.rho.simd_ge(SHORT)).all()
     }
 
     #[inline(always)]

@@ -75,7 +75,7 @@ impl Ellipsoid {
         Ok(Self { matrix: skew.try_into()?, ..self.clone() })
     }
 
-    /// Uv, the direction in the lobe's own space.
+    /// Uv, the direction in unit space.
     #[inline(always)]
     fn to_unit(&self, v: Vec3) -> Vec3 {
         let Matrix { p, q, r, x, y } = self.matrix;
@@ -107,15 +107,20 @@ impl Ellipsoid {
         if !(w.z >= 0.0) {
             return None;
         }
-        let back = |m: f32x4| {
+        let to_tangent = |m: f32x4| {
             let [mx, my, mz, _] = m.to_array();
             let lanes = |a| f32x4::splat(a);
             lanes(mx) * f32x4::new([p, 0.0, 0.0, 0.0])
                 + lanes(my) * f32x4::new([q, r, 0.0, 0.0])
                 + lanes(mz) * f32x4::new([x, y, 1.0, 0.0])
         };
-        let m =
-            self.lobe.sample_common(f32x4::new([w.x, w.y, 0.0, 0.0]), w.z, u, [1.0; 2], back)?;
+        let m = self.lobe.sample_common(
+            f32x4::new([w.x, w.y, 0.0, 0.0]),
+            w.z,
+            u,
+            [1.0; 2],
+            to_tangent,
+        )?;
         // Not where an almost singular matrix has taken squares out of range, or a normal below the
         // smallest cosine.
         (m[2] >= HORIZON).then_some(m)

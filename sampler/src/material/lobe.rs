@@ -70,6 +70,21 @@ impl MicrofacetDistribution for Lobe {
     }
 
     #[inline]
+    fn lambda(&self, v: Vec3) -> f32 {
+        each!(self, lobe => lobe.lambda(v))
+    }
+
+    #[inline]
+    fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        each!(self, lobe => lobe.g2(v, l, masking))
+    }
+
+    #[inline]
+    fn sample_with_pdf(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        each!(self, lobe => lobe.sample_with_pdf(v, u))
+    }
+
+    #[inline]
     fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
         each!(self, lobe => lobe.reflection_weight(v, l, masking))
     }

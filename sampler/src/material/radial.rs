@@ -78,7 +78,7 @@ impl Radial {
         let mut across = conditional.nodes;
         across.chunks_exact_mut(width).for_each(make_monotone);
         Ok(Self {
-            plane: StudentT::carrier(sigma, Slices::new([shadowing, slope], ROUND)),
+            plane: StudentT::for_radial(sigma, Slices::new([shadowing, slope], ROUND)),
             across,
             cells: width - 1,
             rows: conditional.axes[0].nodes.len() - 1,

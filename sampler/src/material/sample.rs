@@ -86,7 +86,7 @@ impl StudentT {
         }
         // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).
         let xi = ((1.0 - u) / heavy).clamp(0.0, 1.0);
-        let log = libm::logf(xi) / self.two_k;
+        let log = libm::logf(xi) / self.two_gamma_minus_3;
         Slope { x: sqrt(-libm::expm1f(2.0 * log)), z: sqrt(self.s) * libm::expf(log) }
     }
 

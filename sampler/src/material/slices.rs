@@ -88,7 +88,7 @@ pub(crate) struct FastPath {
     /// Cells of the view axis.
     pub(crate) rows: f32,
     /// 1/`rows`.
-    pub(crate) row: f32,
+    pub(crate) inverse_rows: f32,
     /// Nodes of half a row of `slope`.
     pub(crate) half: u32,
 }
@@ -107,7 +107,7 @@ impl Slices {
             scales: [slices.cells, slices.across.len() - 1].map(MirroredRoot::scale),
             across: cubic_cells(&slices.across, 1.0),
             rows: rows as f32,
-            row: (1.0 / rows as f64) as f32,
+            inverse_rows: (1.0 / rows as f64) as f32,
             half: numbers as u32,
         });
         Ok(slices)

@@ -32,7 +32,7 @@ pub struct StudentT {
     pub(crate) gamma: f64,
     pub(crate) s: f32,
     /// 2γ − 3, from γ in double precision: near 3/2 a rounded γ would be another lobe.
-    pub(crate) two_k: f32,
+    pub(crate) two_gamma_minus_3: f32,
     pub(crate) slices: Slices,
 }
 
@@ -67,7 +67,7 @@ pub(crate) const LEAST_AREA: f32 = 1e-30;
 
 /// Returns 0, the G1 of NaN; kept cold and out of line so that the common path stays short.
 #[cold]
-fn outside() -> f32 {
+fn g1_of_nan() -> f32 {
     0.0
 }
 
@@ -83,14 +83,14 @@ impl StudentT {
         }
         let s = s_of_gamma(gamma);
         let slices = Slices::from_tables(tables, gamma, s)?;
-        let two_k = (2.0 * gamma - 3.0) as f32;
-        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_k, slices })
+        let two_gamma_minus_3 = (2.0 * gamma - 3.0) as f32;
+        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_gamma_minus_3, slices })
     }
 
     /// The carrier of another distribution's tables: unit slopes are slopes over σ, and slopes
     /// across scale with √(1 + x²).
-    pub(crate) fn carrier(sigma: f32, slices: Slices) -> Self {
-        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_k: 1.0, slices }
+    pub(crate) fn for_radial(sigma: f32, slices: Slices) -> Self {
+        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_gamma_minus_3: 1.0, slices }
     }
 
     /// The same shape with another roughness; the tables are not read again.
@@ -229,7 +229,7 @@ impl MicrofacetDistribution for StudentT {
         let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
         let (cell, w) = split(at);
         let Some(cell) = slices.shadowing.get(cell.to_array()[0] as u32 as usize) else {
-            return outside();
+            return g1_of_nan();
         };
         let g1 = q.to_array()[0] * horner(cell, w.to_array()[0]);
         // The null vector gives 0/0, which leaves the table where the cast does not saturate, and
