@@ -87,7 +87,7 @@ impl Args {
         };
         let mut text = format!(
             "{:<12}{:<40}{:>14}{:>16}\n",
-            "by", "replacement", "RMSE of unit", "RMSE of D, 1/sr"
+            "by", "replacement", "RMSE of D/D(0)", "RMSE of D, 1/sr"
         );
         let mut line = |name: &str, found: &Replacement| {
             writeln!(

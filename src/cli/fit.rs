@@ -41,7 +41,7 @@ pub(super) fn run(args: Args) -> Outcome {
     if last < std::f64::consts::FRAC_PI_2 - 0.01 {
         writeln!(text, "nothing above {:.3} degrees: D is taken as zero there", last.to_degrees())?;
     }
-    writeln!(text, "{:<44}{:>14}{:>16}", "fit", "RMSE of unit", "RMSE of D, 1/sr")?;
+    writeln!(text, "{:<44}{:>14}{:>16}", "fit", "RMSE of D/D(0)", "RMSE of D, 1/sr")?;
     for found in [&found.student_t, &found.beckmann, &found.ggx] {
         writeln!(
             text,

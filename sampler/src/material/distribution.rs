@@ -22,7 +22,7 @@ pub(crate) const SMOOTH: f32 = 1e-3;
 /// Directions are unit vectors in the tangent frame, n = +z. `v` is the view, `l` the light, `m` a
 /// microfacet normal; densities are per steradian. Everything is one-sided: views and lights at or
 /// below the horizon have G1 = 0 and Λ = ∞, so flip a direction on the other side of a transmitting
-/// surface. Sampling, and the density of what is sampled, take a view below the horizon at it.
+/// surface. Sampling takes a view below the horizon at it; densities are for views above it.
 ///
 /// ```
 /// use glam::Vec3;
