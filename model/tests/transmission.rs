@@ -73,7 +73,8 @@ fn average(f: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
 
 #[test]
 fn as_much_passes_either_way() {
-    // f(v, l)/η² is the same both ways (Veach 1997, eq. 5.14), so that the average of what enters
+    // f(v, l)/η² is the same both ways (Veach 1997, eq. 5.14,
+    // <https://graphics.stanford.edu/papers/veach_thesis/>), so that the average of what enters
     // is η² times that of what leaves.
     for gamma in [1.6, 3.0, f64::INFINITY] {
         let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);

@@ -424,7 +424,8 @@ pub(super) fn exact_cotangent(v: Vec3) -> f64 {
 /// Steps of the additive recurrence in the plane: powers of the reciprocal of the plastic number.
 const PLASTIC: [f64; 2] = [0.7548776662466927, 0.5698402909980532];
 
-/// The i-th point of the additive recurrence with these steps (Roberts 2018), in [0, 1)ᴺ.
+/// The i-th point of the additive recurrence with these steps (Roberts 2018,
+/// <https://extremelearning.com.au/unreasonable-effectiveness-of-quasirandom-sequences/>), in [0, 1)ᴺ.
 pub(super) fn low_discrepancy<const N: usize>(steps: [f64; N], i: usize) -> [f64; N] {
     steps.map(|a| (0.5 + a * (i + 1) as f64).fract())
 }

@@ -1,4 +1,5 @@
-//! The Gaussian of the polar angle (Torrance & Sparrow 1967), with its constant by quadrature.
+//! The Gaussian of the polar angle (Torrance & Sparrow 1967,
+//! <https://doi.org/10.1364/JOSA.57.001105>), with its constant by quadrature.
 
 use core::f64::consts::FRAC_PI_2;
 

@@ -32,7 +32,8 @@ impl Moments {
     }
 
     /// Albedo of OpenPBR's metal: Schlick's reflectance with F90 = 1 and a tint, in [0, 1], of the
-    /// reflectance at μ = 1/7 (Kutz, Hašan & Edmondson 2021, eq. 2–5); tint = 1 is Schlick's.
+    /// reflectance at μ = 1/7 (Kutz, Hašan & Edmondson 2021,
+    /// *Novel aspects of the Adobe Standard Material*, eq. 2–5); tint = 1 is Schlick's.
     pub fn f82_tint(&self, f0: f32, tint: f32) -> f32 {
         self.schlick(f0, 1.0) - f82_dip(f0, tint) * self.f82
     }

@@ -158,7 +158,8 @@ pub(crate) fn make_monotone(run: &mut [Node]) {
 }
 
 /// Limits slopes so that the cubic of every cell ascends with its nodes: each slope lies in [0, 3Δ]
-/// for both neighbouring rises Δ (Fritsch & Carlson 1980). The condition is linear, so it also
+/// for both neighbouring rises Δ (Fritsch & Carlson 1980,
+/// <https://doi.org/10.1137/0717021>). The condition is linear, so it also
 /// holds between rows.
 pub fn limit_slopes(nodes: &mut [[f32; 2]]) {
     for i in 0..nodes.len() {
