@@ -7,7 +7,7 @@ use microfacet_sampler::{Kind, MicrofacetDistribution, Tables};
 
 use crate::paper::Approximation;
 use crate::rows::{Quantity, Row};
-use crate::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM, bind};
+use crate::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM, lobe};
 use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::tables::{Slices, TABLE};
 use crate::{clock, masking};
@@ -41,7 +41,7 @@ pub(crate) fn figures(
     let normals = |a, b| ratio(Quantity::Normal, a, b);
     let worst =
         |error: fn(&Approximation) -> f64| approximation.iter().map(error).fold(0.0, f64::max);
-    let bytes = bind(&slices.default, GAMMA).bytes() as f64;
+    let bytes = lobe(&slices.default, GAMMA).bytes() as f64;
     let figure = |name, unit, must, aim, reached| Figure { name, unit, must, aim, reached };
     vec![
         figure("sample, table / GGX spherical caps", "", 1.3, 1.0, normals(TABLE, CAPS)),
@@ -82,7 +82,13 @@ pub(crate) fn figures(
             Some(worst(|at| at.table_error.abs()) / worst(|at| at.rational_error.abs())),
         ),
         figure("a bound material", "KiB", 32.0, 16.0, Some(bytes / 1024.0)),
-        figure("bind a material", "us", 50.0, 10.0, Some(1e-3 * bind_ns(&slices.whole, settings))),
+        figure(
+            "a lobe from tables",
+            "us",
+            50.0,
+            10.0,
+            Some(1e-3 * lobe_ns(&slices.whole, settings)),
+        ),
         // No stricter goal: this happens once per process.
         figure("the embedded set, ready", "ms", 1.0, 1.0, Some(1e-6 * embedded_ns(settings))),
     ]
@@ -108,8 +114,8 @@ fn embedded_ns(settings: &Settings) -> f64 {
     clock::median(times.collect())
 }
 
-/// The median time of binding, over shapes between the nodes of the general set.
-fn bind_ns(set: &Tables, settings: &Settings) -> f64 {
+/// The median time to make a lobe from tables, over shapes between the nodes of the general set.
+fn lobe_ns(set: &Tables, settings: &Settings) -> f64 {
     let times = (0..settings.rounds.max(40)).map(|i| {
         let gamma = 2.1 + 0.37 * (i % 40) as f64;
         let start = Instant::now();

@@ -10,7 +10,7 @@ use microfacet_sampler::MicrofacetDistribution as _;
 use crate::rivals::lobe::Lobe;
 use crate::rivals::rational::Rational;
 use crate::rivals::{beckmann, ggx};
-use crate::sampler::{bind, stored};
+use crate::sampler::{lobe, stored};
 use crate::settings::{GAMMA, SIGMA};
 use crate::tables::Slices;
 
@@ -75,7 +75,7 @@ pub(crate) fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
         form("sum for half-integer gamma", 3.5, each(move |w| half.g1(w))),
         form("rational approximation (eq. 22-23)", GAMMA, each(move |w| rational.g1(w))),
     ];
-    let batch = bind(&slices.default, GAMMA);
+    let batch = lobe(&slices.default, GAMMA);
     let (bytes, stored_bytes) = (batch.bytes(), stored(&slices.default));
     let evaluate: Evaluate = Box::new(move |w, g1| batch.g1_batch(w, g1).expect("of one length"));
     all.push(Masking {
@@ -84,9 +84,9 @@ pub(crate) fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
         ..form("table, default, batch", GAMMA, evaluate)
     });
     for (name, set) in slices.each() {
-        let bound = bind(set, GAMMA);
-        let (bytes, stored) = (bound.bytes(), stored(set));
-        all.push(Masking { bytes, stored, ..form(name, GAMMA, each(move |w| bound.g1(w))) });
+        let table = lobe(set, GAMMA);
+        let (bytes, stored) = (table.bytes(), stored(set));
+        all.push(Masking { bytes, stored, ..form(name, GAMMA, each(move |w| table.g1(w))) });
     }
     all
 }

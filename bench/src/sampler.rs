@@ -200,7 +200,7 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
 
 /// The batch over slices, and the sampler bounded to reflections.
 fn variants<'a>(set: &Tables) -> [Sampler<'a>; 2] {
-    let (batch, bounded) = (bind(set, GAMMA), bind(set, GAMMA));
+    let (batch, bounded) = (lobe(set, GAMMA), lobe(set, GAMMA));
     let (bytes, stored) = (batch.bytes(), stored(set));
     let density = Density::Bounded(bounded.clone());
     let draw: Draw = Box::new(move |v, u, m| batch.sample_batch(v, u, m).expect("of one length"));
@@ -212,14 +212,14 @@ fn variants<'a>(set: &Tables) -> [Sampler<'a>; 2] {
 }
 
 fn table<'a>(name: &str, set: &Tables) -> Sampler<'a> {
-    let bound = bind(set, GAMMA);
-    let (bytes, stored) = (bound.bytes(), stored(set));
-    Sampler::new(name, GAMMA, Check::Cdf, each(move |v, u| bound.sample_visible_normal(v, u)))
+    let lobe = lobe(set, GAMMA);
+    let (bytes, stored) = (lobe.bytes(), stored(set));
+    Sampler::new(name, GAMMA, Check::Cdf, each(move |v, u| lobe.sample_visible_normal(v, u)))
         .tables(bytes, stored)
 }
 
-/// A material of a set that covers γ.
-pub(crate) fn bind(set: &Tables, gamma: f64) -> StudentT {
+/// The lobe of γ from a set that covers it.
+pub(crate) fn lobe(set: &Tables, gamma: f64) -> StudentT {
     set.student_t(SIGMA, gamma).expect("the sets were made for this shape")
 }
 

@@ -27,7 +27,8 @@ fn every_rival_is_measured_and_written() {
     let output = run(at, &["--quick", "--calls", "64", "--out", "out"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
-    for part in ["GGX, spherical caps", "table, default", "var x ns", "must", "bind a material, us"]
+    for part in
+        ["GGX, spherical caps", "table, default", "var x ns", "must", "a lobe from tables, us"]
     {
         assert!(text.contains(part), "no `{part}` in {text}");
     }

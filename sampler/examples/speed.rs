@@ -80,12 +80,12 @@ fn main() {
     row("g1: table", g1_table, g1_closed);
     row("g1_batch: table", g1_batch, g1_closed);
 
-    let [bind] = medians([&mut || {
+    let [make] = medians([&mut || {
         black_box(tables.student_t(black_box(alpha), black_box(gamma)).unwrap());
     }]);
     println!(
-        "bind: {:.1} us; a bound material reads {} bytes",
-        bind * COUNT as f64 / 1e3,
+        "a lobe from tables: {:.1} us; it reads {} bytes",
+        make * COUNT as f64 / 1e3,
         table.bytes()
     );
 }
