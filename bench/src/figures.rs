@@ -81,7 +81,7 @@ pub(crate) fn figures(
             1e-3,
             Some(worst(|at| at.table_error.abs()) / worst(|at| at.rational_error.abs())),
         ),
-        figure("a bound material", "KiB", 32.0, 16.0, Some(bytes / 1024.0)),
+        figure("tables of a lobe", "KiB", 32.0, 16.0, Some(bytes / 1024.0)),
         figure(
             "a lobe from tables",
             "us",

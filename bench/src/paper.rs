@@ -83,7 +83,7 @@ fn methods(
     seed: u64,
 ) -> Vec<(&'static str, Method<'static>)> {
     let truth = StudentT::new(sigma, gamma).expect("constants");
-    let bound = set.student_t(sigma, gamma).expect("the general set covers all shapes");
+    let lobe = set.student_t(sigma, gamma).expect("the general set covers all shapes");
     let z = move |w: Vec3| f64::from(w.z) / (sigma * f64::from((w.x * w.x + w.y * w.y).sqrt()));
     let g1 = |lambda: f64| (1.0 / (1.0 + lambda)) as f32;
     let mut all: Vec<(&str, Method)> = vec![(
@@ -100,7 +100,7 @@ fn methods(
     }
     let rational = Rational::new(sigma, gamma);
     all.push(("eq. 22-23, rational", Method::G1(masking::each(move |w| rational.g1(w)))));
-    let table = bound.clone();
+    let table = lobe.clone();
     all.push(("table", Method::G1(masking::each(move |w| table.g1(w)))));
     let inversion = move |v: Vec3, u: [f32; 2]| {
         truth.sample_visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3()
@@ -112,7 +112,7 @@ fn methods(
         truth.sample_visible_by_rejection(v.as_dvec3(), &mut || f64::from(stream.next())).as_vec3()
     };
     all.push(("exact by rejection, f64", Method::Normal(sampler::each(exact))));
-    let table = move |v: Vec3, u| bound.sample_visible_normal(v, u);
+    let table = move |v: Vec3, u| lobe.sample_visible_normal(v, u);
     all.push(("table", Method::Normal(sampler::each(table))));
     all
 }
@@ -174,7 +174,7 @@ pub(crate) struct Approximation {
 pub(crate) fn approximation(set: &Tables) -> Vec<Approximation> {
     let of_shape = |gamma: f64| {
         let truth = StudentT::new(SIGMA, gamma).expect("constants");
-        let bound = set.student_t(SIGMA, gamma).expect("the general set covers all shapes");
+        let lobe = set.student_t(SIGMA, gamma).expect("the general set covers all shapes");
         (1..180).map(move |i| {
             let degrees = 0.5 * f64::from(i);
             let (sin, cos) = degrees.to_radians().sin_cos();
@@ -188,7 +188,7 @@ pub(crate) fn approximation(set: &Tables) -> Vec<Approximation> {
                 degrees,
                 g1,
                 rational_error,
-                table_error: f64::from(bound.g1(v)) - g1,
+                table_error: f64::from(lobe.g1(v)) - g1,
             }
         })
     };

@@ -42,7 +42,7 @@ pub(crate) struct Row {
     pub(crate) complete: bool,
     /// Nanoseconds a call.
     pub(crate) ns: f64,
-    /// Bytes of table that a bound material's lookups touch; 0 for closed forms.
+    /// Bytes of table that a lobe's lookups touch; 0 for closed forms.
     pub(crate) bytes: usize,
     /// Bytes of those tables as stored in a file.
     pub(crate) stored: usize,

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::form::{self, AnyGamma, Area, HalfIntegerGamma, IntegerGamma, Tails, View};
 use super::tail::whole;
 
-/// A bound lobe.
+/// A lobe with its coefficients prepared.
 pub(crate) struct Lobe<F> {
     sigma: f32,
     /// √(γ−1): slopes over σ and this are those of the lobe's own space.

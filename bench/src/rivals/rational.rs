@@ -1,5 +1,5 @@
 //! The rational approximation of masking by Ribardière et al. 2017 (doi:10.1111/cgf.13137), eq.
-//! 22–23, with everything that depends on γ bound beforehand.
+//! 22–23, with everything that depends on γ prepared beforehand.
 
 use glam::Vec3;
 
@@ -68,12 +68,12 @@ mod tests {
     #[test]
     fn is_the_printed_formula() {
         for gamma in [1.6, 2.0, 4.0, 11.3, 40.0] {
-            let bound = Rational::new(0.5, gamma);
+            let prepared = Rational::new(0.5, gamma);
             for degrees in [5.0_f32, 30.0, 60.0, 80.0, 89.0] {
                 let (sin, cos) = degrees.to_radians().sin_cos();
                 let want =
                     1.0 / (1.0 + lambda_rational(gamma, f64::from(cos) / (0.5 * f64::from(sin))));
-                let got = f64::from(bound.g1(Vec3::new(sin, 0.0, cos)));
+                let got = f64::from(prepared.g1(Vec3::new(sin, 0.0, cos)));
                 assert!(
                     (got - want).abs() < 1e-6,
                     "gamma {gamma}, {degrees} degrees: {got} against {want}"
