@@ -1,6 +1,7 @@
 """Compares the reader with the test vectors: check.py [TABLES [REFERENCE]].
 
-Exit status 1 if a value differs from that of the run-time crate by more than `allowed`.
+Exit status 1 if a value differs from that of the run-time crate by more than `allowed`, or if a
+file cannot be read.
 """
 
 import csv
@@ -87,4 +88,7 @@ def main(tables=SET, reference=ROOT / "docs/reference.csv"):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    try:
+        sys.exit(main(*sys.argv[1:]))
+    except (OSError, ValueError) as why:
+        sys.exit(f"error: {why}")

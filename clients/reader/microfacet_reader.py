@@ -17,8 +17,11 @@ class Tables:
         with open(path, "rb") as file:
             data = file.read()
         start = 8 + int.from_bytes(data[:8], "little")
-        header = json.loads(data[8:start])
-        self.document = json.loads(header["__metadata__"]["microfacet"])
+        try:
+            header = json.loads(data[8:start])
+            self.document = json.loads(header["__metadata__"]["microfacet"])
+        except (ValueError, KeyError, TypeError):
+            raise ValueError(f"{path}: not a table set; microfacet-bake writes them") from None
         if (self.document["format"], self.document["version"]) != ("microfacet-tables", 3):
             raise ValueError(f"{path}: not microfacet tables of version 3")
         prefix = rb'\"checksum\":\"'

@@ -7,6 +7,19 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roughness(pub [f64; 2]);
 
+impl Roughness {
+    /// σx and σy.
+    ///
+    /// # Errors
+    /// The first that does not lie in (0, ∞).
+    pub fn positive(self) -> Result<[f64; 2], f64> {
+        match self.0.into_iter().find(|sigma| !(*sigma > 0.0 && *sigma < f64::INFINITY)) {
+            Some(sigma) => Err(sigma),
+            None => Ok(self.0),
+        }
+    }
+}
+
 impl From<f64> for Roughness {
     fn from(sigma: f64) -> Self {
         Self([sigma; 2])

@@ -104,10 +104,7 @@ impl Skew {
     /// # Errors
     /// [`SkewError`], see there.
     pub fn new(sigma: impl Into<Roughness>, theta: [f64; 3]) -> Result<Self, SkewError> {
-        let Roughness(sigma) = sigma.into();
-        if let Some(sigma) = sigma.into_iter().find(|x| !(*x > 0.0 && *x < f64::INFINITY)) {
-            return Err(SkewError::Sigma(sigma));
-        }
+        let sigma = sigma.into().positive().map_err(SkewError::Sigma)?;
         if let Some(angle) = theta.into_iter().find(|x| !x.is_finite()) {
             return Err(SkewError::NotFinite(angle));
         }

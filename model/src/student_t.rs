@@ -48,11 +48,7 @@ impl StudentT {
     /// # Errors
     /// [`ParameterError`] unless every σ lies in (0, ∞) and γ > 3/2.
     pub fn new(sigma: impl Into<Roughness>, gamma: f64) -> Result<Self, ParameterError> {
-        let Roughness(sigma) = sigma.into();
-        if let Some(sigma) = sigma.into_iter().find(|x| !(*x > 0.0 && *x < f64::INFINITY)) {
-            return Err(ParameterError::Sigma(sigma));
-        }
-        let [sigma_x, sigma_y] = sigma;
+        let [sigma_x, sigma_y] = sigma.into().positive().map_err(ParameterError::Sigma)?;
         Ok(Self { sigma_x, sigma_y, shape: Shape::new(gamma)? })
     }
 

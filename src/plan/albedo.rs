@@ -88,7 +88,7 @@ struct Want {
 }
 
 /// The required albedos of a scene, and one verdict for each of its materials.
-pub(super) fn needs(
+pub(super) fn required(
     scene: &Scene,
     options: Options,
 ) -> Result<(Vec<RequiredAlbedo>, Vec<AlbedoVerdict>), NotCovered> {

@@ -158,7 +158,7 @@ impl Plan {
             Err(verdict) => verdict.clone(),
         };
         let verdicts = wants.iter().enumerate().map(verdict).collect();
-        let (albedos, albedo_verdicts) = albedo::needs(scene, options)?;
+        let (albedos, albedo_verdicts) = albedo::required(scene, options)?;
         let distributions = distributions(scene);
         let (recipe, materials) = (scene.to_recipe(), entries(scene));
         Ok(Self {

@@ -82,6 +82,18 @@ impl Ellipsoid {
         Vec3::new(p * v.x, q * v.x + r * v.y, x * v.x + y * v.y + v.z)
     }
 
+    /// U⁻ᵀm, the normal in unit space, not normalised, and 1/|U|.
+    #[inline(always)]
+    fn normal_to_unit(&self, m: Vec3) -> (Vec3, f32) {
+        let Matrix { p, q, r, x, y } = self.matrix;
+        // Reciprocals do not wait for the normal, as four successive divisions of it would: 10 of
+        // 80 ns for a normal and its density.
+        let (along, aside) = (1.0 / p, 1.0 / r);
+        let uy = (m.y - y * m.z) * aside;
+        let ux = (m.x - x * m.z - q * uy) * along;
+        (Vec3::new(ux, uy, m.z), along * aside)
+    }
+
     /// 1/(area of the microsurface seen along v), within the reach of the table and outside it.
     #[inline(always)]
     fn inverse_area(&self, w: Vec3, at: &Stretched) -> f32 {
@@ -155,13 +167,8 @@ impl MicrofacetDistribution for Ellipsoid {
         if !(m.z > 0.0) {
             return 0.0;
         }
-        let Matrix { p, q, r, x, y } = self.matrix;
-        // Reciprocals do not wait for the normal, as four successive divisions of it would: 10 of
-        // 80 ns for a normal and its density.
-        let (along, aside) = (1.0 / p, 1.0 / r);
-        let uy = (m.y - y * m.z) * aside;
-        let ux = (m.x - x * m.z - q * uy) * along;
-        self.lobe.d_of_unit(Vec3::new(ux, uy, m.z), FRAC_1_PI * along * aside)
+        let (unit, scale) = self.normal_to_unit(m);
+        self.lobe.d_of_unit(unit, FRAC_1_PI * scale)
     }
 
     /// Smith masking G1(v) = min(1, (v·n)/area); 0 at and below the horizon.
@@ -213,12 +220,10 @@ impl MicrofacetDistribution for Ellipsoid {
         if !(m.z > 0.0 && w.z >= 0.0) {
             return self.visible_normal_pdf(v, m);
         }
-        let Matrix { p, q, r, x, y } = self.matrix;
-        // U⁻ᵀm, whose length cubed is the ratio of solid angles.
-        let uy = (m.y - y * m.z) / r;
-        let unit = Vec3::new((m.x - x * m.z - q * uy) / p, uy, m.z);
+        let (unit, scale) = self.normal_to_unit(m);
         let length = sqrt(unit.dot(unit));
-        let stretch = 1.0 / (p * r * length) / (length * length);
+        // The ratio of solid angles, scale over the length cubed.
+        let stretch = scale / length / (length * length);
         (self.lobe.table_pdf(w, unit / length) * stretch).min(f32::MAX)
     }
 

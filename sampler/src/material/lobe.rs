@@ -22,29 +22,17 @@ pub enum Lobe {
     Radial(Radial),
 }
 
-impl From<StudentT> for Lobe {
-    fn from(lobe: StudentT) -> Self {
-        Self::StudentT(lobe)
-    }
+macro_rules! from {
+    ($($lobe:ident),*) => {$(
+        impl From<$lobe> for Lobe {
+            fn from(lobe: $lobe) -> Self {
+                Self::$lobe(lobe)
+            }
+        }
+    )*};
 }
 
-impl From<Ggx> for Lobe {
-    fn from(lobe: Ggx) -> Self {
-        Self::Ggx(lobe)
-    }
-}
-
-impl From<Ellipsoid> for Lobe {
-    fn from(lobe: Ellipsoid) -> Self {
-        Self::Ellipsoid(lobe)
-    }
-}
-
-impl From<Radial> for Lobe {
-    fn from(lobe: Radial) -> Self {
-        Self::Radial(lobe)
-    }
-}
+from!(StudentT, Ggx, Ellipsoid, Radial);
 
 /// Calls one function of whichever lobe it is.
 macro_rules! each {

@@ -51,10 +51,10 @@ impl StudentT {
         let (row, between) = self.locate_row(view);
         let towards = u > 0.5;
         let t = MirroredRoot::coordinate(u);
-        let (cell, w) = locate(t * slices.cells as f32, slices.cells);
+        let (cell, w) = locate(t * slices.half_cells as f32, slices.half_cells);
         // A row holds both halves, cells + 1 nodes each.
-        let stride = 2 * (slices.cells + 1);
-        let start = row * stride + if towards { slices.cells + 1 } else { 0 } + cell;
+        let stride = 2 * (slices.half_cells + 1);
+        let start = row * stride + if towards { slices.half_cells + 1 } else { 0 } + cell;
         let nodes = &slices.slope[..];
         let (a, b) = between_rows(
             &nodes[start..start + 2],

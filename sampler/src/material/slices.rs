@@ -69,7 +69,7 @@ pub(crate) struct Slices {
     pub(crate) rows: usize,
     pub(crate) view: HalfTangent,
     /// Cells of one half of the u₁ axis.
-    pub(crate) cells: usize,
+    pub(crate) half_cells: usize,
     /// Whether `slope` is peeled.
     pub(crate) peeled: bool,
     /// Slopes across, the half for u > ½.
@@ -102,9 +102,9 @@ impl Slices {
         let mut slices = Self::new([shadowing, slope], s);
         slices.across = across.nodes;
         make_monotone(&mut slices.across);
-        let (numbers, rows) = (slices.cells + 1, slices.rows);
+        let (numbers, rows) = (slices.half_cells + 1, slices.rows);
         slices.fast = (!slices.peeled && !slices.view.crowded).then(|| FastPath {
-            scales: [slices.cells, slices.across.len() - 1].map(MirroredRoot::scale),
+            scales: [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale),
             across: cubic_cells(&slices.across, 1.0),
             rows: rows as f32,
             inverse_rows: (1.0 / rows as f64) as f32,
@@ -135,7 +135,7 @@ impl Slices {
             slope: slopes,
             rows: view.nodes.len() - 1,
             view: coordinate,
-            cells: numbers.nodes.len() - 1,
+            half_cells: numbers.nodes.len() - 1,
             peeled: slope.kind == Kind::VisibleSlopePeeled,
             across: Vec::new(),
             fast: None,

@@ -65,7 +65,7 @@ impl StudentT {
     pub(crate) fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
         let view = self.stretch(v);
         let rows = self.rows_at(&view);
-        let half = self.slices.cells + 1;
+        let half = self.slices.half_cells + 1;
         let slope = |g: f64, sign: f64| {
             let [x, z] = slope_at(g);
             sign * x / z
@@ -80,7 +80,7 @@ impl StudentT {
     fn rows_at(&self, view: &Stretched) -> Rows<'_> {
         let slices = &self.slices;
         let (row, between) = self.locate_row(view);
-        let stride = 2 * (slices.cells + 1);
+        let stride = 2 * (slices.half_cells + 1);
         let [low, high] =
             [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
         Rows { low, high, between }
@@ -114,10 +114,10 @@ impl StudentT {
         let [low, high] = ends(x, z);
         // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
         // 1 − h in the other half.
-        let nodes = self.slices.cells + 1;
+        let nodes = self.slices.half_cells + 1;
         let (half, g) =
             if low <= f64::from(rows.node(nodes - 1)[0]) { (0, low) } else { (1, high) };
-        (half, Place::find(|i| rows.node(half * nodes + i), self.slices.cells, g))
+        (half, Place::find(|i| rows.node(half * nodes + i), self.slices.half_cells, g))
     }
 
     /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.

@@ -14,6 +14,9 @@ use microfacet_sampler::{Masking, Moments, StudentT, Tables};
 
 use super::Method;
 
+/// Values for the columns of one row, or why there are none.
+type Values = Result<Vec<String>, String>;
+
 /// A quantity that `query` computes at a point.
 pub(super) trait Quantity: Sync {
     fn inputs(&self) -> &'static [&'static str];
@@ -130,12 +133,7 @@ impl Quantity for G1 {
         &["lambda", "g1"]
     }
 
-    fn values(
-        &self,
-        fields: &[&str],
-        known: &Known,
-        method: Method,
-    ) -> Result<Vec<String>, String> {
+    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Values {
         let at = Point::new(fields, self.inputs(), &known.set)?;
         let v = at.view();
         Ok(match method {
@@ -159,12 +157,7 @@ impl Quantity for Normal {
         &["m_x", "m_y", "m_z", "pdf"]
     }
 
-    fn values(
-        &self,
-        fields: &[&str],
-        known: &Known,
-        method: Method,
-    ) -> Result<Vec<String>, String> {
+    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Values {
         let at = Point::new(fields, self.inputs(), &known.set)?;
         let v = at.view();
         Ok(match method {
@@ -199,12 +192,7 @@ impl Quantity for Albedo {
         &["E", "schlick_scale", "schlick_bias"]
     }
 
-    fn values(
-        &self,
-        fields: &[&str],
-        known: &Known,
-        method: Method,
-    ) -> Result<Vec<String>, String> {
+    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Values {
         let values = numbers(&fields[..3], self.inputs())?;
         let &[sigma, gamma, cos] = &values[..] else { unreachable!("three columns were found") };
         let masking = masking(fields[3])?;
@@ -240,12 +228,7 @@ impl Quantity for AlbedoAverage {
         &["E_avg"]
     }
 
-    fn values(
-        &self,
-        fields: &[&str],
-        known: &Known,
-        method: Method,
-    ) -> Result<Vec<String>, String> {
+    fn values(&self, fields: &[&str], known: &Known, method: Method) -> Values {
         let values = numbers(&fields[..2], self.inputs())?;
         let &[sigma, gamma] = &values[..] else { unreachable!("two columns were found") };
         let masking = masking(fields[2])?;
