@@ -45,6 +45,7 @@ pub mod cache;
 pub mod convert;
 pub mod distribution;
 pub mod fit;
+pub mod input;
 pub mod memory;
 pub mod plan;
 pub mod plot;
