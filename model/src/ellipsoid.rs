@@ -11,7 +11,7 @@ use crate::below_horizon::SlopeBelowHorizon;
 use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::shape::Shape;
-use crate::visible::{self, SignedSlope, UnitView, VisibleSlope};
+use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon};
 
 /// Why an ellipsoid was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -196,7 +196,7 @@ impl Ellipsoid {
     /// Uᵀm, normalised.
     pub(crate) fn normal_from_unit(&self, m: DVec3) -> DVec3 {
         let Skew { p, q, r, x, y } = self.skew;
-        DVec3::new(p * m.x + q * m.y + x * m.z, r * m.y + y * m.z, m.z).normalize()
+        above_horizon(DVec3::new(p * m.x + q * m.y + x * m.z, r * m.y + y * m.z, m.z))
     }
 }
 
@@ -211,7 +211,7 @@ impl MicrofacetDistribution for Ellipsoid {
             return 0.0;
         }
         let u = self.normal_to_unit(m);
-        self.shape.d_in_unit_space(u.x * u.x + u.y * u.y, m.z * m.z) / (self.skew.p * self.skew.r)
+        self.shape.d_in_unit_space(libm::hypot(u.x, u.y), m.z, [self.skew.p, self.skew.r])
     }
 
     fn lambda(&self, v: DVec3) -> f64 {
@@ -250,7 +250,7 @@ impl MicrofacetDistribution for Ellipsoid {
         if !(v.z > 0.0 && facing > 0.0 && area > 0.0) {
             return 0.0;
         }
-        facing * self.d(m) / area
+        (facing * self.d(m) / area).min(f64::MAX)
     }
 }
 

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use crate::shape::Shape;
 use crate::student_t::StudentT;
+use crate::visible::above_horizon;
 
 impl Shape {
     /// The length r ∈ [0, ∞] of a unit slope at which P(R > r) = 1 − u, for u ∈ [0, 1].
@@ -27,10 +28,8 @@ impl StudentT {
         let r = self.shape().slope_radius(u[0]);
         let phi = 2.0 * PI * u[1];
         let (x, y) = (self.sigma_x() * libm::cos(phi), self.sigma_y() * libm::sin(phi));
-        if r > 1e150 {
-            // At the horizon r² would overflow in the normalisation.
-            return DVec3::new(x, y, 1.0 / r).normalize();
-        }
-        DVec3::new(r * x, r * y, 1.0).normalize()
+        // At the horizon r² would overflow in the normalisation.
+        let m = if r > 1e150 { DVec3::new(x, y, 1.0 / r) } else { DVec3::new(r * x, r * y, 1.0) };
+        above_horizon(m)
     }
 }

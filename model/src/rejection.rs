@@ -12,6 +12,7 @@ use glam::DVec3;
 
 use crate::shape::Shape;
 use crate::student_t::StudentT;
+use crate::visible::above_horizon;
 
 impl StudentT {
     /// Draws a visible normal by rejection, for any view; `uniform` gives uniform numbers in
@@ -43,12 +44,11 @@ impl StudentT {
         } else {
             (x * scale, y * scale)
         };
-        DVec3::new(
+        above_horizon(DVec3::new(
             self.sigma_x() * (x * at.cos_phi - y * at.sin_phi),
             self.sigma_y() * (x * at.sin_phi + y * at.cos_phi),
             scale,
-        )
-        .normalize()
+        ))
     }
 }
 

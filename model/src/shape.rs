@@ -122,18 +122,29 @@ impl Shape {
         2.0 * slope_integrals::ln_cosh(self.sqrt_s * w)
     }
 
-    /// D for roughness 1 at a normal ∝ (x, y, z), z > 0, whose length need not be 1: (1 + s
-    /// r²/z²)^(−γ)/(π z⁴) with r² = x² + y².
-    pub(crate) fn d_in_unit_space(&self, r2: f64, z2: f64) -> f64 {
+    /// D at a normal ∝ (x, y, z), z > 0, in unit space, whose length need not be 1: (1 + s
+    /// r²/z²)^(−γ)/(π z⁴ a b) with r² = x² + y² and the roughnesses [a, b].
+    ///
+    /// Finite: for γ < 2 and z → 0, where D has no limit, at most `f64::MAX`. z enters as itself,
+    /// since z² underflows for every fourth visible normal at γ = 1.501 and would give 0/0.
+    pub(crate) fn d_in_unit_space(&self, r: f64, z: f64, [a, b]: [f64; 2]) -> f64 {
+        let (steep, log_z) = (self.sqrt_s * r, libm::log(z));
         let log = if self.is_beckmann() {
-            -r2 / z2 - 2.0 * libm::log(z2)
-        } else if self.s * r2 > z2 {
-            // z⁻⁴ (1 + s r²/z²)^(−γ), arranged so that r²/z² does not overflow near the horizon.
-            (self.gamma - 2.0) * libm::log(z2) - self.gamma * libm::log(z2 + self.s * r2)
+            let slope = r / z;
+            -slope * slope - 4.0 * log_z
+        } else if steep > z {
+            // z^(2γ−4) (z² + s r²)^(−γ), so that nothing overflows near the horizon.
+            let q = z / steep;
+            2.0 * (self.gamma - 2.0) * log_z
+                - self.gamma * (2.0 * libm::log(steep) + libm::log1p(q * q))
         } else {
-            -2.0 * libm::log(z2) - self.gamma * libm::log1p(self.s * r2 / z2)
+            let q = steep / z;
+            -4.0 * log_z - self.gamma * libm::log1p(q * q)
         };
-        libm::exp(log) / PI
+        // Two factors, because the power may underflow where 1/(a b) brings D back, and 0/0 would
+        // be NaN.
+        let root = libm::exp(0.5 * log);
+        ((root / a) * (root / b) / PI).min(f64::MAX)
     }
 
     /// Density of the in-plane unit slope with respect to w: p(x) dx/dw.

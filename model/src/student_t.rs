@@ -8,7 +8,7 @@ use microfacet_common::Roughness;
 use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::shape::Shape;
-use crate::visible::{self, SignedSlope, UnitView, VisibleSlope};
+use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon};
 
 /// The Student-t distribution of microfacet normals, of roughness σx, σy and shape γ.
 ///
@@ -146,25 +146,23 @@ impl StudentT {
     /// Builds the world normal from the unit slopes x (towards the viewer) and t = y/√(1 + s x²).
     pub(crate) fn assemble(&self, at: &Stretched, x: SignedSlope, t: SignedSlope) -> DVec3 {
         let DVec3 { x, y, z } = visible::unit_normal(&self.shape, x, t);
-        DVec3::new(
+        above_horizon(DVec3::new(
             self.sigma_x * (x * at.cos_phi - y * at.sin_phi),
             self.sigma_y * (x * at.sin_phi + y * at.cos_phi),
             z,
-        )
-        .normalize()
+        ))
     }
 }
 
 impl MicrofacetDistribution for StudentT {
     /// D(m) by eq. 18 with 11. For γ < 2 it grows towards the horizon without bound, as cos^(2γ−4)
-    /// θ.
+    /// θ, and ends at `f64::MAX`.
     fn d(&self, m: DVec3) -> f64 {
         if !(m.z > 0.0) {
             return 0.0;
         }
-        let (x, y) = (m.x / self.sigma_x, m.y / self.sigma_y);
-        let (r2, z2) = (x * x + y * y, m.z * m.z);
-        self.shape.d_in_unit_space(r2, z2) / (self.sigma_x * self.sigma_y)
+        let r = libm::hypot(m.x / self.sigma_x, m.y / self.sigma_y);
+        self.shape.d_in_unit_space(r, m.z, [self.sigma_x, self.sigma_y])
     }
 
     /// Smith's Λ: eq. 13–15 in a well-conditioned form.
@@ -185,10 +183,9 @@ impl MicrofacetDistribution for StudentT {
 
     fn visible_normal_pdf(&self, v: DVec3, m: DVec3) -> f64 {
         let facing = v.dot(m);
-        // Tested first because D may be infinite on the horizon.
         if !(v.z > 0.0 && facing > 0.0) {
             return 0.0;
         }
-        facing * self.d(m) * self.inverse_area(v)
+        (facing * self.d(m) * self.inverse_area(v)).min(f64::MAX)
     }
 }

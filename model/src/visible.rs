@@ -213,6 +213,18 @@ pub(crate) fn unit_normal(shape: &Shape, x: SignedSlope, t: SignedSlope) -> DVec
     if m == DVec3::ZERO { DVec3::new(side, t.sign, 0.0) } else { m }
 }
 
+/// Smallest cosine of a sampled normal: for γ < 2 D has no limit at the horizon, and near γ = 3/2
+/// every fourth slope overflows.
+pub(crate) const HORIZON: f64 = 1e-300;
+
+/// Normalises a normal and raises it to the smallest cosine where it is lower.
+pub(crate) fn above_horizon(m: DVec3) -> DVec3 {
+    let largest = m.abs().max_element();
+    // Squares of smaller components would underflow, and with them the length.
+    let m = if largest < 1e-150 { m / largest } else { m }.normalize();
+    DVec3::new(m.x, m.y, m.z.max(HORIZON))
+}
+
 /// Inverse CDF of the slope across, in units of √(1 + s x²), for u ∈ [0, 1]: odd about u = ½, ±∞ at
 /// u = 1 and 0.
 pub fn across_quantile(shape: &Shape, u: f64) -> SignedSlope {

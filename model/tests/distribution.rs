@@ -8,8 +8,8 @@
 use glam::{DVec3, Vec3};
 use microfacet_model::statistics::test_visible_normals;
 use microfacet_model::{
-    Masking, MicrofacetDistribution, Shape, SignedSlope, StudentT, UnitView, VisibleSlope,
-    across_cdf, across_quantile,
+    Ellipsoid, Masking, MicrofacetDistribution, Shape, SignedSlope, Skew, StudentT, UnitView,
+    VisibleSlope, across_cdf, across_quantile,
 };
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -141,5 +141,85 @@ fn samplers_draw_the_visible_normals() {
         let draw = |u: [f32; 2]| -> Vec3 { material.sample_ndf(u.map(f64::from)).as_vec3() };
         let outcome = test_visible_normals(&material, DVec3::Z, 100_000, 5, draw);
         assert!(outcome.p() > 1e-4, "ndf, gamma {gamma}: {outcome:?}");
+    }
+}
+
+/// A normal over x at the cosine z, however small.
+fn low(z: f64) -> DVec3 {
+    DVec3::new(1.0, 0.0, z)
+}
+
+#[test]
+fn d_follows_its_power_law_down_to_the_smallest_cosines() {
+    // α²/π for every normal on the horizon.
+    let ggx = StudentT::ggx(0.5).unwrap();
+    for z in [1e-10, 1e-150, 1e-160, 1e-200, 1e-300, 5e-324] {
+        assert!(
+            (ggx.d(low(z)) / (0.25 / std::f64::consts::PI) - 1.0).abs() < 1e-12,
+            "{z}: {}",
+            ggx.d(low(z))
+        );
+    }
+    for gamma in [1.501, 1.6, 1.9, 2.1, 2.4] {
+        let lobe = StudentT::new([0.5, 0.3], gamma).unwrap();
+        let skew = Skew::new([0.5, 0.3], [0.2, 0.1, 0.0]).unwrap();
+        let tilted = Ellipsoid::new(skew, gamma).unwrap();
+        for z in [1e-140_f64, 1e-155, 1e-165, 1e-290] {
+            // D ∝ z^(2γ−4) there, and does not overflow.
+            let power = (2.0 * gamma - 4.0) * (z.ln() - 1e-100_f64.ln());
+            for [at, from] in
+                [[lobe.d(low(z)), lobe.d(low(1e-100))], [tilted.d(low(z)), tilted.d(low(1e-100))]]
+            {
+                assert!(((at / from).ln() - power).abs() < 1e-11, "{gamma} {z}: {at} from {from}");
+            }
+        }
+        // The smallest number is beyond what a double holds of D, for γ near 3/2.
+        assert!(lobe.d(low(5e-324)) <= f64::MAX && tilted.d(low(5e-324)) <= f64::MAX);
+    }
+    assert_eq!(StudentT::beckmann(0.5).unwrap().d(low(1e-200)), 0.0);
+    // Roughnesses whose product underflows.
+    for gamma in [1.6, 2.0, 4.0, f64::INFINITY] {
+        let smooth = StudentT::new(1e-200, gamma).unwrap();
+        assert_eq!(smooth.d(DVec3::Z), f64::MAX);
+        let aside = smooth.d(DVec3::new(0.6, 0.0, 0.8));
+        assert!((0.0..1e-100).contains(&aside), "{gamma}: {aside}");
+    }
+}
+
+#[test]
+fn densities_of_all_draws_are_finite() {
+    let ends = [0.0, 1e-300, 1e-17, 0.25, 0.5, 0.76, 0.9, 1.0 - 1e-16, 1.0];
+    let mut seed = 1_u64;
+    let mut uniform = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for gamma in [1.500_001, 1.501, 1.51, 1.6, 1.9, 2.0, 3.0, f64::INFINITY] {
+        for sigma in [1e-8, 0.5, 1e6] {
+            let lobe = StudentT::new([sigma, 0.7 * sigma], gamma).unwrap();
+            let skew = Skew::new([sigma, 0.7 * sigma], [0.3, -0.2, 0.5]).unwrap();
+            let tilted = Ellipsoid::new(skew, gamma).unwrap();
+            for v in [0.0_f64, 0.5, 1.3, 1.57].map(|t| DVec3::new(t.sin(), 0.0, t.cos())) {
+                let mut normals: Vec<DVec3> = Vec::new();
+                for u in ends.iter().flat_map(|&a| ends.map(|b| [a, b])) {
+                    normals.push(lobe.sample_visible_normal(v, u));
+                    normals.push(tilted.sample_visible_normal(v, u));
+                    normals.push(lobe.sample_ndf(u));
+                    normals.push(tilted.sample_ndf(u));
+                    normals.push(lobe.sample_visible_by_rejection(v, &mut uniform));
+                }
+                for m in normals {
+                    assert!((m.length() - 1.0).abs() < 1e-14 && m.z > 0.0, "{gamma} {sigma} {m}");
+                    let densities = [
+                        lobe.d(m),
+                        tilted.d(m),
+                        lobe.visible_normal_pdf(v, m),
+                        tilted.visible_normal_pdf(v, m),
+                    ];
+                    let sound = densities.iter().all(|x| (0.0..=f64::MAX).contains(x));
+                    assert!(sound, "{gamma} {sigma} {v} {m}: {densities:?}");
+                }
+            }
+        }
     }
 }

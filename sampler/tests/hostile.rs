@@ -6,7 +6,7 @@ use microfacet_sampler::axis::{HalfTangent, Rational};
 use microfacet_sampler::internals::seal;
 use microfacet_sampler::{
     Axis, Ggx, Interpolation, Kind, LoadError, Lobe, Mapping, Masking, MicrofacetDistribution,
-    Precision, Provenance, Subject, Table, Tables, VERSION, encode,
+    Precision, Provenance, Skew, Subject, Table, Tables, VERSION, encode,
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {
@@ -285,6 +285,46 @@ fn directions_and_numbers_out_of_their_domain_are_answered() {
                     )));
                 }
             }
+        }
+    }
+}
+
+/// Random numbers outside [0, 1] are those of the nearer end and NaN is 0, for every sampler.
+#[test]
+fn random_numbers_are_clamped() {
+    let tables = Tables::embedded();
+    let ends = [(f32::NAN, 0.0), (f32::NEG_INFINITY, 0.0), (-1e-9, 0.0), (1.001, 1.0)];
+    let ends = ends.into_iter().chain([(f32::INFINITY, 1.0), (2.0, 1.0)]);
+    let pairs = |x: f32| [[x, 0.3], [0.3, x], [x, x]];
+    let tilted = Skew::new([0.5, 0.2], [0.6, 0.1, 1.0]).unwrap();
+    for (odd, end) in ends {
+        for (u, clamped) in pairs(odd).into_iter().zip(pairs(end)) {
+            for gamma in [1.501, 1.6, 1.79, 2.0, 3.0, f64::INFINITY] {
+                let student_t = tables.student_t(0.5, gamma).unwrap();
+                let ellipsoid = tables.ellipsoid(tilted, gamma).unwrap();
+                // The last looks at the ellipsoid from below the horizon of its own space.
+                for v in [[0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [-0.8, 0.6, 1e-4], [0.0, -0.99, 0.05]] {
+                    let v = Vec3::from(v).normalize();
+                    let lobes: [Lobe; 3] = [
+                        student_t.clone().into(),
+                        ellipsoid.clone().into(),
+                        Ggx::new(0.5).unwrap().into(),
+                    ];
+                    for lobe in lobes {
+                        let m = lobe.sample_visible_normal(v, u);
+                        assert_eq!(m, lobe.sample_visible_normal(v, clamped), "{gamma} {v} {u:?}");
+                        let mut batch = [Vec3::ZERO; 5];
+                        lobe.sample_batch(&[v; 5], &[u; 5], &mut batch).unwrap();
+                        assert!(batch.iter().all(|b| b.distance(m) < 1e-6), "{gamma} {v} {u:?}");
+                    }
+                    let bounded = student_t.bounded(v);
+                    assert_eq!(bounded.sample(u), bounded.sample(clamped), "{gamma} {v} {u:?}");
+                }
+            }
+            let albedo = tables.albedo(0.5, 3.0, Masking::Uncorrelated).unwrap();
+            let l = albedo.sample_compensation(u);
+            assert_eq!(l, albedo.sample_compensation(clamped), "{u:?}");
+            assert!((l.length() - 1.0).abs() < 5e-7 && l.z >= 0.0, "{u:?}: {l}");
         }
     }
 }

@@ -4,6 +4,10 @@ use glam::DVec3;
 
 use super::{Isotropic, Marginal, MarginalView, bisect};
 use crate::distribution::MicrofacetDistribution;
+use crate::visible::above_horizon;
+
+/// The steepest slope of a normal: its square does not overflow.
+const STEEPEST: f64 = 1e150;
 
 /// An isotropic distribution outside the Student-t family as a lobe, such as GTR or a measured one.
 ///
@@ -93,8 +97,9 @@ impl MicrofacetDistribution for Radial<'_> {
         let tail = u[1].min(1.0 - u[1]);
         let y = turning(0.0, reach, |y| across.tail(y) > tail);
         let y = if u[1] < 0.5 { -y } else { y };
-        let (x, y) = (self.marginal.sigma() * x, self.marginal.sigma() * y);
-        DVec3::new(x * cos - y * sin, x * sin + y * cos, 1.0).normalize()
+        // Random numbers 0 and 1 give infinite slopes, whose ratio would be NaN.
+        let [x, y] = [x, y].map(|slope| (self.marginal.sigma() * slope).clamp(-STEEPEST, STEEPEST));
+        above_horizon(DVec3::new(x * cos - y * sin, x * sin + y * cos, 1.0))
     }
 
     fn visible_normal_pdf(&self, v: DVec3, m: DVec3) -> f64 {
@@ -133,6 +138,21 @@ mod tests {
                 assert!((got - want).length() < 1e-9, "{v} {u:?}: {got} {want}");
                 let (got, want) = (radial.sample_with_pdf(v, u).1, ggx.sample_with_pdf(v, u).1);
                 assert!((got / want - 1.0).abs() < 1e-8, "{v} {u:?}: {got} {want}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_ends_of_random_numbers_give_normals() {
+        let (gtr, schlick) = (Gtr::new(0.2, 1.05).unwrap(), Schlick::new(0.3).unwrap());
+        for d in [&gtr as &dyn Isotropic, &schlick] {
+            let lobe = Radial::new(d);
+            for v in views().chain([DVec3::X, DVec3::new(0.8, 0.0, -0.6)]) {
+                for u in [0.0, 0.5, 1.0].into_iter().flat_map(|a| [[a, 0.0], [a, 0.5], [a, 1.0]]) {
+                    let (m, pdf) = lobe.sample_with_pdf(v, u);
+                    let sound = (m.length() - 1.0).abs() < 1e-14 && m.z > 0.0;
+                    assert!(sound && (0.0..=f64::MAX).contains(&pdf), "{v} {u:?}: {m} {pdf}");
+                }
             }
         }
     }

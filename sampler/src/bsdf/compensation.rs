@@ -13,6 +13,7 @@ use microfacet_common::gauss_legendre;
 use microfacet_common::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip};
 
 use crate::albedo::Albedo;
+use crate::axis::clamped;
 use crate::math::sqrt;
 
 /// Cosine-weighted average of Schlick's reflectance, 2∫₀¹ F(μ) μ dμ = F0 + (F90 − F0)/21.
@@ -67,15 +68,16 @@ impl Albedo {
         self.lost(v) * self.lost(l) / (PI * average)
     }
 
-    /// Draws a light for [`compensation`](Self::compensation) from u ∈ [0, 1)²: cosine-weighted,
-    /// which is close because 1 − E varies little.
+    /// Draws a light for [`compensation`](Self::compensation) from two numbers in [0, 1] (clamped
+    /// to them, NaN to 0): cosine-weighted, which is close because 1 − E varies little.
     #[inline]
     pub fn sample_compensation(&self, u: [f32; 2]) -> Vec3 {
+        let [u1, u2] = u.map(clamped);
         // Malley's method on the polar disc; z from the radius keeps l of unit length at the
         // horizon.
-        let r = sqrt(u[0]);
-        let phi = 2.0 * PI * u[1];
-        Vec3::new(r * libm::cosf(phi), r * libm::sinf(phi), sqrt((1.0 - u[0]).max(0.0)))
+        let r = sqrt(u1);
+        let phi = 2.0 * PI * u2;
+        Vec3::new(r * libm::cosf(phi), r * libm::sinf(phi), sqrt(1.0 - u1))
     }
 
     /// Density of [`sample_compensation`](Self::sample_compensation), cos θ_l/π per steradian; 0

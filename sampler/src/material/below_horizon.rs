@@ -6,6 +6,7 @@
 //! that either an exponential or a gamma variate bounds it tightly.
 
 use super::student_t::{Stretched, StudentT};
+use crate::axis::clamped;
 use crate::axis::half_tangent::Slope;
 use crate::math::sqrt64;
 
@@ -48,7 +49,7 @@ impl<'a> SlopeBelowHorizon<'a> {
         let grow = |y: f64| if s == 0.0 { y } else { base * libm::expm1(s * rate * y) / s };
         // 1 − a/x ≤ min(1, b y).
         let b = 0.5 * rate * base / (a * a);
-        let mut first = f64::from(u).clamp(0.0, 1.0);
+        let mut first = f64::from(clamped(u));
         loop {
             let mut y = -libm::log1p(-first);
             if b < 1.0 {
@@ -108,7 +109,9 @@ pub(crate) struct Numbers(u64);
 
 impl Numbers {
     pub(crate) fn new(u: [f32; 2]) -> Self {
-        Self(u64::from(u[0].to_bits()) << 32 | u64::from(u[1].to_bits()))
+        // Clamped first, so that numbers outside [0, 1] and NaN give the sequence of the end.
+        let [a, b] = u.map(|u| u64::from(clamped(u).to_bits()));
+        Self(a << 32 | b)
     }
 
     fn next(&mut self) -> f64 {

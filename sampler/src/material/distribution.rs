@@ -70,7 +70,7 @@ pub trait MicrofacetDistribution {
         if v.z > 0.0 { masking.g2_over_g1(self.g1(v), self.g1(l)) } else { 0.0 }
     }
 
-    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them).
+    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
     ///
     /// From tables `u[0]` chooses the slope along the azimuth of the view and `u[1]` that across,
     /// both rising, so that stratified numbers give stratified normals; each lobe says more. It has

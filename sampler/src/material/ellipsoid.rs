@@ -183,7 +183,7 @@ impl MicrofacetDistribution for Ellipsoid {
         (v.z * self.inverse_area(w, &self.lobe.stretch(w))).min(1.0)
     }
 
-    /// A normal visible from `v`, from two numbers in [0, 1].
+    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
     #[inline(always)]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let [x, y, z] =

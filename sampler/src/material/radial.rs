@@ -146,7 +146,7 @@ impl MicrofacetDistribution for Radial {
         self.plane.g1(v)
     }
 
-    /// A normal visible from `v`, from two numbers in [0, 1].
+    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
     #[inline]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let view = self.plane.stretch(v);

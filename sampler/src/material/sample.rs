@@ -8,9 +8,9 @@
 use glam::Vec3;
 
 use super::student_t::{Stretched, StudentT};
-use crate::axis::MirroredRoot;
 use crate::axis::half_tangent::Slope;
 use crate::axis::hermite::{between_rows, hermite, locate};
+use crate::axis::{MirroredRoot, clamped};
 use crate::math::sqrt;
 
 /// Smallest cosine of a sampled normal: keeps D finite, which for γ < 2 it is not on the horizon.
@@ -77,8 +77,7 @@ impl StudentT {
     #[inline(always)]
     fn sample_peeled(&self, view: &Stretched, u: f32) -> Slope {
         let heavy = self.heavy_share(view);
-        // `max` takes NaN to 0, which `clamp` alone would keep.
-        let u = u.max(0.0).clamp(0.0, 1.0);
+        let u = clamped(u);
         let rest = 1.0 - heavy;
         // Straight from above the heavy part has no share, and u = 1 still belongs to the table.
         if u <= rest {
