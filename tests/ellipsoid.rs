@@ -238,5 +238,5 @@ fn weights_never_exceed_one_10_million() {
 fn matrices_beyond_single_precision_are_refused() {
     let set = tables(3.0);
     let skew = Skew::new(1e-20, [0.0; 3]).unwrap();
-    assert!(matches!(set.ellipsoid(skew, 3.0), Err(MaterialError::Sigma(1e-20))));
+    assert!(matches!(set.ellipsoid(skew, 3.0), Err(MaterialError::Sigma { sigma: 1e-20, .. })));
 }

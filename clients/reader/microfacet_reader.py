@@ -212,8 +212,10 @@ class Albedo:
             shape, rough = (axis["mapping"] for axis in table["axes"][:2])
             t = log1p(sigma / rough["offset"]) + rough["linear"] * sigma
             t += rough["slow"] * (log(sigma / rough["first"]) if sigma > 0 else -inf)
-            first = table["axes"][1]["nodes"][0]
-            self.mirror = t < first
+            first, last = (table["axes"][1]["nodes"][end] for end in (0, -1))
+            self.mirror = sigma == 0
+            if sigma > 0 and t < first - 1e-9 * (1 + abs(last)):
+                raise ValueError(f"sigma {sigma} lies between 0, a mirror, and the first node")
             return log1p(shape["scale"] / (2 * gamma - 3)), max(t, first)
 
         wanted = {"reflectance": "moments", "masking": masking}

@@ -67,6 +67,12 @@ impl Masking {
     }
 }
 
+impl fmt::Display for Masking {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
 /// The error for a text that names no form of masking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnknownMasking;

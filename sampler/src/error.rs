@@ -3,7 +3,7 @@
 use alloc::string::String;
 use core::fmt;
 
-use microfacet_common::SkewError;
+use microfacet_common::{Masking, SkewError};
 
 /// Why bytes are not a table set that this crate can use.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +29,15 @@ impl core::error::Error for LoadError {}
 /// Why a set cannot give what was asked for: a lobe or an albedo.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialError {
-    /// `sigma` outside [1e-8, 1e6] or NaN.
-    Sigma(f64),
+    /// A roughness, or an entry of an ellipsoid's matrix, that single precision cannot hold, or
+    /// NaN.
+    Sigma {
+        /// The roughness asked for.
+        sigma: f64,
+        /// The smallest and the largest that are allowed: [1e-8, 1e6], for an ellipsoid's matrix
+        /// [1e-18, 1e18].
+        range: [f64; 2],
+    },
     /// γ ≤ 3/2 or NaN: no member of the family.
     Gamma(f64),
     /// The material's distribution has no albedo of the kind that was asked for.
@@ -42,25 +49,41 @@ pub enum MaterialError {
     },
     /// A table of a material's own distribution is missing from the set.
     NoTable(String),
-    /// No table of the set holds the albedo of this dielectric: its index, σ and γ.
-    Dielectric([f64; 3]),
+    /// No table of the set holds the albedo of this dielectric.
+    DielectricNotCovered {
+        /// Its index of refraction, inside over outside.
+        eta: f64,
+        /// Its σ.
+        sigma: f64,
+        /// Its γ.
+        gamma: f64,
+        /// The form of masking asked for.
+        masking: Masking,
+        /// The dielectrics that are covered, for that form and any other.
+        covered: String,
+    },
     /// A matrix, or a roughness and angles, of no ellipsoid.
     Skew(SkewError),
-    /// γ is legal but no table of `kind` covers it; `covered` lists what the set holds.
+    /// γ is legal but no tables of this set serve it; `covered` lists what they serve.
     NotCovered {
-        /// The table kind that was looked for.
-        kind: &'static str,
         /// The γ asked for.
         gamma: f64,
         /// The ranges or values that are covered.
         covered: String,
     },
-    /// σ is legal but beyond the albedo tables, which reach to `max`.
+    /// The set has no albedo tables for this form of masking.
+    MaskingNotCovered {
+        /// The form asked for.
+        masking: Masking,
+        /// The form that it has tables for, if any.
+        other: Option<Masking>,
+    },
+    /// The albedo tables that hold γ do not hold σ.
     SigmaNotCovered {
         /// The σ asked for.
         sigma: f64,
-        /// The largest that is covered.
-        max: f64,
+        /// The smallest and the largest that they hold, apart from 0, a mirror.
+        range: [f64; 2],
     },
     /// No albedo table of this set covers the pair of σ and γ; `covered` lists the pairs that are
     /// covered.
@@ -91,9 +114,10 @@ pub enum MaterialError {
 impl fmt::Display for MaterialError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Sigma(x) => write!(
+            Self::Sigma { sigma, range } => write!(
                 f,
-                "sigma = {x}: a roughness must lie in [1e-8, 1e6]; below, treat the surface as smooth"
+                "sigma = {sigma}: a roughness must lie in {}; below, treat the surface as smooth",
+                Range(*range)
             ),
             Self::Gamma(x) => {
                 write!(
@@ -109,21 +133,35 @@ impl fmt::Display for MaterialError {
             Self::NoTable(name) => {
                 write!(f, "table `{name}` is missing from this set; bake it again")
             }
-            Self::Dielectric([eta, sigma, gamma]) => write!(
+            Self::DielectricNotCovered { eta, sigma, gamma, masking, covered } => write!(
                 f,
-                "no table of this set holds the albedo of a dielectric of index {eta} (more than 0) with sigma {sigma} and gamma {gamma}; add \
-                 `fresnel = {{ dielectric = {eta} }}` to the recipe's material, or a range of indices, and bake it again"
+                "no table of this set holds the albedo of a dielectric of index {eta} (in [0, inf]) with sigma {sigma}, gamma {gamma} \
+                 and {masking} masking; it holds {covered}; add `fresnel = {{ dielectric = {eta} }}` and `masking = \"{masking}\"` to a \
+                 material of the recipe that covers them, and bake it again"
             ),
             Self::Skew(why) => why.fmt(f),
-            Self::NotCovered { kind, gamma, covered } => write!(
+            Self::NotCovered { gamma, covered } => write!(
                 f,
-                "gamma = {gamma} is not covered by the `{kind}` tables of this set, which hold {covered}; bake a set that \
+                "gamma = {gamma} is not covered by the tables of this set, which serve {covered}; bake a set that \
                  does: a recipe line `gamma = {gamma}`, or `microfacet-bake bake` without a recipe for all of [1.501, inf]"
             ),
-            Self::SigmaNotCovered { sigma, max } => write!(
+            Self::MaskingNotCovered { masking, other } => {
+                write!(f, "this set has no albedo tables for {masking} masking")?;
+                match other {
+                    Some(other) => write!(f, ", only for {other}")?,
+                    None => write!(f, ", nor for any other")?,
+                }
+                write!(
+                    f,
+                    "; bake a set that does: a recipe's material with `fresnel` and `masking = \"{masking}\"`, or \
+                     `microfacet-bake bake` without a recipe for both forms"
+                )
+            }
+            Self::SigmaNotCovered { sigma, range } => write!(
                 f,
-                "sigma = {sigma} is not covered by the albedo tables of this set, which hold [0, {max}]; clamp it, or \
-                 bake a set whose recipe holds it"
+                "sigma = {sigma} is not covered by the albedo tables of this set, which hold {} and 0, a mirror; clamp it, or \
+                 bake a set whose recipe holds it",
+                Range(*range)
             ),
             Self::AlbedoNotCovered { sigma, gamma, covered } => write!(
                 f,
@@ -144,6 +182,31 @@ impl fmt::Display for MaterialError {
 }
 
 impl core::error::Error for MaterialError {}
+
+/// An interval in a message: its ends to nine digits, which hides the rounding of 1/(1/x), and by
+/// powers of ten where they are long.
+pub(crate) struct Range(pub(crate) [f64; 2]);
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [low, high] = self.0.map(Short);
+        if self.0[0] == self.0[1] { write!(f, "{low}") } else { write!(f, "[{low}, {high}]") }
+    }
+}
+
+/// A number in a message, as in [`Range`].
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let short: f64 = alloc::format!("{:.8e}", self.0).parse().unwrap_or(self.0);
+        match short.abs() {
+            1e-4..1e6 => write!(f, "{short}"),
+            0.0 | f64::INFINITY => write!(f, "{short}"),
+            _ => write!(f, "{short:e}"),
+        }
+    }
+}
 
 impl From<SkewError> for MaterialError {
     fn from(why: SkewError) -> Self {

@@ -19,3 +19,9 @@ pub(crate) fn sqrt64(x: f64) -> f64 {
     #[cfg(not(feature = "std"))]
     return libm::sqrt(x);
 }
+
+/// x clamped to [0, 1], and 0 for NaN: random numbers and cosines as every lookup takes them.
+#[inline(always)]
+pub(crate) fn unit(x: f32) -> f32 {
+    if x > 0.0 { x.min(1.0) } else { 0.0 }
+}

@@ -8,7 +8,7 @@ use microfacet_common::{Roughness, Skew};
 
 use crate::error::{LoadError, MaterialError};
 use crate::format::{Kind, MaterialEntry, Provenance, Table, decode};
-use crate::material::{Ellipsoid, Ggx, Lobe, Radial, StudentT, covers};
+use crate::material::{Ellipsoid, Ggx, Lobe, Radial, StudentT, coverage};
 
 /// The default set as the bytes of a safetensors file, for those who pass it on.
 #[cfg(feature = "embedded")]
@@ -85,12 +85,20 @@ impl Tables {
 
     /// Whether [`lobe`](Self::lobe) serves the shape γ; it always serves γ = 2.
     pub fn covers(&self, gamma: f64) -> bool {
-        let s = s_of_gamma(gamma);
-        let has = |kind| self.tables.iter().any(|table| table.kind == kind && covers(table, s));
-        let tabulated = has(Kind::Shadowing)
-            && has(Kind::VisibleSlopeConditional)
-            && (has(Kind::VisibleSlope) || has(Kind::VisibleSlopePeeled));
-        gamma == 2.0 || gamma > 1.5 && tabulated
+        gamma == 2.0 || self.tabulates(gamma)
+    }
+
+    /// Whether [`student_t`](Self::student_t) and [`ellipsoid`](Self::ellipsoid) serve the shape γ.
+    pub fn tabulates(&self, gamma: f64) -> bool {
+        gamma > 1.5 && coverage::contains(&self.tables, s_of_gamma(gamma))
+    }
+
+    /// The shapes that [`student_t`](Self::student_t) serves, as ascending, disjoint ranges [min,
+    /// max] of s = 1/(γ−1); a single shape is a range of no width.
+    ///
+    /// A lobe needs tables of several kinds; these are the shapes that all of them cover.
+    pub fn shapes(&self) -> Vec<[f64; 2]> {
+        coverage::shapes(&self.tables)
     }
 
     /// The Student-t lobe of roughness σ ∈ [1e-8, 1e6] (one number, or a pair for x and y) and

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use microfacet_model::fresnel::{F82Tint, schlick_weight};
 use microfacet_model::{AlbedoIntegrator, Shape};
-use microfacet_sampler::{Albedo, Masking, Tables};
+use microfacet_sampler::{Albedo, Kind, Masking, Table, Tables};
 
 const COSINES: [f32; 5] = [0.02, 0.1, 0.35, 0.8, 1.0];
 
@@ -113,4 +113,69 @@ fn the_compensation_returns_what_is_lost() {
             assert!((got / want - 1.0).abs() < 2e-4, "{at}: {got} for {want}");
         }
     });
+}
+
+/// The albedo of (σ, γ), refused: the message.
+fn refused(set: &Tables, sigma: f64, gamma: f64, masking: Masking) -> String {
+    let average = set.average_moments(sigma, gamma, masking).unwrap_err().to_string();
+    let message = set.albedo(sigma, gamma, masking).unwrap_err().to_string();
+    assert_eq!(message, average);
+    message
+}
+
+/// The default set without some of its tables.
+fn without(drop: impl Fn(&Table) -> bool) -> Tables {
+    let set = Tables::embedded();
+    let kept = set.tables().iter().filter(|table| !drop(table)).cloned().collect();
+    Tables::from_tables(set.provenance().clone(), kept).unwrap()
+}
+
+#[test]
+fn what_no_albedo_table_covers_is_refused_with_what_they_cover() {
+    let set = Tables::embedded();
+    for masking in Masking::ALL {
+        // Between a mirror and the first node: the exact albedo of this view is 0.34, not 1.
+        for sigma in [1e-9, 1e-300, -1.0, 3.1, f64::NAN, f64::INFINITY] {
+            for gamma in [1.501, 2.0, f64::INFINITY] {
+                let message = refused(&set, sigma, gamma, masking);
+                assert!(message.contains("[1e-8, 3] and 0, a mirror"), "{sigma}: {message}");
+            }
+        }
+        assert_eq!(set.albedo(0.0, 1.501, masking).unwrap().albedo(view(1e-7)), 1.0);
+        assert!(set.albedo(1e-8, 1.501, masking).unwrap().albedo(view(1e-7)) < 0.5);
+        assert!(set.albedo(3.0, 2.0, masking).is_ok());
+        let message = refused(&set, 0.3, 1.5005, masking);
+        assert!(message.contains("gamma [1.501, inf] with sigma 0 or [1e-8, 3]"), "{message}");
+    }
+    // A set that has γ = 3, but no albedo of it, does not ask for a recipe line `gamma = 3`.
+    let message =
+        refused(&without(|table| table.kind.is_albedo()), 0.3, 3.0, Masking::Uncorrelated);
+    assert!(message.contains("nor for any other") && message.contains("`fresnel`"), "{message}");
+    assert!(!message.contains("gamma = 3"), "{message}");
+    let other = without(|table| table.subject.masking == Some(Masking::Uncorrelated));
+    let message = refused(&other, 0.3, 3.0, Masking::Uncorrelated);
+    assert!(message.contains("uncorrelated masking, only for height-correlated"), "{message}");
+    assert!(!message.contains("gamma = 3"), "{message}");
+    let message = set.dielectric_albedo(0.3, 3.0, 1.5, Masking::Uncorrelated).unwrap_err();
+    assert!(message.to_string().contains("it holds none"), "{message}");
+}
+
+#[test]
+fn a_lobe_that_is_not_covered_is_told_what_the_set_serves() {
+    let set = Tables::embedded();
+    let message = set.student_t(0.3, 1.5001).unwrap_err().to_string();
+    assert!(message.contains("serve [1.501, inf];"), "{message}");
+    assert_eq!(set.shapes().len(), 1);
+    // One kind of table missing for some shapes: only those of all kinds are served.
+    let set = without(|table| table.kind == Kind::VisibleSlopePeeled);
+    let message = set.student_t(0.3, 1.6).unwrap_err().to_string();
+    assert!(message.contains("serve [1.8, inf];"), "{message}");
+    assert!(set.tabulates(1.8) && !set.tabulates(1.799) && set.covers(2.0));
+    let set = without(|table| table.kind == Kind::Shadowing);
+    let message = set.student_t(0.3, 3.0).unwrap_err().to_string();
+    assert!(message.contains("serve none;") && set.shapes().is_empty(), "{message}");
+    for sigma in [0.0, 9e-9, 2e6, f64::NAN] {
+        let message = Tables::embedded().student_t(sigma, 3.0).unwrap_err().to_string();
+        assert!(message.contains("[1e-8, 1e6]"), "{message}");
+    }
 }

@@ -76,7 +76,7 @@ pub fn furnace(
     let shape = model::Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
     let exact = model::AlbedoIntegrator::new(shape, 1e-6)
         .reflection(sigma, f64::from(cos), |_| [1.0])
-        .map_err(|_| MaterialError::Sigma(sigma))?;
+        .expect("the tables checked sigma and the cosine");
     let [single] = exact.of(masking);
     let turquin = single * f64::from(albedo.turquin(direction(cos), 1.0));
     let kulla_conty = single + lobe(&albedo, cos);

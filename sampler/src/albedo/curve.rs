@@ -2,7 +2,6 @@
 //! collapsed.
 
 use alloc::format;
-use alloc::string::String;
 use alloc::vec::Vec;
 
 use glam::Vec3;
@@ -12,7 +11,8 @@ use microfacet_common::shape::s_of_gamma;
 use crate::axis::lagrange::{SIX, combine, six};
 use crate::axis::{Mapping, PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend, Weights};
 use crate::error::MaterialError;
-use crate::format::{Covered, Kind, Reflectance, SAME, Table};
+use crate::format::{Kind, Reflectance, SAME, Table};
+use crate::math::unit;
 
 /// The largest number of channels of an albedo table.
 const CHANNELS: usize = 4;
@@ -32,7 +32,7 @@ pub(super) struct MaterialWeights {
     pub(super) weights: Vec<Weights>,
     /// The roughness of the weights, no less than the first node's.
     sigma: f64,
-    /// Whether the material is smoother than the first node.
+    /// Whether σ is 0.
     pub(super) is_mirror: bool,
 }
 
@@ -50,7 +50,12 @@ impl MaterialWeights {
                         return None;
                     }
                     let first = axis.quantity(axis.nodes[0])?;
-                    collapsed.is_mirror = point.sigma < first * (1.0 - SAME);
+                    let below = point.sigma < first * (1.0 - SAME);
+                    // Between a mirror and the first node nothing is known.
+                    if below && point.sigma > 0.0 {
+                        return None;
+                    }
+                    collapsed.is_mirror = below;
                     collapsed.sigma = point.sigma.max(first);
                     collapsed.sigma
                 }
@@ -101,7 +106,7 @@ impl<const N: usize> ViewCurve<N> {
     /// azimuth. Closer to grazing than the table's first view, μ₀ of
     /// [`ViewBlend`](crate::axis::ViewBlend), albedos are held constant.
     pub fn eval(&self, v: Vec3) -> [f32; N] {
-        let cos = within(v.z);
+        let cos = unit(v.z);
         self.0.with_view(v, |rows, view| self.at(rows, view, cos))
     }
 
@@ -291,11 +296,6 @@ impl Curve {
     }
 }
 
-/// cos θ in [0, 1]; NaN becomes 0.
-pub(super) fn within(cos_theta: f32) -> f32 {
-    if cos_theta > 0.0 { cos_theta.min(1.0) } else { 0.0 }
-}
-
 /// Views of smaller cosine weigh less than rounding.
 const LOWEST: f64 = 1e-9;
 /// Width of a quadrature panel in −ln h.
@@ -328,26 +328,6 @@ fn over_views<const N: usize>(
         }
     }
     sum
-}
-
-/// The materials that tables cover, in words.
-pub(super) fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
-    let ends = |[a, b]: [f64; 2]| {
-        if a == b { format!("= {a:.6}") } else { format!("in [{a:.6}, {b:.6}]") }
-    };
-    let one = |table: &Table| {
-        let Covered { s: [low, high], sigma } = table.subject.covers?;
-        let gammas = [high, low].map(microfacet_common::shape::gamma_of_s);
-        Some(format!("gamma {} with sigma {}", ends(gammas), ends(sigma?)))
-    };
-    const SHOWN: usize = 8;
-    let mut all: Vec<String> = tables.filter_map(one).collect();
-    if all.len() > SHOWN {
-        let more = all.len() - SHOWN;
-        all.truncate(SHOWN);
-        all.push(format!("{more} more"));
-    }
-    all.join("; ")
 }
 
 #[cfg(test)]

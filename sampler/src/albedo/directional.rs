@@ -3,10 +3,11 @@
 use glam::Vec3;
 use microfacet_common::Masking;
 
-use super::curve::{Curve, Elevation, MaterialPoint, Rows, missing, within};
+use super::curve::{Curve, Elevation, MaterialPoint, Rows, missing};
 use super::moments::{Moments, below, less_mirror};
 use crate::error::MaterialError;
 use crate::format::{Reflectance, Table};
+use crate::math::unit;
 
 /// The directional albedo of one material as a function of the view, with F = 1 and as moments of
 /// Fresnel weights.
@@ -54,7 +55,7 @@ impl Albedo {
 
     /// Moments of the Fresnel weights at a view, each in [0, 1], with a total of at most 1.
     pub fn moments(&self, v: Vec3) -> Moments {
-        Moments::mirror(within(v.z)).plus(self.rest(v))
+        Moments::mirror(unit(v.z)).plus(self.rest(v))
     }
 
     /// The directional albedo E(v) with F = 1, in [0, 1].
@@ -94,7 +95,7 @@ impl Albedo {
 
     /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
     fn rest(&self, v: Vec3) -> [f32; 3] {
-        self.curve.with_view(v, |rows, view| self.at(rows, view, within(v.z)))
+        self.curve.with_view(v, |rows, view| self.at(rows, view, unit(v.z)))
     }
 
     fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; 3] {

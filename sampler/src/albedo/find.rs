@@ -1,13 +1,11 @@
 //! Finds the table of a set that holds an albedo.
 
-use alloc::format;
-use alloc::vec::Vec;
-
 use microfacet_common::Masking;
-use microfacet_common::shape::gamma_of_s;
+use microfacet_common::shape::s_of_gamma;
 
-use super::curve::{MaterialPoint, MaterialWeights, ViewCurve, domains};
+use super::curve::{MaterialPoint, MaterialWeights, ViewCurve};
 use super::directional::Albedo;
+use super::domain::{dielectrics, domains, smallest_sigma};
 use super::fresnel::{DielectricAlbedo, FresnelAlbedo};
 use super::moments::Moments;
 use crate::error::MaterialError;
@@ -15,16 +13,16 @@ use crate::format::{FresnelEntry, Kind, LobeEntry, MaterialEntry, Reflectance, S
 use crate::tables::Tables;
 
 impl Tables {
-    /// The directional albedo of the round Student-t lobe with σ ∈ [0, 3] and γ, for one form of
-    /// masking.
+    /// The directional albedo of the round Student-t lobe with σ and γ, for one form of masking.
     ///
-    /// A surface smoother than the table's first node, σ = 1e-8, is a mirror, E = 1. The averages
-    /// are integrated from the interpolated albedo of just this material, so that a white furnace
+    /// σ is 0, a mirror with E = 1, or lies in [1e-8, 3] (the default set, and every set whose
+    /// recipe does not narrow it). Between the two nothing is known: at γ = 1.501 and σ = 1e-9 a
+    /// view of cos θ = 1e-7 loses two thirds of its light. The averages are integrated from the interpolated albedo of just this material, so that a white furnace
     /// closes to rounding. The call takes some ten microseconds; keep the result.
     ///
     /// # Errors
-    /// [`MaterialError`] for a σ or γ outside the family, or one that the set's albedo tables do
-    /// not cover.
+    /// [`MaterialError`] for a γ outside the family, or a σ, γ or form of masking that the set's
+    /// albedo tables do not cover.
     pub fn albedo(
         &self,
         sigma: f64,
@@ -80,7 +78,7 @@ impl Tables {
     /// Ranges are taken as by [`material_albedo`](Self::material_albedo), that of an index of
     /// refraction at the middle of its coordinate
     /// [`ReflectanceRoot`](crate::axis::ReflectanceRoot). A dielectric has the round lobe of
-    /// √(σx σy). For σ < 1e-8 the albedo is that of 1e-8.
+    /// √(σx σy). For σ = 0 its albedo is that of 1e-8.
     ///
     /// # Errors
     /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that states no
@@ -122,7 +120,7 @@ impl Tables {
     /// The call takes some microseconds; keep the result.
     ///
     /// # Errors
-    /// [`MaterialError::Dielectric`] if no table of the set covers it.
+    /// [`MaterialError::DielectricNotCovered`] if no table of the set covers it.
     pub fn dielectric_albedo(
         &self,
         sigma: f64,
@@ -138,7 +136,7 @@ impl Tables {
     /// refraction beyond the interface over that on the viewer's side.
     ///
     /// # Errors
-    /// [`MaterialError::Dielectric`] if no table of that side covers it.
+    /// [`MaterialError::DielectricNotCovered`] if no table of that side covers it.
     pub fn interface_albedo(
         &self,
         sigma: f64,
@@ -153,7 +151,10 @@ impl Tables {
             let same = table.subject.reflectance?.side()? == side;
             same.then(|| ViewCurve::new(table, &point)).flatten()
         });
-        found.ok_or(MaterialError::Dielectric([eta, sigma, gamma]))
+        found.ok_or_else(|| {
+            let covered = dielectrics(self.tables().iter());
+            MaterialError::DielectricNotCovered { eta, sigma, gamma, masking, covered }
+        })
     }
 
     /// The albedo of a material's own lobe under a reflectance.
@@ -198,40 +199,39 @@ impl Tables {
         masking: Masking,
         read: impl Fn(&Table, &MaterialPoint) -> Option<T>,
     ) -> Result<T, MaterialError> {
-        if !(0.0..f64::INFINITY).contains(&sigma) {
-            return Err(MaterialError::Sigma(sigma));
-        }
         if !(gamma > 1.5) {
             return Err(MaterialError::Gamma(gamma));
         }
         let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Moments);
-        let tables = || self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments);
+        let tables = |masking| self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments);
         let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
-        tables()
+        tables(masking)
             .find_map(|table| read(table, &point))
-            .ok_or_else(|| not_covered(tables, kind, sigma, gamma))
+            .ok_or_else(|| not_covered(tables, masking, [sigma, gamma]))
     }
 }
 
 /// Why no table of moments covers (σ, γ), and what they cover.
 fn not_covered<'a, I: Iterator<Item = &'a Table>>(
-    tables: impl Fn() -> I,
-    kind: Kind,
-    sigma: f64,
-    gamma: f64,
+    tables: impl Fn(Masking) -> I,
+    masking: Masking,
+    [sigma, gamma]: [f64; 2],
 ) -> MaterialError {
-    let ranges = || tables().filter_map(|table| table.subject.covers);
-    if ranges().any(|covers| covers.sigma.is_some_and(|[min, _]| min > 0.0)) {
-        return MaterialError::AlbedoNotCovered { sigma, gamma, covered: domains(tables()) };
+    let has = |masking: &Masking| tables(*masking).next().is_some();
+    if !has(&masking) {
+        let other = Masking::ALL.into_iter().find(has);
+        return MaterialError::MaskingNotCovered { masking, other };
     }
-    let reaches = |[low, high]: [f64; 2]| (gamma_of_s(high)..=gamma_of_s(low)).contains(&gamma);
-    let of_shape = ranges().filter(|covers| reaches(covers.s)).filter_map(|covers| covers.sigma);
-    if let Some(max) = of_shape.map(|[_, max]| max).reduce(f64::max) {
-        return MaterialError::SigmaNotCovered { sigma, max };
+    let s = s_of_gamma(gamma);
+    let of_shape = tables(masking).filter_map(|table| {
+        let covers = table.subject.covers.filter(|covers| covers.contains_shape(s))?;
+        Some((covers.sigma?, smallest_sigma(table)?))
+    });
+    // Sets of single materials are listed with their shapes.
+    let whole = of_shape.filter(|([min, _], _)| *min == 0.0);
+    let range = whole.map(|([_, max], first)| [first, max]);
+    match range.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) {
+        Some(range) => MaterialError::SigmaNotCovered { sigma, range },
+        None => MaterialError::AlbedoNotCovered { sigma, gamma, covered: domains(tables(masking)) },
     }
-    let gammas: Vec<_> = ranges()
-        .map(|covers| format!("[{:.6}, {}]", gamma_of_s(covers.s[1]), gamma_of_s(covers.s[0])))
-        .collect();
-    let covered = if gammas.is_empty() { "nothing".into() } else { gammas.join(", ") };
-    MaterialError::NotCovered { kind: kind.name(), gamma, covered }
 }

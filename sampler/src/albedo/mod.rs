@@ -7,6 +7,7 @@
 
 mod curve;
 mod directional;
+mod domain;
 mod find;
 mod fresnel;
 mod moments;

@@ -44,7 +44,7 @@ pub use rational::Rational;
 pub use refractive_index::ReflectanceRoot;
 pub use view_blend::{PreparedView, ViewBlend};
 
-pub(crate) use random_number::{clamped, roots};
+pub(crate) use random_number::roots;
 
 use coordinate::Coordinate;
 

@@ -17,13 +17,6 @@ pub struct MirroredRoot;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OddRoot;
 
-/// A random number as every sampler takes it: clamped to [0, 1], and 0 for NaN.
-#[inline(always)]
-pub(crate) fn clamped(u: f32) -> f32 {
-    // `clamp` alone would keep NaN, which `max` drops.
-    u.max(0.0).min(1.0)
-}
-
 /// ⁴√2: the factor 2 taken out of the roots.
 const FOURTH_ROOT_OF_2: f64 = 1.189_207_115_002_721_1;
 

@@ -13,8 +13,7 @@ use microfacet_common::gauss_legendre;
 use microfacet_common::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip};
 
 use crate::albedo::Albedo;
-use crate::axis::clamped;
-use crate::math::sqrt;
+use crate::math::{sqrt, unit};
 
 /// Cosine-weighted average of Schlick's reflectance, 2∫₀¹ F(μ) μ dμ = F0 + (F90 − F0)/21.
 ///
@@ -72,7 +71,7 @@ impl Albedo {
     /// to them, NaN to 0): cosine-weighted, which is close because 1 − E varies little.
     #[inline]
     pub fn sample_compensation(&self, u: [f32; 2]) -> Vec3 {
-        let [u1, u2] = u.map(clamped);
+        let [u1, u2] = u.map(unit);
         // Malley's method on the polar disc; z from the radius keeps l of unit length at the
         // horizon.
         let r = sqrt(u1);

@@ -6,9 +6,8 @@
 //! that either an exponential or a gamma variate bounds it tightly.
 
 use super::student_t::{Stretched, StudentT};
-use crate::axis::clamped;
 use crate::axis::half_tangent::Slope;
-use crate::math::sqrt64;
+use crate::math::{sqrt64, unit};
 
 /// Up to this a the excess is a difference from the shadowing table; for larger a that difference
 /// loses digits, and the continued fraction is short.
@@ -49,7 +48,7 @@ impl<'a> SlopeBelowHorizon<'a> {
         let grow = |y: f64| if s == 0.0 { y } else { base * libm::expm1(s * rate * y) / s };
         // 1 − a/x ≤ min(1, b y).
         let b = 0.5 * rate * base / (a * a);
-        let mut first = f64::from(clamped(u));
+        let mut first = f64::from(unit(u));
         loop {
             let mut y = -libm::log1p(-first);
             if b < 1.0 {
@@ -110,7 +109,7 @@ pub(crate) struct Numbers(u64);
 impl Numbers {
     pub(crate) fn new(u: [f32; 2]) -> Self {
         // Clamped first, so that numbers outside [0, 1] and NaN give the sequence of the end.
-        let [a, b] = u.map(|u| u64::from(clamped(u).to_bits()));
+        let [a, b] = u.map(|u| u64::from(unit(u).to_bits()));
         Self(a << 32 | b)
     }
 

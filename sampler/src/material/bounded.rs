@@ -12,8 +12,7 @@ use glam::Vec3;
 
 use super::distribution::MicrofacetDistribution;
 use super::student_t::{NORMAL_INCIDENCE, StudentT};
-use crate::axis::clamped;
-use crate::math::sqrt;
+use crate::math::{sqrt, unit};
 
 /// The visible normals of a lobe and a view, without most of those that reflect the view below the
 /// horizon.
@@ -69,7 +68,7 @@ impl Bounded<'_> {
     /// A normal from two random numbers, which are clamped to [0, 1].
     #[inline]
     pub fn sample(&self, u: [f32; 2]) -> Vec3 {
-        let along = (self.from + clamped(u[0]) * self.share).min(1.0);
+        let along = (self.from + unit(u[0]) * self.share).min(1.0);
         self.material.sample_visible_normal(self.v, [along, u[1]])
     }
 

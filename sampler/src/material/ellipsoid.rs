@@ -25,14 +25,15 @@ struct Matrix {
 }
 
 /// Outside this range the squares of entries times those of slopes leave single precision.
-const ENTRIES: core::ops::RangeInclusive<f64> = 1e-18..=1e18;
+const ENTRIES: [f64; 2] = [1e-18, 1e18];
 
 impl TryFrom<Skew> for Matrix {
     type Error = MaterialError;
 
     fn try_from(Skew { p, q, r, x, y }: Skew) -> Result<Self, MaterialError> {
-        match [p, r].into_iter().find(|entry| !ENTRIES.contains(entry)) {
-            Some(entry) => Err(MaterialError::Sigma(entry)),
+        let [low, high] = ENTRIES;
+        match [p, r].into_iter().find(|entry| !(low..=high).contains(entry)) {
+            Some(sigma) => Err(MaterialError::Sigma { sigma, range: ENTRIES }),
             None => {
                 let [p, q, r, x, y] = [p, q, r, x, y].map(|entry| entry as f32);
                 Ok(Self { p, q, r, x, y })

@@ -8,9 +8,8 @@ use microfacet_common::Roughness;
 use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::roughness::checked;
 use super::sample::{above_horizon, face};
-use crate::axis::clamped;
 use crate::error::MaterialError;
-use crate::math::sqrt;
+use crate::math::{sqrt, unit};
 
 /// The smallest 1 − u₁: keeps a normal off the horizon, where its length may vanish.
 const LAST: f32 = 1.0 / 16_777_216.0;
@@ -83,10 +82,10 @@ impl MicrofacetDistribution for Ggx {
         // The null vector gives no direction: taken as normal incidence.
         let w = if length > 0.0 { w / length } else { Vec3::Z };
         // Height of the half vector first, so that it keeps its digits where the cap ends at −w.z.
-        let height = (1.0 - clamped(u[0])).max(LAST) * (1.0 + w.z);
+        let height = (1.0 - unit(u[0])).max(LAST) * (1.0 + w.z);
         let z = height - w.z;
         let radius = sqrt(((1.0 - z) * (1.0 + z)).max(0.0));
-        let (sin, cos) = libm::sincosf(TAU * clamped(u[1]));
+        let (sin, cos) = libm::sincosf(TAU * unit(u[1]));
         let (x, y) = (w.x + radius * cos, w.y + radius * sin);
         let m = Vec3::new(self.alpha_x * x, self.alpha_y * y, height);
         face(above_horizon(m), Vec3::new(v.x, v.y, v.z.max(0.0)))

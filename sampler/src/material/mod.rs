@@ -2,7 +2,7 @@
 //! directions are left.
 //!
 //! [`distribution`] is the trait of them all. [`student_t`] reads slices of the tables ([`slices`])
-//! for masking and visible normals: [`sample`] draws them, [`fast_path`] draws the common case
+//! for masking and visible normals, of the shapes that all of them cover ([`coverage`]): [`sample`] draws them, [`fast_path`] draws the common case
 //! faster, and [`batch`] four at a time; [`table_pdf`] is the density of what is drawn, and
 //! [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`] takes directions through a
 //! matrix to a Student-t, [`radial`] has tables of its own, and [`ggx`] needs none.
@@ -10,6 +10,7 @@
 mod batch;
 mod below_horizon;
 mod bounded;
+pub(crate) mod coverage;
 mod distribution;
 mod ellipsoid;
 mod fast_path;
@@ -29,5 +30,3 @@ pub use ggx::Ggx;
 pub use lobe::Lobe;
 pub use radial::Radial;
 pub use student_t::StudentT;
-
-pub(crate) use slices::covers;

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::distribution::{MicrofacetDistribution, SMOOTH};
+use super::roughness::checked;
 use super::slices::{Slice, Slices};
 use super::student_t::StudentT;
 use crate::axis::half_tangent::Slope;
@@ -55,9 +56,7 @@ impl Radial {
         sigma: f32,
         lobe: &LobeEntry,
     ) -> Result<Self, MaterialError> {
-        if !(sigma > 0.0 && sigma < f32::INFINITY) {
-            return Err(MaterialError::Sigma(sigma.into()));
-        }
+        let [sigma, _] = checked(sigma.into())?;
         let slice = |kind: Kind| {
             let found =
                 tables.iter().find(|table| table.kind == kind && table.subject.lobe == *lobe);

@@ -8,10 +8,10 @@
 use glam::Vec3;
 
 use super::student_t::{Stretched, StudentT};
+use crate::axis::MirroredRoot;
 use crate::axis::half_tangent::Slope;
 use crate::axis::hermite::{between_rows, hermite, locate};
-use crate::axis::{MirroredRoot, clamped};
-use crate::math::sqrt;
+use crate::math::{sqrt, unit};
 
 /// Smallest cosine of a sampled normal: keeps D finite, which for γ < 2 it is not on the horizon.
 pub(crate) const HORIZON: f32 = 1e-18;
@@ -77,7 +77,7 @@ impl StudentT {
     #[inline(always)]
     fn sample_peeled(&self, view: &Stretched, u: f32) -> Slope {
         let heavy = self.heavy_share(view);
-        let u = clamped(u);
+        let u = unit(u);
         let rest = 1.0 - heavy;
         // Straight from above the heavy part has no share, and u = 1 still belongs to the table.
         if u <= rest {

@@ -1,26 +1,18 @@
 //! A table's γ axis collapsed at one shape, which leaves the slice that lookups read.
 
-use alloc::format;
-use alloc::string::String;
 use alloc::vec::Vec;
 
+use super::coverage;
 use crate::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
-use crate::axis::{
-    Axis, HalfTangent, Interpolation, InverseShape, Mapping, MirroredRoot, Rational, Weights,
-};
+use crate::axis::{Axis, HalfTangent, Mapping, MirroredRoot, Rational, Weights};
 use crate::error::MaterialError;
 use crate::format::{Kind, Table};
 
 /// Weights along the γ axis at s; `None` for a shape that the table was not baked and measured for,
 /// though its axis may reach there.
-fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
+pub(super) fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
     let covered = table.subject.covers.is_none_or(|covers| covers.contains_shape(s));
     if covered { table.axes[0].weights(s) } else { None }
-}
-
-/// Whether the table covers s.
-pub(crate) fn covers(table: &Table, s: f64) -> bool {
-    shape_weights(table, s).is_some()
 }
 
 /// A (value, slope) table without its γ axis.
@@ -95,10 +87,9 @@ pub(crate) struct FastPath {
 
 impl Slices {
     pub(crate) fn from_tables(tables: &[Table], gamma: f64, s: f64) -> Result<Self, MaterialError> {
-        let shadowing = find(tables, &[Kind::Shadowing], gamma, s)?;
-        let kinds = [Kind::VisibleSlope, Kind::VisibleSlopePeeled];
-        let slope = find(tables, &kinds, gamma, s)?;
-        let across = find(tables, &[Kind::VisibleSlopeConditional], gamma, s)?;
+        let find = |kinds| find(tables, kinds, gamma, s);
+        let [shadowing, slope, across] = coverage::LOBE.map(find);
+        let (shadowing, slope, across) = (shadowing?, slope?, across?);
         let mut slices = Self::new([shadowing, slope], s);
         slices.across = across.nodes;
         make_monotone(&mut slices.across);
@@ -165,26 +156,5 @@ fn find<'a>(
             return Ok(slice);
         }
     }
-    Err(MaterialError::NotCovered {
-        kind: kinds[0].name(),
-        gamma,
-        covered: coverage(tables, kinds),
-    })
-}
-
-/// What a set covers, in words.
-fn coverage(tables: &[Table], kinds: &[Kind]) -> String {
-    let mut parts = Vec::new();
-    for table in tables.iter().filter(|table| kinds.contains(&table.kind)) {
-        let axis = &table.axes[0];
-        let gamma = |s: f64| InverseShape.quantity(s);
-        if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
-            parts.extend(axis.nodes.iter().rev().map(|&s| format!("gamma = {}", gamma(s))));
-        } else {
-            let [low, high] = table.subject.covers.map_or(axis.ends(), |covers| covers.s);
-            // The larger s is the smaller gamma.
-            parts.push(format!("[{:.6}, {}]", gamma(high), gamma(low)));
-        }
-    }
-    if parts.is_empty() { "nothing".into() } else { parts.join(", ") }
+    Err(MaterialError::NotCovered { gamma, covered: coverage::in_words(tables) })
 }

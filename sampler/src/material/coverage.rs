@@ -1,0 +1,80 @@
+//! The shapes that a set serves: those that every kind of table a lobe needs covers.
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use microfacet_common::shape::gamma_of_s;
+
+use super::slices::shape_weights;
+use crate::axis::Interpolation;
+use crate::error::Range;
+use crate::format::{Kind, SAME, Table};
+
+/// The kinds of tables that a Student-t lobe reads, one of each list; earlier ones are preferred.
+pub(super) const LOBE: [&[Kind]; 3] = [
+    &[Kind::Shadowing],
+    &[Kind::VisibleSlope, Kind::VisibleSlopePeeled],
+    &[Kind::VisibleSlopeConditional],
+];
+
+/// Whether a lobe of the shape s finds all its tables.
+pub(crate) fn contains(tables: &[Table], s: f64) -> bool {
+    let covers = |table: &&Table| shape_weights(table, s).is_some();
+    LOBE.iter().all(|kinds| of_kinds(tables, kinds).any(|table| covers(&table)))
+}
+
+/// The shapes that lobes can have, as ascending intervals of s; one shape is one of no width.
+pub(crate) fn shapes(tables: &[Table]) -> Vec<[f64; 2]> {
+    let [first, rest @ ..] =
+        LOBE.map(|kinds| united(of_kinds(tables, kinds).flat_map(intervals).collect()));
+    rest.iter().fold(first, |all, other| {
+        let pairs = all.iter().flat_map(|a| other.iter().map(move |b| (a, b)));
+        let both = pairs.map(|(a, b)| [a[0].max(b[0]), a[1].min(b[1])]);
+        united(both.filter(|[low, high]| *low <= high * (1.0 + SAME)).collect())
+    })
+}
+
+/// The same in words, by γ.
+pub(super) fn in_words(tables: &[Table]) -> String {
+    // The larger s is the smaller γ.
+    let gammas = |[low, high]: [f64; 2]| Range([gamma_of_s(high), gamma_of_s(low)]).to_string();
+    let all: Vec<String> = shapes(tables).into_iter().rev().map(gammas).collect();
+    if all.is_empty() { "none".into() } else { all.join(", ") }
+}
+
+fn of_kinds<'a>(tables: &'a [Table], kinds: &[Kind]) -> impl Iterator<Item = &'a Table> {
+    tables.iter().filter(|table| kinds.contains(&table.kind))
+}
+
+/// The intervals of s that a table covers.
+fn intervals(table: &Table) -> Vec<[f64; 2]> {
+    let axis = &table.axes[0];
+    if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
+        return axis.nodes.iter().map(|&s| [s; 2]).collect();
+    }
+    alloc::vec![table.subject.covers.map_or(axis.ends(), |covers| covers.s)]
+}
+
+/// Ascending, with those joined that touch.
+fn united(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    all.dedup_by(|next, last| {
+        let touch = next[0] <= last[1] * (1.0 + SAME);
+        if touch {
+            last[1] = last[1].max(next[1]);
+        }
+        touch
+    });
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_that_touch_are_one() {
+        let all = united(alloc::vec![[1.25, 1.9], [0.5, 0.5], [0.1, 0.2], [0.3, 1.25], [0.0, 0.1]]);
+        assert_eq!(all, [[0.0, 0.2], [0.3, 1.9]]);
+    }
+}
