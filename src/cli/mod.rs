@@ -22,7 +22,7 @@ use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use microfacet_bake::store;
-use microfacet_sampler::Tables;
+use microfacet_sampler::{Ggx, Tables};
 
 /// Bake, check and query tables for Student-t microfacet materials.
 #[derive(Parser)]
@@ -129,9 +129,10 @@ fn tables(path: Option<&Path>) -> Result<Tables, Failure> {
 fn parse_sigma(text: &str) -> Result<[f64; 2], String> {
     let parts: Vec<&str> = text.split(',').collect();
     let one = |part: &str| match part.trim().parse::<f64>() {
-        Ok(sigma) if sigma > 0.0 && sigma <= 1e6 => Ok(sigma),
-        _ => Err(format!(
-            "sigma \"{part}\" must be a number in (0, 1e6]; give X, or X,Y for an anisotropic material"
+        Ok(sigma) if Ggx::new(sigma).is_ok() => Ok(sigma),
+        Ok(sigma) => Err(Ggx::new(sigma).err().map_or(String::new(), |why| why.to_string())),
+        Err(_) => Err(format!(
+            "sigma \"{part}\" must be a number; give X, or X,Y for an anisotropic material"
         )),
     };
     match parts[..] {
@@ -151,13 +152,15 @@ fn parse_gamma(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The largest polar angle of a view: up to 1e-5 above π/2 is a rounded π/2, as 1.5708 is.
+const THETA_MAX: f64 = std::f64::consts::FRAC_PI_2 + 1e-5;
+
 /// Parses a polar angle in [0, π/2].
 fn parse_theta(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
-        // Up to 1e-6 above π/2 is taken for a rounded π/2.
-        Ok(theta) if (0.0..=std::f64::consts::FRAC_PI_2 + 1e-6).contains(&theta) => Ok(theta),
+        Ok(theta) if (0.0..=THETA_MAX).contains(&theta) => Ok(theta),
         _ => Err(format!(
-            "theta \"{text}\" must be an angle in [0, 1.5708] radians, measured from the macro normal"
+            "theta \"{text}\" must be an angle in [0, pi/2 = 1.5708] radians, measured from the macro normal"
         )),
     }
 }

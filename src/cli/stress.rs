@@ -46,7 +46,8 @@ fn summary(report: &Report) -> String {
         let ordinary = regions(report).filter(|(name, _)| name[2] == ROUGHNESSES[0]);
         let worst =
             ordinary.map(|(_, region)| region.errors[i]).max_by(|a, b| a.value.total_cmp(&b.value));
-        if let Some(worst) = worst {
+        // Nothing was measured where no tilt can be compared, as below gamma = 1.8.
+        if let Some(worst) = worst.filter(|worst| worst.value != 0.0) {
             text += &format!("  {error} {:.2e}: {}\n", worst.value, worst.at);
         }
     }

@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
-use microfacet_bake::validate::configuration::{Configuration, configurations};
+use microfacet_bake::validate::configuration::{Configuration, configurations, shapes};
 use microfacet_bake::validate::furnace::{Furnace, Survey, TOLERANCE as FURNACE_TOLERANCE, survey};
 use microfacet_bake::validate::{
     LEVEL, Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all,
 };
+
+use microfacet_sampler::{LobeEntry, Reflectance, Tables};
 
 use super::{
     Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, print_json,
@@ -78,21 +80,14 @@ fn parse_configurations(text: &str) -> std::result::Result<usize, String> {
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
     if args.stress {
+        if shapes(&set).is_empty() {
+            return Err(Failure(nothing_to_judge(&set)));
+        }
         return super::stress::stress(&set, args.points, args.seed, args.json);
     }
     let chosen = match (args.sigma, args.gamma, args.theta) {
         (Some([sigma_x, sigma_y]), Some(gamma), Some(theta)) => {
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi: args.phi, seed: args.seed }]
-        }
-        // A set without tables has GGX in closed form, which can be tested.
-        _ if !set.tables().is_empty()
-            && !set.tables().iter().any(|table| table.axes[0].name == "gamma") =>
-        {
-            return Err(Failure(
-                "the set has no Student-t tables to judge; name one configuration with --sigma, --gamma and --theta for the closed \
-                 forms of GGX; tables of other distributions carry what was measured when they were baked: see `microfacet-bake inspect`"
-                    .into(),
-            ));
         }
         _ => configurations(&set, args.configurations, args.seed),
     };
@@ -102,16 +97,61 @@ pub(super) fn run(args: Args) -> Outcome {
     bar.finish_and_clear();
     // A single configuration tests its lobe only.
     let furnaces = if args.sigma.is_none() { survey(&set)? } else { Vec::new() };
+    if chosen.is_empty() && furnaces.is_empty() {
+        return Err(Failure(nothing_to_judge(&set)));
+    }
+    let untested = if args.sigma.is_none() { untested(&set) } else { Vec::new() };
     let passed = result.passed() && furnaces.iter().all(Survey::passed);
     let source =
         args.tables.as_deref().map_or(String::new(), |path| format!("{} ", path.display()));
     if args.json {
-        print_json(&as_json(&result, options, &furnaces, passed))?
+        print_json(&as_json(&result, options, &furnaces, &untested, passed))?
     } else {
-        print(&(summary(&result, options, &source) + &white(&furnaces)))?;
+        if !result.reports.is_empty() {
+            print(&summary(&result, options, &source))?;
+        }
+        print(&white(&furnaces))?;
+        untested.iter().try_for_each(|what| print(&format!("not tested: {what}\n")))?;
         print(if passed { "PASSED\n" } else { "REJECTED\n" })?;
+        if result.rejected() > 0 {
+            print(NEXT)?;
+        }
     }
     Ok(if passed { Done::Ok } else { Done::Rejected })
+}
+
+/// What to do about a rejection.
+const NEXT: &str = "To tell chance from a defect, repeat the worst configuration with other seeds (--seed) and more normals\n\
+     (--samples): chance goes away, and the p of a defect falls.\n";
+
+/// Why a set has nothing that can be tested, and what to give instead.
+fn nothing_to_judge(set: &Tables) -> String {
+    let mut kinds: Vec<&str> = set.tables().iter().map(|table| table.kind.name()).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    format!(
+        "nothing to judge: visible normals need tables of the kinds shadowing, visible_slope and visible_slope_conditional for the \
+         same gamma, white furnaces (without --stress) one of the kind albedo, and here are only tables of the kind {}; give the folder or the \
+         safetensors file of the whole set, or see `microfacet-bake inspect` for what was measured when they were baked",
+        kinds.join(", ")
+    )
+}
+
+/// What a set holds that a run does not test.
+fn untested(set: &Tables) -> Vec<String> {
+    let mut rest: Vec<String> = Vec::new();
+    if shapes(set).is_empty() {
+        rest.push("visible normals, for which the set lacks tables".into());
+    }
+    for table in set.tables() {
+        let subject = &table.subject;
+        let lobe = subject.lobe != LobeEntry::Family;
+        let exact = subject.reflectance.is_some_and(|of| of != Reflectance::Moments);
+        if lobe || exact {
+            rest.push(format!("{}; see `microfacet-bake inspect` for its certificate", table.name));
+        }
+    }
+    rest
 }
 
 fn summary(result: &Result, options: Options, source: &str) -> String {
@@ -166,6 +206,7 @@ fn as_json(
     result: &Result,
     options: Options,
     furnaces: &[Survey],
+    untested: &[String],
     passed: bool,
 ) -> serde_json::Value {
     let reports: Vec<_> = result
@@ -187,7 +228,7 @@ fn as_json(
         })
         .collect();
     json!({
-        "passed": passed, "furnaces": furnaces, "samples": options.samples, "level": LEVEL, "level_of_one_test": result.level,
+        "passed": passed, "not_tested": untested, "furnaces": furnaces, "samples": options.samples, "level": LEVEL, "level_of_one_test": result.level,
         "rejected": result.rejected(), "pdf_tolerance": PDF_TOLERANCE,
         "worst_pdf_integral": result.worst_integral().map(|report| report.pdf_integral), "configurations": reports,
     })

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 
 use microfacet_common::shape::gamma_of_s;
-use microfacet_sampler::{Interpolation, Kind, Lobe, Tables};
+use microfacet_sampler::Tables;
 
 /// One material seen from one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,15 +45,15 @@ impl fmt::Display for Configuration {
     }
 }
 
-/// `count` configurations over the domain of the tables: γ evenly in s (or from its list), σ
+/// `count` configurations over the [shapes] of the tables, evenly in s; none if they have none. σ
 /// log-uniform in [1e-4, 10] with up to tenfold anisotropy, views over the whole hemisphere, one in
 /// eight within 0.01 of grazing or of the normal.
 pub fn configurations(tables: &Tables, count: usize, seed: u64) -> Vec<Configuration> {
-    let shapes = covered_shapes(tables);
+    let shapes = shapes(tables);
     let mut random = rand::rngs::StdRng::seed_from_u64(seed);
-    (0..count)
+    (0..if shapes.is_empty() { 0 } else { count })
         .map(|i| {
-            let s = shapes.draw(&mut random);
+            let s = draw_shape(&shapes, &mut random);
             let sigma_x = log_uniform(&mut random, 1e-4, 10.0);
             let ratio = if i % 3 == 0 { 1.0 } else { log_uniform(&mut random, 0.1, 10.0) };
             let quarter = std::f64::consts::FRAC_PI_2;
@@ -78,53 +78,25 @@ fn log_uniform(random: &mut impl Rng, low: f64, high: f64) -> f64 {
     (random.random_range(low.ln()..high.ln())).exp()
 }
 
-/// The values of s that a set covers: ranges, and single ones.
-struct Shapes {
-    ranges: Vec<[f64; 2]>,
-    points: Vec<f64>,
-}
-
-impl Shapes {
-    fn draw(&self, random: &mut impl Rng) -> f64 {
-        let total = self.ranges.len() + self.points.len();
-        let i = random.random_range(0..total);
-        match self.ranges.get(i) {
-            // One draw in sixteen at each end: tables fail first at Beckmann and at the heaviest
-            // tails.
-            Some([low, high]) => match random.random_range(0..16) {
-                0 => *low,
-                1 => *high,
-                _ => random.random_range(*low..*high),
-            },
-            None => self.points[i - self.ranges.len()],
-        }
+/// A value of s: one draw in sixteen at each end of a range, since tables fail first at Beckmann
+/// and at the heaviest tails.
+pub(super) fn draw_shape(shapes: &[[f64; 2]], random: &mut impl Rng) -> f64 {
+    let [low, high] = shapes[random.random_range(0..shapes.len())];
+    match random.random_range(0..16) {
+        _ if low == high => low,
+        0 => low,
+        1 => high,
+        _ => random.random_range(low..high),
     }
 }
 
-fn covered_shapes(tables: &Tables) -> Shapes {
-    let mut shapes = Shapes { ranges: Vec::new(), points: Vec::new() };
-    for table in tables.tables() {
-        if !matches!(table.kind, Kind::VisibleSlope | Kind::VisibleSlopePeeled) {
-            continue;
-        }
-        let axis = &table.axes[0];
-        if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
-            shapes.points.extend(&axis.nodes);
-        } else {
-            shapes.ranges.push([axis.nodes[0], axis.nodes[axis.nodes.len() - 1]]);
-        }
-    }
-    // GGX in closed form is included where a material uses it, and where there is nothing else to
-    // test.
+/// The shapes that a set can be tested at, as ranges of s: those of its tables, and GGX in closed
+/// form where a material uses it, or where there is no table at all.
+pub fn shapes(tables: &Tables) -> Vec<[f64; 2]> {
+    let mut shapes = tables.shapes();
     let ggx = tables.provenance().materials.iter().any(|material| material.s == [1.0, 1.0]);
-    let empty = shapes.ranges.is_empty() && shapes.points.is_empty();
-    let closed_form = matches!(tables.lobe(1.0, 2.0), Ok(Lobe::Ggx(_)));
-    if closed_form && (ggx || empty) {
-        shapes.points.push(1.0);
-    }
-    // 1 + 1/s and back may round to just outside the last node.
-    for [_, high] in &mut shapes.ranges {
-        *high *= 1.0 - 1e-15;
+    if (ggx || tables.tables().is_empty()) && !tables.tabulates(2.0) {
+        shapes.push([1.0; 2]);
     }
     shapes
 }

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use microfacet_sampler::{MaterialError, Tables};
 
+use super::configuration::shapes;
 use crate::table_spec::GAMMA_WHOLE;
 
 use corners::{corner_materials, corner_points, random_material, random_points};
@@ -161,7 +162,7 @@ impl Report {
 }
 
 /// Tests all corners and then random points until `points` are tested; the same `seed` gives the
-/// same points.
+/// same points. A set without lobes has none.
 ///
 /// # Errors
 /// [`MaterialError`] if the set does not hold what it declares to cover.
@@ -175,6 +176,10 @@ pub fn run(tables: &Tables, points: u64, seed: u64) -> Result<Report, MaterialEr
             Ok::<_, MaterialError>(report)
         })
         .try_reduce(Report::default, |a, b| Ok(a.merge(b)))?;
+    let shapes = shapes(tables);
+    if shapes.is_empty() {
+        return Ok(corners);
+    }
     let left = points.saturating_sub(corners.total().points).div_ceil(POINTS_PER_MATERIAL);
     let random = (0..left)
         .into_par_iter()
@@ -183,7 +188,7 @@ pub fn run(tables: &Tables, points: u64, seed: u64) -> Result<Report, MaterialEr
             |report: Result<Report, MaterialError>, i| {
                 let mut report = report?;
                 let mut numbers = corners::numbers(seed, i);
-                let (sigma, gamma) = random_material(tables, &mut numbers);
+                let (sigma, gamma) = random_material(tables, &shapes, &mut numbers);
                 let points = random_points(sigma, gamma, POINTS_PER_MATERIAL, &mut numbers);
                 checks::check(tables, sigma, gamma, points, &mut report)?;
                 Ok(report)

@@ -13,6 +13,7 @@ use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{Masking, Moments, StudentT, Tables};
 
 use super::Method;
+use crate::cli::parse_theta;
 
 /// Values for the columns of one row, or why there are none.
 type Values = Result<Vec<String>, String>;
@@ -69,7 +70,7 @@ impl Known {
 fn parse(text: &str, name: &str) -> Result<f64, String> {
     let x: f64 = text.parse().map_err(|_| format!("{name} \"{text}\" is not a number"))?;
     let (low, high) = match name {
-        "theta" => (0.0, std::f64::consts::FRAC_PI_2 + 1e-6),
+        "theta" => return parse_theta(text),
         "u1" | "u2" | "cos_theta" => (0.0, 1.0),
         "phi" => (f64::MIN, f64::MAX),
         // The constructors check σ and γ, with their own messages.

@@ -6,11 +6,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-use microfacet_common::shape::{S_END, gamma_of_s};
+use microfacet_common::shape::gamma_of_s;
 use microfacet_sampler::Tables;
 
 use super::Point;
 use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE};
+use crate::validate::configuration::{draw_shape, shapes};
 
 /// Roughnesses, among them both ends of the allowed range.
 const SIGMAS: [[f32; 2]; 16] = [
@@ -40,9 +41,19 @@ pub(super) fn corner_materials(tables: &Tables) -> Vec<([f32; 2], f64)> {
         1.50101, 1.51, 1.9, 2.5, 3.0, 10.0, 60.0, 1e3, 1e4, 1e6, 1e8, 1e10, 1e14, 1e16, 1e17, 1e300,
     ];
     let near_two = [2.0 - 1e-9, 2.0 + 1e-9, 2.0 - 1e-7, 2.0 + 1e-7];
-    let gammas: Vec<f64> = around.chain(single).chain(near_two).chain([f64::INFINITY]).collect();
-    let gammas = gammas.into_iter().filter(|&gamma| tables.covers(gamma));
-    gammas.flat_map(|gamma| SIGMAS.map(|sigma| (sigma, gamma))).collect()
+    // The ends of what the set covers, whatever they are.
+    let ends = shapes(tables).into_iter().flatten().map(gamma_of_s);
+    let ends = ends.flat_map(|gamma| [gamma.next_down(), gamma, gamma.next_up()]);
+    let all = around.chain(single).chain(near_two).chain([f64::INFINITY]).chain(ends);
+    let mut gammas: Vec<f64> = all.filter(|&gamma| is_tested(tables, gamma)).collect();
+    gammas.sort_by(f64::total_cmp);
+    gammas.dedup();
+    gammas.into_iter().flat_map(|gamma| SIGMAS.map(|sigma| (sigma, gamma))).collect()
+}
+
+/// Whether a shape is tested: one of the tables, or GGX in closed form where [`shapes`] has it.
+fn is_tested(tables: &Tables, gamma: f64) -> bool {
+    tables.tabulates(gamma) || gamma == 2.0 && shapes(tables).contains(&[1.0; 2])
 }
 
 fn corner_thetas() -> Vec<f64> {
@@ -112,21 +123,22 @@ fn log_uniform(random: &mut StdRng, low: f64, high: f64) -> f64 {
     random.random_range(low.ln()..high.ln()).exp()
 }
 
-/// A material that the tables cover: s evenly, or γ close to 3/2, to 2 or to ∞; σ over the whole
-/// allowed range.
-pub(super) fn random_material(tables: &Tables, random: &mut StdRng) -> ([f32; 2], f64) {
-    let gamma = loop {
-        let gamma = match random.random_range(0..8) {
-            0 => 1.5 + log_uniform(random, 1e-3, 0.3),
-            1 => 2.0 + log_uniform(random, 1e-12, 0.1) * if random.random() { 1.0 } else { -1.0 },
-            2 => log_uniform(random, 4.0, 1e18),
-            3 => [2.0, f64::INFINITY][random.random_range(0..2)],
-            _ => gamma_of_s(random.random_range(0.0..S_END)),
-        };
-        if tables.covers(gamma) {
-            break gamma;
-        }
+/// A material that the tables cover: s evenly over `shapes`, or γ close to 3/2, to 2 or to ∞ where
+/// they cover that; σ over the whole allowed range.
+pub(super) fn random_material(
+    tables: &Tables,
+    shapes: &[[f64; 2]],
+    random: &mut StdRng,
+) -> ([f32; 2], f64) {
+    let gamma = match random.random_range(0..8) {
+        0 => 1.5 + log_uniform(random, 1e-3, 0.3),
+        1 => 2.0 + log_uniform(random, 1e-12, 0.1) * if random.random() { 1.0 } else { -1.0 },
+        2 => log_uniform(random, 4.0, 1e18),
+        3 => [2.0, f64::INFINITY][random.random_range(0..2)],
+        _ => f64::NAN,
     };
+    let drawn = gamma_of_s(draw_shape(shapes, random));
+    let gamma = if is_tested(tables, gamma) { gamma } else { drawn };
     let wide = random.random_range(0..4) == 0;
     let mut sigma =
         || if wide { log_uniform(random, 1e-8, 1e6) } else { log_uniform(random, 1e-4, 10.0) } as f32;
