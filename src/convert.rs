@@ -31,6 +31,9 @@ pub struct Replacement {
     pub to: Named,
     /// RMSE of D/D(0), and of D in 1/sr.
     pub rmse: [f64; 2],
+    /// Parameters found at the end of the range that was searched, beyond which a better value may
+    /// lie; empty if none.
+    pub ends_at: Vec<&'static str>,
 }
 
 /// Why there is no replacement.
@@ -39,7 +42,7 @@ pub enum ConvertError {
     /// A distribution could not be made.
     Distribution(DistributionError),
     /// D does not fall to half of D(0) at any angle.
-    NoHalfAngle(String),
+    NoHalfAngle,
     /// No parameter of this kind of distribution gives that half angle, in radians.
     OutOfReach(DistributionKind, f64),
     /// A half angle fixes one parameter; this kind of distribution has two, and the second must be
@@ -55,9 +58,9 @@ impl fmt::Display for ConvertError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Distribution(e) => e.fmt(f),
-            Self::NoHalfAngle(name) => {
-                write!(f, "{name} is so wide that D nowhere falls to half of D(0); use rmse")
-            }
+            Self::NoHalfAngle => f.write_str(
+                "the distribution is so wide that D nowhere falls to half of D(0); use rmse",
+            ),
             Self::OutOfReach(to, angle) => {
                 write!(f, "no {} has its half angle at {angle} radians; use rmse", to.name())
             }
@@ -92,16 +95,27 @@ pub struct Target<'a> {
     theta: Vec<f64>,
     d: Vec<f64>,
     peak: f64,
+    /// Number of steps in [0, π/2); beyond the grid, if it ends before, everything counts as 0.
+    steps: f64,
+    /// Scale of the widths that are searched: 1 for all but narrow lobes.
+    narrow: f64,
 }
+
+/// A half angle, radians, below which the widths that are searched scale with it.
+const NARROW: f64 = 0.01;
+/// The largest grid; for half angles below 5e-4 it ends some 3000 of them from the normal.
+const LARGEST_GRID: f64 = 200_000.0;
 
 impl<'a> Target<'a> {
     /// Prepares the grid: 900 steps, or as many as give 64 within the half angle.
     pub fn new(from: &'a dyn Isotropic) -> Self {
         let half = from.half_angle().unwrap_or(FRAC_PI_2);
-        let steps = (64.0 * FRAC_PI_2 / half).clamp(900.0, 200_000.0).ceil() as usize;
-        let theta: Vec<f64> = (0..steps).map(|i| i as f64 * FRAC_PI_2 / steps as f64).collect();
+        let steps = (64.0 * FRAC_PI_2 / half).max(900.0).ceil();
+        let used = steps.min(LARGEST_GRID) as usize;
+        let theta: Vec<f64> = (0..used).map(|i| i as f64 * FRAC_PI_2 / steps).collect();
         let d = theta.iter().map(|&t| from.d(t)).collect();
-        Self { from, theta, d, peak: from.peak() }
+        let narrow = (half / NARROW).min(1.0);
+        Self { from, theta, d, peak: from.peak(), steps, narrow }
     }
 
     /// The grid of a measured distribution, over the angles that were measured.
@@ -112,6 +126,7 @@ impl<'a> Target<'a> {
         let skip = this.theta.partition_point(|t| *t < low);
         this.theta = this.theta[skip..skip + inside].to_vec();
         this.d = this.d[skip..skip + inside].to_vec();
+        this.steps = inside as f64;
         this
     }
 
@@ -126,13 +141,13 @@ impl<'a> Target<'a> {
             difference * difference
         };
         let sum: f64 = self.theta.iter().zip(&self.d).map(square).sum();
-        (sum / self.theta.len() as f64).sqrt()
+        (sum / self.steps).sqrt()
     }
 
     fn judged(&self, to: Named) -> Result<Replacement, ConvertError> {
         let built = to.build()?;
         let rmse = [Form::Relative, Form::Density].map(|form| self.rmse(&*built, form));
-        Ok(Replacement { to, rmse })
+        Ok(Replacement { to, rmse, ends_at: Vec::new() })
     }
 
     /// The distribution of kind `to` with the same half angle. `shape` is the second parameter of a
@@ -146,17 +161,14 @@ impl<'a> Target<'a> {
         shape: Option<f64>,
     ) -> Result<Replacement, ConvertError> {
         let named = |y: f64| {
-            let mut values = to.at(&vec![y; to.dimension()]);
+            let mut values = to.at(&vec![y; to.dimension()], self.narrow);
             if to.dimension() == 2 {
                 values[1] = shape.ok_or(ConvertError::ShapeNeeded(to))?;
             }
             Ok::<_, ConvertError>(Named { kind: to, values })
         };
         named(0.5)?.build()?;
-        let angle = self
-            .from
-            .half_angle()
-            .ok_or_else(|| ConvertError::NoHalfAngle("the distribution".into()))?;
+        let angle = self.from.half_angle().ok_or(ConvertError::NoHalfAngle)?;
         // The half angle is monotone in the width; a lobe too wide to have one is wider than any
         // with one.
         let excess = |y: f64| {
@@ -218,7 +230,16 @@ impl<'a> Target<'a> {
                 .map_err(failed)?;
             run.state().get_best_param().cloned().unwrap_or(vec![x, y])
         };
-        self.judged(Named { kind: to, values: to.at(&best) })
+        let found = self.judged(Named { kind: to, values: to.at(&best, self.narrow) })?;
+        Ok(Replacement { ends_at: self.ends_at(to, &best), ..found })
+    }
+
+    /// The parameters that ended where their search ends, apart from the limit γ = ∞.
+    fn ends_at(&self, to: DistributionKind, best: &[f64]) -> Vec<&'static str> {
+        let at_end = |y: f64| !(1e-4..=1.0 - 1e-4).contains(&y);
+        let is_limit = |i: usize| to == DistributionKind::StudentT && i == 1 && best[i] < 0.5;
+        let ends = (0..best.len()).filter(|&i| at_end(best[i]) && !is_limit(i));
+        ends.map(|i| to.parameters()[i]).collect()
     }
 }
 
@@ -231,7 +252,10 @@ struct Problem<'a> {
 
 impl Problem<'_> {
     fn error(&self, point: &[f64]) -> f64 {
-        let rmse = self.to.build(&self.to.at(point)).map(|to| self.target.rmse(&*to, self.form));
+        let rmse = self
+            .to
+            .build(&self.to.at(point, self.target.narrow))
+            .map(|to| self.target.rmse(&*to, self.form));
         // A point outside the square has the value at its edge plus a slope that leads the simplex
         // back.
         let outside: f64 = point.iter().map(|y| (y - y.clamp(0.0, 1.0)).abs()).sum();
@@ -368,7 +392,7 @@ mod tests {
         let flat = named("blinn-phong:0").build().unwrap();
         assert!(matches!(
             Target::new(&*flat).by_half_angle(DistributionKind::Gauss, None),
-            Err(ConvertError::NoHalfAngle(_))
+            Err(ConvertError::NoHalfAngle)
         ));
     }
 }

@@ -208,21 +208,27 @@ impl DistributionKind {
 
     /// Parameters at a point of the search space [0, 1]ⁿ: logarithmic in the width; in s = 1/(γ−1)
     /// (Student-t, with Beckmann at 0) or ln γ (GTR) for the shape.
-    pub(crate) fn at(self, point: &[f64]) -> Vec<f64> {
+    ///
+    /// All widths are scaled by `narrow` ∈ (0, 1], so that the search for a narrow lobe has the
+    /// same steps as for any other.
+    pub(crate) fn at(self, point: &[f64], narrow: f64) -> Vec<f64> {
         let log = |y: f64, low: f64, high: f64| {
             (low * (y.clamp(0.0, 1.0) * (high / low).ln()).exp()).clamp(low, high)
         };
+        let width = |y, low, high| log(y, low, high) * narrow;
+        let exponent = |y| log(y, 1e-2, 1e6) / (narrow * narrow);
         let gamma = |y: f64| gamma_of_s(1.99 * y.clamp(0.0, 1.0));
         match (self, point) {
-            (Self::Beckmann | Self::Gauss, &[y]) => vec![log(y, 1e-3, 10.0)],
-            (Self::TrowbridgeReitz, &[y]) => vec![log(y, 1e-4, 10.0)],
-            (Self::Schlick, &[y]) => vec![log(y, 1e-6, 1.0)],
-            (Self::BlinnPhong, &[y]) => vec![log(y, 1e-2, 1e6)],
-            (Self::AshikhminShirley, &[y]) => vec![log(y, 1e-2, 1e6); 2],
-            (Self::StudentT, &[y, z]) => vec![log(y, 1e-4, 10.0), gamma(z)],
+            (Self::Beckmann | Self::Gauss, &[y]) => vec![width(y, 1e-3, 10.0)],
+            (Self::TrowbridgeReitz, &[y]) => vec![width(y, 1e-4, 10.0)],
+            // Its m is the square of a width.
+            (Self::Schlick, &[y]) => vec![width(y, 1e-6, 1.0) * narrow],
+            (Self::BlinnPhong, &[y]) => vec![exponent(y)],
+            (Self::AshikhminShirley, &[y]) => vec![exponent(y); 2],
+            (Self::StudentT, &[y, z]) => vec![width(y, 1e-4, 10.0), gamma(z)],
             // No Beckmann limit: σ₀ would diverge.
-            (Self::HyperCauchy, &[y, z]) => vec![log(y, 1e-4, 1e3), gamma(z.max(1e-4))],
-            (Self::Gtr, &[y, z]) => vec![log(y, 1e-5, 1.0), log(z, 0.1, 100.0)],
+            (Self::HyperCauchy, &[y, z]) => vec![width(y, 1e-4, 1e3), gamma(z.max(1e-4))],
+            (Self::Gtr, &[y, z]) => vec![width(y, 1e-5, 1.0), log(z, 0.1, 100.0)],
             _ => unreachable!("points have `dimension` coordinates"),
         }
     }
@@ -261,7 +267,12 @@ impl FromStr for Named {
 
 impl fmt::Display for Named {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let values: Vec<String> = self.values.iter().map(|x| format!("{x:.6}")).collect();
+        // Six places, or six digits of what would lose them so.
+        let number = |x: &f64| match x.abs() {
+            1e-2..1e9 | 0.0 | f64::INFINITY => format!("{x:.6}"),
+            _ => format!("{x:.5e}"),
+        };
+        let values: Vec<String> = self.values.iter().map(number).collect();
         write!(f, "{}:{}", self.kind.name(), values.join(","))
     }
 }
@@ -274,7 +285,7 @@ mod tests {
     fn names_parse_and_print() {
         for kind in DistributionKind::ALL {
             let point = vec![0.6; kind.dimension()];
-            let named = Named { kind, values: kind.at(&point) };
+            let named = Named { kind, values: kind.at(&point, 1.0) };
             let back: Named = named.to_string().parse().unwrap();
             assert_eq!(back.kind, kind);
             assert!(back.build().is_ok(), "{named}");

@@ -116,7 +116,7 @@ impl fmt::Display for MaterialError {
         match self {
             Self::Sigma { sigma, range } => write!(
                 f,
-                "sigma = {sigma}: a roughness must lie in {}; below, treat the surface as smooth",
+                "sigma = {sigma:?}: a roughness must lie in {}; below, treat the surface as smooth",
                 Range(*range)
             ),
             Self::Gamma(x) => {
@@ -159,13 +159,13 @@ impl fmt::Display for MaterialError {
             }
             Self::SigmaNotCovered { sigma, range } => write!(
                 f,
-                "sigma = {sigma} is not covered by the albedo tables of this set, which hold {} and 0, a mirror; clamp it, or \
+                "sigma = {sigma:?} is not covered by the albedo tables of this set, which hold {} and 0, a mirror; clamp it, or \
                  bake a set whose recipe holds it",
                 Range(*range)
             ),
             Self::AlbedoNotCovered { sigma, gamma, covered } => write!(
                 f,
-                "sigma = {sigma} with gamma = {gamma} is not covered by the albedo tables of this set, which hold {covered}; bake a \
+                "sigma = {sigma:?} with gamma = {gamma} is not covered by the albedo tables of this set, which hold {covered}; bake a \
                  set that does: a recipe's material with `fresnel`, or `microfacet-bake bake` without a recipe for all"
             ),
             Self::NoAlbedo { name, remedy } => {

@@ -92,24 +92,48 @@ impl Args {
         let mut line = |name: &str, found: &Replacement| {
             writeln!(
                 text,
-                "{name:<12}{:<40}{:>14.4e}{:>16.4e}",
+                "{name:<12}{:<40}{:>14.4e}{:>16.4e}{}",
                 found.to.to_string(),
                 found.rmse[0],
-                found.rmse[1]
+                found.rmse[1],
+                ends(found)
             )
         };
+        let (mut lines, mut refusals) = (0, Vec::new());
         for by in By::value_variants().iter().filter(|by| self.by.is_none_or(|only| only == **by)) {
             let name = by.to_possible_value().expect("no variant is skipped");
             match replace(*by) {
-                Ok(found) => line(name.get_name(), &found)?,
+                Ok(found) => {
+                    line(name.get_name(), &found)?;
+                    lines += 1;
+                }
                 // Without a choice, the ways that do not apply to this pair are left out.
                 Err(ConvertError::NoFormula(..) | ConvertError::ShapeNeeded(_))
                     if self.by.is_none() => {}
-                Err(e) => return Err(e.into()),
+                // Neither does one that fails take the others with it.
+                Err(e) => refusals.push((name.get_name().to_owned(), e)),
             }
+        }
+        match refusals.pop() {
+            Some((_, e)) if lines == 0 => return Err(e.into()),
+            last => refusals.extend(last),
+        }
+        for (name, e) in refusals {
+            writeln!(text, "{name:<12}none: {e}")?;
         }
         Ok(text)
     }
+}
+
+/// A remark for parameters that were found at the end of their search.
+pub(super) fn ends(found: &Replacement) -> String {
+    if found.ends_at.is_empty() {
+        return String::new();
+    }
+    format!(
+        "  ({} at the end of the range searched: a better value may lie beyond)",
+        found.ends_at.join(" and ")
+    )
 }
 
 /// Least-error replacements of Beckmann with m from 0.05 to 0.45.
@@ -180,5 +204,29 @@ mod tests {
             run("--from ashikhmin-shirley:10,90 --to gauss").unwrap_err().contains("anisotropic")
         );
         assert!(run("--from gauss:0.1").is_err());
+    }
+
+    #[test]
+    fn a_way_that_fails_does_not_take_the_others_with_it() {
+        // D of this GGX nowhere falls to half of D(0).
+        let wide = "--from trowbridge-reitz:0.9 --to beckmann";
+        let all = run(wide).unwrap();
+        assert!(all.contains("rmse        beckmann:0.849") && all.contains("none: "), "{all}");
+        assert!(run(&format!("{wide} --by half-angle")).unwrap_err().contains("use rmse"));
+    }
+
+    #[test]
+    fn narrow_lobes_are_found_and_the_end_of_a_search_is_said() {
+        // m = √(2/(N+2)).
+        for (exponent, m) in [("1e9", 4.472e-5), ("1e5", 4.472e-3), ("1e12", 1.4142e-6)] {
+            let text = run(&format!("--from blinn-phong:{exponent} --to beckmann --by rmse"));
+            let text = text.unwrap();
+            let found: f64 = text.split("beckmann:").nth(1).unwrap()[..10].trim().parse().unwrap();
+            assert!((found / m - 1.0).abs() < 1e-3 && !text.contains("at the end"), "{text}");
+        }
+        let flat = run("--from blinn-phong:0 --to gauss --by rmse").unwrap();
+        assert!(flat.contains("m at the end of the range searched"), "{flat}");
+        let beckmann = run("--from beckmann:0.2 --to student-t --by rmse").unwrap();
+        assert!(!beckmann.contains("at the end"), "{beckmann}");
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use microfacet_bake::fit::{self, Angles};
 
-use super::convert::On;
+use super::convert::{On, ends};
 use super::{Done, Outcome, print};
 
 /// Fit a Student-t to a measured distribution of normals (a CSV with the columns angle and D).
@@ -45,10 +45,11 @@ pub(super) fn run(args: Args) -> Outcome {
     for found in [&found.student_t, &found.beckmann, &found.ggx] {
         writeln!(
             text,
-            "{:<44}{:>14.4e}{:>16.4e}",
+            "{:<44}{:>14.4e}{:>16.4e}{}",
             found.to.to_string(),
             found.rmse[0],
-            found.rmse[1]
+            found.rmse[1],
+            ends(found)
         )?;
     }
     print(&text)?;

@@ -1,6 +1,7 @@
 //! The shapes that a set serves: those that every kind of table a lobe needs covers.
 
-use alloc::string::{String, ToString};
+use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
 
 use microfacet_common::shape::gamma_of_s;
@@ -37,7 +38,10 @@ pub(crate) fn shapes(tables: &[Table]) -> Vec<[f64; 2]> {
 /// The same in words, by γ.
 pub(super) fn in_words(tables: &[Table]) -> String {
     // The larger s is the smaller γ.
-    let gammas = |[low, high]: [f64; 2]| Range([gamma_of_s(high), gamma_of_s(low)]).to_string();
+    let gammas = |[low, high]: [f64; 2]| {
+        let range = Range([gamma_of_s(high), gamma_of_s(low)]);
+        if low == high { format!("gamma = {range}") } else { format!("gamma in {range}") }
+    };
     let all: Vec<String> = shapes(tables).into_iter().rev().map(gammas).collect();
     if all.is_empty() { "none".into() } else { all.join(", ") }
 }

@@ -27,7 +27,7 @@ enum What {
     /// Smith's lambda and G1 of a view. Columns: sigma_x, sigma_y, gamma, theta, phi.
     G1(Io),
     /// The visible normal at random numbers u1, u2, and its density. Columns: those of g1, and u1,
-    /// u2.
+    /// u2. Below gamma = 1.8 table and exact normals of the same u1 differ.
     Normal(Io),
     /// Directional albedo with F = 1 and its Schlick parts. Columns: sigma, gamma, cos_theta,
     /// masking.
@@ -98,7 +98,7 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
     }
     let answered = |record: csv::StringRecord| -> Result<Vec<String>, Failure> {
         let line = record.position().map_or(0, csv::Position::line);
-        let fields: Vec<&str> = columns.iter().map(|&column| &record[column]).collect();
+        let fields = picked(&record, &columns);
         let mut row: Vec<String> = record.iter().map(String::from).collect();
         for &method in &io.method {
             let values = quantity.values(&fields, &known, method);
@@ -107,10 +107,17 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
         Ok(row)
     };
     let mut records = reader.into_records();
+    let mut noted = false;
     loop {
         let some: Vec<_> = records.by_ref().take(ROWS).collect();
         if some.is_empty() {
             break;
+        }
+        if !noted && io.method.len() > 1 {
+            let rows = some.par_iter().filter_map(|record| record.as_ref().ok());
+            let note = rows.find_map_first(|row| quantity.note(&picked(row, &columns), &known));
+            note.iter().for_each(|note| eprintln!("note: {note}"));
+            noted = note.is_some();
         }
         let rows: Vec<_> = some.into_par_iter().map(|record| answered(record?)).collect();
         // Written in order; the rows before a refused one are still written.
@@ -124,6 +131,11 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(Done::Ok),
     }
+}
+
+/// The fields of a row in some columns.
+fn picked<'a>(record: &'a csv::StringRecord, columns: &[usize]) -> Vec<&'a str> {
+    columns.iter().map(|&column| &record[column]).collect()
 }
 
 fn is_broken_pipe(error: &csv::Error) -> bool {

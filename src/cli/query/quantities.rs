@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use microfacet_bake::validate::furnace::direction;
 use microfacet_model as model;
@@ -24,6 +24,11 @@ pub(super) trait Quantity: Sync {
     fn output_stems(&self) -> &'static [&'static str];
     fn values(&self, fields: &[&str], known: &Known, method: Method)
     -> Result<Vec<String>, String>;
+
+    /// What a reader should know who compares the two methods in a row; printed once.
+    fn note(&self, _fields: &[&str], _known: &Known) -> Option<String> {
+        None
+    }
 
     fn outputs(&self, method: Method) -> Vec<String> {
         let suffix = match method {
@@ -156,6 +161,19 @@ impl Quantity for Normal {
 
     fn output_stems(&self) -> &'static [&'static str] {
         &["m_x", "m_y", "m_z", "pdf"]
+    }
+
+    fn note(&self, fields: &[&str], known: &Known) -> Option<String> {
+        let at = Point::new(fields, self.inputs(), &known.set).ok()?;
+        let peeled = at.lobe().ok()?.tabulated_share(Vec3::X) < 1.0;
+        peeled.then(|| {
+            format!(
+                "for gamma = {} the table and the exact method map u1 to normals in different orders: the table takes u1 first to \
+                 choose between its part and the heavy tail; both draw the same distribution, but m_table and m_exact are different \
+                 normals (`microfacet-bake validate` compares the distributions)",
+                at.gamma
+            )
+        })
     }
 
     fn values(&self, fields: &[&str], known: &Known, method: Method) -> Values {
