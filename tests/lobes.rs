@@ -237,3 +237,34 @@ fn an_ellipsoid_knows_the_density_of_its_samples() {
         assert!(apart > 1e-4, "{v}: the densities do not differ");
     }
 }
+
+/// Weights of views down to the smallest numbers above the horizon: G2 and G1 vanish together, and
+/// their quotient would be anything.
+#[test]
+fn weights_of_grazing_views_are_those_of_the_model() {
+    let set = set();
+    let skew = Skew::new([0.4, 0.2], [0.05, -0.1, 0.5]).unwrap();
+    let truth: [(&str, Box<dyn model::MicrofacetDistribution>); 3] = [
+        ("glass", Box::new(model::StudentT::new([0.3_f32, 0.5], 3.0).unwrap())),
+        ("steel", Box::new(model::StudentT::new(0.2_f32, 2.0).unwrap())),
+        ("brushed", Box::new(model::Ellipsoid::new(skew, 3.0).unwrap())),
+    ];
+    for z in [1e-3, 1e-10, 1e-20, 1e-30, 1e-37, 1e-40, 1e-44_f32] {
+        for phi in [0.0_f32, 1.0, 2.5, -1.0] {
+            let v = Vec3::new(phi.cos(), phi.sin(), z);
+            for l in directions().filter(|l| l.z > 0.01) {
+                for masking in Masking::ALL {
+                    for (name, truth) in &truth {
+                        let lobe = set.material(name).unwrap();
+                        let weight = f64::from(lobe.reflection_weight(v, l, masking));
+                        let want = truth.reflection_weight(v.as_dvec3(), l.as_dvec3(), masking);
+                        let close = (weight - want).abs() < 2e-3;
+                        assert!(close && weight <= 1.0 + 1e-6, "{name} {v} {l}: {weight} {want}");
+                    }
+                    let paint = set.material("paint").unwrap().reflection_weight(v, l, masking);
+                    assert!((0.0..=1.0 + 1e-6).contains(&paint), "{v} {l}: {paint}");
+                }
+            }
+        }
+    }
+}

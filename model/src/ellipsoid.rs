@@ -228,7 +228,7 @@ impl MicrofacetDistribution for Ellipsoid {
             return 0.0;
         }
         let unclamped = v.z / self.projected_area(v);
-        masking.g2(unclamped.min(1.0), self.g1(l)) / unclamped
+        masking.g2_over_g1(unclamped.min(1.0), self.g1(l)) / unclamped.max(1.0)
     }
 
     fn sample_visible_normal(&self, v: DVec3, u: [f64; 2]) -> DVec3 {

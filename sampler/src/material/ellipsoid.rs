@@ -210,8 +210,8 @@ impl MicrofacetDistribution for Ellipsoid {
         }
         let w = self.to_unit(v);
         let unclamped = v.z * self.inverse_area(w, &self.lobe.stretch(w));
-        // G2 ≤ min(1, unclamped), hence at most one.
-        masking.g2(unclamped.min(1.0), self.g1(l)) / unclamped
+        // The closed form of G2/min(1, unclamped): both may be too small for their quotient.
+        masking.g2_over_g1(unclamped.min(1.0), self.g1(l)) / unclamped.max(1.0)
     }
 
     /// The lobe's own, taken through the matrix. Views below the lobe's horizon draw from the
