@@ -91,6 +91,51 @@ fn query_passes_columns_through_and_agrees_with_the_model() {
     );
 }
 
+/// What a query says beside its rows.
+#[test]
+fn query_says_what_can_be_compared_and_what_is_covered() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let rows = |gamma: f64| {
+        let header = "sigma_x,sigma_y,gamma,theta,phi,u1,u2\n";
+        std::fs::write(at.join("p.csv"), format!("{header}0.5,0.5,{gamma},0.6,0,0.8,0.5\n"))
+    };
+    let query = ["query", "normal", "--input", "p.csv"];
+    let notes = |args: &[&str]| String::from_utf8(run(at, args).stderr).unwrap();
+    rows(1.6).unwrap();
+    assert!(notes(&query).contains("different normals"), "{}", notes(&query));
+    assert_eq!(notes(&[&query[..], &["--method", "table"]].concat()), "");
+    rows(1.9).unwrap();
+    assert_eq!(notes(&query), "");
+
+    // The exact value is 0.34.
+    let text = "sigma,gamma,cos_theta,masking\n1e-9,1.501,1e-7,height-correlated\n";
+    std::fs::write(at.join("a.csv"), text).unwrap();
+    let message = refused(at, &["query", "albedo", "--input", "a.csv"]);
+    assert!(message.contains("[1e-8, 3] and 0, a mirror"), "{message}");
+    let exact = ok(at, &["query", "albedo", "--input", "a.csv", "--method", "exact"]);
+    assert!(exact.contains("height-correlated,0.33") || exact.contains("height-correlated,0.34"));
+
+    // π/2 as people type it, in every command.
+    for theta in ["1.5708", "1.6"] {
+        let text = format!("sigma_x,sigma_y,gamma,theta,phi\n0.3,0.3,3,{theta},0\n");
+        std::fs::write(at.join("g.csv"), text).unwrap();
+        let output = run(at, &["query", "g1", "--input", "g.csv"]);
+        assert_eq!(output.status.success(), theta == "1.5708");
+        let sample = ["sample", "--sigma", "0.3", "--gamma", "3", "--theta", theta, "--count", "9"];
+        let output = run(at, &[&sample[..], &["--out", "n.safetensors"]].concat());
+        assert_eq!(output.status.success(), theta == "1.5708");
+    }
+    // One range of sigma.
+    for sigma in ["9e-9", "1e7", "-1"] {
+        let one = ["--sigma", sigma, "--gamma", "3", "--theta", "0"];
+        for command in [&["validate"][..], &["sample", "--count", "9", "--out", "n"]] {
+            let message = refused(at, &[command, &one[..]].concat());
+            assert!(message.contains("[1e-8, 1e6]"), "{message}");
+        }
+    }
+}
+
 #[test]
 fn query_answers_in_order_up_to_a_row_that_is_refused() {
     let folder = tempfile::tempdir().unwrap();

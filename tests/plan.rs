@@ -107,6 +107,20 @@ fn a_slice_has_no_axis_of_shapes_and_a_smooth_scene_nothing() {
     assert!(plan(&scene(&[["mirror", "0.0", "3.0"]])).is_empty());
 }
 
+/// What the sampler refuses as a lobe is smooth or refused when it is planned, not at run time.
+#[test]
+fn roughnesses_that_no_lobe_can_have_are_not_baked() {
+    assert!(plan(&scene(&[["mirror", "9e-9", "3.0"]])).is_empty());
+    assert!(plan(&scene(&[["mirror", "[1e-9, 5e-9]", "3.0"]])).is_empty());
+    for sigma in ["[0.3, 1e-9]", "1.1e6", "{ min = 0.1, max = 2e6 }"] {
+        let error = Plan::new(&scene(&[["m", sigma, "3.0"]]), Options::default()).unwrap_err();
+        assert!(error.to_string().contains("[1e-8, 1e6]"), "{error}");
+    }
+    for sigma in ["1e-8", "1e6", "{ min = 0.0, max = 0.3 }", "{ min = 1e-9, max = 0.3 }"] {
+        assert!(!plan(&scene(&[["m", sigma, "3.0"]])).is_empty(), "{sigma}");
+    }
+}
+
 #[test]
 fn sub_ranges_draw_the_very_normals_of_the_general_set() {
     let general = bake(&Plan::general(), DRAFT, &Cache::none()).unwrap().set;

@@ -21,7 +21,7 @@ use super::{Done, Failure, Outcome, parse_gamma, print, print_json, tables};
 pub(super) struct Args {
     /// A table file, or a folder with one; the embedded default if absent.
     tables: Option<PathBuf>,
-    /// Roughnesses in [0, 3], comma separated.
+    /// Roughnesses, comma separated: 0, a mirror, or in [1e-8, 3].
     #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_roughness, default_value = "0.01,0.1,0.3,0.6,1,2,3")]
     sigma: Vec<f64>,
     /// Shapes in [1.501, inf], comma separated.
@@ -66,8 +66,9 @@ enum Method {
 
 fn parse_roughness(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
-        Ok(sigma) if (0.0..=3.0).contains(&sigma) => Ok(sigma),
-        _ => Err(format!("sigma \"{text}\" must be a number in [0, 3]; 0 is a mirror")),
+        // The set says whether it holds it.
+        Ok(sigma) if sigma >= 0.0 => Ok(sigma),
+        _ => Err(format!("sigma \"{text}\" must be 0, a mirror, or a number in [1e-8, 3]")),
     }
 }
 

@@ -112,17 +112,17 @@ pub(super) fn run(args: Args) -> Outcome {
         }
         print(&white(&furnaces))?;
         untested.iter().try_for_each(|what| print(&format!("not tested: {what}\n")))?;
-        print(if passed { "PASSED\n" } else { "REJECTED\n" })?;
         if result.rejected() > 0 {
             print(NEXT)?;
         }
+        print(if passed { "PASSED\n" } else { "REJECTED\n" })?;
     }
     Ok(if passed { Done::Ok } else { Done::Rejected })
 }
 
 /// What to do about a rejection.
-const NEXT: &str = "To tell chance from a defect, repeat the worst configuration with other seeds (--seed) and more normals\n\
-     (--samples): chance goes away, and the p of a defect falls.\n";
+const NEXT: &str = "to tell chance from a defect, repeat the worst configuration with other seeds (--seed) and more normals\n\
+     (--samples): chance goes away, and the p of a defect falls\n";
 
 /// Why a set has nothing that can be tested, and what to give instead.
 fn nothing_to_judge(set: &Tables) -> String {

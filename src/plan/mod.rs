@@ -12,7 +12,7 @@ mod required_shapes;
 
 use std::fmt;
 
-use microfacet_sampler::MaterialEntry;
+use microfacet_sampler::{MaterialEntry, StudentT};
 
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
 pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, seconds};
@@ -196,6 +196,12 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
     if !is_rough(material) {
         return Ok(Err(Verdict::NotRough));
     }
+    let range = lobe_sigmas(material);
+    for sigma in [material.roughness.x().max, material.roughness.y().max] {
+        if !(range[0]..=range[1]).contains(&sigma) {
+            return Err(NotCovered::Lobe { material: material.name.clone(), sigma, range });
+        }
+    }
     if material.distribution.is_some() {
         return Ok(Err(Verdict::Own));
     }
@@ -223,7 +229,15 @@ fn distributions(scene: &Scene) -> Vec<Distribution> {
 
 /// Whether there are microfacets at any point at all.
 fn is_rough(material: &Material) -> bool {
-    material.roughness.x().max > 0.0 && material.roughness.y().max > 0.0
+    let [least, _] = lobe_sigmas(material);
+    let [x, y] = [material.roughness.x().max, material.roughness.y().max];
+    x > 0.0 && y > 0.0 && x.max(y) >= least
+}
+
+/// The smallest and the largest σ that a lobe can have. A tilted lobe is held to it by its matrix
+/// alone.
+fn lobe_sigmas(material: &Material) -> [f64; 2] {
+    if material.theta.is_some() { [f64::MIN_POSITIVE, f64::MAX] } else { StudentT::SIGMAS }
 }
 
 /// The materials of a scene as a set lists them: those in use that are rough.
@@ -261,6 +275,15 @@ pub enum NotCovered {
         /// Its γ.
         gamma: f64,
     },
+    /// A σ, along one axis or both, that a lobe in single precision cannot have.
+    Lobe {
+        /// Name of the material.
+        material: String,
+        /// Its largest σ along that axis.
+        sigma: f64,
+        /// What a lobe can have.
+        range: [f64; 2],
+    },
     /// An albedo for σ above [`SIGMA_MAX`].
     Sigma {
         /// Name of the material.
@@ -277,6 +300,11 @@ impl fmt::Display for NotCovered {
                 f,
                 "material \"{material}\": gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it, or \
                  sample it with the model's exact sampler"
+            ),
+            Self::Lobe { material, sigma, range: [low, high] } => write!(
+                f,
+                "material \"{material}\": sigma = {sigma:?} along one axis is outside [{low:e}, {high:e}], the roughness that a lobe \
+                 can have; clamp it, or write sigma = 0 along both for a mirror"
             ),
             Self::Sigma { material, sigma } => write!(
                 f,

@@ -7,7 +7,7 @@ use crate::error::MaterialError;
 
 /// Outside this range the squares of stretched directions, and of normals made from them, leave
 /// single precision. Albedo tables begin at its lower end.
-const SIGMAS: [f64; 2] = [LogRoughness::BAKED.first, 1e6];
+pub(super) const SIGMAS: [f64; 2] = [LogRoughness::BAKED.first, 1e6];
 
 /// σx and σy in single precision.
 pub(crate) fn checked(sigma: Roughness) -> Result<[f32; 2], MaterialError> {

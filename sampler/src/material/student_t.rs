@@ -72,6 +72,10 @@ fn g1_of_nan() -> f32 {
 }
 
 impl StudentT {
+    /// The smallest and the largest σ of a lobe, [1e-8, 1e6]: outside, squares would leave single
+    /// precision. A smoother surface is a mirror.
+    pub const SIGMAS: [f64; 2] = super::roughness::SIGMAS;
+
     pub(crate) fn from_tables(
         tables: &[Table],
         roughness: Roughness,

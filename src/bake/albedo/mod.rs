@@ -139,7 +139,11 @@ impl fmt::Display for AlbedoError {
                 write!(f, "albedo {value} at {at}: it must lie in [0, 1]; please report it")
             }
             Self::Accuracy { at, error } => {
-                write!(f, "quadrature error {error:e} at {at}: raise the tolerance")
+                write!(
+                    f,
+                    "the quadrature of an albedo reaches only {error:e} at {at}; keep such materials out of the recipe's ranges of \
+                     sigma and gamma, and please report it"
+                )
             }
             Self::Lobe(why) => why.fmt(f),
             Self::Material(why) => why.fmt(f),
