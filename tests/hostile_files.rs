@@ -5,6 +5,7 @@
 mod command;
 
 use std::fs;
+use std::io::Read;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -29,6 +30,11 @@ fn script(folder: &Path, text: &str) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
+    let mut pipe = child.stdout.take().unwrap();
+    let stdout = std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        pipe.read_to_end(&mut bytes).map(|_| bytes)
+    });
     let start = Instant::now();
     while child.try_wait().unwrap().is_none() {
         if start.elapsed() > Duration::from_secs(30) {
@@ -37,7 +43,8 @@ fn script(folder: &Path, text: &str) -> Output {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
-    child.wait_with_output().unwrap()
+    let output = child.wait_with_output().unwrap();
+    Output { stdout: stdout.join().unwrap().unwrap(), ..output }
 }
 
 /// The message of a script that must be refused.
@@ -136,11 +143,11 @@ fn endless_standard_input_is_refused() {
     refuses(at, "\"$0\" query g1 --input - < /dev/zero", "standard input: line 1: no end");
     refuses(at, "\"$0\" fit --input - < /dev/zero", "standard input: line 1: no end");
     refuses(at, "yes '0,1' | \"$0\" fit --input -", "more than 1000000 rows");
-    // Rows that all but reach the limit are answered, many at a time.
-    let row = format!("0.3,0.3,3,1,{}0", " ".repeat(1 << 19));
-    let rows = format!("{header}\n{}", format!("{row}\n").repeat(100));
+    // Rows of half a million fields are answered a few at a time.
+    let more = ",".repeat(500_000);
+    let rows = format!("{header}{more}\n{}", format!("0.3,0.3,3,1,0{more}\n").repeat(100));
     fs::write(at.join("wide.csv"), rows).unwrap();
-    let output = script(at, "\"$0\" query g1 --input - < wide.csv");
+    let output = script(at, "\"$0\" query g1 --method table --input - < wide.csv");
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(output.stdout.iter().filter(|&&byte| byte == b'\n').count(), 101);
 }
@@ -238,6 +245,10 @@ fn modes_of_a_set_are_kept() {
         let message = refused(at, &again);
         assert!(message.contains("tables.safetensors: is write-protected"), "{message}");
         assert_eq!(names(&at.join("out")), before);
+        // That is known before anything is read or baked.
+        let message = refused(at, &["bake", "missing.toml", "--out", "out"]);
+        assert!(message.contains("is write-protected"), "{message}");
+        assert!(ok(at, &["inspect", "out"]).contains("glass"));
         fs::remove_file(&file).unwrap();
         fs::rename(at.join("fifo"), &file).unwrap();
         let message = refused(at, &again);
@@ -288,6 +299,33 @@ fn only_what_a_set_recorded_is_removed() {
     // Back to images: the set file goes.
     bake(at, "gold.toml", "other", "exr");
     assert_eq!(names(&at.join("other")), [vec![".microfacet-bake.files".into()], gold].concat());
+}
+
+/// Neither replaced nor removed.
+#[test]
+fn a_protected_image_protects_its_set() {
+    let folder = workshop();
+    let at = folder.path();
+    bake(at, "gold.toml", "out", "exr");
+    let before = names(&at.join("out"));
+    let image = at.join("out").join(&before[1]);
+    fs::set_permissions(&image, fs::Permissions::from_mode(0o444)).unwrap();
+    for recipe in ["gold.toml", "glass.toml"] {
+        let message = refused(at, &["bake", recipe, "--out", "out", "--quality", "draft"]);
+        assert!(message.contains(&format!("{}: is write-protected", before[1])), "{message}");
+        assert_eq!(names(&at.join("out")), before);
+    }
+}
+
+/// The folder of a file that is named without one is the current one.
+#[test]
+fn a_journal_beside_a_bare_name_is_completed() {
+    let folder = workshop();
+    bake(folder.path(), "gold.toml", "out", "safetensors");
+    let out = folder.path().join("out");
+    fs::write(out.join(".microfacet-bake.commit"), "").unwrap();
+    ok(&out, &["inspect", "tables.safetensors"]);
+    assert_eq!(names(&out), ["tables.safetensors"]);
 }
 
 #[test]

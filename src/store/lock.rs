@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use microfacet_sampler::Tables;
 
-use super::replace::{RECORD, finish, is_stale, recorded, replace_all};
+use super::replace::{RECORD, check_writable, finish, is_ours, recorded, replace_all};
 use super::{Format, SET_FILE, StoreError, Written, files};
 use crate::input;
 
@@ -23,14 +23,26 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Makes the folder if it does not exist, locks it, checks that it can be written to, and
-    /// cleans up after an interrupted bake: if the last step of replacing a set had begun, it is
-    /// completed, and partial files are removed.
+    /// Makes the folder if it does not exist, locks it, cleans up after an interrupted bake, and
+    /// checks that the folder and the set in it can be written to. If the last step of replacing a
+    /// set had begun, it is completed, and partial files are removed.
     ///
     /// # Errors
     /// [`StoreError::InUse`] if another bake has locked the folder, [`StoreError::Io`] if the path
     /// is no folder or cannot be written to.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
+        let this = Self::complete(path)?;
+        // Fail now rather than after an hour of baking.
+        tempfile::tempfile_in(path).map_err(|why| StoreError::Io(path.into(), why))?;
+        for name in this.old()?.iter().map(String::as_str).chain([SET_FILE]) {
+            let file = path.join(name);
+            check_writable(&file).map_err(|why| StoreError::Io(file, why))?;
+        }
+        Ok(this)
+    }
+
+    /// Locks the folder, and completes what an interrupted bake has begun.
+    pub(super) fn complete(path: &Path) -> Result<Self, StoreError> {
         let failed = |why| StoreError::Io(path.into(), why);
         if let Ok(found) = std::fs::metadata(path)
             && !found.is_dir()
@@ -55,12 +67,19 @@ impl OutputFolder {
             Err(TryLockError::Error(why)) if why.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(why)) => return Err(failed(why)),
         }
-        let inside = |(name, why)| StoreError::Io(path.join(name), why);
-        finish(path).map_err(inside)?;
-        // Fail now rather than after an hour of baking.
-        recorded(path).map_err(inside)?;
-        tempfile::tempfile_in(path).map_err(failed)?;
+        finish(path).map_err(|(name, why)| StoreError::Io(path.join(name), why))?;
         Ok(this)
+    }
+
+    /// Names of the files of the set that is in the folder, as far as they are known to be ours.
+    fn old(&self) -> Result<Vec<String>, StoreError> {
+        let recorded = recorded(&self.path);
+        let mut old = recorded.map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
+        old.extend([SET_FILE, RECORD].map(String::from));
+        old.sort();
+        old.dedup();
+        old.retain(|name| is_ours(&self.path, name));
+        Ok(old)
     }
 
     /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table. A folder holds one set:
@@ -73,7 +92,6 @@ impl OutputFolder {
     /// # Errors
     /// [`StoreError`] naming the path; the old set is then unchanged.
     pub fn write(&self, set: &Tables, formats: &[Format]) -> Result<Vec<Written>, StoreError> {
-        let failed = |(name, why)| StoreError::Io(self.path.join(name), why);
         let mut files = files(set, formats).map_err(|why| why.inside(&self.path))?;
         let written = |(name, bytes): &(String, Vec<u8>)| Written {
             path: self.path.join(name),
@@ -84,12 +102,10 @@ impl OutputFolder {
             let names: String = files.iter().map(|(name, _)| format!("{name}\n")).collect();
             files.push((RECORD.into(), names.into_bytes()));
         }
-        let mut stale = recorded(&self.path).map_err(failed)?;
-        stale.extend([SET_FILE, RECORD].map(String::from));
-        stale.sort();
-        stale.dedup();
-        stale.retain(|old| files.iter().all(|(new, _)| new != old) && is_stale(&self.path, old));
-        replace_all(&self.path, &files, &stale).map_err(failed)?;
+        let mut stale = self.old()?;
+        stale.retain(|old| files.iter().all(|(new, _)| new != old));
+        replace_all(&self.path, &files, &stale)
+            .map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
         Ok(all)
     }
 }

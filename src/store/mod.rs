@@ -167,8 +167,7 @@ pub fn read(path: &Path) -> Result<Tables, StoreError> {
     let is_folder = path.is_dir();
     let folder = if is_folder { path } else { replace::folder_of(path) };
     if replace::is_interrupted(folder) {
-        // Opening the folder completes a replacement that was interrupted.
-        OutputFolder::open(folder)?;
+        OutputFolder::complete(folder)?;
     }
     if !is_folder {
         return read_file(path);
@@ -245,5 +244,16 @@ mod tests {
         assert!(images.add(1, table).unwrap_err().contains("safetensors"));
         let mut images = Images { count: MAX_IMAGES, ..Images::default() };
         assert!(images.add(1, table).unwrap_err().contains("10000 images"));
+    }
+
+    #[test]
+    fn a_table_names_no_file_in_another_folder() {
+        let set = Tables::embedded();
+        for name in ["../up", "/root", "", ".hidden", "two\nlines"] {
+            let table = Table { name: name.into(), ..set.tables()[0].clone() };
+            let set = Tables::from_tables(set.provenance().clone(), vec![table]).unwrap();
+            assert!(files(&set, &[Format::Exr]).is_err(), "{name}");
+            assert!(files(&set, &[Format::Safetensors]).is_ok(), "{name}");
+        }
     }
 }

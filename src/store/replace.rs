@@ -127,6 +127,11 @@ fn destination(path: &Path) -> io::Result<Destination> {
     refused(io::ErrorKind::InvalidInput, "is a circle of symbolic links; name a regular file")
 }
 
+/// Checks that [`replace`] may write to a path, or remove what is there.
+pub(super) fn check_writable(path: &Path) -> io::Result<()> {
+    destination(path).map(|_| ())
+}
+
 /// A complete new file that has yet to take its place; none for a device, which has its bytes.
 struct Pending(Option<(NamedTempFile, PathBuf)>);
 
@@ -222,7 +227,11 @@ pub(super) fn replace_all(
     if let ([(name, bytes)], []) = (files, stale) {
         return replace(&folder.join(name), bytes).map_err(|why| (name.clone(), why));
     }
-    let mut journal: String = stale.iter().map(|name| format!("{STALE} {name}\n")).collect();
+    let mut journal = String::new();
+    for name in stale {
+        check_writable(&folder.join(name)).map_err(|why| (name.clone(), why))?;
+        journal += &format!("{STALE} {name}\n");
+    }
     let (mut staged, mut led, mut places) = (Vec::new(), Vec::new(), BTreeMap::new());
     for (name, bytes) in files {
         let failed = |why| (name.clone(), why);
@@ -303,8 +312,8 @@ fn is_name_of_ours(name: &str) -> bool {
     name == SET_FILE || name == RECORD || exr::table_of(name).is_some()
 }
 
-/// Whether a file is still what an earlier bake wrote under this name.
-pub(super) fn is_stale(folder: &Path, name: &str) -> bool {
+/// Whether a file is still what a bake wrote under this name, as far as its header tells.
+pub(super) fn is_ours(folder: &Path, name: &str) -> bool {
     let path = folder.join(name);
     match exr::table_of(name) {
         Some(_) => matches!(exr::is_table(&path), Ok(true)),
@@ -327,7 +336,7 @@ fn exchange(folder: &Path, journal: &str, led: Vec<Led>) -> Result<(), Failed> {
         if is_new && !is_led {
             new.push((folder.join(partial), name));
         }
-        if is_new && !is_led || partial == STALE && is_stale(folder, name) {
+        if is_new && !is_led || partial == STALE && is_ours(folder, name) {
             old.push(name);
         }
     }
@@ -431,7 +440,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_stale_goes_with_the_old_set() {
+    fn what_is_ours_goes_with_the_old_set() {
         let folder = tempfile::tempdir().unwrap();
         replace_all(folder.path(), &set("old"), &[]).unwrap();
         let new = vec![("b.exr".to_string(), b"new b".to_vec())];
@@ -539,6 +548,12 @@ mod tests {
                 set_mode(&path, kept);
                 replace(&path, b"again").unwrap();
                 assert_eq!(mode(&path), kept);
+            }
+            // An administrator's bake leaves a file its owner; others cannot try this.
+            if std::os::unix::fs::chown(&path, Some(12345), Some(54321)).is_ok() {
+                replace(&path, b"again").unwrap();
+                let found = fs::metadata(&path).unwrap();
+                assert_eq!((found.uid(), found.gid(), mode(&path)), (12345, 54321, 0o664));
             }
             set_mode(&path, 0o444);
             let error = replace(&path, b"protected").unwrap_err();
