@@ -16,7 +16,7 @@ use crate::store::{self, replace};
 /// An entry is a table set named by the SHA-256 of its key: the complete specification with all its
 /// numbers, the number of the numeric method, the version of the format and the coordinates along
 /// the axes. So an entry is never out of date, entries may be removed at any time, and several
-/// processes may share a folder. A damaged entry counts as missing.
+/// processes may share a folder. An entry that cannot be read counts as missing.
 #[derive(Clone, Debug)]
 pub struct Cache {
     folder: Option<PathBuf>,
@@ -50,12 +50,12 @@ impl Cache {
     /// The tables kept under a key.
     pub fn get(&self, key: &str) -> Option<Vec<Table>> {
         let key = complete(key);
-        let set = store::read(&self.path(&key)?).ok()?;
+        let set = store::read_file(&self.path(&key)?).ok()?;
         // The entry holds its key: a file of this name with another key does not count.
         (set.provenance().recipe == key).then(|| set.tables().to_vec())
     }
 
-    /// Keeps tables under a key.
+    /// Keeps tables under a key, and removes what bakes that were killed have left half written.
     ///
     /// # Errors
     /// Any error of the operating system, such as a folder that cannot be written.
@@ -64,8 +64,8 @@ impl Cache {
         let (Some(path), Some(folder)) = (self.path(&key), &self.folder) else { return Ok(()) };
         let provenance = Provenance { recipe: key, numerics: NUMERICS, ..Provenance::default() };
         let bytes = encode(&provenance, tables).map_err(io::Error::other)?;
-        std::fs::create_dir_all(folder)?;
-        replace(&path, &bytes)
+        let put = std::fs::create_dir_all(folder).and_then(|()| replace(&path, &bytes));
+        put.map_err(|why| io::Error::new(why.kind(), format!("{}: {why}", path.display())))
     }
 
     /// Removes what is kept under a key.

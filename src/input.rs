@@ -11,6 +11,8 @@ use std::path::Path;
 pub const MAX_TABLES: u64 = 512 << 20;
 /// Largest text that is held as a whole: a recipe, a scene of XML or JSON, measured data.
 pub const MAX_TEXT: u64 = 64 << 20;
+/// Largest row of a CSV, which may have fields of several lines in quotes.
+pub const MAX_ROW: u64 = 1 << 20;
 
 /// Opens a regular file of at most `limit` bytes.
 ///
@@ -38,6 +40,64 @@ fn regular(found: &std::fs::Metadata, limit: u64) -> io::Result<()> {
 
 fn too_large(what: &str, limit: u64) -> String {
     format!("{what}, and at most {} MiB are read", limit >> 20)
+}
+
+/// Opens a regular file as [`open`] does, or standard input for `-`, of which `limit` bytes are
+/// read.
+///
+/// # Errors
+/// As [`open`]. Reading fails beyond `limit`.
+pub fn open_or_stdin(path: &Path, limit: u64) -> io::Result<Box<dyn Read>> {
+    if path.as_os_str() == "-" {
+        return Ok(Box::new(Limited::new(io::stdin(), limit)));
+    }
+    match open(path, limit) {
+        Ok(file) => Ok(Box::new(Limited::new(file, limit))),
+        // A pipe is read where it cannot hang unasked.
+        Err(why) if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) => {
+            Err(io::Error::new(why.kind(), format!("{why}, or `-` for standard input")))
+        }
+        Err(why) => Err(why),
+    }
+}
+
+/// A path as messages show it, where `-` is standard input.
+pub fn shown(path: &Path) -> std::path::Display<'_> {
+    if path.as_os_str() == "-" { Path::new("standard input").display() } else { path.display() }
+}
+
+/// A stream that fails where it goes on beyond a limit.
+#[derive(Debug)]
+pub struct Limited<R> {
+    input: R,
+    limit: u64,
+    left: u64,
+}
+
+impl<R> Limited<R> {
+    /// Allows `limit` bytes of a stream.
+    pub fn new(input: R, limit: u64) -> Self {
+        Self { input, limit, left: limit }
+    }
+
+    /// Allows as many bytes again: a row has ended.
+    pub fn restart(&mut self) {
+        self.left = self.limit;
+    }
+}
+
+impl<R: Read> Read for Limited<R> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let bytes = self.input.read(to)?;
+        match self.left.checked_sub(bytes as u64) {
+            Some(left) => self.left = left,
+            None => {
+                let why = format!("no end within {} MiB", self.limit >> 20);
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+            }
+        }
+        Ok(bytes)
+    }
 }
 
 /// What a path names, in words.
@@ -100,9 +160,22 @@ mod tests {
         {
             let message = read(Path::new("/dev/zero"), 10).unwrap_err().to_string();
             assert!(message.contains("character device"), "{message}");
+            let message = open_or_stdin(Path::new("/dev/zero"), 10).err().unwrap().to_string();
+            assert!(message.contains("`-` for standard input"), "{message}");
             // It reports no size.
             let message = read(Path::new("/proc/self/maps"), 10).unwrap_err().to_string();
             assert!(message.contains("too long"), "{message}");
         }
+    }
+
+    #[test]
+    fn a_stream_ends_at_its_limit() {
+        let mut stream = Limited::new(io::repeat(1), 10);
+        let mut some = [0; 6];
+        assert_eq!(stream.read(&mut some).unwrap(), 6);
+        stream.restart();
+        assert_eq!(stream.read(&mut some).unwrap(), 6);
+        assert!(stream.read(&mut some).unwrap_err().to_string().contains("no end within"));
+        assert_eq!(Limited::new(&[1; 10][..], 10).read_to_end(&mut Vec::new()).unwrap(), 10);
     }
 }

@@ -55,3 +55,15 @@ fn every_flipped_bit_of_an_image_is_refused_or_harmless() {
     // Attributes that say how to show an image do not belong to the table.
     assert!(harmless < 8 * file.len() / 4, "{harmless} of {}", 8 * file.len());
 }
+
+/// A list that repeats a channel could ask for any memory.
+#[test]
+fn a_channel_named_twice_is_refused() {
+    let (_, file) = small_image();
+    let (list, lie) = (br#"["value","slope"]"#, br#"["Y","Y","slope"]"#);
+    let at = file.windows(list.len()).position(|bytes| bytes == list).unwrap();
+    let mut file = file;
+    file[at..at + lie.len()].copy_from_slice(lie);
+    let message = decode_exr(&file).unwrap_err().to_string();
+    assert!(message.contains("not those of the description"), "{message}");
+}

@@ -12,6 +12,9 @@ use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_microfacet-bake");
 
+/// The one hidden file that belongs to a set of several files: their names.
+const RECORD: &str = ".microfacet-bake.files";
+
 /// A folder with two recipes whose sets differ in every file.
 fn workshop() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -73,7 +76,10 @@ fn baked(workshop: &TempDir, recipe: &str) -> (PathBuf, Files) {
     let output = bake(workshop, recipe, &out).output().unwrap();
     assert!(output.status.success(), "{}", message(&output));
     let (files, hidden) = content(&out);
-    assert!(files.len() > 2 && hidden.is_empty(), "{:?} {hidden:?}", files.keys());
+    assert!(files.len() > 2 && hidden == [RECORD], "{:?} {hidden:?}", files.keys());
+    let record = fs::read_to_string(out.join(RECORD)).unwrap();
+    assert!(record.lines().all(|name| files.contains_key(name)), "{record}");
+    assert_eq!(record.lines().count(), files.len());
     (out, files)
 }
 
@@ -113,7 +119,7 @@ fn killed_at_any_moment_one_whole_set_is_there() {
                 Command::new(PROGRAM).arg("inspect").arg(&out).stdout(Stdio::null()).status();
             assert!(look.unwrap().success());
             let (files, hidden) = content(&out);
-            assert!((files == old || files == new) && hidden.is_empty(), "not completed at {i}");
+            assert!((files == old || files == new) && hidden == [RECORD], "not completed at {i}");
             2
         };
         outcomes[outcome] += 1;
@@ -121,7 +127,7 @@ fn killed_at_any_moment_one_whole_set_is_there() {
     println!("{kills} kills: {outcomes:?} found the old set, the new one, one to be completed");
     let output = bake(&workshop, "new", &out).output().unwrap();
     assert!(output.status.success(), "{}", message(&output));
-    assert_eq!(content(&out), (new.clone(), Vec::new()));
+    assert_eq!(content(&out), (new.clone(), vec![RECORD.into()]));
 }
 
 #[test]
@@ -141,14 +147,14 @@ fn a_full_disk_leaves_the_old_set_and_says_so() {
         if expected {
             let text = message(&output);
             assert!(text.contains("File too large") && text.contains("out of old"), "{text}");
-            assert_eq!(content(&out), (old.clone(), Vec::new()));
+            assert_eq!(content(&out), (old.clone(), vec![RECORD.into()]));
         } else {
             assert_eq!(content(&out).0, old);
         }
     }
     // The next run tidies up.
     assert!(bake(&workshop, "old", &out).output().unwrap().status.success());
-    assert_eq!(content(&out), (old, Vec::new()));
+    assert_eq!(content(&out), (old, vec![RECORD.into()]));
 }
 
 #[test]
@@ -206,14 +212,14 @@ fn folders_and_links_in_place_of_files() {
     assert_eq!(output.status.code(), Some(2));
     assert!(message(&output).contains("tables.safetensors"), "{}", message(&output));
     assert_eq!(fs::read(out.join("shadowing_gamma_3.exr")).unwrap(), before);
-    // A link where a file should go is replaced, not written through.
+    // A link where a file should go is followed, and a bake killed meanwhile reaches no further.
     fs::remove_dir(&file).unwrap();
     let elsewhere = workshop.path().join("elsewhere");
-    fs::write(&elsewhere, "precious").unwrap();
     std::os::unix::fs::symlink(&elsewhere, &file).unwrap();
     assert!(bake(&workshop, "old", &out).output().unwrap().status.success());
-    assert_eq!(fs::read(&elsewhere).unwrap(), b"precious");
-    assert_eq!(content(&out), (old, Vec::new()));
+    assert!(fs::symlink_metadata(&file).unwrap().is_symlink());
+    assert_eq!(fs::read(&elsewhere).unwrap(), old["tables.safetensors"]);
+    assert_eq!(content(&out), (old, vec![RECORD.into()]));
 }
 
 /// Headers that promise more than the file holds must not cost memory: half a gigabyte of address
@@ -228,11 +234,17 @@ fn inspecting_a_lie_takes_little_memory() {
     let corner = at + 11 + 6 + 4 + 8;
     let mut lie = image.clone();
     lie[corner..corner + 8].copy_from_slice(&[0xff, 0xff, 0x0f, 0, 0xff, 0xff, 0x0f, 0]);
+    // As long as its header says, by padding, but more than any image of a table.
+    let mut large = image;
+    large[corner..corner + 8].copy_from_slice(&[0xff, 0x1f, 0, 0, 0xff, 0x1f, 0, 0]);
+    large.resize(9 << 20, 0);
     let mut long_header = fs::read(out.join("tables.safetensors")).unwrap();
     long_header[..8].copy_from_slice(&99_000_000_u64.to_le_bytes());
-    for (name, bytes, part) in
-        [("lie.exr", lie, "1048576"), ("long.safetensors", long_header, "not a valid table set")]
-    {
+    for (name, bytes, part) in [
+        ("lie.exr", lie, "1048576"),
+        ("large.exr", large, "at most 128 MiB"),
+        ("long.safetensors", long_header, "not a valid table set"),
+    ] {
         let path = workshop.path().join(name);
         fs::write(&path, bytes).unwrap();
         let script = "ulimit -v 524288; exec \"$0\" inspect \"$1\" --threads 1";

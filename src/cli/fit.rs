@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use microfacet_bake::fit::{self, Angles};
+use microfacet_bake::input::{MAX_TEXT, open_or_stdin, shown};
 
 use super::convert::{On, ends};
 use super::{Done, Outcome, print};
@@ -12,7 +13,7 @@ use super::{Done, Outcome, print};
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  microfacet-bake fit --input measured.csv --degrees")]
 pub(super) struct Args {
-    /// The CSV file.
+    /// The CSV file, `-` for standard input.
     #[arg(long)]
     input: PathBuf,
     /// Angles are in degrees instead of radians.
@@ -24,8 +25,8 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: Args) -> Outcome {
-    let path = args.input.display();
-    let file = std::fs::File::open(&args.input).map_err(|e| format!("opening {path}: {e}"))?;
+    let path = shown(&args.input);
+    let file = open_or_stdin(&args.input, MAX_TEXT).map_err(|e| format!("{path}: {e}"))?;
     let angles = if args.degrees { Angles::Degrees } else { Angles::Radians };
     let measured = fit::read_csv(file, angles).map_err(|e| format!("{path}: {e}"))?;
     let found = fit::fit(&measured, args.on.into())?;

@@ -18,7 +18,7 @@ use super::{Done, Outcome, print, print_json};
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  microfacet-bake inspect out/tables.safetensors")]
 pub(super) struct Args {
-    /// A .safetensors set, a folder that holds one, or a single table as .exr.
+    /// A .safetensors set, a folder that holds one or its images, or a single table as .exr.
     file: PathBuf,
     /// Print the complete description as JSON.
     #[arg(long)]

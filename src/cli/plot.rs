@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use microfacet_bake::plot;
+use microfacet_bake::store::replace;
 
-use super::{Done, Outcome, print};
+use super::{Done, Failure, Outcome, print};
 
 /// Draw a figure of the literature as SVG.
 #[derive(clap::Args)]
@@ -13,18 +14,16 @@ pub(super) struct Args {
     /// Name of the figure.
     #[arg(value_parser = plot::NAMES)]
     name: String,
-    /// File to write; standard output by default.
+    /// File to write; standard output by default, or if it is `-`.
     #[arg(long, short, value_name = "SVG")]
     output: Option<PathBuf>,
 }
 
 pub(super) fn run(args: Args) -> Outcome {
     let text = plot::svg(&plot::figure(&args.name)?)?;
-    match args.output {
-        Some(path) => {
-            std::fs::write(&path, text)
-                .map_err(|why| format!("writing {}: {why}", path.display()))?;
-        }
+    match args.output.filter(|path| path.as_os_str() != "-") {
+        Some(path) => replace(&path, text.as_bytes())
+            .map_err(|why| Failure(format!("{}: {why}", path.display())))?,
         None => print(&text)?,
     }
     Ok(Done::Ok)

@@ -1,5 +1,6 @@
 //! `sample`: draws visible normals of one material and view into a safetensors file.
 
+use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
 use clap::ValueEnum;
@@ -48,7 +49,7 @@ pub(super) struct Args {
     /// Tables to draw from; the embedded default if absent.
     #[arg(long, value_name = "PATH")]
     tables: Option<PathBuf>,
-    /// File to write.
+    /// File to write, `-` for standard output.
     #[arg(long, value_name = "FILE.safetensors")]
     out: PathBuf,
 }
@@ -74,6 +75,13 @@ pub(super) fn run(args: Args) -> Outcome {
         phi: args.phi,
         seed: args.seed,
     };
+    let to_stdout = args.out.as_os_str() == "-";
+    if to_stdout && io::stdout().is_terminal() {
+        return Err(Failure(
+            "standard output is a terminal, and safetensors are binary: pipe them to a program, or name a file"
+                .into(),
+        ));
+    }
     let v = at.view();
     let mut random = rand::rngs::StdRng::seed_from_u64(args.seed);
     let mut draw: Box<dyn FnMut() -> (Vec3, f32)> = match args.method {
@@ -107,7 +115,27 @@ pub(super) fn run(args: Args) -> Outcome {
         ],
         None,
     )?;
-    replace(&args.out, &bytes).map_err(|why| Failure(format!("{}: {why}", args.out.display())))?;
+    if to_stdout {
+        let mut out = io::stdout();
+        return match out.write_all(&bytes).and_then(|()| out.flush()) {
+            Err(why) if why.kind() != io::ErrorKind::BrokenPipe => {
+                Err(Failure(format!("standard output: {why}")))
+            }
+            _ => {
+                // The normals are out, even if nobody can be told.
+                let _ = writeln!(io::stderr(), "standard output ({count} normals)");
+                Ok(Done::Ok)
+            }
+        };
+    }
+    replace(&args.out, &bytes).map_err(|why| {
+        let hint = if why.kind() == io::ErrorKind::InvalidInput {
+            ", or `--out -` for standard output"
+        } else {
+            ""
+        };
+        Failure(format!("{}: {why}{hint}", args.out.display()))
+    })?;
     print(&format!("{} ({count} normals)\n", args.out.display()))?;
     Ok(Done::Ok)
 }

@@ -5,19 +5,27 @@
 //! viewer shows, and its derivatives in `slope`. The string attribute `microfacet` holds the
 //! description of the set.
 
-use std::io::Cursor;
+use std::io::{BufReader, Cursor, Read};
+use std::path::Path;
 
+use exr::meta::MetaData;
 use exr::prelude::*;
 use half::f16;
+use serde::Deserialize;
 
 use microfacet_sampler::internals::{describe, reassemble, seal_document};
 use microfacet_sampler::{LoadError, Precision, Provenance, Table, Tables};
+
+use crate::input::{self, MAX_TABLES, MAX_TEXT};
 
 /// The first bytes of every OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// The attribute that holds the description.
 const ATTRIBUTE: &str = "microfacet";
+
+/// Names of images end with this.
+const EXTENSION: &str = ".exr";
 
 /// EXR channel name of a table's channel.
 fn channel_name(channel: &str) -> &str {
@@ -34,6 +42,8 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
         describe(provenance, std::slice::from_ref(table)).map_err(|why| why.to_string())?;
     let document = seal_document(&ascii(&document), &table.values)
         .ok_or("the description has no place for a checksum")?;
+    let bytes = if table.precision == Precision::F16 { 2 } else { 4 };
+    check_samples(bytes * table.values.len() as u64)?;
     let width = table.axes.last().map_or(1, microfacet_sampler::Axis::len);
     let count = table.channels.len();
     let height = table.values.len() / count / width;
@@ -87,25 +97,26 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
         .from_buffered(Cursor::new(bytes))
         .map_err(|why| invalid(format!("OpenEXR: {why}")))?;
     let layer = image.layer_data;
-    let document = match layer.attributes.other.get(&Text::new_or_panic(ATTRIBUTE)) {
-        Some(AttributeValue::Text(text)) => text.to_string(),
-        _ => {
-            return Err(invalid(format!(
-                "an OpenEXR image, but without the `{ATTRIBUTE}` attribute of a table"
-            )));
-        }
-    };
-    let channels = document_channels(&document).map_err(invalid)?;
+    let document = document(&layer.attributes).ok_or_else(|| {
+        invalid(format!("an OpenEXR image, but without the `{ATTRIBUTE}` attribute of a table"))
+    })?;
+    let channels = only_table(&document).map_err(invalid)?.channels;
+    // Every channel is one of the table: a list that repeats one could ask for any memory.
+    if channels.len() != layer.channel_data.list.len() {
+        return Err(invalid("the channels are not those of the description".into()));
+    }
     let mut columns = Vec::new();
     for channel in &channels {
         let name = channel_name(channel);
         let found = layer.channel_data.list.iter().find(|stored| stored.name == *name);
         let found = found.ok_or_else(|| invalid(format!("no channel `{name}`")))?;
-        columns.push(found.sample_data.values_as_f32().collect::<Vec<f32>>());
+        columns.push(found.sample_data.values_as_f32());
     }
     let pixels = layer.size.area();
-    let values: Vec<f32> =
-        (0..pixels).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+    let mut values = Vec::with_capacity(pixels * columns.len());
+    for _ in 0..pixels {
+        values.extend(columns.iter_mut().filter_map(Iterator::next));
+    }
     if seal_document(&document, &values).is_none_or(|sealed| sealed != document) {
         return Err(invalid(
             "checksum does not match: the file is damaged or was edited; bake again".into(),
@@ -117,6 +128,20 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     Tables::from_tables(provenance, tables)
 }
 
+/// Largest image, in bytes of its samples; the values made of them take up to twice as much again.
+const MAX_SAMPLES: u64 = MAX_TABLES / 4;
+
+/// Refuses an image that would take too much memory to read.
+fn check_samples(bytes: u64) -> std::result::Result<(), String> {
+    if bytes <= MAX_SAMPLES {
+        return Ok(());
+    }
+    Err(format!(
+        "OpenEXR: samples of {bytes} bytes, and at most {} MiB are read: bake safetensors instead, or a lower quality or precision",
+        MAX_SAMPLES >> 20
+    ))
+}
+
 /// Largest allowed ratio of image size to file size. Tables compress by less than four; DEFLATE
 /// alone could reach a thousand.
 const EXPANSION: usize = 64;
@@ -124,16 +149,16 @@ const EXPANSION: usize = 64;
 /// Refuses a header that declares more pixels than the file can hold, before the library allocates
 /// them.
 fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
-    let meta = exr::meta::MetaData::read_from_buffered(bytes, false)
-        .map_err(|why| format!("OpenEXR: {why}"))?;
+    let meta =
+        MetaData::read_from_buffered(bytes, false).map_err(|why| format!("OpenEXR: {why}"))?;
     let promised = |header: &exr::meta::header::Header| {
         let Vec2(width, height) = header.layer_size;
         width.checked_mul(height)?.checked_mul(header.channels.bytes_per_pixel)
     };
     let total =
         meta.headers.iter().map(promised).try_fold(0_usize, |sum, bytes| sum.checked_add(bytes?));
-    if total.is_some_and(|total| total <= EXPANSION * bytes.len()) {
-        return Ok(());
+    if let Some(total) = total.filter(|total| *total <= EXPANSION * bytes.len()) {
+        return check_samples(total as u64);
     }
     let size = meta.headers.first().map_or(Vec2(0, 0), |header| header.layer_size);
     Err(format!(
@@ -144,16 +169,68 @@ fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
     ))
 }
 
-/// Channel names of the one table that a document describes.
-fn document_channels(document: &str) -> std::result::Result<Vec<String>, String> {
-    let document: serde_json::Value =
-        serde_json::from_str(document).map_err(|why| why.to_string())?;
-    let channels = document.pointer("/tables/0/channels").and_then(|list| list.as_array());
-    let names = channels
-        .map(|list| list.iter().filter_map(|name| name.as_str().map(String::from)).collect());
-    names
-        .filter(|names: &Vec<String>| !names.is_empty())
-        .ok_or_else(|| "the description names no channels".into())
+/// The description in an image's attributes.
+fn document(attributes: &LayerAttributes) -> Option<String> {
+    match attributes.other.get(&Text::new_or_panic(ATTRIBUTE)) {
+        Some(AttributeValue::Text(text)) => Some(text.to_string()),
+        _ => None,
+    }
+}
+
+/// What has to be known of a table before its values are read.
+#[derive(Deserialize)]
+struct Head {
+    name: String,
+    channels: Vec<String>,
+}
+
+/// The one table that a document describes.
+fn only_table(document: &str) -> std::result::Result<Head, String> {
+    #[derive(Deserialize)]
+    struct Document {
+        tables: Vec<Head>,
+    }
+    let mut document: Document = serde_json::from_str(document).map_err(|why| why.to_string())?;
+    let table = document.tables.pop().filter(|_| document.tables.is_empty());
+    let table = table.ok_or("the description is not that of one table")?;
+    if table.channels.is_empty() { Err("no channels".into()) } else { Ok(table) }
+}
+
+/// The name of the image of a table, if a file can be named so.
+pub(super) fn name_of(table: &str) -> Option<String> {
+    let name = format!("{table}{EXTENSION}");
+    table_of(&name).is_some().then_some(name)
+}
+
+/// The name of the table that an image of this name would hold.
+pub(super) fn table_of(name: &str) -> Option<&str> {
+    let table = name.strip_suffix(EXTENSION)?;
+    let is_plain = |c: char| !c.is_control() && c != '/' && c != '\\';
+    (!table.is_empty() && !table.starts_with('.') && table.chars().all(is_plain)).then_some(table)
+}
+
+/// Whether a file NAME.exr says that it holds the table NAME, which copies under other names and
+/// other images do not. Only the header is read.
+///
+/// # Errors
+/// A message if the file cannot be read, or is damaged.
+pub(super) fn is_table(path: &Path) -> std::result::Result<bool, String> {
+    let Some(name) = path.file_name().and_then(|name| table_of(name.to_str()?)) else {
+        return Ok(false);
+    };
+    if !std::fs::metadata(path).map_err(|why| why.to_string())?.is_file() {
+        return Ok(false);
+    }
+    let input = input::open(path, u64::MAX).map_err(|why| why.to_string())?;
+    let meta = match MetaData::read_from_buffered(BufReader::new(input).take(MAX_TEXT), false) {
+        // Images of other programs.
+        Err(Error::NotSupported(_)) => return Ok(false),
+        meta => meta.map_err(|why| {
+            format!("OpenEXR: {why}; if it is no table of the set, move it elsewhere")
+        })?,
+    };
+    let document = meta.headers.first().and_then(|header| document(&header.own_attributes));
+    Ok(document.is_some_and(|document| only_table(&document).is_ok_and(|table| table.name == name)))
 }
 
 /// The description in ASCII, since EXR text has no Unicode.

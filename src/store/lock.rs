@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use microfacet_sampler::Tables;
 
-use super::replace::{finish, replace_all};
-use super::{Format, SET_FILE, StoreError, Written, files, read_file};
+use super::replace::{RECORD, check_writable, finish, is_ours, recorded, replace_all};
+use super::{Format, SET_FILE, StoreError, Written, files};
+use crate::input;
 
 /// A folder to write a set into, locked against every other bake until it is dropped.
 ///
@@ -22,20 +23,33 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Makes the folder if it does not exist, locks it, checks that it can be written to, and
-    /// cleans up after an interrupted bake: if the last step of replacing a set had begun, it is
-    /// completed, and partial files are removed.
+    /// Makes the folder if it does not exist, locks it, cleans up after an interrupted bake, and
+    /// checks that the folder and the set in it can be written to. If the last step of replacing a
+    /// set had begun, it is completed, and partial files are removed.
     ///
     /// # Errors
     /// [`StoreError::InUse`] if another bake has locked the folder, [`StoreError::Io`] if the path
     /// is no folder or cannot be written to.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
+        let this = Self::complete(path)?;
+        // Fail now rather than after an hour of baking.
+        tempfile::tempfile_in(path).map_err(|why| StoreError::Io(path.into(), why))?;
+        for name in this.old()?.iter().map(String::as_str).chain([SET_FILE]) {
+            let file = path.join(name);
+            check_writable(&file).map_err(|why| StoreError::Io(file, why))?;
+        }
+        Ok(this)
+    }
+
+    /// Locks the folder, and completes what an interrupted bake has begun.
+    pub(super) fn complete(path: &Path) -> Result<Self, StoreError> {
         let failed = |why| StoreError::Io(path.into(), why);
-        if path.exists() && !path.is_dir() {
-            return Err(failed(io::Error::new(
-                io::ErrorKind::NotADirectory,
-                "is a file; name a folder",
-            )));
+        if let Ok(found) = std::fs::metadata(path)
+            && !found.is_dir()
+        {
+            let what = if found.is_file() { "a file" } else { input::name(found.file_type()) };
+            let why = format!("is {what}; name a folder");
+            return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, why)));
         }
         let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
@@ -53,48 +67,46 @@ impl OutputFolder {
             Err(TryLockError::Error(why)) if why.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(why)) => return Err(failed(why)),
         }
-        finish(path).map_err(failed)?;
-        // Fail now rather than after an hour of baking.
-        tempfile::tempfile_in(path).map_err(failed)?;
+        finish(path).map_err(|(name, why)| StoreError::Io(path.join(name), why))?;
         Ok(this)
     }
 
+    /// Names of the files of the set that is in the folder, as far as they are known to be ours.
+    fn old(&self) -> Result<Vec<String>, StoreError> {
+        let recorded = recorded(&self.path);
+        let mut old = recorded.map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
+        old.extend([SET_FILE, RECORD].map(String::from));
+        old.sort();
+        old.dedup();
+        old.retain(|name| is_ours(&self.path, name));
+        Ok(old)
+    }
+
     /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table. A folder holds one set:
-    /// tables of an earlier set are removed, other files stay.
+    /// the files of the set that was written here before are removed, all others stay.
     ///
     /// First all new files are written beside the old ones. A single file is then replaced in one
     /// step; with several, the old ones are removed before the first new one appears, so that the
-    /// two sets never mix.
+    /// two sets never mix. Each file is written as [`replace`](super::replace()) does it.
     ///
     /// # Errors
     /// [`StoreError`] naming the path; the old set is then unchanged.
     pub fn write(&self, set: &Tables, formats: &[Format]) -> Result<Vec<Written>, StoreError> {
-        let files = files(set, formats).map_err(|why| why.inside(&self.path))?;
-        let stale = self.stale(&files).map_err(|why| StoreError::Io(self.path.clone(), why))?;
-        replace_all(&self.path, &files, &stale)
-            .map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
+        let mut files = files(set, formats).map_err(|why| why.inside(&self.path))?;
         let written = |(name, bytes): &(String, Vec<u8>)| Written {
             path: self.path.join(name),
             bytes: bytes.len(),
         };
-        Ok(files.iter().map(written).collect())
-    }
-
-    /// Names of the tables in the folder that the new `files` do not replace.
-    fn stale(&self, files: &[(String, Vec<u8>)]) -> io::Result<Vec<String>> {
-        let mut stale = Vec::new();
-        for entry in std::fs::read_dir(&self.path)? {
-            let Ok(name) = entry?.file_name().into_string() else { continue };
-            let ours = name == SET_FILE || name.ends_with(".exr");
-            // A file that does not load as a table is not ours.
-            if ours
-                && files.iter().all(|(new, _)| *new != name)
-                && read_file(&self.path.join(&name)).is_ok()
-            {
-                stale.push(name);
-            }
+        let all = files.iter().map(written).collect();
+        if files.iter().any(|(name, _)| name != SET_FILE) {
+            let names: String = files.iter().map(|(name, _)| format!("{name}\n")).collect();
+            files.push((RECORD.into(), names.into_bytes()));
         }
-        Ok(stale)
+        let mut stale = self.old()?;
+        stale.retain(|old| files.iter().all(|(new, _)| new != old));
+        replace_all(&self.path, &files, &stale)
+            .map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
+        Ok(all)
     }
 }
 

@@ -6,9 +6,12 @@ mod lock;
 mod replace;
 
 use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
 
-use microfacet_sampler::{LoadError, Tables, encode};
+use microfacet_sampler::{LoadError, Table, Tables, encode};
+
+use crate::input::{self, MAX_TABLES};
 
 pub use self::exr::{decode as decode_exr, encode as encode_exr};
 pub use lock::OutputFolder;
@@ -16,6 +19,9 @@ pub use replace::replace;
 
 /// Name of the file that holds a whole set.
 pub const SET_FILE: &str = "tables.safetensors";
+
+/// Most images that a folder may hold to be read as a set.
+const MAX_IMAGES: usize = 10_000;
 
 /// A container format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -33,7 +39,7 @@ pub enum StoreError {
     Io(PathBuf, std::io::Error),
     /// The file is not a table set, damaged, or of a newer version.
     Load(PathBuf, LoadError),
-    /// Writing an image failed.
+    /// An image could not be written, or its header not be read.
     Exr(PathBuf, String),
     /// Another bake is writing into the folder.
     InUse(PathBuf),
@@ -85,13 +91,18 @@ pub fn write(folder: &Path, set: &Tables, formats: &[Format]) -> Result<Vec<Writ
     OutputFolder::open(folder)?.write(set, formats)
 }
 
-/// Names and contents of the files that hold a set.
+/// Names and contents of the files that hold a set; only what [`read`] reads back.
 fn files(set: &Tables, formats: &[Format]) -> Result<Vec<(String, Vec<u8>)>, StoreError> {
     let mut files = Vec::new();
     if formats.contains(&Format::Exr) {
+        let mut images = Images::default();
         for table in set.tables() {
-            let name = format!("{}.exr", table.name);
+            let Some(name) = exr::name_of(&table.name) else {
+                let why = format!("no file can be named after the table `{}`", table.name);
+                return Err(StoreError::Exr(PathBuf::new(), why));
+            };
             let bytes = encode_exr(set.provenance(), table)
+                .and_then(|bytes| images.add(bytes.len() as u64, table).map(|()| bytes))
                 .map_err(|why| StoreError::Exr(name.clone().into(), why))?;
             files.push((name, bytes));
         }
@@ -99,35 +110,150 @@ fn files(set: &Tables, formats: &[Format]) -> Result<Vec<(String, Vec<u8>)>, Sto
     if formats.contains(&Format::Safetensors) {
         let bytes = encode(set.provenance(), set.tables())
             .map_err(|why| StoreError::Load(SET_FILE.into(), why))?;
+        allow(bytes.len() as u64, MAX_TABLES)
+            .map_err(|why| StoreError::Io(SET_FILE.into(), invalid(why)))?;
         files.push((SET_FILE.into(), bytes));
     }
     Ok(files)
 }
 
-/// Reads a set from a safetensors file or a folder that holds one, or a single table from an EXR
-/// file.
+fn invalid(why: String) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, why)
+}
+
+/// Refuses more bytes of a set than are read.
+fn allow(bytes: u64, limit: u64) -> Result<(), String> {
+    if bytes <= limit {
+        return Ok(());
+    }
+    Err(format!(
+        "{bytes} bytes, and at most {} MiB are read: bake fewer materials, or with a lower quality or precision",
+        limit >> 20
+    ))
+}
+
+/// What the images of a set take, on disk and in memory.
+#[derive(Default)]
+struct Images {
+    count: usize,
+    bytes: u64,
+    values: u64,
+}
+
+impl Images {
+    fn add(&mut self, bytes: u64, table: &Table) -> Result<(), String> {
+        self.count += 1;
+        self.bytes += bytes;
+        self.values += 4 * table.values.len() as u64;
+        if self.count > MAX_IMAGES {
+            return Err(format!("more than {MAX_IMAGES} images: write safetensors instead"));
+        }
+        allow(self.bytes.max(self.values), MAX_TABLES)
+            .map_err(|why| format!("together the images have {why}; or write safetensors instead"))
+    }
+}
+
+/// Reads a set from a safetensors file, a folder that holds one or the images of one, or a single
+/// table from an EXR file.
+///
+/// Of images in a folder, those named NAME.exr count that hold the table NAME. Their order is that
+/// of the names.
 ///
 /// If a bake was killed while it replaced several files, the replacement is completed first.
 ///
 /// # Errors
 /// [`StoreError`] naming the path and what is wrong.
 pub fn read(path: &Path) -> Result<Tables, StoreError> {
-    let folder = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
+    let is_folder = path.is_dir();
+    let folder = if is_folder { path } else { replace::folder_of(path) };
     if replace::is_interrupted(folder) {
-        // Opening the folder completes a replacement that was interrupted.
-        OutputFolder::open(folder)?;
+        OutputFolder::complete(folder)?;
     }
-    read_file(&if path.is_dir() { path.join(SET_FILE) } else { path.to_path_buf() })
+    if !is_folder {
+        return read_file(path);
+    }
+    let set = path.join(SET_FILE);
+    if std::fs::symlink_metadata(&set).is_ok() { read_file(&set) } else { read_images(path) }
+}
+
+/// Reads the images of a set from a folder.
+fn read_images(folder: &Path) -> Result<Tables, StoreError> {
+    let failed = |why| StoreError::Io(folder.into(), why);
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let file = entry.map_err(failed)?.file_name().into_string().unwrap_or_default();
+        names.extend(exr::table_of(&file).map(|name| (name.to_owned(), file.clone())));
+    }
+    // By the names of the tables: `a` comes before `a_b`, but `a.exr` need not before `a_b.exr`.
+    names.sort();
+    let (mut images, mut tables, mut first) = (Images::default(), Vec::new(), None);
+    for (_, file) in &names {
+        let path = folder.join(file);
+        let of_table = exr::is_table(&path);
+        if !of_table.map_err(|why| StoreError::Exr(path.clone(), why))? {
+            continue;
+        }
+        let bytes = std::fs::metadata(&path).map_err(failed)?.len();
+        let set = read_file(&path)?;
+        let (other, provenance) = first.get_or_insert((file, set.provenance().clone()));
+        if set.provenance() != provenance {
+            let why = format!("{other} and {file} come from different bakes: keep those of one");
+            return Err(failed(invalid(why)));
+        }
+        for table in set.tables() {
+            images.add(bytes, table).map_err(|why| StoreError::Exr(path.clone(), why))?;
+            tables.push(table.clone());
+        }
+    }
+    let Some((_, provenance)) = first else {
+        let why = format!(
+            "holds neither {SET_FILE} nor an image NAME.exr of a table; name what `microfacet-bake bake` wrote"
+        );
+        return Err(failed(io::Error::new(io::ErrorKind::NotFound, why)));
+    };
+    Tables::from_tables(provenance, tables).map_err(|why| StoreError::Load(folder.into(), why))
 }
 
 /// Reads the set or the table in one file.
-fn read_file(path: &Path) -> Result<Tables, StoreError> {
-    let path = path.to_path_buf();
-    let bytes = std::fs::read(&path).map_err(|why| StoreError::Io(path.clone(), why))?;
+pub(crate) fn read_file(path: &Path) -> Result<Tables, StoreError> {
+    let bytes =
+        input::read(path, MAX_TABLES).map_err(|why| StoreError::Io(path.to_path_buf(), why))?;
     let set = if bytes.starts_with(&exr::MAGIC) {
         decode_exr(&bytes)
     } else {
         Tables::from_bytes(&bytes)
     };
-    set.map_err(|why| StoreError::Load(path, why))
+    set.map_err(|why| StoreError::Load(path.to_path_buf(), why))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_could_not_be_read_back_is_not_written() {
+        assert!(allow(10, 10).is_ok());
+        let message = allow(11 << 20, 10 << 20).unwrap_err();
+        assert!(message.contains("at most 10 MiB") && message.contains("precision"), "{message}");
+        let set = Tables::embedded();
+        let table = &set.tables()[0];
+        let mut images = Images::default();
+        assert!(images.add(MAX_TABLES, table).is_ok());
+        assert!(images.add(1, table).unwrap_err().contains("512 MiB"));
+        let mut images = Images { values: MAX_TABLES, ..Images::default() };
+        assert!(images.add(1, table).unwrap_err().contains("safetensors"));
+        let mut images = Images { count: MAX_IMAGES, ..Images::default() };
+        assert!(images.add(1, table).unwrap_err().contains("10000 images"));
+    }
+
+    #[test]
+    fn a_table_names_no_file_in_another_folder() {
+        let set = Tables::embedded();
+        for name in ["../up", "/root", "", ".hidden", "two\nlines"] {
+            let table = Table { name: name.into(), ..set.tables()[0].clone() };
+            let set = Tables::from_tables(set.provenance().clone(), vec![table]).unwrap();
+            assert!(files(&set, &[Format::Exr]).is_err(), "{name}");
+            assert!(files(&set, &[Format::Safetensors]).is_ok(), "{name}");
+        }
+    }
 }

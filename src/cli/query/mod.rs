@@ -2,11 +2,11 @@
 
 mod quantities;
 
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::PathBuf;
 
 use clap::{Subcommand, ValueEnum};
+use microfacet_bake::input::{Limited, MAX_ROW, open_or_stdin, shown};
 use rayon::prelude::*;
 
 use super::{Done, Failure, Outcome, tables};
@@ -66,20 +66,21 @@ pub(super) fn run(args: Args) -> Outcome {
     }
 }
 
-/// Rows that are computed at once, on all cores.
+/// Rows that are computed at once, on all cores, and the bytes of input after which fewer are.
 const ROWS: usize = 256;
+const BYTES: u64 = 2 * MAX_ROW;
 
 /// Passes the rows of a file through, with the quantity's values appended.
 fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
     let known = Known::new(tables(io.tables.as_deref())?);
-    let input: Box<dyn Read> = if io.input.as_os_str() == "-" {
-        Box::new(io::stdin())
-    } else {
-        let open = File::open(&io.input);
-        Box::new(open.map_err(|why| Failure(format!("{}: {why}", io.input.display())))?)
-    };
+    let path = shown(&io.input);
+    // A stream of any length, as long as its rows end.
+    let input =
+        open_or_stdin(&io.input, u64::MAX).map_err(|why| Failure(format!("{path}: {why}")))?;
+    let input = Limited::new(input, MAX_ROW);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(input);
-    let header = reader.headers()?.clone();
+    let unreadable = |line: u64, why: csv::Error| Failure(format!("{path}: line {line}: {why}"));
+    let header = reader.headers().map_err(|why| unreadable(1, why))?.clone();
     let columns = quantity
         .inputs()
         .iter()
@@ -90,7 +91,7 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
     let write =
         |writer: &mut csv::Writer<io::Stdout>, row: Vec<String>| match writer.write_record(&row) {
             Err(error) if is_broken_pipe(&error) => Ok(false),
-            Err(error) => Err(Failure::from(error)),
+            Err(error) => Err(Failure(format!("standard output: {error}"))),
             Ok(()) => Ok(true),
         };
     if !write(&mut writer, header.iter().map(String::from).chain(names).collect())? {
@@ -106,12 +107,23 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
         }
         Ok(row)
     };
-    let mut records = reader.into_records();
     let mut noted = false;
-    loop {
-        let some: Vec<_> = records.by_ref().take(ROWS).collect();
-        if some.is_empty() {
-            break;
+    let mut ended = false;
+    while !ended {
+        let mut some = Vec::new();
+        let start = reader.position().byte();
+        while some.len() < ROWS && reader.position().byte() - start < BYTES {
+            reader.get_mut().restart();
+            let line = reader.position().line();
+            let mut record = csv::StringRecord::new();
+            match reader.read_record(&mut record) {
+                Ok(true) => some.push(Ok(record)),
+                end => {
+                    some.extend(end.err().map(|why| Err(unreadable(line, why))));
+                    ended = true;
+                    break;
+                }
+            }
         }
         if !noted && io.method.len() > 1 {
             let rows = some.par_iter().filter_map(|record| record.as_ref().ok());
@@ -128,7 +140,9 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
         }
     }
     match writer.flush() {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure(format!("standard output: {error}")))
+        }
         _ => Ok(Done::Ok),
     }
 }
