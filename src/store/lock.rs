@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use microfacet_sampler::Tables;
 
-use super::replace::{RECORD, check_writable, finish, is_ours, recorded, replace_all};
+use super::journal::{RECORD, finish, is_ours, recorded, replace_all};
+use super::replace::check_writable;
 use super::{Format, SET_FILE, StoreError, Written, files};
 use crate::input;
 

@@ -2,6 +2,7 @@
 //! files.
 
 mod exr;
+mod journal;
 mod lock;
 mod replace;
 
@@ -166,7 +167,7 @@ impl Images {
 pub fn read(path: &Path) -> Result<Tables, StoreError> {
     let is_folder = path.is_dir();
     let folder = if is_folder { path } else { replace::folder_of(path) };
-    if replace::is_interrupted(folder) {
+    if journal::is_interrupted(folder) {
         OutputFolder::complete(folder)?;
     }
     if !is_folder {
