@@ -7,8 +7,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Largest table file or image, 512 MiB: as much again is needed to decode it.
-pub const MAX_TABLES: u64 = 512 << 20;
+/// Largest table file or image, 256 MiB: decoding may need two more times as much.
+pub const MAX_TABLES: u64 = 256 << 20;
 /// Largest text that is held as a whole: a recipe, a scene of XML or JSON, measured data.
 pub const MAX_TEXT: u64 = 64 << 20;
 /// Largest row of a CSV, which may have fields of several lines in quotes.

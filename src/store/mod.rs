@@ -240,7 +240,7 @@ mod tests {
         let table = &set.tables()[0];
         let mut images = Images::default();
         assert!(images.add(MAX_TABLES, table).is_ok());
-        assert!(images.add(1, table).unwrap_err().contains("512 MiB"));
+        assert!(images.add(1, table).unwrap_err().contains("256 MiB"));
         let mut images = Images { values: MAX_TABLES, ..Images::default() };
         assert!(images.add(1, table).unwrap_err().contains("safetensors"));
         let mut images = Images { count: MAX_IMAGES, ..Images::default() };
