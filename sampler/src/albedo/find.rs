@@ -114,7 +114,7 @@ impl Tables {
         self.dielectric_albedo(entry.round_sigma(), entry.gamma(), eta, entry.masking())
     }
 
-    /// The albedo of a rough dielectric of index η ∈ (0, ∞], inside over outside, with σ and γ, for
+    /// The albedo of a rough dielectric of index η ∈ [0, ∞], inside over outside, with σ and γ, for
     /// one form of masking.
     ///
     /// The call takes some microseconds; keep the result.
