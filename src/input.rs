@@ -9,8 +9,6 @@ use std::path::Path;
 
 /// Largest table file or image, 512 MiB: as much again is needed to decode it.
 pub const MAX_TABLES: u64 = 512 << 20;
-/// Largest text that is held as a whole: a recipe, a scene of XML or JSON, measured data.
-pub const MAX_TEXT: u64 = 64 << 20;
 
 /// Opens a regular file of at most `limit` bytes.
 ///
@@ -72,12 +70,12 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The content of a regular text file of at most [`MAX_TEXT`] bytes.
+/// The content of a regular text file of at most `limit` bytes.
 ///
 /// # Errors
 /// As [`open`], or that it is not UTF-8.
-pub fn read_text(path: &Path) -> io::Result<String> {
-    let text = String::from_utf8(read(path, MAX_TEXT)?);
+pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
+    let text = String::from_utf8(read(path, limit)?);
     text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "is no text in UTF-8"))
 }
 
