@@ -87,8 +87,8 @@ struct Want {
     masking: Masking,
 }
 
-/// More tables of albedos, of different lobes or reflectances, are not planned: each takes seconds to
-/// bake, and the time of planning grows with the square of their number.
+/// More tables of albedos, of different lobes or reflectances, are not planned: each takes seconds
+/// to bake, and the time of planning grows with the square of their number.
 const MAX_ALBEDOS: usize = 1000;
 
 /// The required albedos of a scene, and one verdict for each of its materials.

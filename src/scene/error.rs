@@ -123,8 +123,9 @@ impl std::error::Error for SceneError {
 /// The text "; did you mean `x`?" for the candidate closest to `word`, if one is close enough; else
 /// empty.
 ///
-/// Close enough is one edit in three letters; a transposition counts as one edit. The time grows with
-/// the product of the lengths: longer words than names have, and candidates after many, are left out.
+/// Close enough is one edit in three letters; a transposition counts as one edit. The time grows
+/// with the product of the lengths: words longer than names, and candidates after many, are left
+/// out.
 pub(super) fn did_you_mean(word: &str, candidates: &[&str]) -> String {
     let distance = |candidate: &str| {
         strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase())

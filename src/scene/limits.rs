@@ -22,8 +22,8 @@ pub(super) const JSON: u64 = 128 << 20;
 /// Entries of one list in a glTF scene.
 pub(super) const JSON_LIST: usize = 1 << 20;
 /// Bytes of a pbrt scene, unpacked and with all that is included. They are read as a stream, so
-/// that only time limits them: geometry takes a second a gigabyte.
-pub(super) const PBRT: u64 = 4 << 30;
+/// that only time limits them: 2 s for numbers in lists, 12 s for words.
+pub(super) const PBRT: u64 = 1 << 30;
 /// Bytes of the materials and textures of a pbrt scene, which are held. Short parameters take 30
 /// times as much.
 pub(super) const PBRT_HELD: u64 = 16 << 20;
@@ -43,7 +43,7 @@ pub(super) const FOLDERS: usize = 64;
 pub(super) const DEFAULTS: usize = 1000;
 /// Bytes of one image file.
 pub(super) const IMAGE_FILE: u64 = 256 << 20;
-/// Bytes of memory for decoding one image: 8192 x 8192 pixels of 16-bit RGBA in a PNG.
+/// Bytes of memory for decoding one image: a PNG of 8192 x 8192 pixels of 16-bit RGBA.
 pub(super) const IMAGE: u64 = 512 << 20;
-/// Bytes of all images of a scene, decoded; a gigabyte takes some seconds.
+/// Bytes of all images of a scene, decoded; a gigabyte takes two seconds.
 pub(super) const IMAGES: u64 = 8 << 30;

@@ -84,7 +84,7 @@ fn an_include_of_a_folder_is_refused_at_its_place() {
 fn soon_refused(folder: &Folder, name: &str) -> String {
     let start = Instant::now();
     let message = folder.load(name).unwrap_err().to_string();
-    assert!(start.elapsed() < Duration::from_secs(20), "{:?}: {message}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(60), "{:?}: {message}", start.elapsed());
     message
 }
 
@@ -172,7 +172,7 @@ fn devices_fifos_and_files_without_end_are_no_images() {
             fs::write(folder.path(name), text).unwrap();
             let start = Instant::now();
             let scene = folder.load(name).unwrap();
-            assert!(start.elapsed() < Duration::from_secs(20));
+            assert!(start.elapsed() < Duration::from_secs(60));
             assert!(scene.warnings[0].contains("assumed to cover [0, 1]"), "{:?}", scene.warnings);
         }
     }
@@ -180,24 +180,16 @@ fn devices_fifos_and_files_without_end_are_no_images() {
 
 #[test]
 fn files_that_include_the_next_twice_are_refused() {
-    let kinds: [(&str, fn(&str) -> String, &str); 3] = [
-        ("pbrt", |next| format!("Include \"{next}\"\nInclude \"{next}\"\n"), ""),
+    let kinds = [
+        ("pbrt", "Include \"NEXT\"\nInclude \"NEXT\"\n", ""),
         (
             "xml",
-            |next| {
-                format!(
-                    "<scene><include filename=\"{next}\"/><include filename=\"{next}\"/></scene>"
-                )
-            },
+            "<scene><include filename=\"NEXT\"/><include filename=\"NEXT\"/></scene>",
             "<scene/>",
         ),
         (
             "mtlx",
-            |next| {
-                format!(
-                    "<materialx><include href=\"{next}\"/><include href=\"{next}\"/></materialx>"
-                )
-            },
+            "<materialx><include href=\"NEXT\"/><include href=\"NEXT\"/></materialx>",
             "<materialx/>",
         ),
     ];
@@ -205,7 +197,7 @@ fn files_that_include_the_next_twice_are_refused() {
         let name = |i: usize| format!("{i}.{extension}");
         let folder = Folder::new::<&str>(&[]);
         for i in 0..31 {
-            let text = if i < 30 { twice(&name(i + 1)) } else { last.to_owned() };
+            let text = if i < 30 { twice.replace("NEXT", &name(i + 1)) } else { last.to_owned() };
             fs::write(folder.path(&name(i)), text).unwrap();
         }
         let message = soon_refused(&folder, &name(0));
@@ -472,5 +464,5 @@ fn documents_of_many_nodes_take_linear_time() {
     let start = Instant::now();
     let scene = load("a.mtlx", &text);
     assert!(scene.materials.len() == 30_000 && scene.materials[29_999].name == "m29999");
-    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
 }

@@ -235,7 +235,8 @@ pub(super) fn check_conductor(eta: &[f64; 3], k: &[f64; 3]) -> Result<(), String
 
 /// Checks a range of indices of refraction of the dense side over the thin one.
 pub(super) fn check_indices(min: f64, max: Option<f64>) -> Result<(), String> {
-    if 1.0 <= min && min < f64::INFINITY && max.is_none_or(|max| min <= max && max.is_finite()) {
+    let finite = (1.0..f64::INFINITY).contains(&min);
+    if finite && max.is_none_or(|max| min <= max && max < f64::INFINITY) {
         Ok(())
     } else {
         let max = max.unwrap_or(f64::INFINITY);
