@@ -9,7 +9,8 @@ use std::path::Path;
 
 /// Largest table file or image, 256 MiB: decoding may need two more times as much.
 pub const MAX_TABLES: u64 = 256 << 20;
-/// Largest text that is held as a whole: a recipe, a scene of XML or JSON, measured data.
+/// Largest text of measured data, and of a description in an image or a hidden file of ours.
+/// Scenes have limits of their own.
 pub const MAX_TEXT: u64 = 64 << 20;
 /// Largest row of a CSV, which may have fields of several lines in quotes.
 pub const MAX_ROW: u64 = 1 << 20;
@@ -132,12 +133,12 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The content of a regular text file of at most [`MAX_TEXT`] bytes.
+/// The content of a regular text file of at most `limit` bytes.
 ///
 /// # Errors
 /// As [`open`], or that it is not UTF-8.
-pub fn read_text(path: &Path) -> io::Result<String> {
-    let text = String::from_utf8(read(path, MAX_TEXT)?);
+pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
+    let text = String::from_utf8(read(path, limit)?);
     text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "is no text in UTF-8"))
 }
 

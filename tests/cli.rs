@@ -240,3 +240,77 @@ fn a_failed_bake_leaves_the_old_set() {
     assert_eq!(std::fs::read(folder.path().join("out/tables.safetensors")).unwrap(), before);
     Tables::from_bytes(&before).unwrap();
 }
+
+/// Characters that command a terminal, or turn the direction of writing, as a file may hold them.
+const ODD: &str = "a\u{1b}[2J\r\u{7}\u{9b}1m\u{202e}z\u{2066}";
+
+/// Checks that a text has none of them.
+#[track_caller]
+fn assert_plain(text: &str) {
+    let odd = |c: char| c != '\n' && (c.is_control() || ODD[1..].contains(c) && !c.is_ascii());
+    assert!(!text.contains(odd), "{text:?}");
+}
+
+/// A string of TOML or JSON.
+fn quoted(text: &str) -> String {
+    let escape = |c: char| {
+        if c.is_ascii_graphic() { c.to_string() } else { format!("\\u{:04x}", u32::from(c)) }
+    };
+    format!("\"{}\"", text.chars().map(escape).collect::<String>())
+}
+
+#[test]
+fn names_that_command_a_terminal_are_shown_escaped() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let material =
+        |name: &str, rest: &str| format!("[[material]]\nname = {}\n{rest}\n", quoted(name));
+    let fake = format!("{ODD}\nbake  nothing at all\n");
+    std::fs::write(at.join("a.toml"), material(&fake, "sigma = 0.5\ngamma = 3.0")).unwrap();
+    let shown = ok(at, &["plan", "a.toml"]);
+    assert_plain(&shown);
+    assert!(shown.contains(r"\u{1b}[2J\r\u{7}\u{9b}1m\u{202e}z\u{2066}\nbake"), "{shown}");
+    let json = ok(at, &["plan", "a.toml", "--json"]);
+    assert_plain(&json);
+    let document: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(document["materials"][0]["name"], *fake);
+
+    ok(at, &["bake", "a.toml", "--out", "out", "--quality", "draft"]);
+    let shown = ok(at, &["inspect", "out"]);
+    assert_plain(&shown);
+    assert!(!shown.contains("\nbake  nothing"), "{shown}");
+    let json = ok(at, &["inspect", "out", "--json"]);
+    assert_plain(&json);
+    let document: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(document["materials"][0]["name"], *fake);
+
+    // Errors.
+    let twice = material(ODD, "sigma = 0.5\ngamma = 3.0").repeat(2);
+    std::fs::write(at.join("b.toml"), twice).unwrap();
+    assert_plain(&refused(at, &["plan", "b.toml"]));
+    std::fs::write(at.join("c.toml"), material(&fake, "sigma = 0.5\ngamma = 1.5005")).unwrap();
+    let message = refused(at, &["plan", "c.toml"]);
+    assert_plain(&message);
+    assert!(!message.contains("\nbake  nothing"), "{message}");
+    assert_plain(&refused(at, &["plan", &format!("{ODD}.toml")]));
+
+    // Warnings and notes.
+    let gltf = format!(
+        "{{\"asset\": {{\"version\": \"2.0\"}}, \"images\": [{{\"uri\": {0}}}], \
+         \"textures\": [{{\"source\": 0}}], \"materials\": [{{\"name\": {0}, \"pbrMetallicRoughness\": \
+         {{\"metallicRoughnessTexture\": {{\"index\": 0}}}}, \"extensions\": {{\"KHR_materials_sheen\": {{}}}}}}]}}",
+        quoted(&fake)
+    );
+    std::fs::write(at.join("d.gltf"), gltf).unwrap();
+    for args in [&["plan", "d.gltf"][..], &["bake", "d.gltf", "--out", "more"]] {
+        let output = run(at, args);
+        assert_eq!(output.status.code(), Some(0));
+        let messages = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            messages.contains("warning: ") && !messages.contains("\nbake  nothing"),
+            "{messages}"
+        );
+        assert_plain(&messages);
+        assert_plain(&String::from_utf8(output.stdout).unwrap());
+    }
+}

@@ -5,8 +5,9 @@ use glam::Vec3;
 use microfacet_sampler::axis::{HalfTangent, Rational};
 use microfacet_sampler::internals::seal;
 use microfacet_sampler::{
-    Axis, Ggx, Interpolation, Kind, LoadError, Lobe, Mapping, Masking, MicrofacetDistribution,
-    Precision, Provenance, Skew, Subject, Table, Tables, VERSION, encode,
+    Axis, Covered, FresnelEntry, Ggx, Interpolation, Kind, LoadError, Lobe, LobeEntry, Mapping,
+    Masking, MaterialEntry, MicrofacetDistribution, Precision, Provenance, Reflectance, Side, Skew,
+    Subject, Table, Tables, VERSION, encode,
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {
@@ -61,9 +62,31 @@ fn small_tables() -> Vec<Table> {
     ]
 }
 
+/// A material of each form, with numbers that tell the fields apart.
+fn materials() -> Vec<MaterialEntry> {
+    let material = |name: &str, sigma: [[f64; 2]; 2], s: [f64; 2], fresnel: FresnelEntry| {
+        let (name, fresnel) = (name.into(), Some(fresnel));
+        let (distribution, theta, masking) = (String::new(), None, None);
+        MaterialEntry { name, sigma, s, distribution, theta, masking, fresnel }
+    };
+    let [tilted, metal] = [[[0.25; 2], [0.375; 2]], [[0.0, 0.5], [0.125, 0.625]]];
+    let conductor = FresnelEntry::Conductor { eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
+    let range = FresnelEntry::Dielectrics { min: 1.25, max: Some(2.5) };
+    vec![
+        MaterialEntry {
+            theta: Some([0.1, -0.2, 0.5]),
+            ..material("tilted", tilted, [0.75; 2], FresnelEntry::Schlick(0.04))
+        },
+        material("metal", metal, [0.0, 1.5], conductor),
+        material("pane", [[0.5; 2]; 2], [1.0; 2], FresnelEntry::Dielectric(1.75)),
+        material("panes", [[0.5; 2]; 2], [1.0; 2], range),
+    ]
+}
+
 fn small_file() -> Vec<u8> {
-    encode(&Provenance { generator: "test".into(), ..Provenance::default() }, &small_tables())
-        .unwrap()
+    let materials = materials();
+    let provenance = Provenance { generator: "test".into(), materials, ..Provenance::default() };
+    encode(&provenance, &small_tables()).unwrap()
 }
 
 #[test]
@@ -167,6 +190,94 @@ fn lying_headers_are_refused_by_name() {
     }
     // The forgery itself loads.
     assert!(Tables::from_bytes(&forge("microfacet-tables", "microfacet-tables")).is_ok());
+}
+
+#[test]
+fn lying_descriptions_of_materials_and_tables_are_refused_by_name() {
+    let metal = r#"\"sigma\":[[0.0,0.5],[0.125,0.625]],\"s\":[0.0,1.5]"#;
+    let tilted = r#"\"sigma\":[[0.25,0.25],[0.375,0.375]],\"s\":[0.75,0.75]"#;
+    let theta = r#"\"theta\":[0.1,-0.2,0.5]"#;
+    let covers = r#"\"covers\":{\"s\":[0.0,1.9]}"#;
+    let lies = [
+        // Materials.
+        (metal, r#"\"sigma\":[[0.5,0.0],[0.1,0.6]],\"s\":[0.0,1.5]"#, "`metal`: sigma = [0.5, 0]"),
+        (metal, r#"\"sigma\":[[0.0,0.5],[0.6,0.1]],\"s\":[0.0,1.5]"#, "sigma = [0.6, 0.1]"),
+        (metal, r#"\"sigma\":[[-0.1,0.5],[0.1,0.6]],\"s\":[0.0,1.5]"#, "sigma = [-0.1, 0.5]"),
+        (metal, r#"\"sigma\":[[0.0,1e999],[0.1,0.6]],\"s\":[0.0,1.5]"#, "out of range"),
+        (metal, r#"\"sigma\":[[0.0,null],[0.1,0.6]],\"s\":[0.0,1.5]"#, "null"),
+        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[1.5,0.0]"#, "s = [1.5, 0]"),
+        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[-0.1,1.5]"#, "s = [-0.1, 1.5]"),
+        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[0.0,2.0]"#, "s = [0, 2]"),
+        (r#"\"name\":\"pane\""#, r#"\"name\":\"metal\""#, "`metal`: named twice"),
+        (tilted, r#"\"sigma\":[[0.2,0.3],[0.3,0.3]],\"s\":[0.7,0.7]"#, "`tilted`: theta is for"),
+        (tilted, r#"\"sigma\":[[0.2,0.2],[0.3,0.3]],\"s\":[0.7,0.8]"#, "`tilted`: theta is for"),
+        (tilted, r#"\"sigma\":[[0.0,0.0],[0.3,0.3]],\"s\":[0.7,0.7]"#, "`tilted`: theta"),
+        (theta, r#"\"theta\":[0.1,-0.2,0.5],\"distribution\":\"gtr:1,2\""#, "theta is for"),
+        (r#"{\"schlick\":0.04}"#, r#"{\"schlick\":1.04}"#, "schlick = 1.04"),
+        (r#"\"eta\":[0.2,"#, r#"\"eta\":[0.0,"#, "eta must be more than 0"),
+        (r#"\"k\":[3.9,"#, r#"\"k\":[-3.9,"#, "k at least 0"),
+        (r#"{\"dielectric\":1.75}"#, r#"{\"dielectric\":-1.75}"#, "dielectric = -1.75"),
+        (r#"\"min\":1.25"#, r#"\"min\":0.25"#, "[0.25, 2.5]"),
+        (r#"\"min\":1.25"#, r#"\"min\":3.0"#, "[3, 2.5]"),
+        // Tables.
+        (covers, r#"\"covers\":{\"s\":[1.9,0.0]}"#, "covers: s = [1.9, 0]"),
+        (covers, r#"\"covers\":{\"s\":[-1.0,1.9]}"#, "covers: s = [-1, 1.9]"),
+        (covers, r#"\"covers\":{\"s\":[0.0,2.0]}"#, "covers: s = [0, 2]"),
+        (covers, r#"\"covers\":{\"s\":[0.0,1.9],\"sigma\":[2.0,1.0]}"#, "sigma = [2, 1]"),
+        (r#"\"lobe\":\"family\""#, r#"\"lobe\":{\"distribution\":\"gtr:1,2\"}"#, "not of the lobe"),
+        (r#"\"g1_max_error\":0.5"#, r#"\"g1_max_error\":-0.5"#, "`g1_max_error`"),
+    ];
+    for (from, to, part) in lies {
+        let error = Tables::from_bytes(&forge(from, to)).expect_err(to).to_string();
+        assert!(error.contains(part), "{to}: {error}");
+    }
+}
+
+#[test]
+fn what_would_be_refused_is_not_written() {
+    let first = |change: fn(&mut MaterialEntry)| {
+        let mut materials = materials();
+        change(&mut materials[0]);
+        encode(&Provenance { materials, ..Provenance::default() }, &small_tables())
+            .unwrap_err()
+            .to_string()
+    };
+    for why in [
+        first(|material| material.sigma[0] = [f64::NAN; 2]),
+        first(|material| material.sigma[1][1] = f64::INFINITY),
+        first(|material| material.s[0] = f64::NAN),
+        first(|material| material.theta = Some([f64::NAN; 3])),
+        first(|material| material.fresnel = Some(FresnelEntry::Schlick(f64::NAN))),
+    ] {
+        assert!(why.contains("`tilted`"), "{why}");
+    }
+}
+
+#[test]
+fn an_albedo_of_what_cannot_be_is_refused() {
+    let refused = |lobe: LobeEntry, reflectance: Reflectance, part: &str| {
+        let (masking, covers) = (Some(Masking::Uncorrelated), None);
+        let subject = Subject { lobe, masking, reflectance: Some(reflectance), covers };
+        let table = Table { kind: Kind::Albedo, subject, ..small_tables().remove(0) };
+        let why = table.validate().unwrap_err().to_string();
+        assert!(why.contains(part), "{why}");
+    };
+    let (sigma, theta, s) = ([0.3, -0.3], [0.1, f64::NAN, 0.0], 2.0);
+    let moments = Reflectance::Moments;
+    refused(LobeEntry::StudentT { sigma, s: 1.0 }, moments, "sigma = [0.3, -0.3]");
+    refused(LobeEntry::StudentT { sigma: [0.3; 2], s }, moments, "s = [2, 2]");
+    refused(LobeEntry::Ellipsoid { sigma, theta: [0.1; 3], s: 1.0 }, moments, "sigma");
+    refused(LobeEntry::Ellipsoid { sigma: [0.3; 2], theta, s: 1.0 }, moments, "NaN");
+    refused(LobeEntry::Distribution(String::new()), moments, "without a label");
+    let metal = Reflectance::Conductor { eta: [0.2, -0.9, 1.1], k: [3.9; 3] };
+    refused(LobeEntry::Family, metal, "eta must be more than 0");
+    for (min, max) in [(0.5, None), (2.0, Some(1.5)), (f64::NAN, None), (1.5, Some(f64::NAN))] {
+        let pane = Reflectance::Dielectric { side: Side::Thin, min, max };
+        refused(LobeEntry::Family, pane, "indices of refraction");
+    }
+    let mut table = small_tables().remove(0);
+    table.subject.covers = Some(Covered { s: [0.0, f64::NAN], sigma: None });
+    assert!(table.validate().is_err());
 }
 
 /// There are as many values as the axes then have, so that only the mapping is wrong.

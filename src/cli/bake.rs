@@ -15,7 +15,7 @@ use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::Table;
 
 use super::request::Request;
-use super::{Done, Outcome, print, print_json, progress};
+use super::{Done, Outcome, escape, print, print_json, progress, report};
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
@@ -116,7 +116,7 @@ pub(super) fn run(args: Args) -> Outcome {
     let scene = args.recipe.as_deref().map(scene::load).transpose()?;
     let plan = match &scene {
         Some(scene) => {
-            scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+            scene.warnings.iter().for_each(|warning| report("warning", warning));
             report_ignored(scene);
             args.request.plan(scene, args.max_error)?
         }
@@ -139,8 +139,11 @@ pub(super) fn run(args: Args) -> Outcome {
     let result = bake_with(&plan, args.target(), settings)?;
     bar.finish_and_clear();
     if let Some(why) = &result.cache_error {
-        eprintln!(
-            "warning: finished tables are not kept: {why}; name a folder with --cache, or use --no-cache"
+        report(
+            "warning",
+            format!(
+                "finished tables are not kept: {why}; name a folder with --cache, or use --no-cache"
+            ),
         );
     }
     let formats: Vec<Format> = args
@@ -163,7 +166,7 @@ pub(super) fn run(args: Args) -> Outcome {
 
 fn report_ignored(scene: &Scene) {
     for ignored in &scene.ignored {
-        eprintln!("note: {ignored}");
+        report("note", ignored);
     }
 }
 
@@ -194,8 +197,11 @@ fn summary(result: &Baked, plan: &Plan, written: &[Written], seconds: f64) -> St
         let axes: Vec<String> =
             table.axes.iter().map(|axis| format!("{} {}", axis.name, axis.len())).collect();
         let (axes, precision) = (axes.join(" x "), format!("{:?}", table.precision).to_lowercase());
-        text +=
-            &format!("{:width$}  {axes:34} {precision}  {}\n", table.name, largest_error(table));
+        text += &format!(
+            "{:width$}  {axes:34} {precision}  {}\n",
+            escape::line(&table.name),
+            largest_error(table)
+        );
     }
     for file in written {
         text += &format!("{} ({} bytes)\n", file.path.display(), file.bytes);

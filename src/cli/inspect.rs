@@ -12,7 +12,7 @@ use microfacet_sampler::internals::describe;
 use microfacet_sampler::{Axis, Covered, Interpolation, LobeEntry, Subject, Table};
 
 use super::bake::largest_error;
-use super::{Done, Outcome, print, print_json};
+use super::{Done, Outcome, escape, print, print_json};
 
 /// Show axes, ranges, sizes, metadata and certificates of a table file.
 #[derive(clap::Args)]
@@ -36,10 +36,12 @@ pub(super) fn run(args: Args) -> Outcome {
     let origin = set.provenance();
     let mut text = format!(
         "baked by {} (numerics {}), {}\n",
-        origin.generator, origin.numerics, origin.license
+        escape::line(&origin.generator),
+        origin.numerics,
+        escape::line(&origin.license)
     );
     for material in &origin.materials {
-        text += &format!("material \"{}\"\n", material.name);
+        text += &format!("material \"{}\"\n", escape::line(&material.name));
     }
     for table in set.tables() {
         text += &describe_table(table);
@@ -53,10 +55,14 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     text += "\nconventions:\n";
     for (key, value) in &origin.conventions {
-        text += &format!("  {key}: {value}\n");
+        text += &format!("  {}: {}\n", escape::line(key), escape::line(value));
     }
     if !origin.recipe.is_empty() {
-        text += &format!("\nrecipe:\n{}", origin.recipe);
+        // Indented, so that no line of it passes for one of ours.
+        text += "\nrecipe:\n";
+        for line in origin.recipe.lines() {
+            text += &format!("  {line}\n");
+        }
     }
     print(&text)?;
     Ok(Done::Ok)
@@ -65,7 +71,7 @@ pub(super) fn run(args: Args) -> Outcome {
 fn describe_table(table: &Table) -> String {
     let mut text = format!(
         "\n{} ({}), {:?}, {} values of {:?}\n",
-        table.name,
+        escape::line(&table.name),
         table.kind.name(),
         table.shape(),
         table.values.len(),
@@ -82,7 +88,7 @@ fn describe_table(table: &Table) -> String {
         );
     }
     for (key, value) in &table.certificate {
-        text += &format!("    {key} {value}\n");
+        text += &format!("    {} {value}\n", escape::line(key));
     }
     text
 }
@@ -105,7 +111,7 @@ fn describe_subject(Subject { lobe, masking, reflectance, covers }: &Subject) ->
         parts.push(format!("gamma {} to {}", short(gamma_of_s(*high)), short(gamma_of_s(*low))));
         parts.extend(sigma.map(|[min, max]| format!("sigma {min} to {max}")));
     }
-    format!("of {}", parts.join("; "))
+    format!("of {}", escape::line(&parts.join("; ")))
 }
 
 fn describe_axis(axis: &Axis) -> String {

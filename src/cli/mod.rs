@@ -2,6 +2,7 @@
 
 mod bake;
 mod convert;
+mod escape;
 mod fit;
 mod furnace;
 mod inspect;
@@ -91,14 +92,25 @@ pub(crate) fn main() -> ExitCode {
         Ok(Done::Ok) => ExitCode::SUCCESS,
         Ok(Done::Rejected) => ExitCode::from(1),
         Err(Failure(message)) => {
-            eprintln!("error: {message}");
+            // Further lines are indented, so that none of them passes for a message of ours.
+            eprintln!("error: {}", escape::lines(&message).replace('\n', "\n    "));
             ExitCode::from(2)
         }
     }
 }
 
-/// Writes to standard output; a reader that has closed the pipe (`| head`) is no error.
+/// Writes a line to standard error: a warning or a note, as `kind` says.
+fn report(kind: &str, message: impl Display) {
+    eprintln!("{kind}: {}", escape::line(&message.to_string()));
+}
+
+/// Writes a text for people to standard output.
 fn print(text: &str) -> Result<(), Failure> {
+    write(&escape::lines(text))
+}
+
+/// Writes to standard output; a reader that has closed the pipe (`| head`) is no error.
+fn write(text: &str) -> Result<(), Failure> {
     match io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
@@ -107,7 +119,7 @@ fn print(text: &str) -> Result<(), Failure> {
 
 /// Prints a value as JSON.
 fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
-    print(&format!("{value:#}\n"))
+    write(&escape::json(&format!("{value:#}\n")))
 }
 
 /// A progress bar of `steps`, on a terminal only.

@@ -18,7 +18,7 @@ use microfacet_bake::table_spec::{TableSpec, general_set};
 use microfacet_sampler::Kind;
 
 use super::request::Request;
-use super::{Done, Outcome, print, print_json};
+use super::{Done, Outcome, escape, print, print_json, report};
 
 /// Show what must be baked for a scene and what not, with bytes and seconds.
 #[derive(clap::Args)]
@@ -54,7 +54,7 @@ pub(super) fn run(args: Args) -> Outcome {
     let start = Instant::now();
     let scene = scene::load(&args.scene)?;
     let reading = start.elapsed();
-    scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    scene.warnings.iter().for_each(|warning| report("warning", warning));
     let start = Instant::now();
     let plan = args.request.plan(&scene, None)?;
     let general = general_set(args.request.quality(), args.request.precision());
@@ -167,7 +167,7 @@ fn domain(Domain { gamma, sigma }: Domain) -> String {
 fn lobe(lobe: &AlbedoLobe) -> String {
     match lobe {
         AlbedoLobe::Family(covered) => domain(*covered),
-        other => other.label().replace('_', " "),
+        other => escape::line(&other.label().replace('_', " ")).into(),
     }
 }
 
@@ -175,7 +175,8 @@ fn lobe(lobe: &AlbedoLobe) -> String {
 fn list<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 4;
     let more = names.len().saturating_sub(SHOWN);
-    let mut shown: Vec<String> = names.take(SHOWN).map(|name| format!("\"{name}\"")).collect();
+    let mut shown: Vec<String> =
+        names.take(SHOWN).map(|name| format!("\"{}\"", escape::line(name))).collect();
     if more > 0 {
         shown.push(format!("{more} more"));
     }
@@ -269,7 +270,7 @@ impl Report<'_> {
         for (distribution, cost) in self.plan.distributions.iter().zip(&self.distributions) {
             text += &format!(
                 "bake  {:22} 4 tables, {} bytes, about {:.3} s, for {}\n",
-                distribution.label(),
+                escape::line(&distribution.label()),
                 cost.bytes,
                 cost.seconds,
                 list(self.wearers(distribution).into_iter())

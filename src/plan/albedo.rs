@@ -87,6 +87,10 @@ struct Want {
     masking: Masking,
 }
 
+/// More tables of albedos, of different lobes or reflectances, are not planned: each takes seconds
+/// to bake, and the time of planning grows with the square of their number.
+const MAX_ALBEDOS: usize = 1000;
+
 /// The required albedos of a scene, and one verdict for each of its materials.
 pub(super) fn required(
     scene: &Scene,
@@ -100,17 +104,25 @@ pub(super) fn required(
     let mut needs: Vec<RequiredAlbedo> = Vec::new();
     let mut add = |lobe: AlbedoLobe, reflectance, masking| {
         // Both forms in one table group cost little more than one.
-        match needs.iter_mut().find(|need| need.lobe == lobe && need.reflectance == reflectance) {
-            Some(need) if need.maskings.contains(&masking) => {}
-            Some(need) => need.maskings.push(masking),
+        let same = |need: &RequiredAlbedo| need.lobe == lobe && need.reflectance == reflectance;
+        match needs.iter().position(same) {
+            Some(i) if needs[i].maskings.contains(&masking) => {}
+            Some(i) => needs[i].maskings.push(masking),
+            None if needs.len() == MAX_ALBEDOS => {
+                return Err(NotCovered::Albedos { most: MAX_ALBEDOS });
+            }
             None => needs.push(RequiredAlbedo { lobe, reflectance, maskings: vec![masking] }),
         }
+        Ok(())
     };
     let all: Vec<&Want> = wants.iter().flatten().flatten().collect();
     let mut reflectances: Vec<Reflectance> = Vec::new();
     for want in &all {
         if !reflectances.contains(&want.reflectance) {
             reflectances.push(want.reflectance);
+        }
+        if reflectances.len() > MAX_ALBEDOS {
+            return Err(NotCovered::Albedos { most: MAX_ALBEDOS });
         }
     }
     // The moments first, since they serve most materials.
@@ -125,10 +137,10 @@ pub(super) fn required(
             let domains = family.into_iter().filter_map(|lobe| {
                 if let AlbedoLobe::Family(domain) = lobe { Some(*domain) } else { None }
             });
-            for domain in joined(domains.collect()) {
-                add(AlbedoLobe::Family(domain), reflectance, masking);
+            let domains = joined(domains.collect()).into_iter().map(AlbedoLobe::Family);
+            for lobe in domains.chain(own.into_iter().cloned()) {
+                add(lobe, reflectance, masking)?;
             }
-            own.into_iter().for_each(|lobe| add(lobe.clone(), reflectance, masking));
         }
     }
     let serving =

@@ -291,6 +291,11 @@ pub enum NotCovered {
         /// Its σ.
         sigma: f64,
     },
+    /// More tables of albedos than are planned.
+    Albedos {
+        /// How many are.
+        most: usize,
+    },
 }
 
 impl fmt::Display for NotCovered {
@@ -310,6 +315,10 @@ impl fmt::Display for NotCovered {
                 f,
                 "material \"{material}\": sigma = {sigma} is above {SIGMA_MAX}, the largest roughness that albedo tables cover; lower \
                  it, remove its `fresnel`, or use --no-albedo"
+            ),
+            Self::Albedos { most } => write!(
+                f,
+                "the materials ask for albedo tables of more than {most} lobes and reflectances; split the scene, or use --no-albedo"
             ),
         }
     }

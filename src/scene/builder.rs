@@ -1,11 +1,11 @@
 //! The scene under construction, shared by the importers.
 
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
-use super::texture::{Channel, Encoding, Textures};
-use super::{Interval, Place, Scene, SceneError};
+use super::texture::{self, Channel, Encoding, Textures};
+use super::{Interval, Place, Scene, SceneError, limits};
 
 /// γ of GGX (Trowbridge-Reitz).
 pub(super) const GGX: Interval = Interval::point(2.0);
@@ -52,7 +52,7 @@ pub(super) struct Builder {
     /// How often each name was requested.
     names: HashMap<String, u32>,
     warned: HashSet<String>,
-    textures: Textures,
+    textures: Textures<PathBuf>,
 }
 
 impl Builder {
@@ -70,7 +70,23 @@ impl Builder {
         self.scene
     }
 
-    pub(super) fn add(&mut self, name: &str, place: &Place, used: bool, lobe: Lobe) {
+    /// Adds a lobe of the material `name`.
+    pub(super) fn add(
+        &mut self,
+        name: &str,
+        place: &Place,
+        used: bool,
+        lobe: Lobe,
+    ) -> Result<(), SceneError> {
+        self.check(name, place)?;
+        for Interval { min, max } in [lobe.roughness.x(), lobe.roughness.y()] {
+            if !(min >= 0.0 && max < f64::INFINITY) {
+                return Err(place.invalid(format!(
+                    "the roughness of \"{name}\" comes to [{min}, {max}]; it must be finite and 0 or \
+                     more: check the numbers that it is computed from"
+                )));
+            }
+        }
         let name = match lobe.name {
             Some(suffix) => format!("{name}.{suffix}"),
             None => name.to_owned(),
@@ -87,15 +103,43 @@ impl Builder {
             used,
         };
         self.scene.materials.push(material);
+        Ok(())
     }
 
-    pub(super) fn ignore(&mut self, name: &str, kind: &str, place: &Place, reason: &'static str) {
+    /// Lists a material for which there is nothing to bake.
+    pub(super) fn ignore(
+        &mut self,
+        name: &str,
+        kind: &str,
+        place: &Place,
+        reason: &'static str,
+    ) -> Result<(), SceneError> {
+        self.check(name, place)?;
         self.scene.ignored.push(Ignored {
             name: name.to_owned(),
             kind: kind.to_owned(),
             reason,
             place: place.clone(),
         });
+        Ok(())
+    }
+
+    /// Checks that one more material, of this name, stays within the limits.
+    fn check(&self, name: &str, place: &Place) -> Result<(), SceneError> {
+        if self.scene.materials.len() + self.scene.ignored.len() == limits::MATERIALS {
+            return Err(place.invalid(format!(
+                "the scene has more than {} materials; split it",
+                limits::MATERIALS
+            )));
+        }
+        if name.len() > limits::NAME {
+            return Err(place.invalid(format!(
+                "the name of a material has {} bytes, and at most {} are read; shorten it",
+                name.len(),
+                limits::NAME
+            )));
+        }
+        Ok(())
     }
 
     pub(super) fn warn(&mut self, place: &Place, message: impl AsRef<str>) {
@@ -115,7 +159,7 @@ impl Builder {
         place: &Place,
     ) -> Interval {
         self.textures
-            .range(file, channel, encoding)
+            .range(file.to_owned(), channel, encoding, |file| texture::file(file))
             .unwrap_or_else(|error| self.unread(&file.display().to_string(), &error, place))
     }
 

@@ -123,13 +123,22 @@ impl std::error::Error for SceneError {
 /// The text "; did you mean `x`?" for the candidate closest to `word`, if one is close enough; else
 /// empty.
 ///
-/// Close enough is one edit in three letters; a transposition counts as one edit.
+/// Close enough is one edit in three letters; a transposition counts as one edit. The time grows
+/// with the product of the lengths: words longer than names, and candidates after many, are left
+/// out.
 pub(super) fn did_you_mean(word: &str, candidates: &[&str]) -> String {
     let distance = |candidate: &str| {
         strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase())
     };
+    const LONGEST: usize = 64;
+    const MOST: usize = 10_000;
+    if word.len() > LONGEST {
+        return String::new();
+    }
     candidates
         .iter()
+        .filter(|candidate| candidate.len() <= LONGEST)
+        .take(MOST)
         .map(|&candidate| (distance(candidate), candidate))
         .filter(|&(d, candidate)| 3 * d <= candidate.len().max(word.len()).max(3))
         .min_by_key(|&(d, _)| d)
@@ -157,5 +166,9 @@ mod tests {
         assert_eq!(did_you_mean("Sigma", &keys), "; did you mean `sigma`?");
         assert_eq!(did_you_mean("frensel", &keys), "; did you mean `fresnel`?");
         assert_eq!(did_you_mean("colour", &keys), "");
+        // The distance of these would take a terabyte.
+        let long = "a".repeat(400_000);
+        assert_eq!(did_you_mean(&long, &[&long]), "");
+        assert_eq!(did_you_mean("sigmo", &[&long, "sigma"]), "; did you mean `sigma`?");
     }
 }

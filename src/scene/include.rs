@@ -1,23 +1,94 @@
-//! Included files, and checks for circular inclusion.
+//! Included files: checks for circular inclusion, and a limit for all of them together, since a few
+//! files that include each other twice amount to any number.
 
+use std::cell::Cell;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
-use super::{Place, SceneError};
+use super::{Place, SceneError, limits};
+use crate::input;
 
 /// Deeper nesting than this is refused as a mistake.
 const MAX_DEPTH: usize = 64;
 
+/// What the files of a scene may still amount to, shared by their readers.
+#[derive(Clone)]
+pub(super) struct Budget {
+    limit: u64,
+    left: Rc<Cell<u64>>,
+}
+
+impl Budget {
+    pub(super) fn new(limit: u64) -> Self {
+        Self { limit, left: Rc::new(Cell::new(limit)) }
+    }
+
+    pub(super) fn left(&self) -> u64 {
+        self.left.get()
+    }
+
+    /// Takes a part of it; `false` if less is left.
+    pub(super) fn take(&self, part: u64) -> bool {
+        let left = self.left.get().checked_sub(part);
+        self.left.set(left.unwrap_or(0));
+        left.is_some()
+    }
+
+    /// Why bytes are refused.
+    fn spent(&self) -> String {
+        format!(
+            "the scene has more than {} MiB of text, with all that is included and substituted; \
+             load a file that has the materials alone",
+            self.limit >> 20
+        )
+    }
+}
+
+/// A reader that takes what it reads from a budget.
+pub(super) struct Metered<R> {
+    input: R,
+    budget: Budget,
+}
+
+impl<R: Read> Read for Metered<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.input.read(buffer)?;
+        if self.budget.take(count as u64) {
+            Ok(count)
+        } else {
+            Err(io::Error::new(io::ErrorKind::FileTooLarge, self.budget.spent()))
+        }
+    }
+}
+
 /// The files being read, from the scene's own to the innermost included one.
-#[derive(Default)]
 pub(super) struct Includes {
     open: Vec<PathBuf>,
+    /// How many were included so far.
+    count: usize,
+    /// Bytes of text.
+    text: Budget,
 }
 
 impl Includes {
+    /// For a scene of `limit` bytes in all.
+    pub(super) fn new(limit: u64) -> Self {
+        Self { open: Vec::new(), count: 0, text: Budget::new(limit) }
+    }
+
     /// Opens `file`, which `place` asks for. Each success must be followed by [`Self::leave`].
     ///
     /// Returns `false` if there is no such file.
     pub(super) fn enter(&mut self, file: &Path, place: &Place) -> Result<bool, SceneError> {
+        if self.count > limits::INCLUDES {
+            return Err(place.invalid(format!(
+                "the scene includes files more than {} times; include each once, and check for \
+                 files that include the same one twice",
+                limits::INCLUDES
+            )));
+        }
+        self.count += 1;
         let Ok(path) = file.canonicalize() else {
             return Ok(false);
         };
@@ -51,5 +122,40 @@ impl Includes {
     /// Closes the innermost file.
     pub(super) fn leave(&mut self) {
         self.open.pop();
+    }
+
+    /// The text of a file that `place` asks for.
+    pub(super) fn text(&self, file: &Path, place: &Place) -> Result<String, SceneError> {
+        let text = input::read_text(file, self.text.limit);
+        let text = text.map_err(|error| Place::file(file).io(error))?;
+        self.charge(text.len(), place)?;
+        Ok(text)
+    }
+
+    /// Takes bytes that `place` adds to the text from what may still be read.
+    pub(super) fn charge(&self, bytes: usize, place: &Place) -> Result<(), SceneError> {
+        if self.text.take(bytes as u64) { Ok(()) } else { Err(place.invalid(self.text.spent())) }
+    }
+
+    /// A reader of text that counts what it reads.
+    pub(super) fn metered<R: Read>(&self, input: R) -> Metered<R> {
+        Metered { input, budget: self.text.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readers_share_what_is_left() {
+        let includes = Includes::new(3 << 20);
+        let read = |count: u64| {
+            io::copy(&mut includes.metered(io::repeat(b' ').take(count)), &mut io::sink())
+        };
+        assert_eq!(read(2 << 20).unwrap(), 2 << 20);
+        let error = read(u64::MAX).unwrap_err().to_string();
+        assert!(error.contains("more than 3 MiB"), "{error}");
+        assert!(includes.charge(1, &Place::file(Path::new("a"))).is_err());
     }
 }

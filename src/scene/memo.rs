@@ -40,9 +40,21 @@ impl<K: Eq + Hash> Memo<K> {
         Ok(None)
     }
 
-    pub(super) fn end(&mut self, key: K, value: Interval) -> Interval {
+    /// Keeps a value that was computed for `place`; it must be finite.
+    pub(super) fn end(
+        &mut self,
+        key: K,
+        value: Interval,
+        place: &Place,
+    ) -> Result<Interval, SceneError> {
+        if !(value.min.is_finite() && value.max.is_finite()) {
+            return Err(place.invalid(format!(
+                "the values of this texture or node come to [{}, {}]; they must be finite",
+                value.min, value.max
+            )));
+        }
         self.depth -= 1;
         self.values.insert(key, Some(value));
-        value
+        Ok(value)
     }
 }

@@ -20,16 +20,21 @@
 //! [`Scene::ignored`]; they are not errors. A missing included file gives a warning too, since
 //! scenes often travel without their geometry; then every material counts as used.
 //!
+//! Scenes far larger than any that exist are refused, with the limit: reading ends within seconds
+//! and 1 GB of memory, whatever a file holds. Only regular files are read.
+//!
 //! [pbrt-v4]: https://pbrt.org/fileformat-v4
 //! [Mitsuba 3]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
 //! [glTF 2.0]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 //! [MaterialX]: https://materialx.org/Specification.html
 
 mod builder;
+mod cycle;
 mod error;
 mod gltf;
 mod include;
 mod interval;
+mod limits;
 mod material;
 mod materialx;
 mod memo;
@@ -39,12 +44,13 @@ mod recipe;
 mod texture;
 mod xml;
 
-use std::fs;
 use std::path::Path;
 
 pub use error::{Place, SceneError, SceneErrorKind};
 pub use interval::Interval;
 pub use material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
+
+use crate::input;
 
 /// The microfacet lobes of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -107,7 +113,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     match Path::new(&name).extension().and_then(|extension| extension.to_str()) {
         Some("toml") => {
             let place = Place::file(path);
-            let text = fs::read_to_string(path).map_err(|error| place.io(error))?;
+            let text = input::read_text(path, limits::RECIPE).map_err(|error| place.io(error))?;
             Scene::from_recipe(&text, path)
         }
         Some("pbrt") => pbrt::load(path),

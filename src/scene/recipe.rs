@@ -23,7 +23,7 @@
 //! anisotropic roughness may be ranges as well: `sigma = [{ min = 0.1, max = 0.2 }, 0.3]`.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 use std::ops::Range;
 use std::path::Path;
 
@@ -33,10 +33,13 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Lines, did_you_mean};
+use super::include::Budget;
+use super::{
+    Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, SceneError, limits,
+};
 use crate::distribution::{Distribution, DistributionKind, Named};
 use crate::fit::{Angles, read_csv};
-
-use super::{Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, SceneError};
+use crate::input;
 
 const MATERIAL_KEYS: [&str; 7] =
     ["name", "sigma", "gamma", "theta", "distribution", "fresnel", "masking"];
@@ -44,7 +47,10 @@ const FRESNEL_KEYS: [&str; 3] = ["schlick", "conductor", "dielectric"];
 
 /// Reads the materials of the recipe `text`, the content of `file`.
 pub(super) fn read(text: &str, file: &Path) -> Result<Vec<Material>, SceneError> {
-    Source { text, file, lines: Lines::new(file, text) }.materials()
+    let lines = Lines::new(file, text);
+    let (measured, distributions) =
+        (Budget::new(limits::MEASURED), Budget::new(limits::DISTRIBUTIONS));
+    Source { text, file, lines, measured, distributions }.materials()
 }
 
 /// Writes the recipe that [`read`] turns into the same materials.
@@ -121,6 +127,9 @@ struct Source<'a> {
     text: &'a str,
     file: &'a Path,
     lines: Lines,
+    /// Bytes of measured distributions.
+    measured: Budget,
+    distributions: Budget,
 }
 
 type Table<'a> = DeTable<'a>;
@@ -148,6 +157,13 @@ impl Source<'_> {
                 "the recipe has no materials; add at least one:\n\
                  [[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0",
             ));
+        }
+        if entries.len() > limits::MATERIALS {
+            return Err(Place::file(self.file).invalid(format!(
+                "the recipe has {} materials, and at most {} are read; split it",
+                entries.len(),
+                limits::MATERIALS
+            )));
         }
         let mut seen: HashMap<String, Place> = HashMap::new();
         entries
@@ -223,6 +239,12 @@ impl Source<'_> {
     /// The lobe of a material with a named distribution; as a Student-t if it is one.
     fn distribution(&self, table: &Table<'_>, value: &Value<'_>) -> Result<Lobe, SceneError> {
         let place = self.place(value.span());
+        if !self.distributions.take(1) {
+            return Err(place.invalid(format!(
+                "the recipe has more than {} materials with a `distribution`; split it",
+                limits::DISTRIBUTIONS
+            )));
+        }
         let common = ["name", "distribution", "fresnel", "masking"];
         let distribution = if let Some(name) = value.get_ref().as_str() {
             let kind = DistributionKind::by_name(name).map_err(|e| place.invalid(e.to_string()))?;
@@ -247,11 +269,15 @@ impl Source<'_> {
             let file = file.ok_or_else(|| place.invalid(forms))?;
             // Relative to the recipe's folder.
             let path = self.file.parent().unwrap_or(Path::new("")).join(file);
-            let input = std::fs::File::open(&path)
-                .map_err(|e| place.invalid(format!("{}: {e}", path.display())))?;
-            let measured = read_csv(input, Angles::Radians);
-            let measured =
-                measured.map_err(|e| place.invalid(format!("{}: {e}", path.display())))?;
+            let in_file = |why: &dyn Display| place.invalid(format!("{}: {why}", path.display()));
+            let bytes = input::read(&path, limits::MEASURED).map_err(|e| in_file(&e))?;
+            if !self.measured.take(bytes.len() as u64) {
+                return Err(place.invalid(format!(
+                    "the measured distributions of the recipe have more than {} MiB; split it",
+                    limits::MEASURED >> 20
+                )));
+            }
+            let measured = read_csv(&bytes[..], Angles::Radians).map_err(|e| in_file(&e))?;
             Distribution::Measured { file: file.to_owned(), table: measured }
         };
         let built = distribution.build().map_err(|e| place.invalid(e.to_string()))?;

@@ -1,12 +1,16 @@
 //! Ranges of the values in images.
 
 use std::collections::HashMap;
-use std::io::Cursor;
-use std::path::{Path, PathBuf};
+use std::collections::hash_map::Entry;
+use std::hash::Hash;
+use std::io::{self, Cursor};
+use std::path::Path;
 
-use image::{DynamicImage, ImageReader};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::Interval;
+use super::include::Budget;
+use super::{Interval, limits};
+use crate::input;
 
 /// The number of a pixel to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,50 +36,55 @@ pub(super) enum Encoding {
     Srgb,
 }
 
-/// Ranges of image files, each read once.
-#[derive(Default)]
-pub(super) struct Textures(HashMap<(PathBuf, Channel, Encoding), Result<Interval, String>>);
+/// Ranges of images, each read once, until they come to [`limits::IMAGES`].
+pub(super) struct Textures<K> {
+    ranges: HashMap<(K, Channel, Encoding), Result<Interval, String>>,
+    left: Budget,
+}
 
-impl Textures {
-    /// The smallest interval that holds the values of all pixels; filtering stays inside it.
-    ///
-    /// The error completes the sentence "texture x ...".
-    pub(super) fn range(
-        &mut self,
-        file: &Path,
-        channel: Channel,
-        encoding: Encoding,
-    ) -> Result<Interval, String> {
-        self.0
-            .entry((file.to_owned(), channel, encoding))
-            .or_insert_with(|| {
-                let image = ImageReader::open(file)
-                    .and_then(ImageReader::with_guessed_format)
-                    .map_err(|error| format!("cannot be read ({error})"))?;
-                range(image, channel, encoding)
-            })
-            .clone()
+impl<K> Default for Textures<K> {
+    fn default() -> Self {
+        Self { ranges: HashMap::new(), left: Budget::new(limits::IMAGES) }
     }
 }
 
-/// As [`Textures::range`], for an image file in memory.
-pub(super) fn range_of_bytes(
+impl<K: Eq + Hash> Textures<K> {
+    /// The smallest interval that holds the values of all pixels; filtering stays inside it.
+    ///
+    /// `read` gives the bytes of the image `key`. The error completes the sentence "texture x ...".
+    pub(super) fn range(
+        &mut self,
+        key: K,
+        channel: Channel,
+        encoding: Encoding,
+        read: impl FnOnce(&K) -> io::Result<Vec<u8>>,
+    ) -> Result<Interval, String> {
+        let left = &self.left;
+        match self.ranges.entry((key, channel, encoding)) {
+            Entry::Occupied(known) => known.get().clone(),
+            Entry::Vacant(place) => {
+                let range = read(&place.key().0)
+                    .map_err(|error| format!("cannot be read ({error})"))
+                    .and_then(|bytes| range(&bytes, channel, encoding, left));
+                place.insert(range).clone()
+            }
+        }
+    }
+}
+
+/// Reads an image file.
+pub(super) fn file(path: &Path) -> io::Result<Vec<u8>> {
+    input::read(path, limits::IMAGE_FILE)
+}
+
+/// As [`Textures::range`], for the bytes of an image.
+fn range(
     bytes: &[u8],
     channel: Channel,
     encoding: Encoding,
+    left: &Budget,
 ) -> Result<Interval, String> {
-    let image = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|error| format!("cannot be read ({error})"))?;
-    range(image, channel, encoding)
-}
-
-fn range<R: std::io::BufRead + std::io::Seek>(
-    image: ImageReader<R>,
-    channel: Channel,
-    encoding: Encoding,
-) -> Result<Interval, String> {
-    let image = image.decode().map_err(|error| format!("cannot be decoded ({error})"))?;
+    let image = decode(bytes, left)?;
     let stride = usize::from(image.color().channel_count());
     let pixels = Pixels { channel, stride };
     let decode = |x: f64| match encoding {
@@ -90,10 +99,37 @@ fn range<R: std::io::BufRead + std::io::Seek>(
         let table: Vec<f64> = (0..=u16::MAX).map(|i| decode(f64::from(i) / 65535.0)).collect();
         pixels.range(samples.samples, |x| table[usize::from(x)])
     } else {
-        let image = DynamicImage::from(image.to_rgba32f());
         let samples = image.as_flat_samples_f32().ok_or("has no samples")?;
-        Pixels { channel, stride: 4 }.range(samples.samples, f64::from)
+        pixels.range(samples.samples, f64::from)
     }
+}
+
+fn decode(bytes: &[u8], left: &Budget) -> Result<DynamicImage, String> {
+    let undecoded = |error| format!("cannot be decoded ({error})");
+    let mut image = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(|error| format!("cannot be read ({error})"))?;
+    // Decoders of other formats hold the pixels twice.
+    let copies = if image.format() == Some(ImageFormat::Png) { 1 } else { 2 };
+    let mut allowed = Limits::default();
+    allowed.max_alloc = Some(limits::IMAGE);
+    image.limits(allowed);
+    let decoder = image.into_decoder().map_err(undecoded)?;
+    let size = decoder.total_bytes();
+    if size.saturating_mul(copies) > limits::IMAGE {
+        let (width, height) = decoder.dimensions();
+        return Err(format!(
+            "has {width} x {height} pixels, which take more than {} MiB to decode",
+            limits::IMAGE >> 20
+        ));
+    }
+    if !left.take(size.max(bytes.len() as u64)) {
+        return Err(format!(
+            "is not read, since the images of the scene come to more than {} GiB",
+            limits::IMAGES >> 30
+        ));
+    }
+    DynamicImage::from_decoder(decoder).map_err(undecoded)
 }
 
 struct Pixels {
@@ -143,9 +179,13 @@ mod tests {
         bytes(&image.into(), ImageFormat::Png)
     }
 
+    fn read(bytes: &[u8], channel: Channel, encoding: Encoding) -> Result<Interval, String> {
+        super::range(bytes, channel, encoding, &Budget::new(limits::IMAGES))
+    }
+
     #[test]
     fn each_channel_has_its_own_range() {
-        let range = |channel| range_of_bytes(&png(), channel, Encoding::Linear).unwrap();
+        let range = |channel| read(&png(), channel, Encoding::Linear).unwrap();
         assert_eq!(range(Channel::Red), Interval::point(0.2));
         assert_eq!(range(Channel::Green), Interval { min: 0.4, max: 0.8 });
         assert_eq!(range(Channel::Blue), Interval::UNIT);
@@ -157,7 +197,7 @@ mod tests {
 
     #[test]
     fn srgb_is_decoded_where_it_is_meant() {
-        let range = range_of_bytes(&png(), Channel::Green, Encoding::Srgb).unwrap();
+        let range = read(&png(), Channel::Green, Encoding::Srgb).unwrap();
         // 102/255 and 204/255 by the definition of sRGB.
         assert!((range.min - 0.132_868_321_553_817_97).abs() < 1e-15);
         assert!((range.max - 0.603_827_338_855_337_7).abs() < 1e-15);
@@ -168,18 +208,47 @@ mod tests {
         let mut image = Rgb32FImage::from_pixel(2, 2, Rgb([0.25, 0.5, 4.0]));
         image.put_pixel(0, 1, Rgb([0.75, 0.5, 4.0]));
         let exr = bytes(&image.into(), ImageFormat::OpenExr);
-        let range = |channel| range_of_bytes(&exr, channel, Encoding::Srgb).unwrap();
+        let range = |channel| read(&exr, channel, Encoding::Srgb).unwrap();
         assert_eq!(range(Channel::Red), Interval { min: 0.25, max: 0.75 });
         assert_eq!(range(Channel::Blue), Interval::point(4.0));
     }
 
     #[test]
     fn what_is_no_image_is_said_to_be_none() {
-        let error = range_of_bytes(b"no image", Channel::Red, Encoding::Linear).unwrap_err();
+        let error = read(b"no image", Channel::Red, Encoding::Linear).unwrap_err();
         assert!(error.contains("cannot be decoded"), "{error}");
-        let mut textures = Textures::default();
-        let error =
-            textures.range(Path::new("absent.png"), Channel::Red, Encoding::Linear).unwrap_err();
+        let error = Textures::default()
+            .range(Path::new("absent.png"), Channel::Red, Encoding::Linear, |path| file(path))
+            .unwrap_err();
         assert!(error.contains("cannot be read"), "{error}");
+    }
+
+    #[test]
+    fn an_image_is_read_once_and_only_while_the_scene_may_have_more() {
+        let mut textures = Textures { ranges: HashMap::new(), left: Budget::new(200) };
+        let mut range =
+            |key: u32| textures.range(key, Channel::Red, Encoding::Linear, |_| Ok(png()));
+        assert!(png().len() < 200);
+        for _ in 0..9 {
+            assert!(range(1).is_ok());
+        }
+        let error = (2..9).find_map(|key| range(key).err()).unwrap();
+        assert!(error.contains("come to more than"), "{error}");
+    }
+
+    #[test]
+    fn the_size_of_an_image_is_known_before_it_is_decoded() {
+        // A PNG that claims 100 000 by 100 000 pixels, and has none.
+        let mut bytes = png();
+        bytes[16..24].copy_from_slice(&[0, 1, 0x86, 0xA0, 0, 1, 0x86, 0xA0]);
+        let sum = crc32(&bytes[12..29]).to_be_bytes();
+        bytes[29..33].copy_from_slice(&sum);
+        let error = read(&bytes, Channel::Red, Encoding::Linear).unwrap_err();
+        assert!(error.contains("100000 x 100000 pixels"), "{error}");
+    }
+
+    fn crc32(bytes: &[u8]) -> u32 {
+        let step = |sum: u32, _| (sum >> 1) ^ (0xEDB8_8320 * (sum & 1));
+        !bytes.iter().fold(!0, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), step))
     }
 }

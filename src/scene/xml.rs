@@ -1,16 +1,17 @@
 //! XML as a tree of owned elements with their places, shared by the readers of Mitsuba and
 //! MaterialX.
 
-use std::fs;
+use std::hash::{Hash, Hasher};
 use std::path::Path;
 
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Node, ParsingOptions};
 
 use super::error::Lines;
-use super::{Place, SceneError};
+use super::include::{Budget, Includes};
+use super::{Place, SceneError, limits};
 
 /// Deeper nesting than this is refused as a mistake, which bounds the stack for the recursion.
-const MAX_DEPTH: usize = 256;
+pub(super) const MAX_DEPTH: usize = 256;
 
 /// An element, without text, comments and namespaces.
 #[derive(Debug)]
@@ -37,6 +38,11 @@ impl Element {
         self.children.iter().find(|child| child.attribute("name") == Some(name))
     }
 
+    /// The element as a key, distinguished by its address.
+    pub(super) fn key(&self) -> Key<'_> {
+        Key(self)
+    }
+
     /// Calls `visit` for this element and all its descendants, in document order.
     pub(super) fn walk<'a>(&'a self, visit: &mut impl FnMut(&'a Element)) {
         visit(self);
@@ -46,23 +52,95 @@ impl Element {
     }
 }
 
-/// Reads the root element of an XML file.
-pub(super) fn read(file: &Path) -> Result<Element, SceneError> {
-    let place = Place::file(file);
-    let text = fs::read_to_string(file).map_err(|error| place.io(error))?;
-    let document = Document::parse(&text).map_err(|error| {
-        let at = error.pos();
-        Place { line: Some(at.row), column: Some(at.col), ..place }
-            // The message has the place before it already.
-            .syntax(error.to_string().trim_end_matches(&format!(" at {at}")))
-    })?;
-    element(document.root_element(), &Lines::new(file, &text), 0)
+/// An element that equals itself alone.
+#[derive(Clone, Copy)]
+pub(super) struct Key<'a>(pub(super) &'a Element);
+
+impl PartialEq for Key<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.0, other.0)
+    }
+}
+
+impl Eq for Key<'_> {}
+
+impl Hash for Key<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        std::ptr::from_ref(self.0).hash(state);
+    }
+}
+
+/// Reads XML files of one scene, which share the limits of size.
+pub(super) struct Reader {
+    pub(super) includes: Includes,
+    nodes: Budget,
+}
+
+impl Reader {
+    pub(super) fn new() -> Self {
+        Self { includes: Includes::new(limits::XML), nodes: Budget::new(limits::XML_NODES) }
+    }
+
+    /// Reads the root element of the scene's own file.
+    pub(super) fn open(&mut self, file: &Path) -> Result<Element, SceneError> {
+        let place = Place::file(file);
+        self.includes.enter(file, &place)?;
+        self.read(file, &place)
+    }
+
+    /// Reads the root element of a file that `place` asks for.
+    pub(super) fn read(&mut self, file: &Path, place: &Place) -> Result<Element, SceneError> {
+        let text = self.includes.text(file, place)?;
+        let lines = Lines::new(file, &text);
+        check_attributes(&text, &lines)?;
+        let nodes_limit = u32::try_from(self.nodes.left()).unwrap_or(u32::MAX);
+        let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
+        let document = Document::parse_with_options(&text, options).map_err(|error| {
+            if matches!(error, roxmltree::Error::NodesLimitReached) {
+                return Place::file(file).invalid(format!(
+                    "the scene has more than {} elements, comments and texts; load a file that has \
+                     the materials alone",
+                    limits::XML_NODES
+                ));
+            }
+            let at = error.pos();
+            Place { line: Some(at.row), column: Some(at.col), ..Place::file(file) }
+                // The message has the place before it already.
+                .syntax(error.to_string().trim_end_matches(&format!(" at {at}")))
+        })?;
+        self.nodes.take(document.descendants().count() as u64);
+        element(document.root_element(), &lines, 0)
+    }
+}
+
+/// Checks what the parser takes quadratic time for.
+fn check_attributes(text: &str, lines: &Lines) -> Result<(), SceneError> {
+    // No attribute holds this character, so that a piece has one element at most; each of its
+    // attributes has two quotes.
+    let mut start = 0;
+    for piece in text.split('<') {
+        let quotes = piece.bytes().filter(|byte| matches!(byte, b'"' | b'\'')).count();
+        if quotes > 2 * limits::XML_ATTRIBUTES {
+            return Err(lines.place(start).invalid(format!(
+                "there are {quotes} quotes before the next \"<\"; an element may have {} attributes",
+                limits::XML_ATTRIBUTES
+            )));
+        }
+        start += piece.len() + 1;
+    }
+    match text.match_indices("xmlns").nth(limits::XML_NAMESPACES) {
+        Some((at, _)) => Err(lines.place(at).invalid(format!(
+            "the file declares more than {} namespaces; declare each once",
+            limits::XML_NAMESPACES
+        ))),
+        None => Ok(()),
+    }
 }
 
 fn element(node: Node<'_, '_>, lines: &Lines, depth: usize) -> Result<Element, SceneError> {
     let place = lines.place(node.range().start);
     if depth == MAX_DEPTH {
-        return Err(place.syntax(format!("elements are nested more than {MAX_DEPTH} deep")));
+        return Err(too_deep(&place));
     }
     Ok(Element {
         tag: node.tag_name().name().to_owned(),
@@ -77,4 +155,9 @@ fn element(node: Node<'_, '_>, lines: &Lines, depth: usize) -> Result<Element, S
             .collect::<Result<_, _>>()?,
         place,
     })
+}
+
+/// The error for elements that are nested more than [`MAX_DEPTH`] deep.
+pub(super) fn too_deep(place: &Place) -> SceneError {
+    place.syntax(format!("elements are nested more than {MAX_DEPTH} deep"))
 }

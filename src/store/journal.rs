@@ -120,7 +120,7 @@ fn own_text(folder: &Path, name: &str) -> Result<Option<String>, Failed> {
     let text = match fs::symlink_metadata(&path) {
         Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(None),
         Ok(file) if file.is_symlink() => refused(io::ErrorKind::InvalidInput, "is a link"),
-        _ => input::read_text(&path),
+        _ => input::read_text(&path, input::MAX_TEXT),
     };
     let text = text.map_err(|why| {
         let why = io::Error::new(why.kind(), format!("{why}; no bake wrote this: remove it"));

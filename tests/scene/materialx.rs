@@ -301,7 +301,7 @@ fn broken_documents_are_refused_at_their_place() {
     input("nodegraph=\"g\"", &["no nodegraph \"g\""]);
     input("interfacename=\"i\"", &["no interface \"i\""]);
     let circle = graph("\n<dot name=\"end\"><input name=\"in\" nodename=\"end\"/></dot>");
-    case(&circle, ":2:17", &["depends on itself"]);
+    case(&circle, ":2:1", &["circle: end -> end"]);
     case(&shader_text("specular_ior", "0"), ":1:27", &["0", "more than 0"]);
 }
 

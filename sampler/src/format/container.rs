@@ -4,7 +4,7 @@
 //! `docs/format.md` is the specification. One checksum covers the whole file, header included.
 
 use alloc::borrow::ToOwned;
-use alloc::collections::BTreeMap;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -44,6 +44,21 @@ pub struct Provenance {
     pub recipe: String,
     /// Named materials of the recipe.
     pub materials: Vec<MaterialEntry>,
+}
+
+impl Provenance {
+    /// Checks every number of the materials, and that their names differ.
+    fn check(&self) -> Result<(), LoadError> {
+        let mut names = BTreeSet::new();
+        for material in &self.materials {
+            let named =
+                if names.insert(&material.name) { Ok(()) } else { Err("named twice".into()) };
+            material.check().and(named).map_err(|why: String| {
+                LoadError::Invalid(format!("material `{}`: {why}", material.name))
+            })?;
+        }
+        Ok(())
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -98,8 +113,9 @@ fn invalid(why: impl ToString) -> LoadError {
 /// It is what [`encode`] embeds, and what other containers may carry.
 ///
 /// # Errors
-/// [`LoadError::Invalid`] if a table would not load again.
+/// [`LoadError::Invalid`] if a material or a table would not load again.
 pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, LoadError> {
+    provenance.check()?;
     let mut descriptors = Vec::new();
     for table in tables {
         table.validate()?;
@@ -134,7 +150,7 @@ pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, Loa
 /// Writes a set as the bytes of a safetensors file; the same set always gives the same bytes.
 ///
 /// # Errors
-/// [`LoadError::Invalid`] if a table would not load again.
+/// [`LoadError::Invalid`] if a material or a table would not load again.
 pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, LoadError> {
     let json = describe(provenance, tables)?;
     let data: Vec<Vec<u8>> = tables.iter().map(|table| fit(table).encode(&table.values)).collect();
@@ -241,13 +257,15 @@ fn assemble(
     mut values: impl FnMut(&Descriptor, &Codec) -> Result<Vec<f32>, String>,
 ) -> Result<(Provenance, Vec<Table>), LoadError> {
     let document: Document = serde_json::from_str(json).map_err(invalid)?;
+    document.provenance.check()?;
     let mut tables: Vec<Table> = Vec::with_capacity(document.tables.len());
+    let mut names = BTreeSet::new();
     for descriptor in document.tables {
         let fail = |why: String| invalid(format!("table `{}`: {why}", descriptor.name));
         if descriptor.channels.is_empty() {
             return Err(fail("no channels".into()));
         }
-        if tables.iter().any(|other| other.name == descriptor.name) {
+        if !names.insert(descriptor.name.clone()) {
             return Err(fail("named twice".into()));
         }
         let Descriptor { precision, scale, offset, channels, .. } = &descriptor;

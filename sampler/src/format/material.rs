@@ -1,14 +1,17 @@
 //! The materials of a recipe, as a set lists them.
 
+use alloc::format;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use microfacet_common::Masking;
 use microfacet_common::shape::gamma_of_s;
+use microfacet_common::{Masking, Skew};
 use serde::{Deserialize, Serialize};
 
-use super::subject::{LobeEntry, Reflectance, Side};
+use super::subject::{
+    LobeEntry, Reflectance, Side, check_conductor, check_indices, check_roughness, check_shapes,
+};
 use crate::axis::ReflectanceRoot;
 
 /// A named material of a recipe.
@@ -102,12 +105,43 @@ impl FresnelEntry {
     }
 }
 
+impl FresnelEntry {
+    /// Checks the numbers; the error says what is wrong.
+    fn check(&self) -> Result<(), String> {
+        match self {
+            Self::Mirror => Ok(()),
+            Self::Schlick(f0) if (0.0..=1.0).contains(f0) => Ok(()),
+            Self::Schlick(f0) => Err(format!("schlick = {f0} must be from 0 to 1")),
+            Self::Conductor { eta, k } => check_conductor(eta, k),
+            Self::Dielectric(eta) if *eta > 0.0 && *eta < f64::INFINITY => Ok(()),
+            Self::Dielectric(eta) => {
+                Err(format!("dielectric = {eta} must be finite and more than 0"))
+            }
+            Self::Dielectrics { min, max } => check_indices(*min, *max),
+        }
+    }
+}
+
 /// The middle of a range.
 fn middle([min, max]: [f64; 2]) -> f64 {
     if min == max { min } else { 0.5 * (min + max) }
 }
 
 impl MaterialEntry {
+    /// Checks every number; the error says what is wrong.
+    pub(super) fn check(&self) -> Result<(), String> {
+        self.sigma.into_iter().try_for_each(check_roughness)?;
+        check_shapes(self.s)?;
+        self.fresnel.iter().try_for_each(FresnelEntry::check)?;
+        let Some(theta) = self.theta else { return Ok(()) };
+        let [[x, _], [y, _]] = self.sigma;
+        let single = [self.sigma[0], self.sigma[1], self.s].iter().all(|[min, max]| min == max);
+        if !single || !self.distribution.is_empty() {
+            return Err("theta is for a Student-t lobe with single numbers of sigma and s".into());
+        }
+        Skew::new([x, y], theta).map(drop).map_err(|why| format!("theta = {theta:?}: {why}"))
+    }
+
     /// σx and σy, at the middle of their ranges.
     pub fn sigma(&self) -> [f64; 2] {
         self.sigma.map(middle)

@@ -165,6 +165,17 @@ impl Kind {
         }
     }
 
+    /// Whether it is of one distribution outside the family.
+    pub(super) const fn is_radial(self) -> bool {
+        matches!(
+            self,
+            Self::RadialShadowing
+                | Self::RadialSlope
+                | Self::RadialConditional
+                | Self::RadialDensity
+        )
+    }
+
     /// Whether it holds directional albedos or averages of them.
     ///
     /// These depend on light and view, not on the view alone, so that each table is for one form of

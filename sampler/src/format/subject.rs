@@ -4,7 +4,7 @@
 use alloc::format;
 use alloc::string::String;
 
-use microfacet_common::Masking;
+use microfacet_common::{Masking, Skew};
 use serde::{Deserialize, Serialize};
 
 use super::schema::{Channels, Kind};
@@ -43,6 +43,28 @@ impl LobeEntry {
             Self::Family | Self::StudentT { .. } => "student-t",
             Self::Ellipsoid { .. } => "ellipsoid",
             Self::Distribution(label) => label,
+        }
+    }
+
+    /// Checks the numbers; the error says what is wrong.
+    fn check(&self) -> Result<(), String> {
+        let (sigma, s) = match self {
+            Self::Family => return Ok(()),
+            Self::Distribution(label) if label.is_empty() => {
+                return Err("a distribution without a label".into());
+            }
+            Self::Distribution(_) => return Ok(()),
+            Self::StudentT { sigma, s } => (sigma, *s),
+            Self::Ellipsoid { sigma, theta, s } => {
+                Skew::new(*sigma, *theta).map_err(|why| format!("an ellipsoid: {why}"))?;
+                (sigma, *s)
+            }
+        };
+        check_shapes([s, s])?;
+        if sigma.iter().all(|&sigma| sigma > 0.0 && sigma < f64::INFINITY) {
+            Ok(())
+        } else {
+            Err(format!("sigma = {sigma:?} of its lobe must be finite and more than 0"))
         }
     }
 
@@ -112,6 +134,15 @@ impl Reflectance {
         }
     }
 
+    /// Checks the numbers; the error says what is wrong.
+    pub(super) fn check(&self) -> Result<(), String> {
+        match self {
+            Self::Moments => Ok(()),
+            Self::Conductor { eta, k } => check_conductor(eta, k),
+            Self::Dielectric { min, max, .. } => check_indices(*min, *max),
+        }
+    }
+
     /// A label that tells it from others, for people and in names.
     pub fn label(&self) -> String {
         let list = |[r, g, b]: &[f64; 3]| format!("{r}_{g}_{b}");
@@ -172,6 +203,47 @@ impl Covered {
     }
 }
 
+/// Checks a range of 1/(γ−1), which is 0 at γ = ∞ and stays under 2, for γ > 3/2.
+pub(super) fn check_shapes([min, max]: [f64; 2]) -> Result<(), String> {
+    if 0.0 <= min && min <= max && max < 2.0 {
+        Ok(())
+    } else {
+        Err(format!("s = [{min}, {max}] must ascend, from 0 or more to less than 2"))
+    }
+}
+
+/// Checks a range of σ, which may start at 0 where a texture has smooth points.
+pub(super) fn check_roughness([min, max]: [f64; 2]) -> Result<(), String> {
+    if 0.0 <= min && min <= max && max < f64::INFINITY {
+        Ok(())
+    } else {
+        Err(format!("sigma = [{min}, {max}] must ascend, from 0 or more to a finite number"))
+    }
+}
+
+/// Checks the complex index of refraction of a conductor.
+pub(super) fn check_conductor(eta: &[f64; 3], k: &[f64; 3]) -> Result<(), String> {
+    let finite = eta.iter().chain(k).all(|x| x.is_finite());
+    if finite && eta.iter().all(|&eta| eta > 0.0) && k.iter().all(|&k| k >= 0.0) {
+        Ok(())
+    } else {
+        Err(format!(
+            "a conductor of eta = {eta:?} and k = {k:?}; eta must be more than 0 and k at least 0"
+        ))
+    }
+}
+
+/// Checks a range of indices of refraction of the dense side over the thin one.
+pub(super) fn check_indices(min: f64, max: Option<f64>) -> Result<(), String> {
+    let finite = (1.0..f64::INFINITY).contains(&min);
+    if finite && max.is_none_or(|max| min <= max && max < f64::INFINITY) {
+        Ok(())
+    } else {
+        let max = max.unwrap_or(f64::INFINITY);
+        Err(format!("indices of refraction [{min}, {max}] must ascend, from 1 or more"))
+    }
+}
+
 fn within([min, max]: [f64; 2], x: f64) -> bool {
     x >= min - SAME * min && x <= max + SAME * max
 }
@@ -195,25 +267,28 @@ impl Subject {
         Self { covers: Some(Covered { s, sigma: None }), ..Self::default() }
     }
 
-    /// Checks the subject against a kind of table; the error says what is wrong.
-    pub(super) fn check(&self, kind: Kind) -> Result<(), &'static str> {
+    /// Checks the subject, and that it fits a kind of table; the error says what is wrong.
+    pub(super) fn check(&self, kind: Kind) -> Result<(), String> {
         let albedo = kind.is_albedo();
         if albedo != self.masking.is_some() || albedo != self.reflectance.is_some() {
             return Err(
-                "an albedo names the masking and the reflectance it is for, and no other table does",
+                "an albedo names the masking and the reflectance it is for, and no other table does"
+                    .into(),
             );
         }
-        if let Some([min, max]) = self.reflectance.and_then(|reflectance| reflectance.indices())
-            && !(1.0 <= min && min <= max)
-        {
-            return Err("indices of refraction must ascend from 1 or more");
+        let fits = match (kind, &self.lobe) {
+            (Kind::Albedo, _) => true,
+            (_, LobeEntry::Distribution(_)) => kind.is_radial(),
+            (_, lobe) => *lobe == LobeEntry::Family && !kind.is_radial(),
+        };
+        if !fits {
+            return Err(format!("{} tables are not of the lobe {:?}", kind.name(), self.lobe));
         }
-        let ascend = |[min, max]: [f64; 2]| 0.0 <= min && min <= max && max < f64::INFINITY;
-        match self.covers {
-            Some(Covered { s, sigma }) if !ascend(s) || !sigma.is_none_or(ascend) => {
-                Err("the range that it covers must ascend")
-            }
-            _ => Ok(()),
-        }
+        self.lobe.check()?;
+        self.reflectance.iter().try_for_each(Reflectance::check)?;
+        let Some(Covered { s, sigma }) = self.covers else { return Ok(()) };
+        check_shapes(s)
+            .and(sigma.map_or(Ok(()), check_roughness))
+            .map_err(|why| format!("the range that it covers: {why}"))
     }
 }

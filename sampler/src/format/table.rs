@@ -91,7 +91,12 @@ impl Table {
     pub fn validate(&self) -> Result<(), LoadError> {
         let fail = |why: String| Err(LoadError::Invalid(format!("table `{}`: {why}", self.name)));
         if let Err(why) = self.subject.check(self.kind) {
-            return fail(why.into());
+            return fail(why);
+        }
+        if let Some((key, figure)) =
+            self.certificate.iter().find(|(_, figure)| !(0.0..f64::INFINITY).contains(*figure))
+        {
+            return fail(format!("`{key}` of its certificate is {figure}; it must be 0 or more"));
         }
         let layout = self.kind.layout(&self.subject);
         let names: Vec<&str> = self.axes.iter().map(|axis| axis.name.as_str()).collect();

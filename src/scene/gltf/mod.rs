@@ -22,7 +22,6 @@
 mod schema;
 
 use std::collections::HashSet;
-use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -30,8 +29,9 @@ use base64::Engine;
 
 use self::schema::{Document, Image, Material, TextureInfo};
 use super::builder::{Builder, GGX, Lobe};
-use super::texture::{self, Channel, Encoding};
-use super::{Format, Fresnel, Interval, Place, Roughness, Scene, SceneError};
+use super::texture::{Channel, Encoding, Textures};
+use super::{Format, Fresnel, Interval, Place, Roughness, Scene, SceneError, limits};
+use crate::input;
 
 /// Reads a glTF 2.0 scene.
 pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
@@ -58,6 +58,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         place,
         document: &document,
         binary,
+        embedded: Textures::default(),
     };
     importer.materials()?;
     Ok(importer.builder.finish())
@@ -72,17 +73,24 @@ struct Section {
 /// The JSON text, and where the binary chunk is if the file is a container (specification, 4).
 fn read(path: &Path, place: &Place) -> Result<(Vec<u8>, Option<Section>), SceneError> {
     let io = |error| place.io(error);
-    let mut file = File::open(path).map_err(io)?;
+    // Of a container only the JSON is read, and images as they are asked for.
+    let mut file = input::open(path, u64::MAX).map_err(io)?;
     let mut head = Vec::new();
     file.by_ref().take(20).read_to_end(&mut head).map_err(io)?;
     if !head.starts_with(b"glTF") {
-        return Ok((fs::read(path).map_err(io)?, None));
+        return Ok((input::read(path, limits::JSON).map_err(io)?, None));
     }
     let word = |at: usize| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]);
     if head.len() < 20 || word(4) != 2 || word(16) != u32::from_le_bytes(*b"JSON") {
         return Err(place.syntax("this is no glTF container of version 2 that begins with JSON"));
     }
     let size = u64::from(word(12));
+    if size > limits::JSON {
+        return Err(place.invalid(format!(
+            "the JSON of the glTF container has {size} bytes, and at most {} MiB are read",
+            limits::JSON >> 20
+        )));
+    }
     let mut json = Vec::new();
     file.take(size).read_to_end(&mut json).map_err(io)?;
     if json.len() as u64 != size {
@@ -99,15 +107,15 @@ struct Importer<'a> {
     place: Place,
     document: &'a Document,
     binary: Option<Section>,
+    /// Images in the document or its buffers, by their texture.
+    embedded: Textures<usize>,
 }
 
 impl Importer<'_> {
     fn materials(&mut self) -> Result<(), SceneError> {
         let document = self.document;
-        let primitives = || document.meshes.iter().flat_map(|mesh| &mesh.primitives);
-        let used: HashSet<usize> = primitives()
-            .flat_map(|p| p.material.into_iter().chain(p.extensions.variants()))
-            .collect();
+        let used: HashSet<usize> =
+            document.meshes.iter().flat_map(|mesh| &mesh.materials).copied().collect();
         if let Some(index) = used.iter().find(|&&i| i >= document.materials.len()) {
             return Err(self.place.invalid(format!(
                 "a mesh refers to material {index}, but there are {} materials, counted from 0",
@@ -123,7 +131,7 @@ impl Importer<'_> {
             self.material(&name, material, used)?;
         }
         // A primitive without a material has the default one (specification, 3.7.2.1).
-        if primitives().any(|primitive| primitive.material.is_none()) {
+        if document.meshes.iter().any(|mesh| mesh.uses_default) {
             self.material("default material", &Material::default(), true)?;
         }
         Ok(())
@@ -133,8 +141,7 @@ impl Importer<'_> {
         let extensions = &material.extensions;
         let place = self.place.clone();
         if extensions.unlit.is_some() {
-            self.builder.ignore(name, "KHR_materials_unlit", &place, "unlit");
-            return Ok(());
+            return self.builder.ignore(name, "KHR_materials_unlit", &place, "unlit");
         }
         let roughness = match &extensions.specular_glossiness {
             None => {
@@ -197,7 +204,7 @@ impl Importer<'_> {
             masking: None,
         };
         let main = lobe(None, roughness, (!iridescent).then_some(Fresnel::Schlick(f0)));
-        self.builder.add(name, &place, used, main);
+        self.builder.add(name, &place, used, main)?;
 
         if let Some(coat) = extensions.clearcoat.as_ref().filter(|coat| coat.clearcoat_factor > 0.0)
         {
@@ -208,12 +215,12 @@ impl Importer<'_> {
             let roughness = Roughness::isotropic(roughness.map_rising(|r| r * r));
             // The coat's index of refraction is fixed at 1.5 (KHR_materials_clearcoat).
             let coat = lobe(Some("clearcoat"), roughness, Some(Fresnel::Schlick(0.04)));
-            self.builder.add(name, &place, used, coat);
+            self.builder.add(name, &place, used, coat)?;
         }
         if extensions.sheen.is_some() {
             let name = format!("{name}.sheen");
             let reason = "a fabric's distribution (Charlie), not a Student-t one";
-            self.builder.ignore(&name, "KHR_materials_sheen", &place, reason);
+            self.builder.ignore(&name, "KHR_materials_sheen", &place, reason)?;
         }
         Ok(())
     }
@@ -255,44 +262,46 @@ impl Importer<'_> {
             let file = self.folder.join(decode_uri(uri));
             return self.builder.image(&file, channel, Encoding::Linear, &place);
         }
-        let range = self
-            .embedded(image)
-            .map_err(|error| format!("cannot be read ({error})"))
-            .and_then(|bytes| texture::range_of_bytes(&bytes, channel, Encoding::Linear));
+        let Self { embedded, document, folder, binary, .. } = self;
+        let range = embedded.range(texture, channel, Encoding::Linear, |_| {
+            bytes(image, document, folder, binary.as_ref())
+        });
         range.unwrap_or_else(|reason| self.builder.unread(&name, &reason, &place))
     }
+}
 
-    /// The bytes of an image that is in the document or in one of its buffers.
-    fn embedded(&self, image: &Image) -> io::Result<Vec<u8>> {
-        if let Some(uri) = &image.uri {
-            return data_uri(uri);
-        }
-        let missing = || io::Error::other("no such buffer");
-        let view = image
-            .buffer_view
-            .and_then(|view| self.document.buffer_views.get(view))
-            .ok_or_else(missing)?;
-        let buffer = self.document.buffers.get(view.buffer).ok_or_else(missing)?;
-        let (file, start) = match (&buffer.uri, &self.binary) {
-            (Some(uri), _) if uri.starts_with("data:") => {
-                let bytes = data_uri(uri)?;
-                let range = usize::try_from(view.byte_offset)
-                    .ok()
-                    .zip(usize::try_from(view.byte_length).ok());
-                let bytes =
-                    range.and_then(|(start, length)| bytes.get(start..start.checked_add(length)?));
-                return bytes.map(<[u8]>::to_vec).ok_or_else(missing);
-            }
-            (Some(uri), _) => (self.folder.join(decode_uri(uri)), 0),
-            (None, Some(binary)) => (binary.file.clone(), binary.start),
-            (None, None) => return Err(missing()),
-        };
-        let mut file = File::open(file)?;
-        file.seek(SeekFrom::Start(start.saturating_add(view.byte_offset)))?;
-        let mut bytes = Vec::new();
-        file.take(view.byte_length).read_to_end(&mut bytes)?;
-        Ok(bytes)
+/// The bytes of an image that is in the document or in one of its buffers.
+fn bytes(
+    image: &Image,
+    document: &Document,
+    folder: &Path,
+    binary: Option<&Section>,
+) -> io::Result<Vec<u8>> {
+    if let Some(uri) = &image.uri {
+        return data_uri(uri);
     }
+    let missing = || io::Error::other("no such buffer");
+    let view =
+        image.buffer_view.and_then(|view| document.buffer_views.get(view)).ok_or_else(missing)?;
+    let buffer = document.buffers.get(view.buffer).ok_or_else(missing)?;
+    let (file, start) = match (&buffer.uri, binary) {
+        (Some(uri), _) if uri.starts_with("data:") => {
+            let bytes = data_uri(uri)?;
+            let range =
+                usize::try_from(view.byte_offset).ok().zip(usize::try_from(view.byte_length).ok());
+            let bytes =
+                range.and_then(|(start, length)| bytes.get(start..start.checked_add(length)?));
+            return bytes.map(<[u8]>::to_vec).ok_or_else(missing);
+        }
+        (Some(uri), _) => (folder.join(decode_uri(uri)), 0),
+        (None, Some(binary)) => (binary.file.clone(), binary.start),
+        (None, None) => return Err(missing()),
+    };
+    let mut file = input::open(&file, u64::MAX)?;
+    file.seek(SeekFrom::Start(start.saturating_add(view.byte_offset)))?;
+    let mut bytes = Vec::new();
+    file.take(view.byte_length.min(limits::IMAGE_FILE)).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// The content of a `data:` URI, which glTF requires to be in base64.

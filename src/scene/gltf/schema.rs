@@ -1,24 +1,56 @@
 //! The parts of the glTF schema that are read, under the schema's names.
 
-use serde::Deserialize;
-use serde::de::IgnoredAny;
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use crate::scene::limits;
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Document {
     pub(super) asset: Asset,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "list")]
     pub(super) materials: Vec<Material>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "list")]
     pub(super) meshes: Vec<Mesh>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "list")]
     pub(super) textures: Vec<Texture>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "list")]
     pub(super) images: Vec<Image>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "list")]
     pub(super) buffer_views: Vec<BufferView>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "list")]
     pub(super) buffers: Vec<Buffer>,
+}
+
+/// A list of limited length: each element takes far more memory than the text "{}".
+fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(input: D) -> Result<Vec<T>, D::Error> {
+    struct List<T>(PhantomData<T>);
+
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for List<T> {
+        type Value = Vec<T>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a list")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut input: A) -> Result<Vec<T>, A::Error> {
+            let mut list = Vec::new();
+            while let Some(element) = input.next_element()? {
+                if list.len() == limits::JSON_LIST {
+                    let most = limits::JSON_LIST;
+                    return Err(A::Error::custom(format!("a list has more than {most} elements")));
+                }
+                list.push(element);
+            }
+            Ok(list)
+        }
+    }
+
+    input.deserialize_seq(List(PhantomData))
 }
 
 #[derive(Deserialize)]
@@ -26,39 +58,59 @@ pub(super) struct Asset {
     pub(super) version: String,
 }
 
+/// Which materials a mesh uses, each once: a mesh may have very many primitives.
 #[derive(Deserialize)]
+#[serde(from = "Primitives")]
 pub(super) struct Mesh {
-    pub(super) primitives: Vec<Primitive>,
+    pub(super) materials: Vec<usize>,
+    /// Whether a primitive names none.
+    pub(super) uses_default: bool,
 }
 
 #[derive(Deserialize)]
-pub(super) struct Primitive {
-    pub(super) material: Option<usize>,
-    #[serde(default)]
-    pub(super) extensions: PrimitiveExtensions,
+struct Primitives {
+    #[serde(deserialize_with = "list")]
+    primitives: Vec<Primitive>,
 }
 
-#[derive(Default, Deserialize)]
-pub(super) struct PrimitiveExtensions {
-    #[serde(rename = "KHR_materials_variants")]
-    pub(super) variants: Option<Variants>,
-}
-
-impl PrimitiveExtensions {
-    pub(super) fn variants(&self) -> impl Iterator<Item = usize> {
-        let mappings = self.variants.iter().flat_map(|variants| &variants.mappings);
-        mappings.map(|mapping| mapping.material)
+impl From<Primitives> for Mesh {
+    fn from(Primitives { primitives }: Primitives) -> Self {
+        let uses_default = primitives.iter().any(|primitive| primitive.material.is_none());
+        let variants = |p: &Primitive| {
+            let mappings = p.extensions.variants.iter().flat_map(|variants| &variants.mappings);
+            mappings.map(|mapping| mapping.material).collect::<Vec<_>>()
+        };
+        let materials = primitives.iter().flat_map(|p| p.material.into_iter().chain(variants(p)));
+        let mut materials: Vec<usize> = materials.collect();
+        materials.sort_unstable();
+        materials.dedup();
+        materials.shrink_to_fit();
+        Self { materials, uses_default }
     }
 }
 
 #[derive(Deserialize)]
-pub(super) struct Variants {
-    pub(super) mappings: Vec<Mapping>,
+struct Primitive {
+    material: Option<usize>,
+    #[serde(default)]
+    extensions: PrimitiveExtensions,
+}
+
+#[derive(Default, Deserialize)]
+struct PrimitiveExtensions {
+    #[serde(rename = "KHR_materials_variants")]
+    variants: Option<Variants>,
 }
 
 #[derive(Deserialize)]
-pub(super) struct Mapping {
-    pub(super) material: usize,
+struct Variants {
+    #[serde(deserialize_with = "list")]
+    mappings: Vec<Mapping>,
+}
+
+#[derive(Deserialize)]
+struct Mapping {
+    material: usize,
 }
 
 #[derive(Default, Deserialize)]

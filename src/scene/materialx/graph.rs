@@ -2,8 +2,8 @@
 
 use super::Reader;
 use crate::scene::texture::{Channel, Encoding};
-use crate::scene::xml::Element;
-use crate::scene::{Interval, SceneError};
+use crate::scene::xml::{Element, Key};
+use crate::scene::{Interval, SceneError, cycle};
 
 impl<'a> Reader<'a> {
     /// The range of an `<input>` of a node in `scope`.
@@ -27,7 +27,7 @@ impl<'a> Reader<'a> {
             return Ok(known);
         }
         let range = self.source(input, scope, channel)?;
-        Ok(self.ranges.end(key, range))
+        self.ranges.end(key, range, &input.place)
     }
 
     fn source(
@@ -41,49 +41,85 @@ impl<'a> Reader<'a> {
         let of_node = input.attribute("output").filter(|_| input.attribute("nodename").is_some());
         let taken = input.attribute("channels").or(of_node);
         let channel = taken.and_then(channel_named).unwrap_or(channel);
+        match self.target(input, scope)? {
+            Some((end, scope))
+                if end.tag == "output" || input.attribute("interfacename").is_some() =>
+            {
+                self.connected(end, scope, channel)
+            }
+            Some((node, scope)) => self.node(node, scope, channel),
+            None => number(input, channel).map(Interval::point),
+        }
+    }
+
+    /// The input, output or node that an input or output in `scope` is connected to, with the scope
+    /// of that; `None` if it has a value of its own.
+    fn target(
+        &self,
+        input: &'a Element,
+        scope: &'a Element,
+    ) -> Result<Option<(&'a Element, &'a Element)>, SceneError> {
         let root = self.root;
         if let Some(name) = input.attribute("interfacename") {
-            return match scope.child_named(name) {
+            return match self.index.child(scope, name) {
                 // An input in the document's own scope would refer to itself.
-                Some(outer) if !std::ptr::eq(scope, root) => self.connected(outer, root, channel),
+                Some(outer) if !std::ptr::eq(scope, root) => Ok(Some((outer, root))),
                 _ => Err(undefined(input, "interface", name)),
             };
         }
         if let Some(name) = input.attribute("nodegraph") {
             let graph =
-                root.child_named(name).ok_or_else(|| undefined(input, "nodegraph", name))?;
-            return self.output(input, graph, channel);
+                self.index.child(root, name).ok_or_else(|| undefined(input, "nodegraph", name))?;
+            return self.output(input, graph).map(Some);
         }
         if let Some(name) = input.attribute("nodename") {
-            let node = scope.child_named(name).ok_or_else(|| undefined(input, "node", name))?;
+            let node =
+                self.index.child(scope, name).ok_or_else(|| undefined(input, "node", name))?;
             return match &node.tag[..] {
-                "nodegraph" => self.output(input, node, channel),
-                "output" => self.connected(node, scope, channel),
-                _ => self.node(node, scope, channel),
+                "nodegraph" => self.output(input, node).map(Some),
+                _ => Ok(Some((node, scope))),
             };
         }
-        number(input, channel).map(Interval::point)
+        Ok(None)
     }
 
-    /// The output of `graph` that `input` is connected to.
+    /// The output of `graph` that `input` is connected to, with its scope.
     fn output(
-        &mut self,
+        &self,
         input: &'a Element,
         graph: &'a Element,
-        channel: Channel,
-    ) -> Result<Interval, SceneError> {
-        let mut outputs = graph.children.iter().filter(|child| child.tag == "output");
-        let output = match input.attribute("output") {
-            Some(name) => outputs.find(|output| output.attribute("name") == Some(name)),
-            None => outputs.next(),
+    ) -> Result<(&'a Element, &'a Element), SceneError> {
+        let name = input.attribute("output").unwrap_or_default();
+        let output = self.index.outputs.get(&(graph.key(), name));
+        output.map(|&output| (output, graph)).ok_or_else(|| undefined(input, "output", name))
+    }
+
+    /// Refuses nodes that are connected in a circle, of values and of shaders.
+    pub(super) fn check_circles(&self) -> Result<(), SceneError> {
+        let root = self.root;
+        let graphs = root.children.iter().filter(|child| child.tag == "nodegraph");
+        let all = [root]
+            .into_iter()
+            .chain(graphs)
+            .flat_map(|scope| scope.children.iter().map(move |e| (e.key(), scope.key())));
+        let connected = |(element, scope): (Key<'a>, Key<'a>)| {
+            let (element, scope) = (element.0, scope.0);
+            let inputs = element.children.iter().filter(|_| element.tag != "nodegraph");
+            let ends = inputs.chain([element]);
+            // What is not defined is an error where it is used.
+            let targets = ends.filter_map(|end| self.target(end, scope).ok().flatten());
+            targets.map(|(element, scope)| (element.key(), scope.key())).collect()
         };
-        match output {
-            Some(output) => self.connected(output, graph, channel),
-            None => {
-                let name = input.attribute("output").unwrap_or_default();
-                Err(undefined(input, "output", name))
-            }
-        }
+        let Some(circle) = cycle::find(all, connected) else {
+            return Ok(());
+        };
+        let nodes: Vec<&Element> = circle.iter().map(|(element, _)| element.0).collect();
+        let named = |e: &Element| e.attribute("name").unwrap_or(&e.tag).to_owned();
+        let names: Vec<String> = nodes.iter().chain(&nodes[..1]).map(|e| named(e)).collect();
+        Err(nodes[0].place.invalid(format!(
+            "nodes are connected in a circle: {}; remove one of the connections",
+            names.join(" -> ")
+        )))
     }
 
     fn node(
@@ -92,7 +128,7 @@ impl<'a> Reader<'a> {
         scope: &'a Element,
         channel: Channel,
     ) -> Result<Interval, SceneError> {
-        let mut input = |name: &str, default: f64| match node.child_named(name) {
+        let mut input = |name: &'static str, default: f64| match self.index.child(node, name) {
             Some(input) => self.connected(input, scope, channel),
             None => Ok(Interval::point(default)),
         };
@@ -121,17 +157,19 @@ impl<'a> Reader<'a> {
             "extract" | "separate2" | "separate3" | "separate4" | "swizzle" => {
                 let channel = match &node.tag[..] {
                     "extract" => {
-                        let index = node.child_named("index").and_then(|i| i.attribute("value"));
+                        let index =
+                            self.index.child(node, "index").and_then(|i| i.attribute("value"));
                         channel_at(index.unwrap_or("0"))
                     }
                     "swizzle" => {
-                        let names = node.child_named("channels").and_then(|c| c.attribute("value"));
+                        let names =
+                            self.index.child(node, "channels").and_then(|c| c.attribute("value"));
                         names.and_then(channel_named)
                     }
                     // The output is already selected in `channel`.
                     _ => Some(channel),
                 };
-                match (channel, node.child_named("in")) {
+                match (channel, self.index.child(node, "in")) {
                     (Some(channel), Some(inner)) => self.connected(inner, scope, channel)?,
                     _ => self.unknown(node),
                 }
@@ -152,8 +190,8 @@ impl<'a> Reader<'a> {
     fn image(&mut self, node: &'a Element, scope: &'a Element, channel: Channel) -> Interval {
         let place = &node.place;
         let input =
-            node.child_named("file").and_then(|file| match file.attribute("interfacename") {
-                Some(name) => scope.child_named(name),
+            self.index.child(node, "file").and_then(|file| match file.attribute("interfacename") {
+                Some(name) => self.index.child(scope, name),
                 None => Some(file),
             });
         let Some((input, file)) = input.and_then(|input| Some((input, input.attribute("value")?)))

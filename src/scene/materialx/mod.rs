@@ -21,24 +21,22 @@
 
 mod graph;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::builder::{Builder, GGX, Lobe, dielectric};
-use super::include::Includes;
 use super::memo::Memo;
 use super::texture::Channel;
-use super::xml::{self, Element};
-use super::{Format, Fresnel, Interval, Place, Roughness, Scene, SceneError};
+use super::xml::{self, Element, Key};
+use super::{Format, Fresnel, Interval, Roughness, Scene, SceneError};
 
 /// `M_FLOAT_EPS` of the shaders: the lower limit of α.
 const LEAST_ALPHA: f64 = 1e-6;
 
 /// Reads a MaterialX document.
 pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
-    let mut includes = Includes::default();
-    includes.enter(path, &Place::file(path))?;
-    let mut root = xml::read(path)?;
+    let mut xml = xml::Reader::new();
+    let mut root = xml.open(path)?;
     if root.tag != "materialx" {
         return Err(root.place.invalid(format!(
             "<{}> is not the root of a MaterialX document; expected <materialx>",
@@ -47,9 +45,15 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     }
     let mut builder = Builder::new(Format::MaterialX);
     let folder = path.parent().unwrap_or(Path::new(""));
-    expand(&mut root, folder, &mut includes, &mut builder)?;
-    let mut reader =
-        Reader { root: &root, folder: folder.to_owned(), builder, ranges: Memo::default() };
+    expand(&mut root, folder, &mut xml, &mut builder)?;
+    let mut reader = Reader {
+        root: &root,
+        folder: folder.to_owned(),
+        builder,
+        index: Index::new(&root),
+        ranges: Memo::default(),
+    };
+    reader.check_circles()?;
     reader.shaders()?;
     Ok(reader.builder.finish())
 }
@@ -58,7 +62,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
 fn expand(
     root: &mut Element,
     folder: &Path,
-    includes: &mut Includes,
+    xml: &mut xml::Reader,
     builder: &mut Builder,
 ) -> Result<(), SceneError> {
     for child in std::mem::take(&mut root.children) {
@@ -68,22 +72,73 @@ fn expand(
         }
         let name = child.required("href")?;
         let path = folder.join(name);
-        if !includes.enter(&path, &child.place)? {
+        if !xml.includes.enter(&path, &child.place)? {
             builder.warn(&child.place, format!("{name} is missing; its materials are not seen"));
             continue;
         }
-        let mut included = xml::read(&path)?;
-        expand(&mut included, path.parent().unwrap_or(folder), includes, builder)?;
-        includes.leave();
+        let mut included = xml.read(&path, &child.place)?;
+        expand(&mut included, path.parent().unwrap_or(folder), xml, builder)?;
+        xml.includes.leave();
         root.children.append(&mut included.children);
     }
     Ok(())
+}
+
+/// Children by their element and their attribute "name"; the first of a name.
+struct Index<'a> {
+    children: HashMap<(Key<'a>, &'a str), &'a Element>,
+    /// As `children`, of the outputs alone; the first of all is also under the empty name.
+    outputs: HashMap<(Key<'a>, &'a str), &'a Element>,
+}
+
+impl<'a> Index<'a> {
+    fn new(root: &'a Element) -> Self {
+        let mut index = Self { children: HashMap::new(), outputs: HashMap::new() };
+        root.walk(&mut |element| {
+            for child in &element.children {
+                if let Some(name) = child.attribute("name") {
+                    let key = (element.key(), name);
+                    index.children.entry(key).or_insert(child);
+                    if child.tag == "output" {
+                        index.outputs.entry(key).or_insert(child);
+                    }
+                }
+                if child.tag == "output" {
+                    index.outputs.entry((element.key(), "")).or_insert(child);
+                }
+            }
+        });
+        index
+    }
+
+    fn child(&self, element: &'a Element, name: &'a str) -> Option<&'a Element> {
+        self.children.get(&(element.key(), name)).copied()
+    }
+}
+
+/// The materials that use a shader.
+#[derive(Clone, Default)]
+struct Wearers<'a> {
+    /// One of them.
+    name: &'a str,
+    count: usize,
+    /// Whether one of them is assigned to geometry.
+    assigned: bool,
+}
+
+impl<'a> Wearers<'a> {
+    fn add(&mut self, other: &Self) {
+        self.name = other.name;
+        self.count += other.count;
+        self.assigned |= other.assigned;
+    }
 }
 
 struct Reader<'a> {
     root: &'a Element,
     folder: PathBuf,
     builder: Builder,
+    index: Index<'a>,
     /// Ranges of the inputs and outputs that were evaluated.
     ranges: Memo<(*const Element, Channel)>,
 }
@@ -104,6 +159,7 @@ impl<'a> Reader<'a> {
                 assigned.extend(element.attribute("material"));
             }
         });
+        let wearers = self.wearers(&assigned);
         // A graph with a definition implements a shading model and does not use it.
         let graphs = root
             .children
@@ -115,21 +171,20 @@ impl<'a> Reader<'a> {
                 match (&node.tag[..], node.attribute("type")) {
                     ("shaderref", _) => {
                         let (name, reason) = ("shaderref", "older than MaterialX 1.38");
-                        self.builder.ignore(name, "shaderref", &node.place, reason);
+                        self.builder.ignore(name, "shaderref", &node.place, reason)?;
                     }
                     ("material", _) if node.children.iter().any(|c| c.tag == "shaderref") => {
                         let name = node.attribute("name").unwrap_or_default();
                         let reason = "written for MaterialX before 1.38; upgrade the document";
-                        self.builder.ignore(name, "material", &node.place, reason);
+                        self.builder.ignore(name, "material", &node.place, reason)?;
                     }
                     ("output" | "input" | "nodegraph" | "nodedef", _) => {}
                     (class, Some("surfaceshader")) => {
                         let own = node.attribute("name").unwrap_or(class);
-                        let materials = self.materials(own);
-                        let used = assigned.is_empty()
-                            || materials.iter().any(|name| assigned.contains(name));
+                        let wearers = wearers.get(own).cloned().unwrap_or_default();
+                        let used = assigned.is_empty() || wearers.assigned;
                         // A shader of one material takes its name; a shared one keeps its own.
-                        let name = if let [material] = materials[..] { material } else { own };
+                        let name = if wearers.count == 1 { wearers.name } else { own };
                         self.shader(name, class, &shader, used)?;
                     }
                     _ => {}
@@ -139,24 +194,31 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The names of the materials that use the shader.
-    fn materials(&self, shader: &str) -> Vec<&'a str> {
-        let wears = |material: &Element| {
-            let input = material.child_named("surfaceshader");
-            input.is_some_and(|input| {
-                input.attribute("nodename") == Some(shader)
-                    || input.attribute("nodegraph").is_some_and(|graph| {
-                        self.root
-                            .child_named(graph)
-                            .is_some_and(|graph| graph.child_named(shader).is_some())
-                    })
-            })
-        };
-        let materials = self.root.children.iter().filter(|e| e.tag == "surfacematerial");
-        materials
-            .filter(|material| wears(material))
-            .filter_map(|material| material.attribute("name"))
-            .collect()
+    /// The materials that use each shader, by its name.
+    fn wearers(&self, assigned: &HashSet<&'a str>) -> HashMap<&'a str, Wearers<'a>> {
+        let mut shaders: HashMap<&str, Wearers<'a>> = HashMap::new();
+        let mut graphs: HashMap<&str, Wearers<'a>> = HashMap::new();
+        for material in self.root.children.iter().filter(|e| e.tag == "surfacematerial") {
+            let (Some(name), Some(input)) =
+                (material.attribute("name"), self.index.child(material, "surfaceshader"))
+            else {
+                continue;
+            };
+            let one = Wearers { name, count: 1, assigned: assigned.contains(name) };
+            if let Some(shader) = input.attribute("nodename") {
+                shaders.entry(shader).or_default().add(&one);
+            }
+            if let Some(graph) = input.attribute("nodegraph") {
+                graphs.entry(graph).or_default().add(&one);
+            }
+        }
+        for (graph, wearers) in graphs {
+            let graph = self.index.child(self.root, graph);
+            for name in graph.iter().flat_map(|g| &g.children).filter_map(|c| c.attribute("name")) {
+                shaders.entry(name).or_default().add(&wearers);
+            }
+        }
+        shaders
     }
 
     fn shader(
@@ -171,22 +233,21 @@ impl<'a> Reader<'a> {
             "open_pbr_surface" => self.open_pbr_surface(shader)?,
             _ => {
                 let reason = "not a shading model that is known here";
-                self.builder.ignore(name, class, &shader.node.place, reason);
-                return Ok(());
+                return self.builder.ignore(name, class, &shader.node.place, reason);
             }
         };
         if lobes.is_empty() {
             let reason = "diffuse, without microfacets";
-            self.builder.ignore(name, class, &shader.node.place, reason);
+            self.builder.ignore(name, class, &shader.node.place, reason)?;
         }
         for lobe in lobes {
-            self.builder.add(name, &shader.node.place, used, lobe);
+            self.builder.add(name, &shader.node.place, used, lobe)?;
         }
         let fabric = if class == "standard_surface" { "sheen" } else { "fuzz_weight" };
         if self.input(shader, fabric, 0.0)?.max > 0.0 {
             let name = format!("{name}.{fabric}");
             let reason = "a fabric's distribution, not a Student-t one";
-            self.builder.ignore(&name, class, &shader.node.place, reason);
+            self.builder.ignore(&name, class, &shader.node.place, reason)?;
         }
         Ok(())
     }
@@ -280,7 +341,7 @@ impl<'a> Reader<'a> {
     fn unit(
         &mut self,
         shader: &Shader<'a>,
-        name: &str,
+        name: &'static str,
         default: f64,
     ) -> Result<Interval, SceneError> {
         let value = self.input(shader, name, default)?;
@@ -297,7 +358,7 @@ impl<'a> Reader<'a> {
     fn index(
         &mut self,
         shader: &Shader<'a>,
-        name: &str,
+        name: &'static str,
         default: f64,
     ) -> Result<Option<Fresnel>, SceneError> {
         let eta = self.input(shader, name, default)?;
@@ -307,10 +368,10 @@ impl<'a> Reader<'a> {
     fn input(
         &mut self,
         shader: &Shader<'a>,
-        name: &str,
+        name: &'static str,
         default: f64,
     ) -> Result<Interval, SceneError> {
-        match shader.node.child_named(name) {
+        match self.index.child(shader.node, name) {
             Some(input) => self.value(input, shader.scope),
             None => Ok(Interval::point(default)),
         }

@@ -58,29 +58,27 @@ impl<'a> Reader<'a> {
                 fresnel,
                 masking: Some(Masking::Uncorrelated),
             };
-            reader.builder.add(&name, &bsdf.place, used, lobe);
+            reader.builder.add(&name, &bsdf.place, used, lobe)
         };
         let reason = match class {
             "roughconductor" | "roughdielectric" | "roughplastic" | "pplastic" => {
                 let gamma = distribution(bsdf)?;
                 let roughness = self.alpha(bsdf)?;
                 let fresnel = fresnel(bsdf, class)?;
-                lobe(self, None, roughness, gamma, fresnel);
-                return Ok(());
+                return lobe(self, None, roughness, gamma, fresnel);
             }
             "conductor" | "dielectric" | "thindielectric" | "plastic" => {
                 let fresnel = fresnel(bsdf, class)?;
-                lobe(self, None, Roughness::Smooth, GGX, fresnel);
-                return Ok(());
+                return lobe(self, None, Roughness::Smooth, GGX, fresnel);
             }
             "principled" => {
                 let roughness = self.principled(bsdf, Interval::point(1.0))?;
                 let fresnel = self.principled_fresnel(bsdf)?;
-                lobe(self, None, roughness, GGX, fresnel);
+                lobe(self, None, roughness, GGX, fresnel)?;
                 if self.weight(bsdf, "clearcoat")?.max > 0.0 {
                     let name = format!("{name}.clearcoat");
                     let reason = "GTR1, whose tails are heavier than any Student-t distribution's";
-                    self.builder.ignore(&name, "principled clearcoat", &bsdf.place, reason);
+                    self.builder.ignore(&name, "principled clearcoat", &bsdf.place, reason)?;
                 }
                 return Ok(());
             }
@@ -90,9 +88,8 @@ impl<'a> Reader<'a> {
                 let scale = eta.map_rising(|eta| (0.65 * eta - 0.35).max(0.0));
                 let transmission = self.principled(bsdf, scale)?;
                 let fresnel = constant_dielectric(eta, bsdf)?;
-                lobe(self, None, reflection, GGX, fresnel);
-                lobe(self, Some("transmission"), transmission, GGX, fresnel);
-                return Ok(());
+                lobe(self, None, reflection, GGX, fresnel)?;
+                return lobe(self, Some("transmission"), transmission, GGX, fresnel);
             }
             // The BSDFs inside are listed by themselves.
             "twosided" | "mask" | "bumpmap" | "normalmap" | "blendbsdf" => return Ok(()),
@@ -102,8 +99,7 @@ impl<'a> Reader<'a> {
             "null" | "circular" | "polarizer" | "retarder" => "lets light pass without microfacets",
             _ => "not a BSDF that is known here",
         };
-        self.builder.ignore(&name, class, &bsdf.place, reason);
-        Ok(())
+        self.builder.ignore(&name, class, &bsdf.place, reason)
     }
 
     fn alpha(&mut self, bsdf: &'a Element) -> Result<Roughness, SceneError> {
@@ -225,7 +221,7 @@ impl<'a> Reader<'a> {
                     return Ok(known);
                 }
                 let range = self.texture(property)?;
-                Ok(self.ranges.end(key, range))
+                self.ranges.end(key, range, &property.place)
             }
             tag => Err(property
                 .place

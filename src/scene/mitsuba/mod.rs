@@ -21,15 +21,15 @@
 
 mod bsdf;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::ops::Bound;
 use std::path::{Path, PathBuf};
 
 use super::builder::Builder;
 use super::error::did_you_mean;
-use super::include::Includes;
 use super::memo::Memo;
 use super::xml::{self, Element};
-use super::{Format, Place, Scene, SceneError};
+use super::{Format, Scene, SceneError, cycle, limits};
 
 /// Reads a Mitsuba 3 scene.
 pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
@@ -37,25 +37,25 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let mut expansion = Expansion {
         builder: &mut builder,
-        includes: Includes::default(),
-        defaults: Vec::new(),
+        xml: xml::Reader::new(),
+        defaults: BTreeMap::new(),
         folders: vec![folder],
         incomplete: false,
     };
-    expansion.includes.enter(path, &Place::file(path))?;
-    let mut root = xml::read(path)?;
+    let mut root = expansion.xml.open(path)?;
     if root.tag != "scene" && root.tag != "bsdf" {
         return Err(root.place.invalid(format!(
             "<{}> is not the root of a Mitsuba scene; expected <scene>",
             root.tag
         )));
     }
-    expansion.element(&mut root)?;
+    expansion.element(&mut root, 0)?;
     let incomplete = expansion.incomplete;
     let folders = expansion.folders;
 
     let mut reader =
         Reader { ids: ids(&root), builder, folders, incomplete, ranges: Memo::default() };
+    reader.check_circles(&root)?;
     let used = reader.used(&root)?;
     reader.bsdfs(&root, None, &used)?;
     Ok(reader.builder.finish())
@@ -64,28 +64,38 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
 /// Replaces each `<include>` by its content, and `$name` by its value.
 struct Expansion<'a> {
     builder: &'a mut Builder,
-    includes: Includes,
-    defaults: Vec<(String, String)>,
+    xml: xml::Reader,
+    defaults: BTreeMap<String, String>,
     /// Folders in which files are looked up: the scene's own, then those of `<path>`.
     folders: Vec<PathBuf>,
     incomplete: bool,
 }
 
 impl Expansion<'_> {
-    fn element(&mut self, element: &mut Element) -> Result<(), SceneError> {
-        for (_, value) in &mut element.attributes {
-            self.substitute(value);
+    fn element(&mut self, element: &mut Element, depth: usize) -> Result<(), SceneError> {
+        if depth == xml::MAX_DEPTH {
+            return Err(xml::too_deep(&element.place));
         }
+        self.substitute(element)?;
         match &element.tag[..] {
             "default" => {
                 let (name, value) = (element.required("name")?, element.required("value")?);
-                if !self.defaults.iter().any(|(known, _)| known == name) {
-                    self.defaults.push((name.to_owned(), value.to_owned()));
-                    // "$ab" must not be read as "$a" followed by "b".
-                    self.defaults.sort_by_key(|(name, _)| std::cmp::Reverse(name.len()));
+                if self.defaults.len() == limits::DEFAULTS {
+                    return Err(element.place.invalid(format!(
+                        "the scene has more than {} <default> parameters; write values in place of \
+                         some",
+                        limits::DEFAULTS
+                    )));
                 }
+                self.defaults.entry(name.to_owned()).or_insert_with(|| value.to_owned());
             }
             "path" => {
+                if self.folders.len() > limits::FOLDERS {
+                    return Err(element.place.invalid(format!(
+                        "the scene has more than {} <path> folders; keep its files in fewer",
+                        limits::FOLDERS
+                    )));
+                }
                 let folder = self.folders[0].join(element.required("value")?);
                 self.folders.push(folder);
             }
@@ -93,22 +103,20 @@ impl Expansion<'_> {
         }
         for mut child in std::mem::take(&mut element.children) {
             if child.tag == "include" {
-                element.children.extend(self.include(&mut child)?);
+                element.children.extend(self.include(&mut child, depth + 1)?);
             } else {
-                self.element(&mut child)?;
+                self.element(&mut child, depth + 1)?;
                 element.children.push(child);
             }
         }
         Ok(())
     }
 
-    fn include(&mut self, element: &mut Element) -> Result<Vec<Element>, SceneError> {
-        for (_, value) in &mut element.attributes {
-            self.substitute(value);
-        }
+    fn include(&mut self, element: &mut Element, depth: usize) -> Result<Vec<Element>, SceneError> {
+        self.substitute(element)?;
         let name = element.required("filename")?;
         let path = find(&self.folders, name);
-        if !self.includes.enter(&path, &element.place)? {
+        if !self.xml.includes.enter(&path, &element.place)? {
             self.incomplete = true;
             self.builder.warn(
                 &element.place,
@@ -118,17 +126,49 @@ impl Expansion<'_> {
             );
             return Ok(Vec::new());
         }
-        let mut root = xml::read(&path)?;
-        self.element(&mut root)?;
-        self.includes.leave();
+        let mut root = self.xml.read(&path, &element.place)?;
+        self.element(&mut root, depth)?;
+        self.xml.includes.leave();
         Ok(if root.tag == "scene" { root.children } else { vec![root] })
     }
 
-    fn substitute(&self, value: &mut String) {
-        if value.contains('$') {
-            for (name, replacement) in &self.defaults {
-                *value = value.replace(&format!("${name}"), replacement);
+    /// Replaces each `$name` in the attributes by its value, the longest name that is known.
+    fn substitute(&self, element: &mut Element) -> Result<(), SceneError> {
+        for (_, value) in &mut element.attributes {
+            if value.contains('$') {
+                let mut parts = value.split('$');
+                let mut replaced = parts.next().unwrap_or_default().to_owned();
+                for part in parts {
+                    match self.default(part) {
+                        Some((name, value)) => {
+                            self.xml.includes.charge(value.len(), &element.place)?;
+                            replaced.push_str(value);
+                            replaced.push_str(&part[name.len()..]);
+                        }
+                        None => {
+                            replaced.push('$');
+                            replaced.push_str(part);
+                        }
+                    }
+                }
+                *value = replaced;
             }
+        }
+        Ok(())
+    }
+
+    /// The longest name that `text` begins with, and its value.
+    fn default(&self, mut text: &str) -> Option<(&str, &str)> {
+        loop {
+            // What `text` begins with does not sort after it, and shorter ones before longer ones.
+            let range = (Bound::Unbounded, Bound::Included(text));
+            let (name, value) = self.defaults.range::<str, _>(range).next_back()?;
+            if text.starts_with(&name[..]) {
+                return Some((name, value));
+            }
+            // Nor is anything longer than what both begin with a beginning of it.
+            let same = text.chars().zip(name.chars()).take_while(|(a, b)| a == b);
+            text = &text[..same.map(|(a, _)| a.len_utf8()).sum()];
         }
     }
 }
@@ -185,27 +225,43 @@ impl<'a> Reader<'a> {
             return Ok(None);
         }
         let mut used = Set::new();
-        for shape in shapes {
-            self.mark(shape, &mut used)?;
+        while let Some(element) = shapes.pop() {
+            for child in &element.children {
+                let child = match &child.tag[..] {
+                    "bsdf" => child,
+                    "ref" => match self.referred(child)? {
+                        Some(bsdf) if bsdf.tag == "bsdf" => bsdf,
+                        _ => continue,
+                    },
+                    _ => continue,
+                };
+                if used.insert(std::ptr::from_ref(child)) {
+                    shapes.push(child);
+                }
+            }
         }
         Ok(Some(used))
     }
 
-    fn mark(&self, element: &'a Element, used: &mut Set) -> Result<(), SceneError> {
-        for child in &element.children {
-            let child = match &child.tag[..] {
-                "bsdf" => child,
-                "ref" => match self.referred(child)? {
-                    Some(bsdf) if bsdf.tag == "bsdf" => bsdf,
-                    _ => continue,
-                },
-                _ => continue,
-            };
-            if used.insert(std::ptr::from_ref(child)) {
-                self.mark(child, used)?;
-            }
-        }
-        Ok(())
+    /// Refuses an element that has itself inside, by `<ref>`.
+    fn check_circles(&self, root: &'a Element) -> Result<(), SceneError> {
+        let inside = |element: xml::Key<'a>| {
+            let own = element.0.children.iter();
+            let id = element.0.attribute("id").filter(|_| element.0.tag == "ref");
+            own.chain(id.and_then(|id| self.ids.get(id).copied())).map(Element::key).collect()
+        };
+        let Some(circle) = cycle::find([root.key()], inside) else {
+            return Ok(());
+        };
+        let references = circle.iter().map(|element| element.0).filter(|e| e.tag == "ref");
+        // A circle has a reference, since elements are a tree without them.
+        let last = references.clone().next_back().unwrap_or(root);
+        let names: Vec<&str> =
+            [last].into_iter().chain(references).filter_map(|e| e.attribute("id")).collect();
+        Err(last.place.invalid(format!(
+            "references go in a circle: {}; remove one of them",
+            names.join(" -> ")
+        )))
     }
 
     /// What a `<ref>` refers to; `None` if it may be in a file that is missing.

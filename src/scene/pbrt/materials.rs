@@ -1,5 +1,7 @@
 //! The lobes of pbrt's materials, and the ranges of its float textures.
 
+use std::rc::Rc;
+
 use super::Reader;
 use super::syntax::Parameter;
 use crate::scene::builder::{GGX, Lobe, conductor, dielectric};
@@ -13,12 +15,13 @@ const SMOOTH: f64 = 1e-3;
 /// Lower limit of α along one axis of a surface that is rough along the other (constructor of the
 /// same class).
 const LEAST: f64 = 1e-4;
+
 /// A material or a float texture: a class with parameters.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Definition {
     pub(super) name: String,
     pub(super) class: String,
-    parameters: Vec<Parameter>,
+    parameters: Vec<Rc<Parameter>>,
     pub(super) place: Place,
 }
 
@@ -26,14 +29,14 @@ impl Definition {
     pub(super) fn new(
         name: String,
         class: String,
-        parameters: Vec<Parameter>,
+        parameters: Vec<Rc<Parameter>>,
         place: Place,
     ) -> Self {
         Self { name, class, parameters, place }
     }
 
     pub(super) fn parameter(&self, name: &str) -> Option<&Parameter> {
-        self.parameters.iter().find(|p| p.name == name)
+        self.parameters.iter().find(|p| p.name == name).map(Rc::as_ref)
     }
 
     fn truth(&self, name: &str, default: bool) -> Result<bool, SceneError> {
@@ -71,10 +74,7 @@ impl Reader {
     /// Adds the lobes of a material.
     pub(super) fn lobes(&mut self, material: &Definition, used: bool) -> Result<(), SceneError> {
         let (name, place) = (&material.name, &material.place);
-        let mut ignore = |reason| {
-            self.builder.ignore(name, &material.class, place, reason);
-            Ok(())
-        };
+        let mut ignore = |reason| self.builder.ignore(name, &material.class, place, reason);
         let interfaces: &[(Option<&'static str>, &str)] = match &material.class[..] {
             "conductor" | "dielectric" | "coateddiffuse" | "subsurface" | "thindielectric" => {
                 &[(None, "")]
@@ -96,7 +96,7 @@ impl Reader {
                 fresnel: fresnel(material, prefix)?,
                 masking: Some(Masking::HeightCorrelated),
             };
-            self.builder.add(name, place, used, lobe);
+            self.builder.add(name, place, used, lobe)?;
         }
         Ok(())
     }
@@ -116,8 +116,8 @@ impl Reader {
 
         let x = alpha(self, u)?;
         // Equal parameters give equal values at each point, even from a texture.
-        let key = |p: Option<&Parameter>| p.map(|p| (p.kind.clone(), p.values.clone()));
-        if key(u) == key(v) {
+        let same = |u: &Parameter, v: &Parameter| u.kind == v.kind && u.values == v.values;
+        if u.zip(v).map_or(u.is_none() == v.is_none(), |(u, v)| same(u, v)) {
             return Ok(if x.max < SMOOTH { Roughness::Smooth } else { Roughness::Isotropic(x) });
         }
         let y = alpha(self, v)?;
@@ -168,7 +168,7 @@ impl Reader {
                 return Ok(known);
             }
             let range = self.texture(&texture)?;
-            return Ok(self.ranges.end(texture.name, range));
+            return self.ranges.end(texture.name.clone(), range, place);
         }
         if self.incomplete {
             let (name, reason) =

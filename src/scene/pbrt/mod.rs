@@ -29,6 +29,7 @@ use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use flate2::read::MultiGzDecoder;
 
@@ -39,7 +40,8 @@ use super::builder::Builder;
 use super::error::did_you_mean;
 use super::include::Includes;
 use super::memo::Memo;
-use super::{Format, Place, Scene, SceneError};
+use super::{Format, Place, Scene, SceneError, cycle, limits};
+use crate::input;
 
 /// All directives except those that [`Reader::statement`] handles.
 const PASSED_OVER: [&str; 29] = [
@@ -94,22 +96,28 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut reader = Reader {
         folder: path.parent().unwrap_or(Path::new("")).to_owned(),
         builder: Builder::new(Format::Pbrt),
-        includes: Includes::default(),
+        includes: Includes::new(limits::PBRT),
         state: State::default(),
         saved: Vec::new(),
         slots: Vec::new(),
         names: HashMap::new(),
         defined: Vec::new(),
+        held: 0,
         textures: HashMap::new(),
         ranges: Memo::default(),
         shapes: false,
         incomplete: false,
     };
     let place = Place::file(path);
-    let open = File::open(path).map_err(|error| place.io(error))?;
+    let open = open(path)?;
     reader.includes.enter(path, &place)?;
     reader.file(open, path)?;
     reader.finish()
+}
+
+/// Opens a file, of any size since it is read as a stream.
+fn open(path: &Path) -> Result<File, SceneError> {
+    input::open(path, u64::MAX).map_err(|error| Place::file(path).io(error))
 }
 
 /// The part of pbrt's graphics state that decides which material a shape uses.
@@ -117,8 +125,8 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
 struct State {
     /// Index in `slots`.
     material: Option<usize>,
-    /// Parameters from `Attribute "material"`.
-    attributes: Vec<Parameter>,
+    /// Parameters from `Attribute "material"`, each name once.
+    attributes: Vec<Rc<Parameter>>,
 }
 
 /// A material that is defined or referred to.
@@ -142,8 +150,10 @@ struct Reader {
     names: HashMap<String, usize>,
     /// Slots in the order of their definition.
     defined: Vec<usize>,
+    /// Bytes of the materials and textures.
+    held: u64,
     /// Float textures by name.
-    textures: HashMap<String, Definition>,
+    textures: HashMap<String, Rc<Definition>>,
     /// Ranges of the textures that were evaluated.
     ranges: Memo<String>,
     shapes: bool,
@@ -154,9 +164,11 @@ struct Reader {
 impl Reader {
     fn file(&mut self, file: File, path: &Path) -> Result<(), SceneError> {
         if path.extension().is_some_and(|extension| extension == "gz") {
-            self.statements(&mut Tokens::new(MultiGzDecoder::new(file), path))
+            let unpacked = self.includes.metered(MultiGzDecoder::new(file));
+            self.statements(&mut Tokens::new(unpacked, path))
         } else {
-            self.statements(&mut Tokens::new(file, path))
+            let metered = self.includes.metered(file);
+            self.statements(&mut Tokens::new(metered, path))
         }
     }
 
@@ -184,6 +196,12 @@ impl Reader {
                 skip_arguments(tokens)
             }
             "AttributeBegin" | "ObjectBegin" => {
+                if self.saved.len() == limits::PBRT_BLOCKS {
+                    return Err(place.syntax(format!(
+                        "blocks are nested more than {} deep; an AttributeEnd may be missing",
+                        limits::PBRT_BLOCKS
+                    )));
+                }
                 self.saved.push((self.state.clone(), place));
                 skip_arguments(tokens)
             }
@@ -197,7 +215,8 @@ impl Reader {
                 let target = quoted(tokens, "the target of the attributes")?;
                 let parameters = parameters(tokens)?;
                 if target == "material" {
-                    self.state.attributes.splice(0..0, parameters);
+                    self.hold(&parameters, &place)?;
+                    self.attributes(parameters, &place)?;
                 }
                 Ok(())
             }
@@ -214,12 +233,14 @@ impl Reader {
             }
             "Material" => {
                 let class = quoted(tokens, "the type of the material")?;
-                let parameters = self.with_attributes(parameters(tokens)?);
+                let own = parameters(tokens)?;
+                self.hold(&own, &place)?;
+                let parameters = self.with_attributes(own);
                 self.state.material = if is_no_material(&class) {
                     None
                 } else {
                     let at = format!("{class} at {}", within(&self.folder, &place));
-                    let slot = self.slot(&place);
+                    let slot = self.slot(&place)?;
                     self.define(slot, Definition::new(at, class, parameters, place));
                     Some(slot)
                 };
@@ -227,14 +248,17 @@ impl Reader {
             }
             "MakeNamedMaterial" => {
                 let name = quoted(tokens, "the name of the material")?;
-                let mut parameters = self.with_attributes(parameters(tokens)?);
+                let own = parameters(tokens)?;
+                self.hold(&own, &place)?;
+                let mut parameters = self.with_attributes(own);
                 let class = parameters.iter().position(|p| p.name == "type");
-                let class = class.and_then(|i| parameters.remove(i).values.pop()).ok_or_else(|| {
+                let class = class.and_then(|i| parameters.remove(i).values.last().cloned());
+                let class = class.ok_or_else(|| {
                     place.syntax(format!(
                         "material \"{name}\" has no type; add for example \"string type\" \"conductor\""
                     ))
                 })?;
-                let slot = self.named(&name, &place);
+                let slot = self.named(&name, &place)?;
                 if let Some(first) = &self.slots[slot].definition {
                     return Err(place.invalid(format!(
                         "material \"{name}\" is defined twice, first at {}; rename one of them",
@@ -246,7 +270,7 @@ impl Reader {
             }
             "NamedMaterial" => {
                 let name = quoted(tokens, "the name of a material")?;
-                self.state.material = Some(self.named(&name, &place));
+                self.state.material = Some(self.named(&name, &place)?);
                 // A parameter list is allowed by the grammar here, and has no meaning.
                 parameters(tokens).map(drop)
             }
@@ -256,8 +280,15 @@ impl Reader {
                 let class = quoted(tokens, "the class of the texture")?;
                 let parameters = parameters(tokens)?;
                 if kind == "float" {
+                    self.hold(&parameters, &place)?;
+                    if self.textures.len() == limits::MATERIALS {
+                        return Err(place.invalid(format!(
+                            "the scene has more than {} textures; split it",
+                            limits::MATERIALS
+                        )));
+                    }
                     let texture = Definition::new(name.clone(), class, parameters, place);
-                    self.textures.insert(name, texture);
+                    self.textures.insert(name, Rc::new(texture));
                 }
                 Ok(())
             }
@@ -289,30 +320,71 @@ impl Reader {
             );
             return Ok(());
         }
-        let file = File::open(&path).map_err(|error| Place::file(&path).io(error))?;
-        self.file(file, &path)?;
+        self.file(open(&path)?, &path)?;
         self.includes.leave();
         Ok(())
     }
 
-    fn with_attributes(&self, mut parameters: Vec<Parameter>) -> Vec<Parameter> {
+    /// Counts what is kept of a directive at `place`.
+    fn hold(&mut self, parameters: &[Rc<Parameter>], place: &Place) -> Result<(), SceneError> {
+        self.held += parameters.iter().map(|parameter| parameter.bytes() as u64).sum::<u64>();
+        if self.held <= limits::PBRT_HELD {
+            return Ok(());
+        }
+        Err(place.invalid(format!(
+            "the materials and textures of the scene have more than {} MiB of parameters; split it",
+            limits::PBRT_HELD >> 20
+        )))
+    }
+
+    /// Puts parameters before those in force: the first of a name counts.
+    fn attributes(
+        &mut self,
+        mut parameters: Vec<Rc<Parameter>>,
+        place: &Place,
+    ) -> Result<(), SceneError> {
+        parameters.append(&mut self.state.attributes);
+        for parameter in parameters {
+            let attributes = &mut self.state.attributes;
+            if attributes.iter().any(|first| first.name == parameter.name) {
+                continue;
+            }
+            if attributes.len() == limits::PBRT_PARAMETERS {
+                return Err(place.invalid(format!(
+                    "more than {} attributes of materials are in force; remove those that pbrt does \
+                     not read",
+                    limits::PBRT_PARAMETERS
+                )));
+            }
+            attributes.push(parameter);
+        }
+        Ok(())
+    }
+
+    fn with_attributes(&self, mut parameters: Vec<Rc<Parameter>>) -> Vec<Rc<Parameter>> {
         // The first parameter of a name counts: a material's own comes before the default.
         parameters.extend(self.state.attributes.iter().cloned());
         parameters
     }
 
-    fn slot(&mut self, place: &Place) -> usize {
+    fn slot(&mut self, place: &Place) -> Result<usize, SceneError> {
+        if self.slots.len() == limits::MATERIALS {
+            return Err(place.invalid(format!(
+                "the scene has more than {} materials; split it",
+                limits::MATERIALS
+            )));
+        }
         self.slots.push(Slot { used: false, definition: None, place: place.clone() });
-        self.slots.len() - 1
+        Ok(self.slots.len() - 1)
     }
 
-    fn named(&mut self, name: &str, place: &Place) -> usize {
+    fn named(&mut self, name: &str, place: &Place) -> Result<usize, SceneError> {
         match self.names.get(name) {
-            Some(&slot) => slot,
+            Some(&slot) => Ok(slot),
             None => {
-                let slot = self.slot(place);
+                let slot = self.slot(place)?;
                 self.names.insert(name.to_owned(), slot);
-                slot
+                Ok(slot)
             }
         }
     }
@@ -385,13 +457,26 @@ impl Reader {
                 }
             }
         }
+        let inside = |slot: usize| {
+            let parts = self.parts(slot).into_iter();
+            parts.filter_map(|(name, _)| self.names.get(&name).copied()).collect()
+        };
+        if let Some(circle) = cycle::find(pending.iter().copied(), inside) {
+            let definitions = circle.iter().chain(&circle[..1]);
+            let definitions: Vec<&Definition> =
+                definitions.filter_map(|&slot| self.slots[slot].definition.as_ref()).collect();
+            let names: Vec<&str> = definitions.iter().map(|d| &d.name[..]).collect();
+            return Err(definitions[0].place.invalid(format!(
+                "mixtures are made of each other in a circle: {}; take one out of another",
+                names.join(" -> ")
+            )));
+        }
         pending.retain(|&slot| self.slots[slot].used);
         while let Some(slot) = pending.pop() {
             for (name, _) in self.parts(slot) {
                 let Some(&part) = self.names.get(&name) else {
                     continue;
                 };
-                // Marking before descending ends the recursion of a mixture that contains itself.
                 if !std::mem::replace(&mut self.slots[part].used, true)
                     && is_mixture(&self.slots[part])
                 {
@@ -406,6 +491,7 @@ impl Reader {
     fn parts(&self, slot: usize) -> Vec<(String, Place)> {
         let definition = self.slots[slot].definition.as_ref();
         definition
+            .filter(|definition| definition.class == "mix")
             .and_then(|definition| definition.parameter("materials"))
             .map_or_else(Vec::new, |p| {
                 p.values.iter().map(|name| (name.clone(), p.place.clone())).collect()

@@ -1,21 +1,30 @@
 //! The grammar of pbrt's statements: a directive, quoted texts, and a list of parameters.
 
 use std::io::Read;
+use std::rc::Rc;
 
 use super::token::{Token, Tokens};
-use crate::scene::{Place, SceneError};
+use crate::scene::{Place, SceneError, limits};
 
 /// Longer parameter lists are spectra or geometry, none of which is read.
 const MAX_VALUES: usize = 16;
 
 /// A parameter: `"type name" value` or `"type name" [ values ]`.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Parameter {
     pub(super) kind: String,
     pub(super) name: String,
     /// The values as written; at most [`MAX_VALUES`].
     pub(super) values: Vec<String>,
     pub(super) place: Place,
+}
+
+impl Parameter {
+    /// Bytes of its texts, with one for the end of each.
+    pub(super) fn bytes(&self) -> usize {
+        let values: usize = self.values.iter().map(|value| value.len() + 1).sum();
+        self.kind.len() + self.name.len() + 2 + values
+    }
 }
 
 /// The quoted text that must come next.
@@ -30,7 +39,9 @@ pub(super) fn quoted<R: Read>(tokens: &mut Tokens<R>, what: &str) -> Result<Stri
 }
 
 /// The parameter list that comes next, perhaps empty.
-pub(super) fn parameters<R: Read>(tokens: &mut Tokens<R>) -> Result<Vec<Parameter>, SceneError> {
+pub(super) fn parameters<R: Read>(
+    tokens: &mut Tokens<R>,
+) -> Result<Vec<Rc<Parameter>>, SceneError> {
     let mut list = Vec::new();
     while let Some(token) = tokens.next()? {
         if token != Token::Text {
@@ -38,6 +49,12 @@ pub(super) fn parameters<R: Read>(tokens: &mut Tokens<R>) -> Result<Vec<Paramete
             break;
         }
         let place = tokens.place();
+        if list.len() == limits::PBRT_PARAMETERS {
+            return Err(place.invalid(format!(
+                "a directive has more than {} parameters; remove those that pbrt does not read",
+                limits::PBRT_PARAMETERS
+            )));
+        }
         let mut words = tokens.text().split_ascii_whitespace();
         let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
             return Err(place.syntax(format!(
@@ -47,7 +64,7 @@ pub(super) fn parameters<R: Read>(tokens: &mut Tokens<R>) -> Result<Vec<Paramete
         };
         let (kind, name) = (kind.to_owned(), name.to_owned());
         let values = values(tokens, &name)?;
-        list.push(Parameter { kind, name, values, place });
+        list.push(Rc::new(Parameter { kind, name, values, place }));
     }
     Ok(list)
 }

@@ -98,7 +98,7 @@ impl<R: Read> Tokens<R> {
     pub(super) fn skip_list(&mut self) -> Result<(), SceneError> {
         let open = self.place();
         loop {
-            let chunk = fill(&mut self.input, &self.file)?;
+            let chunk = fill(&mut self.input, &self.file, self.line)?;
             let stop = chunk.iter().position(|b| matches!(b, b'\n' | b']' | b'"' | b'#' | b'['));
             let taken = stop.unwrap_or(chunk.len());
             let stop = stop.map(|i| chunk[i]);
@@ -200,7 +200,7 @@ impl<R: Read> Tokens<R> {
     }
 
     fn peek(&mut self) -> Result<Option<u8>, SceneError> {
-        Ok(fill(&mut self.input, &self.file)?.first().copied())
+        Ok(fill(&mut self.input, &self.file, self.line)?.first().copied())
     }
 
     /// Consumes the byte that [`Self::peek`] saw.
@@ -221,6 +221,13 @@ fn text(bytes: Vec<u8>) -> String {
 }
 
 /// The buffered bytes, read anew if there are none; empty at the end.
-fn fill<'a>(input: &'a mut BufReader<impl Read>, file: &Path) -> Result<&'a [u8], SceneError> {
-    input.fill_buf().map_err(|error| Place::file(file).io(error))
+fn fill<'a>(
+    input: &'a mut BufReader<impl Read>,
+    file: &Arc<Path>,
+    line: u64,
+) -> Result<&'a [u8], SceneError> {
+    input.fill_buf().map_err(|error| {
+        let line = u32::try_from(line).ok();
+        Place { file: file.clone(), line, column: None }.io(error)
+    })
 }

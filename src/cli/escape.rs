@@ -1,0 +1,71 @@
+//! Makes text from files safe to print: names in a scene or a table file may hold characters that
+//! command a terminal, or that reverse what is read.
+
+use std::borrow::Cow;
+
+/// A text of several lines, with every such character written out, as `\u{1b}`.
+pub(super) fn lines(text: &str) -> Cow<'_, str> {
+    escaped(text, |c| is_hidden(c) && !matches!(c, '\n' | '\t'), char::escape_unicode)
+}
+
+/// A text that stays within its line: breaks are written out as well.
+pub(super) fn line(text: &str) -> Cow<'_, str> {
+    escaped(text, is_hidden, char::escape_default)
+}
+
+/// A JSON document with such characters as JSON writes them; they occur in its strings alone.
+pub(super) fn json(text: &str) -> Cow<'_, str> {
+    // None is above U+FFFF, where JSON has pairs.
+    let hidden = |c: char| is_hidden(c) && c != '\n';
+    escaped(text, hidden, |c| format!("\\u{:04x}", u32::from(c)).chars().collect::<Vec<_>>())
+}
+
+fn escaped<I: IntoIterator<Item = char>>(
+    text: &str,
+    hidden: impl Fn(char) -> bool,
+    escape: impl Fn(char) -> I,
+) -> Cow<'_, str> {
+    if !text.contains(&hidden) {
+        return text.into();
+    }
+    let mut shown = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        if hidden(c) {
+            shown.extend(escape(c));
+        } else {
+            shown.push(c);
+        }
+    }
+    shown.into()
+}
+
+/// Control characters, breaks of lines, and controls of the direction of writing.
+fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}')
+        || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ODD: &str = "é\u{1b}[31m\r\n\t\u{7}\u{7f}\u{9b}2J\u{202e}\u{2066}\u{2028}∞";
+
+    #[test]
+    fn what_commands_a_terminal_is_written_out() {
+        let rest = r"\u{7}\u{7f}\u{9b}2J\u{202e}\u{2066}\u{2028}∞";
+        assert_eq!(lines(ODD), format!("é\\u{{1b}}[31m\\u{{d}}\n\t{rest}"));
+        assert_eq!(line(ODD), format!("é\\u{{1b}}[31m\\r\\n\\t{rest}"));
+        assert!(matches!(lines("plain, é ∞\n"), Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn json_reads_back() {
+        let document = serde_json::json!({ "name": ODD });
+        let text = format!("{document:#}");
+        let shown = json(&text);
+        assert!(shown.chars().all(|c| c == '\n' || !is_hidden(c)), "{shown}");
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&shown).unwrap(), document);
+    }
+}

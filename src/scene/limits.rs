@@ -1,0 +1,49 @@
+//! How large a scene may be.
+//!
+//! Every limit is far above the scenes that exist, and low enough that the worst file of that size
+//! ends within seconds and 1 GB of memory.
+
+/// Bytes of a recipe. Its parser takes 80 times as much memory for a list of ones.
+pub(super) const RECIPE: u64 = 8 << 20;
+/// Bytes of the measured distributions of a recipe, all together; each is integrated numerically.
+pub(super) const MEASURED: u64 = 16 << 20;
+/// Distributions outside the family in a recipe: each takes a millisecond or more to integrate.
+pub(super) const DISTRIBUTIONS: u64 = 1000;
+/// Bytes of XML, with all that is included and substituted. Short attributes take 40 times as much.
+pub(super) const XML: u64 = 16 << 20;
+/// Elements, comments and texts of XML, with all that is included; 250 bytes each.
+pub(super) const XML_NODES: u64 = 1 << 20;
+/// Attributes of an XML element: the parser compares each with each.
+pub(super) const XML_ATTRIBUTES: usize = 256;
+/// Declarations of namespaces in an XML file: the parser copies them from element to element.
+pub(super) const XML_NAMESPACES: usize = 64;
+/// Bytes of the JSON of a glTF scene, most of which may be images and geometry in base64.
+pub(super) const JSON: u64 = 128 << 20;
+/// Entries of one list in a glTF scene.
+pub(super) const JSON_LIST: usize = 1 << 20;
+/// Bytes of a pbrt scene, unpacked and with all that is included. They are read as a stream, so
+/// that only time limits them: 2 s for numbers in lists, 12 s for words.
+pub(super) const PBRT: u64 = 1 << 30;
+/// Bytes of the materials and textures of a pbrt scene, which are held. Short parameters take 30
+/// times as much.
+pub(super) const PBRT_HELD: u64 = 16 << 20;
+/// Parameters of one pbrt directive, and of all attributes in force.
+pub(super) const PBRT_PARAMETERS: usize = 64;
+/// Blocks inside each other in a pbrt scene.
+pub(super) const PBRT_BLOCKS: usize = 10_000;
+/// Materials of a scene, with those for which there is nothing to bake; textures likewise.
+pub(super) const MATERIALS: usize = 100_000;
+/// Bytes of a material's name: each of its lobes repeats it.
+pub(super) const NAME: usize = 1024;
+/// Included files, each as often as it is included.
+pub(super) const INCLUDES: usize = 10_000;
+/// Folders that a Mitsuba scene adds with `<path>`: every file is looked for in each.
+pub(super) const FOLDERS: usize = 64;
+/// Parameters that a Mitsuba scene declares with `<default>`.
+pub(super) const DEFAULTS: usize = 1000;
+/// Bytes of one image file.
+pub(super) const IMAGE_FILE: u64 = 256 << 20;
+/// Bytes of memory for decoding one image: a PNG of 8192 x 8192 pixels of 16-bit RGBA.
+pub(super) const IMAGE: u64 = 512 << 20;
+/// Bytes of all images of a scene, decoded; a gigabyte takes two seconds.
+pub(super) const IMAGES: u64 = 8 << 30;
