@@ -143,6 +143,8 @@ fn what_no_albedo_table_covers_is_refused_with_what_they_cover() {
         }
         assert_eq!(set.albedo(0.0, 1.501, masking).unwrap().albedo(view(1e-7)), 1.0);
         assert!(set.albedo(1e-8, 1.501, masking).unwrap().albedo(view(1e-7)) < 0.5);
+        // The smallest roughness of a lobe, as it is in single precision.
+        assert!(set.albedo(1e-8_f32.into(), 1.501, masking).is_ok());
         assert!(set.albedo(3.0, 2.0, masking).is_ok());
         let message = refused(&set, 0.3, 1.5005, masking);
         assert!(message.contains("gamma [1.501, inf] with sigma 0 or [1e-8, 3]"), "{message}");

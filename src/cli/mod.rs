@@ -93,7 +93,7 @@ pub(crate) fn main() -> ExitCode {
         Ok(Done::Rejected) => ExitCode::from(1),
         Err(Failure(message)) => {
             // Further lines are indented, so that none of them passes for a message of ours.
-            eprintln!("error: {}", escape::lines(&message).replace('\n', "\n    "));
+            say("error", &escape::lines(&message).replace('\n', "\n    "));
             ExitCode::from(2)
         }
     }
@@ -101,7 +101,12 @@ pub(crate) fn main() -> ExitCode {
 
 /// Writes a line to standard error: a warning or a note, as `kind` says.
 fn report(kind: &str, message: impl Display) {
-    eprintln!("{kind}: {}", escape::line(&message.to_string()));
+    say(kind, &escape::line(&message.to_string()));
+}
+
+/// Writes to standard error; where that fails, nothing is left to say it to.
+fn say(kind: &str, text: &str) {
+    let _ = writeln!(io::stderr(), "{kind}: {text}");
 }
 
 /// Writes a text for people to standard output.
@@ -111,8 +116,12 @@ fn print(text: &str) -> Result<(), Failure> {
 
 /// Writes to standard output; a reader that has closed the pipe (`| head`) is no error.
 fn write(text: &str) -> Result<(), Failure> {
-    match io::stdout().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+    let mut out = io::stdout();
+    // Flushed, since an error that waits for the end of the process is lost.
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure(format!("standard output: {error}")))
+        }
         _ => Ok(()),
     }
 }

@@ -11,7 +11,7 @@ use microfacet_common::shape::s_of_gamma;
 use crate::axis::lagrange::{SIX, combine, six};
 use crate::axis::{Mapping, PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend, Weights};
 use crate::error::MaterialError;
-use crate::format::{Kind, Reflectance, SAME, Table};
+use crate::format::{Kind, Reflectance, Table};
 use crate::math::unit;
 
 /// The largest number of channels of an albedo table.
@@ -50,7 +50,8 @@ impl MaterialWeights {
                         return None;
                     }
                     let first = axis.quantity(axis.nodes[0])?;
-                    let below = point.sigma < first * (1.0 - SAME);
+                    // As single precision has them, in which lobes take σ.
+                    let below = (point.sigma as f32) < first as f32;
                     // Between a mirror and the first node nothing is known.
                     if below && point.sigma > 0.0 {
                         return None;

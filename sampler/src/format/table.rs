@@ -93,9 +93,11 @@ impl Table {
         if let Err(why) = self.subject.check(self.kind) {
             return fail(why);
         }
-        if let Some((key, figure)) =
-            self.certificate.iter().find(|(_, figure)| !(0.0..f64::INFINITY).contains(*figure))
-        {
+        // Errors and counts are not negative; the azimuth of the worst place may be.
+        let lies = |(key, figure): &(&String, &f64)| {
+            !figure.is_finite() || **figure < 0.0 && key.as_str() != "worst_phi"
+        };
+        if let Some((key, figure)) = self.certificate.iter().find(lies) {
             return fail(format!("`{key}` of its certificate is {figure}; it must be 0 or more"));
         }
         let layout = self.kind.layout(&self.subject);

@@ -9,7 +9,7 @@ use clap::{Subcommand, ValueEnum};
 use microfacet_bake::input::{Limited, MAX_ROW, open_or_stdin, shown};
 use rayon::prelude::*;
 
-use super::{Done, Failure, Outcome, tables};
+use super::{Done, Failure, Outcome, report, tables};
 use quantities::{Albedo, AlbedoAverage, G1, Known, Normal, Quantity};
 
 /// Append table and exact values to the points of a CSV file.
@@ -128,7 +128,7 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
         if !noted && io.method.len() > 1 {
             let rows = some.par_iter().filter_map(|record| record.as_ref().ok());
             let note = rows.find_map_first(|row| quantity.note(&picked(row, &columns), &known));
-            note.iter().for_each(|note| eprintln!("note: {note}"));
+            note.iter().for_each(|note| report("note", note));
             noted = note.is_some();
         }
         let rows: Vec<_> = some.into_par_iter().map(|record| answered(record?)).collect();
