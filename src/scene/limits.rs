@@ -22,7 +22,7 @@ pub(super) const JSON: u64 = 128 << 20;
 /// Entries of one list in a glTF scene.
 pub(super) const JSON_LIST: usize = 1 << 20;
 /// Bytes of a pbrt scene, unpacked and with all that is included. They are read as a stream, so
-/// that only time limits them: 2 s for numbers in lists, 12 s for words.
+/// that only time limits them: 3 s for numbers in lists, 13 s for words.
 pub(super) const PBRT: u64 = 1 << 30;
 /// Bytes of the materials and textures of a pbrt scene, which are held. Short parameters take 30
 /// times as much.

@@ -2,9 +2,10 @@
 //! directions are left.
 //!
 //! [`distribution`] is the trait of them all. [`student_t`] reads slices of the tables ([`slices`])
-//! for masking and visible normals, of the shapes that all of them cover ([`coverage`]): [`sample`] draws them, [`fast_path`] draws the common case
-//! faster, and [`batch`] four at a time; [`table_pdf`] is the density of what is drawn, and
-//! [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`] takes directions through a
+//! for masking and visible normals, of the shapes that all of them cover ([`coverage`]): [`sample`]
+//! draws them, [`fast_path`] draws the common case faster, and [`batch`] four at a time;
+//! [`table_pdf`] is the density of what is drawn, and [`bounded`] leaves out normals that cannot
+//! reflect. [`ellipsoid`] takes directions through a
 //! matrix to a Student-t, [`radial`] has tables of its own, and [`ggx`] needs none.
 
 mod batch;
