@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use microfacet_sampler::{Mapping, Provenance, Table, VERSION, encode};
 
 use crate::bake::NUMERICS;
-use crate::store::{self, replace};
+use crate::store::{self, remove_abandoned, replace};
 
 /// A folder of finished tables, or no cache at all.
 ///
@@ -64,7 +64,10 @@ impl Cache {
         let (Some(path), Some(folder)) = (self.path(&key), &self.folder) else { return Ok(()) };
         let provenance = Provenance { recipe: key, numerics: NUMERICS, ..Provenance::default() };
         let bytes = encode(&provenance, tables).map_err(io::Error::other)?;
-        let put = std::fs::create_dir_all(folder).and_then(|()| replace(&path, &bytes));
+        let put = std::fs::create_dir_all(folder).and_then(|()| {
+            remove_abandoned(folder);
+            replace(&path, &bytes)
+        });
         put.map_err(|why| io::Error::new(why.kind(), format!("{}: {why}", path.display())))
     }
 

@@ -29,18 +29,19 @@ pub fn open(path: &Path, limit: u64) -> io::Result<File> {
 }
 
 fn regular(found: &std::fs::Metadata, limit: u64) -> io::Result<()> {
-    let invalid = |why: String| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
     if !found.is_file() {
-        return invalid(format!("is {}; name a regular file", name(found.file_type())));
+        let why = format!("is {}; name a regular file", name(found.file_type()));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
     }
     if found.len() > limit {
-        return invalid(too_large(&format!("has {} bytes", found.len()), limit));
+        return Err(too_large(&format!("has {} bytes", found.len()), limit));
     }
     Ok(())
 }
 
-fn too_large(what: &str, limit: u64) -> String {
-    format!("{what}, and at most {} MiB are read", limit >> 20)
+fn too_large(what: &str, limit: u64) -> io::Error {
+    let why = format!("{what}, and at most {} MiB are read", limit >> 20);
+    io::Error::new(io::ErrorKind::FileTooLarge, why)
 }
 
 /// Opens a regular file as [`open`] does, or standard input for `-`, of which `limit` bytes are
@@ -123,12 +124,12 @@ pub(crate) fn name(kind: std::fs::FileType) -> &'static str {
 ///
 /// # Errors
 /// As [`open`].
-pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+pub(crate) fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     // Files of the kernel report no size, and a file may grow while it is read.
     open(path, limit)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, too_large("is too long", limit)));
+        return Err(too_large("is too long", limit));
     }
     Ok(bytes)
 }
@@ -137,7 +138,7 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
 ///
 /// # Errors
 /// As [`open`], or that it is not UTF-8.
-pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
+pub(crate) fn read_text(path: &Path, limit: u64) -> io::Result<String> {
     let text = String::from_utf8(read(path, limit)?);
     text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "is no text in UTF-8"))
 }

@@ -66,6 +66,13 @@ fn the_furnace_closes() {
 }
 
 #[test]
+fn cosines_of_no_view_are_those_of_the_nearest() {
+    let at = |cos| furnace(&set(), Masking::HeightCorrelated, 0.3, 3.0, cos).unwrap().single;
+    assert_eq!(at(1.5), at(1.0));
+    assert!(at(-1.0) >= 0.0 && at(f64::NAN) >= 0.0);
+}
+
+#[test]
 fn a_wrong_table_does_not_close() {
     let mut tables = baked().to_vec();
     // E − 1 three per cent too small.

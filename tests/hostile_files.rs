@@ -261,7 +261,7 @@ fn normals_go_to_standard_output() {
     let folder = workshop();
     let at = folder.path();
     let piped = script(at, &format!("{SAMPLE} - | cat"));
-    assert!(String::from_utf8_lossy(&piped.stderr).contains("(1000 normals)"));
+    assert!(String::from_utf8_lossy(&piped.stderr).contains("1000 normals on standard output"));
     ok(
         at,
         &[

@@ -8,7 +8,7 @@ use microfacet_common::Roughness;
 use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::shape::Shape;
-use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon};
+use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon, bounded};
 
 /// The Student-t distribution of microfacet normals, of roughness σx, σy and shape γ.
 ///
@@ -186,6 +186,6 @@ impl MicrofacetDistribution for StudentT {
         if !(v.z > 0.0 && facing > 0.0) {
             return 0.0;
         }
-        (facing * self.d(m) * self.inverse_area(v)).min(f64::MAX)
+        bounded(facing * self.d(m) * self.inverse_area(v))
     }
 }

@@ -23,7 +23,7 @@ fn table(kind: Kind, precision: Precision, mut axes: Vec<Axis>, values: &[f32]) 
         channels: vec!["value".into(), "slope".into()],
         values: values.to_vec(),
         precision,
-        subject: Subject::shapes([0.0, 1.9]),
+        subject: Subject::shapes([1.0, 1.0]),
         certificate: [("g1_max_error".to_string(), 0.5)].into_iter().collect(),
     };
     table.rounded(precision)
@@ -197,7 +197,7 @@ fn lying_descriptions_of_materials_and_tables_are_refused_by_name() {
     let metal = r#"\"sigma\":[[0.0,0.5],[0.125,0.625]],\"s\":[0.0,1.5]"#;
     let tilted = r#"\"sigma\":[[0.25,0.25],[0.375,0.375]],\"s\":[0.75,0.75]"#;
     let theta = r#"\"theta\":[0.1,-0.2,0.5]"#;
-    let covers = r#"\"covers\":{\"s\":[0.0,1.9]}"#;
+    let covers = r#"\"covers\":{\"s\":[1.0,1.0]}"#;
     let lies = [
         // Materials.
         (metal, r#"\"sigma\":[[0.5,0.0],[0.1,0.6]],\"s\":[0.0,1.5]"#, "`metal`: sigma = [0.5, 0]"),

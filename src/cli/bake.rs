@@ -7,7 +7,8 @@ use clap::ValueEnum;
 use serde_json::json;
 
 use microfacet_bake::cache::Cache;
-use microfacet_bake::plan::Plan;
+use microfacet_bake::input::MAX_TABLES;
+use microfacet_bake::plan::{Plan, set_cost};
 use microfacet_bake::scene::{self, Scene};
 use microfacet_bake::store::{Format, OutputFolder, Written};
 use microfacet_bake::table_set::{Baked, Progress, Settings, Target, bake_with};
@@ -15,7 +16,7 @@ use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::Table;
 
 use super::request::Request;
-use super::{Done, Outcome, escape, print, print_json, progress, report};
+use super::{Done, Failure, Outcome, escape, print, print_json, progress, report};
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
@@ -39,7 +40,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_error, conflicts_with_all = ["quality", "precision", "max_bytes"])]
     max_error: Option<f64>,
     /// Choose the most accurate tables instead whose safetensors file is at most this large.
-    #[arg(long, value_name = "BYTES", conflicts_with_all = ["quality", "precision"])]
+    #[arg(long, value_name = "BYTES", value_parser = parse_size, conflicts_with_all = ["quality", "precision"])]
     max_bytes: Option<usize>,
     /// Choose tables for --max-error or --max-bytes even if that takes more than ten seconds and
     /// more than three times the bake of default quality.
@@ -92,6 +93,14 @@ fn parse_error(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses the largest size of a set.
+fn parse_size(text: &str) -> Result<usize, String> {
+    match parse_bytes(text)? {
+        bytes if bytes <= MAX_TABLES => usize::try_from(bytes).map_err(|e| e.to_string()),
+        bytes => Err(format!("{bytes} bytes: at most {MAX_TABLES} are read back")),
+    }
+}
+
 impl Args {
     fn target(&self) -> Target {
         match (self.max_error, self.max_bytes) {
@@ -125,6 +134,17 @@ pub(super) fn run(args: Args) -> Outcome {
     if plan.is_empty() {
         print("Nothing to bake: no material in use is rough.\n")?;
         return Ok(Done::Ok);
+    }
+    if let Target::Quality(quality, precision) = args.target() {
+        let bytes = set_cost(&plan, quality, precision)?.bytes as u64;
+        if bytes > MAX_TABLES {
+            return Err(Failure(format!(
+                "the set would have about {} MiB, and at most {} MiB are read back: bake fewer materials, or with a lower quality or \
+                 precision",
+                bytes >> 20,
+                MAX_TABLES >> 20
+            )));
+        }
     }
     let bar = progress(0, "baking");
     let settings = Settings {

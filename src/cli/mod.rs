@@ -111,14 +111,14 @@ fn say(kind: &str, text: &str) {
 
 /// Writes a text for people to standard output.
 fn print(text: &str) -> Result<(), Failure> {
-    write(&escape::lines(text))
+    write(escape::lines(text).as_bytes())
 }
 
 /// Writes to standard output; a reader that has closed the pipe (`| head`) is no error.
-fn write(text: &str) -> Result<(), Failure> {
+fn write(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout();
     // Flushed, since an error that waits for the end of the process is lost.
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure(format!("standard output: {error}")))
         }
@@ -128,7 +128,7 @@ fn write(text: &str) -> Result<(), Failure> {
 
 /// Prints a value as JSON.
 fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
-    write(&escape::json(&format!("{value:#}\n")))
+    write(escape::json(&format!("{value:#}\n")).as_bytes())
 }
 
 /// A progress bar of `steps`, on a terminal only.

@@ -10,7 +10,7 @@ use microfacet_bake::bake::albedo::{AlbedoLobe, AlbedoSpec, Domain};
 use microfacet_bake::distribution::Distribution;
 use microfacet_bake::plan::{
     AlbedoVerdict, Cost, Plan, RequiredShapes, Verdict, albedo_cost, bare_cost, cost,
-    distribution_cost,
+    distribution_cost, set_cost,
 };
 use microfacet_bake::scene::{self, Interval, Material, Scene};
 use microfacet_bake::table_spec::{TableSpec, general_set};
@@ -76,13 +76,7 @@ pub(super) fn run(args: Args) -> Outcome {
         .collect();
     let distributions: Vec<Cost> =
         plan.distributions.iter().map(|own| distribution_cost(own, quality, precision)).collect();
-    let total = tables
-        .iter()
-        .map(|(_, cost)| *cost)
-        .chain(distributions.iter().copied())
-        .chain(albedos.iter().map(|(_, cost)| *cost))
-        .chain([bare_cost(&plan.provenance())])
-        .sum();
+    let total = set_cost(&plan, quality, precision)?;
     let everything = args.request.general_plan();
     let has_albedos = !everything.albedos.is_empty();
     let mut everything = vec![cost(&general), bare_cost(&everything.provenance())];

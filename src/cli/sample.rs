@@ -1,6 +1,6 @@
 //! `sample`: draws visible normals of one material and view into a safetensors file.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 
 use clap::ValueEnum;
@@ -16,7 +16,8 @@ use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::MicrofacetDistribution as _;
 
 use super::{
-    Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, tables,
+    Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, report,
+    tables, write,
 };
 
 /// Draw normals for one material and view into a safetensors file: `normals` [N,3], `pdf` [N], f32.
@@ -116,17 +117,9 @@ pub(super) fn run(args: Args) -> Outcome {
         None,
     )?;
     if to_stdout {
-        let mut out = io::stdout();
-        return match out.write_all(&bytes).and_then(|()| out.flush()) {
-            Err(why) if why.kind() != io::ErrorKind::BrokenPipe => {
-                Err(Failure(format!("standard output: {why}")))
-            }
-            _ => {
-                // The normals are out, even if nobody can be told.
-                let _ = writeln!(io::stderr(), "standard output ({count} normals)");
-                Ok(Done::Ok)
-            }
-        };
+        write(&bytes)?;
+        report("note", format!("{count} normals on standard output"));
+        return Ok(Done::Ok);
     }
     replace(&args.out, &bytes).map_err(|why| {
         let hint = if why.kind() == io::ErrorKind::InvalidInput {

@@ -6,10 +6,11 @@ use microfacet_sampler::{
     Reflectance,
 };
 
-use crate::bake::albedo::{AlbedoLobe, AlbedoSpec};
+use super::Plan;
+use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
 use crate::bake::{self};
 use crate::distribution::Distribution;
-use crate::table_spec::{Level, TableSpec};
+use crate::table_spec::{Level, Quality, TableSpec, general_set};
 use crate::validate::certificate::POINTS;
 use crate::validate::{points, radial};
 
@@ -65,6 +66,18 @@ pub fn cost(specs: &[TableSpec]) -> Cost {
     };
     let bytes = specs.iter().map(|spec| spec.bytes() + header(spec)).sum();
     Cost { bytes, seconds: seconds(specs) }
+}
+
+/// Estimates a whole set of this quality.
+///
+/// # Errors
+/// [`AlbedoError`] for an albedo that no table can hold.
+pub fn set_cost(plan: &Plan, quality: Quality, precision: Precision) -> Result<Cost, AlbedoError> {
+    let general = general_set(quality, precision);
+    let shapes = plan.shapes.iter().map(|need| Ok(cost(&need.specs(&general))));
+    let albedos = plan.albedos.iter().map(|need| Ok(albedo_cost(&need.spec(quality, precision)?)));
+    let own = plan.distributions.iter().map(|own| Ok(distribution_cost(own, quality, precision)));
+    shapes.chain(albedos).chain(own).chain([Ok(bare_cost(&plan.provenance()))]).sum()
 }
 
 /// The seconds of [`cost`] alone, which are quick to estimate.

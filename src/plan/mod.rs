@@ -12,10 +12,10 @@ mod required_shapes;
 
 use std::fmt;
 
-use microfacet_sampler::{MaterialEntry, StudentT};
+use microfacet_sampler::{Ellipsoid, MaterialEntry, StudentT};
 
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
-pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, seconds};
+pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, seconds, set_cost};
 pub use required_shapes::RequiredShapes;
 
 use microfacet_common::shape::s_of_gamma;
@@ -237,7 +237,7 @@ fn is_rough(material: &Material) -> bool {
 /// The smallest and the largest σ that a lobe can have. A tilted lobe is held to it by its matrix
 /// alone.
 fn lobe_sigmas(material: &Material) -> [f64; 2] {
-    if material.theta.is_some() { [f64::MIN_POSITIVE, f64::MAX] } else { StudentT::SIGMAS }
+    if material.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
 }
 
 /// The materials of a scene as a set lists them: those in use that are rough.

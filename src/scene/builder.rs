@@ -159,7 +159,7 @@ impl Builder {
         place: &Place,
     ) -> Interval {
         self.textures
-            .range(file.to_owned(), channel, encoding, |file| texture::file(file))
+            .range(file.to_owned(), channel, encoding, |file, left| texture::file(file, left))
             .unwrap_or_else(|error| self.unread(&file.display().to_string(), &error, place))
     }
 

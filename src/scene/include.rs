@@ -1,48 +1,23 @@
 //! Included files: checks for circular inclusion, and a limit for all of them together, since a few
 //! files that include each other twice amount to any number.
 
-use std::cell::Cell;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 
-use super::{Place, SceneError, limits};
+use super::limits::{self, Budget};
+use super::{Place, SceneError};
 use crate::input;
 
 /// Deeper nesting than this is refused as a mistake.
 const MAX_DEPTH: usize = 64;
 
-/// What the files of a scene may still amount to, shared by their readers.
-#[derive(Clone)]
-pub(super) struct Budget {
-    limit: u64,
-    left: Rc<Cell<u64>>,
-}
-
-impl Budget {
-    pub(super) fn new(limit: u64) -> Self {
-        Self { limit, left: Rc::new(Cell::new(limit)) }
-    }
-
-    pub(super) fn left(&self) -> u64 {
-        self.left.get()
-    }
-
-    /// Takes a part of it; `false` if less is left.
-    pub(super) fn take(&self, part: u64) -> bool {
-        let left = self.left.get().checked_sub(part);
-        self.left.set(left.unwrap_or(0));
-        left.is_some()
-    }
-
-    /// Why bytes are refused.
-    fn spent(&self) -> String {
-        format!(
-            "the scene has more than {} MiB of text, with all that is included and substituted; \
-             load a file that has the materials alone",
-            self.limit >> 20
-        )
-    }
+/// Why more text is refused.
+fn spent(text: &Budget) -> String {
+    format!(
+        "the scene has more than {} MiB of text, with all that is included and substituted; load a \
+         file that has the materials alone",
+        text.limit() >> 20
+    )
 }
 
 /// A reader that takes what it reads from a budget.
@@ -57,7 +32,7 @@ impl<R: Read> Read for Metered<R> {
         if self.budget.take(count as u64) {
             Ok(count)
         } else {
-            Err(io::Error::new(io::ErrorKind::FileTooLarge, self.budget.spent()))
+            Err(io::Error::new(io::ErrorKind::FileTooLarge, spent(&self.budget)))
         }
     }
 }
@@ -126,15 +101,20 @@ impl Includes {
 
     /// The text of a file that `place` asks for.
     pub(super) fn text(&self, file: &Path, place: &Place) -> Result<String, SceneError> {
-        let text = input::read_text(file, self.text.limit);
-        let text = text.map_err(|error| Place::file(file).io(error))?;
+        let text = input::read_text(file, self.text.limit()).map_err(|error| {
+            let place = Place::file(file);
+            match error.kind() {
+                io::ErrorKind::FileTooLarge => place.invalid(spent(&self.text)),
+                _ => place.io(error),
+            }
+        })?;
         self.charge(text.len(), place)?;
         Ok(text)
     }
 
     /// Takes bytes that `place` adds to the text from what may still be read.
     pub(super) fn charge(&self, bytes: usize, place: &Place) -> Result<(), SceneError> {
-        if self.text.take(bytes as u64) { Ok(()) } else { Err(place.invalid(self.text.spent())) }
+        if self.text.take(bytes as u64) { Ok(()) } else { Err(place.invalid(spent(&self.text))) }
     }
 
     /// A reader of text that counts what it reads.

@@ -1,7 +1,39 @@
 //! How large a scene may be.
 //!
-//! Every limit is far above the scenes that exist, and low enough that the worst file of that size
-//! ends within seconds and 1 GB of memory.
+//! Every limit is low enough that the worst file of that size ends within seconds and 1 GB of
+//! memory, and above nearly all scenes that exist. Larger ones, such as Disney's Moana island, whose
+//! text for pbrt is geometry, have their materials in files of their own, which can be loaded alone.
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+/// What may still be read or held for a scene, shared by its readers.
+#[derive(Clone)]
+pub(super) struct Budget {
+    limit: u64,
+    left: Rc<Cell<u64>>,
+}
+
+impl Budget {
+    pub(super) fn new(limit: u64) -> Self {
+        Self { limit, left: Rc::new(Cell::new(limit)) }
+    }
+
+    pub(super) fn limit(&self) -> u64 {
+        self.limit
+    }
+
+    pub(super) fn left(&self) -> u64 {
+        self.left.get()
+    }
+
+    /// Takes a part of it; `false` if less is left.
+    pub(super) fn take(&self, part: u64) -> bool {
+        let left = self.left.get().checked_sub(part);
+        self.left.set(left.unwrap_or(0));
+        left.is_some()
+    }
+}
 
 /// Bytes of a recipe. Its parser takes 80 times as much memory for a list of ones.
 pub(super) const RECIPE: u64 = 8 << 20;
@@ -9,10 +41,12 @@ pub(super) const RECIPE: u64 = 8 << 20;
 pub(super) const MEASURED: u64 = 16 << 20;
 /// Distributions outside the family in a recipe: each takes a millisecond or more to integrate.
 pub(super) const DISTRIBUTIONS: u64 = 1000;
-/// Bytes of XML, with all that is included and substituted. Short attributes take 40 times as much.
-pub(super) const XML: u64 = 16 << 20;
+/// Bytes of XML, with all that is included and substituted.
+pub(super) const XML: u64 = 64 << 20;
 /// Elements, comments and texts of XML, with all that is included; 250 bytes each.
-pub(super) const XML_NODES: u64 = 1 << 20;
+pub(super) const XML_NODES: u64 = 2 << 20;
+/// Attributes of all these elements; 250 bytes each.
+pub(super) const XML_VALUES: u64 = 3 << 19;
 /// Attributes of an XML element: the parser compares each with each.
 pub(super) const XML_ATTRIBUTES: usize = 256;
 /// Declarations of namespaces in an XML file: the parser copies them from element to element.

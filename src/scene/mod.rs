@@ -44,6 +44,7 @@ mod recipe;
 mod texture;
 mod xml;
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 pub use error::{Place, SceneError, SceneErrorKind};
@@ -113,7 +114,13 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     match Path::new(&name).extension().and_then(|extension| extension.to_str()) {
         Some("toml") => {
             let place = Place::file(path);
-            let text = input::read_text(path, limits::RECIPE).map_err(|error| place.io(error))?;
+            let text =
+                input::read_text(path, limits::RECIPE).map_err(|error| match error.kind() {
+                    ErrorKind::FileTooLarge => {
+                        place.invalid(format!("it {error}; split the recipe"))
+                    }
+                    _ => place.io(error),
+                })?;
             Scene::from_recipe(&text, path)
         }
         Some("pbrt") => pbrt::load(path),

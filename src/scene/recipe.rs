@@ -33,7 +33,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Lines, did_you_mean};
-use super::include::Budget;
+use super::limits::Budget;
 use super::{
     Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, SceneError, limits,
 };
@@ -239,12 +239,6 @@ impl Source<'_> {
     /// The lobe of a material with a named distribution; as a Student-t if it is one.
     fn distribution(&self, table: &Table<'_>, value: &Value<'_>) -> Result<Lobe, SceneError> {
         let place = self.place(value.span());
-        if !self.distributions.take(1) {
-            return Err(place.invalid(format!(
-                "the recipe has more than {} materials with a `distribution`; split it",
-                limits::DISTRIBUTIONS
-            )));
-        }
         let common = ["name", "distribution", "fresnel", "masking"];
         let distribution = if let Some(name) = value.get_ref().as_str() {
             let kind = DistributionKind::by_name(name).map_err(|e| place.invalid(e.to_string()))?;
@@ -287,6 +281,13 @@ impl Source<'_> {
                 (Roughness::isotropic(sigma), Interval::point(t.shape().gamma()), None)
             }
             None => {
+                if !self.distributions.take(1) {
+                    return Err(place.invalid(format!(
+                        "the recipe has more than {} materials with a distribution outside the \
+                         Student-t family; split it",
+                        limits::DISTRIBUTIONS
+                    )));
+                }
                 let sigma = Interval::point(Marginal::new(&*built).sigma());
                 (Roughness::isotropic(sigma), Interval::point(2.0), Some(distribution))
             }

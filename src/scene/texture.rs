@@ -8,8 +8,8 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::include::Budget;
-use super::{Interval, limits};
+use super::Interval;
+use super::limits::{self, Budget};
 use crate::input;
 
 /// The number of a pixel to read.
@@ -36,7 +36,7 @@ pub(super) enum Encoding {
     Srgb,
 }
 
-/// Ranges of images, each read once, until they come to [`limits::IMAGES`].
+/// Ranges of images, each read once for a channel, until they come to [`limits::IMAGES`].
 pub(super) struct Textures<K> {
     ranges: HashMap<(K, Channel, Encoding), Result<Interval, String>>,
     left: Budget,
@@ -51,19 +51,20 @@ impl<K> Default for Textures<K> {
 impl<K: Eq + Hash> Textures<K> {
     /// The smallest interval that holds the values of all pixels; filtering stays inside it.
     ///
-    /// `read` gives the bytes of the image `key`. The error completes the sentence "texture x ...".
+    /// `read` gives the bytes of the image `key`, and takes from the budget what it reads for them.
+    /// The error completes the sentence "texture x ...".
     pub(super) fn range(
         &mut self,
         key: K,
         channel: Channel,
         encoding: Encoding,
-        read: impl FnOnce(&K) -> io::Result<Vec<u8>>,
+        read: impl FnOnce(&K, &Budget) -> io::Result<Vec<u8>>,
     ) -> Result<Interval, String> {
         let left = &self.left;
         match self.ranges.entry((key, channel, encoding)) {
             Entry::Occupied(known) => known.get().clone(),
             Entry::Vacant(place) => {
-                let range = read(&place.key().0)
+                let range = read(&place.key().0, left)
                     .map_err(|error| format!("cannot be read ({error})"))
                     .and_then(|bytes| range(&bytes, channel, encoding, left));
                 place.insert(range).clone()
@@ -73,8 +74,21 @@ impl<K: Eq + Hash> Textures<K> {
 }
 
 /// Reads an image file.
-pub(super) fn file(path: &Path) -> io::Result<Vec<u8>> {
-    input::read(path, limits::IMAGE_FILE)
+pub(super) fn file(path: &Path, left: &Budget) -> io::Result<Vec<u8>> {
+    let bytes = input::read(path, limits::IMAGE_FILE)?;
+    charge(left, bytes.len() as u64)?;
+    Ok(bytes)
+}
+
+/// Takes bytes that were read for an image, or decoded from it, from what all images may come to.
+pub(super) fn charge(left: &Budget, bytes: u64) -> io::Result<()> {
+    if left.take(bytes) {
+        return Ok(());
+    }
+    Err(io::Error::new(
+        io::ErrorKind::FileTooLarge,
+        format!("the images of the scene come to more than {} GiB", limits::IMAGES >> 30),
+    ))
 }
 
 /// As [`Textures::range`], for the bytes of an image.
@@ -123,12 +137,7 @@ fn decode(bytes: &[u8], left: &Budget) -> Result<DynamicImage, String> {
             limits::IMAGE >> 20
         ));
     }
-    if !left.take(size.max(bytes.len() as u64)) {
-        return Err(format!(
-            "is not read, since the images of the scene come to more than {} GiB",
-            limits::IMAGES >> 30
-        ));
-    }
+    charge(left, size).map_err(|why| format!("is not read ({why})"))?;
     DynamicImage::from_decoder(decoder).map_err(undecoded)
 }
 
@@ -218,7 +227,9 @@ mod tests {
         let error = read(b"no image", Channel::Red, Encoding::Linear).unwrap_err();
         assert!(error.contains("cannot be decoded"), "{error}");
         let error = Textures::default()
-            .range(Path::new("absent.png"), Channel::Red, Encoding::Linear, |path| file(path))
+            .range(Path::new("absent.png"), Channel::Red, Encoding::Linear, |path, left| {
+                file(path, left)
+            })
             .unwrap_err();
         assert!(error.contains("cannot be read"), "{error}");
     }
@@ -227,13 +238,22 @@ mod tests {
     fn an_image_is_read_once_and_only_while_the_scene_may_have_more() {
         let mut textures = Textures { ranges: HashMap::new(), left: Budget::new(200) };
         let mut range =
-            |key: u32| textures.range(key, Channel::Red, Encoding::Linear, |_| Ok(png()));
+            |key: u32| textures.range(key, Channel::Red, Encoding::Linear, |_, _| Ok(png()));
         assert!(png().len() < 200);
         for _ in 0..9 {
             assert!(range(1).is_ok());
         }
         let error = (2..9).find_map(|key| range(key).err()).unwrap();
         assert!(error.contains("come to more than"), "{error}");
+        // What was read counts, though it is no image.
+        let mut textures = Textures { ranges: HashMap::new(), left: Budget::new(200) };
+        let mut range = |key: u32| {
+            textures.range(key, Channel::Red, Encoding::Linear, |_, left| {
+                charge(left, 90).map(|()| b"no image".to_vec())
+            })
+        };
+        let errors = [1, 2, 3].map(|key| range(key).unwrap_err());
+        assert!(errors[1].contains("decoded") && errors[2].contains("come to more"), "{errors:?}");
     }
 
     #[test]

@@ -7,7 +7,8 @@ use std::path::Path;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::error::Lines;
-use super::include::{Budget, Includes};
+use super::include::Includes;
+use super::limits::Budget;
 use super::{Place, SceneError, limits};
 
 /// Deeper nesting than this is refused as a mistake, which bounds the stack for the recursion.
@@ -74,11 +75,16 @@ impl Hash for Key<'_> {
 pub(super) struct Reader {
     pub(super) includes: Includes,
     nodes: Budget,
+    values: Budget,
 }
 
 impl Reader {
     pub(super) fn new() -> Self {
-        Self { includes: Includes::new(limits::XML), nodes: Budget::new(limits::XML_NODES) }
+        Self {
+            includes: Includes::new(limits::XML),
+            nodes: Budget::new(limits::XML_NODES),
+            values: Budget::new(limits::XML_VALUES),
+        }
     }
 
     /// Reads the root element of the scene's own file.
@@ -92,7 +98,12 @@ impl Reader {
     pub(super) fn read(&mut self, file: &Path, place: &Place) -> Result<Element, SceneError> {
         let text = self.includes.text(file, place)?;
         let lines = Lines::new(file, &text);
-        check_attributes(&text, &lines)?;
+        if !self.values.take(check_attributes(&text, &lines)?) {
+            return Err(Place::file(file).invalid(format!(
+                "the scene has more than {} attributes; load a file that has the materials alone",
+                limits::XML_VALUES
+            )));
+        }
         let nodes_limit = u32::try_from(self.nodes.left()).unwrap_or(u32::MAX);
         let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
         let document = Document::parse_with_options(&text, options).map_err(|error| {
@@ -113,11 +124,11 @@ impl Reader {
     }
 }
 
-/// Checks what the parser takes quadratic time for.
-fn check_attributes(text: &str, lines: &Lines) -> Result<(), SceneError> {
+/// Checks what the parser takes quadratic time for, and counts the attributes, at least.
+fn check_attributes(text: &str, lines: &Lines) -> Result<u64, SceneError> {
     // No attribute holds this character, so that a piece has one element at most; each of its
     // attributes has two quotes.
-    let mut start = 0;
+    let (mut start, mut all) = (0, 0);
     for piece in text.split('<') {
         let quotes = piece.bytes().filter(|byte| matches!(byte, b'"' | b'\'')).count();
         if quotes > 2 * limits::XML_ATTRIBUTES {
@@ -127,13 +138,14 @@ fn check_attributes(text: &str, lines: &Lines) -> Result<(), SceneError> {
             )));
         }
         start += piece.len() + 1;
+        all += quotes as u64;
     }
     match text.match_indices("xmlns").nth(limits::XML_NAMESPACES) {
         Some((at, _)) => Err(lines.place(at).invalid(format!(
             "the file declares more than {} namespaces; declare each once",
             limits::XML_NAMESPACES
         ))),
-        None => Ok(()),
+        None => Ok(all / 2),
     }
 }
 

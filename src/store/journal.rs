@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::replace::{
     Destination, Pending, check_writable, destination, folder_of, is_partial, partial_files,
@@ -45,8 +46,8 @@ struct Led {
 /// replaces the links themselves, since a journal in a folder may be anyone's.
 ///
 /// # Errors
-/// The name and the operating system's error; before the journal is written the old files are
-/// untouched.
+/// The name and the operating system's error. Before the journal is written the old files are
+/// untouched; afterwards the next [`finish`] leads to the new ones.
 pub(super) fn replace_all(
     folder: &Path,
     files: &[(String, Vec<u8>)],
@@ -87,12 +88,13 @@ pub(super) fn replace_all(
     }
     let failed = |why| (JOURNAL.to_string(), why);
     let file = stage(folder, journal.as_bytes(), None).map_err(failed)?;
-    file.persist(folder.join(JOURNAL)).map_err(|error| failed(error.error))?;
-    sync(folder).map_err(failed)?;
+    // Before the journal is there: an error after it must not take the new files with it. Without a
+    // journal they are leftovers.
     for file in staged {
-        // From here on the journal decides about these files.
         file.keep().map_err(|error| failed(error.error))?;
     }
+    file.persist(folder.join(JOURNAL)).map_err(|error| failed(error.error))?;
+    sync(folder).map_err(failed)?;
     exchange(folder, &journal, led)
 }
 
@@ -127,6 +129,12 @@ fn own_text(folder: &Path, name: &str) -> Result<Option<String>, Failed> {
         (name.to_string(), why)
     })?;
     Ok(Some(text))
+}
+
+/// What changes with the record of the folder's set; `None` without one.
+pub(super) fn record_stamp(folder: &Path) -> Option<(SystemTime, u64)> {
+    let record = fs::symlink_metadata(folder.join(RECORD)).ok()?;
+    Some((record.modified().ok()?, record.len()))
 }
 
 /// Names in the record of the folder's set that a set can have.

@@ -91,7 +91,8 @@ impl OutputFolder {
     /// two sets never mix. Each file is written as [`replace`](super::replace()) does it.
     ///
     /// # Errors
-    /// [`StoreError`] naming the path; the old set is then unchanged.
+    /// [`StoreError`] naming the path. The old set is then unchanged, unless its replacement had
+    /// begun; whoever opens the folder next completes it.
     pub fn write(&self, set: &Tables, formats: &[Format]) -> Result<Vec<Written>, StoreError> {
         let mut files = files(set, formats).map_err(|why| why.inside(&self.path))?;
         let written = |(name, bytes): &(String, Vec<u8>)| Written {

@@ -16,6 +16,7 @@ use crate::input::{self, MAX_TABLES};
 
 pub use self::exr::{decode as decode_exr, encode as encode_exr};
 pub use lock::OutputFolder;
+pub(crate) use replace::remove_abandoned;
 pub use replace::replace;
 
 /// Name of the file that holds a whole set.
@@ -167,14 +168,24 @@ impl Images {
 pub fn read(path: &Path) -> Result<Tables, StoreError> {
     let is_folder = path.is_dir();
     let folder = if is_folder { path } else { replace::folder_of(path) };
-    if journal::is_interrupted(folder) {
-        OutputFolder::complete(folder)?;
+    loop {
+        if journal::is_interrupted(folder) {
+            OutputFolder::complete(folder)?;
+        }
+        let before = journal::record_stamp(folder);
+        let set = path.join(SET_FILE);
+        let read = if !is_folder {
+            read_file(path)
+        } else if std::fs::symlink_metadata(&set).is_ok() {
+            read_file(&set)
+        } else {
+            read_images(path)
+        };
+        // If a bake replaced the images meanwhile, only some of a set were found.
+        if !journal::is_interrupted(folder) && journal::record_stamp(folder) == before {
+            return read;
+        }
     }
-    if !is_folder {
-        return read_file(path);
-    }
-    let set = path.join(SET_FILE);
-    if std::fs::symlink_metadata(&set).is_ok() { read_file(&set) } else { read_images(path) }
 }
 
 /// Reads the images of a set from a folder.

@@ -33,7 +33,8 @@ const LINKS: usize = 40;
 ///
 /// # Errors
 /// The operating system's error, or one that says why the path cannot be written to: it is a
-/// folder, a FIFO, a socket or a block device, or protected. The old file is then untouched.
+/// folder, a FIFO, a socket or a block device, or protected. Unless the disk itself fails at the
+/// very end, the old file is then untouched.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Pending::new(destination(path)?, bytes)?.commit()
 }
@@ -125,17 +126,7 @@ impl Pending {
             OpenOptions::new().write(true).open(&to.path)?.write_all(bytes)?;
             return Ok(Self(None));
         }
-        let folder = folder_of(&to.path);
-        let is_abandoned = |file: &Metadata| {
-            file.modified().is_ok_and(|at| at.elapsed().is_ok_and(|age| age > ABANDONED))
-        };
-        for path in partial_files(folder).unwrap_or_default() {
-            if fs::symlink_metadata(&path).is_ok_and(|file| is_abandoned(&file)) {
-                // Tidying up is no reason to fail.
-                let _ = fs::remove_file(path);
-            }
-        }
-        Ok(Self(Some((stage(folder, bytes, to.old.as_ref())?, to.path))))
+        Ok(Self(Some((stage(folder_of(&to.path), bytes, to.old.as_ref())?, to.path))))
     }
 
     pub(super) fn commit(self) -> io::Result<()> {
@@ -178,11 +169,32 @@ pub(super) fn stage(
     Ok(file)
 }
 
-/// Makes renames in a folder durable, where the folder may be opened for that.
+/// Makes renames in a folder durable, where the system can do that for this folder.
 pub(super) fn sync(folder: &Path) -> io::Result<()> {
-    match fs::File::open(folder) {
-        Ok(folder) if cfg!(unix) => folder.sync_all(),
-        _ => Ok(()),
+    let Ok(folder) = fs::File::open(folder) else { return Ok(()) };
+    match folder.sync_all() {
+        // Some network file systems have no such thing.
+        Err(why)
+            if matches!(why.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) =>
+        {
+            Ok(())
+        }
+        Err(_) if cfg!(not(unix)) => Ok(()),
+        done => done,
+    }
+}
+
+/// Removes incomplete files that nobody has touched for a day, from a folder that nobody locks and
+/// that holds no set: in one with a journal they may be the new set.
+pub(crate) fn remove_abandoned(folder: &Path) {
+    let is_abandoned = |file: &Metadata| {
+        file.modified().is_ok_and(|at| at.elapsed().is_ok_and(|age| age > ABANDONED))
+    };
+    for path in partial_files(folder).unwrap_or_default() {
+        if fs::symlink_metadata(&path).is_ok_and(|file| is_abandoned(&file)) {
+            // Tidying up is no reason to fail.
+            let _ = fs::remove_file(path);
+        }
     }
 }
 
@@ -215,7 +227,10 @@ mod tests {
             let file = fs::File::create(path(name)).unwrap();
             file.set_modified(std::time::SystemTime::now() - days * ABANDONED).unwrap();
         }
+        // In other folders they may be what a journal lists.
         replace(&path("new"), b"new").unwrap();
+        assert!(path(&old).exists());
+        remove_abandoned(folder.path());
         assert!(!path(&old).exists() && path(&young).exists() && path("other.partial").exists());
     }
 

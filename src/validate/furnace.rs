@@ -60,7 +60,7 @@ pub struct Walk {
 }
 
 /// Runs the furnace for one material and view; σ = 0 is a mirror, and a view at the horizon is
-/// raised to cos θ = 1e-30.
+/// raised to cos θ = 1e-30, one above 1 lowered to that.
 ///
 /// # Errors
 /// [`MaterialError`] for a material that the tables do not cover.
@@ -72,11 +72,11 @@ pub fn furnace(
     cos_theta: f64,
 ) -> Result<Furnace, MaterialError> {
     let albedo = tables.albedo(sigma, gamma, masking)?;
-    let cos = (cos_theta as f32).max(1e-30);
+    let cos = (cos_theta as f32).max(1e-30).clamp(1e-30, 1.0);
     let shape = model::Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
     let exact = model::AlbedoIntegrator::new(shape, 1e-6)
         .reflection(sigma, f64::from(cos), |_| [1.0])
-        .expect("the tables checked sigma and the cosine");
+        .expect("the tables hold sigma, and the cosine is that of a view");
     let [single] = exact.of(masking);
     let turquin = single * f64::from(albedo.turquin(direction(cos), 1.0));
     let kulla_conty = single + lobe(&albedo, cos);

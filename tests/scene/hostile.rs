@@ -211,7 +211,7 @@ fn parameters_that_double_are_refused() {
     let double = |i: usize| format!("<default name=\"a{}\" value=\"$a{i}$a{i}\"/>", i + 1);
     let doubles: String = (0..60).map(double).collect();
     let text = format!("<scene>\n<default name=\"a0\" value=\"xxxxxxxx\"/>{doubles}</scene>");
-    assert_soon_refused("a.xml", &text, &["a.xml:2:", "more than 16 MiB"]);
+    assert_soon_refused("a.xml", &text, &["a.xml:2:", "more than 64 MiB"]);
 
     let many: String =
         (0..1001).map(|i| format!("<default name=\"n{i}\" value=\"\"/>\n")).collect();
@@ -236,18 +236,20 @@ fn xml_that_its_parser_cannot_take_is_refused() {
         ":65:4",
         &["64 namespaces"],
     );
-    let elements = "<a/>".repeat(1_100_000);
-    assert_refused("a.xml", &format!("<scene>{elements}</scene>"), "", &["1048576 elements"]);
+    let elements = "<a/>".repeat(2_200_000);
+    assert_refused("a.xml", &format!("<scene>{elements}</scene>"), "", &["2097152 elements"]);
+    let attributes = "<a b=\"\" c=\"\"/>".repeat(800_000);
+    assert_refused("a.xml", &format!("<scene>{attributes}</scene>"), "", &["1572864 attributes"]);
     // Together, by files that are small enough.
-    let part = format!("<scene>{}</scene>", "<a/>".repeat(300_000));
+    let part = format!("<scene>{}</scene>", "<a/>".repeat(600_000));
     let whole = "<scene>\n<include filename=\"b.xml\"/><include filename=\"b.xml\"/>\
                  <include filename=\"b.xml\"/><include filename=\"b.xml\"/></scene>";
     let folder = Folder::new(&[("a.xml", whole), ("b.xml", &part)]);
-    assert!(soon_refused(&folder, "a.xml").contains("1048576 elements"));
-    let part = format!("<scene><!--{}--></scene>", " ".repeat(5_000_000));
+    assert!(soon_refused(&folder, "a.xml").contains("2097152 elements"));
+    let part = format!("<scene><!--{}--></scene>", " ".repeat(20_000_000));
     let folder = Folder::new(&[("a.xml", whole), ("b.xml", &part)]);
     let message = soon_refused(&folder, "a.xml");
-    assert!(message.contains("a.xml:2:") && message.contains("16 MiB"), "{message}");
+    assert!(message.contains("a.xml:2:") && message.contains("64 MiB"), "{message}");
 }
 
 /// Each file is nested no deeper than it may be, and all of them together very deep.

@@ -7,11 +7,13 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use microfacet_common::Real;
+use microfacet_common::shape::gamma_of_s;
 
 use super::precision::{Codec, Precision};
 use super::schema::Kind;
 use super::subject::Subject;
-use crate::axis::{Axis, Weights};
+
+use crate::axis::{Axis, Mapping, Weights};
 use crate::error::LoadError;
 
 /// A table of values at the nodes of named axes.
@@ -84,6 +86,15 @@ impl Table {
         sum
     }
 
+    /// An end of the range of γ that the table says it covers and its axis does not hold.
+    fn uncovered(&self) -> Option<f64> {
+        let of_shape =
+            |axis: &&Axis| matches!(axis.mapping, Mapping::InverseShape | Mapping::LogShape(_));
+        let (covers, axis) = (self.subject.covers?, self.axes.iter().find(of_shape)?);
+        let holds = |gamma: f64| axis.weights(axis.coordinate(gamma)?);
+        covers.s.map(gamma_of_s).into_iter().find(|&gamma| holds(gamma).is_none())
+    }
+
     /// Checks everything that lookups rely on.
     ///
     /// # Errors
@@ -93,12 +104,15 @@ impl Table {
         if let Err(why) = self.subject.check(self.kind) {
             return fail(why);
         }
-        // Errors and counts are not negative; the azimuth of the worst place may be.
+        // Of the other figures, coordinates of the worst place, an azimuth may be negative.
         let lies = |(key, figure): &(&String, &f64)| {
-            !figure.is_finite() || **figure < 0.0 && key.as_str() != "worst_phi"
+            let amount = key.ends_with("_error") || key.as_str() == "points";
+            !figure.is_finite() || amount && **figure < 0.0
         };
         if let Some((key, figure)) = self.certificate.iter().find(lies) {
-            return fail(format!("`{key}` of its certificate is {figure}; it must be 0 or more"));
+            return fail(format!(
+                "`{key}` of its certificate is {figure}; it must be finite, an error or a count 0 or more"
+            ));
         }
         let layout = self.kind.layout(&self.subject);
         let names: Vec<&str> = self.axes.iter().map(|axis| axis.name.as_str()).collect();
@@ -125,6 +139,9 @@ impl Table {
                 ));
             }
             axis.validate()?;
+        }
+        if let Some(gamma) = self.uncovered() {
+            return fail(format!("it covers gamma = {gamma}, which its axis does not hold"));
         }
         let expected =
             self.axes.iter().map(Axis::len).try_fold(self.channels.len(), usize::checked_mul);

@@ -29,10 +29,15 @@ pub(crate) fn shapes(tables: &[Table]) -> Vec<[f64; 2]> {
     let [first, rest @ ..] =
         LOBE.map(|kinds| united(of_kinds(tables, kinds).flat_map(intervals).collect()));
     rest.iter().fold(first, |all, other| {
-        let pairs = all.iter().flat_map(|a| other.iter().map(move |b| (a, b)));
-        let both = pairs.map(|(a, b)| [a[0].max(b[0]), a[1].min(b[1])]);
-        united(both.filter(|[low, high]| *low <= high * (1.0 + SAME)).collect())
+        let pairs = all.iter().flat_map(|a| other.iter().map(move |b| common(*a, *b)));
+        united(pairs.flatten().collect())
     })
+}
+
+/// What two intervals have in common; ends that are the same but for rounding, one shape.
+fn common(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
+    let (low, high) = (a[0].max(b[0]), a[1].min(b[1]));
+    (low <= high * (1.0 + SAME)).then_some([low.min(high), high])
 }
 
 /// The same in words, by γ.
@@ -75,6 +80,14 @@ fn united(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ends_that_meet_but_for_rounding_are_one_shape() {
+        let end = 1.25 * (1.0 + 5e-10);
+        assert_eq!(common([0.0, 1.25], [end, 1.9]), Some([1.25; 2]));
+        assert_eq!(common([0.0, 1.25], [1.26, 1.9]), None);
+        assert_eq!(common([0.0, 1.25], [0.5, 1.9]), Some([0.5, 1.25]));
+    }
 
     #[test]
     fn intervals_that_touch_are_one() {

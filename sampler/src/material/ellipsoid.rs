@@ -12,7 +12,7 @@ use super::sample::{HORIZON, above_horizon};
 use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::Slope;
 use crate::error::MaterialError;
-use crate::math::sqrt;
+use crate::math::{bounded, sqrt};
 
 /// The entries of a [`Skew`] in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +59,9 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
+    /// The smallest and the largest diagonal entry of a matrix, as a σ would be: [1e-18, 1e18].
+    pub const SIGMAS: [f64; 2] = ENTRIES;
+
     pub(crate) fn new(lobe: StudentT, skew: Skew) -> Result<Self, MaterialError> {
         Ok(Self { lobe: lobe.with_roughness(1.0)?, matrix: skew.try_into()? })
     }
@@ -198,7 +201,7 @@ impl MicrofacetDistribution for Ellipsoid {
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
         let w = self.to_unit(v);
-        (facing * self.d(m) * self.inverse_area(w, &self.lobe.stretch(w))).min(f32::MAX)
+        bounded(facing * self.d(m) * self.inverse_area(w, &self.lobe.stretch(w)))
     }
 
     /// The weight f·cos θ_l/pdf of a light reflected off a [sampled](Self::sample_visible_normal)
@@ -225,7 +228,7 @@ impl MicrofacetDistribution for Ellipsoid {
         let length = sqrt(unit.dot(unit));
         // The ratio of solid angles, scale over the length cubed.
         let stretch = scale / length / (length * length);
-        (self.lobe.table_pdf(w, unit / length) * stretch).min(f32::MAX)
+        bounded(self.lobe.table_pdf(w, unit / length) * stretch)
     }
 
     fn is_effectively_smooth(&self) -> bool {

@@ -29,7 +29,8 @@ use base64::Engine;
 
 use self::schema::{Document, Image, Material, TextureInfo};
 use super::builder::{Builder, GGX, Lobe};
-use super::texture::{Channel, Encoding, Textures};
+use super::limits::Budget;
+use super::texture::{self, Channel, Encoding, Textures};
 use super::{Format, Fresnel, Interval, Place, Roughness, Scene, SceneError, limits};
 use crate::input;
 
@@ -64,6 +65,9 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     Ok(importer.builder.finish())
 }
 
+/// What helps where the JSON is too large.
+const SEPARATE: &str = "export images and geometry to files of their own";
+
 /// A range of bytes in a file.
 struct Section {
     file: PathBuf,
@@ -78,7 +82,11 @@ fn read(path: &Path, place: &Place) -> Result<(Vec<u8>, Option<Section>), SceneE
     let mut head = Vec::new();
     file.by_ref().take(20).read_to_end(&mut head).map_err(io)?;
     if !head.starts_with(b"glTF") {
-        return Ok((input::read(path, limits::JSON).map_err(io)?, None));
+        let json = input::read(path, limits::JSON).map_err(|error| match error.kind() {
+            io::ErrorKind::FileTooLarge => place.invalid(format!("it {error}; {SEPARATE}")),
+            _ => io(error),
+        });
+        return Ok((json?, None));
     }
     let word = |at: usize| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]);
     if head.len() < 20 || word(4) != 2 || word(16) != u32::from_le_bytes(*b"JSON") {
@@ -87,7 +95,7 @@ fn read(path: &Path, place: &Place) -> Result<(Vec<u8>, Option<Section>), SceneE
     let size = u64::from(word(12));
     if size > limits::JSON {
         return Err(place.invalid(format!(
-            "the JSON of the glTF container has {size} bytes, and at most {} MiB are read",
+            "the JSON of the glTF container has {size} bytes, and at most {} MiB are read; {SEPARATE}",
             limits::JSON >> 20
         )));
     }
@@ -107,7 +115,7 @@ struct Importer<'a> {
     place: Place,
     document: &'a Document,
     binary: Option<Section>,
-    /// Images in the document or its buffers, by their texture.
+    /// Images in the document or its buffers, by their number.
     embedded: Textures<usize>,
 }
 
@@ -248,13 +256,11 @@ impl Importer<'_> {
 
     fn image(&mut self, texture: usize, channel: Channel) -> Interval {
         let name = format!("{texture}");
-        let image = self
-            .document
-            .textures
-            .get(texture)
-            .and_then(|texture| self.document.images.get(texture.source?));
+        let textures = &self.document.textures;
+        let source = textures.get(texture).and_then(|texture| texture.source);
+        let image = source.and_then(|i| Some((i, self.document.images.get(i)?)));
         let place = self.place.clone();
-        let Some(image) = image else {
+        let Some((source, image)) = image else {
             let reason = "has no PNG or JPEG image";
             return self.builder.unread(&name, reason, &place);
         };
@@ -263,8 +269,8 @@ impl Importer<'_> {
             return self.builder.image(&file, channel, Encoding::Linear, &place);
         }
         let Self { embedded, document, folder, binary, .. } = self;
-        let range = embedded.range(texture, channel, Encoding::Linear, |_| {
-            bytes(image, document, folder, binary.as_ref())
+        let range = embedded.range(source, channel, Encoding::Linear, |_, left| {
+            bytes(image, document, folder, binary.as_ref(), left)
         });
         range.unwrap_or_else(|reason| self.builder.unread(&name, &reason, &place))
     }
@@ -276,9 +282,10 @@ fn bytes(
     document: &Document,
     folder: &Path,
     binary: Option<&Section>,
+    left: &Budget,
 ) -> io::Result<Vec<u8>> {
     if let Some(uri) = &image.uri {
-        return data_uri(uri);
+        return data_uri(uri, left);
     }
     let missing = || io::Error::other("no such buffer");
     let view =
@@ -286,7 +293,7 @@ fn bytes(
     let buffer = document.buffers.get(view.buffer).ok_or_else(missing)?;
     let (file, start) = match (&buffer.uri, binary) {
         (Some(uri), _) if uri.starts_with("data:") => {
-            let bytes = data_uri(uri)?;
+            let bytes = data_uri(uri, left)?;
             let range =
                 usize::try_from(view.byte_offset).ok().zip(usize::try_from(view.byte_length).ok());
             let bytes =
@@ -297,15 +304,25 @@ fn bytes(
         (None, Some(binary)) => (binary.file.clone(), binary.start),
         (None, None) => return Err(missing()),
     };
+    if view.byte_length > limits::IMAGE_FILE {
+        let why = format!(
+            "has {} bytes, and at most {} MiB are read",
+            view.byte_length,
+            limits::IMAGE_FILE >> 20
+        );
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
+    }
     let mut file = input::open(&file, u64::MAX)?;
     file.seek(SeekFrom::Start(start.saturating_add(view.byte_offset)))?;
     let mut bytes = Vec::new();
-    file.take(view.byte_length.min(limits::IMAGE_FILE)).read_to_end(&mut bytes)?;
+    file.take(view.byte_length).read_to_end(&mut bytes)?;
+    texture::charge(left, bytes.len() as u64)?;
     Ok(bytes)
 }
 
 /// The content of a `data:` URI, which glTF requires to be in base64.
-fn data_uri(uri: &str) -> io::Result<Vec<u8>> {
+fn data_uri(uri: &str, left: &Budget) -> io::Result<Vec<u8>> {
+    texture::charge(left, uri.len() as u64)?;
     let (_, text) = uri
         .split_once(";base64,")
         .ok_or_else(|| io::Error::other("the data URI is not in base64"))?;

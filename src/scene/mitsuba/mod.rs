@@ -80,7 +80,7 @@ impl Expansion<'_> {
         match &element.tag[..] {
             "default" => {
                 let (name, value) = (element.required("name")?, element.required("value")?);
-                if self.defaults.len() == limits::DEFAULTS {
+                if self.defaults.len() == limits::DEFAULTS && !self.defaults.contains_key(name) {
                     return Err(element.place.invalid(format!(
                         "the scene has more than {} <default> parameters; write values in place of \
                          some",
