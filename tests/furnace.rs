@@ -67,7 +67,7 @@ fn the_furnace_closes() {
 
 #[test]
 fn cosines_of_no_view_are_those_of_the_nearest() {
-    let at = |cos| furnace(&set(), Masking::HeightCorrelated, 0.3, 3.0, cos).unwrap().single;
+    let at = |cos| furnace(&set(), Masking::HeightCorrelated, 0.3, 2.0, cos).unwrap().single;
     assert_eq!(at(1.5), at(1.0));
     assert!(at(-1.0) >= 0.0 && at(f64::NAN) >= 0.0);
 }

@@ -1,8 +1,9 @@
 //! How large a scene may be.
 //!
 //! Every limit is low enough that the worst file of that size ends within seconds and 1 GB of
-//! memory, and above nearly all scenes that exist. Larger ones, such as Disney's Moana island, whose
-//! text for pbrt is geometry, have their materials in files of their own, which can be loaded alone.
+//! memory, and above nearly all scenes that exist. Larger ones, such as Disney's Moana island,
+//! whose text for pbrt is geometry, have their materials in files of their own, which can be loaded
+//! alone.
 
 use std::cell::Cell;
 use std::rc::Rc;

@@ -237,8 +237,11 @@ mod tests {
     #[test]
     fn an_image_is_read_once_and_only_while_the_scene_may_have_more() {
         let mut textures = Textures { ranges: HashMap::new(), left: Budget::new(200) };
-        let mut range =
-            |key: u32| textures.range(key, Channel::Red, Encoding::Linear, |_, _| Ok(png()));
+        let mut range = |key: u32| {
+            textures.range(key, Channel::Red, Encoding::Linear, |_, left| {
+                charge(left, png().len() as u64).map(|()| png())
+            })
+        };
         assert!(png().len() < 200);
         for _ in 0..9 {
             assert!(range(1).is_ok());
