@@ -50,6 +50,8 @@ pub enum ConvertError {
     ShapeNeeded(DistributionKind),
     /// No published formula is known for this pair.
     NoFormula(DistributionKind, DistributionKind),
+    /// D is so large or so small that errors are no numbers.
+    Overflow,
     /// The minimiser's message.
     Minimiser(String),
 }
@@ -75,6 +77,9 @@ impl fmt::Display for ConvertError {
                  between any two",
                 from.name(),
                 to.name()
+            ),
+            Self::Overflow => f.write_str(
+                "D is too large or too small for double precision; use a roughness in [1e-8, 1e6], and measured angles further apart",
             ),
             Self::Minimiser(e) => write!(f, "the minimiser failed: {e}"),
         }
@@ -103,8 +108,9 @@ pub struct Target<'a> {
 
 /// A half angle, radians, below which the widths that are searched scale with it.
 const NARROW: f64 = 0.01;
-/// The largest grid; for half angles below 5e-4 it ends some 3000 of them from the normal.
-const LARGEST_GRID: f64 = 200_000.0;
+/// The largest grid; for half angles below 5e-3 it ends some 300 of them from the normal, where
+/// even GGX has fallen to 1e-10.
+const LARGEST_GRID: f64 = 20_000.0;
 
 impl<'a> Target<'a> {
     /// Prepares the grid: 900 steps, or as many as give 64 within the half angle.
@@ -147,6 +153,9 @@ impl<'a> Target<'a> {
     fn judged(&self, to: Named) -> Result<Replacement, ConvertError> {
         let built = to.build()?;
         let rmse = [Form::Relative, Form::Density].map(|form| self.rmse(&*built, form));
+        if rmse.iter().any(|rmse| rmse.is_nan()) {
+            return Err(ConvertError::Overflow);
+        }
         Ok(Replacement { to, rmse, ends_at: Vec::new() })
     }
 

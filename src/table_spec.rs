@@ -102,6 +102,10 @@ impl TableSpec {
     }
 }
 
+/// Distance in s from the seam at γ = [`GAMMA_WHOLE`] up to which the tables of the whole
+/// distribution serve, and from which those of peeled slopes are measured.
+pub(crate) const SEAM: f64 = 1e-9;
+
 /// The general set: every γ ∈ [1.501, ∞], and by shape invariance every σ.
 pub fn general_set(level: impl Into<Level>, precision: Precision) -> Vec<TableSpec> {
     let r = level.into().resolution();

@@ -116,6 +116,19 @@ fn query_says_what_can_be_compared_and_what_is_covered() {
     let exact = ok(at, &["query", "albedo", "--input", "a.csv", "--method", "exact"]);
     assert!(exact.contains("height-correlated,0.33") || exact.contains("height-correlated,0.34"));
 
+    // −0 is the horizon, and no line is filled with zeros.
+    let text = "sigma,gamma,cos_theta,masking\n0.3,3,-0,height-correlated\n";
+    std::fs::write(at.join("a.csv"), text).unwrap();
+    let [zero, negative] = ["0", "-0"].map(|cos| {
+        std::fs::write(at.join("a.csv"), text.replace("-0", cos)).unwrap();
+        ok(at, &["query", "albedo", "--input", "a.csv"]).replace("3,-0,", "3,0,")
+    });
+    assert_eq!(zero, negative);
+    let text = "sigma_x,sigma_y,gamma,theta,phi,u1,u2\n0.5,0.5,1.501,0.6,0,0.999,0.5\n";
+    std::fs::write(at.join("p.csv"), text).unwrap();
+    let row = ok(at, &["query", "normal", "--input", "p.csv", "--method", "exact"]);
+    assert!(row.contains(",1e-300,"), "{row}");
+
     // π/2 as people type it, in every command.
     for theta in ["1.5708", "1.6"] {
         let text = format!("sigma_x,sigma_y,gamma,theta,phi\n0.3,0.3,3,{theta},0\n");

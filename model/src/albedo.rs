@@ -153,6 +153,8 @@ impl AlbedoIntegrator {
         if !(0.0..=1.0).contains(&cos_theta) {
             return Err(ParameterError::CosTheta(cos_theta));
         }
+        // −0 is the horizon as well, not below it.
+        let cos_theta = cos_theta.abs();
         if sigma == 0.0 {
             let mirror = weight(cos_theta);
             return Ok(Albedo { uncorrelated: mirror, height_correlated: mirror, error: 0.0 });

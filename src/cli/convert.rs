@@ -224,6 +224,11 @@ mod tests {
             let found: f64 = text.split("beckmann:").nth(1).unwrap()[..10].trim().parse().unwrap();
             assert!((found / m - 1.0).abs() < 1e-3 && !text.contains("at the end"), "{text}");
         }
+        // Two parameters as well; and what no double holds is refused.
+        let narrow = run("--from beckmann:1e-5 --to student-t --by rmse").unwrap();
+        assert!(narrow.contains("student-t:1.0000"), "{narrow}");
+        let error = run("--from student-t:1e300,2.5 --to beckmann --by rmse").unwrap_err();
+        assert!(error.contains("too large"), "{error}");
         let flat = run("--from blinn-phong:0 --to gauss --by rmse").unwrap();
         assert!(flat.contains("m at the end of the range searched"), "{flat}");
         let beckmann = run("--from beckmann:0.2 --to student-t --by rmse").unwrap();

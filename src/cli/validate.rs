@@ -115,6 +115,9 @@ pub(super) fn run(args: Args) -> Outcome {
         if result.rejected() > 0 {
             print(NEXT)?;
         }
+        if let Some(why) = unsound(&result) {
+            print(&why)?;
+        }
         print(if passed { "PASSED\n" } else { "REJECTED\n" })?;
     }
     Ok(if passed { Done::Ok } else { Done::Rejected })
@@ -123,6 +126,15 @@ pub(super) fn run(args: Args) -> Outcome {
 /// What to do about a rejection.
 const NEXT: &str = "to tell chance from a defect, repeat the worst configuration with other seeds (--seed) and more normals\n\
      (--samples): chance goes away, and the p of a defect falls\n";
+
+/// Why a run rejects where chi-square does not: an integral that is not one.
+fn unsound(result: &Result) -> Option<String> {
+    let off = result.worst_integral()?.pdf_integral - 1.0;
+    // Written so that a NaN counts.
+    let wrong = !(off.abs() <= PDF_TOLERANCE);
+    wrong
+        .then(|| format!("the integral of table_pdf may differ from 1 by {PDF_TOLERANCE:e} only\n"))
+}
 
 /// Why a set has nothing that can be tested, and what to give instead.
 fn nothing_to_judge(set: &Tables) -> String {

@@ -5,7 +5,7 @@ use microfacet_sampler::{Interpolation, Precision};
 
 use crate::bake::joined_name;
 use crate::scene::Interval;
-use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, ShapeAxis, TableSpec, general_set};
+use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, SEAM, ShapeAxis, TableSpec, general_set};
 use crate::validate::certificate::ALL_SHAPES;
 
 /// A γ, or a range of γ, that tables are to cover.
@@ -60,12 +60,16 @@ impl RequiredShapes {
         let [low, high] = spec.shapes.ends();
         // At the seam, γ = 1.8, `visible_slope` is preferred to `visible_slope_peeled`.
         let after_seam = low >= s_of_gamma(GAMMA_WHOLE);
+        // A range within rounding is one shape, from which the rest is not told apart.
+        let to = if to - from <= SEAM * to.min(1.0) { from } else { to };
         let covers = [from.max(low), to.min(high)];
         let shapes = if from == to {
             let here = if after_seam { from > low } else { from >= low } && from <= high;
             here.then(|| ShapeAxis { nodes: vec![from], interpolation: Interpolation::Nodes })
         } else {
-            (to > low && from < high).then(|| spec.shapes.part(covers[0], covers[1]))
+            // What is closer to the seam than rounding is read from the tables before it.
+            let beyond = if after_seam { low + SEAM } else { low };
+            (to > beyond && from < high).then(|| spec.shapes.part(covers[0], covers[1]))
         };
         let name = joined_name(&[&spec.name, &self.label()]);
         shapes.map(|shapes| TableSpec { shapes, covers, name, ..spec.clone() })

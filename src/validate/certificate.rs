@@ -19,7 +19,7 @@ use microfacet_sampler::{
     Tables,
 };
 
-use crate::table_spec::GAMMA_WHOLE;
+use crate::table_spec::{GAMMA_WHOLE, SEAM};
 
 /// Points measured at each γ of a range; a single γ takes three times as many.
 pub const POINTS: usize = 4000;
@@ -275,9 +275,6 @@ pub(super) fn round_up(x: f64) -> f64 {
 const BESIDE: [([f32; 2], f32); 4] =
     [([0.0, 1.0], 0.4), ([1.0, 0.0], 1.0), ([0.6, 0.8], 0.0), ([1.0, 0.0], 0.5)];
 
-/// Distance in s from the seam at which tables of peeled slopes are first measured.
-const BESIDE_SEAM: f64 = 1e-9;
-
 /// Measures one table.
 struct Ruler<'a> {
     tables: &'a Tables,
@@ -303,10 +300,11 @@ impl<'a> Ruler<'a> {
         let [low, high] = [first.max(s[0]), last.min(s[1])];
         // At the seam itself, γ = 1.8, the tables of the whole distribution are read, not the
         // peeled ones.
-        let low =
-            if low == s_of_gamma(GAMMA_WHOLE) && high > low { low + BESIDE_SEAM } else { low };
-        // Slightly inside the far end, since 1 + 1/s may round to just outside.
-        Self { tables, table, s: [low, high * (1.0 - 1e-15)], views, numbers }
+        let beside = low == s_of_gamma(GAMMA_WHOLE) && high > low + SEAM;
+        let low = if beside { low + SEAM } else { low };
+        // Slightly inside the far end, since 1 + 1/s may round to just outside; but a range may be
+        // narrower than that.
+        Self { tables, table, s: [low, (high * (1.0 - 1e-15)).max(low)], views, numbers }
     }
 
     /// Whether the table covers shapes between its nodes.

@@ -91,11 +91,12 @@ pub(super) fn draw_shape(shapes: &[[f64; 2]], random: &mut impl Rng) -> f64 {
 }
 
 /// The shapes that a set can be tested at, as ranges of s: those of its tables, and GGX in closed
-/// form where a material uses it, or where there is no table at all.
+/// form where a material beside them uses it, or where there is no table at all.
 pub fn shapes(tables: &Tables) -> Vec<[f64; 2]> {
     let mut shapes = tables.shapes();
     let ggx = tables.provenance().materials.iter().any(|material| material.s == [1.0, 1.0]);
-    if (ggx || tables.tables().is_empty()) && !tables.tabulates(2.0) {
+    let beside = ggx && !shapes.is_empty() && !tables.tabulates(2.0);
+    if beside || tables.tables().is_empty() {
         shapes.push([1.0; 2]);
     }
     shapes

@@ -95,7 +95,13 @@ impl Tabulated {
         if !(rows[0].1 > 0.0) {
             return Err(TabulatedError::Zero);
         }
-        let (theta, d): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
+        let (theta, mut d): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
+        // The scale is free; sums of the largest numbers would overflow, and the smallest have no
+        // digits.
+        let largest = d.iter().copied().fold(0.0, f64::max);
+        if !(1e-200..1e200).contains(&largest) {
+            d.iter_mut().for_each(|d| *d /= largest);
+        }
         let mut this = Self { below: vec![0.0], theta, d, given };
         for i in 1..this.theta.len() {
             let share = this.below[i - 1] + this.segment(i - 1, this.theta[i]);
@@ -173,6 +179,19 @@ impl Isotropic for Tabulated {
 mod tests {
     use super::*;
     use crate::classic::{Member, projected};
+
+    #[test]
+    fn the_scale_of_what_was_measured_is_free() {
+        let of = |scale: f64| {
+            let rows = [(0.0, 1.0), (0.2, 1.0), (0.5, 0.1), (1.0, 0.01)];
+            Tabulated::new(&rows.map(|(theta, d)| (theta, scale * d))).unwrap()
+        };
+        for scale in [1e308, 1e-300, 1e-305] {
+            for theta in [0.0, 0.3, 0.9] {
+                assert!((of(scale).d(theta) / of(1.0).d(theta) - 1.0).abs() < 1e-12, "{scale}");
+            }
+        }
+    }
 
     #[test]
     fn follows_what_it_was_sampled_from() {

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use microfacet_common::shape::gamma_of_s;
 
-use super::slices::shape_weights;
+use super::slices::serves;
 use crate::axis::Interpolation;
 use crate::error::Range;
 use crate::format::{Kind, SAME, Table};
@@ -20,8 +20,7 @@ pub(super) const LOBE: [&[Kind]; 3] = [
 
 /// Whether a lobe of the shape s finds all its tables.
 pub(crate) fn contains(tables: &[Table], s: f64) -> bool {
-    let covers = |table: &&Table| shape_weights(table, s).is_some();
-    LOBE.iter().all(|kinds| of_kinds(tables, kinds).any(|table| covers(&table)))
+    LOBE.iter().all(|kinds| of_kinds(tables, kinds).any(|table| serves(table, s)))
 }
 
 /// The shapes that lobes can have, as ascending intervals of s; one shape is one of no width.

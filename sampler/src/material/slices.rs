@@ -10,9 +10,21 @@ use crate::format::{Kind, Table};
 
 /// Weights along the γ axis at s; `None` for a shape that the table was not baked and measured for,
 /// though its axis may reach there.
-pub(super) fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
+fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
     let covered = table.subject.covers.is_none_or(|covers| covers.contains_shape(s));
     if covered { table.axes[0].weights(s) } else { None }
+}
+
+/// The same at an end of the axis, for a shape that is outside by rounding alone.
+fn end_weights(table: &Table, s: f64) -> Option<Weights> {
+    let [first, last] = table.axes[0].ends();
+    let covers = table.subject.covers?;
+    covers.contains_shape(s).then(|| table.axes[0].weights(s.clamp(first, last)))?
+}
+
+/// Whether the table serves s.
+pub(super) fn serves(table: &Table, s: f64) -> bool {
+    shape_weights(table, s).or_else(|| end_weights(table, s)).is_some()
 }
 
 /// A (value, slope) table without its γ axis.
@@ -29,18 +41,15 @@ impl<'a> Slice<'a> {
         Self { kind: table.kind, nodes: pairs(&table.values), axes: &table.axes }
     }
 
-    /// The slice at s; `None` where the table does not cover it.
-    fn at(table: &'a Table, s: f64) -> Option<Self> {
-        Some(Self { kind: table.kind, nodes: slice(table, s)?, axes: &table.axes })
+    /// The slice with these weights along the γ axis.
+    fn at(table: &'a Table, weights: Weights) -> Self {
+        let nodes = pairs(&table.collapsed(&[weights]));
+        Self { kind: table.kind, nodes, axes: &table.axes }
     }
 }
 
 fn pairs(values: &[f32]) -> Vec<Node> {
     values.chunks_exact(2).map(|node| [node[0], node[1]]).collect()
-}
-
-fn slice(table: &Table, s: f64) -> Option<Vec<Node>> {
-    Some(pairs(&table.collapsed(&[shape_weights(table, s)?])))
 }
 
 /// Slices of one shape.
@@ -143,17 +152,21 @@ impl Slices {
     }
 }
 
-/// The slice of the first table of one of `kinds` that covers s; earlier kinds are preferred.
+/// The slice of the first table of one of `kinds` that covers s; earlier kinds are preferred, and
+/// tables that hold s itself to those that end beside it.
 fn find<'a>(
     tables: &'a [Table],
     kinds: &[Kind],
     gamma: f64,
     s: f64,
 ) -> Result<Slice<'a>, MaterialError> {
-    for &kind in kinds {
-        let mut of_kind = tables.iter().filter(|table| table.kind == kind);
-        if let Some(slice) = of_kind.find_map(|table| Slice::at(table, s)) {
-            return Ok(slice);
+    for weights in [shape_weights, end_weights] {
+        for &kind in kinds {
+            let of_kind = tables.iter().filter(|table| table.kind == kind);
+            let mut served = of_kind.filter_map(|table| Some((table, weights(table, s)?)));
+            if let Some((table, weights)) = served.next() {
+                return Ok(Slice::at(table, weights));
+            }
         }
     }
     Err(MaterialError::NotCovered { gamma, covered: coverage::in_words(tables) })

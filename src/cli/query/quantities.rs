@@ -1,6 +1,7 @@
 //! Quantities at a point, from the tables and from the model.
 
 use std::collections::HashMap;
+use std::fmt::{Display, LowerExp};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DVec3, Vec3};
@@ -84,7 +85,15 @@ fn parse(text: &str, name: &str) -> Result<f64, String> {
     if (low..=high).contains(&x) {
         Ok(x)
     } else {
-        Err(format!("{name} = {x} must lie in [{low}, {high}]"))
+        Err(format!("{name} = {x} must lie in [{low:?}, {high:?}]"))
+    }
+}
+
+/// A number with all its digits, by powers of ten where zeros would fill the line.
+fn text<T: Copy + Into<f64> + Display + LowerExp>(x: T) -> String {
+    match x.into().abs() {
+        1e-9..1e15 | 0.0 => x.to_string(),
+        _ => format!("{x:e}"),
     }
 }
 
@@ -145,9 +154,9 @@ impl Quantity for G1 {
         Ok(match method {
             Method::Table => {
                 let lobe = at.lobe()?;
-                vec![lobe.lambda(v.as_vec3()).to_string(), lobe.g1(v.as_vec3()).to_string()]
+                vec![text(lobe.lambda(v.as_vec3())), text(lobe.g1(v.as_vec3()))]
             }
-            Method::Exact => vec![at.exact().lambda(v).to_string(), at.exact().g1(v).to_string()],
+            Method::Exact => vec![text(at.exact().lambda(v)), text(at.exact().g1(v))],
         })
     }
 }
@@ -183,13 +192,11 @@ impl Quantity for Normal {
             Method::Table => {
                 let lobe = at.lobe()?;
                 let m = lobe.sample_visible_normal(v.as_vec3(), at.u.map(|u| u as f32));
-                [m.x, m.y, m.z, lobe.visible_normal_pdf(v.as_vec3(), m)]
-                    .map(|x| x.to_string())
-                    .into()
+                [m.x, m.y, m.z, lobe.visible_normal_pdf(v.as_vec3(), m)].map(text).into()
             }
             Method::Exact => {
                 let m = at.exact().sample_visible_normal(v, at.u);
-                [m.x, m.y, m.z, at.exact().visible_normal_pdf(v, m)].map(|x| x.to_string()).into()
+                [m.x, m.y, m.z, at.exact().visible_normal_pdf(v, m)].map(text).into()
             }
         })
     }
@@ -221,7 +228,7 @@ impl Quantity for Albedo {
                     known.set.albedo(sigma, gamma, masking).map_err(|why| why.to_string())?;
                 let v = direction(cos as f32);
                 let Moments { scale, bias, .. } = albedo.moments(v);
-                [albedo.albedo(v), scale, bias].map(|x| x.to_string()).into()
+                [albedo.albedo(v), scale, bias].map(text).into()
             }
             Method::Exact => {
                 let schlick = |cos| [1.0 - schlick_weight(cos), schlick_weight(cos)];
@@ -230,7 +237,7 @@ impl Quantity for Albedo {
                     .reflection(sigma, cos, schlick)
                     .map_err(|why| why.to_string())?;
                 let [scale, bias] = albedo.of(masking);
-                [scale + bias, scale, bias].map(|x| x.to_string()).into()
+                [scale + bias, scale, bias].map(text).into()
             }
         })
     }
