@@ -107,7 +107,8 @@ impl Ellipsoid {
     #[cold]
     fn inverse_area_below(&self, w: Vec3, at: &Stretched) -> f32 {
         let area = at.rho * SlopeBelowHorizon::new(&self.lobe, at.rho, -w.z).excess();
-        if area > 0.0 { 1.0 / area } else { f32::MAX }
+        // Finite, since a density of 0 times ∞ would be NaN.
+        if area > 0.0 { bounded(1.0 / area) } else { f32::MAX }
     }
 
     /// The lobe's [common case](StudentT::sample_common) between U and Uᵀ; `None` elsewhere, and
