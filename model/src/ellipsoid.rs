@@ -11,7 +11,7 @@ use crate::below_horizon::SlopeBelowHorizon;
 use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::shape::Shape;
-use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon, bounded};
+use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon, saturated};
 
 /// Why an ellipsoid was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -250,7 +250,7 @@ impl MicrofacetDistribution for Ellipsoid {
         if !(v.z > 0.0 && facing > 0.0 && area > 0.0) {
             return 0.0;
         }
-        bounded(facing * self.d(m) / area)
+        saturated(facing * self.d(m) / area)
     }
 }
 

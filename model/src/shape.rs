@@ -6,7 +6,7 @@ use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 
 use crate::error::ParameterError;
 use crate::slope_integrals;
-use crate::visible::bounded;
+use crate::visible::saturated;
 
 /// Above this γ the Beckmann limit is used: the two differ by O(1/γ), less than a double's
 /// rounding.
@@ -145,7 +145,7 @@ impl Shape {
         // Two factors, because the power may underflow where 1/(a b) brings D back, and 0/0 would
         // be NaN.
         let root = libm::exp(0.5 * log);
-        bounded((root / a) * (root / b) / PI)
+        saturated((root / a) * (root / b) / PI)
     }
 
     /// Density of the in-plane unit slope with respect to w: p(x) dx/dw.

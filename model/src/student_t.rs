@@ -8,7 +8,7 @@ use microfacet_common::Roughness;
 use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::shape::Shape;
-use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon, bounded};
+use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon, saturated};
 
 /// The Student-t distribution of microfacet normals, of roughness σx, σy and shape γ.
 ///
@@ -186,6 +186,6 @@ impl MicrofacetDistribution for StudentT {
         if !(v.z > 0.0 && facing > 0.0) {
             return 0.0;
         }
-        bounded(facing * self.d(m) * self.inverse_area(v))
+        saturated(facing * self.d(m) * self.inverse_area(v))
     }
 }

@@ -226,7 +226,7 @@ pub(crate) fn above_horizon(m: DVec3) -> DVec3 {
 }
 
 /// A density, no more than the largest number. (`f64::min` would take NaN for that, and hide it.)
-pub(crate) fn bounded(density: f64) -> f64 {
+pub(crate) fn saturated(density: f64) -> f64 {
     if density > f64::MAX { f64::MAX } else { density }
 }
 

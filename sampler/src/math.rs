@@ -28,6 +28,6 @@ pub(crate) fn unit(x: f32) -> f32 {
 
 /// A density, no more than the largest number. (`f32::min` would take NaN for that, and hide it.)
 #[inline(always)]
-pub(crate) fn bounded(density: f32) -> f32 {
+pub(crate) fn saturated(density: f32) -> f32 {
     if density > f32::MAX { f32::MAX } else { density }
 }

@@ -114,9 +114,10 @@ impl Args {
                 Err(e) => refusals.push((name.get_name().to_owned(), e)),
             }
         }
-        match refusals.pop() {
-            Some((_, e)) if lines == 0 => return Err(e.into()),
-            last => refusals.extend(last),
+        if lines == 0
+            && let Some((_, e)) = refusals.pop()
+        {
+            return Err(e.into());
         }
         for (name, e) in refusals {
             writeln!(text, "{name:<12}none: {e}")?;

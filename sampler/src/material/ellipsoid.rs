@@ -12,7 +12,7 @@ use super::sample::{HORIZON, above_horizon};
 use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::Slope;
 use crate::error::MaterialError;
-use crate::math::{bounded, sqrt};
+use crate::math::{saturated, sqrt};
 
 /// The entries of a [`Skew`] in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +108,7 @@ impl Ellipsoid {
     fn inverse_area_below(&self, w: Vec3, at: &Stretched) -> f32 {
         let area = at.rho * SlopeBelowHorizon::new(&self.lobe, at.rho, -w.z).excess();
         // Finite, since a density of 0 times ∞ would be NaN.
-        if area > 0.0 { bounded(1.0 / area) } else { f32::MAX }
+        if area > 0.0 { saturated(1.0 / area) } else { f32::MAX }
     }
 
     /// The lobe's [common case](StudentT::sample_common) between U and Uᵀ; `None` elsewhere, and
@@ -202,7 +202,7 @@ impl MicrofacetDistribution for Ellipsoid {
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
         let w = self.to_unit(v);
-        bounded(facing * self.d(m) * self.inverse_area(w, &self.lobe.stretch(w)))
+        saturated(facing * self.d(m) * self.inverse_area(w, &self.lobe.stretch(w)))
     }
 
     /// The weight f·cos θ_l/pdf of a light reflected off a [sampled](Self::sample_visible_normal)
@@ -229,7 +229,7 @@ impl MicrofacetDistribution for Ellipsoid {
         let length = sqrt(unit.dot(unit));
         // The ratio of solid angles, scale over the length cubed.
         let stretch = scale / length / (length * length);
-        bounded(self.lobe.table_pdf(w, unit / length) * stretch)
+        saturated(self.lobe.table_pdf(w, unit / length) * stretch)
     }
 
     fn is_effectively_smooth(&self) -> bool {

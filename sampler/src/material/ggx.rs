@@ -9,7 +9,7 @@ use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::roughness::checked;
 use super::sample::{above_horizon, face};
 use crate::error::MaterialError;
-use crate::math::{bounded, sqrt, unit};
+use crate::math::{saturated, sqrt, unit};
 
 /// The smallest 1 − u₁: keeps a normal off the horizon, where its length may vanish.
 const LAST: f32 = 1.0 / 16_777_216.0;
@@ -94,7 +94,7 @@ impl MicrofacetDistribution for Ggx {
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
-        bounded(facing * self.d(m) * self.inverse_area(v))
+        saturated(facing * self.d(m) * self.inverse_area(v))
     }
 
     fn is_effectively_smooth(&self) -> bool {
@@ -110,5 +110,5 @@ impl MicrofacetDistribution for Ggx {
 #[inline(always)]
 pub(crate) fn d_of_stretched(x: f32, y: f32, z: f32, scale: f32) -> f32 {
     let b = z * z + (x * x + y * y);
-    bounded(scale / (b * b))
+    saturated(scale / (b * b))
 }

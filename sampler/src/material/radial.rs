@@ -14,7 +14,7 @@ use crate::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
 use crate::axis::{HalfTangent, Mapping, MirroredRoot, Rational};
 use crate::error::MaterialError;
 use crate::format::{Kind, LobeEntry, Table};
-use crate::math::{bounded, sqrt};
+use crate::math::{saturated, sqrt};
 
 /// A lobe of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
 ///
@@ -157,7 +157,7 @@ impl MicrofacetDistribution for Radial {
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
-        bounded(facing * self.d(m) * self.plane.inverse_area(&self.plane.stretch(v)))
+        saturated(facing * self.d(m) * self.plane.inverse_area(&self.plane.stretch(v)))
     }
 
     fn is_effectively_smooth(&self) -> bool {

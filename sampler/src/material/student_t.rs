@@ -16,7 +16,7 @@ use crate::axis::hermite::{horner, split};
 use crate::error::{BatchError, MaterialError};
 use crate::format::Table;
 use crate::lanes::swap_pairs;
-use crate::math::{bounded, sqrt};
+use crate::math::{saturated, sqrt};
 
 /// A Student-t lobe with fixed roughness and shape, holding only the slices of the tables it needs.
 ///
@@ -197,7 +197,7 @@ impl StudentT {
         };
         // Squares the root of the power: the whole power may underflow where 1/σ² brings D back.
         let root = libm::expf(0.5 * log);
-        bounded(scale * root * root)
+        saturated(scale * root * root)
     }
 }
 
@@ -259,7 +259,7 @@ impl MicrofacetDistribution for StudentT {
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
-        bounded(facing * self.d(m) * self.inverse_area(&self.stretch(v)))
+        saturated(facing * self.d(m) * self.inverse_area(&self.stretch(v)))
     }
 
     /// The density with which the sampler draws `m`, the Jacobian of its own map.
