@@ -49,11 +49,16 @@ pub trait Real:
     + Mul<Output = Self>
     + Div<Output = Self>
 {
+    /// The largest finite number.
+    const MAX: Self;
+
     /// The nearest number to a constant given in double precision.
     fn constant(x: f64) -> Self;
 }
 
 impl Real for f32 {
+    const MAX: Self = Self::MAX;
+
     #[inline(always)]
     fn constant(x: f64) -> Self {
         x as Self
@@ -61,8 +66,16 @@ impl Real for f32 {
 }
 
 impl Real for f64 {
+    const MAX: Self = Self::MAX;
+
     #[inline(always)]
     fn constant(x: f64) -> Self {
         x
     }
+}
+
+/// A density, no more than the largest number. (`min` would take NaN for that, and hide it.)
+#[inline(always)]
+pub fn saturated<T: Real>(density: T) -> T {
+    if density > T::MAX { T::MAX } else { density }
 }

@@ -5,13 +5,13 @@ use core::f64::consts::PI;
 use core::fmt;
 
 use glam::DVec3;
-use microfacet_common::{Masking, Skew, SkewError};
+use microfacet_common::{Masking, Skew, SkewError, saturated};
 
 use crate::below_horizon::SlopeBelowHorizon;
 use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::shape::Shape;
-use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon, saturated};
+use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon};
 
 /// Why an ellipsoid was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]

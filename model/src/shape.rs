@@ -2,11 +2,11 @@
 
 use core::f64::consts::{FRAC_2_SQRT_PI, PI};
 
+use microfacet_common::saturated;
 use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 
 use crate::error::ParameterError;
 use crate::slope_integrals;
-use crate::visible::saturated;
 
 /// Above this γ the Beckmann limit is used: the two differ by O(1/γ), less than a double's
 /// rounding.

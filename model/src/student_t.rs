@@ -3,12 +3,12 @@
 use core::f64::consts::PI;
 
 use glam::DVec3;
-use microfacet_common::Roughness;
+use microfacet_common::{Roughness, saturated};
 
 use crate::distribution::MicrofacetDistribution;
 use crate::error::ParameterError;
 use crate::shape::Shape;
-use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon, saturated};
+use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon};
 
 /// The Student-t distribution of microfacet normals, of roughness σx, σy and shape γ.
 ///

@@ -225,11 +225,6 @@ pub(crate) fn above_horizon(m: DVec3) -> DVec3 {
     DVec3::new(m.x, m.y, m.z.max(HORIZON))
 }
 
-/// A density, no more than the largest number. (`f64::min` would take NaN for that, and hide it.)
-pub(crate) fn saturated(density: f64) -> f64 {
-    if density > f64::MAX { f64::MAX } else { density }
-}
-
 /// Inverse CDF of the slope across, in units of √(1 + s x²), for u ∈ [0, 1]: odd about u = ½, ±∞ at
 /// u = 1 and 0.
 pub fn across_quantile(shape: &Shape, u: f64) -> SignedSlope {

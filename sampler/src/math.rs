@@ -25,9 +25,3 @@ pub(crate) fn sqrt64(x: f64) -> f64 {
 pub(crate) fn unit(x: f32) -> f32 {
     if x > 0.0 { x.min(1.0) } else { 0.0 }
 }
-
-/// A density, no more than the largest number. (`f32::min` would take NaN for that, and hide it.)
-#[inline(always)]
-pub(crate) fn saturated(density: f32) -> f32 {
-    if density > f32::MAX { f32::MAX } else { density }
-}

@@ -3,7 +3,7 @@
 use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
-use microfacet_common::{Masking, Skew};
+use microfacet_common::{Masking, Skew, saturated};
 use wide::f32x4;
 
 use super::below_horizon::{Numbers, SlopeBelowHorizon};
@@ -12,7 +12,7 @@ use super::sample::{HORIZON, above_horizon};
 use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::Slope;
 use crate::error::MaterialError;
-use crate::math::{saturated, sqrt};
+use crate::math::sqrt;
 
 /// The entries of a [`Skew`] in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,13 +3,13 @@
 use core::f32::consts::{FRAC_1_PI, TAU};
 
 use glam::Vec3;
-use microfacet_common::Roughness;
+use microfacet_common::{Roughness, saturated};
 
 use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::roughness::checked;
 use super::sample::{above_horizon, face};
 use crate::error::MaterialError;
-use crate::math::{saturated, sqrt, unit};
+use crate::math::{sqrt, unit};
 
 /// The smallest 1 − u₁: keeps a normal off the horizon, where its length may vanish.
 const LAST: f32 = 1.0 / 16_777_216.0;

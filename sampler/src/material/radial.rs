@@ -4,6 +4,7 @@ use alloc::format;
 use alloc::vec::Vec;
 
 use glam::Vec3;
+use microfacet_common::saturated;
 
 use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::roughness::checked;
@@ -14,7 +15,7 @@ use crate::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
 use crate::axis::{HalfTangent, Mapping, MirroredRoot, Rational};
 use crate::error::MaterialError;
 use crate::format::{Kind, LobeEntry, Table};
-use crate::math::{saturated, sqrt};
+use crate::math::sqrt;
 
 /// A lobe of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
 ///

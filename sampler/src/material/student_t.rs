@@ -3,8 +3,8 @@
 use core::f32::consts::PI;
 
 use glam::Vec3;
-use microfacet_common::Roughness;
 use microfacet_common::shape::{gamma_of_s, s_of_gamma};
+use microfacet_common::{Roughness, saturated};
 use wide::f32x4;
 
 use super::batch::same_lengths;
@@ -16,7 +16,7 @@ use crate::axis::hermite::{horner, split};
 use crate::error::{BatchError, MaterialError};
 use crate::format::Table;
 use crate::lanes::swap_pairs;
-use crate::math::{saturated, sqrt};
+use crate::math::sqrt;
 
 /// A Student-t lobe with fixed roughness and shape, holding only the slices of the tables it needs.
 ///
