@@ -22,7 +22,7 @@ impl<'a> Reader<'a> {
         scope: &'a Element,
         channel: Channel,
     ) -> Result<Interval, SceneError> {
-        let key = (std::ptr::from_ref(input), channel);
+        let key = (input.key(), channel);
         if let Some(known) = self.ranges.begin(key, &input.place)? {
             return Ok(known);
         }

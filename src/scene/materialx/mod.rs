@@ -140,7 +140,7 @@ struct Reader<'a> {
     builder: Builder,
     index: Index<'a>,
     /// Ranges of the inputs and outputs that were evaluated.
-    ranges: Memo<(*const Element, Channel)>,
+    ranges: Memo<(Key<'a>, Channel)>,
 }
 
 /// The values of a shader's inputs.

@@ -216,7 +216,7 @@ impl<'a> Reader<'a> {
                 }
             },
             "texture" => {
-                let key = std::ptr::from_ref(property);
+                let key = property.key();
                 if let Some(known) = self.ranges.begin(key, &property.place)? {
                     return Ok(known);
                 }

@@ -28,7 +28,7 @@ use std::path::{Path, PathBuf};
 use super::builder::Builder;
 use super::error::did_you_mean;
 use super::memo::Memo;
-use super::xml::{self, Element};
+use super::xml::{self, Element, Key};
 use super::{Format, Scene, SceneError, cycle, limits};
 
 /// Reads a Mitsuba 3 scene.
@@ -200,21 +200,18 @@ fn ids(root: &Element) -> HashMap<&str, &Element> {
     ids
 }
 
-/// Elements, distinguished by their address.
-type Set = HashSet<*const Element>;
-
 struct Reader<'a> {
     ids: HashMap<&'a str, &'a Element>,
     builder: Builder,
     folders: Vec<PathBuf>,
     incomplete: bool,
     /// Ranges of the textures that were evaluated.
-    ranges: Memo<*const Element>,
+    ranges: Memo<Key<'a>>,
 }
 
 impl<'a> Reader<'a> {
     /// The BSDFs that shapes use, themselves or inside others; `None` if that cannot be known.
-    fn used(&self, root: &'a Element) -> Result<Option<Set>, SceneError> {
+    fn used(&self, root: &'a Element) -> Result<Option<HashSet<Key<'a>>>, SceneError> {
         let mut shapes = Vec::new();
         root.walk(&mut |element| {
             if element.tag == "shape" {
@@ -224,7 +221,7 @@ impl<'a> Reader<'a> {
         if shapes.is_empty() || self.incomplete {
             return Ok(None);
         }
-        let mut used = Set::new();
+        let mut used = HashSet::new();
         while let Some(element) = shapes.pop() {
             for child in &element.children {
                 let child = match &child.tag[..] {
@@ -235,7 +232,7 @@ impl<'a> Reader<'a> {
                     },
                     _ => continue,
                 };
-                if used.insert(std::ptr::from_ref(child)) {
+                if used.insert(child.key()) {
                     shapes.push(child);
                 }
             }
@@ -245,7 +242,7 @@ impl<'a> Reader<'a> {
 
     /// Refuses an element that has itself inside, by `<ref>`.
     fn check_circles(&self, root: &'a Element) -> Result<(), SceneError> {
-        let inside = |element: xml::Key<'a>| {
+        let inside = |element: Key<'a>| {
             let own = element.0.children.iter();
             let id = element.0.attribute("id").filter(|_| element.0.tag == "ref");
             own.chain(id.and_then(|id| self.ids.get(id).copied())).map(Element::key).collect()
@@ -284,12 +281,12 @@ impl<'a> Reader<'a> {
         &mut self,
         element: &'a Element,
         outer: Option<&'a str>,
-        used: &Option<Set>,
+        used: &Option<HashSet<Key<'a>>>,
     ) -> Result<(), SceneError> {
         let named = matches!(&element.tag[..], "bsdf" | "shape");
         let name = element.attribute("id").filter(|_| named).or(outer);
         if element.tag == "bsdf" {
-            let used = used.as_ref().is_none_or(|used| used.contains(&std::ptr::from_ref(element)));
+            let used = used.as_ref().is_none_or(|used| used.contains(&element.key()));
             self.bsdf(element, name, used)?;
         }
         element.children.iter().try_for_each(|child| self.bsdfs(child, name, used))
