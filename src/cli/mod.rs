@@ -149,12 +149,12 @@ fn tables(path: Option<&Path>) -> Result<Tables, Failure> {
 /// Parses σ as `X` or `X,Y`.
 fn parse_sigma(text: &str) -> Result<[f64; 2], String> {
     let parts: Vec<&str> = text.split(',').collect();
-    let one = |part: &str| match part.trim().parse::<f64>() {
-        Ok(sigma) if Ggx::new(sigma).is_ok() => Ok(sigma),
-        Ok(sigma) => Err(Ggx::new(sigma).err().map_or(String::new(), |why| why.to_string())),
-        Err(_) => Err(format!(
-            "sigma \"{part}\" must be a number; give X, or X,Y for an anisotropic material"
-        )),
+    let one = |part: &str| {
+        let sigma = part.trim().parse::<f64>().map_err(|_| {
+            format!("sigma \"{part}\" must be a number; give X, or X,Y for an anisotropic material")
+        })?;
+        // Every lobe has the same range, and GGX needs no table to say it.
+        Ggx::new(sigma).map(|_| sigma).map_err(|why| why.to_string())
     };
     match parts[..] {
         [both] => Ok([one(both)?; 2]),

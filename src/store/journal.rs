@@ -312,17 +312,10 @@ mod tests {
 
     #[cfg(unix)]
     mod unix {
-        use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
+        use std::os::unix::fs::symlink;
 
         use super::*;
-
-        fn mode(path: &Path) -> u32 {
-            fs::metadata(path).unwrap().mode() & 0o777
-        }
-
-        fn set_mode(path: &Path, mode: u32) {
-            fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
-        }
+        use crate::store::replace::modes::{mode, set_mode};
 
         /// A set of which one file is a link to another folder.
         #[test]

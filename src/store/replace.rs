@@ -214,6 +214,22 @@ pub(super) fn partial_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
+/// Modes of files, for tests here and of the journal.
+#[cfg(all(test, unix))]
+pub(super) mod modes {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+
+    use super::*;
+
+    pub(in crate::store) fn mode(path: &Path) -> u32 {
+        fs::metadata(path).unwrap().mode() & 0o777
+    }
+
+    pub(in crate::store) fn set_mode(path: &Path, mode: u32) {
+        fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -236,17 +252,10 @@ mod tests {
 
     #[cfg(unix)]
     mod unix {
-        use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
+        use std::os::unix::fs::{MetadataExt, symlink};
 
         use super::*;
-
-        fn mode(path: &Path) -> u32 {
-            fs::metadata(path).unwrap().mode() & 0o777
-        }
-
-        fn set_mode(path: &Path, mode: u32) {
-            fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
-        }
+        use crate::store::replace::modes::{mode, set_mode};
 
         #[test]
         fn links_are_followed_and_stay() {

@@ -103,9 +103,7 @@ impl FresnelEntry {
         let [a, b] = self.indices()?.map(|eta| ReflectanceRoot.coordinate(eta));
         Some(ReflectanceRoot.quantity(0.5 * (a + b)))
     }
-}
 
-impl FresnelEntry {
     /// Checks the numbers; the error says what is wrong.
     fn check(&self) -> Result<(), String> {
         match self {

@@ -12,7 +12,6 @@ use microfacet_common::shape::gamma_of_s;
 use super::precision::{Codec, Precision};
 use super::schema::Kind;
 use super::subject::Subject;
-
 use crate::axis::{Axis, Mapping, Weights};
 use crate::error::LoadError;
 
