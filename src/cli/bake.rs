@@ -16,7 +16,7 @@ use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::Table;
 
 use super::request::Request;
-use super::{Done, Failure, Outcome, escape, print, print_json, progress, report};
+use super::{Done, Failure, Outcome, escape, print, print_json, progress, report, values};
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
@@ -52,30 +52,13 @@ pub(super) struct Args {
     /// Bake everything, and cache nothing.
     #[arg(long, conflicts_with = "cache")]
     no_cache: bool,
-    /// Limit of the memory for baking, in bytes or with K, M or G; a larger bake is refused at the
+    /// Limit of the memory for baking, such as 512MB or 4GiB; a larger bake is refused at the
     /// start.
-    #[arg(long, value_name = "BYTES", value_parser = parse_bytes, default_value = "4G")]
+    #[arg(long, value_name = "BYTES", value_parser = values::size, default_value = "4GiB")]
     max_memory: u64,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
-}
-
-/// Parses a number of bytes, with K, M or G for powers of 1024.
-fn parse_bytes(text: &str) -> Result<u64, String> {
-    let digits = text.trim_end_matches(['K', 'M', 'G']);
-    let shift = match &text[digits.len()..] {
-        "" => Some(0),
-        "K" => Some(10),
-        "M" => Some(20),
-        "G" => Some(30),
-        _ => None,
-    };
-    let bytes =
-        digits.parse::<u64>().ok().zip(shift).and_then(|(n, shift)| n.checked_mul(1 << shift));
-    bytes.ok_or_else(|| {
-        format!("\"{text}\" must be a whole number of bytes, such as 536870912 or 512M")
-    })
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -95,7 +78,7 @@ fn parse_error(text: &str) -> Result<f64, String> {
 
 /// Parses the largest size of a set.
 fn parse_size(text: &str) -> Result<usize, String> {
-    match parse_bytes(text)? {
+    match values::size(text)? {
         bytes if bytes <= MAX_TABLES => usize::try_from(bytes).map_err(|e| e.to_string()),
         bytes => Err(format!("{bytes} bytes: at most {MAX_TABLES} are read back")),
     }

@@ -9,7 +9,7 @@ use serde_json::json;
 use microfacet_bake::validate::furnace::{Furnace, TOLERANCE, Walk, furnace, walk};
 use microfacet_sampler::{Masking, Tables};
 
-use super::{Done, Failure, Outcome, parse_gamma, print, print_json, tables};
+use super::{Done, Failure, Outcome, print, print_json, tables, values};
 
 /// Run a white furnace: single scattering, each compensation, and the random walk on the
 /// microsurface.
@@ -25,7 +25,7 @@ pub(super) struct Args {
     #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_roughness, default_value = "0.01,0.1,0.3,0.6,1,2,3")]
     sigma: Vec<f64>,
     /// Shapes in [1.501, inf], comma separated.
-    #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_gamma, default_value = "1.501,1.6,2,3,5,10,40,inf")]
+    #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = values::gamma, default_value = "1.501,1.6,2,3,5,10,40,inf")]
     gamma: Vec<f64>,
     /// Cosines of the view in [0, 1], comma separated.
     #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_cosine, default_value = "0.02,0.3,1")]
@@ -37,8 +37,8 @@ pub(super) struct Args {
     #[arg(long, value_enum, default_value = "quadrature")]
     method: Method,
     /// Number of rays of each walk.
-    #[arg(long, default_value_t = 100_000, allow_negative_numbers = true, value_parser = parse_walks)]
-    walks: usize,
+    #[arg(long, default_value_t = 100_000, allow_negative_numbers = true, value_parser = values::count(1_000..=10_000_000_000))]
+    walks: u64,
     /// Seed of the walks.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -79,13 +79,6 @@ fn parse_cosine(text: &str) -> Result<f64, String> {
     }
 }
 
-fn parse_walks(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(n @ 1_000..=10_000_000_000) => Ok(n),
-        _ => Err(format!("\"{text}\" walks: must be a whole number in [1000, 1e10]")),
-    }
-}
-
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
     if args.average {
@@ -104,7 +97,7 @@ pub(super) fn run(args: Args) -> Outcome {
                 let row = furnace(&set, masking, sigma, gamma, cos)?;
                 // A mirror has no microsurface to walk on.
                 let walked = if walking && sigma > 0.0 {
-                    Some(walk(sigma, gamma, cos, args.walks, args.seed)?)
+                    Some(walk(sigma, gamma, cos, usize::try_from(args.walks)?, args.seed)?)
                 } else {
                     None
                 };

@@ -13,6 +13,7 @@ mod request;
 mod sample;
 mod stress;
 mod validate;
+mod values;
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -23,7 +24,7 @@ use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use microfacet_bake::store;
-use microfacet_sampler::{Ggx, Tables};
+use microfacet_sampler::Tables;
 
 /// Bake, check and query tables for Student-t microfacet materials.
 #[derive(Parser)]
@@ -144,52 +145,4 @@ fn tables(path: Option<&Path>) -> Result<Tables, Failure> {
         Some(path) => store::read(path)?,
         None => Tables::embedded(),
     })
-}
-
-/// Parses σ as `X` or `X,Y`.
-fn parse_sigma(text: &str) -> Result<[f64; 2], String> {
-    let parts: Vec<&str> = text.split(',').collect();
-    let one = |part: &str| {
-        let sigma = part.trim().parse::<f64>().map_err(|_| {
-            format!("sigma \"{part}\" must be a number; give X, or X,Y for an anisotropic material")
-        })?;
-        // Every lobe has the same range, and GGX needs no table to say it.
-        Ggx::new(sigma).map(|_| sigma).map_err(|why| why.to_string())
-    };
-    match parts[..] {
-        [both] => Ok([one(both)?; 2]),
-        [x, y] => Ok([one(x)?, one(y)?]),
-        _ => Err(format!("\"{text}\" has {} values; give X, or X,Y", parts.len())),
-    }
-}
-
-/// Parses γ ∈ (1.5, ∞], `inf` included.
-fn parse_gamma(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(gamma) if gamma > 1.5 => Ok(gamma),
-        _ => Err(format!(
-            "gamma \"{text}\" must be a number in (1.5, inf]; 2 is GGX, inf is Beckmann"
-        )),
-    }
-}
-
-/// The largest polar angle of a view: up to 1e-5 above π/2 is a rounded π/2, as 1.5708 is.
-const THETA_MAX: f64 = std::f64::consts::FRAC_PI_2 + 1e-5;
-
-/// Parses a polar angle in [0, π/2].
-fn parse_theta(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(theta) if (0.0..=THETA_MAX).contains(&theta) => Ok(theta),
-        _ => Err(format!(
-            "theta \"{text}\" must be an angle in [0, pi/2 = 1.5708] radians, measured from the macro normal"
-        )),
-    }
-}
-
-/// Parses any finite angle.
-fn parse_phi(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(phi) if phi.is_finite() => Ok(phi),
-        _ => Err(format!("phi \"{text}\" must be a finite angle in radians")),
-    }
 }

@@ -15,10 +15,7 @@ use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::MicrofacetDistribution as _;
 
-use super::{
-    Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, report,
-    tables, write,
-};
+use super::{Done, Failure, Outcome, print, report, tables, values, write};
 
 /// Draw normals for one material and view into a safetensors file: `normals` [N,3], `pdf` [N], f32.
 #[derive(clap::Args)]
@@ -27,19 +24,21 @@ use super::{
 )]
 pub(super) struct Args {
     /// Roughness, `X` or `X,Y`.
-    #[arg(long, value_name = "X[,Y]", allow_negative_numbers = true, value_parser = parse_sigma)]
+    #[arg(long, value_name = "X[,Y]", allow_negative_numbers = true, value_parser = values::sigma)]
     sigma: [f64; 2],
     /// Shape.
-    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = parse_gamma)]
+    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = values::gamma)]
     gamma: f64,
-    /// Polar angle of the view, radians.
-    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_theta)]
+    /// Polar angle of the view.
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     theta: f64,
-    /// Azimuth of the view, radians.
-    #[arg(long, value_name = "P", value_parser = parse_phi, default_value = "0", allow_hyphen_values = true)]
+    /// Azimuth of the view.
+    #[arg(long, value_name = "P", default_value = "0", allow_negative_numbers = true)]
     phi: f64,
+    #[command(flatten)]
+    unit: values::Unit,
     /// Number of normals.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "N", value_parser = values::count(1..=1_000_000_000))]
     count: u64,
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 1)]
@@ -72,8 +71,8 @@ pub(super) fn run(args: Args) -> Outcome {
         sigma_x,
         sigma_y,
         gamma: args.gamma,
-        theta: args.theta,
-        phi: args.phi,
+        theta: args.unit.theta(args.theta)?,
+        phi: args.unit.phi(args.phi)?,
         seed: args.seed,
     };
     let to_stdout = args.out.as_os_str() == "-";

@@ -12,10 +12,7 @@ use microfacet_bake::validate::{
 
 use microfacet_sampler::{LobeEntry, Reflectance, Tables};
 
-use super::{
-    Done, Failure, Outcome, parse_gamma, parse_phi, parse_sigma, parse_theta, print, print_json,
-    progress, tables,
-};
+use super::{Done, Failure, Outcome, print, print_json, progress, tables, values};
 
 /// Test normals drawn from tables against the analytic densities by chi-square.
 #[derive(clap::Args)]
@@ -26,26 +23,28 @@ pub(super) struct Args {
     /// A table file, or a folder with one; the embedded default if absent.
     tables: Option<PathBuf>,
     /// Normals drawn for each configuration.
-    #[arg(long, value_name = "N", default_value_t = 100_000, allow_negative_numbers = true, value_parser = parse_samples)]
-    samples: usize,
+    #[arg(long, value_name = "N", default_value_t = 100_000, allow_negative_numbers = true, value_parser = values::count(1_000..=10_000_000_000))]
+    samples: u64,
     /// Number of materials and views, drawn over the covered domain.
-    #[arg(long, value_name = "K", default_value_t = 100, allow_negative_numbers = true, value_parser = parse_configurations)]
-    configurations: usize,
+    #[arg(long, value_name = "K", default_value_t = 100, allow_negative_numbers = true, value_parser = values::count(1..=1_000_000))]
+    configurations: u64,
     /// Seed of everything random.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Test one configuration instead: its roughness, `X` or `X,Y`.
-    #[arg(long, value_name = "X[,Y]", allow_negative_numbers = true, value_parser = parse_sigma, requires_all = ["gamma", "theta"])]
+    #[arg(long, value_name = "X[,Y]", allow_negative_numbers = true, value_parser = values::sigma, requires_all = ["gamma", "theta"])]
     sigma: Option<[f64; 2]>,
     /// Shape of the one configuration.
-    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = parse_gamma, requires = "sigma")]
+    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = values::gamma, requires = "sigma")]
     gamma: Option<f64>,
-    /// Polar angle of its view, radians.
-    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_theta, requires = "sigma")]
+    /// Polar angle of its view.
+    #[arg(long, value_name = "T", allow_negative_numbers = true, requires = "sigma")]
     theta: Option<f64>,
-    /// Azimuth of its view, radians.
-    #[arg(long, value_name = "P", value_parser = parse_phi, default_value = "0", allow_hyphen_values = true)]
+    /// Azimuth of its view.
+    #[arg(long, value_name = "P", default_value = "0", allow_negative_numbers = true)]
     phi: f64,
+    #[command(flatten)]
+    unit: values::Unit,
     /// Multiply the model's gamma by this; 1.01 shows that the tests reject.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     perturb_gamma: f64,
@@ -61,22 +60,6 @@ pub(super) struct Args {
     json: bool,
 }
 
-fn parse_samples(text: &str) -> std::result::Result<usize, String> {
-    match text.parse() {
-        Ok(n @ 1_000..=10_000_000_000) => Ok(n),
-        _ => Err(format!(
-            "\"{text}\" samples: must be a whole number in [1000, 1e10], to populate the cells of a chi-square test"
-        )),
-    }
-}
-
-fn parse_configurations(text: &str) -> std::result::Result<usize, String> {
-    match text.parse() {
-        Ok(n @ 1..=1_000_000) => Ok(n),
-        _ => Err(format!("\"{text}\" configurations: must be a whole number in [1, 1000000]")),
-    }
-}
-
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
     if args.stress {
@@ -87,11 +70,13 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     let chosen = match (args.sigma, args.gamma, args.theta) {
         (Some([sigma_x, sigma_y]), Some(gamma), Some(theta)) => {
-            vec![Configuration { sigma_x, sigma_y, gamma, theta, phi: args.phi, seed: args.seed }]
+            let (theta, phi) = (args.unit.theta(theta)?, args.unit.phi(args.phi)?);
+            vec![Configuration { sigma_x, sigma_y, gamma, theta, phi, seed: args.seed }]
         }
-        _ => configurations(&set, args.configurations, args.seed),
+        _ => configurations(&set, usize::try_from(args.configurations)?, args.seed),
     };
-    let options = Options { samples: args.samples, gamma_factor: args.perturb_gamma };
+    let options =
+        Options { samples: usize::try_from(args.samples)?, gamma_factor: args.perturb_gamma };
     let bar = progress(chosen.len(), "validating");
     let result = run_all(&set, &chosen, options, || bar.inc(1))?;
     bar.finish_and_clear();

@@ -14,7 +14,7 @@ use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{Masking, Moments, StudentT, Tables};
 
 use super::Method;
-use crate::cli::parse_theta;
+use crate::cli::values::Unit;
 
 /// Values for the columns of one row, or why there are none.
 type Values = Result<Vec<String>, String>;
@@ -76,7 +76,7 @@ impl Known {
 fn parse(text: &str, name: &str) -> Result<f64, String> {
     let x: f64 = text.parse().map_err(|_| format!("{name} \"{text}\" is not a number"))?;
     let (low, high) = match name {
-        "theta" => return parse_theta(text),
+        "theta" => return Unit::default().theta(x),
         "u1" | "u2" | "cos_theta" => (0.0, 1.0),
         "phi" => (f64::MIN, f64::MAX),
         // The constructors check σ and γ, with their own messages.

@@ -1,0 +1,190 @@
+//! Values of options and columns as people write them: counts, sizes, sigma, gamma and angles.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::ops::RangeInclusive;
+
+use bytesize::ByteSize;
+
+use microfacet_bake::fit::Angles;
+use microfacet_sampler::Ggx;
+
+/// Parses a whole number as `100000` or `1e5`, and checks its range.
+pub(super) fn count(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<u64, String> + Clone {
+    move |text| match whole(text) {
+        Some(n) if range.contains(&n) => Ok(n),
+        _ => Err(format!(
+            "\"{text}\" must be a whole number in [{}, {}], such as {}",
+            power(*range.start()),
+            power(*range.end()),
+            // The largest power of ten up to a million that the range holds.
+            (0..=6)
+                .rev()
+                .map(|n| 10_u64.pow(n))
+                .find(|n| range.contains(n))
+                .unwrap_or(*range.start())
+        )),
+    }
+}
+
+/// A whole number, with an exponent or without.
+fn whole(text: &str) -> Option<u64> {
+    let text = text.trim();
+    if let Ok(n) = text.parse() {
+        return Some(n);
+    }
+    // Up to 2⁵³ a double holds every whole number.
+    let x: f64 = text.parse().ok()?;
+    (x.fract() == 0.0 && (0.0..=9.0e15).contains(&x)).then_some(x as u64)
+}
+
+/// A large power of ten as people write it.
+fn power(n: u64) -> String {
+    match n.checked_ilog10() {
+        Some(e) if e > 4 && n == 10_u64.pow(e) => format!("1e{e}"),
+        _ => n.to_string(),
+    }
+}
+
+/// Parses a number of bytes: `65536`, `1e6`, `10K` or `10KB` (10,000), `4GiB` (4 · 2³⁰).
+pub(super) fn size(text: &str) -> Result<u64, String> {
+    let bytes = whole(text).or_else(|| text.trim().parse().ok().map(|ByteSize(bytes)| bytes));
+    bytes.filter(|&bytes| bytes > 0).ok_or_else(|| {
+        format!("\"{text}\" must be a number of bytes, such as 65536, 10K (10,000), 4GB or 4GiB")
+    })
+}
+
+/// Parses σ as `X` or `X,Y`.
+pub(super) fn sigma(text: &str) -> Result<[f64; 2], String> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let one = |part: &str| {
+        let sigma = part.trim().parse::<f64>().map_err(|_| {
+            format!("sigma \"{part}\" must be a number; give X, or X,Y for an anisotropic material")
+        })?;
+        // Every lobe has the same range, and GGX needs no table to say it.
+        Ggx::new(sigma).map(|_| sigma).map_err(|why| why.to_string())
+    };
+    match parts[..] {
+        [both] => Ok([one(both)?; 2]),
+        [x, y] => Ok([one(x)?, one(y)?]),
+        _ => Err(format!("\"{text}\" has {} values; give X, or X,Y", parts.len())),
+    }
+}
+
+/// Parses γ ∈ (1.5, ∞], `inf` included.
+pub(super) fn gamma(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(gamma) if gamma > 1.5 => Ok(gamma),
+        _ => Err(format!(
+            "gamma \"{text}\" must be a number in (1.5, inf]; 2 is GGX, inf is Beckmann"
+        )),
+    }
+}
+
+/// The largest polar angle of a view: up to 1e-5 above π/2 is a rounded π/2, as 1.5708 is.
+pub(super) const THETA_MAX: f64 = FRAC_PI_2 + 1e-5;
+
+/// The unit of the angles that a command reads.
+#[derive(clap::Args, Clone, Copy, Debug, Default)]
+pub(super) struct Unit {
+    /// Angles are in degrees instead of radians.
+    #[arg(long)]
+    degrees: bool,
+}
+
+impl Unit {
+    pub(super) fn angles(self) -> Angles {
+        if self.degrees { Angles::Degrees } else { Angles::Radians }
+    }
+
+    /// A polar angle in [0, π/2], in radians.
+    pub(super) fn theta(self, x: f64) -> Result<f64, String> {
+        let theta = self.radians(x);
+        if (0.0..=THETA_MAX).contains(&theta) {
+            return Ok(theta);
+        }
+        let from = "measured from the macro normal";
+        Err(if self.degrees {
+            format!("theta = {x} must be an angle in [0, 90] degrees, {from}")
+        } else {
+            let hint =
+                if (0.0..=90.0).contains(&x) { "; if it is in degrees, add --degrees" } else { "" };
+            format!("theta = {x} must be an angle in [0, pi/2 = 1.5708] radians, {from}{hint}")
+        })
+    }
+
+    /// Any finite angle, in radians.
+    pub(super) fn phi(self, x: f64) -> Result<f64, String> {
+        if x.is_finite() {
+            Ok(self.radians(x))
+        } else {
+            Err(format!("phi = {x} must be a finite angle"))
+        }
+    }
+
+    /// What to say of an azimuth that may be in degrees: one of more than a turn.
+    pub(super) fn doubt(self, phi: f64) -> Option<String> {
+        (!self.degrees && phi.abs() > TAU + 1e-3).then(|| {
+            format!(
+                "phi = {phi} radians is {:.1} turns; if it is in degrees, add --degrees",
+                phi.abs() / TAU
+            )
+        })
+    }
+
+    fn radians(self, x: f64) -> f64 {
+        if self.degrees { x.to_radians() } else { x }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_whole_numbers_with_exponents_or_without() {
+        let samples = count(1_000..=10_000_000_000);
+        for (text, n) in
+            [("1000", 1_000), ("1e6", 1_000_000), ("2.5e3", 2_500), (" 1E10 ", 10_000_000_000)]
+        {
+            assert_eq!(samples(text), Ok(n), "{text}");
+        }
+        for bad in ["999", "1e11", "1e-3", "1000.5", "many", "", "-1e6", "nan", "inf", "1e400"] {
+            let why = samples(bad).unwrap_err();
+            assert!(why.contains("[1000, 1e10], such as 1000000"), "{bad}: {why}");
+        }
+        // Seeds keep every bit.
+        assert_eq!(count(0..=u64::MAX)("18446744073709551615"), Ok(u64::MAX));
+    }
+
+    #[test]
+    fn sizes_take_the_units_of_both_kinds() {
+        let sizes = [
+            ("65536", 65_536),
+            ("1e6", 1_000_000),
+            ("10K", 10_000),
+            ("10kB", 10_000),
+            ("4GB", 4_000_000_000),
+            ("4GiB", 4 << 30),
+            ("1.5 MiB", 3 << 19),
+        ];
+        for (text, bytes) in sizes {
+            assert_eq!(size(text), Ok(bytes), "{text}");
+        }
+        for bad in ["", "0", "-1", "4X", "GB", "nan", "inf", "4 G B"] {
+            assert!(size(bad).unwrap_err().contains("4GB or 4GiB"), "{bad}");
+        }
+    }
+
+    #[test]
+    fn angles_that_look_like_degrees_are_doubted() {
+        let [radians, degrees] = [false, true].map(|degrees| Unit { degrees });
+        assert_eq!(degrees.theta(90.0), Ok(FRAC_PI_2));
+        assert!(degrees.theta(91.0).unwrap_err().contains("[0, 90] degrees"));
+        assert_eq!(radians.theta(1.5708), Ok(1.5708));
+        assert!(radians.theta(20.0).unwrap_err().contains("--degrees"));
+        assert!(!radians.theta(-0.1).unwrap_err().contains("--degrees"));
+        assert!(radians.theta(f64::NAN).is_err() && radians.phi(f64::INFINITY).is_err());
+        assert!(radians.doubt(360.0).is_some_and(|why| why.contains("57.3 turns")));
+        assert_eq!((radians.doubt(-TAU), degrees.doubt(360.0)), (None, None));
+    }
+}
