@@ -14,6 +14,7 @@ use argmin::solver::neldermead::NelderMead;
 use microfacet_model::classic::{Isotropic, Tabulated};
 
 use crate::distribution::{DistributionError, DistributionKind, Named};
+use crate::progress::Stage;
 
 /// The quantity that is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,6 +137,12 @@ impl<'a> Target<'a> {
         this
     }
 
+    /// The estimated seconds of a search for the least RMSE.
+    pub fn seconds(&self, to: DistributionKind) -> f64 {
+        // Nanoseconds for an angle, of `microfacet-bake fit`.
+        1e-9 * 110.0 * (tries(to) * self.theta.len()) as f64
+    }
+
     /// Root mean square of the difference over the grid.
     pub fn rmse(&self, to: &dyn Isotropic, form: Form) -> f64 {
         let (a, b) = match form {
@@ -200,15 +207,22 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// The distribution of kind `to` with the least RMSE, all parameters fitted together.
+    /// The distribution of kind `to` with the least RMSE, all parameters fitted together; each
+    /// distribution tried is one step of the stage, about [`tries`] in all.
     ///
     /// # Errors
     /// [`ConvertError::Minimiser`] with the minimiser's own message.
-    pub fn by_rmse(&self, to: DistributionKind, form: Form) -> Result<Replacement, ConvertError> {
-        let problem = Problem { target: self, to, form };
+    pub fn by_rmse(
+        &self,
+        to: DistributionKind,
+        form: Form,
+        stage: &Stage,
+    ) -> Result<Replacement, ConvertError> {
+        stage.split(tries(to));
+        let problem = Problem { target: self, to, form, stage };
         let failed = |e: Error| ConvertError::Minimiser(e.to_string());
         // A coarse scan finds the basin of the global minimum among several local ones.
-        let steps = if to.dimension() == 1 { 200 } else { 48 };
+        let steps = scan(to);
         let scale = |i: usize| i as f64 / steps as f64;
         let start = (0..=steps)
             .flat_map(|i| {
@@ -252,15 +266,31 @@ impl<'a> Target<'a> {
     }
 }
 
+/// Steps of a coarse scan along each parameter.
+fn scan(to: DistributionKind) -> usize {
+    if to.dimension() == 1 { 200 } else { 48 }
+}
+
+/// About how many distributions of a kind a search tries: those of the scan, and those of the
+/// minimiser.
+pub fn tries(to: DistributionKind) -> usize {
+    match to.dimension() {
+        1 => scan(to) + 40,
+        _ => (scan(to) + 1).pow(2) + 200,
+    }
+}
+
 /// The RMSE as a function on the search square of a kind of distribution.
 struct Problem<'a> {
     target: &'a Target<'a>,
     to: DistributionKind,
     form: Form,
+    stage: &'a Stage,
 }
 
 impl Problem<'_> {
     fn error(&self, point: &[f64]) -> f64 {
+        self.stage.step();
         let rmse = self
             .to
             .build(&self.to.at(point, self.target.narrow))
@@ -333,7 +363,7 @@ mod tests {
             let built = from.build().unwrap();
             let target = Target::new(&*built);
             for found in [
-                target.by_rmse(from.kind, Form::Relative).unwrap(),
+                target.by_rmse(from.kind, Form::Relative, &Stage::unwatched()).unwrap(),
                 target.by_half_angle(from.kind, None).unwrap(),
             ] {
                 let (a, b) = (found.to.values[0], from.values[0]);
@@ -347,7 +377,9 @@ mod tests {
         for text in ["student-t:0.3,2.5", "gtr:0.2,1.3", "hyper-cauchy:0.4,3"] {
             let from = named(text);
             let built = from.build().unwrap();
-            let found = Target::new(&*built).by_rmse(from.kind, Form::Density).unwrap();
+            let found = Target::new(&*built)
+                .by_rmse(from.kind, Form::Density, &Stage::unwatched())
+                .unwrap();
             for (a, b) in found.to.values.iter().zip(&from.values) {
                 assert!((a / b - 1.0).abs() < 1e-3, "{text} became {}", found.to);
             }
@@ -359,13 +391,15 @@ mod tests {
     fn student_t_recognises_its_members() {
         for (text, gamma) in [("trowbridge-reitz:0.2", 2.0), ("blinn-phong:20", 12.0)] {
             let built = named(text).build().unwrap();
-            let found =
-                Target::new(&*built).by_rmse(DistributionKind::StudentT, Form::Relative).unwrap();
+            let found = Target::new(&*built)
+                .by_rmse(DistributionKind::StudentT, Form::Relative, &Stage::unwatched())
+                .unwrap();
             assert!((found.to.values[1] / gamma - 1.0).abs() < 1e-2, "{text} became {}", found.to);
         }
         let built = named("beckmann:0.2").build().unwrap();
-        let found =
-            Target::new(&*built).by_rmse(DistributionKind::StudentT, Form::Relative).unwrap();
+        let found = Target::new(&*built)
+            .by_rmse(DistributionKind::StudentT, Form::Relative, &Stage::unwatched())
+            .unwrap();
         assert!(
             found.to.values[1] > 1e3 && (found.to.values[0] - 0.2).abs() < 1e-3,
             "{}",
@@ -378,7 +412,9 @@ mod tests {
         let from = named("blinn-phong:50");
         let built = from.build().unwrap();
         let target = Target::new(&*built);
-        let best = target.by_rmse(DistributionKind::Beckmann, Form::Relative).unwrap();
+        let best = target
+            .by_rmse(DistributionKind::Beckmann, Form::Relative, &Stage::unwatched())
+            .unwrap();
         let half = target.by_half_angle(DistributionKind::Beckmann, None).unwrap();
         let formula = by_formula(&from, DistributionKind::Beckmann).unwrap();
         assert!(best.rmse[0] <= half.rmse[0] && best.rmse[0] <= formula.rmse[0]);

@@ -8,6 +8,7 @@ use microfacet_model::classic::{Tabulated, TabulatedError};
 use crate::convert::{ConvertError, Form, Replacement, Target};
 use crate::distribution::DistributionKind;
 use crate::input::{Limited, MAX_ROW, MAX_TEXT};
+use crate::progress::Meter;
 
 /// Most rows of a measurement. A fit to as many takes some seconds.
 pub const MAX_ROWS: usize = 1_000_000;
@@ -121,16 +122,19 @@ pub struct Fit {
     pub ggx: Replacement,
 }
 
-/// Fits by least squares over the measured angles.
+/// Fits by least squares over the measured angles, and counts the work in a meter.
 ///
 /// # Errors
 /// [`ConvertError::Minimiser`].
-pub fn fit(measured: &Tabulated, form: Form) -> Result<Fit, ConvertError> {
+pub fn fit(measured: &Tabulated, form: Form, meter: &Meter) -> Result<Fit, ConvertError> {
+    use DistributionKind::{Beckmann, StudentT, TrowbridgeReitz};
     let target = Target::measured(measured);
+    meter.expect([StudentT, Beckmann, TrowbridgeReitz].map(|to| target.seconds(to)).iter().sum());
+    let nearest = |to| target.by_rmse(to, form, &meter.stage(target.seconds(to)));
     Ok(Fit {
-        student_t: target.by_rmse(DistributionKind::StudentT, form)?,
-        beckmann: target.by_rmse(DistributionKind::Beckmann, form)?,
-        ggx: target.by_rmse(DistributionKind::TrowbridgeReitz, form)?,
+        student_t: nearest(StudentT)?,
+        beckmann: nearest(Beckmann)?,
+        ggx: nearest(TrowbridgeReitz)?,
     })
 }
 
@@ -151,7 +155,7 @@ mod tests {
     fn finds_what_was_measured() {
         for (sigma, gamma) in [(0.3, 2.6), (0.15, 5.0), (0.2, 1.8)] {
             let table = read_csv(measured(sigma, gamma, 89.9).as_bytes(), Angles::Degrees).unwrap();
-            let fit = fit(&table, Form::Relative).unwrap();
+            let fit = fit(&table, Form::Relative, &Meter::default()).unwrap();
             let [s, g] = fit.student_t.to.values[..] else { panic!() };
             assert!(
                 (s / sigma - 1.0).abs() < 1e-2 && (g / gamma - 1.0).abs() < 2e-2,

@@ -49,6 +49,7 @@ pub mod input;
 pub mod memory;
 pub mod plan;
 pub mod plot;
+pub mod progress;
 mod quality;
 pub mod scene;
 pub mod store;

@@ -8,6 +8,7 @@ use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake_radial;
 use microfacet_bake::distribution::Named;
 use microfacet_bake::plan::{Options, Plan};
+use microfacet_bake::progress::Stage;
 use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
@@ -165,8 +166,14 @@ impl<'a> Own<'a> {
             masking: None,
             fresnel: None,
         };
-        let mut tables = bake_radial(marginal, &entry.distribution, Quality::Draft, Precision::F32);
-        certify(&mut tables, &entry, marginal).unwrap();
+        let mut tables = bake_radial(
+            marginal,
+            &entry.distribution,
+            Quality::Draft,
+            Precision::F32,
+            &Stage::unwatched(),
+        );
+        certify(&mut tables, &entry, marginal, &Stage::unwatched()).unwrap();
         let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
         let radial =
             Tables::from_tables(provenance, tables.clone()).unwrap().material("it").unwrap();

@@ -10,6 +10,7 @@ use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake_radial;
 use microfacet_bake::distribution::Named;
 use microfacet_bake::plan::{Cost, Options, Plan, bare_cost, cost, distribution_cost};
+use microfacet_bake::progress::Stage;
 use microfacet_bake::scene::{Scene, load};
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::{Quality, general_set};
@@ -57,7 +58,13 @@ fn tabulated(name: &str, marginal: &Marginal) -> Lobe {
         masking: None,
         fresnel: None,
     };
-    let tables = bake_radial(marginal, &entry.distribution, Quality::Default, Precision::F32);
+    let tables = bake_radial(
+        marginal,
+        &entry.distribution,
+        Quality::Default,
+        Precision::F32,
+        &Stage::unwatched(),
+    );
     let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
     Tables::from_tables(provenance, tables).unwrap().material("it").unwrap()
 }

@@ -3,6 +3,7 @@
 
 use microfacet_bake::bake::bake;
 use microfacet_bake::plan::Plan;
+use microfacet_bake::progress::Stage;
 use microfacet_bake::store::{decode_exr, encode_exr};
 use microfacet_bake::table_spec::{ShapeAxis, TableSpec};
 use microfacet_sampler::{Kind, LoadError, Precision, Tables};
@@ -19,7 +20,7 @@ fn small_table(precision: Precision) -> Tables {
     };
     let mut origin = Plan::default().provenance();
     origin.conventions.clear();
-    Tables::from_tables(origin, vec![bake(&spec)]).unwrap()
+    Tables::from_tables(origin, vec![bake(&spec, &Stage::unwatched())]).unwrap()
 }
 
 fn small_image() -> (Tables, Vec<u8>) {

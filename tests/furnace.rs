@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use glam::Vec3;
 use microfacet_bake::bake::albedo::{AlbedoLobe, Domain, bake};
 use microfacet_bake::plan::RequiredAlbedo;
+use microfacet_bake::progress::Stage;
 use microfacet_bake::scene::Interval;
 use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::furnace::{TOLERANCE, direction, furnace, survey};
@@ -51,7 +52,7 @@ fn albedos_match_the_reference() {
 
 #[test]
 fn the_furnace_closes() {
-    for survey in survey(&set()).unwrap() {
+    for survey in survey(&set(), &Stage::unwatched()).unwrap() {
         assert!(survey.passed() && survey.points >= 100, "{survey:?}");
     }
     for masking in Masking::ALL {
@@ -78,7 +79,7 @@ fn a_wrong_table_does_not_close() {
     // E − 1 three per cent too small.
     tables.iter_mut().flat_map(|table| table.values.iter_mut().step_by(3)).for_each(|e| *e *= 0.97);
     let set = Tables::from_tables(Default::default(), tables).unwrap();
-    assert!(survey(&set).unwrap().iter().all(|survey| !survey.passed()));
+    assert!(survey(&set, &Stage::unwatched()).unwrap().iter().all(|survey| !survey.passed()));
 }
 
 /// Compensation adds no energy apart from the error of E: for tables of high quality, inside the

@@ -2,8 +2,6 @@
 
 mod command;
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
 use glam::Vec3;
 use microfacet_bake::cache::Cache;
 use microfacet_bake::plan::{Options, Plan, Verdict, bare_cost, cost};
@@ -237,28 +235,6 @@ fn what_is_finished_is_not_baked_again() {
 }
 
 #[test]
-fn an_interrupted_bake_goes_on_where_it_was() {
-    let folder = tempfile::tempdir().unwrap();
-    let cache = Cache::new(folder.path().into());
-    let plan = normals_of(&Plan::general());
-    let mut left = 3;
-    let interrupted = catch_unwind(AssertUnwindSafe(|| {
-        let progress = Box::new(|_| {
-            left -= 1;
-            assert!(left > 0, "interrupted");
-        });
-        bake_with(&plan, DRAFT, Settings { cache: cache.clone(), progress, ..Settings::default() })
-    }));
-    assert!(interrupted.is_err());
-    let resumed = bake(&plan, DRAFT, &cache).unwrap();
-    assert_eq!(resumed.baked, 2, "three of five tables were finished");
-    let fresh = bake(&plan, DRAFT, &Cache::none()).unwrap();
-    assert!(bytes(&resumed.set) == bytes(&fresh.set));
-    // One cache entry of the finished shapes replaces those of their tables.
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-}
-
-#[test]
 fn an_error_budget_is_met_by_less() {
     let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
     let at = |target| bake(&plan, target, &Cache::none()).unwrap().set;
@@ -301,9 +277,10 @@ fn budgets_of_the_general_set_end() {
 #[test]
 fn what_would_take_long_says_so_before_anything_is_baked() {
     for target in [Target::MaxError(1e-5), Target::MaxBytes(20_000_000)] {
-        let progress = Box::new(|_| panic!("it was begun"));
-        let settings = Settings { progress, ..Settings::default() };
+        let settings = Settings::default();
+        let progress = settings.progress.clone();
         let refused = bake_with(&Plan::general(), target, settings).unwrap_err();
+        assert_eq!(progress.share(), 0.0, "it was begun");
         let BakeError::TooSlow { search, default_seconds } = refused else { panic!("{refused}") };
         assert!(search > 3.0 * default_seconds && default_seconds > 1.0, "{refused}");
     }

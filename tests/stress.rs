@@ -1,6 +1,7 @@
 //! The stress test at a million corners and random points, and proof that it rejects damaged
 //! tables.
 
+use microfacet_bake::progress::Stage;
 use microfacet_bake::validate::stress::{self, Report};
 use microfacet_sampler::{Kind, Tables};
 
@@ -10,7 +11,7 @@ const PROMISED: [f64; 4] = [1e-5, 1e-4, 1e-3, 1e-4];
 
 #[test]
 fn a_million_points_break_no_rule() {
-    let report = stress::run(&Tables::embedded(), 1_000_000, 1).unwrap();
+    let report = stress::run(&Tables::embedded(), 1_000_000, 1, &Stage::unwatched()).unwrap();
     let total = report.total();
     assert!(total.points >= 1_000_000);
     if let Some((rule, found)) = total.violations.iter().next() {
@@ -34,7 +35,7 @@ fn damaged(kind: Kind, damage: impl Fn(usize, &mut f32)) -> Report {
         table.values.iter_mut().enumerate().for_each(|(i, value)| damage(i, value));
     }
     let tables = Tables::from_tables(whole.provenance().clone(), tables).unwrap();
-    stress::run(&tables, 0, 1).unwrap()
+    stress::run(&tables, 0, 1, &Stage::unwatched()).unwrap()
 }
 
 #[test]

@@ -2,12 +2,18 @@
 //! `--release`.
 
 use microfacet_bake::bake::bake;
+use microfacet_bake::progress::Stage;
 use microfacet_bake::table_spec::{Quality, general_set};
 use microfacet_sampler::{Precision, Table, Tables};
 
 fn baked(threads: usize) -> Vec<Table> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| general_set(Quality::Default, Precision::F32).iter().map(bake).collect())
+    pool.install(|| {
+        general_set(Quality::Default, Precision::F32)
+            .iter()
+            .map(|spec| bake(spec, &Stage::unwatched()))
+            .collect()
+    })
 }
 
 #[test]

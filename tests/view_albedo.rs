@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 use glam::Vec3;
 use microfacet_bake::bake::albedo::{AlbedoLobe, AlbedoSpec, Models, Site, bake, weights};
 use microfacet_bake::plan::{Options, Plan, albedo_cost};
+use microfacet_bake::progress::Stage;
 use microfacet_bake::scene::Scene;
 use microfacet_bake::store;
 use microfacet_bake::table_set::{self, Target};
@@ -237,10 +238,11 @@ fn the_round_stand_in_is_off_by_what_the_certificate_says() {
 #[test]
 fn a_wrong_table_is_noticed() {
     let right = spec([0.6, 0.15], 2.7, Quality::Draft);
-    let references = interior_references(&right).unwrap();
+    let references = interior_references(&right, &Stage::unwatched()).unwrap();
     let table = bake(&right).unwrap().remove(0);
-    let error =
-        |table: Table| worst_error(&certified(&right, vec![table], &references).unwrap()[0]);
+    let error = |table: Table| {
+        worst_error(&certified(&right, vec![table], &references, &Stage::unwatched()).unwrap()[0])
+    };
     // A table with its axes exchanged.
     let swapped = spec([0.15, 0.6], 2.7, Quality::Draft);
     assert!(error(bake(&swapped).unwrap().remove(0)) > 0.1);

@@ -8,15 +8,18 @@ use microfacet_sampler::Axis;
 use microfacet_sampler::internals::limit_slopes;
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
+use crate::progress::Stage;
 use crate::table_spec::TableSpec;
 
-pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
+pub(super) fn bake(spec: &TableSpec, axes: &[Axis], stage: &Stage) -> Vec<f32> {
     let numbers = &axes[1].nodes;
     let of_shape = |shape: &Shape| {
         let mut half = round(numbers.iter().map(|&t| node(shape, t, numbers.len() - 1)));
         limit_slopes(&mut half);
+        stage.step();
         half
     };
+    stage.split(spec.shapes.nodes.len());
     shapes(spec).par_iter().flat_map_iter(of_shape).flatten_iter().collect()
 }
 

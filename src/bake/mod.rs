@@ -13,6 +13,7 @@ use microfacet_model::{Shape, SignedSlope};
 use microfacet_sampler::axis::{MirroredRoot, half_tangent};
 use microfacet_sampler::{Axis, Channels, Interpolation, Kind, Mapping, Subject, Table};
 
+use crate::progress::Stage;
 use crate::table_spec::{ShapeAxis, TableSpec};
 
 pub use radial::{bake_radial, radial_axes, radial_bytes};
@@ -25,13 +26,13 @@ pub const NUMERICS: u32 = 4;
 /// 2⁻⁴⁰. For Beckmann it keeps every stored slope below 5.3; the CDF error it causes is 2⁻⁴⁰ too.
 const END: f64 = 1.0 / 1_099_511_627_776.0;
 
-/// Bakes one table.
-pub fn bake(spec: &TableSpec) -> Table {
+/// Bakes one table, and counts its rows in a stage of the progress.
+pub fn bake(spec: &TableSpec, stage: &Stage) -> Table {
     let axes = axes(spec);
     let values = match spec.kind {
-        Kind::Shadowing => shadowing::bake(spec, &axes),
-        Kind::VisibleSlope | Kind::VisibleSlopePeeled => visible_slope::bake(spec, &axes),
-        Kind::VisibleSlopeConditional => conditional::bake(spec, &axes),
+        Kind::Shadowing => shadowing::bake(spec, &axes, stage),
+        Kind::VisibleSlope | Kind::VisibleSlopePeeled => visible_slope::bake(spec, &axes, stage),
+        Kind::VisibleSlopeConditional => conditional::bake(spec, &axes, stage),
         _ => unreachable!("kinds are listed in `axes`, which comes first"),
     };
     let table = Table {

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 use super::shadowing::ratios;
 use super::{across, along, in_names, joined_name, mirrored, names, round};
+use crate::progress::Stage;
 use crate::table_spec::Level;
 
 /// Rows, one for each in-plane slope, of the table of slopes across.
@@ -77,22 +78,24 @@ pub fn radial_bytes(level: Level, precision: Precision) -> usize {
     radial_axes(level, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * precision.bytes()
 }
 
-/// The four tables of the distribution named by a label.
+/// The four tables of the distribution named by a label; counts their rows in a stage of the
+/// progress.
 pub fn bake_radial(
     marginal: &Marginal,
     label: &str,
     level: impl Into<Level>,
     precision: Precision,
+    stage: &Stage,
 ) -> Vec<Table> {
     let kappa = marginal.beyond(0.0).excess;
     let table = |(kind, axes): (Kind, Vec<Axis>)| {
         let values = match (kind, &axes[..]) {
             (Kind::RadialShadowing, [views]) => shadowing(marginal, kappa, &views.nodes),
             (Kind::RadialSlope, [views, numbers]) => {
-                in_plane(marginal, &views.nodes, &numbers.nodes)
+                in_plane(marginal, &views.nodes, &numbers.nodes, stage)
             }
             (Kind::RadialConditional, [slopes, numbers]) => {
-                given_slope(marginal, slopes, &numbers.nodes)
+                given_slope(marginal, slopes, &numbers.nodes, stage)
             }
             (_, [slopes, ..]) => density(marginal, &slopes.nodes),
             (_, []) => unreachable!("every kind has an axis"),
@@ -109,7 +112,9 @@ pub fn bake_radial(
         };
         table.rounded(precision)
     };
-    radial_axes(level.into(), kappa, marginal.reach()).into_iter().map(table).collect()
+    let all = radial_axes(level.into(), kappa, marginal.reach());
+    stage.split(all.iter().filter(|(_, axes)| axes.len() > 1).map(|(_, axes)| axes[0].len()).sum());
+    all.into_iter().map(table).collect()
 }
 
 /// G1/q with q = z/(z + κ), where κ is the projected area at grazing, as for the family.
@@ -157,7 +162,7 @@ fn finite(slope: f64) -> f64 {
     if slope.is_finite() { slope } else { f64::from(f32::MAX) }
 }
 
-fn in_plane(marginal: &Marginal, views: &[f64], numbers: &[f64]) -> Vec<[f32; 2]> {
+fn in_plane(marginal: &Marginal, views: &[f64], numbers: &[f64], stage: &Stage) -> Vec<[f32; 2]> {
     let cells = (numbers.len() - 1) as f64;
     let row = |&tau: &f64| {
         let z = SLOPE.quantity(tau);
@@ -182,12 +187,18 @@ fn in_plane(marginal: &Marginal, views: &[f64], numbers: &[f64]) -> Vec<[f32; 2]
             limit_slopes(&mut half);
             row.extend(half);
         }
+        stage.step();
         row
     };
     views.par_iter().flat_map_iter(row).collect()
 }
 
-fn given_slope(marginal: &Marginal, slopes: &Axis, numbers: &[f64]) -> Vec<[f32; 2]> {
+fn given_slope(
+    marginal: &Marginal,
+    slopes: &Axis,
+    numbers: &[f64],
+    stage: &Stage,
+) -> Vec<[f32; 2]> {
     let cells = (numbers.len() - 1) as f64;
     let row = |&at: &f64| {
         // A row at infinity, or at or beyond the bound R of the slopes, has no quadrature; a row
@@ -217,6 +228,7 @@ fn given_slope(marginal: &Marginal, slopes: &Axis, numbers: &[f64]) -> Vec<[f32;
             [g, finite(du_dt / share(g).1 / cells)]
         }));
         limit_slopes(&mut half);
+        stage.step();
         half
     };
     slopes.nodes.par_iter().flat_map_iter(row).collect()

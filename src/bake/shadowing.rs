@@ -12,6 +12,7 @@ use microfacet_sampler::Axis;
 use microfacet_sampler::axis::Rational;
 
 use super::{round, shapes};
+use crate::progress::Stage;
 use crate::table_spec::{GAMMA_WHOLE, TableSpec};
 
 /// The view axis: q, crowded towards normal incidence for a table that reaches γ < 1.8, where the
@@ -21,15 +22,18 @@ pub(super) fn view(spec: &TableSpec) -> Rational {
     Rational { crowded, ..Rational::BAKED }
 }
 
-pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
+pub(super) fn bake(spec: &TableSpec, axes: &[Axis], stage: &Stage) -> Vec<f32> {
     let view = view(spec);
     let of_shape = |shape: &Shape| {
         let beyond = |z: f64| {
             let w = shape.asinh_slope(z);
             (shape.excess(w), shape.tail(w))
         };
-        round(ratios(&view, view.kappa(shape.s()), &axes[1].nodes, beyond))
+        let row = round(ratios(&view, view.kappa(shape.s()), &axes[1].nodes, beyond));
+        stage.step();
+        row
     };
+    stage.split(spec.shapes.nodes.len());
     shapes(spec).par_iter().flat_map_iter(of_shape).flatten_iter().collect()
 }
 

@@ -30,6 +30,7 @@ use microfacet_sampler::internals::limit_slopes;
 use microfacet_sampler::{Axis, Kind};
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
+use crate::progress::Stage;
 use crate::table_spec::TableSpec;
 
 /// The view axis: even in τ, or crowded towards normal incidence where the heavy part is peeled
@@ -43,14 +44,17 @@ pub(super) fn view(kind: Kind) -> HalfTangent {
 /// displaced is of the order of this distance squared.
 const INSIDE: f64 = 1.0 / 1_048_576.0;
 
-pub(super) fn bake(spec: &TableSpec, axes: &[Axis]) -> Vec<f32> {
+pub(super) fn bake(spec: &TableSpec, axes: &[Axis], stage: &Stage) -> Vec<f32> {
     let (view, peeled) = (view(spec.kind), spec.kind == Kind::VisibleSlopePeeled);
     let [_, views, numbers] = axes else { unreachable!("the axes of this kind") };
     let shapes = shapes(spec);
     let rows: Vec<(&Shape, f64)> =
         shapes.iter().flat_map(|shape| views.nodes.iter().map(move |&t| (shape, t))).collect();
+    stage.split(rows.len());
     let of_row = |&(shape, t): &(&Shape, f64)| {
-        row_nodes(shape, [view.parts(t)[1], view.quantity(t)], &numbers.nodes, peeled)
+        let row = row_nodes(shape, [view.parts(t)[1], view.quantity(t)], &numbers.nodes, peeled);
+        stage.step();
+        row
     };
     rows.par_iter().flat_map_iter(of_row).flatten_iter().collect()
 }

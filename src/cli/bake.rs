@@ -9,14 +9,17 @@ use serde_json::json;
 use microfacet_bake::cache::Cache;
 use microfacet_bake::input::MAX_TABLES;
 use microfacet_bake::plan::{Plan, set_cost};
+use microfacet_bake::progress::Meter;
 use microfacet_bake::scene::{self, Scene};
 use microfacet_bake::store::{Format, OutputFolder, Written};
-use microfacet_bake::table_set::{Baked, Progress, Settings, Target, bake_with};
+use microfacet_bake::table_set::{Baked, Settings, Target, bake_with};
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::Table;
 
 use super::request::Request;
-use super::{Done, Failure, Outcome, escape, print, print_json, progress, report, values};
+use super::{
+    Done, Failure, Outcome, escape, interrupt, print, print_json, progress, report, values,
+};
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
@@ -93,6 +96,13 @@ impl Args {
         }
     }
 
+    /// What a bake leaves that is interrupted before it writes.
+    fn leaves(&self, cache: &Cache) -> String {
+        let out = format!("{} is as it was", self.out.display());
+        let kept = "; finished tables are kept, and the same command goes on from there";
+        out + if cache.folder().is_some() { kept } else { "" }
+    }
+
     fn cache(&self) -> Cache {
         match &self.cache {
             _ if self.no_cache => Cache::none(),
@@ -129,18 +139,16 @@ pub(super) fn run(args: Args) -> Outcome {
             )));
         }
     }
-    let bar = progress(0, "baking");
     let settings = Settings {
         cache: args.cache(),
         max_memory: args.max_memory,
         patient: args.patient,
-        progress: Box::new(|Progress { done, steps }| {
-            bar.set_length(steps as u64);
-            bar.set_position(done as u64);
-        }),
+        progress: Meter::default(),
     };
+    interrupt::leaves(args.leaves(&settings.cache));
+    let bar = progress::show(&settings.progress, "baking");
     let result = bake_with(&plan, args.target(), settings)?;
-    bar.finish_and_clear();
+    drop(bar);
     if let Some(why) = &result.cache_error {
         report(
             "warning",
@@ -158,6 +166,7 @@ pub(super) fn run(args: Args) -> Outcome {
         })
         .collect();
     let written = out.write(&result.set, &formats)?;
+    interrupt::leaves(format!("the set in {} is complete", args.out.display()));
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
         print_json(&as_json(&result, &written, seconds))?

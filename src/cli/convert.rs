@@ -7,8 +7,9 @@ use clap::ValueEnum;
 
 use microfacet_bake::convert::{ConvertError, Form, Replacement, Target, by_formula};
 use microfacet_bake::distribution::{DistributionKind, Named};
+use microfacet_bake::progress::{Meter, Stage};
 
-use super::{Done, Failure, Outcome, print};
+use super::{Done, Failure, Outcome, print, progress};
 
 /// How the replacement is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -80,9 +81,13 @@ impl Args {
     fn pair(&self, from: &Named, to: DistributionKind) -> Result<String, Box<dyn Error>> {
         let built = from.build()?;
         let target = Target::new(&*built);
+        let meter = Meter::default();
+        let work = target.seconds(to);
+        meter.expect(work);
+        let _bar = progress::show(&meter, "searching");
         let replace = |by| match by {
             By::HalfAngle => target.by_half_angle(to, self.shape),
-            By::Rmse => target.by_rmse(to, self.on.into()),
+            By::Rmse => target.by_rmse(to, self.on.into(), &meter.stage(work)),
             By::Formula => by_formula(from, to),
         };
         let mut text = format!(
@@ -145,19 +150,26 @@ fn table(form: Form) -> Result<String, Box<dyn Error>> {
         DistributionKind::Schlick,
         DistributionKind::TrowbridgeReitz,
     ];
+    /// Roughnesses, and about how long each takes.
+    const ROWS: u32 = 17;
+    const SECONDS: f64 = 0.05;
+    let meter = Meter::default();
+    meter.expect(f64::from(ROWS) * SECONDS);
+    let _bar = progress::show(&meter, "searching");
     let mut text = format!("{:>8}", "m");
     for kind in kinds {
         let name = format!("{} {}", kind.name(), kind.parameters()[0]);
         write!(text, "{name:>20}{:>10}", "RMSE")?;
     }
     text.push('\n');
-    for i in 0..17 {
+    for i in 0..ROWS {
+        let _stage = meter.stage(SECONDS);
         let m = 0.05 + 0.025 * f64::from(i);
         let built = DistributionKind::Beckmann.build(&[m])?;
         let target = Target::new(&*built);
         write!(text, "{m:>8.3}")?;
         for kind in kinds {
-            let found = target.by_rmse(kind, form)?;
+            let found = target.by_rmse(kind, form, &Stage::unwatched())?;
             write!(
                 text,
                 "{:>20.5}{:>10.2e}",

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use microfacet_bake::fit::{self, Angles};
 use microfacet_bake::input::{MAX_TEXT, open_or_stdin, shown};
+use microfacet_bake::progress::Meter;
 
 use super::convert::{On, ends};
-use super::{Done, Outcome, print};
+use super::{Done, Outcome, print, progress};
 
 /// Fit a Student-t to a measured distribution of normals (a CSV with the columns angle and D).
 #[derive(clap::Args)]
@@ -29,7 +30,10 @@ pub(super) fn run(args: Args) -> Outcome {
     let file = open_or_stdin(&args.input, MAX_TEXT).map_err(|e| format!("{path}: {e}"))?;
     let angles = if args.degrees { Angles::Degrees } else { Angles::Radians };
     let measured = fit::read_csv(file, angles).map_err(|e| format!("{path}: {e}"))?;
-    let found = fit::fit(&measured, args.on.into())?;
+    let meter = Meter::default();
+    let bar = progress::show(&meter, "fitting");
+    let found = fit::fit(&measured, args.on.into(), &meter)?;
+    drop(bar);
     let mut text = String::new();
     let (first, last) = measured.assumed();
     if first > 0.0 {

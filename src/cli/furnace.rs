@@ -6,10 +6,13 @@ use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::json;
 
-use microfacet_bake::validate::furnace::{Furnace, TOLERANCE, Walk, furnace, walk};
+use microfacet_bake::progress::Meter;
+use microfacet_bake::validate::furnace::{
+    Furnace, TOLERANCE, Walk, furnace, seconds, walk, walk_seconds,
+};
 use microfacet_sampler::{Masking, Tables};
 
-use super::{Done, Failure, Outcome, print, print_json, tables, values};
+use super::{Done, Failure, Outcome, print, print_json, progress, tables, values};
 
 /// Run a white furnace: single scattering, each compensation, and the random walk on the
 /// microsurface.
@@ -91,13 +94,23 @@ pub(super) fn run(args: Args) -> Outcome {
     if !args.json {
         print(&head(walking))?;
     }
+    let walks = if walking { usize::try_from(args.walks)? } else { 0 };
+    let meter = Meter::default();
+    let count = args.cos_theta.len();
+    for (&gamma, &sigma) in args.gamma.iter().flat_map(|g| args.sigma.iter().map(move |s| (g, s))) {
+        meter.expect(count as f64 * (seconds(1) + walk_seconds(sigma, gamma, walks)));
+    }
+    let bar = progress::show(&meter, "walking");
     for &gamma in &args.gamma {
         for &sigma in &args.sigma {
             for &cos in &args.cos_theta {
+                let stage = meter.stage(seconds(1));
                 let row = furnace(&set, masking, sigma, gamma, cos)?;
+                drop(stage);
                 // A mirror has no microsurface to walk on.
                 let walked = if walking && sigma > 0.0 {
-                    Some(walk(sigma, gamma, cos, usize::try_from(args.walks)?, args.seed)?)
+                    let stage = meter.stage(walk_seconds(sigma, gamma, walks));
+                    Some(walk(sigma, gamma, cos, walks, args.seed, &stage)?)
                 } else {
                     None
                 };
@@ -113,6 +126,7 @@ pub(super) fn run(args: Args) -> Outcome {
             }
         }
     }
+    drop(bar);
     if args.json {
         print_json(&json!({ "masking": Masking::name(masking), "passed": passed, "rows": rows }))?;
     } else {

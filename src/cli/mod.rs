@@ -6,22 +6,27 @@ mod escape;
 mod fit;
 mod furnace;
 mod inspect;
+mod interrupt;
 mod plan;
 mod plot;
+mod progress;
 mod query;
 mod request;
 mod sample;
+mod shell;
 mod stress;
 mod validate;
 mod values;
 
+use std::ffi::OsString;
 use std::fmt::Display;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
+use anstyle::{AnsiColor, Style};
 use clap::{Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use microfacet_bake::store;
 use microfacet_sampler::Tables;
@@ -29,13 +34,22 @@ use microfacet_sampler::Tables;
 /// Bake, check and query tables for Student-t microfacet materials.
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true)]
-#[command(after_help = "Exit status: 0 done, 1 validation rejected, 2 bad input.")]
+#[command(after_help = "First steps:
+  microfacet-bake recipe -o glass.toml        write a recipe to start from
+  microfacet-bake plan glass.toml             show what must be baked for it, and what not
+  microfacet-bake bake glass.toml -o glass    bake the tables into the folder glass
+  microfacet-bake validate glass              test them against the analytic densities
+
+Exit status: 0 done, 1 a validation rejected, 2 bad input, 130 interrupted.")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
     /// Threads to use; all processors by default.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Show no progress, notes or summaries: only results, warnings and errors.
+    #[arg(long, short, global = true)]
+    quiet: bool,
 }
 
 #[derive(Subcommand)]
@@ -50,6 +64,8 @@ enum Command {
     Convert(convert::Args),
     Fit(fit::Args),
     Plot(plot::Args),
+    Completions(shell::Completions),
+    Man(shell::ManPages),
 }
 
 /// How a command ends without an error.
@@ -72,7 +88,12 @@ impl<E: Display> From<E> for Failure {
 type Outcome = Result<Done, Failure>;
 
 pub(crate) fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(why) => return refuse(&why),
+    };
+    QUIET.store(cli.quiet, Relaxed);
+    interrupt::watch();
     if let Some(threads) = cli.threads {
         // Fails only if a thread pool exists already, and none does.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
@@ -88,6 +109,8 @@ pub(crate) fn main() -> ExitCode {
         Command::Convert(args) => convert::run(args),
         Command::Fit(args) => fit::run(args),
         Command::Plot(args) => plot::run(args),
+        Command::Completions(args) => shell::completions(args),
+        Command::Man(args) => shell::man(args),
     };
     match outcome {
         Ok(Done::Ok) => ExitCode::SUCCESS,
@@ -100,14 +123,65 @@ pub(crate) fn main() -> ExitCode {
     }
 }
 
-/// Writes a line to standard error: a warning or a note, as `kind` says.
-fn report(kind: &str, message: impl Display) {
-    say(kind, &escape::line(&message.to_string()));
+/// Prints help, or why the arguments are refused, and returns the exit status.
+fn refuse(why: &clap::Error) -> ExitCode {
+    let hides = |argument: OsString| {
+        let text = argument.to_string_lossy();
+        escape::lines(&text) != text
+    };
+    if std::env::args_os().any(hides) {
+        // The message may repeat characters that command a terminal.
+        let _ = write!(io::stderr(), "{}", escape::lines(&why.render().to_string()));
+    } else {
+        // With colours on a terminal; a closed pipe is no error.
+        let _ = why.print();
+    }
+    ExitCode::from(u8::try_from(why.exit_code()).unwrap_or(2))
 }
 
-/// Writes to standard error; where that fails, nothing is left to say it to.
+/// Whether to leave out progress, notes and summaries.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+fn is_quiet() -> bool {
+    QUIET.load(Relaxed)
+}
+
+/// Writes a line to standard error: a warning or a note, as `kind` says.
+fn report(kind: &str, message: impl Display) {
+    if kind != "note" || !is_quiet() {
+        say(kind, &escape::line(&message.to_string()));
+    }
+}
+
+/// Writes to standard error, the kind in colour on a terminal that wants it (`NO_COLOR`); where
+/// that fails, nothing is left to say it to.
 fn say(kind: &str, text: &str) {
-    let _ = writeln!(io::stderr(), "{kind}: {text}");
+    let colour = match kind {
+        "note" => AnsiColor::Cyan,
+        "warning" | "interrupted" => AnsiColor::Yellow,
+        _ => AnsiColor::Red,
+    };
+    let style = Style::new().bold().fg_color(Some(colour.into()));
+    progress::above(|| {
+        let _ = writeln!(anstream::stderr(), "{style}{kind}{style:#}: {text}");
+    });
+}
+
+/// Writes a text for people that `--quiet` leaves out.
+fn summarize(text: &str) -> Result<(), Failure> {
+    if is_quiet() { Ok(()) } else { print(text) }
+}
+
+/// Writes a verdict, in colour on a terminal that wants it; `--quiet` leaves the exit status.
+fn verdict(passed: bool, text: &str) -> Result<(), Failure> {
+    let colour = if passed { AnsiColor::Green } else { AnsiColor::Red };
+    let style = Style::new().bold().fg_color(Some(colour.into()));
+    let text = format!("{style}{text}{style:#}\n");
+    let text = match anstream::AutoStream::choice(&io::stdout()) {
+        anstream::ColorChoice::Never => anstream::adapter::strip_str(&text).to_string(),
+        _ => text,
+    };
+    if is_quiet() { Ok(()) } else { write(text.as_bytes()) }
 }
 
 /// Writes a text for people to standard output.
@@ -119,7 +193,9 @@ fn print(text: &str) -> Result<(), Failure> {
 fn write(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout();
     // Flushed, since an error that waits for the end of the process is lost.
-    match out.write_all(bytes).and_then(|()| out.flush()) {
+    let mut all = || out.write_all(bytes).and_then(|()| out.flush());
+    // Elsewhere nothing is in the way, and a reader may keep the writer waiting.
+    match if io::stdout().is_terminal() { progress::above(all) } else { all() } {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure(format!("standard output: {error}")))
         }
@@ -130,13 +206,6 @@ fn write(bytes: &[u8]) -> Result<(), Failure> {
 /// Prints a value as JSON.
 fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
     write(escape::json(&format!("{value:#}\n")).as_bytes())
-}
-
-/// A progress bar of `steps`, on a terminal only.
-fn progress(steps: usize, what: &'static str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}")
-        .expect("a constant template");
-    ProgressBar::new(steps as u64).with_style(style).with_message(what)
 }
 
 /// The tables at a path, or the embedded default.

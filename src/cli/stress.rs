@@ -2,13 +2,21 @@
 
 use serde_json::json;
 
-use microfacet_bake::validate::stress::{ERRORS, ROUGHNESSES, Region, Report, SHAPES, VIEWS, run};
+use microfacet_bake::progress::Meter;
+use microfacet_bake::validate::stress::{
+    ERRORS, ROUGHNESSES, Region, Report, SHAPES, VIEWS, run, seconds,
+};
 use microfacet_sampler::Tables;
 
-use super::{Done, Outcome, print, print_json};
+use super::{Done, Outcome, print, print_json, progress};
 
 pub(super) fn stress(tables: &Tables, points: u64, seed: u64, as_json: bool) -> Outcome {
-    let report = run(tables, points, seed)?;
+    let meter = Meter::default();
+    let work = seconds(tables, points);
+    meter.expect(work);
+    let bar = progress::show(&meter, "testing");
+    let report = run(tables, points, seed, &meter.stage(work))?;
+    drop(bar);
     if as_json {
         print_json(&document(&report))?
     } else {

@@ -4,10 +4,13 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
+use microfacet_bake::progress::Meter;
 use microfacet_bake::validate::configuration::{Configuration, configurations, shapes};
-use microfacet_bake::validate::furnace::{Furnace, Survey, TOLERANCE as FURNACE_TOLERANCE, survey};
+use microfacet_bake::validate::furnace::{
+    Furnace, Survey, TOLERANCE as FURNACE_TOLERANCE, survey, survey_seconds,
+};
 use microfacet_bake::validate::{
-    LEVEL, Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all,
+    LEVEL, Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all, seconds,
 };
 
 use microfacet_sampler::{LobeEntry, Reflectance, Tables};
@@ -77,11 +80,18 @@ pub(super) fn run(args: Args) -> Outcome {
     };
     let options =
         Options { samples: usize::try_from(args.samples)?, gamma_factor: args.perturb_gamma };
-    let bar = progress(chosen.len(), "validating");
-    let result = run_all(&set, &chosen, options, || bar.inc(1))?;
-    bar.finish_and_clear();
+    let meter = Meter::default();
+    let normals = seconds(chosen.len(), options);
     // A single configuration tests its lobe only.
-    let furnaces = if args.sigma.is_none() { survey(&set)? } else { Vec::new() };
+    let furnace = if args.sigma.is_none() { survey_seconds(&set) } else { 0.0 };
+    meter.expect(normals + furnace);
+    let bar = progress::show(&meter, "validating");
+    let result = run_all(&set, &chosen, options, &meter.stage(normals))?;
+    let furnaces = match args.sigma {
+        None => survey(&set, &meter.stage(furnace))?,
+        Some(_) => Vec::new(),
+    };
+    drop(bar);
     if chosen.is_empty() && furnaces.is_empty() {
         return Err(Failure(nothing_to_judge(&set)));
     }

@@ -180,7 +180,9 @@ mod tests {
         let [radians, degrees] = [false, true].map(|degrees| Unit { degrees });
         assert_eq!(degrees.theta(90.0), Ok(FRAC_PI_2));
         assert!(degrees.theta(91.0).unwrap_err().contains("[0, 90] degrees"));
-        assert_eq!(radians.theta(1.5708), Ok(1.5708));
+        assert!(
+            radians.theta(FRAC_PI_2 + 4e-6).is_ok() && radians.theta(FRAC_PI_2 + 1e-4).is_err()
+        );
         assert!(radians.theta(20.0).unwrap_err().contains("--degrees"));
         assert!(!radians.theta(-0.1).unwrap_err().contains("--degrees"));
         assert!(radians.theta(f64::NAN).is_err() && radians.phi(f64::INFINITY).is_err());

@@ -11,6 +11,7 @@ use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
 use crate::bake::{self};
 use crate::distribution::Distribution;
 use crate::table_spec::{Level, Quality, TableSpec, general_set};
+use crate::validate::albedo::climbed_count;
 use crate::validate::certificate::POINTS;
 use crate::validate::{points, radial};
 
@@ -82,7 +83,14 @@ pub fn set_cost(plan: &Plan, quality: Quality, precision: Precision) -> Result<C
 
 /// The seconds of [`cost`] alone, which are quick to estimate.
 pub fn seconds(specs: &[TableSpec]) -> f64 {
-    specs.iter().map(seconds_of).sum::<f64>() / rayon::current_num_threads() as f64
+    let [bake, certify] = parts(specs);
+    bake + certify
+}
+
+/// The seconds to bake tables, and those to certify them.
+pub(crate) fn parts(specs: &[TableSpec]) -> [f64; 2] {
+    let all = specs.iter().map(parts_of).fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    all.map(|seconds| seconds / rayon::current_num_threads() as f64)
 }
 
 /// The cost of albedo tables, with the nodes that are tried first.
@@ -95,8 +103,7 @@ pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
     let one = json(&spec.axes) + name(Kind::Albedo) + subject + 800;
     let average = json(&spec.axes[..2]) + name(Kind::AlbedoAverage) + subject + 680;
     let headers = spec.maskings.len() * (one + if spec.has_averages() { average } else { 0 });
-    let threads = rayon::current_num_threads() as f64;
-    Cost { bytes: spec.bytes() + headers, seconds: albedo_seconds(spec) / threads }
+    Cost { bytes: spec.bytes() + headers, seconds: AlbedoWork::new(spec).total() }
 }
 
 /// The cost of the four tables of a distribution outside the family.
@@ -105,7 +112,16 @@ pub fn distribution_cost(
     level: impl Into<Level>,
     precision: Precision,
 ) -> Cost {
-    let level = level.into();
+    let (bytes, [bake, certify]) = distribution_parts(distribution, level.into(), precision);
+    Cost { bytes, seconds: bake + certify }
+}
+
+/// The bytes of the four tables, and the seconds to bake and to certify them.
+pub(crate) fn distribution_parts(
+    distribution: &Distribution,
+    level: Level,
+    precision: Precision,
+) -> (usize, [f64; 2]) {
     // The name ends in the label, or as many other characters; kind, channels, certificate, shape
     // and offsets.
     let suffix = distribution.label().len();
@@ -126,39 +142,74 @@ pub fn distribution_cost(
         _ => 0,
     };
     let nodes: usize = tables.iter().map(nodes).sum();
-    let seconds = 1e-6 * (node * nodes as f64 + normal * radial::POINTS as f64);
-    Cost { bytes, seconds: seconds / rayon::current_num_threads() as f64 }
+    let seconds = [node * nodes as f64, normal * radial::POINTS as f64];
+    let threads = rayon::current_num_threads() as f64;
+    (bytes, seconds.map(|microseconds| 1e-6 * microseconds / threads))
 }
 
-/// Seconds for one thread to bake and certify albedo tables.
-fn albedo_seconds(spec: &AlbedoSpec) -> f64 {
+/// The seconds of albedo tables on the current threads, by what they are spent on.
+pub(crate) struct AlbedoWork {
+    pub(crate) nodes: f64,
+    /// The certificate's places inside, along edges, and on the way uphill.
+    pub(crate) interior: f64,
+    pub(crate) edges: f64,
+    pub(crate) climbs: f64,
+}
+
+impl AlbedoWork {
+    pub(crate) fn new(spec: &AlbedoSpec) -> Self {
+        let [nodes, certificate] = albedo_seconds(spec);
+        // By how much longer a place takes than one inside, measured as for `albedo_seconds`: over a
+        // range of shapes each edge has shapes of its own, which take time to prepare; a climb in
+        // one shape often ends early.
+        let is_range =
+            matches!(spec.axes[0].mapping, Mapping::LogShape(_)) && spec.axes[0].len() > 1;
+        let [edge, climb] = if is_range { [5.0, 1.0] } else { [0.7, 0.6] };
+        let inside = points::interior_count(spec) as f64;
+        let edges = edge * (points::count(spec) as f64 - inside);
+        let climbs = climb * (spec.maskings.len() * climbed_count(spec)) as f64;
+        let one = certificate / (inside + edges + climbs);
+        Self { nodes, interior: one * inside, edges: one * edges, climbs: one * climbs }
+    }
+
+    pub(crate) fn total(&self) -> f64 {
+        self.nodes + self.interior + self.edges + self.climbs
+    }
+}
+
+/// Seconds to bake albedo tables, and those to certify them, on the current threads.
+fn albedo_seconds(spec: &AlbedoSpec) -> [f64; 2] {
+    let threads = rayon::current_num_threads() as f64;
     // Microseconds for a node or a point of the certificate: fitted to `microfacet-bake bake
     // --threads 1 --no-cache --out out` of the draft, the default and the high general set, which
     // are met within a tenth; single materials, dielectrics and other lobes within a half. Long
     // tails and narrow lobes take up to twice as long, and so does refinement.
     let (nodes, points) = (spec.nodes() as f64, points::count(spec) as f64);
-    1e-6 * match (&spec.lobe, spec.reflectance) {
-        (_, Reflectance::Dielectric { .. }) => 3300.0 * (nodes + points),
+    let [node, point] = match (&spec.lobe, spec.reflectance) {
+        (_, Reflectance::Dielectric { .. }) => [3300.0; 2],
         // Each decade of accuracy takes twice as long, and certificates are a decade finer.
         (AlbedoLobe::Family(_), _) => {
-            895.0 * libm::pow(1e-6 / spec.tolerance, 0.32) * (nodes + 2.1 * points)
+            let node = 895.0 * libm::pow(1e-6 / spec.tolerance, 0.32);
+            [node, 2.1 * node]
         }
-        _ => 10_000.0 * (nodes + points),
-    }
+        _ => [10_000.0; 2],
+    };
+    [node * nodes, point * points].map(|microseconds| 1e-6 * microseconds / threads)
 }
 
-/// Seconds for one thread to bake and certify a table.
-fn seconds_of(spec: &TableSpec) -> f64 {
+/// Seconds for one thread to bake a table, and to certify it.
+fn parts_of(spec: &TableSpec) -> [f64; 2] {
     // Nanoseconds for a node and for a point of the certificate: fitted to `time microfacet-bake
     // bake --threads 1 --no-cache --quality Q` at the three qualities, which are met within a
     // tenth.
     let [node, point] = match spec.kind {
-        Kind::Shadowing => [400.0, 250.0],
-        Kind::VisibleSlopeConditional => [2000.0, 350.0],
-        _ => [5800.0, 580.0],
+        Kind::Shadowing => [400.0, 290.0],
+        Kind::VisibleSlopeConditional => [2000.0, 300.0],
+        _ => [10_600.0, 1000.0],
     };
     let shapes = spec.shapes.nodes.len();
     let measured =
         if spec.shapes.interpolation == Interpolation::Nodes { shapes } else { 4 * shapes - 3 };
-    1e-9 * (node * spec.nodes() as f64 + point * (measured * POINTS) as f64)
+    [node * spec.nodes() as f64, point * (measured * POINTS) as f64]
+        .map(|nanoseconds| 1e-9 * nanoseconds)
 }

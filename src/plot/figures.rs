@@ -9,6 +9,7 @@ use microfacet_model::{MicrofacetDistribution, Shape, StudentT, printed};
 use super::{Curve, Legend, Panel, PlotError};
 use crate::convert::{Form, Target};
 use crate::distribution::{DistributionKind, Named};
+use crate::progress::Stage;
 
 /// One of the printed forms of Λ(γ, z) that are compared.
 type PrintedLambda = fn(f64, f64) -> Option<f64>;
@@ -130,7 +131,7 @@ fn nearest_to_beckmann(m: f64) -> Vec<(Named, Box<dyn Isotropic>)> {
     ];
     let nearest = others.map(|kind| {
         let found = Target::new(&*from)
-            .by_rmse(kind, Form::Relative)
+            .by_rmse(kind, Form::Relative, &Stage::unwatched())
             .expect("a smooth problem of one variable")
             .to;
         let built = found.build().expect("it was built to be judged");

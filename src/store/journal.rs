@@ -8,7 +8,7 @@ use std::time::SystemTime;
 
 use super::replace::{
     Destination, Pending, check_writable, destination, folder_of, is_partial, partial_files,
-    refused, replace, stage, sync,
+    refused, replace_unguarded, stage, sync,
 };
 use super::{SET_FILE, exr};
 use crate::input;
@@ -54,7 +54,7 @@ pub(super) fn replace_all(
     stale: &[String],
 ) -> Result<(), Failed> {
     if let ([(name, bytes)], []) = (files, stale) {
-        return replace(&folder.join(name), bytes).map_err(|why| (name.clone(), why));
+        return replace_unguarded(&folder.join(name), bytes).map_err(|why| (name.clone(), why));
     }
     let mut journal = String::new();
     for name in stale {

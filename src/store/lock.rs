@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use microfacet_sampler::Tables;
 
+use super::interrupt;
 use super::journal::{RECORD, finish, is_ours, recorded, replace_all};
 use super::replace::check_writable;
 use super::{Format, SET_FILE, StoreError, Written, files};
@@ -53,7 +54,8 @@ impl OutputFolder {
             return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, why)));
         }
         let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
-        let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let made: Vec<_> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        interrupt::will_make(&made);
         let mut this = Self { path: path.into(), made, lock: None };
         std::fs::create_dir_all(path).map_err(failed)?;
         let lock = this.lock.insert(lock_file(path).map_err(failed)?);
@@ -61,6 +63,7 @@ impl OutputFolder {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
                 // The bake that holds the lock uses these folders.
+                interrupt::forget(&this.made);
                 this.made.clear();
                 return Err(StoreError::InUse(path.into()));
             }
@@ -68,6 +71,7 @@ impl OutputFolder {
             Err(TryLockError::Error(why)) if why.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(why)) => return Err(failed(why)),
         }
+        let _writing = interrupt::writing();
         finish(path).map_err(|(name, why)| StoreError::Io(path.join(name), why))?;
         Ok(this)
     }
@@ -106,6 +110,7 @@ impl OutputFolder {
         }
         let mut stale = self.old()?;
         stale.retain(|old| files.iter().all(|(new, _)| new != old));
+        let _writing = interrupt::writing();
         replace_all(&self.path, &files, &stale)
             .map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
         Ok(all)
@@ -114,12 +119,12 @@ impl OutputFolder {
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        // A folder with any content cannot be removed, and stays.
         if !cfg!(unix) && !self.made.is_empty() {
             self.lock = None;
             let _ = std::fs::remove_file(self.path.join(LOCK_FILE));
         }
-        self.made.iter().all(|folder| std::fs::remove_dir(folder).is_ok());
+        interrupt::remove_empty(&self.made);
+        interrupt::forget(&self.made);
     }
 }
 

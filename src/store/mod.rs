@@ -2,6 +2,7 @@
 //! files.
 
 mod exr;
+mod interrupt;
 mod journal;
 mod lock;
 mod replace;
@@ -15,6 +16,7 @@ use microfacet_sampler::{LoadError, Table, Tables, encode};
 use crate::input::{self, MAX_TABLES};
 
 pub use self::exr::{decode as decode_exr, encode as encode_exr};
+pub use interrupt::quiesce;
 pub use lock::OutputFolder;
 pub(crate) use replace::remove_abandoned;
 pub use replace::replace;

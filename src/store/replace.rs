@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use tempfile::NamedTempFile;
 
+use super::interrupt;
 use crate::input;
 
 /// Prefix and suffix of the names of incomplete files; while no bake locks the folder, such a file
@@ -36,6 +37,12 @@ const LINKS: usize = 40;
 /// folder, a FIFO, a socket or a block device, or protected. Unless the disk itself fails at the
 /// very end, the old file is then untouched.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let _writing = interrupt::writing();
+    replace_unguarded(path, bytes)
+}
+
+/// [`replace`] as part of a write that is marked already.
+pub(super) fn replace_unguarded(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Pending::new(destination(path)?, bytes)?.commit()
 }
 

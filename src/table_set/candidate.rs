@@ -19,6 +19,9 @@ const WORTH: f64 = 0.9;
 /// Limit of a group's measuring time, in bakes of it at default quality or, if longer, in the time
 /// spent so far.
 const ALLOWANCE: f64 = 2.0;
+/// Estimated duration of a whole search, as a multiple of that of its first grades.
+pub(super) const SEARCH_OVER_FIRST: f64 = 1.7;
+
 /// A grade: a level, and the index of one of [`PRECISIONS`].
 pub(super) type Grade = (Level, usize);
 
@@ -53,6 +56,8 @@ pub(super) struct Candidate<'a> {
     /// Estimated seconds of a bake at default quality, and of those done so far.
     pub(super) default_seconds: f64,
     spent: f64,
+    /// Work expected for the rest of the search.
+    expected: f64,
     /// All grades, the coarsest first.
     menu: Vec<Pick>,
 }
@@ -79,6 +84,7 @@ impl<'a> Candidate<'a> {
             header,
             default_seconds: cost.seconds,
             spent: 0.0,
+            expected: 0.0,
             menu,
         };
         new.predict();
@@ -140,9 +146,13 @@ impl<'a> Candidate<'a> {
         job: &mut Job,
     ) -> Result<(), BakeError> {
         memory::check(self.group.values(level), job.max_memory)?;
-        job.steps += self.group.steps();
         let all = if self.group.shares_measuring() { vec![0, 1] } else { vec![precision] };
         let precisions: Vec<Precision> = all.iter().map(|&i| PRECISIONS[i]).collect();
+        // What was expected for the whole search holds this work already, as far as it reaches.
+        let work = self.group.work(level, precisions.len());
+        let ahead = self.expected.min(work);
+        self.expected -= ahead;
+        job.progress.expect(work - ahead);
         for (i, tables) in all.into_iter().zip(self.group.bake(level, &precisions, job)?) {
             let error = tables.iter().map(worst_error).fold(0.0, f64::max);
             let values = tables.iter().map(Table::stored_bytes).sum::<usize>() as f64;
@@ -153,6 +163,18 @@ impl<'a> Candidate<'a> {
         self.spent += self.group.seconds(level);
         self.predict();
         Ok(())
+    }
+
+    /// Announces the work of a search that begins at a grade.
+    pub(super) fn expect(&mut self, (level, _): Grade, job: &Job) {
+        let precisions = if self.group.shares_measuring() { PRECISIONS.len() } else { 1 };
+        self.expected = SEARCH_OVER_FIRST * self.group.work(level, precisions);
+        job.progress.expect(self.expected);
+    }
+
+    /// Takes back what was announced and not needed.
+    pub(super) fn finish(&mut self, job: &Job) {
+        job.progress.forget(std::mem::take(&mut self.expected));
     }
 
     pub(super) fn finest(&self) -> Grade {

@@ -5,45 +5,26 @@ use std::io;
 
 use microfacet_sampler::Table;
 
-use super::{Progress, Settings};
+use super::Settings;
 use crate::cache::Cache;
+use crate::progress::Meter;
 
-pub(super) struct Job<'a> {
+pub(super) struct Job {
     cache: Cache,
-    progress: Box<dyn FnMut(Progress) + 'a>,
+    pub(super) progress: Meter,
     pub(super) max_memory: u64,
     pub(super) patient: bool,
     /// Names of tables that were baked, not read from the cache.
     fresh: HashSet<String>,
     pub(super) cache_error: Option<io::Error>,
-    done: usize,
-    pub(super) steps: usize,
     pub(super) seconds: [f64; 2],
 }
 
-impl<'a> Job<'a> {
-    pub(super) fn new(settings: Settings<'a>) -> Self {
+impl Job {
+    pub(super) fn new(settings: Settings) -> Self {
         let Settings { cache, max_memory, patient, progress } = settings;
         let (fresh, cache_error, seconds) = Default::default();
-        Self {
-            cache,
-            progress,
-            max_memory,
-            patient,
-            fresh,
-            cache_error,
-            done: 0,
-            steps: 0,
-            seconds,
-        }
-    }
-
-    /// Counts steps as done and reports the progress.
-    pub(super) fn advance(&mut self, steps: usize) {
-        for _ in 0..steps {
-            self.done += 1;
-            (self.progress)(Progress { done: self.done, steps: self.steps.max(self.done) });
-        }
+        Self { cache, progress, max_memory, patient, fresh, cache_error, seconds }
     }
 
     /// The cached tables under a key.

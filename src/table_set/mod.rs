@@ -19,6 +19,7 @@ use crate::bake;
 use crate::cache::Cache;
 use crate::memory::{self, TooLarge};
 use crate::plan::Plan;
+use crate::progress::Meter;
 use crate::table_spec::Quality;
 
 use group::TableGroup;
@@ -44,7 +45,7 @@ impl Default for Target {
 }
 
 /// Cache, limits and progress report of a bake.
-pub struct Settings<'a> {
+pub struct Settings {
     /// Where finished tables are kept; by default nowhere.
     pub cache: Cache,
     /// Bytes of memory that the bake may take; a larger bake is refused before any is taken. By
@@ -53,32 +54,23 @@ pub struct Settings<'a> {
     /// Whether to choose tables even where that takes more than three times as long as a bake at
     /// default quality, and more than [`PATIENCE`] seconds. By default not.
     pub patient: bool,
-    /// Called after each step.
-    pub progress: Box<dyn FnMut(Progress) + 'a>,
+    /// Counts the work, by nodes and places of certificates; a clone of it can be watched.
+    pub progress: Meter,
 }
 
-impl Default for Settings<'_> {
+impl Default for Settings {
     fn default() -> Self {
         Self {
             cache: Cache::none(),
             max_memory: 4 << 30,
             patient: false,
-            progress: Box::new(|_| ()),
+            progress: Meter::default(),
         }
     }
 }
 
 /// Seconds that choosing tables may always take, however fast the bake at default quality is.
 pub const PATIENCE: f64 = 10.0;
-
-/// The progress of a bake.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
-    /// Steps done: tables and certificates.
-    pub done: usize,
-    /// Steps known so far; more may come where tables are chosen.
-    pub steps: usize,
-}
 
 /// A set, and what was done for it.
 #[derive(Debug)]
@@ -231,7 +223,7 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
                 groups.iter().map(|group| group.values(quality.into())).sum(),
                 job.max_memory,
             )?;
-            job.steps = groups.iter().map(TableGroup::steps).sum();
+            job.progress.expect(groups.iter().map(|group| group.work(quality.into(), 1)).sum());
             let each =
                 groups.iter().map(|group| group.bake(quality.into(), &[precision], &mut job));
             each.collect::<Result<Vec<_>, _>>()?.concat().concat()

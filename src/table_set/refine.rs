@@ -4,6 +4,8 @@ use microfacet_sampler::{Precision, Table};
 
 use crate::bake;
 use crate::bake::albedo::{AlbedoError, AlbedoSpec};
+use crate::plan::AlbedoWork;
+use crate::progress::Meter;
 use crate::validate::albedo;
 use crate::validate::certificate::worst_error;
 
@@ -17,8 +19,10 @@ const WORTH: f64 = 0.8;
 pub(super) fn albedo_tables(
     spec: &AlbedoSpec,
     precisions: &[Precision],
+    progress: &Meter,
 ) -> Result<Vec<Vec<Table>>, AlbedoError> {
-    let interior = albedo::interior_references(spec)?;
+    let work = AlbedoWork::new(spec);
+    let interior = albedo::interior_references(spec, &progress.stage(work.interior))?;
     // Single precision, which hardly rounds, decides; it is certified only once where it is also
     // asked for.
     let mut all = vec![Precision::F32];
@@ -31,9 +35,16 @@ pub(super) fn albedo_tables(
     let mut spec = spec.clone();
     let mut coarser: Option<(f64, Vec<Vec<Table>>)> = None;
     for doubling in 0.. {
-        let references = [&interior[..], &albedo::edge_references(&spec)?].concat();
-        let baked = bake::albedo::bake_in(&spec, &all)?;
-        let certify = |tables| albedo::certified(&spec, tables, &references);
+        let AlbedoWork { nodes, edges, climbs, .. } = AlbedoWork::new(&spec);
+        if doubling > 0 {
+            progress.expect(nodes + edges + climbs);
+        }
+        let edges = albedo::edge_references(&spec, &progress.stage(edges))?;
+        let references = [&interior[..], &edges].concat();
+        let baked = bake::albedo::bake_in(&spec, &all, &progress.stage(nodes))?;
+        let climbs = climbs / all.len() as f64;
+        let certify =
+            |tables| albedo::certified(&spec, tables, &references, &progress.stage(climbs));
         let sets = baked.into_iter().map(certify).collect::<Result<Vec<_>, AlbedoError>>()?;
         let full = sets[0].clone();
         let error = full.iter().map(worst_error).fold(0.0, f64::max);

@@ -8,14 +8,12 @@
 
 use microfacet_sampler::{Provenance, Table, encode};
 
-use super::candidate::{Candidate, Grade, Pick};
+use super::candidate::{Candidate, Grade, Pick, SEARCH_OVER_FIRST};
 use super::group::TableGroup;
 use super::job::Job;
 use super::{BakeError, PATIENCE};
 use crate::plan::{Plan, bare_cost};
 
-/// Estimated duration of a whole search, as a multiple of that of its first grades.
-const SEARCH_OVER_FIRST: f64 = 1.7;
 /// Ratio of two errors that count as different: one per cent.
 const RATIO: f64 = 1.01;
 /// Number of errors that are tried, from [`ANY_ERROR`], more than that of any table, down to less
@@ -44,8 +42,12 @@ impl<'a> Search<'a> {
         let first = |candidate: &Candidate| {
             candidate.smallest(max_error, |_| true).map_or(candidate.finest(), |pick| pick.grade)
         };
-        self.check_time(&self.candidates.iter().map(first).collect::<Vec<_>>(), job)?;
-        let grades = self.candidates.iter_mut().map(|candidate| candidate.meeting(max_error, job));
+        self.begin(&self.candidates.iter().map(first).collect::<Vec<_>>(), job)?;
+        let grades = self.candidates.iter_mut().map(|candidate| {
+            let grade = candidate.meeting(max_error, job);
+            candidate.finish(job);
+            grade
+        });
         let grades = grades.collect::<Result<Vec<Grade>, _>>()?;
         Ok(self.tables(&grades))
     }
@@ -73,12 +75,13 @@ impl<'a> Search<'a> {
             };
             let grades: Vec<Grade> = picks.iter().map(|pick| pick.grade).collect();
             if std::mem::take(&mut is_first) {
-                self.check_time(&grades, job)?;
+                self.begin(&grades, job)?;
             }
             if picks.iter().all(|pick| pick.measured) {
                 let tables = self.tables(&grades);
                 let bytes = encode(provenance, &tables)?.len();
                 if bytes <= max_bytes {
+                    self.candidates.iter_mut().for_each(|candidate| candidate.finish(job));
                     return Ok(tables);
                 }
                 if self.fitting(room, |_, _| true).is_none() {
@@ -139,8 +142,9 @@ impl<'a> Search<'a> {
         self.candidates.iter().map(least).collect()
     }
 
-    /// Refuses a search that begins with these grades and would take longer than allowed.
-    fn check_time(&self, grades: &[Grade], job: &Job) -> Result<(), BakeError> {
+    /// Announces a search that begins with these grades, or refuses it if it would take longer than
+    /// allowed.
+    fn begin(&mut self, grades: &[Grade], job: &Job) -> Result<(), BakeError> {
         let seconds = |(candidate, grade): (&Candidate, &Grade)| candidate.group.seconds(grade.0);
         let search =
             SEARCH_OVER_FIRST * self.candidates.iter().zip(grades).map(seconds).sum::<f64>();
@@ -149,6 +153,8 @@ impl<'a> Search<'a> {
         if !job.patient && search > PATIENCE.max(3.0 * default_seconds) {
             return Err(BakeError::TooSlow { search, default_seconds });
         }
+        let each = self.candidates.iter_mut().zip(grades);
+        each.for_each(|(candidate, grade)| candidate.expect(*grade, job));
         Ok(())
     }
 

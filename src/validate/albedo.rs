@@ -19,6 +19,7 @@ use super::points::{Point, are_apart, beside, edges, interior};
 use crate::bake::albedo::{
     AlbedoError, AlbedoLobe, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights,
 };
+use crate::progress::Stage;
 
 /// Accuracy of the model's values that tables are compared with, as a multiple of that of a node.
 const FINER: f64 = 0.1;
@@ -37,23 +38,35 @@ pub struct Reference {
     shortcut: Option<[f64; 2]>,
 }
 
-/// The model's values at the interior places, which do not depend on the number of nodes.
+/// The model's values at the interior places, which do not depend on the number of nodes. Each
+/// place is one step of the stage, here and below.
 ///
 /// # Errors
 /// [`AlbedoError`] for a lobe outside the domain.
-pub fn interior_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, AlbedoError> {
-    references(spec, interior(spec))
+pub fn interior_references(
+    spec: &AlbedoSpec,
+    stage: &Stage,
+) -> Result<Vec<Reference>, AlbedoError> {
+    let points = interior(spec);
+    stage.split(points.len());
+    references(spec, points, stage)
 }
 
 /// The model's values at corners, and in the middle of every cell along every edge.
 ///
 /// # Errors
 /// As [`interior_references`].
-pub fn edge_references(spec: &AlbedoSpec) -> Result<Vec<Reference>, AlbedoError> {
-    references(spec, edges(spec))
+pub fn edge_references(spec: &AlbedoSpec, stage: &Stage) -> Result<Vec<Reference>, AlbedoError> {
+    let points = edges(spec);
+    stage.split(points.len());
+    references(spec, points, stage)
 }
 
-fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, AlbedoError> {
+fn references(
+    spec: &AlbedoSpec,
+    points: Vec<Point>,
+    stage: &Stage,
+) -> Result<Vec<Reference>, AlbedoError> {
     let integrand = Integrand::new(&spec.reflectance)?;
     let finest = if spec.reflectance.indices().is_some() { FINEST_OF_KINKS } else { 0.0 };
     let tolerance = (FINER * spec.tolerance).max(finest);
@@ -76,6 +89,7 @@ fn references(spec: &AlbedoSpec, points: Vec<Point>) -> Result<Vec<Reference>, A
                     |albedo: &Albedo<CHANNELS>, form| albedo.of(form)[..2].iter().sum::<f64>();
                 Masking::ALL.map(|form| (total(&round, form) - total(&exact, form)).abs())
             };
+            stage.step();
             Ok(Reference { point: point.clone(), site, v, exact, shortcut: round.map(off) })
         };
         points.par_iter().map(one).collect()
@@ -92,6 +106,7 @@ pub fn certified(
     spec: &AlbedoSpec,
     tables: Vec<Table>,
     references: &[Reference],
+    stage: &Stage,
 ) -> Result<Vec<Table>, AlbedoError> {
     let directional: Vec<Table> =
         tables.iter().filter(|table| table.kind == Kind::Albedo).cloned().collect();
@@ -99,9 +114,10 @@ pub fn certified(
         let same = |other: &&Table| other.subject.masking == table.subject.masking;
         directional.iter().find(same).ok_or_else(|| MaterialError::NoTable(table.name.clone()))
     };
+    stage.split(directional.len() * climbed_count(spec));
     let certified = |table: Table| {
         let figures = match table.kind {
-            Kind::Albedo => figures(spec, &table, references)?,
+            Kind::Albedo => figures(spec, &table, references, stage)?,
             _ => averages(spec, &table, of_form(&table)?, references)?,
         };
         let mut certificate = table.certificate.clone();
@@ -118,6 +134,7 @@ fn figures(
     spec: &AlbedoSpec,
     table: &Table,
     references: &[Reference],
+    stage: &Stage,
 ) -> Result<BTreeMap<String, f64>, AlbedoError> {
     let masking = table.subject.masking.unwrap_or_default();
     // A table of a single lobe is read once.
@@ -138,7 +155,7 @@ fn figures(
         Ok(got.iter().zip(&exact).map(|(got, exact)| (got - exact).abs()).collect())
     };
     let errors = measured_at(references, measured)?;
-    let found = climbed(spec, &errors, measured)?;
+    let found = climbed(spec, &errors, measured, stage)?;
     let found: Vec<Errors<'_>> = found.iter().map(|(at, errors)| (at, errors.clone())).collect();
     let mut figures = summary(spec, &errors, &found);
     let form = Masking::ALL.iter().position(|form| *form == masking).unwrap_or(0);
@@ -149,17 +166,24 @@ fn figures(
     Ok(figures)
 }
 
+/// Steps of a climb, in cells.
+const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
+/// Hills climbed for each quantity.
+const HILLS: usize = 4;
+
+/// Number of places on the way uphill, at most, for the certificate of one directional table.
+pub(crate) fn climbed_count(spec: &AlbedoSpec) -> usize {
+    quantities(spec).len() * HILLS * STEPS.len() * 2 * spec.axes.len()
+}
+
 /// The promised places on the way uphill from where each quantity has its largest errors, with
 /// their errors: the largest error lies between the listed places, and is found from the nearest.
 fn climbed(
     spec: &AlbedoSpec,
     errors: &[Errors<'_>],
     measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Copy + Send + Sync,
+    stage: &Stage,
 ) -> Result<Vec<(Reference, Vec<f64>)>, AlbedoError> {
-    /// Steps in cells.
-    const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
-    /// Hills climbed for each quantity.
-    const HILLS: usize = 4;
     let mut tops: Vec<(usize, Point, f64)> = Vec::new();
     for i in 0..quantities(spec).len() {
         let mut worst: Vec<&Errors<'_>> =
@@ -176,7 +200,7 @@ fn climbed(
     let mut seen: Vec<(Reference, Vec<f64>)> = Vec::new();
     for step in STEPS {
         let around = tops.iter().flat_map(|(_, point, _)| beside(spec, point, step)).collect();
-        let references = references(spec, around)?;
+        let references = references(spec, around, stage)?;
         let errors = measured_at(&references, measured)?;
         for (i, point, error) in &mut tops {
             if let Some(top) = errors.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))

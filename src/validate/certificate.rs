@@ -19,6 +19,7 @@ use microfacet_sampler::{
     Tables,
 };
 
+use crate::progress::Stage;
 use crate::table_spec::{GAMMA_WHOLE, SEAM};
 
 /// Points measured at each γ of a range; a single γ takes three times as many.
@@ -229,9 +230,10 @@ pub(crate) fn measure(
     tables: &Tables,
     table: &Table,
     s: [f64; 2],
+    stage: &Stage,
 ) -> Result<BTreeMap<String, f64>, MaterialError> {
     let ruler = Ruler::new(tables, table, s);
-    let found = ruler.measured(POINTS)?;
+    let found = ruler.measured(POINTS, stage)?;
     let quantity = match table.kind {
         Kind::Shadowing => "g1",
         _ => "cdf",
@@ -313,7 +315,7 @@ impl<'a> Ruler<'a> {
         *interpolation != Interpolation::Nodes && nodes.len() > 1
     }
 
-    fn measured(&self, points: usize) -> Result<Found, MaterialError> {
+    fn measured(&self, points: usize, stage: &Stage) -> Result<Found, MaterialError> {
         // A maximum that is missed at one γ is found at a neighbouring γ; a single γ has none and
         // takes more points.
         let points = if self.is_range() { points } else { 3 * points };
@@ -329,9 +331,13 @@ impl<'a> Ruler<'a> {
                 let at = [place, a, b];
                 Seen { error: self.error(&lobe, at), at }
             });
-            Ok(seen.collect::<Vec<_>>())
+            let seen = seen.collect::<Vec<_>>();
+            stage.step();
+            Ok(seen)
         };
         let shapes = self.shapes();
+        // The climbs take as long as a third of a shape.
+        stage.split(shapes.len() + 1);
         let seen = shapes.par_iter().map(at_shape).collect::<Result<Vec<_>, MaterialError>>()?;
         let shape_cells =
             if self.is_range() { (self.table.axes[0].nodes.len() - 1) as f64 } else { 0.0 };

@@ -13,6 +13,8 @@ use microfacet_sampler::{
     Albedo, Axis, Kind, LobeEntry, Masking, MaterialError, Reflectance, Subject, Table, Tables,
 };
 
+use crate::progress::Stage;
+
 /// Allowed deviation from 1 with the Kulla–Conty lobe
 /// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).
 pub const TOLERANCE: f64 = 2e-3;
@@ -124,32 +126,56 @@ impl Survey {
     }
 }
 
-/// Runs the furnace for a grid of materials between the nodes of each albedo table, with views from
-/// grazing to normal.
-///
-/// # Errors
-/// [`MaterialError`] if the set does not hold what it declares to cover.
-pub fn survey(tables: &Tables) -> Result<Vec<Survey>, MaterialError> {
-    const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1.0];
+/// Cosines of the views of a survey.
+const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1.0];
+
+/// The form of masking of each albedo table of the family, and the materials of a survey of it.
+fn surveyed(tables: &Tables) -> Vec<(Masking, Vec<[f64; 2]>)> {
     let of_family = |table: &&Table| {
         let Subject { lobe, reflectance, .. } = &table.subject;
         table.kind == Kind::Albedo
             && (lobe, reflectance) == (&LobeEntry::Family, &Some(Reflectance::Moments))
     };
-    tables
-        .tables()
-        .iter()
-        .filter(of_family)
-        .filter_map(|table| Some((table, table.subject.masking?, table.subject.covers?)))
-        .map(|(table, masking, covers)| {
-            let [shapes, roughnesses] = [&table.axes[0], &table.axes[1]];
-            let gammas = between(shapes, covers.s.map(gamma_of_s), 11);
-            let sigmas = between(roughnesses, covers.sigma.unwrap_or_default(), 14);
-            let pairs: Vec<_> =
-                gammas.iter().flat_map(|&g| sigmas.iter().map(move |&s| (g, s))).collect();
-            let rows = pairs
+    let materials = |table: &Table| {
+        let (masking, covers) = (table.subject.masking?, table.subject.covers?);
+        let gammas = between(&table.axes[0], covers.s.map(gamma_of_s), 11);
+        let sigmas = between(&table.axes[1], covers.sigma.unwrap_or_default(), 14);
+        let pairs =
+            gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| [sigma, gamma]));
+        Some((masking, pairs.collect()))
+    };
+    tables.tables().iter().filter(of_family).filter_map(materials).collect()
+}
+
+/// The estimated seconds of [`survey`] on the current threads.
+pub fn survey_seconds(tables: &Tables) -> f64 {
+    surveyed(tables).iter().map(|(_, materials)| seconds(materials.len() * VIEWS.len())).sum()
+}
+
+/// The estimated seconds of so many furnaces on the current threads.
+pub fn seconds(rows: usize) -> f64 {
+    // Microseconds of `microfacet-bake furnace --threads 1` for a row.
+    1e-6 * 800.0 * rows as f64 / rayon::current_num_threads() as f64
+}
+
+/// Runs the furnace for a grid of materials between the nodes of each albedo table, with views from
+/// grazing to normal; each material is one step of the stage.
+///
+/// # Errors
+/// [`MaterialError`] if the set does not hold what it declares to cover.
+pub fn survey(tables: &Tables, stage: &Stage) -> Result<Vec<Survey>, MaterialError> {
+    let all = surveyed(tables);
+    stage.split(all.iter().map(|(_, materials)| materials.len()).sum());
+    all.into_iter()
+        .map(|(masking, materials)| {
+            let views = |&[sigma, gamma]: &[f64; 2]| {
+                let rows = VIEWS.map(|cos| furnace(tables, masking, sigma, gamma, cos));
+                stage.step();
+                rows
+            };
+            let rows = materials
                 .par_iter()
-                .flat_map_iter(|&(g, s)| VIEWS.map(|cos| furnace(tables, masking, s, g, cos)))
+                .flat_map_iter(views)
                 .collect::<Result<Vec<_>, MaterialError>>()?;
             let order = |a: &&Furnace, b: &&Furnace| a.kulla_conty.total_cmp(&b.kulla_conty);
             let lowest = *rows.iter().min_by(order).expect("a grid has points");
@@ -171,8 +197,16 @@ fn between(axis: &Axis, range: [f64; 2], count: usize) -> Vec<f64> {
     (0..count).filter_map(|i| axis.quantity(at(i))).collect()
 }
 
-/// Follows `walks` rays on the microsurface, in parallel; the same seed gives the same result on
-/// any number of threads.
+/// The estimated seconds of [`walk`] on the current threads.
+pub fn walk_seconds(sigma: f64, gamma: f64, walks: usize) -> f64 {
+    // Microseconds for a ray: fitted to `microfacet-bake furnace --threads 1 --walks 1e6`.
+    let ray = 0.5;
+    let _ = (sigma, gamma);
+    1e-6 * ray * walks as f64 / rayon::current_num_threads() as f64
+}
+
+/// Follows `walks` rays on the microsurface, in parallel and counted in a stage of the progress;
+/// the same seed gives the same result on any number of threads.
 ///
 /// # Errors
 /// [`model::ParameterError`] for parameters outside the family.
@@ -182,7 +216,9 @@ pub fn walk(
     cos_theta: f64,
     walks: usize,
     seed: u64,
+    stage: &Stage,
 ) -> Result<Walk, model::ParameterError> {
+    stage.split(walks.div_ceil(BATCH));
     let material = model::StudentT::new(sigma, gamma)?;
     let v = DVec3::new((1.0 - cos_theta * cos_theta).max(0.0).sqrt(), 0.0, cos_theta);
     let batch = |i: usize| {
@@ -195,6 +231,7 @@ pub fn walk(
                 counts[2] += bounces;
             }
         }
+        stage.step();
         counts
     };
     let add = |a: [usize; 3], b: [usize; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];

@@ -11,4 +11,4 @@ pub mod radial;
 mod run;
 pub mod stress;
 
-pub use run::{LEVEL, Options, Outcome, PDF_TOLERANCE, Report, USUAL, run};
+pub use run::{LEVEL, Options, Outcome, PDF_TOLERANCE, Report, USUAL, run, seconds};

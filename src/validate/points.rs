@@ -109,7 +109,8 @@ pub fn count(spec: &AlbedoSpec) -> usize {
     3 * ends(ranges.len()) + 3 * along + interior_count(spec)
 }
 
-fn interior_count(spec: &AlbedoSpec) -> usize {
+/// Number of those places that lie inside.
+pub fn interior_count(spec: &AlbedoSpec) -> usize {
     (spec.nodes() / NODES_A_POINT).clamp(FEWEST, MOST)
 }
 

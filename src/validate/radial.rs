@@ -20,6 +20,7 @@ use super::certificate::{
     view,
 };
 use crate::bake::radial_axes;
+use crate::progress::Stage;
 use crate::table_spec::Quality;
 
 /// Normals drawn for either certificate of slopes; a quarter is left for climbs.
@@ -221,11 +222,13 @@ pub fn certify(
     tables: &mut [Table],
     entry: &MaterialEntry,
     marginal: &Marginal,
+    stage: &Stage,
 ) -> Result<(), LoadError> {
     let provenance = Provenance { materials: vec![entry.clone()], ..Provenance::default() };
     let radial = Tables::from_tables(provenance, tables.to_vec())?
         .material(&entry.name)
         .map_err(|why| LoadError::Invalid(why.to_string()))?;
+    stage.split(tables.len());
     for table in tables {
         let key = match table.kind {
             Kind::RadialShadowing => "g1_max_error",
@@ -236,6 +239,7 @@ pub fn certify(
         let error = round_up(found.worst.error + ROUNDING);
         table.certificate =
             BTreeMap::from([(key.into(), error), ("points".into(), found.points as f64)]);
+        stage.step();
     }
     Ok(())
 }

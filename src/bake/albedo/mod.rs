@@ -25,6 +25,8 @@ use microfacet_sampler::{
     Reflectance, Table,
 };
 
+use crate::progress::Stage;
+
 pub use albedo_spec::{AlbedoSpec, Domain, SIGMA_MAX};
 pub use integrand::{Integrand, weights};
 pub use lobe::{AlbedoLobe, Model, Models};
@@ -182,25 +184,31 @@ impl From<LoadError> for AlbedoError {
 /// [`AlbedoError`] if a node is no valid albedo or not accurate enough, or the specification lies
 /// outside the domain.
 pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, AlbedoError> {
-    Ok(bake_in(spec, &[spec.precision])?.concat())
+    Ok(bake_in(spec, &[spec.precision], &Stage::unwatched())?.concat())
 }
 
 /// Bakes the tables in several precisions from one pass over the nodes, which takes nearly all the
-/// time.
+/// time; each node is one step of the stage.
 ///
 /// # Errors
 /// As [`bake`].
 pub fn bake_in(
     spec: &AlbedoSpec,
     precisions: &[Precision],
+    stage: &Stage,
 ) -> Result<Vec<Vec<Table>>, AlbedoError> {
     let sites = Site::all(&spec.axes);
+    stage.split(sites.len());
     let gammas = sites.iter().map(|site| site.gamma);
     Models::with(&spec.lobe, gammas, spec.tolerance, |models| {
         let integrand = Integrand::new(&spec.reflectance)?;
         let nodes = sites
             .par_iter()
-            .map(|site| node(spec, &integrand, models.at(site), site))
+            .map(|site| {
+                let node = node(spec, &integrand, models.at(site), site);
+                stage.step();
+                node
+            })
             .collect::<Result<Vec<Node>, AlbedoError>>()?;
         let rounded = |&precision: &Precision| {
             let spec = AlbedoSpec { precision, ..spec.clone() };

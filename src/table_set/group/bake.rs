@@ -8,11 +8,12 @@ use microfacet_sampler::{LoadError, MaterialEntry, Precision, Provenance, Table,
 use super::super::BakeError;
 use super::super::job::Job;
 use super::super::refine::albedo_tables;
-use super::{Parts, TableGroup};
+use super::TableGroup;
 use crate::bake;
 use crate::distribution::Distribution;
-use crate::plan::RequiredShapes;
-use crate::table_spec::{Level, TableSpec, general_set};
+use crate::plan::{RequiredShapes, distribution_parts, parts};
+use crate::progress::Meter;
+use crate::table_spec::{Level, TableSpec};
 use crate::validate::certificate::{POINTS, measure};
 use crate::validate::radial;
 
@@ -46,18 +47,17 @@ impl TableGroup<'_> {
         let kept: Option<Vec<Vec<Table>>> = keys.iter().map(|key| job.get(key)).collect();
         let sets = match (kept, self) {
             (Some(sets), _) => {
-                job.advance(self.steps());
+                job.progress.forget(self.work(level, precisions.len()));
                 sets
             }
-            (None, &Self::Normals(need, parts)) => {
-                self.normals((need, parts), level, precisions, &keys, job)?
-            }
+            (None, &Self::Normals(need, _)) => self.normals(need, level, precisions, &keys, job)?,
             (None, Self::Distribution(distribution, entry)) => {
-                let sets = radial_tables(distribution, entry, level, precisions)?;
+                let sets = radial_tables(distribution, entry, level, precisions, &job.progress)?;
                 self.finish(&keys, sets, job)
             }
             (None, Self::Albedo(need)) => {
-                let sets = albedo_tables(&need.spec(level, Precision::F32)?, precisions)?;
+                let spec = need.spec(level, Precision::F32)?;
+                let sets = albedo_tables(&spec, precisions, &job.progress)?;
                 self.finish(&keys, sets, job)
             }
         };
@@ -71,14 +71,13 @@ impl TableGroup<'_> {
             job.made(tables);
             job.keep(key, tables);
         }
-        job.advance(1);
         sets
     }
 
     /// Tables of visible normals, baked one by one so that an interrupted bake can be resumed.
     fn normals(
         &self,
-        (need, parts): (&RequiredShapes, Parts),
+        need: &RequiredShapes,
         level: Level,
         precisions: &[Precision],
         keys: &[String],
@@ -90,8 +89,12 @@ impl TableGroup<'_> {
             // Kept in full precision: storing does not change the values.
             let key = format!("{spec:?}");
             let table = job.get(&key).and_then(|mut tables| tables.pop());
+            let [seconds, _] = parts(std::slice::from_ref(&spec));
+            if table.is_some() {
+                job.progress.forget(seconds);
+            }
             let table = table.unwrap_or_else(|| {
-                let table = bake::bake(&spec);
+                let table = bake::bake(&spec, &job.progress.stage(seconds));
                 job.made([&table]);
                 // A slice is baked as fast as it is read.
                 if !need.gamma().is_point() {
@@ -101,17 +104,21 @@ impl TableGroup<'_> {
             });
             waiting.push(key);
             full.push(table);
-            job.advance(1);
         }
-        let draft = general_set(Level::DRAFT, Precision::F32);
-        let beside = parts.beside().iter().filter_map(|&i| need.cut(&draft[i]));
-        let beside: Vec<Table> = beside.map(|spec| bake::bake(&spec)).collect();
+        let beside = self.beside().into_iter().map(|spec| {
+            let [seconds, _] = parts(std::slice::from_ref(&spec));
+            bake::bake(&spec, &job.progress.stage(seconds))
+        });
+        let beside: Vec<Table> = beside.collect();
+        let specs = self.specs(level);
         let certified = |&precision: &Precision| {
             let rounded = full.iter().map(|table| table.clone().rounded(precision));
             let all = rounded.chain(beside.iter().cloned()).collect();
             let set = Tables::from_tables(Provenance::default(), all)?;
-            let measured = set.tables()[..full.len()].iter().map(|table| {
-                let certificate = measure(&set, table, need.certified_s())?;
+            let measured = set.tables()[..full.len()].iter().zip(&specs).map(|(table, spec)| {
+                let [_, seconds] = parts(std::slice::from_ref(spec));
+                let stage = job.progress.stage(seconds);
+                let certificate = measure(&set, table, need.certified_s(), &stage)?;
                 Ok(Table { certificate, ..table.clone() })
             });
             measured.collect()
@@ -122,7 +129,6 @@ impl TableGroup<'_> {
             job.keep(key, tables);
         }
         waiting.iter().for_each(|key| job.forget(key));
-        job.advance(1);
         Ok(sets)
     }
 }
@@ -133,14 +139,18 @@ fn radial_tables(
     entry: &MaterialEntry,
     level: Level,
     precisions: &[Precision],
+    progress: &Meter,
 ) -> Result<Vec<Vec<Table>>, BakeError> {
     let built = distribution.build().map_err(|why| LoadError::Invalid(why.to_string()))?;
     let marginal = Marginal::new(&*built);
-    let full = bake::bake_radial(&marginal, &entry.distribution, level, Precision::F32);
+    let (_, [bake, certify]) = distribution_parts(distribution, level, Precision::F32);
+    let stage = progress.stage(bake);
+    let full = bake::bake_radial(&marginal, &entry.distribution, level, Precision::F32, &stage);
+    drop(stage);
     let certified = |&precision| {
         let mut tables: Vec<Table> =
             full.iter().map(|table| table.clone().rounded(precision)).collect();
-        radial::certify(&mut tables, entry, &marginal)?;
+        radial::certify(&mut tables, entry, &marginal, &progress.stage(certify))?;
         Ok(tables)
     };
     precisions.iter().map(certified).collect()

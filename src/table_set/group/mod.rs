@@ -9,7 +9,8 @@ use crate::bake::{joined_name, radial_bytes};
 use crate::distribution::Distribution;
 use crate::memory;
 use crate::plan::{
-    Cost, Plan, RequiredAlbedo, RequiredShapes, albedo_cost, cost, distribution_cost, seconds,
+    AlbedoWork, Cost, Plan, RequiredAlbedo, RequiredShapes, albedo_cost, cost, distribution_cost,
+    distribution_parts, parts, seconds,
 };
 use crate::table_spec::{Level, Quality, TableSpec, general_set};
 
@@ -188,15 +189,24 @@ impl<'a> TableGroup<'a> {
         }
     }
 
-    /// Number of its steps of progress.
-    pub(super) fn steps(&self) -> usize {
+    /// Draft tables that make a material together with those of a part of the set.
+    fn beside(&self) -> Vec<TableSpec> {
+        let Self::Normals(need, parts) = self else { return Vec::new() };
+        let draft = general_set(Level::DRAFT, Precision::F32);
+        parts.beside().iter().filter_map(|&i| need.cut(&draft[i])).collect()
+    }
+
+    /// The work of [`bake`](Self::bake) in so many precisions, in estimated seconds.
+    pub(super) fn work(&self, level: Level, precisions: usize) -> f64 {
+        let sum = |[bake, certify]: [f64; 2]| bake + precisions as f64 * certify;
         match self {
-            // One step for each table, and one for the certificate.
-            Self::Normals(need, parts) => {
-                let general = general_set(Quality::Draft, Precision::F32);
-                parts.indices().iter().filter(|&&i| need.cut(&general[i]).is_some()).count() + 1
+            Self::Normals(..) => sum(parts(&self.specs(level))) + parts(&self.beside())[0],
+            Self::Distribution(distribution, _) => {
+                sum(distribution_parts(distribution, level, Precision::F32).1)
             }
-            _ => 1,
+            Self::Albedo(need) => {
+                need.spec(level, Precision::F32).map_or(0.0, |spec| AlbedoWork::new(&spec).total())
+            }
         }
     }
 }

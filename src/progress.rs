@@ -1,0 +1,156 @@
+//! Progress of long work: what is known to be ahead and what is done, in estimated seconds.
+//!
+//! Whoever starts some work calls [`Meter::expect`] for all of it, so that the share done is a
+//! share of the whole, and hands each function a [`Stage`]. The function splits its stage into
+//! equal parts, such as nodes or points, and counts them from any thread. Another thread may
+//! [read](Meter::share) the meter at any time. The time left follows from the time that the work
+//! done has taken, so the estimates need to be right in proportion only.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::Duration;
+
+/// Work ahead and work done; clones count the same work.
+#[derive(Clone, Debug, Default)]
+pub struct Meter(Arc<Counts>);
+
+/// Nanoseconds by estimate.
+#[derive(Debug, Default)]
+struct Counts {
+    known: AtomicU64,
+    done: AtomicU64,
+}
+
+/// Shares below this say little about the rest: a stage's first parts may be unlike the others.
+const FIRST: f64 = 0.01;
+
+impl Meter {
+    /// Adds work that lies ahead.
+    pub fn expect(&self, seconds: f64) {
+        self.0.known.fetch_add(nanoseconds(seconds), Relaxed);
+    }
+
+    /// Takes back work that was expected and need not be done: it was found in a cache.
+    pub fn forget(&self, seconds: f64) {
+        let less = |known: u64| Some(known.saturating_sub(nanoseconds(seconds)));
+        let _ = self.0.known.fetch_update(Relaxed, Relaxed, less);
+    }
+
+    /// Begins a part of the work that was expected.
+    pub fn stage(&self, seconds: f64) -> Stage {
+        let total = nanoseconds(seconds);
+        Stage { meter: self.clone(), total, parts: AtomicU64::new(1), counted: AtomicU64::new(0) }
+    }
+
+    /// The share of the known work that is done, in [0, 1]; 0 if none is known.
+    pub fn share(&self) -> f64 {
+        let (done, known) = (self.0.done.load(Relaxed), self.0.known.load(Relaxed));
+        if known == 0 { 0.0 } else { (done as f64 / known as f64).min(1.0) }
+    }
+
+    /// The time left after `elapsed`, if the rest goes on as the work so far; `None` while too
+    /// little is done to tell.
+    pub fn left(&self, elapsed: Duration) -> Option<Duration> {
+        let share = self.share();
+        (share >= FIRST).then(|| elapsed.mul_f64((1.0 - share) / share))
+    }
+}
+
+fn nanoseconds(seconds: f64) -> u64 {
+    // A cast takes NaN and negative numbers to 0.
+    (1e9 * seconds) as u64
+}
+
+/// A part of the work: counted in equal parts, and done as a whole when it is dropped.
+#[derive(Debug)]
+pub struct Stage {
+    meter: Meter,
+    total: u64,
+    parts: AtomicU64,
+    counted: AtomicU64,
+}
+
+impl Stage {
+    /// A stage that nobody watches.
+    pub fn unwatched() -> Self {
+        Meter::default().stage(0.0)
+    }
+
+    /// Says of how many equal parts the work is, before any is done. More may then be counted, or
+    /// fewer: the whole stays what was expected.
+    pub fn split(&self, parts: usize) {
+        self.parts.store((parts as u64).max(1), Relaxed);
+    }
+
+    /// Counts one part as done.
+    pub fn step(&self) {
+        self.steps(1);
+    }
+
+    /// Counts some parts as done.
+    pub fn steps(&self, count: usize) {
+        let before = self.counted.fetch_add(count as u64, Relaxed);
+        self.count(before, before + count as u64);
+    }
+
+    fn count(&self, from: u64, to: u64) {
+        let parts = self.parts.load(Relaxed);
+        let upto = |n: u64| u128::from(self.total) * u128::from(n.min(parts)) / u128::from(parts);
+        // The total has 64 bits.
+        self.meter.0.done.fetch_add((upto(to) - upto(from)) as u64, Relaxed);
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        self.count(self.counted.load(Relaxed), u64::MAX);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_add_up_to_what_was_expected() {
+        let meter = Meter::default();
+        assert_eq!((meter.share(), meter.left(Duration::from_secs(1))), (0.0, None));
+        meter.expect(10.0);
+        {
+            let stage = meter.stage(2.5);
+            stage.split(3);
+            stage.step();
+            assert!((meter.share() - 0.25 / 3.0).abs() < 1e-9);
+            // More parts than were announced.
+            stage.steps(7);
+            assert!((meter.share() - 0.25).abs() < 1e-9);
+        }
+        assert!((meter.share() - 0.25).abs() < 1e-9);
+        assert_eq!(meter.left(Duration::from_secs(2)), Some(Duration::from_secs(6)));
+        // Fewer, or none.
+        drop(meter.stage(2.5));
+        assert!((meter.share() - 0.5).abs() < 1e-9);
+        meter.forget(5.0);
+        assert_eq!(meter.share(), 1.0);
+        assert_eq!(meter.left(Duration::from_secs(2)), Some(Duration::ZERO));
+        // Nothing that was estimated wrongly leads out of [0, 1].
+        meter.forget(f64::INFINITY);
+        meter.expect(f64::NAN);
+        drop(meter.stage(1.0));
+        assert_eq!(meter.share(), 0.0);
+    }
+
+    #[test]
+    fn threads_count_together() {
+        let meter = Meter::default();
+        meter.expect(1.0);
+        let stage = meter.stage(1.0);
+        stage.split(4000);
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| (0..500).for_each(|_| stage.step()));
+            }
+        });
+        assert!((meter.share() - 0.5).abs() < 1e-9);
+    }
+}
