@@ -154,8 +154,8 @@ pub fn survey_seconds(tables: &Tables) -> f64 {
 
 /// The estimated seconds of so many furnaces on the current threads.
 pub fn seconds(rows: usize) -> f64 {
-    // Microseconds of `microfacet-bake furnace --threads 1` for a row.
-    1e-6 * 800.0 * rows as f64 / rayon::current_num_threads() as f64
+    // Microseconds for a row: 2200 of `microfacet-bake furnace --threads 1`, 3400 of the survey.
+    1e-6 * 3000.0 * rows as f64 / rayon::current_num_threads() as f64
 }
 
 /// Runs the furnace for a grid of materials between the nodes of each albedo table, with views from
@@ -199,9 +199,9 @@ fn between(axis: &Axis, range: [f64; 2], count: usize) -> Vec<f64> {
 
 /// The estimated seconds of [`walk`] on the current threads.
 pub fn walk_seconds(sigma: f64, gamma: f64, walks: usize) -> f64 {
-    // Microseconds for a ray: fitted to `microfacet-bake furnace --threads 1 --walks 1e6`.
-    let ray = 0.5;
-    let _ = (sigma, gamma);
+    // Microseconds for a ray, of which long tails take many bounces: fitted to `microfacet-bake
+    // furnace --threads 1 --walks 1e5`, within a factor of two for sigma of 0.3 to 3.
+    let ray = 1.0 + 0.2 * sigma / (gamma - 1.5);
     1e-6 * ray * walks as f64 / rayon::current_num_threads() as f64
 }
 

@@ -81,7 +81,7 @@ const COUNTED: usize = 4096;
 pub fn seconds(configurations: usize, options: Options) -> f64 {
     // Microseconds for the grids and the integral of a configuration, and for a normal: fitted to
     // `microfacet-bake validate --threads 1` with 1e3 and 1e6 samples.
-    let one = 5_000.0 + 0.25 * options.samples as f64;
+    let one = 37_000.0 + 0.17 * options.samples as f64;
     1e-6 * one * configurations as f64 / rayon::current_num_threads() as f64
 }
 
