@@ -6,14 +6,18 @@ mod escape;
 mod fit;
 mod furnace;
 mod inspect;
+mod negative;
 mod plan;
 mod plot;
 mod query;
 mod request;
 mod sample;
 mod stress;
+#[cfg(test)]
+mod tests;
 mod validate;
 mod values;
+mod view;
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -34,8 +38,8 @@ struct Cli {
     #[command(subcommand)]
     command: Command,
     /// Threads to use; all processors by default.
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, global = true, display_order = 900, value_name = "N", value_parser = values::count::<usize>(1..=1024))]
+    threads: Option<usize>,
 }
 
 #[derive(Subcommand)]
@@ -72,10 +76,10 @@ impl<E: Display> From<E> for Failure {
 type Outcome = Result<Done, Failure>;
 
 pub(crate) fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = Cli::parse_from(negative::attached(std::env::args_os()));
     if let Some(threads) = cli.threads {
         // Fails only if a thread pool exists already, and none does.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
     let outcome = match cli.command {
         Command::Bake(args) => bake::run(args),
