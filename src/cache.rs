@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use microfacet_sampler::{Mapping, Provenance, Table, VERSION, encode};
 
 use crate::bake::NUMERICS;
-use crate::store::{self, remove_abandoned, replace};
+use crate::store::{self, make_folder, remove_abandoned, replace};
 
 /// A folder of finished tables, or no cache at all.
 ///
@@ -64,11 +64,12 @@ impl Cache {
         let (Some(path), Some(folder)) = (self.path(&key), &self.folder) else { return Ok(()) };
         let provenance = Provenance { recipe: key, numerics: NUMERICS, ..Provenance::default() };
         let bytes = encode(&provenance, tables).map_err(io::Error::other)?;
-        let put = std::fs::create_dir_all(folder).and_then(|()| {
-            remove_abandoned(folder);
-            replace(&path, &bytes)
-        });
-        put.map_err(|why| io::Error::new(why.kind(), format!("{}: {why}", path.display())))
+        let at = |path: &Path, why: io::Error| {
+            io::Error::new(why.kind(), format!("{}: {why}", path.display()))
+        };
+        make_folder(folder).map_err(|why| at(folder, why))?;
+        remove_abandoned(folder);
+        replace(&path, &bytes).map_err(|why| at(&path, why))
     }
 
     /// Removes what is kept under a key.

@@ -196,7 +196,7 @@ fn outputs_go_where_links_lead_and_keep_their_mode() {
     let folder = workshop();
     let at = folder.path();
     fs::create_dir(at.join("there")).unwrap();
-    for (i, command) in [SAMPLE, "\"$0\" plot student-t --output"].into_iter().enumerate() {
+    for (i, command) in [SAMPLE, "\"$0\" plot student-t --out"].into_iter().enumerate() {
         let (link, file) = (format!("link{i}"), at.join(format!("there/file{i}")));
         symlink(&file, at.join(&link)).unwrap();
         // Dangling, then to a private file.
@@ -411,7 +411,7 @@ fn image(path: &Path) {
 fn a_full_disk_is_reported_and_leaves_what_was_there() {
     let folder = workshop();
     let at = folder.path();
-    let commands = [SAMPLE, "\"$0\" plot student-t --output"];
+    let commands = [SAMPLE, "\"$0\" plot student-t --out"];
     for command in commands {
         fs::write(at.join("old"), "old").unwrap();
         refuses(at, &format!("trap '' XFSZ; ulimit -f 4; {command} old"), "old: ");

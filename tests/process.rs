@@ -269,6 +269,10 @@ fn more_memory_than_allowed_is_refused_with_the_estimate() {
         text.contains("values would take about") && text.contains("more than the 1 MiB allowed"),
         "{text}"
     );
-    let output = bake(&workshop, "old", &out).args(["--max-memory", "512T"]).output().unwrap();
-    assert!(message(&output).contains("512M"), "{}", message(&output));
+    let output = bake(&workshop, "old", &out).args(["--max-memory", "512X"]).output().unwrap();
+    assert!(
+        message(&output).contains("such as 65536, 10K (10,000), 4GB or 4GiB"),
+        "{}",
+        message(&output)
+    );
 }

@@ -24,14 +24,16 @@ use super::{
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  microfacet-bake bake tables/recipes/frosted-glass.toml --out glass"
+    after_help = "Example:\n  microfacet-bake bake tables/recipes/frosted-glass.toml --out glass",
+    group = clap::ArgGroup::new("budget").args(["max_error", "max_bytes"])
 )]
 pub(super) struct Args {
     /// A recipe (.toml) or scene (.pbrt, .xml, .gltf, .glb, .mtlx); without one, the general set:
     /// all sigma, gamma in [1.501, inf].
+    #[arg(id = "scene", value_name = "SCENE")]
     recipe: Option<PathBuf>,
     /// Folder to write into; created if missing.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
     /// Container formats, comma separated.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "safetensors")]
@@ -40,14 +42,14 @@ pub(super) struct Args {
     request: Request,
     /// Choose each table's nodes and precision instead: small tables whose measured error (of G1,
     /// the CDFs of slopes, and albedos) is at most this.
-    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_error, conflicts_with_all = ["quality", "precision", "max_bytes"])]
+    #[arg(long, value_name = "E", value_parser = parse_error, conflicts_with_all = ["quality", "precision"])]
     max_error: Option<f64>,
     /// Choose the most accurate tables instead whose safetensors file is at most this large.
     #[arg(long, value_name = "BYTES", value_parser = parse_size, conflicts_with_all = ["quality", "precision"])]
     max_bytes: Option<usize>,
     /// Choose tables for --max-error or --max-bytes even if that takes more than ten seconds and
     /// more than three times the bake of default quality.
-    #[arg(long)]
+    #[arg(long, requires = "budget")]
     patient: bool,
     /// Folder that caches finished tables; in the user's cache folder by default.
     #[arg(long, value_name = "DIR")]
@@ -79,12 +81,13 @@ fn parse_error(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Parses the largest size of a set.
+/// Parses the largest size of a set: what is read back.
 fn parse_size(text: &str) -> Result<usize, String> {
-    match values::size(text)? {
-        bytes if bytes <= MAX_TABLES => usize::try_from(bytes).map_err(|e| e.to_string()),
-        bytes => Err(format!("{bytes} bytes: at most {MAX_TABLES} are read back")),
-    }
+    let bytes = values::size(text)?;
+    let small = usize::try_from(bytes).ok().filter(|_| bytes <= MAX_TABLES);
+    small.ok_or_else(|| {
+        format!("\"{text}\" must be at most {} MiB, the largest set that is read", MAX_TABLES >> 20)
+    })
 }
 
 impl Args {

@@ -9,7 +9,7 @@ use microfacet_bake::convert::{ConvertError, Form, Replacement, Target, by_formu
 use microfacet_bake::distribution::{DistributionKind, Named};
 use microfacet_bake::progress::{Meter, Stage};
 
-use super::{Done, Failure, Outcome, print, progress};
+use super::{Done, Failure, Outcome, print, progress, values};
 
 /// How the replacement is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -45,20 +45,20 @@ impl From<On> for Form {
 #[command(after_help = "Example:\n  microfacet-bake convert --from blinn-phong:50 --to beckmann")]
 pub(super) struct Args {
     /// Distribution to be replaced, such as `blinn-phong:50` or `student-t:0.3,2.5`.
-    #[arg(long, required_unless_present = "table")]
+    #[arg(long, value_name = "DISTRIBUTION", required_unless_present = "table")]
     from: Option<String>,
     /// Distribution to replace it with, such as `beckmann`.
-    #[arg(long, required_unless_present = "table")]
+    #[arg(long, value_name = "DISTRIBUTION", required_unless_present = "table")]
     to: Option<String>,
     /// Use only this way of choosing; by default all that apply.
-    #[arg(long)]
+    #[arg(long, value_enum)]
     by: Option<By>,
     /// Set the second parameter of a distribution that has two, for `half-angle`.
-    #[arg(long)]
+    #[arg(long, value_name = "X", value_parser = values::finite)]
     shape: Option<f64>,
-    /// Quantity whose error the least-error replacement minimises.
-    #[arg(long, default_value = "relative")]
-    on: On,
+    /// Quantity whose error `rmse` minimises; `relative` by default.
+    #[arg(long, value_enum)]
+    on: Option<On>,
     /// Print replacements of 17 Beckmanns by Blinn-Phong, Gauss, Schlick and Trowbridge-Reitz.
     #[arg(long, conflicts_with_all = ["from", "to", "by", "shape"])]
     table: bool,
@@ -71,14 +71,34 @@ pub(super) fn run(args: Args) -> Outcome {
 }
 
 impl Args {
+    fn form(&self) -> Form {
+        self.on.unwrap_or(On::Relative).into()
+    }
+
     fn text(&self) -> Result<String, Box<dyn Error>> {
         match (&self.from, &self.to) {
             (Some(from), Some(to)) => self.pair(&from.parse()?, DistributionKind::by_name(to)?),
-            _ => table(self.on.into()),
+            _ => table(self.form()),
         }
     }
 
     fn pair(&self, from: &Named, to: DistributionKind) -> Result<String, Box<dyn Error>> {
+        if self.shape.is_some() && to.parameters().len() < 2 {
+            let why = "--shape is for a distribution of two parameters";
+            return Err(format!("{why}, and {} has one: drop it", to.name()).into());
+        }
+        // An option of a way that is not taken.
+        for (option, given, way) in [
+            ("--shape", self.shape.is_some(), By::HalfAngle),
+            ("--on", self.on.is_some(), By::Rmse),
+        ] {
+            if given && self.by.is_some_and(|by| by != way) {
+                let name = way.to_possible_value().expect("no variant is skipped");
+                let why =
+                    format!("{option} is for --by {} only: drop one of the two", name.get_name());
+                return Err(why.into());
+            }
+        }
         let built = from.build()?;
         let target = Target::new(&*built);
         let meter = Meter::default();
@@ -87,7 +107,7 @@ impl Args {
         let _bar = progress::show(&meter, "searching");
         let replace = |by| match by {
             By::HalfAngle => target.by_half_angle(to, self.shape),
-            By::Rmse => target.by_rmse(to, self.on.into(), &meter.stage(work)),
+            By::Rmse => target.by_rmse(to, self.form(), &meter.stage(work)),
             By::Formula => by_formula(from, to),
         };
         let mut text = format!(

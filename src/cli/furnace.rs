@@ -1,8 +1,9 @@
 //! `furnace`: the light that comes back with F = 1, without and with compensation.
 
+mod grid;
+
 use std::path::PathBuf;
 
-use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::json;
 
@@ -12,41 +13,45 @@ use microfacet_bake::validate::furnace::{
 };
 use microfacet_sampler::{Masking, Tables};
 
-use super::{Done, Failure, Outcome, print, print_json, progress, tables, values};
+use super::{Done, Outcome, print, print_json, progress, tables, values};
 
 /// Run a white furnace: single scattering, each compensation, and the random walk on the
 /// microsurface.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Exit status 1 if the Kulla-Conty lobe differs from 1 by more than 2e-3, or a walk by more than three standard errors.\n\
-    Examples:\n  microfacet-bake furnace\n  microfacet-bake furnace --sigma 1 --gamma 2 --method walk"
-)]
+#[command(after_help = "\
+Exit status 1 if the Kulla-Conty lobe differs from 1 by more than 2e-3, or a walk by more than three
+standard errors.
+Examples:
+  microfacet-bake furnace
+  microfacet-bake furnace --sigma 1 --gamma 2 --walks 1e5
+  microfacet-bake furnace --average --masking uncorrelated")]
 pub(super) struct Args {
     /// A table file, or a folder with one; the embedded default if absent.
     tables: Option<PathBuf>,
-    /// Roughnesses, comma separated: 0, a mirror, or in [1e-8, 3].
-    #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_roughness, default_value = "0.01,0.1,0.3,0.6,1,2,3")]
+    /// Roughnesses, comma separated: 0, a mirror, or in [1e-8, 3]; by default those of 0.01, 0.1,
+    /// 0.3, 0.6, 1, 2 and 3 that the tables cover.
+    #[arg(long, value_name = "X,...", value_delimiter = ',', value_parser = parse_roughness)]
     sigma: Vec<f64>,
-    /// Shapes in [1.501, inf], comma separated.
-    #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = values::gamma, default_value = "1.501,1.6,2,3,5,10,40,inf")]
+    /// Shapes in [1.501, inf], comma separated; by default those of 1.501, 1.6, 2, 3, 5, 10, 40 and
+    /// inf that the tables cover.
+    #[arg(long, value_name = "G,...", value_delimiter = ',', value_parser = values::gamma)]
     gamma: Vec<f64>,
     /// Cosines of the view in [0, 1], comma separated.
-    #[arg(long, value_delimiter = ',', allow_negative_numbers = true, value_parser = parse_cosine, default_value = "0.02,0.3,1")]
+    #[arg(long, value_name = "C,...", value_delimiter = ',', value_parser = values::number(0.0..=1.0, "0 is grazing"), default_value = "0.02,0.3,1")]
     cos_theta: Vec<f64>,
+    #[command(flatten)]
+    others: values::OtherNames,
     /// Form of masking: G1(v) G1(l) or 1/(1 + lambda(v) + lambda(l)); a walk is height-correlated.
     #[arg(long, value_parser = parse_masking(), default_value = Masking::HeightCorrelated.name())]
     masking: Masking,
-    /// Method; `walk` adds the random walk (Heitz et al. 2016).
-    #[arg(long, value_enum, default_value = "quadrature")]
-    method: Method,
-    /// Number of rays of each walk.
-    #[arg(long, default_value_t = 100_000, allow_negative_numbers = true, value_parser = values::count(1_000..=10_000_000_000))]
-    walks: u64,
+    /// Add the random walk (Heitz et al. 2016) with N rays a row, such as 1e5.
+    #[arg(long, value_name = "N", value_parser = values::count::<usize>(1_000..=10_000_000_000))]
+    walks: Option<usize>,
     /// Seed of the walks.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::seed, requires = "walks")]
     seed: u64,
-    /// Print the average albedo by gamma and sigma instead.
-    #[arg(long)]
+    /// Print the average albedo by gamma and sigma instead, as a table in Markdown.
+    #[arg(long, conflicts_with_all = ["cos_theta", "walks", "seed", "json"])]
     average: bool,
     /// Print the result as JSON.
     #[arg(long)]
@@ -59,14 +64,6 @@ fn parse_masking() -> impl TypedValueParser<Value = Masking> {
         .try_map(|name| name.parse::<Masking>())
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Method {
-    /// By quadrature.
-    Quadrature,
-    /// By quadrature and by the random walk.
-    Walk,
-}
-
 fn parse_roughness(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         // The set says whether it holds it.
@@ -75,78 +72,89 @@ fn parse_roughness(text: &str) -> Result<f64, String> {
     }
 }
 
-fn parse_cosine(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(cos) if (0.0..=1.0).contains(&cos) => Ok(cos),
-        _ => Err(format!("cos_theta \"{text}\" must be a number in [0, 1]; 0 is grazing")),
-    }
-}
-
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
+    let materials = grid::materials(&set, args.masking, &args.sigma, &args.gamma)?;
     if args.average {
-        return average(&args, &set);
+        return average(&materials, &set, args.masking);
     }
-    let walking = args.method == Method::Walk;
     let masking = args.masking;
     let mut rows = Vec::new();
-    let mut passed = true;
+    let mut failures = String::new();
     if !args.json {
-        print(&head(walking))?;
+        print(&head(args.walks.is_some()))?;
     }
-    let walks = if walking { usize::try_from(args.walks)? } else { 0 };
+    let work = |sigma: f64, gamma: f64| {
+        // A mirror has no microsurface to walk on.
+        let walks = args.walks.filter(|_| sigma > 0.0);
+        (walks, [seconds(1), walk_seconds(sigma, gamma, walks.unwrap_or(0))])
+    };
     let meter = Meter::default();
-    let count = args.cos_theta.len();
-    for (&gamma, &sigma) in args.gamma.iter().flat_map(|g| args.sigma.iter().map(move |s| (g, s))) {
-        meter.expect(count as f64 * (seconds(1) + walk_seconds(sigma, gamma, walks)));
+    for &(sigma, gamma) in &materials {
+        let (_, [row, walk]) = work(sigma, gamma);
+        meter.expect(args.cos_theta.len() as f64 * (row + walk));
     }
-    let bar = progress::show(&meter, "walking");
-    for &gamma in &args.gamma {
-        for &sigma in &args.sigma {
-            for &cos in &args.cos_theta {
-                let stage = meter.stage(seconds(1));
-                let row = furnace(&set, masking, sigma, gamma, cos)?;
-                drop(stage);
-                // A mirror has no microsurface to walk on.
-                let walked = if walking && sigma > 0.0 {
-                    let stage = meter.stage(walk_seconds(sigma, gamma, walks));
-                    Some(walk(sigma, gamma, cos, walks, args.seed, &stage)?)
-                } else {
-                    None
-                };
-                // Written so that a NaN fails.
-                passed &= (row.kulla_conty - 1.0).abs() <= TOLERANCE;
-                passed &=
-                    walked.is_none_or(|walk| conserves(&walk) && agrees(&row, &walk, masking));
-                if args.json {
-                    rows.push(as_json(&row, walked));
-                } else {
-                    print(&line(&row, walked))?;
-                }
+    let bar = progress::show(&meter, "in the furnace");
+    for &(sigma, gamma) in &materials {
+        let (walks, [row_seconds, walk_seconds]) = work(sigma, gamma);
+        for &cos in &args.cos_theta {
+            let stage = meter.stage(row_seconds);
+            let row = furnace(&set, masking, sigma, gamma, cos)?;
+            drop(stage);
+            let stage = meter.stage(walk_seconds);
+            let walked = walks
+                .map(|walks| walk(sigma, gamma, cos, walks, args.seed, &stage))
+                .transpose()?;
+            drop(stage);
+            let why = deviations(&row, walked.as_ref(), masking);
+            if args.json {
+                rows.push(as_json(&row, walked, &why));
+            } else {
+                print(&line(&row, walked))?;
+            }
+            for why in why {
+                failures += &format!("  gamma {gamma}, sigma {sigma}, cos_theta {cos}: {why}\n");
             }
         }
     }
     drop(bar);
+    let passed = failures.is_empty();
     if args.json {
         print_json(&json!({ "masking": Masking::name(masking), "passed": passed, "rows": rows }))?;
+    } else if passed {
+        print("The furnace closes.\n")?;
     } else {
-        print(if passed { "The furnace closes.\n" } else { "The furnace does not close.\n" })?;
+        print(&format!("The furnace does not close:\n{failures}"))?;
     }
     Ok(if passed { Done::Ok } else { Done::Rejected })
 }
 
-/// Whether all light came back, within three standard errors.
-fn conserves(walk: &Walk) -> bool {
-    (walk.total.mean - 1.0).abs() <= 3.0 * walk.total.error
-}
-
-/// Whether the share of light that leaves after the first bounce is E, within four standard errors,
-/// since a grid has hundreds of tests.
-fn agrees(row: &Furnace, walk: &Walk, masking: Masking) -> bool {
-    // Where nearly all or nearly no light returns, the counts resolve less than one walk.
-    masking != Masking::HeightCorrelated
-        || (walk.single.mean - row.single).abs()
-            <= 4.0 * walk.single.error.max((row.single / 1e5).sqrt() * 1e-2) + 1e-5
+/// What is wrong with a row, and by how much; nothing if the furnace closes.
+fn deviations(row: &Furnace, walk: Option<&Walk>, masking: Masking) -> Vec<String> {
+    let mut found = Vec::new();
+    let off = row.kulla_conty - 1.0;
+    // Written so that a NaN fails, here and below.
+    if !(off.abs() <= TOLERANCE) {
+        found.push(format!("Kulla-Conty is 1 {off:+.2e}, and 1 +- {TOLERANCE:e} is allowed"));
+    }
+    let Some(Walk { single, total, .. }) = walk else { return found };
+    let (off, allowed) = (total.mean - 1.0, 3.0 * total.error);
+    if !(off.abs() <= allowed) {
+        found.push(format!(
+            "all bounces bring back 1 {off:+.2e}, and 1 +- {allowed:.2e} is allowed"
+        ));
+    }
+    // The share of light that leaves after the first bounce is E, within four standard errors,
+    // since a grid has hundreds of tests. Where nearly all or nearly no light returns, the counts
+    // resolve less than one walk.
+    let off = single.mean - row.single;
+    let allowed = 4.0 * single.error.max((row.single / 1e5).sqrt() * 1e-2) + 1e-5;
+    if masking == Masking::HeightCorrelated && !(off.abs() <= allowed) {
+        found.push(format!(
+            "one bounce brings back E {off:+.2e}, and E +- {allowed:.2e} is allowed"
+        ));
+    }
+    found
 }
 
 fn head(walking: bool) -> String {
@@ -171,7 +179,7 @@ fn line(row: &Furnace, walk: Option<Walk>) -> String {
     )
 }
 
-fn as_json(row: &Furnace, walk: Option<Walk>) -> serde_json::Value {
+fn as_json(row: &Furnace, walk: Option<Walk>, deviations: &[String]) -> serde_json::Value {
     let walk = walk.map(|walk| {
         json!({
             "single": walk.single.mean, "single_error": walk.single.error,
@@ -181,21 +189,32 @@ fn as_json(row: &Furnace, walk: Option<Walk>) -> serde_json::Value {
     // JSON has no infinity.
     json!({
         "sigma": row.sigma, "gamma": row.gamma.to_string(), "cos_theta": row.cos_theta, "single": row.single,
-        "turquin": row.turquin, "kulla_conty": row.kulla_conty, "walk": walk,
+        "turquin": row.turquin, "kulla_conty": row.kulla_conty, "walk": walk, "deviations": deviations,
     })
 }
 
 /// The average albedo, γ down and σ across: the quantity that figure 9 of Ribardière et al. 2017
-/// shows as spheres.
-fn average(args: &Args, set: &Tables) -> Outcome {
+/// shows as spheres. A dash stands where the set covers no such pair.
+fn average(materials: &[(f64, f64)], set: &Tables, masking: Masking) -> Outcome {
+    let (mut sigmas, mut gammas) = (Vec::new(), Vec::new());
+    for (sigma, gamma) in materials {
+        if !sigmas.contains(sigma) {
+            sigmas.push(*sigma);
+        }
+        if !gammas.contains(gamma) {
+            gammas.push(*gamma);
+        }
+    }
     let mut text = String::from("| gamma |");
-    args.sigma.iter().for_each(|sigma| text += &format!(" sigma = {sigma} |"));
-    text += &format!("\n| --- |{}\n", " --- |".repeat(args.sigma.len()));
-    for &gamma in &args.gamma {
+    sigmas.iter().for_each(|sigma| text += &format!(" sigma = {sigma} |"));
+    text += &format!("\n| --- |{}\n", " --- |".repeat(sigmas.len()));
+    for &gamma in &gammas {
         text += &format!("| {gamma} |");
-        for &sigma in &args.sigma {
-            let albedo = set.albedo(sigma, gamma, args.masking).map_err(Failure::from)?;
-            text += &format!(" {:.3} |", albedo.albedo_average());
+        for &sigma in &sigmas {
+            text += &match materials.contains(&(sigma, gamma)) {
+                true => format!(" {:.3} |", set.albedo(sigma, gamma, masking)?.albedo_average()),
+                false => " - |".into(),
+            };
         }
         text += "\n";
     }

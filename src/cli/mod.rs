@@ -7,6 +7,7 @@ mod fit;
 mod furnace;
 mod inspect;
 mod interrupt;
+mod negative;
 mod plan;
 mod plot;
 mod progress;
@@ -15,8 +16,11 @@ mod request;
 mod sample;
 mod shell;
 mod stress;
+#[cfg(test)]
+mod tests;
 mod validate;
 mod values;
+mod view;
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -45,10 +49,10 @@ struct Cli {
     #[command(subcommand)]
     command: Command,
     /// Threads to use; all processors by default.
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, global = true, display_order = 900, value_name = "N", value_parser = values::count::<usize>(1..=1024))]
+    threads: Option<usize>,
     /// Show no progress, notes or summaries: only results, warnings and errors.
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, display_order = 901)]
     quiet: bool,
 }
 
@@ -88,7 +92,7 @@ impl<E: Display> From<E> for Failure {
 type Outcome = Result<Done, Failure>;
 
 pub(crate) fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::try_parse_from(negative::attached(std::env::args_os())) {
         Ok(cli) => cli,
         Err(why) => return refuse(&why),
     };
@@ -96,7 +100,7 @@ pub(crate) fn main() -> ExitCode {
     interrupt::watch();
     if let Some(threads) = cli.threads {
         // Fails only if a thread pool exists already, and none does.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
     let outcome = match cli.command {
         Command::Bake(args) => bake::run(args),

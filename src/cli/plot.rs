@@ -9,19 +9,19 @@ use super::{Done, Failure, Outcome, print};
 
 /// Draw a figure of the literature as SVG.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  microfacet-bake plot student-t --output student-t.svg")]
+#[command(after_help = "Example:\n  microfacet-bake plot student-t --out student-t.svg")]
 pub(super) struct Args {
     /// Name of the figure.
-    #[arg(value_parser = plot::NAMES)]
+    #[arg(value_name = "FIGURE", value_parser = plot::NAMES)]
     name: String,
     /// File to write; standard output by default, or if it is `-`.
-    #[arg(long, short, value_name = "SVG")]
-    output: Option<PathBuf>,
+    #[arg(long, short, value_name = "FILE")]
+    out: Option<PathBuf>,
 }
 
 pub(super) fn run(args: Args) -> Outcome {
     let text = plot::svg(&plot::figure(&args.name)?)?;
-    match args.output.filter(|path| path.as_os_str() != "-") {
+    match args.out.filter(|path| path.as_os_str() != "-") {
         Some(path) => replace(&path, text.as_bytes())
             .map_err(|why| Failure(format!("{}: {why}", path.display())))?,
         None => print(&text)?,

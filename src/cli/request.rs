@@ -19,17 +19,17 @@ pub(super) struct Request {
     #[arg(long, value_enum, default_value = "default")]
     quality: QualityArg,
     /// Tabulate GGX (gamma = 2) as well, for a renderer without its closed forms.
-    #[arg(long)]
+    #[arg(long, requires = "scene")]
     tabulate_ggx: bool,
     /// Bake directional albedos for every rough material of a scene; by default only for those of a
     /// recipe that state `fresnel`.
-    #[arg(long)]
+    #[arg(long, requires = "scene")]
     albedo: bool,
     /// Bake no directional albedos, which take most of the time.
     #[arg(long, conflicts_with = "albedo")]
     no_albedo: bool,
     /// Skip what the sampler crate's default set covers (`Tables::or_embedded`).
-    #[arg(long)]
+    #[arg(long, requires = "scene")]
     embedded: bool,
 }
 

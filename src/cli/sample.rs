@@ -1,80 +1,152 @@
-//! `sample`: draws visible normals of one material and view into a safetensors file.
+//! `sample`: draws normals of one material and view into a safetensors file.
 
-use std::io::{self, IsTerminal};
+use std::io::{self, BufWriter, IsTerminal, Write};
+use std::iter;
 use std::path::PathBuf;
 
-use clap::ValueEnum;
+use clap::{ArgGroup, ValueEnum};
 use glam::Vec3;
+use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use safetensors::Dtype;
-use safetensors::tensor::TensorView;
+use safetensors::tensor::{Metadata, TensorInfo};
 
-use microfacet_bake::store::replace;
+use microfacet_bake::store::replace_with;
 use microfacet_bake::validate::configuration::Configuration;
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
-use microfacet_sampler::MicrofacetDistribution as _;
+use microfacet_sampler::{Lobe, MicrofacetDistribution as _};
 
-use super::{Done, Failure, Outcome, print, report, tables, values, write};
+use super::view::View;
+use super::{Done, Failure, Outcome, print, report, tables, values};
 
 /// Draw normals for one material and view into a safetensors file: `normals` [N,3], `pdf` [N], f32.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  microfacet-bake sample --sigma 0.454 --gamma 3 --theta 1.0 --count 100000 --out normals.safetensors"
-)]
+#[command(after_help = "Examples:
+  microfacet-bake sample --sigma 0.454 --gamma 3 --theta 1 --count 1e5 --out normals.safetensors
+  microfacet-bake sample --sigma 0.454 --gamma 3 --ndf --count 1e5 --out normals.safetensors")]
+#[command(group(ArgGroup::new("of").args(["theta", "ndf"]).required(true)))]
 pub(super) struct Args {
     /// Roughness, `X` or `X,Y`.
-    #[arg(long, value_name = "X[,Y]", allow_negative_numbers = true, value_parser = values::sigma)]
+    #[arg(long, value_name = "X[,Y]", value_parser = values::sigma)]
     sigma: [f64; 2],
     /// Shape.
-    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = values::gamma)]
+    #[arg(long, value_name = "G", value_parser = values::gamma)]
     gamma: f64,
-    /// Polar angle of the view.
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
-    theta: f64,
-    /// Azimuth of the view.
-    #[arg(long, value_name = "P", default_value = "0", allow_negative_numbers = true)]
-    phi: f64,
     #[command(flatten)]
-    unit: values::Unit,
+    view: View,
+    #[command(flatten)]
+    others: values::OtherNames,
     /// Number of normals.
-    #[arg(long, value_name = "N", value_parser = values::count(1..=1_000_000_000))]
-    count: u64,
-    /// Seed of the random numbers.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", value_parser = values::count::<usize>(1..=1_000_000_000))]
+    count: usize,
+    /// Seed of everything random.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::seed)]
     seed: u64,
-    /// How normals are drawn; also decides the density that is written.
+    /// How visible normals are drawn; also decides the density that is written.
     #[arg(long, value_enum, default_value = "table")]
     method: Method,
-    /// Tables to draw from; the embedded default if absent.
-    #[arg(long, value_name = "PATH")]
+    /// Draw normals of D, eq. 16-17 and 19-20, with density D(m) (m.n), for which no view is
+    /// needed.
+    #[arg(long, conflicts_with_all = ["theta", "phi", "degrees", "method", "tables"])]
+    ndf: bool,
+    /// A table file, or a folder with one; the embedded default if absent.
+    #[arg(long)]
     tables: Option<PathBuf>,
     /// File to write, `-` for standard output.
-    #[arg(long, value_name = "FILE.safetensors")]
+    #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Method {
-    /// Visible normals from tables, with the density that the table samples.
+    /// From tables, with the density that the table samples.
     Table,
-    /// Visible normals by the model's sampler, with the analytic density.
+    /// By the model's sampler, with the analytic density.
     Exact,
-    /// Normals of D, eq. 16-17 and 19-20, with density D(m) (m.n); the view is not used.
-    Ndf,
+}
+
+/// A source of normals, which can begin again: the same seed gives the same ones.
+enum Source {
+    Table(Box<Lobe>, Vec3),
+    Exact(model::StudentT, Vec3),
+    Ndf(model::StudentT),
+}
+
+impl Source {
+    fn new(args: &Args) -> Result<Self, Failure> {
+        let [sigma_x, sigma_y] = args.sigma;
+        let truth = model::StudentT::new([sigma_x, sigma_y], args.gamma)?;
+        let Some([theta, phi]) = args.view.angles()? else { return Ok(Self::Ndf(truth)) };
+        let (gamma, seed) = (args.gamma, args.seed);
+        let v = Configuration { sigma_x, sigma_y, gamma, theta, phi, seed }.view();
+        match args.method {
+            Method::Table => {
+                let lobe = tables(args.tables.as_deref())?.lobe(args.sigma, gamma)?;
+                Ok(Self::Table(Box::new(lobe), v))
+            }
+            Method::Exact if args.tables.is_some() => Err(Failure(
+                "--method exact draws without tables: drop --tables, or give --method table".into(),
+            )),
+            Method::Exact => Ok(Self::Exact(truth, v)),
+        }
+    }
+
+    /// Normals with their densities, without end.
+    fn begin(&self, seed: u64) -> Box<dyn Iterator<Item = (Vec3, f32)> + '_> {
+        let mut random = StdRng::seed_from_u64(seed);
+        match self {
+            Self::Table(lobe, v) => Box::new(iter::repeat_with(move || {
+                let m = lobe.sample_visible_normal(*v, [random.random(), random.random()]);
+                (m, lobe.table_pdf(*v, m))
+            })),
+            Self::Exact(truth, v) => Box::new(iter::repeat_with(move || {
+                let v = v.as_dvec3();
+                let m = truth.sample_visible_by_rejection(v, &mut || random.random());
+                (m.as_vec3(), truth.visible_normal_pdf(v, m) as f32)
+            })),
+            Self::Ndf(truth) => Box::new(iter::repeat_with(move || {
+                let m = truth.sample_ndf([random.random(), random.random()]);
+                (m.as_vec3(), (truth.d(m) * m.z) as f32)
+            })),
+        }
+    }
+
+    /// Writes a safetensors file. All normals precede all densities in it, so they are drawn twice
+    /// rather than kept: a file of any length takes the same memory.
+    fn write(&self, count: usize, seed: u64, out: &mut dyn Write) -> io::Result<()> {
+        let mut out = BufWriter::new(out);
+        out.write_all(&header(count)?)?;
+        for (m, _) in self.begin(seed).take(count) {
+            m.to_array().iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+        }
+        for (_, pdf) in self.begin(seed).take(count) {
+            out.write_all(&pdf.to_le_bytes())?;
+        }
+        out.flush()
+    }
+}
+
+/// What stands before the values in a safetensors file: the length of the description, and the
+/// description.
+fn header(count: usize) -> io::Result<Vec<u8>> {
+    let tensor = |shape: Vec<usize>, from: usize, to: usize| TensorInfo {
+        dtype: Dtype::F32,
+        shape,
+        data_offsets: (from, to),
+    };
+    let tensors = vec![
+        ("normals".to_owned(), tensor(vec![count, 3], 0, 12 * count)),
+        ("pdf".to_owned(), tensor(vec![count], 12 * count, 16 * count)),
+    ];
+    let described = Metadata::new(None, tensors).map_err(io::Error::other)?;
+    let mut text = serde_json::to_vec(&described)?;
+    // Values begin at a multiple of eight bytes.
+    text.resize(text.len().next_multiple_of(8), b' ');
+    Ok([&(text.len() as u64).to_le_bytes()[..], &text].concat())
 }
 
 pub(super) fn run(args: Args) -> Outcome {
-    let [sigma_x, sigma_y] = args.sigma;
-    let truth = model::StudentT::new([sigma_x, sigma_y], args.gamma)?;
-    let at = Configuration {
-        sigma_x,
-        sigma_y,
-        gamma: args.gamma,
-        theta: args.unit.theta(args.theta)?,
-        phi: args.unit.phi(args.phi)?,
-        seed: args.seed,
-    };
     let to_stdout = args.out.as_os_str() == "-";
     if to_stdout && io::stdout().is_terminal() {
         return Err(Failure(
@@ -82,45 +154,22 @@ pub(super) fn run(args: Args) -> Outcome {
                 .into(),
         ));
     }
-    let v = at.view();
-    let mut random = rand::rngs::StdRng::seed_from_u64(args.seed);
-    let mut draw: Box<dyn FnMut() -> (Vec3, f32)> = match args.method {
-        Method::Table => {
-            let lobe = tables(args.tables.as_deref())?.lobe(args.sigma, args.gamma)?;
-            Box::new(move || {
-                let m = lobe.sample_visible_normal(v, [random.random(), random.random()]);
-                (m, lobe.table_pdf(v, m))
-            })
-        }
-        Method::Exact => Box::new(move || {
-            let m = truth.sample_visible_by_rejection(v.as_dvec3(), &mut || random.random());
-            (m.as_vec3(), truth.visible_normal_pdf(v.as_dvec3(), m) as f32)
-        }),
-        Method::Ndf => Box::new(move || {
-            let m = truth.sample_ndf([random.random(), random.random()]);
-            (m.as_vec3(), (truth.d(m) * m.z) as f32)
-        }),
-    };
-    let count = usize::try_from(args.count)?;
-    let (mut normals, mut pdf) = (Vec::with_capacity(12 * count), Vec::with_capacity(4 * count));
-    for _ in 0..count {
-        let (m, density) = draw();
-        m.to_array().iter().for_each(|x| normals.extend(x.to_le_bytes()));
-        pdf.extend(density.to_le_bytes());
-    }
-    let bytes = safetensors::serialize(
-        [
-            ("normals", TensorView::new(Dtype::F32, vec![count, 3], &normals)?),
-            ("pdf", TensorView::new(Dtype::F32, vec![count], &pdf)?),
-        ],
-        None,
-    )?;
+    let source = Source::new(&args)?;
+    let Args { count, seed, .. } = args;
     if to_stdout {
-        write(&bytes)?;
-        report("note", format!("{count} normals on standard output"));
+        match source.write(count, seed, &mut io::stdout().lock()) {
+            Ok(()) => report("note", format!("{count} normals on standard output")),
+            Err(why) if why.kind() == io::ErrorKind::BrokenPipe => report(
+                "note",
+                format!(
+                    "the reader of standard output left before all {count} normals were written"
+                ),
+            ),
+            Err(why) => return Err(Failure(format!("standard output: {why}"))),
+        }
         return Ok(Done::Ok);
     }
-    replace(&args.out, &bytes).map_err(|why| {
+    replace_with(&args.out, |out| source.write(count, seed, out)).map_err(|why| {
         let hint = if why.kind() == io::ErrorKind::InvalidInput {
             ", or `--out -` for standard output"
         } else {

@@ -10,7 +10,14 @@ use microfacet_sampler::Tables;
 
 use super::{Done, Outcome, print, print_json, progress};
 
-pub(super) fn stress(tables: &Tables, points: u64, seed: u64, as_json: bool) -> Outcome {
+/// Runs the test; `source` is the option that gives the set to the queries that are printed.
+pub(super) fn stress(
+    tables: &Tables,
+    points: u64,
+    seed: u64,
+    as_json: bool,
+    source: &str,
+) -> Outcome {
     let meter = Meter::default();
     let work = seconds(tables, points);
     meter.expect(work);
@@ -18,9 +25,9 @@ pub(super) fn stress(tables: &Tables, points: u64, seed: u64, as_json: bool) -> 
     let report = run(tables, points, seed, &meter.stage(work))?;
     drop(bar);
     if as_json {
-        print_json(&document(&report))?
+        print_json(&document(&report, source))?
     } else {
-        print(&summary(&report))?
+        print(&summary(&report, source))?
     }
     Ok(if report.total().violations.is_empty() { Done::Ok } else { Done::Rejected })
 }
@@ -38,7 +45,7 @@ fn regions(report: &Report) -> impl Iterator<Item = ([&'static str; 3], &Region)
     all.filter(|(_, region)| region.points > 0)
 }
 
-fn summary(report: &Report) -> String {
+fn summary(report: &Report, source: &str) -> String {
     let mut text =
         format!("{:12} {:14} {:9} {:>11} {:>10}", "shape", "view", "sigma", "points", "violations");
     ERRORS.iter().for_each(|error| text += &format!(" {error:>10}"));
@@ -56,7 +63,7 @@ fn summary(report: &Report) -> String {
             ordinary.map(|(_, region)| region.errors[i]).max_by(|a, b| a.value.total_cmp(&b.value));
         // Nothing was measured where no tilt can be compared, as below gamma = 1.8.
         if let Some(worst) = worst.filter(|worst| worst.value != 0.0) {
-            text += &format!("  {error} {:.2e}: {}\n", worst.value, worst.at);
+            text += &format!("  {error} {:.2e}: {}{source}\n", worst.value, worst.at);
         }
     }
     let total = report.total();
@@ -65,24 +72,24 @@ fn summary(report: &Report) -> String {
             "BROKEN {} times: {rule}, at worst {:e}",
             violation.count, violation.worst.value
         );
-        text += &format!("\n  {}\n", violation.worst.at);
+        text += &format!("\n  {}{source}\n", violation.worst.at);
     }
     let verdict = if total.violations.is_empty() { "PASSED" } else { "REJECTED" };
     text + &format!("{} points\n{verdict}\n", total.points)
 }
 
-fn document(report: &Report) -> serde_json::Value {
+fn document(report: &Report, source: &str) -> serde_json::Value {
     let regions: Vec<_> = regions(report)
         .map(|([shape, view, sigma], region)| {
             let errors: Vec<_> = ERRORS
                 .iter()
                 .zip(&region.errors)
-                .map(|(name, worst)| json!({ "quantity": name, "max": worst.value, "query": worst.at.to_string() }))
+                .map(|(name, worst)| json!({ "quantity": name, "max": worst.value, "query": format!("{}{source}", worst.at) }))
                 .collect();
             let violations: Vec<_> = region
                 .violations
                 .iter()
-                .map(|(rule, found)| json!({ "rule": rule, "count": found.count, "worst": found.worst.value, "query": found.worst.at.to_string() }))
+                .map(|(rule, found)| json!({ "rule": rule, "count": found.count, "worst": found.worst.value, "query": format!("{}{source}", found.worst.at) }))
                 .collect();
             json!({
                 "shape": shape, "view": view, "sigma": sigma, "points": region.points,

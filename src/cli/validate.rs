@@ -1,5 +1,6 @@
 //! `validate`: tests the sampler's normals against the analytic densities.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use serde_json::json;
@@ -15,71 +16,85 @@ use microfacet_bake::validate::{
 
 use microfacet_sampler::{LobeEntry, Reflectance, Tables};
 
-use super::{Done, Failure, Outcome, print, print_json, progress, tables, values};
+use super::view::View;
+use super::{Done, Failure, Outcome, escape, print, print_json, progress, tables, values};
 
 /// Test normals drawn from tables against the analytic densities by chi-square.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  microfacet-bake validate --configurations 50 --samples 1000000"
-)]
+#[command(after_help = "Examples:
+  microfacet-bake validate --configurations 50 --samples 1e6
+  microfacet-bake validate --sigma 0.3 --gamma 3 --theta 60 --degrees
+  microfacet-bake validate --stress --points 2e6")]
 pub(super) struct Args {
     /// A table file, or a folder with one; the embedded default if absent.
     tables: Option<PathBuf>,
     /// Normals drawn for each configuration.
-    #[arg(long, value_name = "N", default_value_t = 100_000, allow_negative_numbers = true, value_parser = values::count(1_000..=10_000_000_000))]
-    samples: u64,
-    /// Number of materials and views, drawn over the covered domain.
-    #[arg(long, value_name = "K", default_value_t = 100, allow_negative_numbers = true, value_parser = values::count(1..=1_000_000))]
-    configurations: u64,
+    #[arg(long, value_name = "N", default_value = "1e5", value_parser = values::count::<usize>(1_000..=10_000_000_000))]
+    samples: usize,
+    /// Number of configurations (materials and views), drawn over what the tables cover.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = values::count::<usize>(1..=1_000_000))]
+    configurations: usize,
     /// Seed of everything random.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::seed)]
     seed: u64,
-    /// Test one configuration instead: its roughness, `X` or `X,Y`.
-    #[arg(long, value_name = "X[,Y]", allow_negative_numbers = true, value_parser = values::sigma, requires_all = ["gamma", "theta"])]
-    sigma: Option<[f64; 2]>,
-    /// Shape of the one configuration.
-    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = values::gamma, requires = "sigma")]
-    gamma: Option<f64>,
-    /// Polar angle of its view.
-    #[arg(long, value_name = "T", allow_negative_numbers = true, requires = "sigma")]
-    theta: Option<f64>,
-    /// Azimuth of its view.
-    #[arg(long, value_name = "P", default_value = "0", allow_negative_numbers = true)]
-    phi: f64,
-    #[command(flatten)]
-    unit: values::Unit,
     /// Multiply the model's gamma by this; 1.01 shows that the tests reject.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::number(FACTORS, "1 leaves gamma as it is"))]
     perturb_gamma: f64,
-    /// Test every public function at corners and random points instead: no NaN, nothing out of
-    /// range.
-    #[arg(long, conflicts_with_all = ["sigma", "gamma", "theta", "perturb_gamma"])]
-    stress: bool,
-    /// Points of the stress run; never fewer than its corners, about a million.
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "stress")]
-    points: u64,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
+    /// Test one configuration: its roughness, `X` or `X,Y`.
+    #[arg(long, help_heading = ONE, value_name = "X[,Y]", value_parser = values::sigma, requires_all = ["gamma", "theta"], conflicts_with = "configurations")]
+    sigma: Option<[f64; 2]>,
+    /// Shape.
+    #[arg(long, help_heading = ONE, value_name = "G", value_parser = values::gamma, requires = "sigma")]
+    gamma: Option<f64>,
+    #[command(flatten, next_help_heading = ONE)]
+    view: View,
+    #[command(flatten)]
+    others: values::OtherNames,
+    /// Test every public function at corners and random points instead: no NaN, nothing out of
+    /// range.
+    #[arg(long, help_heading = STRESS, conflicts_with_all = ["sigma", "gamma", "theta", "phi", "degrees", "perturb_gamma", "samples", "configurations"])]
+    stress: bool,
+    /// Points of the stress run; never fewer than its corners, about a million.
+    #[arg(long, help_heading = STRESS, value_name = "N", default_value = "1e6", value_parser = values::count::<u64>(1..=1_000_000_000_000), requires = "stress")]
+    points: u64,
 }
+
+const ONE: &str = "One configuration";
+const STRESS: &str = "Stress test";
+
+/// Factors on gamma: beyond, a table of another shape is wrong whatever it holds.
+const FACTORS: RangeInclusive<f64> = 0.5..=2.0;
 
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
+    // The set as an argument of the commands that are printed.
+    let source = args.tables.as_deref().map(escape::shell);
     if args.stress {
         if shapes(&set).is_empty() {
             return Err(Failure(nothing_to_judge(&set)));
         }
-        return super::stress::stress(&set, args.points, args.seed, args.json);
+        let source = source.map_or(String::new(), |path| format!(" --tables {path}"));
+        return super::stress::stress(&set, args.points, args.seed, args.json, &source);
     }
-    let chosen = match (args.sigma, args.gamma, args.theta) {
-        (Some([sigma_x, sigma_y]), Some(gamma), Some(theta)) => {
-            let (theta, phi) = (args.unit.theta(theta)?, args.unit.phi(args.phi)?);
+    let chosen = match (args.sigma, args.gamma, args.view.angles()?) {
+        (Some([sigma_x, sigma_y]), Some(gamma), Some([theta, phi])) => {
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi, seed: args.seed }]
         }
-        _ => configurations(&set, usize::try_from(args.configurations)?, args.seed),
+        _ => configurations(&set, args.configurations, args.seed),
     };
-    let options =
-        Options { samples: usize::try_from(args.samples)?, gamma_factor: args.perturb_gamma };
+    let factor = args.perturb_gamma;
+    let smallest = chosen.iter().map(|one| one.gamma).fold(f64::INFINITY, f64::min);
+    if smallest * factor <= 1.5 {
+        return Err(Failure(format!(
+            "--perturb-gamma {factor} takes the gamma {} of a configuration out of (1.5, inf]: give a factor above {:.4}",
+            (smallest * 1e6).round() / 1e6,
+            1.5 / smallest + 5e-5
+        )));
+    }
+    let options = Options { samples: args.samples, gamma_factor: factor };
     let meter = Meter::default();
     let normals = seconds(chosen.len(), options);
     // A single configuration tests its lobe only.
@@ -97,8 +112,7 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     let untested = if args.sigma.is_none() { untested(&set) } else { Vec::new() };
     let passed = result.passed() && furnaces.iter().all(Survey::passed);
-    let source =
-        args.tables.as_deref().map_or(String::new(), |path| format!("{} ", path.display()));
+    let source = source.map_or(String::new(), |path| format!("{path} "));
     if args.json {
         print_json(&as_json(&result, options, &furnaces, &untested, passed))?
     } else {

@@ -4,26 +4,57 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::RangeInclusive;
 
 use bytesize::ByteSize;
+use clap::builder::UnknownArgumentValueParser;
 
 use microfacet_bake::fit::Angles;
 use microfacet_sampler::Ggx;
 
 /// Parses a whole number as `100000` or `1e5`, and checks its range.
-pub(super) fn count(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<u64, String> + Clone {
-    move |text| match whole(text) {
-        Some(n) if range.contains(&n) => Ok(n),
+pub(super) fn count<T: TryFrom<u64>>(
+    range: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| {
+        let n = whole(text).filter(|n| range.contains(n)).and_then(|n| T::try_from(n).ok());
+        n.ok_or_else(|| {
+            format!(
+                "\"{text}\" must be a whole number in [{}, {}], such as {}",
+                power(*range.start()),
+                power(*range.end()),
+                // The largest power of ten up to a million that the range holds.
+                (0..=6)
+                    .rev()
+                    .map(|n| 10_u64.pow(n))
+                    .find(|n| range.contains(n))
+                    .unwrap_or(*range.start())
+            )
+        })
+    }
+}
+
+/// Parses the seed of a random number generator.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    count(0..=u64::MAX)(text)
+}
+
+/// Parses a number, and checks its range; `hint` says what its ends mean.
+pub(super) fn number(
+    range: RangeInclusive<f64>,
+    hint: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| match text.trim().parse() {
+        Ok(x) if range.contains(&x) => Ok(x),
         _ => Err(format!(
-            "\"{text}\" must be a whole number in [{}, {}], such as {}",
-            power(*range.start()),
-            power(*range.end()),
-            // The largest power of ten up to a million that the range holds.
-            (0..=6)
-                .rev()
-                .map(|n| 10_u64.pow(n))
-                .find(|n| range.contains(n))
-                .unwrap_or(*range.start())
+            "\"{text}\" must be a number in [{}, {}]; {hint}",
+            range.start(),
+            range.end()
         )),
     }
+}
+
+/// Parses a number of any size; whoever uses it knows its range.
+pub(super) fn finite(text: &str) -> Result<f64, String> {
+    let x = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    x.ok_or_else(|| format!("\"{text}\" must be a finite number"))
 }
 
 /// A whole number, with an exponent or without.
@@ -83,10 +114,33 @@ pub(super) fn gamma(text: &str) -> Result<f64, String> {
 /// The largest polar angle of a view: up to 1e-5 above π/2 is a rounded π/2, as 1.5708 is.
 pub(super) const THETA_MAX: f64 = FRAC_PI_2 + 1e-5;
 
+/// The names that others have for sigma: refused, with the relation.
+#[derive(clap::Args)]
+#[allow(dead_code, reason = "no value of these is ever accepted")]
+pub(super) struct OtherNames {
+    #[arg(long, hide = true, value_name = "X", value_parser = sigma_for(
+        "sigma is the alpha of GGX and Beckmann",
+    ))]
+    alpha: Option<String>,
+    #[arg(long, hide = true, value_name = "X", value_parser = sigma_for(
+        "for a perceptual roughness r, as glTF has it, sigma is r^2",
+    ))]
+    roughness: Option<String>,
+    #[arg(short, alias = "m", hide = true, value_name = "X", value_parser = sigma_for(
+        "sigma is the m of Beckmann",
+    ))]
+    m: Option<String>,
+}
+
+fn sigma_for(relation: &str) -> UnknownArgumentValueParser {
+    let relation = format!("did you mean --sigma? {relation}");
+    UnknownArgumentValueParser::suggest(relation)
+}
+
 /// The unit of the angles that a command reads.
 #[derive(clap::Args, Clone, Copy, Debug, Default)]
 pub(super) struct Unit {
-    /// Angles are in degrees instead of radians.
+    /// Read angles in degrees instead of radians.
     #[arg(long)]
     degrees: bool,
 }
@@ -141,8 +195,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn numbers_are_checked_against_their_range() {
+        let factor = number(0.5..=2.0, "1 leaves it");
+        assert_eq!((factor("0.5"), factor(" 2 ")), (Ok(0.5), Ok(2.0)));
+        for bad in ["0.49", "inf", "1e308", "nan", "-1", "", "x"] {
+            assert!(factor(bad).unwrap_err().contains("[0.5, 2]; 1 leaves it"), "{bad}");
+        }
+        assert_eq!(finite("-1e300"), Ok(-1e300));
+        assert!(["inf", "nan", "x", ""].iter().all(|bad| finite(bad).is_err()));
+    }
+
+    #[test]
     fn counts_are_whole_numbers_with_exponents_or_without() {
-        let samples = count(1_000..=10_000_000_000);
+        let samples = count::<u64>(1_000..=10_000_000_000);
         for (text, n) in
             [("1000", 1_000), ("1e6", 1_000_000), ("2.5e3", 2_500), (" 1E10 ", 10_000_000_000)]
         {
@@ -153,7 +218,8 @@ mod tests {
             assert!(why.contains("[1000, 1e10], such as 1000000"), "{bad}: {why}");
         }
         // Seeds keep every bit.
-        assert_eq!(count(0..=u64::MAX)("18446744073709551615"), Ok(u64::MAX));
+        assert_eq!(seed("18446744073709551615"), Ok(u64::MAX));
+        assert!(count::<u16>(0..=70_000)("70000").is_err(), "more than the type holds");
     }
 
     #[test]
@@ -180,9 +246,9 @@ mod tests {
         let [radians, degrees] = [false, true].map(|degrees| Unit { degrees });
         assert_eq!(degrees.theta(90.0), Ok(FRAC_PI_2));
         assert!(degrees.theta(91.0).unwrap_err().contains("[0, 90] degrees"));
-        assert!(
-            radians.theta(FRAC_PI_2 + 4e-6).is_ok() && radians.theta(FRAC_PI_2 + 1e-4).is_err()
-        );
+        // As people type it.
+        let quarter = finite("1.5708").unwrap();
+        assert_eq!(radians.theta(quarter), Ok(quarter));
         assert!(radians.theta(20.0).unwrap_err().contains("--degrees"));
         assert!(!radians.theta(-0.1).unwrap_err().contains("--degrees"));
         assert!(radians.theta(f64::NAN).is_err() && radians.phi(f64::INFINITY).is_err());

@@ -8,24 +8,42 @@ use std::time::{Duration, Instant};
 static WRITING: Mutex<()> = Mutex::new(());
 /// Folders that were made for sets, the innermost first; a bake that is refused removes them again.
 static MADE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// Files that are being written under a temporary name.
+static PARTIAL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Marks a write that must not be cut short, as long as the guard lives. Does not nest.
 pub(super) fn writing() -> MutexGuard<'static, ()> {
     WRITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn made() -> MutexGuard<'static, Vec<PathBuf>> {
-    MADE.lock().unwrap_or_else(PoisonError::into_inner)
+fn locked(list: &Mutex<Vec<PathBuf>>) -> MutexGuard<'_, Vec<PathBuf>> {
+    list.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A file under a temporary name that is removed if the process is interrupted.
+pub(super) struct Leftover(PathBuf);
+
+impl Leftover {
+    pub(super) fn new(path: &Path) -> Self {
+        locked(&PARTIAL).push(path.into());
+        Self(path.into())
+    }
+}
+
+impl Drop for Leftover {
+    fn drop(&mut self) {
+        locked(&PARTIAL).retain(|path| *path != self.0);
+    }
 }
 
 /// Remembers folders that are about to be made.
 pub(super) fn will_make(folders: &[PathBuf]) {
-    made().extend_from_slice(folders);
+    locked(&MADE).extend_from_slice(folders);
 }
 
 /// Forgets folders that are removed, or hold a set now.
 pub(super) fn forget(folders: &[PathBuf]) {
-    made().retain(|folder| !folders.contains(folder));
+    locked(&MADE).retain(|folder| !folders.contains(folder));
 }
 
 /// Removes folders, the innermost first, as far as they are empty.
@@ -35,7 +53,8 @@ pub(super) fn remove_empty(folders: &[impl AsRef<Path>]) {
 }
 
 /// Prepares the end of the process from a signal handler's thread: waits until no file is being
-/// replaced, lets no other write begin, and removes the empty folders that were made for sets.
+/// replaced, lets no other write begin, and removes files under temporary names and the empty folders
+/// that were made for sets.
 ///
 /// Returns whether the files are whole. `false` says that a write has not ended within `patience`,
 /// as on a disk that hangs; whoever opens the folder next completes it.
@@ -53,6 +72,10 @@ pub fn quiesce(patience: Duration) -> bool {
     };
     // Never unlocked again.
     std::mem::forget(guard);
-    remove_empty(&made());
+    for path in locked(&PARTIAL).iter() {
+        // One that is gone already is no error.
+        let _ = std::fs::remove_file(path);
+    }
+    remove_empty(&locked(&MADE));
     true
 }

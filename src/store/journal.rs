@@ -77,23 +77,23 @@ pub(super) fn replace_all(
             return Err(failed(io::Error::new(io::ErrorKind::InvalidInput, why)));
         }
         let old = to.old.as_ref().filter(|old| old.is_file());
-        let file = stage(folder, bytes, old).map_err(failed)?;
-        let partial = file.path().file_name().unwrap_or_default().to_string_lossy();
+        let new = stage(folder, |out| out.write_all(bytes), old).map_err(failed)?;
+        let partial = new.file.path().file_name().unwrap_or_default().to_string_lossy();
         journal += &format!("{partial} {name}\n");
         if to.path != path || to.is_device() {
-            let pending = Pending::new(to, bytes).map_err(failed)?;
-            led.push(Led { name: name.clone(), partial: file.path().into(), pending });
+            let pending = Pending::new(to, |out| out.write_all(bytes)).map_err(failed)?;
+            led.push(Led { name: name.clone(), partial: new.file.path().into(), pending });
         }
-        staged.push(file);
+        staged.push(new);
     }
     let failed = |why| (JOURNAL.to_string(), why);
-    let file = stage(folder, journal.as_bytes(), None).map_err(failed)?;
+    let list = stage(folder, |out| out.write_all(journal.as_bytes()), None).map_err(failed)?;
     // Before the journal is there: an error after it must not take the new files with it. Without a
     // journal they are leftovers.
-    for file in staged {
-        file.keep().map_err(|error| failed(error.error))?;
+    for new in staged {
+        new.file.keep().map_err(|error| failed(error.error))?;
     }
-    file.persist(folder.join(JOURNAL)).map_err(|error| failed(error.error))?;
+    list.file.persist(folder.join(JOURNAL)).map_err(|error| failed(error.error))?;
     sync(folder).map_err(failed)?;
     exchange(folder, &journal, led)
 }

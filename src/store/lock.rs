@@ -8,9 +8,8 @@ use microfacet_sampler::Tables;
 
 use super::interrupt;
 use super::journal::{RECORD, finish, is_ours, recorded, replace_all};
-use super::replace::check_writable;
+use super::replace::{check_writable, make_folder};
 use super::{Format, SET_FILE, StoreError, Written, files};
-use crate::input;
 
 /// A folder to write a set into, locked against every other bake until it is dropped.
 ///
@@ -46,18 +45,11 @@ impl OutputFolder {
     /// Locks the folder, and completes what an interrupted bake has begun.
     pub(super) fn complete(path: &Path) -> Result<Self, StoreError> {
         let failed = |why| StoreError::Io(path.into(), why);
-        if let Ok(found) = std::fs::metadata(path)
-            && !found.is_dir()
-        {
-            let what = if found.is_file() { "a file" } else { input::name(found.file_type()) };
-            let why = format!("is {what}; name a folder");
-            return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, why)));
-        }
         let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made: Vec<_> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         interrupt::will_make(&made);
         let mut this = Self { path: path.into(), made, lock: None };
-        std::fs::create_dir_all(path).map_err(failed)?;
+        make_folder(path).map_err(failed)?;
         let lock = this.lock.insert(lock_file(path).map_err(failed)?);
         match lock.try_lock() {
             Ok(()) => {}

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use tempfile::NamedTempFile;
 
-use super::interrupt;
+use super::interrupt::{self, Leftover};
 use crate::input;
 
 /// Prefix and suffix of the names of incomplete files; while no bake locks the folder, such a file
@@ -37,13 +37,25 @@ const LINKS: usize = 40;
 /// folder, a FIFO, a socket or a block device, or protected. Unless the disk itself fails at the
 /// very end, the old file is then untouched.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    replace_with(path, |out| out.write_all(bytes))
+}
+
+/// As [`replace`], with bytes that `write` writes, which need not fit into memory.
+///
+/// # Errors
+/// As [`replace`], and those of `write`.
+pub fn replace_with(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let pending = Pending::new(destination(path)?, write)?;
     let _writing = interrupt::writing();
-    replace_unguarded(path, bytes)
+    pending.commit()
 }
 
 /// [`replace`] as part of a write that is marked already.
 pub(super) fn replace_unguarded(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    Pending::new(destination(path)?, bytes)?.commit()
+    Pending::new(destination(path)?, |out| out.write_all(bytes))?.commit()
 }
 
 /// The folder that a path is in.
@@ -96,7 +108,12 @@ pub(super) fn destination(path: &Path) -> io::Result<Destination> {
     for _ in 0..=LINKS {
         let old = match fs::symlink_metadata(&path) {
             Err(why) if why.kind() == io::ErrorKind::NotFound => {
-                return Ok(Destination { path, old: None });
+                let folder = folder_of(&path);
+                if folder.is_dir() {
+                    return Ok(Destination { path, old: None });
+                }
+                let why = format!("the folder {} does not exist; make it first", folder.display());
+                return refused(io::ErrorKind::NotFound, why);
             }
             old => old?,
         };
@@ -124,21 +141,30 @@ pub(super) fn check_writable(path: &Path) -> io::Result<()> {
     destination(path).map(|_| ())
 }
 
+/// A temporary file that an interrupt removes.
+pub(super) struct Staged {
+    pub(super) file: NamedTempFile,
+    _leftover: Leftover,
+}
+
 /// A complete new file that has yet to take its place; none for a device, which has its bytes.
-pub(super) struct Pending(Option<(NamedTempFile, PathBuf)>);
+pub(super) struct Pending(Option<(Staged, PathBuf)>);
 
 impl Pending {
-    pub(super) fn new(to: Destination, bytes: &[u8]) -> io::Result<Self> {
+    pub(super) fn new(
+        to: Destination,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> io::Result<Self> {
         if to.is_device() {
-            OpenOptions::new().write(true).open(&to.path)?.write_all(bytes)?;
+            write(&mut OpenOptions::new().write(true).open(&to.path)?)?;
             return Ok(Self(None));
         }
-        Ok(Self(Some((stage(folder_of(&to.path), bytes, to.old.as_ref())?, to.path))))
+        Ok(Self(Some((stage(folder_of(&to.path), write, to.old.as_ref())?, to.path))))
     }
 
     pub(super) fn commit(self) -> io::Result<()> {
-        let Some((file, path)) = self.0 else { return Ok(()) };
-        file.persist(&path).map_err(|error| error.error)?;
+        let Some((staged, path)) = self.0 else { return Ok(()) };
+        staged.file.persist(&path).map_err(|error| error.error)?;
         sync(folder_of(&path))
     }
 }
@@ -147,9 +173,9 @@ impl Pending {
 /// those that any new file gets.
 pub(super) fn stage(
     folder: &Path,
-    bytes: &[u8],
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     old: Option<&Metadata>,
-) -> io::Result<NamedTempFile> {
+) -> io::Result<Staged> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
     #[cfg(unix)]
@@ -157,23 +183,30 @@ pub(super) fn stage(
         // The umask applies. Without this, temporary files are their owner's alone.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
+    // Without the temporary name, of which a user knows nothing.
+    let file = builder.tempfile_in(folder).map_err(|why| {
+        let folder = folder.display();
+        io::Error::new(why.kind(), format!("cannot write into the folder {folder}: {}", why.kind()))
+    })?;
+    let _leftover = Leftover::new(file.path());
+    let mut staged = Staged { file, _leftover };
+    write(staged.file.as_file_mut())?;
     #[cfg(unix)]
     if let Some(old) = old {
         use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
-        let new = file.as_file().metadata()?;
+        let file = staged.file.as_file();
+        let new = file.metadata()?;
         if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
             // Few may give a file to another owner, or to any group.
-            let _ = fchown(file.as_file(), None, Some(old.gid()));
-            let _ = fchown(file.as_file(), Some(old.uid()), None);
+            let _ = fchown(file, None, Some(old.gid()));
+            let _ = fchown(file, Some(old.uid()), None);
         }
-        file.as_file().set_permissions(fs::Permissions::from_mode(old.mode() & 0o777))?;
+        file.set_permissions(fs::Permissions::from_mode(old.mode() & 0o777))?;
     }
     #[cfg(not(unix))]
     let _ = old;
-    file.as_file().sync_all()?;
-    Ok(file)
+    staged.file.as_file().sync_all()?;
+    Ok(staged)
 }
 
 /// Makes renames in a folder durable, where the system can do that for this folder.
@@ -219,6 +252,21 @@ pub(super) fn partial_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
         }
     }
     Ok(files)
+}
+
+/// Makes a folder, and those it is in, unless it is there.
+pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
+    let why = match (fs::metadata(path), fs::read_link(path)) {
+        (Ok(found), _) if found.is_dir() => return Ok(()),
+        (Ok(found), _) if found.is_file() => "is a file; name a folder".into(),
+        (Ok(found), _) => format!("is {}; name a folder", input::name(found.file_type())),
+        (Err(why), Ok(to)) if why.kind() == io::ErrorKind::NotFound => {
+            format!("is a link to {}, which does not exist; make that folder first", to.display())
+        }
+        (Err(_), Ok(_)) => "is a link that leads nowhere; name a folder".into(),
+        (Err(_), Err(_)) => return fs::create_dir_all(path),
+    };
+    refused(io::ErrorKind::NotADirectory, why)
 }
 
 /// Modes of files, for tests here and of the journal.

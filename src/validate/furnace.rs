@@ -10,10 +10,13 @@ use rayon::prelude::*;
 use microfacet_common::shape::gamma_of_s;
 use microfacet_model as model;
 use microfacet_sampler::{
-    Albedo, Axis, Kind, LobeEntry, Masking, MaterialError, Reflectance, Subject, Table, Tables,
+    Albedo, Axis, Covered, Kind, LobeEntry, Masking, MaterialError, Reflectance, Subject, Table,
+    Tables,
 };
 
+use crate::bake::albedo::Domain;
 use crate::progress::Stage;
+use crate::scene::Interval;
 
 /// Allowed deviation from 1 with the Kulla–Conty lobe
 /// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).
@@ -131,20 +134,14 @@ const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1
 
 /// The form of masking of each albedo table of the family, and the materials of a survey of it.
 fn surveyed(tables: &Tables) -> Vec<(Masking, Vec<[f64; 2]>)> {
-    let of_family = |table: &&Table| {
-        let Subject { lobe, reflectance, .. } = &table.subject;
-        table.kind == Kind::Albedo
-            && (lobe, reflectance) == (&LobeEntry::Family, &Some(Reflectance::Moments))
-    };
-    let materials = |table: &Table| {
-        let (masking, covers) = (table.subject.masking?, table.subject.covers?);
+    let materials = |(table, masking, covers): (&Table, Masking, Covered)| {
         let gammas = between(&table.axes[0], covers.s.map(gamma_of_s), 11);
         let sigmas = between(&table.axes[1], covers.sigma.unwrap_or_default(), 14);
         let pairs =
             gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| [sigma, gamma]));
-        Some((masking, pairs.collect()))
+        (masking, pairs.collect())
     };
-    tables.tables().iter().filter(of_family).filter_map(materials).collect()
+    of_family(tables).map(materials).collect()
 }
 
 /// The estimated seconds of [`survey`] on the current threads.
@@ -181,6 +178,33 @@ pub fn survey(tables: &Tables, stage: &Stage) -> Result<Vec<Survey>, MaterialErr
             let lowest = *rows.iter().min_by(order).expect("a grid has points");
             let highest = *rows.iter().max_by(order).expect("a grid has points");
             Ok(Survey { masking, points: rows.len(), lowest, highest })
+        })
+        .collect()
+}
+
+/// The tables that a furnace reads, each with its form of masking and what it covers.
+fn of_family(tables: &Tables) -> impl Iterator<Item = (&Table, Masking, Covered)> {
+    let is_read = |table: &&Table| {
+        let Subject { lobe, reflectance, .. } = &table.subject;
+        table.kind == Kind::Albedo
+            && (lobe, reflectance) == (&LobeEntry::Family, &Some(Reflectance::Moments))
+    };
+    let read = tables.tables().iter().filter(is_read);
+    read.filter_map(|table| Some((table, table.subject.masking?, table.subject.covers?)))
+}
+
+/// The materials that a furnace can be run for with one form of masking, a rectangle a table.
+pub fn domains(tables: &Tables, masking: Masking) -> Vec<Domain> {
+    // An end that is a short number has passed through 1/(γ−1), and tables cover what is within
+    // 1e-9 of them.
+    let short = |x: f64| format!("{x:.11e}").parse().unwrap_or(x);
+    of_family(tables)
+        .filter(|(_, of, _)| *of == masking)
+        .filter_map(|(_, _, Covered { s: [low, high], sigma })| {
+            let [min, max] = sigma?.map(short);
+            let [least, most] = [high, low].map(|s| short(gamma_of_s(s)));
+            let gamma = Interval { min: least, max: most };
+            Some(Domain { gamma, sigma: Interval { min, max } })
         })
         .collect()
 }

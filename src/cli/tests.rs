@@ -1,0 +1,137 @@
+//! What holds for every subcommand and option, found through what clap knows of them.
+
+use std::any::TypeId;
+use std::ffi::OsString;
+
+use clap::error::ErrorKind;
+use clap::{Arg, CommandFactory};
+
+use super::*;
+
+/// Every subcommand that has none itself, after the words that lead to it.
+fn leaves(command: &clap::Command, path: &[String]) -> Vec<(Vec<String>, clap::Command)> {
+    let path = [path, &[command.get_name().to_owned()]].concat();
+    let children = command.get_subcommands().filter(|child| child.get_name() != "help");
+    let below: Vec<_> = children.flat_map(|child| leaves(child, &path)).collect();
+    if below.is_empty() { vec![(path, command.clone())] } else { below }
+}
+
+fn built() -> clap::Command {
+    let mut command = Cli::command();
+    command.build();
+    command
+}
+
+/// Options with a value, each after its subcommand.
+fn options() -> Vec<(Vec<String>, Arg)> {
+    let takes_value = |arg: &&Arg| {
+        arg.get_long().is_some() && arg.get_action().takes_values() && !arg.is_hide_set()
+    };
+    let of = |(path, leaf): (Vec<String>, clap::Command)| -> Vec<_> {
+        let args = leaf.get_arguments().filter(takes_value);
+        args.map(|arg| (path.clone(), arg.clone())).collect()
+    };
+    leaves(&built(), &[]).into_iter().flat_map(of).collect()
+}
+
+fn is_number(arg: &Arg) -> bool {
+    let parsed = arg.get_value_parser().type_id();
+    [
+        TypeId::of::<f64>(),
+        TypeId::of::<[f64; 2]>(),
+        TypeId::of::<u64>(),
+        TypeId::of::<usize>(),
+        TypeId::of::<u16>(),
+        TypeId::of::<u32>(),
+    ]
+    .iter()
+    .any(|number| parsed == *number)
+}
+
+fn refusal(path: &[String], option: &str, value: &str) -> Option<clap::Error> {
+    let words = path.iter().map(String::as_str).chain([option, value]).map(OsString::from);
+    Cli::try_parse_from(negative::attached(words)).err()
+}
+
+#[test]
+fn declarations_are_consistent() {
+    Cli::command().debug_assert();
+}
+
+#[test]
+fn what_begins_like_a_negative_number_is_the_value_of_any_option() {
+    let (mut tried, mut numbers) = (0, 0);
+    for (path, arg) in options() {
+        let option = format!("--{}", arg.get_long().unwrap());
+        for value in ["-1", "-inf", "-1e-3", "-.5", "-0.3,0.5", "-nan"] {
+            // Where nothing is wrong with the value, other options may be missing.
+            let Some(error) = refusal(&path, &option, value) else { continue };
+            let text = error.to_string();
+            assert_ne!(error.kind(), ErrorKind::UnknownArgument, "{path:?}: {text}");
+            assert!(!text.contains("a value is required"), "{path:?}: {text}");
+            tried += 1;
+            if is_number(&arg) && error.kind() == ErrorKind::ValueValidation {
+                // A list names the one of its values that is wrong.
+                let first = value.split(',').next().unwrap();
+                let named = text.contains(&option) && text.contains(&format!("'{first}"));
+                assert!(named && text.contains(" must "), "{path:?}: {text}");
+                numbers += 1;
+            }
+        }
+    }
+    assert!(tried > 200 && numbers > 100, "{tried} {numbers}");
+}
+
+/// The messages of Rust's parsers name neither the range nor the fix.
+#[test]
+fn no_option_of_a_number_answers_with_the_message_of_a_parser() {
+    let numbers: Vec<_> = options().into_iter().filter(|(_, arg)| is_number(arg)).collect();
+    assert!(numbers.len() > 25, "{}", numbers.len());
+    for (path, arg) in numbers {
+        let option = format!("--{}", arg.get_long().unwrap());
+        for value in ["many", "", "1e999999x", "nan"] {
+            let error = refusal(&path, &option, value).expect("no number");
+            let text = error.to_string();
+            assert_eq!(error.kind(), ErrorKind::ValueValidation, "{path:?}: {text}");
+            assert!(
+                text.contains(" must ")
+                    && !text.contains("invalid digit")
+                    && !text.contains("literal"),
+                "{path:?}: {text}"
+            );
+        }
+    }
+}
+
+/// One wording and one name of the value for the same option, wherever it is.
+#[test]
+fn the_same_option_has_the_same_value_everywhere() {
+    for (option, value) in [("seed", "N"), ("threads", "N"), ("gamma", "G"), ("theta", "T")] {
+        for (path, arg) in options().iter().filter(|(_, arg)| arg.get_long() == Some(option)) {
+            // Lists have a name of their own.
+            if arg.get_value_delimiter().is_none() {
+                assert_eq!(arg.get_value_names().unwrap(), [value], "{path:?} --{option}");
+            }
+        }
+    }
+    let written = options().into_iter().filter(|(_, arg)| arg.get_long() == Some("out"));
+    assert!(written.map(|(_, arg)| assert_eq!(arg.get_short(), Some('o'))).count() >= 3);
+    assert!(options().iter().all(|(_, arg)| arg.get_long() != Some("output")));
+}
+
+#[test]
+fn every_subcommand_has_examples_that_parse() {
+    for child in built().get_subcommands().filter(|child| child.get_name() != "help") {
+        let name = child.get_name();
+        let help = child.get_after_help().unwrap_or_default().to_string();
+        let examples: Vec<&str> =
+            help.lines().filter_map(|line| line.split("microfacet-bake ").nth(1)).collect();
+        assert!(!examples.is_empty(), "{name}");
+        for example in examples {
+            let words = example.split_whitespace().map(OsString::from);
+            let words = ["microfacet-bake".into()].into_iter().chain(words);
+            let error = Cli::try_parse_from(negative::attached(words)).err();
+            assert!(error.is_none(), "{example}: {}", error.unwrap());
+        }
+    }
+}

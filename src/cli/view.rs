@@ -1,0 +1,30 @@
+//! The view of one configuration, for `validate` and `sample`.
+
+use clap::ArgGroup;
+
+use super::report;
+use super::values::{Unit, finite};
+
+/// Options for the direction of a view, next to `--sigma`.
+#[derive(clap::Args)]
+#[command(group(ArgGroup::new("unit").arg("degrees").requires("theta")))]
+pub(super) struct View {
+    /// Polar angle of the view, from the macro normal: 0 to pi/2, or to 90 with --degrees.
+    #[arg(long, value_name = "T", value_parser = finite, requires = "sigma")]
+    theta: Option<f64>,
+    /// Azimuth of the view, from the x axis.
+    #[arg(long, value_name = "P", value_parser = finite, default_value_t = 0.0, requires = "theta")]
+    phi: f64,
+    #[command(flatten)]
+    unit: Unit,
+}
+
+impl View {
+    /// theta and phi in radians; none without a theta. Says so if phi looks like degrees.
+    pub(super) fn angles(&self) -> Result<Option<[f64; 2]>, String> {
+        let Some(theta) = self.theta else { return Ok(None) };
+        let angles = [self.unit.theta(theta)?, self.unit.phi(self.phi)?];
+        self.unit.doubt(self.phi).iter().for_each(|why| report("warning", why));
+        Ok(Some(angles))
+    }
+}
