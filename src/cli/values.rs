@@ -98,7 +98,7 @@ impl Unit {
 
     /// A polar angle in [0, π/2], in radians.
     pub(super) fn theta(self, x: f64) -> Result<f64, String> {
-        let theta = self.radians(x);
+        let theta = self.angles().to_radians(x);
         if (0.0..=THETA_MAX).contains(&theta) {
             return Ok(theta);
         }
@@ -115,7 +115,7 @@ impl Unit {
     /// Any finite angle, in radians.
     pub(super) fn phi(self, x: f64) -> Result<f64, String> {
         if x.is_finite() {
-            Ok(self.radians(x))
+            Ok(self.angles().to_radians(x))
         } else {
             Err(format!("phi = {x} must be a finite angle"))
         }
@@ -129,10 +129,6 @@ impl Unit {
                 phi.abs() / TAU
             )
         })
-    }
-
-    fn radians(self, x: f64) -> f64 {
-        if self.degrees { x.to_radians() } else { x }
     }
 }
 
@@ -180,7 +176,8 @@ mod tests {
         let [radians, degrees] = [false, true].map(|degrees| Unit { degrees });
         assert_eq!(degrees.theta(90.0), Ok(FRAC_PI_2));
         assert!(degrees.theta(91.0).unwrap_err().contains("[0, 90] degrees"));
-        assert_eq!(radians.theta(1.5708), Ok(1.5708));
+        let typed = "1.5708".parse().unwrap();
+        assert_eq!(radians.theta(typed), Ok(typed));
         assert!(radians.theta(20.0).unwrap_err().contains("--degrees"));
         assert!(!radians.theta(-0.1).unwrap_err().contains("--degrees"));
         assert!(radians.theta(f64::NAN).is_err() && radians.phi(f64::INFINITY).is_err());
