@@ -15,7 +15,7 @@ use microfacet_bake::table_set::{Baked, Progress, Settings, Target, bake_with};
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::Table;
 
-use super::request::Request;
+use super::request::{Request, nothing_to_bake};
 use super::{Done, Failure, Outcome, escape, print, print_json, progress, report, values};
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
@@ -114,8 +114,8 @@ pub(super) fn run(args: Args) -> Outcome {
         }
         None => args.request.general_plan(),
     };
-    if plan.is_empty() {
-        print("Nothing to bake: no material in use is rough.\n")?;
+    if let Some(scene) = scene.as_ref().filter(|_| plan.is_empty()) {
+        print(nothing_to_bake(scene))?;
         return Ok(Done::Ok);
     }
     if let Target::Quality(quality, precision) = args.target() {
