@@ -9,6 +9,7 @@ mod inspect;
 mod plan;
 mod plot;
 mod query;
+mod recipe;
 mod request;
 mod sample;
 mod stress;
@@ -40,6 +41,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Recipe(recipe::Args),
     Bake(bake::Args),
     Plan(plan::Args),
     Validate(validate::Args),
@@ -78,6 +80,7 @@ pub(crate) fn main() -> ExitCode {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
     }
     let outcome = match cli.command {
+        Command::Recipe(args) => recipe::run(args),
         Command::Bake(args) => bake::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Validate(args) => validate::run(args),
