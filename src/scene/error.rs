@@ -180,8 +180,8 @@ const SYNONYMS: [(&[&str], &str, &str); 2] = [
     (&["shape"], "gamma", "gamma is the shape: 2 is GGX, inf is Beckmann"),
 ];
 
-/// As [`did_you_mean`] for the name of a parameter; where `word` is another name of one, with how
-/// they relate.
+/// The text "; did you mean `x`?" for the key that `word` is another name of, with how they relate,
+/// or else for the closest key, if one is close enough; else empty.
 #[must_use]
 pub fn did_you_mean_key(word: &str, keys: &[&str]) -> String {
     synonym(word, keys).unwrap_or_else(|| did_you_mean(word, keys))
