@@ -9,6 +9,8 @@ use microfacet_model::classic::{
     AshikhminShirley, Gauss, Gtr, Isotropic, Member, Schlick, Tabulated,
 };
 
+use crate::fit::Angles;
+
 /// A named distribution of one or two parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DistributionKind {
@@ -46,10 +48,12 @@ pub struct Named {
 pub enum Distribution {
     /// Given by name and parameters.
     Named(Named),
-    /// Read from a file of angles (radians) and D.
+    /// Read from a file of angles and D.
     Measured {
         /// The file as the recipe names it.
         file: String,
+        /// The unit of the angles in it.
+        angles: Angles,
         /// The angles and D that it holds.
         table: Tabulated,
     },

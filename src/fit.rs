@@ -1,50 +1,49 @@
 //! Fits (σ, γ) to a measured distribution of normals.
 
 use std::fmt;
-use std::io::{self, Read};
+use std::io::Read;
 
 use microfacet_model::classic::{Tabulated, TabulatedError};
 
 use crate::convert::{ConvertError, Form, Replacement, Target};
 use crate::distribution::DistributionKind;
-use crate::input::{Limited, MAX_ROW, MAX_TEXT};
+use crate::input::rows::{Row, RowError, Rows};
+use crate::input::{Limited, MAX_TEXT};
 use crate::progress::Meter;
 
 /// Most rows of a measurement. A fit to as many takes some seconds.
 pub const MAX_ROWS: usize = 1_000_000;
 
 /// Why a measurement could not be read.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum MeasuredError {
-    /// The file is not a CSV of two numbers a row: the line (from 1) and the reason.
-    Row(u64, String),
-    /// The file could not be read, or one row or all of it is too long; the line and the reason.
-    Input(u64, io::Error),
+    /// A row that cannot be read, or is out of range.
+    Row(RowError),
     /// There are more rows than [`MAX_ROWS`].
     TooMany,
-    /// The rows are not a distribution.
+    /// All the rows together are no distribution.
     Distribution(TabulatedError),
 }
 
 impl fmt::Display for MeasuredError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Row(line, why) => {
-                write!(
-                    f,
-                    "line {line}: {why}; each line holds an angle and a D, separated by a comma"
-                )
-            }
-            Self::Input(line, why) => write!(f, "line {line}: {why}"),
+            Self::Row(error) => write!(f, "{error}"),
             Self::TooMany => {
                 write!(f, "more than {MAX_ROWS} rows: leave some out, or average neighbours")
             }
-            Self::Distribution(e) => write!(f, "{e} (rows are counted from 0, without the header)"),
+            Self::Distribution(error) => write!(f, "{error}"),
         }
     }
 }
 
 impl std::error::Error for MeasuredError {}
+
+impl From<RowError> for MeasuredError {
+    fn from(error: RowError) -> Self {
+        Self::Row(error)
+    }
+}
 
 /// Unit of the angles in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,60 +54,126 @@ pub enum Angles {
     Degrees,
 }
 
-/// Reads a CSV with the columns θ and D, with or without a header; further columns are refused.
+impl Angles {
+    /// The name of the unit, as a number is followed by it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Radians => "radians",
+            Self::Degrees => "degrees",
+        }
+    }
+
+    /// An angle of this unit in radians.
+    pub const fn to_radians(self, angle: f64) -> f64 {
+        match self {
+            Self::Radians => angle,
+            Self::Degrees => angle.to_radians(),
+        }
+    }
+
+    /// An angle in radians as one of this unit.
+    pub const fn from_radians(self, angle: f64) -> f64 {
+        match self {
+            Self::Radians => angle,
+            Self::Degrees => angle.to_degrees(),
+        }
+    }
+}
+
+/// A row of a measurement.
+struct Measured {
+    line: u64,
+    /// The angle as written.
+    angle: f64,
+    d: f64,
+}
+
+/// Reads a CSV with the columns θ and D, with or without a header; further columns are refused, as
+/// is a header that names them in the other order.
 ///
 /// At most [`MAX_ROWS`] rows are taken, and [`MAX_TEXT`] bytes.
 ///
 /// # Errors
-/// [`MeasuredError`] with the line, or the row of a value that is out of range.
+/// [`MeasuredError`] with the line.
 pub fn read_csv(input: impl Read, angles: Angles) -> Result<Tabulated, MeasuredError> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(Limited::new(Limited::new(input, MAX_TEXT), MAX_ROW));
-    let mut rows = Vec::new();
-    let mut record = csv::StringRecord::new();
+    let mut rows = Rows::new(Limited::new(input, MAX_TEXT), Some(b'#'))?;
+    let mut measured = Vec::new();
     let mut first = true;
-    loop {
-        reader.get_mut().restart();
-        let line = reader.position().line();
-        if !reader.read_record(&mut record).map_err(|error| unreadable(line, error))? {
-            break;
+    while let Some(Row { line, fields }) = rows.read()? {
+        let refused = |why| Err(RowError { line, why }.into());
+        let form = "each row holds an angle and a D, separated by a comma";
+        if fields.len() != 2 {
+            let columns = if fields.len() == 1 { "column" } else { "columns" };
+            return refused(format!("{} {columns}; {form}", fields.len()));
         }
-        let line = record.position().map_or(0, csv::Position::line);
-        if record.len() != 2 {
-            return Err(MeasuredError::Row(line, format!("{} columns", record.len())));
-        }
-        let number = |text: &str| text.parse::<f64>();
-        match (number(&record[0]), number(&record[1])) {
-            (Ok(theta), Ok(d)) => {
-                rows.push((if angles == Angles::Degrees { theta.to_radians() } else { theta }, d));
+        let [left, right] = [&fields[0], &fields[1]];
+        match (left.parse(), right.parse()) {
+            (Ok(angle), Ok(d)) => measured.push(Measured { line, angle, d }),
+            // Only a first row without any number is a header.
+            (Err(_), Err(_)) if first => {
+                if is_angle(right) || left.eq_ignore_ascii_case("d") {
+                    return refused(format!(
+                        "the columns are `{left}` and `{right}`; put the angle first and D second"
+                    ));
+                }
             }
-            // Only a first line without any number is a header.
-            (Err(_), Err(_)) if first => {}
-            (Err(_), _) => {
-                return Err(MeasuredError::Row(line, format!("`{}` is not a number", &record[0])));
-            }
-            (_, Err(_)) => {
-                return Err(MeasuredError::Row(line, format!("`{}` is not a number", &record[1])));
+            (left_read, _) => {
+                let text = if left_read.is_err() { left } else { right };
+                return refused(format!("`{text}` is not a number; {form}"));
             }
         }
-        if rows.len() > MAX_ROWS {
+        if measured.len() > MAX_ROWS {
             return Err(MeasuredError::TooMany);
         }
         first = false;
     }
-    Tabulated::new(&rows).map_err(MeasuredError::Distribution)
+    let points: Vec<_> = measured.iter().map(|row| (angles.to_radians(row.angle), row.d)).collect();
+    Tabulated::new(&points).map_err(|error| refusal(error, &measured, angles))
 }
 
-/// The error for a row that begins at a line.
-fn unreadable(line: u64, error: csv::Error) -> MeasuredError {
-    match error.into_kind() {
-        csv::ErrorKind::Io(why) => MeasuredError::Input(line, why),
-        _ => MeasuredError::Row(line, "not readable text".into()),
-    }
+/// Whether a header names a column of angles.
+fn is_angle(name: &str) -> bool {
+    let name = name.to_lowercase();
+    ["theta", "θ", "angle"].iter().any(|word| name.contains(word))
+}
+
+/// An error of the model, with the line and the unit of the file.
+fn refusal(error: TabulatedError, rows: &[Measured], angles: Angles) -> MeasuredError {
+    let unit = angles.name();
+    let (row, why) = match error {
+        TabulatedError::Angle(i, _) => {
+            let angle = rows[i].angle;
+            let before = i.checked_sub(1).map(|i| rows[i].angle);
+            let why = match (before, angles) {
+                (Some(before), _) if angle <= before => {
+                    format!("the angle {angle} must be more than {before}, that of the row before")
+                }
+                (_, Angles::Degrees) => format!("the angle {angle} must be in [0, 90] degrees"),
+                (_, Angles::Radians) => {
+                    let hint = match angle {
+                        0.0..=90.0 => {
+                            "; if it is in degrees, say so: --degrees, or in a recipe degrees = true"
+                        }
+                        _ => "",
+                    };
+                    format!("the angle {angle} must be in [0, pi/2 = 1.5708] radians{hint}")
+                }
+            };
+            (i, why)
+        }
+        TabulatedError::Value(i, d) => (i, format!("D = {d} must be finite and not negative")),
+        TabulatedError::Gap(_, to) => {
+            let i = rows.partition_point(|row| angles.to_radians(row.angle) < to);
+            let (from, to) = (rows[i - 1].angle, rows[i].angle);
+            let why = format!(
+                "no row between the angles {from} and {to} ({unit}): measure there, or interpolate \
+                 before and say so"
+            );
+            (i, why)
+        }
+        _ => return MeasuredError::Distribution(error),
+    };
+    RowError { line: rows[row].line, why }.into()
 }
 
 /// The best Student-t, and its two well-known special cases for comparison.
@@ -140,8 +205,11 @@ pub fn fit(measured: &Tabulated, form: Form, meter: &Meter) -> Result<Fit, Conve
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::io;
+
     use microfacet_model::classic::{Isotropic, Member};
+
+    use super::*;
 
     fn measured(sigma: f64, gamma: f64, upto: f64) -> String {
         let truth = Member::student_t(sigma, gamma).unwrap();
@@ -166,14 +234,52 @@ mod tests {
     }
 
     #[test]
-    fn bad_rows_are_named() {
-        let message =
-            |text: &str| read_csv(text.as_bytes(), Angles::Radians).unwrap_err().to_string();
-        assert!(message("0,1\n0.1,x\n").contains("line 2"));
-        assert!(message("0,1\n0.1\n").contains("line 2: 1 columns"));
-        assert!(message("0,1\n0.1,\n0.2,1\n").contains("line 2"));
-        assert!(message("theta,D\n0,1\n0.1,-3\n0.2,1").contains("row 1: D = -3"));
-        assert!(message("0,1\n30,1\n60,1").contains("radians"));
+    fn bad_rows_are_named_by_their_line_in_the_unit_of_the_file() {
+        let check = |angles, text: &str, parts: &[&str]| {
+            let message = read_csv(text.as_bytes(), angles).unwrap_err().to_string();
+            assert!(parts.iter().all(|part| message.contains(part)), "{text:?}: {message}");
+        };
+        let radians = |text: &str, parts: &[&str]| check(Angles::Radians, text, parts);
+        let degrees = |text: &str, parts: &[&str]| check(Angles::Degrees, text, parts);
+        radians("0,1\n0.1,x\n", &["line 2: `x` is not a number"]);
+        radians("0,1\n0.1\n", &["line 2: 1 column; each row"]);
+        radians("0,1\n0.1,\n0.2,1\n", &["line 2: `` is"]);
+        radians("0,1\n\n# half\n0.1,1,2", &["line 4: 3 columns"]);
+        // Header, blank lines and comments count, whatever ends a line.
+        for end in ["\n", "\r\n", "\r"] {
+            let text = "theta,D\n\n# two\n0,1\n\n0.1,-3\n0.2,1".replace('\n', end);
+            radians(&text, &["line 6: D = -3"]);
+        }
+        radians("0,-1\n1,1\n2,1", &["line 1: D = -1"]);
+        radians("0,1\n0.1,1\n0.2,inf\n", &["line 3: D = inf"]);
+        radians("0,1\n30,1\n60,1", &["line 2: the angle 30", "1.5708", "--degrees", "= true"]);
+        radians(
+            "-30,1\n0.1,1\n0.2,1",
+            &["line 1: the angle -30 must be in [0, pi/2 = 1.5708] radians"],
+        );
+        radians("0,1\n0.1,1\n0.1,1", &["line 3: the angle 0.1 must be more than 0.1"]);
+        degrees("0,1\n\n89,1\n91,1", &["line 4: the angle 91", "[0, 90] degrees"]);
+        degrees("0,1\n30,1\n29,1", &["line 3: the angle 29 must be more than 30"]);
+        let gap = "0,1\n1,1\n2,1\n3,1\n\n40,1\n41,1";
+        degrees(gap, &["line 6: no row between the angles 3 and 40 (degrees)"]);
+        radians("", &["0 rows"]);
+        radians("0,0\n0.1,0\n0.2,0", &["D is zero"]);
+        radians("0,1\n\n\"0.1,1\n0.2,1", &["line 3: a quote"]);
+    }
+
+    #[test]
+    fn columns_in_the_other_order_are_refused() {
+        let read = |header: &str| {
+            let text = format!("{header}\n0,1\n0.1,0.9\n0.2,0.8\n");
+            read_csv(text.as_bytes(), Angles::Radians)
+        };
+        for header in ["D,theta", "ndf,Theta_m", "d , angle (rad)", "D,x"] {
+            let message = read(header).unwrap_err().to_string();
+            assert!(message.contains("line 1: the columns are `"), "{header}: {message}");
+        }
+        for header in ["theta,D", "angle,NDF", "x,y"] {
+            assert!(read(header).is_ok(), "{header}");
+        }
     }
 
     #[test]

@@ -3,6 +3,8 @@
 //! A FIFO would hang, a device never ends, and a file of many gigabytes may hold nothing but zeros.
 //! So every file is looked at before it is opened, and read to a limit.
 
+pub mod rows;
+
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -139,8 +141,29 @@ pub(crate) fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As [`open`], or that it is not UTF-8.
 pub(crate) fn read_text(path: &Path, limit: u64) -> io::Result<String> {
-    let text = String::from_utf8(read(path, limit)?);
+    let text = String::from_utf8(unmarked(&read(path, limit)?).to_vec());
     text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "is no text in UTF-8"))
+}
+
+/// The byte order mark that some editors write before UTF-8; it is no part of the text.
+const MARK: &[u8] = "\u{feff}".as_bytes();
+
+/// A text without its byte order mark.
+pub(crate) fn unmarked(text: &[u8]) -> &[u8] {
+    text.strip_prefix(MARK).unwrap_or(text)
+}
+
+/// A stream of text without its byte order mark.
+pub(crate) type Unmarked<R> = io::Chain<io::Cursor<Vec<u8>>, R>;
+
+/// A stream of text without its byte order mark; its first bytes are read at once.
+///
+/// # Errors
+/// Those of the stream.
+pub(crate) fn unmarked_stream<R: Read>(mut input: R) -> io::Result<Unmarked<R>> {
+    let mut first = Vec::new();
+    input.by_ref().take(MARK.len() as u64).read_to_end(&mut first)?;
+    Ok(io::Cursor::new(unmarked(&first).to_vec()).chain(input))
 }
 
 #[cfg(test)]

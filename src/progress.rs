@@ -42,6 +42,11 @@ impl Meter {
         Stage { meter: self.clone(), total, parts: AtomicU64::new(1), counted: AtomicU64::new(0) }
     }
 
+    /// Whether any work is known to be ahead or done.
+    pub fn is_known(&self) -> bool {
+        self.0.known.load(Relaxed) > 0
+    }
+
     /// The share of the known work that is done, in [0, 1]; 0 if none is known.
     pub fn share(&self) -> f64 {
         let (done, known) = (self.0.done.load(Relaxed), self.0.known.load(Relaxed));

@@ -16,7 +16,7 @@ use microfacet_bake::table_set::{Baked, Settings, Target, bake_with};
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::Table;
 
-use super::request::Request;
+use super::request::{Request, nothing_to_bake};
 use super::{
     Done, Failure, Outcome, escape, interrupt, print, print_json, progress, report, values,
 };
@@ -127,8 +127,8 @@ pub(super) fn run(args: Args) -> Outcome {
         }
         None => args.request.general_plan(),
     };
-    if plan.is_empty() {
-        print("Nothing to bake: no material in use is rough.\n")?;
+    if let Some(scene) = scene.as_ref().filter(|_| plan.is_empty()) {
+        print(nothing_to_bake(scene))?;
         return Ok(Done::Ok);
     }
     if let Target::Quality(quality, precision) = args.target() {

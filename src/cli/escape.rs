@@ -51,11 +51,12 @@ fn escaped<I: IntoIterator<Item = char>>(
     shown.into()
 }
 
-/// Control characters, breaks of lines, and controls of the direction of writing.
+/// Control characters, breaks of lines, controls of the direction of writing, and characters
+/// without a width, which make different names look the same.
 fn is_hidden(c: char) -> bool {
     c.is_control()
-        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}')
-        || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{feff}')
+        || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}')
 }
 
 #[cfg(test)]
@@ -83,6 +84,14 @@ mod tests {
         ] {
             assert_eq!(shell(Path::new(path)), word);
         }
+    }
+
+    #[test]
+    fn characters_without_a_width_are_written_out() {
+        let name = "go\u{200b}ld\u{feff}\u{200d}\u{2060}\u{ad}";
+        let shown = r"go\u{200b}ld\u{feff}\u{200d}\u{2060}\u{ad}";
+        assert_eq!((lines(name), line(name)), (shown.into(), shown.into()));
+        assert_eq!(json(name), r"go\u200bld\ufeff\u200d\u2060\u00ad");
     }
 
     #[test]

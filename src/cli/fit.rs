@@ -1,6 +1,7 @@
 //! `fit`: fits σ and γ to a measured distribution.
 
-use std::fmt::Write;
+use std::f64::consts::FRAC_PI_2;
+use std::fmt::{Display, Write};
 use std::path::PathBuf;
 
 use microfacet_bake::fit::{self, Angles};
@@ -8,7 +9,8 @@ use microfacet_bake::input::{MAX_TEXT, open_or_stdin, shown};
 use microfacet_bake::progress::Meter;
 
 use super::convert::{On, ends};
-use super::{Done, Outcome, print, progress};
+use super::values::Unit;
+use super::{Done, Failure, Outcome, print, progress};
 
 /// Fit a Student-t to a measured distribution of normals (a CSV with the columns angle and D).
 #[derive(clap::Args)]
@@ -17,9 +19,8 @@ pub(super) struct Args {
     /// The CSV file, `-` for standard input.
     #[arg(long)]
     input: PathBuf,
-    /// Angles are in degrees instead of radians.
-    #[arg(long)]
-    degrees: bool,
+    #[command(flatten)]
+    unit: Unit,
     /// Quantity whose error the fit minimises.
     #[arg(long, default_value = "relative")]
     on: On,
@@ -27,24 +28,23 @@ pub(super) struct Args {
 
 pub(super) fn run(args: Args) -> Outcome {
     let path = shown(&args.input);
-    let file = open_or_stdin(&args.input, MAX_TEXT).map_err(|e| format!("{path}: {e}"))?;
-    let angles = if args.degrees { Angles::Degrees } else { Angles::Radians };
-    let measured = fit::read_csv(file, angles).map_err(|e| format!("{path}: {e}"))?;
+    let failed = |why: &dyn Display| Failure(format!("{path}: {why}"));
+    let angles = args.unit.angles();
+    let file = open_or_stdin(&args.input, MAX_TEXT).map_err(|why| failed(&why))?;
+    let measured = fit::read_csv(file, angles).map_err(|why| failed(&why))?;
     let meter = Meter::default();
     let bar = progress::show(&meter, "fitting");
-    let found = fit::fit(&measured, args.on.into(), &meter)?;
+    let found = fit::fit(&measured, args.on.into(), &meter).map_err(|why| failed(&why))?;
     drop(bar);
     let mut text = String::new();
     let (first, last) = measured.assumed();
     if first > 0.0 {
-        writeln!(
-            text,
-            "nothing below {:.3} degrees: D is taken as constant there",
-            first.to_degrees()
-        )?;
+        let first = angle(first, angles);
+        writeln!(text, "nothing below {first}: D is taken as constant there")?;
     }
-    if last < std::f64::consts::FRAC_PI_2 - 0.01 {
-        writeln!(text, "nothing above {:.3} degrees: D is taken as zero there", last.to_degrees())?;
+    if last < FRAC_PI_2 - 0.01 {
+        let last = angle(last, angles);
+        writeln!(text, "nothing above {last}: D is taken as zero there")?;
     }
     writeln!(text, "{:<44}{:>14}{:>16}", "fit", "RMSE of D/D(0)", "RMSE of D, 1/sr")?;
     for found in [&found.student_t, &found.beckmann, &found.ggx] {
@@ -59,4 +59,32 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     print(&text)?;
     Ok(Done::Ok)
+}
+
+/// An angle in radians with six digits, however small, in the unit of the input.
+fn angle(radians: f64, unit: Angles) -> String {
+    let digits = format!("{:.5e}", unit.from_radians(radians));
+    let rounded: f64 = digits.parse().expect("a number that was written");
+    match rounded {
+        1e-3.. => format!("{rounded} {}", unit.name()),
+        _ => format!("{rounded:e} {}", unit.name()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_keep_their_digits_and_their_unit() {
+        for (degrees, shown) in [
+            (89.9, "89.9 degrees"),
+            (0.25, "0.25 degrees"),
+            (1e-5, "1e-5 degrees"),
+            (10.0, "10 degrees"),
+        ] {
+            assert_eq!(angle(f64::to_radians(degrees), Angles::Degrees), shown);
+        }
+        assert_eq!(angle(1.0 / 3.0, Angles::Radians), "0.333333 radians");
+    }
 }

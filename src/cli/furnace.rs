@@ -102,9 +102,8 @@ pub(super) fn run(args: Args) -> Outcome {
             let row = furnace(&set, masking, sigma, gamma, cos)?;
             drop(stage);
             let stage = meter.stage(walk_seconds);
-            let walked = walks
-                .map(|walks| walk(sigma, gamma, cos, walks, args.seed, &stage))
-                .transpose()?;
+            let walked =
+                walks.map(|walks| walk(sigma, gamma, cos, walks, args.seed, &stage)).transpose()?;
             drop(stage);
             let why = deviations(&row, walked.as_ref(), masking);
             if args.json {

@@ -12,6 +12,7 @@ mod plan;
 mod plot;
 mod progress;
 mod query;
+mod recipe;
 mod request;
 mod sample;
 mod shell;
@@ -58,6 +59,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Recipe(recipe::Args),
     Bake(bake::Args),
     Plan(plan::Args),
     Validate(validate::Args),
@@ -103,6 +105,7 @@ pub(crate) fn main() -> ExitCode {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
     let outcome = match cli.command {
+        Command::Recipe(args) => recipe::run(args),
         Command::Bake(args) => bake::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Validate(args) => validate::run(args),
@@ -195,15 +198,19 @@ fn print(text: &str) -> Result<(), Failure> {
 
 /// Writes to standard output; a reader that has closed the pipe (`| head`) is no error.
 fn write(bytes: &[u8]) -> Result<(), Failure> {
+    write_on(bytes).map(|_| ())
+}
+
+/// Writes to standard output as a whole, and returns whether there is still a reader.
+fn write_on(bytes: &[u8]) -> Result<bool, Failure> {
     let mut out = io::stdout();
     // Flushed, since an error that waits for the end of the process is lost.
     let mut all = || out.write_all(bytes).and_then(|()| out.flush());
     // Elsewhere nothing is in the way, and a reader may keep the writer waiting.
     match if io::stdout().is_terminal() { progress::above(all) } else { all() } {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure(format!("standard output: {error}")))
-        }
-        _ => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => Err(Failure(format!("standard output: {error}"))),
+        Ok(()) => Ok(true),
     }
 }
 

@@ -17,7 +17,7 @@ use microfacet_bake::table_spec::{TableSpec, general_set};
 
 use microfacet_sampler::Kind;
 
-use super::request::Request;
+use super::request::{Request, nothing_to_bake};
 use super::{Done, Outcome, escape, print, print_json, report};
 
 /// Show what must be baked for a scene and what not, with bytes and seconds.
@@ -288,7 +288,7 @@ impl Report<'_> {
         }
         let (total, general) = (self.total, self.general);
         text += &if self.plan.is_empty() {
-            "Nothing to bake: no material in use is rough.\n".into()
+            nothing_to_bake(self.scene).into()
         } else {
             let share = if total.seconds > 0.0 {
                 format!("{:.1} times faster", general.seconds / total.seconds)

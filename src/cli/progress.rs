@@ -43,6 +43,13 @@ pub(super) fn show(meter: &Meter, what: &'static str) -> Bar {
             return;
         }
         let bar = bar(&meter, start).with_message(what);
+        // Nobody knows the length of a stream.
+        if !meter.is_known() {
+            bar.set_style(
+                ProgressStyle::with_template("{spinner} {msg}, {elapsed}")
+                    .expect("a constant template"),
+            );
+        }
         if let Ok(mut shown) = SHOWN.lock() {
             *shown = Some(bar.clone());
         }

@@ -11,6 +11,7 @@ use rand::{RngExt, SeedableRng};
 use safetensors::Dtype;
 use safetensors::tensor::{Metadata, TensorInfo};
 
+use microfacet_bake::progress::{Meter, Stage};
 use microfacet_bake::store::replace_with;
 use microfacet_bake::validate::configuration::Configuration;
 use microfacet_model as model;
@@ -18,7 +19,7 @@ use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::{Lobe, MicrofacetDistribution as _};
 
 use super::view::View;
-use super::{Done, Failure, Outcome, print, report, tables, values};
+use super::{Done, Failure, Outcome, progress, report, summarize, tables, values};
 
 /// Draw normals for one material and view into a safetensors file: `normals` [N,3], `pdf` [N], f32.
 #[derive(clap::Args)]
@@ -114,14 +115,17 @@ impl Source {
 
     /// Writes a safetensors file. All normals precede all densities in it, so they are drawn twice
     /// rather than kept: a file of any length takes the same memory.
-    fn write(&self, count: usize, seed: u64, out: &mut dyn Write) -> io::Result<()> {
+    fn write(&self, count: usize, seed: u64, stage: &Stage, out: &mut dyn Write) -> io::Result<()> {
+        stage.split(2 * count);
         let mut out = BufWriter::new(out);
         out.write_all(&header(count)?)?;
         for (m, _) in self.begin(seed).take(count) {
             m.to_array().iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+            stage.step();
         }
         for (_, pdf) in self.begin(seed).take(count) {
             out.write_all(&pdf.to_le_bytes())?;
+            stage.step();
         }
         out.flush()
     }
@@ -146,6 +150,9 @@ fn header(count: usize) -> io::Result<Vec<u8>> {
     Ok([&(text.len() as u64).to_le_bytes()[..], &text].concat())
 }
 
+/// Seconds for a normal, about; only its share of the whole counts.
+const SECONDS: f64 = 1e-7;
+
 pub(super) fn run(args: Args) -> Outcome {
     let to_stdout = args.out.as_os_str() == "-";
     if to_stdout && io::stdout().is_terminal() {
@@ -156,8 +163,13 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     let source = Source::new(&args)?;
     let Args { count, seed, .. } = args;
+    let meter = Meter::default();
+    let seconds = SECONDS * count as f64;
+    meter.expect(seconds);
+    let stage = meter.stage(seconds);
+    let bar = progress::show(&meter, "drawing");
     if to_stdout {
-        match source.write(count, seed, &mut io::stdout().lock()) {
+        match source.write(count, seed, &stage, &mut io::stdout().lock()) {
             Ok(()) => report("note", format!("{count} normals on standard output")),
             Err(why) if why.kind() == io::ErrorKind::BrokenPipe => report(
                 "note",
@@ -169,7 +181,7 @@ pub(super) fn run(args: Args) -> Outcome {
         }
         return Ok(Done::Ok);
     }
-    replace_with(&args.out, |out| source.write(count, seed, out)).map_err(|why| {
+    replace_with(&args.out, |out| source.write(count, seed, &stage, out)).map_err(|why| {
         let hint = if why.kind() == io::ErrorKind::InvalidInput {
             ", or `--out -` for standard output"
         } else {
@@ -177,6 +189,7 @@ pub(super) fn run(args: Args) -> Outcome {
         };
         Failure(format!("{}: {why}{hint}", args.out.display()))
     })?;
-    print(&format!("{} ({count} normals)\n", args.out.display()))?;
+    drop(bar);
+    summarize(&format!("{} ({count} normals)\n", args.out.display()))?;
     Ok(Done::Ok)
 }

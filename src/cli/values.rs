@@ -152,7 +152,7 @@ impl Unit {
 
     /// A polar angle in [0, π/2], in radians.
     pub(super) fn theta(self, x: f64) -> Result<f64, String> {
-        let theta = self.radians(x);
+        let theta = self.angles().to_radians(x);
         if (0.0..=THETA_MAX).contains(&theta) {
             return Ok(theta);
         }
@@ -169,7 +169,7 @@ impl Unit {
     /// Any finite angle, in radians.
     pub(super) fn phi(self, x: f64) -> Result<f64, String> {
         if x.is_finite() {
-            Ok(self.radians(x))
+            Ok(self.angles().to_radians(x))
         } else {
             Err(format!("phi = {x} must be a finite angle"))
         }
@@ -183,10 +183,6 @@ impl Unit {
                 phi.abs() / TAU
             )
         })
-    }
-
-    fn radians(self, x: f64) -> f64 {
-        if self.degrees { x.to_radians() } else { x }
     }
 }
 

@@ -12,7 +12,7 @@ pub struct Place {
     pub file: Arc<Path>,
     /// The line, from 1; `None` where the syntax keeps none (glTF) or the place is the whole file.
     pub line: Option<u32>,
-    /// The column in bytes, from 1.
+    /// The column in characters, from 1.
     pub column: Option<u32>,
 }
 
@@ -36,28 +36,72 @@ impl Place {
 }
 
 /// Where the lines of a text begin, to turn byte offsets into places.
-pub(super) struct Lines {
+///
+/// Lines end as they do in an editor: with a line feed, a carriage return, or both.
+pub(super) struct Lines<'a> {
     file: Arc<Path>,
+    text: &'a [u8],
     starts: Vec<usize>,
+    /// Characters that begin before each block of [`BLOCK`] bytes: a line may be as long as the
+    /// text, with a million elements in it.
+    blocks: Vec<usize>,
 }
 
-impl Lines {
-    pub(super) fn new(file: &Path, text: &str) -> Self {
-        let after_breaks = text.bytes().enumerate().filter(|&(_, b)| b == b'\n');
+/// Bytes of a block of [`Lines`].
+const BLOCK: usize = 1 << 10;
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(file: &Path, text: &'a [u8]) -> Self {
+        let ends = text.iter().enumerate().filter(|&(i, byte)| match byte {
+            b'\r' => text.get(i + 1) != Some(&b'\n'),
+            byte => *byte == b'\n',
+        });
+        let mut before = 0;
+        let blocks = text.chunks(BLOCK).map(|block| {
+            let first = before;
+            before += characters(block);
+            first
+        });
         Self {
             file: file.into(),
-            starts: [0].into_iter().chain(after_breaks.map(|(i, _)| i + 1)).collect(),
+            text,
+            starts: [0].into_iter().chain(ends.map(|(i, _)| i + 1)).collect(),
+            blocks: blocks.collect(),
         }
     }
 
     pub(super) fn place(&self, offset: usize) -> Place {
+        let offset = offset.min(self.text.len());
         let line = self.starts.partition_point(|&start| start <= offset);
+        let column = self.before(offset) - self.before(self.starts[line - 1]) + 1;
         Place {
             file: self.file.clone(),
             line: u32::try_from(line).ok(),
-            column: u32::try_from(offset - self.starts[line - 1] + 1).ok(),
+            column: u32::try_from(column).ok(),
         }
     }
+
+    /// The place of a parser that counts lines from 1 by their line feeds alone, and then bytes
+    /// from 0.
+    pub(super) fn after_feeds(&self, line: usize, bytes: usize) -> Place {
+        let lines = self.text.split_inclusive(|&byte| byte == b'\n');
+        let start: usize = lines.take(line.saturating_sub(1)).map(<[u8]>::len).sum();
+        self.place(start + bytes)
+    }
+
+    /// Characters that begin before an offset.
+    fn before(&self, offset: usize) -> usize {
+        match self.blocks.get(offset / BLOCK) {
+            Some(before) => before + characters(&self.text[offset / BLOCK * BLOCK..offset]),
+            // The end of a text of whole blocks.
+            None => characters(self.text),
+        }
+    }
+}
+
+/// The characters that begin in some bytes of UTF-8.
+pub(super) fn characters(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|&&byte| byte & 0xc0 != 0x80).count()
 }
 
 impl fmt::Display for Place {
@@ -98,12 +142,17 @@ impl fmt::Display for SceneError {
         write!(f, "{}: ", self.place)?;
         match &self.kind {
             SceneErrorKind::Io(error) => write!(f, "cannot be read: {error}"),
-            SceneErrorKind::UnknownExtension(extension) => write!(
-                f,
-                "no scene format has the extension \"{}\"; the formats are .toml (recipe), .pbrt and \
-                 .pbrt.gz (pbrt-v4), .xml (Mitsuba 3), .gltf and .glb (glTF 2.0), .mtlx (MaterialX)",
-                extension.display()
-            ),
+            SceneErrorKind::UnknownExtension(extension) => {
+                if extension.as_os_str().is_empty() {
+                    f.write_str("the name has no extension, which says the format")?;
+                } else {
+                    write!(f, "no scene format has the extension \"{}\"", extension.display())?;
+                }
+                f.write_str(
+                    "; the formats are .toml (recipe), .pbrt and .pbrt.gz (pbrt-v4), .xml (Mitsuba \
+                     3), .gltf and .glb (glTF 2.0), .mtlx (MaterialX)",
+                )
+            }
             SceneErrorKind::Syntax(message) | SceneErrorKind::Invalid(message) => {
                 f.write_str(message)
             }
@@ -118,6 +167,41 @@ impl std::error::Error for SceneError {
             _ => None,
         }
     }
+}
+
+/// Names that other programs and papers give to a parameter, its name here, and how they relate.
+const SYNONYMS: [(&[&str], &str, &str); 2] = [
+    (
+        &["alpha", "m", "rough", "roughness"],
+        "sigma",
+        "sigma is the alpha of GGX and the m of Beckmann; a perceptual roughness, as in glTF, is \
+         the square root of sigma",
+    ),
+    (&["shape"], "gamma", "gamma is the shape: 2 is GGX, inf is Beckmann"),
+];
+
+/// The text "; did you mean `x`?" for the key that `word` is another name of, with how they relate,
+/// or else for the closest key, if one is close enough; else empty.
+#[must_use]
+pub fn did_you_mean_key(word: &str, keys: &[&str]) -> String {
+    synonym(word, keys).unwrap_or_else(|| did_you_mean(word, keys))
+}
+
+/// The hint for a word that is another name of a key, if it is one.
+///
+/// The axis of `alpha_x` or `roughness_v` is kept where the keys have it.
+fn synonym(word: &str, keys: &[&str]) -> Option<String> {
+    let word = word.to_lowercase();
+    let axes = [("_x", "_x"), ("_y", "_y"), ("_u", "_x"), ("_v", "_y")];
+    let axis = axes.iter().find_map(|(end, axis)| Some((word.strip_suffix(end)?, *axis)));
+    let stem = axis.map_or(&word[..], |(stem, _)| stem);
+    let (_, name, relation) = SYNONYMS.iter().find(|(words, ..)| words.contains(&stem))?;
+    let of_axis = format!("{name}{}", axis.map_or("_x", |(_, axis)| axis));
+    let key = keys
+        .iter()
+        .find(|&key| key == name)
+        .or_else(|| keys.iter().find(|&key| *key == of_axis))?;
+    Some(format!("; did you mean `{key}`? {relation}"))
 }
 
 /// The text "; did you mean `x`?" for the candidate closest to `word`, if one is close enough; else
@@ -151,12 +235,60 @@ mod tests {
 
     #[test]
     fn a_place_counts_lines_and_columns_from_one() {
-        let lines = Lines::new(Path::new("f"), "ab\ncd\n");
+        let lines = Lines::new(Path::new("f"), b"ab\ncd\n");
         let place = |offset| lines.place(offset).to_string();
         assert_eq!(place(0), "f:1:1");
         assert_eq!(place(4), "f:2:2");
         assert_eq!(place(6), "f:3:1");
         assert_eq!(Place::file(Path::new("f")).to_string(), "f");
+    }
+
+    #[test]
+    fn lines_end_with_either_character_or_both() {
+        let text = "a\rb\r\nc\n\rd";
+        let lines = Lines::new(Path::new("f"), text.as_bytes());
+        for (word, place) in [("a", "f:1:1"), ("b", "f:2:1"), ("c", "f:3:1"), ("d", "f:5:1")] {
+            assert_eq!(lines.place(text.find(word).unwrap()).to_string(), place, "{word}");
+        }
+        // The parser's second line begins with c, and its third with the carriage return.
+        assert_eq!(lines.after_feeds(2, 0).to_string(), "f:3:1");
+        assert_eq!(lines.after_feeds(3, 1).to_string(), "f:5:1");
+    }
+
+    #[test]
+    fn columns_are_characters() {
+        // Blocks end within characters of two and three bytes.
+        let text = format!("é\n{}x", "é∞".repeat(3 * BLOCK));
+        let lines = Lines::new(Path::new("f"), text.as_bytes());
+        let columns = text.char_indices().skip(2).enumerate();
+        for (i, (offset, _)) in columns {
+            assert_eq!(lines.place(offset).column, u32::try_from(i + 1).ok(), "byte {offset}");
+        }
+        // The end of whole blocks.
+        let text = [b'a'; BLOCK];
+        assert_eq!(Lines::new(Path::new("f"), &text).place(BLOCK).column, Some(1025));
+    }
+
+    #[test]
+    fn other_names_are_known_with_their_relation() {
+        let recipe = ["name", "sigma", "gamma"];
+        for word in ["alpha", "Alpha", "alpha_x", "roughness", "rough", "m", "roughness_v"] {
+            let hint = did_you_mean_key(word, &recipe);
+            assert!(
+                hint.starts_with("; did you mean `sigma`? sigma is the alpha"),
+                "{word}: {hint}"
+            );
+        }
+        assert!(did_you_mean_key("shape", &recipe).contains("`gamma`?"));
+        let columns = ["sigma_x", "sigma_y", "gamma"];
+        for (word, column) in [("alpha", "_x"), ("alpha_x", "_x"), ("alpha_v", "_y")] {
+            assert!(
+                did_you_mean_key(word, &columns).contains(&format!("`sigma{column}`?")),
+                "{word}"
+            );
+        }
+        // Where there is no sigma, nothing stands for it.
+        assert_eq!(did_you_mean_key("roughness", &["name", "c"]), "");
     }
 
     #[test]

@@ -47,7 +47,7 @@ mod xml;
 use std::io::ErrorKind;
 use std::path::Path;
 
-pub use error::{Place, SceneError, SceneErrorKind};
+pub use error::{Place, SceneError, SceneErrorKind, did_you_mean_key};
 pub use interval::Interval;
 pub use material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
 
@@ -60,7 +60,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Materials for which there is nothing to bake.
     pub ignored: Vec<Ignored>,
-    /// Assumptions made where the scene could not be read in full, each with its place.
+    /// Assumptions made where the scene could not be read in full, and values that look like a
+    /// mistake, each with its place.
     pub warnings: Vec<String>,
 }
 
@@ -84,11 +85,7 @@ impl Scene {
     /// # Ok::<(), microfacet_bake::scene::SceneError>(())
     /// ```
     pub fn from_recipe_str(text: &str) -> Result<Self, SceneError> {
-        Self::from_recipe(text, Path::new("recipe"))
-    }
-
-    fn from_recipe(text: &str, file: &Path) -> Result<Self, SceneError> {
-        Ok(Self { materials: recipe::read(text, file)?, ..Self::default() })
+        recipe::read(text, Path::new("recipe"))
     }
 
     /// The native recipe of the materials in use: the canonical form of this scene.
@@ -121,15 +118,18 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
                     }
                     _ => place.io(error),
                 })?;
-            Scene::from_recipe(&text, path)
+            recipe::read(&text, path)
         }
         Some("pbrt") => pbrt::load(path),
         Some("xml") => mitsuba::load(path),
         Some("gltf" | "glb") => gltf::load(path),
         Some("mtlx") => materialx::load(path),
-        _ => Err(SceneError {
-            place: Place::file(path),
-            kind: SceneErrorKind::UnknownExtension(path.extension().unwrap_or_default().into()),
-        }),
+        _ => {
+            let place = Place::file(path);
+            // What is no file at all has no format either.
+            input::open(path, u64::MAX).map_err(|error| place.io(error))?;
+            let extension = path.extension().unwrap_or_default().into();
+            Err(SceneError { place, kind: SceneErrorKind::UnknownExtension(extension) })
+        }
     }
 }

@@ -10,6 +10,7 @@ use super::error::Lines;
 use super::include::Includes;
 use super::limits::Budget;
 use super::{Place, SceneError, limits};
+use crate::input;
 
 /// Deeper nesting than this is refused as a mistake, which bounds the stack for the recursion.
 pub(super) const MAX_DEPTH: usize = 256;
@@ -90,6 +91,8 @@ impl Reader {
     /// Reads the root element of the scene's own file.
     pub(super) fn open(&mut self, file: &Path) -> Result<Element, SceneError> {
         let place = Place::file(file);
+        // A folder, which is no error of an include here.
+        input::open(file, u64::MAX).map_err(|error| place.io(error))?;
         self.includes.enter(file, &place)?;
         self.read(file, &place)
     }
@@ -97,7 +100,7 @@ impl Reader {
     /// Reads the root element of a file that `place` asks for.
     pub(super) fn read(&mut self, file: &Path, place: &Place) -> Result<Element, SceneError> {
         let text = self.includes.text(file, place)?;
-        let lines = Lines::new(file, &text);
+        let lines = Lines::new(file, text.as_bytes());
         if !self.values.take(check_attributes(&text, &lines)?) {
             return Err(Place::file(file).invalid(format!(
                 "the scene has more than {} attributes; load a file that has the materials alone",
@@ -115,7 +118,11 @@ impl Reader {
                 ));
             }
             let at = error.pos();
-            Place { line: Some(at.row), column: Some(at.col), ..Place::file(file) }
+            // The parser's columns are characters.
+            let row = text.split('\n').nth(at.row as usize - 1).unwrap_or_default();
+            let bytes = row.chars().take(at.col as usize - 1).map(char::len_utf8).sum();
+            lines
+                .after_feeds(at.row as usize, bytes)
                 // The message has the place before it already.
                 .syntax(error.to_string().trim_end_matches(&format!(" at {at}")))
         })?;
@@ -125,7 +132,7 @@ impl Reader {
 }
 
 /// Checks what the parser takes quadratic time for, and counts the attributes, at least.
-fn check_attributes(text: &str, lines: &Lines) -> Result<u64, SceneError> {
+fn check_attributes(text: &str, lines: &Lines<'_>) -> Result<u64, SceneError> {
     // No attribute holds this character, so that a piece has one element at most; each of its
     // attributes has two quotes.
     let (mut start, mut all) = (0, 0);
@@ -149,7 +156,7 @@ fn check_attributes(text: &str, lines: &Lines) -> Result<u64, SceneError> {
     }
 }
 
-fn element(node: Node<'_, '_>, lines: &Lines, depth: usize) -> Result<Element, SceneError> {
+fn element(node: Node<'_, '_>, lines: &Lines<'_>, depth: usize) -> Result<Element, SceneError> {
     let place = lines.place(node.range().start);
     if depth == MAX_DEPTH {
         return Err(too_deep(&place));

@@ -5,6 +5,7 @@ mod hostile;
 mod materialx;
 mod mitsuba;
 mod pbrt;
+mod places;
 mod recipe;
 
 use std::fs;

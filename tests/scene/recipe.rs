@@ -7,7 +7,7 @@ use microfacet_bake::scene::{
 };
 use proptest::prelude::*;
 
-use crate::{anisotropic, assert_refused, isotropic, load, named};
+use crate::{Folder, anisotropic, assert_refused, isotropic, load, named};
 
 fn entry(rest: &str) -> String {
     format!("[[material]]\nname = \"a\"\n{rest}\n")
@@ -150,6 +150,33 @@ fn unknown_keys_are_named_with_the_nearest_known_one() {
 }
 
 #[test]
+fn names_of_other_programs_lead_to_sigma() {
+    for key in ["alpha", "alpha_x", "roughness", "rough", "m"] {
+        let recipe = entry(&format!("gamma = 2.0\n{key} = 0.3"));
+        let parts = [&format!("`{key}`")[..], "did you mean `sigma`?", "square root"];
+        assert_refused("r.toml", &recipe, ":4:1", &parts);
+    }
+    let shape = entry("sigma = 0.3\nshape = 3");
+    assert_refused("r.toml", &shape, ":4:1", &["did you mean `gamma`?", "2 is GGX"]);
+}
+
+#[test]
+fn infinity_is_written_as_rust_and_people_do() {
+    for text in ["inf", "+inf", "\"inf\"", "\"Inf\"", "\"INFINITY\"", "\"Infinity\"", "\" inf \""] {
+        let scene = load("r.toml", &entry(&format!("sigma = 0.3\ngamma = {text}")));
+        assert_eq!(scene.materials[0].gamma, Interval::point(f64::INFINITY), "{text}");
+    }
+    for text in ["\"-inf\"", "\"nan\"", "\"3\"", "\"infinite\"", "\"\""] {
+        assert_refused(
+            "r.toml",
+            &entry(&format!("sigma = 0.3\ngamma = {text}")),
+            ":4:9",
+            &["gamma"],
+        );
+    }
+}
+
+#[test]
 fn recipes_that_say_nothing_or_twice_the_same_are_refused() {
     let case =
         |text: &str, place: &str, parts: &[&str]| assert_refused("r.toml", text, place, parts);
@@ -211,6 +238,80 @@ fn ellipsoids_have_a_turn_and_single_numbers() {
     ] {
         let message = Scene::from_recipe_str(&entry(text)).unwrap_err().to_string();
         assert!(message.contains(words), "no {words:?} in {message}");
+    }
+}
+
+#[test]
+fn angles_may_be_in_degrees_and_are_written_in_radians() {
+    let degrees = "sigma = [0.3, 0.1]\ngamma = 2.7\ntheta = [10, -20.0, 450]\ndegrees = true";
+    let scene = load("r.toml", &entry(degrees));
+    let theta = [10.0_f64, -20.0, 450.0].map(f64::to_radians);
+    assert_eq!(scene.materials[0].theta, Some(theta));
+    assert_eq!(scene.warnings, [""; 0]);
+    let written = scene.to_recipe();
+    assert!(written.contains(&format!("theta = {theta:?}")) && !written.contains("degrees"));
+    let again = Scene::from_recipe_str(&written).unwrap();
+    assert!(again.materials[0].asks_the_same(&scene.materials[0]), "{written}");
+
+    let radians =
+        degrees.replace("true", "false").replace("450", "0.5").replace("10, -20.0", "1, -1");
+    assert_eq!(load("r.toml", &entry(&radians)).materials[0].theta, Some([1.0, -1.0, 0.5]));
+    for (text, words) in [
+        (degrees.replace("true", "\"yes\""), "degrees must be true"),
+        ("sigma = 0.3\ngamma = 2.0\ndegrees = true".to_owned(), "no `theta`"),
+    ] {
+        let message = Scene::from_recipe_str(&entry(&text)).unwrap_err().to_string();
+        assert!(message.contains(words), "no {words:?} in {message}");
+    }
+}
+
+#[test]
+fn angles_that_look_like_degrees_are_doubted() {
+    let load = |sigma: &str, theta: &str| {
+        Scene::from_recipe_str(&entry(&format!("sigma = {sigma}\ngamma = 2.0\ntheta = {theta}")))
+    };
+    for theta in ["[20, 0, 0]", "[0, -5, 0]", "[0, 0.1, 45]", "[1.6, 0, 0]"] {
+        let warnings = load("0.3", theta).unwrap().warnings;
+        let [warning] = &warnings[..] else { panic!("{theta}: {warnings:?}") };
+        let start = format!("recipe:5:9: theta = {theta} radians");
+        assert!(warning.starts_with(&start) && warning.ends_with("degrees = true"), "{warning}");
+    }
+    for theta in ["[1.5708, -1.5708, 6.2832]", "[0, 0, -6.28]"] {
+        assert_eq!(load("0.3", theta).unwrap().warnings, [""; 0], "{theta}");
+    }
+    // 11 is close to 7/2 half turns: the macro normal is almost in the silhouette.
+    let message = load("1e-9", "[0, 10.995574287564276, 0]").unwrap_err().to_string();
+    assert!(message.contains("degrees = true"), "{message}");
+    let message = load("1e-9", "[0, 1.5707963267948966, 0]").unwrap_err().to_string();
+    assert!(!message.contains("degrees = true"), "{message}");
+}
+
+#[test]
+fn a_measured_file_has_a_unit_of_its_own() {
+    let measured = |rest: &str| entry(&format!("distribution = {{ measured = \"d.csv\"{rest} }}"));
+    let degrees = "theta,D\n0,4\n10,3\n20,2\n30,1\n";
+    let radians: String = [(0.0_f64, 4), (10.0, 3), (20.0, 2), (30.0, 1)]
+        .map(|(angle, d)| format!("{:?},{d}\n", angle.to_radians()))
+        .concat();
+    let load =
+        |recipe: &str, csv: &str| Folder::new(&[("r.toml", recipe), ("d.csv", csv)]).load("r.toml");
+    let scene = load(&measured(", degrees = true"), degrees).unwrap();
+    let other = load(&measured(""), &radians).unwrap();
+    assert_eq!(scene.materials[0].roughness, other.materials[0].roughness);
+    // The file keeps its unit, so that what is written reads back.
+    let again = load(&scene.to_recipe(), degrees).unwrap();
+    assert!(again.materials[0].asks_the_same(&scene.materials[0]), "{}", scene.to_recipe());
+    assert!(!other.to_recipe().contains("degrees"));
+
+    // Errors have the place in the recipe, the file, and the line in it.
+    for (csv, parts) in [
+        (degrees, ["d.csv: line 3: the angle 10", "degrees = true"]),
+        ("0,1\n\n\n0.1,-1\n0.2,1", ["d.csv: line 4: D = -1", ""]),
+        ("D,theta\n1,0", ["d.csv: line 1: ", "angle first"]),
+    ] {
+        let message = load(&measured(""), csv).unwrap_err().to_string();
+        assert!(message.contains("r.toml:3:16: "), "{message}");
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
 }
 

@@ -1,15 +1,20 @@
 //! `query`: appends table and exact values to points from a CSV file.
 
+mod columns;
 mod quantities;
 
-use std::io;
+use std::fmt::Display;
+
 use std::path::PathBuf;
 
 use clap::{Subcommand, ValueEnum};
-use microfacet_bake::input::{Limited, MAX_ROW, open_or_stdin, shown};
+use microfacet_bake::input::rows::{Row, RowError, Rows};
+use microfacet_bake::input::{MAX_ROW, open_or_stdin, shown};
+use microfacet_bake::progress::Meter;
 use rayon::prelude::*;
 
-use super::{Done, Failure, Outcome, report, tables};
+use super::values::Unit;
+use super::{Done, Failure, Outcome, progress, report, tables, write_on};
 use quantities::{Albedo, AlbedoAverage, G1, Known, Normal, Quantity};
 
 /// Append table and exact values to the points of a CSV file.
@@ -25,10 +30,10 @@ pub(super) struct Args {
 #[derive(Subcommand)]
 enum What {
     /// Smith's lambda and G1 of a view. Columns: sigma_x, sigma_y, gamma, theta, phi.
-    G1(Io),
+    G1(View),
     /// The visible normal at random numbers u1, u2, and its density. Columns: those of g1, and u1,
     /// u2. Below gamma = 1.8 table and exact normals of the same u1 differ.
-    Normal(Io),
+    Normal(View),
     /// Directional albedo with F = 1 and its Schlick parts. Columns: sigma, gamma, cos_theta,
     /// masking.
     Albedo(Io),
@@ -49,6 +54,14 @@ struct Io {
     method: Vec<Method>,
 }
 
+#[derive(clap::Args)]
+struct View {
+    #[command(flatten)]
+    io: Io,
+    #[command(flatten)]
+    unit: Unit,
+}
+
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Method {
     /// The sampler's, in single precision.
@@ -59,8 +72,8 @@ enum Method {
 
 pub(super) fn run(args: Args) -> Outcome {
     match &args.what {
-        What::G1(io) => answer(io, &G1),
-        What::Normal(io) => answer(io, &Normal),
+        What::G1(view) => answer(&view.io, &G1(view.unit)),
+        What::Normal(view) => answer(&view.io, &Normal(view.unit)),
         What::Albedo(io) => answer(io, &Albedo),
         What::AlbedoAverage(io) => answer(io, &AlbedoAverage),
     }
@@ -70,81 +83,90 @@ pub(super) fn run(args: Args) -> Outcome {
 const ROWS: usize = 256;
 const BYTES: u64 = 2 * MAX_ROW;
 
+/// Seconds for a byte of input, about; only its share of the whole counts.
+const SECONDS: f64 = 1e-6;
+
 /// Passes the rows of a file through, with the quantity's values appended.
 fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
     let known = Known::new(tables(io.tables.as_deref())?);
     let path = shown(&io.input);
+    let failed = |why: &dyn Display| Failure(format!("{path}: {why}"));
     // A stream of any length, as long as its rows end.
-    let input =
-        open_or_stdin(&io.input, u64::MAX).map_err(|why| Failure(format!("{path}: {why}")))?;
-    let input = Limited::new(input, MAX_ROW);
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(input);
-    let unreadable = |line: u64, why: csv::Error| Failure(format!("{path}: line {line}: {why}"));
-    let header = reader.headers().map_err(|why| unreadable(1, why))?.clone();
-    let columns = quantity
-        .inputs()
-        .iter()
-        .map(|name| find_column(&header, name, quantity.inputs()))
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut writer = csv::Writer::from_writer(io::stdout());
-    let names = io.method.iter().flat_map(|method| quantity.outputs(*method));
-    let write =
-        |writer: &mut csv::Writer<io::Stdout>, row: Vec<String>| match writer.write_record(&row) {
-            Err(error) if is_broken_pipe(&error) => Ok(false),
-            Err(error) => Err(Failure(format!("standard output: {error}"))),
-            Ok(()) => Ok(true),
-        };
-    if !write(&mut writer, header.iter().map(String::from).chain(names).collect())? {
+    let input = open_or_stdin(&io.input, u64::MAX).map_err(|why| failed(&why))?;
+    let mut rows = Rows::new(input, None).map_err(|why| failed(&why))?;
+    let empty = || failed(&"it is empty; the first row must name the columns");
+    let header = rows.read().map_err(|why| failed(&why))?.ok_or_else(empty)?.fields;
+    let names: Vec<String> = io.method.iter().flat_map(|m| quantity.outputs(*m)).collect();
+    let columns = columns::find(&header, quantity.inputs(), &names).map_err(|why| failed(&why))?;
+    let mut first = csv::Writer::from_writer(Vec::new());
+    first.write_record(header.iter().map(String::from).chain(names))?;
+    let size = std::fs::metadata(&io.input).map_or(0, |file| file.len());
+    let meter = Meter::default();
+    meter.expect(SECONDS * size as f64);
+    let bar = progress::show(&meter, "answering");
+    let stage = meter.stage(SECONDS * size as f64);
+    stage.split(usize::try_from(size)?);
+    if !write_on(&first.into_inner()?)? {
         return Ok(Done::Ok);
     }
-    let answered = |record: csv::StringRecord| -> Result<Vec<String>, Failure> {
-        let line = record.position().map_or(0, csv::Position::line);
-        let fields = picked(&record, &columns);
-        let mut row: Vec<String> = record.iter().map(String::from).collect();
+    let answered = |row: Result<Row, RowError>| -> Result<Vec<String>, Failure> {
+        let Row { line, fields } = row.map_err(|why| failed(&why))?;
+        let mut values: Vec<String> = fields.iter().map(String::from).collect();
         for &method in &io.method {
-            let values = quantity.values(&fields, &known, method);
-            row.extend(values.map_err(|why| Failure(format!("line {line}: {why}")))?);
+            let found = quantity.values(&picked(&fields, &columns), &known, method);
+            values.extend(found.map_err(|why| failed(&format_args!("line {line}: {why}")))?);
         }
-        Ok(row)
+        Ok(values)
     };
-    let mut noted = false;
+    let (mut noted, mut doubted) = (io.method.len() < 2, false);
     let mut ended = false;
     while !ended {
         let mut some = Vec::new();
-        let start = reader.position().byte();
-        while some.len() < ROWS && reader.position().byte() - start < BYTES {
-            reader.get_mut().restart();
-            let line = reader.position().line();
-            let mut record = csv::StringRecord::new();
-            match reader.read_record(&mut record) {
-                Ok(true) => some.push(Ok(record)),
-                end => {
-                    some.extend(end.err().map(|why| Err(unreadable(line, why))));
-                    ended = true;
+        let start = rows.bytes();
+        while some.len() < ROWS && rows.bytes() - start < BYTES && !ended {
+            let row = rows.read().transpose().map(|row| complete(row?, header.len()));
+            ended = !matches!(row, Some(Ok(_)));
+            some.extend(row);
+        }
+        let read = || some.par_iter().filter_map(|row| row.as_ref().ok());
+        if !noted {
+            let note =
+                read().find_map_first(|row| quantity.note(&picked(&row.fields, &columns), &known));
+            note.iter().for_each(|note| report("note", note));
+            noted = note.is_some();
+        }
+        if !doubted {
+            let doubt = read().find_map_first(|row| {
+                let doubt = quantity.doubt(&picked(&row.fields, &columns))?;
+                Some(format!("{path}: line {}: {doubt}", row.line))
+            });
+            doubt.iter().for_each(|doubt| report("warning", doubt));
+            doubted = doubt.is_some();
+        }
+        let taken = rows.bytes() - start;
+        let answers: Vec<_> = some.into_par_iter().map(answered).collect();
+        // Whole rows in order; those before a refused one are still written.
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let mut refused = None;
+        for answer in answers {
+            match answer {
+                Ok(row) => writer.write_record(&row)?,
+                Err(why) => {
+                    refused = Some(why);
                     break;
                 }
             }
         }
-        if !noted && io.method.len() > 1 {
-            let rows = some.par_iter().filter_map(|record| record.as_ref().ok());
-            let note = rows.find_map_first(|row| quantity.note(&picked(row, &columns), &known));
-            note.iter().for_each(|note| report("note", note));
-            noted = note.is_some();
+        if !write_on(&writer.into_inner()?)? {
+            break;
         }
-        let rows: Vec<_> = some.into_par_iter().map(|record| answered(record?)).collect();
-        // Written in order; the rows before a refused one are still written.
-        for row in rows {
-            if !write(&mut writer, row?)? {
-                return Ok(Done::Ok);
-            }
+        if let Some(why) = refused {
+            return Err(why);
         }
+        stage.steps(usize::try_from(taken)?);
     }
-    match writer.flush() {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure(format!("standard output: {error}")))
-        }
-        _ => Ok(Done::Ok),
-    }
+    drop(bar);
+    Ok(Done::Ok)
 }
 
 /// The fields of a row in some columns.
@@ -152,17 +174,11 @@ fn picked<'a>(record: &'a csv::StringRecord, columns: &[usize]) -> Vec<&'a str> 
     columns.iter().map(|&column| &record[column]).collect()
 }
 
-fn is_broken_pipe(error: &csv::Error) -> bool {
-    matches!(error.kind(), csv::ErrorKind::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
-}
-
-fn find_column(header: &csv::StringRecord, name: &str, all: &[&str]) -> Result<usize, Failure> {
-    header.iter().position(|column| column == name).ok_or_else(|| {
-        let have: Vec<&str> = header.iter().collect();
-        Failure(format!(
-            "no column `{name}`; the columns are {}, the file has {}",
-            all.join(", "),
-            have.join(", ")
-        ))
-    })
+/// A row, which must have as many columns as the header.
+fn complete(row: Row, columns: usize) -> Result<Row, RowError> {
+    if row.fields.len() == columns {
+        return Ok(row);
+    }
+    let why = format!("it has {} columns, and the header {columns}", row.fields.len());
+    Err(RowError { line: row.line, why })
 }

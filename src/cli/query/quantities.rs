@@ -31,6 +31,11 @@ pub(super) trait Quantity: Sync {
         None
     }
 
+    /// What in a row looks like a mistake, though it can be computed; printed once.
+    fn doubt(&self, _fields: &[&str]) -> Option<String> {
+        None
+    }
+
     fn outputs(&self, method: Method) -> Vec<String> {
         let suffix = match method {
             Method::Table => "table",
@@ -73,19 +78,16 @@ impl Known {
     }
 }
 
-fn parse(text: &str, name: &str) -> Result<f64, String> {
+fn parse(text: &str, name: &str, unit: Unit) -> Result<f64, String> {
     let x: f64 = text.parse().map_err(|_| format!("{name} \"{text}\" is not a number"))?;
-    let (low, high) = match name {
-        "theta" => return Unit::default().theta(x),
-        "u1" | "u2" | "cos_theta" => (0.0, 1.0),
-        "phi" => (f64::MIN, f64::MAX),
+    match name {
+        "theta" => unit.theta(x),
+        "phi" => unit.phi(x),
+        "u1" | "u2" | "cos_theta" if !(0.0..=1.0).contains(&x) => {
+            Err(format!("{name} = {x} must lie in [0, 1]"))
+        }
         // The constructors check σ and γ, with their own messages.
-        _ => return Ok(x),
-    };
-    if (low..=high).contains(&x) {
-        Ok(x)
-    } else {
-        Err(format!("{name} = {x} must lie in [{low:?}, {high:?}]"))
+        _ => Ok(x),
     }
 }
 
@@ -98,8 +100,8 @@ fn text<T: Copy + Into<f64> + Display + LowerExp>(x: T) -> String {
 }
 
 /// The fields of a row as numbers.
-fn numbers(fields: &[&str], names: &[&str]) -> Result<Vec<f64>, String> {
-    fields.iter().zip(names).map(|(text, name)| parse(text, name)).collect()
+fn numbers(fields: &[&str], names: &[&str], unit: Unit) -> Result<Vec<f64>, String> {
+    fields.iter().zip(names).map(|(text, name)| parse(text, name, unit)).collect()
 }
 
 /// A material and a view, and for normals two random numbers.
@@ -113,8 +115,8 @@ struct Point<'a> {
 }
 
 impl<'a> Point<'a> {
-    fn new(fields: &[&str], names: &[&str], set: &'a Tables) -> Result<Self, String> {
-        let values = numbers(fields, names)?;
+    fn new(fields: &[&str], names: &[&str], unit: Unit, set: &'a Tables) -> Result<Self, String> {
+        let values = numbers(fields, names, unit)?;
         let &[x, y, gamma, theta, phi, ref rest @ ..] = &values[..] else {
             unreachable!("five columns were found")
         };
@@ -137,7 +139,13 @@ impl<'a> Point<'a> {
     }
 }
 
-pub(super) struct G1;
+/// The azimuth of a row, if it looks like one in another unit.
+fn doubt(fields: &[&str], names: &[&str], unit: Unit) -> Option<String> {
+    let phi = fields[names.iter().position(|name| *name == "phi")?];
+    unit.doubt(phi.parse().ok()?)
+}
+
+pub(super) struct G1(pub(super) Unit);
 
 impl Quantity for G1 {
     fn inputs(&self) -> &'static [&'static str] {
@@ -148,8 +156,12 @@ impl Quantity for G1 {
         &["lambda", "g1"]
     }
 
+    fn doubt(&self, fields: &[&str]) -> Option<String> {
+        doubt(fields, self.inputs(), self.0)
+    }
+
     fn values(&self, fields: &[&str], known: &Known, method: Method) -> Values {
-        let at = Point::new(fields, self.inputs(), &known.set)?;
+        let at = Point::new(fields, self.inputs(), self.0, &known.set)?;
         let v = at.view();
         Ok(match method {
             Method::Table => {
@@ -161,7 +173,7 @@ impl Quantity for G1 {
     }
 }
 
-pub(super) struct Normal;
+pub(super) struct Normal(pub(super) Unit);
 
 impl Quantity for Normal {
     fn inputs(&self) -> &'static [&'static str] {
@@ -172,8 +184,12 @@ impl Quantity for Normal {
         &["m_x", "m_y", "m_z", "pdf"]
     }
 
+    fn doubt(&self, fields: &[&str]) -> Option<String> {
+        doubt(fields, self.inputs(), self.0)
+    }
+
     fn note(&self, fields: &[&str], known: &Known) -> Option<String> {
-        let at = Point::new(fields, self.inputs(), &known.set).ok()?;
+        let at = Point::new(fields, self.inputs(), self.0, &known.set).ok()?;
         let peeled = at.lobe().ok()?.tabulated_share(Vec3::X) < 1.0;
         peeled.then(|| {
             format!(
@@ -186,7 +202,7 @@ impl Quantity for Normal {
     }
 
     fn values(&self, fields: &[&str], known: &Known, method: Method) -> Values {
-        let at = Point::new(fields, self.inputs(), &known.set)?;
+        let at = Point::new(fields, self.inputs(), self.0, &known.set)?;
         let v = at.view();
         Ok(match method {
             Method::Table => {
@@ -219,7 +235,7 @@ impl Quantity for Albedo {
     }
 
     fn values(&self, fields: &[&str], known: &Known, method: Method) -> Values {
-        let values = numbers(&fields[..3], self.inputs())?;
+        let values = numbers(&fields[..3], self.inputs(), Unit::default())?;
         let &[sigma, gamma, cos] = &values[..] else { unreachable!("three columns were found") };
         let masking = masking(fields[3])?;
         Ok(match method {
@@ -255,7 +271,7 @@ impl Quantity for AlbedoAverage {
     }
 
     fn values(&self, fields: &[&str], known: &Known, method: Method) -> Values {
-        let values = numbers(&fields[..2], self.inputs())?;
+        let values = numbers(&fields[..2], self.inputs(), Unit::default())?;
         let &[sigma, gamma] = &values[..] else { unreachable!("two columns were found") };
         let masking = masking(fields[2])?;
         Ok(match method {

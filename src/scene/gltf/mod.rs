@@ -29,6 +29,7 @@ use base64::Engine;
 
 use self::schema::{Document, Image, Material, TextureInfo};
 use super::builder::{Builder, GGX, Lobe};
+use super::error::Lines;
 use super::limits::Budget;
 use super::texture::{self, Channel, Encoding, Textures};
 use super::{Format, Fresnel, Interval, Place, Roughness, Scene, SceneError, limits};
@@ -38,9 +39,10 @@ use crate::input;
 pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let place = Place::file(path);
     let (json, binary) = read(path, &place)?;
-    let document: Document = serde_json::from_slice(&json).map_err(|error| {
-        let number = |n: usize| u32::try_from(n).ok();
-        Place { line: number(error.line()), column: number(error.column()), ..place.clone() }
+    let json = input::unmarked(&json);
+    let document: Document = serde_json::from_slice(json).map_err(|error| {
+        Lines::new(path, json)
+            .after_feeds(error.line(), error.column().saturating_sub(1))
             // The message has the place before it already.
             .syntax(
                 error

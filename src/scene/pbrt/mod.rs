@@ -41,7 +41,7 @@ use super::error::did_you_mean;
 use super::include::Includes;
 use super::memo::Memo;
 use super::{Format, Place, Scene, SceneError, cycle, limits};
-use crate::input;
+use crate::input::{self, unmarked_stream};
 
 /// All directives except those that [`Reader::statement`] handles.
 const PASSED_OVER: [&str; 29] = [
@@ -164,12 +164,15 @@ struct Reader {
 impl Reader {
     fn file(&mut self, file: File, path: &Path) -> Result<(), SceneError> {
         if path.extension().is_some_and(|extension| extension == "gz") {
-            let unpacked = self.includes.metered(MultiGzDecoder::new(file));
-            self.statements(&mut Tokens::new(unpacked, path))
+            self.text(self.includes.metered(MultiGzDecoder::new(file)), path)
         } else {
-            let metered = self.includes.metered(file);
-            self.statements(&mut Tokens::new(metered, path))
+            self.text(self.includes.metered(file), path)
         }
+    }
+
+    fn text(&mut self, text: impl Read, path: &Path) -> Result<(), SceneError> {
+        let text = unmarked_stream(text).map_err(|error| Place::file(path).io(error))?;
+        self.statements(&mut Tokens::new(text, path))
     }
 
     fn statements<R: Read>(&mut self, tokens: &mut Tokens<R>) -> Result<(), SceneError> {

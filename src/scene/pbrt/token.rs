@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::scene::error::characters;
 use crate::scene::{Place, SceneError};
 
 /// A longer word is not from a pbrt file; the limit bounds memory where a file has no spaces.
@@ -27,8 +28,10 @@ pub(super) struct Tokens<R> {
     input: BufReader<R>,
     file: Arc<Path>,
     line: u64,
-    /// Bytes of the current line that were consumed.
+    /// Characters of the current line that were consumed.
     column: u64,
+    /// Whether the last byte was a carriage return, with which a line feed is one line break.
+    returned: bool,
     text: String,
     /// Line and column at which the last token began.
     start: (u64, u64),
@@ -44,6 +47,7 @@ impl<R: Read> Tokens<R> {
             file: file.into(),
             line: 1,
             column: 0,
+            returned: false,
             text: String::new(),
             start: (1, 1),
             again: None,
@@ -99,16 +103,18 @@ impl<R: Read> Tokens<R> {
         let open = self.place();
         loop {
             let chunk = fill(&mut self.input, &self.file, self.line)?;
-            let stop = chunk.iter().position(|b| matches!(b, b'\n' | b']' | b'"' | b'#' | b'['));
+            let stop =
+                chunk.iter().position(|b| matches!(b, b'\n' | b'\r' | b']' | b'"' | b'#' | b'['));
             let taken = stop.unwrap_or(chunk.len());
             let stop = stop.map(|i| chunk[i]);
             let at_end = chunk.is_empty();
+            self.column += characters(&chunk[..taken]) as u64;
+            self.returned &= taken == 0;
             self.input.consume(taken);
-            self.column += taken as u64;
             match stop {
                 None if at_end => return Err(open.syntax("this list has no closing bracket")),
                 None => {}
-                Some(b'\n') => self.take(),
+                Some(b'\n' | b'\r') => self.take(),
                 Some(b'#') => self.skip_comment()?,
                 Some(b'"') => {
                     self.start = (self.line, self.column + 1);
@@ -128,6 +134,8 @@ impl<R: Read> Tokens<R> {
     }
 
     fn bracket(&mut self, token: Token) -> Token {
+        self.text.clear();
+        self.text.push(if token == Token::Open { '[' } else { ']' });
         self.take();
         token
     }
@@ -138,7 +146,7 @@ impl<R: Read> Tokens<R> {
         loop {
             let byte = self.peek()?;
             match byte {
-                None | Some(b'\n') => {
+                None | Some(b'\n' | b'\r') => {
                     return Err(self.place().syntax("this text has no closing quote"));
                 }
                 Some(_) if bytes.len() > MAX_WORD => {
@@ -193,7 +201,7 @@ impl<R: Read> Tokens<R> {
     }
 
     fn skip_comment(&mut self) -> Result<(), SceneError> {
-        while !matches!(self.peek()?, None | Some(b'\n')) {
+        while !matches!(self.peek()?, None | Some(b'\n' | b'\r')) {
             self.take();
         }
         Ok(())
@@ -205,12 +213,16 @@ impl<R: Read> Tokens<R> {
 
     /// Consumes the byte that [`Self::peek`] saw.
     fn take(&mut self) {
-        if self.input.buffer().first() == Some(&b'\n') {
-            self.line += 1;
-            self.column = 0;
-        } else {
-            self.column += 1;
+        let byte = self.input.buffer().first().copied();
+        match byte {
+            Some(b'\n') if self.returned => {}
+            Some(b'\n' | b'\r') => {
+                self.line += 1;
+                self.column = 0;
+            }
+            _ => self.column += characters(byte.as_slice()) as u64,
         }
+        self.returned = byte == Some(b'\r');
         self.input.consume(1);
     }
 }

@@ -1,0 +1,56 @@
+//! `recipe`: a recipe to start from.
+
+use std::path::PathBuf;
+
+use microfacet_bake::store::replace;
+
+use super::{Done, Failure, Outcome, print};
+
+/// Print a commented recipe to start from.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  microfacet-bake recipe --out mine.toml && microfacet-bake bake mine.toml --out tables",
+    after_long_help = KEYS
+)]
+pub(super) struct Args {
+    /// File to write instead, which must not exist yet.
+    #[arg(long, short, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+const STARTER: &str = include_str!("../../tables/recipes/starter.toml");
+
+/// What `--help` says of the keys.
+const KEYS: &str = "\
+Keys of a material (docs/recipe.md has all their forms):
+  name          text of your choice, different for each material
+  sigma         roughness, the alpha of GGX and Beckmann: X, or [X, Y] for an
+                anisotropic material; 0 is smooth
+  gamma         shape in (1.5, inf]: 2 is GGX, \"inf\" is Beckmann
+  theta         [X, Y, Z]: tilts and turns the lobe, in radians; in degrees with
+                degrees = true
+  distribution  takes the place of sigma and gamma: a name such as \"gtr\", with its
+                parameters, or { measured = \"file.csv\" }
+  fresnel       \"mirror\", { schlick = F0 }, { dielectric = eta } or
+                { conductor = { eta = [R, G, B], k = [R, G, B] } }; asks for albedos
+  masking       \"height-correlated\" (the default) or \"uncorrelated\"
+Instead of a number, sigma and gamma take a range: { min = A, max = B }.
+
+Example:
+  microfacet-bake recipe --out mine.toml && microfacet-bake bake mine.toml --out tables";
+
+pub(super) fn run(args: Args) -> Outcome {
+    let Some(path) = args.out.filter(|path| path.as_os_str() != "-") else {
+        print(STARTER)?;
+        return Ok(Done::Ok);
+    };
+    let shown = path.display();
+    if path.symlink_metadata().is_ok() {
+        return Err(Failure(format!(
+            "{shown}: this exists already and is kept; name a new file, or remove it before"
+        )));
+    }
+    replace(&path, STARTER.as_bytes()).map_err(|why| Failure(format!("{shown}: {why}")))?;
+    print(&format!("{shown}\n"))?;
+    Ok(Done::Ok)
+}

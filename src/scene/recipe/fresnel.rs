@@ -1,0 +1,117 @@
+//! The reflectance of a material, and its form of masking.
+
+use super::{CONDUCTOR_KEYS, FRESNEL_KEYS, Source, Value};
+use crate::scene::error::did_you_mean;
+use crate::scene::{Fresnel, Masking, SceneError};
+
+impl Source<'_> {
+    pub(super) fn fresnel(&self, value: &Value<'_>) -> Result<Fresnel, SceneError> {
+        let place = self.place(value.span());
+        let forms = "fresnel must be \"mirror\", { schlick = F0 }, \
+                     { conductor = { eta = [r, g, b], k = [r, g, b] } } or { dielectric = eta }, a number or \
+                     { min = .., max = .. }";
+        if value.get_ref().as_str() == Some("mirror") {
+            return Ok(Fresnel::Mirror);
+        }
+        let table = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
+        self.only_keys(table, &FRESNEL_KEYS)?;
+        let mut entries = table.iter();
+        let (Some((form, value)), None) = (entries.next(), entries.next()) else {
+            return Err(place.invalid(forms));
+        };
+        match form.get_ref().as_ref() {
+            "schlick" => {
+                let f0 = self.number(value, "schlick")?;
+                self.check(
+                    value,
+                    (0.0..=1.0).contains(&f0),
+                    "schlick",
+                    "a reflectance from 0 to 1",
+                )?;
+                Ok(Fresnel::Schlick(f0))
+            }
+            "dielectric" if value.get_ref().is_table() => {
+                let eta = self.interval(value, "dielectric")?;
+                let valid = eta.min >= 1.0 && eta.min < f64::INFINITY && eta.min < eta.max;
+                let what = "a range of indices inside over outside, from 1 or more up to \"inf\"; both sides are baked";
+                self.check(value, valid, "dielectric", what)?;
+                Ok(Fresnel::Dielectrics {
+                    min: eta.min,
+                    max: (eta.max < f64::INFINITY).then_some(eta.max),
+                })
+            }
+            "dielectric" => {
+                let eta = self.index(value, "dielectric")?;
+                Ok(Fresnel::Dielectric(eta))
+            }
+            _ => {
+                let table = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
+                self.only_keys(table, &CONDUCTOR_KEYS)?;
+                let (Some(eta), Some(k)) = (table.get("eta"), table.get("k")) else {
+                    return Err(
+                        place.invalid("a conductor needs both eta = [r, g, b] and k = [r, g, b]")
+                    );
+                };
+                Ok(Fresnel::Conductor {
+                    eta: self.rgb(eta, "eta", |value| self.index(value, "eta"))?,
+                    k: self.rgb(k, "k", |value| {
+                        let k = self.number(value, "k")?;
+                        let valid = (0.0..f64::INFINITY).contains(&k);
+                        self.check(
+                            value,
+                            valid,
+                            "k",
+                            "an extinction coefficient, finite and 0 or more",
+                        )?;
+                        Ok(k)
+                    })?,
+                })
+            }
+        }
+    }
+
+    fn index(&self, value: &Value<'_>, key: &str) -> Result<f64, SceneError> {
+        let eta = self.number(value, key)?;
+        let valid = eta > 0.0 && eta < f64::INFINITY;
+        self.check(value, valid, key, "an index of refraction, finite and more than 0")?;
+        Ok(eta)
+    }
+
+    fn check(
+        &self,
+        value: &Value<'_>,
+        valid: bool,
+        key: &str,
+        what: &str,
+    ) -> Result<(), SceneError> {
+        if valid {
+            return Ok(());
+        }
+        let text = self.text.get(value.span()).unwrap_or_default();
+        Err(self
+            .place(value.span())
+            .invalid(format!("{key} = {text} is out of range; it must be {what}")))
+    }
+
+    fn rgb(
+        &self,
+        value: &Value<'_>,
+        key: &str,
+        channel: impl Fn(&Value<'_>) -> Result<f64, SceneError>,
+    ) -> Result<[f64; 3], SceneError> {
+        match value.get_ref().as_array().map(|array| &array[..]) {
+            Some([r, g, b]) => Ok([channel(r)?, channel(g)?, channel(b)?]),
+            _ => Err(self.place(value.span()).invalid(format!(
+                "{key} must be three numbers, for red, green and blue: {key} = [0.2, 0.9, 1.1]"
+            ))),
+        }
+    }
+
+    pub(super) fn masking(&self, value: &Value<'_>) -> Result<Masking, SceneError> {
+        let name = value.get_ref().as_str().unwrap_or_default();
+        name.parse().map_err(|why: microfacet_common::UnknownMasking| {
+            let hint = did_you_mean(name, &Masking::ALL.map(Masking::name));
+            self.place(value.span()).invalid(format!("{why}{hint}"))
+        })
+    }
+}

@@ -1,0 +1,226 @@
+//! The native recipe: a TOML file that lists materials.
+//!
+//! ```toml
+//! [[material]]
+//! name = "frosted glass"
+//! sigma = 0.454                  # or [x, y], or { min = .., max = .. }; 0 is smooth
+//! gamma = 3.0                    # or "inf" (Beckmann), or { min = .., max = .. }
+//! fresnel = { dielectric = 1.5 } # may be absent, as may masking
+//! masking = "height-correlated"
+//! ```
+//!
+//! `docs/recipe.md` has every key, its range and its default. A distribution that is a member of
+//! the family (Beckmann, Trowbridge–Reitz, Blinn–Phong, Hyper-Cauchy) is read as such.
+
+mod fresnel;
+mod lobe;
+mod write;
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::ops::Range;
+use std::path::Path;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use self::lobe::Lobe;
+use self::write::quoted;
+pub(super) use self::write::write;
+use super::error::{Lines, did_you_mean_key};
+use super::limits::Budget;
+use super::{Format, Interval, Material, Origin, Place, Scene, SceneError, limits};
+
+// docs/recipe.md has each of these.
+const MATERIAL_KEYS: [&str; 8] =
+    ["name", "sigma", "gamma", "theta", "degrees", "distribution", "fresnel", "masking"];
+const MEASURED_KEYS: [&str; 2] = ["measured", "degrees"];
+const FRESNEL_KEYS: [&str; 3] = ["schlick", "conductor", "dielectric"];
+const CONDUCTOR_KEYS: [&str; 2] = ["eta", "k"];
+const RANGE_KEYS: [&str; 2] = ["min", "max"];
+
+/// Reads the recipe `text`, the content of `file`.
+pub(super) fn read(text: &str, file: &Path) -> Result<Scene, SceneError> {
+    let source = Source {
+        text,
+        file,
+        lines: Lines::new(file, text.as_bytes()),
+        measured: Budget::new(limits::MEASURED),
+        distributions: Budget::new(limits::DISTRIBUTIONS),
+        warnings: RefCell::default(),
+    };
+    let materials = source.materials()?;
+    Ok(Scene { materials, ignored: Vec::new(), warnings: source.warnings.into_inner() })
+}
+
+struct Source<'a> {
+    text: &'a str,
+    file: &'a Path,
+    lines: Lines<'a>,
+    /// Bytes of measured distributions.
+    measured: Budget,
+    distributions: Budget,
+    warnings: RefCell<Vec<String>>,
+}
+
+type Table<'a> = DeTable<'a>;
+type Value<'a> = Spanned<DeValue<'a>>;
+
+impl Source<'_> {
+    fn place(&self, span: Range<usize>) -> Place {
+        self.lines.place(span.start)
+    }
+
+    fn materials(&self) -> Result<Vec<Material>, SceneError> {
+        let document = DeTable::parse(self.text)
+            .map_err(|error| self.place(error.span().unwrap_or(0..0)).syntax(error.message()))?;
+        let document = document.get_ref();
+        self.only_keys(document, &["material"])?;
+        let entries = match document.get("material") {
+            None => &[][..],
+            Some(value) => value.get_ref().as_array().ok_or_else(|| {
+                self.place(value.span())
+                    .invalid("`material` must be a list: head each material with [[material]]")
+            })?,
+        };
+        if entries.is_empty() {
+            return Err(Place::file(self.file).invalid(
+                "the recipe has no materials; add at least one:\n\
+                 [[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0",
+            ));
+        }
+        if entries.len() > limits::MATERIALS {
+            return Err(Place::file(self.file).invalid(format!(
+                "the recipe has {} materials, and at most {} are read; split it",
+                entries.len(),
+                limits::MATERIALS
+            )));
+        }
+        let mut seen: HashMap<String, Place> = HashMap::new();
+        entries
+            .iter()
+            .map(|entry| {
+                let material = self.material(entry)?;
+                let place = material.origin.place.clone();
+                match seen.insert(material.name.clone(), place.clone()) {
+                    None => Ok(material),
+                    Some(first) => Err(place.invalid(format!(
+                        "the name {} is taken by the material at line {}; give each material a name of its own",
+                        quoted(&material.name),
+                        first.line.unwrap_or(0),
+                    ))),
+                }
+            })
+            .collect()
+    }
+
+    fn material(&self, entry: &Value<'_>) -> Result<Material, SceneError> {
+        let place = self.place(entry.span());
+        let table = entry.get_ref().as_table().ok_or_else(|| {
+            place.invalid("a material must be a table: head each material with [[material]]")
+        })?;
+        let Lobe { roughness, gamma, distribution, theta } = self.lobe(&place, table)?;
+        let name = self.required(&place, table, "name", "\"gold\"")?;
+        let name = match name.get_ref().as_str() {
+            Some(text) if !text.is_empty() => text.to_owned(),
+            _ => {
+                return Err(self
+                    .place(name.span())
+                    .invalid("`name` must be a text that is not empty"));
+            }
+        };
+        Ok(Material {
+            name,
+            roughness,
+            gamma,
+            distribution,
+            theta,
+            fresnel: table.get("fresnel").map(|v| self.fresnel(v)).transpose()?,
+            masking: table.get("masking").map(|v| self.masking(v)).transpose()?,
+            origin: Origin { format: Format::Recipe, place, lobe: None },
+            used: true,
+        })
+    }
+
+    /// The value of a key that a material must have.
+    fn required<'t>(
+        &self,
+        place: &Place,
+        table: &'t Table<'_>,
+        key: &str,
+        example: &str,
+    ) -> Result<&'t Value<'t>, SceneError> {
+        table.get(key).ok_or_else(|| {
+            place.invalid(format!("the material has no `{key}`; add for example {key} = {example}"))
+        })
+    }
+
+    fn warn(&self, place: &Place, message: String) {
+        self.warnings.borrow_mut().push(format!("{place}: {message}"));
+    }
+
+    fn only_keys(&self, table: &Table<'_>, known: &[&str]) -> Result<(), SceneError> {
+        match table.keys().find(|key| !known.contains(&key.get_ref().as_ref())) {
+            None => Ok(()),
+            Some(key) => Err(self.place(key.span()).invalid(format!(
+                "unknown key `{}`{}; the keys here are {}",
+                key.get_ref(),
+                did_you_mean_key(key.get_ref(), known),
+                known.join(", ")
+            ))),
+        }
+    }
+
+    fn interval(&self, value: &Value<'_>, key: &str) -> Result<Interval, SceneError> {
+        let Some(table) = value.get_ref().as_table() else {
+            return Ok(Interval::point(self.number(value, key)?));
+        };
+        self.only_keys(table, &RANGE_KEYS)?;
+        let (Some(min), Some(max)) = (table.get("min"), table.get("max")) else {
+            return Err(self
+                .place(value.span())
+                .invalid(format!("a range of {key} needs both ends: {{ min = .., max = .. }}")));
+        };
+        let (min, max) = (self.number(min, key)?, self.number(max, key)?);
+        if min <= max {
+            Ok(Interval { min, max })
+        } else {
+            Err(self.place(value.span()).invalid(format!(
+                "the range of {key} is inverted: min = {min} is more than max = {max}; exchange them"
+            )))
+        }
+    }
+
+    /// A number that is not NaN; "inf" and "Infinity" are infinity.
+    fn number(&self, value: &Value<'_>, key: &str) -> Result<f64, SceneError> {
+        let number = match value.get_ref() {
+            DeValue::Integer(digits) if digits.radix() == 10 => digits.as_str().parse().ok(),
+            DeValue::Float(digits) => digits.as_str().parse().ok(),
+            // TOML has `inf` alone; in quotes it is what Rust reads, in upper case or lower.
+            DeValue::String(text) => text.trim().parse().ok().filter(|x: &f64| x.is_infinite()),
+            _ => None,
+        };
+        match number {
+            Some(number) if !f64::is_nan(number) => Ok(number),
+            _ => Err(self.place(value.span()).invalid(format!(
+                "{key} must be a number, not {}",
+                self.text.get(value.span()).unwrap_or("this")
+            ))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_of_recipes_has_every_key() {
+        let page = include_str!("../../../docs/recipe.md");
+        let keys: [&[&str]; 5] =
+            [&MATERIAL_KEYS, &MEASURED_KEYS, &FRESNEL_KEYS, &CONDUCTOR_KEYS, &RANGE_KEYS];
+        for key in keys.concat() {
+            assert!(page.contains(&format!("`{key}`")), "docs/recipe.md: no `{key}`");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Materials as a recipe.
+
+use std::fmt::Write as _;
+
+use crate::distribution::Distribution;
+use crate::fit::Angles;
+use crate::scene::{Fresnel, Interval, Material, Roughness};
+
+/// Writes the recipe that [`read`](super::read) turns into the same materials.
+pub(in crate::scene) fn write<'a>(materials: impl IntoIterator<Item = &'a Material>) -> String {
+    let entries: Vec<String> = materials.into_iter().map(entry).collect();
+    entries.join("\n")
+}
+
+fn entry(material: &Material) -> String {
+    let mut text = format!("[[material]]\nname = {}\n", quoted(&material.name));
+    let sigma = match material.roughness {
+        Roughness::Smooth => range(Interval::point(0.0)),
+        Roughness::Isotropic(sigma) => range(sigma),
+        Roughness::Anisotropic { x, y } => format!("[{}, {}]", range(x), range(y)),
+    };
+    // Writing to a string cannot fail.
+    let _ = match &material.distribution {
+        None => writeln!(text, "sigma = {sigma}\ngamma = {}", range(material.gamma)),
+        // The file stays as it is, and so does its unit.
+        Some(Distribution::Measured { file, angles, .. }) => {
+            let unit = if *angles == Angles::Degrees { ", degrees = true" } else { "" };
+            writeln!(text, "distribution = {{ measured = {}{unit} }}", quoted(file))
+        }
+        Some(Distribution::Named(named)) => {
+            let number = |x: f64| range(Interval::point(x));
+            let pairs = named.kind.parameters().iter().zip(&named.values);
+            let values: String =
+                pairs.map(|(key, x)| format!("\n{key} = {}", number(*x))).collect();
+            writeln!(text, "distribution = {}{values}", quoted(named.kind.name()))
+        }
+    };
+    if let Some(theta) = material.theta {
+        let _ = writeln!(text, "theta = {theta:?}");
+    }
+    if let Some(fresnel) = material.fresnel {
+        let value = match fresnel {
+            Fresnel::Mirror => "\"mirror\"".to_owned(),
+            Fresnel::Schlick(f0) => format!("{{ schlick = {f0:?} }}"),
+            Fresnel::Conductor { eta, k } => {
+                format!("{{ conductor = {{ eta = {eta:?}, k = {k:?} }} }}")
+            }
+            Fresnel::Dielectric(eta) => format!("{{ dielectric = {eta:?} }}"),
+            Fresnel::Dielectrics { min, max } => {
+                let eta = Interval { min, max: max.unwrap_or(f64::INFINITY) };
+                format!("{{ dielectric = {} }}", range(eta))
+            }
+        };
+        let _ = writeln!(text, "fresnel = {value}");
+    }
+    if let Some(masking) = material.masking {
+        let _ = writeln!(text, "masking = \"{}\"", masking.name());
+    }
+    text
+}
+
+pub(super) fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+/// A number or a range; Rust's shortest form that reads back to the same bits is valid TOML.
+pub(super) fn range(interval: Interval) -> String {
+    let number = |x: f64| {
+        if x == f64::INFINITY { "\"inf\"".to_owned() } else { format!("{x:?}") }
+    };
+    if interval.is_point() {
+        number(interval.min)
+    } else {
+        format!("{{ min = {}, max = {} }}", number(interval.min), number(interval.max))
+    }
+}
