@@ -84,6 +84,7 @@ pub(super) fn run(args: Args) -> Outcome {
     if args.average {
         return average(&args, &set);
     }
+    args.gamma.iter().try_for_each(|&gamma| values::tabulated(gamma, ""))?;
     let walking = args.method == Method::Walk;
     let masking = args.masking;
     let mut rows = Vec::new();

@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand. Only this folder prints or shows progress.
 
 mod bake;
+mod certificate;
 mod convert;
 mod escape;
 mod fit;
@@ -14,6 +15,7 @@ mod sample;
 mod stress;
 mod validate;
 mod values;
+mod words;
 
 use std::fmt::Display;
 use std::io::{self, Write};

@@ -86,6 +86,7 @@ pub(super) fn run(args: Args) -> Outcome {
     let mut random = rand::rngs::StdRng::seed_from_u64(args.seed);
     let mut draw: Box<dyn FnMut() -> (Vec3, f32)> = match args.method {
         Method::Table => {
+            values::tabulated(args.gamma, ", or draw exact normals with --method exact")?;
             let lobe = tables(args.tables.as_deref())?.lobe(args.sigma, args.gamma)?;
             Box::new(move || {
                 let m = lobe.sample_visible_normal(v, [random.random(), random.random()]);

@@ -70,6 +70,7 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     let chosen = match (args.sigma, args.gamma, args.theta) {
         (Some([sigma_x, sigma_y]), Some(gamma), Some(theta)) => {
+            values::tabulated(gamma, "")?;
             let (theta, phi) = (args.unit.theta(theta)?, args.unit.phi(args.phi)?);
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi, seed: args.seed }]
         }
@@ -129,7 +130,7 @@ fn nothing_to_judge(set: &Tables) -> String {
     format!(
         "nothing to judge: visible normals need tables of the kinds shadowing, visible_slope and visible_slope_conditional for the \
          same gamma, white furnaces (without --stress) one of the kind albedo, and here are only tables of the kind {}; give the folder or the \
-         safetensors file of the whole set, or see `microfacet-bake inspect` for what was measured when they were baked",
+         safetensors file of the whole set, or see `microfacet-bake inspect --details` for what was measured when they were baked",
         kinds.join(", ")
     )
 }

@@ -40,6 +40,7 @@ use super::{
 use crate::distribution::{Distribution, DistributionKind, Named};
 use crate::fit::{Angles, read_csv};
 use crate::input;
+use crate::table_spec::GAMMA_MIN;
 
 const MATERIAL_KEYS: [&str; 7] =
     ["name", "sigma", "gamma", "theta", "distribution", "fresnel", "masking"];
@@ -346,7 +347,7 @@ impl Source<'_> {
         }
         Err(self.place(value.span()).invalid(format!(
             "gamma = {} is out of range; the shape must be more than 1.5, where the projected area \
-             diverges, up to \"inf\" (Beckmann)",
+             diverges, up to \"inf\" (Beckmann); tables cover it from {GAMMA_MIN} on",
             range(gamma)
         )))
     }

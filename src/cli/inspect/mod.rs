@@ -1,141 +1,204 @@
-//! `inspect`: shows what a table file holds.
+//! `inspect`: shows what a set of tables holds.
 
-use std::collections::BTreeMap;
+mod details;
+mod words;
 
 use std::path::PathBuf;
 
-use serde_json::json;
-
-use microfacet_bake::store;
-use microfacet_common::shape::gamma_of_s;
 use microfacet_sampler::internals::describe;
-use microfacet_sampler::{Axis, Covered, Interpolation, LobeEntry, Subject, Table};
+use microfacet_sampler::{Kind, LobeEntry, MaterialEntry, Reflectance, Table, Tables};
 
-use super::bake::largest_error;
-use super::{Done, Outcome, escape, print, print_json};
+use super::plan::reflectance;
+use super::words::{bytes, columns, count, error, exact_bytes, joined, wrapped};
+use super::{Done, Outcome, certificate, escape, print, print_json, tables};
+use words::{covers, gammas, holds, material, precision};
 
-/// Show axes, ranges, sizes, metadata and certificates of a table file.
+/// Show what a set of tables serves, and the size and the largest error of each table.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  microfacet-bake inspect out/tables.safetensors")]
+#[command(after_help = "Example:\n  microfacet-bake inspect out --details")]
 pub(super) struct Args {
-    /// A .safetensors set, a folder that holds one or its images, or a single table as .exr.
-    file: PathBuf,
-    /// Print the complete description as JSON.
+    /// A .safetensors set, a folder that holds one or its images, or a single table as .exr; the
+    /// embedded default if absent.
+    tables: Option<PathBuf>,
+    /// Show axes, certificates, conventions and the recipe as well.
     #[arg(long)]
+    details: bool,
+    /// Print the complete description as JSON.
+    #[arg(long, conflicts_with = "details")]
     json: bool,
 }
 
+/// Width of the first column of the head.
+const HEAD: usize = 11;
+
+/// Materials and ranges that the head lists.
+const SHOWN: usize = 6;
+
 pub(super) fn run(args: Args) -> Outcome {
-    let set = store::read(&args.file)?;
+    let set = tables(args.tables.as_deref())?;
     if args.json {
-        let document: serde_json::Value =
+        let mut document: serde_json::Value =
             serde_json::from_str(&describe(set.provenance(), set.tables())?)?;
-        print_json(&json!(document))?;
+        // It is a checksum of a file's bytes, and there may be many files.
+        if let Some(document) = document.as_object_mut() {
+            document.remove("checksum");
+        }
+        print_json(&document)?;
         return Ok(Done::Ok);
     }
-    let origin = set.provenance();
-    let mut text = format!(
-        "baked by {} (numerics {}), {}\n",
-        escape::line(&origin.generator),
-        origin.numerics,
-        escape::line(&origin.license)
-    );
-    for material in &origin.materials {
-        text += &format!("material \"{}\"\n", escape::line(&material.name));
+    let name: String = match &args.tables {
+        Some(path) => escape::line(&path.display().to_string()).into(),
+        None => "the default set, compiled into the sampler".into(),
+    };
+    let mut text = head(&name, &set, args.details);
+    if !set.tables().is_empty() {
+        text += "\n";
+        text += &overview(set.tables());
     }
-    for table in set.tables() {
-        text += &describe_table(table);
-    }
-    text += "\nmappings:\n";
-    let mappings = set.tables().iter().flat_map(|table| &table.axes).map(|axis| axis.mapping);
-    let formulas: BTreeMap<_, _> =
-        mappings.map(|mapping| (mapping.name(), mapping.formula())).collect();
-    for (name, formula) in formulas {
-        text += &format!("  {name}: {formula}\n");
-    }
-    text += "\nconventions:\n";
-    for (key, value) in &origin.conventions {
-        text += &format!("  {}: {}\n", escape::line(key), escape::line(value));
-    }
-    if !origin.recipe.is_empty() {
-        // Indented, so that no line of it passes for one of ours.
-        text += "\nrecipe:\n";
-        for line in origin.recipe.lines() {
-            text += &format!("  {line}\n");
-        }
+    if args.details {
+        text += &details::of(&set);
+    } else {
+        text += "\n--details shows axes, certificates, conventions and the recipe\n";
     }
     print(&text)?;
     Ok(Done::Ok)
 }
 
-fn describe_table(table: &Table) -> String {
-    let mut text = format!(
-        "\n{} ({}), {:?}, {} values of {:?}\n",
-        escape::line(&table.name),
-        table.kind.name(),
-        table.shape(),
-        table.values.len(),
-        table.precision
-    );
-    text += &format!("  {}\n", describe_subject(&table.subject));
-    for axis in &table.axes {
-        text += &format!("  {}\n", describe_axis(axis));
+fn entry(name: &str, text: &str) -> String {
+    wrapped(&format!("{name:HEAD$}"), text, HEAD)
+}
+
+/// What the set is, and what it serves.
+fn head(name: &str, set: &Tables, all: bool) -> String {
+    let origin = set.provenance();
+    let mut text = entry("set", name);
+    let (generator, license) = (escape::line(&origin.generator), escape::line(&origin.license));
+    let licence = if license.is_empty() { String::new() } else { format!(", licence {license}") };
+    text += &entry("baked by", &format!("{generator}, numerics {}{licence}", origin.numerics));
+    let tables = set.tables();
+    let size = tables.iter().map(Table::stored_bytes).sum();
+    let mut forms: Vec<&str> = Vec::new();
+    for table in tables {
+        let form = precision(table.precision);
+        if !forms.contains(&form) {
+            forms.push(form);
+        }
     }
-    text += &format!("  {}\n", largest_error(table));
-    if let Some(error) = table.certificate.get("shortcut_max_error") {
-        text += &format!(
-            "  an isotropic table at sqrt(sigma_x sigma_y) in its place would be off by up to {error}\n"
-        );
+    let values = match tables {
+        [] => "no tables: its materials have closed forms, or tables of another set".to_owned(),
+        _ => format!(
+            "{}, {} of values in {}",
+            count(tables.len(), "table"),
+            exact_bytes(size),
+            forms.join(" and ")
+        ),
+    };
+    text += &entry("holds", &values);
+    let shown = if all { usize::MAX } else { SHOWN };
+    for (i, entry) in origin.materials.iter().take(shown).enumerate() {
+        let first = if i == 0 { "materials" } else { "" };
+        text += &self::entry(first, &material(entry));
     }
-    for (key, value) in &table.certificate {
-        text += &format!("    {} {value}\n", escape::line(key));
+    match origin.materials.len() {
+        0 => text += &entry("materials", "none by name; any in these ranges"),
+        n if n > shown => text += &entry("", &format!("and {} more", n - shown)),
+        _ => {}
+    }
+    text += &listed("normals", &normals(set), shown);
+    text + &listed("albedo", &albedos(tables), shown)
+}
+
+/// A list below each other, its end cut off.
+fn listed(name: &str, lines: &[String], shown: usize) -> String {
+    let mut text = String::new();
+    for (i, line) in lines.iter().take(shown).enumerate() {
+        text += &entry(if i == 0 { name } else { "" }, line);
+    }
+    if lines.len() > shown {
+        text += &entry("", &format!("and {} more", lines.len() - shown));
     }
     text
 }
 
-/// The lobe, masking and reflectance of a table, and the materials it covers.
-fn describe_subject(Subject { lobe, masking, reflectance, covers }: &Subject) -> String {
-    let sigmas =
-        |[x, y]: &[f64; 2], s: &f64| format!("sigma {x} {y}, gamma {}", short(gamma_of_s(*s)));
-    let mut parts = vec![match lobe {
-        LobeEntry::Family => "student-t".to_owned(),
-        LobeEntry::StudentT { sigma, s } => format!("student-t, {}", sigmas(sigma, s)),
-        LobeEntry::Ellipsoid { sigma, theta: [x, y, z], s } => {
-            format!("ellipsoid, {}, theta {x} {y} {z}", sigmas(sigma, s))
-        }
-        LobeEntry::Distribution(label) => label.clone(),
-    }];
-    parts.extend(masking.map(|masking| masking.name().to_owned()));
-    parts.extend(reflectance.map(|reflectance| reflectance.label().replace('_', " ")));
-    if let Some(Covered { s: [low, high], sigma }) = covers {
-        parts.push(format!("gamma {} to {}", short(gamma_of_s(*high)), short(gamma_of_s(*low))));
-        parts.extend(sigma.map(|[min, max]| format!("sigma {min} to {max}")));
+/// The lobes of which visible normals can be drawn.
+fn normals(set: &Tables) -> Vec<String> {
+    let mut lines: Vec<String> = set.shapes().into_iter().map(gammas).collect();
+    // Shapes of s ascend, and γ falls with s.
+    lines.reverse();
+    if !lines.is_empty() {
+        lines = vec![format!("gamma {}; every sigma", joined(&lines))];
     }
-    format!("of {}", escape::line(&parts.join("; ")))
-}
-
-fn describe_axis(axis: &Axis) -> String {
-    let [first, last] = axis.ends();
-    let range = match (axis.quantities().as_slice(), axis.interpolation) {
-        ([], _) => format!("coordinate in [{first}, {last}]"),
-        (all, Interpolation::Nodes) => {
-            let all: Vec<String> = all.iter().rev().map(|x| format!("{x}")).collect();
-            format!("{} = {}", axis.name, all.join(", "))
-        }
-        ([one], _) => format!("{} = {one}", axis.name),
-        ([a, .., b], _) => format!("{} in [{}, {}]", axis.name, short(a.min(*b)), short(a.max(*b))),
+    // A material outside the family has an s without meaning, and an ellipsoid reads tables.
+    let ggx = |material: &MaterialEntry| {
+        material.s == [1.0; 2] && material.distribution.is_empty() && material.theta.is_none()
     };
-    format!(
-        "{}: {} nodes, {range}, {}, {:?} between them",
-        axis.name,
-        axis.len(),
-        serde_json::to_string(&axis.mapping).expect("numbers and names"),
-        axis.interpolation
-    )
+    if set.provenance().materials.iter().any(ggx) && !set.tabulates(2.0) {
+        lines.push("gamma 2 (GGX) in closed form".into());
+    }
+    for table in set.tables() {
+        if let (Kind::RadialSlope, LobeEntry::Distribution(label)) =
+            (table.kind, &table.subject.lobe)
+        {
+            lines.push(escape::line(label).into());
+        }
+    }
+    lines
 }
 
-/// Rounds to seven digits: an end of an axis has passed through its coordinate and back.
-fn short(x: f64) -> String {
-    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
-    if rounded != 0.0 && rounded < 1e-3 { format!("{rounded:e}") } else { format!("{rounded}") }
+/// The lobes of which there are albedos.
+fn albedos(tables: &[Table]) -> Vec<String> {
+    let mut lines: Vec<(String, Vec<String>)> = Vec::new();
+    for table in tables.iter().filter(|table| table.kind == Kind::Albedo) {
+        let [gamma, sigma] = covers(&table.subject);
+        let what = match (&table.subject.lobe, table.subject.reflectance) {
+            (LobeEntry::Distribution(label), _) => escape::line(label).into(),
+            (_, Some(Reflectance::Moments) | None) => format!("gamma {gamma}, sigma {sigma}"),
+            (_, Some(of)) => format!("gamma {gamma}, sigma {sigma}, {}", reflectance(&of)),
+        };
+        let masking = table.subject.masking.map_or(String::new(), |form| form.name().to_owned());
+        match lines.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, forms)) => forms.push(masking),
+            None => lines.push((what, vec![masking])),
+        }
+    }
+    lines.iter().map(|(what, forms)| format!("{what}; {} masking", joined(forms))).collect()
+}
+
+/// One line for each table, under what it holds.
+fn overview(tables: &[Table]) -> String {
+    let header = ["", "gamma", "sigma", "nodes", "type", "size", "error"].map(String::from);
+    let mut rows: Vec<Vec<String>> = vec![header.into()];
+    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    for table in tables {
+        let what = holds(table);
+        match groups.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, group)) => group.push(rows.len()),
+            None => groups.push((what, vec![rows.len()])),
+        }
+        rows.push(row(table));
+    }
+    let lines = columns(&rows);
+    let mut text = format!("{}\n", lines[0]);
+    for (what, rows) in groups {
+        text += &wrapped("", &what, 2);
+        for i in rows {
+            text += &format!("{}\n", lines[i]);
+        }
+    }
+    text
+}
+
+fn row(table: &Table) -> Vec<String> {
+    let [gamma, sigma] = covers(&table.subject);
+    let nodes: Vec<String> = table.axes.iter().map(|axis| axis.len().to_string()).collect();
+    let worst = certificate::largest(table);
+    vec![
+        format!("  {}", escape::line(&table.name)),
+        gamma,
+        sigma,
+        nodes.join(" x "),
+        precision(table.precision).into(),
+        bytes(table.stored_bytes()),
+        worst.map_or("not measured".into(), |(what, max)| format!("{what} {}", error(max))),
+    ]
 }
