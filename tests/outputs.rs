@@ -303,6 +303,9 @@ fn an_old_set_that_stays_is_named() {
         (&json["baked"], &json["materials"][0]["verdict"]),
         (&0.into(), &"not rough".into())
     );
+    // It has the keys of any other bake.
+    assert_eq!(json["seconds_of"], serde_json::json!({ "visible normals": 0.0, "albedo": 0.0 }));
+    assert!(json["seconds"].is_number() && json["files"] == serde_json::json!([]));
 }
 
 /// The sampler refuses it as a lobe, so that no table could be read.

@@ -126,7 +126,7 @@ pub(super) fn run(args: Args) -> Outcome {
     };
     let outline = Outline::new(&scene, &plan, args.request.quality(), args.request.precision())?;
     if plan.is_empty() {
-        return nothing_to_bake(&args, &outline, &out);
+        return nothing_to_bake(&args, &outline, &out, start);
     }
     if let Target::Quality(quality, precision) = args.target() {
         let bytes = set_cost(&plan, quality, precision)?.bytes as u64;
@@ -185,7 +185,7 @@ pub(super) fn run(args: Args) -> Outcome {
 }
 
 /// Says why no set is written, and if that leaves an older one in its place.
-fn nothing_to_bake(args: &Args, outline: &Outline, out: &OutputFolder) -> Outcome {
+fn nothing_to_bake(args: &Args, outline: &Outline, out: &OutputFolder, start: Instant) -> Outcome {
     if out.holds_set()? {
         let folder = args.out.display();
         let stays = "the set of an earlier bake stays there; remove it if its materials are gone";
@@ -194,6 +194,7 @@ fn nothing_to_bake(args: &Args, outline: &Outline, out: &OutputFolder) -> Outcom
     if args.json {
         print_json(&json!({
             "tables": [], "baked": 0, "files": [],
+            "seconds": start.elapsed().as_secs_f64(), "seconds_of": summary::families([0.0; 2]),
             "materials": outline.materials(), "ignored": outline.ignored(),
         }))?
     } else {

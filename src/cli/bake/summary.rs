@@ -29,6 +29,12 @@ pub(super) struct Summary<'a> {
 /// The two parts that [`Baked::seconds`] are of.
 const FAMILIES: [&str; 2] = ["visible normals", "albedo"];
 
+/// [`Baked::seconds`] as JSON.
+pub(super) fn families(seconds: [f64; 2]) -> serde_json::Value {
+    let named = FAMILIES.iter().zip(seconds);
+    named.map(|(&name, seconds)| (name.to_owned(), json!(seconds))).collect()
+}
+
 /// Files that are listed; `--json` has them all.
 const SHOWN: usize = 6;
 
@@ -129,13 +135,8 @@ impl Summary<'_> {
             .iter()
             .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }))
             .collect();
-        let families: serde_json::Map<_, _> = FAMILIES
-            .iter()
-            .zip(result.seconds)
-            .map(|(&name, seconds)| (name.into(), json!(seconds)))
-            .collect();
         json!({
-            "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families,
+            "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families(result.seconds),
             "materials": self.outline.materials(), "ignored": self.outline.ignored(),
         })
     }
