@@ -324,7 +324,7 @@ fn a_pavilion_needs_names_and_no_tables() {
     let at = folder.path();
     std::fs::write(at.join("pavilion.pbrt"), PAVILION).unwrap();
     let shown = json(at, &["plan", "pavilion.pbrt"]);
-    assert_eq!(shown["needs"].as_array().unwrap().len(), 0);
+    assert_eq!(shown["shapes"].as_array().unwrap().len(), 0);
     let verdicts: Vec<&str> = shown["materials"]
         .as_array()
         .unwrap()
@@ -368,7 +368,7 @@ fn distributions_have_their_part_in_the_totals() {
     assert_eq!(own["materials"], serde_json::json!(["paint"]));
     let figure = |of: &serde_json::Value, name: &str| of["cost"][name].as_f64().unwrap();
     for name in ["bytes", "seconds"] {
-        let tables = figure(own, name) + figure(&shown["needs"][0], name);
+        let tables = figure(own, name) + figure(&shown["shapes"][0], name);
         let total = shown["total"][name].as_f64().unwrap();
         // The rest is the file's own description.
         let rest = if name == "bytes" { 3000.0 } else { 1e-9 };
@@ -377,7 +377,7 @@ fn distributions_have_their_part_in_the_totals() {
             "{name}: {shown}"
         );
     }
-    assert!(ok(at, &["plan", "r.toml"]).contains("gtr:0.2,1.3            4 tables, "));
+    assert!(ok(at, &["plan", "r.toml"]).contains("gtr:0.2,1.3         4 tables, "));
 }
 
 #[test]
@@ -391,7 +391,7 @@ fn the_command_says_what_it_did_not_do() {
     assert_eq!(json(at, &draft)["baked"], 3);
     let second = run(at, &draft);
     assert!(
-        String::from_utf8_lossy(&second.stdout).contains("nothing to bake: all 3 tables"),
+        String::from_utf8_lossy(&second.stdout).contains("all 3 tables came from the cache"),
         "{second:?}"
     );
     write(&[MIXED[0], MIXED[7]]);

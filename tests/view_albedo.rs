@@ -310,7 +310,8 @@ fn the_commands_list_bake_keep_and_show_them() {
     assert!(listed["cost"]["seconds"].as_f64().unwrap() > 0.0);
     let text = String::from_utf8(run(at, &["plan", "r.toml"]).stdout).unwrap();
     assert!(
-        text.contains("albedo, moments, gamma 2.7 sigma 0.6 0.15") && text.contains("at least"),
+        text.contains("albedo              gamma 2.7 sigma 0.6 0.15, ")
+            && text.contains("at least"),
         "{text}"
     );
     assert_eq!(json(at, &["plan", "r.toml", "--no-albedo"])["albedo"], serde_json::json!([]));
@@ -320,7 +321,7 @@ fn the_commands_list_bake_keep_and_show_them() {
     let baked = json(at, &bake);
     assert!(baked["baked"].as_u64().unwrap() > 0);
     assert_eq!(json(at, &bake)["baked"], 0);
-    let text = String::from_utf8(run(at, &["inspect", "out"]).stdout).unwrap();
+    let text = String::from_utf8(run(at, &["inspect", "out", "--details"]).stdout).unwrap();
     assert!(text.contains("albedo_height-correlated_gamma_2.7_sigma_0.6_0.15"), "{text}");
     assert!(text.contains(
         "an isotropic table at sqrt(sigma_x sigma_y) in its place would be off by up to"

@@ -1,5 +1,7 @@
 //! `bake`: bakes a recipe or scene into a certified set of tables.
 
+mod summary;
+
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -8,18 +10,16 @@ use serde_json::json;
 
 use microfacet_bake::cache::Cache;
 use microfacet_bake::input::MAX_TABLES;
-use microfacet_bake::plan::{Plan, set_cost};
+use microfacet_bake::plan::set_cost;
 use microfacet_bake::progress::Meter;
 use microfacet_bake::scene::{self, Scene};
-use microfacet_bake::store::{Format, OutputFolder, Written};
-use microfacet_bake::table_set::{Baked, Settings, Target, bake_with};
-use microfacet_bake::validate::certificate::worst_error;
-use microfacet_sampler::Table;
+use microfacet_bake::store::{Format, OutputFolder};
+use microfacet_bake::table_set::{Settings, Target, bake_with};
 
-use super::request::{Request, nothing_to_bake};
-use super::{
-    Done, Failure, Outcome, escape, interrupt, print, print_json, progress, report, values,
-};
+use super::plan::{Outline, nothing};
+use super::request::Request;
+use super::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize, values};
+use summary::Summary;
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
@@ -117,19 +117,26 @@ impl Args {
 
 pub(super) fn run(args: Args) -> Outcome {
     let start = Instant::now();
+    if args.out.as_os_str() == "-" {
+        return Err(Failure(
+            "--out -: a set is a folder of files and does not go to standard output; name a folder, \
+             such as --out tables (or --out ./- for one of that name)"
+                .into(),
+        ));
+    }
     let out = OutputFolder::open(&args.out)?;
-    let scene = args.recipe.as_deref().map(scene::load).transpose()?;
-    let plan = match &scene {
-        Some(scene) => {
+    let (scene, plan) = match args.recipe.as_deref() {
+        Some(path) => {
+            let scene = scene::load(path)?;
             scene.warnings.iter().for_each(|warning| report("warning", warning));
-            report_ignored(scene);
-            args.request.plan(scene, args.max_error)?
+            let plan = args.request.plan(&scene, args.max_error)?;
+            (scene, plan)
         }
-        None => args.request.general_plan(),
+        None => (Scene::default(), args.request.general_plan()),
     };
-    if let Some(scene) = scene.as_ref().filter(|_| plan.is_empty()) {
-        print(nothing_to_bake(scene))?;
-        return Ok(Done::Ok);
+    let outline = Outline::new(&scene, &plan, args.request.quality(), args.request.precision())?;
+    if plan.is_empty() {
+        return nothing_to_bake(&args, &outline, &out, start);
     }
     if let Target::Quality(quality, precision) = args.target() {
         let bytes = set_cost(&plan, quality, precision)?.bytes as u64;
@@ -170,100 +177,39 @@ pub(super) fn run(args: Args) -> Outcome {
         .collect();
     let written = out.write(&result.set, &formats)?;
     interrupt::leaves(format!("the set in {} is complete", args.out.display()));
-    let seconds = start.elapsed().as_secs_f64();
+    let summary = Summary {
+        outline,
+        result: &result,
+        written: &written,
+        out: &args.out,
+        only_images: formats == [Format::Exr],
+        seconds: start.elapsed().as_secs_f64(),
+    };
     if args.json {
-        print_json(&as_json(&result, &written, seconds))?
+        print_json(&summary.json())?
     } else {
-        print(&summary(&result, &plan, &written, seconds))?
+        summarize(&summary.text())?
     }
     Ok(Done::Ok)
 }
 
-fn report_ignored(scene: &Scene) {
-    for ignored in &scene.ignored {
-        report("note", ignored);
+/// Says why no set is written, and if that leaves an older one in its place.
+fn nothing_to_bake(args: &Args, outline: &Outline, out: &OutputFolder, start: Instant) -> Outcome {
+    if out.holds_set()? {
+        let folder = args.out.display();
+        let stays = "the set of an earlier bake stays there; remove it if its materials are gone";
+        report("warning", format!("{folder}: {stays}"));
     }
-}
-
-/// The largest error that a table's certificate states.
-pub(super) fn largest_error(table: &Table) -> String {
-    let figure = |key: &str| table.certificate.get(key);
-    for (quantity, name) in [("g1", "G1"), ("cdf", "CDF"), ("d", "D/D(0)"), ("e", "E")] {
-        if let Some(max) = figure(&format!("{quantity}_max_error")) {
-            let rms = figure(&format!("{quantity}_rms_error"));
-            let rms = rms.map_or(String::new(), |rms| format!(", rms {rms:.2e}"));
-            return format!("{name} error max {max:.2e}{rms}");
-        }
+    if args.json {
+        print_json(&json!({
+            "tables": [], "baked": 0, "files": [],
+            "seconds": start.elapsed().as_secs_f64(), "seconds_of": summary::families([0.0; 2]),
+            "materials": outline.materials(), "ignored": outline.ignored(),
+        }))?
+    } else {
+        summarize(
+            &(outline.lines(["baked", "skipped"], |_| String::new()) + nothing(outline.scene)),
+        )?
     }
-    match worst_error(table) {
-        worst if worst.is_finite() => format!("albedo error max {worst:.2e}"),
-        _ => "not certified".into(),
-    }
-}
-
-/// The two parts that [`Baked::seconds`] are of.
-const FAMILIES: [&str; 2] = ["visible normals", "albedo"];
-
-fn summary(result: &Baked, plan: &Plan, written: &[Written], seconds: f64) -> String {
-    let mut text = String::new();
-    let tables = result.set.tables();
-    let width = tables.iter().map(|table| table.name.len()).max().unwrap_or(0);
-    for table in tables {
-        let axes: Vec<String> =
-            table.axes.iter().map(|axis| format!("{} {}", axis.name, axis.len())).collect();
-        let (axes, precision) = (axes.join(" x "), format!("{:?}", table.precision).to_lowercase());
-        text += &format!(
-            "{:width$}  {axes:34} {precision}  {}\n",
-            escape::line(&table.name),
-            largest_error(table)
-        );
-    }
-    for file in written {
-        text += &format!("{} ({} bytes)\n", file.path.display(), file.bytes);
-    }
-    if tables.is_empty() && plan.has_closed_forms() {
-        text += "no tables: every rough material has closed forms, which the sampler uses\n";
-    }
-    let baked = match (tables.len(), result.baked) {
-        (all, 0) if all > 0 => format!("nothing to bake: all {all} tables were finished before"),
-        (all, baked) if baked < all => {
-            format!("{baked} tables baked, {} finished before,", all - baked)
-        }
-        (all, _) => format!("{all} tables"),
-    };
-    text += &format!("{baked} in {seconds:.3} s");
-    if !plan.albedos.is_empty() {
-        let parts = FAMILIES
-            .iter()
-            .zip(result.seconds)
-            .map(|(name, seconds)| format!("{name} {seconds:.3} s"));
-        text += &format!(" ({})", parts.collect::<Vec<_>>().join(", "));
-    }
-    text + "\n"
-}
-
-fn as_json(result: &Baked, written: &[Written], seconds: f64) -> serde_json::Value {
-    let tables: Vec<_> = result
-        .set
-        .tables()
-        .iter()
-        .map(|table| {
-            let axes: Vec<_> =
-                table.axes.iter().map(|axis| json!({ "name": axis.name, "length": axis.len() })).collect();
-            json!({
-                "name": table.name, "kind": table.kind.name(), "axes": axes, "precision": table.precision,
-                "certificate": table.certificate,
-            })
-        })
-        .collect();
-    let files: Vec<_> = written
-        .iter()
-        .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }))
-        .collect();
-    let families: serde_json::Map<_, _> = FAMILIES
-        .iter()
-        .zip(result.seconds)
-        .map(|(&name, seconds)| (name.into(), json!(seconds)))
-        .collect();
-    json!({ "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families })
+    Ok(Done::Ok)
 }

@@ -2,18 +2,6 @@
 //! command a terminal, or that reverse what is read.
 
 use std::borrow::Cow;
-use std::path::Path;
-
-/// A path as one word of a shell, which is not an option either.
-pub(super) fn shell(path: &Path) -> String {
-    let text = path.display().to_string();
-    let text = if text.starts_with('-') { format!("./{text}") } else { text };
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+,:@%".contains(c);
-    if !text.is_empty() && text.chars().all(is_plain) {
-        return text;
-    }
-    format!("'{}'", text.replace('\'', "'\\''"))
-}
 
 /// A text of several lines, with every such character written out, as `\u{1b}`.
 pub(super) fn lines(text: &str) -> Cow<'_, str> {
@@ -71,19 +59,6 @@ mod tests {
         assert_eq!(lines(ODD), format!("é\\u{{1b}}[31m\\u{{d}}\n\t{rest}"));
         assert_eq!(line(ODD), format!("é\\u{{1b}}[31m\\r\\n\\t{rest}"));
         assert!(matches!(lines("plain, é ∞\n"), Cow::Borrowed(_)));
-    }
-
-    #[test]
-    fn a_path_is_one_word_of_a_shell() {
-        for (path, word) in [
-            ("out/set.exr", "out/set.exr"),
-            ("my set", "'my set'"),
-            ("it's $HOME", r"'it'\''s $HOME'"),
-            ("-x", "./-x"),
-            ("σ", "'σ'"),
-        ] {
-            assert_eq!(shell(Path::new(path)), word);
-        }
     }
 
     #[test]

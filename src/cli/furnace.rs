@@ -13,7 +13,7 @@ use microfacet_bake::validate::furnace::{
 };
 use microfacet_sampler::{Masking, Tables};
 
-use super::{Done, Outcome, print, print_json, progress, tables, values};
+use super::{Done, Outcome, print, print_json, progress, summarize, tables, values};
 
 /// Run a white furnace: single scattering, each compensation, and the random walk on the
 /// microsurface.
@@ -74,6 +74,7 @@ fn parse_roughness(text: &str) -> Result<f64, String> {
 
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
+    args.gamma.iter().try_for_each(|&gamma| values::tabulated(gamma, ""))?;
     let materials = grid::materials(&set, args.masking, &args.sigma, &args.gamma)?;
     if args.average {
         return average(&materials, &set, args.masking);
@@ -121,11 +122,11 @@ pub(super) fn run(args: Args) -> Outcome {
     if args.json {
         print_json(&json!({ "masking": Masking::name(masking), "passed": passed, "rows": rows }))?;
     } else if passed {
-        print("The furnace closes.\n")?;
+        summarize("The furnace closes.\n")?;
     } else {
         print(&format!("The furnace does not close:\n{failures}"))?;
     }
-    Ok(if passed { Done::Ok } else { Done::Rejected })
+    Ok(Done::judged(passed))
 }
 
 /// What is wrong with a row, and by how much; nothing if the furnace closes.

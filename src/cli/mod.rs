@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand. Only this folder prints or shows progress.
 
 mod bake;
+mod certificate;
 mod convert;
 mod escape;
 mod fit;
@@ -22,6 +23,7 @@ mod tests;
 mod validate;
 mod values;
 mod view;
+mod words;
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -80,6 +82,12 @@ enum Done {
     Ok,
     /// Exit status 1: a validation ran and rejected.
     Rejected,
+}
+
+impl Done {
+    fn judged(passed: bool) -> Self {
+        if passed { Self::Ok } else { Self::Rejected }
+    }
 }
 
 /// A message for the user; exit status 2.
@@ -179,8 +187,10 @@ fn summarize(text: &str) -> Result<(), Failure> {
     if is_quiet() { Ok(()) } else { print(text) }
 }
 
-/// Writes a verdict, in colour on a terminal that wants it; `--quiet` leaves the exit status.
-fn verdict(passed: bool, text: &str) -> Result<(), Failure> {
+/// Writes the verdict of a validation, in colour on a terminal that wants it, and returns the
+/// outcome; `--quiet` leaves the exit status.
+fn verdict(passed: bool) -> Outcome {
+    let text = if passed { "PASSED" } else { "REJECTED" };
     let colour = if passed { AnsiColor::Green } else { AnsiColor::Red };
     let style = Style::new().bold().fg_color(Some(colour.into()));
     let text = format!("{style}{text}{style:#}\n");
@@ -188,7 +198,10 @@ fn verdict(passed: bool, text: &str) -> Result<(), Failure> {
         anstream::ColorChoice::Never => anstream::adapter::strip_str(&text).to_string(),
         _ => text,
     };
-    if is_quiet() { Ok(()) } else { write(text.as_bytes()) }
+    if !is_quiet() {
+        write(text.as_bytes())?;
+    }
+    Ok(Done::judged(passed))
 }
 
 /// Writes a text for people to standard output.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use microfacet_bake::store::replace;
 
-use super::{Done, Failure, Outcome, print};
+use super::{Done, Failure, Outcome, print, summarize};
 
 /// Print a commented recipe to start from.
 #[derive(clap::Args)]
@@ -51,6 +51,6 @@ pub(super) fn run(args: Args) -> Outcome {
         )));
     }
     replace(&path, STARTER.as_bytes()).map_err(|why| Failure(format!("{shown}: {why}")))?;
-    print(&format!("{shown}\n"))?;
+    summarize(&format!("{shown}\n"))?;
     Ok(Done::Ok)
 }

@@ -118,13 +118,3 @@ impl Request {
         Ok(Plan::new(scene, options)?)
     }
 }
-
-/// What to say of a scene whose plan is empty.
-pub(super) fn nothing_to_bake(scene: &Scene) -> &'static str {
-    if scene.warnings.is_empty() {
-        "Nothing to bake: no material in use is rough.\n"
-    } else {
-        "Nothing to bake: no material in use is rough, in what could be read; the warnings say what \
-         is missing.\n"
-    }
-}

@@ -83,6 +83,7 @@ impl Source {
         let v = Configuration { sigma_x, sigma_y, gamma, theta, phi, seed }.view();
         match args.method {
             Method::Table => {
+                values::tabulated(gamma, ", or draw exact normals with --method exact")?;
                 let lobe = tables(args.tables.as_deref())?.lobe(args.sigma, gamma)?;
                 Ok(Self::Table(Box::new(lobe), v))
             }

@@ -8,7 +8,7 @@ use microfacet_bake::validate::stress::{
 };
 use microfacet_sampler::Tables;
 
-use super::{Done, Outcome, print, print_json, progress};
+use super::{Done, Outcome, print_json, progress, summarize, verdict};
 
 /// Runs the test; `source` is the option that gives the set to the queries that are printed.
 pub(super) fn stress(
@@ -24,12 +24,13 @@ pub(super) fn stress(
     let bar = progress::show(&meter, "testing");
     let report = run(tables, points, seed, &meter.stage(work))?;
     drop(bar);
+    let passed = report.total().violations.is_empty();
     if as_json {
-        print_json(&document(&report, source))?
-    } else {
-        print(&summary(&report, source))?
+        print_json(&document(&report, source))?;
+        return Ok(Done::judged(passed));
     }
-    Ok(if report.total().violations.is_empty() { Done::Ok } else { Done::Rejected })
+    summarize(&summary(&report, source))?;
+    verdict(passed)
 }
 
 /// Regions with at least one point, and their names.
@@ -74,8 +75,7 @@ fn summary(report: &Report, source: &str) -> String {
         );
         text += &format!("\n  {}{source}\n", violation.worst.at);
     }
-    let verdict = if total.violations.is_empty() { "PASSED" } else { "REJECTED" };
-    text + &format!("{} points\n{verdict}\n", total.points)
+    text + &format!("{} points\n", total.points)
 }
 
 fn document(report: &Report, source: &str) -> serde_json::Value {

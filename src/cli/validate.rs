@@ -17,7 +17,9 @@ use microfacet_bake::validate::{
 use microfacet_sampler::{LobeEntry, Reflectance, Tables};
 
 use super::view::View;
-use super::{Done, Failure, Outcome, escape, print, print_json, progress, tables, values};
+use super::{
+    Done, Failure, Outcome, print_json, progress, summarize, tables, values, verdict, words,
+};
 
 /// Test normals drawn from tables against the analytic densities by chi-square.
 #[derive(clap::Args)]
@@ -71,7 +73,7 @@ const FACTORS: RangeInclusive<f64> = 0.5..=2.0;
 pub(super) fn run(args: Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
     // The set as an argument of the commands that are printed.
-    let source = args.tables.as_deref().map(escape::shell);
+    let source = args.tables.as_deref().map(words::shell);
     if args.stress {
         if shapes(&set).is_empty() {
             return Err(Failure(nothing_to_judge(&set)));
@@ -81,6 +83,7 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     let chosen = match (args.sigma, args.gamma, args.view.angles()?) {
         (Some([sigma_x, sigma_y]), Some(gamma), Some([theta, phi])) => {
+            values::tabulated(gamma, "")?;
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi, seed: args.seed }]
         }
         _ => configurations(&set, args.configurations, args.seed),
@@ -114,22 +117,21 @@ pub(super) fn run(args: Args) -> Outcome {
     let passed = result.passed() && furnaces.iter().all(Survey::passed);
     let source = source.map_or(String::new(), |path| format!("{path} "));
     if args.json {
-        print_json(&as_json(&result, options, &furnaces, &untested, passed))?
-    } else {
-        if !result.reports.is_empty() {
-            print(&summary(&result, options, &source))?;
-        }
-        print(&white(&furnaces))?;
-        untested.iter().try_for_each(|what| print(&format!("not tested: {what}\n")))?;
-        if result.rejected() > 0 {
-            print(NEXT)?;
-        }
-        if let Some(why) = unsound(&result) {
-            print(&why)?;
-        }
-        print(if passed { "PASSED\n" } else { "REJECTED\n" })?;
+        print_json(&as_json(&result, options, &furnaces, &untested, passed))?;
+        return Ok(Done::judged(passed));
     }
-    Ok(if passed { Done::Ok } else { Done::Rejected })
+    if !result.reports.is_empty() {
+        summarize(&summary(&result, options, &source))?;
+    }
+    summarize(&white(&furnaces))?;
+    untested.iter().try_for_each(|what| summarize(&format!("not tested: {what}\n")))?;
+    if result.rejected() > 0 {
+        summarize(NEXT)?;
+    }
+    if let Some(why) = unsound(&result) {
+        summarize(&why)?;
+    }
+    verdict(passed)
 }
 
 /// What to do about a rejection.
@@ -153,7 +155,7 @@ fn nothing_to_judge(set: &Tables) -> String {
     format!(
         "nothing to judge: visible normals need tables of the kinds shadowing, visible_slope and visible_slope_conditional for the \
          same gamma, white furnaces (without --stress) one of the kind albedo, and here are only tables of the kind {}; give the folder or the \
-         safetensors file of the whole set, or see `microfacet-bake inspect` for what was measured when they were baked",
+         safetensors file of the whole set, or see `microfacet-bake inspect --details` for what was measured when they were baked",
         kinds.join(", ")
     )
 }

@@ -7,6 +7,7 @@ use bytesize::ByteSize;
 use clap::builder::UnknownArgumentValueParser;
 
 use microfacet_bake::fit::Angles;
+use microfacet_bake::table_spec::GAMMA_MIN;
 use microfacet_sampler::Ggx;
 
 /// Parses a whole number as `100000` or `1e5`, and checks its range.
@@ -109,6 +110,16 @@ pub(super) fn gamma(text: &str) -> Result<f64, String> {
             "gamma \"{text}\" must be a number in (1.5, inf]; 2 is GGX, inf is Beckmann"
         )),
     }
+}
+
+/// Refuses a γ of the family that no table covers, of this set or any other; with what else helps.
+pub(super) fn tabulated(gamma: f64, remedy: &str) -> Result<(), String> {
+    if gamma >= GAMMA_MIN {
+        return Ok(());
+    }
+    Err(format!(
+        "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it{remedy}"
+    ))
 }
 
 /// The largest polar angle of a view: up to 1e-5 above π/2 is a rounded π/2, as 1.5708 is.

@@ -3,7 +3,7 @@
 
 use microfacet_sampler::{LobeEntry, Masking, Precision, Reflectance};
 
-use super::{NotCovered, Options, entry, is_rough};
+use super::{NotCovered, Options, entry, is_listed};
 use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, SIGMA_MAX};
 use crate::scene::{Format, Interval, Material, Scene};
 use crate::table_spec::{Level, Quality};
@@ -206,7 +206,7 @@ fn wants(
 fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
     let native = material.origin.format == Format::Recipe;
     match options.albedo {
-        _ if !material.used || !is_rough(material) => Some(AlbedoVerdict::NotNeeded),
+        _ if !is_listed(material) => Some(AlbedoVerdict::NotNeeded),
         AlbedoWish::None => Some(AlbedoVerdict::Declined),
         AlbedoWish::Recipes if !native => Some(AlbedoVerdict::Imported),
         AlbedoWish::Recipes if material.fresnel.is_none() => Some(AlbedoVerdict::NotAsked),

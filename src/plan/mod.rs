@@ -220,7 +220,7 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
 /// The distributions outside the Student-t family, in order and without repetition.
 fn distributions(scene: &Scene) -> Vec<Distribution> {
     let mut all: Vec<Distribution> = Vec::new();
-    for material in scene.materials.iter().filter(|material| material.used) {
+    for material in scene.materials.iter().filter(|material| is_listed(material)) {
         if let Some(distribution) = material.distribution.as_ref().filter(|d| !all.contains(d)) {
             all.push(distribution.clone());
         }
@@ -241,14 +241,14 @@ fn lobe_sigmas(material: &Material) -> [f64; 2] {
     if material.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
 }
 
-/// The materials of a scene as a set lists them: those in use that are rough.
+/// The materials of a scene as a set lists them.
 fn entries(scene: &Scene) -> Vec<MaterialEntry> {
-    scene
-        .materials
-        .iter()
-        .filter(|material| material.used && is_rough(material))
-        .map(entry)
-        .collect()
+    scene.materials.iter().filter(|material| is_listed(material)).map(entry).collect()
+}
+
+/// Whether a set lists the material: if it is in use and rough.
+fn is_listed(material: &Material) -> bool {
+    material.used && is_rough(material)
 }
 
 /// A material as a set lists it.

@@ -79,8 +79,17 @@ impl OutputFolder {
         Ok(old)
     }
 
-    /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table. A folder holds one set:
-    /// the files of the set that was written here before are removed, all others stay.
+    /// Whether the folder holds a set, as far as its files are known to be ours.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] if the record of the set cannot be read.
+    pub fn holds_set(&self) -> Result<bool, StoreError> {
+        Ok(self.old()?.iter().any(|name| name != RECORD))
+    }
+
+    /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table; a set without tables is
+    /// `tables.safetensors` in any format. A folder holds one set: the files of the set that was
+    /// written here before are removed, all others stay.
     ///
     /// First all new files are written beside the old ones. A single file is then replaced in one
     /// step; with several, the old ones are removed before the first new one appears, so that the

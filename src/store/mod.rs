@@ -95,7 +95,8 @@ pub fn write(folder: &Path, set: &Tables, formats: &[Format]) -> Result<Vec<Writ
     OutputFolder::open(folder)?.write(set, formats)
 }
 
-/// Names and contents of the files that hold a set; only what [`read`] reads back.
+/// Names and contents of the files that hold a set; only what [`read`] reads back. A set without
+/// tables has no images, and is a safetensors file whatever the formats.
 fn files(set: &Tables, formats: &[Format]) -> Result<Vec<(String, Vec<u8>)>, StoreError> {
     let mut files = Vec::new();
     if formats.contains(&Format::Exr) {
@@ -111,7 +112,7 @@ fn files(set: &Tables, formats: &[Format]) -> Result<Vec<(String, Vec<u8>)>, Sto
             files.push((name, bytes));
         }
     }
-    if formats.contains(&Format::Safetensors) {
+    if formats.contains(&Format::Safetensors) || set.tables().is_empty() {
         let bytes = encode(set.provenance(), set.tables())
             .map_err(|why| StoreError::Load(SET_FILE.into(), why))?;
         allow(bytes.len() as u64, MAX_TABLES)

@@ -13,6 +13,7 @@ use crate::distribution::{Distribution, DistributionKind, Named};
 use crate::fit::{Angles, read_csv};
 use crate::input;
 use crate::scene::{Interval, Place, Roughness, SceneError, limits};
+use crate::table_spec::GAMMA_MIN;
 
 /// What a material says of its normals.
 pub(super) struct Lobe {
@@ -149,7 +150,7 @@ impl Source<'_> {
         }
         Err(self.place(value.span()).invalid(format!(
             "gamma = {} is out of range; the shape must be more than 1.5, where the projected area \
-             diverges, up to \"inf\" (Beckmann)",
+             diverges, up to \"inf\" (Beckmann); tables cover it from {GAMMA_MIN} on",
             range(gamma)
         )))
     }

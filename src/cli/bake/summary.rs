@@ -1,0 +1,177 @@
+//! What `bake` says when it is done.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use microfacet_bake::store::Written;
+use microfacet_bake::table_set::Baked;
+use microfacet_bake::validate::certificate::worst_error;
+use microfacet_bake::validate::configuration::shapes;
+use microfacet_sampler::{Kind, LobeEntry, Reflectance, Table, Tables};
+
+use crate::cli::plan::Outline;
+use crate::cli::words::{columns, count, error, exact_bytes, seconds, shell, wrapped};
+use crate::cli::{certificate, escape};
+
+/// A bake that is done.
+pub(super) struct Summary<'a> {
+    pub(super) outline: Outline<'a>,
+    pub(super) result: &'a Baked,
+    pub(super) written: &'a [Written],
+    /// The folder, as it was given.
+    pub(super) out: &'a Path,
+    /// Only images were asked for.
+    pub(super) only_images: bool,
+    pub(super) seconds: f64,
+}
+
+/// The two parts that [`Baked::seconds`] are of.
+const FAMILIES: [&str; 2] = ["visible normals", "albedo"];
+
+/// [`Baked::seconds`] as JSON.
+pub(super) fn families(seconds: [f64; 2]) -> serde_json::Value {
+    let named = FAMILIES.iter().zip(seconds);
+    named.map(|(&name, seconds)| (name.to_owned(), json!(seconds))).collect()
+}
+
+/// Files that are listed; `--json` has them all.
+const SHOWN: usize = 6;
+
+impl Summary<'_> {
+    pub(super) fn text(&self) -> String {
+        let tables = self.result.set.tables();
+        let mut text = self.outline.lines(["baked", "skipped"], |_| String::new());
+        if tables.is_empty() {
+            let images =
+                if self.only_images { " nor images; it is in tables.safetensors" } else { "" };
+            text += &format!("\nThe set names its materials, and has no tables{images}.\n");
+        } else {
+            text += "\nlargest error of\n";
+            text += &largest_errors(tables);
+        }
+        text += "\n";
+        text += &self.files();
+        text += &self.time();
+        text + "\n" + &self.next()
+    }
+
+    fn files(&self) -> String {
+        let mut text = String::new();
+        for file in self.written.iter().take(SHOWN) {
+            let path = file.path.display().to_string();
+            text += &format!("wrote {}, {}\n", escape::line(&path), exact_bytes(file.bytes));
+        }
+        if let Some(more @ [_, ..]) = self.written.get(SHOWN..) {
+            let bytes = more.iter().map(|file| file.bytes).sum();
+            text += &format!("wrote {} more, {}\n", count(more.len(), "file"), exact_bytes(bytes));
+        }
+        text
+    }
+
+    fn time(&self) -> String {
+        let Self { result, .. } = self;
+        let (all, baked) = (result.set.tables().len(), result.baked);
+        let cached = all - baked;
+        let what = match (baked, cached) {
+            (0, 0) => "no tables".into(),
+            (0, 1) => "the table came from the cache".into(),
+            (0, _) => format!("all {all} tables came from the cache"),
+            (_, 0) => format!("{} baked", count(all, "table")),
+            _ => format!("{} baked, {cached} from the cache", count(baked, "table")),
+        };
+        let mut text = format!("{what}, in {}", seconds(self.seconds));
+        if baked > 0 && !self.outline.albedos().is_empty() {
+            let parts = FAMILIES.iter().zip(result.seconds);
+            let parts: Vec<String> =
+                parts.map(|(name, time)| format!("{name} {}", seconds(time))).collect();
+            text += &format!(" ({})", parts.join(", "));
+        }
+        text + "\n"
+    }
+
+    /// The commands that people run next.
+    fn next(&self) -> String {
+        let out = shell(self.out);
+        let set = &self.result.set;
+        let inspect = format!("  microfacet-bake inspect {out}\n");
+        let commands = if is_testable(set) {
+            format!("  microfacet-bake validate {out}\n{inspect}")
+        } else if set.tables().is_empty() {
+            let embedded = self.outline.is_embedded();
+            let why = if embedded {
+                "the default set serves its materials: `microfacet-bake validate` tests that one"
+            } else {
+                "closed forms have no error to validate; --tabulate-ggx bakes tables instead, for a \
+                 renderer without them"
+            };
+            inspect + &wrapped("  ", why, 2)
+        } else {
+            format!("  microfacet-bake inspect {out} --details\n")
+                + &wrapped(
+                    "  ",
+                    "validate has no test for such tables; their certificates are there",
+                    2,
+                )
+        };
+        format!("next:\n{commands}")
+    }
+
+    pub(super) fn json(&self) -> serde_json::Value {
+        let Self { result, written, seconds, .. } = self;
+        let table = |table: &Table| {
+            let axes: Vec<_> = table
+                .axes
+                .iter()
+                .map(|axis| json!({ "name": axis.name, "length": axis.len() }))
+                .collect();
+            json!({
+                "name": table.name, "kind": table.kind.name(), "axes": axes, "precision": table.precision,
+                "certificate": table.certificate,
+            })
+        };
+        let tables: Vec<_> = result.set.tables().iter().map(table).collect();
+        let files: Vec<_> = written
+            .iter()
+            .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }))
+            .collect();
+        json!({
+            "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families(result.seconds),
+            "materials": self.outline.materials(), "ignored": self.outline.ignored(),
+        })
+    }
+}
+
+/// Whether `validate` has something to test: visible normals from tables, or a white furnace.
+fn is_testable(set: &Tables) -> bool {
+    let furnace = |table: &Table| {
+        let of = &table.subject;
+        table.kind == Kind::Albedo
+            && (&of.lobe, of.reflectance) == (&LobeEntry::Family, Some(Reflectance::Moments))
+    };
+    let mut tables = set.tables().iter();
+    // A set without tables is tested as GGX alone.
+    !set.tables().is_empty() && (!shapes(set).is_empty() || tables.any(furnace))
+}
+
+/// The largest error of each quantity, with the table that has it.
+fn largest_errors(tables: &[Table]) -> String {
+    let quantity = |kind: Kind| match kind {
+        Kind::Shadowing | Kind::RadialShadowing => "G1",
+        Kind::RadialDensity => "D/D(0)",
+        kind if kind.is_albedo() => "albedo",
+        _ => "CDF of visible normals",
+    };
+    let mut rows = Vec::new();
+    for of in ["G1", "CDF of visible normals", "D/D(0)", "albedo"] {
+        let tables = tables.iter().filter(|table| quantity(table.kind) == of);
+        let worst = tables.max_by(|a, b| worst_error(a).total_cmp(&worst_error(b)));
+        if let Some(table) = worst {
+            let figure = certificate::largest(table)
+                .map_or("not measured".into(), |(_, largest)| error(largest));
+            let place = format!("in {}", escape::line(&table.name));
+            rows.push(vec![format!("  {of}"), figure, place]);
+        }
+    }
+    columns(&rows).iter().map(|line| format!("{line}\n")).collect()
+}

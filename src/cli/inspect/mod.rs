@@ -1,0 +1,204 @@
+//! `inspect`: shows what a set of tables holds.
+
+mod details;
+mod words;
+
+use std::path::PathBuf;
+
+use microfacet_sampler::internals::describe;
+use microfacet_sampler::{Kind, LobeEntry, MaterialEntry, Reflectance, Table, Tables};
+
+use super::plan::reflectance;
+use super::words::{bytes, columns, count, error, exact_bytes, joined, wrapped};
+use super::{Done, Outcome, certificate, escape, print, print_json, tables};
+use words::{covers, gammas, holds, material, precision};
+
+/// Show what a set of tables serves, and the size and the largest error of each table.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  microfacet-bake inspect out --details")]
+pub(super) struct Args {
+    /// A .safetensors set, a folder that holds one or its images, or a single table as .exr; the
+    /// embedded default if absent.
+    tables: Option<PathBuf>,
+    /// Show axes, certificates, conventions and the recipe as well.
+    #[arg(long)]
+    details: bool,
+    /// Print the complete description as JSON.
+    #[arg(long, conflicts_with = "details")]
+    json: bool,
+}
+
+/// Width of the first column of the head.
+const HEAD: usize = 11;
+
+/// Materials and ranges that the head lists.
+const SHOWN: usize = 6;
+
+pub(super) fn run(args: Args) -> Outcome {
+    let set = tables(args.tables.as_deref())?;
+    if args.json {
+        let mut document: serde_json::Value =
+            serde_json::from_str(&describe(set.provenance(), set.tables())?)?;
+        // It is a checksum of a file's bytes, and there may be many files.
+        if let Some(document) = document.as_object_mut() {
+            document.remove("checksum");
+        }
+        print_json(&document)?;
+        return Ok(Done::Ok);
+    }
+    let name: String = match &args.tables {
+        Some(path) => escape::line(&path.display().to_string()).into(),
+        None => "the default set, compiled into the sampler".into(),
+    };
+    let mut text = head(&name, &set, args.details);
+    if !set.tables().is_empty() {
+        text += "\n";
+        text += &overview(set.tables());
+    }
+    if args.details {
+        text += &details::of(&set);
+    } else {
+        text += "\n--details shows axes, certificates, conventions and the recipe\n";
+    }
+    print(&text)?;
+    Ok(Done::Ok)
+}
+
+fn entry(name: &str, text: &str) -> String {
+    wrapped(&format!("{name:HEAD$}"), text, HEAD)
+}
+
+/// What the set is, and what it serves.
+fn head(name: &str, set: &Tables, all: bool) -> String {
+    let origin = set.provenance();
+    let mut text = entry("set", name);
+    let (generator, license) = (escape::line(&origin.generator), escape::line(&origin.license));
+    let licence = if license.is_empty() { String::new() } else { format!(", licence {license}") };
+    text += &entry("baked by", &format!("{generator}, numerics {}{licence}", origin.numerics));
+    let tables = set.tables();
+    let size = tables.iter().map(Table::stored_bytes).sum();
+    let mut forms: Vec<&str> = Vec::new();
+    for table in tables {
+        let form = precision(table.precision);
+        if !forms.contains(&form) {
+            forms.push(form);
+        }
+    }
+    let values = match tables {
+        [] => "no tables: its materials have closed forms, or tables of another set".to_owned(),
+        _ => format!(
+            "{}, {} of values in {}",
+            count(tables.len(), "table"),
+            exact_bytes(size),
+            forms.join(" and ")
+        ),
+    };
+    text += &entry("holds", &values);
+    let shown = if all { usize::MAX } else { SHOWN };
+    for (i, entry) in origin.materials.iter().take(shown).enumerate() {
+        let first = if i == 0 { "materials" } else { "" };
+        text += &self::entry(first, &material(entry));
+    }
+    match origin.materials.len() {
+        0 => text += &entry("materials", "none by name; any in these ranges"),
+        n if n > shown => text += &entry("", &format!("and {} more", n - shown)),
+        _ => {}
+    }
+    text += &listed("normals", &normals(set), shown);
+    text + &listed("albedo", &albedos(tables), shown)
+}
+
+/// A list below each other, its end cut off.
+fn listed(name: &str, lines: &[String], shown: usize) -> String {
+    let mut text = String::new();
+    for (i, line) in lines.iter().take(shown).enumerate() {
+        text += &entry(if i == 0 { name } else { "" }, line);
+    }
+    if lines.len() > shown {
+        text += &entry("", &format!("and {} more", lines.len() - shown));
+    }
+    text
+}
+
+/// The lobes of which visible normals can be drawn.
+fn normals(set: &Tables) -> Vec<String> {
+    let mut lines: Vec<String> = set.shapes().into_iter().map(gammas).collect();
+    // Shapes of s ascend, and γ falls with s.
+    lines.reverse();
+    if !lines.is_empty() {
+        lines = vec![format!("gamma {}; every sigma", joined(&lines))];
+    }
+    // A material outside the family has an s without meaning, and an ellipsoid reads tables.
+    let ggx = |material: &MaterialEntry| {
+        material.s == [1.0; 2] && material.distribution.is_empty() && material.theta.is_none()
+    };
+    if set.provenance().materials.iter().any(ggx) && !set.tabulates(2.0) {
+        lines.push("gamma 2 (GGX) in closed form".into());
+    }
+    for table in set.tables() {
+        if let (Kind::RadialSlope, LobeEntry::Distribution(label)) =
+            (table.kind, &table.subject.lobe)
+        {
+            lines.push(escape::line(label).into());
+        }
+    }
+    lines
+}
+
+/// The lobes of which there are albedos.
+fn albedos(tables: &[Table]) -> Vec<String> {
+    let mut lines: Vec<(String, Vec<String>)> = Vec::new();
+    for table in tables.iter().filter(|table| table.kind == Kind::Albedo) {
+        let [gamma, sigma] = covers(&table.subject);
+        let what = match (&table.subject.lobe, table.subject.reflectance) {
+            (LobeEntry::Distribution(label), _) => escape::line(label).into(),
+            (_, Some(Reflectance::Moments) | None) => format!("gamma {gamma}, sigma {sigma}"),
+            (_, Some(of)) => format!("gamma {gamma}, sigma {sigma}, {}", reflectance(&of)),
+        };
+        let masking = table.subject.masking.map_or(String::new(), |form| form.name().to_owned());
+        match lines.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, forms)) => forms.push(masking),
+            None => lines.push((what, vec![masking])),
+        }
+    }
+    lines.iter().map(|(what, forms)| format!("{what}; {} masking", joined(forms))).collect()
+}
+
+/// One line for each table, under what it holds.
+fn overview(tables: &[Table]) -> String {
+    let header = ["", "gamma", "sigma", "nodes", "type", "size", "error"].map(String::from);
+    let mut rows: Vec<Vec<String>> = vec![header.into()];
+    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    for table in tables {
+        let what = holds(table);
+        match groups.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, group)) => group.push(rows.len()),
+            None => groups.push((what, vec![rows.len()])),
+        }
+        rows.push(row(table));
+    }
+    let lines = columns(&rows);
+    let mut text = format!("{}\n", lines[0]);
+    for (what, rows) in groups {
+        text += &wrapped("", &what, 2);
+        for i in rows {
+            text += &format!("{}\n", lines[i]);
+        }
+    }
+    text
+}
+
+fn row(table: &Table) -> Vec<String> {
+    let [gamma, sigma] = covers(&table.subject);
+    let nodes: Vec<String> = table.axes.iter().map(|axis| axis.len().to_string()).collect();
+    let worst = certificate::largest(table);
+    vec![
+        format!("  {}", escape::line(&table.name)),
+        gamma,
+        sigma,
+        nodes.join(" x "),
+        precision(table.precision).into(),
+        bytes(table.stored_bytes()),
+        worst.map_or("not measured".into(), |(what, max)| format!("{what} {}", error(max))),
+    ]
+}

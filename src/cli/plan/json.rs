@@ -1,0 +1,80 @@
+//! A plan as JSON.
+
+use serde_json::{Value, json};
+
+use microfacet_bake::bake::albedo::AlbedoLobe;
+use microfacet_bake::plan::{Cost, Verdict};
+use microfacet_sampler::Kind;
+
+use super::Report;
+use super::words::{Outline, albedo_reason, reason};
+
+impl Outline<'_> {
+    /// The verdict on each material of the scene.
+    pub(in crate::cli) fn materials(&self) -> Vec<Value> {
+        let Self { scene, plan, .. } = self;
+        let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
+        let material =
+            |(material, (verdict, albedo)): (&microfacet_bake::scene::Material, (_, _))| {
+                let [short, long] = reason(verdict);
+                let other = match *verdict {
+                    Verdict::Same { as_material: i, .. }
+                    | Verdict::Within { of_material: i, .. } => Some(&scene.materials[i].name),
+                    _ => None,
+                };
+                json!({
+                    "name": material.name, "verdict": short, "why": long, "shapes": verdict.need(),
+                    "shares_with": other, "albedo": albedo_reason(albedo),
+                })
+            };
+        scene.materials.iter().zip(verdicts).map(material).collect()
+    }
+
+    /// The materials that no lobe describes.
+    pub(in crate::cli) fn ignored(&self) -> Vec<Value> {
+        let ignored = self.scene.ignored.iter();
+        ignored.map(|it| json!({ "name": it.name, "kind": it.kind, "why": it.reason })).collect()
+    }
+}
+
+impl Report<'_> {
+    pub(super) fn json(&self) -> Value {
+        let Self { outline, .. } = self;
+        let plan = outline.plan;
+        let cost = |cost: &Cost| json!({ "bytes": cost.bytes, "seconds": cost.seconds });
+        let mut costs = self.costs.iter().map(cost);
+        let mut next = || costs.next().unwrap_or_default();
+        let shapes: Vec<_> = plan.shapes.iter().zip(&outline.tables).enumerate().map(|(i, (need, specs))| {
+            let tables: Vec<_> = specs
+                .iter()
+                .map(|spec| json!({ "name": spec.name, "kind": spec.kind.name(), "shapes": spec.shapes.nodes.len(), "views": spec.views, "numbers": spec.numbers }))
+                .collect();
+            // JSON has no infinity.
+            let gamma = [need.gamma().min, need.gamma().max].map(|gamma| gamma.to_string());
+            json!({ "gamma": gamma, "s": need.s(), "tables": tables, "cost": next(), "materials": outline.served(i) })
+        }).collect();
+        let distributions: Vec<_> = plan
+            .distributions
+            .iter()
+            .enumerate()
+            .map(|(i, own)| {
+                json!({ "distribution": own.label(), "tables": 4, "cost": next(), "materials": outline.wearers(i) })
+            })
+            .collect();
+        let albedos: Vec<_> = outline.albedos.iter().enumerate().map(|(i, spec)| {
+            let names: Vec<_> = spec.maskings.iter().map(|&masking| spec.name(Kind::Albedo, masking)).collect();
+            let nodes: Vec<_> = spec.axes.iter().map(|axis| json!({ "name": axis.name, "length": axis.len() })).collect();
+            let covers = if let AlbedoLobe::Family(domain) = &spec.lobe { Some(domain.covered()) } else { None };
+            json!({
+                "names": names, "lobe": spec.lobe.entry(), "covers": covers, "masking": spec.maskings, "reflectance": spec.reflectance,
+                "axes": nodes, "cost": next(), "materials": outline.lit(i),
+            })
+        }).collect();
+        json!({
+            "shapes": shapes, "distributions": distributions, "albedo": albedos,
+            "materials": outline.materials(), "ignored": outline.ignored(), "nothing_needed": plan.is_empty(),
+            "total": cost(&self.total), "general_set": cost(&self.general),
+            "milliseconds": { "reading": self.reading, "planning": self.planning },
+        })
+    }
+}

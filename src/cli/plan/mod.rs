@@ -1,0 +1,113 @@
+//! `plan`: shows what a bake of a scene would do, and why.
+
+mod json;
+mod words;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use microfacet_bake::bake::albedo::AlbedoSpec;
+use microfacet_bake::plan::{Cost, albedo_cost, bare_cost, cost, distribution_cost, set_cost};
+use microfacet_bake::scene;
+use microfacet_bake::table_spec::general_set;
+
+use super::request::Request;
+use super::words::{bytes, compared, count, exact_bytes, seconds, wrapped};
+use super::{Done, Outcome, print, print_json, report};
+
+pub(super) use words::{Outline, nothing, reflectance};
+
+/// Show what must be baked for a scene and what not, with bytes and seconds.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  microfacet-bake plan tables/recipes/gold-series.toml")]
+pub(super) struct Args {
+    /// A recipe (.toml) or scene (.pbrt, .xml, .gltf, .glb, .mtlx).
+    scene: PathBuf,
+    #[command(flatten)]
+    request: Request,
+    /// Print the plan as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// A plan with the figures that are reported on it.
+struct Report<'a> {
+    outline: Outline<'a>,
+    /// Cost of each part that is baked.
+    costs: Vec<Cost>,
+    total: Cost,
+    general: Cost,
+    /// Milliseconds.
+    reading: f64,
+    planning: f64,
+}
+
+pub(super) fn run(args: Args) -> Outcome {
+    let start = Instant::now();
+    let scene = scene::load(&args.scene)?;
+    let reading = start.elapsed();
+    scene.warnings.iter().for_each(|warning| report("warning", warning));
+    let start = Instant::now();
+    let plan = args.request.plan(&scene, None)?;
+    let (quality, precision) = (args.request.quality(), args.request.precision());
+    let outline = Outline::new(&scene, &plan, quality, precision)?;
+    let own = plan.distributions.iter().map(|own| distribution_cost(own, quality, precision));
+    let costs = outline.tables.iter().map(|specs| cost(specs));
+    let costs = costs.chain(own).chain(outline.albedos.iter().map(albedo_cost)).collect();
+    let total = set_cost(&plan, quality, precision)?;
+    let everything = args.request.general_plan();
+    let albedos = everything.albedos.iter().map(|_| AlbedoSpec::general(quality, precision));
+    let general = [cost(&general_set(quality, precision)), bare_cost(&everything.provenance())]
+        .into_iter()
+        .chain(albedos.map(|spec| albedo_cost(&spec)))
+        .sum();
+    let milliseconds = |time: Duration| 1e3 * time.as_secs_f64();
+    let (reading, planning) = (milliseconds(reading), milliseconds(start.elapsed()));
+    let report = Report { outline, costs, total, general, reading, planning };
+    if args.json {
+        print_json(&report.json())?
+    } else {
+        print(&report.text())?
+    }
+    Ok(Done::Ok)
+}
+
+impl Report<'_> {
+    fn text(&self) -> String {
+        let Self { outline, costs, total, general, .. } = self;
+        // The albedos come last.
+        let first = costs.len() - outline.albedos.len();
+        let detail = |i: usize| {
+            let open =
+                i.checked_sub(first).is_some_and(|albedo| outline.albedos[albedo].doublings() > 0);
+            let least = if open { " at least" } else { "" };
+            format!(", {}{least}, about {}", exact_bytes(costs[i].bytes), seconds(costs[i].seconds))
+        };
+        let mut text = outline.lines(["bake", "skip"], detail);
+        if outline.plan.is_empty() {
+            text += nothing(outline.scene);
+        } else {
+            let smaller = compared(total.bytes as f64, general.bytes as f64, ["smaller", "larger"]);
+            let faster = if total.seconds > 0.0 {
+                let faster = compared(total.seconds, general.seconds, ["faster", "slower"]);
+                format!("about {}; {smaller} and {faster}", seconds(total.seconds))
+            } else {
+                format!("no tables to bake; {smaller}")
+            };
+            let general = format!("{}, about {}", bytes(general.bytes), seconds(general.seconds));
+            let total = exact_bytes(total.bytes);
+            text += &wrapped(
+                "total: ",
+                &format!("{total}, {faster} than the general set ({general})"),
+                7,
+            );
+        }
+        let materials = outline.scene.materials.len() + outline.scene.ignored.len();
+        text + &format!(
+            "{}, read in {:.1} ms, planned in {:.1} ms\n",
+            count(materials, "material"),
+            self.reading,
+            self.planning
+        )
+    }
+}

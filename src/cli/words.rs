@@ -1,0 +1,239 @@
+//! Numbers, sizes, lists and columns in the texts that commands print.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use bytesize::ByteSize;
+
+use super::escape;
+
+/// Prose in the output ends here.
+const COLUMNS: usize = 100;
+
+/// A number to seven digits, which hides the rounding of coordinates: `0.3`, `1e-8`, `inf`.
+pub(super) fn number(x: f64) -> String {
+    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
+    match rounded.abs() {
+        1e-3..1e7 | 0.0 | f64::INFINITY => format!("{rounded}"),
+        _ => format!("{rounded:e}"),
+    }
+}
+
+/// A range of numbers: `3`, or `1.501 to inf`.
+pub(super) fn range([min, max]: [f64; 2]) -> String {
+    let [min, max] = [min, max].map(number);
+    if min == max { min } else { format!("{min} to {max}") }
+}
+
+/// An error with all the digits of a certificate, which are rounded up.
+pub(super) fn error(x: f64) -> String {
+    if x == 0.0 { "0".into() } else { format!("{x:.2e}") }
+}
+
+/// A number of bytes to three digits: `29.2 kB`.
+pub(super) fn bytes(count: usize) -> String {
+    // 1, 2 or 3 digits stand before the point.
+    let decimals = 2 - count.max(1).ilog10() as usize % 3;
+    format!("{:.decimals$}", ByteSize(count as u64).display().si())
+}
+
+/// A number of bytes to three digits, and exactly: `29.2 kB (29232 bytes)`.
+pub(super) fn exact_bytes(count: usize) -> String {
+    if count < 1000 {
+        format!("{count} bytes")
+    } else {
+        format!("{} ({count} bytes)", bytes(count))
+    }
+}
+
+/// A time: `12 ms`, `20.8 s`.
+pub(super) fn seconds(seconds: f64) -> String {
+    match seconds {
+        ..0.001 => "1 ms".into(),
+        ..0.9995 => format!("{:.0} ms", 1e3 * seconds),
+        ..100.0 => format!("{seconds:.1} s"),
+        _ => format!("{seconds:.0} s"),
+    }
+}
+
+/// A count of things: `1 table`, `3 tables`.
+pub(super) fn count(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+/// How a size or a time compares with a larger one: `53 times smaller`; words for less and for
+/// more.
+pub(super) fn compared(x: f64, with: f64, [less, more]: [&str; 2]) -> String {
+    let (ratio, word) = if x <= with { (with / x, less) } else { (x / with, more) };
+    match ratio {
+        10.0.. => format!("{ratio:.0} times {word}"),
+        _ => format!("{ratio:.1} times {word}"),
+    }
+}
+
+/// The first few of a list of names, in quotes.
+pub(super) fn list<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    const SHOWN: usize = 4;
+    let more = names.len().saturating_sub(SHOWN);
+    let mut shown: Vec<String> =
+        names.take(SHOWN).map(|name| format!("\"{}\"", escape::line(name))).collect();
+    if more > 0 {
+        shown.push(format!("{more} more"));
+    }
+    shown.join(", ")
+}
+
+/// Items joined as in a sentence: `a, b and c`.
+pub(super) fn joined(items: &[String]) -> String {
+    match items {
+        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => items.concat(),
+    }
+}
+
+/// Lines of a text that starts with `head`, broken at spaces outside quotes, with `indent` spaces
+/// before all but the first.
+pub(super) fn wrapped(head: &str, text: &str, indent: usize) -> String {
+    let (mut lines, mut width) = (head.to_owned(), head.chars().count());
+    // The head ends in its own space.
+    let mut space = "";
+    let mut quotes = 0;
+    // Not within the quotes of a name, of which every space counts.
+    let is_end = |c| {
+        quotes += usize::from(c == '"');
+        c == ' ' && quotes % 2 == 0
+    };
+    for word in text.split(is_end) {
+        let more = word.chars().count();
+        if width + space.len() + more > COLUMNS && width > indent {
+            lines += &format!("\n{:indent$}", "");
+            (width, space) = (indent, "");
+        }
+        lines += space;
+        lines += word;
+        width += space.len() + more;
+        space = " ";
+    }
+    lines + "\n"
+}
+
+/// Rows as lines of aligned columns with two spaces between them.
+pub(super) fn columns(rows: &[Vec<String>]) -> Vec<String> {
+    let width = |i: usize| {
+        rows.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let count = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..count).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells: Vec<String> =
+            row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}")).collect();
+        cells.join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect()
+}
+
+/// A path as a shell reads it, to be pasted into a command.
+pub(super) fn shell(path: &Path) -> String {
+    let bytes = path.as_os_str().as_encoded_bytes();
+    // Else it would be taken as an option.
+    let dash = if bytes.starts_with(b"-") { "./" } else { "" };
+    let plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"_./+:,@%-".contains(byte);
+    let visible = |text: &&str| matches!(escape::line(text), Cow::Borrowed(_));
+    match path.to_str().filter(visible) {
+        Some(text) if !text.is_empty() && bytes.iter().all(plain) => format!("{dash}{text}"),
+        Some(text) => format!("'{dash}{}'", text.replace('\'', r"'\''")),
+        // What no terminal shows is written by its bytes.
+        None => {
+            let byte = |&byte: &u8| match byte {
+                b'\'' | b'\\' => format!("\\{}", char::from(byte)),
+                b' '..=b'~' => char::from(byte).to_string(),
+                _ => format!("\\x{byte:02x}"),
+            };
+            format!("$'{dash}{}'", bytes.iter().map(byte).collect::<String>())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_seven_digits_and_no_zeros_behind() {
+        let numbers = [
+            (0.3, "0.3"),
+            (0.3999999999999999, "0.4"),
+            (1.25e-8, "1.25e-8"),
+            (0.0, "0"),
+            (-0.002, "-0.002"),
+            (491.50099405466847, "491.501"),
+            (1e9, "1e9"),
+            (f64::INFINITY, "inf"),
+        ];
+        for (x, text) in numbers {
+            assert_eq!(number(x), text);
+        }
+        assert_eq!(range([1.501, f64::INFINITY]), "1.501 to inf");
+        assert_eq!(range([0.4, 0.39999999999999]), "0.4");
+    }
+
+    #[test]
+    fn sizes_and_times_have_their_units() {
+        assert_eq!(exact_bytes(29232), "29.2 kB (29232 bytes)");
+        assert_eq!(exact_bytes(612), "612 bytes");
+        assert_eq!([0, 999, 462_672, 1_563_743].map(bytes), ["0 B", "999 B", "463 kB", "1.56 MB"]);
+        let times = [0.0, 0.0123, 0.9994, 20.81, 320.4].map(seconds);
+        assert_eq!(times, ["1 ms", "12 ms", "999 ms", "20.8 s", "320 s"]);
+    }
+
+    #[test]
+    fn what_is_larger_is_called_larger() {
+        let words = ["smaller", "larger"];
+        assert_eq!(compared(10.0, 532.0, words), "53 times smaller");
+        assert_eq!(compared(50.0, 10.0, words), "5.0 times larger");
+        assert_eq!(compared(10.0, 10.0, words), "1.0 times smaller");
+    }
+
+    #[test]
+    fn a_text_breaks_at_spaces_before_the_edge() {
+        let text = "word ".repeat(60);
+        let lines = wrapped("head  ", &text, 6);
+        assert!(lines.lines().all(|line| line.chars().count() <= COLUMNS), "{lines}");
+        assert!(lines.lines().skip(1).all(|line| line.starts_with("      word")), "{lines}");
+        assert_eq!(lines.matches("word").count(), 60);
+        // A word of any length has a line to itself.
+        let long = "x".repeat(150);
+        assert_eq!(
+            wrapped("head  ", &format!("a {long} b"), 2),
+            format!("head  a\n  {long}\n  b\n")
+        );
+        // A name is not broken, and keeps its spaces.
+        let name = format!("\"{}  b\"", "a ".repeat(30));
+        assert_eq!(wrapped("", &format!("{name}, {name}"), 2), format!("{name},\n  {name}\n"));
+    }
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell() {
+        let rows = [vec!["a".into(), "γ 3".into(), "x".into()], vec!["bcd".into(), "1".into()]];
+        assert_eq!(columns(&rows), ["a    γ 3  x", "bcd  1"]);
+    }
+
+    #[test]
+    fn paths_are_quoted_where_a_shell_would_split_or_expand_them() {
+        let quoted = [
+            ("out/glass-1.2", "out/glass-1.2"),
+            ("my glass", "'my glass'"),
+            ("it's", r"'it'\''s'"),
+            ("$HOME", "'$HOME'"),
+            ("~", "'~'"),
+            ("-x", "./-x"),
+            ("- x", "'./- x'"),
+            ("Grüße", "'Grüße'"),
+            ("a\nb'", r"$'a\x0ab\''"),
+            ("", "''"),
+        ];
+        for (path, text) in quoted {
+            assert_eq!(shell(Path::new(path)), text);
+        }
+    }
+}
