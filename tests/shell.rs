@@ -83,6 +83,6 @@ fn nothing_is_coloured_but_on_a_terminal() {
 #[test]
 fn characters_that_command_a_terminal_are_written_out_in_usage_errors() {
     let folder = tempfile::tempdir().unwrap();
-    let error = refused(folder.path(), &["bake", "--quality", "\u{202e}red\u{7}", "--out", "o"]);
-    assert!(error.contains("'\\u{202e}red\\u{7}'"), "{error}");
+    let error = refused(folder.path(), &["bake", "--quality", "\u{202e}red", "--out", "o"]);
+    assert!(error.contains("'\\u{202e}red'"), "{error}");
 }

@@ -100,10 +100,10 @@ impl Args {
     }
 
     /// What a bake leaves that is interrupted before it writes.
-    fn leaves(&self, cache: &Cache) -> String {
+    fn leaves(&self) -> String {
         let out = format!("{} is as it was", self.out.display());
         let kept = "; finished tables are kept, and the same command goes on from there";
-        out + if cache.folder().is_some() { kept } else { "" }
+        out + if self.cache().folder().is_some() { kept } else { "" }
     }
 
     fn cache(&self) -> Cache {
@@ -124,6 +124,7 @@ pub(super) fn run(args: Args) -> Outcome {
                 .into(),
         ));
     }
+    interrupt::leaves(args.leaves());
     let out = OutputFolder::open(&args.out)?;
     let (scene, plan) = match args.recipe.as_deref() {
         Some(path) => {
@@ -155,7 +156,6 @@ pub(super) fn run(args: Args) -> Outcome {
         patient: args.patient,
         progress: Meter::default(),
     };
-    interrupt::leaves(args.leaves(&settings.cache));
     let bar = progress::show(&settings.progress, "baking");
     let result = bake_with(&plan, args.target(), settings)?;
     drop(bar);

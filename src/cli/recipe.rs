@@ -9,7 +9,7 @@ use super::{Done, Failure, Outcome, print, summarize};
 /// Print a commented recipe to start from.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  microfacet-bake recipe --out mine.toml && microfacet-bake bake mine.toml --out tables",
+    after_help = "Examples:\n  microfacet-bake recipe --out mine.toml\n  microfacet-bake bake mine.toml --out tables",
     after_long_help = KEYS
 )]
 pub(super) struct Args {
@@ -37,7 +37,7 @@ Keys of a material (docs/recipe.md has all their forms):
 Instead of a number, sigma and gamma take a range: { min = A, max = B }.
 
 Example:
-  microfacet-bake recipe --out mine.toml && microfacet-bake bake mine.toml --out tables";
+  microfacet-bake recipe --out mine.toml\n  microfacet-bake bake mine.toml --out tables";
 
 pub(super) fn run(args: Args) -> Outcome {
     let Some(path) = args.out.filter(|path| path.as_os_str() != "-") else {
