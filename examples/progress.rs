@@ -8,8 +8,8 @@
 //! cargo run --release --example progress -- default tables/recipes/brushed-metals.toml
 //! ```
 //!
-//! The first argument is a quality or a largest error, the second a recipe or scene; without one the
-//! general set is baked.
+//! The first argument is a quality or a largest error, the second a recipe or scene; without one
+//! the general set is baked.
 
 use std::error::Error;
 use std::path::Path;

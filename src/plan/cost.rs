@@ -159,8 +159,8 @@ pub(crate) struct AlbedoWork {
 impl AlbedoWork {
     pub(crate) fn new(spec: &AlbedoSpec) -> Self {
         let [nodes, certificate] = albedo_seconds(spec);
-        // By how much longer a place takes than one inside, measured as for `albedo_seconds`: over a
-        // range of shapes each edge has shapes of its own, which take time to prepare; a climb in
+        // By how much longer a place takes than one inside, measured as for `albedo_seconds`: over
+        // a range of shapes each edge has shapes of its own, which take time to prepare; a climb in
         // one shape often ends early.
         let is_range =
             matches!(spec.axes[0].mapping, Mapping::LogShape(_)) && spec.axes[0].len() > 1;

@@ -53,8 +53,8 @@ pub(super) fn remove_empty(folders: &[impl AsRef<Path>]) {
 }
 
 /// Prepares the end of the process from a signal handler's thread: waits until no file is being
-/// replaced, lets no other write begin, and removes files under temporary names and the empty folders
-/// that were made for sets.
+/// replaced, lets no other write begin, and removes files under temporary names and the empty
+/// folders that were made for sets.
 ///
 /// Returns whether the files are whole. `false` says that a write has not ended within `patience`,
 /// as on a disk that hangs; whoever opens the folder next completes it.

@@ -21,6 +21,8 @@ const WORTH: f64 = 0.9;
 const ALLOWANCE: f64 = 2.0;
 /// Estimated duration of a whole search, as a multiple of that of its first grades.
 pub(super) const SEARCH_OVER_FIRST: f64 = 1.7;
+/// The same for the progress: between a search that ends with its first grade, and a whole one.
+const EXPECTED_OVER_FIRST: f64 = 1.3;
 
 /// A grade: a level, and the index of one of [`PRECISIONS`].
 pub(super) type Grade = (Level, usize);
@@ -168,7 +170,7 @@ impl<'a> Candidate<'a> {
     /// Announces the work of a search that begins at a grade.
     pub(super) fn expect(&mut self, (level, _): Grade, job: &Job) {
         let precisions = if self.group.shares_measuring() { PRECISIONS.len() } else { 1 };
-        self.expected = SEARCH_OVER_FIRST * self.group.work(level, precisions);
+        self.expected = EXPECTED_OVER_FIRST * self.group.work(level, precisions);
         job.progress.expect(self.expected);
     }
 
