@@ -2,6 +2,8 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use etcetera::BaseStrategy;
 use sha2::{Digest, Sha256};
@@ -20,17 +22,19 @@ use crate::store::{self, make_folder, remove_abandoned, replace};
 #[derive(Clone, Debug)]
 pub struct Cache {
     folder: Option<PathBuf>,
+    /// Whether an entry was written.
+    kept: Arc<AtomicBool>,
 }
 
 impl Cache {
     /// A cache in this folder, which is created with the first entry.
     pub fn new(folder: PathBuf) -> Self {
-        Self { folder: Some(folder) }
+        Self { folder: Some(folder), kept: Arc::default() }
     }
 
     /// A cache that keeps nothing.
     pub fn none() -> Self {
-        Self { folder: None }
+        Self { folder: None, kept: Arc::default() }
     }
 
     /// The folder `microfacet-bake` in the user's cache folder (`$XDG_CACHE_HOME`, or the system's
@@ -39,12 +43,17 @@ impl Cache {
         let folder = etcetera::choose_base_strategy()
             .ok()
             .map(|base| base.cache_dir().join("microfacet-bake"));
-        Self { folder }
+        Self { folder, kept: Arc::default() }
     }
 
     /// The folder, if there is one.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
+    }
+
+    /// Whether this cache or a clone of it has kept any tables, to be read at any time.
+    pub fn kept(&self) -> Arc<AtomicBool> {
+        self.kept.clone()
     }
 
     /// The tables kept under a key.
@@ -69,7 +78,9 @@ impl Cache {
         };
         make_folder(folder).map_err(|why| at(folder, why))?;
         remove_abandoned(folder);
-        replace(&path, &bytes).map_err(|why| at(&path, why))
+        replace(&path, &bytes).map_err(|why| at(&path, why))?;
+        self.kept.store(true, Relaxed);
+        Ok(())
     }
 
     /// Removes what is kept under a key.

@@ -1,5 +1,6 @@
 //! Fits (σ, γ) to a measured distribution of normals.
 
+use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 use std::io::Read;
 
@@ -71,6 +72,22 @@ impl Angles {
         }
     }
 
+    /// A polar angle in [0, π/2], in radians. Up to 1e-5 above π/2 is a rounded π/2, as 1.5708 is,
+    /// and counts as π/2: a view beyond it would lie below the horizon.
+    ///
+    /// # Errors
+    /// The range of the angle, and whether it may have been meant in degrees.
+    pub fn polar(self, angle: f64) -> Result<f64, (&'static str, bool)> {
+        let radians = self.to_radians(angle);
+        if (0.0..=FRAC_PI_2 + 1e-5).contains(&radians) {
+            return Ok(radians.min(FRAC_PI_2));
+        }
+        Err(match self {
+            Self::Radians => ("in [0, pi/2 = 1.5708] radians", (0.0..=90.0).contains(&angle)),
+            Self::Degrees => ("in [0, 90] degrees", false),
+        })
+    }
+
     /// An angle in radians as one of this unit.
     pub const fn from_radians(self, angle: f64) -> f64 {
         match self {
@@ -127,7 +144,9 @@ pub fn read_csv(input: impl Read, angles: Angles) -> Result<Tabulated, MeasuredE
         }
         first = false;
     }
-    let points: Vec<_> = measured.iter().map(|row| (angles.to_radians(row.angle), row.d)).collect();
+    // The model says what is wrong with an angle that is out of range.
+    let radians = |angle| angles.polar(angle).unwrap_or_else(|_| angles.to_radians(angle));
+    let points: Vec<_> = measured.iter().map(|row| (radians(row.angle), row.d)).collect();
     Tabulated::new(&points).map_err(|error| refusal(error, &measured, angles))
 }
 
@@ -144,20 +163,21 @@ fn refusal(error: TabulatedError, rows: &[Measured], angles: Angles) -> Measured
         TabulatedError::Angle(i, _) => {
             let angle = rows[i].angle;
             let before = i.checked_sub(1).map(|i| rows[i].angle);
-            let why = match (before, angles) {
+            let why = match (before, angles.polar(angle)) {
                 (Some(before), _) if angle <= before => {
                     format!("the angle {angle} must be more than {before}, that of the row before")
                 }
-                (_, Angles::Degrees) => format!("the angle {angle} must be in [0, 90] degrees"),
-                (_, Angles::Radians) => {
-                    let hint = match angle {
-                        0.0..=90.0 => {
-                            "; if it is in degrees, say so: --degrees, or in a recipe degrees = true"
-                        }
-                        _ => "",
+                (_, Err((range, doubted))) => {
+                    let hint = if doubted {
+                        "; if it is in degrees, say so: --degrees, or in a recipe \
+                         { measured = \"..\", degrees = true }"
+                    } else {
+                        ""
                     };
-                    format!("the angle {angle} must be in [0, pi/2 = 1.5708] radians{hint}")
+                    format!("the angle {angle} must be {range}{hint}")
                 }
+                // Two roundings of π/2.
+                _ => format!("the angle {angle} must be more than that of the row before"),
             };
             (i, why)
         }

@@ -46,8 +46,8 @@ fn other_names_of_sigma_are_told_their_relation() {
     let folder = tempfile::tempdir().unwrap();
     for command in ["validate", "sample", "furnace"] {
         for (option, relation) in [
-            ("--alpha 0.3", "alpha of GGX and Beckmann"),
-            ("--roughness=0.3", "sigma is r^2"),
+            ("--alpha 0.3", "alpha of GGX"),
+            ("--roughness=0.3", "square root of sigma"),
             ("--m 0.3", "m of Beckmann"),
             ("-m 0.3", "m of Beckmann"),
         ] {

@@ -4,6 +4,7 @@ mod command;
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use command::{ok, refused, run};
 
@@ -17,6 +18,39 @@ fn every_shell_has_completions_of_every_subcommand() {
         }
     }
     assert!(refused(folder.path(), &["completions", "cobol"]).contains("zsh"));
+    for hidden in ["roughness", "alpha"] {
+        let script = ok(folder.path(), &["completions", "bash"]);
+        assert!(!script.contains(&format!("--{hidden} ")), "{hidden} exists to be refused");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn bash_completes_options_and_values_of_subcommands() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("c"), ok(folder.path(), &["completions", "bash"])).unwrap();
+    for (words, found) in [
+        ("validate --st", "--stress"),
+        ("bake --qual", "--quality"),
+        ("bake --quality d", "draft default"),
+        ("query g1 --met", "--method"),
+        ("furnace --masking h", "height-correlated"),
+    ] {
+        let count = words.split(' ').count();
+        // As an interactive bash calls it.
+        let script = format!(
+            "source ./c; COMP_WORDS=(microfacet-bake {words}); COMP_CWORD={count}; \
+             last=${{COMP_WORDS[$COMP_CWORD]}}; _microfacet-bake microfacet-bake \"$last\" \
+             \"${{COMP_WORDS[$COMP_CWORD-1]}}\"; echo ${{COMPREPLY[@]}}"
+        );
+        let Ok(output) = Command::new("bash").args(["-c", &script]).current_dir(&folder).output()
+        else {
+            // A system without bash has no use for it.
+            return;
+        };
+        let replies = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert_eq!(replies.trim(), found, "{words}: {}", String::from_utf8_lossy(&output.stderr));
+    }
 }
 
 #[test]
@@ -50,9 +84,10 @@ fn quiet_leaves_results_and_errors() {
     };
     silent(&["bake", "glass.toml", "--out", "out", "--quiet"], 0);
     let few = ["validate", "out", "-q", "--configurations", "2", "--samples", "1e4"];
-    silent(&few, 0);
+    assert_eq!(ok(folder.path(), &few), "PASSED\n");
     let wrong = ["validate", "out", "-q", "--configurations", "2", "--perturb-gamma", "1.5"];
-    silent(&wrong, 1);
+    let output = run(folder.path(), &wrong);
+    assert_eq!((output.status.code(), &output.stdout[..]), (Some(1), &b"REJECTED\n"[..]));
     // What was asked for is no summary.
     assert!(ok(folder.path(), &["inspect", "out", "-q"]).contains("glass"));
     assert!(ok(folder.path(), &["plan", "glass.toml", "-q"]).contains("glass"));
@@ -85,4 +120,46 @@ fn characters_that_command_a_terminal_are_written_out_in_usage_errors() {
     let folder = tempfile::tempdir().unwrap();
     let error = refused(folder.path(), &["bake", "--quality", "\u{202e}red", "--out", "o"]);
     assert!(error.contains("'\\u{202e}red'"), "{error}");
+}
+
+/// What a command writes to a terminal of its own, by the `script` of util-linux; `None` on systems
+/// without it.
+#[cfg(target_os = "linux")]
+fn on_a_terminal(folder: &Path, line: &str, no_color: bool) -> Option<String> {
+    let program = env!("CARGO_BIN_EXE_microfacet-bake");
+    let mut command = Command::new("script");
+    command.args(["-qec", &format!("{program} {line}"), "/dev/null"]);
+    command.env("TERM", "xterm").env("XDG_CACHE_HOME", folder.join("home")).current_dir(folder);
+    command.env_remove("NO_COLOR").env_remove("CLICOLOR");
+    if no_color {
+        command.env("NO_COLOR", "1");
+    }
+    let output = command.stdin(std::process::Stdio::null()).output().ok()?;
+    Some(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_terminal_has_colours_unless_it_wants_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "bake missing.toml --out o";
+    let Some(coloured) = on_a_terminal(folder.path(), line, false) else { return };
+    assert!(coloured.contains("\u{1b}[31merror\u{1b}[0m: missing.toml"), "{coloured:?}");
+    let plain = on_a_terminal(folder.path(), line, true).unwrap();
+    assert!(plain.starts_with("error: missing.toml"), "{plain:?}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_terminal_shows_progress_and_clears_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = "bake --no-albedo --quality high --no-cache --out out";
+    let Some(text) = on_a_terminal(folder.path(), long, true) else { return };
+    let (bars, summary) = text.split_at(text.find("baked ").expect("a summary"));
+    assert!(bars.contains("baking ") && bars.contains(" left"), "{bars:?}");
+    // Cleared before the summary, and not drawn again.
+    assert!(bars.ends_with("\u{1b}[2K") || bars.ends_with('\r'), "{bars:?}");
+    assert!(!summary.contains(" left") && summary.contains("next:"), "{summary:?}");
+    let quiet = on_a_terminal(folder.path(), &format!("{long} -q"), true).unwrap();
+    assert_eq!(quiet, "");
 }

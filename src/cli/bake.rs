@@ -3,6 +3,7 @@
 mod summary;
 
 use std::path::PathBuf;
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
 use clap::ValueEnum;
@@ -24,7 +25,7 @@ use summary::Summary;
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  microfacet-bake bake tables/recipes/frosted-glass.toml --out glass",
+    after_help = "Examples:\n  microfacet-bake recipe --out mine.toml\n  microfacet-bake bake mine.toml --out mine\n  microfacet-bake bake mine.toml --out small --max-error 1e-3\n  microfacet-bake bake --out general",
     group = clap::ArgGroup::new("budget").args(["max_error", "max_bytes"])
 )]
 pub(super) struct Args {
@@ -99,11 +100,20 @@ impl Args {
         }
     }
 
-    /// What a bake leaves that is interrupted before it writes.
-    fn leaves(&self) -> String {
-        let out = format!("{} is as it was", self.out.display());
-        let kept = "; finished tables are kept, and the same command goes on from there";
-        out + if self.cache().folder().is_some() { kept } else { "" }
+    /// What a bake leaves if it is interrupted.
+    fn say_what_is_left(&self, out: &OutputFolder, cache: &Cache) {
+        let (folder, written, kept) = (self.out.display().to_string(), out.written(), cache.kept());
+        interrupt::leaves(move || {
+            if written.load(Relaxed) {
+                return format!("the set in {folder} is complete");
+            }
+            let kept = if kept.load(Relaxed) {
+                "; finished tables are kept, and the same command goes on from there"
+            } else {
+                ""
+            };
+            format!("{folder} is as it was{kept}")
+        });
     }
 
     fn cache(&self) -> Cache {
@@ -124,8 +134,9 @@ pub(super) fn run(args: Args) -> Outcome {
                 .into(),
         ));
     }
-    interrupt::leaves(args.leaves());
     let out = OutputFolder::open(&args.out)?;
+    let cache = args.cache();
+    args.say_what_is_left(&out, &cache);
     let (scene, plan) = match args.recipe.as_deref() {
         Some(path) => {
             let scene = scene::load(path)?;
@@ -151,7 +162,7 @@ pub(super) fn run(args: Args) -> Outcome {
         }
     }
     let settings = Settings {
-        cache: args.cache(),
+        cache,
         max_memory: args.max_memory,
         patient: args.patient,
         progress: Meter::default(),
@@ -176,7 +187,6 @@ pub(super) fn run(args: Args) -> Outcome {
         })
         .collect();
     let written = out.write(&result.set, &formats)?;
-    interrupt::leaves(format!("the set in {} is complete", args.out.display()));
     let summary = Summary {
         outline,
         result: &result,

@@ -10,14 +10,17 @@ use microfacet_bake::progress::Meter;
 
 use super::convert::{On, ends};
 use super::values::Unit;
+use super::words::number;
 use super::{Done, Failure, Outcome, print, progress};
 
 /// Fit a Student-t to a measured distribution of normals (a CSV with the columns angle and D).
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  microfacet-bake fit --input measured.csv --degrees")]
+#[command(
+    after_help = "Example:\n  printf 'theta,D\\n0,10\\n5,8.7\\n10,5.6\\n15,2.9\\n20,1.3\\n25,0.5\\n' | microfacet-bake fit --input - --degrees"
+)]
 pub(super) struct Args {
-    /// The CSV file, `-` for standard input.
-    #[arg(long)]
+    /// CSV file, `-` for standard input.
+    #[arg(long, value_name = "CSV")]
     input: PathBuf,
     #[command(flatten)]
     unit: Unit,
@@ -61,14 +64,9 @@ pub(super) fn run(args: Args) -> Outcome {
     Ok(Done::Ok)
 }
 
-/// An angle in radians with six digits, however small, in the unit of the input.
+/// An angle in radians, however small, in the unit of the input.
 fn angle(radians: f64, unit: Angles) -> String {
-    let digits = format!("{:.5e}", unit.from_radians(radians));
-    let rounded: f64 = digits.parse().expect("a number that was written");
-    match rounded {
-        1e-3.. => format!("{rounded} {}", unit.name()),
-        _ => format!("{rounded:e} {}", unit.name()),
-    }
+    format!("{} {}", number(unit.from_radians(radians)), unit.name())
 }
 
 #[cfg(test)]
@@ -85,6 +83,6 @@ mod tests {
         ] {
             assert_eq!(angle(f64::to_radians(degrees), Angles::Degrees), shown);
         }
-        assert_eq!(angle(1.0 / 3.0, Angles::Radians), "0.333333 radians");
+        assert_eq!(angle(1.0 / 3.0, Angles::Radians), "0.3333333 radians");
     }
 }

@@ -1,37 +1,92 @@
 //! Ctrl-C, and a request to terminate: ends at once, with whole files, and says what is left.
 
+use std::io::{self, Write};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use microfacet_bake::store;
 
-use super::{progress, say};
+use super::{progress, styled};
 
-/// Exit status of a command that was interrupted, as shells count it: 128 and the signal, 2.
-const INTERRUPTED: i32 = 130;
 /// Time that a write may take to end.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What an interrupted command leaves, beside whole files.
-static LEFT: Mutex<String> = Mutex::new(String::new());
+type Left = Box<dyn Fn() -> String + Send>;
 
-/// Says what the command leaves if it is interrupted from here on.
-pub(super) fn leaves(what: impl Into<String>) {
-    *LEFT.lock().unwrap_or_else(PoisonError::into_inner) = what.into();
+/// What an interrupted command leaves.
+static LEFT: Mutex<Option<Left>> = Mutex::new(None);
+
+/// Sets what is said if the command is interrupted from here on; it is asked for at that moment.
+pub(super) fn leaves(what: impl Fn() -> String + Send + 'static) {
+    *LEFT.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(what));
+}
+
+/// The same for a command that writes to standard output.
+pub(super) fn leaves_stream() {
+    leaves(|| "standard output ends early".into());
+}
+
+/// Brings the files in order and says what is left.
+fn prepare() {
+    progress::hide();
+    let whole = store::quiesce(PATIENCE);
+    let left = LEFT.lock().unwrap_or_else(PoisonError::into_inner);
+    let message = match left.as_ref() {
+        _ if !whole => "a write did not end; it may leave a hidden file *.partial".into(),
+        Some(left) => left(),
+        None => "nothing was written".into(),
+    };
+    // Not around the bar: whoever prints may be waiting for a reader that has stopped.
+    let _ = writeln!(io::stderr(), "{}", styled("interrupted", &message));
+}
+
+/// From here on an interrupt ends the process between two writes, and a second one at once.
+#[cfg(unix)]
+pub(super) fn watch() {
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicBool;
+
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    use signal_hook::{flag, low_level};
+
+    // Ignored already, as by `nohup` or for a job in the background: it stays so.
+    let ignored = ignored();
+    let signals: Vec<i32> = [SIGINT, SIGTERM, SIGHUP]
+        .into_iter()
+        .filter(|signal| ignored & (1 << (signal - 1)) == 0)
+        .collect();
+    let again = Arc::new(AtomicBool::new(false));
+    for &signal in &signals {
+        // Where a signal cannot be handled, the system's default stays.
+        let _ = flag::register_conditional_default(signal, again.clone());
+        let _ = flag::register(signal, again.clone());
+    }
+    let Ok(mut signals) = Signals::new(signals) else { return };
+    std::thread::spawn(move || {
+        if let Some(signal) = signals.forever().next() {
+            prepare();
+            // So that a shell sees what ended it: status 128 and the signal.
+            let _ = low_level::emulate_default_handler(signal);
+            std::process::exit(128 + signal);
+        }
+    });
+}
+
+/// The signals that are ignored, a bit each, where the kernel says so.
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
 /// From here on an interrupt ends the process between two writes.
+#[cfg(not(unix))]
 pub(super) fn watch() {
     let handler = || {
-        progress::hide();
-        let files = if store::quiesce(PATIENCE) {
-            "no file is half written"
-        } else {
-            "a write did not end; the next bake or read of that folder completes it"
-        };
-        let left = LEFT.lock().unwrap_or_else(PoisonError::into_inner);
-        say("interrupted", &[files, &left].join(if left.is_empty() { "" } else { "; " }));
-        std::process::exit(INTERRUPTED);
+        prepare();
+        std::process::exit(130);
     };
     // Fails only where signals cannot be handled at all; then the system's default stays.
     let _ = ctrlc::set_handler(handler);

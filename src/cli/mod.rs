@@ -47,7 +47,8 @@ use microfacet_sampler::Tables;
   microfacet-bake bake glass.toml -o glass    bake the tables into the folder glass
   microfacet-bake validate glass              test them against the analytic densities
 
-Exit status: 0 done, 1 a validation rejected, 2 bad input, 130 interrupted.")]
+Exit status: 0 done, 1 a validation rejected, 2 bad input; 128 and the
+signal (130 for Ctrl-C) if it was interrupted.")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -168,18 +169,30 @@ fn report(kind: &str, message: impl Display) {
     }
 }
 
-/// Writes to standard error, the kind in colour on a terminal that wants it (`NO_COLOR`); where
-/// that fails, nothing is left to say it to.
+/// Writes to standard error; where that fails, nothing is left to say it to.
 fn say(kind: &str, text: &str) {
+    progress::above(|| {
+        let _ = writeln!(io::stderr(), "{}", styled(kind, text));
+    });
+}
+
+/// A message for standard error, its kind in colour on a terminal that wants it (`NO_COLOR`).
+fn styled(kind: &str, text: &str) -> String {
     let colour = match kind {
         "note" => AnsiColor::Cyan,
         "warning" | "interrupted" => AnsiColor::Yellow,
         _ => AnsiColor::Red,
     };
+    format!("{}: {text}", coloured(kind, colour, &io::stderr()))
+}
+
+/// A word in colour, where a stream is a terminal that wants it.
+fn coloured(word: &str, colour: AnsiColor, stream: &impl anstream::stream::RawStream) -> String {
     let style = Style::new().bold().fg_color(Some(colour.into()));
-    progress::above(|| {
-        let _ = writeln!(anstream::stderr(), "{style}{kind}{style:#}: {text}");
-    });
+    match anstream::AutoStream::choice(stream) {
+        anstream::ColorChoice::Never => word.into(),
+        _ => format!("{style}{word}{style:#}"),
+    }
 }
 
 /// Writes a text for people that `--quiet` leaves out.
@@ -188,19 +201,11 @@ fn summarize(text: &str) -> Result<(), Failure> {
 }
 
 /// Writes the verdict of a validation, in colour on a terminal that wants it, and returns the
-/// outcome; `--quiet` leaves the exit status.
+/// outcome.
 fn verdict(passed: bool) -> Outcome {
-    let text = if passed { "PASSED" } else { "REJECTED" };
-    let colour = if passed { AnsiColor::Green } else { AnsiColor::Red };
-    let style = Style::new().bold().fg_color(Some(colour.into()));
-    let text = format!("{style}{text}{style:#}\n");
-    let text = match anstream::AutoStream::choice(&io::stdout()) {
-        anstream::ColorChoice::Never => anstream::adapter::strip_str(&text).to_string(),
-        _ => text,
-    };
-    if !is_quiet() {
-        write(text.as_bytes())?;
-    }
+    let (word, colour) =
+        if passed { ("PASSED", AnsiColor::Green) } else { ("REJECTED", AnsiColor::Red) };
+    write(format!("{}\n", coloured(word, colour, &io::stdout())).as_bytes())?;
     Ok(Done::judged(passed))
 }
 
@@ -225,6 +230,20 @@ fn write_on(bytes: &[u8]) -> Result<bool, Failure> {
         Err(error) => Err(Failure(format!("standard output: {error}"))),
         Ok(()) => Ok(true),
     }
+}
+
+/// Writes a file that a user names.
+fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    store::replace(path, bytes).map_err(|why| unwritable(path, &why))
+}
+
+/// Why a file cannot be written, with its path.
+fn unwritable(path: &Path, why: &io::Error) -> Failure {
+    let hint = match why.kind() {
+        io::ErrorKind::InvalidInput => ", or `-` for standard output",
+        _ => "",
+    };
+    Failure(format!("{}: {why}{hint}", path.display()))
 }
 
 /// Prints a value as JSON.

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use microfacet_bake::plot;
-use microfacet_bake::store::replace;
 
-use super::{Done, Failure, Outcome, print};
+use super::{Done, Outcome, print, write_file};
 
 /// Draw a figure of the literature as SVG.
 #[derive(clap::Args)]
@@ -22,8 +21,7 @@ pub(super) struct Args {
 pub(super) fn run(args: Args) -> Outcome {
     let text = plot::svg(&plot::figure(&args.name)?)?;
     match args.out.filter(|path| path.as_os_str() != "-") {
-        Some(path) => replace(&path, text.as_bytes())
-            .map_err(|why| Failure(format!("{}: {why}", path.display())))?,
+        Some(path) => write_file(&path, text.as_bytes())?,
         None => print(&text)?,
     }
     Ok(Done::Ok)

@@ -54,8 +54,9 @@ pub(super) fn show(meter: &Meter, what: &'static str) -> Bar {
             *shown = Some(bar.clone());
         }
         while !end.load(Relaxed) {
-            bar.set_position((LENGTH as f64 * meter.share()) as u64);
-            bar.tick();
+            // More work may turn up, as where tables are refined: the bar waits for it.
+            let position = (LENGTH as f64 * meter.share()) as u64;
+            bar.set_position(position.max(bar.position()));
             std::thread::park_timeout(TICK);
         }
         hide();

@@ -2,9 +2,7 @@
 
 use std::path::PathBuf;
 
-use microfacet_bake::store::replace;
-
-use super::{Done, Failure, Outcome, print, summarize};
+use super::{Done, Failure, Outcome, print, summarize, write_file};
 
 /// Print a commented recipe to start from.
 #[derive(clap::Args)]
@@ -50,7 +48,7 @@ pub(super) fn run(args: Args) -> Outcome {
             "{shown}: this exists already and is kept; name a new file, or remove it before"
         )));
     }
-    replace(&path, STARTER.as_bytes()).map_err(|why| Failure(format!("{shown}: {why}")))?;
+    write_file(&path, STARTER.as_bytes())?;
     summarize(&format!("{shown}\n"))?;
     Ok(Done::Ok)
 }

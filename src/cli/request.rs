@@ -9,6 +9,7 @@ use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables};
 
 use super::Failure;
+use super::values::InRecipe;
 
 #[derive(clap::Args)]
 pub(super) struct Request {
@@ -31,6 +32,8 @@ pub(super) struct Request {
     /// Skip what the sampler crate's default set covers (`Tables::or_embedded`).
     #[arg(long, requires = "scene")]
     embedded: bool,
+    #[command(flatten)]
+    _others: InRecipe,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -19,7 +19,9 @@ use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::{Lobe, MicrofacetDistribution as _};
 
 use super::view::View;
-use super::{Done, Failure, Outcome, progress, report, summarize, tables, values};
+use super::{
+    Done, Failure, Outcome, interrupt, progress, report, summarize, tables, unwritable, values,
+};
 
 /// Draw normals for one material and view into a safetensors file: `normals` [N,3], `pdf` [N], f32.
 #[derive(clap::Args)]
@@ -170,6 +172,7 @@ pub(super) fn run(args: Args) -> Outcome {
     let stage = meter.stage(seconds);
     let bar = progress::show(&meter, "drawing");
     if to_stdout {
+        interrupt::leaves_stream();
         match source.write(count, seed, &stage, &mut io::stdout().lock()) {
             Ok(()) => report("note", format!("{count} normals on standard output")),
             Err(why) if why.kind() == io::ErrorKind::BrokenPipe => report(
@@ -182,14 +185,8 @@ pub(super) fn run(args: Args) -> Outcome {
         }
         return Ok(Done::Ok);
     }
-    replace_with(&args.out, |out| source.write(count, seed, &stage, out)).map_err(|why| {
-        let hint = if why.kind() == io::ErrorKind::InvalidInput {
-            ", or `--out -` for standard output"
-        } else {
-            ""
-        };
-        Failure(format!("{}: {why}{hint}", args.out.display()))
-    })?;
+    replace_with(&args.out, |out| source.write(count, seed, &stage, out))
+        .map_err(|why| unwritable(&args.out, &why))?;
     drop(bar);
     summarize(&format!("{} ({count} normals)\n", args.out.display()))?;
     Ok(Done::Ok)

@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Command, CommandFactory};
+use clap::{ArgGroup, Command, CommandFactory, Id};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use microfacet_bake::store::replace;
-
-use super::{Cli, Done, Failure, Outcome, summarize, write};
+use super::{Cli, Done, Failure, Outcome, summarize, write, write_file};
 
 /// The name under which a shell finds this command.
 const NAME: &str = "microfacet-bake";
@@ -36,10 +34,30 @@ pub(super) struct ManPages {
 }
 
 pub(super) fn completions(args: Completions) -> Outcome {
+    // Clap's script for bash splits labels at the two underscores that it puts for a hyphen, and
+    // then finds none of its own; so it gets a name without one.
+    let plain = NAME.replace('-', "");
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), NAME, &mut script);
-    write(&script)?;
+    clap_complete::generate(args.shell, &mut visible(&Cli::command()), &plain, &mut script);
+    write(String::from_utf8(script)?.replace(&plain, NAME).as_bytes())?;
     Ok(Done::Ok)
+}
+
+/// A command without the hidden options, which exist to be refused.
+fn visible(command: &Command) -> Command {
+    let shown = command.get_arguments().filter(|argument| !argument.is_hide_set()).cloned();
+    let subcommands = command.get_subcommands().map(visible);
+    let about = command.get_about().cloned().unwrap_or_default();
+    let groups = command.get_groups().map(|group| {
+        let is_shown =
+            |id: &&Id| !command.get_arguments().any(|a| a.get_id() == *id && a.is_hide_set());
+        ArgGroup::new(group.get_id()).args(group.get_args().filter(is_shown))
+    });
+    Command::new(command.get_name().to_owned())
+        .about(about)
+        .args(shown)
+        .groups(groups)
+        .subcommands(subcommands)
 }
 
 pub(super) fn man(args: ManPages) -> Outcome {
@@ -63,7 +81,7 @@ fn pages(command: Command, folder: &Path) -> Result<usize, Failure> {
     }
     let name = command.get_bin_name().unwrap_or(NAME).replace(' ', "-");
     let path = folder.join(name).with_extension("1");
-    replace(&path, &page(command)?).map_err(|why| format!("{}: {why}", path.display()))?;
+    write_file(&path, &page(command)?)?;
     Ok(count)
 }
 

@@ -1,6 +1,7 @@
 //! What holds for every subcommand and option, found through what clap knows of them.
 
 use std::any::TypeId;
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 
 use clap::error::ErrorKind;
@@ -103,20 +104,34 @@ fn no_option_of_a_number_answers_with_the_message_of_a_parser() {
     }
 }
 
-/// One wording and one name of the value for the same option, wherever it is.
+/// One name of the value for the same option, wherever it is, and `-o` for every `--out`.
 #[test]
 fn the_same_option_has_the_same_value_everywhere() {
-    for (option, value) in [("seed", "N"), ("threads", "N"), ("gamma", "G"), ("theta", "T")] {
-        for (path, arg) in options().iter().filter(|(_, arg)| arg.get_long() == Some(option)) {
-            // Lists have a name of their own.
-            if arg.get_value_delimiter().is_none() {
-                assert_eq!(arg.get_value_names().unwrap(), [value], "{path:?} --{option}");
-            }
-        }
+    // Lists, and options that name different things.
+    const DIFFER: [&str; 6] = ["sigma", "gamma", "method", "out", "tables", "cache"];
+    let mut seen: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (path, arg) in options() {
+        let Some(long) = arg.get_long().filter(|long| !DIFFER.contains(long)) else { continue };
+        let names = arg.get_value_names().unwrap_or_default();
+        let names: Vec<String> = names.iter().map(ToString::to_string).collect();
+        let first = seen.entry(long.to_owned()).or_insert_with(|| names.clone());
+        assert_eq!(*first, names, "{path:?} --{long}");
     }
-    let written = options().into_iter().filter(|(_, arg)| arg.get_long() == Some("out"));
-    assert!(written.map(|(_, arg)| assert_eq!(arg.get_short(), Some('o'))).count() >= 3);
-    assert!(options().iter().all(|(_, arg)| arg.get_long() != Some("output")));
+    assert!(seen.len() > 20);
+    let of = |long: &'static str| {
+        options().into_iter().filter(move |(_, arg)| arg.get_long() == Some(long))
+    };
+    assert!(of("out").map(|(_, arg)| assert_eq!(arg.get_short(), Some('o'))).count() >= 4);
+    assert_eq!(of("output").count(), 0);
+    for (path, arg) in of("tables") {
+        assert_eq!(arg.get_value_names().unwrap(), ["TABLES"], "{path:?}");
+    }
+    for subcommand in ["inspect", "validate", "furnace"] {
+        let command = built();
+        let command = command.find_subcommand(subcommand).unwrap();
+        let first = command.get_positionals().next().unwrap();
+        assert_eq!(first.get_value_names().unwrap(), ["TABLES"], "{subcommand}");
+    }
 }
 
 #[test]

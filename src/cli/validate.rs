@@ -93,7 +93,7 @@ pub(super) fn run(args: Args) -> Outcome {
     if smallest * factor <= 1.5 {
         return Err(Failure(format!(
             "--perturb-gamma {factor} takes the gamma {} of a configuration out of (1.5, inf]: give a factor above {:.4}",
-            (smallest * 1e6).round() / 1e6,
+            words::number(smallest),
             1.5 / smallest + 5e-5
         )));
     }
@@ -163,7 +163,9 @@ fn nothing_to_judge(set: &Tables) -> String {
 /// What a set holds that a run does not test.
 fn untested(set: &Tables) -> Vec<String> {
     let mut rest: Vec<String> = Vec::new();
-    if shapes(set).is_empty() {
+    if set.tables().is_empty() {
+        rest.push("tables, of which the set has none; GGX in closed form was tested".into());
+    } else if shapes(set).is_empty() {
         rest.push("visible normals, for which the set lacks tables".into());
     }
     for table in set.tables() {

@@ -1,12 +1,13 @@
 //! Values of options and columns as people write them: counts, sizes, sigma, gamma and angles.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 use bytesize::ByteSize;
 use clap::builder::UnknownArgumentValueParser;
 
 use microfacet_bake::fit::Angles;
+use microfacet_bake::scene::did_you_mean_key;
 use microfacet_bake::table_spec::GAMMA_MIN;
 use microfacet_sampler::Ggx;
 
@@ -26,7 +27,7 @@ pub(super) fn count<T: TryFrom<u64>>(
                     .rev()
                     .map(|n| 10_u64.pow(n))
                     .find(|n| range.contains(n))
-                    .unwrap_or(*range.start())
+                    .map_or_else(|| power(*range.start()), power)
             )
         })
     }
@@ -64,9 +65,9 @@ fn whole(text: &str) -> Option<u64> {
     if let Ok(n) = text.parse() {
         return Some(n);
     }
-    // Up to 2⁵³ a double holds every whole number.
+    // Below 2⁶⁴; a power of ten up to 1e19 is a double without rounding.
     let x: f64 = text.parse().ok()?;
-    (x.fract() == 0.0 && (0.0..=9.0e15).contains(&x)).then_some(x as u64)
+    (x.fract() == 0.0 && (0.0..1.8446744073709552e19).contains(&x)).then_some(x as u64)
 }
 
 /// A large power of ten as people write it.
@@ -122,30 +123,35 @@ pub(super) fn tabulated(gamma: f64, remedy: &str) -> Result<(), String> {
     ))
 }
 
-/// The largest polar angle of a view: up to 1e-5 above π/2 is a rounded π/2, as 1.5708 is.
-pub(super) const THETA_MAX: f64 = FRAC_PI_2 + 1e-5;
-
 /// The names that others have for sigma: refused, with the relation.
 #[derive(clap::Args)]
 #[allow(dead_code, reason = "no value of these is ever accepted")]
 pub(super) struct OtherNames {
-    #[arg(long, hide = true, value_name = "X", value_parser = sigma_for(
-        "sigma is the alpha of GGX and Beckmann",
-    ))]
+    #[arg(long, hide = true, value_name = "X", value_parser = other_name("alpha"))]
     alpha: Option<String>,
-    #[arg(long, hide = true, value_name = "X", value_parser = sigma_for(
-        "for a perceptual roughness r, as glTF has it, sigma is r^2",
-    ))]
+    #[arg(long, hide = true, value_name = "X", value_parser = other_name("roughness"))]
     roughness: Option<String>,
-    #[arg(short, alias = "m", hide = true, value_name = "X", value_parser = sigma_for(
-        "sigma is the m of Beckmann",
-    ))]
+    #[arg(short, alias = "m", hide = true, value_name = "X", value_parser = other_name("m"))]
     m: Option<String>,
 }
 
-fn sigma_for(relation: &str) -> UnknownArgumentValueParser {
-    let relation = format!("did you mean --sigma? {relation}");
-    UnknownArgumentValueParser::suggest(relation)
+fn other_name(word: &str) -> UnknownArgumentValueParser {
+    let hint = did_you_mean_key(word, &["--sigma"]);
+    UnknownArgumentValueParser::suggest(hint.trim_start_matches("; ").replace('`', ""))
+}
+
+/// The parameters of a material, which commands that read recipes do not take as options.
+#[derive(clap::Args)]
+#[allow(dead_code, reason = "no value of these is ever accepted")]
+pub(super) struct InRecipe {
+    #[arg(long, aliases = ["gamma", "alpha", "roughness", "theta", "fresnel"], hide = true, value_name = "X", value_parser = in_recipe())]
+    sigma: Option<String>,
+}
+
+fn in_recipe() -> UnknownArgumentValueParser {
+    UnknownArgumentValueParser::suggest(
+        "materials are described in a file: `microfacet-bake recipe` prints one to start from",
+    )
 }
 
 /// The unit of the angles that a command reads.
@@ -163,17 +169,10 @@ impl Unit {
 
     /// A polar angle in [0, π/2], in radians.
     pub(super) fn theta(self, x: f64) -> Result<f64, String> {
-        let theta = self.angles().to_radians(x);
-        if (0.0..=THETA_MAX).contains(&theta) {
-            return Ok(theta);
-        }
-        let from = "measured from the macro normal";
-        Err(if self.degrees {
-            format!("theta = {x} must be an angle in [0, 90] degrees, {from}")
-        } else {
-            let hint =
-                if (0.0..=90.0).contains(&x) { "; if it is in degrees, add --degrees" } else { "" };
-            format!("theta = {x} must be an angle in [0, pi/2 = 1.5708] radians, {from}{hint}")
+        let of =
+            |why| format!("theta = {x} must be an angle {why}, measured from the macro normal");
+        self.angles().polar(x).map_err(|(why, doubted)| {
+            of(why) + if doubted { "; if it is in degrees, add --degrees" } else { "" }
         })
     }
 
@@ -199,6 +198,8 @@ impl Unit {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use super::*;
 
     #[test]
@@ -222,7 +223,7 @@ mod tests {
         }
         for bad in ["999", "1e11", "1e-3", "1000.5", "many", "", "-1e6", "nan", "inf", "1e400"] {
             let why = samples(bad).unwrap_err();
-            assert!(why.contains("[1000, 1e10], such as 1000000"), "{bad}: {why}");
+            assert!(why.contains("[1000, 1e10], such as 1e6"), "{bad}: {why}");
         }
         // Seeds keep every bit.
         assert_eq!(seed("18446744073709551615"), Ok(u64::MAX));
@@ -253,9 +254,9 @@ mod tests {
         let [radians, degrees] = [false, true].map(|degrees| Unit { degrees });
         assert_eq!(degrees.theta(90.0), Ok(FRAC_PI_2));
         assert!(degrees.theta(91.0).unwrap_err().contains("[0, 90] degrees"));
-        // As people type it.
+        // As people type it; a view beyond would lie below the horizon.
         let quarter = finite("1.5708").unwrap();
-        assert_eq!(radians.theta(quarter), Ok(quarter));
+        assert!(quarter > FRAC_PI_2 && radians.theta(quarter) == Ok(FRAC_PI_2));
         assert!(radians.theta(20.0).unwrap_err().contains("--degrees"));
         assert!(!radians.theta(-0.1).unwrap_err().contains("--degrees"));
         assert!(radians.theta(f64::NAN).is_err() && radians.phi(f64::INFINITY).is_err());

@@ -8,7 +8,7 @@ use bytesize::ByteSize;
 use super::escape;
 
 /// Prose in the output ends here.
-const COLUMNS: usize = 100;
+pub(super) const COLUMNS: usize = 100;
 
 /// A number to seven digits, which hides the rounding of coordinates: `0.3`, `1e-8`, `inf`.
 pub(super) fn number(x: f64) -> String {

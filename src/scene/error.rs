@@ -170,7 +170,7 @@ impl std::error::Error for SceneError {
 }
 
 /// Names that other programs and papers give to a parameter, its name here, and how they relate.
-const SYNONYMS: [(&[&str], &str, &str); 2] = [
+const SYNONYMS: [(&[&str], &str, &str); 5] = [
     (
         &["alpha", "m", "rough", "roughness"],
         "sigma",
@@ -178,6 +178,9 @@ const SYNONYMS: [(&[&str], &str, &str); 2] = [
          the square root of sigma",
     ),
     (&["shape"], "gamma", "gamma is the shape: 2 is GGX, inf is Beckmann"),
+    (&["alpha", "sigma", "m", "roughness"], "c", "c is the alpha of GGX"),
+    (&["alpha", "sigma", "roughness"], "m", "m is the alpha of Beckmann"),
+    (&["exponent", "shininess"], "n", "n is the exponent of the cosine"),
 ];
 
 /// The text "; did you mean `x`?" for the key that `word` is another name of, with how they relate,
@@ -195,13 +198,13 @@ fn synonym(word: &str, keys: &[&str]) -> Option<String> {
     let axes = [("_x", "_x"), ("_y", "_y"), ("_u", "_x"), ("_v", "_y")];
     let axis = axes.iter().find_map(|(end, axis)| Some((word.strip_suffix(end)?, *axis)));
     let stem = axis.map_or(&word[..], |(stem, _)| stem);
-    let (_, name, relation) = SYNONYMS.iter().find(|(words, ..)| words.contains(&stem))?;
-    let of_axis = format!("{name}{}", axis.map_or("_x", |(_, axis)| axis));
-    let key = keys
-        .iter()
-        .find(|&key| key == name)
-        .or_else(|| keys.iter().find(|&key| *key == of_axis))?;
-    Some(format!("; did you mean `{key}`? {relation}"))
+    let of = |(words, name, relation): &(&[&str], &str, &str)| {
+        let of_axis = format!("{name}{}", axis.map_or("_x", |(_, axis)| axis));
+        let is_key = |wanted: &str| keys.iter().find(|key| key.trim_start_matches('-') == wanted);
+        let key = is_key(name).or_else(|| is_key(&of_axis)).filter(|_| words.contains(&stem))?;
+        Some(format!("; did you mean `{key}`? {relation}"))
+    };
+    SYNONYMS.iter().find_map(of)
 }
 
 /// The text "; did you mean `x`?" for the candidate closest to `word`, if one is close enough; else
@@ -287,8 +290,11 @@ mod tests {
                 "{word}"
             );
         }
-        // Where there is no sigma, nothing stands for it.
-        assert_eq!(did_you_mean_key("roughness", &["name", "c"]), "");
+        // Other distributions have parameters of their own.
+        assert!(did_you_mean_key("roughness", &["name", "c"]).contains("`c`? c is the alpha"));
+        assert!(did_you_mean_key("exponent", &["name", "n"]).contains("`n`?"));
+        // Where there is none, nothing stands for it.
+        assert_eq!(did_you_mean_key("roughness", &["name", "sigma0"]), "");
     }
 
     #[test]

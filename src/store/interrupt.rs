@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
+use tempfile::NamedTempFile;
+
 /// Held while files are replaced.
 static WRITING: Mutex<()> = Mutex::new(());
 /// Folders that were made for sets, the innermost first; a bake that is refused removes them again.
@@ -24,9 +26,15 @@ fn locked(list: &Mutex<Vec<PathBuf>>) -> MutexGuard<'_, Vec<PathBuf>> {
 pub(super) struct Leftover(PathBuf);
 
 impl Leftover {
-    pub(super) fn new(path: &Path) -> Self {
-        locked(&PARTIAL).push(path.into());
-        Self(path.into())
+    /// Makes a file, which is listed before an interrupt can see it.
+    pub(super) fn of<E>(
+        make: impl FnOnce() -> Result<NamedTempFile, E>,
+    ) -> Result<(NamedTempFile, Self), E> {
+        let mut list = locked(&PARTIAL);
+        let file = make()?;
+        list.push(file.path().into());
+        let leftover = Self(file.path().into());
+        Ok((file, leftover))
     }
 }
 
@@ -70,12 +78,13 @@ pub fn quiesce(patience: Duration) -> bool {
             Err(TryLockError::Poisoned(why)) => break why.into_inner(),
         }
     };
-    // Never unlocked again.
-    std::mem::forget(guard);
-    for path in locked(&PARTIAL).iter() {
+    let partial = locked(&PARTIAL);
+    for path in partial.iter() {
         // One that is gone already is no error.
         let _ = std::fs::remove_file(path);
     }
     remove_empty(&locked(&MADE));
+    // Never unlocked again.
+    std::mem::forget((guard, partial));
     true
 }

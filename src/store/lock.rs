@@ -3,6 +3,8 @@
 use std::fs::{File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use microfacet_sampler::Tables;
 
@@ -21,6 +23,8 @@ pub struct OutputFolder {
     /// Folders that did not exist before, the innermost first.
     made: Vec<PathBuf>,
     lock: Option<File>,
+    /// Whether a new set is in the folder.
+    written: Arc<AtomicBool>,
 }
 
 impl OutputFolder {
@@ -48,7 +52,7 @@ impl OutputFolder {
         let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made: Vec<_> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         interrupt::will_make(&made);
-        let mut this = Self { path: path.into(), made, lock: None };
+        let mut this = Self { path: path.into(), made, lock: None, written: Arc::default() };
         make_folder(path).map_err(failed)?;
         let lock = this.lock.insert(lock_file(path).map_err(failed)?);
         match lock.try_lock() {
@@ -66,6 +70,11 @@ impl OutputFolder {
         let _writing = interrupt::writing();
         finish(path).map_err(|(name, why)| StoreError::Io(path.join(name), why))?;
         Ok(this)
+    }
+
+    /// Whether [`write`](Self::write) has replaced the set, to be read at any time.
+    pub fn written(&self) -> Arc<AtomicBool> {
+        self.written.clone()
     }
 
     /// Names of the files of the set that is in the folder, as far as they are known to be ours.
@@ -114,6 +123,8 @@ impl OutputFolder {
         let _writing = interrupt::writing();
         replace_all(&self.path, &files, &stale)
             .map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
+        // While the write is marked: an interrupt sees both or neither.
+        self.written.store(true, Relaxed);
         Ok(all)
     }
 }

@@ -184,11 +184,10 @@ pub(super) fn stage(
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     // Without the temporary name, of which a user knows nothing.
-    let file = builder.tempfile_in(folder).map_err(|why| {
+    let (file, _leftover) = Leftover::of(|| builder.tempfile_in(folder)).map_err(|why| {
         let folder = folder.display();
         io::Error::new(why.kind(), format!("cannot write into the folder {folder}: {}", why.kind()))
     })?;
-    let _leftover = Leftover::new(file.path());
     let mut staged = Staged { file, _leftover };
     write(staged.file.as_file_mut())?;
     #[cfg(unix)]

@@ -193,6 +193,11 @@ fn of_family(tables: &Tables) -> impl Iterator<Item = (&Table, Masking, Covered)
     read.filter_map(|table| Some((table, table.subject.masking?, table.subject.covers?)))
 }
 
+/// Whether a set has tables that a furnace reads.
+pub fn has_furnace(tables: &Tables) -> bool {
+    of_family(tables).next().is_some()
+}
+
 /// The materials that a furnace can be run for with one form of masking, a rectangle a table.
 pub fn domains(tables: &Tables, masking: Masking) -> Vec<Domain> {
     // An end that is a short number has passed through 1/(γ−1), and tables cover what is within

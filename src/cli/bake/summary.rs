@@ -6,9 +6,9 @@ use serde_json::json;
 
 use microfacet_bake::store::Written;
 use microfacet_bake::table_set::Baked;
-use microfacet_bake::validate::certificate::worst_error;
 use microfacet_bake::validate::configuration::shapes;
-use microfacet_sampler::{Kind, LobeEntry, Reflectance, Table, Tables};
+use microfacet_bake::validate::furnace::has_furnace;
+use microfacet_sampler::{Kind, Table, Tables};
 
 use crate::cli::plan::Outline;
 use crate::cli::words::{columns, count, error, exact_bytes, seconds, shell, wrapped};
@@ -144,14 +144,8 @@ impl Summary<'_> {
 
 /// Whether `validate` has something to test: visible normals from tables, or a white furnace.
 fn is_testable(set: &Tables) -> bool {
-    let furnace = |table: &Table| {
-        let of = &table.subject;
-        table.kind == Kind::Albedo
-            && (&of.lobe, of.reflectance) == (&LobeEntry::Family, Some(Reflectance::Moments))
-    };
-    let mut tables = set.tables().iter();
     // A set without tables is tested as GGX alone.
-    !set.tables().is_empty() && (!shapes(set).is_empty() || tables.any(furnace))
+    !set.tables().is_empty() && (!shapes(set).is_empty() || has_furnace(set))
 }
 
 /// The largest error of each quantity, with the table that has it.
@@ -165,8 +159,9 @@ fn largest_errors(tables: &[Table]) -> String {
     let mut rows = Vec::new();
     for of in ["G1", "CDF of visible normals", "D/D(0)", "albedo"] {
         let tables = tables.iter().filter(|table| quantity(table.kind) == of);
-        let worst = tables.max_by(|a, b| worst_error(a).total_cmp(&worst_error(b)));
-        if let Some(table) = worst {
+        // A NaN, and an error that was not measured, are the worst.
+        let largest = |table: &Table| certificate::largest(table).map_or(f64::NAN, |(_, max)| max);
+        if let Some(table) = tables.max_by(|a, b| largest(a).total_cmp(&largest(b))) {
             let figure = certificate::largest(table)
                 .map_or("not measured".into(), |(_, largest)| error(largest));
             let place = format!("in {}", escape::line(&table.name));

@@ -2,7 +2,7 @@
 
 use microfacet_bake::scene::Interval;
 use microfacet_bake::validate::furnace::domains;
-use microfacet_sampler::{Masking, Tables};
+use microfacet_sampler::{Kind, Masking, Tables};
 
 use crate::cli::{Failure, report};
 
@@ -45,7 +45,12 @@ pub(super) fn materials(
     if all.is_empty() || lost_sigma.or(lost_gamma).is_some() {
         let sigma = *lost_sigma.or(sigmas.first()).unwrap_or(&SIGMAS[2]);
         let gamma = *lost_gamma.or(gammas.first()).unwrap_or(&GAMMAS[3]);
+        let others = || set.tables().iter().any(|table| table.kind == Kind::Albedo);
         return Err(match set.albedo(sigma, gamma, masking) {
+            Err(_) if domains(set, masking).is_empty() && others() => Failure(format!(
+                "this set has no {masking} albedos of isotropic materials, which a furnace reads; `microfacet-bake inspect` shows those \
+                 it has and their errors"
+            )),
             Err(why) => why.into(),
             Ok(_) => Failure("no material of the grid is covered: give --sigma and --gamma".into()),
         });

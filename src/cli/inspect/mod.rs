@@ -9,13 +9,13 @@ use microfacet_sampler::internals::describe;
 use microfacet_sampler::{Kind, LobeEntry, MaterialEntry, Reflectance, Table, Tables};
 
 use super::plan::reflectance;
-use super::words::{bytes, columns, count, error, exact_bytes, joined, wrapped};
+use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, joined, wrapped};
 use super::{Done, Outcome, certificate, escape, print, print_json, tables};
 use words::{covers, gammas, holds, material, precision};
 
 /// Show what a set of tables serves, and the size and the largest error of each table.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  microfacet-bake inspect out --details")]
+#[command(after_help = "Examples:\n  microfacet-bake inspect\n  microfacet-bake inspect --details")]
 pub(super) struct Args {
     /// A .safetensors set, a folder that holds one or its images, or a single table as .exr; the
     /// embedded default if absent.
@@ -177,7 +177,17 @@ fn overview(tables: &[Table]) -> String {
         }
         rows.push(row(table));
     }
-    let lines = columns(&rows);
+    let mut lines = columns(&rows);
+    if lines.iter().any(|line| line.chars().count() > COLUMNS) {
+        // Long names have a line of their own.
+        let names: Vec<String> = rows.iter_mut().map(|row| std::mem::take(&mut row[0])).collect();
+        rows.iter_mut().for_each(|row| row[0] = "  ".into());
+        lines = columns(&rows);
+        let below = |(name, line): (&String, &String)| format!("{name}\n{line}");
+        let named: Vec<String> = names.iter().zip(&lines).skip(1).map(below).collect();
+        lines.truncate(1);
+        lines.extend(named);
+    }
     let mut text = format!("{}\n", lines[0]);
     for (what, rows) in groups {
         text += &wrapped("", &what, 2);

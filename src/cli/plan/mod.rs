@@ -19,7 +19,9 @@ pub(super) use words::{Outline, nothing, reflectance};
 
 /// Show what must be baked for a scene and what not, with bytes and seconds.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  microfacet-bake plan tables/recipes/gold-series.toml")]
+#[command(
+    after_help = "Examples:\n  microfacet-bake recipe --out mine.toml\n  microfacet-bake plan mine.toml"
+)]
 pub(super) struct Args {
     /// A recipe (.toml) or scene (.pbrt, .xml, .gltf, .glb, .mtlx).
     scene: PathBuf,

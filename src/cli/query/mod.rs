@@ -14,7 +14,7 @@ use microfacet_bake::progress::Meter;
 use rayon::prelude::*;
 
 use super::values::Unit;
-use super::{Done, Failure, Outcome, progress, report, tables, write_on};
+use super::{Done, Failure, Outcome, interrupt, progress, report, tables, write_on};
 use quantities::{Albedo, AlbedoAverage, G1, Known, Normal, Quantity};
 
 /// Append table and exact values to the points of a CSV file.
@@ -46,8 +46,8 @@ struct Io {
     /// CSV file with named columns, `-` for standard input; other columns are passed through.
     #[arg(long, value_name = "CSV")]
     input: PathBuf,
-    /// Tables to read; the embedded default if absent.
-    #[arg(long, value_name = "PATH")]
+    /// A table file, or a folder with one; the embedded default if absent.
+    #[arg(long)]
     tables: Option<PathBuf>,
     /// Source of the appended values.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "table,exact")]
@@ -100,7 +100,9 @@ fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
     let columns = columns::find(&header, quantity.inputs(), &names).map_err(|why| failed(&why))?;
     let mut first = csv::Writer::from_writer(Vec::new());
     first.write_record(header.iter().map(String::from).chain(names))?;
-    let size = std::fs::metadata(&io.input).map_or(0, |file| file.len());
+    let is_file = io.input.as_os_str() != "-";
+    let size = std::fs::metadata(&io.input).ok().filter(|_| is_file).map_or(0, |file| file.len());
+    interrupt::leaves_stream();
     let meter = Meter::default();
     meter.expect(SECONDS * size as f64);
     let bar = progress::show(&meter, "answering");

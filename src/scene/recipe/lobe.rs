@@ -170,7 +170,8 @@ impl Source<'_> {
             }
             _ => {
                 return Err(place.invalid(
-                    "theta must be three angles in radians, about x, y and z: theta = [0.1, -0.2, 0.5]",
+                    "theta must be three angles about x, y and z, such as theta = [0.1, -0.2, 0.5] in radians; \
+                     with degrees = true they are in degrees",
                 ));
             }
         };
