@@ -113,6 +113,7 @@ fn what_is_ignored_stays_ignored() {
         .current_dir(folder.path())
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
+        .stderr(Stdio::null())
         .spawn()
         .unwrap();
     // As under `nohup`.

@@ -153,7 +153,7 @@ fn a_terminal_has_colours_unless_it_wants_none() {
 #[cfg(target_os = "linux")]
 fn a_terminal_shows_progress_and_clears_it() {
     let folder = tempfile::tempdir().unwrap();
-    let long = "bake --no-albedo --quality high --no-cache --out out";
+    let long = "bake --threads 2 --no-albedo --quality high --no-cache --out out";
     let Some(text) = on_a_terminal(folder.path(), long, true) else { return };
     let (bars, summary) = text.split_at(text.find("baked ").expect("a summary"));
     assert!(bars.contains("baking ") && bars.contains(" left"), "{bars:?}");

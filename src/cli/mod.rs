@@ -240,7 +240,7 @@ fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// Why a file cannot be written, with its path.
 fn unwritable(path: &Path, why: &io::Error) -> Failure {
     let hint = match why.kind() {
-        io::ErrorKind::InvalidInput => ", or `-` for standard output",
+        io::ErrorKind::InvalidInput => ", or `--out -` for standard output",
         _ => "",
     };
     Failure(format!("{}: {why}{hint}", path.display()))
