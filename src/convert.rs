@@ -271,8 +271,8 @@ fn scan(to: DistributionKind) -> usize {
     if to.dimension() == 1 { 200 } else { 48 }
 }
 
-/// About how many distributions of a kind a search tries: those of the scan, and those of the
-/// minimiser.
+/// About how many distributions of a kind a search tries: those of the scan, and about as many of
+/// the minimiser as it takes to its tolerance. Only the progress reads it.
 pub fn tries(to: DistributionKind) -> usize {
     match to.dimension() {
         1 => scan(to) + 40,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{ArgGroup, Command, CommandFactory, Id};
+use clap::{Arg, ArgGroup, Command, CommandFactory, Id};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
@@ -45,17 +45,17 @@ pub(super) fn completions(args: Completions) -> Outcome {
 
 /// A command without the hidden options, which exist to be refused.
 fn visible(command: &Command) -> Command {
-    let shown = command.get_arguments().filter(|argument| !argument.is_hide_set()).cloned();
+    let shown = || command.get_arguments().filter(|argument| !argument.is_hide_set());
     let subcommands = command.get_subcommands().map(visible);
     let about = command.get_about().cloned().unwrap_or_default();
+    // Options require groups by name, and a group may hold nothing that is not there.
     let groups = command.get_groups().map(|group| {
-        let is_shown =
-            |id: &&Id| !command.get_arguments().any(|a| a.get_id() == *id && a.is_hide_set());
-        ArgGroup::new(group.get_id()).args(group.get_args().filter(is_shown))
+        let of_group = |id: &&Id| group.get_args().any(|other| other == *id);
+        ArgGroup::new(group.get_id()).args(shown().map(Arg::get_id).filter(of_group))
     });
     Command::new(command.get_name().to_owned())
         .about(about)
-        .args(shown)
+        .args(shown().cloned())
         .groups(groups)
         .subcommands(subcommands)
 }
@@ -79,16 +79,19 @@ fn pages(command: Command, folder: &Path) -> Result<usize, Failure> {
     for subcommand in command.get_subcommands() {
         count += pages(subcommand.clone(), folder)?;
     }
-    let name = command.get_bin_name().unwrap_or(NAME).replace(' ', "-");
-    let path = folder.join(name).with_extension("1");
+    let path = folder.join(page_name(&command)).with_extension("1");
     write_file(&path, &page(command)?)?;
     Ok(count)
 }
 
 fn page(command: Command) -> Result<Vec<u8>, Failure> {
-    // A page is found by its name, in which hyphens take the place of spaces.
-    let name = command.get_bin_name().unwrap_or(NAME).replace(' ', "-");
+    let title = page_name(&command).to_uppercase();
     let mut text = Vec::new();
-    Man::new(command).title(name.to_uppercase()).render(&mut text)?;
+    Man::new(command).title(title).render(&mut text)?;
     Ok(text)
+}
+
+/// The name by which a page is found, in which hyphens take the place of spaces.
+fn page_name(command: &Command) -> String {
+    command.get_bin_name().unwrap_or(NAME).replace(' ', "-")
 }
