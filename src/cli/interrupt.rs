@@ -56,15 +56,16 @@ pub(super) fn watch() {
         .into_iter()
         .filter(|signal| ignored & (1 << (signal - 1)) == 0)
         .collect();
+    // First of all: from its own handler on no signal is lost. Where none can be installed, the
+    // system's default stays.
+    let Ok(mut handled) = Signals::new(&signals) else { return };
     let again = Arc::new(AtomicBool::new(false));
     for &signal in &signals {
-        // Where a signal cannot be handled, the system's default stays.
         let _ = flag::register_conditional_default(signal, again.clone());
         let _ = flag::register(signal, again.clone());
     }
-    let Ok(mut signals) = Signals::new(signals) else { return };
     std::thread::spawn(move || {
-        if let Some(signal) = signals.forever().next() {
+        if let Some(signal) = handled.forever().next() {
             prepare();
             // So that a shell sees what ended it: status 128 and the signal.
             let _ = low_level::emulate_default_handler(signal);
