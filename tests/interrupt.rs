@@ -25,6 +25,8 @@ fn interrupt_after(mut child: Child, signal: &str, happened: impl Fn() -> bool) 
     }
     let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
+    // Held open: the end of its input could end the program before the signal does.
+    let _input = child.stdin.take();
     child.wait_with_output().unwrap()
 }
 
