@@ -145,6 +145,7 @@ pub mod axis;
 
 mod albedo;
 mod bsdf;
+mod elementary;
 mod error;
 mod format;
 #[doc(hidden)]

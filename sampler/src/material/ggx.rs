@@ -1,6 +1,6 @@
 //! GGX without tables: at γ = 2 masking and visible normals have closed forms.
 
-use core::f32::consts::{FRAC_1_PI, TAU};
+use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 use microfacet_common::{Roughness, saturated};
@@ -8,6 +8,7 @@ use microfacet_common::{Roughness, saturated};
 use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::roughness::checked;
 use super::sample::{above_horizon, face};
+use crate::elementary::turn;
 use crate::error::MaterialError;
 use crate::math::{sqrt, unit};
 
@@ -74,18 +75,19 @@ impl MicrofacetDistribution for Ggx {
         (v.z.max(0.0) * self.inverse_area(v)).min(1.0)
     }
 
-    /// The half vector of the stretched view and a point of the cap z > −w.z of the unit sphere,
-    /// stretched back.
+    /// The half vector of the stretched view and a point of the cap z > −w.z of the sphere of its
+    /// length, stretched back.
+    #[inline]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let w = self.stretch(v);
         let length = sqrt(w.dot(w));
         // The null vector gives no direction: taken as normal incidence.
-        let w = if length > 0.0 { w / length } else { Vec3::Z };
+        let (w, length) = if length > 0.0 { (w, length) } else { (Vec3::Z, 1.0) };
         // Height of the half vector first, so that it keeps its digits where the cap ends at −w.z.
-        let height = (1.0 - unit(u[0])).max(LAST) * (1.0 + w.z);
+        let height = (1.0 - unit(u[0])).max(LAST) * (length + w.z);
         let z = height - w.z;
-        let radius = sqrt(((1.0 - z) * (1.0 + z)).max(0.0));
-        let (sin, cos) = libm::sincosf(TAU * unit(u[1]));
+        let radius = sqrt(((length - z) * (length + z)).max(0.0));
+        let [sin, cos] = turn(unit(u[1]));
         let (x, y) = (w.x + radius * cos, w.y + radius * sin);
         let m = Vec3::new(self.alpha_x * x, self.alpha_y * y, height);
         face(above_horizon(m), Vec3::new(v.x, v.y, v.z.max(0.0)))
