@@ -50,6 +50,27 @@ impl HalfTangent {
         2.0 * tau / (rest * (1.0 + tau))
     }
 
+    /// t times `rows` of four views, and 1 − τ; `length` is √(ρ² + z²).
+    #[inline(always)]
+    pub(crate) fn of_views(
+        &self,
+        rho: f32x4,
+        z: f32x4,
+        length: f32x4,
+        [rows, inverse_rows]: [f32; 2],
+    ) -> [f32x4; 2] {
+        if self.crowded {
+            // 1 − τ = (ρ + (length − z))/(ρ + length) with length − z = ρ²/(length + z), which does
+            // not cancel.
+            let steep = length + z;
+            let rest = rho * (steep + rho) / (steep * (rho + length));
+            [(1.0 - rest.sqrt()) * rows, rest]
+        } else {
+            let at = z * rows / (rho + length);
+            [at, 1.0 - at * inverse_rows]
+        }
+    }
+
     /// t of a view from its stretched horizontal length ρ and vertical part z ≥ 0, not both 0.
     #[inline(always)]
     pub(crate) fn of_view(&self, rho: f32, z: f32) -> f32 {
@@ -62,12 +83,6 @@ impl HalfTangent {
             z * r
         }
     }
-}
-
-/// τ times `cells` of four uncrowded views; `length` is √(ρ² + z²).
-#[inline(always)]
-pub(crate) fn of_views(rho: f32x4, z: f32x4, length: f32x4, cells: f32) -> f32x4 {
-    z * cells / (rho + length)
 }
 
 impl Coordinate for HalfTangent {
@@ -177,8 +192,14 @@ mod tests {
                 assert!((got - exact(crowded)).abs() < 2e-7, "{rho}, {z}: {got}");
             }
             let lanes = |x: f32| f32x4::splat(x);
-            let got = of_views(lanes(rho), lanes(z), lanes(sqrt(rho * rho + z * z)), 80.0);
-            assert!((f64::from(got.to_array()[2]) / 80.0 - exact(false)).abs() < 2e-7);
+            let length = lanes(sqrt(rho * rho + z * z));
+            for crowded in [false, true] {
+                let axis = HalfTangent { crowded };
+                let [at, rest] = axis.of_views(lanes(rho), lanes(z), length, [80.0, 1.0 / 80.0]);
+                let [at, rest] = [at, rest].map(|x| f64::from(x.to_array()[2]));
+                assert!((at / 80.0 - exact(crowded)).abs() < 2e-7);
+                assert!((rest - (1.0 - exact(false))).abs() < 2e-7);
+            }
         }
         for g in [1e-6_f32, 0.2, 0.8, 1.0] {
             let [x, z] = slope_at(f64::from(g));

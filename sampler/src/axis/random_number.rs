@@ -48,7 +48,7 @@ impl MirroredRoot {
     }
 }
 
-/// min(u, 1−u)^¼ of four random numbers: t/⁴√2.
+/// min(u, 1−u)^¼ of four random numbers: t/⁴√2; 0 outside [0, 1], and NaN or 0 for NaN.
 #[inline(always)]
 pub(crate) fn roots(u: f32x4) -> f32x4 {
     u.fast_min(1.0 - u).fast_max(f32x4::ZERO).sqrt().sqrt()
@@ -102,5 +102,6 @@ mod tests {
                 "{got:?} for {want:?}"
             );
         }
+        assert_eq!(roots(f32x4::new([-0.1, 1.5, 0.0, 1.0])), f32x4::ZERO);
     }
 }

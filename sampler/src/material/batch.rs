@@ -1,19 +1,24 @@
-//! The functions over slices, four directions at a time.
+//! The functions over slices, four directions at a time, and the one path that serves every lobe,
+//! view and number.
 //!
-//! Every lane does what the function for one direction does, in the same order, so the results are
-//! the same, to the last bits of the normalisation. A batch saves by sharing: one root, division or
-//! polynomial serves four normals (18 ns become 8), and several groups of four go through each
-//! stage together, so that the processor has independent work during each wait (8 become 6). Only
-//! the table reads are made one by one.
+//! Every lane does what the [fast path](super::fast_path) for one direction does, in the same
+//! order, so the results are the same, to the last bits of the normalisation. A batch saves by
+//! sharing: one root, division or polynomial serves four normals (18 ns become 8), and several
+//! groups of four go through each stage together, so that the processor has independent work during
+//! each wait (8 become 6). Only the table reads are made one by one. What is rare is mended in
+//! lanes too: a view straight from above, or a normal that rounding has put behind the silhouette,
+//! does not slow its three neighbours down.
 
 use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
 use super::distribution::MicrofacetDistribution;
-use super::fast_path::{SILHOUETTE_MARGIN, SILHOUETTE_MARGIN_ACROSS, pair, start};
-use super::slices::FastPath;
-use super::student_t::{SHORT, StudentT};
-use crate::axis::half_tangent::{half_slope_at, of_views};
+use super::fast_path::{pair, start};
+use super::heavy::parts;
+use super::sample::HORIZON;
+use super::student_t::{NORMAL_INCIDENCE, SHORT, StudentT};
+use crate::axis::HalfTangent;
+use crate::axis::half_tangent::half_slope_at;
 use crate::axis::hermite::{Cell, cubic_lanes, hermite_lanes, horner_lanes, split};
 use crate::axis::roots;
 use crate::error::BatchError;
@@ -21,23 +26,22 @@ use crate::error::BatchError;
 const LANES: usize = 4;
 /// How many groups of four go through each stage together.
 const GROUPS: usize = 8;
+/// 2⁴⁰: a short horizontal part times this has squares well within the range of f32.
+const LIFT: f32 = 1_099_511_627_776.0;
 
 impl StudentT {
     /// As many normals as there are views; the slices are of the same length.
     pub(crate) fn sample_all(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) {
-        let Some(fast) = &self.slices.fast else {
-            return self.sample_each(v, u, m);
-        };
         let ((v, v_rest), (u, u_rest)) = (v.as_chunks(), u.as_chunks());
         let (m, m_rest) = m.as_chunks_mut();
         for ((v, u), m) in v.chunks(GROUPS).zip(u.chunks(GROUPS)).zip(m.chunks_mut(GROUPS)) {
-            self.sample_groups(fast, v, u, m);
+            if self.slices.fast.plain {
+                self.sample_groups::<false>(v, u, m);
+            } else {
+                self.sample_groups::<true>(v, u, m);
+            }
         }
-        self.sample_each(v_rest, u_rest, m_rest);
-    }
-
-    fn sample_each(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) {
-        for ((v, u), m) in v.iter().zip(u).zip(m) {
+        for ((v, u), m) in v_rest.iter().zip(u_rest).zip(m_rest) {
             *m = self.sample(*v, *u);
         }
     }
@@ -55,53 +59,71 @@ impl StudentT {
     }
 
     /// At most [`GROUPS`] groups of four, stage by stage.
-    fn sample_groups(
+    fn sample_groups<const HEAVY: bool>(
         &self,
-        fast: &FastPath,
         v: &[[Vec3; LANES]],
         u: &[[[f32; 2]; LANES]],
         m: &mut [[Vec3; LANES]],
     ) {
+        let sigma = [self.sigma_x, self.sigma_y];
         let mut located = [Located::default(); GROUPS];
         for ((at, v), u) in located.iter_mut().zip(v).zip(u) {
-            *at = self.locate(fast, v, u);
+            let [x, y, z] = transpose(v);
+            *at = self.locate::<HEAVY>(Views::new(x * sigma[0], y * sigma[1], z), numbers(u));
         }
-        let mut slopes = [[f32x4::ZERO; 2]; GROUPS];
-        for (slope, at) in slopes.iter_mut().zip(&located[..v.len()]) {
-            *slope = self.look_up(fast, at);
+        let mut slopes = [Slopes::default(); GROUPS];
+        for (slopes, at) in slopes.iter_mut().zip(&located[..v.len()]) {
+            *slopes = self.look_up::<HEAVY>(at);
         }
         for (i, m) in m.iter_mut().enumerate() {
-            let common = self.assemble_lanes(&located[i], slopes[i], m);
-            if !common {
-                self.sample_each(&v[i], &u[i], m);
-            }
+            let normals = self.assemble_lanes(&located[i].views, slopes[i], sigma);
+            let [x, y, z] = facing(normals, transpose(&v[i])).map(f32x4::to_array);
+            *m = core::array::from_fn(|i| Vec3::new(x[i], y[i], z[i]));
         }
     }
 
-    #[inline(always)]
-    fn locate(&self, fast: &FastPath, v: &[Vec3; LANES], u: &[[f32; 2]; LANES]) -> Located {
-        let [vx, vy, vz] = transpose(v);
-        let (x, y) = (vx * self.sigma_x, vy * self.sigma_y);
-        let z = vz & vz.simd_gt(0.0);
-        let rho2 = x * x + y * y;
-        let (rho, length) = (rho2.sqrt(), (rho2 + z * z).sqrt());
-        let at = of_views(rho, z, length, fast.rows);
-        let (row, between) = split(at);
-        let silhouette = 1.0 - at * fast.inverse_rows;
-        let along = Number::new([u[0][0], u[1][0], u[2][0], u[3][0]], fast.scales[0]);
-        let across = Number::new([u[0][1], u[1][1], u[2][1], u[3][1]], fast.scales[1]);
-        Located { x, y, rho, silhouette, row, between, along, across }
+    /// The general path for one direction: a visible normal for every material and view.
+    #[inline(never)]
+    pub(crate) fn sample_general(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
+        let v = [x, y, z].map(f32x4::splat);
+        let sigma = [self.sigma_x, self.sigma_y];
+        let normals =
+            self.unnormalised(Views::new(v[0] * sigma[0], v[1] * sigma[1], v[2]), u, sigma);
+        facing(normals, v).map(|x| x.to_array()[0]).into()
     }
 
-    /// The distances of the half tangents from their ends, for the in-plane slope and the slope
-    /// across.
+    /// The normal visible along a stretched view, stretched by `sigma`, in all lanes.
+    pub(crate) fn unnormalised(&self, views: Views, u: [f32; 2], sigma: [f32; 2]) -> [f32x4; 3] {
+        let at = self.locate::<true>(views, u.map(f32x4::splat));
+        self.assemble_lanes(&at.views, self.look_up::<true>(&at), sigma)
+    }
+
     #[inline(always)]
-    fn look_up(&self, fast: &FastPath, at: &Located) -> [f32x4; 2] {
+    fn locate<const HEAVY: bool>(&self, views: Views, u: [f32x4; 2]) -> Located {
+        let (slices, fast) = (&self.slices, &self.slices.fast);
+        let Views { rho, z, length, .. } = views;
+        let axis = HalfTangent { crowded: HEAVY && slices.view.crowded };
+        let [at, _] = axis.of_views(rho, z, length, fast.rows);
+        let (row, between) = split(at);
+        let [number, heavy] = if HEAVY && slices.peeled {
+            parts(u[0], slices.heavy.shares(at, coefficients))
+        } else {
+            [u[0], f32x4::ZERO]
+        };
+        let along = Number::new(number, fast.scales[0]);
+        let across = Number::new(u[1], fast.scales[1]);
+        Located { views, row, between, number, heavy, along, across }
+    }
+
+    /// The in-plane slopes and the slopes across.
+    #[inline(always)]
+    fn look_up<const HEAVY: bool>(&self, at: &Located) -> Slopes {
+        let (slices, fast) = (&self.slices, &self.slices.fast);
         let stride = 2 * fast.half;
         let half: i32x4 = bytemuck::cast(at.along.towards);
         let cell = at.along.cell + (half & i32x4::splat(fast.half as i32));
         let (row, cell, between) = (at.row.to_array(), cell.to_array(), at.between.to_array());
-        let nodes = &self.slices.slope[..];
+        let nodes = &slices.slope[..];
         let node = |i: usize| {
             let low = start(row[i] as u32, stride, cell[i]);
             let high = low + stride as usize;
@@ -112,31 +134,30 @@ impl StudentT {
             low + f32x4::splat(between[i]) * (high - low)
         };
         let g = hermite_lanes(f32x4::transpose(core::array::from_fn(node)), at.along.w);
+        let [x, mut z] = half_slope_at(g);
+        let mut x = x ^ at.along.sign();
+        if HEAVY && slices.peeled {
+            let heavy = slices.heavy.half_slopes(at.number);
+            [x, z] = [at.heavy.select(heavy[0], x), at.heavy.select(heavy[1], z)];
+        }
         let cells = coefficients(&fast.across, at.across.cell.to_array());
-        [g, cubic_lanes(cells, at.across.w)]
+        let [t, t_z] = half_slope_at(cubic_lanes(cells, at.across.w));
+        Slopes { x, z, t: t ^ at.across.sign(), t_z }
     }
 
-    /// Writes the normals; false where one of them is outside the common case.
+    /// The normals, not normalised.
     #[inline(always)]
-    fn assemble_lanes(&self, at: &Located, [g, h]: [f32x4; 2], m: &mut [Vec3; LANES]) -> bool {
-        let t = (h - 1.0) / (h * (2.0 - h));
-        let min_g = (!at.along.towards & at.silhouette)
-            + (SILHOUETTE_MARGIN - t * SILHOUETTE_MARGIN_ACROSS);
-        let t = t ^ at.across.sign();
-        let [x, z] = half_slope_at(g);
+    fn assemble_lanes(&self, views: &Views, at: Slopes, [sx, sy]: [f32; 2]) -> [f32x4; 3] {
+        let Slopes { x, z, t, t_z } = at;
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
-        let x = x ^ at.along.sign();
         // In the order of the function for one direction: strong anisotropy magnifies every
         // rounding.
-        let (sx, sy) = (2.0 * self.sigma_x, 2.0 * self.sigma_y);
-        let (x, y) =
-            (x * (at.x * sx) + norm * (at.y * -sx * t), x * (at.y * sy) + norm * (at.x * sy * t));
-        let z = z * at.rho;
-        // Two divisions fewer, at the cost of a last bit.
-        let r = 1.0 / (x * x + z * z + y * y).sqrt();
-        let (x, y, z) = ((x * r).to_array(), (y * r).to_array(), (z * r).to_array());
-        *m = core::array::from_fn(|i| Vec3::new(x[i], y[i], z[i]));
-        (g.simd_ge(min_g) & at.rho.simd_ge(SHORT)).all()
+        let (sx, sy) = (2.0 * sx, 2.0 * sy);
+        [
+            x * (views.x * sx * t_z) + norm * (views.y * -sx * t),
+            x * (views.y * sy * t_z) + norm * (views.x * sy * t),
+            z * (views.frame * t_z),
+        ]
     }
 
     #[inline(always)]
@@ -154,18 +175,67 @@ impl StudentT {
     }
 }
 
+/// Four views as [`Stretched`](super::student_t::Stretched) is one, and √(ρ² + z²).
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Views {
+    pub(crate) x: f32x4,
+    pub(crate) y: f32x4,
+    pub(crate) frame: f32x4,
+    pub(crate) rho: f32x4,
+    pub(crate) z: f32x4,
+    pub(crate) length: f32x4,
+}
+
+impl Views {
+    #[inline(always)]
+    pub(crate) fn new(x: f32x4, y: f32x4, z: f32x4) -> Self {
+        let z = z & z.simd_gt(0.0);
+        let rho2 = x * x + y * y;
+        let rho = rho2.sqrt();
+        let views = Self { x, y, frame: rho, rho, z, length: (rho2 + z * z).sqrt() };
+        if rho.simd_ge(SHORT).all() { views } else { views.of_any_length() }
+    }
+
+    /// With a frame whose squares stay in range where the horizontal part is short.
+    fn of_any_length(self) -> Self {
+        let Self { x, y, rho, z, .. } = self;
+        let lift = rho.simd_ge(SHORT).select(f32x4::ONE, f32x4::splat(LIFT));
+        // Normal incidence, straight down, or NaN: without z > 0 the view is taken at the horizon,
+        // as every view below it, with an arbitrary azimuth.
+        let tilted = rho.simd_ge(NORMAL_INCIDENCE);
+        let upright = z.simd_gt(0.0).select(f32x4::ZERO, f32x4::ONE);
+        let rho = tilted.select(rho, upright);
+        Self {
+            x: tilted.select(x * lift, f32x4::ONE),
+            y: tilted.select(y * lift, f32x4::ZERO),
+            frame: tilted.select(rho * lift, f32x4::ONE),
+            rho,
+            z,
+            length: (rho * rho + z * z).sqrt(),
+        }
+    }
+}
+
 /// Four views and pairs of random numbers, located in the tables.
 #[derive(Clone, Copy, Default)]
 struct Located {
-    x: f32x4,
-    y: f32x4,
-    rho: f32x4,
-    /// 1 − τ.
-    silhouette: f32x4,
+    views: Views,
     row: i32x4,
     between: f32x4,
+    /// The number along the plane within its part, and all ones where that is the heavy one.
+    number: f32x4,
+    heavy: f32x4,
     along: Number,
     across: Number,
+}
+
+/// Four slopes in the plane of incidence, 2x : z, and four across, 2t : t_z.
+#[derive(Clone, Copy, Default)]
+struct Slopes {
+    x: f32x4,
+    z: f32x4,
+    t: f32x4,
+    t_z: f32x4,
 }
 
 /// Four of the random numbers along one axis.
@@ -179,8 +249,9 @@ struct Number {
 
 impl Number {
     #[inline(always)]
-    fn new(u: [f32; LANES], scale: f32) -> Self {
-        let u = f32x4::new(u);
+    fn new(u: f32x4, scale: f32) -> Self {
+        // NaN is taken as 0.
+        let u = u & u.simd_gt(0.0);
         let (cell, w) = split(roots(u) * scale);
         Self { cell, w, towards: u.simd_gt(0.5) }
     }
@@ -189,6 +260,39 @@ impl Number {
     fn sign(&self) -> f32x4 {
         self.towards & f32x4::splat(-0.0)
     }
+}
+
+/// Unit normals above the horizon that face their views: those that rounding has put behind the
+/// silhouette are turned back onto it.
+///
+/// The silhouette's slope has the rounding of the view coordinate, which is coarse where σ is far
+/// below the view's tilt, and strong anisotropy lets the tilt across spoil the tilt along.
+#[inline(always)]
+fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
+    let m = above_horizon(m);
+    let vz = vz & vz.simd_gt(0.0);
+    let facing = vx * m[0] + vy * m[1] + vz * m[2];
+    let hidden = facing.simd_lt(0.0);
+    if !hidden.any() {
+        return m;
+    }
+    // A view taken at the horizon is shorter than 1.
+    let back = facing / (vx * vx + vy * vy + vz * vz);
+    let turned = above_horizon([m[0] - back * vx, m[1] - back * vy, m[2] - back * vz]);
+    core::array::from_fn(|i| hidden.select(turned[i], m[i]))
+}
+
+/// Normalises normals and raises them to the smallest cosine where they are lower.
+#[inline(always)]
+fn above_horizon([x, y, z]: [f32x4; 3]) -> [f32x4; 3] {
+    // Two divisions fewer, at the cost of a last bit.
+    let r = 1.0 / (x * x + z * z + y * y).sqrt();
+    [x * r, y * r, (z * r).fast_max(f32x4::splat(HORIZON))]
+}
+
+#[inline(always)]
+fn numbers(u: &[[f32; 2]; LANES]) -> [f32x4; 2] {
+    [0, 1].map(|i| f32x4::new([u[0][i], u[1][i], u[2][i], u[3][i]]))
 }
 
 /// The coefficients of four cells' cubics; 0 where there is no such cell.

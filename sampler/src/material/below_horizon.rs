@@ -31,7 +31,7 @@ impl<'a> SlopeBelowHorizon<'a> {
         let Self { lobe, a, s } = *self;
         if a > NEAR {
             // ∫ₐ^∞ x p(x) dx = M₀ (1 + s a²)^(−k).
-            let moment = f64::from(lobe.first_moment()) * decay(s, a * a);
+            let moment = f64::from(lobe.slices.first_moment()) * decay(s, a * a);
             return (moment * excess_share(s, a)) as f32;
         }
         // E[(X−a)⁺] = E[(X+a)⁺] − a.

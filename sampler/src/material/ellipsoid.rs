@@ -6,9 +6,10 @@ use glam::Vec3;
 use microfacet_common::{Masking, Skew, saturated};
 use wide::f32x4;
 
+use super::batch::Views;
 use super::below_horizon::{Numbers, SlopeBelowHorizon};
 use super::distribution::{MicrofacetDistribution, SMOOTH};
-use super::sample::{HORIZON, above_horizon};
+use super::sample::{HORIZON, above_horizon, first_three};
 use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::Slope;
 use crate::error::MaterialError;
@@ -118,7 +119,7 @@ impl Ellipsoid {
     /// with its density; by the general path it took twice as long
     /// (`cargo run --release --example ellipsoid_cost`).
     #[inline(always)]
-    fn sample_fast(&self, v: Vec3, u: [f32; 2]) -> Option<[f32; 3]> {
+    fn sample_fast<const HEAVY: bool>(&self, v: Vec3, u: [f32; 2]) -> Option<f32x4> {
         let Matrix { p, q, r, x, y } = self.matrix;
         let w = self.to_unit(v);
         if !(w.z >= 0.0) {
@@ -131,31 +132,35 @@ impl Ellipsoid {
                 + lanes(my) * f32x4::new([q, r, 0.0, 0.0])
                 + lanes(mz) * f32x4::new([x, y, 1.0, 0.0])
         };
-        let m = self.lobe.sample_common(
-            f32x4::new([w.x, w.y, 0.0, 0.0]),
-            w.z,
-            u,
-            [1.0; 2],
-            to_tangent,
-        )?;
+        let xy = f32x4::new([w.x, w.y, 0.0, 0.0]);
+        let m = self.lobe.sample_common::<HEAVY>(xy, w.z, u, [1.0; 2], to_tangent)?;
         // Not where an almost singular matrix has taken squares out of range, or a normal below the
         // smallest cosine.
-        (m[2] >= HORIZON).then_some(m)
+        (m.to_array()[2] >= HORIZON).then_some(m)
+    }
+
+    /// A visible normal of a lobe with a heavy part, out of line as that of [`StudentT`].
+    #[inline(never)]
+    fn sample_heavy(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
+        let m = self.sample_fast::<true>(Vec3::new(x, y, z), u);
+        m.map_or_else(|| self.sample_general(x, y, z, u), first_three)
     }
 
     /// A visible normal for every matrix and view.
     #[inline(never)]
-    fn sample_general(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
+    fn sample_general(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
         let w = self.to_unit(Vec3::new(x, y, z));
-        let view = self.lobe.stretch(w);
-        let along = if w.z >= 0.0 {
-            self.lobe.sample_along(&view, u[0])
+        let [mx, my, mz] = if w.z >= 0.0 {
+            let [x, y, z] = w.to_array().map(f32x4::splat);
+            let m = self.lobe.unnormalised(Views::new(x, y, z), u, [1.0; 2]);
+            m.map(|m| m.to_array()[0])
         } else {
-            self.sample_below(w, &view, u)
+            let view = self.lobe.stretch(w);
+            let along = self.sample_below(w, &view, u);
+            self.lobe.unit_normal(&view, along, self.lobe.sample_across(u[1])).to_array()
         };
-        let m = self.lobe.unit_normal(&view, along, self.lobe.sample_across(u[1]));
         let Matrix { p, q, r, x, y } = self.matrix;
-        above_horizon(Vec3::new(p * m.x + q * m.y + x * m.z, r * m.y + y * m.z, m.z)).to_array()
+        above_horizon(Vec3::new(p * mx + q * my + x * mz, r * my + y * mz, mz))
     }
 
     #[cold]
@@ -191,9 +196,11 @@ impl MicrofacetDistribution for Ellipsoid {
     /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
     #[inline(always)]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        let [x, y, z] =
-            self.sample_fast(v, u).unwrap_or_else(|| self.sample_general(v.x, v.y, v.z, u));
-        Vec3::new(x, y, z)
+        if !self.lobe.slices.fast.plain {
+            return self.sample_heavy(v.x, v.y, v.z, u);
+        }
+        let m = self.sample_fast::<false>(v, u);
+        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three)
     }
 
     /// Density of visible normals (v·m)⁺ D(m)/area per steradian; 0 where m faces away or lies

@@ -17,10 +17,15 @@
 //!   through its row to the normal starts at once: 3 %.
 //! - The cubic along u₁ as a weighted sum, a chain half as long as Horner's: 3 %.
 
+use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
+use super::batch::Views;
+use super::heavy::Part;
+use super::sample::HORIZON;
 use super::student_t::{SHORT, StudentT};
-use crate::axis::half_tangent::{half_slope_at, of_views};
+use crate::axis::HalfTangent;
+use crate::axis::half_tangent::half_slope_at;
 use crate::axis::hermite::{Node, basis, cubic, split};
 use crate::axis::roots;
 use crate::lanes::{pairs, pairs_of_firsts, sum, swap_pairs};
@@ -28,41 +33,55 @@ use crate::lanes::{pairs, pairs_of_firsts, sum, swap_pairs};
 impl StudentT {
     /// `None` where the case is not [common](Self::sample_common).
     #[inline(always)]
-    pub(crate) fn sample_fast(&self, v: [f32; 3], u: [f32; 2]) -> Option<[f32; 3]> {
+    pub(crate) fn sample_fast<const HEAVY: bool>(&self, v: Vec3, u: [f32; 2]) -> Option<f32x4> {
         let sigma = [self.sigma_x, self.sigma_y];
         // Unnamed lanes carry copies, zeros or NaN.
-        let xy = f32x4::new([v[0], v[1], 0.0, 0.0]) * f32x4::new([sigma[0], sigma[1], 0.0, 0.0]);
-        self.sample_common(xy, v[2], u, sigma, |m| m)
+        let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * f32x4::new([sigma[0], sigma[1], 0.0, 0.0]);
+        self.sample_common::<HEAVY>(xy, v.z, u, sigma, |m| m)
     }
 
     /// The normal visible along a stretched view: drawn there, stretched by `sigma`, then taken
-    /// through `to_tangent` and normalised.
+    /// through `to_tangent` and normalised. `HEAVY` lobes have a peeled table or a crowded axis.
     ///
-    /// `None` outside the common case: lobes without a [`FastPath`](super::slices::FastPath), views
-    /// straight from above or below, normals that rounding may have put behind the silhouette, and
-    /// arguments that are out of range or NaN.
+    /// `None` outside the common case: views straight from above or below, normals that rounding
+    /// may have put behind the silhouette, and arguments that are out of range or NaN.
     #[inline(always)]
-    pub(crate) fn sample_common(
+    pub(crate) fn sample_common<const HEAVY: bool>(
         &self,
         xy: f32x4,
         z: f32,
         u: [f32; 2],
         [sx, sy]: [f32; 2],
         to_tangent: impl FnOnce(f32x4) -> f32x4,
-    ) -> Option<[f32; 3]> {
-        let fast = self.slices.fast.as_ref()?;
+    ) -> Option<f32x4> {
+        let (slices, fast) = (&self.slices, &self.slices.fast);
         let z = f32x4::splat(if z > 0.0 { z } else { 0.0 });
         let squares = xy * xy;
         let rho2 = squares + swap_pairs(squares);
-        let (rho, length) = (rho2.sqrt(), (rho2 + z * z).sqrt());
+        let (mut xy, mut rho, mut length) = (xy, rho2.sqrt(), (rho2 + z * z).sqrt());
+        let mut frame = rho;
+        if !(rho.to_array()[0] >= SHORT) {
+            let [x, y, ..] = xy.to_array();
+            let [x, y, others @ ..] = upright(x, y, z.to_array()[0]);
+            xy = f32x4::new([x, y, 0.0, 0.0]);
+            [frame, rho, length] = others.map(f32x4::splat);
+        }
 
-        // The row at τ = z/(ρ + length).
-        let at = of_views(rho, z, length, fast.rows);
+        // The row of the view, and 1 − τ.
+        let axis = HalfTangent { crowded: HEAVY && slices.view.crowded };
+        let [at, silhouette] = axis.of_views(rho, z, length, fast.rows);
         let (row, between) = split(at);
         let (row, between) = (row.to_array()[0] as u32, f32x4::splat(between.to_array()[0]));
 
         // Both random numbers in two lanes: fourth roots, cells and positions.
-        let u = f32x4::new([u[0], u[1], 0.0, 0.0]);
+        let (mut along, mut tail) = (u[0], None);
+        if HEAVY && slices.peeled {
+            match Part::of(along, slices.heavy.share(at.to_array()[0])) {
+                Part::Tabulated(number) => along = number,
+                Part::Heavy(number) => tail = Some(number),
+            }
+        }
+        let u = f32x4::new([along, u[1], 0.0, 0.0]);
         let t = roots(u) * f32x4::new([fast.scales[0], fast.scales[1], 0.0, 0.0]);
         let (cell, w) = split(t);
         let w = w.to_array();
@@ -71,40 +90,65 @@ impl StudentT {
         let half: i32x4 = bytemuck::cast(towards);
         let cell = (cell + (half & i32x4::new([fast.half as i32, 0, 0, 0]))).to_array();
 
-        // The guard cell makes every random number's cell valid. Straight from above there is no
-        // next row. NaN fails here or, where it converts to 0, in the test of g.
+        // The guard cell makes every random number's cell valid, and the guard row every view's.
+        // NaN fails here or, where it converts to 0, in the test of g.
         let stride = 2 * fast.half;
         let low = start(row, stride, cell[0]);
         let (high, across) = (low + stride as usize, cell[1] as u32 as usize);
-        let nodes = &self.slices.slope[..];
-        if !(high + 2 <= nodes.len() && across < fast.across.len() && rho.to_array()[0] >= SHORT) {
+        let nodes = &slices.slope[..];
+        if !(high + 2 <= nodes.len() && across < fast.across.len()) {
             return None;
         }
 
-        // The slope across; then the factors of the in-plane slope and of its norm.
-        let g_across = cubic(&fast.across[across], w[1]);
-        let t = f32x4::splat((g_across - 1.0) / (g_across * (2.0 - g_across)));
-        let view = pairs(xy, rho);
-        let ahead = view * f32x4::new([2.0 * sx, 2.0 * sy, 1.0, 0.0]);
+        // The slope across, as the quotient 2 t : t_z; then the factors of the in-plane slope and
+        // of its norm.
+        let g_across = f32x4::splat(cubic(&fast.across[across], w[1]));
+        let [t, t_z] = half_slope_at(g_across);
+        let view = pairs(xy, frame);
+        let ahead = view * f32x4::new([2.0 * sx, 2.0 * sy, 1.0, 0.0]) * t_z;
         let aside = swap_pairs(view)
             * f32x4::new([-2.0 * sx, 2.0 * sy, 0.0, 0.0])
             * f32x4::splat((t ^ sign).to_array()[1]);
-        let silhouette = !towards & (1.0 - at * fast.inverse_rows);
-        let min_g = silhouette + (SILHOUETTE_MARGIN - t * SILHOUETTE_MARGIN_ACROSS);
+        let hidden = |silhouette: f32x4| {
+            (silhouette + SILHOUETTE_MARGIN) * t_z - t * SILHOUETTE_MARGIN_ACROSS
+        };
 
-        // Interpolation between the rows, then along u₁.
-        let (low, high) = (pair(nodes, low), pair(nodes, high));
-        let g = sum((low + between * (high - low)) * basis(f32x4::splat(w[0])));
-        if !(g.to_array()[0] >= min_g.to_array()[0]) {
+        let hidden = |silhouette: f32x4| {
+            (silhouette + SILHOUETTE_MARGIN) * t_z - t * SILHOUETTE_MARGIN_ACROSS
+        };
+
+        // Half of x, then z, of the in-plane slope; the test that it is visible.
+        let (x, z, visible) = if HEAVY && let Some(number) = tail {
+            let [x, z] = slices.heavy.half_slopes(f32x4::splat(number));
+            // It lies on the viewer's side, and x and z are not both small.
+            (x, z, ((x + z) * t_z).simd_ge(hidden(f32x4::ZERO)))
+        } else {
+            let least = hidden(!towards & silhouette);
+            // Interpolation between the rows, then along u₁.
+            let (low, high) = (pair(nodes, low), pair(nodes, high));
+            let g = sum((low + between * (high - low)) * basis(f32x4::splat(w[0])));
+            let [x, z] = half_slope_at(g);
+            (x ^ sign, z, (g * t_z).simd_ge(least))
+        };
+        if visible.to_array()[0].to_bits() == 0 {
             return None;
         }
-        // Half of x, then z, and the norm √(z² + s x²).
-        let [x, z] = half_slope_at(g);
+        // The norm √(z² + s x²).
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
-        let m = to_tangent(pairs_of_firsts(x ^ sign, z) * ahead + norm * aside);
-        let [x, y, z, _] = (m / sum(m * m).sqrt()).to_array();
-        Some([x, y, z])
+        let m = to_tangent(pairs_of_firsts(x, z) * ahead + norm * aside);
+        let m = m / sum(m * m).sqrt();
+        // Half of the slopes of a heavy part may be beyond 10⁶, and some leave the range of f32.
+        Some(if HEAVY { m.fast_max(f32x4::new([-1.0, -1.0, HORIZON, 0.0])) } else { m })
     }
+}
+
+/// The horizontal part of a view where that is short, its frame, ρ and √(ρ² + z²), see [`Views`].
+#[cold]
+#[inline(never)]
+fn upright(x: f32, y: f32, z: f32) -> [f32; 5] {
+    let [x, y, z] = [x, y, z].map(f32x4::splat);
+    let Views { x, y, frame, rho, length, .. } = Views::new(x, y, z);
+    [x, y, frame, rho, length].map(|x| x.to_array()[0])
 }
 
 /// How far, in g, a normal must be from the silhouette so that no rounding can hide it.

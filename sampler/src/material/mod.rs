@@ -16,6 +16,7 @@ mod distribution;
 mod ellipsoid;
 mod fast_path;
 mod ggx;
+mod heavy;
 mod lobe;
 mod radial;
 mod roughness;

@@ -6,12 +6,13 @@
 //! coordinate, so no sampled normal faces away, however coarse the table.
 
 use glam::Vec3;
+use wide::f32x4;
 
 use super::student_t::{Stretched, StudentT};
 use crate::axis::MirroredRoot;
 use crate::axis::half_tangent::Slope;
 use crate::axis::hermite::{between_rows, hermite, locate};
-use crate::math::{sqrt, unit};
+use crate::math::sqrt;
 
 /// Smallest cosine of a sampled normal: keeps D finite, which for γ < 2 it is not on the horizon.
 pub(crate) const HORIZON: f32 = 1e-18;
@@ -20,28 +21,19 @@ impl StudentT {
     /// A visible normal, by the fast path where it serves and by the general path elsewhere.
     #[inline(always)]
     pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        // Scalar arguments and results keep the common case in registers next to the call of the
-        // general path.
-        let [x, y, z] = self
-            .sample_fast([v.x, v.y, v.z], u)
-            .unwrap_or_else(|| self.sample_general(v.x, v.y, v.z, u));
-        Vec3::new(x, y, z)
+        // Scalar arguments keep the common case in registers next to the calls of the others.
+        if !self.slices.fast.plain {
+            return self.sample_heavy(v.x, v.y, v.z, u);
+        }
+        let m = self.sample_fast::<false>(v, u);
+        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three)
     }
 
-    /// The general path: a visible normal for every material and view.
+    /// The same for a lobe with a heavy part, out of line so that calls of the others stay short.
     #[inline(never)]
-    pub(crate) fn sample_general(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> [f32; 3] {
-        let v = Vec3::new(x, y, z);
-        let view = self.stretch(v);
-        let x = self.sample_along(&view, u[0]);
-        let t = self.sample_across(u[1]);
-        face(self.assemble(&view, x, t), Vec3::new(v.x, v.y, view.z)).to_array()
-    }
-
-    /// The in-plane slope: from the table, or of a peeled table from it or the heavy part.
-    #[inline(always)]
-    pub(crate) fn sample_along(&self, view: &Stretched, u: f32) -> Slope {
-        if self.slices.peeled { self.sample_peeled(view, u) } else { self.sample_slope(view, u) }
+    fn sample_heavy(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
+        let m = self.sample_fast::<true>(Vec3::new(x, y, z), u);
+        m.map_or_else(|| self.sample_general(x, y, z, u), first_three)
     }
 
     /// The in-plane slope from the table at u ∈ [0, 1].
@@ -72,39 +64,6 @@ impl StudentT {
         locate(slices.view.of_view(view.rho, view.z) * slices.rows as f32, slices.rows)
     }
 
-    /// As [`sample_slope`](Self::sample_slope) with a peeled table, which lacks the heavy part of
-    /// share ρ·M₀/area of the visible area.
-    #[inline(always)]
-    fn sample_peeled(&self, view: &Stretched, u: f32) -> Slope {
-        let heavy = self.heavy_share(view);
-        let u = unit(u);
-        let rest = 1.0 - heavy;
-        // Straight from above the heavy part has no share, and u = 1 still belongs to the table.
-        if u <= rest {
-            return self.sample_slope(view, u / rest);
-        }
-        // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).
-        let xi = ((1.0 - u) / heavy).clamp(0.0, 1.0);
-        let log = libm::logf(xi) / self.two_gamma_minus_3;
-        Slope { x: sqrt(-libm::expm1f(2.0 * log)), z: sqrt(self.s) * libm::expf(log) }
-    }
-
-    /// Share of `u[0]`, from 0 up, that
-    /// [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads from
-    /// the table; the rest draws from the closed-form heavy part.
-    ///
-    /// 1 where the whole distribution is tabulated.
-    pub fn tabulated_share(&self, v: Vec3) -> f32 {
-        if self.slices.peeled { 1.0 - self.heavy_share(&self.stretch(v)) } else { 1.0 }
-    }
-
-    /// Share of the visible area that the heavy part, the term x sin θ p(x) for x > 0, takes:
-    /// M₀ρ/area with M₀ = κ/(G1/q at grazing).
-    #[inline(always)]
-    pub(crate) fn heavy_share(&self, view: &Stretched) -> f32 {
-        (self.first_moment() * view.rho * self.inverse_area(view)).clamp(0.0, 1.0)
-    }
-
     /// The slope across in units of √(1 + s x²).
     #[inline(always)]
     pub(crate) fn sample_across(&self, u: f32) -> Slope {
@@ -131,6 +90,13 @@ impl StudentT {
         let (x, z) = (x.x * t.z, x.z * t.z);
         Vec3::new(x * view.x - y * view.y, x * view.y + y * view.x, z * view.frame)
     }
+}
+
+/// The vector of the first three lanes.
+#[inline(always)]
+pub(crate) fn first_three(m: f32x4) -> Vec3 {
+    let [x, y, z, _] = m.to_array();
+    Vec3::new(x, y, z)
 }
 
 /// Turns a normal that rounding has put behind the silhouette back onto it.

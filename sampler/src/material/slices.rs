@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use super::coverage;
+use super::heavy::Heavy;
 use crate::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
 use crate::axis::{Axis, HalfTangent, Mapping, MirroredRoot, Rational, Weights};
 use crate::error::MaterialError;
@@ -64,7 +65,7 @@ pub(crate) struct Slices {
     pub(crate) shadowing_view: Rational,
     pub(crate) kappa: f32,
     /// In-plane slopes: rows by view, each of `2 (cells + 1)` nodes with the half for u ≤ ½ first;
-    /// then a node that is read with weight 0.
+    /// then a row and a node that are read with weight 0.
     pub(crate) slope: Vec<Node>,
     /// Cells of the view axis of slopes, and its coordinate.
     pub(crate) rows: usize,
@@ -75,21 +76,23 @@ pub(crate) struct Slices {
     pub(crate) peeled: bool,
     /// Slopes across, the half for u > ½.
     pub(crate) across: Vec<Node>,
-    /// What the fast path reads besides `slope`; `None` where that path does not apply.
-    pub(crate) fast: Option<FastPath>,
+    /// What the fast path reads besides `slope`.
+    pub(crate) fast: FastPath,
+    /// Constants of the heavy part, where `slope` is peeled.
+    pub(crate) heavy: Heavy,
 }
 
-/// The layout of the fast path, which most lobes have: no peeled table, no crowded axis.
-#[derive(Clone, Debug)]
+/// The layout of the fast path.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct FastPath {
+    /// Whether the lobe is of the common kind, without a peeled table or a crowded axis.
+    pub(crate) plain: bool,
     /// Slopes across by cell.
     pub(crate) across: Vec<Cell>,
     /// Factors from min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
     pub(crate) scales: [f32; 2],
-    /// Cells of the view axis.
-    pub(crate) rows: f32,
-    /// 1/`rows`.
-    pub(crate) inverse_rows: f32,
+    /// Cells of the view axis, and the reciprocal.
+    pub(crate) rows: [f32; 2],
     /// Nodes of half a row of `slope`.
     pub(crate) half: u32,
 }
@@ -103,13 +106,18 @@ impl Slices {
         slices.across = across.nodes;
         make_monotone(&mut slices.across);
         let (numbers, rows) = (slices.half_cells + 1, slices.rows);
-        slices.fast = (!slices.peeled && !slices.view.crowded).then(|| FastPath {
+        slices.fast = FastPath {
+            plain: !slices.peeled && !slices.view.crowded,
             scales: [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale),
             across: cubic_cells(&slices.across, 1.0),
-            rows: rows as f32,
-            inverse_rows: (1.0 / rows as f64) as f32,
+            rows: [rows as f32, (1.0 / rows as f64) as f32],
             half: numbers as u32,
-        });
+        };
+        if slices.peeled {
+            let moment = f64::from(slices.first_moment());
+            let share = |t: f64| slices.share_of_moment(moment, t);
+            slices.heavy = Heavy::new(gamma, s, rows, share);
+        }
         Ok(slices)
     }
 
@@ -126,7 +134,7 @@ impl Slices {
         let shadowing_cells = shadowing.nodes.len() - 1;
         let mut slopes = slope.nodes;
         slopes.chunks_exact_mut(numbers.nodes.len()).for_each(make_monotone);
-        slopes.push([0.0; 2]);
+        slopes.resize(slopes.len() + numbers.nodes.len() * 2 + 1, [0.0; 2]);
         Self {
             shadowing: cubic_cells(&shadowing.nodes, 1.0 / shadowing_cells as f64),
             shadowing_cells: shadowing_cells as f32,
@@ -138,17 +146,36 @@ impl Slices {
             half_cells: numbers.nodes.len() - 1,
             peeled: slope.kind == Kind::VisibleSlopePeeled,
             across: Vec::new(),
-            fast: None,
+            fast: FastPath::default(),
+            heavy: Heavy::default(),
         }
+    }
+
+    /// M₀ρ/area at the coordinate t of a view, from the table of G1.
+    fn share_of_moment(&self, moment: f64, t: f64) -> f64 {
+        let [tau, rest] = self.view.parts(t);
+        // ρ : z is 1 − τ² : 2τ.
+        let (rho, z) = (rest * (1.0 + tau), 2.0 * tau);
+        let kappa = f64::from(self.kappa);
+        let at = self.shadowing_view.coordinate(z / rho, kappa) * f64::from(self.shadowing_cells);
+        let cell = (at as usize).min(self.shadowing.len() - 2);
+        let [c0, c1, c2, c3] = self.shadowing[cell].map(f64::from);
+        let w = at - cell as f64;
+        let shadowing = c0 + w * (c1 + w * (c2 + w * c3));
+        let share = moment * rho / (z + kappa * rho) * shadowing * f64::from(self.shadowing_cells);
+        share.clamp(0.0, 1.0)
+    }
+
+    /// M₀ = ∫₀^∞ x p(x) dx, the projected area per ρ at grazing: κ over the first value of G1/q.
+    pub(crate) fn first_moment(&self) -> f32 {
+        self.kappa / (self.shadowing[0][0] * self.shadowing_cells)
     }
 
     /// Bytes that lookups of this lobe touch.
     pub(crate) fn bytes(&self) -> usize {
-        let across = match &self.fast {
-            Some(fast) => size_of_val(&fast.across[..]),
-            None => size_of_val(&self.across[..]),
-        };
-        size_of_val(&self.shadowing[..]) + size_of_val(&self.slope[..]) + across
+        size_of_val(&self.shadowing[..])
+            + size_of_val(&self.slope[..])
+            + size_of_val(&self.fast.across[..])
     }
 }
 

@@ -31,8 +31,6 @@ pub struct StudentT {
     pub(crate) sigma_y: f32,
     pub(crate) gamma: f64,
     pub(crate) s: f32,
-    /// 2γ − 3, from γ in double precision: near 3/2 a rounded γ would be another lobe.
-    pub(crate) two_gamma_minus_3: f32,
     pub(crate) slices: Slices,
 }
 
@@ -87,14 +85,13 @@ impl StudentT {
         }
         let s = s_of_gamma(gamma);
         let slices = Slices::from_tables(tables, gamma, s)?;
-        let two_gamma_minus_3 = (2.0 * gamma - 3.0) as f32;
-        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, two_gamma_minus_3, slices })
+        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, slices })
     }
 
     /// The carrier of another distribution's tables: unit slopes are slopes over σ, and slopes
     /// across scale with √(1 + x²).
     pub(crate) fn for_radial(sigma: f32, slices: Slices) -> Self {
-        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, two_gamma_minus_3: 1.0, slices }
+        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, slices }
     }
 
     /// The same shape with another roughness; the tables are not read again.
@@ -139,14 +136,9 @@ impl StudentT {
         self.shadowing(w.rho, w.z, r) * r
     }
 
-    /// M₀ = ∫₀^∞ x p(x) dx, the projected area per ρ at grazing: κ over the first value of G1/q.
-    pub(crate) fn first_moment(&self) -> f32 {
-        self.slices.kappa / (self.slices.shadowing[0][0] * self.slices.shadowing_cells)
-    }
-
     /// The mean of |x| over unit slopes x: 1 for GGX, and without limit towards γ = 3/2.
     pub(crate) fn mean_slope(&self) -> f32 {
-        2.0 * self.first_moment()
+        2.0 * self.slices.first_moment()
     }
 
     /// cells/(z + κρ): times z, it is the view coordinate q in cells.

@@ -125,7 +125,7 @@ impl StudentT {
         if at.x <= 0.0 {
             return 0.0;
         }
-        let (s, two_gamma_minus_3) = (f64::from(self.s), f64::from(self.two_gamma_minus_3));
+        let (s, two_gamma_minus_3) = (f64::from(self.s), 2.0 * self.gamma - 3.0);
         let x = at.x / at.z;
         let base = 1.0 + s * x * x;
         two_gamma_minus_3 * s * x / base * libm::exp(-0.5 * two_gamma_minus_3 * libm::log(base))

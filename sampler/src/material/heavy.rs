@@ -1,0 +1,132 @@
+//! The part of the visible normals that a peeled table lacks: for γ near 3/2 the slopes towards the
+//! viewer have a tail too heavy for a table, but one whose CDF has a closed form.
+//!
+//! The first random number chooses between the table and the tail by their shares of the visible
+//! area. Its share is M₀ρ/area, the term x sin θ p(x) for x > 0, with M₀ = κ/(G1/q at grazing); a
+//! lobe keeps it by the view coordinate of the table, where it needs neither a division nor a root.
+//! A single sample branches between the two; four follow both, and the wrong one is dropped.
+
+use alloc::vec::Vec;
+
+use glam::Vec3;
+use wide::f32x4;
+
+use super::student_t::{Stretched, StudentT};
+use crate::axis::hermite::{Cell, cubic, cubic_cells, cubic_lanes, split};
+use crate::elementary::{exp2, log2};
+use crate::math::unit;
+
+/// Cells of the share for each row of the table: its transition near normal incidence narrows as
+/// γ → 3/2, and two cells a row follow it to 2e-6 at γ = 1.501.
+const CELLS_PER_ROW: usize = 2;
+
+/// The heavy part of a lobe, for all views.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Heavy {
+    /// Its share of the visible area, by cell of the view coordinate.
+    shares: Vec<Cell>,
+    /// 1/(2γ−3).
+    exponent: f32,
+    /// √s.
+    root_s: f32,
+}
+
+impl Heavy {
+    /// From its `share` of the visible area at t ∈ [0, 1], for a table of `rows` cells.
+    pub(crate) fn new(gamma: f64, s: f64, rows: usize, share: impl Fn(f64) -> f64) -> Self {
+        let cells = CELLS_PER_ROW * rows;
+        // Slopes per cell from half cells on either side, at the ends from one side.
+        let node = |i: usize| {
+            let at = |halves: f64| share((i as f64 + 0.5 * halves) / cells as f64);
+            let slope = match i {
+                0 => 4.0 * at(1.0) - 3.0 * at(0.0) - at(2.0),
+                _ if i == cells => 3.0 * at(0.0) - 4.0 * at(-1.0) + at(-2.0),
+                _ => (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 6.0,
+            };
+            [at(0.0) as f32, slope as f32]
+        };
+        let nodes: Vec<_> = (0..=cells).map(node).collect();
+        Self {
+            shares: cubic_cells(&nodes, 1.0),
+            exponent: (1.0 / (2.0 * gamma - 3.0)) as f32,
+            root_s: libm::sqrt(s) as f32,
+        }
+    }
+
+    /// The share at a view coordinate in rows, to rounding in [0, 1].
+    #[inline(always)]
+    pub(crate) fn share(&self, at: f32) -> f32 {
+        let (cell, w) = split(f32x4::splat(at * CELLS_PER_ROW as f32));
+        let cell = self.shares.get(cell.to_array()[0] as u32 as usize);
+        cell.map_or(0.0, |cell| cubic(cell, w.to_array()[0]))
+    }
+
+    /// Half of x, and z, of the heavy part's slopes x : z at numbers descending from 1 to 0.
+    #[inline(always)]
+    pub(crate) fn half_slopes(&self, number: f32x4) -> [f32x4; 2] {
+        // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).
+        let zeta = exp2(log2(number) * self.exponent);
+        let x = ((1.0 - zeta) * (1.0 + zeta)).fast_max(f32x4::ZERO).sqrt();
+        [x * 0.5, zeta * self.root_s]
+    }
+
+    /// The shares at four view coordinates in rows.
+    #[inline(always)]
+    pub(crate) fn shares(
+        &self,
+        at: f32x4,
+        look_up: impl FnOnce(&[Cell], [i32; 4]) -> [f32x4; 4],
+    ) -> f32x4 {
+        let (cell, w) = split(at * CELLS_PER_ROW as f32);
+        cubic_lanes(look_up(&self.shares, cell.to_array()), w)
+    }
+}
+
+/// A random number along the plane of incidence, within the part that it belongs to.
+pub(crate) enum Part {
+    Tabulated(f32),
+    Heavy(f32),
+}
+
+impl Part {
+    /// Splits u between the tabulated part, which comes first, and the heavy one.
+    #[inline(always)]
+    pub(crate) fn of(u: f32, share: f32) -> Self {
+        let (u, rest) = (unit(u), 1.0 - share);
+        // Straight from above the heavy part has no share, and u = 1 still belongs to the table.
+        if u > rest { Self::Heavy(((1.0 - u) / share).min(1.0)) } else { Self::Tabulated(u / rest) }
+    }
+}
+
+/// Random numbers along the plane of incidence, split between the tabulated part, which comes first,
+/// and the heavy one: the number within its part, and all ones where that is the heavy one.
+#[inline(always)]
+pub(crate) fn parts(u: f32x4, share: f32x4) -> [f32x4; 2] {
+    let unit = |x: f32x4| (x & x.simd_gt(0.0)).fast_min(f32x4::ONE);
+    let (u, rest) = (unit(u), 1.0 - share);
+    // Straight from above the heavy part has no share, and u = 1 still belongs to the table.
+    let heavy = u.simd_gt(rest);
+    [unit(heavy.select(1.0 - u, u) / heavy.select(share, rest)), heavy]
+}
+
+impl StudentT {
+    /// Share of `u[0]`, from 0 up, that
+    /// [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads from
+    /// the table; the rest draws from the closed-form heavy part.
+    ///
+    /// 1 where the whole distribution is tabulated.
+    pub fn tabulated_share(&self, v: Vec3) -> f32 {
+        unit(1.0 - self.heavy_share(&self.stretch(v)))
+    }
+
+    /// Share of the heavy part as the sampler has it; 0 where the whole distribution is tabulated.
+    pub(crate) fn heavy_share(&self, view: &Stretched) -> f32 {
+        let slices = &self.slices;
+        if !slices.peeled {
+            return 0.0;
+        }
+        let [rho, z] = [view.rho, view.z].map(f32x4::splat);
+        let [at, _] = slices.view.of_views(rho, z, (rho * rho + z * z).sqrt(), slices.fast.rows);
+        slices.heavy.share(at.to_array()[0])
+    }
+}
