@@ -55,7 +55,9 @@ fn a_batch_of_normals_is_those_normals() {
                 // 2 ulp of their unit length.
                 assert!(
                     same || one.abs_diff_eq(m[i], 2.0 * f32::EPSILON),
-                    "{} {:?}: {one} {}",
+                    "{} {:?}: {} {:?}: {one} {}",
+                    material.gamma(),
+                    material.sigma(),
                     v[i],
                     u[i],
                     m[i]

@@ -205,13 +205,15 @@ impl Views {
         let tilted = rho.simd_ge(NORMAL_INCIDENCE);
         let upright = z.simd_gt(0.0).select(f32x4::ZERO, f32x4::ONE);
         let rho = tilted.select(rho, upright);
+        // Not a bit of the other views changes.
+        let length = tilted.select(self.length, (rho * rho + z * z).sqrt());
         Self {
             x: tilted.select(x * lift, f32x4::ONE),
             y: tilted.select(y * lift, f32x4::ZERO),
             frame: tilted.select(rho * lift, f32x4::ONE),
             rho,
             z,
-            length: (rho * rho + z * z).sqrt(),
+            length,
         }
     }
 }
@@ -276,8 +278,9 @@ fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
     if !hidden.any() {
         return m;
     }
-    // A view taken at the horizon is shorter than 1.
-    let back = facing / (vx * vx + vy * vy + vz * vz);
+    // A view taken at the horizon is shorter than 1, and may be almost nothing.
+    let length2 = vx * vx + vy * vy + vz * vz;
+    let back = facing / length2.fast_max(f32x4::splat(f32::MIN_POSITIVE));
     let turned = above_horizon([m[0] - back * vx, m[1] - back * vy, m[2] - back * vz]);
     core::array::from_fn(|i| hidden.select(turned[i], m[i]))
 }

@@ -113,10 +113,6 @@ impl StudentT {
             (silhouette + SILHOUETTE_MARGIN) * t_z - t * SILHOUETTE_MARGIN_ACROSS
         };
 
-        let hidden = |silhouette: f32x4| {
-            (silhouette + SILHOUETTE_MARGIN) * t_z - t * SILHOUETTE_MARGIN_ACROSS
-        };
-
         // Half of x, then z, of the in-plane slope; the test that it is visible.
         let (x, z, visible) = if HEAVY && let Some(number) = tail {
             let [x, z] = slices.heavy.half_slopes(f32x4::splat(number));

@@ -8,6 +8,7 @@ use microfacet_common::{Roughness, saturated};
 use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::roughness::checked;
 use super::sample::{above_horizon, face};
+use super::student_t::SHORT;
 use crate::elementary::turn;
 use crate::error::MaterialError;
 use crate::math::{sqrt, unit};
@@ -81,8 +82,13 @@ impl MicrofacetDistribution for Ggx {
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let w = self.stretch(v);
         let length = sqrt(w.dot(w));
-        // The null vector gives no direction: taken as normal incidence.
-        let (w, length) = if length > 0.0 { (w, length) } else { (Vec3::Z, 1.0) };
+        // The squares of a short view would leave the range of f32, and the null vector gives no
+        // direction: it is taken as normal incidence.
+        let (w, length) = match length {
+            SHORT.. => (w, length),
+            _ if length > 0.0 => (w / length, 1.0),
+            _ => (Vec3::Z, 1.0),
+        };
         // Height of the half vector first, so that it keeps its digits where the cap ends at −w.z.
         let height = (1.0 - unit(u[0])).max(LAST) * (length + w.z);
         let z = height - w.z;

@@ -109,8 +109,8 @@ pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
     if !(facing < 0.0) {
         return m;
     }
-    // A view taken at the horizon is shorter than 1.
-    above_horizon(m - facing / v.dot(v) * v)
+    // A view taken at the horizon is shorter than 1, and may be almost nothing.
+    above_horizon(m - facing / v.dot(v).max(f32::MIN_POSITIVE) * v)
 }
 
 /// Normalises a normal and raises it to the smallest cosine where it is lower.
