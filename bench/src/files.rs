@@ -11,12 +11,14 @@ use crate::paper::{self, Approximation, Timing};
 use crate::plot;
 use crate::rows::Row;
 use crate::settings::{GAMMA, SIGMA, Settings};
+use crate::sweep::{Cell, Summary};
 
 /// Writes everything into an existing folder.
 pub(crate) fn write(
     folder: &Path,
     document: &Value,
     rows: &[Row],
+    cells: &[Cell],
     times: &[Timing],
     approximation: &[Approximation],
 ) -> Result<(), Failure> {
@@ -27,6 +29,7 @@ pub(crate) fn write(
     write("bench.csv", csv(&ROW, rows.iter().map(row_fields))?)?;
     write("bench.json", format!("{document:#}\n").into_bytes())?;
     write("bench.svg", plot::svg(rows)?.into_bytes())?;
+    write("sweep.csv", csv(&CELL, cells.iter().map(cell_fields))?)?;
     write("figure-4.csv", csv(&TIMING, times.iter().map(timing_fields))?)?;
     write("figure-4.svg", paper::times_svg(times)?.into_bytes())?;
     write("figure-5.csv", csv(&APPROXIMATION, approximation.iter().map(approximation_fields))?)?;
@@ -43,6 +46,10 @@ const ROW: [&str; 10] = [
     "error_rms",
     "furnace_variance",
     "variance_ns",
+];
+const CELL: [&str; 10] = [
+    "function", "gamma", "sigma_x", "sigma_y", "turn_x", "turn_y", "turn_z", "views", "numbers",
+    "ns",
 ];
 const TIMING: [&str; 6] = ["quantity", "by", "method", "gamma", "sigma", "ns"];
 const APPROXIMATION: [&str; 5] = ["gamma", "theta_degrees", "g1", "rational_error", "table_error"];
@@ -78,6 +85,22 @@ fn row_fields(row: &Row) -> [String; 10] {
     ]
 }
 
+fn cell_fields(cell: &Cell) -> [String; 10] {
+    let ([sigma_x, sigma_y], [x, y, z]) = (cell.sigma, cell.turns);
+    [
+        cell.function.clone(),
+        cell.gamma.to_string(),
+        sigma_x.to_string(),
+        sigma_y.to_string(),
+        x.to_string(),
+        y.to_string(),
+        z.to_string(),
+        cell.views.into(),
+        cell.numbers.into(),
+        format!("{:.3}", cell.ns),
+    ]
+}
+
 fn timing_fields(at: &Timing) -> [String; 6] {
     let by = if at.by_gamma { "gamma" } else { "sigma" };
     [
@@ -101,15 +124,31 @@ fn approximation_fields(at: &Approximation) -> [String; 5] {
 }
 
 /// Everything as one JSON document.
-pub(crate) fn document(settings: &Settings, rows: &[Row], figures: &[Figure]) -> Value {
+pub(crate) fn document(
+    settings: &Settings,
+    rows: &[Row],
+    sweep: &[Summary],
+    figures: &[Figure],
+) -> Value {
+    // JSON has no infinity.
+    let shape = |gamma: f64| if gamma.is_finite() { json!(gamma) } else { json!("inf") };
     let row = |row: &Row| {
         json!({
             "quantity": row.quantity.name(), "name": row.name,
-            // JSON has no infinity.
-            "gamma": if row.gamma.is_finite() { json!(row.gamma) } else { json!("inf") },
-            "ns": row.ns, "bytes": row.bytes, "stored_bytes": row.stored,
+            "gamma": shape(row.gamma), "ns": row.ns, "bytes": row.bytes, "stored_bytes": row.stored,
             "error_max": row.error.map(|error| error.max), "error_rms": row.error.map(|error| error.rms),
             "furnace_variance": row.variance, "variance_ns": row.cost(),
+        })
+    };
+    let summary = |summary: &Summary| {
+        let Summary { cells, common, median, most, worst } = summary;
+        json!({
+            "function": worst.function, "cells": cells,
+            "common_ns": common, "median_ns": median, "percentile_99_ns": most, "worst_ns": worst.ns,
+            "worst": {
+                "gamma": shape(worst.gamma), "sigma": worst.sigma, "turns": worst.turns,
+                "views": worst.views, "numbers": worst.numbers,
+            },
         })
     };
     let figure = |figure: &Figure| {
@@ -123,6 +162,7 @@ pub(crate) fn document(settings: &Settings, rows: &[Row], figures: &[Figure]) ->
         "inputs": "views evenly over the hemisphere, random numbers uniform in [0, 1)",
         "calls": settings.calls, "rounds": settings.rounds, "seed": settings.seed,
         "rows": rows.iter().map(row).collect::<Vec<_>>(),
+        "sweep": sweep.iter().map(summary).collect::<Vec<_>>(),
         "figures": figures.iter().map(figure).collect::<Vec<_>>(),
     })
 }

@@ -26,17 +26,18 @@ impl Inputs {
     /// `count` of each.
     pub(crate) fn new(seed: u64, count: usize) -> Self {
         let mut random = StdRng::seed_from_u64(seed);
-        let view = |u: [f32; 2]| {
-            let cos = 1.0 - u[0];
-            let (y, x) = (TAU * u[1]).sin_cos();
-            let sin = (1.0 - cos * cos).max(0.0).sqrt();
-            Vec3::new(sin * x, sin * y, cos)
-        };
         let mut pairs =
             || (0..count).map(|_| [random.random(), random.random()]).collect::<Vec<[f32; 2]>>();
-        let views = pairs().into_iter().map(view).collect();
+        let views = pairs().into_iter().map(|u| direction(1.0 - u[0], u[1])).collect();
         Self { views, numbers: pairs() }
     }
+}
+
+/// The unit vector of an elevation, as its cosine from n, and an azimuth in turns.
+pub(crate) fn direction(cos: f32, turn: f32) -> Vec3 {
+    let (y, x) = (TAU * turn).sin_cos();
+    let sin = (1.0 - cos * cos).max(0.0).sqrt();
+    Vec3::new(sin * x, sin * y, cos)
 }
 
 /// How many numbers a [`Stream`] repeats.

@@ -5,6 +5,7 @@
 //! with views and random numbers drawn beforehand ([`inputs`]). Everything is in single precision
 //! unless its name says otherwise.
 
+mod cliffs;
 mod clock;
 mod error;
 mod figures;
@@ -17,6 +18,7 @@ mod rivals;
 mod rows;
 mod sampler;
 mod settings;
+mod sweep;
 mod tables;
 mod terminal;
 
@@ -42,7 +44,7 @@ use crate::tables::Slices;
     after_help = "Example:\n  microfacet-bench --quick --out out/bench\n\nExit status: 0 done, 2 bad input."
 )]
 struct Args {
-    /// Fewer batches: some seconds instead of a minute.
+    /// Fewer batches: some seconds instead of two minutes.
     #[arg(long)]
     quick: bool,
     /// Different inputs to call with.
@@ -51,9 +53,9 @@ struct Args {
     /// Seed of views and random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Folder for bench.csv, bench.json, bench.svg and, after Ribardière et al. 2017, the times by
-    /// gamma and sigma (figure-4.csv, .svg) and the error of the rational approximation
-    /// (figure-5.csv, .svg).
+    /// Folder for bench.csv, bench.json, bench.svg, every time of the sweep (sweep.csv) and, after
+    /// Ribardière et al. 2017, the times by gamma and sigma (figure-4.csv, .svg) and the error of
+    /// the rational approximation (figure-5.csv, .svg).
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Print JSON instead of tables.
@@ -91,17 +93,21 @@ fn run(args: Args) -> Result<(), Failure> {
     }
     let slices = Slices::bake();
     let rows = rows::rows(&slices, &settings);
+    let cells = sweep::cells(slices.whole(), &settings);
+    let sweep = sweep::summaries(&cells);
     let approximation = paper::approximation(slices.whole());
-    let figures = figures::figures(&rows, &approximation, &slices, &settings);
-    let document = files::document(&settings, &rows, &figures);
+    let mut figures = figures::figures(&rows, &approximation, &slices, &settings);
+    figures.extend(cliffs::figures(slices.whole(), &sweep, &settings));
+    let document = files::document(&settings, &rows, &sweep, &figures);
     if let Some(folder) = &args.out {
         let times = paper::times(slices.whole(), &settings);
-        files::write(folder, &document, &rows, &times, &approximation)?;
+        files::write(folder, &document, &rows, &cells, &times, &approximation)?;
     }
     if args.json {
         print(&format!("{document:#}\n"))
     } else {
-        print(&(terminal::table(&rows) + "\n" + &terminal::block(&figures)))
+        let parts = [terminal::table(&rows), terminal::sweep(&sweep), terminal::block(&figures)];
+        print(&parts.join("\n"))
     }
 }
 

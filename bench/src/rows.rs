@@ -6,7 +6,7 @@ use crate::clock;
 use crate::error::{self, Error};
 use crate::inputs::Inputs;
 use crate::masking::{Evaluate, Masking, maskings};
-use crate::sampler::{Draw, Sampler, samplers};
+use crate::sampler::{Sampler, samplers};
 use crate::settings::Settings;
 use crate::tables::Slices;
 
@@ -100,7 +100,10 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
 }
 
 /// A sampler as the clock runs it.
-pub(crate) fn normals<'a>(draw: &'a Draw<'a>, inputs: &'a Inputs) -> clock::Calls<'a> {
+pub(crate) fn normals<'a>(
+    draw: impl Fn(&[Vec3], &[[f32; 2]], &mut [Vec3]) + 'a,
+    inputs: &'a Inputs,
+) -> clock::Calls<'a> {
     let mut normals = vec![Vec3::ZERO; inputs.views.len()];
     Box::new(move |at| {
         draw(&inputs.views[at.clone()], &inputs.numbers[at.clone()], &mut normals[at]);

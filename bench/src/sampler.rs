@@ -1,7 +1,6 @@
 //! The samplers that are compared, each as a function over slices, with the data to judge it.
 
 use std::cell::RefCell;
-use std::f32::consts::TAU;
 use std::hint::black_box;
 
 use glam::{DVec3, Vec3};
@@ -87,11 +86,21 @@ impl<'a> Sampler<'a> {
 }
 
 /// One call after the other. Each result is used by itself, so that the compiler neither drops a
-/// call nor vectorises the loop: a renderer's calls are scalar.
+/// call nor vectorises the loop: the calls of a path tracer lie apart.
 pub(crate) fn each<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
     Box::new(move |v, u, m| {
         for ((v, u), m) in v.iter().zip(u).zip(m) {
             *m = black_box(one(*v, *u));
+        }
+    })
+}
+
+/// The same as a loop over arrays, which the compiler may turn into vectors. It does that with
+/// closed forms that have no branches, and not with lookups.
+pub(crate) fn in_a_loop<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
+    Box::new(move |v, u, m| {
+        for ((v, u), m) in v.iter().zip(u).zip(m) {
+            *m = one(*v, *u);
         }
     })
 }
@@ -123,7 +132,7 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
         truth.sample_visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3()
     };
     let closed = Ggx::new(SIGMA).expect("a constant");
-    let caps: Exactly = ggx::double::caps;
+    let (caps, listed): (Exactly, Exactly) = (ggx::double::caps, ggx::double::listed);
     let mut all = vec![
         Sampler::new(
             CAPS,
@@ -132,10 +141,16 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
             each(move |v, u| ggx::single::caps(sigma, v, u)),
         ),
         Sampler::new(
-            "GGX, spherical caps, platform's sine",
+            "GGX, spherical caps as listed",
             2.0,
-            Check::Formula(caps),
-            each(move |v, u| ggx::single::caps_at(sigma, v, (TAU * u[0]).sin_cos().into(), u[1])),
+            Check::Formula(listed),
+            each(move |v, u| ggx::single::listed(sigma, v, u)),
+        ),
+        Sampler::new(
+            "GGX, spherical caps as listed, in a loop",
+            2.0,
+            Check::Formula(listed),
+            in_a_loop(move |v, u| ggx::single::listed(sigma, v, u)),
         ),
         Sampler::new(
             "GGX, Heitz 2018",

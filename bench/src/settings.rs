@@ -19,16 +19,34 @@ pub(crate) struct Settings {
     pub(crate) views: usize,
     /// Draws for each view.
     pub(crate) draws: usize,
+    /// Batches of a cell of the sweep, each of other inputs.
+    pub(crate) sweep_batches: usize,
+    /// Calls of such a batch.
+    pub(crate) sweep_calls: usize,
     /// Seed of the inputs.
     pub(crate) seed: u64,
 }
 
 impl Settings {
-    /// About a minute.
-    pub(crate) const FULL: Self =
-        Self { calls: COUNT, rounds: 801, views: 128, draws: 2048, seed: 1 };
+    /// About two minutes.
+    pub(crate) const FULL: Self = Self {
+        calls: COUNT,
+        rounds: 801,
+        views: 128,
+        draws: 2048,
+        sweep_batches: 7,
+        sweep_calls: 512,
+        seed: 1,
+    };
     /// Some seconds.
-    pub(crate) const QUICK: Self = Self { rounds: 101, views: 32, draws: 1024, ..Self::FULL };
+    pub(crate) const QUICK: Self = Self {
+        rounds: 101,
+        views: 32,
+        draws: 1024,
+        sweep_batches: 3,
+        sweep_calls: 64,
+        ..Self::FULL
+    };
 
     /// The same over `calls` inputs, with no other count above that.
     pub(crate) fn with_calls(self, calls: usize) -> Self {
@@ -39,6 +57,7 @@ impl Settings {
             rounds: few(self.rounds),
             views: few(self.views),
             draws: few(self.draws),
+            sweep_calls: few(self.sweep_calls),
             ..self
         }
     }

@@ -3,6 +3,7 @@
 use crate::figures::Figure;
 use crate::rows::{Quantity, Row};
 use crate::settings::SIGMA;
+use crate::sweep::Summary;
 
 /// The rows.
 pub(crate) fn table(rows: &[Row]) -> String {
@@ -31,6 +32,25 @@ pub(crate) fn table(rows: &[Row]) -> String {
             }
             text.push('\n');
         }
+    }
+    text
+}
+
+/// The sweep: each function with its times and its slowest cell.
+pub(crate) fn sweep(summaries: &[Summary]) -> String {
+    let mut text = format!(
+        "{:33} {:>8} {:>8} {:>8} {:>8}  worst at gamma, sigma (turns), views, numbers\n",
+        "sweep, ns a call", "common", "median", "99 %", "worst"
+    );
+    for Summary { common, median, most, worst, .. } in summaries {
+        let [x, y] = worst.sigma;
+        let sigma = if x == y { x.to_string() } else { format!("{x}:{y}") };
+        let [a, b, c] = worst.turns;
+        let turns = if worst.turns == [0.0; 3] { "".into() } else { format!(" ({a} {b} {c})") };
+        text += &format!(
+            "{:33} {common:>8.2} {median:>8.2} {most:>8.2} {:>8.2}  {}, {sigma}{turns}, {}, {}\n",
+            worst.function, worst.ns, worst.gamma, worst.views, worst.numbers
+        );
     }
     text
 }

@@ -1,6 +1,6 @@
 //! The benchmark as a command: the files it writes and their values, never the times.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -27,9 +27,15 @@ fn every_rival_is_measured_and_written() {
     let output = run(at, &["--quick", "--calls", "64", "--out", "out"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
-    for part in
-        ["GGX, spherical caps", "table, default", "var x ns", "must", "a lobe from tables, us"]
-    {
+    for part in [
+        "GGX, spherical caps",
+        "table, default",
+        "var x ns",
+        "sweep, ns a call",
+        "must",
+        "a lobe from tables, us",
+        "Ggx sample / caps as listed",
+    ] {
         assert!(text.contains(part), "no `{part}` in {text}");
     }
 
@@ -45,6 +51,10 @@ fn every_rival_is_measured_and_written() {
     assert!(number(row("g1", "table, default"), "error_max") < 1e-6);
     assert!(number(row("g1", "rational approximation (eq. 22-23)"), "error_max") > 1e-3);
     assert_eq!(row("normal", "GGX, spherical caps")["bytes"], "0");
+    for name in ["as listed", "as listed, in a loop"] {
+        let row = row("normal", &format!("GGX, spherical caps {name}"));
+        assert!(number(row, "error_max") < 1e-4, "{row:?}");
+    }
     assert_eq!(row("normal", "exact by rejection")["error_max"], "");
     assert_eq!(row("g1", "Beckmann, closed form")["furnace_variance"], "");
     let of_half = number(row("normal", "table, default, u16"), "stored_bytes") * 2.0;
@@ -62,6 +72,8 @@ fn every_rival_is_measured_and_written() {
     assert!(figures.iter().all(|figure| figure["reached"].is_number()), "{figures:?}");
     assert!(figures.iter().all(|figure| figure["aim"].as_f64() <= figure["must"].as_f64()));
 
+    sweep_is_whole(&read(&at.join("out/sweep.csv")), &json);
+
     let errors = read(&at.join("out/figure-5.csv"));
     let worst = |column| errors.iter().map(|at| number(at, column).abs()).fold(0.0, f64::max);
     assert!(worst("rational_error") > 1e-3 && worst("table_error") < 1e-5);
@@ -75,6 +87,45 @@ fn every_rival_is_measured_and_written() {
     for name in ["bench.svg", "figure-4.svg", "figure-5.svg"] {
         let drawn = std::fs::read_to_string(at.join("out").join(name)).unwrap();
         assert!(drawn.starts_with("<svg") && drawn.to_lowercase().contains("table"), "{name}");
+    }
+}
+
+/// The sweep has each function of each lobe over the whole domain, and its summaries are those of
+/// its cells.
+fn sweep_is_whole(cells: &[Record], json: &serde_json::Value) {
+    let distinct = |cells: &[&Record], column: &str| {
+        cells.iter().map(|cell| cell[column].clone()).collect::<BTreeSet<_>>()
+    };
+    let summaries = json["sweep"].as_array().unwrap();
+    // Eleven functions of every lobe, and one of Student-t alone.
+    assert_eq!(summaries.len(), 3 * 11 + 1);
+    for summary in summaries {
+        let function = summary["function"].as_str().unwrap();
+        let of_it: Vec<&Record> =
+            cells.iter().filter(|cell| cell["function"] == function).collect();
+        let lobe = function.split(':').next().unwrap();
+        let [gammas, views] = ["gamma", "views"].map(|column| distinct(&of_it, column).len());
+        let tilted = lobe == "Ellipsoid";
+        assert_eq!(gammas, if lobe == "Ggx" { 1 } else { 15 }, "{function}");
+        assert_eq!(views, if tilted { 7 } else { 5 }, "{function}");
+        assert!(matches!(distinct(&of_it, "numbers").len(), 1 | 3), "{function}");
+        assert_eq!(distinct(&of_it, "turn_y").len() > 1, tilted, "{function}");
+
+        assert_eq!(summary["cells"], of_it.len());
+        let times = of_it.iter().map(|cell| number(cell, "ns"));
+        let [common, median, most, worst] =
+            ["common_ns", "median_ns", "percentile_99_ns", "worst_ns"]
+                .map(|name| summary[name].as_f64().unwrap());
+        assert!((times.fold(0.0, f64::max) - worst).abs() < 1e-2, "{function}");
+        assert!(0.0 < common && common <= worst && 0.0 < median, "{summary}");
+        assert!(median <= most && most <= worst, "{summary}");
+        let at = &summary["worst"];
+        let is_there = |cell: &&Record| {
+            cell["views"] == at["views"].as_str().unwrap()
+                && cell["numbers"] == at["numbers"].as_str().unwrap()
+                && (number(cell, "ns") - worst).abs() < 1e-2
+        };
+        assert!(of_it.iter().any(is_there), "{summary}");
     }
 }
 

@@ -8,26 +8,28 @@ macro_rules! in_precision {
             use glam::$vec as Vector;
 
             /// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps"
-            /// (doi:10.1111/cgf.14867), listing 1: `u[1]` is the height on the cap. The stretched
-            /// view is not normalised, only the half vector.
+            /// (doi:10.1111/cgf.14867), listings 1 and 3, as printed: the view is normalised after
+            /// its stretch, and sine and cosine are the platform's. `u[0]` is the azimuth about n,
+            /// `u[1]` the height on the cap.
             #[inline(always)]
-            pub(crate) fn caps(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
-                caps_at(sigma, v, $turn(u[0]), u[1])
+            pub(crate) fn listed(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
+                let w = Vector::new(sigma * v.x, sigma * v.y, v.z).normalize();
+                let (sin, cos) = (std::$float::consts::TAU * u[0]).sin_cos();
+                let z = (1.0 - u[1]) * (1.0 + w.z) - w.z;
+                let radius = (1.0 - z * z).clamp(0.0, 1.0).sqrt();
+                let m = Vector::new(radius * cos, radius * sin, z) + w;
+                Vector::new(sigma * m.x, sigma * m.y, m.z).normalize()
             }
 
-            /// The same with the sine and the cosine of the azimuth given.
+            /// The same for speed: the stretched view is not normalised, only the half vector.
             #[inline(always)]
-            pub(crate) fn caps_at(
-                sigma: $float,
-                v: Vector,
-                [sin, cos]: [$float; 2],
-                u: $float,
-            ) -> Vector {
+            pub(crate) fn caps(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
                 let w = Vector::new(sigma * v.x, sigma * v.y, v.z);
                 let square = w.dot(w);
-                let height = (1.0 - u) * (square.sqrt() + w.z);
+                let height = (1.0 - u[1]) * (square.sqrt() + w.z);
                 let z = height - w.z;
                 let radius = (square - z * z).max(0.0).sqrt();
+                let [sin, cos] = $turn(u[0]);
                 let m =
                     Vector::new(sigma * (w.x + radius * cos), sigma * (w.y + radius * sin), height);
                 m * (1.0 / m.dot(m).sqrt())

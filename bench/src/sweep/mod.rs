@@ -1,0 +1,156 @@
+//! The time of every public function over the whole domain, not of one material alone: a renderer's
+//! frame waits for its slowest material.
+//!
+//! A cell is one function, one material, one class of views and one of random numbers. Its time is
+//! the median over a few short batches. A cell that another program disturbed would look slow, so
+//! the whole domain is timed twice, and the lesser time counts.
+
+pub(crate) mod domain;
+mod functions;
+mod summary;
+
+use std::time::Instant;
+
+use glam::Vec3;
+use microfacet_sampler::{Ggx, MicrofacetDistribution, Skew, Tables};
+
+use self::domain::{ELLIPSOIDS, GAMMAS, Numbers, SIGMAS, Views};
+use self::functions::{Cases, Function, common, of_student_t};
+pub(crate) use self::summary::{Summary, summaries};
+use crate::clock::median;
+use crate::settings::Settings;
+
+/// One cell and its time.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Cell {
+    /// The lobe and its function.
+    pub(crate) function: String,
+    /// The shape.
+    pub(crate) gamma: f64,
+    /// Roughness along x and y.
+    pub(crate) sigma: [f64; 2],
+    /// Turns of an ellipsoid about x, y and z, in radians.
+    pub(crate) turns: [f64; 3],
+    /// The class of views.
+    pub(crate) views: &'static str,
+    /// The class of random numbers; "-" where the function does not depend on them.
+    pub(crate) numbers: &'static str,
+    /// Nanoseconds a call.
+    pub(crate) ns: f64,
+}
+
+impl Cell {
+    /// Whether its inputs are what most calls of a renderer have.
+    fn is_common(&self) -> bool {
+        self.views == Views::Random.name()
+            && (self.numbers == Numbers::Random.name() || self.numbers == NONE)
+    }
+}
+
+/// The class of numbers of a function that does not depend on them.
+const NONE: &str = "-";
+
+/// Times all cells.
+pub(crate) fn cells(set: &Tables, settings: &Settings) -> Vec<Cell> {
+    let sweep = Sweep::new(settings);
+    let mut all = pass(set, &sweep);
+    for (cell, again) in all.iter_mut().zip(pass(set, &sweep)) {
+        cell.ns = cell.ns.min(again.ns);
+    }
+    all
+}
+
+/// Times all cells once, always in the same order.
+fn pass(set: &Tables, sweep: &Sweep) -> Vec<Cell> {
+    let mut all = Vec::new();
+    for sigma in SIGMAS {
+        let lobe = Ggx::new(sigma).expect("sigmas in range");
+        let cell = Material { lobe: "Ggx", gamma: 2.0, sigma, turns: [0.0; 3] };
+        sweep.lobe(&lobe, &cell, &common(), [], &mut all);
+    }
+    for gamma in GAMMAS {
+        for sigma in SIGMAS {
+            let lobe = set.student_t(sigma, gamma).expect("the set covers all shapes");
+            let cell = Material { lobe: "StudentT", gamma, sigma, turns: [0.0; 3] };
+            sweep.lobe(&lobe, &cell, &of_student_t(), [], &mut all);
+        }
+        for (sigma, turns) in ELLIPSOIDS {
+            let skew = Skew::new(sigma, turns).expect("lobes that can be tilted so far");
+            let lobe = set.ellipsoid(skew, gamma).expect("the set covers all shapes");
+            let cell = Material { lobe: "Ellipsoid", gamma, sigma, turns };
+            sweep.lobe(&lobe, &cell, &common(), Views::below_lobe(skew), &mut all);
+        }
+    }
+    all
+}
+
+/// A lobe by its parameters.
+struct Material {
+    lobe: &'static str,
+    gamma: f64,
+    sigma: [f64; 2],
+    turns: [f64; 3],
+}
+
+/// The inputs of all cells, by class, and how much is measured of each.
+struct Sweep {
+    seed: u64,
+    batches: usize,
+    calls: usize,
+    views: Vec<(&'static str, Vec<Vec3>)>,
+    numbers: Vec<(&'static str, Vec<[f32; 2]>)>,
+}
+
+impl Sweep {
+    fn new(settings: &Settings) -> Self {
+        let &Settings { seed, sweep_batches: batches, sweep_calls: calls, .. } = settings;
+        let count = batches * calls;
+        let views = Views::ALL.map(|views| (views.name(), views.draw(seed, count)));
+        let numbers = Numbers::ALL.map(|numbers| (numbers.name(), numbers.draw(seed, count)));
+        Self { seed, batches, calls, views: views.into(), numbers: numbers.into() }
+    }
+
+    /// Times the functions of one lobe, over all classes and more classes of views.
+    fn lobe<L: MicrofacetDistribution>(
+        &self,
+        lobe: &L,
+        material: &Material,
+        functions: &[Function<L>],
+        more: impl IntoIterator<Item = Views>,
+        into: &mut Vec<Cell>,
+    ) {
+        let count = self.batches * self.calls;
+        let more = more.into_iter().map(|views| (views.name(), views.draw(self.seed, count)));
+        let more: Vec<_> = more.collect();
+        for (views, v) in self.views.iter().chain(&more) {
+            for (i, (numbers, u)) in self.numbers.iter().enumerate() {
+                let cases = &mut Cases::new(lobe, v, u);
+                let due = functions.iter().filter(|function| function.reads_numbers || i == 0);
+                let cells = due.map(|function| Cell {
+                    function: format!("{}::{}", material.lobe, function.name),
+                    gamma: material.gamma,
+                    sigma: material.sigma,
+                    turns: material.turns,
+                    views,
+                    numbers: if function.reads_numbers { numbers } else { NONE },
+                    ns: self.ns(lobe, function, cases),
+                });
+                into.extend(cells);
+            }
+        }
+    }
+
+    /// The median time of a call.
+    fn ns<L>(&self, lobe: &L, function: &Function<L>, cases: &mut Cases) -> f64 {
+        // Brings code and tables into the caches.
+        (function.run)(lobe, cases, 0..self.calls.div_ceil(4));
+        let times = (0..self.batches).map(|i| {
+            // Other inputs each time: a branch predictor would learn a short batch.
+            let at = i * self.calls..(i + 1) * self.calls;
+            let start = Instant::now();
+            (function.run)(lobe, cases, at);
+            start.elapsed().as_nanos() as f64 / self.calls as f64
+        });
+        median(times.collect())
+    }
+}
