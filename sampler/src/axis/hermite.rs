@@ -127,21 +127,26 @@ impl Cubic {
     }
 
     /// The w ∈ [0, 1] where the cubic is `y`; the cubic ascends, as nodes are kept monotone.
+    #[inline(always)]
     pub(crate) fn solve(&self, y: f64) -> f64 {
-        let (mut lo, mut hi, mut w) = (0.0, 1.0, 0.5);
+        // Steps double the digits, so one of 1e-6 leaves none to gain.
+        const LAST: f64 = 1e-6;
+        let (mut lo, mut hi) = (0.0, 1.0);
+        let whole = self.c[1] + self.c[2] + self.c[3];
+        let mut w = if whole > 0.0 { ((y - self.c[0]) / whole).clamp(0.0, 1.0) } else { 0.5 };
         for _ in 0..60 {
             let error = self.value(w) - y;
+            let newton = w - error / self.derivative(w);
+            // The bracket is tested with a margin: at convergence steps may end beyond it.
+            if (newton - w).abs() <= LAST * w {
+                return newton.clamp(lo, hi);
+            }
             if error > 0.0 {
                 hi = w;
             } else {
                 lo = w;
             }
-            let newton = w - error / self.derivative(w);
-            let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
-            if (next - w).abs() < 1e-15 {
-                return next;
-            }
-            w = next;
+            w = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
         }
         w
     }

@@ -32,31 +32,34 @@ pub struct Bounded<'a> {
 }
 
 impl StudentT {
-    /// Prepares the visible normals of `v` for reflection; costs two searches in the table, as much
-    /// as some thirty samples.
+    /// Prepares the visible normals of `v` for reflection.
     ///
-    /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
+    /// The interval of u₁ that it draws from holds every normal that reflects upwards, but is not
+    /// the shortest to do so: a limit on either side takes a fraction of the time of the exact
+    /// number. For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
     pub fn bounded(&self, v: Vec3) -> Bounded<'_> {
         let [from, to] = self.upward(v);
         Bounded { material: self, v, from, share: to - from }
     }
 
-    /// The interval of u₁ in which a light can be above the horizon.
+    /// An interval of u₁ that holds all at which a light can be above the horizon.
     fn upward(&self, v: Vec3) -> [f32; 2] {
         let view = self.stretch(v);
+        let rows = self.rows_at(&view);
         let (sin, cos) = (sqrt(v.x * v.x + v.y * v.y), view.z);
         // A unit of slope along the view's azimuth, in unit slopes along the stretched azimuth.
         let unit = if view.rho >= NORMAL_INCIDENCE { sin / view.rho } else { 1.0 / self.sigma_x };
-        let number =
-            |x: f32, z: f32| self.number_along(&view, f64::from(unit * x), f64::from(z)) as f32;
+        let number = |x: f32, z: f32, above| {
+            self.limit_along(&rows, f64::from(unit * x), f64::from(z), above) as f32
+        };
         // tan θ ∓ 1/cos θ, the nearer end without its cancellation. The interval is widened so that
         // rounding loses no direction.
-        let low = (number(-cos, 1.0 + sin) * (1.0 - SLACK) - SLACK * SLACK).max(0.0);
+        let low = (number(-cos, 1.0 + sin, false) * (1.0 - SLACK) - SLACK * SLACK).max(0.0);
         if self.slices.peeled {
             // Only the tabulated part has slopes away from the viewer, and it comes first.
             return [low * self.tabulated_share(v), 1.0];
         }
-        let high = number(1.0 + sin, cos);
+        let high = number(1.0 + sin, cos, true);
         [low, (high + (1.0 - high) * SLACK + SLACK * SLACK).min(1.0)]
     }
 }

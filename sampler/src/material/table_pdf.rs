@@ -9,9 +9,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::student_t::{Stretched, StudentT};
-use crate::axis::MirroredRoot;
 use crate::axis::half_tangent::{ends, rate, slope_at};
-use crate::axis::hermite::{Cubic, Node};
 use crate::math::sqrt64;
 
 /// A normal's slopes in unit space: in-plane x : z, and across y : z, with t = y/√(z² + s x²).
@@ -19,20 +17,6 @@ struct UnitSlopes {
     x: f64,
     z: f64,
     y: f64,
-}
-
-/// Two neighbouring rows of a table and the position between them.
-struct Rows<'a> {
-    low: &'a [Node],
-    high: &'a [Node],
-    between: f32,
-}
-
-impl Rows<'_> {
-    fn node(&self, i: usize) -> Node {
-        let (a, b) = (self.low[i], self.high[i]);
-        [a[0] + self.between * (b[0] - a[0]), a[1] + self.between * (b[1] - a[1])]
-    }
 }
 
 impl StudentT {
@@ -76,16 +60,6 @@ impl StudentT {
         [away.chain(towards).collect(), across.collect()]
     }
 
-    /// The two rows of the view, interpolated as the sampler does.
-    fn rows_at(&self, view: &Stretched) -> Rows<'_> {
-        let slices = &self.slices;
-        let (row, between) = self.locate_row(view);
-        let stride = 2 * (slices.half_cells + 1);
-        let [low, high] =
-            [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
-        Rows { low, high, between }
-    }
-
     fn unit_slopes(&self, view: &Stretched, m: Vec3) -> UnitSlopes {
         let (a, b) =
             (f64::from(m.x) / f64::from(self.sigma_x), f64::from(m.y) / f64::from(self.sigma_y));
@@ -97,27 +71,8 @@ impl StudentT {
 
     /// Density of the tabulated in-plane slope at x/z.
     fn slope_density(&self, view: &Stretched, at: &UnitSlopes) -> f64 {
-        let place = self.place_along(view, at.x, at.z).1;
-        place.map_or(0.0, |place| place.density()) * rate(at.x, at.z)
-    }
-
-    /// The random number at which the table has the in-plane slope x/z: the inverse of the lookup.
-    pub(crate) fn number_along(&self, view: &Stretched, x: f64, z: f64) -> f64 {
-        let (half, place) = self.place_along(view, x, z);
-        let u = place.map_or(0.0, |place| MirroredRoot::number(place.t));
-        if half == 0 { u } else { 1.0 - u }
-    }
-
-    /// The half of the row that holds the in-plane slope x/z, and the place in it.
-    fn place_along(&self, view: &Stretched, x: f64, z: f64) -> (usize, Option<Place>) {
-        let rows = self.rows_at(view);
-        let [low, high] = ends(x, z);
-        // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
-        // 1 − h in the other half.
-        let nodes = self.slices.half_cells + 1;
-        let (half, g) =
-            if low <= f64::from(rows.node(nodes - 1)[0]) { (0, low) } else { (1, high) };
-        (half, Place::find(|i| rows.node(half * nodes + i), self.slices.half_cells, g))
+        let cell = self.cell_along(&self.rows_at(view), at.x, at.z).1;
+        cell.map_or(0.0, |cell| cell.place().density()) * rate(at.x, at.z)
     }
 
     /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.
@@ -133,43 +88,7 @@ impl StudentT {
 
     /// Density of the tabulated slope across at t.
     fn across_density(&self, t: f64) -> f64 {
-        let nodes = &self.slices.across;
         let [_, g] = ends(t.abs(), 1.0);
-        let place = Place::find(|i| nodes[i], nodes.len() - 1, g);
-        place.map_or(0.0, |place| place.density()) * rate(t, 1.0)
-    }
-}
-
-/// Where the interpolated inverse CDF of one half of a mirrored axis takes a value.
-struct Place {
-    /// Coordinate in [0, 1].
-    t: f64,
-    /// Derivative of the value there.
-    dg_dt: f64,
-}
-
-impl Place {
-    /// Finds the value g among the half's `cells + 1` ascending nodes; `None` before the first.
-    fn find(node: impl Fn(usize) -> Node, cells: usize, g: f64) -> Option<Self> {
-        if g < f64::from(node(0)[0]) {
-            return None;
-        }
-        // The halves meet at u = ½ up to the rounding of their nodes; a normal in a gap between
-        // them is a rounded sample of its edge.
-        let g = g.min(f64::from(node(cells)[0]));
-        // The last cell whose first node is not above g.
-        let (mut low, mut high) = (0, cells);
-        while high - low > 1 {
-            let middle = (low + high) / 2;
-            if f64::from(node(middle)[0]) <= g { low = middle } else { high = middle }
-        }
-        let cubic = Cubic::new(node(low), node(low + 1));
-        let w = cubic.solve(g);
-        Some(Self { t: (low as f64 + w) / cells as f64, dg_dt: cubic.derivative(w) * cells as f64 })
-    }
-
-    /// du/dg.
-    fn density(&self) -> f64 {
-        if self.dg_dt > 0.0 { MirroredRoot::rate(self.t) / self.dg_dt } else { 0.0 }
+        self.cell_across(g).map_or(0.0, |cell| cell.place().density()) * rate(t, 1.0)
     }
 }
