@@ -115,7 +115,7 @@ pub(crate) fn furnace_variance(
         let v = v.as_dvec3();
         let g1 = truth.g1(v);
         let share = match &sampler.density {
-            Density::Bounded(material) => f64::from(material.bounded(v.as_vec3()).share()),
+            Density::Bounded(bounded) => f64::from(bounded.at(v.as_vec3()).share()),
             _ => 1.0,
         };
         let weight = |m: &Vec3| {

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::MicrofacetDistribution as _;
-use microfacet_sampler::{Ggx, StudentT, Table, Tables};
+use microfacet_sampler::{Bounded, Ggx, StudentT, Table, Tables};
 
 use crate::inputs::Stream;
 use crate::rivals::bilinear::Bilinear;
@@ -44,7 +44,7 @@ pub(crate) enum Density {
     /// All normals, D(m)(m·n).
     Ndf,
     /// Visible normals that may reflect upwards, of this material.
-    Bounded(StudentT),
+    Bounded(Bounded),
 }
 
 /// A sampler.
@@ -217,9 +217,10 @@ pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
 fn variants<'a>(set: &Tables) -> [Sampler<'a>; 2] {
     let (batch, bounded) = (lobe(set, GAMMA), lobe(set, GAMMA));
     let (bytes, stored) = (batch.bytes(), stored(set));
-    let density = Density::Bounded(bounded.clone());
     let draw: Draw = Box::new(move |v, u, m| batch.sample_batch(v, u, m).expect("of one length"));
-    let one = each(move |v, u| bounded.bounded(v).sample(u));
+    let bounded = bounded.bounded();
+    let density = Density::Bounded(bounded.clone());
+    let one = each(move |v, u| bounded.at(v).sample(u));
     let bounded =
         Sampler::new("table, default, bounded to reflections", GAMMA, Check::Distribution, one);
     [Sampler::new(BATCH, GAMMA, Check::Cdf, draw), Sampler { density, ..bounded }]

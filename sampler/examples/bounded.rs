@@ -32,10 +32,11 @@ fn main() {
     for gamma in [1.9, 3.0, f64::INFINITY] {
         for sigma in [0.3, 0.6, 1.0] {
             let material = tables.student_t(sigma, gamma).expect("covered by the default set");
+            let bounded_lobe = material.clone().bounded();
             for theta in [40.0_f32, 70.0, 85.0] {
                 let (sin, cos) = theta.to_radians().sin_cos();
                 let v = Vec3::new(sin, 0.0, cos);
-                let bounded = material.bounded(v);
+                let bounded = bounded_lobe.at(v);
                 let share = f64::from(bounded.share());
                 let all = variance(|| {
                     weight(&material, v, material.sample_visible_normal(v, rng.random()))

@@ -15,7 +15,7 @@
 //! | load a set of tables | [`Tables::embedded`], [`Tables::from_bytes`] |
 //! | get a lobe | [`Tables::student_t`], [`Tables::ellipsoid`], [`Tables::material`] by name, [`Ggx`] without tables |
 //! | evaluate and sample it | [`MicrofacetDistribution`]: D, G1, Λ, G2, weights, visible normals and their densities, batches |
-//! | lose fewer samples below the horizon | [`StudentT::bounded`], where a view is sampled many times: preparing it costs as much as some thirty samples |
+//! | lose fewer samples below the horizon | [`StudentT::bounded`], prepared once for a material |
 //! | compensate multiple scattering | [`Tables::albedo`], [`Albedo`] |
 //! | write a set, or read one table | [`encode`], [`Table`], [`axis`] |
 //!
@@ -166,7 +166,9 @@ pub use format::{
     Channels, Covered, FORMAT, FresnelEntry, Kind, LobeEntry, MaterialEntry, Precision, Provenance,
     Reflectance, Side, Subject, Table, VERSION, encode,
 };
-pub use material::{Bounded, Ellipsoid, Ggx, Lobe, MicrofacetDistribution, Radial, StudentT};
+pub use material::{
+    Bounded, BoundedView, Ellipsoid, Ggx, Lobe, MicrofacetDistribution, Radial, StudentT,
+};
 pub use microfacet_common::{Masking, Roughness, Skew, SkewError};
 #[cfg(feature = "embedded")]
 pub use tables::DEFAULT_SET;

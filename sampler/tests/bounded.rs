@@ -43,8 +43,9 @@ fn grid(n: u32) -> impl Iterator<Item = [f32; 2]> {
 fn bounding_changes_no_mean_and_lowers_the_variance() {
     let (mut best, n) = (1.0_f64, 200);
     for material in materials() {
+        let lobe = material.clone().bounded();
         for v in views() {
-            let bounded = material.bounded(v);
+            let bounded = lobe.at(v);
             let share = f64::from(bounded.share());
             assert!(share > 0.0 && share <= 1.0, "{v}: {share}");
             let (mut means, mut squares) = ([0.0; 2], [0.0; 2]);
@@ -73,8 +74,9 @@ fn bounding_changes_no_mean_and_lowers_the_variance() {
 #[test]
 fn nothing_that_reflects_upwards_is_lost() {
     for material in materials() {
+        let lobe = material.clone().bounded();
         for v in views() {
-            let bounded = material.bounded(v);
+            let bounded = lobe.at(v);
             // The ends of the interval are its first and last normal: upward reflections lie
             // between them.
             let tilt = |m: Vec3| {
@@ -104,8 +106,9 @@ fn nothing_that_reflects_upwards_is_lost() {
 #[test]
 fn densities_are_those_of_visible_normals_over_the_share() {
     for material in materials() {
+        let lobe = material.clone().bounded();
         for v in views() {
-            let bounded = material.bounded(v);
+            let bounded = lobe.at(v);
             let m = bounded.sample([0.4, 0.3]);
             let ratio =
                 bounded.visible_normal_pdf(m) * bounded.share() / material.visible_normal_pdf(v, m);

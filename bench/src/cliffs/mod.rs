@@ -21,7 +21,7 @@ pub(crate) fn figures(set: &Tables, sweep: &[Summary], settings: &Settings) -> V
     let drop = |what| times.worst(what, peeled) / times.median(what, whole);
     let figure = |name, must, aim, reached| Figure { name, unit: "", must, aim, reached };
     let ratio = |name, must, aim, reached| figure(name, must, aim, Some(reached));
-    use What::{Batch, BatchDown, BatchOfEnds, Bounded, Density, Sample, TableDensity};
+    use What::{Batch, BatchDown, BatchOfEnds, Bounded, BoundedBatch, Density, Sample, TableDensity};
     let by_caps = |what, layout: usize| times.worst(what, whole) / times.caps[layout];
     let [ggx, ggx_of_components] = [0, 1].map(|layout| times.ggx[layout] / times.caps[layout]);
     let sample_of_components = by_caps(What::SampleOfComponents, 1);
@@ -46,6 +46,7 @@ pub(crate) fn figures(set: &Tables, sweep: &[Summary], settings: &Settings) -> V
             times.ratio(BatchDown, Batch),
         ),
         ratio("bounded, drawn once / sample", 1.6, 1.3, times.ratio(Bounded, Sample)),
+        ratio("bounded, batch / sample_batch", 1.5, 1.5, times.ratio(BoundedBatch, Batch)),
         ratio("table_pdf, worst gamma / visible_normal_pdf", 4.0, 2.0, of_density),
         figure("Ellipsoid g1, worst / common case", 4.0, 2.0, cliff("Ellipsoid::g1")),
         figure(

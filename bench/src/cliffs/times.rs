@@ -1,5 +1,6 @@
 //! The times that the cliffs are ratios of.
 
+use std::cell::RefCell;
 use std::hint::black_box;
 
 use glam::Vec3;
@@ -26,18 +27,20 @@ pub(super) enum What {
     BatchDown,
     /// A normal bounded to reflections, its view prepared for it alone.
     Bounded,
+    BoundedBatch,
     Density,
     TableDensity,
 }
 
 impl What {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Sample,
         Self::SampleOfComponents,
         Self::Batch,
         Self::BatchOfEnds,
         Self::BatchDown,
         Self::Bounded,
+        Self::BoundedBatch,
         Self::Density,
         Self::TableDensity,
     ];
@@ -78,7 +81,19 @@ impl Classes {
             What::Batch => batch(lobe, random),
             What::BatchOfEnds => batch(lobe, &self.ends),
             What::BatchDown => batch(lobe, &self.down),
-            What::Bounded => normals(in_a_loop(move |v, u| lobe.bounded(v).sample(u)), random),
+            What::Bounded => {
+                let bounded = lobe.bounded();
+                normals(in_a_loop(move |v, u| bounded.at(v).sample(u)), random)
+            }
+            What::BoundedBatch => {
+                let shares = RefCell::new(vec![0.0; random.views.len()]);
+                let bounded = lobe.bounded();
+                let batch = move |v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]| {
+                    let shares = &mut shares.borrow_mut()[..v.len()];
+                    bounded.sample_batch(v, u, m, shares).expect("of one length");
+                };
+                normals(batch, random)
+            }
             What::Density => densities(lobe, random, StudentT::visible_normal_pdf),
             What::TableDensity => densities(lobe, random, StudentT::table_pdf),
         }

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::ops::Range;
 
 use glam::Vec3;
-use microfacet_sampler::{Masking, MicrofacetDistribution, StudentT};
+use microfacet_sampler::{Bounded, Masking, MicrofacetDistribution};
 
 /// The arguments of one call.
 #[derive(Clone, Copy, Debug)]
@@ -125,11 +125,16 @@ pub(super) fn common<L: MicrofacetDistribution>() -> Vec<Function<L>> {
     ]
 }
 
-/// Those of a Student-t alone.
-pub(super) fn of_student_t() -> Vec<Function<StudentT>> {
-    let mut all = common();
-    all.push(Function::of_numbers("bounded, drawn once", |lobe: &StudentT, cases, at| {
-        cases.normals(at, |case| lobe.bounded(case.v).sample(case.u));
-    }));
-    all
+/// Those of a Student-t bounded to reflections.
+pub(super) fn of_bounded() -> Vec<Function<Bounded>> {
+    vec![
+        Function::of_numbers("at, drawn once", |bounded: &Bounded, cases, at| {
+            cases.normals(at, |case| bounded.at(case.v).sample(case.u));
+        }),
+        Function::of_numbers("sample_batch", |bounded, cases, at| {
+            let Cases { v, u, normals, values, .. } = cases;
+            let (normals, shares) = (&mut normals[at.clone()], &mut values[at.clone()]);
+            bounded.sample_batch(&v[at.clone()], &u[at], normals, shares).expect("of one length");
+        }),
+    ]
 }

@@ -15,7 +15,7 @@ use glam::Vec3;
 use microfacet_sampler::{Ggx, MicrofacetDistribution, Skew, Tables};
 
 use self::domain::{ELLIPSOIDS, GAMMAS, Numbers, SIGMAS, Views};
-use self::functions::{Cases, Function, common, of_student_t};
+use self::functions::{Cases, Function, common, of_bounded};
 pub(crate) use self::summary::{Summary, summaries};
 use crate::clock::median;
 use crate::settings::Settings;
@@ -66,19 +66,23 @@ fn pass(set: &Tables, sweep: &Sweep) -> Vec<Cell> {
     for sigma in SIGMAS {
         let lobe = Ggx::new(sigma).expect("sigmas in range");
         let cell = Material { lobe: "Ggx", gamma: 2.0, sigma, turns: [0.0; 3] };
-        sweep.lobe(&lobe, &cell, &common(), [], &mut all);
+        sweep.lobe(&lobe, &lobe, &cell, &common(), [], &mut all);
     }
     for gamma in GAMMAS {
         for sigma in SIGMAS {
             let lobe = set.student_t(sigma, gamma).expect("the set covers all shapes");
             let cell = Material { lobe: "StudentT", gamma, sigma, turns: [0.0; 3] };
-            sweep.lobe(&lobe, &cell, &of_student_t(), [], &mut all);
+            sweep.lobe(&lobe, &lobe, &cell, &common(), [], &mut all);
+            let cell = Material { lobe: "Bounded", ..cell };
+            let bounded = lobe.clone().bounded();
+            sweep.lobe(&lobe, &bounded, &cell, &of_bounded(), [], &mut all);
         }
         for (sigma, turns) in ELLIPSOIDS {
             let skew = Skew::new(sigma, turns).expect("lobes that can be tilted so far");
             let lobe = set.ellipsoid(skew, gamma).expect("the set covers all shapes");
             let cell = Material { lobe: "Ellipsoid", gamma, sigma, turns };
-            sweep.lobe(&lobe, &cell, &common(), Views::below_lobe(skew), &mut all);
+            let below = Views::below_lobe(skew);
+            sweep.lobe(&lobe, &lobe, &cell, &common(), below, &mut all);
         }
     }
     all
@@ -110,10 +114,12 @@ impl Sweep {
         Self { seed, batches, calls, views: views.into(), numbers: numbers.into() }
     }
 
-    /// Times the functions of one lobe, over all classes and more classes of views.
-    fn lobe<L: MicrofacetDistribution>(
+    /// Times the functions of a subject, over all classes and more classes of views; the lobe draws
+    /// the normals among their arguments.
+    fn lobe<L>(
         &self,
-        lobe: &L,
+        lobe: &impl MicrofacetDistribution,
+        subject: &L,
         material: &Material,
         functions: &[Function<L>],
         more: impl IntoIterator<Item = Views>,
@@ -133,7 +139,7 @@ impl Sweep {
                     turns: material.turns,
                     views,
                     numbers: if function.reads_numbers { numbers } else { NONE },
-                    ns: self.ns(lobe, function, cases),
+                    ns: self.ns(subject, function, cases),
                 });
                 into.extend(cells);
             }
@@ -141,14 +147,14 @@ impl Sweep {
     }
 
     /// The median time of a call.
-    fn ns<L>(&self, lobe: &L, function: &Function<L>, cases: &mut Cases) -> f64 {
+    fn ns<L>(&self, subject: &L, function: &Function<L>, cases: &mut Cases) -> f64 {
         // Brings code and tables into the caches.
-        (function.run)(lobe, cases, 0..self.calls.div_ceil(4));
+        (function.run)(subject, cases, 0..self.calls.div_ceil(4));
         let times = (0..self.batches).map(|i| {
             // Other inputs each time: a branch predictor would learn a short batch.
             let at = i * self.calls..(i + 1) * self.calls;
             let start = Instant::now();
-            (function.run)(lobe, cases, at);
+            (function.run)(subject, cases, at);
             start.elapsed().as_nanos() as f64 / self.calls as f64
         });
         median(times.collect())

@@ -117,6 +117,18 @@ pub fn rate(x: f64, z: f64) -> f64 {
     angle_rate(x, z) * (z * z / (x * x + z * z))
 }
 
+/// [`ends`] and [`rate`] of one slope, with one root and one division for both.
+#[inline(always)]
+pub(crate) fn ends_and_rate(x: f64, z: f64) -> ([f64; 2], f64) {
+    let r = sqrt64(x * x + z * z);
+    let (whole, steep) = (z + r, r + x.abs());
+    let inverse = 1.0 / (r * whole * steep);
+    let h = x * (r * steep * inverse);
+    let near = z * ((steep + z) * r * inverse);
+    let ends = if h > 0.0 { [1.0 + h, near] } else { [near, 1.0 - h] };
+    (ends, z * z * (steep * inverse))
+}
+
 /// The slope x : z whose half tangent is the distance g ∈ [0, 2] from 1.
 pub fn slope_at(g: f64) -> [f64; 2] {
     [2.0 * (1.0 - g), g * (2.0 - g)]
@@ -175,6 +187,10 @@ mod tests {
             // The nearer end keeps every digit of the tail.
             let [a, b] = slope_at(low.min(high));
             assert!((a / b - x.abs()).abs() <= 4e-16 * x.abs() + 1e-15, "{x}: {}", a / b);
+            let ([a, b], fast) = ends_and_rate(3.0 * x, 3.0);
+            assert!((a - low).abs() < 4e-16 && (b - high).abs() < 4e-16, "{x}");
+            assert!((a.min(b) / low.min(high) - 1.0).abs() < 1e-15, "{x}");
+            assert!((fast / rate(x, 1.0) - 1.0).abs() < 1e-15, "{x}");
             let step = 1e-6 * (1.0 + x.abs());
             let difference =
                 (half_tangent(x + step, 1.0) - half_tangent(x - step, 1.0)) / (2.0 * step);

@@ -129,17 +129,25 @@ impl Cubic {
     /// The w ∈ [0, 1] where the cubic is `y`; the cubic ascends, as nodes are kept monotone.
     #[inline(always)]
     pub(crate) fn solve(&self, y: f64) -> f64 {
-        // Steps double the digits, so one of 1e-6 leaves none to gain.
-        const LAST: f64 = 1e-6;
-        let (mut lo, mut hi) = (0.0, 1.0);
         let whole = self.c[1] + self.c[2] + self.c[3];
-        let mut w = if whole > 0.0 { ((y - self.c[0]) / whole).clamp(0.0, 1.0) } else { 0.5 };
+        let newton = |w: f64| w - (self.value(w) - y) / self.derivative(w);
+        // Newton's steps from the chord, without a branch: they double the digits, and three are
+        // enough in most cells.
+        let w = newton(newton(((y - self.c[0]) / whole).clamp(0.0, 1.0)).clamp(0.0, 1.0));
+        let last = newton(w.clamp(0.0, 1.0));
+        if (last - w).abs() <= 1e-5 * w && last <= 1.0 { last } else { self.bisect(y) }
+    }
+
+    /// The same where the cubic is far from its chord, by Newton's steps within a bracket.
+    #[cold]
+    fn bisect(&self, y: f64) -> f64 {
+        let (mut lo, mut hi, mut w) = (0.0, 1.0, 0.5);
         for _ in 0..60 {
             let error = self.value(w) - y;
             let newton = w - error / self.derivative(w);
-            // The bracket is tested with a margin: at convergence steps may end beyond it.
-            if (newton - w).abs() <= LAST * w {
-                return newton.clamp(lo, hi);
+            // Before the bracket is tested: at convergence steps may end beyond it.
+            if (newton - w).abs() <= 1e-8 * w {
+                return newton.clamp(0.0, 1.0);
             }
             if error > 0.0 {
                 hi = w;

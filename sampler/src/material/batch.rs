@@ -23,7 +23,8 @@ use crate::axis::hermite::{Cell, cubic_lanes, hermite_lanes, horner_lanes, split
 use crate::axis::roots;
 use crate::error::BatchError;
 
-const LANES: usize = 4;
+/// Directions of a group.
+pub(crate) const LANES: usize = 4;
 /// How many groups of four go through each stage together.
 const GROUPS: usize = 8;
 /// 2⁴⁰: a short horizontal part times this has squares well within the range of f32.
@@ -300,13 +301,13 @@ fn numbers(u: &[[f32; 2]; LANES]) -> [f32x4; 2] {
 
 /// The coefficients of four cells' cubics; 0 where there is no such cell.
 #[inline(always)]
-fn coefficients(cells: &[Cell], at: [i32; LANES]) -> [f32x4; 4] {
+pub(crate) fn coefficients(cells: &[Cell], at: [i32; LANES]) -> [f32x4; 4] {
     let cell = |i: usize| f32x4::new(cells.get(at[i] as u32 as usize).copied().unwrap_or([0.0; 4]));
     f32x4::transpose(core::array::from_fn(cell))
 }
 
 #[inline(always)]
-fn transpose(v: &[Vec3; LANES]) -> [f32x4; 3] {
+pub(crate) fn transpose(v: &[Vec3; LANES]) -> [f32x4; 3] {
     [
         f32x4::new([v[0].x, v[1].x, v[2].x, v[3].x]),
         f32x4::new([v[0].y, v[1].y, v[2].y, v[3].y]),

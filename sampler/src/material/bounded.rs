@@ -7,72 +7,221 @@
 //! the density by a factor only. Eto & Tokuyoshi 2023 do so for GGX by shrinking its cap; the
 //! interval does it for every γ. The variance of a white furnace falls to between a third and nine
 //! tenths (`cargo run -p microfacet-sampler --example bounded`).
+//!
+//! The ends need not be exact: any interval that contains the shortest one, with its own length as
+//! the share, gives an unbiased estimator and a density known to the bit. So they are read from a
+//! small table of limits, by view and slope, without a search.
+
+use alloc::vec::Vec;
 
 use glam::Vec3;
+use wide::f32x4;
 
+use super::batch::{LANES, Views, coefficients, same_lengths, transpose};
 use super::distribution::MicrofacetDistribution;
-use super::student_t::{NORMAL_INCIDENCE, StudentT};
-use crate::math::{sqrt, unit};
+use super::student_t::StudentT;
+use crate::axis::hermite::split;
+use crate::error::BatchError;
+use crate::math::unit;
 
-/// The visible normals of a lobe and a view, without most of those that reflect the view below the
+/// Cells of the slope x : z by x/(|x| + z), over [−1, 1], and, for each, rows of the table that share a limit; both
+/// make the intervals wider than needed by one or two hundredths.
+const CELLS: usize = 64;
+const SHARED: usize = 4;
+
+/// Relative widening of either end of the interval, so that rounding loses no direction.
+const SLACK: f64 = 1e-5;
+
+/// A lobe whose visible normals are drawn without most of those that reflect the view below the
 /// horizon.
 ///
-/// Every normal that reflects upwards keeps its place; some of the others remain, as the slope
-/// across the plane of incidence is not restricted. Estimators of reflection that weight with G2/G1
-/// times [`share`](Self::share), or divide by a density of this type, are unbiased, and of lower
-/// variance than those of [`MicrofacetDistribution::sample_visible_normal`]. After Eto & Tokuyoshi
-/// 2023, *Bounded VNDF Sampling for Smith-GGX Reflections*,
-/// <https://doi.org/10.1145/3610543.3626163>.
+/// Prepared once for a material ([`StudentT::bounded`], some 0.1 ms), it draws from a view at almost
+/// the cost of a normal. Every normal that reflects upwards keeps its place; some of the others
+/// remain. Estimators of reflection that weight with G2/G1 times [`share`](BoundedView::share), or
+/// divide by a density of [`BoundedView`], are unbiased, and of lower variance than those of
+/// [`MicrofacetDistribution::sample_visible_normal`]. After Eto & Tokuyoshi 2023, *Bounded VNDF
+/// Sampling for Smith-GGX Reflections*, <https://doi.org/10.1145/3610543.3626163>.
+///
+/// ```
+/// # #[cfg(feature = "embedded")] {
+/// # use glam::Vec3;
+/// # use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
+/// let bounded = Tables::embedded().student_t(0.8, 3.0)?.bounded();
+/// let v = Vec3::new(0.6, 0.0, 0.8);
+/// let at = bounded.at(v);
+/// let m = at.sample([0.3, 0.7]);
+/// let l = 2.0 * v.dot(m) * m - v;
+/// let weight = at.share() * bounded.lobe().reflection_weight(v, l, Masking::HeightCorrelated);
+/// # assert!(weight > 0.0 && weight < at.share() && at.share() < 1.0);
+/// # }
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Bounded {
+    lobe: StudentT,
+    /// By group of rows and cell of the slope: the least and the largest random number.
+    limits: Vec<[[f32; 2]; CELLS]>,
+}
+
+/// The visible normals of a view without most of those that reflect it below the horizon.
 #[derive(Clone, Copy, Debug)]
-pub struct Bounded<'a> {
-    material: &'a StudentT,
+pub struct BoundedView<'a> {
+    lobe: &'a StudentT,
     v: Vec3,
     from: f32,
     share: f32,
 }
 
 impl StudentT {
-    /// Prepares the visible normals of `v` for reflection.
+    /// Prepares the visible normals of every view for reflection.
     ///
-    /// The interval of u₁ that it draws from holds every normal that reflects upwards, but is not
-    /// the shortest to do so: a limit on either side takes a fraction of the time of the exact
-    /// number. For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
-    pub fn bounded(&self, v: Vec3) -> Bounded<'_> {
-        let [from, to] = self.upward(v);
-        Bounded { material: self, v, from, share: to - from }
-    }
-
-    /// An interval of u₁ that holds all at which a light can be above the horizon.
-    fn upward(&self, v: Vec3) -> [f32; 2] {
-        let view = self.stretch(v);
-        let rows = self.rows_at(&view);
-        let (sin, cos) = (sqrt(v.x * v.x + v.y * v.y), view.z);
-        // A unit of slope along the view's azimuth, in unit slopes along the stretched azimuth.
-        let unit = if view.rho >= NORMAL_INCIDENCE { sin / view.rho } else { 1.0 / self.sigma_x };
-        let number = |x: f32, z: f32, above| {
-            self.limit_along(&rows, f64::from(unit * x), f64::from(z), above) as f32
+    /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
+    pub fn bounded(self) -> Bounded {
+        let limits = |row: usize| {
+            let rows = self.row(row);
+            let at = |i: usize| {
+                let x = -1.0 + i as f64 * (2.0 / CELLS as f64);
+                self.limits_along(&rows, x, 1.0 - x.abs())
+            };
+            (0..=CELLS).map(at).collect::<Vec<_>>()
         };
-        // tan θ ∓ 1/cos θ, the nearer end without its cancellation. The interval is widened so that
-        // rounding loses no direction.
-        let low = (number(-cos, 1.0 + sin, false) * (1.0 - SLACK) - SLACK * SLACK).max(0.0);
-        if self.slices.peeled {
-            // Only the tabulated part has slopes away from the viewer, and it comes first.
-            return [low * self.tabulated_share(v), 1.0];
-        }
-        let high = number(1.0 + sin, cos, true);
-        [low, (high + (1.0 - high) * SLACK + SLACK * SLACK).min(1.0)]
+        let rows: Vec<_> = (0..=self.slices.rows).map(limits).collect();
+        let group = |first: usize| {
+            // Lookups between rows reach the first of the next group.
+            let shared = &rows[first..(first + SHARED + 1).min(rows.len())];
+            core::array::from_fn(|i| {
+                let least = shared.iter().map(|row| row[i][0]).fold(1.0, f64::min);
+                let largest = shared.iter().map(|row| row[i + 1][1]).fold(0.0, f64::max);
+                [
+                    (least * (1.0 - SLACK) - SLACK * SLACK).max(0.0) as f32,
+                    (largest + (1.0 - largest) * SLACK + SLACK * SLACK).min(1.0) as f32,
+                ]
+            })
+        };
+        let mut limits: Vec<_> = (0..self.slices.rows).step_by(SHARED).map(group).collect();
+        // Straight from above is the end of the last group, or the start of the next.
+        limits.extend(limits.last().copied());
+        Bounded { lobe: self, limits }
     }
 }
 
-/// Relative widening of either end of the interval.
-const SLACK: f32 = 1e-5;
+impl Bounded {
+    /// The lobe, for all that concerns evaluation.
+    pub fn lobe(&self) -> &StudentT {
+        &self.lobe
+    }
 
-impl Bounded<'_> {
+    /// Bytes of table that lookups touch.
+    pub fn bytes(&self) -> usize {
+        self.lobe.bytes() + size_of_val(&self.limits[..])
+    }
+
+    /// The normals of a view.
+    #[inline]
+    pub fn at(&self, v: Vec3) -> BoundedView<'_> {
+        let [from, share] = self.intervals([v.x, v.y, v.z].map(f32x4::splat), |at, cells| {
+            let limit = |i: usize| f32x4::splat(self.limit(at[0], cells[i][0], i));
+            [limit(0), limit(1)]
+        });
+        BoundedView { lobe: &self.lobe, v, from: from.to_array()[0], share: share.to_array()[0] }
+    }
+
+    /// [`BoundedView::sample`] for each view and pair of numbers, into `m`, and
+    /// [`BoundedView::share`] into `share`: the same normals, to 2 ulp.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; nothing is then written.
+    pub fn sample_batch(
+        &self,
+        v: &[Vec3],
+        u: &[[f32; 2]],
+        m: &mut [Vec3],
+        share: &mut [f32],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len()), ("share", share.len())])?;
+        /// Enough to fill the lanes, and few enough to stay in registers and the first cache.
+        const BLOCK: usize = 32;
+        let blocks = v.chunks(BLOCK).zip(u.chunks(BLOCK));
+        for (((v, u), m), share) in blocks.zip(m.chunks_mut(BLOCK)).zip(share.chunks_mut(BLOCK)) {
+            let mut numbers = [[0.0; 2]; BLOCK];
+            let numbers = &mut numbers[..v.len()];
+            let ((v4, v_rest), (u4, u_rest)) = (v.as_chunks::<LANES>(), u.as_chunks::<LANES>());
+            let ((n4, n_rest), (s4, s_rest)) =
+                (numbers.as_chunks_mut::<LANES>(), share.as_chunks_mut::<LANES>());
+            for (((v, u), n), share) in v4.iter().zip(u4).zip(n4).zip(s4) {
+                let [from, length] = self.intervals(transpose(v), |at, cells| {
+                    [0, 1].map(|end| {
+                        f32x4::new(core::array::from_fn(|i| self.limit(at[i], cells[end][i], end)))
+                    })
+                });
+                *share = length.to_array();
+                let from = from.to_array();
+                *n = core::array::from_fn(|i| [within(from[i], share[i], u[i][0]), u[i][1]]);
+            }
+            for (((v, u), n), share) in v_rest.iter().zip(u_rest).zip(n_rest).zip(s_rest) {
+                let at = self.at(*v);
+                *share = at.share;
+                *n = [within(at.from, at.share, u[0]), u[1]];
+            }
+            self.lobe.sample_all(v, numbers, m);
+        }
+        Ok(())
+    }
+
+    /// The limit of the random number for a view and a slope, in groups and cells.
+    #[inline(always)]
+    fn limit(&self, group: i32, cell: i32, end: usize) -> f32 {
+        let outside = if end == 0 { 0.0 } else { 1.0 };
+        let group = self.limits.get(group as u32 as usize);
+        group.and_then(|cells| cells.get(cell as u32 as usize)).map_or(outside, |cell| cell[end])
+    }
+
+    /// The start and the length of the intervals of u₁ that hold all numbers at which lights can be
+    /// above the horizon, for four views; `limits` reads them at a group of rows and two cells.
+    #[inline(always)]
+    fn intervals(
+        &self,
+        [vx, vy, vz]: [f32x4; 3],
+        limits: impl FnOnce([i32; 4], [[i32; 4]; 2]) -> [f32x4; 2],
+    ) -> [f32x4; 2] {
+        let (lobe, slices) = (&self.lobe, &self.lobe.slices);
+        let views = Views::new(vx * lobe.sigma_x, vy * lobe.sigma_y, vz);
+        let Views { rho, z: cos, length, .. } = views;
+        let [at, _] = slices.view.of_views(rho, cos, length, slices.fast.rows);
+        let (group, _) = split(at * (1.0 / SHARED as f32));
+        let sin = (vx * vx + vy * vy).sqrt();
+        // tan θ ∓ 1/cos θ, the nearer end without its cancellation, in slopes along the view's
+        // azimuth, which are sin/ρ unit slopes along the stretched one.
+        // Where ρ vanishes, so does sin, and the azimuth is that of x.
+        const LITTLE: f32 = 1e-25;
+        let (across, rho) = (sin + LITTLE, rho + LITTLE * lobe.sigma_x);
+        let cells = [(-cos, 1.0 + sin), (1.0 + sin, cos)].map(|(x, z)| {
+            let (x, z) = (x * across, z * rho);
+            let half = 0.5 * CELLS as f32;
+            split(x * half / (x.abs() + z) + half).0.to_array()
+        });
+        let [low, high] = limits(group.to_array(), cells);
+        if slices.peeled {
+            // Only the tabulated part has slopes away from the viewer, and it comes first.
+            let share = slices.heavy.shares(at, coefficients);
+            let low = low * (1.0 - share).fast_max(f32x4::ZERO);
+            return [low, 1.0 - low];
+        }
+        [low, high - low]
+    }
+}
+
+/// The number u ∈ [0, 1] of an interval.
+#[inline(always)]
+fn within(from: f32, share: f32, u: f32) -> f32 {
+    (from + unit(u) * share).min(1.0)
+}
+
+impl BoundedView<'_> {
     /// A normal from two random numbers, which are clamped to [0, 1].
     #[inline]
     pub fn sample(&self, u: [f32; 2]) -> Vec3 {
-        let along = (self.from + unit(u[0]) * self.share).min(1.0);
-        self.material.sample_visible_normal(self.v, [along, u[1]])
+        self.lobe.sample_visible_normal(self.v, [within(self.from, self.share, u[0]), u[1]])
     }
 
     /// Probability that an unbounded sample would be one of these, in (0, 1]: the factor on a
@@ -87,12 +236,12 @@ impl Bounded<'_> {
     /// The density of reflected directions is this over 4 v·m.
     #[inline]
     pub fn visible_normal_pdf(&self, m: Vec3) -> f32 {
-        self.material.visible_normal_pdf(self.v, m) / self.share
+        self.lobe.visible_normal_pdf(self.v, m) / self.share
     }
 
     /// The density of the table's samples for such an `m`, see
     /// [`MicrofacetDistribution::table_pdf`].
     pub fn table_pdf(&self, m: Vec3) -> f32 {
-        self.material.table_pdf(self.v, m) / self.share
+        self.lobe.table_pdf(self.v, m) / self.share
     }
 }

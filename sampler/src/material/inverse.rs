@@ -1,74 +1,51 @@
 //! The inverse of the lookups: the random numbers at which the tables have a slope.
 //!
-//! A row of nodes ascends, so the cell that holds a value is found by a *guide*: for every part of
-//! the range of values the last node before it, from which few steps are left (Chen & Asau 1974, *On
-//! generating random variates from an empirical distribution*). In the cell, the density wants the
-//! position to rounding, while the ends of a bounded interval want only a limit on the right side
-//! of it, which takes one division.
+//! A row of nodes ascends. All of them are compared with a value at once, which takes less time
+//! than a search that branches on what a processor cannot predict. In the cell that holds the value,
+//! the density wants the position to rounding, while the ends of a [bounded](super::bounded)
+//! interval want only a limit on the right side of it, which takes one division.
 
-use alloc::vec::Vec;
+use wide::{bytemuck, f32x4, i32x4};
 
 use super::student_t::{Stretched, StudentT};
 use crate::axis::MirroredRoot;
 use crate::axis::half_tangent::ends;
 use crate::axis::hermite::{Cubic, Node};
 
-/// Parts of the range [0, 2] of values.
-const BINS: usize = 32;
-/// Rows that share a part of the guide; neighbours differ little.
-const SHARED: usize = 4;
-
-/// For each group of rows, each half of them and each bin, the last node that is not above the bin
-/// in any of the rows.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Guide(Vec<[u16; BINS]>);
-
-impl Guide {
-    /// For rows of `halves` runs of `nodes` nodes each.
-    pub(crate) fn new(rows: &[Node], halves: usize, nodes: usize) -> Self {
-        let row = halves * nodes;
-        let count = rows.len() / row;
-        let group = |first: usize, half: usize| {
-            let mut least = [u16::MAX; BINS];
-            // Lookups between rows reach the first of the next group.
-            for r in first..(first + SHARED + 1).min(count) {
-                let run = &rows[r * row + half * nodes..][..nodes];
-                let mut node = 0;
-                for (bin, least) in least.iter_mut().enumerate() {
-                    let edge = bin as f32 * (2.0 / BINS as f32);
-                    while node + 1 < nodes && run[node + 1][0] <= edge {
-                        node += 1;
-                    }
-                    *least = (*least).min(node as u16);
-                }
-            }
-            least
-        };
-        let firsts = (0..count.max(2) - 1).step_by(SHARED);
-        Self(firsts.flat_map(|first| (0..halves).map(move |half| group(first, half))).collect())
-    }
-
-    /// A node not above g ∈ [0, 2] in the run of a row and the next.
-    #[inline(always)]
-    fn start(&self, row: usize, halves: usize, half: usize, g: f64) -> usize {
-        let bin = ((g * (0.5 * BINS as f64)) as usize).min(BINS - 1);
-        usize::from(self.0[row / SHARED * halves + half][bin])
-    }
-}
-
 /// Two neighbouring rows of a table and the position between them.
 pub(super) struct Rows<'a> {
-    row: usize,
     low: &'a [Node],
     high: &'a [Node],
     between: f32,
 }
 
-impl Rows<'_> {
+impl<'a> Rows<'a> {
+    /// One row.
+    fn one(row: &'a [Node]) -> Self {
+        Self { low: row, high: row, between: 0.0 }
+    }
+
     #[inline(always)]
     pub(super) fn node(&self, i: usize) -> Node {
         let (a, b) = (self.low[i], self.high[i]);
         [a[0] + self.between * (b[0] - a[0]), a[1] + self.between * (b[1] - a[1])]
+    }
+
+    /// How many of the nodes from `first` up to `end` are not above g.
+    #[inline(always)]
+    fn count(&self, first: usize, end: usize, g: f32) -> usize {
+        let ((low, low_rest), (high, _)) =
+            (self.low[first..end].as_chunks::<2>(), self.high[first..end].as_chunks::<2>());
+        let mut count = i32x4::ZERO;
+        for (low, high) in low.iter().zip(high) {
+            let [low, high] = [low, high].map(|[a, b]| f32x4::new([a[0], a[1], b[0], b[1]]));
+            let nodes = low + f32x4::splat(self.between) * (high - low);
+            count -= bytemuck::cast::<f32x4, i32x4>(nodes.simd_le(g));
+        }
+        // Slopes of nodes stand in the other lanes.
+        let [even, _, odd, _] = count.to_array();
+        let last = !low_rest.is_empty() && self.node(end - 1)[0] <= g;
+        (even + odd) as usize + usize::from(last)
     }
 }
 
@@ -89,19 +66,14 @@ pub(super) struct Place {
 }
 
 impl Cell {
-    /// Among the half's `cells + 1` ascending nodes, searching from `start`; `None` before the
-    /// first.
+    /// Among the `cells + 1` ascending nodes from `first` on; `None` before the first.
     #[inline(always)]
-    fn find(node: impl Fn(usize) -> Node, cells: usize, start: usize, g: f64) -> Option<Self> {
-        let (mut cell, mut next) = (start.min(cells - 1), node(start.min(cells - 1) + 1));
-        while cell + 1 < cells && f64::from(next[0]) <= g {
-            cell += 1;
-            next = node(cell + 1);
-        }
-        let nodes = [node(cell), next];
+    fn find(rows: &Rows<'_>, first: usize, cells: usize, g: f64) -> Option<Self> {
+        let cell = rows.count(first, first + cells, g as f32).max(1) - 1;
+        let nodes = [rows.node(first + cell), rows.node(first + cell + 1)];
         // The halves meet at u = ½ up to the rounding of their nodes; a normal in a gap between
         // them is a rounded sample of its edge.
-        let g = g.min(f64::from(next[0]));
+        let g = g.min(f64::from(nodes[1][0]));
         let width = 1.0 / cells as f64;
         (g >= f64::from(nodes[0][0])).then_some(Self { cell, width, g, nodes })
     }
@@ -150,39 +122,45 @@ impl StudentT {
         let stride = 2 * (slices.half_cells + 1);
         let [low, high] =
             [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
-        Rows { row, low, high, between }
+        Rows { low, high, between }
     }
 
-    /// The half of the row that holds the in-plane slope x : z, and the cell in it.
+    /// The half of the row that holds the in-plane slope of half tangent h, and the cell in it;
+    /// `ends` are 1 + h and 1 − h.
     #[inline(always)]
-    pub(super) fn cell_along(&self, rows: &Rows<'_>, x: f64, z: f64) -> (usize, Option<Cell>) {
+    pub(super) fn cell_along(&self, rows: &Rows<'_>, ends: [f64; 2]) -> (usize, Option<Cell>) {
         let cells = self.slices.half_cells;
-        let [low, high] = ends(x, z);
+        let [low, high] = ends;
         // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
         // 1 − h in the other half.
         let away = low <= f64::from(rows.node(cells)[0]);
         let (half, g) = if away { (0, low) } else { (1, high) };
-        let start = self.slices.guide.start(rows.row, 2, half, g);
-        (half, Cell::find(|i| rows.node(half * (cells + 1) + i), cells, start, g))
+        (half, Cell::find(rows, half * (cells + 1), cells, g))
     }
 
     /// The cell of the slopes across that holds the distance g from their end.
     #[inline(always)]
     pub(super) fn cell_across(&self, g: f64) -> Option<Cell> {
         let nodes = &self.slices.across;
-        let start = self.slices.guide_across.start(0, 1, 0, g);
-        Cell::find(|i| nodes[i], nodes.len() - 1, start, g)
+        Cell::find(&Rows::one(nodes), 0, nodes.len() - 1, g)
     }
 
-    /// A limit, not above or not below, of the random number at which the table has the in-plane
-    /// slope x : z.
-    #[inline(always)]
-    pub(super) fn limit_along(&self, rows: &Rows<'_>, x: f64, z: f64, above: bool) -> f64 {
-        let (half, cell) = self.cell_along(rows, x, z);
-        // The other half ascends from u = 1.
-        let t = cell.map_or(0.0, |cell| cell.limit(above == (half == 0)));
-        let u = MirroredRoot::number(t);
-        if half == 0 { u } else { 1.0 - u }
+    /// Limits from below and above of the random number at which a row of the table has the
+    /// in-plane slope x : z.
+    pub(super) fn limits_along(&self, rows: &Rows<'_>, x: f64, z: f64) -> [f64; 2] {
+        let (half, cell) = self.cell_along(rows, ends(x, z));
+        [false, true].map(|above| {
+            // The other half ascends from u = 1.
+            let t = cell.as_ref().map_or(0.0, |cell| cell.limit(above == (half == 0)));
+            let u = MirroredRoot::number(t);
+            if half == 0 { u } else { 1.0 - u }
+        })
+    }
+
+    /// A row of the table.
+    pub(super) fn row(&self, row: usize) -> Rows<'_> {
+        let stride = 2 * (self.slices.half_cells + 1);
+        Rows::one(&self.slices.slope[row * stride..(row + 1) * stride])
     }
 }
 
@@ -194,7 +172,7 @@ mod tests {
 
     /// The random number at which the table has a slope, to rounding.
     fn number_along(lobe: &StudentT, rows: &Rows<'_>, x: f64, z: f64) -> f64 {
-        let (half, cell) = lobe.cell_along(rows, x, z);
+        let (half, cell) = lobe.cell_along(rows, ends(x, z));
         let u = cell.map_or(0.0, |cell| MirroredRoot::number(cell.place().t));
         if half == 0 { u } else { 1.0 - u }
     }
@@ -213,7 +191,7 @@ mod tests {
                     let slope = lobe.sample_slope(&view, u);
                     let (x, z) = (f64::from(slope.x), f64::from(slope.z));
                     let got = number_along(&lobe, &rows, x, z);
-                    let [low, high] = [false, true].map(|a| lobe.limit_along(&rows, x, z, a));
+                    let [low, high] = lobe.limits_along(&rows, x, z);
                     assert!((got - f64::from(u)).abs() < 1e-5, "{gamma} {z} {u}: {got}");
                     assert!(low <= got + 1e-12 && got <= high + 1e-12, "{u}: {low} {got} {high}");
                     (widest, count) = (widest.max(high - low), count + 1);
@@ -221,20 +199,5 @@ mod tests {
             }
         }
         assert!(widest < 0.2 && count > 10_000, "{widest} {count}");
-    }
-
-    #[test]
-    fn a_guide_never_starts_behind_the_cell() {
-        let rows: Vec<Node> =
-            (0..9 * 10).map(|i| [(i % 10 + i / 10) as f32 * 0.11, 0.1]).collect();
-        let guide = Guide::new(&rows, 1, 10);
-        for (row, g) in (0..8).flat_map(|row| (0..200).map(move |i| (row, 0.01 * f64::from(i)))) {
-            let start = guide.start(row, 1, 0, g);
-            for r in [row, row + 1] {
-                assert!(start == 0 || f64::from(rows[r * 10 + start][0]) <= g, "{row} {g}");
-            }
-        }
-        // One row, as that of the slopes across.
-        assert_eq!(Guide::new(&rows[..10], 1, 10).start(0, 1, 0, 0.5), 4);
     }
 }

@@ -27,7 +27,7 @@ mod slices;
 mod student_t;
 mod table_pdf;
 
-pub use bounded::Bounded;
+pub use bounded::{Bounded, BoundedView};
 pub use distribution::MicrofacetDistribution;
 pub use ellipsoid::Ellipsoid;
 pub use ggx::Ggx;

@@ -4,7 +4,6 @@ use alloc::vec::Vec;
 
 use super::coverage;
 use super::heavy::Heavy;
-use super::inverse::Guide;
 use crate::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
 use crate::axis::{Axis, HalfTangent, Mapping, MirroredRoot, Rational, Weights};
 use crate::error::MaterialError;
@@ -77,9 +76,6 @@ pub(crate) struct Slices {
     pub(crate) peeled: bool,
     /// Slopes across, the half for u > ½.
     pub(crate) across: Vec<Node>,
-    /// Where to search `slope` and `across` for a value.
-    pub(crate) guide: Guide,
-    pub(crate) guide_across: Guide,
     /// What the fast path reads besides `slope`.
     pub(crate) fast: FastPath,
     /// Constants of the heavy part, where `slope` is peeled.
@@ -117,9 +113,6 @@ impl Slices {
             rows: [rows as f32, (1.0 / rows as f64) as f32],
             half: numbers as u32,
         };
-        let of_rows = &slices.slope[..2 * numbers * (rows + 1)];
-        slices.guide = Guide::new(of_rows, 2, numbers);
-        slices.guide_across = Guide::new(&slices.across, 1, slices.across.len());
         if slices.peeled {
             let moment = f64::from(slices.first_moment());
             let share = |t: f64| slices.share_of_moment(moment, t);
@@ -153,8 +146,6 @@ impl Slices {
             half_cells: numbers.nodes.len() - 1,
             peeled: slope.kind == Kind::VisibleSlopePeeled,
             across: Vec::new(),
-            guide: Guide::default(),
-            guide_across: Guide::default(),
             fast: FastPath::default(),
             heavy: Heavy::default(),
         }

@@ -7,9 +7,11 @@
 use alloc::vec::Vec;
 
 use glam::Vec3;
+use wide::f32x4;
 
 use super::student_t::{Stretched, StudentT};
-use crate::axis::half_tangent::{ends, rate, slope_at};
+use crate::axis::half_tangent::{ends_and_rate, slope_at};
+use crate::elementary::{exp2, log2};
 use crate::math::sqrt64;
 
 /// A normal's slopes in unit space: in-plane x : z, and across y : z, with t = y/√(z² + s x²).
@@ -28,20 +30,23 @@ impl StudentT {
         }
         let view = self.stretch(v);
         let slopes = self.unit_slopes(&view, m);
-        let along = if self.slices.peeled {
-            let heavy = f64::from(self.heavy_share(&view));
-            (1.0 - heavy) * self.slope_density(&view, &slopes) + heavy * self.heavy_density(&slopes)
-        } else {
-            self.slope_density(&view, &slopes)
-        };
         let UnitSlopes { x, z, y } = slopes;
+        let ([low, high], rate) = ends_and_rate(x, z);
+        let cell = self.cell_along(&self.rows_at(&view), [low, high]).1;
+        let mut along = cell.map_or(0.0, |cell| cell.place().density()) * rate;
+        if self.slices.peeled {
+            let heavy = f64::from(self.heavy_share(&view));
+            along = (1.0 - heavy) * along + heavy * self.heavy_density(&slopes);
+        }
         let s = f64::from(self.s);
         let norm = sqrt64(z * z + s * x * x);
-        let across = self.across_density(y / norm);
+        let ([_, g], rate) = ends_and_rate(y.abs(), norm);
+        let across = self.cell_across(g).map_or(0.0, |cell| cell.place().density()) * rate;
         // p(x, y) = p(x) p(t)/√(1 + s x²); `along` is per unit of x/z. Slopes in the tangent frame
         // scale by σ, and dm = cos³θ per slope area.
-        let per_slope = along * across * z / norm / f64::from(self.sigma_x * self.sigma_y);
-        let density = per_slope / (z * z * z);
+        let cos = f64::from(m.z);
+        let area = norm * f64::from(self.sigma_x) * f64::from(self.sigma_y) * (cos * cos * cos);
+        let density = along * across * z / area;
         if density.is_finite() { (density as f32).min(f32::MAX) } else { 0.0 }
     }
 
@@ -60,19 +65,17 @@ impl StudentT {
         [away.chain(towards).collect(), across.collect()]
     }
 
+    /// Up to a common factor, without a division.
     fn unit_slopes(&self, view: &Stretched, m: Vec3) -> UnitSlopes {
-        let (a, b) =
-            (f64::from(m.x) / f64::from(self.sigma_x), f64::from(m.y) / f64::from(self.sigma_y));
-        let r = 1.0
-            / sqrt64(f64::from(view.x) * f64::from(view.x) + f64::from(view.y) * f64::from(view.y));
-        let (cos, sin) = (f64::from(view.x) * r, f64::from(view.y) * r);
-        UnitSlopes { x: a * cos + b * sin, z: f64::from(m.z), y: b * cos - a * sin }
-    }
-
-    /// Density of the tabulated in-plane slope at x/z.
-    fn slope_density(&self, view: &Stretched, at: &UnitSlopes) -> f64 {
-        let cell = self.cell_along(&self.rows_at(view), at.x, at.z).1;
-        cell.map_or(0.0, |cell| cell.place().density()) * rate(at.x, at.z)
+        let [vx, vy, mx, my] = [view.x, view.y, m.x, m.y].map(f64::from);
+        let (sx, sy) = (f64::from(self.sigma_x), f64::from(self.sigma_y));
+        let (a, b) = (mx * sy, my * sx);
+        let frame = sqrt64(vx * vx + vy * vy);
+        UnitSlopes {
+            x: a * vx + b * vy,
+            z: f64::from(m.z) * sx * sy * frame,
+            y: b * vx - a * vy,
+        }
     }
 
     /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.
@@ -83,12 +86,9 @@ impl StudentT {
         let (s, two_gamma_minus_3) = (f64::from(self.s), 2.0 * self.gamma - 3.0);
         let x = at.x / at.z;
         let base = 1.0 + s * x * x;
-        two_gamma_minus_3 * s * x / base * libm::exp(-0.5 * two_gamma_minus_3 * libm::log(base))
-    }
-
-    /// Density of the tabulated slope across at t.
-    fn across_density(&self, t: f64) -> f64 {
-        let [_, g] = ends(t.abs(), 1.0);
-        self.cell_across(g).map_or(0.0, |cell| cell.place().density()) * rate(t, 1.0)
+        // The root stays in the range of f32 where the base does not.
+        let log = log2(f32x4::splat(sqrt64(base) as f32));
+        let power = exp2(log * (-two_gamma_minus_3 as f32)).to_array()[0];
+        two_gamma_minus_3 * s * x / base * f64::from(power)
     }
 }

@@ -51,6 +51,7 @@ pub(super) fn check(
     let tabulated = tables.student_t(sigma, gamma)?;
     // A peeled table leaves less than everything at grazing.
     let rises = tabulated.tabulated_share(Vec3::X) == 1.0;
+    let bounded = tabulated.clone().bounded();
     let mut checker = Checker::new(tabulated.into(), sigma, gamma, rises, report)?;
     checker.views(&views);
     // Any matrix will do, since each is replaced.
@@ -60,6 +61,7 @@ pub(super) fn check(
     let albedos: Vec<_> =
         forms.iter().filter_map(|form| tables.albedo(sigma[0].into(), gamma, *form).ok()).collect();
     for points in views.iter().step_by(DERIVED_EVERY) {
+        checker.bounded(&bounded, points);
         checker.ellipsoids(&lobe, points);
         for albedo in &albedos {
             checker.albedo(albedo, &points[points.len() / 2]);
@@ -97,7 +99,7 @@ impl<'a> Checker<'a> {
                 self.model_normal(&points[i % points.len()]);
             }
             if i % DERIVED_EVERY == 0 {
-                self.batch_and_bounded(points);
+                self.batch(points);
             }
         }
     }
