@@ -13,8 +13,7 @@ pub(crate) fn turn(u: f32) -> [f32; 2] {
     // Of x ∈ [−¼, ¼]; the polynomial errs by 7e-9.
     let sine = |x: f32| {
         let y = x * x;
-        x * (6.283_185_3
-            + y * (-41.341_68 + y * (81.602_475 + y * (-76.581_17 + y * 39.759_827))))
+        x * (6.283_185_3 + y * (-41.341_68 + y * (81.602_475 + y * (-76.581_17 + y * 39.759_827))))
     };
     let x = 0.5 - u;
     let quarter = x.abs() - 0.25;
@@ -32,9 +31,8 @@ pub(crate) fn log2(x: f32x4) -> f32x4 {
     let m: f32x4 = bytemuck::cast(bits - (exponent << 23));
     let t = (m - 1.0) / (m + 1.0);
     let y = t * t;
-    let log = t
-        * (2.885_390_1
-            + y * (f32x4::splat(0.961_798_84) + y * (0.576_715_2 + y * 0.431_717_7)));
+    let log =
+        t * (2.885_390_1 + y * (f32x4::splat(0.961_798_84) + y * (0.576_715_2 + y * 0.431_717_7)));
     let log = f32x4::from_i32x4(exponent) + log;
     x.simd_gt(0.0).select(log, f32x4::splat(f32::NEG_INFINITY))
 }

@@ -21,7 +21,9 @@ pub(crate) fn figures(set: &Tables, sweep: &[Summary], settings: &Settings) -> V
     let drop = |what| times.worst(what, peeled) / times.median(what, whole);
     let figure = |name, must, aim, reached| Figure { name, unit: "", must, aim, reached };
     let ratio = |name, must, aim, reached| figure(name, must, aim, Some(reached));
-    use What::{Batch, BatchDown, BatchOfEnds, Bounded, BoundedBatch, Density, Sample, TableDensity};
+    use What::{
+        Batch, BatchDown, BatchOfEnds, Bounded, BoundedBatch, Density, Sample, TableDensity,
+    };
     let by_caps = |what, layout: usize| times.worst(what, whole) / times.caps[layout];
     let [ggx, ggx_of_components] = [0, 1].map(|layout| times.ggx[layout] / times.caps[layout]);
     let sample_of_components = by_caps(What::SampleOfComponents, 1);

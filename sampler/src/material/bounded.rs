@@ -19,6 +19,8 @@ use wide::f32x4;
 
 use super::batch::{LANES, Views, coefficients, same_lengths, transpose};
 use super::distribution::MicrofacetDistribution;
+use super::fast_path::View;
+use super::sample::first_three;
 use super::student_t::StudentT;
 use crate::axis::hermite::split;
 use crate::error::BatchError;
@@ -68,6 +70,7 @@ pub struct Bounded {
 pub struct BoundedView<'a> {
     lobe: &'a StudentT,
     v: Vec3,
+    view: View,
     from: f32,
     share: f32,
 }
@@ -119,11 +122,19 @@ impl Bounded {
     /// The normals of a view.
     #[inline]
     pub fn at(&self, v: Vec3) -> BoundedView<'_> {
-        let [from, share] = self.intervals([v.x, v.y, v.z].map(f32x4::splat), |at, cells| {
-            let limit = |i: usize| f32x4::splat(self.limit(at[0], cells[i][0], i));
+        let view = if self.lobe.slices.fast.plain {
+            self.lobe.view::<false>(v)
+        } else {
+            self.lobe.view::<true>(v)
+        };
+        let View { rho, z, at, .. } = view;
+        let sin = f32x4::splat(v.x * v.x + v.y * v.y).sqrt();
+        let [from, share] = self.intervals(rho, z, sin, at, |group, cells| {
+            let limit = |i: usize| f32x4::splat(self.limit(group[0], cells[i][0], i));
             [limit(0), limit(1)]
         });
-        BoundedView { lobe: &self.lobe, v, from: from.to_array()[0], share: share.to_array()[0] }
+        let [from, share] = [from, share].map(|x| x.to_array()[0]);
+        BoundedView { lobe: &self.lobe, v, view, from, share }
     }
 
     /// [`BoundedView::sample`] for each view and pair of numbers, into `m`, and
@@ -149,11 +160,7 @@ impl Bounded {
             let ((n4, n_rest), (s4, s_rest)) =
                 (numbers.as_chunks_mut::<LANES>(), share.as_chunks_mut::<LANES>());
             for (((v, u), n), share) in v4.iter().zip(u4).zip(n4).zip(s4) {
-                let [from, length] = self.intervals(transpose(v), |at, cells| {
-                    [0, 1].map(|end| {
-                        f32x4::new(core::array::from_fn(|i| self.limit(at[i], cells[end][i], end)))
-                    })
-                });
+                let [from, length] = self.intervals_of(transpose(v));
                 *share = length.to_array();
                 let from = from.to_array();
                 *n = core::array::from_fn(|i| [within(from[i], share[i], u[i][0]), u[i][1]]);
@@ -176,20 +183,33 @@ impl Bounded {
         group.and_then(|cells| cells.get(cell as u32 as usize)).map_or(outside, |cell| cell[end])
     }
 
+    /// The intervals of four views.
+    #[inline(always)]
+    fn intervals_of(&self, [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 2] {
+        let (lobe, slices) = (&self.lobe, &self.lobe.slices);
+        let Views { rho, z, length, .. } = Views::new(vx * lobe.sigma_x, vy * lobe.sigma_y, vz);
+        let [at, _] = slices.view.of_views(rho, z, length, slices.fast.rows);
+        self.intervals(rho, z, (vx * vx + vy * vy).sqrt(), at, |group, cells| {
+            [0, 1].map(|end| {
+                f32x4::new(core::array::from_fn(|i| self.limit(group[i], cells[end][i], end)))
+            })
+        })
+    }
+
     /// The start and the length of the intervals of u₁ that hold all numbers at which lights can be
-    /// above the horizon, for four views; `limits` reads them at a group of rows and two cells.
+    /// above the horizon, of views with stretched horizontal length ρ and coordinate `at`; `limits`
+    /// reads them at a group of rows and two cells.
     #[inline(always)]
     fn intervals(
         &self,
-        [vx, vy, vz]: [f32x4; 3],
+        rho: f32x4,
+        cos: f32x4,
+        sin: f32x4,
+        at: f32x4,
         limits: impl FnOnce([i32; 4], [[i32; 4]; 2]) -> [f32x4; 2],
     ) -> [f32x4; 2] {
         let (lobe, slices) = (&self.lobe, &self.lobe.slices);
-        let views = Views::new(vx * lobe.sigma_x, vy * lobe.sigma_y, vz);
-        let Views { rho, z: cos, length, .. } = views;
-        let [at, _] = slices.view.of_views(rho, cos, length, slices.fast.rows);
         let (group, _) = split(at * (1.0 / SHARED as f32));
-        let sin = (vx * vx + vy * vy).sqrt();
         // tan θ ∓ 1/cos θ, the nearer end without its cancellation, in slopes along the view's
         // azimuth, which are sin/ρ unit slopes along the stretched one.
         // Where ρ vanishes, so does sin, and the azimuth is that of x.
@@ -221,7 +241,13 @@ impl BoundedView<'_> {
     /// A normal from two random numbers, which are clamped to [0, 1].
     #[inline]
     pub fn sample(&self, u: [f32; 2]) -> Vec3 {
-        self.lobe.sample_visible_normal(self.v, [within(self.from, self.share, u[0]), u[1]])
+        let (lobe, v) = (self.lobe, self.v);
+        let u = [within(self.from, self.share, u[0]), u[1]];
+        if !lobe.slices.fast.plain {
+            return lobe.sample_visible_normal(v, u);
+        }
+        let m = lobe.draw::<false>(&self.view, u, [lobe.sigma_x, lobe.sigma_y], |m| m);
+        m.map_or_else(|| lobe.sample_general(v.x, v.y, v.z, u), first_three)
     }
 
     /// Probability that an unbounded sample would be one of these, in (0, 1]: the factor on a

@@ -7,7 +7,7 @@ use microfacet_common::{Masking, Skew, saturated};
 use wide::f32x4;
 
 use super::batch::Views;
-use super::below_horizon::{Numbers, SlopeBelowHorizon};
+use super::below_horizon::{ExcessShare, Numbers, SlopeBelowHorizon};
 use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::sample::{HORIZON, above_horizon, first_three};
 use super::student_t::{Stretched, StudentT};
@@ -57,6 +57,8 @@ pub struct Ellipsoid {
     /// The lobe with σ = 1.
     lobe: StudentT,
     matrix: Matrix,
+    /// For views below the lobe's horizon.
+    below: ExcessShare,
 }
 
 impl Ellipsoid {
@@ -64,7 +66,8 @@ impl Ellipsoid {
     pub const SIGMAS: [f64; 2] = ENTRIES;
 
     pub(crate) fn new(lobe: StudentT, skew: Skew) -> Result<Self, MaterialError> {
-        Ok(Self { lobe: lobe.with_roughness(1.0)?, matrix: skew.try_into()? })
+        let below = ExcessShare::new(f64::from(lobe.s));
+        Ok(Self { lobe: lobe.with_roughness(1.0)?, matrix: skew.try_into()?, below })
     }
 
     /// The shape γ.
@@ -107,12 +110,12 @@ impl Ellipsoid {
 
     #[cold]
     fn inverse_area_below(&self, w: Vec3, at: &Stretched) -> f32 {
-        let area = at.rho * SlopeBelowHorizon::new(&self.lobe, at.rho, -w.z).excess();
+        let area = at.rho * SlopeBelowHorizon::new(&self.lobe, at.rho, -w.z).excess(&self.below);
         // Finite, since a density of 0 times ∞ would be NaN.
         if area > 0.0 { saturated(1.0 / area) } else { f32::MAX }
     }
 
-    /// The lobe's [common case](StudentT::sample_common) between U and Uᵀ; `None` elsewhere, and
+    /// The lobe's [common case](StudentT::draw) between U and Uᵀ; `None` elsewhere, and
     /// for views below the lobe's horizon.
     ///
     /// A normal takes 1.2 times as long as one of the untilted anisotropic lobe, 1.1 to 1.2 times
@@ -133,7 +136,12 @@ impl Ellipsoid {
                 + lanes(mz) * f32x4::new([x, y, 1.0, 0.0])
         };
         let xy = f32x4::new([w.x, w.y, 0.0, 0.0]);
-        let m = self.lobe.sample_common::<HEAVY>(xy, w.z, u, [1.0; 2], to_tangent)?;
+        let m = self.lobe.draw::<HEAVY>(
+            &self.lobe.stretched::<HEAVY>(xy, w.z),
+            u,
+            [1.0; 2],
+            to_tangent,
+        )?;
         // Not where an almost singular matrix has taken squares out of range, or a normal below the
         // smallest cosine.
         (m.to_array()[2] >= HORIZON).then_some(m)

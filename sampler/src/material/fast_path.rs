@@ -31,29 +31,22 @@ use crate::axis::roots;
 use crate::lanes::{pairs, pairs_of_firsts, sum, swap_pairs};
 
 impl StudentT {
-    /// `None` where the case is not [common](Self::sample_common).
+    /// `None` where the case is not [common](Self::draw).
     #[inline(always)]
     pub(crate) fn sample_fast<const HEAVY: bool>(&self, v: Vec3, u: [f32; 2]) -> Option<f32x4> {
-        let sigma = [self.sigma_x, self.sigma_y];
-        // Unnamed lanes carry copies, zeros or NaN.
-        let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * f32x4::new([sigma[0], sigma[1], 0.0, 0.0]);
-        self.sample_common::<HEAVY>(xy, v.z, u, sigma, |m| m)
+        self.draw::<HEAVY>(&self.view::<HEAVY>(v), u, [self.sigma_x, self.sigma_y], |m| m)
     }
 
-    /// The normal visible along a stretched view: drawn there, stretched by `sigma`, then taken
-    /// through `to_tangent` and normalised. `HEAVY` lobes have a peeled table or a crowded axis.
-    ///
-    /// `None` outside the common case: views straight from above or below, normals that rounding
-    /// may have put behind the silhouette, and arguments that are out of range or NaN.
+    /// A view, stretched and located in the table.
     #[inline(always)]
-    pub(crate) fn sample_common<const HEAVY: bool>(
-        &self,
-        xy: f32x4,
-        z: f32,
-        u: [f32; 2],
-        [sx, sy]: [f32; 2],
-        to_tangent: impl FnOnce(f32x4) -> f32x4,
-    ) -> Option<f32x4> {
+    pub(crate) fn view<const HEAVY: bool>(&self, v: Vec3) -> View {
+        let sigma = f32x4::new([self.sigma_x, self.sigma_y, 0.0, 0.0]);
+        self.stretched::<HEAVY>(f32x4::new([v.x, v.y, 0.0, 0.0]) * sigma, v.z)
+    }
+
+    /// The same of a stretched view. `HEAVY` lobes have a peeled table or a crowded axis.
+    #[inline(always)]
+    pub(crate) fn stretched<const HEAVY: bool>(&self, xy: f32x4, z: f32) -> View {
         let (slices, fast) = (&self.slices, &self.slices.fast);
         let z = f32x4::splat(if z > 0.0 { z } else { 0.0 });
         let squares = xy * xy;
@@ -66,10 +59,26 @@ impl StudentT {
             xy = f32x4::new([x, y, 0.0, 0.0]);
             [frame, rho, length] = others.map(f32x4::splat);
         }
-
-        // The row of the view, and 1 − τ.
         let axis = HalfTangent { crowded: HEAVY && slices.view.crowded };
         let [at, silhouette] = axis.of_views(rho, z, length, fast.rows);
+        View { xy, frame, rho, z, at, silhouette }
+    }
+
+    /// The normal visible along a view: drawn in its space, stretched by `sigma`, then taken through
+    /// `to_tangent` and normalised.
+    ///
+    /// `None` outside the common case: normals that rounding may have put behind the silhouette,
+    /// and arguments that are out of range or NaN.
+    #[inline(always)]
+    pub(crate) fn draw<const HEAVY: bool>(
+        &self,
+        view: &View,
+        u: [f32; 2],
+        [sx, sy]: [f32; 2],
+        to_tangent: impl FnOnce(f32x4) -> f32x4,
+    ) -> Option<f32x4> {
+        let (slices, fast) = (&self.slices, &self.slices.fast);
+        let &View { xy, frame, at, silhouette, .. } = view;
         let (row, between) = split(at);
         let (row, between) = (row.to_array()[0] as u32, f32x4::splat(between.to_array()[0]));
 
@@ -136,6 +145,19 @@ impl StudentT {
         // Half of the slopes of a heavy part may be beyond 10⁶, and some leave the range of f32.
         Some(if HEAVY { m.fast_max(f32x4::new([-1.0, -1.0, HORIZON, 0.0])) } else { m })
     }
+}
+
+/// A stretched view in lanes: x and y in the first two of `xy`, the others in all lanes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    xy: f32x4,
+    /// As in [`Views`].
+    frame: f32x4,
+    pub(crate) rho: f32x4,
+    pub(crate) z: f32x4,
+    /// The coordinate in rows, and 1 − τ.
+    pub(crate) at: f32x4,
+    silhouette: f32x4,
 }
 
 /// The horizontal part of a view where that is short, its frame, ρ and √(ρ² + z²), see [`Views`].

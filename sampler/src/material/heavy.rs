@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 use wide::f32x4;
 
-use super::student_t::{Stretched, StudentT};
+use super::student_t::StudentT;
 use crate::axis::hermite::{Cell, cubic, cubic_cells, cubic_lanes, split};
 use crate::elementary::{exp2, log2};
 use crate::math::unit;
@@ -116,17 +116,9 @@ impl StudentT {
     ///
     /// 1 where the whole distribution is tabulated.
     pub fn tabulated_share(&self, v: Vec3) -> f32 {
-        unit(1.0 - self.heavy_share(&self.stretch(v)))
-    }
-
-    /// Share of the heavy part as the sampler has it; 0 where the whole distribution is tabulated.
-    pub(crate) fn heavy_share(&self, view: &Stretched) -> f32 {
-        let slices = &self.slices;
-        if !slices.peeled {
-            return 0.0;
+        if !self.slices.peeled {
+            return 1.0;
         }
-        let [rho, z] = [view.rho, view.z].map(f32x4::splat);
-        let [at, _] = slices.view.of_views(rho, z, (rho * rho + z * z).sqrt(), slices.fast.rows);
-        slices.heavy.share(at.to_array()[0])
+        unit(1.0 - self.slices.heavy.share(self.coordinate(&self.stretch(v))))
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A row of nodes ascends. All of them are compared with a value at once, which takes less time
 //! than a search that branches on what a processor cannot predict. In the cell that holds the value,
-//! the density wants the position to rounding, while the ends of a [bounded](super::bounded)
+//! the density wants its position, while the ends of a [bounded](super::bounded)
 //! interval want only a limit on the right side of it, which takes one division.
 
 use wide::{bytemuck, f32x4, i32x4};
@@ -10,7 +10,7 @@ use wide::{bytemuck, f32x4, i32x4};
 use super::student_t::{Stretched, StudentT};
 use crate::axis::MirroredRoot;
 use crate::axis::half_tangent::ends;
-use crate::axis::hermite::{Cubic, Node};
+use crate::axis::hermite::{Cubic, Node, split};
 
 /// Two neighbouring rows of a table and the position between them.
 pub(super) struct Rows<'a> {
@@ -78,7 +78,7 @@ impl Cell {
         (g >= f64::from(nodes[0][0])).then_some(Self { cell, width, g, nodes })
     }
 
-    /// The place of the value, to rounding.
+    /// The place of the value, to 1e-11.
     #[inline(always)]
     pub(super) fn place(&self) -> Place {
         let cubic = Cubic::new(self.nodes[0], self.nodes[1]);
@@ -114,11 +114,18 @@ impl Place {
 }
 
 impl StudentT {
-    /// The two rows of the view, interpolated as the sampler does.
+    /// The coordinate of a view in rows, as the sampler has it.
     #[inline(always)]
-    pub(super) fn rows_at(&self, view: &Stretched) -> Rows<'_> {
+    pub(super) fn coordinate(&self, view: &Stretched) -> f32 {
+        self.slices.view.of_view(view.rho, view.z) * self.slices.rows as f32
+    }
+
+    /// The two rows at a view's coordinate, interpolated as the sampler does.
+    #[inline(always)]
+    pub(super) fn rows_at(&self, coordinate: f32) -> Rows<'_> {
         let slices = &self.slices;
-        let (row, between) = self.locate_row(view);
+        let (row, between) = split(f32x4::splat(coordinate));
+        let (row, between) = (row.to_array()[0] as u32 as usize, between.to_array()[0]);
         let stride = 2 * (slices.half_cells + 1);
         let [low, high] =
             [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
@@ -130,11 +137,12 @@ impl StudentT {
     #[inline(always)]
     pub(super) fn cell_along(&self, rows: &Rows<'_>, ends: [f64; 2]) -> (usize, Option<Cell>) {
         let cells = self.slices.half_cells;
-        let [low, high] = ends;
+        let low = ends[0];
         // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
         // 1 − h in the other half.
-        let away = low <= f64::from(rows.node(cells)[0]);
-        let (half, g) = if away { (0, low) } else { (1, high) };
+        // An index, since a branch would be mispredicted as often as not.
+        let half = usize::from(low > f64::from(rows.node(cells)[0]));
+        let g = ends[half];
         (half, Cell::find(rows, half * (cells + 1), cells, g))
     }
 
@@ -185,7 +193,7 @@ mod tests {
             let lobe = tables.student_t(1.0, gamma).unwrap();
             for z in [0.0, 1e-3, 0.1, 0.4, 0.7, 0.95, 0.9999] {
                 let view = lobe.stretch(Vec3::new(libm::sqrtf(1.0 - z * z), 0.0, z));
-                let rows = lobe.rows_at(&view);
+                let rows = lobe.rows_at(lobe.coordinate(&view));
                 for i in 1..400 {
                     let u = i as f32 / 400.0;
                     let slope = lobe.sample_slope(&view, u);

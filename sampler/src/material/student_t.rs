@@ -170,13 +170,9 @@ impl StudentT {
             return d_of_stretched(m.x, m.y, m.z, scale);
         }
         let ratio = r2 / z2;
-        let log = if s * ratio < 1e-4 {
-            // γ ln(1 + s r²/z²) = (1+s) r²/z² (1 − ½ s r²/z² …): the limit to Beckmann, where 1/s
-            // would overflow.
-            let y = s * ratio;
-            -(1.0 + s) * ratio * (1.0 - y * (0.5 - y * (1.0 / 3.0))) - 2.0 * libm::logf(z2)
-        } else if s * ratio < STEEP {
-            -(1.0 + s) / s * libm::log1pf(s * ratio) - 2.0 * libm::logf(z2)
+        let log = if s * ratio < STEEP {
+            // γ = (1+s)/s.
+            -(1.0 + s) * log_growth(s, ratio) - 2.0 * libm::logf(z2)
         } else if s == 0.0 {
             // r²/z² overflows: exp(−r²/z²) = 0.
             return 0.0;
@@ -191,6 +187,14 @@ impl StudentT {
         let root = libm::expf(0.5 * log);
         saturated(scale * root * root)
     }
+}
+
+/// ln(1 + s x²)/s of a squared unit slope, x² in the limit s = 0.
+#[inline(always)]
+pub(crate) fn log_growth(s: f32, x2: f32) -> f32 {
+    let y = s * x2;
+    // The limit to Beckmann, where 1/s would overflow.
+    if y < 1e-4 { x2 * (1.0 - y * (0.5 - y * (1.0 / 3.0))) } else { libm::log1pf(y) / s }
 }
 
 impl MicrofacetDistribution for StudentT {

@@ -32,10 +32,11 @@ impl StudentT {
         let slopes = self.unit_slopes(&view, m);
         let UnitSlopes { x, z, y } = slopes;
         let ([low, high], rate) = ends_and_rate(x, z);
-        let cell = self.cell_along(&self.rows_at(&view), [low, high]).1;
+        let at = self.coordinate(&view);
+        let cell = self.cell_along(&self.rows_at(at), [low, high]).1;
         let mut along = cell.map_or(0.0, |cell| cell.place().density()) * rate;
         if self.slices.peeled {
-            let heavy = f64::from(self.heavy_share(&view));
+            let heavy = f64::from(self.slices.heavy.share(at));
             along = (1.0 - heavy) * along + heavy * self.heavy_density(&slopes);
         }
         let s = f64::from(self.s);
@@ -53,7 +54,7 @@ impl StudentT {
     /// See [`internals::table_joints`](crate::internals::table_joints).
     pub(crate) fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
         let view = self.stretch(v);
-        let rows = self.rows_at(&view);
+        let rows = self.rows_at(self.coordinate(&view));
         let half = self.slices.half_cells + 1;
         let slope = |g: f64, sign: f64| {
             let [x, z] = slope_at(g);
@@ -71,20 +72,13 @@ impl StudentT {
         let (sx, sy) = (f64::from(self.sigma_x), f64::from(self.sigma_y));
         let (a, b) = (mx * sy, my * sx);
         let frame = sqrt64(vx * vx + vy * vy);
-        UnitSlopes {
-            x: a * vx + b * vy,
-            z: f64::from(m.z) * sx * sy * frame,
-            y: b * vx - a * vy,
-        }
+        UnitSlopes { x: a * vx + b * vy, z: f64::from(m.z) * sx * sy * frame, y: b * vx - a * vy }
     }
 
     /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.
     fn heavy_density(&self, at: &UnitSlopes) -> f64 {
-        if at.x <= 0.0 {
-            return 0.0;
-        }
         let (s, two_gamma_minus_3) = (f64::from(self.s), 2.0 * self.gamma - 3.0);
-        let x = at.x / at.z;
+        let x = (at.x / at.z).max(0.0);
         let base = 1.0 + s * x * x;
         // The root stays in the range of f32 where the base does not.
         let log = log2(f32x4::splat(sqrt64(base) as f32));
