@@ -44,7 +44,7 @@ pub(crate) enum Density {
     /// All normals, D(m)(m·n).
     Ndf,
     /// Visible normals that may reflect upwards, of this material.
-    Bounded(Bounded),
+    Bounded(Box<Bounded>),
 }
 
 /// A sampler.
@@ -219,7 +219,7 @@ fn variants<'a>(set: &Tables) -> [Sampler<'a>; 2] {
     let (bytes, stored) = (batch.bytes(), stored(set));
     let draw: Draw = Box::new(move |v, u, m| batch.sample_batch(v, u, m).expect("of one length"));
     let bounded = bounded.bounded();
-    let density = Density::Bounded(bounded.clone());
+    let density = Density::Bounded(bounded.clone().into());
     let one = each(move |v, u| bounded.at(v).sample(u));
     let bounded =
         Sampler::new("table, default, bounded to reflections", GAMMA, Check::Distribution, one);

@@ -4,6 +4,8 @@
 //! everywhere, and they take a fraction of a library's time, whose functions serve every argument.
 //! The polynomials are interpolations at Chebyshev's points.
 
+use core::f32::consts::{LN_2, TAU};
+
 use wide::{bytemuck, f32x4, i32x4};
 
 /// The sine and the cosine of 2πu for u ∈ [0, 1], to 2e-7 absolute, exact at quarters of a turn
@@ -13,7 +15,7 @@ pub(crate) fn turn(u: f32) -> [f32; 2] {
     // Of x ∈ [−¼, ¼]; the polynomial errs by 7e-9.
     let sine = |x: f32| {
         let y = x * x;
-        x * (6.283_185_3 + y * (-41.341_68 + y * (81.602_475 + y * (-76.581_17 + y * 39.759_827))))
+        x * (TAU + y * (-41.341_68 + y * (81.602_475 + y * (-76.581_17 + y * 39.759_827))))
     };
     let x = 0.5 - u;
     let quarter = x.abs() - 0.25;
@@ -46,7 +48,7 @@ pub(crate) fn exp2(x: f32x4) -> f32x4 {
     let w = x - f32x4::from_i32x4(whole);
     // 2ʷ for w ∈ [−½, ½], to 2e-9.
     let square = w * w;
-    let low = 1.0 + w * 0.693_147_2;
+    let low = 1.0 + w * LN_2;
     let high = (0.240_226_51 + w * 0.055_503_27)
         + square * ((0.009_618_057 + w * 0.001_340_042_8) + square * 0.000_154_614_45);
     let scale: f32x4 = bytemuck::cast((whole + 127) << 23);

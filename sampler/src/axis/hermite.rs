@@ -147,7 +147,7 @@ impl Cubic {
         // The parabola at w = 0, where the tails of distributions start almost level.
         let (rise, slope) = (y - self.c[0], self.c[1]);
         let start = 2.0 * rise / (slope + sqrt64(slope * slope + 4.0 * self.c[2] * rise));
-        let mut w = if start >= 0.0 && start < 1.0 { start } else { 0.5 };
+        let mut w = if (0.0..1.0).contains(&start) { start } else { 0.5 };
         for _ in 0..60 {
             let error = self.value(w) - y;
             let newton = w - error / self.derivative(w);

@@ -16,7 +16,8 @@ use super::distribution::MicrofacetDistribution;
 use super::fast_path::{pair, start};
 use super::heavy::parts;
 use super::sample::HORIZON;
-use super::student_t::{NORMAL_INCIDENCE, SHORT, StudentT};
+use super::student_t::StudentT;
+use super::views::Views;
 use crate::axis::HalfTangent;
 use crate::axis::half_tangent::half_slope_at;
 use crate::axis::hermite::{Cell, cubic_lanes, hermite_lanes, horner_lanes, split};
@@ -27,9 +28,6 @@ use crate::error::BatchError;
 pub(crate) const LANES: usize = 4;
 /// How many groups of four go through each stage together.
 const GROUPS: usize = 8;
-/// 2⁴⁰: a short horizontal part times this has squares well within the range of f32.
-const LIFT: f32 = 1_099_511_627_776.0;
-
 impl StudentT {
     /// As many normals as there are views; the slices are of the same length.
     pub(crate) fn sample_all(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) {
@@ -173,49 +171,6 @@ impl StudentT {
         let g1 = q * horner_lanes(coefficients(&slices.shadowing, cell.to_array()), w);
         // NaN gives 0 here, too.
         (g1.fast_min(f32x4::ONE) & g1.simd_ge(0.0)).to_array()
-    }
-}
-
-/// Four views as [`Stretched`](super::student_t::Stretched) is one, and √(ρ² + z²).
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Views {
-    pub(crate) x: f32x4,
-    pub(crate) y: f32x4,
-    pub(crate) frame: f32x4,
-    pub(crate) rho: f32x4,
-    pub(crate) z: f32x4,
-    pub(crate) length: f32x4,
-}
-
-impl Views {
-    #[inline(always)]
-    pub(crate) fn new(x: f32x4, y: f32x4, z: f32x4) -> Self {
-        let z = z & z.simd_gt(0.0);
-        let rho2 = x * x + y * y;
-        let rho = rho2.sqrt();
-        let views = Self { x, y, frame: rho, rho, z, length: (rho2 + z * z).sqrt() };
-        if rho.simd_ge(SHORT).all() { views } else { views.of_any_length() }
-    }
-
-    /// With a frame whose squares stay in range where the horizontal part is short.
-    fn of_any_length(self) -> Self {
-        let Self { x, y, rho, z, .. } = self;
-        let lift = rho.simd_ge(SHORT).select(f32x4::ONE, f32x4::splat(LIFT));
-        // Normal incidence, straight down, or NaN: without z > 0 the view is taken at the horizon,
-        // as every view below it, with an arbitrary azimuth.
-        let tilted = rho.simd_ge(NORMAL_INCIDENCE);
-        let upright = z.simd_gt(0.0).select(f32x4::ZERO, f32x4::ONE);
-        let rho = tilted.select(rho, upright);
-        // Not a bit of the other views changes.
-        let length = tilted.select(self.length, (rho * rho + z * z).sqrt());
-        Self {
-            x: tilted.select(x * lift, f32x4::ONE),
-            y: tilted.select(y * lift, f32x4::ZERO),
-            frame: tilted.select(rho * lift, f32x4::ONE),
-            rho,
-            z,
-            length,
-        }
     }
 }
 

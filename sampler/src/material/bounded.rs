@@ -17,11 +17,11 @@ use alloc::vec::Vec;
 use glam::Vec3;
 use wide::f32x4;
 
-use super::batch::{LANES, Views, coefficients, same_lengths, transpose};
+use super::batch::{LANES, coefficients, same_lengths, transpose};
 use super::distribution::MicrofacetDistribution;
-use super::fast_path::View;
 use super::sample::first_three;
 use super::student_t::StudentT;
+use super::views::{View, Views};
 use crate::axis::hermite::split;
 use crate::error::BatchError;
 use crate::math::unit;

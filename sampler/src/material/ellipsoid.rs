@@ -6,11 +6,11 @@ use glam::Vec3;
 use microfacet_common::{Masking, Skew, saturated};
 use wide::f32x4;
 
-use super::batch::Views;
 use super::below_horizon::{ExcessShare, Numbers, SlopeBelowHorizon};
 use super::distribution::{MicrofacetDistribution, SMOOTH};
 use super::sample::{HORIZON, above_horizon, first_three};
 use super::student_t::{Stretched, StudentT};
+use super::views::Views;
 use crate::axis::half_tangent::Slope;
 use crate::error::MaterialError;
 use crate::math::sqrt;

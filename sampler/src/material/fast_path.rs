@@ -20,11 +20,10 @@
 use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
-use super::batch::Views;
 use super::heavy::Part;
 use super::sample::HORIZON;
-use super::student_t::{SHORT, StudentT};
-use crate::axis::HalfTangent;
+use super::student_t::StudentT;
+use super::views::View;
 use crate::axis::half_tangent::half_slope_at;
 use crate::axis::hermite::{Node, basis, cubic, split};
 use crate::axis::roots;
@@ -35,33 +34,6 @@ impl StudentT {
     #[inline(always)]
     pub(crate) fn sample_fast<const HEAVY: bool>(&self, v: Vec3, u: [f32; 2]) -> Option<f32x4> {
         self.draw::<HEAVY>(&self.view::<HEAVY>(v), u, [self.sigma_x, self.sigma_y], |m| m)
-    }
-
-    /// A view, stretched and located in the table.
-    #[inline(always)]
-    pub(crate) fn view<const HEAVY: bool>(&self, v: Vec3) -> View {
-        let sigma = f32x4::new([self.sigma_x, self.sigma_y, 0.0, 0.0]);
-        self.stretched::<HEAVY>(f32x4::new([v.x, v.y, 0.0, 0.0]) * sigma, v.z)
-    }
-
-    /// The same of a stretched view. `HEAVY` lobes have a peeled table or a crowded axis.
-    #[inline(always)]
-    pub(crate) fn stretched<const HEAVY: bool>(&self, xy: f32x4, z: f32) -> View {
-        let (slices, fast) = (&self.slices, &self.slices.fast);
-        let z = f32x4::splat(if z > 0.0 { z } else { 0.0 });
-        let squares = xy * xy;
-        let rho2 = squares + swap_pairs(squares);
-        let (mut xy, mut rho, mut length) = (xy, rho2.sqrt(), (rho2 + z * z).sqrt());
-        let mut frame = rho;
-        if !(rho.to_array()[0] >= SHORT) {
-            let [x, y, ..] = xy.to_array();
-            let [x, y, others @ ..] = upright(x, y, z.to_array()[0]);
-            xy = f32x4::new([x, y, 0.0, 0.0]);
-            [frame, rho, length] = others.map(f32x4::splat);
-        }
-        let axis = HalfTangent { crowded: HEAVY && slices.view.crowded };
-        let [at, silhouette] = axis.of_views(rho, z, length, fast.rows);
-        View { xy, frame, rho, z, at, silhouette }
     }
 
     /// The normal visible along a view: drawn in its space, stretched by `sigma`, then taken through
@@ -145,28 +117,6 @@ impl StudentT {
         // Half of the slopes of a heavy part may be beyond 10⁶, and some leave the range of f32.
         Some(if HEAVY { m.fast_max(f32x4::new([-1.0, -1.0, HORIZON, 0.0])) } else { m })
     }
-}
-
-/// A stretched view in lanes: x and y in the first two of `xy`, the others in all lanes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct View {
-    xy: f32x4,
-    /// As in [`Views`].
-    frame: f32x4,
-    pub(crate) rho: f32x4,
-    pub(crate) z: f32x4,
-    /// The coordinate in rows, and 1 − τ.
-    pub(crate) at: f32x4,
-    silhouette: f32x4,
-}
-
-/// The horizontal part of a view where that is short, its frame, ρ and √(ρ² + z²), see [`Views`].
-#[cold]
-#[inline(never)]
-fn upright(x: f32, y: f32, z: f32) -> [f32; 5] {
-    let [x, y, z] = [x, y, z].map(f32x4::splat);
-    let Views { x, y, frame, rho, length, .. } = Views::new(x, y, z);
-    [x, y, frame, rho, length].map(|x| x.to_array()[0])
 }
 
 /// How far, in g, a normal must be from the silhouette so that no rounding can hide it.

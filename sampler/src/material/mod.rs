@@ -26,6 +26,7 @@ mod sample;
 mod slices;
 mod student_t;
 mod table_pdf;
+mod views;
 
 pub use bounded::{Bounded, BoundedView};
 pub use distribution::MicrofacetDistribution;

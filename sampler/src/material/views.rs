@@ -1,0 +1,106 @@
+//! Views in the lanes of SIMD vectors, stretched and located in the table: one for the
+//! [fast path](super::fast_path), four for [batches](super::batch).
+
+use glam::Vec3;
+use wide::f32x4;
+
+use super::student_t::{NORMAL_INCIDENCE, SHORT, StudentT};
+use crate::axis::HalfTangent;
+use crate::lanes::swap_pairs;
+
+/// 2⁴⁰: a short horizontal part times this has squares well within the range of f32.
+const LIFT: f32 = 1_099_511_627_776.0;
+
+/// A stretched view in lanes: x and y in the first two of `xy`, the others in all lanes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    pub(crate) xy: f32x4,
+    /// As in [`Views`].
+    pub(crate) frame: f32x4,
+    pub(crate) rho: f32x4,
+    pub(crate) z: f32x4,
+    /// The coordinate in rows, and 1 − τ.
+    pub(crate) at: f32x4,
+    pub(crate) silhouette: f32x4,
+}
+
+/// The horizontal part of a view where that is short, its frame, ρ and √(ρ² + z²), see [`Views`].
+#[cold]
+#[inline(never)]
+fn upright(x: f32, y: f32, z: f32) -> [f32; 5] {
+    let [x, y, z] = [x, y, z].map(f32x4::splat);
+    let Views { x, y, frame, rho, length, .. } = Views::new(x, y, z);
+    [x, y, frame, rho, length].map(|x| x.to_array()[0])
+}
+
+impl StudentT {
+    /// A view, stretched and located in the table.
+    #[inline(always)]
+    pub(crate) fn view<const HEAVY: bool>(&self, v: Vec3) -> View {
+        let sigma = f32x4::new([self.sigma_x, self.sigma_y, 0.0, 0.0]);
+        self.stretched::<HEAVY>(f32x4::new([v.x, v.y, 0.0, 0.0]) * sigma, v.z)
+    }
+
+    /// The same of a stretched view. `HEAVY` lobes have a peeled table or a crowded axis.
+    #[inline(always)]
+    pub(crate) fn stretched<const HEAVY: bool>(&self, xy: f32x4, z: f32) -> View {
+        let (slices, fast) = (&self.slices, &self.slices.fast);
+        let z = f32x4::splat(if z > 0.0 { z } else { 0.0 });
+        let squares = xy * xy;
+        let rho2 = squares + swap_pairs(squares);
+        let (mut xy, mut rho, mut length) = (xy, rho2.sqrt(), (rho2 + z * z).sqrt());
+        let mut frame = rho;
+        if !(rho.to_array()[0] >= SHORT) {
+            let [x, y, ..] = xy.to_array();
+            let [x, y, others @ ..] = upright(x, y, z.to_array()[0]);
+            xy = f32x4::new([x, y, 0.0, 0.0]);
+            [frame, rho, length] = others.map(f32x4::splat);
+        }
+        let axis = HalfTangent { crowded: HEAVY && slices.view.crowded };
+        let [at, silhouette] = axis.of_views(rho, z, length, fast.rows);
+        View { xy, frame, rho, z, at, silhouette }
+    }
+}
+
+/// Four views as [`Stretched`](super::student_t::Stretched) is one, and √(ρ² + z²).
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Views {
+    pub(crate) x: f32x4,
+    pub(crate) y: f32x4,
+    pub(crate) frame: f32x4,
+    pub(crate) rho: f32x4,
+    pub(crate) z: f32x4,
+    pub(crate) length: f32x4,
+}
+
+impl Views {
+    #[inline(always)]
+    pub(crate) fn new(x: f32x4, y: f32x4, z: f32x4) -> Self {
+        let z = z & z.simd_gt(0.0);
+        let rho2 = x * x + y * y;
+        let rho = rho2.sqrt();
+        let views = Self { x, y, frame: rho, rho, z, length: (rho2 + z * z).sqrt() };
+        if rho.simd_ge(SHORT).all() { views } else { views.of_any_length() }
+    }
+
+    /// With a frame whose squares stay in range where the horizontal part is short.
+    fn of_any_length(self) -> Self {
+        let Self { x, y, rho, z, .. } = self;
+        let lift = rho.simd_ge(SHORT).select(f32x4::ONE, f32x4::splat(LIFT));
+        // Normal incidence, straight down, or NaN: without z > 0 the view is taken at the horizon,
+        // as every view below it, with an arbitrary azimuth.
+        let tilted = rho.simd_ge(NORMAL_INCIDENCE);
+        let upright = z.simd_gt(0.0).select(f32x4::ZERO, f32x4::ONE);
+        let rho = tilted.select(rho, upright);
+        // Not a bit of the other views changes.
+        let length = tilted.select(self.length, (rho * rho + z * z).sqrt());
+        Self {
+            x: tilted.select(x * lift, f32x4::ONE),
+            y: tilted.select(y * lift, f32x4::ZERO),
+            frame: tilted.select(rho * lift, f32x4::ONE),
+            rho,
+            z,
+            length,
+        }
+    }
+}
