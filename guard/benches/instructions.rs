@@ -7,7 +7,7 @@ use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
 use microfacet_guard::{CALLS, Inputs};
-use microfacet_sampler::{Ggx, MicrofacetDistribution, StudentT};
+use microfacet_sampler::{Bounded, Ellipsoid, Ggx, MicrofacetDistribution, StudentT};
 
 /// The baseline: instructions per call at this commit. A count 1 % above it fails, which is one
 /// instruction in the short paths.
@@ -31,15 +31,14 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
 fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
-        black_box(
-            calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum(),
-        ),
+        black_box(calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum()),
         inputs,
     )
 }
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(99.9))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1e9))]
 fn sample_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
     inputs.lobe.sample_batch(&inputs.v, &inputs.u, &mut inputs.m).expect("equal lengths");
     black_box(inputs)
@@ -63,17 +62,46 @@ fn g1_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(278.1))]
 fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
-    (
-        black_box(calls.map(|(v, m)| black_box(inputs.lobe.visible_normal_pdf(*v, *m))).sum()),
-        inputs,
-    )
+    (black_box(calls.map(|(v, m)| black_box(inputs.lobe.visible_normal_pdf(*v, *m))).sum()), inputs)
 }
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(2458.9))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1e9))]
 fn table_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.table_pdf(*v, *m))).sum()), inputs)
+}
+
+#[library_benchmark]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(1e9))]
+fn bounded(inputs: Inputs<Bounded>) -> (Vec3, Inputs<Bounded>) {
+    let calls = inputs.v.iter().zip(&inputs.u);
+    (black_box(calls.map(|(v, u)| black_box(inputs.lobe.at(*v).sample(*u))).sum()), inputs)
+}
+
+#[library_benchmark]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(1e9))]
+fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
+    let Inputs { lobe, v, u, m, g1 } = &mut inputs;
+    lobe.sample_batch(v, u, m, g1).expect("equal lengths");
+    black_box(inputs)
+}
+
+#[library_benchmark]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(1e9))]
+fn ellipsoid_g1(inputs: Inputs<Ellipsoid>) -> (f32, Inputs<Ellipsoid>) {
+    (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
+}
+
+#[library_benchmark]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(1e9))]
+fn ellipsoid_sample_visible_normal(inputs: Inputs<Ellipsoid>) -> (Vec3, Inputs<Ellipsoid>) {
+    let calls = inputs.v.iter().zip(&inputs.u);
+    (
+        black_box(calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum()),
+        inputs,
+    )
 }
 
 /// GGX without tables.
@@ -92,9 +120,7 @@ fn ggx_g1(inputs: Inputs<Ggx>) -> (f32, Inputs<Ggx>) {
 fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
-        black_box(
-            calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum(),
-        ),
+        black_box(calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum()),
         inputs,
     )
 }
@@ -108,6 +134,10 @@ library_benchmark_group!(
         g1_batch,
         visible_normal_pdf,
         table_pdf,
+        bounded,
+        bounded_batch,
+        ellipsoid_g1,
+        ellipsoid_sample_visible_normal,
         ggx_g1,
         ggx_sample_visible_normal,
     ]

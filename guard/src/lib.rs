@@ -1,7 +1,7 @@
 //! The inputs for the instruction counts of `benches/instructions.rs`.
 
 use glam::Vec3;
-use microfacet_sampler::{MicrofacetDistribution, StudentT, Tables};
+use microfacet_sampler::{Bounded, Ellipsoid, MicrofacetDistribution, Skew, StudentT, Tables};
 
 /// Calls of each function; a count divided by it is instructions per call.
 pub const CALLS: usize = 1000;
@@ -23,6 +23,31 @@ impl Inputs<StudentT> {
     /// From the default tables at γ.
     pub fn new(gamma: f64) -> Self {
         Self::of(Tables::embedded().student_t(SIGMA, gamma).expect("covered by the default set"))
+    }
+}
+
+impl Inputs<Bounded> {
+    /// The lobe of [`Inputs::new`], bounded to reflections; `g1` has room for shares.
+    pub fn bounded(gamma: f64) -> Self {
+        let Inputs { lobe, v, u, m, g1 } = Inputs::new(gamma);
+        Self { lobe: lobe.bounded(), v, u, m, g1 }
+    }
+}
+
+impl Inputs<Ellipsoid> {
+    /// A tilted lobe, and views above the surface but below the lobe's own horizon.
+    pub fn below(gamma: f64) -> Self {
+        let skew = Skew::new([0.3, 0.1], [0.2, -0.5, 0.5]).expect("a lobe that can be tilted so");
+        let lobe = Tables::embedded().ellipsoid(skew, gamma).expect("covered by the default set");
+        let Inputs { lobe, u, m, g1, .. } = Self::of(lobe);
+        // Along the slope of the mean normal, at cosines of up to 0.2.
+        let lean = (skew.x * skew.x + skew.y * skew.y).sqrt();
+        let v = (0..CALLS).map(|i| {
+            let z = 0.2 * (i as f64 + 0.5) / CALLS as f64;
+            let r = -(1.0 - z * z).sqrt() / lean;
+            Vec3::new((r * skew.x) as f32, (r * skew.y) as f32, z as f32)
+        });
+        Self { lobe, v: v.collect(), u, m, g1 }
     }
 }
 

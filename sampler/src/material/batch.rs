@@ -13,7 +13,7 @@ use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
 use super::distribution::MicrofacetDistribution;
-use super::fast_path::{pair, start};
+use super::fast_path::{least_clear, pair, start};
 use super::heavy::parts;
 use super::sample::HORIZON;
 use super::student_t::StudentT;
@@ -75,8 +75,12 @@ impl StudentT {
             *slopes = self.look_up::<HEAVY>(at);
         }
         for (i, m) in m.iter_mut().enumerate() {
-            let normals = self.assemble_lanes(&located[i].views, slopes[i], sigma);
-            let [x, y, z] = facing(normals, transpose(&v[i])).map(f32x4::to_array);
+            let mut normals = self.assemble_lanes(&located[i].views, &slopes[i], sigma);
+            normals = above_horizon(normals);
+            if !slopes[i].clear.all() {
+                normals = facing(normals, transpose(&v[i]));
+            }
+            let [x, y, z] = normals.map(f32x4::to_array);
             *m = core::array::from_fn(|i| Vec3::new(x[i], y[i], z[i]));
         }
     }
@@ -88,13 +92,13 @@ impl StudentT {
         let sigma = [self.sigma_x, self.sigma_y];
         let normals =
             self.unnormalised(Views::new(v[0] * sigma[0], v[1] * sigma[1], v[2]), u, sigma);
-        facing(normals, v).map(|x| x.to_array()[0]).into()
+        facing(above_horizon(normals), v).map(|x| x.to_array()[0]).into()
     }
 
     /// The normal visible along a stretched view, stretched by `sigma`, in all lanes.
     pub(crate) fn unnormalised(&self, views: Views, u: [f32; 2], sigma: [f32; 2]) -> [f32x4; 3] {
         let at = self.locate::<true>(views, u.map(f32x4::splat));
-        self.assemble_lanes(&at.views, self.look_up::<true>(&at), sigma)
+        self.assemble_lanes(&at.views, &self.look_up::<true>(&at), sigma)
     }
 
     #[inline(always)]
@@ -102,7 +106,7 @@ impl StudentT {
         let (slices, fast) = (&self.slices, &self.slices.fast);
         let Views { rho, z, length, .. } = views;
         let axis = HalfTangent { crowded: HEAVY && slices.view.crowded };
-        let [at, _] = axis.of_views(rho, z, length, fast.rows);
+        let [at, silhouette] = axis.of_views(rho, z, length, fast.rows);
         let (row, between) = split(at);
         let [number, heavy] = if HEAVY && slices.peeled {
             parts(u[0], slices.heavy.shares(at, coefficients))
@@ -111,7 +115,7 @@ impl StudentT {
         };
         let along = Number::new(number, fast.scales[0]);
         let across = Number::new(u[1], fast.scales[1]);
-        Located { views, row, between, number, heavy, along, across }
+        Located { views, silhouette, row, between, number, heavy, along, across }
     }
 
     /// The in-plane slopes and the slopes across.
@@ -133,21 +137,25 @@ impl StudentT {
             low + f32x4::splat(between[i]) * (high - low)
         };
         let g = hermite_lanes(f32x4::transpose(core::array::from_fn(node)), at.along.w);
+        let cells = coefficients(&fast.across, at.across.cell.to_array());
+        let [t, t_z] = half_slope_at(cubic_lanes(cells, at.across.w));
         let [x, mut z] = half_slope_at(g);
         let mut x = x ^ at.along.sign();
+        let (mut ahead, mut silhouette) = (g, !at.along.towards & at.silhouette);
         if HEAVY && slices.peeled {
             let heavy = slices.heavy.half_slopes(at.number);
             [x, z] = [at.heavy.select(heavy[0], x), at.heavy.select(heavy[1], z)];
+            ahead = at.heavy.select(x + z, ahead);
+            silhouette = !at.heavy & silhouette;
         }
-        let cells = coefficients(&fast.across, at.across.cell.to_array());
-        let [t, t_z] = half_slope_at(cubic_lanes(cells, at.across.w));
-        Slopes { x, z, t: t ^ at.across.sign(), t_z }
+        let clear = (ahead * t_z).simd_ge(least_clear(silhouette, t, t_z));
+        Slopes { x, z, t: t ^ at.across.sign(), t_z, clear }
     }
 
     /// The normals, not normalised.
     #[inline(always)]
-    fn assemble_lanes(&self, views: &Views, at: Slopes, [sx, sy]: [f32; 2]) -> [f32x4; 3] {
-        let Slopes { x, z, t, t_z } = at;
+    fn assemble_lanes(&self, views: &Views, at: &Slopes, [sx, sy]: [f32; 2]) -> [f32x4; 3] {
+        let &Slopes { x, z, t, t_z, .. } = at;
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
         // In the order of the function for one direction: strong anisotropy magnifies every
         // rounding.
@@ -178,6 +186,8 @@ impl StudentT {
 #[derive(Clone, Copy, Default)]
 struct Located {
     views: Views,
+    /// 1 − τ.
+    silhouette: f32x4,
     row: i32x4,
     between: f32x4,
     /// The number along the plane within its part, and all ones where that is the heavy one.
@@ -194,6 +204,8 @@ struct Slopes {
     z: f32x4,
     t: f32x4,
     t_z: f32x4,
+    /// All ones where no rounding can hide the normal from the view.
+    clear: f32x4,
 }
 
 /// Four of the random numbers along one axis.
@@ -220,14 +232,13 @@ impl Number {
     }
 }
 
-/// Unit normals above the horizon that face their views: those that rounding has put behind the
+/// Unit normals that face their views: those that rounding has put behind the
 /// silhouette are turned back onto it.
 ///
 /// The silhouette's slope has the rounding of the view coordinate, which is coarse where σ is far
 /// below the view's tilt, and strong anisotropy lets the tilt across spoil the tilt along.
 #[inline(always)]
 fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
-    let m = above_horizon(m);
     let vz = vz & vz.simd_gt(0.0);
     let facing = vx * m[0] + vy * m[1] + vz * m[2];
     let hidden = facing.simd_lt(0.0);

@@ -90,24 +90,21 @@ impl StudentT {
         let aside = swap_pairs(view)
             * f32x4::new([-2.0 * sx, 2.0 * sy, 0.0, 0.0])
             * f32x4::splat((t ^ sign).to_array()[1]);
-        let hidden = |silhouette: f32x4| {
-            (silhouette + SILHOUETTE_MARGIN) * t_z - t * SILHOUETTE_MARGIN_ACROSS
-        };
 
         // Half of x, then z, of the in-plane slope; the test that it is visible.
-        let (x, z, visible) = if HEAVY && let Some(number) = tail {
+        let (x, z, clear) = if HEAVY && let Some(number) = tail {
             let [x, z] = slices.heavy.half_slopes(f32x4::splat(number));
             // It lies on the viewer's side, and x and z are not both small.
-            (x, z, ((x + z) * t_z).simd_ge(hidden(f32x4::ZERO)))
+            (x, z, ((x + z) * t_z).to_array()[0] >= least_clear(f32x4::ZERO, t, t_z).to_array()[0])
         } else {
-            let least = hidden(!towards & silhouette);
+            let least = least_clear(!towards & silhouette, t, t_z);
             // Interpolation between the rows, then along u₁.
             let (low, high) = (pair(nodes, low), pair(nodes, high));
             let g = sum((low + between * (high - low)) * basis(f32x4::splat(w[0])));
             let [x, z] = half_slope_at(g);
-            (x ^ sign, z, (g * t_z).simd_ge(least))
+            (x ^ sign, z, (g * t_z).to_array()[0] >= least.to_array()[0])
         };
-        if visible.to_array()[0].to_bits() == 0 {
+        if !clear {
             return None;
         }
         // The norm √(z² + s x²).
@@ -124,9 +121,15 @@ impl StudentT {
 /// With g₀ the silhouette and t half the tangent of the tilt across, v·m = (g − g₀)(ρ + …) ρ/|m| ≥
 /// (g − g₀) ρ length/|m| stands against ten roundings of terms that sum to at most ρ length (3 + 6
 /// |t|)/|m|, whatever σ is. The margin also keeps normals off the horizon and all squares in range.
-pub(crate) const SILHOUETTE_MARGIN: f32 = 2e-6;
+const SILHOUETTE_MARGIN: f32 = 2e-6;
 /// The part of the margin that grows with |t|.
-pub(crate) const SILHOUETTE_MARGIN_ACROSS: f32 = 4e-6;
+const SILHOUETTE_MARGIN_ACROSS: f32 = 4e-6;
+
+/// From which g t_z on a normal is clear of the silhouette, for the slope across 2t : t_z.
+#[inline(always)]
+pub(crate) fn least_clear(silhouette: f32x4, t: f32x4, t_z: f32x4) -> f32x4 {
+    (silhouette + SILHOUETTE_MARGIN) * t_z - t * SILHOUETTE_MARGIN_ACROSS
+}
 
 /// The index of a cell in a row, less than 2³¹ so that sums with it fit; arbitrary where either was
 /// NaN.
