@@ -62,7 +62,7 @@ const SLACK: f64 = 1e-5;
 pub struct Bounded {
     lobe: StudentT,
     /// By group of rows and cell of the slope: the least and the largest random number.
-    limits: Vec<[[f32; 2]; CELLS]>,
+    limits: Vec<[f32; 2]>,
 }
 
 /// The visible normals of a view without most of those that reflect it below the horizon.
@@ -89,21 +89,25 @@ impl StudentT {
             (0..=CELLS).map(at).collect::<Vec<_>>()
         };
         let rows: Vec<_> = (0..=self.slices.rows).map(limits).collect();
-        let group = |first: usize| {
+        let group = |first: usize| -> Vec<[f32; 2]> {
             // Lookups between rows reach the first of the next group.
             let shared = &rows[first..(first + SHARED + 1).min(rows.len())];
-            core::array::from_fn(|i| {
-                let least = shared.iter().map(|row| row[i][0]).fold(1.0, f64::min);
-                let largest = shared.iter().map(|row| row[i + 1][1]).fold(0.0, f64::max);
-                [
-                    (least * (1.0 - SLACK) - SLACK * SLACK).max(0.0) as f32,
-                    (largest + (1.0 - largest) * SLACK + SLACK * SLACK).min(1.0) as f32,
-                ]
-            })
+            (0..=CELLS)
+                .map(|i| {
+                    let least = shared.iter().map(|row| row[i][0]).fold(1.0, f64::min);
+                    // An infinite slope has a cell of its own.
+                    let end = (i + 1).min(CELLS);
+                    let largest = shared.iter().map(|row| row[end][1]).fold(0.0, f64::max);
+                    [
+                        (least * (1.0 - SLACK) - SLACK * SLACK).max(0.0) as f32,
+                        (largest + (1.0 - largest) * SLACK + SLACK * SLACK).min(1.0) as f32,
+                    ]
+                })
+                .collect()
         };
-        let mut limits: Vec<_> = (0..self.slices.rows).step_by(SHARED).map(group).collect();
         // Straight from above is the end of the last group, or the start of the next.
-        limits.extend(limits.last().copied());
+        let firsts = (0..self.slices.rows).step_by(SHARED).chain([self.slices.rows]);
+        let limits = firsts.flat_map(group).collect();
         Bounded { lobe: self, limits }
     }
 }
@@ -178,9 +182,9 @@ impl Bounded {
     /// The limit of the random number for a view and a slope, in groups and cells.
     #[inline(always)]
     fn limit(&self, group: i32, cell: i32, end: usize) -> f32 {
-        let outside = if end == 0 { 0.0 } else { 1.0 };
-        let group = self.limits.get(group as u32 as usize);
-        group.and_then(|cells| cells.get(cell as u32 as usize)).map_or(outside, |cell| cell[end])
+        let at = group.wrapping_mul(CELLS as i32 + 1).wrapping_add(cell);
+        // Only NaN leaves the table.
+        self.limits.get(at as u32 as usize).map_or(end as f32, |limits| limits[end])
     }
 
     /// The intervals of four views.
