@@ -101,6 +101,8 @@ pub(crate) struct View {
     /// Unit slope of the m that reflects v to n, where Λ(l) has a branch point: azimuth and radius.
     phi_normal: f64,
     r_normal: f64,
+    /// The asinh slope of that radius.
+    w_normal: f64,
     /// Whether the branch point is strong enough to need panels of its own.
     branch: bool,
     /// v·m at which the reflectance has a kink; 0 if it has none.
@@ -264,6 +266,7 @@ impl AlbedoIntegrator {
             turn: cos / (sin * sx.max(sy).max(1.0)),
             phi_normal,
             r_normal,
+            w_normal: self.shape.asinh_slope(r_normal),
             branch: self.branches(sx.max(sy), r_normal),
             kink: 0.0,
         })
@@ -414,28 +417,22 @@ impl AlbedoIntegrator {
             let scale = view.aspect * distance / (1.0 + s * view.r_normal * view.r_normal).sqrt();
             if view.branch && scale < 0.5 { scale.max(0.01 * view.aspect) } else { f64::INFINITY }
         };
-        let aside = cone(view.r_normal * aside);
-        let w_normal = self.shape.asinh_slope(view.r_normal);
-        let kinks = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
-        if !kinks.is_empty() {
-            let ungraded = |at: f64| End { at, scale: f64::INFINITY };
-            let mut from = ungraded(0.0);
-            let mut stops = kinks;
-            if b < 0.0 && aside.is_finite() && w_normal < end.at {
-                stops.push(End { at: w_normal, scale: aside });
+        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
+        let mut stops = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
+        let mut from = ungraded(0.0);
+        if b < 0.0 {
+            let normal = End { at: view.w_normal, scale: cone(view.r_normal * aside) };
+            if normal.scale.is_finite() && normal.at < end.at {
+                stops.push(normal);
                 stops.sort_by(|x, y| x.at.total_cmp(&y.at));
             }
-            for stop in stops.into_iter().chain([end]) {
-                rule.graded(from, stop, PANEL, &mut add);
-                from = stop;
-            }
-        } else if b < 0.0 && aside.is_finite() && w_normal < end.at {
-            let normal = End { at: w_normal, scale: aside };
-            rule.graded(End { at: 0.0, scale: f64::INFINITY }, normal, PANEL, &mut add);
-            rule.graded(normal, end, PANEL, &mut add);
-        } else {
-            let scale = if b < 0.0 { f64::INFINITY } else { cone(view.r_normal) };
-            rule.graded(End { at: 0.0, scale }, end, PANEL, &mut add);
+        } else if stops.is_empty() {
+            from.scale = cone(view.r_normal);
+        }
+        for i in 0..=stops.len() {
+            let to = stops.get(i).copied().unwrap_or(end);
+            rule.graded(from, to, PANEL, &mut add);
+            from = to;
         }
         if view.cos == 0.0 && b < 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY {
             // At grazing the power law r^(−2k−1) has no end, and height-correlated masking

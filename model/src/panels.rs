@@ -57,26 +57,27 @@ impl Gauss {
         let graded = |end: &End| end.scale < width;
         let share = if graded(&low) && graded(&high) { 0.5 } else { 1.0 };
         let reach = (share * length).min(width);
-        let (mut from, mut to) = (low.at, high.at);
-        for (end, sign) in [(low, 1.0), (high, -1.0)] {
-            if !graded(&end) {
-                continue;
-            }
-            let panels = libm::asinh(reach / end.scale) / STEP;
-            for &(x, weight) in &self.graded[(panels as usize).min(MOST - 1)] {
-                add(end.at + sign * reach * x, reach * weight);
-            }
-            if sign > 0.0 { from += reach } else { to -= reach }
-        }
+        let from = if graded(&low) { low.at + reach } else { low.at };
+        let to = if graded(&high) { high.at - reach } else { high.at };
         // A remainder as small as a rounding error gets no panel.
-        if to - from > 1e-9 * length {
-            let panels = libm::ceil((to - from) / width);
-            let width = (to - from) / panels;
-            for panel in 0..panels as usize {
-                for &(x, weight) in &self.points {
-                    add(from + width * (panel as f64 + x), width * weight);
-                }
+        let even = if to - from > 1e-9 * length { libm::ceil((to - from) / width) } else { 0.0 };
+        let step = (to - from) / even;
+        for part in 0..2 + even as usize {
+            let (start, step, points) = match part {
+                0 if graded(&low) => (low.at, reach, self.towards(reach / low.scale)),
+                1 if graded(&high) => (high.at, -reach, self.towards(reach / high.scale)),
+                0 | 1 => continue,
+                _ => (from + step * (part - 2) as f64, step, &self.points),
+            };
+            for &(x, weight) in points {
+                add(start + step * x, step.abs() * weight);
             }
         }
+    }
+
+    /// The rule on panels that shrink towards an end at which the scale is a `ratio`th of them all.
+    fn towards(&self, ratio: f64) -> &Vec<(f64, f64)> {
+        let panels = libm::asinh(ratio) / STEP;
+        &self.graded[(panels as usize).min(MOST - 1)]
     }
 }

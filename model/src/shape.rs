@@ -216,6 +216,14 @@ impl Shape {
         if z.is_infinite() { 0.0 } else { z * self.lambda(w) }
     }
 
+    /// The same at the unit slope z itself, whose square must not overflow: faster.
+    pub(crate) fn excess_at(&self, z: f64) -> f64 {
+        if self.is_beckmann() || z == 0.0 {
+            return self.excess(z);
+        }
+        z * slope_integrals::lambda_at(self.k, self.c, self.sqrt_s * z)
+    }
+
     /// Upper tail of the slope across, in units of √(1 + s x²): P(T > t), t ≥ 0, for a
     /// density ∝ (1 + s t²)^(−γ).
     pub fn across_tail(&self, w: AsinhSlope) -> f64 {

@@ -95,7 +95,10 @@ fn gauss_fraction(b: f64, c: f64, w: f64) -> f64 {
 /// ∫ p(a) da from 0 to sinh v near the centre, as c·tanh v·cosh^(−2k−1) v·2F1(k+1, 1; 3/2; tanh²v):
 /// a series of positive terms.
 fn central(k: f64, c: f64, v: f64, ln_cosh: f64) -> f64 {
-    let tanh = libm::tanh(v);
+    central_at(k, c, libm::tanh(v), ln_cosh)
+}
+
+fn central_at(k: f64, c: f64, tanh: f64, ln_cosh: f64) -> f64 {
     let y = tanh * tanh;
     let (mut term, mut sum, mut n) = (1.0, 1.0, 0.0);
     while term > 1e-17 * sum {
@@ -137,13 +140,29 @@ pub(crate) fn tail(k: f64, c: f64, v: f64) -> f64 {
 /// t = 1/(1+a²), which has no cancellation; the textbook form T₁ − Q, with T₁ the first moment
 /// beyond a divided by a, subtracts nearly equal numbers there.
 pub(crate) fn lambda(k: f64, c: f64, v: f64) -> f64 {
-    let ln_cosh = ln_cosh(v);
-    let tanh = libm::tanh(v);
+    let (ln_cosh, tanh) = (ln_cosh(v), libm::tanh(v));
     if is_central(k, v) {
-        let first = c * libm::exp(-2.0 * k * ln_cosh) / (2.0 * k * libm::sinh(v));
-        return first - (0.5 - central(k, c, v, ln_cosh));
+        return central_lambda(k, c, [libm::sinh(v), ln_cosh], central(k, c, v, ln_cosh));
     }
-    let fraction = gauss_fraction(1.5, k + 1.5, inverse_square(v));
+    outer_lambda(k, c, [tanh, ln_cosh, inverse_square(v)])
+}
+
+/// Λ at the cotangent a itself, whose square must not overflow: four times as fast.
+pub(crate) fn lambda_at(k: f64, c: f64, a: f64) -> f64 {
+    let square = a * a;
+    let (ln_cosh, tanh) = (0.5 * libm::log1p(square), a / (1.0 + square).sqrt());
+    if (k + 1.5) * tanh * tanh < CENTRE {
+        return central_lambda(k, c, [a, ln_cosh], central_at(k, c, tanh, ln_cosh));
+    }
+    outer_lambda(k, c, [tanh, ln_cosh, 1.0 / square])
+}
+
+fn central_lambda(k: f64, c: f64, [a, ln_cosh]: [f64; 2], central: f64) -> f64 {
+    c * libm::exp(-2.0 * k * ln_cosh) / (2.0 * k * a) - (0.5 - central)
+}
+
+fn outer_lambda(k: f64, c: f64, [tanh, ln_cosh, inverse_square]: [f64; 3]) -> f64 {
+    let fraction = gauss_fraction(1.5, k + 1.5, inverse_square);
     c / (4.0 * k * (k + 0.5)) * libm::exp(-(2.0 * k + 1.0) * ln_cosh) / (tanh * tanh * tanh)
         * fraction
 }
@@ -174,6 +193,18 @@ mod tests {
             for f in [tail, lambda] {
                 let (x, y) = (f(k, c, below), f(k, c, above));
                 assert!((x / y - 1.0).abs() < 2e-14, "k = {k}: {x} against {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn lambda_is_the_same_from_the_cotangent() {
+        for k in [1e-3, 0.01, 0.3, 0.5, 1.0, 3.7, 100.0, 1e4] {
+            for a in [1e-12, 1e-3, 0.05, 0.3, 1.0, 4.0, 50.0, 1e6] {
+                let [got, want] = [lambda_at(k, norm(k), a), lambda(k, norm(k), libm::asinh(a))];
+                // The power's own conditioning.
+                let bound = 1e-14 * (1.0 + k * libm::log1p(a * a));
+                assert!((got - want).abs() <= bound * want, "k {k}, a {a}: {got} for {want}");
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Slopes and their density along a ray as piecewise polynomials, for integrands: four times faster
 //! than the hyperbolic functions and the power themselves.
 
-use crate::piecewise::{horner, interpolate};
+use crate::piecewise::{Chebyshev, polynomial};
 use crate::shape::Shape;
 
 /// Pieces per unit of w: with the singularities of the lobe 1.1 or more away, polynomials are right
@@ -10,18 +10,34 @@ const PIECES: f64 = 8.0;
 /// Coefficients of a piece's polynomials.
 const N: usize = 9;
 
-/// The unit slope r of an asinh slope w, and π P22(r) r dr/dw, up to some w.
+/// Rapidity √s w from which cosh and sinh are half an exponential, and so is the density's power:
+/// e⁻⁴⁰ is less than a rounding error, also of the power.
+const FAR: f64 = 20.0;
+
+/// The unit slope r of an asinh slope w, and π P22(r) r dr/dw.
 #[derive(Clone, Debug)]
 pub(crate) struct SlopeTable {
     pieces: Vec<[[f64; N]; 2]>,
+    /// Beyond the pieces: rate and logarithm of the factor of both exponentials.
+    far: [[f64; 2]; 2],
 }
 
 impl SlopeTable {
     /// For w ∈ [0, `end`].
     pub(crate) fn new(shape: &Shape, end: f64) -> Self {
-        let piece =
-            |i: usize| interpolate(|t| exact(shape, (i as f64 + 0.5 + 0.5 * t) / PIECES).into());
-        Self { pieces: (0..=(end * PIECES) as usize).map(piece).collect() }
+        let root = shape.s().sqrt();
+        let chebyshev = Chebyshev::new();
+        let piece = |i: usize| {
+            chebyshev.through(|t| exact(shape, (i as f64 + 0.5 + 0.5 * t) / PIECES).into())
+        };
+        // r (1 + s r²)^(½−γ) with r = e^(√s w)/(2√s).
+        let (slope, power) = (-libm::log(2.0 * root), 2.0 * shape.gamma() - 1.0);
+        let density = slope + power * core::f64::consts::LN_2;
+        let last = if root * end > FAR { FAR / root } else { end };
+        Self {
+            pieces: (0..=(last * PIECES) as usize).map(piece).collect(),
+            far: [[root, slope], [root * (1.0 - power), density]],
+        }
     }
 
     /// (r, π P22(r) r dr/dw) at w: r to a relative 1e-12, the density to an absolute 1e-12 and a
@@ -29,10 +45,16 @@ impl SlopeTable {
     #[inline]
     pub(crate) fn at(&self, w: f64) -> (f64, f64) {
         let place = w.max(0.0) * PIECES;
-        let i = (place as usize).min(self.pieces.len() - 1);
+        let i = place as usize;
+        let Some([slope, density]) = self.pieces.get(i) else { return self.beyond(w) };
         let t = 2.0 * (place - i as f64) - 1.0;
-        let [slope, measure] = &self.pieces[i];
-        (horner(slope, t), horner(measure, t))
+        (polynomial(slope, t), polynomial(density, t))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn beyond(&self, w: f64) -> (f64, f64) {
+        self.far.map(|[rate, log]| libm::exp(rate * w + log)).into()
     }
 }
 

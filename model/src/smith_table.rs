@@ -1,7 +1,7 @@
 //! Smith's G1 for one shape as a piecewise polynomial: accurate enough for quadrature, and fifty
 //! times faster than Λ itself.
 
-use crate::piecewise::{horner, interpolate};
+use crate::piecewise::{Chebyshev, polynomial};
 use crate::shape::Shape;
 
 /// Pieces per octave of y; the leading bits of y as a double select a piece.
@@ -26,12 +26,13 @@ pub(crate) struct SmithTable {
 
 impl SmithTable {
     pub(crate) fn new(shape: &Shape) -> Self {
-        Self::from_excess(|z| shape.excess(shape.asinh_slope(z)), 1e-13)
+        Self::from_excess(|z| shape.excess_at(z), 1e-13)
     }
 
     /// The same for any symmetric distribution of unit slopes, from its E[(X − z)⁺] = z Λ(z); G1 is
     /// 1 from where Λ falls below `unmasked`.
     pub(crate) fn from_excess(excess: impl Fn(f64) -> f64, unmasked: f64) -> Self {
+        let chebyshev = Chebyshev::new();
         let mut pieces = Vec::new();
         let mut low = 1.0;
         for _ in 0..OCTAVES {
@@ -39,7 +40,7 @@ impl SmithTable {
                 let width = low / PIECES as f64;
                 let start = low + width * i as f64;
                 let at = |t| [smooth(&excess, start + width * 0.5 * (1.0 + t))];
-                let [piece] = interpolate(at);
+                let [piece] = chebyshev.through(at);
                 pieces.push(piece);
             }
             low *= 2.0;
@@ -95,7 +96,7 @@ impl SmithTable {
         let c = self.pieces.get(piece)?;
         // The position inside the piece from the remaining 48 bits.
         let t = (bits & 0xffff_ffff_ffff) as f64 * (2.0 / (1u64 << 48) as f64) - 1.0;
-        Some(horner(c, t))
+        Some(polynomial(c, t))
     }
 }
 
