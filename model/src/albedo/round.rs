@@ -14,7 +14,7 @@
 //! of Λ(l) matters, u = v + sin v crowds them towards it as well, so that its power of π − φ becomes
 //! three times as high.
 //!
-//! The order along rays is chosen on the rays of the first step, by comparison with the next order.
+//! The order along rays is chosen on the rays of the first step, by comparison with the order before.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -25,9 +25,10 @@ use crate::panels::Gauss;
 /// Shares of the tolerance for the order along rays and for the rays.
 const INNER: f64 = 0.4;
 const OUTER: f64 = 0.5;
-/// Ratio of the error estimate along rays to what the next order changes on the first ones: rays
-/// between them may err more.
-const CAUTION: f64 = 4.0;
+/// Ratio of the error estimate along rays to the difference from the order before, on the first
+/// rays. That difference is the error of the order before, mostly a hundred times as large; but rays
+/// in between may err more than the first ones.
+const GAIN: f64 = 0.3;
 /// How often the step may be halved.
 const HALVINGS: usize = 7;
 
@@ -53,7 +54,7 @@ impl Turn {
     fn first_steps(&self, tolerance: f64) -> usize {
         // The integrand's singularities lie at c = ±iπ/(2K).
         let strip = libm::asinh(FRAC_PI_2 / self.crowding);
-        let last = -0.5 * libm::log(tolerance.min(1e-6)) / strip;
+        let last = -0.4 * libm::log(tolerance.min(1e-6)) / strip;
         (libm::ceil(0.25 * last) as usize).max(6)
     }
 
@@ -109,17 +110,18 @@ impl AlbedoIntegrator {
             t if t < 2e-6 => 2,
             _ => 1,
         };
-        let mut parts = along(order, &rays);
-        let mut inner = f64::INFINITY;
-        while !(inner < INNER * tolerance) && order + 1 < self.rules.len() {
-            let better = along(order + 1, &rays);
+        let (mut worse, mut parts) = (along(order - 1, &rays), along(order, &rays));
+        let inner = loop {
             let mut off = [[0.0; N]; 2];
-            add(&mut off, &rays, parts.iter().zip(&better).map(|(a, b)| differences(a, b)));
-            inner = CAUTION * unit(steps) * largest(&off);
-            if !(inner < INNER * tolerance) {
-                (parts, order) = (better, order + 1);
+            add(&mut off, &rays, parts.iter().zip(&worse).map(|(a, b)| differences(a, b)));
+            let inner = GAIN * unit(steps) * largest(&off);
+            if inner < INNER * tolerance || order + 1 == self.rules.len() {
+                break inner;
             }
-        }
+            order += 1;
+            worse = parts;
+            parts = along(order, &rays);
+        };
         let mut sum = [[0.0; N]; 2];
         add(&mut sum, &rays, parts);
         let whole =
