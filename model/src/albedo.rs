@@ -393,25 +393,6 @@ impl AlbedoIntegrator {
         } else {
             End { at: self.cut, scale: f64::INFINITY }
         };
-        let mut sum = [[0.0; N]; 2];
-        let mut add = |w: f64, jacobian: f64| {
-            let (r, measure) = self.slopes.at(w);
-            let shrink = 1.0 / (1.0 + a * r * r);
-            let facing = view.cos - r * b;
-            let k = 2.0 * facing * shrink;
-            let l_z = k - view.cos;
-            if l_z <= 0.0 {
-                return;
-            }
-            let fresnel = weight((facing * shrink.sqrt()).min(1.0));
-            let mass = jacobian * measure * facing;
-            let shares = self.smith.shares(view.g1, l_z, across(l_z, r, k));
-            let [uncorrelated, correlated] = shares.map(|share| mass * share);
-            for i in 0..N {
-                sum[0][i] += uncorrelated * fresnel[i];
-                sum[1][i] += correlated * fresnel[i];
-            }
-        };
         // Distances from the branch point at l = n, in w.
         let cone = |distance: f64| {
             let scale = view.aspect * distance / (1.0 + s * view.r_normal * view.r_normal).sqrt();
@@ -420,6 +401,7 @@ impl AlbedoIntegrator {
         let ungraded = |at: f64| End { at, scale: f64::INFINITY };
         let mut stops = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
         let mut from = ungraded(0.0);
+        let mut points = Vec::with_capacity(128);
         if b < 0.0 {
             let normal = End { at: view.w_normal, scale: cone(view.r_normal * aside) };
             if normal.scale.is_finite() && normal.at < end.at {
@@ -431,8 +413,35 @@ impl AlbedoIntegrator {
         }
         for i in 0..=stops.len() {
             let to = stops.get(i).copied().unwrap_or(end);
-            rule.graded(from, to, PANEL, &mut add);
+            rule.graded(from, to, PANEL, |w, jacobian| points.push([w, jacobian, 0.0, 0.0]));
             from = to;
+        }
+        // One pass over all points for each part of the formula: so the processor works on several
+        // points at a time.
+        for point in &mut points {
+            let (r, measure) = self.slopes.at(point[0]);
+            *point = [r, point[1] * measure, 0.0, 0.0];
+        }
+        for point in &mut points {
+            let [r, mass, ..] = *point;
+            let shrink = 1.0 / (1.0 + a * r * r);
+            let facing = view.cos - r * b;
+            let k = 2.0 * facing * shrink;
+            let l_z = k - view.cos;
+            *point = [l_z, across(l_z, r, k), mass * facing, (facing * shrink.sqrt()).min(1.0)];
+        }
+        for point in &mut points {
+            let [l_z, across, mass, mu] = *point;
+            let [uncorrelated, correlated] = self.smith.shares(view.g1, l_z, across);
+            *point = [mass * uncorrelated, mass * correlated, mu, 0.0];
+        }
+        let mut sum = [[0.0; N]; 2];
+        for [uncorrelated, correlated, mu, _] in points {
+            let fresnel = weight(mu.max(0.0));
+            for i in 0..N {
+                sum[0][i] += uncorrelated * fresnel[i];
+                sum[1][i] += correlated * fresnel[i];
+            }
         }
         if view.cos == 0.0 && b < 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY {
             // At grazing the power law r^(−2k−1) has no end, and height-correlated masking
