@@ -141,8 +141,8 @@ impl Place {
 
     /// The upper tail Q(v) = ∫_{sinh v}^∞ p(a) da.
     ///
-    /// Relative accuracy about 1e-15 · (1 + (2k+1) ln cosh v), whose second part is the conditioning
-    /// of the power itself.
+    /// Relative accuracy about 1e-15 · (1 + (2k+1) ln cosh v), whose second part is the
+    /// conditioning of the power itself.
     pub(crate) fn tail(&self) -> f64 {
         let Self { k, c, tanh, power, .. } = *self;
         if self.is_central() {

@@ -10,11 +10,12 @@
 //!
 //! crowds rays at right angles to the view, where R(φ) turns within 1/sinh K. The trapezoid rule
 //! over u converges geometrically (Trefethen and Weideman 2014,
-//! <https://doi.org/10.1137/130932132>), and halving its step keeps all rays. Where the branch point
-//! of Λ(l) matters, u = v + sin v crowds them towards it as well, so that its power of π − φ becomes
-//! three times as high.
+//! <https://doi.org/10.1137/130932132>), and halving its step keeps all rays. Where the branch
+//! point of Λ(l) matters, u = v + sin v crowds them towards it as well, so that its power of π − φ
+//! becomes three times as high.
 //!
-//! The order along rays is chosen on the rays of the first step, by comparison with the order before.
+//! The order along rays is chosen on the rays of the first step, by comparison with the order
+//! before.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -26,8 +27,8 @@ use crate::panels::Gauss;
 const INNER: f64 = 0.4;
 const OUTER: f64 = 0.5;
 /// Ratio of the error estimate along rays to the difference from the order before, on the first
-/// rays. That difference is the error of the order before, mostly a hundred times as large; but rays
-/// in between may err more than the first ones.
+/// rays. That difference is the error of the order before, mostly a hundred times as large; but
+/// rays in between may err more than the first ones.
 const GAIN: f64 = 0.3;
 /// How often the step may be halved.
 const HALVINGS: usize = 7;
