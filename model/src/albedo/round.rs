@@ -26,10 +26,6 @@ use crate::panels::Gauss;
 /// Shares of the tolerance for the order along rays and for the rays.
 const INNER: f64 = 0.4;
 const OUTER: f64 = 0.5;
-/// Ratio of the error estimate along rays to the difference from the order before, on the first
-/// rays. That difference is the error of the order before, mostly a hundred times as large; but
-/// rays in between may err more than the first ones.
-const GAIN: f64 = 0.3;
 /// How often the step may be halved.
 const HALVINGS: usize = 7;
 
@@ -115,7 +111,8 @@ impl AlbedoIntegrator {
         let inner = loop {
             let mut off = [[0.0; N]; 2];
             add(&mut off, &rays, parts.iter().zip(&worse).map(|(a, b)| differences(a, b)));
-            let inner = GAIN * unit(steps) * largest(&off);
+            // The error of the order before: rays in between may err more than the first ones.
+            let inner = unit(steps) * largest(&off);
             if inner < INNER * tolerance || order + 1 == self.rules.len() {
                 break inner;
             }
