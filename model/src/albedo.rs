@@ -124,7 +124,8 @@ impl AlbedoIntegrator {
             (ln_cosh + libm::log1p((-libm::expm1(-2.0 * ln_cosh)).sqrt())).min(LARGEST_RAPIDITY)
                 / root
         };
-        let (smith, slopes) = (SmithTable::new(&shape), SlopeTable::new(&shape, cut));
+        let (smith, slopes) =
+            (SmithTable::new(&shape, (CUT * tolerance).max(1e-13)), SlopeTable::new(&shape, cut));
         Self { shape, smith, slopes, rules: rules(), tolerance, cut }
     }
 

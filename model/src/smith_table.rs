@@ -25,12 +25,12 @@ pub(crate) struct SmithTable {
 }
 
 impl SmithTable {
-    pub(crate) fn new(shape: &Shape) -> Self {
-        Self::from_excess(|z| shape.excess_at(z), 1e-13)
+    /// G1 is 1 from where Λ falls below `unmasked`.
+    pub(crate) fn new(shape: &Shape, unmasked: f64) -> Self {
+        Self::from_excess(|z| shape.excess_at(z), unmasked)
     }
 
-    /// The same for any symmetric distribution of unit slopes, from its E[(X − z)⁺] = z Λ(z); G1 is
-    /// 1 from where Λ falls below `unmasked`.
+    /// The same for any symmetric distribution of unit slopes, from its E[(X − z)⁺] = z Λ(z).
     pub(crate) fn from_excess(excess: impl Fn(f64) -> f64, unmasked: f64) -> Self {
         let chebyshev = Chebyshev::new();
         let mut pieces = Vec::new();
@@ -115,7 +115,7 @@ mod tests {
         let mut worst = 0.0_f64;
         for gamma in [1.501, 1.52, 1.6, 1.8, 2.0, 2.7, 4.0, 11.0, 100.0, 1e6, f64::INFINITY] {
             let shape = Shape::new(gamma).unwrap();
-            let table = SmithTable::new(&shape);
+            let table = SmithTable::new(&shape, 1e-13);
             for i in 0..4000 {
                 let z = libm::exp2(f64::from(i) * 0.012345 - 20.0);
                 let want = 1.0 / (1.0 + shape.lambda(shape.asinh_slope(z)));
@@ -125,7 +125,7 @@ mod tests {
             }
         }
         println!("G1: worst error {worst:e}");
-        let table = SmithTable::new(&Shape::new(3.0).unwrap());
+        let table = SmithTable::new(&Shape::new(3.0).unwrap(), 1e-13);
         assert_eq!((table.g1(0.0, 1.0), table.g1(-0.1, 1.0), table.g1(1.0, 0.0)), (0.0, 0.0, 1.0));
     }
 }
