@@ -16,6 +16,7 @@
 //! stretched by a hyperbolic sine whose scale is known.
 
 mod average;
+mod round;
 mod skewed;
 
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -26,7 +27,7 @@ use crate::converge::{CUT, converge, rules};
 use crate::error::ParameterError;
 use crate::panels::{End, Gauss};
 use crate::shape::Shape;
-use crate::slope_integrals;
+use crate::slope_table::SlopeTable;
 use crate::smith_table::SmithTable;
 
 /// Largest rapidity of a slope, so that its square, e⁶⁸⁰, does not overflow.
@@ -46,8 +47,8 @@ pub struct Albedo<const N: usize> {
     pub uncorrelated: [f64; N],
     /// With G2 = 1/(1 + Λ(v) + Λ(l)).
     pub height_correlated: [f64; N],
-    /// Upper estimate of the largest error: 2 to 10 times the difference between the last two
-    /// orders of quadrature, plus what is cut off.
+    /// Upper estimate of the largest error: from the differences between the last orders of
+    /// quadrature, plus what is cut off.
     pub error: f64,
 }
 
@@ -73,6 +74,7 @@ impl<const N: usize> Albedo<N> {
 pub struct AlbedoIntegrator {
     shape: Shape,
     pub(crate) smith: SmithTable,
+    pub(crate) slopes: SlopeTable,
     rules: Vec<Gauss>,
     pub(crate) tolerance: f64,
     /// Asinh slope at which integrals over the lobe are cut off.
@@ -99,6 +101,10 @@ pub(crate) struct View {
     /// Unit slope of the m that reflects v to n, where Λ(l) has a branch point: azimuth and radius.
     phi_normal: f64,
     r_normal: f64,
+    /// The asinh slope of that radius.
+    w_normal: f64,
+    /// Whether the branch point is strong enough to need panels of its own.
+    branch: bool,
     /// v·m at which the reflectance has a kink; 0 if it has none.
     kink: f64,
 }
@@ -118,7 +124,9 @@ impl AlbedoIntegrator {
             (ln_cosh + libm::log1p((-libm::expm1(-2.0 * ln_cosh)).sqrt())).min(LARGEST_RAPIDITY)
                 / root
         };
-        Self { shape, smith: SmithTable::new(&shape), rules: rules(), tolerance, cut }
+        let (smith, slopes) =
+            (SmithTable::new(&shape, (CUT * tolerance).max(1e-13)), SlopeTable::new(&shape, cut));
+        Self { shape, smith, slopes, rules: rules(), tolerance, cut }
     }
 
     /// The shape it was prepared for.
@@ -204,6 +212,9 @@ impl AlbedoIntegrator {
         view: &View,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Albedo<N> {
+        if view.aspect == 1.0 && view.kink == 0.0 {
+            return self.round(tolerance, view, weight);
+        }
         self.refined(tolerance, view.kink > 0.0, |rule| self.quadrature(rule, view, &weight))
     }
 
@@ -242,6 +253,7 @@ impl AlbedoIntegrator {
         let half = sin / (1.0 + cos);
         let (x, y) = (cos_phi / sx, sin_phi / sy);
         let phi_normal = libm::atan2(y, x) + PI;
+        let r_normal = half * libm::hypot(x, y);
         Ok(View {
             cos,
             sin,
@@ -254,9 +266,26 @@ impl AlbedoIntegrator {
             phi_0,
             turn: cos / (sin * sx.max(sy).max(1.0)),
             phi_normal,
-            r_normal: half * libm::hypot(x, y),
+            r_normal,
+            w_normal: self.shape.asinh_slope(r_normal),
+            branch: self.branches(sx.max(sy), r_normal),
             kink: 0.0,
         })
+    }
+
+    /// Whether the branch point of Λ(l) at l = n, which the unit slope `r_normal` reflects to, is
+    /// strong enough to need panels of its own.
+    fn branches(&self, sigma: f64, r_normal: f64) -> bool {
+        // Around it l turns by 2σ per unit slope; what is masked there, times the density.
+        let reach = r_normal.max(1.0);
+        let masked = 1.0 - self.smith.g1(1.0, libm::pow(2.0 * sigma * sigma * reach, 2.0));
+        let square = r_normal * r_normal;
+        let density = if self.shape.is_beckmann() {
+            libm::exp(-square)
+        } else {
+            libm::exp(-self.shape.gamma() * libm::log1p(self.shape.s() * square))
+        };
+        masked * density * reach * reach > 0.5 * self.tolerance
     }
 
     /// The integrals for both forms of masking at one order of quadrature.
@@ -285,7 +314,7 @@ impl AlbedoIntegrator {
         let ungraded = |at: f64| End { at, scale: f64::INFINITY };
         // b(φ) vanishes a right angle from φ₀; there R(φ) turns from the near rim to the far one.
         let turn = |at: f64| End { at, scale: view.turn.max(1e-9) };
-        let scale = if self.has_cone(view) { 0.05 * view.aspect } else { f64::INFINITY };
+        let scale = if view.branch { 0.05 * view.aspect } else { f64::INFINITY };
         let normal = End { at: view.phi_normal, scale };
         let phi_0 = view.phi_0;
         if view.aspect == 1.0 {
@@ -321,11 +350,6 @@ impl AlbedoIntegrator {
         (0..5).map(|i| (ends[i], *ends.get(i + 1).unwrap_or(&again))).collect()
     }
 
-    /// Whether the branch point of Λ(l) at l = n is strong enough to need panels of its own.
-    fn has_cone(&self, view: &View) -> bool {
-        self.shape.gamma() < 3.5 || view.sigma[0].max(view.sigma[1]) > 0.7
-    }
-
     /// The integral along one ray of slopes from m = n to the rim.
     fn ray<const N: usize>(
         &self,
@@ -338,6 +362,26 @@ impl AlbedoIntegrator {
         let (x, y) = (view.sigma[0] * cos_phi, view.sigma[1] * sin_phi);
         let a = x * x + y * y;
         let b = view.sin * (x * view.cos_phi + y * view.sin_phi);
+        let aside = libm::fabs(libm::sin(phi - view.phi_normal));
+        self.along_ray(rule, view, [a, b, aside], weight, |_, r, k| {
+            let reach = k * r;
+            let l_x = view.sigma[0] * (reach * x + view.sin * view.cos_phi);
+            let l_y = view.sigma[1] * (reach * y + view.sin * view.sin_phi);
+            l_x * l_x + l_y * l_y
+        })
+    }
+
+    /// The same for a ray whose slope per unit slope has the square a and is b/sin θ away from the
+    /// view; `aside` is the sine of the angle to the branch point's ray. `across` gives the light's
+    /// squared horizontal length, stretched by σ, from its cosine, r and 2v·m/|m|².
+    fn along_ray<const N: usize>(
+        &self,
+        rule: &Gauss,
+        view: &View,
+        [a, b, aside]: [f64; 3],
+        weight: &impl Fn(f64) -> [f64; N],
+        across: impl Fn(f64, f64, f64) -> f64,
+    ) -> [[f64; N]; 2] {
         let q = (b * b + a * view.cos * view.cos).sqrt();
         let s = self.shape.s();
         let rim = if b > 0.0 { view.cos / (b + q) } else { (q - b) / (a * view.cos) };
@@ -350,59 +394,55 @@ impl AlbedoIntegrator {
         } else {
             End { at: self.cut, scale: f64::INFINITY }
         };
-        let mut sum = [[0.0; N]; 2];
-        let mut add = |w: f64, jacobian: f64| {
-            let (r, measure) = self.measure(w.max(0.0));
-            let area = 1.0 + a * r * r;
-            let facing = view.cos - r * b;
-            let l_z = 2.0 * facing / area - view.cos;
-            let reach = 2.0 * facing / area * r;
-            let l_x = view.sigma[0] * (reach * x + view.sin * view.cos_phi);
-            let l_y = view.sigma[1] * (reach * y + view.sin * view.sin_phi);
-            let g1 = self.smith.g1(l_z, l_x * l_x + l_y * l_y);
-            if g1 == 0.0 {
-                return;
+        // Distances from the branch point at l = n, in w.
+        let cone = |distance: f64| {
+            let scale = view.aspect * distance / (1.0 + s * view.r_normal * view.r_normal).sqrt();
+            if view.branch && scale < 0.5 { scale.max(0.01 * view.aspect) } else { f64::INFINITY }
+        };
+        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
+        let mut stops = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
+        let mut from = ungraded(0.0);
+        let mut points = Vec::with_capacity(128);
+        if b < 0.0 {
+            let normal = End { at: view.w_normal, scale: cone(view.r_normal * aside) };
+            if normal.scale.is_finite() && normal.at < end.at {
+                stops.push(normal);
+                stops.sort_by(|x, y| x.at.total_cmp(&y.at));
             }
-            let fresnel = weight((facing / area.sqrt()).min(1.0));
-            let mass = jacobian * measure * facing;
-            let [uncorrelated, correlated] =
-                Masking::ALL.map(|masking| mass * masking.g2_over_g1(view.g1, g1));
+        } else if stops.is_empty() {
+            from.scale = cone(view.r_normal);
+        }
+        for i in 0..=stops.len() {
+            let to = stops.get(i).copied().unwrap_or(end);
+            rule.graded(from, to, PANEL, |w, jacobian| points.push([w, jacobian, 0.0, 0.0]));
+            from = to;
+        }
+        // One pass over all points for each part of the formula: so the processor works on several
+        // points at a time.
+        for point in &mut points {
+            let (r, measure) = self.slopes.at(point[0]);
+            *point = [r, point[1] * measure, 0.0, 0.0];
+        }
+        for point in &mut points {
+            let [r, mass, ..] = *point;
+            let shrink = 1.0 / (1.0 + a * r * r);
+            let facing = view.cos - r * b;
+            let k = 2.0 * facing * shrink;
+            let l_z = k - view.cos;
+            *point = [l_z, across(l_z, r, k), mass * facing, (facing * shrink.sqrt()).min(1.0)];
+        }
+        for point in &mut points {
+            let [l_z, across, mass, mu] = *point;
+            let [uncorrelated, correlated] = self.smith.shares(view.g1, l_z, across);
+            *point = [mass * uncorrelated, mass * correlated, mu, 0.0];
+        }
+        let mut sum = [[0.0; N]; 2];
+        for [uncorrelated, correlated, mu, _] in points {
+            let fresnel = weight(mu.max(0.0));
             for i in 0..N {
                 sum[0][i] += uncorrelated * fresnel[i];
                 sum[1][i] += correlated * fresnel[i];
             }
-        };
-        // Distances from the branch point at l = n, in w.
-        let cone = |distance: f64| {
-            let scale = view.aspect * distance / (1.0 + s * view.r_normal * view.r_normal).sqrt();
-            if self.has_cone(view) && scale < 0.5 {
-                scale.max(0.01 * view.aspect)
-            } else {
-                f64::INFINITY
-            }
-        };
-        let aside = cone(view.r_normal * libm::fabs(libm::sin(phi - view.phi_normal)));
-        let w_normal = self.shape.asinh_slope(view.r_normal);
-        let kinks = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
-        if !kinks.is_empty() {
-            let ungraded = |at: f64| End { at, scale: f64::INFINITY };
-            let mut from = ungraded(0.0);
-            let mut stops = kinks;
-            if b < 0.0 && aside.is_finite() && w_normal < end.at {
-                stops.push(End { at: w_normal, scale: aside });
-                stops.sort_by(|x, y| x.at.total_cmp(&y.at));
-            }
-            for stop in stops.into_iter().chain([end]) {
-                rule.graded(from, stop, PANEL, &mut add);
-                from = stop;
-            }
-        } else if b < 0.0 && aside.is_finite() && w_normal < end.at {
-            let normal = End { at: w_normal, scale: aside };
-            rule.graded(End { at: 0.0, scale: f64::INFINITY }, normal, PANEL, &mut add);
-            rule.graded(normal, end, PANEL, &mut add);
-        } else {
-            let scale = if b < 0.0 { f64::INFINITY } else { cone(view.r_normal) };
-            rule.graded(End { at: 0.0, scale }, end, PANEL, &mut add);
         }
         if view.cos == 0.0 && b < 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY {
             // At grazing the power law r^(−2k−1) has no end, and height-correlated masking
@@ -479,17 +519,5 @@ impl AlbedoIntegrator {
             .collect();
         ends.sort_by(|x, y| x.at.total_cmp(&y.at));
         ends
-    }
-
-    /// The unit slope r of w, and π P22(r) r dr/dw.
-    pub(crate) fn measure(&self, w: f64) -> (f64, f64) {
-        if self.shape.is_beckmann() {
-            return (w, w * libm::exp(-w * w));
-        }
-        let root = self.shape.s().sqrt();
-        let r = libm::sinh(root * w) / root;
-        let power =
-            libm::exp(-(2.0 * self.shape.gamma() - 1.0) * slope_integrals::ln_cosh(root * w));
-        (r, r * power)
     }
 }

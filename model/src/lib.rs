@@ -64,10 +64,12 @@ mod lune;
 mod ndf;
 mod panels;
 mod paper;
+mod piecewise;
 mod quadrature;
 mod rejection;
 mod shape;
 mod slope_integrals;
+mod slope_table;
 mod smith_table;
 #[cfg(feature = "statistics")]
 pub mod statistics;

@@ -6,7 +6,7 @@ use microfacet_common::saturated;
 use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 
 use crate::error::ParameterError;
-use crate::slope_integrals;
+use crate::slope_integrals::{self, Place};
 
 /// Above this γ the Beckmann limit is used: the two differ by O(1/γ), less than a double's
 /// rounding.
@@ -214,6 +214,43 @@ impl Shape {
         }
         let z = self.slope(w);
         if z.is_infinite() { 0.0 } else { z * self.lambda(w) }
+    }
+
+    /// The same at the unit slope z itself, whose square must not overflow: faster.
+    pub(crate) fn excess_at(&self, z: f64) -> f64 {
+        if self.is_beckmann() || z == 0.0 {
+            return self.excess(z);
+        }
+        z * slope_integrals::lambda_at(self.k, self.c, self.sqrt_s * z)
+    }
+
+    /// [`tail`](Self::tail), [`excess`](Self::excess) and [`density`](Self::density) of one slope,
+    /// which share most of their work.
+    pub(crate) fn tail_excess_density(&self, w: AsinhSlope) -> [f64; 3] {
+        let v = self.sqrt_s * w;
+        // Where the slope overflows or vanishes the excess has forms of its own.
+        if self.is_beckmann() || w == 0.0 || v > 700.0 {
+            return [self.tail(w), self.excess(w), self.density(w)];
+        }
+        let place = Place::new(self.k, self.c, v);
+        let excess = self.slope(w) * place.lambda();
+        [place.tail(), excess, self.c * self.sqrt_s * place.power]
+    }
+
+    /// [`tail`](Self::tail), [`first_moment`](Self::first_moment) and the densities of both.
+    pub(crate) fn tail_moment_densities(&self, w: AsinhSlope) -> [f64; 4] {
+        if self.is_beckmann() {
+            let [moment, rate] = [self.first_moment(w), self.first_moment_density(w)];
+            return [self.tail(w), moment, self.density(w), rate];
+        }
+        let place = Place::new(self.k, self.c, self.sqrt_s * w);
+        let power = place.flatter_power();
+        [
+            place.tail(),
+            self.c / (2.0 * self.k * self.sqrt_s) * power,
+            self.c * self.sqrt_s * place.power,
+            self.c * place.tanh * power,
+        ]
     }
 
     /// Upper tail of the slope across, in units of √(1 + s x²): P(T > t), t ≥ 0, for a

@@ -1,6 +1,7 @@
 //! Smith's G1 for one shape as a piecewise polynomial: accurate enough for quadrature, and fifty
 //! times faster than Λ itself.
 
+use crate::piecewise::{Chebyshev, polynomial};
 use crate::shape::Shape;
 
 /// Pieces per octave of y; the leading bits of y as a double select a piece.
@@ -24,20 +25,23 @@ pub(crate) struct SmithTable {
 }
 
 impl SmithTable {
-    pub(crate) fn new(shape: &Shape) -> Self {
-        Self::from_excess(|z| shape.excess(shape.asinh_slope(z)), 1e-13)
+    /// G1 is 1 from where Λ falls below `unmasked`.
+    pub(crate) fn new(shape: &Shape, unmasked: f64) -> Self {
+        Self::from_excess(|z| shape.excess_at(z), unmasked)
     }
 
-    /// The same for any symmetric distribution of unit slopes, from its E[(X − z)⁺] = z Λ(z); G1 is
-    /// 1 from where Λ falls below `unmasked`.
+    /// The same for any symmetric distribution of unit slopes, from its E[(X − z)⁺] = z Λ(z).
     pub(crate) fn from_excess(excess: impl Fn(f64) -> f64, unmasked: f64) -> Self {
+        let chebyshev = Chebyshev::new();
         let mut pieces = Vec::new();
         let mut low = 1.0;
         for _ in 0..OCTAVES {
             for i in 0..PIECES {
                 let width = low / PIECES as f64;
                 let start = low + width * i as f64;
-                pieces.push(interpolate(|t| smooth(&excess, start + width * 0.5 * (1.0 + t))));
+                let at = |t| [smooth(&excess, start + width * 0.5 * (1.0 + t))];
+                let [piece] = chebyshev.through(at);
+                pieces.push(piece);
             }
             low *= 2.0;
             // From here on 1 − G1 ≈ Λ is negligible.
@@ -62,6 +66,20 @@ impl SmithTable {
         self.smooth(length2 / rho2).map_or(1.0, |h| cos_unit / (h + 0.5 * cos_unit))
     }
 
+    /// G2/G1(v), in the order of [`Masking::ALL`](microfacet_common::Masking::ALL), of a view with
+    /// G1(v) = `view` and a light as in [`g1`](Self::g1).
+    #[inline]
+    pub(crate) fn shares(&self, view: f64, cos: f64, rho2: f64) -> [f64; 2] {
+        if cos <= 0.0 {
+            return [0.0; 2];
+        }
+        let length2 = cos * cos + rho2;
+        // With A the area that the light sees, G1(l) = cos/A.
+        let Some(h) = self.smooth(length2 / rho2) else { return [1.0; 2] };
+        let half = h * length2.sqrt();
+        [cos / (half + 0.5 * cos), cos / (cos + view * (half - 0.5 * cos))]
+    }
+
     /// Projected area of the microsurface, ∫ (w·m)⁺ D, for a direction w of any height `cos` in
     /// unit space and horizontal length squared `rho2`, not both 0; to 1e-13 of its length.
     #[inline]
@@ -78,11 +96,7 @@ impl SmithTable {
         let c = self.pieces.get(piece)?;
         // The position inside the piece from the remaining 48 bits.
         let t = (bits & 0xffff_ffff_ffff) as f64 * (2.0 / (1u64 << 48) as f64) - 1.0;
-        let mut sum = c[DEGREE];
-        for j in (0..DEGREE).rev() {
-            sum = sum * t + c[j];
-        }
-        Some(sum)
+        Some(polynomial(c, t))
     }
 }
 
@@ -90,32 +104,6 @@ impl SmithTable {
 fn smooth(excess: impl Fn(f64) -> f64, y: f64) -> f64 {
     let z = (y - 1.0).sqrt();
     (excess(z) + 0.5 * z) / y.sqrt()
-}
-
-/// Power coefficients of the polynomial through f at the Chebyshev points of [−1, 1].
-fn interpolate(f: impl Fn(f64) -> f64) -> [f64; DEGREE + 1] {
-    const N: usize = DEGREE + 1;
-    let angle = |i: usize| core::f64::consts::PI * (i as f64 + 0.5) / N as f64;
-    let values: [f64; N] = core::array::from_fn(|i| f(libm::cos(angle(i))));
-    // Σ aⱼ Tⱼ with aⱼ = 2/N Σ f cos(j angle), then powers by T_{j+1} = 2t T_j − T_{j−1}.
-    let (mut previous, mut current) = ([0.0; N], [0.0; N]);
-    previous[0] = 1.0;
-    current[1] = 1.0;
-    let mut powers = [0.0; N];
-    for j in 0..N {
-        let a: f64 =
-            values.iter().enumerate().map(|(i, v)| v * libm::cos(j as f64 * angle(i))).sum::<f64>()
-                * 2.0
-                / N as f64;
-        let a = if j == 0 { 0.5 * a } else { a };
-        for (power, p) in powers.iter_mut().zip(previous) {
-            *power += a * p;
-        }
-        let next =
-            core::array::from_fn(|i| if i == 0 { 0.0 } else { 2.0 * current[i - 1] } - previous[i]);
-        (previous, current) = (current, next);
-    }
-    powers
 }
 
 #[cfg(test)]
@@ -127,7 +115,7 @@ mod tests {
         let mut worst = 0.0_f64;
         for gamma in [1.501, 1.52, 1.6, 1.8, 2.0, 2.7, 4.0, 11.0, 100.0, 1e6, f64::INFINITY] {
             let shape = Shape::new(gamma).unwrap();
-            let table = SmithTable::new(&shape);
+            let table = SmithTable::new(&shape, 1e-13);
             for i in 0..4000 {
                 let z = libm::exp2(f64::from(i) * 0.012345 - 20.0);
                 let want = 1.0 / (1.0 + shape.lambda(shape.asinh_slope(z)));
@@ -137,7 +125,7 @@ mod tests {
             }
         }
         println!("G1: worst error {worst:e}");
-        let table = SmithTable::new(&Shape::new(3.0).unwrap());
+        let table = SmithTable::new(&Shape::new(3.0).unwrap(), 1e-13);
         assert_eq!((table.g1(0.0, 1.0), table.g1(-0.1, 1.0), table.g1(1.0, 0.0)), (0.0, 0.0, 1.0));
     }
 }

@@ -16,8 +16,6 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use microfacet_common::Masking;
-
 use crate::albedo::{Albedo, AlbedoIntegrator, PANEL, ROOT, SECTOR};
 use crate::error::ParameterError;
 use crate::fresnel::Dielectric;
@@ -163,10 +161,10 @@ impl Pane<'_> {
         for stop in stops.into_iter().chain([end]) {
             // One point tells whether light passes in the whole interval: this changes only at the
             // stops.
-            let middle = self.model.measure(0.5 * (from.at + stop.at)).0;
+            let middle = self.model.slopes.at(0.5 * (from.at + stop.at)).0;
             if self.refracted(a, b, middle).is_some() {
                 rule.graded(from, stop, PANEL, |w, jacobian| {
-                    let (r, measure) = self.model.measure(w.max(0.0));
+                    let (r, measure) = self.model.slopes.at(w);
                     if let Some([uncorrelated, correlated]) = self.refracted(a, b, r) {
                         sum[0] += jacobian * measure * uncorrelated;
                         sum[1] += jacobian * measure * correlated;
@@ -198,9 +196,9 @@ impl Pane<'_> {
         let (reach, ahead) = (k * self.sigma * r / length, self.sin / self.eta);
         let along = if self.sin > 0.0 { b / (self.sigma * self.sin) } else { 0.0 };
         let across2 = reach * reach + ahead * ahead - 2.0 * reach * ahead * along;
-        let g1 = self.model.smith.g1(depth, (a * across2).max(0.0));
+        let shares = self.model.smith.shares(self.g1, depth, (a * across2).max(0.0));
         let mass = facing * (1.0 - self.dielectric.reflectance(mu));
-        Some(Masking::ALL.map(|masking| mass * masking.g2_over_g1(self.g1, g1)))
+        Some(shares.map(|share| mass * share))
     }
 
     /// Where a ray enters or leaves the domain, in w, ascending.

@@ -97,27 +97,39 @@ impl<'a> VisibleSlope<'a> {
         self.area
     }
 
-    /// Mass of slopes above x ≥ 0, not normalised.
-    fn upper(&self, w: AsinhSlope) -> f64 {
-        self.towards.0 * self.shape.tail(w) + self.towards.1 * self.shape.first_moment(w)
+    /// Mass of slopes above x ≥ 0, not normalised, and its density.
+    fn upper_and_density(&self, w: AsinhSlope) -> (f64, f64) {
+        let [tail, moment, density, rate] = self.shape.tail_moment_densities(w);
+        let (cos, sin) = self.towards;
+        (cos * tail + sin * moment, cos * density + sin * rate)
     }
 
-    /// Mass of slopes between the silhouette and −q ≤ 0, not normalised.
-    fn lower(&self, w: AsinhSlope) -> f64 {
+    fn upper(&self, w: AsinhSlope) -> f64 {
+        self.upper_and_density(w).0
+    }
+
+    /// Mass of slopes between the silhouette and −q ≤ 0, not normalised, and its density.
+    fn lower_and_density(&self, w: AsinhSlope) -> (f64, f64) {
         if w >= self.w_silhouette {
-            return 0.0;
+            return (0.0, 0.0);
         }
         if self.view.sin == 0.0 {
-            return self.view.cos * self.shape.tail(w);
+            let cos = self.view.cos;
+            return (cos * self.shape.tail(w), cos * self.shape.density(w));
         }
         let gap = self.w_silhouette - w;
         if gap * (2.0 + 2.0 * w) < 1.0 {
-            return self.lower_by_quadrature(w, gap);
+            return (self.lower_by_quadrature(w, gap), self.facing_density(w));
         }
         let q = self.shape.slope(w);
-        let closed = (self.view.cos - q * self.view.sin) * self.shape.tail(w)
-            - self.view.sin * (self.shape.excess(w) - self.excess);
-        closed.max(0.0)
+        let [tail, excess, density] = self.shape.tail_excess_density(w);
+        let closed =
+            (self.view.cos - q * self.view.sin) * tail - self.view.sin * (excess - self.excess);
+        (closed.max(0.0), self.facing(w) * density)
+    }
+
+    fn lower(&self, w: AsinhSlope) -> f64 {
+        self.lower_and_density(w).0
     }
 
     /// `lower` by quadrature near the silhouette, where the closed form subtracts nearly equal
@@ -175,9 +187,7 @@ impl<'a> VisibleSlope<'a> {
             let w = if target <= 0.0 {
                 self.w_silhouette
             } else {
-                solve_decreasing(target, 0.0, self.w_silhouette, |w| {
-                    (self.lower(w), self.facing_density(w))
-                })
+                solve_decreasing(target, 0.0, self.w_silhouette, |w| self.lower_and_density(w))
             };
             return SignedSlope { w, sign: -1.0 };
         }
@@ -185,8 +195,7 @@ impl<'a> VisibleSlope<'a> {
         let w = if target <= 0.0 {
             f64::INFINITY
         } else {
-            let slope = |w| self.density(SignedSlope { w, sign: 1.0 }) * self.area;
-            solve_decreasing(target, 0.0, f64::INFINITY, |w| (self.upper(w), slope(w)))
+            solve_decreasing(target, 0.0, f64::INFINITY, |w| self.upper_and_density(w))
         };
         SignedSlope { w, sign: 1.0 }
     }

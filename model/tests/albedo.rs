@@ -132,6 +132,40 @@ fn equal_roughness_takes_no_notice_of_azimuth() {
     }
 }
 
+/// Isotropic lobes have a quadrature of their own; that of anisotropic ones, for roughnesses that
+/// hardly differ, shares neither its rays nor its error estimate.
+#[test]
+fn both_quadratures_agree_within_their_estimates() {
+    let panes = [1.5, 1.02].map(|eta| Dielectric::new(eta).unwrap());
+    let weights =
+        |cos| [1.0, fresnel::f82_weight(cos), panes[0].reflectance(cos), panes[1].reflectance(cos)];
+    for gamma in [1.501, 1.6, 2.0, 2.9, 3.6, f64::INFINITY] {
+        let shape = Shape::new(gamma).unwrap();
+        let fine = AlbedoIntegrator::new(shape, 1e-8);
+        for tolerance in [1e-5, 1e-7] {
+            let round = AlbedoIntegrator::new(shape, tolerance);
+            for sigma in [1e-3, 0.06, 0.5, 2.0] {
+                for cos in [1e-4, 0.02, 0.15, 0.7, 0.998, 1.0] {
+                    let a = round.reflection(sigma, cos, weights).unwrap();
+                    let sigmas = [sigma, sigma * (1.0 + 1e-12)];
+                    let b = fine.reflection_anisotropic(sigmas, cos, 0.7, weights).unwrap();
+                    assert!(a.error < tolerance, "gamma {gamma}, sigma {sigma}, cos {cos}");
+                    for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
+                        for (x, y) in a.of(masking).iter().zip(b.of(masking)) {
+                            let off = (x - y).abs();
+                            assert!(
+                                off <= a.error + b.error,
+                                "gamma {gamma}, sigma {sigma}, cos {cos}: {off:e} of {:e}",
+                                a.error + b.error
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn the_domain_has_an_estimate_that_holds() {
     let weights = |cos| [1.0 - schlick_weight(cos), schlick_weight(cos), fresnel::f82_weight(cos)];

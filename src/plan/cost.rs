@@ -164,7 +164,7 @@ impl AlbedoWork {
         // one shape often ends early.
         let is_range =
             matches!(spec.axes[0].mapping, Mapping::LogShape(_)) && spec.axes[0].len() > 1;
-        let [edge, climb] = if is_range { [5.0, 1.0] } else { [0.7, 0.6] };
+        let [edge, climb] = if is_range { [4.5, 5.0] } else { [0.7, 0.6] };
         let inside = points::interior_count(spec) as f64;
         let edges = edge * (points::count(spec) as f64 - inside);
         let climbs = climb * (spec.maskings.len() * climbed_count(spec)) as f64;
@@ -182,17 +182,22 @@ fn albedo_seconds(spec: &AlbedoSpec) -> [f64; 2] {
     let threads = rayon::current_num_threads() as f64;
     // Microseconds for a node or a point of the certificate: fitted to `microfacet-bake bake
     // --threads 1 --no-cache --out out` of the draft, the default and the high general set, which
-    // are met within a tenth; single materials, dielectrics and other lobes within a half. Long
-    // tails and narrow lobes take up to twice as long, and so does refinement.
+    // are met within a quarter, and to the recipes of anisotropic and tilted lobes, which are met
+    // within a factor of two to three. Long tails and narrow lobes take longer, and so does
+    // refinement.
     let (nodes, points) = (spec.nodes() as f64, points::count(spec) as f64);
     let [node, point] = match (&spec.lobe, spec.reflectance) {
         (_, Reflectance::Dielectric { .. }) => [3300.0; 2],
-        // Each decade of accuracy takes twice as long, and certificates are a decade finer.
+        // Each decade of accuracy takes a fifth longer; certificates are a decade finer, and read
+        // the tables.
         (AlbedoLobe::Family(_), _) => {
-            let node = 895.0 * libm::pow(1e-6 / spec.tolerance, 0.32);
-            [node, 2.1 * node]
+            let node = 90.0 * libm::pow(1e-6 / spec.tolerance, 0.08);
+            [node, 3.4 * node]
         }
-        _ => [10_000.0; 2],
+        // The kinks of clamped masking are searched for on every chord.
+        (AlbedoLobe::Ellipsoid { .. }, _) => [25_000.0; 2],
+        (AlbedoLobe::StudentT { .. }, _) => [6000.0; 2],
+        (AlbedoLobe::Radial { .. }, _) => [10_000.0; 2],
     };
     [node * nodes, point * points].map(|microseconds| 1e-6 * microseconds / threads)
 }
