@@ -119,6 +119,35 @@ impl StudentT {
         if !self.slices.peeled {
             return 1.0;
         }
-        unit(1.0 - self.slices.heavy.share(self.coordinate(&self.stretch(v))))
+        // To the bit as the sampler has it: the next number belongs to the other part.
+        let at = self.view::<true>(v).at.to_array()[0];
+        unit(1.0 - self.slices.heavy.share(at))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MicrofacetDistribution, Tables};
+
+    #[test]
+    fn the_parts_meet_at_the_tabulated_share() {
+        for gamma in [1.501, 1.6, 1.79] {
+            let lobe = Tables::embedded().student_t([0.3, 0.7], gamma).unwrap();
+            for i in 0..400 {
+                let (z, t) = ((i as f32 + 0.5) / 400.0, (i % 7) as f32 - 3.0);
+                let r = libm::sqrtf((1.0 - z * z) / (1.0 + t * t));
+                let v = Vec3::new(r, r * t, z);
+                // In unit space, along the stretched azimuth.
+                let tilt = |u: f32| {
+                    let m = lobe.sample_visible_normal(v, [u, 0.5]);
+                    (m.x * v.x + m.y * v.y) / m.z
+                };
+                let last = lobe.tabulated_share(v);
+                // The table ends with the steepest slope, the heavy part begins with the least.
+                let (end, start) = (tilt(last), tilt(last.next_up().next_up()));
+                assert!(end > 1.0 && start < 0.1, "{gamma} {v}: {end} {start}");
+            }
+        }
     }
 }

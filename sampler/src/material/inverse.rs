@@ -114,7 +114,7 @@ impl Place {
 }
 
 impl StudentT {
-    /// The coordinate of a view in rows, as the sampler has it.
+    /// The coordinate of a view in rows, to rounding as the sampler has it.
     #[inline(always)]
     pub(super) fn coordinate(&self, view: &Stretched) -> f32 {
         self.slices.view.of_view(view.rho, view.z) * self.slices.rows as f32
