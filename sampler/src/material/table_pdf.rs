@@ -12,7 +12,7 @@ use wide::f32x4;
 use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::{ends_and_rate, slope_at};
 use crate::elementary::{exp2, log2};
-use crate::math::sqrt64;
+use crate::math::{sqrt64, unit};
 
 /// A normal's slopes in unit space: in-plane x : z, and across y : z, with t = y/√(z² + s x²).
 struct UnitSlopes {
@@ -36,7 +36,7 @@ impl StudentT {
         let cell = self.cell_along(&self.rows_at(at), [low, high]).1;
         let mut along = cell.map_or(0.0, |cell| cell.place().density()) * rate;
         if self.slices.peeled {
-            let heavy = f64::from(self.slices.heavy.share(at));
+            let heavy = f64::from(unit(self.slices.heavy.share(at)));
             along = (1.0 - heavy) * along + heavy * self.heavy_density(&slopes);
         }
         let s = f64::from(self.s);
