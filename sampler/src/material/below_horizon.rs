@@ -6,10 +6,14 @@
 //! or a gamma variate bounds it tightly.
 
 use alloc::vec::Vec;
+use core::f32::consts::LOG2_E;
 
-use super::student_t::{Stretched, StudentT, log_growth};
+use wide::f32x4;
+
+use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::Slope;
 use crate::axis::hermite::{Cell, cubic_cells, horner, locate};
+use crate::elementary::{exp2, log2};
 use crate::math::{sqrt, unit};
 
 /// Up to this a the excess is a difference from the shadowing table; for larger a that difference
@@ -71,7 +75,8 @@ impl<'a> SlopeBelowHorizon<'a> {
         let Self { lobe, a } = *self;
         if a > NEAR {
             // ∫ₐ^∞ x p(x) dx = M₀ (1 + s a²)^(−k), and k = 1/s − ½.
-            let decay = libm::expf((0.5 * lobe.s - 1.0) * log_growth(lobe.s, a * a));
+            let exponent = (0.5 * lobe.s - 1.0) * log2_growth(lobe.s, a * a);
+            let decay = exp2(f32x4::splat(exponent)).to_array()[0];
             return lobe.slices.first_moment() * decay * share.at(1.0 / (a * a));
         }
         // E[(X−a)⁺] = E[(X+a)⁺] − a.
@@ -116,6 +121,18 @@ impl<'a> SlopeBelowHorizon<'a> {
             first = more.next();
         }
     }
+}
+
+/// log₂(1 + s x²)/s of a squared unit slope, x² log₂ e in the limit s = 0.
+fn log2_growth(s: f32, x2: f32) -> f32 {
+    let y = s * x2;
+    if y < 1e-4 {
+        return x2 * (LOG2_E - y * (0.5 * LOG2_E - y * (LOG2_E / 3.0)));
+    }
+    // What rounding took from 1 + y counts where 1/s is large.
+    let whole = 1.0 + y;
+    let rest = (y - (whole - 1.0)) / whole;
+    (log2(f32x4::splat(whole)).to_array()[0] + LOG2_E * rest) / s
 }
 
 /// Gauss's continued fraction of 1/₂F₁(1, 3/2; 1+1/s; −w/s), written so that s = 0 is regular.

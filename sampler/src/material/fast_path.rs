@@ -92,8 +92,10 @@ impl StudentT {
             * f32x4::splat((t ^ sign).to_array()[1]);
 
         // Half of x, then z, of the in-plane slope; the test that it is visible.
+        let mut shrink = f32x4::ONE;
         let (x, z, clear) = if HEAVY && let Some(number) = tail {
-            let [x, z] = slices.heavy.half_slopes(f32x4::splat(number));
+            let [x, z, factor] = slices.heavy.half_slopes(f32x4::splat(number));
+            shrink = pairs_of_firsts(f32x4::ONE, factor);
             // It lies on the viewer's side, and x and z are not both small.
             (x, z, ((x + z) * t_z).to_array()[0] >= least_clear(f32x4::ZERO, t, t_z).to_array()[0])
         } else {
@@ -111,8 +113,8 @@ impl StudentT {
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
         let m = to_tangent(pairs_of_firsts(x, z) * ahead + norm * aside);
         let m = m / sum(m * m).sqrt();
-        // Half of the slopes of a heavy part may be beyond 10⁶, and some leave the range of f32.
-        Some(if HEAVY { m.fast_max(f32x4::new([-1.0, -1.0, HORIZON, 0.0])) } else { m })
+        let lowest = f32x4::new([-1.0, -1.0, HORIZON, 0.0]);
+        Some(if HEAVY { (m * shrink).fast_max(lowest) } else { m })
     }
 }
 

@@ -78,7 +78,8 @@ impl MicrofacetDistribution for Ggx {
 
     /// The half vector of the stretched view and a point of the cap z > −w.z of the sphere of its
     /// length, stretched back.
-    #[inline]
+    // Not inlined, it would find a view in memory that its caller has in registers.
+    #[inline(always)]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let w = self.stretch(v);
         let length = sqrt(w.dot(w));

@@ -61,13 +61,20 @@ impl Heavy {
         cell.map_or(0.0, |cell| cubic(cell, w.to_array()[0]))
     }
 
-    /// Half of x, and z, of the heavy part's slopes x : z at numbers descending from 1 to 0.
+    /// Half of x, and z, of the heavy part's slopes x : z at numbers descending from 1 to 0, and a
+    /// factor on z.
+    ///
+    /// The factor is kept apart until normals are of unit length: slopes of 10³⁰ units do occur, and
+    /// products of z would be subnormal, each of which costs as much as a whole sample.
     #[inline(always)]
-    pub(crate) fn half_slopes(&self, number: f32x4) -> [f32x4; 2] {
+    pub(crate) fn half_slopes(&self, number: f32x4) -> [f32x4; 3] {
         // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).
-        let zeta = exp2(log2(number) * self.exponent);
+        const LEAST: f32 = 1e-15;
+        // Beyond 2⁻¹⁰⁰ every normal is the lowest that there is.
+        let zeta = exp2((log2(number) * self.exponent).fast_max(f32x4::splat(-100.0)));
         let x = ((1.0 - zeta) * (1.0 + zeta)).fast_max(f32x4::ZERO).sqrt();
-        [x * 0.5, zeta * self.root_s]
+        let large = zeta.fast_max(f32x4::splat(LEAST));
+        [x * 0.5, large * self.root_s, zeta / large]
     }
 
     /// The shares at four view coordinates in rows.
