@@ -154,13 +154,12 @@ impl Times {
         let classes = Classes::new(settings);
         let sigma = SIGMA as f32;
         let closed = Ggx::new(SIGMA).expect("a constant");
-        let caps = move |v, u| ggx::single::listed(sigma, v, u);
-        let closed = move |v, u| closed.sample_visible_normal(v, u);
+        // A closure for each use: one that is used twice is not inlined.
         let mut runs = vec![
-            normals(in_a_loop(caps), &classes.random),
-            classes.of_components(caps),
-            normals(in_a_loop(closed), &classes.random),
-            classes.of_components(closed),
+            normals(in_a_loop(move |v, u| ggx::single::listed(sigma, v, u)), &classes.random),
+            classes.of_components(move |v, u| ggx::single::listed(sigma, v, u)),
+            normals(in_a_loop(move |v, u| closed.sample_visible_normal(v, u)), &classes.random),
+            classes.of_components(move |v, u| closed.sample_visible_normal(v, u)),
         ];
         let of_lobes = GAMMAS.iter().flat_map(|&gamma| What::ALL.map(|what| (gamma, what)));
         let of_lobes: Vec<(f64, What)> = of_lobes.collect();

@@ -6,7 +6,7 @@
 //! or a gamma variate bounds it tightly.
 
 use alloc::vec::Vec;
-use core::f32::consts::LOG2_E;
+use core::f32::consts::{LN_2, LOG2_E};
 
 use wide::f32x4;
 
@@ -76,7 +76,8 @@ impl<'a> SlopeBelowHorizon<'a> {
         if a > NEAR {
             // ∫ₐ^∞ x p(x) dx = M₀ (1 + s a²)^(−k), and k = 1/s − ½.
             let exponent = (0.5 * lobe.s - 1.0) * log2_growth(lobe.s, a * a);
-            let decay = exp2(f32x4::splat(exponent)).to_array()[0];
+            // Products of less would be subnormal, and slow.
+            let decay = exp2(f32x4::splat(exponent.max(-100.0))).to_array()[0];
             return lobe.slices.first_moment() * decay * share.at(1.0 / (a * a));
         }
         // E[(X−a)⁺] = E[(X+a)⁺] − a.
@@ -102,10 +103,9 @@ impl<'a> SlopeBelowHorizon<'a> {
         let b = 0.5 * rate * base / (a * a);
         let mut first = unit(u);
         loop {
-            let mut y = -libm::log1pf(-first);
-            if b < 1.0 {
-                y -= libm::log1pf(-more.next());
-            }
+            let second = if b < 1.0 { more.next() } else { 0.0 };
+            let [one, two, ..] = log2(f32x4::new([1.0 - first, 1.0 - second, 1.0, 1.0])).to_array();
+            let y = -LN_2 * (one + two);
             let bound = if b < 1.0 { b * y } else { 1.0 };
             // u = 1 is an infinite slope.
             let added = grow(y);

@@ -83,13 +83,7 @@ impl MicrofacetDistribution for Ggx {
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let w = self.stretch(v);
         let length = sqrt(w.dot(w));
-        // The squares of a short view would leave the range of f32, and the null vector gives no
-        // direction: it is taken as normal incidence.
-        let (w, length) = match length {
-            SHORT.. => (w, length),
-            _ if length > 0.0 => (w / length, 1.0),
-            _ => (Vec3::Z, 1.0),
-        };
+        let (w, length) = if length >= SHORT { (w, length) } else { (lifted(w, length), 1.0) };
         // Height of the half vector first, so that it keeps its digits where the cap ends at −w.z.
         let height = (1.0 - unit(u[0])).max(LAST) * (length + w.z);
         let z = height - w.z;
@@ -113,6 +107,14 @@ impl MicrofacetDistribution for Ggx {
     fn bytes(&self) -> usize {
         0
     }
+}
+
+/// A stretched view of unit length, since the squares of a short one would leave the range of f32;
+/// the null vector gives no direction and is taken as normal incidence.
+#[cold]
+#[inline(never)]
+fn lifted(w: Vec3, length: f32) -> Vec3 {
+    if length > 0.0 { w / length } else { Vec3::Z }
 }
 
 /// 1/(παxαy (z² + r²)²): D of a normal whose horizontal part is divided by α, with 1/(παxαy).

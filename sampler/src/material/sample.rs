@@ -106,9 +106,13 @@ pub(crate) fn first_three(m: f32x4) -> Vec3 {
 #[inline(always)]
 pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
     let facing = v.dot(m);
-    if !(facing < 0.0) {
-        return m;
-    }
+    if facing < 0.0 { turned_back(m, v, facing) } else { m }
+}
+
+/// Out of line: in a caller's loop the compiler would else work it out for every normal.
+#[cold]
+#[inline(never)]
+fn turned_back(m: Vec3, v: Vec3, facing: f32) -> Vec3 {
     // A view taken at the horizon is shorter than 1, and may be almost nothing.
     above_horizon(m - facing / v.dot(v).max(f32::MIN_POSITIVE) * v)
 }
