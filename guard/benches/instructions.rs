@@ -26,8 +26,8 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
 // from its closed form.
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(164.4))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(423.0))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(178.6))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(304.2))]
 fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
@@ -37,8 +37,8 @@ fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(99.9))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1e9))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(175.5))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(222.3))]
 fn sample_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
     inputs.lobe.sample_batch(&inputs.v, &inputs.u, &mut inputs.m).expect("equal lengths");
     black_box(inputs)
@@ -59,29 +59,29 @@ fn g1_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(278.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(280.2))]
 fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.visible_normal_pdf(*v, *m))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(2458.9))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1e9))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(883.5))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1057.5))]
 fn table_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.table_pdf(*v, *m))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(1e9))]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(304.6))]
 fn bounded(inputs: Inputs<Bounded>) -> (Vec3, Inputs<Bounded>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (black_box(calls.map(|(v, u)| black_box(inputs.lobe.at(*v).sample(*u))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(1e9))]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(295.9))]
 fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
     let Inputs { lobe, v, u, m, g1 } = &mut inputs;
     lobe.sample_batch(v, u, m, g1).expect("equal lengths");
@@ -89,13 +89,13 @@ fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(1e9))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(198.2))]
 fn ellipsoid_g1(inputs: Inputs<Ellipsoid>) -> (f32, Inputs<Ellipsoid>) {
     (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(1e9))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(697.0))]
 fn ellipsoid_sample_visible_normal(inputs: Inputs<Ellipsoid>) -> (Vec3, Inputs<Ellipsoid>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
@@ -116,7 +116,7 @@ fn ggx_g1(inputs: Inputs<Ggx>) -> (f32, Inputs<Ggx>) {
 }
 
 #[library_benchmark]
-#[bench::closed_form(setup = closed_form, config = at_most(174.8))]
+#[bench::closed_form(setup = closed_form, config = at_most(138.1))]
 fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (

@@ -94,9 +94,9 @@
 //!
 //! # Batches
 //!
-//! Over whole slices of views at a time. Student-t lobes work on four at once: the same normals, to 2
-//! ulp, in 40 % of the time, and G1 in 60 % (`cargo run --release -p microfacet-bench`). Other lobes
-//! answer one by one.
+//! Over whole slices of views at a time. Student-t lobes work on four at once: the same normals, to
+//! 2 ulp, in 40 % of the time, and G1 in 60 % (`cargo run --release -p microfacet-bench`). Other
+//! lobes answer one by one.
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {

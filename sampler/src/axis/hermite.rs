@@ -128,7 +128,8 @@ impl Cubic {
         self.c[1] + w * (2.0 * self.c[2] + w * 3.0 * self.c[3])
     }
 
-    /// The w ∈ [0, 1] where the cubic is `y`, to 1e-11; the cubic ascends, as nodes are kept monotone.
+    /// The w ∈ [0, 1] where the cubic is `y`, to 1e-11; the cubic ascends, as nodes are kept
+    /// monotone.
     #[inline(always)]
     pub(crate) fn solve(&self, y: f64) -> f64 {
         let whole = self.c[1] + self.c[2] + self.c[3];

@@ -2,8 +2,8 @@
 //! density ∝ (x − a) p(x).
 //!
 //! No table holds them; they are drawn by rejection. With (1 + s x²)^(−k) = (1 + s a²)^(−k) e^(−y)
-//! the density is e^(−y) (1 − a/x(y)), whose second factor is concave, so that either an exponential
-//! or a gamma variate bounds it tightly.
+//! the density is e^(−y) (1 − a/x(y)), whose second factor is concave, so that either an
+//! exponential or a gamma variate bounds it tightly.
 
 use alloc::vec::Vec;
 use core::f32::consts::{LN_2, LOG2_E};

@@ -9,8 +9,8 @@
 //! tenths (`cargo run -p microfacet-sampler --example bounded`).
 //!
 //! The ends need not be exact: any interval that contains the shortest one, with its own length as
-//! the share, gives an unbiased estimator and a density known to the bit. So they are read from a
-//! small table of limits, by view and slope, without a search.
+//! the share, gives an unbiased estimator and a density known to the bit. So they are interpolated
+//! in a small table of limits, by view and slope, without a search.
 
 use alloc::vec::Vec;
 
@@ -26,24 +26,30 @@ use crate::axis::hermite::split;
 use crate::error::BatchError;
 use crate::math::unit;
 
-/// Cells of the slope x : z by x/(|x| + z), over [−1, 1], and, for each, rows of the table that share a limit; both
-/// make the intervals wider than needed by one or two hundredths.
+/// Cells of the slope x : z by x/(|x| + z), over [−1, 1], and rows of the table between two rows of
+/// limits.
 const CELLS: usize = 64;
 const SHARED: usize = 4;
+/// Between two nodes of the limits, where they are compared with the numbers they enclose.
+const BETWEEN: usize = 2;
 
-/// Relative widening of either end of the interval, so that rounding loses no direction.
-const SLACK: f64 = 1e-5;
+/// How far a limit is moved beyond the number that it must enclose, so that neither rounding nor
+/// what lies between the compared places loses a direction: a part of the furthest that
+/// interpolation strays near it, and a constant.
+const MARGIN: f64 = 0.5;
+const SLACK: f64 = 1e-6;
 
 /// A lobe whose visible normals are drawn without most of those that reflect the view below the
 /// horizon.
 ///
-/// Prepared once for a material ([`StudentT::bounded`], a quarter of a millisecond), it draws a
-/// normal in 1.6 to 1.8 times the time of [`MicrofacetDistribution::sample_visible_normal`], a batch
-/// in 1.6 times (`cargo run --release -p microfacet-bench`). Every normal that reflects upwards keeps its place; some of the others
-/// remain. Estimators of reflection that weight with G2/G1 times [`share`](BoundedView::share), or
-/// divide by a density of [`BoundedView`], are unbiased, and of lower variance than those of
-/// [`MicrofacetDistribution::sample_visible_normal`]. After Eto & Tokuyoshi 2023, *Bounded VNDF
-/// Sampling for Smith-GGX Reflections*, <https://doi.org/10.1145/3610543.3626163>.
+/// Prepared once for a material ([`StudentT::bounded`], a millisecond), it draws a normal in about
+/// twice the time of [`MicrofacetDistribution::sample_visible_normal`], in batches as well
+/// (`cargo run --release -p microfacet-bench`). Every normal that reflects upwards keeps its place;
+/// some of the others remain. Estimators of reflection that weight with G2/G1 times
+/// [`share`](BoundedView::share), or divide by a density of [`BoundedView`], are unbiased, and of
+/// lower variance than those of [`MicrofacetDistribution::sample_visible_normal`]. After Eto &
+/// Tokuyoshi 2023, *Bounded VNDF Sampling for Smith-GGX Reflections*,
+/// <https://doi.org/10.1145/3610543.3626163>.
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
@@ -81,34 +87,56 @@ impl StudentT {
     ///
     /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
     pub fn bounded(self) -> Bounded {
-        let limits = |row: usize| {
+        let last = self.slices.rows;
+        // The exact numbers at all rows and, between the nodes of the limits, some slopes.
+        let fine = BETWEEN * CELLS;
+        let numbers = |row: usize| -> Vec<f64> {
             let rows = self.row(row);
             let at = |i: usize| {
-                let x = -1.0 + i as f64 * (2.0 / CELLS as f64);
-                self.limits_along(&rows, x, 1.0 - x.abs())
+                let x = -1.0 + i as f64 * (2.0 / fine as f64);
+                self.number_along(&rows, x, 1.0 - x.abs())
             };
-            (0..=CELLS).map(at).collect::<Vec<_>>()
+            (0..=fine).map(at).collect()
         };
-        let rows: Vec<_> = (0..=self.slices.rows).map(limits).collect();
-        let group = |first: usize| -> Vec<[f32; 2]> {
-            // Lookups between rows reach the first of the next group.
-            let shared = &rows[first..(first + SHARED + 1).min(rows.len())];
-            (0..=CELLS)
-                .map(|i| {
-                    let least = shared.iter().map(|row| row[i][0]).fold(1.0, f64::min);
-                    // An infinite slope has a cell of its own.
-                    let end = (i + 1).min(CELLS);
-                    let largest = shared.iter().map(|row| row[end][1]).fold(0.0, f64::max);
-                    [
-                        (least * (1.0 - SLACK) - SLACK * SLACK).max(0.0) as f32,
-                        (largest + (1.0 - largest) * SLACK + SLACK * SLACK).min(1.0) as f32,
-                    ]
-                })
-                .collect()
+        let numbers: Vec<_> = (0..=last).map(numbers).collect();
+        let groups = last.div_ceil(SHARED);
+        let row_of = |group: usize| (group * SHARED).min(last);
+        let node = |group: usize, cell: usize| numbers[row_of(group)][BETWEEN * cell];
+        // How far above and below the numbers of a cell interpolation strays.
+        let strays = |group: usize, cell: usize| {
+            let (mut above, mut below) = (0.0_f64, 0.0_f64);
+            let rows = &numbers[row_of(group)..=row_of(group + 1)];
+            for (row, numbers) in rows.iter().enumerate() {
+                let w = row as f64 / SHARED as f64;
+                for i in 0..=BETWEEN {
+                    let t = i as f64 / BETWEEN as f64;
+                    let along = |g: usize| (1.0 - t) * node(g, cell) + t * node(g, cell + 1);
+                    let strayed = (1.0 - w) * along(group) + w * along(group + 1)
+                        - numbers[BETWEEN * cell + i];
+                    (above, below) = (above.max(strayed), below.max(-strayed));
+                }
+            }
+            [above, below]
         };
-        // Straight from above is the end of the last group, or the start of the next.
-        let firsts = (0..self.slices.rows).step_by(SHARED).chain([self.slices.rows]);
-        let limits = firsts.flat_map(group).collect();
+        let strays: Vec<Vec<[f64; 2]>> =
+            (0..groups).map(|g| (0..CELLS).map(|cell| strays(g, cell)).collect()).collect();
+        let limit = |group: usize, cell: usize| {
+            let near = strays[group.saturating_sub(1)..(group + 1).min(groups)]
+                .iter()
+                .flat_map(|row| &row[cell.saturating_sub(1)..(cell + 1).min(CELLS)]);
+            let [above, below] =
+                near.fold([0.0_f64; 2], |far, near| [0, 1].map(|i| far[i].max(near[i])));
+            let u = node(group, cell);
+            let beyond = |stray: f64| (1.0 + MARGIN) * stray + SLACK;
+            [(u - beyond(above)).max(0.0) as f32, (u + beyond(below)).min(1.0) as f32]
+        };
+        // Interpolation reads a row and a node beyond the last, with weight 0.
+        let rows = (0..=groups).chain([groups]);
+        let mut limits: Vec<_> = rows
+            .flat_map(|group| (0..=CELLS).map(move |cell| (group, cell)))
+            .map(|(g, c)| limit(g, c))
+            .collect();
+        limits.push([0.0, 1.0]);
         Bounded { lobe: self, limits }
     }
 }
@@ -135,7 +163,7 @@ impl Bounded {
         let View { rho, z, at, .. } = view;
         let sin = f32x4::splat(v.x * v.x + v.y * v.y).sqrt();
         let [from, share] = self.intervals(rho, z, sin, at, |group, cells| {
-            let limit = |i: usize| f32x4::splat(self.limit(group[0], cells[i][0], i));
+            let limit = |i: usize| f32x4::splat(self.limit(group.at(0), cells[i].at(0), i));
             [limit(0), limit(1)]
         });
         let [from, share] = [from, share].map(|x| x.to_array()[0]);
@@ -180,12 +208,17 @@ impl Bounded {
         Ok(())
     }
 
-    /// The limit of the random number for a view and a slope, in groups and cells.
+    /// The limit of the random number for a view and a slope, each a node and the weight of the
+    /// next.
     #[inline(always)]
-    fn limit(&self, group: i32, cell: i32, end: usize) -> f32 {
-        let at = group.wrapping_mul(CELLS as i32 + 1).wrapping_add(cell);
+    fn limit(&self, (row, w): (i32, f32), (cell, t): (i32, f32), end: usize) -> f32 {
+        const STRIDE: usize = CELLS + 1;
+        let at = row.wrapping_mul(STRIDE as i32).wrapping_add(cell) as u32 as usize;
         // Only NaN leaves the table.
-        self.limits.get(at as u32 as usize).map_or(end as f32, |limits| limits[end])
+        let Some(near) = self.limits.get(at..at + STRIDE + 2) else { return end as f32 };
+        let along = |i: usize| near[i][end] + t * (near[i + 1][end] - near[i][end]);
+        let (low, high) = (along(0), along(STRIDE));
+        low + w * (high - low)
     }
 
     /// The intervals of four views.
@@ -196,14 +229,14 @@ impl Bounded {
         let [at, _] = slices.view.of_views(rho, z, length, slices.fast.rows);
         self.intervals(rho, z, (vx * vx + vy * vy).sqrt(), at, |group, cells| {
             [0, 1].map(|end| {
-                f32x4::new(core::array::from_fn(|i| self.limit(group[i], cells[end][i], end)))
+                f32x4::new(core::array::from_fn(|i| self.limit(group.at(i), cells[end].at(i), end)))
             })
         })
     }
 
     /// The start and the length of the intervals of u₁ that hold all numbers at which lights can be
     /// above the horizon, of views with stretched horizontal length ρ and coordinate `at`; `limits`
-    /// reads them at a group of rows and two cells.
+    /// reads them at rows and at the slopes of both ends.
     #[inline(always)]
     fn intervals(
         &self,
@@ -211,10 +244,10 @@ impl Bounded {
         cos: f32x4,
         sin: f32x4,
         at: f32x4,
-        limits: impl FnOnce([i32; 4], [[i32; 4]; 2]) -> [f32x4; 2],
+        limits: impl FnOnce(Nodes, [Nodes; 2]) -> [f32x4; 2],
     ) -> [f32x4; 2] {
         let (lobe, slices) = (&self.lobe, &self.lobe.slices);
-        let (group, _) = split(at * (1.0 / SHARED as f32));
+        let group = Nodes::new(at * (1.0 / SHARED as f32));
         // tan θ ∓ 1/cos θ, the nearer end without its cancellation, in slopes along the view's
         // azimuth, which are sin/ρ unit slopes along the stretched one.
         // Where ρ vanishes, so does sin, and the azimuth is that of x.
@@ -223,9 +256,9 @@ impl Bounded {
         let cells = [(-cos, 1.0 + sin), (1.0 + sin, cos)].map(|(x, z)| {
             let (x, z) = (x * across, z * rho);
             let half = 0.5 * CELLS as f32;
-            split(x * half / (x.abs() + z) + half).0.to_array()
+            Nodes::new(x * half / (x.abs() + z) + half)
         });
-        let [low, high] = limits(group.to_array(), cells);
+        let [low, high] = limits(group, cells);
         if slices.peeled {
             // Only the tabulated part has slopes away from the viewer, and it comes first.
             let share = slices.heavy.shares(at, coefficients);
@@ -233,6 +266,26 @@ impl Bounded {
             return [low, 1.0 - low];
         }
         [low, high - low]
+    }
+}
+
+/// Nodes before four coordinates, and the weights of the next.
+#[derive(Clone, Copy)]
+struct Nodes {
+    node: [i32; 4],
+    weight: [f32; 4],
+}
+
+impl Nodes {
+    #[inline(always)]
+    fn new(at: f32x4) -> Self {
+        let (node, weight) = split(at);
+        Self { node: node.to_array(), weight: weight.to_array() }
+    }
+
+    #[inline(always)]
+    fn at(&self, i: usize) -> (i32, f32) {
+        (self.node[i], self.weight[i])
     }
 }
 

@@ -36,8 +36,8 @@ impl StudentT {
         self.draw::<HEAVY>(&self.view::<HEAVY>(v), u, [self.sigma_x, self.sigma_y], |m| m)
     }
 
-    /// The normal visible along a view: drawn in its space, stretched by `sigma`, then taken through
-    /// `to_tangent` and normalised.
+    /// The normal visible along a view: drawn in its space, stretched by `sigma`, then taken
+    /// through `to_tangent` and normalised.
     ///
     /// `None` outside the common case: normals that rounding may have put behind the silhouette,
     /// and arguments that are out of range or NaN.

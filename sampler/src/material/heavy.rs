@@ -64,8 +64,8 @@ impl Heavy {
     /// Half of x, and z, of the heavy part's slopes x : z at numbers descending from 1 to 0, and a
     /// factor on z.
     ///
-    /// The factor is kept apart until normals are of unit length: slopes of 10³⁰ units do occur, and
-    /// products of z would be subnormal, each of which costs as much as a whole sample.
+    /// The factor is kept apart until normals are of unit length: slopes of 10³⁰ units do occur,
+    /// and products of z would be subnormal, each of which costs as much as a whole sample.
     #[inline(always)]
     pub(crate) fn half_slopes(&self, number: f32x4) -> [f32x4; 3] {
         // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).
@@ -105,8 +105,8 @@ impl Part {
     }
 }
 
-/// Random numbers along the plane of incidence, split between the tabulated part, which comes first,
-/// and the heavy one: the number within its part, and all ones where that is the heavy one.
+/// Random numbers along the plane of incidence, split between the tabulated part, which comes
+/// first, and the heavy one: the number within its part, and all ones where that is the heavy one.
 #[inline(always)]
 pub(crate) fn parts(u: f32x4, share: f32x4) -> [f32x4; 2] {
     let unit = |x: f32x4| (x & x.simd_gt(0.0)).fast_min(f32x4::ONE);

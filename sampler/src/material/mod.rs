@@ -3,11 +3,11 @@
 //!
 //! [`distribution`] is the trait of them all. [`student_t`] reads slices of the tables ([`slices`])
 //! for masking and visible normals, of the shapes that all of them cover ([`coverage`]): [`sample`]
-//! draws them, one at a time by [`fast_path`] and four at a time by [`batch`], with the part that no
-//! table holds from [`heavy`]. [`inverse`] finds the random numbers of a slope: [`table_pdf`] is the
-//! density of what is drawn, and [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`]
-//! takes directions through a matrix to a Student-t, and draws what lies [`below_horizon`] by
-//! rejection; [`radial`] has tables of its own, and [`ggx`] needs none.
+//! draws them, one at a time by [`fast_path`] and four at a time by [`batch`], with the part that
+//! no table holds from [`heavy`]. [`inverse`] finds the random numbers of a slope: [`table_pdf`] is
+//! the density of what is drawn, and [`bounded`] leaves out normals that cannot reflect.
+//! [`ellipsoid`] takes directions through a matrix to a Student-t, and draws what lies
+//! [`below_horizon`] by rejection; [`radial`] has tables of its own, and [`ggx`] needs none.
 
 mod batch;
 mod below_horizon;
