@@ -68,7 +68,7 @@ const SLACK: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct Bounded {
     lobe: StudentT,
-    /// By group of rows and cell of the slope: the least and the largest random number.
+    /// By node of the view and of the slope: the least and the largest random number.
     limits: Vec<[f32; 2]>,
 }
 
@@ -128,7 +128,7 @@ impl StudentT {
                 near.fold([0.0_f64; 2], |far, near| [0, 1].map(|i| far[i].max(near[i])));
             let u = node(group, cell);
             let beyond = |stray: f64| (1.0 + MARGIN) * stray + SLACK;
-            [(u - beyond(above)).max(0.0) as f32, (u + beyond(below)).min(1.0) as f32]
+            [(u - beyond(above)) as f32, (u + beyond(below)) as f32]
         };
         // Interpolation reads a row and a node beyond the last, with weight 0.
         let rows = (0..=groups).chain([groups]);
@@ -218,7 +218,8 @@ impl Bounded {
         let Some(near) = self.limits.get(at..at + STRIDE + 2) else { return end as f32 };
         let along = |i: usize| near[i][end] + t * (near[i + 1][end] - near[i][end]);
         let (low, high) = (along(0), along(STRIDE));
-        low + w * (high - low)
+        // Not before: a node cut off at 0 or 1 would take its margin from the others.
+        (low + w * (high - low)).clamp(0.0, 1.0)
     }
 
     /// The intervals of four views.
@@ -327,5 +328,37 @@ impl BoundedView<'_> {
     /// [`MicrofacetDistribution::table_pdf`].
     pub fn table_pdf(&self, m: Vec3) -> f32 {
         self.lobe.table_pdf(self.v, m) / self.share
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Tables;
+
+    #[test]
+    fn limits_enclose_the_numbers_between_their_nodes() {
+        let (mut excess, mut count) = (0.0, 0);
+        for gamma in [1.501, 1.6, 1.9, 3.0, f64::INFINITY] {
+            let bounded = Tables::embedded().student_t(0.5, gamma).unwrap().bounded();
+            let lobe = bounded.lobe();
+            let rows = lobe.slices.rows as f32;
+            for i in 0..331 {
+                let at = rows * i as f32 / 330.0;
+                let table = lobe.rows_at(at);
+                let view = Nodes::new(f32x4::splat(at / SHARED as f32)).at(0);
+                for j in 0..=500 {
+                    let x = -1.0 + j as f32 / 250.0;
+                    let exact = lobe.number_along(&table, x.into(), (1.0 - x.abs()).into());
+                    let half = 0.5 * CELLS as f32;
+                    let slope = Nodes::new(f32x4::splat(x * half + half)).at(0);
+                    let [low, high] = [0, 1].map(|end| f64::from(bounded.limit(view, slope, end)));
+                    assert!(low <= exact && exact <= high, "{gamma} {at} {x}: {low} {exact}");
+                    (excess, count) = (excess + (high - low), count + 1);
+                }
+            }
+        }
+        // They are of use.
+        assert!(excess / f64::from(count) < 1e-3, "{}", excess / f64::from(count));
     }
 }

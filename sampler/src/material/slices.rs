@@ -152,7 +152,7 @@ impl Slices {
     }
 
     /// M₀ρ/area at the coordinate t of a view, from the table of G1.
-    fn share_of_moment(&self, moment: f64, t: f64) -> f64 {
+    pub(super) fn share_of_moment(&self, moment: f64, t: f64) -> f64 {
         let [tau, rest] = self.view.parts(t);
         // ρ : z is 1 − τ² : 2τ.
         let (rho, z) = (rest * (1.0 + tau), 2.0 * tau);
