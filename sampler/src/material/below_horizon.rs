@@ -123,7 +123,7 @@ impl<'a> SlopeBelowHorizon<'a> {
     }
 }
 
-/// log₂(1 + s x²)/s of a squared unit slope, x² log₂ e in the limit s = 0: in a third of the time of
+/// log₂(1 + s x²)/s of a squared unit slope, x² log₂ e in the limit s = 0: in less time than
 /// [`log_growth`](super::student_t::log_growth), whose last digits only D needs.
 fn log2_growth(s: f32, x2: f32) -> f32 {
     let y = s * x2;
