@@ -6,6 +6,7 @@
 //! | [`Masking`] | how masking and shadowing combine |
 //! | [`Roughness`], [`Skew`] | what a lobe is made from: roughness, and the matrix of an ellipsoid |
 //! | [`shape`] | the two ways to write the shape, γ and s = 1/(γ−1) |
+//! | [`fresnel`] | exact reflectance of dielectrics and conductors |
 //! | [`schlick`] | the weights of Schlick's reflectance and of the F82 tint |
 //! | [`gauss_legendre()`] | quadrature rules, at compile time too |
 //!
@@ -21,11 +22,12 @@
 //! assert_eq!(Masking::Uncorrelated.g2_over_g1(0.5, 0.25), 0.25);
 //! ```
 //!
-//! `no_std`, without allocation. Feature: `serde`, names of the forms of masking as files write
-//! them.
+//! `no_std` without the feature `std`, without allocation. Features: `std`, hardware square roots,
+//! with the same results as without; `serde`, names of the forms of masking as files write them.
 
-#![no_std]
+#![cfg_attr(not(feature = "std"), no_std)]
 
+pub mod fresnel;
 mod gauss_legendre;
 mod masking;
 mod roughness;
@@ -54,6 +56,12 @@ pub trait Real:
 
     /// The nearest number to a constant given in double precision.
     fn constant(x: f64) -> Self;
+
+    /// Square root, correctly rounded.
+    fn sqrt(self) -> Self;
+
+    /// √(x² + y²), which overflows only where the result does.
+    fn hypot(self, y: Self) -> Self;
 }
 
 impl Real for f32 {
@@ -63,6 +71,20 @@ impl Real for f32 {
     fn constant(x: f64) -> Self {
         x as Self
     }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        #[cfg(feature = "std")]
+        return Self::sqrt(self);
+        #[cfg(not(feature = "std"))]
+        return libm::sqrtf(self);
+    }
+
+    #[inline(always)]
+    fn hypot(self, y: Self) -> Self {
+        let (x, y) = (f64::from(self), f64::from(y));
+        Real::sqrt(x * x + y * y) as Self
+    }
 }
 
 impl Real for f64 {
@@ -71,6 +93,18 @@ impl Real for f64 {
     #[inline(always)]
     fn constant(x: f64) -> Self {
         x
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        #[cfg(feature = "std")]
+        return Self::sqrt(self);
+        #[cfg(not(feature = "std"))]
+        return libm::sqrt(self);
+    }
+
+    fn hypot(self, y: Self) -> Self {
+        libm::hypot(self, y)
     }
 }
 

@@ -129,6 +129,17 @@ impl AlbedoIntegrator {
         Self { shape, smith, slopes, rules: rules(), tolerance, cut }
     }
 
+    /// ∫ π P22(r) r² dr beyond the largest rapidity, where integrals over heavy tails are cut off
+    /// before they are negligible: the power law r^(−2k−1), k = γ − 3/2, has no end. `None` where
+    /// they are.
+    pub(crate) fn tail(&self) -> Option<f64> {
+        let (s, k) = (self.shape.s(), self.shape.gamma() - 1.5);
+        let heavy = s > 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY;
+        heavy.then(|| {
+            libm::exp(-2.0 * k * LARGEST_RAPIDITY) * libm::exp2(2.0 * k) / (2.0 * k * s * s.sqrt())
+        })
+    }
+
     /// The shape it was prepared for.
     pub fn shape(&self) -> &Shape {
         &self.shape
@@ -444,13 +455,12 @@ impl AlbedoIntegrator {
                 sum[1][i] += correlated * fresnel[i];
             }
         }
-        if view.cos == 0.0 && b < 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY {
-            // At grazing the power law r^(−2k−1) has no end, and height-correlated masking
-            // (G2/G1 = 1) keeps all of it.
-            let k = self.shape.gamma() - 1.5;
+        if view.cos == 0.0
+            && b < 0.0
+            && let Some(tail) = self.tail()
+        {
+            // At grazing height-correlated masking (G2/G1 = 1) keeps all of it.
             let fresnel = weight(-b / a.sqrt());
-            let tail = libm::exp(-2.0 * k * LARGEST_RAPIDITY) * libm::exp2(2.0 * k)
-                / (2.0 * k * s * s.sqrt());
             for i in 0..N {
                 sum[1][i] -= b * tail * fresnel[i];
             }

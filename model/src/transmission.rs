@@ -173,6 +173,16 @@ impl Pane<'_> {
             }
             from = stop;
         }
+        if b < 0.0
+            && let Some(tail) = self.model.tail()
+        {
+            // Facets beyond the cut are vertical, and refract alike: light keeps its z but for the
+            // factor 1/η.
+            let r = self.model.slopes.at(self.model.cut).0;
+            for (sum, last) in sum.iter_mut().zip(self.refracted(a, b, r).unwrap_or_default()) {
+                *sum -= b * tail * last / (self.cos - r * b);
+            }
+        }
         sum
     }
 

@@ -5,6 +5,7 @@
 //! The polynomials are interpolations at Chebyshev's points.
 
 use core::f32::consts::{LN_2, TAU};
+use core::ops::{Add, Mul, Sub};
 
 use wide::{bytemuck, f32x4, i32x4};
 
@@ -26,33 +27,87 @@ pub(crate) fn turn(u: f32) -> [f32; 2] {
 /// integer part; −∞ for 0 and below.
 #[inline(always)]
 pub(crate) fn log2(x: f32x4) -> f32x4 {
-    // x = 2ᵉ m with m ∈ [√½, √2], and log₂ m = 2 artanh((m−1)/(m+1))/ln 2, to 2e-9.
+    // x = 2ᵉ m with m ∈ [√½, √2], and log₂ m = 2 artanh((m−1)/(m+1))/ln 2.
     const ROOT_HALF: i32 = 0x3f35_04f3;
     let bits: i32x4 = bytemuck::cast(x);
     let exponent: i32x4 = (bits - ROOT_HALF) >> 23;
     let m: f32x4 = bytemuck::cast(bits - (exponent << 23));
-    let t = (m - 1.0) / (m + 1.0);
-    let y = t * t;
-    let log =
-        t * (2.885_390_1 + y * (f32x4::splat(0.961_798_84) + y * (0.576_715_2 + y * 0.431_717_7)));
+    let log = log2_of_half_tangent((m - 1.0) / (m + 1.0));
     let log = f32x4::from_i32x4(exponent) + log;
     x.simd_gt(0.0).select(log, f32x4::splat(f32::NEG_INFINITY))
 }
 
-/// 2ˣ for x ≤ 0, to 2e-7; below −126 the least normal number.
+/// log₂(1 + part/whole) of part ≥ 0 and whole > 0, to 3e-7 of the logarithm: it keeps the digits of
+/// a part that is small beside the whole.
+///
+/// The quotient itself is not formed, and may be out of range. A whole below the least normal
+/// number counts as about that.
+///
+/// Of one number, not of lanes: where nobody reads the other lanes, compilers leave anything there,
+/// and where that is subnormal it takes as long as five calls.
+#[inline(always)]
+pub(crate) fn log2_growth(whole: f32, part: f32) -> f32 {
+    const HALF: i32 = 1 << 22;
+    let sum = whole + part;
+    let [low, high] = [whole, sum].map(|x| x.to_bits() as i32);
+    // The sum over the whole is 2ᵉ m with |log₂ m| ≤ 0.59, since bits are linear between powers of
+    // 2.
+    let exponent = high.wrapping_sub(low).wrapping_add(HALF) >> 23;
+    let scaled = f32::from_bits(low.wrapping_add(exponent << 23) as u32);
+    // The first difference is exact, and the second what rounding took from the sum.
+    let excess = (sum - scaled) + (part - (sum - whole));
+    exponent as f32 + log2_of_half_tangent(excess / (sum + scaled))
+}
+
+/// 2ˣ of one number x ≤ 126, to 2e-7; below −126, and for NaN, 0.
+#[inline(always)]
+pub(crate) fn exp2_or_zero(x: f32) -> f32 {
+    let inside = x >= LEAST_EXPONENT;
+    let [power, shifted] = whole_and_fraction(if inside { x } else { LEAST_EXPONENT });
+    let scale = f32::from_bits((shifted.to_bits() << 23).wrapping_add(127 << 23));
+    if inside { power * scale } else { 0.0 }
+}
+
+/// 2ˣ for x ≤ 126, to 2e-7; below −126 the least normal number.
 #[inline(always)]
 pub(crate) fn exp2(x: f32x4) -> f32x4 {
-    let x = x.fast_max(f32x4::splat(-126.0));
-    // The cast truncates, and −½ makes that a rounding for x ≤ 0.
-    let whole = (x - 0.5).fast_trunc_int();
-    let w = x - f32x4::from_i32x4(whole);
-    // 2ʷ for w ∈ [−½, ½], to 2e-9.
+    let [power, shifted] = whole_and_fraction(x.fast_max(f32x4::splat(LEAST_EXPONENT)));
+    let whole: i32x4 = bytemuck::cast(shifted);
+    let scale: f32x4 = bytemuck::cast((whole << 23) + (127 << 23));
+    power * scale
+}
+
+/// The exponent of the least normal number.
+const LEAST_EXPONENT: f32 = -126.0;
+
+/// A number, or lanes of them, in which the formulas above are written once.
+trait Number: Copy + From<f32> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+impl Number for f32 {}
+impl Number for f32x4 {}
+
+/// log₂ of (1+t)/(1−t), 2 artanh(t)/ln 2, for |t| ≤ 0.2, to 3e-9.
+#[inline(always)]
+fn log2_of_half_tangent<T: Number>(t: T) -> T {
+    let y = t * t;
+    let c = T::from;
+    // Not in two halves, which are faster: y² may be subnormal, and slow.
+    t * (c(2.885_390_07) + y * (c(0.961_802_25) + y * (c(0.576_390_26) + y * c(0.439_189_35))))
+}
+
+/// 2ʷ, and a number whose last bits are the whole number x − w; w ∈ [−½, ½].
+#[inline(always)]
+fn whole_and_fraction<T: Number>(x: T) -> [T; 2] {
+    let c = T::from;
+    // A sum with it is rounded to a whole number.
+    let shift = c(12_582_912.0);
+    let shifted = x + shift;
+    let w = x - (shifted - shift);
+    // To 2e-9.
     let square = w * w;
-    let low = 1.0 + w * LN_2;
-    let high = (0.240_226_51 + w * 0.055_503_27)
-        + square * ((0.009_618_057 + w * 0.001_340_042_8) + square * 0.000_154_614_45);
-    let scale: f32x4 = bytemuck::cast((whole + 127) << 23);
-    (low + square * high) * scale
+    let low = c(1.0) + w * c(LN_2);
+    let high = (c(0.240_226_51) + w * c(0.055_503_27))
+        + square * ((c(0.009_618_057) + w * c(0.001_340_042_8)) + square * c(0.000_154_614_45));
+    [low + square * high, shifted]
 }
 
 #[cfg(test)]
@@ -83,10 +138,41 @@ mod tests {
             let x = -0.063 * i as f32;
             let (got, want) = (one(exp2, x), libm::exp2(f64::from(x)));
             assert!((got / want - 1.0).abs() < 2e-7, "{x}: {got} for {want}");
+            assert_eq!(exp2_or_zero(x), got as f32);
+        }
+        for x in [126.0, 0.5, 1.5, 33.49999, 64.0] {
+            let (got, want) = (one(exp2, x), libm::exp2(f64::from(x)));
+            assert!((got / want - 1.0).abs() < 2e-7, "{x}: {got} for {want}");
         }
         assert_eq!([one(log2, 1.0), one(log2, 0.0)], [0.0, f64::NEG_INFINITY]);
         assert_eq!(one(exp2, 0.0), 1.0);
         let least = f64::from(f32::MIN_POSITIVE);
         assert_eq!([one(exp2, -130.0), one(exp2, f32::NEG_INFINITY)], [least; 2]);
+        assert_eq!(f64::from(exp2_or_zero(-126.0)), least);
+        for x in [-126.1, -1e30, f32::NEG_INFINITY, f32::NAN] {
+            assert_eq!(exp2_or_zero(x), 0.0);
+        }
+    }
+
+    #[test]
+    fn growths_keep_the_digits_of_small_parts() {
+        // Parts from far below an ulp of the whole to far above it, in steps that meet every
+        // fraction of a power of 2.
+        for whole in [1.0_f32, 1.999_999_9, 0.731, 3e-9, 2e-38] {
+            for i in -3000..=3000 {
+                let part = whole * libm::exp2f(0.0101 * i as f32);
+                if !(f32::MIN_POSITIVE..1e38).contains(&part) {
+                    continue;
+                }
+                let got = log2_growth(whole, part);
+                let quotient = f64::from(part) / f64::from(whole);
+                let (got, want) = (f64::from(got), libm::log1p(quotient) / core::f64::consts::LN_2);
+                assert!((got - want).abs() <= 3e-7 * want, "{whole} {part}: {got} for {want}");
+            }
+        }
+        assert_eq!(log2_growth(0.3, 0.0), 0.0);
+        // A whole that has left the range is that of its end.
+        let all = log2_growth(0.0, 1.0);
+        assert!((126.0..=128.0).contains(&all), "{all}");
     }
 }

@@ -5,6 +5,10 @@ use core::fmt;
 
 use microfacet_common::{Masking, SkewError};
 
+/// The smallest γ of tables; below, almost every visible normal has a slope beyond any
+/// floating-point number. The mathematics begins at 3/2.
+pub const GAMMA_MIN: f64 = 1.501;
+
 /// Why bytes are not a table set that this crate can use.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoadError {
@@ -140,6 +144,11 @@ impl fmt::Display for MaterialError {
                  material of the recipe that covers them, and bake it again"
             ),
             Self::Skew(why) => why.fmt(f),
+            Self::NotCovered { gamma, covered } if *gamma < GAMMA_MIN => write!(
+                f,
+                "gamma = {gamma} is not covered by any tables, which begin at {GAMMA_MIN}: below, almost every visible normal \
+                 lies within rounding of the horizon; this set serves {covered}; take gamma = {GAMMA_MIN} or more"
+            ),
             Self::NotCovered { gamma, covered } => write!(
                 f,
                 "gamma = {gamma} is not covered by the tables of this set, which serve {covered}; bake a set that \
@@ -173,8 +182,7 @@ impl fmt::Display for MaterialError {
             }
             Self::NoSuchMaterial { name, known } => write!(
                 f,
-                "no material \"{name}\" in this set, which holds {known} (smooth materials have no microfacets and are not \
-                 listed); to add it, append to its recipe, with its own roughness and shape, and bake again:\n\
+                "no material \"{name}\" in this set, which holds {known}; to add it, append to its recipe, with its own roughness and shape, and bake again:\n\
                  [[material]]\nname = \"{name}\"\nsigma = 0.3\ngamma = 3.0"
             ),
         }

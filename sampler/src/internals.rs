@@ -8,6 +8,7 @@ use glam::Vec3;
 use crate::{Albedo, StudentT};
 
 pub use crate::axis::hermite::limit_slopes;
+pub use crate::error::GAMMA_MIN;
 pub use crate::format::{describe, reassemble, seal, seal_document};
 
 /// Where the tabulated density has its joints for a view: unit slopes x in the plane of incidence,

@@ -23,8 +23,9 @@ pub(crate) fn pairs_of_firsts(a: f32x4, b: f32x4) -> f32x4 {
     f32x4::new([a, a, b, b])
 }
 
+/// Swaps the first two lanes and the last two.
 #[inline(always)]
-fn swap_halves(a: f32x4) -> f32x4 {
+pub(crate) fn swap_halves(a: f32x4) -> f32x4 {
     let [a, b, c, d] = a.to_array();
     f32x4::new([c, d, a, b])
 }

@@ -14,51 +14,58 @@
 //! | --- | --- |
 //! | load a set of tables | [`Tables::embedded`], [`Tables::from_bytes`] |
 //! | get a lobe | [`Tables::student_t`], [`Tables::ellipsoid`], [`Tables::material`] by name, [`Ggx`] without tables |
-//! | evaluate and sample it | [`MicrofacetDistribution`]: D, G1, Λ, G2, weights, visible normals and their densities, batches |
+//! | evaluate and sample a material | [`Conductor`], [`Dielectric`], [`Plastic`]: [`Bsdf`]; [`Tables::bsdf`] by name, [`Metal`] |
+//! | evaluate and sample a lobe for a BSDF of your own | [`MicrofacetDistribution`]: D, G1, Λ, G2, weights, visible normals and their densities, batches |
 //! | lose fewer samples below the horizon | [`StudentT::bounded`], prepared once for a material |
-//! | compensate multiple scattering | [`Tables::albedo`], [`Albedo`] |
+//! | compensate multiple scattering | [`Conductor::compensated`]; [`Tables::albedo`], [`Albedo`] |
 //! | write a set, or read one table | [`encode`], [`Table`], [`axis`] |
 //!
-//! # A reflection
+//! # A material
 //!
-//! Load a set once, take a lobe for each material, and sample visible normals. The weight f·cos/pdf
-//! is G2/G1 in closed form.
+//! Load a set once, take a lobe and make a BSDF of it for each material, and ask it for `f`, a
+//! density and samples. [`Bsdf`] has the conventions. Where light of further bounces is to come
+//! back, tables of albedos are read too.
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {
 //! use glam::Vec3;
-//! use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
+//! use microfacet_sampler::{Bsdf, Compensation, Conductor, Metal, StandIn, Tables, Transport};
 //!
 //! let tables = Tables::embedded(); // or Tables::from_bytes(&file)
-//! let glass = tables.student_t(0.454, 3.0)?; // sigma, or [sigma_x, sigma_y]; gamma
+//! let lobe = tables.student_t([0.3, 0.3], 2.5)?; // sigma, or [sigma_x, sigma_y]; gamma
+//! let gold = Conductor::new(lobe, Metal::Gold)
+//!     .compensated(&tables, Compensation::KullaConty, StandIn::Refused)?;
 //!
 //! let v = Vec3::new(0.6, 0.0, 0.8);
-//! let (m, pdf) = glass.sample_with_pdf(v, [0.3, 0.7]);
-//! let l = 2.0 * v.dot(m) * m - v;
-//! let weight = glass.reflection_weight(v, l, Masking::HeightCorrelated);
-//! // v.m may be 0 to rounding: such a light has the weight 0 or a density of its own.
-//! let light_pdf = if v.dot(m) > 0.0 { pdf / (4.0 * v.dot(m)) } else { 0.0 };
-//! # assert!(weight > 0.0 && weight <= 1.0 && light_pdf > 0.0);
+//! let (f, pdf) = gold.eval_pdf(v, Vec3::Z, Transport::Radiance);
+//! let path = gold.sample(v, 0.2, [0.3, 0.7], Transport::Radiance).unwrap();
+//! # assert!(f[0] > f[2] && pdf > 0.0 && path.weight[0] > 0.0 && path.pdf > 0.0);
 //! # }
-//! # Ok::<(), microfacet_sampler::MaterialError>(())
+//! # Ok::<(), Box<dyn core::error::Error>>(())
 //! ```
 //!
-//! For next-event estimation, the single-scattering lobe is D·G2/(4 (v·n)), cosine included:
+//! # A BSDF of your own
+//!
+//! The weight f·cos/pdf of a reflection off a visible normal is G2/G1 in closed form:
 //!
 //! ```
-//! # use glam::Vec3;
+//! use glam::Vec3;
 //! use microfacet_sampler::{Masking, MicrofacetDistribution};
 //!
-//! fn f_cos(lobe: &impl MicrofacetDistribution, v: Vec3, l: Vec3) -> f32 {
-//!     let m = (v + l).normalize_or_zero();
-//!     if !(v.z > 0.0 && l.z > 0.0) {
-//!         return 0.0;
-//!     }
-//!     lobe.d(m) * lobe.g2(v, l, Masking::HeightCorrelated) / (4.0 * v.z)
+//! /// A light, its weight without Fresnel, and its density.
+//! fn reflect(lobe: &impl MicrofacetDistribution, v: Vec3, u: [f32; 2]) -> (Vec3, f32, f32) {
+//!     let (m, pdf) = lobe.sample_with_pdf(v, u);
+//!     let l = 2.0 * v.dot(m) * m - v;
+//!     // v.m may be 0 to rounding: such a light has the weight 0 or a density of its own.
+//!     let pdf = if v.dot(m) > 0.0 { pdf / (4.0 * v.dot(m)) } else { 0.0 };
+//!     (l, lobe.reflection_weight(v, l, Masking::HeightCorrelated), pdf)
 //! }
 //! # let ggx = microfacet_sampler::Ggx::new(0.3).unwrap();
-//! # assert!((f_cos(&ggx, Vec3::Z, Vec3::Z) - 0.25 / (3.14159265 * 0.09)).abs() < 1e-5);
+//! # let (l, weight, pdf) = reflect(&ggx, Vec3::new(0.6, 0.0, 0.8), [0.3, 0.7]);
+//! # assert!(l.z > 0.0 && weight > 0.9 && weight <= 1.0 && pdf > 0.0);
 //! ```
+//!
+//! For next-event estimation, the single-scattering lobe is D·G2/(4 (v·n)), cosine included.
 //!
 //! # Materials by name
 //!
@@ -113,10 +120,10 @@
 //!
 //! # Albedo and multiple scattering
 //!
-//! [`Albedo`] knows which share of light one bounce returns, E(v), its average, and two moments
-//! from which the albedo of every Schlick reflectance follows. Two cures for the missing light are
-//! made from it: a factor on the lobe ([`Albedo::turquin`]) and a lobe of its own
-//! ([`Albedo::compensation`]).
+//! [`Bsdf`]s take care of it; [`Albedo`] is for a BSDF of your own. It knows which share of light
+//! one bounce returns, E(v), its average, and two moments from which the albedo of every Schlick
+//! reflectance follows. Two cures for the missing light are made from it: a factor on the lobe
+//! ([`Albedo::turquin`]) and a lobe of its own ([`Albedo::compensation`]).
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {
@@ -160,14 +167,19 @@ pub use glam;
 
 pub use albedo::{Albedo, DielectricAlbedo, FresnelAlbedo, Moments, ViewCurve};
 pub use axis::{Axis, Interpolation, Mapping};
-pub use bsdf::{f82_tint_average, fresnel_average, schlick_average};
+pub use bsdf::{
+    AnyBsdf, BindError, Bsdf, BsdfSample, Compensation, Conductor, ConductorFresnel, Dielectric,
+    Event, Metal, Plastic, StandIn, Transport, UnknownMetal, f82_tint_average, fresnel_average,
+    schlick_average,
+};
 pub use error::{BatchError, LoadError, MaterialError};
 pub use format::{
     Channels, Covered, FORMAT, FresnelEntry, Kind, LobeEntry, MaterialEntry, Precision, Provenance,
     Reflectance, Side, Subject, Table, VERSION, encode,
 };
 pub use material::{
-    Bounded, BoundedView, Ellipsoid, Ggx, Lobe, MicrofacetDistribution, Radial, StudentT,
+    Bounded, BoundedView, Ellipsoid, Facet, Ggx, Lobe, LobeKey, MicrofacetDistribution, Radial,
+    Smooth, StudentT,
 };
 pub use microfacet_common::{Masking, Roughness, Skew, SkewError};
 #[cfg(feature = "embedded")]

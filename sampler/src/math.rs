@@ -1,23 +1,19 @@
-//! Elementary functions: the square root of `std` where it is available, otherwise of `libm`;
-//! transcendental ones always of `libm`, so that a sampled normal has the same bits on every
-//! system.
+//! Elementary functions of scalars. Square roots are correctly rounded with `std` and without it;
+//! transcendental functions are always `libm`'s or this crate's own, so that a sampled normal has
+//! the same bits on every system.
 
-/// Square root, correctly rounded either way.
+use microfacet_common::Real;
+
+/// Square root.
 #[inline(always)]
 pub(crate) fn sqrt(x: f32) -> f32 {
-    #[cfg(feature = "std")]
-    return x.sqrt();
-    #[cfg(not(feature = "std"))]
-    return libm::sqrtf(x);
+    Real::sqrt(x)
 }
 
 /// √x in double precision.
 #[inline(always)]
 pub(crate) fn sqrt64(x: f64) -> f64 {
-    #[cfg(feature = "std")]
-    return x.sqrt();
-    #[cfg(not(feature = "std"))]
-    return libm::sqrt(x);
+    Real::sqrt(x)
 }
 
 /// x clamped to [0, 1], and 0 for NaN: random numbers and cosines as every lookup takes them.

@@ -8,7 +8,7 @@ use microfacet_common::{Roughness, Skew};
 
 use crate::error::{LoadError, MaterialError};
 use crate::format::{Kind, MaterialEntry, Provenance, Table, decode};
-use crate::material::{Ellipsoid, Ggx, Lobe, Radial, StudentT, coverage};
+use crate::material::{Ellipsoid, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
 
 /// The default set as the bytes of a safetensors file, for those who pass it on.
 #[cfg(feature = "embedded")]
@@ -121,12 +121,15 @@ impl Tables {
     }
 
     /// The lobe of [`student_t`](Self::student_t), or [`Ggx`] in closed form for γ = 2 where no
-    /// table covers it.
+    /// table covers it; σ = 0 is [`Smooth`].
     ///
     /// # Errors
     /// As [`student_t`](Self::student_t).
     pub fn lobe(&self, sigma: impl Into<Roughness>, gamma: f64) -> Result<Lobe, MaterialError> {
         let sigma = sigma.into();
+        if sigma.0 == [0.0; 2] {
+            return if gamma > 1.5 { Ok(Smooth.into()) } else { Err(MaterialError::Gamma(gamma)) };
+        }
         match self.student_t(sigma, gamma) {
             Err(MaterialError::NotCovered { .. }) if gamma == 2.0 => Ok(Ggx::new(sigma)?.into()),
             lobe => Ok(lobe?.into()),

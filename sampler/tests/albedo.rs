@@ -166,7 +166,9 @@ fn what_no_albedo_table_covers_is_refused_with_what_they_cover() {
 fn a_lobe_that_is_not_covered_is_told_what_the_set_serves() {
     let set = Tables::embedded();
     let message = set.student_t(0.3, 1.5001).unwrap_err().to_string();
-    assert!(message.contains("serve gamma in [1.501, inf];"), "{message}");
+    assert!(message.contains("serves gamma in [1.501, inf];"), "{message}");
+    // No recipe has tables of it.
+    assert!(message.contains("take gamma = 1.501 or more"), "{message}");
     assert_eq!(set.shapes().len(), 1);
     // One kind of table missing for some shapes: only those of all kinds are served.
     let set = without(|table| table.kind == Kind::VisibleSlopePeeled);

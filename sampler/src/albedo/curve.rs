@@ -46,27 +46,38 @@ impl MaterialWeights {
                 Mapping::LogRoughness(_) => {
                     let covers = table.subject.covers?;
                     let s = s_of_gamma(point.gamma);
-                    if !(covers.contains_shape(s) && covers.contains_sigma(point.sigma)) {
+                    let sigma = covers.sigma.map_or(point.sigma, |ends| end(point.sigma, ends));
+                    if !(covers.contains_shape(s) && covers.contains_sigma(sigma)) {
                         return None;
                     }
                     let first = axis.quantity(axis.nodes[0])?;
                     // As single precision has them, in which lobes take σ.
-                    let below = (point.sigma as f32) < first as f32;
+                    let below = (sigma as f32) < first as f32;
                     // Between a mirror and the first node nothing is known.
-                    if below && point.sigma > 0.0 {
+                    if below && sigma > 0.0 {
                         return None;
                     }
                     collapsed.is_mirror = below;
-                    collapsed.sigma = point.sigma.max(first);
+                    collapsed.sigma = sigma.max(first);
                     collapsed.sigma
                 }
-                Mapping::ReflectanceRoot => point.eta,
+                Mapping::ReflectanceRoot => {
+                    let [first, last] = axis.ends().map(|t| axis.quantity(t));
+                    end(point.eta, [first?, last?])
+                }
                 _ => break,
             };
             collapsed.weights.push(axis.weights(axis.coordinate(quantity)?)?);
         }
         Some(collapsed)
     }
+}
+
+/// A quantity, or an end of a range that differs from it by no more than the rounding of single
+/// precision, in which lobes take their numbers.
+fn end(x: f64, ends: [f64; 2]) -> f64 {
+    let same = |end: &f64| (x - end).abs() <= f64::from(f32::EPSILON) * end;
+    ends.into_iter().find(same).unwrap_or(x)
 }
 
 /// N albedos of one material as functions of the view.
@@ -119,7 +130,12 @@ impl<const N: usize> ViewCurve<N> {
 
     /// Cosine-weighted averages over the hemisphere of views: 1/π ∫∫ E μ dμ dφ.
     pub fn average(&self) -> [f32; N] {
-        self.0.average(|rows, view, cos| self.at(rows, view, cos).map(f64::from)).map(|x| x as f32)
+        self.average_of(|albedos| albedos.map(f64::from)).map(|x| x as f32)
+    }
+
+    /// Such averages of functions of the albedos.
+    pub(crate) fn average_of<const M: usize>(&self, of: impl Fn([f32; N]) -> [f64; M]) -> [f64; M] {
+        self.0.average(|rows, view, cos| of(self.at(rows, view, cos)))
     }
 }
 

@@ -130,7 +130,7 @@ impl Tables {
         masking: Masking,
     ) -> Result<DielectricAlbedo, MaterialError> {
         let side = |eta| self.interface_albedo(sigma, gamma, eta, masking);
-        Ok(DielectricAlbedo { outside: side(eta)?, inside: side(1.0 / eta)? })
+        Ok(DielectricAlbedo { masking, outside: side(eta)?, inside: side(1.0 / eta)? })
     }
 
     /// The same from one side: [reflection, transmission], where η ∈ [0, ∞] is the index of

@@ -1,6 +1,8 @@
 //! Albedos under an exact reflectance: of conductors by channel, of dielectrics reflected and
 //! transmitted from either side.
 
+use microfacet_common::Masking;
+
 use super::curve::ViewCurve;
 
 /// Directional albedo of one bounce off a rough dielectric under its exact reflectance: the shares
@@ -9,6 +11,8 @@ use super::curve::ViewCurve;
 /// What is missing to one is shadowed, and left to further bounces.
 #[derive(Clone, Debug)]
 pub struct DielectricAlbedo {
+    /// The form of masking that it is for.
+    pub masking: Masking,
     /// Seen from outside: [reflection, transmission] by the view outside.
     pub outside: ViewCurve<2>,
     /// Seen from inside: [reflection, transmission] by the view inside; z points to the side of the

@@ -5,15 +5,130 @@
 //! single-scattering lobe is evaluated with. With F = 1 both return just what is lost, so that a
 //! white furnace shows nothing.
 
-use core::f32::consts::PI;
+use alloc::boxed::Box;
+use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
 use microfacet_common::gauss_legendre;
 use microfacet_common::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip};
 
+use super::broad::{Broad, cosine_pdf};
+use super::reflectance::ConductorFresnel;
 use crate::albedo::Albedo;
-use crate::math::{sqrt, unit};
+
+/// How a BSDF gives back the light that one bounce loses to further ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Compensation {
+    /// Not at all: single scattering.
+    #[default]
+    None,
+    /// A factor on the lobe (Turquin 2019). Cheap and of the lobe's shape, but not reciprocal.
+    Turquin,
+    /// A broad lobe beside it (Kulla & Conty 2017). Reciprocal, and exact for white surfaces.
+    KullaConty,
+}
+
+/// What Turquin's factor adds to 1, at most: where E is 0 (γ near 3/2 at large σ).
+const MOST: f32 = 1e6;
+
+/// Turquin's factor 1 + F0 (1 − E)/E, from what is lost, 1 − E.
+#[inline(always)]
+pub(super) fn turquin(lost: f32, f0: f32) -> f32 {
+    1.0 + (f0 * lost / (1.0 - lost).max(1.0 / MOST)).min(MOST)
+}
+
+/// π times the lobe of Kulla & Conty, from what is lost at view, light and on average.
+#[inline(always)]
+pub(super) fn kulla_conty(lost_v: f32, lost_l: f32, average: f32) -> f32 {
+    // σ = 0 loses nothing, and the quotient would be 0/0.
+    if average > f32::MIN_POSITIVE { lost_v * lost_l / average } else { 0.0 }
+}
+
+/// What a conductor gets back.
+#[derive(Clone, Debug)]
+pub(super) struct Returned<const N: usize> {
+    albedo: Albedo,
+    form: Form<N>,
+}
+
+#[derive(Clone, Debug)]
+enum Form<const N: usize> {
+    /// With the reflectance at normal incidence.
+    Turquin { f0: [f32; N] },
+    /// With the factors of [`Albedo::multiple_bounces`], their mean over the channels, and that of
+    /// the average reflectance.
+    KullaConty { bounces: [f32; N], multiple: f32, single: f32, broad: Box<Broad> },
+}
+
+impl<const N: usize> Returned<N> {
+    /// `None` without compensation.
+    pub(super) fn new(
+        albedo: Albedo,
+        compensation: Compensation,
+        fresnel: &ConductorFresnel<N>,
+    ) -> Option<Self> {
+        let mean = |all: &[f32; N]| all.iter().sum::<f32>() / N as f32;
+        let form = match compensation {
+            Compensation::None => return None,
+            Compensation::Turquin => Form::Turquin { f0: fresnel.at(1.0) },
+            Compensation::KullaConty => {
+                let average = fresnel.average();
+                let bounces = average.map(|average| albedo.multiple_bounces(average));
+                Form::KullaConty {
+                    bounces,
+                    multiple: mean(&bounces),
+                    single: mean(&average),
+                    broad: Box::new(Broad::new(|l| albedo.lost(l))),
+                }
+            }
+        };
+        Some(Self { albedo, form })
+    }
+
+    /// The factor on the lobe.
+    #[inline]
+    pub(super) fn factor(&self, v: Vec3) -> [f32; N] {
+        match &self.form {
+            Form::Turquin { f0 } => {
+                let lost = self.albedo.lost(v);
+                f0.map(|f0| turquin(lost, f0))
+            }
+            Form::KullaConty { .. } => [1.0; N],
+        }
+    }
+
+    /// The probability of facets: their share of the light that returns, as an estimate.
+    #[inline]
+    pub(super) fn facets(&self, v: Vec3) -> f32 {
+        match &self.form {
+            Form::Turquin { .. } => 1.0,
+            Form::KullaConty { multiple, single, .. } => {
+                estimate(self.albedo.lost(v), *single, *multiple)
+            }
+        }
+    }
+
+    /// The same, and π f of the broad lobe.
+    #[inline]
+    pub(super) fn lobe(&self, v: Vec3, l: Vec3) -> (f32, [f32; N]) {
+        let Form::KullaConty { bounces, multiple, single, .. } = &self.form else {
+            return (1.0, [0.0; N]);
+        };
+        let lost = self.albedo.lost(v);
+        let lobe = kulla_conty(lost, self.albedo.lost(l), self.albedo.lost_average());
+        (estimate(lost, *single, *multiple), bounces.map(|factor| factor * lobe))
+    }
+
+    /// The density from which the broad lobe is drawn.
+    #[inline(always)]
+    pub(super) fn broad(&self) -> &Broad {
+        match &self.form {
+            Form::Turquin { .. } => &Broad::COSINE,
+            Form::KullaConty { broad, .. } => broad,
+        }
+    }
+}
 
 /// Cosine-weighted average of Schlick's reflectance, 2∫₀¹ F(μ) μ dμ = F0 + (F90 − F0)/21.
 ///
@@ -28,12 +143,28 @@ pub fn f82_tint_average(f0: f32, tint: f32) -> f32 {
     schlick_average(f0, 1.0) - f82_dip(f0, tint) * F82_AVERAGE as f32
 }
 
-/// Cosine-weighted average 2∫₀¹ F(μ) μ dμ of any reflectance, by sixteen-point Gauss–Legendre
-/// quadrature; for conductors by Fresnel's equations to 1e-5.
+/// Cosine-weighted average 2∫₀¹ F(μ) μ dμ of any reflectance, by Gauss–Legendre quadrature with
+/// eight points in each of eight panels; for conductors by Fresnel's equations to 1e-6, and to 2e-5
+/// across a kink.
 pub fn fresnel_average(reflectance: impl Fn(f32) -> f32) -> f32 {
-    const RULE: [(f64, f64); 16] = gauss_legendre();
-    let at = |(mu, weight): (f64, f64)| (2.0 * weight * mu) as f32 * reflectance(mu as f32);
-    RULE.into_iter().map(at).sum()
+    const RULE: [(f64, f64); 8] = gauss_legendre();
+    const PANELS: usize = 8;
+    let mut sum = 0.0;
+    for panel in 0..PANELS {
+        for (node, weight) in RULE {
+            let mu = (panel as f64 + node) / PANELS as f64;
+            sum += 2.0 * weight / PANELS as f64 * mu * f64::from(reflectance(mu as f32));
+        }
+    }
+    sum as f32
+}
+
+/// The share of facets in the light that returns, from the means of their reflectance and of the
+/// factor of further bounces.
+#[inline(always)]
+fn estimate(lost: f32, single: f32, multiple: f32) -> f32 {
+    let (facets, broad) = ((1.0 - lost) * single, lost * multiple);
+    if broad > 0.0 { facets / (facets + broad) } else { 1.0 }
 }
 
 impl Albedo {
@@ -46,8 +177,7 @@ impl Albedo {
     /// 1e6.
     #[inline]
     pub fn turquin(&self, v: Vec3, f0: f32) -> f32 {
-        let lost = self.lost(v);
-        1.0 + (f0 * lost / (1.0 - lost).max(1e-6)).min(1e6)
+        turquin(self.lost(v), f0)
     }
 
     /// The lobe of all bounces after the first with F = 1, (1 − E(v))(1 − E(l))/(π(1 − E_avg)) per
@@ -59,31 +189,25 @@ impl Albedo {
     /// Kelemen & Szirmay-Kalos 2001, eq. 11, <https://doi.org/10.2312/egs.20011003>.
     #[inline]
     pub fn compensation(&self, v: Vec3, l: Vec3) -> f32 {
-        let average = self.lost_average();
-        // σ = 0 loses nothing, and the quotient would be 0/0.
-        if !(v.z > 0.0 && l.z > 0.0) || average <= f32::MIN_POSITIVE {
+        if !(v.z > 0.0 && l.z > 0.0) {
             return 0.0;
         }
-        self.lost(v) * self.lost(l) / (PI * average)
+        kulla_conty(self.lost(v), self.lost(l), self.lost_average()) * FRAC_1_PI
     }
 
     /// Draws a light for [`compensation`](Self::compensation) from two numbers in [0, 1] (clamped
-    /// to them, NaN to 0): cosine-weighted, which is close because 1 − E varies little.
+    /// to them, NaN to 0): cosine-weighted, which is close for rough surfaces; smooth ones lose
+    /// their light at grazing, where weights then become large.
     #[inline]
     pub fn sample_compensation(&self, u: [f32; 2]) -> Vec3 {
-        let [u1, u2] = u.map(unit);
-        // Malley's method on the polar disc; z from the radius keeps l of unit length at the
-        // horizon.
-        let r = sqrt(u1);
-        let phi = 2.0 * PI * u2;
-        Vec3::new(r * libm::cosf(phi), r * libm::sinf(phi), sqrt(1.0 - u1))
+        Broad::COSINE.sample(u)
     }
 
     /// Density of [`sample_compensation`](Self::sample_compensation), cos θ_l/π per steradian; 0
     /// below the horizon.
     #[inline]
     pub fn compensation_pdf(&self, l: Vec3) -> f32 {
-        l.z.max(0.0) * (1.0 / PI)
+        if l.z > 0.0 { cosine_pdf(l) } else { 0.0 }
     }
 
     /// The factor of [`compensation`](Self::compensation) for one channel of average reflectance

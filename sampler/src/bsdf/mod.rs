@@ -1,5 +1,155 @@
-//! What a renderer builds from lobes and albedos: energy compensation.
+//! Complete materials: what a renderer evaluates and samples, made of a lobe, a reflectance, and
+//! albedos where light of further bounces is to be given back.
+//!
+//! [`conductor`], [`dielectric`] and [`plastic`] are the BSDFs, [`any`] any of them;
+//! [`reflectance`] is Fresnel's or Schlick's of conductors, [`metal`] metals by name, and
+//! [`interface`] the geometry of refraction. [`facets`] reflect singly; [`mixture`] joins them with
+//! [`broad`], the density of light of further bounces. [`energy`] and [`compensation`] keep account
+//! of what one bounce returns; [`bind`] finds its albedos in tables, and [`error`] says what is
+//! missing.
 
+mod any;
+mod bind;
+mod broad;
 mod compensation;
+mod conductor;
+mod dielectric;
+mod energy;
+mod error;
+mod facets;
+mod interface;
+mod metal;
+mod mixture;
+mod plastic;
+mod reflectance;
 
-pub use compensation::{f82_tint_average, fresnel_average, schlick_average};
+pub use any::AnyBsdf;
+pub use bind::StandIn;
+pub use compensation::{Compensation, f82_tint_average, fresnel_average, schlick_average};
+pub use conductor::Conductor;
+pub use dielectric::Dielectric;
+pub use error::BindError;
+pub use metal::{Metal, UnknownMetal};
+pub use plastic::Plastic;
+pub use reflectance::ConductorFresnel;
+
+use glam::Vec3;
+
+/// What is transported along a path, which decides how much a refraction scales it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Transport {
+    /// Radiance, along paths that start at the camera: refraction scales it by (n_v/n_l)², since it
+    /// spreads or gathers the same energy over another solid angle.
+    #[default]
+    Radiance,
+    /// Importance, along paths that start at a light; photons and their energy.
+    Importance,
+}
+
+/// What happened to a sampled direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Event {
+    /// The light is on the side of the view.
+    Reflection,
+    /// The light is on the other side.
+    Transmission,
+}
+
+/// A sampled direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfSample<const N: usize = 3> {
+    /// The direction of the light, of unit length, away from the surface.
+    pub l: Vec3,
+    /// f |cos θ_l|/pdf in each channel; for a delta event its reflectance or transmittance over the
+    /// probability with which it was chosen.
+    pub weight: [f32; N],
+    /// Density of `l`, as [`Bsdf::pdf`] returns it; 0 for a delta event.
+    pub pdf: f32,
+    /// Whether light was reflected or transmitted.
+    pub event: Event,
+    /// Whether the event is a delta: a smooth surface sends all light in one direction.
+    pub delta: bool,
+    /// n_l/n_v, the index of refraction on the side of `l` over that on the side of the view: 1 for
+    /// reflection. Russian roulette on radiance undoes the weight's 1/η² by it.
+    pub eta: f32,
+}
+
+impl<const N: usize> BsdfSample<N> {
+    #[inline(always)]
+    fn reflected(l: Vec3, weight: [f32; N], pdf: f32) -> Self {
+        Self { l, weight, pdf, event: Event::Reflection, delta: false, eta: 1.0 }
+    }
+
+    /// The mirror image of a view from above.
+    fn mirrored(v: Vec3, weight: [f32; N]) -> Self {
+        Self { delta: true, ..Self::reflected(Vec3::new(-v.x, -v.y, v.z), weight, 0.0) }
+    }
+}
+
+/// A bidirectional scattering distribution function: what a surface does to light, in N channels.
+///
+/// # Conventions
+/// - Directions are unit vectors in the tangent frame, n = +z. Both the view `v` and the light `l`
+///   point away from the surface. z > 0 is outside, z < 0 inside.
+/// - η = n_inside/n_outside, of the medium below the surface over that above it, from wherever it
+///   is seen.
+/// - f excludes the cosine; the weight of a sample is f |cos θ_l|/pdf, formed as that and not as a
+///   quotient, so that it stays finite where f and the density do not.
+/// - Densities are per steradian of `l`, of all that [`sample`](Self::sample) draws together.
+/// - f obeys f(v, l) = f(l, v) for reflection; for transmission f(v, l)/n_v² = f(l, v)/n_l² of
+///   radiance. Turquin's compensation alone breaks this.
+/// - A delta event has f = pdf = 0, and its sample says so; those of lobes that are
+///   [effectively smooth](crate::MicrofacetDistribution::is_effectively_smooth) are deltas too.
+/// - A conductor or plastic seen from below is black, and so is everything for a direction that is
+///   in the surface (z = 0) or not a number.
+///
+/// Values are finite: an f or a density beyond the range of `f32` is `f32::MAX`.
+///
+/// ```
+/// use microfacet_sampler::glam::Vec3;
+/// use microfacet_sampler::{Bsdf, Conductor, Ggx, Metal, Transport};
+///
+/// let gold = Conductor::new(Ggx::new(0.3)?, Metal::Gold);
+/// let v = Vec3::new(0.6, 0.0, 0.8);
+/// let path = gold.sample(v, 0.5, [0.3, 0.7], Transport::Radiance).unwrap();
+/// assert!(path.weight.iter().all(|&weight| weight <= 1.0));
+/// // Next-event estimation, towards a light that is known.
+/// let (f, pdf) = gold.eval_pdf(v, Vec3::Z, Transport::Radiance);
+/// assert!(f[0] > f[2] && pdf > 0.0);
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+pub trait Bsdf<const N: usize = 3> {
+    /// Draws a light for a view: `choice` chooses among events, `u` the direction.
+    ///
+    /// The three numbers are in [0, 1], clamped to it and NaN to 0; they are used independently, so
+    /// a stratified `u` stays stratified. `None` where the drawn facet sends no light: it reflects
+    /// below the horizon, or refracts above it. The path ends there with a weight of 0, which
+    /// counts in a mean.
+    fn sample(
+        &self,
+        v: Vec3,
+        choice: f32,
+        u: [f32; 2],
+        transport: Transport,
+    ) -> Option<BsdfSample<N>>;
+
+    /// f, without the cosine, and the density with which [`sample`](Self::sample) draws `l`.
+    fn eval_pdf(&self, v: Vec3, l: Vec3, transport: Transport) -> ([f32; N], f32);
+
+    /// f, without the cosine.
+    fn eval(&self, v: Vec3, l: Vec3, transport: Transport) -> [f32; N] {
+        self.eval_pdf(v, l, transport).0
+    }
+
+    /// The density with which [`sample`](Self::sample) draws `l`, per steradian.
+    fn pdf(&self, v: Vec3, l: Vec3) -> f32 {
+        self.eval_pdf(v, l, Transport::Radiance).1
+    }
+
+    /// Whether all its events are deltas, so that [`eval`](Self::eval) is 0 everywhere and no light
+    /// needs to be sampled.
+    fn is_delta(&self) -> bool;
+
+    /// Whether light of the other side reaches a view.
+    fn transmits(&self) -> bool;
+}

@@ -156,6 +156,18 @@ impl MaterialEntry {
         if x == y { x } else { libm::sqrt(x * y) }
     }
 
+    /// Whether it has no microfacets at all: σ = 0.
+    pub fn is_smooth(&self) -> bool {
+        self.sigma == [[0.0; 2]; 2]
+    }
+
+    /// Whether its lobe is GGX, which has closed forms.
+    pub fn is_ggx(&self) -> bool {
+        // Outside the family s has no meaning, and an ellipsoid reads tables.
+        let family = self.distribution.is_empty() && self.theta.is_none();
+        self.s == [1.0; 2] && family && !self.is_smooth()
+    }
+
     /// The form of masking that it states; height-correlated if it states none.
     pub fn masking(&self) -> Masking {
         self.masking.unwrap_or_default()

@@ -6,7 +6,7 @@
 //! exponential or a gamma variate bounds it tightly.
 
 use alloc::vec::Vec;
-use core::f32::consts::{LN_2, LOG2_E};
+use core::f32::consts::LN_2;
 
 use wide::f32x4;
 
@@ -75,7 +75,7 @@ impl<'a> SlopeBelowHorizon<'a> {
         let Self { lobe, a } = *self;
         if a > NEAR {
             // ∫ₐ^∞ x p(x) dx = M₀ (1 + s a²)^(−k), and k = 1/s − ½.
-            let exponent = (0.5 * lobe.s - 1.0) * log2_growth(lobe.s, a * a);
+            let exponent = (0.5 * lobe.s - 1.0) * lobe.normals.log2_growth(a * a);
             // Products of less would be subnormal, and slow.
             let decay = exp2(f32x4::splat(exponent.max(-100.0))).to_array()[0];
             return lobe.slices.first_moment() * decay * share.at(1.0 / (a * a));
@@ -121,19 +121,6 @@ impl<'a> SlopeBelowHorizon<'a> {
             first = more.next();
         }
     }
-}
-
-/// log₂(1 + s x²)/s of a squared unit slope, x² log₂ e in the limit s = 0: in less time than
-/// [`log_growth`](super::student_t::log_growth), whose last digits only D needs.
-fn log2_growth(s: f32, x2: f32) -> f32 {
-    let y = s * x2;
-    if y < 1e-4 {
-        return x2 * (LOG2_E - y * (0.5 * LOG2_E - y * (LOG2_E / 3.0)));
-    }
-    // What rounding took from 1 + y counts where 1/s is large.
-    let whole = 1.0 + y;
-    let rest = (y - (whole - 1.0)) / whole;
-    (log2(f32x4::splat(whole)).to_array()[0] + LOG2_E * rest) / s
 }
 
 /// Gauss's continued fraction of 1/₂F₁(1, 3/2; 1+1/s; −w/s), written so that s = 0 is regular.

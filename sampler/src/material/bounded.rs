@@ -15,10 +15,12 @@
 use alloc::vec::Vec;
 
 use glam::Vec3;
+use microfacet_common::Masking;
 use wide::f32x4;
 
 use super::batch::{LANES, coefficients, same_lengths, transpose};
-use super::distribution::MicrofacetDistribution;
+use super::distribution::{Facet, MicrofacetDistribution};
+use super::key::LobeKey;
 use super::sample::first_three;
 use super::student_t::StudentT;
 use super::views::{View, Views};
@@ -267,6 +269,69 @@ impl Bounded {
             return [low, 1.0 - low];
         }
         [low, high - low]
+    }
+}
+
+/// The lobe's own answers, but for normals that are drawn for reflection.
+impl MicrofacetDistribution for Bounded {
+    #[inline(always)]
+    fn d(&self, m: Vec3) -> f32 {
+        self.lobe.d(m)
+    }
+
+    #[inline(always)]
+    fn g1(&self, v: Vec3) -> f32 {
+        self.lobe.g1(v)
+    }
+
+    #[inline(always)]
+    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        self.lobe.sample_visible_normal(v, u)
+    }
+
+    #[inline]
+    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        self.lobe.visible_normal_pdf(v, m)
+    }
+
+    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        self.lobe.table_pdf(v, m)
+    }
+
+    #[inline(always)]
+    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+        self.lobe.facet(v, m, l, masking)
+    }
+
+    #[inline]
+    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        let at = self.at(v);
+        (at.sample(u), at.share())
+    }
+
+    #[inline]
+    fn reflecting_share(&self, v: Vec3) -> f32 {
+        self.at(v).share()
+    }
+
+    fn key(&self) -> LobeKey {
+        self.lobe.key()
+    }
+
+    fn is_effectively_smooth(&self) -> bool {
+        self.lobe.is_effectively_smooth()
+    }
+
+    fn bytes(&self) -> usize {
+        Bounded::bytes(self)
+    }
+
+    fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
+        self.lobe.sample_batch(v, u, m)
+    }
+
+    fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
+        self.lobe.g1_batch(v, g1)
     }
 }
 

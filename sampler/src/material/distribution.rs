@@ -1,15 +1,40 @@
 //! What every lobe can be asked: one trait for all of them.
 
 use glam::Vec3;
-use microfacet_common::Masking;
+use microfacet_common::{Masking, saturated};
 
 use super::batch::same_lengths;
+use super::key::LobeKey;
 use crate::error::BatchError;
 
 /// Below this mean absolute slope a surface counts as a mirror. For GGX it is α, which pbrt's
 /// `EffectivelySmooth` compares with the same number; for γ near 3/2 it is much larger than σ,
 /// since a few steep normals take much of what is seen.
 pub(crate) const SMOOTH: f32 = 1e-3;
+
+/// What a BSDF needs of one facet, see [`MicrofacetDistribution::facet`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Facet {
+    /// D(m)/A(v) per steradian, with A the projected area of the microsurface: the density of
+    /// visible normals over v·m.
+    pub density: f32,
+    /// G2(v, l)/G1(v) ∈ [0, 1].
+    pub weight: f32,
+}
+
+impl Facet {
+    /// The facet of a lobe whose projected area is (v·n)/G1, from D and the G1 of view and light.
+    ///
+    /// Both numbers are of the same G1, so that a BRDF made of them is reciprocal to rounding.
+    #[inline(always)]
+    pub(crate) fn of_g1(d: f32, v: Vec3, [g1_v, g1_l]: [f32; 2], masking: Masking) -> Self {
+        if !(v.z > 0.0) {
+            return Self::default();
+        }
+        let density = saturated(d * (g1_v / v.z));
+        Self { density, weight: masking.g2_over_g1(g1_v, g1_l) }
+    }
+}
 
 /// A lobe: a distribution of microfacet normals whose parameters are fixed, under Smith's model.
 ///
@@ -105,6 +130,44 @@ pub trait MicrofacetDistribution {
     fn sample_with_pdf(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
         let m = self.sample_visible_normal(v, u);
         (m, self.visible_normal_pdf(v, m))
+    }
+
+    /// The facet that takes light between `v` and `l`, both above the horizon: the single function
+    /// of a lobe that the evaluation of a BSDF calls. Its normal is along `m`, of any length, so
+    /// that a half vector need not be normalised.
+    ///
+    /// The microfacet BRDF without Fresnel is density·weight/(4 l·n), the density of the reflected
+    /// light density/4. For light that is transmitted `l` is the direction opposite to it.
+    #[inline]
+    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+        let m = m.normalize_or_zero();
+        let facing = v.dot(m);
+        if !(facing > 0.0) {
+            return Facet::default();
+        }
+        let density = saturated(self.visible_normal_pdf(v, m) / facing);
+        Facet { density, weight: self.reflection_weight(v, l, masking) }
+    }
+
+    /// A visible normal for reflection alone, and the [share](Self::reflecting_share) of `v`.
+    ///
+    /// Lobes may leave out normals that reflect the view below the horizon, as
+    /// [`Bounded`](crate::Bounded) does; all others keep their density, divided by the share.
+    #[inline(always)]
+    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        (self.sample_visible_normal(v, u), 1.0)
+    }
+
+    /// The probability in (0, 1] that a visible normal is one of those that
+    /// [`sample_reflecting_normal`](Self::sample_reflecting_normal) draws.
+    #[inline(always)]
+    fn reflecting_share(&self, _v: Vec3) -> f32 {
+        1.0
+    }
+
+    /// What tables of albedos know the lobe by; the default is a lobe that they do not know.
+    fn key(&self) -> LobeKey {
+        LobeKey::Unknown
     }
 
     /// Whether the lobe is so narrow that a renderer should treat the surface as a mirror: its mean

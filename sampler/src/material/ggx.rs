@@ -3,9 +3,10 @@
 use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
-use microfacet_common::{Roughness, saturated};
+use microfacet_common::{Masking, Roughness, saturated};
 
-use super::distribution::{MicrofacetDistribution, SMOOTH};
+use super::distribution::{Facet, MicrofacetDistribution, SMOOTH};
+use super::key::LobeKey;
 use super::roughness::checked;
 use super::sample::{above_horizon, face};
 use super::student_t::SHORT;
@@ -28,6 +29,10 @@ const LAST: f32 = 1.0 / 16_777_216.0;
 pub struct Ggx {
     alpha_x: f32,
     alpha_y: f32,
+    /// 1/αx and 1/αy.
+    inverse_alpha: [f32; 2],
+    /// 1/(παxαy).
+    scale: f32,
 }
 
 impl Ggx {
@@ -37,7 +42,8 @@ impl Ggx {
     /// [`MaterialError::Sigma`] unless every α lies in [1e-8, 1e6].
     pub fn new(alpha: impl Into<Roughness>) -> Result<Self, MaterialError> {
         let [alpha_x, alpha_y] = checked(alpha.into())?;
-        Ok(Self { alpha_x, alpha_y })
+        let inverse_alpha = [1.0 / alpha_x, 1.0 / alpha_y];
+        Ok(Self { alpha_x, alpha_y, inverse_alpha, scale: FRAC_1_PI / (alpha_x * alpha_y) })
     }
 
     /// αx and αy.
@@ -49,6 +55,15 @@ impl Ggx {
     #[inline(always)]
     fn stretch(&self, v: Vec3) -> Vec3 {
         Vec3::new(self.alpha_x * v.x, self.alpha_y * v.y, v.z.max(0.0))
+    }
+
+    /// D of a normal above the horizon whose squared length is given: 1/(παxαy b²) with
+    /// b = (z² + (x/αx)² + (y/αy)²)/|m|².
+    #[inline(always)]
+    fn d_of(&self, m: Vec3, length2: f32) -> f32 {
+        let (x, y) = (m.x * self.inverse_alpha[0], m.y * self.inverse_alpha[1]);
+        let root = length2 / (m.z * m.z + (x * x + y * y)).max(f32::MIN_POSITIVE);
+        self.scale * root * root
     }
 
     /// G1/z = 2/(z + √(ρ² + z²)), finite at grazing.
@@ -67,8 +82,7 @@ impl MicrofacetDistribution for Ggx {
         if !(m.z > 0.0) {
             return 0.0;
         }
-        let scale = FRAC_1_PI / (self.alpha_x * self.alpha_y);
-        d_of_stretched(m.x / self.alpha_x, m.y / self.alpha_y, m.z, scale)
+        saturated(self.d_of(m, 1.0))
     }
 
     #[inline]
@@ -100,6 +114,18 @@ impl MicrofacetDistribution for Ggx {
         saturated(facing * self.d(m) * self.inverse_area(v))
     }
 
+    #[inline(always)]
+    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+        if !(m.z > 0.0) {
+            return Facet::default();
+        }
+        Facet::of_g1(self.d_of(m, m.dot(m)), v, [self.g1(v), self.g1(l)], masking)
+    }
+
+    fn key(&self) -> LobeKey {
+        LobeKey::of_family(self.alpha(), 2.0)
+    }
+
     fn is_effectively_smooth(&self) -> bool {
         self.alpha_x.max(self.alpha_y) < SMOOTH
     }
@@ -115,11 +141,4 @@ impl MicrofacetDistribution for Ggx {
 #[inline(never)]
 fn lifted(w: Vec3, length: f32) -> Vec3 {
     if length > 0.0 { w / length } else { Vec3::Z }
-}
-
-/// 1/(παxαy (z² + r²)²): D of a normal whose horizontal part is divided by α, with 1/(παxαy).
-#[inline(always)]
-pub(crate) fn d_of_stretched(x: f32, y: f32, z: f32, scale: f32) -> f32 {
-    let b = z * z + (x * x + y * y);
-    saturated(scale / (b * b))
 }

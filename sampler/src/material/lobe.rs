@@ -3,7 +3,9 @@
 use glam::Vec3;
 use microfacet_common::Masking;
 
-use super::{Ellipsoid, Ggx, MicrofacetDistribution, Radial, StudentT};
+use super::{
+    Bounded, Ellipsoid, Facet, Ggx, LobeKey, MicrofacetDistribution, Radial, Smooth, StudentT,
+};
 use crate::error::BatchError;
 
 /// One of the lobes, as [`Tables::material`](crate::Tables::material) gives it for a name.
@@ -20,6 +22,10 @@ pub enum Lobe {
     Ellipsoid(Ellipsoid),
     /// An isotropic distribution outside the family.
     Radial(Radial),
+    /// A Student-t prepared for reflection.
+    Bounded(Bounded),
+    /// A smooth surface, σ = 0.
+    Smooth(Smooth),
 }
 
 macro_rules! from {
@@ -32,7 +38,7 @@ macro_rules! from {
     )*};
 }
 
-from!(StudentT, Ggx, Ellipsoid, Radial);
+from!(StudentT, Ggx, Ellipsoid, Radial, Bounded, Smooth);
 
 /// Calls one function of whichever lobe it is.
 macro_rules! each {
@@ -42,6 +48,8 @@ macro_rules! each {
             Lobe::Ggx($one) => $call,
             Lobe::Ellipsoid($one) => $call,
             Lobe::Radial($one) => $call,
+            Lobe::Bounded($one) => $call,
+            Lobe::Smooth($one) => $call,
         }
     };
 }
@@ -91,16 +99,35 @@ impl MicrofacetDistribution for Lobe {
         each!(self, lobe => lobe.table_pdf(v, m))
     }
 
+    #[inline]
+    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+        each!(self, lobe => lobe.facet(v, m, l, masking))
+    }
+
+    #[inline]
+    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        each!(self, lobe => lobe.sample_reflecting_normal(v, u))
+    }
+
+    #[inline]
+    fn reflecting_share(&self, v: Vec3) -> f32 {
+        each!(self, lobe => lobe.reflecting_share(v))
+    }
+
+    fn key(&self) -> LobeKey {
+        each!(self, lobe => lobe.key())
+    }
+
     fn is_effectively_smooth(&self) -> bool {
         each!(self, lobe => lobe.is_effectively_smooth())
     }
 
     fn bytes(&self) -> usize {
-        each!(self, lobe => lobe.bytes())
+        each!(self, lobe => MicrofacetDistribution::bytes(lobe))
     }
 
     fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
-        each!(self, lobe => lobe.sample_batch(v, u, m))
+        each!(self, lobe => MicrofacetDistribution::sample_batch(lobe, v, u, m))
     }
 
     fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {

@@ -4,10 +4,11 @@
 //! [`distribution`] is the trait of them all. [`student_t`] reads slices of the tables ([`slices`])
 //! for masking and visible normals, of the shapes that all of them cover ([`coverage`]): [`sample`]
 //! draws them, one at a time by [`fast_path`] and four at a time by [`batch`], with the part that
-//! no table holds from [`heavy`]. [`inverse`] finds the random numbers of a slope: [`table_pdf`] is
-//! the density of what is drawn, and [`bounded`] leaves out normals that cannot reflect.
-//! [`ellipsoid`] takes directions through a matrix to a Student-t, and draws what lies
-//! [`below_horizon`] by rejection; [`radial`] has tables of its own, and [`ggx`] needs none.
+//! no table holds from [`heavy`]. [`normals`] is D in closed form. [`inverse`] finds the random
+//! numbers of a slope: [`table_pdf`] is the density of what is drawn, and [`bounded`] leaves out
+//! normals that cannot reflect. [`ellipsoid`] takes directions through a matrix to a Student-t, and
+//! draws what lies [`below_horizon`] by rejection; [`radial`] has tables of its own, and [`ggx`]
+//! and the [`smooth`] surface need none. [`key`] is what albedo tables know a lobe by.
 
 mod batch;
 mod below_horizon;
@@ -19,19 +20,24 @@ mod fast_path;
 mod ggx;
 mod heavy;
 mod inverse;
+mod key;
 mod lobe;
+mod normals;
 mod radial;
 mod roughness;
 mod sample;
 mod slices;
+mod smooth;
 mod student_t;
 mod table_pdf;
 mod views;
 
 pub use bounded::{Bounded, BoundedView};
-pub use distribution::MicrofacetDistribution;
+pub use distribution::{Facet, MicrofacetDistribution};
 pub use ellipsoid::Ellipsoid;
 pub use ggx::Ggx;
+pub use key::LobeKey;
 pub use lobe::Lobe;
 pub use radial::Radial;
+pub use smooth::Smooth;
 pub use student_t::StudentT;

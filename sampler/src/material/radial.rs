@@ -1,12 +1,14 @@
 //! Isotropic distributions outside the Student-t family, from tables of their own.
 
 use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
 
 use glam::Vec3;
 use microfacet_common::saturated;
 
 use super::distribution::{MicrofacetDistribution, SMOOTH};
+use super::key::LobeKey;
 use super::roughness::checked;
 use super::slices::{Slice, Slices};
 use super::student_t::StudentT;
@@ -36,6 +38,8 @@ pub struct Radial {
     /// D^(1/4) by the half tangent of the slope.
     density: Vec<Node>,
     tilt: HalfTangent,
+    /// Its label.
+    name: String,
 }
 
 /// s in the formulas of tables without a γ axis: slopes across are in units of √(1 + x²), and κ is
@@ -85,6 +89,7 @@ impl Radial {
             slope: given,
             density: density.nodes,
             tilt,
+            name: lobe.name().into(),
         })
     }
 
@@ -159,6 +164,10 @@ impl MicrofacetDistribution for Radial {
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let facing = v.dot(m).max(0.0);
         saturated(facing * self.d(m) * self.plane.inverse_area(&self.plane.stretch(v)))
+    }
+
+    fn key(&self) -> LobeKey {
+        LobeKey::Distribution(self.name.clone())
     }
 
     fn is_effectively_smooth(&self) -> bool {

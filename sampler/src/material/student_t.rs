@@ -3,19 +3,20 @@
 use core::f32::consts::PI;
 
 use glam::Vec3;
-use microfacet_common::shape::{gamma_of_s, s_of_gamma};
-use microfacet_common::{Roughness, saturated};
+use microfacet_common::shape::s_of_gamma;
+use microfacet_common::{Masking, Roughness, saturated};
 use wide::f32x4;
 
 use super::batch::same_lengths;
-use super::distribution::{MicrofacetDistribution, SMOOTH};
-use super::ggx::d_of_stretched;
+use super::distribution::{Facet, MicrofacetDistribution, SMOOTH};
+use super::key::LobeKey;
+use super::normals::Normals;
 use super::roughness::checked;
 use super::slices::Slices;
 use crate::axis::hermite::{horner, split};
 use crate::error::{BatchError, MaterialError};
 use crate::format::Table;
-use crate::lanes::swap_pairs;
+use crate::lanes::{swap_halves, swap_pairs};
 use crate::math::sqrt;
 
 /// A Student-t lobe with fixed roughness and shape, holding only the slices of the tables it needs.
@@ -32,6 +33,11 @@ pub struct StudentT {
     pub(crate) gamma: f64,
     pub(crate) s: f32,
     pub(crate) slices: Slices,
+    pub(crate) normals: Normals,
+    /// 1/σx and 1/σy.
+    inverse_sigma: [f32; 2],
+    /// 1/(πσxσy).
+    scale: f32,
 }
 
 /// A direction stretched by (σx, σy, 1), with its azimuth in unit space.
@@ -56,17 +62,13 @@ pub(crate) const NORMAL_INCIDENCE: f32 = 1e-18;
 /// normal carrying it would leave the range of f32.
 pub(crate) const SHORT: f32 = 1e-6;
 
-/// s times the squared slope from which D takes double precision: few normals of any shape reach
-/// it, yet no logarithm up to it exceeds a few units.
-const STEEP: f32 = 1e3;
-
 /// Less than the area of any direction; its reciprocal times the number of cells stays finite.
 pub(crate) const LEAST_AREA: f32 = 1e-30;
 
 /// Returns 0, the G1 of NaN; kept cold and out of line so that the common path stays short.
 #[cold]
-fn g1_of_nan() -> f32 {
-    0.0
+fn g1_of_nan<T: Default>() -> T {
+    T::default()
 }
 
 impl StudentT {
@@ -79,19 +81,33 @@ impl StudentT {
         roughness: Roughness,
         gamma: f64,
     ) -> Result<Self, MaterialError> {
-        let [sigma_x, sigma_y] = checked(roughness)?;
+        let sigma = checked(roughness)?;
         if !(gamma > 1.5) {
             return Err(MaterialError::Gamma(gamma));
         }
-        let s = s_of_gamma(gamma);
-        let slices = Slices::from_tables(tables, gamma, s)?;
-        Ok(Self { sigma_x, sigma_y, gamma, s: s as f32, slices })
+        let slices = Slices::from_tables(tables, gamma, s_of_gamma(gamma))?;
+        Ok(Self::new(sigma, gamma, slices))
     }
 
     /// The carrier of another distribution's tables: unit slopes are slopes over σ, and slopes
     /// across scale with √(1 + x²).
     pub(crate) fn for_radial(sigma: f32, slices: Slices) -> Self {
-        Self { sigma_x: sigma, sigma_y: sigma, gamma: 2.0, s: 1.0, slices }
+        Self::new([sigma; 2], 2.0, slices)
+    }
+
+    /// With everything prepared that does not depend on a direction.
+    fn new([sigma_x, sigma_y]: [f32; 2], gamma: f64, slices: Slices) -> Self {
+        let s = s_of_gamma(gamma);
+        Self {
+            sigma_x,
+            sigma_y,
+            gamma,
+            s: s as f32,
+            slices,
+            normals: Normals::new(s),
+            inverse_sigma: [1.0 / sigma_x, 1.0 / sigma_y],
+            scale: 1.0 / (PI * sigma_x * sigma_y),
+        }
     }
 
     /// The same shape with another roughness; the tables are not read again.
@@ -99,8 +115,7 @@ impl StudentT {
     /// # Errors
     /// [`MaterialError::Sigma`] unless both roughnesses lie in [1e-8, 1e6].
     pub fn with_roughness(&self, roughness: impl Into<Roughness>) -> Result<Self, MaterialError> {
-        let [sigma_x, sigma_y] = checked(roughness.into())?;
-        Ok(Self { sigma_x, sigma_y, ..self.clone() })
+        Ok(Self::new(checked(roughness.into())?, self.gamma, self.slices.clone()))
     }
 
     /// σx and σy.
@@ -160,41 +175,51 @@ impl StudentT {
         cell.map_or(0.0, |cell| horner(cell, w.to_array()[0]))
     }
 
-    /// D of a normal above the horizon whose horizontal part is divided by σ; `scale` is 1/(πσxσy).
+    /// D of a normal above the horizon, from it with its horizontal part divided by σ and from the
+    /// square of its length before that; `scale` is 1/(πσxσy).
     #[inline(always)]
-    pub(crate) fn d_of_unit(&self, m: Vec3, scale: f32) -> f32 {
-        let r2 = m.x * m.x + m.y * m.y;
-        let z2 = m.z * m.z;
-        let s = self.s;
-        if s == 1.0 {
-            return d_of_stretched(m.x, m.y, m.z, scale);
-        }
-        let ratio = r2 / z2;
-        let log = if s * ratio < STEEP {
-            // γ = (1+s)/s.
-            -(1.0 + s) * log_growth(s, ratio) - 2.0 * libm::logf(z2)
-        } else if s == 0.0 {
-            // r²/z² overflows: exp(−r²/z²) = 0.
-            return 0.0;
-        } else {
-            // The form above cancels here for γ < 2, its logarithms both growing towards the
-            // horizon: cos^(2γ−4) (z² + s r²)^(−γ) does not.
-            let (z, s, r2) = (f64::from(m.z), f64::from(s), f64::from(r2));
-            let gamma = gamma_of_s(s);
-            (2.0 * (gamma - 2.0) * libm::log(z) - gamma * libm::log(z * z + s * r2)) as f32
-        };
-        // Squares the root of the power: the whole power may underflow where 1/σ² brings D back.
-        let root = libm::expf(0.5 * log);
+    pub(crate) fn d_of_unit(&self, m: Vec3, length2: f32, scale: f32) -> f32 {
+        let root = self.normals.root(m.x * m.x + m.y * m.y, m.z * m.z) * length2;
         saturated(scale * root * root)
     }
-}
 
-/// ln(1 + s x²)/s of a squared unit slope, x² in the limit s = 0.
-#[inline(always)]
-pub(crate) fn log_growth(s: f32, x2: f32) -> f32 {
-    let y = s * x2;
-    // The limit to Beckmann, where 1/s would overflow.
-    if y < 1e-4 { x2 * (1.0 - y * (0.5 - y * (1.0 / 3.0))) } else { libm::log1pf(y) / s }
+    /// D of a normal above the horizon, by its direction and the square of its length.
+    #[inline(always)]
+    fn d_of(&self, m: Vec3, length2: f32) -> f32 {
+        let [x, y] = self.inverse_sigma;
+        self.d_of_unit(Vec3::new(m.x * x, m.y * y, m.z), length2, self.scale)
+    }
+
+    /// G1 of a view and a light: the root, the division and the lookup's arithmetic of
+    /// [`g1`](MicrofacetDistribution::g1) in two lanes.
+    #[inline(always)]
+    fn g1_of_both(&self, v: Vec3, l: Vec3) -> [f32; 2] {
+        let slices = &self.slices;
+        // In turns [v, l, v, l], so that no lane has to be set to zero.
+        let scale =
+            f32x4::new([self.sigma_x, self.sigma_x, self.sigma_y, self.sigma_y]) * slices.kappa;
+        let xy = f32x4::new([v.x, l.x, v.y, l.y]) * scale;
+        let squares = xy * xy;
+        let z = f32x4::new([v.z, l.z, v.z, l.z]).fast_max(f32x4::ZERO);
+        let across = (squares + swap_halves(squares)).sqrt();
+        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
+        let (cell, w) = split(at);
+        let [i, j, ..] = cell.to_array().map(|cell| cell as u32 as usize);
+        let (Some(a), Some(b)) = (slices.shadowing.get(i), slices.shadowing.get(j)) else {
+            return g1_of_nan();
+        };
+        // c₀ and c₁ of both, then c₂ and c₃.
+        let low = f32x4::new([a[0], b[0], a[1], b[1]]);
+        let high = f32x4::new([a[2], b[2], a[3], b[3]]);
+        let ([wa, wb, ..], square) = (w.to_array(), w * w);
+        let terms = (low + square * high) * f32x4::new([1.0, 1.0, wa, wb]);
+        let [g1_v, g1_l, ..] = (q * (terms + swap_halves(terms))).fast_min(f32x4::ONE).to_array();
+        // As in `g1`.
+        if cfg!(not(target_feature = "sse2")) && (g1_v.is_nan() || g1_l.is_nan()) {
+            return g1_of_nan();
+        }
+        [g1_v, g1_l]
+    }
 }
 
 impl MicrofacetDistribution for StudentT {
@@ -206,8 +231,7 @@ impl MicrofacetDistribution for StudentT {
         if !(m.z > 0.0) {
             return 0.0;
         }
-        let scale = 1.0 / (PI * self.sigma_x * self.sigma_y);
-        self.d_of_unit(Vec3::new(m.x / self.sigma_x, m.y / self.sigma_y, m.z), scale)
+        self.d_of(m, 1.0)
     }
 
     #[inline(always)]
@@ -258,12 +282,24 @@ impl MicrofacetDistribution for StudentT {
         saturated(facing * self.d(m) * self.inverse_area(&self.stretch(v)))
     }
 
+    #[inline(always)]
+    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+        if !(m.z > 0.0) {
+            return Facet::default();
+        }
+        Facet::of_g1(self.d_of(m, m.dot(m)), v, self.g1_of_both(v, l), masking)
+    }
+
     /// The density with which the sampler draws `m`, the Jacobian of its own map.
     ///
     /// An estimator that divides by it is unbiased at any resolution of the tables. It integrates
     /// to 1 over all m and costs two searches and a few square roots: use it where bias matters.
     fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         self.density_of_samples(v, m)
+    }
+
+    fn key(&self) -> LobeKey {
+        LobeKey::of_family([self.sigma_x, self.sigma_y], self.gamma)
     }
 
     fn is_effectively_smooth(&self) -> bool {

@@ -1,0 +1,109 @@
+//! Any of the BSDFs, and those of a recipe's materials by name.
+
+use glam::Vec3;
+
+use super::bind::StandIn;
+use super::compensation::Compensation;
+use super::error::BindError;
+use super::{Bsdf, BsdfSample, Conductor, ConductorFresnel, Dielectric, Plastic, Transport};
+use crate::format::FresnelEntry;
+use crate::material::Lobe;
+use crate::tables::Tables;
+
+/// Any of the BSDFs in three channels, of any lobe: what a renderer keeps for each material of a
+/// scene.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum AnyBsdf {
+    /// A conductor.
+    Conductor(Conductor<Lobe>),
+    /// A dielectric.
+    Dielectric(Dielectric<Lobe>),
+    /// A dielectric coat over a diffuse base.
+    Plastic(Plastic<Lobe>),
+}
+
+macro_rules! from {
+    ($($bsdf:ident),*) => {$(
+        impl From<$bsdf<Lobe>> for AnyBsdf {
+            fn from(bsdf: $bsdf<Lobe>) -> Self {
+                Self::$bsdf(bsdf)
+            }
+        }
+    )*};
+}
+
+from!(Conductor, Dielectric, Plastic);
+
+/// Calls one function of whichever BSDF it is.
+macro_rules! each {
+    ($any:ident, $one:ident => $call:expr) => {
+        match $any {
+            AnyBsdf::Conductor($one) => $call,
+            AnyBsdf::Dielectric($one) => $call,
+            AnyBsdf::Plastic($one) => $call,
+        }
+    };
+}
+
+impl Bsdf for AnyBsdf {
+    fn sample(
+        &self,
+        v: Vec3,
+        choice: f32,
+        u: [f32; 2],
+        transport: Transport,
+    ) -> Option<BsdfSample> {
+        each!(self, bsdf => bsdf.sample(v, choice, u, transport))
+    }
+
+    fn eval_pdf(&self, v: Vec3, l: Vec3, transport: Transport) -> ([f32; 3], f32) {
+        each!(self, bsdf => bsdf.eval_pdf(v, l, transport))
+    }
+
+    fn is_delta(&self) -> bool {
+        each!(self, bsdf => Bsdf::<3>::is_delta(bsdf))
+    }
+
+    fn transmits(&self) -> bool {
+        each!(self, bsdf => Bsdf::<3>::transmits(bsdf))
+    }
+}
+
+impl Tables {
+    /// The BSDF of a named material of the set's recipe: its lobe, reflectance and form of masking.
+    ///
+    /// `fresnel = "mirror"`, `schlick`, `conductor` and `metal` make a [`Conductor`], `dielectric`
+    /// a [`Dielectric`], never a [`Plastic`], whose base no recipe states. Ranges are taken at
+    /// their middle, see [`material`](Self::material).
+    ///
+    /// # Errors
+    /// [`BindError::NoFresnel`] for a material that states no reflectance, [`BindError::NoAlbedo`]
+    /// or [`BindError::Material`] where a compensation needs albedos that the set does not hold,
+    /// and what [`material`](Self::material) reports.
+    pub fn bsdf(
+        &self,
+        name: &str,
+        compensation: Compensation,
+        stand_in: StandIn,
+    ) -> Result<AnyBsdf, BindError> {
+        let lobe = self.material(name)?;
+        let entry = self.entry(name)?;
+        let masking = entry.masking();
+        let fresnel = entry.fresnel.ok_or_else(|| BindError::NoFresnel(name.into()))?;
+        let conductor = |fresnel: ConductorFresnel| {
+            let conductor = Conductor::new(lobe.clone(), fresnel).with_masking(masking);
+            conductor.compensated(self, compensation, stand_in).map(AnyBsdf::from)
+        };
+        match fresnel {
+            FresnelEntry::Mirror => conductor(ConductorFresnel::mirror()),
+            FresnelEntry::Schlick(f0) => conductor(ConductorFresnel::schlick([f0 as f32; 3])?),
+            FresnelEntry::Conductor { eta, k } => conductor(ConductorFresnel::exact(eta, k)?),
+            FresnelEntry::Dielectric(_) | FresnelEntry::Dielectrics { .. } => {
+                let eta = fresnel.middle_index().unwrap_or(f64::NAN);
+                let dielectric = Dielectric::new(lobe, eta)?.with_masking(masking);
+                Ok(dielectric.compensated(self, compensation, stand_in)?.into())
+            }
+        }
+    }
+}

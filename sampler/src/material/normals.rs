@@ -1,0 +1,45 @@
+//! The normal distribution function of a Student-t lobe, D, in closed form.
+//!
+//! With r/z the slope of a normal over σ, b = z² + s r² and γ = (1+s)/s, πσxσy D = z^(2γ−4) b^(−γ),
+//! which is computed as (b/z²)^(2−γ)/b²: for γ near 2 nothing large is raised to a power, for γ = 2
+//! nothing at all, and towards Beckmann the logarithm of b/z² = 1 + s r²/z² keeps the digits of a
+//! small s.
+
+use crate::elementary::{exp2_or_zero, log2_growth};
+
+/// D of one shape.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Normals {
+    s: f32,
+    /// 1 − γ/2.
+    power: f32,
+}
+
+/// Stands for s = 0: the D of Beckmann to rounding, as far as D is not 0. Much less would make
+/// squares subnormal, and slow. A power of two, so that it and its reciprocal are not rounded.
+const LEAST_S: f64 = 1.0 / 1_099_511_627_776.0;
+
+impl Normals {
+    pub(crate) fn new(s: f64) -> Self {
+        let s = s.max(LEAST_S);
+        Self { s: s as f32, power: (0.5 - 0.5 / s) as f32 }
+    }
+
+    /// √(πσxσy D) of a normal above the horizon from the squares of its horizontal part over σ and
+    /// of its vertical part, over the square of its length: it need not be 1.
+    ///
+    /// A root, since D/(σxσy) may be in range where the factors of it are not.
+    #[inline(always)]
+    pub(crate) fn root(&self, r2: f32, z2: f32) -> f32 {
+        let part = self.s * r2;
+        // It need not wait for the power.
+        let inverse = 1.0 / (z2 + part).max(f32::MIN_POSITIVE);
+        exp2_or_zero(log2_growth(z2, part) * self.power) * inverse
+    }
+
+    /// log₂(1 + s x²)/s of a squared unit slope, x² log₂ e in the limit s = 0.
+    #[inline(always)]
+    pub(crate) fn log2_growth(&self, x2: f32) -> f32 {
+        log2_growth(1.0, self.s * x2) / self.s
+    }
+}

@@ -1,0 +1,45 @@
+//! The smooth surface, σ = 0: its only normal is n.
+
+use glam::Vec3;
+
+use super::distribution::MicrofacetDistribution;
+use super::key::LobeKey;
+
+/// A smooth surface, the limit σ → 0 of every lobe: all microfacets face along n, and a BSDF of it
+/// has delta events alone.
+///
+/// Nothing is masked: G1 is 1 above the horizon. Densities are 0 everywhere, since that of a single
+/// normal is no number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Smooth;
+
+impl MicrofacetDistribution for Smooth {
+    fn d(&self, _m: Vec3) -> f32 {
+        0.0
+    }
+
+    fn g1(&self, v: Vec3) -> f32 {
+        if v.z > 0.0 { 1.0 } else { 0.0 }
+    }
+
+    /// n, whatever the view.
+    fn sample_visible_normal(&self, _v: Vec3, _u: [f32; 2]) -> Vec3 {
+        Vec3::Z
+    }
+
+    fn visible_normal_pdf(&self, _v: Vec3, _m: Vec3) -> f32 {
+        0.0
+    }
+
+    fn key(&self) -> LobeKey {
+        LobeKey::Round { sigma: 0.0, gamma: 2.0 }
+    }
+
+    fn is_effectively_smooth(&self) -> bool {
+        true
+    }
+
+    fn bytes(&self) -> usize {
+        0
+    }
+}

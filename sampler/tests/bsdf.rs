@@ -1,0 +1,436 @@
+//! Complete BSDFs: values against Walter et al. 2007 in double precision, what is a delta, and what
+//! is refused.
+
+#![cfg(feature = "embedded")]
+
+use glam::{DVec3, Vec3};
+use microfacet_sampler::{
+    BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Event, Ggx, Lobe,
+    Masking, MaterialError, Metal, MicrofacetDistribution, Plastic, Skew, Smooth, StandIn, Tables,
+    Transport,
+};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+const RADIANCE: Transport = Transport::Radiance;
+
+fn direction(theta: f64, phi: f64) -> Vec3 {
+    let (sin, cos) = theta.sin_cos();
+    DVec3::new(sin * phi.cos(), sin * phi.sin(), cos).as_vec3()
+}
+
+/// A direction of the sphere, no closer to the horizon than one part in a hundred.
+fn any_direction(random: &mut StdRng) -> Vec3 {
+    loop {
+        let z: f64 = random.random_range(-1.0..1.0);
+        if z.abs() > 0.01 {
+            return direction(z.acos(), random.random_range(-3.0..3.0));
+        }
+    }
+}
+
+/// GGX as Walter et al. 2007 have it, in double precision, with n_o and n_i the indices on the
+/// sides of view and light.
+struct Walter {
+    alpha: f64,
+}
+
+impl Walter {
+    /// Eq. 33.
+    fn d(&self, m: DVec3) -> f64 {
+        let tan2 = (1.0 - m.z * m.z) / (m.z * m.z);
+        let a2 = self.alpha * self.alpha;
+        a2 / (std::f64::consts::PI * m.z.powi(4) * (a2 + tan2).powi(2))
+    }
+
+    /// Eq. 34.
+    fn g1(&self, v: DVec3, m: DVec3) -> f64 {
+        if v.dot(m) / v.z <= 0.0 {
+            return 0.0;
+        }
+        let tan2 = (1.0 - v.z * v.z) / (v.z * v.z);
+        2.0 / (1.0 + (1.0 + self.alpha * self.alpha * tan2).sqrt())
+    }
+
+    /// Eq. 20, of a reflectance by |i·h|.
+    fn reflection(&self, o: DVec3, i: DVec3, fresnel: impl Fn(f64) -> f64) -> f64 {
+        let h = (i + o).normalize() * (i + o).z.signum();
+        let g = self.g1(i, h) * self.g1(o, h);
+        fresnel(i.dot(h).abs()) * g * self.d(h) / (4.0 * i.z.abs() * o.z.abs())
+    }
+
+    /// Of the cosines of view and light at the facet that refracts the one into the other.
+    fn smaller_cosine(&self, o: DVec3, i: DVec3, n_o: f64, n_i: f64) -> f64 {
+        let h = (n_i * i + n_o * o).normalize();
+        i.dot(h).abs().min(o.dot(h).abs())
+    }
+
+    /// Eq. 21.
+    fn transmission(&self, o: DVec3, i: DVec3, n_o: f64, n_i: f64) -> f64 {
+        let h = -(n_i * i + n_o * o);
+        let h = h.normalize() * h.z.signum();
+        let (ih, oh) = (i.dot(h), o.dot(h));
+        // Refraction takes light to the other side of the facet, too.
+        if ih * oh >= 0.0 {
+            return 0.0;
+        }
+        let g = self.g1(i, h) * self.g1(o, h);
+        let fresnel = walter_fresnel(n_o / n_i, ih.abs());
+        let cosines = (ih * oh / (i.z * o.z)).abs();
+        cosines * n_o * n_o * (1.0 - fresnel) * g * self.d(h) / (n_i * ih + n_o * oh).powi(2)
+    }
+}
+
+/// Smaller cosines of facets are off by more than 1e-5 of themselves in single precision.
+const EDGE_ON: f64 = 0.01;
+/// Squares of cosines that are closer to that of the critical angle are off likewise.
+const CRITICAL: f64 = 1e-3;
+
+/// Eq. 22, with the index on the other side over that on the side of c.
+fn walter_fresnel(ratio: f64, c: f64) -> f64 {
+    let g2 = ratio * ratio - 1.0 + c * c;
+    if g2 < 0.0 {
+        return 1.0;
+    }
+    let g = g2.sqrt();
+    let second = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
+    0.5 * ((g - c) / (g + c)).powi(2) * (1.0 + second * second)
+}
+
+/// Fresnel's equations of a complex index by complex arithmetic.
+fn complex_fresnel(eta: f64, k: f64, cos: f64) -> f64 {
+    type C = [f64; 2];
+    let norm = |a: C| a[0] * a[0] + a[1] * a[1];
+    let square: C = [eta * eta - k * k, 2.0 * eta * k];
+    let inside: C = [square[0] - (1.0 - cos * cos), square[1]];
+    let root = {
+        let re = (0.5 * (norm(inside).sqrt() + inside[0])).sqrt();
+        [re, 0.5 * inside[1] / re]
+    };
+    let times: C = square.map(|x| x * cos);
+    let quotient = |a: C, b: C| norm([a[0] - b[0], a[1] - b[1]]) / norm([a[0] + b[0], a[1] + b[1]]);
+    0.5 * (quotient([cos, 0.0], root) + quotient(times, root))
+}
+
+fn lobes(alpha: f32) -> [Lobe; 2] {
+    let tables = Tables::embedded();
+    [tables.student_t(f64::from(alpha), 2.0).unwrap().into(), Ggx::new(alpha).unwrap().into()]
+}
+
+/// Largest relative difference, where f is more than a millionth.
+fn compare(got: f32, want: f64, worst: &mut f64, count: &mut usize) {
+    assert_eq!(got > 0.0, want > 0.0, "{got} for {want}");
+    if want > 1e-6 {
+        *worst = worst.max((f64::from(got) / want - 1.0).abs());
+        *count += 1;
+    }
+}
+
+#[test]
+fn ggx_is_that_of_walter() {
+    let mut random = StdRng::seed_from_u64(1);
+    for alpha in [0.05_f32, 0.3, 1.0, 2.5] {
+        let truth = Walter { alpha: alpha.into() };
+        for lobe in lobes(alpha) {
+            let (mut worst, mut counts) = (0.0_f64, [0; 3]);
+            let gold: Conductor<_> =
+                Conductor::new(lobe.clone(), Metal::Gold).with_masking(Masking::Uncorrelated);
+            for _ in 0..20_000 {
+                let (v, l) = (any_direction(&mut random), any_direction(&mut random));
+                let (o, i) = (v.as_dvec3().normalize(), l.as_dvec3().normalize());
+                if v.z > 0.0 && l.z > 0.0 {
+                    let f = gold.eval(v, l, RADIANCE);
+                    for (c, got) in f.into_iter().enumerate() {
+                        let (eta, k) = (Metal::Gold.eta()[c], Metal::Gold.k()[c]);
+                        let want = truth.reflection(o, i, |cos| complex_fresnel(eta, k, cos));
+                        compare(got, want, &mut worst, &mut counts[0]);
+                    }
+                }
+                for eta in [1.5_f32, 2.4, 1.0 / 1.33] {
+                    let glass = Dielectric::new(lobe.clone(), eta.into()).unwrap();
+                    let glass = glass.with_masking(Masking::Uncorrelated);
+                    let index = |d: Vec3| if d.z > 0.0 { 1.0 } else { f64::from(eta) };
+                    let (n_o, n_i) = (index(v), index(l));
+                    let [got, ..] = glass.eval(v, l, RADIANCE);
+                    if v.z * l.z > 0.0 {
+                        let ratio = f64::from(if v.z > 0.0 { eta } else { 1.0 / eta });
+                        let want = truth.reflection(o, i, |cos| walter_fresnel(ratio, cos));
+                        // At the critical angle F rises like a square root, from rounding, too.
+                        let half = 0.5 * (1.0 + o.dot(i));
+                        if (half - (1.0 - ratio * ratio)).abs() > CRITICAL {
+                            compare(got, want, &mut worst, &mut counts[1]);
+                        }
+                    } else {
+                        let want = truth.transmission(o, i, n_o, n_i);
+                        // Of a facet seen edge-on the cosine is its own rounding.
+                        if truth.smaller_cosine(o, i, n_o, n_i) > EDGE_ON {
+                            compare(got, want, &mut worst, &mut counts[2]);
+                        }
+                    }
+                }
+            }
+            assert!(counts.iter().all(|&count| count > 1000), "{counts:?}");
+            assert!(worst < 1e-4, "alpha {alpha}: {worst:e}");
+        }
+    }
+}
+
+/// Importance lacks the factor of radiance, and reflection knows no difference.
+#[test]
+fn importance_is_radiance_without_its_scale() {
+    let glass = Dielectric::new(Ggx::new(0.3).unwrap(), 1.5).unwrap();
+    let (v, down, up) = (direction(0.5, 0.0), direction(2.8, 3.1), direction(0.4, 2.9));
+    for (v, scale) in [(v, 1.0 / 2.25), (-v, 2.25)] {
+        let side = v.z.signum();
+        let f = |l: Vec3, transport| glass.eval(v, side * l, transport)[0];
+        assert_eq!(f(up, RADIANCE), f(up, Transport::Importance));
+        let (radiance, importance) = (f(down, RADIANCE), f(down, Transport::Importance));
+        assert!(importance > 0.0 && (radiance / importance / scale - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn indices_and_reflectances_outside_their_range_are_refused_by_name() {
+    let lobe = Ggx::new(0.3).unwrap();
+    for eta in [0.0, -1.5, 1e-4, 2e3, f64::NAN, f64::INFINITY] {
+        let why = Dielectric::new(lobe, eta).unwrap_err();
+        assert!(matches!(why, BindError::Index { name: "eta", .. }), "{why:?}");
+        let text = why.to_string();
+        assert!(text.contains(&format!("eta = {eta}")) && text.contains("[0.001, 1000]"), "{text}");
+        let plastic = plastic(lobe, eta, [0.5]);
+        assert!(matches!(plastic.unwrap_err(), BindError::Index { .. }));
+    }
+    let why = ConductorFresnel::exact([0.2; 3], [3.0, -0.5, 3.0]).unwrap_err().to_string();
+    assert!(why.contains("k = -0.5"), "{why}");
+    for value in [-0.1, 1.1, f32::NAN] {
+        assert!(ConductorFresnel::schlick([0.5, value, 0.5]).is_err());
+        let why = plastic(Smooth, 1.5, [0.5, value]).unwrap_err().to_string();
+        assert!(why.contains("base = ") && why.contains("[0, 1]"), "{why}");
+    }
+}
+
+fn plastic<L: MicrofacetDistribution, const N: usize>(
+    lobe: L,
+    eta: f64,
+    base: [f32; N],
+) -> Result<Plastic<L, N>, BindError> {
+    Plastic::new(lobe, eta, base, &Tables::embedded(), Compensation::None, StandIn::Refused)
+}
+
+/// Nothing happens to light where nothing changes.
+#[test]
+fn an_index_of_one_lets_all_light_straight_on() {
+    for eta in [1.0, 1.0 + 5e-6, 1.0 - 5e-6] {
+        let air = Dielectric::new(Ggx::new(0.5).unwrap(), eta).unwrap();
+        assert!(Bsdf::<3>::is_delta(&air));
+        for v in [direction(0.7, 1.0), direction(2.0, -1.0), Vec3::Z, direction(1.57, 0.0)] {
+            for choice in [0.0, 0.3, 1.0] {
+                let sample = air.sample(v, choice, [0.3, 0.6], RADIANCE).unwrap();
+                assert!((sample.l + v).length() < 1e-6 && sample.delta);
+                assert_eq!((sample.weight, sample.pdf), ([1.0; 3], 0.0));
+                assert_eq!(sample.event, Event::Transmission);
+            }
+            assert_eq!(air.eval_pdf(v, -v, RADIANCE), ([0.0; 3], 0.0));
+        }
+    }
+    // Just beyond it is a rough interface again.
+    let thin = Dielectric::new(Ggx::new(0.5).unwrap(), 1.000_02).unwrap();
+    assert!(!Bsdf::<3>::is_delta(&thin));
+}
+
+#[test]
+fn smooth_lobes_are_deltas() {
+    let tables = Tables::embedded();
+    let narrow: Lobe = tables.student_t(1e-8, 3.0).unwrap().into();
+    let v = direction(0.6, 0.4);
+    let mirrored = Vec3::new(-v.x, -v.y, v.z);
+    for lobe in [Smooth.into(), narrow] {
+        let gold: Conductor<Lobe> = Conductor::new(lobe.clone(), Metal::Gold);
+        let gold = gold.compensated(&tables, Compensation::KullaConty, StandIn::Refused).unwrap();
+        let sample = gold.sample(v, 0.5, [0.2, 0.9], RADIANCE).unwrap();
+        assert!(gold.is_delta() && sample.delta && sample.pdf == 0.0 && sample.l == mirrored);
+        assert_eq!(sample.weight, gold.fresnel().at(v.z));
+        assert_eq!(gold.eval_pdf(v, mirrored, RADIANCE), ([0.0; 3], 0.0));
+        assert!(gold.sample(-v, 0.5, [0.2, 0.9], RADIANCE).is_none());
+
+        // No tables are needed for what loses nothing.
+        let glass = Dielectric::new(lobe.clone(), 1.5).unwrap();
+        let glass = glass.compensated(&tables, Compensation::Turquin, StandIn::Refused).unwrap();
+        let reflected = walter_fresnel(1.5, v.z.into()) as f32;
+        for (choice, event) in
+            [(0.99 * reflected, Event::Reflection), (1.01 * reflected, Event::Transmission)]
+        {
+            let sample = glass.sample(v, choice, [0.2, 0.9], RADIANCE).unwrap();
+            assert!(sample.delta && sample.pdf == 0.0 && sample.event == event);
+            let weight = if event == Event::Reflection { 1.0 } else { 1.0 / 2.25 };
+            assert!((sample.weight[0] - weight).abs() < 1e-6, "{sample:?}");
+            if event == Event::Transmission {
+                assert!((1.5 * sample.l + v).truncate().length() < 1e-6 && sample.l.z < 0.0);
+            } else {
+                assert_eq!(sample.l, mirrored);
+            }
+        }
+        // Total reflection, from inside.
+        let inside = direction(2.0, 0.0);
+        let sample = glass.sample(inside, 0.999, [0.5; 2], RADIANCE).unwrap();
+        assert_eq!((sample.event, sample.weight), (Event::Reflection, [1.0; 3]));
+
+        let paint = plastic(lobe, 1.5, [0.2, 0.5]).unwrap();
+        assert!(!paint.is_delta());
+        let coat = paint.sample(v, 0.0, [0.2, 0.9], RADIANCE).unwrap();
+        assert!(coat.delta && coat.pdf == 0.0 && coat.l == mirrored);
+        let base = paint.sample(v, 1.0, [0.2, 0.9], RADIANCE).unwrap();
+        assert!(!base.delta && base.pdf == paint.pdf(v, base.l) && base.pdf > 0.0);
+        assert!(base.weight[0] < base.weight[1]);
+    }
+}
+
+/// Smooth white plastic returns all light.
+#[test]
+fn smooth_white_plastic_returns_all_light() {
+    for eta in [1.05, 1.5, 3.0, 1.0 / 1.5] {
+        let white = plastic(Smooth, eta, [1.0]).unwrap();
+        for cos in [0.02_f32, 0.3, 1.0] {
+            let v = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+            // The weight of either part is all that returns, times its share over its probability.
+            let coat = walter_fresnel(f64::from(eta as f32), cos.into());
+            let n = 4000;
+            let base: f64 = (0..n)
+                .map(|i| {
+                    let mu = (f64::from(i) + 0.5) / f64::from(n);
+                    let l = Vec3::new((1.0 - mu * mu).sqrt() as f32, 0.0, mu as f32);
+                    let [f] = white.eval(v, l, RADIANCE);
+                    2.0 * std::f64::consts::PI * f64::from(f) * mu / f64::from(n)
+                })
+                .sum();
+            assert!((coat + base - 1.0).abs() < 2e-4, "{eta} {cos}: {coat} + {base}");
+        }
+    }
+}
+
+#[test]
+fn conductors_and_plastics_are_black_from_below_and_all_is_for_directions_in_the_surface() {
+    let lobe = Ggx::new(0.4).unwrap();
+    let gold: Conductor<_> = Conductor::new(lobe, Metal::Gold);
+    let paint = plastic(Smooth, 1.5, [0.5; 3]).unwrap();
+    let glass = Dielectric::new(lobe, 1.5).unwrap();
+    let (above, below) = (direction(0.5, 0.3), direction(2.5, 0.3));
+    let u = [0.4, 0.7];
+    for (v, l) in [(below, above), (above, below), (below, below)] {
+        assert_eq!(gold.eval_pdf(v, l, RADIANCE), ([0.0; 3], 0.0));
+        assert_eq!(paint.eval_pdf(v, l, RADIANCE), ([0.0; 3], 0.0));
+    }
+    assert!(gold.sample(below, 0.5, u, RADIANCE).is_none());
+    assert!(paint.sample(below, 0.5, u, RADIANCE).is_none());
+    for flat in [Vec3::X, Vec3::new(1.0, 0.0, -0.0), Vec3::NAN, Vec3::new(0.6, 0.0, f32::NAN)] {
+        assert!(gold.sample(flat, 0.5, u, RADIANCE).is_none());
+        assert!(paint.sample(flat, 0.5, u, RADIANCE).is_none());
+        assert!(glass.sample(flat, 0.5, u, RADIANCE).is_none());
+        for (v, l) in [(flat, above), (above, flat), (below, flat)] {
+            assert_eq!(gold.eval_pdf(v, l, RADIANCE), ([0.0; 3], 0.0));
+            assert_eq!(paint.eval_pdf(v, l, RADIANCE), ([0.0; 3], 0.0));
+            assert_eq!(glass.eval_pdf(v, l, RADIANCE), ([0.0; 3], 0.0));
+        }
+    }
+}
+
+/// Numbers outside [0, 1] are those of the nearer end, and NaN is 0.
+#[test]
+fn random_numbers_are_clamped() {
+    let glass = Dielectric::new(Ggx::new(0.4).unwrap(), 1.5).unwrap();
+    let v = direction(0.7, 0.2);
+    let draw = |choice, u| Bsdf::<3>::sample(&glass, v, choice, u, RADIANCE);
+    assert_eq!(draw(f32::NAN, [0.3; 2]), draw(0.0, [0.3; 2]));
+    assert_eq!(draw(-1.0, [0.3; 2]), draw(0.0, [0.3; 2]));
+    assert_eq!(draw(7.0, [f32::NAN, 0.2]), draw(1.0, [0.0, 0.2]));
+    assert_eq!(draw(1.0, [2.0, -0.5]), draw(1.0, [1.0, 0.0]));
+}
+
+/// 1 + F0 (1 − E)/E on the lobe of a conductor; with F0 = 1 all that is lost.
+#[test]
+fn turquin_scales_the_lobe() {
+    let tables = Tables::embedded();
+    let lobe = tables.student_t(0.9, 3.0).unwrap();
+    let fresnel = ConductorFresnel::schlick([0.2, 0.6, 1.0]).unwrap();
+    let bare = Conductor::new(lobe.clone(), fresnel);
+    let scaled = bare.clone().compensated(&tables, Compensation::Turquin, StandIn::Refused);
+    let scaled = scaled.unwrap();
+    let albedo = tables.albedo(0.9, 3.0, Masking::HeightCorrelated).unwrap();
+    for (v, l) in [(direction(0.3, 0.0), direction(0.6, 2.0)), (direction(1.4, 1.0), Vec3::Z)] {
+        let e = albedo.albedo(v);
+        assert!(e < 0.95);
+        let (f, g) = (bare.eval(v, l, RADIANCE), scaled.eval(v, l, RADIANCE));
+        for (i, f0) in [0.2, 0.6, 1.0].into_iter().enumerate() {
+            let want = f[i] * (1.0 + f0 * (1.0 - e) / e);
+            assert!((g[i] / want - 1.0).abs() < 1e-6, "{} for {want}", g[i]);
+        }
+        assert_eq!(bare.pdf(v, l), scaled.pdf(v, l));
+    }
+}
+
+#[test]
+fn what_tables_lack_is_said_with_the_lines_that_add_it() {
+    let tables = Tables::embedded();
+    let brushed = tables.student_t([0.4, 0.1], 3.0).unwrap();
+    let gold: Conductor<_> = Conductor::new(brushed, Metal::Gold);
+    let refused =
+        gold.clone().compensated(&tables, Compensation::KullaConty, StandIn::Refused).unwrap_err();
+    let text = refused.to_string();
+    assert!(matches!(refused, BindError::NoAlbedo { stand_in: true, .. }));
+    assert!(text.contains("sigma = [0.4, 0.1]") && text.contains("StandIn::Round"), "{text}");
+    // Without compensation none is needed, and the round lobe may stand in.
+    gold.clone().compensated(&tables, Compensation::None, StandIn::Refused).unwrap();
+    let gold = gold.compensated(&tables, Compensation::KullaConty, StandIn::Round).unwrap();
+    let v = direction(0.4, 0.0);
+    assert!(gold.pdf(v, direction(1.5, 2.0)) > 0.0);
+
+    let tilted = tables.ellipsoid(Skew::new([0.4, 0.1], [0.2, 0.1, 0.5]).unwrap(), 3.0).unwrap();
+    let gold: Conductor<_> = Conductor::new(tilted, Metal::Gold);
+    let why = gold.clone().compensated(&tables, Compensation::Turquin, StandIn::Refused);
+    assert!(matches!(why, Err(BindError::NoAlbedo { stand_in: true, .. })));
+    gold.compensated(&tables, Compensation::Turquin, StandIn::Round).unwrap();
+
+    // The default set has no dielectrics.
+    let glass = Dielectric::new(tables.student_t(0.3, 3.0).unwrap(), 1.5).unwrap();
+    let why = glass.compensated(&tables, Compensation::KullaConty, StandIn::Refused).unwrap_err();
+    assert!(matches!(why, BindError::NoAlbedo { stand_in: false, .. }));
+    assert!(why.to_string().contains("1.5"), "{why}");
+    assert!(plastic(tables.student_t(0.3, 3.0).unwrap(), 1.5, [0.5]).is_err());
+
+    // A lobe of one's own has a name in no table.
+    struct Own(Ggx);
+    impl MicrofacetDistribution for Own {
+        fn d(&self, m: Vec3) -> f32 {
+            self.0.d(m)
+        }
+        fn g1(&self, v: Vec3) -> f32 {
+            self.0.g1(v)
+        }
+        fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+            self.0.sample_visible_normal(v, u)
+        }
+        fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+            self.0.visible_normal_pdf(v, m)
+        }
+        fn is_effectively_smooth(&self) -> bool {
+            false
+        }
+        fn bytes(&self) -> usize {
+            0
+        }
+    }
+    let own = || Own(Ggx::new(0.3).unwrap());
+    let gold: Conductor<_> = Conductor::new(own(), Metal::Gold);
+    let known: Conductor<_> = Conductor::new(own().0, Metal::Gold);
+    let l = direction(0.5, 2.0);
+    let (f, g) = (gold.eval(v, l, RADIANCE), known.eval(v, l, RADIANCE));
+    assert!((f[0] / g[0] - 1.0).abs() < 1e-5);
+    let why = gold.compensated(&tables, Compensation::KullaConty, StandIn::Round);
+    assert!(matches!(why, Err(BindError::NoAlbedo { stand_in: false, .. })));
+}
+
+#[test]
+fn names_that_the_set_does_not_have_are_refused() {
+    let why = Tables::embedded().bsdf("gold", Compensation::None, StandIn::Refused).unwrap_err();
+    assert!(matches!(why, BindError::Material(MaterialError::NoSuchMaterial { .. })), "{why:?}");
+}

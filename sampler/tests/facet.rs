@@ -1,0 +1,80 @@
+//! A facet is what the separate functions of its lobe say, whatever the length of the normal.
+
+use glam::Vec3;
+use microfacet_sampler::{Facet, Ggx, Masking, MicrofacetDistribution, Skew, Tables};
+
+const COSINES: [f32; 6] = [1.0, 0.9, 0.4, 0.05, 1e-3, 1e-6];
+
+fn directions() -> impl Iterator<Item = Vec3> {
+    COSINES.into_iter().enumerate().map(|(i, z)| {
+        let (y, x) = (0.7 + 2.1 * i as f32).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        Vec3::new(r * x, r * y, z)
+    })
+}
+
+fn check(name: &str, lobe: &impl MicrofacetDistribution) {
+    for v in directions() {
+        for l in directions() {
+            let half = v + l;
+            let m = half.normalize();
+            for masking in Masking::ALL {
+                let facet = lobe.facet(v, half, l, masking);
+                let pdf = f64::from(lobe.visible_normal_pdf(v, m));
+                let facing = f64::from(v.dot(m));
+                let got = f64::from(facet.density) * facing;
+                // As D's, and where the rounding of the half vector's length counts.
+                let tolerance = 4e-6 * (1.0 + f64::from(lobe.d(m)).max(1e-38).ln().abs());
+                let lost = facet.density == f32::MAX || pdf < 1e-35;
+                assert!(
+                    (got - pdf).abs() <= tolerance * pdf || lost,
+                    "{name} {v} {l}: {got} for {pdf}"
+                );
+                let weight = lobe.reflection_weight(v, l, masking);
+                assert!(
+                    (facet.weight - weight).abs() < 1e-6,
+                    "{name} {v} {l} {masking}: {} for {weight}",
+                    facet.weight
+                );
+                // Powers of 2 change no bit of the normal.
+                for length in [0.125, 8.0] {
+                    let scaled = lobe.facet(v, length * half, l, masking);
+                    assert_eq!(scaled, facet, "{name} {v} {l}, length {length}");
+                }
+            }
+        }
+        // Not a number, at the horizon and below it.
+        let below = Vec3::new(0.6, 0.0, -0.8);
+        for (v, m, l) in [(below, Vec3::Z, v), (Vec3::X, Vec3::Z, v), (v, below, v)] {
+            let facet = lobe.facet(v, m, l, Masking::HeightCorrelated);
+            assert_eq!(facet.density * facet.weight, 0.0, "{name} {v} {m} {l}: {facet:?}");
+        }
+        for l in [below, Vec3::Y, Vec3::NAN] {
+            let facet = lobe.facet(v, Vec3::Z, l, Masking::HeightCorrelated);
+            assert_eq!(facet.weight, 0.0, "{name} {v} {l}");
+        }
+        let none = lobe.facet(Vec3::NAN, v, v, Masking::HeightCorrelated);
+        assert_eq!(none, Facet::default(), "{name}");
+    }
+}
+
+#[test]
+fn facets_are_those_of_the_separate_functions() {
+    let tables = Tables::embedded();
+    for sigma in [[0.5, 0.5], [0.02, 0.3], [5.0, 1.0]] {
+        check("ggx", &Ggx::new(sigma).unwrap());
+        for gamma in [1.501, 1.7, 1.8, 2.0, 2.3, 4.0, 40.0, 1e4, f64::INFINITY] {
+            let lobe = tables.student_t(sigma, gamma).unwrap();
+            check(&format!("{sigma:?} {gamma}"), &lobe);
+            check(&format!("bounded {sigma:?} {gamma}"), &lobe.bounded());
+        }
+    }
+    // Upright, tilted, and tilted so far that views lie below the lobe's horizon.
+    for turns in [[0.0; 3], [0.2, -0.1, 0.5], [1.0, 0.0, 0.0]] {
+        let skew = Skew::new([0.3, 0.1], turns).unwrap();
+        for gamma in [1.6, 2.5, f64::INFINITY] {
+            let lobe = tables.ellipsoid(skew, gamma).unwrap();
+            check(&format!("{turns:?} {gamma}"), &lobe);
+        }
+    }
+}
