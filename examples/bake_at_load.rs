@@ -1,7 +1,7 @@
 //! A renderer that bakes when it loads a scene: materials in, tables in memory, no file in between.
 //!
-//! `cargo run --release --example bake_at_load` bakes what the embedded set lacks, an albedo of
-//! brushed gold, joins it with the embedded set, and samples.
+//! `cargo run --release --example bake_at_load` bakes what the embedded set lacks, albedos of
+//! brushed gold and of frosted glass, joins them with the embedded set, and samples the BSDFs.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use microfacet_bake::cache::Cache;
 use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{Settings, Target, bake_with};
-use microfacet_sampler::{Masking, MicrofacetDistribution};
+use microfacet_sampler::{Bsdf, Compensation, StandIn, Transport};
 
 /// The renderer's materials, written as a recipe; `microfacet_bake::scene::load` reads scene files
 /// as well.
@@ -19,12 +19,13 @@ const MATERIALS: &str = r#"
 name = "brushed gold"
 sigma = [0.1, 0.4]
 gamma = 2.5
-fresnel = "mirror"
+fresnel = { metal = "gold" }
 
 [[material]]
 name = "frosted glass"
 sigma = 0.454
 gamma = 3.0
+fresnel = { dielectric = 1.5 }
 "#;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -44,12 +45,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
 
     let tables = baked.set.or_embedded();
-    let gold = tables.material("brushed gold")?;
-    let albedo = tables.material_albedo("brushed gold")?;
     let v = Vec3::new(0.6, 0.0, 0.8);
-    let m = gold.sample_visible_normal(v, [0.3, 0.7]);
-    let l = 2.0 * v.dot(m) * m - v;
-    println!("normal {m}, light {l}, g2 {}", gold.g2(v, l, Masking::HeightCorrelated));
-    println!("of white light this view returns {}", albedo.albedo(v));
+    for name in ["brushed gold", "frosted glass"] {
+        let bsdf = tables.bsdf(name, Compensation::KullaConty, StandIn::Refused)?;
+        let sample = bsdf.sample(v, 0.5, [0.3, 0.7], Transport::Radiance);
+        println!("{name}: {sample:?}");
+        let (f, pdf) = bsdf.eval_pdf(v, Vec3::Z, Transport::Radiance);
+        println!("towards the normal f = {f:?}, density {pdf}");
+    }
     Ok(())
 }

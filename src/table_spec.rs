@@ -6,10 +6,8 @@ use microfacet_sampler::axis::{InverseShape, even_nodes};
 use microfacet_sampler::{Interpolation, Kind, Precision};
 
 pub use crate::quality::{Level, Quality, Resolution};
+pub use microfacet_sampler::internals::GAMMA_MIN;
 
-/// Smallest shape γ that tables cover; for smaller γ almost every visible normal has a slope beyond
-/// any floating-point number.
-pub const GAMMA_MIN: f64 = 1.501;
 /// γ from which the whole visible distribution is tabulated; for smaller γ its heavy part is
 /// peeled.
 pub const GAMMA_WHOLE: f64 = 1.8;

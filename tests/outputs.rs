@@ -245,7 +245,7 @@ fn hundreds_of_materials_stay_readable() {
         assert!(text.contains("for \"brushed 5\", \"brushed 11\", "), "{text}");
     }
     let shown = ok(folder.path(), &["inspect", "out"]);
-    assert!(shown.contains("           and 194 more\n"), "{shown}");
+    assert!(shown.contains("           and 294 more\n"), "{shown}");
     let details = ok(folder.path(), &["inspect", "out", "--details"]);
     assert!(details.contains("           \"brushed 299\": sigma 0.2, gamma 4\n"), "{details}");
 

@@ -9,7 +9,7 @@ use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::Precision;
+use microfacet_sampler::{Lobe, Metal, Precision};
 
 use command::{ok, refused};
 
@@ -39,8 +39,10 @@ fn every_example_of_the_page_bakes() {
         let plan = Plan::new(&scene, Options::default()).unwrap();
         let target = Target::Quality(Quality::Draft, Precision::F32);
         let set = bake(&plan, target).unwrap_or_else(|why| panic!("{why} in\n{recipe}")).set;
-        for material in scene.materials.iter().filter(|material| material.name != "smooth") {
-            assert!(set.material(&material.name).is_ok(), "no {} in the set", material.name);
+        for material in &scene.materials {
+            let lobe = set.material(&material.name);
+            let lobe = lobe.unwrap_or_else(|why| panic!("{}: {why}", material.name));
+            assert_eq!(matches!(lobe, Lobe::Smooth(_)), material.name == "smooth");
         }
         assert_eq!(recipe.contains("fresnel"), set.tables().iter().any(|t| t.kind.is_albedo()));
     }
@@ -58,6 +60,21 @@ fn every_distribution_and_its_parameters_are_on_the_page() {
         }
         let example = format!("distribution = \"{}\"", kind.name());
         assert!(PAGE.contains(&example), "docs/recipe.md: no example {example}");
+    }
+}
+
+/// The table of metals states the numbers that `{ metal = .. }` stands for.
+#[test]
+fn every_metal_and_its_index_are_on_the_page() {
+    let (_, section) = PAGE.split_once("\n### Metals\n").unwrap();
+    let (section, _) = section.split_once("\n## ").unwrap();
+    let rows: Vec<&str> = section.lines().filter(|line| line.starts_with("| `")).collect();
+    assert_eq!(rows.len(), Metal::ALL.len(), "one row for each metal");
+    for (row, metal) in rows.iter().zip(Metal::ALL) {
+        let triple = |x: [f64; 3]| x.map(|x| format!("{x:.3}")).join(", ");
+        let numbers = format!("| `{metal}` | {} | {} | ", triple(metal.eta()), triple(metal.k()));
+        assert!(row.starts_with(&numbers), "docs/recipe.md: {row}\nis not {numbers}");
+        assert!(row.ends_with(&format!("]({}) |", metal.source())), "docs/recipe.md: {row}");
     }
 }
 

@@ -59,7 +59,7 @@ pub(super) struct Args {
 }
 
 /// The forms of masking by name.
-fn parse_masking() -> impl TypedValueParser<Value = Masking> {
+pub(super) fn parse_masking() -> impl TypedValueParser<Value = Masking> {
     PossibleValuesParser::new(Masking::ALL.map(Masking::name))
         .try_map(|name| name.parse::<Masking>())
 }

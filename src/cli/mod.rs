@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand. Only this folder prints or shows progress.
 
 mod bake;
+mod bsdf;
 mod certificate;
 mod convert;
 mod escape;
@@ -67,6 +68,7 @@ enum Command {
     Plan(plan::Args),
     Validate(validate::Args),
     Furnace(furnace::Args),
+    Bsdf(bsdf::Args),
     Inspect(inspect::Args),
     Query(query::Args),
     Sample(sample::Args),
@@ -119,6 +121,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Plan(args) => plan::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Furnace(args) => furnace::run(args),
+        Command::Bsdf(args) => bsdf::run(args),
         Command::Inspect(args) => inspect::run(args),
         Command::Query(args) => query::run(args),
         Command::Sample(args) => sample::run(args),

@@ -3,7 +3,7 @@
 
 use microfacet_sampler::{LobeEntry, Masking, Precision, Reflectance};
 
-use super::{NotCovered, Options, entry, is_listed};
+use super::{NotCovered, Options, entry, is_tabulated};
 use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, SIGMA_MAX};
 use crate::scene::{Format, Interval, Material, Scene};
 use crate::table_spec::{Level, Quality};
@@ -206,7 +206,7 @@ fn wants(
 fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
     let native = material.origin.format == Format::Recipe;
     match options.albedo {
-        _ if !is_listed(material) => Some(AlbedoVerdict::NotNeeded),
+        _ if !is_tabulated(material) => Some(AlbedoVerdict::NotNeeded),
         AlbedoWish::None => Some(AlbedoVerdict::Declined),
         AlbedoWish::Recipes if !native => Some(AlbedoVerdict::Imported),
         AlbedoWish::Recipes if material.fresnel.is_none() => Some(AlbedoVerdict::NotAsked),

@@ -220,7 +220,7 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
 /// The distributions outside the Student-t family, in order and without repetition.
 fn distributions(scene: &Scene) -> Vec<Distribution> {
     let mut all: Vec<Distribution> = Vec::new();
-    for material in scene.materials.iter().filter(|material| is_listed(material)) {
+    for material in scene.materials.iter().filter(|material| is_tabulated(material)) {
         if let Some(distribution) = material.distribution.as_ref().filter(|d| !all.contains(d)) {
             all.push(distribution.clone());
         }
@@ -241,17 +241,25 @@ fn lobe_sigmas(material: &Material) -> [f64; 2] {
     if material.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
 }
 
-/// The materials of a scene as a set lists them.
+/// The materials of a scene as a set lists them: those in use, smooth ones as σ = 0.
 fn entries(scene: &Scene) -> Vec<MaterialEntry> {
-    scene.materials.iter().filter(|material| is_listed(material)).map(entry).collect()
+    let listed = |material: &Material| {
+        let entry = entry(material);
+        if is_rough(material) {
+            return entry;
+        }
+        let smooth = [[0.0; 2]; 2];
+        MaterialEntry { sigma: smooth, distribution: String::new(), theta: None, ..entry }
+    };
+    scene.materials.iter().filter(|material| material.used).map(listed).collect()
 }
 
-/// Whether a set lists the material: if it is in use and rough.
-fn is_listed(material: &Material) -> bool {
+/// Whether tables are baked for the material: if it is in use and rough.
+fn is_tabulated(material: &Material) -> bool {
     material.used && is_rough(material)
 }
 
-/// A material as a set lists it.
+/// A material in the terms of a set.
 fn entry(material: &Material) -> MaterialEntry {
     let pair = |interval: Interval| [interval.min, interval.max];
     let Interval { min, max } = material.gamma;

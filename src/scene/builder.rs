@@ -3,6 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use microfacet_sampler::Metal;
+
 use super::material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
 use super::texture::{self, Channel, Encoding, Textures};
 use super::{Interval, Place, Scene, SceneError, limits};
@@ -43,6 +45,25 @@ pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Fre
             "the conductor has eta = {eta:?} and k = {k:?}; eta must be more than 0 and k at least 0"
         )))
     }
+}
+
+/// Names of metals in pbrt's spectra and Mitsuba's presets; all others are unknown here.
+const METALS: [(&str, Metal); 8] = [
+    ("Ag", Metal::Silver),
+    ("Al", Metal::Aluminium),
+    ("Au", Metal::Gold),
+    ("Cr", Metal::Chromium),
+    ("Cu", Metal::Copper),
+    ("CuZn", Metal::Brass),
+    ("Ni", Metal::Nickel),
+    ("W", Metal::Tungsten),
+];
+
+/// The Fresnel term of a metal by its chemical symbol, if it is known.
+///
+/// The index is that of [`Metal`], of which the renderer's own spectrum is another measurement.
+pub(super) fn metal(symbol: &str) -> Option<Fresnel> {
+    METALS.iter().find(|(known, _)| *known == symbol).map(|&(_, metal)| metal.into())
 }
 
 /// Collects the materials of a scene of one format.

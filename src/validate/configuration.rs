@@ -6,7 +6,7 @@ use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 
 use microfacet_common::shape::gamma_of_s;
-use microfacet_sampler::Tables;
+use microfacet_sampler::{MaterialEntry, Tables};
 
 /// One material seen from one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +94,7 @@ pub(super) fn draw_shape(shapes: &[[f64; 2]], random: &mut impl Rng) -> f64 {
 /// form where a material beside them uses it, or where there is no table at all.
 pub fn shapes(tables: &Tables) -> Vec<[f64; 2]> {
     let mut shapes = tables.shapes();
-    let ggx = tables.provenance().materials.iter().any(|material| material.s == [1.0, 1.0]);
+    let ggx = tables.provenance().materials.iter().any(MaterialEntry::is_ggx);
     let beside = ggx && !shapes.is_empty() && !tables.tabulates(2.0);
     if beside || tables.tables().is_empty() {
         shapes.push([1.0; 2]);

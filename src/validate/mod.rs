@@ -2,6 +2,7 @@
 //! never repair.
 
 pub mod albedo;
+pub mod bsdf;
 pub mod certificate;
 pub mod configuration;
 pub mod furnace;

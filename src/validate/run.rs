@@ -14,7 +14,8 @@ use super::configuration::Configuration;
 use super::pdf_integral;
 use crate::progress::Stage;
 
-/// Probability with which a run of [`USUAL`] configurations rejects a correct set.
+/// Probability with which a run of [`USUAL`] configurations rejects a correct set, or correct
+/// BSDFs.
 pub const LEVEL: f64 = 0.01;
 /// Fewer configurations than this are judged as if they were among so many: a single one would
 /// else reject a correct set for one seed in a hundred, and a rejection found among many would
@@ -26,9 +27,9 @@ pub const PDF_TOLERANCE: f64 = 1e-6;
 /// Options of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Normals drawn for each configuration.
+    /// Normals, or lights of a BSDF, drawn for each configuration.
     pub samples: usize,
-    /// Factor on γ of the model that tables are compared with; other than 1 to see them rejected.
+    /// Factor on γ of what is drawn or compared with; other than 1 to see it rejected.
     pub gamma_factor: f64,
 }
 
@@ -74,8 +75,26 @@ impl Outcome {
     }
 }
 
-/// Normals between two counts of the progress.
-const COUNTED: usize = 4096;
+/// Samples between two counts of the progress.
+pub(super) const COUNTED: usize = 4096;
+
+/// Tests all configurations in parallel; each counts its samples in a stage of the progress
+/// itself.
+pub(super) fn each<C: Sync, R: Send, E: Send>(
+    configurations: &[C],
+    samples: usize,
+    stage: &Stage,
+    one: impl Fn(&C) -> Result<R, E> + Sync,
+) -> Result<Vec<R>, E> {
+    // One more for what does not depend on the number of samples.
+    stage.split(configurations.len() * (1 + samples / COUNTED));
+    let counted = |configuration| {
+        let report = one(configuration);
+        stage.step();
+        report
+    };
+    configurations.par_iter().map(counted).collect()
+}
 
 /// The estimated seconds of a run on the current threads.
 pub fn seconds(configurations: usize, options: Options) -> f64 {
@@ -95,16 +114,9 @@ pub fn run(
     options: Options,
     stage: &Stage,
 ) -> Result<Outcome, MaterialError> {
-    // One more for what does not depend on the number of normals.
-    stage.split(configurations.len() * (1 + options.samples / COUNTED));
-    let mut reports = configurations
-        .par_iter()
-        .map(|configuration| {
-            let report = one(tables, configuration, options, stage);
-            stage.step();
-            report
-        })
-        .collect::<Result<Vec<_>, MaterialError>>()?;
+    let mut reports = each(configurations, options.samples, stage, |configuration| {
+        one(tables, configuration, options, stage)
+    })?;
     reports.sort_by(|a, b| a.normals.p().total_cmp(&b.normals.p()));
     // Two tests a configuration.
     Ok(Outcome { level: sidak(LEVEL, 2 * reports.len().max(USUAL)), reports })

@@ -5,6 +5,7 @@
 //! lies below the horizon or faces away, or a broken monotonicity. Errors of the single-precision
 //! sampler against the model are measured along the way, by region.
 
+mod bsdf;
 mod checks;
 mod corners;
 mod derived;
@@ -130,8 +131,9 @@ pub const ROUGHNESSES: [&str; 2] = ["ordinary", "extreme"];
 /// The result of a stress run, by region.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
-    /// Indexed by position in [`SHAPES`], [`VIEWS`] and [`ROUGHNESSES`].
-    pub regions: [[[Region; ROUGHNESSES.len()]; VIEWS.len()]; SHAPES.len()],
+    /// Indexed by position in [`SHAPES`], [`VIEWS`] and [`ROUGHNESSES`]. Not on the stack, which a
+    /// run of many points on many threads would overflow: it keeps some reports for each halving.
+    pub regions: Box<[[[Region; ROUGHNESSES.len()]; VIEWS.len()]; SHAPES.len()]>,
 }
 
 impl Report {

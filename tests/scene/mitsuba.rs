@@ -1,6 +1,7 @@
 //! Mitsuba 3 scenes.
 
 use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
+use microfacet_sampler::Metal;
 
 use crate::{
     Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
@@ -56,7 +57,7 @@ fn rough_plugins_take_alpha_as_written() {
     let brushed = named(&scene, "brushed");
     assert_eq!(brushed.roughness, anisotropic(0.04, 0.2));
     assert_eq!(brushed.gamma, Interval::point(f64::INFINITY));
-    assert_eq!(brushed.fresnel, None);
+    assert_eq!(brushed.fresnel, Some(Metal::Gold.into()));
     assert_eq!(brushed.origin.place.line, Some(2));
     let glass = named(&scene, "glass");
     assert_eq!(glass.roughness, isotropic(0.1));

@@ -5,6 +5,7 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
+use microfacet_sampler::Metal;
 
 use crate::{
     Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
@@ -59,7 +60,7 @@ fn roughness_is_remapped_and_the_rest_is_ggx() {
     assert_eq!(roughness("window"), Roughness::Smooth);
     assert_eq!(roughness("frame"), anisotropic(0.3, 0.1));
     assert_eq!(named(&scene, "paint").fresnel, Some(Fresnel::Dielectric(1.5)));
-    assert_eq!(named(&scene, "frame").fresnel, None);
+    assert_eq!(named(&scene, "frame").fresnel, Some(Metal::Aluminium.into()));
     assert_eq!(named(&scene, "raw").origin.place.line, Some(13));
 
     let ignored: Vec<_> = scene.ignored.iter().map(|i| (&i.name[..], &i.kind[..])).collect();
@@ -107,6 +108,25 @@ fn layered_materials_have_two_interfaces() {
     assert_eq!(conductor.fresnel, Some(Fresnel::Conductor { eta, k }));
     assert_eq!(skin.roughness, isotropic(0.4));
     assert_eq!(skin.fresnel, Some(Fresnel::Dielectric(1.33)));
+}
+
+#[test]
+fn a_metal_is_named_by_both_of_its_spectra() {
+    let fresnel = |parameters: &str| {
+        load("a.pbrt", &format!("Material \"conductor\" {parameters}")).materials[0].fresnel
+    };
+    let pair = |eta: &str, k: &str| fresnel(&format!("\"spectrum eta\" {eta} \"spectrum k\" {k}"));
+    assert_eq!(pair("\"metal-CuZn-eta\"", "[ \"metal-CuZn-k\" ]"), Some(Metal::Brass.into()));
+    // Not a metal, two metals, the wrong order, spectra of the scene's own, one of them alone.
+    assert_eq!(pair("\"metal-MgO-eta\"", "\"metal-MgO-k\""), None);
+    assert_eq!(pair("\"metal-Au-eta\"", "\"metal-Ag-k\""), None);
+    assert_eq!(pair("\"metal-Au-k\"", "\"metal-Au-eta\""), None);
+    assert_eq!(pair("[ 400 1.2 700 1.1 ]", "[ 400 3 700 4 ]"), None);
+    assert_eq!(fresnel("\"spectrum eta\" \"metal-Au-eta\""), None);
+    assert_eq!(fresnel("\"string eta\" \"metal-Au-eta\" \"string k\" \"metal-Au-k\""), None);
+    let coated = "Material \"coatedconductor\" \"spectrum conductor.eta\" \"metal-Ag-eta\"
+        \"spectrum conductor.k\" \"metal-Ag-k\"";
+    assert_eq!(load("a.pbrt", coated).materials[1].fresnel, Some(Metal::Silver.into()));
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::path::Path;
 use microfacet_bake::scene::{
     self, Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, Scene,
 };
+use microfacet_sampler::Metal;
 use proptest::prelude::*;
 
 use crate::{Folder, anisotropic, assert_refused, isotropic, load, named};
@@ -86,6 +87,19 @@ fn every_form_of_value_is_read() {
 }
 
 #[test]
+fn a_metal_by_name_is_the_conductor_of_its_index() {
+    let fresnel = |metal: &str| {
+        let recipe = entry(&format!("sigma = 0.3\ngamma = 2.0\nfresnel = {{ metal = {metal} }}"));
+        load("r.toml", &recipe).materials[0].fresnel
+    };
+    for metal in Metal::ALL {
+        let (eta, k) = (metal.eta(), metal.k());
+        assert_eq!(fresnel(&format!("\"{metal}\"")), Some(Fresnel::Conductor { eta, k }));
+    }
+    assert_eq!(fresnel("\"aluminum\""), Some(Metal::Aluminium.into()));
+}
+
+#[test]
 fn equal_axes_are_isotropic_and_equal_ranges_are_not() {
     let sigma = |text: &str| {
         let recipe = entry(&format!("sigma = {text}\ngamma = 2.0"));
@@ -121,9 +135,16 @@ fn values_out_of_range_are_refused_with_the_range() {
         case(&format!("sigma = 0.3\ngamma = 2.0\nfresnel = {value}"), place, parts);
     };
     fresnel("{ schlick = 1.5 }", ":5:23", &["schlick = 1.5", "0 to 1"]);
+    let metals = "the metal must be one of gold, silver";
+    fresnel("{ metal = \"glod\" }", ":5:21", &["\"glod\"; did you mean `gold`?", metals]);
+    fresnel("{ metal = \"Gold\" }", ":5:21", &["\"Gold\"; did you mean `gold`?"]);
+    fresnel("{ metal = \"wood\" }", ":5:21", &["no metal is known as \"wood\"; the metal must"]);
+    fresnel("{ metal = 79 }", ":5:21", &["metal = 79 is not a name in quotes", metals]);
     fresnel("{ dielectric = 0 }", ":5:26", &["dielectric = 0", "more than 0"]);
     fresnel("{ dielectric = nan }", ":5:26", &["dielectric", "number"]);
-    fresnel("\"metal\"", ":5:11", &["mirror", "schlick", "conductor", "dielectric"]);
+    let forms = ["mirror", "schlick", "{ metal = \"gold\" }", "conductor", "dielectric"];
+    fresnel("\"gold\"", ":5:11", &forms);
+    fresnel("{ metal = \"gold\", dielectric = 1.5 }", ":5:11", &forms);
     fresnel("{}", ":5:11", &["mirror", "schlick"]);
     fresnel("{ shlick = 0.04 }", ":5:13", &["shlick", "did you mean `schlick`"]);
     let conductor = |eta: &str, k: &str, place: &str, parts: &[&str]| {

@@ -128,11 +128,7 @@ fn normals(set: &Tables) -> Vec<String> {
     if !lines.is_empty() {
         lines = vec![format!("gamma {}; every sigma", joined(&lines))];
     }
-    // A material outside the family has an s without meaning, and an ellipsoid reads tables.
-    let ggx = |material: &MaterialEntry| {
-        material.s == [1.0; 2] && material.distribution.is_empty() && material.theta.is_none()
-    };
-    if set.provenance().materials.iter().any(ggx) && !set.tabulates(2.0) {
+    if set.provenance().materials.iter().any(MaterialEntry::is_ggx) && !set.tabulates(2.0) {
         lines.push("gamma 2 (GGX) in closed form".into());
     }
     for table in set.tables() {

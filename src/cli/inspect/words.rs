@@ -70,7 +70,9 @@ pub(super) fn precision(precision: Precision) -> &'static str {
 /// A material of the recipe.
 pub(super) fn material(entry: &MaterialEntry) -> String {
     let mut parts = Vec::new();
-    if entry.distribution.is_empty() {
+    if entry.is_smooth() {
+        parts.push("smooth".into());
+    } else if entry.distribution.is_empty() {
         let [x, y] = entry.sigma.map(range);
         parts.push(if x == y { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
         parts.push(format!("gamma {}", gammas(entry.s)));

@@ -1,7 +1,7 @@
 //! The lobes of Mitsuba's BSDF plugins.
 
 use super::{Reader, find};
-use crate::scene::builder::{BECKMANN, GGX, Lobe, conductor, dielectric};
+use crate::scene::builder::{BECKMANN, GGX, Lobe, conductor, dielectric, metal};
 use crate::scene::error::did_you_mean;
 use crate::scene::texture::{Channel, Encoding};
 use crate::scene::xml::Element;
@@ -265,7 +265,7 @@ fn fresnel(bsdf: &Element, class: &str) -> Result<Option<Fresnel>, SceneError> {
         let rgb = |name| bsdf.child_named(name).filter(|p| p.tag == "rgb").and_then(rgb);
         return match (rgb("eta"), rgb("k")) {
             (Some(eta), Some(k)) => conductor(eta, k, &bsdf.place).map(Some),
-            _ => Ok(None),
+            _ => Ok(material.and_then(metal)),
         };
     }
     let inside = if class.ends_with("plastic") { "polypropylene" } else { "bk7" };

@@ -12,6 +12,8 @@
 //! - `principledthin` has the same reflection lobe, and one for transmission with r (0.65 η − 0.35)
 //!   instead of r; both only if `spec_trans` is not 0.
 //! - `conductor`, `dielectric`, `thindielectric` and `plastic` are smooth.
+//! - A metal's reflectance is read from `rgb` triples `eta` and `k`, or from the preset `material`,
+//!   where [`microfacet_sampler::Metal`] has that metal; `none` is a mirror.
 //! - G2 is uncorrelated (`MicrofacetDistribution::G`).
 //! - `twosided`, `mask`, `bumpmap`, `normalmap` and `blendbsdf` stand for the BSDFs inside them.
 //! - A `bitmap` texture is decoded from sRGB unless it is `raw`; its luminance is used.

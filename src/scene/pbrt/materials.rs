@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::Reader;
 use super::syntax::Parameter;
-use crate::scene::builder::{GGX, Lobe, conductor, dielectric};
+use crate::scene::builder::{GGX, Lobe, conductor, dielectric, metal};
 use crate::scene::error::did_you_mean;
 use crate::scene::texture::{Channel, Encoding};
 use crate::scene::{Fresnel, Interval, Masking, Place, Roughness, SceneError};
@@ -67,6 +67,16 @@ impl Parameter {
         };
         let (r, g, b) = (r.parse().ok()?, g.parse().ok()?, b.parse().ok()?);
         (self.kind == "rgb").then_some([r, g, b])
+    }
+
+    /// The symbol of a metal, if it is a named spectrum such as "metal-Au-eta", which has the `end`
+    /// "-eta".
+    fn metal(&self, end: &str) -> Option<&str> {
+        let [name] = &self.values[..] else {
+            return None;
+        };
+        let symbol = name.strip_prefix("metal-")?.strip_suffix(end)?;
+        (self.kind == "spectrum").then_some(symbol)
     }
 }
 
@@ -231,15 +241,19 @@ impl Reader {
     }
 }
 
-/// The Fresnel term if it is given by a number or a colour, rather than a spectrum or a texture.
+/// The Fresnel term if it is given by a number, a colour or the name of a metal, rather than a
+/// spectrum or a texture.
 fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, SceneError> {
     let parameter = |name: &str| material.parameter(&format!("{prefix}{name}"));
     if material.class == "conductor" || prefix == "conductor." {
-        let rgb = |name| parameter(name).and_then(Parameter::rgb);
-        let (Some(eta), Some(k)) = (rgb("eta"), rgb("k")) else {
+        let (Some(eta), Some(k)) = (parameter("eta"), parameter("k")) else {
             return Ok(None);
         };
-        return conductor(eta, k, &material.place).map(Some);
+        if let (Some(eta), Some(k)) = (eta.rgb(), k.rgb()) {
+            return conductor(eta, k, &material.place).map(Some);
+        }
+        let symbol = eta.metal("-eta").filter(|&symbol| k.metal("-k") == Some(symbol));
+        return Ok(symbol.and_then(metal));
     }
     // The defaults in materials.cpp.
     let default = if material.class == "subsurface" { 1.33 } else { 1.5 };

@@ -10,6 +10,9 @@
 //! - α = √roughness unless `remaproughness` is false. The distribution is Trowbridge-Reitz: γ = 2,
 //!   σ = α. When both α are below 1e-3 the surface is smooth, else both are at least 1e-4.
 //! - G2 is height-correlated.
+//! - A metal's reflectance is read from `rgb` triples `eta` and `k`, or from the named spectra of
+//!   one metal (`"metal-Au-eta"` and `"metal-Au-k"`), for which [`microfacet_sampler::Metal`]
+//!   stands.
 //! - `mix` uses two named materials; `Attribute "material"` gives defaults to the ones that follow.
 //! - A float image texture is read in its first channel, decoded from sRGB if its samples are
 //!   integers and `encoding` is not "linear", and multiplied by `scale`; `invert` makes it 1 minus

@@ -1,13 +1,15 @@
 //! The reflectance of a material, and its form of masking.
 
-use super::{CONDUCTOR_KEYS, FRESNEL_KEYS, Source, Value};
+use microfacet_sampler::{Metal, UnknownMetal};
+
+use super::{CONDUCTOR_KEYS, FRESNEL_KEYS, Source, Value, quoted};
 use crate::scene::error::did_you_mean;
 use crate::scene::{Fresnel, Masking, SceneError};
 
 impl Source<'_> {
     pub(super) fn fresnel(&self, value: &Value<'_>) -> Result<Fresnel, SceneError> {
         let place = self.place(value.span());
-        let forms = "fresnel must be \"mirror\", { schlick = F0 }, \
+        let forms = "fresnel must be \"mirror\", { schlick = F0 }, { metal = \"gold\" }, \
                      { conductor = { eta = [r, g, b], k = [r, g, b] } } or { dielectric = eta }, a number or \
                      { min = .., max = .. }";
         if value.get_ref().as_str() == Some("mirror") {
@@ -30,6 +32,7 @@ impl Source<'_> {
                 )?;
                 Ok(Fresnel::Schlick(f0))
             }
+            "metal" => self.metal(value),
             "dielectric" if value.get_ref().is_table() => {
                 let eta = self.interval(value, "dielectric")?;
                 let valid = eta.min >= 1.0 && eta.min < f64::INFINITY && eta.min < eta.max;
@@ -68,6 +71,20 @@ impl Source<'_> {
                 })
             }
         }
+    }
+
+    fn metal(&self, value: &Value<'_>) -> Result<Fresnel, SceneError> {
+        let invalid = |what: String| self.place(value.span()).invalid(what);
+        let Some(name) = value.get_ref().as_str() else {
+            let text = self.text.get(value.span()).unwrap_or_default();
+            let why = UnknownMetal;
+            return Err(invalid(format!("metal = {text} is not a name in quotes; {why}")));
+        };
+        let metal: Metal = name.parse().map_err(|why: UnknownMetal| {
+            let hint = did_you_mean(name, &Metal::ALL.map(Metal::name));
+            invalid(format!("no metal is known as {}{hint}; {why}", quoted(name)))
+        })?;
+        Ok(metal.into())
     }
 
     fn index(&self, value: &Value<'_>, key: &str) -> Result<f64, SceneError> {

@@ -35,7 +35,7 @@ use super::{Format, Interval, Material, Origin, Place, Scene, SceneError, limits
 const MATERIAL_KEYS: [&str; 8] =
     ["name", "sigma", "gamma", "theta", "degrees", "distribution", "fresnel", "masking"];
 const MEASURED_KEYS: [&str; 2] = ["measured", "degrees"];
-const FRESNEL_KEYS: [&str; 3] = ["schlick", "conductor", "dielectric"];
+const FRESNEL_KEYS: [&str; 4] = ["schlick", "metal", "conductor", "dielectric"];
 const CONDUCTOR_KEYS: [&str; 2] = ["eta", "k"];
 const RANGE_KEYS: [&str; 2] = ["min", "max"];
 

@@ -8,12 +8,15 @@ use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::axis::half_tangent::half_tangent;
 use microfacet_sampler::{Ggx, Lobe, Masking, MaterialError, Skew, Tables};
 
+use super::bsdf::Bsdfs;
 use super::{Point, Report, direction};
 
 /// Four ulp of a unit vector's components.
 pub(super) const ULP4: f64 = 4.0 * f32::EPSILON as f64;
 /// One view in this many also tests the model's inverse CDFs, which cost a hundred lookups.
 const MODEL_EVERY: usize = 8;
+/// One view in this many also tests complete BSDFs.
+const COMPLETE_EVERY: usize = 4;
 /// One view in this many also tests batches, bounded normals, ellipsoids and albedo.
 const DERIVED_EVERY: usize = 4;
 /// The tilt towards the viewer in unit space.
@@ -43,7 +46,9 @@ pub(super) fn check(
     report: &mut Report,
 ) -> Result<(), MaterialError> {
     if gamma == 2.0 {
-        Checker::new(Ggx::new(sigma)?.into(), sigma, gamma, false, report)?.views(&views);
+        let mut checker = Checker::new(Ggx::new(sigma)?.into(), sigma, gamma, false, report)?;
+        checker.views(&views);
+        checker.complete(tables, &views);
     }
     if !tables.tabulates(gamma) {
         return Ok(());
@@ -54,6 +59,7 @@ pub(super) fn check(
     let bounded = tabulated.clone().bounded();
     let mut checker = Checker::new(tabulated.into(), sigma, gamma, rises, report)?;
     checker.views(&views);
+    checker.complete(tables, &views);
     // Any matrix will do, since each is replaced.
     let lobe = tables.ellipsoid(Skew::new([1.0, 1.0], [0.0; 3])?, gamma)?;
     let forms = Masking::ALL;
@@ -86,6 +92,15 @@ impl<'a> Checker<'a> {
     /// σx and σy.
     pub(super) fn sigma(&self) -> [f64; 2] {
         [self.exact.sigma_x(), self.exact.sigma_y()]
+    }
+
+    /// Tests the BSDFs of the lobe at some views.
+    fn complete(&mut self, tables: &Tables, views: &[Vec<Point>]) {
+        let bsdfs = Bsdfs::new(&self.lobe, tables);
+        // Not the views that other derived tests take.
+        for (i, points) in views.iter().enumerate().skip(1).step_by(COMPLETE_EVERY) {
+            self.bsdfs(&bsdfs, points, i);
+        }
     }
 
     fn views(&mut self, views: &[Vec<Point>]) {
