@@ -10,7 +10,7 @@ use crate::rows::{Quantity, Row};
 use crate::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM, lobe};
 use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::tables::{Slices, TABLE};
-use crate::{clock, masking};
+use crate::{clock, conductors, masking};
 
 /// One figure with its limit and its goal; smaller is better.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +27,10 @@ pub(crate) struct Figure {
     pub(crate) reached: Option<f64>,
 }
 
+/// The limit and the goal of a conductor's two calls at a hit, for gamma >= 1.8.
+pub(crate) const CONDUCTOR_MUST: f64 = 1.6;
+pub(crate) const CONDUCTOR_AIM: f64 = 1.3;
+
 /// All figures, from measured rows and the errors of the rational approximation.
 pub(crate) fn figures(
     rows: &[Row],
@@ -39,6 +43,7 @@ pub(crate) fn figures(
     };
     let ratio = |quantity, a, b| Some(ns(quantity, a)? / ns(quantity, b)?);
     let normals = |a, b| ratio(Quantity::Normal, a, b);
+    let conductor = |[rival, table]: [&'static str; 2]| ratio(Quantity::Conductor, table, rival);
     let worst =
         |error: fn(&Approximation) -> f64| approximation.iter().map(error).fold(0.0, f64::max);
     let bytes = lobe(&slices.default, GAMMA).bytes() as f64;
@@ -52,6 +57,20 @@ pub(crate) fn figures(
             2.0,
             1.2,
             ratio(Quantity::G1, TABLE, masking::GGX),
+        ),
+        figure(
+            "conductor, Schlick, table / GGX by hand",
+            "",
+            CONDUCTOR_MUST,
+            CONDUCTOR_AIM,
+            conductor(conductors::SCHLICK),
+        ),
+        figure(
+            "conductor, exact Fresnel, table / GGX by hand",
+            "",
+            CONDUCTOR_MUST,
+            CONDUCTOR_AIM,
+            conductor(conductors::EXACT),
         ),
         figure(
             "sample, table / inversion, any gamma",

@@ -7,6 +7,8 @@
 
 mod cliffs;
 mod clock;
+mod conductors;
+mod densities;
 mod error;
 mod figures;
 mod files;

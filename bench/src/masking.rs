@@ -17,7 +17,7 @@ use crate::tables::Slices;
 /// G1 of directions, as many as the output slice holds.
 pub(crate) type Evaluate<'a> = Box<dyn Fn(&[Vec3], &mut [f32]) + 'a>;
 
-/// One form of G1.
+/// One form of G1, or of D as a function of a normal.
 pub(crate) struct Masking<'a> {
     /// Its name.
     pub(crate) name: String,
@@ -40,19 +40,17 @@ pub(crate) fn each<'a>(one: impl Fn(Vec3) -> f32 + 'a) -> Evaluate<'a> {
     })
 }
 
+/// A form without tables.
+pub(crate) fn form<'a>(name: &str, gamma: f64, evaluate: Evaluate<'a>) -> Masking<'a> {
+    Masking { name: name.into(), gamma, bytes: 0, stored: 0, evaluate }
+}
+
 /// Names that figures refer to.
 pub(crate) const GGX: &str = "GGX, closed form";
 
 /// All forms, over the given tables.
 pub(crate) fn maskings<'a>(slices: &'a Slices) -> Vec<Masking<'a>> {
     let sigma = SIGMA as f32;
-    let form = |name: &str, gamma, evaluate| Masking {
-        name: name.into(),
-        gamma,
-        bytes: 0,
-        stored: 0,
-        evaluate,
-    };
     let (any, four, half) =
         (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA), Lobe::three_and_a_half(SIGMA));
     let rational = Rational::new(SIGMA, GAMMA);

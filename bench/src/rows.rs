@@ -3,10 +3,12 @@
 use glam::Vec3;
 
 use crate::clock;
+use crate::conductors::{Hits, Timed, conductors};
+use crate::densities::{self, densities};
 use crate::error::{self, Error};
 use crate::inputs::Inputs;
 use crate::masking::{Evaluate, Masking, maskings};
-use crate::sampler::{Sampler, samplers};
+use crate::sampler::samplers;
 use crate::settings::Settings;
 use crate::tables::Slices;
 
@@ -17,6 +19,10 @@ pub(crate) enum Quantity {
     Normal,
     /// Smith's G1.
     G1,
+    /// The normal distribution function.
+    D,
+    /// A conductor: a sampled light and the evaluation of another.
+    Conductor,
 }
 
 impl Quantity {
@@ -25,6 +31,8 @@ impl Quantity {
         match self {
             Self::Normal => "normal",
             Self::G1 => "g1",
+            Self::D => "d",
+            Self::Conductor => "conductor",
         }
     }
 }
@@ -38,7 +46,8 @@ pub(crate) struct Row {
     pub(crate) name: String,
     /// Its shape; ∞ is Beckmann.
     pub(crate) gamma: f64,
-    /// Whether it draws all visible normals or evaluates G1, so that its error can be compared.
+    /// Whether it draws all visible normals or evaluates a function, so that its error can be
+    /// compared.
     pub(crate) complete: bool,
     /// Nanoseconds a call.
     pub(crate) ns: f64,
@@ -46,10 +55,10 @@ pub(crate) struct Row {
     pub(crate) bytes: usize,
     /// Bytes of those tables as stored in a file.
     pub(crate) stored: usize,
-    /// Error of the CDFs, or of G1, absolute; `None` for a sampler whose random numbers do not
-    /// correspond to CDFs.
+    /// Error of the CDFs, or of G1, absolute, or of D, relative; `None` for a sampler whose random
+    /// numbers do not correspond to CDFs, and for conductors.
     pub(crate) error: Option<Error>,
-    /// Variance of a white-furnace estimator; `None` for G1.
+    /// Variance of a white-furnace estimator; of samplers alone.
     pub(crate) variance: Option<f64>,
 }
 
@@ -64,39 +73,68 @@ impl Row {
 pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
     let inputs = Inputs::new(settings.seed, settings.calls);
     let (samplers, maskings) = (samplers(slices, settings.seed), maskings(slices));
+    let (densities, seen) = (densities(slices), densities::seen(slices, &inputs));
+    let hits = Hits::new(settings.seed, settings.calls);
+    let (conductors, timed): (Vec<_>, Vec<_>) = conductors(&slices.default, &hits)
+        .into_iter()
+        .map(|Timed { name, gamma, bytes, stored, calls }| ((name, gamma, bytes, stored), calls))
+        .unzip();
     let mut runs: Vec<clock::Calls> =
         samplers.iter().map(|sampler| normals(&sampler.draw, &inputs)).collect();
     runs.extend(maskings.iter().map(|masking| values(&masking.evaluate, &inputs)));
-    let times = clock::medians(&mut runs, settings.rounds, settings.calls);
-    let of_sampler = |(sampler, &ns): (&Sampler, &f64)| Row {
-        quantity: Quantity::Normal,
-        name: sampler.name.clone(),
-        gamma: sampler.gamma,
-        complete: sampler.draws_visible_normals(),
-        ns,
-        bytes: sampler.bytes,
-        stored: sampler.stored,
-        error: error::sampler_error(sampler, &inputs),
-        variance: Some(error::furnace_variance(sampler, &inputs, settings.views, settings.draws)),
-    };
-    let of_masking = |(masking, &ns): (&Masking, &f64)| Row {
-        quantity: Quantity::G1,
+    runs.extend(densities.iter().map(|density| values(&density.evaluate, &seen)));
+    runs.extend(timed);
+    let mut times = clock::medians(&mut runs, settings.rounds, settings.calls).into_iter();
+    let mut next = || times.next().expect("one of each run");
+    let mut all: Vec<Row> = samplers
+        .iter()
+        .map(|sampler| Row {
+            quantity: Quantity::Normal,
+            name: sampler.name.clone(),
+            gamma: sampler.gamma,
+            complete: sampler.draws_visible_normals(),
+            ns: next(),
+            bytes: sampler.bytes,
+            stored: sampler.stored,
+            error: error::sampler_error(sampler, &inputs),
+            variance: Some(error::furnace_variance(
+                sampler,
+                &inputs,
+                settings.views,
+                settings.draws,
+            )),
+        })
+        .collect();
+    let of_function = |masking: &Masking, quantity, ns, error| Row {
+        quantity,
         name: masking.name.clone(),
         gamma: masking.gamma,
         complete: true,
         ns,
         bytes: masking.bytes,
         stored: masking.stored,
-        error: Some(error::masking_error(&masking.evaluate, masking.gamma, &inputs)),
+        error: Some(error),
         variance: None,
     };
-    let (first, second) = times.split_at(samplers.len());
-    samplers
-        .iter()
-        .zip(first)
-        .map(of_sampler)
-        .chain(maskings.iter().zip(second).map(of_masking))
-        .collect()
+    all.extend(maskings.iter().map(|masking| {
+        let error = error::masking_error(&masking.evaluate, masking.gamma, &inputs);
+        of_function(masking, Quantity::G1, next(), error)
+    }));
+    all.extend(densities.iter().map(|density| {
+        of_function(density, Quantity::D, next(), densities::error(density, &seen))
+    }));
+    all.extend(conductors.into_iter().map(|(name, gamma, bytes, stored)| Row {
+        quantity: Quantity::Conductor,
+        name: name.into(),
+        gamma,
+        complete: true,
+        ns: next(),
+        bytes,
+        stored,
+        error: None,
+        variance: None,
+    }));
+    all
 }
 
 /// A sampler as the clock runs it.

@@ -7,9 +7,14 @@ use crate::sweep::Summary;
 
 /// The rows.
 pub(crate) fn table(rows: &[Row]) -> String {
-    let mut text = format!("sigma {}; errors are of the CDFs, or of G1, absolute\n", SIGMA);
-    for quantity in [Quantity::Normal, Quantity::G1] {
-        let title = if quantity == Quantity::Normal { "visible normals" } else { "G1" };
+    let mut text =
+        format!("sigma {}; errors are of the CDFs, or of G1, absolute, or of D, relative\n", SIGMA);
+    for (quantity, title) in [
+        (Quantity::Normal, "visible normals"),
+        (Quantity::G1, "G1"),
+        (Quantity::D, "D"),
+        (Quantity::Conductor, "conductor, sample and eval_pdf"),
+    ] {
         text += &format!(
             "\n{title:42} {:>5} {:>9} {:>8} {:>8} {:>9} {:>9}",
             "gamma", "ns", "bytes", "stored", "max", "rms"

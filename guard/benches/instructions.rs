@@ -7,7 +7,9 @@ use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
 use microfacet_guard::{CALLS, Inputs};
-use microfacet_sampler::{Bounded, Ellipsoid, Ggx, MicrofacetDistribution, StudentT};
+use microfacet_sampler::{
+    Bounded, Bsdf, Conductor, Ellipsoid, Ggx, MicrofacetDistribution, StudentT, Transport,
+};
 
 /// The baseline: instructions per call at this commit. A count 1 % above it fails, which is one
 /// instruction in the short paths.
@@ -37,8 +39,8 @@ fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(175.5))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(222.3))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(183.3))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(229.6))]
 fn sample_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
     inputs.lobe.sample_batch(&inputs.v, &inputs.u, &mut inputs.m).expect("equal lengths");
     black_box(inputs)
@@ -59,7 +61,13 @@ fn g1_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(280.2))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(90.1))]
+fn d(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
+    (black_box(inputs.m.iter().map(|m| black_box(inputs.lobe.d(*m))).sum()), inputs)
+}
+
+#[library_benchmark]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(155.2))]
 fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.visible_normal_pdf(*v, *m))).sum()), inputs)
@@ -74,14 +82,14 @@ fn table_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(304.6))]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(313.6))]
 fn bounded(inputs: Inputs<Bounded>) -> (Vec3, Inputs<Bounded>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (black_box(calls.map(|(v, u)| black_box(inputs.lobe.at(*v).sample(*u))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(295.9))]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(311.3))]
 fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
     let Inputs { lobe, v, u, m, g1 } = &mut inputs;
     lobe.sample_batch(v, u, m, g1).expect("equal lengths");
@@ -89,7 +97,7 @@ fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(198.2))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(187.2))]
 fn ellipsoid_g1(inputs: Inputs<Ellipsoid>) -> (f32, Inputs<Ellipsoid>) {
     (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
 }
@@ -125,6 +133,31 @@ fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
     )
 }
 
+// With Schlick's reflectance and without compensation; the light that is evaluated is another
+// view's.
+
+type Conductors = (Conductor<StudentT>, Inputs<StudentT>);
+
+#[library_benchmark]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(426.7))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(489.1))]
+fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
+    let calls = inputs.v.iter().zip(&inputs.u);
+    let one = |(v, u): (&Vec3, &[f32; 2])| {
+        let path = black_box(conductor.sample(*v, 0.5, *u, Transport::Radiance));
+        path.map_or(0.0, |path| path.pdf)
+    };
+    (black_box(calls.map(one).sum()), (conductor, inputs))
+}
+
+#[library_benchmark]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(257.0))]
+fn conductor_eval_pdf((conductor, inputs): Conductors) -> (f32, Conductors) {
+    let calls = inputs.v.iter().zip(inputs.v.iter().rev());
+    let one = |(v, l): (&Vec3, &Vec3)| black_box(conductor.eval_pdf(*v, *l, Transport::Radiance)).1;
+    (black_box(calls.map(one).sum()), (conductor, inputs))
+}
+
 library_benchmark_group!(
     name = hot,
     benchmarks = [
@@ -132,12 +165,15 @@ library_benchmark_group!(
         sample_batch,
         g1,
         g1_batch,
+        d,
         visible_normal_pdf,
         table_pdf,
         bounded,
         bounded_batch,
         ellipsoid_g1,
         ellipsoid_sample_visible_normal,
+        conductor_sample,
+        conductor_eval_pdf,
         ggx_g1,
         ggx_sample_visible_normal,
     ]

@@ -1,7 +1,9 @@
 //! The inputs for the instruction counts of `benches/instructions.rs`.
 
 use glam::Vec3;
-use microfacet_sampler::{Bounded, Ellipsoid, MicrofacetDistribution, Skew, StudentT, Tables};
+use microfacet_sampler::{
+    Bounded, Conductor, ConductorFresnel, Ellipsoid, MicrofacetDistribution, Skew, StudentT, Tables,
+};
 
 /// Calls of each function; a count divided by it is instructions per call.
 pub const CALLS: usize = 1000;
@@ -49,6 +51,13 @@ impl Inputs<Ellipsoid> {
         });
         Self { lobe, v: v.collect(), u, m, g1 }
     }
+}
+
+/// A conductor with the lobe of [`Inputs::new`] and Schlick's reflectance, and those inputs.
+pub fn conductor(gamma: f64) -> (Conductor<StudentT>, Inputs<StudentT>) {
+    let inputs = Inputs::new(gamma);
+    let fresnel = ConductorFresnel::schlick([0.9, 0.7, 0.3]).expect("reflectances");
+    (Conductor::new(inputs.lobe.clone(), fresnel), inputs)
 }
 
 impl<L: MicrofacetDistribution> Inputs<L> {

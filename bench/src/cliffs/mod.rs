@@ -8,7 +8,7 @@ mod times;
 use microfacet_sampler::Tables;
 
 use self::times::{Times, What, all, peeled, whole};
-use crate::figures::Figure;
+use crate::figures::{CONDUCTOR_AIM, CONDUCTOR_MUST, Figure};
 use crate::settings::Settings;
 use crate::sweep::Summary;
 
@@ -49,6 +49,13 @@ pub(crate) fn figures(set: &Tables, sweep: &[Summary], settings: &Settings) -> V
         ),
         ratio("bounded, drawn once / sample", 1.6, 1.3, times.ratio(Bounded, Sample)),
         ratio("bounded, batch / sample_batch", 1.5, 1.5, times.ratio(BoundedBatch, Batch)),
+        ratio(
+            "conductor, worst gamma >= 1.8 / GGX by hand",
+            CONDUCTOR_MUST,
+            CONDUCTOR_AIM,
+            times.worst(What::Conductor, whole) / times.by_hand,
+        ),
+        ratio("conductor, worst gamma < 1.8 / gamma >= 1.8", 2.0, 1.3, drop(What::Conductor)),
         ratio("table_pdf, worst gamma / visible_normal_pdf", 4.0, 2.0, of_density),
         figure("Ellipsoid g1, worst / common case", 4.0, 2.0, cliff("Ellipsoid::g1")),
         figure(

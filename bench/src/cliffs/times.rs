@@ -7,6 +7,7 @@ use glam::Vec3;
 use microfacet_sampler::{Ggx, MicrofacetDistribution, StudentT, Tables};
 
 use crate::clock::{self, Calls};
+use crate::conductors::{Hits, schlick_fresnel};
 use crate::inputs::Inputs;
 use crate::rivals::ggx;
 use crate::rows::normals;
@@ -30,10 +31,12 @@ pub(super) enum What {
     BoundedBatch,
     Density,
     TableDensity,
+    /// A sampled light and the evaluation of another, of a conductor with Schlick's reflectance.
+    Conductor,
 }
 
 impl What {
-    const ALL: [Self; 9] = [
+    const ALL: [Self; 10] = [
         Self::Sample,
         Self::SampleOfComponents,
         Self::Batch,
@@ -43,6 +46,7 @@ impl What {
         Self::BoundedBatch,
         Self::Density,
         Self::TableDensity,
+        Self::Conductor,
     ];
 }
 
@@ -53,6 +57,7 @@ struct Classes {
     components: [Vec<f32>; 3],
     ends: Inputs,
     down: Inputs,
+    hits: Hits,
 }
 
 impl Classes {
@@ -64,6 +69,7 @@ impl Classes {
             components: [0, 1, 2].map(|axis| random.views.iter().map(|v| v[axis]).collect()),
             ends: Inputs { numbers, ..random.clone() },
             down: Inputs { views, ..random.clone() },
+            hits: Hits::new(settings.seed, settings.calls),
             random,
         }
     }
@@ -96,6 +102,7 @@ impl Classes {
             }
             What::Density => densities(lobe, random, StudentT::visible_normal_pdf),
             What::TableDensity => densities(lobe, random, StudentT::table_pdf),
+            What::Conductor => self.hits.of_lobe(lobe, schlick_fresnel()),
         }
     }
 
@@ -145,6 +152,8 @@ pub(super) struct Times {
     pub(super) caps: [f64; 2],
     /// The closed form of the run-time crate, of the same.
     pub(super) ggx: [f64; 2],
+    /// The conductor of GGX by hand, with Schlick's reflectance.
+    pub(super) by_hand: f64,
     /// Everything of a lobe, by γ.
     lobes: Vec<(f64, What, f64)>,
 }
@@ -160,14 +169,20 @@ impl Times {
             classes.of_components(move |v, u| ggx::single::listed(sigma, v, u)),
             normals(in_a_loop(move |v, u| closed.sample_visible_normal(v, u)), &classes.random),
             classes.of_components(move |v, u| closed.sample_visible_normal(v, u)),
+            classes.hits.by_hand_schlick(),
         ];
         let of_lobes = GAMMAS.iter().flat_map(|&gamma| What::ALL.map(|what| (gamma, what)));
         let of_lobes: Vec<(f64, What)> = of_lobes.collect();
         runs.extend(of_lobes.iter().map(|&(gamma, what)| classes.calls(what, lobe(set, gamma))));
         // There are so many that fewer rounds must suffice.
         let times = clock::medians(&mut runs, settings.rounds.div_ceil(4), settings.calls);
-        let lobes = of_lobes.iter().zip(&times[4..]).map(|(&(gamma, what), &ns)| (gamma, what, ns));
-        Self { caps: [times[0], times[1]], ggx: [times[2], times[3]], lobes: lobes.collect() }
+        let lobes = of_lobes.iter().zip(&times[5..]).map(|(&(gamma, what), &ns)| (gamma, what, ns));
+        Self {
+            caps: [times[0], times[1]],
+            ggx: [times[2], times[3]],
+            by_hand: times[4],
+            lobes: lobes.collect(),
+        }
     }
 
     /// The times of one kind, of the shapes that are asked for.
@@ -217,7 +232,12 @@ mod tests {
         let lobes = [(1.6, 60.0, 40.0), (1.79, 50.0, 200.0), (1.8, 10.0, 30.0), (4.0, 20.0, 20.0)];
         let lobes = lobes.into_iter().chain([(f64::INFINITY, 30.0, 30.0)]);
         let both = |(gamma, a, b)| [(gamma, What::Sample, a), (gamma, What::Bounded, b)];
-        let times = Times { caps: [1.0; 2], ggx: [1.0; 2], lobes: lobes.flat_map(both).collect() };
+        let times = Times {
+            caps: [1.0; 2],
+            ggx: [1.0; 2],
+            by_hand: 1.0,
+            lobes: lobes.flat_map(both).collect(),
+        };
         assert_eq!(times.worst(What::Sample, peeled), 60.0);
         assert_eq!(times.worst(What::Sample, whole), 30.0);
         assert_eq!(times.median(What::Sample, whole), 20.0);

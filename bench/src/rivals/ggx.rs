@@ -1,4 +1,4 @@
-//! GGX, γ = 2: both closed-form samplers of visible normals, and G1.
+//! GGX, γ = 2: both closed-form samplers of visible normals, D and G1.
 //!
 //! In single precision as renderers have them, and in double as the reference for their rounding.
 
@@ -85,4 +85,11 @@ fn turn(u: f64) -> [f64; 2] {
 pub(crate) fn g1(sigma: f32, w: glam::Vec3) -> f32 {
     let (x, y) = (sigma * w.x, sigma * w.y);
     2.0 * w.z / (w.z + (w.z * w.z + x * x + y * y).sqrt())
+}
+
+/// D = 1/(πσ² (cos²θ + sin²θ/σ²)²) (Walter et al. 2007, eq. 33), without its tangent.
+#[inline(always)]
+pub(crate) fn d(sigma: f32, m: glam::Vec3) -> f32 {
+    let b = (sigma * sigma) * (m.z * m.z) + (m.x * m.x + m.y * m.y);
+    (sigma * sigma * std::f32::consts::FRAC_1_PI) / (b * b)
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod beckmann;
 pub(crate) mod bilinear;
+pub(crate) mod conductor;
 pub(crate) mod elementary;
 pub(crate) mod form;
 pub(crate) mod ggx;

@@ -1,0 +1,121 @@
+//! Rough conductors that are compared, without compensation: a path tracer's two calls at a hit, a
+//! sampled light and the evaluation of another that next-event estimation has chosen.
+
+use std::hint::black_box;
+
+use glam::Vec3;
+use microfacet_common::schlick::schlick;
+use microfacet_sampler::{
+    Bsdf, Conductor, ConductorFresnel, Ggx, Metal, MicrofacetDistribution, Tables, Transport,
+};
+
+use crate::clock::Calls;
+use crate::inputs::Inputs;
+use crate::rivals::conductor::GgxConductor;
+use crate::sampler::{lobe, stored};
+use crate::settings::{GAMMA, SIGMA};
+
+/// Reflectance at normal incidence, of Schlick's.
+const F0: [f32; 3] = [0.9, 0.7, 0.3];
+
+/// One conductor.
+pub(crate) struct Timed<'a> {
+    /// Its name.
+    pub(crate) name: &'static str,
+    /// The shape; roughness is [`SIGMA`].
+    pub(crate) gamma: f64,
+    /// Bytes of table that lookups touch.
+    pub(crate) bytes: usize,
+    /// Bytes of those tables as stored in a file.
+    pub(crate) stored: usize,
+    pub(crate) calls: Calls<'a>,
+}
+
+/// Names that figures refer to: the hand-written GGX and the table, with Schlick's reflectance and
+/// with Fresnel's.
+pub(crate) const SCHLICK: [&str; 2] = ["GGX by hand, Schlick", "table, default, Schlick"];
+pub(crate) const EXACT: [&str; 2] = ["GGX by hand, exact Fresnel", "table, default, exact Fresnel"];
+
+/// Views with numbers, and the lights of next-event estimation.
+pub(crate) struct Hits {
+    seen: Inputs,
+    lights: Vec<Vec3>,
+}
+
+impl Hits {
+    pub(crate) fn new(seed: u64, count: usize) -> Self {
+        let lights = Inputs::new(seed.wrapping_add(1), count).views;
+        Self { seen: Inputs::new(seed, count), lights }
+    }
+
+    /// Calls of `one` with a view, a light and a pair of numbers; its results are used as sums,
+    /// which stay in registers: a structure in memory would cost more than it holds.
+    fn calls<'a>(&'a self, one: impl Fn(Vec3, Vec3, [f32; 2]) -> [f32; 4] + 'a) -> Calls<'a> {
+        Box::new(move |at| {
+            let views = &self.seen.views[at.clone()];
+            let hits = views.iter().zip(&self.lights[at.clone()]).zip(&self.seen.numbers[at]);
+            for ((v, l), u) in hits {
+                black_box(one(*v, *l, *u));
+            }
+        })
+    }
+
+    /// A conductor of the sampler crate.
+    pub(crate) fn of_lobe<'a>(
+        &'a self,
+        lobe: impl MicrofacetDistribution + 'a,
+        fresnel: ConductorFresnel,
+    ) -> Calls<'a> {
+        let conductor = Conductor::new(lobe, fresnel);
+        self.calls(move |v, l, u| {
+            let path = conductor.sample(v, 0.5, u, Transport::Radiance);
+            let path = path.map(|path| (path.l, path.weight, path.pdf));
+            used(path, conductor.eval_pdf(v, l, Transport::Radiance))
+        })
+    }
+
+    /// GGX by hand.
+    pub(crate) fn by_hand<'a>(&'a self, fresnel: impl Fn(f32) -> [f32; 3] + 'a) -> Calls<'a> {
+        let rival = GgxConductor::new(SIGMA as f32, fresnel);
+        self.calls(move |v, l, u| used(rival.sample(v, u), rival.eval_pdf(v, l)))
+    }
+
+    /// The same with Schlick's reflectance.
+    pub(crate) fn by_hand_schlick(&self) -> Calls<'_> {
+        self.by_hand(|cos| F0.map(|f0| schlick(f0, 1.0, cos)))
+    }
+}
+
+/// Both results, each number of them.
+#[inline(always)]
+fn used(path: Option<(Vec3, [f32; 3], f32)>, (f, pdf): ([f32; 3], f32)) -> [f32; 4] {
+    let (l, weight, drawn) = path.unwrap_or_default();
+    [weight[0] + f[0], weight[1] + f[1], weight[2] + f[2], pdf + drawn + (l.x + l.y + l.z)]
+}
+
+/// Schlick's reflectance, as every rival has it.
+pub(crate) fn schlick_fresnel() -> ConductorFresnel {
+    ConductorFresnel::schlick(F0).expect("a constant")
+}
+
+/// All conductors: with Schlick's reflectance, which costs little, and with Fresnel's of gold.
+pub(crate) fn conductors<'a>(set: &Tables, hits: &'a Hits) -> Vec<Timed<'a>> {
+    let ggx = || Ggx::new(SIGMA).expect("a constant");
+    let table = || lobe(set, GAMMA);
+    let gold = ConductorFresnel::from(Metal::Gold);
+    let form = |name, gamma, calls| Timed { name, gamma, bytes: 0, stored: 0, calls };
+    let (bytes, stored) = (table().bytes(), stored(set));
+    let of_table = |name, fresnel| Timed {
+        bytes,
+        stored,
+        ..form(name, GAMMA, hits.of_lobe(table(), fresnel))
+    };
+    vec![
+        form(SCHLICK[0], 2.0, hits.by_hand_schlick()),
+        form("Ggx of the sampler crate, Schlick", 2.0, hits.of_lobe(ggx(), schlick_fresnel())),
+        of_table(SCHLICK[1], schlick_fresnel()),
+        form(EXACT[0], 2.0, hits.by_hand(move |cos| gold.at(cos))),
+        form("Ggx of the sampler crate, exact Fresnel", 2.0, hits.of_lobe(ggx(), gold)),
+        of_table(EXACT[1], gold),
+    ]
+}
