@@ -29,7 +29,7 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(178.6))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(304.2))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(305.4))]
 fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
@@ -39,8 +39,8 @@ fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(183.3))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(229.6))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(182.4))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(228.1))]
 fn sample_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
     inputs.lobe.sample_batch(&inputs.v, &inputs.u, &mut inputs.m).expect("equal lengths");
     black_box(inputs)
@@ -61,13 +61,13 @@ fn g1_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(90.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(95.1))]
 fn d(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     (black_box(inputs.m.iter().map(|m| black_box(inputs.lobe.d(*m))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(155.2))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(160.1))]
 fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.visible_normal_pdf(*v, *m))).sum()), inputs)
@@ -75,21 +75,21 @@ fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(883.5))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1057.5))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1059.5))]
 fn table_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.table_pdf(*v, *m))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(313.6))]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(311.6))]
 fn bounded(inputs: Inputs<Bounded>) -> (Vec3, Inputs<Bounded>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (black_box(calls.map(|(v, u)| black_box(inputs.lobe.at(*v).sample(*u))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(311.3))]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(305.2))]
 fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
     let Inputs { lobe, v, u, m, g1 } = &mut inputs;
     lobe.sample_batch(v, u, m, g1).expect("equal lengths");
@@ -97,13 +97,13 @@ fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(187.2))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(189.1))]
 fn ellipsoid_g1(inputs: Inputs<Ellipsoid>) -> (f32, Inputs<Ellipsoid>) {
     (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(697.0))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(696.0))]
 fn ellipsoid_sample_visible_normal(inputs: Inputs<Ellipsoid>) -> (Vec3, Inputs<Ellipsoid>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
@@ -124,7 +124,7 @@ fn ggx_g1(inputs: Inputs<Ggx>) -> (f32, Inputs<Ggx>) {
 }
 
 #[library_benchmark]
-#[bench::closed_form(setup = closed_form, config = at_most(138.1))]
+#[bench::closed_form(setup = closed_form, config = at_most(135.1))]
 fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (
@@ -139,8 +139,8 @@ fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
 type Conductors = (Conductor<StudentT>, Inputs<StudentT>);
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(426.7))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(489.1))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(419.6))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(491.9))]
 fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -151,7 +151,7 @@ fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(257.0))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(253.0))]
 fn conductor_eval_pdf((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(inputs.v.iter().rev());
     let one = |(v, l): (&Vec3, &Vec3)| black_box(conductor.eval_pdf(*v, *l, Transport::Radiance)).1;

@@ -78,3 +78,36 @@ fn facets_are_those_of_the_separate_functions() {
         }
     }
 }
+
+fn check_reflecting(name: &str, lobe: &impl MicrofacetDistribution) {
+    let ends = [0.0, 1e-7, 0.01, 0.3, 0.5, 0.8, 0.999_999, 1.0];
+    for v in directions() {
+        for u in ends.into_iter().flat_map(|a| ends.map(|b| [a, b])) {
+            let (m, share) = lobe.sample_reflecting_normal(v, u);
+            let want = lobe.sample_visible_normal(v, u);
+            assert_eq!(share, 1.0);
+            // The length of what is not normalised is needed as a square.
+            let length2 = m.dot(m);
+            assert!((1e-36..1e36).contains(&length2), "{name} {v} {u:?}: {m}");
+            let unit = m / length2.sqrt();
+            assert!((unit - want).length() < 4e-7, "{name} {v} {u:?}: {unit} for {want}");
+            // On the silhouette rounding decides, and the light would be straight below the view.
+            let facing = v.dot(m) / length2.sqrt();
+            assert!(facing > -5e-7, "{name} {v} {u:?}: {facing}");
+        }
+    }
+}
+
+#[test]
+fn normals_that_reflect_are_the_visible_ones_of_any_length() {
+    let tables = Tables::embedded();
+    for sigma in [[0.5, 0.5], [0.02, 0.3], [1e-8, 1e-8], [1e6, 1e6], [1e-8, 1e6]] {
+        check_reflecting(&format!("ggx {sigma:?}"), &Ggx::new(sigma).unwrap());
+        for gamma in [1.501, 1.8, 2.0, 4.0, f64::INFINITY] {
+            let lobe = tables.student_t(sigma, gamma).unwrap();
+            check_reflecting(&format!("{sigma:?} {gamma}"), &lobe);
+        }
+    }
+    let skew = Skew::new([0.3, 0.1], [0.2, -0.1, 0.5]).unwrap();
+    check_reflecting("tilted", &tables.ellipsoid(skew, 2.5).unwrap());
+}

@@ -87,9 +87,8 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
     }
 
     #[inline(always)]
-    fn facets(&self) -> Facets<'_, L, impl Fn(f32) -> [f32; N]> {
-        let (lobe, masking) = (&self.lobe, self.masking);
-        Facets { lobe, masking, reflectance: |cos| self.fresnel.at(cos) }
+    fn facets(&self) -> Facets<'_, L> {
+        Facets { lobe: &self.lobe, masking: self.masking }
     }
 
     /// One bounce together with what is given back, at a light above the horizon.
@@ -115,7 +114,7 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
             return None;
         }
         let (is_facet, _) = chosen(choice(number), returned.facets(v));
-        let (l, single) = if is_facet {
+        let (l, white) = if is_facet {
             self.facets().draw(v, u)?
         } else {
             let l = returned.broad().sample(u);
@@ -124,6 +123,7 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
             }
             (l, self.facets().halfway(v, l))
         };
+        let single = white.part(self.fresnel.at(white.cos));
         let mixture = self.mixture(returned, v, l, single);
         Some(BsdfSample::reflected(l, mixture.weight(), mixture.pdf()))
     }
@@ -133,7 +133,8 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         if !are_finite(v, l) {
             return ([0.0; N], 0.0);
         }
-        self.mixture(returned, v, l, self.facets().halfway(v, l)).f_pdf(l)
+        let white = self.facets().halfway(v, l);
+        self.mixture(returned, v, l, white.part(self.fresnel.at(white.cos))).f_pdf(l)
     }
 
     fn mirror(&self, v: Vec3) -> BsdfSample<N> {
@@ -159,7 +160,8 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Conductor<L, N> {
         if let Some(returned) = &self.returned {
             return self.sample_mixture(returned, v, choice, u);
         }
-        let (l, Part { weight, pdf }) = self.facets().draw(v, u)?;
+        let (l, white) = self.facets().draw(v, u)?;
+        let Part { weight, pdf } = white.part(self.fresnel.at(white.cos));
         Some(BsdfSample::reflected(l, weight, pdf))
     }
 
@@ -171,8 +173,8 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Conductor<L, N> {
         if let Some(returned) = &self.returned {
             return self.eval_mixture(returned, v, l);
         }
-        let single = self.facets().halfway(v, l);
-        (single.f(l), single.pdf)
+        let white = self.facets().halfway(v, l);
+        (white.f(self.fresnel.at(white.cos), l), white.pdf)
     }
 
     fn is_delta(&self) -> bool {

@@ -10,6 +10,7 @@ use super::broad::Broad;
 use super::compensation::Compensation;
 use super::energy::{Energy, Shares, side};
 use super::error::BindError;
+use super::facets::White;
 use super::interface::{Interface, Refraction, checked};
 use super::mixture::{Mixture, Part, are_finite, choice, chosen};
 use super::{Bsdf, BsdfSample, Event, Transport};
@@ -166,8 +167,9 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         match refraction {
             None => {
                 let facet = self.lobe.facet(v, m, l, self.masking);
-                let part = Part::reflected(facet, 1.0, [factor; N]);
-                Part { pdf: part.pdf * seen.face.reflectance(v.dot(m)), ..part }
+                let white = White::new(facet, 1.0, v.dot(m));
+                let pdf = white.pdf * seen.face.reflectance(white.cos);
+                Part { pdf, ..white.part([factor; N]) }
             }
             Some(Refraction { transmittance, jacobian, .. }) => {
                 // The light as the facet's other side sees it.

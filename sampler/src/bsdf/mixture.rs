@@ -5,7 +5,6 @@ use glam::Vec3;
 use microfacet_common::saturated;
 
 use super::broad::{Broad, cosine_pdf};
-use crate::material::Facet;
 use crate::math::unit;
 
 /// One of the two: a weight f |cos θ_l|/pdf by channel and a density, both of that part alone.
@@ -24,18 +23,6 @@ impl<const N: usize> Part<N> {
     pub(super) fn broad(l: Vec3, broad: &Broad, share: f32, lobe: [f32; N]) -> Self {
         let factor = broad.factor(l);
         Self { weight: lobe.map(|lobe| lobe / factor), pdf: share * factor * cosine_pdf(l) }
-    }
-
-    /// Light reflected off a facet of a reflectance, drawn from a share of the normals that the
-    /// view sees.
-    #[inline(always)]
-    pub(super) fn reflected(facet: Facet, share: f32, reflectance: [f32; N]) -> Self {
-        let scale = facet.weight * share;
-        // The density may be `f32::MAX`, and the share small.
-        Self {
-            weight: reflectance.map(|f| f * scale),
-            pdf: saturated(0.25 * facet.density / share),
-        }
     }
 
     /// f, without the cosine.

@@ -10,7 +10,7 @@ use super::broad::Broad;
 use super::compensation::Compensation;
 use super::energy::{Energy, Shares};
 use super::error::BindError;
-use super::facets::Facets;
+use super::facets::{Facets, White};
 use super::interface::{Interface, checked};
 use super::mixture::{Mixture, Part, are_finite, choice, chosen};
 use super::reflectance::reflectances;
@@ -172,19 +172,24 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         if diffuse > 0.0 { facets / (facets + diffuse) } else { 1.0 }
     }
 
-    /// The coat's facets, with a factor on their reflectance.
+    /// The coat's facets.
     #[inline(always)]
-    fn facets(&self, factor: f32) -> Facets<'_, L, impl Fn(f32) -> [f32; N]> {
-        let face = Interface::new(self.eta, true);
-        let reflectance = move |cos| [face.reflectance(cos) * factor; N];
-        Facets { lobe: &self.lobe, masking: self.masking, reflectance }
+    fn facets(&self) -> Facets<'_, L> {
+        Facets { lobe: &self.lobe, masking: self.masking }
+    }
+
+    /// What the coat reflects of a light, compensation included.
+    #[inline(always)]
+    fn coat(&self, shares: &Shares, white: White) -> Part<N> {
+        let reflectance = Interface::new(self.eta, true).reflectance(white.cos);
+        white.part([reflectance * self.energy.factor(shares); N])
     }
 
     /// The coat's facet halfway between a view and a light.
     #[inline(always)]
     fn halfway(&self, shares: &Shares, v: Vec3, l: Vec3) -> Part<N> {
         // That of a smooth coat is a delta.
-        if self.smooth { Part::NONE } else { self.facets(self.energy.factor(shares)).halfway(v, l) }
+        if self.smooth { Part::NONE } else { self.coat(shares, self.facets().halfway(v, l)) }
     }
 
     /// The base at a light, with what the coat's further bounces reflect.
@@ -229,7 +234,8 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Plastic<L, N> {
             if self.smooth {
                 return Some(BsdfSample::mirrored(v, [shares.reflection / p; N]));
             }
-            self.facets(self.energy.factor(&shares)).draw(v, u)?
+            let (l, white) = self.facets().draw(v, u)?;
+            (l, self.coat(&shares, white))
         } else {
             let l = self.broad.sample(u);
             if !(l.z > 0.0) {

@@ -85,7 +85,7 @@ impl<const N: usize> ConductorFresnel<N> {
                 let at = |i: usize| (schlick::<f32>(f0[i], 1.0, cos) - dip[i] * weight).max(0.0);
                 core::array::from_fn(at)
             }
-            Form::Exact { eta, k } => core::array::from_fn(|i| conductor(eta[i], k[i], cos)),
+            Form::Exact { eta, k } => exact(eta, k, cos),
         }
     }
 
@@ -97,6 +97,12 @@ impl<const N: usize> ConductorFresnel<N> {
             _ => core::array::from_fn(|i| fresnel_average(|cos| self.at(cos)[i])),
         }
     }
+}
+
+/// Out of line, so that the short forms are inlined.
+#[inline(never)]
+fn exact<const N: usize>(eta: &[f32; N], k: &[f32; N], cos: f32) -> [f32; N] {
+    core::array::from_fn(|i| conductor(eta[i], k[i], cos))
 }
 
 /// A metal in vacuum or air.

@@ -176,7 +176,8 @@ impl StudentT {
     fn g1_lanes(&self, w: &[Vec3; LANES]) -> [f32; LANES] {
         let slices = &self.slices;
         let [wx, wy, wz] = transpose(w);
-        let (x, y) = (wx * (slices.kappa * self.sigma_x), wy * (slices.kappa * self.sigma_y));
+        let [kx, ky] = self.kappa_sigma;
+        let (x, y) = (wx * kx, wy * ky);
         let z = wz.fast_max(f32x4::ZERO);
         let across = (x * x + y * y).sqrt();
         let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);

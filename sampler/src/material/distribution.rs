@@ -149,7 +149,12 @@ pub trait MicrofacetDistribution {
         Facet { density, weight: self.reflection_weight(v, l, masking) }
     }
 
-    /// A visible normal for reflection alone, and the [share](Self::reflecting_share) of `v`.
+    /// A visible normal for reflection alone, of any length, and the
+    /// [share](Self::reflecting_share) of `v`.
+    ///
+    /// The light is 2 (v·m)/(m·m) m − v, which is shorter to compute than the unit normal. Where v·m
+    /// is not positive, rounding has put the normal behind the silhouette, and no light is
+    /// reflected.
     ///
     /// Lobes may leave out normals that reflect the view below the horizon, as
     /// [`Bounded`](crate::Bounded) does; all others keep their density, divided by the share.

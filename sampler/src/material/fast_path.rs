@@ -46,9 +46,25 @@ impl StudentT {
         &self,
         view: &View,
         u: [f32; 2],
-        [sx, sy]: [f32; 2],
+        sigma: [f32; 2],
         to_tangent: impl FnOnce(f32x4) -> f32x4,
     ) -> Option<f32x4> {
+        let (m, shrink) = self.draw_along::<HEAVY>(view, u, sigma)?;
+        let m = to_tangent(m);
+        let m = m / sum(m * m).sqrt();
+        let lowest = f32x4::new([-1.0, -1.0, HORIZON, 0.0]);
+        Some(if HEAVY { (m * shrink).fast_max(lowest) } else { m })
+    }
+
+    /// The same before it is taken through `to_tangent` and normalised, of which squares are in
+    /// range, and what is to multiply the normal after that.
+    #[inline(always)]
+    pub(crate) fn draw_along<const HEAVY: bool>(
+        &self,
+        view: &View,
+        u: [f32; 2],
+        [sx, sy]: [f32; 2],
+    ) -> Option<(f32x4, f32x4)> {
         let (slices, fast) = (&self.slices, &self.slices.fast);
         let &View { xy, frame, at, silhouette, .. } = view;
         let (row, between) = split(at);
@@ -111,10 +127,7 @@ impl StudentT {
         }
         // The norm √(z² + s x²).
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
-        let m = to_tangent(pairs_of_firsts(x, z) * ahead + norm * aside);
-        let m = m / sum(m * m).sqrt();
-        let lowest = f32x4::new([-1.0, -1.0, HORIZON, 0.0]);
-        Some(if HEAVY { (m * shrink).fast_max(lowest) } else { m })
+        Some((pairs_of_firsts(x, z) * ahead + norm * aside, shrink))
     }
 }
 

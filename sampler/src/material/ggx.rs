@@ -74,6 +74,23 @@ impl Ggx {
         // The null vector, and views straight from below, have no area: any positive one will do.
         2.0 / (w.z + length).max(f32::MIN_POSITIVE)
     }
+
+    /// A visible normal, of any length, which rounding may have put behind the silhouette: the half
+    /// vector of the stretched view and a point of the cap z > −w.z of the sphere of its length,
+    /// stretched back.
+    #[inline(always)]
+    fn along(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let w = self.stretch(v);
+        let length = sqrt(w.dot(w));
+        let (w, length) = if length >= SHORT { (w, length) } else { (lifted(w, length), 1.0) };
+        // Height of the half vector first, so that it keeps its digits where the cap ends at −w.z.
+        let height = (1.0 - unit(u[0])).max(LAST) * (length + w.z);
+        let z = height - w.z;
+        let radius = sqrt(((length - z) * (length + z)).max(0.0));
+        let [sin, cos] = turn(unit(u[1]));
+        let (x, y) = (w.x + radius * cos, w.y + radius * sin);
+        Vec3::new(self.alpha_x * x, self.alpha_y * y, height)
+    }
 }
 
 impl MicrofacetDistribution for Ggx {
@@ -90,22 +107,10 @@ impl MicrofacetDistribution for Ggx {
         (v.z.max(0.0) * self.inverse_area(v)).min(1.0)
     }
 
-    /// The half vector of the stretched view and a point of the cap z > −w.z of the sphere of its
-    /// length, stretched back.
     // Not inlined, it would find a view in memory that its caller has in registers.
     #[inline(always)]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        let w = self.stretch(v);
-        let length = sqrt(w.dot(w));
-        let (w, length) = if length >= SHORT { (w, length) } else { (lifted(w, length), 1.0) };
-        // Height of the half vector first, so that it keeps its digits where the cap ends at −w.z.
-        let height = (1.0 - unit(u[0])).max(LAST) * (length + w.z);
-        let z = height - w.z;
-        let radius = sqrt(((length - z) * (length + z)).max(0.0));
-        let [sin, cos] = turn(unit(u[1]));
-        let (x, y) = (w.x + radius * cos, w.y + radius * sin);
-        let m = Vec3::new(self.alpha_x * x, self.alpha_y * y, height);
-        face(above_horizon(m), Vec3::new(v.x, v.y, v.z.max(0.0)))
+        face(above_horizon(self.along(v, u)), Vec3::new(v.x, v.y, v.z.max(0.0)))
     }
 
     #[inline]
@@ -120,6 +125,11 @@ impl MicrofacetDistribution for Ggx {
             return Facet::default();
         }
         Facet::of_g1(self.d_of(m, m.dot(m)), v, [self.g1(v), self.g1(l)], masking)
+    }
+
+    #[inline(always)]
+    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        (self.along(v, u), 1.0)
     }
 
     fn key(&self) -> LobeKey {

@@ -5,7 +5,7 @@
 //! nothing at all, and towards Beckmann the logarithm of b/z² = 1 + s r²/z² keeps the digits of a
 //! small s.
 
-use crate::elementary::{exp2_or_zero, log2_growth};
+use crate::elementary::{log2_growth, scaled_power_of_growth};
 
 /// D of one shape.
 #[derive(Clone, Copy, Debug)]
@@ -25,16 +25,15 @@ impl Normals {
         Self { s: s as f32, power: (0.5 - 0.5 / s) as f32 }
     }
 
-    /// √(πσxσy D) of a normal above the horizon from the squares of its horizontal part over σ and
-    /// of its vertical part, over the square of its length: it need not be 1.
+    /// √(πσxσy D) of a normal above the horizon from the squares of its horizontal part over σ, of
+    /// its vertical part, and of its length, which need not be 1.
     ///
     /// A root, since D/(σxσy) may be in range where the factors of it are not.
     #[inline(always)]
-    pub(crate) fn root(&self, r2: f32, z2: f32) -> f32 {
+    pub(crate) fn root(&self, r2: f32, z2: f32, length2: f32) -> f32 {
         let part = self.s * r2;
-        // It need not wait for the power.
-        let inverse = 1.0 / (z2 + part).max(f32::MIN_POSITIVE);
-        exp2_or_zero(log2_growth(z2, part) * self.power) * inverse
+        let scale = length2 / (z2 + part).max(f32::MIN_POSITIVE);
+        scaled_power_of_growth(z2, part, self.power, scale)
     }
 
     /// log₂(1 + s x²)/s of a squared unit slope, x² log₂ e in the limit s = 0.

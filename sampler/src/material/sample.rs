@@ -29,6 +29,16 @@ impl StudentT {
         m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three)
     }
 
+    /// The same, of any length where that is faster; squares of it are in range.
+    #[inline(always)]
+    pub(crate) fn sample_along(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        if !self.slices.fast.plain {
+            return self.sample_heavy(v.x, v.y, v.z, u);
+        }
+        let m = self.draw_along::<false>(&self.view::<false>(v), u, [self.sigma_x, self.sigma_y]);
+        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), |(m, _)| first_three(m))
+    }
+
     /// The same for a lobe with a heavy part, out of line so that calls of the others stay short.
     #[inline(never)]
     fn sample_heavy(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
@@ -106,20 +116,37 @@ pub(crate) fn first_three(m: f32x4) -> Vec3 {
 #[inline(always)]
 pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
     let facing = v.dot(m);
-    if facing < 0.0 { turned_back(m, v, facing) } else { m }
+    if facing < 0.0 {
+        let (a, b) = turned_back(m, v, facing);
+        raised(a * m + b * v)
+    } else {
+        m
+    }
 }
 
-/// Out of line: in a caller's loop the compiler would else work it out for every normal.
+/// Parts of a normal and of a view whose sum is the normal on the silhouette.
+///
+/// Out of line: in a caller's loop the compiler would else work it out for every normal. Two
+/// numbers, since a vector of three is returned in integer registers, and both ways would meet
+/// there.
 #[cold]
 #[inline(never)]
-fn turned_back(m: Vec3, v: Vec3, facing: f32) -> Vec3 {
+fn turned_back(m: Vec3, v: Vec3, facing: f32) -> (f32, f32) {
     // A view taken at the horizon is shorter than 1, and may be almost nothing.
-    above_horizon(m - facing / v.dot(v).max(f32::MIN_POSITIVE) * v)
+    let part = facing / v.dot(v).max(f32::MIN_POSITIVE);
+    let turned = m - part * v;
+    let inverse = 1.0 / sqrt(turned.dot(turned));
+    (inverse, -part * inverse)
 }
 
 /// Normalises a normal and raises it to the smallest cosine where it is lower.
 #[inline(always)]
 pub(crate) fn above_horizon(m: Vec3) -> Vec3 {
-    let m = m * (1.0 / sqrt(m.dot(m)));
+    raised(m * (1.0 / sqrt(m.dot(m))))
+}
+
+/// With the smallest cosine where it is lower.
+#[inline(always)]
+fn raised(m: Vec3) -> Vec3 {
     Vec3::new(m.x, m.y, m.z.max(HORIZON))
 }

@@ -38,6 +38,8 @@ pub struct StudentT {
     inverse_sigma: [f32; 2],
     /// 1/(πσxσy).
     scale: f32,
+    /// κσx and κσy, of G1's coordinate.
+    pub(crate) kappa_sigma: [f32; 2],
 }
 
 /// A direction stretched by (σx, σy, 1), with its azimuth in unit space.
@@ -103,6 +105,7 @@ impl StudentT {
             sigma_y,
             gamma,
             s: s as f32,
+            kappa_sigma: [slices.kappa * sigma_x, slices.kappa * sigma_y],
             slices,
             normals: Normals::new(s),
             inverse_sigma: [1.0 / sigma_x, 1.0 / sigma_y],
@@ -179,8 +182,8 @@ impl StudentT {
     /// square of its length before that; `scale` is 1/(πσxσy).
     #[inline(always)]
     pub(crate) fn d_of_unit(&self, m: Vec3, length2: f32, scale: f32) -> f32 {
-        let root = self.normals.root(m.x * m.x + m.y * m.y, m.z * m.z) * length2;
-        saturated(scale * root * root)
+        let root = self.normals.root(m.x * m.x + m.y * m.y, m.z * m.z, length2);
+        saturated((scale * root) * root)
     }
 
     /// D of a normal above the horizon, by its direction and the square of its length.
@@ -196,9 +199,8 @@ impl StudentT {
     fn g1_of_both(&self, v: Vec3, l: Vec3) -> [f32; 2] {
         let slices = &self.slices;
         // In turns [v, l, v, l], so that no lane has to be set to zero.
-        let scale =
-            f32x4::new([self.sigma_x, self.sigma_x, self.sigma_y, self.sigma_y]) * slices.kappa;
-        let xy = f32x4::new([v.x, l.x, v.y, l.y]) * scale;
+        let [kx, ky] = self.kappa_sigma;
+        let xy = f32x4::new([v.x, l.x, v.y, l.y]) * f32x4::new([kx, kx, ky, ky]);
         let squares = xy * xy;
         let z = f32x4::new([v.z, l.z, v.z, l.z]).fast_max(f32x4::ZERO);
         let across = (squares + swap_halves(squares)).sqrt();
@@ -209,8 +211,8 @@ impl StudentT {
             return g1_of_nan();
         };
         // c₀ and c₁ of both, then c₂ and c₃.
-        let low = f32x4::new([a[0], b[0], a[1], b[1]]);
-        let high = f32x4::new([a[2], b[2], a[3], b[3]]);
+        let (a, b) = (f32x4::new(*a), f32x4::new(*b));
+        let (low, high) = (a.unpack_lo(b), a.unpack_hi(b));
         let ([wa, wb, ..], square) = (w.to_array(), w * w);
         let terms = (low + square * high) * f32x4::new([1.0, 1.0, wa, wb]);
         let [g1_v, g1_l, ..] = (q * (terms + swap_halves(terms))).fast_min(f32x4::ONE).to_array();
@@ -244,9 +246,8 @@ impl MicrofacetDistribution for StudentT {
         // root of all lanes, none of which is set to zero, with NaN handled out of line, 0.3; 3.1
         // are left.
         let slices = &self.slices;
-        let scale =
-            f32x4::new([slices.kappa * self.sigma_x, slices.kappa * self.sigma_y, 0.0, 0.0]);
-        let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * scale;
+        let [kx, ky] = self.kappa_sigma;
+        let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * f32x4::new([kx, ky, 0.0, 0.0]);
         let squares = xy * xy;
         let z = f32x4::new([v.z, 0.0, 0.0, 0.0]).fast_max(f32x4::ZERO);
         let across = (squares + swap_pairs(squares)).sqrt();
@@ -288,6 +289,11 @@ impl MicrofacetDistribution for StudentT {
             return Facet::default();
         }
         Facet::of_g1(self.d_of(m, m.dot(m)), v, self.g1_of_both(v, l), masking)
+    }
+
+    #[inline(always)]
+    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        (self.sample_along(v, u), 1.0)
     }
 
     /// The density with which the sampler draws `m`, the Jacobian of its own map.
