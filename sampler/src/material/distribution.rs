@@ -152,8 +152,8 @@ pub trait MicrofacetDistribution {
     /// A visible normal for reflection alone, of any length, and the
     /// [share](Self::reflecting_share) of `v`.
     ///
-    /// The light is 2 (v·m)/(m·m) m − v, which is shorter to compute than the unit normal. Where v·m
-    /// is not positive, rounding has put the normal behind the silhouette, and no light is
+    /// The light is 2 (v·m)/(m·m) m − v, which is shorter to compute than the unit normal. Where
+    /// v·m is not positive, rounding has put the normal behind the silhouette, and no light is
     /// reflected.
     ///
     /// Lobes may leave out normals that reflect the view below the horizon, as
