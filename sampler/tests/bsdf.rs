@@ -322,6 +322,14 @@ fn conductors_and_plastics_are_black_from_below_and_all_is_for_directions_in_the
     }
     assert!(gold.sample(below, 0.5, u, RADIANCE).is_none());
     assert!(paint.sample(below, 0.5, u, RADIANCE).is_none());
+    // A mirror knows its view's image without looking at all of it.
+    let mirror = Conductor::new(Smooth, Metal::Gold);
+    for strange in [f32::NAN, f32::INFINITY].map(|x| Vec3::new(x, 0.0, 0.5)) {
+        assert!(mirror.sample(strange, 0.5, u, RADIANCE).is_none());
+        assert!(gold.sample(strange, 0.5, u, RADIANCE).is_none());
+        assert_eq!(gold.eval_pdf(strange, above, RADIANCE), ([0.0; 3], 0.0));
+        assert_eq!(gold.eval_pdf(above, strange, RADIANCE), ([0.0; 3], 0.0));
+    }
     for flat in [Vec3::X, Vec3::new(1.0, 0.0, -0.0), Vec3::NAN, Vec3::new(0.6, 0.0, f32::NAN)] {
         assert!(gold.sample(flat, 0.5, u, RADIANCE).is_none());
         assert!(paint.sample(flat, 0.5, u, RADIANCE).is_none());

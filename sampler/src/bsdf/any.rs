@@ -91,19 +91,17 @@ impl Tables {
         let entry = self.entry(name)?;
         let masking = entry.masking();
         let fresnel = entry.fresnel.ok_or_else(|| BindError::NoFresnel(name.into()))?;
-        let conductor = |fresnel: ConductorFresnel| {
-            let conductor = Conductor::new(lobe.clone(), fresnel).with_masking(masking);
-            conductor.compensated(self, compensation, stand_in).map(AnyBsdf::from)
-        };
-        match fresnel {
-            FresnelEntry::Mirror => conductor(ConductorFresnel::mirror()),
-            FresnelEntry::Schlick(f0) => conductor(ConductorFresnel::schlick([f0 as f32; 3])?),
-            FresnelEntry::Conductor { eta, k } => conductor(ConductorFresnel::exact(eta, k)?),
+        let reflectance = match fresnel {
+            FresnelEntry::Mirror => ConductorFresnel::mirror(),
+            FresnelEntry::Schlick(f0) => ConductorFresnel::schlick([f0 as f32; 3])?,
+            FresnelEntry::Conductor { eta, k } => ConductorFresnel::exact(eta, k)?,
             FresnelEntry::Dielectric(_) | FresnelEntry::Dielectrics { .. } => {
                 let eta = fresnel.middle_index().unwrap_or(f64::NAN);
                 let dielectric = Dielectric::new(lobe, eta)?.with_masking(masking);
-                Ok(dielectric.compensated(self, compensation, stand_in)?.into())
+                return Ok(dielectric.compensated(self, compensation, stand_in)?.into());
             }
-        }
+        };
+        let conductor = Conductor::new(lobe, reflectance).with_masking(masking);
+        Ok(conductor.compensated(self, compensation, stand_in)?.into())
     }
 }

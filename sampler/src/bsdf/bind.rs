@@ -40,11 +40,10 @@ impl Tables {
         stand_in: StandIn,
     ) -> Result<Albedo, BindError> {
         let key = lobe.key();
-        let moments = |of: &Reflectance| *of == Reflectance::Moments;
         let own = self.tables().iter().find(|table| {
             table.kind == Kind::Albedo
                 && table.subject.masking == Some(masking)
-                && table.subject.reflectance.as_ref().is_some_and(moments)
+                && table.subject.reflectance == Some(Reflectance::Moments)
                 && key.is(&table.subject.lobe)
         });
         if let Some(table) = own {

@@ -35,6 +35,9 @@ const fn square(end: usize) -> f64 {
     cos * cos
 }
 
+/// The same in single precision, which are the shares of the cosine.
+const SQUARES: [f32; BANDS + 1] = Broad::COSINE.shares;
+
 impl Broad {
     /// cos θ/π alone.
     pub(super) const COSINE: Self = {
@@ -101,7 +104,7 @@ impl Broad {
         let [a, b] = [self.factors[band], self.factors[band + 1]];
         let root = sqrt(a * a + within * (b - a) * (b + a));
         let w = (within * (a + b) / (a + root)).min(1.0);
-        let (from, to) = (square(band) as f32, square(band + 1) as f32);
+        let (from, to) = (SQUARES[band], SQUARES[band + 1]);
         let square = from + w * (to - from);
         let (r, [sin, cos]) = (sqrt(1.0 - square), turn(azimuth));
         Vec3::new(r * cos, r * sin, sqrt(square))
@@ -112,7 +115,7 @@ impl Broad {
     pub(super) fn factor(&self, l: Vec3) -> f32 {
         let cos = l.z.abs();
         let band = ((BANDS as f32 * sqrt(sqrt(cos))) as usize).min(BANDS - 1);
-        let (from, to) = (square(band) as f32, square(band + 1) as f32);
+        let (from, to) = (SQUARES[band], SQUARES[band + 1]);
         let w = unit((cos * cos - from) / (to - from));
         self.factors[band] + w * (self.factors[band + 1] - self.factors[band])
     }

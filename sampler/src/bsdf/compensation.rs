@@ -14,6 +14,7 @@ use microfacet_common::gauss_legendre;
 use microfacet_common::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip};
 
 use super::broad::{Broad, cosine_pdf};
+use super::mixture::Part;
 use super::reflectance::ConductorFresnel;
 use crate::albedo::Albedo;
 
@@ -86,46 +87,44 @@ impl<const N: usize> Returned<N> {
         Some(Self { albedo, form })
     }
 
+    /// What one bounce loses of the light of a view, which the functions below take.
+    #[inline]
+    pub(super) fn lost(&self, v: Vec3) -> f32 {
+        self.albedo.lost(v)
+    }
+
     /// The factor on the lobe.
     #[inline]
-    pub(super) fn factor(&self, v: Vec3) -> [f32; N] {
+    pub(super) fn factor(&self, lost: f32) -> [f32; N] {
         match &self.form {
-            Form::Turquin { f0 } => {
-                let lost = self.albedo.lost(v);
-                f0.map(|f0| turquin(lost, f0))
-            }
+            Form::Turquin { f0 } => f0.map(|f0| turquin(lost, f0)),
             Form::KullaConty { .. } => [1.0; N],
         }
     }
 
     /// The probability of facets: their share of the light that returns, as an estimate.
     #[inline]
-    pub(super) fn facets(&self, v: Vec3) -> f32 {
+    pub(super) fn facets(&self, lost: f32) -> f32 {
         match &self.form {
             Form::Turquin { .. } => 1.0,
-            Form::KullaConty { multiple, single, .. } => {
-                estimate(self.albedo.lost(v), *single, *multiple)
-            }
+            Form::KullaConty { multiple, single, .. } => estimate(lost, *single, *multiple),
         }
     }
 
-    /// The same, and π f of the broad lobe.
+    /// The broad lobe at a light.
     #[inline]
-    pub(super) fn lobe(&self, v: Vec3, l: Vec3) -> (f32, [f32; N]) {
-        let Form::KullaConty { bounces, multiple, single, .. } = &self.form else {
-            return (1.0, [0.0; N]);
-        };
-        let lost = self.albedo.lost(v);
+    pub(super) fn part(&self, lost: f32, l: Vec3) -> Part<N> {
+        let Form::KullaConty { bounces, broad, .. } = &self.form else { return Part::NONE };
         let lobe = kulla_conty(lost, self.albedo.lost(l), self.albedo.lost_average());
-        (estimate(lost, *single, *multiple), bounces.map(|factor| factor * lobe))
+        Part::broad(l, broad, 1.0, bounces.map(|factor| factor * lobe))
     }
 
-    /// The density from which the broad lobe is drawn.
-    #[inline(always)]
-    pub(super) fn broad(&self) -> &Broad {
+    /// A light drawn from it, or where there is none by the cosine.
+    #[inline]
+    pub(super) fn sample(&self, u: [f32; 2]) -> Vec3 {
         match &self.form {
-            Form::Turquin { .. } => &Broad::COSINE,
-            Form::KullaConty { broad, .. } => broad,
+            Form::Turquin { .. } => Broad::COSINE.sample(u),
+            Form::KullaConty { broad, .. } => broad.sample(u),
         }
     }
 }

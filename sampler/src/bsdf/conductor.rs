@@ -6,7 +6,7 @@ use microfacet_common::Masking;
 use super::bind::StandIn;
 use super::compensation::{Compensation, Returned};
 use super::error::BindError;
-use super::facets::Facets;
+use super::facets::{Facets, White};
 use super::mixture::{Mixture, Part, are_finite, choice, chosen};
 use super::reflectance::ConductorFresnel;
 use super::{Bsdf, BsdfSample, Transport};
@@ -67,8 +67,11 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
     #[must_use]
     pub fn compensated_by(self, albedo: Albedo, compensation: Compensation) -> Self {
         let masking = albedo.masking();
-        let returned = Returned::new(albedo, compensation, &self.fresnel);
-        Self { masking, returned: returned.filter(|_| !self.smooth), ..self }
+        let returned = match self.smooth {
+            true => None,
+            false => Returned::new(albedo, compensation, &self.fresnel),
+        };
+        Self { masking, returned, ..self }
     }
 
     /// The lobe.
@@ -91,14 +94,15 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         Facets { lobe: &self.lobe, masking: self.masking }
     }
 
-    /// One bounce together with what is given back, at a light above the horizon.
+    /// One bounce together with what is given back of the light that it loses, at a light above the
+    /// horizon.
     #[inline(always)]
-    fn mixture(&self, returned: &Returned<N>, v: Vec3, l: Vec3, single: Part<N>) -> Mixture<N> {
-        let (p, lobe) = returned.lobe(v, l);
-        let factor = returned.factor(v);
+    fn mixture(&self, returned: &Returned<N>, lost: f32, l: Vec3, white: White) -> Mixture<N> {
+        let single = white.part(self.fresnel.at(white.cos));
+        let factor = returned.factor(lost);
         let facets =
             Part { weight: core::array::from_fn(|i| single.weight[i] * factor[i]), ..single };
-        Mixture { p, facets, broad: Part::broad(l, returned.broad(), 1.0, lobe) }
+        Mixture { p: returned.facets(lost), facets, broad: returned.part(lost, l) }
     }
 
     /// A sample with compensation; out of line, so that one without it is short.
@@ -113,18 +117,18 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         if !are_finite(v, v) {
             return None;
         }
-        let (is_facet, _) = chosen(choice(number), returned.facets(v));
+        let lost = returned.lost(v);
+        let (is_facet, _) = chosen(choice(number), returned.facets(lost));
         let (l, white) = if is_facet {
             self.facets().draw(v, u)?
         } else {
-            let l = returned.broad().sample(u);
+            let l = returned.sample(u);
             if !(l.z > 0.0) {
                 return None;
             }
             (l, self.facets().halfway(v, l))
         };
-        let single = white.part(self.fresnel.at(white.cos));
-        let mixture = self.mixture(returned, v, l, single);
+        let mixture = self.mixture(returned, lost, l, white);
         Some(BsdfSample::reflected(l, mixture.weight(), mixture.pdf()))
     }
 
@@ -133,8 +137,7 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         if !are_finite(v, l) {
             return ([0.0; N], 0.0);
         }
-        let white = self.facets().halfway(v, l);
-        self.mixture(returned, v, l, white.part(self.fresnel.at(white.cos))).f_pdf(l)
+        self.mixture(returned, returned.lost(v), l, self.facets().halfway(v, l)).f_pdf(l)
     }
 
     fn mirror(&self, v: Vec3) -> BsdfSample<N> {
@@ -155,7 +158,7 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Conductor<L, N> {
             return None;
         }
         if self.smooth {
-            return Some(self.mirror(v));
+            return are_finite(v, v).then(|| self.mirror(v));
         }
         if let Some(returned) = &self.returned {
             return self.sample_mixture(returned, v, choice, u);

@@ -197,13 +197,16 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
             return Mixture { p: 1.0, facets, broad: Part::NONE };
         };
         let lost = energy.returned(&shares);
+        if lost == 0.0 {
+            return Mixture { p: 1.0, facets, broad: Part::NONE };
+        }
         let reflected = energy.reflected(seen.side);
         let (side, share, scale) = if l.z > 0.0 {
             (seen.side, reflected, 1.0)
         } else {
             (1 - seen.side, 1.0 - reflected, scale)
         };
-        let lobe = [energy.lobe(lost, side, l) * scale; N];
+        let lobe = [energy.lobe(lost, side, &energy.shares(side, l)) * scale; N];
         let broad = Part::broad(l, &broad[side], share, lobe);
         Mixture { p: 1.0 - lost, facets, broad }
     }

@@ -5,8 +5,8 @@ use microfacet_common::fresnel::dielectric;
 
 use super::broad::Broad;
 use super::compensation::{Compensation, fresnel_average, kulla_conty, turquin};
+use super::interface::Interface;
 use crate::albedo::DielectricAlbedo;
-use crate::math::unit;
 use glam::Vec3;
 
 /// The accounts of one interface.
@@ -17,12 +17,14 @@ pub(super) struct Energy {
     albedo: Option<DielectricAlbedo>,
     compensation: Compensation,
     eta: f32,
-    /// Averages from outside and from inside: of what is lost to further bounces, and of what is
-    /// transmitted, compensation included.
+    /// The average that is lost to further bounces, from outside and from inside, and the share of
+    /// it that they reflect.
     lost: [f32; 2],
-    transmitted: [f32; 2],
-    /// The share of the lost light that further bounces reflect.
     reflected: [f32; 2],
+    /// The average that is transmitted from outside, compensation included.
+    transmitted: f32,
+    /// The average that one bounce reflects from inside.
+    back: f32,
 }
 
 /// The shares of the light of one view: reflected, transmitted and lost in one bounce.
@@ -40,10 +42,13 @@ impl Shares {
     }
 }
 
-/// Index of the side of a view: 0 above the surface, 1 below it.
+/// The index of the side above the surface; that below it is the other of 0 and 1.
+pub(super) const OUTSIDE: usize = 0;
+
+/// Index of the side of a view.
 #[inline(always)]
 pub(super) fn side(above: bool) -> usize {
-    usize::from(!above)
+    if above { OUTSIDE } else { 1 - OUTSIDE }
 }
 
 impl Energy {
@@ -53,11 +58,10 @@ impl Energy {
         // side and from the other differs by η².
         let dense = eta.max(1.0 / eta);
         let thin = 1.0 - fresnel_average(|cos| dielectric(dense, cos));
-        let other = thin / (dense * dense);
-        let transmitted = if eta >= 1.0 { [thin, other] } else { [other, thin] };
+        let transmitted = if eta >= 1.0 { thin } else { thin / (dense * dense) };
         let (albedo, compensation) = (None, Compensation::None);
-        let (lost, reflected) = ([0.0; 2], [1.0; 2]);
-        Self { albedo, compensation, eta, lost, transmitted, reflected }
+        let (lost, reflected, back) = ([0.0; 2], [1.0; 2], 0.0);
+        Self { albedo, compensation, eta, lost, transmitted, reflected, back }
     }
 
     /// Of a rough interface whose albedos are those of the same lobe, index and form of masking.
@@ -82,22 +86,20 @@ impl Energy {
         let flux = outside.min(squared * inside);
         let crossing = |lost: f64, flux: f64| if lost > 0.0 { (flux / lost).min(1.0) } else { 0.0 };
         let crossing = [crossing(lost[0], flux), crossing(lost[1], flux / squared)];
-        let transmitted = core::array::from_fn(|i| {
-            let [_, single, lost, whole] = averages[i];
-            let all = match compensation {
-                Compensation::None => single,
-                Compensation::Turquin => whole,
-                Compensation::KullaConty => single + crossing[i] * lost,
-            };
-            all as f32
-        });
+        let [[_, single, _, whole], [back, ..]] = averages;
+        let transmitted = match compensation {
+            Compensation::None => single,
+            Compensation::Turquin => whole,
+            Compensation::KullaConty => single + crossing[0] * lost[0],
+        };
         Self {
             albedo: Some(albedo),
             compensation,
             eta,
             lost: lost.map(|x| x as f32),
-            transmitted,
+            transmitted: transmitted as f32,
             reflected: crossing.map(|x| (1.0 - x) as f32),
+            back: back as f32,
         }
     }
 
@@ -106,8 +108,7 @@ impl Energy {
     pub(super) fn shares(&self, side: usize, v: Vec3) -> Shares {
         match &self.albedo {
             None => {
-                let eta = if side == 0 { self.eta } else { 1.0 / self.eta };
-                let reflection = dielectric(eta, unit(v.z.abs()));
+                let reflection = Interface::new(self.eta, side == OUTSIDE).reflectance(v.z.abs());
                 Shares { reflection, transmission: 1.0 - reflection, lost: 0.0 }
             }
             Some(albedo) => {
@@ -148,20 +149,20 @@ impl Energy {
     /// π times the lobe of further bounces between a view and a light on a given side, over the
     /// share of the lost light that goes there: for a view of `lost` light it integrates to that.
     #[inline(always)]
-    pub(super) fn lobe(&self, lost: f32, side: usize, l: Vec3) -> f32 {
-        kulla_conty(lost, self.shares(side, l).lost, self.lost[side])
+    pub(super) fn lobe(&self, lost: f32, side: usize, there: &Shares) -> f32 {
+        kulla_conty(lost, there.lost, self.lost[side])
     }
 
-    /// What all bounces together transmit of the light of a view from a side.
+    /// What all bounces together transmit of the light of a view from outside.
     #[inline(always)]
-    pub(super) fn transmitted(&self, side: usize, shares: &Shares) -> f32 {
+    pub(super) fn transmitted(&self, shares: &Shares) -> f32 {
         shares.transmission * self.factor(shares)
-            + (1.0 - self.reflected[side]) * self.returned(shares)
+            + (1.0 - self.reflected[OUTSIDE]) * self.returned(shares)
     }
 
     /// Its cosine-weighted average over views.
-    pub(super) fn transmitted_average(&self, side: usize) -> f32 {
-        self.transmitted[side]
+    pub(super) fn transmitted_average(&self) -> f32 {
+        self.transmitted
     }
 
     /// What is left of light between the coat and a base of albedo ρ, times η²: 1 − ρ R, with R the
@@ -171,12 +172,10 @@ impl Energy {
     pub(super) fn left(&self, base: f32) -> f32 {
         let squared = self.eta * self.eta;
         match (&self.albedo, self.compensation) {
-            (Some(albedo), Compensation::None) => {
-                squared * (1.0 - base * albedo.inside.average()[0])
-            }
+            (Some(_), Compensation::None) => squared * (1.0 - base * self.back),
             // From the flux outside, 1 − R = T/η², so that what enters a white base leaves it again
             // to rounding; without the cancellation of 1 − (1 − T/η²).
-            _ => squared * (1.0 - base) + base * self.transmitted[0],
+            _ => squared * (1.0 - base) + base * self.transmitted,
         }
     }
 }

@@ -48,8 +48,8 @@ impl<L: MicrofacetDistribution> Facets<'_, L> {
         let m = v + l;
         // The cosine is half the length: v·m = 1 + v·l = |m|²/2.
         let length2 = m.dot(m);
-        // Not of what is NaN.
-        if !(length2 > 0.0) {
+        // Not of what is NaN or infinite.
+        if !(length2 > 0.0 && length2 <= f32::MAX) {
             return White { cos: 0.0, weight: 0.0, pdf: 0.0 };
         }
         let facet = self.lobe.facet(v, m, l, self.masking);

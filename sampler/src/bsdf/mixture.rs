@@ -87,8 +87,9 @@ pub(super) fn choice(choice: f32) -> f32 {
 /// Whether a [`choice`] takes the first of two parts, of probability `p`, and the choice that is
 /// left to make within the part.
 #[inline(always)]
-pub(super) fn chosen(choice: f32, p: f32) -> (bool, f32) {
-    if choice < p { (true, choice / p) } else { (false, (choice - p) / (1.0 - p)) }
+pub(super) fn chosen(number: f32, p: f32) -> (bool, f32) {
+    // The latter may round to 1.
+    if number < p { (true, number / p) } else { (false, choice((number - p) / (1.0 - p))) }
 }
 
 /// Whether no part of two directions is infinite or NaN; z is tested where sides are.

@@ -8,7 +8,7 @@ use microfacet_common::Masking;
 use super::bind::StandIn;
 use super::broad::Broad;
 use super::compensation::Compensation;
-use super::energy::{Energy, Shares};
+use super::energy::{Energy, OUTSIDE, Shares};
 use super::error::BindError;
 use super::facets::{Facets, White};
 use super::interface::{Interface, checked};
@@ -18,9 +18,6 @@ use super::{Bsdf, BsdfSample, Transport};
 use crate::albedo::DielectricAlbedo;
 use crate::material::MicrofacetDistribution;
 use crate::tables::Tables;
-
-/// The side from which plastic is seen.
-const OUTSIDE: usize = 0;
 
 /// A rough dielectric coat over a Lambert base, which gets exactly the light that the coat lets
 /// through.
@@ -134,10 +131,10 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         // Base and coat in proportion, on average over views.
         let broad = Box::new(Broad::new(|l| {
             let shares = energy.shares(OUTSIDE, l);
-            energy.transmitted(OUTSIDE, &shares) * mean
+            energy.transmitted(&shares) * mean
                 + energy.reflected(OUTSIDE) * energy.returned(&shares)
         }));
-        let mean = mean * energy.transmitted_average(OUTSIDE);
+        let mean = mean * energy.transmitted_average();
         let smooth = is_smooth(&lobe, eta);
         Ok(Self { lobe, index, eta, base, masking, smooth, energy, diffuse, mean, broad })
     }
@@ -167,7 +164,7 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
     fn facets_share(&self, shares: &Shares) -> f32 {
         let energy = &self.energy;
         let facets = shares.reflection * energy.factor(shares);
-        let diffuse = energy.transmitted(OUTSIDE, shares) * self.mean
+        let diffuse = energy.transmitted(shares) * self.mean
             + energy.reflected(OUTSIDE) * energy.returned(shares);
         if diffuse > 0.0 { facets / (facets + diffuse) } else { 1.0 }
     }
@@ -197,14 +194,9 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
     fn diffuse(&self, shares: &Shares, l: Vec3) -> Part<N> {
         let energy = &self.energy;
         let there = energy.shares(OUTSIDE, l);
-        let (entering, leaving) =
-            (energy.transmitted(OUTSIDE, shares), energy.transmitted(OUTSIDE, &there));
-        let lost = energy.returned(shares);
-        let coat = if lost > 0.0 {
-            energy.reflected(OUTSIDE) * energy.lobe(lost, OUTSIDE, l)
-        } else {
-            0.0
-        };
+        let (entering, leaving) = (energy.transmitted(shares), energy.transmitted(&there));
+        let coat =
+            energy.reflected(OUTSIDE) * energy.lobe(energy.returned(shares), OUTSIDE, &there);
         let lobe = self.diffuse.map(|diffuse| entering * leaving * diffuse + coat);
         Part::broad(l, &self.broad, 1.0, lobe)
     }

@@ -132,9 +132,9 @@ pub trait MicrofacetDistribution {
         (m, self.visible_normal_pdf(v, m))
     }
 
-    /// The facet that takes light between `v` and `l`, both above the horizon: the single function
-    /// of a lobe that the evaluation of a BSDF calls. Its normal is along `m`, of any length, so
-    /// that a half vector need not be normalised.
+    /// The facet that takes light between `v` and `l`, both above the horizon: with
+    /// [`reflecting_share`](Self::reflecting_share) all of a lobe that the evaluation of a BSDF
+    /// calls. Its normal is along `m`, of any length, so that a half vector need not be normalised.
     ///
     /// The microfacet BRDF without Fresnel is density·weight/(4 l·n), the density of the reflected
     /// light density/4. For light that is transmitted `l` is the direction opposite to it.
