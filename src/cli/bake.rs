@@ -2,7 +2,7 @@
 
 mod summary;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
@@ -115,13 +115,14 @@ impl Args {
             format!("{folder} is as it was{kept}")
         });
     }
+}
 
-    fn cache(&self) -> Cache {
-        match &self.cache {
-            _ if self.no_cache => Cache::none(),
-            Some(folder) => Cache::new(folder.clone()),
-            None => Cache::user(),
-        }
+/// The cache of the options `--cache` and `--no-cache`, by default the user's.
+pub(super) fn cache(folder: Option<&Path>, none: bool) -> Cache {
+    match folder {
+        _ if none => Cache::none(),
+        Some(folder) => Cache::new(folder.to_path_buf()),
+        None => Cache::user(),
     }
 }
 
@@ -135,7 +136,7 @@ pub(super) fn run(args: Args) -> Outcome {
         ));
     }
     let out = OutputFolder::open(&args.out)?;
-    let cache = args.cache();
+    let cache = cache(args.cache.as_deref(), args.no_cache);
     args.say_what_is_left(&out, &cache);
     let (scene, plan) = match args.recipe.as_deref() {
         Some(path) => {

@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use serde_json::{Value, json};
 
-use microfacet_bake::cache::Cache;
 use microfacet_bake::progress::Meter;
 use microfacet_bake::table_set::Settings;
 use microfacet_bake::table_spec::Quality;
@@ -19,6 +18,7 @@ use microfacet_bake::validate::furnace::TOLERANCE as FURNACE_TOLERANCE;
 use microfacet_bake::validate::{LEVEL, Options};
 use microfacet_sampler::{Masking, Tables};
 
+use super::bake::cache;
 use super::{Failure, Outcome, print_json, progress, summarize, values, verdict};
 
 /// Test complete BSDFs: their samples by chi-square, white furnaces, and reciprocity.
@@ -94,21 +94,13 @@ impl Args {
         self.only.is_empty() || self.only.contains(&test)
     }
 
-    fn settings(&self, cache: &Cache) -> Settings {
-        Settings { cache: cache.clone(), ..Settings::default() }
-    }
-
     /// Bakes with a bar.
     fn bake(
         &self,
         of: impl FnOnce(Settings) -> Result<Tables, specimen::Unmade>,
     ) -> Result<Tables, Failure> {
-        let cache = match &self.cache {
-            _ if self.no_cache => Cache::none(),
-            Some(folder) => Cache::new(folder.clone()),
-            None => Cache::user(),
-        };
-        let settings = self.settings(&cache);
+        let cache = cache(self.cache.as_deref(), self.no_cache);
+        let settings = Settings { cache, ..Settings::default() };
         let bar = progress::show(&settings.progress, "baking albedos of dielectrics");
         let set = of(settings)?;
         drop(bar);

@@ -74,7 +74,7 @@ pub fn configurations(tables: &Tables, count: usize, seed: u64) -> Vec<Configura
         .collect()
 }
 
-fn log_uniform(random: &mut impl Rng, low: f64, high: f64) -> f64 {
+pub(super) fn log_uniform(random: &mut impl Rng, low: f64, high: f64) -> f64 {
     (random.random_range(low.ln()..high.ln())).exp()
 }
 

@@ -49,7 +49,8 @@ impl Point {
     }
 }
 
-fn direction(theta: f64, phi: f64) -> Vec3 {
+/// The direction of two angles, rounded as a renderer has it.
+pub(super) fn direction(theta: f64, phi: f64) -> Vec3 {
     let (sin, cos) = theta.sin_cos();
     DVec3::new(sin * phi.cos(), sin * phi.sin(), cos).as_vec3()
 }

@@ -92,8 +92,9 @@ impl Outcome {
 
 /// The estimated seconds of a run on the current threads.
 pub fn seconds(configurations: usize, options: Options) -> f64 {
-    // Microseconds for the cells of a configuration, and for a light.
-    let one = 20_000.0 + 0.6 * options.samples as f64;
+    // Microseconds for the cells of a configuration and the integral of each, and for a light:
+    // fitted to `microfacet-bake bsdf --only chi-square --threads 1` with 1e4 and 5e5 samples.
+    let one = 240_000.0 + 0.7 * options.samples as f64;
     1e-6 * one * configurations as f64 / rayon::current_num_threads() as f64
 }
 

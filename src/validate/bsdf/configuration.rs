@@ -3,13 +3,15 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use rand::rngs::StdRng;
 use rand::{Rng, RngExt, SeedableRng};
 
 use microfacet_sampler::{Compensation, Masking, Metal};
 
 use super::specimen::{LobeOf, Specimen, Surface};
+use crate::validate::configuration::log_uniform;
+use crate::validate::stress::direction;
 
 /// One BSDF seen from one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,8 +29,7 @@ pub struct Configuration {
 impl Configuration {
     /// The view, rounded as a renderer has it.
     pub fn view(&self) -> Vec3 {
-        let (sin, cos) = self.theta.sin_cos();
-        DVec3::new(sin * self.phi.cos(), sin * self.phi.sin(), cos).as_vec3()
+        direction(self.theta, self.phi)
     }
 
     /// Elevations of lights whose density single precision does not resolve.
@@ -73,10 +74,6 @@ pub fn configurations(count: usize, seed: u64) -> Vec<Configuration> {
         .map(|i| specimen(Surface::Dielectric(any(&mut random, ETAS)), i % 8 == 0, &mut random))
         .collect();
     (0..count).map(|i| configuration(i, &interfaces, &mut random)).collect()
-}
-
-fn log_uniform(random: &mut impl Rng, low: f64, high: f64) -> f64 {
-    random.random_range(low.ln()..high.ln()).exp()
 }
 
 fn any<T: Copy, const N: usize>(random: &mut impl Rng, all: [T; N]) -> T {

@@ -98,10 +98,7 @@ impl Grid {
             }
             return;
         };
-        places.sort_unstable_by(|a, b| a[along].total_cmp(&b[along]));
-        let cut = places.partition_point(|place| place[along] < at);
-        let (below, above) = places.split_at_mut(cut);
-        let [low, high] = cell.cut(along, at);
+        let [(low, below), (high, above)] = split(&cell, along, at, places);
         self.grow(low, below);
         self.nodes[node] = Node::Split { along, at, above: self.nodes.len() };
         self.grow(high, above);
@@ -189,12 +186,23 @@ fn divide(cell: Cell, places: &mut [[f64; 2]], parts: &mut Vec<[Cell; 2]>) {
         parts.push([cell, enclosing(&cell, places)]);
         return;
     };
+    for (half, places) in split(&cell, along, at, places) {
+        divide(half, places, parts);
+    }
+}
+
+/// Both parts of a cell, with the lights in each.
+fn split<'a>(
+    cell: &Cell,
+    along: usize,
+    at: f64,
+    places: &'a mut [[f64; 2]],
+) -> [(Cell, &'a mut [[f64; 2]]); 2] {
     places.sort_unstable_by(|a, b| a[along].total_cmp(&b[along]));
     let cut = places.partition_point(|place| place[along] < at);
     let (below, above) = places.split_at_mut(cut);
     let [low, high] = cell.cut(along, at);
-    divide(low, below, parts);
-    divide(high, above, parts);
+    [(low, below), (high, above)]
 }
 
 /// The least part of a cell that holds these lights; the cell if there are none.

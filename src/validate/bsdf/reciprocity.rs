@@ -85,8 +85,8 @@ pub fn run(
 
 fn larger(a: Option<Worst>, b: Option<Worst>) -> Option<Worst> {
     match (a, b) {
-        // A NaN is kept.
-        (Some(a), Some(b)) if !(a.difference <= b.difference) => Some(a),
+        // A NaN is kept, whichever it is.
+        (Some(a), Some(b)) if a.difference.is_nan() || a.difference > b.difference => Some(a),
         (a, b) => b.or(a),
     }
 }
@@ -150,7 +150,8 @@ pub fn compare(
             (f, f64::from(f) / (index(v) * index(v)))
         };
         let ((there, a), (back, b)) = (f(v, l), f(l, v));
-        if there.max(back) <= least || there.max(back) == f32::MAX {
+        // Of a NaN neither holds.
+        if there <= least && back <= least || there == f32::MAX || back == f32::MAX {
             continue;
         }
         all.pairs[usize::from(v.z * l.z < 0.0)] += 1;
@@ -162,4 +163,20 @@ pub fn compare(
         *worst = larger(*worst, Some(Worst { difference, specimen: *specimen, v, l }));
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::validate::bsdf::configuration::configurations;
+
+    #[test]
+    fn the_largest_difference_is_kept_and_so_is_one_that_is_not_a_number() {
+        let Configuration { specimen, .. } = configurations(1, 1)[0];
+        let of = |difference| Some(Worst { difference, specimen, v: Vec3::Z, l: Vec3::Z });
+        let kept = |a, b| larger(of(a), of(b)).unwrap().difference;
+        assert_eq!((kept(0.1, 0.2), kept(0.2, 0.1)), (0.2, 0.2));
+        assert!(kept(0.1, f64::NAN).is_nan() && kept(f64::NAN, 0.1).is_nan());
+        assert!(!Outcome { pairs: [1; 2], worst: of(f64::NAN), clamped: None }.passed());
+    }
 }

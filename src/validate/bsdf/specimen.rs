@@ -10,7 +10,7 @@ use microfacet_sampler::{
 use crate::plan::{Options, Plan};
 use crate::scene::Scene;
 use crate::table_set::{Settings, Target, bake_with};
-use crate::table_spec::Quality;
+use crate::table_spec::{GAMMA_MIN, Quality};
 
 /// The lobe of a specimen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,9 +105,8 @@ impl Specimen {
     #[must_use]
     pub fn reshaped(self, factor: f64) -> Self {
         let lobe = if self.lobe == LobeOf::Ggx { LobeOf::StudentT } else { self.lobe };
-        // The limit of the default tables; and Beckmann times anything is Beckmann.
-        let gamma = self.gamma.min(1e3) * factor;
-        Self { lobe, gamma: gamma.max(1.501), ..self }
+        // Not below the limit of the default tables. Beckmann times anything is Beckmann.
+        Self { lobe, gamma: (self.gamma * factor).max(GAMMA_MIN), ..self }
     }
 
     /// Its facets alone, without a base and without compensation.
@@ -206,13 +205,12 @@ pub fn tables(
     settings: Settings,
 ) -> Result<Tables, Unmade> {
     let recipe = recipe(specimens);
-    if recipe.is_empty() { Ok(Tables::embedded()) } else { baked(&recipe, quality, settings) }
-}
-
-/// The tables of a recipe of dielectrics; their lobes are in the default set.
-pub(super) fn baked(recipe: &str, quality: Quality, settings: Settings) -> Result<Tables, Unmade> {
+    if recipe.is_empty() {
+        return Ok(Tables::embedded());
+    }
     let failed = |why: &dyn fmt::Display| Unmade(format!("albedos of dielectrics: {why}"));
-    let scene = Scene::from_recipe_str(recipe).map_err(|why| failed(&why))?;
+    let scene = Scene::from_recipe_str(&recipe).map_err(|why| failed(&why))?;
+    // Their lobes are in the default set.
     let options = Options { embedded: true, ..Options::default() };
     let plan = Plan::new(&scene, options).map_err(|why| failed(&why))?;
     let target = Target::Quality(quality, Precision::F32);

@@ -111,8 +111,7 @@ impl Checker<'_> {
         let length = l.as_dvec3().length();
         let unit = (length - 1.0).abs() <= ROUNDING;
         self.require(unit, "bsdf light not of unit length", length - 1.0, at);
-        let side = (v.z * l.z > 0.0 || (v.z > 0.0) == (l.z > 0.0) && l.z != 0.0)
-            == (event == Event::Reflection);
+        let side = ((v.z > 0.0) == (l.z > 0.0) && l.z != 0.0) == (event == Event::Reflection);
         self.require(side, "bsdf light not on the side of its event", l.z.into(), at);
         let weight = f64::from(weight);
         let most = most[usize::from(event == Event::Transmission)];
