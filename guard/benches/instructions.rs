@@ -139,8 +139,8 @@ fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
 type Conductors = (Conductor<StudentT>, Inputs<StudentT>);
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(419.6))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(491.9))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(413.7))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(489.3))]
 fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -151,7 +151,7 @@ fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(253.0))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(251.0))]
 fn conductor_eval_pdf((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(inputs.v.iter().rev());
     let one = |(v, l): (&Vec3, &Vec3)| black_box(conductor.eval_pdf(*v, *l, Transport::Radiance)).1;
