@@ -1,16 +1,18 @@
-//! Figures 7, 8 and 9 of Ribardière et al. 2017 (doi:10.1111/cgf.13137), by a small path tracer that
-//! takes its materials from the sampler crate.
+//! Figures 7, 8 and 9 of Ribardière et al. 2017 (doi:10.1111/cgf.13137), by a small path tracer
+//! that takes its materials from the sampler crate.
 //!
-//! `cargo run --release --example spheres -- OUTPUT` writes figure 8 as OUTPUT.exr (linear radiance)
-//! and OUTPUT.png; `--help` has the options. Read `figures.rs` for how materials are made, and
-//! `path.rs` for how a renderer asks them; `scene.rs` is what surrounds them, and `page.rs` the
-//! paper.
+//! `cargo run --release --example spheres -- OUTPUT` writes figure 8 as OUTPUT.exr (linear
+//! radiance) and OUTPUT.png; `--help` has the options. Read `figures.rs` for how materials are
+//! made, and `path.rs` for how a renderer asks them; `scene.rs` is what surrounds them, and
+//! `page.rs` the paper.
 
 mod figures;
 mod page;
 mod path;
 mod random;
 mod scene;
+#[cfg(test)]
+mod tests;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -24,14 +26,14 @@ use indicatif::{ProgressBar, ProgressStyle};
 use microfacet_bake::progress::Meter;
 use rayon::prelude::*;
 
-use figures::Figure;
+use figures::{Figure, Sheet};
 use page::{Layout, Page};
-use path::Path as LightPath;
+use path::Tracer;
 use random::Random;
 use scene::{Ray, Scene};
 
 /// The camera looks down by this many radians, from far away.
-const ELEVATION: f32 = 0.7;
+const ELEVATION: f32 = 0.45;
 /// Half the edge of its picture; the sphere has radius 1.
 const REACH: f32 = 1.2;
 
@@ -57,16 +59,32 @@ struct Limit {
     #[arg(long, default_value = "4096",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(Random::MOST)))]
     samples: u32,
-    /// Standard error at which a pixel is done, in steps of 1/255
-    #[arg(long, default_value = "2")]
+    /// Standard error at which a pixel is done, in steps of 1/255; 0 takes all samples
+    #[arg(long, default_value = "3", value_parser = steps)]
     noise: f32,
+}
+
+fn steps(text: &str) -> Result<f32, String> {
+    let range = "must be a number from 0 to 255";
+    text.parse().ok().filter(|x| (0.0..=255.0).contains(x)).ok_or_else(|| range.into())
 }
 
 /// Paths between two looks at the error.
 const BATCH: u32 = 64;
 
-/// A pixel of a sphere's square, of `cell` pixels across.
-fn pixel(scene: &Scene, [x, y]: [usize; 2], cell: usize, limit: Limit) -> Vec3 {
+/// How a sphere's square is exposed.
+#[derive(Clone, Copy)]
+struct Film {
+    /// Pixels across.
+    cell: usize,
+    limit: Limit,
+    /// As of a [`Sheet`].
+    is_linear: bool,
+}
+
+/// A pixel of a sphere's square.
+fn pixel(scene: &Scene, [x, y]: [usize; 2], film: Film) -> Vec3 {
+    let Film { cell, limit, is_linear } = film;
     let (sin, cos) = ELEVATION.sin_cos();
     let (up, direction) = (Vec3::new(0.0, cos, -sin), Vec3::new(0.0, -sin, -cos));
     let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
@@ -75,15 +93,15 @@ fn pixel(scene: &Scene, [x, y]: [usize; 2], cell: usize, limit: Limit) -> Vec3 {
         let at = |pixel: usize, u: f32| REACH * (2.0 * (pixel as f32 + u) / cell as f32 - 1.0);
         let [a, b] = random.two();
         let origin = at(x, a) * Vec3::X - at(y, b) * up - 4.0 * direction;
-        let path = &mut LightPath { scene, random: &mut random };
-        let radiance = path.radiance(&Ray { origin, direction });
+        let mut tracer = Tracer { scene, random: &mut random };
+        let radiance = tracer.radiance(&Ray { origin, direction });
         sum += radiance;
         squares += radiance * radiance;
         let count = (index + 1) as f32;
         if (index + 1) % BATCH == 0 {
             let mean = sum / count;
             let error = ((squares / count - mean * mean).max(Vec3::ZERO) / count).sqrt();
-            if page::steps(mean, error) < limit.noise {
+            if page::steps(mean, error, is_linear) < limit.noise {
                 return mean;
             }
         }
@@ -92,14 +110,15 @@ fn pixel(scene: &Scene, [x, y]: [usize; 2], cell: usize, limit: Limit) -> Vec3 {
 }
 
 /// All pixels of a sheet, line by line of each square, on all cores.
-fn render(sheet: &figures::Sheet, cell: usize, limit: Limit, meter: &Meter) -> Vec<Vec<Vec3>> {
+fn render(sheet: &Sheet, film: Film, meter: &Meter) -> Vec<Vec<Vec3>> {
+    let cell = film.cell;
     let scenes: Vec<&Scene> =
         sheet.rows.iter().flat_map(|row| &row.cells).map(|cell| &cell.scene).collect();
     meter.expect(1.0);
     let stage = meter.stage(1.0);
     stage.split(scenes.len() * cell);
     let line = |i: usize| {
-        let line = (0..cell).map(|x| pixel(scenes[i / cell], [x, i % cell], cell, limit));
+        let line = (0..cell).map(|x| pixel(scenes[i / cell], [x, i % cell], film));
         let line = line.collect();
         stage.step();
         line
@@ -144,7 +163,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     tempfile::tempfile_in(folder).map_err(|why| format!("{}: {why}", folder.display()))?;
     let sheet = watched("Baking albedos", |meter| figure.sheet(meter))?;
     let layout = Layout::new(&sheet, width as usize);
-    let lines = watched("Rendering", |meter| render(&sheet, layout.cell, limit, meter));
+    let film = Film { cell: layout.cell, limit, is_linear: sheet.is_linear };
+    let lines = watched("Rendering", |meter| render(&sheet, film, meter));
     let page = Page { sheet: &sheet, layout, lines };
     page.write_exr(&file(".exr"))?;
     page.write_png(&file(".png"))

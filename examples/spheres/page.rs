@@ -135,8 +135,8 @@ impl Page<'_> {
 }
 
 /// Steps of 1/255 by which an error changes what is shown.
-pub(crate) fn steps(radiance: Vec3, error: Vec3) -> f32 {
-    let [a, b] = [radiance, radiance + error].map(|radiance| encoded(radiance, false));
+pub(crate) fn steps(radiance: Vec3, error: Vec3, is_linear: bool) -> f32 {
+    let [a, b] = [radiance, radiance + error].map(|radiance| encoded(radiance, is_linear));
     255.0 * (b - a).max_element()
 }
 

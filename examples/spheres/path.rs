@@ -1,6 +1,7 @@
 //! The path tracer: next-event estimation and multiple importance sampling (Veach 1997, *Robust
-//! Monte Carlo Methods for Light Transport Simulation*, section 9.2), roulette and splitting (Arvo &
-//! Kirk 1990, *Particle Transport and Image Synthesis*).
+//! Monte Carlo Methods for Light Transport Simulation*, section 9.2), roulette and splitting
+//! (Arvo & Kirk 1990, *Particle Transport and Image Synthesis*,
+//! <https://doi.org/10.1145/97879.97886>).
 
 use glam::Vec3;
 use microfacet_sampler::Transport;
@@ -10,16 +11,17 @@ use crate::scene::{Ray, Scene};
 
 /// A diamond reflects some 83 % from inside, so that 1e-8 of the light goes on longer.
 const MOST_BOUNCES: usize = 100;
-/// From here on paths end or split at random.
+/// From here on paths end or split at random. Weights above 1 multiply inside a compensated
+/// diamond, to a thousand and more, unless the path splits.
 const ROULETTE: usize = 4;
 
-/// A path in the making.
-pub(crate) struct Path<'a> {
+/// Follows light backwards from the camera.
+pub(crate) struct Tracer<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) random: &'a mut Random,
 }
 
-impl Path<'_> {
+impl Tracer<'_> {
     /// An estimate of the radiance that arrives along a ray from the camera.
     pub(crate) fn radiance(&mut self, ray: &Ray) -> Vec3 {
         self.arriving(ray, f32::INFINITY, Vec3::ONE, 0)

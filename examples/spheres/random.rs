@@ -17,6 +17,7 @@ impl Random {
 
     /// The point of an index below [`MOST`](Self::MOST), of a pixel.
     pub(crate) fn new(pixel: u32, index: u32) -> Self {
+        // Seeds of neighbours far apart, by the golden ratio.
         Self { seed: pixel.wrapping_mul(0x9e37_79b9), index, dimension: 0 }
     }
 

@@ -9,9 +9,9 @@ use microfacet_sampler::{AnyBsdf, Bsdf, BsdfSample, Event, Transport};
 
 /// The height of the floor.
 const FLOOR: f32 = -1.0;
-/// Edge of the floor's squares: so large that one sees them through rough diamond. Four of them meet
-/// under the sphere.
-const SQUARE: f32 = 1.6;
+/// Edge of the floor's squares: so large that one sees them through rough diamond. Four of them
+/// meet under the sphere.
+const SQUARE: f32 = 2.0;
 /// Rays that leave a surface start on it, to the rounding of this scene's coordinates.
 const NEAREST: f32 = 1e-4;
 
@@ -94,6 +94,13 @@ impl Sky {
     /// The same light from everywhere: a white furnace.
     pub(crate) fn white() -> Self {
         Self { zenith: Vec3::ONE, horizon: Vec3::ONE, lamps: Vec::new() }
+    }
+
+    /// The same, as a lamp all around: what light there is can be looked for.
+    #[cfg(test)]
+    pub(crate) fn white_lamp() -> Self {
+        let lamp = Lamp { towards: Vec3::Y, height: 2.0, radiance: Vec3::ONE };
+        Self { zenith: Vec3::ZERO, horizon: Vec3::ZERO, lamps: vec![lamp] }
     }
 
     /// A studio: a large warm lamp in front, a cold one behind.
