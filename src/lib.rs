@@ -35,6 +35,10 @@
 //! [`validate::run`] draws normals and tests them by chi-square, [`validate::stress`] visits
 //! corners, and [`validate::furnace`] is a white furnace.
 //!
+//! # Write a shape for other languages
+//!
+//! [`export`] writes one shape γ with its lookups as source text.
+//!
 //! # Study the model
 //!
 //! [`distribution`] has the distributions by name, [`mod@convert`] replaces one by another, [`fit`]
@@ -44,6 +48,7 @@ pub mod bake;
 pub mod cache;
 pub mod convert;
 pub mod distribution;
+pub mod export;
 pub mod fit;
 pub mod input;
 pub mod memory;

@@ -5,11 +5,23 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use crate::{Albedo, StudentT};
+use crate::material::slices;
+use crate::{Albedo, MaterialError, StudentT, Table, Tables};
 
+pub use crate::albedo::shape::ShapeAlbedo;
 pub use crate::axis::hermite::limit_slopes;
 pub use crate::error::GAMMA_MIN;
 pub use crate::format::{describe, reassemble, seal, seal_document};
+pub use crate::material::shape::{HeavyTables, ShapeTables};
+
+/// The tables that a lobe of one shape reads: of masking, of slopes in the plane of incidence, and
+/// of those across it.
+///
+/// # Errors
+/// As [`Tables::student_t`].
+pub fn tables_of_shape(tables: &Tables, gamma: f64) -> Result<[&Table; 3], MaterialError> {
+    slices::tables_of_shape(tables.tables(), gamma)
+}
 
 /// Where the tabulated density has its joints for a view: unit slopes x in the plane of incidence,
 /// ascending, and t ≥ 0 across it.

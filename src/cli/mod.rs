@@ -5,6 +5,7 @@ mod bsdf;
 mod certificate;
 mod convert;
 mod escape;
+mod export;
 mod fit;
 mod furnace;
 mod inspect;
@@ -73,6 +74,7 @@ enum Command {
     Query(query::Args),
     Sample(sample::Args),
     Convert(convert::Args),
+    Export(export::Args),
     Fit(fit::Args),
     Plot(plot::Args),
     Completions(shell::Completions),
@@ -126,6 +128,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Query(args) => query::run(args),
         Command::Sample(args) => sample::run(args),
         Command::Convert(args) => convert::run(args),
+        Command::Export(args) => export::run(args),
         Command::Fit(args) => fit::run(args),
         Command::Plot(args) => plot::run(args),
         Command::Completions(args) => shell::completions(args),

@@ -254,7 +254,10 @@ pub(super) fn partial_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
 }
 
 /// Makes a folder, and those it is in, unless it is there.
-pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
+///
+/// # Errors
+/// The operating system's error, or one that says what is in the way.
+pub fn make_folder(path: &Path) -> io::Result<()> {
     let why = match (fs::metadata(path), fs::read_link(path)) {
         (Ok(found), _) if found.is_dir() => return Ok(()),
         (Ok(found), _) if found.is_file() => "is a file; name a folder".into(),

@@ -11,6 +11,7 @@ mod domain;
 mod find;
 mod fresnel;
 mod moments;
+pub(crate) mod shape;
 
 pub use curve::ViewCurve;
 pub use directional::Albedo;

@@ -18,17 +18,17 @@ use crate::math::unit;
 
 /// Cells of the share for each row of the table: its transition near normal incidence narrows as
 /// γ → 3/2, and two cells a row follow it to 4e-6 at γ = 1.501.
-const CELLS_PER_ROW: usize = 2;
+pub(super) const CELLS_PER_ROW: usize = 2;
 
 /// The heavy part of a lobe, for all views.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Heavy {
     /// Its share of the visible area, by cell of the view coordinate.
-    shares: Vec<Cell>,
+    pub(crate) shares: Vec<Cell>,
     /// 1/(2γ−3).
-    exponent: f32,
+    pub(crate) exponent: f32,
     /// √s.
-    root_s: f32,
+    pub(crate) root_s: f32,
 }
 
 impl Heavy {

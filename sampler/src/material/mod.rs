@@ -8,7 +8,8 @@
 //! numbers of a slope: [`table_pdf`] is the density of what is drawn, and [`bounded`] leaves out
 //! normals that cannot reflect. [`ellipsoid`] takes directions through a matrix to a Student-t, and
 //! draws what lies [`below_horizon`] by rejection; [`radial`] has tables of its own, and [`ggx`]
-//! and the [`smooth`] surface need none. [`key`] is what albedo tables know a lobe by.
+//! and the [`smooth`] surface need none. [`key`] is what albedo tables know a lobe by,
+//! and [`shape`] what exports write of one.
 
 mod batch;
 mod below_horizon;
@@ -26,7 +27,8 @@ mod normals;
 mod radial;
 mod roughness;
 mod sample;
-mod slices;
+pub(crate) mod shape;
+pub(crate) mod slices;
 mod smooth;
 mod student_t;
 mod table_pdf;

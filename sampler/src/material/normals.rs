@@ -10,9 +10,9 @@ use crate::elementary::{log2_growth, scaled_power_of_growth};
 /// D of one shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Normals {
-    s: f32,
+    pub(crate) s: f32,
     /// 1 − γ/2.
-    power: f32,
+    pub(crate) power: f32,
 }
 
 /// Stands for s = 0: the D of Beckmann to rounding, as far as D is not 0. Much less would make

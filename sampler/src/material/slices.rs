@@ -2,6 +2,8 @@
 
 use alloc::vec::Vec;
 
+use microfacet_common::shape::s_of_gamma;
+
 use super::coverage;
 use super::heavy::Heavy;
 use crate::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
@@ -99,7 +101,8 @@ pub(crate) struct FastPath {
 
 impl Slices {
     pub(crate) fn from_tables(tables: &[Table], gamma: f64, s: f64) -> Result<Self, MaterialError> {
-        let find = |kinds| find(tables, kinds, gamma, s);
+        let find =
+            |kinds| find(tables, kinds, gamma, s).map(|(table, weights)| Slice::at(table, weights));
         let [shadowing, slope, across] = coverage::LOBE.map(find);
         let (shadowing, slope, across) = (shadowing?, slope?, across?);
         let mut slices = Self::new([shadowing, slope], s);
@@ -179,22 +182,30 @@ impl Slices {
     }
 }
 
-/// The slice of the first table of one of `kinds` that covers s; earlier kinds are preferred, and
-/// tables that hold s itself to those that end beside it.
+/// The first table of one of `kinds` that covers s, and its weights; earlier kinds are preferred,
+/// and tables that hold s itself to those that end beside it.
 fn find<'a>(
     tables: &'a [Table],
     kinds: &[Kind],
     gamma: f64,
     s: f64,
-) -> Result<Slice<'a>, MaterialError> {
+) -> Result<(&'a Table, Weights), MaterialError> {
     for weights in [shape_weights, end_weights] {
         for &kind in kinds {
             let of_kind = tables.iter().filter(|table| table.kind == kind);
             let mut served = of_kind.filter_map(|table| Some((table, weights(table, s)?)));
-            if let Some((table, weights)) = served.next() {
-                return Ok(Slice::at(table, weights));
+            if let Some(found) = served.next() {
+                return Ok(found);
             }
         }
     }
     Err(MaterialError::NotCovered { gamma, covered: coverage::in_words(tables) })
+}
+
+/// The tables that a lobe of one shape reads: of masking, of slopes in the plane of incidence, and
+/// of those across it.
+pub(crate) fn tables_of_shape(tables: &[Table], gamma: f64) -> Result<[&Table; 3], MaterialError> {
+    let find = |kinds| find(tables, kinds, gamma, s_of_gamma(gamma)).map(|(table, _)| table);
+    let [shadowing, slope, across] = coverage::LOBE.map(find);
+    Ok([shadowing?, slope?, across?])
 }

@@ -1,0 +1,54 @@
+//! Compiles the lookups of the shapes in the folder `STUDENT_T_HEADERS`, as C and as C++.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+fn main() {
+    println!("cargo::rerun-if-env-changed=STUDENT_T_HEADERS");
+    println!("cargo::rerun-if-changed=src/lookups.c");
+    let folder =
+        PathBuf::from(env::var_os("STUDENT_T_HEADERS").expect("STUDENT_T_HEADERS: a folder"));
+    println!("cargo::rerun-if-changed={}", folder.display());
+    let out = PathBuf::from(env::var_os("OUT_DIR").unwrap());
+
+    let mut names: Vec<String> = fs::read_dir(&folder)
+        .expect("the folder of the headers")
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter_map(|name| Some(name.strip_prefix("student_t_gamma_")?.strip_suffix(".h")?.into()))
+        .collect();
+    names.sort();
+    assert!(!names.is_empty(), "no shapes in {}", folder.display());
+    let mut header = String::new();
+    for name in &names {
+        writeln!(header, "#include \"student_t_gamma_{name}.h\"").unwrap();
+    }
+    header.push_str("#define SHAPES {");
+    for name in &names {
+        write!(header, "&student_t_gamma_{name}, ").unwrap();
+    }
+    fs::write(out.join("shapes.h"), header + "}\n").unwrap();
+    let gammas: Vec<String> = names.iter().map(|name| name.replace('p', ".")).collect();
+    fs::write(out.join("gammas.txt"), gammas.join("\n")).unwrap();
+
+    for (cpp, standard, prefix) in [(false, "c99", "c_"), (true, "c++11", "cpp_")] {
+        compile(cpp, standard, prefix, &[&folder, &out]);
+    }
+}
+
+/// As a careful user would: optimised, without relaxed arithmetic, every warning an error.
+fn compile(cpp: bool, standard: &str, prefix: &str, include: &[&Path]) {
+    let mut build = cc::Build::new();
+    build.cpp(cpp).opt_level(2).std(standard).warnings_into_errors(true).extra_warnings(true);
+    build.flag_if_supported("-Wpedantic").flag_if_supported("-Wconversion");
+    build.define("PREFIX", prefix).includes(include);
+    let file = Path::new("src/lookups.c");
+    if cpp {
+        let copy = PathBuf::from(env::var_os("OUT_DIR").unwrap()).join("lookups.cpp");
+        fs::copy(file, &copy).unwrap();
+        build.file(copy);
+    } else {
+        build.file(file);
+    }
+    build.compile(&format!("{prefix}lookups"));
+}

@@ -1,0 +1,194 @@
+//! What the exported functions return, held against the crate's.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+use microfacet_sampler::{Albedo, Ggx, Lobe, Masking, MicrofacetDistribution, Moments, Tables};
+
+use crate::foreign::{Answer, Point, answers};
+use crate::points::Group;
+
+/// Allowed differences: of masking, weights and albedos; of coordinates of normals; of averages.
+const SHARE: f64 = 2e-6;
+const NORMAL: f64 = 1e-5;
+const AVERAGE: f64 = 3e-5;
+/// Albedos of γ below [`SLOW`], closer to the horizon than [`HORIZON`]: they near their limit with
+/// a power of the cosine of 0.002 or so, by which single precision extrapolates from two albedos
+/// that differ in their last digits, here and in the crate.
+const EXTRAPOLATED: f64 = 2e-4;
+const SLOW: f64 = 1.55;
+const HORIZON: f32 = 1e-20;
+/// Densities in relation to themselves: and for each unit of |ln(D σx σy)|.
+const DENSITY: [f64; 2] = [1e-5, 2e-6];
+/// Below it single precision has not all its digits.
+const SMALLEST: f64 = 1.2e-38;
+
+/// The largest differences by quantity, as shares of what is allowed, and where they are.
+#[derive(Default)]
+pub struct Worst(BTreeMap<&'static str, (f64, f64, String)>);
+
+impl Worst {
+    fn see(&mut self, name: &'static str, difference: f64, allowed: f64, at: impl Fn() -> String) {
+        // NaN is worse than any number.
+        let difference = if difference.is_nan() { f64::INFINITY } else { difference };
+        let entry = self.0.entry(name).or_default();
+        if difference / allowed > entry.0 || entry.2.is_empty() {
+            *entry = (difference / allowed, difference, at());
+        }
+    }
+
+    /// Prints the table, and returns whether all are within what is allowed.
+    pub fn print(&self) -> bool {
+        for (name, (share, difference, at)) in &self.0 {
+            let verdict = if *share <= 1.0 { "" } else { "  TOO FAR" };
+            println!("  {name:20} {difference:.1e}, {share:.2} of what is allowed{verdict}; {at}");
+        }
+        self.0.values().all(|(share, ..)| *share <= 1.0)
+    }
+}
+
+/// What the crate says of the albedos of one roughness, under both forms of masking.
+struct Albedos([Albedo; 2]);
+
+impl Albedos {
+    /// Of the stand-in, within the range of the tables.
+    fn new(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Self {
+        let sigma = (f64::from(sigma[0]) * f64::from(sigma[1])).sqrt().clamp(1e-8, 3.0);
+        Self(Masking::ALL.map(|masking| tables.albedo(sigma, gamma, masking).unwrap()))
+    }
+}
+
+/// The lobe whose random numbers the export has: for GGX the closed forms.
+fn lobe(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Lobe {
+    let sigma = sigma.map(f64::from);
+    if gamma == 2.0 {
+        Ggx::new(sigma).unwrap().into()
+    } else {
+        tables.student_t(sigma, gamma).unwrap().into()
+    }
+}
+
+/// Compares C and C++ with the crate at the points of one shape.
+pub fn group(worst: &mut Worst, tables: &Tables, shape: usize, gamma: f64, group: &Group) {
+    let sigma = group.points[0].sigma;
+    let (lobe, albedos) = (lobe(tables, sigma, gamma), Albedos::new(tables, sigma, gamma));
+    for (language, answers) in ["C", "C++"].into_iter().zip(answers(shape, &group.points)) {
+        for (point, answer) in group.points.iter().zip(&answers) {
+            let at = || format!("{language}, gamma {gamma}, {} {point:?}", group.name);
+            if is_nan(point) {
+                sound(worst, answer, &at);
+            } else {
+                directions(worst, &lobe, point, answer, &at);
+                shares(worst, &albedos, gamma, point, answer, &at);
+            }
+        }
+    }
+}
+
+/// Whether a direction has NaN; of random numbers it is compared.
+fn is_nan(point: &Point) -> bool {
+    [point.v, point.l, point.m].as_flattened().iter().any(|x| x.is_nan())
+}
+
+/// Whether every number is in its range.
+fn sound(worst: &mut Worst, answer: &Answer, at: &dyn Fn() -> String) {
+    let parts = [answer.parts, answer.average_parts];
+    let shares = [answer.g2, answer.weight, answer.albedo, answer.average];
+    let shares = shares.as_flattened().iter().chain(parts.as_flattened().as_flattened());
+    let mut sound = shares.chain([&answer.g1]).all(|x| (0.0..=1.0).contains(x));
+    let densities = [answer.d, answer.pdf, answer.reflection_pdf];
+    sound &= densities.iter().chain(&answer.compensation).all(|x| *x >= 0.0 && x.is_finite());
+    sound &= answer.lambda >= 0.0;
+    sound &= (Vec3::from(answer.normal).length() - 1.0).abs() < 1e-6 && answer.normal[2] > 0.0;
+    worst.see("range with NaN", if sound { 0.0 } else { f64::INFINITY }, 1.0, at);
+}
+
+fn directions(
+    worst: &mut Worst,
+    lobe: &Lobe,
+    point: &Point,
+    answer: &Answer,
+    at: &dyn Fn() -> String,
+) {
+    let Point { sigma, u, .. } = *point;
+    let [v, l, m] = [point.v, point.l, point.m].map(Vec3::from);
+    let far = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
+    worst.see("g1", far(answer.g1, lobe.g1(v)), SHARE, at);
+    let lambda = far(1.0 / (1.0 + answer.lambda), lobe.g1(v));
+    worst.see("lambda, by G1", lambda, SHARE, at);
+    for (k, masking) in Masking::ALL.into_iter().enumerate() {
+        worst.see("g2", far(answer.g2[k], lobe.g2(v, l, masking)), SHARE, at);
+        let weight = lobe.reflection_weight(v, l, masking);
+        worst.see("reflection_weight", far(answer.weight[k], weight), SHARE, at);
+    }
+    let normal = lobe.sample_visible_normal(v, u).to_array();
+    for (a, b) in answer.normal.into_iter().zip(normal) {
+        worst.see("normal", far(a, b), NORMAL, at);
+    }
+    let above = if answer.normal[2] > 0.0 { 0.0 } else { f64::INFINITY };
+    worst.see("normal above", above, 1.0, at);
+
+    let d = lobe.d(m);
+    let log = (f64::from(d.max(1e-38)) * f64::from(sigma[0]) * f64::from(sigma[1])).ln().abs();
+    let allowed = DENSITY[0] + DENSITY[1] * log;
+    let mut density = |name, a: f32, b: f32| {
+        let difference = far(a, b);
+        if !(difference <= SMALLEST) {
+            worst.see(name, difference / f64::from(b), allowed, at);
+        }
+    };
+    density("d", answer.d, d);
+    density("visible_normal_pdf", answer.pdf, lobe.visible_normal_pdf(v, m));
+    let facing = v.dot(m);
+    // Elsewhere the quotient loses its digits, or has overflowed.
+    if facing > 0.0 && (1e-30..1e37).contains(&answer.pdf) {
+        let quotient = f64::from(answer.pdf) / (4.0 * f64::from(facing));
+        let difference = (f64::from(answer.reflection_pdf) - quotient).abs();
+        if difference > SMALLEST && quotient < 1e37 {
+            worst.see("reflection_pdf", difference / quotient, DENSITY[0], at);
+        }
+    }
+}
+
+fn shares(
+    worst: &mut Worst,
+    albedos: &Albedos,
+    gamma: f64,
+    point: &Point,
+    answer: &Answer,
+    at: &dyn Fn() -> String,
+) {
+    let [v, l] = [point.v, point.l].map(Vec3::from);
+    let slow = gamma < SLOW && v.z < HORIZON;
+    let (name, parts, share) = if slow {
+        ("albedo, extrapolated", "parts, extrapolated", EXTRAPOLATED)
+    } else {
+        ("albedo", "albedo_parts", SHARE)
+    };
+    for (k, albedo) in albedos.0.iter().enumerate() {
+        let far = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
+        worst.see(name, far(answer.albedo[k], albedo.albedo(v)), share, at);
+        worst.see("albedo_average", far(answer.average[k], albedo.albedo_average()), AVERAGE, at);
+        let in_order = |Moments { scale, bias, f82 }| [scale, bias, f82];
+        for (i, part) in in_order(albedo.moments(v)).into_iter().enumerate() {
+            worst.see(parts, far(answer.parts[k][i], part), share, at);
+        }
+        for (i, part) in in_order(albedo.average_moments()).into_iter().enumerate() {
+            let difference = far(answer.average_parts[k][i], part);
+            worst.see("albedo_average_parts", difference, AVERAGE, at);
+        }
+        if v.z > 0.0 && l.z > 0.0 {
+            let [v, l, average] = [albedo.lost(v), albedo.lost(l), albedo.lost_average()];
+            let [v, l, average] = [v, l, average].map(f64::from);
+            let both = v * l * std::f64::consts::FRAC_1_PI;
+            let difference = (f64::from(answer.compensation[k]) - both / average).abs();
+            // As much as what it is made of may differ. An average of next to nothing says little.
+            if average > 1e-3 {
+                let allowed = (both * AVERAGE / average + 2.0 * SHARE) / average;
+                worst.see("compensation", difference, allowed, at);
+            }
+        } else {
+            worst.see("compensation", f64::from(answer.compensation[k]), SHARE, at);
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! The exported functions, compiled as C and as C++.
+
+/// What lookups take, as `point` of `lookups.c`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    pub sigma: [f32; 2],
+    pub v: [f32; 3],
+    pub l: [f32; 3],
+    pub m: [f32; 3],
+    pub u: [f32; 2],
+}
+
+/// What they return, as `answer` of `lookups.c`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Answer {
+    pub d: f32,
+    pub g1: f32,
+    pub lambda: f32,
+    pub pdf: f32,
+    pub reflection_pdf: f32,
+    pub normal: [f32; 3],
+    pub g2: [f32; 2],
+    pub weight: [f32; 2],
+    pub compensation: [f32; 2],
+    pub albedo: [f32; 2],
+    pub average: [f32; 2],
+    pub parts: [[f32; 3]; 2],
+    pub average_parts: [[f32; 3]; 2],
+}
+
+unsafe extern "C" {
+    fn c_answer(shape: usize, count: usize, points: *const Point, answers: *mut Answer);
+    fn cpp_answer(shape: usize, count: usize, points: *const Point, answers: *mut Answer);
+    fn c_sample(
+        shape: usize,
+        sigma: *const f32,
+        count: usize,
+        v: *const [f32; 3],
+        u: *const [f32; 2],
+        m: *mut [f32; 3],
+    );
+    fn c_g1(shape: usize, sigma: *const f32, count: usize, v: *const [f32; 3], g1: *mut f32);
+}
+
+/// The shapes that were exported, in the order of the foreign functions.
+pub fn gammas() -> Vec<f64> {
+    let text = include_str!(concat!(env!("OUT_DIR"), "/gammas.txt"));
+    text.lines().map(|gamma| gamma.parse().expect("a number")).collect()
+}
+
+/// Answers by C, and by C++.
+pub fn answers(shape: usize, points: &[Point]) -> [Vec<Answer>; 2] {
+    [c_answer, cpp_answer].map(|function| {
+        let mut answers = vec![Answer::default(); points.len()];
+        // SAFETY: both are of the length passed, and of the layout of `lookups.c`.
+        unsafe { function(shape, points.len(), points.as_ptr(), answers.as_mut_ptr()) };
+        answers
+    })
+}
+
+/// Normals by C; all slices are of one length.
+pub fn sample(shape: usize, sigma: [f32; 2], v: &[[f32; 3]], u: &[[f32; 2]], m: &mut [[f32; 3]]) {
+    assert!(v.len() == u.len() && u.len() == m.len());
+    // SAFETY: all are of the length passed.
+    unsafe { c_sample(shape, sigma.as_ptr(), v.len(), v.as_ptr(), u.as_ptr(), m.as_mut_ptr()) }
+}
+
+/// G1 by C; both slices are of one length.
+pub fn g1(shape: usize, sigma: [f32; 2], v: &[[f32; 3]], g1: &mut [f32]) {
+    assert_eq!(v.len(), g1.len());
+    // SAFETY: both are of the length passed.
+    unsafe { c_g1(shape, sigma.as_ptr(), v.len(), v.as_ptr(), g1.as_mut_ptr()) }
+}

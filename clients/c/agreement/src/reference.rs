@@ -1,0 +1,96 @@
+//! The rows of `docs/reference.csv`.
+
+use std::collections::HashMap;
+
+use crate::foreign::{Answer, Point, answers};
+
+/// Compares every row whose shape is exported; returns whether all agree.
+///
+/// GGX is exported in closed form, so its rows are held against the exact columns, and its normals,
+/// which are drawn in another way than from tables, are not compared.
+pub fn compare(path: &str, gammas: &[f64]) -> bool {
+    let mut reader = csv::Reader::from_path(path).expect("the reference");
+    let rows: Vec<HashMap<String, String>> = reader.deserialize().map(|row| row.unwrap()).collect();
+    let (mut worst, mut cells, mut skipped) = ((0.0, String::new()), 0, 0);
+    for (line, row) in rows.iter().enumerate() {
+        let number = |name: &str| row[name].parse::<f64>().ok();
+        let gamma = number("gamma").unwrap();
+        let Some(shape) = gammas.iter().position(|&g| g == gamma) else {
+            skipped += 1;
+            continue;
+        };
+        let single = |name: &str| number(name).unwrap() as f32;
+        let vector = |name: &str| ["x", "y", "z"].map(|axis| single(&format!("{name}{axis}")));
+        let point = Point {
+            sigma: [single("sigma_x"), single("sigma_y")],
+            v: vector("v"),
+            l: vector("l"),
+            m: vector("m"),
+            u: [single("u1"), single("u2")],
+        };
+        let masking = usize::from(row["masking"] == "height-correlated");
+        let [c, cpp] = answers(shape, &[point]).map(|answers| answers[0]);
+        for answer in [c, cpp] {
+            for (name, value, allowed) in columns(&answer, masking) {
+                let is_ggx = gamma == 2.0;
+                let exact = is_ggx && ["g1", "g2", "d", "density"].contains(&name);
+                if is_ggx && name.starts_with('n') {
+                    continue;
+                }
+                let column = format!("{name}_{}", if exact { "exact" } else { "table" });
+                let Some(want) = number(&column) else { continue };
+                let log = (number("d_table").unwrap().max(1e-38)
+                    * f64::from(point.sigma[0])
+                    * f64::from(point.sigma[1]))
+                .ln()
+                .abs();
+                let difference = (f64::from(value) - want).abs();
+                let share = match allowed {
+                    Allowed::Absolute(allowed) => difference / allowed,
+                    Allowed::Density if difference <= 1.2e-38 => 0.0,
+                    Allowed::Density => difference / want / (1e-5 + 2e-6 * log),
+                };
+                cells += 1;
+                if !(share <= worst.0) {
+                    worst = (share, format!("line {}, {name}", line + 2));
+                }
+            }
+        }
+    }
+    let (share, at) = worst;
+    let rows = rows.len();
+    println!(
+        "{cells} values of {rows} rows of the reference, {skipped} rows left out: at most \
+         {share:.2} of what is allowed; {at}",
+    );
+    share <= 1.0 && cells > 0 && skipped == 0
+}
+
+enum Allowed {
+    Absolute(f64),
+    Density,
+}
+
+/// Columns with what answers say of them.
+fn columns(answer: &Answer, masking: usize) -> [(&'static str, f32, Allowed); 14] {
+    use Allowed::{Absolute, Density};
+    let [nx, ny, nz] = answer.normal;
+    let [scale, bias, f82] = answer.parts[masking];
+    let [_, bias_avg, f82_avg] = answer.average_parts[masking];
+    [
+        ("g1", answer.g1, Absolute(2e-6)),
+        ("g2", answer.g2[masking], Absolute(2e-6)),
+        ("d", answer.d, Density),
+        ("density", answer.pdf, Density),
+        ("nx", nx, Absolute(1e-5)),
+        ("ny", ny, Absolute(1e-5)),
+        ("nz", nz, Absolute(1e-5)),
+        ("e", answer.albedo[masking], Absolute(2e-6)),
+        ("scale", scale, Absolute(2e-6)),
+        ("bias", bias, Absolute(2e-6)),
+        ("f82", f82, Absolute(2e-6)),
+        ("e_avg", answer.average[masking], Absolute(3e-5)),
+        ("bias_avg", bias_avg, Absolute(3e-5)),
+        ("f82_avg", f82_avg, Absolute(3e-5)),
+    ]
+}

@@ -1,0 +1,63 @@
+//! How long the exported functions take, in relation to the crate's, in turns.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use glam::Vec3;
+use microfacet_sampler::{Ggx, MicrofacetDistribution, Tables};
+
+use crate::foreign;
+use crate::points::random;
+
+/// Prints the ratios of one shape, at σ = 0.5: of normals and of G1.
+pub fn print(tables: &Tables, shape: usize, gamma: f64) {
+    if gamma == 2.0 {
+        ratios(&Ggx::new(0.5).unwrap(), shape, gamma);
+    } else {
+        ratios(&tables.student_t(0.5, gamma).unwrap(), shape, gamma);
+    }
+}
+
+/// Calls in a batch, and batches that each side gets, in turns.
+const CALLS: usize = 4096;
+const BATCHES: usize = 400;
+
+fn ratios(lobe: &impl MicrofacetDistribution, shape: usize, gamma: f64) {
+    let points: Vec<_> = random(4 * CALLS, 1).into_iter().flat_map(|group| group.points).collect();
+    // Evenly over the hemisphere.
+    let points: Vec<_> = points.into_iter().step_by(4).take(CALLS).collect();
+    let v: Vec<[f32; 3]> = points.iter().map(|point| point.v).collect();
+    let u: Vec<[f32; 2]> = points.iter().map(|point| point.u).collect();
+    let (mut m, mut g1) = (vec![[0.0; 3]; CALLS], vec![0.0; CALLS]);
+    let sigma = [0.5; 2];
+    let mut times = [const { Vec::new() }; 4];
+    for _ in 0..BATCHES {
+        times[0].push(timed(|| foreign::sample(shape, sigma, &v, &u, black_box(&mut m))));
+        times[1].push(timed(|| {
+            for ((v, u), m) in v.iter().zip(&u).zip(black_box(&mut m)) {
+                *m = lobe.sample_visible_normal(Vec3::from(*v), *u).into();
+            }
+        }));
+        times[2].push(timed(|| foreign::g1(shape, sigma, &v, black_box(&mut g1))));
+        times[3].push(timed(|| {
+            for (v, g1) in v.iter().zip(black_box(&mut g1)) {
+                *g1 = lobe.g1(Vec3::from(*v));
+            }
+        }));
+    }
+    // The least of each, which is what other programs disturb least.
+    let least = |times: Vec<f64>| times.into_iter().fold(f64::INFINITY, f64::min);
+    let [c, rust, c_g1, rust_g1] = times.map(least);
+    let (normal, masking) = (c / rust, c_g1 / rust_g1);
+    println!(
+        "  gamma {gamma}: a normal {normal:.2} of the crate's time ({c:.1} to {rust:.1} ns), \
+         G1 {masking:.2} ({c_g1:.1} to {rust_g1:.1} ns)",
+    );
+}
+
+/// Nanoseconds a call.
+fn timed(calls: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    calls();
+    start.elapsed().as_secs_f64() * 1e9 / CALLS as f64
+}

@@ -1,0 +1,83 @@
+//! All that the lookups of one shape read, for whoever writes it in another language.
+
+use alloc::vec::Vec;
+
+use super::heavy::CELLS_PER_ROW;
+use super::student_t::StudentT;
+use crate::axis::hermite::{Cell, Node};
+
+/// The slices and constants of a Student-t lobe of one shape, whatever its roughness, in the form
+/// in which this crate's own lookups have them. Cells are followed by a guard, which is read at
+/// position 0 for the end itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeTables {
+    /// s = 1/(γ−1), 0 for Beckmann.
+    pub s: f32,
+    /// s and 1 − γ/2 of D, where s is never 0.
+    pub normals: [f32; 2],
+    /// κ of the view coordinate of masking.
+    pub kappa: f32,
+    /// Whether that coordinate is crowded.
+    pub masking_crowded: bool,
+    /// Cells of the view coordinate of masking.
+    pub masking_cells: f32,
+    /// G1/q over the number of cells, as the cubic's coefficients in each cell of the view.
+    pub masking: Vec<Cell>,
+    /// Whether the view coordinate of slopes is crowded.
+    pub slopes_crowded: bool,
+    /// Cells of the view coordinate of slopes.
+    pub rows: f32,
+    /// Nodes of a half row of slopes, for u ≤ ½ or u > ½.
+    pub numbers: usize,
+    /// Factors from min(u, 1−u)^¼ to cells, along the plane of incidence and across it.
+    pub scales: [f32; 2],
+    /// (value, slope) of in-plane slopes: by view, by half, by node; then a row and a node that are
+    /// read with weight 0.
+    pub slopes: Vec<Node>,
+    /// Slopes across the plane for u > ½, as the cubic's coefficients in each cell.
+    pub across: Vec<Cell>,
+    /// What closed forms draw, if not everything is in the tables.
+    pub heavy: Option<HeavyTables>,
+}
+
+/// The part of the visible normals that is not in the tables.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeavyTables {
+    /// Its share of the visible area, as the cubic's coefficients in each cell of the view
+    /// coordinate of slopes.
+    pub shares: Vec<Cell>,
+    /// How many of them lie between two views.
+    pub cells_per_row: f32,
+    /// 1/(2γ−3).
+    pub exponent: f32,
+    /// √s.
+    pub root_s: f32,
+}
+
+impl ShapeTables {
+    /// Of any lobe of the shape.
+    pub fn new(lobe: &StudentT) -> Self {
+        let slices = &lobe.slices;
+        let heavy = || HeavyTables {
+            shares: slices.heavy.shares.clone(),
+            cells_per_row: CELLS_PER_ROW as f32,
+            exponent: slices.heavy.exponent,
+            root_s: slices.heavy.root_s,
+        };
+        Self {
+            s: lobe.s,
+            normals: [lobe.normals.s, lobe.normals.power],
+            kappa: slices.kappa,
+            masking_crowded: slices.shadowing_view.crowded,
+            masking_cells: slices.shadowing_cells,
+            masking: slices.shadowing.clone(),
+            slopes_crowded: slices.view.crowded,
+            rows: slices.fast.rows[0],
+            numbers: slices.half_cells + 1,
+            scales: slices.fast.scales,
+            slopes: slices.slope.clone(),
+            across: slices.fast.across.clone(),
+            heavy: slices.peeled.then(heavy),
+        }
+    }
+}

@@ -1,0 +1,236 @@
+/* ---- Albedos --------------------------------------------------------------------------------- */
+
+/* Weights of the polynomial through six of n even nodes about x; returns the first of them. */
+STUDENT_T_FUNCTION int student_t_impl_six(float x, int n, float weights[6])
+{
+    const float at = student_t_impl_min(student_t_impl_max(x, 0.0f), (float)(n - 1));
+    int start = (int)at - 2;
+    float a, b, c, d, e, f;
+    start = start < n - 6 ? start : n - 6;
+    start = start > 0 ? start : 0;
+    a = at - (float)start;
+    b = a - 1.0f;
+    c = a - 2.0f;
+    d = a - 3.0f;
+    e = a - 4.0f;
+    f = a - 5.0f;
+    weights[0] = b * c * d * e * f * (-1.0f / 120.0f);
+    weights[1] = a * c * d * e * f * (1.0f / 24.0f);
+    weights[2] = a * b * d * e * f * (-1.0f / 12.0f);
+    weights[3] = a * b * c * e * f * (1.0f / 12.0f);
+    weights[4] = a * b * c * d * f * (-1.0f / 24.0f);
+    weights[5] = a * b * c * d * e * (1.0f / 120.0f);
+    return start;
+}
+
+/* One roughness of a table of albedos. */
+typedef struct student_t_impl_albedo {
+    const student_t_albedo_table *table;
+    float sigma, coordinate; /* sigma = 0: a mirror; coordinate in [0, 1] */
+    float floor;             /* cosine of the first view */
+    int start;               /* of the six nodes along sigma */
+    float weights[6];
+} student_t_impl_albedo;
+
+STUDENT_T_FUNCTION student_t_impl_albedo student_t_impl_albedo_of(const student_t_shape *shape,
+                                                                  const float sigma[2],
+                                                                  enum student_t_masking masking)
+{
+    student_t_impl_albedo a;
+    const student_t_albedo_table *t = &shape->albedo[masking == STUDENT_T_UNCORRELATED ? 0 : 1];
+    /* Roots first: their product is in range, and that of the sigmas need not be. */
+    const float stand_in = sqrtf(student_t_impl_max(sigma[0], 0.0f)) *
+                           sqrtf(student_t_impl_max(sigma[1], 0.0f));
+    a.table = t;
+    a.sigma = student_t_impl_min(student_t_impl_max(stand_in, t->sigma_min), t->sigma_max);
+    a.floor = t->floor * (t->slope * a.sigma) / (t->floor + t->slope * a.sigma);
+    a.coordinate = log1pf(a.sigma / t->offset) + t->slow * logf(a.sigma / t->first) +
+                   t->linear * a.sigma;
+    a.coordinate = (a.coordinate - t->start) / t->range;
+    a.start = student_t_impl_six(a.coordinate * (float)(t->sigmas - 1), t->sigmas, a.weights);
+    if (!(stand_in > 0.0f)) a.sigma = 0.0f;
+    return a;
+}
+
+/* The coordinate of a view by its cosine mu, before it is stretched to [0, 1]. */
+STUDENT_T_FUNCTION float student_t_impl_view(const student_t_impl_albedo *a, float mu)
+{
+    const student_t_albedo_table *t = a->table;
+    const float sine = sqrtf((1.0f - mu) * (1.0f + mu));
+    const float x = mu / (mu + t->kappa * a->sigma * sine), h = mu / (1.0f + sine);
+    const float nu = t->spread * a->sigma;
+    const float roots = t->share * sqrtf(sqrtf(x)) + (1.0f - t->share) * sqrtf(sqrtf(h));
+    return t->weight * x + t->normal * (nu / (nu + sine)) +
+           (1.0f - t->weight - t->normal) * roots;
+}
+
+/* Bias and F82 of a mirror: (1 - mu)^5 and 7^7/6^6 mu (1 - mu)^6. */
+STUDENT_T_FUNCTION void student_t_impl_mirror(float mu, float *bias, float *f82)
+{
+    const float k = 1.0f - mu, k2 = k * k, k4 = k2 * k2;
+    *bias = k4 * k;
+    *f82 = 17.651385f * mu * (k4 * k2);
+}
+
+/* E - 1, bias and F82 at a cosine mu from the first view up. */
+STUDENT_T_FUNCTION void student_t_impl_moments_at(const student_t_impl_albedo *a, float mu,
+                                                  float moments[3])
+{
+    const student_t_albedo_table *t = a->table;
+    const float start = student_t_impl_view(a, a->floor);
+    const float at = (student_t_impl_view(a, mu) - start) / (1.0f - start);
+    float weights[6], sum[3] = {0.0f, 0.0f, 0.0f}, e, mirror_bias, mirror_f82;
+    const int first = student_t_impl_six(at * (float)(t->views - 1), t->views, weights);
+    /* Weights sum to 1: differences from a node in the middle have less to round than values. */
+    const float *middle = t->values + 3 * ((a->start + 2) * t->views + first + 2);
+    int i, j, k;
+    for (i = 0; i < 6; ++i) {
+        const float *node = t->values + 3 * ((a->start + i) * t->views + first);
+        for (j = 0; j < 6; ++j, node += 3) {
+            const float w = a->weights[i] * weights[j];
+            for (k = 0; k < 3; ++k) sum[k] += w * (node[k] - middle[k]);
+        }
+    }
+    e = middle[0] + sum[0];
+    e = student_t_impl_min(student_t_impl_max(e, -1.0f), 0.0f);
+    moments[0] = e;
+    student_t_impl_mirror(mu, &mirror_bias, &mirror_f82);
+    moments[1] = middle[1] + sum[1] + (1.0f + e) * mirror_bias;
+    moments[2] = middle[2] + sum[2] + (1.0f + e) * mirror_f82;
+}
+
+/* E - 1, bias and F82 at any cosine, to the limits that they near with a power of it. */
+STUDENT_T_FUNCTION void student_t_impl_moments(const student_t_impl_albedo *a, float cos_theta,
+                                               enum student_t_masking masking, float moments[3])
+{
+    const float mu = student_t_impl_unit(cos_theta);
+    moments[0] = 0.0f;
+    if (a->sigma > 0.0f)
+        student_t_impl_moments_at(a, student_t_impl_max(mu, a->floor), moments);
+    if (!(a->sigma > 0.0f) || (mu < a->floor && !(moments[0] < 0.0f))) {
+        /* What loses nothing is a mirror, which nears no limit. */
+        student_t_impl_mirror(mu, &moments[1], &moments[2]);
+    } else if (mu < a->floor) {
+        float above[3], power = 1.0f, more = 0.0f;
+        int i;
+        student_t_impl_moments_at(a, 4.0f * a->floor, above);
+        if (masking != STUDENT_T_UNCORRELATED) {
+            const float ratio = above[0] / moments[0];
+            power = ratio > 1.0f ? student_t_impl_min(0.5f * log2f(ratio), 1.0f) : 0.0f;
+        }
+        if (power > 0.0f) {
+            const float whole = expm1f(power * 1.38629436f); /* 4^power - 1 */
+            more = (mu > 0.0f ? -expm1f(power * logf(mu / a->floor)) : 1.0f) / whole;
+        }
+        for (i = 0; i < 3; ++i) moments[i] += more * (moments[i] - above[i]);
+        moments[0] = student_t_impl_min(student_t_impl_max(moments[0], -1.0f), 0.0f);
+    }
+}
+
+/* The share of light lost, 1 - E, with its digits where E is close to 1. */
+STUDENT_T_FUNCTION float student_t_impl_lost(const student_t_impl_albedo *a, float cos_theta,
+                                             enum student_t_masking masking)
+{
+    float moments[3];
+    student_t_impl_moments(a, cos_theta, masking, moments);
+    return -moments[0];
+}
+
+/* ln(1 - E_avg), or what stands for -infinity, and the averages of bias and F82. */
+STUDENT_T_FUNCTION void student_t_impl_averages(const student_t_impl_albedo *a, float averages[3])
+{
+    const student_t_albedo_table *t = a->table;
+    float weights[6];
+    const float *node;
+    int i;
+    averages[0] = -1e30f;
+    averages[1] = 1.0f / 21.0f;
+    averages[2] = 0.14009035f; /* 117649/839808 */
+    if (!(a->sigma > 0.0f)) return;
+    i = student_t_impl_six(a->coordinate * (float)(t->average_sigmas - 1), t->average_sigmas,
+                           weights);
+    node = t->averages + 3 * i;
+    averages[0] = averages[1] = averages[2] = 0.0f;
+    for (i = 0; i < 6; ++i, node += 3) {
+        averages[0] += weights[i] * node[0];
+        averages[1] += weights[i] * node[1];
+        averages[2] += weights[i] * node[2];
+    }
+}
+
+STUDENT_T_FUNCTION float student_t_impl_lost_average(const student_t_impl_albedo *a)
+{
+    float averages[3];
+    student_t_impl_averages(a, averages);
+    return student_t_impl_min(expf(averages[0]), 1.0f);
+}
+
+/* Scale, bias and F82, each in its range. */
+STUDENT_T_FUNCTION void student_t_impl_limit(float e, float bias, float f82, float parts[3])
+{
+    parts[1] = student_t_impl_min(student_t_impl_max(bias, 0.0f), e);
+    parts[0] = e - parts[1];
+    parts[2] = student_t_impl_unit(f82);
+}
+
+/* Directional albedo E of one bounce with F = 1, in [0, 1], for a view or light of this cosine, of
+ * the round lobe of sqrt(sigma_x sigma_y). */
+STUDENT_T_FUNCTION float student_t_albedo(const student_t_shape *shape, const float sigma[2],
+                                          float cos_theta, enum student_t_masking masking)
+{
+    const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
+    return 1.0f - student_t_impl_lost(&a, cos_theta, masking);
+}
+
+/* Its parts: Schlick's reflectance F0 + (F90 - F0)(1 - v.m)^5 has the albedo F0 scale + F90 bias,
+ * with scale + bias = E. F82 is the moment of (v.m)(1 - v.m)^6 over its peak, at v.m = 1/7: a metal
+ * of OpenPBR, whose tint lowers the reflectance there by b, has b F82 less. */
+STUDENT_T_FUNCTION void student_t_albedo_parts(const student_t_shape *shape, const float sigma[2],
+                                               float cos_theta, enum student_t_masking masking,
+                                               float scale_bias_f82[3])
+{
+    const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
+    float moments[3];
+    student_t_impl_moments(&a, cos_theta, masking, moments);
+    student_t_impl_limit(1.0f + moments[0], moments[1], moments[2], scale_bias_f82);
+}
+
+/* The average of E over the hemisphere of views, weighted by the cosine. */
+STUDENT_T_FUNCTION float student_t_albedo_average(const student_t_shape *shape,
+                                                  const float sigma[2],
+                                                  enum student_t_masking masking)
+{
+    const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
+    return 1.0f - student_t_impl_lost_average(&a);
+}
+
+/* The averages of the parts. */
+STUDENT_T_FUNCTION void student_t_albedo_average_parts(const student_t_shape *shape,
+                                                       const float sigma[2],
+                                                       enum student_t_masking masking,
+                                                       float scale_bias_f82[3])
+{
+    const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
+    float averages[3];
+    student_t_impl_averages(&a, averages);
+    student_t_impl_limit(1.0f - student_t_impl_min(expf(averages[0]), 1.0f), averages[1],
+                         averages[2], scale_bias_f82);
+}
+
+/* The lobe of all bounces after the first with F = 1, a BRDF without the cosine:
+ * (1 - E(v))(1 - E(l))/(pi (1 - E_avg)) per steradian (Kulla & Conty 2017). For a conductor
+ * multiply it by F_avg^2 E_avg/(1 - F_avg (1 - E_avg)), with F_avg its average reflectance. */
+STUDENT_T_FUNCTION float student_t_compensation(const student_t_shape *shape, const float sigma[2],
+                                                const float v[3], const float l[3],
+                                                enum student_t_masking masking)
+{
+    if (!(v[2] > 0.0f && l[2] > 0.0f)) return 0.0f;
+    {
+        const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
+        const float average = student_t_impl_lost_average(&a);
+        const float both = student_t_impl_lost(&a, v[2], masking) *
+                           student_t_impl_lost(&a, l[2], masking);
+        /* What loses nothing gets nothing back. */
+        return average > STUDENT_T_SMALLEST ? 0.318309886f * both / average : 0.0f;
+    }
+}

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: CC0-1.0
+ *
+ * student_t.h: microfacet lobes of the Student-t family, for C99, C++11, CUDA and HIP.
+ *
+ * The Student-t distribution of slopes (roughness sigma, shape gamma > 3/2; Ribardiere et al. 2017,
+ * doi:10.1111/cgf.13137) contains GGX (gamma = 2) and Beckmann (gamma = infinity). This file has
+ * the functions, and the file of a shape its tables, such as student_t_gamma_3.h for gamma = 3:
+ *
+ *     #include "student_t_gamma_3.h"
+ *
+ *     const student_t_shape *shape = &student_t_gamma_3;
+ *     const enum student_t_masking masking = STUDENT_T_HEIGHT_CORRELATED;
+ *     const float sigma[2] = {0.3f, 0.3f}, v[3] = {0.6f, 0.0f, 0.8f}, u[2] = {0.2f, 0.7f};
+ *     float m[3], l[3], weight, pdf;
+ *     student_t_sample_visible_normal(shape, sigma, v, u, m);
+ *     student_t_reflect(v, m, l);
+ *     weight = student_t_reflection_weight(shape, sigma, v, l, masking);   (f cos / pdf, if F = 1)
+ *     pdf = student_t_reflection_pdf(shape, sigma, v, m);           (of the light l, per steradian)
+ *
+ * Towards a given light f cos = F D(m) G2(v, l)/(4 v_z), with m the half vector.
+ *
+ * Frame. Directions are float[3], unit vectors in the tangent frame, in which the normal of the
+ * surface is (0, 0, 1): v to the viewer, l to the light, m a microfacet normal, w any of them.
+ * sigma is {sigma_x, sigma_y}, the alpha of GGX and Beckmann along the x and the y axis. Densities
+ * are per steradian. All is one-sided: mirror a direction on the other side of a transmitting
+ * surface at the surface first.
+ *
+ * Domain. No function returns NaN or reads outside its tables.
+ *   sigma     Taken at the nearer end of [1e-8, 1e6], NaN at 1e-8. Albedos are tabulated up to the
+ *             sigma_max of the shape, at least 3, and beyond are those of sigma_max. With a sigma
+ *             of 0 their surface is a mirror, which has the albedo 1.
+ *   u         Two random numbers in [0, 1], ends included; others are taken at the nearer end, NaN
+ *             at 0.
+ *   v, l, w   At or below the horizon masking is 0, lambda infinite, and weight, G2 and
+ *             compensation are 0. Normals and albedos are then those of the grazing view of the
+ *             same azimuth, and so is the area in densities. Where a coordinate is NaN, results
+ *             are some numbers in their ranges.
+ *   m         At or below the horizon, or facing away from v, densities are 0; with NaN in it, some
+ *             number.
+ *   overflow  A density is limited to the largest finite number.
+ * The array m that is written may not be v or u, nor l be v or m.
+ *
+ * Albedos are those of round lobes. Where sigma_x and sigma_y differ, sqrt(sigma_x sigma_y) stands
+ * in, as it does in the crate; it may be off by 0.2 and more. All else is exact for such lobes.
+ *
+ * Accuracy. The file of a shape lists the errors of its tables, measured against the model in
+ * double precision. These functions agree with the Rust crate microfacet-sampler on the same
+ * tables: masking, weights and albedos to 2e-6, coordinates of normals to 1e-5, densities to 1e-5
+ * and 2e-6 times |ln(D sigma_x sigma_y)| of themselves, averages of albedos to 3e-5. For gamma <
+ * 1.55 and cosines < 1e-20 albedos agree to 2e-4: there both are extrapolated by a power close to
+ * 0. Compilers may fuse products and sums, but must not assume finite arithmetic (-ffast-math).
+ *
+ * CUDA and HIP. All functions are for host and device. In device code tables are in device memory,
+ * one copy in each translation unit that uses them. NVRTC and hipRTC work, too.
+ */
+#ifndef STUDENT_T_H
+#define STUDENT_T_H
+
+/* Raised whenever the layout of student_t_shape changes: the files of shapes ask for theirs. */
+#define STUDENT_T_LAYOUT 1
+
+#if !defined(__CUDACC_RTC__) && !defined(__HIPCC_RTC__)
+#include <math.h>
+#endif
+
+/* Qualifiers of functions and of tables; define them beforehand to have others. */
+#ifndef STUDENT_T_FUNCTION
+#if defined(__CUDACC__) || defined(__HIPCC__) || defined(__HIP__)
+#define STUDENT_T_FUNCTION static inline __host__ __device__
+#else
+#define STUDENT_T_FUNCTION static inline
+#endif
+#endif
+#ifndef STUDENT_T_DATA
+#if defined(__CUDA_ARCH__) || (defined(__HIP_DEVICE_COMPILE__) && __HIP_DEVICE_COMPILE__)
+#define STUDENT_T_DATA static __device__ const
+#else
+#define STUDENT_T_DATA static const
+#endif
+#endif
+
+/* How masking of the view and shadowing of the light are combined: as G1(v) G1(l), or as
+ * 1/(1 + lambda(v) + lambda(l)), the form of renderers (Heitz 2014, eq. 99,
+ * https://jcgt.org/published/0003/02/03/). */
+enum student_t_masking { STUDENT_T_UNCORRELATED = 0, STUDENT_T_HEIGHT_CORRELATED = 1 };
+
+/* The albedos of a shape under one form of masking. */
+typedef struct student_t_albedo_table {
+    const float *values;   /* [sigmas][views][3]: E - 1, bias and F82 less E times a mirror's */
+    const float *averages; /* [average_sigmas][3]: ln(1 - E_avg), the averages of bias and F82 */
+    int sigmas, average_sigmas, views;
+    /* The coordinate ln(1 + sigma/offset) + slow ln(sigma/first) + linear sigma, its value at the
+     * first node, and the last less the first. */
+    float offset, first, slow, linear, start, range;
+    float sigma_min, sigma_max;
+    /* The coordinate of views, see student_t_impl_view. */
+    float weight, normal, share, kappa, spread, floor, slope;
+} student_t_albedo_table;
+
+/* One shape gamma. Tables are even in the coordinate of their views or random numbers, and have a
+ * cell more than that reaches: the place of the end itself. */
+typedef struct student_t_shape {
+    int is_ggx;            /* gamma = 2: closed forms, and no tables but those of albedos */
+    float s;               /* 1/(gamma - 1), 0 for gamma = infinity */
+    float d_s, d_power;    /* s and 1 - gamma/2 of D, where s is never 0 */
+    float kappa;           /* of the coordinate of masking, z/(z + kappa rho) */
+    int masking_crowded;   /* whether that is 1 - sqrt(1 - it) */
+    float masking_cells;
+    const float *masking;  /* [cells + 1][4]: cubics, of G1/coordinate/cells */
+    int slopes_crowded;    /* whether the coordinate of slopes, tau, is 1 - sqrt(1 - tau) */
+    float rows;            /* cells along the view */
+    int numbers;           /* nodes of half a row */
+    float along_scale;     /* 2^(1/4) (numbers - 1) */
+    const float *slopes;   /* [rows + 2][2][numbers][2], and a node: value and slope, the half for
+                            * u <= 1/2 first */
+    float across_scale;    /* 2^(1/4) cells */
+    const float *across;   /* [cells + 1][4]: cubics */
+    float heavy_per_row;   /* cells in a row of slopes */
+    const float *heavy;    /* [cells + 1][4]: cubics, of the share of visible normals that is in no
+                            * table; none for gamma >= 1.8 */
+    float heavy_exponent;  /* 1/(2 gamma - 3) */
+    float heavy_root_s;    /* sqrt(s) */
+    student_t_albedo_table albedo[2]; /* by student_t_masking */
+} student_t_shape;
+

@@ -1,0 +1,206 @@
+//! Headers for C99, C++11, CUDA and HIP.
+
+use std::fmt::Write;
+
+use microfacet_common::shape::s_of_gamma;
+use microfacet_sampler::internals::ShapeTables;
+
+use super::numbers::{identifier, lines, single, words};
+use super::{AlbedoTable, ExportFile, Shape};
+
+/// The functions, which do not depend on a shape.
+const HEADER: &str = concat!(
+    include_str!("head.h"),
+    include_str!("masking.h"),
+    include_str!("normals.h"),
+    include_str!("albedo.h"),
+    "\n#endif\n"
+);
+
+/// The name of the file with the functions.
+const HEADER_NAME: &str = "student_t.h";
+
+/// `STUDENT_T_LAYOUT` of the header.
+const LAYOUT: u32 = 1;
+
+pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
+    let header = ExportFile { name: HEADER_NAME.into(), text: HEADER.into() };
+    let shape = |shape: &Shape| {
+        let name = format!("student_t_gamma_{}", identifier(shape.gamma));
+        ExportFile { text: text(shape, &name), name: name + ".h" }
+    };
+    std::iter::once(header).chain(shapes.iter().map(shape)).collect()
+}
+
+/// The file of a shape.
+fn text(shape: &Shape, name: &str) -> String {
+    let guard = format!("{}_H", name.to_uppercase());
+    let mut text = comment(shape, name);
+    write!(
+        text,
+        "#ifndef {guard}
+#define {guard}
+
+#include \"{HEADER_NAME}\"
+
+#if STUDENT_T_LAYOUT != {LAYOUT}
+#error \"{HEADER_NAME} is of another version than {name}.h: export both again\"
+#endif
+"
+    )
+    .expect("memory");
+    if let Some(tables) = &shape.tables {
+        array(&mut text, name, "masking", &tables.masking);
+        array(&mut text, name, "slopes", &tables.slopes);
+        array(&mut text, name, "across", &tables.across);
+        if let Some(heavy) = &tables.heavy {
+            array(&mut text, name, "heavy", &heavy.shares);
+        }
+    }
+    for table in &shape.albedos {
+        let masking = masking(table);
+        array(&mut text, name, &format!("albedo_{masking}"), &table.values);
+        array(&mut text, name, &format!("averages_{masking}"), &table.averages);
+    }
+    definition(&mut text, shape, name);
+    text + "\n#endif\n"
+}
+
+/// What a shape's file says of it.
+fn comment(shape: &Shape, name: &str) -> String {
+    let gamma = words(shape.gamma);
+    let version = env!("CARGO_PKG_VERSION");
+    let [uncorrelated, correlated] = &shape.albedos;
+    let worst = |f: fn(&AlbedoTable) -> f64| f(uncorrelated).max(f(correlated));
+    let lobe = if shape.tables.is_some() {
+        let [along, across] = shape.errors.cdf;
+        format!(
+            " *   G1, G2, weights: {:.1e}
+ *   D: a closed form, in single precision
+ *   visible normals: {along:.1e} of the cumulative distribution in the plane of incidence, and
+ *     {across:.1e} of that across it; densities are the analytic ones, with the area from G1\n",
+            shape.errors.g1
+        )
+    } else {
+        " *   D, G1, G2, weights, visible normals, densities: closed forms, in single precision\n"
+            .into()
+    };
+    let from_default = if shape.from_default.is_empty() {
+        String::new()
+    } else {
+        let forms: Vec<_> = shape.from_default.iter().map(|masking| masking.name()).collect();
+        format!(" * Albedos of {} masking are those of the default set.\n", forms.join(" and "))
+    };
+    format!(
+        "/* SPDX-License-Identifier: CC0-1.0
+ *
+ * {name}.h: the Student-t lobe of gamma = {gamma} for any roughness, to be used with {HEADER_NAME}.
+ * Written by microfacet-bake {version}: microfacet-bake export c --gamma {}
+ *
+ * Largest errors, measured against the model in double precision:
+{lobe} *   albedo and its parts: {:.1e} for sigma >= 0.01 and cos theta >= 0.02, {:.1e} elsewhere
+ *   averages: those of the albedo, and {:.1e} by interpolation
+ * Albedos have tables for sigma from {} to {}.
+{from_default} */
+",
+        shape.gamma,
+        worst(|table| table.errors[0]),
+        worst(|table| table.errors[1]),
+        worst(|table| table.average_error),
+        single(correlated.sigma[0] as f32),
+        single(correlated.sigma[1] as f32),
+    )
+}
+
+fn masking(table: &AlbedoTable) -> String {
+    table.masking.name().replace('-', "_")
+}
+
+/// An array of the tables.
+fn array<const N: usize>(text: &mut String, name: &str, part: &str, values: &[[f32; N]]) {
+    let items = values.as_flattened().iter().map(|&x| float(x));
+    let count = values.len() * N;
+    writeln!(text, "\nSTUDENT_T_DATA float {name}_{part}[{count}] = {{\n{}\n}};", lines(items))
+        .expect("memory");
+}
+
+/// The definition of the shape: values in the order of the members of `student_t_shape`.
+fn definition(text: &mut String, shape: &Shape, name: &str) {
+    writeln!(text, "\nSTUDENT_T_DATA student_t_shape {name} = {{").expect("memory");
+    for (member, value) in lobe(shape, name) {
+        writeln!(text, "    {value}, /* {member} */").expect("memory");
+    }
+    for (i, table) in shape.albedos.iter().enumerate() {
+        text.push_str(if i == 0 { "    {{\n" } else { "    }, {\n" });
+        for (member, value) in albedo(table, name) {
+            writeln!(text, "        {value}, /* {member} */").expect("memory");
+        }
+    }
+    text.push_str("    }}\n};\n");
+}
+
+/// Names of members with their values.
+type Members = Vec<(&'static str, String)>;
+
+/// The lobe; what GGX does not need is 0.
+fn lobe(shape: &Shape, name: &str) -> Members {
+    let tables = shape.tables.as_ref();
+    let heavy = tables.and_then(|tables| tables.heavy.as_ref());
+    let number = |of: fn(&ShapeTables) -> f32| float(tables.map_or(0.0, of));
+    let flag = |flag: bool| u8::from(flag).to_string();
+    let array = |has: bool, part| if has { format!("{name}_{part}") } else { "0".into() };
+    let [d_s, d_power] = tables.map_or([1.0, 0.0], |tables| tables.normals);
+    vec![
+        ("is_ggx", flag(tables.is_none())),
+        ("s", float(s_of_gamma(shape.gamma) as f32)),
+        ("d_s", float(d_s)),
+        ("d_power", float(d_power)),
+        ("kappa", number(|tables| tables.kappa)),
+        ("masking_crowded", flag(tables.is_some_and(|tables| tables.masking_crowded))),
+        ("masking_cells", number(|tables| tables.masking_cells)),
+        ("masking", array(tables.is_some(), "masking")),
+        ("slopes_crowded", flag(tables.is_some_and(|tables| tables.slopes_crowded))),
+        ("rows", number(|tables| tables.rows)),
+        ("numbers", tables.map_or(0, |tables| tables.numbers).to_string()),
+        ("along_scale", number(|tables| tables.scales[0])),
+        ("slopes", array(tables.is_some(), "slopes")),
+        ("across_scale", number(|tables| tables.scales[1])),
+        ("across", array(tables.is_some(), "across")),
+        ("heavy_per_row", float(heavy.map_or(0.0, |heavy| heavy.cells_per_row))),
+        ("heavy", array(heavy.is_some(), "heavy")),
+        ("heavy_exponent", float(heavy.map_or(0.0, |heavy| heavy.exponent))),
+        ("heavy_root_s", float(heavy.map_or(0.0, |heavy| heavy.root_s))),
+    ]
+}
+
+fn albedo(table: &AlbedoTable, name: &str) -> Members {
+    let masking = masking(table);
+    let [first, last] = table.ends;
+    let (sigma, view) = (table.roughness, table.view);
+    vec![
+        ("values", format!("{name}_albedo_{masking}")),
+        ("averages", format!("{name}_averages_{masking}")),
+        ("sigmas", table.sigmas.to_string()),
+        ("average_sigmas", table.averages.len().to_string()),
+        ("views", table.views.to_string()),
+        ("offset", float(sigma.offset as f32)),
+        ("first", float(sigma.first as f32)),
+        ("slow", float(sigma.slow as f32)),
+        ("linear", float(sigma.linear as f32)),
+        ("start", float(first as f32)),
+        ("range", float((last - first) as f32)),
+        ("sigma_min", float(table.sigma[0] as f32)),
+        ("sigma_max", float(table.sigma[1] as f32)),
+        ("weight", float(view.weight as f32)),
+        ("normal", float(view.normal as f32)),
+        ("share", float(view.share as f32)),
+        ("kappa", float(view.scale as f32)),
+        ("spread", float(view.spread as f32)),
+        ("floor", float(view.floor as f32)),
+        ("slope", float(view.slope as f32)),
+    ]
+}
+
+fn float(x: f32) -> String {
+    single(x) + "f"
+}

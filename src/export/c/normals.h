@@ -1,0 +1,201 @@
+/* ---- Visible normals ------------------------------------------------------------------------- */
+
+/* The sine and the cosine of 2 pi u for u in [0, 1], to 2e-7. */
+STUDENT_T_FUNCTION float student_t_impl_sine(float x)
+{
+    const float y = x * x;
+    return x * (6.2831853f +
+                y * (-41.34168f + y * (81.602475f + y * (-76.58117f + y * 39.759827f))));
+}
+
+STUDENT_T_FUNCTION void student_t_impl_turn(float u, float *sine, float *cosine)
+{
+    const float x = 0.5f - u, quarter = fabsf(x) - 0.25f, rest = 0.25f - fabsf(quarter);
+    *sine = student_t_impl_sine(x < 0.0f ? -rest : rest);
+    *cosine = student_t_impl_sine(quarter);
+}
+
+/* A visible normal of GGX by spherical caps (Dupuy & Benyoub 2023, doi:10.1111/cgf.14867). */
+STUDENT_T_FUNCTION void student_t_impl_sample_cap(float sigma_x, float sigma_y, const float v[3],
+                                                  const float u[2], float m[3])
+{
+    const float vz = student_t_impl_max(v[2], 0.0f);
+    float x = sigma_x * v[0], y = sigma_y * v[1], z = vz;
+    float length = sqrtf(x * x + y * y + z * z), height, up, radius, sine, cosine;
+    if (!(length >= 1e-6f)) { /* the squares of a short view would leave single precision */
+        const float r = length > 0.0f ? 1.0f / length : 0.0f;
+        x *= r;
+        y *= r;
+        z = length > 0.0f ? z * r : 1.0f;
+        if (!(length > 0.0f)) x = y = 0.0f;
+        length = 1.0f;
+    }
+    /* First the height of the half vector, so that it keeps its digits where the cap ends at -z. */
+    height = student_t_impl_max(1.0f - student_t_impl_unit(u[0]), 5.9604645e-8f) * (length + z);
+    up = height - z;
+    radius = sqrtf(student_t_impl_max((length - up) * (length + up), 0.0f));
+    student_t_impl_turn(student_t_impl_unit(u[1]), &sine, &cosine);
+    x = sigma_x * (x + radius * cosine);
+    y = sigma_y * (y + radius * sine);
+    {
+        const float vx = v[0], vy = v[1];
+        student_t_impl_raise(x, y, height, 1.0f, m);
+        student_t_impl_face(vx, vy, vz, m);
+    }
+}
+
+/* The distance of a random number from the nearer of 0 and 1, and 0 outside them. */
+STUDENT_T_FUNCTION float student_t_impl_end(float u)
+{
+    return student_t_impl_max(student_t_impl_min(u, 1.0f - u), 0.0f);
+}
+
+/* -1 if so, else 1: no branch, which no processor could predict of a random number. */
+STUDENT_T_FUNCTION float student_t_impl_sign(int negative) { return (float)(1 - 2 * negative); }
+
+/* A visible normal by inverting the distributions of two slopes, which are independent: x : z in
+ * the plane of incidence and t : tz across it, in units of sqrt(z z + s x x). Tables hold the
+ * distance g of a slope's half tangent from the end of its half, so that the slope is 2(1 - g) over
+ * g(2 - g). */
+STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shape, float sigma_x,
+                                                     float sigma_y, const float v[3],
+                                                     const float u[2], float m[3])
+{
+    student_t_impl_direction d;
+    float along = u[0], number = 1.0f, length, at, silhouette, x, z, t, tz, norm;
+    float sign = 1.0f, shrink = 1.0f, clear;
+    int is_heavy = 0;
+
+    /* The slope across. */
+    {
+        const float root = sqrtf(sqrtf(student_t_impl_end(u[1])));
+        float w, g;
+        const int cell = student_t_impl_cell(root * shape->across_scale, &w);
+        g = student_t_impl_cubic(shape->across + 4 * cell, w);
+        t = (g - 1.0f) * student_t_impl_sign(u[1] > 0.5f);
+        tz = g * (2.0f - g);
+    }
+
+    /* The view, among the rows of the table, and the g of its silhouette in the first half. */
+    d = student_t_impl_stretch(sigma_x, sigma_y, v);
+    length = sqrtf(d.rho2 + d.z * d.z);
+    if (shape->slopes_crowded) {
+        const float steep = length + d.z;
+        silhouette = student_t_impl_unit(d.rho * (steep + d.rho) / (steep * (d.rho + length)));
+        at = (1.0f - sqrtf(silhouette)) * shape->rows;
+    } else {
+        const float tau = d.z / (d.rho + length);
+        silhouette = 1.0f - tau;
+        at = tau * shape->rows;
+    }
+
+    /* The first number chooses between the tables and what is in none, which comes last. */
+    if (shape->heavy) {
+        float w, share, rest;
+        const int cell = student_t_impl_cell(at * shape->heavy_per_row, &w);
+        share = student_t_impl_cubic(shape->heavy + 4 * cell, w);
+        rest = 1.0f - share;
+        along = student_t_impl_unit(along);
+        is_heavy = along > rest;
+        number = is_heavy ? student_t_impl_min((1.0f - along) / share, 1.0f) : 1.0f;
+        along /= rest;
+    }
+
+    /* Half the slope in the plane. */
+    if (is_heavy) {
+        /* (1 + s x x)^(-1/2) = number^exponent, at least 2^-100; what would make z subnormal is
+         * kept apart. */
+        const float power = log2f(student_t_impl_max(number, 1e-37f)) * shape->heavy_exponent;
+        const float zeta = exp2f(student_t_impl_max(power, -100.0f));
+        const float large = student_t_impl_max(zeta, 1e-15f);
+        x = 0.5f * sqrtf(student_t_impl_max((1.0f - zeta) * (1.0f + zeta), 0.0f));
+        z = large * shape->heavy_root_s;
+        shrink = zeta / large;
+        clear = x + z;
+    } else {
+        const int half = along > 0.5f;
+        const float root = sqrtf(sqrtf(student_t_impl_end(along)));
+        const float *low, *high;
+        float w, w1, between, step, value[2], slope[2], g;
+        const int cell = student_t_impl_cell(root * shape->along_scale, &w);
+        const int row = student_t_impl_cell(at, &between);
+        low = shape->slopes + 2 * ((2 * row + half) * shape->numbers + cell);
+        high = low + 4 * shape->numbers;
+        /* Linear between the views, a cubic through values and slopes along the number. */
+        value[0] = low[0] + between * (high[0] - low[0]);
+        slope[0] = low[1] + between * (high[1] - low[1]);
+        value[1] = low[2] + between * (high[2] - low[2]);
+        slope[1] = low[3] + between * (high[3] - low[3]);
+        w1 = 1.0f - w;
+        step = (w * w) * (3.0f - 2.0f * w);
+        g = (value[0] + step * (value[1] - value[0])) + (w * w1) * (w1 * slope[0] - w * slope[1]);
+        x = g - 1.0f;
+        z = g * (2.0f - g);
+        sign = student_t_impl_sign(half);
+        clear = g - silhouette * (0.5f + 0.5f * sign);
+    }
+
+    /* The normal, turned to the azimuth of the view. */
+    norm = sqrtf(z * z + (4.0f * shape->s) * (x * x));
+    {
+        const float vx = v[0], vy = v[1];
+        const float ahead = x * (sign * tz), aside = norm * t;
+        student_t_impl_raise(ahead * (sigma_x * d.x) - aside * (sigma_x * d.y),
+                             ahead * (sigma_y * d.y) + aside * (sigma_y * d.x),
+                             z * (0.5f * d.frame * tz), shrink, m);
+        /* v.m is at least rho length/|m| times g tz less that of the silhouette, from which ten
+         * roundings, of terms of up to rho length (3 + 6 |t|)/|m|, cannot take it below 0. */
+        if (!(clear * tz >= 2e-6f * tz + 4e-6f * fabsf(t)))
+            student_t_impl_face(vx, vy, d.z, m);
+    }
+}
+
+/* A normal m visible from v, from two numbers. u[0] chooses the slope along the azimuth of the view
+ * and u[1] that across, both rising (for gamma < 1.8 within either of two parts); for GGX they are
+ * height and azimuth of a point of a spherical cap. m is of unit length and above the horizon. */
+STUDENT_T_FUNCTION void student_t_sample_visible_normal(const student_t_shape *shape,
+                                                        const float sigma[2], const float v[3],
+                                                        const float u[2], float m[3])
+{
+    const float sigma_x = student_t_impl_sigma(sigma[0]), sigma_y = student_t_impl_sigma(sigma[1]);
+    if (shape->is_ggx) {
+        student_t_impl_sample_cap(sigma_x, sigma_y, v, u, m);
+    } else {
+        student_t_impl_sample_tables(shape, sigma_x, sigma_y, v, u, m);
+    }
+}
+
+/* Density of visible normals, max(0, v.m) D(m) G1(v)/(v.n). */
+STUDENT_T_FUNCTION float student_t_visible_normal_pdf(const student_t_shape *shape,
+                                                      const float sigma[2], const float v[3],
+                                                      const float m[3])
+{
+    const student_t_impl_direction d =
+        student_t_impl_stretch(student_t_impl_sigma(sigma[0]), student_t_impl_sigma(sigma[1]), v);
+    const float facing = student_t_impl_max(v[0] * m[0] + v[1] * m[1] + v[2] * m[2], 0.0f);
+    const float density = facing * student_t_d(shape, sigma, m);
+    return student_t_impl_finite(density * student_t_impl_inverse_area(shape, d));
+}
+
+/* The light l = 2 (v.m) m - v that v is reflected to. */
+STUDENT_T_FUNCTION void student_t_reflect(const float v[3], const float m[3], float l[3])
+{
+    const float twice = 2.0f * (v[0] * m[0] + v[1] * m[1] + v[2] * m[2]);
+    l[0] = twice * m[0] - v[0];
+    l[1] = twice * m[1] - v[1];
+    l[2] = twice * m[2] - v[2];
+}
+
+/* Density of the light that v is reflected to by a visible normal m: that of m over 4 v.m, which is
+ * D(m) G1(v)/(4 v.n). */
+STUDENT_T_FUNCTION float student_t_reflection_pdf(const student_t_shape *shape,
+                                                  const float sigma[2], const float v[3],
+                                                  const float m[3])
+{
+    const student_t_impl_direction d =
+        student_t_impl_stretch(student_t_impl_sigma(sigma[0]), student_t_impl_sigma(sigma[1]), v);
+    if (!(v[0] * m[0] + v[1] * m[1] + v[2] * m[2] > 0.0f)) return 0.0f;
+    return student_t_impl_finite(0.25f * student_t_d(shape, sigma, m) *
+                                 student_t_impl_inverse_area(shape, d));
+}
+

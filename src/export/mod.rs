@@ -1,0 +1,47 @@
+//! Writes one shape γ of the family, for any roughness, as source text for renderers in other
+//! languages: tables and lookups, without an axis of γ, an archive to read, or a library to link.
+//!
+//! [`Shape::bind`] collapses the tables of a set at one γ. Every target is written from it, so all
+//! of them hold the same numbers; [`files`] makes the texts of one.
+//!
+//! ```
+//! use microfacet_bake::export::{Shape, Target, files};
+//! use microfacet_sampler::Tables;
+//!
+//! let shape = Shape::bind(&Tables::embedded(), 3.0)?;
+//! let names = files(Target::C, &[shape]).into_iter().map(|file| file.name);
+//! assert_eq!(names.collect::<Vec<_>>(), ["student_t.h", "student_t_gamma_3.h"]);
+//! # Ok::<(), microfacet_sampler::MaterialError>(())
+//! ```
+
+mod albedo;
+mod c;
+mod numbers;
+mod shape;
+
+pub use albedo::AlbedoTable;
+pub use shape::Shape;
+
+/// What can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// Headers for C99, C++11, CUDA and HIP.
+    C,
+}
+
+/// A file of an export.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExportFile {
+    /// Its name, to stand in the same folder as all others of the target.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// The files of a target: those with functions, which do not depend on the shapes, then one a
+/// shape.
+pub fn files(target: Target, shapes: &[Shape]) -> Vec<ExportFile> {
+    match target {
+        Target::C => c::files(shapes),
+    }
+}

@@ -1,0 +1,68 @@
+//! One shape with its tables, as every target writes it.
+
+use microfacet_common::Masking;
+use microfacet_sampler::internals::{ShapeTables, tables_of_shape};
+use microfacet_sampler::{MaterialError, Table, Tables};
+
+use super::albedo::AlbedoTable;
+
+/// One shape γ: what lookups of any roughness read.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// γ.
+    pub gamma: f64,
+    /// Masking and slopes; none for GGX, γ = 2, which has closed forms.
+    pub tables: Option<ShapeTables>,
+    /// Albedos, in the order of [`Masking::ALL`].
+    pub albedos: [AlbedoTable; 2],
+    /// The forms of masking whose albedos are those of the default set, since the set that was
+    /// asked for has none for every roughness.
+    pub from_default: Vec<Masking>,
+    /// Errors of the tables against the model.
+    pub errors: Errors,
+}
+
+/// The largest errors that the certificates of tables state; 0 for closed forms.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Of G1, absolute.
+    pub g1: f64,
+    /// Of the cumulative distribution of visible normals in the plane of incidence and across it.
+    pub cdf: [f64; 2],
+}
+
+impl Shape {
+    /// Collapses the tables of a set at γ. Albedos that the set does not have for every roughness
+    /// are those of the default set.
+    ///
+    /// # Errors
+    /// [`MaterialError`] for a γ that the set does not cover.
+    pub fn bind(tables: &Tables, gamma: f64) -> Result<Self, MaterialError> {
+        let (lobe, errors) = if gamma == 2.0 {
+            (None, Errors::default())
+        } else {
+            let lobe = tables.student_t(1.0, gamma)?;
+            let [masking, slopes, across] = tables_of_shape(tables, gamma)?;
+            let of = |table: &Table, name| table.certificate.get(name).copied().unwrap_or(0.0);
+            let cdf = [slopes, across].map(|table| of(table, "cdf_max_error"));
+            let errors = Errors { g1: of(masking, "g1_max_error"), cdf };
+            (Some(ShapeTables::new(&lobe)), errors)
+        };
+        let mut from_default = Vec::new();
+        let mut albedo = |masking| {
+            AlbedoTable::find(tables, gamma, masking).or_else(|| {
+                from_default.push(masking);
+                AlbedoTable::find(&Tables::embedded(), gamma, masking)
+            })
+        };
+        let [a, b] = Masking::ALL.map(&mut albedo);
+        let albedos = [a, b].map(|found| found.ok_or_else(|| no_albedo(gamma)));
+        let [a, b] = albedos;
+        Ok(Self { gamma, tables: lobe, albedos: [a?, b?], from_default, errors })
+    }
+}
+
+/// Only of a shape beyond the default set, in a set without albedos.
+fn no_albedo(gamma: f64) -> MaterialError {
+    MaterialError::NoTable(format!("albedos of gamma {gamma} for every sigma"))
+}
