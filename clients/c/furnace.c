@@ -10,30 +10,30 @@
 static double one_bounce(const student_t_shape *shape, const float sigma[2], const float v[3],
                          enum student_t_masking masking)
 {
-    const long COUNT = 28657, STEP = 17711; /* successive Fibonacci numbers */
+    const long count = 28657, step = 17711; /* successive Fibonacci numbers */
     double sum = 0.0;
-    for (long i = 0; i < COUNT; ++i) {
-        const float u[2] = {((float)i + 0.5f) / (float)COUNT,
-                            ((float)(i * STEP % COUNT) + 0.5f) / (float)COUNT};
+    for (long i = 0; i < count; ++i) {
+        const float u[2] = {((float)i + 0.5f) / (float)count,
+                            ((float)(i * step % count) + 0.5f) / (float)count};
         float m[3], l[3];
         student_t_sample_visible_normal(shape, sigma, v, u, m);
         student_t_reflect(v, m, l);
         sum += student_t_reflection_weight(shape, sigma, v, l, masking);
     }
-    return sum / (double)COUNT;
+    return sum / (double)count;
 }
 
 /* The integral of the compensating lobe times the cosine of the light, l_z = t^3. */
 static double further_bounces(const student_t_shape *shape, const float sigma[2], const float v[3],
                               enum student_t_masking masking)
 {
-    enum { STEPS = 400 };
+    const int steps = 400;
     double sum = 0.0;
-    for (int i = 0; i < STEPS; ++i) {
-        const float t = ((float)i + 0.5f) / STEPS, z = t * t * t;
+    for (int i = 0; i < steps; ++i) {
+        const float t = ((float)i + 0.5f) / (float)steps, z = t * t * t;
         const float l[3] = {sqrtf(1.0f - z * z), 0.0f, z};
         sum += 2.0 * 3.14159265 * student_t_compensation(shape, sigma, v, l, masking) *
-               (z * 3.0f * t * t) / STEPS;
+               (z * 3.0f * t * t) / steps;
     }
     return sum;
 }

@@ -3,14 +3,16 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use clap::builder::UnknownArgumentValueParser;
 
 use microfacet_bake::export::{Shape, Target, files};
 use microfacet_bake::store;
 
-use super::{Done, Failure, Outcome, report, summarize, tables, values, write_file};
+use super::{Done, Failure, Outcome, report, summarize, tables, values};
 
 /// Write shapes as source text: tables of one gamma for any roughness, with their lookups.
 #[derive(clap::Args)]
+#[allow(dead_code, reason = "no value of `sigma` is ever accepted")]
 #[command(after_help = "Example:
   microfacet-bake export c --gamma 3 --gamma 1.65 --out student-t
 writes student_t.h, student_t_gamma_3.h and student_t_gamma_1p65.h: headers for C99,
@@ -22,8 +24,8 @@ pub(super) struct Args {
     /// Shape, or several, separated by commas or in several options.
     #[arg(long, value_name = "G", required = true, value_delimiter = ',', value_parser = values::gamma)]
     gamma: Vec<f64>,
-    #[command(flatten)]
-    others: values::OtherNames,
+    #[arg(long, aliases = ["alpha", "roughness"], hide = true, value_name = "X", value_parser = every_sigma())]
+    sigma: Option<String>,
     /// A table file, or a folder with one; the embedded default if absent.
     #[arg(long)]
     tables: Option<PathBuf>,
@@ -36,6 +38,12 @@ pub(super) struct Args {
 enum TargetArg {
     /// Headers for C99, C++11, CUDA and HIP.
     C,
+}
+
+fn every_sigma() -> UnknownArgumentValueParser {
+    UnknownArgumentValueParser::suggest(
+        "an export serves every roughness: its functions take sigma as an argument",
+    )
 }
 
 impl From<TargetArg> for Target {
@@ -56,23 +64,20 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     for shape in &shapes {
         for masking in &shape.from_default {
-            report(
-                "note",
-                format_args!(
-                    "gamma {}: the set has no albedos of {masking} masking for every sigma; those of the default set are written",
-                    shape.gamma
-                ),
+            let gamma = shape.gamma;
+            let note = format!(
+                "gamma {gamma}: the set has no albedos of {masking} masking for every sigma in [0, \
+                 3]; those of the default set are written"
             );
+            report("note", note);
         }
     }
-    // Nothing is written unless all of it can be.
     let files = files(args.target.into(), &shapes);
-    let folder = &args.out;
-    store::make_folder(folder).map_err(|why| Failure(format!("{}: {why}", folder.display())))?;
-    for file in &files {
-        let path = folder.join(&file.name);
-        write_file(&path, file.text.as_bytes())?;
-        summarize(&format!("{}  {} bytes\n", path.display(), file.text.len()))?;
+    let contents = files.iter().map(|file| (&file.name[..], file.text.as_bytes()));
+    let written = store::replace_files(&args.out, contents)
+        .map_err(|(path, why)| Failure(format!("{}: {why}", path.display())))?;
+    for (path, file) in written.iter().zip(&files) {
+        summarize(&format!("{} ({} bytes)\n", path.display(), file.text.len()))?;
     }
     Ok(Done::Ok)
 }

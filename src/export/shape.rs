@@ -20,6 +20,10 @@ pub struct Shape {
     pub from_default: Vec<Masking>,
     /// Errors of the tables against the model.
     pub errors: Errors,
+    /// The program that baked the set.
+    pub generator: String,
+    /// The number of its values, raised whenever they change.
+    pub numerics: u32,
 }
 
 /// The largest errors that the certificates of tables state; 0 for closed forms.
@@ -56,9 +60,17 @@ impl Shape {
             })
         };
         let [a, b] = Masking::ALL.map(&mut albedo);
-        let albedos = [a, b].map(|found| found.ok_or_else(|| no_albedo(gamma)));
-        let [a, b] = albedos;
-        Ok(Self { gamma, tables: lobe, albedos: [a?, b?], from_default, errors })
+        let [a, b] = [a, b].map(|found| found.ok_or_else(|| no_albedo(gamma)));
+        let provenance = tables.provenance();
+        Ok(Self {
+            gamma,
+            tables: lobe,
+            albedos: [a?, b?],
+            from_default,
+            errors,
+            generator: provenance.generator.clone(),
+            numerics: provenance.numerics,
+        })
     }
 }
 

@@ -53,6 +53,38 @@ pub fn replace_with(
     pending.commit()
 }
 
+/// Writes several files into a folder, which is made if it is not there, each as [`replace`] does.
+/// All are completed beside the old ones before the first takes its place.
+///
+/// # Errors
+/// The path and the operating system's error. Unless the disk itself fails at the very end, all old
+/// files are then untouched.
+pub fn replace_files<'a>(
+    folder: &Path,
+    files: impl IntoIterator<Item = (&'a str, &'a [u8])>,
+) -> Result<Vec<PathBuf>, (PathBuf, io::Error)> {
+    make_folder(folder).map_err(|why| (folder.to_path_buf(), why))?;
+    let mut complete = Vec::new();
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        let pending =
+            destination(&path).and_then(|to| Pending::new(to, |out| out.write_all(bytes)));
+        match pending {
+            Ok(pending) => complete.push((path, pending)),
+            Err(why) => return Err((path, why)),
+        }
+    }
+    let _writing = interrupt::writing();
+    let mut written = Vec::new();
+    for (path, pending) in complete {
+        match pending.commit() {
+            Ok(()) => written.push(path),
+            Err(why) => return Err((path, why)),
+        }
+    }
+    Ok(written)
+}
+
 /// [`replace`] as part of a write that is marked already.
 pub(super) fn replace_unguarded(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Pending::new(destination(path)?, |out| out.write_all(bytes))?.commit()
@@ -254,10 +286,7 @@ pub(super) fn partial_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
 }
 
 /// Makes a folder, and those it is in, unless it is there.
-///
-/// # Errors
-/// The operating system's error, or one that says what is in the way.
-pub fn make_folder(path: &Path) -> io::Result<()> {
+pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
     let why = match (fs::metadata(path), fs::read_link(path)) {
         (Ok(found), _) if found.is_dir() => return Ok(()),
         (Ok(found), _) if found.is_file() => "is a file; name a folder".into(),

@@ -75,15 +75,15 @@ fn comment(shape: &Shape, name: &str) -> String {
     let lobe = if shape.tables.is_some() {
         let [along, across] = shape.errors.cdf;
         format!(
-            " *   G1, G2, weights: {:.1e}
- *   D: a closed form, in single precision
+            " *   D: a closed form
+ *   G1, from which lambda, G2 and weights follow: {:.1e}
  *   visible normals: {along:.1e} of the cumulative distribution in the plane of incidence, and
- *     {across:.1e} of that across it; densities are the analytic ones, with the area from G1\n",
+ *     {across:.1e} of that across it
+ *   densities: analytic, with G1 from the table\n",
             shape.errors.g1
         )
     } else {
-        " *   D, G1, G2, weights, visible normals, densities: closed forms, in single precision\n"
-            .into()
+        " *   D, G1, lambda, G2, weights, visible normals, densities: closed forms\n".into()
     };
     let from_default = if shape.from_default.is_empty() {
         String::new()
@@ -91,24 +91,28 @@ fn comment(shape: &Shape, name: &str) -> String {
         let forms: Vec<_> = shape.from_default.iter().map(|masking| masking.name()).collect();
         format!(" * Albedos of {} masking are those of the default set.\n", forms.join(" and "))
     };
+    let [low, high] = correlated.sigma.map(|sigma| single(sigma as f32));
     format!(
         "/* SPDX-License-Identifier: CC0-1.0
  *
- * {name}.h: the Student-t lobe of gamma = {gamma} for any roughness, to be used with {HEADER_NAME}.
+ * {name}.h: the Student-t lobe of gamma = {gamma} for any roughness.
+ * {HEADER_NAME} has the functions and says how to use them.
+ *
  * Written by microfacet-bake {version}: microfacet-bake export c --gamma {}
+ * Tables: {}, numerics {}
  *
  * Largest errors, measured against the model in double precision:
 {lobe} *   albedo and its parts: {:.1e} for sigma >= 0.01 and cos theta >= 0.02, {:.1e} elsewhere
  *   averages: those of the albedo, and {:.1e} by interpolation
- * Albedos have tables for sigma from {} to {}.
+ * Albedos have tables for sigma from {low} to {high}.
 {from_default} */
 ",
         shape.gamma,
+        shape.generator,
+        shape.numerics,
         worst(|table| table.errors[0]),
         worst(|table| table.errors[1]),
         worst(|table| table.average_error),
-        single(correlated.sigma[0] as f32),
-        single(correlated.sigma[1] as f32),
     )
 }
 

@@ -133,7 +133,7 @@ fn directions(
     let allowed = DENSITY[0] + DENSITY[1] * log;
     let mut density = |name, a: f32, b: f32| {
         let difference = far(a, b);
-        if !(difference <= SMALLEST) {
+        if difference.is_nan() || difference > SMALLEST {
             worst.see(name, difference / f64::from(b), allowed, at);
         }
     };

@@ -50,8 +50,10 @@ pub fn compare(path: &str, gammas: &[f64]) -> bool {
                     Allowed::Density if difference <= 1.2e-38 => 0.0,
                     Allowed::Density => difference / want / (1e-5 + 2e-6 * log),
                 };
+                // NaN is worse than any number.
+                let share = if share.is_nan() { f64::INFINITY } else { share };
                 cells += 1;
-                if !(share <= worst.0) {
+                if share > worst.0 {
                     worst = (share, format!("line {}, {name}", line + 2));
                 }
             }

@@ -1,0 +1,162 @@
+//! Exports of shapes as source text. `clients/c/run` compiles them and compares their functions
+//! with the crate's; here is what needs no compiler.
+
+mod command;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use command::{ok, refused, run};
+use glam::Vec3;
+use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
+
+/// The numbers of each array in a header, by name.
+fn arrays(header: &str) -> BTreeMap<String, Vec<f32>> {
+    let definitions = header.split("STUDENT_T_DATA float ").skip(1);
+    let array = |text: &str| {
+        let (name, rest) = text.split_once('[').unwrap();
+        let (count, rest) = rest.split_once("] = {").unwrap();
+        let items = rest.split_once('}').unwrap().0.split(',').map(str::trim);
+        let numbers: Vec<f32> = items
+            .filter(|item| !item.is_empty())
+            .map(|item| item.strip_suffix('f').unwrap().parse().unwrap())
+            .collect();
+        assert_eq!(count, numbers.len().to_string(), "{name}");
+        (name.to_owned(), numbers)
+    };
+    definitions.map(array).collect()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_shape_is_a_small_header_beside_the_functions() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "c", "--gamma", "3,1.65", "--gamma", "inf", "--gamma", "1.501"];
+    let export = [&export[..], &["--gamma", "2", "--gamma", "3.0", "--out", "out"]].concat();
+    ok(at, &export);
+    let out = at.join("out");
+    let shapes = ["1p501", "1p65", "2", "3", "inf"].map(|g| format!("student_t_gamma_{g}.h"));
+    assert_eq!(names(&out), [&["student_t.h".into()], &shapes[..]].concat());
+    let mut sizes = Vec::new();
+    for name in names(&out) {
+        let text = fs::read_to_string(out.join(&name)).unwrap();
+        assert!(text.is_ascii() && text.ends_with("#endif\n"), "{name}");
+        assert!(text.contains("SPDX-License-Identifier: CC0-1.0"), "{name}");
+        let widest = text.lines().max_by_key(|line| line.len()).unwrap();
+        assert!(widest.len() <= 100, "{name}: {widest}");
+        assert!(text.len() < 250_000, "{name}: {}", text.len());
+        sizes.push(text.len());
+    }
+    // Closed forms leave only albedos.
+    let ggx = arrays(&fs::read_to_string(out.join("student_t_gamma_2.h")).unwrap());
+    assert!(ggx.keys().all(|name| name.contains("albedo") || name.contains("averages")), "{ggx:?}");
+    assert_eq!(ggx.len(), 4);
+}
+
+#[test]
+fn the_numbers_are_those_of_the_crate() {
+    let folder = tempfile::tempdir().unwrap();
+    ok(folder.path(), &["export", "c", "--gamma", "3", "--out", "."]);
+    let text = fs::read_to_string(folder.path().join("student_t_gamma_3.h")).unwrap();
+    let arrays = arrays(&text);
+    let array = |part: &str| &arrays[&format!("student_t_gamma_3_{part}")];
+    let member = |name: &str| {
+        let line = text.lines().find(|line| line.ends_with(&format!("/* {name} */"))).unwrap();
+        line.trim().split_once("f,").unwrap().0.parse::<f32>().unwrap()
+    };
+
+    // G1 from the cubics.
+    let tables = Tables::embedded();
+    let lobe = tables.student_t(0.4, 3.0).unwrap();
+    let (cubics, kappa) = (array("masking"), member("kappa"));
+    let cells = cubics.len() / 4 - 1;
+    assert_eq!(member("masking_cells"), cells as f32);
+    for i in 1..=100 {
+        let z = i as f32 / 100.0;
+        let v = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
+        let x = z / (z + kappa * 0.4 * v.x) * cells as f32;
+        let cell = (x as usize).min(cells);
+        let [a, b, c, d] = cubics[4 * cell..4 * cell + 4] else { unreachable!() };
+        let w = x - cell as f32;
+        let g1 = x * (a + w * (b + w * (c + w * d)));
+        assert!((g1 - lobe.g1(v)).abs() < 2e-6, "{z}: {g1} for {}", lobe.g1(v));
+    }
+
+    // Albedos at the largest roughness and normal incidence, and their averages.
+    for masking in Masking::ALL {
+        let name = masking.name().replace('-', "_");
+        let albedo = tables.albedo(3.0, 3.0, masking).unwrap();
+        let [e, bias, _] = *array(&format!("albedo_{name}")).last_chunk::<3>().unwrap();
+        assert!((1.0 + e - albedo.albedo(Vec3::Z)).abs() < 1e-6, "{masking}");
+        assert!((bias - albedo.moments(Vec3::Z).bias).abs() < 1e-6, "{masking}");
+        let [lost, bias, f82] = *array(&format!("averages_{name}")).last_chunk::<3>().unwrap();
+        let average = albedo.average_moments();
+        assert!((1.0 - lost.exp() - average.total()).abs() < 1e-6, "{masking}");
+        assert!((bias - average.bias).abs() < 1e-6 && (f82 - average.f82).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn other_sets_are_exported_with_what_they_lack() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("a.toml"), "[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 4.0\n").unwrap();
+    ok(at, &["bake", "a.toml", "--out", "set", "--quality", "draft"]);
+    let output = run(at, &["export", "c", "--gamma", "4", "--tables", "set", "--out", "out"]);
+    let notes = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && notes.contains("default set"), "{notes}");
+    let text = fs::read_to_string(at.join("out/student_t_gamma_4.h")).unwrap();
+    assert!(text.contains("masking are those of the default set"), "{text}");
+    // Draft tables are smaller.
+    ok(at, &["export", "c", "--gamma", "4", "--out", "default"]);
+    let default = fs::read_to_string(at.join("default/student_t_gamma_4.h")).unwrap();
+    let count = |text: &str| arrays(text)["student_t_gamma_4_slopes"].len();
+    assert!(2 * count(&text) < count(&default), "{} {}", count(&text), count(&default));
+
+    let message =
+        refused(at, &["export", "c", "--gamma", "5", "--tables", "set", "--out", "other"]);
+    assert!(message.contains("gamma = 4") && message.contains("bake"), "{message}");
+    assert!(!at.join("other").exists());
+}
+
+#[test]
+fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let cases: [(&[&str], &[&str]); 6] = [
+        (&["hlsl", "--gamma", "3"], &["hlsl", "possible values: c"]),
+        (&["c", "--gamma", "1.5"], &["(1.5, inf]"]),
+        (&["c", "--gamma", "1.5001"], &["1.5001", "1.501 or more"]),
+        (&["c", "--gamma", "three"], &["three", "number"]),
+        (&["c", "--gamma", "3", "--sigma", "0.3"], &["every roughness"]),
+        (&["c"], &["--gamma"]),
+    ];
+    for (arguments, parts) in cases {
+        let message = refused(at, &[&["export"], arguments, &["--out", "out"]].concat());
+        for part in parts {
+            assert!(message.contains(part), "{arguments:?}: {message}");
+        }
+        assert!(!at.join("out").exists(), "{arguments:?}");
+    }
+    // One of several that cannot be written leaves the others as they were.
+    fs::create_dir_all(at.join("out/student_t_gamma_3.h")).unwrap();
+    fs::write(at.join("out/student_t.h"), "old").unwrap();
+    let message = refused(at, &["export", "c", "--gamma", "3", "--out", "out"]);
+    assert!(message.contains("student_t_gamma_3.h") && message.contains("folder"), "{message}");
+    assert_eq!(fs::read_to_string(at.join("out/student_t.h")).unwrap(), "old");
+    assert_eq!(names(&at.join("out")), ["student_t.h", "student_t_gamma_3.h"]);
+    // What is there is replaced.
+    fs::remove_dir(at.join("out/student_t_gamma_3.h")).unwrap();
+    ok(at, &["export", "c", "--gamma", "3", "--out", "out"]);
+    assert!(fs::read_to_string(at.join("out/student_t.h")).unwrap().contains("STUDENT_T_H"));
+}
