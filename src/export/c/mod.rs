@@ -208,3 +208,37 @@ fn albedo(table: &AlbedoTable, name: &str) -> Members {
 fn float(x: f32) -> String {
     single(x) + "f"
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_shapes_ask_for_the_layout_of_the_functions() {
+        assert!(HEADER.contains(&format!("\n#define STUDENT_T_LAYOUT {LAYOUT}\n")));
+    }
+
+    #[test]
+    fn values_stand_in_the_order_of_the_members() {
+        // Members of a struct of the header, in order.
+        let members = |name: &str| -> Vec<String> {
+            let from = HEADER.split(&format!("typedef struct {name} {{")).nth(1).unwrap();
+            let body = from.split("\n}").next().unwrap();
+            let code: String =
+                body.split("/*").map(|part| part.rsplit("*/").next().unwrap()).collect();
+            let declarations = code.split(';').filter(|declaration| !declaration.trim().is_empty());
+            let names = declarations.flat_map(|declaration| {
+                let names = declaration.split(',').map(|name| name.trim());
+                names.map(|name| name.rsplit([' ', '*']).next().unwrap().to_owned())
+            });
+            names.collect()
+        };
+        let shape = Shape::bind(&microfacet_sampler::Tables::embedded(), 1.7).unwrap();
+        let written = |members: Members| members.into_iter().map(|(name, _)| name.to_owned());
+        let mut expected: Vec<_> = written(lobe(&shape, "x")).collect();
+        expected.push("albedo[2]".into());
+        assert_eq!(members("student_t_shape"), expected);
+        let albedo: Vec<_> = written(albedo(&shape.albedos[0], "x")).collect();
+        assert_eq!(members("student_t_albedo_table"), albedo);
+    }
+}
