@@ -5,27 +5,32 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use clap::builder::UnknownArgumentValueParser;
 
-use microfacet_bake::export::{Shape, Target, files};
+use microfacet_bake::export::{Shape, Target, files, largest_sigma};
 use microfacet_bake::store;
 
 use super::{Done, Failure, Outcome, report, summarize, tables, values};
 
 /// Write shapes as source text: tables of one gamma for any roughness, with their lookups.
 #[derive(clap::Args)]
-#[allow(dead_code, reason = "no value of `sigma` is ever accepted")]
+#[allow(dead_code, reason = "no value of a roughness is ever accepted")]
 #[command(after_help = "Example:
   microfacet-bake export c --gamma 3 --gamma 1.65 --out student-t
 writes student_t.h, student_t_gamma_3.h and student_t_gamma_1p65.h: headers for C99,
 C++11, CUDA and HIP. student_t.h says how to use them.")]
 pub(super) struct Args {
     /// What to write.
-    #[arg(value_enum)]
+    #[arg(value_enum, ignore_case = true)]
     target: TargetArg,
-    /// Shape, or several, separated by commas or in several options.
+    /// Shape in [1.501, inf]; 2 is GGX, inf is Beckmann. Several are separated by commas, or in
+    /// options of their own.
     #[arg(long, value_name = "G", required = true, value_delimiter = ',', value_parser = values::gamma)]
     gamma: Vec<f64>,
-    #[arg(long, aliases = ["alpha", "roughness"], hide = true, value_name = "X", value_parser = every_sigma())]
+    #[arg(long, hide = true, value_name = "X", value_parser = every_sigma())]
     sigma: Option<String>,
+    #[arg(long, hide = true, value_name = "X", value_parser = every_sigma())]
+    alpha: Option<String>,
+    #[arg(long, hide = true, value_name = "X", value_parser = every_sigma())]
+    roughness: Option<String>,
     /// A table file, or a folder with one; the embedded default if absent.
     #[arg(long)]
     tables: Option<PathBuf>,
@@ -37,6 +42,7 @@ pub(super) struct Args {
 #[derive(Clone, Copy, ValueEnum)]
 enum TargetArg {
     /// Headers for C99, C++11, CUDA and HIP.
+    #[value(aliases = ["c++", "cpp", "cuda", "hip"])]
     C,
 }
 
@@ -64,10 +70,10 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     for shape in &shapes {
         for masking in &shape.from_default {
-            let gamma = shape.gamma;
+            let (gamma, largest) = (shape.gamma, largest_sigma());
             let note = format!(
-                "gamma {gamma}: the set has no albedos of {masking} masking for every sigma in [0, \
-                 3]; those of the default set are written"
+                "gamma {gamma}: the set has no albedos of {masking} masking for every sigma up to \
+                 {largest}; those of the default set are written"
             );
             report("note", note);
         }

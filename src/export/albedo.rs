@@ -40,13 +40,13 @@ pub struct AlbedoTable {
     pub average_error: f64,
     /// Errors of the table against the model, of E, bias and F82: for σ ≥ 0.01 and cos θ ≥ 0.02,
     /// and elsewhere.
-    pub errors: [f64; 2],
+    pub errors: [Option<f64>; 2],
 }
 
 impl AlbedoTable {
     /// From the first table of a set that has the shape for every roughness; `None` if none has.
     pub(super) fn find(tables: &Tables, gamma: f64, masking: Masking) -> Option<Self> {
-        let found = ShapeAlbedo::find(tables, gamma, masking, largest())?;
+        let found = ShapeAlbedo::find(tables, gamma, masking, largest_sigma())?;
         let (first, last) = (*found.nodes.first()?, *found.nodes.last()?);
         let step = (last - first) / (found.nodes.len() - 1) as f64;
         let even = |(i, node): (usize, &f64)| (node - first - step * i as f64).abs() < 1e-9 * step;
@@ -115,13 +115,13 @@ fn average_of(table: &Table, sigma: f64, gamma: f64) -> Option<[f64; 3]> {
 }
 
 /// The largest error of a table's certificate, of E and its parts.
-fn worst(table: &Table, part: &str) -> f64 {
+fn worst(table: &Table, part: &str) -> Option<f64> {
     let of = |channel| table.certificate.get(&format!("{channel}_max_error{part}")).copied();
-    ["e", "scale", "bias", "f82"].into_iter().filter_map(of).fold(0.0, f64::max)
+    ["e", "scale", "bias", "f82"].into_iter().filter_map(of).reduce(f64::max)
 }
 
-/// The σ up to which an export has albedos, that of the default set.
-fn largest() -> f64 {
+/// The σ up to which every export has albedos, that of the default set.
+pub fn largest_sigma() -> f64 {
     let sets = Tables::embedded();
     let table = sets.table(Kind::Albedo).expect("the default set has albedos");
     table.subject.covers.and_then(|covers| covers.sigma).map_or(f64::INFINITY, |sigma| sigma[1])

@@ -7,16 +7,17 @@ const WIDTH: usize = 100;
 
 /// γ as part of an identifier and of a file's name: `3`, `1p65`, `inf`.
 pub(super) fn identifier(gamma: f64) -> String {
-    shortest(gamma.to_string(), format!("{gamma:e}")).replace('.', "p")
+    text(gamma).replace('.', "p")
 }
 
-/// γ for people: `3`, `1.65`, `infinity`.
-pub(super) fn words(gamma: f64) -> String {
-    if gamma.is_finite() {
-        shortest(gamma.to_string(), format!("{gamma:e}"))
-    } else {
-        "infinity".into()
-    }
+/// γ as the command reads it: `3`, `1.65`, `inf`.
+pub(super) fn text(gamma: f64) -> String {
+    shortest(gamma.to_string(), format!("{gamma:e}"))
+}
+
+/// An error for people.
+pub(super) fn error(error: Option<f64>) -> String {
+    error.map_or_else(|| "not stated".into(), |error| format!("{error:.1e}"))
 }
 
 /// A single-precision number in the fewest digits that bring it back, as all languages with a
@@ -61,7 +62,7 @@ mod tests {
     fn shapes_have_names() {
         let names = [3.0, 1.65, f64::INFINITY, 2.0, 1e300, 10.0].map(identifier);
         assert_eq!(names, ["3", "1p65", "inf", "2", "1e300", "10"]);
-        assert_eq!(words(f64::INFINITY), "infinity");
+        assert_eq!([text(f64::INFINITY), text(1e38)], ["inf", "1e38"]);
     }
 
     #[test]

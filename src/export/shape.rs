@@ -26,13 +26,13 @@ pub struct Shape {
     pub numerics: u32,
 }
 
-/// The largest errors that the certificates of tables state; 0 for closed forms.
+/// The largest errors that the certificates of tables state, over all shapes that they serve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
     /// Of G1, absolute.
-    pub g1: f64,
+    pub g1: Option<f64>,
     /// Of the cumulative distribution of visible normals in the plane of incidence and across it.
-    pub cdf: [f64; 2],
+    pub cdf: [Option<f64>; 2],
 }
 
 impl Shape {
@@ -47,7 +47,7 @@ impl Shape {
         } else {
             let lobe = tables.student_t(1.0, gamma)?;
             let [masking, slopes, across] = tables_of_shape(tables, gamma)?;
-            let of = |table: &Table, name| table.certificate.get(name).copied().unwrap_or(0.0);
+            let of = |table: &Table, name| table.certificate.get(name).copied();
             let cdf = [slopes, across].map(|table| of(table, "cdf_max_error"));
             let errors = Errors { g1: of(masking, "g1_max_error"), cdf };
             (Some(ShapeTables::new(&lobe)), errors)

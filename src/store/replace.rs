@@ -57,8 +57,8 @@ pub fn replace_with(
 /// All are completed beside the old ones before the first takes its place.
 ///
 /// # Errors
-/// The path and the operating system's error. Unless the disk itself fails at the very end, all old
-/// files are then untouched.
+/// The path and the operating system's error. All old files are then untouched, unless the disk
+/// itself failed at the very end, when some may be replaced.
 pub fn replace_files<'a>(
     folder: &Path,
     files: impl IntoIterator<Item = (&'a str, &'a [u8])>,
@@ -67,20 +67,16 @@ pub fn replace_files<'a>(
     let mut complete = Vec::new();
     for (name, bytes) in files {
         let path = folder.join(name);
-        let pending =
-            destination(&path).and_then(|to| Pending::new(to, |out| out.write_all(bytes)));
-        match pending {
-            Ok(pending) => complete.push((path, pending)),
-            Err(why) => return Err((path, why)),
-        }
+        let pending = destination(&path)
+            .and_then(|to| Pending::new(to, |out| out.write_all(bytes)))
+            .map_err(|why| (path.clone(), why))?;
+        complete.push((path, pending));
     }
     let _writing = interrupt::writing();
     let mut written = Vec::new();
     for (path, pending) in complete {
-        match pending.commit() {
-            Ok(()) => written.push(path),
-            Err(why) => return Err((path, why)),
-        }
+        pending.commit().map_err(|why| (path.clone(), why))?;
+        written.push(path);
     }
     Ok(written)
 }

@@ -25,8 +25,8 @@ pub struct ShapeTables {
     pub masking: Vec<Cell>,
     /// Whether the view coordinate of slopes is crowded.
     pub slopes_crowded: bool,
-    /// Cells of the view coordinate of slopes.
-    pub rows: f32,
+    /// Cells of the view coordinate of slopes, and the reciprocal.
+    pub rows: [f32; 2],
     /// Nodes of a half row of slopes, for u ≤ ½ or u > ½.
     pub numbers: usize,
     /// Factors from min(u, 1−u)^¼ to cells, along the plane of incidence and across it.
@@ -72,7 +72,7 @@ impl ShapeTables {
             masking_cells: slices.shadowing_cells,
             masking: slices.shadowing.clone(),
             slopes_crowded: slices.view.crowded,
-            rows: slices.fast.rows[0],
+            rows: slices.fast.rows,
             numbers: slices.half_cells + 1,
             scales: slices.fast.scales,
             slopes: slices.slope.clone(),

@@ -38,9 +38,8 @@ STUDENT_T_FUNCTION student_t_impl_albedo student_t_impl_albedo_of(const student_
 {
     student_t_impl_albedo a;
     const student_t_albedo_table *t = &shape->albedo[masking == STUDENT_T_UNCORRELATED ? 0 : 1];
-    /* Roots first: their product is in range, and that of the sigmas need not be. */
-    const float stand_in = sqrtf(student_t_impl_max(sigma[0], 0.0f)) *
-                           sqrtf(student_t_impl_max(sigma[1], 0.0f));
+    const float stand_in =
+        sqrtf(student_t_impl_sigma(sigma[0]) * student_t_impl_sigma(sigma[1]));
     a.table = t;
     a.sigma = student_t_impl_min(student_t_impl_max(stand_in, t->sigma_min), t->sigma_max);
     a.floor = t->floor * (t->slope * a.sigma) / (t->floor + t->slope * a.sigma);
@@ -48,7 +47,7 @@ STUDENT_T_FUNCTION student_t_impl_albedo student_t_impl_albedo_of(const student_
                    t->linear * a.sigma;
     a.coordinate = (a.coordinate - t->start) / t->range;
     a.start = student_t_impl_six(a.coordinate * (float)(t->sigmas - 1), t->sigmas, a.weights);
-    if (!(stand_in > 0.0f)) a.sigma = 0.0f;
+    if (!(sigma[0] > 0.0f && sigma[1] > 0.0f)) a.sigma = 0.0f;
     return a;
 }
 
@@ -219,7 +218,9 @@ STUDENT_T_FUNCTION void student_t_albedo_average_parts(const student_t_shape *sh
 
 /* The lobe of all bounces after the first with F = 1, a BRDF without the cosine:
  * (1 - E(v))(1 - E(l))/(pi (1 - E_avg)) per steradian (Kulla & Conty 2017). For a conductor
- * multiply it by F_avg^2 E_avg/(1 - F_avg (1 - E_avg)), with F_avg its average reflectance. */
+ * multiply it by F_avg^2 E_avg/(1 - F_avg (1 - E_avg)), with F_avg its average reflectance, which
+ * is (20 F0 + F90)/21 for Schlick's. Drawing lights by the cosine suits it for sigma >= 0.3; smooth
+ * surfaces lose their light at grazing, where such samples have weights of the order of 1/sigma. */
 STUDENT_T_FUNCTION float student_t_compensation(const student_t_shape *shape, const float sigma[2],
                                                 const float v[3], const float l[3],
                                                 enum student_t_masking masking)

@@ -14,10 +14,13 @@
  *     float m[3], l[3], weight, pdf;
  *     student_t_sample_visible_normal(shape, sigma, v, u, m);
  *     student_t_reflect(v, m, l);
- *     weight = student_t_reflection_weight(shape, sigma, v, l, masking);   (f cos / pdf, if F = 1)
- *     pdf = student_t_reflection_pdf(shape, sigma, v, m);           (of the light l, per steradian)
+ *     weight = student_t_reflection_weight(shape, sigma, v, l, masking); // f cos / pdf, for F = 1
+ *     pdf = student_t_reflection_pdf(shape, sigma, v, m); // of l, per steradian
  *
- * Towards a given light f cos = F D(m) G2(v, l)/(4 v_z), with m the half vector.
+ * Towards a given light l, normalise m = v + l: f cos = F D(m) G2(v, l)/(4 v_z), and its density is
+ * student_t_reflection_pdf of that m. Densities are over all lights. Those below the horizon have
+ * their share of them, and the weight 0. A surface with sigma below 1e-3, or below 1e-4 for gamma <
+ * 1.6, is better rendered as a mirror.
  *
  * Frame. Directions are float[3], unit vectors in the tangent frame, in which the normal of the
  * surface is (0, 0, 1): v to the viewer, l to the light, m a microfacet normal, w any of them.
@@ -25,33 +28,41 @@
  * are per steradian. All is one-sided: mirror a direction on the other side of a transmitting
  * surface at the surface first.
  *
- * Domain. No function returns NaN or reads outside its tables.
+ * Domain. No function reads outside its tables. With directions of length 1, null, or with NaN
+ * among their coordinates, none but student_t_reflect returns NaN.
  *   sigma     Taken at the nearer end of [1e-8, 1e6], NaN at 1e-8. Albedos are tabulated up to the
- *             sigma_max of the shape, at least 3, and beyond are those of sigma_max. With a sigma
- *             of 0 their surface is a mirror, which has the albedo 1.
+ *             sigma_max of the shape, at least 3, and beyond are those of sigma_max. Where a sigma
+ *             is not above 0, or NaN, their surface is a mirror, which has the albedo 1.
  *   u         Two random numbers in [0, 1], ends included; others are taken at the nearer end, NaN
  *             at 0.
- *   v, l, w   At or below the horizon masking is 0, lambda infinite, and weight, G2 and
- *             compensation are 0. Normals and albedos are then those of the grazing view of the
- *             same azimuth, and so is the area in densities. Where a coordinate is NaN, results
- *             are some numbers in their ranges.
- *   m         At or below the horizon, or facing away from v, densities are 0; with NaN in it, some
- *             number.
+ *   v, l, w   At or below the horizon, z <= 0: masking is 0 and lambda infinite; weight, G2 and
+ *             compensation are 0. Normals are still sampled, and albedos still read, as if z were
+ *             0; densities are then those of D over the area seen from there.
+ *   m         At or below the horizon, or facing away from v, densities are 0. Sampled normals have
+ *             a cosine of at least 1e-18, down to which D is certified.
+ *   NaN       Where a coordinate is NaN, results are finite but unspecified.
  *   overflow  A density is limited to the largest finite number.
- * The array m that is written may not be v or u, nor l be v or m.
+ * An array that is written must not be one that is read.
  *
- * Albedos are those of round lobes. Where sigma_x and sigma_y differ, sqrt(sigma_x sigma_y) stands
- * in, as it does in the crate; it may be off by 0.2 and more. All else is exact for such lobes.
+ * Albedos cost as much as some normals: look each up once, and that of a view for all its lights.
+ * They are those of round lobes. Where sigma_x and sigma_y differ, that of sqrt(sigma_x
+ * sigma_y) stands in. It is off by some 0.07 where one is twice the other, and by up to 0.6, and
+ * the compensating lobe then gives back so much too little or too much. All else is exact.
  *
  * Accuracy. The file of a shape lists the errors of its tables, measured against the model in
  * double precision. These functions agree with the Rust crate microfacet-sampler on the same
- * tables: masking, weights and albedos to 2e-6, coordinates of normals to 1e-5, densities to 1e-5
- * and 2e-6 times |ln(D sigma_x sigma_y)| of themselves, averages of albedos to 3e-5. For gamma <
- * 1.55 and cosines < 1e-20 albedos agree to 2e-4: there both are extrapolated by a power close to
- * 0. Compilers may fuse products and sums, but must not assume finite arithmetic (-ffast-math).
+ * tables, if sigma is at most 10 (beyond in brackets): masking, weights and albedos to 2e-6,
+ * coordinates of normals to 1e-5 (1e-3), densities to a share of 1e-5 + 2e-6 |ln(D sigma_x
+ * sigma_y)|, averages of albedos to 3e-5. For gamma < 1.6 and cosines < 1e-6 albedos agree to 2e-5,
+ * < 1e-20 to 2e-4: there they are extrapolated by a power close to 0. Compilers may fuse products
+ * and sums. With -ffast-math what is said of NaN no longer holds.
  *
- * CUDA and HIP. All functions are for host and device. In device code tables are in device memory,
- * one copy in each translation unit that uses them. NVRTC and hipRTC work, too.
+ * Copies. Tables are static: each translation unit that uses a shape has its own copy, at another
+ * address, 55 kB or so. In a large program wrap what you need in one translation unit.
+ *
+ * CUDA and HIP. All functions are for host and device. In device code tables are in device memory.
+ * A shape has one address on the host and another on the device: take it where it is used, and do
+ * not pass it to a kernel. NVRTC and hipRTC work, too.
  */
 #ifndef STUDENT_T_H
 #define STUDENT_T_H
@@ -86,7 +97,8 @@ enum student_t_masking { STUDENT_T_UNCORRELATED = 0, STUDENT_T_HEIGHT_CORRELATED
 
 /* The albedos of a shape under one form of masking. */
 typedef struct student_t_albedo_table {
-    const float *values;   /* [sigmas][views][3]: E - 1, bias and F82 less E times a mirror's */
+    const float *values;   /* [sigmas][views][3]: E - 1, bias - E bias', F82 - E F82', where
+                            * bias' and F82' are those of a mirror */
     const float *averages; /* [average_sigmas][3]: ln(1 - E_avg), the averages of bias and F82 */
     int sigmas, average_sigmas, views;
     /* The coordinate ln(1 + sigma/offset) + slow ln(sigma/first) + linear sigma, its value at the
@@ -109,6 +121,7 @@ typedef struct student_t_shape {
     const float *masking;  /* [cells + 1][4]: cubics, of G1/coordinate/cells */
     int slopes_crowded;    /* whether the coordinate of slopes, tau, is 1 - sqrt(1 - tau) */
     float rows;            /* cells along the view */
+    float inverse_rows;    /* 1/rows */
     int numbers;           /* nodes of half a row */
     float along_scale;     /* 2^(1/4) (numbers - 1) */
     const float *slopes;   /* [rows + 2][2][numbers][2], and a node: value and slope, the half for

@@ -65,7 +65,8 @@ student_t_impl_stretch(float sigma_x, float sigma_y, const float w[3])
         } else { /* upright; straight down, null or NaN: at the horizon */
             d.x = 1.0f;
             d.y = 0.0f;
-            d.rho2 = d.rho = d.z > 0.0f ? 0.0f : 1.0f;
+            d.z = d.z > 0.0f ? 1.0f : 0.0f; /* else the square of a small one would vanish */
+            d.rho2 = d.rho = 1.0f - d.z;
         }
         d.frame = 1.0f;
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::internals::ShapeTables;
 
-use super::numbers::{identifier, lines, single, words};
+use super::numbers::{error, identifier, lines, single, text as text_of};
 use super::{AlbedoTable, ExportFile, Shape};
 
 /// The functions, which do not depend on a shape.
@@ -68,19 +68,19 @@ fn text(shape: &Shape, name: &str) -> String {
 
 /// What a shape's file says of it.
 fn comment(shape: &Shape, name: &str) -> String {
-    let gamma = words(shape.gamma);
-    let version = env!("CARGO_PKG_VERSION");
-    let [uncorrelated, correlated] = &shape.albedos;
-    let worst = |f: fn(&AlbedoTable) -> f64| f(uncorrelated).max(f(correlated));
+    let (gamma, version) = (text_of(shape.gamma), env!("CARGO_PKG_VERSION"));
+    let worst = |of: fn(&AlbedoTable) -> Option<f64>| {
+        error(shape.albedos.iter().filter_map(of).reduce(f64::max))
+    };
     let lobe = if shape.tables.is_some() {
-        let [along, across] = shape.errors.cdf;
+        let [along, across] = shape.errors.cdf.map(error);
         format!(
             " *   D: a closed form
- *   G1, from which lambda, G2 and weights follow: {:.1e}
- *   visible normals: {along:.1e} of the cumulative distribution in the plane of incidence, and
- *     {across:.1e} of that across it
+ *   G1, from which lambda, G2 and weights follow: {}
+ *   visible normals: {along} of the cumulative distribution in the plane of incidence, and
+ *     {across} of that across it
  *   densities: analytic, with G1 from the table\n",
-            shape.errors.g1
+            error(shape.errors.g1)
         )
     } else {
         " *   D, G1, lambda, G2, weights, visible normals, densities: closed forms\n".into()
@@ -91,28 +91,28 @@ fn comment(shape: &Shape, name: &str) -> String {
         let forms: Vec<_> = shape.from_default.iter().map(|masking| masking.name()).collect();
         format!(" * Albedos of {} masking are those of the default set.\n", forms.join(" and "))
     };
-    let [low, high] = correlated.sigma.map(|sigma| single(sigma as f32));
+    let [low, high] = shape.albedos[0].sigma.map(|sigma| single(sigma as f32));
     format!(
         "/* SPDX-License-Identifier: CC0-1.0
  *
  * {name}.h: the Student-t lobe of gamma = {gamma} for any roughness.
  * {HEADER_NAME} has the functions and says how to use them.
  *
- * Written by microfacet-bake {version}: microfacet-bake export c --gamma {}
- * Tables: {}, numerics {}
+ * Written by microfacet-bake {version} (export c --gamma {gamma})
+ * from tables baked by {}, numerics {}.
  *
- * Largest errors, measured against the model in double precision:
-{lobe} *   albedo and its parts: {:.1e} for sigma >= 0.01 and cos theta >= 0.02, {:.1e} elsewhere
- *   averages: those of the albedo, and {:.1e} by interpolation
+ * Largest errors over all gamma that these tables serve, measured against the model in double
+ * precision:
+{lobe} *   albedo and its parts: {} for sigma >= 0.01 and cos theta >= 0.02, {} elsewhere
+ *   averages: those of the albedo, and for this gamma {} by interpolation
  * Albedos have tables for sigma from {low} to {high}.
 {from_default} */
 ",
-        shape.gamma,
         shape.generator,
         shape.numerics,
         worst(|table| table.errors[0]),
         worst(|table| table.errors[1]),
-        worst(|table| table.average_error),
+        worst(|table| Some(table.average_error)),
     )
 }
 
@@ -164,7 +164,8 @@ fn lobe(shape: &Shape, name: &str) -> Members {
         ("masking_cells", number(|tables| tables.masking_cells)),
         ("masking", array(tables.is_some(), "masking")),
         ("slopes_crowded", flag(tables.is_some_and(|tables| tables.slopes_crowded))),
-        ("rows", number(|tables| tables.rows)),
+        ("rows", number(|tables| tables.rows[0])),
+        ("inverse_rows", number(|tables| tables.rows[1])),
         ("numbers", tables.map_or(0, |tables| tables.numbers).to_string()),
         ("along_scale", number(|tables| tables.scales[0])),
         ("slopes", array(tables.is_some(), "slopes")),

@@ -84,9 +84,8 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
         silhouette = student_t_impl_unit(d.rho * (steep + d.rho) / (steep * (d.rho + length)));
         at = (1.0f - sqrtf(silhouette)) * shape->rows;
     } else {
-        const float tau = d.z / (d.rho + length);
-        silhouette = 1.0f - tau;
-        at = tau * shape->rows;
+        at = d.z * shape->rows / (d.rho + length);
+        silhouette = 1.0f - at * shape->inverse_rows;
     }
 
     /* The first number chooses between the tables and what is in none, which comes last. */
@@ -116,19 +115,20 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
         const int half = along > 0.5f;
         const float root = sqrtf(sqrtf(student_t_impl_end(along)));
         const float *low, *high;
-        float w, w1, between, step, value[2], slope[2], g;
+        float w, between, g, b0, b1, b2, b3;
         const int cell = student_t_impl_cell(root * shape->along_scale, &w);
         const int row = student_t_impl_cell(at, &between);
         low = shape->slopes + 2 * ((2 * row + half) * shape->numbers + cell);
         high = low + 4 * shape->numbers;
         /* Linear between the views, a cubic through values and slopes along the number. */
-        value[0] = low[0] + between * (high[0] - low[0]);
-        slope[0] = low[1] + between * (high[1] - low[1]);
-        value[1] = low[2] + between * (high[2] - low[2]);
-        slope[1] = low[3] + between * (high[3] - low[3]);
-        w1 = 1.0f - w;
-        step = (w * w) * (3.0f - 2.0f * w);
-        g = (value[0] + step * (value[1] - value[0])) + (w * w1) * (w1 * slope[0] - w * slope[1]);
+        b0 = 1.0f + w * (w * (w * 2.0f - 3.0f));
+        b1 = w * (1.0f + w * (w - 2.0f));
+        b2 = w * (w * (3.0f - w * 2.0f));
+        b3 = w * (w * (w - 1.0f));
+        g = ((low[0] + between * (high[0] - low[0])) * b0 +
+             (low[2] + between * (high[2] - low[2])) * b2) +
+            ((low[1] + between * (high[1] - low[1])) * b1 +
+             (low[3] + between * (high[3] - low[3])) * b3);
         x = g - 1.0f;
         z = g * (2.0f - g);
         sign = student_t_impl_sign(half);
@@ -140,9 +140,9 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
     {
         const float vx = v[0], vy = v[1];
         const float ahead = x * (sign * tz), aside = norm * t;
-        student_t_impl_raise(ahead * (sigma_x * d.x) - aside * (sigma_x * d.y),
-                             ahead * (sigma_y * d.y) + aside * (sigma_y * d.x),
-                             z * (0.5f * d.frame * tz), shrink, m);
+        student_t_impl_raise(sigma_x * (ahead * d.x - aside * d.y),
+                             sigma_y * (ahead * d.y + aside * d.x), z * (0.5f * (d.frame * tz)),
+                             shrink, m);
         /* v.m is at least rho length/|m| times g tz less that of the silhouette, from which ten
          * roundings, of terms of up to rho length (3 + 6 |t|)/|m|, cannot take it below 0. */
         if (!(clear * tz >= 2e-6f * tz + 4e-6f * fabsf(t)))

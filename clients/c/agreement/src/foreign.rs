@@ -21,6 +21,7 @@ pub struct Answer {
     pub pdf: f32,
     pub reflection_pdf: f32,
     pub normal: [f32; 3],
+    pub light: [f32; 3],
     pub g2: [f32; 2],
     pub weight: [f32; 2],
     pub compensation: [f32; 2],
@@ -40,6 +41,14 @@ unsafe extern "C" {
         v: *const [f32; 3],
         u: *const [f32; 2],
         m: *mut [f32; 3],
+    );
+    fn c_compensation(
+        shape: usize,
+        sigma: *const f32,
+        count: usize,
+        v: *const [f32; 3],
+        l: *const [f32; 3],
+        lobe: *mut f32,
     );
     fn c_g1(shape: usize, sigma: *const f32, count: usize, v: *const [f32; 3], g1: *mut f32);
 }
@@ -72,4 +81,18 @@ pub fn g1(shape: usize, sigma: [f32; 2], v: &[[f32; 3]], g1: &mut [f32]) {
     assert_eq!(v.len(), g1.len());
     // SAFETY: both are of the length passed.
     unsafe { c_g1(shape, sigma.as_ptr(), v.len(), v.as_ptr(), g1.as_mut_ptr()) }
+}
+
+/// The compensating lobe of height-correlated masking by C; all slices are of one length.
+pub fn compensation(
+    shape: usize,
+    sigma: [f32; 2],
+    v: &[[f32; 3]],
+    l: &[[f32; 3]],
+    lobe: &mut [f32],
+) {
+    assert!(v.len() == l.len() && l.len() == lobe.len());
+    let (count, sigma) = (v.len(), sigma.as_ptr());
+    // SAFETY: all are of the length passed.
+    unsafe { c_compensation(shape, sigma, count, v.as_ptr(), l.as_ptr(), lobe.as_mut_ptr()) }
 }

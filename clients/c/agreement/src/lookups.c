@@ -19,7 +19,7 @@ typedef struct point {
 } point;
 
 typedef struct answer {
-    float d, g1, lambda, pdf, reflection_pdf, normal[3];
+    float d, g1, lambda, pdf, reflection_pdf, normal[3], light[3];
     float g2[2], weight[2], compensation[2]; /* by masking, as what follows */
     float albedo[2], average[2], parts[2][3], average_parts[2][3];
 } answer;
@@ -29,6 +29,8 @@ EXPORT void NAME(sample)(size_t shape, const float *sigma, size_t count, const f
                          const float (*u)[2], float (*m)[3]);
 EXPORT void NAME(g1)(size_t shape, const float *sigma, size_t count, const float (*v)[3],
                      float *g1);
+EXPORT void NAME(compensation)(size_t shape, const float *sigma, size_t count, const float (*v)[3],
+                               const float (*l)[3], float *lobe);
 
 static const student_t_shape *const shapes[] = SHAPES;
 
@@ -44,6 +46,7 @@ EXPORT void NAME(answer)(size_t shape, size_t count, const point *points, answer
         a->pdf = student_t_visible_normal_pdf(s, p->sigma, p->v, p->m);
         a->reflection_pdf = student_t_reflection_pdf(s, p->sigma, p->v, p->m);
         student_t_sample_visible_normal(s, p->sigma, p->v, p->u, a->normal);
+        student_t_reflect(p->v, p->m, a->light);
         for (int k = 0; k < 2; ++k) {
             const enum student_t_masking masking = (enum student_t_masking)k;
             a->g2[k] = student_t_g2(s, p->sigma, p->v, p->l, masking);
@@ -68,4 +71,12 @@ EXPORT void NAME(g1)(size_t shape, const float *sigma, size_t count, const float
                      float *g1)
 {
     for (size_t i = 0; i < count; ++i) g1[i] = student_t_g1(shapes[shape], sigma, v[i]);
+}
+
+EXPORT void NAME(compensation)(size_t shape, const float *sigma, size_t count, const float (*v)[3],
+                               const float (*l)[3], float *lobe)
+{
+    for (size_t i = 0; i < count; ++i)
+        lobe[i] = student_t_compensation(shapes[shape], sigma, v[i], l[i],
+                                         STUDENT_T_HEIGHT_CORRELATED);
 }

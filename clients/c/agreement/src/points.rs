@@ -6,6 +6,9 @@ use rand::{RngExt, SeedableRng};
 
 use crate::foreign::Point;
 
+/// The smallest cosine of a sampled normal. Below it the crate's D leaves single precision.
+const LOWEST: f32 = 1e-18;
+
 /// Points of one roughness.
 pub struct Group {
     pub name: &'static str,
@@ -26,17 +29,24 @@ pub fn random(count: usize, seed: u64) -> Vec<Group> {
         let (x, y) = (sigma(), sigma());
         let sigma = if i % 2 == 0 { [x, x] } else { [x, y] };
         let points = (0..EACH).map(|k| {
-            // Evenly over the hemisphere, and every fourth view close to the horizon or the normal.
+            // Evenly over the hemisphere, and as many close to the horizon or the normal.
             let mut direction = |k: usize| {
-                let near = 10.0_f32.powf(between(-7.0, -1.0));
+                let near = 10.0_f32.powf(between(if k % 8 == 1 { -30.0 } else { -7.0 }, -1.0));
                 let z = [between(0.0, 1.0), near, between(0.0, 1.0), 1.0 - near][k % 4];
                 let (sin, cos) = between(0.0, std::f32::consts::TAU).sin_cos();
                 let r = ((1.0 - z) * (1.0 + z)).sqrt();
                 Vec3::new(r * cos, r * sin, z)
             };
             let (v, l) = (direction(k), direction(k / 4));
-            let m = if k % 3 == 0 { direction(k) } else { (v + l).normalize() };
-            let u = [between(0.0, 1.0), between(0.0, 1.0)];
+            let mut m = if k % 3 == 0 { direction(k) } else { (v + l).normalize() };
+            m.z = m.z.max(LOWEST);
+            // Every fifth number in a tail.
+            let mut number = |k: usize| match k % 10 {
+                0 => 10.0_f32.powf(between(-9.0, -1.0)),
+                5 => 1.0 - 10.0_f32.powf(between(-7.0, -1.0)),
+                _ => between(0.0, 1.0),
+            };
+            let u = [number(k), number(k / 10)];
             Point { sigma, v: v.into(), l: l.into(), m: m.into(), u }
         });
         groups.push(Group { name: "random", points: points.collect() });
@@ -73,7 +83,9 @@ pub fn corners() -> Vec<Group> {
         tilted(-0.5),
         [0.0, 0.0, -1.0],
         [0.0, 0.0, 0.0],
+        [0.0, 0.0, 1e-30],
         [NAN, 0.0, 1.0],
+        [NAN, 0.98, 5e-28],
         [0.6, 0.0, NAN],
         [NAN; 3],
     ];
@@ -88,8 +100,7 @@ pub fn corners() -> Vec<Group> {
                     let l = directions[(i + j) % directions.len()];
                     let mut m = directions[(i + j + k) % directions.len()];
                     if m[2] > 0.0 {
-                        // The smallest cosine of a sampled normal.
-                        m[2] = m[2].max(1e-18);
+                        m[2] = m[2].max(LOWEST);
                     }
                     points.push(Point { sigma, v, l, m, u: [a, b] });
                 }

@@ -4,17 +4,18 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use glam::Vec3;
-use microfacet_sampler::{Ggx, MicrofacetDistribution, Tables};
+use microfacet_sampler::{Ggx, Masking, MicrofacetDistribution, Tables};
 
 use crate::foreign;
 use crate::points::random;
 
-/// Prints the ratios of one shape, at σ = 0.5: of normals and of G1.
+/// Prints the ratios of one shape, at σ = 0.5: of normals, of G1 and of the compensating
+/// lobe, for which the crate prepares σ once.
 pub fn print(tables: &Tables, shape: usize, gamma: f64) {
     if gamma == 2.0 {
-        ratios(&Ggx::new(0.5).unwrap(), shape, gamma);
+        ratios(&Ggx::new(0.5).unwrap(), tables, shape, gamma);
     } else {
-        ratios(&tables.student_t(0.5, gamma).unwrap(), shape, gamma);
+        ratios(&tables.student_t(0.5, gamma).unwrap(), tables, shape, gamma);
     }
 }
 
@@ -22,7 +23,7 @@ pub fn print(tables: &Tables, shape: usize, gamma: f64) {
 const CALLS: usize = 4096;
 const BATCHES: usize = 400;
 
-fn ratios(lobe: &impl MicrofacetDistribution, shape: usize, gamma: f64) {
+fn ratios(lobe: &impl MicrofacetDistribution, tables: &Tables, shape: usize, gamma: f64) {
     let points: Vec<_> = random(4 * CALLS, 1).into_iter().flat_map(|group| group.points).collect();
     // Evenly over the hemisphere.
     let points: Vec<_> = points.into_iter().step_by(4).take(CALLS).collect();
@@ -30,7 +31,9 @@ fn ratios(lobe: &impl MicrofacetDistribution, shape: usize, gamma: f64) {
     let u: Vec<[f32; 2]> = points.iter().map(|point| point.u).collect();
     let (mut m, mut g1) = (vec![[0.0; 3]; CALLS], vec![0.0; CALLS]);
     let sigma = [0.5; 2];
-    let mut times = [const { Vec::new() }; 4];
+    let albedo = tables.albedo(0.5, gamma, Masking::HeightCorrelated).unwrap();
+    let l: Vec<[f32; 3]> = v.iter().rev().copied().collect();
+    let mut times = [const { Vec::new() }; 6];
     for _ in 0..BATCHES {
         times[0].push(timed(|| foreign::sample(shape, sigma, &v, &u, black_box(&mut m))));
         times[1].push(timed(|| {
@@ -44,14 +47,21 @@ fn ratios(lobe: &impl MicrofacetDistribution, shape: usize, gamma: f64) {
                 *g1 = lobe.g1(Vec3::from(*v));
             }
         }));
+        times[4].push(timed(|| foreign::compensation(shape, sigma, &v, &l, black_box(&mut g1))));
+        times[5].push(timed(|| {
+            for ((v, l), lobe) in v.iter().zip(&l).zip(black_box(&mut g1)) {
+                *lobe = albedo.compensation(Vec3::from(*v), Vec3::from(*l));
+            }
+        }));
     }
     // The least of each, which is what other programs disturb least.
     let least = |times: Vec<f64>| times.into_iter().fold(f64::INFINITY, f64::min);
-    let [c, rust, c_g1, rust_g1] = times.map(least);
-    let (normal, masking) = (c / rust, c_g1 / rust_g1);
+    let [c, rust, c_g1, rust_g1, c_lobe, rust_lobe] = times.map(least);
+    let (normal, masking, lobe) = (c / rust, c_g1 / rust_g1, c_lobe / rust_lobe);
     println!(
         "  gamma {gamma}: a normal {normal:.2} of the crate's time ({c:.1} to {rust:.1} ns), \
-         G1 {masking:.2} ({c_g1:.1} to {rust_g1:.1} ns)",
+         G1 {masking:.2} ({c_g1:.1} to {rust_g1:.1} ns), \
+         the compensating lobe {lobe:.2} ({c_lobe:.0} to {rust_lobe:.0} ns)",
     );
 }
 
