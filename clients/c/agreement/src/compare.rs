@@ -16,9 +16,9 @@ const AVERAGE: f64 = 3e-5;
 /// in the heavy part of γ < 1.8 these are the rounding of a power.
 const NORMAL_ROUGH: f64 = 1e-3;
 const ROUGH: f32 = 10.0;
-/// Albedos of γ below [`SLOW`], closer to the horizon than these cosines: they near their limit with
-/// a power of the cosine of 0.002 or so, by which single precision extrapolates from two albedos
-/// that differ in their last digits, here and in the crate.
+/// Albedos of γ below [`SLOW`], closer to the horizon than these cosines: they approach their limit
+/// with a power of the cosine of 0.002 or so, by which single precision extrapolates from two
+/// albedos that differ in their last digits, here and in the crate.
 const EXTRAPOLATED: [(f32, f64); 2] = [(1e-20, 2e-4), (1e-6, 2e-5)];
 const SLOW: f64 = 1.6;
 /// Densities in relation to themselves: and for each unit of |ln(D σx σy)|.
