@@ -5,9 +5,8 @@ mod command;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
 
-use command::{ok, refused, run};
+use command::{names, ok, refused, run};
 use glam::Vec3;
 use microfacet_sampler::axis::LogRoughness;
 use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
@@ -27,15 +26,6 @@ fn arrays(header: &str) -> BTreeMap<String, Vec<f32>> {
         (name.to_owned(), numbers)
     };
     definitions.map(array).collect()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 #[test]

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use microfacet_bake::store;
 use tempfile::TempDir;
 
-use command::{ok, refused, run};
+use command::{names, ok, refused, run};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_microfacet-bake");
 
@@ -73,16 +73,6 @@ fn bake(folder: &Path, recipe: &str, out: &str, format: &str) -> String {
 }
 
 const SAMPLE: &str = "\"$0\" sample --sigma 0.3 --gamma 3 --theta 1 --count 1000 --out";
-
-/// Names of a folder's files, hidden ones included.
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
-}
 
 #[test]
 fn what_is_no_file_is_not_read() {

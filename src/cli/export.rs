@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use clap::builder::UnknownArgumentValueParser;
 
-use microfacet_bake::export::{Shape, Target, files, largest_sigma};
+use microfacet_bake::bake::albedo::SIGMA_MAX;
+use microfacet_bake::export::{Shape, Target, files};
 use microfacet_bake::store;
 
 use super::{Done, Failure, Outcome, report, summarize, tables, values};
@@ -70,10 +71,10 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     for shape in &shapes {
         for masking in &shape.from_default {
-            let (gamma, largest) = (shape.gamma, largest_sigma());
+            let gamma = shape.gamma;
             let note = format!(
                 "gamma {gamma}: the set has no albedos of {masking} masking for every sigma up to \
-                 {largest}; those of the default set are written"
+                 {SIGMA_MAX}; those of the default set are written"
             );
             report("note", note);
         }

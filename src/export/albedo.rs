@@ -4,7 +4,9 @@ use microfacet_common::Masking;
 use microfacet_sampler::axis::lagrange::weights;
 use microfacet_sampler::axis::{LogRoughness, ViewBlend};
 use microfacet_sampler::internals::ShapeAlbedo;
-use microfacet_sampler::{Albedo, Kind, Table, Tables};
+use microfacet_sampler::{Albedo, Table, Tables};
+
+use crate::bake::albedo::SIGMA_MAX;
 
 /// Nodes of the polynomials along σ and along the view.
 pub(super) const WINDOW: usize = 6;
@@ -46,20 +48,18 @@ pub struct AlbedoTable {
 impl AlbedoTable {
     /// From the first table of a set that has the shape for every roughness; `None` if none has.
     pub(super) fn find(tables: &Tables, gamma: f64, masking: Masking) -> Option<Self> {
-        let found = ShapeAlbedo::find(tables, gamma, masking, largest_sigma())?;
-        let (first, last) = (*found.nodes.first()?, *found.nodes.last()?);
-        let step = (last - first) / (found.nodes.len() - 1) as f64;
-        let even = |(i, node): (usize, &f64)| (node - first - step * i as f64).abs() < 1e-9 * step;
-        if found.nodes.len() < WINDOW || !found.nodes.iter().enumerate().all(even) {
+        let found = ShapeAlbedo::find(tables, gamma, masking, SIGMA_MAX)?;
+        let (ends, sigmas) = (found.axis.ends(), found.axis.len());
+        if sigmas < WINDOW {
             return None;
         }
-        let sigma = [first, last].map(|t| found.table.axes[1].quantity(t));
+        let sigma = ends.map(|t| found.axis.quantity(t));
         let mut table = Self {
             masking,
             roughness: found.roughness,
-            ends: [first, last],
+            ends,
             sigma: [sigma[0]?, sigma[1]?],
-            sigmas: found.nodes.len(),
+            sigmas,
             view: found.view,
             views: found.views,
             values: found.values,
@@ -118,11 +118,4 @@ fn average_of(table: &Table, sigma: f64, gamma: f64) -> Option<[f64; 3]> {
 fn worst(table: &Table, part: &str) -> Option<f64> {
     let of = |channel| table.certificate.get(&format!("{channel}_max_error{part}")).copied();
     ["e", "scale", "bias", "f82"].into_iter().filter_map(of).reduce(f64::max)
-}
-
-/// The σ up to which every export has albedos, that of the default set.
-pub fn largest_sigma() -> f64 {
-    let sets = Tables::embedded();
-    let table = sets.table(Kind::Albedo).expect("the default set has albedos");
-    table.subject.covers.and_then(|covers| covers.sigma).map_or(f64::INFINITY, |sigma| sigma[1])
 }

@@ -19,7 +19,7 @@ mod c;
 mod numbers;
 mod shape;
 
-pub use albedo::{AlbedoTable, largest_sigma};
+pub use albedo::AlbedoTable;
 pub use shape::Shape;
 
 /// What can be written.

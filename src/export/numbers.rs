@@ -7,11 +7,11 @@ const WIDTH: usize = 100;
 
 /// γ as part of an identifier and of a file's name: `3`, `1p65`, `inf`.
 pub(super) fn identifier(gamma: f64) -> String {
-    text(gamma).replace('.', "p")
+    as_typed(gamma).replace('.', "p")
 }
 
 /// γ as the command reads it: `3`, `1.65`, `inf`.
-pub(super) fn text(gamma: f64) -> String {
+pub(super) fn as_typed(gamma: f64) -> String {
     shortest(gamma.to_string(), format!("{gamma:e}"))
 }
 
@@ -62,7 +62,7 @@ mod tests {
     fn shapes_have_names() {
         let names = [3.0, 1.65, f64::INFINITY, 2.0, 1e300, 10.0].map(identifier);
         assert_eq!(names, ["3", "1p65", "inf", "2", "1e300", "10"]);
-        assert_eq!([text(f64::INFINITY), text(1e38)], ["inf", "1e38"]);
+        assert_eq!([as_typed(f64::INFINITY), as_typed(1e38)], ["inf", "1e38"]);
     }
 
     #[test]

@@ -191,6 +191,12 @@ impl Tables {
         self.tables().iter().filter(of)
     }
 
+    /// The tables of moments of the family, of a kind and masking.
+    pub(super) fn moments(&self, kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
+        let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Moments);
+        self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments)
+    }
+
     /// What `read` makes of the first table of moments of a kind and masking that covers (σ, γ).
     fn moments_of<T>(
         &self,
@@ -203,8 +209,7 @@ impl Tables {
         if !(gamma > 1.5) {
             return Err(MaterialError::Gamma(gamma));
         }
-        let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Moments);
-        let tables = |masking| self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments);
+        let tables = |masking| self.moments(kind, masking);
         let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
         tables(masking)
             .find_map(|table| read(table, &point))

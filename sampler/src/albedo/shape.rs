@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 use microfacet_common::Masking;
 use microfacet_common::shape::s_of_gamma;
 
-use crate::axis::{LogRoughness, Mapping, ViewBlend};
-use crate::format::{Kind, LobeEntry, Reflectance, Table};
+use crate::axis::{Axis, Interpolation, LogRoughness, Mapping, ViewBlend};
+use crate::format::{Kind, Table};
 use crate::tables::Tables;
 
 /// A table of moments of the family with its axis of γ collapsed.
@@ -14,10 +14,10 @@ use crate::tables::Tables;
 pub struct ShapeAlbedo<'a> {
     /// The table.
     pub table: &'a Table,
-    /// The coordinate of σ, and the nodes along it.
+    /// The coordinate of σ.
     pub roughness: LogRoughness,
-    /// Coordinates of the nodes along σ.
-    pub nodes: &'a [f64],
+    /// The axis of σ, whose nodes are even.
+    pub axis: &'a Axis,
     /// The coordinate of views, without γ.
     pub view: ViewBlend,
     /// Nodes along the view.
@@ -29,17 +29,14 @@ pub struct ShapeAlbedo<'a> {
 impl<'a> ShapeAlbedo<'a> {
     /// Of the first table that has the shape, for every σ up to `largest`.
     pub fn find(tables: &'a Tables, gamma: f64, masking: Masking, largest: f64) -> Option<Self> {
-        tables.tables().iter().find_map(|table| {
-            let subject = &table.subject;
-            let of_family = table.kind == Kind::Albedo && subject.lobe == LobeEntry::Family;
-            let of_moments = subject.reflectance == Some(Reflectance::Moments);
-            let covers = subject.covers.filter(|covers| {
-                let sigmas = |[min, max]: [f64; 2]| min <= 0.0 && max >= largest;
+        let serves = |table: &&Table| {
+            let sigmas = |[min, max]: [f64; 2]| min <= 0.0 && max >= largest;
+            table.subject.covers.is_some_and(|covers| {
                 covers.contains_shape(s_of_gamma(gamma)) && covers.sigma.is_some_and(sigmas)
-            });
-            let serves = of_family && of_moments && subject.masking == Some(masking);
-            covers.filter(|_| serves).and_then(|_| Self::of(table, gamma))
-        })
+            })
+        };
+        let mut tables = tables.moments(Kind::Albedo, masking).filter(serves);
+        tables.find_map(|table| Self::of(table, gamma))
     }
 
     fn of(table: &'a Table, gamma: f64) -> Option<Self> {
@@ -49,13 +46,17 @@ impl<'a> ShapeAlbedo<'a> {
         else {
             return None;
         };
+        // Its nodes are even, which is checked when a table is loaded.
+        if sigma.interpolation != Interpolation::Lagrange6 {
+            return None;
+        }
         let weights = shape.weights(shape.coordinate(gamma)?)?;
         let values = table.collapsed::<f64>(&[weights]);
         let (nodes, rest) = values.as_chunks::<3>();
         rest.is_empty().then(|| Self {
             table,
             roughness,
-            nodes: &sigma.nodes,
+            axis: sigma,
             view: blend.of_shape(gamma),
             views: view.len(),
             values: nodes.iter().map(|node| node.map(|x| x as f32)).collect(),

@@ -11,8 +11,6 @@ use crate::axis::hermite::{Cell, Node};
 /// position 0 for the end itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeTables {
-    /// s = 1/(γ−1), 0 for Beckmann.
-    pub s: f32,
     /// s and 1 − γ/2 of D, where s is never 0.
     pub normals: [f32; 2],
     /// κ of the view coordinate of masking.
@@ -65,7 +63,6 @@ impl ShapeTables {
             root_s: slices.heavy.root_s,
         };
         Self {
-            s: lobe.s,
             normals: [lobe.normals.s, lobe.normals.power],
             kappa: slices.kappa,
             masking_crowded: slices.shadowing_view.crowded,

@@ -68,7 +68,7 @@ STUDENT_T_FUNCTION void student_t_impl_mirror(float mu, float *bias, float *f82)
 {
     const float k = 1.0f - mu, k2 = k * k, k4 = k2 * k2;
     *bias = k4 * k;
-    *f82 = 17.651385f * mu * (k4 * k2);
+    *f82 = 17.651384f * mu * (k4 * k2);
 }
 
 /* E - 1, bias and F82 at a cosine mu from the first view up. */
@@ -144,7 +144,7 @@ STUDENT_T_FUNCTION void student_t_impl_averages(const student_t_impl_albedo *a, 
     int i;
     averages[0] = -1e30f;
     averages[1] = 1.0f / 21.0f;
-    averages[2] = 0.14009035f; /* 117649/839808 */
+    averages[2] = 0.14009036f; /* 117649/839808 */
     if (!(a->sigma > 0.0f)) return;
     i = student_t_impl_six(a->coordinate * (float)(t->average_sigmas - 1), t->average_sigmas,
                            weights);

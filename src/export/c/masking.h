@@ -59,7 +59,7 @@ student_t_impl_stretch(float sigma_x, float sigma_y, const float w[3])
     d.z = student_t_impl_unit(w[2]);
     d.frame = d.rho;
     if (!(d.rho >= 1e-6f)) { /* else squares of normals would leave single precision */
-        if (d.rho >= 1e-18f) {
+        if (d.rho >= 1e-18f) { /* whose own square is still in it */
             d.x /= d.rho;
             d.y /= d.rho;
         } else { /* upright; straight down, null or NaN: at the horizon */
@@ -82,7 +82,7 @@ student_t_impl_inverse_area(const student_t_shape *shape, student_t_impl_directi
         return 2.0f / student_t_impl_max(d.z + length, STUDENT_T_SMALLEST);
     } else {
         const float cells = shape->masking_cells, across = shape->kappa * d.rho;
-        const float area = student_t_impl_max(d.z + across, 1e-30f);
+        const float area = student_t_impl_max(d.z + across, 1e-30f); /* less than any has */
         const float r = cells / area;
         float at = d.z * r, w;
         int cell;

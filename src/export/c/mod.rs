@@ -5,7 +5,7 @@ use std::fmt::Write;
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::internals::ShapeTables;
 
-use super::numbers::{error, identifier, lines, single, text as text_of};
+use super::numbers::{as_typed, error, identifier, lines, single};
 use super::{AlbedoTable, ExportFile, Shape};
 
 /// The functions, which do not depend on a shape.
@@ -68,7 +68,7 @@ fn text(shape: &Shape, name: &str) -> String {
 
 /// What a shape's file says of it.
 fn comment(shape: &Shape, name: &str) -> String {
-    let (gamma, version) = (text_of(shape.gamma), env!("CARGO_PKG_VERSION"));
+    let (gamma, version) = (as_typed(shape.gamma), env!("CARGO_PKG_VERSION"));
     let worst = |of: fn(&AlbedoTable) -> Option<f64>| {
         error(shape.albedos.iter().filter_map(of).reduce(f64::max))
     };
@@ -212,11 +212,28 @@ fn float(x: f32) -> String {
 
 #[cfg(test)]
 mod tests {
+    use microfacet_common::schlick::{F82_AVERAGE, F82_SCALE, SCHLICK_AVERAGE};
+    use microfacet_sampler::StudentT;
+
     use super::*;
 
     #[test]
     fn files_of_shapes_ask_for_the_layout_of_the_functions() {
         assert!(HEADER.contains(&format!("\n#define STUDENT_T_LAYOUT {LAYOUT}\n")));
+    }
+
+    #[test]
+    fn constants_are_those_of_the_crate() {
+        let [low, high] = StudentT::SIGMAS.map(|sigma| single(sigma as f32));
+        let constants = [
+            format!("student_t_impl_max(sigma, {low}f), {high}f)"),
+            format!("*f82 = {} * mu", float(F82_SCALE as f32)),
+            format!("averages[2] = {};", float(F82_AVERAGE as f32)),
+            format!("averages[1] = 1.0f / {}f;", single((1.0 / SCHLICK_AVERAGE) as f32)),
+        ];
+        for constant in constants {
+            assert!(HEADER.contains(&constant), "{constant}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 /* ---- Visible normals ------------------------------------------------------------------------- */
 
-/* The sine and the cosine of 2 pi u for u in [0, 1], to 2e-7. */
+/* The sine and the cosine of 2 pi u for u in [0, 1], to 2e-7: the polynomial through Chebyshev's
+ * points of a quarter turn, in a fraction of a library's time. */
 STUDENT_T_FUNCTION float student_t_impl_sine(float x)
 {
     const float y = x * x;
@@ -30,7 +31,8 @@ STUDENT_T_FUNCTION void student_t_impl_sample_cap(float sigma_x, float sigma_y, 
         if (!(length > 0.0f)) x = y = 0.0f;
         length = 1.0f;
     }
-    /* First the height of the half vector, so that it keeps its digits where the cap ends at -z. */
+    /* First the height of the half vector, so that it keeps its digits where the cap ends at -z; at
+     * least 2^-24 of the cap's: on the horizon a normal may have no length. */
     height = student_t_impl_max(1.0f - student_t_impl_unit(u[0]), 5.9604645e-8f) * (length + z);
     up = height - z;
     radius = sqrtf(student_t_impl_max((length - up) * (length + up), 0.0f));

@@ -1,13 +1,16 @@
 //! How long the exported functions take, in relation to the crate's, in turns.
 
+use std::f32::consts::TAU;
 use std::hint::black_box;
 use std::time::Instant;
 
 use glam::Vec3;
 use microfacet_sampler::{Ggx, Masking, MicrofacetDistribution, Tables};
 
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
 use crate::foreign;
-use crate::points::random;
 
 /// Prints the ratios of one shape, at σ = 0.5: of normals, of G1 and of the compensating
 /// lobe, for which the crate prepares σ once.
@@ -24,11 +27,15 @@ const CALLS: usize = 4096;
 const BATCHES: usize = 400;
 
 fn ratios(lobe: &impl MicrofacetDistribution, tables: &Tables, shape: usize, gamma: f64) {
-    let points: Vec<_> = random(4 * CALLS, 1).into_iter().flat_map(|group| group.points).collect();
-    // Evenly over the hemisphere.
-    let points: Vec<_> = points.into_iter().step_by(4).take(CALLS).collect();
-    let v: Vec<[f32; 3]> = points.iter().map(|point| point.v).collect();
-    let u: Vec<[f32; 2]> = points.iter().map(|point| point.u).collect();
+    let mut rng = StdRng::seed_from_u64(1);
+    let mut uniform = || rng.random::<f32>();
+    let view = |z: f32, turn: f32| {
+        let (r, (sin, cos)) = ((1.0 - z * z).sqrt(), (TAU * turn).sin_cos());
+        [r * cos, r * sin, z]
+    };
+    // Views evenly over the hemisphere.
+    let v: Vec<[f32; 3]> = (0..CALLS).map(|_| view(uniform(), uniform())).collect();
+    let u: Vec<[f32; 2]> = (0..CALLS).map(|_| [uniform(), uniform()]).collect();
     let (mut m, mut g1) = (vec![[0.0; 3]; CALLS], vec![0.0; CALLS]);
     let sigma = [0.5; 2];
     let albedo = tables.albedo(0.5, gamma, Masking::HeightCorrelated).unwrap();
