@@ -1,5 +1,5 @@
-//! Exports of shapes as source text. `clients/c/run` compiles them and compares their functions
-//! with the crate's; here is what needs no compiler.
+//! Exports of shapes. `clients/c/run` and `clients/gpu/run` compile them and compare their
+//! functions with the crate's; here is what needs no compiler.
 
 mod command;
 
@@ -136,8 +136,10 @@ fn other_sets_are_exported_with_what_they_lack() {
 fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let cases: [(&[&str], &[&str]); 6] = [
-        (&["hlsl", "--gamma", "3"], &["hlsl", "possible values: c"]),
+    let cases: [(&[&str], &[&str]); 8] = [
+        (&["cobol", "--gamma", "3"], &["cobol", "possible values: c, wgsl, glsl, glsl-es, hlsl"]),
+        (&["c", "--gamma", "3", "--textures"], &["--textures", "leave out"]),
+        (&["wgsl", "--gamma", "1.5001"], &["1.5001", "1.501 or more"]),
         (&["c", "--gamma", "1.5"], &["(1.5, inf]"]),
         (&["c", "--gamma", "1.5001"], &["1.5001", "1.501 or more"]),
         (&["c", "--gamma", "three"], &["three", "number"]),
@@ -162,4 +164,133 @@ fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
     fs::remove_dir(at.join("out/student_t_gamma_3.h")).unwrap();
     ok(at, &["export", "c", "--gamma", "3", "--out", "out"]);
     assert!(fs::read_to_string(at.join("out/student_t.h")).unwrap().contains("STUDENT_T_H"));
+}
+
+/// The functions of shader modules.
+const SHADER_FUNCTIONS: [&str; 14] = [
+    "student_t_d(",
+    "student_t_masking(",
+    "student_t_lambda(",
+    "student_t_masking_shadowing(",
+    "student_t_sample_visible_normal(",
+    "student_t_visible_normal_pdf(",
+    "student_t_reflect(",
+    "student_t_reflection_weight(",
+    "student_t_reflection_pdf(",
+    "student_t_albedo(",
+    "student_t_albedo_parts(",
+    "student_t_albedo_average(",
+    "student_t_albedo_average_parts(",
+    "student_t_compensation(",
+];
+
+#[test]
+fn every_language_has_all_functions_a_sample_and_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let cases = [
+        ("wgsl", "student_t.wgsl", "student_t_sample.wgsl", true),
+        ("glsl", "student_t.glsl", "student_t_sample.comp", true),
+        ("glsl-es", "student_t.glsl", "student_t_sample.frag", false),
+        ("hlsl", "student_t.hlsl", "student_t_sample.hlsl", true),
+        ("msl", "student_t.metal", "student_t_sample.metal", true),
+    ];
+    for (language, module, sample, has_buffers) in cases {
+        let mut data: Vec<Vec<u8>> = Vec::new();
+        for textures in [false, true] {
+            let out = format!("{language}-{textures}");
+            let mut export = vec!["export", language, "--gamma", "3,1.65", "--out", &out];
+            export.extend(textures.then_some("--textures"));
+            ok(at, &export);
+            let mut files = [module, sample, "student_t.bin", "student_t.exr", "student_t.json"];
+            files.sort();
+            assert_eq!(names(&at.join(&out)), files);
+            let text = |name: &str| fs::read_to_string(at.join(&out).join(name)).unwrap();
+            let (module, sample) = (text(module), text(sample));
+            assert!(module.is_ascii() && sample.is_ascii(), "{out}");
+            assert!(module.starts_with("// SPDX-License-Identifier: CC0-1.0"), "{out}");
+            for function in SHADER_FUNCTIONS {
+                // In the list at the top, and defined.
+                assert!(module.matches(function).count() >= 2, "{out}: {function}");
+            }
+            // What a translator made up, and an entry point.
+            let code: String = module.lines().filter(|line| !line.starts_with("//")).collect();
+            for foreign in ["naga", "fake", "impl_entry", "_group_", "main(", "#version", "sizes"] {
+                assert!(!code.contains(foreign), "{out}: {foreign}");
+            }
+            assert!(sample.lines().count() <= 60, "{out}");
+            let words = ["texture", "Texture2D", "sampler2D"];
+            let uses_texture = words.iter().any(|word| code.contains(word));
+            assert_eq!(uses_texture, textures || !has_buffers, "{out}");
+            data.push(fs::read(at.join(&out).join("student_t.bin")).unwrap());
+        }
+        // Buffers and textures have the same bytes.
+        assert_eq!(data[0], data[1], "{language}");
+    }
+
+    ok(at, &["export", "spirv", "--gamma", "3", "--out", "spirv"]);
+    let files = ["student_t.bin", "student_t.exr", "student_t.json", "student_t.spv"];
+    assert_eq!(names(&at.join("spirv")), files);
+    let words = fs::read(at.join("spirv/student_t.spv")).unwrap();
+    assert_eq!(words[..4], 0x0723_0203_u32.to_le_bytes());
+    let entry = b"reflect_views";
+    assert!(words.windows(entry.len()).any(|window| window == entry));
+}
+
+#[test]
+fn the_data_of_shaders_is_where_its_description_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    ok(at, &["export", "wgsl", "--gamma", "3,inf,2,1.65", "--out", "."]);
+    let bytes = fs::read(at.join("student_t.bin")).unwrap();
+    let numbers: Vec<f32> =
+        bytes.chunks(4).map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap())).collect();
+    let text = fs::read_to_string(at.join("student_t.json")).unwrap();
+    let description: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let count = |value: &serde_json::Value| value.as_u64().unwrap() as usize;
+    let (width, height) = (count(&description["width"]), count(&description["height"]));
+    assert_eq!(numbers.len(), 2 * width * height);
+
+    // The image has the same numbers.
+    let image = exr::prelude::read_first_flat_layer_from_file(at.join("student_t.exr")).unwrap();
+    let layer = image.layer_data;
+    assert_eq!((layer.size.x(), layer.size.y()), (width, height));
+    for (name, channel) in [("R", 0), ("G", 1)] {
+        let stored = layer.channel_data.list.iter().find(|stored| stored.name == *name).unwrap();
+        let stored: Vec<f32> = stored.sample_data.values_as_f32().collect();
+        let expected: Vec<f32> = numbers.iter().skip(channel).step_by(2).copied().collect();
+        assert_eq!(stored, expected, "{name}");
+    }
+
+    let shapes = description["shapes"].as_object().unwrap();
+    assert_eq!(shapes.keys().collect::<Vec<_>>(), ["1.65", "2", "3", "inf"]);
+    for (gamma, shape) in shapes {
+        let start = 2 * count(&shape["offset"]);
+        let members: Vec<(&str, f32)> = shape["members"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|member| {
+                (member["name"].as_str().unwrap(), member["value"].as_f64().unwrap() as f32)
+            })
+            .collect();
+        for (i, (name, value)) in members.iter().enumerate() {
+            assert_eq!(numbers[start + i], *value, "{gamma}: {name}");
+        }
+        let member = |name: &str| members.iter().find(|member| member.0 == name).unwrap().1;
+        assert_eq!(member("is_ggx"), f32::from(u8::from(gamma == "2")));
+        for (name, table) in shape["tables"].as_object().unwrap() {
+            let pairs = count(&table["rows"]) * count(&table["columns"]).div_ceil(2);
+            assert!(count(&table["offset"]) + pairs <= count(&shape["length"]), "{gamma}: {name}");
+        }
+        // The last albedo of a table is that of the largest roughness at normal incidence.
+        let table = &shape["tables"]["albedo_height_correlated"];
+        let last = 2 * (count(&table["offset"]) + 2 * (count(&table["rows"]) - 1));
+        let sigma = f64::from(member("sigma_max"));
+        let albedo = Tables::embedded()
+            .albedo(sigma, gamma.parse().unwrap(), Masking::HeightCorrelated)
+            .unwrap();
+        let stored = 1.0 + numbers[start + last];
+        assert!((stored - albedo.albedo(Vec3::Z)).abs() < 1e-6, "{gamma}: {stored}");
+    }
 }

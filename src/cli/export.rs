@@ -1,4 +1,4 @@
-//! `export`: writes shapes with their lookups as source text.
+//! `export`: writes shapes with their lookups for programs in other languages.
 
 use std::path::PathBuf;
 
@@ -6,18 +6,22 @@ use clap::ValueEnum;
 use clap::builder::UnknownArgumentValueParser;
 
 use microfacet_bake::bake::albedo::SIGMA_MAX;
-use microfacet_bake::export::{Shape, Target, files};
+use microfacet_bake::export::{Language, Shape, Storage, Target, files};
 use microfacet_bake::store;
 
 use super::{Done, Failure, Outcome, report, summarize, tables, values};
 
-/// Write shapes as source text: tables of one gamma for any roughness, with their lookups.
+/// Write shapes for programs in other languages: tables of one gamma for any roughness, with the
+/// functions that look them up.
 #[derive(clap::Args)]
 #[allow(dead_code, reason = "no value of a roughness is ever accepted")]
 #[command(after_help = "Example:
   microfacet-bake export c --gamma 3 --gamma 1.65 --out student-t
 writes student_t.h, student_t_gamma_3.h and student_t_gamma_1p65.h: headers for C99,
-C++11, CUDA and HIP. student_t.h says how to use them.")]
+C++11, CUDA and HIP. student_t.h says how to use them.
+  microfacet-bake export wgsl --gamma 3 --gamma 1.65 --out student-t
+writes student_t.wgsl, with the functions, a program that uses them, and the tables of
+both shapes as student_t.bin, described by student_t.json.")]
 pub(super) struct Args {
     /// What to write.
     #[arg(value_enum, ignore_case = true)]
@@ -32,6 +36,9 @@ pub(super) struct Args {
     alpha: Option<String>,
     #[arg(long, hide = true, value_name = "X", value_parser = every_sigma())]
     roughness: Option<String>,
+    /// Have a shader read its tables from a texture, not from a buffer. GLSL ES has no other way.
+    #[arg(long)]
+    textures: bool,
     /// A table file, or a folder with one; the embedded default if absent.
     #[arg(long)]
     tables: Option<PathBuf>,
@@ -45,6 +52,21 @@ enum TargetArg {
     /// Headers for C99, C++11, CUDA and HIP.
     #[value(aliases = ["c++", "cpp", "cuda", "hip"])]
     C,
+    /// A module of WGSL: WebGPU.
+    Wgsl,
+    /// Functions in GLSL 4.3: OpenGL, Vulkan.
+    Glsl,
+    /// Functions in GLSL ES 3.0: WebGL 2, OpenGL ES.
+    #[value(aliases = ["gles", "essl", "webgl"])]
+    GlslEs,
+    /// Functions in HLSL: Direct3D.
+    Hlsl,
+    /// Functions in the Metal Shading Language.
+    #[value(aliases = ["metal"])]
+    Msl,
+    /// A program for Vulkan that samples visible normals.
+    #[value(aliases = ["spir-v", "spv"])]
+    Spirv,
 }
 
 fn every_sigma() -> UnknownArgumentValueParser {
@@ -53,15 +75,27 @@ fn every_sigma() -> UnknownArgumentValueParser {
     )
 }
 
-impl From<TargetArg> for Target {
-    fn from(target: TargetArg) -> Self {
-        match target {
-            TargetArg::C => Self::C,
-        }
+impl TargetArg {
+    fn target(self, textures: bool) -> Result<Target, Failure> {
+        let language = match self {
+            Self::C if textures => {
+                return Err(Failure("C has no textures: leave out --textures".into()));
+            }
+            Self::C => return Ok(Target::C),
+            Self::Wgsl => Language::Wgsl,
+            Self::Glsl => Language::Glsl,
+            Self::GlslEs => Language::GlslEs,
+            Self::Hlsl => Language::Hlsl,
+            Self::Msl => Language::Msl,
+            Self::Spirv => Language::SpirV,
+        };
+        let storage = if textures { Storage::Texture } else { language.default_storage() };
+        Ok(Target::Shader(language, storage))
     }
 }
 
 pub(super) fn run(args: Args) -> Outcome {
+    let target = args.target.target(args.textures)?;
     let set = tables(args.tables.as_deref())?;
     let mut shapes: Vec<Shape> = Vec::new();
     for &gamma in &args.gamma {
@@ -79,12 +113,12 @@ pub(super) fn run(args: Args) -> Outcome {
             report("note", note);
         }
     }
-    let files = files(args.target.into(), &shapes);
-    let contents = files.iter().map(|file| (&file.name[..], file.text.as_bytes()));
+    let files = files(target, &shapes);
+    let contents = files.iter().map(|file| (&file.name[..], &file.contents[..]));
     let written = store::replace_files(&args.out, contents)
         .map_err(|(path, why)| Failure(format!("{}: {why}", path.display())))?;
     for (path, file) in written.iter().zip(&files) {
-        summarize(&format!("{} ({} bytes)\n", path.display(), file.text.len()))?;
+        summarize(&format!("{} ({} bytes)\n", path.display(), file.contents.len()))?;
     }
     Ok(Done::Ok)
 }

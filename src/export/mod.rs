@@ -16,10 +16,13 @@
 
 mod albedo;
 mod c;
+mod members;
 mod numbers;
+mod shader;
 mod shape;
 
 pub use albedo::AlbedoTable;
+pub use shader::{Language, Storage};
 pub use shape::Shape;
 
 /// What can be written.
@@ -27,6 +30,8 @@ pub use shape::Shape;
 pub enum Target {
     /// Headers for C99, C++11, CUDA and HIP.
     C,
+    /// A shader module, with its tables as data.
+    Shader(Language, Storage),
 }
 
 /// A file of an export.
@@ -34,14 +39,18 @@ pub enum Target {
 pub struct ExportFile {
     /// Its name, to stand in the same folder as all others of the target.
     pub name: String,
-    /// Its text.
-    pub text: String,
+    /// Its bytes; text is UTF-8.
+    pub contents: Vec<u8>,
 }
 
-/// The files of a target: those with functions, which do not depend on the shapes, then one a
-/// shape.
+/// The files of a target. Those with functions, which do not depend on the shapes, come first. Then
+/// comes one a shape, or for shaders what holds the data of all.
+///
+/// # Panics
+/// If there are no shapes for shaders.
 pub fn files(target: Target, shapes: &[Shape]) -> Vec<ExportFile> {
     match target {
         Target::C => c::files(shapes),
+        Target::Shader(language, storage) => shader::files(language, storage, shapes),
     }
 }

@@ -53,24 +53,51 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
             Precision::F16 => FlatSamples::F16(samples.map(|&x| f16::from_f32(x)).collect()),
             _ => FlatSamples::F32(samples.copied().collect()),
         };
-        // The samples are not light intensities: a lossy compressor should quantise them evenly.
-        AnyChannel {
-            name: Text::new_or_panic(channel_name(channel)),
-            sample_data: samples,
-            quantize_linearly: true,
-            sampling: Vec2(1, 1),
-        }
+        channel_of(channel_name(channel), samples)
     });
     let mut attributes = LayerAttributes::named(Text::new_or_panic(&table.name));
     let text = Text::new_or_none(&document).ok_or("the description cannot be stored in EXR")?;
     // Only one custom attribute: the library writes them in the order of a hash map.
     attributes.other.insert(Text::new_or_panic(ATTRIBUTE), AttributeValue::Text(text));
-    let layer = Layer::new(
-        (width, height),
-        attributes,
-        Encoding::SMALL_LOSSLESS,
-        AnyChannels::sort(channels.collect()),
-    );
+    write_layer((width, height), attributes, AnyChannels::sort(channels.collect()))
+}
+
+/// Encodes channels in single precision as an image, compressed without loss.
+///
+/// # Errors
+/// A message if it cannot be written.
+///
+/// # Panics
+/// If a channel has another number of samples than the image, or a name is not ASCII.
+pub fn encode_channels(
+    name: &str,
+    size: [usize; 2],
+    channels: impl IntoIterator<Item = (&'static str, Vec<f32>)>,
+) -> std::result::Result<Vec<u8>, String> {
+    let channels = channels
+        .into_iter()
+        .map(|(channel, samples)| channel_of(channel, FlatSamples::F32(samples)))
+        .collect();
+    let attributes = LayerAttributes::named(Text::new_or_panic(name));
+    write_layer((size[0], size[1]), attributes, AnyChannels::sort(channels))
+}
+
+/// Samples that are no intensities of light: a lossy compressor should quantise them evenly.
+fn channel_of(name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
+    AnyChannel {
+        name: Text::new_or_panic(name),
+        sample_data: samples,
+        quantize_linearly: true,
+        sampling: Vec2(1, 1),
+    }
+}
+
+fn write_layer(
+    size: (usize, usize),
+    attributes: LayerAttributes,
+    channels: AnyChannels<FlatSamples>,
+) -> std::result::Result<Vec<u8>, String> {
+    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
     let mut bytes = Cursor::new(Vec::new());
     Image::from_layer(layer)
         .write()

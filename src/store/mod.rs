@@ -15,7 +15,7 @@ use microfacet_sampler::{LoadError, Table, Tables, encode};
 
 use crate::input::{self, MAX_TABLES};
 
-pub use self::exr::{decode as decode_exr, encode as encode_exr};
+pub use self::exr::{decode as decode_exr, encode as encode_exr, encode_channels};
 pub use interrupt::quiesce;
 pub use lock::OutputFolder;
 pub(crate) use replace::{make_folder, remove_abandoned};

@@ -2,9 +2,7 @@
 
 use std::fmt::Write;
 
-use microfacet_common::shape::s_of_gamma;
-use microfacet_sampler::internals::ShapeTables;
-
+use super::members::{self, Member, Value, parts};
 use super::numbers::{as_typed, error, identifier, lines, single};
 use super::{AlbedoTable, ExportFile, Shape};
 
@@ -24,10 +22,10 @@ const HEADER_NAME: &str = "student_t.h";
 const LAYOUT: u32 = 1;
 
 pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
-    let header = ExportFile { name: HEADER_NAME.into(), text: HEADER.into() };
+    let header = ExportFile { name: HEADER_NAME.into(), contents: HEADER.into() };
     let shape = |shape: &Shape| {
         let name = format!("student_t_gamma_{}", identifier(shape.gamma));
-        ExportFile { text: text(shape, &name), name: name + ".h" }
+        ExportFile { contents: text(shape, &name).into(), name: name + ".h" }
     };
     std::iter::once(header).chain(shapes.iter().map(shape)).collect()
 }
@@ -49,18 +47,10 @@ fn text(shape: &Shape, name: &str) -> String {
 "
     )
     .expect("memory");
-    if let Some(tables) = &shape.tables {
-        array(&mut text, name, "masking", &tables.masking);
-        array(&mut text, name, "slopes", &tables.slopes);
-        array(&mut text, name, "across", &tables.across);
-        if let Some(heavy) = &tables.heavy {
-            array(&mut text, name, "heavy", &heavy.shares);
-        }
-    }
-    for table in &shape.albedos {
-        let masking = masking(table);
-        array(&mut text, name, &format!("albedo_{masking}"), &table.values);
-        array(&mut text, name, &format!("averages_{masking}"), &table.averages);
+    for part in parts(shape) {
+        let (items, count) = (part.values.iter().map(|&x| float(x)), part.values.len());
+        let array = format!("float {name}_{}[{count}]", part.name);
+        writeln!(text, "\nSTUDENT_T_DATA {array} = {{\n{}\n}};", lines(items)).expect("memory");
     }
     definition(&mut text, shape, name);
     text + "\n#endif\n"
@@ -116,94 +106,29 @@ fn comment(shape: &Shape, name: &str) -> String {
     )
 }
 
-fn masking(table: &AlbedoTable) -> String {
-    table.masking.name().replace('-', "_")
-}
-
-/// An array of the tables.
-fn array<const N: usize>(text: &mut String, name: &str, part: &str, values: &[[f32; N]]) {
-    let items = values.as_flattened().iter().map(|&x| float(x));
-    let count = values.len() * N;
-    writeln!(text, "\nSTUDENT_T_DATA float {name}_{part}[{count}] = {{\n{}\n}};", lines(items))
-        .expect("memory");
-}
-
 /// The definition of the shape: values in the order of the members of `student_t_shape`.
 fn definition(text: &mut String, shape: &Shape, name: &str) {
     writeln!(text, "\nSTUDENT_T_DATA student_t_shape {name} = {{").expect("memory");
-    for (member, value) in lobe(shape, name) {
-        writeln!(text, "    {value}, /* {member} */").expect("memory");
+    for Member { name: member, value } in members::lobe(shape) {
+        writeln!(text, "    {}, /* {member} */", literal(value, name)).expect("memory");
     }
     for (i, table) in shape.albedos.iter().enumerate() {
         text.push_str(if i == 0 { "    {{\n" } else { "    }, {\n" });
-        for (member, value) in albedo(table, name) {
-            writeln!(text, "        {value}, /* {member} */").expect("memory");
+        for Member { name: member, value } in members::albedo(table) {
+            writeln!(text, "        {}, /* {member} */", literal(value, name)).expect("memory");
         }
     }
     text.push_str("    }}\n};\n");
 }
 
-/// Names of members with their values.
-type Members = Vec<(&'static str, String)>;
-
-/// The lobe; what GGX does not need is 0.
-fn lobe(shape: &Shape, name: &str) -> Members {
-    let tables = shape.tables.as_ref();
-    let heavy = tables.and_then(|tables| tables.heavy.as_ref());
-    let number = |of: fn(&ShapeTables) -> f32| float(tables.map_or(0.0, of));
-    let flag = |flag: bool| u8::from(flag).to_string();
-    let array = |has: bool, part| if has { format!("{name}_{part}") } else { "0".into() };
-    let [d_s, d_power] = tables.map_or([1.0, 0.0], |tables| tables.normals);
-    vec![
-        ("is_ggx", flag(tables.is_none())),
-        ("s", float(s_of_gamma(shape.gamma) as f32)),
-        ("d_s", float(d_s)),
-        ("d_power", float(d_power)),
-        ("kappa", number(|tables| tables.kappa)),
-        ("masking_crowded", flag(tables.is_some_and(|tables| tables.masking_crowded))),
-        ("masking_cells", number(|tables| tables.masking_cells)),
-        ("masking", array(tables.is_some(), "masking")),
-        ("slopes_crowded", flag(tables.is_some_and(|tables| tables.slopes_crowded))),
-        ("rows", number(|tables| tables.rows[0])),
-        ("inverse_rows", number(|tables| tables.rows[1])),
-        ("numbers", tables.map_or(0, |tables| tables.numbers).to_string()),
-        ("along_scale", number(|tables| tables.scales[0])),
-        ("slopes", array(tables.is_some(), "slopes")),
-        ("across_scale", number(|tables| tables.scales[1])),
-        ("across", array(tables.is_some(), "across")),
-        ("heavy_per_row", float(heavy.map_or(0.0, |heavy| heavy.cells_per_row))),
-        ("heavy", array(heavy.is_some(), "heavy")),
-        ("heavy_exponent", float(heavy.map_or(0.0, |heavy| heavy.exponent))),
-        ("heavy_root_s", float(heavy.map_or(0.0, |heavy| heavy.root_s))),
-    ]
-}
-
-fn albedo(table: &AlbedoTable, name: &str) -> Members {
-    let masking = masking(table);
-    let [first, last] = table.ends;
-    let (sigma, view) = (table.roughness, table.view);
-    vec![
-        ("values", format!("{name}_albedo_{masking}")),
-        ("averages", format!("{name}_averages_{masking}")),
-        ("sigmas", table.sigmas.to_string()),
-        ("average_sigmas", table.averages.len().to_string()),
-        ("views", table.views.to_string()),
-        ("offset", float(sigma.offset as f32)),
-        ("first", float(sigma.first as f32)),
-        ("slow", float(sigma.slow as f32)),
-        ("linear", float(sigma.linear as f32)),
-        ("start", float(first as f32)),
-        ("range", float((last - first) as f32)),
-        ("sigma_min", float(table.sigma[0] as f32)),
-        ("sigma_max", float(table.sigma[1] as f32)),
-        ("weight", float(view.weight as f32)),
-        ("normal", float(view.normal as f32)),
-        ("share", float(view.share as f32)),
-        ("kappa", float(view.scale as f32)),
-        ("spread", float(view.spread as f32)),
-        ("floor", float(view.floor as f32)),
-        ("slope", float(view.slope as f32)),
-    ]
+/// A member in a shape of this name.
+fn literal(value: Value, name: &str) -> String {
+    match value {
+        Value::Flag(flag) => u8::from(flag).to_string(),
+        Value::Count(count) => count.to_string(),
+        Value::Number(number) => float(number),
+        Value::Table(part) => part.map_or("0".into(), |part| format!("{name}_{part}")),
+    }
 }
 
 fn float(x: f32) -> String {
@@ -252,11 +177,11 @@ mod tests {
             names.collect()
         };
         let shape = Shape::bind(&microfacet_sampler::Tables::embedded(), 1.7).unwrap();
-        let written = |members: Members| members.into_iter().map(|(name, _)| name.to_owned());
-        let mut expected: Vec<_> = written(lobe(&shape, "x")).collect();
+        let written = |members: Vec<Member>| members.into_iter().map(|member| member.name.into());
+        let mut expected: Vec<String> = written(members::lobe(&shape)).collect();
         expected.push("albedo[2]".into());
         assert_eq!(members("student_t_shape"), expected);
-        let albedo: Vec<_> = written(albedo(&shape.albedos[0], "x")).collect();
+        let albedo: Vec<String> = written(members::albedo(&shape.albedos[0])).collect();
         assert_eq!(members("student_t_albedo_table"), albedo);
     }
 }

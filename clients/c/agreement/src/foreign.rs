@@ -1,35 +1,6 @@
 //! The exported functions, compiled as C and as C++.
 
-/// What lookups take, as `point` of `lookups.c`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct Point {
-    pub sigma: [f32; 2],
-    pub v: [f32; 3],
-    pub l: [f32; 3],
-    pub m: [f32; 3],
-    pub u: [f32; 2],
-}
-
-/// What they return, as `answer` of `lookups.c`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Answer {
-    pub d: f32,
-    pub g1: f32,
-    pub lambda: f32,
-    pub pdf: f32,
-    pub reflection_pdf: f32,
-    pub normal: [f32; 3],
-    pub light: [f32; 3],
-    pub g2: [f32; 2],
-    pub weight: [f32; 2],
-    pub compensation: [f32; 2],
-    pub albedo: [f32; 2],
-    pub average: [f32; 2],
-    pub parts: [[f32; 3]; 2],
-    pub average_parts: [[f32; 3]; 2],
-}
+use student_t_agreement::{Answer, Foreign, Point};
 
 unsafe extern "C" {
     fn c_answer(shape: usize, count: usize, points: *const Point, answers: *mut Answer);
@@ -59,14 +30,19 @@ pub fn gammas() -> Vec<f64> {
     text.lines().map(|gamma| gamma.parse().expect("a number")).collect()
 }
 
-/// Answers by C, and by C++.
-pub fn answers(shape: usize, points: &[Point]) -> [Vec<Answer>; 2] {
-    [c_answer, cpp_answer].map(|function| {
-        let mut answers = vec![Answer::default(); points.len()];
-        // SAFETY: both are of the length passed, and of the layout of `lookups.c`.
-        unsafe { function(shape, points.len(), points.as_ptr(), answers.as_mut_ptr()) };
-        answers
-    })
+/// The shapes as compiled.
+pub struct Compiled;
+
+impl Foreign for Compiled {
+    fn answers(&mut self, shape: usize, points: &[Point]) -> Vec<(&'static str, Vec<Answer>)> {
+        let by = |language, function: unsafe extern "C" fn(_, _, _, _)| {
+            let mut answers = vec![Answer::default(); points.len()];
+            // SAFETY: both are of the length passed, and of the layout of `lookups.c`.
+            unsafe { function(shape, points.len(), points.as_ptr(), answers.as_mut_ptr()) };
+            (language, answers)
+        };
+        vec![by("C", c_answer), by("C++", cpp_answer)]
+    }
 }
 
 /// Normals by C; all slices are of one length.

@@ -5,48 +5,99 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use microfacet_sampler::{Albedo, Ggx, Lobe, Masking, MicrofacetDistribution, Moments, Tables};
 
-use crate::foreign::{Answer, Point, answers};
+use crate::lookup::{Answer, Point};
 use crate::points::Group;
 
-/// Allowed differences: of masking, weights and albedos; of coordinates of normals; of averages.
-const SHARE: f64 = 2e-6;
-const NORMAL: f64 = 1e-5;
-const AVERAGE: f64 = 3e-5;
-/// Normals of σ above [`ROUGH`]: seen at grazing they are turned by the last digits of a slope, and
-/// in the heavy part of γ < 1.8 these are the rounding of a power.
-const NORMAL_ROUGH: f64 = 1e-3;
+/// What may differ.
+pub struct Limits {
+    /// Masking, weights and albedos.
+    pub share: f64,
+    /// Coordinates of normals.
+    pub normal: f64,
+    /// The same for σ above [`ROUGH`]: seen at grazing they are turned by the last digits of a
+    /// slope, and in the heavy part of γ < 1.8 these are the rounding of a power.
+    pub normal_rough: f64,
+    /// The same for smaller σ, γ < 1.8 and views within 1e-6 of the horizon. A slope there is
+    /// √(1 − ζ²), of which the crate's ζ loses digits where a number leaves next to 1.
+    pub normal_heavy: f64,
+    /// Averages of albedos.
+    pub average: f64,
+    /// Densities in relation to themselves: and for each unit of |ln(D σx σy)|.
+    pub density: [f64; 2],
+    /// Albedos of γ below [`SLOW`], closer to the horizon than 1e-6, and than 1e-20: they approach
+    /// their limit with a power of the cosine of 0.002 or so, by which single precision
+    /// extrapolates from two albedos that differ in their last digits, there and in the crate.
+    pub extrapolated: [f64; 2],
+    /// Whether arguments that are NaN have to give numbers.
+    pub of_nan: bool,
+}
+
 const ROUGH: f32 = 10.0;
-/// Albedos of γ below [`SLOW`], closer to the horizon than these cosines: they approach their limit
-/// with a power of the cosine of 0.002 or so, by which single precision extrapolates from two
-/// albedos that differ in their last digits, here and in the crate.
-const EXTRAPOLATED: [(f32, f64); 2] = [(1e-20, 2e-4), (1e-6, 2e-5)];
 const SLOW: f64 = 1.6;
-/// Densities in relation to themselves: and for each unit of |ln(D σx σy)|.
-const DENSITY: [f64; 2] = [1e-5, 2e-6];
+const HEAVY: f64 = 1.8;
 /// Below it single precision has not all its digits.
 const SMALLEST: f64 = 1.2e-38;
 
-/// The largest differences by quantity, as shares of what is allowed, and where they are.
-#[derive(Default)]
-pub struct Worst(BTreeMap<&'static str, (f64, f64, String)>);
+impl Limits {
+    /// What a density may differ by in relation to itself.
+    pub(crate) fn density(&self, d: f64, sigma: [f32; 2]) -> f64 {
+        let log = (d.max(1e-38) * f64::from(sigma[0]) * f64::from(sigma[1])).ln().abs();
+        self.density[0] + self.density[1] * log
+    }
+}
 
-impl Worst {
+/// The largest differences by quantity, as shares of what is allowed, and where they are.
+pub(crate) struct Worst<'a> {
+    limits: &'a Limits,
+    seen: BTreeMap<&'static str, (f64, f64, String)>,
+}
+
+impl<'a> Worst<'a> {
+    pub(crate) fn new(limits: &'a Limits) -> Self {
+        Self { limits, seen: BTreeMap::new() }
+    }
+
     fn see(&mut self, name: &'static str, difference: f64, allowed: f64, at: impl Fn() -> String) {
         // NaN is worse than any number.
         let difference = if difference.is_nan() { f64::INFINITY } else { difference };
-        let entry = self.0.entry(name).or_default();
+        let entry = self.seen.entry(name).or_default();
         if difference / allowed > entry.0 || entry.2.is_empty() {
             *entry = (difference / allowed, difference, at());
         }
     }
 
     /// Prints the table, and returns whether all are within what is allowed.
-    pub fn print(&self) -> bool {
-        for (name, (share, difference, at)) in &self.0 {
+    pub(crate) fn print(&self) -> bool {
+        for (name, (share, difference, at)) in &self.seen {
             let verdict = if *share <= 1.0 { "" } else { "  TOO FAR" };
             println!("  {name:20} {difference:.1e}, {share:.2} of what is allowed{verdict}; {at}");
         }
-        self.0.values().all(|(share, ..)| *share <= 1.0)
+        self.seen.values().all(|(share, ..)| *share <= 1.0)
+    }
+
+    /// Compares what a language says of a group of points of one shape.
+    pub(crate) fn group(
+        &mut self,
+        tables: &Tables,
+        gamma: f64,
+        group: &Group,
+        language: &str,
+        answers: &[Answer],
+    ) {
+        let sigma = group.points[0].sigma;
+        let (lobe, albedos) = (lobe(tables, sigma, gamma), Albedos::new(tables, sigma, gamma));
+        for (point, answer) in group.points.iter().zip(answers) {
+            let at = || format!("{language}, gamma {gamma}, {} {point:?}", group.name);
+            if has_nan(point) && !self.limits.of_nan {
+                continue;
+            }
+            if is_odd(point) {
+                sound(self, answer, &at);
+            } else {
+                directions(self, &lobe, gamma, point, answer, &at);
+                shares(self, &albedos, gamma, point, answer, &at);
+            }
+        }
     }
 }
 
@@ -71,21 +122,10 @@ fn lobe(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Lobe {
     }
 }
 
-/// Compares C and C++ with the crate at the points of one shape.
-pub fn group(worst: &mut Worst, tables: &Tables, shape: usize, gamma: f64, group: &Group) {
-    let sigma = group.points[0].sigma;
-    let (lobe, albedos) = (lobe(tables, sigma, gamma), Albedos::new(tables, sigma, gamma));
-    for (language, answers) in ["C", "C++"].into_iter().zip(answers(shape, &group.points)) {
-        for (point, answer) in group.points.iter().zip(&answers) {
-            let at = || format!("{language}, gamma {gamma}, {} {point:?}", group.name);
-            if is_odd(point) {
-                sound(worst, answer, &at);
-            } else {
-                directions(worst, &lobe, point, answer, &at);
-                shares(worst, &albedos, gamma, point, answer, &at);
-            }
-        }
-    }
+/// Whether a direction or a number is NaN.
+fn has_nan(point: &Point) -> bool {
+    let directions = [point.v, point.l, point.m];
+    directions.as_flattened().iter().chain(&point.u).any(|x| x.is_nan())
 }
 
 /// Whether a direction has NaN, or a view is neither null nor of length 1: then results are only
@@ -97,7 +137,7 @@ fn is_odd(point: &Point) -> bool {
 }
 
 /// Whether every number is in its range.
-fn sound(worst: &mut Worst, answer: &Answer, at: &dyn Fn() -> String) {
+fn sound(worst: &mut Worst<'_>, answer: &Answer, at: &dyn Fn() -> String) {
     let parts = [answer.parts, answer.average_parts];
     let shares = [answer.g2, answer.weight, answer.albedo, answer.average];
     let shares = shares.as_flattened().iter().chain(parts.as_flattened().as_flattened());
@@ -110,39 +150,45 @@ fn sound(worst: &mut Worst, answer: &Answer, at: &dyn Fn() -> String) {
 }
 
 fn directions(
-    worst: &mut Worst,
+    worst: &mut Worst<'_>,
     lobe: &Lobe,
+    gamma: f64,
     point: &Point,
     answer: &Answer,
     at: &dyn Fn() -> String,
 ) {
+    let limits = worst.limits;
     let Point { sigma, u, .. } = *point;
     let [v, l, m] = [point.v, point.l, point.m].map(Vec3::from);
     let far = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
-    worst.see("g1", far(answer.g1, lobe.g1(v)), SHARE, at);
+    worst.see("g1", far(answer.g1, lobe.g1(v)), limits.share, at);
     let lambda = far(1.0 / (1.0 + answer.lambda), lobe.g1(v));
-    worst.see("lambda, by G1", lambda, SHARE, at);
+    worst.see("lambda, by G1", lambda, limits.share, at);
     for (k, masking) in Masking::ALL.into_iter().enumerate() {
-        worst.see("g2", far(answer.g2[k], lobe.g2(v, l, masking)), SHARE, at);
+        worst.see("g2", far(answer.g2[k], lobe.g2(v, l, masking)), limits.share, at);
         let weight = lobe.reflection_weight(v, l, masking);
-        worst.see("reflection_weight", far(answer.weight[k], weight), SHARE, at);
+        worst.see("reflection_weight", far(answer.weight[k], weight), limits.share, at);
     }
     let normal = lobe.sample_visible_normal(v, u).to_array();
-    let rough = sigma[0].max(sigma[1]) > ROUGH;
-    let (name, allowed) = if rough { ("normal, rough", NORMAL_ROUGH) } else { ("normal", NORMAL) };
+    let (name, allowed) = if sigma[0].max(sigma[1]) > ROUGH {
+        ("normal, rough", limits.normal_rough)
+    } else if gamma < HEAVY && v.z < 1e-6 {
+        ("normal, heavy", limits.normal_heavy)
+    } else {
+        ("normal", limits.normal)
+    };
     for (a, b) in answer.normal.into_iter().zip(normal) {
         worst.see(name, far(a, b), allowed, at);
     }
     let light = 2.0 * v.dot(m) * m - v;
     for (a, b) in answer.light.into_iter().zip(light.to_array()) {
-        worst.see("reflect", far(a, b), SHARE, at);
+        worst.see("reflect", far(a, b), limits.share, at);
     }
     let above = if answer.normal[2] > 0.0 { 0.0 } else { f64::INFINITY };
     worst.see("normal above", above, 1.0, at);
 
     let d = lobe.d(m);
-    let log = (f64::from(d.max(1e-38)) * f64::from(sigma[0]) * f64::from(sigma[1])).ln().abs();
-    let allowed = DENSITY[0] + DENSITY[1] * log;
+    let allowed = limits.density(f64::from(d), sigma);
     let mut density = |name, a: f32, b: f32| {
         let difference = far(a, b);
         if difference.is_nan() || difference > SMALLEST {
@@ -157,37 +203,46 @@ fn directions(
         let quotient = f64::from(answer.pdf) / (4.0 * f64::from(facing));
         let difference = (f64::from(answer.reflection_pdf) - quotient).abs();
         if difference > SMALLEST && quotient < 1e37 {
-            worst.see("reflection_pdf", difference / quotient, DENSITY[0], at);
+            worst.see("reflection_pdf", difference / quotient, limits.density[0], at);
         }
     }
 }
 
 fn shares(
-    worst: &mut Worst,
+    worst: &mut Worst<'_>,
     albedos: &Albedos,
     gamma: f64,
     point: &Point,
     answer: &Answer,
     at: &dyn Fn() -> String,
 ) {
+    let limits = worst.limits;
     let [v, l] = [point.v, point.l].map(Vec3::from);
-    let extrapolated = EXTRAPOLATED.iter().find(|(cos, _)| gamma < SLOW && v.z < *cos);
-    let (name, parts, share) = match extrapolated {
-        None => ("albedo", "albedo_parts", SHARE),
-        Some((1e-20, share)) => ("albedo, at horizon", "parts, at horizon", *share),
-        Some((_, share)) => ("albedo, close to it", "parts, close to it", *share),
+    let (name, parts, share) = match v.z {
+        z if gamma < SLOW && z < 1e-20 => {
+            ("albedo, at horizon", "parts, at horizon", limits.extrapolated[1])
+        }
+        z if gamma < SLOW && z < 1e-6 => {
+            ("albedo, close to it", "parts, close to it", limits.extrapolated[0])
+        }
+        _ => ("albedo", "albedo_parts", limits.share),
     };
     for (k, albedo) in albedos.0.iter().enumerate() {
         let far = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
         worst.see(name, far(answer.albedo[k], albedo.albedo(v)), share, at);
-        worst.see("albedo_average", far(answer.average[k], albedo.albedo_average()), AVERAGE, at);
+        worst.see(
+            "albedo_average",
+            far(answer.average[k], albedo.albedo_average()),
+            limits.average,
+            at,
+        );
         let in_order = |Moments { scale, bias, f82 }| [scale, bias, f82];
         for (i, part) in in_order(albedo.moments(v)).into_iter().enumerate() {
             worst.see(parts, far(answer.parts[k][i], part), share, at);
         }
         for (i, part) in in_order(albedo.average_moments()).into_iter().enumerate() {
             let difference = far(answer.average_parts[k][i], part);
-            worst.see("albedo_average_parts", difference, AVERAGE, at);
+            worst.see("albedo_average_parts", difference, limits.average, at);
         }
         if v.z > 0.0 && l.z > 0.0 {
             let [v, l, average] = [albedo.lost(v), albedo.lost(l), albedo.lost_average()];
@@ -196,11 +251,11 @@ fn shares(
             let difference = (f64::from(answer.compensation[k]) - both / average).abs();
             // As much as what it is made of may differ. An average of next to nothing says little.
             if average > 1e-3 {
-                let allowed = (both * AVERAGE / average + 2.0 * SHARE) / average;
+                let allowed = (both * limits.average / average + 2.0 * limits.share) / average;
                 worst.see("compensation", difference, allowed, at);
             }
         } else {
-            worst.see("compensation", f64::from(answer.compensation[k]), SHARE, at);
+            worst.see("compensation", f64::from(answer.compensation[k]), limits.share, at);
         }
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-use crate::foreign::Point;
+use crate::lookup::Point;
 
 /// The smallest cosine of a sampled normal. Below it the crate's D leaves single precision.
 const LOWEST: f32 = 1e-18;

@@ -2,13 +2,19 @@
 
 use std::collections::HashMap;
 
-use crate::foreign::{Answer, Point, answers};
+use crate::lookup::{Answer, Point};
+use crate::{Foreign, Limits};
 
 /// Compares every row whose shape is exported; returns whether all agree.
 ///
 /// GGX is exported in closed form, so its rows are held against the exact columns, and its normals,
 /// which are drawn in another way than from tables, are not compared.
-pub fn compare(path: &str, gammas: &[f64]) -> bool {
+pub(crate) fn compare(
+    foreign: &mut impl Foreign,
+    limits: &Limits,
+    path: &str,
+    gammas: &[f64],
+) -> bool {
     let mut reader = csv::Reader::from_path(path).expect("the reference");
     let rows: Vec<HashMap<String, String>> = reader.deserialize().map(|row| row.unwrap()).collect();
     let (mut worst, mut cells, mut skipped) = ((0.0, String::new()), 0, 0);
@@ -29,9 +35,8 @@ pub fn compare(path: &str, gammas: &[f64]) -> bool {
             u: [single("u1"), single("u2")],
         };
         let masking = usize::from(row["masking"] == "height-correlated");
-        let [c, cpp] = answers(shape, &[point]).map(|answers| answers[0]);
-        for answer in [c, cpp] {
-            for (name, value, allowed) in columns(&answer, masking) {
+        for (_, answers) in foreign.answers(shape, &[point]) {
+            for (name, value, allowed) in columns(&answers[0], masking, limits) {
                 let is_ggx = gamma == 2.0;
                 let exact = is_ggx && ["g1", "g2", "d", "density"].contains(&name);
                 if is_ggx && name.starts_with('n') {
@@ -39,16 +44,13 @@ pub fn compare(path: &str, gammas: &[f64]) -> bool {
                 }
                 let column = format!("{name}_{}", if exact { "exact" } else { "table" });
                 let Some(want) = number(&column) else { continue };
-                let log = (number("d_table").unwrap().max(1e-38)
-                    * f64::from(point.sigma[0])
-                    * f64::from(point.sigma[1]))
-                .ln()
-                .abs();
                 let difference = (f64::from(value) - want).abs();
                 let share = match allowed {
                     Allowed::Absolute(allowed) => difference / allowed,
                     Allowed::Density if difference <= 1.2e-38 => 0.0,
-                    Allowed::Density => difference / want / (1e-5 + 2e-6 * log),
+                    Allowed::Density => {
+                        difference / want / limits.density(number("d_table").unwrap(), point.sigma)
+                    }
                 };
                 // NaN is worse than any number.
                 let share = if share.is_nan() { f64::INFINITY } else { share };
@@ -68,31 +70,34 @@ pub fn compare(path: &str, gammas: &[f64]) -> bool {
     share <= 1.0 && cells > 0 && skipped == 0
 }
 
+#[derive(Clone, Copy)]
 enum Allowed {
     Absolute(f64),
     Density,
 }
 
 /// Columns with what answers say of them.
-fn columns(answer: &Answer, masking: usize) -> [(&'static str, f32, Allowed); 14] {
-    use Allowed::{Absolute, Density};
+fn columns(answer: &Answer, masking: usize, limits: &Limits) -> [(&'static str, f32, Allowed); 14] {
+    use Allowed::Density;
+    let [share, normal, average] =
+        [limits.share, limits.normal, limits.average].map(Allowed::Absolute);
     let [nx, ny, nz] = answer.normal;
     let [scale, bias, f82] = answer.parts[masking];
     let [_, bias_avg, f82_avg] = answer.average_parts[masking];
     [
-        ("g1", answer.g1, Absolute(2e-6)),
-        ("g2", answer.g2[masking], Absolute(2e-6)),
+        ("g1", answer.g1, share),
+        ("g2", answer.g2[masking], share),
         ("d", answer.d, Density),
         ("density", answer.pdf, Density),
-        ("nx", nx, Absolute(1e-5)),
-        ("ny", ny, Absolute(1e-5)),
-        ("nz", nz, Absolute(1e-5)),
-        ("e", answer.albedo[masking], Absolute(2e-6)),
-        ("scale", scale, Absolute(2e-6)),
-        ("bias", bias, Absolute(2e-6)),
-        ("f82", f82, Absolute(2e-6)),
-        ("e_avg", answer.average[masking], Absolute(3e-5)),
-        ("bias_avg", bias_avg, Absolute(3e-5)),
-        ("f82_avg", f82_avg, Absolute(3e-5)),
+        ("nx", nx, normal),
+        ("ny", ny, normal),
+        ("nz", nz, normal),
+        ("e", answer.albedo[masking], share),
+        ("scale", scale, share),
+        ("bias", bias, share),
+        ("f82", f82, share),
+        ("e_avg", answer.average[masking], average),
+        ("bias_avg", bias_avg, average),
+        ("f82_avg", f82_avg, average),
     ]
 }

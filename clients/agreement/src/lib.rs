@@ -1,0 +1,56 @@
+//! Compares the functions of exported shapes with the Rust crate: at random points, at corners, and
+//! with the rows of `docs/reference.csv`. What runs them is the client's.
+
+mod compare;
+mod lookup;
+mod points;
+mod reference;
+
+use microfacet_sampler::Tables;
+
+pub use compare::Limits;
+pub use lookup::{Answer, Point};
+
+use compare::Worst;
+
+/// What languages say of the same points of a shape, which is one of those compared, by its number.
+pub trait Foreign {
+    /// Answers by each language.
+    fn answers(&mut self, shape: usize, points: &[Point]) -> Vec<(&'static str, Vec<Answer>)>;
+}
+
+/// Compares shapes by their γ at `count` random points, at all corners, and with the rows of the
+/// file `reference`; prints what differs most, and returns whether all is within the limits.
+pub fn agree(
+    foreign: &mut impl Foreign,
+    limits: &Limits,
+    gammas: &[f64],
+    count: usize,
+    reference: &str,
+) -> bool {
+    let tables = Tables::embedded();
+    let each = count.div_ceil(gammas.len());
+    let mut good = true;
+    for (title, corners) in [("random points", false), ("corners", true)] {
+        let mut worst = Worst::new(limits);
+        let mut all = 0;
+        for (shape, &gamma) in gammas.iter().enumerate() {
+            let groups =
+                if corners { points::corners() } else { points::random(each, shape as u64) };
+            let points: Vec<Point> =
+                groups.iter().flat_map(|group| &group.points).copied().collect();
+            all += points.len();
+            for (language, answers) in foreign.answers(shape, &points) {
+                let mut rest = &answers[..];
+                for group in &groups {
+                    let (answers, others) = rest.split_at(group.points.len());
+                    rest = others;
+                    worst.group(&tables, gamma, group, language, answers);
+                }
+            }
+        }
+        println!("largest differences at {all} {title} of gamma {gammas:?}");
+        good &= worst.print();
+    }
+    good & reference::compare(foreign, limits, reference, gammas)
+}

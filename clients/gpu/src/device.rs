@@ -1,0 +1,143 @@
+//! Runs programs for compute.
+
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{BindGroupEntry, BindingResource, BufferUsages};
+
+use crate::export::Tables;
+
+/// A device with its queue.
+pub struct Gpu {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    /// What it says of itself.
+    pub name: String,
+}
+
+/// Tables on the device, of one kind or the other.
+pub enum Bound {
+    Buffer(wgpu::Buffer),
+    Texture(wgpu::TextureView),
+}
+
+/// A program with the tables that it reads.
+pub struct Program {
+    pipeline: wgpu::ComputePipeline,
+    tables: Bound,
+}
+
+impl Gpu {
+    /// The software driver of Vulkan, or any hardware if so asked.
+    pub fn new(hardware: bool) -> Result<Self, String> {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = wgpu::Backends::VULKAN;
+        let instance = wgpu::Instance::new(descriptor);
+        let options =
+            wgpu::RequestAdapterOptions { force_fallback_adapter: !hardware, ..Default::default() };
+        let adapter = pollster::block_on(instance.request_adapter(&options))
+            .map_err(|why| format!("no driver of Vulkan: {why}"))?;
+        let descriptor =
+            wgpu::DeviceDescriptor { required_limits: adapter.limits(), ..Default::default() };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|why| why.to_string())?;
+        let info = adapter.get_info();
+        Ok(Self { device, queue, name: format!("{}, {}", info.name, info.driver_info) })
+    }
+
+    /// Tables as a storage buffer.
+    pub fn buffer(&self, tables: &Tables) -> Bound {
+        Bound::Buffer(self.filled(&tables.bytes, BufferUsages::STORAGE))
+    }
+
+    /// Tables as a texture.
+    pub fn texture(&self, tables: &Tables) -> Bound {
+        let (width, height) = (tables.width, tables.height);
+        let descriptor = wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rg32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        let order = wgpu::util::TextureDataOrder::LayerMajor;
+        let texture =
+            self.device.create_texture_with_data(&self.queue, &descriptor, order, &tables.bytes);
+        Bound::Texture(texture.create_view(&Default::default()))
+    }
+
+    /// A program with its entry point.
+    pub fn program(&self, wgsl: &str, entry: &str, tables: Bound) -> Program {
+        let source = wgpu::ShaderSource::Wgsl(wgsl.into());
+        let module =
+            &self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: None,
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        Program { pipeline, tables }
+    }
+
+    /// What a program writes to binding 2, of so many bytes, from `input` in binding 1 and, where
+    /// it has any, `uniform` in binding 3.
+    pub fn run(
+        &self,
+        program: &Program,
+        input: &[u8],
+        uniform: Option<&[u8]>,
+        output: usize,
+        groups: u32,
+    ) -> Vec<u8> {
+        let input = self.filled(input, BufferUsages::STORAGE);
+        let uniform = uniform.map(|bytes| self.filled(bytes, BufferUsages::UNIFORM));
+        let sized = |usage| {
+            let size = output as u64;
+            let mapped_at_creation = false;
+            let descriptor =
+                wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation };
+            self.device.create_buffer(&descriptor)
+        };
+        let written = sized(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let read = sized(BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+
+        let tables = match &program.tables {
+            Bound::Buffer(buffer) => buffer.as_entire_binding(),
+            Bound::Texture(view) => BindingResource::TextureView(view),
+        };
+        let resources = [Some(tables), Some(input.as_entire_binding())].into_iter().chain([
+            Some(written.as_entire_binding()),
+            uniform.as_ref().map(|buffer| buffer.as_entire_binding()),
+        ]);
+        let entries: Vec<BindGroupEntry<'_>> = (0..)
+            .zip(resources)
+            .filter_map(|(binding, resource)| Some(BindGroupEntry { binding, resource: resource? }))
+            .collect();
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &program.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&program.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(groups, 1, 1);
+        drop(pass);
+        encoder.copy_buffer_to_buffer(&written, 0, &read, 0, output as u64);
+        self.queue.submit([encoder.finish()]);
+        let slice = read.slice(..);
+        slice.map_async(wgpu::MapMode::Read, |result| result.expect("a mapped buffer"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device works");
+        slice.get_mapped_range().expect("a mapped buffer").to_vec()
+    }
+
+    fn filled(&self, contents: &[u8], usage: BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage })
+    }
+}

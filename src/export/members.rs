@@ -1,0 +1,121 @@
+//! What lookups of a shape read, by name: the members of its description and its tables. Every
+//! target writes these, in this order.
+
+use microfacet_common::shape::s_of_gamma;
+use microfacet_sampler::internals::ShapeTables;
+
+use super::{AlbedoTable, Shape};
+
+/// A member of a shape's description.
+pub(super) struct Member {
+    pub(super) name: &'static str,
+    pub(super) value: Value,
+}
+
+/// What it holds.
+pub(super) enum Value {
+    /// Yes or no.
+    Flag(bool),
+    /// A number of nodes.
+    Count(usize),
+    /// Any number.
+    Number(f32),
+    /// A table of the shape by name, or none.
+    Table(Option<String>),
+}
+
+/// A table of a shape: rows of so many numbers.
+pub(super) struct Part<'a> {
+    pub(super) name: String,
+    pub(super) values: &'a [f32],
+    pub(super) columns: usize,
+}
+
+/// The tables of a shape.
+pub(super) fn parts(shape: &Shape) -> Vec<Part<'_>> {
+    fn part<const N: usize>(name: impl Into<String>, values: &[[f32; N]]) -> Part<'_> {
+        Part { name: name.into(), values: values.as_flattened(), columns: N }
+    }
+    let mut parts = Vec::new();
+    if let Some(tables) = &shape.tables {
+        parts.push(part("masking", &tables.masking));
+        parts.push(part("slopes", &tables.slopes));
+        parts.push(part("across", &tables.across));
+        parts.extend(tables.heavy.as_ref().map(|heavy| part("heavy", &heavy.shares)));
+    }
+    for table in &shape.albedos {
+        let [values, averages] = names(table);
+        parts.extend([part(values, &table.values), part(averages, &table.averages)]);
+    }
+    parts
+}
+
+/// The lobe; what GGX does not need is 0.
+pub(super) fn lobe(shape: &Shape) -> Vec<Member> {
+    let tables = shape.tables.as_ref();
+    let heavy = tables.and_then(|tables| tables.heavy.as_ref());
+    let flag = |of: fn(&ShapeTables) -> bool| Value::Flag(tables.is_some_and(of));
+    let number = |of: fn(&ShapeTables) -> f32| Value::Number(tables.map_or(0.0, of));
+    let table = |name: &str| Value::Table(tables.map(|_| name.into()));
+    let [d_s, d_power] = tables.map_or([1.0, 0.0], |tables| tables.normals);
+    let members = [
+        ("is_ggx", Value::Flag(tables.is_none())),
+        ("s", Value::Number(s_of_gamma(shape.gamma) as f32)),
+        ("d_s", Value::Number(d_s)),
+        ("d_power", Value::Number(d_power)),
+        ("kappa", number(|tables| tables.kappa)),
+        ("masking_crowded", flag(|tables| tables.masking_crowded)),
+        ("masking_cells", number(|tables| tables.masking_cells)),
+        ("masking", table("masking")),
+        ("slopes_crowded", flag(|tables| tables.slopes_crowded)),
+        ("rows", number(|tables| tables.rows[0])),
+        ("inverse_rows", number(|tables| tables.rows[1])),
+        ("numbers", Value::Count(tables.map_or(0, |tables| tables.numbers))),
+        ("along_scale", number(|tables| tables.scales[0])),
+        ("slopes", table("slopes")),
+        ("across_scale", number(|tables| tables.scales[1])),
+        ("across", table("across")),
+        ("heavy_per_row", Value::Number(heavy.map_or(0.0, |heavy| heavy.cells_per_row))),
+        ("heavy", Value::Table(heavy.map(|_| "heavy".into()))),
+        ("heavy_exponent", Value::Number(heavy.map_or(0.0, |heavy| heavy.exponent))),
+        ("heavy_root_s", Value::Number(heavy.map_or(0.0, |heavy| heavy.root_s))),
+    ];
+    members.map(|(name, value)| Member { name, value }).into()
+}
+
+/// A table of albedos.
+pub(super) fn albedo(table: &AlbedoTable) -> Vec<Member> {
+    let [values, averages] = names(table);
+    let [first, last] = table.ends;
+    let (sigma, view) = (table.roughness, table.view);
+    let number = |x: f64| Value::Number(x as f32);
+    let members = [
+        ("values", Value::Table(Some(values))),
+        ("averages", Value::Table(Some(averages))),
+        ("sigmas", Value::Count(table.sigmas)),
+        ("average_sigmas", Value::Count(table.averages.len())),
+        ("views", Value::Count(table.views)),
+        ("offset", number(sigma.offset)),
+        ("first", number(sigma.first)),
+        ("slow", number(sigma.slow)),
+        ("linear", number(sigma.linear)),
+        ("start", number(first)),
+        ("range", number(last - first)),
+        ("sigma_min", number(table.sigma[0])),
+        ("sigma_max", number(table.sigma[1])),
+        ("weight", number(view.weight)),
+        ("normal", number(view.normal)),
+        ("share", number(view.share)),
+        ("kappa", number(view.scale)),
+        ("spread", number(view.spread)),
+        ("floor", number(view.floor)),
+        ("slope", number(view.slope)),
+    ];
+    members.map(|(name, value)| Member { name, value }).into()
+}
+
+/// Names of the tables of albedos and of averages.
+fn names(table: &AlbedoTable) -> [String; 2] {
+    let masking = table.masking.name().replace('-', "_");
+    ["albedo", "averages"].map(|part| format!("{part}_{masking}"))
+}

@@ -1,0 +1,157 @@
+//! The tables of shapes for shaders: one list of pairs of numbers, as a buffer and as an image, and
+//! a description of what stands where.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::super::members::{Member, Part, Value, parts};
+use super::super::numbers::as_typed;
+use super::super::{AlbedoTable, ExportFile, Shape};
+use super::{NAME, lists};
+use crate::store;
+
+/// Raised whenever the order of members or tables changes.
+pub(super) const LAYOUT: u32 = 1;
+
+/// Pairs in a row of the image.
+pub(super) const WIDTH: usize = 512;
+
+/// What `student_t.json` says.
+#[derive(Serialize)]
+struct Description<'a> {
+    layout: u32,
+    generator: &'a str,
+    numerics: u32,
+    file: String,
+    image: String,
+    format: &'static str,
+    byte_order: &'static str,
+    width: usize,
+    height: usize,
+    shapes: BTreeMap<String, Entry>,
+}
+
+/// One shape in it; places and lengths are in pairs.
+#[derive(Serialize)]
+struct Entry {
+    offset: usize,
+    length: usize,
+    members: Vec<Named>,
+    tables: BTreeMap<String, Place>,
+    errors: Errors,
+}
+
+/// A member of the shape's description, of which pair i holds those 2i and 2i + 1.
+#[derive(Serialize)]
+struct Named {
+    name: String,
+    value: f32,
+}
+
+/// Where a table is in its shape: rows of so many numbers, padded to pairs.
+#[derive(Serialize)]
+struct Place {
+    offset: usize,
+    rows: usize,
+    columns: usize,
+}
+
+/// The largest errors of the tables against the model.
+#[derive(Serialize)]
+struct Errors {
+    g1: Option<f64>,
+    cdf_along: Option<f64>,
+    cdf_across: Option<f64>,
+    albedo: Option<f64>,
+    albedo_elsewhere: Option<f64>,
+    average: f64,
+}
+
+/// Data and description of all shapes.
+pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
+    let (mut pairs, mut entries) = (Vec::new(), BTreeMap::new());
+    for shape in shapes {
+        let entry = append(shape, &mut pairs);
+        entries.insert(as_typed(shape.gamma), entry);
+    }
+    let height = pairs.len().div_ceil(WIDTH);
+    pairs.resize(WIDTH * height, [0.0; 2]);
+    let first = shapes.first().expect("shapes");
+    let description = Description {
+        layout: LAYOUT,
+        generator: &first.generator,
+        numerics: first.numerics,
+        file: format!("{NAME}.bin"),
+        image: format!("{NAME}.exr"),
+        format: "rg32f",
+        byte_order: "little",
+        width: WIDTH,
+        height,
+        shapes: entries,
+    };
+    let json = serde_json::to_string_pretty(&description).expect("names and finite numbers");
+    let bytes = pairs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let channel = |i: usize| pairs.iter().map(|pair| pair[i]).collect();
+    let channels = [("R", channel(0)), ("G", channel(1))];
+    let image = store::encode_channels(NAME, [WIDTH, height], channels).expect("finite numbers");
+    vec![
+        ExportFile { name: description.file, contents: bytes },
+        ExportFile { name: format!("{NAME}.json"), contents: (json + "\n").into() },
+        ExportFile { name: description.image, contents: image },
+    ]
+}
+
+/// Appends a shape: its members, then its tables.
+fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
+    let offset = pairs.len();
+    let lists = lists(shape);
+    let mut at = lists.iter().map(|list| list.len().div_ceil(2)).sum::<usize>();
+    let parts = parts(shape);
+    let mut tables = BTreeMap::new();
+    for Part { name, values, columns } in &parts {
+        let rows = values.len() / columns;
+        tables.insert(name.clone(), Place { offset: at, rows, columns: *columns });
+        at += rows * columns.div_ceil(2);
+    }
+
+    let mut named = Vec::new();
+    for list in lists {
+        let numbers: Vec<f32> = list.iter().map(|member| number(&member.value, &tables)).collect();
+        pairs.extend(numbers.chunks(2).map(pair));
+        let names = list.into_iter().map(|Member { name, .. }| name.to_owned());
+        named.extend(names.zip(numbers).map(|(name, value)| Named { name, value }));
+    }
+    for Part { values, columns, .. } in parts {
+        pairs.extend(values.chunks(columns).flat_map(|row| row.chunks(2).map(pair)));
+    }
+    assert_eq!(pairs.len(), offset + at, "every table is where its member says");
+    let worst =
+        |of: fn(&AlbedoTable) -> Option<f64>| shape.albedos.iter().filter_map(of).reduce(f64::max);
+    let [cdf_along, cdf_across] = shape.errors.cdf;
+    let errors = Errors {
+        g1: shape.errors.g1,
+        cdf_along,
+        cdf_across,
+        albedo: worst(|table| table.errors[0]),
+        albedo_elsewhere: worst(|table| table.errors[1]),
+        average: worst(|table| Some(table.average_error)).unwrap_or_default(),
+    };
+    Entry { offset, length: at, members: named, tables, errors }
+}
+
+/// A member as a number; of a table its place in the shape. All are exact in single precision,
+/// which counts to 2²⁴.
+fn number(value: &Value, tables: &BTreeMap<String, Place>) -> f32 {
+    match value {
+        Value::Flag(flag) => f32::from(u8::from(*flag)),
+        Value::Count(count) => *count as f32,
+        Value::Number(number) => *number,
+        Value::Table(None) => 0.0,
+        Value::Table(Some(name)) => tables[name].offset as f32,
+    }
+}
+
+fn pair(numbers: &[f32]) -> [f32; 2] {
+    [numbers[0], numbers.get(1).copied().unwrap_or_default()]
+}

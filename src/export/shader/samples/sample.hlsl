@@ -1,0 +1,35 @@
+// A program for compute that includes student_t.hlsl: reflects views off visible normals, as a path
+// tracer does, and returns what the light is worth. With dxc:
+//     dxc -T cs_6_0 -E reflect_views student_t_sample.hlsl -Fo student_t_sample.dxil
+#include "student_t.hlsl"
+
+struct Query {
+    float3 v;     // the view, z up
+    uint shape;   // its offset in student_t.json
+    float2 sigma; // roughness along x and y
+    float2 u;     // random numbers
+};
+
+struct Answer {
+    float3 l;     // the light
+    float weight; // f cos/pdf with F = 1, of one bounce
+    float3 m;     // the microfacet normal
+    float pdf;    // density of the light, per steradian
+};
+
+StructuredBuffer<Query> queries : register(t1);
+RWStructuredBuffer<Answer> answers : register(u0);
+
+[numthreads(64, 1, 1)]
+void reflect_views(uint3 id : SV_DispatchThreadID) {
+    uint count, stride;
+    queries.GetDimensions(count, stride);
+    if (id.x >= count) return;
+    Query q = queries[id.x];
+    Answer a;
+    a.m = student_t_sample_visible_normal(q.shape, q.sigma, q.v, q.u);
+    a.l = student_t_reflect(q.v, a.m);
+    a.weight = student_t_reflection_weight(q.shape, q.sigma, q.v, a.l, STUDENT_T_HEIGHT_CORRELATED);
+    a.pdf = student_t_reflection_pdf(q.shape, q.sigma, q.v, a.m);
+    answers[id.x] = a;
+}

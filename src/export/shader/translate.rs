@@ -1,0 +1,148 @@
+//! Shading languages from WGSL, by `naga`.
+//!
+//! A module without an entry point is no shader to most of its writers. So each gets one, which is
+//! cut off again. Names that a writer makes up are made those of this module, and what the user
+//! has to bind gets its name from here.
+
+use naga::back::{glsl, hlsl, msl, spv};
+use naga::proc::BoundsCheckPolicies;
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{Module, ShaderStage};
+
+use super::{Language, Storage};
+
+/// The entry point that is cut off.
+const ENTRY: &str = "student_t_impl_entry";
+
+/// A module of functions as text.
+///
+/// # Panics
+/// For SPIR-V, which has none.
+pub(super) fn text(wgsl: &str, language: Language, storage: Storage) -> String {
+    let stage =
+        if language == Language::GlslEs { "fragment" } else { "compute @workgroup_size(1)" };
+    let entry = format!("@{stage} fn {ENTRY}() {{ _ = student_t_impl_pair(0u); }}\n");
+    let (module, info) = parse(&format!("{wgsl}\n{entry}"));
+    match language {
+        Language::Wgsl => wgsl.into(),
+        Language::Glsl => {
+            let version = glsl::Version::Desktop(430);
+            let text = glsl(&module, &info, version, ShaderStage::Compute);
+            let text = renamed(&text, &[("_group_0_binding_0_cs", "student_t_tables")]);
+            bindable_glsl(&without_lines(&text, &["#", "layout(local_size"]), storage)
+        }
+        Language::GlslEs => {
+            let version = glsl::Version::Embedded { version: 300, is_webgl: true };
+            let text = glsl(&module, &info, version, ShaderStage::Fragment);
+            let text = renamed(&text, &[("_group_0_binding_0_fs", "student_t_tables")]);
+            without_lines(&text, &["#version"])
+        }
+        Language::Hlsl => bindable_hlsl(&hlsl(&module, &info)),
+        Language::Msl => by_pointer(&msl(&module, &info)),
+        Language::SpirV => panic!("SPIR-V is no text"),
+    }
+}
+
+/// A program as SPIR-V.
+pub(super) fn spirv(wgsl: &str) -> Vec<u32> {
+    let (module, info) = parse(wgsl);
+    let flags = spv::WriterFlags::empty();
+    let options = spv::Options { lang_version: (1, 3), flags, ..spv::Options::default() };
+    spv::write_vec(&module, &info, &options, None).expect(OURS)
+}
+
+/// Why nothing here fails.
+const OURS: &str = "the module is this program's own";
+
+fn parse(wgsl: &str) -> (Module, ModuleInfo) {
+    let module =
+        naga::front::wgsl::parse_str(wgsl).map_err(|why| why.emit_to_string(wgsl)).expect(OURS);
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator.validate(&module).map_err(|why| why.emit_to_string(wgsl)).expect(OURS);
+    (module, info)
+}
+
+fn glsl(module: &Module, info: &ModuleInfo, version: glsl::Version, stage: ShaderStage) -> String {
+    let writer_flags = glsl::WriterFlags::empty();
+    let options = glsl::Options { version, writer_flags, ..glsl::Options::default() };
+    let (entry_point, multiview) = (ENTRY.into(), None);
+    let pipeline = glsl::PipelineOptions { shader_stage: stage, entry_point, multiview };
+    let mut text = String::new();
+    let policies = BoundsCheckPolicies::default();
+    glsl::Writer::new(&mut text, module, info, &options, &pipeline, policies)
+        .and_then(|mut writer| writer.write())
+        .expect(OURS);
+    without_entry(&text, "\nvoid main() {")
+}
+
+fn hlsl(module: &Module, info: &ModuleInfo) -> String {
+    let (options, pipeline) = (hlsl::Options::default(), hlsl::PipelineOptions::default());
+    let mut text = String::new();
+    hlsl::Writer::new(&mut text, &options, &pipeline).write(module, info, None).expect(OURS);
+    let text = without_entry(&text, "\n[numthreads(");
+    renamed(&text, &[("naga_", "student_t_impl_")])
+}
+
+fn msl(module: &Module, info: &ModuleInfo) -> String {
+    let options = msl::Options { lang_version: (2, 0), ..msl::Options::default() };
+    let pipeline = msl::PipelineOptions::default();
+    let (text, _) = msl::write_string(module, info, &options, &pipeline).expect(OURS);
+    let text = without_entry(&text, "\nkernel void ");
+    renamed(&text, &[("naga_", "student_t_impl_")])
+}
+
+/// Lets users of GLSL say where the tables are.
+fn bindable_glsl(text: &str, storage: Storage) -> String {
+    let (declared, default) = match storage {
+        Storage::Buffer => ("layout(std430) readonly buffer", "layout(std430, binding = 0)"),
+        Storage::Texture => ("uniform sampler2D", "layout(binding = 0)"),
+    };
+    let rest = declared.trim_start_matches("layout(std430) ");
+    let text = renamed(text, &[(declared, &format!("STUDENT_T_BINDING {rest}"))]);
+    with_default("STUDENT_T_BINDING", default, &text)
+}
+
+/// Lets users of HLSL say where the tables are.
+fn bindable_hlsl(text: &str) -> String {
+    let text = renamed(text, &[("register(t0)", "register(STUDENT_T_REGISTER)")]);
+    with_default("STUDENT_T_REGISTER", "t0", &text)
+}
+
+fn with_default(name: &str, default: &str, text: &str) -> String {
+    format!("#ifndef {name}\n#define {name} {default}\n#endif\n\n{}", text.trim_start())
+}
+
+/// Metal's functions take the tables as an argument: a pointer, in place of a reference to an array
+/// of unknown length and of a structure with that length, which none reads.
+fn by_pointer(text: &str) -> String {
+    let text = without_lines(text, &["// language", "typedef metal::float2 type_1"]);
+    let sizes = "struct _mslBufferSizes {\n    uint size0;\n};\n";
+    if !text.contains(sizes) {
+        return text; // a texture
+    }
+    let array = "device type_1 const& student_t_tables";
+    renamed(
+        &text,
+        &[
+            (sizes, ""),
+            (",\n    constant _mslBufferSizes& _buffer_sizes", ""),
+            (", _buffer_sizes", ""),
+            (array, "device const metal::float2* student_t_tables"),
+        ],
+    )
+}
+
+fn without_entry(text: &str, entry: &str) -> String {
+    let (rest, _) = text.split_once(entry).expect("the entry point comes last");
+    format!("{}\n", rest.trim_end())
+}
+
+fn without_lines(text: &str, starts: &[&str]) -> String {
+    let kept = text.lines().filter(|line| starts.iter().all(|start| !line.starts_with(start)));
+    kept.map(|line| format!("{line}\n")).collect()
+}
+
+/// Text with each of these replaced.
+fn renamed(text: &str, names: &[(&str, &str)]) -> String {
+    names.iter().fold(text.to_owned(), |text, (from, to)| text.replace(from, to))
+}
