@@ -14,12 +14,13 @@ pub struct Limits {
     pub share: f64,
     /// Coordinates of normals.
     pub normal: f64,
-    /// The same for σ above [`ROUGH`]: seen at grazing they are turned by the last digits of a
-    /// slope, and in the heavy part of γ < 1.8 these are the rounding of a power.
-    pub normal_rough: f64,
-    /// The same for smaller σ, γ < 1.8 and views within 1e-6 of the horizon. A slope there is
-    /// √(1 − ζ²), of which the crate's ζ loses digits where a number leaves next to 1.
-    pub normal_heavy: f64,
+    /// Normals of σ above [`ROUGH`].
+    pub rough: Rough,
+    /// Normals of σ up to there, γ < 1.8 and views within 1e-6 of the horizon; and in units of σ
+    /// those of all views of rougher lobes of such γ. Next to all is in the heavy part there. Its
+    /// smallest slopes are the root of 1 less a share of the light that is next to 1, of which
+    /// single precision has few digits.
+    pub heavy: f64,
     /// Averages of albedos.
     pub average: f64,
     /// Densities in relation to themselves: and for each unit of |ln(D σx σy)|.
@@ -30,6 +31,16 @@ pub struct Limits {
     pub extrapolated: [f64; 2],
     /// Whether arguments that are NaN have to give numbers.
     pub of_nan: bool,
+}
+
+/// How normals of rough lobes are compared, which grazing views turn by the last digits of a slope.
+pub enum Rough {
+    /// By their coordinates, with this limit: for the same operations in the same order.
+    Coordinates(f64),
+    /// With the limits of other normals, by their coordinates or by those of the normals of σ = 1
+    /// that they are stretched from, whichever are closer: a flat normal is turned much by the last
+    /// digits of its slope, and the slope of a steep one changes much by those of its coordinates.
+    Stretched,
 }
 
 const ROUGH: f32 = 10.0;
@@ -170,16 +181,25 @@ fn directions(
         worst.see("reflection_weight", far(answer.weight[k], weight), limits.share, at);
     }
     let normal = lobe.sample_visible_normal(v, u).to_array();
-    let (name, allowed) = if sigma[0].max(sigma[1]) > ROUGH {
-        ("normal, rough", limits.normal_rough)
-    } else if gamma < HEAVY && v.z < 1e-6 {
-        ("normal, heavy", limits.normal_heavy)
-    } else {
-        ("normal", limits.normal)
+    let is_rough = sigma[0].max(sigma[1]) > ROUGH;
+    let heavy = gamma < HEAVY && (is_rough || v.z < 1e-6);
+    let (mut name, mut allowed) =
+        if heavy { ("normal, heavy", limits.heavy) } else { ("normal", limits.normal) };
+    let apart = |a: [f32; 3], b: [f32; 3]| {
+        a.into_iter()
+            .zip(b)
+            .fold(0.0, |most, (a, b)| if far(a, b) <= most { most } else { far(a, b) })
     };
-    for (a, b) in answer.normal.into_iter().zip(normal) {
-        worst.see(name, far(a, b), allowed, at);
+    let mut difference = apart(answer.normal, normal);
+    match limits.rough {
+        Rough::Coordinates(limit) if is_rough => (name, allowed) = ("normal, rough", limit),
+        Rough::Stretched if is_rough => {
+            let [a, b] = [answer.normal, normal].map(|m| unstretched(m, sigma));
+            difference = difference.min(apart(a, b));
+        }
+        _ => (),
     }
+    worst.see(name, difference, allowed, at);
     let light = 2.0 * v.dot(m) * m - v;
     for (a, b) in answer.light.into_iter().zip(light.to_array()) {
         worst.see("reflect", far(a, b), limits.share, at);
@@ -206,6 +226,14 @@ fn directions(
             worst.see("reflection_pdf", difference / quotient, limits.density[0], at);
         }
     }
+}
+
+/// The normal of σ = 1 from which this one is stretched.
+fn unstretched([x, y, z]: [f32; 3], [sigma_x, sigma_y]: [f32; 2]) -> [f32; 3] {
+    let [x, y, z] = [x, y, z].map(f64::from);
+    let m = [x / f64::from(sigma_x), y / f64::from(sigma_y), z];
+    let length = m.iter().map(|x| x * x).sum::<f64>().sqrt();
+    m.map(|x| (x / length) as f32)
 }
 
 fn shares(

@@ -8,7 +8,7 @@ mod reference;
 
 use microfacet_sampler::Tables;
 
-pub use compare::Limits;
+pub use compare::{Limits, Rough};
 pub use lookup::{Answer, Point};
 
 use compare::Worst;

@@ -14,14 +14,14 @@ use std::process::ExitCode;
 
 use device::{Gpu, Program};
 use export::Export;
-use student_t_agreement::{Answer, Foreign, Limits, Point, agree};
+use student_t_agreement::{Answer, Foreign, Limits, Point, Rough, agree};
 
 /// What the page of exports promises.
 const LIMITS: Limits = Limits {
     share: 1e-5,
     normal: 1e-4,
-    normal_rough: 1e-3,
-    normal_heavy: 2e-4,
+    rough: Rough::Stretched,
+    heavy: 2e-4,
     average: 3e-5,
     density: [1e-4, 1e-4],
     extrapolated: [2e-5, 2e-4],

@@ -54,8 +54,9 @@
  * tables, if sigma is at most 10 (beyond in brackets): masking, weights and albedos to 2e-6,
  * coordinates of normals to 1e-5 (1e-3), densities to a share of 1e-5 + 2e-6 |ln(D sigma_x
  * sigma_y)|, averages of albedos to 3e-5. For gamma < 1.6 and cosines < 1e-6 albedos agree to 2e-5,
- * < 1e-20 to 2e-4: there they are extrapolated by a power close to 0. Compilers may fuse products
- * and sums. With -ffast-math what is said of NaN no longer holds.
+ * < 1e-20 to 2e-4: there they are extrapolated by a power close to 0. Where a compiler fuses
+ * products and sums, normals of gamma <= 2 agree to 1e-3 only (-ffp-contract=off prevents it). Do
+ * not use -ffast-math: densities may be lost, and what is said of NaN no longer holds.
  *
  * Copies. Tables are static: each translation unit that uses a shape has its own copy, at another
  * address, 55 kB or so. In a large program wrap what you need in one translation unit.

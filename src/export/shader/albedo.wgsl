@@ -58,13 +58,13 @@ fn student_t_impl_albedo_of(shape: u32, sigma: vec2f, masking: u32) -> StudentTI
 
 // The coordinate of a view by its cosine mu, before it is stretched to [0, 1].
 fn student_t_impl_view(a: StudentTImplAlbedo, mu: f32) -> f32 {
-    let t = a.table;
     let sine = sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
-    let x = mu / (mu + t.kappa * a.sigma * sine);
+    let x = mu / (mu + a.table.kappa * a.sigma * sine);
     let h = mu / (1.0 + sine);
-    let nu = t.spread * a.sigma;
-    let roots = t.share * sqrt(sqrt(x)) + (1.0 - t.share) * sqrt(sqrt(h));
-    return t.weight * x + t.normal * (nu / (nu + sine)) + (1.0 - t.weight - t.normal) * roots;
+    let nu = a.table.spread * a.sigma;
+    let roots = a.table.share * sqrt(sqrt(x)) + (1.0 - a.table.share) * sqrt(sqrt(h));
+    return a.table.weight * x + a.table.normal * (nu / (nu + sine))
+        + (1.0 - a.table.weight - a.table.normal) * roots;
 }
 
 // E - 1, bias and F82 of a mirror: 0, (1 - mu)^5 and 7^7/6^6 mu (1 - mu)^6.
@@ -76,13 +76,12 @@ fn student_t_impl_mirror(mu: f32) -> vec3f {
 
 // E - 1, bias and F82 at a cosine mu from the first view up.
 fn student_t_impl_moments_at(a: StudentTImplAlbedo, mu: f32) -> vec3f {
-    let t = a.table;
     let start = student_t_impl_view(a, a.lowest);
     let at = (student_t_impl_view(a, mu) - start) / (1.0 - start);
-    let i = student_t_impl_six(a.coordinate * (t.sigmas - 1.0), t.sigmas);
-    let j = student_t_impl_six(at * (t.views - 1.0), t.views);
-    let row = 2u * u32(t.views);
-    let first = u32(t.values) + i.start * row + 2u * j.start;
+    let i = student_t_impl_six(a.coordinate * (a.table.sigmas - 1.0), a.table.sigmas);
+    let j = student_t_impl_six(at * (a.table.views - 1.0), a.table.views);
+    let row = 2u * u32(a.table.views);
+    let first = u32(a.table.values) + i.start * row + 2u * j.start;
     let middle = student_t_impl_node(first + 2u * row + 4u);
     let sum = (student_t_impl_row(first, j, middle) * i.a.x
             + student_t_impl_row(first + row, j, middle) * i.a.y
@@ -131,12 +130,12 @@ fn student_t_impl_moments(a: StudentTImplAlbedo, cos_theta: f32, masking: u32) -
 
 // 1 - E_avg, with its digits where E_avg is close to 1, and the averages of bias and F82.
 fn student_t_impl_averages(a: StudentTImplAlbedo) -> vec3f {
-    let t = a.table;
     if !(a.sigma > 0.0) {
         return vec3f(0.0, 1.0 / 21.0, 0.14009036); // 117649/839808
     }
-    let six = student_t_impl_six(a.coordinate * (t.average_sigmas - 1.0), t.average_sigmas);
-    let averages = student_t_impl_row(u32(t.averages) + 2u * six.start, six, vec3f(0.0));
+    let count = a.table.average_sigmas;
+    let six = student_t_impl_six(a.coordinate * (count - 1.0), count);
+    let averages = student_t_impl_row(u32(a.table.averages) + 2u * six.start, six, vec3f(0.0));
     return vec3f(min(exp(averages.x), 1.0), averages.yz);
 }
 

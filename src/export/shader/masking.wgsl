@@ -149,8 +149,6 @@ fn student_t_reflection_weight(
     if !(v.z > 0.0 && b > 0.0) {
         return 0.0;
     }
-    if masking == STUDENT_T_UNCORRELATED {
-        return b;
-    }
-    return b / (b + student_t_impl_masking(lobe, sigma, v) * (1.0 - b));
+    let both = b + student_t_impl_masking(lobe, sigma, v) * (1.0 - b);
+    return b / select(both, 1.0, masking == STUDENT_T_UNCORRELATED);
 }

@@ -17,7 +17,7 @@ pub enum Language {
     Glsl,
     /// GLSL ES 3.0, of WebGL 2 and OpenGL ES.
     GlslEs,
-    /// HLSL, shader model 5.1, of Direct3D.
+    /// HLSL, shader model 6.0, of Direct3D.
     Hlsl,
     /// The Metal Shading Language 2.0.
     Msl,
@@ -108,8 +108,8 @@ impl Language {
         };
         match (self, storage) {
             (Self::Msl, Storage::Texture) => text.replace(
-                "device const metal::float2* student_t_tables [[buffer(0)]]",
-                "metal::texture2d<float, metal::access::sample> student_t_tables [[texture(0)]]",
+                "device const metal::float2* tables [[buffer(0)]]",
+                "metal::texture2d<float, metal::access::sample> tables [[texture(0)]]",
             ),
             _ => text.into(),
         }
@@ -120,7 +120,7 @@ impl Language {
             Self::Wgsl => "WGSL",
             Self::Glsl => "GLSL 4.3 and later (OpenGL, Vulkan)",
             Self::GlslEs => "GLSL ES 3.0 and later (WebGL 2, OpenGL ES)",
-            Self::Hlsl => "HLSL (shader model 5.1 and later)",
+            Self::Hlsl => "HLSL (shader model 6.0 and later)",
             Self::Msl => "the Metal Shading Language 2.0",
             Self::SpirV => "SPIR-V",
         }

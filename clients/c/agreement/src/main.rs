@@ -10,14 +10,14 @@ mod timing;
 use std::process::ExitCode;
 
 use microfacet_sampler::Tables;
-use student_t_agreement::{Limits, agree};
+use student_t_agreement::{Limits, Rough, agree};
 
 /// What the page of exports promises.
 const LIMITS: Limits = Limits {
     share: 2e-6,
     normal: 1e-5,
-    normal_rough: 1e-3,
-    normal_heavy: 1e-5,
+    rough: Rough::Coordinates(1e-3),
+    heavy: 1e-5,
     average: 3e-5,
     density: [1e-5, 2e-6],
     extrapolated: [2e-5, 2e-4],

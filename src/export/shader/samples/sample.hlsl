@@ -18,7 +18,7 @@ struct Answer {
 };
 
 StructuredBuffer<Query> queries : register(t1);
-RWStructuredBuffer<Answer> answers : register(u0);
+RWStructuredBuffer<Answer> answers : register(u2); // u0 would be binding 0 in Vulkan, as t0 is
 
 [numthreads(64, 1, 1)]
 void reflect_views(uint3 id : SV_DispatchThreadID) {

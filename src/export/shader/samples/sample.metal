@@ -17,7 +17,7 @@ struct Answer {
 };
 
 kernel void reflect_views(
-    device const metal::float2* student_t_tables [[buffer(0)]],
+    device const metal::float2* tables [[buffer(0)]],
     device const Query* queries [[buffer(1)]],
     device Answer* answers [[buffer(2)]],
     constant uint& count [[buffer(3)]],
@@ -25,13 +25,13 @@ kernel void reflect_views(
 ) {
     if (i >= count) return;
     const Query q = queries[i];
-    const metal::float3 v = q.v;
-    const auto tables = student_t_tables;
+    const metal::float3 v = metal::float3(q.v);
     const metal::float3 m =
         student_t_sample_visible_normal(q.shape, q.sigma, v, q.u, tables);
     const metal::float3 l = student_t_reflect(v, m);
-    const float weight = student_t_reflection_weight(
+    answers[i].l = metal::packed_float3(l);
+    answers[i].weight = student_t_reflection_weight(
         q.shape, q.sigma, v, l, STUDENT_T_HEIGHT_CORRELATED, tables);
-    const float pdf = student_t_reflection_pdf(q.shape, q.sigma, v, m, tables);
-    answers[i] = Answer{l, weight, m, pdf};
+    answers[i].m = metal::packed_float3(m);
+    answers[i].pdf = student_t_reflection_pdf(q.shape, q.sigma, v, m, tables);
 }

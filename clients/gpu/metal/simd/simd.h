@@ -1,0 +1,1 @@
+// Nothing: metal_stdlib has all that is needed.
