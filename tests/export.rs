@@ -120,6 +120,11 @@ fn other_sets_are_exported_with_what_they_lack() {
     assert!(output.status.success() && notes.contains("default set"), "{notes}");
     let text = fs::read_to_string(at.join("out/student_t_gamma_4.h")).unwrap();
     assert!(text.contains("masking are those of the default set"), "{text}");
+    ok(at, &["export", "wgsl", "--gamma", "4", "--tables", "set", "--out", "shader"]);
+    let json = fs::read_to_string(at.join("shader/student_t.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let forms = &json["shapes"]["4"]["albedos_of_default_set"];
+    assert_eq!(forms, &serde_json::json!(["uncorrelated", "height-correlated"]));
     // Draft tables are smaller.
     ok(at, &["export", "c", "--gamma", "4", "--out", "default"]);
     let default = fs::read_to_string(at.join("default/student_t_gamma_4.h")).unwrap();
@@ -153,6 +158,10 @@ fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
         }
         assert!(!at.join("out").exists(), "{arguments:?}");
     }
+    // More than are counted in single precision.
+    let many: Vec<String> = (0..1001).map(|i| format!("{}", 3.0 + f64::from(i) / 1000.0)).collect();
+    let message = refused(at, &["export", "wgsl", "--gamma", &many.join(","), "--out", "out"]);
+    assert!(message.contains("1001 shapes") && message.contains("at most 1000"), "{message}");
     // One of several that cannot be written leaves the others as they were.
     fs::create_dir_all(at.join("out/student_t_gamma_3.h")).unwrap();
     fs::write(at.join("out/student_t.h"), "old").unwrap();
@@ -229,7 +238,8 @@ fn every_language_has_all_functions_a_sample_and_data() {
     }
 
     ok(at, &["export", "spirv", "--gamma", "3", "--out", "spirv"]);
-    let files = ["student_t.bin", "student_t.exr", "student_t.json", "student_t.spv"];
+    let data = ["student_t.bin", "student_t.exr", "student_t.json"];
+    let files = [&data[..], &["student_t.spv", "student_t_sample.wgsl"]].concat();
     assert_eq!(names(&at.join("spirv")), files);
     let words = fs::read(at.join("spirv/student_t.spv")).unwrap();
     assert_eq!(words[..4], 0x0723_0203_u32.to_le_bytes());
@@ -286,7 +296,7 @@ fn the_data_of_shaders_is_where_its_description_says() {
         // The last albedo of a table is that of the largest roughness at normal incidence.
         let table = &shape["tables"]["albedo_height_correlated"];
         let last = 2 * (count(&table["offset"]) + 2 * (count(&table["rows"]) - 1));
-        let sigma = f64::from(member("sigma_max"));
+        let sigma = f64::from(member("height_correlated.sigma_max"));
         let albedo = Tables::embedded()
             .albedo(sigma, gamma.parse().unwrap(), Masking::HeightCorrelated)
             .unwrap();

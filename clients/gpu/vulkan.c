@@ -13,7 +13,7 @@ typedef struct query {
     float sigma[2], u[2];
 } query;
 typedef struct answer {
-    float l[3], weight, m[3], pdf, f, albedo, average, g1;
+    float l[3], weight, m[3], pdf, f, albedo, average, masking;
 } answer;
 
 static VkDevice device;

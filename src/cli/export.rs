@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use clap::builder::UnknownArgumentValueParser;
 
 use microfacet_bake::bake::albedo::SIGMA_MAX;
-use microfacet_bake::export::{Language, Shape, Storage, Target, files};
+use microfacet_bake::export::{Language, Shape, Storage, Target, files, texture_rows};
 use microfacet_bake::store;
 
 use super::{Done, Failure, Outcome, report, summarize, tables, values};
@@ -69,6 +69,12 @@ enum TargetArg {
     Spirv,
 }
 
+/// Their places are counted in single precision.
+const MOST_SHAPES: usize = 1000;
+
+/// The size of textures that every device of WebGL 2 has.
+const PROMISED_ROWS: usize = 2048;
+
 fn every_sigma() -> UnknownArgumentValueParser {
     UnknownArgumentValueParser::suggest(
         "an export serves every roughness: its functions take sigma as an argument",
@@ -89,20 +95,30 @@ impl TargetArg {
             Self::Msl => Language::Msl,
             Self::Spirv => Language::SpirV,
         };
-        let storage = if textures { Storage::Texture } else { language.default_storage() };
+        let storage = if textures { Storage::Texture } else { Storage::Buffer };
         Ok(Target::Shader(language, storage))
     }
 }
 
 pub(super) fn run(args: Args) -> Outcome {
     let target = args.target.target(args.textures)?;
+    args.gamma.iter().try_for_each(|&gamma| values::tabulated(gamma, ""))?;
     let set = tables(args.tables.as_deref())?;
-    let mut shapes: Vec<Shape> = Vec::new();
+    let mut gammas: Vec<f64> = Vec::new();
     for &gamma in &args.gamma {
-        if shapes.iter().all(|shape| shape.gamma != gamma) {
-            shapes.push(Shape::bind(&set, gamma)?);
+        if !gammas.contains(&gamma) {
+            gammas.push(gamma);
         }
     }
+    if gammas.len() > MOST_SHAPES && target != Target::C {
+        return Err(Failure(format!(
+            "{} shapes: at most {MOST_SHAPES} are in the tables of one shader; export the rest into \
+             another folder",
+            gammas.len()
+        )));
+    }
+    let bind = |&gamma| Shape::bind(&set, gamma);
+    let shapes = gammas.iter().map(bind).collect::<Result<Vec<_>, _>>()?;
     for shape in &shapes {
         for masking in &shape.from_default {
             let gamma = shape.gamma;
@@ -112,6 +128,17 @@ pub(super) fn run(args: Args) -> Outcome {
             );
             report("note", note);
         }
+    }
+    if let Target::Shader(language, storage) = target
+        && language.storage(storage) == Storage::Texture
+        && texture_rows(&shapes) > PROMISED_ROWS
+    {
+        let rows = texture_rows(&shapes);
+        let note = format!(
+            "the texture has {rows} rows; all devices of WebGL 2 take {PROMISED_ROWS}: export fewer \
+             shapes in one command for others"
+        );
+        report("note", note);
     }
     let files = files(target, &shapes);
     let contents = files.iter().map(|file| (&file.name[..], &file.contents[..]));

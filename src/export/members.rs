@@ -31,6 +31,13 @@ pub(super) struct Part<'a> {
     pub(super) columns: usize,
 }
 
+impl Part<'_> {
+    /// How many rows it has.
+    pub(super) fn rows(&self) -> usize {
+        self.values.len() / self.columns
+    }
+}
+
 /// The tables of a shape.
 pub(super) fn parts(shape: &Shape) -> Vec<Part<'_>> {
     fn part<const N: usize>(name: impl Into<String>, values: &[[f32; N]]) -> Part<'_> {

@@ -22,7 +22,7 @@ mod shader;
 mod shape;
 
 pub use albedo::AlbedoTable;
-pub use shader::{Language, Storage};
+pub use shader::{Language, Storage, texture_rows};
 pub use shape::Shape;
 
 /// What can be written.

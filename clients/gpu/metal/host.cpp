@@ -29,11 +29,6 @@ int main(int count, char **arguments)
 #endif
     std::printf("light %.4f %.4f %.4f, f cos / pdf %.4f, pdf %.4f per steradian\n", double(a.l.x),
                 double(a.l.y), double(a.l.z), double(a.weight), double(a.pdf));
-#ifdef TEXTURES
-    const float albedo = student_t_albedo(0, query.sigma, query.v.z, 1, {pairs});
-#else
-    const float albedo = student_t_albedo(0, query.sigma, query.v.z, 1, pairs);
-#endif
-    std::printf("of all light one bounce returns %.4f\n", double(albedo));
+    std::printf("of all light one bounce returns %.4f\n", double(a.albedo));
     return 0;
 }

@@ -26,7 +26,7 @@ struct Answer {
     f: f32,
     albedo: f32,
     average: f32,
-    g1: f32,
+    masking: f32,
 }
 
 /// Runs it at a few views of each shape, in one call; returns whether the crate says the same.
@@ -58,7 +58,7 @@ pub fn runs(gpu: &Gpu, export: &Export) -> bool {
         let f = if l.z > 0.0 { albedo.compensation(v, l) } else { 0.0 };
         let weight = lobe.reflection_weight(v, l, Masking::HeightCorrelated);
         let expected = [weight, f, albedo.albedo(v), albedo.albedo_average(), lobe.g1(v)];
-        let got = [answer.weight, answer.f, answer.albedo, answer.average, answer.g1];
+        let got = [answer.weight, answer.f, answer.albedo, answer.average, answer.masking];
         let vectors = [(answer.l, l), (answer.m, m)];
         let mut differ = |got: f32, want: f32| {
             let difference = (got - want).abs();

@@ -40,6 +40,8 @@ struct Entry {
     members: Vec<Named>,
     tables: BTreeMap<String, Place>,
     errors: Errors,
+    /// Forms of masking whose albedos are those of the default set.
+    albedos_of_default_set: Vec<&'static str>,
 }
 
 /// A member of the shape's description, of which pair i holds those 2i and 2i + 1.
@@ -102,6 +104,18 @@ pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     ]
 }
 
+/// Rows of the texture of shapes: more than 2048 are not promised by WebGL 2.
+pub fn texture_rows(shapes: &[Shape]) -> usize {
+    shapes.iter().map(length).sum::<usize>().div_ceil(WIDTH)
+}
+
+/// Pairs of a shape.
+fn length(shape: &Shape) -> usize {
+    let members = lists(shape).iter().map(|list| list.len().div_ceil(2)).sum::<usize>();
+    let tables = parts(shape);
+    members + tables.iter().map(|part| part.rows() * part.columns.div_ceil(2)).sum::<usize>()
+}
+
 /// Appends a shape: its members, then its tables.
 fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
     let offset = pairs.len();
@@ -109,17 +123,17 @@ fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
     let mut at = lists.iter().map(|list| list.len().div_ceil(2)).sum::<usize>();
     let parts = parts(shape);
     let mut tables = BTreeMap::new();
-    for Part { name, values, columns } in &parts {
-        let rows = values.len() / columns;
-        tables.insert(name.clone(), Place { offset: at, rows, columns: *columns });
+    for part in &parts {
+        let (rows, columns) = (part.rows(), part.columns);
+        tables.insert(part.name.clone(), Place { offset: at, rows, columns });
         at += rows * columns.div_ceil(2);
     }
 
     let mut named = Vec::new();
-    for list in lists {
+    for (prefix, list) in ["", "uncorrelated.", "height_correlated."].into_iter().zip(lists) {
         let numbers: Vec<f32> = list.iter().map(|member| number(&member.value, &tables)).collect();
         pairs.extend(numbers.chunks(2).map(pair));
-        let names = list.into_iter().map(|Member { name, .. }| name.to_owned());
+        let names = list.into_iter().map(|Member { name, .. }| format!("{prefix}{name}"));
         named.extend(names.zip(numbers).map(|(name, value)| Named { name, value }));
     }
     for Part { values, columns, .. } in parts {
@@ -137,7 +151,8 @@ fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
         albedo_elsewhere: worst(|table| table.errors[1]),
         average: worst(|table| Some(table.average_error)).unwrap_or_default(),
     };
-    Entry { offset, length: at, members: named, tables, errors }
+    let albedos_of_default_set = shape.from_default.iter().map(|masking| masking.name()).collect();
+    Entry { offset, length: at, members: named, tables, errors, albedos_of_default_set }
 }
 
 /// A member as a number; of a table its place in the shape. All are exact in single precision,

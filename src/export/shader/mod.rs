@@ -1,38 +1,16 @@
 //! Shader modules: functions written once in WGSL, here, and translated.
 
 mod data;
+mod language;
 mod translate;
 
 use std::fmt::Write;
 
 use super::members::{self, Member, Value};
 use super::{ExportFile, Shape};
-
-/// A shading language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Language {
-    /// WGSL, of WebGPU.
-    Wgsl,
-    /// GLSL 4.3, of OpenGL and Vulkan.
-    Glsl,
-    /// GLSL ES 3.0, of WebGL 2 and OpenGL ES.
-    GlslEs,
-    /// HLSL, shader model 6.0, of Direct3D.
-    Hlsl,
-    /// The Metal Shading Language 2.0.
-    Msl,
-    /// SPIR-V 1.3, of Vulkan: a program that reflects views, since Vulkan links no functions.
-    SpirV,
-}
-
-/// What a shader reads its tables from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Storage {
-    /// A buffer of pairs of numbers.
-    Buffer,
-    /// A texture of two channels in single precision, read by texel.
-    Texture,
-}
+pub use data::texture_rows;
+use language::head;
+pub use language::{Language, Storage};
 
 /// Names of files before their extension.
 const NAME: &str = "student_t";
@@ -53,130 +31,30 @@ const FUNCTIONS: &str = concat!(
 /// # Panics
 /// If there are no shapes.
 pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> Vec<ExportFile> {
+    let storage = language.storage(storage);
     let module = module(&lists(shapes.first().expect("shapes")), storage);
-    let mut files = match language {
-        Language::SpirV => {
-            let words = translate::spirv(&format!("{module}{}", language.sample(storage)));
-            let bytes = words.into_iter().flat_map(u32::to_le_bytes).collect();
-            vec![ExportFile { name: format!("{NAME}.spv"), contents: bytes }]
-        }
-        _ => {
-            let (extension, of_sample) = language.extensions();
-            let text = translate::text(&module, language, storage);
-            let file = format!("{NAME}.{extension}");
-            let text = format!("{}\n{text}", head(&file, language, storage));
-            let sample = format!("{NAME}_sample.{of_sample}");
-            vec![
-                ExportFile { name: file, contents: text.into() },
-                ExportFile { name: sample, contents: language.sample(storage).into() },
-            ]
-        }
+    let sample = language.sample(storage);
+    let mut files = if language == Language::SpirV {
+        let words = translate::spirv(&format!("{module}{sample}"));
+        let contents = words.into_iter().flat_map(u32::to_le_bytes).collect();
+        // Its source beside it, which declares what it takes and returns.
+        vec![
+            ExportFile { name: format!("{NAME}.spv"), contents },
+            ExportFile { name: format!("{NAME}_sample.wgsl"), contents: sample.into() },
+        ]
+    } else {
+        let [of_module, of_sample] = language.extensions();
+        let name = format!("{NAME}.{of_module}");
+        let text = translate::text(&module, language, storage);
+        let contents = format!("{}\n{text}", head(&name, language, storage)).into();
+        let sample_name = format!("{NAME}_sample.{of_sample}");
+        vec![
+            ExportFile { name, contents },
+            ExportFile { name: sample_name, contents: sample.into() },
+        ]
     };
     files.extend(data::files(shapes));
     files
-}
-
-impl Language {
-    /// What programs are written to read tables from.
-    pub fn default_storage(self) -> Storage {
-        match self {
-            Self::GlslEs => Storage::Texture,
-            _ => Storage::Buffer,
-        }
-    }
-
-    /// Of the module and of the sample.
-    fn extensions(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Wgsl => ("wgsl", "wgsl"),
-            Self::Glsl => ("glsl", "comp"),
-            Self::GlslEs => ("glsl", "frag"),
-            Self::Hlsl => ("hlsl", "hlsl"),
-            Self::Msl => ("metal", "metal"),
-            Self::SpirV => ("spv", "spv"),
-        }
-    }
-
-    /// A program that uses the module.
-    fn sample(self, storage: Storage) -> String {
-        let text = match self {
-            Self::Wgsl | Self::SpirV => include_str!("samples/sample.wgsl"),
-            Self::Glsl => include_str!("samples/sample.comp"),
-            Self::GlslEs => include_str!("samples/sample.frag"),
-            Self::Hlsl => include_str!("samples/sample.hlsl"),
-            Self::Msl => include_str!("samples/sample.metal"),
-        };
-        match (self, storage) {
-            (Self::Msl, Storage::Texture) => text.replace(
-                "device const metal::float2* tables [[buffer(0)]]",
-                "metal::texture2d<float, metal::access::sample> tables [[texture(0)]]",
-            ),
-            _ => text.into(),
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Wgsl => "WGSL",
-            Self::Glsl => "GLSL 4.3 and later (OpenGL, Vulkan)",
-            Self::GlslEs => "GLSL ES 3.0 and later (WebGL 2, OpenGL ES)",
-            Self::Hlsl => "HLSL (shader model 6.0 and later)",
-            Self::Msl => "the Metal Shading Language 2.0",
-            Self::SpirV => "SPIR-V",
-        }
-    }
-}
-
-/// What the module says of itself.
-fn head(file: &str, language: Language, storage: Storage) -> String {
-    include_str!("head.txt")
-        .replace("{file}", file)
-        .replace("{language}", language.name())
-        .replace("{binding}", &binding(language, storage))
-        .replace("{version}", env!("CARGO_PKG_VERSION"))
-        .replace("{layout}", &data::LAYOUT.to_string())
-}
-
-/// How its tables are bound.
-fn binding(language: Language, storage: Storage) -> String {
-    let tables = match (storage, language) {
-        (Storage::Buffer, _) => {
-            "// Tables. Bind the bytes of student_t.bin, unchanged, as a storage buffer."
-        }
-        (Storage::Texture, Language::GlslEs) => {
-            "// Tables. Make a texture with texStorage2D(gl.TEXTURE_2D, 1, gl.RG32F, width, height), fill it
-// with the bytes of student_t.bin, unchanged, set both of its filters to gl.NEAREST, and bind it to
-// the sampler student_t_tables. Width and height are in student_t.json."
-        }
-        (Storage::Texture, _) => {
-            "// Tables. Make a texture of two channels in single precision (rg32float) and one level from the
-// bytes of student_t.bin, unchanged; its width and height are in student_t.json. It is read by
-// texel, never filtered."
-        }
-    };
-    let place = match language {
-        Language::Wgsl => {
-            "// Edit the line that begins with @group if your program has other things there. Append your
-// program to this text, as in student_t_sample.wgsl."
-        }
-        Language::Glsl => {
-            "// #define STUDENT_T_BINDING before this text if they are elsewhere than its default says, in Vulkan
-// with set = 0 and so on. Include this text after #version, as in student_t_sample.comp."
-        }
-        Language::GlslEs => {
-            "// Insert this text between the line of #version and your program, as student_t_sample.frag says."
-        }
-        Language::Hlsl => {
-            "// #define STUDENT_T_REGISTER before this text if they are elsewhere than its default says. Include
-// this text, as in student_t_sample.hlsl."
-        }
-        Language::Msl => {
-            "// Functions have one argument more than below, the last: the tables, as your kernel gets them.
-// Include this text, as in student_t_sample.metal."
-        }
-        Language::SpirV => "",
-    };
-    format!("{tables}\n{place}")
 }
 
 /// The members of a shape as shaders read them: of the lobe, and of albedos by form of masking.

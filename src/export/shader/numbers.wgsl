@@ -8,7 +8,7 @@ const STUDENT_T_HEIGHT_CORRELATED = 1u;
 // Results must not overflow, since a shader may take what has for anything. Comparisons are
 // written so that NaN takes the second value, as far as a compiler cares.
 
-const STUDENT_T_IMPL_LARGEST = 3.4028234e38;
+const STUDENT_T_IMPL_LARGEST = 3.402823e38; // or so: compilers warn of the very largest
 const STUDENT_T_IMPL_SMALLEST = 1.17549435e-38;
 
 fn student_t_impl_max(a: f32, b: f32) -> f32 {

@@ -28,7 +28,11 @@ pub(super) fn text(wgsl: &str, language: Language, storage: Storage) -> String {
         Language::Glsl => {
             let version = glsl::Version::Desktop(430);
             let text = glsl(&module, &info, version, ShaderStage::Compute);
-            let text = renamed(&text, &[("_group_0_binding_0_cs", "student_t_tables")]);
+            let names = [
+                ("_group_0_binding_0_cs", "student_t_tables"),
+                ("type_1_block_0Compute", "student_t_tables_block"),
+            ];
+            let text = renamed(&text, &names);
             bindable_glsl(&without_lines(&text, &["#", "layout(local_size"]), storage)
         }
         Language::GlslEs => {

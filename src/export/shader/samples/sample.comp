@@ -19,6 +19,10 @@ struct Answer {
     float weight; // f cos/pdf with F = 1, of one bounce
     vec3 m;       // the microfacet normal
     float pdf;    // density of the light, per steradian
+    float f;      // f of all further bounces towards that light, without the cosine
+    float albedo; // of one bounce, for this view
+    float average;
+    float masking;
 };
 
 layout(std430, binding = 1) readonly buffer Queries { Query queries[]; };
@@ -31,7 +35,12 @@ void main() {
     Answer a;
     a.m = student_t_sample_visible_normal(q.shape, q.sigma, q.v, q.u);
     a.l = student_t_reflect(q.v, a.m);
-    a.weight = student_t_reflection_weight(q.shape, q.sigma, q.v, a.l, STUDENT_T_HEIGHT_CORRELATED);
+    uint masking = STUDENT_T_HEIGHT_CORRELATED;
+    a.weight = student_t_reflection_weight(q.shape, q.sigma, q.v, a.l, masking);
     a.pdf = student_t_reflection_pdf(q.shape, q.sigma, q.v, a.m);
+    a.f = student_t_compensation(q.shape, q.sigma, q.v, a.l, masking);
+    a.albedo = student_t_albedo(q.shape, q.sigma, q.v.z, masking);
+    a.average = student_t_albedo_average(q.shape, q.sigma, masking);
+    a.masking = student_t_masking(q.shape, q.sigma, q.v);
     answers[i] = a;
 }

@@ -14,6 +14,10 @@ struct Answer {
     float weight;           // f cos/pdf with F = 1, of one bounce
     metal::packed_float3 m; // the microfacet normal
     float pdf;              // density of the light, per steradian
+    float f;                // of all further bounces towards that light, without the cosine
+    float albedo;           // of one bounce, for this view
+    float average;
+    float masking;
 };
 
 kernel void reflect_views(
@@ -29,9 +33,14 @@ kernel void reflect_views(
     const metal::float3 m =
         student_t_sample_visible_normal(q.shape, q.sigma, v, q.u, tables);
     const metal::float3 l = student_t_reflect(v, m);
-    answers[i].l = metal::packed_float3(l);
-    answers[i].weight = student_t_reflection_weight(
-        q.shape, q.sigma, v, l, STUDENT_T_HEIGHT_CORRELATED, tables);
-    answers[i].m = metal::packed_float3(m);
-    answers[i].pdf = student_t_reflection_pdf(q.shape, q.sigma, v, m, tables);
+    const uint masking = STUDENT_T_HEIGHT_CORRELATED;
+    device Answer& a = answers[i];
+    a.l = metal::packed_float3(l);
+    a.weight = student_t_reflection_weight(q.shape, q.sigma, v, l, masking, tables);
+    a.m = metal::packed_float3(m);
+    a.pdf = student_t_reflection_pdf(q.shape, q.sigma, v, m, tables);
+    a.f = student_t_compensation(q.shape, q.sigma, v, l, masking, tables);
+    a.albedo = student_t_albedo(q.shape, q.sigma, v.z, masking, tables);
+    a.average = student_t_albedo_average(q.shape, q.sigma, masking, tables);
+    a.masking = student_t_masking(q.shape, q.sigma, v, tables);
 }

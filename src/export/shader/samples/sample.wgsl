@@ -16,7 +16,7 @@ struct Answer {
     f: f32,      // f of all further bounces towards that light, without the cosine
     albedo: f32, // of one bounce, for this view
     average: f32,
-    g1: f32,
+    masking: f32,
 }
 
 @group(0) @binding(1) var<storage, read> queries: array<Query>;
@@ -37,6 +37,6 @@ fn reflect_views(@builtin(global_invocation_id) id: vec3u) {
     a.f = student_t_compensation(q.shape, q.sigma, q.v, a.l, masking);
     a.albedo = student_t_albedo(q.shape, q.sigma, q.v.z, masking);
     a.average = student_t_albedo_average(q.shape, q.sigma, masking);
-    a.g1 = student_t_masking(q.shape, q.sigma, q.v);
+    a.masking = student_t_masking(q.shape, q.sigma, q.v);
     answers[id.x] = a;
 }

@@ -1,0 +1,133 @@
+//! Shading languages: what is particular to each.
+
+use super::data::LAYOUT;
+
+/// A shading language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Language {
+    /// WGSL, of WebGPU.
+    Wgsl,
+    /// GLSL 4.3, of OpenGL and Vulkan.
+    Glsl,
+    /// GLSL ES 3.0, of WebGL 2 and OpenGL ES.
+    GlslEs,
+    /// HLSL, shader model 6.0, of Direct3D.
+    Hlsl,
+    /// The Metal Shading Language 2.0.
+    Msl,
+    /// SPIR-V 1.3, of Vulkan: a program that reflects views, since Vulkan links no functions.
+    SpirV,
+}
+
+/// What a shader reads its tables from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Storage {
+    /// A buffer of pairs of numbers.
+    Buffer,
+    /// A texture of two channels in single precision, read by texel.
+    Texture,
+}
+
+impl Language {
+    /// What is asked for; a texture where there are no buffers.
+    pub fn storage(self, asked: Storage) -> Storage {
+        if self == Self::GlslEs { Storage::Texture } else { asked }
+    }
+
+    /// Of the module and of the sample; of SPIR-V, which is both in one, twice.
+    pub(super) fn extensions(self) -> [&'static str; 2] {
+        match self {
+            Self::Wgsl => ["wgsl", "wgsl"],
+            Self::Glsl => ["glsl", "comp"],
+            Self::GlslEs => ["glsl", "frag"],
+            Self::Hlsl => ["hlsl", "hlsl"],
+            Self::Msl => ["metal", "metal"],
+            Self::SpirV => ["spv", "spv"],
+        }
+    }
+
+    /// A program that uses the module.
+    pub(super) fn sample(self, storage: Storage) -> String {
+        let text = match self {
+            Self::Wgsl | Self::SpirV => include_str!("samples/sample.wgsl"),
+            Self::Glsl => include_str!("samples/sample.comp"),
+            Self::GlslEs => include_str!("samples/sample.frag"),
+            Self::Hlsl => include_str!("samples/sample.hlsl"),
+            Self::Msl => include_str!("samples/sample.metal"),
+        };
+        match (self, storage) {
+            (Self::Msl, Storage::Texture) => text.replace(
+                "device const metal::float2* tables [[buffer(0)]]",
+                "metal::texture2d<float, metal::access::sample> tables [[texture(0)]]",
+            ),
+            _ => text.into(),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Wgsl => "WGSL",
+            Self::Glsl => "GLSL 4.3 and later (OpenGL, Vulkan)",
+            Self::GlslEs => "GLSL ES 3.0 and later (WebGL 2, OpenGL ES)",
+            Self::Hlsl => "HLSL (shader model 6.0 and later)",
+            Self::Msl => "the Metal Shading Language 2.0",
+            Self::SpirV => "SPIR-V",
+        }
+    }
+}
+
+/// What the module says of itself.
+pub(super) fn head(file: &str, language: Language, storage: Storage) -> String {
+    include_str!("head.txt")
+        .replace("{file}", file)
+        .replace("{language}", language.name())
+        .replace("{binding}", &binding(language, storage))
+        .replace("{version}", env!("CARGO_PKG_VERSION"))
+        .replace("{layout}", &LAYOUT.to_string())
+}
+
+/// How its tables are bound.
+fn binding(language: Language, storage: Storage) -> String {
+    let tables = match (storage, language) {
+        (Storage::Buffer, _) => {
+            "// Tables. Bind the bytes of student_t.bin, unchanged, as a storage buffer."
+        }
+        (Storage::Texture, Language::GlslEs) => {
+            "// Tables. Make a texture with texStorage2D(gl.TEXTURE_2D, 1, gl.RG32F, width, height), fill it
+// with the bytes of student_t.bin, unchanged, set both of its filters to gl.NEAREST, and bind it to
+// the sampler student_t_tables. Width and height are in student_t.json."
+        }
+        (Storage::Texture, _) => {
+            "// Tables. Make a texture of two channels in single precision (rg32float) and one level from the
+// bytes of student_t.bin, unchanged; its width and height are in student_t.json. It is read by
+// texel, never filtered."
+        }
+    };
+    let place = match language {
+        Language::Wgsl => {
+            "// Edit the line that begins with @group if your program has other things there. Append your
+// program to this text, as in student_t_sample.wgsl."
+        }
+        Language::Glsl => {
+            "// To have them elsewhere than at binding 0, define the layout before this text, such as
+//     #define STUDENT_T_BINDING layout({std}set = 1, binding = 3)
+// Include this text after #version, as in student_t_sample.comp; OpenGL, which has no #include,
+// takes the text itself in its place."
+        }
+        Language::GlslEs => {
+            "// Insert this text between the line of #version and your program, as student_t_sample.frag says."
+        }
+        Language::Hlsl => {
+            "// To have them elsewhere than at t0, define the register before this text, such as
+//     #define STUDENT_T_REGISTER t3, space1
+// Include this text, as in student_t_sample.hlsl."
+        }
+        Language::Msl => {
+            "// Functions have one argument more than below, the last: the tables, as your kernel gets them.
+// Include this text, as in student_t_sample.metal."
+        }
+        Language::SpirV => "",
+    };
+    let std = if storage == Storage::Buffer { "std430, " } else { "" };
+    format!("{tables}\n{}", place.replace("{std}", std))
+}
