@@ -144,9 +144,9 @@ fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
     let cases: [(&[&str], &[&str]); 8] = [
         (&["cobol", "--gamma", "3"], &["cobol", "possible values: c, wgsl, glsl, glsl-es, hlsl"]),
         (&["c", "--gamma", "3", "--textures"], &["--textures", "leave out"]),
-        (&["wgsl", "--gamma", "1.5001"], &["1.5001", "1.501 or more"]),
+        (&["wgsl", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
         (&["c", "--gamma", "1.5"], &["(1.5, inf]"]),
-        (&["c", "--gamma", "1.5001"], &["1.5001", "1.501 or more"]),
+        (&["c", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
         (&["c", "--gamma", "three"], &["three", "number"]),
         (&["c", "--gamma", "3", "--sigma", "0.3"], &["every roughness"]),
         (&["c"], &["--gamma"]),
@@ -158,10 +158,6 @@ fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
         }
         assert!(!at.join("out").exists(), "{arguments:?}");
     }
-    // More than are counted in single precision.
-    let many: Vec<String> = (0..1001).map(|i| format!("{}", 3.0 + f64::from(i) / 1000.0)).collect();
-    let message = refused(at, &["export", "wgsl", "--gamma", &many.join(","), "--out", "out"]);
-    assert!(message.contains("1001 shapes") && message.contains("at most 1000"), "{message}");
     // One of several that cannot be written leaves the others as they were.
     fs::create_dir_all(at.join("out/student_t_gamma_3.h")).unwrap();
     fs::write(at.join("out/student_t.h"), "old").unwrap();
@@ -227,7 +223,7 @@ fn every_language_has_all_functions_a_sample_and_data() {
             for foreign in ["naga", "fake", "impl_entry", "_group_", "main(", "#version", "sizes"] {
                 assert!(!code.contains(foreign), "{out}: {foreign}");
             }
-            assert!(sample.lines().count() <= 60, "{out}");
+            assert!(sample.lines().count() <= 46, "{out}");
             let words = ["texture", "Texture2D", "sampler2D"];
             let uses_texture = words.iter().any(|word| code.contains(word));
             assert_eq!(uses_texture, textures || !has_buffers, "{out}");

@@ -88,6 +88,7 @@ static void start(void)
     info.pApplicationInfo = &application;
     check(vkCreateInstance(&info, NULL, &instance), "an instance");
     found = vkEnumeratePhysicalDevices(instance, &one, &physical);
+    if (one == 0) found = VK_ERROR_INITIALIZATION_FAILED;
     check(found == VK_INCOMPLETE ? VK_SUCCESS : found, "a device");
     queue.queueCount = 1; /* of the first family, which computes on all common devices */
     queue.pQueuePriorities = &priority;
@@ -111,6 +112,7 @@ static void run(const uint32_t *words, size_t size, const VkBuffer buffers[3])
     VkCommandPoolCreateInfo commands_info = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     VkCommandBufferAllocateInfo buffer_info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
     VkCommandBufferBeginInfo begin = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    VkMemoryBarrier barrier = {VK_STRUCTURE_TYPE_MEMORY_BARRIER};
     VkSubmitInfo submit = {VK_STRUCTURE_TYPE_SUBMIT_INFO};
     VkDescriptorBufferInfo whole[3];
     VkWriteDescriptorSet write = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
@@ -174,6 +176,11 @@ static void run(const uint32_t *words, size_t size, const VkBuffer buffers[3])
     vkCmdBindPipeline(command, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vkCmdBindDescriptorSets(command, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, NULL);
     vkCmdDispatch(command, 1, 1, 1);
+    /* What the shader wrote is made visible to the host. */
+    barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+    vkCmdPipelineBarrier(command, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+                         0, 1, &barrier, 0, NULL, 0, NULL);
     check(vkEndCommandBuffer(command), "commands");
     vkGetDeviceQueue(device, 0, 0, &queue);
     submit.commandBufferCount = 1;

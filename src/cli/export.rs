@@ -69,9 +69,6 @@ enum TargetArg {
     Spirv,
 }
 
-/// Their places are counted in single precision.
-const MOST_SHAPES: usize = 1000;
-
 /// The size of textures that every device of WebGL 2 has.
 const PROMISED_ROWS: usize = 2048;
 
@@ -109,13 +106,6 @@ pub(super) fn run(args: Args) -> Outcome {
         if !gammas.contains(&gamma) {
             gammas.push(gamma);
         }
-    }
-    if gammas.len() > MOST_SHAPES && target != Target::C {
-        return Err(Failure(format!(
-            "{} shapes: at most {MOST_SHAPES} are in the tables of one shader; export the rest into \
-             another folder",
-            gammas.len()
-        )));
     }
     let bind = |&gamma| Shape::bind(&set, gamma);
     let shapes = gammas.iter().map(bind).collect::<Result<Vec<_>, _>>()?;

@@ -29,8 +29,10 @@ pub struct Limits {
     /// their limit with a power of the cosine of 0.002 or so, by which single precision
     /// extrapolates from two albedos that differ in their last digits, there and in the crate.
     pub extrapolated: [f64; 2],
-    /// Whether arguments that are NaN have to give numbers.
+    /// Whether arguments that are NaN have to give numbers; else they are left out.
     pub of_nan: bool,
+    /// The largest Λ, that of the horizon.
+    pub lambda: f32,
 }
 
 /// How normals of rough lobes are compared, which grazing views turn by the last digits of a slope.
@@ -86,7 +88,7 @@ impl<'a> Worst<'a> {
         self.seen.values().all(|(share, ..)| *share <= 1.0)
     }
 
-    /// Compares what a language says of a group of points of one shape.
+    /// Compares what a language says of a group of points of one shape; returns how many of them.
     pub(crate) fn group(
         &mut self,
         tables: &Tables,
@@ -94,38 +96,52 @@ impl<'a> Worst<'a> {
         group: &Group,
         language: &str,
         answers: &[Answer],
-    ) {
-        let sigma = group.points[0].sigma;
+    ) -> usize {
+        let (sigma, mut count) = (group.points[0].sigma, 0);
         let (lobe, albedos) = (lobe(tables, sigma, gamma), Albedos::new(tables, sigma, gamma));
         for (point, answer) in group.points.iter().zip(answers) {
             let at = || format!("{language}, gamma {gamma}, {} {point:?}", group.name);
             if has_nan(point) && !self.limits.of_nan {
                 continue;
             }
+            count += 1;
             if is_odd(point) {
                 sound(self, answer, &at);
             } else {
+                numbers(self, point, answer, &at);
                 directions(self, &lobe, gamma, point, answer, &at);
                 shares(self, &albedos, gamma, point, answer, &at);
             }
         }
+        count
     }
 }
 
-/// What the crate says of the albedos of one roughness, under both forms of masking.
-struct Albedos([Albedo; 2]);
+/// What the crate says of the albedos of one roughness, under both forms of masking; nothing of a
+/// mirror, which σ ≤ 0 is to exports.
+struct Albedos(Option<[Albedo; 2]>);
 
 impl Albedos {
     /// Of the stand-in, within the range of the tables.
     fn new(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Self {
-        let sigma = (f64::from(sigma[0]) * f64::from(sigma[1])).sqrt().clamp(1e-8, 3.0);
-        Self(Masking::ALL.map(|masking| tables.albedo(sigma, gamma, masking).unwrap()))
+        if !sigma.iter().all(|sigma| *sigma > 0.0) {
+            return Self(None);
+        }
+        let [x, y] = clamped(sigma).map(f64::from);
+        let sigma = (x * y).sqrt().clamp(1e-8, 3.0);
+        Self(Some(Masking::ALL.map(|masking| tables.albedo(sigma, gamma, masking).unwrap())))
     }
+}
+
+/// The roughness as exports take it.
+fn clamped(sigma: [f32; 2]) -> [f32; 2] {
+    // NaN becomes the smallest.
+    sigma.map(|sigma| if sigma > 1e-8 { sigma.min(1e6) } else { 1e-8 })
 }
 
 /// The lobe whose random numbers the export has: for GGX the closed forms.
 fn lobe(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Lobe {
-    let sigma = sigma.map(f64::from);
+    let sigma = clamped(sigma).map(f64::from);
     if gamma == 2.0 {
         Ggx::new(sigma).unwrap().into()
     } else {
@@ -136,7 +152,19 @@ fn lobe(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Lobe {
 /// Whether a direction or a number is NaN.
 fn has_nan(point: &Point) -> bool {
     let directions = [point.v, point.l, point.m];
-    directions.as_flattened().iter().chain(&point.u).any(|x| x.is_nan())
+    let scalars = point.u.iter().chain(&point.sigma);
+    directions.as_flattened().iter().chain(scalars).any(|x| x.is_nan())
+}
+
+/// Whether every number is one, and what must vanish does.
+fn numbers(worst: &mut Worst<'_>, point: &Point, answer: &Answer, at: &dyn Fn() -> String) {
+    let mut all = bytemuck::cast_slice::<_, f32>(std::slice::from_ref(answer)).iter();
+    let finite = all.all(|x| x.is_finite() || *x == answer.lambda);
+    let lambda = (0.0..=worst.limits.lambda).contains(&answer.lambda);
+    let behind = Vec3::from(point.v).dot(Vec3::from(point.m)) < -1e-6 || !(point.m[2] > 0.0);
+    let vanishes = !behind || answer.reflection_pdf == 0.0 && answer.pdf == 0.0;
+    let sound = finite && lambda && vanishes && answer.reflection_pdf >= 0.0;
+    worst.see("numbers", if sound { 0.0 } else { f64::INFINITY }, 1.0, at);
 }
 
 /// Whether a direction has NaN, or a view is neither null nor of length 1: then results are only
@@ -169,7 +197,7 @@ fn directions(
     at: &dyn Fn() -> String,
 ) {
     let limits = worst.limits;
-    let Point { sigma, u, .. } = *point;
+    let (sigma, u) = (clamped(point.sigma), point.u);
     let [v, l, m] = [point.v, point.l, point.m].map(Vec3::from);
     let far = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
     worst.see("g1", far(answer.g1, lobe.g1(v)), limits.share, at);
@@ -185,17 +213,20 @@ fn directions(
     let heavy = gamma < HEAVY && (is_rough || v.z < 1e-6);
     let (mut name, mut allowed) =
         if heavy { ("normal, heavy", limits.heavy) } else { ("normal", limits.normal) };
+    // NaN is worse than any number; a maximum would pass over it.
     let apart = |a: [f32; 3], b: [f32; 3]| {
-        a.into_iter()
-            .zip(b)
-            .fold(0.0, |most, (a, b)| if far(a, b) <= most { most } else { far(a, b) })
+        let apart = [far(a[0], b[0]), far(a[1], b[1]), far(a[2], b[2])];
+        let most = apart.into_iter().fold(0.0, f64::max);
+        if apart.iter().any(|x| x.is_nan()) { f64::INFINITY } else { most }
     };
     let mut difference = apart(answer.normal, normal);
     match limits.rough {
         Rough::Coordinates(limit) if is_rough => (name, allowed) = ("normal, rough", limit),
         Rough::Stretched if is_rough => {
             let [a, b] = [answer.normal, normal].map(|m| unstretched(m, sigma));
-            difference = difference.min(apart(a, b));
+            if difference.is_finite() {
+                difference = difference.min(apart(a, b));
+            }
         }
         _ => (),
     }
@@ -255,7 +286,13 @@ fn shares(
         }
         _ => ("albedo", "albedo_parts", limits.share),
     };
-    for (k, albedo) in albedos.0.iter().enumerate() {
+    let Some(albedos) = &albedos.0 else {
+        let whole = [answer.albedo, answer.average].as_flattened().iter().all(|e| *e == 1.0);
+        let sound = whole && answer.compensation == [0.0; 2];
+        worst.see("mirror", if sound { 0.0 } else { f64::INFINITY }, 1.0, at);
+        return;
+    };
+    for (k, albedo) in albedos.iter().enumerate() {
         let far = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
         worst.see(name, far(answer.albedo[k], albedo.albedo(v)), share, at);
         worst.see(

@@ -33,23 +33,29 @@ pub fn agree(
     let mut good = true;
     for (title, corners) in [("random points", false), ("corners", true)] {
         let mut worst = Worst::new(limits);
-        let mut all = 0;
+        let (mut all, mut compared, mut languages) = (0, 0, Vec::new());
         for (shape, &gamma) in gammas.iter().enumerate() {
             let groups =
                 if corners { points::corners() } else { points::random(each, shape as u64) };
             let points: Vec<Point> =
                 groups.iter().flat_map(|group| &group.points).copied().collect();
             all += points.len();
+            languages.clear();
             for (language, answers) in foreign.answers(shape, &points) {
+                languages.push(language);
                 let mut rest = &answers[..];
                 for group in &groups {
                     let (answers, others) = rest.split_at(group.points.len());
                     rest = others;
-                    worst.group(&tables, gamma, group, language, answers);
+                    compared += worst.group(&tables, gamma, group, language, answers);
                 }
             }
         }
-        println!("largest differences at {all} {title} of gamma {gammas:?}");
+        let each = compared / languages.len();
+        println!(
+            "largest differences at {each} {title}, of {all}, of gamma {gammas:?}, {}",
+            languages.join(" and ")
+        );
         good &= worst.print();
     }
     good & reference::compare(foreign, limits, reference, gammas)

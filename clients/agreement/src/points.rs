@@ -66,6 +66,12 @@ pub fn corners() -> Vec<Group> {
         [0.3, 0.3],
         [0.1, 2.0],
         [3.0, 3.0],
+        // What is taken at an end, or for a mirror.
+        [0.0, 0.3],
+        [-1.0, -1.0],
+        [1e-30, 1e-30],
+        [1e7, 1e7],
+        [NAN, 0.3],
     ];
     let tilted = |z: f32| [0.6 * (1.0 - z * z).sqrt(), -0.8 * (1.0 - z * z).sqrt(), z];
     let directions = [

@@ -26,6 +26,7 @@ const LIMITS: Limits = Limits {
     density: [1e-4, 1e-4],
     extrapolated: [2e-5, 2e-4],
     of_nan: false,
+    lambda: 8.6e37,
 };
 
 fn main() -> ExitCode {

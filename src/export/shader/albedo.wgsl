@@ -81,7 +81,7 @@ fn student_t_impl_moments_at(a: StudentTImplAlbedo, mu: f32) -> vec3f {
     let i = student_t_impl_six(a.coordinate * (a.table.sigmas - 1.0), a.table.sigmas);
     let j = student_t_impl_six(at * (a.table.views - 1.0), a.table.views);
     let row = 2u * u32(a.table.views);
-    let first = u32(a.table.values) + i.start * row + 2u * j.start;
+    let first = a.table.values + i.start * row + 2u * j.start;
     let middle = student_t_impl_node(first + 2u * row + 4u);
     let sum = (student_t_impl_row(first, j, middle) * i.a.x
             + student_t_impl_row(first + row, j, middle) * i.a.y
@@ -135,7 +135,7 @@ fn student_t_impl_averages(a: StudentTImplAlbedo) -> vec3f {
     }
     let count = a.table.average_sigmas;
     let six = student_t_impl_six(a.coordinate * (count - 1.0), count);
-    let averages = student_t_impl_row(u32(a.table.averages) + 2u * six.start, six, vec3f(0.0));
+    let averages = student_t_impl_row(a.table.averages + 2u * six.start, six, vec3f(0.0));
     return vec3f(min(exp(averages.x), 1.0), averages.yz);
 }
 

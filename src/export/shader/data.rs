@@ -140,6 +140,7 @@ fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
         pairs.extend(values.chunks(columns).flat_map(|row| row.chunks(2).map(pair)));
     }
     assert_eq!(pairs.len(), offset + at, "every table is where its member says");
+    assert!(at < 1 << f32::MANTISSA_DIGITS, "places are counted in single precision");
     let worst =
         |of: fn(&AlbedoTable) -> Option<f64>| shape.albedos.iter().filter_map(of).reduce(f64::max);
     let [cdf_along, cdf_across] = shape.errors.cdf;
@@ -155,8 +156,7 @@ fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
     Entry { offset, length: at, members: named, tables, errors, albedos_of_default_set }
 }
 
-/// A member as a number; of a table its place in the shape. All are exact in single precision,
-/// which counts to 2²⁴.
+/// A member as a number; of a table its place in the shape, which is exact in single precision.
 fn number(value: &Value, tables: &BTreeMap<String, Place>) -> f32 {
     match value {
         Value::Flag(flag) => f32::from(u8::from(*flag)),

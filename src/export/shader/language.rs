@@ -56,10 +56,13 @@ impl Language {
             Self::Msl => include_str!("samples/sample.metal"),
         };
         match (self, storage) {
-            (Self::Msl, Storage::Texture) => text.replace(
-                "device const metal::float2* tables [[buffer(0)]]",
-                "metal::texture2d<float, metal::access::sample> tables [[texture(0)]]",
-            ),
+            (Self::Msl, Storage::Texture) => {
+                let buffer = "device const metal::float2* tables [[buffer(0)]]";
+                assert!(text.contains(buffer));
+                let texture =
+                    "metal::texture2d<float, metal::access::sample> tables [[texture(0)]]";
+                text.replace(buffer, texture)
+            }
             _ => text.into(),
         }
     }

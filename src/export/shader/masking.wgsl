@@ -44,7 +44,7 @@ fn student_t_impl_inverse_area(shape: StudentTShape, d: StudentTImplDirection) -
         at = (1.0 - sqrt(student_t_impl_unit(across / area))) * shape.masking_cells;
     }
     let place = student_t_impl_place(at, shape.masking_cells);
-    return student_t_impl_cubic(u32(shape.masking), place) * r;
+    return student_t_impl_cubic(shape.masking, place) * r;
 }
 
 fn student_t_impl_dot(a: vec3f, b: vec3f) -> f32 {

@@ -84,23 +84,25 @@ fn module([lobe, uncorrelated, correlated]: &[Vec<Member>; 3], storage: Storage)
 
 /// A struct of members, and a function that reads one. A table is the place of its first pair.
 fn loader(name: &str, members: &[Member], signature: &str, at: &str) -> String {
-    let mut text = format!("struct {name} {{\n");
-    for member in members {
-        writeln!(text, "    {}: f32,", member.name).expect("memory");
-    }
-    let lines =
-        ["let tables = f32(shape);", &format!("let at = {at};")].map(|s| format!("    {s}\n"));
-    write!(text, "}}\n\nfn {signature} -> {name} {{\n{}", lines.concat()).expect("memory");
+    let mut fields = String::new();
+    let mut pairs = String::new();
     let mut values = String::new();
     for (i, pair) in members.chunks(2).enumerate() {
         let first = pair[0].name;
-        writeln!(text, "    let {first} = student_t_impl_pair(at + {i}u);").expect("memory");
+        writeln!(pairs, "    let {first} = student_t_impl_pair(at + {i}u);").expect("memory");
         for (member, channel) in pair.iter().zip(["x", "y"]) {
-            let base = if matches!(member.value, Value::Table(_)) { "tables + " } else { "" };
-            writeln!(values, "        {base}{first}.{channel},").expect("memory");
+            let (kind, value) = match member.value {
+                Value::Table(_) => ("u32", format!("shape + u32({first}.{channel})")),
+                _ => ("f32", format!("{first}.{channel}")),
+            };
+            writeln!(fields, "    {}: {kind},", member.name).expect("memory");
+            writeln!(values, "        {value},").expect("memory");
         }
     }
-    text + &format!("    return {name}(\n{values}    );\n}}\n")
+    format!(
+        "struct {name} {{\n{fields}}}\n\nfn {signature} -> {name} {{\n    let at = {at};\n{pairs}    \
+         return {name}(\n{values}    );\n}}\n"
+    )
 }
 
 #[cfg(test)]
@@ -138,11 +140,11 @@ mod tests {
         let [_, _, albedo] = lists(&shape);
         let text = loader("T", &albedo, "t(shape: u32)", "shape");
         let declared: Vec<&str> =
-            text.lines().filter_map(|line| line.trim().strip_suffix(": f32,")).collect();
+            text.lines().filter_map(|line| Some(line.trim().split_once(": ")?.0)).collect();
         assert!(declared.iter().copied().eq(albedo.iter().map(|member| member.name)));
         // The second pair begins with the third member.
         assert!(text.contains("let sigmas = student_t_impl_pair(at + 1u);"), "{text}");
-        assert!(text.contains("(\n        tables + values.x,\n        tables + values.y,\n        sigmas.x,\n        sigmas.y,"), "{text}");
+        assert!(text.contains("(\n        shape + u32(values.x),\n        shape + u32(values.y),\n        sigmas.x,\n        sigmas.y,"), "{text}");
     }
 
     #[test]

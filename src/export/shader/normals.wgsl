@@ -70,7 +70,7 @@ fn student_t_impl_table_slope(
     let place = student_t_impl_place(student_t_impl_end(along) * shape.along_scale,
                                      shape.numbers - 1.0);
     let numbers = u32(shape.numbers);
-    let low = u32(shape.slopes) + (2u * view.cell + u32(second)) * numbers + place.cell;
+    let low = shape.slopes + (2u * view.cell + u32(second)) * numbers + place.cell;
     let high = low + 2u * numbers;
     // Linear between the views, a cubic through values and slopes along the number.
     var a = student_t_impl_pair(low);
@@ -96,7 +96,7 @@ fn student_t_impl_sample_tables(shape: StudentTShape, sigma: vec2f, v: vec3f, u:
     // The slope across. The scale is 2^(1/4) times the number of cells.
     let across = student_t_impl_place(student_t_impl_end(u.y) * shape.across_scale,
                                       0.8408964 * shape.across_scale + 0.5);
-    let far = student_t_impl_cubic(u32(shape.across), across);
+    let far = student_t_impl_cubic(shape.across, across);
     let t = select(far - 1.0, 1.0 - far, u.y > 0.5);
     let tz = far * (2.0 - far);
 
@@ -118,7 +118,7 @@ fn student_t_impl_sample_tables(shape: StudentTShape, sigma: vec2f, v: vec3f, u:
     if shape.heavy_per_row > 0.0 {
         let cells = shape.heavy_per_row;
         let place = student_t_impl_place(at * cells, shape.rows * cells);
-        let share = student_t_impl_cubic(u32(shape.heavy), place);
+        let share = student_t_impl_cubic(shape.heavy, place);
         let rest = 1.0 - share;
         is_heavy = along > rest;
         if is_heavy {

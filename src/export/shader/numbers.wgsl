@@ -5,8 +5,8 @@ const STUDENT_T_UNCORRELATED = 0u;
 const STUDENT_T_HEIGHT_CORRELATED = 1u;
 
 // ---- Numbers ------------------------------------------------------------------------------------
-// Results must not overflow, since a shader may take what has for anything. Comparisons are
-// written so that NaN takes the second value, as far as a compiler cares.
+// No result overflows, since a shader may take what has for anything. Comparisons are written so
+// that NaN takes the second value, as far as a compiler cares.
 
 const STUDENT_T_IMPL_LARGEST = 3.402823e38; // or so: compilers warn of the very largest
 const STUDENT_T_IMPL_SMALLEST = 1.17549435e-38;

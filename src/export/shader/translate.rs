@@ -28,12 +28,12 @@ pub(super) fn text(wgsl: &str, language: Language, storage: Storage) -> String {
         Language::Glsl => {
             let version = glsl::Version::Desktop(430);
             let text = glsl(&module, &info, version, ShaderStage::Compute);
-            let names = [
-                ("_group_0_binding_0_cs", "student_t_tables"),
-                ("type_1_block_0Compute", "student_t_tables_block"),
-            ];
+            let mut names = vec![("_group_0_binding_0_cs", "student_t_tables")];
+            if storage == Storage::Buffer {
+                names.push(("type_1_block_0Compute", "student_t_tables_block"));
+            }
             let text = renamed(&text, &names);
-            bindable_glsl(&without_lines(&text, &["#", "layout(local_size"]), storage)
+            guarded(&bindable_glsl(&without_lines(&text, &["#", "layout(local_size"]), storage))
         }
         Language::GlslEs => {
             let version = glsl::Version::Embedded { version: 300, is_webgl: true };
@@ -41,8 +41,8 @@ pub(super) fn text(wgsl: &str, language: Language, storage: Storage) -> String {
             let text = renamed(&text, &[("_group_0_binding_0_fs", "student_t_tables")]);
             without_lines(&text, &["#version"])
         }
-        Language::Hlsl => bindable_hlsl(&hlsl(&module, &info)),
-        Language::Msl => by_pointer(&msl(&module, &info)),
+        Language::Hlsl => guarded(&bindable_hlsl(&hlsl(&module, &info))),
+        Language::Msl => guarded(&includable_msl(&msl(&module, &info), storage)),
         Language::SpirV => panic!("SPIR-V is no text"),
     }
 }
@@ -117,23 +117,31 @@ fn with_default(name: &str, default: &str, text: &str) -> String {
 }
 
 /// Metal's functions take the tables as an argument: a pointer, in place of a reference to an array
-/// of unknown length and of a structure with that length, which none reads.
-fn by_pointer(text: &str) -> String {
+/// of unknown length and of a structure with that length, which none reads. They are inline, since
+/// Metal links what several files define.
+fn includable_msl(text: &str, storage: Storage) -> String {
     let text = without_lines(text, &["// language", "typedef metal::float2 type_1"]);
-    let sizes = "struct _mslBufferSizes {\n    uint size0;\n};\n";
-    if !text.contains(sizes) {
-        return text; // a texture
+    let functions = text.lines().map(|line| {
+        let begins = line.starts_with(char::is_alphabetic) && !line.starts_with("struct");
+        let inline = if begins && line.contains(" student_t_") { "inline " } else { "" };
+        format!("{inline}{line}\n")
+    });
+    let text: String = functions.collect();
+    match storage {
+        Storage::Texture => text,
+        Storage::Buffer => renamed(
+            &text,
+            &[
+                ("struct _mslBufferSizes {\n    uint size0;\n};\n", ""),
+                (",\n    constant _mslBufferSizes& _buffer_sizes", ""),
+                (", _buffer_sizes", ""),
+                (
+                    "device type_1 const& student_t_tables",
+                    "device const metal::float2* student_t_tables",
+                ),
+            ],
+        ),
     }
-    let array = "device type_1 const& student_t_tables";
-    renamed(
-        &text,
-        &[
-            (sizes, ""),
-            (",\n    constant _mslBufferSizes& _buffer_sizes", ""),
-            (", _buffer_sizes", ""),
-            (array, "device const metal::float2* student_t_tables"),
-        ],
-    )
 }
 
 fn without_entry(text: &str, entry: &str) -> String {
@@ -146,7 +154,15 @@ fn without_lines(text: &str, starts: &[&str]) -> String {
     kept.map(|line| format!("{line}\n")).collect()
 }
 
-/// Text with each of these replaced.
+/// Text with each of these replaced; all occur.
 fn renamed(text: &str, names: &[(&str, &str)]) -> String {
-    names.iter().fold(text.to_owned(), |text, (from, to)| text.replace(from, to))
+    names.iter().fold(text.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "no {from} in a translation");
+        text.replace(from, to)
+    })
+}
+
+/// Text that may be included twice.
+fn guarded(text: &str) -> String {
+    format!("#ifndef STUDENT_T\n#define STUDENT_T\n\n{}\n#endif\n", text.trim_start())
 }

@@ -22,6 +22,7 @@ const LIMITS: Limits = Limits {
     density: [1e-5, 2e-6],
     extrapolated: [2e-5, 2e-4],
     of_nan: true,
+    lambda: f32::INFINITY,
 };
 
 fn main() -> ExitCode {

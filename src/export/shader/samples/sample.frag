@@ -22,7 +22,8 @@ void main() {
 
     vec3 m = normalize(v + l);
     uint masking = STUDENT_T_HEIGHT_CORRELATED;
-    vec3 fresnel = metal + (1.0 - metal) * pow(1.0 - dot(v, m), 5.0);
+    float k = 1.0 - dot(v, m);
+    vec3 fresnel = metal + (1.0 - metal) * (k * k * k * k * k);
     vec3 f = fresnel * student_t_d(shape, sigma, m)
         * student_t_masking_shadowing(shape, sigma, v, l, masking) / (4.0 * v.z * l.z);
     // What further bounces add.
