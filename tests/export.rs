@@ -141,7 +141,8 @@ fn other_sets_are_exported_with_what_they_lack() {
 fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let cases: [(&[&str], &[&str]); 8] = [
+    let cases: [(&[&str], &[&str]); 9] = [
+        (&["wgsl", "--gamma", "3", "--tables", "nowhere"], &["nowhere", "no such file", "bake"]),
         (&["cobol", "--gamma", "3"], &["cobol", "possible values: c, wgsl, glsl, glsl-es, hlsl"]),
         (&["c", "--gamma", "3", "--textures"], &["--textures", "leave out"]),
         (&["wgsl", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),

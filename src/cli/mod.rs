@@ -260,6 +260,12 @@ fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
 /// The tables at a path, or the embedded default.
 fn tables(path: Option<&Path>) -> Result<Tables, Failure> {
     Ok(match path {
+        Some(path) if !path.try_exists().unwrap_or(true) => {
+            return Err(Failure(format!(
+                "{}: no such file or folder; name what `microfacet-bake bake` wrote",
+                path.display()
+            )));
+        }
         Some(path) => store::read(path)?,
         None => Tables::embedded(),
     })
