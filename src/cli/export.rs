@@ -121,9 +121,9 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     if let Target::Shader(language, storage) = target
         && language.storage(storage) == Storage::Texture
-        && texture_rows(&shapes) > PROMISED_ROWS
+        && let rows = texture_rows(&shapes)
+        && rows > PROMISED_ROWS
     {
-        let rows = texture_rows(&shapes);
         let note = format!(
             "the texture has {rows} rows; all devices of WebGL 2 take {PROMISED_ROWS}: export fewer \
              shapes in one command for others"

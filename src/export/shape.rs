@@ -74,6 +74,13 @@ impl Shape {
     }
 }
 
+impl Shape {
+    /// The largest of what is said of the albedos under both forms of masking.
+    pub(super) fn worst_albedo(&self, of: impl Fn(&AlbedoTable) -> Option<f64>) -> Option<f64> {
+        self.albedos.iter().filter_map(of).reduce(f64::max)
+    }
+}
+
 /// Only of a shape beyond the default set, in a set without albedos.
 fn no_albedo(gamma: f64) -> MaterialError {
     MaterialError::NoTable(format!("albedos of gamma {gamma} for every sigma"))

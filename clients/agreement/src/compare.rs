@@ -156,6 +156,11 @@ fn has_nan(point: &Point) -> bool {
     directions.as_flattened().iter().chain(scalars).any(|x| x.is_nan())
 }
 
+/// How far two numbers are apart.
+fn far(a: f32, b: f32) -> f64 {
+    (f64::from(a) - f64::from(b)).abs()
+}
+
 /// Whether every number is one, and what must vanish does.
 fn numbers(worst: &mut Worst<'_>, point: &Point, answer: &Answer, at: &dyn Fn() -> String) {
     let mut all = bytemuck::cast_slice::<_, f32>(std::slice::from_ref(answer)).iter();
@@ -199,7 +204,6 @@ fn directions(
     let limits = worst.limits;
     let (sigma, u) = (clamped(point.sigma), point.u);
     let [v, l, m] = [point.v, point.l, point.m].map(Vec3::from);
-    let far = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
     worst.see("g1", far(answer.g1, lobe.g1(v)), limits.share, at);
     let lambda = far(1.0 / (1.0 + answer.lambda), lobe.g1(v));
     worst.see("lambda, by G1", lambda, limits.share, at);
@@ -293,7 +297,6 @@ fn shares(
         return;
     };
     for (k, albedo) in albedos.iter().enumerate() {
-        let far = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
         worst.see(name, far(answer.albedo[k], albedo.albedo(v)), share, at);
         worst.see(
             "albedo_average",

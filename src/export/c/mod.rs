@@ -59,9 +59,7 @@ fn text(shape: &Shape, name: &str) -> String {
 /// What a shape's file says of it.
 fn comment(shape: &Shape, name: &str) -> String {
     let (gamma, version) = (as_typed(shape.gamma), env!("CARGO_PKG_VERSION"));
-    let worst = |of: fn(&AlbedoTable) -> Option<f64>| {
-        error(shape.albedos.iter().filter_map(of).reduce(f64::max))
-    };
+    let worst = |of: fn(&AlbedoTable) -> Option<f64>| error(shape.worst_albedo(of));
     let lobe = if shape.tables.is_some() {
         let [along, across] = shape.errors.cdf.map(error);
         format!(

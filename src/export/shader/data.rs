@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::super::members::{Member, Part, Value, parts};
 use super::super::numbers::as_typed;
-use super::super::{AlbedoTable, ExportFile, Shape};
+use super::super::{ExportFile, Shape};
 use super::{NAME, lists};
 use crate::store;
 
@@ -141,16 +141,14 @@ fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
     }
     assert_eq!(pairs.len(), offset + at, "every table is where its member says");
     assert!(at < 1 << f32::MANTISSA_DIGITS, "places are counted in single precision");
-    let worst =
-        |of: fn(&AlbedoTable) -> Option<f64>| shape.albedos.iter().filter_map(of).reduce(f64::max);
     let [cdf_along, cdf_across] = shape.errors.cdf;
     let errors = Errors {
         g1: shape.errors.g1,
         cdf_along,
         cdf_across,
-        albedo: worst(|table| table.errors[0]),
-        albedo_elsewhere: worst(|table| table.errors[1]),
-        average: worst(|table| Some(table.average_error)).unwrap_or_default(),
+        albedo: shape.worst_albedo(|table| table.errors[0]),
+        albedo_elsewhere: shape.worst_albedo(|table| table.errors[1]),
+        average: shape.worst_albedo(|table| Some(table.average_error)).unwrap_or_default(),
     };
     let albedos_of_default_set = shape.from_default.iter().map(|masking| masking.name()).collect();
     Entry { offset, length: at, members: named, tables, errors, albedos_of_default_set }

@@ -88,7 +88,8 @@ fn student_t_impl_d(shape: StudentTShape, sigma: vec2f, m: vec3f) -> f32 {
         }
         root = root * exp(shape.d_power * growth);
     }
-    // The root of D, at most that of the largest number.
+    // The root of D, at most that of the largest number. Roots above 1e30 give that for every
+    // scale, which is at least 5e-7.
     let scale = sqrt(1.0 / (3.14159265 * rough.x * rough.y));
     let limited = min(scale * min(root, 1e30), 1.8446742e19);
     return limited * limited;
