@@ -22,6 +22,7 @@ mod members;
 mod numbers;
 mod shader;
 mod shape;
+pub mod texture;
 
 pub use albedo::AlbedoTable;
 pub use shader::{Language, Storage, texture_rows};

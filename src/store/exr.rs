@@ -48,21 +48,16 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
     let count = table.channels.len();
     let height = table.values.len() / count / width;
     let channels = table.channels.iter().enumerate().map(|(i, channel)| {
-        let samples = table.values.iter().skip(i).step_by(count);
-        let samples = match table.precision {
-            Precision::F16 => FlatSamples::F16(samples.map(|&x| f16::from_f32(x)).collect()),
-            _ => FlatSamples::F32(samples.copied().collect()),
-        };
-        channel_of(channel_name(channel), samples)
+        let samples = table.values.iter().skip(i).step_by(count).copied();
+        channel_of(channel_name(channel), flat(table.precision == Precision::F16, samples))
     });
     let mut attributes = LayerAttributes::named(Text::new_or_panic(&table.name));
-    let text = Text::new_or_none(&document).ok_or("the description cannot be stored in EXR")?;
-    // Only one custom attribute: the library writes them in the order of a hash map.
-    attributes.other.insert(Text::new_or_panic(ATTRIBUTE), AttributeValue::Text(text));
+    describe_with(&mut attributes, &document)?;
     write_layer((width, height), attributes, AnyChannels::sort(channels.collect()))
 }
 
-/// Encodes channels in single precision as an image, compressed without loss.
+/// Encodes channels in 32 bits, or in 16, as an image, compressed without loss. A description is
+/// the string attribute `microfacet`.
 ///
 /// # Errors
 /// A message if it cannot be written.
@@ -73,13 +68,33 @@ pub fn encode_channels(
     name: &str,
     size: [usize; 2],
     channels: impl IntoIterator<Item = (&'static str, Vec<f32>)>,
+    half: bool,
+    description: Option<&str>,
 ) -> std::result::Result<Vec<u8>, String> {
     let channels = channels
         .into_iter()
-        .map(|(channel, samples)| channel_of(channel, FlatSamples::F32(samples)))
+        .map(|(channel, samples)| channel_of(channel, flat(half, samples.into_iter())))
         .collect();
-    let attributes = LayerAttributes::named(Text::new_or_panic(name));
+    let mut attributes = LayerAttributes::named(Text::new_or_panic(name));
+    if let Some(text) = description {
+        describe_with(&mut attributes, text)?;
+    }
     write_layer((size[0], size[1]), attributes, AnyChannels::sort(channels))
+}
+
+fn flat(half: bool, samples: impl Iterator<Item = f32>) -> FlatSamples {
+    if half {
+        FlatSamples::F16(samples.map(f16::from_f32).collect())
+    } else {
+        FlatSamples::F32(samples.collect())
+    }
+}
+
+fn describe_with(attributes: &mut LayerAttributes, text: &str) -> std::result::Result<(), String> {
+    let text = Text::new_or_none(text).ok_or("the description cannot be stored in EXR")?;
+    // Only one custom attribute: the library writes them in the order of a hash map.
+    attributes.other.insert(Text::new_or_panic(ATTRIBUTE), AttributeValue::Text(text));
+    Ok(())
 }
 
 /// Samples that are no intensities of light: a lossy compressor should quantise them evenly.

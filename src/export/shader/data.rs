@@ -96,7 +96,8 @@ pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     let bytes = pairs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
     let channel = |i: usize| pairs.iter().map(|pair| pair[i]).collect();
     let channels = [("R", channel(0)), ("G", channel(1))];
-    let image = store::encode_channels(NAME, [WIDTH, height], channels).expect("finite numbers");
+    let image = store::encode_channels(NAME, [WIDTH, height], channels, false, None)
+        .expect("finite numbers");
     vec![
         ExportFile { name: description.file, contents: bytes },
         ExportFile { name: format!("{NAME}.json"), contents: (json + "\n").into() },

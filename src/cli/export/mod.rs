@@ -1,0 +1,84 @@
+//! `export`: writes shapes, with their lookups or as textures, for programs in other languages.
+
+mod lut;
+mod shape;
+
+use std::path::Path;
+
+use clap::Subcommand;
+
+use microfacet_bake::export::{ExportFile, Language, Target};
+use microfacet_bake::store;
+
+use super::{Done, Failure, Outcome, summarize};
+
+/// Write shapes for programs in other languages: tables of one gamma for any roughness, with the
+/// functions that look them up, or albedos as a texture.
+#[derive(clap::Args)]
+#[command(after_help = "Example:
+  microfacet-bake export c --gamma 3 --gamma 1.65 --out student-t
+writes student_t.h, student_t_gamma_3.h and student_t_gamma_1p65.h: headers for C99,
+C++11, CUDA and HIP. student_t.h says how to use them.
+  microfacet-bake export wgsl --gamma 3 --gamma 1.65 --out student-t
+writes student_t.wgsl, with the functions, a program that uses them, and the tables of
+both shapes as student_t.bin, described by student_t.json.
+  microfacet-bake export lut --gamma 2 --sigma-max 1 --size 32x32 --format dds --out lut
+writes lut.dds and lut_average.dds, the directional albedo and its average as textures,
+and prints the line with which a shader reads them.")]
+#[command(subcommand_value_name = "TARGET", subcommand_help_heading = "Targets")]
+pub(super) struct Args {
+    #[command(subcommand)]
+    target: TargetArg,
+}
+
+#[derive(Subcommand)]
+enum TargetArg {
+    /// Headers for C99, C++11, CUDA and HIP.
+    #[command(aliases = ["C", "c++", "cpp", "cuda", "hip"])]
+    C(shape::Args),
+    /// A module of WGSL: WebGPU.
+    #[command(aliases = ["WGSL"])]
+    Wgsl(shape::ShaderArgs),
+    /// Functions in GLSL 4.3: OpenGL, Vulkan.
+    #[command(aliases = ["GLSL"])]
+    Glsl(shape::ShaderArgs),
+    /// Functions in GLSL ES 3.0: WebGL 2, OpenGL ES.
+    #[command(aliases = ["GLSL-ES", "gles", "essl", "webgl"])]
+    GlslEs(shape::ShaderArgs),
+    /// Functions in HLSL: Direct3D.
+    #[command(aliases = ["HLSL"])]
+    Hlsl(shape::ShaderArgs),
+    /// Functions in the Metal Shading Language.
+    #[command(aliases = ["MSL", "metal"])]
+    Msl(shape::ShaderArgs),
+    /// A program for Vulkan that samples visible normals.
+    #[command(aliases = ["SPIRV", "SPIR-V", "spir-v", "spv"])]
+    Spirv(shape::ShaderArgs),
+    #[command(aliases = ["LUT"])]
+    Lut(lut::Args),
+}
+
+pub(super) fn run(args: Args) -> Outcome {
+    let shader = shape::shader;
+    match args.target {
+        TargetArg::C(args) => shape::run(Target::C, args),
+        TargetArg::Wgsl(args) => shader(Language::Wgsl, args),
+        TargetArg::Glsl(args) => shader(Language::Glsl, args),
+        TargetArg::GlslEs(args) => shader(Language::GlslEs, args),
+        TargetArg::Hlsl(args) => shader(Language::Hlsl, args),
+        TargetArg::Msl(args) => shader(Language::Msl, args),
+        TargetArg::Spirv(args) => shader(Language::SpirV, args),
+        TargetArg::Lut(args) => lut::run(args),
+    }
+}
+
+/// Writes files into a folder and names them.
+fn write(folder: &Path, files: &[ExportFile]) -> Outcome {
+    let contents = files.iter().map(|file| (&file.name[..], &file.contents[..]));
+    let written = store::replace_files(folder, contents)
+        .map_err(|(path, why)| Failure(format!("{}: {why}", path.display())))?;
+    for (path, file) in written.iter().zip(files) {
+        summarize(&format!("{} ({} bytes)\n", path.display(), file.contents.len()))?;
+    }
+    Ok(Done::Ok)
+}

@@ -1,0 +1,115 @@
+//! What a texture is, as JSON: beside it, and inside the formats that can hold it.
+
+use serde_json::{Map, Value, json};
+
+use super::Made;
+use crate::export::numbers::as_typed;
+use crate::export::texture::{Along, LEAST_COS, Place, Texture, shader_lines};
+
+/// The description.
+pub(super) fn description(made: &Made) -> Map<String, Value> {
+    let texture = &made.texture;
+    let spec = &texture.spec;
+    let average = !spec.is_directional();
+    let mut all = Map::new();
+    let mut put = |key: &str, value: Value| {
+        all.insert(key.into(), value);
+    };
+    put("generator", concat!("microfacet-bake ", env!("CARGO_PKG_VERSION")).into());
+    let quantity =
+        if average { "average over all views of the albedo" } else { "directional albedo" };
+    put(
+        "quantity",
+        format!("{quantity} of reflection by the Student-t distribution, F = 1").into(),
+    );
+    put("masking", spec.masking.name().into());
+    if !spec.gamma.is_nan() {
+        put("gamma", as_typed(spec.gamma).into());
+    }
+    let axes = spec.axes.iter().map(|axis| {
+        let mut one = along(axis.along, spec.gamma);
+        one["texels"] = axis.len().into();
+        one
+    });
+    put("axes_slowest_first", axes.collect());
+    let channels = spec.channels.iter().map(|channel| Value::from(channel.name()));
+    put("channels", channels.collect());
+    put("precision", if texture.half { "f16" } else { "f32" }.into());
+    let texels = if spec.fitted { "fitted to the linear filter" } else { "exact at the texels" };
+    put("values", texels.into());
+    if !average {
+        put("least_cos_theta", LEAST_COS.into());
+    }
+    let errors = made.errors.iter().map(|error| {
+        let entry = json!({
+            "largest": rounded(error.largest),
+            "at": at(&error.at),
+            "rms": rounded(error.rms),
+            "largest_if_filter_has_256_steps": rounded(error.coarse),
+        });
+        (error.quantity.to_owned(), entry)
+    });
+    put("errors_in_f32", Value::Object(errors.collect()));
+    if made.rounding > 0.0 {
+        put("largest_rounding_to_f16", rounded(made.rounding));
+    }
+    let lines = shader_lines(spec);
+    put("read", json!({ "glsl": lines.glsl, "hlsl": lines.hlsl, "wgsl": lines.wgsl }));
+    all
+}
+
+fn along(along: Along, gamma: f64) -> Value {
+    let kappa = |scale: f64, heavy: f64| match (heavy == 0.0, gamma.is_nan()) {
+        (true, _) => json!(scale),
+        (_, true) => json!(format!("{scale} + {heavy} / (2 gamma - 3)")),
+        (_, false) => json!(scale + heavy / (2.0 * gamma - 3.0)),
+    };
+    match along {
+        Along::Shape { smallest } => json!({
+            "coordinate": "ln(1 + 17 / (2 gamma - 3)) / ln(1 + 17 / (2 gamma_min - 3))",
+            "gamma_min": smallest,
+        }),
+        Along::Roughness { largest } => {
+            json!({ "coordinate": "sqrt(sigma / sigma_max)", "sigma_max": largest })
+        }
+        Along::LinearRoughness => json!({ "coordinate": "sigma" }),
+        Along::View(view) => json!({
+            "coordinate": "(mu / (mu + kappa sigma sqrt(1 - mu^2)))^(1/4), mu = cos theta",
+            "kappa": kappa(view.scale, view.heavy),
+        }),
+        Along::Cosine { .. } => json!({ "coordinate": "mu = cos theta" }),
+        Along::RootCosine => json!({ "coordinate": "sqrt(mu), mu = cos theta" }),
+    }
+}
+
+/// Three digits are enough of an error.
+fn rounded(x: f64) -> Value {
+    let text = format!("{x:.2e}");
+    text.parse::<f64>().map_or(Value::Null, Value::from)
+}
+
+fn at(place: &Place) -> Value {
+    let short = |x: f64| format!("{x:.4}").parse::<f64>().map_or(Value::Null, Value::from);
+    let mut at = json!({ "gamma": as_typed(place.gamma), "sigma": short(place.sigma) });
+    if let Some(cos) = place.cos {
+        at["cos_theta"] = if cos < 0.01 { rounded(cos) } else { short(cos) };
+    }
+    at
+}
+
+/// In one line, for formats that hold a text.
+pub(super) fn compact(description: &Map<String, Value>) -> String {
+    Value::Object(description.clone()).to_string()
+}
+
+/// As a file, with the values of a texture if they are asked for.
+pub(super) fn text(description: Map<String, Value>, values: Option<&Texture>) -> String {
+    let mut text = serde_json::to_string_pretty(&description).expect("names and numbers");
+    if let Some(texture) = values {
+        // A number a line would be long to scroll.
+        let numbers: Vec<String> = texture.values.iter().map(|x| json!(x).to_string()).collect();
+        text.truncate(text.len() - "\n}".len());
+        text += &format!(",\n  \"texels\": [{}]\n}}", numbers.join(", "));
+    }
+    text + "\n"
+}

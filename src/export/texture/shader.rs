@@ -1,0 +1,112 @@
+//! The line with which a shader reads a texture.
+
+use microfacet_sampler::axis::LogShape;
+
+use super::axis::{Along, TexelAxis};
+use super::{Channel, TextureSpec};
+use crate::export::numbers::single;
+
+/// The same line in three languages, where `lut` is the texture, read with a linear filter that
+/// clamps. Variables are `sigma`, `mu`, the cosine of the view, at least 1e-4, and `gamma`.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Lines {
+    /// GLSL, for any version with `texture`.
+    pub glsl: String,
+    /// HLSL.
+    pub hlsl: String,
+    /// WGSL.
+    pub wgsl: String,
+}
+
+/// The lines for a texture whose texels reach the ends of its coordinates.
+pub fn shader_lines(spec: &TextureSpec) -> Lines {
+    // The fastest axis is the first coordinate.
+    let axes: Vec<&TexelAxis> = spec.axes.iter().rev().collect();
+    let of = |part: &dyn Fn(&TexelAxis) -> String| -> String {
+        axes.iter().map(|axis| part(axis)).collect::<Vec<_>>().join(", ")
+    };
+    let n = |axis: &TexelAxis| axis.len() as f64;
+    let offset = of(&|axis| Dialect::Shader.number(0.5 / n(axis)));
+    let factor = of(&|axis| Dialect::Shader.number((n(axis) - 1.0) / n(axis)));
+    let coordinate = of(&|axis| Dialect::Shader.coordinate(axis.along, spec.gamma));
+    let read = |vector: &str| match axes.len() {
+        // A texture of one row.
+        1 => format!("{vector}2({offset} + {factor} * {coordinate}, 0.5)"),
+        d => format!("{vector}{d}({offset}) + {vector}{d}({factor}) * {vector}{d}({coordinate})"),
+    };
+    let two = spec.channels.contains(&Channel::Excess);
+    let (part, scalar, pair) = if two { ("rg", "e_excess", 2) } else { ("r", "e", 1) };
+    let name = if spec.channels[0] == Channel::Lost { "lost" } else { scalar };
+    let texture = &spec.name;
+    let typed = |one: &str, two: &str| if pair == 2 { two.to_owned() } else { one.to_owned() };
+    Lines {
+        glsl: format!(
+            "{} {name} = texture({texture}, {}).{part};",
+            typed("float", "vec2"),
+            read("vec")
+        ),
+        hlsl: format!(
+            "{} {name} = {texture}.SampleLevel(linear_clamp, {}, 0).{part};",
+            typed("float", "float2"),
+            read("float")
+        ),
+        wgsl: format!(
+            "let {name} = textureSampleLevel({texture}, linear_clamp, {}, 0.0).{part};",
+            read("vec").replace("vec2(", "vec2f(").replace("vec3(", "vec3f(")
+        ),
+    }
+}
+
+/// How a language writes functions and numbers.
+#[derive(Clone, Copy)]
+pub(super) enum Dialect {
+    /// GLSL, HLSL and WGSL agree.
+    Shader,
+    /// C in single precision.
+    C,
+}
+
+impl Dialect {
+    fn function(self, name: &str) -> String {
+        match self {
+            Self::Shader => name.into(),
+            Self::C if name == "max" => "fmaxf".into(),
+            Self::C => format!("{name}f"),
+        }
+    }
+
+    /// A number in single precision, with a decimal point.
+    fn number(self, x: f64) -> String {
+        let suffix = if matches!(self, Self::C) { "f" } else { "" };
+        single(x as f32) + suffix
+    }
+
+    /// A coordinate as an expression of `gamma`, `sigma` and `mu`.
+    pub(super) fn coordinate(self, along: Along, gamma: f64) -> String {
+        let number = |x| self.number(x);
+        let [sqrt, pow, log, max] = ["sqrt", "pow", "log", "max"].map(|name| self.function(name));
+        let [zero, one, two, three, quarter] = [0.0, 1.0, 2.0, 3.0, 0.25].map(number);
+        match along {
+            Along::Shape { smallest } => {
+                let [scale, last] =
+                    [LogShape::BAKED.scale, LogShape::BAKED.coordinate(smallest)].map(number);
+                format!("{log}({one} + {scale} / ({two} * gamma - {three})) / {last}")
+            }
+            Along::Roughness { largest: 1.0 } => format!("{sqrt}(sigma)"),
+            Along::Roughness { largest } => format!("{sqrt}(sigma / {})", number(largest)),
+            Along::View(view) => {
+                let kappa = if gamma.is_nan() {
+                    let [scale, heavy] = [view.scale, view.heavy].map(number);
+                    format!("({scale} + {heavy} / ({two} * gamma - {three}))")
+                } else {
+                    number(view.of_shape(gamma).scale)
+                };
+                let sin = format!("{sqrt}({max}({zero}, {one} - mu * mu))");
+                format!("{pow}(mu / (mu + {kappa} * sigma * {sin}), {quarter})")
+            }
+            Along::LinearRoughness => "sigma".into(),
+            Along::Cosine { .. } => "mu".into(),
+            Along::RootCosine => format!("{sqrt}(mu)"),
+        }
+    }
+}
