@@ -9,6 +9,9 @@ pub(super) const AXES: usize = 3;
 /// nothing.
 const MIRROR: f64 = 1e-8;
 
+/// Coordinates in the first cell of roughnesses.
+const FIRST_CELL: usize = 16;
+
 /// A material and a view of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
@@ -135,11 +138,15 @@ impl TexelAxis {
     }
 
     /// Coordinates over all of [0, 1], so many in each cell; texels and both ends are among them.
+    /// The first cell of roughnesses has more: there the smallest cosine that counts runs through
+    /// all coordinates of the view.
     pub fn dense(&self, per_cell: usize) -> Vec<f64> {
         let mut all = vec![0.0];
         let mut cell = |from: f64, to: f64| {
-            let part = |i: usize| from + (to - from) * i as f64 / per_cell as f64;
-            all.extend((1..=per_cell).map(part));
+            let smooth = all.len() == 1 && matches!(self.along, Along::Roughness { .. });
+            let parts = if smooth { FIRST_CELL } else { per_cell };
+            let part = |i: usize| from + (to - from) * i as f64 / parts as f64;
+            all.extend((1..=parts).map(part));
         };
         let (first, last) = (self.texels[0], self.texels[self.len() - 1]);
         if first > 0.0 {

@@ -22,17 +22,26 @@ pub struct Lines {
 pub fn shader_lines(spec: &TextureSpec) -> Lines {
     // The fastest axis is the first coordinate.
     let axes: Vec<&TexelAxis> = spec.axes.iter().rev().collect();
-    let of = |part: &dyn Fn(&TexelAxis) -> String| -> String {
-        axes.iter().map(|axis| part(axis)).collect::<Vec<_>>().join(", ")
+    let of = |part: &dyn Fn(&TexelAxis) -> String| -> Vec<String> {
+        axes.iter().map(|axis| part(axis)).collect()
     };
     let n = |axis: &TexelAxis| axis.len() as f64;
     let offset = of(&|axis| Dialect::Shader.number(0.5 / n(axis)));
     let factor = of(&|axis| Dialect::Shader.number((n(axis) - 1.0) / n(axis)));
-    let coordinate = of(&|axis| Dialect::Shader.coordinate(axis.along, spec.gamma));
-    let read = |vector: &str| match axes.len() {
-        // A texture of one row.
-        1 => format!("{vector}2({offset} + {factor} * {coordinate}, 0.5)"),
-        d => format!("{vector}{d}({offset}) + {vector}{d}({factor}) * {vector}{d}({coordinate})"),
+    let coordinate = of(&|axis| Dialect::Shader.coordinate(axis.along, spec.gamma)).join(", ");
+    let read = |vector: &str| {
+        let vector = format!("{vector}{}", axes.len());
+        // One number serves for equal ones.
+        let all = |numbers: &[String]| match numbers {
+            [first, rest @ ..] if rest.iter().all(|other| other == first) => first.clone(),
+            _ => format!("{vector}({})", numbers.join(", ")),
+        };
+        let at = format!("{} + {} * ", all(&offset), all(&factor));
+        match axes.len() {
+            // A texture of one row.
+            1 => format!("{}2({at}{coordinate}, 0.5)", vector.trim_end_matches('1')),
+            _ => format!("{at}{vector}({coordinate})"),
+        }
     };
     let two = spec.channels.contains(&Channel::Excess);
     let (part, scalar, pair) = if two { ("rg", "e_excess", 2) } else { ("r", "e", 1) };

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::Made;
-use crate::export::numbers::as_typed;
+use crate::export::numbers::{as_typed, single};
 use crate::export::texture::{Along, LEAST_COS, Place, Texture, shader_lines};
 
 /// The description.
@@ -107,9 +107,9 @@ pub(super) fn text(description: Map<String, Value>, values: Option<&Texture>) ->
     let mut text = serde_json::to_string_pretty(&description).expect("names and numbers");
     if let Some(texture) = values {
         // A number a line would be long to scroll.
-        let numbers: Vec<String> = texture.values.iter().map(|x| json!(x).to_string()).collect();
+        let numbers: Vec<String> = texture.values.iter().map(|&x| single(x)).collect();
         text.truncate(text.len() - "\n}".len());
-        text += &format!(",\n  \"texels\": [{}]\n}}", numbers.join(", "));
+        text += &format!(",\n  \"data\": [{}]\n}}", numbers.join(", "));
     }
     text + "\n"
 }

@@ -1,0 +1,118 @@
+//! How far off the albedos of GGX are that engines read from their tables.
+//!
+//! `cargo run --release --example engines -- shipped` prints the tables in `docs/engines.md`, where
+//! `shipped` is a folder with files of engines, as that page names them; without it, what is
+//! shipped is not measured. Each cell is the largest error and the root mean square, as the engine
+//! reads its table: over √σ = 1/400 … 1 and 500 cosines from 1e-3 to 1; the largest error also over
+//! 120 cosines that are even in logarithms up to 0.1.
+
+mod shipped;
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use microfacet_bake::export::texture::engine::{LAYOUTS, Layout};
+use microfacet_bake::export::texture::{
+    Channels, Checks, Deviation, Known, Place, Shapes, Texture, TextureSpec, known,
+};
+use microfacet_bake::progress::Stage;
+use microfacet_sampler::Masking;
+
+const HORIZON: f64 = 1e-3;
+/// Where most cells of engines begin to hold.
+const ABOVE: f64 = 0.02;
+
+fn places() -> Vec<Place> {
+    let even = (0..500).map(|i| HORIZON + (1.0 - HORIZON) * f64::from(i) / 499.0);
+    let low = (0..120).map(|i| HORIZON * 100_f64.powf(f64::from(i) / 119.0));
+    let cosines: Vec<f64> = even.chain(low).collect();
+    let rough = (1..=400).map(|k| (f64::from(k) / 400.0).powi(2));
+    let of = |sigma| {
+        let place = move |&cos: &f64| Place { gamma: 2.0, sigma, cos: Some(cos) };
+        cosines.iter().map(place).collect::<Vec<_>>()
+    };
+    rough.flat_map(of).collect()
+}
+
+/// Textures as they are measured: with the places of the largest error, and those of the mean.
+struct Judge {
+    all: HashMap<&'static str, Vec<Known>>,
+    ours: HashMap<(Vec<usize>, &'static str), Texture>,
+}
+
+impl Judge {
+    fn new() -> Self {
+        let known = |masking: Masking| {
+            let known = known(&places(), masking, &Stage::unwatched()).expect("in the domain");
+            (masking.name(), known)
+        };
+        Self { all: Masking::ALL.map(known).into(), ours: HashMap::new() }
+    }
+
+    /// Largest error and root mean square of a quantity from some cosine on.
+    fn of(&self, texture: &Texture, quantity: &str, least: f64) -> String {
+        let all = &self.all[texture.spec.masking.name()];
+        let find = |found: Vec<Deviation>| {
+            found.into_iter().find(|found| found.quantity == quantity).expect("a quantity")
+        };
+        let within = |place: &Place| place.cos.is_some_and(|cos| cos >= least);
+        let largest = find(Checks::at(&texture.spec, all).of(texture, within)).largest;
+        let even: Vec<Known> = all.chunks(620).flat_map(|row| row[..500].to_vec()).collect();
+        let rms = find(Checks::at(&texture.spec, &even).of(texture, within)).rms;
+        format!("{largest:.1e} / {rms:.1e}")
+    }
+
+    /// Our own texture of the same size, fitted.
+    fn ours(&mut self, layout: &Layout, channels: Channels) -> Texture {
+        let masking = layout.specs(2.0, layout.size, false)[0].masking;
+        let key = (layout.size.to_vec(), masking.name());
+        let make = || {
+            let [spec, _] =
+                TextureSpec::of_shapes(Shapes::One(2.0), 1.0, &layout.size, masking, channels);
+            spec.make(&Stage::unwatched()).expect("in the domain")
+        };
+        self.ours.entry(key).or_insert_with(make).clone()
+    }
+}
+
+/// The texture of a layout as its engine reads it from the file that is written.
+fn written(layout: &Layout, fitted: bool) -> Texture {
+    let make = |spec: &TextureSpec| spec.make(&Stage::unwatched()).expect("in the domain");
+    let textures: Vec<Texture> = layout.specs(2.0, layout.size, fitted).iter().map(make).collect();
+    let files = layout.files(&textures).expect("a file");
+    shipped::decode(layout, &files[0].contents)
+}
+
+fn main() {
+    let folder = std::env::args().nth(1).map(PathBuf::from);
+    let mut judge = Judge::new();
+    let tables = LAYOUTS.each_ref().map(|layout| {
+        let found = folder.as_ref().zip(shipped::file_of(layout)).and_then(|(folder, name)| {
+            let bytes = std::fs::read(folder.join(name)).ok()?;
+            Some(shipped::decode(layout, &bytes))
+        });
+        let [exact, fitted] = [false, true].map(|fitted| written(layout, fitted));
+        (layout, [found, Some(exact), Some(fitted), Some(judge.ours(layout, Channels::ScaleBias))])
+    });
+    for (quantity, least) in [("e", HORIZON), ("e", ABOVE), ("bias", HORIZON)] {
+        println!("\n{quantity}, cos θ ≥ {least}:\n");
+        println!("| layout | texels | shipped | exact values | fitted values | our coordinates |");
+        println!("| --- | --- | --- | --- | --- | --- |");
+        for (layout, textures) in &tables {
+            let has = |texture: &Texture| {
+                let spec = &texture.spec;
+                quantity == "e" || spec.channels.iter().any(|channel| channel.name() == "bias")
+            };
+            if quantity == "bias" && !textures[1].as_ref().is_some_and(has) {
+                continue;
+            }
+            let [rows, columns] = layout.size;
+            let cell = |texture: &Option<Texture>| {
+                let cell = texture.as_ref().map(|texture| judge.of(texture, quantity, least));
+                cell.unwrap_or_else(|| "–".into())
+            };
+            let cells: Vec<String> = textures.iter().map(cell).collect();
+            println!("| {} | {rows} × {columns} | {} |", layout.name, cells.join(" | "));
+        }
+    }
+}
