@@ -143,8 +143,8 @@ fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
     let at = folder.path();
     let cases: [(&[&str], &[&str]); 9] = [
         (&["wgsl", "--gamma", "3", "--tables", "nowhere"], &["nowhere", "no such file", "bake"]),
-        (&["cobol", "--gamma", "3"], &["cobol", "possible values: c, wgsl, glsl, glsl-es, hlsl"]),
-        (&["c", "--gamma", "3", "--textures"], &["--textures", "leave out"]),
+        (&["cobol", "--gamma", "3"], &["cobol", "they are c, wgsl, glsl, glsl-es, hlsl"]),
+        (&["c", "--gamma", "3", "--textures"], &["--textures"]),
         (&["wgsl", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
         (&["c", "--gamma", "1.5"], &["(1.5, inf]"]),
         (&["c", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),

@@ -62,7 +62,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(LAYOUTS.iter().map(|layout| layout.name)))]
     layout: Option<String>,
     /// Fit the values of a layout to its filter; by default they are exact at its texels.
-    #[arg(long, requires = "layout")]
+    #[arg(long)]
     fit: bool,
     /// Folder to write into.
     #[arg(long, short, value_name = "DIR")]
@@ -144,6 +144,13 @@ pub(super) fn run(args: Args) -> Outcome {
 
 /// Textures in our own coordinates.
 fn of_family(args: &Args) -> Outcome {
+    if args.fit {
+        return Err(Failure(
+            "--fit is of a layout: name one with --layout, or leave it out; other textures are \
+             always fitted"
+                .into(),
+        ));
+    }
     let shapes = match (args.gamma, args.gamma_min) {
         (Some(gamma), _) => Shapes::One(gamma),
         (None, Some(smallest)) => {

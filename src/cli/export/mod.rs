@@ -3,6 +3,7 @@
 mod lut;
 mod shape;
 
+use std::ffi::OsString;
 use std::path::Path;
 
 use clap::Subcommand;
@@ -56,6 +57,8 @@ enum TargetArg {
     Spirv(shape::ShaderArgs),
     #[command(aliases = ["LUT"])]
     Lut(lut::Args),
+    #[command(external_subcommand)]
+    Other(Vec<OsString>),
 }
 
 pub(super) fn run(args: Args) -> Outcome {
@@ -69,6 +72,12 @@ pub(super) fn run(args: Args) -> Outcome {
         TargetArg::Msl(args) => shader(Language::Msl, args),
         TargetArg::Spirv(args) => shader(Language::SpirV, args),
         TargetArg::Lut(args) => lut::run(args),
+        TargetArg::Other(words) => {
+            let targets = TargetArg::augment_subcommands(clap::Command::new("export"));
+            let names: Vec<&str> = targets.get_subcommands().map(clap::Command::get_name).collect();
+            let (word, names) = (words[0].display(), names.join(", "));
+            Err(Failure(format!("\"{word}\" is no target of exports; they are {names}")))
+        }
     }
 }
 

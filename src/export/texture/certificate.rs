@@ -13,10 +13,11 @@ use crate::progress::Stage;
 const PER_TEXEL: usize = 5;
 const POINTS: [usize; 2] = [20_000, 150_000];
 /// Points for each texel of averages, whose points take longer.
-const PER_AVERAGE: usize = 3;
-const AVERAGES: [usize; 2] = [50, 3_000];
-/// Places within cells of shapes, in turn: the middle, where lines err most, and beside it.
-const WITHIN: [f64; 3] = [0.5, 0.31, 0.64];
+const PER_AVERAGE: usize = 5;
+const AVERAGES: [usize; 2] = [500, 6_000];
+/// Places within cells of shapes, in turn: the middle and the texel, where lines err most to either
+/// side, and between.
+const WITHIN: [f64; 4] = [0.5, 0.0, 0.29, 0.76];
 /// Steps of additive recurrences that fill one, two and three dimensions evenly.
 const EVEN: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 

@@ -44,7 +44,7 @@ pub const LEAST_COS: f64 = 1e-4;
 /// Points of a fit within each cell along each axis: of textures with two axes, and with three.
 const PER_CELL: [usize; 2] = [3, 2];
 /// Points of a fit within each cell of averages.
-const PER_AVERAGE_CELL: usize = 2;
+const PER_AVERAGE_CELL: usize = 3;
 /// Seconds that the albedo of one place takes on one processor, and an average.
 const SECONDS: [f64; 2] = [1.3e-4, 4e-3];
 
@@ -199,7 +199,9 @@ impl TextureSpec {
         let targets: Vec<Target> = points.iter().map(target).collect();
         let plane = |channel: &Channel| {
             let wanted: Vec<f64> = truths.iter().map(|&truth| channel.of(truth)).collect();
-            fit(&filter, &targets, &wanted, vec![0.0; filter.texels])
+            let [least, most] = channel.range();
+            let values = fit(&filter, &targets, &wanted, vec![0.0; filter.texels]);
+            values.into_iter().map(|value| value.clamp(least, most)).collect()
         };
         let planes: Vec<Vec<f64>> = self.channels.iter().map(plane).collect();
         let texel = |i: usize| planes.iter().map(move |plane| plane[i] as f32);

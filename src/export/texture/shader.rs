@@ -43,25 +43,27 @@ pub fn shader_lines(spec: &TextureSpec) -> Lines {
             _ => format!("{at}{vector}({coordinate})"),
         }
     };
-    let two = spec.channels.contains(&Channel::Excess);
-    let (part, scalar, pair) = if two { ("rg", "e_excess", 2) } else { ("r", "e", 1) };
-    let name = if spec.channels[0] == Channel::Lost { "lost" } else { scalar };
     let texture = &spec.name;
-    let typed = |one: &str, two: &str| if pair == 2 { two.to_owned() } else { one.to_owned() };
+    let mirror = if spec.is_directional() { "pow(1.0 - mu, 5.0)" } else { "1.0 / 21.0" };
+    let line = |one: &str, two: &str, read: String| match spec.channels[..] {
+        [Channel::E, Channel::Excess] => {
+            format!("{two} e_excess = {read}.rg; {one} bias = e_excess.y + e_excess.x * {mirror};")
+        }
+        [Channel::Lost] => format!("{one} lost = {read}.r;"),
+        _ => format!("{one} e = {read}.r;"),
+    };
+    let wgsl = read("vec").replace("vec2(", "vec2f(").replace("vec3(", "vec3f(");
     Lines {
-        glsl: format!(
-            "{} {name} = texture({texture}, {}).{part};",
-            typed("float", "vec2"),
-            read("vec")
+        glsl: line("float", "vec2", format!("texture({texture}, {})", read("vec"))),
+        hlsl: line(
+            "float",
+            "float2",
+            format!("{texture}.SampleLevel(linear_clamp, {}, 0)", read("float")),
         ),
-        hlsl: format!(
-            "{} {name} = {texture}.SampleLevel(linear_clamp, {}, 0).{part};",
-            typed("float", "float2"),
-            read("float")
-        ),
-        wgsl: format!(
-            "let {name} = textureSampleLevel({texture}, linear_clamp, {}, 0.0).{part};",
-            read("vec").replace("vec2(", "vec2f(").replace("vec3(", "vec3f(")
+        wgsl: line(
+            "let",
+            "let",
+            format!("textureSampleLevel({texture}, linear_clamp, {wgsl}, 0.0)"),
         ),
     }
 }

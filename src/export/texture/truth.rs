@@ -14,7 +14,7 @@ use crate::progress::Stage;
 
 /// Error of albedos and of averages that the quadrature aims at.
 pub const TOLERANCE: f64 = 1e-7;
-const AVERAGE_TOLERANCE: f64 = 1e-6;
+const AVERAGE_TOLERANCE: f64 = 3e-6;
 
 /// What a channel of a texture holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,6 +43,14 @@ impl Channel {
             Self::Bias => "bias",
             Self::Excess => "bias_excess",
             Self::Empty => "empty",
+        }
+    }
+
+    /// Where its values lie. What is fitted may come out beyond, and would make a loss negative.
+    pub(super) fn range(self) -> [f64; 2] {
+        match self {
+            Self::Excess => [-1.0, 1.0],
+            _ => [0.0, 1.0],
         }
     }
 

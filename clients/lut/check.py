@@ -1,0 +1,127 @@
+"""Opens exported textures with other programs' readers, and reads them with a linear filter.
+
+check.py FOLDER REFERENCE.csv; clients/lut/run makes the folder.
+"""
+
+import base64
+import csv
+import json
+import math
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+
+# VkFormat and DXGI_FORMAT by channels and bits.
+KTX = {(1, 32): 100, (2, 32): 103, (1, 16): 76, (2, 16): 83}
+DDS = {(1, 32): 41, (2, 32): 16, (1, 16): 54, (2, 16): 34}
+
+
+def arrays(folder, name):
+    """The same texture from each format, as [..., channel], with its description."""
+    told = json.loads((folder / f"{name}.json").read_text())
+    bits = {"f16": 16, "f32": 32}[told["precision"]]
+    dtype = np.dtype(f"<f{bits // 8}")
+    channels = len(told["channels"])
+    shape = [axis["texels"] for axis in told["axes_slowest_first"]] + [channels]
+    width, height, depth = ([*reversed(shape[:-1])] + [1, 1])[:3]
+    found = {"json": np.array(told["data"], dtype).reshape(shape)}
+    found["npy"] = np.load(folder / f"{name}.npy").reshape(shape)
+
+    with OpenEXR.File(str(folder / f"{name}.exr"), separate_channels=True) as image:
+        planes = image.channels()
+        names = "Y" if channels == 1 else "RG"
+        stack = np.stack([planes[channel].pixels for channel in names], axis=-1)
+        assert json.loads(image.header()["microfacet"])["axes_slowest_first"] == told["axes_slowest_first"]
+    assert stack.dtype == dtype and stack.shape == (height * depth, width, channels)
+    found["exr"] = stack.reshape(shape)
+
+    ktx = json.loads((folder / f"{name}.ktx2.json").read_text())
+    volume = len(shape) == 4
+    assert ktx["format"] == KTX[channels, bits]
+    assert ktx["size"] == [width, height, depth if volume else 0], ktx["size"]
+    # The type's top bits say signed and floating point; lengths are one less.
+    assert ktx["channels"] == [[i | 0xC0, bits * i, bits - 1] for i in range(channels)]
+    assert json.loads(ktx["keys"]["microfacet"])["masking"] == told["masking"]
+    found["ktx2"] = np.frombuffer(base64.b64decode(ktx["texels"]), dtype).reshape(shape)
+
+    data = (folder / f"{name}.dds").read_bytes()
+    assert data[:4] == b"DDS " and data[84:88] == b"DX10"
+    assert struct.unpack_from("<2I", data, 12) == (height, width)
+    assert struct.unpack_from("<2I", data, 128) == (DDS[channels, bits], 4 if volume else 3)
+    assert not volume or struct.unpack_from("<I", data, 24) == (depth,)
+    found["dds"] = np.frombuffer(data[148:], dtype).reshape(shape)
+    for form, values in found.items():
+        assert np.array_equal(values, found["npy"]), (folder, name, form)
+    return told, found["npy"].astype(np.float64)
+
+
+def coordinate(axis, gamma, sigma, mu):
+    """c in [0, 1], from the description alone."""
+    if "gamma_min" in axis:
+        def of(gamma):
+            return math.log(1 + 17 / (2 * gamma - 3))
+        return of(gamma) / of(axis["gamma_min"])
+    if "sigma_max" in axis:
+        return math.sqrt(sigma / axis["sigma_max"])
+    kappa = axis["kappa"]
+    if isinstance(kappa, str):
+        assert kappa == "3 + 0.5 / (2 gamma - 3)"
+        kappa = 3 + 0.5 / (2 * gamma - 3)
+    return (mu / (mu + kappa * sigma * math.sqrt(1 - mu * mu))) ** 0.25
+
+
+def read(told, values, gamma, sigma, mu):
+    """What a linear filter reads at (1/2 + (n - 1) c) / n."""
+    for axis in told["axes_slowest_first"]:
+        x = coordinate(axis, gamma, sigma, mu) * (axis["texels"] - 1)
+        i = min(int(x), axis["texels"] - 2)
+        values = values[i] + (x - i) * (values[i + 1] - values[i])
+    return values
+
+
+def error(told, quantity):
+    return told["errors_in_f32"][quantity]["largest"] + told.get("largest_rounding_to_f16", 0) + 1e-6
+
+
+def main():
+    folder, reference = Path(sys.argv[1]), sys.argv[2]
+    rows = list(csv.DictReader(open(reference, newline="")))
+    rows = [row for row in rows if row["sigma_x"] == row["sigma_y"] and row["e_exact"]]
+    for name in ["ggx", "half", "lost", "volume"]:
+        told, values = arrays(folder / name, "lut")
+        average_told, average = arrays(folder / name, "lut_average")
+        sigma_max = next(axis["sigma_max"] for axis in told["axes_slowest_first"] if "sigma_max" in axis)
+        least = next((axis["gamma_min"] for axis in told["axes_slowest_first"] if "gamma_min" in axis), None)
+        lost, counted, worst = told["channels"] == ["one_minus_e"], 0, 0.0
+        asked, wanted = [], []
+        for row in rows:
+            gamma, sigma, mu = (float(row[key]) for key in ["gamma", "sigma_x", "vz"])
+            here = gamma >= least if least else gamma == float(told["gamma"])
+            if not here or sigma > sigma_max or not 1e-4 <= mu <= 1 or row["masking"] != told["masking"]:
+                continue
+            got, got_average = read(told, values, gamma, sigma, mu), read(average_told, average, gamma, sigma, None)
+            asked.append(f"{gamma} {sigma} {mu}")
+            wanted.append((got[0], got_average[0]))
+            pairs = [(told, "e", 1 - got[0] if lost else got[0], "e_exact")]
+            pairs.append((average_told, "e", 1 - got_average[0] if lost else got_average[0], "e_avg_exact"))
+            if told["channels"] == ["e", "bias_excess"]:
+                pairs.append((told, "bias", got[1] + got[0] * (1 - mu) ** 5, "bias_exact"))
+                pairs.append((average_told, "bias", got_average[1] + got_average[0] / 21, "bias_avg_exact"))
+            for told_of, quantity, value, column in pairs:
+                share = abs(value - float(row[column])) / error(told_of, quantity)
+                assert share <= 1, (name, quantity, gamma, sigma, mu, value, row[column])
+                worst, counted = max(worst, share), counted + 1
+        assert counted >= 10, (name, counted)
+        lines = subprocess.run([folder / name / "read"], input="\n".join(asked), text=True,
+                               capture_output=True, check=True).stdout.split("\n")
+        # Single precision, and a power, against double.
+        for line, want in zip(lines, wanted, strict=False):
+            assert np.allclose([float(x) for x in line.split()], want, atol=1e-4 if name == "half" else 2e-5), (line, want)
+        print(f"{name}: six formats hold the same; {counted} values within {worst:.2f} of what is stated")
+
+
+main()

@@ -1,0 +1,301 @@
+//! Albedos as textures. `clients/lut/run` opens them with other programs, and `clients/gpu/run`
+//! reads them by a filter of hardware; here is what needs neither.
+
+mod command;
+#[path = "../examples/engines/shipped.rs"]
+#[allow(dead_code, reason = "the example reads files by name")]
+mod shipped;
+
+use std::fs;
+use std::io::Cursor;
+
+use command::{names, ok, refused, run};
+use microfacet_bake::export::texture::engine::{LAYOUTS, Layout};
+use microfacet_bake::export::texture::{
+    Channels, Checks, Deviation, Shapes, Texture, TextureSpec, check, shader_lines,
+};
+use microfacet_bake::progress::Stage;
+use microfacet_sampler::Masking;
+use serde_json::Value;
+
+const CORRELATED: Masking = Masking::HeightCorrelated;
+
+fn made(spec: &TextureSpec) -> Texture {
+    spec.make(&Stage::unwatched()).unwrap()
+}
+
+fn errors(spec: &TextureSpec, texture: &Texture) -> Vec<Deviation> {
+    Checks::new(spec, &Stage::unwatched()).unwrap().of(texture, |_| true)
+}
+
+#[test]
+fn errors_are_as_promised() {
+    let of = |shapes, sigma_max, size: [usize; 2], channels| {
+        let [spec, average] =
+            TextureSpec::of_shapes(shapes, sigma_max, &size, CORRELATED, channels);
+        let average = errors(&average, &made(&average))[0].largest;
+        (errors(&spec, &made(&spec)), average)
+    };
+    let (small, average) = of(Shapes::One(2.0), 1.0, [32, 32], Channels::E);
+    assert!(small[0].largest < 1.0e-3 && average < 3e-4, "{small:?}");
+    // Steps of 1/256 are too fine to matter here.
+    assert!(small[0].coarse < 1.1 * small[0].largest, "{small:?}");
+    let (large, _) = of(Shapes::One(2.0), 1.0, [64, 64], Channels::E);
+    assert!(large[0].largest < 3e-4, "{large:?}");
+    let (heavy, _) = of(Shapes::One(1.6), 3.0, [64, 64], Channels::E);
+    assert!(heavy[0].largest < 8e-4, "{heavy:?}");
+    let (split, _) = of(Shapes::One(f64::INFINITY), 3.0, [16, 16], Channels::ScaleBias);
+    let quantities: Vec<&str> = split.iter().map(|found| found.quantity).collect();
+    assert_eq!(quantities, ["e", "bias", "scale"]);
+    assert!(split.iter().all(|found| found.largest < 2e-2), "{split:?}");
+}
+
+#[test]
+fn a_wrong_texel_is_seen() {
+    let [spec, _] =
+        TextureSpec::of_shapes(Shapes::One(3.0), 1.0, &[16, 16], CORRELATED, Channels::OneMinusE);
+    let good = made(&spec);
+    let before = errors(&spec, &good)[0].largest;
+    for texel in [0, 15, 7 * 16 + 9, 255] {
+        let mut bad = good.clone();
+        bad.values[texel] += 0.02;
+        let found = errors(&spec, &bad)[0];
+        // The horizon of the smoothest is below the smallest cosine that counts.
+        assert_eq!(found.largest > 0.01 + before / 2.0, texel != 0, "{texel}: {found:?}");
+    }
+}
+
+/// Values at the texels, where a texture is too large to fit.
+#[test]
+fn exact_texels_are_those_of_the_model() {
+    let [spec, _] =
+        TextureSpec::of_shapes(Shapes::One(2.0), 1.0, &[8, 16], CORRELATED, Channels::E);
+    let spec = TextureSpec { fitted: false, ..spec };
+    let texture = made(&spec);
+    assert_eq!(texture.values.len(), 128);
+    // The last row is σ = 1, and its last texel E at the normal.
+    assert!((texture.values[127] - 0.306_853).abs() < 1e-6, "{}", texture.values[127]);
+    let fitted = TextureSpec { fitted: true, ..spec.clone() };
+    let [exact, fitted] = [&spec, &fitted].map(|spec| errors(spec, &made(spec))[0].largest);
+    assert!(fitted < 0.7 * exact, "{fitted} of {exact}");
+}
+
+#[test]
+fn lines_of_wgsl_are_valid() {
+    for shapes in [Shapes::One(2.0), Shapes::One(f64::INFINITY), Shapes::DownTo(1.6)] {
+        for channels in [Channels::E, Channels::OneMinusE, Channels::ScaleBias] {
+            let size = if matches!(shapes, Shapes::One(_)) { &[32, 24][..] } else { &[8, 32, 24] };
+            for spec in TextureSpec::of_shapes(shapes, 3.0, size, CORRELATED, channels) {
+                let kind = if spec.axes.len() == 3 { "3d" } else { "2d" };
+                let (name, line) = (&spec.name, shader_lines(&spec).wgsl);
+                let source = format!(
+                    "@group(0) @binding(0) var {name}: texture_{kind}<f32>;\n\
+                     @group(0) @binding(1) var linear_clamp: sampler;\n\
+                     fn read(gamma: f32, sigma: f32, mu: f32) -> f32 {{\n{line}\nreturn 0.0;\n}}"
+                );
+                let module = naga::front::wgsl::parse_str(&source).expect(&source);
+                naga::valid::Validator::new(Default::default(), Default::default())
+                    .validate(&module)
+                    .expect(&source);
+            }
+        }
+    }
+}
+
+#[test]
+fn files_hold_the_same_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "lut", "--format", "npy,dds,ktx2,exr,json,c,npy", "--out", "out"];
+    ok(at, &[&export[..], &["--gamma-min", "1.8", "--size", "4x5x6", "--half"]].concat());
+    let out = at.join("out");
+    let forms = ["dds", "exr", "h", "json", "ktx2", "npy"];
+    let expected = ["lut", "lut_average"].map(|name| forms.map(|form| format!("{name}.{form}")));
+    assert_eq!(names(&out), expected.concat());
+    let json: Value = serde_json::from_slice(&fs::read(out.join("lut.json")).unwrap()).unwrap();
+    let values: Vec<f32> = serde_json::from_value(json["data"].clone()).unwrap();
+    assert_eq!(values.len(), 4 * 5 * 6);
+    assert!(json["largest_rounding_to_f16"].as_f64().unwrap() <= 2.5e-4);
+
+    let bytes = fs::read(out.join("lut.dds")).unwrap();
+    let mut dds = dds::Decoder::new(Cursor::new(bytes)).unwrap();
+    let dds::DataLayout::Volume(volume) = dds.layout() else { panic!("no volume") };
+    assert_eq!((volume.main().width(), volume.main().height(), volume.main().depth()), (6, 5, 4));
+    let mut read = Vec::new();
+    for _ in 0..4 {
+        let mut slice = vec![0_u8; 4 * 30];
+        let size = dds.main_size();
+        let view =
+            dds::ImageViewMut::new(&mut slice[..], size, dds::ColorFormat::GRAYSCALE_F32).unwrap();
+        dds.read_surface(view).unwrap();
+        read.extend(slice.chunks(4).map(|x| f32::from_ne_bytes(x.try_into().unwrap())));
+    }
+    assert_eq!(read, values);
+
+    let npy = npyz::NpyFile::new(Cursor::new(fs::read(out.join("lut.npy")).unwrap())).unwrap();
+    assert_eq!(npy.shape(), [4, 5, 6]);
+    let halves: Vec<half::f16> = npy.into_vec().unwrap();
+    assert!(halves.iter().map(|x| x.to_f32()).eq(values.iter().copied()));
+
+    let ktx = fs::read(out.join("lut.ktx2")).unwrap();
+    let ktx = ktx2::Reader::new(&ktx[..]).unwrap();
+    let header = ktx.header();
+    assert_eq!((header.pixel_width, header.pixel_height, header.pixel_depth), (6, 5, 4));
+    assert_eq!(header.format, Some(ktx2::Format::R16_SFLOAT));
+    let halves: Vec<u8> =
+        values.iter().flat_map(|&x| half::f16::from_f32(x).to_le_bytes()).collect();
+    assert_eq!(ktx.levels().next().unwrap().data, halves);
+}
+
+#[test]
+fn files_do_not_depend_on_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "lut", "--gamma", "3", "--size", "6x8", "--format", "json,exr,ktx2"];
+    ok(at, &[&export[..], &["--out", "a", "--threads", "1"]].concat());
+    ok(at, &[&export[..], &["--out", "b", "--threads", "7"]].concat());
+    for name in names(&at.join("a")) {
+        let [a, b] = ["a", "b"].map(|out| fs::read(at.join(out).join(&name)).unwrap());
+        assert!(a == b, "{name}");
+    }
+}
+
+/// Numbers from the tables that engines ship, where these are right, by row and column:
+/// Cycles 97dbe6f (Apache-2.0), openpbr-bsdf a29da96 (Apache-2.0), three.js 0.187.0 (MIT).
+#[test]
+fn layouts_are_those_of_engines() {
+    let written = |name: &str| {
+        let layout = Layout::find(name).unwrap();
+        let specs = layout.specs(2.0, layout.size, false);
+        let textures: Vec<Texture> = specs.iter().map(made).collect();
+        (layout, textures.clone(), layout.files(&textures).unwrap())
+    };
+    let (layout, textures, files) = written("cycles");
+    let cycles = shipped::decode(layout, &files[0].contents);
+    let text = String::from_utf8(files[0].contents.clone()).unwrap();
+    assert!(text.starts_with("static const float table_ggx_E[1024] = {\n  1.000000f, 0.98"));
+    assert!(text.contains("static const float table_ggx_Eavg[32] = {\n  1.000000f, "));
+    for (row, column, value) in [
+        (1, 5, 0.891678),
+        (5, 10, 0.889039),
+        (16, 16, 0.847421),
+        (31, 31, 0.306853),
+        (8, 24, 0.727744),
+        (31, 5, 0.999296),
+    ] {
+        let found = cycles.values[32 * row + column];
+        assert!((found - value).abs() < 2.1e-6, "{row}, {column}: {found}");
+    }
+    for (i, value) in [(5, 0.997199), (16, 0.870874), (31, 0.409137)] {
+        assert!((textures[1].values[i] - value).abs() < 4e-6, "{i}: {}", textures[1].values[i]);
+    }
+
+    let (layout, _, files) = written("openpbr");
+    assert_eq!(files[1].name, "openpbr_ideal_metal_avg_energy_complement_data.h");
+    let openpbr = shipped::decode(layout, &files[0].contents);
+    for (row, column, value) in
+        [(16, 16, 10152.0), (20, 5, 14115.0), (31, 31, 45425.0), (24, 10, 22312.0)]
+    {
+        let found = 65535.0 * openpbr.values[32 * row + column];
+        // Shipped values are within 4e-5 of exact ones in this part.
+        assert!((found - value).abs() < 3.0, "{row}, {column}: {found}");
+    }
+
+    let (layout, _, files) = written("three");
+    let three = shipped::decode(layout, &files[0].contents);
+    for (row, column, scale, bias) in [(15, 15, 0.3452, 7.051e-5), (12, 4, 0.9893, 0.001015)] {
+        let found = &three.values[2 * (16 * row + column)..][..2];
+        // From 4,096 samples.
+        let near = (found[0] - scale).abs() < 3e-4 && (found[1] - bias).abs() < 3e-5;
+        assert!(near, "{row}, {column}: {found:?}");
+    }
+}
+
+/// Every layout is read back as it was made, but for the rounding of its form.
+#[test]
+fn layouts_are_read_back() {
+    for layout in &LAYOUTS {
+        let size = if ["cycles", "openpbr", "osl"].contains(&layout.name) {
+            layout.size
+        } else {
+            [12, 12]
+        };
+        let textures: Vec<Texture> = layout.specs(2.0, size, false).iter().map(made).collect();
+        let files = layout.files(&textures).unwrap();
+        let back = shipped::decode(layout, &files[0].contents);
+        // Six decimals, sixteen bits, eight bits, and these through a power.
+        let allowed = match layout.name {
+            "cycles" => 6e-7,
+            "openpbr" => 8e-6,
+            "filament" | "three" | "bevy" => 2.5e-4,
+            "gltf" => 2e-3,
+            "babylon" => 4.4e-3,
+            _ => 0.0,
+        };
+        for (got, want) in back.values.iter().zip(&textures[0].values) {
+            assert!((got - want).abs() <= allowed, "{}: {got} for {want}", layout.name);
+        }
+    }
+}
+
+#[test]
+fn layouts_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "lut", "--layout"];
+    let output = run(at, &[&export[..], &["osl", "--fit", "--out", "out"]].concat());
+    assert!(output.status.success());
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(notes.contains("put the file in place of SPI/microfacet_tools_luts.h"), "{notes}");
+    let text = fs::read_to_string(at.join("out/microfacet_tools_luts.h")).unwrap();
+    assert!(text.contains("BSDL_INLINE_METHOD MiniMicrofacetGGX::Energy& "), "{text}");
+    assert_eq!(text.matches("f,").count(), 256);
+    let other = ["three", "--size", "8x8", "--gamma", "3", "--out", "out"];
+    let output = run(at, &[&export[..], &other].concat());
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(notes.contains("ships 16x16; change its constants"), "{notes}");
+}
+
+#[test]
+fn what_cannot_be_made_is_refused_with_a_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let lut = ["export", "lut", "--out", "out"];
+    let npy = ["--format", "npy"];
+    for (more, says) in [
+        (&["--gamma", "2", "--size", "3x32"][..], "a size of 3 must lie in [4, 4096]"),
+        (&["--gamma", "2", "--size", "32x5000"], "a size of 5000 must lie in [4, 4096]"),
+        (&["--gamma", "2", "--size", "32"], "as 32x32 or 32x64x64"),
+        (&["--gamma", "2", "--size", "32xx32"], "as 32x32 or 32x64x64"),
+        (&["--gamma", "2", "--size", "8x8x8"], "has 2 sizes"),
+        (&["--gamma-min", "2", "--size", "8x8"], "has 3 sizes"),
+        (&["--gamma-min", "1.6", "--size", "512x4096x4096"], "more than 16777216"),
+        (&["--gamma", "2", "--sigma-max", "0"], "(0, 3]"),
+        (&["--gamma", "2", "--sigma-max", "-1"], "(0, 3]"),
+        (&["--gamma", "2", "--sigma-max", "3.1"], "(0, 3]"),
+        (&["--gamma", "2", "--sigma-max", "nan"], "finite"),
+        (&["--gamma", "1.4"], "1.5"),
+        (&["--gamma", "1.5005"], "1.501"),
+        (&["--gamma-min", "inf"], "use --gamma inf"),
+        (&["--gamma-min", "3", "--gamma-max", "2"], "does not lie above --gamma-min 3"),
+        (&["--gamma-min", "3", "--gamma-max", "4"], "leave out --gamma-max"),
+        (&["--gamma", "2", "--gamma-min", "2"], "cannot be used with"),
+        (&[], "name a shape with --gamma"),
+    ] {
+        let message = refused(at, &[&lut[..], &npy, more].concat());
+        assert!(message.contains(says), "{more:?}: {message}");
+    }
+    for (more, says) in [
+        (&["--gamma", "2", "--format", "png"][..], "exr, dds, ktx2, npy, c, json"),
+        (&["--gamma", "2"], "--format"),
+        (&["--layout", "unreal"], "cycles, openpbr, osl, filament, three, bevy"),
+        (&["--layout", "cycles", "--format", "npy"], "cannot be used with"),
+        (&["--layout", "cycles", "--size", "8x8x8"], "has 2 sizes"),
+        (&["--gamma", "2", "--format", "npy", "--fit"], "--layout"),
+    ] {
+        let message = refused(at, &[&lut[..], more].concat());
+        assert!(message.contains(says), "{more:?}: {message}");
+    }
+    assert!(!at.join("out").exists());
+    assert_eq!(check(Shapes::One(2.0), 1.0, &[4, 4096]), Ok(()));
+}
