@@ -6,7 +6,7 @@ const file = read(readFileSync(process.argv[2]));
 const size = [file.pixelWidth, file.pixelHeight, file.pixelDepth];
 const texels = Buffer.from(file.levels[0].levelData).toString("base64");
 const dfd = file.dataFormatDescriptor[0];
-const channels = dfd.samples.map((sample) => [sample.channelType, sample.bitOffset, sample.bitLength]);
+const channels = dfd.samples.map((s) => [s.channelType, s.bitOffset, s.bitLength]);
 const text = new TextDecoder();
 const keys = Object.fromEntries(
     Object.entries(file.keyValue).map(([key, value]) => [

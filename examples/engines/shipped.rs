@@ -1,4 +1,4 @@
-//! Reads the tables of engines: as shipped, or as `microfacet-bake export lut --layout` writes them.
+//! Reads the tables of engines: as shipped, or as `export lut --layout` writes them.
 
 use std::io::Read;
 

@@ -17,6 +17,7 @@ pub struct Gpu {
 pub enum Bound {
     Buffer(wgpu::Buffer),
     Texture(wgpu::TextureView),
+    Filtered(wgpu::TextureView, wgpu::Sampler),
 }
 
 /// A program with the tables that it reads.
@@ -35,8 +36,11 @@ impl Gpu {
             wgpu::RequestAdapterOptions { force_fallback_adapter: !hardware, ..Default::default() };
         let adapter = pollster::block_on(instance.request_adapter(&options))
             .map_err(|why| format!("no driver of Vulkan: {why}"))?;
-        let descriptor =
-            wgpu::DeviceDescriptor { required_limits: adapter.limits(), ..Default::default() };
+        let descriptor = wgpu::DeviceDescriptor {
+            required_limits: adapter.limits(),
+            required_features: adapter.features() & wgpu::Features::FLOAT32_FILTERABLE,
+            ..Default::default()
+        };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|why| why.to_string())?;
         let info = adapter.get_info();
@@ -67,6 +71,44 @@ impl Gpu {
         Bound::Texture(texture.create_view(&Default::default()))
     }
 
+    /// Whether it filters textures of 32-bit floats.
+    pub fn filters_singles(&self) -> bool {
+        self.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE)
+    }
+
+    /// Texels of one channel, read by a linear filter that clamps at the edges; no depth is of a
+    /// texture in two dimensions.
+    pub fn filtered(&self, size: [u32; 3], half: bool, texels: &[u8]) -> Bound {
+        let descriptor = wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width: size[0],
+                height: size[1],
+                depth_or_array_layers: size[2].max(1),
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: match size[2] {
+                0 => wgpu::TextureDimension::D2,
+                _ => wgpu::TextureDimension::D3,
+            },
+            format: match half {
+                true => wgpu::TextureFormat::R16Float,
+                false => wgpu::TextureFormat::R32Float,
+            },
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        let order = wgpu::util::TextureDataOrder::LayerMajor;
+        let texture = self.device.create_texture_with_data(&self.queue, &descriptor, order, texels);
+        let sampler = self.device.create_sampler(&wgpu::SamplerDescriptor {
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Bound::Filtered(texture.create_view(&Default::default()), sampler)
+    }
+
     /// A program with its entry point.
     pub fn program(&self, wgsl: &str, entry: &str, tables: Bound) -> Program {
         let source = wgpu::ShaderSource::Wgsl(wgsl.into());
@@ -84,7 +126,7 @@ impl Gpu {
     }
 
     /// What a program writes to binding 2, of so many bytes, from `input` in binding 1 and, where
-    /// it has any, `uniform` in binding 3.
+    /// it has any, `uniform` in binding 3; a filter is in binding 4.
     pub fn run(
         &self,
         program: &Program,
@@ -107,11 +149,16 @@ impl Gpu {
 
         let tables = match &program.tables {
             Bound::Buffer(buffer) => buffer.as_entire_binding(),
-            Bound::Texture(view) => BindingResource::TextureView(view),
+            Bound::Texture(view) | Bound::Filtered(view, _) => BindingResource::TextureView(view),
+        };
+        let sampler = match &program.tables {
+            Bound::Filtered(_, sampler) => Some(BindingResource::Sampler(sampler)),
+            _ => None,
         };
         let resources = [Some(tables), Some(input.as_entire_binding())].into_iter().chain([
             Some(written.as_entire_binding()),
             uniform.as_ref().map(|buffer| buffer.as_entire_binding()),
+            sampler,
         ]);
         let entries: Vec<BindGroupEntry<'_>> = (0..)
             .zip(resources)

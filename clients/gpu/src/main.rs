@@ -1,11 +1,13 @@
 //! Runs exported WGSL on a device of Vulkan: compares every function with the Rust crate, runs the
-//! sample that comes with the export, and renders a sphere that must be that of the Rust BSDF.
+//! sample that comes with the export, reads textures by the device's filter, and renders a sphere
+//! that must be that of the Rust BSDF.
 //!
 //! `clients/gpu/run` exports the shapes and starts it. Exit status 1 if something differs by more
 //! than is allowed.
 
 mod device;
 mod export;
+mod lut;
 mod sample;
 mod sphere;
 
@@ -31,8 +33,8 @@ const LIMITS: Limits = Limits {
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [points, buffers, textures, reference, picture] = &arguments[..] else {
-        eprintln!("usage: student-t-on-gpu POINTS BUFFERS TEXTURES REFERENCE.csv PICTURE.png");
+    let [points, buffers, textures, luts, reference, picture] = &arguments[..] else {
+        eprintln!("usage: student-t-on-gpu POINTS BUFFERS TEXTURES LUTS REFERENCE.csv PICTURE.png");
         return ExitCode::from(2);
     };
     let points = points.parse().expect("a number of points");
@@ -49,6 +51,7 @@ fn main() -> ExitCode {
     let mut lookups = Lookups::new(&gpu, &buffers, &textures);
     let mut good = agree(&mut lookups, &LIMITS, &gammas, points, reference);
     good &= sample::runs(&gpu, &buffers);
+    good &= lut::agree(&gpu, Path::new(luts));
     good &= sphere::agrees(&gpu, &buffers, Path::new(picture));
     println!("{}", if good { "Shaders agree with the crate." } else { "They differ." });
     ExitCode::from(u8::from(!good))
