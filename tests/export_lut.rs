@@ -10,12 +10,15 @@ use std::fs;
 use std::io::Cursor;
 
 use command::{names, ok, refused, run};
+use microfacet_bake::bake::albedo::weights;
 use microfacet_bake::export::texture::engine::{LAYOUTS, Layout};
 use microfacet_bake::export::texture::{
-    Channels, Checks, Deviation, Shapes, Texture, TextureSpec, check, shader_lines,
+    Channels, Checks, Deviation, Place, Shapes, Texture, TextureSpec, check, known, shader_lines,
 };
 use microfacet_bake::progress::Stage;
+use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::Masking;
+use microfacet_sampler::axis::LogShape;
 use serde_json::Value;
 
 const CORRELATED: Masking = Masking::HeightCorrelated;
@@ -32,28 +35,62 @@ fn errors(spec: &TextureSpec, texture: &Texture) -> Vec<Deviation> {
 fn errors_are_as_promised() {
     let of = |shapes, sigma_max, size: [usize; 2], channels| {
         let [spec, average] =
-            TextureSpec::of_shapes(shapes, sigma_max, &size, CORRELATED, channels);
+            TextureSpec::of_shapes("lut", shapes, sigma_max, &size, CORRELATED, channels);
         let average = errors(&average, &made(&average))[0].largest;
         (errors(&spec, &made(&spec)), average)
     };
     let (small, average) = of(Shapes::One(2.0), 1.0, [32, 32], Channels::E);
-    assert!(small[0].largest < 1.0e-3 && average < 3e-4, "{small:?}");
+    assert!(small[0].largest < 6.5e-4 && average < 1.8e-4, "{small:?}");
     // Steps of 1/256 are too fine to matter here.
     assert!(small[0].coarse < 1.1 * small[0].largest, "{small:?}");
     let (large, _) = of(Shapes::One(2.0), 1.0, [64, 64], Channels::E);
-    assert!(large[0].largest < 3e-4, "{large:?}");
+    assert!(large[0].largest < 1.6e-4, "{large:?}");
     let (heavy, _) = of(Shapes::One(1.6), 3.0, [64, 64], Channels::E);
-    assert!(heavy[0].largest < 8e-4, "{heavy:?}");
+    assert!(heavy[0].largest < 7.3e-4, "{heavy:?}");
     let (split, _) = of(Shapes::One(f64::INFINITY), 3.0, [16, 16], Channels::ScaleBias);
     let quantities: Vec<&str> = split.iter().map(|found| found.quantity).collect();
     assert_eq!(quantities, ["e", "bias", "scale"]);
-    assert!(split.iter().all(|found| found.largest < 2e-2), "{split:?}");
+    assert!(split.iter().all(|found| found.largest < 1.8e-2), "{split:?}");
+}
+
+/// What a volume states holds at other places, about which the certificate did not ask.
+#[test]
+fn a_volume_errs_by_what_it_states() {
+    let shapes = Shapes::DownTo(1.6);
+    let size = [4, 12, 12];
+    let [spec, average] =
+        TextureSpec::of_shapes("lut", shapes, 3.0, &size, CORRELATED, Channels::E);
+    // The middles of cells, and beside.
+    let last = LogShape::BAKED.coordinate(1.6);
+    for (i, cell) in [0.5, 1.45, 2.5, 2.6].into_iter().enumerate() {
+        let gamma = LogShape::BAKED.quantity(last * cell / 3.0);
+        let place = |j: i32, view: bool| {
+            let [a, b] = [0.618_034, 0.414_214].map(|step| (f64::from(j) * step).fract());
+            let cos = view.then_some(1e-4_f64.powf(a));
+            Place { gamma, sigma: (3.0 * b * b).max(1e-8), cos }
+        };
+        for (spec, count) in [(&spec, 3000), (&average, 100)] {
+            let view = spec.is_directional();
+            let places: Vec<Place> = (0..count).map(|j| place(i as i32 + j, view)).collect();
+            let known = known(&places, CORRELATED, &Stage::unwatched()).unwrap();
+            let texture = made(spec);
+            let found = Checks::at(spec, &known).of(&texture, |_| true)[0].largest;
+            let stated = errors(spec, &texture)[0].largest;
+            assert!(found < 1.05 * stated, "{gamma}: {found} of {stated}");
+        }
+    }
 }
 
 #[test]
 fn a_wrong_texel_is_seen() {
-    let [spec, _] =
-        TextureSpec::of_shapes(Shapes::One(3.0), 1.0, &[16, 16], CORRELATED, Channels::OneMinusE);
+    let [spec, _] = TextureSpec::of_shapes(
+        "lut",
+        Shapes::One(3.0),
+        1.0,
+        &[16, 16],
+        CORRELATED,
+        Channels::OneMinusE,
+    );
     let good = made(&spec);
     let before = errors(&spec, &good)[0].largest;
     for texel in [0, 15, 7 * 16 + 9, 255] {
@@ -69,7 +106,7 @@ fn a_wrong_texel_is_seen() {
 #[test]
 fn exact_texels_are_those_of_the_model() {
     let [spec, _] =
-        TextureSpec::of_shapes(Shapes::One(2.0), 1.0, &[8, 16], CORRELATED, Channels::E);
+        TextureSpec::of_shapes("lut", Shapes::One(2.0), 1.0, &[8, 16], CORRELATED, Channels::E);
     let spec = TextureSpec { fitted: false, ..spec };
     let texture = made(&spec);
     assert_eq!(texture.values.len(), 128);
@@ -85,7 +122,7 @@ fn lines_of_wgsl_are_valid() {
     for shapes in [Shapes::One(2.0), Shapes::One(f64::INFINITY), Shapes::DownTo(1.6)] {
         for channels in [Channels::E, Channels::OneMinusE, Channels::ScaleBias] {
             let size = if matches!(shapes, Shapes::One(_)) { &[32, 24][..] } else { &[8, 32, 24] };
-            for spec in TextureSpec::of_shapes(shapes, 3.0, size, CORRELATED, channels) {
+            for spec in TextureSpec::of_shapes("lut", shapes, 3.0, size, CORRELATED, channels) {
                 let kind = if spec.axes.len() == 3 { "3d" } else { "2d" };
                 let (name, line) = (&spec.name, shader_lines(&spec).wgsl);
                 let source = format!(
@@ -123,7 +160,7 @@ fn files_hold_the_same_values() {
     assert_eq!((volume.main().width(), volume.main().height(), volume.main().depth()), (6, 5, 4));
     let mut read = Vec::new();
     for _ in 0..4 {
-        let mut slice = vec![0_u8; 4 * 30];
+        let mut slice = [0_u8; 4 * 30];
         let size = dds.main_size();
         let view =
             dds::ImageViewMut::new(&mut slice[..], size, dds::ColorFormat::GRAYSCALE_F32).unwrap();
@@ -151,7 +188,7 @@ fn files_hold_the_same_values() {
 fn files_do_not_depend_on_threads() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let export = ["export", "lut", "--gamma", "3", "--size", "6x8", "--format", "json,exr,ktx2"];
+    let export = ["export", "lut", "--gamma", "3", "--size", "32x24", "--format", "json,exr,ktx2"];
     ok(at, &[&export[..], &["--out", "a", "--threads", "1"]].concat());
     ok(at, &[&export[..], &["--out", "b", "--threads", "7"]].concat());
     for name in names(&at.join("a")) {
@@ -173,7 +210,8 @@ fn layouts_are_those_of_engines() {
     let (layout, textures, files) = written("cycles");
     let cycles = shipped::decode(layout, &files[0].contents);
     let text = String::from_utf8(files[0].contents.clone()).unwrap();
-    assert!(text.starts_with("static const float table_ggx_E[1024] = {\n  1.000000f, 0.98"));
+    assert!(text.starts_with("/* Albedo of gamma 2, height-correlated masking, 32x32, exact"));
+    assert!(text.contains("static const float table_ggx_E[1024] = {\n  1.000000f, 0.98"), "{text}");
     assert!(text.contains("static const float table_ggx_Eavg[32] = {\n  1.000000f, "));
     for (row, column, value) in [
         (1, 5, 0.891678),
@@ -208,6 +246,53 @@ fn layouts_are_those_of_engines() {
         // From 4,096 samples.
         let near = (found[0] - scale).abs() < 3e-4 && (found[1] - bias).abs() < 3e-5;
         assert!(near, "{row}, {column}: {found:?}");
+    }
+}
+
+/// Texels stand where their engines read them, by formulas written once more.
+#[test]
+fn texels_of_layouts_are_where_engines_read_them() {
+    let middle = |i: usize, n: usize| (i as f64 + 0.5) / n as f64;
+    let end = |i: usize, n: usize| i as f64 / (n - 1) as f64;
+    // √α and μ of a row and a column, and which channels are E, scale and bias.
+    type At = fn(&dyn Fn(usize, usize) -> f64, [usize; 2], [usize; 2]) -> [f64; 2];
+    let rough_first: At = |c, [i, j], [rows, columns]| [c(i, rows), c(j, columns)];
+    let view_first: At = |c, [i, j], [rows, columns]| [c(j, columns), c(i, rows)];
+    let size = [9, 14];
+    let integrator = AlbedoIntegrator::new(Shape::new(2.0).unwrap(), 1e-8);
+    for layout in &LAYOUTS {
+        let (at, channels): (At, &[&str]) = match layout.name {
+            "cycles" => (view_first, &["e"]),
+            "openpbr" | "osl" => (rough_first, &["lost"]),
+            "filament" | "unity" | "babylon" => (rough_first, &["bias", "e", ""]),
+            "three" => (view_first, &["scale", "bias"]),
+            "bevy" => (rough_first, &["scale", "bias"]),
+            "materialx" | "gltf" => (rough_first, &["scale", "bias", ""]),
+            other => panic!("{other} has no formula here"),
+        };
+        let ends = ["cycles", "openpbr", "osl", "unity"].contains(&layout.name);
+        let texture = made(&layout.specs(2.0, size, false)[0]);
+        for texel in [[2, 11], [7, 3]] {
+            let coordinate: &dyn Fn(usize, usize) -> f64 = if ends { &end } else { &middle };
+            let [root, cos] = at(coordinate, texel, size);
+            let sigma = if layout.name == "materialx" { root } else { root * root };
+            let cos = if ["osl", "unity"].contains(&layout.name) { cos * cos } else { cos };
+            let albedo = integrator.reflection(sigma, cos, weights).unwrap();
+            let uncorrelated = layout.name == "openpbr";
+            let of = if uncorrelated { albedo.uncorrelated } else { albedo.height_correlated };
+            for (k, channel) in channels.iter().enumerate() {
+                let want = match *channel {
+                    "e" => of[0] + of[1],
+                    "lost" => 1.0 - of[0] - of[1],
+                    "scale" => of[0],
+                    "bias" => of[1],
+                    _ => 0.0,
+                };
+                let index = (texel[0] * size[1] + texel[1]) * channels.len() + k;
+                let found = f64::from(texture.values[index]);
+                assert!((found - want).abs() < 1e-6, "{}: {found} for {want}", layout.name);
+            }
+        }
     }
 }
 
@@ -253,7 +338,7 @@ fn layouts_are_written() {
     let other = ["three", "--size", "8x8", "--gamma", "3", "--out", "out"];
     let output = run(at, &[&export[..], &other].concat());
     let notes = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(notes.contains("ships 16x16; change its constants"), "{notes}");
+    assert!(notes.contains("has 16x16 texels: change its constants"), "{notes}");
 }
 
 #[test]
@@ -273,13 +358,18 @@ fn what_cannot_be_made_is_refused_with_a_remedy() {
         (&["--gamma", "2", "--sigma-max", "0"], "(0, 3]"),
         (&["--gamma", "2", "--sigma-max", "-1"], "(0, 3]"),
         (&["--gamma", "2", "--sigma-max", "3.1"], "(0, 3]"),
+        (&["--gamma", "2", "--sigma-max", "1e-12"], "below 0.0001"),
+        (&["--gamma-min", "1e17"], "use --gamma inf"),
         (&["--gamma", "2", "--sigma-max", "nan"], "finite"),
         (&["--gamma", "1.4"], "1.5"),
         (&["--gamma", "1.5005"], "1.501"),
         (&["--gamma-min", "inf"], "use --gamma inf"),
         (&["--gamma-min", "3", "--gamma-max", "2"], "does not lie above --gamma-min 3"),
         (&["--gamma-min", "3", "--gamma-max", "4"], "leave out --gamma-max"),
+        (&["--gamma", "2", "--gamma-max", "3"], "--gamma-max is of no use"),
         (&["--gamma", "2", "--gamma-min", "2"], "cannot be used with"),
+        (&["--gamma", "2", "--name", "GGX"], "a-z, 0-9 and _"),
+        (&["--gamma", "2", "--name", "../x"], "a-z, 0-9 and _"),
         (&[], "name a shape with --gamma"),
     ] {
         let message = refused(at, &[&lut[..], &npy, more].concat());
@@ -287,7 +377,7 @@ fn what_cannot_be_made_is_refused_with_a_remedy() {
     }
     for (more, says) in [
         (&["--gamma", "2", "--format", "png"][..], "exr, dds, ktx2, npy, c, json"),
-        (&["--gamma", "2"], "--format"),
+        (&["--gamma", "2"], "or an engine with --layout"),
         (&["--layout", "unreal"], "cycles, openpbr, osl, filament, three, bevy"),
         (&["--layout", "cycles", "--format", "npy"], "cannot be used with"),
         (&["--layout", "cycles", "--size", "8x8x8"], "has 2 sizes"),

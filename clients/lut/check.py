@@ -84,7 +84,7 @@ def read(told, values, gamma, sigma, mu):
 
 
 def error(told, quantity):
-    return told["errors_in_f32"][quantity]["largest"] + told.get("largest_rounding_to_f16", 0) + 1e-6
+    return told["errors"][quantity]["largest"] + 1e-6
 
 
 def main():

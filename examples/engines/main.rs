@@ -67,8 +67,14 @@ impl Judge {
         let masking = layout.specs(2.0, layout.size, false)[0].masking;
         let key = (layout.size.to_vec(), masking.name());
         let make = || {
-            let [spec, _] =
-                TextureSpec::of_shapes(Shapes::One(2.0), 1.0, &layout.size, masking, channels);
+            let [spec, _] = TextureSpec::of_shapes(
+                "lut",
+                Shapes::One(2.0),
+                1.0,
+                &layout.size,
+                masking,
+                channels,
+            );
             spec.make(&Stage::unwatched()).expect("in the domain")
         };
         self.ours.entry(key).or_insert_with(make).clone()

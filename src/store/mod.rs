@@ -18,8 +18,8 @@ use crate::input::{self, MAX_TABLES};
 pub use self::exr::{decode as decode_exr, encode as encode_exr, encode_channels};
 pub use interrupt::quiesce;
 pub use lock::OutputFolder;
+pub use replace::{check_folder, replace, replace_files, replace_with};
 pub(crate) use replace::{make_folder, remove_abandoned};
-pub use replace::{replace, replace_files, replace_with};
 
 /// Name of the file that holds a whole set.
 pub const SET_FILE: &str = "tables.safetensors";

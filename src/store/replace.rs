@@ -81,6 +81,15 @@ pub fn replace_files<'a>(
     Ok(written)
 }
 
+/// Makes a folder unless it is there, and checks that files can be made in it.
+///
+/// # Errors
+/// The operating system's error, or one that says what the path is instead of a folder.
+pub fn check_folder(folder: &Path) -> io::Result<()> {
+    make_folder(folder)?;
+    stage(folder, |_| Ok(()), None).map(|_| ())
+}
+
 /// [`replace`] as part of a write that is marked already.
 pub(super) fn replace_unguarded(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Pending::new(destination(path)?, |out| out.write_all(bytes))?.commit()

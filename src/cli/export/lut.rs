@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 
 use microfacet_bake::export::texture::engine::{LAYOUTS, Layout};
 use microfacet_bake::export::texture::{
-    self, Channels, Checks, Format, Made, Shapes, TextureSpec, shader_lines,
+    self, BeforeRounding, Channels, Checks, Format, Made, Shapes, TextureSpec, shader_lines,
 };
 use microfacet_bake::progress::{Meter, Stage};
 use microfacet_sampler::Masking;
@@ -31,39 +31,37 @@ pub(super) struct Args {
     /// Smallest shape of a range, which ends at infinity; the texture is a volume.
     #[arg(long, value_name = "G", value_parser = values::gamma, conflicts_with_all = ["gamma", "layout"])]
     gamma_min: Option<f64>,
-    #[arg(long, hide = true, value_name = "G", value_parser = values::gamma, requires = "gamma_min")]
+    #[arg(long, hide = true, value_name = "G", value_parser = values::gamma)]
     gamma_max: Option<f64>,
     /// Largest roughness, in (0, 3]; 3 by default.
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = values::finite, conflicts_with = "layout")]
     sigma_max: Option<f64>,
-    /// Texels along the roughness and the view, as 32x32, or along shape, roughness and view, as
-    /// 32x64x64; each in [4, 4096]. Those of a layout are rows and columns.
+    /// Texels along roughness and view, rows and columns of the texture, or along shape, roughness
+    /// and view; each in [4, 4096]. By default 64x64, or 32x64x64, or what an engine has.
     #[arg(long, value_name = "SIZE", value_parser = size)]
     size: Option<Size>,
     /// Form of masking: G1(v) G1(l) or 1/(1 + lambda(v) + lambda(l)).
     #[arg(long, value_parser = parse_masking(), default_value = Masking::HeightCorrelated.name(), conflicts_with = "layout")]
     masking: Masking,
     /// What a texel holds.
-    #[arg(long, value_enum, default_value_t, conflicts_with = "layout")]
+    #[arg(long, value_enum, ignore_case = true, default_value_t, conflicts_with = "layout")]
     channels: ChannelsArg,
-    /// Formats of files, separated by commas; a description in JSON is always written.
-    #[arg(
-        long,
-        value_enum,
-        value_delimiter = ',',
-        required_unless_present = "layout",
-        conflicts_with = "layout"
-    )]
+    /// Formats of files, separated by commas; needed without --layout. A description in JSON is
+    /// always written.
+    #[arg(long, value_enum, ignore_case = true, value_delimiter = ',', conflicts_with = "layout")]
     format: Vec<FormatArg>,
-    /// Round values to 16 bits in exr, dds, ktx2 and npy.
+    /// Round values to 16 bits; c and json hold the rounded numbers.
     #[arg(long, conflicts_with = "layout")]
     half: bool,
     /// Write what an engine reads, in its own form.
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(LAYOUTS.iter().map(|layout| layout.name)))]
+    #[arg(long, value_name = "NAME", ignore_case = true, value_parser = PossibleValuesParser::new(LAYOUTS.iter().map(|layout| layout.name)))]
     layout: Option<String>,
     /// Fit the values of a layout to its filter; by default they are exact at its texels.
     #[arg(long)]
     fit: bool,
+    /// Name of the files, and of what C declares; the averages add _average.
+    #[arg(long, default_value = "lut", value_parser = name, conflicts_with = "layout")]
+    name: String,
     /// Folder to write into.
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
@@ -112,6 +110,16 @@ fn size(text: &str) -> Result<Size, String> {
     }
 }
 
+fn name(text: &str) -> Result<String, String> {
+    let good =
+        |(i, c): (usize, char)| c == '_' || c.is_ascii_lowercase() || (i > 0 && c.is_ascii_digit());
+    if !text.is_empty() && text.char_indices().all(good) {
+        Ok(text.into())
+    } else {
+        Err(format!("\"{text}\" must be a name of a-z, 0-9 and _, as ggx_albedo"))
+    }
+}
+
 impl ChannelsArg {
     fn channels(self) -> Channels {
         match self {
@@ -137,7 +145,9 @@ impl FormatArg {
 
 pub(super) fn run(args: Args) -> Outcome {
     match &args.layout {
-        Some(name) => of_engine(Layout::find(name).expect("one of those listed"), &args),
+        Some(name) => {
+            of_engine(Layout::find(&name.to_lowercase()).expect("one of those listed"), &args)
+        }
         None => of_family(&args),
     }
 }
@@ -149,6 +159,11 @@ fn of_family(args: &Args) -> Outcome {
             "--fit is of a layout: name one with --layout, or leave it out; other textures are \
              always fitted"
                 .into(),
+        ));
+    }
+    if args.gamma_max.is_some() && args.gamma_min.is_none() {
+        return Err(Failure(
+            "--gamma-max is of no use: a range of shapes goes from --gamma-min to infinity".into(),
         ));
     }
     let shapes = match (args.gamma, args.gamma_min) {
@@ -182,27 +197,32 @@ fn of_family(args: &Args) -> Outcome {
     let sigma_max = args.sigma_max.unwrap_or(microfacet_bake::bake::albedo::SIGMA_MAX);
     texture::check(shapes, sigma_max, &size)?;
     let channels = args.channels.channels();
-    let specs = TextureSpec::of_shapes(shapes, sigma_max, &size, args.masking, channels);
+    let specs =
+        TextureSpec::of_shapes(&args.name, shapes, sigma_max, &size, args.masking, channels);
     let mut formats: Vec<Format> = Vec::new();
     for format in args.format.iter().map(|format| format.format()) {
         if !formats.contains(&format) {
             formats.push(format);
         }
     }
-    if !specs[0].fitted {
-        report(
-            "note",
-            format!(
-                "more than {} texels: they hold the values there, without a fit to the filter",
-                texture::MOST_FITTED
-            ),
-        );
+    if formats.is_empty() {
+        return Err(Failure(
+            "name formats with --format, as --format ktx2,npy, or an engine with --layout".into(),
+        ));
     }
-    let made = make(&specs, |spec, [values, checks]| {
+    super::check_writable(&args.out)?;
+    note_unfitted(&specs[0]);
+    let made = make(&specs, true, |spec, [values, checks]| {
         let texture = spec.make(values)?;
-        let errors = Checks::new(spec, checks)?.of(&texture, |_| true);
-        let (texture, rounding) = if args.half { texture.rounded() } else { (texture, 0.0) };
-        Ok(Made { texture, errors, rounding })
+        let checks = Checks::new(spec, checks)?;
+        let errors = checks.of(&texture, |_| true);
+        if !args.half {
+            return Ok(Made { texture, errors, before_rounding: None });
+        }
+        let (texture, rounding) = texture.rounded();
+        let rounded = checks.of(&texture, |_| true);
+        let before_rounding = Some(BeforeRounding { errors, rounding });
+        Ok(Made { texture, errors: rounded, before_rounding })
     })?;
     let files = texture::files(&formats, &made)?;
     let done = super::write(&args.out, &files)?;
@@ -212,9 +232,14 @@ fn of_family(args: &Args) -> Outcome {
             let (largest, rms) = (error.largest, error.rms);
             summarize(&format!("{name}: error of {quantity} {largest:.1e}, RMS {rms:.1e}\n"))?;
         }
-        if made.rounding > 0.0 {
-            let (name, rounding) = (&made.texture.spec.name, made.rounding);
-            summarize(&format!("{name}: and {rounding:.1e} by rounding to 16 bits\n"))?;
+        if let Some(before) = &made.before_rounding {
+            let name = &made.texture.spec.name;
+            let before: Vec<String> = before
+                .errors
+                .iter()
+                .map(|error| format!("{} {:.1e}", error.quantity, error.largest))
+                .collect();
+            summarize(&format!("{name}: before rounding to 16 bits {}\n", before.join(", ")))?;
         }
     }
     for spec in &specs {
@@ -231,31 +256,48 @@ fn of_engine(layout: &Layout, args: &Args) -> Outcome {
     let gamma = args.gamma.unwrap_or(2.0);
     let size = args.size.as_ref().map_or(layout.size.to_vec(), |size| size.0.clone());
     texture::check(Shapes::One(gamma), 1.0, &size)?;
+    super::check_writable(&args.out)?;
     let size = [size[0], size[1]];
     if size != layout.size {
         let [rows, columns] = layout.size;
         report(
             "note",
             format!(
-                "{} ships {rows}x{columns}; change its constants of the size as well",
+                "the table of {} has {rows}x{columns} texels: change its constants of the size as well",
                 layout.engine
             ),
         );
     }
     let specs = layout.specs(gamma, size, args.fit);
-    let textures = make(&specs, |spec, [values, _]| Ok(spec.make(values)?))?;
+    if args.fit {
+        note_unfitted(&specs[0]);
+    }
+    let textures = make(&specs, false, |spec, [values, _]| Ok(spec.make(values)?))?;
     let done = super::write(&args.out, &layout.files(&textures)?)?;
     report("note", format!("{}: {}", layout.engine, layout.advice));
     Ok(done)
 }
 
-/// Makes each texture, with a stage for its values and one for its checks.
+/// Says that a texture is too large to fit.
+fn note_unfitted(spec: &TextureSpec) {
+    if !spec.fitted {
+        let most = texture::MOST_FITTED;
+        report(
+            "note",
+            format!("more than {most} texels: they hold the values there, without a fit"),
+        );
+    }
+}
+
+/// Makes each texture, with a stage for its values and one for its checks, if it has any.
 fn make<T>(
     specs: &[TextureSpec],
+    checked: bool,
     of: impl Fn(&TextureSpec, [&Stage; 2]) -> Result<T, Failure>,
 ) -> Result<Vec<T>, Failure> {
     let meter = Meter::default();
-    let parts = |spec: &TextureSpec| [1.0, 0.4].map(|share| share * spec.seconds());
+    let checks = if checked { 0.5 } else { 0.0 };
+    let parts = |spec: &TextureSpec| [1.0, checks].map(|share| share * spec.seconds());
     specs.iter().flat_map(parts).for_each(|seconds| meter.expect(seconds));
     let _bar = progress::show(&meter, "baking textures");
     let one = |spec: &TextureSpec| {

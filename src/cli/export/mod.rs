@@ -81,6 +81,11 @@ pub(super) fn run(args: Args) -> Outcome {
     }
 }
 
+/// Makes a folder and tries whether files can be written there, before long work.
+fn check_writable(folder: &Path) -> Result<(), Failure> {
+    store::check_folder(folder).map_err(|why| Failure(format!("{}: {why}", folder.display())))
+}
+
 /// Writes files into a folder and names them.
 fn write(folder: &Path, files: &[ExportFile]) -> Outcome {
     let contents = files.iter().map(|file| (&file.name[..], &file.contents[..]));

@@ -10,15 +10,16 @@ use super::{Texture, TextureSpec};
 use crate::progress::Stage;
 
 /// Points of a certificate: for each texel, but no fewer and no more than these.
-const PER_TEXEL: usize = 5;
-const POINTS: [usize; 2] = [20_000, 150_000];
+const PER_TEXEL: usize = 12;
+const POINTS: [usize; 2] = [20_000, 200_000];
 /// Points for each texel of averages, whose points take longer.
 const PER_AVERAGE: usize = 5;
-const AVERAGES: [usize; 2] = [500, 6_000];
-/// Places within cells of shapes, in turn: the middle and the texel, where lines err most to either
-/// side, and between.
-const WITHIN: [f64; 4] = [0.5, 0.0, 0.29, 0.76];
-/// Steps of additive recurrences that fill one, two and three dimensions evenly.
+const AVERAGES: [usize; 2] = [1_000, 6_000];
+/// Places within each cell of shapes: the texel and the middle, where lines err most to either side,
+/// and, in turn, one between.
+const WITHIN: [f64; 2] = [0.0, 0.5];
+const BETWEEN: [f64; 3] = [0.29, 0.76, 0.15];
+/// Steps of an additive recurrence that fills two dimensions evenly, and by the first alone one.
 const EVEN: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
 /// The error of a quantity, over all that is promised.
@@ -180,9 +181,12 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
 
 /// Coordinates of shapes that are looked at: both ends, and a place within each cell.
 fn slices(axis: &TexelAxis) -> Vec<f64> {
-    let cell = |(pair, within): (&[f64], &f64)| pair[0] + within * (pair[1] - pair[0]);
-    let cells = axis.texels.windows(2).zip(WITHIN.iter().cycle());
-    [0.0, 1.0].into_iter().chain(cells.map(cell)).collect()
+    let cells = axis.texels.windows(2).zip(BETWEEN.into_iter().cycle());
+    let cell = |(pair, between): (&[f64], f64)| {
+        let at = |within: f64| pair[0] + within * (pair[1] - pair[0]);
+        [at(WITHIN[0]), at(WITHIN[1]), at(between)]
+    };
+    cells.flat_map(cell).chain([1.0]).collect()
 }
 
 /// A point of an even sequence, in the slice of a shape.

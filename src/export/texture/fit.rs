@@ -15,8 +15,10 @@ const STEPS: usize = 120;
 const ENOUGH: f64 = 1e-18;
 /// Weight of points for which nothing is promised, so that texels which only they read are sound.
 const LOOSE: f64 = 1e-4;
-/// Points that a thread takes at once.
-const CHUNK: usize = 1 << 14;
+/// Parts of the points that are summed each by a thread, and then in their order, so that sums do
+/// not depend on who was first; and the fewest points of a part.
+const PARTS: usize = 16;
+const FEWEST: usize = 1024;
 
 /// The texels that a filter reads at a point: the first, and the shares of the next ones.
 #[derive(Clone, Copy, Debug)]
@@ -93,20 +95,23 @@ impl Filter {
         of: impl Fn(usize, Tap) -> f64 + Sync,
         square: bool,
     ) -> Vec<f64> {
-        let parts = taps.par_chunks(CHUNK).enumerate().fold(
-            || vec![0.0; self.texels],
-            |mut sum, (chunk, taps)| {
-                for (i, &tap) in taps.iter().enumerate() {
-                    let x = of(chunk * CHUNK + i, tap);
-                    for (texel, weight) in self.corners(tap) {
-                        sum[texel] += if square { weight * weight * x } else { weight * x };
-                    }
+        let length = taps.len().div_ceil(PARTS).max(FEWEST);
+        let part = |(part, taps): (usize, &[Tap])| {
+            let mut sum = vec![0.0; self.texels];
+            for (i, &tap) in taps.iter().enumerate() {
+                let x = of(part * length + i, tap);
+                for (texel, weight) in self.corners(tap) {
+                    sum[texel] += if square { weight * weight * x } else { weight * x };
                 }
-                sum
-            },
-        );
-        parts
-            .reduce(|| vec![0.0; self.texels], |a, b| a.iter().zip(b).map(|(a, b)| a + b).collect())
+            }
+            sum
+        };
+        let parts: Vec<Vec<f64>> = taps.par_chunks(length).enumerate().map(part).collect();
+        let mut all = vec![0.0; self.texels];
+        for part in parts {
+            all.iter_mut().zip(part).for_each(|(all, x)| *all += x);
+        }
+        all
     }
 }
 

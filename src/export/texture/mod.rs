@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 pub use axis::{Along, Place, TexelAxis};
 pub use certificate::{Checks, Deviation, Known, known};
-pub use file::{Format, Made, files};
+pub use file::{BeforeRounding, Format, Made, files};
 pub use shader::{Lines, shader_lines};
 pub use truth::{Channel, TOLERANCE, Truth};
 
@@ -41,6 +41,10 @@ pub const MOST_TEXELS: usize = 1 << 24;
 pub const MOST_FITTED: usize = 1 << 18;
 /// The smallest cosine for which a certificate holds.
 pub const LEAST_COS: f64 = 1e-4;
+/// The smallest σ_max and the largest end of a range of shapes; beyond, single precision cannot tell
+/// the ends of an axis apart.
+const LEAST_SIGMA_MAX: f64 = 1e-4;
+const MOST_GAMMA_MIN: f64 = 1e4;
 /// Points of a fit within each cell along each axis: of textures with two axes, and with three.
 const PER_CELL: [usize; 2] = [3, 2];
 /// Points of a fit within each cell of averages.
@@ -107,12 +111,13 @@ pub fn kappa(shapes: Shapes, sigma_max: f64) -> [f64; 2] {
 }
 
 impl TextureSpec {
-    /// The texture of E and that of its averages, `size` texels along γ (if there is a range), s
-    /// and t.
+    /// The texture of E, by a name, and that of its averages, by the same with `_average`; `size`
+    /// texels along γ (if there is a range), s and t.
     ///
     /// # Panics
     /// If `size` has not one number an axis, each of at least two.
     pub fn of_shapes(
+        name: &str,
         shapes: Shapes,
         sigma_max: f64,
         size: &[usize],
@@ -132,7 +137,7 @@ impl TextureSpec {
         let axes: Vec<TexelAxis> =
             along.into_iter().zip(size).map(|(along, &n)| TexelAxis::to_ends(along, n)).collect();
         let directional = Self {
-            name: "lut".into(),
+            name: name.into(),
             gamma,
             masking,
             channels: channels.all(),
@@ -140,7 +145,7 @@ impl TextureSpec {
             fitted: size.iter().product::<usize>() <= MOST_FITTED,
             axes,
         };
-        let average = directional.average("lut_average");
+        let average = directional.average(&format!("{name}_average"));
         [directional, average]
     }
 
@@ -321,12 +326,24 @@ pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), Strin
             "sigma-max = {sigma_max} must lie in (0, {SIGMA_MAX}]; 1 is what engines use"
         ));
     }
+    if sigma_max < LEAST_SIGMA_MAX {
+        return Err(format!(
+            "sigma-max = {sigma_max} is below {LEAST_SIGMA_MAX}: all of the texture would be a \
+             mirror's; raise it"
+        ));
+    }
+    if matches!(shapes, Shapes::DownTo(gamma) if gamma > MOST_GAMMA_MIN) {
+        return Err(format!(
+            "gamma-min = {gamma} is above {MOST_GAMMA_MIN}: all of the volume would be Beckmann's; \
+             use --gamma inf"
+        ));
+    }
     if size.len() != axes {
         return Err(format!("a texture of these shapes has {axes} sizes: {form}"));
     }
     let [fewest, most] = SIZES;
     if let Some(n) = size.iter().find(|n| !(fewest..=most).contains(*n)) {
-        return Err(format!("a size of {n} must lie in [{fewest}, {most}], as in {form}"));
+        return Err(format!("a size of {n} must lie in [{fewest}, {most}]; give {form}"));
     }
     let texels: usize = size.iter().product();
     if texels > MOST_TEXELS {

@@ -7,7 +7,7 @@ use super::{Channel, TextureSpec};
 use crate::export::numbers::single;
 
 /// The same line in three languages, where `lut` is the texture, read with a linear filter that
-/// clamps. Variables are `sigma`, `mu`, the cosine of the view, at least 1e-4, and `gamma`.
+/// clamps. Variables are `sigma`, `mu`, the cosine of the view, in [1e-4, 1], and `gamma`.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Lines {
     /// GLSL, for any version with `texture`.
@@ -44,13 +44,20 @@ pub fn shader_lines(spec: &TextureSpec) -> Lines {
         }
     };
     let texture = &spec.name;
-    let mirror = if spec.is_directional() { "pow(1.0 - mu, 5.0)" } else { "1.0 / 21.0" };
+    let (mirror, of) = if spec.is_directional() {
+        ("pow(max(0.0, 1.0 - mu), 5.0)", "")
+    } else {
+        ("1.0 / 21.0", "_average")
+    };
     let line = |one: &str, two: &str, read: String| match spec.channels[..] {
         [Channel::E, Channel::Excess] => {
-            format!("{two} e_excess = {read}.rg; {one} bias = e_excess.y + e_excess.x * {mirror};")
+            format!(
+                "{two} e_excess{of} = {read}.rg; \
+                 {one} bias{of} = e_excess{of}.y + e_excess{of}.x * {mirror};"
+            )
         }
-        [Channel::Lost] => format!("{one} lost = {read}.r;"),
-        _ => format!("{one} e = {read}.r;"),
+        [Channel::Lost] => format!("{one} lost{of} = {read}.r;"),
+        _ => format!("{one} e{of} = {read}.r;"),
     };
     let wgsl = read("vec").replace("vec2(", "vec2f(").replace("vec3(", "vec3f(");
     Lines {
@@ -87,7 +94,7 @@ impl Dialect {
     }
 
     /// A number in single precision, with a decimal point.
-    fn number(self, x: f64) -> String {
+    pub(super) fn number(self, x: f64) -> String {
         let suffix = if matches!(self, Self::C) { "f" } else { "" };
         single(x as f32) + suffix
     }

@@ -6,7 +6,7 @@ mod text;
 
 use microfacet_common::Masking;
 
-use super::{Along, Channel, TexelAxis, Texture, TextureSpec};
+use super::{Along, Channel, MOST_FITTED, TexelAxis, Texture, TextureSpec};
 use crate::export::ExportFile;
 
 /// The smallest cosine that a fit to an engine's filter counts.
@@ -200,7 +200,7 @@ impl Layout {
             masking: self.masking,
             channels: self.channels.to_vec(),
             least_cos: LEAST_COS,
-            fitted,
+            fitted: fitted && size[0] * size[1] <= MOST_FITTED,
         };
         let average = self.average.map(|name| directional.average(name));
         std::iter::once(directional).chain(average).collect()

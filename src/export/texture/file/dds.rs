@@ -8,13 +8,9 @@ use crate::export::texture::Texture;
 pub(super) fn encode(texture: &Texture) -> Result<Vec<u8>, String> {
     let format = match (texture.half, texture.spec.channels.len()) {
         (false, 1) => DxgiFormat::R32_Float,
-        (false, 2) => DxgiFormat::R32G32_Float,
-        (false, 3) => DxgiFormat::R32G32B32_Float,
+        (false, _) => DxgiFormat::R32G32_Float,
         (true, 1) => DxgiFormat::R16_Float,
-        (true, 2) => DxgiFormat::R16G16_Float,
-        (_, channels) => {
-            return Err(format!("DDS has no format of {channels} channels of floats in use here"));
-        }
+        (true, _) => DxgiFormat::R16G16_Float,
     };
     let [width, height, depth] = extent(texture).map(|n| n as u32);
     let volume = is_volume(texture);

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::Made;
 use crate::export::numbers::{as_typed, single};
-use crate::export::texture::{Along, LEAST_COS, Place, Texture, shader_lines};
+use crate::export::texture::{Along, Channel, Deviation, LEAST_COS, Place, Texture, shader_lines};
 
 /// The description.
 pub(super) fn description(made: &Made) -> Map<String, Value> {
@@ -34,13 +34,30 @@ pub(super) fn description(made: &Made) -> Map<String, Value> {
     put("axes_slowest_first", axes.collect());
     let channels = spec.channels.iter().map(|channel| Value::from(channel.name()));
     put("channels", channels.collect());
+    if spec.channels.contains(&Channel::Excess) {
+        let mirror = if average { "1/21" } else { "(1 - mu)^5" };
+        let meaning = format!("bias = bias_excess + e {mirror}, scale = e - bias");
+        put("meaning", meaning.into());
+    }
+    put("coordinates", "c in [0, 1] along n texels is read at (1/2 + (n - 1) c) / n".into());
     put("precision", if texture.half { "f16" } else { "f32" }.into());
     let texels = if spec.fitted { "fitted to the linear filter" } else { "exact at the texels" };
     put("values", texels.into());
     if !average {
         put("least_cos_theta", LEAST_COS.into());
     }
-    let errors = made.errors.iter().map(|error| {
+    put("errors", errors(&made.errors));
+    if let Some(before) = &made.before_rounding {
+        put("errors_in_f32", errors(&before.errors));
+        put("largest_rounding_to_f16", rounded(before.rounding));
+    }
+    let lines = shader_lines(spec);
+    put("read", json!({ "glsl": lines.glsl, "hlsl": lines.hlsl, "wgsl": lines.wgsl }));
+    all
+}
+
+fn errors(all: &[Deviation]) -> Value {
+    let entry = |error: &Deviation| {
         let entry = json!({
             "largest": rounded(error.largest),
             "at": at(&error.at),
@@ -48,14 +65,8 @@ pub(super) fn description(made: &Made) -> Map<String, Value> {
             "largest_if_filter_has_256_steps": rounded(error.coarse),
         });
         (error.quantity.to_owned(), entry)
-    });
-    put("errors_in_f32", Value::Object(errors.collect()));
-    if made.rounding > 0.0 {
-        put("largest_rounding_to_f16", rounded(made.rounding));
-    }
-    let lines = shader_lines(spec);
-    put("read", json!({ "glsl": lines.glsl, "hlsl": lines.hlsl, "wgsl": lines.wgsl }));
-    all
+    };
+    Value::Object(all.iter().map(entry).collect())
 }
 
 fn along(along: Along, gamma: f64) -> Value {
@@ -89,12 +100,17 @@ fn rounded(x: f64) -> Value {
 }
 
 fn at(place: &Place) -> Value {
-    let short = |x: f64| format!("{x:.4}").parse::<f64>().map_or(Value::Null, Value::from);
-    let mut at = json!({ "gamma": as_typed(place.gamma), "sigma": short(place.sigma) });
+    let gamma = format!("{:.4}", place.gamma).parse::<f64>().unwrap_or(place.gamma);
+    let mut at = json!({ "gamma": as_typed(gamma), "sigma": short(place.sigma) });
     if let Some(cos) = place.cos {
-        at["cos_theta"] = if cos < 0.01 { rounded(cos) } else { short(cos) };
+        at["cos_theta"] = short(cos);
     }
     at
+}
+
+/// A place in four digits.
+fn short(x: f64) -> Value {
+    format!("{x:.3e}").parse::<f64>().map_or(Value::Null, Value::from)
 }
 
 /// In one line, for formats that hold a text.

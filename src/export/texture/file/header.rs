@@ -24,6 +24,17 @@ pub(super) fn encode(made: &Made) -> String {
     for error in &made.errors {
         let _ = writeln!(text, "   Largest error of {}: {:.1e}.", error.quantity, error.largest);
     }
+    for axis in &spec.axes {
+        match axis.along {
+            Along::Roughness { largest } => {
+                let _ = writeln!(text, "   sigma in [0, {largest}].");
+            }
+            Along::Shape { smallest } => {
+                let _ = writeln!(text, "   gamma in [{smallest}, inf].");
+            }
+            _ => {}
+        }
+    }
     let names: Vec<&str> = spec.channels.iter().map(|channel| channel.name()).collect();
     let _ = writeln!(
         text,
@@ -58,8 +69,16 @@ fn function(made: &Made, channels: usize) -> String {
         coordinates.push(coordinate);
     }
     let axes = counts.len();
-    let clamp =
-        if spec.is_directional() { "    mu = fminf(fmaxf(mu, 1e-4f), 1.0f);\n" } else { "" };
+    let clamp = |x: &str, least: f64, most: &str| {
+        format!("    {x} = fminf(fmaxf({x}, {}), {most});\n", Dialect::C.number(least))
+    };
+    let one = |along| match along {
+        Along::Shape { smallest } => clamp("gamma", smallest, "INFINITY"),
+        Along::Roughness { largest } => clamp("sigma", 0.0, &Dialect::C.number(largest)),
+        Along::LinearRoughness => clamp("sigma", 0.0, "1.0f"),
+        Along::View(_) | Along::Cosine { .. } | Along::RootCosine => clamp("mu", 1e-4, "1.0f"),
+    };
+    let clamps: String = spec.axes.iter().map(|axis| one(axis.along)).collect();
     let (parameter, result) = if channels > 1 {
         (format!(", float *out /* {channels} */"), String::new())
     } else {
@@ -67,10 +86,15 @@ fn function(made: &Made, channels: usize) -> String {
     };
     let kind = if channels > 1 { "void" } else { "float" };
     let local = if channels > 1 { String::new() } else { "    float out[1];\n".into() };
-    let meaning = if spec.channels[0] == Channel::Lost { "1 - E" } else { "E" };
+    let meaning = match (&spec.channels[..], spec.is_directional()) {
+        ([Channel::Lost], _) => "1 - E",
+        ([_], _) => "E",
+        (_, true) => "out[0] is E; bias is out[1] + out[0] (1 - mu)^5, and scale E - bias,",
+        (_, false) => "out[0] is E; bias is out[1] + out[0] / 21, and scale E - bias,",
+    };
     format!(
-        "/* {meaning} between the texels; sigma, mu and gamma beyond the ends are taken there. */\n\
-         static inline {kind} {name}_read({}{parameter}) {{\n{clamp}\
+        "/* {meaning} between\n   the texels; arguments beyond the ends, and NaN, are taken there. C99. */\n\
+         static inline {kind} {name}_read({}{parameter}) {{\n{clamps}\
          \x20   const float c[{axes}] = {{\n        {}\n    }};\n\
          \x20   const int n[{axes}] = {{ {} }};\n\
          \x20   int first = 0, stride[{axes}], corner, axis, channel;\n\

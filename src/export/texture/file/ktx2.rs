@@ -13,13 +13,9 @@ const KEY: &str = "microfacet";
 pub(in crate::export::texture) fn encode(texture: &Texture, description: Option<&str>) -> Vec<u8> {
     let (format, type_size) = match (texture.half, texture.spec.channels.len()) {
         (false, 1) => (Format::R32_SFLOAT, 4),
-        (false, 2) => (Format::R32G32_SFLOAT, 4),
-        (false, 3) => (Format::R32G32B32_SFLOAT, 4),
-        (false, _) => (Format::R32G32B32A32_SFLOAT, 4),
+        (false, _) => (Format::R32G32_SFLOAT, 4),
         (true, 1) => (Format::R16_SFLOAT, 2),
-        (true, 2) => (Format::R16G16_SFLOAT, 2),
-        (true, 3) => (Format::R16G16B16_SFLOAT, 2),
-        (true, _) => (Format::R16G16B16A16_SFLOAT, 2),
+        (true, _) => (Format::R16G16_SFLOAT, 2),
     };
     let (basic, _) = Basic::from_format(format).expect("a plain format");
     let block = ktx2::dfd::Block::Basic(basic).to_vec();
@@ -34,11 +30,7 @@ pub(in crate::export::texture) fn encode(texture: &Texture, description: Option<
     let at_entries = start + descriptor.len();
     let texel = data.len() / extent(texture).iter().product::<usize>();
     // The level begins at a multiple of its texels' size and of four.
-    let step = match texel % 4 {
-        0 => texel,
-        2 => 2 * texel,
-        _ => 4 * texel,
-    };
+    let step = texel.max(4);
     let at_data = (at_entries + entries.len()).next_multiple_of(step);
     let [width, height, depth] = extent(texture).map(|n| n as u32);
     let header = Header {

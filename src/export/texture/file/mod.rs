@@ -29,14 +29,36 @@ pub enum Format {
     Json,
 }
 
+impl Format {
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Exr => "exr",
+            Self::Dds => "dds",
+            Self::Ktx2 => "ktx2",
+            Self::Npy => "npy",
+            Self::C => "h",
+            Self::Json => "json",
+        }
+    }
+}
+
 /// A texture with what was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Made {
     /// The texture.
     pub texture: Texture,
-    /// Its errors, before its values were rounded to 16 bits.
+    /// Its errors.
     pub errors: Vec<Deviation>,
-    /// The largest change of a value by rounding to 16 bits; 0 of textures in 32.
+    /// What it was before its values were rounded to 16 bits, if they were.
+    pub before_rounding: Option<BeforeRounding>,
+}
+
+/// A texture before its values were rounded to 16 bits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BeforeRounding {
+    /// Its errors.
+    pub errors: Vec<Deviation>,
+    /// The largest change of a value since.
     pub rounding: f64,
 }
 
@@ -48,7 +70,9 @@ pub fn files(formats: &[Format], made: &[Made]) -> Result<Vec<ExportFile>, Strin
     let mut files = Vec::new();
     for made in made {
         let name = &made.texture.spec.name;
-        let description = describe::description(made);
+        let mut description = describe::description(made);
+        let all = formats.iter().map(|format| format!("{name}.{}", format.extension()));
+        description.insert("files".into(), all.collect());
         let mut add = |extension: &str, contents: Vec<u8>| {
             files.push(ExportFile { name: format!("{name}.{extension}"), contents });
         };
@@ -99,11 +123,9 @@ fn bytes(texture: &Texture) -> Vec<u8> {
 
 pub(super) fn exr(texture: &Texture, description: Option<&str>) -> Result<Vec<u8>, String> {
     let [width, height, depth] = extent(texture);
-    let names: &[&str] = match texture.spec.channels.len() {
-        1 => &["Y"],
-        2 => &["R", "G"],
-        3 => &["R", "G", "B"],
-        _ => &["R", "G", "B", "A"],
+    let names = match texture.spec.channels.len() {
+        1 => &["Y"][..],
+        channels => &["R", "G", "B"][..channels],
     };
     let channels = names.iter().enumerate().map(|(i, name)| (*name, texture.plane(i).collect()));
     store::encode_channels(
