@@ -15,8 +15,8 @@ const POINTS: [usize; 2] = [20_000, 200_000];
 /// Points for each texel of averages, whose points take longer.
 const PER_AVERAGE: usize = 5;
 const AVERAGES: [usize; 2] = [1_000, 6_000];
-/// Places within each cell of shapes: the texel and the middle, where lines err most to either side,
-/// and, in turn, one between.
+/// Places within each cell of shapes: the texel and the middle, where lines err most to either
+/// side, and, in turn, one between.
 const WITHIN: [f64; 2] = [0.0, 0.5];
 const BETWEEN: [f64; 3] = [0.29, 0.76, 0.15];
 /// Steps of an additive recurrence that fills two dimensions evenly, and by the first alone one.

@@ -41,8 +41,8 @@ pub const MOST_TEXELS: usize = 1 << 24;
 pub const MOST_FITTED: usize = 1 << 18;
 /// The smallest cosine for which a certificate holds.
 pub const LEAST_COS: f64 = 1e-4;
-/// The smallest σ_max and the largest end of a range of shapes; beyond, single precision cannot tell
-/// the ends of an axis apart.
+/// The smallest σ_max and the largest end of a range of shapes; beyond, single precision cannot
+/// tell the ends of an axis apart.
 const LEAST_SIGMA_MAX: f64 = 1e-4;
 const MOST_GAMMA_MIN: f64 = 1e4;
 /// Points of a fit within each cell along each axis: of textures with two axes, and with three.
