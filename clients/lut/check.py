@@ -116,11 +116,24 @@ def main():
                 assert share <= 1, (name, quantity, gamma, sigma, mu, value, row[column])
                 worst, counted = max(worst, share), counted + 1
         assert counted >= 10, (name, counted)
+        # Beyond the ends, and at them: sigma, mu, and gamma of a volume.
+        gamma, end = (least, 1e30) if least else (told["gamma"], told["gamma"])
+        pairs = [(f"{gamma} {5 * sigma_max} 0.3", f"{gamma} {sigma_max} 0.3"),
+                 (f"{end} {sigma_max} 2", f"{end} {sigma_max} 1"),
+                 (f"{gamma} 0.5 -1", f"{gamma} 0.5 0.0001"),
+                 (f"{gamma} nan 0.5", f"{gamma} 0 0.5")]
+        if least:
+            pairs += [(f"{low} 0.5 0.3", f"{least} 0.5 0.3") for low in ["1.6", "1.5", "1", "nan"]]
+        asked += [place for pair in pairs for place in pair]
         lines = subprocess.run([folder / name / "read"], input="\n".join(asked), text=True,
                                capture_output=True, check=True).stdout.split("\n")
         # Single precision, and a power, against double.
         for line, want in zip(lines, wanted, strict=False):
             assert np.allclose([float(x) for x in line.split()], want, atol=1e-4 if name == "half" else 2e-5), (line, want)
+        last = lines[len(wanted):len(asked)]
+        assert len(last) == 2 * len(pairs)
+        for pair, beyond, at_end in zip(pairs, last[::2], last[1::2], strict=True):
+            assert beyond == at_end, (name, pair, beyond, at_end)
         print(f"{name}: six formats hold the same; {counted} values within {worst:.2f} of what is stated")
 
 

@@ -12,6 +12,9 @@ use crate::progress::Stage;
 /// Points of a certificate: for each texel, but no fewer and no more than these.
 const PER_TEXEL: usize = 12;
 const POINTS: [usize; 2] = [20_000, 200_000];
+/// Points in each cell along edges, where only half as many texels are near: of textures with two
+/// axes, and with three.
+const PER_EDGE: [usize; 2] = [16, 6];
 /// Points for each texel of averages, whose points take longer.
 const PER_AVERAGE: usize = 5;
 const AVERAGES: [usize; 2] = [1_000, 6_000];
@@ -68,6 +71,29 @@ pub struct Checks {
     points: Vec<(Known, Tap)>,
 }
 
+impl Deviation {
+    /// The largest as a bound to rely on: the next number of two digits, since a larger error may
+    /// lie between the points.
+    pub fn stated(&self) -> f64 {
+        rounded_up(self.largest)
+    }
+
+    /// The same of the largest by a filter in steps of 1/256.
+    pub fn stated_coarse(&self) -> f64 {
+        rounded_up(self.coarse)
+    }
+}
+
+fn rounded_up(x: f64) -> f64 {
+    if !(x > 0.0 && x.is_finite()) {
+        return x;
+    }
+    let tens = x.log10().floor() - 1.0;
+    let digits = (x / 10_f64.powf(tens)).ceil();
+    // By its text: a product with a power of ten is not the nearest number to the two digits.
+    format!("{digits}e{tens}").parse().unwrap_or(x)
+}
+
 impl Checks {
     /// Points throughout what is promised, along its edges and in its corners.
     ///
@@ -84,12 +110,16 @@ impl Checks {
             Some(axis) => slices(axis),
             None => vec![f64::NAN],
         };
+        // Averages are dense without them.
+        let longest = axes.iter().map(TexelAxis::len).max().unwrap_or(1);
+        let edges =
+            if directional { PER_EDGE[usize::from(axes.len() == AXES)] * (longest - 1) } else { 1 };
         for (i, &slice) in slices.iter().enumerate() {
             let share = count / slices.len();
             at.extend((0..share).map(|j| even(axes, slice, i * share + j)));
             // Edges, and their ends.
-            for edge in 0..=share.isqrt() {
-                let along = edge as f64 / share.isqrt() as f64;
+            for edge in 0..=edges {
+                let along = edge as f64 / edges as f64;
                 for corner in 0..4 {
                     at.push(edge_point(axes, slice, along, corner));
                 }
@@ -217,4 +247,18 @@ fn array(coordinates: impl Iterator<Item = f64>) -> [f64; AXES] {
     let mut at = [0.0; AXES];
     at.iter_mut().zip(coordinates).for_each(|(to, c)| *to = c);
     at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_rounded_up() {
+        for (x, up) in
+            [(0.0163, 0.017), (0.002, 0.002), (5.98e-4, 6e-4), (9.91e-5, 1e-4), (0.0, 0.0)]
+        {
+            assert_eq!(rounded_up(x), up);
+        }
+    }
 }

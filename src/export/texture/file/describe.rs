@@ -59,10 +59,10 @@ pub(super) fn description(made: &Made) -> Map<String, Value> {
 fn errors(all: &[Deviation]) -> Value {
     let entry = |error: &Deviation| {
         let entry = json!({
-            "largest": rounded(error.largest),
+            "largest": error.stated(),
             "at": at(&error.at),
             "rms": rounded(error.rms),
-            "largest_if_filter_has_256_steps": rounded(error.coarse),
+            "largest_if_filter_has_256_steps": error.stated_coarse(),
         });
         (error.quantity.to_owned(), entry)
     };

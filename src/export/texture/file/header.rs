@@ -22,7 +22,7 @@ pub(super) fn encode(made: &Made) -> String {
     let _ =
         writeln!(text, "   {what} of the Student-t distribution, {of}, {} masking.", spec.masking);
     for error in &made.errors {
-        let _ = writeln!(text, "   Largest error of {}: {:.1e}.", error.quantity, error.largest);
+        let _ = writeln!(text, "   Largest error of {}: {:.1e}.", error.quantity, error.stated());
     }
     for axis in &spec.axes {
         match axis.along {
