@@ -37,7 +37,7 @@
 //!
 //! # Write a shape for other languages
 //!
-//! [`export`] writes one shape γ with its lookups as source text.
+//! [`export`] writes one shape γ with its lookups as source text, or its albedos as textures.
 //!
 //! # Study the model
 //!

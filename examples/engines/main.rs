@@ -18,13 +18,17 @@ use microfacet_bake::export::texture::{
 use microfacet_bake::progress::Stage;
 use microfacet_sampler::Masking;
 
+/// Cosines that are even, and those that crowd at the horizon.
+const EVEN: usize = 500;
+const LOW: usize = 120;
 const HORIZON: f64 = 1e-3;
 /// Where most cells of engines begin to hold.
 const ABOVE: f64 = 0.02;
 
 fn places() -> Vec<Place> {
-    let even = (0..500).map(|i| HORIZON + (1.0 - HORIZON) * f64::from(i) / 499.0);
-    let low = (0..120).map(|i| HORIZON * 100_f64.powf(f64::from(i) / 119.0));
+    let share = |i: usize, of: usize| i as f64 / (of - 1) as f64;
+    let even = (0..EVEN).map(|i| HORIZON + (1.0 - HORIZON) * share(i, EVEN));
+    let low = (0..LOW).map(|i| HORIZON * 100_f64.powf(share(i, LOW)));
     let cosines: Vec<f64> = even.chain(low).collect();
     let rough = (1..=400).map(|k| (f64::from(k) / 400.0).powi(2));
     let of = |sigma| {
@@ -57,7 +61,8 @@ impl Judge {
         };
         let within = |place: &Place| place.cos.is_some_and(|cos| cos >= least);
         let largest = find(Checks::at(&texture.spec, all).of(texture, within)).largest;
-        let even: Vec<Known> = all.chunks(620).flat_map(|row| row[..500].to_vec()).collect();
+        let even: Vec<Known> =
+            all.chunks(EVEN + LOW).flat_map(|row| row[..EVEN].to_vec()).collect();
         let rms = find(Checks::at(&texture.spec, &even).of(texture, within)).rms;
         format!("{largest:.1e} / {rms:.1e}")
     }

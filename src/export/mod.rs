@@ -1,7 +1,7 @@
 //! Writes single shapes γ of the family, for any roughness, for renderers in other languages:
 //! tables and lookups, without an axis of γ, an archive to read, or a library to link. In C a shape
 //! is source text; for shaders the functions are text, and the tables of all shapes are data for
-//! one buffer or texture.
+//! one buffer or texture. [`texture`] writes albedos alone, for the filter of a texture.
 //!
 //! [`Shape::bind`] collapses the tables of a set at one γ. Every target is written from it, so all
 //! of them hold the same numbers; [`files`] makes the files of one.

@@ -9,7 +9,8 @@ pub(super) const AXES: usize = 3;
 /// nothing.
 const MIRROR: f64 = 1e-8;
 
-/// Coordinates in the first cell of roughnesses.
+/// Coordinates in the first cell of roughnesses. With three E for γ = 1.6 errs by 1.5e-3 in
+/// 64 × 64 texels, in place of 6.8e-4.
 const FIRST_CELL: usize = 16;
 
 /// A material and a view of it.

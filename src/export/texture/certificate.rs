@@ -22,7 +22,8 @@ const AVERAGES: [usize; 2] = [1_000, 6_000];
 /// side, and, in turn, one between.
 const WITHIN: [f64; 2] = [0.0, 0.5];
 const BETWEEN: [f64; 3] = [0.29, 0.76, 0.15];
-/// Steps of an additive recurrence that fills two dimensions evenly, and by the first alone one.
+/// Steps of an additive recurrence that fills two dimensions evenly, and by the first alone one:
+/// 1/ρ and 1/ρ² of the plastic number, ρ³ = ρ + 1.
 const EVEN: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
 /// The error of a quantity, over all that is promised.
@@ -101,7 +102,7 @@ impl Checks {
     /// [`ParameterError`] for a place outside the domain of the model.
     pub fn new(spec: &TextureSpec, stage: &Stage) -> Result<Self, ParameterError> {
         let (axes, filter) = (&spec.axes, Filter::new(&spec.axes));
-        let directional = axes.iter().any(|axis| axis.along.is_view());
+        let directional = spec.is_directional();
         let (per, [fewest, most]) =
             if directional { (PER_TEXEL, POINTS) } else { (PER_AVERAGE, AVERAGES) };
         let count = (per * filter.texels).clamp(fewest, most);
@@ -209,7 +210,7 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
     all
 }
 
-/// Coordinates of shapes that are looked at: both ends, and a place within each cell.
+/// Coordinates of shapes that are looked at: three of each cell, and the end.
 fn slices(axis: &TexelAxis) -> Vec<f64> {
     let cells = axis.texels.windows(2).zip(BETWEEN.into_iter().cycle());
     let cell = |(pair, between): (&[f64], f64)| {

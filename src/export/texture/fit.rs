@@ -1,13 +1,14 @@
 //! Values of texels for which what a linear filter reads is closest to given values: weighted least
 //! squares, by conjugate gradients (Hestenes and Stiefel 1952,
 //! <https://doi.org/10.6028/jres.049.044>), whose weights follow the error until the largest is
-//! small (Lawson 1961; Rice and Usow 1968, <https://doi.org/10.2307/2004664>).
+//! small (Lawson's algorithm; Rice and Usow 1968, *Mathematics of Computation* 22).
 
 use rayon::prelude::*;
 
 use super::axis::{AXES, TexelAxis};
 
-/// How often the weights follow the errors.
+/// How often the weights follow the errors. Forty rounds gain 0.2 % for GGX, and 10 % for γ = 1.6
+/// in 32 texels, over twenty.
 const ROUNDS: usize = 25;
 /// The largest number of steps of conjugate gradients, and the reduction of the squared residual
 /// that ends them.

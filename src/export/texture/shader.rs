@@ -29,8 +29,9 @@ pub fn shader_lines(spec: &TextureSpec) -> Lines {
     let offset = of(&|axis| Dialect::Shader.number(0.5 / n(axis)));
     let factor = of(&|axis| Dialect::Shader.number((n(axis) - 1.0) / n(axis)));
     let coordinate = of(&|axis| Dialect::Shader.coordinate(axis.along, spec.gamma)).join(", ");
-    let read = |vector: &str| {
-        let vector = format!("{vector}{}", axes.len());
+    let read = |vector: &str, suffix: &str| {
+        // An average of one shape is a texture of one row.
+        let vector = format!("{vector}{}{suffix}", axes.len().max(2));
         // One number serves for equal ones.
         let all = |numbers: &[String]| match numbers {
             [first, rest @ ..] if rest.iter().all(|other| other == first) => first.clone(),
@@ -38,8 +39,7 @@ pub fn shader_lines(spec: &TextureSpec) -> Lines {
         };
         let at = format!("{} + {} * ", all(&offset), all(&factor));
         match axes.len() {
-            // A texture of one row.
-            1 => format!("{}2({at}{coordinate}, 0.5)", vector.trim_end_matches('1')),
+            1 => format!("{vector}({at}{coordinate}, 0.5)"),
             _ => format!("{at}{vector}({coordinate})"),
         }
     };
@@ -59,18 +59,17 @@ pub fn shader_lines(spec: &TextureSpec) -> Lines {
         [Channel::Lost] => format!("{one} lost{of} = {read}.r;"),
         _ => format!("{one} e{of} = {read}.r;"),
     };
-    let wgsl = read("vec").replace("vec2(", "vec2f(").replace("vec3(", "vec3f(");
     Lines {
-        glsl: line("float", "vec2", format!("texture({texture}, {})", read("vec"))),
+        glsl: line("float", "vec2", format!("texture({texture}, {})", read("vec", ""))),
         hlsl: line(
             "float",
             "float2",
-            format!("{texture}.SampleLevel(linear_clamp, {}, 0)", read("float")),
+            format!("{texture}.SampleLevel(linear_clamp, {}, 0)", read("float", "")),
         ),
         wgsl: line(
             "let",
             "let",
-            format!("textureSampleLevel({texture}, linear_clamp, {wgsl}, 0.0)"),
+            format!("textureSampleLevel({texture}, linear_clamp, {}, 0.0)", read("vec", "f")),
         ),
     }
 }

@@ -13,7 +13,7 @@ use crate::bake::albedo::weights;
 use crate::progress::Stage;
 
 /// Error of albedos and of averages that the quadrature aims at.
-pub const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-7;
 const AVERAGE_TOLERANCE: f64 = 3e-6;
 
 /// What a channel of a texture holds.

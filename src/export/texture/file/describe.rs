@@ -1,10 +1,11 @@
 //! What a texture is, as JSON: beside it, and inside the formats that can hold it.
 
+use microfacet_sampler::axis::LogShape;
 use serde_json::{Map, Value, json};
 
 use super::Made;
 use crate::export::numbers::{as_typed, single};
-use crate::export::texture::{Along, Channel, Deviation, LEAST_COS, Place, Texture, shader_lines};
+use crate::export::texture::{Along, Channel, Deviation, Place, Texture, shader_lines};
 
 /// The description.
 pub(super) fn description(made: &Made) -> Map<String, Value> {
@@ -44,7 +45,7 @@ pub(super) fn description(made: &Made) -> Map<String, Value> {
     let texels = if spec.fitted { "fitted to the linear filter" } else { "exact at the texels" };
     put("values", texels.into());
     if !average {
-        put("least_cos_theta", LEAST_COS.into());
+        put("least_cos_theta", spec.least_cos.into());
     }
     put("errors", errors(&made.errors));
     if let Some(before) = &made.before_rounding {
@@ -70,14 +71,12 @@ fn errors(all: &[Deviation]) -> Value {
 }
 
 fn along(along: Along, gamma: f64) -> Value {
-    let kappa = |scale: f64, heavy: f64| match (heavy == 0.0, gamma.is_nan()) {
-        (true, _) => json!(scale),
-        (_, true) => json!(format!("{scale} + {heavy} / (2 gamma - 3)")),
-        (_, false) => json!(scale + heavy / (2.0 * gamma - 3.0)),
-    };
     match along {
         Along::Shape { smallest } => json!({
-            "coordinate": "ln(1 + 17 / (2 gamma - 3)) / ln(1 + 17 / (2 gamma_min - 3))",
+            "coordinate": format!(
+                "ln(1 + {scale} / (2 gamma - 3)) / ln(1 + {scale} / (2 gamma_min - 3))",
+                scale = LogShape::BAKED.scale
+            ),
             "gamma_min": smallest,
         }),
         Along::Roughness { largest } => {
@@ -86,7 +85,11 @@ fn along(along: Along, gamma: f64) -> Value {
         Along::LinearRoughness => json!({ "coordinate": "sigma" }),
         Along::View(view) => json!({
             "coordinate": "(mu / (mu + kappa sigma sqrt(1 - mu^2)))^(1/4), mu = cos theta",
-            "kappa": kappa(view.scale, view.heavy),
+            "kappa": if gamma.is_nan() {
+                json!(format!("{} + {} / (2 gamma - 3)", view.scale, view.heavy))
+            } else {
+                json!(view.of_shape(gamma).scale)
+            },
         }),
         Along::Cosine { .. } => json!({ "coordinate": "mu = cos theta" }),
         Along::RootCosine => json!({ "coordinate": "sqrt(mu), mu = cos theta" }),

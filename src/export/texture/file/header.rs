@@ -76,7 +76,9 @@ fn function(made: &Made, channels: usize) -> String {
         Along::Shape { smallest } => clamp("gamma", smallest, "INFINITY"),
         Along::Roughness { largest } => clamp("sigma", 0.0, &Dialect::C.number(largest)),
         Along::LinearRoughness => clamp("sigma", 0.0, "1.0f"),
-        Along::View(_) | Along::Cosine { .. } | Along::RootCosine => clamp("mu", 1e-4, "1.0f"),
+        Along::View(_) | Along::Cosine { .. } | Along::RootCosine => {
+            clamp("mu", spec.least_cos, "1.0f")
+        }
     };
     let clamps: String = spec.axes.iter().map(|axis| one(axis.along)).collect();
     let (parameter, result) = if channels > 1 {
