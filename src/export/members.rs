@@ -24,17 +24,59 @@ pub(super) enum Value {
     Table(Option<String>),
 }
 
+impl Value {
+    /// It as a number, a flag as 0 or 1; `None` of a table.
+    pub(super) fn number(&self) -> Option<f32> {
+        match *self {
+            Self::Flag(flag) => Some(f32::from(u8::from(flag))),
+            Self::Count(count) => Some(count as f32),
+            Self::Number(number) => Some(number),
+            Self::Table(_) => None,
+        }
+    }
+}
+
 /// A table of a shape: rows of so many numbers.
-pub(super) struct Part<'a> {
-    pub(super) name: String,
-    pub(super) values: &'a [f32],
-    pub(super) columns: usize,
+#[derive(Clone, Debug)]
+pub struct Part<'a> {
+    /// Its name, such as `masking` or `albedo_height_correlated`.
+    pub name: String,
+    /// Its rows, one after another.
+    pub values: &'a [f32],
+    /// Numbers in a row.
+    pub columns: usize,
 }
 
 impl Part<'_> {
     /// How many rows it has.
     pub(super) fn rows(&self) -> usize {
         self.values.len() / self.columns
+    }
+}
+
+/// The members of a shape as shaders read them: of the lobe, and of albedos by form of masking.
+pub(super) fn lists(shape: &Shape) -> [Vec<Member>; 3] {
+    let [a, b] = &shape.albedos;
+    [lobe(shape), albedo(a), albedo(b)]
+}
+
+/// What stands before the names of each list, where they stand in one.
+pub(super) const PREFIXES: [&str; 3] = ["", "uncorrelated.", "height_correlated."];
+
+impl Shape {
+    /// The numbers of its description by name, as `student_t.json` has them (`docs/shaders.md`);
+    /// places of tables are not among them. A flag is 0 or 1.
+    pub fn numbers(&self) -> Vec<(String, f32)> {
+        let of = |(prefix, list): (&str, Vec<Member>)| -> Vec<(String, f32)> {
+            let named = |Member { name, value }| Some((format!("{prefix}{name}"), value.number()?));
+            list.into_iter().filter_map(named).collect()
+        };
+        PREFIXES.into_iter().zip(lists(self)).flat_map(of).collect()
+    }
+
+    /// Its tables.
+    pub fn parts(&self) -> Vec<Part<'_>> {
+        parts(self)
     }
 }
 

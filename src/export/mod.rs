@@ -25,6 +25,7 @@ mod shape;
 pub mod texture;
 
 pub use albedo::AlbedoTable;
+pub use members::Part;
 pub use shader::{Language, Storage, texture_rows};
 pub use shape::Shape;
 

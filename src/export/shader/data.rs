@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::super::members::{Member, Part, Value, parts};
+use super::super::members::{Member, PREFIXES, Part, Value, lists, parts};
 use super::super::numbers::as_typed;
 use super::super::{ExportFile, Shape};
-use super::{NAME, lists};
+use super::NAME;
 use crate::store;
 
 /// Raised whenever the order of members or tables changes.
@@ -131,7 +131,7 @@ fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
     }
 
     let mut named = Vec::new();
-    for (prefix, list) in ["", "uncorrelated.", "height_correlated."].into_iter().zip(lists) {
+    for (prefix, list) in PREFIXES.into_iter().zip(lists) {
         let numbers: Vec<f32> = list.iter().map(|member| number(&member.value, &tables)).collect();
         pairs.extend(numbers.chunks(2).map(pair));
         let names = list.into_iter().map(|Member { name, .. }| format!("{prefix}{name}"));
@@ -158,11 +158,8 @@ fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
 /// A member as a number; of a table its place in the shape, which is exact in single precision.
 fn number(value: &Value, tables: &BTreeMap<String, Place>) -> f32 {
     match value {
-        Value::Flag(flag) => f32::from(u8::from(*flag)),
-        Value::Count(count) => *count as f32,
-        Value::Number(number) => *number,
-        Value::Table(None) => 0.0,
         Value::Table(Some(name)) => tables[name].offset as f32,
+        _ => value.number().unwrap_or(0.0),
     }
 }
 

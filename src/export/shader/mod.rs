@@ -6,7 +6,7 @@ mod translate;
 
 use std::fmt::Write;
 
-use super::members::{self, Member, Value};
+use super::members::{Member, Value, lists};
 use super::{ExportFile, Shape};
 pub use data::texture_rows;
 use language::head;
@@ -55,12 +55,6 @@ pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> V
     };
     files.extend(data::files(shapes));
     files
-}
-
-/// The members of a shape as shaders read them: of the lobe, and of albedos by form of masking.
-fn lists(shape: &Shape) -> [Vec<Member>; 3] {
-    let [a, b] = &shape.albedos;
-    [members::lobe(shape), members::albedo(a), members::albedo(b)]
 }
 
 /// All text in WGSL.

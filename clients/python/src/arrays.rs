@@ -1,0 +1,230 @@
+//! Arrays in and out: broadcasting, chunks for every core, and the interpreter's lock.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use numpy::{
+    Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
+    get_array_module,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+/// Items that one call of a function is given, so that it may work on several at once.
+const CHUNK: usize = 1024;
+
+/// How long a function takes for an item, which decides how often an interrupt is looked for.
+#[derive(Clone, Copy)]
+pub(crate) enum Cost {
+    /// Nanoseconds.
+    Lookup,
+    /// Some ten microseconds and more.
+    Quadrature,
+}
+
+impl Cost {
+    /// Items of a chunk, and chunks until an interrupt is looked for.
+    const fn blocks(self) -> [usize; 2] {
+        match self {
+            Self::Lookup => [CHUNK, 4096],
+            Self::Quadrature => [4, 64],
+        }
+    }
+}
+
+/// An argument: an array whose last axis has N numbers, or for N = 1 has any number of axes.
+pub(crate) struct Input<'py, T: Element, const N: usize> {
+    array: PyReadonlyArrayDyn<'py, T>,
+    batch: Vec<usize>,
+}
+
+impl<'py, T: Element + Copy + Send + Sync, const N: usize> Input<'py, T, N> {
+    /// Converts anything that NumPy takes as an array; `name` is that of the argument.
+    pub(crate) fn new(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
+        let py = value.py();
+        // In C's order, which its numbers are taken in.
+        let arguments = (value, T::get_dtype(py), "C");
+        let array = get_array_module(py)?.call_method1("asarray", arguments)?;
+        let array = array.cast_into::<PyArrayDyn<T>>()?.readonly();
+        let shape = array.shape();
+        let batch = match (N, shape) {
+            (1, _) => shape.to_vec(),
+            (_, [batch @ .., last]) if *last == N => batch.to_vec(),
+            _ => {
+                let last = if N == 3 { "x, y, z" } else { "u1, u2" };
+                return Err(PyValueError::new_err(format!(
+                    "{name} has the shape {}: its last axis must have {N} numbers, as in [{last}] \
+                     or an array of shape (N, {N})",
+                    shown(shape)
+                )));
+            }
+        };
+        Ok(Self { array, batch })
+    }
+
+    /// Its shape, without the axis of components.
+    pub(crate) fn batch(&self) -> &[usize] {
+        &self.batch
+    }
+
+    /// All its numbers.
+    pub(crate) fn all(&self) -> Vec<T> {
+        self.array.as_array().iter().copied().collect()
+    }
+
+    /// Its numbers, repeated along the axes that it lacks.
+    fn values(&self, batch: &[usize]) -> Values<'_, T, N> {
+        if self.batch.iter().all(|&n| n == 1) {
+            return Values::One(
+                self.all().try_into().unwrap_or_else(|_| unreachable!("N numbers")),
+            );
+        }
+        if self.batch == batch
+            && let Ok(values) = self.array.as_slice()
+        {
+            return Values::Each(Cow::Borrowed(values.as_chunks().0));
+        }
+        let mut shape = batch.to_vec();
+        if N > 1 {
+            shape.push(N);
+        }
+        let array = self.array.as_array();
+        let all = array.broadcast(shape).expect("the shapes fit");
+        let all: Vec<T> = all.iter().copied().collect();
+        Values::Each(Cow::Owned(all.as_chunks().0.to_vec()))
+    }
+}
+
+/// The items of an argument: one for each result, or the same for all.
+enum Values<'a, T: Clone, const N: usize> {
+    Each(Cow<'a, [[T; N]]>),
+    One([T; N]),
+}
+
+impl<T: Copy, const N: usize> Values<'_, T, N> {
+    fn chunk(&self, range: Range<usize>) -> Cow<'_, [[T; N]]> {
+        match self {
+            Self::Each(all) => Cow::Borrowed(&all[range]),
+            Self::One(one) => Cow::Owned(vec![*one; range.len()]),
+        }
+    }
+}
+
+/// The shape to which several broadcast, by NumPy's rule.
+fn broadcast(shapes: &[(&str, &[usize])]) -> PyResult<Vec<usize>> {
+    let rank = shapes.iter().map(|(_, shape)| shape.len()).max().unwrap_or(0);
+    let mut all = vec![1; rank];
+    for (_, shape) in shapes {
+        let first = rank - shape.len();
+        for (have, &n) in all[first..].iter_mut().zip(*shape) {
+            if *have == 1 {
+                *have = n;
+            } else if n != 1 && n != *have {
+                let each: Vec<String> =
+                    shapes.iter().map(|(name, shape)| format!("{name} {}", shown(shape))).collect();
+                return Err(PyValueError::new_err(format!(
+                    "arguments do not broadcast: without the axis of components they have the \
+                     shapes {}; give as many of each, or one",
+                    each.join(", ")
+                )));
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// A shape as Python writes it.
+pub(crate) fn shown(shape: &[usize]) -> String {
+    match shape {
+        [one] => format!("({one},)"),
+        _ => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// An array of M numbers (for M = 1, without an axis of them) for each item of a batch, filled on
+/// all cores without the interpreter's lock. `fill` is given the range of items.
+fn filled<'py, T, const M: usize>(
+    py: Python<'py>,
+    batch: &[usize],
+    cost: Cost,
+    fill: impl Fn(Range<usize>, &mut [[T; M]]) + Sync,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    T: Element + Copy + Send + Sync,
+{
+    let mut shape = batch.to_vec();
+    if M > 1 {
+        shape.push(M);
+    }
+    let array = PyArrayDyn::<T>::zeros(py, shape, false);
+    {
+        let mut writing = array.readwrite();
+        let out = writing.as_slice_mut().expect("a new array is contiguous").as_chunks_mut().0;
+        let [chunk, chunks] = cost.blocks();
+        let block = chunk * chunks;
+        for (i, out) in out.chunks_mut(block).enumerate() {
+            py.detach(|| {
+                let all = out.par_chunks_mut(chunk).enumerate();
+                all.for_each(|(j, out)| {
+                    let start = i * block + j * chunk;
+                    fill(start..start + out.len(), out);
+                });
+            });
+            py.check_signals()?;
+        }
+    }
+    // NumPy's own functions return a scalar where all arguments are.
+    if batch.is_empty() && M == 1 { array.get_item(()) } else { Ok(array.into_any()) }
+}
+
+/// A function of one argument, chunk by chunk.
+pub(crate) fn map<'py, T, U, const A: usize, const M: usize>(
+    py: Python<'py>,
+    a: &Input<'py, T, A>,
+    cost: Cost,
+    f: impl Fn(&[[T; A]], &mut [[U; M]]) + Sync,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    T: Element + Copy + Send + Sync,
+    U: Element + Copy + Send + Sync,
+{
+    let values = a.values(&a.batch);
+    filled(py, &a.batch, cost, |range, out| f(&values.chunk(range), out))
+}
+
+/// A function of two arguments, which broadcast, chunk by chunk.
+pub(crate) fn map2<'py, T, U, const A: usize, const B: usize, const M: usize>(
+    py: Python<'py>,
+    (name_a, a): (&str, &Input<'py, T, A>),
+    (name_b, b): (&str, &Input<'py, T, B>),
+    cost: Cost,
+    f: impl Fn(&[[T; A]], &[[T; B]], &mut [[U; M]]) + Sync,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    T: Element + Copy + Send + Sync,
+    U: Element + Copy + Send + Sync,
+{
+    let batch = broadcast(&[(name_a, &a.batch), (name_b, &b.batch)])?;
+    let (a, b) = (a.values(&batch), b.values(&batch));
+    filled(py, &batch, cost, |range, out| f(&a.chunk(range.clone()), &b.chunk(range), out))
+}
+
+/// A function of three arguments, which broadcast, chunk by chunk.
+pub(crate) fn map3<'py, T, U, const A: usize, const B: usize, const C: usize, const M: usize>(
+    py: Python<'py>,
+    (name_a, a): (&str, &Input<'py, T, A>),
+    (name_b, b): (&str, &Input<'py, T, B>),
+    (name_c, c): (&str, &Input<'py, T, C>),
+    f: impl Fn(&[[T; A]], &[[T; B]], &[[T; C]], &mut [[U; M]]) + Sync,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    T: Element + Copy + Send + Sync,
+    U: Element + Copy + Send + Sync,
+{
+    let batch = broadcast(&[(name_a, &a.batch), (name_b, &b.batch), (name_c, &c.batch)])?;
+    let (a, b, c) = (a.values(&batch), b.values(&batch), c.values(&batch));
+    filled(py, &batch, Cost::Lookup, |range, out| {
+        f(&a.chunk(range.clone()), &b.chunk(range.clone()), &c.chunk(range), out)
+    })
+}

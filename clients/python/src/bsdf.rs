@@ -1,0 +1,272 @@
+//! Complete materials.
+
+use glam::Vec3;
+use microfacet_sampler::{
+    AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Event, Metal, Plastic,
+};
+use pyo3::prelude::*;
+use pyo3::types::{PyEllipsis, PySlice, PyTuple};
+
+use crate::arrays::{Cost, Input, map2, map3};
+use crate::lobe::{PyLobe, each2};
+use crate::words::{self, refused, unbound};
+
+/// A bidirectional scattering distribution function in three channels.
+///
+/// Arrays of directions have the shape (..., 3): unit vectors in the tangent frame, n = +z, both
+/// away from the surface; z < 0 is inside. f excludes the cosine, densities are per steradian of l.
+/// Where all events are deltas (a smooth surface) f and density are 0. transport is "radiance", for
+/// paths from the camera, or "importance".
+#[pyclass(name = "Bsdf", module = "microfacet", subclass, frozen)]
+pub(crate) struct PyBsdf {
+    bsdf: AnyBsdf,
+    about: String,
+}
+
+impl PyBsdf {
+    pub(crate) fn new(bsdf: impl Into<AnyBsdf>, about: String) -> Self {
+        Self { bsdf: bsdf.into(), about }
+    }
+}
+
+/// Lights drawn for views, arrays of one shape: a path that ends has l, weight and pdf of 0.
+#[pyclass(name = "BsdfSample", module = "microfacet", frozen, get_all)]
+pub(crate) struct PySample {
+    /// Directions of light, shape (..., 3).
+    l: Py<PyAny>,
+    /// f |cos|/pdf, shape (..., 3); of a delta what it scatters over the probability of its choice.
+    weight: Py<PyAny>,
+    /// Densities per steradian; 0 of a delta.
+    pdf: Py<PyAny>,
+    /// n_l/n_v, 1 of a reflection.
+    eta: Py<PyAny>,
+    /// Whether the light is on the other side of the surface.
+    transmitted: Py<PyAny>,
+    /// Whether the event is a delta.
+    delta: Py<PyAny>,
+}
+
+#[pymethods]
+impl PySample {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let shape = self.pdf.bind(py).getattr("shape")?;
+        Ok(format!("BsdfSample of shape {}", shape.str()?))
+    }
+}
+
+#[pymethods]
+impl PyBsdf {
+    /// f(v, l), shape (..., 3), without the cosine.
+    #[pyo3(signature = (v, l, transport="radiance"))]
+    fn eval<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Bound<'py, PyAny>,
+        l: &Bound<'py, PyAny>,
+        transport: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mode = words::transport(transport)?;
+        let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
+        let eval = |v: &[[f32; 3]], l: &[[f32; 3]], out: &mut [[f32; 3]]| {
+            for ((v, l), out) in v.iter().zip(l).zip(out) {
+                *out = self.bsdf.eval(Vec3::from_array(*v), Vec3::from_array(*l), mode);
+            }
+        };
+        map2(py, ("v", &v), ("l", &l), Cost::Lookup, eval)
+    }
+
+    /// The density with which sample draws l for v, per steradian.
+    fn pdf<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Bound<'py, PyAny>,
+        l: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
+        let pdf = each2(|v, l| self.bsdf.pdf(v, l));
+        map2(py, ("v", &v), ("l", &l), Cost::Lookup, pdf)
+    }
+
+    /// Draws lights for views v from uniform numbers: u, shape (..., 2), for the direction and
+    /// choice, shape (...), among events.
+    #[pyo3(signature = (v, choice, u, transport="radiance"))]
+    fn sample<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Bound<'py, PyAny>,
+        choice: &Bound<'py, PyAny>,
+        u: &Bound<'py, PyAny>,
+        transport: &str,
+    ) -> PyResult<PySample> {
+        let mode = words::transport(transport)?;
+        let (v, choice) = (Input::new("v", v)?, Input::new("choice", choice)?);
+        let u = Input::new("u", u)?;
+        let draw = |v: &[[f32; 3]], choice: &[[f32; 1]], u: &[[f32; 2]], out: &mut [[f32; 10]]| {
+            for (((v, [choice]), u), out) in v.iter().zip(choice).zip(u).zip(out) {
+                if let Some(sample) = self.bsdf.sample(Vec3::from_array(*v), *choice, *u, mode) {
+                    let ([x, y, z], [r, g, b]) = (sample.l.to_array(), sample.weight);
+                    let other = f32::from(u8::from(sample.event == Event::Transmission));
+                    let delta = f32::from(u8::from(sample.delta));
+                    *out = [x, y, z, r, g, b, sample.pdf, sample.eta, other, delta];
+                }
+            }
+        };
+        let all = map3(py, ("v", &v), ("choice", &choice), ("u", &u), draw)?;
+        let column = |index: Bound<'py, PyAny>| -> PyResult<Bound<'py, PyAny>> {
+            let index = PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), index])?;
+            all.get_item(index)
+        };
+        let vector = |at: isize| column(PySlice::new(py, at, at + 3, 1).into_any());
+        let number = |at: i32| column(at.into_pyobject(py)?.into_any());
+        let flag = |at: i32| number(at)?.rich_compare(0, pyo3::basic::CompareOp::Ne);
+        Ok(PySample {
+            l: vector(0)?.unbind(),
+            weight: vector(3)?.unbind(),
+            pdf: number(6)?.unbind(),
+            eta: number(7)?.unbind(),
+            transmitted: flag(8)?.unbind(),
+            delta: flag(9)?.unbind(),
+        })
+    }
+
+    /// Whether all events are deltas, so that eval is 0 everywhere.
+    #[getter]
+    fn is_delta(&self) -> bool {
+        Bsdf::<3>::is_delta(&self.bsdf)
+    }
+
+    fn __repr__(&self) -> &str {
+        &self.about
+    }
+}
+
+/// A rough conductor of a lobe: every facet reflects.
+///
+/// The reflectance is one of: metal, a name such as "gold"; eta and k, a complex index of
+/// refraction; f0, Schlick's reflectance at normal incidence, with f82, if given, OpenPBR's tint at
+/// 82 degrees; none of them, F = 1. Colours are a number or three. compensation, "none", "turquin"
+/// or "kulla-conty", gives back the light of further bounces; ValueError where the tables of the
+/// lobe have no albedo for it.
+#[pyclass(name = "Conductor", module = "microfacet", extends = PyBsdf, frozen)]
+pub(crate) struct PyConductor {}
+
+#[pymethods]
+impl PyConductor {
+    #[new]
+    #[pyo3(signature = (lobe, *, f0=None, f82=None, eta=None, k=None, metal=None,
+                        masking="height-correlated", compensation="none", stand_in=false))]
+    #[expect(clippy::too_many_arguments, reason = "by keyword")]
+    fn new(
+        lobe: &PyLobe,
+        f0: Option<&Bound<'_, PyAny>>,
+        f82: Option<&Bound<'_, PyAny>>,
+        eta: Option<&Bound<'_, PyAny>>,
+        k: Option<&Bound<'_, PyAny>>,
+        metal: Option<&str>,
+        masking: &str,
+        compensation: &str,
+        stand_in: bool,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let fresnel: ConductorFresnel = match (metal, eta, k, f0, f82) {
+            (None, None, None, None, None) => ConductorFresnel::mirror(),
+            (Some(metal), None, None, None, None) => {
+                let why = |why| refused(format!("metal \"{metal}\": {why}"));
+                metal.parse::<Metal>().map_err(why)?.into()
+            }
+            (None, Some(eta), Some(k), None, None) => {
+                ConductorFresnel::exact(words::colour("eta", eta)?, words::colour("k", k)?)
+                    .map_err(unbound)?
+            }
+            (None, None, None, Some(f0), None) => {
+                ConductorFresnel::schlick(words::reflectance("f0", f0)?).map_err(unbound)?
+            }
+            (None, None, None, Some(f0), Some(tint)) => ConductorFresnel::f82_tint(
+                words::reflectance("f0", f0)?,
+                words::reflectance("f82", tint)?,
+            )
+            .map_err(unbound)?,
+            _ => {
+                return Err(refused(
+                    "the reflectance must be one of metal, eta with k, f0, and f0 with f82",
+                ));
+            }
+        };
+        let conductor = Conductor::new(lobe.lobe.clone(), fresnel)
+            .with_masking(words::masking(masking)?)
+            .compensated(
+                &lobe.tables,
+                words::compensation(compensation)?,
+                words::stand_in(stand_in),
+            )
+            .map_err(unbound)?;
+        let about = format!("Conductor({})", lobe.about());
+        Ok(PyClassInitializer::from(PyBsdf::new(conductor, about)).add_subclass(Self {}))
+    }
+}
+
+/// A rough dielectric of a lobe, of index eta in [1e-3, 1e3], inside over outside: every facet
+/// reflects and refracts.
+///
+/// A compensation needs a set of tables that was baked for the material; see Conductor.
+#[pyclass(name = "Dielectric", module = "microfacet", extends = PyBsdf, frozen)]
+pub(crate) struct PyDielectric {}
+
+#[pymethods]
+impl PyDielectric {
+    #[new]
+    #[pyo3(signature = (lobe, eta, *, masking="height-correlated", compensation="none",
+                        stand_in=false))]
+    fn new(
+        lobe: &PyLobe,
+        eta: f64,
+        masking: &str,
+        compensation: &str,
+        stand_in: bool,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let dielectric = Dielectric::new(lobe.lobe.clone(), eta)
+            .map_err(unbound)?
+            .with_masking(words::masking(masking)?)
+            .compensated(
+                &lobe.tables,
+                words::compensation(compensation)?,
+                words::stand_in(stand_in),
+            )
+            .map_err(unbound)?;
+        let about = format!("Dielectric({}, eta={eta})", lobe.about());
+        Ok(PyClassInitializer::from(PyBsdf::new(dielectric, about)).add_subclass(Self {}))
+    }
+}
+
+/// A rough dielectric coat of a lobe, of index eta, over a diffuse base, a colour in [0, 1].
+///
+/// A rough coat needs a set of tables that was baked for it, without compensation too.
+#[pyclass(name = "Plastic", module = "microfacet", extends = PyBsdf, frozen)]
+pub(crate) struct PyPlastic {}
+
+#[pymethods]
+impl PyPlastic {
+    #[new]
+    #[pyo3(signature = (lobe, eta, base, *, masking="height-correlated", compensation="none",
+                        stand_in=false))]
+    fn new(
+        lobe: &PyLobe,
+        eta: f64,
+        base: &Bound<'_, PyAny>,
+        masking: &str,
+        compensation: &str,
+        stand_in: bool,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let plastic = Plastic::new_masked(
+            lobe.lobe.clone(),
+            eta,
+            words::reflectance("base", base)?,
+            words::masking(masking)?,
+            &lobe.tables,
+            words::compensation(compensation)?,
+            words::stand_in(stand_in),
+        )
+        .map_err(unbound)?;
+        let about = format!("Plastic({}, eta={eta})", lobe.about());
+        Ok(PyClassInitializer::from(PyBsdf::new(plastic, about)).add_subclass(Self {}))
+    }
+}

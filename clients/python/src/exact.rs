@@ -1,0 +1,275 @@
+//! The model in double precision.
+
+use std::sync::OnceLock;
+
+use glam::DVec3;
+use microfacet_model::{
+    AlbedoIntegrator, Ellipsoid, MicrofacetDistribution, Shape, Skew, StudentT,
+};
+use pyo3::prelude::*;
+
+use crate::arrays::{Cost, Input, map, map2};
+use crate::lobe::{View, azimuth_matters, view};
+use crate::words::{self, refused};
+
+/// Error that the quadrature of albedos aims at.
+const TOLERANCE: f64 = 1e-9;
+
+/// Of a tilted lobe, whose clamped masking has a kink.
+const TOLERANCE_TILTED: f64 = 1e-6;
+
+/// A member of the family, or one seen through a matrix.
+enum Model {
+    Family(StudentT),
+    Skewed(Box<Ellipsoid>),
+}
+
+/// Calls one function of whichever it is.
+macro_rules! each {
+    ($model:expr, $one:ident => $call:expr) => {
+        match $model {
+            Model::Family($one) => $call,
+            Model::Skewed($one) => $call,
+        }
+    };
+}
+
+/// A lobe by the model, in double precision: closed forms, quadrature, and roots to rounding.
+///
+/// Arrays of directions have the shape (..., 3): unit vectors in the tangent frame, n = +z, away
+/// from the surface. Arguments broadcast; results are float64.
+#[pyclass(name = "Lobe", module = "microfacet.exact", subclass, frozen)]
+pub(crate) struct ExactLobe {
+    model: Model,
+    about: String,
+    integrator: OnceLock<AlbedoIntegrator>,
+}
+
+impl ExactLobe {
+    fn new(model: Model, about: String) -> Self {
+        Self { model, about, integrator: OnceLock::new() }
+    }
+
+    fn shape(&self) -> &Shape {
+        each!(&self.model, lobe => lobe.shape())
+    }
+
+    /// Made once, in some milliseconds.
+    fn integrator(&self) -> &AlbedoIntegrator {
+        let tolerance = match self.model {
+            Model::Family(_) => TOLERANCE,
+            Model::Skewed(_) => TOLERANCE_TILTED,
+        };
+        self.integrator.get_or_init(|| AlbedoIntegrator::new(self.shape().clone(), tolerance))
+    }
+
+    /// E of a view from above, given by cosine and azimuth.
+    fn directional(
+        &self,
+        cos: f64,
+        phi: f64,
+    ) -> Result<[f64; 2], microfacet_model::ParameterError> {
+        let white = |_| [1.0];
+        let albedo = match &self.model {
+            Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => {
+                self.integrator().reflection(lobe.sigma_x(), cos, white)
+            }
+            Model::Family(lobe) => {
+                let sigma = [lobe.sigma_x(), lobe.sigma_y()];
+                self.integrator().reflection_anisotropic(sigma, cos, phi, white)
+            }
+            Model::Skewed(lobe) => self.integrator().reflection_skewed(lobe, cos, phi, white),
+        }?;
+        Ok([albedo.uncorrelated[0], albedo.height_correlated[0]])
+    }
+}
+
+/// f of a direction, one by one.
+fn one(f: impl Fn(DVec3) -> f64 + Sync) -> impl Fn(&[[f64; 3]], &mut [[f64; 1]]) + Sync {
+    move |w, out| {
+        for (w, out) in w.iter().zip(out) {
+            *out = [f(DVec3::from_array(*w))];
+        }
+    }
+}
+
+/// f of two directions, one by one.
+fn two(
+    f: impl Fn(DVec3, DVec3) -> f64 + Sync,
+) -> impl Fn(&[[f64; 3]], &[[f64; 3]], &mut [[f64; 1]]) + Sync {
+    move |a, b, out| {
+        for ((a, b), out) in a.iter().zip(b).zip(out) {
+            *out = [f(DVec3::from_array(*a), DVec3::from_array(*b))];
+        }
+    }
+}
+
+#[pymethods]
+impl ExactLobe {
+    /// The normal distribution function D(m), per steradian.
+    fn d<'py>(&self, py: Python<'py>, m: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let d = one(|m| each!(&self.model, lobe => lobe.d(m)));
+        map(py, &Input::new("m", m)?, Cost::Lookup, d)
+    }
+
+    /// Smith's masking G1(v), in [0, 1].
+    fn g1<'py>(&self, py: Python<'py>, v: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let g1 = one(|v| each!(&self.model, lobe => lobe.g1(v)));
+        map(py, &Input::new("v", v)?, Cost::Lookup, g1)
+    }
+
+    /// Smith's Lambda(v) = 1/G1 - 1.
+    fn lambda_<'py>(&self, py: Python<'py>, v: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let lambda = one(|v| each!(&self.model, lobe => lobe.lambda(v)));
+        map(py, &Input::new("v", v)?, Cost::Lookup, lambda)
+    }
+
+    /// Masking and shadowing G2(v, l), in [0, 1]; masking is "height-correlated" or "uncorrelated".
+    #[pyo3(signature = (v, l, masking="height-correlated"))]
+    fn g2<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Bound<'py, PyAny>,
+        l: &Bound<'py, PyAny>,
+        masking: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let form = words::masking(masking)?;
+        let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
+        let g2 = two(|v, l| each!(&self.model, lobe => lobe.g2(v, l, form)));
+        map2(py, ("v", &v), ("l", &l), Cost::Lookup, g2)
+    }
+
+    /// Draws visible normals m, shape (..., 3), from views v and uniform numbers u, shape (..., 2),
+    /// by inverting distributions to rounding, in some ten microseconds each.
+    fn sample_visible_normal<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Bound<'py, PyAny>,
+        u: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
+        let draw = |v: &[[f64; 3]], u: &[[f64; 2]], m: &mut [[f64; 3]]| {
+            for ((v, u), m) in v.iter().zip(u).zip(m) {
+                let v = DVec3::from_array(*v);
+                *m = each!(&self.model, lobe => lobe.sample_visible_normal(v, *u)).to_array();
+            }
+        };
+        map2(py, ("v", &v), ("u", &u), Cost::Quadrature, draw)
+    }
+
+    /// The density of visible normals, G1(v) max(0, v.m) D(m)/(v.n), per steradian of m.
+    fn visible_normal_pdf<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Bound<'py, PyAny>,
+        m: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (v, m) = (Input::new("v", v)?, Input::new("m", m)?);
+        let pdf = two(|v, m| each!(&self.model, lobe => lobe.visible_normal_pdf(v, m)));
+        map2(py, ("v", &v), ("m", &m), Cost::Lookup, pdf)
+    }
+
+    /// The directional albedo E(v) of one bounce with F = 1, in [0, 1], by quadrature: to 1e-9 of a
+    /// lobe of the family, in some hundred microseconds; to 1e-6 of an ellipsoid.
+    ///
+    /// v are directions, shape (..., 3), or one number, which is cos theta and enough for a round
+    /// lobe; cosines in an array go into cos_theta instead. A view from below is NaN.
+    #[pyo3(signature = (v=None, masking="height-correlated", *, cos_theta=None))]
+    fn albedo<'py>(
+        &self,
+        py: Python<'py>,
+        v: Option<&Bound<'py, PyAny>>,
+        masking: &str,
+        cos_theta: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let form = words::masking(masking)?;
+        let which = usize::from(form == microfacet_model::Masking::HeightCorrelated);
+        // Rounding may take the cosine of a unit vector beyond 1.
+        let of = |cos: f64, phi: f64| {
+            let cos = if cos <= 1.0 + 1e-12 { cos.min(1.0) } else { cos };
+            self.directional(cos, phi).map_or(f64::NAN, |both| both[which])
+        };
+        py.detach(|| self.integrator());
+        match view::<f64>(v, cos_theta)? {
+            View::Directions(v) => {
+                let albedo = one(|v| of(v.z, v.y.atan2(v.x)));
+                map(py, &v, Cost::Quadrature, albedo)
+            }
+            View::Cosines(cos) => {
+                match &self.model {
+                    Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => {}
+                    _ => return Err(azimuth_matters()),
+                }
+                map(py, &cos, Cost::Quadrature, |cos: &[[f64; 1]], out: &mut [[f64; 1]]| {
+                    for ([cos], out) in cos.iter().zip(out) {
+                        *out = [of(*cos, 0.0)];
+                    }
+                })
+            }
+        }
+    }
+
+    /// The average of E over the hemisphere of views, weighted by the cosine, in [0, 1]; of round
+    /// lobes alone.
+    #[pyo3(signature = (masking="height-correlated"))]
+    fn albedo_average(&self, py: Python<'_>, masking: &str) -> PyResult<f64> {
+        let form = words::masking(masking)?;
+        match &self.model {
+            Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => {
+                let average = || self.integrator().average(lobe.sigma_x(), |_| [1.0]);
+                Ok(py.detach(average).map_err(refused)?.of(form)[0])
+            }
+            _ => Err(refused(
+                "averages are integrated for round lobes alone; average albedo(v) over views",
+            )),
+        }
+    }
+
+    /// Shape.
+    #[getter]
+    fn gamma(&self) -> f64 {
+        self.shape().gamma()
+    }
+
+    fn __repr__(&self) -> &str {
+        &self.about
+    }
+}
+
+/// A member of the Student-t family in double precision: roughness sigma > 0, a number or (sigma_x,
+/// sigma_y), and shape gamma in (1.5, inf].
+#[pyclass(name = "StudentT", module = "microfacet.exact", extends = ExactLobe, frozen)]
+pub(crate) struct ExactStudentT {}
+
+#[pymethods]
+impl ExactStudentT {
+    #[new]
+    fn new(sigma: &Bound<'_, PyAny>, gamma: f64) -> PyResult<PyClassInitializer<Self>> {
+        let lobe = StudentT::new(words::sigma(sigma)?, gamma).map_err(refused)?;
+        let about =
+            format!("StudentT(sigma=({}, {}), gamma={gamma})", lobe.sigma_x(), lobe.sigma_y());
+        Ok(PyClassInitializer::from(ExactLobe::new(Model::Family(lobe), about))
+            .add_subclass(Self {}))
+    }
+}
+
+/// A Student-t lobe tilted and turned, in double precision; arguments are those of
+/// microfacet.Ellipsoid.
+#[pyclass(name = "Ellipsoid", module = "microfacet.exact", extends = ExactLobe, frozen)]
+pub(crate) struct ExactEllipsoid {}
+
+#[pymethods]
+impl ExactEllipsoid {
+    #[new]
+    fn new(
+        sigma: &Bound<'_, PyAny>,
+        theta: &Bound<'_, PyAny>,
+        gamma: f64,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let skew = Skew::new(words::sigma(sigma)?, words::angles(theta)?).map_err(refused)?;
+        let lobe = Ellipsoid::new(skew, gamma).map_err(refused)?;
+        let about = format!("Ellipsoid(gamma={gamma})");
+        Ok(PyClassInitializer::from(ExactLobe::new(Model::Skewed(Box::new(lobe)), about))
+            .add_subclass(Self {}))
+    }
+}

@@ -1,0 +1,41 @@
+//! The extension module of the Python package `microfacet`.
+//!
+//! [`arrays`] broadcasts arguments and runs functions of them on all cores; [`words`] turns words
+//! and errors into those of Python. [`tables`] loads and bakes sets, [`lobe`] and [`bsdf`] are the
+//! run-time crate, [`exact`] the model, and [`shape`] the tables of a shape for lookups elsewhere.
+
+use pyo3::prelude::*;
+
+mod arrays;
+mod bsdf;
+mod exact;
+mod lobe;
+mod shape;
+mod tables;
+mod words;
+
+/// Tables, lobes and BSDFs of the Student-t family.
+#[pymodule]
+mod _microfacet {
+    use pyo3::prelude::*;
+
+    use crate::exact::{ExactEllipsoid, ExactLobe, ExactStudentT};
+
+    #[pymodule_export]
+    use crate::bsdf::{PyBsdf, PyConductor, PyDielectric, PyPlastic, PySample};
+    #[pymodule_export]
+    use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT};
+    #[pymodule_export]
+    use crate::shape::{PyDielectricAlbedo, PyShape};
+    #[pymodule_export]
+    use crate::tables::{PyTables, bake, inspect};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // Under other names here; `microfacet.exact` gives them theirs.
+        module.add("ExactLobe", module.py().get_type::<ExactLobe>())?;
+        module.add("ExactStudentT", module.py().get_type::<ExactStudentT>())?;
+        module.add("ExactEllipsoid", module.py().get_type::<ExactEllipsoid>())?;
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,70 @@
+//! Tables of one shape for lookups elsewhere, and albedos of dielectrics.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use microfacet_bake::export::Shape;
+use microfacet_sampler::{DielectricAlbedo, Tables};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::Input;
+use crate::lobe::{View, of_views};
+use crate::words::{one_of, refused};
+
+/// The tables of one shape gamma for any roughness, as exports for C and shaders have them
+/// (docs/shaders.md), for lookups that NumPy or another library does.
+#[pyclass(name = "Shape", module = "microfacet", frozen, get_all)]
+pub(crate) struct PyShape {
+    /// The shape.
+    gamma: f64,
+    /// The numbers of its description by name; flags are 0 or 1.
+    members: Py<PyDict>,
+    /// Its tables by name, float32 of shape (rows, columns).
+    tables: Py<PyDict>,
+}
+
+impl PyShape {
+    pub(crate) fn bind(py: Python<'_>, set: &Arc<Tables>, gamma: f64) -> PyResult<Self> {
+        let shape = py.detach(|| Shape::bind(set, gamma)).map_err(refused)?;
+        let (members, tables) = (PyDict::new(py), PyDict::new(py));
+        for (name, value) in shape.numbers() {
+            members.set_item(name, value)?;
+        }
+        for part in shape.parts() {
+            let rows = part.values.len() / part.columns;
+            let array = PyArray1::from_slice(py, part.values).reshape([rows, part.columns])?;
+            tables.set_item(part.name, array)?;
+        }
+        Ok(Self { gamma, members: members.into(), tables: tables.into() })
+    }
+}
+
+#[pymethods]
+impl PyShape {
+    fn __repr__(&self) -> String {
+        format!("Shape(gamma={})", self.gamma)
+    }
+}
+
+/// What one bounce off and through a rough dielectric returns.
+#[pyclass(name = "DielectricAlbedo", module = "microfacet", frozen)]
+pub(crate) struct PyDielectricAlbedo(pub(crate) DielectricAlbedo);
+
+#[pymethods]
+impl PyDielectricAlbedo {
+    /// The shares of light that are reflected and transmitted, shape (..., 2), each in [0, 1], for
+    /// a view of this cosine on its side of the surface, "outside" or "inside".
+    fn shares<'py>(
+        &self,
+        py: Python<'py>,
+        cos_theta: &Bound<'py, PyAny>,
+        side: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let sides = [("outside", &self.0.outside), ("inside", &self.0.inside)];
+        let curve = one_of("side", side, &sides)?;
+        let views = View::Cosines(Input::new("cos_theta", cos_theta)?);
+        of_views(py, views, |v: Vec3| curve.eval(v))
+    }
+}

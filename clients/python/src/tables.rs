@@ -1,0 +1,264 @@
+//! Sets of tables: loaded, baked and described.
+
+use std::path::PathBuf;
+use std::sync::{Arc, LazyLock};
+use std::thread;
+use std::time::Duration;
+
+use microfacet_bake::cache::Cache;
+use microfacet_bake::plan::{AlbedoWish, Options, Plan};
+use microfacet_bake::scene::{self, Scene};
+use microfacet_bake::store::{self, Format};
+use microfacet_bake::table_set::{Settings, Target, bake_with};
+use microfacet_bake::table_spec::Quality;
+use microfacet_sampler::internals::describe;
+use microfacet_sampler::{Precision, Tables};
+use pyo3::exceptions::{PyFileNotFoundError, PyRuntimeError, PyUserWarning};
+use pyo3::prelude::*;
+
+use crate::bsdf::PyBsdf;
+use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT, named};
+use crate::shape::{PyDielectricAlbedo, PyShape};
+use crate::words::{self, one_of, refused, unbound, unread};
+
+/// How long an interrupt waits for its answer while a bake runs.
+const PATIENCE: Duration = Duration::from_millis(20);
+
+/// The set compiled in.
+pub(crate) fn embedded() -> Arc<Tables> {
+    static EMBEDDED: LazyLock<Arc<Tables>> = LazyLock::new(|| Arc::new(Tables::embedded()));
+    Arc::clone(&EMBEDDED)
+}
+
+/// A set of tables: those built in, or of a file or folder that `microfacet-bake bake` wrote.
+#[pyclass(name = "Tables", module = "microfacet", frozen)]
+pub(crate) struct PyTables {
+    pub(crate) set: Arc<Tables>,
+    origin: String,
+}
+
+#[pymethods]
+impl PyTables {
+    #[new]
+    #[pyo3(signature = (path=None))]
+    fn new(path: Option<PathBuf>) -> PyResult<Self> {
+        let Some(path) = path else {
+            return Ok(Self { set: embedded(), origin: "built in".into() });
+        };
+        let origin = path.display().to_string();
+        if !path.try_exists().unwrap_or(true) {
+            return Err(PyFileNotFoundError::new_err(format!(
+                "{origin}: no such file or folder; name what `microfacet-bake bake` wrote"
+            )));
+        }
+        Ok(Self { set: Arc::new(store::read(&path).map_err(unread)?), origin })
+    }
+
+    /// The Student-t lobe of roughness sigma, a number or (sigma_x, sigma_y), each in [1e-8, 1e6],
+    /// and shape gamma, which the tables must cover: 2 is GGX, inf is Beckmann.
+    fn student_t(
+        &self,
+        py: Python<'_>,
+        sigma: &Bound<'_, PyAny>,
+        gamma: f64,
+    ) -> PyResult<Py<PyStudentT>> {
+        PyStudentT::make(py, &self.set, sigma, gamma)
+    }
+
+    /// A Student-t lobe tilted and turned by the angles theta = (x, y, z) in radians.
+    fn ellipsoid(
+        &self,
+        py: Python<'_>,
+        sigma: &Bound<'_, PyAny>,
+        theta: &Bound<'_, PyAny>,
+        gamma: f64,
+    ) -> PyResult<Py<PyEllipsoid>> {
+        PyEllipsoid::make(py, &self.set, sigma, theta, gamma)
+    }
+
+    /// The lobe of a material by its name in the recipe that the set was baked from.
+    fn material(&self, name: &str) -> PyResult<PyLobe> {
+        named(self, name)
+    }
+
+    /// The BSDF of a material by name: its lobe, reflectance and form of masking.
+    ///
+    /// compensation is "none", "turquin" or "kulla-conty".
+    #[pyo3(signature = (name, compensation="none", *, stand_in=false))]
+    fn bsdf(&self, name: &str, compensation: &str, stand_in: bool) -> PyResult<PyBsdf> {
+        let form = words::compensation(compensation)?;
+        let bsdf = self.set.bsdf(name, form, words::stand_in(stand_in)).map_err(unbound)?;
+        Ok(PyBsdf::new(bsdf, format!("Bsdf({name:?})")))
+    }
+
+    /// The names of the materials of the recipe; none for a set of ranges.
+    #[getter]
+    fn materials(&self) -> Vec<String> {
+        self.set.provenance().materials.iter().map(|entry| entry.name.clone()).collect()
+    }
+
+    /// Whether student_t serves the shape gamma.
+    fn covers(&self, gamma: f64) -> bool {
+        self.set.tabulates(gamma)
+    }
+
+    /// What one bounce off and through a dielectric of the round lobe returns, of index eta, inside
+    /// over outside; a set has it where its recipe has such a material.
+    #[pyo3(signature = (sigma, gamma, eta, masking="height-correlated"))]
+    fn dielectric_albedo(
+        &self,
+        sigma: f64,
+        gamma: f64,
+        eta: f64,
+        masking: &str,
+    ) -> PyResult<PyDielectricAlbedo> {
+        let form = words::masking(masking)?;
+        self.set.dielectric_albedo(sigma, gamma, eta, form).map(PyDielectricAlbedo).map_err(refused)
+    }
+
+    /// The tables of one shape, for lookups in another language: gamma must be covered, or 2.
+    fn shape(&self, py: Python<'_>, gamma: f64) -> PyResult<PyShape> {
+        PyShape::bind(py, &self.set, gamma)
+    }
+
+    /// The description of the set, as `microfacet-bake inspect --json` prints it.
+    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let text = describe(self.set.provenance(), self.set.tables()).map_err(refused)?;
+        let all = PyModule::import(py, "json")?.call_method1("loads", (text,))?;
+        // It is a checksum of a file's bytes, and there may be none.
+        all.call_method1("pop", ("checksum", py.None()))?;
+        Ok(all)
+    }
+
+    /// Writes the set into a folder, which is created: tables.safetensors.
+    fn write(&self, folder: PathBuf) -> PyResult<()> {
+        store::write(&folder, &self.set, &[Format::Safetensors]).map_err(unread)?;
+        Ok(())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Tables({}, {} tables)", self.origin, self.set.tables().len())
+    }
+}
+
+/// Bakes the tables of a recipe or scene, or without one those of every sigma and gamma.
+///
+/// recipe is a path (.toml, .pbrt, .xml, .gltf, .glb, .mtlx), or the text of a recipe, which has
+/// more than one line (docs/recipe.md). With `out` the set is written into that folder, too; an
+/// older set in it is replaced. quality is "draft", "default" or "high", precision "f32", "f16" or
+/// "u16"; max_error or max_bytes take the place of both. albedo=True bakes directional albedos for
+/// every rough material, False for none; by default those of a recipe that state `fresnel` get
+/// them. max_memory is in bytes. Assumptions about a scene are warnings. Finished tables are kept
+/// in the user's cache unless cache=False, or in the folder that cache names.
+#[pyfunction]
+#[pyo3(signature = (recipe=None, out=None, *, quality="default", precision="f32", max_error=None,
+                    max_bytes=None, albedo=None, tabulate_ggx=false, cache=CacheArg::Flag(true),
+                    max_memory=4 << 30))]
+#[expect(clippy::too_many_arguments, reason = "by keyword, as options of the command")]
+pub(crate) fn bake(
+    py: Python<'_>,
+    recipe: Option<Recipe>,
+    out: Option<PathBuf>,
+    quality: &str,
+    precision: &str,
+    max_error: Option<f64>,
+    max_bytes: Option<usize>,
+    albedo: Option<bool>,
+    tabulate_ggx: bool,
+    cache: CacheArg,
+    max_memory: u64,
+) -> PyResult<PyTables> {
+    let qualities =
+        [("draft", Quality::Draft), ("default", Quality::Default), ("high", Quality::High)];
+    let quality = one_of("quality", quality, &qualities)?;
+    let precisions = [("f32", Precision::F32), ("f16", Precision::F16), ("u16", Precision::U16)];
+    let precision = one_of("precision", precision, &precisions)?;
+    let target = match (max_error, max_bytes) {
+        (None, None) => Target::Quality(quality, precision),
+        (Some(error), None) => Target::MaxError(error),
+        (None, Some(bytes)) => Target::MaxBytes(bytes),
+        _ => return Err(refused("give either max_error or max_bytes")),
+    };
+    let plan = match recipe {
+        None => general(albedo),
+        Some(recipe) => {
+            let scene = recipe.scene()?;
+            for warning in &scene.warnings {
+                let warning = std::ffi::CString::new(warning.replace('\0', " "))?;
+                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &warning, 1)?;
+            }
+            let albedo = match albedo {
+                None => AlbedoWish::Recipes,
+                Some(true) => AlbedoWish::All,
+                Some(false) => AlbedoWish::None,
+            };
+            let options = Options { tabulate_ggx, albedo, ..Options::default() };
+            Plan::new(&scene, options).map_err(refused)?
+        }
+    };
+    let cache = match cache {
+        CacheArg::Flag(true) => Cache::user(),
+        CacheArg::Flag(false) => Cache::none(),
+        CacheArg::Folder(folder) => Cache::new(folder),
+    };
+    let settings = Settings { cache, max_memory, ..Settings::default() };
+    // In a thread of its own, so that an interrupt is answered while it works.
+    let work = thread::spawn(move || bake_with(&plan, target, settings).map(|baked| baked.set));
+    while !work.is_finished() {
+        py.detach(|| thread::sleep(PATIENCE));
+        py.check_signals()?;
+    }
+    let set = work.join().map_err(|_| PyRuntimeError::new_err("the bake has failed"))?;
+    let set = set.map_err(refused)?;
+    let tables = PyTables { set: Arc::new(set), origin: "baked".into() };
+    if let Some(out) = out {
+        tables.write(out)?;
+    }
+    Ok(tables)
+}
+
+/// The description of a set of tables, as `microfacet-bake inspect --json` prints it: of a file or
+/// folder, or of the set built in.
+#[pyfunction]
+#[pyo3(signature = (path=None))]
+pub(crate) fn inspect(py: Python<'_>, path: Option<PathBuf>) -> PyResult<Bound<'_, PyAny>> {
+    PyTables::new(path)?.describe(py)
+}
+
+/// The plan of all shapes.
+fn general(albedo: Option<bool>) -> Plan {
+    let mut plan = Plan::general();
+    if albedo == Some(false) {
+        plan.albedos.clear();
+    }
+    plan
+}
+
+/// A recipe's text, or where it is.
+#[derive(FromPyObject)]
+pub(crate) enum Recipe {
+    #[pyo3(transparent)]
+    Text(String),
+    #[pyo3(transparent)]
+    Path(PathBuf),
+}
+
+impl Recipe {
+    fn scene(self) -> PyResult<Scene> {
+        let scene = match self {
+            Self::Text(text) if text.contains('\n') => Scene::from_recipe_str(&text),
+            Self::Text(path) => scene::load(path.as_ref()),
+            Self::Path(path) => scene::load(&path),
+        };
+        scene.map_err(refused)
+    }
+}
+
+/// Whether to use the user's cache, or a folder for one.
+#[derive(FromPyObject)]
+pub(crate) enum CacheArg {
+    #[pyo3(transparent)]
+    Flag(bool),
+    #[pyo3(transparent)]
+    Folder(PathBuf),
+}

@@ -1,0 +1,105 @@
+//! What Python passes as numbers and words, and errors as Python's.
+
+use std::io;
+
+use microfacet_bake::store::StoreError;
+use microfacet_sampler::{BindError, Compensation, Masking, Roughness, StandIn, Transport};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::{Input, shown};
+
+/// An error with the text that the command prints.
+pub(crate) fn refused(why: impl ToString) -> PyErr {
+    PyValueError::new_err(why.to_string())
+}
+
+/// Why a BSDF or an albedo cannot be made, in the words of Python.
+pub(crate) fn unbound(why: BindError) -> PyErr {
+    refused(why.to_string().replace("`StandIn::Round`", "stand_in=True"))
+}
+
+/// An error of files: those of the operating system are OSError.
+pub(crate) fn unread(why: StoreError) -> PyErr {
+    match &why {
+        StoreError::Io(_, cause) => io::Error::new(cause.kind(), why.to_string()).into(),
+        _ => refused(why),
+    }
+}
+
+/// A number that stands for all N, or N of them; `meaning` says what they are.
+pub(crate) fn numbers<const N: usize>(
+    name: &str,
+    value: &Bound<'_, PyAny>,
+    meaning: &str,
+) -> PyResult<[f64; N]> {
+    let input = Input::<f64, 1>::new(name, value)?;
+    match (input.batch(), &input.all()[..]) {
+        ([], [one]) => Ok([*one; N]),
+        ([n], all) if *n == N => Ok(std::array::from_fn(|i| all[i])),
+        (shape, _) => Err(refused(format!(
+            "{name} has the shape {}: it must be a number, or {meaning}",
+            shown(shape)
+        ))),
+    }
+}
+
+/// Roughness: a number, or a pair for x and y.
+pub(crate) fn sigma(value: &Bound<'_, PyAny>) -> PyResult<Roughness> {
+    Ok(Roughness(numbers("sigma", value, "a pair (sigma_x, sigma_y)")?))
+}
+
+/// Three turns; a number would stand for none of them.
+pub(crate) fn angles(value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
+    let input = Input::<f64, 3>::new("theta", value)?;
+    match (input.batch(), &input.all()[..]) {
+        ([], [x, y, z]) => Ok([*x, *y, *z]),
+        _ => Err(refused("theta must be three angles (x, y, z) in radians")),
+    }
+}
+
+/// A colour: a number for all three channels, or three.
+pub(crate) fn colour(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
+    numbers(name, value, "three (r, g, b)")
+}
+
+/// A colour in single precision.
+pub(crate) fn reflectance(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f32; 3]> {
+    Ok(colour(name, value)?.map(|x| x as f32))
+}
+
+/// One of a few words.
+pub(crate) fn one_of<T: Copy>(name: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
+    let found = words.iter().find(|(known, _)| *known == word);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let known: Vec<String> = words.iter().map(|(known, _)| format!("\"{known}\"")).collect();
+        refused(format!("{name} \"{word}\" must be {}", known.join(" or ")))
+    })
+}
+
+pub(crate) fn masking(word: &str) -> PyResult<Masking> {
+    one_of("masking", word, &Masking::ALL.map(|form| (form.name(), form)))
+}
+
+pub(crate) fn compensation(word: &str) -> PyResult<Compensation> {
+    let words = [
+        ("none", Compensation::None),
+        ("turquin", Compensation::Turquin),
+        ("kulla-conty", Compensation::KullaConty),
+        ("kulla_conty", Compensation::KullaConty),
+    ];
+    one_of("compensation", word, &words)
+}
+
+pub(crate) fn transport(word: &str) -> PyResult<Transport> {
+    one_of(
+        "transport",
+        word,
+        &[("radiance", Transport::Radiance), ("importance", Transport::Importance)],
+    )
+}
+
+/// Whether the round lobe may stand in.
+pub(crate) fn stand_in(may: bool) -> StandIn {
+    if may { StandIn::Round } else { StandIn::Refused }
+}
