@@ -210,13 +210,51 @@ where
     filled(py, &batch, cost, |range, out| f(&a.chunk(range.clone()), &b.chunk(range), out))
 }
 
-/// A function of three arguments, which broadcast, chunk by chunk.
-pub(crate) fn map3<'py, T, U, const A: usize, const B: usize, const C: usize, const M: usize>(
+/// A function of one argument, item by item.
+pub(crate) fn each<'py, T, U, const A: usize, const M: usize>(
+    py: Python<'py>,
+    a: &Input<'py, T, A>,
+    cost: Cost,
+    f: impl Fn([T; A]) -> [U; M] + Sync,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    T: Element + Copy + Send + Sync,
+    U: Element + Copy + Send + Sync,
+{
+    map(py, a, cost, |a, out| {
+        for (a, out) in a.iter().zip(out) {
+            *out = f(*a);
+        }
+    })
+}
+
+/// A function of two arguments, which broadcast, item by item.
+pub(crate) fn each2<'py, T, U, const A: usize, const B: usize, const M: usize>(
+    py: Python<'py>,
+    a: (&str, &Input<'py, T, A>),
+    b: (&str, &Input<'py, T, B>),
+    cost: Cost,
+    f: impl Fn([T; A], [T; B]) -> [U; M] + Sync,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    T: Element + Copy + Send + Sync,
+    U: Element + Copy + Send + Sync,
+{
+    map2(py, a, b, cost, |a, b, out| {
+        for ((a, b), out) in a.iter().zip(b).zip(out) {
+            *out = f(*a, *b);
+        }
+    })
+}
+
+/// A function of three arguments, which broadcast, item by item.
+pub(crate) fn each3<'py, T, U, const A: usize, const B: usize, const C: usize, const M: usize>(
     py: Python<'py>,
     (name_a, a): (&str, &Input<'py, T, A>),
     (name_b, b): (&str, &Input<'py, T, B>),
     (name_c, c): (&str, &Input<'py, T, C>),
-    f: impl Fn(&[[T; A]], &[[T; B]], &[[T; C]], &mut [[U; M]]) + Sync,
+    cost: Cost,
+    f: impl Fn([T; A], [T; B], [T; C]) -> [U; M] + Sync,
 ) -> PyResult<Bound<'py, PyAny>>
 where
     T: Element + Copy + Send + Sync,
@@ -224,7 +262,10 @@ where
 {
     let batch = broadcast(&[(name_a, &a.batch), (name_b, &b.batch), (name_c, &c.batch)])?;
     let (a, b, c) = (a.values(&batch), b.values(&batch), c.values(&batch));
-    filled(py, &batch, Cost::Lookup, |range, out| {
-        f(&a.chunk(range.clone()), &b.chunk(range.clone()), &c.chunk(range), out)
+    filled(py, &batch, cost, |range, out| {
+        let (a, b, c) = (a.chunk(range.clone()), b.chunk(range.clone()), c.chunk(range));
+        for (((a, b), c), out) in a.iter().zip(&*b).zip(&*c).zip(out) {
+            *out = f(*a, *b, *c);
+        }
     })
 }

@@ -1,14 +1,13 @@
 //! Complete materials.
 
-use glam::Vec3;
 use microfacet_sampler::{
     AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Event, Metal, Plastic,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyEllipsis, PySlice, PyTuple};
 
-use crate::arrays::{Cost, Input, map2, map3};
-use crate::lobe::{PyLobe, each2};
+use crate::arrays::{Cost, Input, each2, each3};
+use crate::lobe::PyLobe;
 use crate::words::{self, refused, unbound};
 
 /// A bidirectional scattering distribution function in three channels.
@@ -67,12 +66,9 @@ impl PyBsdf {
     ) -> PyResult<Bound<'py, PyAny>> {
         let mode = words::transport(transport)?;
         let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        let eval = |v: &[[f32; 3]], l: &[[f32; 3]], out: &mut [[f32; 3]]| {
-            for ((v, l), out) in v.iter().zip(l).zip(out) {
-                *out = self.bsdf.eval(Vec3::from_array(*v), Vec3::from_array(*l), mode);
-            }
-        };
-        map2(py, ("v", &v), ("l", &l), Cost::Lookup, eval)
+        each2(py, ("v", &v), ("l", &l), Cost::Lookup, |v: [f32; 3], l: [f32; 3]| {
+            self.bsdf.eval(v.into(), l.into(), mode)
+        })
     }
 
     /// The density with which sample draws l for v, per steradian.
@@ -83,8 +79,9 @@ impl PyBsdf {
         l: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        let pdf = each2(|v, l| self.bsdf.pdf(v, l));
-        map2(py, ("v", &v), ("l", &l), Cost::Lookup, pdf)
+        each2(py, ("v", &v), ("l", &l), Cost::Lookup, |v: [f32; 3], l: [f32; 3]| {
+            [self.bsdf.pdf(v.into(), l.into())]
+        })
     }
 
     /// Draws lights for views v from uniform numbers: u, shape (..., 2), for the direction and
@@ -101,17 +98,17 @@ impl PyBsdf {
         let mode = words::transport(transport)?;
         let (v, choice) = (Input::new("v", v)?, Input::new("choice", choice)?);
         let u = Input::new("u", u)?;
-        let draw = |v: &[[f32; 3]], choice: &[[f32; 1]], u: &[[f32; 2]], out: &mut [[f32; 10]]| {
-            for (((v, [choice]), u), out) in v.iter().zip(choice).zip(u).zip(out) {
-                if let Some(sample) = self.bsdf.sample(Vec3::from_array(*v), *choice, *u, mode) {
-                    let ([x, y, z], [r, g, b]) = (sample.l.to_array(), sample.weight);
-                    let other = f32::from(u8::from(sample.event == Event::Transmission));
-                    let delta = f32::from(u8::from(sample.delta));
-                    *out = [x, y, z, r, g, b, sample.pdf, sample.eta, other, delta];
-                }
-            }
+        let draw = |v: [f32; 3], [choice]: [f32; 1], u: [f32; 2]| {
+            let Some(sample) = self.bsdf.sample(v.into(), choice, u, mode) else {
+                return [0.0; 10];
+            };
+            let ([x, y, z], [r, g, b]) = (sample.l.to_array(), sample.weight);
+            let [other, delta] = [sample.event == Event::Transmission, sample.delta]
+                .map(|flag| f32::from(u8::from(flag)));
+            [x, y, z, r, g, b, sample.pdf, sample.eta, other, delta]
         };
-        let all = map3(py, ("v", &v), ("choice", &choice), ("u", &u), draw)?;
+        let (v, choice, u) = (("v", &v), ("choice", &choice), ("u", &u));
+        let all = each3(py, v, choice, u, Cost::Lookup, draw)?;
         let column = |index: Bound<'py, PyAny>| -> PyResult<Bound<'py, PyAny>> {
             let index = PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), index])?;
             all.get_item(index)

@@ -8,7 +8,7 @@ use microfacet_model::{
 };
 use pyo3::prelude::*;
 
-use crate::arrays::{Cost, Input, map, map2};
+use crate::arrays::{Cost, Input, each, each2};
 use crate::lobe::{View, azimuth_matters, view};
 use crate::words::{self, refused};
 
@@ -25,7 +25,7 @@ enum Model {
 }
 
 /// Calls one function of whichever it is.
-macro_rules! each {
+macro_rules! of {
     ($model:expr, $one:ident => $call:expr) => {
         match $model {
             Model::Family($one) => $call,
@@ -51,7 +51,7 @@ impl ExactLobe {
     }
 
     fn shape(&self) -> &Shape {
-        each!(&self.model, lobe => lobe.shape())
+        of!(&self.model, lobe => lobe.shape())
     }
 
     /// Made once, in some milliseconds.
@@ -60,7 +60,7 @@ impl ExactLobe {
             Model::Family(_) => TOLERANCE,
             Model::Skewed(_) => TOLERANCE_TILTED,
         };
-        self.integrator.get_or_init(|| AlbedoIntegrator::new(self.shape().clone(), tolerance))
+        self.integrator.get_or_init(|| AlbedoIntegrator::new(*self.shape(), tolerance))
     }
 
     /// E of a view from above, given by cosine and azimuth.
@@ -84,44 +84,30 @@ impl ExactLobe {
     }
 }
 
-/// f of a direction, one by one.
-fn one(f: impl Fn(DVec3) -> f64 + Sync) -> impl Fn(&[[f64; 3]], &mut [[f64; 1]]) + Sync {
-    move |w, out| {
-        for (w, out) in w.iter().zip(out) {
-            *out = [f(DVec3::from_array(*w))];
-        }
-    }
-}
-
-/// f of two directions, one by one.
-fn two(
-    f: impl Fn(DVec3, DVec3) -> f64 + Sync,
-) -> impl Fn(&[[f64; 3]], &[[f64; 3]], &mut [[f64; 1]]) + Sync {
-    move |a, b, out| {
-        for ((a, b), out) in a.iter().zip(b).zip(out) {
-            *out = [f(DVec3::from_array(*a), DVec3::from_array(*b))];
-        }
-    }
-}
-
 #[pymethods]
 impl ExactLobe {
     /// The normal distribution function D(m), per steradian.
     fn d<'py>(&self, py: Python<'py>, m: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let d = one(|m| each!(&self.model, lobe => lobe.d(m)));
-        map(py, &Input::new("m", m)?, Cost::Lookup, d)
+        each(py, &Input::new("m", m)?, Cost::Lookup, |m| {
+            let m = DVec3::from_array(m);
+            [of!(&self.model, lobe => lobe.d(m))]
+        })
     }
 
     /// Smith's masking G1(v), in [0, 1].
     fn g1<'py>(&self, py: Python<'py>, v: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let g1 = one(|v| each!(&self.model, lobe => lobe.g1(v)));
-        map(py, &Input::new("v", v)?, Cost::Lookup, g1)
+        each(py, &Input::new("v", v)?, Cost::Lookup, |v| {
+            let v = DVec3::from_array(v);
+            [of!(&self.model, lobe => lobe.g1(v))]
+        })
     }
 
     /// Smith's Lambda(v) = 1/G1 - 1.
     fn lambda_<'py>(&self, py: Python<'py>, v: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let lambda = one(|v| each!(&self.model, lobe => lobe.lambda(v)));
-        map(py, &Input::new("v", v)?, Cost::Lookup, lambda)
+        each(py, &Input::new("v", v)?, Cost::Lookup, |v| {
+            let v = DVec3::from_array(v);
+            [of!(&self.model, lobe => lobe.lambda(v))]
+        })
     }
 
     /// Masking and shadowing G2(v, l), in [0, 1]; masking is "height-correlated" or "uncorrelated".
@@ -135,8 +121,9 @@ impl ExactLobe {
     ) -> PyResult<Bound<'py, PyAny>> {
         let form = words::masking(masking)?;
         let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        let g2 = two(|v, l| each!(&self.model, lobe => lobe.g2(v, l, form)));
-        map2(py, ("v", &v), ("l", &l), Cost::Lookup, g2)
+        each2(py, ("v", &v), ("l", &l), Cost::Lookup, |v: [f64; 3], l: [f64; 3]| {
+            [of!(&self.model, lobe => lobe.g2(v.into(), l.into(), form))]
+        })
     }
 
     /// Draws visible normals m, shape (..., 3), from views v and uniform numbers u, shape (..., 2),
@@ -148,13 +135,9 @@ impl ExactLobe {
         u: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
-        let draw = |v: &[[f64; 3]], u: &[[f64; 2]], m: &mut [[f64; 3]]| {
-            for ((v, u), m) in v.iter().zip(u).zip(m) {
-                let v = DVec3::from_array(*v);
-                *m = each!(&self.model, lobe => lobe.sample_visible_normal(v, *u)).to_array();
-            }
-        };
-        map2(py, ("v", &v), ("u", &u), Cost::Quadrature, draw)
+        each2(py, ("v", &v), ("u", &u), Cost::Quadrature, |v: [f64; 3], u: [f64; 2]| {
+            of!(&self.model, lobe => lobe.sample_visible_normal(v.into(), u)).to_array()
+        })
     }
 
     /// The density of visible normals, G1(v) max(0, v.m) D(m)/(v.n), per steradian of m.
@@ -165,8 +148,9 @@ impl ExactLobe {
         m: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (v, m) = (Input::new("v", v)?, Input::new("m", m)?);
-        let pdf = two(|v, m| each!(&self.model, lobe => lobe.visible_normal_pdf(v, m)));
-        map2(py, ("v", &v), ("m", &m), Cost::Lookup, pdf)
+        each2(py, ("v", &v), ("m", &m), Cost::Lookup, |v: [f64; 3], m: [f64; 3]| {
+            [of!(&self.model, lobe => lobe.visible_normal_pdf(v.into(), m.into()))]
+        })
     }
 
     /// The directional albedo E(v) of one bounce with F = 1, in [0, 1], by quadrature: to 1e-9 of a
@@ -185,26 +169,22 @@ impl ExactLobe {
         let form = words::masking(masking)?;
         let which = usize::from(form == microfacet_model::Masking::HeightCorrelated);
         // Rounding may take the cosine of a unit vector beyond 1.
-        let of = |cos: f64, phi: f64| {
+        let e = |cos: f64, phi: f64| {
             let cos = if cos <= 1.0 + 1e-12 { cos.min(1.0) } else { cos };
             self.directional(cos, phi).map_or(f64::NAN, |both| both[which])
         };
         py.detach(|| self.integrator());
         match view::<f64>(v, cos_theta)? {
-            View::Directions(v) => {
-                let albedo = one(|v| of(v.z, v.y.atan2(v.x)));
-                map(py, &v, Cost::Quadrature, albedo)
-            }
+            View::Directions(v) => each(py, &v, Cost::Quadrature, |v| {
+                let v = DVec3::from_array(v);
+                [e(v.z, v.y.atan2(v.x))]
+            }),
             View::Cosines(cos) => {
                 match &self.model {
                     Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => {}
                     _ => return Err(azimuth_matters()),
                 }
-                map(py, &cos, Cost::Quadrature, |cos: &[[f64; 1]], out: &mut [[f64; 1]]| {
-                    for ([cos], out) in cos.iter().zip(out) {
-                        *out = [of(*cos, 0.0)];
-                    }
-                })
+                each(py, &cos, Cost::Quadrature, |[cos]: [f64; 1]| [e(cos, 0.0)])
             }
         }
     }

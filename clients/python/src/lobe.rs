@@ -7,7 +7,7 @@ use glam::Vec3;
 use microfacet_sampler::{Albedo, Lobe, LobeKey, MicrofacetDistribution, Skew, Tables};
 use pyo3::prelude::*;
 
-use crate::arrays::{Cost, Input, map, map2};
+use crate::arrays::{Cost, Input, each, each2, map, map2};
 use crate::tables::{PyTables, embedded};
 use crate::words::{self, refused, unbound};
 
@@ -55,33 +55,13 @@ impl PyLobe {
     }
 }
 
-/// f of a direction, one by one.
-fn each(f: impl Fn(Vec3) -> f32 + Sync) -> impl Fn(&[[f32; 3]], &mut [[f32; 1]]) + Sync {
-    move |w, out| {
-        for (w, out) in w.iter().zip(out) {
-            *out = [f(Vec3::from_array(*w))];
-        }
-    }
-}
-
-/// f of two directions, one by one.
-pub(crate) fn each2(
-    f: impl Fn(Vec3, Vec3) -> f32 + Sync,
-) -> impl Fn(&[[f32; 3]], &[[f32; 3]], &mut [[f32; 1]]) + Sync {
-    move |a, b, out| {
-        for ((a, b), out) in a.iter().zip(b).zip(out) {
-            *out = [f(Vec3::from_array(*a), Vec3::from_array(*b))];
-        }
-    }
-}
-
 #[pymethods]
 impl PyLobe {
     /// The normal distribution function D(m), per steradian.
     ///
     /// D(m) (m.n) integrates to 1 over all m; 0 for an m at or below the horizon.
     fn d<'py>(&self, py: Python<'py>, m: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, &Input::new("m", m)?, Cost::Lookup, each(|m| self.lobe.d(m)))
+        each(py, &Input::new("m", m)?, Cost::Lookup, |m: [f32; 3]| [self.lobe.d(m.into())])
     }
 
     /// Smith's masking G1(v), in [0, 1]; 0 at and below the horizon.
@@ -94,7 +74,7 @@ impl PyLobe {
 
     /// Smith's Lambda(v) = 1/G1 - 1; infinite at and below the horizon.
     fn lambda_<'py>(&self, py: Python<'py>, v: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, &Input::new("v", v)?, Cost::Lookup, each(|v| self.lobe.lambda(v)))
+        each(py, &Input::new("v", v)?, Cost::Lookup, |v: [f32; 3]| [self.lobe.lambda(v.into())])
     }
 
     /// Masking and shadowing G2(v, l), in [0, 1].
@@ -111,8 +91,9 @@ impl PyLobe {
     ) -> PyResult<Bound<'py, PyAny>> {
         let form = words::masking(masking)?;
         let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        let g2 = each2(|v, l| self.lobe.g2(v, l, form));
-        map2(py, ("v", &v), ("l", &l), Cost::Lookup, g2)
+        each2(py, ("v", &v), ("l", &l), Cost::Lookup, |v: [f32; 3], l: [f32; 3]| {
+            [self.lobe.g2(v.into(), l.into(), form)]
+        })
     }
 
     /// Draws visible normals m, shape (..., 3), from views v and uniform numbers u, shape (..., 2).
@@ -146,8 +127,9 @@ impl PyLobe {
         m: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (v, m) = (Input::new("v", v)?, Input::new("m", m)?);
-        let pdf = each2(|v, m| self.lobe.visible_normal_pdf(v, m));
-        map2(py, ("v", &v), ("m", &m), Cost::Lookup, pdf)
+        each2(py, ("v", &v), ("m", &m), Cost::Lookup, |v: [f32; 3], m: [f32; 3]| {
+            [self.lobe.visible_normal_pdf(v.into(), m.into())]
+        })
     }
 
     /// G2(v, l)/G1(v), in [0, 1]: the weight f cos/pdf of a light l reflected off a drawn visible
@@ -162,8 +144,9 @@ impl PyLobe {
     ) -> PyResult<Bound<'py, PyAny>> {
         let form = words::masking(masking)?;
         let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        let weight = each2(|v, l| self.lobe.reflection_weight(v, l, form));
-        map2(py, ("v", &v), ("l", &l), Cost::Lookup, weight)
+        each2(py, ("v", &v), ("l", &l), Cost::Lookup, |v: [f32; 3], l: [f32; 3]| {
+            [self.lobe.reflection_weight(v.into(), l.into(), form)]
+        })
     }
 
     /// The directional albedo E(v) of one bounce with F = 1, in [0, 1].
@@ -260,17 +243,9 @@ pub(crate) fn of_views<'py, const M: usize>(
     of: impl Fn(Vec3) -> [f32; M] + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
     match views {
-        View::Directions(v) => map(py, &v, Cost::Lookup, |v: &[[f32; 3]], out: &mut [[f32; M]]| {
-            for (v, out) in v.iter().zip(out) {
-                *out = of(Vec3::from_array(*v));
-            }
-        }),
+        View::Directions(v) => each(py, &v, Cost::Lookup, |v: [f32; 3]| of(v.into())),
         View::Cosines(cos) => {
-            map(py, &cos, Cost::Lookup, |cos: &[[f32; 1]], out: &mut [[f32; M]]| {
-                for ([cos], out) in cos.iter().zip(out) {
-                    *out = of(Vec3::new(0.0, 0.0, *cos));
-                }
-            })
+            each(py, &cos, Cost::Lookup, |[cos]: [f32; 1]| of(Vec3::new(0.0, 0.0, cos)))
         }
     }
 }
