@@ -149,7 +149,8 @@ impl PyTables {
 /// "u16"; max_error or max_bytes take the place of both. albedo=True bakes directional albedos for
 /// every rough material, False for none; by default those of a recipe that state `fresnel` get
 /// them. max_memory is in bytes. Assumptions about a scene are warnings. Finished tables are kept
-/// in the user's cache unless cache=False, or in the folder that cache names.
+/// in the user's cache unless cache=False, or in the folder that cache names. An interrupt returns
+/// at once and writes nothing; what was begun goes on in the background until it is done.
 #[pyfunction]
 #[pyo3(signature = (recipe=None, out=None, *, quality="default", precision="f32", max_error=None,
                     max_bytes=None, albedo=None, tabulate_ggx=false, cache=CacheArg::Flag(true),
