@@ -99,7 +99,7 @@ impl PyLobe {
     /// Draws visible normals m, shape (..., 3), from views v and uniform numbers u, shape (..., 2).
     ///
     /// u in [0, 1] is clamped to it. m is of unit length and above the horizon, and v.m >= 0 for
-    /// a view from above.
+    /// a view from above. GGX is drawn from tables, too, where the set has them for gamma = 2.
     fn sample_visible_normal<'py>(
         &self,
         py: Python<'py>,

@@ -32,7 +32,7 @@ __version__: str
 _Array: TypeAlias = NDArray[np.float32]
 _Array64: TypeAlias = NDArray[np.float64]
 _Masking: TypeAlias = Literal["height-correlated", "uncorrelated"]
-_Compensation: TypeAlias = Literal["none", "turquin", "kulla-conty"]
+_Compensation: TypeAlias = Literal["none", "turquin", "kulla-conty", "kulla_conty"]
 _Transport: TypeAlias = Literal["radiance", "importance"]
 _Path: TypeAlias = str | PathLike[str]
 

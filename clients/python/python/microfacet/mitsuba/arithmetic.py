@@ -1,0 +1,134 @@
+"""Small functions of numbers that the lookups share, for arrays of any variant and for scalars.
+
+They are those of ``numbers.wgsl`` of the shader export.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+
+#: The smallest normal number of single precision.
+SMALLEST = 1.17549435e-38
+
+#: The largest density: products and sums of a few of them stay in single precision.
+LARGEST_DENSITY = 1e30
+
+
+def unit(x: mi.Float) -> mi.Float:
+    """x in [0, 1]."""
+    return dr.clip(x, 0.0, 1.0)
+
+
+def horner(coefficients: mi.Vector4f, w: mi.Float) -> mi.Float:
+    """The cubic c0 + c1 w + c2 w^2 + c3 w^3."""
+    c = coefficients
+    return (c.x + w * c.y) + (w * w) * (c.z + w * c.w)
+
+
+def log_growth(x: mi.Float) -> mi.Float:
+    """ln(1 + x) for x > -1, with the digits of a small x."""
+    y = x / (2 + x)
+    q = y * y
+    tail = q * (1 / 9 + q * (1 / 11 + q * (1 / 13 + q / 15)))
+    series = 2 * y * (1 + q * (1 / 3 + q * (1 / 5 + q * (1 / 7 + tail))))
+    return dr.select((x >= -0.5) & (x <= 1), series, dr.log(1 + x))
+
+
+def exp_growth(x: mi.Float) -> mi.Float:
+    """exp(x) - 1 for abs(x) <= 0.5, with the digits of a small x."""
+    tail = 1 / 120 + x * (1 / 720 + x * (1 / 5040 + x / 40320))
+    return x * (1 + x * (0.5 + x * (1 / 6 + x * (1 / 24 + x * tail))))
+
+
+def place(x: mi.Float, last: int) -> tuple[mi.UInt32, mi.Float]:
+    """The cell of x in [0, last] and the position in it; at the end, the cell after the last."""
+    cell = dr.minimum(mi.UInt32(x), last)
+    return cell, x - mi.Float(cell)
+
+
+class Packets:
+    """Rows of four numbers, which are read by one instruction where the variant has it."""
+
+    def __init__(self, rows: Any) -> None:
+        """``rows``: an array (n, 1 to 4) of numbers; missing columns are padded by 0."""
+        rows = np.asarray(rows, np.float32)
+        padded = np.zeros((len(rows), 4), np.float32)
+        padded[:, : rows.shape[1]] = rows
+        self._rows: Any
+        if dr.is_jit_v(mi.Float):
+            self._rows = mi.Float(padded.ravel())
+        else:
+            self._rows = [mi.Vector4f(row.tolist()) for row in padded]
+
+    @classmethod
+    def of_columns(cls, columns: mi.Vector4f) -> Packets:
+        """Of four arrays of one length, whose derivatives are kept."""
+        self = cls.__new__(cls)
+        self._rows = dr.ravel(columns)
+        dr.eval(self._rows)
+        return self
+
+    def __call__(self, index: mi.UInt32, active: mi.Bool = True) -> mi.Vector4f:
+        """The row of an index, which must exist where ``active``."""
+        if isinstance(self._rows, list):
+            return self._rows[index] if active else mi.Vector4f(0)
+        return dr.gather(mi.Vector4f, self._rows, index, active)
+
+
+class Line:
+    """Cubics of one variable as lines, of which two numbers are read and not four: reading takes
+    longer than arithmetic.
+    """
+
+    def __init__(self, cubics: Any, error: float) -> None:
+        """``cubics``: an array (n, 4) of the coefficients of cubics, one after the other, the last
+        of which is read at its beginning only; ``error``: how far off lines may be, except those
+        of the first cubic, which makes them 4 to 256 of each.
+        """
+        cubics = np.asarray(cubics, np.float64)[:, None, :]
+
+        def at(w: np.ndarray) -> Any:
+            c = cubics
+            return c[..., 0] + w * (c[..., 1] + w * (c[..., 2] + w * c[..., 3]))
+
+        for parts in (4, 8, 16, 32, 64, 128, 256):
+            ends = at(np.arange(parts + 1) / parts)
+            middles = at((np.arange(parts) + 0.5) / parts)
+            off = middles - 0.5 * (ends[:, 1:] + ends[:, :-1])
+            if np.abs(off[1:-1]).max() <= error:
+                break
+        pairs = np.stack([ends[:, :-1], np.diff(ends, axis=1)], axis=-1).reshape(-1, 2)
+        self._parts, self._last = parts, len(pairs) - parts
+        self._pairs: Any
+        if dr.is_jit_v(mi.Float):
+            self._pairs = mi.Float(pairs.astype(np.float32).ravel())
+        else:
+            self._pairs = [mi.Vector2f(pair.tolist()) for pair in pairs]
+
+    def __call__(self, x: mi.Float, active: mi.Bool = True) -> mi.Float:
+        """The function at a place among the cubics, in [0, n - 1]."""
+        cell, w = place(x * self._parts, self._last)
+        if isinstance(self._pairs, list):
+            pair = self._pairs[cell] if active else mi.Vector2f(0)
+        else:
+            pair = dr.gather(mi.Vector2f, self._pairs, cell, active)
+        return pair.x + w * pair.y
+
+
+class Numbers:
+    """A row of numbers, read one at a time."""
+
+    def __init__(self, numbers: Any) -> None:
+        numbers = np.asarray(numbers, np.float32).ravel()
+        self._numbers: Any
+        self._numbers = mi.Float(numbers) if dr.is_jit_v(mi.Float) else numbers.tolist()
+
+    def __call__(self, index: mi.UInt32, active: mi.Bool = True) -> mi.Float:
+        """The number of an index, which must exist where ``active``."""
+        if isinstance(self._numbers, list):
+            return self._numbers[index] if active else 0.0
+        return dr.gather(mi.Float, self._numbers, index, active)

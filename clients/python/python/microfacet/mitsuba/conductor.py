@@ -1,0 +1,258 @@
+"""The plugin ``student_t_conductor``: a rough conductor.
+
+As ``sampler/src/bsdf/conductor.rs``: every facet reflects, and absorbs what it does not reflect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import drjit as dr
+import mitsuba as mi
+
+from . import parameters
+from .albedo import Albedos
+from .arithmetic import LARGEST_DENSITY
+from .compensation import Account, Losses, account, kulla_conty, turquin
+from .fresnel import Exact, Schlick, White
+from .shape import Shape, g2_over_g1
+from .spectra import blocked, spectrum
+
+_NAMES = (
+    "sigma", "sigma_x", "sigma_y", "gamma", "f0", "f82", "eta", "k", "material",
+    "specular_reflectance", "compensation", "masking", "stand_in", "tables", "id",
+)  # fmt: skip
+
+
+def conductor_class() -> type:
+    """The class of the plugin in the current variant."""
+
+    class StudentTConductor(mi.BSDF):  # type: ignore[misc]
+        """A conductor whose facets follow the Student-t distribution.
+
+        Single scattering is F D G2/(4 cos cos) (Cook & Torrance 1982,
+        https://doi.org/10.1145/357290.357293), sampled by visible normals with the weight F G2/G1.
+        Black from below.
+        """
+
+        def __init__(self, props: mi.Properties) -> None:
+            mi.BSDF.__init__(self, props)
+            parameters.check_names(props, _NAMES)
+            self._gamma = parameters.gamma(props)
+            self._compensation = parameters.compensation(props)
+            self._correlated = parameters.is_correlated(props)
+            self._sigma_x, self._sigma_y = parameters.sigmas(props)
+            stand_in = parameters.flag(props, "stand_in")
+            self._fresnel, self._textures = _reflectance(props)
+            self._scale = parameters.reflectance(props, "specular_reflectance")
+            shape = parameters.shape(props, self._gamma)
+            self._shape = Shape(shape)
+            self._albedos = None
+            if self._compensation != "none":
+                parameters.check_albedos(props, stand_in)
+                self._albedos = Albedos(shape, self._correlated)
+            flags = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
+            if self._sigma_x is not self._sigma_y:
+                flags = flags | mi.BSDFFlags.Anisotropic
+            textures = [self._sigma_x, self._sigma_y, self._scale, *self._textures.values()]
+            if any(texture is not None and texture.is_spatially_varying() for texture in textures):
+                flags = flags | mi.BSDFFlags.SpatiallyVarying
+            self.m_components = [flags]
+            self.m_flags = flags
+            self.parameters_changed()
+
+        def traverse(self, callback: mi.TraversalCallback) -> None:
+            rough = mi.ParamFlags.Differentiable | mi.ParamFlags.Discontinuous
+            if self._sigma_x is self._sigma_y:
+                callback.put("sigma", self._sigma_x, rough)
+            else:
+                callback.put("sigma_x", self._sigma_x, rough)
+                callback.put("sigma_y", self._sigma_y, rough)
+            for name, texture in self._textures.items():
+                callback.put(name, texture, mi.ParamFlags.Differentiable)
+            if self._scale is not None:
+                callback.put("specular_reflectance", self._scale, mi.ParamFlags.Differentiable)
+
+        def parameters_changed(self, keys: Sequence[str] = ()) -> None:
+            self._losses = None
+            if self._albedos is not None:
+                self._losses = Losses(
+                    self._albedos, parameters.round_sigma(self._sigma_x, self._sigma_y)
+                )
+
+        def sample(
+            self,
+            ctx: mi.BSDFContext,
+            si: mi.SurfaceInteraction3f,
+            sample1: mi.Float,
+            sample2: mi.Point2f,
+            active: mi.Bool = True,
+        ) -> tuple[mi.BSDFSample3f, mi.Spectrum]:
+            bs = dr.zeros(mi.BSDFSample3f)
+            if not ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0):
+                return bs, spectrum(mi.UnpolarizedSpectrum(0))
+            v = si.wi
+            active = active & (v.z > 0)
+            sigma = self._sigma(si, active)
+            m = self._shape.sample_visible_normal(sigma, v, sample2, active)
+            facing = dr.dot(v, m)
+            l = 2 * facing * m - v
+            kept = self._account(si, sigma, active)
+            if kept is not None:
+                assert self._losses is not None
+                is_broad = sample1 >= kept.facets
+                broad = self._losses.broad.sample(kept.row, sample2, active)
+                l = dr.select(is_broad, broad, l)
+                m = dr.select(is_broad, dr.normalize(v + l), m)
+                facing = dr.dot(v, m)
+            active = active & (l.z > 0) & (facing > 0)
+            weight, pdf = self._facets(si, sigma, l, m, facing, active)
+            if kept is not None:
+                value, pdf = self._mixed(kept, sigma, l, weight * pdf, pdf, active)
+                weight = value / dr.maximum(pdf, 1e-30)
+            bs.wo = l
+            bs.pdf = dr.select(active, pdf, 0.0)
+            bs.eta = 1.0
+            bs.sampled_type = mi.UInt32(+mi.BSDFFlags.GlossyReflection)
+            bs.sampled_component = mi.UInt32(0)
+            return bs, spectrum(blocked(weight, active & (pdf > 0)))
+
+        def eval_pdf(
+            self,
+            ctx: mi.BSDFContext,
+            si: mi.SurfaceInteraction3f,
+            wo: mi.Vector3f,
+            active: mi.Bool = True,
+        ) -> tuple[mi.Spectrum, mi.Float]:
+            if not ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0):
+                return spectrum(mi.UnpolarizedSpectrum(0)), mi.Float(0)
+            v = si.wi
+            active = active & (v.z > 0) & (wo.z > 0)
+            sigma = self._sigma(si, active)
+            # The cosine v.m is half the length of v + l.
+            m = v + wo
+            length = dr.sqrt(dr.maximum(dr.squared_norm(m), 1e-30))
+            weight, pdf = self._facets(
+                si, sigma, wo, m / length, dr.minimum(0.5 * length, 1), active
+            )
+            value = weight * pdf
+            kept = self._account(si, sigma, active)
+            if kept is not None:
+                value, pdf = self._mixed(kept, sigma, wo, value, pdf, active)
+            return spectrum(blocked(value, active)), dr.select(active, pdf, 0.0)
+
+        def eval(
+            self,
+            ctx: mi.BSDFContext,
+            si: mi.SurfaceInteraction3f,
+            wo: mi.Vector3f,
+            active: mi.Bool = True,
+        ) -> mi.Spectrum:
+            return self.eval_pdf(ctx, si, wo, active)[0]
+
+        def pdf(
+            self,
+            ctx: mi.BSDFContext,
+            si: mi.SurfaceInteraction3f,
+            wo: mi.Vector3f,
+            active: mi.Bool = True,
+        ) -> mi.Float:
+            return self.eval_pdf(ctx, si, wo, active)[1]
+
+        def to_string(self) -> str:
+            return (
+                "StudentTConductor[\n"
+                f"  gamma = {self._gamma:g},\n"
+                f"  sigma_x = {self._sigma_x},\n"
+                f"  sigma_y = {self._sigma_y},\n"
+                f"  masking = {'height-correlated' if self._correlated else 'uncorrelated'},\n"
+                f"  compensation = {self._compensation}\n"
+                "]"
+            )
+
+        def _sigma(self, si: mi.SurfaceInteraction3f, active: mi.Bool) -> mi.Vector2f:
+            return parameters.sigma_at(self._sigma_x, self._sigma_y, si, active)
+
+        def _facets(
+            self,
+            si: mi.SurfaceInteraction3f,
+            sigma: mi.Vector2f,
+            l: mi.Vector3f,
+            m: mi.Vector3f,
+            facing: mi.Float,
+            active: mi.Bool,
+        ) -> tuple[mi.UnpolarizedSpectrum, mi.Float]:
+            """Light off facets of normal m: f cos/pdf, and its density."""
+            shape = self._shape
+            view = shape.stretch(sigma, si.wi)
+            inverse_area = shape.inverse_area(view, active)
+            g1_v = dr.minimum(view.z * inverse_area, 1)
+            g1_l = shape.g1(sigma, l, active)
+            pdf = dr.minimum(0.25 * shape.d(sigma, m) * inverse_area, LARGEST_DENSITY)
+            weight = self._fresnel.at(si, facing, active) * g2_over_g1(g1_v, g1_l, self._correlated)
+            if self._compensation == "turquin":
+                assert self._losses is not None
+                f0 = self._fresnel.at(si, mi.Float(1), active)
+                sigma_round = dr.sqrt(sigma.x * sigma.y)
+                weight = weight * turquin(self._losses.lost(sigma_round, si.wi.z, active), f0)
+            if self._scale is not None:
+                weight = weight * self._scale.eval(si, active)
+            return weight, pdf
+
+        def _account(
+            self, si: mi.SurfaceInteraction3f, sigma: mi.Vector2f, active: mi.Bool
+        ) -> Account | None:
+            if self._compensation != "kulla_conty":
+                return None
+            assert self._losses is not None
+            average = self._fresnel.average(si, active)
+            kept = account(self._losses, dr.sqrt(sigma.x * sigma.y), si.wi, average, active)
+            if self._scale is not None:
+                kept.bounces = kept.bounces * self._scale.eval(si, active)
+            return kept
+
+        def _mixed(
+            self,
+            kept: Account,
+            sigma: mi.Vector2f,
+            l: mi.Vector3f,
+            value: mi.UnpolarizedSpectrum,
+            pdf: mi.Float,
+            active: mi.Bool,
+        ) -> tuple[mi.UnpolarizedSpectrum, mi.Float]:
+            """Value and density of facets together with those of the broad lobe."""
+            assert self._losses is not None
+            lost = self._losses.lost(dr.sqrt(sigma.x * sigma.y), l.z, active)
+            lobe = kulla_conty(kept.lost, lost, kept.average) * l.z
+            broad = self._losses.broad.pdf(kept.row, l.z, active)
+            return (
+                value + kept.bounces * lobe,
+                kept.facets * pdf + (1 - kept.facets) * broad,
+            )
+
+    return StudentTConductor
+
+
+def _reflectance(props: mi.Properties) -> tuple[White | Schlick | Exact, dict[str, mi.Texture]]:
+    """The reflectance of the facets, and its textures by name."""
+    exact = ("eta", "k", "material")
+    parameters.refuse_together(props, "f0", exact, "each gives the colour of the metal")
+    parameters.refuse_together(props, "material", ("eta", "k"), "a material has both")
+    if "f82" in props and "f0" not in props:
+        raise ValueError("f82 is a tint beside f0, the reflectance at normal incidence; give f0")
+    f0, f82 = parameters.reflectance(props, "f0"), parameters.reflectance(props, "f82")
+    if f0 is not None:
+        named = {"f0": f0} if f82 is None else {"f0": f0, "f82": f82}
+        return Schlick(f0, f82), named
+    if "material" in props:
+        index = parameters.of_material(props["material"])
+    elif "eta" in props and "k" in props:
+        parameters.number_in(props, "eta", 1e-3, 1e3, "it is an index of refraction")
+        parameters.number_in(props, "k", 0, 1e3, "it is an extinction, not negative")
+        index = {name: props.get_unbounded_texture(name) for name in ("eta", "k")}
+    elif "eta" in props or "k" in props:
+        missing = "k" if "eta" in props else "eta"
+        raise ValueError(f"{missing} is missing: a metal has both eta and k")
+    else:
+        return White(), {}
+    return Exact(index["eta"], index["k"]), index

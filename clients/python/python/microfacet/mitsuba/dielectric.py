@@ -1,0 +1,333 @@
+"""The plugin ``student_t_dielectric``: a rough interface between two transparent media.
+
+As ``sampler/src/bsdf/dielectric.rs``: every facet reflects F of the light and refracts the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import drjit as dr
+import mitsuba as mi
+
+from . import parameters
+from .arithmetic import LARGEST_DENSITY
+from .compensation import kulla_conty, turquin
+from .energy import Energy
+from .interface import Facet, between, drawn, either
+from .shape import Shape, g2_over_g1
+from .spectra import blocked, spectrum
+
+_NAMES = (
+    "sigma", "sigma_x", "sigma_y", "gamma", "int_ior", "ext_ior",
+    "specular_reflectance", "specular_transmittance", "compensation", "masking", "stand_in",
+    "tables", "id",
+)  # fmt: skip
+
+
+@dataclass
+class Seen:
+    """A view taken above the surface, and the interface as it is seen from there."""
+
+    v: mi.Vector3f
+    #: 1 for a view from above, else -1; and 0 for one from above, else 1.
+    sign: mi.Float
+    below: mi.UInt32
+    #: The index of refraction beyond the interface over that on the side of the view.
+    eta: mi.Float
+    #: The factor on transmitted light: (n_v/n_l)^2 of radiance, 1 of importance.
+    scale: mi.Float
+    sigma: mi.Vector2f
+    #: Which events are asked for.
+    reflects: bool
+    transmits: bool
+
+    def chance(self) -> mi.Float | None:
+        """The chance of reflection, if it is not the reflectance."""
+        if self.reflects and self.transmits:
+            return None
+        return mi.Float(1.0 if self.reflects else 0.0)
+
+
+def dielectric_class() -> type:
+    """The class of the plugin in the current variant."""
+    reflection, transmission = (
+        mi.BSDFFlags.GlossyReflection,
+        mi.BSDFFlags.GlossyTransmission,
+    )
+
+    class StudentTDielectric(mi.BSDF):  # type: ignore[misc]
+        """A dielectric whose facets follow the Student-t distribution.
+
+        Seen from either side the microsurface is the same: a direction below is taken through the
+        point reflection v -> -v, which leaves the facets in place. Facets are drawn by visible
+        normals and events by F, so a sample's weight is G2/G1, for refracted radiance times
+        (n_v/n_l)^2.
+        """
+
+        def __init__(self, props: mi.Properties) -> None:
+            mi.BSDF.__init__(self, props)
+            parameters.check_names(props, _NAMES)
+            self._gamma = parameters.gamma(props)
+            self._compensation = parameters.compensation(props)
+            self._correlated = parameters.is_correlated(props)
+            self._sigma_x, self._sigma_y = parameters.sigmas(props)
+            stand_in = parameters.flag(props, "stand_in")
+            self._index = parameters.index(props)
+            self._eta = mi.Float(self._index)
+            if dr.is_jit_v(mi.Float):
+                dr.make_opaque(self._eta)
+            self._reflectance = parameters.reflectance(props, "specular_reflectance")
+            self._transmittance = parameters.reflectance(props, "specular_transmittance")
+            self._tables = parameters.set_of_tables(props)
+            self._shape = Shape(self._tables.shape(self._gamma))
+            if self._compensation != "none":
+                parameters.check_albedos(props, stand_in)
+                if parameters.round_sigma(self._sigma_x, self._sigma_y) is None:
+                    raise ValueError(
+                        "compensation of a dielectric has albedos of one roughness, and sigma is a"
+                        " texture: make sigma a number, or set compensation to none"
+                    )
+            sides = mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide
+            if self._sigma_x is not self._sigma_y:
+                sides = sides | mi.BSDFFlags.Anisotropic
+            if any(texture.is_spatially_varying() for texture in self._textures().values()):
+                sides = sides | mi.BSDFFlags.SpatiallyVarying
+            self.m_components = [
+                reflection | sides,
+                transmission | sides | mi.BSDFFlags.NonSymmetric,
+            ]
+            self.m_flags = self.m_components[0] | self.m_components[1]
+            self._energy: Energy | None = None
+            self.parameters_changed()
+
+        def traverse(self, callback: mi.TraversalCallback) -> None:
+            for name, texture in self._textures().items():
+                flags = mi.ParamFlags.Differentiable
+                if name.startswith("sigma"):
+                    flags = flags | mi.ParamFlags.Discontinuous
+                callback.put(name, texture, flags)
+            # A compensated surface has albedos of one index.
+            if self._compensation == "none" and dr.is_jit_v(mi.Float):
+                flags = mi.ParamFlags.Differentiable | mi.ParamFlags.Discontinuous
+                callback.put("eta", self._eta, flags)
+
+        def parameters_changed(self, keys: Sequence[str] = ()) -> None:
+            if self._compensation == "none":
+                return
+            sigma = parameters.value(parameters.round_sigma(self._sigma_x, self._sigma_y))
+            form = "height-correlated" if self._correlated else "uncorrelated"
+            albedo = self._tables.dielectric_albedo(sigma, self._gamma, self._index, form)
+            self._energy = Energy(albedo, self._index)
+
+        def sample(
+            self,
+            ctx: mi.BSDFContext,
+            si: mi.SurfaceInteraction3f,
+            sample1: mi.Float,
+            sample2: mi.Point2f,
+            active: mi.Bool = True,
+        ) -> tuple[mi.BSDFSample3f, mi.Spectrum]:
+            seen, active = self._seen(ctx, si, active)
+            bs = dr.zeros(mi.BSDFSample3f)
+            if not (seen.reflects or seen.transmits):
+                return bs, spectrum(mi.UnpolarizedSpectrum(0))
+            m = self._shape.sample_visible_normal(seen.sigma, seen.v, sample2, active)
+            if self._compensation != "kulla_conty":
+                l, facet = drawn(seen.eta, seen.v, m, sample1, seen.chance())
+                white, base, chance = self._facets(si, seen, l, facet, active)
+                weight, pdf = white / dr.maximum(chance, 1e-30), base * chance
+            else:
+                assert self._energy is not None
+                p = 1 - self._energy.lost(seen.below, seen.v.z, active)
+                is_facet = sample1 < p
+                rest = dr.select(
+                    is_facet,
+                    sample1 / dr.maximum(p, 1e-30),
+                    (sample1 - p) / dr.maximum(1 - p, 1e-30),
+                )
+                l, facet = drawn(seen.eta, seen.v, m, rest, seen.chance())
+                broad = self._broad(seen, rest, sample2, active)
+                l = dr.select(is_facet, l, broad)
+                facet = either(is_facet, facet, between(seen.eta, seen.v, l))
+                value, pdf = self._mixed(si, seen, l, facet, active)
+                weight = value / dr.maximum(pdf, 1e-30)
+                facet.sends = facet.sends | (~is_facet if dr.is_jit_v(mi.Float) else not is_facet)
+                facet.reflects = l.z > 0
+            active = active & facet.sends & (pdf > 0)
+            reflects = facet.reflects
+            bs.wo = seen.sign * l
+            bs.pdf = dr.select(active, pdf, 0.0)
+            bs.eta = dr.select(reflects, 1.0, seen.eta)
+            bs.sampled_component = dr.select(reflects, mi.UInt32(0), mi.UInt32(1))
+            bs.sampled_type = dr.select(reflects, mi.UInt32(+reflection), mi.UInt32(+transmission))
+            return bs, spectrum(blocked(weight, active))
+
+        def eval_pdf(
+            self,
+            ctx: mi.BSDFContext,
+            si: mi.SurfaceInteraction3f,
+            wo: mi.Vector3f,
+            active: mi.Bool = True,
+        ) -> tuple[mi.Spectrum, mi.Float]:
+            seen, active = self._seen(ctx, si, active)
+            l = seen.sign * wo
+            active = active & (l.z != 0)
+            if not seen.reflects:
+                active = active & (l.z < 0)
+            if not seen.transmits:
+                active = active & (l.z > 0)
+            facet = between(seen.eta, seen.v, l)
+            if self._compensation == "kulla_conty":
+                value, pdf = self._mixed(si, seen, l, facet, active)
+            else:
+                white, base, chance = self._facets(si, seen, l, facet, active)
+                active = active & facet.sends
+                value, pdf = white * base, base * chance
+            return spectrum(blocked(value, active)), dr.select(active, pdf, 0.0)
+
+        def eval(
+            self,
+            ctx: mi.BSDFContext,
+            si: mi.SurfaceInteraction3f,
+            wo: mi.Vector3f,
+            active: mi.Bool = True,
+        ) -> mi.Spectrum:
+            return self.eval_pdf(ctx, si, wo, active)[0]
+
+        def pdf(
+            self,
+            ctx: mi.BSDFContext,
+            si: mi.SurfaceInteraction3f,
+            wo: mi.Vector3f,
+            active: mi.Bool = True,
+        ) -> mi.Float:
+            return self.eval_pdf(ctx, si, wo, active)[1]
+
+        def to_string(self) -> str:
+            return (
+                "StudentTDielectric[\n"
+                f"  gamma = {self._gamma:g},\n"
+                f"  sigma_x = {self._sigma_x},\n"
+                f"  sigma_y = {self._sigma_y},\n"
+                f"  eta = {self._eta},\n"
+                f"  masking = {'height-correlated' if self._correlated else 'uncorrelated'},\n"
+                f"  compensation = {self._compensation}\n"
+                "]"
+            )
+
+        def _textures(self) -> dict[str, mi.Texture]:
+            """The textures that there are, by name."""
+            textures = {
+                "specular_reflectance": self._reflectance,
+                "specular_transmittance": self._transmittance,
+            }
+            if self._sigma_x is self._sigma_y:
+                textures["sigma"] = self._sigma_x
+            else:
+                textures |= {"sigma_x": self._sigma_x, "sigma_y": self._sigma_y}
+            return {name: texture for name, texture in textures.items() if texture is not None}
+
+        def _seen(
+            self, ctx: mi.BSDFContext, si: mi.SurfaceInteraction3f, active: mi.Bool
+        ) -> tuple[Seen, mi.Bool]:
+            active = active & (si.wi.z != 0)
+            above = si.wi.z > 0
+            sign = dr.select(above, mi.Float(1), mi.Float(-1))
+            eta = dr.select(above, self._eta, 1 / self._eta)
+            radiance = ctx.mode == mi.TransportMode.Radiance
+            sigma = parameters.sigma_at(self._sigma_x, self._sigma_y, si, active)
+            seen = Seen(
+                v=sign * si.wi,
+                sign=sign,
+                below=dr.select(above, mi.UInt32(0), mi.UInt32(1)),
+                eta=eta,
+                scale=1 / (eta * eta) if radiance else mi.Float(1),
+                sigma=sigma,
+                reflects=ctx.is_enabled(reflection, 0),
+                transmits=ctx.is_enabled(transmission, 1),
+            )
+            return seen, active
+
+        def _facets(
+            self,
+            si: mi.SurfaceInteraction3f,
+            seen: Seen,
+            l: mi.Vector3f,
+            facet: Facet,
+            active: mi.Bool,
+        ) -> tuple[mi.UnpolarizedSpectrum, mi.Float, mi.Float]:
+            """Light off facets: f cos over a density, that density, and the chance of the event, by
+            which it is multiplied.
+            """
+            shape, reflects = self._shape, facet.reflects
+            view = shape.stretch(seen.sigma, seen.v)
+            inverse_area = shape.inverse_area(view, active)
+            g1_v = dr.minimum(view.z * inverse_area, 1)
+            # A transmitted light is as its facet's other side sees it.
+            g1_l = shape.g1(seen.sigma, dr.select(reflects, l, -l), active)
+            base = facet.jacobian * shape.d(seen.sigma, facet.m) * inverse_area
+            base = dr.select(facet.sends, dr.minimum(base, LARGEST_DENSITY), 0.0)
+            share = dr.select(reflects, facet.reflectance, 1 - facet.reflectance)
+            white = share * g2_over_g1(g1_v, g1_l, self._correlated)
+            white = white * dr.select(reflects, 1.0, seen.scale)
+            if self._compensation == "turquin":
+                assert self._energy is not None
+                white = white * turquin(self._energy.lost(seen.below, seen.v.z, active), 1.0)
+            return self._tint(si, reflects, active) * white, base, (
+                share if seen.chance() is None else mi.Float(1)
+            )
+
+        def _tint(
+            self, si: mi.SurfaceInteraction3f, reflects: mi.Bool, active: mi.Bool
+        ) -> mi.UnpolarizedSpectrum:
+            """The textures that scale what is reflected and transmitted."""
+            one = mi.UnpolarizedSpectrum(1)
+            return dr.select(
+                reflects,
+                one if self._reflectance is None else self._reflectance.eval(si, active),
+                one if self._transmittance is None else self._transmittance.eval(si, active),
+            )
+
+        def _reflected(self, seen: Seen) -> mi.Float:
+            """The chance with which the broad lobe is on the side of the view."""
+            assert self._energy is not None
+            chance = seen.chance()
+            return self._energy.reflected(seen.below) if chance is None else chance
+
+        def _broad(
+            self, seen: Seen, number: mi.Float, u: mi.Point2f, active: mi.Bool
+        ) -> mi.Vector3f:
+            """A light of further bounces."""
+            assert self._energy is not None
+            reflects = number < self._reflected(seen)
+            there = dr.select(reflects, seen.below, 1 - seen.below)
+            l = self._energy.broad.sample(there, u, active)
+            return dr.select(reflects, l, -l)
+
+        def _mixed(
+            self,
+            si: mi.SurfaceInteraction3f,
+            seen: Seen,
+            l: mi.Vector3f,
+            facet: Facet,
+            active: mi.Bool,
+        ) -> tuple[mi.UnpolarizedSpectrum, mi.Float]:
+            """Value and density of facets together with those of the broad lobe."""
+            energy = self._energy
+            assert energy is not None
+            white, base, chance = self._facets(si, seen, l, facet, active)
+            lost = energy.lost(seen.below, seen.v.z, active)
+            reflects, cos_theta = l.z > 0, dr.minimum(dr.abs(l.z), 1)
+            there = dr.select(reflects, seen.below, 1 - seen.below)
+            share = energy.reflected(seen.below)
+            share = dr.select(reflects, share, (1 - share) * seen.scale)
+            lobe = kulla_conty(lost, energy.lost(there, cos_theta, active), energy.average(there))
+            side = self._reflected(seen)
+            side = dr.select(reflects, side, 1 - side)
+            broad = side * energy.broad.pdf(there, cos_theta, active)
+            value = white * base + self._tint(si, reflects, active) * (share * lobe * cos_theta)
+            return value, (1 - lost) * base * chance + lost * broad
+
+    return StudentTDielectric

@@ -1,0 +1,82 @@
+"""The interface of two transparent media, seen from one side.
+
+As ``sampler/src/bsdf/interface.rs`` (Walter et al. 2007,
+https://doi.org/10.2312/EGWR/EGSR07/195-206).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import drjit as dr
+import mitsuba as mi
+
+from .fresnel import dielectric, of_cosines, refracted_cos
+
+#: The least cosine between a direction and a facet: below, Fresnel's equations are 0/0.
+_LEAST = 1e-7
+
+
+@dataclass
+class Facet:
+    """A facet that sends light, above the horizon of the view, which is taken as above."""
+
+    m: mi.Vector3f
+    #: Whether it does, and whether by reflection.
+    sends: mi.Bool
+    reflects: mi.Bool
+    #: The cosine v.m, and the facet's reflectance there.
+    facing: mi.Float
+    reflectance: mi.Float
+    #: Density of the light over that of m per v.m.
+    jacobian: mi.Float
+
+
+def drawn(
+    eta: mi.Float, v: mi.Vector3f, m: mi.Vector3f, number: mi.Float, chance: mi.Float | None
+) -> tuple[mi.Vector3f, Facet]:
+    """The light that a facet of normal m sends, by reflection if ``number`` is below ``chance``,
+    or below its reflectance where that is none.
+    """
+    facing = dr.clip(dr.dot(v, m), _LEAST, 1)
+    refracts, refracted = refracted_cos(eta, facing)
+    reflectance = dr.select(refracts, of_cosines(eta, facing, refracted), 1.0)
+    reflects = number < (reflectance if chance is None else chance)
+    through = dr.normalize((facing / eta - refracted) * m - v / eta)
+    l = dr.select(reflects, 2 * facing * m - v, through)
+    # v.m + eta l.m without the cancellation where eta is near 1.
+    length = (1 - eta) * (1 + eta) / (facing + eta * refracted)
+    ratio = eta / length
+    jacobian = dr.select(reflects, 0.25, facing * refracted * ratio * ratio)
+    sends = dr.select(reflects, l.z > 0, refracts & (l.z < 0))
+    return l, Facet(m, sends, reflects, facing, reflectance, jacobian)
+
+
+def between(eta: mi.Float, v: mi.Vector3f, l: mi.Vector3f) -> Facet:
+    """The facet that sends v to l."""
+    reflects = l.z > 0
+    h = v + dr.select(reflects, 1.0, eta) * l
+    length = dr.sqrt(dr.maximum(dr.squared_norm(h), 1e-30))
+    m = h * (dr.select(h.z < 0, -1.0, 1.0) / length)
+    cos_v, cos_l = dr.dot(v, m), dr.dot(l, m)
+    sends = (cos_v > 0) & dr.select(reflects, cos_l > 0, cos_l < 0)
+    facing = dr.clip(cos_v, _LEAST, 1)
+    refracted = dr.clip(-cos_l, _LEAST, 1)
+    reflectance = dr.select(
+        reflects, dielectric(eta, facing), of_cosines(eta, facing, refracted)
+    )
+    ratio = eta / length
+    jacobian = dr.select(reflects, 0.25, facing * refracted * ratio * ratio)
+    return Facet(m, sends, reflects, facing, reflectance, jacobian)
+
+
+def either(first: mi.Bool, a: Facet, b: Facet) -> Facet:
+    """a where ``first``, elsewhere b."""
+    return Facet(
+        dr.select(first, a.m, b.m),
+        dr.select(first, a.sends, b.sends),
+        dr.select(first, a.reflects, b.reflects),
+        dr.select(first, a.facing, b.facing),
+        dr.select(first, a.reflectance, b.reflectance),
+        dr.select(first, a.jacobian, b.jacobian),
+    )

@@ -1,0 +1,100 @@
+"""Samples have the density that the plugins state, by Mitsuba's chi-square test."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import mitsuba as mi
+import numpy as np
+import pytest
+from domains import Elevation, Facets
+from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
+
+SIGMAS = (0.05, 0.3, 1.0)
+GAMMAS = (1.6, 2.5, 4.0, math.inf)
+ANGLES = (0, 20, 50, 75, 87)
+ETA = 1.5046 / 1.000277  # Mitsuba's bk7 in air, the default.
+
+
+@pytest.fixture(autouse=True)
+def _folder_of_tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a test that fails writes what it compared."""
+    monkeypatch.chdir(tmp_path)
+
+
+def view(angle: float, below: bool = False) -> list[float]:
+    theta, azimuth = math.radians(angle), 0.7
+    z = -math.cos(theta) if below else math.cos(theta)
+    return [math.sin(theta) * math.cos(azimuth), math.sin(theta) * math.sin(azimuth), z]
+
+
+def agree(plugin: str, wi: list[float], domain: Any, tests: int, **properties: Any) -> None:
+    sample, pdf = BSDFAdapter(plugin, {"type": plugin, **properties}, wi=wi)
+    test = ChiSquareTest(
+        domain=domain,
+        sample_func=domain.samples(sample),
+        pdf_func=domain.density(pdf),
+        sample_dim=3,
+        sample_count=1_000_000,
+        res=100,  # Even, so that the horizon is the end of cells.
+        ires=16,
+    )
+    passed = test.run(significance_level=0.01, test_count=tests, quiet=True)
+    assert passed, f"{plugin} {properties} seen from {wi}: {test.messages}"
+
+
+@pytest.mark.parametrize("gamma", GAMMAS)
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_conductors_on_the_sphere_of_mitsuba(sigma: float, gamma: float) -> None:
+    """By azimuth and cosine, with as many points in a cell as narrow lobes need."""
+    tests = len(SIGMAS) * len(GAMMAS) * len(ANGLES)
+    for angle in ANGLES:
+        surface = {"type": "student_t_conductor", "sigma": sigma, "gamma": gamma}
+        sample, pdf = BSDFAdapter("student_t_conductor", surface, wi=view(angle))
+        test = ChiSquareTest(
+            domain=SphericalDomain(),
+            sample_func=sample,
+            pdf_func=pdf,
+            sample_dim=3,
+            sample_count=1_000_000,
+            ires=96 if sigma <= 0.1 else 32,
+        )
+        passed = test.run(significance_level=0.01, test_count=tests, quiet=True)
+        assert passed, f"{surface} seen from {angle} degrees: {test.messages}"
+
+
+@pytest.mark.parametrize("gamma", GAMMAS)
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_conductors(sigma: float, gamma: float) -> None:
+    tests = len(SIGMAS) * len(GAMMAS) * len(ANGLES)
+    for angle in ANGLES:
+        wi = view(angle)
+        agree("student_t_conductor", wi, Elevation(wi), tests, sigma=sigma, gamma=gamma)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"sigma": 0.3, "gamma": 1.6, "compensation": "kulla_conty"},
+        {"sigma": 1.0, "gamma": 2.5, "f0": 0.5, "compensation": "kulla_conty"},
+        {"sigma_x": 0.1, "sigma_y": 0.6, "gamma": 2.5},
+        {"sigma_x": 0.6, "sigma_y": 0.2, "gamma": "inf"},
+    ],
+)
+def test_broad_lobes_and_anisotropic_ones(more: dict[str, Any]) -> None:
+    for angle in ANGLES[:-1]:
+        wi = view(angle)
+        agree("student_t_conductor", wi, Elevation(wi), 16, **more)
+
+
+@pytest.mark.parametrize("below", (False, True), ids=("outside", "inside"))
+@pytest.mark.parametrize("gamma", GAMMAS)
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_dielectrics(sigma: float, gamma: float, below: bool) -> None:
+    tests = 2 * len(SIGMAS) * len(GAMMAS) * len(ANGLES)
+    for angle in ANGLES:
+        wi = view(angle, below)
+        domain = Facets(wi, 1 / ETA if below else ETA) if gamma < 2 else Elevation(wi)
+        agree("student_t_dielectric", wi, domain, tests, sigma=sigma, gamma=gamma)
