@@ -3,8 +3,10 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
+use microfacet_common::schlick::{f82_weight, schlick_weight};
 use microfacet_model::{
-    AlbedoIntegrator, Ellipsoid, MicrofacetDistribution, Shape, Skew, StudentT,
+    Albedo, AlbedoIntegrator, Ellipsoid, MicrofacetDistribution, ParameterError, Shape, Skew,
+    StudentT,
 };
 use pyo3::prelude::*;
 
@@ -63,24 +65,55 @@ impl ExactLobe {
         self.integrator.get_or_init(|| AlbedoIntegrator::new(*self.shape(), tolerance))
     }
 
-    /// E of a view from above, given by cosine and azimuth.
-    fn directional(
+    /// Whether the azimuth of a view does not matter.
+    fn round(&self) -> Option<f64> {
+        match &self.model {
+            Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => Some(lobe.sigma_x()),
+            _ => None,
+        }
+    }
+
+    /// Albedos of a view from above, given by cosine and azimuth, under Fresnel weights.
+    fn directional<const N: usize>(
         &self,
         cos: f64,
         phi: f64,
-    ) -> Result<[f64; 2], microfacet_model::ParameterError> {
-        let white = |_| [1.0];
-        let albedo = match &self.model {
-            Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => {
-                self.integrator().reflection(lobe.sigma_x(), cos, white)
-            }
-            Model::Family(lobe) => {
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        let integrator = self.integrator();
+        match (&self.model, self.round()) {
+            (_, Some(sigma)) => integrator.reflection(sigma, cos, weight),
+            (Model::Family(lobe), None) => {
                 let sigma = [lobe.sigma_x(), lobe.sigma_y()];
-                self.integrator().reflection_anisotropic(sigma, cos, phi, white)
+                integrator.reflection_anisotropic(sigma, cos, phi, weight)
             }
-            Model::Skewed(lobe) => self.integrator().reflection_skewed(lobe, cos, phi, white),
-        }?;
-        Ok([albedo.uncorrelated[0], albedo.height_correlated[0]])
+            (Model::Skewed(lobe), None) => integrator.reflection_skewed(lobe, cos, phi, weight),
+        }
+    }
+
+    /// Albedos of views; NaN for those from below.
+    fn albedos<'py, const N: usize>(
+        &self,
+        py: Python<'py>,
+        v: Option<&Bound<'py, PyAny>>,
+        masking: &str,
+        cos_theta: Option<&Bound<'py, PyAny>>,
+        weight: impl Fn(f64) -> [f64; N] + Sync,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let form = words::masking(masking)?;
+        let e = |cos: f64, phi: f64| {
+            // Rounding may take the cosine of a unit vector beyond 1.
+            let cos = if cos <= 1.0 + 1e-12 { cos.min(1.0) } else { cos };
+            self.directional(cos, phi, &weight).map_or([f64::NAN; N], |albedo| albedo.of(form))
+        };
+        py.detach(|| self.integrator());
+        match view::<f64>(v, cos_theta)? {
+            View::Directions(v) => {
+                each(py, &v, Cost::Quadrature, |[x, y, z]: [f64; 3]| e(z, y.atan2(x)))
+            }
+            View::Cosines(_) if self.round().is_none() => Err(azimuth_matters()),
+            View::Cosines(cos) => each(py, &cos, Cost::Quadrature, |[cos]: [f64; 1]| e(cos, 0.0)),
+        }
     }
 }
 
@@ -153,6 +186,23 @@ impl ExactLobe {
         })
     }
 
+    /// G2(v, l)/G1(v), in [0, 1]: the weight f cos/pdf of a light l reflected off a drawn visible
+    /// normal, without Fresnel.
+    #[pyo3(signature = (v, l, masking="height-correlated"))]
+    fn reflection_weight<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Bound<'py, PyAny>,
+        l: &Bound<'py, PyAny>,
+        masking: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let form = words::masking(masking)?;
+        let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
+        each2(py, ("v", &v), ("l", &l), Cost::Lookup, |v: [f64; 3], l: [f64; 3]| {
+            [of!(&self.model, lobe => lobe.reflection_weight(v.into(), l.into(), form))]
+        })
+    }
+
     /// The directional albedo E(v) of one bounce with F = 1, in [0, 1], by quadrature: to 1e-9 of a
     /// lobe of the family, in some hundred microseconds; to 1e-6 of an ellipsoid.
     ///
@@ -166,27 +216,23 @@ impl ExactLobe {
         masking: &str,
         cos_theta: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let form = words::masking(masking)?;
-        let which = usize::from(form == microfacet_model::Masking::HeightCorrelated);
-        // Rounding may take the cosine of a unit vector beyond 1.
-        let e = |cos: f64, phi: f64| {
-            let cos = if cos <= 1.0 + 1e-12 { cos.min(1.0) } else { cos };
-            self.directional(cos, phi).map_or(f64::NAN, |both| both[which])
-        };
-        py.detach(|| self.integrator());
-        match view::<f64>(v, cos_theta)? {
-            View::Directions(v) => each(py, &v, Cost::Quadrature, |v| {
-                let v = DVec3::from_array(v);
-                [e(v.z, v.y.atan2(v.x))]
-            }),
-            View::Cosines(cos) => {
-                match &self.model {
-                    Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => {}
-                    _ => return Err(azimuth_matters()),
-                }
-                each(py, &cos, Cost::Quadrature, |[cos]: [f64; 1]| [e(cos, 0.0)])
-            }
-        }
+        self.albedos(py, v, masking, cos_theta, |_| [1.0])
+    }
+
+    /// The parts scale, bias and F82 of E(v), shape (..., 3); arguments are those of albedo, and
+    /// the parts those of microfacet.Lobe.albedo_parts.
+    #[pyo3(signature = (v=None, masking="height-correlated", *, cos_theta=None))]
+    fn albedo_parts<'py>(
+        &self,
+        py: Python<'py>,
+        v: Option<&Bound<'py, PyAny>>,
+        masking: &str,
+        cos_theta: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.albedos(py, v, masking, cos_theta, |cos| {
+            let bias = schlick_weight(cos);
+            [1.0 - bias, bias, f82_weight(cos)]
+        })
     }
 
     /// The average of E over the hemisphere of views, weighted by the cosine, in [0, 1]; of round
@@ -194,15 +240,11 @@ impl ExactLobe {
     #[pyo3(signature = (masking="height-correlated"))]
     fn albedo_average(&self, py: Python<'_>, masking: &str) -> PyResult<f64> {
         let form = words::masking(masking)?;
-        match &self.model {
-            Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => {
-                let average = || self.integrator().average(lobe.sigma_x(), |_| [1.0]);
-                Ok(py.detach(average).map_err(refused)?.of(form)[0])
-            }
-            _ => Err(refused(
-                "averages are integrated for round lobes alone; average albedo(v) over views",
-            )),
-        }
+        let sigma = self.round().ok_or_else(|| {
+            refused("averages are integrated for round lobes alone; average albedo(v) over views")
+        })?;
+        let average = py.detach(|| self.integrator().average(sigma, |_| [1.0]));
+        Ok(average.map_err(refused)?.of(form)[0])
     }
 
     /// Shape.

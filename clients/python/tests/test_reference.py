@@ -102,6 +102,9 @@ def test_albedos_by_quadrature():
         lobe = exact.StudentT(sigma, gamma)
         e = float(lobe.albedo(cos_theta=v[2], masking=row["masking"]))
         assert abs(e - float(row["e_exact"])) <= QUADRATURE, row
+        parts = lobe.albedo_parts(cos_theta=v[2], masking=row["masking"])
+        for name, part in zip(["scale", "bias", "f82"], parts):
+            assert abs(part - float(row[f"{name}_exact"])) <= QUADRATURE, row
 
 
 def test_averages_by_quadrature():

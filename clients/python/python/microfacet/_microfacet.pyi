@@ -217,7 +217,17 @@ class ExactLobe:
         *,
         cos_theta: ArrayLike | None = None,
     ) -> _Array64: ...
+    def albedo_parts(
+        self,
+        v: ArrayLike | None = None,
+        masking: _Masking = "height-correlated",
+        *,
+        cos_theta: ArrayLike | None = None,
+    ) -> _Array64: ...
     def albedo_average(self, masking: _Masking = "height-correlated") -> float: ...
+    def reflection_weight(
+        self, v: ArrayLike, l: ArrayLike, masking: _Masking = "height-correlated"
+    ) -> _Array64: ...
 
 @final
 class ExactStudentT(ExactLobe):

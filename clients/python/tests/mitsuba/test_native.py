@@ -57,7 +57,7 @@ def test_conductor_of_ggx(roughness: Any) -> None:
 def test_dielectric_of_ggx(roughness: Any) -> None:
     ours = surfaces.dielectric(gamma=2, masking="uncorrelated", **roughness["ours"])
     native = mi.load_dict({"type": "roughdielectric", "distribution": "ggx", **roughness["native"]})
-    compare(ours, native, True, 2e-4)
+    compare(ours, native, True, 1e-4)
 
 
 @pytest.mark.parametrize("roughness", ROUGHNESS)

@@ -269,14 +269,13 @@ def dielectric_class() -> type:
             g1_l = shape.g1(seen.sigma, dr.select(reflects, l, -l), active)
             base = facet.jacobian * shape.d(seen.sigma, facet.m) * inverse_area
             base = dr.select(facet.sends, dr.minimum(base, LARGEST_DENSITY), 0.0)
-            share = dr.select(reflects, facet.reflectance, 1 - facet.reflectance)
-            white = share * g2_over_g1(g1_v, g1_l, self._correlated)
+            white = facet.share * g2_over_g1(g1_v, g1_l, self._correlated)
             white = white * dr.select(reflects, 1.0, seen.scale)
             if self._compensation == "turquin":
                 assert self._energy is not None
                 white = white * turquin(self._energy.lost(seen.below, seen.v.z, active), 1.0)
             return self._tint(si, reflects, active) * white, base, (
-                share if seen.chance() is None else mi.Float(1)
+                facet.share if seen.chance() is None else mi.Float(1)
             )
 
         def _tint(

@@ -33,6 +33,13 @@ def of_cosines(eta: mi.Float, cos: mi.Float, refracted: mi.Float) -> mi.Float:
     return 0.5 * (parallel * parallel + perpendicular * perpendicular)
 
 
+def transmitted(eta: mi.Float, cos: mi.Float, refracted: mi.Float) -> mi.Float:
+    """1 less that, with its digits where all but little is reflected."""
+    parallel, perpendicular = eta * cos + refracted, cos + eta * refracted
+    inverse = 1 / (parallel * parallel) + 1 / (perpendicular * perpendicular)
+    return dr.minimum(2 * eta * cos * refracted * inverse, 1)
+
+
 def dielectric(eta: mi.Float, cos: mi.Float) -> mi.Float:
     """Reflectance of a dielectric; 1 beyond the critical angle and at grazing."""
     refracts, refracted = refracted_cos(eta, cos)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import drjit as dr
 import mitsuba as mi
 
-from .fresnel import dielectric, of_cosines, refracted_cos
+from .fresnel import dielectric, of_cosines, refracted_cos, transmitted
 
 #: The least cosine between a direction and a facet: below, Fresnel's equations are 0/0.
 _LEAST = 1e-7
@@ -25,9 +25,9 @@ class Facet:
     #: Whether it does, and whether by reflection.
     sends: mi.Bool
     reflects: mi.Bool
-    #: The cosine v.m, and the facet's reflectance there.
+    #: The cosine v.m, and what the facet reflects there, or transmits.
     facing: mi.Float
-    reflectance: mi.Float
+    share: mi.Float
     #: Density of the light over that of m per v.m.
     jacobian: mi.Float
 
@@ -42,6 +42,7 @@ def drawn(
     refracts, refracted = refracted_cos(eta, facing)
     reflectance = dr.select(refracts, of_cosines(eta, facing, refracted), 1.0)
     reflects = number < (reflectance if chance is None else chance)
+    share = dr.select(reflects, reflectance, transmitted(eta, facing, refracted))
     through = dr.normalize((facing / eta - refracted) * m - v / eta)
     l = dr.select(reflects, 2 * facing * m - v, through)
     # v.m + eta l.m without the cancellation where eta is near 1.
@@ -49,7 +50,7 @@ def drawn(
     ratio = eta / length
     jacobian = dr.select(reflects, 0.25, facing * refracted * ratio * ratio)
     sends = dr.select(reflects, l.z > 0, refracts & (l.z < 0))
-    return l, Facet(m, sends, reflects, facing, reflectance, jacobian)
+    return l, Facet(m, sends, reflects, facing, share, jacobian)
 
 
 def between(eta: mi.Float, v: mi.Vector3f, l: mi.Vector3f) -> Facet:
@@ -62,12 +63,12 @@ def between(eta: mi.Float, v: mi.Vector3f, l: mi.Vector3f) -> Facet:
     sends = (cos_v > 0) & dr.select(reflects, cos_l > 0, cos_l < 0)
     facing = dr.clip(cos_v, _LEAST, 1)
     refracted = dr.clip(-cos_l, _LEAST, 1)
-    reflectance = dr.select(
-        reflects, dielectric(eta, facing), of_cosines(eta, facing, refracted)
+    share = dr.select(
+        reflects, dielectric(eta, facing), transmitted(eta, facing, refracted)
     )
     ratio = eta / length
     jacobian = dr.select(reflects, 0.25, facing * refracted * ratio * ratio)
-    return Facet(m, sends, reflects, facing, reflectance, jacobian)
+    return Facet(m, sends, reflects, facing, share, jacobian)
 
 
 def either(first: mi.Bool, a: Facet, b: Facet) -> Facet:
@@ -77,6 +78,6 @@ def either(first: mi.Bool, a: Facet, b: Facet) -> Facet:
         dr.select(first, a.sends, b.sends),
         dr.select(first, a.reflects, b.reflects),
         dr.select(first, a.facing, b.facing),
-        dr.select(first, a.reflectance, b.reflectance),
+        dr.select(first, a.share, b.share),
         dr.select(first, a.jacobian, b.jacobian),
     )
