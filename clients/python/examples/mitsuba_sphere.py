@@ -23,7 +23,7 @@ def main() -> None:
     parser.add_argument(
         "--compensation", choices=("none", "turquin", "kulla_conty"), default="kulla_conty"
     )
-    parser.add_argument("--spp", type=int, default=512, help="samples of a pixel")
+    parser.add_argument("--spp", type=int, default=128, help="samples of a pixel")
     parser.add_argument("--size", type=int, default=512, help="of the picture in pixels")
     parser.add_argument("--out", default="mitsuba_sphere.png", help="where the picture goes")
     options = parser.parse_args()

@@ -50,10 +50,10 @@ def studio(surface: dict[str, Any], width: int, height: int) -> mi.Scene:
 
 def picture(scene: mi.Scene, samples: int) -> mi.Bitmap:
     """The scene in bytes of sRGB, rendered in passes that fit into memory."""
-    passes = max(1, samples // 64)
+    passes = max(1, -(-samples // 64))
     total = None
     for number in range(passes):
-        some = mi.render(scene, spp=samples // passes, seed=number)
+        some = mi.render(scene, spp=max(1, samples // passes), seed=number)
         total = some if total is None else total + some
         dr.eval(total)
     assert total is not None

@@ -2,11 +2,10 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::process;
+use std::sync::OnceLock;
 
-use numpy::{
-    Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
-    get_array_module,
-};
+use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -33,6 +32,13 @@ impl Cost {
     }
 }
 
+/// Whether other threads work for this process. In one that was forked after they were started they
+/// do not, and whoever waited for them would wait for ever. The first call is that of the import.
+pub(crate) fn has_threads() -> bool {
+    static OWNER: OnceLock<u32> = OnceLock::new();
+    *OWNER.get_or_init(process::id) == process::id()
+}
+
 /// An argument: an array whose last axis has N numbers, or for N = 1 has any number of axes.
 pub(crate) struct Input<'py, T: Element, const N: usize> {
     array: PyReadonlyArrayDyn<'py, T>,
@@ -45,7 +51,11 @@ impl<'py, T: Element + Copy + Send + Sync, const N: usize> Input<'py, T, N> {
         let py = value.py();
         // In C's order, which its numbers are taken in.
         let arguments = (value, T::get_dtype(py), "C");
-        let array = get_array_module(py)?.call_method1("asarray", arguments)?;
+        let numpy = py.import("numpy")?;
+        if numpy.call_method1("iscomplexobj", (value,))?.is_truthy()? {
+            return Err(PyValueError::new_err(format!("{name} must be real, and is complex")));
+        }
+        let array = numpy.call_method1("asarray", arguments)?;
         let array = array.cast_into::<PyArrayDyn<T>>()?.readonly();
         let shape = array.shape();
         let batch = match (N, shape) {
@@ -165,11 +175,15 @@ where
         let block = chunk * chunks;
         for (i, out) in out.chunks_mut(block).enumerate() {
             py.detach(|| {
-                let all = out.par_chunks_mut(chunk).enumerate();
-                all.for_each(|(j, out)| {
+                let fill = |(j, out): (usize, &mut [[T; M]])| {
                     let start = i * block + j * chunk;
                     fill(start..start + out.len(), out);
-                });
+                };
+                if out.len() <= chunk || !has_threads() {
+                    out.chunks_mut(chunk).enumerate().for_each(fill);
+                } else {
+                    out.par_chunks_mut(chunk).enumerate().for_each(fill);
+                }
             });
             py.check_signals()?;
         }

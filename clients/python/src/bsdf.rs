@@ -15,7 +15,7 @@ use crate::words::{self, refused, unbound};
 /// Arrays of directions have the shape (..., 3): unit vectors in the tangent frame, n = +z, both
 /// away from the surface; z < 0 is inside. f excludes the cosine, densities are per steradian of l.
 /// Where all events are deltas (a smooth surface) f and density are 0. transport is "radiance", for
-/// paths from the camera, or "importance".
+/// paths from the camera, which refraction scales by (n_v/n_l)^2, or "importance".
 #[pyclass(name = "Bsdf", module = "microfacet", subclass, frozen)]
 pub(crate) struct PyBsdf {
     bsdf: AnyBsdf,
@@ -111,7 +111,7 @@ impl PyBsdf {
         let all = each3(py, v, choice, u, Cost::Lookup, draw)?;
         let column = |index: Bound<'py, PyAny>| -> PyResult<Bound<'py, PyAny>> {
             let index = PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), index])?;
-            all.get_item(index)
+            all.get_item(index)?.call_method0("copy")
         };
         let vector = |at: isize| column(PySlice::new(py, at, at + 3, 1).into_any());
         let number = |at: i32| column(at.into_pyobject(py)?.into_any());

@@ -32,6 +32,7 @@ mod _microfacet {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::arrays::has_threads();
         // Under other names here; `microfacet.exact` gives them theirs.
         module.add("ExactLobe", module.py().get_type::<ExactLobe>())?;
         module.add("ExactStudentT", module.py().get_type::<ExactStudentT>())?;

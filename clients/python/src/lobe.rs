@@ -251,13 +251,23 @@ pub(crate) fn of_views<'py, const M: usize>(
 }
 
 /// Takes what the methods `albedo` are given for a view.
-pub(crate) fn view<'py, T: numpy::Element + Copy + Send + Sync>(
+pub(crate) fn view<'py, T: numpy::Element + Copy + Send + Sync + Into<f64>>(
     v: Option<&Bound<'py, PyAny>>,
     cos_theta: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<View<'py, T>> {
     match (v, cos_theta) {
         (Some(v), None) if v.extract::<f64>().is_ok() => Ok(View::Cosines(Input::new("v", v)?)),
-        (Some(v), None) => Ok(View::Directions(Input::new("v", v)?)),
+        (Some(v), None) => {
+            let v = Input::<T, 3>::new("v", v)?;
+            // Three cosines look like one direction, though rarely of length 1.
+            let square = |v: Vec<T>| v.into_iter().map(|x| x.into().powi(2)).sum::<f64>();
+            if v.batch().is_empty() && (square(v.all()) - 1.0).abs() > 1e-3 {
+                return Err(refused(
+                    "v is no unit vector; an array of cosines goes into cos_theta",
+                ));
+            }
+            Ok(View::Directions(v))
+        }
         (None, Some(cos)) => Ok(View::Cosines(Input::new("cos_theta", cos)?)),
         _ => Err(refused("give either v, directions of shape (..., 3), or cos_theta")),
     }

@@ -35,6 +35,7 @@ impl PyShape {
         for part in shape.parts() {
             let rows = part.values.len() / part.columns;
             let array = PyArray1::from_slice(py, part.values).reshape([rows, part.columns])?;
+            array.call_method1("setflags", (false,))?;
             tables.set_item(part.name, array)?;
         }
         Ok(Self { gamma, members: members.into(), tables: tables.into() })

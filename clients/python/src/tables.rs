@@ -13,13 +13,14 @@ use microfacet_bake::table_set::{Settings, Target, bake_with};
 use microfacet_bake::table_spec::Quality;
 use microfacet_sampler::internals::describe;
 use microfacet_sampler::{Precision, Tables};
-use pyo3::exceptions::{PyFileNotFoundError, PyRuntimeError, PyUserWarning};
+use pyo3::exceptions::{PyFileNotFoundError, PyRuntimeError, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 
+use crate::arrays::has_threads;
 use crate::bsdf::PyBsdf;
 use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT, named};
 use crate::shape::{PyDielectricAlbedo, PyShape};
-use crate::words::{self, one_of, refused, unbound, unread};
+use crate::words::{self, one_of, refused, unbound, unread, unscened};
 
 /// How long an interrupt waits for its answer while a bake runs.
 const PATIENCE: Duration = Duration::from_millis(20);
@@ -153,12 +154,12 @@ impl PyTables {
 /// at once and writes nothing; what was begun goes on in the background until it is done.
 #[pyfunction]
 #[pyo3(signature = (recipe=None, out=None, *, quality="default", precision="f32", max_error=None,
-                    max_bytes=None, albedo=None, tabulate_ggx=false, cache=CacheArg::Flag(true),
+                    max_bytes=None, albedo=None, tabulate_ggx=false, cache=None,
                     max_memory=4 << 30))]
 #[expect(clippy::too_many_arguments, reason = "by keyword, as options of the command")]
 pub(crate) fn bake(
     py: Python<'_>,
-    recipe: Option<Recipe>,
+    recipe: Option<&Bound<'_, PyAny>>,
     out: Option<PathBuf>,
     quality: &str,
     precision: &str,
@@ -166,9 +167,15 @@ pub(crate) fn bake(
     max_bytes: Option<usize>,
     albedo: Option<bool>,
     tabulate_ggx: bool,
-    cache: CacheArg,
+    cache: Option<&Bound<'_, PyAny>>,
     max_memory: u64,
 ) -> PyResult<PyTables> {
+    if !has_threads() {
+        return Err(PyRuntimeError::new_err(
+            "a process that was forked has no threads to bake with: start it with \
+             multiprocessing's \"spawn\", or bake before",
+        ));
+    }
     let qualities =
         [("draft", Quality::Draft), ("default", Quality::Default), ("high", Quality::High)];
     let quality = one_of("quality", quality, &qualities)?;
@@ -183,7 +190,7 @@ pub(crate) fn bake(
     let plan = match recipe {
         None => general(albedo),
         Some(recipe) => {
-            let scene = recipe.scene()?;
+            let scene = scene(recipe)?;
             for warning in &scene.warnings {
                 let warning = std::ffi::CString::new(warning.replace('\0', " "))?;
                 PyErr::warn(py, &py.get_type::<PyUserWarning>(), &warning, 1)?;
@@ -198,9 +205,12 @@ pub(crate) fn bake(
         }
     };
     let cache = match cache {
-        CacheArg::Flag(true) => Cache::user(),
-        CacheArg::Flag(false) => Cache::none(),
-        CacheArg::Folder(folder) => Cache::new(folder),
+        None => Cache::user(),
+        Some(cache) => match cache.extract::<bool>() {
+            Ok(true) => Cache::user(),
+            Ok(false) => Cache::none(),
+            Err(_) => Cache::new(path("cache", "True, False", cache)?),
+        },
     };
     let settings = Settings { cache, max_memory, ..Settings::default() };
     // In a thread of its own, so that an interrupt is answered while it works.
@@ -235,31 +245,18 @@ fn general(albedo: Option<bool>) -> Plan {
     plan
 }
 
-/// A recipe's text, or where it is.
-#[derive(FromPyObject)]
-pub(crate) enum Recipe {
-    #[pyo3(transparent)]
-    Text(String),
-    #[pyo3(transparent)]
-    Path(PathBuf),
+/// Reads a recipe's text, which has more than one line, or what a path names.
+fn scene(recipe: &Bound<'_, PyAny>) -> PyResult<Scene> {
+    let scene = match recipe.extract::<String>() {
+        Ok(text) if text.contains('\n') => Scene::from_recipe_str(&text),
+        _ => scene::load(&path("recipe", "the text of a recipe", recipe)?),
+    };
+    scene.map_err(unscened)
 }
 
-impl Recipe {
-    fn scene(self) -> PyResult<Scene> {
-        let scene = match self {
-            Self::Text(text) if text.contains('\n') => Scene::from_recipe_str(&text),
-            Self::Text(path) => scene::load(path.as_ref()),
-            Self::Path(path) => scene::load(&path),
-        };
-        scene.map_err(refused)
-    }
-}
-
-/// Whether to use the user's cache, or a folder for one.
-#[derive(FromPyObject)]
-pub(crate) enum CacheArg {
-    #[pyo3(transparent)]
-    Flag(bool),
-    #[pyo3(transparent)]
-    Folder(PathBuf),
+/// A path, which an argument may be beside something else.
+fn path(name: &str, or: &str, value: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+    let of = value.get_type().name()?.to_string();
+    let why = |_| PyTypeError::new_err(format!("{name} must be {or} or a path, and is a {of}"));
+    value.extract().map_err(why)
 }

@@ -2,6 +2,7 @@
 
 use std::io;
 
+use microfacet_bake::scene::{SceneError, SceneErrorKind};
 use microfacet_bake::store::StoreError;
 use microfacet_sampler::{BindError, Compensation, Masking, Roughness, StandIn, Transport};
 use pyo3::exceptions::PyValueError;
@@ -16,7 +17,22 @@ pub(crate) fn refused(why: impl ToString) -> PyErr {
 
 /// Why a BSDF or an albedo cannot be made, in the words of Python.
 pub(crate) fn unbound(why: BindError) -> PyErr {
-    refused(why.to_string().replace("`StandIn::Round`", "stand_in=True"))
+    let words = [
+        ("`StandIn::Round`", "stand_in=True"),
+        ("and the sigma and theta of its Skew", "and its sigma and theta"),
+        ("or bake it when loading", "(microfacet.bake takes its text)"),
+        (", which compensation needs", ""),
+    ];
+    let why = words.iter().fold(why.to_string(), |why, (rust, python)| why.replace(rust, python));
+    refused(why)
+}
+
+/// Why a scene cannot be read: errors of the operating system are OSError.
+pub(crate) fn unscened(why: SceneError) -> PyErr {
+    match &why.kind {
+        SceneErrorKind::Io(cause) => io::Error::new(cause.kind(), why.to_string()).into(),
+        _ => refused(why),
+    }
 }
 
 /// An error of files: those of the operating system are OSError.

@@ -1,6 +1,8 @@
 """Arrays in and out: shapes, types, broadcasting, errors."""
 
 import math
+import multiprocessing
+import sys
 import threading
 import time
 
@@ -71,6 +73,8 @@ def test_chunks_join_without_seams():
         (lambda: LOBE.g2(np.ones((2, 3)), np.ones((3, 3))), ["broadcast", "v (2,)", "l (3,)"]),
         (lambda: LOBE.g2(V, V, "smith"), ['"smith"', '"uncorrelated" or "height-correlated"']),
         (lambda: LOBE.g1("abc"), ["could not convert"]),
+        (lambda: LOBE.g1([0, 0, 1j]), ["v must be real"]),
+        (lambda: LOBE.albedo([0.8, 0.2, 0.1]), ["no unit vector", "cos_theta"]),
         (lambda: LOBE.albedo(), ["either v", "cos_theta"]),
         (lambda: LOBE.albedo(V, cos_theta=0.5), ["either v", "cos_theta"]),
     ],
@@ -91,6 +95,24 @@ def test_corners_give_numbers():
             m = lobe.sample_visible_normal(v[:, None, :], u)
             assert np.isfinite(m[:5]).all() and (m[:5, :, 2] > 0).all()
             assert np.isfinite(lobe.g1(v)).all() and np.isfinite(lobe.d(m[:5])).all()
+
+
+def draw(queue: "multiprocessing.Queue[bool]", u: np.ndarray) -> None:
+    queue.put(bool(np.isfinite(LOBE.sample_visible_normal(V, u)).all()))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
+def test_a_process_that_was_forked_does_not_wait_for_threads_of_the_other():
+    u = np.random.default_rng(4).random((10_000, 2))
+    LOBE.sample_visible_normal(V, u)
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    child = context.Process(target=draw, args=(queue, u))
+    child.start()
+    try:
+        assert queue.get(timeout=60)
+    finally:
+        child.kill()
 
 
 def test_the_lock_of_the_interpreter_is_released():

@@ -69,7 +69,6 @@ def test_lobes_say_what_they_are():
         (lambda: microfacet.Dielectric(microfacet.StudentT(0.1, 2), -1), ["eta = -1", "[0.001, 1000]"]),
         (lambda: microfacet.Tables().material("gold"), ["gold"]),
         (lambda: microfacet.bake("\n[[material]]\nname = 3\n"), ["recipe:2:1", "sigma"]),
-        (lambda: microfacet.bake("no/such.toml"), ["no/such.toml"]),
         (lambda: microfacet.bake(quality="fine"), ['"fine"', '"high"']),
     ],
 )
@@ -80,9 +79,18 @@ def test_errors_are_those_of_the_command(call, words):
         assert word in str(why.value), why.value
 
 
+def test_arguments_of_another_type():
+    with pytest.raises(TypeError, match="recipe must be the text of a recipe or a path"):
+        microfacet.bake({})
+    with pytest.raises(TypeError, match="cache must be True, False or a path"):
+        microfacet.bake(RECIPE, cache=5)
+
+
 def test_files_that_are_missing_or_damaged(tmp_path):
     with pytest.raises(FileNotFoundError, match="nothing"):
         microfacet.Tables(tmp_path / "nothing")
+    with pytest.raises(FileNotFoundError, match="nothing.toml"):
+        microfacet.bake(tmp_path / "nothing.toml")
     (tmp_path / "bad.safetensors").write_bytes(b"\x00" * 100)
     with pytest.raises(ValueError, match="bad.safetensors"):
         microfacet.Tables(tmp_path / "bad.safetensors")

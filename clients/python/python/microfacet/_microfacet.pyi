@@ -193,7 +193,7 @@ def bake(
     max_bytes: int | None = None,
     albedo: bool | None = None,
     tabulate_ggx: bool = False,
-    cache: bool | _Path = ...,
+    cache: bool | _Path | None = None,
     max_memory: int = ...,
 ) -> Tables: ...
 def inspect(path: _Path | None = None) -> dict[str, Any]: ...

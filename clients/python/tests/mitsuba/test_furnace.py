@@ -43,6 +43,23 @@ def test_views_of_conductors(gamma: float, compensation: str) -> None:
             is_white(bsdf, cosine, 5e-4)
 
 
+@pytest.mark.parametrize("compensation", ("turquin", "kulla_conty"))
+def test_textures_of_roughness(compensation: str) -> None:
+    """Also where a texture is rougher than the tables of albedos are: it is taken at their end."""
+    for value in (0.02, 0.5, 8.0):
+        texture = {"type": "checkerboard", "color0": value, "color1": value}
+        bsdf = surfaces.conductor(sigma=texture, gamma=2.5, compensation=compensation)
+        for cosine in (0.3, 0.9):
+            is_white(bsdf, cosine, 5e-4)
+
+
+@pytest.mark.parametrize("compensation", ("turquin", "kulla_conty"))
+def test_colours_above_one_are_one(compensation: str) -> None:
+    texture = {"type": "checkerboard", "color0": 4.0, "color1": 4.0}
+    bsdf = surfaces.conductor(sigma=0.5, gamma=2, f0=texture, compensation=compensation)
+    is_white(bsdf, 0.7, 5e-4)
+
+
 @pytest.fixture(scope="module")
 def glass(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A set with the albedos of three dielectrics, one of which is dense outside."""

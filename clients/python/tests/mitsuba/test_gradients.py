@@ -46,6 +46,30 @@ def test_sigma_of_conductors(gamma: float, compensation: str) -> None:
     agrees(bsdf, "sigma.value", 0.4, 2e-3, False)
 
 
+@pytest.mark.parametrize("compensation", ("turquin", "kulla_conty"))
+def test_a_derivative_needs_no_update_and_is_the_same_twice(compensation: str) -> None:
+    bsdf = surfaces.conductor(sigma=0.6, gamma=2.5, compensation=compensation)
+    views, lights = directions(2000, 23, 0.1), directions(2000, 24, 0.1)
+    parameters = mi.traverse(bsdf)
+
+    def total() -> mi.Float:
+        return dr.mean(dr.sum(bsdf.eval(CONTEXT, hit(views), vectors(lights))))
+
+    found = []
+    dr.enable_grad(parameters["sigma.value"])
+    for _ in range(2):
+        dr.backward(total())
+        found.append(dr.grad(parameters["sigma.value"])[0])
+        dr.clear_grad(parameters["sigma.value"])
+    ends = []
+    for value in (0.602, 0.598):
+        parameters["sigma.value"] = mi.Float(value)
+        parameters.update()
+        ends.append(total()[0])
+    want = (ends[0] - ends[1]) / 0.004
+    assert abs(want) > 1e-3 and np.allclose(found, want, rtol=5e-3), (found, want)
+
+
 @pytest.mark.parametrize("gamma", (1.6, 2.0, 2.5, math.inf))
 def test_sigma_and_index_of_dielectrics(gamma: float) -> None:
     agrees(surfaces.dielectric(sigma=0.4, gamma=gamma), "sigma.value", 0.4, 2e-3, True)

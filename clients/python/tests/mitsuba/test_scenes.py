@@ -190,6 +190,67 @@ def test_variants_after_each_other() -> None:
     assert first == last
 
 
+def test_channels_keep_their_colours_in_polarised_variants() -> None:
+    """Of metals, and of light of further bounces, by four wavelengths."""
+    program = """
+    import sys
+    import microfacet.mitsuba
+    microfacet.mitsuba.set_variant(sys.argv[1])
+    import mitsuba as mi
+    import numpy as np
+    colour = {"type": "rgb", "value": [0.9, 0.5, 0.1]}
+    for more in ({"material": "Cu"}, {"f0": colour, "compensation": "kulla_conty"}):
+        scene = mi.load_dict({
+            "type": "scene", "integrator": {"type": "direct"}, "light": {"type": "constant"},
+            "sensor": {
+                "type": "perspective", "fov": 10,
+                "to_world": mi.ScalarTransform4f().look_at([0, 0, 10], [0, 0, 0], [0, 1, 0]),
+                "film": {"type": "hdrfilm", "width": 4, "height": 4, "pixel_format": "rgb"},
+            },
+            "ball": {
+                "type": "sphere", "bsdf": {"type": "student_t_conductor", "sigma": 0.3, **more},
+            },
+        })
+        print(*np.array(mi.render(scene, spp=512))[1:3, 1:3].mean(axis=(0, 1)))
+    """
+    found = []
+    for variant in ("llvm_ad_spectral", "llvm_ad_spectral_polarized"):
+        done = run(program, variant)
+        assert done.returncode == 0, done.stderr
+        found.append(np.array([line.split() for line in done.stdout.splitlines()], float))
+    assert found[0][:, 0].min() > 0.05 + found[0][:, 2].max()
+    assert np.allclose(found[0], found[1], atol=0.02), found
+
+
+def test_an_update_compiles_no_other_kernel() -> None:
+    for surface, name in (
+        ({"type": "student_t_dielectric", "sigma": 0.3, "gamma": 2.5}, "eta"),
+        ({"type": "student_t_conductor", "sigma": 0.3, "gamma": 2.5}, "sigma.value"),
+        (
+            {
+                "type": "student_t_conductor", "sigma": 0.3, "gamma": 2.5,
+                "compensation": "kulla_conty",
+            },
+            "sigma.value",
+        ),
+    ):  # fmt: skip
+        bsdf = mi.load_dict(surface)
+        parameters = mi.traverse(bsdf)
+        si, l = hit(directions(1000, 31, 0.1)), vectors(directions(1000, 32, 0.1))
+        dr.eval(si, l)
+        misses = []
+        for value in (1.3, 1.35, 1.4, 1.45):
+            parameters[name] = mi.Float(value)
+            parameters.update()
+            with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+                dr.kernel_history_clear()
+                dr.eval(bsdf.eval(CONTEXT, si, l))
+                history = dr.kernel_history([dr.KernelType.JIT])
+            misses.append(sum(not kernel["cache_hit"] for kernel in history))
+        # The order of variables in a kernel settles after two.
+        assert misses[2:] == [0, 0], (surface, misses)
+
+
 def test_no_variant_is_an_error_with_words() -> None:
     done = run("import microfacet.mitsuba; microfacet.mitsuba.register()")
     assert "no variant is set" in done.stderr

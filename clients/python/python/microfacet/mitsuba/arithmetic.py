@@ -18,6 +18,14 @@ SMALLEST = 1.17549435e-38
 LARGEST_DENSITY = 1e30
 
 
+def opaque(number: float) -> mi.Float:
+    """A number that kernels read from memory: another compiles no other kernel."""
+    found = mi.Float(number)
+    if dr.is_jit_v(mi.Float):
+        dr.make_opaque(found)
+    return found
+
+
 def unit(x: mi.Float) -> mi.Float:
     """x in [0, 1]."""
     return dr.clip(x, 0.0, 1.0)
@@ -45,7 +53,10 @@ def exp_growth(x: mi.Float) -> mi.Float:
 
 
 def place(x: mi.Float, last: int) -> tuple[mi.UInt32, mi.Float]:
-    """The cell of x in [0, last] and the position in it; at the end, the cell after the last."""
+    """The cell of x in [0, last] and the position in it; at the end, the cell after the last. What
+    is no number is at the beginning.
+    """
+    x = dr.select(x >= 0, x, 0)
     cell = dr.minimum(mi.UInt32(x), last)
     return cell, x - mi.Float(cell)
 
@@ -63,14 +74,6 @@ class Packets:
             self._rows = mi.Float(padded.ravel())
         else:
             self._rows = [mi.Vector4f(row.tolist()) for row in padded]
-
-    @classmethod
-    def of_columns(cls, columns: mi.Vector4f) -> Packets:
-        """Of four arrays of one length, whose derivatives are kept."""
-        self = cls.__new__(cls)
-        self._rows = dr.ravel(columns)
-        dr.eval(self._rows)
-        return self
 
     def __call__(self, index: mi.UInt32, active: mi.Bool = True) -> mi.Vector4f:
         """The row of an index, which must exist where ``active``."""

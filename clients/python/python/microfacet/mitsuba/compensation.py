@@ -15,8 +15,9 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from . import broad, curve
+from . import broad, curve, parameters
 from .albedo import Albedos
+from .arithmetic import opaque
 from .broad import Broad
 from .curve import Curve
 from .parameters import SIGMA, SIGMA_OF_ALBEDOS
@@ -45,8 +46,8 @@ def kulla_conty(lost_v: mi.Float, lost_l: mi.Float, average: mi.Float) -> mi.Flo
 class Losses:
     """What one bounce loses, for any roughness or, faster, for one."""
 
-    def __init__(self, albedos: Albedos, sigma: mi.Float | None) -> None:
-        """``sigma``: the roughness if it is the same everywhere, with its derivative."""
+    def __init__(self, albedos: Albedos, sigma: float | None) -> None:
+        """``sigma``: the roughness if it is the same everywhere."""
         self._albedos = albedos
         self._curve: Curve | None = None
         if sigma is None:
@@ -55,25 +56,31 @@ class Losses:
             rows = np.exp(np.linspace(low, high, _ROWS))
             self.broad = Broad(np.stack([self._lost(float(row), broad.cosines()) for row in rows]))
         else:
-            self._average = albedos.lost_average(sigma)
+            # Opaque, so that another roughness compiles no other kernel.
+            self._average = opaque(parameters.value(albedos.lost_average(mi.Float(sigma))))
             self._curve = Curve(self._lost(sigma, curve.cosines()))
-            value = sigma if isinstance(sigma, float) else dr.detach(sigma)
-            self.broad = Broad(np.asarray(self._lost(value, broad.cosines()))[None])
+            self.broad = Broad(self._lost(sigma, broad.cosines())[None])
 
-    def _lost(self, sigma: Any, cosines: np.ndarray) -> Any:
+    def _lost(self, sigma: float, cosines: np.ndarray) -> np.ndarray:
         if dr.is_jit_v(mi.Float):
-            return self._albedos.lost(mi.Float(sigma), mi.Float(cosines.astype(np.float32)))
+            lost = self._albedos.lost(mi.Float(sigma), mi.Float(cosines.astype(np.float32)))
+            return np.asarray(lost)
         return np.array([self._albedos.lost(sigma, float(cos)) for cos in cosines])
+
+    def _at_once(self, sigma: mi.Float) -> bool:
+        """Whether the curve serves; derivatives by sigma go through the tables."""
+        return self._curve is not None and not dr.grad_enabled(sigma)
 
     def lost(self, sigma: mi.Float, cos_theta: mi.Float, active: mi.Bool) -> mi.Float:
         """1 - E at the cosine of a view or light."""
-        if self._curve is not None:
+        if self._at_once(sigma):
+            assert self._curve is not None
             return dr.clip(self._curve(cos_theta, active), 0, 1)
         return self._albedos.lost(sigma, cos_theta, active)
 
     def average(self, sigma: mi.Float, active: mi.Bool) -> mi.Float:
         """1 - E_avg."""
-        if self._curve is not None:
+        if self._at_once(sigma):
             return self._average
         return self._albedos.lost_average(sigma, active)
 

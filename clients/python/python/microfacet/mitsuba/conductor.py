@@ -42,14 +42,14 @@ def conductor_class() -> type:
             self._compensation = parameters.compensation(props)
             self._correlated = parameters.is_correlated(props)
             self._sigma_x, self._sigma_y = parameters.sigmas(props)
-            stand_in = parameters.flag(props, "stand_in")
+            self._stand_in = parameters.flag(props, "stand_in")
             self._fresnel, self._textures = _reflectance(props)
             self._scale = parameters.reflectance(props, "specular_reflectance")
             shape = parameters.shape(props, self._gamma)
             self._shape = Shape(shape)
             self._albedos = None
             if self._compensation != "none":
-                parameters.check_albedos(props, stand_in)
+                parameters.check_albedos(props, self._stand_in)
                 self._albedos = Albedos(shape, self._correlated)
             flags = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
             if self._sigma_x is not self._sigma_y:
@@ -76,9 +76,8 @@ def conductor_class() -> type:
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             self._losses = None
             if self._albedos is not None:
-                self._losses = Losses(
-                    self._albedos, parameters.round_sigma(self._sigma_x, self._sigma_y)
-                )
+                sigma = parameters.round_sigma(self._sigma_x, self._sigma_y, self._stand_in)
+                self._losses = Losses(self._albedos, sigma)
 
         def sample(
             self,
@@ -92,7 +91,7 @@ def conductor_class() -> type:
             if not ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0):
                 return bs, spectrum(mi.UnpolarizedSpectrum(0))
             v = si.wi
-            active = active & (v.z > 0)
+            active = active & (v.z > 0) & dr.isfinite(dr.squared_norm(v))
             sigma = self._sigma(si, active)
             m = self._shape.sample_visible_normal(sigma, v, sample2, active)
             facing = dr.dot(v, m)
@@ -128,6 +127,7 @@ def conductor_class() -> type:
                 return spectrum(mi.UnpolarizedSpectrum(0)), mi.Float(0)
             v = si.wi
             active = active & (v.z > 0) & (wo.z > 0)
+            active = active & dr.isfinite(dr.squared_norm(v) + dr.squared_norm(wo))
             sigma = self._sigma(si, active)
             # The cosine v.m is half the length of v + l.
             m = v + wo
@@ -171,7 +171,8 @@ def conductor_class() -> type:
             )
 
         def _sigma(self, si: mi.SurfaceInteraction3f, active: mi.Bool) -> mi.Vector2f:
-            return parameters.sigma_at(self._sigma_x, self._sigma_y, si, active)
+            highest = parameters.highest_sigma(self._compensation)
+            return parameters.sigma_at(self._sigma_x, self._sigma_y, si, active, highest)
 
         def _facets(
             self,

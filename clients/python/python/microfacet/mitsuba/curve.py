@@ -22,20 +22,13 @@ def cosines() -> np.ndarray:
 
 
 class Curve:
-    """Cubics through the values at :func:`cosines`, whose derivatives are kept."""
+    """Cubics through the values at :func:`cosines`."""
 
     def __init__(self, values: Any) -> None:
-        """``values``: 257 numbers, an array of the variant or of numpy."""
-        node = np.arange(CELLS + 1)
-        ends = [np.clip(node + shift, 0, CELLS) for shift in (-1, 0, 1, 2)]
-        if dr.is_jit_v(mi.Float):
-            values = mi.Float(values)
-            a, b, c, d = (dr.gather(mi.Float, values, mi.UInt32(end)) for end in ends)
-            self._cells = Packets.of_columns(mi.Vector4f(*_cubics(a, b, c, d)))
-        else:
-            values = np.asarray(values, np.float64)
-            cubics = _cubics(*(values[end] for end in ends))
-            self._cells = Packets(np.stack(cubics, axis=1))
+        """``values``: 257 numbers."""
+        node, values = np.arange(CELLS + 1), np.asarray(values, np.float64)
+        ends = (values[np.clip(node + shift, 0, CELLS)] for shift in (-1, 0, 1, 2))
+        self._cells = Packets(np.stack(_cubics(*ends), axis=1))
 
     def __call__(self, cos_theta: mi.Float, active: mi.Bool = True) -> mi.Float:
         """The function at a cosine in [0, 1]."""

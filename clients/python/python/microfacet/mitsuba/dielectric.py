@@ -73,18 +73,16 @@ def dielectric_class() -> type:
             self._compensation = parameters.compensation(props)
             self._correlated = parameters.is_correlated(props)
             self._sigma_x, self._sigma_y = parameters.sigmas(props)
-            stand_in = parameters.flag(props, "stand_in")
+            self._stand_in = parameters.flag(props, "stand_in")
             self._index = parameters.index(props)
             self._eta = mi.Float(self._index)
-            if dr.is_jit_v(mi.Float):
-                dr.make_opaque(self._eta)
             self._reflectance = parameters.reflectance(props, "specular_reflectance")
             self._transmittance = parameters.reflectance(props, "specular_transmittance")
             self._tables = parameters.set_of_tables(props)
             self._shape = Shape(self._tables.shape(self._gamma))
             if self._compensation != "none":
-                parameters.check_albedos(props, stand_in)
-                if parameters.round_sigma(self._sigma_x, self._sigma_y) is None:
+                parameters.check_albedos(props, self._stand_in)
+                if self._round_sigma() is None:
                     raise ValueError(
                         "compensation of a dielectric has albedos of one roughness, and sigma is a"
                         " texture: make sigma a number, or set compensation to none"
@@ -115,8 +113,13 @@ def dielectric_class() -> type:
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             if self._compensation == "none":
+                eta = parameters.value(self._eta)
+                parameters.check_index(eta, f"eta = {eta:g}")
+                # Another index compiles no other kernel.
+                if dr.is_jit_v(mi.Float):
+                    dr.make_opaque(self._eta)
                 return
-            sigma = parameters.value(parameters.round_sigma(self._sigma_x, self._sigma_y))
+            sigma = self._round_sigma()
             form = "height-correlated" if self._correlated else "uncorrelated"
             albedo = self._tables.dielectric_albedo(sigma, self._gamma, self._index, form)
             self._energy = Energy(albedo, self._index)
@@ -173,7 +176,7 @@ def dielectric_class() -> type:
         ) -> tuple[mi.Spectrum, mi.Float]:
             seen, active = self._seen(ctx, si, active)
             l = seen.sign * wo
-            active = active & (l.z != 0)
+            active = active & (l.z != 0) & dr.isfinite(dr.squared_norm(wo))
             if not seen.reflects:
                 active = active & (l.z < 0)
             if not seen.transmits:
@@ -217,6 +220,9 @@ def dielectric_class() -> type:
                 "]"
             )
 
+        def _round_sigma(self) -> float | None:
+            return parameters.round_sigma(self._sigma_x, self._sigma_y, self._stand_in)
+
         def _textures(self) -> dict[str, mi.Texture]:
             """The textures that there are, by name."""
             textures = {
@@ -232,12 +238,13 @@ def dielectric_class() -> type:
         def _seen(
             self, ctx: mi.BSDFContext, si: mi.SurfaceInteraction3f, active: mi.Bool
         ) -> tuple[Seen, mi.Bool]:
-            active = active & (si.wi.z != 0)
+            active = active & (si.wi.z != 0) & dr.isfinite(dr.squared_norm(si.wi))
             above = si.wi.z > 0
             sign = dr.select(above, mi.Float(1), mi.Float(-1))
             eta = dr.select(above, self._eta, 1 / self._eta)
             radiance = ctx.mode == mi.TransportMode.Radiance
-            sigma = parameters.sigma_at(self._sigma_x, self._sigma_y, si, active)
+            highest = parameters.highest_sigma(self._compensation)
+            sigma = parameters.sigma_at(self._sigma_x, self._sigma_y, si, active, highest)
             seen = Seen(
                 v=sign * si.wi,
                 sign=sign,

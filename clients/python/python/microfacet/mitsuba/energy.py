@@ -13,6 +13,7 @@ import mitsuba as mi
 import numpy as np
 
 from . import broad, curve
+from .arithmetic import opaque
 from .broad import Broad
 from .curve import Curve
 
@@ -46,7 +47,8 @@ class Energy:
             return curve.average(of)
 
         averages = [parts(side) for side in SIDES]
-        self._average = [float(lost) for _, _, lost in averages]
+        lost_averages = [float(lost) for _, _, lost in averages]
+        self._average = [opaque(lost) for lost in lost_averages]
         # The flux that changes sides is the same either way, by reciprocity: as much of it as one
         # bounce would send there, from the side that sends less.
         outside, inside = (
@@ -56,8 +58,8 @@ class Energy:
         flux = min(outside, eta * eta * inside)
         crossing = (flux, flux / (eta * eta))
         self._reflected = [
-            float(1 - min(part / lost, 1)) if lost > 0 else 1.0
-            for part, lost in zip(crossing, self._average)
+            opaque(1 - min(part / lost, 1) if lost > 0 else 1.0)
+            for part, lost in zip(crossing, lost_averages)
         ]
 
     def lost(self, below: mi.UInt32, cos_theta: mi.Float, active: mi.Bool) -> mi.Float:
@@ -67,8 +69,8 @@ class Energy:
 
     def average(self, below: mi.UInt32) -> mi.Float:
         """The cosine-weighted average of that."""
-        return dr.select(below == 0, mi.Float(self._average[0]), mi.Float(self._average[1]))
+        return dr.select(below == 0, *self._average)
 
     def reflected(self, below: mi.UInt32) -> mi.Float:
         """The share of what is lost that further bounces reflect."""
-        return dr.select(below == 0, mi.Float(self._reflected[0]), mi.Float(self._reflected[1]))
+        return dr.select(below == 0, *self._reflected)

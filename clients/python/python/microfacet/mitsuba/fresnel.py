@@ -90,7 +90,7 @@ class Schlick:
         self._f82 = f82
 
     def at(self, si: mi.SurfaceInteraction3f, cos: mi.Float, active: mi.Bool) -> mi.Spectrum:
-        f0 = self._f0.eval(si, active)
+        f0 = self._normal(si, active)
         f = self._schlick(f0, cos)
         if self._f82 is None:
             return f
@@ -102,14 +102,19 @@ class Schlick:
     def average(self, si: mi.SurfaceInteraction3f, active: mi.Bool) -> mi.Spectrum:
         if self._f82 is not None:
             return _average(lambda mu: self.at(si, mu, active))
-        f0 = self._f0.eval(si, active)
+        f0 = self._normal(si, active)
         return f0 + (1 - f0) * _SCHLICK_AVERAGE
+
+    def _normal(self, si: mi.SurfaceInteraction3f, active: mi.Bool) -> mi.UnpolarizedSpectrum:
+        """f0, clamped to [0, 1], since a texture may be anything."""
+        return dr.clip(self._f0.eval(si, active), 0, 1)
 
     def _dip(
         self, f0: mi.UnpolarizedSpectrum, si: mi.SurfaceInteraction3f, active: mi.Bool
     ) -> mi.UnpolarizedSpectrum:
         assert self._f82 is not None
-        return (1 - self._f82.eval(si, active)) * self._schlick(f0, mi.Float(1 / 7))
+        tint = dr.clip(self._f82.eval(si, active), 0, 1)
+        return (1 - tint) * self._schlick(f0, mi.Float(1 / 7))
 
     @staticmethod
     def _schlick(f0: mi.UnpolarizedSpectrum, cos: mi.Float) -> mi.UnpolarizedSpectrum:

@@ -72,6 +72,12 @@ def libraries(places: tuple[str, ...] | None = None) -> list[tuple[int, str]]:
     return sorted(works, key=lambda pair: (-pair[0], len(pair[1]), pair[1]))
 
 
+def _instead() -> str:
+    """Names a library that works, if there is one."""
+    found = libraries()
+    return f" LLVM {found[0][0]} is {found[0][1]}." if found else ""
+
+
 def prepare() -> None:
     """Tells Dr.Jit which library to take, if it is not loaded yet and nobody else has told it.
 
@@ -81,7 +87,7 @@ def prepare() -> None:
     if told is not None:
         version = version_of(told)
         if version is not None and version < OLDEST:
-            raise ImportError(f"{_VARIABLE} = {told} is LLVM {version}. {HOW_TO_GET}")
+            raise ImportError(f"{_VARIABLE} = {told} is LLVM {version}.{_instead()} {HOW_TO_GET}")
     elif "drjit" not in sys.modules:
         found = libraries()
         if found:
@@ -103,5 +109,11 @@ def check() -> None:
             f"Dr.Jit has not found {found[0][1]}, and looks only once: call"
             " microfacet.mitsuba.set_variant before mitsuba or drjit are imported, or set"
             f" {_VARIABLE} to this path before Python starts."
+        )
+    told = os.environ.get(_VARIABLE)
+    if told is not None:
+        raise ImportError(
+            f"Dr.Jit found no library of LLVM: {_VARIABLE} = {told} cannot be loaded; correct or"
+            f" unset it.{_instead()} {HOW_TO_GET}"
         )
     raise ImportError(f"Dr.Jit found no library of LLVM. {HOW_TO_GET}")

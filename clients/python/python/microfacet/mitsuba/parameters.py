@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 from typing import Any, Iterable
 
 import drjit as dr
@@ -17,6 +18,13 @@ SIGMA_OF_ALBEDOS = 3.0
 
 _COMPENSATIONS = ("none", "turquin", "kulla_conty")
 _MASKINGS = ("height-correlated", "uncorrelated")
+#: Why an anisotropic surface has no compensation.
+ANISOTROPIC = (
+    "compensation has no albedos of anisotropic lobes: set stand_in to true, and the round lobe of"
+    " sqrt(sigma_x sigma_y) stands in, which gives back too much or too little light; or set"
+    " compensation to none"
+)
+
 _HINTS = {
     "alpha": "sigma is what other plugins call alpha",
     "alpha_u": "sigma_x is what other plugins call alpha_u",
@@ -105,6 +113,8 @@ def sigmas(props: mi.Properties) -> tuple[mi.Texture, mi.Texture]:
     refuse_together(props, "sigma", ("sigma_x", "sigma_y"), "sigma is both of them")
     for name in ("sigma", "sigma_x", "sigma_y"):
         if name in props:
+            if props.type(name) in (mi.Properties.Type.String, mi.Properties.Type.Color):
+                raise ValueError(f"{name} = {props[name]} must be a number or a texture")
             number_in(props, name, *SIGMA, "smoother is a mirror, rougher is vertical")
     if ("sigma_x" in props) != ("sigma_y" in props):
         missing = "sigma_y" if "sigma_x" in props else "sigma_x"
@@ -148,11 +158,7 @@ def check_albedos(props: mi.Properties, stand_in: bool) -> None:
         return
     x, y = props["sigma_x"], props["sigma_y"]
     if not (isinstance(x, (int, float)) and x == y):
-        raise ValueError(
-            "compensation has no albedos of anisotropic lobes: set stand_in to true, and the round"
-            " lobe of sqrt(sigma_x sigma_y) stands in, which gives back too much or too little"
-            " light; or set compensation to none"
-        )
+        raise ValueError(ANISOTROPIC)
 
 
 def constant(texture: mi.Texture) -> mi.Float | None:
@@ -162,12 +168,18 @@ def constant(texture: mi.Texture) -> mi.Float | None:
     return texture.eval_1(dr.zeros(mi.SurfaceInteraction3f), True)
 
 
-def round_sigma(sigma_x: mi.Texture, sigma_y: mi.Texture) -> mi.Float | None:
-    """sqrt(sigma_x sigma_y) where neither varies."""
+def round_sigma(sigma_x: mi.Texture, sigma_y: mi.Texture, stand_in: bool) -> float | None:
+    """sqrt(sigma_x sigma_y) where neither varies, for compensation; ``ValueError`` if they differ
+    and the round lobe may not stand in.
+    """
     x, y = constant(sigma_x), constant(sigma_y)
     if x is None or y is None:
         return None
-    return dr.sqrt(dr.clip(x, *SIGMA) * dr.clip(y, *SIGMA))
+    low, high = SIGMA[0], SIGMA_OF_ALBEDOS
+    x, y = (min(max(value(one), low), high) for one in (x, y))
+    if x != y and not stand_in:
+        raise ValueError(ANISOTROPIC)
+    return math.sqrt(x * y)
 
 
 def value(number: mi.Float) -> float:
@@ -175,12 +187,21 @@ def value(number: mi.Float) -> float:
     return number if isinstance(number, float) else float(dr.detach(number)[0])
 
 
+def highest_sigma(compensation: str) -> float:
+    """The largest roughness of a surface; with compensation that of the tables of albedos."""
+    return SIGMA[1] if compensation == "none" else SIGMA_OF_ALBEDOS
+
+
 def sigma_at(
-    sigma_x: mi.Texture, sigma_y: mi.Texture, si: mi.SurfaceInteraction3f, active: mi.Bool
+    sigma_x: mi.Texture,
+    sigma_y: mi.Texture,
+    si: mi.SurfaceInteraction3f,
+    active: mi.Bool,
+    highest: float,
 ) -> mi.Vector2f:
-    """The roughness along x and y, clamped to :data:`SIGMA`."""
-    x = dr.clip(sigma_x.eval_1(si, active), *SIGMA)
-    y = x if sigma_y is sigma_x else dr.clip(sigma_y.eval_1(si, active), *SIGMA)
+    """The roughness along x and y, clamped to what :func:`highest_sigma` allows."""
+    x = dr.clip(sigma_x.eval_1(si, active), SIGMA[0], highest)
+    y = x if sigma_y is sigma_x else dr.clip(sigma_y.eval_1(si, active), SIGMA[0], highest)
     return mi.Vector2f(x, y)
 
 
@@ -190,8 +211,10 @@ def of_material(name: Any) -> dict[str, mi.Texture]:
         raise ValueError(f"material = {name!r} must be the name of a metal, such as Au")
     try:
         native = mi.load_dict({"type": "roughconductor", "material": name})
-    except RuntimeError as error:
-        raise ValueError(f"material = {name!r} is none that Mitsuba has data of: {error}") from None
+    except RuntimeError:
+        raise ValueError(
+            f"material = {name!r} is none that Mitsuba has data of, such as Au, Ag, Cu and Al"
+        ) from None
     found: dict[str, mi.Texture] = {}
 
     class Collector(mi.TraversalCallback):  # type: ignore[misc]
@@ -206,13 +229,17 @@ def index(props: mi.Properties) -> float:
     """The index of refraction inside over that outside, from ``int_ior`` and ``ext_ior``."""
     inside, outside = _ior(props, "int_ior", "bk7"), _ior(props, "ext_ior", "air")
     eta = inside / outside
+    check_index(eta, f"int_ior/ext_ior = {inside:g}/{outside:g} = {eta:g}")
+    return eta
+
+
+def check_index(eta: float, what: str) -> None:
+    """Raises ``ValueError`` for a ratio of indices that the plugin cannot have."""
     if not 1e-3 <= eta <= 1e3 or abs(eta - 1) < 1e-3:
         raise ValueError(
-            f"int_ior/ext_ior = {inside:g}/{outside:g} = {eta:g} must lie in [0.001, 1000], and"
-            " not within 0.001 of 1, where nothing is refracted; change one of them, or leave the"
-            " surface out"
+            f"{what} must lie in [0.001, 1000], and not within 0.001 of 1, where nothing is"
+            " refracted; change it, or leave the surface out"
         )
-    return eta
 
 
 def _ior(props: mi.Properties, name: str, default: str) -> float:
@@ -227,8 +254,10 @@ def _ior(props: mi.Properties, name: str, default: str) -> float:
         description = {"type": "roughdielectric", "int_ior": given, "ext_ior": 1.0}
         try:
             found: Any = mi.traverse(mi.load_dict(description))["eta"]
-        except RuntimeError as error:
-            raise ValueError(f"{name} = {given!r} is none that Mitsuba has: {error}") from None
+        except RuntimeError:
+            raise ValueError(
+                f"{name} = {given!r} is none that Mitsuba has, such as bk7, water and diamond"
+            ) from None
         return float(f"{value(found):.7g}")
     if not given > 0:
         raise ValueError(f"{name} = {given:g} must be above 0: it is an index of refraction")

@@ -13,4 +13,5 @@ def blocked(value: mi.UnpolarizedSpectrum, active: mi.Bool) -> mi.UnpolarizedSpe
 
 def spectrum(value: mi.UnpolarizedSpectrum) -> mi.Spectrum:
     """The value as the variant has it: in polarised ones a matrix that leaves light unpolarised."""
-    return mi.depolarizer(value)
+    # A select by channels returns a plain array, of which a matrix would take one channel for all.
+    return mi.depolarizer(mi.UnpolarizedSpectrum(value))
