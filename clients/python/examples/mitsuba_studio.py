@@ -36,14 +36,14 @@ def studio(surface: dict[str, Any], width: int, height: int) -> mi.Scene:
         "sphere": {"type": "sphere", "center": [0, 1, 0], "bsdf": surface},
         "lamp": {
             "type": "sphere", "center": [-2.4, 4.6, 4], "radius": 0.16,
-            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [420, 396, 364]}},
+            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [200, 190, 176]}},
         },
         "window": {
             "type": "rectangle",
             "to_world": at().look_at([5, 3, 1.5], [0, 1, 0], [0, 1, 0]) @ at().scale([0.5, 1.2, 1]),
-            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [15, 15.8, 16.7]}},
+            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [8, 8, 8]}},
         },
-        "sky": {"type": "constant", "radiance": {"type": "rgb", "value": [0.08, 0.085, 0.1]}},
+        "sky": {"type": "constant", "radiance": {"type": "rgb", "value": [0.22, 0.2, 0.18]}},
     }  # fmt: skip
     return mi.load_dict(scene)
 

@@ -59,8 +59,12 @@ def test_nothing_is_infinite(gamma: float, surface: dict[str, Any]) -> None:
             assert (numbers(weight)[views[:, 2] <= 0] == 0).all()
 
 
-@pytest.mark.parametrize("gamma", (1.6, math.inf))
-@pytest.mark.parametrize("surface", SURFACES[:-1])
+@pytest.mark.parametrize(
+    ("surface", "gamma"),
+    # Of compensation one of each form: its kernels take long to compile.
+    [(SURFACES[i], gamma) for i in (0, 4) for gamma in (1.6, math.inf)]
+    + [(SURFACES[1], 1.6), (SURFACES[2], math.inf)],
+)
 def test_derivatives_are_finite(surface: dict[str, Any], gamma: float) -> None:
     views, lights, u = ends()
     # Next to the horizon values themselves grow without bound.

@@ -46,17 +46,13 @@ def log_growth(x: mi.Float) -> mi.Float:
     return dr.select((x >= -0.5) & (x <= 1), series, dr.log(1 + x))
 
 
-def exp_growth(x: mi.Float) -> mi.Float:
-    """exp(x) - 1 for abs(x) <= 0.5, with the digits of a small x."""
-    tail = 1 / 120 + x * (1 / 720 + x * (1 / 5040 + x / 40320))
-    return x * (1 + x * (0.5 + x * (1 / 6 + x * (1 / 24 + x * tail))))
-
-
 def place(x: mi.Float, last: int) -> tuple[mi.UInt32, mi.Float]:
     """The cell of x in [0, last] and the position in it; at the end, the cell after the last. What
-    is no number is at the beginning.
+    is no number is in any of them.
     """
-    x = dr.select(x >= 0, x, 0)
+    # Python makes no integer of it.
+    if not dr.is_jit_v(mi.Float) and not x >= 0:
+        x = 0.0
     cell = dr.minimum(mi.UInt32(x), last)
     return cell, x - mi.Float(cell)
 

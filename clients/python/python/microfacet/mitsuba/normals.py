@@ -12,7 +12,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from .arithmetic import exp_growth, horner, place, unit
+from .arithmetic import horner, place, unit
 
 if TYPE_CHECKING:
     from .shape import Shape, Stretched
@@ -130,9 +130,8 @@ def _slope_of_either_part(
     power = dr.log2(dr.maximum(number, 1e-37)) * of["heavy_exponent"]
     power = dr.maximum(dr.minimum(power, 0), -100)
     zeta = dr.exp2(power)
-    # 1 - zeta^2, near 1 by its series.
-    rest_of_square = dr.select(power < -0.3, 1 - zeta * zeta, -exp_growth(2 * math.log(2) * power))
-    heavy_x = 0.5 * dr.sqrt(dr.maximum(rest_of_square, 1e-36))
+    # The number has rounded what 1 - zeta rounds.
+    heavy_x = 0.5 * dr.sqrt(dr.maximum((1 - zeta) * (1 + zeta), 1e-36))
     x, z = _table_slope(shape, dr.minimum(along / dr.maximum(rest, 1e-18), 1), at, active)
     return (
         dr.select(is_heavy, heavy_x, x),
