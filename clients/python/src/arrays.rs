@@ -1,5 +1,6 @@
 //! Arrays in and out: broadcasting, chunks for every core, and the interpreter's lock.
 
+use std::array;
 use std::borrow::Cow;
 use std::ops::Range;
 use std::process;
@@ -99,10 +100,11 @@ impl<'py, T: Element + Copy + Send + Sync, const N: usize> Input<'py, T, N> {
         if N > 1 {
             shape.push(N);
         }
-        let array = self.array.as_array();
-        let all = array.broadcast(shape).expect("the shapes fit");
-        let all: Vec<T> = all.iter().copied().collect();
-        Values::Each(Cow::Owned(all.as_chunks().0.to_vec()))
+        let own = self.array.as_array();
+        let all = own.broadcast(shape).expect("the shapes fit");
+        let mut numbers = all.iter().copied();
+        let mut item = || array::from_fn(|_| numbers.next().expect("N numbers an item"));
+        Values::Each(Cow::Owned((0..batch.iter().product()).map(|_| item()).collect()))
     }
 }
 

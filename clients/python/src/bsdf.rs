@@ -109,6 +109,7 @@ impl PyBsdf {
         };
         let (v, choice, u) = (("v", &v), ("choice", &choice), ("u", &u));
         let all = each3(py, v, choice, u, Cost::Lookup, draw)?;
+        // Columns of their own: a view would keep all ten, and sums along its axis round more.
         let column = |index: Bound<'py, PyAny>| -> PyResult<Bound<'py, PyAny>> {
             let index = PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), index])?;
             all.get_item(index)?.call_method0("copy")

@@ -65,7 +65,7 @@ impl ExactLobe {
         self.integrator.get_or_init(|| AlbedoIntegrator::new(*self.shape(), tolerance))
     }
 
-    /// Whether the azimuth of a view does not matter.
+    /// Roughness of a round lobe, for which the azimuth of a view does not matter.
     fn round(&self) -> Option<f64> {
         match &self.model {
             Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => Some(lobe.sigma_x()),

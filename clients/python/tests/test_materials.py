@@ -79,6 +79,17 @@ def test_errors_are_those_of_the_command(call, words):
         assert word in str(why.value), why.value
 
 
+def test_errors_of_albedos_are_in_words_of_python():
+    tilted = microfacet.Ellipsoid((0.3, 0.1), (0.2, 0.1, 0.0), 2.5)
+    for call in (lambda: tilted.albedo([0, 0, 1]), lambda: tilted.albedo_average()):
+        with pytest.raises(ValueError) as why:
+            call()
+        said = str(why.value)
+        for word in ("StandIn", "Skew", "when loading", "compensation needs"):
+            assert word not in said, said
+        assert "sigma and theta" in said and "microfacet.bake" in said, said
+
+
 def test_arguments_of_another_type():
     with pytest.raises(TypeError, match="recipe must be the text of a recipe or a path"):
         microfacet.bake({})

@@ -14,10 +14,18 @@ import surfaces
 from surfaces import CONTEXT, REPOSITORY, directions, hit, numbers, relative, uniform, vectors
 
 from microfacet.mitsuba.albedo import Albedos
+from microfacet.mitsuba.parameters import SIGMA_OF_ALBEDOS
 from microfacet.mitsuba.shape import Shape, g2
 
 GAMMAS = (1.501, 1.6, 1.8, 2.0, 2.5, 4.0, 20.0, 1e6, math.inf)
 SIGMAS = ((0.01, 0.01), (0.3, 0.3), (1.0, 0.1), (3.0, 3.0))
+
+
+def test_roughness_ends_where_albedos_end() -> None:
+    for gamma in (1.6, 2.0, math.inf):
+        members = microfacet.Tables().shape(gamma).members
+        for form in ("uncorrelated", "height_correlated"):
+            assert members[f"{form}.sigma_max"] == SIGMA_OF_ALBEDOS
 
 
 @pytest.mark.parametrize("gamma", GAMMAS)

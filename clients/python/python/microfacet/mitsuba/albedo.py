@@ -11,6 +11,7 @@ import drjit as dr
 import mitsuba as mi
 
 from .arithmetic import Packets, log_growth, unit
+from .fresnel import F82_SCALE
 
 
 class Albedos:
@@ -57,7 +58,7 @@ class Albedos:
         # What a mirror has is left out of the tables.
         k = 1 - mu
         fourth = (k * k) * (k * k)
-        tint = 17.651384 * mu * (fourth * (k * k))
+        tint = F82_SCALE * mu * (fourth * (k * k))
         return mi.Vector3f(e, total.y + (1 + e) * (fourth * k), total.z + (1 + e) * tint)
 
     def lost(self, sigma: mi.Float, cos_theta: mi.Float, active: mi.Bool = True) -> mi.Float:

@@ -15,19 +15,17 @@ from .albedo import Albedos
 from .arithmetic import LARGEST_DENSITY
 from .compensation import Account, Losses, account, kulla_conty, turquin
 from .fresnel import Exact, Schlick, White
-from .shape import Shape, g2_over_g1
+from .shape import g2_over_g1
 from .spectra import blocked, spectrum
+from .surface import round_of, surface_class
 
-_NAMES = (
-    "sigma", "sigma_x", "sigma_y", "gamma", "f0", "f82", "eta", "k", "material",
-    "specular_reflectance", "compensation", "masking", "stand_in", "tables", "id",
-)  # fmt: skip
+_NAMES = ("f0", "f82", "eta", "k", "material")
 
 
 def conductor_class() -> type:
     """The class of the plugin in the current variant."""
 
-    class StudentTConductor(mi.BSDF):  # type: ignore[misc]
+    class StudentTConductor(surface_class()):  # type: ignore[misc]
         """A conductor whose facets follow the Student-t distribution.
 
         Single scattering is F D G2/(4 cos cos) (Cook & Torrance 1982,
@@ -36,48 +34,23 @@ def conductor_class() -> type:
         """
 
         def __init__(self, props: mi.Properties) -> None:
-            mi.BSDF.__init__(self, props)
-            parameters.check_names(props, _NAMES)
-            self._gamma = parameters.gamma(props)
-            self._compensation = parameters.compensation(props)
-            self._correlated = parameters.is_correlated(props)
-            self._sigma_x, self._sigma_y = parameters.sigmas(props)
-            self._stand_in = parameters.flag(props, "stand_in")
-            self._fresnel, self._textures = _reflectance(props)
-            self._scale = parameters.reflectance(props, "specular_reflectance")
-            shape = parameters.shape(props, self._gamma)
-            self._shape = Shape(shape)
+            super().__init__(props, _NAMES)
+            self._fresnel, self._colours = _reflectance(props)
             self._albedos = None
             if self._compensation != "none":
-                parameters.check_albedos(props, self._stand_in)
-                self._albedos = Albedos(shape, self._correlated)
-            flags = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
-            if self._sigma_x is not self._sigma_y:
-                flags = flags | mi.BSDFFlags.Anisotropic
-            textures = [self._sigma_x, self._sigma_y, self._scale, *self._textures.values()]
-            if any(texture is not None and texture.is_spatially_varying() for texture in textures):
-                flags = flags | mi.BSDFFlags.SpatiallyVarying
+                self._albedos = Albedos(self._of_gamma, self._correlated)
+            flags = self._flags(mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide)
             self.m_components = [flags]
             self.m_flags = flags
             self.parameters_changed()
 
-        def traverse(self, callback: mi.TraversalCallback) -> None:
-            rough = mi.ParamFlags.Differentiable | mi.ParamFlags.Discontinuous
-            if self._sigma_x is self._sigma_y:
-                callback.put("sigma", self._sigma_x, rough)
-            else:
-                callback.put("sigma_x", self._sigma_x, rough)
-                callback.put("sigma_y", self._sigma_y, rough)
-            for name, texture in self._textures.items():
-                callback.put(name, texture, mi.ParamFlags.Differentiable)
-            if self._scale is not None:
-                callback.put("specular_reflectance", self._scale, mi.ParamFlags.Differentiable)
+        def _textures(self) -> dict[str, mi.Texture]:
+            return super()._textures() | self._colours
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             self._losses = None
             if self._albedos is not None:
-                sigma = parameters.round_sigma(self._sigma_x, self._sigma_y, self._stand_in)
-                self._losses = Losses(self._albedos, sigma)
+                self._losses = Losses(self._albedos, self._round_sigma())
 
         def sample(
             self,
@@ -141,39 +114,6 @@ def conductor_class() -> type:
                 value, pdf = self._mixed(kept, sigma, wo, value, pdf, active)
             return spectrum(blocked(value, active)), dr.select(active, pdf, 0.0)
 
-        def eval(
-            self,
-            ctx: mi.BSDFContext,
-            si: mi.SurfaceInteraction3f,
-            wo: mi.Vector3f,
-            active: mi.Bool = True,
-        ) -> mi.Spectrum:
-            return self.eval_pdf(ctx, si, wo, active)[0]
-
-        def pdf(
-            self,
-            ctx: mi.BSDFContext,
-            si: mi.SurfaceInteraction3f,
-            wo: mi.Vector3f,
-            active: mi.Bool = True,
-        ) -> mi.Float:
-            return self.eval_pdf(ctx, si, wo, active)[1]
-
-        def to_string(self) -> str:
-            return (
-                "StudentTConductor[\n"
-                f"  gamma = {self._gamma:g},\n"
-                f"  sigma_x = {self._sigma_x},\n"
-                f"  sigma_y = {self._sigma_y},\n"
-                f"  masking = {'height-correlated' if self._correlated else 'uncorrelated'},\n"
-                f"  compensation = {self._compensation}\n"
-                "]"
-            )
-
-        def _sigma(self, si: mi.SurfaceInteraction3f, active: mi.Bool) -> mi.Vector2f:
-            highest = parameters.highest_sigma(self._compensation)
-            return parameters.sigma_at(self._sigma_x, self._sigma_y, si, active, highest)
-
         def _facets(
             self,
             si: mi.SurfaceInteraction3f,
@@ -194,10 +134,10 @@ def conductor_class() -> type:
             if self._compensation == "turquin":
                 assert self._losses is not None
                 f0 = self._fresnel.at(si, mi.Float(1), active)
-                sigma_round = dr.sqrt(sigma.x * sigma.y)
-                weight = weight * turquin(self._losses.lost(sigma_round, si.wi.z, active), f0)
-            if self._scale is not None:
-                weight = weight * self._scale.eval(si, active)
+                lost = self._losses.lost(round_of(sigma), si.wi.z, active)
+                weight = weight * turquin(lost, f0)
+            if self._reflectance is not None:
+                weight = weight * self._reflectance.eval(si, active)
             return weight, pdf
 
         def _account(
@@ -207,9 +147,9 @@ def conductor_class() -> type:
                 return None
             assert self._losses is not None
             average = self._fresnel.average(si, active)
-            kept = account(self._losses, dr.sqrt(sigma.x * sigma.y), si.wi, average, active)
-            if self._scale is not None:
-                kept.bounces = kept.bounces * self._scale.eval(si, active)
+            kept = account(self._losses, round_of(sigma), si.wi, average, active)
+            if self._reflectance is not None:
+                kept.bounces = kept.bounces * self._reflectance.eval(si, active)
             return kept
 
         def _mixed(
@@ -223,7 +163,7 @@ def conductor_class() -> type:
         ) -> tuple[mi.UnpolarizedSpectrum, mi.Float]:
             """Value and density of facets together with those of the broad lobe."""
             assert self._losses is not None
-            lost = self._losses.lost(dr.sqrt(sigma.x * sigma.y), l.z, active)
+            lost = self._losses.lost(round_of(sigma), l.z, active)
             lobe = kulla_conty(kept.lost, lost, kept.average) * l.z
             broad = self._losses.broad.pdf(kept.row, l.z, active)
             return (

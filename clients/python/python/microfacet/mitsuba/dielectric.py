@@ -16,14 +16,11 @@ from .arithmetic import LARGEST_DENSITY
 from .compensation import kulla_conty, turquin
 from .energy import Energy
 from .interface import Facet, between, drawn, either
-from .shape import Shape, g2_over_g1
+from .shape import g2_over_g1
 from .spectra import blocked, spectrum
+from .surface import surface_class
 
-_NAMES = (
-    "sigma", "sigma_x", "sigma_y", "gamma", "int_ior", "ext_ior",
-    "specular_reflectance", "specular_transmittance", "compensation", "masking", "stand_in",
-    "tables", "id",
-)  # fmt: skip
+_NAMES = ("int_ior", "ext_ior", "specular_transmittance")
 
 
 @dataclass
@@ -57,7 +54,7 @@ def dielectric_class() -> type:
         mi.BSDFFlags.GlossyTransmission,
     )
 
-    class StudentTDielectric(mi.BSDF):  # type: ignore[misc]
+    class StudentTDielectric(surface_class()):  # type: ignore[misc]
         """A dielectric whose facets follow the Student-t distribution.
 
         Seen from either side the microsurface is the same: a direction below is taken through the
@@ -67,31 +64,16 @@ def dielectric_class() -> type:
         """
 
         def __init__(self, props: mi.Properties) -> None:
-            mi.BSDF.__init__(self, props)
-            parameters.check_names(props, _NAMES)
-            self._gamma = parameters.gamma(props)
-            self._compensation = parameters.compensation(props)
-            self._correlated = parameters.is_correlated(props)
-            self._sigma_x, self._sigma_y = parameters.sigmas(props)
-            self._stand_in = parameters.flag(props, "stand_in")
+            super().__init__(props, _NAMES)
             self._index = parameters.index(props)
             self._eta = mi.Float(self._index)
-            self._reflectance = parameters.reflectance(props, "specular_reflectance")
             self._transmittance = parameters.reflectance(props, "specular_transmittance")
-            self._tables = parameters.set_of_tables(props)
-            self._shape = Shape(self._tables.shape(self._gamma))
-            if self._compensation != "none":
-                parameters.check_albedos(props, self._stand_in)
-                if self._round_sigma() is None:
-                    raise ValueError(
-                        "compensation of a dielectric has albedos of one roughness, and sigma is a"
-                        " texture: make sigma a number, or set compensation to none"
-                    )
-            sides = mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide
-            if self._sigma_x is not self._sigma_y:
-                sides = sides | mi.BSDFFlags.Anisotropic
-            if any(texture.is_spatially_varying() for texture in self._textures().values()):
-                sides = sides | mi.BSDFFlags.SpatiallyVarying
+            if self._compensation != "none" and self._round_sigma() is None:
+                raise ValueError(
+                    "compensation of a dielectric has albedos of one roughness, and sigma is a"
+                    " texture: make sigma a number, or set compensation to none"
+                )
+            sides = self._flags(mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide)
             self.m_components = [
                 reflection | sides,
                 transmission | sides | mi.BSDFFlags.NonSymmetric,
@@ -101,11 +83,7 @@ def dielectric_class() -> type:
             self.parameters_changed()
 
         def traverse(self, callback: mi.TraversalCallback) -> None:
-            for name, texture in self._textures().items():
-                flags = mi.ParamFlags.Differentiable
-                if name.startswith("sigma"):
-                    flags = flags | mi.ParamFlags.Discontinuous
-                callback.put(name, texture, flags)
+            super().traverse(callback)
             # A compensated surface has albedos of one index.
             if self._compensation == "none" and dr.is_jit_v(mi.Float):
                 flags = mi.ParamFlags.Differentiable | mi.ParamFlags.Discontinuous
@@ -120,8 +98,7 @@ def dielectric_class() -> type:
                     dr.make_opaque(self._eta)
                 return
             sigma = self._round_sigma()
-            form = "height-correlated" if self._correlated else "uncorrelated"
-            albedo = self._tables.dielectric_albedo(sigma, self._gamma, self._index, form)
+            albedo = self._tables.dielectric_albedo(sigma, self._gamma, self._index, self._masking)
             self._energy = Energy(albedo, self._index)
 
         def sample(
@@ -190,50 +167,14 @@ def dielectric_class() -> type:
                 value, pdf = white * base, base * chance
             return spectrum(blocked(value, active)), dr.select(active, pdf, 0.0)
 
-        def eval(
-            self,
-            ctx: mi.BSDFContext,
-            si: mi.SurfaceInteraction3f,
-            wo: mi.Vector3f,
-            active: mi.Bool = True,
-        ) -> mi.Spectrum:
-            return self.eval_pdf(ctx, si, wo, active)[0]
-
-        def pdf(
-            self,
-            ctx: mi.BSDFContext,
-            si: mi.SurfaceInteraction3f,
-            wo: mi.Vector3f,
-            active: mi.Bool = True,
-        ) -> mi.Float:
-            return self.eval_pdf(ctx, si, wo, active)[1]
-
-        def to_string(self) -> str:
-            return (
-                "StudentTDielectric[\n"
-                f"  gamma = {self._gamma:g},\n"
-                f"  sigma_x = {self._sigma_x},\n"
-                f"  sigma_y = {self._sigma_y},\n"
-                f"  eta = {self._eta},\n"
-                f"  masking = {'height-correlated' if self._correlated else 'uncorrelated'},\n"
-                f"  compensation = {self._compensation}\n"
-                "]"
-            )
-
-        def _round_sigma(self) -> float | None:
-            return parameters.round_sigma(self._sigma_x, self._sigma_y, self._stand_in)
+        def _described(self) -> dict[str, object]:
+            return {"eta": self._eta}
 
         def _textures(self) -> dict[str, mi.Texture]:
-            """The textures that there are, by name."""
-            textures = {
-                "specular_reflectance": self._reflectance,
-                "specular_transmittance": self._transmittance,
-            }
-            if self._sigma_x is self._sigma_y:
-                textures["sigma"] = self._sigma_x
-            else:
-                textures |= {"sigma_x": self._sigma_x, "sigma_y": self._sigma_y}
-            return {name: texture for name, texture in textures.items() if texture is not None}
+            textures = super()._textures()
+            if self._transmittance is not None:
+                textures["specular_transmittance"] = self._transmittance
+            return textures
 
         def _seen(
             self, ctx: mi.BSDFContext, si: mi.SurfaceInteraction3f, active: mi.Bool
@@ -243,15 +184,13 @@ def dielectric_class() -> type:
             sign = dr.select(above, mi.Float(1), mi.Float(-1))
             eta = dr.select(above, self._eta, 1 / self._eta)
             radiance = ctx.mode == mi.TransportMode.Radiance
-            highest = parameters.highest_sigma(self._compensation)
-            sigma = parameters.sigma_at(self._sigma_x, self._sigma_y, si, active, highest)
             seen = Seen(
                 v=sign * si.wi,
                 sign=sign,
                 below=dr.select(above, mi.UInt32(0), mi.UInt32(1)),
                 eta=eta,
                 scale=1 / (eta * eta) if radiance else mi.Float(1),
-                sigma=sigma,
+                sigma=self._sigma(si, active),
                 reflects=ctx.is_enabled(reflection, 0),
                 transmits=ctx.is_enabled(transmission, 1),
             )

@@ -17,7 +17,7 @@ _SCHLICK_AVERAGE = 1 / 21
 _F82_AVERAGE = 117649 / 839808
 
 #: The reciprocal of the peak of mu (1 - mu)^6, at mu = 1/7.
-_F82_SCALE = 823543 / 46656
+F82_SCALE = 823543 / 46656
 
 
 def refracted_cos(eta: mi.Float, cos: mi.Float) -> tuple[mi.Bool, mi.Float]:
@@ -95,7 +95,7 @@ class Schlick:
         if self._f82 is None:
             return f
         k = 1 - cos
-        weight = _F82_SCALE * cos * (k * k) * (k * k) * (k * k)
+        weight = F82_SCALE * cos * (k * k) * (k * k) * (k * k)
         # The dip of a small f0 and tint is deeper beside its peak than what is left.
         return dr.maximum(f - self._dip(f0, si, active) * weight, 0)
 

@@ -13,7 +13,7 @@ import mitsuba as mi
 #: vertical.
 SIGMA = (1e-4, 10.0)
 
-#: The largest roughness of tables of albedos.
+#: The largest roughness of tables of albedos, ``sigma_max`` of their descriptions.
 SIGMA_OF_ALBEDOS = 3.0
 
 _COMPENSATIONS = ("none", "turquin", "kulla_conty")
@@ -68,8 +68,9 @@ def compensation(props: mi.Properties) -> str:
     return choice(props, "compensation", _COMPENSATIONS)
 
 
-def is_correlated(props: mi.Properties) -> bool:
-    return choice(props, "masking", _MASKINGS) == "height-correlated"
+def masking(props: mi.Properties) -> str:
+    """The form of masking and shadowing."""
+    return choice(props, "masking", _MASKINGS)
 
 
 def flag(props: mi.Properties, name: str) -> bool:
@@ -81,7 +82,7 @@ def flag(props: mi.Properties, name: str) -> bool:
 
 
 def gamma(props: mi.Properties) -> float:
-    """The shape, a constant: (1.501, inf], also as a word."""
+    """The shape, a constant in [1.501, inf], also as a word."""
     value = props.get("gamma", 2.0)
     try:
         number = float(value)
@@ -143,11 +144,6 @@ def set_of_tables(props: mi.Properties) -> Any:
     return microfacet.Tables(path) if path else microfacet.Tables()
 
 
-def shape(props: mi.Properties, value: float) -> Any:
-    """The tables of one gamma."""
-    return set_of_tables(props).shape(value)
-
-
 def check_albedos(props: mi.Properties, stand_in: bool) -> None:
     """Raises ``ValueError`` for a roughness that compensation has no albedos of."""
     for name in ("sigma", "sigma_x", "sigma_y"):
@@ -162,7 +158,7 @@ def check_albedos(props: mi.Properties, stand_in: bool) -> None:
 
 
 def constant(texture: mi.Texture) -> mi.Float | None:
-    """The value of a texture that is the same everywhere, with its derivative; else none."""
+    """The value of a texture that is the same everywhere; else none."""
     if texture.is_spatially_varying():
         return None
     return texture.eval_1(dr.zeros(mi.SurfaceInteraction3f), True)
