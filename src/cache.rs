@@ -64,6 +64,11 @@ impl Cache {
         (set.provenance().recipe == key).then(|| set.tables().to_vec())
     }
 
+    /// Whether there is an entry under a key; it may still be one that cannot be read.
+    pub fn has(&self, key: &str) -> bool {
+        self.path(&complete(key)).is_some_and(|path| path.is_file())
+    }
+
     /// Keeps tables under a key, and removes what bakes that were killed have left half written.
     ///
     /// # Errors
@@ -99,8 +104,13 @@ impl Cache {
 
 /// A key with everything that its meaning depends on: versions, and the coordinates, whose formulas
 /// and constants a specification does not name.
-fn complete(key: &str) -> String {
+pub(crate) fn complete(key: &str) -> String {
     let mappings = Mapping::EVERY.map(|mapping| (mapping, mapping.formula()));
+    format!("{}, {mappings:?}\n{key}", versions())
+}
+
+/// The versions that tables depend on.
+pub(crate) fn versions() -> String {
     let program = env!("CARGO_PKG_VERSION");
-    format!("format {VERSION}, numerics {NUMERICS}, program {program}, {mappings:?}\n{key}")
+    format!("format {VERSION}, numerics {NUMERICS}, program {program}")
 }

@@ -12,7 +12,8 @@ use microfacet_model::classic::{
 use crate::fit::Angles;
 
 /// A named distribution of one or two parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum DistributionKind {
     /// Beckmann, slope parameter m.
     Beckmann,
@@ -35,7 +36,7 @@ pub enum DistributionKind {
 }
 
 /// A distribution with its parameters.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Named {
     /// The kind.
     pub kind: DistributionKind,
@@ -44,7 +45,8 @@ pub struct Named {
 }
 
 /// A distribution outside the Student-t family that a material may have.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Distribution {
     /// Given by name and parameters.
     Named(Named),

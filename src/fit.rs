@@ -47,7 +47,8 @@ impl From<RowError> for MeasuredError {
 }
 
 /// Unit of the angles in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Angles {
     /// Radians.
     Radians,

@@ -25,6 +25,7 @@
 //! ```
 //!
 //! A [`table_set::Target`] is a quality, a largest error or a number of bytes.
+//! A [`library`] of many materials is baked by several processes.
 //! [`table_set::bake_with`] adds a cache, a limit of memory and progress. [`store::write`] puts the
 //! set into a folder in one step, and [`store::read`] reads it back.
 //!
@@ -51,6 +52,7 @@ pub mod distribution;
 pub mod export;
 pub mod fit;
 pub mod input;
+pub mod library;
 pub mod memory;
 pub mod plan;
 pub mod plot;

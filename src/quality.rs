@@ -1,7 +1,10 @@
 //! How fine tables are: three named qualities, and levels between and beyond them.
 
 /// A named quality of tables.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
 pub enum Quality {
     /// Small and rough: previews, tests.
     Draft,

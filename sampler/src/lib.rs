@@ -174,8 +174,8 @@ pub use bsdf::{
 };
 pub use error::{BatchError, LoadError, MaterialError};
 pub use format::{
-    Channels, Covered, FORMAT, FresnelEntry, Kind, LobeEntry, MaterialEntry, Precision, Provenance,
-    Reflectance, Side, Subject, Table, VERSION, encode,
+    Channels, Covered, FORMAT, FresnelEntry, Index, IndexedSet, Kind, LobeEntry, MaterialEntry,
+    Precision, Provenance, Reflectance, Side, Subject, Table, VERSION, encode,
 };
 pub use material::{
     Bounded, BoundedView, Ellipsoid, Facet, Ggx, Lobe, LobeKey, MicrofacetDistribution, Radial,

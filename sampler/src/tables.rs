@@ -1,5 +1,7 @@
 //! A set of tables, and the lobes made from it.
 
+use alloc::collections::BTreeMap;
+use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
@@ -7,7 +9,7 @@ use microfacet_common::shape::s_of_gamma;
 use microfacet_common::{Roughness, Skew};
 
 use crate::error::{LoadError, MaterialError};
-use crate::format::{Kind, MaterialEntry, Provenance, Table, decode};
+use crate::format::{Kind, LobeEntry, MaterialEntry, Provenance, Table, decode};
 use crate::material::{Ellipsoid, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
 
 /// The default set as the bytes of a safetensors file, for those who pass it on.
@@ -66,6 +68,68 @@ impl Tables {
             table.validate()?;
         }
         Ok(Self { provenance, tables })
+    }
+
+    /// The set of some of its materials, without the tables that serve lobes of others alone.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoSuchMaterial`] naming those that exist.
+    pub fn only(mut self, names: &[&str]) -> Result<Self, MaterialError> {
+        let mut kept: Vec<MaterialEntry> = Vec::new();
+        for (i, name) in names.iter().enumerate() {
+            if !names[..i].contains(name) {
+                kept.push(self.entry(name)?.clone());
+            }
+        }
+        let mut lobes: Vec<LobeEntry> = kept.iter().map(MaterialEntry::lobe).collect();
+        lobes.push(LobeEntry::Family);
+        self.tables.retain(|table| lobes.contains(&table.subject.lobe));
+        self.provenance.materials = kept;
+        Ok(self)
+    }
+
+    /// One set of the materials and tables of several; a table that some of them share, once.
+    ///
+    /// # Errors
+    /// [`LoadError::Invalid`] if two sets have different tables, or different materials, of the
+    /// same name, or were baked by different numeric methods.
+    pub fn joined(sets: impl IntoIterator<Item = Self>) -> Result<Self, LoadError> {
+        let mut sets = sets.into_iter();
+        let Some(mut all) = sets.next() else {
+            return Self::from_tables(Provenance::default(), Vec::new());
+        };
+        let different = |what: &str, name: &str| {
+            LoadError::Invalid(format!(
+                "two sets have different {what} `{name}`: join those of one bake"
+            ))
+        };
+        let named = |tables: &[Table]| -> BTreeMap<String, usize> {
+            tables.iter().enumerate().map(|(i, table)| (table.name.clone(), i)).collect()
+        };
+        let mut known = named(&all.tables);
+        for Self { provenance, tables } in sets {
+            if provenance.numerics != all.provenance.numerics {
+                return Err(different("numeric methods", &provenance.generator));
+            }
+            for table in tables {
+                match known.get(&table.name) {
+                    Some(&i) if all.tables[i] == table => {}
+                    Some(_) => return Err(different("tables", &table.name)),
+                    None => {
+                        known.insert(table.name.clone(), all.tables.len());
+                        all.tables.push(table);
+                    }
+                }
+            }
+            all.provenance.materials.extend(provenance.materials);
+            all.provenance.conventions.extend(provenance.conventions);
+            if !provenance.recipe.is_empty() {
+                all.provenance.recipe.push('\n');
+                all.provenance.recipe += &provenance.recipe;
+            }
+        }
+        all.provenance.check()?;
+        Ok(all)
     }
 
     /// The tables of the set.

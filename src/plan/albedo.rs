@@ -23,7 +23,7 @@ pub enum AlbedoWish {
 
 /// Albedos that one table group covers, of one lobe or a range of the family; they are baked,
 /// measured and kept together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RequiredAlbedo {
     /// The lobes.
     pub lobe: AlbedoLobe,

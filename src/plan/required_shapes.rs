@@ -9,7 +9,7 @@ use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, SEAM, ShapeAxis, TableS
 use crate::validate::certificate::ALL_SHAPES;
 
 /// A γ, or a range of γ, that tables are to cover.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RequiredShapes {
     gamma: Interval,
 }

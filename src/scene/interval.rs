@@ -5,7 +5,7 @@
 /// The ends are never NaN and `min <= max`; only a shape parameter may have an infinite end.
 /// Arithmetic on intervals is conservative: the result holds every value that the operation
 /// takes on the arguments, for independent arguments.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Interval {
     /// The lower end.
     pub min: f64,

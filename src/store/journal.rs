@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use super::replace::{
-    Destination, Pending, check_writable, destination, folder_of, is_partial, partial_files,
-    refused, replace_unguarded, stage, sync,
+    Destination, Pending, Staged, check_writable, destination, folder_of, is_partial,
+    partial_files, refused, replace_unguarded, stage, sync,
 };
-use super::{SET_FILE, exr};
+use super::{Index, SET_FILE, exr};
 use crate::input;
 
 /// Journal of the replacement of several files while it is under way: a line `PARTIAL NAME` for
@@ -36,18 +36,10 @@ struct Led {
 }
 
 /// Replaces several files of a folder, by name, and removes those in `stale`, so that old and new
-/// files never coexist.
-///
-/// No file system replaces several files in one step. The new ones are completed under temporary
-/// names, then a journal of the replacement is written in one step. From then on [`finish`] leads
-/// to the new set, now or after an interruption.
-///
-/// Only this process, which was asked to write here, follows links. Whoever completes its journal
-/// replaces the links themselves, since a journal in a folder may be anyone's.
+/// files never coexist: a [`Replacement`] of all at once.
 ///
 /// # Errors
-/// The name and the operating system's error. Before the journal is written the old files are
-/// untouched; afterwards the next [`finish`] leads to the new ones.
+/// As [`Replacement::commit`].
 pub(super) fn replace_all(
     folder: &Path,
     files: &[(String, Vec<u8>)],
@@ -56,46 +48,86 @@ pub(super) fn replace_all(
     if let ([(name, bytes)], []) = (files, stale) {
         return replace_unguarded(&folder.join(name), bytes).map_err(|why| (name.clone(), why));
     }
-    let mut journal = String::new();
-    for name in stale {
-        check_writable(&folder.join(name)).map_err(|why| (name.clone(), why))?;
-        journal += &format!("{STALE} {name}\n");
-    }
-    let (mut staged, mut led, mut places) = (Vec::new(), Vec::new(), BTreeMap::new());
+    let mut replacement = Replacement::new(folder);
     for (name, bytes) in files {
-        let failed = |why| (name.clone(), why);
-        let path = folder.join(name);
+        replacement.add(name, bytes)?;
+    }
+    replacement.commit(stale)
+}
+
+/// New files of a folder, complete under temporary names, that take their places together.
+///
+/// No file system replaces several files in one step. The new ones are completed under temporary
+/// names, then a journal of the replacement is written in one step. From then on [`finish`] leads
+/// to the new set, now or after an interruption.
+///
+/// Only this process, which was asked to write here, follows links. Whoever completes its journal
+/// replaces the links themselves, since a journal in a folder may be anyone's.
+pub(super) struct Replacement<'a> {
+    folder: &'a Path,
+    journal: String,
+    staged: Vec<Staged>,
+    led: Vec<Led>,
+    /// Where the files lead, with their names.
+    places: BTreeMap<PathBuf, String>,
+}
+
+impl<'a> Replacement<'a> {
+    pub(super) fn new(folder: &'a Path) -> Self {
+        let (journal, staged, led, places) = Default::default();
+        Self { folder, journal, staged, led, places }
+    }
+
+    /// Completes a file under a temporary name.
+    pub(super) fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failed> {
+        let failed = |why| (name.to_owned(), why);
+        let path = self.folder.join(name);
         let to = if name == RECORD {
             Destination { path: path.clone(), old: None }
         } else {
             destination(&path).map_err(failed)?
         };
         if let (Ok(at), Some(file)) = (fs::canonicalize(folder_of(&to.path)), to.path.file_name())
-            && let Some(other) = places.insert(at.join(file), name)
+            && let Some(other) = self.places.insert(at.join(file), name.to_owned())
         {
             let why = format!("leads to the same file as {other}; remove one of the links");
             return Err(failed(io::Error::new(io::ErrorKind::InvalidInput, why)));
         }
         let old = to.old.as_ref().filter(|old| old.is_file());
-        let new = stage(folder, |out| out.write_all(bytes), old).map_err(failed)?;
+        let new = stage(self.folder, |out| out.write_all(bytes), old).map_err(failed)?;
         let partial = new.file.path().file_name().unwrap_or_default().to_string_lossy();
-        journal += &format!("{partial} {name}\n");
+        self.journal += &format!("{partial} {name}\n");
         if to.path != path || to.is_device() {
             let pending = Pending::new(to, |out| out.write_all(bytes)).map_err(failed)?;
-            led.push(Led { name: name.clone(), partial: new.file.path().into(), pending });
+            let partial = new.file.path().into();
+            self.led.push(Led { name: name.to_owned(), partial, pending });
         }
-        staged.push(new);
+        self.staged.push(new);
+        Ok(())
     }
-    let failed = |why| (JOURNAL.to_string(), why);
-    let list = stage(folder, |out| out.write_all(journal.as_bytes()), None).map_err(failed)?;
-    // Before the journal is there: an error after it must not take the new files with it. Without a
-    // journal they are leftovers.
-    for new in staged {
-        new.file.keep().map_err(|error| failed(error.error))?;
+
+    /// Puts all in their places, and removes the files in `stale`.
+    ///
+    /// # Errors
+    /// The name and the operating system's error. Before the journal is written the old files are
+    /// untouched; afterwards the next [`finish`] leads to the new ones.
+    pub(super) fn commit(self, stale: &[String]) -> Result<(), Failed> {
+        let Self { folder, mut journal, staged, led, .. } = self;
+        for name in stale {
+            check_writable(&folder.join(name)).map_err(|why| (name.clone(), why))?;
+            journal += &format!("{STALE} {name}\n");
+        }
+        let failed = |why| (JOURNAL.to_string(), why);
+        let list = stage(folder, |out| out.write_all(journal.as_bytes()), None).map_err(failed)?;
+        // Before the journal is there: an error after it must not take the new files with it. Without a
+        // journal they are leftovers.
+        for new in staged {
+            new.file.keep().map_err(|error| failed(error.error))?;
+        }
+        list.file.persist(folder.join(JOURNAL)).map_err(|error| failed(error.error))?;
+        sync(folder).map_err(failed)?;
+        exchange(folder, &journal, led)
     }
-    list.file.persist(folder.join(JOURNAL)).map_err(|error| failed(error.error))?;
-    sync(folder).map_err(failed)?;
-    exchange(folder, &journal, led)
 }
 
 /// Whether a replacement in the folder was begun and not completed.
@@ -145,7 +177,9 @@ pub(super) fn recorded(folder: &Path) -> Result<Vec<String>, Failed> {
 
 /// Whether a file of a set can have this name. Records and journals may be anyone's.
 fn is_name_of_ours(name: &str) -> bool {
-    name == SET_FILE || name == RECORD || exr::table_of(name).is_some()
+    [SET_FILE, RECORD, Index::FILE].contains(&name)
+        || Index::is_file_name(name)
+        || exr::table_of(name).is_some()
 }
 
 /// Whether a file is still what a bake wrote under this name, as far as its header tells.

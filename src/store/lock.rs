@@ -77,8 +77,13 @@ impl OutputFolder {
         self.written.clone()
     }
 
+    /// The folder.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Names of the files of the set that is in the folder, as far as they are known to be ours.
-    fn old(&self) -> Result<Vec<String>, StoreError> {
+    pub(super) fn old(&self) -> Result<Vec<String>, StoreError> {
         let recorded = recorded(&self.path);
         let mut old = recorded.map_err(|(name, why)| StoreError::Io(self.path.join(name), why))?;
         old.extend([SET_FILE, RECORD].map(String::from));
@@ -96,7 +101,8 @@ impl OutputFolder {
         Ok(self.old()?.iter().any(|name| name != RECORD))
     }
 
-    /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table; a set without tables is
+    /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table; several sets are
+    /// [`sets`](Self::sets); a set without tables is
     /// `tables.safetensors` in any format. A folder holds one set: the files of the set that was
     /// written here before are removed, all others stay.
     ///

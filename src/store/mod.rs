@@ -5,19 +5,21 @@ mod exr;
 mod interrupt;
 mod journal;
 mod lock;
+mod numbered;
 mod replace;
 
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use microfacet_sampler::{LoadError, Table, Tables, encode};
+use microfacet_sampler::{Index, LoadError, Table, Tables, encode};
 
 use crate::input::{self, MAX_TABLES};
 
 pub use self::exr::{decode as decode_exr, encode as encode_exr, encode_channels};
 pub use interrupt::quiesce;
 pub use lock::OutputFolder;
+pub use numbered::{SetWriter, index, read_materials};
 pub use replace::{check_folder, replace, replace_files, replace_with};
 pub(crate) use replace::{make_folder, remove_abandoned};
 
@@ -159,7 +161,8 @@ impl Images {
 }
 
 /// Reads a set from a safetensors file, a folder that holds one or the images of one, or a single
-/// table from an EXR file.
+/// table from an EXR file. Numbered sets, by their folder or its index, are read as one if they are
+/// small enough together; otherwise [`read_materials`] reads some of their materials.
 ///
 /// Of images in a folder, those named NAME.exr count that hold the table NAME. Their order is that
 /// of the names.
@@ -177,7 +180,9 @@ pub fn read(path: &Path) -> Result<Tables, StoreError> {
         }
         let before = journal::record_stamp(folder);
         let set = path.join(SET_FILE);
-        let read = if !is_folder {
+        let read = if let Some(index) = numbered::index_at(path)? {
+            numbered::read_all(folder, &index)
+        } else if !is_folder {
             read_file(path)
         } else if std::fs::symlink_metadata(&set).is_ok() {
             read_file(&set)

@@ -49,8 +49,8 @@ struct Measured {
 }
 
 /// A table group with the predictions and measurements of its grades.
-pub(super) struct Candidate<'a> {
-    pub(super) group: TableGroup<'a>,
+pub(super) struct Candidate {
+    pub(super) group: TableGroup,
     /// Measurements by precision.
     measured: [BTreeMap<Level, Measured>; 2],
     /// Estimated bytes of names, axes and certificates.
@@ -64,8 +64,8 @@ pub(super) struct Candidate<'a> {
     menu: Vec<Pick>,
 }
 
-impl<'a> Candidate<'a> {
-    pub(super) fn new(group: TableGroup<'a>) -> Self {
+impl Candidate {
+    pub(super) fn new(group: TableGroup) -> Self {
         let cost = group.cost(Level::DEFAULT, Precision::F32);
         let header = cost.bytes.saturating_sub(group.bytes(Level::DEFAULT, Precision::F32)) as f64;
         let at = |level: i32| {

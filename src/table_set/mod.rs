@@ -7,6 +7,7 @@
 mod candidate;
 mod group;
 mod job;
+mod need;
 mod refine;
 mod search;
 
@@ -26,8 +27,11 @@ use group::TableGroup;
 use job::Job;
 use search::Search;
 
+pub use need::{Need, NotANeed};
+
 /// The accuracy or size that the tables are to have.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Target {
     /// The numbers of nodes of a quality.
     Quality(Quality, Precision),
@@ -117,6 +121,10 @@ pub enum BakeError {
         /// Estimated seconds of a bake at default quality.
         default_seconds: f64,
     },
+    /// [`Target::MaxBytes`], which all tables of a plan share, where each is to be baked by itself.
+    Inseparable,
+    /// Tables that were to be kept could not be.
+    NotKept(io::Error),
     /// An albedo that is invalid, or not accurate enough.
     Albedo(bake::albedo::AlbedoError),
 }
@@ -157,6 +165,11 @@ impl fmt::Display for BakeError {
             Self::Set(why) => why.fmt(f),
             Self::Memory(why) => why.fmt(f),
             Self::Albedo(why) => why.fmt(f),
+            Self::NotKept(why) => write!(f, "finished tables cannot be kept: {why}"),
+            Self::Inseparable => f.write_str(
+                "the bytes of a set are divided among all of its tables, which so cannot be baked one by \
+                 one: choose a quality or a largest error instead",
+            ),
             Self::NoError(max_error) => {
                 write!(
                     f,

@@ -24,12 +24,12 @@ const ANY_ERROR: f64 = 1.0;
 const CLOSE: f64 = 1.12;
 
 /// The groups of a plan, to be chosen for a budget.
-pub(super) struct Search<'a> {
-    candidates: Vec<Candidate<'a>>,
+pub(super) struct Search {
+    candidates: Vec<Candidate>,
 }
 
-impl<'a> Search<'a> {
-    pub(super) fn new(plan: &'a Plan) -> Result<Self, BakeError> {
+impl Search {
+    pub(super) fn new(plan: &Plan) -> Result<Self, BakeError> {
         Ok(Self { candidates: TableGroup::apart(plan)?.into_iter().map(Candidate::new).collect() })
     }
 

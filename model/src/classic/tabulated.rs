@@ -53,6 +53,7 @@ impl core::error::Error for TabulatedError {}
 /// D is taken as constant up to the first angle and as zero beyond the last.
 /// [`assumed`](Self::assumed) tells how much of [0, π/2] that concerns.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tabulated {
     theta: Vec<f64>,
     /// Normalised.

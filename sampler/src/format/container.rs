@@ -48,7 +48,7 @@ pub struct Provenance {
 
 impl Provenance {
     /// Checks every number of the materials, and that their names differ.
-    fn check(&self) -> Result<(), LoadError> {
+    pub(crate) fn check(&self) -> Result<(), LoadError> {
         let mut names = BTreeSet::new();
         for material in &self.materials {
             let named =

@@ -3,6 +3,7 @@
 
 mod checksum;
 mod container;
+mod index;
 mod material;
 mod precision;
 mod schema;
@@ -11,6 +12,7 @@ mod table;
 
 pub use checksum::{seal, seal_document};
 pub use container::{FORMAT, Provenance, VERSION, describe, encode, reassemble};
+pub use index::{Index, IndexedSet};
 pub use material::{FresnelEntry, MaterialEntry};
 pub use precision::Precision;
 pub use schema::{Channels, Kind};

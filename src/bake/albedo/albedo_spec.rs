@@ -22,7 +22,7 @@ pub const SIGMA_MAX: f64 = 3.0;
 const INTERPOLATION: Interpolation = Interpolation::Lagrange6;
 
 /// The isotropic materials that tables are baked for; certificates hold for these only.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Domain {
     /// Range of shapes.
     pub gamma: Interval,

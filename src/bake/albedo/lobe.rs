@@ -18,7 +18,8 @@ use super::{AlbedoError, CHANNELS, Domain, Site};
 use crate::distribution::Distribution;
 
 /// The lobe, or range of lobes, that one table of albedos is baked for.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum AlbedoLobe {
     /// Isotropic lobes of the Student-t family.
     Family(Domain),

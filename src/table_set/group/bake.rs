@@ -17,9 +17,9 @@ use crate::table_spec::{Level, TableSpec};
 use crate::validate::certificate::{POINTS, measure};
 use crate::validate::radial;
 
-impl TableGroup<'_> {
+impl TableGroup {
     /// The cache key of the tables: everything that their values depend on.
-    fn key(&self, level: Level, precision: Precision) -> String {
+    pub(in crate::table_set) fn key(&self, level: Level, precision: Precision) -> String {
         match self {
             Self::Normals(need, _) => {
                 let at = |spec: TableSpec| TableSpec { precision, ..spec };
@@ -50,7 +50,7 @@ impl TableGroup<'_> {
                 job.progress.forget(self.work(level, precisions.len()));
                 sets
             }
-            (None, &Self::Normals(need, _)) => self.normals(need, level, precisions, &keys, job)?,
+            (None, Self::Normals(need, _)) => self.normals(need, level, precisions, &keys, job)?,
             (None, Self::Distribution(distribution, entry)) => {
                 let sets = radial_tables(distribution, entry, level, precisions, &job.progress)?;
                 self.finish(&keys, sets, job)

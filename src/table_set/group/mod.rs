@@ -2,6 +2,8 @@
 
 mod bake;
 
+use serde::{Deserialize, Serialize};
+
 use microfacet_sampler::{MaterialEntry, Precision};
 
 use super::BakeError;
@@ -15,17 +17,20 @@ use crate::plan::{
 use crate::table_spec::{Level, Quality, TableSpec, general_set};
 
 /// A group of tables, by what they hold.
-pub(super) enum TableGroup<'a> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum TableGroup {
     /// Visible normals and masking of some required shapes.
-    Normals(&'a RequiredShapes, Parts),
+    Normals(RequiredShapes, Parts),
     /// A distribution outside the family, and a material that has it.
-    Distribution(&'a Distribution, MaterialEntry),
+    Distribution(Distribution, MaterialEntry),
     /// A required albedo.
-    Albedo(&'a RequiredAlbedo),
+    Albedo(RequiredAlbedo),
 }
 
 /// Some of the tables of the general set.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub(super) enum Parts {
     All,
     Shadowing,
@@ -64,30 +69,30 @@ impl Parts {
     }
 }
 
-impl<'a> TableGroup<'a> {
+impl TableGroup {
     /// The groups of a plan at one quality.
-    pub(super) fn whole(plan: &'a Plan) -> Result<Vec<Self>, BakeError> {
-        let normals = plan.shapes.iter().map(|need| Self::Normals(need, Parts::All));
+    pub(super) fn whole(plan: &Plan) -> Result<Vec<Self>, BakeError> {
+        let normals = plan.shapes.iter().map(|&need| Self::Normals(need, Parts::All));
         Ok(normals.chain(Self::others(plan)?).collect())
     }
 
     /// The largest number of groups that a plan can be split into.
-    pub(super) fn apart(plan: &'a Plan) -> Result<Vec<Self>, BakeError> {
-        let parts = |need| Parts::APART.map(|parts| Self::Normals(need, parts));
+    pub(super) fn apart(plan: &Plan) -> Result<Vec<Self>, BakeError> {
+        let parts = |&need| Parts::APART.map(|parts| Self::Normals(need, parts));
         let normals = plan.shapes.iter().flat_map(parts);
         let some = |group: &Self| group.values(Level::DEFAULT) > 0;
         Ok(normals.filter(some).chain(Self::others(plan)?).collect())
     }
 
-    fn others(plan: &'a Plan) -> Result<Vec<Self>, BakeError> {
-        let of = |distribution: &'a Distribution| {
+    fn others(plan: &Plan) -> Result<Vec<Self>, BakeError> {
+        let of = |distribution: &Distribution| {
             let label = distribution.label();
             let entry = plan.materials.iter().find(|entry| entry.distribution == label);
             let entry =
                 entry.ok_or_else(|| BakeError::invalid(format!("no material has {label}")))?;
-            Ok(Self::Distribution(distribution, entry.clone()))
+            Ok(Self::Distribution(distribution.clone(), entry.clone()))
         };
-        let albedos = plan.albedos.iter().map(|need| Ok(Self::Albedo(need)));
+        let albedos = plan.albedos.iter().map(|need| Ok(Self::Albedo(need.clone())));
         plan.distributions.iter().map(of).chain(albedos).collect()
     }
 

@@ -1,0 +1,139 @@
+//! A library of materials: any number of them, baked by any number of processes.
+//!
+//! [`Library`] divides a scene into sets of at most [`PER_SET`] materials and plans each by itself.
+//! A [`Share`] of what they need is what one process bakes into a cache that all use; [`Receipt`]s
+//! in the cache say which shares are done, and of what.
+
+mod receipt;
+mod share;
+
+use std::collections::HashSet;
+
+pub use receipt::{Receipt, Receipts};
+pub use share::{NotAShare, Share};
+
+use crate::plan::{NotCovered, Options, Plan};
+use crate::scene::Scene;
+use crate::table_set::{BakeError, Need, Target};
+
+/// Most materials of one set. Each adds up to 4 kB to a set's header, and safetensors has none
+/// above 100 MB.
+pub const PER_SET: usize = 10_000;
+
+/// The materials of one set and their plan.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The materials.
+    pub scene: Scene,
+    /// What they need.
+    pub plan: Plan,
+}
+
+/// A scene divided into sets.
+#[derive(Clone, Debug)]
+pub struct Library {
+    /// The sets in order, at least one.
+    pub parts: Vec<Part>,
+}
+
+impl Library {
+    /// Divides a scene into sets of at most `per_set` materials in use, and plans them.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn new(scene: Scene, per_set: usize, options: Options) -> Result<Self, NotCovered> {
+        let planned = |scene: Scene| Ok(Part { plan: Plan::new(&scene, options)?, scene });
+        let parts = divided(scene, per_set).into_iter().map(planned);
+        Ok(Self { parts: parts.collect::<Result<_, _>>()? })
+    }
+
+    /// What all sets need, each thing once, with its [`Need::id`].
+    ///
+    /// # Errors
+    /// As [`Need::of`].
+    pub fn needs(&self, target: Target) -> Result<Vec<(String, Need)>, BakeError> {
+        let (mut known, mut needs) = (HashSet::new(), Vec::new());
+        for part in &self.parts {
+            for need in Need::of(&part.plan, target)? {
+                let id = need.id();
+                if known.insert(id.clone()) {
+                    needs.push((id, need));
+                }
+            }
+        }
+        Ok(needs)
+    }
+
+    /// Whether nothing has to be baked and no set is worth writing.
+    pub fn is_empty(&self) -> bool {
+        self.parts.iter().all(|part| part.plan.is_empty())
+    }
+}
+
+/// Scenes of at most `per_set` materials in use; what else a scene holds stays with the first.
+fn divided(scene: Scene, per_set: usize) -> Vec<Scene> {
+    let Scene { materials, ignored, warnings } = scene;
+    let mut parts = vec![Scene { materials: Vec::new(), ignored, warnings }];
+    let mut used = 0;
+    for material in materials {
+        if material.used {
+            if used == per_set.max(1) {
+                parts.push(Scene::default());
+                used = 0;
+            }
+            used += 1;
+        }
+        if let Some(part) = parts.last_mut() {
+            part.materials.push(material);
+        }
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table_spec::Quality;
+    use microfacet_sampler::Precision;
+
+    fn scene(count: usize) -> Scene {
+        let one = |i: usize| {
+            format!(
+                "[[material]]\nname = \"m{i}\"\nsigma = [0.{}, 0.4]\ngamma = 3.0\nfresnel = \"mirror\"\n",
+                1 + i % 3
+            )
+        };
+        Scene::from_recipe_str(&(0..count).map(one).collect::<String>()).unwrap()
+    }
+
+    fn library(scene: Scene, per_set: usize) -> Library {
+        Library::new(scene, per_set, Options::default()).unwrap()
+    }
+
+    #[test]
+    fn sets_hold_at_most_so_many_materials_in_use() {
+        let sizes = |scene: Scene, per_set| -> Vec<usize> {
+            library(scene, per_set).parts.iter().map(|part| part.plan.materials.len()).collect()
+        };
+        assert_eq!(sizes(scene(7), 7), [7]);
+        assert_eq!(sizes(scene(7), 6), [6, 1]);
+        assert_eq!(sizes(scene(7), 3), [3, 3, 1]);
+        assert_eq!(sizes(scene(1), 0), [1]);
+        let mut some = scene(7);
+        for i in [0, 3, 6] {
+            some.materials[i].used = false;
+        }
+        assert_eq!(sizes(some, 4), [4]);
+        assert_eq!(sizes(Scene::default(), 4), [0]);
+    }
+
+    #[test]
+    fn what_several_sets_need_is_needed_once() {
+        let target = Target::Quality(Quality::Draft, Precision::F32);
+        let one = library(scene(6), 6).needs(target).unwrap();
+        let three = library(scene(6), 2).needs(target).unwrap();
+        // One shape and three lobes.
+        assert_eq!((one.len(), three.len()), (4, 4));
+        assert!(three.iter().all(|need| one.contains(need)));
+    }
+}

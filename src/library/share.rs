@@ -1,0 +1,139 @@
+//! Shares of what a library needs, one for each process.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::fmt;
+use std::str::FromStr;
+
+use crate::table_set::Need;
+
+/// The I-th of N shares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Share {
+    /// I, from 1 on.
+    pub number: usize,
+    /// N.
+    pub of: usize,
+}
+
+/// Why a text is not a share.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotAShare(String);
+
+impl fmt::Display for NotAShare {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for NotAShare {}
+
+impl fmt::Display for Share {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+impl FromStr for Share {
+    type Err = NotAShare;
+
+    fn from_str(text: &str) -> Result<Self, NotAShare> {
+        let numbers = text.split_once('/').and_then(|(number, of)| {
+            let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+            (digits(number) && digits(of)).then_some(())?;
+            Some((number.parse().ok()?, of.parse().ok()?))
+        });
+        let Some((number, of)) = numbers else {
+            return Err(NotAShare(format!(
+                "\"{text}\" must be I/N, such as 2/16: the second of sixteen shards"
+            )));
+        };
+        match (1..=Self::MOST).contains(&of) && (1..=of).contains(&number) {
+            true => Ok(Self { number, of }),
+            false if number > of && (1..=of).contains(&of) => Err(NotAShare(format!(
+                "\"{text}\" is shard {number} of {of}: I goes from 1 to N, such as {of}/{number}"
+            ))),
+            false => Err(NotAShare(format!(
+                "\"{text}\": I goes from 1 to N, and N from 1 to {}",
+                Self::MOST
+            ))),
+        }
+    }
+}
+
+impl Share {
+    /// Most shares of a library.
+    pub const MOST: usize = 100_000;
+
+    /// Its part of the needs, in their order. The parts of all shares are disjoint and hold every
+    /// need, and the planner's seconds are balanced: the longest need goes first, to the share that
+    /// has least to do. Every machine divides the same needs in the same way.
+    #[must_use]
+    pub fn take(self, needs: Vec<(String, Need)>) -> Vec<(String, Need)> {
+        let seconds: Vec<f64> = needs.iter().map(|(_, need)| need.seconds()).collect();
+        let owners = owners(&seconds, self.of);
+        let mine = needs.into_iter().zip(owners).filter(|(_, owner)| *owner + 1 == self.number);
+        mine.map(|(need, _)| need).collect()
+    }
+}
+
+/// Which share has each need, by the seconds that they take.
+fn owners(seconds: &[f64], shares: usize) -> Vec<usize> {
+    let nanoseconds: Vec<u64> = seconds.iter().map(|seconds| (1e9 * seconds) as u64).collect();
+    let mut longest: Vec<usize> = (0..seconds.len()).collect();
+    longest.sort_by_key(|&i| Reverse(nanoseconds[i]));
+    // The least load first; of equal ones the first share.
+    let mut loads: BinaryHeap<Reverse<(u64, usize)>> =
+        (0..shares.min(seconds.len())).map(|share| Reverse((0, share))).collect();
+    let mut owners = vec![0; seconds.len()];
+    for i in longest {
+        if let Some(Reverse((load, share))) = loads.pop() {
+            owners[i] = share;
+            // What takes no time at all is spread as well.
+            loads.push(Reverse((load.saturating_add(nanoseconds[i].max(1)), share)));
+        }
+    }
+    owners
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_read_and_refused_by_name() {
+        for text in ["1/1", "2/16", "100000/100000"] {
+            assert_eq!(text.parse::<Share>().unwrap().to_string(), text);
+        }
+        let refused = |text: &str, what: &str| {
+            let why = text.parse::<Share>().unwrap_err().to_string();
+            assert!(why.contains(what) && why.contains(text), "{why}");
+        };
+        refused("5/4", "such as 4/5");
+        refused("0/4", "from 1 to N");
+        refused("1/0", "from 1 to N");
+        refused("1/100001", "100000");
+        for text in ["", "3", "1-4", "1/4/2", "a/b", "-1/4", "+1/4", " 1/4", "1.0/4"] {
+            refused(text, "must be I/N");
+        }
+    }
+
+    #[test]
+    fn loads_are_balanced() {
+        let seconds: Vec<f64> = (1..=1000).map(|i| f64::from(i * 7919 % 1009)).collect();
+        for shares in [1, 2, 7, 64, 999] {
+            let mut loads = vec![0.0; shares];
+            for (owner, seconds) in owners(&seconds, shares).into_iter().zip(&seconds) {
+                loads[owner] += seconds;
+            }
+            let mean = seconds.iter().sum::<f64>() / shares as f64;
+            let largest = loads.iter().copied().fold(0.0, f64::max);
+            // The longest goes first: no share has more than the mean and one need.
+            assert!(largest <= (mean + 1.0).max(1008.0), "{shares}: {largest} over {mean}");
+            assert!(loads.iter().all(|load| *load > 0.0));
+        }
+        assert_eq!(owners(&[0.0; 4], 2), [0, 1, 0, 1]);
+        assert_eq!(owners(&[f64::NAN, 3.0], 5), [1, 0]);
+        assert!(owners(&[], 3).is_empty());
+    }
+}
