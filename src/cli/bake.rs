@@ -1,5 +1,7 @@
 //! `bake`: bakes a recipe or scene into a certified set of tables.
 
+mod sets;
+mod shard;
 mod summary;
 
 use std::path::{Path, PathBuf};
@@ -11,11 +13,12 @@ use serde_json::json;
 
 use microfacet_bake::cache::Cache;
 use microfacet_bake::input::MAX_TABLES;
-use microfacet_bake::plan::set_cost;
+use microfacet_bake::library::{Library, Part, Share};
+use microfacet_bake::plan::{Plan, set_cost};
 use microfacet_bake::progress::Meter;
 use microfacet_bake::scene::{self, Scene};
 use microfacet_bake::store::{Format, OutputFolder};
-use microfacet_bake::table_set::{Settings, Target, bake_with};
+use microfacet_bake::table_set::{Baked, Settings, Target, bake_with};
 
 use super::plan::{Outline, nothing};
 use super::request::Request;
@@ -25,7 +28,7 @@ use summary::Summary;
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  microfacet-bake recipe --out mine.toml\n  microfacet-bake bake mine.toml --out mine\n  microfacet-bake bake mine.toml --out small --max-error 1e-3\n  microfacet-bake bake --out general",
+    after_help = "Examples:\n  microfacet-bake recipe --out mine.toml\n  microfacet-bake bake mine.toml --out mine\n  microfacet-bake bake mine.toml --out small --max-error 1e-3\n  microfacet-bake bake library.toml --shard 2/16 --cache shared\n  microfacet-bake bake --out general",
     group = clap::ArgGroup::new("budget").args(["max_error", "max_bytes"])
 )]
 pub(super) struct Args {
@@ -34,8 +37,12 @@ pub(super) struct Args {
     #[arg(id = "scene", value_name = "SCENE")]
     recipe: Option<PathBuf>,
     /// Folder to write into; created if missing.
-    #[arg(long, short, value_name = "DIR")]
-    out: PathBuf,
+    #[arg(long, short, value_name = "DIR", required_unless_present = "shard")]
+    out: Option<PathBuf>,
+    /// Bake the I-th of N shares of what the scene needs into the cache, and write no set: for one
+    /// of N processes on any machines that share the folder. A bake with --out then assembles it.
+    #[arg(long, value_name = "I/N", value_parser = str::parse::<Share>, requires_all = ["scene", "cache"], conflicts_with_all = ["out", "format", "max_bytes", "no_cache"])]
+    shard: Option<Share>,
     /// Container formats, comma separated.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "safetensors")]
     format: Vec<FormatArg>,
@@ -100,9 +107,36 @@ impl Args {
         }
     }
 
+    fn settings(&self, cache: Cache) -> Settings {
+        let Self { max_memory, patient, .. } = *self;
+        Settings { cache, max_memory, patient, progress: Meter::default() }
+    }
+
+    /// Reads a scene, and plans its sets.
+    fn library(&self, path: &Path) -> Result<Library, Failure> {
+        let scene = scene::load(path)?;
+        scene.warnings.iter().for_each(|warning| report("warning", warning));
+        self.request.library(scene, self.max_error)
+    }
+
+    /// Refuses a set that could not be read back, before hours are spent on it.
+    fn check_bytes(&self, plan: &Plan) -> Result<(), Failure> {
+        let Target::Quality(quality, precision) = self.target() else { return Ok(()) };
+        let bytes = set_cost(plan, quality, precision)?.bytes as u64;
+        if bytes <= MAX_TABLES {
+            return Ok(());
+        }
+        Err(Failure(format!(
+            "the set would have about {} MiB, and at most {} MiB are read back: bake fewer materials \
+             in a set (--per-set), or with a lower quality or precision",
+            bytes >> 20,
+            MAX_TABLES >> 20
+        )))
+    }
+
     /// What a bake leaves if it is interrupted.
-    fn say_what_is_left(&self, out: &OutputFolder, cache: &Cache) {
-        let (folder, written, kept) = (self.out.display().to_string(), out.written(), cache.kept());
+    fn say_what_is_left(&self, folder: &Path, out: &OutputFolder, cache: &Cache) {
+        let (folder, written, kept) = (folder.display().to_string(), out.written(), cache.kept());
         interrupt::leaves(move || {
             if written.load(Relaxed) {
                 return format!("the set in {folder} is complete");
@@ -128,57 +162,46 @@ pub(super) fn cache(folder: Option<&Path>, none: bool) -> Cache {
 
 pub(super) fn run(args: Args) -> Outcome {
     let start = Instant::now();
-    if args.out.as_os_str() == "-" {
+    if let (Some(share), Some(scene), Some(cache)) = (args.shard, &args.recipe, &args.cache) {
+        return shard::run(&args, share, scene, cache);
+    }
+    let folder = args.out.as_deref().unwrap_or(Path::new(""));
+    if folder.as_os_str() == "-" {
         return Err(Failure(
             "--out -: a set is a folder of files and does not go to standard output; name a folder, \
              such as --out tables (or --out ./- for one of that name)"
                 .into(),
         ));
     }
-    let out = OutputFolder::open(&args.out)?;
+    let out = OutputFolder::open(folder)?;
     let cache = cache(args.cache.as_deref(), args.no_cache);
-    args.say_what_is_left(&out, &cache);
-    let (scene, plan) = match args.recipe.as_deref() {
-        Some(path) => {
-            let scene = scene::load(path)?;
-            scene.warnings.iter().for_each(|warning| report("warning", warning));
-            let plan = args.request.plan(&scene, args.max_error)?;
-            (scene, plan)
+    args.say_what_is_left(folder, &out, &cache);
+    let mut library = match args.recipe.as_deref() {
+        Some(path) => args.library(path)?,
+        None => Library {
+            parts: vec![Part { scene: Scene::default(), plan: args.request.general_plan() }],
+        },
+    };
+    if let (Some(scene), Some(cache)) = (&args.recipe, &args.cache) {
+        shard::doubt(&library, args.target(), scene, cache)?;
+    }
+    let Part { scene, plan } = match library.parts.pop() {
+        Some(only) if library.parts.is_empty() => only,
+        last => {
+            library.parts.extend(last);
+            return sets::run(&args, &library, &out, cache, start);
         }
-        None => (Scene::default(), args.request.general_plan()),
     };
     let outline = Outline::new(&scene, &plan, args.request.quality(), args.request.precision())?;
     if plan.is_empty() {
-        return nothing_to_bake(&args, &outline, &out, start);
+        return nothing_to_bake(&args, &outline, folder, &out, start);
     }
-    if let Target::Quality(quality, precision) = args.target() {
-        let bytes = set_cost(&plan, quality, precision)?.bytes as u64;
-        if bytes > MAX_TABLES {
-            return Err(Failure(format!(
-                "the set would have about {} MiB, and at most {} MiB are read back: bake fewer materials, or with a lower quality or \
-                 precision",
-                bytes >> 20,
-                MAX_TABLES >> 20
-            )));
-        }
-    }
-    let settings = Settings {
-        cache,
-        max_memory: args.max_memory,
-        patient: args.patient,
-        progress: Meter::default(),
-    };
+    args.check_bytes(&plan)?;
+    let settings = args.settings(cache);
     let bar = progress::show(&settings.progress, "baking");
     let result = bake_with(&plan, args.target(), settings)?;
     drop(bar);
-    if let Some(why) = &result.cache_error {
-        report(
-            "warning",
-            format!(
-                "finished tables are not kept: {why}; name a folder with --cache, or use --no-cache"
-            ),
-        );
-    }
+    warn_of_cache(&result);
     let formats: Vec<Format> = args
         .format
         .iter()
@@ -192,7 +215,7 @@ pub(super) fn run(args: Args) -> Outcome {
         outline,
         result: &result,
         written: &written,
-        out: &args.out,
+        out: folder,
         only_images: formats == [Format::Exr],
         seconds: start.elapsed().as_secs_f64(),
     };
@@ -204,10 +227,24 @@ pub(super) fn run(args: Args) -> Outcome {
     Ok(Done::Ok)
 }
 
+/// Says if what was baked could not be kept.
+fn warn_of_cache(baked: &Baked) {
+    if let Some(why) = &baked.cache_error {
+        let fix = "name a folder with --cache, or use --no-cache";
+        report("warning", format!("finished tables are not kept: {why}; {fix}"));
+    }
+}
+
 /// Says why no set is written, and if that leaves an older one in its place.
-fn nothing_to_bake(args: &Args, outline: &Outline, out: &OutputFolder, start: Instant) -> Outcome {
+fn nothing_to_bake(
+    args: &Args,
+    outline: &Outline,
+    folder: &Path,
+    out: &OutputFolder,
+    start: Instant,
+) -> Outcome {
     if out.holds_set()? {
-        let folder = args.out.display();
+        let folder = folder.display();
         let stays = "the set of an earlier bake stays there; remove it if its materials are gone";
         report("warning", format!("{folder}: {stays}"));
     }

@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 
+use microfacet_bake::library::{Library, PER_SET};
 use microfacet_bake::plan::{AlbedoWish, Options, Plan};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::table_spec::Quality;
@@ -9,7 +10,7 @@ use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables};
 
 use super::Failure;
-use super::values::InRecipe;
+use super::values::{self, InRecipe};
 
 #[derive(clap::Args)]
 pub(super) struct Request {
@@ -32,6 +33,9 @@ pub(super) struct Request {
     /// Skip what the sampler crate's default set covers (`Tables::or_embedded`).
     #[arg(long, requires = "scene")]
     embedded: bool,
+    /// Most materials of one set; a scene with more becomes numbered sets with an index.
+    #[arg(long, requires = "scene", value_name = "N", value_parser = values::count::<usize>(1..=PER_SET as u64), default_value_t = PER_SET)]
+    per_set: usize,
     #[command(flatten)]
     _others: InRecipe,
 }
@@ -82,8 +86,13 @@ impl Request {
         plan
     }
 
-    /// The plan of a scene; `max_error` is the budget of error, if there is one.
-    pub(super) fn plan(&self, scene: &Scene, max_error: Option<f64>) -> Result<Plan, Failure> {
+    /// The scene divided into sets, and their plans; `max_error` is the budget of error, if there is
+    /// one.
+    pub(super) fn library(&self, scene: Scene, max_error: Option<f64>) -> Result<Library, Failure> {
+        Ok(Library::new(scene, self.per_set, self.options(max_error)?)?)
+    }
+
+    fn options(&self, max_error: Option<f64>) -> Result<Options, Failure> {
         let mut embedded_albedo = false;
         if self.embedded {
             let embedded = Tables::embedded();
@@ -108,7 +117,7 @@ impl Request {
             embedded_albedo =
                 !albedos.is_empty() && max_error.is_none_or(|max| max >= worst(&albedos));
         }
-        let options = Options {
+        Ok(Options {
             tabulate_ggx: self.tabulate_ggx,
             embedded: self.embedded,
             embedded_albedo,
@@ -117,7 +126,6 @@ impl Request {
                 (_, true) => AlbedoWish::None,
                 _ => AlbedoWish::Recipes,
             },
-        };
-        Ok(Plan::new(scene, options)?)
+        })
     }
 }

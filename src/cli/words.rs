@@ -46,13 +46,14 @@ pub(super) fn exact_bytes(count: usize) -> String {
     }
 }
 
-/// A time: `12 ms`, `20.8 s`.
+/// A time: `12 ms`, `20.8 s`, `7.5 h`.
 pub(super) fn seconds(seconds: f64) -> String {
     match seconds {
         ..0.001 => "1 ms".into(),
         ..0.9995 => format!("{:.0} ms", 1e3 * seconds),
         ..100.0 => format!("{seconds:.1} s"),
-        _ => format!("{seconds:.0} s"),
+        ..7200.0 => format!("{seconds:.0} s"),
+        _ => format!("{:.1} h", seconds / 3600.0),
     }
 }
 

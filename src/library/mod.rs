@@ -14,7 +14,7 @@ pub use share::{NotAShare, Share};
 
 use crate::plan::{NotCovered, Options, Plan};
 use crate::scene::Scene;
-use crate::table_set::{BakeError, Need, Target};
+use crate::table_set::{BakeError, Need, Settings, Target};
 
 /// Most materials of one set. Each adds up to 4 kB to a set's header, and safetensors has none
 /// above 100 MB.
@@ -62,6 +62,17 @@ impl Library {
             }
         }
         Ok(needs)
+    }
+
+    /// Bakes needs into the cache of the settings, one after the other. Returns how many had to be
+    /// baked; the others were there.
+    ///
+    /// # Errors
+    /// As [`Need::bake`]; what was baked before stays in the cache.
+    pub fn bake(needs: &[(String, Need)], settings: &Settings) -> Result<usize, BakeError> {
+        needs.iter().for_each(|(_, need)| need.announce(&settings.progress));
+        let baked = needs.iter().map(|(_, need)| need.bake(settings.clone()));
+        Ok(baked.collect::<Result<Vec<bool>, _>>()?.into_iter().filter(|baked| *baked).count())
     }
 
     /// Whether nothing has to be baked and no set is worth writing.

@@ -48,6 +48,11 @@ impl Receipt {
         }
     }
 
+    /// Whether both are of the same needs, made by the same version.
+    fn is_same(&self, other: &Self) -> bool {
+        self.needs == other.needs && self.versions == other.versions
+    }
+
     /// Leaves it in a cache, in the place of an older one of the same share.
     ///
     /// # Errors
@@ -95,12 +100,15 @@ impl Receipts {
         found
     }
 
-    /// What to say of them where the library as it is now has these needs: nothing if there are
-    /// none, or if all shares of some number are done. `ours` is the receipt of the library as it
-    /// is now, of any share.
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty() && self.unread.is_empty()
+    }
+
+    /// What to say of them before the set is assembled: nothing if there are none, or if all shares
+    /// of some number are done. `ours` is the receipt of the library as it is now, of any share.
     pub fn doubts(&self, ours: &Receipt) -> Vec<String> {
-        let is_same =
-            |receipt: &&Receipt| receipt.needs == ours.needs && receipt.versions == ours.versions;
+        let is_same = |receipt: &&Receipt| receipt.is_same(ours);
         let counts = self.all.iter().filter(is_same).map(|receipt| receipt.of);
         let done =
             |of: usize| self.all.iter().filter(is_same).filter(move |receipt| receipt.of == of);
@@ -120,10 +128,18 @@ impl Receipts {
                 listed(&missing)
             ));
         }
+        doubts.extend(self.strangers(ours));
+        doubts
+    }
+
+    /// What to say of those that are of another state of the scene, of other options or of another
+    /// version.
+    pub fn strangers(&self, ours: &Receipt) -> Vec<String> {
+        let mut doubts = Vec::new();
         let (stale, foreign): (Vec<&Receipt>, Vec<&Receipt>) = self
             .all
             .iter()
-            .filter(|receipt| !is_same(receipt))
+            .filter(|receipt| !receipt.is_same(ours))
             .partition(|receipt| receipt.versions == ours.versions);
         let shards = |receipts: &[&Receipt]| {
             let names: Vec<String> =

@@ -1,4 +1,8 @@
 //! Estimates what a bake costs before it is done.
+//!
+//! Inside the crate all seconds are those of one thread, and depend on the specification alone: so
+//! shares of the work are the same wherever they are computed. A [`Cost`] and [`seconds`] are for
+//! display, and are divided by the current threads.
 
 use microfacet_sampler::internals::describe;
 use microfacet_sampler::{
@@ -29,6 +33,17 @@ impl std::iter::Sum for Cost {
         let none = Self { bytes: 0, seconds: 0.0 };
         costs.fold(none, |a, b| Self { bytes: a.bytes + b.bytes, seconds: a.seconds + b.seconds })
     }
+}
+
+impl Cost {
+    fn new(bytes: usize, seconds_of_one_thread: f64) -> Self {
+        Self { bytes, seconds: on_threads(seconds_of_one_thread) }
+    }
+}
+
+/// Seconds on the current threads, from those of one: what a clock would show.
+pub(crate) fn on_threads(seconds: f64) -> f64 {
+    seconds / rayon::current_num_threads() as f64
 }
 
 /// Estimates the bytes of a set without tables: its names, its recipe, its conventions, and the
@@ -66,7 +81,7 @@ pub fn cost(specs: &[TableSpec]) -> Cost {
         axes + 2 * spec.name.len() + 440
     };
     let bytes = specs.iter().map(|spec| spec.bytes() + header(spec)).sum();
-    Cost { bytes, seconds: seconds(specs) }
+    Cost::new(bytes, specs_seconds(specs).iter().sum())
 }
 
 /// Estimates a whole set of this quality.
@@ -83,14 +98,12 @@ pub fn set_cost(plan: &Plan, quality: Quality, precision: Precision) -> Result<C
 
 /// The seconds of [`cost`] alone, which are quick to estimate.
 pub fn seconds(specs: &[TableSpec]) -> f64 {
-    let [bake, certify] = parts(specs);
-    bake + certify
+    on_threads(specs_seconds(specs).iter().sum())
 }
 
-/// The seconds to bake tables, and those to certify them.
-pub(crate) fn parts(specs: &[TableSpec]) -> [f64; 2] {
-    let all = specs.iter().map(parts_of).fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
-    all.map(|seconds| seconds / rayon::current_num_threads() as f64)
+/// The seconds of one thread to bake tables, and those to certify them.
+pub(crate) fn specs_seconds(specs: &[TableSpec]) -> [f64; 2] {
+    specs.iter().map(spec_seconds).fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
 }
 
 /// The cost of albedo tables, with the nodes that are tried first.
@@ -103,7 +116,7 @@ pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
     let one = json(&spec.axes) + name(Kind::Albedo) + subject + 800;
     let average = json(&spec.axes[..2]) + name(Kind::AlbedoAverage) + subject + 680;
     let headers = spec.maskings.len() * (one + if spec.has_averages() { average } else { 0 });
-    Cost { bytes: spec.bytes() + headers, seconds: AlbedoWork::new(spec).total() }
+    Cost::new(spec.bytes() + headers, AlbedoWork::new(spec).total())
 }
 
 /// The cost of the four tables of a distribution outside the family.
@@ -112,26 +125,28 @@ pub fn distribution_cost(
     level: impl Into<Level>,
     precision: Precision,
 ) -> Cost {
-    let (bytes, [bake, certify]) = distribution_parts(distribution, level.into(), precision);
-    Cost { bytes, seconds: bake + certify }
-}
-
-/// The bytes of the four tables, and the seconds to bake and to certify them.
-pub(crate) fn distribution_parts(
-    distribution: &Distribution,
-    level: Level,
-    precision: Precision,
-) -> (usize, [f64; 2]) {
+    let level = level.into();
     // The name ends in the label, or as many other characters; kind, channels, certificate, shape
     // and offsets.
     let suffix = distribution.label().len();
-    // Another number of the same length stands for the scale and the reach in the axes.
-    let tables = bake::radial_axes(level, std::f64::consts::PI, f64::INFINITY);
     let header = |(kind, axes): &(Kind, Vec<Axis>)| {
         let axes = serde_json::to_string(axes).map_or(0, |json| escaped(&json));
         axes + 2 * (kind.name().len() + suffix) + 330
     };
-    let bytes = tables.iter().map(header).sum::<usize>() + bake::radial_bytes(level, precision);
+    let headers = distribution_tables(level).iter().map(header).sum::<usize>();
+    let bytes = headers + bake::radial_bytes(level, precision);
+    Cost::new(bytes, distribution_seconds(level).iter().sum())
+}
+
+/// The four tables of a distribution outside the family: another number of the same length stands
+/// for the scale and the reach in the axes.
+fn distribution_tables(level: Level) -> [(Kind, Vec<Axis>); 4] {
+    bake::radial_axes(level, std::f64::consts::PI, f64::INFINITY)
+}
+
+/// The seconds of one thread to bake the four tables of any distribution outside the family, and
+/// those to certify them.
+pub(crate) fn distribution_seconds(level: Level) -> [f64; 2] {
     // Microseconds for a node of either slope table (the other tables are far smaller) and for a
     // normal of the certificate: fitted to the processor time of `microfacet-bake bake --threads 1
     // --no-cache --quality Q` for a Gauss, a GTR, a Schlick and a measured distribution. Their mean
@@ -141,13 +156,12 @@ pub(crate) fn distribution_parts(
         [first, last] => first.len() * last.len(),
         _ => 0,
     };
-    let nodes: usize = tables.iter().map(nodes).sum();
+    let nodes: usize = distribution_tables(level).iter().map(nodes).sum();
     let seconds = [node * nodes as f64, normal * radial::POINTS as f64];
-    let threads = rayon::current_num_threads() as f64;
-    (bytes, seconds.map(|microseconds| 1e-6 * microseconds / threads))
+    seconds.map(|microseconds| 1e-6 * microseconds)
 }
 
-/// The seconds of albedo tables on the current threads, by what they are spent on.
+/// The seconds of one thread for albedo tables, by what they are spent on.
 pub(crate) struct AlbedoWork {
     pub(crate) nodes: f64,
     /// The certificate's places inside, along edges, and on the way uphill.
@@ -177,9 +191,8 @@ impl AlbedoWork {
     }
 }
 
-/// Seconds to bake albedo tables, and those to certify them, on the current threads.
+/// Seconds of one thread to bake albedo tables, and those to certify them.
 fn albedo_seconds(spec: &AlbedoSpec) -> [f64; 2] {
-    let threads = rayon::current_num_threads() as f64;
     // Microseconds for a node or a point of the certificate: fitted to `microfacet-bake bake
     // --threads 1 --no-cache --out out` of the draft, the default and the high general set, which
     // are met within a quarter, and to the recipes of anisotropic and tilted lobes, which are met
@@ -199,11 +212,11 @@ fn albedo_seconds(spec: &AlbedoSpec) -> [f64; 2] {
         (AlbedoLobe::StudentT { .. }, _) => [6000.0; 2],
         (AlbedoLobe::Radial { .. }, _) => [10_000.0; 2],
     };
-    [node * nodes, point * points].map(|microseconds| 1e-6 * microseconds / threads)
+    [node * nodes, point * points].map(|microseconds| 1e-6 * microseconds)
 }
 
-/// Seconds for one thread to bake a table, and to certify it.
-fn parts_of(spec: &TableSpec) -> [f64; 2] {
+/// Seconds of one thread to bake a table, and to certify it.
+fn spec_seconds(spec: &TableSpec) -> [f64; 2] {
     // Nanoseconds for a node and for a point of the certificate: fitted to `time microfacet-bake
     // bake --threads 1 --no-cache --quality Q` at the three qualities, which are met within a
     // tenth.

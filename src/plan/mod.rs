@@ -15,7 +15,7 @@ use std::fmt;
 use microfacet_sampler::{Ellipsoid, MaterialEntry, StudentT};
 
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
-pub(crate) use cost::{AlbedoWork, distribution_parts, parts};
+pub(crate) use cost::{AlbedoWork, distribution_seconds, on_threads, specs_seconds};
 pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, seconds, set_cost};
 pub use required_shapes::RequiredShapes;
 

@@ -31,7 +31,8 @@ pub(super) type Grade = (Level, usize);
 #[derive(Clone, Copy)]
 pub(super) struct Pick {
     pub(super) grade: Grade,
-    /// Estimated bytes of the values before refinement, and estimated seconds to bake them.
+    /// Estimated bytes of the values before refinement, and estimated seconds of one thread to
+    /// bake them.
     values: f64,
     seconds: f64,
     pub(super) error: f64,
@@ -55,7 +56,7 @@ pub(super) struct Candidate {
     measured: [BTreeMap<Level, Measured>; 2],
     /// Estimated bytes of names, axes and certificates.
     header: f64,
-    /// Estimated seconds of a bake at default quality, and of those done so far.
+    /// Estimated seconds of one thread for a bake at default quality, and for those done so far.
     pub(super) default_seconds: f64,
     spent: f64,
     /// Work expected for the rest of the search.
@@ -66,8 +67,9 @@ pub(super) struct Candidate {
 
 impl Candidate {
     pub(super) fn new(group: TableGroup) -> Self {
-        let cost = group.cost(Level::DEFAULT, Precision::F32);
-        let header = cost.bytes.saturating_sub(group.bytes(Level::DEFAULT, Precision::F32)) as f64;
+        let file_bytes = group.file_bytes(Level::DEFAULT, Precision::F32);
+        let header = file_bytes.saturating_sub(group.bytes(Level::DEFAULT, Precision::F32)) as f64;
+        let default_seconds = group.seconds(Level::DEFAULT);
         let at = |level: i32| {
             let (level, seconds) = (Level(level), group.seconds(Level(level)));
             [0, 1].map(|precision| Pick {
@@ -84,7 +86,7 @@ impl Candidate {
             group,
             measured: Default::default(),
             header,
-            default_seconds: cost.seconds,
+            default_seconds,
             spent: 0.0,
             expected: 0.0,
             menu,

@@ -49,6 +49,7 @@ impl Default for Target {
 }
 
 /// Cache, limits and progress report of a bake.
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// Where finished tables are kept; by default nowhere.
     pub cache: Cache,

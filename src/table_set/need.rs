@@ -14,6 +14,7 @@ use super::{BakeError, Settings, Target};
 use crate::cache::{self, Cache};
 use crate::memory;
 use crate::plan::Plan;
+use crate::progress::Meter;
 use crate::table_spec::Level;
 
 /// Tables that are chosen, baked, certified and kept together, and how fine they are to be.
@@ -96,6 +97,14 @@ impl Need {
         }
     }
 
+    /// Announces the work of [`bake`](Self::bake), so that a meter knows of it before it begins.
+    pub fn announce(&self, progress: &Meter) {
+        // A search announces its steps one by one.
+        if let Target::Quality(quality, _) = self.target {
+            progress.expect(self.group.work(quality.into(), 1));
+        }
+    }
+
     /// Bakes what `settings.cache` lacks of the tables and keeps them there. Returns whether
     /// anything had to be baked.
     ///
@@ -107,7 +116,6 @@ impl Need {
             Target::Quality(quality, precision) => {
                 let level = quality.into();
                 memory::check(self.group.values(level), job.max_memory)?;
-                job.progress.expect(self.group.work(level, 1));
                 self.group.bake(level, &[precision], &mut job)?.concat()
             }
             Target::MaxError(max_error) => {

@@ -12,7 +12,7 @@ use super::candidate::{Candidate, Grade, Pick, SEARCH_OVER_FIRST};
 use super::group::TableGroup;
 use super::job::Job;
 use super::{BakeError, PATIENCE};
-use crate::plan::{Plan, bare_cost};
+use crate::plan::{Plan, bare_cost, on_threads};
 
 /// Ratio of two errors that count as different: one per cent.
 const RATIO: f64 = 1.01;
@@ -150,6 +150,8 @@ impl Search {
             SEARCH_OVER_FIRST * self.candidates.iter().zip(grades).map(seconds).sum::<f64>();
         let default_seconds: f64 =
             self.candidates.iter().map(|candidate| candidate.default_seconds).sum();
+        // A user's patience is by the clock.
+        let [search, default_seconds] = [search, default_seconds].map(on_threads);
         if !job.patient && search > PATIENCE.max(3.0 * default_seconds) {
             return Err(BakeError::TooSlow { search, default_seconds });
         }

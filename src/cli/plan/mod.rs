@@ -1,19 +1,21 @@
 //! `plan`: shows what a bake of a scene would do, and why.
 
 mod json;
+mod sets;
 mod words;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use microfacet_bake::bake::albedo::AlbedoSpec;
+use microfacet_bake::library::Part;
 use microfacet_bake::plan::{Cost, albedo_cost, bare_cost, cost, distribution_cost, set_cost};
 use microfacet_bake::scene;
 use microfacet_bake::table_spec::general_set;
 
 use super::request::Request;
 use super::words::{bytes, compared, count, exact_bytes, seconds, wrapped};
-use super::{Done, Outcome, print, print_json, report};
+use super::{Done, Failure, Outcome, print, print_json, report};
 
 pub(super) use words::{Outline, nothing, reflectance};
 
@@ -50,28 +52,42 @@ pub(super) fn run(args: Args) -> Outcome {
     let reading = start.elapsed();
     scene.warnings.iter().for_each(|warning| report("warning", warning));
     let start = Instant::now();
-    let plan = args.request.plan(&scene, None)?;
-    let (quality, precision) = (args.request.quality(), args.request.precision());
-    let outline = Outline::new(&scene, &plan, quality, precision)?;
-    let own = plan.distributions.iter().map(|own| distribution_cost(own, quality, precision));
-    let costs = outline.tables.iter().map(|specs| cost(specs));
-    let costs = costs.chain(own).chain(outline.albedos.iter().map(albedo_cost)).collect();
-    let total = set_cost(&plan, quality, precision)?;
-    let everything = args.request.general_plan();
-    let albedos = everything.albedos.iter().map(|_| AlbedoSpec::general(quality, precision));
-    let general = [cost(&general_set(quality, precision)), bare_cost(&everything.provenance())]
-        .into_iter()
-        .chain(albedos.map(|spec| albedo_cost(&spec)))
-        .sum();
+    let library = args.request.library(scene, None)?;
+    let planning = start.elapsed();
+    let [part] = &library.parts[..] else {
+        return sets::run(&args, &library, [reading, planning]);
+    };
+    let start = Instant::now();
+    let report = Report::new(&args.request, part)?;
     let milliseconds = |time: Duration| 1e3 * time.as_secs_f64();
-    let (reading, planning) = (milliseconds(reading), milliseconds(start.elapsed()));
-    let report = Report { outline, costs, total, general, reading, planning };
+    let (reading, planning) = (milliseconds(reading), milliseconds(planning + start.elapsed()));
+    let report = Report { reading, planning, ..report };
     if args.json {
         print_json(&report.json())?
     } else {
         print(&report.text())?
     }
     Ok(Done::Ok)
+}
+
+impl<'a> Report<'a> {
+    /// The figures of one set.
+    fn new(request: &Request, part: &'a Part) -> Result<Self, Failure> {
+        let Part { scene, plan } = part;
+        let (quality, precision) = (request.quality(), request.precision());
+        let outline = Outline::new(scene, plan, quality, precision)?;
+        let own = plan.distributions.iter().map(|own| distribution_cost(own, quality, precision));
+        let costs = outline.tables.iter().map(|specs| cost(specs));
+        let costs = costs.chain(own).chain(outline.albedos.iter().map(albedo_cost)).collect();
+        let total = set_cost(plan, quality, precision)?;
+        let everything = request.general_plan();
+        let albedos = everything.albedos.iter().map(|_| AlbedoSpec::general(quality, precision));
+        let general = [cost(&general_set(quality, precision)), bare_cost(&everything.provenance())]
+            .into_iter()
+            .chain(albedos.map(|spec| albedo_cost(&spec)))
+            .sum();
+        Ok(Self { outline, costs, total, general, reading: 0.0, planning: 0.0 })
+    }
 }
 
 impl Report<'_> {

@@ -11,7 +11,7 @@ use super::super::refine::albedo_tables;
 use super::TableGroup;
 use crate::bake;
 use crate::distribution::Distribution;
-use crate::plan::{RequiredShapes, distribution_parts, parts};
+use crate::plan::{RequiredShapes, distribution_seconds, specs_seconds};
 use crate::progress::Meter;
 use crate::table_spec::{Level, TableSpec};
 use crate::validate::certificate::{POINTS, measure};
@@ -89,7 +89,7 @@ impl TableGroup {
             // Kept in full precision: storing does not change the values.
             let key = format!("{spec:?}");
             let table = job.get(&key).and_then(|mut tables| tables.pop());
-            let [seconds, _] = parts(std::slice::from_ref(&spec));
+            let [seconds, _] = specs_seconds(std::slice::from_ref(&spec));
             if table.is_some() {
                 job.progress.forget(seconds);
             }
@@ -106,7 +106,7 @@ impl TableGroup {
             full.push(table);
         }
         let beside = self.beside().into_iter().map(|spec| {
-            let [seconds, _] = parts(std::slice::from_ref(&spec));
+            let [seconds, _] = specs_seconds(std::slice::from_ref(&spec));
             bake::bake(&spec, &job.progress.stage(seconds))
         });
         let beside: Vec<Table> = beside.collect();
@@ -116,7 +116,7 @@ impl TableGroup {
             let all = rounded.chain(beside.iter().cloned()).collect();
             let set = Tables::from_tables(Provenance::default(), all)?;
             let measured = set.tables()[..full.len()].iter().zip(&specs).map(|(table, spec)| {
-                let [_, seconds] = parts(std::slice::from_ref(spec));
+                let [_, seconds] = specs_seconds(std::slice::from_ref(spec));
                 let stage = job.progress.stage(seconds);
                 let certificate = measure(&set, table, need.certified_s(), &stage)?;
                 Ok(Table { certificate, ..table.clone() })
@@ -143,7 +143,7 @@ fn radial_tables(
 ) -> Result<Vec<Vec<Table>>, BakeError> {
     let built = distribution.build().map_err(|why| LoadError::Invalid(why.to_string()))?;
     let marginal = Marginal::new(&*built);
-    let (_, [bake, certify]) = distribution_parts(distribution, level, Precision::F32);
+    let [bake, certify] = distribution_seconds(level);
     let stage = progress.stage(bake);
     let full = bake::bake_radial(&marginal, &entry.distribution, level, Precision::F32, &stage);
     drop(stage);

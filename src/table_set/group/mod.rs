@@ -11,8 +11,8 @@ use crate::bake::{joined_name, radial_bytes};
 use crate::distribution::Distribution;
 use crate::memory;
 use crate::plan::{
-    AlbedoWork, Cost, Plan, RequiredAlbedo, RequiredShapes, albedo_cost, cost, distribution_cost,
-    distribution_parts, parts, seconds,
+    AlbedoWork, Plan, RequiredAlbedo, RequiredShapes, albedo_cost, cost, distribution_cost,
+    distribution_seconds, specs_seconds,
 };
 use crate::table_spec::{Level, Quality, TableSpec, general_set};
 
@@ -146,28 +146,31 @@ impl TableGroup {
         parts.indices().iter().filter_map(|&i| need.cut(&general[i])).collect()
     }
 
-    /// The estimated cost of a level.
-    pub(super) fn cost(&self, level: Level, precision: Precision) -> Cost {
+    /// The estimated bytes of a level in a file.
+    pub(super) fn file_bytes(&self, level: Level, precision: Precision) -> usize {
         match self {
             Self::Normals(..) => {
                 let at = |spec: TableSpec| TableSpec { precision, ..spec };
-                cost(&self.specs(level).into_iter().map(at).collect::<Vec<_>>())
+                cost(&self.specs(level).into_iter().map(at).collect::<Vec<_>>()).bytes
             }
             Self::Distribution(distribution, _) => {
-                distribution_cost(distribution, level, precision)
+                distribution_cost(distribution, level, precision).bytes
             }
             // An invalid specification costs nothing here; the bake reports what is wrong with it.
-            Self::Albedo(need) => need
-                .spec(level, precision)
-                .map_or(Cost { bytes: 0, seconds: 0.0 }, |spec| albedo_cost(&spec)),
+            Self::Albedo(need) => {
+                need.spec(level, precision).map_or(0, |spec| albedo_cost(&spec).bytes)
+            }
         }
     }
 
-    /// The estimated seconds of a level.
+    /// The estimated seconds of one thread to bake a level and to certify it once.
     pub(super) fn seconds(&self, level: Level) -> f64 {
         match self {
-            Self::Normals(..) => seconds(&self.specs(level)),
-            _ => self.cost(level, Precision::F32).seconds,
+            Self::Normals(..) => specs_seconds(&self.specs(level)).iter().sum(),
+            Self::Distribution(..) => distribution_seconds(level).iter().sum(),
+            Self::Albedo(need) => {
+                need.spec(level, Precision::F32).map_or(0.0, |spec| AlbedoWork::new(&spec).total())
+            }
         }
     }
 
@@ -201,17 +204,15 @@ impl TableGroup {
         parts.beside().iter().filter_map(|&i| need.cut(&draft[i])).collect()
     }
 
-    /// The work of [`bake`](Self::bake) in so many precisions, in estimated seconds.
+    /// The work of [`bake`](Self::bake) in so many precisions, in estimated seconds of one thread.
     pub(super) fn work(&self, level: Level, precisions: usize) -> f64 {
         let sum = |[bake, certify]: [f64; 2]| bake + precisions as f64 * certify;
         match self {
-            Self::Normals(..) => sum(parts(&self.specs(level))) + parts(&self.beside())[0],
-            Self::Distribution(distribution, _) => {
-                sum(distribution_parts(distribution, level, Precision::F32).1)
+            Self::Normals(..) => {
+                sum(specs_seconds(&self.specs(level))) + specs_seconds(&self.beside())[0]
             }
-            Self::Albedo(need) => {
-                need.spec(level, Precision::F32).map_or(0.0, |spec| AlbedoWork::new(&spec).total())
-            }
+            Self::Distribution(..) => sum(distribution_seconds(level)),
+            Self::Albedo(_) => self.seconds(level),
         }
     }
 }

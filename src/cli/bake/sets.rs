@@ -1,0 +1,77 @@
+//! A library too large for one set: numbered sets and their index.
+
+use std::time::Instant;
+
+use serde_json::json;
+
+use microfacet_bake::cache::Cache;
+use microfacet_bake::library::{Library, Part};
+use microfacet_bake::store::OutputFolder;
+use microfacet_bake::table_set::bake_with;
+
+use super::{Args, FormatArg, warn_of_cache};
+use crate::cli::words::{count, exact_bytes, seconds};
+use crate::cli::{Done, Failure, Outcome, escape, print_json, progress, summarize};
+
+pub(super) fn run(
+    args: &Args,
+    library: &Library,
+    out: &OutputFolder,
+    cache: Cache,
+    start: Instant,
+) -> Outcome {
+    let sets = library.parts.len();
+    if args.format != [FormatArg::Safetensors] {
+        return Err(Failure(format!(
+            "--format exr: the materials fill {sets} numbered sets, and images are of one; leave the \
+             option out"
+        )));
+    }
+    if args.max_bytes.is_some() {
+        return Err(Failure(format!(
+            "--max-bytes is for one set, and the materials fill {sets}; choose --max-error or \
+             --quality instead"
+        )));
+    }
+    for part in &library.parts {
+        args.check_bytes(&part.plan)?;
+    }
+    let settings = args.settings(cache);
+    let bar = progress::show(&settings.progress, "baking");
+    let mut writer = out.sets();
+    let (mut tables, mut baked) = (0, 0);
+    for Part { plan, .. } in &library.parts {
+        let result = bake_with(plan, args.target(), settings.clone())?;
+        warn_of_cache(&result);
+        tables += result.set.tables().len();
+        baked += result.baked;
+        writer.add(result.set)?;
+    }
+    let written = writer.finish()?;
+    drop(bar);
+    let time = start.elapsed().as_secs_f64();
+    let materials: usize = library.parts.iter().map(|part| part.plan.materials.len()).sum();
+    if args.json {
+        let files = written
+            .iter()
+            .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }));
+        print_json(&json!({
+            "sets": sets, "materials": materials, "tables": tables, "baked": baked,
+            "files": files.collect::<Vec<_>>(), "seconds": time,
+        }))?;
+        return Ok(Done::Ok);
+    }
+    let bytes = written.iter().map(|file| file.bytes).sum();
+    let last = written.last().map_or(String::new(), |file| file.path.display().to_string());
+    summarize(&format!(
+        "{} in {}: {}, {baked} baked\nwrote {}, {}\nindex {}\nin {}\n",
+        count(materials, "material"),
+        count(sets, "numbered set"),
+        count(tables, "table"),
+        count(written.len(), "file"),
+        exact_bytes(bytes),
+        escape::line(&last),
+        seconds(time)
+    ))?;
+    Ok(Done::Ok)
+}

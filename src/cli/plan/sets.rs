@@ -1,0 +1,73 @@
+//! The plan of a library that fills several sets.
+
+use std::path::Path;
+use std::time::Duration;
+
+use rayon::current_num_threads;
+use serde_json::{Value, json};
+
+use microfacet_bake::library::Library;
+use microfacet_bake::plan::{Cost, set_cost};
+use microfacet_bake::table_set::{Need, Target};
+use microfacet_sampler::Index;
+
+use super::{Args, Report};
+use crate::cli::words::{bytes, columns, count, seconds, shell};
+use crate::cli::{Done, Outcome, print, print_json};
+
+pub(super) fn run(args: &Args, library: &Library, [reading, planning]: [Duration; 2]) -> Outcome {
+    let (quality, precision) = (args.request.quality(), args.request.precision());
+    let needs = library.needs(Target::Quality(quality, precision))?;
+    // What several sets share is baked once.
+    let threads = current_num_threads();
+    let time = needs.iter().map(|(_, need): &(String, Need)| need.seconds()).sum::<f64>();
+    let time = time / threads as f64;
+    let milliseconds = [reading, planning].map(|time| 1e3 * time.as_secs_f64());
+    if args.json {
+        let report = |part| Ok(Report::new(&args.request, part)?.json());
+        let sets: Vec<Value> =
+            library.parts.iter().map(report).collect::<Result<_, super::Failure>>()?;
+        let [reading, planning] = milliseconds;
+        print_json(&json!({
+            "sets": sets, "needs": needs.len(), "seconds": time,
+            "milliseconds": { "reading": reading, "planning": planning },
+        }))?;
+        return Ok(Done::Ok);
+    }
+    let mut rows = Vec::new();
+    let mut total = Cost { bytes: 0, seconds: time };
+    let mut materials = 0;
+    for (i, part) in library.parts.iter().enumerate() {
+        let cost = set_cost(&part.plan, quality, precision)?;
+        total.bytes += cost.bytes;
+        materials += part.plan.materials.len();
+        rows.push(vec![
+            Index::file_name(i + 1),
+            count(part.plan.materials.len(), "material"),
+            bytes(cost.bytes),
+            format!("about {}", seconds(cost.seconds)),
+        ]);
+    }
+    let mut text: String = columns(&rows).iter().map(|line| format!("{line}\n")).collect();
+    text += &format!(
+        "total: {} in {}, {}; {}, about {} on {}\n",
+        count(materials, "material"),
+        count(library.parts.len(), "numbered set"),
+        bytes(total.bytes),
+        count(needs.len(), "need"),
+        seconds(total.seconds),
+        count(threads, "thread")
+    );
+    text += &format!("read in {:.1} ms, planned in {:.1} ms\n", milliseconds[0], milliseconds[1]);
+    text += &in_shards(&args.scene);
+    print(&text)?;
+    Ok(Done::Ok)
+}
+
+/// How several processes share the work.
+fn in_shards(scene: &Path) -> String {
+    let scene = shell(scene);
+    format!(
+        "in shares, by any number of processes:\n  microfacet-bake bake {scene} --shard I/N --cache DIR\n"
+    )
+}
