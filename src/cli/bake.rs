@@ -189,7 +189,7 @@ pub(super) fn run(args: Args) -> Outcome {
         Some(only) if library.parts.is_empty() => only,
         last => {
             library.parts.extend(last);
-            return sets::run(&args, &library, &out, cache, start);
+            return sets::run(&args, &library, out, cache, start);
         }
     };
     let outline = Outline::new(&scene, &plan, args.request.quality(), args.request.precision())?;

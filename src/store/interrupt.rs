@@ -23,6 +23,7 @@ fn locked(list: &Mutex<Vec<PathBuf>>) -> MutexGuard<'_, Vec<PathBuf>> {
 }
 
 /// A file under a temporary name that is removed if the process is interrupted.
+#[derive(Debug)]
 pub(super) struct Leftover(PathBuf);
 
 impl Leftover {

@@ -28,6 +28,7 @@ pub(super) const RECORD: &str = ".microfacet-bake.files";
 type Failed = (String, io::Error);
 
 /// What the process that writes a set puts where a link in its folder leads.
+#[derive(Debug)]
 struct Led {
     name: String,
     /// The same bytes under the name in the journal.
@@ -63,8 +64,9 @@ pub(super) fn replace_all(
 ///
 /// Only this process, which was asked to write here, follows links. Whoever completes its journal
 /// replaces the links themselves, since a journal in a folder may be anyone's.
-pub(super) struct Replacement<'a> {
-    folder: &'a Path,
+#[derive(Debug)]
+pub(super) struct Replacement {
+    folder: PathBuf,
     journal: String,
     staged: Vec<Staged>,
     led: Vec<Led>,
@@ -72,10 +74,10 @@ pub(super) struct Replacement<'a> {
     places: BTreeMap<PathBuf, String>,
 }
 
-impl<'a> Replacement<'a> {
-    pub(super) fn new(folder: &'a Path) -> Self {
+impl Replacement {
+    pub(super) fn new(folder: &Path) -> Self {
         let (journal, staged, led, places) = Default::default();
-        Self { folder, journal, staged, led, places }
+        Self { folder: folder.into(), journal, staged, led, places }
     }
 
     /// Completes a file under a temporary name.
@@ -94,7 +96,7 @@ impl<'a> Replacement<'a> {
             return Err(failed(io::Error::new(io::ErrorKind::InvalidInput, why)));
         }
         let old = to.old.as_ref().filter(|old| old.is_file());
-        let new = stage(self.folder, |out| out.write_all(bytes), old).map_err(failed)?;
+        let new = stage(&self.folder, |out| out.write_all(bytes), old).map_err(failed)?;
         let partial = new.file.path().file_name().unwrap_or_default().to_string_lossy();
         self.journal += &format!("{partial} {name}\n");
         if to.path != path || to.is_device() {
@@ -118,15 +120,15 @@ impl<'a> Replacement<'a> {
             journal += &format!("{STALE} {name}\n");
         }
         let failed = |why| (JOURNAL.to_string(), why);
-        let list = stage(folder, |out| out.write_all(journal.as_bytes()), None).map_err(failed)?;
+        let list = stage(&folder, |out| out.write_all(journal.as_bytes()), None).map_err(failed)?;
         // Before the journal is there: an error after it must not take the new files with it. Without a
         // journal they are leftovers.
         for new in staged {
             new.file.keep().map_err(|error| failed(error.error))?;
         }
         list.file.persist(folder.join(JOURNAL)).map_err(|error| failed(error.error))?;
-        sync(folder).map_err(failed)?;
-        exchange(folder, &journal, led)
+        sync(&folder).map_err(failed)?;
+        exchange(&folder, &journal, led)
     }
 }
 

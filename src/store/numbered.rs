@@ -14,23 +14,24 @@ use crate::input::{self, MAX_TABLES};
 /// Writes any number of sets into a folder: one is `tables.safetensors`, several are
 /// `tables-00001.safetensors` and so on with an index, `tables.index.json`. All take their places
 /// together at the end; only one is in memory at a time.
-pub struct SetWriter<'a> {
-    folder: &'a OutputFolder,
+#[derive(Debug)]
+pub struct SetWriter {
+    folder: OutputFolder,
     /// The first set, until there is a second.
     first: Option<Tables>,
-    replacement: Replacement<'a>,
+    replacement: Replacement,
     index: Index,
 }
 
 impl OutputFolder {
     /// Begins to write sets.
-    pub fn sets(&self) -> SetWriter<'_> {
+    pub fn sets(self) -> SetWriter {
         let replacement = Replacement::new(self.path());
         SetWriter { folder: self, first: None, replacement, index: Index { sets: Vec::new() } }
     }
 }
 
-impl SetWriter<'_> {
+impl SetWriter {
     /// Adds the next set, whose materials no other set has.
     ///
     /// # Errors

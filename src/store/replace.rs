@@ -179,12 +179,14 @@ pub(super) fn check_writable(path: &Path) -> io::Result<()> {
 }
 
 /// A temporary file that an interrupt removes.
+#[derive(Debug)]
 pub(super) struct Staged {
     pub(super) file: NamedTempFile,
     _leftover: Leftover,
 }
 
 /// A complete new file that has yet to take its place; none for a device, which has its bytes.
+#[derive(Debug)]
 pub(super) struct Pending(Option<(Staged, PathBuf)>);
 
 impl Pending {

@@ -2,13 +2,14 @@
 //!
 //! [`arrays`] broadcasts arguments and runs functions of them on all cores; [`words`] turns words
 //! and errors into those of Python. [`tables`] loads and bakes sets, [`lobe`] and [`bsdf`] are the
-//! run-time crate, [`exact`] the model, and [`shape`] the tables of a shape for lookups elsewhere.
+//! run-time crate, [`exact`] the model, [`farm`] what processes bake together, and [`shape`] the tables of a shape for lookups elsewhere.
 
 use pyo3::prelude::*;
 
 mod arrays;
 mod bsdf;
 mod exact;
+mod farm;
 mod lobe;
 mod shape;
 mod tables;
@@ -20,9 +21,12 @@ mod _microfacet {
     use pyo3::prelude::*;
 
     use crate::exact::{ExactEllipsoid, ExactLobe, ExactStudentT};
+    use crate::farm::{PyAssembly, PyLibrary, PyNeed};
 
     #[pymodule_export]
     use crate::bsdf::{PyBsdf, PyConductor, PyDielectric, PyPlastic, PySample};
+    #[pymodule_export]
+    use crate::farm::user_cache;
     #[pymodule_export]
     use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT};
     #[pymodule_export]
@@ -37,6 +41,10 @@ mod _microfacet {
         module.add("ExactLobe", module.py().get_type::<ExactLobe>())?;
         module.add("ExactStudentT", module.py().get_type::<ExactStudentT>())?;
         module.add("ExactEllipsoid", module.py().get_type::<ExactEllipsoid>())?;
+        // Those of `microfacet.farm`.
+        module.add("Assembly", module.py().get_type::<PyAssembly>())?;
+        module.add("Library", module.py().get_type::<PyLibrary>())?;
+        module.add("Need", module.py().get_type::<PyNeed>())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -32,6 +32,9 @@ pub(crate) fn embedded() -> Arc<Tables> {
 }
 
 /// A set of tables: those built in, or of a file or folder that `microfacet-bake bake` wrote.
+///
+/// materials names those that are needed of a large library, or of any set: the others, and what
+/// serves them alone, are left out.
 #[pyclass(name = "Tables", module = "microfacet", frozen)]
 pub(crate) struct PyTables {
     pub(crate) set: Arc<Tables>,
@@ -41,10 +44,13 @@ pub(crate) struct PyTables {
 #[pymethods]
 impl PyTables {
     #[new]
-    #[pyo3(signature = (path=None))]
-    fn new(path: Option<PathBuf>) -> PyResult<Self> {
+    #[pyo3(signature = (path=None, materials=None))]
+    fn new(path: Option<PathBuf>, materials: Option<Vec<String>>) -> PyResult<Self> {
         let Some(path) = path else {
-            return Ok(Self { set: embedded(), origin: "built in".into() });
+            return match materials {
+                None => Ok(Self { set: embedded(), origin: "built in".into() }),
+                Some(_) => Err(refused("materials are those of a path; the set built in has none")),
+            };
         };
         let origin = path.display().to_string();
         if !path.try_exists().unwrap_or(true) {
@@ -52,7 +58,14 @@ impl PyTables {
                 "{origin}: no such file or folder; name what `microfacet-bake bake` wrote"
             )));
         }
-        Ok(Self { set: Arc::new(store::read(&path).map_err(unread)?), origin })
+        let set = match materials {
+            None => store::read(&path),
+            Some(names) => {
+                let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                store::read_materials(&path, &names)
+            }
+        };
+        Ok(Self { set: Arc::new(set.map_err(unread)?), origin })
     }
 
     /// The Student-t lobe of roughness sigma, a number or (sigma_x, sigma_y), each in [1e-8, 1e6],
@@ -176,25 +189,12 @@ pub(crate) fn bake(
              multiprocessing's \"spawn\", or bake before",
         ));
     }
-    let qualities =
-        [("draft", Quality::Draft), ("default", Quality::Default), ("high", Quality::High)];
-    let quality = one_of("quality", quality, &qualities)?;
-    let precisions = [("f32", Precision::F32), ("f16", Precision::F16), ("u16", Precision::U16)];
-    let precision = one_of("precision", precision, &precisions)?;
-    let target = match (max_error, max_bytes) {
-        (None, None) => Target::Quality(quality, precision),
-        (Some(error), None) => Target::MaxError(error),
-        (None, Some(bytes)) => Target::MaxBytes(bytes),
-        _ => return Err(refused("give either max_error or max_bytes")),
-    };
+    let target = target_of(quality, precision, max_error, max_bytes)?;
     let plan = match recipe {
         None => general(albedo),
         Some(recipe) => {
-            let scene = scene(recipe)?;
-            for warning in &scene.warnings {
-                let warning = std::ffi::CString::new(warning.replace('\0', " "))?;
-                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &warning, 1)?;
-            }
+            let scene = scene_of(recipe)?;
+            warn_of(py, &scene)?;
             let albedo = match albedo {
                 None => AlbedoWish::Recipes,
                 Some(true) => AlbedoWish::All,
@@ -233,7 +233,36 @@ pub(crate) fn bake(
 #[pyfunction]
 #[pyo3(signature = (path=None))]
 pub(crate) fn inspect(py: Python<'_>, path: Option<PathBuf>) -> PyResult<Bound<'_, PyAny>> {
-    PyTables::new(path)?.describe(py)
+    PyTables::new(path, None)?.describe(py)
+}
+
+/// What tables are to be like, from the words and numbers that say so.
+pub(crate) fn target_of(
+    quality: &str,
+    precision: &str,
+    max_error: Option<f64>,
+    max_bytes: Option<usize>,
+) -> PyResult<Target> {
+    let qualities =
+        [("draft", Quality::Draft), ("default", Quality::Default), ("high", Quality::High)];
+    let quality = one_of("quality", quality, &qualities)?;
+    let precisions = [("f32", Precision::F32), ("f16", Precision::F16), ("u16", Precision::U16)];
+    let precision = one_of("precision", precision, &precisions)?;
+    match (max_error, max_bytes) {
+        (None, None) => Ok(Target::Quality(quality, precision)),
+        (Some(error), None) => Ok(Target::MaxError(error)),
+        (None, Some(bytes)) => Ok(Target::MaxBytes(bytes)),
+        _ => Err(refused("give either max_error or max_bytes")),
+    }
+}
+
+/// Passes on the warnings of a scene.
+pub(crate) fn warn_of(py: Python<'_>, scene: &Scene) -> PyResult<()> {
+    for warning in &scene.warnings {
+        let warning = std::ffi::CString::new(warning.replace('\0', " "))?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &warning, 1)?;
+    }
+    Ok(())
 }
 
 /// The plan of all shapes.
@@ -246,7 +275,7 @@ fn general(albedo: Option<bool>) -> Plan {
 }
 
 /// Reads a recipe's text, which has more than one line, or what a path names.
-fn scene(recipe: &Bound<'_, PyAny>) -> PyResult<Scene> {
+pub(crate) fn scene_of(recipe: &Bound<'_, PyAny>) -> PyResult<Scene> {
     let scene = match recipe.extract::<String>() {
         Ok(text) if text.contains('\n') => Scene::from_recipe_str(&text),
         _ => scene::load(&path("recipe", "the text of a recipe", recipe)?),

@@ -16,7 +16,7 @@ use crate::cli::{Done, Failure, Outcome, escape, print_json, progress, summarize
 pub(super) fn run(
     args: &Args,
     library: &Library,
-    out: &OutputFolder,
+    out: OutputFolder,
     cache: Cache,
     start: Instant,
 ) -> Outcome {

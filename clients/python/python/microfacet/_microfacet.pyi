@@ -8,19 +8,23 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import disjoint_base
 
 __all__ = [
+    "Assembly",
     "Bsdf",
     "BsdfSample",
     "Conductor",
     "Dielectric",
     "DielectricAlbedo",
     "Ellipsoid",
+    "Library",
     "Lobe",
+    "Need",
     "Plastic",
     "Shape",
     "StudentT",
     "Tables",
     "bake",
     "inspect",
+    "user_cache",
     "ExactLobe",
     "ExactStudentT",
     "ExactEllipsoid",
@@ -87,7 +91,9 @@ class Ellipsoid(Lobe):
 
 @final
 class Tables:
-    def __new__(cls, path: _Path | None = None) -> Tables: ...
+    def __new__(
+        cls, path: _Path | None = None, materials: list[str] | None = None
+    ) -> Tables: ...
     @property
     def materials(self) -> list[str]: ...
     def student_t(self, sigma: ArrayLike, gamma: float) -> StudentT: ...
@@ -183,6 +189,43 @@ class Plastic(Bsdf):
         stand_in: bool = False,
     ) -> Plastic: ...
 
+@final
+class Need:
+    def __new__(cls, text: str) -> Need: ...
+    def __getnewargs__(self) -> tuple[str]: ...
+    @property
+    def id(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def seconds(self) -> float: ...
+    def is_kept(self, cache: _Path) -> bool: ...
+    def bake(self, cache: _Path, threads: int = 1, max_memory: int = ...) -> bool: ...
+
+@final
+class Library:
+    def __new__(
+        cls,
+        scene: _Path,
+        *,
+        quality: str = "default",
+        precision: str = "f32",
+        max_error: float | None = None,
+        albedo: bool | None = None,
+        tabulate_ggx: bool = False,
+        per_set: int = 10000,
+    ) -> Library: ...
+    @property
+    def sets(self) -> list[list[str]]: ...
+    def needs(self) -> list[Need]: ...
+
+@final
+class Assembly:
+    def __new__(cls, out: _Path) -> Assembly: ...
+    def add(self, library: Library, cache: _Path, max_memory: int) -> tuple[int, int]: ...
+    def finish(self) -> list[PathLike[str]]: ...
+
+def user_cache() -> PathLike[str] | None: ...
 def bake(
     recipe: _Path | None = None,
     out: _Path | None = None,

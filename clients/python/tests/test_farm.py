@@ -1,0 +1,162 @@
+"""Libraries on a real cluster of Dask: two worker processes, one of them killed on the way."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import microfacet
+import pytest
+from microfacet import farm
+
+distributed = pytest.importorskip("distributed")
+
+COUNT = 7
+
+
+def materials(count: int = COUNT) -> Iterator[dict[str, Any]]:
+    """Anisotropic mirrors, each with an albedo of its own."""
+    for i in range(count):
+        sigma = [0.2 + 0.02 * i, 0.5]
+        gamma = 2.5 + 0.5 * (i % 2)
+        yield {"name": f"m {i}", "sigma": sigma, "gamma": gamma, "fresnel": "mirror"}
+
+
+def recipe() -> str:
+    return "\n".join(
+        f'[[material]]\nname = "{m["name"]}"\nsigma = {m["sigma"]}\ngamma = {m["gamma"]}\n'
+        'fresnel = "mirror"'
+        for m in materials()
+    )
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster, distributed.Client(cluster) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """What one process makes, with no cache."""
+    out = tmp_path_factory.mktemp("alone")
+    microfacet.bake(recipe(), out / "set", quality="draft", cache=False)
+    return content(out / "set")
+
+
+def farmed(scene: farm.Scene, client: Any, out: Path, **options: Any) -> farm.Farmed:
+    options = {"quality": "draft", "cache": out.parent / "cache", "progress": False} | options
+    return farm.bake(scene, client, out, **options)
+
+
+@pytest.mark.parametrize("shared", [False, True])
+def test_the_bytes_are_those_of_one_process(
+    client: Any, alone: dict[str, bytes], tmp_path: Path, shared: bool
+) -> None:
+    done = farmed(recipe(), client, tmp_path / "out", shared=shared, seconds_per_task=0.2)
+    assert (done.materials, done.baked, done.kept, done.made_up) == (COUNT, COUNT + 2, 0, 0)
+    assert content(tmp_path / "out") == alone
+    again = farmed(recipe(), client, tmp_path / "out", shared=shared)
+    assert (again.baked, again.kept, again.made_up) == (0, COUNT + 2, 0)
+    assert content(tmp_path / "out") == alone
+
+
+def test_a_worker_that_is_killed_loses_nothing(
+    client: Any, alone: dict[str, bytes], tmp_path: Path
+) -> None:
+    before = set(client.run(os.getpid).values())
+    killed: list[int] = []
+
+    def kill_on_the_way() -> Iterator[dict[str, Any]]:
+        for i, material in enumerate(materials()):
+            if i == COUNT - 1:
+                # Tasks of the first sets are under way.
+                time.sleep(0.3)
+                killed.append(min(before))
+                os.kill(killed[0], signal.SIGKILL)
+            yield material
+
+    done = farmed(
+        kill_on_the_way(), client, tmp_path / "out", per_set=2, seconds_per_task=0.01
+    )
+    assert killed and done.materials == COUNT
+    one = microfacet.bake(recipe(), quality="draft", cache=False)
+    tables = microfacet.Tables(tmp_path / "out")
+    assert tables.materials == one.materials
+    # The numbered sets are those that the cluster makes when nothing happens.
+    farmed(materials(), client, tmp_path / "calm", per_set=2, cache=tmp_path / "other")
+    assert content(tmp_path / "calm") == content(tmp_path / "out")
+
+
+def test_numbered_sets_open_as_one_or_in_part(client: Any, tmp_path: Path) -> None:
+    done = farmed(materials(), client, tmp_path / "out", per_set=3)
+    assert [path.name for path in done.files] == [
+        "tables-00001.safetensors",
+        "tables-00002.safetensors",
+        "tables-00003.safetensors",
+        "tables.index.json",
+    ]
+    whole = microfacet.Tables(tmp_path / "out")
+    part = microfacet.Tables(tmp_path / "out", materials=["m 6", "m 1"])
+    assert len(whole.materials) == COUNT and part.materials == ["m 1", "m 6"]
+    for name in part.materials:
+        v = [0.6, 0.0, 0.8]
+        assert float(part.material(name).albedo(v)) == float(whole.material(name).albedo(v))
+    with pytest.raises(OSError, match="none of the 7 materials is named \"gold\""):
+        microfacet.Tables(tmp_path / "out", materials=["gold"])
+
+
+def test_needs_travel(tmp_path: Path) -> None:
+    (library,) = farm.libraries(materials(), quality="draft", per_set=10_000)
+    needs = library.needs()
+    assert len(needs) == COUNT + 2 and all(need.seconds > 0 for need in needs)
+    for need in needs:
+        other = pickle.loads(pickle.dumps(need))
+        assert (other.id, str(other)) == (need.id, str(need))
+    need = max(needs, key=lambda need: need.seconds)
+    assert not need.is_kept(tmp_path)
+    assert need.bake(tmp_path) and need.is_kept(tmp_path) and not need.bake(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == [need.id + ".safetensors"]
+    with pytest.raises(ValueError, match="install the same version"):
+        farm.Need(str(need).replace("numerics ", "numerics 9"))
+
+
+def test_what_is_wrong_is_said(client: Any, tmp_path: Path) -> None:
+    def says(match: str, scene: Any = None, error: type[Exception] = ValueError, **o: Any) -> None:
+        with pytest.raises(error, match=match):
+            farmed(recipe() if scene is None else scene, client, tmp_path / "out", **o)
+
+    says("two materials are named", [*materials(2), *materials(1)], per_set=2)
+    says("each material must be a table", ["gold"], TypeError)
+    says("seconds_per_task is 0", seconds_per_task=0)
+    says("retries is -1", retries=-1)
+    says(r"must be in \[1, 10000\]", per_set=0)
+    says("no materials", [])
+    says("gamma = 1.2", [{"name": "a", "sigma": 0.3, "gamma": 1.2}])
+    # Nothing was written.
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_task_that_keeps_failing_ends_the_bake(client: Any, tmp_path: Path) -> None:
+    with pytest.raises(RuntimeError, match="memory"):
+        farmed(recipe(), client, tmp_path / "out", max_memory=1, retries=1)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_client_without_workers_is_refused(tmp_path: Path) -> None:
+    with distributed.LocalCluster(
+        n_workers=0, processes=True, dashboard_address=None
+    ) as cluster, distributed.Client(cluster) as client:
+        with pytest.raises(RuntimeError, match="no workers"):
+            farmed(recipe(), client, tmp_path / "out")
