@@ -24,17 +24,23 @@ pub struct Cache {
     folder: Option<PathBuf>,
     /// Whether an entry was written.
     kept: Arc<AtomicBool>,
+    /// Whether what others left half written was looked for.
+    tidied: Arc<AtomicBool>,
 }
 
 impl Cache {
     /// A cache in this folder, which is created with the first entry.
     pub fn new(folder: PathBuf) -> Self {
-        Self { folder: Some(folder), kept: Arc::default() }
+        Self::at(Some(folder))
+    }
+
+    fn at(folder: Option<PathBuf>) -> Self {
+        Self { folder, kept: Arc::default(), tidied: Arc::default() }
     }
 
     /// A cache that keeps nothing.
     pub fn none() -> Self {
-        Self { folder: None, kept: Arc::default() }
+        Self::at(None)
     }
 
     /// The folder `microfacet-bake` in the user's cache folder (`$XDG_CACHE_HOME`, or the system's
@@ -43,7 +49,7 @@ impl Cache {
         let folder = etcetera::choose_base_strategy()
             .ok()
             .map(|base| base.cache_dir().join("microfacet-bake"));
-        Self { folder, kept: Arc::default() }
+        Self::at(folder)
     }
 
     /// The folder, if there is one.
@@ -69,7 +75,8 @@ impl Cache {
         self.path(&complete(key)).is_some_and(|path| path.is_file())
     }
 
-    /// Keeps tables under a key, and removes what bakes that were killed have left half written.
+    /// Keeps tables under a key. The first call of a cache or its clones removes what bakes that
+    /// were killed have left half written.
     ///
     /// # Errors
     /// Any error of the operating system, such as a folder that cannot be written.
@@ -82,7 +89,10 @@ impl Cache {
             io::Error::new(why.kind(), format!("{}: {why}", path.display()))
         };
         make_folder(folder).map_err(|why| at(folder, why))?;
-        remove_abandoned(folder);
+        // It lists the folder, which may hold very many entries.
+        if !self.tidied.swap(true, Relaxed) {
+            remove_abandoned(folder);
+        }
         replace(&path, &bytes).map_err(|why| at(&path, why))?;
         self.kept.store(true, Relaxed);
         Ok(())
@@ -113,4 +123,31 @@ pub(crate) fn complete(key: &str) -> String {
 pub(crate) fn versions() -> String {
     let program = env!("CARGO_PKG_VERSION");
     format!("format {VERSION}, numerics {NUMERICS}, program {program}")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::File;
+    use std::time::{Duration, SystemTime};
+
+    use super::*;
+
+    #[test]
+    fn leftovers_are_looked_for_once_by_a_cache_and_its_clones() {
+        let folder = tempfile::tempdir().unwrap();
+        let leftover = folder.path().join(".microfacet-bake-x.partial");
+        let leave = || {
+            let week = Duration::from_secs(7 * 24 * 3600);
+            File::create(&leftover).unwrap().set_modified(SystemTime::now() - week).unwrap();
+        };
+        let cache = Cache::new(folder.path().into());
+        leave();
+        cache.put("a", &[]).unwrap();
+        assert!(!leftover.exists());
+        leave();
+        cache.clone().put("b", &[]).unwrap();
+        assert!(leftover.exists());
+        Cache::new(folder.path().into()).put("c", &[]).unwrap();
+        assert!(!leftover.exists());
+    }
 }

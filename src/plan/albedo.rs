@@ -1,8 +1,11 @@
 //! Which albedo tables a scene requires: only for lobes, reflectances and forms of masking of
 //! materials that ask for albedos.
 
+use std::collections::HashMap;
+
 use microfacet_sampler::{LobeEntry, Masking, Precision, Reflectance};
 
+use super::key::{Key, distinct};
 use super::{NotCovered, Options, entry, is_tabulated};
 use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, SIGMA_MAX};
 use crate::scene::{Format, Interval, Material, Scene};
@@ -52,14 +55,6 @@ impl RequiredAlbedo {
         let Self { lobe, reflectance, maskings } = self.clone();
         AlbedoSpec::new(lobe, reflectance, maskings, level, precision)
     }
-
-    fn covers(&self, want: &Want) -> bool {
-        let lobe = match (&self.lobe, &want.lobe) {
-            (AlbedoLobe::Family(domain), AlbedoLobe::Family(other)) => domain.contains(other),
-            (one, other) => one == other,
-        };
-        lobe && self.reflectance == want.reflectance && self.maskings.contains(&want.masking)
-    }
 }
 
 /// What the plan decides on a material's albedo.
@@ -87,9 +82,60 @@ struct Want {
     masking: Masking,
 }
 
-/// More tables of albedos, of different lobes or reflectances, are not planned: each takes seconds
-/// to bake, and the time of planning grows with the square of their number.
-const MAX_ALBEDOS: usize = 1000;
+/// More table groups of albedos are not planned: each takes seconds to bake.
+const MAX_ALBEDOS: usize = 100_000;
+
+/// The table groups that are required so far.
+#[derive(Default)]
+struct Needs {
+    all: Vec<RequiredAlbedo>,
+    /// The group of a lobe and the index of a reflectance.
+    of: HashMap<(Key<AlbedoLobe>, usize), usize>,
+    /// The groups of the family under each reflectance: few, since `least` makes one of a thousand.
+    families: Vec<Vec<usize>>,
+}
+
+impl Needs {
+    /// Requires a lobe under a reflectance.
+    fn add(
+        &mut self,
+        lobe: AlbedoLobe,
+        (i, reflectance): (usize, Reflectance),
+        masking: Masking,
+    ) -> Result<(), NotCovered> {
+        let key = (Key(lobe), i);
+        if let Some(&found) = self.of.get(&key) {
+            // Both forms in one table group cost little more than one.
+            let maskings = &mut self.all[found].maskings;
+            if !maskings.contains(&masking) {
+                maskings.push(masking);
+            }
+            return Ok(());
+        }
+        if self.all.len() == MAX_ALBEDOS {
+            return Err(NotCovered::Albedos { most: MAX_ALBEDOS });
+        }
+        let lobe = key.0.0.clone();
+        if matches!(lobe, AlbedoLobe::Family(_)) {
+            self.families[i].push(self.all.len());
+        }
+        self.of.insert(key, self.all.len());
+        self.all.push(RequiredAlbedo { lobe, reflectance, maskings: vec![masking] });
+        Ok(())
+    }
+
+    /// The first group that covers what a material asks for.
+    fn serving(&self, Want { lobe, masking, .. }: Want, i: usize) -> Option<usize> {
+        let AlbedoLobe::Family(domain) = &lobe else {
+            return self.of.get(&(Key(lobe), i)).copied();
+        };
+        let covers = |need: &RequiredAlbedo| {
+            matches!(&need.lobe, AlbedoLobe::Family(other) if other.contains(domain))
+                && need.maskings.contains(&masking)
+        };
+        self.families[i].iter().copied().find(|&need| covers(&self.all[need]))
+    }
+}
 
 /// The required albedos of a scene, and one verdict for each of its materials.
 pub(super) fn required(
@@ -101,56 +147,47 @@ pub(super) fn required(
         .iter()
         .map(|material| wants(material, options))
         .collect::<Result<_, _>>()?;
-    let mut needs: Vec<RequiredAlbedo> = Vec::new();
-    let mut add = |lobe: AlbedoLobe, reflectance, masking| {
-        // Both forms in one table group cost little more than one.
-        let same = |need: &RequiredAlbedo| need.lobe == lobe && need.reflectance == reflectance;
-        match needs.iter().position(same) {
-            Some(i) if needs[i].maskings.contains(&masking) => {}
-            Some(i) => needs[i].maskings.push(masking),
-            None if needs.len() == MAX_ALBEDOS => {
-                return Err(NotCovered::Albedos { most: MAX_ALBEDOS });
-            }
-            None => needs.push(RequiredAlbedo { lobe, reflectance, maskings: vec![masking] }),
-        }
-        Ok(())
-    };
-    let all: Vec<&Want> = wants.iter().flatten().flatten().collect();
-    let mut reflectances: Vec<Reflectance> = Vec::new();
-    for want in &all {
-        if !reflectances.contains(&want.reflectance) {
-            reflectances.push(want.reflectance);
-        }
-        if reflectances.len() > MAX_ALBEDOS {
-            return Err(NotCovered::Albedos { most: MAX_ALBEDOS });
-        }
-    }
+    let all = || wants.iter().flatten().flatten();
+    let mut reflectances = distinct(all().map(|want| want.reflectance));
     // The moments first, since they serve most materials.
     reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Moments);
-    for reflectance in reflectances {
-        for masking in Masking::ALL {
-            let same = all
-                .iter()
-                .filter(|want| want.reflectance == reflectance && want.masking == masking);
-            let (family, own): (Vec<&AlbedoLobe>, Vec<&AlbedoLobe>) =
-                same.map(|want| &want.lobe).partition(|lobe| matches!(lobe, AlbedoLobe::Family(_)));
-            let domains = family.into_iter().filter_map(|lobe| {
-                if let AlbedoLobe::Family(domain) = lobe { Some(*domain) } else { None }
-            });
-            let domains = joined(domains.collect()).into_iter().map(AlbedoLobe::Family);
-            for lobe in domains.chain(own.into_iter().cloned()) {
-                add(lobe, reflectance, masking)?;
+    let indices: HashMap<Key<Reflectance>, usize> =
+        reflectances.iter().enumerate().map(|(i, &reflectance)| (Key(reflectance), i)).collect();
+    let index = |want: &Want| indices[&Key(want.reflectance)];
+    // What is asked for under each reflectance and form of masking.
+    let mut asked: Vec<[Vec<&AlbedoLobe>; Masking::ALL.len()]> =
+        vec![Default::default(); reflectances.len()];
+    for want in all() {
+        for (lobes, masking) in asked[index(want)].iter_mut().zip(Masking::ALL) {
+            if want.masking == masking {
+                lobes.push(&want.lobe);
             }
         }
     }
-    let serving =
-        |want: &Want| needs.iter().position(|need| need.covers(want)).expect("needs cover all");
+    let families = vec![Vec::new(); reflectances.len()];
+    let mut needs = Needs { families, ..Needs::default() };
+    for (reflectance, asked) in reflectances.into_iter().enumerate().zip(asked) {
+        for (lobes, masking) in asked.into_iter().zip(Masking::ALL) {
+            let domain = |lobe: &&AlbedoLobe| {
+                if let AlbedoLobe::Family(domain) = lobe { Some(*domain) } else { None }
+            };
+            let domains = joined(lobes.iter().filter_map(domain));
+            let own = lobes.into_iter().filter(|lobe| domain(lobe).is_none()).cloned();
+            for lobe in domains.into_iter().map(AlbedoLobe::Family).chain(own) {
+                needs.add(lobe, reflectance, masking)?;
+            }
+        }
+    }
+    let serving = |want: Want| {
+        let i = index(&want);
+        needs.serving(want, i).expect("needs cover all")
+    };
     let verdicts = wants.into_iter().map(|wants| match wants {
-        Ok(wants) => AlbedoVerdict::Bake(wants.iter().map(serving).collect()),
+        Ok(wants) => AlbedoVerdict::Bake(wants.into_iter().map(serving).collect()),
         Err(verdict) => verdict,
     });
     let verdicts = verdicts.collect();
-    Ok((needs, verdicts))
+    Ok((needs.all, verdicts))
 }
 
 /// The tables that a material asks for, or the reason why it gets none.
@@ -215,7 +252,21 @@ fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
 }
 
 /// A small number of domains that cover all of `wants` with no more nodes in all.
-fn joined(wants: Vec<Domain>) -> Vec<Domain> {
+fn joined(wants: impl Iterator<Item = Domain>) -> Vec<Domain> {
+    let mut groups: Vec<Vec<Domain>> = Vec::new();
+    let mut of_shapes: HashMap<Key<Interval>, usize> = HashMap::new();
+    for want in distinct(wants) {
+        let group = *of_shapes.entry(Key(want.gamma)).or_insert(groups.len());
+        if group == groups.len() {
+            groups.push(Vec::new());
+        }
+        groups[group].push(want);
+    }
+    least(groups)
+}
+
+/// A small number of domains that cover all of `groups`, each of one range of shapes.
+fn least(groups: Vec<Vec<Domain>>) -> Vec<Domain> {
     let need =
         |domain| RequiredAlbedo { lobe: AlbedoLobe::Family(domain), ..RequiredAlbedo::general() };
     let cost = |domain| {
@@ -234,17 +285,10 @@ fn joined(wants: Vec<Domain>) -> Vec<Domain> {
         }
     };
     // Joins all roughnesses of one shape, then all shapes.
-    let mut groups: Vec<Vec<Domain>> = Vec::new();
-    for want in wants {
-        match groups.iter_mut().find(|group| group[0].gamma == want.gamma) {
-            Some(group) if group.contains(&want) => {}
-            Some(group) => group.push(want),
-            None => groups.push(vec![want]),
-        }
-    }
     let all = groups.into_iter().flat_map(hull_if_cheaper).collect();
     let all = hull_if_cheaper(all);
-    // A domain inside another is covered by it.
+    // A domain inside another is covered by it. Comparing each with each takes no longer with more
+    // materials: a hull has fewer nodes than a thousand domains.
     let inside = |i: usize| {
         let holds = |(j, other): (usize, &Domain)| {
             i != j && other.contains(&all[i]) && (*other != all[i] || j < i)
@@ -257,3 +301,6 @@ fn joined(wants: Vec<Domain>) -> Vec<Domain> {
     });
     kept
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,6 +7,7 @@
 
 mod albedo;
 mod cost;
+mod key;
 mod provenance;
 mod required_shapes;
 
@@ -219,13 +220,9 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
 
 /// The distributions outside the Student-t family, in order and without repetition.
 fn distributions(scene: &Scene) -> Vec<Distribution> {
-    let mut all: Vec<Distribution> = Vec::new();
-    for material in scene.materials.iter().filter(|material| is_tabulated(material)) {
-        if let Some(distribution) = material.distribution.as_ref().filter(|d| !all.contains(d)) {
-            all.push(distribution.clone());
-        }
-    }
-    all
+    let tabulated = scene.materials.iter().filter(|material| is_tabulated(material));
+    let all = tabulated.filter_map(|material| material.distribution.as_ref());
+    key::distinct(all).into_iter().cloned().collect()
 }
 
 /// Whether there are microfacets at any point at all.

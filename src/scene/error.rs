@@ -35,48 +35,46 @@ impl Place {
     }
 }
 
-/// Where the lines of a text begin, to turn byte offsets into places.
+/// Turns byte offsets in a text into places.
 ///
 /// Lines end as they do in an editor: with a line feed, a carriage return, or both.
 pub(super) struct Lines<'a> {
     file: Arc<Path>,
     text: &'a [u8],
-    starts: Vec<usize>,
-    /// Characters that begin before each block of [`BLOCK`] bytes: a line may be as long as the
-    /// text, with a million elements in it.
-    blocks: Vec<usize>,
+    /// What is before each block of [`BLOCK`] bytes. A text may be one line with a million elements
+    /// in it, or nothing but ends of lines.
+    blocks: Vec<Before>,
 }
 
 /// Bytes of a block of [`Lines`].
 const BLOCK: usize = 1 << 10;
 
+/// What is before a block.
+#[derive(Clone, Copy, Default)]
+struct Before {
+    /// Characters that begin.
+    characters: usize,
+    /// Lines that end, and where the next begins.
+    lines: usize,
+    start: usize,
+}
+
 impl<'a> Lines<'a> {
     pub(super) fn new(file: &Path, text: &'a [u8]) -> Self {
-        let ends = text.iter().enumerate().filter(|&(i, byte)| match byte {
-            b'\r' => text.get(i + 1) != Some(&b'\n'),
-            byte => *byte == b'\n',
-        });
-        let mut before = 0;
-        let blocks = text.chunks(BLOCK).map(|block| {
-            let first = before;
-            before += characters(block);
-            first
-        });
-        Self {
-            file: file.into(),
-            text,
-            starts: [0].into_iter().chain(ends.map(|(i, _)| i + 1)).collect(),
-            blocks: blocks.collect(),
+        let mut lines = Self { file: file.into(), text, blocks: vec![Before::default()] };
+        for end in (BLOCK..=text.len()).step_by(BLOCK) {
+            lines.blocks.push(lines.before(end));
         }
+        lines
     }
 
     pub(super) fn place(&self, offset: usize) -> Place {
         let offset = offset.min(self.text.len());
-        let line = self.starts.partition_point(|&start| start <= offset);
-        let column = self.before(offset) - self.before(self.starts[line - 1]) + 1;
+        let Before { characters, lines, start } = self.before(offset);
+        let column = characters - self.before(start).characters + 1;
         Place {
             file: self.file.clone(),
-            line: u32::try_from(line).ok(),
+            line: u32::try_from(lines + 1).ok(),
             column: u32::try_from(column).ok(),
         }
     }
@@ -89,13 +87,22 @@ impl<'a> Lines<'a> {
         self.place(start + bytes)
     }
 
-    /// Characters that begin before an offset.
-    fn before(&self, offset: usize) -> usize {
-        match self.blocks.get(offset / BLOCK) {
-            Some(before) => before + characters(&self.text[offset / BLOCK * BLOCK..offset]),
-            // The end of a text of whole blocks.
-            None => characters(self.text),
+    /// What is before an offset, counted from the last block that is known.
+    fn before(&self, offset: usize) -> Before {
+        let block = (offset / BLOCK).min(self.blocks.len() - 1);
+        let Before { mut characters, mut lines, mut start } = self.blocks[block];
+        let from = block * BLOCK;
+        characters += self::characters(&self.text[from..offset]);
+        for i in from..offset {
+            let is_end = match self.text[i] {
+                b'\r' => self.text.get(i + 1) != Some(&b'\n'),
+                byte => byte == b'\n',
+            };
+            if is_end {
+                (lines, start) = (lines + 1, i + 1);
+            }
         }
+        Before { characters, lines, start }
     }
 }
 
@@ -270,6 +277,11 @@ mod tests {
         // The end of whole blocks.
         let text = [b'a'; BLOCK];
         assert_eq!(Lines::new(Path::new("f"), &text).place(BLOCK).column, Some(1025));
+        // A carriage return ends one block, and its line feed begins the next.
+        let text = [&[b'a'; BLOCK - 1][..], b"\r\nb"].concat();
+        let lines = Lines::new(Path::new("f"), &text);
+        assert_eq!(lines.place(BLOCK).to_string(), "f:1:1025");
+        assert_eq!(lines.place(BLOCK + 1).to_string(), "f:2:1");
     }
 
     #[test]

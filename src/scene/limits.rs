@@ -36,8 +36,13 @@ impl Budget {
     }
 }
 
-/// Bytes of a recipe. Its parser takes 80 times as much memory for a list of ones.
-pub(super) const RECIPE: u64 = 8 << 20;
+/// Bytes of a recipe, which is parsed in parts.
+pub(super) const RECIPE: u64 = 64 << 20;
+/// Bytes of a part of a recipe: from one `[[material]]` to the next, and all before the second. The
+/// parser takes 80 times as much memory for a list of ones.
+pub(super) const RECIPE_PART: u64 = 8 << 20;
+/// Materials of a recipe, which is read for them alone.
+pub(super) const RECIPE_MATERIALS: usize = 1_000_000;
 /// Bytes of the measured distributions of a recipe, all together; each is integrated numerically.
 pub(super) const MEASURED: u64 = 16 << 20;
 /// Distributions outside the family in a recipe: each takes a millisecond or more to integrate.

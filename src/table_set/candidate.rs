@@ -7,7 +7,7 @@ use microfacet_sampler::{Precision, Table};
 use super::BakeError;
 use super::group::TableGroup;
 use super::job::Job;
-use crate::memory;
+use crate::memory::{self, Values};
 use crate::table_spec::Level;
 use crate::validate::certificate::worst_error;
 
@@ -149,7 +149,7 @@ impl Candidate {
         (level, precision): Grade,
         job: &mut Job,
     ) -> Result<(), BakeError> {
-        memory::check(self.group.values(level), job.max_memory)?;
+        memory::check(Values::at_once([self.group.values(level)]), job.max_memory)?;
         let all = if self.group.shares_measuring() { vec![0, 1] } else { vec![precision] };
         let precisions: Vec<Precision> = all.iter().map(|&i| PRECISIONS[i]).collect();
         // What was expected for the whole search holds this work already, as far as it reaches.

@@ -18,7 +18,7 @@ use microfacet_sampler::{LoadError, MaterialError, Precision, Table, Tables};
 
 use crate::bake;
 use crate::cache::Cache;
-use crate::memory::{self, TooLarge};
+use crate::memory::{self, TooLarge, Values};
 use crate::plan::Plan;
 use crate::progress::Meter;
 use crate::table_spec::Quality;
@@ -233,14 +233,15 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
     let tables: Vec<Table> = match target {
         Target::Quality(quality, precision) => {
             let groups = TableGroup::whole(plan)?;
-            memory::check(
-                groups.iter().map(|group| group.values(quality.into())).sum(),
-                job.max_memory,
-            )?;
+            let values = groups.iter().map(|group| group.values(quality.into()));
+            memory::check(Values::at_once(values), job.max_memory)?;
             job.progress.expect(groups.iter().map(|group| group.work(quality.into(), 1)).sum());
-            let each =
-                groups.iter().map(|group| group.bake(quality.into(), &[precision], &mut job));
-            each.collect::<Result<Vec<_>, _>>()?.concat().concat()
+            let mut tables = Vec::new();
+            for group in &groups {
+                let sets = group.bake(quality.into(), &[precision], &mut job)?;
+                tables.extend(sets.into_iter().flatten());
+            }
+            tables
         }
         // Nothing can meet it, and trying would take minutes.
         Target::MaxError(max_error) if !(max_error > 0.0) => {

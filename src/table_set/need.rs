@@ -12,7 +12,7 @@ use super::group::TableGroup;
 use super::job::Job;
 use super::{BakeError, Settings, Target};
 use crate::cache::{self, Cache};
-use crate::memory;
+use crate::memory::{self, Values};
 use crate::plan::Plan;
 use crate::progress::Meter;
 use crate::table_spec::Level;
@@ -115,7 +115,7 @@ impl Need {
         let tables = match self.target {
             Target::Quality(quality, precision) => {
                 let level = quality.into();
-                memory::check(self.group.values(level), job.max_memory)?;
+                memory::check(Values::at_once([self.group.values(level)]), job.max_memory)?;
                 self.group.bake(level, &[precision], &mut job)?.concat()
             }
             Target::MaxError(max_error) => {

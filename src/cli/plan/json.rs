@@ -7,7 +7,7 @@ use microfacet_bake::plan::{Cost, Verdict};
 use microfacet_sampler::Kind;
 
 use super::Report;
-use super::words::{Outline, albedo_reason, reason};
+use super::words::{OWN_TABLES, Outline, albedo_reason, reason};
 
 impl Outline<'_> {
     /// The verdict on each material of the scene.
@@ -44,30 +44,32 @@ impl Report<'_> {
         let cost = |cost: &Cost| json!({ "bytes": cost.bytes, "seconds": cost.seconds });
         let mut costs = self.costs.iter().map(cost);
         let mut next = || costs.next().unwrap_or_default();
-        let shapes: Vec<_> = plan.shapes.iter().zip(&outline.tables).enumerate().map(|(i, (need, specs))| {
+        let users = &outline.users;
+        let shapes = plan.shapes.iter().zip(&outline.tables).zip(&users.shapes);
+        let shapes: Vec<_> = shapes.map(|((need, specs), names)| {
             let tables: Vec<_> = specs
                 .iter()
                 .map(|spec| json!({ "name": spec.name, "kind": spec.kind.name(), "shapes": spec.shapes.nodes.len(), "views": spec.views, "numbers": spec.numbers }))
                 .collect();
             // JSON has no infinity.
             let gamma = [need.gamma().min, need.gamma().max].map(|gamma| gamma.to_string());
-            json!({ "gamma": gamma, "s": need.s(), "tables": tables, "cost": next(), "materials": outline.served(i) })
+            json!({ "gamma": gamma, "s": need.s(), "tables": tables, "cost": next(), "materials": names })
         }).collect();
         let distributions: Vec<_> = plan
             .distributions
             .iter()
-            .enumerate()
-            .map(|(i, own)| {
-                json!({ "distribution": own.label(), "tables": 4, "cost": next(), "materials": outline.wearers(i) })
+            .zip(&users.distributions)
+            .map(|(own, names)| {
+                json!({ "distribution": own.label(), "tables": OWN_TABLES, "cost": next(), "materials": names })
             })
             .collect();
-        let albedos: Vec<_> = outline.albedos.iter().enumerate().map(|(i, spec)| {
-            let names: Vec<_> = spec.maskings.iter().map(|&masking| spec.name(Kind::Albedo, masking)).collect();
+        let albedos: Vec<_> = outline.albedos.iter().zip(&users.albedos).map(|(spec, names)| {
+            let tables: Vec<_> = spec.maskings.iter().map(|&masking| spec.name(Kind::Albedo, masking)).collect();
             let nodes: Vec<_> = spec.axes.iter().map(|axis| json!({ "name": axis.name, "length": axis.len() })).collect();
             let covers = if let AlbedoLobe::Family(domain) = &spec.lobe { Some(domain.covered()) } else { None };
             json!({
-                "names": names, "lobe": spec.lobe.entry(), "covers": covers, "masking": spec.maskings, "reflectance": spec.reflectance,
-                "axes": nodes, "cost": next(), "materials": outline.lit(i),
+                "names": tables, "lobe": spec.lobe.entry(), "covers": covers, "masking": spec.maskings, "reflectance": spec.reflectance,
+                "axes": nodes, "cost": next(), "materials": names,
             })
         }).collect();
         json!({

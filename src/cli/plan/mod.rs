@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use microfacet_bake::bake::albedo::AlbedoSpec;
 use microfacet_bake::library::Part;
-use microfacet_bake::plan::{Cost, albedo_cost, bare_cost, cost, distribution_cost, set_cost};
+use microfacet_bake::plan::{Cost, albedo_cost, bare_cost, cost, distribution_cost};
 use microfacet_bake::scene;
 use microfacet_bake::table_spec::general_set;
 
@@ -78,8 +78,9 @@ impl<'a> Report<'a> {
         let outline = Outline::new(scene, plan, quality, precision)?;
         let own = plan.distributions.iter().map(|own| distribution_cost(own, quality, precision));
         let costs = outline.tables.iter().map(|specs| cost(specs));
-        let costs = costs.chain(own).chain(outline.albedos.iter().map(albedo_cost)).collect();
-        let total = set_cost(plan, quality, precision)?;
+        let costs: Vec<Cost> =
+            costs.chain(own).chain(outline.albedos.iter().map(albedo_cost)).collect();
+        let total = costs.iter().copied().chain([bare_cost(&plan.provenance())]).sum();
         let everything = request.general_plan();
         let albedos = everything.albedos.iter().map(|_| AlbedoSpec::general(quality, precision));
         let general = [cost(&general_set(quality, precision)), bare_cost(&everything.provenance())]

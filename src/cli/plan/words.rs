@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use microfacet_bake::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
+use microfacet_bake::distribution::Distribution;
 use microfacet_bake::plan::{AlbedoVerdict, Plan, Verdict};
 use microfacet_bake::scene::{Interval, Scene};
 use microfacet_bake::table_spec::{Quality, TableSpec, general_set};
@@ -22,6 +23,9 @@ pub(in crate::cli) fn nothing(scene: &Scene) -> &'static str {
 
 /// Lines of tables that are printed; `--json` has them all.
 const SHOWN: usize = 20;
+
+/// Tables of a distribution outside the family.
+pub(super) const OWN_TABLES: usize = 4;
 
 /// Columns for what is baked or skipped; a longer name moves its own line only.
 const WHAT: usize = 18;
@@ -99,6 +103,47 @@ pub(in crate::cli) struct Outline<'a> {
     pub(super) tables: Vec<Vec<TableSpec>>,
     /// Specification of each required albedo.
     pub(super) albedos: Vec<AlbedoSpec>,
+    /// The materials that each of these is for.
+    pub(super) users: Users<'a>,
+}
+
+/// Names of the materials that tables are for, in the order of the scene.
+pub(super) struct Users<'a> {
+    /// Of each entry of the required shapes.
+    pub(super) shapes: Vec<Vec<&'a str>>,
+    /// Of each distribution outside the family.
+    pub(super) distributions: Vec<Vec<&'a str>>,
+    /// Of each required albedo.
+    pub(super) albedos: Vec<Vec<&'a str>>,
+}
+
+impl<'a> Users<'a> {
+    fn new(scene: &'a Scene, plan: &Plan) -> Self {
+        let none = |parts: usize| vec![Vec::new(); parts];
+        let mut users = Self {
+            shapes: none(plan.shapes.len()),
+            distributions: none(plan.distributions.len()),
+            albedos: none(plan.albedos.len()),
+        };
+        let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
+        for (material, (verdict, albedo)) in scene.materials.iter().zip(verdicts) {
+            let name = material.name.as_str();
+            if let Some(need) = verdict.need() {
+                users.shapes[need].push(name);
+            }
+            if *verdict == Verdict::Own {
+                // A scene has a thousand distributions at most.
+                let own = |known: &Distribution| material.distribution.as_ref() == Some(known);
+                if let Some(i) = plan.distributions.iter().position(own) {
+                    users.distributions[i].push(name);
+                }
+            }
+            if let AlbedoVerdict::Bake(all) = albedo {
+                all.iter().for_each(|&i| users.albedos[i].push(name));
+            }
+        }
+        users
+    }
 }
 
 /// Tables that are baked together, and the materials that they are for.
@@ -106,8 +151,7 @@ struct Part<'a> {
     what: String,
     /// More on what they hold.
     of: String,
-    tables: usize,
-    names: Vec<&'a str>,
+    names: &'a [&'a str],
 }
 
 /// Materials for which something is not baked, for the same reason.
@@ -129,7 +173,8 @@ impl<'a> Outline<'a> {
         let general = general_set(quality, precision);
         let tables = plan.shapes.iter().map(|need| need.specs(&general)).collect();
         let albedos = plan.albedos.iter().map(|need| need.spec(quality, precision));
-        Ok(Self { scene, plan, tables, albedos: albedos.collect::<Result<_, _>>()? })
+        let albedos = albedos.collect::<Result<_, _>>()?;
+        Ok(Self { scene, plan, tables, albedos, users: Users::new(scene, plan) })
     }
 
     /// Specifications of the albedos that are baked.
@@ -148,51 +193,35 @@ impl<'a> Outline<'a> {
         all.filter(|(i, _)| of(*i)).map(|(_, material)| material.name.as_str()).collect()
     }
 
-    /// Names of the materials that tables of a required shape serve.
-    pub(super) fn served(&self, shapes: usize) -> Vec<&'a str> {
-        self.names(|i| self.plan.verdicts[i].need() == Some(shapes))
+    /// Numbers of tables of all parts that are baked: required shapes, distributions, albedos.
+    fn counts(&self) -> Vec<usize> {
+        let normals = self.tables.iter().map(Vec::len);
+        let own = self.plan.distributions.iter().map(|_| OWN_TABLES);
+        normals.chain(own).chain(self.albedos.iter().map(AlbedoSpec::tables)).collect()
     }
 
-    /// Names of the materials in use that have a distribution outside the family.
-    pub(super) fn wearers(&self, distribution: usize) -> Vec<&'a str> {
-        let distribution = &self.plan.distributions[distribution];
-        let wears = |i: usize| self.scene.materials[i].distribution.as_ref() == Some(distribution);
-        self.names(|i| self.plan.verdicts[i] == Verdict::Own && wears(i))
-    }
-
-    /// Names of the materials that albedo tables serve.
-    pub(super) fn lit(&self, albedo: usize) -> Vec<&'a str> {
-        self.names(|i| {
-            matches!(&self.plan.albedo_verdicts[i], AlbedoVerdict::Bake(all) if all.contains(&albedo))
-        })
-    }
-
-    /// All that is baked: required shapes, distributions, albedos.
-    fn parts(&self) -> Vec<Part<'a>> {
-        let normals = self.plan.shapes.iter().zip(&self.tables).enumerate();
-        let normals = normals.map(|(i, (need, specs))| Part {
+    /// The same parts, each put into words when it is asked for: there may be very many.
+    fn parts(&self) -> impl Iterator<Item = Part<'_>> {
+        let users = &self.users;
+        let normals = self.plan.shapes.iter().zip(&users.shapes);
+        let normals = normals.map(|(need, names)| Part {
             what: shapes(need.gamma()),
             of: String::new(),
-            tables: specs.len(),
-            names: self.served(i),
+            names,
         });
-        let own = self.plan.distributions.iter().enumerate().map(|(i, own)| Part {
+        let own = self.plan.distributions.iter().zip(&users.distributions);
+        let own = own.map(|(own, names)| Part {
             what: escape::line(&own.label()).into(),
             of: String::new(),
-            tables: 4,
-            names: self.wearers(i),
+            names,
         });
-        let albedos = self.albedos.iter().enumerate().map(|(i, spec)| {
+        let albedos = self.albedos.iter().zip(&users.albedos).map(|(spec, names)| {
             let forms: Vec<&str> = spec.maskings.iter().map(|masking| masking.name()).collect();
             let (lobe, forms) = (lobe(&spec.lobe), forms.join(" and "));
-            Part {
-                what: "albedo".into(),
-                of: format!("{lobe}, {forms} masking, {}: ", reflectance(&spec.reflectance)),
-                tables: spec.tables(),
-                names: self.lit(i),
-            }
+            let of = format!("{lobe}, {forms} masking, {}: ", reflectance(&spec.reflectance));
+            Part { what: "albedo".into(), of, names }
         });
-        normals.chain(own).chain(albedos).collect()
+        normals.chain(own).chain(albedos)
     }
 
     /// All that is not baked, and why.
@@ -236,18 +265,18 @@ impl<'a> Outline<'a> {
         let line = |did: &str, what: &str, text: &str| {
             words::wrapped(&format!("{did:verb$}  {what:WHAT$}  "), text, indent)
         };
-        let parts = self.parts();
+        let counts = self.counts();
         let mut text = String::new();
-        for (i, part) in parts.iter().take(SHOWN).enumerate() {
-            let tables = format!("{}{}{}", part.of, words::count(part.tables, "table"), detail(i));
-            let names = match &part.names[..] {
+        for (i, (part, tables)) in self.parts().zip(&counts).take(SHOWN).enumerate() {
+            let tables = format!("{}{}{}", part.of, words::count(*tables, "table"), detail(i));
+            let names = match part.names {
                 [] => String::new(),
                 names => format!(", for {}", words::list(names.iter().copied())),
             };
             text += &line(baked, &part.what, &(tables + &names));
         }
-        if let Some(more @ [_, ..]) = parts.get(SHOWN..) {
-            let tables = more.iter().map(|part| part.tables).sum();
+        if let Some(more @ [_, ..]) = counts.get(SHOWN..) {
+            let tables = more.iter().sum();
             let tables = format!("{}; --json lists all", words::count(tables, "table"));
             text += &line(baked, &format!("and {} more", more.len()), &tables);
         }

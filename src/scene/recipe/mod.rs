@@ -14,6 +14,7 @@
 
 mod fresnel;
 mod lobe;
+mod parts;
 mod write;
 
 use std::cell::RefCell;
@@ -25,6 +26,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use self::lobe::Lobe;
+use self::parts::parts;
 use self::write::quoted;
 pub(super) use self::write::write;
 use super::error::{Lines, did_you_mean_key};
@@ -41,26 +43,72 @@ const RANGE_KEYS: [&str; 2] = ["min", "max"];
 
 /// Reads the recipe `text`, the content of `file`.
 pub(super) fn read(text: &str, file: &Path) -> Result<Scene, SceneError> {
-    let source = Source {
-        text,
-        file,
-        lines: Lines::new(file, text.as_bytes()),
-        measured: Budget::new(limits::MEASURED),
-        distributions: Budget::new(limits::DISTRIBUTIONS),
-        warnings: RefCell::default(),
-    };
-    let materials = source.materials()?;
-    Ok(Scene { materials, ignored: Vec::new(), warnings: source.warnings.into_inner() })
+    read_parts(text, file, parts(text), limits::RECIPE_MATERIALS)
 }
 
+/// Reads it part by part, and at most so many materials; the first part with an error ends it.
+fn read_parts(
+    text: &str,
+    file: &Path,
+    parts: Vec<Range<usize>>,
+    most: usize,
+) -> Result<Scene, SceneError> {
+    let lines = Lines::new(file, text.as_bytes());
+    let warnings = RefCell::default();
+    let mut source = Source {
+        text: "",
+        start: 0,
+        file,
+        lines: &lines,
+        measured: Budget::new(limits::MEASURED),
+        distributions: Budget::new(limits::DISTRIBUTIONS),
+        warnings: &warnings,
+    };
+    let mut materials = Vec::new();
+    // The line that each name is from.
+    let mut names: HashMap<String, u32> = HashMap::new();
+    for part in parts {
+        (source.text, source.start) = (&text[part.clone()], part.start);
+        source.read(|material| {
+            if materials.len() == most {
+                return Err(Place::file(file)
+                    .invalid(format!("the recipe has more than {most} materials; split it")));
+            }
+            let place = &material.origin.place;
+            let line = place.line.unwrap_or(0);
+            if let Some(first) = names.insert(material.name.clone(), line) {
+                return Err(place.invalid(format!(
+                    "the name {} is taken by the material at line {first}; give each material a \
+                     name of its own",
+                    quoted(&material.name),
+                )));
+            }
+            materials.push(material);
+            Ok(())
+        })?;
+    }
+    if materials.is_empty() {
+        return Err(Place::file(file).invalid(
+            "the recipe has no materials; add at least one:\n\
+             [[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0",
+        ));
+    }
+    Ok(Scene { materials, ignored: Vec::new(), warnings: warnings.take() })
+}
+
+/// A part of a recipe, which is parsed by itself.
 struct Source<'a> {
+    /// The part; spans of parsed values are relative to it.
     text: &'a str,
+    /// Where it begins in the recipe.
+    start: usize,
     file: &'a Path,
-    lines: Lines<'a>,
+    /// Those of the whole recipe.
+    lines: &'a Lines<'a>,
     /// Bytes of measured distributions.
     measured: Budget,
     distributions: Budget,
-    warnings: RefCell<Vec<String>>,
+    warnings: &'a RefCell<Vec<String>>,
 }
 
 type Table<'a> = DeTable<'a>;
@@ -68,50 +116,32 @@ type Value<'a> = Spanned<DeValue<'a>>;
 
 impl Source<'_> {
     fn place(&self, span: Range<usize>) -> Place {
-        self.lines.place(span.start)
+        self.lines.place(self.start + span.start)
     }
 
-    fn materials(&self) -> Result<Vec<Material>, SceneError> {
+    /// Reads the materials of the part, in order, and hands them to `add`.
+    fn read(
+        &self,
+        mut add: impl FnMut(Material) -> Result<(), SceneError>,
+    ) -> Result<(), SceneError> {
+        if self.text.len() as u64 > limits::RECIPE_PART {
+            return Err(self.place(0..0).invalid(format!(
+                "from here to the next [[material]] the recipe has {} bytes, and at most {} MiB \
+                 are read at once; head each material with [[material]], and close what is open",
+                self.text.len(),
+                limits::RECIPE_PART >> 20
+            )));
+        }
         let document = DeTable::parse(self.text)
             .map_err(|error| self.place(error.span().unwrap_or(0..0)).syntax(error.message()))?;
         let document = document.get_ref();
         self.only_keys(document, &["material"])?;
-        let entries = match document.get("material") {
-            None => &[][..],
-            Some(value) => value.get_ref().as_array().ok_or_else(|| {
-                self.place(value.span())
-                    .invalid("`material` must be a list: head each material with [[material]]")
-            })?,
-        };
-        if entries.is_empty() {
-            return Err(Place::file(self.file).invalid(
-                "the recipe has no materials; add at least one:\n\
-                 [[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0",
-            ));
-        }
-        if entries.len() > limits::MATERIALS {
-            return Err(Place::file(self.file).invalid(format!(
-                "the recipe has {} materials, and at most {} are read; split it",
-                entries.len(),
-                limits::MATERIALS
-            )));
-        }
-        let mut seen: HashMap<String, Place> = HashMap::new();
-        entries
-            .iter()
-            .map(|entry| {
-                let material = self.material(entry)?;
-                let place = material.origin.place.clone();
-                match seen.insert(material.name.clone(), place.clone()) {
-                    None => Ok(material),
-                    Some(first) => Err(place.invalid(format!(
-                        "the name {} is taken by the material at line {}; give each material a name of its own",
-                        quoted(&material.name),
-                        first.line.unwrap_or(0),
-                    ))),
-                }
-            })
-            .collect()
+        let Some(value) = document.get("material") else { return Ok(()) };
+        let entries = value.get_ref().as_array().ok_or_else(|| {
+            self.place(value.span())
+                .invalid("`material` must be a list: head each material with [[material]]")
+        })?;
+        entries.iter().try_for_each(|entry| add(self.material(entry)?))
     }
 
     fn material(&self, entry: &Value<'_>) -> Result<Material, SceneError> {

@@ -9,7 +9,7 @@ use microfacet_sampler::{MaterialEntry, Precision};
 use super::BakeError;
 use crate::bake::{joined_name, radial_bytes};
 use crate::distribution::Distribution;
-use crate::memory;
+use crate::memory::Values;
 use crate::plan::{
     AlbedoWork, Plan, RequiredAlbedo, RequiredShapes, albedo_cost, cost, distribution_cost,
     distribution_seconds, specs_seconds,
@@ -80,7 +80,7 @@ impl TableGroup {
     pub(super) fn apart(plan: &Plan) -> Result<Vec<Self>, BakeError> {
         let parts = |&need| Parts::APART.map(|parts| Self::Normals(need, parts));
         let normals = plan.shapes.iter().flat_map(parts);
-        let some = |group: &Self| group.values(Level::DEFAULT) > 0;
+        let some = |group: &Self| group.values(Level::DEFAULT) != Values::kept(0);
         Ok(normals.filter(some).chain(Self::others(plan)?).collect())
     }
 
@@ -186,13 +186,19 @@ impl TableGroup {
         }
     }
 
-    /// Number of values held in memory during the bake.
-    pub(super) fn values(&self, level: Level) -> u128 {
+    /// Numbers of values held in memory during the bake.
+    pub(super) fn values(&self, level: Level) -> Values {
+        let none = Values::kept(0);
         match self {
-            Self::Normals(..) => self.specs(level).iter().map(TableSpec::values).sum(),
-            Self::Distribution(..) => (radial_bytes(level, Precision::F32) / 4) as u128,
+            Self::Normals(..) => {
+                Values::kept(self.specs(level).iter().map(TableSpec::values).sum())
+            }
+            Self::Distribution(..) => {
+                Values::kept((radial_bytes(level, Precision::F32) / 4) as u128)
+            }
             Self::Albedo(need) => {
-                need.spec(level, Precision::F32).map_or(0, |spec| memory::of_albedo(&spec))
+                let spec = need.spec(level, Precision::F32);
+                spec.map_or(none, |spec| Values::of_albedo(&spec))
             }
         }
     }

@@ -1,0 +1,130 @@
+//! What is planned, held against a plan that compares everything with everything.
+
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+use super::*;
+
+/// The required albedos by comparison of all with all, in the order in which they are baked.
+fn by_comparison(
+    scene: &Scene,
+    options: Options,
+) -> Result<(Vec<RequiredAlbedo>, Vec<AlbedoVerdict>), NotCovered> {
+    let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> = scene
+        .materials
+        .iter()
+        .map(|material| wants(material, options))
+        .collect::<Result<_, _>>()?;
+    let all: Vec<&Want> = wants.iter().flatten().flatten().collect();
+    let mut reflectances: Vec<Reflectance> = Vec::new();
+    for want in &all {
+        if !reflectances.contains(&want.reflectance) {
+            reflectances.push(want.reflectance);
+        }
+    }
+    reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Moments);
+    let mut needs: Vec<RequiredAlbedo> = Vec::new();
+    for reflectance in reflectances {
+        for masking in Masking::ALL {
+            let same = |want: &&&Want| want.reflectance == reflectance && want.masking == masking;
+            let lobes: Vec<&AlbedoLobe> = all.iter().filter(same).map(|want| &want.lobe).collect();
+            let domain = |lobe: &&AlbedoLobe| {
+                if let AlbedoLobe::Family(domain) = lobe { Some(*domain) } else { None }
+            };
+            let domains = joined_by_comparison(lobes.iter().filter_map(domain).collect());
+            let own = lobes.iter().filter(|lobe| domain(lobe).is_none()).copied().cloned();
+            for lobe in domains.into_iter().map(AlbedoLobe::Family).chain(own) {
+                let same = |need: &&mut RequiredAlbedo| {
+                    need.lobe == lobe && need.reflectance == reflectance
+                };
+                match needs.iter_mut().find(same) {
+                    Some(need) if need.maskings.contains(&masking) => {}
+                    Some(need) => need.maskings.push(masking),
+                    None => {
+                        needs.push(RequiredAlbedo { lobe, reflectance, maskings: vec![masking] });
+                    }
+                }
+            }
+        }
+    }
+    let covers = |need: &RequiredAlbedo, want: &Want| {
+        let lobe = match (&need.lobe, &want.lobe) {
+            (AlbedoLobe::Family(domain), AlbedoLobe::Family(other)) => domain.contains(other),
+            (one, other) => one == other,
+        };
+        lobe && need.reflectance == want.reflectance && need.maskings.contains(&want.masking)
+    };
+    let serving = |want: &Want| needs.iter().position(|need| covers(need, want)).unwrap();
+    let verdicts = wants.iter().map(|wants| match wants {
+        Ok(wants) => AlbedoVerdict::Bake(wants.iter().map(serving).collect()),
+        Err(verdict) => verdict.clone(),
+    });
+    let verdicts = verdicts.collect();
+    Ok((needs, verdicts))
+}
+
+/// The groups of `joined`, found by comparison.
+fn joined_by_comparison(wants: Vec<Domain>) -> Vec<Domain> {
+    let mut groups: Vec<Vec<Domain>> = Vec::new();
+    for want in wants {
+        match groups.iter_mut().find(|group| group[0].gamma == want.gamma) {
+            Some(group) if group.contains(&want) => {}
+            Some(group) => group.push(want),
+            None => groups.push(vec![want]),
+        }
+    }
+    least(groups)
+}
+
+/// A recipe of materials whose values are often the same and often not.
+fn recipe(rng: &mut StdRng, materials: usize) -> String {
+    let mut pick = |all: &[&str]| all[rng.random_range(0..all.len())].to_owned();
+    let numbers: Vec<String> = (2..40).map(|i| format!("0.{i:02}")).collect();
+    let numbers: Vec<&str> = numbers.iter().map(String::as_str).collect();
+    let mut text = String::new();
+    for i in 0..materials {
+        text += &format!("[[material]]\nname = \"{i}\"\n");
+        let (number, gamma) = (pick(&numbers), pick(&["1.6", "2", "3", "4.5", "7", "\"inf\""]));
+        let sigma = match &pick(&["one", "one", "range", "two", "tilted", "other"])[..] {
+            "one" => number,
+            "range" => format!("{{ min = {number}, max = 0.{} }}", pick(&["4", "5"])),
+            "two" => format!("[{number}, {}]", pick(&["0.1", "0.2"])),
+            "tilted" => format!("[{number}, 0.2]\ntheta = [{}, -0.0, 0.5]", pick(&["0", "0.1"])),
+            _ => String::new(),
+        };
+        text += &if sigma.is_empty() {
+            let own = pick(&["gauss\"\nm = 0.2", "gauss\"\nm = 0.3", "schlick\"\nm = 0.2"]);
+            format!("distribution = \"{own}\n")
+        } else {
+            format!("sigma = {sigma}\ngamma = {gamma}\n")
+        };
+        text += &pick(&[
+            "",
+            "fresnel = \"mirror\"\n",
+            "fresnel = \"mirror\"\n",
+            "fresnel = { metal = \"gold\" }\n",
+            "fresnel = { metal = \"silver\" }\n",
+            "fresnel = { dielectric = 1.5 }\n",
+            "fresnel = { dielectric = { min = 1.3, max = 1.6 } }\n",
+        ]);
+        text += &pick(&["", "masking = \"uncorrelated\"\n"]);
+    }
+    text
+}
+
+#[test]
+fn what_is_planned_is_what_a_comparison_of_all_finds() {
+    let mut rng = StdRng::seed_from_u64(1);
+    let mut groups = 0;
+    for round in 0..60 {
+        let recipe = recipe(&mut rng, 1 + 3 * round);
+        let scene = Scene::from_recipe_str(&recipe).unwrap_or_else(|why| panic!("{why}\n{recipe}"));
+        for albedo in [AlbedoWish::Recipes, AlbedoWish::All] {
+            let options = Options { albedo, embedded_albedo: round % 3 == 0, ..Options::default() };
+            let planned = required(&scene, options).unwrap();
+            assert_eq!(planned, by_comparison(&scene, options).unwrap(), "{recipe}");
+            groups = groups.max(planned.0.len());
+        }
+    }
+    assert!(groups > 100, "{groups}");
+}
