@@ -86,8 +86,7 @@ impl Request {
         plan
     }
 
-    /// The scene divided into sets, and their plans; `max_error` is the budget of error, if there is
-    /// one.
+    /// The scene divided into sets, and their plans; `max_error` is the budget of error, if any.
     pub(super) fn library(&self, scene: Scene, max_error: Option<f64>) -> Result<Library, Failure> {
         Ok(Library::new(scene, self.per_set, self.options(max_error)?)?)
     }

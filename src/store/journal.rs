@@ -121,8 +121,8 @@ impl Replacement {
         }
         let failed = |why| (JOURNAL.to_string(), why);
         let list = stage(&folder, |out| out.write_all(journal.as_bytes()), None).map_err(failed)?;
-        // Before the journal is there: an error after it must not take the new files with it. Without a
-        // journal they are leftovers.
+        // Before the journal is there: an error after it must not take the new files with it.
+        // Without a journal they are leftovers.
         for new in staged {
             new.file.keep().map_err(|error| failed(error.error))?;
         }

@@ -2,7 +2,8 @@
 //!
 //! [`arrays`] broadcasts arguments and runs functions of them on all cores; [`words`] turns words
 //! and errors into those of Python. [`tables`] loads and bakes sets, [`lobe`] and [`bsdf`] are the
-//! run-time crate, [`exact`] the model, [`farm`] what processes bake together, and [`shape`] the tables of a shape for lookups elsewhere.
+//! run-time crate, [`exact`] the model, [`shape`] the tables of a shape for lookups elsewhere, and
+//! [`farm`] what processes bake together.
 
 use pyo3::prelude::*;
 
