@@ -2,8 +2,8 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, LazyLock};
 
 use etcetera::BaseStrategy;
 use sha2::{Digest, Sha256};
@@ -115,8 +115,16 @@ impl Cache {
 /// A key with everything that its meaning depends on: versions, and the coordinates, whose formulas
 /// and constants a specification does not name.
 pub(crate) fn complete(key: &str) -> String {
-    let mappings = Mapping::EVERY.map(|mapping| (mapping, mapping.formula()));
-    format!("{}, {mappings:?}\n{key}", versions())
+    // Longer than most keys, and the same for all.
+    static HEAD: LazyLock<String> = LazyLock::new(|| {
+        let mappings = Mapping::EVERY.map(|mapping| (mapping, mapping.formula()));
+        format!(
+            "{}, {mappings:?}
+",
+            versions()
+        )
+    });
+    [HEAD.as_str(), key].concat()
 }
 
 /// The versions that tables depend on.

@@ -50,7 +50,7 @@ pub(super) fn read(text: &str, file: &Path) -> Result<Scene, SceneError> {
 fn read_parts(
     text: &str,
     file: &Path,
-    parts: Vec<Range<usize>>,
+    parts: impl IntoIterator<Item = Range<usize>>,
     most: usize,
 ) -> Result<Scene, SceneError> {
     let lines = Lines::new(file, text.as_bytes());

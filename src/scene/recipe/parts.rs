@@ -47,11 +47,10 @@ fn headers(text: &str) -> impl Iterator<Item = usize> {
     Source::new(text).lex().filter_map(move |token| {
         let mut found = None;
         within = match (within, token.kind()) {
-            (Within::Start | Within::Line | Within::Header(..) | Within::Value(0), kind)
-                if kind == TokenKind::Newline =>
-            {
-                Within::Start
-            }
+            (
+                Within::Start | Within::Line | Within::Header(..) | Within::Value(0),
+                TokenKind::Newline,
+            ) => Within::Start,
             (Within::Start | Within::Header(..), TokenKind::Whitespace) => within,
             (Within::Start, TokenKind::LeftSquareBracket) => {
                 Within::Header(token.span().start(), &HEADER)
@@ -95,7 +94,7 @@ mod tests {
     /// What is read, or the message, part by part and at once.
     fn both(text: &str) -> [String; 2] {
         let file = Path::new("r");
-        [read(text, file), read_parts(text, file, vec![0..text.len()], 100)].map(|outcome| {
+        [read(text, file), read_parts(text, file, Some(0..text.len()), 100)].map(|outcome| {
             match outcome {
                 Ok(scene) => format!("{scene:?}"),
                 Err(why) => format!("refused: {why}"),
