@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use rayon::current_num_threads;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use microfacet_bake::library::Library;
 use microfacet_bake::plan::{Cost, set_cost};
@@ -13,7 +13,7 @@ use microfacet_sampler::Index;
 
 use super::{Args, Report};
 use crate::cli::words::{bytes, columns, count, seconds, shell};
-use crate::cli::{Done, Outcome, print, print_json};
+use crate::cli::{Done, Outcome, print, print_json, write};
 
 pub(super) fn run(args: &Args, library: &Library, [reading, planning]: [Duration; 2]) -> Outcome {
     let (quality, precision) = (args.request.quality(), args.request.precision());
@@ -24,14 +24,19 @@ pub(super) fn run(args: &Args, library: &Library, [reading, planning]: [Duration
     let time = time / threads as f64;
     let milliseconds = [reading, planning].map(|time| 1e3 * time.as_secs_f64());
     if args.json {
-        let report = |part| Ok(Report::new(&args.request, part)?.json());
-        let sets: Vec<Value> =
-            library.parts.iter().map(report).collect::<Result<_, super::Failure>>()?;
         let [reading, planning] = milliseconds;
-        print_json(&json!({
-            "sets": sets, "needs": needs.len(), "seconds": time,
-            "milliseconds": { "reading": reading, "planning": planning },
-        }))?;
+        let milliseconds = json!({ "reading": reading, "planning": planning });
+        let (needs, time) = (json!(needs.len()), json!(time));
+        // One set at a time: together they would take more memory than all else.
+        let head = format!(
+            "{{\n\"needs\": {needs},\n\"seconds\": {time},\n\"milliseconds\": {milliseconds},\n\"sets\": ["
+        );
+        write(head.as_bytes())?;
+        for (i, part) in library.parts.iter().enumerate() {
+            write(if i == 0 { b"\n" } else { b",\n" })?;
+            print_json(&Report::new(&args.request, part)?.json())?;
+        }
+        write(b"]\n}\n")?;
         return Ok(Done::Ok);
     }
     let mut rows = Vec::new();
