@@ -6,7 +6,7 @@
 //! cargo run --release --example planner_seconds -- 20
 //! ```
 //!
-//! The argument is the number of random materials of each kind, by default 3; corners come on top.
+//! The argument is the number of random materials of each kind, by default 2; corners come on top.
 //! Ratios are those of what was measured to the estimate. Seconds are those of the processor where
 //! the system counts them for a thread (Linux), so that other programs matter little.
 
@@ -41,7 +41,7 @@ struct Case {
 fn main() -> Result<(), Box<dyn Error>> {
     let count = match std::env::args().nth(1) {
         Some(text) => text.parse()?,
-        None => 3,
+        None => 2,
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     println!(

@@ -5,8 +5,8 @@
 //! converted. What a node takes is the exponential of a linear form in the shape s, the aspect and
 //! the roughness: rays are long for heavy tails, more of them are needed for an elongated lobe, and
 //! the branch point of Λ at l = n takes panels of its own on rough surfaces. The coefficients are
-//! fitted to the processor time of some 200 bakes on one thread; `examples/planner_seconds.rs` shows
-//! how well they meet others.
+//! fitted to the processor time of some 200 bakes on one thread. `examples/planner_seconds.rs`
+//! shows how well they meet other materials.
 
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::{Mapping, Reflectance};

@@ -21,8 +21,8 @@ const NODES_A_POINT: usize = 4;
 const FEWEST: usize = 240;
 const MOST: usize = 6144;
 
-/// Views at corners and along edges: the ends of the promised range, and grazing views outside, down
-/// to the horizon itself.
+/// Views at corners and along edges: the ends of the promised range, and grazing views outside,
+/// down to the horizon itself.
 const VIEWS: [f64; 5] = [1.0, PROMISED.1, 1e-4, 3e-7, 0.0];
 
 /// Number of last cells that hold the cusp at the normal.
