@@ -309,11 +309,10 @@ fn the_commands_list_bake_keep_and_show_them() {
     assert_eq!(listed["materials"], serde_json::json!(["brushed"]));
     assert!(listed["cost"]["seconds"].as_f64().unwrap() > 0.0);
     let text = String::from_utf8(run(at, &["plan", "r.toml"]).stdout).unwrap();
-    assert!(
-        text.contains("albedo              gamma 2.7 sigma 0.6 0.15, ")
-            && text.contains("at least"),
-        "{text}"
-    );
+    let line =
+        text.lines().find(|line| line.contains("albedo              gamma 2.7 sigma 0.6 0.15, "));
+    // Neither its bytes nor its seconds are certain.
+    assert_eq!(line.map(|line| line.matches("about ").count()), Some(2), "{text}");
     assert_eq!(json(at, &["plan", "r.toml", "--no-albedo"])["albedo"], serde_json::json!([]));
 
     let bake =
@@ -334,16 +333,16 @@ fn the_commands_list_bake_keep_and_show_them() {
         store::read(&at.join(format!("out/{}.exr", table.name))).unwrap().tables()[0],
         *table
     );
-    // The estimate is that of the table that is tried first.
+    // The estimate holds the doublings that are expected, of which this lobe may need one more or
+    // less.
     let spec = spec([0.6, 0.15], 2.7, Quality::Draft);
     let one = encode(&Default::default(), std::slice::from_ref(table)).unwrap().len();
     let none = encode(&Default::default(), &[]).unwrap().len();
-    let nodes = table.values.len() / 3;
     // A set's formulas are counted once.
     let formulas: usize = table.axes.iter().map(|axis| axis.mapping.formula().len()).sum();
-    let real = one - none - formulas - 12 * (nodes - spec.nodes());
+    let real = one - none - formulas;
     let estimate = albedo_cost(&spec).bytes;
-    assert!((estimate as f64 / real as f64 - 1.0).abs() < 0.2, "{estimate} for {real}");
+    assert!((0.6..1.6).contains(&(estimate as f64 / real as f64)), "{estimate} for {real}");
 
     let less = ["bake", "r.toml", "--quality", "draft", "--out", "less", "--no-albedo"];
     assert!(json(at, &less)["tables"].as_array().unwrap().iter().all(|t| t["kind"] != "albedo"));

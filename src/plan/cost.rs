@@ -4,20 +4,20 @@
 //! shares of the work are the same wherever they are computed. A [`Cost`] and [`seconds`] are for
 //! display, and are divided by the current threads.
 
+use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::internals::describe;
 use microfacet_sampler::{
     Axis, Interpolation, Kind, LobeEntry, Mapping, Masking, MaterialEntry, Precision, Provenance,
-    Reflectance,
 };
 
 use super::Plan;
-use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
+use super::albedo_work::{albedo_seconds, expected_bytes};
+use crate::bake::albedo::{AlbedoError, AlbedoSpec};
 use crate::bake::{self};
-use crate::distribution::Distribution;
-use crate::table_spec::{Level, Quality, TableSpec, general_set};
-use crate::validate::albedo::climbed_count;
+use crate::distribution::{Distribution, DistributionKind, Named};
+use crate::table_spec::{GAMMA_WHOLE, Level, Quality, TableSpec, general_set};
 use crate::validate::certificate::POINTS;
-use crate::validate::{points, radial};
+use crate::validate::radial;
 
 /// Bytes and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +73,7 @@ fn escaped(json: &str) -> usize {
 
 /// Estimates what tables add to a set. The bytes are right to a few per cent, since only the digits
 /// of certificates are unknown. The seconds, on the current threads, are scaled from times measured
-/// on one machine: their ratios are more reliable than their values.
+/// on one machine: `cargo run --release --example planner_seconds` shows how far they are off here.
 pub fn cost(specs: &[TableSpec]) -> Cost {
     let header = |spec: &TableSpec| {
         let axes = serde_json::to_string(&bake::axes(spec)).map_or(0, |json| escaped(&json));
@@ -106,8 +106,13 @@ pub(crate) fn specs_seconds(specs: &[TableSpec]) -> [f64; 2] {
     specs.iter().map(spec_seconds).fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
 }
 
-/// The cost of albedo tables, with the nodes that are tried first.
+/// The cost of albedo tables, with the nodes that refinement is expected to add.
 pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
+    Cost::new(expected_bytes(spec) as usize + albedo_headers(spec), albedo_seconds(spec))
+}
+
+/// Bytes of the descriptions of albedo tables.
+pub(crate) fn albedo_headers(spec: &AlbedoSpec) -> usize {
     let json = |axes: &[Axis]| serde_json::to_string(axes).map_or(0, |json| escaped(&json));
     // Name twice, kind, subject, channels, certificate, shape and offsets; for averages, over all
     // axes but the view.
@@ -115,8 +120,7 @@ pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
     let subject = serde_json::to_string(&spec.reflectance).map_or(0, |json| escaped(&json));
     let one = json(&spec.axes) + name(Kind::Albedo) + subject + 800;
     let average = json(&spec.axes[..2]) + name(Kind::AlbedoAverage) + subject + 680;
-    let headers = spec.maskings.len() * (one + if spec.has_averages() { average } else { 0 });
-    Cost::new(spec.bytes() + headers, AlbedoWork::new(spec).total())
+    spec.maskings.len() * (one + if spec.has_averages() { average } else { 0 })
 }
 
 /// The cost of the four tables of a distribution outside the family.
@@ -135,7 +139,7 @@ pub fn distribution_cost(
     };
     let headers = distribution_tables(level).iter().map(header).sum::<usize>();
     let bytes = headers + bake::radial_bytes(level, precision);
-    Cost::new(bytes, distribution_seconds(level).iter().sum())
+    Cost::new(bytes, distribution_seconds(distribution, level).iter().sum())
 }
 
 /// The four tables of a distribution outside the family: another number of the same length stands
@@ -144,13 +148,18 @@ fn distribution_tables(level: Level) -> [(Kind, Vec<Axis>); 4] {
     bake::radial_axes(level, std::f64::consts::PI, f64::INFINITY)
 }
 
-/// The seconds of one thread to bake the four tables of any distribution outside the family, and
+/// The seconds of one thread to bake the four tables of a distribution outside the family, and
 /// those to certify them.
-pub(crate) fn distribution_seconds(level: Level) -> [f64; 2] {
+pub(crate) fn distribution_seconds(distribution: &Distribution, level: Level) -> [f64; 2] {
     // Microseconds for a node of either slope table (the other tables are far smaller) and for a
-    // normal of the certificate: fitted to the processor time of `microfacet-bake bake --threads 1
-    // --no-cache --quality Q` for a Gauss, a GTR, a Schlick and a measured distribution. Their mean
-    // is met within a twentieth at each quality, a single one within a third.
+    // normal of the certificate, fitted as in `albedo_work`. A GTR has the longest tail.
+    let scale = match distribution {
+        Distribution::Named(Named {
+            kind: DistributionKind::Gauss | DistributionKind::Schlick,
+            ..
+        }) => 1.25,
+        _ => 1.9,
+    };
     let [node, normal] = [65.0, 30.0];
     let nodes = |(_, axes): &(Kind, Vec<Axis>)| match &axes[..] {
         [first, last] => first.len() * last.len(),
@@ -158,76 +167,29 @@ pub(crate) fn distribution_seconds(level: Level) -> [f64; 2] {
     };
     let nodes: usize = distribution_tables(level).iter().map(nodes).sum();
     let seconds = [node * nodes as f64, normal * radial::POINTS as f64];
-    seconds.map(|microseconds| 1e-6 * microseconds)
-}
-
-/// The seconds of one thread for albedo tables, by what they are spent on.
-pub(crate) struct AlbedoWork {
-    pub(crate) nodes: f64,
-    /// The certificate's places inside, along edges, and on the way uphill.
-    pub(crate) interior: f64,
-    pub(crate) edges: f64,
-    pub(crate) climbs: f64,
-}
-
-impl AlbedoWork {
-    pub(crate) fn new(spec: &AlbedoSpec) -> Self {
-        let [nodes, certificate] = albedo_seconds(spec);
-        // By how much longer a place takes than one inside, measured as for `albedo_seconds`: over
-        // a range of shapes each edge has shapes of its own, which take time to prepare; a climb in
-        // one shape often ends early.
-        let is_range =
-            matches!(spec.axes[0].mapping, Mapping::LogShape(_)) && spec.axes[0].len() > 1;
-        let [edge, climb] = if is_range { [4.5, 5.0] } else { [0.7, 0.6] };
-        let inside = points::interior_count(spec) as f64;
-        let edges = edge * (points::count(spec) as f64 - inside);
-        let climbs = climb * (spec.maskings.len() * climbed_count(spec)) as f64;
-        let one = certificate / (inside + edges + climbs);
-        Self { nodes, interior: one * inside, edges: one * edges, climbs: one * climbs }
-    }
-
-    pub(crate) fn total(&self) -> f64 {
-        self.nodes + self.interior + self.edges + self.climbs
-    }
-}
-
-/// Seconds of one thread to bake albedo tables, and those to certify them.
-fn albedo_seconds(spec: &AlbedoSpec) -> [f64; 2] {
-    // Microseconds for a node or a point of the certificate: fitted to `microfacet-bake bake
-    // --threads 1 --no-cache --out out` of the draft, the default and the high general set, which
-    // are met within a quarter, and to the recipes of anisotropic and tilted lobes, which are met
-    // within a factor of two to three. Long tails and narrow lobes take longer, and so does
-    // refinement.
-    let (nodes, points) = (spec.nodes() as f64, points::count(spec) as f64);
-    let [node, point] = match (&spec.lobe, spec.reflectance) {
-        (_, Reflectance::Dielectric { .. }) => [3300.0; 2],
-        // Each decade of accuracy takes a fifth longer; certificates are a decade finer, and read
-        // the tables.
-        (AlbedoLobe::Family(_), _) => {
-            let node = 90.0 * libm::pow(1e-6 / spec.tolerance, 0.08);
-            [node, 3.4 * node]
-        }
-        // The kinks of clamped masking are searched for on every chord.
-        (AlbedoLobe::Ellipsoid { .. }, _) => [25_000.0; 2],
-        (AlbedoLobe::StudentT { .. }, _) => [6000.0; 2],
-        (AlbedoLobe::Radial { .. }, _) => [10_000.0; 2],
-    };
-    [node * nodes, point * points].map(|microseconds| 1e-6 * microseconds)
+    seconds.map(|microseconds| 1e-6 * scale * microseconds)
 }
 
 /// Seconds of one thread to bake a table, and to certify it.
 fn spec_seconds(spec: &TableSpec) -> [f64; 2] {
-    // Nanoseconds for a node and for a point of the certificate: fitted to `time microfacet-bake
-    // bake --threads 1 --no-cache --quality Q` at the three qualities, which are met within a
-    // tenth.
+    // Nanoseconds for a node and for a point of the certificate: fitted as in `albedo_work` to
+    // ranges of shapes.
     let [node, point] = match spec.kind {
-        Kind::Shadowing => [400.0, 290.0],
-        Kind::VisibleSlopeConditional => [2000.0, 300.0],
-        _ => [10_600.0, 1000.0],
+        Kind::Shadowing => [320.0, 230.0],
+        Kind::VisibleSlopeConditional => [1600.0, 240.0],
+        _ => [8500.0, 800.0],
     };
-    let shapes = spec.shapes.nodes.len();
-    let measured =
-        if spec.shapes.interpolation == Interpolation::Nodes { shapes } else { 4 * shapes - 3 };
-    [node * spec.nodes() as f64, point * (measured * POINTS) as f64]
+    let shapes = &spec.shapes.nodes;
+    // A single shape is prepared for its table alone, in some milliseconds, and its rows are not
+    // shared with others. Below the seam the peeled part takes longer.
+    let [prepare, longer] = match shapes[..] {
+        [s] if s > s_of_gamma(GAMMA_WHOLE) => [7e6, 4.2],
+        [_] => [3e6, 1.9],
+        _ => [0.0, 1.0],
+    };
+    let is_exact = spec.shapes.interpolation == Interpolation::Nodes;
+    let measured = if is_exact { shapes.len() } else { 4 * shapes.len() - 3 };
+    let places = (measured * POINTS) as f64;
+    [prepare + longer * node * spec.nodes() as f64, longer * point * places]
         .map(|nanoseconds| 1e-9 * nanoseconds)
 }

@@ -4,7 +4,7 @@ use microfacet_sampler::{Precision, Table};
 
 use crate::bake;
 use crate::bake::albedo::{AlbedoError, AlbedoSpec};
-use crate::plan::AlbedoWork;
+use crate::plan::{AlbedoWork, albedo_seconds};
 use crate::progress::Meter;
 use crate::validate::albedo;
 use crate::validate::certificate::worst_error;
@@ -32,13 +32,19 @@ pub(super) fn albedo_tables(
             |precision| all.iter().position(|other| other == precision).map(|i| sets[i].clone());
         precisions.iter().filter_map(of).collect()
     };
+    // What was expected holds some doublings.
+    let mut ahead = (albedo_seconds(spec) - work.total()).max(0.0);
     let mut spec = spec.clone();
     let mut coarser: Option<(f64, Vec<Vec<Table>>)> = None;
-    for doubling in 0.. {
-        let AlbedoWork { nodes, edges, climbs, .. } = AlbedoWork::new(&spec);
+    let mut doubling = 0;
+    let sets = loop {
+        let work = AlbedoWork::new(&spec);
         if doubling > 0 {
-            progress.expect(nodes + edges + climbs);
+            let known = ahead.min(work.doubling());
+            ahead -= known;
+            progress.expect(work.doubling() - known);
         }
+        let AlbedoWork { nodes, edges, climbs, .. } = work;
         let edges = albedo::edge_references(&spec, &progress.stage(edges))?;
         let references = [&interior[..], &edges].concat();
         let baked = bake::albedo::bake_in(&spec, &all, &progress.stage(nodes))?;
@@ -51,9 +57,9 @@ pub(super) fn albedo_tables(
         let refinable = spec.refinable();
         match coarser.take() {
             Some((before, coarser)) if refinable.len() == 1 && error > WORTH * before => {
-                return Ok(asked(coarser));
+                break coarser;
             }
-            _ if error <= spec.target() || doubling == spec.doublings() => return Ok(asked(sets)),
+            _ if error <= spec.target() || doubling == spec.doublings() => break sets,
             _ => coarser = Some((error, sets)),
         }
         let mut coarsest = (0.0, spec.axes.len() - 1);
@@ -64,6 +70,8 @@ pub(super) fn albedo_tables(
             }
         }
         spec = spec.refined(coarsest.1);
-    }
-    unreachable!("the last doubling returns")
+        doubling += 1;
+    };
+    progress.forget(ahead);
+    Ok(asked(sets))
 }

@@ -21,6 +21,10 @@ const NODES_A_POINT: usize = 4;
 const FEWEST: usize = 240;
 const MOST: usize = 6144;
 
+/// Views at corners and along edges: the ends of the promised range, and grazing views outside,
+/// down to the horizon itself.
+const VIEWS: [f64; 5] = [1.0, PROMISED.1, 1e-4, 3e-7, 0.0];
+
 /// Number of last cells that hold the cusp at the normal.
 const LAST_CELLS: f64 = 2.0;
 
@@ -92,24 +96,20 @@ impl Range {
     }
 }
 
-/// Number of places of a certificate.
-pub fn count(spec: &AlbedoSpec) -> usize {
+/// Number of the places at corners and along edges.
+pub fn edge_count(spec: &AlbedoSpec) -> usize {
     let ranges = ranges(spec);
-    let ends = |but: usize| -> usize {
-        ranges
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| *i != but)
-            .map(|(_, range)| range.ends.len())
-            .product()
+    let (view, materials) = ranges.split_last().expect("the view is an axis");
+    let ends = |but: Option<usize>| -> usize {
+        let others = materials.iter().enumerate().filter(|(i, _)| Some(*i) != but);
+        others.map(|(_, range)| range.ends.len()).product()
     };
     let along: usize =
-        ranges.iter().enumerate().map(|(i, range)| range.cells.len() * ends(i)).sum();
-    // Three more views of each corner and edge are outside.
-    3 * ends(ranges.len()) + 3 * along + interior_count(spec)
+        materials.iter().enumerate().map(|(i, range)| range.cells.len() * ends(Some(i))).sum();
+    ends(None) * (VIEWS.len() + view.cells.len()) + along * VIEWS.len()
 }
 
-/// Number of those places that lie inside.
+/// Number of the places that lie inside.
 pub fn interior_count(spec: &AlbedoSpec) -> usize {
     (spec.nodes() / NODES_A_POINT).clamp(FEWEST, MOST)
 }
@@ -192,8 +192,7 @@ pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
 pub fn edges(spec: &AlbedoSpec) -> Vec<Point> {
     let ranges = ranges(spec);
     let (view, materials) = ranges.split_last().expect("the view is an axis");
-    // The ends of the promised range, and grazing views outside, down to the horizon itself.
-    let views = [1.0, PROMISED.1, 1e-4, 3e-7, 0.0].map(View::Cos);
+    let views = VIEWS.map(View::Cos);
     let mut points = Vec::new();
     let corners = product(materials, None);
     for corner in &corners {
@@ -299,4 +298,29 @@ fn outside(spec: &AlbedoSpec, mut material: Vec<f64>, x: [f64; 4], smooth: bool)
 fn steps() -> [f64; 4] {
     const ROOT: f64 = 1.167_303_978_261_418_7;
     [1, 2, 3, 4].map(|k| libm::pow(ROOT, -f64::from(k)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table_spec::Quality;
+    use microfacet_sampler::{Masking, Precision, Reflectance};
+
+    #[test]
+    fn places_are_counted_as_they_are_listed() {
+        let lobes = [
+            AlbedoLobe::StudentT { sigma: [0.3, 0.1], gamma: 3.0 },
+            AlbedoLobe::Ellipsoid { sigma: [0.3; 2], theta: [0.2, 0.0, 0.0], gamma: 3.0 },
+        ];
+        let of = |lobe| {
+            let masking = vec![Masking::HeightCorrelated];
+            let draft = Quality::Draft;
+            AlbedoSpec::new(lobe, Reflectance::Moments, masking, draft, Precision::F32).unwrap()
+        };
+        let general = AlbedoSpec::general(Quality::Draft, Precision::F32);
+        for spec in lobes.map(of).into_iter().chain([general]) {
+            assert_eq!(edge_count(&spec), edges(&spec).len(), "{:?}", spec.lobe);
+            assert_eq!(interior_count(&spec), interior(&spec).len(), "{:?}", spec.lobe);
+        }
+    }
 }

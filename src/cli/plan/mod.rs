@@ -99,8 +99,8 @@ impl Report<'_> {
         let detail = |i: usize| {
             let open =
                 i.checked_sub(first).is_some_and(|albedo| outline.albedos[albedo].doublings() > 0);
-            let least = if open { " at least" } else { "" };
-            format!(", {}{least}, about {}", exact_bytes(costs[i].bytes), seconds(costs[i].seconds))
+            let some = if open { "about " } else { "" };
+            format!(", {some}{}, about {}", exact_bytes(costs[i].bytes), seconds(costs[i].seconds))
         };
         let mut text = outline.lines(["bake", "skip"], detail);
         if outline.plan.is_empty() {

@@ -143,7 +143,7 @@ fn radial_tables(
 ) -> Result<Vec<Vec<Table>>, BakeError> {
     let built = distribution.build().map_err(|why| LoadError::Invalid(why.to_string()))?;
     let marginal = Marginal::new(&*built);
-    let [bake, certify] = distribution_seconds(level);
+    let [bake, certify] = distribution_seconds(distribution, level);
     let stage = progress.stage(bake);
     let full = bake::bake_radial(&marginal, &entry.distribution, level, Precision::F32, &stage);
     drop(stage);

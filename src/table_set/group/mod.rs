@@ -11,7 +11,7 @@ use crate::bake::{joined_name, radial_bytes};
 use crate::distribution::Distribution;
 use crate::memory::Values;
 use crate::plan::{
-    AlbedoWork, Plan, RequiredAlbedo, RequiredShapes, albedo_cost, cost, distribution_cost,
+    Plan, RequiredAlbedo, RequiredShapes, albedo_headers, albedo_seconds, cost, distribution_cost,
     distribution_seconds, specs_seconds,
 };
 use crate::table_spec::{Level, Quality, TableSpec, general_set};
@@ -146,7 +146,7 @@ impl TableGroup {
         parts.indices().iter().filter_map(|&i| need.cut(&general[i])).collect()
     }
 
-    /// The estimated bytes of a level in a file.
+    /// The estimated bytes of a level in a file, before refinement of an albedo.
     pub(super) fn file_bytes(&self, level: Level, precision: Precision) -> usize {
         match self {
             Self::Normals(..) => {
@@ -158,7 +158,7 @@ impl TableGroup {
             }
             // An invalid specification costs nothing here; the bake reports what is wrong with it.
             Self::Albedo(need) => {
-                need.spec(level, precision).map_or(0, |spec| albedo_cost(&spec).bytes)
+                need.spec(level, precision).map_or(0, |spec| spec.bytes() + albedo_headers(&spec))
             }
         }
     }
@@ -167,9 +167,11 @@ impl TableGroup {
     pub(super) fn seconds(&self, level: Level) -> f64 {
         match self {
             Self::Normals(..) => specs_seconds(&self.specs(level)).iter().sum(),
-            Self::Distribution(..) => distribution_seconds(level).iter().sum(),
+            Self::Distribution(distribution, _) => {
+                distribution_seconds(distribution, level).iter().sum()
+            }
             Self::Albedo(need) => {
-                need.spec(level, Precision::F32).map_or(0.0, |spec| AlbedoWork::new(&spec).total())
+                need.spec(level, Precision::F32).map_or(0.0, |spec| albedo_seconds(&spec))
             }
         }
     }
@@ -217,7 +219,7 @@ impl TableGroup {
             Self::Normals(..) => {
                 sum(specs_seconds(&self.specs(level))) + specs_seconds(&self.beside())[0]
             }
-            Self::Distribution(..) => sum(distribution_seconds(level)),
+            Self::Distribution(distribution, _) => sum(distribution_seconds(distribution, level)),
             Self::Albedo(_) => self.seconds(level),
         }
     }
