@@ -197,6 +197,11 @@ impl PyAssembly {
         })
     }
 
+    /// Gives the folder up as it was, unless finish has been called.
+    fn close(&self) {
+        self.writer.lock().unwrap_or_else(PoisonError::into_inner).take();
+    }
+
     /// Puts the sets in their place, and returns the paths of the files.
     fn finish(&self, py: Python<'_>) -> PyResult<Vec<PathBuf>> {
         py.detach(|| {

@@ -42,7 +42,7 @@ def content(folder: Path) -> dict[str, bytes]:
 @pytest.fixture(scope="module")
 def client() -> Iterator[Any]:
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
     ) as cluster, distributed.Client(cluster) as client:
         yield client
 
@@ -156,7 +156,7 @@ def test_a_task_that_keeps_failing_ends_the_bake(client: Any, tmp_path: Path) ->
 
 def test_a_client_without_workers_is_refused(tmp_path: Path) -> None:
     with distributed.LocalCluster(
-        n_workers=0, processes=True, dashboard_address=None
+        n_workers=0, processes=True, dashboard_address=":0"
     ) as cluster, distributed.Client(cluster) as client:
         with pytest.raises(RuntimeError, match="no workers"):
             farmed(recipe(), client, tmp_path / "out")

@@ -19,7 +19,7 @@ import time
 import uuid
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from itertools import islice
 from os import PathLike
@@ -138,8 +138,6 @@ def bake(
     start = time.monotonic()
     folder = _folder(cache)
     _check(client, folder if shared else None)
-    assembly = Assembly(out)
-    farm = _Farm(client, folder, shared, seconds_per_task, retries, max_memory, progress)
     materials = tables = made_up = 0
     options = {
         "quality": quality,
@@ -149,15 +147,16 @@ def bake(
         "tabulate_ggx": tabulate_ggx,
         "per_set": per_set,
     }
-    with farm:
+    farm = _Farm(client, folder, shared, seconds_per_task, retries, max_memory, progress)
+    with closing(Assembly(out)) as assembly, farm:
         for library in farm.ready(libraries(scene, **options)):
             count, fresh = assembly.add(library, folder, max_memory)
             materials += sum(map(len, library.sets))
             tables += count
             made_up += fresh
-    if not materials:
-        raise ValueError("there are no materials to bake for: none is in use")
-    files = [Path(path) for path in assembly.finish()]
+        if not materials:
+            raise ValueError("there are no materials to bake for: none is in use")
+        files = [Path(path) for path in assembly.finish()]
     seconds = time.monotonic() - start
     return Farmed(files, materials, tables, farm.baked, farm.kept, made_up, seconds)
 
