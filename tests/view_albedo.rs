@@ -309,10 +309,12 @@ fn the_commands_list_bake_keep_and_show_them() {
     assert_eq!(listed["materials"], serde_json::json!(["brushed"]));
     assert!(listed["cost"]["seconds"].as_f64().unwrap() > 0.0);
     let text = String::from_utf8(run(at, &["plan", "r.toml"]).stdout).unwrap();
-    let line =
-        text.lines().find(|line| line.contains("albedo              gamma 2.7 sigma 0.6 0.15, "));
-    // Neither its bytes nor its seconds are certain.
-    assert_eq!(line.map(|line| line.matches("about ").count()), Some(2), "{text}");
+    // Its bytes depend on how often it is refined.
+    assert!(
+        text.contains("albedo              gamma 2.7 sigma 0.6 0.15, ")
+            && text.contains("1 table, about "),
+        "{text}"
+    );
     assert_eq!(json(at, &["plan", "r.toml", "--no-albedo"])["albedo"], serde_json::json!([]));
 
     let bake =

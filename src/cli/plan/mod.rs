@@ -99,8 +99,12 @@ impl Report<'_> {
         let detail = |i: usize| {
             let open =
                 i.checked_sub(first).is_some_and(|albedo| outline.albedos[albedo].doublings() > 0);
-            let some = if open { "about " } else { "" };
-            format!(", {some}{}, about {}", exact_bytes(costs[i].bytes), seconds(costs[i].seconds))
+            let size = if open {
+                format!("about {}", bytes(costs[i].bytes))
+            } else {
+                exact_bytes(costs[i].bytes)
+            };
+            format!(", {size}, about {}", seconds(costs[i].seconds))
         };
         let mut text = outline.lines(["bake", "skip"], detail);
         if outline.plan.is_empty() {
