@@ -193,8 +193,8 @@ fn node_microseconds(spec: &AlbedoSpec) -> f64 {
             // The kinks of clamped masking are searched for on every chord, and are many where the
             // lobe is narrow.
             let Features { s, rough, heavy, .. } = Features::of(*sigma, *gamma);
-            let smooth = 7.05 + 2.2 * s.min(1.1).sqrt() - 1.2 * heavy;
-            accurate(0.12) * libm::exp(smooth + rough * (0.9 - 1.4 * s))
+            let smooth = 7.15 + 2.2 * s.min(1.1).sqrt() - 1.2 * heavy;
+            accurate(0.2) * libm::exp(smooth + rough * (0.9 - 1.4 * s))
         }
         AlbedoLobe::Radial { distribution, .. } => match distribution {
             Distribution::Named(Named { kind: DistributionKind::Gauss, .. }) => 480.0,

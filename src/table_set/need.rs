@@ -79,11 +79,12 @@ impl Need {
         digest.iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
-    /// Estimated seconds of one thread; the same number on every machine.
+    /// Estimated seconds of one thread, for a largest error those of default quality; the same
+    /// number on every machine.
     pub fn seconds(&self) -> f64 {
         match self.target {
             Target::Quality(quality, _) => self.group.work(quality.into(), 1),
-            _ => Candidate::new(self.group.clone()).default_seconds,
+            _ => self.group.work(Level::DEFAULT, 1),
         }
     }
 

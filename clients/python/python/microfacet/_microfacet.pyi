@@ -213,7 +213,7 @@ class Library:
         max_error: float | None = None,
         albedo: bool | None = None,
         tabulate_ggx: bool = False,
-        per_set: int = 10000,
+        per_set: int = ...,
     ) -> Library: ...
     @property
     def sets(self) -> list[list[str]]: ...

@@ -24,28 +24,34 @@ from dataclasses import dataclass
 from itertools import islice
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from ._microfacet import Assembly, Library, Need, __version__, user_cache
 
-if TYPE_CHECKING:
-    from distributed import Client
+try:
+    from distributed import Client, as_completed
+except ImportError as _missing:
+    raise ImportError(
+        'microfacet.farm needs Dask: pip install "./clients/python[farm]"'
+    ) from _missing
 
 __all__ = ["Assembly", "Farmed", "Library", "Need", "bake", "libraries"]
 
 #: A path of a recipe or scene, the text of a recipe, or materials as tables of a recipe's keys.
-Scene: TypeAlias = "str | PathLike[str] | Iterable[Mapping[str, Any]]"
+Scene: TypeAlias = str | PathLike[str] | Iterable[Mapping[str, Any]]
 
 #: Most materials of one set, and of one step of a list that is read as it goes.
 PER_SET = 10_000
 
 #: A finished table as files: names and contents.
-_Files: TypeAlias = "list[tuple[str, bytes]]"
+_Files: TypeAlias = list[tuple[str, bytes]]
 
 _ENTRY = re.compile(r"[0-9a-f]{64}\.safetensors")
 
 #: Tasks that are under way for each thread of the cluster: one at work, the others at hand.
 _AHEAD = 3
+#: Seconds after which the threads of the cluster are counted again.
+_COUNT_AGAIN = 5.0
 
 
 @dataclass(frozen=True)
@@ -171,7 +177,16 @@ def _folder(cache: str | PathLike[str] | None) -> Path:
 
 def _check(client: Client, shared: Path | None) -> None:
     """That all workers have this version, and see a shared folder."""
-    versions = client.run(_version)
+
+    def version_there() -> str | None:
+        # Sent as it is: a worker that lacks the package could not look it up.
+        try:
+            from microfacet import __version__ as version
+        except ImportError:
+            return None
+        return version
+
+    versions = client.run(version_there)
     if not versions:
         raise RuntimeError("the client has no workers: start some, such as `dask worker ADDRESS`")
     for worker, version in versions.items():
@@ -191,15 +206,6 @@ def _check(client: Client, shared: Path | None) -> None:
                 )
     finally:
         token.unlink()
-
-
-def _version() -> str | None:
-    """The version of a worker's package."""
-    try:
-        from microfacet import __version__ as version
-    except ImportError:
-        return None
-    return version
 
 
 def _work(texts: list[str], cache: str | None, max_memory: int) -> _Files:
@@ -233,7 +239,6 @@ class _Farm:
         max_memory: int,
         progress: bool,
     ) -> None:
-        from distributed import as_completed
         from tqdm.auto import tqdm
 
         self.client, self.folder, self.shared = client, folder, shared
@@ -245,6 +250,7 @@ class _Farm:
         self._under_way: dict[str, tuple[int, int]] = {}
         #: The number of tasks under way for each library.
         self._open: dict[int, int] = {}
+        self._threads, self._counted = 0, -_COUNT_AGAIN
         self._bar = tqdm(total=0, unit="need", disable=not progress, dynamic_ncols=True)
 
     def __enter__(self) -> _Farm:
@@ -277,8 +283,12 @@ class _Farm:
         return library
 
     def _most(self) -> int:
-        threads = sum(self.client.nthreads().values())
-        return max(_AHEAD * threads, 2)
+        """The number of tasks to have under way; workers come and go."""
+        now = time.monotonic()
+        if now >= self._counted + _COUNT_AGAIN:
+            self._threads = int(sum(self.client.nthreads().values()))
+            self._counted = now
+        return max(_AHEAD * self._threads, 2)
 
     def _tasks(self, library: Library) -> Iterator[list[str]]:
         """The needs that are neither kept nor under way, some seconds in each task."""
