@@ -465,19 +465,23 @@ fn a_refused_bake_leaves_no_folder_behind() {
 }
 
 #[test]
-fn albedos_of_very_many_lobes_are_refused() {
+fn albedos_of_very_many_lobes_are_refused_in_one_plan() {
     let folder = tempfile::tempdir().unwrap();
     let refuse = |entry: fn(usize) -> String| {
         let recipe: String =
             (0..100_001).map(|i| format!("[[material]]\nname = \"{i}\"\n{}\n", entry(i))).collect();
-        std::fs::write(folder.path().join("a.toml"), recipe).unwrap();
-        let message = refused(folder.path(), &["plan", "a.toml"]);
+        let why = Plan::new(&Scene::from_recipe_str(&recipe).unwrap(), Options::default());
+        let message = why.unwrap_err().to_string();
         assert!(
             message.contains("more than 100000 ") && message.contains("--no-albedo"),
             "{message}"
         );
-        ok(folder.path(), &["plan", "a.toml", "--no-albedo"]);
+        recipe
     };
-    refuse(|i| format!("sigma = [0.5, 0.1{i:06}]\ngamma = 3\nfresnel = \"mirror\""));
     refuse(|i| format!("sigma = 0.5\ngamma = 3\nfresnel = {{ dielectric = 1.1{i:06} }}"));
+    let recipe = refuse(|i| format!("sigma = [0.5, 0.1{i:06}]\ngamma = 3\nfresnel = \"mirror\""));
+    // The command divides them into sets, each with a plan of its own.
+    std::fs::write(folder.path().join("a.toml"), recipe).unwrap();
+    let text = ok(folder.path(), &["plan", "a.toml"]);
+    assert!(text.contains("100001 materials in 11 numbered sets"), "{text}");
 }

@@ -13,7 +13,7 @@ use serde_json::json;
 
 use microfacet_bake::cache::Cache;
 use microfacet_bake::input::MAX_TABLES;
-use microfacet_bake::library::{Library, Part, Share};
+use microfacet_bake::library::{Library, Part, Shard};
 use microfacet_bake::plan::{Plan, set_cost};
 use microfacet_bake::progress::Meter;
 use microfacet_bake::scene::{self, Scene};
@@ -39,10 +39,10 @@ pub(super) struct Args {
     /// Folder to write into; created if missing.
     #[arg(long, short, value_name = "DIR", required_unless_present = "shard")]
     out: Option<PathBuf>,
-    /// Bake the I-th of N shares of what the scene needs into the cache, and write no set: for one
+    /// Bake the I-th of N shards of what the scene needs into the cache, and write no set: for one
     /// of N processes on any machines that share the folder. A bake with --out then assembles it.
-    #[arg(long, value_name = "I/N", value_parser = str::parse::<Share>, requires_all = ["scene", "cache"], conflicts_with_all = ["out", "format", "max_bytes", "no_cache"])]
-    shard: Option<Share>,
+    #[arg(long, value_name = "I/N", value_parser = str::parse::<Shard>, requires_all = ["scene", "cache"], conflicts_with_all = ["out", "format", "max_bytes", "no_cache"])]
+    shard: Option<Shard>,
     /// Container formats, comma separated.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "safetensors")]
     format: Vec<FormatArg>,
@@ -162,8 +162,8 @@ pub(super) fn cache(folder: Option<&Path>, none: bool) -> Cache {
 
 pub(super) fn run(args: Args) -> Outcome {
     let start = Instant::now();
-    if let (Some(share), Some(scene), Some(cache)) = (args.shard, &args.recipe, &args.cache) {
-        return shard::run(&args, share, scene, cache);
+    if let (Some(shard), Some(scene), Some(cache)) = (args.shard, &args.recipe, &args.cache) {
+        return shard::run(&args, shard, scene, cache);
     }
     let folder = args.out.as_deref().unwrap_or(Path::new(""));
     if folder.as_os_str() == "-" {

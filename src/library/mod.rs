@@ -1,16 +1,16 @@
 //! A library of materials: any number of them, baked by any number of processes.
 //!
 //! [`Library`] divides a scene into sets of at most [`PER_SET`] materials and plans each by itself.
-//! A [`Share`] of what they need is what one process bakes into a cache that all use; [`Receipt`]s
-//! in the cache say which shares are done, and of what.
+//! A [`Shard`] of what they need is what one process bakes into a cache that all use; [`Receipt`]s
+//! in the cache say which shards are done, and of what.
 
 mod receipt;
-mod share;
+mod shard;
 
 use std::collections::HashSet;
 
 pub use receipt::{Receipt, Receipts};
-pub use share::{NotAShare, Share};
+pub use shard::{NotAShard, Shard};
 
 use crate::plan::{NotCovered, Options, Plan};
 use crate::scene::Scene;

@@ -1,7 +1,7 @@
-//! What the shares of a library leave in their cache: which are done, and of what.
+//! What the shards of a library leave in their cache: which are done, and of what.
 //!
 //! Tables in a cache are never out of date, since their names are made of all that they depend on.
-//! But a share of another state of the scene, or of another version, is of no use, and whoever
+//! But a shard of another state of the scene, or of another version, is of no use, and whoever
 //! waits for the set wants to hear of it before a week is lost.
 
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use std::{fs, io};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::Share;
+use super::Shard;
 use crate::cache::versions;
 use crate::input::{self, MAX_TEXT};
 use crate::store::{make_folder, replace};
@@ -19,14 +19,14 @@ use crate::table_set::Need;
 /// The folder of receipts in that of a cache.
 const FOLDER: &str = "shards";
 
-/// That a share is done.
+/// That a shard is done.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Receipt {
     /// The name of the scene's file.
     pub scene: String,
-    /// The share's number.
+    /// The shard's number.
     pub shard: usize,
-    /// The number of shares.
+    /// The number of shards.
     pub of: usize,
     /// The versions that tables depend on.
     pub versions: String,
@@ -35,12 +35,12 @@ pub struct Receipt {
 }
 
 impl Receipt {
-    /// The receipt of a share of these needs, all those of the library.
-    pub fn new(scene: &Path, share: Share, needs: &[(String, Need)]) -> Self {
+    /// The receipt of a shard of these needs, all those of the library.
+    pub fn new(scene: &Path, shard: Shard, needs: &[(String, Need)]) -> Self {
         Self {
             scene: scene.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            shard: share.number,
-            of: share.of,
+            shard: shard.number,
+            of: shard.of,
             versions: versions(),
             needs: hex(Sha256::digest(
                 needs.iter().flat_map(|(id, _)| [id, "\n"]).collect::<String>(),
@@ -53,7 +53,7 @@ impl Receipt {
         self.needs == other.needs && self.versions == other.versions
     }
 
-    /// Leaves it in a cache, in the place of an older one of the same share.
+    /// Leaves it in a cache, in the place of an older one of the same shard.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -105,14 +105,14 @@ impl Receipts {
         self.all.is_empty() && self.unread.is_empty()
     }
 
-    /// What to say of them before the set is assembled: nothing if there are none, or if all shares
-    /// of some number are done. `ours` is the receipt of the library as it is now, of any share.
+    /// What to say of them before the set is assembled: nothing if there are none, or if all shards
+    /// of some number are done. `ours` is the receipt of the library as it is now, of any shard.
     pub fn doubts(&self, ours: &Receipt) -> Vec<String> {
         let is_same = |receipt: &&Receipt| receipt.is_same(ours);
         let counts = self.all.iter().filter(is_same).map(|receipt| receipt.of);
         let done =
             |of: usize| self.all.iter().filter(is_same).filter(move |receipt| receipt.of == of);
-        // Of the number of shares with the most done.
+        // Of the number of shards with the most done.
         let best = counts.max_by_key(|&of| (done(of).count(), of));
         if best.is_some_and(|of| done(of).count() == of) {
             return Vec::new();
@@ -191,7 +191,7 @@ mod tests {
 
     fn receipt(shard: usize, of: usize, needs: &str) -> Receipt {
         let scene = Path::new("some/where/lib.toml");
-        let receipt = Receipt::new(scene, Share { number: shard, of }, &[]);
+        let receipt = Receipt::new(scene, Shard { number: shard, of }, &[]);
         Receipt { needs: needs.into(), ..receipt }
     }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde_json::json;
 
 use microfacet_bake::cache::Cache;
-use microfacet_bake::library::{Library, Receipt, Receipts, Share};
+use microfacet_bake::library::{Library, Receipt, Receipts, Shard};
 use microfacet_bake::store::check_folder;
 use microfacet_bake::table_set::Target;
 
@@ -15,7 +15,7 @@ use crate::cli::plan::nothing;
 use crate::cli::words::{count, seconds, shell};
 use crate::cli::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize};
 
-pub(super) fn run(args: &Args, share: Share, scene: &Path, folder: &Path) -> Outcome {
+pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Outcome {
     let start = Instant::now();
     // Fail now rather than after an hour of baking.
     check_folder(folder).map_err(|why| Failure(format!("{}: {why}", folder.display())))?;
@@ -29,13 +29,13 @@ pub(super) fn run(args: &Args, share: Share, scene: &Path, folder: &Path) -> Out
         args.check_bytes(&part.plan)?;
     }
     let needs = library.needs(args.target())?;
-    let receipt = Receipt::new(scene, share, &needs);
+    let receipt = Receipt::new(scene, shard, &needs);
     // Whoever reads the messages of the first shard should hear of it, not of those under way.
     for doubt in Receipts::read(folder, scene).strangers(&receipt) {
         report("warning", format!("{}: {doubt}", folder.display()));
     }
     let all = needs.len();
-    let mine = share.take(needs);
+    let mine = shard.take(needs);
     let settings = args.settings(cache);
     let bar = progress::show(&settings.progress, "baking");
     let baked = Library::bake(&mine, &settings)?;
@@ -44,13 +44,13 @@ pub(super) fn run(args: &Args, share: Share, scene: &Path, folder: &Path) -> Out
     let (time, count_of) = (start.elapsed().as_secs_f64(), mine.len());
     if args.json {
         print_json(&json!({
-            "shard": share.number, "of": share.of, "needs": count_of, "needs_of_all": all,
+            "shard": shard.number, "of": shard.of, "needs": count_of, "needs_of_all": all,
             "baked": baked, "seconds": time,
         }))?;
         return Ok(Done::Ok);
     }
     let mut text = format!(
-        "shard {share}: {} of {all}; {baked} baked, {} from the cache, in {}\n",
+        "shard {shard}: {} of {all}; {baked} baked, {} from the cache, in {}\n",
         count(count_of, "need"),
         count_of - baked,
         seconds(time)
@@ -60,7 +60,7 @@ pub(super) fn run(args: &Args, share: Share, scene: &Path, folder: &Path) -> Out
     }
     text += &format!(
         "when all {} are done:\n  microfacet-bake bake {} --cache {} --out DIR\n",
-        count(share.of, "shard"),
+        count(shard.of, "shard"),
         shell(scene),
         shell(folder)
     );
@@ -81,7 +81,7 @@ pub(super) fn doubt(
     }
     // A budget of bytes has no shards, which is what is to be said then.
     let needs = library.needs(target).unwrap_or_default();
-    let ours = Receipt::new(scene, Share { number: 1, of: 1 }, &needs);
+    let ours = Receipt::new(scene, Shard { number: 1, of: 1 }, &needs);
     for doubt in receipts.doubts(&ours) {
         let rest = "what is missing is baked now";
         report("warning", format!("{}: {doubt}; {rest}", cache.display()));

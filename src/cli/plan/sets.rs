@@ -73,6 +73,6 @@ pub(super) fn run(args: &Args, library: &Library, [reading, planning]: [Duration
 fn in_shards(scene: &Path) -> String {
     let scene = shell(scene);
     format!(
-        "in shares, by any number of processes:\n  microfacet-bake bake {scene} --shard I/N --cache DIR\n"
+        "in shards, by any number of processes:\n  microfacet-bake bake {scene} --shard I/N --cache DIR\n"
     )
 }

@@ -7,53 +7,53 @@ use std::str::FromStr;
 
 use crate::table_set::Need;
 
-/// The I-th of N shares.
+/// The I-th of N shards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Share {
+pub struct Shard {
     /// I, from 1 on.
     pub number: usize,
     /// N.
     pub of: usize,
 }
 
-/// Why a text is not a share.
+/// Why a text is not a shard.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NotAShare(String);
+pub struct NotAShard(String);
 
-impl fmt::Display for NotAShare {
+impl fmt::Display for NotAShard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
 }
 
-impl std::error::Error for NotAShare {}
+impl std::error::Error for NotAShard {}
 
-impl fmt::Display for Share {
+impl fmt::Display for Shard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.number, self.of)
     }
 }
 
-impl FromStr for Share {
-    type Err = NotAShare;
+impl FromStr for Shard {
+    type Err = NotAShard;
 
-    fn from_str(text: &str) -> Result<Self, NotAShare> {
+    fn from_str(text: &str) -> Result<Self, NotAShard> {
         let numbers = text.split_once('/').and_then(|(number, of)| {
             let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
             (digits(number) && digits(of)).then_some(())?;
             Some((number.parse().ok()?, of.parse().ok()?))
         });
         let Some((number, of)) = numbers else {
-            return Err(NotAShare(format!(
+            return Err(NotAShard(format!(
                 "\"{text}\" must be I/N, such as 2/16: the second of sixteen shards"
             )));
         };
         match (1..=Self::MOST).contains(&of) && (1..=of).contains(&number) {
             true => Ok(Self { number, of }),
-            false if number > of && (1..=of).contains(&of) => Err(NotAShare(format!(
+            false if number > of && (1..=of).contains(&of) => Err(NotAShard(format!(
                 "\"{text}\" is shard {number} of {of}: I goes from 1 to N, such as {of}/{number}"
             ))),
-            false => Err(NotAShare(format!(
+            false => Err(NotAShard(format!(
                 "\"{text}\": I goes from 1 to N, and N from 1 to {}",
                 Self::MOST
             ))),
@@ -61,12 +61,12 @@ impl FromStr for Share {
     }
 }
 
-impl Share {
-    /// Most shares of a library.
+impl Shard {
+    /// Most shards of a library.
     pub const MOST: usize = 100_000;
 
-    /// Its part of the needs, in their order. The parts of all shares are disjoint and hold every
-    /// need, and the planner's seconds are balanced: the longest need goes first, to the share that
+    /// Its part of the needs, in their order. The parts of all shards are disjoint and hold every
+    /// need, and the planner's seconds are balanced: the longest need goes first, to the shard that
     /// has least to do. Every machine divides the same needs in the same way.
     #[must_use]
     pub fn take(self, needs: Vec<(String, Need)>) -> Vec<(String, Need)> {
@@ -77,20 +77,20 @@ impl Share {
     }
 }
 
-/// Which share has each need, by the seconds that they take.
-fn owners(seconds: &[f64], shares: usize) -> Vec<usize> {
+/// Which shard has each need, by the seconds that they take.
+fn owners(seconds: &[f64], shards: usize) -> Vec<usize> {
     let nanoseconds: Vec<u64> = seconds.iter().map(|seconds| (1e9 * seconds) as u64).collect();
     let mut longest: Vec<usize> = (0..seconds.len()).collect();
     longest.sort_by_key(|&i| Reverse(nanoseconds[i]));
-    // The least load first; of equal ones the first share.
+    // The least load first; of equal ones the first shard.
     let mut loads: BinaryHeap<Reverse<(u64, usize)>> =
-        (0..shares.min(seconds.len())).map(|share| Reverse((0, share))).collect();
+        (0..shards.min(seconds.len())).map(|shard| Reverse((0, shard))).collect();
     let mut owners = vec![0; seconds.len()];
     for i in longest {
-        if let Some(Reverse((load, share))) = loads.pop() {
-            owners[i] = share;
+        if let Some(Reverse((load, shard))) = loads.pop() {
+            owners[i] = shard;
             // What takes no time at all is spread as well.
-            loads.push(Reverse((load.saturating_add(nanoseconds[i].max(1)), share)));
+            loads.push(Reverse((load.saturating_add(nanoseconds[i].max(1)), shard)));
         }
     }
     owners
@@ -101,12 +101,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shares_are_read_and_refused_by_name() {
+    fn shards_are_read_and_refused_by_name() {
         for text in ["1/1", "2/16", "100000/100000"] {
-            assert_eq!(text.parse::<Share>().unwrap().to_string(), text);
+            assert_eq!(text.parse::<Shard>().unwrap().to_string(), text);
         }
         let refused = |text: &str, what: &str| {
-            let why = text.parse::<Share>().unwrap_err().to_string();
+            let why = text.parse::<Shard>().unwrap_err().to_string();
             assert!(why.contains(what) && why.contains(text), "{why}");
         };
         refused("5/4", "such as 4/5");
@@ -121,15 +121,15 @@ mod tests {
     #[test]
     fn loads_are_balanced() {
         let seconds: Vec<f64> = (1..=1000).map(|i| f64::from(i * 7919 % 1009)).collect();
-        for shares in [1, 2, 7, 64, 999] {
-            let mut loads = vec![0.0; shares];
-            for (owner, seconds) in owners(&seconds, shares).into_iter().zip(&seconds) {
+        for shards in [1, 2, 7, 64, 999] {
+            let mut loads = vec![0.0; shards];
+            for (owner, seconds) in owners(&seconds, shards).into_iter().zip(&seconds) {
                 loads[owner] += seconds;
             }
-            let mean = seconds.iter().sum::<f64>() / shares as f64;
+            let mean = seconds.iter().sum::<f64>() / shards as f64;
             let largest = loads.iter().copied().fold(0.0, f64::max);
-            // No division has a largest share below the mean, or below the longest need.
-            assert!(largest <= 1.01 * mean.max(1008.0), "{shares}: {largest} over {mean}");
+            // No division has a largest shard below the mean, or below the longest need.
+            assert!(largest <= 1.01 * mean.max(1008.0), "{shards}: {largest} over {mean}");
             assert!(loads.iter().all(|load| *load > 0.0));
         }
         assert_eq!(owners(&[0.0; 4], 2), [0, 1, 0, 1]);
