@@ -70,11 +70,6 @@ impl Cache {
         (set.provenance().recipe == key).then(|| set.tables().to_vec())
     }
 
-    /// Whether there is an entry under a key; it may still be one that cannot be read.
-    pub fn has(&self, key: &str) -> bool {
-        self.path(&complete(key)).is_some_and(|path| path.is_file())
-    }
-
     /// Keeps tables under a key. The first call of a cache or its clones removes what bakes that
     /// were killed have left half written.
     ///

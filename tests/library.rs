@@ -86,6 +86,32 @@ fn shares_that_race_and_repeat_make_what_one_process_makes() {
 }
 
 #[test]
+fn a_set_of_what_is_kept_alone_is_refused_if_anything_is_missing() {
+    let folder = folder(3);
+    let folder = folder.path();
+    let only = ["bake", "lib.toml", "--cache", "cache", "--only-kept", "--out", "out"];
+    let only = [&only, &DRAFT[..]].concat();
+    let said = refused(folder, &only);
+    assert!(said.contains("cache: 5 of 5 needs missing") && said.contains("--only-kept"), "{said}");
+    let printed = ok(
+        folder,
+        &["bake", "lib.toml", "--shard", "1/2", "--cache", "cache", "--quality", "draft"],
+    );
+    // What it says to run next has the options that the tables depend on.
+    assert!(printed.contains("bake lib.toml --quality draft --cache cache --out DIR"), "{printed}");
+    assert!(refused(folder, &only).contains("of 5 needs missing"));
+    assert!(!folder.join("out").exists());
+    shard(folder, "2/2");
+    ok(folder, &only);
+    alone(folder, &[]);
+    same(folder, "alone", "out");
+    // A damaged entry is missing.
+    let entry = names(&folder.join("cache")).into_iter().find(|name| name.ends_with("tensors"));
+    fs::write(folder.join("cache").join(entry.unwrap()), "damaged").unwrap();
+    assert!(refused(folder, &only).contains("1 of 5 needs missing"));
+}
+
+#[test]
 fn what_a_lost_share_leaves_out_is_said_and_baked() {
     let folder = folder(5);
     let folder = folder.path();
@@ -103,6 +129,7 @@ fn what_a_lost_share_leaves_out_is_said_and_baked() {
     lost.wait().unwrap();
     let (said, baked) = assemble(folder, "out", &[]);
     assert!(said.contains("of 3 shards have not ended: ") && said.contains("baked now"), "{said}");
+    assert!(said.contains(" of 7 needs missing, such as "), "{said}");
     assert!(baked > 0);
     same(folder, "alone", "out");
 }
@@ -112,7 +139,7 @@ fn shares_of_another_scene_or_version_are_said_and_not_mixed_in() {
     let folder = folder(4);
     let folder = folder.path();
     shard(folder, "1/2");
-    let changed = recipe(4).replace("0.22, 0.5", "0.23, 0.5");
+    let changed = recipe(4).replace(", 0.5]", ", 0.45]");
     assert_ne!(changed, recipe(4));
     fs::write(folder.join("lib.toml"), changed).unwrap();
     let args = ["bake", "lib.toml", "--shard", "2/2", "--cache", "cache"];
@@ -235,8 +262,19 @@ fn a_plan_of_several_sets_lists_them() {
     let folder = folder.path();
     let args = ["plan", "lib.toml", "--quality", "draft", "--per-set", "3"];
     let text = ok(folder, &args);
-    for what in ["tables-00001.safetensors", "3 materials", "2 numbered sets", "--shard I/N"] {
+    for what in ["tables-00001.safetensors", "3 materials", "2 numbered sets"] {
         assert!(text.contains(what), "{text}");
+    }
+    // What takes seconds needs no shards.
+    assert!(!text.contains("--shard"), "{text}");
+    let many: String = (0..3000)
+        .map(|i| format!("[[material]]\nname = \"{i}\"\nsigma = [0.1{i:04}, 0.5]\ngamma = 3\nfresnel = \"mirror\"\n"))
+        .collect();
+    std::fs::write(folder.join("many.toml"), many).unwrap();
+    for more in [&[][..], &["--per-set", "2000"]] {
+        let text = ok(folder, &[&["plan", "many.toml", "--albedo"], more].concat());
+        let command = "microfacet-bake bake many.toml";
+        assert!(text.contains(command) && text.contains("--albedo --shard I/"), "{text}");
     }
     let plan = json(folder, &args);
     assert_eq!(plan["sets"].as_array().unwrap().len(), 2);

@@ -65,6 +65,10 @@ pub(super) struct Args {
     /// Bake everything, and cache nothing.
     #[arg(long, conflicts_with = "cache")]
     no_cache: bool,
+    /// Make the set from the cache alone: refuse, and say what is missing, if anything would have to
+    /// be baked.
+    #[arg(long, requires = "scene", conflicts_with_all = ["shard", "no_cache", "max_error", "max_bytes"])]
+    only_kept: bool,
     /// Limit of the memory for baking, such as 512MB or 4GiB; a larger bake is refused at the
     /// start.
     #[arg(long, value_name = "BYTES", value_parser = values::size, default_value = "4GiB")]
@@ -105,6 +109,12 @@ impl Args {
             (_, Some(max_bytes)) => Target::MaxBytes(max_bytes),
             _ => Target::Quality(self.request.quality(), self.request.precision()),
         }
+    }
+
+    /// The options on which the tables depend, as they were typed.
+    fn repeated(&self) -> String {
+        let error = self.max_error.map_or(String::new(), |error| format!(" --max-error {error:e}"));
+        self.request.repeated() + &error + if self.patient { " --patient" } else { "" }
     }
 
     fn settings(&self, cache: Cache) -> Settings {
@@ -182,8 +192,8 @@ pub(super) fn run(args: Args) -> Outcome {
             parts: vec![Part { scene: Scene::default(), plan: args.request.general_plan() }],
         },
     };
-    if let (Some(scene), Some(cache)) = (&args.recipe, &args.cache) {
-        shard::doubt(&library, args.target(), scene, cache)?;
+    if let Some(scene) = &args.recipe {
+        shard::check(&args, &library, scene, &cache)?;
     }
     let Part { scene, plan } = match library.parts.pop() {
         Some(only) if library.parts.is_empty() => only,

@@ -1,6 +1,7 @@
 //! Options that `plan` and `bake` share: quality, and what the renderer has already.
 
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
 
 use microfacet_bake::library::{Library, PER_SET};
 use microfacet_bake::plan::{AlbedoWish, Options, Plan};
@@ -75,6 +76,34 @@ impl Request {
             PrecisionArg::F16 => Precision::F16,
             PrecisionArg::U16 => Precision::U16,
         }
+    }
+
+    /// The options as they were typed, each with a space before it; those by default are left out.
+    pub(super) fn repeated(&self) -> String {
+        let mut all = String::new();
+        let mut add = |option: &str, value: String| all += &format!(" {option}{value}");
+        let name = |value: Option<PossibleValue>| {
+            value.map_or(String::new(), |value| format!(" {}", value.get_name()))
+        };
+        if self.quality() != Quality::Default {
+            add("--quality", name(self.quality.to_possible_value()));
+        }
+        if self.precision() != Precision::F32 {
+            add("--precision", name(self.precision.to_possible_value()));
+        }
+        if self.per_set != PER_SET {
+            add("--per-set", format!(" {}", self.per_set));
+        }
+        let flags = [
+            (self.tabulate_ggx, "--tabulate-ggx"),
+            (self.albedo, "--albedo"),
+            (self.no_albedo, "--no-albedo"),
+            (self.embedded, "--embedded"),
+        ];
+        for (_, flag) in flags.into_iter().filter(|(is_set, _)| *is_set) {
+            add(flag, String::new());
+        }
+        all
     }
 
     /// The plan of the general set.

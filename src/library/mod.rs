@@ -64,15 +64,23 @@ impl Library {
         Ok(needs)
     }
 
-    /// Bakes needs into the cache of the settings, one after the other. Returns how many had to be
-    /// baked; the others were there.
+    /// Bakes needs into the cache of the settings, one after the other, and calls `after` with the
+    /// number that is done. Returns how many had to be baked; the others were there.
     ///
     /// # Errors
     /// As [`Need::bake`]; what was baked before stays in the cache.
-    pub fn bake(needs: &[(String, Need)], settings: &Settings) -> Result<usize, BakeError> {
+    pub fn bake(
+        needs: &[(String, Need)],
+        settings: &Settings,
+        mut after: impl FnMut(usize),
+    ) -> Result<usize, BakeError> {
         needs.iter().for_each(|(_, need)| need.announce(&settings.progress));
-        let baked = needs.iter().map(|(_, need)| need.bake(settings.clone()));
-        Ok(baked.collect::<Result<Vec<bool>, _>>()?.into_iter().filter(|baked| *baked).count())
+        let mut baked = 0;
+        for (i, (_, need)) in needs.iter().enumerate() {
+            baked += usize::from(need.bake(settings.clone())?);
+            after(i + 1);
+        }
+        Ok(baked)
     }
 
     /// Whether nothing has to be baked and no set is worth writing.

@@ -53,17 +53,22 @@ impl Receipt {
         self.needs == other.needs && self.versions == other.versions
     }
 
-    /// Leaves it in a cache, in the place of an older one of the same shard.
+    /// Leaves it in a cache, in the place of an older one of the same shard and needs.
     ///
     /// # Errors
-    /// Those of the operating system.
+    /// Those of the operating system, with the path.
     pub fn leave(&self, cache: &Path) -> io::Result<()> {
+        let at = |path: &Path, why: io::Error| {
+            io::Error::new(why.kind(), format!("{}: {why}", path.display()))
+        };
         let folder = cache.join(FOLDER);
-        make_folder(&folder)?;
-        let scene = &hex(Sha256::digest(&self.scene))[..12];
-        let path = folder.join(format!("{scene}-{}-of-{}.json", self.shard, self.of));
+        make_folder(&folder).map_err(|why| at(&folder, why))?;
+        // Libraries of the same file name, and states of one, may share a cache.
+        let Self { scene, shard, of, versions, needs } = self;
+        let library = &hex(Sha256::digest(format!("{scene}\n{versions}\n{needs}")))[..16];
+        let path = folder.join(format!("{library}-{shard}-of-{of}.json"));
         let json = serde_json::to_string_pretty(self).map_err(io::Error::other)?;
-        replace(&path, (json + "\n").as_bytes())
+        replace(&path, (json + "\n").as_bytes()).map_err(|why| at(&path, why))
     }
 }
 
@@ -105,8 +110,14 @@ impl Receipts {
         self.all.is_empty() && self.unread.is_empty()
     }
 
-    /// What to say of them before the set is assembled: nothing if there are none, or if all shards
-    /// of some number are done. `ours` is the receipt of the library as it is now, of any shard.
+    /// Whether any shard of the same library, in the same state, is done.
+    pub fn has(&self, ours: &Receipt) -> bool {
+        self.all.iter().any(|receipt| receipt.is_same(ours))
+    }
+
+    /// Why tables may be missing where the set is assembled: nothing if there are no receipts, or
+    /// if all shards of some number are done. `ours` is the receipt of the library as it is now, of
+    /// any shard.
     pub fn doubts(&self, ours: &Receipt) -> Vec<String> {
         let is_same = |receipt: &&Receipt| receipt.is_same(ours);
         let counts = self.all.iter().filter(is_same).map(|receipt| receipt.of);
@@ -217,8 +228,9 @@ mod tests {
             "1 of 2 shards has not ended: 1; shard 1/2 is of another state of lib.toml, or of other \
              options"
         );
-        // A later run of the same shard takes the place of the earlier.
         assert_eq!(said(&[receipt(1, 1, "before"), receipt(1, 1, "now")]), "");
+        // Another library of the same name takes no receipt away.
+        assert_eq!(said(&[receipt(1, 1, "now"), receipt(1, 1, "other")]), "");
         let other = Receipt { versions: "numerics 5".into(), ..receipt(1, 1, "now") };
         assert!(said(&[other]).contains("shard 1/1 is of another version (numerics 5; this is"));
         let elsewhere = Receipt { scene: "other.toml".into(), ..receipt(1, 2, "before") };

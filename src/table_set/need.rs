@@ -88,11 +88,12 @@ impl Need {
         }
     }
 
-    /// Whether a cache has the finished tables; `false` where that takes a search to tell.
+    /// Whether a cache has the finished tables, undamaged; `false` where that takes a search to
+    /// tell.
     pub fn is_kept(&self, cache: &Cache) -> bool {
         match self.target {
             Target::Quality(quality, precision) => {
-                cache.has(&self.group.key(quality.into(), precision))
+                cache.get(&self.group.key(quality.into(), precision)).is_some()
             }
             _ => false,
         }

@@ -1,7 +1,7 @@
 //! What a farm shares out, and how a library's sets are put together; `microfacet.farm` uses it.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use microfacet_bake::cache::Cache;
 use microfacet_bake::library::{Library, PER_SET};
@@ -11,7 +11,7 @@ use microfacet_bake::table_set::{Need, Settings, Target, bake_with};
 use pyo3::exceptions::{PyOSError, PyRuntimeError};
 use pyo3::prelude::*;
 
-use crate::tables::{scene_of, target_of, warn_of};
+use crate::tables::{interruptible, scene_of, target_of, warn_of};
 use crate::words::{refused, unread};
 
 /// One thing that a library needs, which any process on any machine can bake; it can be pickled.
@@ -94,7 +94,7 @@ impl PyNeed {
 /// A scene divided into sets, and what they need.
 #[pyclass(name = "Library", module = "microfacet.farm", frozen)]
 pub(crate) struct PyLibrary {
-    library: Library,
+    library: Arc<Library>,
     target: Target,
 }
 
@@ -128,7 +128,7 @@ impl PyLibrary {
         };
         let options = Options { tabulate_ggx, albedo, ..Options::default() };
         let library = py.detach(|| Library::new(scene, per_set, options)).map_err(refused)?;
-        Ok(Self { library, target })
+        Ok(Self { library: Arc::new(library), target })
     }
 
     /// The names of the materials of each set.
@@ -150,7 +150,7 @@ impl PyLibrary {
 /// The folder in which a library's sets are put together; nothing in it changes before the end.
 #[pyclass(name = "Assembly", module = "microfacet.farm", frozen)]
 pub(crate) struct PyAssembly {
-    writer: Mutex<Option<SetWriter>>,
+    writer: Arc<Mutex<Option<SetWriter>>>,
 }
 
 fn over() -> PyErr {
@@ -163,11 +163,12 @@ impl PyAssembly {
     #[new]
     fn new(out: PathBuf) -> PyResult<Self> {
         let folder = OutputFolder::open(&out).map_err(unread)?;
-        Ok(Self { writer: Mutex::new(Some(folder.sets())) })
+        Ok(Self { writer: Arc::new(Mutex::new(Some(folder.sets()))) })
     }
 
     /// Adds the sets of a library from a folder of finished tables, and bakes what that lacks;
-    /// returns the number of tables, and of those that had to be baked.
+    /// returns the number of tables, and of those that had to be baked. After an interrupt, which
+    /// returns at once, the folder is given up.
     fn add(
         &self,
         py: Python<'_>,
@@ -175,16 +176,17 @@ impl PyAssembly {
         cache: PathBuf,
         max_memory: u64,
     ) -> PyResult<(usize, usize)> {
-        let PyLibrary { library, target } = library;
-        py.detach(|| {
-            let mut held = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
+        let (library, target) = (Arc::clone(&library.library), library.target);
+        let writer = Arc::clone(&self.writer);
+        interruptible(py, move || {
+            let mut held = writer.lock().unwrap_or_else(PoisonError::into_inner);
             // Taken out, so that a failure leaves nothing to go on with.
             let mut writer = held.take().ok_or_else(over)?;
             let (mut tables, mut fresh) = (0, 0);
             for part in &library.parts {
                 let cache = Cache::new(cache.clone());
                 let settings = Settings { cache, max_memory, ..Settings::default() };
-                let baked = bake_with(&part.plan, *target, settings).map_err(refused)?;
+                let baked = bake_with(&part.plan, target, settings).map_err(refused)?;
                 if let Some(why) = baked.cache_error {
                     return Err(PyOSError::new_err(why.to_string()));
                 }
@@ -194,12 +196,15 @@ impl PyAssembly {
             }
             *held = Some(writer);
             Ok((tables, fresh))
-        })
+        })?
     }
 
     /// Gives the folder up as it was, unless finish has been called.
     fn close(&self) {
-        self.writer.lock().unwrap_or_else(PoisonError::into_inner).take();
+        // After an interrupt a thread may still hold it, and gives it up itself.
+        if let Ok(mut held) = self.writer.try_lock() {
+            held.take();
+        }
     }
 
     /// Puts the sets in their place, and returns the paths of the files.

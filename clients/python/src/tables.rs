@@ -144,7 +144,8 @@ impl PyTables {
         Ok(all)
     }
 
-    /// Writes the set into a folder, which is created: tables.safetensors.
+    /// Writes the set into a folder, which is created: tables.safetensors. What a bake has written
+    /// there before is replaced, numbered sets too.
     fn write(&self, folder: PathBuf) -> PyResult<()> {
         store::write(&folder, &self.set, &[Format::Safetensors]).map_err(unread)?;
         Ok(())
@@ -213,14 +214,8 @@ pub(crate) fn bake(
         },
     };
     let settings = Settings { cache, max_memory, ..Settings::default() };
-    // In a thread of its own, so that an interrupt is answered while it works.
-    let work = thread::spawn(move || bake_with(&plan, target, settings).map(|baked| baked.set));
-    while !work.is_finished() {
-        py.detach(|| thread::sleep(PATIENCE));
-        py.check_signals()?;
-    }
-    let set = work.join().map_err(|_| PyRuntimeError::new_err("the bake has failed"))?;
-    let set = set.map_err(refused)?;
+    let work = move || bake_with(&plan, target, settings).map(|baked| baked.set);
+    let set = interruptible(py, work)?.map_err(refused)?;
     let tables = PyTables { set: Arc::new(set), origin: "baked".into() };
     if let Some(out) = out {
         tables.write(out)?;
@@ -234,6 +229,20 @@ pub(crate) fn bake(
 #[pyo3(signature = (path=None))]
 pub(crate) fn inspect(py: Python<'_>, path: Option<PathBuf>) -> PyResult<Bound<'_, PyAny>> {
     PyTables::new(path, None)?.describe(py)
+}
+
+/// Does long work in a thread of its own, so that an interrupt is answered meanwhile; what was begun
+/// then goes on until it is done.
+pub(crate) fn interruptible<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let work = thread::spawn(work);
+    while !work.is_finished() {
+        py.detach(|| thread::sleep(PATIENCE));
+        py.check_signals()?;
+    }
+    work.join().map_err(|_| PyRuntimeError::new_err("the bake has failed"))
 }
 
 /// What tables are to be like, from the words and numbers that say so.

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import microfacet
+import numpy as np
 import pytest
 from microfacet import farm
 
@@ -141,11 +142,40 @@ def test_what_is_wrong_is_said(client: Any, tmp_path: Path) -> None:
     says("each material must be a table", ["gold"], TypeError)
     says("seconds_per_task is 0", seconds_per_task=0)
     says("retries is -1", retries=-1)
-    says(r"must be in \[1, 10000\]", per_set=0)
+    says(r"in \[1, 10000\]", per_set=0)
+    says(r"in \[1, 10000\]", materials(), per_set=2.5)
+    says("and is a dict", {"name": "gold"}, TypeError)
+    says("and is a int", 3, TypeError)
     says("no materials", [])
-    says("gamma = 1.2", [{"name": "a", "sigma": 0.3, "gamma": 1.2}])
+    bad = {"name": "bad", "sigma": 0.3, "gamma": 1.2}
+    says(r"^material \'bad\': gamma = 1.2 is", [*materials(4), bad], per_set=2)
+    says(r"^material \'bad\': unknown key", [{**bad, "gamma": 3, "department": "fx"}])
+    says("name is None", [{"sigma": 0.3, "gamma": 3.0}])
+    says("material \'bad\': sigma is a object", [{**bad, "sigma": object()}], TypeError)
     # Nothing was written.
     assert not (tmp_path / "out").exists()
+
+
+def test_values_of_numpy_and_none_are_understood(client: Any, tmp_path: Path) -> None:
+    row = {
+        "name": np.str_("a"),
+        "sigma": np.array([0.3, 0.25], np.float64),
+        "gamma": np.float32(3.5),
+        "theta": None,
+        "fresnel": {"conductor": {"eta": np.ones(3), "k": (3, np.int64(2), 1.0)}},
+    }
+    assert farmed([row], client, tmp_path / "out").materials == 1
+
+
+def test_a_damaged_entry_is_baked_by_workers(
+    client: Any, alone: dict[str, bytes], tmp_path: Path
+) -> None:
+    farmed(recipe(), client, tmp_path / "out")
+    entry = max((tmp_path / "cache").glob("*.safetensors"))
+    entry.write_bytes(entry.read_bytes()[:200])
+    again = farmed(recipe(), client, tmp_path / "out")
+    assert (again.baked, again.kept, again.made_up) == (1, COUNT + 1, 0)
+    assert content(tmp_path / "out") == alone
 
 
 def test_a_task_that_keeps_failing_ends_the_bake(client: Any, tmp_path: Path) -> None:

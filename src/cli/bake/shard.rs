@@ -1,19 +1,23 @@
 //! `bake --shard`: one of many processes that bake a library together.
 
+use std::io::{self, IsTerminal};
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde_json::json;
 
 use microfacet_bake::cache::Cache;
 use microfacet_bake::library::{Library, Receipt, Receipts, Shard};
 use microfacet_bake::store::check_folder;
-use microfacet_bake::table_set::Target;
+use microfacet_bake::table_set::{Need, Target};
 
 use super::Args;
 use crate::cli::plan::nothing;
 use crate::cli::words::{count, seconds, shell};
 use crate::cli::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize};
+
+/// Time between two lines in a log.
+const BETWEEN: Duration = Duration::from_secs(60);
 
 pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Outcome {
     let start = Instant::now();
@@ -30,18 +34,29 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Out
     }
     let needs = library.needs(args.target())?;
     let receipt = Receipt::new(scene, shard, &needs);
-    // Whoever reads the messages of the first shard should hear of it, not of those under way.
-    for doubt in Receipts::read(folder, scene).strangers(&receipt) {
-        report("warning", format!("{}: {doubt}", folder.display()));
+    // Said by the first shards, not by each of hundreds.
+    let receipts = Receipts::read(folder, scene);
+    if !receipts.has(&receipt) {
+        for doubt in receipts.strangers(&receipt) {
+            report("warning", format!("{}: {doubt}", folder.display()));
+        }
     }
     let all = needs.len();
     let mine = shard.take(needs);
     let settings = args.settings(cache);
     let bar = progress::show(&settings.progress, "baking");
-    let baked = Library::bake(&mine, &settings)?;
+    let count_of = mine.len();
+    let mut said = Instant::now();
+    let baked = Library::bake(&mine, &settings, |done| {
+        // For the log of a scheduler; a terminal has a bar.
+        if said.elapsed() >= BETWEEN && !io::stderr().is_terminal() {
+            report("note", format!("shard {shard}: {done} of {}", count(count_of, "need")));
+            said = Instant::now();
+        }
+    })?;
     drop(bar);
-    receipt.leave(folder).map_err(|why| Failure(format!("{}: {why}", folder.display())))?;
-    let (time, count_of) = (start.elapsed().as_secs_f64(), mine.len());
+    receipt.leave(folder).map_err(|why| Failure(why.to_string()))?;
+    let time = start.elapsed().as_secs_f64();
     if args.json {
         print_json(&json!({
             "shard": shard.number, "of": shard.of, "needs": count_of, "needs_of_all": all,
@@ -58,33 +73,59 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Out
     if all == 0 {
         text += library.parts.first().map_or("", |part| nothing(&part.scene));
     }
+    let when = if shard.of == 1 {
+        "then".into()
+    } else {
+        format!("when all {} are done", count(shard.of, "shard"))
+    };
     text += &format!(
-        "when all {} are done:\n  microfacet-bake bake {} --cache {} --out DIR\n",
-        count(shard.of, "shard"),
+        "{when}:\n  microfacet-bake bake {}{} --cache {} --out DIR\n",
         shell(scene),
+        args.repeated(),
         shell(folder)
     );
     summarize(&text)?;
     Ok(Done::Ok)
 }
 
-/// Warns if shards left receipts in a cache that are not those of this library.
-pub(super) fn doubt(
+/// Says what a cache lacks where shards were to fill it, and why; with `--only-kept` refuses.
+pub(super) fn check(
+    args: &Args,
     library: &Library,
-    target: Target,
     scene: &Path,
-    cache: &Path,
+    cache: &Cache,
 ) -> Result<(), Failure> {
-    let receipts = Receipts::read(cache, scene);
-    if receipts.is_empty() {
+    let Some(folder) = cache.folder() else { return Ok(()) };
+    let receipts = Receipts::read(folder, scene);
+    // A budget of bytes has no shards, and of a largest error a search alone tells what is there.
+    let Target::Quality(..) = args.target() else { return Ok(()) };
+    if receipts.is_empty() && !args.only_kept {
         return Ok(());
     }
-    // A budget of bytes has no shards, which is what is to be said then.
-    let needs = library.needs(target).unwrap_or_default();
+    let needs = library.needs(args.target())?;
+    let missing: Vec<&Need> =
+        needs.iter().map(|(_, need)| need).filter(|need| !need.is_kept(cache)).collect();
+    let Some(first) = missing.first() else { return Ok(()) };
+    let threads = rayon::current_num_threads();
+    let time = missing.iter().map(|need| need.seconds()).sum::<f64>() / threads as f64;
+    let lacks = format!(
+        "{}: {} of {} missing, such as {}; about {} on {}",
+        folder.display(),
+        missing.len(),
+        count(needs.len(), "need"),
+        first.name(),
+        seconds(time),
+        count(threads, "thread")
+    );
     let ours = Receipt::new(scene, Shard { number: 1, of: 1 }, &needs);
     for doubt in receipts.doubts(&ours) {
-        let rest = "what is missing is baked now";
-        report("warning", format!("{}: {doubt}; {rest}", cache.display()));
+        report("warning", format!("{}: {doubt}", folder.display()));
     }
+    if args.only_kept {
+        return Err(Failure(format!(
+            "{lacks}: run the shards that bake them with the same options, or leave out --only-kept"
+        )));
+    }
+    report("warning", format!("{lacks}; they are baked now"));
     Ok(())
 }

@@ -65,7 +65,9 @@ pub(super) fn run(args: Args) -> Outcome {
     if args.json {
         print_json(&report.json())?
     } else {
-        print(&report.text())?
+        let core_seconds = report.total.seconds * rayon::current_num_threads() as f64;
+        let needs = report.costs.len();
+        print(&(report.text() + &sets::in_shards(&args.scene, &args.request, core_seconds, needs)))?
     }
     Ok(Done::Ok)
 }

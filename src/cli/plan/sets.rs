@@ -11,7 +11,7 @@ use microfacet_bake::plan::{Cost, set_cost};
 use microfacet_bake::table_set::{Need, Target};
 use microfacet_sampler::Index;
 
-use super::{Args, Report};
+use super::{Args, Report, Request};
 use crate::cli::words::{bytes, columns, count, seconds, shell};
 use crate::cli::{Done, Outcome, print, print_json, write};
 
@@ -64,15 +64,24 @@ pub(super) fn run(args: &Args, library: &Library, [reading, planning]: [Duration
         count(threads, "thread")
     );
     text += &format!("read in {:.1} ms, planned in {:.1} ms\n", milliseconds[0], milliseconds[1]);
-    text += &in_shards(&args.scene);
+    text += &in_shards(&args.scene, &args.request, time * threads as f64, needs.len());
     print(&text)?;
     Ok(Done::Ok)
 }
 
-/// How several processes share the work.
-fn in_shards(scene: &Path) -> String {
-    let scene = shell(scene);
+/// Core seconds of a shard that is neither lost in planning nor long to repeat.
+const SHARD: f64 = 1800.0;
+
+/// How several processes share the work, where it is more than one shard of half an hour.
+pub(super) fn in_shards(scene: &Path, request: &Request, seconds: f64, needs: usize) -> String {
+    let shards = ((seconds / SHARD).ceil() as usize).min(needs);
+    if shards < 2 {
+        return String::new();
+    }
     format!(
-        "in shards, by any number of processes:\n  microfacet-bake bake {scene} --shard I/N --cache DIR\n"
+        "in shards of about half an hour of one core, by any number of processes:\n  \
+         microfacet-bake bake {}{} --shard I/{shards} --cache DIR\n",
+        shell(scene),
+        request.repeated()
     )
 }

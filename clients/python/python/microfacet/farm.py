@@ -12,6 +12,7 @@ makes. Workers need this package, of the same version, and no files.
 
 from __future__ import annotations
 
+import asyncio
 import os
 import re
 import tempfile
@@ -21,7 +22,8 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, suppress
 from dataclasses import dataclass
-from itertools import islice
+from itertools import compress, islice
+from operator import not_
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -29,7 +31,7 @@ from typing import Any, Literal, TypeAlias
 from ._microfacet import Assembly, Library, Need, __version__, user_cache
 
 try:
-    from distributed import Client, as_completed
+    from distributed import Client, as_completed, wait
 except ImportError as _missing:
     raise ImportError(
         'microfacet.farm needs Dask: pip install "./clients/python[farm]"'
@@ -63,10 +65,11 @@ class Farmed:
     #: The number of materials, and of tables that serve them.
     materials: int
     tables: int
-    #: Parts that workers baked, and that were kept from before.
+    #: Needs (parts that are baked by themselves, each of some tables) that workers baked, and that
+    #: were kept from before.
     baked: int
     kept: int
-    #: Tables that no worker had returned, so that they were baked here.
+    #: Tables that were missing in the end all the same, so that they were baked here.
     made_up: int
     seconds: float
 
@@ -80,25 +83,75 @@ def libraries(scene: Scene, **options: Any) -> Iterator[Library]:
     if isinstance(scene, (str, PathLike)):
         yield Library(scene, **options)
         return
-    import tomli_w
-
+    per_set = options.get("per_set", PER_SET)
+    if not isinstance(per_set, int) or not 1 <= per_set <= PER_SET:
+        raise ValueError(f"per_set is {per_set}: it must be a whole number in [1, {PER_SET}]")
+    if isinstance(scene, Mapping) or not isinstance(scene, Iterable):
+        raise TypeError(
+            "scene must be a path, the text of a recipe or an iterable of materials, and is a"
+            f" {type(scene).__name__}"
+        )
     names: set[str] = set()
     materials = iter(scene)
-    while part := list(islice(materials, options.get("per_set", PER_SET))):
+    while part := list(islice(materials, per_set)):
+        texts = []
         for material in part:
-            if not isinstance(material, Mapping):
-                kind = type(material).__name__
-                raise TypeError(
-                    "each material must be a table of a recipe's keys, such as"
-                    f' {{"name": "gold", "sigma": 0.3, "gamma": 2.5}}, and one is a {kind}'
-                )
+            texts.append(_recipe(material))
             # In one set the recipe's reader would say so; two may be a week apart.
-            name = material.get("name")
-            if name in names:
-                raise ValueError(f'two materials are named "{name}": give each a name of its own')
-            if isinstance(name, str):
-                names.add(name)
-        yield Library(tomli_w.dumps({"material": part}), **options)
+            if material["name"] in names:
+                raise ValueError(f"two materials are named {material['name']!r}: rename one")
+            names.add(material["name"])
+        try:
+            library = Library("\n".join(texts), **options)
+        except ValueError:
+            # Lines of the joined text mean nothing to the caller: say whose they are.
+            for text, material in zip(texts, part):
+                try:
+                    Library(text, **options)
+                except ValueError as why:
+                    said = re.sub(r"^recipe:\d+:\d+: ", "", str(why))
+                    raise ValueError(f"material {material['name']!r}: {said}") from None
+            raise
+        yield library
+
+
+def _recipe(material: Mapping[str, Any]) -> str:
+    """A material as the text of a recipe."""
+    import tomli_w
+
+    if not isinstance(material, Mapping):
+        raise TypeError(
+            "each material must be a table of a recipe's keys, such as"
+            ' {"name": "gold", "sigma": 0.3, "gamma": 2.5}, and one is a'
+            f" {type(material).__name__}"
+        )
+    name = material.get("name")
+    if not isinstance(name, str) or not name:
+        raise ValueError(f"a material's name is {name!r}: it must be a text that is not empty")
+    plain = {}
+    for key, value in material.items():
+        if value is None:
+            continue
+        try:
+            plain[key] = _plain(value)
+            tomli_w.dumps({key: plain[key]})
+        except TypeError:
+            kind = type(value).__name__
+            raise TypeError(
+                f"material {name!r}: {key} is a {kind}: give numbers, texts, lists or tables"
+            ) from None
+    return tomli_w.dumps({"material": [plain]})
+
+
+def _plain(value: Any) -> Any:
+    """A value without NumPy's types, which TOML does not know."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value
 
 
 def bake(
@@ -131,7 +184,8 @@ def bake(
     early goes on from there. Workers return them over the network, or with shared=True write them
     into that folder, which then must be the same on all machines. Each task has needs of about
     seconds_per_task by the planner's estimate, on one thread, and is tried again up to retries
-    times; what is lost with a worker is baked by another. The options of quality are those of
+    times; what is lost with a worker is baked by another. After an interrupt, tasks that have not
+    ended are lost (with shared=True only the need at hand). The options of quality are those of
     `microfacet.bake`.
 
     Raises what a worker raised if a task keeps failing, and RuntimeError if a worker has another
@@ -251,7 +305,7 @@ class _Farm:
         #: The number of tasks under way for each library.
         self._open: dict[int, int] = {}
         self._threads, self._counted = 0, -_COUNT_AGAIN
-        self._bar = tqdm(total=0, unit="need", disable=not progress, dynamic_ncols=True)
+        self._bar = tqdm(total=0, unit="part", disable=not progress, dynamic_ncols=True)
 
     def __enter__(self) -> _Farm:
         return self
@@ -294,13 +348,15 @@ class _Farm:
         """The needs that are neither kept nor under way, some seconds in each task."""
         texts: list[str] = []
         seconds = 0.0
-        for need in library.needs():
-            if need.id in self._seen:
-                continue
-            self._seen.add(need.id)
-            if need.is_kept(self.folder):
-                self.kept += 1
-                continue
+        new = [need for need in library.needs() if need.id not in self._seen]
+        self._seen.update(need.id for need in new)
+        kept = [need.is_kept(self.folder) for need in new]
+        self.kept += sum(kept)
+        # What is kept counts as done, so that the bar shows how far the library is.
+        self._bar.total += len(new)
+        self._bar.update(sum(kept))
+        self._bar.refresh()
+        for need in compress(new, map(not_, kept)):
             texts.append(str(need))
             seconds += need.seconds
             if seconds >= self.seconds:
@@ -316,12 +372,17 @@ class _Farm:
         future = self.client.submit(_work, *arguments, key=key, retries=self.retries, pure=False)
         self._under_way[key] = (len(texts), number)
         self._open[number] = self._open.get(number, 0) + 1
-        self._bar.total += len(texts)
-        self._bar.refresh()
         self._done.add(future)
 
     def _take(self) -> None:
         """Waits for a task, and keeps what it returns."""
+        while not self._done.has_ready():
+            # Until Python 3.11 they were two.
+            with suppress(TimeoutError, asyncio.TimeoutError):
+                wait(list(self._done.futures), timeout=_COUNT_AGAIN, return_when="FIRST_COMPLETED")
+                break
+            if not self.client.nthreads():
+                self._bar.write("the cluster has no workers: waiting for some")
         future = next(self._done)
         for name, content in future.result():
             self._keep(name, content)
