@@ -124,7 +124,15 @@ pub(super) fn run(args: Args) -> Outcome {
         summarize(&summary(&result, options, &source))?;
     }
     summarize(&white(&furnaces))?;
-    untested.iter().try_for_each(|what| summarize(&format!("not tested: {what}\n")))?;
+    for what in untested.iter().take(SHOWN) {
+        summarize(&format!("not tested: {what}\n"))?;
+    }
+    if let Some(more @ [_, ..]) = untested.get(SHOWN..) {
+        summarize(&format!(
+            "not tested: {} more; --json lists all\n",
+            words::count(more.len(), "table")
+        ))?;
+    }
     if result.rejected() > 0 {
         summarize(NEXT)?;
     }
@@ -133,6 +141,9 @@ pub(super) fn run(args: Args) -> Outcome {
     }
     verdict(passed)
 }
+
+/// Lines of what is not tested; a library has a table for each material.
+const SHOWN: usize = 6;
 
 /// What to do about a rejection.
 const NEXT: &str = "to tell chance from a defect, repeat the worst configuration with other seeds (--seed) and more normals\n\

@@ -47,6 +47,8 @@ pub enum StoreError {
     Load(PathBuf, LoadError),
     /// An image could not be written, or its header not be read.
     Exr(PathBuf, String),
+    /// A set, or numbered sets, have no material of a name.
+    NoMaterial(PathBuf, String),
     /// Another bake is writing into the folder.
     InUse(PathBuf),
 }
@@ -58,6 +60,7 @@ impl StoreError {
             Self::Io(path, why) => Self::Io(folder.join(path), why),
             Self::Load(path, why) => Self::Load(folder.join(path), why),
             Self::Exr(path, why) => Self::Exr(folder.join(path), why),
+            Self::NoMaterial(path, why) => Self::NoMaterial(folder.join(path), why),
             Self::InUse(path) => Self::InUse(folder.join(path)),
         }
     }
@@ -68,7 +71,9 @@ impl fmt::Display for StoreError {
         match self {
             Self::Io(path, why) => write!(f, "{}: {why}", path.display()),
             Self::Load(path, why) => write!(f, "{}: {why}", path.display()),
-            Self::Exr(path, why) => write!(f, "{}: {why}", path.display()),
+            Self::Exr(path, why) | Self::NoMaterial(path, why) => {
+                write!(f, "{}: {why}", path.display())
+            }
             Self::InUse(path) => write!(
                 f,
                 "{}: another bake is writing into this folder; wait for it to end, or name another folder",

@@ -1,6 +1,5 @@
 //! Libraries too large for one set: numbered sets and their index.
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -155,8 +154,7 @@ fn joined(folder: &Path, sets: Vec<Tables>) -> Result<Tables, StoreError> {
 /// [`StoreError`] naming the path and what is wrong, such as a material that is not there.
 pub fn read_materials(path: &Path, names: &[&str]) -> Result<Tables, StoreError> {
     let folder = if path.is_dir() { path } else { replace::folder_of(path) };
-    let missing =
-        |why: String| StoreError::Io(path.into(), io::Error::new(io::ErrorKind::NotFound, why));
+    let missing = |why: String| StoreError::NoMaterial(path.into(), why);
     let only =
         |set: Tables, names: &[&str]| set.only(names).map_err(|why| missing(why.to_string()));
     loop {

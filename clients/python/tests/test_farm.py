@@ -114,7 +114,7 @@ def test_numbered_sets_open_as_one_or_in_part(client: Any, tmp_path: Path) -> No
     for name in part.materials:
         v = [0.6, 0.0, 0.8]
         assert float(part.material(name).albedo(v)) == float(whole.material(name).albedo(v))
-    with pytest.raises(OSError, match="none of the 7 materials is named \"gold\""):
+    with pytest.raises(ValueError, match="none of the 7 materials is named \"gold\""):
         microfacet.Tables(tmp_path / "out", materials=["gold"])
 
 

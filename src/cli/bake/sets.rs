@@ -10,7 +10,7 @@ use microfacet_bake::store::OutputFolder;
 use microfacet_bake::table_set::bake_with;
 
 use super::{Args, FormatArg, warn_of_cache};
-use crate::cli::words::{count, exact_bytes, seconds};
+use crate::cli::words::{count, exact_bytes, seconds, shell};
 use crate::cli::{Done, Failure, Outcome, escape, print_json, progress, summarize};
 
 pub(super) fn run(
@@ -62,16 +62,20 @@ pub(super) fn run(
         return Ok(Done::Ok);
     }
     let bytes = written.iter().map(|file| file.bytes).sum();
+    let first = written.first();
     let last = written.last().map_or(String::new(), |file| file.path.display().to_string());
     summarize(&format!(
-        "{} in {}: {}, {baked} baked\nwrote {}, {}\nindex {}\nin {}\n",
+        "{} in {}: {}, {baked} baked, {} from the cache, in {}\nwrote {}, {}\nindex {}\nnext:\n  \
+         microfacet-bake inspect {}\n",
         count(materials, "material"),
         count(sets, "numbered set"),
         count(tables, "table"),
+        tables - baked,
+        seconds(time),
         count(written.len(), "file"),
         exact_bytes(bytes),
         escape::line(&last),
-        seconds(time)
+        first.map_or(String::new(), |file| shell(&file.path)),
     ))?;
     Ok(Done::Ok)
 }
