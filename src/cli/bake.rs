@@ -65,8 +65,8 @@ pub(super) struct Args {
     /// Bake everything, and cache nothing.
     #[arg(long, conflicts_with = "cache")]
     no_cache: bool,
-    /// Make the set from the cache alone: refuse, and say what is missing, if anything would have to
-    /// be baked.
+    /// Make the set from the cache alone: refuse, and say what is missing, if anything would have
+    /// to be baked.
     #[arg(long, requires = "scene", conflicts_with_all = ["shard", "no_cache", "max_error", "max_bytes"])]
     only_kept: bool,
     /// Limit of the memory for baking, such as 512MB or 4GiB; a larger bake is refused at the

@@ -231,8 +231,8 @@ pub(crate) fn inspect(py: Python<'_>, path: Option<PathBuf>) -> PyResult<Bound<'
     PyTables::new(path, None)?.describe(py)
 }
 
-/// Does long work in a thread of its own, so that an interrupt is answered meanwhile; what was begun
-/// then goes on until it is done.
+/// Does long work in a thread of its own, so that an interrupt is answered meanwhile; what was
+/// begun then goes on until it is done.
 pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
