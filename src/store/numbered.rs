@@ -75,6 +75,10 @@ impl SetWriter {
         if let Some(set) = first {
             return folder.write(&set, &[Format::Safetensors]);
         }
+        if index.sets.is_empty() {
+            let why = invalid("there is no set to write: add one before".into());
+            return Err(StoreError::Io(folder.path().into(), why));
+        }
         let failed = |(name, why): (String, _)| StoreError::Io(folder.path().join(name), why);
         let json = index.to_json();
         Index::from_json(&json)

@@ -33,8 +33,8 @@ pub(crate) fn embedded() -> Arc<Tables> {
 
 /// A set of tables: those built in, or of a file or folder that `microfacet-bake bake` wrote.
 ///
-/// materials names those that are needed of a large library, or of any set: the others, and what
-/// serves them alone, are left out.
+/// materials names those that are needed of a large library, or of any set: the others are left
+/// out, with the tables of lobes that they alone have.
 #[pyclass(name = "Tables", module = "microfacet", frozen)]
 pub(crate) struct PyTables {
     pub(crate) set: Arc<Tables>,

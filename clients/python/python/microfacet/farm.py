@@ -20,7 +20,7 @@ import time
 import uuid
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import closing, suppress
+from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
 from itertools import compress, islice
 from operator import not_
@@ -299,7 +299,9 @@ class _Farm:
         self.seconds, self.retries, self.max_memory = seconds, retries, max_memory
         self.baked = self.kept = 0
         self._seen: set[str] = set()
-        self._done = as_completed()
+        # Of this client, whichever is the default.
+        self._done = as_completed(loop=client.loop)
+        self._current = ExitStack()
         #: The number of needs of each task under way, and the library that it is for.
         self._under_way: dict[str, tuple[int, int]] = {}
         #: The number of tasks under way for each library.
@@ -308,6 +310,7 @@ class _Farm:
         self._bar = tqdm(total=0, unit="part", disable=not progress, dynamic_ncols=True)
 
     def __enter__(self) -> _Farm:
+        self._current.enter_context(self.client.as_current())
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -315,6 +318,7 @@ class _Farm:
         # After an error: what has begun is of no use, what is finished is kept.
         with suppress(Exception):
             self.client.cancel(list(self._done.futures))
+        self._current.close()
 
     def ready(self, all: Iterable[Library]) -> Iterator[Library]:
         """The libraries in order, each as soon as what it needs is kept."""
