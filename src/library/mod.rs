@@ -90,9 +90,9 @@ impl Library {
 }
 
 /// Scenes of at most `per_set` materials in use; what else a scene holds stays with the first.
-fn divided(scene: Scene, per_set: usize) -> Vec<Scene> {
-    let Scene { materials, ignored, warnings } = scene;
-    let mut parts = vec![Scene { materials: Vec::new(), ignored, warnings }];
+fn divided(mut scene: Scene, per_set: usize) -> Vec<Scene> {
+    let materials = std::mem::take(&mut scene.materials);
+    let mut parts = vec![scene];
     let mut used = 0;
     for material in materials {
         if material.used {

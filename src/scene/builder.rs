@@ -1,5 +1,6 @@
 //! The scene under construction, shared by the importers.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -7,7 +8,7 @@ use microfacet_sampler::Metal;
 
 use super::material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
 use super::texture::{self, Channel, Encoding, Textures};
-use super::{Interval, Place, Scene, SceneError, limits};
+use super::{Interval, Place, Scene, SceneError, SceneErrorKind, limits};
 
 /// γ of GGX (Trowbridge-Reitz).
 pub(super) const GGX: Interval = Interval::point(2.0);
@@ -87,8 +88,9 @@ impl Builder {
         }
     }
 
-    pub(super) fn finish(self) -> Scene {
-        self.scene
+    /// The scene, with the files that it includes.
+    pub(super) fn finish(self, included: Vec<PathBuf>) -> Scene {
+        Scene { included, ..self.scene }
     }
 
     /// Adds a lobe of the material `name`.
@@ -135,26 +137,79 @@ impl Builder {
         place: &Place,
         reason: &'static str,
     ) -> Result<(), SceneError> {
+        self.leave_out(name, kind, place, reason.into(), true)
+    }
+
+    /// Lists a material of which nothing is known but its kind.
+    pub(super) fn not_understood(
+        &mut self,
+        name: &str,
+        kind: &str,
+        place: &Place,
+        reason: impl Into<Cow<'static, str>>,
+    ) -> Result<(), SceneError> {
+        self.leave_out(name, kind, place, reason.into(), false)
+    }
+
+    /// Lists a material as not understood if `read` found something impossible in it, so that the
+    /// rest of the scene is still read. Other errors are returned.
+    pub(super) fn degrade(
+        &mut self,
+        name: &str,
+        kind: &str,
+        place: &Place,
+        read: Result<(), SceneError>,
+    ) -> Result<(), SceneError> {
+        match read {
+            Err(SceneError { place: at, kind: SceneErrorKind::Invalid(why) }) => {
+                // The place of a part of the material; its own is said anyway.
+                let why = if at == *place { why } else { format!("{at}: {why}") };
+                self.not_understood(name, kind, place, why)
+            }
+            read => read,
+        }
+    }
+
+    /// The value that `read` gives; `instead` with a warning if that is impossible, so that the
+    /// rest of the material is still read. Other errors are returned.
+    pub(super) fn or_warn<T>(
+        &mut self,
+        read: Result<T, SceneError>,
+        (instead, said): (T, &str),
+    ) -> Result<T, SceneError> {
+        match read {
+            Err(SceneError { place, kind: SceneErrorKind::Invalid(why) }) => {
+                self.warn(&place, format!("{why}; {said}"));
+                Ok(instead)
+            }
+            read => read,
+        }
+    }
+
+    fn leave_out(
+        &mut self,
+        name: &str,
+        kind: &str,
+        place: &Place,
+        reason: Cow<'static, str>,
+        understood: bool,
+    ) -> Result<(), SceneError> {
         self.check(name, place)?;
-        self.scene.ignored.push(Ignored {
-            name: name.to_owned(),
-            kind: kind.to_owned(),
-            reason,
-            place: place.clone(),
-        });
+        let (name, kind, place) = (name.to_owned(), kind.to_owned(), place.clone());
+        self.scene.ignored.push(Ignored { name, kind, reason, understood, place });
         Ok(())
     }
 
     /// Checks that one more material, of this name, stays within the limits.
     fn check(&self, name: &str, place: &Place) -> Result<(), SceneError> {
         if self.scene.materials.len() + self.scene.ignored.len() == limits::MATERIALS {
-            return Err(place.invalid(format!(
+            return Err(place.too_large(format!(
                 "the scene has more than {} materials; split it",
                 limits::MATERIALS
             )));
         }
         if name.len() > limits::NAME {
-            return Err(place.invalid(format!(
+            return Err(place.too_large(format!(
                 "the name of a material has {} bytes, and at most {} are read; shorten it",
                 name.len(),
                 limits::NAME

@@ -26,6 +26,10 @@ impl Place {
         SceneError { place: self.clone(), kind: SceneErrorKind::Invalid(message.into()) }
     }
 
+    pub(super) fn too_large(&self, message: impl Into<String>) -> SceneError {
+        SceneError { place: self.clone(), kind: SceneErrorKind::TooLarge(message.into()) }
+    }
+
     pub(super) fn syntax(&self, message: impl Into<String>) -> SceneError {
         SceneError { place: self.clone(), kind: SceneErrorKind::Syntax(message.into()) }
     }
@@ -142,6 +146,8 @@ pub enum SceneErrorKind {
     /// The text is well formed and says something impossible: a value out of range, a name that
     /// is not defined, files that include each other.
     Invalid(String),
+    /// The scene passes a limit of what is read.
+    TooLarge(String),
 }
 
 impl fmt::Display for SceneError {
@@ -160,9 +166,9 @@ impl fmt::Display for SceneError {
                      3), .gltf and .glb (glTF 2.0), .mtlx (MaterialX)",
                 )
             }
-            SceneErrorKind::Syntax(message) | SceneErrorKind::Invalid(message) => {
-                f.write_str(message)
-            }
+            SceneErrorKind::Syntax(message)
+            | SceneErrorKind::Invalid(message)
+            | SceneErrorKind::TooLarge(message) => f.write_str(message),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Included files: checks for circular inclusion, and a limit for all of them together, since a few
 //! files that include each other twice amount to any number.
 
+use std::collections::BTreeSet;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -42,6 +43,8 @@ pub(super) struct Includes {
     open: Vec<PathBuf>,
     /// How many were included so far.
     count: usize,
+    /// Each of those that were found, once.
+    found: BTreeSet<PathBuf>,
     /// Bytes of text.
     text: Budget,
 }
@@ -49,7 +52,7 @@ pub(super) struct Includes {
 impl Includes {
     /// For a scene of `limit` bytes in all.
     pub(super) fn new(limit: u64) -> Self {
-        Self { open: Vec::new(), count: 0, text: Budget::new(limit) }
+        Self { open: Vec::new(), count: 0, found: BTreeSet::new(), text: Budget::new(limit) }
     }
 
     /// Opens `file`, which `place` asks for. Each success must be followed by [`Self::leave`].
@@ -57,7 +60,7 @@ impl Includes {
     /// Returns `false` if there is no such file.
     pub(super) fn enter(&mut self, file: &Path, place: &Place) -> Result<bool, SceneError> {
         if self.count > limits::INCLUDES {
-            return Err(place.invalid(format!(
+            return Err(place.too_large(format!(
                 "the scene includes files more than {} times; include each once, and check for \
                  files that include the same one twice",
                 limits::INCLUDES
@@ -90,8 +93,16 @@ impl Includes {
                 "files include each other more than {MAX_DEPTH} deep; include them from fewer levels"
             )));
         }
+        if !self.open.is_empty() {
+            self.found.insert(path.clone());
+        }
         self.open.push(path);
         Ok(true)
+    }
+
+    /// The files that were included, without the scene's own.
+    pub(super) fn found(&mut self) -> Vec<PathBuf> {
+        std::mem::take(&mut self.found).into_iter().collect()
     }
 
     /// Closes the innermost file.
@@ -104,7 +115,7 @@ impl Includes {
         let text = input::read_text(file, self.text.limit()).map_err(|error| {
             let place = Place::file(file);
             match error.kind() {
-                io::ErrorKind::FileTooLarge => place.invalid(spent(&self.text)),
+                io::ErrorKind::FileTooLarge => place.too_large(spent(&self.text)),
                 _ => place.io(error),
             }
         })?;
@@ -114,7 +125,7 @@ impl Includes {
 
     /// Takes bytes that `place` adds to the text from what may still be read.
     pub(super) fn charge(&self, bytes: usize, place: &Place) -> Result<(), SceneError> {
-        if self.text.take(bytes as u64) { Ok(()) } else { Err(place.invalid(spent(&self.text))) }
+        if self.text.take(bytes as u64) { Ok(()) } else { Err(place.too_large(spent(&self.text))) }
     }
 
     /// A reader of text that counts what it reads.

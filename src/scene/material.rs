@@ -1,5 +1,6 @@
 //! The materials of a scene: microfacet lobes with a roughness, a shape and a Fresnel term.
 
+use std::borrow::Cow;
 use std::fmt;
 
 pub use microfacet_sampler::{FresnelEntry as Fresnel, Masking};
@@ -142,7 +143,7 @@ impl Material {
     }
 }
 
-/// A material of the scene for which there is nothing to bake.
+/// A material of the scene without a lobe in [`Scene::materials`](super::Scene::materials).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ignored {
     /// Its name.
@@ -150,14 +151,18 @@ pub struct Ignored {
     /// Its kind in the scene's format, for instance "hair".
     pub kind: String,
     /// Why it was left out.
-    pub reason: &'static str,
+    pub reason: Cow<'static, str>,
+    /// Whether it was understood: then there is nothing to bake for it. If not, it is of a kind
+    /// that is not known here, or says something impossible, and it may well have microfacets.
+    pub understood: bool,
     /// Where it was described.
     pub place: Place,
 }
 
 impl fmt::Display for Ignored {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, kind, reason, place } = self;
-        write!(f, "{place}: nothing to bake for \"{name}\" ({kind}): {reason}")
+        let Self { name, kind, reason, understood, place } = self;
+        let what = if *understood { "nothing to bake for" } else { "not understood:" };
+        write!(f, "{place}: {what} \"{name}\" ({kind}): {reason}")
     }
 }

@@ -13,16 +13,17 @@ const MAX_DEPTH: usize = 128;
 pub(super) struct Memo<K> {
     /// `None` is a value that is being computed.
     values: HashMap<K, Option<Interval>>,
-    depth: usize,
+    /// Those that are being computed, from the outermost.
+    open: Vec<K>,
 }
 
 impl<K> Default for Memo<K> {
     fn default() -> Self {
-        Self { values: HashMap::new(), depth: 0 }
+        Self { values: HashMap::new(), open: Vec::new() }
     }
 }
 
-impl<K: Eq + Hash> Memo<K> {
+impl<K: Clone + Eq + Hash> Memo<K> {
     /// The value if it is known; if not, it must be computed and given to [`Self::end`].
     pub(super) fn begin(&mut self, key: K, place: &Place) -> Result<Option<Interval>, SceneError> {
         match self.values.get(&key) {
@@ -30,12 +31,12 @@ impl<K: Eq + Hash> Memo<K> {
             Some(None) => return Err(place.invalid("this texture or node depends on itself")),
             None => {}
         }
-        if self.depth == MAX_DEPTH {
+        if self.open.len() == MAX_DEPTH {
             return Err(place.invalid(format!(
                 "textures or nodes depend on each other more than {MAX_DEPTH} deep"
             )));
         }
-        self.depth += 1;
+        self.open.push(key.clone());
         self.values.insert(key, None);
         Ok(None)
     }
@@ -53,8 +54,16 @@ impl<K: Eq + Hash> Memo<K> {
                 value.min, value.max
             )));
         }
-        self.depth -= 1;
+        self.open.pop();
         self.values.insert(key, Some(value));
         Ok(value)
+    }
+
+    /// Forgets the values that were being computed when one of them failed, so that another
+    /// material that refers to them finds the same error, and not a circle.
+    pub(super) fn abandon(&mut self) {
+        for key in self.open.drain(..) {
+            self.values.remove(&key);
+        }
     }
 }

@@ -45,7 +45,7 @@ mod texture;
 mod xml;
 
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use error::{Place, SceneError, SceneErrorKind, did_you_mean_key};
 pub use interval::Interval;
@@ -58,8 +58,12 @@ use crate::input;
 pub struct Scene {
     /// The microfacet lobes, in the order of their definition; names are unique.
     pub materials: Vec<Material>,
-    /// Materials for which there is nothing to bake.
+    /// Materials without a lobe: those for which there is nothing to bake, and those that were
+    /// not understood.
     pub ignored: Vec<Ignored>,
+    /// The files that the scene's own file includes, and those that they include, each once, with
+    /// links resolved.
+    pub included: Vec<PathBuf>,
     /// Assumptions made where the scene could not be read in full, and values that look like a
     /// mistake, each with its place.
     pub warnings: Vec<String>,

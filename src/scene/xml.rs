@@ -102,7 +102,7 @@ impl Reader {
         let text = self.includes.text(file, place)?;
         let lines = Lines::new(file, text.as_bytes());
         if !self.values.take(check_attributes(&text, &lines)?) {
-            return Err(Place::file(file).invalid(format!(
+            return Err(Place::file(file).too_large(format!(
                 "the scene has more than {} attributes; load a file that has the materials alone",
                 limits::XML_VALUES
             )));
@@ -111,7 +111,7 @@ impl Reader {
         let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
         let document = Document::parse_with_options(&text, options).map_err(|error| {
             if matches!(error, roxmltree::Error::NodesLimitReached) {
-                return Place::file(file).invalid(format!(
+                return Place::file(file).too_large(format!(
                     "the scene has more than {} elements, comments and texts; load a file that has \
                      the materials alone",
                     limits::XML_NODES
@@ -139,7 +139,7 @@ fn check_attributes(text: &str, lines: &Lines<'_>) -> Result<u64, SceneError> {
     for piece in text.split('<') {
         let quotes = piece.bytes().filter(|byte| matches!(byte, b'"' | b'\'')).count();
         if quotes > 2 * limits::XML_ATTRIBUTES {
-            return Err(lines.place(start).invalid(format!(
+            return Err(lines.place(start).too_large(format!(
                 "there are {quotes} quotes before the next \"<\"; an element may have {} attributes",
                 limits::XML_ATTRIBUTES
             )));
@@ -148,7 +148,7 @@ fn check_attributes(text: &str, lines: &Lines<'_>) -> Result<u64, SceneError> {
         all += quotes as u64;
     }
     match text.match_indices("xmlns").nth(limits::XML_NAMESPACES) {
-        Some((at, _)) => Err(lines.place(at).invalid(format!(
+        Some((at, _)) => Err(lines.place(at).too_large(format!(
             "the file declares more than {} namespaces; declare each once",
             limits::XML_NAMESPACES
         ))),

@@ -64,7 +64,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         embedded: Textures::default(),
     };
     importer.materials()?;
-    Ok(importer.builder.finish())
+    Ok(importer.builder.finish(Vec::new()))
 }
 
 /// What helps where the JSON is too large.
@@ -96,7 +96,7 @@ fn read(path: &Path, place: &Place) -> Result<(Vec<u8>, Option<Section>), SceneE
     }
     let size = u64::from(word(12));
     if size > limits::JSON {
-        return Err(place.invalid(format!(
+        return Err(place.too_large(format!(
             "the JSON of the glTF container has {size} bytes, and at most {} MiB are read; {SEPARATE}",
             limits::JSON >> 20
         )));

@@ -46,6 +46,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut builder = Builder::new(Format::MaterialX);
     let folder = path.parent().unwrap_or(Path::new(""));
     expand(&mut root, folder, &mut xml, &mut builder)?;
+    let included = xml.includes.found();
     let mut reader = Reader {
         root: &root,
         folder: folder.to_owned(),
@@ -55,7 +56,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     };
     reader.check_circles()?;
     reader.shaders()?;
-    Ok(reader.builder.finish())
+    Ok(reader.builder.finish(included))
 }
 
 /// Replaces each `<xi:include>` by the content of its document.

@@ -54,13 +54,14 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     expansion.element(&mut root, 0)?;
     let incomplete = expansion.incomplete;
     let folders = expansion.folders;
+    let included = expansion.xml.includes.found();
 
     let mut reader =
         Reader { ids: ids(&root), builder, folders, incomplete, ranges: Memo::default() };
     reader.check_circles(&root)?;
     let used = reader.used(&root)?;
     reader.bsdfs(&root, None, &used)?;
-    Ok(reader.builder.finish())
+    Ok(reader.builder.finish(included))
 }
 
 /// Replaces each `<include>` by its content, and `$name` by its value.
@@ -83,7 +84,7 @@ impl Expansion<'_> {
             "default" => {
                 let (name, value) = (element.required("name")?, element.required("value")?);
                 if self.defaults.len() == limits::DEFAULTS && !self.defaults.contains_key(name) {
-                    return Err(element.place.invalid(format!(
+                    return Err(element.place.too_large(format!(
                         "the scene has more than {} <default> parameters; write values in place of \
                          some",
                         limits::DEFAULTS
@@ -93,7 +94,7 @@ impl Expansion<'_> {
             }
             "path" => {
                 if self.folders.len() > limits::FOLDERS {
-                    return Err(element.place.invalid(format!(
+                    return Err(element.place.too_large(format!(
                         "the scene has more than {} <path> folders; keep its files in fewer",
                         limits::FOLDERS
                     )));

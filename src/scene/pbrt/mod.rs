@@ -288,7 +288,7 @@ impl Reader {
                 if kind == "float" {
                     self.hold(&parameters, &place)?;
                     if self.textures.len() == limits::MATERIALS {
-                        return Err(place.invalid(format!(
+                        return Err(place.too_large(format!(
                             "the scene has more than {} textures; split it",
                             limits::MATERIALS
                         )));
@@ -337,7 +337,7 @@ impl Reader {
         if self.held <= limits::PBRT_HELD {
             return Ok(());
         }
-        Err(place.invalid(format!(
+        Err(place.too_large(format!(
             "the materials and textures of the scene have more than {} MiB of parameters; split it",
             limits::PBRT_HELD >> 20
         )))
@@ -356,7 +356,7 @@ impl Reader {
                 continue;
             }
             if attributes.len() == limits::PBRT_PARAMETERS {
-                return Err(place.invalid(format!(
+                return Err(place.too_large(format!(
                     "more than {} attributes of materials are in force; remove those that pbrt does \
                      not read",
                     limits::PBRT_PARAMETERS
@@ -375,7 +375,7 @@ impl Reader {
 
     fn slot(&mut self, place: &Place) -> Result<usize, SceneError> {
         if self.slots.len() == limits::MATERIALS {
-            return Err(place.invalid(format!(
+            return Err(place.too_large(format!(
                 "the scene has more than {} materials; split it",
                 limits::MATERIALS
             )));
@@ -413,7 +413,7 @@ impl Reader {
                 self.lobes(&definition, used)?;
             }
         }
-        Ok(self.builder.finish())
+        Ok(self.builder.finish(self.includes.found()))
     }
 
     fn check_references(&mut self) -> Result<(), SceneError> {

@@ -50,7 +50,7 @@ pub(super) fn parameters<R: Read>(
         }
         let place = tokens.place();
         if list.len() == limits::PBRT_PARAMETERS {
-            return Err(place.invalid(format!(
+            return Err(place.too_large(format!(
                 "a directive has more than {} parameters; remove those that pbrt does not read",
                 limits::PBRT_PARAMETERS
             )));

@@ -93,7 +93,7 @@ fn read_parts(
              [[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0",
         ));
     }
-    Ok(Scene { materials, ignored: Vec::new(), warnings: warnings.take() })
+    Ok(Scene { materials, warnings: warnings.take(), ..Scene::default() })
 }
 
 /// A part of a recipe, which is parsed by itself.
