@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let plan = match recipe.first() {
         Some(path) => {
-            let options = Options { albedo: AlbedoWish::Recipes, ..Options::default() };
+            let options = Options { albedo: AlbedoWish::Auto, ..Options::default() };
             Plan::new(&scene::load(Path::new(path))?, options)?
         }
         None => Plan::general(),

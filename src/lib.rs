@@ -25,7 +25,8 @@
 //! ```
 //!
 //! A [`table_set::Target`] is a quality, a largest error or a number of bytes.
-//! A [`library`] of many materials is baked by several processes.
+//! A [`library`] of many materials is baked by several processes; a [`survey`] plans all scenes of
+//! a folder.
 //! [`table_set::bake_with`] adds a cache, a limit of memory and progress. [`store::write`] puts the
 //! set into a folder in one step, and [`store::read`] reads it back.
 //!
@@ -60,6 +61,7 @@ pub mod progress;
 mod quality;
 pub mod scene;
 pub mod store;
+pub mod survey;
 pub mod table_set;
 pub mod table_spec;
 pub mod validate;

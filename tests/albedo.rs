@@ -22,7 +22,7 @@ use microfacet_sampler::{
 };
 use serde_json::Value;
 
-use command::{json, run};
+use command::{json, ok, run};
 
 const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
 
@@ -64,7 +64,7 @@ const MIXED: [[&str; 4]; 6] = [
 #[test]
 fn those_who_ask_get_the_form_they_name() {
     let plan_of = |albedo| plan(&MIXED, albedo);
-    let asked = plan_of(AlbedoWish::Recipes);
+    let asked = plan_of(AlbedoWish::Auto);
     let need = |lobe, maskings: &[Masking]| RequiredAlbedo {
         lobe,
         reflectance: Reflectance::Moments,
@@ -84,7 +84,7 @@ fn those_who_ask_get_the_form_they_name() {
     assert!(plan_of(AlbedoWish::None).albedos.is_empty());
     assert!(matches!(plan_of(AlbedoWish::All).albedo_verdicts[0], Bake(_)));
     // GGX needs a table of its albedo, and no other.
-    let gold = plan(&MIXED[3..4], AlbedoWish::Recipes);
+    let gold = plan(&MIXED[3..4], AlbedoWish::Auto);
     assert!(gold.shapes.is_empty() && !gold.is_empty());
 }
 
@@ -94,11 +94,11 @@ fn many_roughnesses_are_a_range_and_what_lies_inside_is_there() {
     let names: Vec<String> = (0..100).map(|i| format!("m{i}")).collect();
     let mut materials: Vec<[&str; 4]> =
         (0..100).map(|i| [names[i].as_str(), sigmas[i].as_str(), "3.0", MIRROR]).collect();
-    let one = plan(&materials, AlbedoWish::Recipes);
+    let one = plan(&materials, AlbedoWish::Auto);
     assert_eq!(one.albedos.len(), 1);
     assert_eq!(one.albedos[0].lobe, domain([3.0; 2], [0.1, 0.1 + 0.002 * 99.0]));
     materials.push(["texture", "{ min = 0.0, max = 0.5 }", "{ min = 2.5, max = 4.0 }", MIRROR]);
-    let plan = plan(&materials, AlbedoWish::Recipes);
+    let plan = plan(&materials, AlbedoWish::Auto);
     assert_eq!(plan.albedos.len(), 1, "{:?}", plan.albedos);
     assert!(plan.albedo_verdicts.iter().all(|verdict| *verdict == AlbedoVerdict::Bake(vec![0])));
 }
@@ -176,18 +176,54 @@ fn a_single_material_has_its_albedo_and_no_other() {
 }
 
 #[test]
-fn imported_scenes_have_to_ask() {
+fn imported_scenes_are_given_albedos_that_are_quick_and_have_to_ask_for_others() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float roughness\" 0.04\nWorldBegin\n";
     std::fs::write(at.join("s.pbrt"), scene).unwrap();
-    let shown = json(at, &["plan", "s.pbrt"]);
+    let given = json(at, &["plan", "s.pbrt"]);
+    assert_eq!(given["albedo"][0]["masking"], serde_json::json!(["height-correlated"]));
+    assert_eq!(given["albedo"][0]["materials"], serde_json::json!(["steel"]));
+    assert_eq!(
+        (&given["materials"][0]["albedo"][0], &given["offered"]),
+        (&"baked".into(), &Value::Null)
+    );
+    let none = json(at, &["plan", "s.pbrt", "--no-albedo"]);
+    assert_eq!(none["materials"][0]["albedo"][0], "declined");
+
+    // Brushed metals have tables over the azimuth, which take longer.
+    let brushed = |i: u32| {
+        format!(
+            "MakeNamedMaterial \"{i}\" \"string type\" \"conductor\" \"float uroughness\" 0.0{i} \"float vroughness\" 0.3\n"
+        )
+    };
+    std::fs::write(at.join("b.pbrt"), (1..9).map(brushed).collect::<String>()).unwrap();
+    let shown = json(at, &["plan", "b.pbrt"]);
     assert_eq!(shown["albedo"], Value::Array(Vec::new()));
     assert_eq!(shown["materials"][0]["albedo"][0], "not asked");
-    let asked = json(at, &["plan", "s.pbrt", "--albedo"]);
-    assert_eq!(asked["albedo"][0]["masking"], serde_json::json!(["height-correlated"]));
-    assert_eq!(asked["albedo"][0]["materials"], serde_json::json!(["steel"]));
-    json(at, &["bake", "s.pbrt", "--albedo", "--quality", "draft", "--out", "out"]);
+    let asked = json(at, &["plan", "b.pbrt", "--albedo"]);
+    let tables: usize = asked["albedo"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|of| of["names"].as_array().unwrap().len())
+        .sum();
+    assert_eq!(tables, 8);
+    // What it would add is what it adds.
+    let offered = &shown["offered"]["cost"];
+    let sum = |of: &str| -> f64 {
+        asked["albedo"].as_array().unwrap().iter().map(|it| it["cost"][of].as_f64().unwrap()).sum()
+    };
+    assert!((offered["bytes"].as_f64().unwrap() - sum("bytes")).abs() < 0.5);
+    assert!((offered["seconds"].as_f64().unwrap() / sum("seconds") - 1.0).abs() < 1e-9);
+    let text = ok(at, &["plan", "b.pbrt"]);
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        text.contains("albedo, not asked") && text.contains("--albedo bakes 8 tables"),
+        "{text}"
+    );
+
+    json(at, &["bake", "s.pbrt", "--quality", "draft", "--out", "out"]);
     let set = store::read(&at.join("out")).unwrap();
     assert!(set.albedo(0.2, 2.0, Masking::HeightCorrelated).is_ok());
     assert!(set.provenance().conventions.contains_key("albedo"));
@@ -195,7 +231,7 @@ fn imported_scenes_have_to_ask() {
 
 #[test]
 fn targets_are_met_or_refused() {
-    let plan = plan(&MIXED[1..2], AlbedoWish::Recipes);
+    let plan = plan(&MIXED[1..2], AlbedoWish::Auto);
     let plan = albedos_of(plan);
     let patient = || Settings { patient: true, ..Settings::default() };
     let bake = |target| bake_with(&plan, target, patient());
@@ -234,7 +270,7 @@ fn a_surface_smoother_than_the_promised_ones_has_a_certificate() {
         ["pond", "0.002", "2.0", "fresnel = { dielectric = 1.33 }"],
         ["nearly a mirror", "{ min = 0.0, max = 1e-4 }", "5.0", MIRROR],
     ];
-    let plan = albedos_of(plan(&smooth, AlbedoWish::Recipes));
+    let plan = albedos_of(plan(&smooth, AlbedoWish::Auto));
     let set = bake(&plan, DRAFT).unwrap().set;
     for table in set.tables() {
         assert!(worst_error(table) < 1e-2, "{}: {:?}", table.name, table.certificate);
@@ -249,7 +285,7 @@ fn a_surface_smoother_than_the_promised_ones_has_a_certificate() {
 #[test]
 fn estimated_bytes_are_those_of_the_file() {
     // Without the albedo whose views are refined.
-    let plan = albedos_of(plan(&MIXED[..4], AlbedoWish::Recipes));
+    let plan = albedos_of(plan(&MIXED[..4], AlbedoWish::Auto));
     let set = bake(&plan, DRAFT).unwrap().set;
     let bytes = |need: &RequiredAlbedo| {
         albedo_cost(&need.spec(Quality::Draft, Precision::F32).unwrap()).bytes

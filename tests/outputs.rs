@@ -238,7 +238,9 @@ fn hundreds_of_materials_stay_readable() {
     for command in [&DRAFT[..], &["plan", "r.toml"]] {
         let text = ok(folder.path(), command);
         fits(&text);
-        assert!(text.lines().count() <= 24, "{text}");
+        // Twenty materials, and what is done for all.
+        assert!(text.lines().count() <= 44, "{text}");
+        assert!(text.contains("and 280 more"), "{text}");
         let text = flat(&text);
         assert!(text.contains("\"ggx 0\", \"ggx 3\", \"ggx 6\", \"ggx 9\", 96 more"), "{text}");
         assert!(text.contains("\"smooth 1\", \"smooth 4\", \"smooth 7\","), "{text}");
@@ -272,40 +274,29 @@ fn a_path_that_is_no_folder_and_options_without_effect_are_refused() {
 }
 
 #[test]
-fn an_old_set_that_stays_is_named() {
+fn a_set_is_always_written() {
     let folder = folder(&smooth("mirror"));
     let at = folder.path();
-    let messages = |out: &str| {
-        let output = run(at, &["bake", "r.toml", "--out", out]);
-        assert_eq!(output.status.code(), Some(0));
-        let text = String::from_utf8(output.stdout).unwrap();
-        assert!(text.contains("not rough           no microfacets: \"mirror\""), "{text}");
-        String::from_utf8(output.stderr).unwrap()
-    };
-    assert_eq!(messages("new"), "");
-    assert!(!at.join("new").exists());
     fs::write(at.join("gold.toml"), ggx("gold")).unwrap();
-    ok(at, &["bake", "gold.toml", "--out", "old"]);
-    let message = messages("old");
-    assert!(message.contains("old: the set of an earlier bake stays"), "{message}");
-    assert!(store::read(&at.join("old")).unwrap().material("gold").is_ok());
-    // Of images too.
-    fs::write(at.join("glass.toml"), GLASS).unwrap();
-    let draft = ["bake", "glass.toml", "--quality", "draft", "--format", "exr", "--out", "images"];
-    ok(at, &draft);
-    assert!(messages("images").contains("images: the set of an earlier bake stays"));
-    // A folder of other files holds no set.
-    fs::create_dir(at.join("notes")).unwrap();
-    fs::write(at.join("notes/a.txt"), "").unwrap();
-    assert_eq!(messages("notes"), "");
-    let json = json(at, &["bake", "r.toml", "--out", "old"]);
+    ok(at, &["bake", "gold.toml", "--out", "out"]);
+    let text = ok(at, &["bake", "r.toml", "--out", "out"]);
+    assert!(text.contains("not rough           no microfacets: \"mirror\""), "{text}");
+    assert!(text.contains("no material in it is rough"), "{text}");
+    // The set of the earlier bake is replaced.
+    let set = store::read(&at.join("out")).unwrap();
+    let names = set.provenance().materials.iter().map(|material| &material.name[..]);
+    assert_eq!((set.tables().len(), names.collect::<Vec<_>>()), (0, vec!["mirror"]));
+    let json = json(at, &["bake", "r.toml", "--out", "out"]);
     assert_eq!(
         (&json["baked"], &json["materials"][0]["verdict"]),
         (&0.into(), &"not rough".into())
     );
-    // It has the keys of any other bake.
-    assert_eq!(json["seconds_of"], serde_json::json!({ "visible normals": 0.0, "albedo": 0.0 }));
-    assert!(json["seconds"].is_number() && json["files"] == serde_json::json!([]));
+    assert_eq!(json["files"].as_array().unwrap().len(), 1);
+    // A scene of which nothing has a lobe too.
+    fs::write(at.join("s.pbrt"), "WorldBegin\nMaterial \"diffuse\"\nShape \"sphere\"\n").unwrap();
+    ok(at, &["bake", "s.pbrt", "--out", "out"]);
+    assert_eq!(store::read(&at.join("out")).unwrap().provenance().materials.len(), 0);
+    assert!(ok(at, &["inspect", "out"]).contains("materials  none\n"));
 }
 
 /// The sampler refuses it as a lobe, so that no table could be read.

@@ -9,18 +9,16 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use serde_json::json;
-
 use microfacet_bake::cache::Cache;
 use microfacet_bake::input::MAX_TABLES;
 use microfacet_bake::library::{Library, Part, Shard};
 use microfacet_bake::plan::{Plan, set_cost};
 use microfacet_bake::progress::Meter;
-use microfacet_bake::scene::{self, Scene};
+use microfacet_bake::scene::Scene;
 use microfacet_bake::store::{Format, OutputFolder};
 use microfacet_bake::table_set::{Baked, Settings, Target, bake_with};
 
-use super::plan::{Outline, nothing};
+use super::plan::{Outline, warn};
 use super::request::Request;
 use super::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize, values};
 use summary::Summary;
@@ -124,9 +122,7 @@ impl Args {
 
     /// Reads a scene, and plans its sets.
     fn library(&self, path: &Path) -> Result<Library, Failure> {
-        let scene = scene::load(path)?;
-        scene.warnings.iter().for_each(|warning| report("warning", warning));
-        self.request.library(scene, self.max_error)
+        self.request.library(self.request.scene(path)?, self.max_error)
     }
 
     /// Refuses a set that could not be read back, before hours are spent on it.
@@ -199,13 +195,12 @@ pub(super) fn run(args: Args) -> Outcome {
         Some(only) if library.parts.is_empty() => only,
         last => {
             library.parts.extend(last);
-            return sets::run(&args, &library, out, cache, start);
+            sets::run(&args, &library, out, cache, start)?;
+            warn(library.plans());
+            return Ok(Done::Ok);
         }
     };
     let outline = Outline::new(&scene, &plan, args.request.quality(), args.request.precision())?;
-    if plan.is_empty() {
-        return nothing_to_bake(&args, &outline, folder, &out, start);
-    }
     args.check_bytes(&plan)?;
     let settings = args.settings(cache);
     let bar = progress::show(&settings.progress, "baking");
@@ -234,6 +229,7 @@ pub(super) fn run(args: Args) -> Outcome {
     } else {
         summarize(&summary.text())?
     }
+    warn([(&scene, &plan)].into_iter());
     Ok(Done::Ok)
 }
 
@@ -243,31 +239,4 @@ fn warn_of_cache(baked: &Baked) {
         let fix = "name a folder with --cache, or use --no-cache";
         report("warning", format!("finished tables are not kept: {why}; {fix}"));
     }
-}
-
-/// Says why no set is written, and if that leaves an older one in its place.
-fn nothing_to_bake(
-    args: &Args,
-    outline: &Outline,
-    folder: &Path,
-    out: &OutputFolder,
-    start: Instant,
-) -> Outcome {
-    if out.holds_set()? {
-        let folder = folder.display();
-        let stays = "the set of an earlier bake stays there; remove it if its materials are gone";
-        report("warning", format!("{folder}: {stays}"));
-    }
-    if args.json {
-        print_json(&json!({
-            "tables": [], "baked": 0, "files": [],
-            "seconds": start.elapsed().as_secs_f64(), "seconds_of": summary::families([0.0; 2]),
-            "materials": outline.materials(), "ignored": outline.ignored(),
-        }))?
-    } else {
-        summarize(
-            &(outline.lines(["baked", "skipped"], |_| String::new()) + nothing(outline.scene)),
-        )?
-    }
-    Ok(Done::Ok)
 }

@@ -10,6 +10,7 @@ mod fit;
 mod furnace;
 mod inspect;
 mod interrupt;
+mod material;
 mod negative;
 mod plan;
 mod plot;

@@ -1,17 +1,20 @@
 //! Options that `plan` and `bake` share: quality, and what the renderer has already.
 
+use std::path::Path;
+
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
 use microfacet_bake::library::{Library, PER_SET};
 use microfacet_bake::plan::{AlbedoWish, Options, Plan};
-use microfacet_bake::scene::Scene;
+use microfacet_bake::scene::{self, Scene};
 use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables};
 
-use super::Failure;
 use super::values::{self, InRecipe};
+use super::words::count;
+use super::{Failure, report};
 
 #[derive(clap::Args)]
 pub(super) struct Request {
@@ -24,13 +27,17 @@ pub(super) struct Request {
     /// Tabulate GGX (gamma = 2) as well, for a renderer without its closed forms.
     #[arg(long, requires = "scene")]
     tabulate_ggx: bool,
-    /// Bake directional albedos for every rough material of a scene; by default only for those of a
-    /// recipe that state `fresnel`.
+    /// Bake directional albedos for every rough material of a scene; by default for those of a
+    /// recipe that state `fresnel`, and for other scenes if that takes less than 2 s of one thread.
     #[arg(long, requires = "scene")]
     albedo: bool,
     /// Bake no directional albedos, which take most of the time.
     #[arg(long, conflicts_with = "albedo")]
     no_albedo: bool,
+    /// Refuse a scene of which anything was not understood, is missing, is doubtful or cannot be
+    /// covered by tables; by default that is left out with a warning.
+    #[arg(long, requires = "scene")]
+    strict: bool,
     /// Skip what the sampler crate's default set covers (`Tables::or_embedded`).
     #[arg(long, requires = "scene")]
     embedded: bool,
@@ -98,12 +105,30 @@ impl Request {
             (self.tabulate_ggx, "--tabulate-ggx"),
             (self.albedo, "--albedo"),
             (self.no_albedo, "--no-albedo"),
+            (self.strict, "--strict"),
             (self.embedded, "--embedded"),
         ];
         for (_, flag) in flags.into_iter().filter(|(is_set, _)| *is_set) {
             add(flag, String::new());
         }
         all
+    }
+
+    /// Reads a scene, and reports what is doubtful in it.
+    pub(super) fn scene(&self, path: &Path) -> Result<Scene, Failure> {
+        let scene = scene::load(path)?;
+        let doubts = || scene.doubts();
+        if self.strict
+            && let Some(first) = doubts().next()
+        {
+            let more = match doubts().count() - 1 {
+                0 => String::new(),
+                more => format!("; and {}", count(more, "further doubt")),
+            };
+            return Err(Failure(format!("{first}{more}: leave out --strict to plan the rest")));
+        }
+        scene.warnings.iter().for_each(|warning| report("warning", warning));
+        Ok(scene)
     }
 
     /// The plan of the general set.
@@ -118,6 +143,11 @@ impl Request {
     /// The scene divided into sets, and their plans; `max_error` is the budget of error, if any.
     pub(super) fn library(&self, scene: Scene, max_error: Option<f64>) -> Result<Library, Failure> {
         Ok(Library::new(scene, self.per_set, self.options(max_error)?)?)
+    }
+
+    /// What a survey plans with: materials of a set, and options.
+    pub(super) fn planning(&self) -> Result<(usize, Options), Failure> {
+        Ok((self.per_set, self.options(None)?))
     }
 
     fn options(&self, max_error: Option<f64>) -> Result<Options, Failure> {
@@ -152,8 +182,10 @@ impl Request {
             albedo: match (self.albedo, self.no_albedo) {
                 (true, _) => AlbedoWish::All,
                 (_, true) => AlbedoWish::None,
-                _ => AlbedoWish::Recipes,
+                _ => AlbedoWish::Auto,
             },
+            quality: self.quality(),
+            strict: self.strict,
         })
     }
 }

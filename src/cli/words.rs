@@ -62,11 +62,12 @@ pub(super) fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-/// How a size or a time compares with a larger one: `53 times smaller`; words for less and for
-/// more.
+/// How a size or a time compares with a larger one: `53 times smaller`, or `no smaller`; words for
+/// less and for more.
 pub(super) fn compared(x: f64, with: f64, [less, more]: [&str; 2]) -> String {
     let (ratio, word) = if x <= with { (with / x, less) } else { (x / with, more) };
     match ratio {
+        ..1.05 => format!("no {less}"),
         10.0.. => format!("{ratio:.0} times {word}"),
         _ => format!("{ratio:.1} times {word}"),
     }
@@ -192,7 +193,9 @@ mod tests {
         let words = ["smaller", "larger"];
         assert_eq!(compared(10.0, 532.0, words), "53 times smaller");
         assert_eq!(compared(50.0, 10.0, words), "5.0 times larger");
-        assert_eq!(compared(10.0, 10.0, words), "1.0 times smaller");
+        // Said of a size "than" another one.
+        assert_eq!(compared(10.0, 10.0, words), "no smaller");
+        assert_eq!(compared(10.4, 10.0, words), "no smaller");
     }
 
     #[test]

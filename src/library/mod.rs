@@ -47,6 +47,11 @@ impl Library {
         Ok(Self { parts: parts.collect::<Result<_, _>>()? })
     }
 
+    /// The scene and the plan of each set.
+    pub fn plans(&self) -> impl Iterator<Item = (&Scene, &Plan)> {
+        self.parts.iter().map(|part| (&part.scene, &part.plan))
+    }
+
     /// What all sets need, each thing once, with its [`Need::id`].
     ///
     /// # Errors
@@ -81,11 +86,6 @@ impl Library {
             after(i + 1);
         }
         Ok(baked)
-    }
-
-    /// Whether nothing has to be baked and no set is worth writing.
-    pub fn is_empty(&self) -> bool {
-        self.parts.iter().all(|part| part.plan.is_empty())
     }
 }
 

@@ -5,8 +5,9 @@ use std::collections::HashMap;
 
 use microfacet_sampler::{LobeEntry, Masking, Precision, Reflectance};
 
+use super::albedo_work::albedo_seconds;
 use super::key::{Key, distinct};
-use super::{NotCovered, Options, entry, is_tabulated};
+use super::{NotCovered, Options, entry, is_tabulated, refusal};
 use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, SIGMA_MAX};
 use crate::scene::{Format, Interval, Material, Scene};
 use crate::table_spec::{Level, Quality};
@@ -14,14 +15,20 @@ use crate::table_spec::{Level, Quality};
 /// Which materials get albedo tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AlbedoWish {
-    /// Those of a native recipe that state `fresnel`. Scenes of other formats state a Fresnel term
-    /// for nearly every material, whether or not their renderer uses albedos.
+    /// Those of a native recipe that state `fresnel`; those of a scene of another format if all of
+    /// them together are estimated to take less than [`QUICK`](Self::QUICK). Such scenes state a
+    /// Fresnel term for nearly every material, whether or not their renderer uses albedos.
     #[default]
-    Recipes,
+    Auto,
     /// Every rough material in use.
     All,
     /// None.
     None,
+}
+
+impl AlbedoWish {
+    /// Seconds of one thread that nobody minds.
+    pub const QUICK: f64 = 2.0;
 }
 
 /// Albedos that one table group covers, of one lobe or a range of the family; they are baked,
@@ -58,14 +65,17 @@ impl RequiredAlbedo {
 }
 
 /// What the plan decides on a material's albedo.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum AlbedoVerdict {
     /// Tables are baked for it: indices into [`Plan::albedos`](super::Plan::albedos).
     Bake(Vec<usize>),
     /// Its recipe states no `fresnel`.
     NotAsked,
-    /// It comes from a scene of another format, and for those albedos must be asked for.
+    /// It comes from a scene of another format, whose albedos together would take long: they must
+    /// be asked for.
     Imported,
+    /// No albedo table covers its σ.
+    NotCovered(NotCovered),
     /// The user declined albedo tables.
     Declined,
     /// The default set that is compiled into the sampler crate covers it.
@@ -137,11 +147,39 @@ impl Needs {
     }
 }
 
-/// The required albedos of a scene, and one verdict for each of its materials.
+/// Albedos, and one verdict for each material of their scene.
+type Wanted = (Vec<RequiredAlbedo>, Vec<AlbedoVerdict>);
+
+/// The required albedos of a scene, and those that would take too long.
 pub(super) fn required(
     scene: &Scene,
     options: Options,
-) -> Result<(Vec<RequiredAlbedo>, Vec<AlbedoVerdict>), NotCovered> {
+) -> Result<(Wanted, Vec<RequiredAlbedo>), NotCovered> {
+    let is_imported = |material: &Material| material.origin.format != Format::Recipe;
+    let mut offered = Vec::new();
+    if options.albedo == AlbedoWish::Auto && scene.materials.iter().any(is_imported) {
+        match wanted(scene, Options { albedo: AlbedoWish::All, ..options }) {
+            Ok(wanted) if is_quick(&wanted.0, options.quality) => return Ok((wanted, offered)),
+            Ok((all, _)) => offered = all,
+            // What is refused where it is asked for is not offered.
+            Err(_) => {}
+        }
+    }
+    Ok((wanted(scene, options)?, offered))
+}
+
+/// Whether all these albedos are estimated to take less than [`AlbedoWish::QUICK`] on one thread.
+fn is_quick(all: &[RequiredAlbedo], quality: Quality) -> bool {
+    let mut left = AlbedoWish::QUICK;
+    // What no table can hold is refused where it is asked for.
+    all.iter().filter_map(|need| need.spec(quality, Precision::F32).ok()).all(|spec| {
+        left -= albedo_seconds(&spec);
+        left > 0.0
+    })
+}
+
+/// The albedos that a scene is given under a wish.
+fn wanted(scene: &Scene, options: Options) -> Result<Wanted, NotCovered> {
     let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> = scene
         .materials
         .iter()
@@ -233,7 +271,8 @@ fn wants(
         if let AlbedoLobe::Family(Domain { sigma, .. }) = want.lobe
             && sigma.max > SIGMA_MAX
         {
-            return Err(NotCovered::Sigma { material: material.name.clone(), sigma: sigma.max });
+            let why = NotCovered::Sigma { material: material.name.clone(), sigma: sigma.max };
+            return refusal(material, options, why).map(|why| Err(AlbedoVerdict::NotCovered(why)));
         }
     }
     Ok(if wants.is_empty() { Err(AlbedoVerdict::Embedded) } else { Ok(wants) })
@@ -245,8 +284,8 @@ fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
     match options.albedo {
         _ if !is_tabulated(material) => Some(AlbedoVerdict::NotNeeded),
         AlbedoWish::None => Some(AlbedoVerdict::Declined),
-        AlbedoWish::Recipes if !native => Some(AlbedoVerdict::Imported),
-        AlbedoWish::Recipes if material.fresnel.is_none() => Some(AlbedoVerdict::NotAsked),
+        AlbedoWish::Auto if !native => Some(AlbedoVerdict::Imported),
+        AlbedoWish::Auto if material.fresnel.is_none() => Some(AlbedoVerdict::NotAsked),
         _ => None,
     }
 }

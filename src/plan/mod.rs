@@ -26,8 +26,8 @@ use microfacet_common::shape::s_of_gamma;
 
 use crate::bake::albedo::SIGMA_MAX;
 use crate::distribution::Distribution;
-use crate::scene::{Interval, Material, Scene};
-use crate::table_spec::GAMMA_MIN;
+use crate::scene::{Format, Interval, Material, Scene, recipe_of};
+use crate::table_spec::{GAMMA_MIN, Quality};
 
 /// γ of GGX.
 const GGX: f64 = 2.0;
@@ -43,6 +43,11 @@ pub struct Options {
     pub embedded_albedo: bool,
     /// Which materials get albedo tables.
     pub albedo: AlbedoWish,
+    /// The quality at which [`AlbedoWish::Auto`] estimates how long albedos take.
+    pub quality: Quality,
+    /// Refuse a scene of another format if no table covers one of its materials, as a recipe is
+    /// refused; else that material alone is left out.
+    pub strict: bool,
 }
 
 /// What the plan decides on a material.
@@ -75,6 +80,8 @@ pub enum Verdict {
     NotRough,
     /// No geometry uses it.
     NotUsed,
+    /// No table and no closed form covers it.
+    NotCovered(NotCovered),
 }
 
 impl Verdict {
@@ -101,6 +108,8 @@ pub struct Plan {
     pub albedos: Vec<RequiredAlbedo>,
     /// One verdict on the albedo of each material, in order.
     pub albedo_verdicts: Vec<AlbedoVerdict>,
+    /// The albedos that [`AlbedoWish::Auto`] leaves out since they would take long.
+    pub offered: Vec<RequiredAlbedo>,
     /// The scene as a recipe, as the set will state it; empty for the general set.
     pub recipe: String,
     /// The scene's materials, as the set will list them; empty for the general set.
@@ -120,8 +129,9 @@ impl Plan {
     /// The plan of a scene.
     ///
     /// # Errors
-    /// [`NotCovered`] for a γ that no table covers, or a σ that no albedo table covers if an albedo
-    /// is asked for.
+    /// [`NotCovered`] for more albedos than are planned. For a γ that no table covers, a σ that no
+    /// lobe can have, or a σ that no albedo table covers if an albedo is asked for: if the material
+    /// is of a recipe, or with [`Options::strict`].
     pub fn new(scene: &Scene, options: Options) -> Result<Self, NotCovered> {
         let wants: Vec<Result<Interval, Verdict>> = scene
             .materials
@@ -162,33 +172,31 @@ impl Plan {
             Err(verdict) => verdict.clone(),
         };
         let verdicts = wants.iter().enumerate().map(verdict).collect();
-        let (albedos, albedo_verdicts) = albedo::required(scene, options)?;
+        let ((albedos, albedo_verdicts), offered) = albedo::required(scene, options)?;
         let distributions = distributions(scene);
-        let (recipe, materials) = (scene.to_recipe(), entries(scene));
+        let recipe = recipe_of(scene.materials.iter().filter(|material| is_listed(material)));
+        let materials = scene.materials.iter().filter(|material| is_listed(material)).map(entry);
+        let materials = materials.collect();
         Ok(Self {
             shapes: needs,
             distributions,
             verdicts,
             albedos,
             albedo_verdicts,
+            offered,
             recipe,
             materials,
         })
     }
 
-    /// Whether closed forms serve some material: then even a set without tables is worth writing.
-    pub fn has_closed_forms(&self) -> bool {
-        self.verdicts.contains(&Verdict::ClosedForm)
+    /// Whether it needs no tables.
+    pub fn is_empty(&self) -> bool {
+        self.shapes.is_empty() && self.distributions.is_empty() && self.albedos.is_empty()
     }
 
-    /// Whether nothing has to be baked, since no material in use is rough.
-    pub fn is_empty(&self) -> bool {
-        self.shapes.is_empty()
-            && self.albedos.is_empty()
-            && self
-                .verdicts
-                .iter()
-                .all(|verdict| matches!(verdict, Verdict::NotRough | Verdict::NotUsed))
+    /// Whether closed forms serve some material.
+    pub fn has_closed_forms(&self) -> bool {
+        self.verdicts.contains(&Verdict::ClosedForm)
     }
 }
 
@@ -200,24 +208,43 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
     if !is_rough(material) {
         return Ok(Err(Verdict::NotRough));
     }
-    let range = lobe_sigmas(material);
-    for sigma in [material.roughness.x().max, material.roughness.y().max] {
-        if !(range[0]..=range[1]).contains(&sigma) {
-            return Err(NotCovered::Lobe { material: material.name.clone(), sigma, range });
-        }
+    if let Some(why) = not_covered(material) {
+        return refusal(material, options, why).map(|why| Err(Verdict::NotCovered(why)));
     }
     if material.distribution.is_some() {
         return Ok(Err(Verdict::Own));
     }
     let gamma = material.gamma;
-    if gamma.min < GAMMA_MIN {
-        return Err(NotCovered::Gamma { material: material.name.clone(), gamma: gamma.min });
-    }
     // Ellipsoids read tables at every γ.
     if gamma == Interval::point(GGX) && !options.tabulate_ggx && material.theta.is_none() {
         return Ok(Err(Verdict::ClosedForm));
     }
     Ok(if options.embedded { Err(Verdict::Embedded) } else { Ok(gamma) })
+}
+
+/// Why neither tables nor closed forms cover a rough material, if they do not.
+fn not_covered(material: &Material) -> Option<NotCovered> {
+    let range = lobe_sigmas(material);
+    let name = || material.name.clone();
+    for sigma in [material.roughness.x().max, material.roughness.y().max] {
+        if !(range[0]..=range[1]).contains(&sigma) {
+            return Some(NotCovered::Lobe { material: name(), sigma, range });
+        }
+    }
+    let gamma = material.gamma.min;
+    let outside = material.distribution.is_none() && gamma < GAMMA_MIN;
+    outside.then(|| NotCovered::Gamma { material: name(), gamma })
+}
+
+/// The reason itself, if the rest of the scene is planned without the material. A recipe asks for
+/// each of its materials; a scene of another format has them anyway.
+fn refusal(
+    material: &Material,
+    options: Options,
+    why: NotCovered,
+) -> Result<NotCovered, NotCovered> {
+    let refuses = options.strict || material.origin.format == Format::Recipe;
+    if refuses { Err(why) } else { Ok(why) }
 }
 
 /// The distributions outside the Student-t family, in order and without repetition.
@@ -240,29 +267,21 @@ fn lobe_sigmas(material: &Material) -> [f64; 2] {
     if material.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
 }
 
-/// The materials of a scene as a set lists them: those in use, smooth ones as σ = 0.
-fn entries(scene: &Scene) -> Vec<MaterialEntry> {
-    let listed = |material: &Material| {
-        let entry = entry(material);
-        if is_rough(material) {
-            return entry;
-        }
-        let smooth = [[0.0; 2]; 2];
-        MaterialEntry { sigma: smooth, distribution: String::new(), theta: None, ..entry }
-    };
-    scene.materials.iter().filter(|material| material.used).map(listed).collect()
+/// Whether a set lists the material: if it is in use, and what it asks for can be had.
+fn is_listed(material: &Material) -> bool {
+    material.used && (!is_rough(material) || not_covered(material).is_none())
 }
 
-/// Whether tables are baked for the material: if it is in use and rough.
+/// Whether tables may be baked for the material: if it is listed, and rough.
 fn is_tabulated(material: &Material) -> bool {
-    material.used && is_rough(material)
+    is_listed(material) && is_rough(material)
 }
 
-/// A material in the terms of a set.
-fn entry(material: &Material) -> MaterialEntry {
+/// A material in the terms of a set, where one without microfacets has σ = 0.
+pub fn entry(material: &Material) -> MaterialEntry {
     let pair = |interval: Interval| [interval.min, interval.max];
     let Interval { min, max } = material.gamma;
-    MaterialEntry {
+    let entry = MaterialEntry {
         name: material.name.clone(),
         sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
         s: [s_of_gamma(max), s_of_gamma(min)],
@@ -270,7 +289,11 @@ fn entry(material: &Material) -> MaterialEntry {
         theta: material.theta,
         masking: material.masking,
         fresnel: material.fresnel,
+    };
+    if is_rough(material) {
+        return entry;
     }
+    MaterialEntry { sigma: [[0.0; 2]; 2], distribution: String::new(), theta: None, ..entry }
 }
 
 /// A material that tables cannot cover.
@@ -306,29 +329,46 @@ pub enum NotCovered {
     },
 }
 
-impl fmt::Display for NotCovered {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl NotCovered {
+    /// The material that is not covered; `None` if the whole scene is not.
+    pub fn material(&self) -> Option<&str> {
         match self {
-            Self::Gamma { material, gamma } => write!(
-                f,
-                "material \"{material}\": gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it, or \
-                 sample it with the model's exact sampler"
+            Self::Gamma { material, .. }
+            | Self::Lobe { material, .. }
+            | Self::Sigma { material, .. } => Some(material),
+            Self::Albedos { .. } => None,
+        }
+    }
+
+    /// Why it is not covered, and what to do about it, without the name of the material.
+    pub fn reason(&self) -> String {
+        match self {
+            Self::Gamma { gamma, .. } => format!(
+                "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it, or sample it with the \
+                 model's exact sampler"
             ),
-            Self::Lobe { material, sigma, range: [low, high] } => write!(
-                f,
-                "material \"{material}\": sigma = {sigma:?} along one axis is outside [{low:e}, {high:e}], the roughness that a lobe \
-                 can have; clamp it, or write sigma = 0 along both for a mirror"
+            Self::Lobe { sigma, range: [low, high], .. } => format!(
+                "sigma = {sigma:?} along one axis is outside [{low:e}, {high:e}], the roughness that a lobe can have; clamp it, \
+                 or write sigma = 0 along both for a mirror"
             ),
-            Self::Sigma { material, sigma } => write!(
-                f,
-                "material \"{material}\": sigma = {sigma} is above {SIGMA_MAX}, the largest roughness that albedo tables cover; lower \
-                 it, remove its `fresnel`, or use --no-albedo"
+            Self::Sigma { sigma, .. } => format!(
+                "sigma = {sigma} is above {SIGMA_MAX}, the largest roughness that albedo tables cover; lower it, remove its \
+                 `fresnel`, or use --no-albedo"
             ),
-            Self::Albedos { most } => write!(
-                f,
-                "the materials ask for albedo tables of more than {most} lobes and reflectances; split the scene, or use --no-albedo"
+            Self::Albedos { most } => format!(
+                "the materials ask for albedo tables of more than {most} lobes and reflectances; split the scene, or use \
+                 --no-albedo"
             ),
         }
+    }
+}
+
+impl fmt::Display for NotCovered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(material) = self.material() {
+            write!(f, "material \"{material}\": ")?;
+        }
+        f.write_str(&self.reason())
     }
 }
 

@@ -26,6 +26,10 @@ impl Place {
         SceneError { place: self.clone(), kind: SceneErrorKind::Invalid(message.into()) }
     }
 
+    pub(super) fn foreign(&self, message: impl Into<String>) -> SceneError {
+        SceneError { place: self.clone(), kind: SceneErrorKind::Foreign(message.into()) }
+    }
+
     pub(super) fn too_large(&self, message: impl Into<String>) -> SceneError {
         SceneError { place: self.clone(), kind: SceneErrorKind::TooLarge(message.into()) }
     }
@@ -146,6 +150,8 @@ pub enum SceneErrorKind {
     /// The text is well formed and says something impossible: a value out of range, a name that
     /// is not defined, files that include each other.
     Invalid(String),
+    /// The text is another kind of document than a scene: of XML with another root, for instance.
+    Foreign(String),
     /// The scene passes a limit of what is read.
     TooLarge(String),
 }
@@ -168,6 +174,7 @@ impl fmt::Display for SceneError {
             }
             SceneErrorKind::Syntax(message)
             | SceneErrorKind::Invalid(message)
+            | SceneErrorKind::Foreign(message)
             | SceneErrorKind::TooLarge(message) => f.write_str(message),
         }
     }

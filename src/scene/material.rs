@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::fmt;
+use std::path::Path;
 
 pub use microfacet_sampler::{FresnelEntry as Fresnel, Masking};
 
@@ -77,6 +78,24 @@ pub enum Format {
     Gltf,
     /// MaterialX.
     MaterialX,
+}
+
+impl Format {
+    /// The format that the name of a file says it has; `None` if its extension is of none.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_string_lossy().to_lowercase();
+        let name =
+            name.strip_suffix(".pbrt.gz").map_or(name.clone(), |stem| format!("{stem}.pbrt"));
+        match Path::new(&name).extension()?.to_str()? {
+            "toml" => Some(Self::Recipe),
+            "pbrt" => Some(Self::Pbrt),
+            "xml" => Some(Self::Mitsuba),
+            "gltf" | "glb" => Some(Self::Gltf),
+            "mtlx" => Some(Self::MaterialX),
+            _ => None,
+        }
+    }
 }
 
 impl fmt::Display for Format {

@@ -16,7 +16,7 @@
 //!
 //! A roughness that comes from an image is the range of that image's pixels, with the scene's
 //! scales and offsets applied. An image that cannot be read counts as [0, 1], with a warning.
-//! Materials that are not microfacet models, or that this crate does not know, are listed in
+//! Materials that are not microfacet models, or that this crate does not understand, are listed in
 //! [`Scene::ignored`]; they are not errors. A missing included file gives a warning too, since
 //! scenes often travel without their geometry; then every material counts as used.
 //!
@@ -44,7 +44,6 @@ mod recipe;
 mod texture;
 mod xml;
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 pub use error::{Place, SceneError, SceneErrorKind, did_you_mean_key};
@@ -92,14 +91,26 @@ impl Scene {
         recipe::read(text, Path::new("recipe"))
     }
 
+    /// What makes it uncertain that all materials are there and right, each with its place: the
+    /// warnings, then the materials that were not understood.
+    pub fn doubts(&self) -> impl Iterator<Item = String> {
+        let unknown = self.ignored.iter().filter(|ignored| !ignored.understood);
+        self.warnings.iter().cloned().chain(unknown.map(Ignored::to_string))
+    }
+
     /// The native recipe of the materials in use: the canonical form of this scene.
     ///
     /// It reads back to materials that [are the same](Material::asks_the_same), bit for bit. A
     /// scene that uses no material gives an empty text, which is not a valid recipe.
     #[must_use]
     pub fn to_recipe(&self) -> String {
-        recipe::write(self.materials.iter().filter(|material| material.used))
+        recipe_of(self.materials.iter().filter(|material| material.used))
     }
+}
+
+/// The native recipe of some materials.
+pub(crate) fn recipe_of<'a>(materials: impl Iterator<Item = &'a Material>) -> String {
+    recipe::write(materials)
 }
 
 /// Reads the scene description in `path`; the extension determines the format.
@@ -107,28 +118,18 @@ impl Scene {
 /// # Errors
 ///
 /// [`SceneErrorKind::UnknownExtension`] for an extension of no known format, [`SceneErrorKind::Io`]
-/// if the file cannot be read, [`SceneErrorKind::Syntax`] and [`SceneErrorKind::Invalid`] with the
-/// place of the error in it. A missing image or included file is a warning.
+/// if the file cannot be read, [`SceneErrorKind::Syntax`], [`SceneErrorKind::Foreign`] and
+/// [`SceneErrorKind::TooLarge`] with the place of the error in it. A missing image or included file
+/// is a warning, and what is impossible in one material makes that material one that is
+/// [not understood](Ignored::understood); in a recipe it is an error, [`SceneErrorKind::Invalid`].
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let name = name.strip_suffix(".pbrt.gz").map_or(name.clone(), |stem| format!("{stem}.pbrt"));
-    match Path::new(&name).extension().and_then(|extension| extension.to_str()) {
-        Some("toml") => {
-            let place = Place::file(path);
-            let text =
-                input::read_text(path, limits::RECIPE).map_err(|error| match error.kind() {
-                    ErrorKind::FileTooLarge => {
-                        place.invalid(format!("it {error}; split the recipe"))
-                    }
-                    _ => place.io(error),
-                })?;
-            recipe::read(&text, path)
-        }
-        Some("pbrt") => pbrt::load(path),
-        Some("xml") => mitsuba::load(path),
-        Some("gltf" | "glb") => gltf::load(path),
-        Some("mtlx") => materialx::load(path),
-        _ => {
+    match Format::of(path) {
+        Some(Format::Recipe) => recipe::load(path),
+        Some(Format::Pbrt) => pbrt::load(path),
+        Some(Format::Mitsuba) => mitsuba::load(path),
+        Some(Format::Gltf) => gltf::load(path),
+        Some(Format::MaterialX) => materialx::load(path),
+        None => {
             let place = Place::file(path);
             // What is no file at all has no format either.
             input::open(path, u64::MAX).map_err(|error| place.io(error))?;

@@ -93,14 +93,6 @@ impl OutputFolder {
         Ok(old)
     }
 
-    /// Whether the folder holds a set, as far as its files are known to be ours.
-    ///
-    /// # Errors
-    /// [`StoreError::Io`] if the record of the set cannot be read.
-    pub fn holds_set(&self) -> Result<bool, StoreError> {
-        Ok(self.old()?.iter().any(|name| name != RECORD))
-    }
-
     /// Writes a set: `tables.safetensors`, and `NAME.exr` for each table; several sets are
     /// [`sets`](Self::sets); a set without tables is
     /// `tables.safetensors` in any format. A folder holds one set: the files of the set that was

@@ -122,7 +122,7 @@ impl PyLibrary {
         let scene = scene_of(scene)?;
         warn_of(py, &scene)?;
         let albedo = match albedo {
-            None => AlbedoWish::Recipes,
+            None => AlbedoWish::Auto,
             Some(true) => AlbedoWish::All,
             Some(false) => AlbedoWish::None,
         };

@@ -197,7 +197,7 @@ pub(crate) fn bake(
             let scene = scene_of(recipe)?;
             warn_of(py, &scene)?;
             let albedo = match albedo {
-                None => AlbedoWish::Recipes,
+                None => AlbedoWish::Auto,
                 Some(true) => AlbedoWish::All,
                 Some(false) => AlbedoWish::None,
             };

@@ -12,7 +12,7 @@ use microfacet_bake::store::check_folder;
 use microfacet_bake::table_set::{Need, Target};
 
 use super::Args;
-use crate::cli::plan::nothing;
+use crate::cli::plan::warn;
 use crate::cli::words::{count, seconds, shell};
 use crate::cli::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize};
 
@@ -62,6 +62,7 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Out
             "shard": shard.number, "of": shard.of, "needs": count_of, "needs_of_all": all,
             "baked": baked, "seconds": time,
         }))?;
+        warn(library.plans());
         return Ok(Done::Ok);
     }
     let mut text = format!(
@@ -70,9 +71,6 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Out
         count_of - baked,
         seconds(time)
     );
-    if all == 0 {
-        text += library.parts.first().map_or("", |part| nothing(&part.scene));
-    }
     let when = if shard.of == 1 {
         "then".into()
     } else {
@@ -85,6 +83,7 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Out
         shell(folder)
     );
     summarize(&text)?;
+    warn(library.plans());
     Ok(Done::Ok)
 }
 

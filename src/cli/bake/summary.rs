@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde_json::json;
 
+use microfacet_bake::plan::Verdict;
 use microfacet_bake::store::Written;
 use microfacet_bake::table_set::Baked;
 use microfacet_bake::validate::configuration::shapes;
@@ -45,7 +46,7 @@ impl Summary<'_> {
         if tables.is_empty() {
             let images =
                 if self.only_images { " nor images; it is in tables.safetensors" } else { "" };
-            text += &format!("\nThe set names its materials, and has no tables{images}.\n");
+            text += &format!("\nThe set has no tables{images}; it lists the materials in use.\n");
         } else {
             text += "\nlargest error of\n";
             text += &largest_errors(tables);
@@ -98,12 +99,13 @@ impl Summary<'_> {
         let commands = if is_testable(set) {
             format!("  microfacet-bake validate {out}\n{inspect}")
         } else if set.tables().is_empty() {
-            let embedded = self.outline.is_embedded();
-            let why = if embedded {
+            let why = if self.outline.has(&Verdict::Embedded) {
                 "the default set serves its materials: `microfacet-bake validate` tests that one"
-            } else {
+            } else if self.outline.has(&Verdict::ClosedForm) {
                 "closed forms have no error to validate; --tabulate-ggx bakes tables instead, for a \
                  renderer without them"
+            } else {
+                "no material in it is rough, so that there is nothing to validate"
             };
             inspect + &wrapped("  ", why, 2)
         } else {

@@ -8,10 +8,10 @@ use std::path::PathBuf;
 use microfacet_sampler::internals::describe;
 use microfacet_sampler::{Kind, LobeEntry, MaterialEntry, Reflectance, Table, Tables};
 
-use super::plan::reflectance;
+use super::material::{gammas, material, reflectance};
 use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, joined, wrapped};
 use super::{Done, Outcome, certificate, escape, print, print_json, tables};
-use words::{covers, gammas, holds, material, precision};
+use words::{covers, holds, precision};
 
 /// Show what a set of tables serves, and the size and the largest error of each table.
 #[derive(clap::Args)]
@@ -97,9 +97,11 @@ fn head(name: &str, set: &Tables, all: bool) -> String {
     let shown = if all { usize::MAX } else { SHOWN };
     for (i, entry) in origin.materials.iter().take(shown).enumerate() {
         let first = if i == 0 { "materials" } else { "" };
-        text += &self::entry(first, &material(entry));
+        let name = escape::line(&entry.name);
+        text += &self::entry(first, &format!("\"{name}\": {}", material(entry)));
     }
     match origin.materials.len() {
+        0 if tables.is_empty() => text += &entry("materials", "none"),
         0 => text += &entry("materials", "none by name; any in these ranges"),
         n if n > shown => text += &entry("", &format!("and {} more", n - shown)),
         _ => {}

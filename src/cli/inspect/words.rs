@@ -2,12 +2,11 @@
 
 use microfacet_common::shape::gamma_of_s;
 use microfacet_sampler::{
-    Axis, Covered, FresnelEntry, Interpolation, Kind, LobeEntry, Mapping, MaterialEntry, Precision,
-    Subject, Table,
+    Axis, Covered, Interpolation, Kind, LobeEntry, Mapping, Precision, Subject, Table,
 };
 
 use crate::cli::escape;
-use crate::cli::plan::reflectance;
+use crate::cli::material::{gammas, reflectance};
 use crate::cli::words::{count, number, range};
 
 /// What a table holds, and of what it is if that is not the whole family.
@@ -54,46 +53,12 @@ pub(super) fn covers(Subject { lobe, covers, .. }: &Subject) -> [String; 2] {
     }
 }
 
-/// A range of γ, from a range of s = 1/(γ−1).
-pub(super) fn gammas([low, high]: [f64; 2]) -> String {
-    range([gamma_of_s(high), gamma_of_s(low)])
-}
-
 pub(super) fn precision(precision: Precision) -> &'static str {
     match precision {
         Precision::F32 => "f32",
         Precision::F16 => "f16",
         Precision::U16 => "u16",
     }
-}
-
-/// A material of the recipe.
-pub(super) fn material(entry: &MaterialEntry) -> String {
-    let mut parts = Vec::new();
-    if entry.is_smooth() {
-        parts.push("smooth".into());
-    } else if entry.distribution.is_empty() {
-        let [x, y] = entry.sigma.map(range);
-        parts.push(if x == y { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
-        parts.push(format!("gamma {}", gammas(entry.s)));
-    } else {
-        parts.push(escape::line(&entry.distribution).into());
-    }
-    parts.extend(entry.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));
-    parts.extend(entry.masking.map(|masking| format!("{masking} masking")));
-    parts.extend(entry.fresnel.map(|fresnel| match fresnel {
-        FresnelEntry::Mirror => "F = 1".into(),
-        FresnelEntry::Schlick(f0) => format!("Schlick with F0 {}", number(f0)),
-        FresnelEntry::Conductor { eta, k } => {
-            let [eta, k] = [eta, k].map(|rgb| rgb.map(number).join(", "));
-            format!("conductor with eta {eta} and k {k}")
-        }
-        FresnelEntry::Dielectric(eta) => format!("dielectric of index {}", number(eta)),
-        FresnelEntry::Dielectrics { min, max } => {
-            format!("dielectric of index {}", range([min, max.unwrap_or(f64::INFINITY)]))
-        }
-    }));
-    format!("\"{}\": {}", escape::line(&entry.name), parts.join(", "))
 }
 
 /// An axis: what it is of, its range and nodes, the coordinate, and what lies between nodes.

@@ -3,38 +3,61 @@
 use serde_json::{Value, json};
 
 use microfacet_bake::bake::albedo::AlbedoLobe;
-use microfacet_bake::plan::{Cost, Verdict};
-use microfacet_sampler::Kind;
+use microfacet_bake::plan::{Cost, Verdict, entry};
+use microfacet_bake::scene::{Ignored, Interval};
+use microfacet_sampler::{Kind, MaterialEntry};
 
 use super::Report;
-use super::words::{OWN_TABLES, Outline, albedo_reason, reason};
+use super::words::{OWN_TABLES, Offer, Outline, albedo_reason, reason};
 
 impl Outline<'_> {
     /// The verdict on each material of the scene.
     pub(in crate::cli) fn materials(&self) -> Vec<Value> {
         let Self { scene, plan, .. } = self;
         let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
-        let material =
-            |(material, (verdict, albedo)): (&microfacet_bake::scene::Material, (_, _))| {
-                let [short, long] = reason(verdict);
-                let other = match *verdict {
-                    Verdict::Same { as_material: i, .. }
-                    | Verdict::Within { of_material: i, .. } => Some(&scene.materials[i].name),
-                    _ => None,
-                };
-                json!({
-                    "name": material.name, "verdict": short, "why": long, "shapes": verdict.need(),
-                    "shares_with": other, "albedo": albedo_reason(albedo),
-                })
+        let material = |(material, (verdict, albedo)): (
+            &microfacet_bake::scene::Material,
+            (_, _),
+        )| {
+            let [short, long] = reason(verdict);
+            let other = match *verdict {
+                Verdict::Same { as_material: i, .. } | Verdict::Within { of_material: i, .. } => {
+                    Some(&scene.materials[i].name)
+                }
+                _ => None,
             };
+            // Without the name, which is the scene's.
+            let range = |Interval { min, max }: Interval| [min, max];
+            let MaterialEntry { distribution, theta, masking, fresnel, .. } = entry(material);
+            let of_family = distribution.is_empty();
+            json!({
+                "name": material.name, "lobe": material.origin.lobe, "place": material.origin.place.to_string(),
+                "sigma": [range(material.roughness.x()), range(material.roughness.y())],
+                "gamma": of_family.then(|| gamma(material.gamma)),
+                "distribution": (!of_family).then_some(distribution), "theta": theta, "masking": masking, "fresnel": fresnel,
+                "verdict": short, "why": long, "shapes": verdict.need(),
+                "shares_with": other, "albedo": albedo_reason(albedo),
+            })
+        };
         scene.materials.iter().zip(verdicts).map(material).collect()
     }
 
     /// The materials that no lobe describes.
     pub(in crate::cli) fn ignored(&self) -> Vec<Value> {
         let ignored = self.scene.ignored.iter();
-        ignored.map(|it| json!({ "name": it.name, "kind": it.kind, "why": it.reason })).collect()
+        let entry = |it: &Ignored| {
+            json!({
+                "name": it.name, "kind": it.kind, "why": it.reason, "understood": it.understood,
+                "place": it.place.to_string(),
+            })
+        };
+        ignored.map(entry).collect()
     }
+}
+
+/// A range of γ as texts, since JSON has no infinity.
+fn gamma(Interval { min, max }: Interval) -> [String; 2] {
+    [min, max].map(|gamma| gamma.to_string())
 }
 
 impl Report<'_> {
@@ -51,9 +74,7 @@ impl Report<'_> {
                 .iter()
                 .map(|spec| json!({ "name": spec.name, "kind": spec.kind.name(), "shapes": spec.shapes.nodes.len(), "views": spec.views, "numbers": spec.numbers }))
                 .collect();
-            // JSON has no infinity.
-            let gamma = [need.gamma().min, need.gamma().max].map(|gamma| gamma.to_string());
-            json!({ "gamma": gamma, "s": need.s(), "tables": tables, "cost": next(), "materials": names })
+            json!({ "gamma": gamma(need.gamma()), "s": need.s(), "tables": tables, "cost": next(), "materials": names })
         }).collect();
         let distributions: Vec<_> = plan
             .distributions
@@ -72,9 +93,13 @@ impl Report<'_> {
                 "axes": nodes, "cost": next(), "materials": names,
             })
         }).collect();
+        // What `--albedo` would add.
+        let offered = outline.offered.as_ref();
+        let offered =
+            offered.map(|Offer { tables, cost: of }| json!({ "tables": tables, "cost": cost(of) }));
         json!({
             "shapes": shapes, "distributions": distributions, "albedo": albedos,
-            "materials": outline.materials(), "ignored": outline.ignored(), "nothing_needed": plan.is_empty(),
+            "materials": outline.materials(), "ignored": outline.ignored(), "offered": offered,
             "total": cost(&self.total), "general_set": cost(&self.general),
             "milliseconds": { "reading": self.reading, "planning": self.planning },
         })

@@ -1,5 +1,7 @@
 //! `plan`: shows what a bake of a scene would do, and why.
 
+mod doubts;
+mod folder;
 mod json;
 mod sets;
 mod words;
@@ -10,22 +12,23 @@ use std::time::{Duration, Instant};
 use microfacet_bake::bake::albedo::AlbedoSpec;
 use microfacet_bake::library::Part;
 use microfacet_bake::plan::{Cost, albedo_cost, bare_cost, cost, distribution_cost};
-use microfacet_bake::scene;
 use microfacet_bake::table_spec::general_set;
 
 use super::request::Request;
 use super::words::{bytes, compared, count, exact_bytes, seconds, wrapped};
-use super::{Done, Failure, Outcome, print, print_json, report};
+use super::{Done, Failure, Outcome, print, print_json};
 
-pub(super) use words::{Outline, nothing, reflectance};
+pub(super) use doubts::warn;
+pub(super) use words::Outline;
 
-/// Show what must be baked for a scene and what not, with bytes and seconds.
+/// Show what must be baked for a scene and what not, with bytes and seconds; for a folder, a
+/// summary over all scenes in it.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  microfacet-bake recipe --out mine.toml\n  microfacet-bake plan mine.toml"
+    after_help = "Examples:\n  microfacet-bake recipe --out mine.toml\n  microfacet-bake plan mine.toml\n  microfacet-bake plan library/materials"
 )]
 pub(super) struct Args {
-    /// A recipe (.toml) or scene (.pbrt, .xml, .gltf, .glb, .mtlx).
+    /// A recipe (.toml) or scene (.pbrt, .xml, .gltf, .glb, .mtlx), or a folder of them.
     scene: PathBuf,
     #[command(flatten)]
     request: Request,
@@ -47,15 +50,19 @@ struct Report<'a> {
 }
 
 pub(super) fn run(args: Args) -> Outcome {
+    if args.scene.is_dir() {
+        return folder::run(&args);
+    }
     let start = Instant::now();
-    let scene = scene::load(&args.scene)?;
+    let scene = args.request.scene(&args.scene)?;
     let reading = start.elapsed();
-    scene.warnings.iter().for_each(|warning| report("warning", warning));
     let start = Instant::now();
     let library = args.request.library(scene, None)?;
     let planning = start.elapsed();
     let [part] = &library.parts[..] else {
-        return sets::run(&args, &library, [reading, planning]);
+        sets::run(&args, &library, [reading, planning])?;
+        warn(library.plans());
+        return Ok(Done::Ok);
     };
     let start = Instant::now();
     let report = Report::new(&args.request, part)?;
@@ -69,6 +76,7 @@ pub(super) fn run(args: Args) -> Outcome {
         let needs = report.costs.len();
         print(&(report.text() + &sets::in_shards(&args.scene, &args.request, core_seconds, needs)))?
     }
+    warn(library.plans());
     Ok(Done::Ok)
 }
 
@@ -109,24 +117,19 @@ impl Report<'_> {
             format!(", {size}, about {}", seconds(costs[i].seconds))
         };
         let mut text = outline.lines(["bake", "skip"], detail);
-        if outline.plan.is_empty() {
-            text += nothing(outline.scene);
+
+        let smaller = compared(total.bytes as f64, general.bytes as f64, ["smaller", "larger"]);
+        let faster = if !outline.plan.is_empty() {
+            let faster = compared(total.seconds, general.seconds, ["faster", "slower"]);
+            format!("about {}; {smaller} and {faster}", seconds(total.seconds))
         } else {
-            let smaller = compared(total.bytes as f64, general.bytes as f64, ["smaller", "larger"]);
-            let faster = if total.seconds > 0.0 {
-                let faster = compared(total.seconds, general.seconds, ["faster", "slower"]);
-                format!("about {}; {smaller} and {faster}", seconds(total.seconds))
-            } else {
-                format!("no tables to bake; {smaller}")
-            };
-            let general = format!("{}, about {}", bytes(general.bytes), seconds(general.seconds));
-            let total = exact_bytes(total.bytes);
-            text += &wrapped(
-                "total: ",
-                &format!("{total}, {faster} than the general set ({general})"),
-                7,
-            );
-        }
+            format!("no tables to bake; {smaller}")
+        };
+        let general = format!("{}, about {}", bytes(general.bytes), seconds(general.seconds));
+        let total = exact_bytes(total.bytes);
+        text +=
+            &wrapped("total: ", &format!("{total}, {faster} than the general set ({general})"), 7);
+
         let materials = outline.scene.materials.len() + outline.scene.ignored.len();
         text + &format!(
             "{}, read in {:.1} ms, planned in {:.1} ms\n",

@@ -1,27 +1,19 @@
 //! What a plan does for each material, in words: one home for what `plan` and `bake` say.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use microfacet_bake::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
 use microfacet_bake::distribution::Distribution;
-use microfacet_bake::plan::{AlbedoVerdict, Plan, Verdict};
-use microfacet_bake::scene::{Interval, Scene};
+use microfacet_bake::plan::{AlbedoVerdict, Cost, Plan, Verdict, albedo_cost, entry};
+use microfacet_bake::scene::{Ignored, Interval, Scene};
 use microfacet_bake::table_spec::{Quality, TableSpec, general_set};
-use microfacet_sampler::{Precision, Reflectance};
+use microfacet_sampler::Precision;
 
+use crate::cli::material::{material as words_of, reflectance};
 use crate::cli::{escape, words};
 
-/// Said of a scene, or a recipe, for which nothing is baked and no set is written.
-pub(in crate::cli) fn nothing(scene: &Scene) -> &'static str {
-    if scene.warnings.is_empty() {
-        "Nothing to bake: no material in use is rough.\n"
-    } else {
-        "Nothing to bake: no material in use is rough, in what could be read; the warnings say what \
-         is missing.\n"
-    }
-}
-
-/// Lines of tables that are printed; `--json` has them all.
+/// Lines of materials, and of tables that are printed; `--json` has them all.
 const SHOWN: usize = 20;
 
 /// Tables of a distribution outside the family.
@@ -31,8 +23,8 @@ pub(super) const OWN_TABLES: usize = 4;
 const WHAT: usize = 18;
 
 /// Why a material gets no tables of its own, in short and in full.
-pub(super) fn reason(verdict: &Verdict) -> [&'static str; 2] {
-    match verdict {
+pub(super) fn reason(verdict: &Verdict) -> [Cow<'static, str>; 2] {
+    let [short, long] = match verdict {
         Verdict::Bake(_) => ["baked", "tables are baked for it"],
         Verdict::Same { .. } => ["same", "another material needs the same tables"],
         Verdict::Within { .. } => {
@@ -45,40 +37,29 @@ pub(super) fn reason(verdict: &Verdict) -> [&'static str; 2] {
         Verdict::Embedded => ["embedded", "covered by the default set compiled into the sampler"],
         Verdict::NotRough => ["not rough", "no microfacets"],
         Verdict::NotUsed => ["not used", "no geometry uses it"],
-    }
+        Verdict::NotCovered(why) => return ["not covered".into(), why.reason().into()],
+    };
+    [short.into(), long.into()]
 }
 
 /// Why a material gets no albedo tables, in short and in full.
-pub(super) fn albedo_reason(verdict: &AlbedoVerdict) -> [&'static str; 2] {
-    match verdict {
+pub(super) fn albedo_reason(verdict: &AlbedoVerdict) -> [Cow<'static, str>; 2] {
+    let [short, long] = match verdict {
         AlbedoVerdict::Bake(_) => ["baked", "albedo tables cover it"],
         AlbedoVerdict::NotAsked => {
             ["no fresnel", "the recipe states no `fresnel`; --albedo bakes albedos for all"]
         }
         AlbedoVerdict::Imported => {
-            ["not asked", "only --albedo bakes albedos for scenes other than recipes"]
+            ["not asked", "they take long for this scene, and only --albedo bakes them"]
         }
         AlbedoVerdict::Declined => ["declined", "--no-albedo"],
         AlbedoVerdict::Embedded => {
             ["embedded", "the default set compiled into the sampler has its albedo"]
         }
         AlbedoVerdict::NotNeeded => ["not needed", "it gets no tables at all"],
-    }
-}
-
-/// The reflectance of an albedo in words.
-pub(in crate::cli) fn reflectance(reflectance: &Reflectance) -> String {
-    match reflectance {
-        Reflectance::Moments => "for F = 1 and every Schlick term".into(),
-        Reflectance::Conductor { eta, k } => {
-            let [eta, k] = [eta, k].map(|rgb| rgb.map(words::number).join(", "));
-            format!("for a conductor with eta {eta} and k {k}")
-        }
-        Reflectance::Dielectric { side, min, max } => {
-            let index = words::range([*min, max.unwrap_or(f64::INFINITY)]);
-            format!("for a dielectric of index {index} from its {} side", side.name())
-        }
-    }
+        AlbedoVerdict::NotCovered(why) => return ["not covered".into(), why.reason().into()],
+    };
+    [short.into(), long.into()]
 }
 
 fn shapes(Interval { min, max }: Interval) -> String {
@@ -103,8 +84,28 @@ pub(in crate::cli) struct Outline<'a> {
     pub(super) tables: Vec<Vec<TableSpec>>,
     /// Specification of each required albedo.
     pub(super) albedos: Vec<AlbedoSpec>,
+    /// The albedos that `--albedo` would add.
+    pub(super) offered: Option<Offer>,
     /// The materials that each of these is for.
     pub(super) users: Users<'a>,
+}
+
+/// Tables that are not baked unless they are asked for.
+pub(super) struct Offer {
+    pub(super) tables: usize,
+    pub(super) cost: Cost,
+}
+
+impl Offer {
+    /// What the plan offers, if anything.
+    fn of(plan: &Plan, quality: Quality, precision: Precision) -> Option<Self> {
+        // What no table can hold is refused where it is asked for.
+        let specs: Result<Vec<AlbedoSpec>, _> =
+            plan.offered.iter().map(|need| need.spec(quality, precision)).collect();
+        let specs = specs.ok().filter(|specs| !specs.is_empty())?;
+        let tables = specs.iter().map(AlbedoSpec::tables).sum();
+        Some(Self { tables, cost: specs.iter().map(albedo_cost).sum() })
+    }
 }
 
 /// Names of the materials that tables are for, in the order of the scene.
@@ -156,8 +157,8 @@ struct Part<'a> {
 
 /// Materials for which something is not baked, for the same reason.
 struct Skipped<'a> {
-    what: String,
-    why: &'static str,
+    what: Cow<'a, str>,
+    why: Cow<'a, str>,
     names: Vec<&'a str>,
 }
 
@@ -174,7 +175,8 @@ impl<'a> Outline<'a> {
         let tables = plan.shapes.iter().map(|need| need.specs(&general)).collect();
         let albedos = plan.albedos.iter().map(|need| need.spec(quality, precision));
         let albedos = albedos.collect::<Result<_, _>>()?;
-        Ok(Self { scene, plan, tables, albedos, users: Users::new(scene, plan) })
+        let offered = Offer::of(plan, quality, precision);
+        Ok(Self { scene, plan, tables, albedos, offered, users: Users::new(scene, plan) })
     }
 
     /// Specifications of the albedos that are baked.
@@ -182,15 +184,9 @@ impl<'a> Outline<'a> {
         &self.albedos
     }
 
-    /// Whether the default set serves some material.
-    pub(in crate::cli) fn is_embedded(&self) -> bool {
-        self.plan.verdicts.contains(&Verdict::Embedded)
-    }
-
-    /// Names of the materials, by index, that satisfy a condition.
-    fn names(&self, of: impl Fn(usize) -> bool) -> Vec<&'a str> {
-        let all = self.scene.materials.iter().enumerate();
-        all.filter(|(i, _)| of(*i)).map(|(_, material)| material.name.as_str()).collect()
+    /// Whether some material has this verdict.
+    pub(in crate::cli) fn has(&self, verdict: &Verdict) -> bool {
+        self.plan.verdicts.contains(verdict)
     }
 
     /// Numbers of tables of all parts that are baked: required shapes, distributions, albedos.
@@ -226,31 +222,40 @@ impl<'a> Outline<'a> {
 
     /// All that is not baked, and why.
     fn skipped(&self) -> Vec<Skipped<'a>> {
-        let mut all = Vec::new();
-        for verdict in [Verdict::ClosedForm, Verdict::Embedded, Verdict::NotRough, Verdict::NotUsed]
-        {
-            let [what, why] = reason(&verdict);
-            let names = self.names(|i| self.plan.verdicts[i] == verdict);
-            all.push(Skipped { what: what.into(), why, names });
+        let Self { scene, plan, .. } = self;
+        // In this order, and then by the alphabet.
+        let mut all: BTreeMap<(usize, [Cow<'a, str>; 2]), Vec<&'a str>> = BTreeMap::new();
+        let mut add = |rank, why, name| all.entry((rank, why)).or_default().push(name);
+        for (material, verdict) in scene.materials.iter().zip(&plan.verdicts) {
+            if verdict.need().is_none() && *verdict != Verdict::Own {
+                add(0, reason(verdict), &material.name[..]);
+            }
         }
-        for verdict in [
-            AlbedoVerdict::NotAsked,
-            AlbedoVerdict::Imported,
-            AlbedoVerdict::Declined,
-            AlbedoVerdict::Embedded,
-        ] {
-            let [what, why] = albedo_reason(&verdict);
-            let names = self.names(|i| self.plan.albedo_verdicts[i] == verdict);
-            all.push(Skipped { what: format!("albedo, {what}"), why, names });
+        for (material, verdict) in scene.materials.iter().zip(&plan.albedo_verdicts) {
+            let [what, mut why] = albedo_reason(verdict);
+            match verdict {
+                AlbedoVerdict::Bake(_) | AlbedoVerdict::NotNeeded => continue,
+                AlbedoVerdict::Imported => why = self.offer().map_or(why, Cow::from),
+                _ => {}
+            }
+            add(1, [format!("albedo, {what}").into(), why], &material.name);
         }
-        let mut ignored: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-        for material in &self.scene.ignored {
-            ignored.entry(material.reason).or_default().push(&material.name);
+        for Ignored { name, reason, understood, .. } in &scene.ignored {
+            let what = if *understood { "no lobe" } else { "not understood" };
+            add(2, [what.into(), reason.as_ref().into()], name);
         }
-        let no_lobe = |(why, names)| Skipped { what: "no lobe".into(), why, names };
-        all.extend(ignored.into_iter().map(no_lobe));
-        all.retain(|skipped| !skipped.names.is_empty());
-        all
+        all.into_iter().map(|((_, [what, why]), names)| Skipped { what, why, names }).collect()
+    }
+
+    /// What `--albedo` would add, if it is known and more than is baked.
+    fn offer(&self) -> Option<String> {
+        let Offer { tables, cost } = self.offered.as_ref()?;
+        Some(format!(
+            "for energy compensation --albedo bakes {}, {} and about {} more",
+            words::count(*tables, "table"),
+            words::bytes(cost.bytes),
+            words::seconds(cost.seconds)
+        ))
     }
 
     /// A line for each part that is baked, with `detail` of it, and for each reason to bake
@@ -267,6 +272,14 @@ impl<'a> Outline<'a> {
         };
         let counts = self.counts();
         let mut text = String::new();
+        let materials = &self.scene.materials;
+        for material in materials.iter().take(SHOWN) {
+            text += &line("has", &escape::line(&material.name), &words_of(&entry(material)));
+        }
+        if let Some(more @ [_, ..]) = materials.get(SHOWN..) {
+            let more = format!("and {} more", more.len());
+            text += &line("has", &more, "--json lists all");
+        }
         for (i, (part, tables)) in self.parts().zip(&counts).take(SHOWN).enumerate() {
             let tables = format!("{}{}{}", part.of, words::count(*tables, "table"), detail(i));
             let names = match part.names {
@@ -280,9 +293,15 @@ impl<'a> Outline<'a> {
             let tables = format!("{}; --json lists all", words::count(tables, "table"));
             text += &line(baked, &format!("and {} more", more.len()), &tables);
         }
-        for Skipped { what, why, names } in self.skipped() {
-            let names = words::list(names.into_iter());
-            text += &line(skipped, &what, &format!("{why}: {names}"));
+        let all = self.skipped();
+        for Skipped { what, why, names } in all.iter().take(SHOWN) {
+            let (why, names) = (escape::line(why), words::list(names.iter().copied()));
+            text += &line(skipped, what, &format!("{why}: {names}"));
+        }
+        if let Some(more @ [_, ..]) = all.get(SHOWN..) {
+            let names: usize = more.iter().map(|skipped| skipped.names.len()).sum();
+            let why = format!("{}; --json lists all", words::count(names, "material"));
+            text += &line(skipped, &format!("and {} more", more.len()), &why);
         }
         text
     }

@@ -119,9 +119,9 @@ fn what_is_planned_is_what_a_comparison_of_all_finds() {
     for round in 0..60 {
         let recipe = recipe(&mut rng, 1 + 3 * round);
         let scene = Scene::from_recipe_str(&recipe).unwrap_or_else(|why| panic!("{why}\n{recipe}"));
-        for albedo in [AlbedoWish::Recipes, AlbedoWish::All] {
+        for albedo in [AlbedoWish::Auto, AlbedoWish::All] {
             let options = Options { albedo, embedded_albedo: round % 3 == 0, ..Options::default() };
-            let planned = required(&scene, options).unwrap();
+            let planned = wanted(&scene, options).unwrap();
             assert_eq!(planned, by_comparison(&scene, options).unwrap(), "{recipe}");
             groups = groups.max(planned.0.len());
         }

@@ -19,6 +19,7 @@ mod write;
 
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::Path;
 
@@ -31,7 +32,8 @@ use self::write::quoted;
 pub(super) use self::write::write;
 use super::error::{Lines, did_you_mean_key};
 use super::limits::Budget;
-use super::{Format, Interval, Material, Origin, Place, Scene, SceneError, limits};
+use super::{Format, Interval, Material, Origin, Place, Scene, SceneError, SceneErrorKind, limits};
+use crate::input;
 
 // docs/recipe.md has each of these.
 const MATERIAL_KEYS: [&str; 8] =
@@ -40,6 +42,23 @@ const MEASURED_KEYS: [&str; 2] = ["measured", "degrees"];
 const FRESNEL_KEYS: [&str; 4] = ["schlick", "metal", "conductor", "dielectric"];
 const CONDUCTOR_KEYS: [&str; 2] = ["eta", "k"];
 const RANGE_KEYS: [&str; 2] = ["min", "max"];
+
+/// Reads the recipe in `file`.
+pub(super) fn load(file: &Path) -> Result<Scene, SceneError> {
+    let place = Place::file(file);
+    let text = input::read_text(file, limits::RECIPE).map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => place.too_large(format!("it {error}; split the recipe")),
+        _ => place.io(error),
+    })?;
+    read(&text, file).map_err(|error| {
+        // Much else is written in TOML.
+        let is_ours = |line: &str| line.trim_start_matches(['[', ' ']).starts_with("material");
+        match error.kind {
+            SceneErrorKind::Invalid(why) if !text.lines().any(is_ours) => error.place.foreign(why),
+            kind => SceneError { kind, ..error },
+        }
+    })
+}
 
 /// Reads the recipe `text`, the content of `file`.
 pub(super) fn read(text: &str, file: &Path) -> Result<Scene, SceneError> {

@@ -1,0 +1,57 @@
+//! Materials in words: one home for what `plan`, `bake` and `inspect` say of them.
+
+use microfacet_common::shape::gamma_of_s;
+use microfacet_sampler::{FresnelEntry, MaterialEntry, Reflectance};
+
+use super::escape;
+use super::words::{number, range};
+
+/// What a material is: its roughness and shape or distribution, and the masking and the Fresnel term
+/// that it states.
+pub(super) fn material(entry: &MaterialEntry) -> String {
+    let mut parts = Vec::new();
+    if entry.is_smooth() {
+        parts.push("smooth".into());
+    } else if entry.distribution.is_empty() {
+        let [x, y] = entry.sigma.map(range);
+        parts.push(if x == y { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
+        parts.push(format!("gamma {}", gammas(entry.s)));
+    } else {
+        parts.push(escape::line(&entry.distribution).into());
+    }
+    parts.extend(entry.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));
+    parts.extend(entry.masking.map(|masking| format!("{masking} masking")));
+    parts.extend(entry.fresnel.map(|fresnel| match fresnel {
+        FresnelEntry::Mirror => "F = 1".into(),
+        FresnelEntry::Schlick(f0) => format!("Schlick with F0 {}", number(f0)),
+        FresnelEntry::Conductor { eta, k } => {
+            let [eta, k] = [eta, k].map(|rgb| rgb.map(number).join(", "));
+            format!("conductor with eta {eta} and k {k}")
+        }
+        FresnelEntry::Dielectric(eta) => format!("dielectric of index {}", number(eta)),
+        FresnelEntry::Dielectrics { min, max } => {
+            format!("dielectric of index {}", range([min, max.unwrap_or(f64::INFINITY)]))
+        }
+    }));
+    parts.join(", ")
+}
+
+/// A range of γ, from a range of s = 1/(γ−1).
+pub(super) fn gammas([low, high]: [f64; 2]) -> String {
+    range([gamma_of_s(high), gamma_of_s(low)])
+}
+
+/// The reflectance of an albedo in words.
+pub(super) fn reflectance(reflectance: &Reflectance) -> String {
+    match reflectance {
+        Reflectance::Moments => "for F = 1 and every Schlick term".into(),
+        Reflectance::Conductor { eta, k } => {
+            let [eta, k] = [eta, k].map(|rgb| rgb.map(number).join(", "));
+            format!("for a conductor with eta {eta} and k {k}")
+        }
+        Reflectance::Dielectric { side, min, max } => {
+            let index = range([*min, max.unwrap_or(f64::INFINITY)]);
+            format!("for a dielectric of index {index} from its {} side", side.name())
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! A survey of all scenes in a folder: what would be planned for each, and what was not read.
+
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use walkdir::WalkDir;
+
+use crate::library::Library;
+use crate::plan::{Options, Verdict};
+use crate::progress::Meter;
+use crate::scene::{self, Format, Scene, SceneErrorKind};
+use crate::table_set::{Need, Target};
+
+/// The files of a folder, and of all folders in it, whose names end as those of scenes do.
+#[derive(Clone, Debug, Default)]
+pub struct Survey {
+    /// The files, sorted by their path.
+    pub files: Vec<File>,
+    /// What all planned scenes need, each thing once, with its [`Need::id`].
+    pub needs: BTreeMap<String, Need>,
+}
+
+/// One file of a [`Survey`].
+#[derive(Clone, Debug)]
+pub struct File {
+    /// Its path.
+    pub path: PathBuf,
+    /// What became of it.
+    pub outcome: Outcome,
+}
+
+/// What became of a file.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// It was read and planned.
+    Planned(Planned),
+    /// It is a part of another scene, which includes it.
+    Part,
+    /// It is another kind of document than a scene, and why.
+    Foreign(String),
+    /// It was refused, and why.
+    Refused(String),
+}
+
+/// A scene that was planned.
+#[derive(Clone, Debug, Default)]
+pub struct Planned {
+    /// How many of its lobes have each of the verdicts, by [`group`].
+    pub lobes: BTreeMap<&'static str, usize>,
+    /// Materials for which there is nothing to bake.
+    pub without_lobe: usize,
+    /// Materials that were not understood: name, kind, reason.
+    pub not_understood: Vec<[String; 3]>,
+    /// Lobes that nothing covers: name, reason.
+    pub not_covered: Vec<[String; 2]>,
+    /// Warnings on what was assumed.
+    pub warnings: Vec<String>,
+    /// The [`Need::id`]s of what it needs.
+    pub needs: Vec<String>,
+}
+
+/// The verdicts that a survey tells apart: what has tables, what needs none, and what gets none.
+#[must_use]
+pub fn group(verdict: &Verdict) -> &'static str {
+    match verdict {
+        Verdict::Bake(_) | Verdict::Same { .. } | Verdict::Within { .. } | Verdict::Own => "tables",
+        Verdict::ClosedForm => "closed form",
+        Verdict::Embedded => "embedded",
+        Verdict::NotRough => "smooth",
+        Verdict::NotUsed => "not used",
+        Verdict::NotCovered(_) => "not covered",
+    }
+}
+
+/// A file that was read, before it is known which others include it.
+struct Read {
+    file: File,
+    needs: Vec<(String, Need)>,
+    included: Vec<PathBuf>,
+}
+
+impl Survey {
+    /// Reads and plans all scenes below `folder`. Links and hidden files are passed over.
+    ///
+    /// With [`Options::strict`] a scene with any [doubt](Scene::doubts) is refused.
+    pub fn new(
+        folder: &Path,
+        (per_set, options): (usize, Options),
+        target: Target,
+        meter: &Meter,
+    ) -> Self {
+        let mut paths: Vec<PathBuf> = Vec::new();
+        let mut unread: Vec<Read> = Vec::new();
+        let hidden = |name: &std::ffi::OsStr| name.as_encoded_bytes().starts_with(b".");
+        let all = WalkDir::new(folder).sort_by_file_name().into_iter();
+        // The folder itself may be named "." or "..".
+        for entry in all.filter_entry(|entry| entry.depth() == 0 || !hidden(entry.file_name())) {
+            match entry {
+                Ok(entry) if entry.file_type().is_file() => paths.push(entry.into_path()),
+                Ok(_) => {}
+                Err(why) => unread
+                    .push(Read::refused(why.path().unwrap_or(folder).to_owned(), why.to_string())),
+            }
+        }
+        paths.retain(|path| Format::of(path).is_some());
+        meter.expect(paths.len() as f64);
+        let stage = meter.stage(paths.len() as f64);
+        stage.split(paths.len());
+        let read = paths.into_par_iter().map(|path| {
+            let read = Read::new(path, per_set, options, target);
+            stage.step();
+            read
+        });
+        let mut read: Vec<Read> = read.collect();
+        read.append(&mut unread);
+        let included: HashSet<PathBuf> =
+            read.iter_mut().flat_map(|read| std::mem::take(&mut read.included)).collect();
+        let mut survey = Self::default();
+        for Read { mut file, needs, .. } in read {
+            if file.path.canonicalize().is_ok_and(|path| included.contains(&path)) {
+                file.outcome = Outcome::Part;
+            } else {
+                survey.needs.extend(needs);
+            }
+            survey.files.push(file);
+        }
+        survey
+    }
+
+    /// The scenes that were planned, with their files.
+    pub fn planned(&self) -> impl Iterator<Item = (&Path, &Planned)> {
+        self.files.iter().filter_map(|file| match &file.outcome {
+            Outcome::Planned(planned) => Some((file.path.as_path(), planned)),
+            _ => None,
+        })
+    }
+}
+
+impl Read {
+    fn refused(path: PathBuf, why: String) -> Self {
+        let file = File { path, outcome: Outcome::Refused(why) };
+        Self { file, needs: Vec::new(), included: Vec::new() }
+    }
+
+    fn new(path: PathBuf, per_set: usize, options: Options, target: Target) -> Self {
+        let scene = match scene::load(&path) {
+            Ok(scene) => scene,
+            Err(error) if matches!(error.kind, SceneErrorKind::Foreign(_)) => {
+                let outcome = Outcome::Foreign(error.to_string());
+                let file = File { path, outcome };
+                return Self { file, needs: Vec::new(), included: Vec::new() };
+            }
+            Err(error) => return Self::refused(path, error.to_string()),
+        };
+        if let Some(doubt) = scene.doubts().next().filter(|_| options.strict) {
+            return Self::refused(path, doubt);
+        }
+        let included = scene.included.clone();
+        match Planned::new(scene, per_set, options, target) {
+            Ok((planned, needs)) => {
+                let file = File { path, outcome: Outcome::Planned(planned) };
+                Self { file, needs, included }
+            }
+            Err(why) => Self { included, ..Self::refused(path, why) },
+        }
+    }
+}
+
+impl Planned {
+    /// A scene as it is planned, with what it needs; the error says why it is refused.
+    fn new(
+        scene: Scene,
+        per_set: usize,
+        options: Options,
+        target: Target,
+    ) -> Result<(Self, Vec<(String, Need)>), String> {
+        let library = Library::new(scene, per_set, options).map_err(|why| why.to_string())?;
+        let needs = library.needs(target).map_err(|why| why.to_string())?;
+        let mut planned =
+            Self { needs: needs.iter().map(|(id, _)| id.clone()).collect(), ..Self::default() };
+        for (scene, plan) in library.plans() {
+            planned.warnings.extend(scene.warnings.iter().cloned());
+            for material in &scene.ignored {
+                if material.understood {
+                    planned.without_lobe += 1;
+                } else {
+                    let [name, kind] = [&material.name, &material.kind].map(String::clone);
+                    planned.not_understood.push([name, kind, material.reason.to_string()]);
+                }
+            }
+            for (material, verdict) in scene.materials.iter().zip(&plan.verdicts) {
+                *planned.lobes.entry(group(verdict)).or_default() += 1;
+                if let Verdict::NotCovered(why) = verdict {
+                    planned.not_covered.push([material.name.clone(), why.reason()]);
+                }
+            }
+        }
+        Ok((planned, needs))
+    }
+}
