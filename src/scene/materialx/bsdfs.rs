@@ -6,7 +6,8 @@ use super::Reader;
 use super::connect::{is_end, named};
 use super::graph::{negated, sum};
 use super::index::{At, Scope};
-use super::shaders::{LEAST_ALPHA, Model, NO_FRESNEL, lobe, schlick, stretched};
+use super::inputs::NO_FRESNEL;
+use super::shaders::{LEAST_ALPHA, Model, lobe, schlick, stretched};
 use crate::scene::builder::{Lobe, conductor};
 use crate::scene::texture::Channel;
 use crate::scene::xml::Element;
@@ -86,7 +87,7 @@ impl<'a> Reader<'a> {
                 self.builder.ignore(&format!("{name}.{fabric}"), class, place, FABRIC)
             }
             None if is_empty => {
-                let reason = parts.reason.unwrap_or("scatters no light");
+                let reason = parts.reason.unwrap_or("has no BSDF of a weight above 0");
                 self.builder.ignore(name, class, place, reason)
             }
             None => Ok(()),
@@ -104,6 +105,9 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let node = at.node();
+            if self.circle.contains(&at) {
+                return Err(node.place.invalid("is connected to itself through other nodes"));
+            }
             if !self.bsdfs.take(1) {
                 return Err(node.place.too_large(format!(
                     "the materials have more than {} BSDF nodes in all; split the document",
@@ -124,11 +128,9 @@ impl<'a> Reader<'a> {
                 }
                 "surface" => follow(self, "bsdf", film)?,
                 "dot" => follow(self, "in", film)?,
-                "add" | "LamaAdd" => {
-                    let [a, b] =
-                        if node.tag == "add" { ["in1", "in2"] } else { ["material1", "material2"] };
-                    follow(self, b, film)?;
-                    follow(self, a, film)?;
+                "add" => {
+                    follow(self, "in2", film)?;
+                    follow(self, "in1", film)?;
                 }
                 "multiply" => {
                     if self.greatest(at, "in2", 1.0)? > 0.0 {
@@ -155,7 +157,11 @@ impl<'a> Reader<'a> {
                     parts.microfacets.push((at, film));
                 }
                 "standard_surface" | "open_pbr_surface" | "gltf_pbr" | "disney_principled"
-                | "UsdPreviewSurface" => parts.microfacets.push((at, film)),
+                | "UsdPreviewSurface" => {
+                    // All have a diffuse part.
+                    parts.reason = Some(DIFFUSE);
+                    parts.microfacets.push((at, film));
+                }
                 "oren_nayar_diffuse_bsdf"
                 | "burley_diffuse_bsdf"
                 | "translucent_bsdf"

@@ -4,7 +4,7 @@ use super::Reader;
 use super::index::{At, Scope};
 use crate::scene::texture::Channel;
 use crate::scene::xml::{Element, Key};
-use crate::scene::{Place, SceneError, cycle, limits};
+use crate::scene::{SceneError, cycle, limits};
 
 /// Longer chains of outputs and interfaces than this are refused.
 const MAX_STEPS: usize = 128;
@@ -160,8 +160,8 @@ impl<'a> Reader<'a> {
             "nodes are connected in a circle: {}; remove one of the connections",
             names.join(" -> ")
         );
-        let place: Place = nodes[0].place.clone();
-        self.builder.warn(&place, message);
+        self.builder.warn(&nodes[0].place, message);
+        self.circle = circle.into_iter().collect();
     }
 }
 

@@ -1,6 +1,6 @@
 //! Elements of a document by their names, and the scopes in which names are looked up.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -130,6 +130,11 @@ impl<'a> Index<'a> {
         }
         let of = |of_type| self.definitions.get(&(&node.tag[..], of_type)).copied();
         of(node.attribute("type").unwrap_or_default()).or_else(|| of(""))
+    }
+
+    /// The graphs that implement some `nodedef`.
+    pub(super) fn implementing(&self) -> HashSet<Key<'a>> {
+        self.implementations.values().map(|graph| graph.key()).collect()
     }
 
     /// The graph that implements a `nodedef`.

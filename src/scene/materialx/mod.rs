@@ -1,22 +1,49 @@
-//! MaterialX documents (1.38 and later): `standard_surface` and `open_pbr_surface`.
+//! MaterialX documents (1.38 and later): the shading models of its libraries, and graphs of the
+//! BSDF nodes of `pbrlib`.
 //!
-//! Conventions, from the graphs that define the two shading models (`libraries/bxdf` of MaterialX,
-//! the [OpenPBR specification][openpbr]) and the node `roughness_anisotropy` (`libraries/pbrlib`):
+//! Conventions, from the graphs that define the nodes (`libraries/bxdf` and `libraries/pbrlib` of
+//! [MaterialX 1.39][materialx], the [OpenPBR specification][openpbr]). All lobes are GGX (γ = 2);
+//! r is the roughness and a the anisotropy, from 0 to 1, and A = √(1 − min(a, 0.98)).
 //!
-//! - All lobes are GGX (γ = 2) with α from the roughness r and the anisotropy a, limited to [1e-6,
-//!   1]:
-//!   - `standard_surface`: αx = r²/A, αy = r² A, with A = √(1 − min(a, 0.98));
-//!   - `open_pbr_surface`: αx = r² √(2 / (1 + (1 − a)²)), αy = (1 − a) αx.
+//! | node | αx | αy | Fresnel term |
+//! | --- | --- | --- | --- |
+//! | `standard_surface` | r² / A | r² A | `specular_IOR`; metal: `artistic_ior` of the colours |
+//! | `open_pbr_surface` | r² √(2 / (1 + (1 − a)²)) | (1 − a) αx | `specular_ior`; metal: F0 `base_color` |
+//! | `gltf_pbr` | r² + (1 − r²) a² | r² | F0 of `ior`; metal: F0 `base_color` |
+//! | `UsdPreviewSurface` | r² | r² | F0 of `ior`, or `specularColor`; metal: `artistic_ior` |
+//! | `disney_principled` | r² / A | r² A | none; metal: F0 `baseColor` |
+//! | `conductor_bsdf` | as written | as written | `ior` and `extinction` |
+//! | `dielectric_bsdf` | as written | as written | `ior` |
+//! | `generalized_schlick_bsdf` | as written | as written | F0 `color0`, for plain Schlick |
+//!
+//! - α is limited to [1e-6, 1], in `gltf_pbr` to [1e-5, 1]. For BSDF nodes it comes as written or
+//!   from `roughness_anisotropy` (as `standard_surface`), `glossiness_anisotropy` (the same of
+//!   1 − glossiness) or `roughness_dual` (r² for each axis).
+//! - A Fresnel term is stated if the inputs are constant and nothing is mixed: metal is all or
+//!   nothing, there is no thin film, and in OpenPBR no coat, which the index is relative to. F0 is
+//!   Schlick's; `artistic_ior` is Gulbrandsen's (JCGT 3(4), 2014).
 //! - The coat, if its weight is not 0, is a lobe of its own. It roughens the base: in
 //!   `standard_surface` to r + (1 − r) `coat` · `coat_affect_roughness` · `coat_roughness`, in
 //!   `open_pbr_surface` to (min(1, r⁴ + 2 `coat_roughness`⁴))^¼, mixed in by the coat's weight.
-//! - `transmission_extra_roughness` gives transmission a lobe of its own.
+//! - The clearcoats of `gltf_pbr`, `UsdPreviewSurface` and `disney_principled` are GGX too, with
+//!   α = r², of the last with r = 1 − `clearcoatGloss`. Burley's own clearcoat (2012) is GTR1; the
+//!   node of MaterialX is not.
+//! - `transmission_extra_roughness` gives transmission a lobe of its own. What `UsdPreviewSurface`
+//!   and `disney_principled` transmit is smooth, and has none.
 //! - Sheen and fuzz have distributions of their own. The form of G2 is left open.
-//! - Defaults are those of the node definitions, version 1.0.1 and 1.1.
-//! - A material is used if a `materialassign` names it, or if the document has none.
+//! - Defaults are those of the node definitions: `standard_surface` 1.0.1, `open_pbr_surface` 1.1,
+//!   `gltf_pbr` 2.0.1, `UsdPreviewSurface` 2.6.
+//! - BSDFs are followed through `surface`, `layer`, `mix`, `add` and `multiply`, and through the
+//!   graphs of nodes that the document defines itself (`nodedef`); weights of 0 end there.
+//! - A shader appears once for each `surfacematerial` that uses it, under that name, or else under
+//!   its own. A material is used if a `materialassign` names it, or if the document has none.
 //! - An image is read in its first channel if it is a float, else in the channel that is taken from
-//!   it; it is decoded from sRGB if it is a colour in the colour space `srgb_texture`.
+//!   it; it is decoded from sRGB if it is a colour in the colour space `srgb_texture`. A file with
+//!   `<UDIM>` or `<UVTILE>` in its name is all the tiles that exist.
+//! - `fileprefix` and `colorspace` of a document's root hold for what that document brings, and
+//!   files are relative to its folder.
 //!
+//! [materialx]: https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/libraries
 //! [openpbr]: https://academysoftwarefoundation.github.io/OpenPBR/
 
 mod bsdfs;
@@ -24,6 +51,7 @@ mod connect;
 mod graph;
 mod image;
 mod index;
+mod inputs;
 mod shaders;
 
 use std::collections::{HashMap, HashSet};
@@ -60,6 +88,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         ranges: Memo::default(),
         instances: Vec::new(),
         entered: HashMap::new(),
+        circle: HashSet::new(),
         bsdfs: Budget::new(limits::BSDFS),
     };
     reader.check_circles();
@@ -108,6 +137,8 @@ struct Reader<'a> {
     /// Nodes that the document defines by graphs, and the scopes of those.
     instances: Vec<Instance<'a>>,
     entered: HashMap<At<'a>, Scope<'a>>,
+    /// Nodes that are connected in a circle.
+    circle: HashSet<At<'a>>,
     bsdfs: Budget,
 }
 
@@ -145,7 +176,11 @@ impl<'a> Reader<'a> {
             }
         });
         // A graph with a definition implements a shading model and does not use it.
-        let is_graph = |e: &&Element| e.tag == "nodegraph" && e.attribute("nodedef").is_none();
+        let implementing = self.index.implementing();
+        let is_graph = |e: &&Element| {
+            let defines = e.attribute("nodedef").is_some() || implementing.contains(&e.key());
+            e.tag == "nodegraph" && !defines
+        };
         let graphs = root.children.iter().filter(is_graph);
         let nodes: Vec<At<'a>> = [root]
             .into_iter()
