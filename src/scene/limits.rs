@@ -84,7 +84,7 @@ pub(super) const DEFAULTS: usize = 1000;
 /// Uses of the nodes that a MaterialX document defines, each with the values of its own inputs.
 pub(super) const INSTANCES: usize = 10_000;
 /// BSDF nodes of all materials of a MaterialX document together: materials may share them.
-pub(super) const BSDFS: u64 = 2 << 20;
+pub(super) const BSDFS: u64 = 1 << 20;
 /// Tiles of one tiled image, and entries of the folder in which they are looked for.
 pub(super) const TILES: usize = 1000;
 pub(super) const TILE_FOLDER: usize = 100_000;

@@ -16,6 +16,9 @@ use crate::scene::{Fresnel, Interval, Roughness, SceneError, limits};
 const DIFFUSE: &str = "diffuse, without microfacets";
 const FABRIC: &str = "a fabric's distribution, not a Student-t one";
 
+/// The same lobe is looked for among so many before it, so that time stays linear.
+const MAX_COMPARED: usize = 64;
+
 /// What a surface is made of, without what has a weight of 0.
 #[derive(Default)]
 struct Parts<'a> {
@@ -52,7 +55,8 @@ impl<'a> Reader<'a> {
                 Ok(model) => {
                     // An interface that reflects and transmits is one lobe, and may be two nodes.
                     for lobe in model.lobes {
-                        if !lobes.iter().any(|other| is_same(other, &lobe)) {
+                        let mut near = lobes.iter().rev().take(MAX_COMPARED);
+                        if !near.any(|other| is_same(other, &lobe)) {
                             lobes.push(lobe);
                         }
                     }

@@ -236,7 +236,7 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let node = next.node();
-            if ARITHMETIC.contains(&&node.tag[..]) {
+            if ARITHMETIC.contains(&&node.tag[..]) && node.children.len() <= MAX_CONSTANT {
                 left.extend(node.children.iter().map(|input| At::new(input, next.scope)));
             } else {
                 match self.implemented(next, end.attribute("output"))? {

@@ -145,7 +145,9 @@ impl<'a> Index<'a> {
     /// An attribute that holds for an element and all inside it: that of the innermost of
     /// `elements` that has it, or else that of the root of its document.
     pub(super) fn inherited(&self, elements: &[&'a Element], name: &str) -> Option<&'a str> {
-        let own = elements.iter().find_map(|element| element.attribute(name));
+        // The root is that of the document which includes the others.
+        let mut inside = elements.iter().filter(|element| !std::ptr::eq(**element, self.root));
+        let own = inside.find_map(|element| element.attribute(name));
         own.or_else(|| {
             let header = self.headers.get(&elements.first()?.place.file)?;
             header.iter().find_map(|(key, value)| (key == name).then_some(&value[..]))
