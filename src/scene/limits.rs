@@ -81,6 +81,13 @@ pub(super) const INCLUDES: usize = 10_000;
 pub(super) const FOLDERS: usize = 64;
 /// Parameters that a Mitsuba scene declares with `<default>`.
 pub(super) const DEFAULTS: usize = 1000;
+/// Uses of the nodes that a MaterialX document defines, each with the values of its own inputs.
+pub(super) const INSTANCES: usize = 10_000;
+/// BSDF nodes of all materials of a MaterialX document together: materials may share them.
+pub(super) const BSDFS: u64 = 1 << 20;
+/// Tiles of one tiled image, and entries of the folder in which they are looked for.
+pub(super) const TILES: usize = 1000;
+pub(super) const TILE_FOLDER: usize = 100_000;
 /// Bytes of one image file.
 pub(super) const IMAGE_FILE: u64 = 256 << 20;
 /// Bytes of memory for decoding one image: a PNG of 8192 x 8192 pixels of 16-bit RGBA.

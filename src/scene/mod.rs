@@ -9,7 +9,7 @@
 //! | [pbrt-v4] | `.pbrt`, `.pbrt.gz` | √roughness | 2 | height-correlated |
 //! | [Mitsuba 3] | `.xml` | α; `principled` roughness² | ∞ or 2 | uncorrelated |
 //! | [glTF 2.0] | `.gltf`, `.glb` | roughness² | 2 | left open |
-//! | [MaterialX] | `.mtlx` | roughness² with the shading model's anisotropy | 2 | left open |
+//! | [MaterialX] | `.mtlx` | roughness² with the model's anisotropy; BSDF nodes α | 2 | left open |
 //!
 //! In pbrt σ is the roughness as written with `remaproughness` false, and a surface is smooth under
 //! 1e-3. In Mitsuba α is as written, but at least 1e-4; γ is ∞ for `beckmann` and 2 for `ggx`.

@@ -1,9 +1,12 @@
 //! XML as a tree of owned elements with their places, shared by the readers of Mitsuba and
 //! MaterialX.
 
+mod mended;
+
 use std::hash::{Hash, Hasher};
 use std::path::Path;
 
+use mended::Mended;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::error::Lines;
@@ -99,47 +102,56 @@ impl Reader {
 
     /// Reads the root element of a file that `place` asks for.
     pub(super) fn read(&mut self, file: &Path, place: &Place) -> Result<Element, SceneError> {
-        let text = self.includes.text(file, place)?;
-        let lines = Lines::new(file, text.as_bytes());
-        if !self.values.take(check_attributes(&text, &lines)?) {
-            return Err(Place::file(file).too_large(format!(
-                "the scene has more than {} attributes; load a file that has the materials alone",
-                limits::XML_VALUES
-            )));
-        }
-        let nodes_limit = u32::try_from(self.nodes.left()).unwrap_or(u32::MAX);
-        let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
-        let document = Document::parse_with_options(&text, options).map_err(|error| {
+        let source = self.includes.text(file, place)?;
+        let lines = Lines::new(file, source.as_bytes());
+        let mut text = Mended::new(&source);
+        loop {
+            let attributes = check_attributes(&text, &lines)?;
+            let nodes_limit = u32::try_from(self.nodes.left()).unwrap_or(u32::MAX);
+            let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
+            let error = match Document::parse_with_options(text.text(), options) {
+                Ok(document) => {
+                    if !self.values.take(attributes) {
+                        return Err(Place::file(file).too_large(format!(
+                            "the scene has more than {} attributes; load a file that has the \
+                             materials alone",
+                            limits::XML_VALUES
+                        )));
+                    }
+                    self.nodes.take(document.descendants().count() as u64);
+                    return element(document.root_element(), &text, &lines, 0);
+                }
+                Err(error) => error,
+            };
             if matches!(error, roxmltree::Error::NodesLimitReached) {
-                return Place::file(file).too_large(format!(
+                return Err(Place::file(file).too_large(format!(
                     "the scene has more than {} elements, comments and texts; load a file that has \
                      the materials alone",
                     limits::XML_NODES
-                ));
+                )));
             }
-            let at = error.pos();
-            // The parser's columns are characters.
-            let row = text.split('\n').nth(at.row as usize - 1).unwrap_or_default();
-            let bytes = row.chars().take(at.col as usize - 1).map(char::len_utf8).sum();
-            lines
-                .after_feeds(at.row as usize, bytes)
+            if !text.mend(&error) {
                 // The message has the place before it already.
-                .syntax(error.to_string().trim_end_matches(&format!(" at {at}")))
-        })?;
-        self.nodes.take(document.descendants().count() as u64);
-        element(document.root_element(), &lines, 0)
+                let at = format!(" at {}", error.pos());
+                return Err(lines
+                    .place(text.offset(error.pos()))
+                    .syntax(error.to_string().trim_end_matches(&at)));
+            }
+            // Parsing once more counts as much as reading once more.
+            self.includes.charge(source.len(), place)?;
+        }
     }
 }
 
 /// Checks what the parser takes quadratic time for, and counts the attributes, at least.
-fn check_attributes(text: &str, lines: &Lines<'_>) -> Result<u64, SceneError> {
+fn check_attributes(text: &Mended<'_>, lines: &Lines<'_>) -> Result<u64, SceneError> {
     // No attribute holds this character, so that a piece has one element at most; each of its
     // attributes has two quotes.
     let (mut start, mut all) = (0, 0);
-    for piece in text.split('<') {
+    for piece in text.text().split('<') {
         let quotes = piece.bytes().filter(|byte| matches!(byte, b'"' | b'\'')).count();
         if quotes > 2 * limits::XML_ATTRIBUTES {
-            return Err(lines.place(start).too_large(format!(
+            return Err(lines.place(text.original(start)).too_large(format!(
                 "there are {quotes} quotes before the next \"<\"; an element may have {} attributes",
                 limits::XML_ATTRIBUTES
             )));
@@ -147,8 +159,8 @@ fn check_attributes(text: &str, lines: &Lines<'_>) -> Result<u64, SceneError> {
         start += piece.len() + 1;
         all += quotes as u64;
     }
-    match text.match_indices("xmlns").nth(limits::XML_NAMESPACES) {
-        Some((at, _)) => Err(lines.place(at).too_large(format!(
+    match text.text().match_indices("xmlns").nth(limits::XML_NAMESPACES) {
+        Some((at, _)) => Err(lines.place(text.original(at)).too_large(format!(
             "the file declares more than {} namespaces; declare each once",
             limits::XML_NAMESPACES
         ))),
@@ -156,8 +168,13 @@ fn check_attributes(text: &str, lines: &Lines<'_>) -> Result<u64, SceneError> {
     }
 }
 
-fn element(node: Node<'_, '_>, lines: &Lines<'_>, depth: usize) -> Result<Element, SceneError> {
-    let place = lines.place(node.range().start);
+fn element(
+    node: Node<'_, '_>,
+    text: &Mended<'_>,
+    lines: &Lines<'_>,
+    depth: usize,
+) -> Result<Element, SceneError> {
+    let place = lines.place(text.original(node.range().start));
     if depth == MAX_DEPTH {
         return Err(too_deep(&place));
     }
@@ -170,7 +187,7 @@ fn element(node: Node<'_, '_>, lines: &Lines<'_>, depth: usize) -> Result<Elemen
         children: node
             .children()
             .filter(Node::is_element)
-            .map(|child| element(child, lines, depth + 1))
+            .map(|child| element(child, text, lines, depth + 1))
             .collect::<Result<_, _>>()?,
         place,
     })

@@ -1,143 +1,95 @@
 //! Ranges of the values that MaterialX node graphs compute.
 
+use std::collections::HashSet;
+
 use super::Reader;
-use crate::scene::texture::{Channel, Encoding};
-use crate::scene::xml::{Element, Key};
-use crate::scene::{Interval, SceneError, cycle};
+use super::connect::{channel_named, is_end, named, place, selected};
+use super::index::{At, Scope};
+use crate::scene::texture::Channel;
+use crate::scene::xml::Element;
+use crate::scene::{Interval, SceneError};
+
+const RGB: [Channel; 3] = [Channel::Red, Channel::Green, Channel::Blue];
+/// Constants are followed through this many nodes at most.
+const MAX_CONSTANT: usize = 64;
 
 impl<'a> Reader<'a> {
-    /// The range of an `<input>` of a node in `scope`.
+    /// The range of one channel of an `<input>` of a node in `scope`.
     pub(super) fn value(
         &mut self,
         input: &'a Element,
-        scope: &'a Element,
+        scope: Scope<'a>,
+        channel: Channel,
     ) -> Result<Interval, SceneError> {
-        self.connected(input, scope, Channel::Red)
+        let range = self.connected(input, scope, channel);
+        if range.is_err() {
+            self.ranges.abandon();
+        }
+        range
     }
 
-    /// As [`Self::value`], for one channel. Every cycle of connections passes through an input.
+    /// As [`Self::value`], inside of another. Every cycle of connections passes through an input.
     fn connected(
         &mut self,
         input: &'a Element,
-        scope: &'a Element,
+        scope: Scope<'a>,
         channel: Channel,
     ) -> Result<Interval, SceneError> {
-        let key = (input.key(), channel);
+        let key = (At::new(input, scope), channel);
         if let Some(known) = self.ranges.begin(key, &input.place)? {
             return Ok(known);
         }
-        let range = self.source(input, scope, channel)?;
-        self.ranges.end(key, range, &input.place)
-    }
-
-    fn source(
-        &mut self,
-        input: &'a Element,
-        scope: &'a Element,
-        channel: Channel,
-    ) -> Result<Interval, SceneError> {
-        // Documents before 1.39 select channels at the connection; separate nodes have an output
-        // each.
-        let of_node = input.attribute("output").filter(|_| input.attribute("nodename").is_some());
-        let taken = input.attribute("channels").or(of_node);
-        let channel = taken.and_then(channel_named).unwrap_or(channel);
-        match self.target(input, scope)? {
-            Some((end, scope))
-                if end.tag == "output" || input.attribute("interfacename").is_some() =>
-            {
-                self.connected(end, scope, channel)
+        let channel = selected(input, channel);
+        let range = match self.target(input, scope)? {
+            Some(end) if is_end(input, end.node()) => {
+                self.connected(end.node(), end.scope, channel)?
             }
-            Some((node, scope)) => self.node(node, scope, channel),
-            None => number(input, channel).map(Interval::point),
-        }
-    }
-
-    /// The input, output or node that an input or output in `scope` is connected to, with the scope
-    /// of that; `None` if it has a value of its own.
-    fn target(
-        &self,
-        input: &'a Element,
-        scope: &'a Element,
-    ) -> Result<Option<(&'a Element, &'a Element)>, SceneError> {
-        let root = self.root;
-        if let Some(name) = input.attribute("interfacename") {
-            return match self.index.child(scope, name) {
-                // An input in the document's own scope would refer to itself.
-                Some(outer) if !std::ptr::eq(scope, root) => Ok(Some((outer, root))),
-                _ => Err(undefined(input, "interface", name)),
-            };
-        }
-        if let Some(name) = input.attribute("nodegraph") {
-            let graph =
-                self.index.child(root, name).ok_or_else(|| undefined(input, "nodegraph", name))?;
-            return self.output(input, graph).map(Some);
-        }
-        if let Some(name) = input.attribute("nodename") {
-            let node =
-                self.index.child(scope, name).ok_or_else(|| undefined(input, "node", name))?;
-            return match &node.tag[..] {
-                "nodegraph" => self.output(input, node).map(Some),
-                _ => Ok(Some((node, scope))),
-            };
-        }
-        Ok(None)
-    }
-
-    /// The output of `graph` that `input` is connected to, with its scope.
-    fn output(
-        &self,
-        input: &'a Element,
-        graph: &'a Element,
-    ) -> Result<(&'a Element, &'a Element), SceneError> {
-        let name = input.attribute("output").unwrap_or_default();
-        let output = self.index.outputs.get(&(graph.key(), name));
-        output.map(|&output| (output, graph)).ok_or_else(|| undefined(input, "output", name))
-    }
-
-    /// Refuses nodes that are connected in a circle, of values and of shaders.
-    pub(super) fn check_circles(&self) -> Result<(), SceneError> {
-        let root = self.root;
-        let graphs = root.children.iter().filter(|child| child.tag == "nodegraph");
-        let all = [root]
-            .into_iter()
-            .chain(graphs)
-            .flat_map(|scope| scope.children.iter().map(move |e| (e.key(), scope.key())));
-        let connected = |(element, scope): (Key<'a>, Key<'a>)| {
-            let (element, scope) = (element.0, scope.0);
-            let inputs = element.children.iter().filter(|_| element.tag != "nodegraph");
-            let ends = inputs.chain([element]);
-            // What is not defined is an error where it is used.
-            let targets = ends.filter_map(|end| self.target(end, scope).ok().flatten());
-            targets.map(|(element, scope)| (element.key(), scope.key())).collect()
+            Some(at) => self.node(at, input.attribute("output"), channel)?,
+            None => Interval::point(number(input, channel)?),
         };
-        let Some(circle) = cycle::find(all, connected) else {
-            return Ok(());
-        };
-        let nodes: Vec<&Element> = circle.iter().map(|(element, _)| element.0).collect();
-        let named = |e: &Element| e.attribute("name").unwrap_or(&e.tag).to_owned();
-        let names: Vec<String> = nodes.iter().chain(&nodes[..1]).map(|e| named(e)).collect();
-        Err(nodes[0].place.invalid(format!(
-            "nodes are connected in a circle: {}; remove one of the connections",
-            names.join(" -> ")
-        )))
+        self.ranges.end(key, range, &input.place)
     }
 
     fn node(
         &mut self,
-        node: &'a Element,
-        scope: &'a Element,
+        at: At<'a>,
+        output: Option<&'a str>,
         channel: Channel,
     ) -> Result<Interval, SceneError> {
-        let mut input = |name: &'static str, default: f64| match self.index.child(node, name) {
+        let (node, scope) = (at.node(), at.scope);
+        let mut of = |name: &'static str, default: f64, channel| match self.index.given(node, name)
+        {
             Some(input) => self.connected(input, scope, channel),
             None => Ok(Interval::point(default)),
         };
+        let mut input = |name, default| of(name, default, channel);
         Ok(match &node.tag[..] {
             "constant" => input("value", 0.0)?,
             "dot" | "convert" => input("in", 0.0)?,
             "add" => sum(input("in1", 0.0)?, input("in2", 0.0)?),
             "subtract" => sum(input("in1", 0.0)?, negated(input("in2", 0.0)?)),
             "multiply" => input("in1", 0.0)?.map_bilinear(input("in2", 1.0)?, |a, b| a * b),
+            "divide" => {
+                let (a, b) = (input("in1", 0.0)?, input("in2", 1.0)?);
+                if b.contains(0.0) {
+                    return Ok(self.unknown(node, "divides by 0"));
+                }
+                a.map_bilinear(b.map_falling(|b| 1.0 / b), |a, b| a * b)
+            }
+            "power" | "safepower" => {
+                let (base, exponent) = (input("in1", 0.0)?, input("in2", 1.0)?);
+                if base.min < 0.0 || base.min == 0.0 && exponent.min <= 0.0 {
+                    return Ok(self.unknown(node, "takes a power of a value that is not positive"));
+                }
+                // Rises or falls in each argument, so that the extremes are at the ends.
+                base.map_bilinear(exponent, libm::pow)
+            }
+            "sqrt" => input("in", 0.0)?.map_rising(|x| x.max(0.0).sqrt()),
+            "absval" => {
+                let x = input("in", 0.0)?;
+                let min = if x.contains(0.0) { 0.0 } else { x.min.abs().min(x.max.abs()) };
+                Interval { min, max: x.min.abs().max(x.max.abs()) }
+            }
             "invert" => sum(input("amount", 1.0)?, negated(input("in", 0.0)?)),
             "mix" => input("bg", 0.0)?.mix(input("fg", 0.0)?, input("mix", 0.0)?),
             "min" | "max" => {
@@ -154,113 +106,221 @@ impl<'a> Reader<'a> {
                     max: clamp(value.max, low.max, high.max),
                 }
             }
+            "remap" => {
+                let (low, high) = (input("inlow", 0.0)?, input("inhigh", 1.0)?);
+                if !(low.is_point() && high.is_point() && low != high) {
+                    return Ok(self.unknown(node, "has a range that varies, or is empty"));
+                }
+                let part = input("in", 0.0)?
+                    .map_bilinear(low, |x, _| (x - low.min) / (high.min - low.min));
+                input("outlow", 0.0)?.mix(input("outhigh", 1.0)?, part)
+            }
+            "smoothstep" => Interval::UNIT,
+            "ifgreater" | "ifgreatereq" | "ifequal" => input("in1", 0.0)?.union(input("in2", 0.0)?),
+            "ramplr" | "splitlr" => input("valuel", 0.0)?.union(input("valuer", 0.0)?),
+            "ramptb" | "splittb" => input("valuet", 0.0)?.union(input("valueb", 0.0)?),
+            "ramp4" => {
+                let top = input("valuetl", 0.0)?.union(input("valuetr", 0.0)?);
+                top.union(input("valuebl", 0.0)?).union(input("valuebr", 0.0)?)
+            }
+            // An average, with any weights.
+            "luminance" => {
+                let [r, g, b] = RGB.map(|channel| of("in", 0.0, channel));
+                r?.union(g?).union(b?)
+            }
+            "combine2" | "combine3" | "combine4" => {
+                let name = ["in1", "in2", "in3", "in4"][place(channel)];
+                of(name, 0.0, Channel::Red)?
+            }
             "extract" | "separate2" | "separate3" | "separate4" | "swizzle" => {
+                let said = |name| self.index.child(node, name)?.attribute("value");
                 let channel = match &node.tag[..] {
-                    "extract" => {
-                        let index =
-                            self.index.child(node, "index").and_then(|i| i.attribute("value"));
-                        channel_at(index.unwrap_or("0"))
-                    }
-                    "swizzle" => {
-                        let names =
-                            self.index.child(node, "channels").and_then(|c| c.attribute("value"));
-                        names.and_then(channel_named)
-                    }
+                    "extract" => channel_at(said("index").unwrap_or("0")),
+                    "swizzle" => said("channels").and_then(|names| channel_named(names, channel)),
                     // The output is already selected in `channel`.
                     _ => Some(channel),
                 };
-                match (channel, self.index.child(node, "in")) {
+                match (channel, self.index.given(node, "in")) {
                     (Some(channel), Some(inner)) => self.connected(inner, scope, channel)?,
-                    _ => self.unknown(node),
+                    _ => self.unknown(node, "takes a channel that is not known"),
                 }
             }
-            "image" | "tiledimage" | "hextiledimage" | "gltf_image" => {
-                self.image(node, scope, channel)
+            "roughness_anisotropy" | "glossiness_anisotropy" => {
+                let r = match &node.tag[..] {
+                    "roughness_anisotropy" => input("roughness", 0.0)?,
+                    _ => sum(Interval::point(1.0), negated(input("glossiness", 1.0)?)),
+                };
+                let anisotropy = input("anisotropy", 0.0)?;
+                let alpha =
+                    super::shaders::stretched(r.clamp(0.0, 1.0), anisotropy.clamp(0.0, 1.0));
+                if channel == Channel::Green { alpha.y() } else { alpha.x() }
             }
-            _ => self.unknown(node),
+            "roughness_dual" => {
+                let r = input("roughness", 0.0)?;
+                // A negative second roughness stands for the first.
+                let r = if r.max < 0.0 { of("roughness", 0.0, Channel::Red)? } else { r };
+                r.clamp(0.0, 1.0).map_rising(|r| r * r)
+            }
+            "artistic_ior" => {
+                let (r, edge) = (input("reflectivity", 0.944)?, input("edge_color", 0.998)?);
+                let of = if output == Some("extinction") { 1 } else { 0 };
+                // Of a range only its ends, since an index of refraction is read if it is constant.
+                let [a, b] = [(r.min, edge.min), (r.max, edge.max)];
+                Interval::point(artistic(a.0, a.1)[of])
+                    .union(Interval::point(artistic(b.0, b.1)[of]))
+            }
+            "image" | "tiledimage" | "hextiledimage" | "gltf_image" => {
+                let factor = input("factor", 1.0)?;
+                self.image(at, channel).map_bilinear(factor, |x, factor| x * factor)
+            }
+            "gltf_colorimage" => {
+                let factor = input("color", 1.0)?;
+                self.image(at, channel).map_bilinear(factor, |x, factor| x * factor)
+            }
+            "UsdUVTexture" => {
+                let (scale, bias) = (input("scale", 1.0)?, input("bias", 0.0)?);
+                sum(self.image(at, channel).map_bilinear(scale, |x, scale| x * scale), bias)
+            }
+            tag => match self.implemented(at, output)? {
+                Some(end) => self.connected(end.node(), end.scope, channel)?,
+                None => {
+                    let reason = format!("is a node {tag}, whose range is not known");
+                    self.unknown(node, &reason)
+                }
+            },
         })
     }
 
-    fn unknown(&mut self, node: &Element) -> Interval {
-        let name = node.attribute("name").unwrap_or(&node.tag);
-        let reason = format!("is a node {}, whose range is not known", node.tag);
-        self.builder.unread(name, &reason, &node.place)
+    fn unknown(&mut self, node: &Element, reason: &str) -> Interval {
+        self.builder.unread(named(node), reason, &node.place)
     }
 
-    fn image(&mut self, node: &'a Element, scope: &'a Element, channel: Channel) -> Interval {
-        let place = &node.place;
-        let input =
-            self.index.child(node, "file").and_then(|file| match file.attribute("interfacename") {
-                Some(name) => self.index.child(scope, name),
-                None => Some(file),
-            });
-        let Some((input, file)) = input.and_then(|input| Some((input, input.attribute("value")?)))
-        else {
-            let name = node.attribute("name").unwrap_or(&node.tag);
-            return self.builder.unread(name, "names no file", place);
-        };
-        let is_colour = node.attribute("type").is_some_and(|t| t.starts_with("color"));
-        let encoding = match input.attribute("colorspace") {
-            Some("srgb_texture") if is_colour => Encoding::Srgb,
-            _ => Encoding::Linear,
-        };
-        let channel = if node.attribute("type") == Some("float") { Channel::Red } else { channel };
-        let prefix = [node, scope, self.root]
-            .into_iter()
-            .find_map(|element| element.attribute("fileprefix"))
-            .unwrap_or_default();
-        let file = self.folder.join(format!("{prefix}{file}"));
-        self.builder.image(&file, channel, encoding, place)
+    /// A colour or a vector that is the same everywhere; `None` if it may vary, which is found
+    /// without reading images.
+    pub(super) fn constant(
+        &mut self,
+        at: At<'a>,
+        name: &'static str,
+        default: [f64; 3],
+    ) -> Result<Option<[f64; 3]>, SceneError> {
+        let Some(input) = self.index.given(at.node(), name) else { return Ok(Some(default)) };
+        if !self.is_constant(input, at.scope)? {
+            return Ok(None);
+        }
+        let mut values = [0.0; 3];
+        for (value, channel) in values.iter_mut().zip(RGB) {
+            let range = self.value(input, at.scope, channel)?;
+            if !range.is_point() {
+                return Ok(None);
+            }
+            *value = range.min;
+        }
+        Ok(Some(values))
+    }
+
+    /// Whether a value comes from numbers through arithmetic alone.
+    fn is_constant(&mut self, input: &'a Element, scope: Scope<'a>) -> Result<bool, SceneError> {
+        let mut left = vec![At::new(input, scope)];
+        let mut seen = HashSet::new();
+        while let Some(at) = left.pop() {
+            if !seen.insert(at) {
+                continue;
+            }
+            if seen.len() > MAX_CONSTANT {
+                return Ok(false);
+            }
+            let end = at.node();
+            let Some(next) = self.target(end, at.scope)? else { continue };
+            if is_end(end, next.node()) {
+                left.push(next);
+                continue;
+            }
+            let node = next.node();
+            if ARITHMETIC.contains(&&node.tag[..]) && node.children.len() <= MAX_CONSTANT {
+                left.extend(node.children.iter().map(|input| At::new(input, next.scope)));
+            } else {
+                match self.implemented(next, end.attribute("output"))? {
+                    Some(output) => left.push(output),
+                    None => return Ok(false),
+                }
+            }
+        }
+        Ok(true)
     }
 }
 
-fn sum(a: Interval, b: Interval) -> Interval {
+/// Nodes whose output is a number if their inputs are.
+const ARITHMETIC: [&str; 29] = [
+    "absval",
+    "add",
+    "artistic_ior",
+    "clamp",
+    "combine2",
+    "combine3",
+    "combine4",
+    "constant",
+    "convert",
+    "divide",
+    "dot",
+    "extract",
+    "glossiness_anisotropy",
+    "invert",
+    "luminance",
+    "max",
+    "min",
+    "mix",
+    "multiply",
+    "power",
+    "remap",
+    "roughness_anisotropy",
+    "roughness_dual",
+    "safepower",
+    "separate2",
+    "separate3",
+    "separate4",
+    "sqrt",
+    "subtract",
+];
+
+/// The index of refraction and the extinction of a metal of a reflectance at normal incidence and
+/// an edge colour (Gulbrandsen, JCGT 3(4), 2014), limited as in `mx_artistic_ior`.
+pub(super) fn artistic(reflectivity: f64, edge: f64) -> [f64; 2] {
+    let r = reflectivity.clamp(0.0, 0.99);
+    let least = (1.0 - r) / (1.0 + r);
+    let greatest = (1.0 + r.sqrt()) / (1.0 - r.sqrt());
+    let n = greatest + (least - greatest) * edge;
+    let squared = ((n + 1.0) * (n + 1.0) * r - (n - 1.0) * (n - 1.0)) / (1.0 - r);
+    [n, squared.max(0.0).sqrt()]
+}
+
+pub(super) fn sum(a: Interval, b: Interval) -> Interval {
     Interval { min: a.min + b.min, max: a.max + b.max }
 }
 
-fn negated(a: Interval) -> Interval {
+pub(super) fn negated(a: Interval) -> Interval {
     a.map_falling(|x| -x)
-}
-
-fn undefined(input: &Element, what: &str, name: &str) -> SceneError {
-    input.place.invalid(format!(
-        "input \"{}\": there is no {what} \"{name}\"",
-        input.attribute("name").unwrap_or_default()
-    ))
 }
 
 /// The number in the attribute "value"; for a colour or a vector, that of the channel.
 fn number(input: &Element, channel: Channel) -> Result<f64, SceneError> {
-    let text = input.required("value")?;
-    let mut parts = text.split(',').map(|part| part.trim().parse::<f64>().ok());
-    let index = match channel {
-        Channel::Green => 1,
-        Channel::Blue => 2,
-        Channel::Alpha => 3,
-        _ => 0,
+    let name = input.attribute("name").unwrap_or("value");
+    let Some(text) = input.attribute("value") else {
+        return Err(input.place.invalid(format!("{name} has neither a value nor a connection")));
     };
-    let index = index.min(text.matches(',').count());
-    match parts.nth(index).flatten() {
+    let is_between = |c: char| c == ',' || c.is_whitespace();
+    let mut parts = text.split(is_between).filter(|part| !part.is_empty());
+    let first = parts.next();
+    let part = match place(channel) {
+        0 => first,
+        index => parts.take(index).last().or(first),
+    };
+    match part.and_then(|part| part.parse::<f64>().ok()) {
         Some(number) if number.is_finite() => Ok(number),
-        _ => Err(input.place.invalid(format!(
-            "{} must be a number, not \"{text}\"",
-            input.attribute("name").unwrap_or("value")
-        ))),
+        _ => Err(input.place.invalid(format!("{name} must be a number, not \"{text}\""))),
     }
 }
 
 fn channel_at(index: &str) -> Option<Channel> {
     let channels = [Channel::Red, Channel::Green, Channel::Blue, Channel::Alpha];
     channels.get(index.parse::<usize>().ok()?).copied()
-}
-
-/// The channel named "r", "x", "outr", "outx" and the like.
-fn channel_named(name: &str) -> Option<Channel> {
-    match name.strip_prefix("out").unwrap_or(name) {
-        "r" | "x" => Some(Channel::Red),
-        "g" | "y" => Some(Channel::Green),
-        "b" | "z" => Some(Channel::Blue),
-        "a" | "w" => Some(Channel::Alpha),
-        _ => None,
-    }
 }

@@ -1,5 +1,9 @@
 //! MaterialX documents.
 
+mod bsdfs;
+mod documents;
+mod models;
+
 use microfacet_bake::scene::{Format, Fresnel, Interval, Roughness, Scene};
 
 use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, names, png};
@@ -29,7 +33,6 @@ fn standard_surface_follows_its_definition() {
 
     let mirror = shader("standard_surface", &[("specular_roughness", 0.0), ("metalness", 1.0)]);
     assert_eq!(mirror.materials[0].roughness, Roughness::Smooth);
-    assert_eq!(mirror.materials[0].fresnel, None);
 
     let brushed =
         shader("standard_surface", &[("specular_roughness", 0.6), ("specular_anisotropy", 0.36)]);
@@ -129,14 +132,15 @@ fn materials_name_shaders_and_looks_use_them() {
     );
     let scene = load("a.mtlx", &text);
     let used: Vec<_> = scene.materials.iter().map(|m| (&m.name[..], m.used)).collect();
-    assert_eq!(used, [("gold", false), ("SR_shared", true)]);
-    assert_eq!((&scene.ignored[0].name[..], &scene.ignored[0].kind[..]), ("SR_other", "gltf_pbr"));
+    assert_eq!(used, [("gold", false), ("one", false), ("two", true), ("SR_other", false)]);
 
     let without_look = text.replace("materialassign", "other");
     assert!(load("a.mtlx", &without_look).materials.iter().all(|m| m.used));
 
     let old = r#"<material name="m"><shaderref name="s" node="standard_surface"/></material>"#;
-    assert!(load("a.mtlx", &document(old)).ignored[0].reason.contains("before 1.38"));
+    let old = load("a.mtlx", &document(old));
+    let [ignored] = &old.ignored[..] else { panic!("{:?}", old.ignored) };
+    assert!(ignored.reason.contains("before 1.38; upgrade") && !ignored.understood);
 }
 
 /// A shader whose roughness comes from the output "o" of a graph.
@@ -284,29 +288,64 @@ fn values_out_of_range_are_moved_and_warned_of() {
 }
 
 #[test]
-fn broken_documents_are_refused_at_their_place() {
-    let case =
-        |text: &str, place: &str, parts: &[&str]| assert_refused("a.mtlx", text, place, parts);
-    case("<scene/>", ":1:1", &["<scene>", "<materialx>"]);
-    case("<materialx>\n<a></materialx>", ":2:4", &["a"]);
+fn documents_of_another_grammar_are_refused() {
+    assert_refused("a.mtlx", "<scene/>", ":1:1", &["<scene>", "<materialx>"]);
+    assert_refused("a.mtlx", "<materialx>\n<a></materialx>", ":2:4", &["a"]);
+}
+
+/// The reason why the material "a" of a document is not understood, and that "b" still is.
+#[track_caller]
+fn not_understood(text: &str, parts: &[&str]) {
+    let sound = "<gltf_pbr name=\"b\" type=\"surfaceshader\"/>";
+    let scene = load("a.mtlx", &document(&format!("{text}{sound}")));
+    assert_eq!(names(&scene), ["b"]);
+    let [ignored] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
+    assert!(ignored.name == "a" && !ignored.understood, "{ignored}");
+    for part in parts {
+        assert!(ignored.reason.contains(part), "no {part:?} in {}", ignored.reason);
+    }
+}
+
+#[test]
+fn a_broken_material_is_named_at_its_place_and_the_others_are_read() {
     let input = |attributes: &str, parts: &[&str]| {
         let text = format!(
             "<open_pbr_surface name=\"a\" type=\"surfaceshader\">\n<input name=\"specular_roughness\" {attributes}/></open_pbr_surface>"
         );
-        case(&document(&text), ":2:1", parts);
+        not_understood(&text, parts);
     };
-    input("value=\"x\"", &["specular_roughness", "number", "\"x\""]);
-    input("type=\"float\"", &["no attribute \"value\""]);
-    input("nodename=\"n\"", &["no node \"n\""]);
-    input("nodegraph=\"g\"", &["no nodegraph \"g\""]);
-    input("interfacename=\"i\"", &["no interface \"i\""]);
-    let circle = graph("\n<dot name=\"end\"><input name=\"in\" nodename=\"end\"/></dot>");
-    case(&circle, ":2:1", &["circle: end -> end"]);
-    case(&shader_text("specular_ior", "0"), ":1:27", &["0", "more than 0"]);
+    input("value=\"x\"", &["a.mtlx:2:1: specular_roughness", "number", "\"x\""]);
+    input("nodename=\"n\"", &[":2:1", "no node \"n\""]);
+    input("nodegraph=\"g\"", &[":2:1", "no nodegraph \"g\""]);
+    input("interfacename=\"i\"", &[":2:1", "no interface \"i\""]);
+    // The failure of one leaves nothing behind for another.
+    let twice = "<dot name=\"n\"><input name=\"in\" value=\"x\"/></dot>\
+        <surfacematerial name=\"a\"><input name=\"surfaceshader\" nodename=\"s\"/></surfacematerial>\
+        <surfacematerial name=\"b\"><input name=\"surfaceshader\" nodename=\"s\"/></surfacematerial>\
+        <gltf_pbr name=\"s\" type=\"surfaceshader\"><input name=\"roughness\" nodename=\"n\"/></gltf_pbr>";
+    let scene = load("a.mtlx", &document(twice));
+    assert_eq!(scene.ignored.len(), 2);
+    assert!(scene.ignored.iter().all(|one| one.reason.contains("must be a number")), "{scene:?}");
 }
 
-fn shader_text(name: &str, value: &str) -> String {
-    document(&format!(
-        "<open_pbr_surface name=\"a\" type=\"surfaceshader\"><input name=\"{name}\" value=\"{value}\"/></open_pbr_surface>"
-    ))
+#[test]
+fn nodes_in_a_circle_are_warned_of() {
+    let circle = graph("\n<dot name=\"end\"><input name=\"in\" nodename=\"end\"/></dot>");
+    let scene = load("a.mtlx", &circle);
+    assert!(scene.warnings[0].contains("a.mtlx:2:1: nodes are connected in a circle: end -> end"));
+    assert!(scene.ignored[0].reason.contains("depends on itself"), "{}", scene.ignored[0]);
+}
+
+#[test]
+fn an_input_that_says_nothing_is_the_default() {
+    let text = "<open_pbr_surface name=\"a\" type=\"surfaceshader\"><input name=\"specular_roughness\" type=\"float\"/></open_pbr_surface>";
+    let scene = load("a.mtlx", &document(text));
+    assert_close(scene.materials[0].roughness, [0.09; 2], [0.09; 2]);
+}
+
+#[test]
+fn an_impossible_index_leaves_the_lobe_without_a_fresnel_term() {
+    let scene = shader("open_pbr_surface", &[("specular_ior", 0.0)]);
+    assert_eq!(scene.materials[0].fresnel, None);
+    assert!(scene.warnings[0].contains("more than 0; the lobe has no Fresnel term"));
 }

@@ -1,0 +1,147 @@
+//! Values of the inputs of shading models and BSDFs, and the Fresnel terms that they state.
+
+use super::Reader;
+use super::graph::artistic;
+use super::index::At;
+use crate::scene::builder::{conductor, dielectric};
+use crate::scene::texture::Channel;
+use crate::scene::{Fresnel, Interval, SceneError};
+
+/// What is done about a Fresnel term that is impossible.
+pub(super) const NO_FRESNEL: (Option<Fresnel>, &str) = (None, "the lobe has no Fresnel term");
+
+/// The share of metal in a material.
+pub(super) enum Metal {
+    None,
+    All,
+    Some,
+}
+
+impl<'a> Reader<'a> {
+    /// An input from 0 to 1; values outside are clamped, as the shaders do.
+    pub(super) fn unit(
+        &mut self,
+        at: At<'a>,
+        name: &'static str,
+        default: f64,
+    ) -> Result<Interval, SceneError> {
+        let value = self.input(at, name, default)?;
+        Ok(self.moved(at, name, value))
+    }
+
+    /// A value moved into [0, 1], with a warning if that is another.
+    pub(super) fn moved(&mut self, at: At<'a>, name: &str, value: Interval) -> Interval {
+        if value.min < 0.0 || value.max > 1.0 {
+            let worst = if value.min < 0.0 { value.min } else { value.max };
+            self.builder.warn(
+                &at.node().place,
+                format!("{name} is {worst}, outside [0, 1]; it is moved to the nearer end"),
+            );
+        }
+        value.clamp(0.0, 1.0)
+    }
+
+    pub(super) fn metal(
+        &mut self,
+        at: At<'a>,
+        name: &'static str,
+        default: f64,
+    ) -> Result<(Interval, Metal), SceneError> {
+        let metal = self.unit(at, name, default)?;
+        let kind = match metal {
+            Interval { max: 0.0, .. } => Metal::None,
+            Interval { min: 1.0, .. } => Metal::All,
+            _ => Metal::Some,
+        };
+        Ok((metal, kind))
+    }
+
+    /// The Fresnel term of a dielectric, if its index is constant; impossible ones are warned of.
+    pub(super) fn dielectric(
+        &mut self,
+        at: At<'a>,
+        name: &'static str,
+        default: f64,
+    ) -> Result<Option<Fresnel>, SceneError> {
+        let fresnel = match self.constant(at, name, [default; 3]) {
+            Ok(eta) => eta.map(|eta| dielectric(eta[0], &at.node().place)).transpose(),
+            Err(error) => Err(error),
+        };
+        self.builder.or_warn(fresnel, NO_FRESNEL)
+    }
+
+    /// A constant colour of a Fresnel term; impossible ones are warned of.
+    pub(super) fn colour(
+        &mut self,
+        at: At<'a>,
+        name: &'static str,
+        default: [f64; 3],
+    ) -> Result<Option<[f64; 3]>, SceneError> {
+        let colour = self.constant(at, name, default);
+        self.builder.or_warn(colour, (None, NO_FRESNEL.1))
+    }
+
+    /// A constant colour times a constant number.
+    pub(super) fn product(
+        &mut self,
+        at: At<'a>,
+        colour: &'static str,
+        grey: f64,
+        factor: &'static str,
+        default: f64,
+    ) -> Result<Option<[f64; 3]>, SceneError> {
+        let colour = self.colour(at, colour, [grey; 3])?;
+        let factor = self.colour(at, factor, [default; 3])?;
+        Ok(colour.zip(factor).map(|(colour, factor)| colour.map(|x| x * factor[0])))
+    }
+
+    /// The reflectance at normal incidence, ((1 − n) / (1 + n))², of a constant index `ior`.
+    pub(super) fn normal_reflectance(&mut self, at: At<'a>) -> Result<Option<f64>, SceneError> {
+        let Some(Fresnel::Dielectric(eta)) = self.dielectric(at, "ior", 1.5)? else {
+            return Ok(None);
+        };
+        let amplitude = (1.0 - eta) / (1.0 + eta);
+        Ok(Some(amplitude * amplitude))
+    }
+
+    /// The conductor of a reflectance at normal incidence and an edge colour.
+    pub(super) fn artistic(
+        &mut self,
+        at: At<'a>,
+        reflectivity: Option<[f64; 3]>,
+        edge: Option<[f64; 3]>,
+    ) -> Result<Option<Fresnel>, SceneError> {
+        let Some((r, edge)) = reflectivity.zip(edge) else { return Ok(None) };
+        let [red, green, blue] = [0, 1, 2].map(|i| artistic(r[i], edge[i]));
+        let fresnel =
+            conductor([red[0], green[0], blue[0]], [red[1], green[1], blue[1]], &at.node().place);
+        self.builder.or_warn(fresnel.map(Some), NO_FRESNEL)
+    }
+
+    /// The greatest value of an input, of any channel.
+    pub(super) fn greatest(
+        &mut self,
+        at: At<'a>,
+        name: &'static str,
+        default: f64,
+    ) -> Result<f64, SceneError> {
+        let Some(input) = self.index.given(at.node(), name) else { return Ok(default) };
+        let mut greatest = f64::NEG_INFINITY;
+        for channel in [Channel::Red, Channel::Green, Channel::Blue] {
+            greatest = greatest.max(self.value(input, at.scope, channel)?.max);
+        }
+        Ok(greatest)
+    }
+
+    pub(super) fn input(
+        &mut self,
+        at: At<'a>,
+        name: &'static str,
+        default: f64,
+    ) -> Result<Interval, SceneError> {
+        match self.index.given(at.node(), name) {
+            Some(input) => self.value(input, at.scope, Channel::Red),
+            None => Ok(Interval::point(default)),
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! The lobes of the shading models of the MaterialX libraries.
+
+use super::Reader;
+use super::index::At;
+use super::inputs::Metal;
+use crate::scene::builder::{GGX, Lobe};
+use crate::scene::{Fresnel, Interval, Roughness, SceneError};
+
+/// The lower limit of α (`M_FLOAT_EPS` of the shaders up to MaterialX 1.38).
+pub(super) const LEAST_ALPHA: f64 = 1e-6;
+/// The lower limit of α in `gltf_pbr`.
+const LEAST_GLTF_ALPHA: f64 = 1e-5;
+
+/// What a shading model consists of.
+#[derive(Default)]
+pub(super) struct Model {
+    pub(super) lobes: Vec<Lobe>,
+    /// The input that adds a fabric's lobe, if it does.
+    pub(super) fabric: Option<&'static str>,
+}
+
+impl<'a> Reader<'a> {
+    /// The lobes of a shading model of the libraries; `None` for other nodes.
+    pub(super) fn model(&mut self, at: At<'a>) -> Result<Option<Model>, SceneError> {
+        let (lobes, fabric) = match &at.node().tag[..] {
+            "standard_surface" => (self.standard_surface(at)?, "sheen"),
+            "open_pbr_surface" => (self.open_pbr_surface(at)?, "fuzz_weight"),
+            "gltf_pbr" => (self.gltf_pbr(at)?, "sheen_color"),
+            "disney_principled" => (self.disney_principled(at)?, "sheen"),
+            "UsdPreviewSurface" => {
+                let lobes = self.usd_preview_surface(at)?;
+                return Ok(Some(Model { lobes, fabric: None }));
+            }
+            _ => return Ok(None),
+        };
+        let has_fabric = self.greatest(at, fabric, 0.0)? > 0.0;
+        Ok(Some(Model { lobes, fabric: has_fabric.then_some(fabric) }))
+    }
+
+    fn standard_surface(&mut self, at: At<'a>) -> Result<Vec<Lobe>, SceneError> {
+        let roughness = self.unit(at, "specular_roughness", 0.2)?;
+        let anisotropy = self.unit(at, "specular_anisotropy", 0.0)?;
+        let (metalness, metal) = self.metal(at, "metalness", 0.0)?;
+        let transmission = self.unit(at, "transmission", 0.0)?;
+        let extra = self.input(at, "transmission_extra_roughness", 0.0)?;
+        let coat = self.unit(at, "coat", 0.0)?;
+        let coat_roughness = self.unit(at, "coat_roughness", 0.1)?;
+        let coat_anisotropy = self.unit(at, "coat_anisotropy", 0.0)?;
+        let affect = self.unit(at, "coat_affect_roughness", 0.0)?;
+        let roughening =
+            coat.map_bilinear(affect, |a, b| a * b).map_bilinear(coat_roughness, |a, b| a * b);
+        let under_coat = |r: Interval| r.map_bilinear(roughening, |r, t| r + (1.0 - r) * t);
+        let film = self.greatest(at, "thin_film_thickness", 0.0)? > 0.0;
+
+        let mut lobes = Vec::new();
+        if metalness.max + transmission.max + self.unit(at, "specular", 1.0)?.max > 0.0 {
+            let fresnel = match metal {
+                _ if film => None,
+                Metal::None => self.dielectric(at, "specular_IOR", 1.5)?,
+                Metal::All => {
+                    let reflectivity = self.product(at, "base_color", 0.8, "base", 1.0)?;
+                    let edge = self.product(at, "specular_color", 1.0, "specular", 1.0)?;
+                    self.artistic(at, reflectivity, edge)?
+                }
+                Metal::Some => None,
+            };
+            lobes.push(lobe(None, stretched(under_coat(roughness), anisotropy), fresnel));
+            if transmission.max > 0.0 && extra != Interval::point(0.0) {
+                let roughness =
+                    Interval { min: roughness.min + extra.min, max: roughness.max + extra.max };
+                let roughness = under_coat(roughness.clamp(0.0, 1.0));
+                lobes.push(lobe(Some("transmission"), stretched(roughness, anisotropy), fresnel));
+            }
+        }
+        if coat.max > 0.0 {
+            let fresnel = self.dielectric(at, "coat_IOR", 1.5)?;
+            lobes.push(lobe(Some("coat"), stretched(coat_roughness, coat_anisotropy), fresnel));
+        }
+        Ok(lobes)
+    }
+
+    fn open_pbr_surface(&mut self, at: At<'a>) -> Result<Vec<Lobe>, SceneError> {
+        let alpha = |roughness: Interval, anisotropy: Interval| {
+            let stretch = |a: f64| (2.0 / (1.0 + (1.0 - a) * (1.0 - a))).sqrt();
+            let along = anisotropy.map_rising(stretch);
+            let across = anisotropy.map_falling(|a| (1.0 - a) * stretch(a));
+            axes(roughness, anisotropy, [along.min, along.max], [across.min, across.max])
+        };
+        let roughness = self.unit(at, "specular_roughness", 0.3)?;
+        let anisotropy = self.unit(at, "specular_roughness_anisotropy", 0.0)?;
+        let (metalness, metal) = self.metal(at, "base_metalness", 0.0)?;
+        let transmission = self.unit(at, "transmission_weight", 0.0)?;
+        let specular = self.input(at, "specular_weight", 1.0)?;
+        let coat = self.unit(at, "coat_weight", 0.0)?;
+        let coat_roughness = self.unit(at, "coat_roughness", 0.0)?;
+        let coat_anisotropy = self.unit(at, "coat_roughness_anisotropy", 0.0)?;
+        let under_coat = |r: f64, coat_roughness: f64, coat: f64| {
+            let fourth = |x: f64| x * x * x * x;
+            let sum = fourth(r) + 2.0 * fourth(coat_roughness);
+            r + (sum.min(1.0).sqrt().sqrt() - r) * coat
+        };
+        let film = self.greatest(at, "thin_film_weight", 0.0)? > 0.0;
+
+        let mut lobes = Vec::new();
+        if metalness.max + transmission.max + specular.max > 0.0 {
+            let fresnel = match metal {
+                _ if film => None,
+                // Under a coat the index is relative to the coat's.
+                Metal::None if coat.max > 0.0 => None,
+                Metal::None => self.dielectric(at, "specular_ior", 1.5)?,
+                Metal::All => {
+                    let f0 = self.product(at, "base_color", 0.8, "base_weight", 1.0)?;
+                    let edge = self.colour(at, "specular_color", [1.0; 3])?;
+                    f0.filter(|_| edge == Some([1.0; 3])).and_then(schlick)
+                }
+                Metal::Some => None,
+            };
+            let roughness = Interval {
+                min: under_coat(roughness.min, coat_roughness.min, coat.min),
+                max: under_coat(roughness.max, coat_roughness.max, coat.max),
+            };
+            lobes.push(lobe(None, alpha(roughness, anisotropy), fresnel));
+        }
+        if coat.max > 0.0 {
+            let fresnel = self.dielectric(at, "coat_ior", 1.6)?;
+            lobes.push(lobe(Some("coat"), alpha(coat_roughness, coat_anisotropy), fresnel));
+        }
+        Ok(lobes)
+    }
+
+    fn gltf_pbr(&mut self, at: At<'a>) -> Result<Vec<Lobe>, SceneError> {
+        let alpha = self.unit(at, "roughness", 1.0)?.map_rising(|r| r * r);
+        let strength = self.unit(at, "anisotropy_strength", 0.0)?;
+        let (metallic, metal) = self.metal(at, "metallic", 1.0)?;
+        let transmission = self.unit(at, "transmission", 0.0)?;
+        let specular = self.unit(at, "specular", 1.0)?;
+        let film = self.greatest(at, "iridescence", 0.0)? > 0.0;
+
+        let mut lobes = Vec::new();
+        if metallic.max + transmission.max + specular.max > 0.0 {
+            let roughness = if strength.max == 0.0 {
+                Roughness::isotropic(alpha)
+            } else {
+                let along = |alpha: f64, strength: f64| alpha + (1.0 - alpha) * strength * strength;
+                let along = Interval {
+                    min: along(alpha.min, strength.min),
+                    max: along(alpha.max, strength.max),
+                };
+                let limited = |alpha: Interval| alpha.clamp(LEAST_GLTF_ALPHA, 1.0);
+                Roughness::anisotropic(limited(along), limited(alpha))
+            };
+            let fresnel = match metal {
+                _ if film => None,
+                Metal::All => self.colour(at, "base_color", [1.0; 3])?.and_then(schlick),
+                Metal::None if specular == Interval::point(1.0) => {
+                    let tint = self.colour(at, "specular_color", [1.0; 3])?;
+                    let f0 = self.normal_reflectance(at)?;
+                    let f0 = tint.zip(f0).map(|(tint, f0)| tint.map(|tint| (tint * f0).min(1.0)));
+                    f0.and_then(schlick)
+                }
+                Metal::None | Metal::Some => None,
+            };
+            lobes.push(lobe(None, roughness, fresnel));
+        }
+        if self.unit(at, "clearcoat", 0.0)?.max > 0.0 {
+            let roughness = self.unit(at, "clearcoat_roughness", 0.0)?;
+            let roughness = stretched(roughness, Interval::point(0.0));
+            lobes.push(lobe(Some("clearcoat"), roughness, Some(Fresnel::Dielectric(1.5))));
+        }
+        Ok(lobes)
+    }
+
+    fn usd_preview_surface(&mut self, at: At<'a>) -> Result<Vec<Lobe>, SceneError> {
+        let isotropic = |roughness| stretched(roughness, Interval::point(0.0));
+        let roughness = self.unit(at, "roughness", 0.5)?;
+        let (_, metal) = self.metal(at, "metallic", 0.0)?;
+        let fresnel = if self.greatest(at, "useSpecularWorkflow", 0.0)? > 0.0 {
+            self.colour(at, "specularColor", [0.0; 3])?.and_then(schlick)
+        } else {
+            match metal {
+                Metal::None => self.normal_reflectance(at)?.and_then(|f0| schlick([f0; 3])),
+                Metal::All => {
+                    let colour = self.colour(at, "diffuseColor", [0.18; 3])?;
+                    self.artistic(at, colour, colour)?
+                }
+                Metal::Some => None,
+            }
+        };
+        let mut lobes = vec![lobe(None, isotropic(roughness), fresnel)];
+        if self.unit(at, "clearcoat", 0.0)?.max > 0.0 {
+            let roughness = self.unit(at, "clearcoatRoughness", 0.01)?;
+            let fresnel = self.normal_reflectance(at)?.and_then(|f0| schlick([f0; 3]));
+            lobes.push(lobe(Some("clearcoat"), isotropic(roughness), fresnel));
+        }
+        Ok(lobes)
+    }
+
+    fn disney_principled(&mut self, at: At<'a>) -> Result<Vec<Lobe>, SceneError> {
+        let roughness = self.unit(at, "roughness", 0.5)?;
+        let anisotropy = self.unit(at, "anisotropic", 0.0)?;
+        let (metallic, metal) = self.metal(at, "metallic", 0.0)?;
+        let specular = self.unit(at, "specular", 0.5)?;
+
+        let mut lobes = Vec::new();
+        if metallic.max + specular.max > 0.0 {
+            let fresnel = match metal {
+                Metal::All => self.colour(at, "baseColor", [0.16; 3])?.and_then(schlick),
+                // A weight of 0.08 `specular` on a constant reflectance is no such term.
+                Metal::None | Metal::Some => None,
+            };
+            lobes.push(lobe(None, stretched(roughness, anisotropy), fresnel));
+        }
+        if self.unit(at, "clearcoat", 0.0)?.max > 0.0 {
+            let gloss = self.unit(at, "clearcoatGloss", 1.0)?;
+            let roughness = stretched(gloss.map_falling(|gloss| 1.0 - gloss), Interval::point(0.0));
+            lobes.push(lobe(Some("clearcoat"), roughness, None));
+        }
+        Ok(lobes)
+    }
+}
+
+/// The Fresnel term of Schlick's approximation, if it can be stated: for greys.
+pub(super) fn schlick([r, g, b]: [f64; 3]) -> Option<Fresnel> {
+    (r == g && g == b && (0.0..=1.0).contains(&r)).then_some(Fresnel::Schlick(r))
+}
+
+pub(super) fn lobe(
+    name: Option<&'static str>,
+    roughness: Roughness,
+    fresnel: Option<Fresnel>,
+) -> Lobe {
+    Lobe { name, roughness, gamma: GGX, fresnel, masking: None }
+}
+
+/// α of `roughness_anisotropy`: r² / A and r² A, with A = √(1 − min(a, 0.98)).
+pub(super) fn stretched(roughness: Interval, anisotropy: Interval) -> Roughness {
+    let aspect = anisotropy.map_falling(|a| (1.0 - a.min(0.98)).sqrt());
+    axes(roughness, anisotropy, [1.0 / aspect.max, 1.0 / aspect.min], [aspect.min, aspect.max])
+}
+
+/// The roughness along both axes: r² times a factor from `x` and from `y`, least and greatest.
+fn axes(r: Interval, anisotropy: Interval, x: [f64; 2], y: [f64; 2]) -> Roughness {
+    if anisotropy.max == 0.0 {
+        return Roughness::isotropic(r.map_rising(|r| r * r));
+    }
+    if r.max == 0.0 {
+        return Roughness::Smooth;
+    }
+    let alpha = |factor: [f64; 2]| {
+        Interval { min: r.min * r.min * factor[0], max: r.max * r.max * factor[1] }
+            .clamp(LEAST_ALPHA, 1.0)
+    };
+    Roughness::anisotropic(alpha(x), alpha(y))
+}

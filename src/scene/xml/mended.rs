@@ -1,0 +1,149 @@
+//! XML that is not well formed, and that renderers read all the same.
+//!
+//! Their parsers do not check namespaces, and take a raw "<" in an attribute as a character. Both
+//! are found in MaterialX documents: prefixes that nothing declares, and the tokens of tiled images
+//! in file names. Such a text is mended where the parser stops, and parsed again; places stay those
+//! of the text as it was written.
+
+use std::borrow::Cow;
+
+use roxmltree::{Error, TextPos};
+
+/// The tokens of tiled images (MaterialX specification, "Filename Substitutions").
+const TOKENS: [&str; 2] = ["<UDIM>", "<UVTILE>"];
+
+/// A text, with what it takes for the parser to accept it.
+pub(super) struct Mended<'a> {
+    source: &'a str,
+    text: Cow<'a, str>,
+    /// Declarations of namespaces for the root element, and how many.
+    declared: (String, usize),
+    /// Whether the tokens are escaped.
+    escaped: bool,
+    /// For each place where text was added: its end in `text`, and all bytes added up to there.
+    added: Vec<(usize, usize)>,
+}
+
+impl<'a> Mended<'a> {
+    pub(super) fn new(source: &'a str) -> Self {
+        Self {
+            source,
+            text: Cow::Borrowed(source),
+            declared: (String::new(), 0),
+            escaped: false,
+            added: Vec::new(),
+        }
+    }
+
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Mends what the parser's error complains about; `false` if that is not possible.
+    pub(super) fn mend(&mut self, error: &Error) -> bool {
+        match error {
+            Error::UnknownNamespace(prefix, _) if root_name_end(self.source).is_some() => {
+                let (text, count) = &mut self.declared;
+                // Each prefix has a namespace of its own, or attributes would be the same twice.
+                *text += &format!(" xmlns:{prefix}=\"undeclared:{count}\"");
+                *count += 1;
+            }
+            _ if !self.escaped && TOKENS.iter().any(|token| self.source.contains(token)) => {
+                self.escaped = true;
+            }
+            _ => return false,
+        }
+        self.rebuild();
+        true
+    }
+
+    fn rebuild(&mut self) {
+        // Where something is put, what, and how many bytes it replaces.
+        let mut edits: Vec<(usize, &str, usize)> = Vec::new();
+        if let Some(at) = root_name_end(self.source) {
+            edits.push((at, &self.declared.0, 0));
+        }
+        if self.escaped {
+            for token in TOKENS {
+                let found = self.source.match_indices(token);
+                edits.extend(found.map(|(at, _)| (at, "&lt;", "<".len())));
+            }
+        }
+        edits.sort_unstable_by_key(|&(at, ..)| at);
+        let (mut text, mut from, mut sum) = (String::new(), 0, 0);
+        self.added.clear();
+        for (at, put, replaced) in edits {
+            text += &self.source[from..at];
+            text += put;
+            from = at + replaced;
+            sum += put.len() - replaced;
+            self.added.push((text.len(), sum));
+        }
+        text += &self.source[from..];
+        self.text = Cow::Owned(text);
+    }
+
+    /// The offset in the source of an offset in the text.
+    pub(super) fn original(&self, offset: usize) -> usize {
+        let before = self.added.partition_point(|&(end, _)| end <= offset);
+        offset - before.checked_sub(1).map_or(0, |last| self.added[last].1)
+    }
+
+    /// The offset in the source of a place in the text, whose rows end with line feeds and whose
+    /// columns are characters, both from 1.
+    pub(super) fn offset(&self, at: TextPos) -> usize {
+        let mut rows = self.text.split_inclusive('\n');
+        let before = rows.by_ref().take(at.row as usize - 1).map(str::len).sum::<usize>();
+        let row = rows.next().unwrap_or_default();
+        let within = row.chars().take(at.col as usize - 1).map(char::len_utf8).sum::<usize>();
+        self.original(before + within)
+    }
+}
+
+/// Where the name of the root element ends.
+fn root_name_end(text: &str) -> Option<usize> {
+    let mut from = 0;
+    loop {
+        let start = from + text[from..].find('<')? + 1;
+        let rest = &text[start..];
+        let end = match rest.as_bytes() {
+            [b'!', b'-', b'-', ..] => "-->",
+            [b'?', ..] => "?>",
+            [b'!', ..] => ">",
+            _ => {
+                let is_end = |c: char| c.is_whitespace() || matches!(c, '>' | '/');
+                return Some(start + rest.find(is_end)?);
+            }
+        };
+        from = start + rest.find(end)? + end.len();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_root_follows_the_prolog() {
+        let text = "<?xml version='1.0'?>\n<!-- <a> --><root x='1'/>";
+        assert_eq!(root_name_end(text), text.find(" x="));
+        assert_eq!(root_name_end("<!-- <a>"), None);
+    }
+
+    #[test]
+    fn offsets_are_those_of_the_source() {
+        let source = "<a><b é='<UDIM>'/>\n<c:d/></a>";
+        let mut mended = Mended::new(source);
+        while let Err(error) = roxmltree::Document::parse(mended.text()).map(|_| ()) {
+            assert!(mended.mend(&error), "{error}");
+        }
+        let document = roxmltree::Document::parse(mended.text()).unwrap();
+        for (name, at) in [("a", "<a"), ("b", "<b"), ("d", "<c:d")] {
+            let node = document
+                .descendants()
+                .find(|node| node.has_tag_name(name) || node.tag_name().name() == name);
+            let start = node.unwrap().range().start;
+            assert_eq!(mended.original(start), source.find(at).unwrap(), "{name}");
+        }
+    }
+}
