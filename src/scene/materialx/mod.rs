@@ -16,7 +16,7 @@
 //! | `dielectric_bsdf` | as written | as written | `ior` |
 //! | `generalized_schlick_bsdf` | as written | as written | F0 `color0`, for plain Schlick |
 //!
-//! - α is limited to [1e-6, 1], in `gltf_pbr` to [1e-5, 1]. For BSDF nodes it comes as written or
+//! - α is limited to [1e-8, 1], in `gltf_pbr` to [1e-5, 1]. For BSDF nodes it comes as written or
 //!   from `roughness_anisotropy` (as `standard_surface`), `glossiness_anisotropy` (the same of
 //!   1 − glossiness) or `roughness_dual` (r² for each axis).
 //! - A Fresnel term is stated if the inputs are constant and nothing is mixed: metal is all or
@@ -71,7 +71,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut xml = xml::Reader::new();
     let mut root = xml.open(path)?;
     if root.tag != "materialx" {
-        return Err(root.place.syntax(format!(
+        return Err(root.place.foreign(format!(
             "<{}> is not the root of a MaterialX document; expected <materialx>",
             root.tag
         )));

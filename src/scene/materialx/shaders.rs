@@ -6,8 +6,8 @@ use super::inputs::Metal;
 use crate::scene::builder::{GGX, Lobe};
 use crate::scene::{Fresnel, Interval, Roughness, SceneError};
 
-/// The lower limit of α (`M_FLOAT_EPS` of the shaders up to MaterialX 1.38).
-pub(super) const LEAST_ALPHA: f64 = 1e-6;
+/// The lower limit of α: `M_FLOAT_EPS` of the shaders (`stdlib/genglsl/lib/mx_math.glsl`).
+pub(super) const LEAST_ALPHA: f64 = 1e-8;
 /// The lower limit of α in `gltf_pbr`.
 const LEAST_GLTF_ALPHA: f64 = 1e-5;
 

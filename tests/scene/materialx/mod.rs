@@ -85,7 +85,7 @@ fn open_pbr_surface_follows_its_definition() {
         "open_pbr_surface",
         &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 1.0)],
     );
-    assert_close(line.materials[0].roughness, [0.25 * 2f64.sqrt(); 2], [1e-6; 2]);
+    assert_close(line.materials[0].roughness, [0.25 * 2f64.sqrt(); 2], [1e-8; 2]);
 
     let coated = shader(
         "open_pbr_surface",

@@ -1,0 +1,231 @@
+//! Scenes as they are: what each material is, what was not understood, and a folder of scenes.
+
+mod command;
+
+use std::fs;
+use std::path::Path;
+
+use microfacet_bake::store;
+use serde_json::{Value, json};
+
+use command::{json, ok, refused, run};
+
+/// A rough metal, a diffuse material, a smooth one, and materials of pbrt-v3.
+const PBRT: &str = r#"WorldBegin
+MakeNamedMaterial "steel" "string type" "conductor" "float uroughness" 0.04 "float vroughness" 0.09
+MakeNamedMaterial "wall" "string type" "diffuse"
+MakeNamedMaterial "pane" "string type" "dielectric"
+MakeNamedMaterial "old" "string type" "matte"
+MakeNamedMaterial "older" "string type" "uber"
+"#;
+
+/// One lobe that no table covers, and one in closed form.
+const BEYOND: &str = r#"WorldBegin
+MakeNamedMaterial "far" "string type" "conductor" "float roughness" 1e30
+MakeNamedMaterial "near" "string type" "conductor" "float roughness" 0.04
+"#;
+
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+/// What a command that succeeds writes to standard output, and its warnings.
+fn said(at: &Path, command: &[&str]) -> (String, Vec<String>) {
+    let output = run(at, command);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+    (out, err.lines().map(str::to_owned).collect())
+}
+
+#[test]
+fn every_material_is_described() {
+    let folder = folder(&[("s.pbrt", PBRT)]);
+    let at = folder.path();
+    let plan = json(at, &["plan", "s.pbrt"]);
+    let steel = &plan["materials"][0];
+    assert_eq!(steel["name"], "steel");
+    assert_eq!(steel["sigma"], json!([[0.2, 0.2], [0.3, 0.3]]));
+    assert_eq!(steel["gamma"], json!(["2", "2"]));
+    assert_eq!((&steel["masking"], &steel["fresnel"]), (&json!("height-correlated"), &Value::Null));
+    assert_eq!(steel["verdict"], "closed form");
+    let pane = &plan["materials"][1];
+    assert_eq!(
+        (&pane["fresnel"], &pane["sigma"][0]),
+        (&json!({ "dielectric": 1.5 }), &json!([0.0, 0.0]))
+    );
+    let baked = json(at, &["bake", "s.pbrt", "--quality", "draft", "--out", "out"]);
+    assert_eq!(baked["materials"], plan["materials"]);
+    for command in
+        [&["plan", "s.pbrt"][..], &["bake", "s.pbrt", "--quality", "draft", "--out", "out"]]
+    {
+        let text = ok(at, command);
+        let has =
+            |line: &str| text.lines().any(|of| of.split_whitespace().eq(line.split_whitespace()));
+        assert!(has("has steel sigma 0.2 and 0.3, gamma 2, height-correlated masking"), "{text}");
+        assert!(
+            has("has pane smooth, height-correlated masking, dielectric of index 1.5"),
+            "{text}"
+        );
+    }
+    fs::write(
+        at.join("r.toml"),
+        "[[material]]\nname = \"film\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.3\n",
+    )
+    .unwrap();
+    let film = &json(at, &["plan", "r.toml"])["materials"][0];
+    assert_eq!((&film["distribution"], &film["gamma"]), (&json!("gtr:0.2,1.3"), &Value::Null));
+}
+
+#[test]
+fn what_was_not_understood_is_said_last() {
+    let folder = folder(&[("s.pbrt", PBRT)]);
+    let at = folder.path();
+    for command in
+        [&["plan", "s.pbrt"][..], &["bake", "s.pbrt", "--quality", "draft", "--out", "out"]]
+    {
+        let (text, warnings) = said(at, command);
+        assert!(!text.contains("no material in use is rough"), "{text}");
+        let last = warnings.last().unwrap();
+        assert!(
+            last.contains("2 materials were not understood") && last.contains("\"old\""),
+            "{last}"
+        );
+        assert!(last.contains("pbrt --upgrade"), "{last}");
+    }
+    let ignored = &json(at, &["plan", "s.pbrt"])["ignored"];
+    let understood: Vec<_> =
+        ignored.as_array().unwrap().iter().map(|it| (&it["name"], &it["understood"])).collect();
+    assert_eq!(
+        understood,
+        [
+            (&json!("wall"), &json!(true)),
+            (&json!("old"), &json!(false)),
+            (&json!("older"), &json!(false))
+        ]
+    );
+    let message = refused(at, &["plan", "s.pbrt", "--strict"]);
+    assert!(
+        message.contains("not understood: \"old\" (matte)") && message.contains("--strict"),
+        "{message}"
+    );
+    refused(at, &["bake", "s.pbrt", "--strict", "--out", "strict"]);
+    assert!(!at.join("strict/tables.safetensors").exists());
+}
+
+#[test]
+fn one_lobe_does_not_refuse_a_scene() {
+    let folder = folder(&[("s.pbrt", BEYOND)]);
+    let at = folder.path();
+    let (_, warnings) = said(at, &["bake", "s.pbrt", "--quality", "draft", "--out", "out"]);
+    let last = warnings.last().unwrap();
+    assert!(last.contains("1 material is not covered: \"far\" (sigma = 1e15"), "{last}");
+    // The set has the others, and its recipe can be baked.
+    let set = store::read(&at.join("out")).unwrap();
+    let names: Vec<_> = set.provenance().materials.iter().map(|it| &it.name[..]).collect();
+    assert_eq!(names, ["near"]);
+    assert!(!set.provenance().recipe.contains("far"));
+    let plan = json(at, &["plan", "s.pbrt"]);
+    assert_eq!(plan["materials"][0]["verdict"], "not covered");
+    assert!(refused(at, &["plan", "s.pbrt", "--strict"]).contains("sigma = 1e15"));
+    // A recipe asks for it.
+    let recipe = "[[material]]\nname = \"far\"\nsigma = 1e15\ngamma = 2.0\n";
+    fs::write(at.join("r.toml"), recipe).unwrap();
+    assert!(refused(at, &["plan", "r.toml"]).contains("material \"far\": sigma = 1e15"));
+}
+
+#[test]
+fn an_albedo_beyond_all_tables_is_left_out() {
+    // σ = 10 has a lobe, in closed form, and no albedo.
+    let wide = BEYOND.replace("1e30", "100");
+    let folder = folder(&[("s.pbrt", &wide)]);
+    let at = folder.path();
+    let (_, _) = said(at, &["bake", "s.pbrt", "--albedo", "--quality", "draft", "--out", "out"]);
+    let materials = &json(at, &["plan", "s.pbrt", "--albedo"])["materials"];
+    assert_eq!(materials[0]["verdict"], "closed form");
+    assert_eq!(
+        (&materials[0]["albedo"][0], &materials[1]["albedo"][0]),
+        (&json!("not covered"), &json!("baked"))
+    );
+    assert!(
+        refused(at, &["plan", "s.pbrt", "--albedo", "--strict"]).contains("sigma = 10 is above 3")
+    );
+}
+
+#[test]
+fn a_folder_is_summed_up() {
+    let folder = folder(&[
+        ("a/s.pbrt", PBRT),
+        ("a/same.pbrt", PBRT),
+        ("a/far.pbrt", BEYOND),
+        ("b/main.pbrt", "WorldBegin\nInclude \"part.pbrt\"\n"),
+        ("b/part.pbrt", "NamedMaterial \"defined elsewhere\"\nShape \"sphere\"\n"),
+        ("b/broken.gltf", "{"),
+        ("b/feed.xml", "<rss version=\"2.0\"/>"),
+        ("b/settings.toml", "[profile]\nlevel = 3\n"),
+        ("b/r.toml", "[[material]]\nname = \"glass\"\nsigma = 0.3\ngamma = 3.0\n"),
+        ("b/wrong.toml", "[[material]]\nname = \"glass\"\nsigma = -1\ngamma = 3.0\n"),
+        ("b/notes.txt", "no scene"),
+        (".hidden/s.pbrt", PBRT),
+    ]);
+    let at = folder.path();
+    let survey = json(at, &["plan", "."]);
+    assert_eq!(survey["counts"], json!({ "planned": 5, "parts": 1, "no scenes": 2, "refused": 2 }));
+    let outcome = |name: &str| {
+        let files = survey["files"].as_array().unwrap();
+        let is = |file: &&Value| file["path"].as_str().unwrap().ends_with(name);
+        files.iter().find(is).unwrap_or_else(|| panic!("{name}"))
+    };
+    assert_eq!(outcome("b/part.pbrt")["outcome"], "part");
+    assert_eq!(outcome("b/feed.xml")["outcome"], "no scene");
+    assert_eq!(outcome("b/settings.toml")["outcome"], "no scene");
+    assert!(outcome("b/broken.gltf")["why"].as_str().unwrap().contains("broken.gltf:1:"));
+    assert!(outcome("b/wrong.toml")["why"].as_str().unwrap().contains("sigma"));
+    assert_eq!(outcome("a/far.pbrt")["not_covered"][0]["name"], "far");
+    assert_eq!(outcome("a/s.pbrt")["lobes"], json!({ "closed form": 1, "smooth": 1 }));
+    // Equal scenes need the same; the glass has its own shape.
+    assert_eq!(outcome("a/s.pbrt")["needs"], outcome("a/same.pbrt")["needs"]);
+    assert_eq!(outcome("b/r.toml")["needs"].as_array().unwrap().len(), 1);
+    let needs = survey["needs"].as_array().unwrap();
+    let named =
+        |name: &str| needs.iter().filter(|it| it["name"].as_str().unwrap().contains(name)).count();
+    assert_eq!(named("gamma_3"), 1, "{needs:?}");
+
+    let (text, warnings) = said(at, &["plan", "."]);
+    let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "10 files in .",
+        "planned 5",
+        "parts 1 of other scenes",
+        "no scenes 2",
+        "refused 2",
+        "materials not understood 4",
+        "2 matte:",
+        "2 uber:",
+        "1 not covered: sigma = 1e15",
+        "distinct needs of all:",
+    ] {
+        assert!(flat.contains(part), "{part}\n{text}");
+    }
+    assert!(
+        warnings.last().unwrap().contains("4 materials were not understood, in 2 scenes"),
+        "{warnings:?}"
+    );
+    assert!(warnings.iter().any(|it| it.contains("2 scenes were refused")), "{warnings:?}");
+
+    // Doubts refuse the scenes that have them.
+    let strict = json(at, &["plan", ".", "--strict"]);
+    assert_eq!(strict["counts"]["refused"], 5);
+}
+
+#[test]
+fn a_folder_without_scenes_is_refused() {
+    let folder = folder(&[("notes.txt", "")]);
+    let message = refused(folder.path(), &["plan", "."]);
+    assert!(message.contains("no file in this folder is named as a scene"), "{message}");
+}
