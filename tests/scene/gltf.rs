@@ -45,11 +45,11 @@ fn roughness_is_squared_and_the_rest_is_ggx() {
         isotropic(0.5625),
     ];
     assert_eq!(roughness, expected);
-    let Some(Fresnel::Schlick(f0)) = scene.materials[0].fresnel else {
+    let Some(Fresnel::Schlick([f0, ..])) = scene.materials[0].fresnel else {
         panic!("{:?}", scene.materials[0].fresnel)
     };
     assert!((f0 - 0.04).abs() < 1e-15);
-    assert_eq!(scene.materials[3].fresnel, Some(Fresnel::Schlick(1.0 / 3.0 * (1.0 / 3.0))));
+    assert_eq!(scene.materials[3].fresnel, Some(Fresnel::Schlick([1.0 / 3.0 * (1.0 / 3.0); 3])));
     assert_eq!(scene.ignored[0].kind, "KHR_materials_unlit");
 }
 
@@ -71,7 +71,7 @@ fn extensions_add_anisotropy_and_a_coat() {
     // 0.25 + 0.75 * 0.25
     assert_eq!(scene.materials[0].roughness, anisotropic(0.4375, 0.25));
     assert_eq!(scene.materials[1].roughness, isotropic(0.2 * 0.2));
-    assert_eq!(scene.materials[1].fresnel, Some(Fresnel::Schlick(0.04)));
+    assert_eq!(scene.materials[1].fresnel, Some(Fresnel::Schlick([0.04; 3])));
     assert_eq!(scene.materials[1].origin.lobe, Some("clearcoat"));
     assert_eq!(scene.ignored[0].name, "car.sheen");
 }

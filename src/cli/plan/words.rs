@@ -157,7 +157,7 @@ struct Part<'a> {
 /// Materials for which something is not baked, for the same reason.
 struct Skipped<'a> {
     what: String,
-    why: &'static str,
+    why: &'a str,
     names: Vec<&'a str>,
 }
 
@@ -245,7 +245,7 @@ impl<'a> Outline<'a> {
         }
         let mut ignored: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for material in &self.scene.ignored {
-            ignored.entry(material.reason).or_default().push(&material.name);
+            ignored.entry(&material.reason).or_default().push(&material.name);
         }
         let no_lobe = |(why, names)| Skipped { what: "no lobe".into(), why, names };
         all.extend(ignored.into_iter().map(no_lobe));

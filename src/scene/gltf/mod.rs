@@ -213,7 +213,7 @@ impl Importer<'_> {
             fresnel,
             masking: None,
         };
-        let main = lobe(None, roughness, (!iridescent).then_some(Fresnel::Schlick(f0)));
+        let main = lobe(None, roughness, (!iridescent).then_some(Fresnel::Schlick([f0; 3])));
         self.builder.add(name, &place, used, main)?;
 
         if let Some(coat) = extensions.clearcoat.as_ref().filter(|coat| coat.clearcoat_factor > 0.0)
@@ -224,7 +224,7 @@ impl Importer<'_> {
                 self.factor(name, "clearcoatRoughnessFactor", factor, texture, Channel::Green)?;
             let roughness = Roughness::isotropic(roughness.map_rising(|r| r * r));
             // The coat's index of refraction is fixed at 1.5 (KHR_materials_clearcoat).
-            let coat = lobe(Some("clearcoat"), roughness, Some(Fresnel::Schlick(0.04)));
+            let coat = lobe(Some("clearcoat"), roughness, Some(Fresnel::Schlick([0.04; 3])));
             self.builder.add(name, &place, used, coat)?;
         }
         if extensions.sheen.is_some() {
