@@ -153,10 +153,10 @@ impl Read {
             }
             Err(error) => return Self::refused(path, error.to_string()),
         };
-        if let Some(doubt) = scene.doubts().next().filter(|_| options.strict) {
-            return Self::refused(path, doubt);
-        }
         let included = scene.included.clone();
+        if let Some(doubt) = scene.doubts().next().filter(|_| options.strict) {
+            return Self { included, ..Self::refused(path, doubt) };
+        }
         match Planned::new(scene, per_set, options, target) {
             Ok((planned, needs)) => {
                 let file = File { path, outcome: Outcome::Planned(planned) };

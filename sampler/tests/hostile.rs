@@ -75,7 +75,7 @@ fn materials() -> Vec<MaterialEntry> {
     vec![
         MaterialEntry {
             theta: Some([0.1, -0.2, 0.5]),
-            ..material("tilted", tilted, [0.75; 2], FresnelEntry::Schlick(0.04))
+            ..material("tilted", tilted, [0.75; 2], FresnelEntry::Schlick([0.04; 3]))
         },
         material("metal", metal, [0.0, 1.5], conductor),
         material("pane", [[0.5; 2]; 2], [1.0; 2], FresnelEntry::Dielectric(1.75)),
@@ -214,6 +214,8 @@ fn lying_descriptions_of_materials_and_tables_are_refused_by_name() {
         (tilted, r#"\"sigma\":[[0.0,0.0],[0.3,0.3]],\"s\":[0.7,0.7]"#, "`tilted`: theta"),
         (theta, r#"\"theta\":[0.1,-0.2,0.5],\"distribution\":\"gtr:1,2\""#, "theta is for"),
         (r#"{\"schlick\":0.04}"#, r#"{\"schlick\":1.04}"#, "schlick = 1.04"),
+        (r#"{\"schlick\":0.04}"#, r#"{\"schlick\":[0,2,1]}"#, "schlick = 2"),
+        (r#"{\"schlick\":0.04}"#, r#"{\"schlick\":[0,1]}"#, "a number, or three"),
         (r#"\"eta\":[0.2,"#, r#"\"eta\":[0.0,"#, "eta must be more than 0"),
         (r#"\"k\":[3.9,"#, r#"\"k\":[-3.9,"#, "k at least 0"),
         (r#"{\"dielectric\":1.75}"#, r#"{\"dielectric\":-1.75}"#, "dielectric = -1.75"),
@@ -234,6 +236,20 @@ fn lying_descriptions_of_materials_and_tables_are_refused_by_name() {
 }
 
 #[test]
+fn schlick_is_one_number_where_its_channels_are_equal() {
+    // Both are read, and written again as the shorter.
+    for (text, f0, again) in [
+        (r#"{"schlick":0.04}"#, [0.04; 3], r#"{"schlick":0.04}"#),
+        (r#"{"schlick":[0.5,0.5,0.5]}"#, [0.5; 3], r#"{"schlick":0.5}"#),
+        (r#"{"schlick":[0.95,0.64,0.54]}"#, [0.95, 0.64, 0.54], r#"{"schlick":[0.95,0.64,0.54]}"#),
+    ] {
+        let entry: FresnelEntry = serde_json::from_str(text).unwrap();
+        assert_eq!(entry, FresnelEntry::Schlick(f0));
+        assert_eq!(serde_json::to_string(&entry).unwrap(), again);
+    }
+}
+
+#[test]
 fn what_would_be_refused_is_not_written() {
     let first = |change: fn(&mut MaterialEntry)| {
         let mut materials = materials();
@@ -247,7 +263,7 @@ fn what_would_be_refused_is_not_written() {
         first(|material| material.sigma[1][1] = f64::INFINITY),
         first(|material| material.s[0] = f64::NAN),
         first(|material| material.theta = Some([f64::NAN; 3])),
-        first(|material| material.fresnel = Some(FresnelEntry::Schlick(f64::NAN))),
+        first(|material| material.fresnel = Some(FresnelEntry::Schlick([0.5, f64::NAN, 0.5]))),
     ] {
         assert!(why.contains("`tilted`"), "{why}");
     }

@@ -23,7 +23,10 @@ pub(super) fn material(entry: &MaterialEntry) -> String {
     parts.extend(entry.masking.map(|masking| format!("{masking} masking")));
     parts.extend(entry.fresnel.map(|fresnel| match fresnel {
         FresnelEntry::Mirror => "F = 1".into(),
-        FresnelEntry::Schlick(f0) => format!("Schlick with F0 {}", number(f0)),
+        FresnelEntry::Schlick([r, g, b]) if r == g && g == b => {
+            format!("Schlick with F0 {}", number(r))
+        }
+        FresnelEntry::Schlick(f0) => format!("Schlick with F0 {}", f0.map(number).join(", ")),
         FresnelEntry::Conductor { eta, k } => {
             let [eta, k] = [eta, k].map(|rgb| rgb.map(number).join(", "));
             format!("conductor with eta {eta} and k {k}")

@@ -29,7 +29,8 @@ Keys of a material (docs/recipe.md has all their forms):
                 degrees = true
   distribution  takes the place of sigma and gamma: a name such as \"gtr\", with its
                 parameters, or { measured = \"file.csv\" }
-  fresnel       \"mirror\", { schlick = F0 }, { metal = \"gold\" },
+  fresnel       \"mirror\", { schlick = F0 }, { schlick = [R, G, B] },
+                { metal = \"gold\" },
                 { conductor = { eta = [R, G, B], k = [R, G, B] } } or
                 { dielectric = eta }; asks for albedos
   masking       \"height-correlated\" (the default) or \"uncorrelated\"

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use microfacet_sampler::Metal;
 
+use super::error::did_you_mean;
+use super::limits::Budget;
 use super::material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
 use super::texture::{self, Channel, Encoding, Textures};
 use super::{Interval, Place, Scene, SceneError, SceneErrorKind, limits};
@@ -48,6 +50,15 @@ pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Fre
     }
 }
 
+/// A text that is kept for each of many materials, without the end of a very long one.
+fn shortened(text: Cow<'_, str>) -> Cow<'_, str> {
+    if text.len() <= limits::MESSAGE {
+        return text;
+    }
+    let end = (0..=limits::MESSAGE).rev().find(|&end| text.is_char_boundary(end));
+    format!("{} ...", &text[..end.unwrap_or(0)]).into()
+}
+
 /// Names of metals in pbrt's spectra and Mitsuba's presets; all others are unknown here.
 const METALS: [(&str, Metal); 8] = [
     ("Ag", Metal::Silver),
@@ -74,6 +85,8 @@ pub(super) struct Builder {
     /// How often each name was requested.
     names: HashMap<String, u32>,
     warned: HashSet<String>,
+    /// Suggestions for names that may still be looked for.
+    hints: Budget,
     textures: Textures<PathBuf>,
 }
 
@@ -84,6 +97,7 @@ impl Builder {
             scene: Scene::default(),
             names: HashMap::new(),
             warned: HashSet::new(),
+            hints: Budget::new(limits::HINTS),
             textures: Textures::default(),
         }
     }
@@ -195,7 +209,8 @@ impl Builder {
         understood: bool,
     ) -> Result<(), SceneError> {
         self.check(name, place)?;
-        let (name, kind, place) = (name.to_owned(), kind.to_owned(), place.clone());
+        let (name, kind, place) = (name.to_owned(), shortened(kind.into()).into(), place.clone());
+        let reason = shortened(reason);
         self.scene.ignored.push(Ignored { name, kind, reason, understood, place });
         Ok(())
     }
@@ -219,11 +234,31 @@ impl Builder {
     }
 
     pub(super) fn warn(&mut self, place: &Place, message: impl AsRef<str>) {
-        let warning = format!("{place}: {}", message.as_ref());
+        let warnings = self.scene.warnings.len();
+        if warnings > limits::WARNINGS {
+            return;
+        }
+        let warning = format!("{place}: {}", shortened(message.as_ref().into()));
         // Materials share textures: each warning is given once.
         if self.warned.insert(warning.clone()) {
-            self.scene.warnings.push(warning);
+            self.scene.warnings.push(match warnings {
+                limits::WARNINGS => format!("{place}: further warnings are not listed"),
+                _ => warning,
+            });
         }
+    }
+
+    /// The text "; did you mean `x`?", or an empty one, as by [`did_you_mean`]; a scene with very
+    /// many unknown names gets no more of them after a while, since each takes time.
+    pub(super) fn did_you_mean<'a>(
+        &self,
+        word: &str,
+        candidates: impl IntoIterator<Item = &'a str>,
+    ) -> String {
+        if !self.hints.take(1) {
+            return String::new();
+        }
+        did_you_mean(word, &candidates.into_iter().collect::<Vec<_>>())
     }
 
     /// The range of a channel of an image file; [0, 1] with a warning if it cannot be read.

@@ -158,10 +158,15 @@ pub enum SceneErrorKind {
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: ", self.place)?;
-        match &self.kind {
-            SceneErrorKind::Io(error) => write!(f, "cannot be read: {error}"),
-            SceneErrorKind::UnknownExtension(extension) => {
+        write!(f, "{}: {}", self.place, self.kind)
+    }
+}
+
+impl fmt::Display for SceneErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io(error) => write!(f, "cannot be read: {error}"),
+            Self::UnknownExtension(extension) => {
                 if extension.as_os_str().is_empty() {
                     f.write_str("the name has no extension, which says the format")?;
                 } else {
@@ -172,10 +177,10 @@ impl fmt::Display for SceneError {
                      3), .gltf and .glb (glTF 2.0), .mtlx (MaterialX)",
                 )
             }
-            SceneErrorKind::Syntax(message)
-            | SceneErrorKind::Invalid(message)
-            | SceneErrorKind::Foreign(message)
-            | SceneErrorKind::TooLarge(message) => f.write_str(message),
+            Self::Syntax(message)
+            | Self::Invalid(message)
+            | Self::Foreign(message)
+            | Self::TooLarge(message) => f.write_str(message),
         }
     }
 }

@@ -75,6 +75,12 @@ pub(super) const PBRT_BLOCKS: usize = 10_000;
 pub(super) const MATERIALS: usize = 100_000;
 /// Bytes of a material's name: each of its lobes repeats it.
 pub(super) const NAME: usize = 1024;
+/// Bytes of a warning, or of a reason why a material was left out; it may quote the scene.
+pub(super) const MESSAGE: usize = 1024;
+/// Warnings of a scene; one more says that there are further ones.
+pub(super) const WARNINGS: usize = 10_000;
+/// Suggestions of similar names in a scene: each takes up to a second among 10 000 long ones.
+pub(super) const HINTS: u64 = 20;
 /// Included files, each as often as it is included.
 pub(super) const INCLUDES: usize = 10_000;
 /// Folders that a Mitsuba scene adds with `<path>`: every file is looked for in each.

@@ -34,8 +34,9 @@ impl Element {
 
     /// The attribute `name`, whose absence is an error.
     pub(super) fn required(&self, name: &str) -> Result<&str, SceneError> {
-        self.attribute(name)
-            .ok_or_else(|| self.place.syntax(format!("<{}> has no attribute \"{name}\"", self.tag)))
+        self.attribute(name).ok_or_else(|| {
+            self.place.invalid(format!("<{}> has no attribute \"{name}\"", self.tag))
+        })
     }
 
     /// The child element whose attribute "name" is `name`.

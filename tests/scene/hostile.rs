@@ -5,9 +5,10 @@ use std::fs;
 use std::fs::File;
 use std::time::{Duration, Instant};
 
+use microfacet_bake::scene::Scene;
 use proptest::prelude::*;
 
-use crate::{Folder, assert_refused, load, names};
+use crate::{Folder, assert_not_understood, assert_refused, assert_warned, load, names};
 
 const SCENES: [(&str, &str); 5] = [
     (
@@ -86,6 +87,15 @@ fn soon_refused(folder: &Folder, name: &str) -> String {
     let message = folder.load(name).unwrap_err().to_string();
     assert!(start.elapsed() < Duration::from_secs(60), "{:?}: {message}", start.elapsed());
     message
+}
+
+/// The scene in one file, which must be read soon.
+#[track_caller]
+fn soon_loaded(name: &str, text: &str) -> Scene {
+    let start = Instant::now();
+    let scene = load(name, text);
+    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
+    scene
 }
 
 /// Checks that the file is refused soon, with a message that holds all of `parts`.
@@ -279,12 +289,12 @@ fn long_chains_of_references_take_no_stack() {
 }
 
 #[test]
-fn bsdfs_that_hold_each_other_are_refused_at_their_place() {
+fn bsdfs_that_hold_each_other_are_warned_of_at_their_place() {
     let case = |text: &str, place: &str, circle: &str| {
         let text = format!("<scene version=\"3.0.0\">\n{text}</scene>");
-        assert_refused("a.xml", &text, place, &[circle]);
+        assert_warned(&load("a.xml", &text), place, &[circle]);
         let shape = "<shape type=\"cube\"><ref id=\"a\"/></shape></scene>";
-        assert_refused("a.xml", &text.replace("</scene>", shape), place, &[circle]);
+        assert_warned(&load("a.xml", &text.replace("</scene>", shape)), place, &[circle]);
     };
     let bsdf = |id: &str, class: &str, inner: &str| {
         format!("<bsdf type=\"{class}\" id=\"{id}\"><ref id=\"{inner}\"/></bsdf>\n")
@@ -300,7 +310,7 @@ fn bsdfs_that_hold_each_other_are_refused_at_their_place() {
 }
 
 #[test]
-fn mixtures_of_each_other_are_refused_at_their_place() {
+fn mixtures_of_each_other_are_warned_of_at_their_place() {
     let mix = |name: &str, parts: &str| {
         format!(
             "MakeNamedMaterial \"{name}\" \"string type\" \"mix\" \"string materials\" [ {parts} ]\n"
@@ -310,9 +320,14 @@ fn mixtures_of_each_other_are_refused_at_their_place() {
     for last in ["", "Material \"mix\" \"string materials\" [ \"a\" \"b\" ]\nShape \"sphere\"\n"] {
         let own =
             metal.to_owned() + &mix("a", "\"metal\" \"a\"") + &mix("b", "\"metal\" \"metal\"");
-        assert_refused("a.pbrt", &(own + last), ":2:1", &["circle: a -> a"]);
+        let circles = |text: String, circle: &str| {
+            let scene = load("a.pbrt", &(text + last));
+            assert_warned(&scene, ":2:1", &[circle]);
+            assert_eq!(names(&scene), ["metal"]);
+        };
+        circles(own, "circle: a -> a");
         let two = metal.to_owned() + &mix("a", "\"b\" \"metal\"") + &mix("b", "\"metal\" \"a\"");
-        assert_refused("a.pbrt", &(two + last), ":2:1", &["circle: a -> b -> a"]);
+        circles(two, "circle: a -> b -> a");
     }
     // Each of the next twice: a diamond, and no circle.
     let chain: String =
@@ -425,11 +440,13 @@ fn names_longer_than_names_are_refused() {
 }
 
 #[test]
-fn a_roughness_that_overflows_is_refused() {
+fn a_roughness_that_overflows_is_not_understood() {
     let text = "Texture \"a\" \"float\" \"constant\" \"float value\" 1e308\n\
                 Texture \"b\" \"float\" \"scale\" \"texture tex\" \"a\" \"texture scale\" \"a\"\n\
                 Material \"conductor\" \"texture roughness\" \"b\"\n";
-    assert_refused("a.pbrt", text, ":3:22", &["[inf, inf]", "finite"]);
+    let scene = load("a.pbrt", text);
+    let name = "conductor at a.pbrt:3";
+    assert_not_understood(&scene, name, ":3:1", &["a.pbrt:3:22: ", "[inf, inf]", "finite"]);
     let node = |name: &str, class: &str, a: &str, b: &str| {
         format!(
             "<{class} name=\"{name}\"><input name=\"in1\" {a}/><input name=\"in2\" {b}/></{class}>"
@@ -455,8 +472,9 @@ fn long_words_get_no_suggestion() {
     let text = format!(
         "<scene><texture id=\"{a}\" type=\"bitmap\"/><shape><ref id=\"{b}\"/></shape></scene>"
     );
-    let message = soon_refused(&Folder::new(&[("a.xml", text)]), "a.xml");
-    assert!(message.contains("nothing has the id"));
+    let scene = soon_loaded("a.xml", &text);
+    let [warning] = &scene.warnings[..] else { panic!("{} warnings", scene.warnings.len()) };
+    assert!(warning.contains("nothing has the id") && warning.len() < 2000, "{}", warning.len());
 }
 
 /// Every lookup by name is by an index.
@@ -478,4 +496,29 @@ fn documents_of_many_nodes_take_linear_time() {
     let scene = load("a.mtlx", &text);
     assert!(scene.materials.len() == 30_000 && scene.materials[29_999].name == "m29999");
     assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
+}
+
+/// A scene may have very many of what is not understood, each with a long text.
+#[test]
+fn what_is_not_understood_is_bounded() {
+    // Suggestions for 20 000 names among 10 000.
+    let (near, far) = ("n".repeat(20), "f".repeat(20));
+    let named: String = (0..10_000)
+        .map(|i| format!("MakeNamedMaterial \"{near}{i}\" \"string type\" \"hair\"\n"))
+        .collect();
+    let lost: String = (0..20_000).map(|i| format!("NamedMaterial \"{far}{i}\"\n")).collect();
+    let scene = soon_loaded("a.pbrt", &(named + &lost));
+    assert_eq!(scene.warnings.len(), 10_001);
+    assert!(scene.warnings[10_000].contains("further warnings are not listed"));
+    // One long value that very many materials quote.
+    let long = "x".repeat(4000);
+    let texture = format!("Texture \"t\" \"float\" \"constant\" \"float value\" \"{long}\"\n");
+    let materials = "Material \"conductor\" \"texture roughness\" \"t\"\n".repeat(20_000);
+    let scene = soon_loaded("a.pbrt", &(texture + &materials));
+    assert_eq!(scene.ignored.len(), 20_000);
+    assert!(scene.ignored.iter().all(|ignored| ignored.reason.len() < 1100));
+    // References to nothing.
+    let lost: String = (0..100_000).map(|i| format!("<ref id=\"{far}{i}\"/>")).collect();
+    let text = format!("<scene><shape type=\"cube\">{lost}</shape></scene>");
+    assert_eq!(soon_loaded("a.xml", &text).warnings.len(), 10_001);
 }

@@ -65,6 +65,34 @@ fn names(scene: &Scene) -> Vec<&str> {
     scene.materials.iter().map(|material| &material.name[..]).collect()
 }
 
+/// Checks that a material is listed as not understood at "line:column", for a reason with all of
+/// `parts`.
+#[track_caller]
+fn assert_not_understood(scene: &Scene, name: &str, place: &str, parts: &[&str]) {
+    let mut entries = scene.ignored.iter().filter(|ignored| ignored.name == name);
+    let (Some(entry), None) = (entries.next(), entries.next()) else {
+        panic!("not one entry of {name} among {:?}", scene.ignored)
+    };
+    let message = entry.to_string();
+    assert!(
+        !entry.understood && message.contains(&format!("{place}: not understood")),
+        "{message}"
+    );
+    for part in parts {
+        assert!(message.contains(part), "no {part:?} in {message}");
+    }
+}
+
+/// Checks that the scene has this one warning, at "line:column", and that it holds all of `parts`.
+#[track_caller]
+fn assert_warned(scene: &Scene, place: &str, parts: &[&str]) {
+    let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+    assert!(warning.contains(&format!("{place}: ")), "{warning}");
+    for part in parts {
+        assert!(warning.contains(part), "no {part:?} in {warning}");
+    }
+}
+
 fn isotropic(sigma: f64) -> Roughness {
     Roughness::Isotropic(Interval::point(sigma))
 }

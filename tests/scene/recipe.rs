@@ -69,7 +69,7 @@ fn every_form_of_value_is_read() {
     assert_eq!(range.roughness, Roughness::Isotropic(Interval { min: 0.0, max: 0.5 }));
     assert!(range.roughness.is_isotropic());
     assert_eq!(range.gamma, Interval { min: 1.6, max: f64::INFINITY });
-    assert_eq!(range.fresnel, Some(Fresnel::Schlick(0.04)));
+    assert_eq!(range.fresnel, Some(Fresnel::Schlick([0.04; 3])));
     assert_eq!(range.masking, Some(Masking::HeightCorrelated));
 
     let mixed = named(&scene, "mixed");
@@ -97,6 +97,21 @@ fn a_metal_by_name_is_the_conductor_of_its_index() {
         assert_eq!(fresnel(&format!("\"{metal}\"")), Some(Fresnel::Conductor { eta, k }));
     }
     assert_eq!(fresnel("\"aluminum\""), Some(Metal::Aluminium.into()));
+}
+
+#[test]
+fn schlick_has_one_number_or_three() {
+    let fresnel = |value: &str| {
+        let recipe = entry(&format!("sigma = 0.3\ngamma = 2.0\nfresnel = {{ schlick = {value} }}"));
+        let scene = load("r.toml", &recipe);
+        (scene.materials[0].fresnel, scene.to_recipe())
+    };
+    let (copper, text) = fresnel("[0.95, 0.64, 0.54]");
+    assert_eq!(copper, Some(Fresnel::Schlick([0.95, 0.64, 0.54])));
+    assert!(text.contains("fresnel = { schlick = [0.95, 0.64, 0.54] }"), "{text}");
+    let (grey, text) = fresnel("[0.5, 0.5, 0.5]");
+    assert_eq!(grey, fresnel("0.5").0);
+    assert!(text.contains("fresnel = { schlick = 0.5 }"), "{text}");
 }
 
 #[test]
@@ -135,6 +150,9 @@ fn values_out_of_range_are_refused_with_the_range() {
         case(&format!("sigma = 0.3\ngamma = 2.0\nfresnel = {value}"), place, parts);
     };
     fresnel("{ schlick = 1.5 }", ":5:23", &["schlick = 1.5", "0 to 1"]);
+    fresnel("{ schlick = [0.1, 1.5, 0.2] }", ":5:29", &["schlick = 1.5", "0 to 1"]);
+    fresnel("{ schlick = [0.1, \"x\", 0.2] }", ":5:29", &["schlick must be a number", "\"x\""]);
+    fresnel("{ schlick = [0.1, 0.2] }", ":5:23", &["schlick must be three numbers", "schlick = ["]);
     let metals = "the metal must be one of gold, silver";
     fresnel("{ metal = \"glod\" }", ":5:21", &["\"glod\"; did you mean `gold`?", metals]);
     fresnel("{ metal = \"Gold\" }", ":5:21", &["\"Gold\"; did you mean `gold`?"]);
@@ -363,7 +381,8 @@ fn material() -> impl Strategy<Value = Material> {
     let gamma = interval(prop_oneof![1.500_001..1e6, Just(f64::INFINITY)]);
     let fresnel = prop_oneof![
         Just(Fresnel::Mirror),
-        (0.0..=1.0).prop_map(Fresnel::Schlick),
+        (0.0..=1.0).prop_map(|f0| Fresnel::Schlick([f0; 3])),
+        prop::array::uniform3(0.0..=1.0).prop_map(Fresnel::Schlick),
         (1e-3..10.0).prop_map(Fresnel::Dielectric),
         (prop::array::uniform3(1e-3..10.0), prop::array::uniform3(0.0..10.0))
             .prop_map(|(eta, k)| Fresnel::Conductor { eta, k }),

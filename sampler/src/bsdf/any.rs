@@ -93,7 +93,7 @@ impl Tables {
         let fresnel = entry.fresnel.ok_or_else(|| BindError::NoFresnel(name.into()))?;
         let reflectance = match fresnel {
             FresnelEntry::Mirror => ConductorFresnel::mirror(),
-            FresnelEntry::Schlick(f0) => ConductorFresnel::schlick([f0 as f32; 3])?,
+            FresnelEntry::Schlick(f0) => ConductorFresnel::schlick(f0.map(|f0| f0 as f32))?,
             FresnelEntry::Conductor { eta, k } => ConductorFresnel::exact(eta, k)?,
             FresnelEntry::Dielectric(_) | FresnelEntry::Dielectrics { .. } => {
                 let eta = fresnel.middle_index().unwrap_or(f64::NAN);

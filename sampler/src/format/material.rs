@@ -45,9 +45,10 @@ pub struct MaterialEntry {
 pub enum FresnelEntry {
     /// F = 1.
     Mirror,
-    /// Schlick's approximation with this reflectance at normal incidence, in [0, 1]; the moments of
-    /// `albedo` tables serve every value.
-    Schlick(f64),
+    /// Schlick's approximation with this reflectance at normal incidence for red, green and blue,
+    /// in [0, 1]; the moments of `albedo` tables serve every value. In files it is one number where
+    /// the three are equal.
+    Schlick(#[serde(with = "grey_or_rgb")] [f64; 3]),
     /// A conductor of complex index of refraction η + ik, relative to the outside, for red, green
     /// and blue.
     Conductor {
@@ -66,6 +67,30 @@ pub enum FresnelEntry {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         max: Option<f64>,
     },
+}
+
+/// Three numbers for red, green and blue, written as one number where they are equal.
+mod grey_or_rgb {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(untagged, expecting = "a number, or three for red, green and blue")]
+    enum Form {
+        Grey(f64),
+        Rgb([f64; 3]),
+    }
+
+    pub(super) fn serialize<S: Serializer>(rgb: &[f64; 3], output: S) -> Result<S::Ok, S::Error> {
+        let [r, g, b] = *rgb;
+        if r == g && g == b { Form::Grey(r) } else { Form::Rgb(*rgb) }.serialize(output)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<[f64; 3], D::Error> {
+        Ok(match Form::deserialize(input)? {
+            Form::Grey(grey) => [grey; 3],
+            Form::Rgb(rgb) => rgb,
+        })
+    }
 }
 
 impl FresnelEntry {
@@ -108,8 +133,10 @@ impl FresnelEntry {
     fn check(&self) -> Result<(), String> {
         match self {
             Self::Mirror => Ok(()),
-            Self::Schlick(f0) if (0.0..=1.0).contains(f0) => Ok(()),
-            Self::Schlick(f0) => Err(format!("schlick = {f0} must be from 0 to 1")),
+            Self::Schlick(f0) => match f0.iter().find(|f0| !(0.0..=1.0).contains(*f0)) {
+                Some(f0) => Err(format!("schlick = {f0} must be from 0 to 1")),
+                None => Ok(()),
+            },
             Self::Conductor { eta, k } => check_conductor(eta, k),
             Self::Dielectric(eta) if *eta > 0.0 && *eta < f64::INFINITY => Ok(()),
             Self::Dielectric(eta) => {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
-use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
+use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::scene::limits;
@@ -24,6 +24,46 @@ pub(super) struct Document {
     pub(super) buffer_views: Vec<BufferView>,
     #[serde(default, deserialize_with = "list")]
     pub(super) buffers: Vec<Buffer>,
+}
+
+/// What a file of version 1 is, and what to do with it.
+pub(super) const VERSION_1: &str = "glTF 1.0, and only version 2.0 is read; convert it: \
+                                    `gltf-pipeline -i old.gltf -o new.gltf` (CesiumGS)";
+
+/// A whole number, which some programs write as `1.0`.
+fn whole<'de, D: Deserializer<'de>, T: TryFrom<u64>>(input: D) -> Result<T, D::Error> {
+    struct Whole<T>(PhantomData<T>);
+
+    impl<T: TryFrom<u64>> Visitor<'_> for Whole<T> {
+        type Value = T;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a whole number of 0 or more")
+        }
+
+        fn visit_u64<E: Error>(self, number: u64) -> Result<T, E> {
+            T::try_from(number).map_err(|_| E::custom(format!("{number} is too large")))
+        }
+
+        fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
+            // Above 2^53 not every whole number is one of these.
+            const MOST: f64 = (1u64 << 53) as f64;
+            if number.fract() == 0.0 && (0.0..=MOST).contains(&number) {
+                return self.visit_u64(number as u64);
+            }
+            Err(E::custom(format!("{number:?} is not a whole number from 0 to 2^53")))
+        }
+    }
+
+    input.deserialize_u64(Whole(PhantomData))
+}
+
+/// The same, which may be absent.
+fn maybe_whole<'de, D: Deserializer<'de>>(input: D) -> Result<Option<usize>, D::Error> {
+    #[derive(Deserialize)]
+    struct One(#[serde(deserialize_with = "whole")] usize);
+
+    Ok(Option::<One>::deserialize(input)?.map(|One(number)| number))
 }
 
 /// A list of limited length: each element takes far more memory than the text "{}".
@@ -48,9 +88,15 @@ fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(input: D) -> Result<Vec<
             }
             Ok(list)
         }
+
+        /// Version 1 has objects for the lists of version 2.
+        fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<Vec<T>, A::Error> {
+            Err(A::Error::custom(format!("an object where a list is expected, as in {VERSION_1}")))
+        }
     }
 
-    input.deserialize_seq(List(PhantomData))
+    // As any value, so that an object is told from the rest.
+    input.deserialize_any(List(PhantomData))
 }
 
 #[derive(Deserialize)]
@@ -91,6 +137,7 @@ impl From<Primitives> for Mesh {
 
 #[derive(Deserialize)]
 struct Primitive {
+    #[serde(default, deserialize_with = "maybe_whole")]
     material: Option<usize>,
     #[serde(default)]
     extensions: PrimitiveExtensions,
@@ -110,6 +157,7 @@ struct Variants {
 
 #[derive(Deserialize)]
 struct Mapping {
+    #[serde(deserialize_with = "whole")]
     material: usize,
 }
 
@@ -124,13 +172,22 @@ pub(super) struct Material {
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub(super) struct MetallicRoughness {
+    pub(super) base_color_factor: [f64; 4],
+    pub(super) base_color_texture: Option<TextureInfo>,
+    pub(super) metallic_factor: f64,
     pub(super) roughness_factor: f64,
     pub(super) metallic_roughness_texture: Option<TextureInfo>,
 }
 
 impl Default for MetallicRoughness {
     fn default() -> Self {
-        Self { roughness_factor: 1.0, metallic_roughness_texture: None }
+        Self {
+            base_color_factor: [1.0; 4],
+            base_color_texture: None,
+            metallic_factor: 1.0,
+            roughness_factor: 1.0,
+            metallic_roughness_texture: None,
+        }
     }
 }
 
@@ -148,6 +205,10 @@ pub(super) struct MaterialExtensions {
     pub(super) specular_glossiness: Option<SpecularGlossiness>,
     #[serde(rename = "KHR_materials_sheen")]
     pub(super) sheen: Option<IgnoredAny>,
+    #[serde(rename = "KHR_materials_specular")]
+    pub(super) specular: Option<Specular>,
+    #[serde(rename = "KHR_materials_transmission")]
+    pub(super) transmission: Option<IgnoredAny>,
     #[serde(rename = "KHR_materials_unlit")]
     pub(super) unlit: Option<IgnoredAny>,
 }
@@ -181,24 +242,51 @@ impl Default for Ior {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", default)]
+pub(super) struct Specular {
+    pub(super) specular_factor: f64,
+    pub(super) specular_texture: Option<TextureInfo>,
+    pub(super) specular_color_factor: [f64; 3],
+    pub(super) specular_color_texture: Option<TextureInfo>,
+}
+
+impl Default for Specular {
+    fn default() -> Self {
+        Self {
+            specular_factor: 1.0,
+            specular_texture: None,
+            specular_color_factor: [1.0; 3],
+            specular_color_texture: None,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
 pub(super) struct SpecularGlossiness {
+    pub(super) specular_factor: [f64; 3],
     pub(super) glossiness_factor: f64,
     pub(super) specular_glossiness_texture: Option<TextureInfo>,
 }
 
 impl Default for SpecularGlossiness {
     fn default() -> Self {
-        Self { glossiness_factor: 1.0, specular_glossiness_texture: None }
+        Self {
+            specular_factor: [1.0; 3],
+            glossiness_factor: 1.0,
+            specular_glossiness_texture: None,
+        }
     }
 }
 
 #[derive(Deserialize)]
 pub(super) struct TextureInfo {
+    #[serde(deserialize_with = "whole")]
     pub(super) index: usize,
 }
 
 #[derive(Deserialize)]
 pub(super) struct Texture {
+    #[serde(default, deserialize_with = "maybe_whole")]
     pub(super) source: Option<usize>,
 }
 
@@ -206,15 +294,18 @@ pub(super) struct Texture {
 #[serde(rename_all = "camelCase")]
 pub(super) struct Image {
     pub(super) uri: Option<String>,
+    #[serde(default, deserialize_with = "maybe_whole")]
     pub(super) buffer_view: Option<usize>,
 }
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct BufferView {
+    #[serde(deserialize_with = "whole")]
     pub(super) buffer: usize,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "whole")]
     pub(super) byte_offset: u64,
+    #[serde(deserialize_with = "whole")]
     pub(super) byte_length: u64,
 }
 

@@ -219,9 +219,9 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The Fresnel term of Schlick's approximation, if it can be stated: for greys.
-pub(super) fn schlick([r, g, b]: [f64; 3]) -> Option<Fresnel> {
-    (r == g && g == b && (0.0..=1.0).contains(&r)).then_some(Fresnel::Schlick(r))
+/// The Fresnel term of Schlick's approximation, for reflectances from 0 to 1.
+pub(super) fn schlick(f0: [f64; 3]) -> Option<Fresnel> {
+    f0.iter().all(|f0| (0.0..=1.0).contains(f0)).then_some(Fresnel::Schlick(f0))
 }
 
 pub(super) fn lobe(

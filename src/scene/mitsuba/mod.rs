@@ -12,23 +12,35 @@
 //! - `principledthin` has the same reflection lobe, and one for transmission with r (0.65 η − 0.35)
 //!   instead of r; both only if `spec_trans` is not 0.
 //! - `conductor`, `dielectric`, `thindielectric` and `plastic` are smooth.
+//! - `roughcoating` and the smooth `coating` of Mitsuba 0.6 are a lobe "coating" each, beside the
+//!   BSDF inside them.
 //! - A metal's reflectance is read from `rgb` triples `eta` and `k`, or from the preset `material`,
 //!   where [`microfacet_sampler::Metal`] has that metal; `none` is a mirror.
 //! - G2 is uncorrelated (`MicrofacetDistribution::G`).
-//! - `twosided`, `mask`, `bumpmap`, `normalmap` and `blendbsdf` stand for the BSDFs inside them.
+//! - `twosided`, `mask`, `bumpmap`, `normalmap`, `blendbsdf` and `mixturebsdf` (0.6) stand for
+//!   the BSDFs inside them.
 //! - A `bitmap` texture is decoded from sRGB unless it is `raw`; its luminance is used.
 //! - `$name` in an attribute stands for the value that `<default>` gives it.
+//!
+//! Scenes of Mitsuba 0.6 are read as far as they share the names, and with its spellings `intIOR`,
+//! `extIOR`, `alphaU` and `alphaV` as well; its distributions `phong` and `as` and its BSDFs
+//! `phong`, `ward` and `sssbrdf` are not read.
+//!
+//! A BSDF with something impossible in it is listed as not understood, and the rest is read. A bad
+//! index of refraction leaves the lobe without its Fresnel term. References to what does not exist,
+//! and those in a circle, are warned of.
 //!
 //! [bsdfs]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
 
 mod bsdf;
+mod fresnel;
+mod value;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Bound;
 use std::path::{Path, PathBuf};
 
 use super::builder::Builder;
-use super::error::did_you_mean;
 use super::memo::Memo;
 use super::xml::{self, Element, Key};
 use super::{Format, Scene, SceneError, cycle, limits};
@@ -46,7 +58,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     };
     let mut root = expansion.xml.open(path)?;
     if root.tag != "scene" && root.tag != "bsdf" {
-        return Err(root.place.invalid(format!(
+        return Err(root.place.foreign(format!(
             "<{}> is not the root of a Mitsuba scene; expected <scene>",
             root.tag
         )));
@@ -58,8 +70,8 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
 
     let mut reader =
         Reader { ids: ids(&root), builder, folders, incomplete, ranges: Memo::default() };
-    reader.check_circles(&root)?;
-    let used = reader.used(&root)?;
+    reader.check_circles(&root);
+    let used = reader.used(&root);
     reader.bsdfs(&root, None, &used)?;
     Ok(reader.builder.finish(included))
 }
@@ -214,24 +226,37 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// The BSDFs that shapes use, themselves or inside others; `None` if that cannot be known.
-    fn used(&self, root: &'a Element) -> Result<Option<HashSet<Key<'a>>>, SceneError> {
-        let mut shapes = Vec::new();
-        root.walk(&mut |element| {
-            if element.tag == "shape" {
-                shapes.push(element);
-            }
-        });
-        if shapes.is_empty() || self.incomplete {
-            return Ok(None);
+    fn used(&mut self, root: &'a Element) -> Option<HashSet<Key<'a>>> {
+        let of = |tag| {
+            let mut found = Vec::new();
+            root.walk(&mut |element| {
+                if element.tag == tag {
+                    found.push(element);
+                }
+            });
+            found
+        };
+        if self.incomplete {
+            return None;
+        }
+        // Without shapes each is followed too, for references to what does not exist.
+        let mut shapes = of("shape");
+        let everything = shapes.is_empty();
+        if everything {
+            shapes = of("bsdf");
         }
         let mut used = HashSet::new();
         while let Some(element) = shapes.pop() {
             for child in &element.children {
                 let child = match &child.tag[..] {
                     "bsdf" => child,
-                    "ref" => match self.referred(child)? {
-                        Some(bsdf) if bsdf.tag == "bsdf" => bsdf,
-                        _ => continue,
+                    "ref" => match self.referred(child) {
+                        Ok(bsdf) if bsdf.tag == "bsdf" => bsdf,
+                        Ok(_) => continue,
+                        Err(error) => {
+                            self.builder.warn(&error.place, error.kind.to_string());
+                            continue;
+                        }
                     },
                     _ => continue,
                 };
@@ -240,43 +265,36 @@ impl<'a> Reader<'a> {
                 }
             }
         }
-        Ok(Some(used))
+        (!everything).then_some(used)
     }
 
-    /// Refuses an element that has itself inside, by `<ref>`.
-    fn check_circles(&self, root: &'a Element) -> Result<(), SceneError> {
+    /// Warns of an element that has itself inside, by `<ref>`.
+    fn check_circles(&mut self, root: &'a Element) {
         let inside = |element: Key<'a>| {
             let own = element.0.children.iter();
             let id = element.0.attribute("id").filter(|_| element.0.tag == "ref");
             own.chain(id.and_then(|id| self.ids.get(id).copied())).map(Element::key).collect()
         };
         let Some(circle) = cycle::find([root.key()], inside) else {
-            return Ok(());
+            return;
         };
         let references = circle.iter().map(|element| element.0).filter(|e| e.tag == "ref");
         // A circle has a reference, since elements are a tree without them.
         let last = references.clone().next_back().unwrap_or(root);
         let names: Vec<&str> =
             [last].into_iter().chain(references).filter_map(|e| e.attribute("id")).collect();
-        Err(last.place.invalid(format!(
-            "references go in a circle: {}; remove one of them",
-            names.join(" -> ")
-        )))
+        let warning =
+            format!("references go in a circle: {}; remove one of them", names.join(" -> "));
+        self.builder.warn(&last.place, warning);
     }
 
-    /// What a `<ref>` refers to; `None` if it may be in a file that is missing.
-    fn referred(&self, reference: &Element) -> Result<Option<&'a Element>, SceneError> {
+    /// What a `<ref>` refers to.
+    fn referred(&self, reference: &Element) -> Result<&'a Element, SceneError> {
         let id = reference.required("id")?;
-        match self.ids.get(id) {
-            Some(element) => Ok(Some(element)),
-            None if self.incomplete => Ok(None),
-            None => {
-                let known: Vec<&str> = self.ids.keys().copied().collect();
-                Err(reference
-                    .place
-                    .invalid(format!("nothing has the id \"{id}\"{}", did_you_mean(id, &known))))
-            }
-        }
+        self.ids.get(id).copied().ok_or_else(|| {
+            let hint = self.builder.did_you_mean(id, self.ids.keys().copied());
+            reference.place.invalid(format!("nothing has the id \"{id}\"{hint}"))
+        })
     }
 
     /// Adds all BSDFs in `element`; those without an id are named after the outer one.

@@ -3,9 +3,9 @@
 use std::rc::Rc;
 
 use super::Reader;
+use super::directives::UPGRADE;
 use super::syntax::Parameter;
 use crate::scene::builder::{GGX, Lobe, conductor, dielectric, metal};
-use crate::scene::error::did_you_mean;
 use crate::scene::texture::{Channel, Encoding};
 use crate::scene::{Fresnel, Interval, Masking, Place, Roughness, SceneError};
 
@@ -15,6 +15,26 @@ const SMOOTH: f64 = 1e-3;
 /// Lower limit of α along one axis of a surface that is rough along the other (constructor of the
 /// same class).
 const LEAST: f64 = 1e-4;
+
+/// Materials of pbrt-v3 that pbrt-v4 does not have (`api.cpp` of v3, `materials.cpp` of v4).
+const OLDER: [&str; 11] = [
+    "disney",
+    "fourier",
+    "glass",
+    "kdsubsurface",
+    "matte",
+    "metal",
+    "mirror",
+    "plastic",
+    "substrate",
+    "translucent",
+    "uber",
+];
+
+/// Whether a type says that a surface is only the boundary of a medium.
+pub(super) fn is_boundary(class: &str) -> bool {
+    matches!(class, "" | "none" | "interface")
+}
 
 /// A material or a float texture: a class with parameters.
 #[derive(Debug)]
@@ -84,8 +104,9 @@ impl Reader {
     /// Adds the lobes of a material.
     pub(super) fn lobes(&mut self, material: &Definition, used: bool) -> Result<(), SceneError> {
         let (name, place) = (&material.name, &material.place);
-        let mut ignore = |reason| self.builder.ignore(name, &material.class, place, reason);
-        let interfaces: &[(Option<&'static str>, &str)] = match &material.class[..] {
+        let class = &material.class;
+        let mut ignore = |reason| self.builder.ignore(name, class, place, reason);
+        let interfaces: &[(Option<&'static str>, &str)] = match &class[..] {
             "conductor" | "dielectric" | "coateddiffuse" | "subsurface" | "thindielectric" => {
                 &[(None, "")]
             }
@@ -96,19 +117,45 @@ impl Reader {
             "diffuse" | "diffusetransmission" => return ignore("diffuse, without microfacets"),
             "hair" => return ignore("a fibre model, not a microfacet one"),
             "measured" => return ignore("measured data with a distribution of its own"),
-            _ => return ignore("not a material of pbrt-v4"),
+            class if is_boundary(class) && material.parameter("type").is_some() => {
+                return ignore("the boundary of a medium, without a surface");
+            }
+            "" => {
+                let why = "it has no type; add for example \"string type\" \"conductor\"";
+                return self.builder.not_understood(name, "no type", place, why);
+            }
+            class if OLDER.contains(&class) => {
+                let why = format!("a material of pbrt-v3; {UPGRADE}");
+                return self.builder.not_understood(name, class, place, why);
+            }
+            class => {
+                let why = "not a material of pbrt-v4";
+                return self.builder.not_understood(name, class, place, why);
+            }
         };
         for &(lobe, prefix) in interfaces {
-            let lobe = Lobe {
-                name: lobe,
-                roughness: self.roughness(material, prefix)?,
-                gamma: GGX,
-                fresnel: fresnel(material, prefix)?,
-                masking: Some(Masking::HeightCorrelated),
-            };
-            self.builder.add(name, place, used, lobe)?;
+            let read = self.lobe(material, used, lobe, prefix);
+            self.ranges.abandon();
+            let name = lobe.map_or_else(|| name.clone(), |lobe| format!("{name}.{lobe}"));
+            self.builder.degrade(&name, class, place, read)?;
         }
         Ok(())
+    }
+
+    /// Adds the lobe of one interface.
+    fn lobe(
+        &mut self,
+        material: &Definition,
+        used: bool,
+        name: Option<&'static str>,
+        prefix: &str,
+    ) -> Result<(), SceneError> {
+        let roughness = self.roughness(material, prefix)?;
+        let without = (None, "the lobe is read without its Fresnel term");
+        let fresnel = self.builder.or_warn(fresnel(material, prefix), without)?;
+        let masking = Some(Masking::HeightCorrelated);
+        let lobe = Lobe { name, roughness, gamma: GGX, fresnel, masking };
+        self.builder.add(&material.name, &material.place, used, lobe)
     }
 
     fn roughness(&mut self, material: &Definition, prefix: &str) -> Result<Roughness, SceneError> {
@@ -185,11 +232,9 @@ impl Reader {
                 (format!("\"{name}\""), "is not defined in the files that were found");
             return Ok(self.builder.unread(&name, reason, place));
         }
-        let names: Vec<&str> = self.textures.keys().map(|name| &name[..]).collect();
-        Err(place.invalid(format!(
-            "float texture \"{name}\" is not defined{}",
-            did_you_mean(name, &names)
-        )))
+        let names = self.textures.keys().map(|name| &name[..]);
+        let hint = self.builder.did_you_mean(name, names);
+        Err(place.invalid(format!("float texture \"{name}\" is not defined{hint}")))
     }
 
     fn texture(&mut self, texture: &Definition) -> Result<Interval, SceneError> {

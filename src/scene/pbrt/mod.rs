@@ -13,6 +13,7 @@
 //! - A metal's reflectance is read from `rgb` triples `eta` and `k`, or from the named spectra of
 //!   one metal (`"metal-Au-eta"` and `"metal-Au-k"`), for which [`microfacet_sampler::Metal`]
 //!   stands.
+//! - `interface`, "none" and an empty type are the boundary of a medium, without a surface.
 //! - `mix` uses two named materials; `Attribute "material"` gives defaults to the ones that follow.
 //! - A float image texture is read in its first channel, decoded from sRGB if its samples are
 //!   integers and `encoding` is not "linear", and multiplied by `scale`; `invert` makes it 1 minus
@@ -20,11 +21,18 @@
 //! - Included files are looked up beside the scene's own file. `Import` is an `Include` that leaves
 //!   the graphics state unchanged.
 //!
+//! pbrt refuses a scene with a material that is not defined, is defined twice, or has an impossible
+//! value. Here such a material is warned of, or listed as not understood, and the rest is read; of
+//! two definitions the first counts. Directives of pbrt-v1 and v2 are passed over with a warning,
+//! and materials that pbrt-v3 has and v4 has not are listed as not understood.
+//!
 //! The file is read as a stream. Everything that belongs to shapes is skipped without being stored.
 //!
 //! [format]: https://pbrt.org/fileformat-v4
 
+mod directives;
 mod materials;
+mod references;
 mod syntax;
 mod token;
 
@@ -36,63 +44,14 @@ use std::rc::Rc;
 
 use flate2::read::MultiGzDecoder;
 
-use self::materials::Definition;
+use self::materials::{Definition, is_boundary};
 use self::syntax::{Parameter, parameters, quoted, skip_arguments};
 use self::token::{Token, Tokens};
 use super::builder::Builder;
-use super::error::did_you_mean;
 use super::include::Includes;
 use super::memo::Memo;
-use super::{Format, Place, Scene, SceneError, cycle, limits};
+use super::{Format, Place, Scene, SceneError, limits};
 use crate::input::{self, unmarked_stream};
-
-/// All directives except those that [`Reader::statement`] handles.
-const PASSED_OVER: [&str; 29] = [
-    "Accelerator",
-    "ActiveTransform",
-    "AreaLightSource",
-    "Camera",
-    "ColorSpace",
-    "ConcatTransform",
-    "CoordSysTransform",
-    "CoordinateSystem",
-    "Film",
-    "Identity",
-    "Integrator",
-    "LightSource",
-    "LookAt",
-    "MakeNamedMedium",
-    "MediumInterface",
-    "ObjectInstance",
-    "Option",
-    "PixelFilter",
-    "ReverseOrientation",
-    "Rotate",
-    "Sampler",
-    "Scale",
-    "TransformBegin",
-    "TransformEnd",
-    "Transform",
-    "TransformTimes",
-    "Translate",
-    "WorldBegin",
-    "WorldEnd",
-];
-
-const FOLLOWED: [&str; 12] = [
-    "Attribute",
-    "AttributeBegin",
-    "AttributeEnd",
-    "Import",
-    "Include",
-    "MakeNamedMaterial",
-    "Material",
-    "NamedMaterial",
-    "ObjectBegin",
-    "ObjectEnd",
-    "Shape",
-    "Texture",
-];
 
 /// Reads a pbrt-v4 scene.
 pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
@@ -110,6 +69,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         ranges: Memo::default(),
         shapes: false,
         incomplete: false,
+        older: false,
     };
     let place = Place::file(path);
     let open = open(path)?;
@@ -162,6 +122,8 @@ struct Reader {
     shapes: bool,
     /// Whether an included file is missing.
     incomplete: bool,
+    /// Whether a directive of an older version was passed over.
+    older: bool,
 }
 
 impl Reader {
@@ -242,7 +204,7 @@ impl Reader {
                 let own = parameters(tokens)?;
                 self.hold(&own, &place)?;
                 let parameters = self.with_attributes(own);
-                self.state.material = if is_no_material(&class) {
+                self.state.material = if is_boundary(&class) {
                     None
                 } else {
                     let at = format!("{class} at {}", within(&self.folder, &place));
@@ -256,20 +218,18 @@ impl Reader {
                 let name = quoted(tokens, "the name of the material")?;
                 let own = parameters(tokens)?;
                 self.hold(&own, &place)?;
-                let mut parameters = self.with_attributes(own);
-                let class = parameters.iter().position(|p| p.name == "type");
-                let class = class.and_then(|i| parameters.remove(i).values.last().cloned());
-                let class = class.ok_or_else(|| {
-                    place.syntax(format!(
-                        "material \"{name}\" has no type; add for example \"string type\" \"conductor\""
-                    ))
-                })?;
+                let parameters = self.with_attributes(own);
+                let class = parameters.iter().find(|p| p.name == "type");
+                let class = class.and_then(|p| p.values.last().cloned()).unwrap_or_default();
                 let slot = self.named(&name, &place)?;
                 if let Some(first) = &self.slots[slot].definition {
-                    return Err(place.invalid(format!(
-                        "material \"{name}\" is defined twice, first at {}; rename one of them",
+                    let warning = format!(
+                        "material \"{name}\" is defined twice, first at {}, which is kept; rename one \
+                         of them",
                         first.place
-                    )));
+                    );
+                    self.builder.warn(&place, warning);
+                    return Ok(());
                 }
                 self.define(slot, Definition::new(name, class, parameters, place));
                 Ok(())
@@ -303,13 +263,15 @@ impl Reader {
                 tokens.next()?;
                 Ok(())
             }
-            directive if PASSED_OVER.contains(&directive) => skip_arguments(tokens),
+            directive if directives::is_passed_over(directive) => skip_arguments(tokens),
             directive => {
-                let known = [&PASSED_OVER[..], &FOLLOWED[..]].concat();
-                Err(place.syntax(format!(
-                    "unknown directive {directive}{}",
-                    did_you_mean(directive, &known)
-                )))
+                let warning = directives::older(directive)
+                    .ok_or_else(|| place.syntax(directives::unknown(directive)))?;
+                // One of them tells the version.
+                if !std::mem::replace(&mut self.older, true) {
+                    self.builder.warn(&place, warning);
+                }
+                skip_arguments(tokens)
             }
         }
     }
@@ -404,8 +366,8 @@ impl Reader {
         if let Some((_, place)) = self.saved.pop() {
             return Err(place.syntax("this block has no end"));
         }
-        self.check_references()?;
-        self.use_parts_of_mixtures()?;
+        self.check_references();
+        self.use_parts_of_mixtures();
         let everything = !self.shapes || self.incomplete;
         for slot in std::mem::take(&mut self.defined) {
             let used = everything || self.slots[slot].used;
@@ -415,103 +377,10 @@ impl Reader {
         }
         Ok(self.builder.finish(self.includes.found()))
     }
-
-    fn check_references(&mut self) -> Result<(), SceneError> {
-        let mut undefined: Vec<_> = self
-            .names
-            .iter()
-            .filter(|&(_, &slot)| self.slots[slot].definition.is_none())
-            .map(|(name, &slot)| (slot, name))
-            .collect();
-        undefined.sort_unstable();
-        for (slot, name) in undefined {
-            let place = &self.slots[slot].place;
-            if !self.incomplete {
-                return Err(self.undefined(name, place));
-            }
-            self.builder.warn(
-                place,
-                format!("material \"{name}\" is not defined in the files that were found"),
-            );
-        }
-        Ok(())
-    }
-
-    fn undefined(&self, name: &str, place: &Place) -> SceneError {
-        let names: Vec<&str> = self
-            .names
-            .iter()
-            .filter(|&(_, &slot)| self.slots[slot].definition.is_some())
-            .map(|(name, _)| &name[..])
-            .collect();
-        place.invalid(format!("material \"{name}\" is not defined{}", did_you_mean(name, &names)))
-    }
-
-    /// Marks the parts of used mixtures as used.
-    fn use_parts_of_mixtures(&mut self) -> Result<(), SceneError> {
-        let is_mixture = |slot: &Slot| slot.definition.as_ref().is_some_and(|d| d.class == "mix");
-        let mut pending: Vec<usize> =
-            (0..self.slots.len()).filter(|&i| is_mixture(&self.slots[i])).collect();
-        for &slot in &pending {
-            for (name, place) in self.parts(slot) {
-                let known = self
-                    .names
-                    .get(&name)
-                    .is_some_and(|&part| self.slots[part].definition.is_some());
-                if !known && !self.incomplete {
-                    return Err(self.undefined(&name, &place));
-                }
-            }
-        }
-        let inside = |slot: usize| {
-            let parts = self.parts(slot).into_iter();
-            parts.filter_map(|(name, _)| self.names.get(&name).copied()).collect()
-        };
-        if let Some(circle) = cycle::find(pending.iter().copied(), inside) {
-            let definitions = circle.iter().chain(&circle[..1]);
-            let definitions: Vec<&Definition> =
-                definitions.filter_map(|&slot| self.slots[slot].definition.as_ref()).collect();
-            let names: Vec<&str> = definitions.iter().map(|d| &d.name[..]).collect();
-            return Err(definitions[0].place.invalid(format!(
-                "mixtures are made of each other in a circle: {}; take one out of another",
-                names.join(" -> ")
-            )));
-        }
-        pending.retain(|&slot| self.slots[slot].used);
-        while let Some(slot) = pending.pop() {
-            for (name, _) in self.parts(slot) {
-                let Some(&part) = self.names.get(&name) else {
-                    continue;
-                };
-                if !std::mem::replace(&mut self.slots[part].used, true)
-                    && is_mixture(&self.slots[part])
-                {
-                    pending.push(part);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// The names of the materials in a mixture.
-    fn parts(&self, slot: usize) -> Vec<(String, Place)> {
-        let definition = self.slots[slot].definition.as_ref();
-        definition
-            .filter(|definition| definition.class == "mix")
-            .and_then(|definition| definition.parameter("materials"))
-            .map_or_else(Vec::new, |p| {
-                p.values.iter().map(|name| (name.clone(), p.place.clone())).collect()
-            })
-    }
 }
 
 /// A place relative to the scene's folder, short enough for a material's name.
 fn within(folder: &Path, place: &Place) -> String {
     let file = place.file.strip_prefix(folder).unwrap_or(&place.file);
     format!("{}:{}", file.display(), place.line.unwrap_or_default())
-}
-
-/// Whether a type says that a surface is only the boundary of a medium.
-fn is_no_material(class: &str) -> bool {
-    matches!(class, "" | "none" | "interface")
 }

@@ -9,7 +9,8 @@ use crate::scene::{Fresnel, Masking, SceneError};
 impl Source<'_> {
     pub(super) fn fresnel(&self, value: &Value<'_>) -> Result<Fresnel, SceneError> {
         let place = self.place(value.span());
-        let forms = "fresnel must be \"mirror\", { schlick = F0 }, { metal = \"gold\" }, \
+        let forms = "fresnel must be \"mirror\", { schlick = F0 }, { schlick = [r, g, b] }, \
+                     { metal = \"gold\" }, \
                      { conductor = { eta = [r, g, b], k = [r, g, b] } } or { dielectric = eta }, a number or \
                      { min = .., max = .. }";
         if value.get_ref().as_str() == Some("mirror") {
@@ -23,14 +24,21 @@ impl Source<'_> {
         };
         match form.get_ref().as_ref() {
             "schlick" => {
-                let f0 = self.number(value, "schlick")?;
-                self.check(
-                    value,
-                    (0.0..=1.0).contains(&f0),
-                    "schlick",
-                    "a reflectance from 0 to 1",
-                )?;
-                Ok(Fresnel::Schlick(f0))
+                let f0 = |value: &Value<'_>| {
+                    let f0 = self.number(value, "schlick")?;
+                    let valid = (0.0..=1.0).contains(&f0);
+                    self.check(value, valid, "schlick", "a reflectance from 0 to 1")?;
+                    Ok(f0)
+                };
+                if value.get_ref().is_array() {
+                    return Ok(Fresnel::Schlick(self.rgb(
+                        value,
+                        "schlick",
+                        "[0.95, 0.64, 0.54]",
+                        f0,
+                    )?));
+                }
+                Ok(Fresnel::Schlick([f0(value)?; 3]))
             }
             "metal" => self.metal(value),
             "dielectric" if value.get_ref().is_table() => {
@@ -56,8 +64,9 @@ impl Source<'_> {
                     );
                 };
                 Ok(Fresnel::Conductor {
-                    eta: self.rgb(eta, "eta", |value| self.index(value, "eta"))?,
-                    k: self.rgb(k, "k", |value| {
+                    eta: self
+                        .rgb(eta, "eta", "[0.2, 0.9, 1.1]", |value| self.index(value, "eta"))?,
+                    k: self.rgb(k, "k", "[3.9, 2.4, 2.2]", |value| {
                         let k = self.number(value, "k")?;
                         let valid = (0.0..f64::INFINITY).contains(&k);
                         self.check(
@@ -114,12 +123,13 @@ impl Source<'_> {
         &self,
         value: &Value<'_>,
         key: &str,
+        example: &str,
         channel: impl Fn(&Value<'_>) -> Result<f64, SceneError>,
     ) -> Result<[f64; 3], SceneError> {
         match value.get_ref().as_array().map(|array| &array[..]) {
             Some([r, g, b]) => Ok([channel(r)?, channel(g)?, channel(b)?]),
             _ => Err(self.place(value.span()).invalid(format!(
-                "{key} must be three numbers, for red, green and blue: {key} = [0.2, 0.9, 1.1]"
+                "{key} must be three numbers, for red, green and blue: {key} = {example}"
             ))),
         }
     }

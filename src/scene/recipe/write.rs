@@ -41,6 +41,7 @@ fn entry(material: &Material) -> String {
     if let Some(fresnel) = material.fresnel {
         let value = match fresnel {
             Fresnel::Mirror => "\"mirror\"".to_owned(),
+            Fresnel::Schlick([r, g, b]) if r == g && g == b => format!("{{ schlick = {r:?} }}"),
             Fresnel::Schlick(f0) => format!("{{ schlick = {f0:?} }}"),
             Fresnel::Conductor { eta, k } => {
                 format!("{{ conductor = {{ eta = {eta:?}, k = {k:?} }} }}")

@@ -86,9 +86,9 @@ fn fresnel_terms_are_those_of_the_nodes() {
         fresnel("dielectric_bsdf", &[("ior", "value=\"1.7\"")]),
         Some(Fresnel::Dielectric(1.7))
     );
-    let grey = ("color0", "value=\"0.3, 0.3, 0.3\"");
-    let schlick = |more| fresnel("generalized_schlick_bsdf", &[grey, more]);
-    assert_eq!(schlick(("weight", "value=\"0.5\"")), Some(Fresnel::Schlick(0.3)));
+    let copper = ("color0", "value=\"0.9, 0.6, 0.5\"");
+    let schlick = |more| fresnel("generalized_schlick_bsdf", &[copper, more]);
+    assert_eq!(schlick(("weight", "value=\"0.5\"")), Some(Fresnel::Schlick([0.9, 0.6, 0.5])));
     for other in ["color82", "color90"] {
         assert_eq!(schlick((other, "value=\"1, 1, 0.9\"")), None, "{other}");
     }

@@ -18,7 +18,7 @@ fn coloured(class: &str, inputs: &[(&str, &str)]) -> Scene {
 #[track_caller]
 fn assert_schlick(material: &Material, f0: f64) {
     let Some(Fresnel::Schlick(found)) = material.fresnel else { panic!("{:?}", material.fresnel) };
-    assert!((found - f0).abs() < 1e-12, "{found} is not {f0}");
+    assert!(found.iter().all(|found| (found - f0).abs() < 1e-12), "{found:?} is not {f0}");
 }
 
 /// Of a metal with the reflectance r at normal incidence, for edge colours 0 and 1.
@@ -124,7 +124,9 @@ fn metals_have_the_reflectance_of_their_colour() {
     };
     assert_schlick(&open(&[]).materials[0], 0.8);
     assert_eq!(open(&[("specular_color", "0.9, 0.9, 0.9")]).materials[0].fresnel, None);
-    // Schlick's approximation is stated for greys.
-    assert_eq!(open(&[("base_color", "0.9, 0.6, 0.3")]).materials[0].fresnel, None);
+    let copper = open(&[("base_weight", "0.5"), ("base_color", "0.9, 0.6, 0.3")]);
+    assert_eq!(copper.materials[0].fresnel, Some(Fresnel::Schlick([0.45, 0.3, 0.15])));
+    // No F0 exceeds 1.
+    assert_eq!(open(&[("base_color", "1.2, 0.6, 0.3")]).materials[0].fresnel, None);
     assert_ne!(open(&[]).materials[0].roughness, anisotropic(0.09, 0.09));
 }

@@ -1,0 +1,107 @@
+//! Fresnel terms and indices of refraction.
+
+use super::Reader;
+use super::value::{named, number, rgb};
+use crate::scene::builder::{conductor, dielectric, metal};
+use crate::scene::error::did_you_mean;
+use crate::scene::xml::Element;
+use crate::scene::{Fresnel, Interval, SceneError};
+
+/// Indices of refraction by name (`render/ior.h`; Hecht, Optics, 4th edition, at 589 nm).
+const INDICES: [(&str, f64); 23] = [
+    ("vacuum", 1.0),
+    ("helium", 1.000_036),
+    ("hydrogen", 1.000_132),
+    ("air", 1.000_277),
+    ("carbon dioxide", 1.000_45),
+    ("water", 1.333),
+    ("acetone", 1.36),
+    ("ethanol", 1.361),
+    ("carbon tetrachloride", 1.461),
+    ("glycerol", 1.4729),
+    ("benzene", 1.501),
+    ("silicone oil", 1.520_45),
+    ("bromine", 1.661),
+    ("water ice", 1.31),
+    ("fused quartz", 1.458),
+    ("pyrex", 1.47),
+    ("acrylic glass", 1.49),
+    ("polypropylene", 1.49),
+    ("bk7", 1.5046),
+    ("sodium chloride", 1.544),
+    ("amber", 1.55),
+    ("pet", 1.575),
+    ("diamond", 2.419),
+];
+
+impl<'a> Reader<'a> {
+    /// The Fresnel term that was read; none, with a warning, if something impossible was found.
+    pub(super) fn fresnel_or_warn(
+        &mut self,
+        read: Result<Option<Fresnel>, SceneError>,
+    ) -> Result<Option<Fresnel>, SceneError> {
+        self.ranges.abandon();
+        self.builder.or_warn(read, (None, "the lobe is read without its Fresnel term"))
+    }
+
+    /// The dielectric of a principled BSDF, unless metal or tint is mixed in.
+    pub(super) fn principled_fresnel(
+        &mut self,
+        bsdf: &'a Element,
+    ) -> Result<Option<Fresnel>, SceneError> {
+        if self.weight(bsdf, "metallic")?.max > 0.0 || self.weight(bsdf, "spec_tint")?.max > 0.0 {
+            return Ok(None);
+        }
+        if bsdf.child_named("eta").is_some() {
+            let eta = self.property(bsdf, "eta", 1.5)?;
+            return constant_dielectric(eta, bsdf);
+        }
+        let specular = self.property(bsdf, "specular", 0.5)?;
+        let eta = specular.map_rising(|specular| 2.0 / (1.0 - (0.08 * specular).sqrt()) - 1.0);
+        constant_dielectric(eta, bsdf)
+    }
+}
+
+/// The Fresnel term of the BSDFs of a single interface.
+pub(super) fn fresnel(bsdf: &Element, class: &str) -> Result<Option<Fresnel>, SceneError> {
+    if class.ends_with("conductor") {
+        let material = bsdf.child_named("material").and_then(|m| m.attribute("value"));
+        if material == Some("none") {
+            return Ok(Some(Fresnel::Mirror));
+        }
+        let rgb = |name| bsdf.child_named(name).filter(|p| p.tag == "rgb").and_then(rgb);
+        return match (rgb("eta"), rgb("k")) {
+            (Some(eta), Some(k)) => conductor(eta, k, &bsdf.place).map(Some),
+            _ => Ok(material.and_then(metal)),
+        };
+    }
+    let inside = if class.ends_with("plastic") { "polypropylene" } else { "bk7" };
+    let eta = index(bsdf, "int_ior", inside)? / index(bsdf, "ext_ior", "air")?;
+    dielectric(eta, &bsdf.place).map(Some)
+}
+
+/// The Fresnel term of an index of refraction, or `None` if a texture varies it.
+pub(super) fn constant_dielectric(
+    eta: Interval,
+    bsdf: &Element,
+) -> Result<Option<Fresnel>, SceneError> {
+    eta.is_point().then(|| dielectric(eta.min, &bsdf.place)).transpose()
+}
+
+/// An index of refraction, given as a number or by name.
+fn index(bsdf: &Element, name: &str, default: &str) -> Result<f64, SceneError> {
+    let (text, place) = match named(bsdf, name) {
+        Some(property) if property.tag != "string" => return number(property),
+        Some(property) => (property.required("value")?, &property.place),
+        None => (default, &bsdf.place),
+    };
+    let known = INDICES.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
+    known.map(|&(_, eta)| eta).ok_or_else(|| {
+        let names = INDICES.map(|(name, _)| name);
+        place.invalid(format!(
+            "no index of refraction is known for \"{text}\"{}; the names are {}",
+            did_you_mean(text, &names),
+            names.join(", ")
+        ))
+    })
+}

@@ -1,0 +1,162 @@
+//! What is not understood in a scene, and what only Mitsuba 0.6 has, while the rest is read.
+
+use microfacet_bake::scene::{Fresnel, Interval, Roughness, Scene};
+
+use super::scene;
+use crate::{anisotropic, assert_not_understood, assert_warned, isotropic, load, named, names};
+
+/// A good BSDF after the text, which must be read whatever the text says.
+fn beside(text: &str) -> Scene {
+    let good =
+        "<bsdf type=\"roughconductor\" id=\"good\"><float name=\"alpha\" value=\"0.2\"/></bsdf>";
+    let scene = load("a.xml", &scene(&format!("{text}\n{good}")));
+    assert_eq!(named(&scene, "good").roughness, isotropic(0.2));
+    scene
+}
+
+fn bsdf(class: &str, properties: &str) -> Scene {
+    beside(&format!("<bsdf type=\"{class}\" id=\"a\">{properties}</bsdf>"))
+}
+
+#[test]
+fn an_impossible_value_costs_its_bsdf_alone() {
+    let case = |class: &str, text: &str, parts: &[&str]| {
+        let scene = bsdf(class, text);
+        assert_not_understood(&scene, "a", ":1:24", parts);
+        assert_eq!((names(&scene), scene.ignored.len()), (vec!["good"], 1));
+    };
+    let rough = "roughconductor";
+    let alpha = |value: &str, parts: &[&str]| {
+        case(rough, &format!("\n<float name=\"alpha\" {value}/>"), parts);
+    };
+    alpha("value=\"x\"", &["a.xml:2:1: ", "alpha", "number", "\"x\""]);
+    alpha("value=\"$a\"", &["a.xml:2:1: ", "$a", "<default name=\"a\""]);
+    alpha("", &["a.xml:2:1: ", "no attribute \"value\""]);
+    alpha("value=\"-1\"", &["-1", "more than 0"]);
+    case(rough, "<float name=\"alpha_u\" value=\"1\"/>", &["both alpha_u and alpha_v"]);
+    let mixed = "<float name=\"alpha\" value=\"1\"/><float name=\"alpha_v\" value=\"1\"/>";
+    case(rough, mixed, &["both alpha_u and alpha_v"]);
+    case("principled", "<float name=\"roughness\" value=\"1.5\"/>", &["1.5", "0 to 1"]);
+    case("roughcloth", "", &["(roughcloth)", "not a BSDF that is known here"]);
+}
+
+#[test]
+fn a_bsdf_without_a_type_is_listed() {
+    let scene = beside("\n<bsdf id=\"a\"/>");
+    assert_not_understood(&scene, "a", ":2:1", &["no type", "no attribute \"type\""]);
+}
+
+#[test]
+fn distributions_of_other_versions_cost_their_lobe() {
+    for name in ["phong", "as", "AS"] {
+        let property = format!("\n<string name=\"distribution\" value=\"{name}\"/>");
+        let scene = bsdf("roughconductor", &property);
+        let parts = ["a.xml:2:1: ", &format!("\"{name}\""), "0.6", "beckmann and ggx"];
+        assert_not_understood(&scene, "a", ":1:24", &parts);
+    }
+    let scene = bsdf("roughplastic", "<string name=\"distribution\" value=\"gxg\"/>");
+    assert_not_understood(&scene, "a", ":1:24", &["\"gxg\"", "did you mean `ggx`?"]);
+}
+
+#[test]
+fn a_bad_fresnel_value_leaves_the_lobe() {
+    let case = |class: &str, property: &str, place: &str, parts: &[&str]| {
+        let scene = bsdf(class, &format!("<float name=\"alpha\" value=\"0.3\"/>\n{property}"));
+        let a = named(&scene, "a");
+        assert_eq!((a.fresnel, scene.ignored.len()), (None, 0));
+        assert!(a.roughness == isotropic(0.3) || class == "principled", "{a:?}");
+        assert_warned(&scene, place, &[parts, &["without its Fresnel term"]].concat());
+    };
+    let glass = "roughdielectric";
+    case(glass, "<string name=\"int_ior\" value=\"watr\"/>", ":2:1", &["watr", "`water`"]);
+    case(glass, "<float name=\"int_ior\" value=\"-1\"/>", ":1:24", &["more than 0"]);
+    case(glass, "<float name=\"ext_ior\" value=\"x\"/>", ":2:1", &["ext_ior", "number"]);
+    let eta = "<rgb name=\"eta\" value=\"0 1 1\"/><rgb name=\"k\" value=\"3 2 2\"/>";
+    case("roughconductor", eta, ":1:24", &["eta must be more than 0"]);
+    case("principled", "<float name=\"eta\" value=\"-1\"/>", ":1:24", &["more than 0"]);
+}
+
+#[test]
+fn references_to_nothing_are_warned_of() {
+    let inner = "\n<ref id=\"god\"/>";
+    let scene = bsdf("twosided", inner);
+    assert_warned(&scene, ":2:1", &["nothing has the id \"god\"; did you mean `good`?"]);
+    let scene = beside("\n<shape type=\"cube\"><ref id=\"b\"/><ref id=\"good\"/></shape>");
+    assert_warned(&scene, ":2:20", &["id \"b\""]);
+    assert!(named(&scene, "good").used);
+    let scene = beside("\n<shape type=\"cube\"><ref/></shape>");
+    assert_warned(&scene, ":2:20", &["no attribute \"id\""]);
+    let scene = bsdf("roughconductor", "\n<ref name=\"alpha\" id=\"b\"/>");
+    assert_not_understood(&scene, "a", ":1:24", &["a.xml:2:1: ", "id \"b\""]);
+}
+
+#[test]
+fn textures_in_a_circle_cost_the_bsdfs_that_use_them() {
+    let alpha = "<ref name=\"alpha\" id=\"t\"/>";
+    let scene = beside(&format!(
+        "\n<texture type=\"checkerboard\" id=\"t\"><ref name=\"color0\" id=\"t\"/></texture>
+         <bsdf type=\"roughconductor\" id=\"a\">{alpha}</bsdf>
+         <bsdf type=\"roughconductor\" id=\"b\">{alpha}</bsdf>"
+    ));
+    assert_warned(&scene, ":2:37", &["circle: t -> t"]);
+    for (name, place) in [("a", ":3:10"), ("b", ":4:10")] {
+        assert_not_understood(&scene, name, place, &["depends on itself"]);
+    }
+}
+
+#[test]
+fn spellings_of_version_0_6_are_read() {
+    let scene = bsdf(
+        "roughdielectric",
+        "<float name=\"alphaU\" value=\"0.3\"/><float name=\"alphaV\" value=\"0.1\"/>
+         <string name=\"intIOR\" value=\"water\"/><float name=\"extIOR\" value=\"1\"/>",
+    );
+    assert_eq!(scene.materials[0].roughness, anisotropic(0.3, 0.1));
+    assert_eq!(scene.materials[0].fresnel, Some(Fresnel::Dielectric(1.333)));
+    assert_eq!(scene.warnings, [""; 0]);
+}
+
+#[test]
+fn a_coating_is_a_lobe_beside_the_bsdf_inside() {
+    let inner = "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.4\"/></bsdf>";
+    let scene = bsdf(
+        "roughcoating",
+        &format!(
+            "<string name=\"distribution\" value=\"ggx\"/><float name=\"intIOR\" value=\"1.5\"/>
+                  <float name=\"extIOR\" value=\"1\"/>{inner}"
+        ),
+    );
+    assert_eq!(names(&scene), ["a.coating", "a", "good"]);
+    let [coating, metal, _] = &scene.materials[..] else { unreachable!() };
+    assert_eq!(coating.roughness, isotropic(0.1));
+    assert_eq!(coating.gamma, Interval::point(2.0));
+    assert_eq!(coating.fresnel, Some(Fresnel::Dielectric(1.5)));
+    assert_eq!(coating.origin.lobe, Some("coating"));
+    assert_eq!(metal.roughness, isotropic(0.4));
+    let scene = bsdf("coating", inner);
+    assert_eq!(named(&scene, "a.coating").roughness, Roughness::Smooth);
+    let clear = Some(Fresnel::Dielectric(1.5046 / 1.000_277));
+    assert_eq!(named(&scene, "a.coating").fresnel, clear);
+    // A bad coat leaves what is inside.
+    let bad = format!("<float name=\"alpha\" value=\"-1\"/>{inner}");
+    let scene = bsdf("roughcoating", &bad);
+    assert_eq!(names(&scene), ["a", "good"]);
+    assert_not_understood(&scene, "a", ":1:24", &["-1"]);
+}
+
+#[test]
+fn plugins_of_version_0_6_are_told_apart() {
+    for class in ["phong", "ward", "sssbrdf"] {
+        let scene = bsdf(class, "<float name=\"alpha\" value=\"0.3\"/>");
+        assert_not_understood(&scene, "a", ":1:24", &[class, "0.6"]);
+    }
+    for class in ["roughdiffuse", "difftrans", "hk", "irawan"] {
+        let scene = bsdf(class, "");
+        assert!(scene.ignored.len() == 1 && scene.ignored[0].understood, "{:?}", scene.ignored);
+    }
+    let inner = "<bsdf type=\"roughplastic\"/><bsdf type=\"diffuse\"/>";
+    let scene =
+        bsdf("mixturebsdf", &format!("<string name=\"weights\" value=\"0.5, 0.5\"/>{inner}"));
+    assert_eq!(names(&scene), ["a", "good"]);
+    assert_eq!((scene.ignored.len(), &scene.ignored[0].kind[..]), (1, "diffuse"));
+}

@@ -1,0 +1,154 @@
+//! What is not understood in a scene, while the rest of it is read.
+
+use microfacet_bake::scene::Scene;
+
+use crate::{assert_not_understood, assert_refused, assert_warned, isotropic, load, named, names};
+
+/// A good material after the text, which must be read whatever the text says.
+fn beside(text: &str) -> Scene {
+    let good = "MakeNamedMaterial \"good\" \"string type\" \"conductor\" \"float roughness\" 0.04";
+    let scene = load("a.pbrt", &format!("{text}\n{good}"));
+    assert_eq!(named(&scene, "good").roughness, isotropic(0.2));
+    scene
+}
+
+const NAMED: &str = "MakeNamedMaterial \"a\" \"string type\" \"conductor\"";
+
+#[test]
+fn an_impossible_value_costs_its_material_alone() {
+    let case = |text: &str, name: &str, parts: &[&str]| {
+        let scene = beside(text);
+        assert_not_understood(&scene, name, ":1:1", parts);
+        assert_eq!((names(&scene), scene.ignored.len()), (vec!["good"], 1));
+        assert_eq!(scene.warnings, [""; 0]);
+    };
+    let value = |value: &str, parts: &[&str]| {
+        case(&format!("{NAMED} {value}"), "a", &[&["a.pbrt:1:49: "], parts].concat());
+    };
+    value("\"float roughness\" -0.5", &["-0.5", "0 or more", "\"a\""]);
+    value("\"float roughness\" \"rough\"", &["number", "rough"]);
+    value("\"float roughness\" nan", &["number", "nan"]);
+    value("\"bool remaproughness\" 1", &["true or false"]);
+    value("\"texture roughness\" \"t\"", &["\"t\" is not defined"]);
+    case("MakeNamedMaterial \"a\" \"float roughness\" 1", "a", &["no type"]);
+    case("Material \"conductr\"", "conductr at a.pbrt:1", &["(conductr)", "not a material of"]);
+}
+
+#[test]
+fn an_undefined_texture_is_named_with_the_nearest() {
+    let scene = beside(
+        "Texture \"grey\" \"float\" \"constant\"\nMaterial \"conductor\" \"texture roughness\" \"gray\"",
+    );
+    let parts = ["\"gray\" is not defined; did you mean `grey`?"];
+    assert_not_understood(&scene, "conductor at a.pbrt:2", ":2:1", &parts);
+}
+
+#[test]
+fn textures_in_a_circle_cost_the_materials_that_use_them() {
+    let scene = beside(
+        "Texture \"t\" \"float\" \"scale\" \"texture tex\" \"t\"
+         MakeNamedMaterial \"a\" \"string type\" \"conductor\" \"texture roughness\" \"t\"
+         MakeNamedMaterial \"b\" \"string type\" \"conductor\" \"texture roughness\" \"t\"",
+    );
+    for (name, place) in [("a", ":2:10"), ("b", ":3:10")] {
+        assert_not_understood(&scene, name, place, &["a.pbrt:1:29: ", "depends on itself"]);
+    }
+}
+
+#[test]
+fn a_bad_interface_leaves_the_other() {
+    let scene = beside(
+        "MakeNamedMaterial \"a\" \"string type\" \"coatedconductor\" \"float conductor.roughness\" -1",
+    );
+    assert_eq!(names(&scene), ["a.interface", "good"]);
+    assert_not_understood(&scene, "a.conductor", ":1:1", &["conductor.roughness", "-1"]);
+}
+
+#[test]
+fn a_bad_fresnel_value_leaves_the_lobe() {
+    let case = |material: &str, place: &str, parts: &[&str]| {
+        let scene = beside(&format!("MakeNamedMaterial \"a\" {material} \"float roughness\" 0.25"));
+        assert_eq!(named(&scene, "a").roughness, isotropic(0.5));
+        assert_eq!((named(&scene, "a").fresnel, scene.ignored.len()), (None, 0));
+        assert_warned(&scene, place, &[parts, &["without its Fresnel term"]].concat());
+    };
+    case("\"string type\" \"dielectric\" \"float eta\" 0", ":1:50", &["is 0", "more than 0"]);
+    case(
+        "\"string type\" \"dielectric\" \"float eta\" \"x\"",
+        ":1:50",
+        &["eta must be a number", "\"x\""],
+    );
+    let metal = "\"string type\" \"conductor\" \"rgb eta\" [ 0 1 1 ] \"rgb k\" [ 3 2 2 ]";
+    case(metal, ":1:1", &["[0.0, 1.0, 1.0]", "eta must be more than 0"]);
+}
+
+#[test]
+fn names_that_nothing_defines_are_warned_of() {
+    let scene = beside(&format!("{NAMED} \"float eta\" 1\nNamedMaterial \"A\" Shape \"sphere\""));
+    assert_warned(&scene, ":2:1", &["\"A\" is not defined; did you mean `a`?"]);
+    let scene =
+        beside("Material \"mix\" \"string materials\" [ \"goode\" \"good\" ]\nShape \"sphere\"");
+    assert_warned(&scene, ":1:16", &["\"goode\" is not defined; did you mean `good`?"]);
+    assert!(named(&scene, "good").used, "the other part");
+}
+
+#[test]
+fn of_two_definitions_the_first_counts() {
+    let scene = beside(&format!("{NAMED} \"float roughness\" 0.01\n{NAMED} \"float roughness\" 1"));
+    assert_eq!(names(&scene), ["a", "good"]);
+    assert_eq!(scene.materials[0].roughness, isotropic(0.1));
+    assert_warned(&scene, ":2:1", &["twice", "a.pbrt:1:1"]);
+}
+
+#[test]
+fn materials_of_other_versions_are_not_understood() {
+    for class in [
+        "disney",
+        "fourier",
+        "glass",
+        "kdsubsurface",
+        "matte",
+        "metal",
+        "mirror",
+        "plastic",
+        "substrate",
+        "translucent",
+        "uber",
+    ] {
+        let scene = beside(&format!("Material \"{class}\" \"float roughness\" 0.1"));
+        let parts = [&format!("({class})")[..], "pbrt-v3", "pbrt --upgrade old.pbrt > new.pbrt"];
+        assert_not_understood(&scene, &format!("{class} at a.pbrt:1"), ":1:1", &parts);
+    }
+    // In both versions.
+    for class in ["hair", "subsurface", "mix"] {
+        let scene = beside(&format!("Material \"{class}\""));
+        assert!(scene.ignored.iter().all(|ignored| ignored.understood), "{:?}", scene.ignored);
+    }
+}
+
+#[test]
+fn directives_of_other_versions_are_passed_over_with_one_warning() {
+    let scene = beside(
+        "SearchPath \"/scenes\"\nRenderer \"sampler\"\nVolume \"homogeneous\" \"point p0\" [ 0 0 0 ]
+         SurfaceIntegrator \"path\" \"integer maxdepth\" [ 5 ]\nVolumeIntegrator \"emission\"",
+    );
+    assert_warned(&scene, ":1:1", &["SearchPath", "pbrt-v1", "pbrt --upgrade"]);
+    let scene = beside("\nSurfaceIntegrator \"path\"");
+    assert_warned(&scene, ":2:1", &["SurfaceIntegrator", "pbrt-v2"]);
+    let similar = &["unknown directive SurfaceIntegrators"];
+    assert_refused("a.pbrt", "SurfaceIntegrators \"path\"", ":1:1", similar);
+}
+
+#[test]
+fn the_boundary_of_a_medium_has_nothing_to_bake() {
+    for class in ["interface", "none", ""] {
+        let scene = beside(&format!(
+            "MakeNamedMaterial \"fog\" \"string type\" \"{class}\"
+             NamedMaterial \"fog\" Shape \"sphere\" Material \"{class}\" Shape \"sphere\""
+        ));
+        let [fog] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
+        assert!(fog.understood && fog.reason.contains("boundary of a medium"), "{fog}");
+        assert_eq!((&fog.name[..], &fog.kind[..]), ("fog", class));
+        assert_eq!(scene.warnings, [""; 0]);
+    }
+}
