@@ -211,8 +211,7 @@ fn a_folder_is_summed_up() {
         "no scenes 2",
         "refused 2",
         "materials not understood 4",
-        "2 matte:",
-        "2 uber:",
+        "4 matte 2, uber 2: a material of pbrt-v3",
         "1 not covered: sigma = 1e17",
         "distinct needs of all:",
     ] {

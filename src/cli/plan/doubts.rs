@@ -8,32 +8,63 @@ use microfacet_bake::scene::Scene;
 use crate::cli::report;
 use crate::cli::words::{count, joined, list};
 
-/// Reasons that are told; `plan` and `--json` have all.
+/// Reasons that are told; `--json` has all.
 const SHOWN: usize = 3;
 
-/// Names by the reason.
+/// Materials for which nothing could be done for one reason.
 #[derive(Default)]
-struct Reasons<'a>(BTreeMap<String, Vec<&'a str>>);
+pub(super) struct Lost<'a> {
+    /// How many there are of each kind, where a kind is the reason.
+    kinds: BTreeMap<&'a str, usize>,
+    /// Their names, or the files that they are in.
+    pub(super) names: Vec<&'a str>,
+}
+
+impl Lost<'_> {
+    /// `matte 3, uber 1: `, or nothing.
+    pub(super) fn kinds(&self) -> String {
+        let one = |(kind, n): (&&str, &usize)| match n {
+            1 => (*kind).to_owned(),
+            n => format!("{kind} {n}"),
+        };
+        let kinds: Vec<String> = self.kinds.iter().map(one).collect();
+        if kinds.is_empty() { String::new() } else { format!("{}: ", kinds.join(", ")) }
+    }
+}
+
+/// Lost materials by the reason.
+#[derive(Default)]
+pub(super) struct Reasons<'a>(BTreeMap<String, Lost<'a>>);
 
 impl<'a> Reasons<'a> {
-    fn add(&mut self, reason: impl Into<String>, name: &'a str) {
-        self.0.entry(reason.into()).or_default().push(name);
+    pub(super) fn add(&mut self, kind: Option<&'a str>, reason: &str, name: &'a str) {
+        let lost = self.0.entry(reason.to_owned()).or_default();
+        lost.names.push(name);
+        if let Some(kind) = kind {
+            *lost.kinds.entry(kind).or_default() += 1;
+        }
     }
 
-    /// A sentence of all, if there are any; `what` completes "3 materials ...".
-    fn sentence(&self, what: [&str; 2]) -> Option<String> {
-        let all: usize = self.0.values().map(Vec::len).sum();
-        let [one, many] = what;
+    /// All, those with most materials first.
+    pub(super) fn by_number(&self) -> Vec<(&str, &Lost<'a>)> {
+        let mut all: Vec<(&str, &Lost<'a>)> =
+            self.0.iter().map(|(reason, lost)| (&reason[..], lost)).collect();
+        all.sort_by_key(|(_, lost)| usize::MAX - lost.names.len());
+        all
+    }
+
+    /// A sentence of all, if there are any: "3 materials", and `one` or `many` of them.
+    fn sentence(&self, [one, many]: [&str; 2]) -> Option<String> {
+        let reasons = self.by_number();
+        let all: usize = reasons.iter().map(|(_, lost)| lost.names.len()).sum();
         let what = if all == 1 { one } else { many };
-        let mut reasons: Vec<(&String, &Vec<&str>)> = self.0.iter().collect();
-        reasons.sort_by_key(|(_, names)| usize::MAX - names.len());
-        let told = |(why, names): &(&String, &Vec<&str>)| {
-            format!("{} ({why})", list(names.iter().copied()))
+        let told = |(why, lost): &(&str, &Lost<'_>)| {
+            format!("{} ({}{why})", list(lost.names.iter().copied()), lost.kinds())
         };
         let mut told: Vec<String> = reasons.iter().take(SHOWN).map(told).collect();
         if let Some(more @ [_, ..]) = reasons.get(SHOWN..) {
-            let names = more.iter().map(|(_, names)| names.len()).sum();
-            told.push(format!("{} for other reasons", count(names, "more")));
+            let names: usize = more.iter().map(|(_, lost)| lost.names.len()).sum();
+            told.push(format!("{names} more for other reasons, which --json has"));
         }
         (all > 0).then(|| format!("{} {what}: {}", count(all, "material"), joined(&told)))
     }
@@ -44,11 +75,11 @@ pub(in crate::cli) fn warn<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)
     let (mut unknown, mut uncovered) = (Reasons::default(), Reasons::default());
     for (scene, plan) in parts {
         for ignored in scene.ignored.iter().filter(|ignored| !ignored.understood) {
-            unknown.add(format!("{}: {}", ignored.kind, ignored.reason), &ignored.name);
+            unknown.add(Some(&ignored.kind), &ignored.reason, &ignored.name);
         }
         for (material, verdict) in scene.materials.iter().zip(&plan.verdicts) {
             if let Verdict::NotCovered(why) = verdict {
-                uncovered.add(NotCovered::reason(why), &material.name);
+                uncovered.add(None, &NotCovered::reason(why), &material.name);
             }
         }
     }

@@ -11,6 +11,7 @@ use microfacet_bake::progress::Meter;
 use microfacet_bake::survey::{Outcome, Planned, Survey};
 use microfacet_bake::table_set::Target;
 
+use super::doubts::Reasons;
 use super::{Args, Request};
 use crate::cli::words::{columns, count, list, seconds, wrapped};
 use crate::cli::{Done, Failure, Outcome as Result, escape, print, print_json, progress, report};
@@ -66,15 +67,15 @@ fn lobes(survey: &Survey) -> Counts<'_> {
     counts
 }
 
-/// Materials for which nothing could be done, as kind and reason, with the files they are in.
-fn lost<'a>(survey: &'a Survey) -> BTreeMap<[&'a str; 2], Vec<&'a Path>> {
-    let mut all: BTreeMap<[&'a str; 2], Vec<&'a Path>> = BTreeMap::new();
-    for (path, Planned { not_understood, not_covered, .. }) in survey.planned() {
+/// Materials for which nothing could be done, with the files they are in.
+fn lost<'a>(planned: &'a [(String, &'a Planned)]) -> Reasons<'a> {
+    let mut all = Reasons::default();
+    for (path, Planned { not_understood, not_covered, .. }) in planned {
         for [_, kind, reason] in not_understood {
-            all.entry([kind, reason]).or_default().push(path);
+            all.add(Some(kind), reason, path);
         }
         for [_, reason] in not_covered {
-            all.entry(["not covered", reason]).or_default().push(path);
+            all.add(Some("not covered"), reason, path);
         }
     }
     all
@@ -111,14 +112,14 @@ fn text(survey: &Survey, folder: &Path, time: f64) -> String {
     rows.push(vec!["warnings, which --json has".into(), warnings.to_string()]);
     columns(&rows).iter().for_each(|line| text += &format!("{line}\n"));
 
-    let lost = lost(survey);
-    let mut rows: Vec<([&str; 2], &Vec<&Path>)> =
-        lost.iter().map(|(&what, files)| (what, files)).collect();
-    rows.sort_by_key(|(_, files)| usize::MAX - files.len());
-    let told = rows.iter().map(|([kind, reason], files)| {
-        let first = files.first().map_or(String::new(), |file| file.display().to_string());
-        let n = files.len();
-        format!("{n} {}: {}; first in {}", line(kind), line(reason), line(&first))
+    let within = |path: &Path| path.strip_prefix(folder).unwrap_or(path).display().to_string();
+    let planned: Vec<(String, &Planned)> =
+        survey.planned().map(|(path, planned)| (within(path), planned)).collect();
+    let lost = lost(&planned);
+    let told = lost.by_number().into_iter().map(|(reason, lost)| {
+        let first = lost.names.first().copied().unwrap_or_default();
+        let n = lost.names.len();
+        format!("{n} {}{}; first in {}", line(&lost.kinds()), line(reason), line(first))
     });
     text += &section("not understood, or not covered", told);
     let refused = survey.files.iter().filter_map(|file| match &file.outcome {
