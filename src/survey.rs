@@ -52,7 +52,7 @@ pub struct Planned {
     pub without_lobe: usize,
     /// Materials that were not understood: name, kind, reason.
     pub not_understood: Vec<[String; 3]>,
-    /// Lobes that nothing covers: name, reason.
+    /// Lobes and albedos that nothing covers: name, reason.
     pub not_covered: Vec<[String; 2]>,
     /// Warnings on what was assumed.
     pub warnings: Vec<String>,
@@ -189,11 +189,12 @@ impl Planned {
                     planned.not_understood.push([name, kind, material.reason.to_string()]);
                 }
             }
-            for (material, verdict) in scene.materials.iter().zip(&plan.verdicts) {
+            for verdict in &plan.verdicts {
                 *planned.lobes.entry(group(verdict)).or_default() += 1;
-                if let Verdict::NotCovered(why) = verdict {
-                    planned.not_covered.push([material.name.clone(), why.reason()]);
-                }
+            }
+            for why in plan.not_covered() {
+                let name = why.material().unwrap_or_default().to_owned();
+                planned.not_covered.push([name, why.reason()]);
             }
         }
         Ok((planned, needs))

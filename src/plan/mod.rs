@@ -189,6 +189,19 @@ impl Plan {
         })
     }
 
+    /// The materials that nothing covers, each with the reason: of them, and of their albedos.
+    pub fn not_covered(&self) -> impl Iterator<Item = &NotCovered> {
+        let lobes = self.verdicts.iter().filter_map(|verdict| match verdict {
+            Verdict::NotCovered(why) => Some(why),
+            _ => None,
+        });
+        let albedos = self.albedo_verdicts.iter().filter_map(|verdict| match verdict {
+            AlbedoVerdict::NotCovered(why) => Some(why),
+            _ => None,
+        });
+        lobes.chain(albedos)
+    }
+
     /// Whether it needs no tables.
     pub fn is_empty(&self) -> bool {
         self.shapes.is_empty() && self.distributions.is_empty() && self.albedos.is_empty()

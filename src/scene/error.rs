@@ -175,7 +175,12 @@ impl fmt::Display for SceneErrorKind {
                 f.write_str(
                     "; the formats are .toml (recipe), .pbrt and .pbrt.gz (pbrt-v4), .xml (Mitsuba \
                      3), .gltf and .glb (glTF 2.0), .mtlx (MaterialX)",
-                )
+                )?;
+                let is_usd = |it: &str| matches!(it, "usd" | "usda" | "usdc" | "usdz");
+                if extension.to_str().is_some_and(is_usd) {
+                    f.write_str("; export a USD scene as glTF, or its materials as MaterialX")?;
+                }
+                Ok(())
             }
             Self::Syntax(message)
             | Self::Invalid(message)

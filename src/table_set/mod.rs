@@ -42,6 +42,13 @@ pub enum Target {
     MaxBytes(usize),
 }
 
+impl Target {
+    /// The quality; the default one where tables are chosen by a budget.
+    pub fn quality(&self) -> Quality {
+        if let Self::Quality(quality, _) = self { *quality } else { Quality::Default }
+    }
+}
+
 impl Default for Target {
     fn default() -> Self {
         Self::Quality(Quality::Default, Precision::F32)

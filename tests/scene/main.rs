@@ -130,6 +130,8 @@ fn an_unknown_extension_lists_the_formats() {
     for extension in ["blend", ".toml", ".pbrt", ".xml", ".gltf", ".glb", ".mtlx"] {
         assert!(message.contains(extension), "{message}");
     }
+    let usd = Folder::new(&[("scene.usda", "#usda 1.0")]).load("scene.usda").unwrap_err();
+    assert!(usd.to_string().contains("export a USD scene as glTF"), "{usd}");
 }
 
 #[test]

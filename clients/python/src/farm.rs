@@ -5,13 +5,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use microfacet_bake::cache::Cache;
 use microfacet_bake::library::{Library, PER_SET};
-use microfacet_bake::plan::{AlbedoWish, Options};
 use microfacet_bake::store::{OutputFolder, SetWriter};
 use microfacet_bake::table_set::{Need, Settings, Target, bake_with};
 use pyo3::exceptions::{PyOSError, PyRuntimeError};
 use pyo3::prelude::*;
 
-use crate::tables::{interruptible, scene_of, target_of, warn_of};
+use crate::tables::{interruptible, options_of, scene_of, target_of, warn_of};
 use crate::words::{refused, unread};
 
 /// One thing that a library needs, which any process on any machine can bake; it can be pickled.
@@ -120,14 +119,11 @@ impl PyLibrary {
             return Err(refused(format!("per_set is {per_set}: it must be in [1, {PER_SET}]")));
         }
         let scene = scene_of(scene)?;
-        warn_of(py, &scene)?;
-        let albedo = match albedo {
-            None => AlbedoWish::Auto,
-            Some(true) => AlbedoWish::All,
-            Some(false) => AlbedoWish::None,
-        };
-        let options = Options { tabulate_ggx, albedo, ..Options::default() };
+        let options = options_of(albedo, tabulate_ggx, target);
         let library = py.detach(|| Library::new(scene, per_set, options)).map_err(refused)?;
+        for (scene, plan) in library.plans() {
+            warn_of(py, scene, plan)?;
+        }
         Ok(Self { library: Arc::new(library), target })
     }
 

@@ -163,7 +163,8 @@ impl PyTables {
 /// older set in it is replaced. quality is "draft", "default" or "high", precision "f32", "f16" or
 /// "u16"; max_error or max_bytes take the place of both. albedo=True bakes directional albedos for
 /// every rough material, False for none; by default those of a recipe that state `fresnel` get
-/// them. max_memory is in bytes. Assumptions about a scene are warnings. Finished tables are kept
+/// them, and those of another scene if all take less than 2 s of one thread. max_memory is in
+/// bytes. What is assumed or not understood of a scene is a warning. Finished tables are kept
 /// in the user's cache unless cache=False, or in the folder that cache names. An interrupt returns
 /// at once and writes nothing; what was begun goes on in the background until it is done.
 #[pyfunction]
@@ -195,14 +196,10 @@ pub(crate) fn bake(
         None => general(albedo),
         Some(recipe) => {
             let scene = scene_of(recipe)?;
-            warn_of(py, &scene)?;
-            let albedo = match albedo {
-                None => AlbedoWish::Auto,
-                Some(true) => AlbedoWish::All,
-                Some(false) => AlbedoWish::None,
-            };
-            let options = Options { tabulate_ggx, albedo, ..Options::default() };
-            Plan::new(&scene, options).map_err(refused)?
+            let options = options_of(albedo, tabulate_ggx, target);
+            let plan = Plan::new(&scene, options).map_err(refused)?;
+            warn_of(py, &scene, &plan)?;
+            plan
         }
     };
     let cache = match cache {
@@ -265,13 +262,23 @@ pub(crate) fn target_of(
     }
 }
 
-/// Passes on the warnings of a scene.
-pub(crate) fn warn_of(py: Python<'_>, scene: &Scene) -> PyResult<()> {
-    for warning in &scene.warnings {
+/// Passes on what is doubtful in a scene, and what nothing covers.
+pub(crate) fn warn_of(py: Python<'_>, scene: &Scene, plan: &Plan) -> PyResult<()> {
+    for warning in scene.doubts().chain(plan.not_covered().map(ToString::to_string)) {
         let warning = std::ffi::CString::new(warning.replace('\0', " "))?;
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), &warning, 1)?;
     }
     Ok(())
+}
+
+/// What the arguments of `bake` ask a plan for.
+pub(crate) fn options_of(albedo: Option<bool>, tabulate_ggx: bool, target: Target) -> Options {
+    let albedo = match albedo {
+        None => AlbedoWish::Auto,
+        Some(true) => AlbedoWish::All,
+        Some(false) => AlbedoWish::None,
+    };
+    Options { tabulate_ggx, albedo, quality: target.quality(), ..Options::default() }
 }
 
 /// The plan of all shapes.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use microfacet_bake::plan::{NotCovered, Plan, Verdict};
+use microfacet_bake::plan::Plan;
 use microfacet_bake::scene::Scene;
 
 use crate::cli::report;
@@ -77,10 +77,8 @@ pub(in crate::cli) fn warn<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)
         for ignored in scene.ignored.iter().filter(|ignored| !ignored.understood) {
             unknown.add(Some(&ignored.kind), &ignored.reason, &ignored.name);
         }
-        for (material, verdict) in scene.materials.iter().zip(&plan.verdicts) {
-            if let Verdict::NotCovered(why) = verdict {
-                uncovered.add(None, &NotCovered::reason(why), &material.name);
-            }
+        for why in plan.not_covered() {
+            uncovered.add(None, &why.reason(), why.material().unwrap_or_default());
         }
     }
     let all = [
