@@ -281,7 +281,7 @@ fn a_set_is_always_written() {
     ok(at, &["bake", "gold.toml", "--out", "out"]);
     let text = ok(at, &["bake", "r.toml", "--out", "out"]);
     assert!(text.contains("not rough           no microfacets: \"mirror\""), "{text}");
-    assert!(text.contains("no material in it is rough"), "{text}");
+    assert!(text.contains("no material in use is rough"), "{text}");
     // The set of the earlier bake is replaced.
     let set = store::read(&at.join("out")).unwrap();
     let names = set.provenance().materials.iter().map(|material| &material.name[..]);

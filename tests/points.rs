@@ -152,20 +152,3 @@ fn fit_speaks_in_the_unit_of_its_input_and_names_the_file() {
         assert!(message.contains(&format!("error: d.csv: {why}")), "{message}");
     }
 }
-
-#[test]
-fn what_is_missing_is_said_where_nothing_is_baked() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    fs::write(at.join("s.pbrt"), "Include \"geometry.pbrt\"\nMaterial \"diffuse\"\n").unwrap();
-    fs::write(at.join("whole.pbrt"), "Material \"diffuse\"\n").unwrap();
-    for command in [&["plan"][..], &["bake", "--out", "out"]] {
-        let output = run(at, &[command, &["s.pbrt"]].concat());
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(said.contains("warning: s.pbrt:1:1: geometry.pbrt is missing"), "{said}");
-        let text = String::from_utf8(output.stdout).unwrap();
-        assert!(text.contains("Nothing to bake") && text.contains("the warnings"), "{text}");
-        let text = ok(at, &[command, &["whole.pbrt"]].concat());
-        assert!(text.contains("Nothing to bake") && !text.contains("warnings"), "{text}");
-    }
-}

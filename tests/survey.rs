@@ -90,7 +90,7 @@ fn what_was_not_understood_is_said_last() {
         [&["plan", "s.pbrt"][..], &["bake", "s.pbrt", "--quality", "draft", "--out", "out"]]
     {
         let (text, warnings) = said(at, command);
-        assert!(!text.contains("no material in use is rough"), "{text}");
+        assert!(!text.contains("nothing to validate"), "{text}");
         let last = warnings.last().unwrap();
         assert!(
             last.contains("2 materials were not understood") && last.contains("\"old\""),
@@ -116,6 +116,31 @@ fn what_was_not_understood_is_said_last() {
     );
     refused(at, &["bake", "s.pbrt", "--strict", "--out", "strict"]);
     assert!(!at.join("strict/tables.safetensors").exists());
+}
+
+#[test]
+fn what_is_missing_is_said_where_nothing_is_baked() {
+    let folder = folder(&[
+        ("s.pbrt", "Include \"geometry.pbrt\"\nMaterial \"diffuse\"\n"),
+        ("whole.pbrt", "Material \"diffuse\"\n"),
+    ]);
+    let at = folder.path();
+    let cases = [
+        (&["plan"][..], "no tables to bake for what was read; ", "no tables to bake; "),
+        (&["bake", "--out", "out"], "no material that was read is rough", "no material in use is"),
+    ];
+    for (command, in_part, in_whole) in cases {
+        let (text, warnings) = said(at, &[command, &["s.pbrt"]].concat());
+        assert!(
+            warnings[0].contains("warning: s.pbrt:1:1: geometry.pbrt is missing"),
+            "{warnings:?}"
+        );
+        assert!(text.contains(in_part) && !text.contains(in_whole), "{text}");
+        let text = ok(at, &[command, &["whole.pbrt"]].concat());
+        assert!(!text.contains(in_part) && text.contains(in_whole), "{text}");
+    }
+    let plan = json(at, &["plan", "s.pbrt"]);
+    assert!(plan["warnings"][0].as_str().unwrap().contains("geometry.pbrt is missing"), "{plan}");
 }
 
 #[test]

@@ -355,10 +355,13 @@ fn the_commands_list_bake_keep_and_show_them() {
     let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float uroughness\" 0.04 \
                  \"float vroughness\" 0.25\nWorldBegin\n";
     std::fs::write(at.join("s.pbrt"), scene).unwrap();
-    assert_eq!(json(at, &["plan", "s.pbrt"])["albedo"], serde_json::json!([]));
-    let asked = json(at, &["plan", "s.pbrt", "--albedo"]);
-    assert_eq!(asked["albedo"][0]["materials"], serde_json::json!(["steel"]));
-    assert_eq!(asked["albedo"][0]["masking"], serde_json::json!(["height-correlated"]));
+    // It takes less than two seconds, so that nobody has to ask for it.
+    for asked in [&["plan", "s.pbrt"][..], &["plan", "s.pbrt", "--albedo"]] {
+        let albedo = &json(at, asked)["albedo"][0];
+        assert_eq!(albedo["materials"], serde_json::json!(["steel"]));
+        assert_eq!(albedo["masking"], serde_json::json!(["height-correlated"]));
+    }
+    assert_eq!(json(at, &["plan", "s.pbrt", "--no-albedo"])["albedo"], serde_json::json!([]));
 }
 
 const GTR: &str = "[[material]]\nname = \"paint\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.5\n\

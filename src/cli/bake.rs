@@ -18,7 +18,7 @@ use microfacet_bake::scene::Scene;
 use microfacet_bake::store::{Format, OutputFolder};
 use microfacet_bake::table_set::{Baked, Settings, Target, bake_with};
 
-use super::plan::{Outline, warn};
+use super::plan::{Outline, remind};
 use super::request::Request;
 use super::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize, values};
 use summary::Summary;
@@ -120,9 +120,11 @@ impl Args {
         Settings { cache, max_memory, patient, progress: Meter::default() }
     }
 
-    /// Reads a scene, and plans its sets.
+    /// Reads a scene, says what is doubtful in it before hours are spent, and plans its sets.
     fn library(&self, path: &Path) -> Result<Library, Failure> {
-        self.request.library(self.request.scene(path)?, self.max_error)
+        let scene = self.request.scene(path)?;
+        scene.warnings.iter().for_each(|warning| report("warning", warning));
+        self.request.library(scene, self.max_error)
     }
 
     /// Refuses a set that could not be read back, before hours are spent on it.
@@ -196,7 +198,7 @@ pub(super) fn run(args: Args) -> Outcome {
         last => {
             library.parts.extend(last);
             sets::run(&args, &library, out, cache, start)?;
-            warn(library.plans());
+            remind(library.plans());
             return Ok(Done::Ok);
         }
     };
@@ -229,7 +231,7 @@ pub(super) fn run(args: Args) -> Outcome {
     } else {
         summarize(&summary.text())?
     }
-    warn([(&scene, &plan)].into_iter());
+    remind([(&scene, &plan)].into_iter());
     Ok(Done::Ok)
 }
 

@@ -12,9 +12,9 @@ use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables};
 
+use super::Failure;
 use super::values::{self, InRecipe};
 use super::words::count;
-use super::{Failure, report};
 
 #[derive(clap::Args)]
 pub(super) struct Request {
@@ -114,7 +114,7 @@ impl Request {
         all
     }
 
-    /// Reads a scene, and reports what is doubtful in it.
+    /// Reads a scene; `--strict` refuses one of which anything is doubtful.
     pub(super) fn scene(&self, path: &Path) -> Result<Scene, Failure> {
         let scene = scene::load(path)?;
         let doubts = || scene.doubts();
@@ -127,7 +127,6 @@ impl Request {
             };
             return Err(Failure(format!("{first}{more}: leave out --strict to plan the rest")));
         }
-        scene.warnings.iter().for_each(|warning| report("warning", warning));
         Ok(scene)
     }
 

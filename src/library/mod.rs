@@ -48,7 +48,7 @@ impl Library {
     }
 
     /// The scene and the plan of each set.
-    pub fn plans(&self) -> impl Iterator<Item = (&Scene, &Plan)> {
+    pub fn plans(&self) -> impl Iterator<Item = (&Scene, &Plan)> + Clone {
         self.parts.iter().map(|part| (&part.scene, &part.plan))
     }
 

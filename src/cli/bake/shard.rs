@@ -12,7 +12,7 @@ use microfacet_bake::store::check_folder;
 use microfacet_bake::table_set::{Need, Target};
 
 use super::Args;
-use crate::cli::plan::warn;
+use crate::cli::plan::remind;
 use crate::cli::words::{count, seconds, shell};
 use crate::cli::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize};
 
@@ -62,7 +62,7 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Out
             "shard": shard.number, "of": shard.of, "needs": count_of, "needs_of_all": all,
             "baked": baked, "seconds": time,
         }))?;
-        warn(library.plans());
+        remind(library.plans());
         return Ok(Done::Ok);
     }
     let mut text = format!(
@@ -83,7 +83,7 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Out
         shell(folder)
     );
     summarize(&text)?;
-    warn(library.plans());
+    remind(library.plans());
     Ok(Done::Ok)
 }
 

@@ -104,8 +104,10 @@ impl Summary<'_> {
             } else if self.outline.has(&Verdict::ClosedForm) {
                 "closed forms have no error to validate; --tabulate-ggx bakes tables instead, for a \
                  renderer without them"
+            } else if self.outline.is_doubtful() {
+                "no material that was read is rough; warnings name what was not read"
             } else {
-                "no material in it is rough, so that there is nothing to validate"
+                "no material in use is rough, so that there is nothing to validate"
             };
             inspect + &wrapped("  ", why, 2)
         } else {
@@ -139,7 +141,7 @@ impl Summary<'_> {
             .collect();
         json!({
             "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families(result.seconds),
-            "materials": self.outline.materials(), "ignored": self.outline.ignored(),
+            "materials": self.outline.materials(), "ignored": self.outline.ignored(), "warnings": self.outline.scene.warnings,
         })
     }
 }

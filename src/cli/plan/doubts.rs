@@ -1,4 +1,5 @@
-//! What is said last: the materials for which nothing could be done.
+//! What is said last: what was assumed of a scene, and the materials for which nothing could be
+//! done.
 
 use std::collections::BTreeMap;
 
@@ -70,8 +71,25 @@ impl<'a> Reasons<'a> {
     }
 }
 
-/// Warns of materials that were not understood, and of those that no table covers.
-pub(in crate::cli) fn warn<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)>) {
+/// Warns of what was assumed where something is missing or wrong, of materials that were not
+/// understood, and of those that no table covers.
+pub(in crate::cli) fn warn<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)> + Clone) {
+    let warnings = parts.clone().flat_map(|(scene, _)| &scene.warnings);
+    warnings.for_each(|warning| report("warning", warning));
+    warn_of_lost(parts);
+}
+
+/// The same after long work that began with the warnings of the scene: they are counted only.
+pub(in crate::cli) fn remind<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)> + Clone) {
+    let warnings: usize = parts.clone().map(|(scene, _)| scene.warnings.len()).sum();
+    if warnings > 0 {
+        let came = format!("{} on the scene came first", count(warnings, "warning"));
+        report("warning", format!("{came}: what they name is assumed, or left out"));
+    }
+    warn_of_lost(parts);
+}
+
+fn warn_of_lost<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)>) {
     let (mut unknown, mut uncovered) = (Reasons::default(), Reasons::default());
     for (scene, plan) in parts {
         for ignored in scene.ignored.iter().filter(|ignored| !ignored.understood) {

@@ -99,7 +99,8 @@ impl Report<'_> {
             offered.map(|Offer { tables, cost: of }| json!({ "tables": tables, "cost": cost(of) }));
         json!({
             "shapes": shapes, "distributions": distributions, "albedo": albedos,
-            "materials": outline.materials(), "ignored": outline.ignored(), "offered": offered,
+            "materials": outline.materials(), "ignored": outline.ignored(), "warnings": outline.scene.warnings,
+            "offered": offered,
             "total": cost(&self.total), "general_set": cost(&self.general),
             "milliseconds": { "reading": self.reading, "planning": self.planning },
         })

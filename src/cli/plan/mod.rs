@@ -18,7 +18,7 @@ use super::request::Request;
 use super::words::{bytes, compared, count, exact_bytes, seconds, wrapped};
 use super::{Done, Failure, Outcome, print, print_json};
 
-pub(super) use doubts::warn;
+pub(super) use doubts::{remind, warn};
 pub(super) use words::Outline;
 
 /// Show what must be baked for a scene and what not, with bytes and seconds; for a folder, a
@@ -122,6 +122,8 @@ impl Report<'_> {
         let faster = if !outline.plan.is_empty() {
             let faster = compared(total.seconds, general.seconds, ["faster", "slower"]);
             format!("about {}; {smaller} and {faster}", seconds(total.seconds))
+        } else if outline.is_doubtful() {
+            format!("no tables to bake for what was read; {smaller}")
         } else {
             format!("no tables to bake; {smaller}")
         };

@@ -189,6 +189,11 @@ impl<'a> Outline<'a> {
         self.plan.verdicts.contains(verdict)
     }
 
+    /// Whether rough materials may be missing: something was not read, or is not covered.
+    pub(in crate::cli) fn is_doubtful(&self) -> bool {
+        self.scene.doubts().next().is_some() || self.plan.not_covered().next().is_some()
+    }
+
     /// Numbers of tables of all parts that are baked: required shapes, distributions, albedos.
     fn counts(&self) -> Vec<usize> {
         let normals = self.tables.iter().map(Vec::len);

@@ -101,7 +101,23 @@ fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(input: D) -> Result<Vec<
 
 #[derive(Deserialize)]
 pub(super) struct Asset {
+    #[serde(deserialize_with = "version")]
     pub(super) version: String,
+}
+
+/// A version, for which drafts of version 1 have a number in the place of a text.
+fn version<'de, D: Deserializer<'de>>(input: D) -> Result<String, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "a version, such as \"2.0\"")]
+    enum Version {
+        Text(String),
+        Number(f64),
+    }
+
+    Ok(match Version::deserialize(input)? {
+        Version::Text(text) => text,
+        Version::Number(number) => format!("{number:?}"),
+    })
 }
 
 /// Which materials a mesh uses, each once: a mesh may have very many primitives.

@@ -1,16 +1,13 @@
 //! XML that is not well formed, and that renderers read all the same.
 //!
-//! Their parsers do not check namespaces, and take a raw "<" in an attribute as a character. Both
-//! are found in MaterialX documents: prefixes that nothing declares, and the tokens of tiled images
-//! in file names. Such a text is mended where the parser stops, and parsed again; places stay those
-//! of the text as it was written.
+//! Their parsers do not check namespaces, take a raw "<" in an attribute as a character, and a
+//! declaration wherever it stands. All three are found in MaterialX documents: prefixes that nothing
+//! declares, tokens such as `<UDIM>` in file names, and a space before `<?xml`. Such a text is
+//! mended where the parser stops, and parsed again; places stay those of the text as it was written.
 
 use std::borrow::Cow;
 
 use roxmltree::{Error, TextPos};
-
-/// The tokens of tiled images (MaterialX specification, "Filename Substitutions").
-const TOKENS: [&str; 2] = ["<UDIM>", "<UVTILE>"];
 
 /// A text, with what it takes for the parser to accept it.
 pub(super) struct Mended<'a> {
@@ -20,6 +17,8 @@ pub(super) struct Mended<'a> {
     declared: (String, usize),
     /// Whether the tokens are escaped.
     escaped: bool,
+    /// Whether the declaration is made an instruction of another name, which may stand anywhere.
+    renamed: bool,
     /// For each place where text was added: its end in `text`, and all bytes added up to there.
     added: Vec<(usize, usize)>,
 }
@@ -31,6 +30,7 @@ impl<'a> Mended<'a> {
             text: Cow::Borrowed(source),
             declared: (String::new(), 0),
             escaped: false,
+            renamed: false,
             added: Vec::new(),
         }
     }
@@ -48,9 +48,8 @@ impl<'a> Mended<'a> {
                 *text += &format!(" xmlns:{prefix}=\"undeclared:{count}\"");
                 *count += 1;
             }
-            _ if !self.escaped && TOKENS.iter().any(|token| self.source.contains(token)) => {
-                self.escaped = true;
-            }
+            Error::UnexpectedDeclaration(_) if !self.renamed => self.renamed = true,
+            _ if !self.escaped && tokens(self.source).next().is_some() => self.escaped = true,
             _ => return false,
         }
         self.rebuild();
@@ -64,10 +63,12 @@ impl<'a> Mended<'a> {
             edits.push((at, &self.declared.0, 0));
         }
         if self.escaped {
-            for token in TOKENS {
-                let found = self.source.match_indices(token);
-                edits.extend(found.map(|(at, _)| (at, "&lt;", "<".len())));
-            }
+            edits.extend(tokens(self.source).map(|at| (at, "&lt;", "<".len())));
+        }
+        if self.renamed
+            && let Some(at) = self.source.find(DECLARATION)
+        {
+            edits.push((at + DECLARATION.len(), "-", 0));
         }
         edits.sort_unstable_by_key(|&(at, ..)| at);
         let (mut text, mut from, mut sum) = (String::new(), 0, 0);
@@ -98,6 +99,30 @@ impl<'a> Mended<'a> {
         let within = row.chars().take(at.col as usize - 1).map(char::len_utf8).sum::<usize>();
         self.original(before + within)
     }
+}
+
+const DECLARATION: &str = "<?xml";
+
+/// Where tokens begin that stand for a part of a file's name, such as `<UDIM>` and `<geometry
+/// token>` (MaterialX specification, "Filename Substitutions"): a word in angle brackets within an
+/// attribute.
+fn tokens(text: &str) -> impl Iterator<Item = usize> {
+    let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | ':' | '.' | '-' | ' ');
+    // The last character that is no space, and whether the last quote of the line follows an equals
+    // sign and thus begins a value.
+    let (mut last, mut opened) = (' ', false);
+    text.char_indices().filter_map(move |(at, c)| {
+        match c {
+            '"' | '\'' => opened = last == '=',
+            '\n' => opened = false,
+            _ => {}
+        }
+        if !c.is_whitespace() {
+            last = c;
+        }
+        let is_token = || text[at + 1..].trim_start_matches(is_word).starts_with('>');
+        (c == '<' && opened && is_token()).then_some(at)
+    })
 }
 
 /// Where the name of the root element ends.
@@ -131,8 +156,16 @@ mod tests {
     }
 
     #[test]
+    fn a_token_stands_in_an_attribute() {
+        let text = "<a file=\"<u>_<my token>.png\" b=''><c>'<d>'</c></a>\n<e f='it''s <UDIM>'/>";
+        let found: Vec<&str> =
+            tokens(text).map(|at| &text[at..at + text[at..].find('>').unwrap()]).collect();
+        assert_eq!(found, ["<u", "<my token"]);
+    }
+
+    #[test]
     fn offsets_are_those_of_the_source() {
-        let source = "<a><b é='<UDIM>'/>\n<c:d/></a>";
+        let source = " <?xml version='1.0'?><a><b é='<UDIM>'/>\n<c:d/></a>";
         let mut mended = Mended::new(source);
         while let Err(error) = roxmltree::Document::parse(mended.text()).map(|_| ()) {
             assert!(mended.mend(&error), "{error}");
