@@ -9,7 +9,7 @@ use walkdir::WalkDir;
 use crate::library::Library;
 use crate::plan::{Options, Verdict};
 use crate::progress::Meter;
-use crate::scene::{self, Format, Scene, SceneErrorKind};
+use crate::scene::{self, Format, Ignored, Scene, SceneErrorKind};
 use crate::table_set::{Need, Target};
 
 /// The files of a folder, and of all folders in it, whose names end as those of scenes do.
@@ -19,6 +19,8 @@ pub struct Survey {
     pub files: Vec<File>,
     /// What all planned scenes need, each thing once, with its [`Need::id`].
     pub needs: BTreeMap<String, Need>,
+    /// What albedos would add to that which were not asked for ([`Library::offered`]).
+    pub offered: BTreeMap<String, Need>,
 }
 
 /// One file of a [`Survey`].
@@ -50,14 +52,16 @@ pub struct Planned {
     pub lobes: BTreeMap<&'static str, usize>,
     /// Materials for which there is nothing to bake.
     pub without_lobe: usize,
-    /// Materials that were not understood: name, kind, reason.
-    pub not_understood: Vec<[String; 3]>,
+    /// Materials that were not understood.
+    pub not_understood: Vec<Ignored>,
     /// Lobes and albedos that nothing covers: name, reason.
     pub not_covered: Vec<[String; 2]>,
     /// Warnings on what was assumed.
     pub warnings: Vec<String>,
     /// The [`Need::id`]s of what it needs.
     pub needs: Vec<String>,
+    /// The [`Need::id`]s of albedos that were not asked for.
+    pub offered: Vec<String>,
 }
 
 /// The verdicts that a survey tells apart: what has tables, what needs none, and what gets none.
@@ -76,8 +80,15 @@ pub fn group(verdict: &Verdict) -> &'static str {
 /// A file that was read, before it is known which others include it.
 struct Read {
     file: File,
-    needs: Vec<(String, Need)>,
+    needs: Needs,
     included: Vec<PathBuf>,
+}
+
+/// What a scene needs, and what was not asked for.
+#[derive(Default)]
+struct Needs {
+    all: Vec<(String, Need)>,
+    offered: Vec<(String, Need)>,
 }
 
 impl Survey {
@@ -121,10 +132,14 @@ impl Survey {
             if file.path.canonicalize().is_ok_and(|path| included.contains(&path)) {
                 file.outcome = Outcome::Part;
             } else {
-                survey.needs.extend(needs);
+                survey.needs.extend(needs.all);
+                survey.offered.extend(needs.offered);
             }
             survey.files.push(file);
         }
+        // Where a scene takes long another may need the same anyway.
+        let Self { needs, offered, .. } = &mut survey;
+        offered.retain(|id, _| !needs.contains_key(id));
         survey
     }
 
@@ -140,7 +155,7 @@ impl Survey {
 impl Read {
     fn refused(path: PathBuf, why: String) -> Self {
         let file = File { path, outcome: Outcome::Refused(why) };
-        Self { file, needs: Vec::new(), included: Vec::new() }
+        Self { file, needs: Needs::default(), included: Vec::new() }
     }
 
     fn new(path: PathBuf, per_set: usize, options: Options, target: Target) -> Self {
@@ -149,7 +164,7 @@ impl Read {
             Err(error) if matches!(error.kind, SceneErrorKind::Foreign(_)) => {
                 let outcome = Outcome::Foreign(error.to_string());
                 let file = File { path, outcome };
-                return Self { file, needs: Vec::new(), included: Vec::new() };
+                return Self { file, needs: Needs::default(), included: Vec::new() };
             }
             Err(error) => return Self::refused(path, error.to_string()),
         };
@@ -174,19 +189,23 @@ impl Planned {
         per_set: usize,
         options: Options,
         target: Target,
-    ) -> Result<(Self, Vec<(String, Need)>), String> {
+    ) -> Result<(Self, Needs), String> {
         let library = Library::new(scene, per_set, options).map_err(|why| why.to_string())?;
-        let needs = library.needs(target).map_err(|why| why.to_string())?;
-        let mut planned =
-            Self { needs: needs.iter().map(|(id, _)| id.clone()).collect(), ..Self::default() };
+        let needs = Needs {
+            all: library.needs(target).map_err(|why| why.to_string())?,
+            // What no table can hold is refused where it is asked for.
+            offered: library.offered(target).unwrap_or_default(),
+        };
+        let ids = |needs: &[(String, Need)]| needs.iter().map(|(id, _)| id.clone()).collect();
+        let (all, offered) = (ids(&needs.all), ids(&needs.offered));
+        let mut planned = Self { needs: all, offered, ..Self::default() };
         for (scene, plan) in library.plans() {
             planned.warnings.extend(scene.warnings.iter().cloned());
             for material in &scene.ignored {
                 if material.understood {
                     planned.without_lobe += 1;
                 } else {
-                    let [name, kind] = [&material.name, &material.kind].map(String::clone);
-                    planned.not_understood.push([name, kind, material.reason.to_string()]);
+                    planned.not_understood.push(material.clone());
                 }
             }
             for verdict in &plan.verdicts {

@@ -199,7 +199,7 @@ fn a_set_without_a_test_is_inspected() {
     refused(folder.path(), &["validate", "out"]);
     assert!(line(&text, "  D/D(0) ").ends_with("in radial_density_gtr_0.2_1.3"), "{text}");
     let shown = ok(folder.path(), &["inspect", "out"]);
-    assert!(line(&shown, "materials").ends_with("\"coat\": gtr:0.2,1.3"), "{shown}");
+    assert!(line(&shown, "materials").contains("\"coat\": gtr:0.2,1.3, height-"), "{shown}");
     // Its s means nothing, and is not GGX.
     assert!(!shown.contains("closed form"), "{shown}");
 }
@@ -249,7 +249,7 @@ fn hundreds_of_materials_stay_readable() {
     let shown = ok(folder.path(), &["inspect", "out"]);
     assert!(shown.contains("           and 294 more\n"), "{shown}");
     let details = ok(folder.path(), &["inspect", "out", "--details"]);
-    assert!(details.contains("           \"brushed 299\": sigma 0.2, gamma 4\n"), "{details}");
+    assert!(details.contains("           \"brushed 299\": sigma 0.2, gamma 4, "), "{details}");
 
     // Very many table groups are counted.
     let gtr = |i: usize| {

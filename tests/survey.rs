@@ -25,6 +25,16 @@ MakeNamedMaterial "far" "string type" "conductor" "float roughness" 1e34
 MakeNamedMaterial "near" "string type" "conductor" "float roughness" 0.04
 "#;
 
+/// Brushed metals, of which eight are too many for two seconds: each has a table over the azimuth.
+fn brushed(count: usize) -> String {
+    let one = |i: usize| {
+        format!(
+            "MakeNamedMaterial \"{i}\" \"string type\" \"conductor\" \"float uroughness\" 0.0{i} \"float vroughness\" 0.3\n"
+        )
+    };
+    (1..=count).map(one).collect()
+}
+
 fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
@@ -67,7 +77,9 @@ fn every_material_is_described() {
         let text = ok(at, command);
         let has =
             |line: &str| text.lines().any(|of| of.split_whitespace().eq(line.split_whitespace()));
-        assert!(has("has steel sigma 0.2 and 0.3, gamma 2, height-correlated masking"), "{text}");
+        let steel =
+            "has steel sigma 0.2 and 0.3, gamma 2, height-correlated masking, no Fresnel term";
+        assert!(has(steel), "{text}");
         assert!(
             has("has pane smooth, height-correlated masking, dielectric of index 1.5"),
             "{text}"
@@ -78,6 +90,8 @@ fn every_material_is_described() {
         "[[material]]\nname = \"film\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.3\n",
     )
     .unwrap();
+    let text = ok(at, &["plan", "r.toml"]);
+    assert!(text.contains("gtr:0.2,1.3, height-correlated masking, no Fresnel"), "{text}");
     let film = &json(at, &["plan", "r.toml"])["materials"][0];
     assert_eq!((&film["distribution"], &film["gamma"]), (&json!("gtr:0.2,1.3"), &Value::Null));
 }
@@ -126,7 +140,7 @@ fn what_is_missing_is_said_where_nothing_is_baked() {
     ]);
     let at = folder.path();
     let cases = [
-        (&["plan"][..], "no tables to bake for what was read; ", "no tables to bake; "),
+        (&["plan"][..], "no tables to bake for what was read\n", "no tables to bake\n"),
         (&["bake", "--out", "out"], "no material that was read is rough", "no material in use is"),
     ];
     for (command, in_part, in_whole) in cases {
@@ -186,6 +200,20 @@ fn an_albedo_beyond_all_tables_is_left_out() {
     assert!(message.contains("material \"wide\": sigma = 10 is above 3"), "{message}");
     // Nobody asked for it by name.
     ok(at, &["plan", "s.xml", "--strict"]);
+    // The default set does not have it either.
+    let materials = &json(at, &["plan", "s.xml", "--albedo", "--embedded"])["materials"];
+    let albedos = [0, 1].map(|i| &materials[i]["albedo"][0]);
+    assert_eq!(albedos, [&json!("not covered"), &json!("embedded")]);
+}
+
+#[test]
+fn albedos_are_offered_to_those_that_would_get_them() {
+    let round = "MakeNamedMaterial \"round\" \"string type\" \"conductor\" \"float roughness\" 0.3 \"rgb reflectance\" [ 1 1 1 ]\n";
+    let folder = folder(&[("s.pbrt", &(round.to_owned() + &brushed(8)))]);
+    let at = folder.path();
+    let plan = json(at, &["plan", "s.pbrt", "--embedded"]);
+    let albedo = |i: usize| &plan["materials"][i]["albedo"][0];
+    assert_eq!((albedo(0), albedo(1)), (&json!("embedded"), &json!("not asked")));
 }
 
 #[test]
@@ -236,8 +264,8 @@ fn a_folder_is_summed_up() {
         "no scenes 2",
         "refused 2",
         "materials not understood 4",
-        "4 matte 2, uber 2: a material of pbrt-v3",
-        "1 not covered: sigma = 1e17",
+        "4 materials (matte 2, uber 2): a material of pbrt-v3",
+        "1 material (not covered): sigma = 1e17",
         "distinct needs of all:",
     ] {
         assert!(flat.contains(part), "{part}\n{text}");
@@ -248,9 +276,39 @@ fn a_folder_is_summed_up() {
     );
     assert!(warnings.iter().any(|it| it.contains("2 scenes were refused")), "{warnings:?}");
 
-    // Doubts refuse the scenes that have them.
-    let strict = json(at, &["plan", ".", "--strict"]);
+    let totals =
+        ["without_lobe", "not_understood", "not_covered", "warnings"].map(|it| &survey[it]);
+    assert_eq!(totals, [&json!(2), &json!(4), &json!(1), &json!(2)]);
+    assert_eq!(outcome("a/s.pbrt")["not_understood"][0]["place"], "./a/s.pbrt:5:1");
+    assert!(flat.contains("warnings: ./a/far.pbrt:2:51: the roughness of"), "{text}");
+
+    // Doubts refuse the scenes that have them, and so fail a build.
+    let output = run(at, &["plan", ".", "--strict", "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let strict: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(strict["counts"], json!({ "planned": 1, "parts": 1, "no scenes": 2, "refused": 6 }));
+    ok(&at.join("b"), &["plan", "..", "--quiet"]);
+    fs::create_dir(at.join("sound")).unwrap();
+    fs::copy(at.join("b/r.toml"), at.join("sound/r.toml")).unwrap();
+    ok(at, &["plan", "sound", "--strict"]);
+}
+
+#[test]
+fn albedos_of_a_folder_that_were_not_asked_for_are_counted_once() {
+    let many = brushed(8);
+    // One alone is quick.
+    let last = many.lines().last().unwrap();
+    let folder = folder(&[("a.pbrt", &many), ("b.pbrt", &many), ("c.pbrt", last)]);
+    let at = folder.path();
+    let survey = json(at, &["plan", "."]);
+    let number = |of: &Value| of.as_array().unwrap().len();
+    assert_eq!((number(&survey["needs"]), number(&survey["offered"])), (1, 7));
+    assert_eq!(number(&survey["files"][0]["offered"]), 8);
+    assert_eq!(number(&json(at, &["plan", ".", "--albedo"])["needs"]), 8);
+    let text = ok(at, &["plan", "."]);
+    assert!(text.contains("--albedo adds those of 2 scenes where albedos take long: 7,"), "{text}");
+    let none = ok(at, &["plan", ".", "--no-albedo"]);
+    assert!(none.contains("distinct needs of all: none\n"), "{none}");
 }
 
 #[test]

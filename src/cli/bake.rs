@@ -20,6 +20,7 @@ use microfacet_bake::table_set::{Baked, Settings, Target, bake_with};
 
 use super::plan::{Outline, remind};
 use super::request::Request;
+use super::words::shell;
 use super::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize, values};
 use summary::Summary;
 
@@ -122,6 +123,12 @@ impl Args {
 
     /// Reads a scene, says what is doubtful in it before hours are spent, and plans its sets.
     fn library(&self, path: &Path) -> Result<Library, Failure> {
+        if path.is_dir() {
+            let (name, command) = (path.display(), shell(path));
+            return Err(Failure(format!(
+                "{name}: is a folder; name one scene, or see `microfacet-bake plan {command}`"
+            )));
+        }
         let scene = self.request.scene(path)?;
         scene.warnings.iter().for_each(|warning| report("warning", warning));
         self.request.library(scene, self.max_error)

@@ -6,8 +6,8 @@ use microfacet_sampler::{FresnelEntry, MaterialEntry, Reflectance};
 use super::escape;
 use super::words::{number, range};
 
-/// What a material is: its roughness and shape or distribution, and the masking and the Fresnel
-/// term that it states.
+/// What a material is: its roughness and shape or distribution, the masking that its albedo has, and
+/// the Fresnel term that it states.
 pub(super) fn material(entry: &MaterialEntry) -> String {
     let mut parts = Vec::new();
     if entry.is_smooth() {
@@ -20,8 +20,11 @@ pub(super) fn material(entry: &MaterialEntry) -> String {
         parts.push(escape::line(&entry.distribution).into());
     }
     parts.extend(entry.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));
-    parts.extend(entry.masking.map(|masking| format!("{masking} masking")));
-    parts.extend(entry.fresnel.map(|fresnel| match fresnel {
+    // Where none is stated there is one by default, but none without microfacets.
+    if entry.masking.is_some() || !entry.is_smooth() {
+        parts.push(format!("{} masking", entry.masking()));
+    }
+    parts.push(entry.fresnel.map_or("no Fresnel term".into(), |fresnel| match fresnel {
         FresnelEntry::Mirror => "F = 1".into(),
         FresnelEntry::Schlick([r, g, b]) if r == g && g == b => {
             format!("Schlick with F0 {}", number(r))

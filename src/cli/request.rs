@@ -125,9 +125,13 @@ impl Request {
                 0 => String::new(),
                 more => format!("; and {}", count(more, "further doubt")),
             };
-            return Err(Failure(format!("{first}{more}: leave out --strict to plan the rest")));
+            return Err(Failure(format!("{first}{more}. Without --strict the rest is planned")));
         }
         Ok(scene)
+    }
+
+    pub(super) fn is_strict(&self) -> bool {
+        self.strict
     }
 
     /// The plan of the general set.

@@ -57,16 +57,20 @@ impl Library {
     /// # Errors
     /// As [`Need::of`].
     pub fn needs(&self, target: Target) -> Result<Vec<(String, Need)>, BakeError> {
-        let (mut known, mut needs) = (HashSet::new(), Vec::new());
-        for part in &self.parts {
-            for need in Need::of(&part.plan, target)? {
-                let id = need.id();
-                if known.insert(id.clone()) {
-                    needs.push((id, need));
-                }
-            }
-        }
-        Ok(needs)
+        distinct(self.parts.iter().map(|part| Need::of(&part.plan, target)))
+    }
+
+    /// What [`AlbedoWish::All`](crate::plan::AlbedoWish::All) would add to that where
+    /// [`AlbedoWish::Auto`](crate::plan::AlbedoWish::Auto) leaves out what takes long.
+    ///
+    /// # Errors
+    /// As [`Need::of`].
+    pub fn offered(&self, target: Target) -> Result<Vec<(String, Need)>, BakeError> {
+        let offered = |Part { plan, .. }: &Part| {
+            let (albedos, materials) = (plan.offered.clone(), plan.materials.clone());
+            Need::of(&Plan { albedos, materials, ..Plan::default() }, target)
+        };
+        distinct(self.parts.iter().map(offered))
     }
 
     /// Bakes needs into the cache of the settings, one after the other, and calls `after` with the
@@ -87,6 +91,22 @@ impl Library {
         }
         Ok(baked)
     }
+}
+
+/// The needs of several sets, each once, with its [`Need::id`].
+fn distinct(
+    sets: impl Iterator<Item = Result<Vec<Need>, BakeError>>,
+) -> Result<Vec<(String, Need)>, BakeError> {
+    let (mut known, mut needs) = (HashSet::new(), Vec::new());
+    for set in sets {
+        for need in set? {
+            let id = need.id();
+            if known.insert(id.clone()) {
+                needs.push((id, need));
+            }
+        }
+    }
+    Ok(needs)
 }
 
 /// Scenes of at most `per_set` materials in use; what else a scene holds stays with the first.

@@ -156,16 +156,23 @@ pub(super) fn required(
     options: Options,
 ) -> Result<(Wanted, Vec<RequiredAlbedo>), NotCovered> {
     let is_imported = |material: &Material| material.origin.format != Format::Recipe;
-    let mut offered = Vec::new();
+    let (mut offered, mut if_asked) = (Vec::new(), Vec::new());
     if options.albedo == AlbedoWish::Auto && scene.materials.iter().any(is_imported) {
         match wanted(scene, Options { albedo: AlbedoWish::All, ..options }) {
             Ok(wanted) if is_quick(&wanted.0, options.quality) => return Ok((wanted, offered)),
-            Ok((all, _)) => offered = all,
+            Ok(wanted) => (offered, if_asked) = wanted,
             // What is refused where it is asked for is not offered.
             Err(_) => {}
         }
     }
-    Ok((wanted(scene, options)?, offered))
+    let (albedos, mut verdicts) = wanted(scene, options)?;
+    for (verdict, if_asked) in verdicts.iter_mut().zip(if_asked) {
+        // Asking helps only where tables would be baked.
+        if *verdict == AlbedoVerdict::Imported && !matches!(if_asked, AlbedoVerdict::Bake(_)) {
+            *verdict = if_asked;
+        }
+    }
+    Ok(((albedos, verdicts), offered))
 }
 
 /// Whether all these albedos are estimated to take less than [`AlbedoWish::QUICK`] on one thread.
@@ -267,8 +274,9 @@ fn wants(
     let moments = (!embedded).then_some(Reflectance::Moments);
     let exact = exact.filter(|reflectance| refracts || reflectance.indices().is_none());
     let wants: Vec<Want> = moments.into_iter().chain(exact).map(of).collect();
-    for want in &wants {
-        if let AlbedoLobe::Family(Domain { sigma, .. }) = want.lobe
+    // The lobe itself too: the default set has no albedos beyond either.
+    for lobe in std::iter::once(&lobe).chain(wants.iter().map(|want| &want.lobe)) {
+        if let AlbedoLobe::Family(Domain { sigma, .. }) = lobe
             && sigma.max > SIGMA_MAX
         {
             let why = NotCovered::Sigma { material: material.name.clone(), sigma: sigma.max };

@@ -46,7 +46,11 @@ impl Summary<'_> {
         if tables.is_empty() {
             let images =
                 if self.only_images { " nor images; it is in tables.safetensors" } else { "" };
-            text += &format!("\nThe set has no tables{images}; it lists the materials in use.\n");
+            let lists = match self.result.set.provenance().materials.len() {
+                0 => "no material",
+                _ => "the materials in use",
+            };
+            text += &format!("\nThe set has no tables{images}; it lists {lists}.\n");
         } else {
             text += "\nlargest error of\n";
             text += &largest_errors(tables);
@@ -142,6 +146,7 @@ impl Summary<'_> {
         json!({
             "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families(result.seconds),
             "materials": self.outline.materials(), "ignored": self.outline.ignored(), "warnings": self.outline.scene.warnings,
+            "offered": self.outline.offered(),
         })
     }
 }

@@ -85,6 +85,7 @@ fn head(name: &str, set: &Tables, all: bool) -> String {
         }
     }
     let values = match tables {
+        [] if origin.materials.is_empty() => "no tables".to_owned(),
         [] => "no tables: its materials have closed forms, or tables of another set".to_owned(),
         _ => format!(
             "{}, {} of values in {}",

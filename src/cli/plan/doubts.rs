@@ -22,14 +22,14 @@ pub(super) struct Lost<'a> {
 }
 
 impl Lost<'_> {
-    /// `matte 3, uber 1: `, or nothing.
+    /// `matte 3, uber 1`, or nothing.
     pub(super) fn kinds(&self) -> String {
         let one = |(kind, n): (&&str, &usize)| match n {
             1 => (*kind).to_owned(),
             n => format!("{kind} {n}"),
         };
         let kinds: Vec<String> = self.kinds.iter().map(one).collect();
-        if kinds.is_empty() { String::new() } else { format!("{}: ", kinds.join(", ")) }
+        kinds.join(", ")
     }
 }
 
@@ -60,7 +60,9 @@ impl<'a> Reasons<'a> {
         let all: usize = reasons.iter().map(|(_, lost)| lost.names.len()).sum();
         let what = if all == 1 { one } else { many };
         let told = |(why, lost): &(&str, &Lost<'_>)| {
-            format!("{} ({}{why})", list(lost.names.iter().copied()), lost.kinds())
+            let kinds = lost.kinds();
+            let of = if kinds.is_empty() { kinds } else { format!("{kinds}: ") };
+            format!("{} ({of}{why})", list(lost.names.iter().copied()))
         };
         let mut told: Vec<String> = reasons.iter().take(SHOWN).map(told).collect();
         if let Some(more @ [_, ..]) = reasons.get(SHOWN..) {

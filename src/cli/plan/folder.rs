@@ -1,6 +1,7 @@
 //! The plan of a folder: a summary over all scenes in it.
 
 use std::collections::BTreeMap;
+use std::fs::read_dir;
 use std::path::Path;
 use std::time::Instant;
 
@@ -8,10 +9,12 @@ use rayon::current_num_threads;
 use serde_json::{Value, json};
 
 use microfacet_bake::progress::Meter;
-use microfacet_bake::survey::{Outcome, Planned, Survey};
-use microfacet_bake::table_set::Target;
+use microfacet_bake::scene::Ignored;
+use microfacet_bake::survey::{File, Outcome, Planned, Survey};
+use microfacet_bake::table_set::{Need, Target};
 
 use super::doubts::Reasons;
+use super::json::ignored;
 use super::{Args, Request};
 use crate::cli::words::{columns, count, list, seconds, wrapped};
 use crate::cli::{Done, Failure, Outcome as Result, escape, print, print_json, progress, report};
@@ -19,9 +22,15 @@ use crate::cli::{Done, Failure, Outcome as Result, escape, print, print_json, pr
 /// Files, and reasons, that are listed; `--json` has all.
 const SHOWN: usize = 20;
 
+/// Warnings that are listed: most are of missing files.
+const WARNINGS: usize = 5;
+
 pub(super) fn run(args: &Args) -> Result {
     let start = Instant::now();
     let request: &Request = &args.request;
+    // Of folders below, the summary says which could not be read.
+    let folder = args.scene.display();
+    read_dir(&args.scene).map_err(|why| Failure(format!("{folder}: cannot be read: {why}")))?;
     let target = Target::Quality(request.quality(), request.precision());
     let meter = Meter::default();
     let bar = progress::show(&meter, "reading scenes");
@@ -30,7 +39,7 @@ pub(super) fn run(args: &Args) -> Result {
     if survey.files.is_empty() {
         return Err(Failure(format!(
             "{}: no file in this folder is named as a scene: .toml, .pbrt, .pbrt.gz, .xml, .gltf, \
-             .glb, .mtlx",
+             .glb, .mtlx; hidden files and links are passed over",
             args.scene.display()
         )));
     }
@@ -41,7 +50,8 @@ pub(super) fn run(args: &Args) -> Result {
         print(&text(&survey, &args.scene, time))?;
     }
     warn(&survey);
-    Ok(Done::Ok)
+    let is_refused = |file: &File| matches!(file.outcome, Outcome::Refused(_));
+    Ok(Done::judged(!(request.is_strict() && survey.files.iter().any(is_refused))))
 }
 
 /// Names of what is counted, with how often it was.
@@ -71,7 +81,7 @@ fn lobes(survey: &Survey) -> Counts<'_> {
 fn lost<'a>(planned: &'a [(String, &'a Planned)]) -> Reasons<'a> {
     let mut all = Reasons::default();
     for (path, Planned { not_understood, not_covered, .. }) in planned {
-        for [_, kind, reason] in not_understood {
+        for Ignored { kind, reason, .. } in not_understood {
             all.add(Some(kind), reason, path);
         }
         for [_, reason] in not_covered {
@@ -85,10 +95,15 @@ fn total(survey: &Survey, of: impl Fn(&Planned) -> usize) -> usize {
     survey.planned().map(|(_, planned)| of(planned)).sum()
 }
 
-/// Seconds that all needs take together on the current threads.
-fn work(survey: &Survey) -> f64 {
-    let seconds: f64 = survey.needs.values().map(|need| need.seconds()).sum();
-    seconds / current_num_threads() as f64
+/// How many needs there are, and how long all take together on the current threads.
+fn work(needs: &BTreeMap<String, Need>) -> String {
+    if needs.is_empty() {
+        return "none".into();
+    }
+    let time: f64 = needs.values().map(Need::seconds).sum();
+    let threads = current_num_threads();
+    let time = seconds(time / threads as f64);
+    format!("{}, about {time} on {}", needs.len(), count(threads, "thread"))
 }
 
 fn text(survey: &Survey, folder: &Path, time: f64) -> String {
@@ -109,7 +124,7 @@ fn text(survey: &Survey, folder: &Path, time: f64) -> String {
     let unknown = total(survey, |planned| planned.not_understood.len());
     rows.push(vec!["materials not understood".into(), unknown.to_string()]);
     let warnings = total(survey, |planned| planned.warnings.len());
-    rows.push(vec!["warnings, which --json has".into(), warnings.to_string()]);
+    rows.push(vec!["warnings".into(), warnings.to_string()]);
     columns(&rows).iter().for_each(|line| text += &format!("{line}\n"));
 
     let within = |path: &Path| path.strip_prefix(folder).unwrap_or(path).display().to_string();
@@ -118,21 +133,25 @@ fn text(survey: &Survey, folder: &Path, time: f64) -> String {
     let lost = lost(&planned);
     let told = lost.by_number().into_iter().map(|(reason, lost)| {
         let first = lost.names.first().copied().unwrap_or_default();
-        let n = lost.names.len();
-        format!("{n} {}{}; first in {}", line(&lost.kinds()), line(reason), line(first))
+        let all = count(lost.names.len(), "material");
+        format!("{all} ({}): {}; first in {}", line(&lost.kinds()), line(reason), line(first))
     });
-    text += &section("not understood, or not covered", told);
+    text += &section("not understood, or not covered", SHOWN, told);
+    let warnings = survey.planned().flat_map(|(_, planned)| &planned.warnings);
+    text += &section("warnings", WARNINGS, warnings.map(|warning| line(warning)));
     let refused = survey.files.iter().filter_map(|file| match &file.outcome {
         Outcome::Refused(why) => Some(line(why)),
         _ => None,
     });
-    text += &section("refused", refused);
-    text + &format!(
-        "distinct needs of all: {}, about {} on {}\n",
-        survey.needs.len(),
-        seconds(work(survey)),
-        count(current_num_threads(), "thread")
-    )
+    text += &section("refused", SHOWN, refused);
+    text += &format!("distinct needs of all: {}\n", work(&survey.needs));
+    let asking = survey.planned().filter(|(_, planned)| !planned.offered.is_empty()).count();
+    if asking > 0 {
+        let more = work(&survey.offered);
+        let scenes = count(asking, "scene");
+        text += &format!("--albedo adds those of {scenes} where albedos take long: {more}\n");
+    }
+    text
 }
 
 fn line(text: &str) -> String {
@@ -140,16 +159,16 @@ fn line(text: &str) -> String {
 }
 
 /// A heading with the first lines under it; empty if there are none.
-fn section(heading: &str, lines: impl Iterator<Item = String>) -> String {
+fn section(heading: &str, shown: usize, lines: impl Iterator<Item = String>) -> String {
     let lines: Vec<String> = lines.collect();
     let mut text = String::new();
-    for (i, line) in lines.iter().take(SHOWN).enumerate() {
+    for (i, line) in lines.iter().take(shown).enumerate() {
         if i == 0 {
             text += &format!("{heading}:\n");
         }
         text += &wrapped("  ", line, 4);
     }
-    if let Some(more @ [_, ..]) = lines.get(SHOWN..) {
+    if let Some(more @ [_, ..]) = lines.get(shown..) {
         text += &format!("  and {} more; --json lists all\n", more.len());
     }
     text
@@ -160,10 +179,7 @@ fn json(survey: &Survey, time: f64) -> Value {
         let path = file.path.display().to_string();
         match &file.outcome {
             Outcome::Planned(planned) => {
-                let unknown = planned
-                    .not_understood
-                    .iter()
-                    .map(|[name, kind, why]| json!({ "name": name, "kind": kind, "why": why }));
+                let unknown = planned.not_understood.iter().map(ignored);
                 let uncovered = planned
                     .not_covered
                     .iter()
@@ -172,7 +188,7 @@ fn json(survey: &Survey, time: f64) -> Value {
                     "path": path, "outcome": "planned", "lobes": planned.lobes,
                     "without_lobe": planned.without_lobe, "not_understood": unknown.collect::<Vec<_>>(),
                     "not_covered": uncovered.collect::<Vec<_>>(), "warnings": planned.warnings,
-                    "needs": planned.needs,
+                    "needs": planned.needs, "offered": planned.offered,
                 })
             }
             Outcome::Part => json!({ "path": path, "outcome": "part" }),
@@ -180,14 +196,19 @@ fn json(survey: &Survey, time: f64) -> Value {
             Outcome::Refused(why) => json!({ "path": path, "outcome": "refused", "why": why }),
         }
     };
-    let needs = survey.needs.iter().map(|(id, need)| {
-        json!({ "id": id, "name": need.name(), "seconds_of_one_thread": need.seconds() })
-    });
+    let needs = |needs: &BTreeMap<String, Need>| -> Value {
+        let one = |(id, need): (&String, &Need)| json!({ "id": id, "name": need.name(), "seconds_of_one_thread": need.seconds() });
+        needs.iter().map(one).collect()
+    };
     let counts: BTreeMap<&str, usize> =
         outcomes(survey).iter().map(|&(what, _, n)| (what, n)).collect();
     json!({
         "files": survey.files.iter().map(file).collect::<Vec<_>>(), "counts": counts,
-        "lobes": lobes(survey), "needs": needs.collect::<Vec<_>>(), "seconds": time,
+        "lobes": lobes(survey), "without_lobe": total(survey, |planned| planned.without_lobe),
+        "not_understood": total(survey, |planned| planned.not_understood.len()),
+        "not_covered": total(survey, |planned| planned.not_covered.len()),
+        "warnings": total(survey, |planned| planned.warnings.len()),
+        "needs": needs(&survey.needs), "offered": needs(&survey.offered), "seconds": time,
     })
 }
 
@@ -199,12 +220,17 @@ fn warn(survey: &Survey) {
         let names = list(refused.iter().map(String::as_str));
         report("warning", format!("{} refused: {names}", count_was(refused.len(), "scene")));
     }
-    let unknown = total(survey, |planned| planned.not_understood.len());
-    if unknown > 0 {
-        let many = survey.planned().filter(|(_, it)| !it.not_understood.is_empty()).count();
-        let scenes = count(many, "scene");
-        let was = count_was(unknown, "material");
-        report("warning", format!("{was} not understood, in {scenes}"));
+    let kinds: [(fn(&Planned) -> usize, fn(usize) -> String); 3] = [
+        (|it| it.warnings.len(), |n| format!("{} of what was read", count(n, "warning"))),
+        (|it| it.not_covered.len(), |n| format!("{} not covered", count_was(n, "material"))),
+        (|it| it.not_understood.len(), |n| format!("{} not understood", count_was(n, "material"))),
+    ];
+    for (of, said) in kinds {
+        let all = total(survey, of);
+        if all > 0 {
+            let scenes = survey.planned().filter(|(_, planned)| of(planned) > 0).count();
+            report("warning", format!("{}, in {}", said(all), count(scenes, "scene")));
+        }
     }
 }
 

@@ -42,17 +42,23 @@ impl Outline<'_> {
         scene.materials.iter().zip(verdicts).map(material).collect()
     }
 
+    /// What `--albedo` would add.
+    pub(in crate::cli) fn offered(&self) -> Option<Value> {
+        self.offered.as_ref().map(Offer::json)
+    }
+
     /// The materials that no lobe describes.
     pub(in crate::cli) fn ignored(&self) -> Vec<Value> {
-        let ignored = self.scene.ignored.iter();
-        let entry = |it: &Ignored| {
-            json!({
-                "name": it.name, "kind": it.kind, "why": it.reason, "understood": it.understood,
-                "place": it.place.to_string(),
-            })
-        };
-        ignored.map(entry).collect()
+        self.scene.ignored.iter().map(ignored).collect()
     }
+}
+
+/// A material that no lobe describes.
+pub(super) fn ignored(it: &Ignored) -> Value {
+    json!({
+        "name": it.name, "kind": it.kind, "why": it.reason, "understood": it.understood,
+        "place": it.place.to_string(),
+    })
 }
 
 /// A range of γ as texts, since JSON has no infinity.
@@ -93,14 +99,10 @@ impl Report<'_> {
                 "axes": nodes, "cost": next(), "materials": names,
             })
         }).collect();
-        // What `--albedo` would add.
-        let offered = outline.offered.as_ref();
-        let offered =
-            offered.map(|Offer { tables, cost: of }| json!({ "tables": tables, "cost": cost(of) }));
         json!({
             "shapes": shapes, "distributions": distributions, "albedo": albedos,
             "materials": outline.materials(), "ignored": outline.ignored(), "warnings": outline.scene.warnings,
-            "offered": offered,
+            "offered": outline.offered(),
             "total": cost(&self.total), "general_set": cost(&self.general),
             "milliseconds": { "reading": self.reading, "planning": self.planning },
         })

@@ -119,18 +119,22 @@ impl Report<'_> {
         let mut text = outline.lines(["bake", "skip"], detail);
 
         let smaller = compared(total.bytes as f64, general.bytes as f64, ["smaller", "larger"]);
-        let faster = if !outline.plan.is_empty() {
-            let faster = compared(total.seconds, general.seconds, ["faster", "slower"]);
-            format!("about {}; {smaller} and {faster}", seconds(total.seconds))
-        } else if outline.is_doubtful() {
-            format!("no tables to bake for what was read; {smaller}")
-        } else {
-            format!("no tables to bake; {smaller}")
+        let than_general = |compared: String| {
+            let cost = format!("{}, about {}", bytes(general.bytes), seconds(general.seconds));
+            format!("{compared} than the general set ({cost})")
         };
-        let general = format!("{}, about {}", bytes(general.bytes), seconds(general.seconds));
-        let total = exact_bytes(total.bytes);
-        text +=
-            &wrapped("total: ", &format!("{total}, {faster} than the general set ({general})"), 7);
+        let figures = if !outline.plan.is_empty() {
+            let faster = compared(total.seconds, general.seconds, ["faster", "slower"]);
+            let time = seconds(total.seconds);
+            than_general(format!("about {time}; {smaller} and {faster}"))
+        } else if outline.is_doubtful() {
+            "no tables to bake for what was read".into()
+        } else if outline.scene.materials.is_empty() {
+            "no tables to bake".into()
+        } else {
+            than_general(format!("no tables to bake; {smaller}"))
+        };
+        text += &wrapped("total: ", &format!("{}, {figures}", exact_bytes(total.bytes)), 7);
 
         let materials = outline.scene.materials.len() + outline.scene.ignored.len();
         text + &format!(

@@ -5,10 +5,14 @@ use std::collections::BTreeMap;
 
 use microfacet_bake::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
 use microfacet_bake::distribution::Distribution;
-use microfacet_bake::plan::{AlbedoVerdict, Cost, Plan, Verdict, albedo_cost, entry};
+use microfacet_bake::plan::{
+    AlbedoVerdict, AlbedoWish, Cost, Plan, Verdict, albedo_cost, bare_cost, entry,
+};
 use microfacet_bake::scene::{Ignored, Interval, Scene};
 use microfacet_bake::table_spec::{Quality, TableSpec, general_set};
 use microfacet_sampler::Precision;
+use rayon::current_num_threads;
+use serde_json::json;
 
 use crate::cli::material::{material as words_of, reflectance};
 use crate::cli::{escape, words};
@@ -68,11 +72,19 @@ fn shapes(Interval { min, max }: Interval) -> String {
 
 /// A lobe in words: "gamma 3, sigma 0.1 to 0.4".
 fn lobe(lobe: &AlbedoLobe) -> String {
-    match lobe {
+    let axes = |gamma: f64, sigma: [f64; 2]| {
+        let [x, y] = sigma.map(words::number);
+        format!("{}, sigma {x} and {y}", shapes(Interval::point(gamma)))
+    };
+    match *lobe {
         AlbedoLobe::Family(Domain { gamma, sigma }) => {
-            format!("{}, sigma {}", shapes(*gamma), words::range([sigma.min, sigma.max]))
+            format!("{}, sigma {}", shapes(gamma), words::range([sigma.min, sigma.max]))
         }
-        other => escape::line(&other.label().replace('_', " ")).into(),
+        AlbedoLobe::StudentT { sigma, gamma } => axes(gamma, sigma),
+        AlbedoLobe::Ellipsoid { sigma, theta, gamma } => {
+            format!("{}, theta {}", axes(gamma, sigma), theta.map(words::number).join(", "))
+        }
+        AlbedoLobe::Radial { ref distribution, .. } => escape::line(&distribution.label()).into(),
     }
 }
 
@@ -104,7 +116,17 @@ impl Offer {
             plan.offered.iter().map(|need| need.spec(quality, precision)).collect();
         let specs = specs.ok().filter(|specs| !specs.is_empty())?;
         let tables = specs.iter().map(AlbedoSpec::tables).sum();
-        Some(Self { tables, cost: specs.iter().map(albedo_cost).sum() })
+        let mut cost: Cost = specs.iter().map(albedo_cost).sum();
+        // The set describes albedos once it has any.
+        let with = Plan { albedos: plan.offered.clone(), ..plan.clone() };
+        let described = |plan: &Plan| bare_cost(&plan.provenance()).bytes;
+        cost.bytes += described(&with).saturating_sub(described(plan));
+        Some(Self { tables, cost })
+    }
+
+    pub(super) fn json(&self) -> serde_json::Value {
+        let Self { tables, cost: Cost { bytes, seconds } } = self;
+        json!({ "tables": tables, "cost": { "bytes": bytes, "seconds": seconds } })
     }
 }
 
@@ -256,10 +278,13 @@ impl<'a> Outline<'a> {
     fn offer(&self) -> Option<String> {
         let Offer { tables, cost } = self.offered.as_ref()?;
         Some(format!(
-            "for energy compensation --albedo bakes {}, {} and about {} more",
+            "for energy compensation --albedo bakes {}, {} and about {} more; without it only what \
+             takes one thread less than {}, and this takes {}",
             words::count(*tables, "table"),
             words::bytes(cost.bytes),
-            words::seconds(cost.seconds)
+            words::seconds(cost.seconds),
+            words::seconds(AlbedoWish::QUICK),
+            words::seconds(cost.seconds * current_num_threads() as f64)
         ))
     }
 
