@@ -6,8 +6,8 @@ use microfacet_sampler::{FresnelEntry, MaterialEntry, Reflectance};
 use super::escape;
 use super::words::{number, range};
 
-/// What a material is: its roughness and shape or distribution, the masking that its albedo has, and
-/// the Fresnel term that it states.
+/// What a material is: its roughness and shape or distribution, the masking that its albedo has,
+/// and the Fresnel term that it states.
 pub(super) fn material(entry: &MaterialEntry) -> String {
     let mut parts = Vec::new();
     if entry.is_smooth() {

@@ -1,9 +1,9 @@
 //! XML that is not well formed, and that renderers read all the same.
 //!
 //! Their parsers do not check namespaces, take a raw "<" in an attribute as a character, and a
-//! declaration wherever it stands. All three are found in MaterialX documents: prefixes that nothing
-//! declares, tokens such as `<UDIM>` in file names, and a space before `<?xml`. Such a text is
-//! mended where the parser stops, and parsed again; places stay those of the text as it was written.
+//! declaration wherever it stands. All three are found in MaterialX documents: prefixes that
+//! nothing declares, tokens such as `<UDIM>` in file names, and a space before `<?xml`. Such a text
+//! is mended where the parser stops, and parsed again; places stay those of the text as written.
 
 use std::borrow::Cow;
 
