@@ -220,18 +220,16 @@ fn warn(survey: &Survey) {
         let names = list(refused.iter().map(String::as_str));
         report("warning", format!("{} refused: {names}", count_was(refused.len(), "scene")));
     }
-    let kinds: [(fn(&Planned) -> usize, fn(usize) -> String); 3] = [
-        (|it| it.warnings.len(), |n| format!("{} of what was read", count(n, "warning"))),
-        (|it| it.not_covered.len(), |n| format!("{} not covered", count_was(n, "material"))),
-        (|it| it.not_understood.len(), |n| format!("{} not understood", count_was(n, "material"))),
-    ];
-    for (of, said) in kinds {
+    let tell = |of: fn(&Planned) -> usize, said: fn(usize) -> String| {
         let all = total(survey, of);
         if all > 0 {
             let scenes = survey.planned().filter(|(_, planned)| of(planned) > 0).count();
             report("warning", format!("{}, in {}", said(all), count(scenes, "scene")));
         }
-    }
+    };
+    tell(|it| it.warnings.len(), |n| format!("{} of what was read", count(n, "warning")));
+    tell(|it| it.not_covered.len(), |n| format!("{} not covered", count_was(n, "material")));
+    tell(|it| it.not_understood.len(), |n| format!("{} not understood", count_was(n, "material")));
 }
 
 /// `1 scene was`, `3 scenes were`.
