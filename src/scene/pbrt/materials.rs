@@ -1,4 +1,4 @@
-//! The lobes of pbrt's materials, and the ranges of its float textures.
+//! The lobes of pbrt's materials.
 
 use std::rc::Rc;
 
@@ -6,7 +6,6 @@ use super::Reader;
 use super::directives::UPGRADE;
 use super::syntax::Parameter;
 use crate::scene::builder::{GGX, Lobe, conductor, dielectric, metal};
-use crate::scene::texture::{Channel, Encoding};
 use crate::scene::{Fresnel, Interval, Masking, Place, Roughness, SceneError};
 
 /// If no α reaches this, pbrt treats the surface as smooth
@@ -59,7 +58,7 @@ impl Definition {
         self.parameters.iter().find(|p| p.name == name).map(Rc::as_ref)
     }
 
-    fn truth(&self, name: &str, default: bool) -> Result<bool, SceneError> {
+    pub(super) fn truth(&self, name: &str, default: bool) -> Result<bool, SceneError> {
         let Some(parameter) = self.parameter(name) else {
             return Ok(default);
         };
@@ -72,7 +71,7 @@ impl Definition {
 }
 
 impl Parameter {
-    fn number(&self) -> Result<f64, SceneError> {
+    pub(super) fn number(&self) -> Result<f64, SceneError> {
         let text = self.values.first().map_or("", |value| value);
         match text.parse() {
             Ok(number) if f64::is_finite(number) => Ok(number),
@@ -211,78 +210,6 @@ impl Reader {
             );
         }
         Ok(if remap { roughness.map_rising(f64::sqrt) } else { roughness })
-    }
-
-    /// A parameter that is a number or a texture.
-    fn value(&mut self, parameter: &Parameter) -> Result<Interval, SceneError> {
-        if parameter.kind != "texture" {
-            return parameter.number().map(Interval::point);
-        }
-        let place = &parameter.place;
-        let name = parameter.values.first().map_or("", |value| value);
-        if let Some(texture) = self.textures.get(name).cloned() {
-            if let Some(known) = self.ranges.begin(texture.name.clone(), place)? {
-                return Ok(known);
-            }
-            let range = self.texture(&texture)?;
-            return self.ranges.end(texture.name.clone(), range, place);
-        }
-        if self.incomplete {
-            let (name, reason) =
-                (format!("\"{name}\""), "is not defined in the files that were found");
-            return Ok(self.builder.unread(&name, reason, place));
-        }
-        let names = self.textures.keys().map(|name| &name[..]);
-        let hint = self.builder.did_you_mean(name, names);
-        Err(place.invalid(format!("float texture \"{name}\" is not defined{hint}")))
-    }
-
-    fn texture(&mut self, texture: &Definition) -> Result<Interval, SceneError> {
-        let mut input = |name: &str, default: f64| match texture.parameter(name) {
-            Some(parameter) => self.value(parameter),
-            None => Ok(Interval::point(default)),
-        };
-        Ok(match &texture.class[..] {
-            "constant" => input("value", 1.0)?,
-            "scale" => input("tex", 1.0)?.map_bilinear(input("scale", 1.0)?, |a, b| a * b),
-            "mix" => input("tex1", 0.0)?.mix(input("tex2", 1.0)?, input("amount", 0.5)?),
-            "directionmix" => input("tex1", 0.0)?.union(input("tex2", 1.0)?),
-            "checkerboard" => input("tex1", 1.0)?.union(input("tex2", 0.0)?),
-            "dots" => input("inside", 1.0)?.union(input("outside", 0.0)?),
-            "bilerp" => input("v00", 0.0)?
-                .union(input("v01", 1.0)?)
-                .union(input("v10", 0.0)?)
-                .union(input("v11", 1.0)?),
-            "imagemap" => {
-                let scale = input("scale", 1.0)?;
-                let invert = texture.truth("invert", false)?;
-                let scaled = self.image(texture).map_bilinear(scale, |a, b| a * b);
-                if invert { scaled.map_falling(|x| (1.0 - x).max(0.0)) } else { scaled }
-            }
-            class => {
-                let reason = format!("is of class {class}, whose range is not known");
-                let name = format!("\"{}\"", texture.name);
-                self.builder.unread(&name, &reason, &texture.place)
-            }
-        })
-    }
-
-    fn image(&mut self, texture: &Definition) -> Interval {
-        let text = |name| texture.parameter(name).and_then(|p| p.values.first());
-        let Some(file) = text("filename") else {
-            let name = format!("\"{}\"", texture.name);
-            return self.builder.unread(&name, "names no file", &texture.place);
-        };
-        let encoding = match text("encoding").map(|text| &text[..]) {
-            Some("linear") => Encoding::Linear,
-            None | Some("sRGB") => Encoding::Srgb,
-            Some(_) => {
-                let reason = "has an encoding other than \"sRGB\" and \"linear\"";
-                return self.builder.unread(file, reason, &texture.place);
-            }
-        };
-        let file = self.folder.join(file);
-        self.builder.image(&file, Channel::Red, encoding, &texture.place)
     }
 }
 

@@ -34,6 +34,7 @@ mod directives;
 mod materials;
 mod references;
 mod syntax;
+mod textures;
 mod token;
 
 use std::collections::HashMap;
