@@ -15,9 +15,13 @@
 //!   stands.
 //! - `interface`, "none" and an empty type are the boundary of a medium, without a surface.
 //! - `mix` uses two named materials; `Attribute "material"` gives defaults to the ones that follow.
-//! - A float image texture is read in its first channel, decoded from sRGB if its samples are
-//!   integers and `encoding` is not "linear", and multiplied by `scale`; `invert` makes it 1 minus
-//!   that.
+//! - A float image texture is the mean of red, green and blue, or opacity where the file has any
+//!   below 1 (`MIPMap::Bilerp<Float>` and `CreateFromFile` in `util/mipmap.cpp`); `filter` "point"
+//!   reads the first channel (`Texel<Float>`), and "ewa" either. All channels, opacity too, are
+//!   first decoded from sRGB where the samples are integers, except in a PNG whose `encoding` is
+//!   "linear" (`util/image.cpp`). The value is multiplied by `scale`; `invert` makes it 1 minus
+//!   that. Left out: what covers less than a pixel on the screen is the first channel's average
+//!   under any filter, and a palette's transparency, which pbrt drops, counts as opacity.
 //! - Included files are looked up beside the scene's own file. `Import` is an `Include` that leaves
 //!   the graphics state unchanged.
 //!

@@ -61,13 +61,17 @@ impl Reader {
         })
     }
 
+    /// The values of an image, of which pbrt's filters read different channels.
     fn image(&mut self, texture: &Definition) -> Interval {
         let text = |name| texture.parameter(name).and_then(|p| p.values.first());
         let Some(file) = text("filename") else {
             let name = format!("\"{}\"", texture.name);
             return self.builder.unread(&name, "names no file", &texture.place);
         };
+        let is_png = file.to_ascii_lowercase().ends_with(".png");
         let encoding = match text("encoding").map(|text| &text[..]) {
+            // pbrt takes other integers for sRGB, whatever is said of them.
+            _ if !is_png => Encoding::Srgb,
             Some("linear") => Encoding::Linear,
             None | Some("sRGB") => Encoding::Srgb,
             Some(_) => {
@@ -76,6 +80,13 @@ impl Reader {
             }
         };
         let file = self.folder.join(file);
-        self.builder.image(&file, Channel::Red, encoding, &texture.place)
+        let mut of = |channel| self.builder.image(&file, channel, encoding, &texture.place);
+        match text("filter").map_or("bilinear", |text| text) {
+            "point" => of(Channel::Red),
+            "bilinear" | "trilinear" => of(Channel::AlphaOrMean),
+            // EWA, also in place of a filter that pbrt does not know: single pixels, or between
+            // them where the ellipse has no width.
+            _ => of(Channel::Red).union(of(Channel::AlphaOrMean)),
+        }
     }
 }
