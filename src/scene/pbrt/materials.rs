@@ -4,9 +4,10 @@ use std::rc::Rc;
 
 use super::Reader;
 use super::directives::UPGRADE;
+use super::fresnel::fresnel;
 use super::syntax::Parameter;
-use crate::scene::builder::{GGX, Lobe, conductor, dielectric, metal};
-use crate::scene::{Fresnel, Interval, Masking, Place, Roughness, SceneError};
+use crate::scene::builder::{GGX, Lobe};
+use crate::scene::{Interval, Masking, Place, Roughness, SceneError};
 
 /// If no α reaches this, pbrt treats the surface as smooth
 /// (`TrowbridgeReitzDistribution::EffectivelySmooth`).
@@ -77,25 +78,6 @@ impl Parameter {
             Ok(number) if f64::is_finite(number) => Ok(number),
             _ => Err(self.place.invalid(format!("{} must be a number, not \"{text}\"", self.name))),
         }
-    }
-
-    /// Three numbers, if it is a colour.
-    fn rgb(&self) -> Option<[f64; 3]> {
-        let [r, g, b] = &self.values[..] else {
-            return None;
-        };
-        let (r, g, b) = (r.parse().ok()?, g.parse().ok()?, b.parse().ok()?);
-        (self.kind == "rgb").then_some([r, g, b])
-    }
-
-    /// The symbol of a metal, if it is a named spectrum such as "metal-Au-eta", which has the `end`
-    /// "-eta".
-    fn metal(&self, end: &str) -> Option<&str> {
-        let [name] = &self.values[..] else {
-            return None;
-        };
-        let symbol = name.strip_prefix("metal-")?.strip_suffix(end)?;
-        (self.kind == "spectrum").then_some(symbol)
     }
 }
 
@@ -210,28 +192,5 @@ impl Reader {
             );
         }
         Ok(if remap { roughness.map_rising(f64::sqrt) } else { roughness })
-    }
-}
-
-/// The Fresnel term if it is given by a number, a colour or the name of a metal, rather than a
-/// spectrum or a texture.
-fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, SceneError> {
-    let parameter = |name: &str| material.parameter(&format!("{prefix}{name}"));
-    if material.class == "conductor" || prefix == "conductor." {
-        let (Some(eta), Some(k)) = (parameter("eta"), parameter("k")) else {
-            return Ok(None);
-        };
-        if let (Some(eta), Some(k)) = (eta.rgb(), k.rgb()) {
-            return conductor(eta, k, &material.place).map(Some);
-        }
-        let symbol = eta.metal("-eta").filter(|&symbol| k.metal("-k") == Some(symbol));
-        return Ok(symbol.and_then(metal));
-    }
-    // The defaults in materials.cpp.
-    let default = if material.class == "subsurface" { 1.33 } else { 1.5 };
-    match parameter("eta") {
-        None => Ok(Some(Fresnel::Dielectric(default))),
-        Some(eta) if eta.kind == "float" => dielectric(eta.number()?, &eta.place).map(Some),
-        Some(_) => Ok(None),
     }
 }

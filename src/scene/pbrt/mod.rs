@@ -10,9 +10,12 @@
 //! - α = √roughness unless `remaproughness` is false. The distribution is Trowbridge-Reitz: γ = 2,
 //!   σ = α. When both α are below 1e-3 the surface is smooth, else both are at least 1e-4.
 //! - G2 is height-correlated.
-//! - A metal's reflectance is read from `rgb` triples `eta` and `k`, or from the named spectra of
-//!   one metal (`"metal-Au-eta"` and `"metal-Au-k"`), for which [`microfacet_sampler::Metal`]
-//!   stands.
+//! - A conductor has `eta` and `k`, each an `rgb` triple or a named spectrum (`"metal-Au-eta"`,
+//!   `"metal-Au-k"`), for which [`microfacet_sampler::Metal`] stands; each is copper's by default.
+//!   Instead it may have an `rgb` `reflectance` r: eta = 1 and k = 2 √(r/(1 − r)), r ≤ 0.9999. In a
+//!   `coatedconductor` eta and k are divided by the coat's index, `interface.eta`. A dielectric has
+//!   a `float` `eta`, 1.33 by default in `subsurface` and else 1.5. Spectra of samples, textures
+//!   and colours of dielectrics leave the Fresnel term open.
 //! - `interface`, "none" and an empty type are the boundary of a medium, without a surface.
 //! - `mix` uses two named materials; `Attribute "material"` gives defaults to the ones that follow.
 //! - A float image texture is the mean of red, green and blue, or opacity where the file has any
@@ -35,6 +38,7 @@
 //! [format]: https://pbrt.org/fileformat-v4
 
 mod directives;
+mod fresnel;
 mod materials;
 mod references;
 mod syntax;

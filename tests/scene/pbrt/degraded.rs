@@ -80,6 +80,10 @@ fn a_bad_fresnel_value_leaves_the_lobe() {
     );
     let metal = "\"string type\" \"conductor\" \"rgb eta\" [ 0 1 1 ] \"rgb k\" [ 3 2 2 ]";
     case(metal, ":1:1", &["[0.0, 1.0, 1.0]", "eta must be more than 0"]);
+    let bright = "\"string type\" \"conductor\" \"rgb reflectance\" [ 0.5 1.5 1 ]";
+    case(bright, ":1:49", &["[0.5, 1.5, 1.0]", "from 0 to 1"]);
+    let both = "\"string type\" \"conductor\" \"rgb reflectance\" [ 0.5 1 1 ] \"rgb k\" [ 3 2 2 ]";
+    case(both, ":1:49", &["either reflectance or eta and k", "remove one"]);
 }
 
 #[test]

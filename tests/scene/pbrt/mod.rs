@@ -1,6 +1,7 @@
 //! pbrt-v4 scenes.
 
 mod degraded;
+mod fresnel;
 mod textures;
 
 use std::io::Write;
@@ -87,47 +88,6 @@ fn below_a_thousandth_alpha_is_smooth() {
         material("\"float uroughness\" 0.5 \"float roughness\" 0.25"),
         anisotropic(0.5, 0.25)
     );
-}
-
-#[test]
-fn layered_materials_have_two_interfaces() {
-    let scene = load(
-        "a.pbrt",
-        r#"MakeNamedMaterial "car" "string type" "coatedconductor"
-            "float interface.roughness" 0.01 "float interface.eta" 1.6
-            "float conductor.uroughness" 0.25 "float conductor.vroughness" 0.36
-            "rgb conductor.eta" [ 0.2 0.9 1.1 ] "rgb conductor.k" [ 3.9 2.4 2.2 ]
-           MakeNamedMaterial "skin" "string type" "subsurface" "float roughness" 0.16"#,
-    );
-    assert_eq!(names(&scene), ["car.interface", "car.conductor", "skin"]);
-    let [interface, conductor, skin] = &scene.materials[..] else { unreachable!() };
-    assert_eq!(interface.roughness, isotropic(0.1));
-    assert_eq!(interface.fresnel, Some(Fresnel::Dielectric(1.6)));
-    assert_eq!(interface.origin.lobe, Some("interface"));
-    assert_eq!(conductor.roughness, anisotropic(0.5, 0.6));
-    let (eta, k) = ([0.2, 0.9, 1.1], [3.9, 2.4, 2.2]);
-    assert_eq!(conductor.fresnel, Some(Fresnel::Conductor { eta, k }));
-    assert_eq!(skin.roughness, isotropic(0.4));
-    assert_eq!(skin.fresnel, Some(Fresnel::Dielectric(1.33)));
-}
-
-#[test]
-fn a_metal_is_named_by_both_of_its_spectra() {
-    let fresnel = |parameters: &str| {
-        load("a.pbrt", &format!("Material \"conductor\" {parameters}")).materials[0].fresnel
-    };
-    let pair = |eta: &str, k: &str| fresnel(&format!("\"spectrum eta\" {eta} \"spectrum k\" {k}"));
-    assert_eq!(pair("\"metal-CuZn-eta\"", "[ \"metal-CuZn-k\" ]"), Some(Metal::Brass.into()));
-    // Not a metal, two metals, the wrong order, spectra of the scene's own, one of them alone.
-    assert_eq!(pair("\"metal-MgO-eta\"", "\"metal-MgO-k\""), None);
-    assert_eq!(pair("\"metal-Au-eta\"", "\"metal-Ag-k\""), None);
-    assert_eq!(pair("\"metal-Au-k\"", "\"metal-Au-eta\""), None);
-    assert_eq!(pair("[ 400 1.2 700 1.1 ]", "[ 400 3 700 4 ]"), None);
-    assert_eq!(fresnel("\"spectrum eta\" \"metal-Au-eta\""), None);
-    assert_eq!(fresnel("\"string eta\" \"metal-Au-eta\" \"string k\" \"metal-Au-k\""), None);
-    let coated = "Material \"coatedconductor\" \"spectrum conductor.eta\" \"metal-Ag-eta\"
-        \"spectrum conductor.k\" \"metal-Ag-k\"";
-    assert_eq!(load("a.pbrt", coated).materials[1].fresnel, Some(Metal::Silver.into()));
 }
 
 #[test]
