@@ -1,10 +1,13 @@
 //! Fresnel terms of pbrt's materials.
 
+use std::path::Path;
+
 use microfacet_sampler::Metal;
 
 use super::materials::Definition;
+use super::spectra;
 use super::syntax::Parameter;
-use crate::scene::builder::{conductor, dielectric, metal};
+use crate::scene::builder::{conductor, dielectric};
 use crate::scene::{Fresnel, SceneError};
 
 /// pbrt lowers a conductor's reflectance to this, for which k is still finite.
@@ -20,13 +23,24 @@ impl Parameter {
         (self.kind == "rgb").then_some([r, g, b])
     }
 
-    /// The metal of a named spectrum such as "metal-Au-eta", which has the `end` "-eta".
-    fn metal(&self, end: &str) -> Option<Metal> {
-        let [name] = &self.values[..] else {
-            return None;
+    /// What it names, if it is a spectrum that is given by the name of one, or of a file.
+    fn spectrum(&self) -> Option<&str> {
+        match &self.values[..] {
+            [name] if self.kind == "spectrum" => Some(name),
+            _ => None,
+        }
+    }
+
+    /// The error for the `name` of a spectrum whose numbers are not known here.
+    fn unknown(&self, name: &str, instead: &str) -> SceneError {
+        let in_file = Path::new(name).extension().is_some_and(|end| end == "spd");
+        let what = if in_file {
+            "in a file, which is not read"
+        } else {
+            "not a spectrum that is known here"
         };
-        let symbol = name.strip_prefix("metal-")?.strip_suffix(end)?;
-        if self.kind == "spectrum" { metal(symbol) } else { None }
+        let own = &self.name;
+        self.place.invalid(format!("the {own} \"{name}\" is {what}; write \"{instead} {own}\""))
     }
 }
 
@@ -46,11 +60,15 @@ pub(super) fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fres
 fn outside(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, SceneError> {
     // The defaults in materials.cpp.
     let default = if material.class == "subsurface" { 1.33 } else { 1.5 };
-    match material.parameter(&format!("{prefix}eta")) {
-        None => Ok(Some(Fresnel::Dielectric(default))),
-        Some(eta) if eta.kind == "float" => dielectric(eta.number()?, &eta.place).map(Some),
-        Some(_) => Ok(None),
-    }
+    let Some(eta) = material.parameter(&format!("{prefix}eta")) else {
+        return Ok(Some(Fresnel::Dielectric(default)));
+    };
+    let index = match eta.spectrum() {
+        Some(name) => spectra::glass(name).ok_or_else(|| eta.unknown(name, "float"))?,
+        None if eta.kind == "float" => eta.number()?,
+        None => return Ok(None),
+    };
+    dielectric(index, &eta.place).map(Some)
 }
 
 /// The conductor under a dielectric of index `coat`, to which its own index is relative
@@ -59,7 +77,7 @@ fn under(coat: f64, material: &Definition, prefix: &str) -> Result<Option<Fresne
     let parameter = |name: &str| material.parameter(&format!("{prefix}{name}"));
     let (eta, k) = (parameter("eta"), parameter("k"));
     let index = match material.parameter("reflectance") {
-        None => part(eta, "-eta", Metal::eta).zip(part(k, "-k", Metal::k)),
+        None => part(eta, "-eta", Metal::eta)?.zip(part(k, "-k", Metal::k)?),
         Some(reflectance) if eta.is_some() || k.is_some() => {
             return Err(reflectance.place.invalid(
                 "a conductor has either reflectance or eta and k, and not both; remove one of them",
@@ -76,17 +94,30 @@ fn under(coat: f64, material: &Definition, prefix: &str) -> Result<Option<Fresne
     conductor(relative(eta), relative(k), &material.place).map(Some)
 }
 
-/// eta or k of a conductor, if a colour or a metal's name gives it; copper's by default.
-fn part(parameter: Option<&Parameter>, end: &str, of: fn(Metal) -> [f64; 3]) -> Option<[f64; 3]> {
+/// eta or k of a conductor, unless samples or a texture leave it open; copper's by default.
+fn part(
+    parameter: Option<&Parameter>,
+    end: &str,
+    of: fn(Metal) -> [f64; 3],
+) -> Result<Option<[f64; 3]>, SceneError> {
     let Some(parameter) = parameter else {
-        return Some(of(Metal::Copper));
+        return Ok(Some(of(Metal::Copper)));
     };
-    parameter.rgb().or_else(|| parameter.metal(end).map(of))
+    match parameter.spectrum() {
+        Some(name) => {
+            let metal = spectra::metal(name, end);
+            metal.map(|metal| Some(of(metal))).ok_or_else(|| parameter.unknown(name, "rgb"))
+        }
+        None => Ok(parameter.rgb()),
+    }
 }
 
 /// The k with which a conductor of eta = 1 reflects a colour at normal incidence, where
 /// F = k²/(k² + 4).
 fn reflecting(reflectance: &Parameter) -> Result<Option<[f64; 3]>, SceneError> {
+    if let Some(name) = reflectance.spectrum() {
+        return Err(reflectance.unknown(name, "rgb"));
+    }
     let Some(colour) = reflectance.rgb() else {
         return Ok(None);
     };

@@ -14,8 +14,10 @@
 //!   `"metal-Au-k"`), for which [`microfacet_sampler::Metal`] stands; each is copper's by default.
 //!   Instead it may have an `rgb` `reflectance` r: eta = 1 and k = 2 √(r/(1 − r)), r ≤ 0.9999. In a
 //!   `coatedconductor` eta and k are divided by the coat's index, `interface.eta`. A dielectric has
-//!   a `float` `eta`, 1.33 by default in `subsurface` and else 1.5. Spectra of samples, textures
-//!   and colours of dielectrics leave the Fresnel term open.
+//!   a `float` `eta`, 1.33 by default in `subsurface` and else 1.5, or is a glass by name
+//!   (`"glass-BK7"`), which has its index at 587.56 nm: dispersion is left out. Spectra of samples,
+//!   textures and colours of dielectrics leave the Fresnel term open; other names of spectra, and
+//!   of files with them, do so with a warning.
 //! - `interface`, "none" and an empty type are the boundary of a medium, without a surface.
 //! - `mix` uses two named materials; `Attribute "material"` gives defaults to the ones that follow.
 //! - A float image texture is the mean of red, green and blue, or opacity where the file has any
@@ -41,6 +43,7 @@ mod directives;
 mod fresnel;
 mod materials;
 mod references;
+mod spectra;
 mod syntax;
 mod textures;
 mod token;

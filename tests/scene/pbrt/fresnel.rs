@@ -96,3 +96,54 @@ fn a_reflectance_is_that_at_normal_incidence() {
     }
     assert_eq!(index("\"texture reflectance\" \"map\""), None);
 }
+
+#[test]
+fn glasses_have_their_index_at_the_d_line() {
+    // The rows of pbrt's tables on either side of 587.56 nm.
+    for (name, [from, below], [to, above]) in [
+        ("BK7", [586.0, 1.516_865_556_749], [608.0, 1.515_984_669_181_6]),
+        ("BAF10", [586.0, 1.670_107_353_046_2], [608.0, 1.668_616_016_824_9]),
+        ("FK51A", [577.0, 1.486_875_258_765], [599.0, 1.486_217_243_501]),
+        ("LASF9", [583.0, 1.850_865_855_6], [604.0, 1.848_114_809_928_5]),
+        ("F5", [583.0, 1.673_192_892_990_8], [604.0, 1.671_024_823_474_3]),
+        ("F10", [570.0, 1.730_532_456_282_9], [592.0, 1.727_715_181_802_6]),
+        ("F11", [583.0, 1.785_426_602_677_4], [604.0, 1.782_278_668_315_6]),
+    ] {
+        let parameter = format!("eta\" \"glass-{name}\"");
+        let Some(Fresnel::Dielectric(eta)) =
+            fresnel(&format!("\"dielectric\" \"spectrum {parameter}"))
+        else {
+            panic!("{name}")
+        };
+        let read = below + (587.56 - from) / (to - from) * (above - below);
+        assert!((eta - read).abs() < 6e-6, "{name}: {eta} is not {read}");
+        let under = fresnel(&format!("\"coatedconductor\" \"spectrum interface.{parameter}"));
+        assert_eq!(under, Some(over(eta, Metal::Copper.eta(), Metal::Copper.k())));
+    }
+}
+
+#[test]
+fn other_names_of_spectra_are_warned_of() {
+    let case = |class: &str, parameters: &str, line: u32, parts: &[&str]| {
+        let scene = load("a.pbrt", &format!("Material \"{class}\"\n{parameters}"));
+        assert!(scene.materials.iter().all(|lobe| lobe.fresnel.is_none()), "{:?}", scene.materials);
+        let parts = [parts, &["without its Fresnel term"]].concat();
+        assert_warned(&scene, &format!(":{line}:1"), &parts);
+    };
+    let pair = |eta: &str, k: &str, line: u32, parts: &[&str]| {
+        let parameters = format!("\"spectrum eta\" \"{eta}\"\n\"spectrum k\" \"{k}\"");
+        case("conductor", &parameters, line, parts);
+    };
+    let unknown = "is not a spectrum that is known here";
+    pair("metal-MgO-eta", "metal-MgO-k", 2, &["eta \"metal-MgO-eta\"", unknown, "\"rgb eta\""]);
+    pair("metal-TiO2-eta", "metal-TiO2-k", 2, &["eta \"metal-TiO2-eta\"", unknown]);
+    pair("metal-Au-k", "metal-Au-eta", 2, &["eta \"metal-Au-k\"", unknown]);
+    pair("metal-Au-eta", "spd/Au.k.spd", 3, &["k \"spd/Au.k.spd\"", "in a file", "\"rgb k\""]);
+    let reflectance = "\"spectrum reflectance\" \"paint.spd\"";
+    case("conductor", reflectance, 2, &["reflectance \"paint.spd\"", "in a file"]);
+    let glass = "\"spectrum eta\" \"glass-SF5\"";
+    case("dielectric", glass, 2, &["eta \"glass-SF5\"", unknown, "\"float eta\""]);
+    // Once for both of its interfaces.
+    let coat = "\"spectrum interface.eta\" \"glass-BK8\"";
+    case("coatedconductor", coat, 2, &["interface.eta \"glass-BK8\"", unknown]);
+}
