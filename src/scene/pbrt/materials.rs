@@ -59,6 +59,12 @@ impl Definition {
         self.parameters.iter().find(|p| p.name == name).map(Rc::as_ref)
     }
 
+    /// Whether pbrt-v3 has such a material and pbrt-v4 has not.
+    pub(super) fn is_of_v3(&self) -> bool {
+        OLDER.contains(&&self.class[..])
+            || self.class == "mix" && self.parameter("namedmaterial1").is_some()
+    }
+
     pub(super) fn truth(&self, name: &str, default: bool) -> Result<bool, SceneError> {
         let Some(parameter) = self.parameter(name) else {
             return Ok(default);
@@ -190,6 +196,13 @@ impl Reader {
                     parameter.name, material.name, roughness.max
                 ),
             );
+        }
+        if remap && roughness.max > 0.0 && material.class == "subsurface" && self.of_v3 {
+            let warning = format!(
+                "the roughness of \"subsurface\" is mapped as by pbrt-v4, but the scene has materials \
+                 of pbrt-v3, which maps it otherwise; {UPGRADE}"
+            );
+            self.builder.warn(&material.place, warning);
         }
         Ok(if remap { roughness.map_rising(f64::sqrt) } else { roughness })
     }

@@ -33,7 +33,8 @@
 //! pbrt refuses a scene with a material that is not defined, is defined twice, or has an impossible
 //! value. Here such a material is warned of, or listed as not understood, and the rest is read; of
 //! two definitions the first counts. Directives of pbrt-v1 and v2 are passed over with a warning,
-//! and materials that pbrt-v3 has and v4 has not are listed as not understood.
+//! and materials that pbrt-v3 has and v4 has not are listed as not understood; mixtures of v3 are
+//! followed, and its mapping of the roughness of `subsurface`, which is another, is warned of.
 //!
 //! The file is read as a stream. Everything that belongs to shapes is skipped without being stored.
 //!
@@ -82,6 +83,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         shapes: false,
         incomplete: false,
         older: false,
+        of_v3: false,
     };
     let place = Place::file(path);
     let open = open(path)?;
@@ -136,6 +138,8 @@ struct Reader {
     incomplete: bool,
     /// Whether a directive of an older version was passed over.
     older: bool,
+    /// Whether a material is defined that only pbrt-v3 has.
+    of_v3: bool,
 }
 
 impl Reader {
@@ -370,6 +374,7 @@ impl Reader {
     }
 
     fn define(&mut self, slot: usize, definition: Definition) {
+        self.of_v3 |= definition.is_of_v3();
         self.slots[slot].definition = Some(definition);
         self.defined.push(slot);
     }

@@ -2,7 +2,10 @@
 
 use microfacet_bake::scene::Scene;
 
-use crate::{assert_not_understood, assert_refused, assert_warned, isotropic, load, named, names};
+use crate::{
+    anisotropic, assert_not_understood, assert_refused, assert_warned, isotropic, load, named,
+    names,
+};
 
 /// A good material after the text, which must be read whatever the text says.
 fn beside(text: &str) -> Scene {
@@ -128,6 +131,39 @@ fn materials_of_other_versions_are_not_understood() {
         let scene = beside(&format!("Material \"{class}\""));
         assert!(scene.ignored.iter().all(|ignored| ignored.understood), "{:?}", scene.ignored);
     }
+}
+
+#[test]
+fn subsurface_beside_materials_of_v3_is_warned_of() {
+    let skin = |parameters: &str| format!("Material \"subsurface\" {parameters}\n");
+    let rough = skin("\"float uroughness\" 0.04 \"float vroughness\" 0.09");
+    let mixture =
+        "Material \"mix\" \"string namedmaterial1\" \"good\" \"string namedmaterial2\" \"good\"";
+    // Wherever the other stands.
+    for text in [rough.clone() + "Material \"matte\"", rough.clone() + mixture] {
+        let scene = beside(&text);
+        assert_warned(&scene, ":1:1", &["pbrt-v4", "materials of pbrt-v3", "pbrt --upgrade"]);
+        assert_eq!(scene.materials[0].roughness, anisotropic(0.2, 0.3));
+    }
+    // Both versions agree where nothing is mapped, and of a scene of v4 there is no doubt.
+    let unmapped = skin("\"float roughness\" 0.04 \"bool remaproughness\" false");
+    for text in [rough, skin("") + mixture, unmapped + mixture] {
+        assert_eq!(beside(&text).warnings, [""; 0]);
+    }
+}
+
+#[test]
+fn parts_of_mixtures_of_v3_are_used() {
+    let scene = beside(
+        "MakeNamedMaterial \"spare\" \"string type\" \"conductor\"
+         MakeNamedMaterial \"pane\" \"string type\" \"dielectric\"
+         Material \"mix\" \"string namedmaterial1\" \"good\" \"string namedmaterial2\" [ \"pane\" ]
+         Shape \"sphere\"
+         Material \"mix\" \"string namedmaterial1\" \"goode\" \"string namedmaterial2\" \"pane\"",
+    );
+    let used = |name| named(&scene, name).used;
+    assert!(used("good") && used("pane") && !used("spare"));
+    assert_warned(&scene, ":5:25", &["\"goode\" is not defined; did you mean `good`?"]);
 }
 
 #[test]
