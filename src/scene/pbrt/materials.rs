@@ -31,11 +31,6 @@ const OLDER: [&str; 11] = [
     "uber",
 ];
 
-/// Whether a type says that a surface is only the boundary of a medium.
-pub(super) fn is_boundary(class: &str) -> bool {
-    matches!(class, "" | "none" | "interface")
-}
-
 /// A material or a float texture: a class with parameters.
 #[derive(Debug)]
 pub(super) struct Definition {
@@ -104,12 +99,12 @@ impl Reader {
             "diffuse" | "diffusetransmission" => return ignore("diffuse, without microfacets"),
             "hair" => return ignore("a fibre model, not a microfacet one"),
             "measured" => return ignore("measured data with a distribution of its own"),
-            class if is_boundary(class) && material.parameter("type").is_some() => {
-                return ignore("the boundary of a medium, without a surface");
-            }
-            "" => {
+            "" if material.parameter("type").is_none() => {
                 let why = "it has no type; add for example \"string type\" \"conductor\"";
                 return self.builder.not_understood(name, "no type", place, why);
+            }
+            "" | "interface" | "none" => {
+                return ignore("the boundary of a medium, without a surface");
             }
             class if OLDER.contains(&class) => {
                 let why = format!("a material of pbrt-v3; {UPGRADE}");

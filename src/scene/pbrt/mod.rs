@@ -57,7 +57,7 @@ use std::rc::Rc;
 
 use flate2::read::MultiGzDecoder;
 
-use self::materials::{Definition, is_boundary};
+use self::materials::Definition;
 use self::syntax::{Parameter, parameters, quoted, skip_arguments};
 use self::token::{Token, Tokens};
 use super::builder::Builder;
@@ -220,14 +220,12 @@ impl Reader {
                 let own = parameters(tokens)?;
                 self.hold(&own, &place)?;
                 let parameters = self.with_attributes(own);
-                self.state.material = if is_boundary(&class) {
-                    None
-                } else {
-                    let at = format!("{class} at {}", within(&self.folder, &place));
-                    let slot = self.slot(&place)?;
-                    self.define(slot, Definition::new(at, class, parameters, place));
-                    Some(slot)
-                };
+                // The empty type is an old word for this one.
+                let class = if class.is_empty() { "interface".to_owned() } else { class };
+                let name = self.by_place(&class, &place);
+                let slot = self.slot(&place)?;
+                self.define(slot, Definition::new(name, class, parameters, place));
+                self.state.material = Some(slot);
                 Ok(())
             }
             "MakeNamedMaterial" => {
@@ -247,6 +245,8 @@ impl Reader {
                     self.builder.warn(&place, warning);
                     return Ok(());
                 }
+                let name =
+                    if name.trim().is_empty() { self.by_place(&class, &place) } else { name };
                 self.define(slot, Definition::new(name, class, parameters, place));
                 Ok(())
             }
@@ -351,6 +351,13 @@ impl Reader {
         parameters
     }
 
+    /// The name of a material that has none: its type and its place, short enough for a name.
+    fn by_place(&self, class: &str, place: &Place) -> String {
+        let class = if class.is_empty() { "material" } else { class };
+        let file = place.file.strip_prefix(&self.folder).unwrap_or(&place.file);
+        format!("{class} at {}:{}", file.display(), place.line.unwrap_or_default())
+    }
+
     fn slot(&mut self, place: &Place) -> Result<usize, SceneError> {
         if self.slots.len() == limits::MATERIALS {
             return Err(place.too_large(format!(
@@ -394,10 +401,4 @@ impl Reader {
         }
         Ok(self.builder.finish(self.includes.found()))
     }
-}
-
-/// A place relative to the scene's folder, short enough for a material's name.
-fn within(folder: &Path, place: &Place) -> String {
-    let file = place.file.strip_prefix(folder).unwrap_or(&place.file);
-    format!("{}:{}", file.display(), place.line.unwrap_or_default())
 }

@@ -186,9 +186,28 @@ fn the_boundary_of_a_medium_has_nothing_to_bake() {
             "MakeNamedMaterial \"fog\" \"string type\" \"{class}\"
              NamedMaterial \"fog\" Shape \"sphere\" Material \"{class}\" Shape \"sphere\""
         ));
-        let [fog] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
-        assert!(fog.understood && fog.reason.contains("boundary of a medium"), "{fog}");
+        let [fog, other] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
+        for ignored in [fog, other] {
+            assert!(ignored.understood, "{ignored}");
+            assert!(ignored.reason.contains("boundary of a medium"), "{ignored}");
+        }
         assert_eq!((&fog.name[..], &fog.kind[..]), ("fog", class));
+        let kind = if class.is_empty() { "interface" } else { class };
+        let name = format!("{kind} at a.pbrt:2");
+        assert_eq!((&other.name[..], &other.kind[..]), (&name[..], kind));
         assert_eq!(scene.warnings, [""; 0]);
     }
+}
+
+#[test]
+fn a_blank_name_is_replaced_by_the_place() {
+    let scene = beside(
+        "MakeNamedMaterial \"\" \"string type\" \"conductor\" \"float roughness\" 0.25
+         MakeNamedMaterial \" \"
+         MakeNamedMaterial \"spare\" \"string type\" \"conductor\"
+         NamedMaterial \"\" Shape \"sphere\"",
+    );
+    let named = named(&scene, "conductor at a.pbrt:1");
+    assert!(named.used && named.roughness == isotropic(0.5), "{named:?}");
+    assert_not_understood(&scene, "material at a.pbrt:2", ":2:10", &["it has no type"]);
 }
