@@ -179,7 +179,11 @@ fn a_single_material_has_its_albedo_and_no_other() {
 fn imported_scenes_are_given_albedos_that_are_quick_and_have_to_ask_for_others() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float roughness\" 0.04\nWorldBegin\n";
+    // Spectra of samples leave the Fresnel term open.
+    let open = "\"spectrum eta\" [ 400 2 700 3 ]";
+    let scene = format!(
+        "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float roughness\" 0.04 {open}"
+    );
     std::fs::write(at.join("s.pbrt"), scene).unwrap();
     let given = json(at, &["plan", "s.pbrt"]);
     assert_eq!(given["albedo"][0]["masking"], serde_json::json!(["height-correlated"]));
@@ -194,7 +198,8 @@ fn imported_scenes_are_given_albedos_that_are_quick_and_have_to_ask_for_others()
     // Brushed metals have tables over the azimuth, which take longer.
     let brushed = |i: u32| {
         format!(
-            "MakeNamedMaterial \"{i}\" \"string type\" \"conductor\" \"float uroughness\" 0.0{i} \"float vroughness\" 0.3\n"
+            "MakeNamedMaterial \"{i}\" \"string type\" \"conductor\" {open}
+             \"float uroughness\" 0.0{i} \"float vroughness\" 0.3\n"
         )
     };
     std::fs::write(at.join("b.pbrt"), (1..9).map(brushed).collect::<String>()).unwrap();

@@ -313,6 +313,7 @@ MakeNamedMaterial "plaster" "string type" "coateddiffuse" "float roughness" 0.01
 MakeNamedMaterial "lawn" "string type" "coateddiffuse" "float roughness" 0.1
 MakeNamedMaterial "marble" "string type" "coateddiffuse" "float uroughness" 0.001 "float vroughness" 0.001
 MakeNamedMaterial "steel" "string type" "conductor" "float roughness" 0.04
+    "spectrum eta" [ 400 2 700 3 ]
 MakeNamedMaterial "travertine" "string type" "coateddiffuse" "float roughness" 0.25
 MakeNamedMaterial "pool" "string type" "dielectric"
 MakeNamedMaterial "wall" "string type" "diffuse"

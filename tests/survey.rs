@@ -10,9 +10,10 @@ use serde_json::{Value, json};
 
 use command::{json, ok, refused, run};
 
-/// A rough metal, a diffuse material, a smooth one, and materials of pbrt-v3.
+/// A rough metal without a Fresnel term, a diffuse material, a smooth one, and some of pbrt-v3.
 const PBRT: &str = r#"WorldBegin
 MakeNamedMaterial "steel" "string type" "conductor" "float uroughness" 0.04 "float vroughness" 0.09
+    "spectrum eta" [ 400 2 700 3 ]
 MakeNamedMaterial "wall" "string type" "diffuse"
 MakeNamedMaterial "pane" "string type" "dielectric"
 MakeNamedMaterial "old" "string type" "matte"
@@ -22,7 +23,9 @@ MakeNamedMaterial "older" "string type" "uber"
 /// One lobe that no table covers, and one in closed form.
 const BEYOND: &str = r#"WorldBegin
 MakeNamedMaterial "far" "string type" "conductor" "float roughness" 1e34
+    "spectrum eta" [ 400 2 700 3 ]
 MakeNamedMaterial "near" "string type" "conductor" "float roughness" 0.04
+    "spectrum eta" [ 400 2 700 3 ]
 "#;
 
 /// Brushed metals, of which eight are too many for two seconds: each has a table over the azimuth.

@@ -353,7 +353,7 @@ fn the_commands_list_bake_keep_and_show_them() {
     assert!(std::fs::metadata(at.join("few/tables.safetensors")).unwrap().len() <= 14000);
 
     let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float uroughness\" 0.04 \
-                 \"float vroughness\" 0.25\nWorldBegin\n";
+                 \"float vroughness\" 0.25 \"spectrum eta\" [ 400 2 700 3 ]\nWorldBegin\n";
     std::fs::write(at.join("s.pbrt"), scene).unwrap();
     // It takes less than two seconds, so that nobody has to ask for it.
     for asked in [&["plan", "s.pbrt"][..], &["plan", "s.pbrt", "--albedo"]] {

@@ -71,11 +71,11 @@ const METALS: [(&str, Metal); 8] = [
     ("W", Metal::Tungsten),
 ];
 
-/// The Fresnel term of a metal by its chemical symbol, if it is known.
+/// A metal by its chemical symbol, if it is known.
 ///
 /// The index is that of [`Metal`], of which the renderer's own spectrum is another measurement.
-pub(super) fn metal(symbol: &str) -> Option<Fresnel> {
-    METALS.iter().find(|(known, _)| *known == symbol).map(|&(_, metal)| metal.into())
+pub(super) fn metal(symbol: &str) -> Option<Metal> {
+    METALS.iter().find(|(known, _)| *known == symbol).map(|&(_, metal)| metal)
 }
 
 /// Collects the materials of a scene of one format.

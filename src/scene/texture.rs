@@ -25,6 +25,9 @@ pub(super) enum Channel {
     Alpha,
     /// The luminance of linear sRGB, or grey.
     Luminance,
+    /// Opacity if a pixel has another than 1; else the mean of red, green and blue, or grey. It is
+    /// pbrt's reading of a float image, which takes opacity for encoded like the colours.
+    AlphaOrMean,
 }
 
 /// Encoding of the numbers of an integer image. Images of floats are always linear.
@@ -32,7 +35,7 @@ pub(super) enum Channel {
 pub(super) enum Encoding {
     /// Proportional to the value.
     Linear,
-    /// The sRGB transfer function (IEC 61966-2-1); never applied to opacity.
+    /// The sRGB transfer function (IEC 61966-2-1); not applied to [`Channel::Alpha`].
     Srgb,
 }
 
@@ -160,6 +163,13 @@ impl Pixels {
             Channel::Luminance if !grey => Interval::hull(
                 pixels.map(|p| 0.2126 * value(p[0]) + 0.7152 * value(p[1]) + 0.0722 * value(p[2])),
             ),
+            Channel::AlphaOrMean if !grey => {
+                if has_alpha && pixels.clone().any(|p| value(p[3]) != 1.0) {
+                    of_channel(3)
+                } else {
+                    Interval::hull(pixels.map(|p| (value(p[0]) + value(p[1]) + value(p[2])) / 3.0))
+                }
+            }
             _ => of_channel(0),
         }
         .ok_or_else(|| "is empty or holds NaN".to_owned())

@@ -11,7 +11,7 @@ mod recipe;
 use std::fs;
 use std::path::PathBuf;
 
-use image::{ImageFormat, Rgb, RgbImage};
+use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use microfacet_bake::scene::{
     self, Interval, Material, Roughness, Scene, SceneError, SceneErrorKind,
 };
@@ -117,8 +117,13 @@ fn assert_close(roughness: Roughness, x: [f64; 2], y: [f64; 2]) {
 fn png() -> Vec<u8> {
     let mut image = RgbImage::from_pixel(4, 4, Rgb([51, 102, 255]));
     image.put_pixel(1, 3, Rgb([102, 204, 0]));
+    encoded(image, ImageFormat::Png)
+}
+
+/// The file of an image.
+fn encoded(image: impl Into<DynamicImage>, format: ImageFormat) -> Vec<u8> {
     let mut file = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut file, ImageFormat::Png).unwrap();
+    image.into().write_to(&mut file, format).unwrap();
     file.into_inner()
 }
 

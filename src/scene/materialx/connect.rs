@@ -204,10 +204,10 @@ pub(super) fn channel_named(names: &str, channel: Channel) -> Option<Channel> {
     all.get(place(channel)).or(all.last()).copied()
 }
 
-/// The place of a channel in a colour or a vector.
+/// The place of a channel in a colour or a vector, or of the first that it is made of.
 pub(super) fn place(channel: Channel) -> usize {
     match channel {
-        Channel::Red | Channel::Luminance => 0,
+        Channel::Red | Channel::Luminance | Channel::AlphaOrMean => 0,
         Channel::Green => 1,
         Channel::Blue => 2,
         Channel::Alpha => 3,

@@ -72,7 +72,7 @@ pub(super) fn fresnel(bsdf: &Element, class: &str) -> Result<Option<Fresnel>, Sc
         let rgb = |name| bsdf.child_named(name).filter(|p| p.tag == "rgb").and_then(rgb);
         return match (rgb("eta"), rgb("k")) {
             (Some(eta), Some(k)) => conductor(eta, k, &bsdf.place).map(Some),
-            _ => Ok(material.and_then(metal)),
+            _ => Ok(material.and_then(metal).map(Fresnel::from)),
         };
     }
     let inside = if class.ends_with("plastic") { "polypropylene" } else { "bk7" };

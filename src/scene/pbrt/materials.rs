@@ -1,13 +1,13 @@
-//! The lobes of pbrt's materials, and the ranges of its float textures.
+//! The lobes of pbrt's materials.
 
 use std::rc::Rc;
 
 use super::Reader;
 use super::directives::UPGRADE;
+use super::fresnel::fresnel;
 use super::syntax::Parameter;
-use crate::scene::builder::{GGX, Lobe, conductor, dielectric, metal};
-use crate::scene::texture::{Channel, Encoding};
-use crate::scene::{Fresnel, Interval, Masking, Place, Roughness, SceneError};
+use crate::scene::builder::{GGX, Lobe};
+use crate::scene::{Interval, Masking, Place, Roughness, SceneError};
 
 /// If no α reaches this, pbrt treats the surface as smooth
 /// (`TrowbridgeReitzDistribution::EffectivelySmooth`).
@@ -30,11 +30,6 @@ const OLDER: [&str; 11] = [
     "translucent",
     "uber",
 ];
-
-/// Whether a type says that a surface is only the boundary of a medium.
-pub(super) fn is_boundary(class: &str) -> bool {
-    matches!(class, "" | "none" | "interface")
-}
 
 /// A material or a float texture: a class with parameters.
 #[derive(Debug)]
@@ -59,7 +54,13 @@ impl Definition {
         self.parameters.iter().find(|p| p.name == name).map(Rc::as_ref)
     }
 
-    fn truth(&self, name: &str, default: bool) -> Result<bool, SceneError> {
+    /// Whether pbrt-v3 has such a material and pbrt-v4 has not.
+    pub(super) fn is_of_v3(&self) -> bool {
+        OLDER.contains(&&self.class[..])
+            || self.class == "mix" && self.parameter("namedmaterial1").is_some()
+    }
+
+    pub(super) fn truth(&self, name: &str, default: bool) -> Result<bool, SceneError> {
         let Some(parameter) = self.parameter(name) else {
             return Ok(default);
         };
@@ -72,31 +73,12 @@ impl Definition {
 }
 
 impl Parameter {
-    fn number(&self) -> Result<f64, SceneError> {
+    pub(super) fn number(&self) -> Result<f64, SceneError> {
         let text = self.values.first().map_or("", |value| value);
         match text.parse() {
             Ok(number) if f64::is_finite(number) => Ok(number),
             _ => Err(self.place.invalid(format!("{} must be a number, not \"{text}\"", self.name))),
         }
-    }
-
-    /// Three numbers, if it is a colour.
-    fn rgb(&self) -> Option<[f64; 3]> {
-        let [r, g, b] = &self.values[..] else {
-            return None;
-        };
-        let (r, g, b) = (r.parse().ok()?, g.parse().ok()?, b.parse().ok()?);
-        (self.kind == "rgb").then_some([r, g, b])
-    }
-
-    /// The symbol of a metal, if it is a named spectrum such as "metal-Au-eta", which has the `end`
-    /// "-eta".
-    fn metal(&self, end: &str) -> Option<&str> {
-        let [name] = &self.values[..] else {
-            return None;
-        };
-        let symbol = name.strip_prefix("metal-")?.strip_suffix(end)?;
-        (self.kind == "spectrum").then_some(symbol)
     }
 }
 
@@ -117,12 +99,12 @@ impl Reader {
             "diffuse" | "diffusetransmission" => return ignore("diffuse, without microfacets"),
             "hair" => return ignore("a fibre model, not a microfacet one"),
             "measured" => return ignore("measured data with a distribution of its own"),
-            class if is_boundary(class) && material.parameter("type").is_some() => {
-                return ignore("the boundary of a medium, without a surface");
-            }
-            "" => {
+            "" if material.parameter("type").is_none() => {
                 let why = "it has no type; add for example \"string type\" \"conductor\"";
                 return self.builder.not_understood(name, "no type", place, why);
+            }
+            "" | "interface" | "none" => {
+                return ignore("the boundary of a medium, without a surface");
             }
             class if OLDER.contains(&class) => {
                 let why = format!("a material of pbrt-v3; {UPGRADE}");
@@ -210,101 +192,13 @@ impl Reader {
                 ),
             );
         }
+        if remap && roughness.max > 0.0 && material.class == "subsurface" && self.of_v3 {
+            let warning = format!(
+                "the roughness of \"subsurface\" is mapped as by pbrt-v4, but the scene has materials \
+                 of pbrt-v3, which maps it otherwise; {UPGRADE}"
+            );
+            self.builder.warn(&material.place, warning);
+        }
         Ok(if remap { roughness.map_rising(f64::sqrt) } else { roughness })
-    }
-
-    /// A parameter that is a number or a texture.
-    fn value(&mut self, parameter: &Parameter) -> Result<Interval, SceneError> {
-        if parameter.kind != "texture" {
-            return parameter.number().map(Interval::point);
-        }
-        let place = &parameter.place;
-        let name = parameter.values.first().map_or("", |value| value);
-        if let Some(texture) = self.textures.get(name).cloned() {
-            if let Some(known) = self.ranges.begin(texture.name.clone(), place)? {
-                return Ok(known);
-            }
-            let range = self.texture(&texture)?;
-            return self.ranges.end(texture.name.clone(), range, place);
-        }
-        if self.incomplete {
-            let (name, reason) =
-                (format!("\"{name}\""), "is not defined in the files that were found");
-            return Ok(self.builder.unread(&name, reason, place));
-        }
-        let names = self.textures.keys().map(|name| &name[..]);
-        let hint = self.builder.did_you_mean(name, names);
-        Err(place.invalid(format!("float texture \"{name}\" is not defined{hint}")))
-    }
-
-    fn texture(&mut self, texture: &Definition) -> Result<Interval, SceneError> {
-        let mut input = |name: &str, default: f64| match texture.parameter(name) {
-            Some(parameter) => self.value(parameter),
-            None => Ok(Interval::point(default)),
-        };
-        Ok(match &texture.class[..] {
-            "constant" => input("value", 1.0)?,
-            "scale" => input("tex", 1.0)?.map_bilinear(input("scale", 1.0)?, |a, b| a * b),
-            "mix" => input("tex1", 0.0)?.mix(input("tex2", 1.0)?, input("amount", 0.5)?),
-            "directionmix" => input("tex1", 0.0)?.union(input("tex2", 1.0)?),
-            "checkerboard" => input("tex1", 1.0)?.union(input("tex2", 0.0)?),
-            "dots" => input("inside", 1.0)?.union(input("outside", 0.0)?),
-            "bilerp" => input("v00", 0.0)?
-                .union(input("v01", 1.0)?)
-                .union(input("v10", 0.0)?)
-                .union(input("v11", 1.0)?),
-            "imagemap" => {
-                let scale = input("scale", 1.0)?;
-                let invert = texture.truth("invert", false)?;
-                let scaled = self.image(texture).map_bilinear(scale, |a, b| a * b);
-                if invert { scaled.map_falling(|x| (1.0 - x).max(0.0)) } else { scaled }
-            }
-            class => {
-                let reason = format!("is of class {class}, whose range is not known");
-                let name = format!("\"{}\"", texture.name);
-                self.builder.unread(&name, &reason, &texture.place)
-            }
-        })
-    }
-
-    fn image(&mut self, texture: &Definition) -> Interval {
-        let text = |name| texture.parameter(name).and_then(|p| p.values.first());
-        let Some(file) = text("filename") else {
-            let name = format!("\"{}\"", texture.name);
-            return self.builder.unread(&name, "names no file", &texture.place);
-        };
-        let encoding = match text("encoding").map(|text| &text[..]) {
-            Some("linear") => Encoding::Linear,
-            None | Some("sRGB") => Encoding::Srgb,
-            Some(_) => {
-                let reason = "has an encoding other than \"sRGB\" and \"linear\"";
-                return self.builder.unread(file, reason, &texture.place);
-            }
-        };
-        let file = self.folder.join(file);
-        self.builder.image(&file, Channel::Red, encoding, &texture.place)
-    }
-}
-
-/// The Fresnel term if it is given by a number, a colour or the name of a metal, rather than a
-/// spectrum or a texture.
-fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, SceneError> {
-    let parameter = |name: &str| material.parameter(&format!("{prefix}{name}"));
-    if material.class == "conductor" || prefix == "conductor." {
-        let (Some(eta), Some(k)) = (parameter("eta"), parameter("k")) else {
-            return Ok(None);
-        };
-        if let (Some(eta), Some(k)) = (eta.rgb(), k.rgb()) {
-            return conductor(eta, k, &material.place).map(Some);
-        }
-        let symbol = eta.metal("-eta").filter(|&symbol| k.metal("-k") == Some(symbol));
-        return Ok(symbol.and_then(metal));
-    }
-    // The defaults in materials.cpp.
-    let default = if material.class == "subsurface" { 1.33 } else { 1.5 };
-    match parameter("eta") {
-        None => Ok(Some(Fresnel::Dielectric(default))),
-        Some(eta) if eta.kind == "float" => dielectric(eta.number()?, &eta.place).map(Some),
-        Some(_) => Ok(None),
     }
 }

@@ -10,30 +10,43 @@
 //! - α = √roughness unless `remaproughness` is false. The distribution is Trowbridge-Reitz: γ = 2,
 //!   σ = α. When both α are below 1e-3 the surface is smooth, else both are at least 1e-4.
 //! - G2 is height-correlated.
-//! - A metal's reflectance is read from `rgb` triples `eta` and `k`, or from the named spectra of
-//!   one metal (`"metal-Au-eta"` and `"metal-Au-k"`), for which [`microfacet_sampler::Metal`]
-//!   stands.
+//! - A conductor has `eta` and `k`, each an `rgb` triple or a named spectrum (`"metal-Au-eta"`,
+//!   `"metal-Au-k"`), for which [`microfacet_sampler::Metal`] stands; each is copper's by default.
+//!   Instead it may have an `rgb` `reflectance` r: eta = 1 and k = 2 √(r/(1 − r)), r ≤ 0.9999. In a
+//!   `coatedconductor` eta and k are divided by the coat's index, `interface.eta`. A dielectric has
+//!   a `float` `eta`, 1.33 by default in `subsurface` and else 1.5, or is a glass by name
+//!   (`"glass-BK7"`), which has its index at 587.56 nm: dispersion is left out. Spectra of samples,
+//!   textures and colours of dielectrics leave the Fresnel term open; other names of spectra, and
+//!   of files with them, do so with a warning.
 //! - `interface`, "none" and an empty type are the boundary of a medium, without a surface.
 //! - `mix` uses two named materials; `Attribute "material"` gives defaults to the ones that follow.
-//! - A float image texture is read in its first channel, decoded from sRGB if its samples are
-//!   integers and `encoding` is not "linear", and multiplied by `scale`; `invert` makes it 1 minus
-//!   that.
+//! - A float image texture is the mean of red, green and blue, or opacity where the file has any
+//!   below 1 (`MIPMap::Bilerp<Float>` and `CreateFromFile` in `util/mipmap.cpp`); `filter` "point"
+//!   reads the first channel (`Texel<Float>`), and "ewa" either. All channels, opacity too, are
+//!   first decoded from sRGB where the samples are integers, except in a PNG whose `encoding` is
+//!   "linear" (`util/image.cpp`). The value is multiplied by `scale`; `invert` makes it 1 minus
+//!   that. Left out: what covers less than a pixel on the screen is the first channel's average
+//!   under any filter, and a palette's transparency, which pbrt drops, counts as opacity.
 //! - Included files are looked up beside the scene's own file. `Import` is an `Include` that leaves
 //!   the graphics state unchanged.
 //!
 //! pbrt refuses a scene with a material that is not defined, is defined twice, or has an impossible
 //! value. Here such a material is warned of, or listed as not understood, and the rest is read; of
 //! two definitions the first counts. Directives of pbrt-v1 and v2 are passed over with a warning,
-//! and materials that pbrt-v3 has and v4 has not are listed as not understood.
+//! and materials that pbrt-v3 has and v4 has not are listed as not understood; mixtures of v3 are
+//! followed, and its mapping of the roughness of `subsurface`, which is another, is warned of.
 //!
 //! The file is read as a stream. Everything that belongs to shapes is skipped without being stored.
 //!
 //! [format]: https://pbrt.org/fileformat-v4
 
 mod directives;
+mod fresnel;
 mod materials;
 mod references;
+mod spectra;
 mod syntax;
+mod textures;
 mod token;
 
 use std::collections::HashMap;
@@ -44,7 +57,7 @@ use std::rc::Rc;
 
 use flate2::read::MultiGzDecoder;
 
-use self::materials::{Definition, is_boundary};
+use self::materials::Definition;
 use self::syntax::{Parameter, parameters, quoted, skip_arguments};
 use self::token::{Token, Tokens};
 use super::builder::Builder;
@@ -70,6 +83,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         shapes: false,
         incomplete: false,
         older: false,
+        of_v3: false,
     };
     let place = Place::file(path);
     let open = open(path)?;
@@ -124,6 +138,8 @@ struct Reader {
     incomplete: bool,
     /// Whether a directive of an older version was passed over.
     older: bool,
+    /// Whether a material is defined that only pbrt-v3 has.
+    of_v3: bool,
 }
 
 impl Reader {
@@ -204,14 +220,12 @@ impl Reader {
                 let own = parameters(tokens)?;
                 self.hold(&own, &place)?;
                 let parameters = self.with_attributes(own);
-                self.state.material = if is_boundary(&class) {
-                    None
-                } else {
-                    let at = format!("{class} at {}", within(&self.folder, &place));
-                    let slot = self.slot(&place)?;
-                    self.define(slot, Definition::new(at, class, parameters, place));
-                    Some(slot)
-                };
+                // The empty type is an old word for this one.
+                let class = if class.is_empty() { "interface".to_owned() } else { class };
+                let name = self.by_place(&class, &place);
+                let slot = self.slot(&place)?;
+                self.define(slot, Definition::new(name, class, parameters, place));
+                self.state.material = Some(slot);
                 Ok(())
             }
             "MakeNamedMaterial" => {
@@ -231,6 +245,8 @@ impl Reader {
                     self.builder.warn(&place, warning);
                     return Ok(());
                 }
+                let name =
+                    if name.trim().is_empty() { self.by_place(&class, &place) } else { name };
                 self.define(slot, Definition::new(name, class, parameters, place));
                 Ok(())
             }
@@ -335,6 +351,13 @@ impl Reader {
         parameters
     }
 
+    /// The name of a material that has none: its type and its place, short enough for a name.
+    fn by_place(&self, class: &str, place: &Place) -> String {
+        let class = if class.is_empty() { "material" } else { class };
+        let file = place.file.strip_prefix(&self.folder).unwrap_or(&place.file);
+        format!("{class} at {}:{}", file.display(), place.line.unwrap_or_default())
+    }
+
     fn slot(&mut self, place: &Place) -> Result<usize, SceneError> {
         if self.slots.len() == limits::MATERIALS {
             return Err(place.too_large(format!(
@@ -358,6 +381,7 @@ impl Reader {
     }
 
     fn define(&mut self, slot: usize, definition: Definition) {
+        self.of_v3 |= definition.is_of_v3();
         self.slots[slot].definition = Some(definition);
         self.defined.push(slot);
     }
@@ -377,10 +401,4 @@ impl Reader {
         }
         Ok(self.builder.finish(self.includes.found()))
     }
-}
-
-/// A place relative to the scene's folder, short enough for a material's name.
-fn within(folder: &Path, place: &Place) -> String {
-    let file = place.file.strip_prefix(folder).unwrap_or(&place.file);
-    format!("{}:{}", file.display(), place.line.unwrap_or_default())
 }

@@ -1,6 +1,7 @@
 //! References between materials: names, and the parts of mixtures.
 
 use super::materials::Definition;
+use super::syntax::Parameter;
 use super::{Reader, Slot};
 use crate::scene::{Place, cycle};
 
@@ -76,11 +77,15 @@ impl Reader {
     /// The names of the materials in a mixture.
     fn parts(&self, slot: usize) -> Vec<(String, Place)> {
         let definition = self.slots[slot].definition.as_ref();
-        definition
-            .filter(|definition| definition.class == "mix")
-            .and_then(|definition| definition.parameter("materials"))
-            .map_or_else(Vec::new, |p| {
-                p.values.iter().map(|name| (name.clone(), p.place.clone())).collect()
-            })
+        let Some(mixture) = definition.filter(|definition| definition.class == "mix") else {
+            return Vec::new();
+        };
+        // pbrt-v3 names each of them by a parameter of its own.
+        let lists = ["materials", "namedmaterial1", "namedmaterial2"];
+        let lists = lists.iter().filter_map(|list| mixture.parameter(list));
+        let names = |p: &Parameter| {
+            p.values.iter().map(|name| (name.clone(), p.place.clone())).collect::<Vec<_>>()
+        };
+        lists.flat_map(names).collect()
     }
 }

@@ -2,7 +2,10 @@
 
 use microfacet_bake::scene::Scene;
 
-use crate::{assert_not_understood, assert_refused, assert_warned, isotropic, load, named, names};
+use crate::{
+    anisotropic, assert_not_understood, assert_refused, assert_warned, isotropic, load, named,
+    names,
+};
 
 /// A good material after the text, which must be read whatever the text says.
 fn beside(text: &str) -> Scene {
@@ -80,6 +83,10 @@ fn a_bad_fresnel_value_leaves_the_lobe() {
     );
     let metal = "\"string type\" \"conductor\" \"rgb eta\" [ 0 1 1 ] \"rgb k\" [ 3 2 2 ]";
     case(metal, ":1:1", &["[0.0, 1.0, 1.0]", "eta must be more than 0"]);
+    let bright = "\"string type\" \"conductor\" \"rgb reflectance\" [ 0.5 1.5 1 ]";
+    case(bright, ":1:49", &["[0.5, 1.5, 1.0]", "from 0 to 1"]);
+    let both = "\"string type\" \"conductor\" \"rgb reflectance\" [ 0.5 1 1 ] \"rgb k\" [ 3 2 2 ]";
+    case(both, ":1:49", &["either reflectance or eta and k", "remove one"]);
 }
 
 #[test]
@@ -127,6 +134,39 @@ fn materials_of_other_versions_are_not_understood() {
 }
 
 #[test]
+fn subsurface_beside_materials_of_v3_is_warned_of() {
+    let skin = |parameters: &str| format!("Material \"subsurface\" {parameters}\n");
+    let rough = skin("\"float uroughness\" 0.04 \"float vroughness\" 0.09");
+    let mixture =
+        "Material \"mix\" \"string namedmaterial1\" \"good\" \"string namedmaterial2\" \"good\"";
+    // Wherever the other stands.
+    for text in [rough.clone() + "Material \"matte\"", rough.clone() + mixture] {
+        let scene = beside(&text);
+        assert_warned(&scene, ":1:1", &["pbrt-v4", "materials of pbrt-v3", "pbrt --upgrade"]);
+        assert_eq!(scene.materials[0].roughness, anisotropic(0.2, 0.3));
+    }
+    // Both versions agree where nothing is mapped, and of a scene of v4 there is no doubt.
+    let unmapped = skin("\"float roughness\" 0.04 \"bool remaproughness\" false");
+    for text in [rough, skin("") + mixture, unmapped + mixture] {
+        assert_eq!(beside(&text).warnings, [""; 0]);
+    }
+}
+
+#[test]
+fn parts_of_mixtures_of_v3_are_used() {
+    let scene = beside(
+        "MakeNamedMaterial \"spare\" \"string type\" \"conductor\"
+         MakeNamedMaterial \"pane\" \"string type\" \"dielectric\"
+         Material \"mix\" \"string namedmaterial1\" \"good\" \"string namedmaterial2\" [ \"pane\" ]
+         Shape \"sphere\"
+         Material \"mix\" \"string namedmaterial1\" \"goode\" \"string namedmaterial2\" \"pane\"",
+    );
+    let used = |name| named(&scene, name).used;
+    assert!(used("good") && used("pane") && !used("spare"));
+    assert_warned(&scene, ":5:25", &["\"goode\" is not defined; did you mean `good`?"]);
+}
+
+#[test]
 fn directives_of_other_versions_are_passed_over_with_one_warning() {
     let scene = beside(
         "SearchPath \"/scenes\"\nRenderer \"sampler\"\nVolume \"homogeneous\" \"point p0\" [ 0 0 0 ]
@@ -146,9 +186,28 @@ fn the_boundary_of_a_medium_has_nothing_to_bake() {
             "MakeNamedMaterial \"fog\" \"string type\" \"{class}\"
              NamedMaterial \"fog\" Shape \"sphere\" Material \"{class}\" Shape \"sphere\""
         ));
-        let [fog] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
-        assert!(fog.understood && fog.reason.contains("boundary of a medium"), "{fog}");
+        let [fog, other] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
+        for ignored in [fog, other] {
+            assert!(ignored.understood, "{ignored}");
+            assert!(ignored.reason.contains("boundary of a medium"), "{ignored}");
+        }
         assert_eq!((&fog.name[..], &fog.kind[..]), ("fog", class));
+        let kind = if class.is_empty() { "interface" } else { class };
+        let name = format!("{kind} at a.pbrt:2");
+        assert_eq!((&other.name[..], &other.kind[..]), (&name[..], kind));
         assert_eq!(scene.warnings, [""; 0]);
     }
+}
+
+#[test]
+fn a_blank_name_is_replaced_by_the_place() {
+    let scene = beside(
+        "MakeNamedMaterial \"\" \"string type\" \"conductor\" \"float roughness\" 0.25
+         MakeNamedMaterial \" \"
+         MakeNamedMaterial \"spare\" \"string type\" \"conductor\"
+         NamedMaterial \"\" Shape \"sphere\"",
+    );
+    let named = named(&scene, "conductor at a.pbrt:1");
+    assert!(named.used && named.roughness == isotropic(0.5), "{named:?}");
+    assert_not_understood(&scene, "material at a.pbrt:2", ":2:10", &["it has no type"]);
 }

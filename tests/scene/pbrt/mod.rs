@@ -1,6 +1,8 @@
 //! pbrt-v4 scenes.
 
 mod degraded;
+mod fresnel;
+mod textures;
 
 use std::io::Write;
 
@@ -9,10 +11,7 @@ use flate2::write::GzEncoder;
 use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
 use microfacet_sampler::Metal;
 
-use crate::{
-    Folder, anisotropic, assert_close, assert_not_understood, assert_refused, assert_warned,
-    isotropic, load, named, names, png,
-};
+use crate::{Folder, anisotropic, assert_refused, assert_warned, isotropic, load, named, names};
 
 /// A house of one distribution at a few roughnesses, as exporters write them.
 const HOUSE: &str = r#"
@@ -92,47 +91,6 @@ fn below_a_thousandth_alpha_is_smooth() {
 }
 
 #[test]
-fn layered_materials_have_two_interfaces() {
-    let scene = load(
-        "a.pbrt",
-        r#"MakeNamedMaterial "car" "string type" "coatedconductor"
-            "float interface.roughness" 0.01 "float interface.eta" 1.6
-            "float conductor.uroughness" 0.25 "float conductor.vroughness" 0.36
-            "rgb conductor.eta" [ 0.2 0.9 1.1 ] "rgb conductor.k" [ 3.9 2.4 2.2 ]
-           MakeNamedMaterial "skin" "string type" "subsurface" "float roughness" 0.16"#,
-    );
-    assert_eq!(names(&scene), ["car.interface", "car.conductor", "skin"]);
-    let [interface, conductor, skin] = &scene.materials[..] else { unreachable!() };
-    assert_eq!(interface.roughness, isotropic(0.1));
-    assert_eq!(interface.fresnel, Some(Fresnel::Dielectric(1.6)));
-    assert_eq!(interface.origin.lobe, Some("interface"));
-    assert_eq!(conductor.roughness, anisotropic(0.5, 0.6));
-    let (eta, k) = ([0.2, 0.9, 1.1], [3.9, 2.4, 2.2]);
-    assert_eq!(conductor.fresnel, Some(Fresnel::Conductor { eta, k }));
-    assert_eq!(skin.roughness, isotropic(0.4));
-    assert_eq!(skin.fresnel, Some(Fresnel::Dielectric(1.33)));
-}
-
-#[test]
-fn a_metal_is_named_by_both_of_its_spectra() {
-    let fresnel = |parameters: &str| {
-        load("a.pbrt", &format!("Material \"conductor\" {parameters}")).materials[0].fresnel
-    };
-    let pair = |eta: &str, k: &str| fresnel(&format!("\"spectrum eta\" {eta} \"spectrum k\" {k}"));
-    assert_eq!(pair("\"metal-CuZn-eta\"", "[ \"metal-CuZn-k\" ]"), Some(Metal::Brass.into()));
-    // Not a metal, two metals, the wrong order, spectra of the scene's own, one of them alone.
-    assert_eq!(pair("\"metal-MgO-eta\"", "\"metal-MgO-k\""), None);
-    assert_eq!(pair("\"metal-Au-eta\"", "\"metal-Ag-k\""), None);
-    assert_eq!(pair("\"metal-Au-k\"", "\"metal-Au-eta\""), None);
-    assert_eq!(pair("[ 400 1.2 700 1.1 ]", "[ 400 3 700 4 ]"), None);
-    assert_eq!(fresnel("\"spectrum eta\" \"metal-Au-eta\""), None);
-    assert_eq!(fresnel("\"string eta\" \"metal-Au-eta\" \"string k\" \"metal-Au-k\""), None);
-    let coated = "Material \"coatedconductor\" \"spectrum conductor.eta\" \"metal-Ag-eta\"
-        \"spectrum conductor.k\" \"metal-Ag-k\"";
-    assert_eq!(load("a.pbrt", coated).materials[1].fresnel, Some(Metal::Silver.into()));
-}
-
-#[test]
 fn a_material_is_used_where_a_shape_wears_it() {
     let scene = load(
         "a.pbrt",
@@ -181,94 +139,6 @@ fn attributes_are_defaults_in_their_block() {
     );
     let roughness: Vec<_> = scene.materials.iter().map(|m| m.roughness).collect();
     assert_eq!(roughness, [isotropic(0.04), isotropic(0.5), Roughness::Smooth]);
-}
-
-#[test]
-fn textures_give_ranges() {
-    let folder = Folder::new(&[
-        ("grey.png", png()),
-        (
-            "a.pbrt",
-            br#"
-            Texture "linear" "float" "imagemap" "string filename" "grey.png" "string encoding" "linear"
-            Texture "scaled" "float" "scale" "texture tex" "linear" "float scale" 0.5
-            Texture "inverted" "float" "imagemap" "string filename" "grey.png"
-                "string encoding" "linear" "bool invert" true "float scale" 2
-            Texture "srgb" "float" "imagemap" "string filename" "grey.png"
-            Texture "board" "float" "checkerboard" "float tex1" 0.3 "texture tex2" "linear"
-            Texture "half" "float" "mix" "texture tex1" "linear" "float tex2" 1
-            MakeNamedMaterial "scaled" "string type" "dielectric" "texture roughness" "scaled"
-                "bool remaproughness" false
-            MakeNamedMaterial "inverted" "string type" "dielectric" "texture roughness" "inverted"
-                "bool remaproughness" false
-            MakeNamedMaterial "remapped" "string type" "dielectric" "texture roughness" "linear"
-            MakeNamedMaterial "srgb" "string type" "dielectric" "texture roughness" "srgb"
-                "bool remaproughness" false
-            MakeNamedMaterial "board" "string type" "dielectric" "texture uroughness" "board"
-                "float vroughness" 0.5 "bool remaproughness" false
-            MakeNamedMaterial "half" "string type" "dielectric" "texture uroughness" "half"
-                "texture vroughness" "half" "bool remaproughness" false
-            "#
-            .to_vec(),
-        ),
-    ]);
-    let scene = folder.load("a.pbrt").unwrap();
-    assert_eq!(scene.warnings, [""; 0]);
-    let check =
-        |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(&scene, name).roughness, x, y);
-    check("scaled", [0.1, 0.2], [0.1, 0.2]);
-    check("inverted", [0.2, 0.6], [0.2, 0.6]);
-    check("remapped", [0.2f64.sqrt(), 0.4f64.sqrt()], [0.2f64.sqrt(), 0.4f64.sqrt()]);
-    // 51/255 and 102/255 by the definition of sRGB.
-    check(
-        "srgb",
-        [0.033_104_766_570_885_055, 0.132_868_321_553_817_98],
-        [0.033_104_766_570_885_055, 0.132_868_321_553_817_98],
-    );
-    check("board", [0.2, 0.4], [0.5, 0.5]);
-    check("half", [0.6, 0.7], [0.6, 0.7]);
-    assert!(named(&scene, "half").roughness.is_isotropic(), "one texture on both axes");
-    assert!(!named(&scene, "board").roughness.is_isotropic());
-}
-
-#[test]
-fn textures_that_double_their_references_take_no_longer() {
-    let chain = |length: u32| {
-        let texture = |i: u32| {
-            format!(
-                "Texture \"t{}\" \"float\" \"mix\" \"texture tex1\" \"t{i}\" \"texture tex2\" \"t{i}\"\n",
-                i + 1
-            )
-        };
-        let textures: String = (0..length).map(texture).collect();
-        format!(
-            "Texture \"t0\" \"float\" \"constant\" \"float value\" 0.25\n{textures}\
-             Material \"conductor\" \"texture roughness\" \"t{length}\""
-        )
-    };
-    // One by one, 2^100 references would never be followed to their end.
-    assert_eq!(load("a.pbrt", &chain(100)).materials[0].roughness, isotropic(0.5));
-    let scene = load("a.pbrt", &chain(1000));
-    let name = "conductor at a.pbrt:1002";
-    assert_not_understood(&scene, name, ":1002:1", &["a.pbrt:874:30: ", "more than 128 deep"]);
-}
-
-#[test]
-fn a_missing_image_is_the_full_range_with_a_warning() {
-    let scene = load(
-        "a.pbrt",
-        r#"
-        Texture "t" "float" "imagemap" "string filename" "absent.png" "float scale" 0.25
-        Material "conductor" "texture roughness" "t"
-        Texture "n" "float" "fbm"
-        Material "conductor" "texture roughness" "n"
-        "#,
-    );
-    assert_eq!(scene.materials[0].roughness, Roughness::Isotropic(Interval { min: 0.0, max: 0.5 }));
-    assert_eq!(scene.materials[1].roughness, Roughness::Isotropic(Interval::UNIT));
-    let [missing, noise] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
-    assert!(missing.contains("a.pbrt:2:9: ") && missing.contains("absent.png"), "{missing}");
-    assert!(noise.contains("fbm") && noise.contains("[0, 1]"), "{noise}");
 }
 
 #[test]
