@@ -32,7 +32,7 @@ MakeNamedMaterial "near" "string type" "conductor" "float roughness" 0.04
 fn brushed(count: usize) -> String {
     let one = |i: usize| {
         format!(
-            "MakeNamedMaterial \"{i}\" \"string type\" \"conductor\" \"float uroughness\" 0.0{i} \"float vroughness\" 0.3\n"
+            "MakeNamedMaterial \"{i}\" \"string type\" \"conductor\" \"float uroughness\" 0.0{i} \"float vroughness\" 0.3 \"spectrum eta\" [ 400 2 700 3 ]\n"
         )
     };
     (1..=count).map(one).collect()
@@ -211,7 +211,7 @@ fn an_albedo_beyond_all_tables_is_left_out() {
 
 #[test]
 fn albedos_are_offered_to_those_that_would_get_them() {
-    let round = "MakeNamedMaterial \"round\" \"string type\" \"conductor\" \"float roughness\" 0.3 \"rgb reflectance\" [ 1 1 1 ]\n";
+    let round = "MakeNamedMaterial \"round\" \"string type\" \"conductor\" \"float roughness\" 0.3 \"spectrum eta\" [ 400 2 700 3 ]\n";
     let folder = folder(&[("s.pbrt", &(round.to_owned() + &brushed(8)))]);
     let at = folder.path();
     let plan = json(at, &["plan", "s.pbrt", "--embedded"]);
@@ -282,7 +282,7 @@ fn a_folder_is_summed_up() {
     let totals =
         ["without_lobe", "not_understood", "not_covered", "warnings"].map(|it| &survey[it]);
     assert_eq!(totals, [&json!(2), &json!(4), &json!(1), &json!(2)]);
-    assert_eq!(outcome("a/s.pbrt")["not_understood"][0]["place"], "./a/s.pbrt:5:1");
+    assert_eq!(outcome("a/s.pbrt")["not_understood"][0]["place"], "./a/s.pbrt:6:1");
     assert!(flat.contains("warnings: ./a/far.pbrt:2:51: the roughness of"), "{text}");
 
     // Doubts refuse the scenes that have them, and so fail a build.
