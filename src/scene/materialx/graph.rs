@@ -1,7 +1,5 @@
 //! Ranges of the values that MaterialX node graphs compute.
 
-use std::collections::HashSet;
-
 use super::Reader;
 use super::connect::{channel_named, is_end, named, place, selected};
 use super::index::{At, Scope};
@@ -9,9 +7,7 @@ use crate::scene::texture::Channel;
 use crate::scene::xml::Element;
 use crate::scene::{Interval, SceneError};
 
-const RGB: [Channel; 3] = [Channel::Red, Channel::Green, Channel::Blue];
-/// Constants are followed through this many nodes at most.
-const MAX_CONSTANT: usize = 64;
+pub(super) const RGB: [Channel; 3] = [Channel::Red, Channel::Green, Channel::Blue];
 
 impl<'a> Reader<'a> {
     /// The range of one channel of an `<input>` of a node in `scope`.
@@ -194,93 +190,7 @@ impl<'a> Reader<'a> {
     fn unknown(&mut self, node: &Element, reason: &str) -> Interval {
         self.builder.unread(named(node), reason, &node.place)
     }
-
-    /// A colour or a vector that is the same everywhere; `None` if it may vary, which is found
-    /// without reading images.
-    pub(super) fn constant(
-        &mut self,
-        at: At<'a>,
-        name: &'static str,
-        default: [f64; 3],
-    ) -> Result<Option<[f64; 3]>, SceneError> {
-        let Some(input) = self.index.given(at.node(), name) else { return Ok(Some(default)) };
-        if !self.is_constant(input, at.scope)? {
-            return Ok(None);
-        }
-        let mut values = [0.0; 3];
-        for (value, channel) in values.iter_mut().zip(RGB) {
-            let range = self.value(input, at.scope, channel)?;
-            if !range.is_point() {
-                return Ok(None);
-            }
-            *value = range.min;
-        }
-        Ok(Some(values))
-    }
-
-    /// Whether a value comes from numbers through arithmetic alone.
-    fn is_constant(&mut self, input: &'a Element, scope: Scope<'a>) -> Result<bool, SceneError> {
-        let mut left = vec![At::new(input, scope)];
-        let mut seen = HashSet::new();
-        while let Some(at) = left.pop() {
-            if !seen.insert(at) {
-                continue;
-            }
-            if seen.len() > MAX_CONSTANT {
-                return Ok(false);
-            }
-            let end = at.node();
-            let Some(next) = self.target(end, at.scope)? else { continue };
-            if is_end(end, next.node()) {
-                left.push(next);
-                continue;
-            }
-            let node = next.node();
-            if ARITHMETIC.contains(&&node.tag[..]) && node.children.len() <= MAX_CONSTANT {
-                left.extend(node.children.iter().map(|input| At::new(input, next.scope)));
-            } else {
-                match self.implemented(next, end.attribute("output"))? {
-                    Some(output) => left.push(output),
-                    None => return Ok(false),
-                }
-            }
-        }
-        Ok(true)
-    }
 }
-
-/// Nodes whose output is a number if their inputs are.
-const ARITHMETIC: [&str; 29] = [
-    "absval",
-    "add",
-    "artistic_ior",
-    "clamp",
-    "combine2",
-    "combine3",
-    "combine4",
-    "constant",
-    "convert",
-    "divide",
-    "dot",
-    "extract",
-    "glossiness_anisotropy",
-    "invert",
-    "luminance",
-    "max",
-    "min",
-    "mix",
-    "multiply",
-    "power",
-    "remap",
-    "roughness_anisotropy",
-    "roughness_dual",
-    "safepower",
-    "separate2",
-    "separate3",
-    "separate4",
-    "sqrt",
-    "subtract",
-];
 
 /// The index of refraction and the extinction of a metal of a reflectance at normal incidence and
 /// an edge colour (Gulbrandsen, JCGT 3(4), 2014), limited as in `mx_artistic_ior`.

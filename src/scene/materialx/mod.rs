@@ -48,10 +48,12 @@
 
 mod bsdfs;
 mod connect;
+mod constant;
 mod graph;
 mod image;
 mod index;
 mod inputs;
+mod parts;
 mod shaders;
 
 use std::collections::{HashMap, HashSet};

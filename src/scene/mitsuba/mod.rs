@@ -33,29 +33,24 @@
 //! [bsdfs]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
 
 mod bsdf;
+mod expand;
 mod fresnel;
 mod value;
 
-use std::collections::{BTreeMap, HashMap, HashSet};
-use std::ops::Bound;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::builder::Builder;
 use super::memo::Memo;
-use super::xml::{self, Element, Key};
-use super::{Format, Scene, SceneError, cycle, limits};
+use super::xml::{Element, Key};
+use super::{Format, Scene, SceneError, cycle};
+use expand::Expansion;
 
 /// Reads a Mitsuba 3 scene.
 pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut builder = Builder::new(Format::Mitsuba);
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let mut expansion = Expansion {
-        builder: &mut builder,
-        xml: xml::Reader::new(),
-        defaults: BTreeMap::new(),
-        folders: vec![folder],
-        incomplete: false,
-    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut expansion = Expansion::new(folder, &mut builder);
     let mut root = expansion.xml.open(path)?;
     if root.tag != "scene" && root.tag != "bsdf" {
         return Err(root.place.foreign(format!(
@@ -74,118 +69,6 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let used = reader.used(&root);
     reader.bsdfs(&root, None, &used)?;
     Ok(reader.builder.finish(included))
-}
-
-/// Replaces each `<include>` by its content, and `$name` by its value.
-struct Expansion<'a> {
-    builder: &'a mut Builder,
-    xml: xml::Reader,
-    defaults: BTreeMap<String, String>,
-    /// Folders in which files are looked up: the scene's own, then those of `<path>`.
-    folders: Vec<PathBuf>,
-    incomplete: bool,
-}
-
-impl Expansion<'_> {
-    fn element(&mut self, element: &mut Element, depth: usize) -> Result<(), SceneError> {
-        if depth == xml::MAX_DEPTH {
-            return Err(xml::too_deep(&element.place));
-        }
-        self.substitute(element)?;
-        match &element.tag[..] {
-            "default" => {
-                let (name, value) = (element.required("name")?, element.required("value")?);
-                if self.defaults.len() == limits::DEFAULTS && !self.defaults.contains_key(name) {
-                    return Err(element.place.too_large(format!(
-                        "the scene has more than {} <default> parameters; write values in place of \
-                         some",
-                        limits::DEFAULTS
-                    )));
-                }
-                self.defaults.entry(name.to_owned()).or_insert_with(|| value.to_owned());
-            }
-            "path" => {
-                if self.folders.len() > limits::FOLDERS {
-                    return Err(element.place.too_large(format!(
-                        "the scene has more than {} <path> folders; keep its files in fewer",
-                        limits::FOLDERS
-                    )));
-                }
-                let folder = self.folders[0].join(element.required("value")?);
-                self.folders.push(folder);
-            }
-            _ => {}
-        }
-        for mut child in std::mem::take(&mut element.children) {
-            if child.tag == "include" {
-                element.children.extend(self.include(&mut child, depth + 1)?);
-            } else {
-                self.element(&mut child, depth + 1)?;
-                element.children.push(child);
-            }
-        }
-        Ok(())
-    }
-
-    fn include(&mut self, element: &mut Element, depth: usize) -> Result<Vec<Element>, SceneError> {
-        self.substitute(element)?;
-        let name = element.required("filename")?;
-        let path = find(&self.folders, name);
-        if !self.xml.includes.enter(&path, &element.place)? {
-            self.incomplete = true;
-            self.builder.warn(
-                &element.place,
-                format!(
-                    "{name} is missing; its materials are not seen, and all others count as used"
-                ),
-            );
-            return Ok(Vec::new());
-        }
-        let mut root = self.xml.read(&path, &element.place)?;
-        self.element(&mut root, depth)?;
-        self.xml.includes.leave();
-        Ok(if root.tag == "scene" { root.children } else { vec![root] })
-    }
-
-    /// Replaces each `$name` in the attributes by its value, the longest name that is known.
-    fn substitute(&self, element: &mut Element) -> Result<(), SceneError> {
-        for (_, value) in &mut element.attributes {
-            if value.contains('$') {
-                let mut parts = value.split('$');
-                let mut replaced = parts.next().unwrap_or_default().to_owned();
-                for part in parts {
-                    match self.default(part) {
-                        Some((name, value)) => {
-                            self.xml.includes.charge(value.len(), &element.place)?;
-                            replaced.push_str(value);
-                            replaced.push_str(&part[name.len()..]);
-                        }
-                        None => {
-                            replaced.push('$');
-                            replaced.push_str(part);
-                        }
-                    }
-                }
-                *value = replaced;
-            }
-        }
-        Ok(())
-    }
-
-    /// The longest name that `text` begins with, and its value.
-    fn default(&self, mut text: &str) -> Option<(&str, &str)> {
-        loop {
-            // What `text` begins with does not sort after it, and shorter ones before longer ones.
-            let range = (Bound::Unbounded, Bound::Included(text));
-            let (name, value) = self.defaults.range::<str, _>(range).next_back()?;
-            if text.starts_with(&name[..]) {
-                return Some((name, value));
-            }
-            // Nor is anything longer than what both begin with a beginning of it.
-            let same = text.chars().zip(name.chars()).take_while(|(a, b)| a == b);
-            text = &text[..same.map(|(a, _)| a.len_utf8()).sum()];
-        }
-    }
 }
 
 /// The file `name` in the first folder that has it, else in the first folder.
