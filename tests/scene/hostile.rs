@@ -71,12 +71,12 @@ proptest! {
 }
 
 #[test]
-fn an_include_of_a_folder_is_refused_at_its_place() {
+fn an_include_of_a_folder_is_warned_of_at_its_place() {
     for include in ["", "."] {
-        let text = format!("AttributeBegin\nInclude \"{include}\"\n");
-        let error =
-            Folder::new(&[("a.pbrt", text.into_bytes())]).load("a.pbrt").unwrap_err().to_string();
-        assert!(error.contains("a.pbrt:2") && error.contains("folder"), "{error}");
+        let text = format!("WorldBegin\nInclude \"{include}\"\nMaterial \"conductor\"\n");
+        let scene = load("a.pbrt", &text);
+        assert_warned(&scene, "a.pbrt:2:1", &["is a folder"]);
+        assert_eq!(scene.materials.len(), 1);
     }
 }
 

@@ -118,11 +118,9 @@ fn expand(
             continue;
         };
         let path = folder.join(name);
-        if !xml.includes.enter(&path, &child.place)? {
-            builder.warn(&child.place, format!("{name} is missing; its materials are not seen"));
-            continue;
-        }
-        let mut included = xml.read(&path, &child.place)?;
+        let said = "its materials are not seen";
+        let included = xml.include((name, &path), &child.place, builder, said)?;
+        let Some(mut included) = included else { continue };
         expand(&mut included, path.parent().unwrap_or(folder), xml, headers, builder)?;
         xml.includes.leave();
         root.children.append(&mut included.children);

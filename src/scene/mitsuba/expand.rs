@@ -43,7 +43,9 @@ impl<'a> Expansion<'a> {
         self.substitute(element)?;
         match &element.tag[..] {
             "default" => {
-                let (name, value) = (element.required("name")?, element.required("value")?);
+                let both =
+                    element.required("name").and_then(|n| Ok((n, element.required("value")?)));
+                let Some((name, value)) = self.or_left_out(both)? else { return Ok(()) };
                 if self.defaults.len() == limits::DEFAULTS && !self.defaults.contains_key(name) {
                     return Err(element.place.too_large(format!(
                         "the scene has more than {} <default> parameters; write values in place of \
@@ -60,8 +62,10 @@ impl<'a> Expansion<'a> {
                         limits::FOLDERS
                     )));
                 }
-                let folder = self.folders[0].join(element.required("value")?);
-                self.folders.push(folder);
+                let Some(value) = self.or_left_out(element.required("value"))? else {
+                    return Ok(());
+                };
+                self.folders.push(self.folders[0].join(value));
             }
             _ => {}
         }
@@ -78,22 +82,25 @@ impl<'a> Expansion<'a> {
 
     fn include(&mut self, element: &mut Element, depth: usize) -> Result<Vec<Element>, SceneError> {
         self.substitute(element)?;
-        let name = element.required("filename")?;
-        let path = find(&self.folders, name);
-        if !self.xml.includes.enter(&path, &element.place)? {
+        let Some(name) = self.or_left_out(element.required("filename"))? else {
             self.incomplete = true;
-            self.builder.warn(
-                &element.place,
-                format!(
-                    "{name} is missing; its materials are not seen, and all others count as used"
-                ),
-            );
             return Ok(Vec::new());
-        }
-        let mut root = self.xml.read(&path, &element.place)?;
+        };
+        let path = find(&self.folders, name);
+        let said = "its materials are not seen, and all others count as used";
+        let root = self.xml.include((name, &path), &element.place, self.builder, said)?;
+        let Some(mut root) = root else {
+            self.incomplete = true;
+            return Ok(Vec::new());
+        };
         self.element(&mut root, depth)?;
         self.xml.includes.leave();
         Ok(if root.tag == "scene" { root.children } else { vec![root] })
+    }
+
+    /// What was read of an element; `None`, with a warning, if it says too little to be of use.
+    fn or_left_out<T>(&mut self, read: Result<T, SceneError>) -> Result<Option<T>, SceneError> {
+        self.builder.or_warn(read.map(Some), (None, "it is left out"))
     }
 
     /// Replaces each `$name` in the attributes by its value, the longest name that is known.

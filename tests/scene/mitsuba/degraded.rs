@@ -3,7 +3,9 @@
 use microfacet_bake::scene::{Fresnel, Interval, Roughness, Scene};
 
 use super::scene;
-use crate::{anisotropic, assert_not_understood, assert_warned, isotropic, load, named, names};
+use crate::{
+    Folder, anisotropic, assert_not_understood, assert_warned, isotropic, load, named, names,
+};
 
 /// A good BSDF after the text, which must be read whatever the text says.
 fn beside(text: &str) -> Scene {
@@ -142,6 +144,51 @@ fn a_coating_is_a_lobe_beside_the_bsdf_inside() {
     let scene = bsdf("roughcoating", &bad);
     assert_eq!(names(&scene), ["a", "good"]);
     assert_not_understood(&scene, "a", ":1:24", &["-1"]);
+}
+
+#[test]
+fn what_names_no_file_or_value_is_left_out() {
+    let case = |element: &str, parts: &[&str]| {
+        let scene = beside(&format!("\n{element}"));
+        assert_warned(&scene, ":2:1", &[&["it is left out"], parts].concat());
+    };
+    case("<include/>", &["<include>", "no attribute \"filename\""]);
+    case("<default name=\"x\"/>", &["<default>", "no attribute \"value\""]);
+    case("<default value=\"x\"/>", &["<default>", "no attribute \"name\""]);
+    case("<path/>", &["<path>", "no attribute \"value\""]);
+    for folder in [".", ""] {
+        let scene = beside(&format!("\n<include filename=\"{folder}\"/>"));
+        let named = format!("\"{folder}\" is a folder");
+        assert_warned(&scene, ":2:1", &[&named, "all others count as used"]);
+    }
+    // What may use a material is not seen.
+    let shape = "<shape type=\"cube\"><bsdf type=\"diffuse\"/></shape>";
+    assert!(!named(&beside(shape), "good").used);
+    assert!(named(&beside(&format!("{shape}<include/>")), "good").used);
+}
+
+#[test]
+fn an_included_file_that_is_not_well_formed_costs_itself_alone() {
+    let good = "<bsdf type=\"roughconductor\" id=\"good\"/>";
+    let include = |name: &str| format!("\n<include filename=\"{name}\"/>");
+    let whole = include("b.xml") + &include("c.xml") + good;
+    let cases: [(&[u8], &str); 3] = [
+        (b"<scene>\n<bsdf></scene>", "b.xml:2:7: expected 'bsdf' tag"),
+        (b"", "b.xml:1:1"),
+        (b"<scene a=\"\xff\"/>", "UTF-8"),
+    ];
+    for (text, why) in cases {
+        let folder = Folder::new(&[
+            ("a.xml", scene(&whole).as_bytes()),
+            ("b.xml", text),
+            ("c.xml", b"<bsdf type=\"roughplastic\" id=\"c\"/>"),
+        ]);
+        let scene = folder.load("a.xml").unwrap();
+        assert_eq!(names(&scene), ["c", "good"]);
+        assert_warned(&scene, "a.xml:2:1", &["b.xml is not well formed", why, "are not seen"]);
+        // A change of it changes the scene.
+        assert_eq!(scene.included.len(), 2);
+    }
 }
 
 #[test]
