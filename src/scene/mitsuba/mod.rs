@@ -15,7 +15,8 @@
 //! - `roughcoating` and the smooth `coating` of Mitsuba 0.6 are a lobe "coating" each, beside the
 //!   BSDF inside them.
 //! - A metal's reflectance is read from `rgb` triples `eta` and `k`, or from the preset `material`,
-//!   where [`microfacet_sampler::Metal`] has that metal; `none` is a mirror.
+//!   where [`microfacet_sampler::Metal`] has that metal; `none`, the default, is a mirror.
+//! - `pplastic` takes `eta` instead of `int_ior` and `ext_ior`.
 //! - G2 is uncorrelated (`MicrofacetDistribution::G`).
 //! - `twosided`, `mask`, `bumpmap`, `normalmap`, `blendbsdf` and `mixturebsdf` (0.6) stand for
 //!   the BSDFs inside them.
@@ -24,7 +25,8 @@
 //!
 //! Scenes of Mitsuba 0.6 are read as far as they share the names, and with its spellings `intIOR`,
 //! `extIOR`, `alphaU` and `alphaV` as well; its distributions `phong` and `as` and its BSDFs
-//! `phong`, `ward` and `sssbrdf` are not read.
+//! `phong`, `ward` and `sssbrdf` are not read. Where the scene's own `version` begins with 0, a
+//! conductor is copper by default.
 //!
 //! A BSDF with something impossible in it is listed as not understood, and the rest is read. A bad
 //! index of refraction leaves the lobe without its Fresnel term. References to what does not exist,
@@ -63,8 +65,14 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let folders = expansion.folders;
     let included = expansion.xml.includes.found();
 
-    let mut reader =
-        Reader { ids: ids(&root), builder, folders, incomplete, ranges: Memo::default() };
+    let mut reader = Reader {
+        ids: ids(&root),
+        builder,
+        folders,
+        incomplete,
+        is_older: root.attribute("version").is_some_and(|version| version.starts_with("0.")),
+        ranges: Memo::default(),
+    };
     reader.check_circles(&root);
     let used = reader.used(&root);
     reader.bsdfs(&root, None, &used)?;
@@ -103,6 +111,8 @@ struct Reader<'a> {
     builder: Builder,
     folders: Vec<PathBuf>,
     incomplete: bool,
+    /// Whether the scene is of Mitsuba 0.6 or before.
+    is_older: bool,
     /// Ranges of the textures that were evaluated.
     ranges: Memo<Key<'a>>,
 }
@@ -188,7 +198,7 @@ impl<'a> Reader<'a> {
         used: &Option<HashSet<Key<'a>>>,
     ) -> Result<(), SceneError> {
         let named = matches!(&element.tag[..], "bsdf" | "shape");
-        let name = element.attribute("id").filter(|_| named).or(outer);
+        let name = element.attribute("id").filter(|id| named && !id.is_empty()).or(outer);
         if element.tag == "bsdf" {
             let used = used.as_ref().is_none_or(|used| used.contains(&element.key()));
             self.bsdf(element, name, used)?;

@@ -72,9 +72,18 @@ fn a_bad_fresnel_value_leaves_the_lobe() {
     let glass = "roughdielectric";
     case(glass, "<string name=\"int_ior\" value=\"watr\"/>", ":2:1", &["watr", "`water`"]);
     case(glass, "<float name=\"int_ior\" value=\"-1\"/>", ":1:24", &["more than 0"]);
+    let both = "<float name=\"int_ior\" value=\"-1.5\"/><float name=\"ext_ior\" value=\"-1\"/>";
+    case(glass, both, ":1:24", &["-1.5", "more than 0"]);
     case(glass, "<float name=\"ext_ior\" value=\"x\"/>", ":2:1", &["ext_ior", "number"]);
     let eta = "<rgb name=\"eta\" value=\"0 1 1\"/><rgb name=\"k\" value=\"3 2 2\"/>";
     case("roughconductor", eta, ":1:24", &["eta must be more than 0"]);
+    let eta = "<rgb name=\"eta\" value=\"a,b,c\"/><rgb name=\"k\" value=\"3 2 2\"/>";
+    case("roughconductor", eta, ":2:1", &["eta must be three numbers", "\"a,b,c\""]);
+    let k = "<rgb name=\"k\" value=\"3 2\"/><rgb name=\"eta\" value=\"1 1 1\"/>";
+    case("roughconductor", k, ":2:1", &["k must be three numbers", "\"3 2\""]);
+    let metal = "<string name=\"material\" value=\"Unobtainium\"/>";
+    case("roughconductor", metal, ":2:1", &["\"Unobtainium\" is no preset", "give eta and k"]);
+    case("pplastic", "<float name=\"eta\" value=\"-1\"/>", ":1:24", &["more than 0"]);
     case("principled", "<float name=\"eta\" value=\"-1\"/>", ":1:24", &["more than 0"]);
 }
 
@@ -139,11 +148,20 @@ fn a_coating_is_a_lobe_beside_the_bsdf_inside() {
     assert_eq!(named(&scene, "a.coating").roughness, Roughness::Smooth);
     let clear = Some(Fresnel::Dielectric(1.5046 / 1.000_277));
     assert_eq!(named(&scene, "a.coating").fresnel, clear);
-    // A bad coat leaves what is inside.
+    // A bad coat leaves what is inside, under the name that its own lobe would have.
     let bad = format!("<float name=\"alpha\" value=\"-1\"/>{inner}");
     let scene = bsdf("roughcoating", &bad);
     assert_eq!(names(&scene), ["a", "good"]);
-    assert_not_understood(&scene, "a", ":1:24", &["-1"]);
+    assert_not_understood(&scene, "a.coating", ":1:24", &["-1"]);
+}
+
+#[test]
+fn an_empty_id_is_none() {
+    let rough = "<float name=\"alpha\" value=\"0.3\"/>";
+    let scene = beside(&format!("\n<bsdf type=\"roughplastic\" id=\"\">{rough}</bsdf>"));
+    assert_eq!(names(&scene), ["roughplastic at line 2", "good"]);
+    let scene = bsdf("twosided", "<bsdf type=\"roughplastic\" id=\"\"/>");
+    assert_eq!(names(&scene), ["a", "good"]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Mitsuba 3 scenes.
 
 mod degraded;
+mod fresnel;
 
 use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
 use microfacet_sampler::Metal;
