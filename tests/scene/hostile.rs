@@ -262,6 +262,18 @@ fn xml_that_its_parser_cannot_take_is_refused() {
     assert!(message.contains("a.xml:2:") && message.contains("64 MiB"), "{message}");
 }
 
+/// Each of them would be escaped by itself.
+#[test]
+fn very_many_ampersands_and_tokens_are_refused() {
+    for many in ["&", "&#1", "<a>"] {
+        let count = (40 << 20) / many.len();
+        let text = format!("<materialx>\n<a b=\"{}\"/></materialx>", many.repeat(count));
+        assert_soon_refused("a.mtlx", &text, &["a.mtlx:2:"]);
+    }
+    let text = format!("<materialx a=\"{}&#{}\"/>", "&".repeat(200_000), "1".repeat(1 << 20));
+    assert_eq!(soon_loaded("a.mtlx", &text).materials, []);
+}
+
 /// Each file is nested no deeper than it may be, and all of them together very deep.
 #[test]
 fn includes_do_not_add_to_the_nesting() {

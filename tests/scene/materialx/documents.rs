@@ -113,6 +113,18 @@ fn what_is_mended_moves_no_place() {
 }
 
 #[test]
+fn an_ampersand_may_be_a_character() {
+    let text = "<materialx doc=\"this & that, &nbsp; & <UDIM>&\">\n<a b=\"R&amp;D &#38; &\"/>\
+        <gltf_pbr name=\"x&y&amp;&#x7a;\" type=\"surfaceshader\"/></materialx>";
+    let scene = load("a.mtlx", text);
+    assert_eq!(names(&scene), ["x&y&z"]);
+    assert_eq!(scene.materials[0].origin.place.column, Some(25));
+    // What else is wrong has its own place.
+    let text = "<materialx doc=\"this & that\">\n<a b=\"&\"></c></materialx>";
+    assert_refused("a.mtlx", text, ":2:10", &["expected 'a' tag"]);
+}
+
+#[test]
 fn materials_of_one_shader_have_their_own_names() {
     let text = document(
         r#"<gltf_pbr name="s" type="surfaceshader"><input name="clearcoat" value="1"/></gltf_pbr>
