@@ -68,7 +68,7 @@ impl<'a> Reader<'a> {
 }
 
 /// Nodes whose output is a number if their inputs are.
-const ARITHMETIC: [&str; 29] = [
+const ARITHMETIC: [&str; 30] = [
     "absval",
     "add",
     "artistic_ior",
@@ -89,6 +89,7 @@ const ARITHMETIC: [&str; 29] = [
     "mix",
     "multiply",
     "power",
+    "range",
     "remap",
     "roughness_anisotropy",
     "roughness_dual",

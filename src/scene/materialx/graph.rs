@@ -93,23 +93,30 @@ impl<'a> Reader<'a> {
                 let of = if node.tag == "min" { f64::min } else { f64::max };
                 Interval { min: of(a.min, b.min), max: of(a.max, b.max) }
             }
-            "clamp" => {
-                let (value, low, high) =
-                    (input("in", 0.0)?, input("low", 0.0)?, input("high", 1.0)?);
-                let clamp = |x: f64, low: f64, high: f64| x.max(low).min(high);
-                Interval {
-                    min: clamp(value.min, low.min, high.min),
-                    max: clamp(value.max, low.max, high.max),
-                }
-            }
-            "remap" => {
+            "clamp" => clamped(input("in", 0.0)?, input("low", 0.0)?, input("high", 1.0)?),
+            "remap" | "range" => {
                 let (low, high) = (input("inlow", 0.0)?, input("inhigh", 1.0)?);
                 if !(low.is_point() && high.is_point() && low != high) {
                     return Ok(self.unknown(node, "has a range that varies, or is empty"));
                 }
                 let part = input("in", 0.0)?
                     .map_bilinear(low, |x, _| (x - low.min) / (high.min - low.min));
-                input("outlow", 0.0)?.mix(input("outhigh", 1.0)?, part)
+                let (low, high) = (input("outlow", 0.0)?, input("outhigh", 1.0)?);
+                if node.tag == "remap" {
+                    return Ok(low.mix(high, part));
+                }
+                let gamma = input("gamma", 1.0)?;
+                if !(gamma.is_point() && gamma.min > 0.0) {
+                    return Ok(self.unknown(node, "has a gamma that varies, or is not positive"));
+                }
+                let power = |x: f64| libm::pow(x.abs(), 1.0 / gamma.min).copysign(x);
+                let value = low.mix(high, part.map_rising(power));
+                match self.index.given(node, "doclamp").map(|input| input.attribute("value")) {
+                    None | Some(Some("false")) => value,
+                    Some(Some("true")) => clamped(value, low, high),
+                    // A connection may say either.
+                    Some(_) => value.union(clamped(value, low, high)),
+                }
             }
             "smoothstep" => Interval::UNIT,
             "ifgreater" | "ifgreatereq" | "ifequal" => input("in1", 0.0)?.union(input("in2", 0.0)?),
@@ -201,6 +208,14 @@ pub(super) fn artistic(reflectivity: f64, edge: f64) -> [f64; 2] {
     let n = greatest + (least - greatest) * edge;
     let squared = ((n + 1.0) * (n + 1.0) * r - (n - 1.0) * (n - 1.0)) / (1.0 - r);
     [n, squared.max(0.0).sqrt()]
+}
+
+/// Each value moved to the lower limit, and then to the higher one, as shaders do.
+fn clamped(value: Interval, low: Interval, high: Interval) -> Interval {
+    Interval {
+        min: value.min.max(low.min).min(high.min),
+        max: value.max.max(low.max).min(high.max),
+    }
 }
 
 pub(super) fn sum(a: Interval, b: Interval) -> Interval {
