@@ -28,14 +28,14 @@ impl<'a> Reader<'a> {
     ) -> Result<(), SceneError> {
         let (class, place) = (&at.node().tag, &at.node().place);
         let parts = self.parts(at, output)?;
-        let is_alone = parts.microfacets.len() + parts.unknown.len() == 1;
+        let is_alone = parts.microfacets.len() + parts.unknown.len() + parts.broken.len() == 1;
         let part = |node: &Element| match is_alone {
             true => name.to_owned(),
             false => format!("{name}.{}", named(node)),
         };
         let mut lobes: Vec<Lobe> = Vec::new();
         let mut fabric = parts.fabric.then_some("sheen");
-        let mut failed = false;
+        let mut failed = !parts.broken.is_empty();
         for (at, film) in parts.microfacets {
             let node = at.node();
             match self.microfacets(at, film) {
@@ -47,6 +47,11 @@ impl<'a> Reader<'a> {
                             lobes.push(lobe);
                         }
                     }
+                    for (lobe, error) in model.failed {
+                        failed = true;
+                        let lobe = lobe.map_or(part(node), |lobe| format!("{}.{lobe}", part(node)));
+                        self.builder.degrade(&lobe, &node.tag, &node.place, Err(error))?;
+                    }
                     fabric = fabric.or(model.fabric);
                 }
                 Err(error) => {
@@ -54,6 +59,9 @@ impl<'a> Reader<'a> {
                     self.builder.degrade(&part(node), &node.tag, &node.place, Err(error))?;
                 }
             }
+        }
+        for (node, error) in parts.broken {
+            self.builder.degrade(&part(node), &node.tag, &node.place, Err(error))?;
         }
         for node in &parts.unknown {
             let reason = "neither a node that is known here nor one that the document defines";
@@ -125,7 +133,7 @@ impl<'a> Reader<'a> {
             }
         };
         let fresnel: Option<Fresnel> = fresnel.filter(|_| !film);
-        Ok(Model { lobes: vec![lobe(Some(name), roughness, fresnel)], fabric: None })
+        Ok(Model { lobes: vec![lobe(Some(name), roughness, fresnel)], ..Model::default() })
     }
 
     /// The input "roughness" of a BSDF, which is α along both axes.

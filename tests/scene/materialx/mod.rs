@@ -337,6 +337,55 @@ fn nodes_in_a_circle_are_warned_of() {
 }
 
 #[test]
+fn a_broken_lobe_leaves_the_others() {
+    let rough = |class: &str, inputs: &[(&str, &str)], kept: &[&str], lobe: &str| {
+        let inputs: String = inputs
+            .iter()
+            .map(|(name, value)| {
+                format!("<input name=\"{name}\" type=\"float\" value=\"{value}\"/>")
+            })
+            .collect();
+        let text = format!("<{class} name=\"a\" type=\"surfaceshader\">{inputs}</{class}>");
+        let scene = load("a.mtlx", &document(&text));
+        assert_eq!(names(&scene), kept, "{class}");
+        let [ignored] = &scene.ignored[..] else { panic!("{class}: {:?}", scene.ignored) };
+        assert!(ignored.name == lobe && !ignored.understood, "{ignored}");
+        assert!(ignored.reason.contains("must be a number"), "{ignored}");
+    };
+    for (class, roughness, coat, of_coat, name) in [
+        (
+            "open_pbr_surface",
+            "specular_roughness",
+            "coat_weight",
+            "coat_roughness_anisotropy",
+            "coat",
+        ),
+        ("standard_surface", "specular_roughness", "coat", "coat_anisotropy", "coat"),
+        ("gltf_pbr", "roughness", "clearcoat", "clearcoat_roughness", "clearcoat"),
+        ("UsdPreviewSurface", "roughness", "clearcoat", "clearcoatRoughness", "clearcoat"),
+        ("disney_principled", "roughness", "clearcoat", "clearcoatGloss", "clearcoat"),
+    ] {
+        let coated = format!("a.{name}");
+        for bad in ["nan", ""] {
+            rough(class, &[(roughness, bad), (coat, "1")], &[&coated], "a");
+            rough(class, &[(of_coat, bad), (coat, "1")], &["a"], &coated);
+        }
+        // What has no weight is not looked at.
+        let unused = shader(class, &[(of_coat, f64::NAN)]);
+        assert_eq!((names(&unused), unused.ignored.len()), (vec!["a"], 0), "{class}");
+    }
+    rough("standard_surface", &[("sheen", "x")], &["a"], "a.sheen");
+    // The base depends on the coat's roughness only where that affects it.
+    let coat = [("coat", "1"), ("coat_roughness", "x")];
+    rough("standard_surface", &coat, &["a"], "a.coat");
+    rough("standard_surface", &[&coat[..], &[("coat_affect_roughness", "1")]].concat(), &[], "a");
+    // Both the reflection and the transmission.
+    let glass = [("transmission", "1"), ("transmission_extra_roughness", "0.5")];
+    let inputs = [&glass[..], &[("specular_roughness", "x"), ("coat", "1")]].concat();
+    rough("standard_surface", &inputs, &["a.coat"], "a");
+}
+
+#[test]
 fn a_range_is_a_remapping() {
     let check = |inputs: &[(&str, &str)], r: f64| {
         let inputs: String = inputs
