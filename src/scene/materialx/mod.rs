@@ -22,6 +22,8 @@
 //! - A Fresnel term is stated if the inputs are constant and nothing is mixed: metal is all or
 //!   nothing, there is no thin film, and in OpenPBR no coat, which the index is relative to. F0 is
 //!   Schlick's; `artistic_ior` is Gulbrandsen's (JCGT 3(4), 2014).
+//! - In `open_pbr_surface` a `specular_weight` w other than 1 gives the dielectric the index of
+//!   which F0 is w times as much; the metal's lobe has the weight w, and ends at 0.
 //! - The coat, if its weight is not 0, is a lobe of its own. It roughens the base: in
 //!   `standard_surface` to r + (1 − r) `coat` · `coat_affect_roughness` · `coat_roughness`, in
 //!   `open_pbr_surface` to (min(1, r⁴ + 2 `coat_roughness`⁴))^¼, mixed in by the coat's weight.

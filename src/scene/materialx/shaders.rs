@@ -130,12 +130,13 @@ impl<'a> Reader<'a> {
         let film = self.greatest(at, "thin_film_weight", 0.0)? > 0.0;
 
         let mut model = Model::default();
-        if metalness.max + transmission.max + specular.max > 0.0 {
+        // It is the weight of the metal's lobe; of the dielectric it changes the index alone.
+        if specular.max > 0.0 || transmission.max > 0.0 && metalness.min < 1.0 {
             let fresnel = match metal {
                 _ if film => None,
                 // Under a coat the index is relative to the coat's.
                 Metal::None if coat.max > 0.0 => None,
-                Metal::None => self.dielectric(at, "specular_ior", 1.5)?,
+                Metal::None => self.weighted_dielectric(at, "specular_ior", 1.5, specular)?,
                 Metal::All => {
                     let f0 = self.product(at, "base_color", 0.8, "base_weight", 1.0)?;
                     let edge = self.colour(at, "specular_color", [1.0; 3])?;
