@@ -99,8 +99,13 @@ impl<'a> Reader<'a> {
             None if self.is_older => "Cu",
             None => "none",
         };
-        // A spectrum or a texture has no such numbers.
-        let read = |property: &Element| (property.tag == "rgb").then(|| rgb(property)).transpose();
+        let read = |property: &Element| match &property.tag[..] {
+            "rgb" => rgb(property).map(Some),
+            "float" => number(property).map(|all| Some([all; 3])),
+            // One number holds for all wavelengths; more of them are not red, green and blue.
+            "spectrum" => Ok(number(property).ok().map(|all| [all; 3])),
+            _ => Ok(None),
+        };
         match (bsdf.child_named("eta"), bsdf.child_named("k")) {
             // An index of 0 reflects everything, whatever the extinction is.
             (None, _) if name == "none" => Ok(Some(Fresnel::Mirror)),

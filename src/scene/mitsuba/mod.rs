@@ -14,8 +14,9 @@
 //! - `conductor`, `dielectric`, `thindielectric` and `plastic` are smooth.
 //! - `roughcoating` and the smooth `coating` of Mitsuba 0.6 are a lobe "coating" each, beside the
 //!   BSDF inside them.
-//! - A metal's reflectance is read from `rgb` triples `eta` and `k`, or from the preset `material`,
-//!   where [`microfacet_sampler::Metal`] has that metal; `none`, the default, is a mirror.
+//! - A metal's reflectance is read from `eta` and `k`, each an `rgb` triple or a single number, or
+//!   from the preset `material`, where [`microfacet_sampler::Metal`] has that metal; `none`, which
+//!   is the default, is a mirror.
 //! - `pplastic` takes `eta` instead of `int_ior` and `ext_ior`.
 //! - G2 is uncorrelated (`MicrofacetDistribution::G`).
 //! - `twosided`, `mask`, `bumpmap`, `normalmap`, `blendbsdf` and `mixturebsdf` (0.6) stand for

@@ -34,8 +34,18 @@ fn a_conductor_is_a_mirror_by_default() {
             assert_eq!(of(&[ETA, K].concat()), Some(Fresnel::Conductor { eta, k }));
         }
     }
-    let spectrum = "<spectrum name=\"eta\" filename=\"eta.spd\"/>";
-    assert_eq!(fresnel("roughconductor", &format!("{spectrum}{K}")), None);
+}
+
+#[test]
+fn an_index_is_the_same_at_all_wavelengths_or_a_triple() {
+    let of = |eta: &str| fresnel("roughconductor", &format!("{eta}{K}"));
+    let grey = Some(Fresnel::Conductor { eta: [0.7; 3], k: [3.9, 2.4, 2.2] });
+    for tag in ["rgb", "float", "spectrum"] {
+        assert_eq!(of(&format!("<{tag} name=\"eta\" value=\"0.7\"/>")), grey, "{tag}");
+    }
+    for spectrum in ["filename=\"eta.spd\"", "value=\"400:0.2, 700:0.3\""] {
+        assert_eq!(of(&format!("<spectrum name=\"eta\" {spectrum}/>")), None);
+    }
 }
 
 #[test]
