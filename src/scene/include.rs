@@ -12,6 +12,16 @@ use crate::input;
 /// Deeper nesting than this is refused as a mistake.
 const MAX_DEPTH: usize = 64;
 
+/// What is said of a file, included as `name`, that [`Includes::enter`] did not find.
+pub(super) fn absent(name: &str, file: &Path) -> String {
+    // The empty name is the folder of the scene.
+    if file.is_dir() {
+        format!("\"{name}\" is a folder and no file")
+    } else {
+        format!("{name} is missing")
+    }
+}
+
 /// Why more text is refused.
 fn spent(text: &Budget) -> String {
     format!(
@@ -57,7 +67,7 @@ impl Includes {
 
     /// Opens `file`, which `place` asks for. Each success must be followed by [`Self::leave`].
     ///
-    /// Returns `false` if there is no such file.
+    /// Returns `false` if there is no such file, for which [`absent`] has words.
     pub(super) fn enter(&mut self, file: &Path, place: &Place) -> Result<bool, SceneError> {
         if self.count > limits::INCLUDES {
             return Err(place.too_large(format!(
@@ -70,12 +80,8 @@ impl Includes {
         let Ok(path) = file.canonicalize() else {
             return Ok(false);
         };
-        // The empty name is the folder of the scene.
         if path.is_dir() {
-            return Err(place.invalid(format!(
-                "includes \"{}\", which is a folder: name a file",
-                file.display()
-            )));
+            return Ok(false);
         }
         if let Some(first) = self.open.iter().position(|open| *open == path) {
             let names: Vec<String> = self.open[first..]

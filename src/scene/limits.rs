@@ -57,6 +57,8 @@ pub(super) const XML_VALUES: u64 = 3 << 19;
 pub(super) const XML_ATTRIBUTES: usize = 256;
 /// Declarations of namespaces in an XML file: the parser copies them from element to element.
 pub(super) const XML_NAMESPACES: usize = 64;
+/// Tokens and raw ampersands of an XML file that are escaped; 50 bytes each.
+pub(super) const XML_MENDED: usize = 1 << 18;
 /// Bytes of the JSON of a glTF scene, most of which may be images and geometry in base64.
 pub(super) const JSON: u64 = 128 << 20;
 /// Entries of one list in a glTF scene.

@@ -18,9 +18,10 @@
 //! scales and offsets applied. An image that cannot be read counts as [0, 1], with a warning.
 //! Materials that are not microfacet models, and those that were not understood, are listed in
 //! [`Scene::ignored`]; they are not errors. A missing included file gives a warning, since scenes
-//! often travel without their geometry; then every material counts as used. Outside recipes a
-//! material never refuses its scene, whatever it says. What does is another kind of document, the
-//! file's grammar or version, includes in a circle, and the limits of size.
+//! often travel without their geometry; then every material counts as used. So does one of XML that
+//! is not well formed. Outside recipes a material never refuses its scene, whatever it says. What
+//! does is another kind of document, the file's grammar or version, includes in a circle, and the
+//! limits of size.
 //!
 //! Scenes far larger than any that exist are refused, with the limit: reading ends within seconds
 //! and 1 GB of memory, whatever a file holds. Only regular files are read.

@@ -4,15 +4,17 @@
 mod mended;
 
 use std::hash::{Hash, Hasher};
+use std::io;
 use std::path::Path;
 
 use mended::Mended;
 use roxmltree::{Document, Node, ParsingOptions};
 
+use super::builder::Builder;
 use super::error::Lines;
-use super::include::Includes;
+use super::include::{Includes, absent};
 use super::limits::Budget;
-use super::{Place, SceneError, limits};
+use super::{Place, SceneError, SceneErrorKind, limits};
 use crate::input;
 
 /// Deeper nesting than this is refused as a mistake, which bounds the stack for the recursion.
@@ -101,8 +103,35 @@ impl Reader {
         self.read(file, &place)
     }
 
+    /// Reads the root element of a file that `place` includes under a name, to be followed by
+    /// [`Includes::leave`].
+    ///
+    /// `None` if there is no such file or it is not well formed: then a warning says so, and what
+    /// follows from it, and the rest of the scene is still read.
+    pub(super) fn include(
+        &mut self,
+        (name, file): (&str, &Path),
+        place: &Place,
+        builder: &mut Builder,
+        said: &str,
+    ) -> Result<Option<Element>, SceneError> {
+        let why = if self.includes.enter(file, place)? {
+            match self.read(file, place) {
+                Err(error) if is_malformed(&error) => {
+                    self.includes.leave();
+                    format!("{name} is not well formed: {error}")
+                }
+                read => return read.map(Some),
+            }
+        } else {
+            absent(name, file)
+        };
+        builder.warn(place, format!("{why}; {said}"));
+        Ok(None)
+    }
+
     /// Reads the root element of a file that `place` asks for.
-    pub(super) fn read(&mut self, file: &Path, place: &Place) -> Result<Element, SceneError> {
+    fn read(&mut self, file: &Path, place: &Place) -> Result<Element, SceneError> {
         let source = self.includes.text(file, place)?;
         let lines = Lines::new(file, source.as_bytes());
         let mut text = Mended::new(&source);
@@ -141,6 +170,15 @@ impl Reader {
             // Parsing once more counts as much as reading once more.
             self.includes.charge(source.len(), place)?;
         }
+    }
+}
+
+/// Whether the error is one of the text in a file: of its grammar, or that it is none.
+fn is_malformed(error: &SceneError) -> bool {
+    match &error.kind {
+        SceneErrorKind::Syntax(_) => true,
+        SceneErrorKind::Io(why) => why.kind() == io::ErrorKind::InvalidData,
+        _ => false,
     }
 }
 

@@ -71,12 +71,12 @@ proptest! {
 }
 
 #[test]
-fn an_include_of_a_folder_is_refused_at_its_place() {
+fn an_include_of_a_folder_is_warned_of_at_its_place() {
     for include in ["", "."] {
-        let text = format!("AttributeBegin\nInclude \"{include}\"\n");
-        let error =
-            Folder::new(&[("a.pbrt", text.into_bytes())]).load("a.pbrt").unwrap_err().to_string();
-        assert!(error.contains("a.pbrt:2") && error.contains("folder"), "{error}");
+        let text = format!("WorldBegin\nInclude \"{include}\"\nMaterial \"conductor\"\n");
+        let scene = load("a.pbrt", &text);
+        assert_warned(&scene, "a.pbrt:2:1", &["is a folder"]);
+        assert_eq!(scene.materials.len(), 1);
     }
 }
 
@@ -260,6 +260,18 @@ fn xml_that_its_parser_cannot_take_is_refused() {
     let folder = Folder::new(&[("a.xml", whole), ("b.xml", &part)]);
     let message = soon_refused(&folder, "a.xml");
     assert!(message.contains("a.xml:2:") && message.contains("64 MiB"), "{message}");
+}
+
+/// Each of them would be escaped by itself.
+#[test]
+fn very_many_ampersands_and_tokens_are_refused() {
+    for many in ["&", "&#1", "<a>"] {
+        let count = (40 << 20) / many.len();
+        let text = format!("<materialx>\n<a b=\"{}\"/></materialx>", many.repeat(count));
+        assert_soon_refused("a.mtlx", &text, &["a.mtlx:2:"]);
+    }
+    let text = format!("<materialx a=\"{}&#{}\"/>", "&".repeat(200_000), "1".repeat(1 << 20));
+    assert_eq!(soon_loaded("a.mtlx", &text).materials, []);
 }
 
 /// Each file is nested no deeper than it may be, and all of them together very deep.

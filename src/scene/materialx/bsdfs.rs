@@ -1,9 +1,7 @@
 //! The lobes of a surface: of one shading model, or of the BSDF nodes of a graph (`pbrlib`).
 
-use std::collections::HashSet;
-
 use super::Reader;
-use super::connect::{is_end, named};
+use super::connect::named;
 use super::graph::{negated, sum};
 use super::index::{At, Scope};
 use super::inputs::NO_FRESNEL;
@@ -11,24 +9,13 @@ use super::shaders::{LEAST_ALPHA, Model, lobe, schlick, stretched};
 use crate::scene::builder::{Lobe, conductor};
 use crate::scene::texture::Channel;
 use crate::scene::xml::Element;
-use crate::scene::{Fresnel, Interval, Roughness, SceneError, limits};
+use crate::scene::{Fresnel, Interval, Roughness, SceneError};
 
-const DIFFUSE: &str = "diffuse, without microfacets";
+pub(super) const DIFFUSE: &str = "diffuse, without microfacets";
 const FABRIC: &str = "a fabric's distribution, not a Student-t one";
 
 /// The same lobe is looked for among so many before it, so that time stays linear.
 const MAX_COMPARED: usize = 64;
-
-/// What a surface is made of, without what has a weight of 0.
-#[derive(Default)]
-struct Parts<'a> {
-    /// Shading models and microfacet BSDFs, and whether a thin film lies on them.
-    microfacets: Vec<(At<'a>, bool)>,
-    unknown: Vec<&'a Element>,
-    fabric: bool,
-    /// Why there is nothing to bake, if there is no other part.
-    reason: Option<&'static str>,
-}
 
 impl<'a> Reader<'a> {
     /// Adds the lobes of a node of the type `surfaceshader` as the material `name`.
@@ -41,14 +28,14 @@ impl<'a> Reader<'a> {
     ) -> Result<(), SceneError> {
         let (class, place) = (&at.node().tag, &at.node().place);
         let parts = self.parts(at, output)?;
-        let is_alone = parts.microfacets.len() + parts.unknown.len() == 1;
+        let is_alone = parts.microfacets.len() + parts.unknown.len() + parts.broken.len() == 1;
         let part = |node: &Element| match is_alone {
             true => name.to_owned(),
             false => format!("{name}.{}", named(node)),
         };
         let mut lobes: Vec<Lobe> = Vec::new();
         let mut fabric = parts.fabric.then_some("sheen");
-        let mut failed = false;
+        let mut failed = !parts.broken.is_empty();
         for (at, film) in parts.microfacets {
             let node = at.node();
             match self.microfacets(at, film) {
@@ -60,6 +47,11 @@ impl<'a> Reader<'a> {
                             lobes.push(lobe);
                         }
                     }
+                    for (lobe, error) in model.failed {
+                        failed = true;
+                        let lobe = lobe.map_or(part(node), |lobe| format!("{}.{lobe}", part(node)));
+                        self.builder.degrade(&lobe, &node.tag, &node.place, Err(error))?;
+                    }
                     fabric = fabric.or(model.fabric);
                 }
                 Err(error) => {
@@ -67,6 +59,9 @@ impl<'a> Reader<'a> {
                     self.builder.degrade(&part(node), &node.tag, &node.place, Err(error))?;
                 }
             }
+        }
+        for (node, error) in parts.broken {
+            self.builder.degrade(&part(node), &node.tag, &node.place, Err(error))?;
         }
         for node in &parts.unknown {
             let reason = "neither a node that is known here nor one that the document defines";
@@ -96,101 +91,6 @@ impl<'a> Reader<'a> {
             }
             None => Ok(()),
         }
-    }
-
-    /// Follows the nodes that combine BSDFs and surfaces. Each is visited once, without recursion,
-    /// so that graphs may be deep and share their parts.
-    fn parts(&mut self, start: At<'a>, output: Option<&'a str>) -> Result<Parts<'a>, SceneError> {
-        let mut parts = Parts::default();
-        let mut left = vec![(start, output, false)];
-        let mut seen = HashSet::new();
-        while let Some((at, output, film)) = left.pop() {
-            if !seen.insert((at, output)) {
-                continue;
-            }
-            let node = at.node();
-            if self.circle.contains(&at) {
-                return Err(node.place.invalid("is connected to itself through other nodes"));
-            }
-            if !self.bsdfs.take(1) {
-                return Err(node.place.too_large(format!(
-                    "the materials have more than {} BSDF nodes in all; split the document",
-                    limits::BSDFS
-                )));
-            }
-            let mut follow = |reader: &Self, name: &'static str, film: bool| {
-                if let Some(input) = reader.index.given(node, name) {
-                    left.extend(
-                        reader.source(At::new(input, at.scope))?.map(|(at, o)| (at, o, film)),
-                    );
-                }
-                Ok(())
-            };
-            match &node.tag[..] {
-                "output" | "input" => {
-                    left.extend(self.source(at)?.map(|(at, output)| (at, output, film)));
-                }
-                "surface" => follow(self, "bsdf", film)?,
-                "dot" => follow(self, "in", film)?,
-                "add" => {
-                    follow(self, "in2", film)?;
-                    follow(self, "in1", film)?;
-                }
-                "multiply" => {
-                    if self.greatest(at, "in2", 1.0)? > 0.0 {
-                        follow(self, "in1", film)?;
-                    }
-                }
-                "mix" => {
-                    let mix = self.input(at, "mix", 0.0)?;
-                    if mix.min < 1.0 {
-                        follow(self, "bg", film)?;
-                    }
-                    if mix.max > 0.0 {
-                        follow(self, "fg", film)?;
-                    }
-                }
-                "layer" => {
-                    let top = self.index.given(node, "top");
-                    let top = top.map(|top| self.resolve(top, at.scope)).transpose()?.flatten();
-                    let is_film = top.is_some_and(|(top, _)| top.node().tag == "thin_film_bsdf");
-                    follow(self, "base", film || is_film)?;
-                    follow(self, "top", film)?;
-                }
-                "conductor_bsdf" | "dielectric_bsdf" | "generalized_schlick_bsdf" => {
-                    parts.microfacets.push((at, film));
-                }
-                "standard_surface" | "open_pbr_surface" | "gltf_pbr" | "disney_principled"
-                | "UsdPreviewSurface" => {
-                    // All have a diffuse part.
-                    parts.reason = Some(DIFFUSE);
-                    parts.microfacets.push((at, film));
-                }
-                "oren_nayar_diffuse_bsdf"
-                | "burley_diffuse_bsdf"
-                | "translucent_bsdf"
-                | "subsurface_bsdf" => parts.reason = Some(DIFFUSE),
-                "sheen_bsdf" => parts.fabric |= self.greatest(at, "weight", 1.0)? > 0.0,
-                "chiang_hair_bsdf" => parts.reason = Some("a fibre model, not a microfacet one"),
-                "surface_unlit" => parts.reason = Some("emits light, without microfacets"),
-                // It lies on another BSDF, which it is the Fresnel term of.
-                "thin_film_bsdf" | "absorption_vdf" | "anisotropic_vdf" => {}
-                _ => match self.implemented(at, output)? {
-                    Some(output) => left.push((output, None, film)),
-                    None => parts.unknown.push(node),
-                },
-            }
-        }
-        Ok(parts)
-    }
-
-    /// What an input or output is connected to, with the output that is meant.
-    fn source(&self, end: At<'a>) -> Result<Option<(At<'a>, Option<&'a str>)>, SceneError> {
-        let next = self.target(end.node(), end.scope)?;
-        Ok(next.map(|next| {
-            let is_end = is_end(end.node(), next.node());
-            (next, end.node().attribute("output").filter(|_| !is_end))
-        }))
     }
 
     fn microfacets(&mut self, at: At<'a>, film: bool) -> Result<Model, SceneError> {
@@ -233,7 +133,7 @@ impl<'a> Reader<'a> {
             }
         };
         let fresnel: Option<Fresnel> = fresnel.filter(|_| !film);
-        Ok(Model { lobes: vec![lobe(Some(name), roughness, fresnel)], fabric: None })
+        Ok(Model { lobes: vec![lobe(Some(name), roughness, fresnel)], ..Model::default() })
     }
 
     /// The input "roughness" of a BSDF, which is α along both axes.

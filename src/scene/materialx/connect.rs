@@ -172,7 +172,7 @@ pub(super) fn is_end(from: &Element, to: &Element) -> bool {
 
 /// The name of an element, or else its tag.
 pub(super) fn named(element: &Element) -> &str {
-    element.attribute("name").unwrap_or(&element.tag)
+    element.attribute("name").filter(|name| !name.is_empty()).unwrap_or(&element.tag)
 }
 
 /// The channel that a connection selects: by "channels" before MaterialX 1.39, later by the output

@@ -1,7 +1,5 @@
 //! Ranges of the values that MaterialX node graphs compute.
 
-use std::collections::HashSet;
-
 use super::Reader;
 use super::connect::{channel_named, is_end, named, place, selected};
 use super::index::{At, Scope};
@@ -9,9 +7,7 @@ use crate::scene::texture::Channel;
 use crate::scene::xml::Element;
 use crate::scene::{Interval, SceneError};
 
-const RGB: [Channel; 3] = [Channel::Red, Channel::Green, Channel::Blue];
-/// Constants are followed through this many nodes at most.
-const MAX_CONSTANT: usize = 64;
+pub(super) const RGB: [Channel; 3] = [Channel::Red, Channel::Green, Channel::Blue];
 
 impl<'a> Reader<'a> {
     /// The range of one channel of an `<input>` of a node in `scope`.
@@ -97,23 +93,30 @@ impl<'a> Reader<'a> {
                 let of = if node.tag == "min" { f64::min } else { f64::max };
                 Interval { min: of(a.min, b.min), max: of(a.max, b.max) }
             }
-            "clamp" => {
-                let (value, low, high) =
-                    (input("in", 0.0)?, input("low", 0.0)?, input("high", 1.0)?);
-                let clamp = |x: f64, low: f64, high: f64| x.max(low).min(high);
-                Interval {
-                    min: clamp(value.min, low.min, high.min),
-                    max: clamp(value.max, low.max, high.max),
-                }
-            }
-            "remap" => {
+            "clamp" => clamped(input("in", 0.0)?, input("low", 0.0)?, input("high", 1.0)?),
+            "remap" | "range" => {
                 let (low, high) = (input("inlow", 0.0)?, input("inhigh", 1.0)?);
                 if !(low.is_point() && high.is_point() && low != high) {
                     return Ok(self.unknown(node, "has a range that varies, or is empty"));
                 }
                 let part = input("in", 0.0)?
                     .map_bilinear(low, |x, _| (x - low.min) / (high.min - low.min));
-                input("outlow", 0.0)?.mix(input("outhigh", 1.0)?, part)
+                let (low, high) = (input("outlow", 0.0)?, input("outhigh", 1.0)?);
+                if node.tag == "remap" {
+                    return Ok(low.mix(high, part));
+                }
+                let gamma = input("gamma", 1.0)?;
+                if !(gamma.is_point() && gamma.min > 0.0) {
+                    return Ok(self.unknown(node, "has a gamma that varies, or is not positive"));
+                }
+                let power = |x: f64| libm::pow(x.abs(), 1.0 / gamma.min).copysign(x);
+                let value = low.mix(high, part.map_rising(power));
+                match self.index.given(node, "doclamp").map(|input| input.attribute("value")) {
+                    None | Some(Some("false")) => value,
+                    Some(Some("true")) => clamped(value, low, high),
+                    // A connection may say either.
+                    Some(_) => value.union(clamped(value, low, high)),
+                }
             }
             "smoothstep" => Interval::UNIT,
             "ifgreater" | "ifgreatereq" | "ifequal" => input("in1", 0.0)?.union(input("in2", 0.0)?),
@@ -194,93 +197,7 @@ impl<'a> Reader<'a> {
     fn unknown(&mut self, node: &Element, reason: &str) -> Interval {
         self.builder.unread(named(node), reason, &node.place)
     }
-
-    /// A colour or a vector that is the same everywhere; `None` if it may vary, which is found
-    /// without reading images.
-    pub(super) fn constant(
-        &mut self,
-        at: At<'a>,
-        name: &'static str,
-        default: [f64; 3],
-    ) -> Result<Option<[f64; 3]>, SceneError> {
-        let Some(input) = self.index.given(at.node(), name) else { return Ok(Some(default)) };
-        if !self.is_constant(input, at.scope)? {
-            return Ok(None);
-        }
-        let mut values = [0.0; 3];
-        for (value, channel) in values.iter_mut().zip(RGB) {
-            let range = self.value(input, at.scope, channel)?;
-            if !range.is_point() {
-                return Ok(None);
-            }
-            *value = range.min;
-        }
-        Ok(Some(values))
-    }
-
-    /// Whether a value comes from numbers through arithmetic alone.
-    fn is_constant(&mut self, input: &'a Element, scope: Scope<'a>) -> Result<bool, SceneError> {
-        let mut left = vec![At::new(input, scope)];
-        let mut seen = HashSet::new();
-        while let Some(at) = left.pop() {
-            if !seen.insert(at) {
-                continue;
-            }
-            if seen.len() > MAX_CONSTANT {
-                return Ok(false);
-            }
-            let end = at.node();
-            let Some(next) = self.target(end, at.scope)? else { continue };
-            if is_end(end, next.node()) {
-                left.push(next);
-                continue;
-            }
-            let node = next.node();
-            if ARITHMETIC.contains(&&node.tag[..]) && node.children.len() <= MAX_CONSTANT {
-                left.extend(node.children.iter().map(|input| At::new(input, next.scope)));
-            } else {
-                match self.implemented(next, end.attribute("output"))? {
-                    Some(output) => left.push(output),
-                    None => return Ok(false),
-                }
-            }
-        }
-        Ok(true)
-    }
 }
-
-/// Nodes whose output is a number if their inputs are.
-const ARITHMETIC: [&str; 29] = [
-    "absval",
-    "add",
-    "artistic_ior",
-    "clamp",
-    "combine2",
-    "combine3",
-    "combine4",
-    "constant",
-    "convert",
-    "divide",
-    "dot",
-    "extract",
-    "glossiness_anisotropy",
-    "invert",
-    "luminance",
-    "max",
-    "min",
-    "mix",
-    "multiply",
-    "power",
-    "remap",
-    "roughness_anisotropy",
-    "roughness_dual",
-    "safepower",
-    "separate2",
-    "separate3",
-    "separate4",
-    "sqrt",
-    "subtract",
-];
 
 /// The index of refraction and the extinction of a metal of a reflectance at normal incidence and
 /// an edge colour (Gulbrandsen, JCGT 3(4), 2014), limited as in `mx_artistic_ior`.
@@ -291,6 +208,14 @@ pub(super) fn artistic(reflectivity: f64, edge: f64) -> [f64; 2] {
     let n = greatest + (least - greatest) * edge;
     let squared = ((n + 1.0) * (n + 1.0) * r - (n - 1.0) * (n - 1.0)) / (1.0 - r);
     [n, squared.max(0.0).sqrt()]
+}
+
+/// Each value moved to the lower limit, and then to the higher one, as shaders do.
+fn clamped(value: Interval, low: Interval, high: Interval) -> Interval {
+    Interval {
+        min: value.min.max(low.min).min(high.min),
+        max: value.max.max(low.max).min(high.max),
+    }
 }
 
 pub(super) fn sum(a: Interval, b: Interval) -> Interval {

@@ -70,6 +70,29 @@ impl<'a> Reader<'a> {
         self.builder.or_warn(fresnel, NO_FRESNEL)
     }
 
+    /// The Fresnel term of a dielectric whose reflectance at normal incidence is multiplied by a
+    /// weight, which changes the index (`modulated_eta_s` in `open_pbr_surface.mtlx`).
+    pub(super) fn weighted_dielectric(
+        &mut self,
+        at: At<'a>,
+        name: &'static str,
+        default: f64,
+        weight: Interval,
+    ) -> Result<Option<Fresnel>, SceneError> {
+        let fresnel = self.dielectric(at, name, default)?;
+        let Some(Fresnel::Dielectric(eta)) = fresnel.filter(|_| weight.is_point()) else {
+            return Ok(None);
+        };
+        // The index as written, to the last digit.
+        if weight.min == 1.0 {
+            return Ok(fresnel);
+        }
+        let amplitude = (eta - 1.0) / (eta + 1.0);
+        let f0 = (weight.min * amplitude * amplitude).clamp(0.0, 0.99999);
+        let amplitude = f0.sqrt().copysign(amplitude);
+        Ok(Some(Fresnel::Dielectric((1.0 + amplitude) / (1.0 - amplitude))))
+    }
+
     /// A constant colour of a Fresnel term; impossible ones are warned of.
     pub(super) fn colour(
         &mut self,

@@ -22,6 +22,8 @@
 //! - A Fresnel term is stated if the inputs are constant and nothing is mixed: metal is all or
 //!   nothing, there is no thin film, and in OpenPBR no coat, which the index is relative to. F0 is
 //!   Schlick's; `artistic_ior` is Gulbrandsen's (JCGT 3(4), 2014).
+//! - In `open_pbr_surface` a `specular_weight` w other than 1 gives the dielectric the index of
+//!   which F0 is w times as much; the metal's lobe has the weight w, and ends at 0.
 //! - The coat, if its weight is not 0, is a lobe of its own. It roughens the base: in
 //!   `standard_surface` to r + (1 − r) `coat` · `coat_affect_roughness` · `coat_roughness`, in
 //!   `open_pbr_surface` to (min(1, r⁴ + 2 `coat_roughness`⁴))^¼, mixed in by the coat's weight.
@@ -48,10 +50,12 @@
 
 mod bsdfs;
 mod connect;
+mod constant;
 mod graph;
 mod image;
 mod index;
 mod inputs;
+mod parts;
 mod shaders;
 
 use std::collections::{HashMap, HashSet};
@@ -116,11 +120,9 @@ fn expand(
             continue;
         };
         let path = folder.join(name);
-        if !xml.includes.enter(&path, &child.place)? {
-            builder.warn(&child.place, format!("{name} is missing; its materials are not seen"));
-            continue;
-        }
-        let mut included = xml.read(&path, &child.place)?;
+        let said = "its materials are not seen";
+        let included = xml.include((name, &path), &child.place, builder, said)?;
+        let Some(mut included) = included else { continue };
         expand(&mut included, path.parent().unwrap_or(folder), xml, headers, builder)?;
         xml.includes.leave();
         root.children.append(&mut included.children);

@@ -1,7 +1,7 @@
 //! The lobes of Mitsuba's BSDF plugins.
 
 use super::Reader;
-use super::fresnel::{constant_dielectric, fresnel};
+use super::fresnel::constant_dielectric;
 use super::value::named;
 use crate::scene::builder::{BECKMANN, GGX, Lobe};
 use crate::scene::error::did_you_mean;
@@ -28,7 +28,8 @@ impl<'a> Reader<'a> {
         let name = name.map_or_else(unnamed, str::to_owned);
         let read = self.lobes(bsdf, &name, used);
         self.ranges.abandon();
-        self.builder.degrade(&name, class, &bsdf.place, read)
+        let shown = coating(class).map(|lobe| format!("{name}.{lobe}"));
+        self.builder.degrade(shown.as_ref().unwrap_or(&name), class, &bsdf.place, read)
     }
 
     fn lobes(&mut self, bsdf: &'a Element, name: &str, used: bool) -> Result<(), SceneError> {
@@ -43,18 +44,18 @@ impl<'a> Reader<'a> {
             };
             reader.builder.add(name, &bsdf.place, used, lobe)
         };
-        // A coat has a name of its own, since the BSDF inside may have that of the outer one.
-        let coating = class.ends_with("coating").then_some("coating");
         let reason = match class {
             "roughconductor" | "roughdielectric" | "roughplastic" | "pplastic" | "roughcoating" => {
                 let gamma = distribution(bsdf)?;
                 let roughness = self.alpha(bsdf)?;
-                let fresnel = self.fresnel_or_warn(fresnel(bsdf, class))?;
-                return lobe(self, coating, roughness, gamma, fresnel);
+                let fresnel = self.fresnel(bsdf, class);
+                let fresnel = self.fresnel_or_warn(fresnel)?;
+                return lobe(self, coating(class), roughness, gamma, fresnel);
             }
             "conductor" | "dielectric" | "thindielectric" | "plastic" | "coating" => {
-                let fresnel = self.fresnel_or_warn(fresnel(bsdf, class))?;
-                return lobe(self, coating, Roughness::Smooth, GGX, fresnel);
+                let fresnel = self.fresnel(bsdf, class);
+                let fresnel = self.fresnel_or_warn(fresnel)?;
+                return lobe(self, coating(class), Roughness::Smooth, GGX, fresnel);
             }
             "principled" => {
                 let roughness = self.principled(bsdf, Interval::point(1.0))?;
@@ -71,7 +72,11 @@ impl<'a> Reader<'a> {
                 let scale = eta.map_rising(|eta| (0.65 * eta - 0.35).max(0.0));
                 let transmission = self.principled(bsdf, scale)?;
                 let fresnel = self.fresnel_or_warn(constant_dielectric(eta, bsdf))?;
-                lobe(self, None, reflection, GGX, fresnel)?;
+                // A tint mixes Schlick's reflectance in, of the reflection alone.
+                let tint = self.weight(bsdf, "spec_tint");
+                let untinted = tint.map(|tint| fresnel.filter(|_| tint.max == 0.0));
+                let untinted = self.fresnel_or_warn(untinted)?;
+                lobe(self, None, reflection, GGX, untinted)?;
                 return lobe(self, Some("transmission"), transmission, GGX, fresnel);
             }
             // The BSDFs inside are listed by themselves.
@@ -175,6 +180,11 @@ impl<'a> Reader<'a> {
     pub(super) fn weight(&mut self, bsdf: &'a Element, name: &str) -> Result<Interval, SceneError> {
         self.property(bsdf, name, 0.0)
     }
+}
+
+/// The name of a coat's lobe, which needs one since the BSDF inside may have that of the outer one.
+fn coating(class: &str) -> Option<&'static str> {
+    matches!(class, "coating" | "roughcoating").then_some("coating")
 }
 
 fn distribution(bsdf: &Element) -> Result<Interval, SceneError> {

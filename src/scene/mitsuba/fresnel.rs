@@ -5,7 +5,7 @@ use super::value::{named, number, rgb};
 use crate::scene::builder::{conductor, dielectric, metal};
 use crate::scene::error::did_you_mean;
 use crate::scene::xml::Element;
-use crate::scene::{Fresnel, Interval, SceneError};
+use crate::scene::{Fresnel, Interval, Place, SceneError};
 
 /// Indices of refraction by name (`render/ior.h`; Hecht, Optics, 4th edition, at 589 nm).
 const INDICES: [(&str, f64); 23] = [
@@ -34,6 +34,14 @@ const INDICES: [(&str, f64); 23] = [
     ("diamond", 2.419),
 ];
 
+/// Presets of Mitsuba for which no index is known here (`bsdfs/conductor.cpp`), without the ending
+/// of those that are Palik's measurements.
+const UNKNOWN: [&str; 33] = [
+    "AlAs", "AlSb", "Be", "CsI", "Cu2O", "CuO", "Hg", "HgTe", "Ir", "K", "Li", "MgO", "Mo", "Na",
+    "Nb", "Rh", "Se", "Se-e", "SiC", "SnTe", "Ta", "Te", "Te-e", "ThF4", "TiC", "TiN", "TiO2",
+    "TiO2-e", "V", "VC", "VN", "a-C", "d-C",
+];
+
 impl<'a> Reader<'a> {
     /// The Fresnel term that was read; none, with a warning, if something impossible was found.
     pub(super) fn fresnel_or_warn(
@@ -60,24 +68,71 @@ impl<'a> Reader<'a> {
         let eta = specular.map_rising(|specular| 2.0 / (1.0 - (0.08 * specular).sqrt()) - 1.0);
         constant_dielectric(eta, bsdf)
     }
+
+    /// The Fresnel term of the BSDFs of a single interface.
+    pub(super) fn fresnel(
+        &mut self,
+        bsdf: &'a Element,
+        class: &str,
+    ) -> Result<Option<Fresnel>, SceneError> {
+        if class.ends_with("conductor") {
+            return self.conductor(bsdf);
+        }
+        if class == "pplastic" && bsdf.child_named("eta").is_some() {
+            let eta = self.property(bsdf, "eta", 1.0)?;
+            return constant_dielectric(eta, bsdf);
+        }
+        let default = if class.ends_with("plastic") { "polypropylene" } else { "bk7" };
+        let (inside, outside) = (index(bsdf, "int_ior", default)?, index(bsdf, "ext_ior", "air")?);
+        // Each by itself, since two impossible ones may make a possible one.
+        for index in [inside, outside] {
+            dielectric(index, &bsdf.place)?;
+        }
+        dielectric(inside / outside, &bsdf.place).map(Some)
+    }
+
+    /// The Fresnel term of a conductor.
+    fn conductor(&self, bsdf: &Element) -> Result<Option<Fresnel>, SceneError> {
+        let material = bsdf.child_named("material");
+        let name = match material {
+            Some(material) => material.required("value")?,
+            None if self.is_older => "Cu",
+            None => "none",
+        };
+        let read = |property: &Element| match &property.tag[..] {
+            "rgb" => rgb(property).map(Some),
+            "float" => number(property).map(|all| Some([all; 3])),
+            // One number holds for all wavelengths; more of them are not red, green and blue.
+            "spectrum" => Ok(number(property).ok().map(|all| [all; 3])),
+            _ => Ok(None),
+        };
+        match (bsdf.child_named("eta"), bsdf.child_named("k")) {
+            // An index of 0 reflects everything, whatever the extinction is.
+            (None, _) if name == "none" => Ok(Some(Fresnel::Mirror)),
+            (None, None) => preset(name, &material.unwrap_or(bsdf).place),
+            (Some(eta), Some(k)) => {
+                let both = read(eta)?.zip(read(k)?);
+                both.map(|(eta, k)| conductor(eta, k, &bsdf.place)).transpose()
+            }
+            (Some(eta), None) if name == "none" => {
+                read(eta)?.map(|eta| conductor(eta, [1.0; 3], &bsdf.place)).transpose()
+            }
+            // A part of a preset, which is known as a whole only.
+            _ => Ok(None),
+        }
+    }
 }
 
-/// The Fresnel term of the BSDFs of a single interface.
-pub(super) fn fresnel(bsdf: &Element, class: &str) -> Result<Option<Fresnel>, SceneError> {
-    if class.ends_with("conductor") {
-        let material = bsdf.child_named("material").and_then(|m| m.attribute("value"));
-        if material == Some("none") {
-            return Ok(Some(Fresnel::Mirror));
-        }
-        let rgb = |name| bsdf.child_named(name).filter(|p| p.tag == "rgb").and_then(rgb);
-        return match (rgb("eta"), rgb("k")) {
-            (Some(eta), Some(k)) => conductor(eta, k, &bsdf.place).map(Some),
-            _ => Ok(material.and_then(metal).map(Fresnel::from)),
-        };
+/// The Fresnel term of a preset; none if its index is not known here.
+fn preset(name: &str, place: &Place) -> Result<Option<Fresnel>, SceneError> {
+    let stem = name.strip_suffix("_palik").unwrap_or(name);
+    let known = metal(stem).map(Fresnel::from);
+    if known.is_none() && !UNKNOWN.contains(&stem) {
+        return Err(place.invalid(format!(
+            "the material \"{name}\" is no preset of Mitsuba; name another, or give eta and k"
+        )));
     }
-    let inside = if class.ends_with("plastic") { "polypropylene" } else { "bk7" };
-    let eta = index(bsdf, "int_ior", inside)? / index(bsdf, "ext_ior", "air")?;
-    dielectric(eta, &bsdf.place).map(Some)
+    Ok(known)
 }
 
 /// The Fresnel term of an index of refraction, or `None` if a texture varies it.

@@ -14,8 +14,10 @@
 //! - `conductor`, `dielectric`, `thindielectric` and `plastic` are smooth.
 //! - `roughcoating` and the smooth `coating` of Mitsuba 0.6 are a lobe "coating" each, beside the
 //!   BSDF inside them.
-//! - A metal's reflectance is read from `rgb` triples `eta` and `k`, or from the preset `material`,
-//!   where [`microfacet_sampler::Metal`] has that metal; `none` is a mirror.
+//! - A metal's reflectance is read from `eta` and `k`, each an `rgb` triple or a single number, or
+//!   from the preset `material`, where [`microfacet_sampler::Metal`] has that metal; `none`, which
+//!   is the default, is a mirror.
+//! - `pplastic` takes `eta` instead of `int_ior` and `ext_ior`.
 //! - G2 is uncorrelated (`MicrofacetDistribution::G`).
 //! - `twosided`, `mask`, `bumpmap`, `normalmap`, `blendbsdf` and `mixturebsdf` (0.6) stand for
 //!   the BSDFs inside them.
@@ -24,7 +26,8 @@
 //!
 //! Scenes of Mitsuba 0.6 are read as far as they share the names, and with its spellings `intIOR`,
 //! `extIOR`, `alphaU` and `alphaV` as well; its distributions `phong` and `as` and its BSDFs
-//! `phong`, `ward` and `sssbrdf` are not read.
+//! `phong`, `ward` and `sssbrdf` are not read. Where the scene's own `version` begins with 0, a
+//! conductor is copper by default.
 //!
 //! A BSDF with something impossible in it is listed as not understood, and the rest is read. A bad
 //! index of refraction leaves the lobe without its Fresnel term. References to what does not exist,
@@ -33,29 +36,24 @@
 //! [bsdfs]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
 
 mod bsdf;
+mod expand;
 mod fresnel;
 mod value;
 
-use std::collections::{BTreeMap, HashMap, HashSet};
-use std::ops::Bound;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::builder::Builder;
 use super::memo::Memo;
-use super::xml::{self, Element, Key};
-use super::{Format, Scene, SceneError, cycle, limits};
+use super::xml::{Element, Key};
+use super::{Format, Scene, SceneError, cycle};
+use expand::Expansion;
 
 /// Reads a Mitsuba 3 scene.
 pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut builder = Builder::new(Format::Mitsuba);
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let mut expansion = Expansion {
-        builder: &mut builder,
-        xml: xml::Reader::new(),
-        defaults: BTreeMap::new(),
-        folders: vec![folder],
-        incomplete: false,
-    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut expansion = Expansion::new(folder, &mut builder);
     let mut root = expansion.xml.open(path)?;
     if root.tag != "scene" && root.tag != "bsdf" {
         return Err(root.place.foreign(format!(
@@ -68,124 +66,18 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let folders = expansion.folders;
     let included = expansion.xml.includes.found();
 
-    let mut reader =
-        Reader { ids: ids(&root), builder, folders, incomplete, ranges: Memo::default() };
+    let mut reader = Reader {
+        ids: ids(&root),
+        builder,
+        folders,
+        incomplete,
+        is_older: root.attribute("version").is_some_and(|version| version.starts_with("0.")),
+        ranges: Memo::default(),
+    };
     reader.check_circles(&root);
     let used = reader.used(&root);
     reader.bsdfs(&root, None, &used)?;
     Ok(reader.builder.finish(included))
-}
-
-/// Replaces each `<include>` by its content, and `$name` by its value.
-struct Expansion<'a> {
-    builder: &'a mut Builder,
-    xml: xml::Reader,
-    defaults: BTreeMap<String, String>,
-    /// Folders in which files are looked up: the scene's own, then those of `<path>`.
-    folders: Vec<PathBuf>,
-    incomplete: bool,
-}
-
-impl Expansion<'_> {
-    fn element(&mut self, element: &mut Element, depth: usize) -> Result<(), SceneError> {
-        if depth == xml::MAX_DEPTH {
-            return Err(xml::too_deep(&element.place));
-        }
-        self.substitute(element)?;
-        match &element.tag[..] {
-            "default" => {
-                let (name, value) = (element.required("name")?, element.required("value")?);
-                if self.defaults.len() == limits::DEFAULTS && !self.defaults.contains_key(name) {
-                    return Err(element.place.too_large(format!(
-                        "the scene has more than {} <default> parameters; write values in place of \
-                         some",
-                        limits::DEFAULTS
-                    )));
-                }
-                self.defaults.entry(name.to_owned()).or_insert_with(|| value.to_owned());
-            }
-            "path" => {
-                if self.folders.len() > limits::FOLDERS {
-                    return Err(element.place.too_large(format!(
-                        "the scene has more than {} <path> folders; keep its files in fewer",
-                        limits::FOLDERS
-                    )));
-                }
-                let folder = self.folders[0].join(element.required("value")?);
-                self.folders.push(folder);
-            }
-            _ => {}
-        }
-        for mut child in std::mem::take(&mut element.children) {
-            if child.tag == "include" {
-                element.children.extend(self.include(&mut child, depth + 1)?);
-            } else {
-                self.element(&mut child, depth + 1)?;
-                element.children.push(child);
-            }
-        }
-        Ok(())
-    }
-
-    fn include(&mut self, element: &mut Element, depth: usize) -> Result<Vec<Element>, SceneError> {
-        self.substitute(element)?;
-        let name = element.required("filename")?;
-        let path = find(&self.folders, name);
-        if !self.xml.includes.enter(&path, &element.place)? {
-            self.incomplete = true;
-            self.builder.warn(
-                &element.place,
-                format!(
-                    "{name} is missing; its materials are not seen, and all others count as used"
-                ),
-            );
-            return Ok(Vec::new());
-        }
-        let mut root = self.xml.read(&path, &element.place)?;
-        self.element(&mut root, depth)?;
-        self.xml.includes.leave();
-        Ok(if root.tag == "scene" { root.children } else { vec![root] })
-    }
-
-    /// Replaces each `$name` in the attributes by its value, the longest name that is known.
-    fn substitute(&self, element: &mut Element) -> Result<(), SceneError> {
-        for (_, value) in &mut element.attributes {
-            if value.contains('$') {
-                let mut parts = value.split('$');
-                let mut replaced = parts.next().unwrap_or_default().to_owned();
-                for part in parts {
-                    match self.default(part) {
-                        Some((name, value)) => {
-                            self.xml.includes.charge(value.len(), &element.place)?;
-                            replaced.push_str(value);
-                            replaced.push_str(&part[name.len()..]);
-                        }
-                        None => {
-                            replaced.push('$');
-                            replaced.push_str(part);
-                        }
-                    }
-                }
-                *value = replaced;
-            }
-        }
-        Ok(())
-    }
-
-    /// The longest name that `text` begins with, and its value.
-    fn default(&self, mut text: &str) -> Option<(&str, &str)> {
-        loop {
-            // What `text` begins with does not sort after it, and shorter ones before longer ones.
-            let range = (Bound::Unbounded, Bound::Included(text));
-            let (name, value) = self.defaults.range::<str, _>(range).next_back()?;
-            if text.starts_with(&name[..]) {
-                return Some((name, value));
-            }
-            // Nor is anything longer than what both begin with a beginning of it.
-            let same = text.chars().zip(name.chars()).take_while(|(a, b)| a == b);
-            text = &text[..same.map(|(a, _)| a.len_utf8()).sum()];
-        }
-    }
 }
 
 /// The file `name` in the first folder that has it, else in the first folder.
@@ -220,6 +112,8 @@ struct Reader<'a> {
     builder: Builder,
     folders: Vec<PathBuf>,
     incomplete: bool,
+    /// Whether the scene is of Mitsuba 0.6 or before.
+    is_older: bool,
     /// Ranges of the textures that were evaluated.
     ranges: Memo<Key<'a>>,
 }
@@ -305,7 +199,7 @@ impl<'a> Reader<'a> {
         used: &Option<HashSet<Key<'a>>>,
     ) -> Result<(), SceneError> {
         let named = matches!(&element.tag[..], "bsdf" | "shape");
-        let name = element.attribute("id").filter(|_| named).or(outer);
+        let name = element.attribute("id").filter(|id| named && !id.is_empty()).or(outer);
         if element.tag == "bsdf" {
             let used = used.as_ref().is_none_or(|used| used.contains(&element.key()));
             self.bsdf(element, name, used)?;

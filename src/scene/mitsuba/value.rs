@@ -33,10 +33,7 @@ impl<'a> Reader<'a> {
     fn value(&mut self, property: &'a Element) -> Result<Interval, SceneError> {
         match &property.tag[..] {
             "float" | "integer" | "spectrum" => number(property).map(Interval::point),
-            "rgb" => match rgb(property) {
-                Some(rgb) => Ok(Interval::point(luminance(rgb))),
-                None => Err(property.place.invalid("an rgb value is three numbers")),
-            },
+            "rgb" => rgb(property).map(|rgb| Interval::point(luminance(rgb))),
             "ref" => match self.referred(property) {
                 // A reference has no id of its own, so the element found is no reference.
                 Ok(texture) => self.value(texture),
@@ -105,17 +102,23 @@ pub(super) fn number(property: &Element) -> Result<f64, SceneError> {
     }
 }
 
-pub(super) fn rgb(property: &Element) -> Option<[f64; 3]> {
-    let text = property.attribute("value")?;
+/// The three numbers in the attribute "value", or one that stands for all.
+pub(super) fn rgb(property: &Element) -> Result<[f64; 3], SceneError> {
+    let text = property.required("value")?;
     let numbers: Option<Vec<f64>> = text
         .split([',', ' '])
         .filter(|part| !part.is_empty())
         .map(|part| part.parse().ok())
         .collect();
-    match numbers?[..] {
-        [grey] => Some([grey; 3]),
-        [r, g, b] => Some([r, g, b]),
-        _ => None,
+    match numbers.as_deref() {
+        Some(&[grey]) => Ok([grey; 3]),
+        Some(&[r, g, b]) => Ok([r, g, b]),
+        _ => {
+            let name = property.attribute("name").unwrap_or("value");
+            let message =
+                format!("{name} must be three numbers, red, green and blue, not \"{text}\"");
+            Err(property.place.invalid(message))
+        }
     }
 }
 

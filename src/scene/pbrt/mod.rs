@@ -61,7 +61,7 @@ use self::materials::Definition;
 use self::syntax::{Parameter, parameters, quoted, skip_arguments};
 use self::token::{Token, Tokens};
 use super::builder::Builder;
-use super::include::Includes;
+use super::include::{Includes, absent};
 use super::memo::Memo;
 use super::{Format, Place, Scene, SceneError, limits};
 use crate::input::{self, unmarked_stream};
@@ -299,7 +299,8 @@ impl Reader {
             self.builder.warn(
                 place,
                 format!(
-                    "{name} is missing; its materials are not seen, and all others count as used"
+                    "{}; its materials are not seen, and all others count as used",
+                    absent(name, &path)
                 ),
             );
             return Ok(());

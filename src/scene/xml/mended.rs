@@ -1,13 +1,16 @@
 //! XML that is not well formed, and that renderers read all the same.
 //!
-//! Their parsers do not check namespaces, take a raw "<" in an attribute as a character, and a
-//! declaration wherever it stands. All three are found in MaterialX documents: prefixes that
-//! nothing declares, tokens such as `<UDIM>` in file names, and a space before `<?xml`. Such a text
-//! is mended where the parser stops, and parsed again; places stay those of the text as written.
+//! Their parsers do not check namespaces, take a raw "<" or "&" in an attribute as a character, and
+//! a declaration wherever it stands. All are found in MaterialX documents: prefixes that nothing
+//! declares, tokens such as `<UDIM>` in file names, "this & that" in a description, and a space
+//! before `<?xml`. Such a text is mended where the parser stops, and parsed again; places stay
+//! those of the text as it was written.
 
 use std::borrow::Cow;
 
 use roxmltree::{Error, TextPos};
+
+use crate::scene::limits;
 
 /// A text, with what it takes for the parser to accept it.
 pub(super) struct Mended<'a> {
@@ -17,6 +20,8 @@ pub(super) struct Mended<'a> {
     declared: (String, usize),
     /// Whether the tokens are escaped.
     escaped: bool,
+    /// Whether ampersands that begin no reference are escaped.
+    ampersands: bool,
     /// Whether the declaration is made an instruction of another name, which may stand anywhere.
     renamed: bool,
     /// For each place where text was added: its end in `text`, and all bytes added up to there.
@@ -30,6 +35,7 @@ impl<'a> Mended<'a> {
             text: Cow::Borrowed(source),
             declared: (String::new(), 0),
             escaped: false,
+            ampersands: false,
             renamed: false,
             added: Vec::new(),
         }
@@ -49,7 +55,12 @@ impl<'a> Mended<'a> {
                 *count += 1;
             }
             Error::UnexpectedDeclaration(_) if !self.renamed => self.renamed = true,
-            _ if !self.escaped && tokens(self.source).next().is_some() => self.escaped = true,
+            Error::MalformedEntityReference(_) | Error::UnknownEntityReference(..)
+                if !self.ampersands && are_some(ampersands(self.source)) =>
+            {
+                self.ampersands = true;
+            }
+            _ if !self.escaped && are_some(tokens(self.source)) => self.escaped = true,
             _ => return false,
         }
         self.rebuild();
@@ -65,12 +76,16 @@ impl<'a> Mended<'a> {
         if self.escaped {
             edits.extend(tokens(self.source).map(|at| (at, "&lt;", "<".len())));
         }
+        if self.ampersands {
+            edits.extend(ampersands(self.source).map(|at| (at, "amp;", 0)));
+        }
         if self.renamed
             && let Some(at) = self.source.find(DECLARATION)
         {
             edits.push((at + DECLARATION.len(), "-", 0));
         }
-        edits.sort_unstable_by_key(|&(at, ..)| at);
+        // An ampersand may stand before a token, of which the first character is replaced.
+        edits.sort_unstable_by_key(|&(at, _, replaced)| (at, replaced));
         let (mut text, mut from, mut sum) = (String::new(), 0, 0);
         self.added.clear();
         for (at, put, replaced) in edits {
@@ -125,6 +140,27 @@ fn tokens(text: &str) -> impl Iterator<Item = usize> {
     })
 }
 
+/// The places behind ampersands that begin no reference, neither to an entity that XML declares nor
+/// to a character by its number.
+fn ampersands(text: &str) -> impl Iterator<Item = usize> {
+    text.match_indices('&').map(|(at, _)| at + 1).filter(|&at| !is_reference(&text[at..]))
+}
+
+/// Whether the text behind an ampersand makes it a reference.
+fn is_reference(text: &str) -> bool {
+    let Some(number) = text.strip_prefix('#') else {
+        return ["amp;", "lt;", "gt;", "quot;", "apos;"].iter().any(|name| text.starts_with(name));
+    };
+    let (digits, radix) = number.strip_prefix('x').map_or((number, 10), |digits| (digits, 16));
+    let rest = digits.trim_start_matches(|c: char| c.is_digit(radix));
+    rest.len() < digits.len() && rest.starts_with(';')
+}
+
+/// Whether there are any, and no more than are mended.
+fn are_some(places: impl Iterator<Item = usize>) -> bool {
+    (1..=limits::XML_MENDED).contains(&places.take(limits::XML_MENDED + 1).count())
+}
+
 /// Where the name of the root element ends.
 fn root_name_end(text: &str) -> Option<usize> {
     let mut from = 0;
@@ -164,8 +200,17 @@ mod tests {
     }
 
     #[test]
+    fn an_ampersand_may_begin_a_reference() {
+        let references = "&amp;&lt;&gt;&quot;&apos;&#38;&#x26;&#xaF;";
+        assert_eq!(ampersands(references).next(), None);
+        let raw = "& &&nbsp;&amp &#;&#x;&#38&#3a;&#xg;&ampere;&";
+        assert_eq!(ampersands(raw).count(), raw.matches('&').count());
+        assert_eq!(ampersands("é&amp;& ").collect::<Vec<_>>(), ["é&amp;&".len()]);
+    }
+
+    #[test]
     fn offsets_are_those_of_the_source() {
-        let source = " <?xml version='1.0'?><a><b é='<UDIM>'/>\n<c:d/></a>";
+        let source = " <?xml version='1.0'?><a><b é='&<UDIM> & &amp; &'/>\n<c:d e='&f;'/></a>";
         let mut mended = Mended::new(source);
         while let Err(error) = roxmltree::Document::parse(mended.text()).map(|_| ()) {
             assert!(mended.mend(&error), "{error}");

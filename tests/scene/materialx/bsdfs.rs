@@ -190,6 +190,29 @@ fn a_bsdf_that_is_not_understood_leaves_the_others() {
     not_understood("<LamaX name=\"a\" type=\"surfaceshader\"/>", &["neither a node"]);
 }
 
+#[test]
+fn a_broken_branch_leaves_the_others() {
+    let metal = bsdf("conductor_bsdf", "metal", &[]);
+    let broken = |class: &str, inputs: &[(&str, &str)], kept: &[&str], why: &str| {
+        let scene = load("a.mtlx", &surface(&(metal.clone() + &bsdf(class, "end", inputs))));
+        assert_eq!(names(&scene), kept);
+        let name = if kept.is_empty() { "a" } else { "a.end" };
+        let [ignored] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
+        assert!(ignored.name == name && !ignored.understood, "{ignored}");
+        assert!(ignored.reason.contains(why), "{ignored}");
+    };
+    let (metal, absent) = ("nodename=\"metal\"", "nodename=\"absent\"");
+    let half = ("mix", "value=\"0.5\"");
+    broken("mix", &[("fg", metal), ("bg", absent), half], &["a"], "no node \"absent\"");
+    broken("mix", &[("fg", absent), ("bg", metal), half], &["a"], "no node \"absent\"");
+    broken("add", &[("in1", absent), ("in2", metal)], &["a"], "no node \"absent\"");
+    broken("layer", &[("top", absent), ("base", metal)], &["a"], "no node \"absent\"");
+    let itself = "nodename=\"end\"";
+    broken("mix", &[("fg", metal), ("bg", itself), half], &[], "connected to itself");
+    broken("mix", &[("fg", metal), ("bg", metal), ("mix", "value=\"x\"")], &[], "number");
+    broken("multiply", &[("in1", metal), ("in2", "value=\"\"")], &[], "number");
+}
+
 /// A node that the document defines by a graph, which has an interface.
 const DEFINED: &str = r#"
     <nodedef name="ND_paint" node="paint">

@@ -1,7 +1,7 @@
 //! Documents as they are: included, not well formed, with images in tiles.
 
 use super::document;
-use crate::{Folder, assert_close, assert_refused, load, names, png};
+use crate::{Folder, assert_close, assert_refused, assert_warned, load, names, png};
 
 const TEXTURED: &str = r#"<image name="i" type="float"><input name="file" value="a.png"/></image>
     <gltf_pbr name="a" type="surfaceshader"><input name="roughness" nodename="i"/></gltf_pbr>"#;
@@ -30,6 +30,29 @@ fn an_included_document_keeps_its_folder_and_its_prefix() {
         assert_eq!(scene.warnings, [""; 0], "{outer} {inner}");
         assert_close(scene.materials[0].roughness, [0.04, 0.16], [0.04, 0.16]);
     }
+}
+
+#[test]
+fn an_included_document_that_cannot_be_used_costs_itself_alone() {
+    let load = |href: &str| {
+        let include = |href: &str| format!("\n<xi:include href=\"{href}\"/>");
+        let sound = "<gltf_pbr name=\"a\" type=\"surfaceshader\"/>";
+        let broken = "<materialx>\n<gltf_pbr></materialx>";
+        let folder = Folder::new(&[
+            ("a.mtlx", document(&(include(href) + sound + &include("c.mtlx")))),
+            ("b.mtlx", broken.to_owned()),
+            ("c.mtlx", document("<gltf_pbr name=\"c\" type=\"surfaceshader\"/>")),
+        ]);
+        let scene = folder.load("a.mtlx").unwrap();
+        assert_eq!(names(&scene), ["a", "c"]);
+        scene
+    };
+    for folder in [".", ""] {
+        let named = format!("\"{folder}\" is a folder");
+        assert_warned(&load(folder), "a.mtlx:2:1", &[&named, "are not seen"]);
+    }
+    let parts = ["b.mtlx is not well formed", "b.mtlx:2:11: expected 'gltf_pbr' tag"];
+    assert_warned(&load("b.mtlx"), "a.mtlx:2:1", &parts);
 }
 
 #[test]
@@ -87,6 +110,18 @@ fn what_is_mended_moves_no_place() {
     // An include whose prefix is not declared is one.
     let include = "<materialx><xi:include href=\"b.mtlx\"/></materialx>";
     assert!(load("a.mtlx", include).warnings[0].contains("b.mtlx is missing"));
+}
+
+#[test]
+fn an_ampersand_may_be_a_character() {
+    let text = "<materialx doc=\"this & that, &nbsp; & <UDIM>&\">\n<a b=\"R&amp;D &#38; &\"/>\
+        <gltf_pbr name=\"x&y&amp;&#x7a;\" type=\"surfaceshader\"/></materialx>";
+    let scene = load("a.mtlx", text);
+    assert_eq!(names(&scene), ["x&y&z"]);
+    assert_eq!(scene.materials[0].origin.place.column, Some(25));
+    // What else is wrong has its own place.
+    let text = "<materialx doc=\"this & that\">\n<a b=\"&\"></c></materialx>";
+    assert_refused("a.mtlx", text, ":2:10", &["expected 'a' tag"]);
 }
 
 #[test]

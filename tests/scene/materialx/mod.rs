@@ -337,6 +337,92 @@ fn nodes_in_a_circle_are_warned_of() {
 }
 
 #[test]
+fn a_broken_lobe_leaves_the_others() {
+    let rough = |class: &str, inputs: &[(&str, &str)], kept: &[&str], lobe: &str| {
+        let inputs: String = inputs
+            .iter()
+            .map(|(name, value)| {
+                format!("<input name=\"{name}\" type=\"float\" value=\"{value}\"/>")
+            })
+            .collect();
+        let text = format!("<{class} name=\"a\" type=\"surfaceshader\">{inputs}</{class}>");
+        let scene = load("a.mtlx", &document(&text));
+        assert_eq!(names(&scene), kept, "{class}");
+        let [ignored] = &scene.ignored[..] else { panic!("{class}: {:?}", scene.ignored) };
+        assert!(ignored.name == lobe && !ignored.understood, "{ignored}");
+        assert!(ignored.reason.contains("must be a number"), "{ignored}");
+    };
+    for (class, roughness, coat, of_coat, name) in [
+        (
+            "open_pbr_surface",
+            "specular_roughness",
+            "coat_weight",
+            "coat_roughness_anisotropy",
+            "coat",
+        ),
+        ("standard_surface", "specular_roughness", "coat", "coat_anisotropy", "coat"),
+        ("gltf_pbr", "roughness", "clearcoat", "clearcoat_roughness", "clearcoat"),
+        ("UsdPreviewSurface", "roughness", "clearcoat", "clearcoatRoughness", "clearcoat"),
+        ("disney_principled", "roughness", "clearcoat", "clearcoatGloss", "clearcoat"),
+    ] {
+        let coated = format!("a.{name}");
+        for bad in ["nan", ""] {
+            rough(class, &[(roughness, bad), (coat, "1")], &[&coated], "a");
+            rough(class, &[(of_coat, bad), (coat, "1")], &["a"], &coated);
+        }
+        // What has no weight is not looked at.
+        let unused = shader(class, &[(of_coat, f64::NAN)]);
+        assert_eq!((names(&unused), unused.ignored.len()), (vec!["a"], 0), "{class}");
+    }
+    rough("standard_surface", &[("sheen", "x")], &["a"], "a.sheen");
+    // The base depends on the coat's roughness only where that affects it.
+    let coat = [("coat", "1"), ("coat_roughness", "x")];
+    rough("standard_surface", &coat, &["a"], "a.coat");
+    rough("standard_surface", &[&coat[..], &[("coat_affect_roughness", "1")]].concat(), &[], "a");
+    // Both the reflection and the transmission.
+    let glass = [("transmission", "1"), ("transmission_extra_roughness", "0.5")];
+    let inputs = [&glass[..], &[("specular_roughness", "x"), ("coat", "1")]].concat();
+    rough("standard_surface", &inputs, &["a.coat"], "a");
+}
+
+#[test]
+fn a_range_is_a_remapping() {
+    let check = |inputs: &[(&str, &str)], r: f64| {
+        let inputs: String = inputs
+            .iter()
+            .map(|(name, value)| format!("<input name=\"{name}\" {value}/>"))
+            .collect();
+        let scene = load("a.mtlx", &graph(&format!("<range name=\"end\">{inputs}</range>")));
+        assert_eq!(scene.warnings, [""; 0]);
+        assert_close(scene.materials[0].roughness, [r * r; 2], [r * r; 2]);
+    };
+    let quarter = ("in", "interfacename=\"amount\"");
+    check(&[quarter], 0.25);
+    let [low, high] = [("inlow", "value=\"0.2\""), ("inhigh", "value=\"0.4\"")];
+    check(&[quarter, low, high], 0.25);
+    let [outlow, outhigh] = [("outlow", "value=\"0.2\""), ("outhigh", "value=\"0.6\"")];
+    check(&[quarter, low, high, outlow, outhigh], 0.3);
+    let gamma = ("gamma", "value=\"2\"");
+    check(&[quarter, gamma, outlow, outhigh], 0.4);
+    // (0.25 - 0.5) / 1 keeps its sign: -sqrt(0.25) = -0.5.
+    let [low, high] = [("inlow", "value=\"0.5\""), ("inhigh", "value=\"1.5\"")];
+    check(&[quarter, low, high, gamma, ("outlow", "value=\"0.6\"")], 0.4);
+    let [yes, no] = [("doclamp", "value=\"true\""), ("doclamp", "value=\"false\"")];
+    check(&[quarter, low, high, ("outlow", "value=\"0.6\""), yes], 0.6);
+    check(&[quarter, low, high, ("outlow", "value=\"0.6\""), no], 0.5);
+
+    let odd =
+        |inputs: &str| load("a.mtlx", &graph(&format!("\n<range name=\"end\">{inputs}</range>")));
+    let none = odd("<input name=\"gamma\" value=\"0\"/>");
+    assert!(none.warnings[0].contains("a.mtlx:2:1: texture end has a gamma"), "{none:?}");
+    // A constant, of which a Fresnel term may be made.
+    let ior = r#"<range name="r"><input name="in" value="1"/><input name="outhigh" value="1.7"/></range>
+        <open_pbr_surface name="a" type="surfaceshader"><input name="specular_ior" nodename="r"/></open_pbr_surface>"#;
+    let eta = load("a.mtlx", &document(ior)).materials[0].fresnel;
+    assert_eq!(eta, Some(Fresnel::Dielectric(1.7)));
+}
+
+#[test]
 fn an_input_that_says_nothing_is_the_default() {
     let text = "<open_pbr_surface name=\"a\" type=\"surfaceshader\"><input name=\"specular_roughness\" type=\"float\"/></open_pbr_surface>";
     let scene = load("a.mtlx", &document(text));

@@ -109,6 +109,46 @@ fn disney_principled() {
 }
 
 #[test]
+fn a_specular_weight_changes_the_index() {
+    let weighted = |inputs: &[(&str, f64)]| shader("open_pbr_surface", inputs);
+    let fresnel = |weight: f64, ior: f64| {
+        let inputs = [("specular_weight", weight), ("specular_ior", ior)];
+        let Some(Fresnel::Dielectric(eta)) = weighted(&inputs).materials[0].fresnel else {
+            panic!("no dielectric")
+        };
+        eta
+    };
+    // F0 of 1.5 is 0.04, of which half is that of (1 + sqrt(0.02)) / (1 - sqrt(0.02)).
+    let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} is not {b}");
+    let half = (1.0 + 0.02f64.sqrt()) / (1.0 - 0.02f64.sqrt());
+    close(fresnel(0.5, 1.5), half);
+    close(fresnel(0.5, 1.0 / 1.5), 1.0 / half);
+    assert_eq!(fresnel(1.0, 1.5), 1.5);
+    // 0.04 times 4 is 0.16 = 0.4^2; no F0 is above 0.99999.
+    close(fresnel(4.0, 1.5), 1.4 / 0.6);
+    let most = 0.99999f64.sqrt();
+    assert!((fresnel(100.0, 1.5) * (1.0 - most) / (1.0 + most) - 1.0).abs() < 1e-9);
+
+    let text = document(
+        r#"<image name="i" type="float"><input name="file" value="absent.png"/></image>
+        <open_pbr_surface name="a" type="surfaceshader">
+          <input name="specular_weight" type="float" nodename="i"/></open_pbr_surface>"#,
+    );
+    assert_eq!(load("a.mtlx", &text).materials[0].fresnel, None, "it varies");
+
+    // Without weight the dielectric has no interface, and the metal no lobe.
+    let none = |more: &[(&str, f64)]| weighted(&[&[("specular_weight", 0.0)], more].concat());
+    assert_eq!(none(&[]).materials, []);
+    let metal = ("base_metalness", 1.0);
+    assert_eq!(none(&[metal]).materials, []);
+    let glass = ("transmission_weight", 1.0);
+    assert_eq!(none(&[metal, glass]).materials, []);
+    assert_eq!(none(&[glass]).materials[0].fresnel, Some(Fresnel::Dielectric(1.0)));
+    assert_eq!(names(&none(&[("base_metalness", 0.5), glass])), ["a"]);
+    assert_schlick(&weighted(&[metal, ("specular_weight", 0.5)]).materials[0], 0.8);
+}
+
+#[test]
 fn metals_have_the_reflectance_of_their_colour() {
     let metal = |inputs: &[(&str, &str)]| {
         coloured("standard_surface", &[&[("metalness", "1")], inputs].concat()).materials[0].clone()

@@ -3,7 +3,9 @@
 use microfacet_bake::scene::{Fresnel, Interval, Roughness, Scene};
 
 use super::scene;
-use crate::{anisotropic, assert_not_understood, assert_warned, isotropic, load, named, names};
+use crate::{
+    Folder, anisotropic, assert_not_understood, assert_warned, isotropic, load, named, names,
+};
 
 /// A good BSDF after the text, which must be read whatever the text says.
 fn beside(text: &str) -> Scene {
@@ -70,9 +72,18 @@ fn a_bad_fresnel_value_leaves_the_lobe() {
     let glass = "roughdielectric";
     case(glass, "<string name=\"int_ior\" value=\"watr\"/>", ":2:1", &["watr", "`water`"]);
     case(glass, "<float name=\"int_ior\" value=\"-1\"/>", ":1:24", &["more than 0"]);
+    let both = "<float name=\"int_ior\" value=\"-1.5\"/><float name=\"ext_ior\" value=\"-1\"/>";
+    case(glass, both, ":1:24", &["-1.5", "more than 0"]);
     case(glass, "<float name=\"ext_ior\" value=\"x\"/>", ":2:1", &["ext_ior", "number"]);
     let eta = "<rgb name=\"eta\" value=\"0 1 1\"/><rgb name=\"k\" value=\"3 2 2\"/>";
     case("roughconductor", eta, ":1:24", &["eta must be more than 0"]);
+    let eta = "<rgb name=\"eta\" value=\"a,b,c\"/><rgb name=\"k\" value=\"3 2 2\"/>";
+    case("roughconductor", eta, ":2:1", &["eta must be three numbers", "\"a,b,c\""]);
+    let k = "<rgb name=\"k\" value=\"3 2\"/><rgb name=\"eta\" value=\"1 1 1\"/>";
+    case("roughconductor", k, ":2:1", &["k must be three numbers", "\"3 2\""]);
+    let metal = "<string name=\"material\" value=\"Unobtainium\"/>";
+    case("roughconductor", metal, ":2:1", &["\"Unobtainium\" is no preset", "give eta and k"]);
+    case("pplastic", "<float name=\"eta\" value=\"-1\"/>", ":1:24", &["more than 0"]);
     case("principled", "<float name=\"eta\" value=\"-1\"/>", ":1:24", &["more than 0"]);
 }
 
@@ -137,11 +148,65 @@ fn a_coating_is_a_lobe_beside_the_bsdf_inside() {
     assert_eq!(named(&scene, "a.coating").roughness, Roughness::Smooth);
     let clear = Some(Fresnel::Dielectric(1.5046 / 1.000_277));
     assert_eq!(named(&scene, "a.coating").fresnel, clear);
-    // A bad coat leaves what is inside.
+    // A bad coat leaves what is inside, under the name that its own lobe would have.
     let bad = format!("<float name=\"alpha\" value=\"-1\"/>{inner}");
     let scene = bsdf("roughcoating", &bad);
     assert_eq!(names(&scene), ["a", "good"]);
-    assert_not_understood(&scene, "a", ":1:24", &["-1"]);
+    assert_not_understood(&scene, "a.coating", ":1:24", &["-1"]);
+}
+
+#[test]
+fn an_empty_id_is_none() {
+    let rough = "<float name=\"alpha\" value=\"0.3\"/>";
+    let scene = beside(&format!("\n<bsdf type=\"roughplastic\" id=\"\">{rough}</bsdf>"));
+    assert_eq!(names(&scene), ["roughplastic at line 2", "good"]);
+    let scene = bsdf("twosided", "<bsdf type=\"roughplastic\" id=\"\"/>");
+    assert_eq!(names(&scene), ["a", "good"]);
+}
+
+#[test]
+fn what_names_no_file_or_value_is_left_out() {
+    let case = |element: &str, parts: &[&str]| {
+        let scene = beside(&format!("\n{element}"));
+        assert_warned(&scene, ":2:1", &[&["it is left out"], parts].concat());
+    };
+    case("<include/>", &["<include>", "no attribute \"filename\""]);
+    case("<default name=\"x\"/>", &["<default>", "no attribute \"value\""]);
+    case("<default value=\"x\"/>", &["<default>", "no attribute \"name\""]);
+    case("<path/>", &["<path>", "no attribute \"value\""]);
+    for folder in [".", ""] {
+        let scene = beside(&format!("\n<include filename=\"{folder}\"/>"));
+        let named = format!("\"{folder}\" is a folder");
+        assert_warned(&scene, ":2:1", &[&named, "all others count as used"]);
+    }
+    // What may use a material is not seen.
+    let shape = "<shape type=\"cube\"><bsdf type=\"diffuse\"/></shape>";
+    assert!(!named(&beside(shape), "good").used);
+    assert!(named(&beside(&format!("{shape}<include/>")), "good").used);
+}
+
+#[test]
+fn an_included_file_that_is_not_well_formed_costs_itself_alone() {
+    let good = "<bsdf type=\"roughconductor\" id=\"good\"/>";
+    let include = |name: &str| format!("\n<include filename=\"{name}\"/>");
+    let whole = include("b.xml") + &include("c.xml") + good;
+    let cases: [(&[u8], &str); 3] = [
+        (b"<scene>\n<bsdf></scene>", "b.xml:2:7: expected 'bsdf' tag"),
+        (b"", "b.xml:1:1"),
+        (b"<scene a=\"\xff\"/>", "UTF-8"),
+    ];
+    for (text, why) in cases {
+        let folder = Folder::new(&[
+            ("a.xml", scene(&whole).as_bytes()),
+            ("b.xml", text),
+            ("c.xml", b"<bsdf type=\"roughplastic\" id=\"c\"/>"),
+        ]);
+        let scene = folder.load("a.xml").unwrap();
+        assert_eq!(names(&scene), ["c", "good"]);
+        assert_warned(&scene, "a.xml:2:1", &["b.xml is not well formed", why, "are not seen"]);
+        // A change of it changes the scene.
+        assert_eq!(scene.included.len(), 2);
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Mitsuba 3 scenes.
 
 mod degraded;
+mod fresnel;
 
 use microfacet_bake::scene::{Format, Fresnel, Interval, Masking, Roughness};
 use microfacet_sampler::Metal;
@@ -245,5 +246,4 @@ fn what_is_no_scene_is_refused() {
         |text: &str, place: &str, parts: &[&str]| assert_refused("a.xml", text, place, parts);
     case("<scene version=\"3.0.0\">\n<bsdf id=\"a\"></scene>", ":2:14", &["bsdf"]);
     case("<mesh/>", ":1:1", &["<mesh>", "<scene>"]);
-    case(&scene("\n<include/>"), ":2:1", &["no attribute \"filename\""]);
 }
