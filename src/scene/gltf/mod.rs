@@ -16,7 +16,8 @@
 //!   ((ior − 1)/(ior + 1))² with `KHR_materials_ior` (default 1.5), times `specularColorFactor` of
 //!   `KHR_materials_specular`, and at most 1. With specular and glossiness it is `specularFactor`.
 //! - Where a texture varies F0 the Fresnel term is left open, and so it is where `specularFactor`
-//!   of `KHR_materials_specular`, which is F90, is not 1. A dielectric for which it is 0 reflects
+//!   of `KHR_materials_specular`, which is F90, is not 1, and with a film, where `iridescenceFactor`
+//!   of `KHR_materials_iridescence` is not 0. A dielectric whose `specularFactor` is 0 reflects
 //!   nothing; unless it transmits, it has no lobe.
 //! - `KHR_materials_sheen` has a distribution of its own; `KHR_materials_unlit` has no lobe.
 //! - A factor out of its range costs its lobe, or its Fresnel term, alone. Indices may be written

@@ -216,7 +216,7 @@ pub(super) struct MaterialExtensions {
     #[serde(rename = "KHR_materials_ior")]
     pub(super) ior: Option<Ior>,
     #[serde(rename = "KHR_materials_iridescence")]
-    pub(super) iridescence: Option<IgnoredAny>,
+    pub(super) iridescence: Option<Iridescence>,
     #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
     pub(super) specular_glossiness: Option<SpecularGlossiness>,
     #[serde(rename = "KHR_materials_sheen")]
@@ -254,6 +254,12 @@ impl Default for Ior {
     fn default() -> Self {
         Self { ior: 1.5 }
     }
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Iridescence {
+    pub(super) iridescence_factor: f64,
 }
 
 #[derive(Deserialize)]
