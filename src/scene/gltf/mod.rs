@@ -60,11 +60,10 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
             )
     })?;
     let version = &document.asset.version;
-    if version.starts_with("1.") {
-        return Err(place.invalid(format!("this is {VERSION_1}")));
-    }
-    if !version.starts_with("2.") {
-        return Err(place.invalid(format!("this is glTF {version}; only version 2 is read")));
+    match version.split('.').next() {
+        Some("2") => {}
+        Some("1") => return Err(place.invalid(format!("this is {VERSION_1}"))),
+        _ => return Err(place.invalid(format!("this is glTF {version}; only version 2 is read"))),
     }
     let mut importer = Importer {
         builder: Builder::new(Format::Gltf),
