@@ -3,7 +3,7 @@
 use std::array::from_fn;
 
 use super::material::unit;
-use super::schema::{Material, Specular};
+use super::parameters::{Material, Specular};
 use crate::scene::Fresnel;
 
 impl Material {
