@@ -16,13 +16,15 @@
 //!   ((ior − 1)/(ior + 1))² with `KHR_materials_ior` (default 1.5), times `specularColorFactor` of
 //!   `KHR_materials_specular`, and at most 1. With specular and glossiness it is `specularFactor`.
 //! - Where a texture varies F0 the Fresnel term is left open, and so it is where `specularFactor`
-//!   of `KHR_materials_specular`, which is F90, is not 1, and with a film, where `iridescenceFactor`
-//!   of `KHR_materials_iridescence` is not 0. A dielectric whose `specularFactor` is 0 reflects
-//!   nothing; unless it transmits, it has no lobe.
+//!   of `KHR_materials_specular`, which is F90, is not 1, and with a film, where
+//!   `iridescenceFactor` of `KHR_materials_iridescence` is not 0. A dielectric whose
+//!   `specularFactor` is 0 reflects nothing; unless it transmits, it has no lobe.
 //! - `KHR_materials_sheen` has a distribution of its own; `KHR_materials_unlit` has no lobe.
 //! - A factor out of its range costs its lobe, or its Fresnel term, alone; a value of a wrong kind
 //!   costs the material, the texture or the mesh that it is in. A member that is null is absent.
 //!   Indices may be written as `1.0`.
+//! - `extensionsRequired` lists what a reader has to know (3.12): a material with one of those that
+//!   is not known here is not understood. Others have no say.
 //! - The form of G2 is left to the renderer: appendix B and the anisotropy extension show one form
 //!   each.
 //!
@@ -146,6 +148,8 @@ impl Importer<'_> {
     fn materials(&mut self) -> Result<(), SceneError> {
         let document = self.document;
         let used = self.used();
+        let required = document.extensions_required.iter();
+        let required = required.filter_map(|text| Value::of(text).read().ok()).collect();
         for (i, text) in document.materials.iter().enumerate() {
             let named = Value::of(text).read::<Named>().ok().and_then(|named| named.name);
             let name = match named {
@@ -153,7 +157,7 @@ impl Importer<'_> {
                 _ => format!("material {i}"),
             };
             let used = used.any || used.materials.contains(&i);
-            match Value::of(text).read() {
+            match Value::of(text).requiring(&required).read() {
                 Ok(material) => self.material(&name, &material, used)?,
                 Err(why) => self.builder.not_understood(&name, "material", &self.place, why)?,
             }

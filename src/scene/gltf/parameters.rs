@@ -41,6 +41,7 @@ impl Default for MetallicRoughness {
     }
 }
 
+/// The extensions that are known: those with an underscore leave every lobe as it is.
 #[derive(Default, Deserialize)]
 pub(super) struct MaterialExtensions {
     #[serde(rename = "KHR_materials_anisotropy")]
@@ -61,6 +62,16 @@ pub(super) struct MaterialExtensions {
     pub(super) transmission: Option<IgnoredAny>,
     #[serde(rename = "KHR_materials_unlit")]
     pub(super) unlit: Option<IgnoredAny>,
+    #[serde(rename = "KHR_materials_diffuse_transmission")]
+    _diffuse_transmission: Option<IgnoredAny>,
+    #[serde(rename = "KHR_materials_dispersion")]
+    _dispersion: Option<IgnoredAny>,
+    #[serde(rename = "KHR_materials_emissive_strength")]
+    _emissive_strength: Option<IgnoredAny>,
+    #[serde(rename = "KHR_materials_volume")]
+    _volume: Option<IgnoredAny>,
+    #[serde(rename = "KHR_materials_volume_scatter")]
+    _volume_scatter: Option<IgnoredAny>,
 }
 
 #[derive(Default, Deserialize)]

@@ -20,6 +20,9 @@ pub(super) struct Document<'a> {
     /// [`Mesh`]es, likewise.
     #[serde(borrow, default, deserialize_with = "list")]
     pub(super) meshes: Vec<&'a RawValue>,
+    /// Names, likewise.
+    #[serde(borrow, default, deserialize_with = "list")]
+    pub(super) extensions_required: Vec<&'a RawValue>,
     #[serde(default, deserialize_with = "list")]
     pub(super) textures: Vec<Entry<Texture>>,
     #[serde(default, deserialize_with = "list")]

@@ -1,5 +1,6 @@
 //! Values of the document that are read one by one, so that an error in one costs that one alone.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -17,11 +18,20 @@ use crate::scene::limits;
 /// An object is read from an object alone, where serde takes a list of its members too; a member
 /// that is null is absent; and an error begins with the members that lead to it.
 #[derive(Clone, Copy)]
-pub(super) struct Value<'de>(&'de RawValue);
+pub(super) struct Value<'de, 'r> {
+    text: &'de RawValue,
+    required: &'r BTreeSet<String>,
+}
 
-impl<'de> Value<'de> {
+impl<'de, 'r> Value<'de, 'r> {
     pub(super) fn of(text: &'de RawValue) -> Self {
-        Self(text)
+        const NONE: &BTreeSet<String> = &BTreeSet::new();
+        Self { text, required: NONE }
+    }
+
+    /// The same, which cannot be read where it has one of these extensions and it is not known.
+    pub(super) fn requiring(self, required: &'r BTreeSet<String>) -> Self {
+        Self { required, ..self }
     }
 
     /// Reads it; the error says why it cannot be read.
@@ -39,20 +49,20 @@ pub(super) fn message(error: &Error) -> String {
     shortened(message.into()).into_owned()
 }
 
-impl<'de> Deserializer<'de> for Value<'de> {
+impl<'de> Deserializer<'de> for Value<'de, '_> {
     type Error = Error;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        self.0.deserialize_any(visitor)
+        self.text.deserialize_any(visitor)
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _: &'static str,
-        _: &'static [&'static str],
+        known: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        self.0.deserialize_map(Object(visitor))
+        self.text.deserialize_map(Object { visitor, known, required: self.required })
     }
 
     /// Of members that are there; null is not.
@@ -66,7 +76,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
         name: &'static str,
         visitor: V,
     ) -> Result<V::Value, Error> {
-        self.0.deserialize_newtype_struct(name, visitor)
+        self.text.deserialize_newtype_struct(name, visitor)
     }
 
     fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
@@ -79,10 +89,14 @@ impl<'de> Deserializer<'de> for Value<'de> {
     }
 }
 
-/// Gives the members of an object to the visitor of a struct.
-struct Object<V>(V);
+/// Gives the members of an object to the visitor of a struct with the members `known`.
+struct Object<'r, V> {
+    visitor: V,
+    known: &'static [&'static str],
+    required: &'r BTreeSet<String>,
+}
 
-impl<'de, V: Visitor<'de>> Visitor<'de> for Object<V> {
+impl<'de, V: Visitor<'de>> Visitor<'de> for Object<'_, V> {
     type Value = V::Value;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -90,18 +104,21 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Object<V> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<V::Value, A::Error> {
-        self.0.visit_map(Members { map, last: None })
+        let Self { visitor, known, required } = self;
+        visitor.visit_map(Members { map, known, required, last: None })
     }
 }
 
 /// The members that are not null.
-struct Members<'de, A> {
+struct Members<'de, 'r, A> {
     map: A,
+    known: &'static [&'static str],
+    required: &'r BTreeSet<String>,
     /// That of which the name was read last.
     last: Option<(String, &'de RawValue)>,
 }
 
-impl<'de, A: MapAccess<'de>> MapAccess<'de> for Members<'de, A> {
+impl<'de, A: MapAccess<'de>> MapAccess<'de> for Members<'de, '_, A> {
     type Error = A::Error;
 
     fn next_key_seed<K: DeserializeSeed<'de>>(
@@ -111,6 +128,11 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for Members<'de, A> {
         while let Some((name, text)) = self.map.next_entry::<String, &'de RawValue>()? {
             if text.get() == "null" {
                 continue;
+            }
+            if self.required.contains(&name) && !self.known.contains(&&name[..]) {
+                return Err(A::Error::custom(format!(
+                    "{name} is not known here, and extensionsRequired has it"
+                )));
             }
             let key = seed.deserialize(name.as_str().into_deserializer())?;
             self.last = Some((name, text));
@@ -122,7 +144,7 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for Members<'de, A> {
     fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, A::Error> {
         let last = self.last.take();
         let (name, text) = last.ok_or_else(|| A::Error::custom("a value without a name"))?;
-        let value = seed.deserialize(Value(text));
+        let value = seed.deserialize(Value { text, required: self.required });
         value.map_err(|error| A::Error::custom(format!("{name}: {}", message(&error))))
     }
 }

@@ -93,3 +93,30 @@ fn with_a_mesh_that_cannot_be_read_every_material_may_be_used() {
     case(&primitive("-1"), "`-1`, expected a whole number");
     case(&primitive("1e300"), "1e300 is not a whole number");
 }
+
+#[test]
+fn a_required_extension_that_is_not_known_costs_its_materials_alone() {
+    let required = |names: &str| format!(", \"extensionsRequired\": [5, {names}]");
+    let one = |name: &str| format!("{{\"name\": \"m\", \"extensions\": {{\"{name}\": {{}}}}}}");
+    let scene = beside(&one("ADSK_x"), &required("\"KHR_texture_transform\", \"ADSK_x\""));
+    let parts = ["ADSK_x is not known", "extensionsRequired"];
+    assert_not_understood(&scene, "m", "a.gltf", &parts);
+    assert_eq!((names(&scene), scene.ignored.len()), (vec!["good"], 1));
+    // One that is not required may be left aside (specification, 3.12).
+    let scene = beside(&one("ADSK_x"), &required("\"ADSK_y\""));
+    assert_eq!((named(&scene, "m").roughness, scene.ignored.len()), (isotropic(1.0), 0));
+    // Of these some are read, and the others leave the lobe as it is.
+    for known in ["anisotropy", "clearcoat", "ior", "specular", "transmission", "iridescence"]
+        .into_iter()
+        .chain(["dispersion", "emissive_strength", "volume", "diffuse_transmission"])
+    {
+        let known = format!("KHR_materials_{known}");
+        let scene = beside(&one(&known), &required(&format!("\"{known}\"")));
+        assert_eq!((names(&scene), scene.ignored.len()), (vec!["m", "good"], 0), "{known}");
+    }
+    // What primitives require has to do with geometry.
+    let draco = r#"{"material": 0, "extensions": {"KHR_draco_mesh_compression": {}}}"#;
+    let meshes = format!(", \"meshes\": [{{\"primitives\": [{draco}]}}]");
+    let scene = beside("{}", &(required("\"KHR_draco_mesh_compression\"") + &meshes));
+    assert_eq!((scene.ignored.len(), scene.warnings.len()), (0, 0));
+}
