@@ -51,7 +51,7 @@ pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Fre
 }
 
 /// A text that is kept for each of many materials, without the end of a very long one.
-fn shortened(text: Cow<'_, str>) -> Cow<'_, str> {
+pub(super) fn shortened(text: Cow<'_, str>) -> Cow<'_, str> {
     if text.len() <= limits::MESSAGE {
         return text;
     }

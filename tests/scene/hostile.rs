@@ -419,6 +419,16 @@ fn gltf_scenes_that_would_fill_the_memory_are_refused() {
         let text = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"{list}\":[{elements}{{}}]}}");
         assert_soon_refused("a.gltf", &text, &["a.gltf:1", "more than 1048576 elements"]);
     }
+    // For each of the materials it is said why the texture cannot be read, which quotes it.
+    let mut materials =
+        "{\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}},".repeat(99_999);
+    materials.push_str("{}");
+    let source = "x".repeat(16 << 20);
+    let text = format!(
+        "{{\"asset\":{{\"version\":\"2.0\"}},\"materials\":[{materials}],\
+         \"textures\":[{{\"source\":\"{source}\"}}]}}"
+    );
+    assert_eq!(soon_loaded("a.gltf", &text).warnings.len(), 1);
     let materials = "{},".repeat(100_000);
     let text = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"materials\":[{materials}{{}}]}}");
     assert_soon_refused("a.gltf", &text, &["a.gltf", "more than 100000 materials"]);

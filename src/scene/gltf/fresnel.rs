@@ -3,7 +3,7 @@
 use std::array::from_fn;
 
 use super::material::unit;
-use super::schema::{Material, Specular};
+use super::parameters::{Material, Specular};
 use crate::scene::Fresnel;
 
 impl Material {
@@ -21,7 +21,10 @@ impl Material {
     /// everywhere; the error says what is impossible.
     pub(super) fn fresnel(&self) -> Result<Option<Fresnel>, String> {
         let extensions = &self.extensions;
-        if extensions.iridescence.is_some() {
+        // With a factor of 0, the default, there is no film, whatever its texture.
+        if let Some(film) = &extensions.iridescence
+            && unit("iridescenceFactor", film.iridescence_factor)? > 0.0
+        {
             return Ok(None);
         }
         if let Some(pbr) = &extensions.specular_glossiness {
@@ -31,8 +34,11 @@ impl Material {
         }
         let pbr = &self.pbr_metallic_roughness;
         let metallic = unit("metallicFactor", pbr.metallic_factor)?;
-        let [r, g, b, _] = pbr.base_color_factor;
-        let base = colour("baseColorFactor", [r, g, b])?;
+        let base = match pbr.base_color_factor {
+            // A dielectric's F0 does not depend on it.
+            _ if metallic == 0.0 => [0.0; 3],
+            [r, g, b, _] => colour("baseColorFactor", [r, g, b])?,
+        };
         let textures = [&pbr.base_color_texture, &pbr.metallic_roughness_texture];
         if metallic > 0.0 && textures.into_iter().any(Option::is_some) {
             return Ok(None);

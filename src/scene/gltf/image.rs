@@ -6,6 +6,7 @@ use std::path::Path;
 use base64::Engine;
 
 use super::schema::{Document, Image};
+use super::value::Entry;
 use super::{Importer, Section};
 use crate::input;
 use crate::scene::Interval;
@@ -16,13 +17,13 @@ impl Importer<'_> {
     /// The range of a channel of a texture.
     pub(super) fn image(&mut self, texture: usize, channel: Channel) -> Interval {
         let name = format!("{texture}");
-        let textures = &self.document.textures;
-        let source = textures.get(texture).and_then(|texture| texture.source);
-        let image = source.and_then(|i| Some((i, self.document.images.get(i)?)));
         let place = self.place.clone();
-        let Some((source, image)) = image else {
-            let reason = "has no PNG or JPEG image";
-            return self.builder.unread(&name, reason, &place);
+        let (source, image) = match source(self.document, texture) {
+            Ok(source) => source,
+            Err(error) => {
+                let reason = format!("cannot be read ({error})");
+                return self.builder.unread(&name, &reason, &place);
+            }
         };
         if let Some(uri) = image.uri.as_deref().filter(|uri| !uri.starts_with("data:")) {
             let file = self.folder.join(decode_uri(uri));
@@ -36,10 +37,31 @@ impl Importer<'_> {
     }
 }
 
+/// The image of a texture, with its number.
+fn source<'a>(document: &'a Document<'_>, texture: usize) -> io::Result<(usize, &'a Image)> {
+    let texture = entry(&document.textures, Some(texture), "there is no such texture")?;
+    // Images of other kinds are in extensions.
+    let none = || io::Error::other("it has no PNG or JPEG image");
+    let source = texture.source.ok_or_else(none)?;
+    let image = entry(&document.images, Some(source), "there is no such image")?;
+    Ok((source, image))
+}
+
+/// An entry of a list by its number; the error says what is wrong in it, or that it is missing.
+fn entry<'a, T>(
+    list: &'a [Entry<T>],
+    index: Option<usize>,
+    missing: &'static str,
+) -> io::Result<&'a T> {
+    let entry = index.and_then(|index| list.get(index));
+    let Entry(entry) = entry.ok_or_else(|| io::Error::other(missing))?;
+    entry.as_ref().map_err(|why| io::Error::other(why.clone()))
+}
+
 /// The bytes of an image that is in the document or in one of its buffers.
 fn bytes(
     image: &Image,
-    document: &Document,
+    document: &Document<'_>,
     folder: &Path,
     binary: Option<&Section>,
     left: &Budget,
@@ -47,10 +69,10 @@ fn bytes(
     if let Some(uri) = &image.uri {
         return data_uri(uri, left);
     }
-    let missing = || io::Error::other("no such buffer");
-    let view =
-        image.buffer_view.and_then(|view| document.buffer_views.get(view)).ok_or_else(missing)?;
-    let buffer = document.buffers.get(view.buffer).ok_or_else(missing)?;
+    const MISSING: &str = "no such buffer";
+    let missing = || io::Error::other(MISSING);
+    let view = entry(&document.buffer_views, image.buffer_view, MISSING)?;
+    let buffer = entry(&document.buffers, Some(view.buffer), MISSING)?;
     let (file, start) = match (&buffer.uri, binary) {
         (Some(uri), _) if uri.starts_with("data:") => {
             let bytes = data_uri(uri, left)?;

@@ -1,7 +1,7 @@
 //! The lobes of a material.
 
 use super::Importer;
-use super::schema::{Clearcoat, Material, TextureInfo};
+use super::parameters::{Clearcoat, Material, TextureInfo};
 use crate::scene::builder::{GGX, Lobe};
 use crate::scene::texture::Channel;
 use crate::scene::{Fresnel, Interval, Roughness, SceneError};

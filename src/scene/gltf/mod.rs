@@ -16,11 +16,15 @@
 //!   ((ior − 1)/(ior + 1))² with `KHR_materials_ior` (default 1.5), times `specularColorFactor` of
 //!   `KHR_materials_specular`, and at most 1. With specular and glossiness it is `specularFactor`.
 //! - Where a texture varies F0 the Fresnel term is left open, and so it is where `specularFactor`
-//!   of `KHR_materials_specular`, which is F90, is not 1. A dielectric for which it is 0 reflects
-//!   nothing; unless it transmits, it has no lobe.
+//!   of `KHR_materials_specular`, which is F90, is not 1, and with a film, where
+//!   `iridescenceFactor` of `KHR_materials_iridescence` is not 0. A dielectric whose
+//!   `specularFactor` is 0 reflects nothing; unless it transmits, it has no lobe.
 //! - `KHR_materials_sheen` has a distribution of its own; `KHR_materials_unlit` has no lobe.
-//! - A factor out of its range costs its lobe, or its Fresnel term, alone. Indices may be written
-//!   as `1.0`.
+//! - A factor out of its range costs its lobe, or its Fresnel term, alone; a value of a wrong kind
+//!   costs the material, the texture or the mesh that it is in. A member that is null is absent.
+//!   Indices may be written as `1.0`.
+//! - `extensionsRequired` lists what a reader has to know (3.12): a material with one of those that
+//!   is not known here is not understood. Others have no say.
 //! - The form of G2 is left to the renderer: appendix B and the anisotropy extension show one form
 //!   each.
 //!
@@ -29,13 +33,17 @@
 mod fresnel;
 mod image;
 mod material;
+mod parameters;
 mod schema;
+mod value;
 
 use std::collections::BTreeSet;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use self::schema::{Document, Material, VERSION_1};
+use self::parameters::{Material, Named};
+use self::schema::{Document, Mesh, VERSION_1};
+use self::value::{Value, message};
 use super::builder::Builder;
 use super::error::Lines;
 use super::texture::Textures;
@@ -47,23 +55,16 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let place = Place::file(path);
     let (json, binary) = read(path, &place)?;
     let json = input::unmarked(&json);
-    let document: Document = serde_json::from_slice(json).map_err(|error| {
+    let document: Document<'_> = serde_json::from_slice(json).map_err(|error| {
         Lines::new(path, json)
             .after_feeds(error.line(), error.column().saturating_sub(1))
-            // The message has the place before it already.
-            .syntax(
-                error
-                    .to_string()
-                    .rsplit_once(" at line ")
-                    .map_or("no JSON", |(message, _)| message),
-            )
+            .syntax(message(&error))
     })?;
     let version = &document.asset.version;
-    if version.starts_with("1.") {
-        return Err(place.invalid(format!("this is {VERSION_1}")));
-    }
-    if !version.starts_with("2.") {
-        return Err(place.invalid(format!("this is glTF {version}; only version 2 is read")));
+    match version.split('.').next() {
+        Some("2") => {}
+        Some("1") => return Err(place.invalid(format!("this is {VERSION_1}"))),
+        _ => return Err(place.invalid(format!("this is glTF {version}; only version 2 is read"))),
     }
     let mut importer = Importer {
         builder: Builder::new(Format::Gltf),
@@ -128,36 +129,70 @@ struct Importer<'a> {
     builder: Builder,
     folder: &'a Path,
     place: Place,
-    document: &'a Document,
+    document: &'a Document<'a>,
     binary: Option<Section>,
     /// Images in the document or its buffers, by their number.
     embedded: Textures<usize>,
 }
 
+/// What meshes use.
+struct Used {
+    materials: BTreeSet<usize>,
+    /// Whether any material may be used: there are no meshes, or one cannot be read.
+    any: bool,
+    /// Whether a primitive has no material.
+    default: bool,
+}
+
 impl Importer<'_> {
     fn materials(&mut self) -> Result<(), SceneError> {
         let document = self.document;
-        let used: BTreeSet<usize> =
-            document.meshes.iter().flat_map(|mesh| &mesh.materials).copied().collect();
-        let count = document.materials.len();
-        for index in used.range(count..) {
+        let used = self.used();
+        let required = document.extensions_required.iter();
+        let required = required.filter_map(|text| Value::of(text).read().ok()).collect();
+        for (i, text) in document.materials.iter().enumerate() {
+            let named = Value::of(text).read::<Named>().ok().and_then(|named| named.name);
+            let name = match named {
+                Some(name) if !name.is_empty() => name,
+                _ => format!("material {i}"),
+            };
+            let used = used.any || used.materials.contains(&i);
+            match Value::of(text).requiring(&required).read() {
+                Ok(material) => self.material(&name, &material, used)?,
+                Err(why) => self.builder.not_understood(&name, "material", &self.place, why)?,
+            }
+        }
+        // A primitive without a material has the default one (specification, 3.7.2.1).
+        if used.default {
+            self.material("default material", &Material::default(), true)?;
+        }
+        Ok(())
+    }
+
+    fn used(&mut self) -> Used {
+        let Document { meshes, materials, .. } = self.document;
+        let mut used = Used { materials: BTreeSet::new(), any: meshes.is_empty(), default: false };
+        for (i, text) in meshes.iter().enumerate() {
+            match Value::of(text).read::<Mesh>() {
+                Ok(mesh) => {
+                    used.materials.extend(mesh.materials);
+                    used.default |= mesh.uses_default;
+                }
+                Err(why) => {
+                    used.any = true;
+                    let warning =
+                        format!("mesh {i} cannot be read ({why}); all materials count as used");
+                    self.builder.warn(&self.place, warning);
+                }
+            }
+        }
+        let count = materials.len();
+        for index in used.materials.range(count..) {
             let warning = format!(
                 "a mesh refers to material {index}, but there are {count} materials, counted from 0"
             );
             self.builder.warn(&self.place, warning);
         }
-        for (i, material) in document.materials.iter().enumerate() {
-            let name = match &material.name {
-                Some(name) if !name.is_empty() => name.clone(),
-                _ => format!("material {i}"),
-            };
-            let used = document.meshes.is_empty() || used.contains(&i);
-            self.material(&name, material, used)?;
-        }
-        // A primitive without a material has the default one (specification, 3.7.2.1).
-        if document.meshes.iter().any(|mesh| mesh.uses_default) {
-            self.material("default material", &Material::default(), true)?;
-        }
-        Ok(())
+        used
     }
 }

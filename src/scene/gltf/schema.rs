@@ -3,27 +3,34 @@
 use std::fmt;
 use std::marker::PhantomData;
 
-use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::value::RawValue;
 
-use crate::scene::limits;
+use super::value::{Entry, list};
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Document {
+pub(super) struct Document<'a> {
     pub(super) asset: Asset,
+    /// [`Material`](super::parameters::Material)s, each read in its turn: it is much larger than
+    /// the text "{}".
+    #[serde(borrow, default, deserialize_with = "list")]
+    pub(super) materials: Vec<&'a RawValue>,
+    /// [`Mesh`]es, likewise.
+    #[serde(borrow, default, deserialize_with = "list")]
+    pub(super) meshes: Vec<&'a RawValue>,
+    /// Names, likewise.
+    #[serde(borrow, default, deserialize_with = "list")]
+    pub(super) extensions_required: Vec<&'a RawValue>,
     #[serde(default, deserialize_with = "list")]
-    pub(super) materials: Vec<Material>,
+    pub(super) textures: Vec<Entry<Texture>>,
     #[serde(default, deserialize_with = "list")]
-    pub(super) meshes: Vec<Mesh>,
+    pub(super) images: Vec<Entry<Image>>,
     #[serde(default, deserialize_with = "list")]
-    pub(super) textures: Vec<Texture>,
+    pub(super) buffer_views: Vec<Entry<BufferView>>,
     #[serde(default, deserialize_with = "list")]
-    pub(super) images: Vec<Image>,
-    #[serde(default, deserialize_with = "list")]
-    pub(super) buffer_views: Vec<BufferView>,
-    #[serde(default, deserialize_with = "list")]
-    pub(super) buffers: Vec<Buffer>,
+    pub(super) buffers: Vec<Entry<Buffer>>,
 }
 
 /// What a file of version 1 is, and what to do with it.
@@ -31,7 +38,7 @@ pub(super) const VERSION_1: &str = "glTF 1.0, and only version 2.0 is read; conv
                                     `gltf-pipeline -i old.gltf -o new.gltf` (CesiumGS)";
 
 /// A whole number, which some programs write as `1.0`.
-fn whole<'de, D: Deserializer<'de>, T: TryFrom<u64>>(input: D) -> Result<T, D::Error> {
+pub(super) fn whole<'de, D: Deserializer<'de>, T: TryFrom<u64>>(input: D) -> Result<T, D::Error> {
     struct Whole<T>(PhantomData<T>);
 
     impl<T: TryFrom<u64>> Visitor<'_> for Whole<T> {
@@ -58,45 +65,20 @@ fn whole<'de, D: Deserializer<'de>, T: TryFrom<u64>>(input: D) -> Result<T, D::E
     input.deserialize_u64(Whole(PhantomData))
 }
 
-/// The same, which may be absent.
+/// The same, of a member that may be absent.
 fn maybe_whole<'de, D: Deserializer<'de>>(input: D) -> Result<Option<usize>, D::Error> {
-    #[derive(Deserialize)]
-    struct One(#[serde(deserialize_with = "whole")] usize);
-
-    Ok(Option::<One>::deserialize(input)?.map(|One(number)| number))
+    whole(input).map(Some)
 }
 
-/// A list of limited length: each element takes far more memory than the text "{}".
-fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(input: D) -> Result<Vec<T>, D::Error> {
-    struct List<T>(PhantomData<T>);
-
-    impl<'de, T: Deserialize<'de>> Visitor<'de> for List<T> {
-        type Value = Vec<T>;
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str("a list")
-        }
-
-        fn visit_seq<A: SeqAccess<'de>>(self, mut input: A) -> Result<Vec<T>, A::Error> {
-            let mut list = Vec::new();
-            while let Some(element) = input.next_element()? {
-                if list.len() == limits::JSON_LIST {
-                    let most = limits::JSON_LIST;
-                    return Err(A::Error::custom(format!("a list has more than {most} elements")));
-                }
-                list.push(element);
-            }
-            Ok(list)
-        }
-
-        /// Version 1 has objects for the lists of version 2.
-        fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<Vec<T>, A::Error> {
-            Err(A::Error::custom(format!("an object where a list is expected, as in {VERSION_1}")))
-        }
-    }
-
-    // As any value, so that an object is told from the rest.
-    input.deserialize_any(List(PhantomData))
+/// A list of exactly so many numbers.
+pub(super) fn numbers<'de, D: Deserializer<'de>, const N: usize>(
+    input: D,
+) -> Result<[f64; N], D::Error> {
+    let wrong = |numbers: Vec<f64>| {
+        let count = numbers.len();
+        D::Error::custom(format!("the list has {count} numbers; it must have {N}"))
+    };
+    list(input)?.try_into().map_err(wrong)
 }
 
 #[derive(Deserialize)]
@@ -120,7 +102,7 @@ fn version<'de, D: Deserializer<'de>>(input: D) -> Result<String, D::Error> {
     })
 }
 
-/// Which materials a mesh uses, each once: a mesh may have very many primitives.
+/// Which materials a mesh uses.
 #[derive(Deserialize)]
 #[serde(from = "Primitives")]
 pub(super) struct Mesh {
@@ -143,11 +125,7 @@ impl From<Primitives> for Mesh {
             mappings.map(|mapping| mapping.material).collect::<Vec<_>>()
         };
         let materials = primitives.iter().flat_map(|p| p.material.into_iter().chain(variants(p)));
-        let mut materials: Vec<usize> = materials.collect();
-        materials.sort_unstable();
-        materials.dedup();
-        materials.shrink_to_fit();
-        Self { materials, uses_default }
+        Self { materials: materials.collect(), uses_default }
     }
 }
 
@@ -175,129 +153,6 @@ struct Variants {
 struct Mapping {
     #[serde(deserialize_with = "whole")]
     material: usize,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Material {
-    pub(super) name: Option<String>,
-    pub(super) pbr_metallic_roughness: MetallicRoughness,
-    pub(super) extensions: MaterialExtensions,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct MetallicRoughness {
-    pub(super) base_color_factor: [f64; 4],
-    pub(super) base_color_texture: Option<TextureInfo>,
-    pub(super) metallic_factor: f64,
-    pub(super) roughness_factor: f64,
-    pub(super) metallic_roughness_texture: Option<TextureInfo>,
-}
-
-impl Default for MetallicRoughness {
-    fn default() -> Self {
-        Self {
-            base_color_factor: [1.0; 4],
-            base_color_texture: None,
-            metallic_factor: 1.0,
-            roughness_factor: 1.0,
-            metallic_roughness_texture: None,
-        }
-    }
-}
-
-#[derive(Default, Deserialize)]
-pub(super) struct MaterialExtensions {
-    #[serde(rename = "KHR_materials_anisotropy")]
-    pub(super) anisotropy: Option<Anisotropy>,
-    #[serde(rename = "KHR_materials_clearcoat")]
-    pub(super) clearcoat: Option<Clearcoat>,
-    #[serde(rename = "KHR_materials_ior")]
-    pub(super) ior: Option<Ior>,
-    #[serde(rename = "KHR_materials_iridescence")]
-    pub(super) iridescence: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
-    pub(super) specular_glossiness: Option<SpecularGlossiness>,
-    #[serde(rename = "KHR_materials_sheen")]
-    pub(super) sheen: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_specular")]
-    pub(super) specular: Option<Specular>,
-    #[serde(rename = "KHR_materials_transmission")]
-    pub(super) transmission: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_unlit")]
-    pub(super) unlit: Option<IgnoredAny>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Anisotropy {
-    pub(super) anisotropy_strength: f64,
-    pub(super) anisotropy_texture: Option<TextureInfo>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Clearcoat {
-    pub(super) clearcoat_factor: f64,
-    pub(super) clearcoat_roughness_factor: f64,
-    pub(super) clearcoat_roughness_texture: Option<TextureInfo>,
-}
-
-#[derive(Deserialize)]
-#[serde(default)]
-pub(super) struct Ior {
-    pub(super) ior: f64,
-}
-
-impl Default for Ior {
-    fn default() -> Self {
-        Self { ior: 1.5 }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Specular {
-    pub(super) specular_factor: f64,
-    pub(super) specular_texture: Option<TextureInfo>,
-    pub(super) specular_color_factor: [f64; 3],
-    pub(super) specular_color_texture: Option<TextureInfo>,
-}
-
-impl Default for Specular {
-    fn default() -> Self {
-        Self {
-            specular_factor: 1.0,
-            specular_texture: None,
-            specular_color_factor: [1.0; 3],
-            specular_color_texture: None,
-        }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct SpecularGlossiness {
-    pub(super) specular_factor: [f64; 3],
-    pub(super) glossiness_factor: f64,
-    pub(super) specular_glossiness_texture: Option<TextureInfo>,
-}
-
-impl Default for SpecularGlossiness {
-    fn default() -> Self {
-        Self {
-            specular_factor: [1.0; 3],
-            glossiness_factor: 1.0,
-            specular_glossiness_texture: None,
-        }
-    }
-}
-
-#[derive(Deserialize)]
-pub(super) struct TextureInfo {
-    #[serde(deserialize_with = "whole")]
-    pub(super) index: usize,
 }
 
 #[derive(Deserialize)]

@@ -6,7 +6,7 @@ use super::document;
 use crate::{assert_not_understood, assert_warned, isotropic, load, named, names};
 
 /// A good material after others, which must be read whatever they say.
-fn beside(materials: &str, rest: &str) -> Scene {
+pub(super) fn beside(materials: &str, rest: &str) -> Scene {
     let good = "{\"name\": \"good\", \"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}}";
     let scene = load("a.gltf", &document(&format!("{materials},\n{good}"), rest));
     assert_eq!(named(&scene, "good").roughness, isotropic(0.25));

@@ -42,7 +42,8 @@ fn a_dielectric_has_that_of_its_index() {
     assert_f0(&format!("{GLASS}, {COPPER}"), "", [0.04; 3]);
     assert_f0(GLASS, "\"KHR_materials_ior\": {\"ior\": 2}", [1.0 / 9.0; 3]);
     assert_f0(GLASS, "\"KHR_materials_ior\": {\"ior\": 0}", [1.0; 3]);
-    // Textures of metals have no say.
+    // Colours and textures of metals have no say.
+    assert_f0(&format!("{GLASS}, \"baseColorFactor\": [1.2, 1, 1, 1]"), "", [0.04; 3]);
     let textures = format!(
         "{GLASS}, \"baseColorTexture\": {TEXTURE}, \"metallicRoughnessTexture\": {TEXTURE}"
     );
@@ -80,6 +81,16 @@ fn the_specular_extension_tints_a_dielectric() {
     assert_eq!(fresnel(GLASS, &specular("\"specularFactor\": 0.5")), None);
     for texture in ["specularTexture", "specularColorTexture"] {
         assert_eq!(fresnel(GLASS, &specular(&format!("\"{texture}\": {TEXTURE}"))), None);
+    }
+}
+
+#[test]
+fn a_film_leaves_it_open_where_there_is_one() {
+    let film = |value: &str| format!("\"KHR_materials_iridescence\": {{{value}}}");
+    assert_eq!(fresnel(GLASS, &film("\"iridescenceFactor\": 0.5")), None);
+    // The texture is multiplied with the factor, which is 0 by default.
+    for none in ["", "\"iridescenceFactor\": 0, \"iridescenceTexture\": {\"index\": 0}"] {
+        assert_f0(GLASS, &film(none), [0.04; 3]);
     }
 }
 

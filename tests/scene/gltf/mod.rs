@@ -2,6 +2,7 @@
 
 mod degraded;
 mod fresnel;
+mod unreadable;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -189,29 +190,23 @@ fn an_image_that_cannot_be_read_is_the_full_range() {
 }
 
 #[test]
+fn a_version_may_lack_its_minor_number() {
+    let text = document("{}", "").replace("\"2.0\"", "\"2\"");
+    assert_eq!(names(&load("a.gltf", &text)), ["material 0"]);
+}
+
+#[test]
 fn what_is_not_gltf_is_refused() {
     let case =
         |text: &str, place: &str, parts: &[&str]| assert_refused("a.gltf", text, place, parts);
-    let rough = "{\"name\": \"m\", \"pbrMetallicRoughness\": {\"roughnessFactor\": \"x\"}}";
-    case(&document(rough, ""), ":2:75", &["f64"]);
-    case(
-        "{\"asset\": {\"version\": \"1.0\"}}",
-        "",
-        &["glTF 1.0", "only version 2.0", "gltf-pipeline"],
-    );
+    for version in ["1.0", "1"] {
+        let text = format!("{{\"asset\": {{\"version\": \"{version}\"}}}}");
+        case(&text, "", &["glTF 1.0", "only version 2.0", "gltf-pipeline"]);
+    }
     case("{\"asset\": {\"version\": \"2.0\"},\n oops", ":2:2", &["key"]);
     case("{}", ":1:2", &["asset"]);
     case("{\"asset\": {\"version\": \"3.0\"}}", "", &["glTF 3.0", "version 2"]);
     case("{\"materials\": {\"a\": {}}}", ":1:15", &["glTF 1.0", "gltf-pipeline -i old.gltf"]);
-    let material = |number: &str| {
-        document(
-            "{}",
-            &format!(",\n\"meshes\": [{{\"primitives\": [{{\"material\": {number}}}]}}]"),
-        )
-    };
-    case(&material("0.5"), ":3:43", &["0.5", "whole number"]);
-    case(&material("-1"), ":3:42", &["-1", "whole number"]);
-    case(&material("1e300"), ":3:45", &["1e300", "whole number"]);
     let json = document("{}", "");
     let whole = glb(&json, b"");
     for (bytes, part) in [
