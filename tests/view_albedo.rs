@@ -311,7 +311,7 @@ fn the_commands_list_bake_keep_and_show_them() {
     let text = String::from_utf8(run(at, &["plan", "r.toml"]).stdout).unwrap();
     // Its bytes depend on how often it is refined.
     assert!(
-        text.contains("albedo              gamma 2.7 sigma 0.6 0.15, ")
+        text.contains("albedo              gamma 2.7, sigma 0.6 and 0.15, ")
             && text.contains("1 table, about "),
         "{text}"
     );

@@ -52,10 +52,15 @@ pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Fre
 
 /// A text that is kept for each of many materials, without the end of a very long one.
 pub(super) fn shortened(text: Cow<'_, str>) -> Cow<'_, str> {
-    if text.len() <= limits::MESSAGE {
+    shortened_to(limits::MESSAGE, text)
+}
+
+/// The same, without what is beyond `most` bytes.
+pub(super) fn shortened_to(most: usize, text: Cow<'_, str>) -> Cow<'_, str> {
+    if text.len() <= most {
         return text;
     }
-    let end = (0..=limits::MESSAGE).rev().find(|&end| text.is_char_boundary(end));
+    let end = (0..=most).rev().find(|&end| text.is_char_boundary(end));
     format!("{} ...", &text[..end.unwrap_or(0)]).into()
 }
 

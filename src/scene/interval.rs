@@ -43,8 +43,15 @@ impl Interval {
     }
 
     /// The smallest interval that holds both.
+    ///
+    /// NaN is kept: where an operation overflows that gives it, it is refused later on, while
+    /// `f64::min` and `max` would leave the other end as if it were the value.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
+        let ends = [self.min, self.max, other.min, other.max];
+        if ends.iter().any(|end| end.is_nan()) {
+            return Self::point(f64::NAN);
+        }
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
@@ -64,11 +71,8 @@ impl Interval {
     /// extremes are at the ends. Ends must be finite.
     #[must_use]
     pub fn map_bilinear(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        let rows = |y| {
-            let (a, b) = (f(self.min, y), f(self.max, y));
-            Self { min: a.min(b), max: a.max(b) }
-        };
-        rows(other.min).union(rows(other.max))
+        let row = |y| Self::point(f(self.min, y)).union(Self::point(f(self.max, y)));
+        row(other.min).union(row(other.max))
     }
 
     /// All `self (1 - t) + other t`, with the same `t` in both terms.
@@ -106,6 +110,13 @@ mod tests {
     fn products_take_their_extremes_at_the_corners() {
         let product = A.map_bilinear(Interval { min: -3.0, max: 1.0 }, |a, b| a * b);
         assert_eq!(product, Interval { min: -6.0, max: 3.0 });
+    }
+
+    #[test]
+    fn an_overflow_is_no_number() {
+        let all = Interval { min: 0.0, max: f64::INFINITY };
+        let mixed = Interval::point(0.0).mix(Interval::point(1.0), all);
+        assert!(mixed.min.is_nan() && mixed.max.is_nan(), "{mixed:?}");
     }
 
     #[test]

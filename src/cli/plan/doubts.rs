@@ -85,8 +85,8 @@ pub(in crate::cli) fn warn<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)
 pub(in crate::cli) fn remind<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)> + Clone) {
     let warnings: usize = parts.clone().map(|(scene, _)| scene.warnings.len()).sum();
     if warnings > 0 {
-        let came = format!("{} on the scene came first", count(warnings, "warning"));
-        report("warning", format!("{came}: what they name is assumed, or left out"));
+        let came = format!("{} came first", count(warnings, "warning"));
+        report("warning", format!("{came}: a part of the scene is assumed, or left out"));
     }
     warn_of_lost(parts);
 }

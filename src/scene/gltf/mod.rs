@@ -37,6 +37,7 @@ mod parameters;
 mod schema;
 mod value;
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -54,9 +55,10 @@ use crate::input;
 pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let place = Place::file(path);
     let (json, binary) = read(path, &place)?;
-    let json = input::unmarked(&json);
-    let document: Document<'_> = serde_json::from_slice(json).map_err(|error| {
-        Lines::new(path, json)
+    // Programs write names in encodings of their own; they have no say in what is read.
+    let json = String::from_utf8_lossy(input::unmarked(&json));
+    let document: Document<'_> = serde_json::from_str(&json).map_err(|error| {
+        Lines::new(path, json.as_bytes())
             .after_feeds(error.line(), error.column().saturating_sub(1))
             .syntax(message(&error))
     })?;
@@ -74,6 +76,10 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         binary,
         embedded: Textures::default(),
     };
+    if matches!(json, Cow::Owned(_)) {
+        let warning = "the JSON is not UTF-8; what is not has a \u{fffd} in its place";
+        importer.builder.warn(&importer.place, warning);
+    }
     importer.materials()?;
     Ok(importer.builder.finish(Vec::new()))
 }

@@ -10,7 +10,7 @@ use serde_json::Error;
 use serde_json::value::RawValue;
 
 use super::schema::VERSION_1;
-use crate::scene::builder::shortened;
+use crate::scene::builder::{shortened, shortened_to};
 use crate::scene::limits;
 
 /// A value of the document as its text, which takes no more memory than that.
@@ -152,9 +152,13 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for Members<'de, '_, A> {
 /// An element of a list, or why it cannot be read.
 pub(super) struct Entry<T>(pub(super) Result<T, String>);
 
+/// Bytes of the reason that an [`Entry`] keeps: there may be very many.
+const REASON: usize = 100;
+
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Entry<T> {
     fn deserialize<D: Deserializer<'de>>(input: D) -> Result<Self, D::Error> {
-        Ok(Self(Value::of(<&RawValue>::deserialize(input)?).read()))
+        let read = Value::of(<&RawValue>::deserialize(input)?).read();
+        Ok(Self(read.map_err(|why| shortened_to(REASON, why.into()).into_owned())))
     }
 }
 

@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
                 .invalid(format!("the distribution \"{name}\" is not known; MaterialX has ggx")));
         }
         let roughness = self.alpha(at)?;
-        let film = film || self.greatest(at, "thinfilm_thickness", 0.0)? > 0.0;
+        let film = self.film(at, "thinfilm_thickness")? || film;
         let (name, fresnel) = match &at.node().tag[..] {
             "conductor_bsdf" => {
                 // The defaults of the node's definition.

@@ -110,7 +110,11 @@ impl<'a> Reader<'a> {
                     return Ok(self.unknown(node, "has a gamma that varies, or is not positive"));
                 }
                 let power = |x: f64| libm::pow(x.abs(), 1.0 / gamma.min).copysign(x);
-                let value = low.mix(high, part.map_rising(power));
+                let part = part.map_rising(power);
+                if !(part.min.is_finite() && part.max.is_finite()) {
+                    return Ok(self.unknown(node, "has values that are not finite"));
+                }
+                let value = low.mix(high, part);
                 match self.index.given(node, "doclamp").map(|input| input.attribute("value")) {
                     None | Some(Some("false")) => value,
                     Some(Some("true")) => clamped(value, low, high),

@@ -141,6 +141,13 @@ impl<'a> Reader<'a> {
         self.builder.or_warn(fresnel.map(Some), NO_FRESNEL)
     }
 
+    /// Whether a thin film is on the lobe, which has no Fresnel term then, nor where that cannot be
+    /// known.
+    pub(super) fn film(&mut self, at: At<'a>, amount: &'static str) -> Result<bool, SceneError> {
+        let film = self.greatest(at, amount, 0.0).map(|amount| amount > 0.0);
+        self.builder.or_warn(film, (true, NO_FRESNEL.1))
+    }
+
     /// The greatest value of an input, of any channel.
     pub(super) fn greatest(
         &mut self,

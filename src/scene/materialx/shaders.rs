@@ -34,6 +34,17 @@ impl Model {
             Err(error) => self.failed.push((name, error)),
         }
     }
+
+    /// Whether there is a further lobe of this weight; one that is impossible costs it alone.
+    fn has(&mut self, name: &'static str, weight: Result<Interval, SceneError>) -> bool {
+        match weight {
+            Ok(weight) => weight.max > 0.0,
+            Err(error) => {
+                self.failed.push((Some(name), error));
+                false
+            }
+        }
+    }
 }
 
 impl<'a> Reader<'a> {
@@ -77,7 +88,7 @@ impl<'a> Reader<'a> {
             roughening = roughening.map_bilinear(coat_roughness, |a, b| a * b);
         }
         let under_coat = |r: Interval| r.map_bilinear(roughening, |r, t| r + (1.0 - r) * t);
-        let film = self.greatest(at, "thin_film_thickness", 0.0)? > 0.0;
+        let film = self.film(at, "thin_film_thickness")?;
 
         let mut model = Model::default();
         if metalness.max + transmission.max + self.unit(at, "specular", 1.0)?.max > 0.0 {
@@ -127,7 +138,7 @@ impl<'a> Reader<'a> {
             let sum = fourth(r) + 2.0 * fourth(coat_roughness);
             r + (sum.min(1.0).sqrt().sqrt() - r) * coat
         };
-        let film = self.greatest(at, "thin_film_weight", 0.0)? > 0.0;
+        let film = self.film(at, "thin_film_weight")?;
 
         let mut model = Model::default();
         // It is the weight of the metal's lobe; of the dielectric it changes the index alone.
@@ -166,7 +177,7 @@ impl<'a> Reader<'a> {
         let (metallic, metal) = self.metal(at, "metallic", 1.0)?;
         let transmission = self.unit(at, "transmission", 0.0)?;
         let specular = self.unit(at, "specular", 1.0)?;
-        let film = self.greatest(at, "iridescence", 0.0)? > 0.0;
+        let film = self.film(at, "iridescence")?;
 
         let mut model = Model::default();
         if metallic.max + transmission.max + specular.max > 0.0 {
@@ -196,7 +207,7 @@ impl<'a> Reader<'a> {
             };
             model.push(None, roughness, fresnel);
         }
-        if self.unit(at, "clearcoat", 0.0)?.max > 0.0 {
+        if model.has("clearcoat", self.unit(at, "clearcoat", 0.0)) {
             let roughness = self.unit(at, "clearcoat_roughness", 0.0).map(squared);
             model.push(Some("clearcoat"), roughness, Some(Fresnel::Dielectric(1.5)));
         }
@@ -220,7 +231,7 @@ impl<'a> Reader<'a> {
         };
         let mut model = Model::default();
         model.push(None, roughness, fresnel);
-        if self.unit(at, "clearcoat", 0.0)?.max > 0.0 {
+        if model.has("clearcoat", self.unit(at, "clearcoat", 0.0)) {
             let roughness = self.unit(at, "clearcoatRoughness", 0.01).map(squared);
             let fresnel = self.normal_reflectance(at)?.and_then(|f0| schlick([f0; 3]));
             model.push(Some("clearcoat"), roughness, fresnel);
@@ -242,7 +253,7 @@ impl<'a> Reader<'a> {
             };
             model.push(None, base.map(|(r, anisotropy)| stretched(r, anisotropy)), fresnel);
         }
-        if self.unit(at, "clearcoat", 0.0)?.max > 0.0 {
+        if model.has("clearcoat", self.unit(at, "clearcoat", 0.0)) {
             let gloss = self.unit(at, "clearcoatGloss", 1.0);
             let roughness = gloss.map(|gloss| squared(gloss.map_falling(|gloss| 1.0 - gloss)));
             model.push(Some("clearcoat"), roughness, None);

@@ -107,18 +107,19 @@ impl<'a> Reader<'a> {
             _ => Ok(None),
         };
         match (bsdf.child_named("eta"), bsdf.child_named("k")) {
-            // An index of 0 reflects everything, whatever the extinction is.
-            (None, _) if name == "none" => Ok(Some(Fresnel::Mirror)),
-            (None, None) => preset(name, &material.unwrap_or(bsdf).place),
-            (Some(eta), Some(k)) => {
-                let both = read(eta)?.zip(read(k)?);
-                both.map(|(eta, k)| conductor(eta, k, &bsdf.place)).transpose()
-            }
-            (Some(eta), None) if name == "none" => {
-                read(eta)?.map(|eta| conductor(eta, [1.0; 3], &bsdf.place)).transpose()
-            }
+            (None, None) if name != "none" => preset(name, &material.unwrap_or(bsdf).place),
             // A part of a preset, which is known as a whole only.
-            _ => Ok(None),
+            (None, _) | (_, None) if name != "none" => Ok(None),
+            (eta, k) => {
+                let eta = eta.map_or(Ok(Some([0.0; 3])), read)?;
+                let k = k.map_or(Ok(Some([1.0; 3])), read)?;
+                let of = |(eta, k): ([f64; 3], [f64; 3])| match eta {
+                    // Such an index reflects everything, whatever the extinction is.
+                    [0.0, 0.0, 0.0] => Ok(Fresnel::Mirror),
+                    eta => conductor(eta, k, &bsdf.place),
+                };
+                eta.zip(k).map(of).transpose()
+            }
         }
     }
 }

@@ -152,8 +152,11 @@ fn is_reference(text: &str) -> bool {
         return ["amp;", "lt;", "gt;", "quot;", "apos;"].iter().any(|name| text.starts_with(name));
     };
     let (digits, radix) = number.strip_prefix('x').map_or((number, 10), |digits| (digits, 16));
-    let rest = digits.trim_start_matches(|c: char| c.is_digit(radix));
-    rest.len() < digits.len() && rest.starts_with(';')
+    let end = digits.find(|c: char| !c.is_digit(radix)).unwrap_or(digits.len());
+    let character = u32::from_str_radix(&digits[..end], radix).ok().and_then(char::from_u32);
+    // The characters of XML 1.0 (2.2).
+    let is_of_xml = |c| matches!(c, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..);
+    character.is_some_and(is_of_xml) && digits[end..].starts_with(';')
 }
 
 /// Whether there are any, and no more than are mended.

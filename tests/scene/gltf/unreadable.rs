@@ -120,3 +120,15 @@ fn a_required_extension_that_is_not_known_costs_its_materials_alone() {
     let scene = beside("{}", &(required("\"KHR_draco_mesh_compression\"") + &meshes));
     assert_eq!((scene.ignored.len(), scene.warnings.len()), (0, 0));
 }
+
+#[test]
+fn text_of_another_encoding_refuses_nothing() {
+    let text = b"{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"name\": \"K\xf6rper\",
+        \"primitives\": [{\"material\": 0}]}], \"materials\": [{\"name\": \"Gr\xfcn\"}]}";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    std::fs::write(&path, text).unwrap();
+    let scene = microfacet_bake::scene::load(&path).unwrap();
+    assert_eq!(names(&scene), ["Gr\u{fffd}n"]);
+    assert!(scene.warnings[0].contains("not UTF-8"), "{:?}", scene.warnings);
+}

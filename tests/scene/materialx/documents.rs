@@ -119,6 +119,13 @@ fn an_ampersand_may_be_a_character() {
     let scene = load("a.mtlx", text);
     assert_eq!(names(&scene), ["x&y&z"]);
     assert_eq!(scene.materials[0].origin.place.column, Some(25));
+    // Numbers of what is no character of XML.
+    for number in ["0", "xFFFF", "xD800", "99999999999999"] {
+        let text = format!(
+            "<materialx doc=\"&#{number};\"><gltf_pbr name=\"a\" type=\"surfaceshader\"/></materialx>"
+        );
+        assert_eq!(names(&load("a.mtlx", &text)), ["a"], "{number}");
+    }
     // What else is wrong has its own place.
     let text = "<materialx doc=\"this & that\">\n<a b=\"&\"></c></materialx>";
     assert_refused("a.mtlx", text, ":2:10", &["expected 'a' tag"]);

@@ -28,6 +28,9 @@ fn a_conductor_is_a_mirror_by_default() {
             assert_eq!(of(""), Some(Fresnel::Mirror));
             // The index is 0 by default, and the extinction 1.
             assert_eq!(of(K), Some(Fresnel::Mirror));
+            let zero = "<float name=\"eta\" value=\"0\"/>";
+            assert_eq!(of(zero), Some(Fresnel::Mirror));
+            assert_eq!(of(&[zero, K].concat()), Some(Fresnel::Mirror));
             let eta = [0.2, 0.9, 1.1];
             assert_eq!(of(ETA), Some(Fresnel::Conductor { eta, k: [1.0; 3] }));
             let k = [3.9, 2.4, 2.2];
