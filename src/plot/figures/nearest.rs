@@ -34,6 +34,7 @@ fn nearest_to_beckmann(m: f64) -> Vec<(Named, Box<dyn Isotropic>)> {
         DistributionKind::Gauss,
         DistributionKind::TrowbridgeReitz,
         DistributionKind::Schlick,
+        DistributionKind::Sawicki,
     ];
     let nearest = others.map(|kind| {
         let found = Target::new(&*from)
