@@ -1,47 +1,103 @@
-//! Draws figures of the literature as data and as SVG: pure functions, without files or system
-//! fonts.
+//! Draws figures of the literature as data, as SVG and as PNG: pure functions, without files or
+//! fonts of the system.
 
+mod axis;
+mod canvas;
+mod clip;
 mod figures;
+mod ink;
+mod label;
+mod layout;
+mod panel;
+mod png;
+mod svg;
+mod text;
 
 use std::fmt;
 
-use plotters::prelude::*;
-
-pub use figures::{NAMES, figure};
+pub use axis::Axis;
+pub use figures::{FIGURES, Listed, figure};
+pub use ink::{Dash, Key, Method};
 
 /// A curve with its name in the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
+    /// What it is, which its colour follows from.
+    pub key: Key,
     /// Name.
     pub name: String,
-    /// (x, y), x ascending.
+    /// How it is drawn.
+    pub dash: Dash,
+    /// (x, y), x ascending; a point with NaN interrupts it.
     pub points: Vec<(f64, f64)>,
 }
 
-/// Corner of the legend.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Legend {
-    /// Above, on the right.
-    Right,
-    /// Below, on the left.
-    Left,
+/// A point with its name beside it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// What it is, which its colour follows from.
+    pub key: Key,
+    /// Name.
+    pub name: String,
+    /// (x, y), inside the panel.
+    pub at: (f64, f64),
+    /// Whether it is a dot, else a ring.
+    pub filled: bool,
 }
 
-/// One coordinate system.
+/// One coordinate system. A curve that leaves it is interrupted there, and a triangle in its
+/// colour points to where it went.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Title.
     pub title: String,
-    /// Quantity and unit along x.
-    pub x_label: &'static str,
-    /// Quantity and unit along y.
-    pub y_label: &'static str,
-    /// Range of y; the range of x is that of the points.
-    pub y: (f64, f64),
-    /// Where the legend hides no curve.
-    pub legend: Legend,
+    /// The axis along x.
+    pub x: Axis,
+    /// The axis along y.
+    pub y: Axis,
     /// Curves.
     pub curves: Vec<Curve>,
+    /// Labelled points.
+    pub marks: Vec<Mark>,
+}
+
+impl Panel {
+    /// Where a point stands: (0, 0) is the left lower corner, (1, 1) the right upper one.
+    fn place(&self, (x, y): (f64, f64)) -> [f64; 2] {
+        [self.x.fraction(x), self.y.fraction(y)]
+    }
+}
+
+/// Panels in rows. The legend of a row's curves stands beneath it, or beneath the last of the rows
+/// that share it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Panels, row by row.
+    pub panels: Vec<Panel>,
+    /// Panels in a row.
+    pub columns: usize,
+    /// Width and height of a panel with its numbers and labels, in pixels of the page.
+    pub panel: [f64; 2],
+}
+
+impl Figure {
+    /// Panels two in a row.
+    pub fn new(panels: Vec<Panel>) -> Self {
+        Self { panels, columns: 2, panel: [560.0, 400.0] }
+    }
+
+    /// As SVG, without references to anything outside it.
+    pub fn svg(&self) -> String {
+        svg::write(&layout::page(self))
+    }
+
+    /// As PNG, with two pixels along each of the page.
+    ///
+    /// # Errors
+    /// [`PlotError::Drawing`] for a figure without panels, or larger than memory.
+    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
+        png::write(&layout::page(self))
+    }
 }
 
 /// Why a figure was not drawn.
@@ -49,14 +105,17 @@ pub struct Panel {
 pub enum PlotError {
     /// No figure has this name.
     Unknown(String),
-    /// The drawing library's message.
+    /// Why there is no image.
     Drawing(String),
 }
 
 impl fmt::Display for PlotError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unknown(name) => write!(f, "no figure `{name}`; there are {}", NAMES.join(", ")),
+            Self::Unknown(name) => {
+                let names = FIGURES.map(|listed| listed.name);
+                write!(f, "no figure `{name}`; there are {}", names.join(", "))
+            }
             Self::Drawing(why) => write!(f, "the figure could not be drawn: {why}"),
         }
     }
@@ -64,129 +123,112 @@ impl fmt::Display for PlotError {
 
 impl std::error::Error for PlotError {}
 
-/// Size of a panel on the page, in pixels.
-const PANEL: (u32, u32) = (560, 420);
-/// The drawing library places points on integers; this many steps make one pixel of the page, so
-/// that curves are smooth.
-const FINE: u32 = 8;
-
-/// Draws panels side by side, two in a row.
-///
-/// # Errors
-/// [`PlotError::Drawing`].
-pub fn svg(panels: &[Panel]) -> Result<String, PlotError> {
-    let columns = panels.len().clamp(1, 2);
-    let rows = panels.len().div_ceil(columns);
-    let page = (PANEL.0 * columns as u32, PANEL.1 * rows as u32);
-    let size = (FINE * page.0, FINE * page.1);
-    let mut text = String::new();
-    {
-        let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        root.fill(&WHITE).map_err(drawing)?;
-        for (area, panel) in root.split_evenly((rows, columns)).iter().zip(panels) {
-            draw(area, panel)?;
-        }
-        root.present().map_err(drawing)?;
-    }
-    // The view box keeps the fine coordinates; only the size on the page is the panel's own.
-    let fine = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
-    Ok(text.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", page.0, page.1), 1))
-}
-
-fn drawing(e: impl fmt::Display) -> PlotError {
-    PlotError::Drawing(e.to_string())
-}
-
-fn draw(
-    area: &DrawingArea<SVGBackend, plotters::coord::Shift>,
-    panel: &Panel,
-) -> Result<(), PlotError> {
-    let xs = || panel.curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.0));
-    let (low, high) = (xs().fold(f64::INFINITY, f64::min), xs().fold(f64::NEG_INFINITY, f64::max));
-    let mut chart = ChartBuilder::on(area)
-        .caption(&panel.title, ("sans-serif", 16 * FINE))
-        .margin(12 * FINE)
-        .x_label_area_size(36 * FINE)
-        .y_label_area_size(52 * FINE)
-        .build_cartesian_2d(low..high, panel.y.0..panel.y.1)
-        .map_err(drawing)?;
-    chart
-        .configure_mesh()
-        .x_desc(panel.x_label)
-        .y_desc(panel.y_label)
-        .light_line_style(WHITE)
-        .bold_line_style(BLACK.mix(0.2).stroke_width(FINE))
-        .axis_style(BLACK.stroke_width(FINE))
-        .set_all_tick_mark_size(4 * FINE)
-        .label_style(("sans-serif", 11 * FINE))
-        .x_label_formatter(&tick_label)
-        .y_label_formatter(&tick_label)
-        .draw()
-        .map_err(drawing)?;
-    for (i, curve) in panel.curves.iter().enumerate() {
-        // Evenly round the colour circle, dark enough for white paper.
-        let color = HSLColor(i as f64 / panel.curves.len() as f64, 0.75, 0.42);
-        let style = color.stroke_width(2 * FINE);
-        // A curve that leaves the panel is interrupted there, not joined across.
-        let inside = |p: &(f64, f64)| (panel.y.0..=panel.y.1).contains(&p.1);
-        for run in curve.points.split(|p| !inside(p)).filter(|run| !run.is_empty()) {
-            chart.draw_series(LineSeries::new(run.iter().copied(), style)).map_err(drawing)?;
-        }
-        let step = FINE as i32;
-        chart
-            .draw_series(std::iter::empty::<PathElement<(f64, f64)>>())
-            .map_err(drawing)?
-            .label(&curve.name)
-            .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18 * step, y)], style));
-    }
-    chart
-        .configure_series_labels()
-        .background_style(WHITE.mix(0.8))
-        .border_style(BLACK.mix(0.3))
-        .label_font(("sans-serif", 11 * FINE))
-        .legend_area_size(24 * FINE)
-        .margin(6 * FINE)
-        .position(match panel.legend {
-            Legend::Right => SeriesLabelPosition::UpperRight,
-            Legend::Left => SeriesLabelPosition::LowerLeft,
-        })
-        .draw()
-        .map_err(drawing)
-}
-
-/// A number on an axis, without superfluous zeros.
-fn tick_label(x: &f64) -> String {
-    // Adding 0 turns −0 into 0.
-    format!("{}", (x * 1e6).round() / 1e6 + 0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn curve(key: Key, points: &[(f64, f64)]) -> Curve {
+        Curve { key, name: format!("{key:?}"), dash: Dash::Solid, points: points.into() }
+    }
+
+    fn panel(curves: Vec<Curve>) -> Panel {
+        let (x, y) = (Axis::linear("x", 0.0, 1.0), Axis::log("y", 1.0, 100.0));
+        Panel { title: "a panel".into(), x, y, curves, marks: Vec::new() }
+    }
+
+    #[test]
+    fn a_colour_follows_from_the_key_wherever_it_stands() {
+        let line = [(0.0, 2.0), (1.0, 3.0)];
+        let [two, three] = [2.0, 3.0].map(|gamma| curve(Key::Gamma(gamma), &line));
+        let both = Figure::new(vec![panel(vec![two.clone(), three.clone()])]).svg();
+        let one = Figure::new(vec![panel(vec![three])]).svg();
+        let strokes = |drawn: &str| -> Vec<String> {
+            let wide = drawn.lines().filter(|line| line.contains("stroke-width=\"2\""));
+            wide.map(|line| line.split('"').nth(3).unwrap().to_owned()).collect()
+        };
+        // Each curve in the panel and in the legend.
+        assert_eq!(strokes(&both).len(), 4);
+        assert_eq!(strokes(&one), [strokes(&both)[1].clone(), strokes(&both)[3].clone()]);
+        assert_ne!(strokes(&both)[0], strokes(&both)[1]);
+    }
+
+    #[test]
+    fn rows_that_share_a_legend_have_one() {
+        let of = |gamma| panel(vec![curve(Key::Gamma(gamma), &[(0.0, 2.0), (1.0, 3.0)])]);
+        let count = |figure: &Figure| figure.svg().matches(">Gamma(").count();
+        let mut figure = Figure::new(vec![of(2.0), of(2.0), of(2.0)]);
+        assert_eq!(count(&figure), 1);
+        figure.panels[2] = of(3.0);
+        assert_eq!(count(&figure), 2);
+    }
+
+    #[test]
+    fn a_curve_that_leaves_is_marked_in_its_colour() {
+        let key = Key::Gamma(2.0);
+        let leaves = curve(key, &[(0.0, 10.0), (0.5, 1000.0), (1.0, 10.0)]);
+        let drawn = Figure::new(vec![panel(vec![leaves])]).svg();
+        let [r, g, b] = key.color();
+        let triangle = format!("<polygon fill=\"#{r:02x}{g:02x}{b:02x}\"");
+        assert_eq!(drawn.matches(&triangle).count(), 2, "{drawn}");
+        let stays = curve(key, &[(0.0, 1.0), (1.0, 100.0)]);
+        assert!(!Figure::new(vec![panel(vec![stays])]).svg().contains("<polygon"));
+    }
+
+    #[test]
+    fn names_of_points_do_not_overlap() {
+        let mark = |i: i32| Mark {
+            key: Key::Method(Method::Table),
+            name: format!("rival {i}"),
+            at: (0.98, 10.0 + 0.1 * f64::from(i)),
+            filled: true,
+        };
+        let mut panel = panel(Vec::new());
+        panel.marks = (0..6).map(mark).collect();
+        let drawn = Figure::new(vec![panel]).svg();
+        let mut lines: Vec<f64> = drawn
+            .lines()
+            .filter(|line| line.contains(">rival "))
+            .map(|line| line.split('"').nth(3).unwrap().parse().unwrap())
+            .collect();
+        lines.sort_by(f64::total_cmp);
+        assert_eq!(lines.len(), 6);
+        assert!(lines.windows(2).all(|pair| pair[1] - pair[0] > 10.0), "{lines:?}");
+    }
+
+    #[test]
+    fn png_has_the_size_of_the_page_twice_and_the_colours_of_svg() {
+        let key = Key::Gamma(2.0);
+        let figure = Figure::new(vec![panel(vec![curve(key, &[(0.0, 10.0), (1.0, 10.0)])])]);
+        let page = layout::page(&figure).size.map(|x| 2 * x as u32);
+        let image = image::load_from_memory(&figure.png().unwrap()).unwrap().to_rgb8();
+        assert_eq!([image.width(), image.height()], page);
+        let count = image.pixels().filter(|pixel| pixel.0 == key.color()).count();
+        // The curve is four pixels wide, as long as the panel.
+        assert!((3000..5000).contains(&count), "{count}");
+        assert!(Figure::new(Vec::new()).png().is_err());
+    }
+
     #[test]
     fn every_figure_is_drawn() {
-        for name in NAMES {
-            let panels = figure(name).unwrap();
-            assert!(!panels.is_empty());
-            for panel in &panels {
+        for Listed { name, .. } in FIGURES {
+            let figure = figure(name).unwrap();
+            assert!(!figure.panels.is_empty());
+            for panel in &figure.panels {
                 for curve in &panel.curves {
-                    let inside = curve
-                        .points
-                        .iter()
-                        .filter(|p| (panel.y.0..=panel.y.1).contains(&p.1))
-                        .count();
-                    assert!(
-                        inside * 4 > curve.points.len(),
-                        "{name}, {}: {} leaves the panel",
-                        panel.title,
-                        curve.name
-                    );
-                    assert!(curve.points.iter().all(|p| p.0.is_finite()), "{name}, {}", curve.name);
+                    let at = format!("{name}, {}: {}", panel.title, curve.name);
+                    let inside = |&&point: &&(f64, f64)| {
+                        panel.place(point).iter().all(|x| (-1e-9..=1.0 + 1e-9).contains(x))
+                    };
+                    let inside = curve.points.iter().filter(inside).count();
+                    assert!(inside * 4 > curve.points.len(), "{at} leaves the panel");
+                    assert!(curve.points.iter().all(|p| p.0.is_finite()), "{at}");
                 }
             }
-            let drawn = svg(&panels).unwrap();
-            assert!(drawn.starts_with("<svg") && drawn.trim_end().ends_with("</svg>"));
+            let drawn = figure.svg();
+            let document = roxmltree::Document::parse(&drawn).unwrap();
+            for text in document.descendants().filter_map(|node| node.text()) {
+                assert!(text::has_all(text.trim()), "{name}: no letter for \"{text}\"");
+            }
         }
         assert!(figure("nothing").unwrap_err().to_string().contains("highlights"));
     }

@@ -185,9 +185,11 @@ fn a_cache_entry_that_cannot_be_read_is_baked_again() {
 fn outputs_go_where_links_lead_and_keep_their_mode() {
     let folder = workshop();
     let at = folder.path();
-    fs::create_dir(at.join("there")).unwrap();
+    fs::create_dir(at.join("there.svg")).unwrap();
+    symlink(at.join("fifo"), at.join("fifo.svg")).unwrap();
+    symlink("/dev/null", at.join("null.svg")).unwrap();
     for (i, command) in [SAMPLE, "\"$0\" plot student-t --out"].into_iter().enumerate() {
-        let (link, file) = (format!("link{i}"), at.join(format!("there/file{i}")));
+        let (link, file) = (format!("link{i}.svg"), at.join(format!("there.svg/file{i}")));
         symlink(&file, at.join(&link)).unwrap();
         // Dangling, then to a private file.
         for _ in 0..2 {
@@ -205,15 +207,15 @@ fn outputs_go_where_links_lead_and_keep_their_mode() {
         assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
         fs::set_permissions(&file, fs::Permissions::from_mode(0o400)).unwrap();
         refuses(at, &format!("{command} {link}"), "write-protected");
-        refuses(at, &format!("{command} fifo"), "FIFO");
-        refuses(at, &format!("{command} there"), "is a folder");
+        refuses(at, &format!("{command} fifo.svg"), "FIFO");
+        refuses(at, &format!("{command} there.svg"), "is a folder");
         assert!(fs::metadata(at.join("fifo")).unwrap().file_type().is_fifo());
-        let output = script(at, &format!("{command} /dev/null"));
+        let output = script(at, &format!("{command} null.svg"));
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
     }
     refuses(at, &format!("{SAMPLE} fifo"), "`--out -` for standard output");
-    assert_eq!(names(&at.join("there")), ["file0", "file1"]);
+    assert_eq!(names(&at.join("there.svg")), ["file0", "file1"]);
 }
 
 #[test]
@@ -403,16 +405,17 @@ fn a_full_disk_is_reported_and_leaves_what_was_there() {
     let at = folder.path();
     let commands = [SAMPLE, "\"$0\" plot student-t --out"];
     for command in commands {
-        fs::write(at.join("old"), "old").unwrap();
-        refuses(at, &format!("trap '' XFSZ; ulimit -f 4; {command} old"), "old: ");
-        assert_eq!(fs::read_to_string(at.join("old")).unwrap(), "old");
+        fs::write(at.join("old.svg"), "old").unwrap();
+        refuses(at, &format!("trap '' XFSZ; ulimit -f 4; {command} old.svg"), "old.svg: ");
+        assert_eq!(fs::read_to_string(at.join("old.svg")).unwrap(), "old");
     }
     assert!(names(at).iter().all(|name| !name.ends_with(".partial")), "{:?}", names(at));
     if !Path::new("/dev/full").exists() {
         return;
     }
+    symlink("/dev/full", at.join("full.svg")).unwrap();
     for command in commands {
-        refuses(at, &format!("{command} /dev/full"), "/dev/full: No space left");
+        refuses(at, &format!("{command} full.svg"), "full.svg: No space left");
     }
     bake(at, "gold.toml", "out", "exr,safetensors");
     fs::write(at.join("q.csv"), "sigma_x,sigma_y,gamma,theta,phi\n0.3,0.3,3,1,0\n").unwrap();

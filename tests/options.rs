@@ -218,24 +218,44 @@ fn many_normals_take_little_memory_and_a_reader_may_leave() {
 }
 
 #[test]
+fn a_figure_is_written_in_the_format_of_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    ok(at, &words("plot student-t --out a.svg"));
+    ok(at, &words("plot student-t --out a.png"));
+    ok(at, &words("plot student-t --out b.PNG"));
+    let svg = fs::read_to_string(at.join("a.svg")).unwrap();
+    let png = fs::read(at.join("a.png")).unwrap();
+    assert_eq!(png, fs::read(at.join("b.PNG")).unwrap());
+    assert!(png.starts_with(b"\x89PNG"));
+    let image = image::load_from_memory(&png).unwrap();
+    let size = format!("width=\"{}\" height=\"{}\"", image.width() / 2, image.height() / 2);
+    assert!(svg.starts_with("<svg") && svg.contains(&size), "{size}");
+    for name in ["a.pdf", "a", ".svg", "a.svg.gz"] {
+        refuses(at, &format!("plot student-t --out {name}"), &[name, ".svg or .png", "`--out -`"]);
+    }
+    assert_eq!(fs::read_dir(at).unwrap().count(), 3);
+}
+
+#[test]
 fn errors_about_files_say_which_and_why() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     for line in [&format!("sample {ONE} --count 9 --out"), "plot student-t --out"] {
         refuses(
             at,
-            &format!("{line} nowhere/x"),
-            &["nowhere/x: the folder nowhere does not exist"],
+            &format!("{line} nowhere/x.svg"),
+            &["nowhere/x.svg: the folder nowhere does not exist"],
         );
-        assert!(!refused(at, &words(&format!("{line} nowhere/x"))).contains("partial"));
+        assert!(!refused(at, &words(&format!("{line} nowhere/x.svg"))).contains("partial"));
     }
     #[cfg(unix)]
     {
         use std::os::unix::fs::symlink;
-        symlink("circle", at.join("circle")).unwrap();
+        symlink("circle.svg", at.join("circle.svg")).unwrap();
         symlink("gone", at.join("dangling")).unwrap();
         for line in ["plot student-t --out", "bake --out"] {
-            refuses(at, &format!("{line} circle"), &["circle: is a", "link", "; name a "]);
+            refuses(at, &format!("{line} circle.svg"), &["circle.svg: is a", "link", "; name a "]);
         }
         refuses(at, "bake --out dangling", &["dangling: is a link to gone, which does not exist"]);
         let recipe = "[[material]]\nname = \"m\"\nsigma = 0.3\ngamma = 3.0\n";

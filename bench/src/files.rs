@@ -28,12 +28,12 @@ pub(crate) fn write(
     };
     write("bench.csv", csv(&ROW, rows.iter().map(row_fields))?)?;
     write("bench.json", format!("{document:#}\n").into_bytes())?;
-    write("bench.svg", plot::svg(rows)?.into_bytes())?;
+    write("bench.svg", plot::svg(rows).into_bytes())?;
     write("sweep.csv", csv(&CELL, cells.iter().map(cell_fields))?)?;
     write("figure-4.csv", csv(&TIMING, times.iter().map(timing_fields))?)?;
-    write("figure-4.svg", paper::times_svg(times)?.into_bytes())?;
+    write("figure-4.svg", paper::times_svg(times).into_bytes())?;
     write("figure-5.csv", csv(&APPROXIMATION, approximation.iter().map(approximation_fields))?)?;
-    write("figure-5.svg", paper::approximation_svg(approximation)?.into_bytes())
+    write("figure-5.svg", paper::approximation_svg(approximation).into_bytes())
 }
 const ROW: [&str; 10] = [
     "quantity",

@@ -5,7 +5,7 @@
 use std::cell::RefCell;
 
 use glam::Vec3;
-use microfacet_bake::plot::{self, Curve, Legend, Panel, PlotError};
+use microfacet_bake::plot::{self, Axis, Curve, Dash, Figure, Key, Panel};
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::{StudentT, printed};
 use microfacet_sampler::MicrofacetDistribution as _;
@@ -118,41 +118,53 @@ fn methods(
 }
 
 /// The times as a drawing of four panels.
-///
-/// # Errors
-/// [`PlotError::Drawing`].
-pub(crate) fn times_svg(times: &[Timing]) -> Result<String, PlotError> {
+pub(crate) fn times_svg(times: &[Timing]) -> String {
+    // One range for all, so that heights can be compared.
+    let highest = times.iter().map(|at| at.ns).fold(10.0, f64::max);
     let panel = |quantity: Quantity, by_gamma| {
         let mut curves: Vec<Curve> = Vec::new();
         for at in times.iter().filter(|at| at.quantity == quantity && at.by_gamma == by_gamma) {
-            let x = if by_gamma { at.gamma.log10() } else { at.sigma };
-            let point = (x, at.ns.max(0.1).log10());
+            let point = (if by_gamma { at.gamma } else { at.sigma }, at.ns.max(0.1));
             match curves.iter_mut().find(|curve| curve.name == at.method) {
                 Some(curve) => curve.points.push(point),
-                None => curves.push(Curve { name: at.method.into(), points: vec![point] }),
+                None => curves.push(Curve {
+                    key: Key::Method(key(at.method)),
+                    name: at.method.into(),
+                    dash: Dash::Solid,
+                    points: vec![point],
+                }),
             }
         }
         let what = if quantity == Quantity::G1 { "G1" } else { "a visible normal" };
-        Panel {
-            title: if by_gamma {
-                format!("{what} by γ, σ = {SIGMA}")
-            } else {
-                format!("{what} by σ, γ = {GAMMA}")
-            },
-            x_label: if by_gamma { "log10 γ" } else { "σ" },
-            y_label: "log10 of ns a call",
-            y: (0.0, 5.5),
-            legend: Legend::Right,
-            curves,
-        }
+        let (title, x) = if by_gamma {
+            (format!("{what} by γ, σ = {SIGMA}"), Axis::log("γ", 1.5, 50.0))
+        } else {
+            (format!("{what} by σ, γ = {GAMMA}"), Axis::linear("σ", 0.0, 1.0))
+        };
+        let y = Axis::log("ns a call", 1.0, 1.5 * highest);
+        Panel { title, x, y, curves, marks: Vec::new() }
     };
-    let panels = [
+    Figure::new(vec![
         panel(Quantity::G1, true),
         panel(Quantity::G1, false),
         panel(Quantity::Normal, true),
         panel(Quantity::Normal, false),
-    ];
-    plot::svg(&panels)
+    ])
+    .svg()
+}
+
+/// What a method is by its name, for its colour.
+fn key(name: &str) -> plot::Method {
+    match name {
+        "eq. 13-15, hypergeometric" => plot::Method::Hypergeometric,
+        "eq. 21, integer" => plot::Method::Integer,
+        "eq. 21, half-integer" => plot::Method::HalfInteger,
+        "eq. 22-23, rational" => plot::Method::Rational,
+        "table" => plot::Method::Table,
+        "inversion of the CDF, f64" => plot::Method::Inversion,
+        "exact by rejection, f64" => plot::Method::Rejection,
+        _ => plot::Method::Other,
+    }
 }
 
 /// The errors of the rational approximation of G1 and of the table for one view.
@@ -196,32 +208,35 @@ pub(crate) fn approximation(set: &Tables) -> Vec<Approximation> {
 }
 
 /// The errors as a drawing of two panels.
-///
-/// # Errors
-/// [`PlotError::Drawing`].
-pub(crate) fn approximation_svg(all: &[Approximation]) -> Result<String, PlotError> {
+pub(crate) fn approximation_svg(all: &[Approximation]) -> String {
     let panel = |title: &str, error: fn(&Approximation) -> f64| {
         let mut curves: Vec<Curve> = Vec::new();
         for at in all {
-            let name = format!("γ = {}", at.gamma);
+            let key = Key::Gamma(at.gamma);
             // Smaller errors are below the rounding of single precision.
-            let point = (at.degrees, error(at).abs().max(1e-9).log10());
-            match curves.last_mut().filter(|curve| curve.name == name) {
+            let point = (at.degrees, error(at).abs().max(1e-9));
+            match curves.last_mut().filter(|curve| curve.key == key) {
                 Some(curve) => curve.points.push(point),
-                None => curves.push(Curve { name, points: vec![point] }),
+                None => curves.push(Curve {
+                    key,
+                    name: format!("γ = {}", at.gamma),
+                    // Neighbours on the ramp of colours differ in this too.
+                    dash: if curves.len().is_multiple_of(2) { Dash::Solid } else { Dash::Dashed },
+                    points: vec![point],
+                }),
             }
         }
         Panel {
             title: title.into(),
-            x_label: "θ in degrees",
-            y_label: "log10 of the error of G1",
-            y: (-9.0, -1.5),
-            legend: Legend::Left,
+            x: Axis::linear("θ in degrees", 0.0, 90.0),
+            y: Axis::log("error of G1", 1e-9, 3e-2),
             curves,
+            marks: Vec::new(),
         }
     };
-    plot::svg(&[
+    Figure::new(vec![
         panel("Rational approximation, eq. 22–23", |at| at.rational_error),
         panel("Table, default quality", |at| at.table_error),
     ])
+    .svg()
 }

@@ -1,0 +1,176 @@
+//! Axes: what a coordinate means, its range and scale, and where its ticks stand.
+
+/// One axis of a panel: quantity and unit, range, and whether its scale is logarithmic.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub label: String,
+    low: f64,
+    high: f64,
+    log: bool,
+}
+
+/// A mark on an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tick {
+    /// Where, 0 at the low end and 1 at the high one.
+    pub(super) at: f64,
+    /// Its number; `None` between the numbers of a logarithmic axis.
+    pub(super) label: Option<String>,
+}
+
+impl Axis {
+    /// An axis with an even scale.
+    ///
+    /// # Panics
+    /// Unless `low < high`, both finite.
+    pub fn linear(label: impl Into<String>, low: f64, high: f64) -> Self {
+        assert!(low < high && low.is_finite() && high.is_finite(), "a range of {low} to {high}");
+        Self { label: label.into(), low, high, log: false }
+    }
+
+    /// An axis with a logarithmic scale.
+    ///
+    /// # Panics
+    /// Unless `0 < low < high`, both finite.
+    pub fn log(label: impl Into<String>, low: f64, high: f64) -> Self {
+        assert!(0.0 < low && low < high && high.is_finite(), "a range of {low} to {high}");
+        Self { label: label.into(), low, high, log: true }
+    }
+
+    /// The value at a fraction of the axis's length.
+    pub fn value(&self, fraction: f64) -> f64 {
+        let [low, high] = self.ends();
+        let x = low + (high - low) * fraction;
+        if self.log { libm::exp10(x) } else { x }
+    }
+
+    /// Where a value stands: 0 at the low end, 1 at the high one, beyond these outside. On a
+    /// logarithmic axis 0 is at −∞, and a negative value has no place: NaN.
+    pub fn fraction(&self, value: f64) -> f64 {
+        let [low, high] = self.ends();
+        let x = if self.log { libm::log10(value) } else { value };
+        (x - low) / (high - low)
+    }
+
+    fn ends(&self) -> [f64; 2] {
+        [self.low, self.high].map(|x| if self.log { libm::log10(x) } else { x })
+    }
+
+    /// Ticks where there is room for so many numbers.
+    pub(super) fn ticks(&self, room: usize) -> Vec<Tick> {
+        let room = room.max(2) as f64;
+        if self.log {
+            let ticks = self.log_ticks(room);
+            // Less than a decade may hold one number of 1, 2 and 5, which says no scale.
+            if ticks.iter().filter(|tick| tick.label.is_some()).count() > 1 {
+                return ticks;
+            }
+        }
+        self.even_ticks(room)
+    }
+
+    /// Multiples of 1, 2 or 5 times a power of ten.
+    fn even_ticks(&self, room: f64) -> Vec<Tick> {
+        let rough = (self.high - self.low) / room;
+        let power = libm::floor(libm::log10(rough));
+        let unit = libm::exp10(power);
+        let factor = [1.0, 2.0, 5.0].into_iter().find(|f| f * unit >= rough * 0.999);
+        let (step, power) = factor.map_or((10.0 * unit, power + 1.0), |f| (f * unit, power));
+        let decimals = (-power).max(0.0) as usize;
+        let (first, last) = ((self.low / step - 1e-9).ceil(), (self.high / step + 1e-9).floor());
+        (0..=(last - first) as u32)
+            .map(|i| {
+                // Adding 0 turns −0 into 0.
+                let value = (first + f64::from(i)) * step + 0.0;
+                let label = format!("{value:.decimals$}").replace('-', "−");
+                Tick { at: self.fraction(value), label: Some(label) }
+            })
+            .collect()
+    }
+
+    /// 1, 2 and 5 times powers of ten where there is room; else the powers; else every other, and
+    /// so on.
+    fn log_ticks(&self, room: f64) -> Vec<Tick> {
+        let [low, high] = self.ends();
+        let decades = high - low;
+        let numbered: &[u32] = if 3.0 * decades <= room { &[1, 2, 5] } else { &[1] };
+        let every = ((decades / room).ceil() as i32).max(1);
+        let marked = if every == 1 { 1..=9 } else { 1..=1 };
+        let powers = (low - 1e-9).floor() as i32..=(high + 1e-9).floor() as i32;
+        let plain = self.low >= 1e-3 && self.high <= 1e5;
+        let tick = |mantissa: u32, power: i32| {
+            // As a number is read, so that 2e-3 is the nearest to 0.002.
+            let value = format!("{mantissa}e{power}").parse().expect("digits");
+            let label = match (numbered.contains(&mantissa), mantissa) {
+                (false, _) => None,
+                _ if plain => Some(format!("{value}")),
+                (_, 1) => Some(power_of_ten(power)),
+                (_, m) => Some(format!("{m}·{}", power_of_ten(power))),
+            };
+            Tick { at: self.fraction(value), label }
+        };
+        powers
+            .filter(|power| power.rem_euclid(every) == 0)
+            .flat_map(|power| marked.clone().map(move |mantissa| tick(mantissa, power)))
+            .filter(|tick| (-1e-9..=1.0 + 1e-9).contains(&tick.at))
+            .collect()
+    }
+}
+
+/// 10ⁿ with raised digits.
+fn power_of_ten(power: i32) -> String {
+    let raised = |c: char| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => char::from_u32('⁰' as u32 + digit as u32 - '0' as u32).unwrap_or(digit),
+    };
+    format!("10{}", power.to_string().chars().map(raised).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(axis: &Axis, room: usize) -> Vec<String> {
+        axis.ticks(room).into_iter().filter_map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn a_logarithmic_axis_has_1_2_5_where_there_is_room_and_powers_where_not() {
+        let numbers = ["0.1", "0.2", "0.5", "1", "2", "5", "10"];
+        assert_eq!(labels(&Axis::log("x", 0.1, 10.0), 8), numbers);
+        assert_eq!(labels(&Axis::log("x", 0.1, 10.0), 4), ["0.1", "1", "10"]);
+        assert_eq!(labels(&Axis::log("x", 3e-7, 4e-6), 4), ["5·10⁻⁷", "10⁻⁶", "2·10⁻⁶"]);
+        let powers = ["10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴", "10⁰"];
+        assert_eq!(labels(&Axis::log("x", 1e-16, 1.0), 5), powers);
+        // Between the numbers stand ticks without one, at 3, 4, 6 to 9.
+        let ticks = Axis::log("x", 1.0, 10.0).ticks(4);
+        assert_eq!(ticks.len(), 10);
+        assert!((ticks[2].at - libm::log10(3.0)).abs() < 1e-15 && ticks[2].label.is_none());
+    }
+
+    #[test]
+    fn a_narrow_logarithmic_axis_still_has_numbers() {
+        assert_eq!(labels(&Axis::log("x", 2.2, 2.8), 4), ["2.2", "2.4", "2.6", "2.8"]);
+    }
+
+    #[test]
+    fn an_even_axis_has_multiples_of_1_2_5() {
+        assert_eq!(labels(&Axis::linear("x", -1.0, 1.0), 5), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(labels(&Axis::linear("x", 0.0, 90.0), 6), ["0", "20", "40", "60", "80"]);
+        assert_eq!(labels(&Axis::linear("x", 0.0, 3e4), 4), ["0", "10000", "20000", "30000"]);
+    }
+
+    #[test]
+    fn ends_corners_and_what_has_no_place() {
+        let axis = Axis::log("x", 1e-9, 1e3);
+        assert_eq!((axis.fraction(1e-9), axis.fraction(1e3)), (0.0, 1.0));
+        assert!((axis.value(0.25) / 1e-6 - 1.0).abs() < 1e-12);
+        assert_eq!(axis.fraction(0.0), f64::NEG_INFINITY);
+        assert!(axis.fraction(-1.0).is_nan());
+        assert_eq!(axis.fraction(f64::INFINITY), f64::INFINITY);
+    }
+}

@@ -1,0 +1,164 @@
+//! Colours: each follows from what a curve is, so that it means one thing in every figure.
+
+use crate::distribution::DistributionKind;
+
+/// Red, green and blue of sRGB.
+pub(super) type Color = [u8; 3];
+
+pub(super) const BLACK: Color = [0, 0, 0];
+pub(super) const GRID: Color = [220, 220, 220];
+
+/// What a curve or a point is; its colour follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Key {
+    /// A distribution of this kind.
+    Kind(DistributionKind),
+    /// The family at this γ, where a figure compares shapes.
+    Gamma(f64),
+    /// The family at this σ, where a figure compares roughnesses.
+    Sigma(f64),
+    /// A way to compute something.
+    Method(Method),
+}
+
+/// Ways to compute masking, or to draw normals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The tables of this project.
+    Table,
+    /// Λ by Ribardière et al. 2017, eq. 13–15.
+    Hypergeometric,
+    /// Λ by their eq. 21, for integer γ.
+    Integer,
+    /// Λ by their eq. 21, for half-integer γ.
+    HalfInteger,
+    /// Λ by their eq. 22–23, a rational approximation.
+    Rational,
+    /// Normals by inversion of the CDF in double precision.
+    Inversion,
+    /// Normals by rejection.
+    Rejection,
+    /// Anything else.
+    Other,
+}
+
+/// How a curve is drawn; where curves hide each other, they differ in this.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Dash {
+    /// Without gaps.
+    #[default]
+    Solid,
+    /// Long dashes, drawn over solid curves.
+    Dashed,
+    /// Dots, drawn over all others.
+    Dotted,
+}
+
+// The palette of Okabe and Ito 2008, made for all kinds of colour vision, with its yellow darkened
+// for white paper; and two of Tol's.
+const BLUE: Color = [0, 114, 178];
+const SKY: Color = [86, 180, 233];
+const GREEN: Color = [0, 158, 115];
+const ORANGE: Color = [230, 159, 0];
+const VERMILLION: Color = [213, 94, 0];
+const PURPLE: Color = [204, 121, 167];
+const OLIVE: Color = [150, 140, 0];
+const WINE: Color = [136, 34, 85];
+const GREY: Color = [110, 110, 110];
+
+/// γ from dark to light through the hues of viridis, its yellow darkened.
+const GAMMAS: [Color; 5] =
+    [[60, 0, 90], [45, 85, 190], [0, 150, 150], [85, 170, 60], [250, 170, 40]];
+/// σ from dark to light, in hues that no γ has.
+const SIGMAS: [Color; 5] =
+    [[50, 10, 20], [125, 15, 40], [195, 35, 70], [230, 95, 125], [245, 165, 180]];
+
+impl Key {
+    /// The colour.
+    pub(super) fn color(self) -> Color {
+        match self {
+            Self::Kind(kind) => match kind {
+                DistributionKind::Beckmann => BLACK,
+                DistributionKind::Gauss => BLUE,
+                DistributionKind::TrowbridgeReitz => VERMILLION,
+                DistributionKind::Gtr => OLIVE,
+                DistributionKind::BlinnPhong => GREEN,
+                DistributionKind::Schlick => SKY,
+                DistributionKind::Sawicki => PURPLE,
+                DistributionKind::StudentT => ORANGE,
+                DistributionKind::HyperCauchy => WINE,
+                DistributionKind::AshikhminShirley => GREY,
+            },
+            // In ln(γ − 3/2) shapes near the pole are as far apart as those near Beckmann's limit.
+            Self::Gamma(gamma) => {
+                let place = (libm::log10((gamma - 1.5).max(1e-3)) + 1.3) / 3.3;
+                between(&GAMMAS, place)
+            }
+            Self::Sigma(sigma) => between(&SIGMAS, sigma / 1.2),
+            Self::Method(method) => match method {
+                Method::Table => BLUE,
+                Method::Hypergeometric => VERMILLION,
+                Method::Integer => BLACK,
+                Method::HalfInteger => ORANGE,
+                Method::Rational => GREEN,
+                Method::Inversion => PURPLE,
+                Method::Rejection => WINE,
+                Method::Other => GREY,
+            },
+        }
+    }
+}
+
+/// The colour at a place of a ramp, 0 at its first stop and 1 at its last; beyond, the nearest.
+fn between(stops: &[Color; 5], place: f64) -> Color {
+    let at = place.clamp(0.0, 1.0) * 4.0;
+    let cell = (at as usize).min(3);
+    let t = at - cell as f64;
+    std::array::from_fn(|i| {
+        let [a, b] = [stops[cell][i], stops[cell + 1][i]].map(f64::from);
+        (a + (b - a) * t).round() as u8
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contrast with white paper, by the relative luminance of WCAG 2.
+    fn contrast(color: Color) -> f64 {
+        let linear = color.map(|c| {
+            let c = f64::from(c) / 255.0;
+            if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+        });
+        1.05 / (0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] + 0.05)
+    }
+
+    #[test]
+    fn kinds_differ_in_colour_and_stand_out_from_paper() {
+        let kinds = DistributionKind::ALL.map(|kind| Key::Kind(kind).color());
+        for (i, a) in kinds.iter().enumerate() {
+            assert!(kinds[..i].iter().all(|b| a != b), "{:?}", DistributionKind::ALL[i]);
+        }
+        let ramps = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2].map(|x| Key::Sigma(x).color());
+        let gammas = [1.5, 1.6, 2.0, 3.0, 40.0, f64::INFINITY].map(|x| Key::Gamma(x).color());
+        for color in kinds.into_iter().chain(ramps).chain(gammas) {
+            assert!(contrast(color) > 1.8, "{color:?}: {}", contrast(color));
+        }
+    }
+
+    #[test]
+    fn ramps_grow_lighter_so_that_they_are_read_without_hues() {
+        for ramp in [GAMMAS, SIGMAS] {
+            let light: Vec<f64> =
+                (0..=40).map(|i| 1.0 / contrast(between(&ramp, f64::from(i) / 40.0))).collect();
+            assert!(light.windows(2).all(|pair| pair[0] < pair[1]), "{light:?}");
+        }
+    }
+
+    #[test]
+    fn ramps_go_from_their_first_colour_to_their_last() {
+        let ends = [1.5, f64::INFINITY].map(|gamma| Key::Gamma(gamma).color());
+        assert_eq!(ends, [GAMMAS[0], GAMMAS[4]]);
+        assert_eq!([0.0, 9.0].map(|sigma| Key::Sigma(sigma).color()), [SIGMAS[0], SIGMAS[4]]);
+    }
+}
