@@ -6,6 +6,7 @@ use glam::Vec3;
 use super::elementary::polynomial;
 
 /// G1 of one material.
+#[derive(Clone, Copy)]
 pub(crate) struct Rational {
     sigma: f32,
     /// 1/(γ−1) and 3/2 − γ.
