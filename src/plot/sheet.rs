@@ -38,8 +38,8 @@ pub struct Sheet {
     pub scale: Axis,
 }
 
-/// Sizes in pixels of the page: a picture, the room of a row's name, of the titles and of a caption,
-/// and the gap between pictures.
+/// Sizes in pixels of the page: a picture, the room of a row's name, of the titles and of a
+/// caption, and the gap between pictures.
 const TILE: f64 = 160.0;
 const NAME: f64 = 84.0;
 const HEAD: f64 = 58.0;

@@ -14,7 +14,7 @@ use super::studio::{Film, Metal, Sky};
 use crate::clock::Calls;
 use crate::masking::{self, Evaluate};
 use crate::rivals::lobe::Lobe;
-use crate::rivals::rational::Rational;
+use crate::rivals::rational::{LARGEST, Rational};
 use crate::rivals::{beckmann, ggx};
 
 /// One form of G1 for one material.
@@ -57,7 +57,11 @@ impl Stage {
     /// precision, except the rational approximation, whose dependence on γ is prepared.
     pub(crate) fn of_shape<'a>(&'a self, set: &Tables, gamma: f64, sigma: f64) -> Vec<Form<'a>> {
         let lobe = set.student_t(sigma, gamma).expect("the general set covers all shapes");
-        let z = move |w: Vec3| f64::from(w.z) / (sigma * f64::from((w.x * w.x + w.y * w.y).sqrt()));
+        // At normal incidence z is infinite, and a term of the printed forms 0 times that.
+        let z = move |w: Vec3| {
+            let z = f64::from(w.z) / (sigma * f64::from((w.x * w.x + w.y * w.y).sqrt()));
+            z.min(f64::from(LARGEST))
+        };
         let g1 = |lambda: f64| (1.0 / (1.0 + lambda)) as f32;
         let mut all = vec![self.form(Method::Hypergeometric, &lobe, move |w| {
             g1(printed::lambda_hypergeometric(gamma, z(w)))
@@ -96,5 +100,48 @@ impl Stage {
                 self.form(Method::Beckmann, &of(f64::INFINITY), move |w| beckmann::g1(single, w)),
             ),
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use microfacet_model as model;
+    use microfacet_model::MicrofacetDistribution as _;
+
+    use super::super::times::{GAMMAS, SIGMAS};
+    use super::*;
+    use crate::inputs::Inputs;
+
+    #[test]
+    fn every_form_is_g1_of_its_shape() {
+        let set = Tables::embedded();
+        let stage = Stage { film: Film { edge: 1, samples: 1 }, sky: Sky::studio(), seed: 1 };
+        let mut views = Inputs::new(1, 500).views;
+        views.push(Vec3::Z);
+        let check = |gamma: f64, sigma: f64, form: Form| {
+            let truth = model::StudentT::new(sigma, gamma).unwrap();
+            let tolerance = if form.method == Method::Rational { 8e-3 } else { 5e-6 };
+            let mut values = vec![0.0; views.len()];
+            (form.g1)(&views, &mut values);
+            for (v, got) in views.iter().zip(values) {
+                let error = f64::from(got) - truth.g1(v.as_dvec3());
+                assert!(
+                    error.abs() < tolerance,
+                    "{:?}, gamma {gamma}, sigma {sigma}, {v}: {error:e}",
+                    form.method
+                );
+            }
+        };
+        for sigma in [SIGMAS[0], 0.5, SIGMAS[SIGMAS.len() - 1]] {
+            for gamma in GAMMAS {
+                stage.of_shape(&set, gamma, sigma).into_iter().for_each(|form| {
+                    check(gamma, sigma, form);
+                });
+            }
+            for (gamma, form) in stage.references(&set, sigma) {
+                check(gamma, sigma, form);
+            }
+            check(f64::INFINITY, sigma, stage.table(&set, f64::INFINITY, sigma));
+        }
     }
 }

@@ -134,8 +134,8 @@ pub(crate) struct Film {
 }
 
 impl Film {
-    /// Where a point of the film, in pixels from its upper left corner, meets the sphere, seen along
-    /// the camera's axis: the coordinates along it, up and towards the camera.
+    /// Where a point of the film, in pixels from its upper left corner, meets the sphere, as
+    /// coordinates to the right, up and towards the camera.
     fn hit(self, [x, y]: [f32; 2]) -> Option<Vec3> {
         let scale = 2.0 * REACH / self.edge as f32;
         let (x, y) = (scale * x - REACH, REACH - scale * y);

@@ -27,7 +27,7 @@ const OVER_F24: [f64; 4] = [6.538, 6.103, -3.218, 6.347];
 
 /// At this z the approximation has its limit for normal incidence, and powers of z are still
 /// finite.
-const LARGEST: f32 = 1e5;
+pub(crate) const LARGEST: f32 = 1e5;
 
 impl Rational {
     pub(crate) fn new(sigma: f64, gamma: f64) -> Self {
