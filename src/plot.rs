@@ -10,6 +10,7 @@ mod label;
 mod layout;
 mod panel;
 mod png;
+mod sheet;
 mod svg;
 mod text;
 
@@ -18,6 +19,7 @@ use std::fmt;
 pub use axis::Axis;
 pub use figures::{FIGURES, Listed, figure};
 pub use ink::{Dash, Key, Method};
+pub use sheet::{Content, Sheet, Tile};
 
 /// A curve with its name in the legend.
 #[derive(Clone, Debug, PartialEq)]

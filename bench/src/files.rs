@@ -7,34 +7,36 @@ use serde_json::{Value, json};
 
 use crate::Failure;
 use crate::figures::Figure;
-use crate::paper::{self, Approximation, Timing};
+use crate::paper::Paper;
 use crate::plot;
 use crate::rows::Row;
 use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::sweep::{Cell, Summary};
 
-/// Writes everything into an existing folder.
-pub(crate) fn write(
-    folder: &Path,
+/// Every file of the benchmark by its name.
+pub(crate) fn files(
     document: &Value,
     rows: &[Row],
     cells: &[Cell],
-    times: &[Timing],
-    approximation: &[Approximation],
-) -> Result<(), Failure> {
-    let write = |name: &str, bytes: Vec<u8>| {
-        let path = folder.join(name);
-        replace(&path, &bytes).map_err(|why| Failure(format!("writing {}: {why}", path.display())))
-    };
-    write("bench.csv", csv(&ROW, rows.iter().map(row_fields))?)?;
-    write("bench.json", format!("{document:#}\n").into_bytes())?;
-    write("bench.svg", plot::svg(rows).into_bytes())?;
-    write("sweep.csv", csv(&CELL, cells.iter().map(cell_fields))?)?;
-    write("figure-4.csv", csv(&TIMING, times.iter().map(timing_fields))?)?;
-    write("figure-4.svg", paper::times_svg(times).into_bytes())?;
-    write("figure-5.csv", csv(&APPROXIMATION, approximation.iter().map(approximation_fields))?)?;
-    write("figure-5.svg", paper::approximation_svg(approximation).into_bytes())
+) -> Result<Vec<(&'static str, Vec<u8>)>, Failure> {
+    Ok(vec![
+        ("bench.csv", csv(&ROW, rows.iter().map(row_fields))?),
+        ("bench.json", format!("{document:#}\n").into_bytes()),
+        ("bench.svg", plot::svg(rows).into_bytes()),
+        ("sweep.csv", csv(&CELL, cells.iter().map(cell_fields))?),
+    ])
 }
+
+/// Writes files into an existing folder.
+pub(crate) fn write(folder: &Path, files: &[(&str, Vec<u8>)]) -> Result<(), Failure> {
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        replace(&path, bytes)
+            .map_err(|why| Failure(format!("writing {}: {why}", path.display())))?;
+    }
+    Ok(())
+}
+
 const ROW: [&str; 10] = [
     "quantity",
     "name",
@@ -51,10 +53,9 @@ const CELL: [&str; 10] = [
     "function", "gamma", "sigma_x", "sigma_y", "turn_x", "turn_y", "turn_z", "views", "numbers",
     "ns",
 ];
-const TIMING: [&str; 6] = ["quantity", "by", "method", "gamma", "sigma", "ns"];
-const APPROXIMATION: [&str; 5] = ["gamma", "theta_degrees", "g1", "rational_error", "table_error"];
 
-fn csv<const N: usize>(
+/// A table with a header.
+pub(crate) fn csv<const N: usize>(
     header: &[&str; N],
     records: impl Iterator<Item = [String; N]>,
 ) -> Result<Vec<u8>, Failure> {
@@ -66,8 +67,13 @@ fn csv<const N: usize>(
     Ok(writer.into_inner()?)
 }
 
+/// With every digit.
+pub(crate) fn number(x: f64) -> String {
+    format!("{x:e}")
+}
+
 fn optional(x: Option<f64>) -> String {
-    x.map_or(String::new(), |x| format!("{x:e}"))
+    x.map_or(String::new(), number)
 }
 
 fn row_fields(row: &Row) -> [String; 10] {
@@ -101,34 +107,13 @@ fn cell_fields(cell: &Cell) -> [String; 10] {
     ]
 }
 
-fn timing_fields(at: &Timing) -> [String; 6] {
-    let by = if at.by_gamma { "gamma" } else { "sigma" };
-    [
-        at.quantity.name().into(),
-        by.into(),
-        at.method.into(),
-        at.gamma.to_string(),
-        at.sigma.to_string(),
-        format!("{:.3}", at.ns),
-    ]
-}
-
-fn approximation_fields(at: &Approximation) -> [String; 5] {
-    [
-        at.gamma.to_string(),
-        at.degrees.to_string(),
-        at.g1.to_string(),
-        format!("{:e}", at.rational_error),
-        format!("{:e}", at.table_error),
-    ]
-}
-
 /// Everything as one JSON document.
 pub(crate) fn document(
     settings: &Settings,
     rows: &[Row],
     sweep: &[Summary],
     figures: &[Figure],
+    paper: &Paper,
 ) -> Value {
     // JSON has no infinity.
     let shape = |gamma: f64| if gamma.is_finite() { json!(gamma) } else { json!("inf") };
@@ -164,5 +149,6 @@ pub(crate) fn document(
         "rows": rows.iter().map(row).collect::<Vec<_>>(),
         "sweep": sweep.iter().map(summary).collect::<Vec<_>>(),
         "figures": figures.iter().map(figure).collect::<Vec<_>>(),
+        "paper": paper.json(),
     })
 }

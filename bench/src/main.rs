@@ -25,13 +25,16 @@ mod tables;
 mod terminal;
 
 use std::fmt::Display;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{Parser, Subcommand};
+use microfacet_sampler::Tables;
+use serde_json::Value;
 
 use crate::inputs::COUNT;
+use crate::paper::Paper;
 use crate::settings::Settings;
 use crate::tables::Slices;
 
@@ -42,26 +45,51 @@ use crate::tables::Slices;
 /// than times, but not immune.
 #[derive(Parser)]
 #[command(version)]
-#[command(
-    after_help = "Example:\n  microfacet-bench --quick --out out/bench\n\nExit status: 0 done, 2 bad input."
-)]
+#[command(after_help = "Examples:\n  \
+    microfacet-bench --quick --out out/bench\n  \
+    microfacet-bench paper --out out/paper\n\n\
+    Exit status: 0 done, 2 bad input.")]
 struct Args {
-    /// Fewer batches: some seconds instead of two minutes.
-    #[arg(long)]
+    #[command(subcommand)]
+    part: Option<Part>,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// A part of the benchmark.
+#[derive(Clone, Copy, PartialEq, Eq, Subcommand)]
+enum Part {
+    /// Only what repeats figures 4 to 6 of Ribardière et al. 2017 (doi:10.1111/cgf.13137)
+    ///
+    /// The time of each form of masking, alone and in a renderer (figure 4); the error of the
+    /// rational approximation of masking (figure 5); what that changes in pictures of rough gold,
+    /// in false colours (figure 6, which uses all cores). Less than a minute, or some seconds
+    /// with --quick.
+    ///
+    /// Files in --out: figure-4.csv, .svg and .png; figure-5.csv by gamma and theta,
+    /// figure-5-integrated.csv by gamma and sigma, figure-5.svg and .png; figure-6.csv, .svg and
+    /// .png.
+    Paper,
+}
+
+#[derive(clap::Args)]
+struct Options {
+    /// Fewer batches: some seconds instead of three minutes.
+    #[arg(long, global = true)]
     quick: bool,
     /// Different inputs to call with.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=COUNT as i64))]
+    #[arg(long, global = true, value_name = "N",
+          value_parser = clap::value_parser!(u32).range(16..=COUNT as i64))]
     calls: Option<u32>,
     /// Seed of views and random numbers.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, global = true, default_value_t = 1)]
     seed: u64,
-    /// Folder for bench.csv, bench.json, bench.svg, every time of the sweep (sweep.csv) and, after
-    /// Ribardière et al. 2017, the times by gamma and sigma (figure-4.csv, .svg) and the error of
-    /// the rational approximation (figure-5.csv, .svg).
-    #[arg(long, value_name = "FOLDER")]
+    /// Folder for bench.csv, bench.json, bench.svg, every time of the sweep (sweep.csv) and the
+    /// files of `paper`.
+    #[arg(long, global = true, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Print JSON instead of tables.
-    #[arg(long)]
+    #[arg(long, global = true)]
     json: bool,
 }
 
@@ -84,32 +112,67 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(args: Args) -> Result<(), Failure> {
-    let settings = if args.quick { Settings::QUICK } else { Settings::FULL };
-    let settings = Settings { seed: args.seed, ..settings };
-    let settings = args.calls.map_or(settings, |calls| settings.with_calls(calls as usize));
-    if let Some(folder) = &args.out {
+fn run(Args { part, options }: Args) -> Result<(), Failure> {
+    let settings = if options.quick { Settings::QUICK } else { Settings::FULL };
+    let settings = Settings { seed: options.seed, ..settings };
+    let settings = options.calls.map_or(settings, |calls| settings.with_calls(calls as usize));
+    if let Some(folder) = &options.out {
         // Fail before the work, not after it.
         std::fs::create_dir_all(folder)
             .map_err(|why| Failure(format!("making the folder {}: {why}", folder.display())))?;
     }
-    let slices = Slices::bake();
-    let rows = rows::rows(&slices, &settings);
-    let cells = sweep::cells(slices.whole(), &settings);
-    let sweep = sweep::summaries(&cells);
-    let approximation = paper::approximation(slices.whole());
-    let mut figures = figures::figures(&rows, &approximation, &slices, &settings);
-    figures.extend(cliffs::figures(slices.whole(), &sweep, &settings));
-    let document = files::document(&settings, &rows, &sweep, &figures);
-    if let Some(folder) = &args.out {
-        let times = paper::times(slices.whole(), &settings);
-        files::write(folder, &document, &rows, &cells, &times, &approximation)?;
+    let Results { files, text, json } = match part {
+        Some(Part::Paper) => only_paper(&settings, options.out.is_some())?,
+        None => everything(&settings, options.out.is_some())?,
+    };
+    if let Some(folder) = &options.out {
+        files::write(folder, &files)?;
     }
-    if args.json {
-        print(&format!("{document:#}\n"))
+    if options.json { print(&format!("{json:#}\n")) } else { print(&text) }
+}
+
+/// What one run is to write and print.
+struct Results {
+    files: Vec<(&'static str, Vec<u8>)>,
+    text: String,
+    json: Value,
+}
+
+/// Figures 4 to 6 of the paper; files only if they are asked for.
+fn only_paper(settings: &Settings, files: bool) -> Result<Results, Failure> {
+    let paper = Paper::measure(&Tables::embedded(), settings, stage);
+    let files = if files { paper.files()? } else { Vec::new() };
+    Ok(Results { files, text: paper.text(), json: paper.json() })
+}
+
+/// All rivals, the sweep, and the paper.
+fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
+    let slices = Slices::bake();
+    stage("rivals: times and errors");
+    let rows = rows::rows(&slices, settings);
+    stage("sweep: times over the whole domain");
+    let cells = sweep::cells(slices.whole(), settings);
+    let sweep = sweep::summaries(&cells);
+    let paper = Paper::measure(slices.whole(), settings, stage);
+    let mut figures = figures::figures(&rows, &paper.approximation, &slices, settings);
+    figures.extend(cliffs::figures(slices.whole(), &sweep, settings));
+    let json = files::document(settings, &rows, &sweep, &figures, &paper);
+    let text =
+        [terminal::table(&rows), terminal::sweep(&sweep), terminal::block(&figures), paper.text()];
+    let files = if files {
+        let mut all = files::files(&json, &rows, &cells)?;
+        all.extend(paper.files()?);
+        all
     } else {
-        let parts = [terminal::table(&rows), terminal::sweep(&sweep), terminal::block(&figures)];
-        print(&parts.join("\n"))
+        Vec::new()
+    };
+    Ok(Results { files, text: text.join("\n"), json })
+}
+
+/// Says on a terminal what is measured now: a bar would need a thread beside the one that is timed.
+fn stage(what: &str) {
+    if io::stderr().is_terminal() {
+        eprintln!("{what}");
     }
 }
 

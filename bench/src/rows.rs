@@ -23,6 +23,8 @@ pub(crate) enum Quantity {
     D,
     /// A conductor: a sampled light and the evaluation of another.
     Conductor,
+    /// A picture of rough gold.
+    Picture,
 }
 
 impl Quantity {
@@ -33,6 +35,7 @@ impl Quantity {
             Self::G1 => "g1",
             Self::D => "d",
             Self::Conductor => "conductor",
+            Self::Picture => "picture",
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Which materials are compared, and how much is measured.
 
 use crate::inputs::COUNT;
+use crate::paper::Film;
 
 /// Roughness of the materials compared.
 pub(crate) const SIGMA: f64 = 0.5;
@@ -23,12 +24,18 @@ pub(crate) struct Settings {
     pub(crate) sweep_batches: usize,
     /// Calls of such a batch.
     pub(crate) sweep_calls: usize,
+    /// How finely a picture is made that is timed.
+    pub(crate) timed: Film,
+    /// How often it is made; the median is taken.
+    pub(crate) picture_rounds: usize,
+    /// How finely a picture is made that is compared.
+    pub(crate) shown: Film,
     /// Seed of the inputs.
     pub(crate) seed: u64,
 }
 
 impl Settings {
-    /// About two minutes.
+    /// About three minutes.
     pub(crate) const FULL: Self = Self {
         calls: COUNT,
         rounds: 801,
@@ -36,6 +43,9 @@ impl Settings {
         draws: 2048,
         sweep_batches: 7,
         sweep_calls: 512,
+        timed: Film { edge: 48, samples: 4 },
+        picture_rounds: 11,
+        shown: Film { edge: 160, samples: 64 },
         seed: 1,
     };
     /// Some seconds.
@@ -45,6 +55,9 @@ impl Settings {
         draws: 1024,
         sweep_batches: 3,
         sweep_calls: 64,
+        timed: Film { edge: 16, samples: 1 },
+        picture_rounds: 3,
+        shown: Film { edge: 64, samples: 16 },
         ..Self::FULL
     };
 
@@ -58,6 +71,7 @@ impl Settings {
             views: few(self.views),
             draws: few(self.draws),
             sweep_calls: few(self.sweep_calls),
+            picture_rounds: few(self.picture_rounds),
             ..self
         }
     }

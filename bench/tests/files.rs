@@ -1,24 +1,10 @@
 //! The benchmark as a command: the files it writes and their values, never the times.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
-use std::process::{Command, Output};
+mod common;
 
-fn run(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bench"));
-    command.args(args).current_dir(folder).output().expect("runs")
-}
+use std::collections::BTreeSet;
 
-type Record = BTreeMap<String, String>;
-
-fn read(path: &Path) -> Vec<Record> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    reader.deserialize().collect::<Result<_, _>>().unwrap()
-}
-
-fn number(record: &Record, column: &str) -> f64 {
-    record[column].parse().unwrap_or_else(|_| panic!("{column} of {record:?}"))
-}
+use common::{Record, number, read, run};
 
 #[test]
 fn every_rival_is_measured_and_written() {
@@ -74,20 +60,10 @@ fn every_rival_is_measured_and_written() {
 
     sweep_is_whole(&read(&at.join("out/sweep.csv")), &json);
 
-    let errors = read(&at.join("out/figure-5.csv"));
-    let worst = |column| errors.iter().map(|at| number(at, column).abs()).fold(0.0, f64::max);
-    assert!(worst("rational_error") > 1e-3 && worst("table_error") < 1e-5);
-    let times = read(&at.join("out/figure-4.csv"));
-    for (by, column) in [("gamma", "gamma"), ("sigma", "sigma")] {
-        let of = times.iter().filter(|time| time["by"] == by && time["method"] == "table");
-        let mut points: Vec<f64> = of.map(|time| number(time, column)).collect();
-        points.dedup();
-        assert!(points.len() >= 8, "{by}: {points:?}");
-    }
-    for name in ["bench.svg", "figure-4.svg", "figure-5.svg"] {
-        let drawn = std::fs::read_to_string(at.join("out").join(name)).unwrap();
-        assert!(drawn.starts_with("<svg") && drawn.to_lowercase().contains("table"), "{name}");
-    }
+    let drawn = std::fs::read_to_string(at.join("out/bench.svg")).unwrap();
+    assert!(drawn.starts_with("<svg") && drawn.contains("table"));
+    // The paper is part of it; its own test has the values.
+    assert!(at.join("out/figure-4.csv").exists() && json["paper"]["figure_6"].is_array());
 }
 
 /// The sweep has each function of each lobe over the whole domain, and its summaries are those of

@@ -107,17 +107,34 @@ fn prefactor(gamma: f64) -> f64 {
     libm::tgamma(gamma - 0.5) / (PI.sqrt() * libm::tgamma(gamma))
 }
 
-/// ₂F₁(½, γ−½; 3/2; −x) by Pfaff's transformation and the power series, x ≥ 0.
+/// ₂F₁(½, γ−½; 3/2; −x), x ≥ 0, by the power series that converges: all but the first have positive
+/// terms alone, so that no digit is lost.
 fn hypergeometric(gamma: f64, x: f64) -> f64 {
-    // (1+x)^(−½) ₂F₁(½, 2−γ; 3/2; x/(1+x)).
-    let y = x / (1.0 + x);
+    let (y, w) = (x / (1.0 + x), 1.0 / (1.0 + x));
+    if gamma.fract() == 0.0 && gamma <= 12.0 {
+        // Pfaff's transformation, (1+x)^(−½) ₂F₁(½, 2−γ; 3/2; y), ends after γ−1 terms. They
+        // alternate: for larger γ that costs more than three digits.
+        return w.sqrt() * series(|n| (0.5 + n) * (2.0 - gamma + n) / ((1.5 + n) * (n + 1.0)) * y);
+    }
+    if y <= 0.5 {
+        // Euler's of that, (1+x)^(½−γ) ₂F₁(1, γ−½; 3/2; y).
+        return libm::pow(w, gamma - 0.5) * series(|n| (gamma - 0.5 + n) / (1.5 + n) * y);
+    }
+    // Near the branch point, by 1 − y = w (DLMF 15.8.4), what is missing to the value at x = ∞.
+    let whole = 0.5 * PI.sqrt() * libm::tgamma(gamma - 1.0) / libm::tgamma(gamma - 0.5);
+    let missing = series(|n| (gamma - 0.5 + n) / (gamma + n) * w) / (2.0 * (gamma - 1.0));
+    whole / x.sqrt() - libm::pow(w, gamma - 0.5) * missing
+}
+
+/// 1 + r(0) + r(0) r(1) + …, to rounding.
+fn series(ratio: impl Fn(f64) -> f64) -> f64 {
     let (mut term, mut sum, mut n) = (1.0, 1.0, 0.0);
-    while n < 20_000.0 && f64::abs(term) > 1e-17 * f64::abs(sum) {
-        term *= (0.5 + n) * (2.0 - gamma + n) / ((1.5 + n) * (n + 1.0)) * y;
+    while f64::abs(term) > 1e-17 * f64::abs(sum) && n < 1e4 {
+        term *= ratio(n);
         sum += term;
         n += 1.0;
     }
-    sum / (1.0 + x).sqrt()
+    sum
 }
 
 #[cfg(test)]
@@ -153,6 +170,14 @@ mod tests {
                     error < 1e-14 * (1.0 + exact(gamma, z)),
                     "eq. 21 at gamma {gamma}, z {z}: {error}"
                 );
+            }
+        }
+        // Toward the branch point of the hypergeometric function only the cancellation against ½
+        // is left.
+        for z in [4.0, 30.0, 1e3, 1e5] {
+            for gamma in [1.51, 1.6, 2.0, 2.5, 7.3, 12.0, 13.0, 40.0, 100.0] {
+                let error = (lambda_hypergeometric(gamma, z) - exact(gamma, z)).abs();
+                assert!(error < 1e-13, "eq. 13 at gamma {gamma}, z {z}: {error}");
             }
         }
         assert!(lambda_integer(2.5, 1.0).is_none() && lambda_half_integer(3.0, 1.0).is_none());

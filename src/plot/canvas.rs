@@ -22,6 +22,8 @@ pub(super) enum Shape {
     Area { corners: Vec<At>, color: Color },
     /// A circle, filled or not.
     Circle { center: At, radius: f64, color: Color, filled: bool },
+    /// Pixels line by line, `columns` of them in each, over a rectangle.
+    Image { corner: At, size: At, columns: usize, pixels: Vec<Color> },
     /// A text; `at` is on its baseline. Turned, it is read upwards.
     Text { at: At, text: String, size: f64, anchor: Anchor, turned: bool, color: Color },
 }

@@ -19,6 +19,8 @@ pub enum Key {
     Sigma(f64),
     /// A way to compute something.
     Method(Method),
+    /// One of a figure's own list, by its place there; colours repeat after nine.
+    Nth(usize),
 }
 
 /// Ways to compute masking, or to draw normals.
@@ -34,6 +36,10 @@ pub enum Method {
     HalfInteger,
     /// Λ by their eq. 22–23, a rational approximation.
     Rational,
+    /// The closed form of GGX.
+    Ggx,
+    /// The closed form of Beckmann's distribution.
+    Beckmann,
     /// Normals by inversion of the CDF in double precision.
     Inversion,
     /// Normals by rejection.
@@ -73,6 +79,18 @@ const GAMMAS: [Color; 5] =
 const SIGMAS: [Color; 5] =
     [[50, 10, 20], [125, 15, 40], [195, 35, 70], [230, 95, 125], [245, 165, 180]];
 
+/// Of a list whose entries have no colour elsewhere.
+const NTH: [Color; 9] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, OLIVE, WINE, BLACK];
+
+/// Numbers from black through violet and orange to a pale yellow, each lighter than the last.
+const FALSE: [Color; 5] =
+    [[0, 0, 4], [80, 18, 123], [182, 54, 121], [251, 136, 97], [252, 253, 191]];
+
+/// The false colour at a fraction of a scale; beyond its ends, that of the end.
+pub(super) fn false_color(fraction: f64) -> Color {
+    between(&FALSE, fraction)
+}
+
 impl Key {
     /// The colour.
     pub(super) fn color(self) -> Color {
@@ -101,10 +119,13 @@ impl Key {
                 Method::Integer => BLACK,
                 Method::HalfInteger => ORANGE,
                 Method::Rational => GREEN,
+                Method::Ggx => SKY,
+                Method::Beckmann => OLIVE,
                 Method::Inversion => PURPLE,
                 Method::Rejection => WINE,
                 Method::Other => GREY,
             },
+            Self::Nth(i) => NTH[i % NTH.len()],
         }
     }
 }
@@ -148,7 +169,7 @@ mod tests {
 
     #[test]
     fn ramps_grow_lighter_so_that_they_are_read_without_hues() {
-        for ramp in [GAMMAS, SIGMAS] {
+        for ramp in [GAMMAS, SIGMAS, FALSE] {
             let light: Vec<f64> =
                 (0..=40).map(|i| 1.0 / contrast(between(&ramp, f64::from(i) / 40.0))).collect();
             assert!(light.windows(2).all(|pair| pair[0] < pair[1]), "{light:?}");

@@ -3,9 +3,10 @@
 use std::io::Cursor;
 
 use ab_glyph::OutlineCurve;
-use image::{ExtendedColorType, ImageEncoder};
+use image::{ExtendedColorType, ImageEncoder, ImageResult};
 use tiny_skia::{
-    FillRule, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform,
+    ColorU8, FillRule, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke, StrokeDash,
+    Transform,
 };
 
 use super::canvas::{Anchor, At, Canvas, Shape};
@@ -29,11 +30,20 @@ pub(super) fn write(canvas: &Canvas) -> Result<Vec<u8>, PlotError> {
     }
     // Nothing is transparent, for the paper is not.
     let rgb: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+    encode(&rgb, [width, height]).map_err(|why| PlotError::Drawing(why.to_string()))
+}
+
+fn encode(rgb: &[u8], [width, height]: [u32; 2]) -> ImageResult<Vec<u8>> {
     let mut file = Cursor::new(Vec::new());
-    image::codecs::png::PngEncoder::new(&mut file)
-        .write_image(&rgb, width, height, ExtendedColorType::Rgb8)
-        .map_err(|why| PlotError::Drawing(why.to_string()))?;
+    let encoder = image::codecs::png::PngEncoder::new(&mut file);
+    encoder.write_image(rgb, width, height, ExtendedColorType::Rgb8)?;
     Ok(file.into_inner())
+}
+
+/// An image of whole lines of pixels, as a file by itself.
+pub(super) fn of_pixels(pixels: &[Color], columns: usize) -> Vec<u8> {
+    let size = [columns, pixels.len() / columns].map(|edge| edge as u32);
+    encode(pixels.as_flattened(), size).expect("whole lines, in memory")
 }
 
 fn draw(pixmap: &mut Pixmap, shape: &Shape) {
@@ -65,6 +75,20 @@ fn draw(pixmap: &mut Pixmap, shape: &Shape) {
                 pixmap.fill_path(&path, &paint(*color), FillRule::Winding, page, None);
             }
             pixmap.stroke_path(&path, &paint(*color), &Stroke::default(), page, None);
+        }
+        Shape::Image { corner: [x, y], size: [width, height], columns, pixels } => {
+            let lines = pixels.len() / columns;
+            let Some(mut picture) = Pixmap::new(*columns as u32, lines as u32) else {
+                return;
+            };
+            for (to, &[r, g, b]) in picture.pixels_mut().iter_mut().zip(pixels) {
+                *to = ColorU8::from_rgba(r, g, b, 255).premultiply();
+            }
+            let [across, down] = [width / *columns as f64, height / lines as f64];
+            let place =
+                page.pre_translate(*x as f32, *y as f32).pre_scale(across as f32, down as f32);
+            // Without a filter, pixels stay what they are.
+            pixmap.draw_pixmap(0, 0, picture.as_ref(), &PixmapPaint::default(), place, None);
         }
         Shape::Text { at: [x, y], text, size, anchor, turned, color } => {
             let length = text::width(text, *size);

@@ -2,9 +2,12 @@
 
 use std::fmt::Write;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
 use super::canvas::{Anchor, At, Canvas, Shape};
 use super::ink::Color;
-use super::text;
+use super::{png, text};
 
 /// The page as a text in SVG 1.1, without references to anything outside it.
 pub(super) fn write(canvas: &Canvas) -> String {
@@ -48,6 +51,16 @@ fn write_shape(out: &mut String, shape: &Shape) -> std::fmt::Result {
             writeln!(
                 out,
                 "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{fill}\" stroke=\"{color}\"/>"
+            )
+        }
+        Shape::Image { corner: [x, y], size: [width, height], columns, pixels } => {
+            let [x, y, width, height] = [x, y, width, height].map(|x| number(*x));
+            writeln!(
+                out,
+                "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+                 preserveAspectRatio=\"none\" style=\"image-rendering: pixelated\" \
+                 href=\"data:image/png;base64,{}\"/>",
+                STANDARD.encode(png::of_pixels(pixels, *columns))
             )
         }
         Shape::Text { at: [x, y], text, size, anchor, turned, color } => {

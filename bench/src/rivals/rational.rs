@@ -6,6 +6,7 @@ use glam::Vec3;
 use super::elementary::polynomial;
 
 /// G1 of one material.
+#[derive(Clone, Copy)]
 pub(crate) struct Rational {
     sigma: f32,
     /// 1/(γ−1) and 3/2 − γ.
@@ -26,7 +27,7 @@ const OVER_F24: [f64; 4] = [6.538, 6.103, -3.218, 6.347];
 
 /// At this z the approximation has its limit for normal incidence, and powers of z are still
 /// finite.
-const LARGEST: f32 = 1e5;
+pub(crate) const LARGEST: f32 = 1e5;
 
 impl Rational {
     pub(crate) fn new(sigma: f64, gamma: f64) -> Self {

@@ -1,0 +1,196 @@
+//! The figures as drawings.
+
+use microfacet_bake::plot::{
+    Axis, Content, Curve, Dash, Figure, Key, Method as Plotted, Panel, PlotError, Sheet, Tile,
+};
+
+use super::Paper;
+use super::approximation::Approximation;
+use super::integrated::{CLAIM, MEASURES, RELATIVE};
+use super::pictures::{Compared, FORMS, srgb};
+use super::times::{SIGMAS, Timing};
+use crate::rows::Quantity;
+use crate::settings::{GAMMA, SIGMA};
+
+/// The ends of the axis of γ.
+const SHAPES: [f64; 2] = [1.5, 40.0];
+
+impl Paper {
+    /// Each figure as SVG and as PNG.
+    pub(super) fn drawings(&self) -> Result<Vec<(&'static str, Vec<u8>)>, PlotError> {
+        let (times, errors, pictures) = (self.times_figure(), self.error_figure(), self.sheet());
+        Ok(vec![
+            ("figure-4.svg", times.svg().into_bytes()),
+            ("figure-4.png", times.png()?),
+            ("figure-5.svg", errors.svg().into_bytes()),
+            ("figure-5.png", errors.png()?),
+            ("figure-6.svg", pictures.svg()?.into_bytes()),
+            ("figure-6.png", pictures.png()?),
+        ])
+    }
+
+    /// One G1 above, a picture below it, and last a visible normal, over γ and over σ.
+    fn times_figure(&self) -> Figure {
+        let quantities = [
+            (Quantity::G1, "One G1", "ns a call", 1.0),
+            (Quantity::Picture, "A picture of rough gold", "ms", 1e-6),
+            (Quantity::Normal, "A visible normal", "ns a call", 1.0),
+        ];
+        let panels = quantities.into_iter().flat_map(|(quantity, what, unit, scale)| {
+            let of: Vec<&Timing> =
+                self.times.iter().filter(|time| time.quantity == quantity).collect();
+            let values = || of.iter().map(|time| scale * time.ns);
+            let (low, high) =
+                (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
+            let y = Axis::log(unit, 0.7 * low, 1.4 * high);
+            let by_gamma = Panel {
+                title: format!("{what}, by γ, σ = {SIGMA}"),
+                x: Axis::log("γ", SHAPES[0], SHAPES[1]),
+                y: y.clone(),
+                curves: time_curves(&of, true, scale),
+                marks: Vec::new(),
+            };
+            let by_sigma = Panel {
+                title: format!("{what}, by σ, γ = {GAMMA}"),
+                x: Axis::linear("σ", 0.0, 1.0),
+                y,
+                curves: time_curves(&of, false, scale),
+                marks: Vec::new(),
+            };
+            [by_gamma, by_sigma]
+        });
+        Figure::new(panels.collect())
+    }
+
+    /// By θ, of the approximation and of the table; and over the hemisphere, by γ.
+    fn error_figure(&self) -> Figure {
+        let by_angle = |title: &str, error: fn(&Approximation) -> f64| {
+            let shapes = self.approximation.chunk_by(|a, b| a.gamma == b.gamma);
+            let curve = |(i, of): (usize, &[Approximation])| {
+                // Smaller errors are below the rounding of single precision.
+                let points = of.iter().map(|at| (at.degrees, error(at).abs().max(1e-9)));
+                Curve {
+                    key: Key::Gamma(of[0].gamma),
+                    name: format!("γ = {}", of[0].gamma),
+                    dash: alternate(i),
+                    points: points.collect(),
+                }
+            };
+            Panel {
+                title: title.into(),
+                x: Axis::linear("θ in degrees", 0.0, 90.0),
+                y: Axis::log("error of G1", 1e-9, 3e-2),
+                curves: shapes.enumerate().map(curve).collect(),
+                marks: Vec::new(),
+            }
+        };
+        let rows = [
+            by_angle("Rational approximation, eq. 22–23", |at| at.rational_error),
+            by_angle("Table, default quality", |at| at.table_error),
+            self.by_measure(),
+            self.by_sigma(),
+        ];
+        Figure::new(rows.into())
+    }
+
+    /// Measures of the error over the hemisphere.
+    fn by_measure(&self) -> Panel {
+        let curves = MEASURES.iter().enumerate().map(|(i, measure)| {
+            let curve = self.error_curve(Key::Nth(i), measure.formula.into(), i, SIGMA);
+            // The last hides the one before it, as G1 is close to 1 where the error is largest.
+            let dash = if i + 1 == MEASURES.len() { Dash::Dashed } else { Dash::Solid };
+            Curve { dash, ..curve }
+        });
+        let title = format!("Rational approximation over the hemisphere, σ = {SIGMA}");
+        self.over_hemisphere(title, curves.collect())
+    }
+
+    /// One of them by σ.
+    fn by_sigma(&self) -> Panel {
+        let curves = SIGMAS.into_iter().enumerate().map(|(i, sigma)| {
+            let key = Key::Sigma(sigma);
+            let curve = self.error_curve(key, format!("σ = {sigma}"), RELATIVE, sigma);
+            Curve { dash: alternate(i), ..curve }
+        });
+        self.over_hemisphere(MEASURES[RELATIVE].formula.into(), curves.collect())
+    }
+
+    fn error_curve(&self, key: Key, name: String, measure: usize, sigma: f64) -> Curve {
+        let of = self.integrated.iter().filter(|at| at.sigma == sigma);
+        let points = of.map(|at| (at.gamma, 1e2 * at.errors[measure])).collect();
+        Curve { key, name, dash: Dash::Solid, points }
+    }
+
+    /// With what the paper states.
+    fn over_hemisphere(&self, title: String, curves: Vec<Curve>) -> Panel {
+        let claim = Curve {
+            key: Key::Method(Plotted::Other),
+            name: "0.7 %, as the paper has it".into(),
+            dash: Dash::Dotted,
+            points: SHAPES.map(|gamma| (gamma, 1e2 * CLAIM)).into(),
+        };
+        Panel {
+            title,
+            x: Axis::log("γ", SHAPES[0], SHAPES[1]),
+            y: Axis::linear("per cent", 0.0, 0.8),
+            curves: curves.into_iter().chain([claim]).collect(),
+            marks: Vec::new(),
+        }
+    }
+
+    /// The exact picture of each shape, and the differences to it in false colours.
+    fn sheet(&self) -> Sheet {
+        let tiles = |of: &Compared| {
+            let edge = of.exact.film.edge;
+            let colors = of
+                .exact
+                .pixels
+                .iter()
+                .map(|&radiance| (255.0 * srgb(radiance)).to_array().map(|x| x.round() as u8));
+            let exact = Tile {
+                edge,
+                content: Content::Colors(colors.collect()),
+                caption: format!("mean radiance {:.2}", of.mean),
+            };
+            let differences = of.differences.iter().map(|at| Tile {
+                edge,
+                content: Content::Values(at.pixels.clone()),
+                caption: format!("RMSE {:.1e}", at.rmse),
+            });
+            [exact].into_iter().chain(differences).collect()
+        };
+        let columns = ["exact G1"].into_iter().chain(FORMS).map(String::from);
+        let rows = self.compared.iter().map(|of| (format!("γ = {}", of.gamma), tiles(of)));
+        Sheet {
+            title: format!("Rough gold, σ = {SIGMA}: the exact picture, and differences to it"),
+            columns: columns.collect(),
+            rows: rows.collect(),
+            scale: Axis::log("difference of radiance, the largest of the channels", 1e-8, 1e-1),
+        }
+    }
+}
+
+/// Neighbours on a ramp of colours differ in this too.
+fn alternate(i: usize) -> Dash {
+    if i.is_multiple_of(2) { Dash::Solid } else { Dash::Dashed }
+}
+
+/// The curves of one coordinate. What has one shape is the same for all.
+fn time_curves(of: &[&Timing], by_gamma: bool, scale: f64) -> Vec<Curve> {
+    let mut of: Vec<&Timing> =
+        of.iter().copied().filter(|time| time.at.by_gamma == by_gamma).collect();
+    of.sort_by_key(|time| time.at.method);
+    let curve = |times: &[&Timing]| {
+        let method = times[0].at.method;
+        let y = |time: &Timing| scale * time.ns;
+        let points = times.iter().filter(|time| time.at.gamma.is_finite() || !by_gamma);
+        let points = match method.is_reference() && by_gamma {
+            true => SHAPES.map(|gamma| (gamma, y(times[0]))).into(),
+            false if by_gamma => points.map(|time| (time.at.gamma, y(time))).collect(),
+            false => points.map(|time| (time.at.sigma, y(time))).collect(),
+        };
+        let dash = if method.is_reference() { Dash::Dashed } else { Dash::Solid };
+        Curve { key: method.key(), name: method.name().into(), dash, points }
+    };
+    of.chunk_by(|a, b| a.at.method == b.at.method).map(curve).collect()
+}
