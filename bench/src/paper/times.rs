@@ -48,7 +48,7 @@ pub(crate) struct Timing {
 
 /// Every method at every material, in turns.
 pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
-    let stage = Stage { film: settings.timed, sky: Sky::studio(), seed: settings.seed as u32 };
+    let stage = Stage { film: settings.timed, sky: Sky::studio(), seed: settings.picture_seed() };
     let by_gamma = GAMMAS.map(|gamma| (true, gamma, SIGMA));
     let by_sigma = SIGMAS.map(|sigma| (false, GAMMA, sigma));
     let points: Vec<_> = by_gamma.into_iter().chain(by_sigma).collect();
@@ -97,8 +97,8 @@ pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
     calls.chain(whole).map(|((quantity, at), ns)| Timing { quantity, at, ns }).collect()
 }
 
-/// Nanoseconds of a whole picture with each form, as the sum over its lines: one line, unlike all of
-/// them, takes less than a time slice of the scheduler.
+/// Nanoseconds of a whole picture with each form, as the sum over its lines: a line takes less than
+/// a time slice of the scheduler, so that most are not interrupted.
 fn pictures(forms: &[Line], settings: &Settings) -> Vec<f64> {
     let edge = settings.timed.edge;
     let runs = forms.iter().flat_map(|form| {
