@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use microfacet_common::shape::gamma_of_s;
 use microfacet_model::classic::{
-    AshikhminShirley, Gauss, Gtr, Isotropic, Member, Schlick, Tabulated,
+    AshikhminShirley, Gauss, Gtr, Isotropic, Member, Sawicki, Schlick, Tabulated,
 };
 
 use crate::fit::Angles;
@@ -27,6 +27,8 @@ pub enum DistributionKind {
     BlinnPhong,
     /// Schlick's rational distribution, m.
     Schlick,
+    /// Sawicki's rational distribution, exponent N.
+    Sawicki,
     /// Student-t, σ and γ.
     StudentT,
     /// Hyper-Cauchy, σ₀ and γ.
@@ -124,13 +126,14 @@ impl std::error::Error for DistributionError {}
 
 impl DistributionKind {
     /// All kinds.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Beckmann,
         Self::Gauss,
         Self::TrowbridgeReitz,
         Self::Gtr,
         Self::BlinnPhong,
         Self::Schlick,
+        Self::Sawicki,
         Self::StudentT,
         Self::HyperCauchy,
         Self::AshikhminShirley,
@@ -145,6 +148,7 @@ impl DistributionKind {
             Self::Gtr => "gtr",
             Self::BlinnPhong => "blinn-phong",
             Self::Schlick => "schlick",
+            Self::Sawicki => "sawicki",
             Self::StudentT => "student-t",
             Self::HyperCauchy => "hyper-cauchy",
             Self::AshikhminShirley => "ashikhmin-shirley",
@@ -171,7 +175,7 @@ impl DistributionKind {
             Self::Beckmann | Self::Gauss | Self::Schlick => &["m"],
             Self::TrowbridgeReitz => &["c"],
             Self::Gtr => &["c", "gamma"],
-            Self::BlinnPhong => &["n"],
+            Self::BlinnPhong | Self::Sawicki => &["n"],
             Self::StudentT => &["sigma", "gamma"],
             Self::HyperCauchy => &["sigma0", "gamma"],
             Self::AshikhminShirley => &["nx", "ny"],
@@ -183,33 +187,36 @@ impl DistributionKind {
     /// # Errors
     /// [`DistributionError`] for a wrong number of parameters, one out of range, or anisotropy.
     pub fn build(self, values: &[f64]) -> Result<Box<dyn Isotropic>, DistributionError> {
-        let range = |e: &dyn fmt::Display| DistributionError::Range(self, e.to_string());
-        let member =
-            |m: Result<Member, microfacet_model::ParameterError>| -> Result<Box<dyn Isotropic>, DistributionError> {
-                m.map(|m| Box::new(m) as _).map_err(|e| range(&e))
-            };
         match (self, values) {
-            (Self::Beckmann, &[m]) => member(Member::beckmann(m)),
-            (Self::TrowbridgeReitz, &[c]) => member(Member::trowbridge_reitz(c)),
-            (Self::BlinnPhong, &[n]) => member(Member::blinn_phong(n)),
-            (Self::StudentT, &[sigma, gamma]) => member(Member::student_t(sigma, gamma)),
-            (Self::HyperCauchy, &[sigma, gamma]) => member(Member::hyper_cauchy(sigma, gamma)),
-            (Self::Gauss, &[m]) => Gauss::new(m).map(|d| Box::new(d) as _).map_err(|e| range(&e)),
-            (Self::Schlick, &[m]) => {
-                Schlick::new(m).map(|d| Box::new(d) as _).map_err(|e| range(&e))
-            }
-            (Self::Gtr, &[c, gamma]) => {
-                Gtr::new(c, gamma).map(|d| Box::new(d) as _).map_err(|e| range(&e))
-            }
+            (Self::Beckmann, &[m]) => self.boxed(Member::beckmann(m)),
+            (Self::TrowbridgeReitz, &[c]) => self.boxed(Member::trowbridge_reitz(c)),
+            (Self::BlinnPhong, &[n]) => self.boxed(Member::blinn_phong(n)),
+            (Self::StudentT, &[sigma, gamma]) => self.boxed(Member::student_t(sigma, gamma)),
+            (Self::HyperCauchy, &[sigma, gamma]) => self.boxed(Member::hyper_cauchy(sigma, gamma)),
+            (Self::Gauss, &[m]) => self.boxed(Gauss::new(m)),
+            (Self::Schlick, &[m]) => self.boxed(Schlick::new(m)),
+            (Self::Sawicki, &[n]) => self.boxed(Sawicki::new(n)),
+            (Self::Gtr, &[c, gamma]) => self.boxed(Gtr::new(c, gamma)),
             (Self::AshikhminShirley, &[nx, ny]) => {
-                AshikhminShirley::new(nx, ny).map_err(|e| range(&e))?;
+                self.in_range(AshikhminShirley::new(nx, ny))?;
                 if nx != ny {
                     return Err(DistributionError::Dimension(nx, ny));
                 }
-                member(Member::blinn_phong(nx))
+                self.boxed(Member::blinn_phong(nx))
             }
             _ => Err(DistributionError::Parameters(self, format!("{values:?}"))),
         }
+    }
+
+    fn in_range<D>(self, made: Result<D, impl fmt::Display>) -> Result<D, DistributionError> {
+        made.map_err(|e| DistributionError::Range(self, e.to_string()))
+    }
+
+    fn boxed<D: Isotropic + 'static>(
+        self,
+        made: Result<D, impl fmt::Display>,
+    ) -> Result<Box<dyn Isotropic>, DistributionError> {
+        Ok(Box::new(self.in_range(made)?))
     }
 
     /// Parameters at a point of the search space [0, 1]ⁿ: logarithmic in the width; in s = 1/(γ−1)
@@ -229,7 +236,7 @@ impl DistributionKind {
             (Self::TrowbridgeReitz, &[y]) => vec![width(y, 1e-4, 10.0)],
             // Its m is the square of a width.
             (Self::Schlick, &[y]) => vec![width(y, 1e-6, 1.0) * narrow],
-            (Self::BlinnPhong, &[y]) => vec![exponent(y)],
+            (Self::BlinnPhong | Self::Sawicki, &[y]) => vec![exponent(y)],
             (Self::AshikhminShirley, &[y]) => vec![exponent(y); 2],
             (Self::StudentT, &[y, z]) => vec![width(y, 1e-4, 10.0), gamma(z)],
             // No Beckmann limit: σ₀ would diverge.
@@ -311,6 +318,7 @@ mod tests {
         assert!(message("gtr:0.1").contains("gtr:c,gamma"));
         assert!(message("beckmann:x").contains("beckmann:m"));
         assert!(message("schlick:2").contains("(0, 1]"));
+        assert!(message("sawicki:-1").contains("[0, inf)"));
         assert!(message("ashikhmin-shirley:10,20").contains("anisotropic"));
     }
 }

@@ -244,9 +244,16 @@ impl<'a> Own<'a> {
 
 #[test]
 fn of_other_distributions_however_narrow() {
-    for name in
-        ["gtr:0.2,1.5", "gtr:0.001,3", "gauss:0.3", "gauss:0.01", "schlick:0.3", "schlick:0.001"]
-    {
+    for name in [
+        "gtr:0.2,1.5",
+        "gtr:0.001,3",
+        "gauss:0.3",
+        "gauss:0.01",
+        "schlick:0.3",
+        "schlick:0.001",
+        "sawicki:12",
+        "sawicki:1e6",
+    ] {
         let built = name.parse::<Named>().unwrap().build().unwrap();
         let marginal = Marginal::new(&*built);
         Own::new(name, &marginal).hold(name);

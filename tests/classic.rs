@@ -34,6 +34,9 @@ fn all() -> Vec<(String, Box<dyn Isotropic>)> {
         "gtr:0.5,0.7",
         "schlick:0.05",
         "schlick:0.3",
+        "sawicki:0",
+        "sawicki:12",
+        "sawicki:1000",
     ];
     let mut all: Vec<(String, Box<dyn Isotropic>)> = names
         .iter()

@@ -15,7 +15,7 @@
 //! | integrate an albedo | [`AlbedoIntegrator`], [`classic::RadialAlbedo`] |
 //! | scatter more than once | [`StudentT::walk`] |
 //! | reflect at conductors and dielectrics | [`fresnel`] |
-//! | use GTR, Gauss, Schlick or a measured D | [`classic`] |
+//! | use GTR, Gauss, Schlick, Sawicki or a measured D | [`classic`] |
 //! | look into one shape: marginals, CDFs, quantiles | [`Shape`], [`VisibleSlope`] |
 //! | test a sampler of your own | `statistics` |
 //!

@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use microfacet_model::classic::{
-    Gauss, Gtr, Isotropic, Marginal, Member, RadialAlbedo, Schlick, Tabulated,
+    Gauss, Gtr, Isotropic, Marginal, Member, RadialAlbedo, Sawicki, Schlick, Tabulated,
 };
 use microfacet_model::fresnel::schlick_weight;
 use microfacet_model::{AlbedoIntegrator, Masking, ParameterError};
@@ -85,10 +85,12 @@ fn it_is_the_integral_over_light_directions() {
     let (gauss, wide) = (Gauss::new(0.25).unwrap(), Gauss::new(1.2).unwrap());
     let (rational, gtr, table) =
         (Schlick::new(0.3).unwrap(), Gtr::new(0.3, 1.0).unwrap(), measured(45));
-    let all: [(&str, &dyn Isotropic); 5] = [
+    let sawicki = Sawicki::new(12.0).unwrap();
+    let all: [(&str, &dyn Isotropic); 6] = [
         ("gauss", &gauss),
         ("wide gauss", &wide),
         ("schlick", &rational),
+        ("sawicki", &sawicki),
         ("gtr", &gtr),
         ("table", &table),
     ];
@@ -117,6 +119,8 @@ fn energy_is_not_gained_and_estimates_hold() {
     for m in [0.01, 0.1, 0.5, 1.0] {
         all.push((format!("gauss {m}"), Box::new(Gauss::new(m).unwrap())));
         all.push((format!("schlick {m}"), Box::new(Schlick::new(m).unwrap())));
+        let n = 2.0 / (m * m) - 2.0;
+        all.push((format!("sawicki {n}"), Box::new(Sawicki::new(n).unwrap())));
         all.push((format!("gtr {m}, 0.6"), Box::new(Gtr::new(m, 0.6).unwrap())));
         all.push((format!("gtr {m}, 3"), Box::new(Gtr::new(m, 3.0).unwrap())));
     }

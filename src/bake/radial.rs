@@ -245,5 +245,59 @@ fn density(marginal: &Marginal, slopes: &[f64]) -> Vec<[f32; 2]> {
         let width = if h + step > 1.0 { step } else { 2.0 * step };
         [root(h), (b - a) / width / cells]
     };
-    round(slopes.iter().map(node))
+    let mut nodes: Vec<[f64; 2]> = slopes.iter().map(node).collect();
+    if let [.., [before, _], last] = &mut nodes[..]
+        && last[1].abs() > 3.0 * (last[0] - *before).abs()
+    {
+        *last = FADING.map(|part| part * *before);
+    }
+    round(nodes)
+}
+
+/// Value and slope per cell of the last node, in parts of the value before it, where D falls to 0
+/// at the horizon.
+///
+/// There D^¼ is a fourth root of the distance, whose slope at the end is infinite: taken as it is,
+/// the cell would swing to some 1e6 D(0). Of all pairs these leave the least error in D, 0.031 of
+/// D at the node before.
+const FADING: [f64; 2] = [0.41, -1.4];
+
+#[cfg(test)]
+mod tests {
+    use microfacet_model::classic::{Gtr, Isotropic, Sawicki, Tabulated};
+
+    use super::*;
+
+    /// The last cell of the table of D, against D itself, in parts of D at its inner node.
+    fn error_in_the_last_cell(d: &dyn Isotropic) -> f64 {
+        let marginal = Marginal::new(d);
+        let nodes: Vec<f64> = (0..DENSITIES).map(|i| i as f64 / (DENSITIES - 1) as f64).collect();
+        let table = density(&marginal, &nodes);
+        let [a, b] = [table[DENSITIES - 2], table[DENSITIES - 1]].map(|n| n.map(f64::from));
+        let start = nodes[DENSITIES - 2];
+        let inner = a[0].powi(4);
+        let errors = (0..100).map(|i| {
+            let w = f64::from(i) / 100.0;
+            let (x, v) = (w * w * (3.0 - 2.0 * w), 1.0 - w);
+            let root = a[0] + x * (b[0] - a[0]) + w * v * (v * a[1] - w * b[1]);
+            let exact = marginal.d(SLOPE.quantity(start + w * (1.0 - start)));
+            (root.max(0.0).powi(4) - exact).abs() / inner
+        });
+        errors.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_density_that_fades_at_the_horizon_stays_near_it() {
+        for n in [0.0, 1.0, 40.0] {
+            let error = error_in_the_last_cell(&Sawicki::new(n).unwrap());
+            assert!(error < 0.04, "sawicki {n}: {error}");
+        }
+        let rows = (0..=90).map(|i| f64::from(i).to_radians()).map(|t| (t, t.cos().max(0.0)));
+        let measured = Tabulated::new(&rows.collect::<Vec<_>>()).unwrap();
+        let error = error_in_the_last_cell(&measured);
+        assert!(error < 0.04, "measured: {error}");
+        // One that does not fade is smooth there.
+        let error = error_in_the_last_cell(&Gtr::new(0.3, 1.5).unwrap());
+        assert!(error < 1e-6, "gtr: {error}");
+    }
 }

@@ -1,7 +1,8 @@
 //! The figures by name.
 
-mod nearest;
+mod beckmann_limit;
 mod printed;
+mod sawicki;
 mod student_t;
 
 use super::{Axis, Curve, Dash, Figure, Key, PlotError};
@@ -17,31 +18,36 @@ pub struct Listed {
 }
 
 /// All figures.
-pub const FIGURES: [Listed; 5] = [
+pub const FIGURES: [Listed; 6] = [
     Listed {
         name: "student-t",
         about: "P22 and G1 by gamma and by sigma (Ribardiere et al. 2017, figure 3)",
         draw: student_t::figure,
     },
     Listed {
-        name: "distributions",
-        about: "The distributions of least RMSE to a Beckmann",
-        draw: nearest::unit_forms,
-    },
-    Listed {
-        name: "relative-error",
-        about: "The same over that Beckmann, angle by angle",
-        draw: nearest::deviations,
-    },
-    Listed {
-        name: "highlights",
-        about: "Brightness across a sphere (after Sawicki 2021, figures 3-5)",
-        draw: nearest::highlights,
+        name: "beckmann-limit",
+        about: "Distance from Beckmann over sigma at large gamma (Ribardiere et al. 2017, figure 10)",
+        draw: beckmann_limit::figure,
     },
     Listed {
         name: "printed-formulas",
-        about: "Errors of Lambda as Ribardiere et al. 2017 print it (eq. 13-15, 21, 22-23)",
+        about: "Errors of Lambda as printed (Ribardiere et al. 2017, eq. 13-15, 21, 22-23)",
         draw: printed::figure,
+    },
+    Listed {
+        name: "distributions",
+        about: "Six distributions, and how they differ from Beckmann (Sawicki 2021, figures 1-2)",
+        draw: sawicki::distributions,
+    },
+    Listed {
+        name: "relative-error",
+        about: "The same over Beckmann, for the tails (after Sawicki 2021, figures 1-2)",
+        draw: sawicki::ratios,
+    },
+    Listed {
+        name: "highlights",
+        about: "Brightness across a rough and a smooth sphere (after Sawicki 2021, figures 3-5)",
+        draw: sawicki::highlights,
     },
 ];
 

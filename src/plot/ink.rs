@@ -102,6 +102,7 @@ impl Key {
                 DistributionKind::Gtr => OLIVE,
                 DistributionKind::BlinnPhong => GREEN,
                 DistributionKind::Schlick => SKY,
+                DistributionKind::Sawicki => PURPLE,
                 DistributionKind::StudentT => ORANGE,
                 DistributionKind::HyperCauchy => WINE,
                 DistributionKind::AshikhminShirley => GREY,

@@ -236,7 +236,7 @@ pub fn resolved(marginal: &Marginal) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::classic::{Gauss, Gtr, Member, Schlick};
+    use crate::classic::{Gauss, Gtr, Member, Sawicki, Schlick};
     use crate::{SignedSlope, UnitView, VisibleSlope};
 
     #[test]
@@ -284,8 +284,10 @@ mod tests {
     fn the_quadrature_resolves_the_others() {
         let schlick = Schlick::new(0.2).unwrap();
         let (gauss, gtr) = (Gauss::new(0.2).unwrap(), Gtr::new(0.1, 1.2).unwrap());
-        let all: [(&dyn Isotropic, f64); 3] = [(&gauss, 1e-9), (&gtr, 1e-9), (&schlick, 1e-9)];
-        for (d, tolerance) in all {
+        let (flat, sharp) = (Sawicki::new(0.0).unwrap(), Sawicki::new(1e4).unwrap());
+        let (all, tolerance): ([&dyn Isotropic; 5], f64) =
+            ([&gauss, &gtr, &schlick, &flat, &sharp], 1e-9);
+        for d in all {
             let marginal = Marginal::new(d);
             assert!((resolved(&marginal) - 1.0).abs() < tolerance, "{}", resolved(&marginal));
             assert!((marginal.beyond(0.0).tail - 0.5).abs() < tolerance);

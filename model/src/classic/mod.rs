@@ -11,6 +11,7 @@ mod gtr;
 mod marginal;
 mod member;
 mod radial;
+mod sawicki;
 mod schlick;
 mod tabulated;
 
@@ -27,6 +28,7 @@ pub use gtr::Gtr;
 pub use marginal::{Across, Beyond, Marginal, MarginalView, Shares, resolved};
 pub use member::Member;
 pub use radial::Radial;
+pub use sawicki::Sawicki;
 pub use schlick::Schlick;
 pub use tabulated::{Tabulated, TabulatedError};
 
@@ -167,6 +169,9 @@ mod tests {
         for n in [0.5, 1.0, 50.0, 1e4] {
             all.push(("blinn-phong", Box::new(Member::blinn_phong(n).unwrap())));
         }
+        for n in [0.0, 0.5, 1.0, 12.0, 1e4] {
+            all.push(("sawicki", Box::new(Sawicki::new(n).unwrap())));
+        }
         all
     }
 
@@ -239,6 +244,7 @@ mod tests {
         for e in [
             Gauss::new(0.0).unwrap_err(),
             Schlick::new(1.5).unwrap_err(),
+            Sawicki::new(-0.5).unwrap_err(),
             Gtr::new(-0.1, 2.0).unwrap_err(),
             Gtr::new(0.1, f64::NAN).unwrap_err(),
             AshikhminShirley::new(-1.0, 1.0).unwrap_err(),
