@@ -186,6 +186,8 @@ mod tests {
         };
         let mut panel = panel(Vec::new());
         panel.marks = (0..6).map(mark).collect();
+        // Neither do they lie on a curve.
+        panel.curves = vec![curve(Key::Gamma(2.0), &[(0.0, 10.0), (1.0, 10.0)])];
         let drawn = Figure::new(vec![panel]).svg();
         let mut lines: Vec<f64> = drawn
             .lines()
@@ -195,6 +197,11 @@ mod tests {
         lines.sort_by(f64::total_cmp);
         assert_eq!(lines.len(), 6);
         assert!(lines.windows(2).all(|pair| pair[1] - pair[0] > 10.0), "{lines:?}");
+        let line = drawn.lines().find(|line| line.contains("stroke-width=\"2\"")).unwrap();
+        let height = line.rsplit([',', '"']).nth(1).unwrap().parse::<f64>().unwrap();
+        // Baselines are some pixels beneath the middles of names.
+        let clear = |y: &f64| (y - 3.8 - height).abs() > 6.0;
+        assert!(lines.iter().all(clear), "{lines:?} at {height}");
     }
 
     #[test]

@@ -61,6 +61,11 @@ impl Settings {
         ..Self::FULL
     };
 
+    /// The seed of pictures, which both halves of [`seed`](Self::seed) change.
+    pub(crate) fn picture_seed(&self) -> u32 {
+        (self.seed ^ (self.seed >> 32)) as u32
+    }
+
     /// The same over `calls` inputs, with no other count above that.
     pub(crate) fn with_calls(self, calls: usize) -> Self {
         let calls = calls.clamp(1, COUNT);

@@ -54,10 +54,11 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel, corner: At, size: At) {
     canvas.text([middle, corner[1] + 22.0], &panel.title, TITLE, Anchor::Middle, BLACK);
     axes(canvas, panel, &frame);
     let curves = |dash| panel.curves.iter().filter(move |curve| curve.dash == dash);
+    let mut drawn = Vec::new();
     for curve in [Dash::Solid, Dash::Dashed, Dash::Dotted].into_iter().flat_map(curves) {
-        draw_curve(canvas, panel, curve, &frame);
+        drawn.extend(draw_curve(canvas, panel, curve, &frame));
     }
-    marks(canvas, panel, &frame);
+    marks(canvas, panel, &frame, &drawn);
 }
 
 fn axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
@@ -100,16 +101,19 @@ fn axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
     canvas.turned_text([left - TICK - 4.0 - widest - 10.0, half], &panel.y.label, LETTERS);
 }
 
-fn draw_curve(canvas: &mut Canvas, panel: &Panel, curve: &Curve, frame: &Frame) {
+/// Draws a curve; returns its parts.
+fn draw_curve(canvas: &mut Canvas, panel: &Panel, curve: &Curve, frame: &Frame) -> Vec<Vec<At>> {
     let color = curve.key.color();
     let clipped = clip(curve.points.iter().map(|&point| panel.place(point)));
-    for run in clipped.runs {
-        let points: Vec<At> = run.into_iter().map(|place| frame.at(place)).collect();
-        canvas.line(points, color, CURVE, curve.dash);
+    let on_page = |run: Vec<Place>| run.into_iter().map(|place| frame.at(place)).collect();
+    let runs: Vec<Vec<At>> = clipped.runs.into_iter().map(on_page).collect();
+    for run in &runs {
+        canvas.line(run.clone(), color, CURVE, curve.dash);
     }
     for exit in clipped.exits {
         leaves(canvas, frame.at(exit), exit[1] > 0.5, color);
     }
+    runs
 }
 
 /// A triangle at the edge that points to where the curve went.
@@ -119,9 +123,9 @@ fn leaves(canvas: &mut Canvas, [x, y]: At, upwards: bool, color: Color) {
     canvas.shapes.push(Shape::Area { corners, color });
 }
 
-fn marks(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
+fn marks(canvas: &mut Canvas, panel: &Panel, frame: &Frame, curves: &[Vec<At>]) {
     let places: Vec<At> = panel.marks.iter().map(|mark| frame.at(panel.place(mark.at))).collect();
-    let mut labels = Labels::around(frame, &places);
+    let mut labels = Labels::around(frame, &places, curves);
     for (mark, &center) in panel.marks.iter().zip(&places) {
         let color = mark.key.color();
         let filled = mark.filled;

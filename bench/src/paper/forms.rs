@@ -11,19 +11,21 @@ use microfacet_sampler::{self as sampler, StudentT, Tables};
 
 use super::method::Method;
 use super::studio::{Film, Metal, Sky};
-use crate::clock::Calls;
 use crate::masking::{self, Evaluate};
 use crate::rivals::lobe::Lobe;
 use crate::rivals::rational::{LARGEST, Rational};
 use crate::rivals::{beckmann, ggx};
+
+/// Makes the line of a picture with this number.
+pub(crate) type Line<'a> = Box<dyn Fn(usize) + 'a>;
 
 /// One form of G1 for one material.
 pub(crate) struct Form<'a> {
     pub(crate) method: Method,
     /// G1 alone.
     pub(crate) g1: Evaluate<'a>,
-    /// A whole picture of rough gold for each call.
-    pub(crate) picture: Calls<'a>,
+    /// Makes a line of a picture of rough gold.
+    pub(crate) line: Line<'a>,
 }
 
 /// What the pictures have in common.
@@ -41,16 +43,12 @@ impl Stage {
         g1: impl Fn(Vec3) -> f32 + Clone + 'a,
     ) -> Form<'a> {
         let gold = Metal::new(lobe.clone(), g1.clone(), sampler::Metal::Gold.into());
-        let picture = move |calls: std::ops::Range<usize>| {
-            for _ in calls {
-                for y in 0..self.film.edge {
-                    self.film.line(y, &gold, &self.sky, self.seed).for_each(|pixel| {
-                        black_box(pixel);
-                    });
-                }
-            }
+        let line = move |y| {
+            self.film.line(y, &gold, &self.sky, self.seed).for_each(|pixel| {
+                black_box(pixel);
+            });
         };
-        Form { method, g1: masking::each(g1), picture: Box::new(picture) }
+        Form { method, g1: masking::each(g1), line: Box::new(line) }
     }
 
     /// All forms that are defined for a Student-t. Those of the paper are as printed, in double

@@ -56,7 +56,7 @@ pub(crate) struct Compared {
 
 /// Every shape.
 pub(crate) fn compared(set: &Tables, settings: &Settings) -> Vec<Compared> {
-    SHAPES.map(|gamma| Compared::new(set, gamma, settings.shown, settings.seed as u32)).into()
+    SHAPES.map(|gamma| Compared::new(set, gamma, settings.shown, settings.picture_seed())).into()
 }
 
 impl Compared {

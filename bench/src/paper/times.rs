@@ -9,7 +9,7 @@ use microfacet_model::StudentT;
 use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::Tables;
 
-use super::forms::{Form, Stage};
+use super::forms::{Form, Line, Stage};
 use super::method::Method;
 use super::studio::Sky;
 use crate::clock::{self, Calls};
@@ -48,17 +48,17 @@ pub(crate) struct Timing {
 
 /// Every method at every material, in turns.
 pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
-    let stage = Stage { film: settings.timed, sky: Sky::studio(), seed: settings.seed as u32 };
+    let stage = Stage { film: settings.timed, sky: Sky::studio(), seed: settings.picture_seed() };
     let by_gamma = GAMMAS.map(|gamma| (true, gamma, SIGMA));
     let by_sigma = SIGMAS.map(|sigma| (false, GAMMA, sigma));
     let points: Vec<_> = by_gamma.into_iter().chain(by_sigma).collect();
 
-    let (mut of_forms, mut g1, mut pictures) = (vec![], vec![], vec![]);
+    let (mut of_forms, mut g1, mut lines) = (vec![], vec![], vec![]);
     let mut add = |by_gamma, gamma, sigma, form| {
-        let Form { method, g1: alone, picture } = form;
+        let Form { method, g1: alone, line } = form;
         of_forms.push(Timed { method, by_gamma, gamma, sigma });
         g1.push(alone);
-        pictures.push(picture);
+        lines.push(line);
     };
     for &(by_gamma, gamma, sigma) in &points {
         for form in stage.of_shape(set, gamma, sigma) {
@@ -89,12 +89,23 @@ pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
     runs.extend(draws.iter().map(|(_, draw)| normals(draw, &inputs)));
     // There are so many that fewer rounds must suffice.
     let times = clock::medians(&mut runs, settings.rounds.div_ceil(8), settings.calls);
-    let whole = clock::medians(&mut pictures, settings.picture_rounds, 1);
+    let pictures = pictures(&lines, settings);
     let of_draws = draws.iter().map(|(at, _)| *at);
     let calls = of_forms.iter().copied().map(|at| (Quantity::G1, at));
     let calls = calls.chain(of_draws.map(|at| (Quantity::Normal, at))).zip(times);
-    let pictures = of_forms.iter().map(|at| (Quantity::Picture, *at)).zip(whole);
-    calls.chain(pictures).map(|((quantity, at), ns)| Timing { quantity, at, ns }).collect()
+    let whole = of_forms.iter().map(|at| (Quantity::Picture, *at)).zip(pictures);
+    calls.chain(whole).map(|((quantity, at), ns)| Timing { quantity, at, ns }).collect()
+}
+
+/// Nanoseconds of a whole picture with each form, as the sum over its lines: a line takes less than
+/// a time slice of the scheduler, so that most are not interrupted.
+fn pictures(forms: &[Line], settings: &Settings) -> Vec<f64> {
+    let edge = settings.timed.edge;
+    let runs = forms.iter().flat_map(|form| {
+        (0..edge).map(move |y| -> Calls { Box::new(move |calls| calls.for_each(|_| form(y))) })
+    });
+    let times = clock::medians(&mut runs.collect::<Vec<_>>(), settings.picture_rounds, 1);
+    times.chunks(edge).map(|lines| lines.iter().sum()).collect()
 }
 
 /// The samplers of visible normals.

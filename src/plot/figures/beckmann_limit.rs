@@ -1,7 +1,7 @@
 //! How far the family is from its limit for large γ, after figure 10 of Ribardière et al. 2017
 //! (doi:10.1111/cgf.13137): below 0.5 % for the distribution and 0.3 % for masking at γ = 40 and
-//! σ < 1.2. Their definition of the distance was not at hand; of these usual ones, the mean over the
-//! hemisphere keeps both bounds at γ = 40 and breaks both at γ = 30.
+//! σ < 1.2. Their definition of the distance was not at hand; of these usual ones, the mean over
+//! the hemisphere keeps both bounds at γ = 40 and breaks both at γ = 30.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
