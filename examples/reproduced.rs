@@ -18,7 +18,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let highest: Vec<f64> = panel.curves.iter().map(|curve| largest(curve).1).collect();
         let cells: Vec<String> = highest.iter().map(|most| format!("{most:.3}")).collect();
         let kept = if highest[1] < highest[4] { "yes" } else { "no" };
-        println!("| {} | {} | {kept} |", panel.title, cells.join(" | "));
+        let title = panel.title.replace('|', "\\|");
+        println!("| {title} | {} | {kept} |", cells.join(" | "));
     }
 
     println!("\nLargest differences of D/D(0) from Beckmann's in `plot distributions`, in %, with");

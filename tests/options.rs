@@ -263,7 +263,7 @@ fn errors_about_files_say_which_and_why() {
         let bake = "bake r.toml --quality draft --out out --cache";
         for (cache, why) in [
             ("/dev/null", "/dev/null: is a character device; name a folder"),
-            ("circle", "circle: is a link that leads nowhere"),
+            ("circle.svg", "circle.svg: is a link that leads nowhere"),
             ("r.toml", "r.toml: is a file; name a folder"),
         ] {
             let output = run(at, &words(&format!("{bake} {cache}")));

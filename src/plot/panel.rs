@@ -3,8 +3,7 @@
 use super::canvas::{Anchor, At, Canvas, Shape};
 use super::clip::{Place, clip};
 use super::ink::{BLACK, Color, Dash, GRID};
-use super::label::Labels;
-use super::{Curve, Panel, text};
+use super::{Curve, Panel, label, text};
 
 /// Margins between a panel's area and what its axes span.
 pub(super) const LEFT: f64 = 78.0;
@@ -124,12 +123,12 @@ fn leaves(canvas: &mut Canvas, [x, y]: At, upwards: bool, color: Color) {
 }
 
 fn marks(canvas: &mut Canvas, panel: &Panel, frame: &Frame, curves: &[Vec<At>]) {
-    let places: Vec<At> = panel.marks.iter().map(|mark| frame.at(panel.place(mark.at))).collect();
-    let mut labels = Labels::around(frame, &places, curves);
-    for (mark, &center) in panel.marks.iter().zip(&places) {
-        let color = mark.key.color();
+    let points = panel.marks.iter().map(|mark| {
+        let (center, color) = (frame.at(panel.place(mark.at)), mark.key.color());
         let filled = mark.filled;
         canvas.shapes.push(Shape::Circle { center, radius: DOT, color, filled });
-        labels.name(canvas, center, &mark.name, color);
-    }
+        (center, mark.name.as_str(), color)
+    });
+    let points: Vec<_> = points.collect();
+    label::write(canvas, frame, curves, &points);
 }
