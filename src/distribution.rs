@@ -234,8 +234,7 @@ impl DistributionKind {
         match (self, point) {
             (Self::Beckmann | Self::Gauss, &[y]) => vec![width(y, 1e-3, 10.0)],
             (Self::TrowbridgeReitz, &[y]) => vec![width(y, 1e-4, 10.0)],
-            // Its m is the square of a width.
-            (Self::Schlick, &[y]) => vec![width(y, 1e-6, 1.0) * narrow],
+            (Self::Schlick, &[y]) => vec![width(y, 1e-6, 1.0)],
             (Self::BlinnPhong | Self::Sawicki, &[y]) => vec![exponent(y)],
             (Self::AshikhminShirley, &[y]) => vec![exponent(y); 2],
             (Self::StudentT, &[y, z]) => vec![width(y, 1e-4, 10.0), gamma(z)],

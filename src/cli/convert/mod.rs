@@ -1,15 +1,17 @@
 //! `convert`: replaces one distribution by another.
 
+mod table;
+
 use std::error::Error;
 use std::fmt::Write;
 
 use clap::ValueEnum;
 
-use microfacet_bake::convert::{ConvertError, Form, Replacement, Target, by_formula};
+use microfacet_bake::convert::{ConvertError, Form, Formula, Replacement, Target, by_formula};
 use microfacet_bake::distribution::{DistributionKind, Named};
-use microfacet_bake::progress::{Meter, Stage};
+use microfacet_bake::progress::Meter;
 
-use super::{Done, Failure, Outcome, print, progress, values};
+use super::{Done, Failure, Outcome, print, progress, values, words};
 
 /// How the replacement is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -18,7 +20,7 @@ enum By {
     HalfAngle,
     /// Least root mean square error over a uniform grid of angles.
     Rmse,
-    /// The published formula, where there is one.
+    /// The published formulas, each by its source, where there are any.
     Formula,
 }
 
@@ -42,7 +44,10 @@ impl From<On> for Form {
 
 /// Replace one distribution of normals by another, and print how much they differ.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  microfacet-bake convert --from blinn-phong:50 --to beckmann")]
+#[command(
+    after_help = "Examples:\n  microfacet-bake convert --from blinn-phong:50 --to beckmann\n  \
+                  microfacet-bake convert --from ggx:0.2 --to sawicki --by formula"
+)]
 pub(super) struct Args {
     /// Distribution to be replaced, such as `blinn-phong:50` or `student-t:0.3,2.5`.
     #[arg(long, value_name = "DISTRIBUTION", required_unless_present = "table")]
@@ -59,8 +64,11 @@ pub(super) struct Args {
     /// Quantity whose error `rmse` minimises; `relative` by default.
     #[arg(long, value_enum)]
     on: Option<On>,
-    /// Print replacements of 17 Beckmanns by Blinn-Phong, Gauss, Schlick and Trowbridge-Reitz.
-    #[arg(long, conflicts_with_all = ["from", "to", "by", "shape"])]
+    /// Print table 2 of Sawicki 2021, the least errors to 17 Beckmanns, ours beside the printed.
+    ///
+    /// Errors are those of D/D(0) on the grids of the printed table, which end near 4 m; those of
+    /// --by rmse are on a grid of [0, pi/2), which makes them smaller and C_TR up to 0.5 % other.
+    #[arg(long, conflicts_with_all = ["from", "to", "by", "shape", "on"])]
     table: bool,
 }
 
@@ -78,7 +86,7 @@ impl Args {
     fn text(&self) -> Result<String, Box<dyn Error>> {
         match (&self.from, &self.to) {
             (Some(from), Some(to)) => self.pair(&from.parse()?, DistributionKind::by_name(to)?),
-            _ => table(self.form()),
+            _ => table::text(),
         }
     }
 
@@ -106,38 +114,42 @@ impl Args {
         let work = if searches { target.seconds(to) } else { 0.0 };
         meter.expect(work);
         let _bar = progress::show(&meter, "searching");
+        // What each way gives; the published formulas are several.
         let replace = |by| match by {
-            By::HalfAngle => target.by_half_angle(to, self.shape),
-            By::Rmse => target.by_rmse(to, self.form(), &meter.stage(work)),
-            By::Formula => by_formula(from, to),
+            By::HalfAngle => vec![target.by_half_angle(to, self.shape).map(Line::plain)],
+            By::Rmse => {
+                let found = target.by_rmse(to, self.form(), &meter.stage(work));
+                vec![found.map(Line::plain)]
+            }
+            By::Formula => match by_formula(from, to) {
+                Ok(all) => all.into_iter().map(|f| Line::of_formula(f, from.values[0])).collect(),
+                Err(e) => vec![Err(e)],
+            },
         };
+        let ways = By::value_variants().iter();
+        let ways = ways.filter(|by| self.by.is_none_or(|only| only == **by));
         let mut text = format!(
-            "{:<12}{:<40}{:>14}{:>16}\n",
-            "by", "replacement", "RMSE of D/D(0)", "RMSE of D, 1/sr"
+            "{:<12}{:<40}{:>14}{:>17}  {}\n",
+            "by", "replacement", "RMSE of D/D(0)", "RMSE of D, 1/sr", "source"
         );
-        let mut line = |name: &str, found: &Replacement| {
-            writeln!(
-                text,
-                "{name:<12}{:<40}{:>14.4e}{:>16.4e}{}",
-                found.to.to_string(),
-                found.rmse[0],
-                found.rmse[1],
-                ends(found)
-            )
-        };
         let (mut lines, mut refusals) = (0, Vec::new());
-        for by in By::value_variants().iter().filter(|by| self.by.is_none_or(|only| only == **by)) {
-            let name = by.to_possible_value().expect("no variant is skipped");
-            match replace(*by) {
-                Ok(found) => {
-                    line(name.get_name(), &found)?;
+        for (by, result) in ways.flat_map(|by| replace(*by).into_iter().map(move |one| (by, one))) {
+            let way = by.to_possible_value().expect("no variant is skipped");
+            let name = way.get_name();
+            match result {
+                Ok(Line { found, remark }) => {
+                    let [relative, density] = found.rmse;
+                    let to = found.to.to_string();
+                    let line =
+                        format!("{name:<12}{to:<40}{relative:>14.4e}{density:>17.4e}  {remark}");
+                    writeln!(text, "{}", line.trim_end())?;
                     lines += 1;
                 }
                 // Without a choice, the ways that do not apply to this pair are left out.
                 Err(ConvertError::NoFormula(..) | ConvertError::ShapeNeeded(_))
                     if self.by.is_none() => {}
                 // Neither does one that fails take the others with it.
-                Err(e) => refusals.push((name.get_name().to_owned(), e)),
+                Err(e) => refusals.push((name.to_owned(), e)),
             }
         }
         if lines == 0
@@ -152,6 +164,31 @@ impl Args {
     }
 }
 
+/// A replacement, and what stands behind it.
+struct Line {
+    found: Replacement,
+    remark: String,
+}
+
+impl Line {
+    fn plain(found: Replacement) -> Self {
+        Self { remark: ends(&found).trim_start().into(), found }
+    }
+
+    /// What a formula gives of the parameter `x`, or why it gives nothing.
+    fn of_formula(
+        (formula, found): (Formula, Result<Replacement, ConvertError>),
+        x: f64,
+    ) -> Result<Self, ConvertError> {
+        let mut remark = formula.source.to_owned();
+        if let Some(fitted) = formula.beyond(x) {
+            let name = formula.from.parameters()[0];
+            remark += &format!(" (fitted to {name} = {})", words::range(fitted));
+        }
+        found.map(|found| Self { found, remark })
+    }
+}
+
 /// A remark for parameters that were found at the end of their search.
 pub(super) fn ends(found: &Replacement) -> String {
     if found.ends_at.is_empty() {
@@ -161,46 +198,6 @@ pub(super) fn ends(found: &Replacement) -> String {
         "  ({} at the end of the range searched: a better value may lie beyond)",
         found.ends_at.join(" and ")
     )
-}
-
-/// Least-error replacements of Beckmann with m from 0.05 to 0.45.
-fn table(form: Form) -> Result<String, Box<dyn Error>> {
-    let kinds = [
-        DistributionKind::BlinnPhong,
-        DistributionKind::Gauss,
-        DistributionKind::Schlick,
-        DistributionKind::TrowbridgeReitz,
-    ];
-    /// Roughnesses, and how long each takes: `microfacet-bake convert --table` took 0.84 s.
-    const ROWS: u32 = 17;
-    const SECONDS: f64 = 0.05;
-    let meter = Meter::default();
-    meter.expect(f64::from(ROWS) * SECONDS);
-    let _bar = progress::show(&meter, "searching");
-    let mut text = format!("{:>8}", "m");
-    for kind in kinds {
-        let name = format!("{} {}", kind.name(), kind.parameters()[0]);
-        write!(text, "{name:>20}{:>10}", "RMSE")?;
-    }
-    text.push('\n');
-    for i in 0..ROWS {
-        let _stage = meter.stage(SECONDS);
-        let m = 0.05 + 0.025 * f64::from(i);
-        let built = DistributionKind::Beckmann.build(&[m])?;
-        let target = Target::new(&*built);
-        write!(text, "{m:>8.3}")?;
-        for kind in kinds {
-            let found = target.by_rmse(kind, form, &Stage::unwatched())?;
-            write!(
-                text,
-                "{:>20.5}{:>10.2e}",
-                found.to.values[0],
-                found.rmse[usize::from(form == Form::Density)]
-            )?;
-        }
-        text.push('\n');
-    }
-    Ok(text)
 }
 
 #[cfg(test)]
@@ -223,13 +220,18 @@ mod tests {
     #[test]
     fn prints_all_ways_or_one() {
         let all = run("--from blinn-phong:50 --to beckmann").unwrap();
-        assert!(
-            all.contains("half-angle") && all.contains("rmse") && all.contains("formula"),
-            "{all}"
-        );
+        for part in ["half-angle  ", "rmse  ", "Walter et al. 2007", "Ward 1996", "eq. 12"] {
+            assert!(all.contains(part), "no {part} in\n{all}");
+        }
+        let formulas = run("--from beckmann:0.2 --to blinn-phong --by formula").unwrap();
+        let rows: Vec<&str> = formulas.lines().skip(1).map(|line| &line[12..36]).collect();
+        let of = |n: &str| format!("{:<24}", format!("blinn-phong:{n}"));
+        assert_eq!(rows, ["48.000000", "50.000000", "47.500000"].map(of), "{formulas}");
         assert_eq!(run("--from blinn-phong:50 --to student-t").unwrap().lines().count(), 2);
         assert!(
-            run("--from gauss:0.1 --to schlick --by formula").unwrap_err().contains("no formula")
+            run("--from gauss:0.1 --to schlick --by formula")
+                .unwrap_err()
+                .contains("no formula is")
         );
         assert!(
             run("--from gauss:0.1 --to student-t --by half-angle").unwrap_err().contains("--shape")
@@ -250,6 +252,16 @@ mod tests {
     }
 
     #[test]
+    fn formulas_out_of_range_are_named_and_beyond_their_fit_told() {
+        let text = run("--from beckmann:1.2 --to blinn-phong --by formula").unwrap();
+        assert!(text.contains("blinn-phong:1.388889") && text.contains("none: Walter"), "{text}");
+        let wide = run("--from beckmann:0.6 --to gauss --by formula").unwrap();
+        assert!(wide.contains("eq. 13 (fitted to m = 0.004473 to 0.4473)"), "{wide}");
+        let error = run("--from gauss:2 --to beckmann --by formula").unwrap_err();
+        assert!(error.contains("eq. 13 gives") && error.contains("use half-angle"), "{error}");
+    }
+
+    #[test]
     fn narrow_lobes_are_found_and_the_end_of_a_search_is_said() {
         // m = √(2/(N+2)).
         for (exponent, m) in [("1e9", 4.472e-5), ("1e5", 4.472e-3), ("1e12", 1.4142e-6)] {
@@ -258,11 +270,17 @@ mod tests {
             let found: f64 = text.split("beckmann:").nth(1).unwrap()[..10].trim().parse().unwrap();
             assert!((found / m - 1.0).abs() < 1e-3 && !text.contains("at the end"), "{text}");
         }
+        // Schlick's m is a width like the others'.
+        let schlick = run("--from beckmann:1e-5 --to schlick").unwrap();
+        assert!(!schlick.contains("at the end") && !schlick.contains("none"), "{schlick}");
         // Two parameters as well; and what no double holds is refused.
         let narrow = run("--from beckmann:1e-5 --to student-t --by rmse").unwrap();
         assert!(narrow.contains("student-t:1.0000"), "{narrow}");
-        let error = run("--from student-t:1e300,2.5 --to beckmann --by rmse").unwrap_err();
-        assert!(error.contains("too large"), "{error}");
+        for too_large in ["student-t:1e300,2.5 --to beckmann --by rmse", "sawicki:1e300 --to gauss"]
+        {
+            let error = run(&format!("--from {too_large}")).unwrap_err();
+            assert!(error.contains("too large"), "{error}");
+        }
         let flat = run("--from blinn-phong:0 --to gauss --by rmse").unwrap();
         assert!(flat.contains("m at the end of the range searched"), "{flat}");
         let beckmann = run("--from beckmann:0.2 --to student-t --by rmse").unwrap();
