@@ -232,15 +232,7 @@ impl<'a> Target<'a> {
         let h = 1.0 / scan(to) as f64;
         let best = minimise::descend(&start, h, STOP, error).map_err(ConvertError::Minimiser)?;
         let found = self.judged(Named { kind: to, values: to.at(&best, self.narrow) })?;
-        Ok(Replacement { ends_at: self.ends_at(to, &best), ..found })
-    }
-
-    /// The parameters that ended where their search ends, apart from the limit γ = ∞.
-    fn ends_at(&self, to: DistributionKind, best: &[f64]) -> Vec<&'static str> {
-        let at_end = |y: f64| !(1e-4..=1.0 - 1e-4).contains(&y);
-        let is_limit = |i: usize| to == DistributionKind::StudentT && i == 1 && best[i] < 0.5;
-        let ends = (0..best.len()).filter(|&i| at_end(best[i]) && !is_limit(i));
-        ends.map(|i| to.parameters()[i]).collect()
+        Ok(Replacement { ends_at: to.ends_at(&best), ..found })
     }
 }
 

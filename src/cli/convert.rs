@@ -122,7 +122,7 @@ impl Args {
                 found.to.to_string(),
                 found.rmse[0],
                 found.rmse[1],
-                ends(found)
+                ends(&found.ends_at)
             )
         };
         let (mut lines, mut refusals) = (0, Vec::new());
@@ -153,13 +153,13 @@ impl Args {
 }
 
 /// A remark for parameters that were found at the end of their search.
-pub(super) fn ends(found: &Replacement) -> String {
-    if found.ends_at.is_empty() {
+pub(super) fn ends(at: &[&str]) -> String {
+    if at.is_empty() {
         return String::new();
     }
     format!(
         "  ({} at the end of the range searched: a better value may lie beyond)",
-        found.ends_at.join(" and ")
+        at.join(" and ")
     )
 }
 
