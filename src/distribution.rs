@@ -11,6 +11,9 @@ use microfacet_model::classic::{
 
 use crate::fit::Angles;
 
+/// The largest s = 1/(γ−1) that is searched: γ = 1.5025.
+pub(crate) const S_MAX: f64 = 1.99;
+
 /// A named distribution of one or two parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -230,7 +233,7 @@ impl DistributionKind {
         };
         let width = |y, low, high| log(y, low, high) * narrow;
         let exponent = |y| log(y, 1e-2, 1e6) / (narrow * narrow);
-        let gamma = |y: f64| gamma_of_s(1.99 * y.clamp(0.0, 1.0));
+        let gamma = |y: f64| gamma_of_s(S_MAX * y.clamp(0.0, 1.0));
         match (self, point) {
             (Self::Beckmann | Self::Gauss, &[y]) => vec![width(y, 1e-3, 10.0)],
             (Self::TrowbridgeReitz, &[y]) => vec![width(y, 1e-4, 10.0)],
@@ -243,6 +246,15 @@ impl DistributionKind {
             (Self::Gtr, &[y, z]) => vec![width(y, 1e-5, 1.0), log(z, 0.1, 100.0)],
             _ => unreachable!("points have `dimension` coordinates"),
         }
+    }
+
+    /// The parameters that a search ended with at an end of [`at`](Self::at), apart from the limit
+    /// γ = ∞.
+    pub(crate) fn ends_at(self, point: &[f64]) -> Vec<&'static str> {
+        let at_end = |y: f64| !(1e-4..=1.0 - 1e-4).contains(&y);
+        let is_limit = |i: usize| self == Self::StudentT && i == 1 && point[i] < 0.5;
+        let ends = (0..point.len()).filter(|&i| at_end(point[i]) && !is_limit(i));
+        ends.map(|i| self.parameters()[i]).collect()
     }
 
     /// Number of parameters of its isotropic members.

@@ -55,6 +55,7 @@ pub mod fit;
 pub mod input;
 pub mod library;
 pub mod memory;
+mod minimise;
 pub mod plan;
 pub mod plot;
 pub mod progress;

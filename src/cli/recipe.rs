@@ -1,6 +1,6 @@
 //! `recipe`: a recipe to start from.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{Done, Failure, Outcome, print, summarize, write_file};
 
@@ -45,12 +45,19 @@ pub(super) fn run(args: Args) -> Outcome {
         return Ok(Done::Ok);
     };
     let shown = path.display();
-    if path.symlink_metadata().is_ok() {
-        return Err(Failure(format!(
-            "{shown}: this exists already and is kept; name a new file, or remove it before"
-        )));
-    }
+    check_new(&path)?;
     write_file(&path, STARTER.as_bytes())?;
     summarize(&format!("{shown}\n"))?;
     Ok(Done::Ok)
+}
+
+/// Refuses a file that exists already: what it holds may be somebody's work.
+pub(super) fn check_new(path: &Path) -> Result<(), Failure> {
+    if path.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    let shown = path.display();
+    Err(Failure(format!(
+        "{shown}: this exists already and is kept; name a new file, or remove it before"
+    )))
 }

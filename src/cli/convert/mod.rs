@@ -172,7 +172,7 @@ struct Line {
 
 impl Line {
     fn plain(found: Replacement) -> Self {
-        Self { remark: ends(&found).trim_start().into(), found }
+        Self { remark: ends(&found.ends_at).trim_start().into(), found }
     }
 
     /// What a formula gives of the parameter `x`, or why it gives nothing.
@@ -190,13 +190,13 @@ impl Line {
 }
 
 /// A remark for parameters that were found at the end of their search.
-pub(super) fn ends(found: &Replacement) -> String {
-    if found.ends_at.is_empty() {
+pub(super) fn ends(at: &[&str]) -> String {
+    if at.is_empty() {
         return String::new();
     }
     format!(
         "  ({} at the end of the range searched: a better value may lie beyond)",
-        found.ends_at.join(" and ")
+        at.join(" and ")
     )
 }
 

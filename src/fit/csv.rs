@@ -1,16 +1,13 @@
-//! Fits (σ, γ) to a measured distribution of normals.
+//! Reads a measured distribution of normals from a CSV of angles and D.
 
-use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 use std::io::Read;
 
 use microfacet_model::classic::{Tabulated, TabulatedError};
 
-use crate::convert::{ConvertError, Form, Replacement, Target};
-use crate::distribution::DistributionKind;
+use super::Angles;
 use crate::input::rows::{Row, RowError, Rows};
 use crate::input::{Limited, MAX_TEXT};
-use crate::progress::Meter;
 
 /// Most rows of a measurement. A fit to as many takes some seconds.
 pub const MAX_ROWS: usize = 1_000_000;
@@ -43,58 +40,6 @@ impl std::error::Error for MeasuredError {}
 impl From<RowError> for MeasuredError {
     fn from(error: RowError) -> Self {
         Self::Row(error)
-    }
-}
-
-/// Unit of the angles in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Angles {
-    /// Radians.
-    Radians,
-    /// Degrees.
-    Degrees,
-}
-
-impl Angles {
-    /// The name of the unit, as a number is followed by it.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Radians => "radians",
-            Self::Degrees => "degrees",
-        }
-    }
-
-    /// An angle of this unit in radians.
-    pub const fn to_radians(self, angle: f64) -> f64 {
-        match self {
-            Self::Radians => angle,
-            Self::Degrees => angle.to_radians(),
-        }
-    }
-
-    /// A polar angle in [0, π/2], in radians. Up to 1e-5 above π/2 is a rounded π/2, as 1.5708 is,
-    /// and counts as π/2: a view beyond it would lie below the horizon.
-    ///
-    /// # Errors
-    /// The range of the angle, and whether it may have been meant in degrees.
-    pub fn polar(self, angle: f64) -> Result<f64, (&'static str, bool)> {
-        let radians = self.to_radians(angle);
-        if (0.0..=FRAC_PI_2 + 1e-5).contains(&radians) {
-            return Ok(radians.min(FRAC_PI_2));
-        }
-        Err(match self {
-            Self::Radians => ("in [0, pi/2 = 1.5708] radians", (0.0..=90.0).contains(&angle)),
-            Self::Degrees => ("in [0, 90] degrees", false),
-        })
-    }
-
-    /// An angle in radians as one of this unit.
-    pub const fn from_radians(self, angle: f64) -> f64 {
-        match self {
-            Self::Radians => angle,
-            Self::Degrees => angle.to_degrees(),
-        }
     }
 }
 
@@ -197,62 +142,11 @@ fn refusal(error: TabulatedError, rows: &[Measured], angles: Angles) -> Measured
     RowError { line: rows[row].line, why }.into()
 }
 
-/// The best Student-t, and its two well-known special cases for comparison.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fit {
-    /// σ and γ fitted together.
-    pub student_t: Replacement,
-    /// γ = ∞.
-    pub beckmann: Replacement,
-    /// γ = 2.
-    pub ggx: Replacement,
-}
-
-/// Fits by least squares over the measured angles, and counts the work in a meter.
-///
-/// # Errors
-/// [`ConvertError::Minimiser`].
-pub fn fit(measured: &Tabulated, form: Form, meter: &Meter) -> Result<Fit, ConvertError> {
-    use DistributionKind::{Beckmann, StudentT, TrowbridgeReitz};
-    let target = Target::measured(measured);
-    meter.expect([StudentT, Beckmann, TrowbridgeReitz].map(|to| target.seconds(to)).iter().sum());
-    let nearest = |to| target.by_rmse(to, form, &meter.stage(target.seconds(to)));
-    Ok(Fit {
-        student_t: nearest(StudentT)?,
-        beckmann: nearest(Beckmann)?,
-        ggx: nearest(TrowbridgeReitz)?,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use std::io;
 
-    use microfacet_model::classic::{Isotropic, Member};
-
     use super::*;
-
-    fn measured(sigma: f64, gamma: f64, upto: f64) -> String {
-        let truth = Member::student_t(sigma, gamma).unwrap();
-        let rows = (0..=400)
-            .map(|i| f64::from(i) * upto / 400.0)
-            .map(|t| format!("{t},{}\n", 3.0 * truth.d(t.to_radians())));
-        format!("theta,D\n{}", rows.collect::<String>())
-    }
-
-    #[test]
-    fn finds_what_was_measured() {
-        for (sigma, gamma) in [(0.3, 2.6), (0.15, 5.0), (0.2, 1.8)] {
-            let table = read_csv(measured(sigma, gamma, 89.9).as_bytes(), Angles::Degrees).unwrap();
-            let fit = fit(&table, Form::Relative, &Meter::default()).unwrap();
-            let [s, g] = fit.student_t.to.values[..] else { panic!() };
-            assert!(
-                (s / sigma - 1.0).abs() < 1e-2 && (g / gamma - 1.0).abs() < 2e-2,
-                "{sigma} {gamma}: {s} {g}"
-            );
-            assert!(fit.student_t.rmse[0] < 0.3 * fit.ggx.rmse[0].min(fit.beckmann.rmse[0]));
-        }
-    }
 
     #[test]
     fn bad_rows_are_named_by_their_line_in_the_unit_of_the_file() {

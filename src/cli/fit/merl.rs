@@ -1,0 +1,156 @@
+//! `fit --merl`: compares fits to measured materials.
+
+use std::fmt::{Display, Write};
+use std::path::{Path, PathBuf};
+
+use microfacet_bake::distribution::DistributionKind;
+use microfacet_bake::fit::merl::{self, Comparison, Fitted, Fitter, Measured};
+use microfacet_bake::progress::Meter;
+
+use crate::cli::convert::ends;
+use crate::cli::recipe::check_new;
+use crate::cli::words::count;
+use crate::cli::{Done, Failure, Outcome, print, progress, summarize, write, write_file};
+
+pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Outcome {
+    let prints = recipe.is_some_and(|path| path.as_os_str() == "-");
+    let recipe_file = recipe.filter(|_| !prints);
+    recipe_file.map_or(Ok(()), check_new)?;
+    let meter = Meter::default();
+    meter.expect(files.len() as f64 * Fitter::SECONDS);
+    let bar = progress::show(&meter, "fitting");
+    let fitter = Fitter::default();
+    let read = |path: &Path| -> Result<Measured, Failure> {
+        let failed = |why: &dyn Display| Failure(format!("{}: {why}", path.display()));
+        let measured = Measured::read(path).map_err(|why| failed(&why))?;
+        fitter.check(&measured).map_err(|why| failed(&why))?;
+        Ok(measured)
+    };
+    // A file that is refused is so before others have taken their time.
+    if files.len() > 1 {
+        files.iter().try_for_each(|path| read(path).map(|_| ()))?;
+    }
+    let names: Vec<String> = files.iter().map(|path| name(path)).collect();
+    let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(8);
+    if !prints {
+        print(&head(width))?;
+    }
+    let mut found = Vec::with_capacity(files.len());
+    for (path, name) in files.iter().zip(&names) {
+        let fits = fitter
+            .fit(&read(path)?, &meter)
+            .map_err(|why| Failure(format!("{}: {why}", path.display())))?;
+        if !prints {
+            print(&rows(name, width, &fits)?)?;
+        }
+        found.push(fits);
+    }
+    drop(bar);
+    if !prints && found.len() > 1 {
+        print(&summary(&found)?)?;
+    }
+    if recipe.is_some() {
+        let fits = files.iter().zip(&found).map(|(path, fits)| (&**path, &fits.student_t));
+        let text = merl::recipe(fits);
+        match recipe_file {
+            None => write(text.as_bytes())?,
+            Some(path) => {
+                write_file(path, text.as_bytes())?;
+                summarize(&format!("{}\n", path.display()))?;
+            }
+        }
+    }
+    Ok(Done::Ok)
+}
+
+/// A material by the name of its file.
+fn name(path: &Path) -> String {
+    path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn head(width: usize) -> String {
+    format!(
+        "{:<width$}  {:>8} {:>7}  {:>7} {:>7}  {:>9} {:>7} {:>7}  best\n",
+        "material", "Beckmann", "sigma", "GGX", "sigma", "Student-t", "sigma", "gamma"
+    )
+}
+
+/// The errors and parameters of a material, and below it the rest of its Student-t.
+fn rows(name: &str, width: usize, fits: &Comparison) -> Result<String, std::fmt::Error> {
+    let Comparison { beckmann, ggx, student_t } = fits;
+    let [sigma, gamma] = student_t.sigma_gamma().map(short);
+    let mut text = format!(
+        "{name:<width$}  {:>8.4} {:>7}  {:>7.4} {:>7}  {:>9.4} {sigma:>7} {gamma:>7}  {}\n",
+        beckmann.error,
+        short(beckmann.sigma_gamma()[0]),
+        ggx.error,
+        short(ggx.sigma_gamma()[0]),
+        student_t.error,
+        label(fits.best()),
+    );
+    let rgb = |[r, g, b]: [f64; 3]| format!("{r:.3} {g:.3} {b:.3}");
+    writeln!(
+        text,
+        "    Student-t: F0 {}, Lambert {}{}",
+        rgb(student_t.f0),
+        rgb(student_t.lambert),
+        ends(&student_t.ends_at)
+    )?;
+    Ok(text)
+}
+
+/// How often each fit is best, and by what factor Student-t is better.
+fn summary(found: &[Comparison]) -> Result<String, std::fmt::Error> {
+    let times = |kind| found.iter().filter(|fits| fits.best().lobe.kind == kind).count();
+    let mut text = format!(
+        "\nbest for {}: Student-t {}, GGX {}, Beckmann {}\n(GGX or Beckmann where Student-t gains \
+         less than {} %)\n",
+        count(found.len(), "material"),
+        times(DistributionKind::StudentT),
+        times(DistributionKind::TrowbridgeReitz),
+        times(DistributionKind::Beckmann),
+        100.0 * Comparison::EQUAL
+    );
+    let others: [(&str, fn(&Comparison) -> &Fitted); 2] =
+        [("GGX", |fits| &fits.ggx), ("Beckmann", |fits| &fits.beckmann)];
+    for (name, of) in others {
+        let factors: Vec<f64> = found.iter().map(|fits| fits.gain(of(fits))).collect();
+        let least = factors.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = factors.iter().copied().fold(0.0, f64::max);
+        let logs: f64 = factors.iter().map(|factor| factor.ln()).sum();
+        let mean = (logs / factors.len() as f64).exp();
+        writeln!(
+            text,
+            "error of {name} over that of Student-t: {least:.3} to {most:.3}, geometric mean \
+             {mean:.3}"
+        )?;
+    }
+    Ok(text)
+}
+
+fn label(fitted: &Fitted) -> &'static str {
+    match fitted.lobe.kind {
+        DistributionKind::Beckmann => "Beckmann",
+        DistributionKind::TrowbridgeReitz => "GGX",
+        _ => "Student-t",
+    }
+}
+
+/// A parameter in seven characters.
+fn short(x: f64) -> String {
+    match x {
+        0.01..100.0 | f64::INFINITY => format!("{x:.4}"),
+        _ => format!("{x:.1e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_fit_their_columns() {
+        let shown = [0.01, 0.00123, 99.99, 12345.6, 1e-4, f64::INFINITY].map(short);
+        assert_eq!(shown, ["0.0100", "1.2e-3", "99.9900", "1.2e4", "1.0e-4", "inf"]);
+    }
+}

@@ -1,0 +1,327 @@
+//! The parameters that a reflectance is linear in: the Lambert term and F0 of each channel, by
+//! least absolute deviations.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::file::MerlError;
+use super::samples::Samples;
+
+/// The Lambert term and F0 of a channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Linear {
+    /// In 1/sr: the albedo over π.
+    pub(super) lambert: f64,
+    /// In [0, 1].
+    pub(super) f0: f64,
+}
+
+/// What was measured at some samples, and is to be fitted.
+pub(super) struct Problem<'a> {
+    samples: &'a Samples,
+    values: [Vec<f64>; 3],
+    /// Σ measured · cos θ_l of each channel.
+    measured: [f64; 3],
+    /// A Lambert term that the best one cannot exceed.
+    bound: [f64; 3],
+}
+
+impl<'a> Problem<'a> {
+    /// Samples that a thread sums at once; the sums of chunks are added in order, so that the
+    /// result is the same for any number of threads.
+    pub(super) const CHUNK: usize = 1 << 14;
+
+    pub(super) fn new(samples: &'a Samples, values: [Vec<f64>; 3]) -> Self {
+        let (mut measured, mut bound) = ([0.0; 3], [0.0; 3]);
+        for (channel, values) in values.iter().enumerate() {
+            let mut weight = 0.0;
+            for (&y, &cos_l) in values.iter().zip(&samples.cos_l).filter(|(y, _)| **y >= 0.0) {
+                weight += cos_l;
+                measured[channel] += cos_l * y;
+            }
+            // The best Lambert term is a weighted median of what the highlight leaves, no more than
+            // that of the values; and no median of what is not negative exceeds twice the mean.
+            // A channel without values has none.
+            bound[channel] = 2.0 * measured[channel] / weight.max(f64::MIN_POSITIVE);
+        }
+        Self { samples, values, measured, bound }
+    }
+
+    /// Whether there is something to fit.
+    ///
+    /// # Errors
+    /// [`MerlError::Missing`] and [`MerlError::Black`].
+    pub(super) fn check(&self) -> Result<(), MerlError> {
+        let missing = |values: &Vec<f64>| values.iter().all(|y| *y < 0.0);
+        if let Some(channel) = self.values.iter().position(missing) {
+            return Err(MerlError::Missing(channel));
+        }
+        if self.measured == [0.0; 3] { Err(MerlError::Black) } else { Ok(()) }
+    }
+
+    /// The least Σ |measured − model| cos θ_l / Σ measured cos θ_l over all channels for a specular
+    /// reflectance (as [`Samples::specular`]), and the parameters; the error is within `tolerance`
+    /// of the least.
+    pub(super) fn solve(&self, specular: &[f64], tolerance: f64) -> (f64, [Linear; 3]) {
+        let total: f64 = self.measured.iter().sum();
+        let mut searches = [const { Search::new() }; 3];
+        for _ in 0..Search::STEPS {
+            let points = [0, 1, 2].map(|c| searches[c].next().map(|at| self.linear(c, at)));
+            if points == [None; 3] {
+                break;
+            }
+            let sums = self.sums(specular, points);
+            for (c, search) in searches.iter_mut().enumerate() {
+                if points[c].is_some() {
+                    let Sums { error, by_lambert, by_f0 } = sums[c];
+                    let slope = DVec2::new(self.bound[c] * by_lambert, by_f0);
+                    search.step(error, slope, tolerance * total / 3.0);
+                }
+            }
+        }
+        let error: f64 = searches.iter().map(|search| search.least).sum();
+        (error / total, [0, 1, 2].map(|c| self.linear(c, searches[c].best)))
+    }
+
+    fn linear(&self, channel: usize, at: DVec2) -> Linear {
+        Linear { lambert: self.bound[channel] * at.x, f0: at.y }
+    }
+
+    /// The error of each channel at its parameters, and its slopes; zero for a channel without
+    /// parameters.
+    fn sums(&self, specular: &[f64], points: [Option<Linear>; 3]) -> [Sums; 3] {
+        let chunk = |start: usize| {
+            let range = start..(start + Self::CHUNK).min(specular.len());
+            [0, 1, 2].map(|c| {
+                points[c].map_or(Sums::default(), |linear| {
+                    Sums::of(
+                        linear,
+                        &self.values[c][range.clone()],
+                        &specular[range.clone()],
+                        &self.samples.grazing[range.clone()],
+                        &self.samples.cos_l[range.clone()],
+                    )
+                })
+            })
+        };
+        let starts: Vec<usize> = (0..specular.len()).step_by(Self::CHUNK).collect();
+        let parts: Vec<[Sums; 3]> = starts.into_par_iter().map(chunk).collect();
+        parts.into_iter().fold([Sums::default(); 3], |sum, part| {
+            [0, 1, 2].map(|c| Sums {
+                error: sum[c].error + part[c].error,
+                by_lambert: sum[c].by_lambert + part[c].by_lambert,
+                by_f0: sum[c].by_f0 + part[c].by_f0,
+            })
+        })
+    }
+}
+
+/// Σ |measured − model| cos θ_l, and its slopes along the Lambert term and F0.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    error: f64,
+    by_lambert: f64,
+    by_f0: f64,
+}
+
+impl Sums {
+    fn of(
+        linear: Linear,
+        values: &[f64],
+        specular: &[f64],
+        grazing: &[f64],
+        cos_l: &[f64],
+    ) -> Self {
+        // Side by side, as wide registers add.
+        const LANES: usize = 4;
+        let Linear { lambert, f0 } = linear;
+        let (mut error, mut by_lambert, mut by_f0) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let mut one = |lane: usize, [y, specular, grazing, cos_l]: [f64; 4]| {
+            // Schlick's F0 + (1 − F0) w, as (1 − w) F0 + w.
+            let steady = specular * grazing;
+            let rate = specular - steady;
+            let rest = y - lambert - f0 * rate - steady;
+            let weight = if y >= 0.0 { cos_l } else { 0.0 };
+            let signed = weight.copysign(rest);
+            error[lane] += signed * rest;
+            by_lambert[lane] -= signed;
+            by_f0[lane] -= signed * rate;
+        };
+        let [(y, last_y), (s, last_s), (w, last_w), (c, last_c)] =
+            [values, specular, grazing, cos_l].map(|all| all.as_chunks::<LANES>());
+        for (((y, s), w), c) in y.iter().zip(s).zip(w).zip(c) {
+            for lane in 0..LANES {
+                one(lane, [y[lane], s[lane], w[lane], c[lane]]);
+            }
+        }
+        for i in 0..last_y.len() {
+            one(0, [last_y[i], last_s[i], last_w[i], last_c[i]]);
+        }
+        let sum = |lanes: [f64; LANES]| lanes.iter().sum();
+        Self { error: sum(error), by_lambert: sum(by_lambert), by_f0: sum(by_f0) }
+    }
+}
+
+/// The search for the least value of a convex function on the unit square by its centre of gravity
+/// (Levin 1965; Newman 1965, *Location of the Maximum on Unimodal Surfaces*,
+/// doi:10.1145/321281.321291): a slope at the centre of what is left tells which side of the centre
+/// to drop, at least 1/e of the area.
+///
+/// Absolute deviations have corners wherever a sample is met, where a search along the coordinates
+/// one after the other may stop short, and one by steps of Newton's goes astray. Here nothing can
+/// go wrong: the slope also bounds the least value from below, and the search ends with that proof.
+#[derive(Debug)]
+struct Search {
+    /// What is left, counter-clockwise.
+    polygon: Vec<DVec2>,
+    centre: DVec2,
+    best: DVec2,
+    least: f64,
+    /// No value in the square is below this.
+    bound: f64,
+    ended: bool,
+}
+
+impl Search {
+    /// More than ever needed: by then at most 1e-11 of the square is left.
+    const STEPS: usize = 60;
+
+    const fn new() -> Self {
+        let centre = DVec2::splat(0.5);
+        Self {
+            polygon: vec![],
+            centre,
+            best: centre,
+            least: f64::INFINITY,
+            bound: f64::NEG_INFINITY,
+            ended: false,
+        }
+    }
+
+    /// Where to ask for the value and the slope next; `None` once the search has ended.
+    fn next(&self) -> Option<DVec2> {
+        (!self.ended).then_some(self.centre)
+    }
+
+    /// Takes the value and a slope at the centre; ends where no point can be better by more than
+    /// `tolerance`.
+    fn step(&mut self, value: f64, slope: DVec2, tolerance: f64) {
+        if self.polygon.is_empty() {
+            self.polygon = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(DVec2::from).into();
+        }
+        if value < self.least {
+            (self.least, self.best) = (value, self.centre);
+        }
+        // The function lies above its tangent.
+        let tangent = |at: DVec2| value + slope.dot(at - self.centre);
+        let lowest = self.polygon.iter().map(|at| tangent(*at)).fold(f64::INFINITY, f64::min);
+        self.bound = self.bound.max(lowest);
+        if self.least - self.bound <= tolerance {
+            self.ended = true;
+            return;
+        }
+        // Where the tangent lies above the least value so far there is nothing better.
+        let left = clip(&self.polygon, |at| tangent(at) - self.least);
+        match centroid(&left) {
+            Some(centre) => (self.centre, self.polygon) = (centre, left),
+            None => self.ended = true,
+        }
+    }
+}
+
+/// The part of a convex polygon where a linear function is not positive.
+fn clip(polygon: &[DVec2], side: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
+    let mut left = Vec::with_capacity(polygon.len() + 1);
+    for (i, &a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        let (at_a, at_b) = (side(a), side(b));
+        if at_a <= 0.0 {
+            left.push(a);
+        }
+        if (at_a < 0.0 && at_b > 0.0) || (at_a > 0.0 && at_b < 0.0) {
+            left.push(a + (b - a) * (at_a / (at_a - at_b)));
+        }
+    }
+    left
+}
+
+/// The centre of gravity of a polygon; `None` for one without an area that doubles can tell.
+fn centroid(polygon: &[DVec2]) -> Option<DVec2> {
+    let &first = polygon.first()?;
+    let (mut area, mut moment) = (0.0, DVec2::ZERO);
+    for pair in polygon[1..].windows(2) {
+        // From a corner of it, so that a small polygon far from the origin keeps its digits.
+        let [a, b] = [pair[0] - first, pair[1] - first];
+        let twice = a.perp_dot(b);
+        area += twice;
+        moment += twice * (a + b) / 3.0;
+    }
+    (area > 1e-20).then(|| first + moment / area)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The least of a function with a slope, and how many steps it took.
+    fn least(f: impl Fn(DVec2) -> (f64, DVec2), tolerance: f64) -> (Search, usize) {
+        let mut search = Search::new();
+        let mut steps = 0;
+        while let Some(at) = search.next().filter(|_| steps < Search::STEPS) {
+            let (value, slope) = f(at);
+            search.step(value, slope, tolerance);
+            steps += 1;
+        }
+        (search, steps)
+    }
+
+    #[test]
+    fn the_least_is_found_inside_and_at_edges_and_corners() {
+        for x in [0.0, 1e-4, 0.37, 1.0] {
+            for y in [0.0, 0.72, 1.0] {
+                // A valley with a kink, much steeper across.
+                let f = |at: DVec2| {
+                    let [u, v] = [at.x - x + (at.y - y), 1e-3 * (at.y - y)];
+                    let slope = DVec2::new(u.signum(), u.signum() + 1e-3 * v.signum());
+                    (u.abs() + v.abs(), slope)
+                };
+                let (found, steps) = least(f, 1e-9);
+                assert!(found.least < 1e-9 && steps < Search::STEPS, "{x} {y}: {found:?} {steps}");
+                assert!((found.best - DVec2::new(x, y)).abs().max_element() < 1e-5, "{found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_flat_function_ends_at_once() {
+        let (found, steps) = least(|_| (3.0, DVec2::ZERO), 0.0);
+        assert_eq!((found.least, steps), (3.0, 1));
+    }
+
+    #[test]
+    fn sums_are_those_of_the_definition_at_every_length() {
+        let linear = Linear { lambert: 0.1, f0: 0.3 };
+        let values = [0.2, 0.9, -1.0, 0.05, 3.0, 0.0, 0.4];
+        let specular = [0.5, 0.7, 2.0, 0.0, 9.0, 0.2, 0.3];
+        let grazing = [0.0, 0.1, 0.2, 0.3, 0.5, 1.0, 0.0];
+        let cos_l = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3];
+        for n in 0..=values.len() {
+            let error = |linear: Linear| -> f64 {
+                let model = |i: usize| {
+                    let f = linear.f0 + (1.0 - linear.f0) * grazing[i];
+                    linear.lambert + f * specular[i]
+                };
+                let measured = (0..n).filter(|&i| values[i] >= 0.0);
+                measured.map(|i| (values[i] - model(i)).abs() * cos_l[i]).sum()
+            };
+            let sums = Sums::of(linear, &values[..n], &specular[..n], &grazing[..n], &cos_l[..n]);
+            assert!((sums.error - error(linear)).abs() < 1e-14);
+            let h = 1e-7;
+            let by_lambert = error(Linear { lambert: linear.lambert + h, ..linear });
+            let by_f0 = error(Linear { f0: linear.f0 + h, ..linear });
+            for (slope, moved) in [(sums.by_lambert, by_lambert), (sums.by_f0, by_f0)] {
+                assert!(((moved - sums.error) / h - slope).abs() < 1e-6, "{n}");
+            }
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Fitted materials as a recipe.
+
+use std::collections::HashSet;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::Fitted;
+use crate::scene::{Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, Scene};
+
+/// A recipe of fitted materials, each named after the file it was fitted to, in the order given.
+///
+/// The names are made unique. A recipe has no key for a Lambert term: a comment at its head has
+/// those of all materials.
+pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a Path, &'a Fitted)>) -> String {
+    let mut head = format!(
+        "# Fitted to measured reflectance by microfacet-bake {}. A recipe has no key for the\n\
+         # Lambert term that each of these has beside its lobe; its albedo is, in red, green\n\
+         # and blue:\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    let mut scene = Scene::default();
+    let mut taken = HashSet::new();
+    for (path, fitted) in fits {
+        let name = unique(&stem(path), &mut taken);
+        let [r, g, b] = fitted.lambert;
+        // Writing to a string cannot fail.
+        let _ = writeln!(head, "#   {name}: {r:.6}, {g:.6}, {b:.6}");
+        let [sigma, gamma] = fitted.sigma_gamma();
+        scene.materials.push(Material {
+            name,
+            roughness: Roughness::Isotropic(Interval::point(sigma)),
+            gamma: Interval::point(gamma),
+            distribution: None,
+            theta: None,
+            fresnel: Some(Fresnel::Schlick(fitted.f0)),
+            masking: Some(Masking::Uncorrelated),
+            origin: Origin {
+                format: Format::Recipe,
+                place: Place { file: path.into(), line: None, column: None },
+                lobe: None,
+            },
+            used: true,
+        });
+    }
+    format!("{head}\n{}", scene.to_recipe())
+}
+
+/// The name of a file without its last extension, and without characters that no comment may hold.
+fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name: String = stem.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
+    if name.is_empty() { "material".into() } else { name }
+}
+
+/// A name that is not taken yet, and is then: with a number behind it where need be.
+fn unique(name: &str, taken: &mut HashSet<String>) -> String {
+    let numbered = (2..).map(|n| format!("{name} {n}"));
+    let free = std::iter::once(name.to_owned()).chain(numbered).find(|name| !taken.contains(name));
+    let free = free.expect("numbers do not end");
+    taken.insert(free.clone());
+    free
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distribution::{DistributionKind, Named};
+
+    #[test]
+    fn a_recipe_reads_back_and_names_are_unique() {
+        let fitted = |gamma| Fitted {
+            lobe: Named { kind: DistributionKind::StudentT, values: vec![0.1 + 0.2, gamma] },
+            f0: [1.0, 0.0, 1.0 / 3.0],
+            lambert: [0.1, 0.0, 0.25],
+            error: 0.1,
+            ends_at: vec![],
+        };
+        let paths = ["a/gold.binary", "b/gold.binary", "gold 2.binary", "x\n[\u{1b}].binary", ".."];
+        let gammas = [2.0, 1.5025, f64::INFINITY, 3.0, 1e9];
+        let fits: Vec<Fitted> = gammas.map(fitted).into();
+        let text = recipe(paths.iter().map(Path::new).zip(&fits));
+        let scene = Scene::from_recipe_str(&text).unwrap();
+        let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+        assert_eq!(names, ["gold", "gold 2", "gold 2 2", "x_[_]", "material"]);
+        for (material, gamma) in scene.materials.iter().zip(gammas) {
+            assert_eq!(material.roughness.x(), Interval::point(0.1 + 0.2));
+            assert_eq!(material.gamma, Interval::point(gamma));
+            assert_eq!(material.fresnel, Some(Fresnel::Schlick([1.0, 0.0, 1.0 / 3.0])));
+            assert_eq!(material.masking, Some(Masking::Uncorrelated));
+        }
+        assert!(text.contains("#   gold 2 2: 0.100000, 0.000000, 0.250000\n"), "{text}");
+        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    }
+}

@@ -1,0 +1,200 @@
+//! The samples that a fit compares: cells with view and light well above the horizon.
+
+use glam::DVec3;
+use microfacet_common::Masking;
+use microfacet_common::schlick::schlick_weight;
+use microfacet_model::{MicrofacetDistribution, StudentT};
+use rayon::prelude::*;
+
+use super::LIMIT_DEGREES;
+use super::file::{DIMENSIONS, MIDDLE, Measured, angles, index};
+use super::linear::Problem;
+
+/// Steps of the table of masking over the square root of the angle, between which Λ is linear:
+/// where γ is close to 3/2, Λ bends at the normal. The error of G1 is below 2e-6 for
+/// σ ≤ 1 and 1e-5 for σ = 10.
+const STEPS: usize = 4096;
+
+/// The place of an angle, in radians, in the table.
+fn place(theta: f64) -> f64 {
+    STEPS as f64 * (theta / LIMIT_DEGREES.to_radians()).sqrt()
+}
+
+/// The angle of a place in the table.
+fn angle(place: f64) -> f64 {
+    LIMIT_DEGREES.to_radians() * (place / STEPS as f64).powi(2)
+}
+
+/// Samples of all files alike: their places and the geometry of each.
+pub(super) struct Samples {
+    /// The place of each in a channel.
+    index: Vec<usize>,
+    /// Its row of θ_h.
+    row: Vec<usize>,
+    /// Places of view and light in the table of masking.
+    places: Vec<[f64; 2]>,
+    /// 1/(4 v·n l·n).
+    jacobian: Vec<f64>,
+    /// l·n, the weight of an error.
+    pub(super) cos_l: Vec<f64>,
+    /// Schlick's weight at v·m.
+    pub(super) grazing: Vec<f64>,
+}
+
+impl Samples {
+    /// Takes every cell of θ_h, every so many of θ_d and φ_d, and leaves out those with a view or a
+    /// light that is [`LIMIT_DEGREES`] or more from the normal.
+    pub(super) fn new(strides: [usize; 2]) -> Self {
+        let mut this = Self {
+            index: vec![],
+            row: vec![],
+            places: vec![],
+            jacobian: vec![],
+            cos_l: vec![],
+            grazing: vec![],
+        };
+        let along = |axis: usize| {
+            let stride = strides[axis - 1];
+            (stride / 2..DIMENSIONS[axis]).step_by(stride)
+        };
+        for i in 0..DIMENSIONS[0] {
+            for (j, k) in along(1).flat_map(|j| along(2).map(move |k| (j, k))) {
+                let at = angles([i, j, k], MIDDLE);
+                let [cos_v, cos_l] = at.cosines();
+                let places = [cos_v, cos_l].map(|cos| place(cos.acos()));
+                // Also where the cosine is negative, or beyond 1 by rounding.
+                if !places.iter().all(|x| *x < STEPS as f64) {
+                    continue;
+                }
+                this.index.push(index([i, j, k]));
+                this.row.push(i);
+                this.places.push(places);
+                this.jacobian.push(0.25 / (cos_v * cos_l));
+                this.cos_l.push(cos_l);
+                this.grazing.push(schlick_weight(at.theta_d.cos()));
+            }
+        }
+        this
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.index.len()
+    }
+
+    /// The place of a sample in a channel.
+    #[cfg(test)]
+    pub(super) fn index_of(&self, sample: usize) -> usize {
+        self.index[sample]
+    }
+
+    /// What a file has measured there.
+    pub(super) fn of(&self, measured: &Measured) -> [Vec<f64>; 3] {
+        measured
+            .channels
+            .each_ref()
+            .map(|channel| self.index.iter().map(|&at| channel[at]).collect())
+    }
+
+    /// D G1(v) G1(l)/(4 v·n l·n) of each sample: the specular reflectance for F = 1, in 1/sr.
+    pub(super) fn specular(&self, lobe: &StudentT) -> Vec<f64> {
+        let d: Vec<f64> = (0..DIMENSIONS[0])
+            .map(|i| {
+                let (sin, cos) = angles([i, 0, 0], MIDDLE).theta_h.sin_cos();
+                lobe.d(DVec3::new(sin, 0.0, cos))
+            })
+            .collect();
+        let masking = MaskingTable::new(lobe);
+        let one = |i: usize| {
+            let [v, l] = self.places[i].map(|x| masking.g1(x));
+            d[self.row[i]] * Masking::Uncorrelated.g2(v, l) * self.jacobian[i]
+        };
+        (0..self.len()).into_par_iter().with_min_len(Problem::CHUNK).map(one).collect()
+    }
+}
+
+/// Λ over the angle of a direction: two values are asked for at each sample, and the model would
+/// take most of the time.
+struct MaskingTable(Vec<f64>);
+
+impl MaskingTable {
+    fn new(lobe: &StudentT) -> Self {
+        let lambda = |i: usize| {
+            let (sin, cos) = angle(i as f64).sin_cos();
+            lobe.lambda(DVec3::new(sin, 0.0, cos))
+        };
+        Self((0..=STEPS).map(lambda).collect())
+    }
+
+    /// G1 = 1/(1 + Λ) at a [`place`].
+    fn g1(&self, x: f64) -> f64 {
+        let i = (x as usize).min(STEPS - 1);
+        let [a, b] = [self.0[i], self.0[i + 1]];
+        1.0 / (1.0 + a + (x - i as f64) * (b - a))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_samples_are_above_the_limit_and_few_are_spread_as_many() {
+        let (all, few) = (Samples::new([1, 1]), Samples::new([6, 12]));
+        for samples in [&all, &few] {
+            let largest = samples.places.iter().flatten().fold(0.0, |a: f64, b| a.max(*b));
+            let largest = angle(largest).to_degrees();
+            assert!((LIMIT_DEGREES - 1.0..LIMIT_DEGREES).contains(&largest), "{largest}");
+        }
+        let share = few.len() as f64 / all.len() as f64 * 72.0;
+        assert!((share - 1.0).abs() < 0.02, "{share}");
+        // Both ends of φ_d, the last θ_d within the limit, and nothing beyond.
+        for at in [[0, 0, 0], [0, 79, 0], [0, 79, 179], [84, 0, 90]] {
+            assert!(all.index.contains(&index(at)), "{at:?}");
+        }
+        for at in [[0, 80, 0], [0, 89, 179], [84, 40, 0], [84, 40, 179], [85, 0, 90]] {
+            assert!(!all.index.contains(&index(at)), "{at:?}");
+        }
+    }
+
+    #[test]
+    fn the_table_of_masking_is_that_of_the_model() {
+        let worst = |sigma: f64, gamma: f64| {
+            let lobe = StudentT::new(sigma, gamma).unwrap();
+            let table = MaskingTable::new(&lobe);
+            let places = (0..=5 * STEPS).map(|i| i as f64 / 5.0).chain([1e-9, 1e-3, 0.5]);
+            places
+                .map(|x| {
+                    let (sin, cos) = angle(x).sin_cos();
+                    (table.g1(x) - lobe.g1(DVec3::new(sin, 0.0, cos))).abs()
+                })
+                .fold(0.0, f64::max)
+        };
+        for sigma in [1e-4, 0.05, 0.3, 1.0, 10.0] {
+            for gamma in [1.5025, 1.7, 2.0, 4.0, f64::INFINITY] {
+                let error = worst(sigma, gamma);
+                let limit = if sigma > 1.0 { 1e-5 } else { 2e-6 };
+                assert!(error < limit, "sigma {sigma}, gamma {gamma}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn specular_is_that_of_vectors() {
+        let samples = Samples::new([6, 12]);
+        let lobe = StudentT::new(0.4, 2.6).unwrap();
+        let found = samples.specular(&lobe);
+        for i in (0..samples.len()).step_by(501) {
+            let (row, j, k) = (samples.row[i], samples.index[i] / 180 % 90, samples.index[i] % 180);
+            let at = angles([row, j, k], MIDDLE);
+            let turn = glam::DMat3::from_rotation_y(at.theta_h);
+            let (sin, cos) = at.theta_d.sin_cos();
+            let (m, l) = (
+                turn * DVec3::Z,
+                turn * DVec3::new(sin * at.phi_d.cos(), sin * at.phi_d.sin(), cos),
+            );
+            let v = 2.0 * l.dot(m) * m - l;
+            let expected = lobe.d(m) * lobe.g1(v) * lobe.g1(l) / (4.0 * v.z * l.z);
+            assert!((found[i] / expected - 1.0).abs() < 1e-5, "{i}");
+        }
+    }
+}
