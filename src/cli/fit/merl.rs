@@ -111,10 +111,11 @@ fn summary(found: &[Comparison]) -> Result<String, std::fmt::Error> {
         times(DistributionKind::Beckmann),
         100.0 * Comparison::EQUAL
     );
-    let others: [(&str, fn(&Comparison) -> &Fitted); 2] =
-        [("GGX", |fits| &fits.ggx), ("Beckmann", |fits| &fits.beckmann)];
-    for (name, of) in others {
-        let factors: Vec<f64> = found.iter().map(|fits| fits.gain(of(fits))).collect();
+    let gains = |of: fn(&Comparison) -> &Fitted| -> Vec<f64> {
+        found.iter().map(|fits| fits.gain(of(fits))).collect()
+    };
+    let others = [("GGX", gains(|fits| &fits.ggx)), ("Beckmann", gains(|fits| &fits.beckmann))];
+    for (name, factors) in others {
         let least = factors.iter().copied().fold(f64::INFINITY, f64::min);
         let most = factors.iter().copied().fold(0.0, f64::max);
         let logs: f64 = factors.iter().map(|factor| factor.ln()).sum();
