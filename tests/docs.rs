@@ -1,5 +1,8 @@
 //! The pages say what the code does.
 
+use std::path::Path;
+
+use microfacet_bake::plot::FIGURES;
 use microfacet_sampler::{Kind, Mapping};
 
 /// `text` with every run of white space as one space, so that a page may break its lines anywhere.
@@ -38,4 +41,43 @@ fn the_page_of_the_format_is_of_this_version() {
             kind.name()
         );
     }
+}
+
+/// The word after another in a command.
+fn after<'a>(command: &'a str, word: &str) -> Option<&'a str> {
+    let mut words = command.split_whitespace().skip_while(|each| *each != word);
+    words.nth(1)
+}
+
+#[test]
+fn the_page_of_what_was_reproduced_has_whole_rows_and_commands_that_there_are() {
+    let page = include_str!("../docs/reproduced.md");
+    let rows: Vec<Vec<&str>> = page
+        .lines()
+        .filter(|line| line.starts_with('|') && !line.starts_with("| --"))
+        .map(|line| line.trim_matches('|').split(" | ").map(str::trim).collect())
+        .collect();
+    assert!(rows.iter().filter(|row| row[0] == "claim").count() == 3 && rows.len() > 40);
+    let mut figures = Vec::new();
+    for row in rows {
+        let whole = row.len() == 4 && row.iter().all(|cell| !cell.is_empty());
+        assert!(whole, "docs/reproduced.md: {row:?}");
+        // Between backticks are commands.
+        for command in row[1].split('`').skip(1).step_by(2) {
+            if let Some(example) = after(command, "--example") {
+                let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+                let found = folder.join(format!("{example}.rs")).exists()
+                    || folder.join(example).join("main.rs").exists();
+                assert!(found, "docs/reproduced.md: no example {example}");
+            }
+            figures.extend(after(command, "plot"));
+        }
+    }
+    for listed in FIGURES {
+        // Another view of `distributions`.
+        let drawn = figures.contains(&listed.name) || listed.name == "relative-error";
+        assert!(drawn, "docs/reproduced.md: no {}", listed.name);
+    }
+    let known = FIGURES.map(|listed| listed.name);
+    assert!(figures.iter().all(|figure| known.contains(figure)), "{figures:?}");
 }
