@@ -25,14 +25,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (place, folder) = match &arguments[..] {
         [folder] if !folder.starts_with('-') => (MIDDLE, folder),
         [option, folder] if option == "--start" => (0.0, folder),
-        _ => return Err("name a folder to make the files in".into()),
+        _ => return Err("name a folder to make the files in, after --start if need be".into()),
     };
     std::fs::create_dir_all(folder)?;
-    for (name, material) in materials() {
-        let path = Path::new(folder).join(format!("{name}.binary"));
-        if path.symlink_metadata().is_ok() {
-            return Err(format!("{}: exists already; name a new folder", path.display()).into());
-        }
+    let path = |name: &str| Path::new(folder).join(format!("{name}.binary"));
+    let all = materials();
+    if let Some(there) =
+        all.iter().map(|(name, _)| path(name)).find(|path| path.symlink_metadata().is_ok())
+    {
+        return Err(format!("{}: exists already; name a new folder", there.display()).into());
+    }
+    for (name, material) in all {
+        let path = path(name);
         store::replace(&path, &material.file(place)?)?;
         println!("{}: {}", path.display(), text(&material));
     }

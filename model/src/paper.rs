@@ -107,8 +107,8 @@ fn prefactor(gamma: f64) -> f64 {
     libm::tgamma(gamma - 0.5) / (PI.sqrt() * libm::tgamma(gamma))
 }
 
-/// ₂F₁(½, γ−½; 3/2; −x), x ≥ 0, by the power series that converges: all but the first have positive
-/// terms alone, so that no digit is lost.
+/// ₂F₁(½, γ−½; 3/2; −x), x ≥ 0, by the power series that converges. All but the first have positive
+/// terms alone, and lose no digit; the test below has what is left of Λ.
 fn hypergeometric(gamma: f64, x: f64) -> f64 {
     let (y, w) = (x / (1.0 + x), 1.0 / (1.0 + x));
     if gamma.fract() == 0.0 && gamma <= 12.0 {

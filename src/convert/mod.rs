@@ -14,7 +14,7 @@ mod target;
 
 pub use error::ConvertError;
 pub use formula::{Formula, by_formula, formulas};
-pub use search::tries;
+use search::tries;
 pub use target::Target;
 
 use crate::distribution::Named;

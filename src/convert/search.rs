@@ -47,7 +47,7 @@ fn scan(to: DistributionKind) -> usize {
 
 /// About how many distributions of a kind a search tries: those of the scan, and about as many of
 /// the minimiser as it takes to its tolerance. Only the progress reads it.
-pub fn tries(to: DistributionKind) -> usize {
+pub(super) fn tries(to: DistributionKind) -> usize {
     match to.dimension() {
         1 => scan(to) + 40,
         _ => (scan(to) + 1).pow(2) + 200,

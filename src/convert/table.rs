@@ -28,9 +28,9 @@ const ENDS: [f64; 17] = [
 /// Steps of each grid; 100 give the same parameters to 2e-5.
 const STEPS: usize = 1000;
 
-/// The columns: what is fitted in each pair after the first three columns.
+/// What is fitted: each has a pair of columns, of its parameter and its RMSE, after the first three.
 pub const FITTED: [DistributionKind; 4] = [BlinnPhong, Gauss, Sawicki, TrowbridgeReitz];
-/// Names of the columns, those of the file.
+/// Names of the columns, in the order of the file.
 pub const COLUMNS: [&str; 11] =
     ["m_B", "2/m_B^2", "RMSE", "N", "RMSE", "m_G", "RMSE", "N_DS", "RMSE", "C_TR", "RMSE"];
 
@@ -75,7 +75,7 @@ fn printed() -> impl Iterator<Item = Vec<&'static str>> {
 }
 
 /// The range of a kind's parameter in the table; `None` for kinds that it has not.
-pub fn printed_range(kind: DistributionKind) -> Option<[f64; 2]> {
+pub(super) fn printed_range(kind: DistributionKind) -> Option<[f64; 2]> {
     let column = match kind {
         Beckmann => 0,
         _ => 3 + 2 * FITTED.iter().position(|fitted| *fitted == kind)?,

@@ -10,9 +10,14 @@ fn named(text: &str) -> Named {
 
 #[test]
 fn every_family_finds_itself() {
-    for text in
-        ["beckmann:0.2", "gauss:0.15", "trowbridge-reitz:0.3", "blinn-phong:40", "schlick:0.1"]
-    {
+    for text in [
+        "beckmann:0.2",
+        "gauss:0.15",
+        "trowbridge-reitz:0.3",
+        "blinn-phong:40",
+        "schlick:0.1",
+        "sawicki:12",
+    ] {
         let from = named(text);
         let built = from.build().unwrap();
         let target = Target::new(&*built);

@@ -39,7 +39,7 @@ impl Axis {
     }
 
     /// The value at a fraction of the axis's length.
-    pub fn value(&self, fraction: f64) -> f64 {
+    pub(crate) fn value(&self, fraction: f64) -> f64 {
         let [low, high] = self.ends();
         let x = low + (high - low) * fraction;
         if self.log { libm::exp10(x) } else { x }

@@ -40,9 +40,9 @@ pub const FIGURES: [Listed; 6] = [
         draw: sawicki::distributions,
     },
     Listed {
-        name: "relative-error",
+        name: "tails",
         about: "The same over Beckmann, for the tails (after Sawicki 2021, figures 1-2)",
-        draw: sawicki::ratios,
+        draw: sawicki::tails,
     },
     Listed {
         name: "highlights",

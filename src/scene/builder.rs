@@ -1,7 +1,7 @@
 //! The scene under construction, shared by the importers.
 
 use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use microfacet_sampler::Metal;
@@ -9,6 +9,7 @@ use microfacet_sampler::Metal;
 use super::error::did_you_mean;
 use super::limits::Budget;
 use super::material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
+use super::names::Names;
 use super::texture::{self, Channel, Encoding, Textures};
 use super::{Interval, Place, Scene, SceneError, SceneErrorKind, limits};
 
@@ -88,7 +89,7 @@ pub(super) struct Builder {
     format: Format,
     scene: Scene,
     /// How often each name was requested.
-    names: HashMap<String, u32>,
+    names: Names,
     warned: HashSet<String>,
     /// Suggestions for names that may still be looked for.
     hints: Budget,
@@ -100,7 +101,7 @@ impl Builder {
         Self {
             format,
             scene: Scene::default(),
-            names: HashMap::new(),
+            names: Names::default(),
             warned: HashSet::new(),
             hints: Budget::new(limits::HINTS),
             textures: Textures::default(),
@@ -134,7 +135,7 @@ impl Builder {
             None => name.to_owned(),
         };
         let material = Material {
-            name: self.unique(name),
+            name: self.names.unique(name),
             roughness: lobe.roughness,
             gamma: lobe.gamma,
             distribution: None,
@@ -283,16 +284,5 @@ impl Builder {
     pub(super) fn unread(&mut self, name: &str, reason: &str, place: &Place) -> Interval {
         self.warn(place, format!("texture {name} {reason}; it is assumed to cover [0, 1]"));
         Interval::UNIT
-    }
-
-    /// The name itself the first time, then "name (2)" and so on.
-    fn unique(&mut self, name: String) -> String {
-        let count = self.names.entry(name.clone()).or_default();
-        *count += 1;
-        if *count == 1 {
-            return name;
-        }
-        let numbered = format!("{name} ({count})");
-        self.unique(numbered)
     }
 }

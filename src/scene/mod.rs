@@ -42,6 +42,7 @@ mod material;
 mod materialx;
 mod memo;
 mod mitsuba;
+mod names;
 mod pbrt;
 mod recipe;
 mod texture;
@@ -52,6 +53,7 @@ use std::path::{Path, PathBuf};
 pub use error::{Place, SceneError, SceneErrorKind, did_you_mean_key};
 pub use interval::Interval;
 pub use material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
+pub(crate) use names::Names;
 
 use crate::input;
 

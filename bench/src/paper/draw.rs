@@ -39,7 +39,8 @@ impl Paper {
         let panels = quantities.into_iter().flat_map(|(quantity, what, unit, scale)| {
             let of: Vec<&Timing> =
                 self.times.iter().filter(|time| time.quantity == quantity).collect();
-            let values = || of.iter().map(|time| scale * time.ns);
+            // A clock may be too coarse to see a short batch.
+            let values = || of.iter().map(|time| scale * time.ns.max(0.1));
             let (low, high) =
                 (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
             let y = Axis::log(unit, 0.7 * low, 1.4 * high);
@@ -182,7 +183,7 @@ fn time_curves(of: &[&Timing], by_gamma: bool, scale: f64) -> Vec<Curve> {
     of.sort_by_key(|time| time.at.method);
     let curve = |times: &[&Timing]| {
         let method = times[0].at.method;
-        let y = |time: &Timing| scale * time.ns;
+        let y = |time: &Timing| scale * time.ns.max(0.1);
         let points = times.iter().filter(|time| time.at.gamma.is_finite() || !by_gamma);
         let points = match method.is_reference() && by_gamma {
             true => SHAPES.map(|gamma| (gamma, y(times[0]))).into(),

@@ -101,7 +101,7 @@ impl Paper {
             })
         });
         let measures = verdicts(&self.integrated).into_iter().map(|verdict| {
-            let Verdict { measure, worst, at: [gamma, sigma], below } = verdict;
+            let Verdict { measure, worst, gamma, sigma, below } = verdict;
             json!({
                 "measure": MEASURES[measure].column, "formula": MEASURES[measure].formula,
                 "largest": worst, "gamma": gamma, "sigma": sigma, "gammas_below_claim": below,

@@ -140,8 +140,10 @@ pub(crate) struct Verdict {
     pub(crate) measure: usize,
     /// The largest value.
     pub(crate) worst: f64,
-    /// The γ and the σ where that is.
-    pub(crate) at: [f64; 2],
+    /// The γ where that is.
+    pub(crate) gamma: f64,
+    /// The σ where that is; `None` if it is as large at every σ.
+    pub(crate) sigma: Option<f64>,
     /// The shapes for which it is below the claim at every σ, as ranges of the shapes looked at.
     pub(crate) below: Vec<[f64; 2]>,
 }
@@ -163,7 +165,11 @@ pub(crate) fn verdicts(all: &[Integrated]) -> Vec<Verdict> {
             }
             is_open = is_below;
         }
-        Verdict { measure, worst: error(worst), at: [worst.gamma, worst.sigma], below }
+        let (gamma, worst, sigma) = (worst.gamma, error(worst), worst.sigma);
+        // What depends on cot θ/σ alone.
+        let mut of_shape = all.iter().filter(|at| at.gamma == gamma);
+        let is_any = of_shape.all(|at| (error(at) / worst - 1.0).abs() < 1e-6);
+        Verdict { measure, worst, gamma, sigma: (!is_any).then_some(sigma), below }
     };
     (0..MEASURES.len()).map(verdict).collect()
 }
@@ -242,7 +248,10 @@ mod tests {
         ];
         for (measure, verdict) in verdicts(all.as_flattened()).into_iter().enumerate() {
             let below = vec![[2.0, 3.0], [6.0, 6.0]];
-            assert_eq!(verdict, Verdict { measure, worst: high, at: [4.0, 0.2], below });
+            assert_eq!(
+                verdict,
+                Verdict { measure, worst: high, gamma: 4.0, sigma: Some(0.2), below }
+            );
         }
     }
 }

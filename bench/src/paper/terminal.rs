@@ -78,7 +78,7 @@ impl Paper {
             "measure", "largest", "at gamma", "sigma"
         );
         for verdict in verdicts(&self.integrated) {
-            let [gamma, sigma] = verdict.at;
+            let sigma = verdict.sigma.map_or("any".into(), |sigma| sigma.to_string());
             let range = |[low, high]: &[f64; 2]| [*low, *high].map(significant).join(" to ");
             let ranges: Vec<String> = verdict.below.iter().map(range).collect();
             let below = if ranges.is_empty() {
@@ -90,7 +90,7 @@ impl Paper {
                 "{:32} {:>7.3} % {:>9} {sigma:>6}  {below}\n",
                 MEASURES[verdict.measure].formula,
                 1e2 * verdict.worst,
-                significant(gamma),
+                significant(verdict.gamma),
             );
         }
         let percent = |measure: usize, gamma: f64, sigma: f64| {

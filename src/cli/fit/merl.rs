@@ -22,15 +22,16 @@ pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Outcome {
     let fitter = Fitter::default();
     let read = |path: &Path| -> Result<Measured, Failure> {
         let failed = |why: &dyn Display| Failure(format!("{}: {why}", path.display()));
-        let measured = Measured::read(path).map_err(|why| failed(&why))?;
-        fitter.check(&measured).map_err(|why| failed(&why))?;
-        Ok(measured)
+        Measured::read(path).map_err(|why| failed(&why))
     };
     // A file that is refused is so before others have taken their time.
     if files.len() > 1 {
-        files.iter().try_for_each(|path| read(path).map(|_| ()))?;
+        for path in files {
+            let failed = |why| Failure(format!("{}: {why}", path.display()));
+            fitter.check(&read(path)?).map_err(failed)?;
+        }
     }
-    let names: Vec<String> = files.iter().map(|path| name(path)).collect();
+    let names = merl::names(files.iter().map(PathBuf::as_path));
     let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(8);
     if !prints {
         print(&head(width))?;
@@ -50,7 +51,7 @@ pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Outcome {
         print(&summary(&found)?)?;
     }
     if recipe.is_some() {
-        let fits = files.iter().zip(&found).map(|(path, fits)| (&**path, &fits.student_t));
+        let fits = names.iter().zip(&found).map(|(name, fits)| (&**name, &fits.student_t));
         let text = merl::recipe(fits);
         match recipe_file {
             None => write(text.as_bytes())?,
@@ -61,11 +62,6 @@ pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Outcome {
         }
     }
     Ok(Done::Ok)
-}
-
-/// A material by the name of its file.
-fn name(path: &Path) -> String {
-    path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 fn head(width: usize) -> String {
@@ -140,7 +136,7 @@ fn label(fitted: &Fitted) -> &'static str {
 /// A parameter in seven characters.
 fn short(x: f64) -> String {
     match x {
-        0.01..100.0 | f64::INFINITY => format!("{x:.4}"),
+        0.01..99.99995 | f64::INFINITY => format!("{x:.4}"),
         _ => format!("{x:.1e}"),
     }
 }
@@ -151,7 +147,7 @@ mod tests {
 
     #[test]
     fn parameters_fit_their_columns() {
-        let shown = [0.01, 0.00123, 99.99, 12345.6, 1e-4, f64::INFINITY].map(short);
-        assert_eq!(shown, ["0.0100", "1.2e-3", "99.9900", "1.2e4", "1.0e-4", "inf"]);
+        let shown = [0.01, 0.00123, 99.99, 99.99996, 12345.6, 1e-4, f64::INFINITY].map(short);
+        assert_eq!(shown, ["0.0100", "1.2e-3", "99.9900", "1.0e2", "1.2e4", "1.0e-4", "inf"]);
     }
 }

@@ -168,8 +168,9 @@ impl Sums {
 /// to drop, at least 1/e of the area.
 ///
 /// Absolute deviations have corners wherever a sample is met, where a search along the coordinates
-/// one after the other may stop short, and one by steps of Newton's goes astray. Here nothing can
-/// go wrong: the slope also bounds the least value from below, and the search ends with that proof.
+/// one after the other may stop short, and one by steps of Newton's goes astray. Here the
+/// slope also bounds the least value from below, and the search ends with that proof, or when less
+/// than 1e-20 of the square is left.
 #[derive(Debug)]
 struct Search {
     /// What is left, counter-clockwise.

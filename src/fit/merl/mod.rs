@@ -32,9 +32,9 @@ mod search;
 
 use crate::distribution::{DistributionKind, Named};
 
-pub use file::{BYTES, CELLS, CHANNELS, DIMENSIONS, MIDDLE, Measured, MerlError, encode};
+pub use file::{BYTES, MIDDLE, Measured, MerlError, encode};
 pub use geometry::HalfDifference;
-pub use recipe::recipe;
+pub use recipe::{names, recipe};
 pub use search::Fitter;
 
 /// The angle from the normal, in degrees, from which on a view or a light is left out: measured

@@ -1,17 +1,24 @@
 //! Fitted materials as a recipe.
 
-use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
 use super::Fitted;
-use crate::scene::{Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, Scene};
+use crate::scene::{
+    Format, Fresnel, Interval, Masking, Material, Names, Origin, Place, Roughness, Scene,
+};
 
-/// A recipe of fitted materials, each named after the file it was fitted to, in the order given.
+/// The names of fitted materials: those of their files without the last extension, without
+/// characters that no comment may hold, and made unique.
+pub fn names<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Vec<String> {
+    let mut names = Names::default();
+    paths.into_iter().map(|path| names.unique(stem(path))).collect()
+}
+
+/// A recipe of fitted materials with their [`names`], in the order given.
 ///
-/// The names are made unique. A recipe has no key for a Lambert term: a comment at its head has
-/// those of all materials.
-pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a Path, &'a Fitted)>) -> String {
+/// A recipe has no key for a Lambert term: a comment at its head has those of all materials.
+pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a str, &'a Fitted)>) -> String {
     let mut head = format!(
         "# Fitted to measured reflectance by microfacet-bake {}. A recipe has no key for the\n\
          # Lambert term that each of these has beside its lobe; its albedo is, in red, green\n\
@@ -19,15 +26,13 @@ pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a Path, &'a Fitted)>) -> Str
         env!("CARGO_PKG_VERSION")
     );
     let mut scene = Scene::default();
-    let mut taken = HashSet::new();
-    for (path, fitted) in fits {
-        let name = unique(&stem(path), &mut taken);
+    for (name, fitted) in fits {
         let [r, g, b] = fitted.lambert;
         // Writing to a string cannot fail.
         let _ = writeln!(head, "#   {name}: {r:.6}, {g:.6}, {b:.6}");
         let [sigma, gamma] = fitted.sigma_gamma();
         scene.materials.push(Material {
-            name,
+            name: name.into(),
             roughness: Roughness::Isotropic(Interval::point(sigma)),
             gamma: Interval::point(gamma),
             distribution: None,
@@ -36,7 +41,7 @@ pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a Path, &'a Fitted)>) -> Str
             masking: Some(Masking::Uncorrelated),
             origin: Origin {
                 format: Format::Recipe,
-                place: Place { file: path.into(), line: None, column: None },
+                place: Place { file: Path::new(name).into(), line: None, column: None },
                 lobe: None,
             },
             used: true,
@@ -45,20 +50,10 @@ pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a Path, &'a Fitted)>) -> Str
     format!("{head}\n{}", scene.to_recipe())
 }
 
-/// The name of a file without its last extension, and without characters that no comment may hold.
 fn stem(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name: String = stem.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
     if name.is_empty() { "material".into() } else { name }
-}
-
-/// A name that is not taken yet, and is then: with a number behind it where need be.
-fn unique(name: &str, taken: &mut HashSet<String>) -> String {
-    let numbered = (2..).map(|n| format!("{name} {n}"));
-    let free = std::iter::once(name.to_owned()).chain(numbered).find(|name| !taken.contains(name));
-    let free = free.expect("numbers do not end");
-    taken.insert(free.clone());
-    free
 }
 
 #[cfg(test)]
@@ -75,20 +70,22 @@ mod tests {
             error: 0.1,
             ends_at: vec![],
         };
-        let paths = ["a/gold.binary", "b/gold.binary", "gold 2.binary", "x\n[\u{1b}].binary", ".."];
+        let paths =
+            ["a/gold.binary", "b/gold.binary", "gold (2).binary", "x\n[\u{1b}].binary", ".."];
         let gammas = [2.0, 1.5025, f64::INFINITY, 3.0, 1e9];
         let fits: Vec<Fitted> = gammas.map(fitted).into();
-        let text = recipe(paths.iter().map(Path::new).zip(&fits));
+        let names = names(paths.map(Path::new));
+        let text = recipe(names.iter().map(String::as_str).zip(&fits));
         let scene = Scene::from_recipe_str(&text).unwrap();
         let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
-        assert_eq!(names, ["gold", "gold 2", "gold 2 2", "x_[_]", "material"]);
+        assert_eq!(names, ["gold", "gold (2)", "gold (2) (2)", "x_[_]", "material"]);
         for (material, gamma) in scene.materials.iter().zip(gammas) {
             assert_eq!(material.roughness.x(), Interval::point(0.1 + 0.2));
             assert_eq!(material.gamma, Interval::point(gamma));
             assert_eq!(material.fresnel, Some(Fresnel::Schlick([1.0, 0.0, 1.0 / 3.0])));
             assert_eq!(material.masking, Some(Masking::Uncorrelated));
         }
-        assert!(text.contains("#   gold 2 2: 0.100000, 0.000000, 0.250000\n"), "{text}");
+        assert!(text.contains("#   gold (2) (2): 0.100000, 0.000000, 0.250000\n"), "{text}");
         assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     }
 }

@@ -61,8 +61,8 @@ impl Samples {
             for (j, k) in along(1).flat_map(|j| along(2).map(move |k| (j, k))) {
                 let at = angles([i, j, k], MIDDLE);
                 let [cos_v, cos_l] = at.cosines();
-                let places = [cos_v, cos_l].map(|cos| place(cos.acos()));
-                // Also where the cosine is negative, or beyond 1 by rounding.
+                // The cosine of the normal itself may be beyond 1 by rounding.
+                let places = [cos_v, cos_l].map(|cos| place(cos.min(1.0).acos()));
                 if !places.iter().all(|x| *x < STEPS as f64) {
                     continue;
                 }

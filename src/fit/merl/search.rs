@@ -41,6 +41,11 @@ impl Default for Fitter {
     }
 }
 
+/// A tenth of what is still said to be at an end (`DistributionKind::ends_at`).
+const fn stop(tolerance: f64) -> Stop {
+    Stop { width: 1e-5, spread: tolerance }
+}
+
 impl Fitter {
     /// The estimated seconds of a fit on two cores.
     pub const SECONDS: f64 = 4.0;
@@ -170,9 +175,10 @@ impl Errors<'_> {
         h: f64,
         tolerance: f64,
     ) -> Result<Vec<f64>, MerlError> {
-        let stop = Stop { width: 1e-4, spread: tolerance };
-        minimise::descend(place, h, stop, |place| self.error(kind, place, 0.1 * tolerance))
-            .map_err(MerlError::Minimiser)
+        minimise::descend(place, h, stop(tolerance), |place| {
+            self.error(kind, place, 0.1 * tolerance)
+        })
+        .map_err(MerlError::Minimiser)
     }
 
     fn fitted(&self, kind: DistributionKind, place: &[f64]) -> Fitted {
@@ -206,7 +212,7 @@ fn basins(errors: &[f64], width: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::merl::CELLS;
+    use crate::fit::merl::file::CELLS;
 
     #[test]
     fn basins_are_found_inside_and_at_the_edges() {
@@ -214,6 +220,22 @@ mod tests {
         let errors = [1.0, 2.0, 5.0, 3.0, 4.0, 5.0, 6.0, 5.0, 0.5];
         assert_eq!(basins(&errors, 3), [8, 0]);
         assert_eq!(basins(&[3.0, 1.0, 2.0, 0.0, 4.0], 1), [3, 1]);
+    }
+
+    #[test]
+    fn both_ends_of_a_search_are_said_to_be() {
+        for (end, start) in [(0.0, 0.1), (1.0, 0.9)] {
+            for kind in KINDS {
+                let mut at = vec![start; kind.dimension()];
+                // As `search` and `fit` go on from one to the next.
+                for (h, tolerance) in [(0.2, TOLERANCES[1]), (0.01, 1e-6), (0.002, 1e-6)] {
+                    let cost = |p: &[f64]| 1.0 + p.iter().map(|x| (x - end).abs()).sum::<f64>();
+                    at = minimise::descend(&at, h, stop(tolerance), cost).unwrap();
+                }
+                assert!(!kind.ends_at(&at).is_empty(), "{kind:?}: {at:?}");
+                assert_eq!(kind.ends_at(&at)[0], kind.parameters()[0], "{kind:?}: {at:?}");
+            }
+        }
     }
 
     #[test]
@@ -226,6 +248,7 @@ mod tests {
             assert_eq!(same.sigma_x(), lobe.sigma_x());
         }
     }
+
     #[test]
     fn a_fit_is_the_same_for_any_number_of_threads() {
         // Enough samples for several chunks.

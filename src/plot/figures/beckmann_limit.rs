@@ -44,7 +44,7 @@ const BOUND_OF_D: f64 = 0.5;
 const BOUND_OF_G1: f64 = 0.3;
 
 const MEASURES: [Measure; 12] = [
-    ("mean of |ΔD| over the hemisphere, 1/sr", BOUND_OF_D, |all| {
+    ("mean of |ΔD| over the hemisphere, 0.01/sr", BOUND_OF_D, |all| {
         integral(all, |at| at.d) / (2.0 * PI)
     }),
     ("largest |ΔD|/D(0)", BOUND_OF_D, |all| largest(all, At::unit)),
@@ -105,7 +105,7 @@ pub(super) fn figure() -> Figure {
         Panel {
             title: title.into(),
             x: Axis::linear("σ", 0.0, high),
-            y: Axis::linear("distance in %", 0.0, 1.05 * highest.fold(0.0, f64::max)),
+            y: Axis::linear("distance, per cent", 0.0, 1.05 * highest.fold(0.0, f64::max)),
             curves,
             marks: Vec::new(),
         }

@@ -34,8 +34,10 @@ fn panel(gamma: f64) -> Panel {
     let error = |form: Lambda, z: f64| {
         let truth = shape.lambda(shape.asinh_slope(z));
         let error = form(gamma, z).map_or(f64::NAN, |lambda| (lambda - truth).abs());
-        // No error at all is drawn as half an ulp; where Λ is 0, any error is infinite.
-        (error / truth.max(1e-300)).max(1.1e-16)
+        // Where Λ is 0, any error is infinite.
+        let relative = error / truth.max(1e-300);
+        // No error at all is drawn as half an ulp; what is no number stays so, and is not drawn.
+        if relative < 1.1e-16 { 1.1e-16 } else { relative }
     };
     let curves = defined.map(|(method, name, form)| {
         let mut curve = curve(Key::Method(method), name.into(), &x, |z| error(form, z));
