@@ -29,7 +29,7 @@ use super::{Done, Failure, Outcome, print, progress};
   microfacet-bake fit --merl gold-metallic-paint.binary chrome.binary --recipe fitted.toml")]
 pub(super) struct Args {
     /// CSV file, `-` for standard input.
-    #[arg(long, value_name = "CSV", required_unless_present = "merl")]
+    #[arg(long, value_name = "CSV")]
     input: Option<PathBuf>,
     #[command(flatten)]
     unit: Unit,
@@ -46,13 +46,16 @@ pub(super) struct Args {
     merl: Vec<PathBuf>,
     /// Recipe to write of the Student-t fits to --merl, which must not exist yet; `-` prints it
     /// instead of the table.
-    #[arg(long, value_name = "FILE", requires = "merl", conflicts_with = "input")]
+    #[arg(long, value_name = "FILE", conflicts_with = "input")]
     recipe: Option<PathBuf>,
 }
 
 pub(super) fn run(args: Args) -> Outcome {
     match &args.input {
         Some(input) => normals(input, &args),
+        None if args.merl.is_empty() => Err(Failure(
+            "give --input with a CSV, or --merl with files of the MERL database".into(),
+        )),
         None => merl::run(&args.merl, args.recipe.as_deref()),
     }
 }

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Done, Failure, Outcome, print, summarize, write_file};
+use microfacet_bake::store;
+
+use super::{Done, Failure, Outcome, print, summarize, unwritable, write_file};
 
 /// Print a commented recipe to start from.
 #[derive(clap::Args)]
@@ -51,10 +53,11 @@ pub(super) fn run(args: Args) -> Outcome {
     Ok(Done::Ok)
 }
 
-/// Refuses a file that exists already: what it holds may be somebody's work.
+/// Refuses a file that exists already, since what it holds may be somebody's work, and one that
+/// cannot be written.
 pub(super) fn check_new(path: &Path) -> Result<(), Failure> {
     if path.symlink_metadata().is_err() {
-        return Ok(());
+        return store::check_file(path).map_err(|why| unwritable(path, &why));
     }
     let shown = path.display();
     Err(Failure(format!(

@@ -28,7 +28,7 @@ const ENDS: [f64; 17] = [
 /// Steps of each grid; 100 give the same parameters to 2e-5.
 const STEPS: usize = 1000;
 
-/// What is fitted: each has a pair of columns, of its parameter and its RMSE, after the first three.
+/// What is fitted: each has two columns after the first three, of its parameter and of its RMSE.
 pub const FITTED: [DistributionKind; 4] = [BlinnPhong, Gauss, Sawicki, TrowbridgeReitz];
 /// Names of the columns, in the order of the file.
 pub const COLUMNS: [&str; 11] =

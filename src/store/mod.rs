@@ -20,7 +20,7 @@ pub use self::exr::{decode as decode_exr, encode as encode_exr, encode_channels}
 pub use interrupt::quiesce;
 pub use lock::OutputFolder;
 pub use numbered::{SetWriter, index, read_materials};
-pub use replace::{check_folder, replace, replace_files, replace_with};
+pub use replace::{check_file, check_folder, replace, replace_files, replace_with};
 pub(crate) use replace::{make_folder, remove_abandoned};
 
 /// Name of the file that holds a whole set.

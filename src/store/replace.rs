@@ -81,6 +81,14 @@ pub fn replace_files<'a>(
     Ok(written)
 }
 
+/// Checks that a file could be written as by [`replace`], and writes nothing.
+///
+/// # Errors
+/// As [`replace`].
+pub fn check_file(path: &Path) -> io::Result<()> {
+    Pending::new(destination(path)?, |_| Ok(())).map(|_| ())
+}
+
 /// Makes a folder unless it is there, and checks that files can be made in it.
 ///
 /// # Errors

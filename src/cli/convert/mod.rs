@@ -85,6 +85,11 @@ impl Args {
 
     fn text(&self) -> Result<String, Box<dyn Error>> {
         match (&self.from, &self.to) {
+            (Some(_), Some(to)) if to.contains(':') => {
+                let name = to.split(':').next().unwrap_or(to);
+                Err(format!("--to {to}: give a name alone, {name}; its parameters are found")
+                    .into())
+            }
             (Some(from), Some(to)) => self.pair(&from.parse()?, DistributionKind::by_name(to)?),
             _ => table::text(),
         }

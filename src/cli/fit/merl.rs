@@ -33,14 +33,14 @@ pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Outcome {
     }
     let names = merl::names(files.iter().map(PathBuf::as_path));
     let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(8);
-    if !prints {
-        print(&head(width))?;
-    }
     let mut found = Vec::with_capacity(files.len());
     for (path, name) in files.iter().zip(&names) {
         let fits = fitter
             .fit(&read(path)?, &meter)
             .map_err(|why| Failure(format!("{}: {why}", path.display())))?;
+        if !prints && found.is_empty() {
+            print(&head(width))?;
+        }
         if !prints {
             print(&rows(name, width, &fits)?)?;
         }
@@ -92,6 +92,10 @@ fn rows(name: &str, width: usize, fits: &Comparison) -> Result<String, std::fmt:
         rgb(student_t.lambert),
         ends(&student_t.ends_at)
     )?;
+    for other in [beckmann, ggx].into_iter().filter(|other| !other.ends_at.is_empty()) {
+        // They have one parameter, whatever its name.
+        writeln!(text, "    {}:{}", label(other), ends(&["sigma"]))?;
+    }
     Ok(text)
 }
 
@@ -100,12 +104,13 @@ fn summary(found: &[Comparison]) -> Result<String, std::fmt::Error> {
     let times = |kind| found.iter().filter(|fits| fits.best().lobe.kind == kind).count();
     let mut text = format!(
         "\nbest for {}: Student-t {}, GGX {}, Beckmann {}\n(GGX or Beckmann where Student-t gains \
-         less than {} %)\n",
+         less than {} %, or {:e} of the error)\n",
         count(found.len(), "material"),
         times(DistributionKind::StudentT),
         times(DistributionKind::TrowbridgeReitz),
         times(DistributionKind::Beckmann),
-        100.0 * Comparison::EQUAL
+        100.0 * Comparison::EQUAL,
+        Comparison::EXACT
     );
     let gains = |of: fn(&Comparison) -> &Fitted| -> Vec<f64> {
         found.iter().map(|fits| fits.gain(of(fits))).collect()

@@ -28,6 +28,12 @@ pub(super) const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 /// cell i stands for [i, i + 1): it is taken as that of the middle, i + ½.
 pub const MIDDLE: f64 = 0.5;
 
+/// The largest reflectance that is taken, in 1/sr: a mirror at the resolution of the format has
+/// less.
+pub(super) const LARGEST: f64 = 1e9;
+/// The smallest mean reflectance that is taken, in 1/sr: the blackest paint has more.
+pub(super) const DARKEST: f64 = 1e-5;
+
 /// Why a file is none of the database, or cannot be fitted.
 #[derive(Debug)]
 pub enum MerlError {
@@ -37,12 +43,14 @@ pub enum MerlError {
     Dimensions([u32; 3]),
     /// The number of bytes does not belong to the dimensions.
     Length(usize),
-    /// A value that is no number or infinite: its channel, its cell and itself.
+    /// A value, in 1/sr, that is no number or above [`LARGEST`]: its channel, its cell and itself.
     Value(usize, [usize; 3], f64),
     /// A channel without any value at the angles of a fit.
     Missing(usize),
     /// Every value at the angles of a fit is 0.
     Black,
+    /// The largest mean of a channel at the angles of a fit, in 1/sr, is below [`DARKEST`].
+    Dark(f64),
     /// The minimiser's message.
     Minimiser(String),
 }
@@ -65,9 +73,14 @@ impl fmt::Display for MerlError {
             ),
             Self::Value(channel, [i, j, k], x) => write!(
                 f,
-                "{} at theta_h {i}, theta_d {j}, phi_d {k} (cells from 0) is {x}, and must be a \
-                 finite number; a negative one marks what was not measured",
+                "{} at theta_h {i}, theta_d {j}, phi_d {k} (cells from 0) is {x:e}/sr, and must be \
+                 at most {LARGEST:e}/sr; a negative number marks what was not measured",
                 CHANNELS[*channel]
+            ),
+            Self::Dark(mean) => write!(
+                f,
+                "the mean reflectance is {mean:.1e}/sr, and must be at least {DARKEST:e}/sr: the \
+                 values are scaled otherwise than those of the database"
             ),
             Self::Missing(channel) => write!(
                 f,
@@ -143,11 +156,14 @@ impl Measured {
         let (values, _) = values.as_chunks();
         let mut channels = [const { Vec::new() }; 3];
         for (channel, values) in values.chunks_exact(CELLS).enumerate() {
-            let values: Vec<f64> = values.iter().map(|value| f64::from_le_bytes(*value)).collect();
-            if let Some(at) = values.iter().position(|x| !x.is_finite()) {
+            let scaled = |value: &[u8; 8]| SCALES[channel] * f64::from_le_bytes(*value);
+            let values: Vec<f64> = values.iter().map(scaled).collect();
+            // A number that is none is not at most anything.
+            let taken = |x: &f64| (f64::MIN..=LARGEST).contains(x);
+            if let Some(at) = values.iter().position(|x| !taken(x)) {
                 return Err(MerlError::Value(channel, cell(at), values[at]));
             }
-            channels[channel] = values.iter().map(|x| SCALES[channel] * x).collect();
+            channels[channel] = values;
         }
         Ok(Self { channels })
     }
@@ -215,13 +231,13 @@ mod tests {
         let mut small = bytes.clone();
         small[8] = 90;
         assert!(message(&small).contains("90 x 90 x 90, and must give 90 x 90 x 180"));
-        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 1500.0 * LARGEST] {
             let mut broken = bytes.clone();
             let at = HEADER + 8 * (CELLS + index([2, 3, 4]));
             broken[at..at + 8].copy_from_slice(&x.to_le_bytes());
             let message = message(&broken);
-            let place = format!("green at theta_h 2, theta_d 3, phi_d 4 (cells from 0) is {x}");
-            assert!(message.starts_with(&place), "{message}");
+            let place = "green at theta_h 2, theta_d 3, phi_d 4 (cells from 0) is ";
+            assert!(message.starts_with(place) && message.contains("at most 1e9/sr"), "{message}");
         }
     }
 }

@@ -4,7 +4,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::file::MerlError;
+use super::file::{DARKEST, MerlError};
 use super::samples::Samples;
 
 /// The Lambert term and F0 of a channel.
@@ -50,13 +50,18 @@ impl<'a> Problem<'a> {
     /// Whether there is something to fit.
     ///
     /// # Errors
-    /// [`MerlError::Missing`] and [`MerlError::Black`].
+    /// [`MerlError::Missing`], [`MerlError::Black`] and [`MerlError::Dark`].
     pub(super) fn check(&self) -> Result<(), MerlError> {
         let missing = |values: &Vec<f64>| values.iter().all(|y| *y < 0.0);
         if let Some(channel) = self.values.iter().position(missing) {
             return Err(MerlError::Missing(channel));
         }
-        if self.measured == [0.0; 3] { Err(MerlError::Black) } else { Ok(()) }
+        // The bounds are twice the means.
+        match self.bound.iter().fold(0.0, |most: f64, bound| most.max(0.5 * bound)) {
+            0.0 => Err(MerlError::Black),
+            mean if mean < DARKEST => Err(MerlError::Dark(mean)),
+            _ => Ok(()),
+        }
     }
 
     /// The least Σ |measured − model| cos θ_l / Σ measured cos θ_l over all channels for a specular

@@ -88,19 +88,23 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Gains below this are none: the distribution of fewer parameters is then as good.
+    /// Gains below this share are none: the distribution of fewer parameters is then as good.
     pub const EQUAL: f64 = 1e-3;
+    /// So are differences of the error below this, some of the tolerances of the search.
+    pub const EXACT: f64 = 1e-5;
 
-    /// By what factor the error of another fit exceeds that of the Student-t; 1 where both are 0.
+    /// By what factor the error of another fit exceeds that of the Student-t; 1 where they differ
+    /// by less than the search tells apart.
     pub fn gain(&self, other: &Fitted) -> f64 {
-        if other.error == self.student_t.error { 1.0 } else { other.error / self.student_t.error }
+        let (a, b) = (other.error, self.student_t.error);
+        if a <= b + Self::EXACT { 1.0 } else { a / b.max(Self::EXACT) }
     }
 
     /// The fit of the fewest parameters that is as good as the best, or better than the other of
     /// as many.
     pub fn best(&self) -> &Fitted {
         let simple = if self.beckmann.error < self.ggx.error { &self.beckmann } else { &self.ggx };
-        let as_good = simple.error <= self.student_t.error * (1.0 + Self::EQUAL);
+        let as_good = self.gain(simple) <= 1.0 + Self::EQUAL;
         if as_good { simple } else { &self.student_t }
     }
 }

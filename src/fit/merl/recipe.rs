@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::Fitted;
+use crate::bake::albedo::SIGMA_MAX;
 use crate::scene::{
     Format, Fresnel, Interval, Masking, Material, Names, Origin, Place, Roughness, Scene,
 };
@@ -27,17 +28,27 @@ pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a str, &'a Fitted)>) -> Stri
     );
     let mut scene = Scene::default();
     for (name, fitted) in fits {
+        let [sigma, gamma] = fitted.sigma_gamma();
+        // Tables of albedos, which a reflectance asks for, are refused for rougher ones.
+        let tabulated = sigma <= SIGMA_MAX;
         let [r, g, b] = fitted.lambert;
         // Writing to a string cannot fail.
         let _ = writeln!(head, "#   {name}: {r:.6}, {g:.6}, {b:.6}");
-        let [sigma, gamma] = fitted.sigma_gamma();
+        if !tabulated {
+            let [r, g, b] = fitted.f0;
+            let _ = writeln!(
+                head,
+                "#     its F0, {r:.6}, {g:.6}, {b:.6}, is left out: no albedos are tabulated above\n\
+                 #     sigma = {SIGMA_MAX}"
+            );
+        }
         scene.materials.push(Material {
             name: name.into(),
             roughness: Roughness::Isotropic(Interval::point(sigma)),
             gamma: Interval::point(gamma),
             distribution: None,
             theta: None,
-            fresnel: Some(Fresnel::Schlick(fitted.f0)),
+            fresnel: tabulated.then_some(Fresnel::Schlick(fitted.f0)),
             masking: Some(Masking::Uncorrelated),
             origin: Origin {
                 format: Format::Recipe,
@@ -60,6 +71,7 @@ fn stem(path: &Path) -> String {
 mod tests {
     use super::*;
     use crate::distribution::{DistributionKind, Named};
+    use crate::plan::{Options, Plan};
 
     #[test]
     fn a_recipe_reads_back_and_names_are_unique() {
@@ -87,5 +99,14 @@ mod tests {
         }
         assert!(text.contains("#   gold (2) (2): 0.100000, 0.000000, 0.250000\n"), "{text}");
         assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+        // What no albedo table covers is planned all the same.
+        let rough = Fitted {
+            lobe: Named { kind: DistributionKind::StudentT, values: vec![9.0, 2.5] },
+            ..fitted(2.0)
+        };
+        let text = recipe([("lambert", &rough)]);
+        let scene = Scene::from_recipe_str(&text).unwrap();
+        assert!(text.contains("its F0, 1.000000") && scene.materials[0].fresnel.is_none());
+        assert!(Plan::new(&scene, Options::default()).is_ok());
     }
 }

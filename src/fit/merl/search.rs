@@ -53,7 +53,7 @@ impl Fitter {
     /// Whether [`fit`](Self::fit) can be made of a measurement.
     ///
     /// # Errors
-    /// [`MerlError::Missing`] and [`MerlError::Black`].
+    /// [`MerlError::Missing`], [`MerlError::Black`] and [`MerlError::Dark`].
     pub fn check(&self, measured: &Measured) -> Result<(), MerlError> {
         let [_, _, all] = &self.levels;
         Problem::new(all, all.of(measured)).check()

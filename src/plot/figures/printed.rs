@@ -29,8 +29,10 @@ pub(super) fn figure() -> Figure {
 fn panel(gamma: f64) -> Panel {
     let shape = Shape::new(gamma).expect("the figure's own parameters");
     let x = Axis::log("cot θ/σ", 1e-2, 1e3);
-    let defined =
-        FORMS.into_iter().filter(|(_, _, form)| form(gamma, 1.0).is_some_and(f64::is_finite));
+    let is_finite = |form: Lambda| form(gamma, 1.0).map(f64::is_finite);
+    let defined = FORMS.into_iter().filter(|(_, _, form)| is_finite(*form) == Some(true));
+    let overflows = FORMS.iter().find(|(_, _, form)| is_finite(*form) == Some(false));
+    let missing = overflows.map_or(String::new(), |(_, name, _)| format!("; {name}: overflow"));
     let error = |form: Lambda, z: f64| {
         let truth = shape.lambda(shape.asinh_slope(z));
         let error = form(gamma, z).map_or(f64::NAN, |lambda| (lambda - truth).abs());
@@ -44,6 +46,8 @@ fn panel(gamma: f64) -> Panel {
         // What follows is noise of rounding.
         if let Some(lost) = curve.points.iter().position(|&(_, error)| error >= 1.0) {
             curve.points.truncate(lost + 1);
+            // An error of 1, a Λ of 0, leaves the panel as well.
+            curve.points[lost].1 = 10.0;
         }
         // The series and the sums agree where neither loses digits.
         if method != Method::Hypergeometric {
@@ -52,7 +56,7 @@ fn panel(gamma: f64) -> Panel {
         curve
     });
     Panel {
-        title: format!("Λ as printed, γ = {gamma}"),
+        title: format!("Λ as printed, γ = {gamma}{missing}"),
         curves: curves.collect(),
         x,
         y: Axis::log("relative error of Λ", 1e-17, 1.0),

@@ -55,7 +55,9 @@ impl Source<'_> {
             let parameter = |key: &&str| {
                 let value = table.get(*key).ok_or_else(|| {
                     place.invalid(format!(
-                        "distribution \"{name}\" has no `{key}`; add for example {key} = 0.3"
+                        "distribution \"{name}\" has no `{key}`; add for example {key} = {}",
+                        // An exponent, or a width or a shape.
+                        if *key == "n" { "50" } else { "0.3" }
                     ))
                 })?;
                 self.number(value, key)
