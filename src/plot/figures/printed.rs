@@ -1,23 +1,14 @@
 //! The error of Λ in each form that Ribardière et al. 2017 (doi:10.1111/cgf.13137) print.
 
-use microfacet_model::{Shape, printed};
+use microfacet_model::Shape;
+use microfacet_model::printed::{FORMS, Form};
 
 use crate::plot::figures::curve;
 use crate::plot::{Axis, Dash, Figure, Key, Method, Panel};
 
-/// One of the printed forms of Λ(γ, z).
-type Lambda = fn(f64, f64) -> Option<f64>;
-
-const FORMS: [(Method, &str, Lambda); 4] = [
-    (Method::Hypergeometric, "eq. 13–15, hypergeometric", |gamma, z| {
-        Some(printed::lambda_hypergeometric(gamma, z))
-    }),
-    (Method::Integer, "eq. 21, integer γ", printed::lambda_integer),
-    (Method::HalfInteger, "eq. 21, half-integer γ", printed::lambda_half_integer),
-    (Method::Rational, "eq. 22–23, rational", |gamma, z| {
-        Some(printed::lambda_rational(gamma, z))
-    }),
-];
+/// What each of [`FORMS`] is in a drawing.
+const METHODS: [Method; FORMS.len()] =
+    [Method::Hypergeometric, Method::Integer, Method::HalfInteger, Method::Rational];
 
 /// Four shapes: a small integer, a half-integer, and two where sums lose all digits.
 pub(super) fn figure() -> Figure {
@@ -29,16 +20,19 @@ pub(super) fn figure() -> Figure {
 fn panel(gamma: f64) -> Panel {
     let shape = Shape::new(gamma).expect("the figure's own parameters");
     let x = Axis::log("cot θ/σ", 1e-2, 1e3);
-    let defined =
-        FORMS.into_iter().filter(|(_, _, form)| form(gamma, 1.0).is_some_and(f64::is_finite));
-    let error = |form: Lambda, z: f64| {
+    let defined = FORMS
+        .into_iter()
+        .zip(METHODS)
+        .filter(|(form, _)| (form.lambda)(gamma, 1.0).is_some_and(f64::is_finite));
+    let error = |form: Form, z: f64| {
         let truth = shape.lambda(shape.asinh_slope(z));
-        let error = form(gamma, z).map_or(f64::NAN, |lambda| (lambda - truth).abs());
+        let error = (form.lambda)(gamma, z).map_or(f64::NAN, |lambda| (lambda - truth).abs());
         // No error at all is drawn as half an ulp; where Λ is 0, any error is infinite.
         (error / truth.max(1e-300)).max(1.1e-16)
     };
-    let curves = defined.map(|(method, name, form)| {
-        let mut curve = curve(Key::Method(method), name.into(), &x, |z| error(form, z));
+    let curves = defined.map(|(form, method)| {
+        let name = format!("eq. {}, {}", form.equation.replace('-', "–"), form.name);
+        let mut curve = curve(Key::Method(method), name, &x, |z| error(form, z));
         // What follows is noise of rounding.
         if let Some(lost) = curve.points.iter().position(|&(_, error)| error >= 1.0) {
             curve.points.truncate(lost + 1);
