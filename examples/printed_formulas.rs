@@ -4,17 +4,8 @@
 //! `cargo run --release --example printed_formulas` prints it;
 //! `microfacet-bake plot printed-formulas` draws the curves.
 
-use microfacet_model::{Shape, printed};
-
-/// A printed form: its name, and Λ(γ, z) where it is defined.
-type Form = (&'static str, fn(f64, f64) -> Option<f64>);
-
-const FORMS: [Form; 4] = [
-    ("13-15, hypergeometric", |gamma, z| Some(printed::lambda_hypergeometric(gamma, z))),
-    ("21, integer", printed::lambda_integer),
-    ("21, half-integer", printed::lambda_half_integer),
-    ("22-23, rational", |gamma, z| Some(printed::lambda_rational(gamma, z))),
-];
+use microfacet_model::Shape;
+use microfacet_model::printed::{FORMS, Form};
 
 const GAMMAS: [f64; 12] = [1.51, 1.6, 2.0, 2.5, 3.0, 10.0, 10.5, 40.0, 40.5, 100.0, 150.0, 1000.0];
 
@@ -28,12 +19,12 @@ fn main() {
         "| eq. | gamma | largest error of G1 | at z | largest G1 - 1 | smallest G1 | no digit of lambda from z |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- |");
-    for (name, form) in FORMS {
+    for Form { equation, name, lambda } in FORMS {
         for gamma in GAMMAS {
-            if form(gamma, 1.0).is_some() {
+            if lambda(gamma, 1.0).is_some() {
                 println!(
-                    "| {name} | {gamma} | {} |",
-                    row(gamma, |z| form(gamma, z).unwrap_or(f64::NAN))
+                    "| {equation}, {name} | {gamma} | {} |",
+                    row(gamma, |z| lambda(gamma, z).unwrap_or(f64::NAN))
                 );
             }
         }

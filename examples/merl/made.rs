@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use microfacet_bake::distribution::{DistributionError, Named};
-use microfacet_bake::fit::merl::{HalfDifference, encode};
+use microfacet_bake::fit::merl::encode;
 use microfacet_model::MicrofacetDistribution;
 use microfacet_model::classic::{Isotropic, Radial};
 use rand::rngs::StdRng;
@@ -53,14 +53,6 @@ fn steps(lobe: &impl MicrofacetDistribution) -> Vec<f64> {
     cos.map(|cos| lobe.g1(DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos))).collect()
 }
 
-/// View and light, in a frame whose pole is the macro normal.
-fn directions(at: HalfDifference) -> [DVec3; 2] {
-    let (sin, cos) = at.theta_d.sin_cos();
-    let light = DVec3::new(sin * at.phi_d.cos(), sin * at.phi_d.sin(), cos);
-    let turn = DMat3::from_rotation_y(at.theta_h);
-    [turn * (2.0 * cos * DVec3::Z - light), turn * light]
-}
-
 impl Material {
     /// The bytes of its file; one value of a hundred is missing.
     pub(crate) fn file(&self, place: f64) -> Result<Vec<u8>, DistributionError> {
@@ -68,7 +60,7 @@ impl Material {
         let lobes = lobes?;
         Ok(encode(place, |cell, at| {
             let mut rng = StdRng::seed_from_u64(cell as u64);
-            let [v, l] = directions(at);
+            let [v, l] = at.directions();
             if v.z.min(l.z) <= 0.0 || rng.random_bool(0.01) {
                 return [-1.0; 3];
             }

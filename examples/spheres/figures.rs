@@ -15,7 +15,8 @@ use microfacet_sampler::{
     Plastic, Precision, StandIn, Tables,
 };
 
-use crate::scene::{Floor, Scene, Sky};
+use crate::scene::{Floor, Scene};
+use crate::sky::Sky;
 
 /// A figure of Ribardière et al. 2017 (doi:10.1111/cgf.13137).
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -3,14 +3,15 @@
 //!
 //! `cargo run --release --example spheres -- OUTPUT` writes figure 8 as OUTPUT.exr (linear
 //! radiance) and OUTPUT.png; `--help` has the options. Read `figures.rs` for how materials are
-//! made, and `path.rs` for how a renderer asks them; `scene.rs` is what surrounds them, and
-//! `page.rs` the paper.
+//! made, and `path.rs` for how a renderer asks them; `scene.rs` is what surrounds them, `sky.rs`
+//! lights them, and `page.rs` is the paper.
 
 mod figures;
 mod page;
 mod path;
 mod random;
 mod scene;
+mod sky;
 #[cfg(test)]
 mod tests;
 

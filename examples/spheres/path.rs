@@ -33,7 +33,8 @@ impl Tracer<'_> {
         let sky = &self.scene.sky;
         let Some(hit) = self.scene.hit(ray) else {
             // The balance heuristic, pdf/(pdf + density of the lamps).
-            return sky.radiance(ray.direction) / (1.0 + sky.pdf(ray.direction) / pdf);
+            let (radiance, of_lamps) = sky.seen(ray.direction);
+            return radiance / (1.0 + of_lamps / pdf);
         };
         // BSDFs take directions in the tangent frame that point away from the surface.
         let v = hit.frame.transpose() * -ray.direction;
@@ -46,8 +47,8 @@ impl Tracer<'_> {
             let shadow = Ray { origin: hit.point, direction: towards };
             if f != [0.0; 3] && !self.scene.is_shadowed(&shadow) {
                 // f next to the horizon may be the largest number: divided first, it is harmless.
-                let densities = sky.pdf(towards) + of_bsdf;
-                radiance += Vec3::from(f) * (l.z.abs() / densities) * sky.radiance(towards);
+                let (seen, of_lamps) = sky.seen(towards);
+                radiance += Vec3::from(f) * (l.z.abs() / (of_lamps + of_bsdf)) * seen;
             }
         }
 

@@ -1,4 +1,4 @@
-//! What surrounds a material: a sphere of it on a floor, under a sky with lamps.
+//! What surrounds a material: a sphere of it on a floor, under a sky.
 //!
 //! World coordinates are right-handed, y up. The sphere has radius 1 about the origin.
 
@@ -6,6 +6,8 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Mat3, Vec3};
 use microfacet_sampler::{AnyBsdf, Bsdf, BsdfSample, Event, Transport};
+
+use crate::sky::Sky;
 
 /// The height of the floor.
 const FLOOR: f32 = -1.0;
@@ -72,78 +74,6 @@ fn sphere(ray: &Ray) -> Option<f32> {
     let discriminant = half * half - ray.origin.length_squared() + 1.0;
     let root = discriminant.max(0.0).sqrt();
     [-half - root, -half + root].into_iter().find(|t| discriminant > 0.0 && *t > NEAREST)
-}
-
-/// A lamp at infinity: a disc of the sky.
-struct Lamp {
-    /// Of unit length.
-    towards: Vec3,
-    /// 1 − cos of its radius.
-    height: f32,
-    radiance: Vec3,
-}
-
-/// All light comes from infinity: a smooth sky, and lamps that a renderer looks for.
-pub(crate) struct Sky {
-    zenith: Vec3,
-    horizon: Vec3,
-    lamps: Vec<Lamp>,
-}
-
-impl Sky {
-    /// The same light from everywhere: a white furnace.
-    pub(crate) fn white() -> Self {
-        Self { zenith: Vec3::ONE, horizon: Vec3::ONE, lamps: Vec::new() }
-    }
-
-    /// The same, as a lamp all around: what light there is can be looked for.
-    #[cfg(test)]
-    pub(crate) fn white_lamp() -> Self {
-        let lamp = Lamp { towards: Vec3::Y, height: 2.0, radiance: Vec3::ONE };
-        Self { zenith: Vec3::ZERO, horizon: Vec3::ZERO, lamps: vec![lamp] }
-    }
-
-    /// A studio: a large warm lamp in front, a cold one behind.
-    pub(crate) fn studio() -> Self {
-        let lamp = |towards: Vec3, degrees: f32, radiance| {
-            let height = 1.0 - degrees.to_radians().cos();
-            Lamp { towards: towards.normalize(), height, radiance }
-        };
-        Self {
-            zenith: Vec3::new(0.28, 0.3, 0.35),
-            horizon: Vec3::new(0.55, 0.55, 0.55),
-            lamps: vec![
-                lamp(Vec3::new(-0.6, 0.8, 0.65), 20.0, Vec3::new(7.0, 6.6, 5.8)),
-                lamp(Vec3::new(0.85, 0.45, -0.55), 20.0, Vec3::new(2.9, 3.3, 4.2)),
-            ],
-        }
-    }
-
-    /// Radiance from a direction of unit length.
-    pub(crate) fn radiance(&self, direction: Vec3) -> Vec3 {
-        let sky = self.horizon.lerp(self.zenith, direction.y.abs().sqrt());
-        self.seen(direction).fold(sky, |sum, lamp| sum + lamp.radiance)
-    }
-
-    /// A direction towards each of the lamps.
-    pub(crate) fn sample(&self, u: [f32; 2]) -> impl Iterator<Item = Vec3> {
-        let (sin, cos) = (TAU * u[1]).sin_cos();
-        self.lamps.iter().map(move |lamp| {
-            let z = 1.0 - u[0] * lamp.height;
-            let r = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
-            let (a, b) = lamp.towards.any_orthonormal_pair();
-            a * (r * cos) + b * (r * sin) + lamp.towards * z
-        })
-    }
-
-    /// The density of [`sample`](Self::sample), per steradian.
-    pub(crate) fn pdf(&self, direction: Vec3) -> f32 {
-        self.seen(direction).map(|lamp| 1.0 / (TAU * lamp.height)).sum()
-    }
-
-    fn seen(&self, direction: Vec3) -> impl Iterator<Item = &Lamp> {
-        self.lamps.iter().filter(move |lamp| 1.0 - lamp.towards.dot(direction) < lamp.height)
-    }
 }
 
 /// The squares of a floor, of two kinds.

@@ -13,7 +13,8 @@ use microfacet_sampler::{
 };
 
 use super::{Film, Limit, REACH, pixel};
-use crate::scene::{Scene, Sky};
+use crate::scene::Scene;
+use crate::sky::Sky;
 
 /// What a sphere shows on average where 1 is all around, found by the BSDF alone and, as of a lamp,
 /// by next-event estimation too. Its standard error is below 4e-3.

@@ -7,6 +7,33 @@
 
 use core::f64::consts::PI;
 
+/// A printed form of Λ.
+#[derive(Clone, Copy, Debug)]
+pub struct Form {
+    /// The numbers of its equations.
+    pub equation: &'static str,
+    /// What it is called here.
+    pub name: &'static str,
+    /// Λ of γ and z; `None` where the form is not defined at γ.
+    pub lambda: fn(f64, f64) -> Option<f64>,
+}
+
+/// All of them, in the order in which they are explained here.
+pub const FORMS: [Form; 4] = [
+    Form {
+        equation: "13-15",
+        name: "hypergeometric",
+        lambda: |gamma, z| Some(lambda_hypergeometric(gamma, z)),
+    },
+    Form { equation: "21", name: "integer", lambda: lambda_integer },
+    Form { equation: "21", name: "half-integer", lambda: lambda_half_integer },
+    Form {
+        equation: "22-23",
+        name: "rational",
+        lambda: |gamma, z| Some(lambda_rational(gamma, z)),
+    },
+];
+
 /// Λ by eq. 13–15: Γ(γ−½)/(√π Γ(γ)) · [ (γ−1)^γ/((2γ−3) z) · (γ−1+z²)^(3/2−γ) + √(γ−1) z·₂F₁(½,
 /// γ−½; 3/2; −z²/(γ−1)) ] − ½.
 ///
@@ -181,6 +208,28 @@ mod tests {
             }
         }
         assert!(lambda_integer(2.5, 1.0).is_none() && lambda_half_integer(3.0, 1.0).is_none());
+    }
+
+    #[test]
+    fn every_form_of_the_list_gives_g1_where_it_is_defined() {
+        for (gamma, defined) in [
+            (3.0, ["hypergeometric", "integer", "rational"]),
+            (2.5, ["hypergeometric", "half-integer", "rational"]),
+        ] {
+            let found: Vec<&str> = FORMS
+                .into_iter()
+                .filter_map(|form| {
+                    let [found, truth] =
+                        [(form.lambda)(gamma, 1.0)?, exact(gamma, 1.0)].map(|x| 1.0 / (1.0 + x));
+                    let error = (found - truth).abs();
+                    // That of the approximation is at most 6.9e-3: `docs/formulas.md`.
+                    let tolerance = if form.name == "rational" { 7e-3 } else { 1e-14 };
+                    assert!(error < tolerance, "{} at gamma {gamma}: {error}", form.name);
+                    Some(form.name)
+                })
+                .collect();
+            assert_eq!(found, defined);
+        }
     }
 
     #[test]

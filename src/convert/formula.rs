@@ -6,6 +6,8 @@
 //! (`cargo run --release --example sawicki`, which also has the largest error of each formula
 //! against the table: 2 % in N by equation 12, else 1.4 %).
 
+use std::f64::consts::{FRAC_PI_2, LN_2, SQRT_2};
+
 use super::{ConvertError, Replacement, Target, table};
 use crate::distribution::DistributionKind::{
     self, Beckmann, BlinnPhong, Gauss, Sawicki, Schlick, TrowbridgeReitz,
@@ -111,6 +113,37 @@ impl Formula {
     }
 }
 
+/// The parameter of the distribution of kind `kind` and half angle `h`, radians: the angle at which
+/// D is half of D(0).
+///
+/// Sawicki's equations of 2021 (<https://doi.org/10.5220/0010252702090220>), for five kinds:
+///
+/// | eq. | kind | parameter |
+/// | --- | --- | --- |
+/// | 3 | Blinn–Phong | N = −ln 2/ln cos h |
+/// | 4 | Gauss | m = h/√(ln 2) |
+/// | 5 | Trowbridge–Reitz | c = √((cos² h − 1)/(cos² h − √2)) |
+/// | 9 | Beckmann | m = tan h/√(ln 2 − 4 ln cos h) |
+/// | 10 | Sawicki | N = (cos h + 3 − 4 ∜(2 cos h))/(cos h − 1) |
+///
+/// They are formed by 1 − cos h = 2 sin² h/2, which keeps its digits as h → 0: the half angle of
+/// what they give is `h` to 1e-12. `None` for other kinds, unless 0 < h < π/2, and where the
+/// parameter is out of the kind's range, as Sawicki's is above h = 1.3628.
+pub fn half_angle_parameter(kind: DistributionKind, h: f64) -> Option<f64> {
+    let (sin, cos) = h.sin_cos();
+    let rest = 2.0 * (0.5 * h).sin().powi(2);
+    let ln_cos = (-rest).ln_1p();
+    let x = match kind {
+        BlinnPhong => -LN_2 / ln_cos,
+        Gauss => h / LN_2.sqrt(),
+        TrowbridgeReitz => sin / (SQRT_2 - cos * cos).sqrt(),
+        Beckmann => h.tan() / (LN_2 - 4.0 * ln_cos).sqrt(),
+        Sawicki => (4.0 * ((2.0 * cos).powf(0.25) - 1.0) + rest) / rest,
+        _ => return None,
+    };
+    (h > 0.0 && h < FRAC_PI_2 && kind.build(&[x]).is_ok()).then_some(x)
+}
+
 /// All published formulas.
 pub fn formulas() -> impl Iterator<Item = Formula> {
     ALL.into_iter().map(|(from, to, source, value)| Formula { from, to, source, value })
@@ -146,8 +179,6 @@ pub fn by_formula(
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::LN_2;
-
     use microfacet_model::classic::Isotropic;
 
     use super::*;
@@ -192,25 +223,18 @@ mod tests {
         }
     }
 
-    /// Equations 3 to 10 as printed, against the half angles of the distributions.
+    /// Equations 3 to 10, against the half angles of the distributions.
     #[test]
     fn half_angles_are_those_of_equations_3_to_10() {
-        for h in [1e-3, 0.02, 0.3, 0.7] {
+        for h in [1e-7, 1e-3, 0.02, 0.3, 0.7, 1.3] {
             let cos = f64::cos(h);
-            let root2 = 2_f64.sqrt();
-            let named = [
-                (BlinnPhong, -LN_2 / cos.ln()),
-                (Gauss, h / LN_2.sqrt()),
-                (TrowbridgeReitz, ((cos * cos - 1.0) / (cos * cos - root2)).sqrt()),
-                (Beckmann, h.tan() / (LN_2 - 4.0 * cos.ln()).sqrt()),
-                (Sawicki, (cos + 3.0 - 4.0 * (2.0 * cos).powf(0.25)) / (cos - 1.0)),
-            ];
+            let named = [BlinnPhong, Gauss, TrowbridgeReitz, Beckmann, Sawicki]
+                .map(|kind| (kind, half_angle_parameter(kind, h).unwrap()));
             let d: Vec<Box<dyn Isotropic>> =
                 named.iter().map(|(kind, x)| kind.build(&[*x]).unwrap()).collect();
             for (d, (kind, x)) in d.iter().zip(named) {
-                // 1 − cos h has 5e-7 of 1 at the smallest h, and 10 digits left.
                 let half = d.half_angle().unwrap();
-                assert!((half / h - 1.0).abs() < 1e-9, "{kind:?} {x}: {half} for {h}");
+                assert!((half / h - 1.0).abs() < 1e-12, "{kind:?} {x}: {half} for {h}");
                 for (to, want) in named {
                     let found = Target::new(&**d).by_half_angle(to, None).unwrap();
                     let got = found.to.values[0];
@@ -222,11 +246,26 @@ mod tests {
             for back in [
                 (-LN_2 / n).exp(),
                 (m * LN_2.sqrt()).cos(),
-                ((root2 * c * c - 1.0) / (c * c - 1.0)).sqrt(),
+                ((SQRT_2 * c * c - 1.0) / (c * c - 1.0)).sqrt(),
             ] {
                 assert!((back - cos).abs() < 1e-12, "{h}: {back}");
             }
         }
+    }
+
+    #[test]
+    fn half_angles_that_no_parameter_gives_have_none() {
+        for kind in [BlinnPhong, Gauss, TrowbridgeReitz, Beckmann, Sawicki] {
+            for h in [-0.3, 0.0, FRAC_PI_2, 2.0, f64::INFINITY, f64::NAN] {
+                assert_eq!(half_angle_parameter(kind, h), None, "{kind:?} at {h}");
+            }
+        }
+        assert!(half_angle_parameter(Sawicki, 1.3628).is_some());
+        assert_eq!(half_angle_parameter(Sawicki, 1.3629), None);
+        assert_eq!(half_angle_parameter(Schlick, 0.3), None);
+        // Narrow lobes keep their digits: N is (2 ln 2)/h² there.
+        let n = half_angle_parameter(BlinnPhong, 1e-9).unwrap();
+        assert!((n * 1e-18 / (2.0 * LN_2) - 1.0).abs() < 1e-12, "{n}");
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub mod table;
 mod target;
 
 pub use error::ConvertError;
-pub use formula::{Formula, by_formula, formulas};
+pub use formula::{Formula, by_formula, formulas, half_angle_parameter};
 use search::tries;
 pub use target::Target;
 

@@ -10,7 +10,8 @@ use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{self as sampler, StudentT, Tables};
 
 use super::method::Method;
-use super::studio::{Film, Metal, Sky};
+use super::sky::Sky;
+use super::studio::{Film, Metal};
 use crate::masking::{self, Evaluate};
 use crate::rivals::lobe::Lobe;
 use crate::rivals::rational::{LARGEST, Rational};

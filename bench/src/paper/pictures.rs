@@ -8,7 +8,8 @@ use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{self as sampler, StudentT, Tables};
 use rayon::prelude::*;
 
-use super::studio::{Film, Metal, Sky};
+use super::sky::Sky;
+use super::studio::{Film, Metal};
 use crate::rivals::rational::Rational;
 use crate::settings::{SIGMA, Settings};
 

@@ -8,71 +8,16 @@
 //!
 //! World coordinates are right-handed, y up. The sphere has radius 1 about the origin.
 
-use std::f32::consts::TAU;
-
 use glam::{DVec3, Mat3, Vec3};
 use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{ConductorFresnel, StudentT};
+
+use super::sky::Sky;
 
 /// The camera looks down by this many radians, from far away.
 const ELEVATION: f32 = 0.45;
 /// Half the edge of the picture.
 const REACH: f32 = 1.05;
-
-/// A lamp at infinity: a disc of the sky.
-struct Lamp {
-    /// Of unit length.
-    towards: Vec3,
-    /// 1 − cos of its radius.
-    height: f32,
-    radiance: Vec3,
-}
-
-impl Lamp {
-    fn new(towards: Vec3, degrees: f32, radiance: Vec3) -> Self {
-        Self { towards: towards.normalize(), height: 1.0 - degrees.to_radians().cos(), radiance }
-    }
-
-    /// A direction towards it, even over its disc.
-    fn sample(&self, u: [f32; 2]) -> Vec3 {
-        let (sin, cos) = (TAU * u[1]).sin_cos();
-        let z = 1.0 - u[0] * self.height;
-        let r = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
-        let (a, b) = self.towards.any_orthonormal_pair();
-        a * (r * cos) + b * (r * sin) + self.towards * z
-    }
-}
-
-/// All light comes from infinity: a smooth sky, and lamps that the renderer looks for.
-pub(crate) struct Sky {
-    zenith: Vec3,
-    horizon: Vec3,
-    lamps: Vec<Lamp>,
-}
-
-impl Sky {
-    /// A large warm lamp in front, a cold one behind.
-    pub(crate) fn studio() -> Self {
-        Self {
-            zenith: Vec3::new(0.28, 0.3, 0.35),
-            horizon: Vec3::splat(0.55),
-            lamps: vec![
-                Lamp::new(Vec3::new(-0.6, 0.8, 0.65), 20.0, Vec3::new(7.0, 6.6, 5.8)),
-                Lamp::new(Vec3::new(0.85, 0.45, -0.55), 20.0, Vec3::new(2.9, 3.3, 4.2)),
-            ],
-        }
-    }
-
-    /// Radiance from a direction of unit length, and the sum of the lamps' densities there, per
-    /// steradian.
-    fn seen(&self, direction: Vec3) -> (Vec3, f32) {
-        let sky = self.horizon.lerp(self.zenith, direction.y.abs().sqrt());
-        let seen = self.lamps.iter().filter(|at| 1.0 - at.towards.dot(direction) < at.height);
-        seen.fold((sky, 0.0), |(radiance, pdf), lamp| {
-            (radiance + lamp.radiance, pdf + 1.0 / (TAU * lamp.height))
-        })
-    }
-}
 
 /// A rough metal whose visible normals are drawn from tables, with a form of G1 of its own.
 pub(crate) struct Metal<G> {
@@ -114,8 +59,8 @@ impl<G: Fn(Vec3) -> f32> Metal<G> {
         let m = self.lobe.sample_visible_normal(v, of_light);
         let l = 2.0 * v.dot(m) * m - v;
         let mut sum = if l.z > 0.0 { estimate(l, m) } else { Vec3::ZERO };
-        for lamp in &sky.lamps {
-            let l = frame.transpose() * lamp.sample(of_lamp);
+        for towards in sky.sample(of_lamp) {
+            let l = frame.transpose() * towards;
             if l.z > 0.0 {
                 sum += estimate(l, (v + l).normalize());
             }
@@ -188,17 +133,12 @@ mod tests {
 
     use super::*;
 
-    fn even(radiance: Vec3, lamps: Vec<Lamp>) -> Sky {
-        Sky { zenith: radiance, horizon: radiance, lamps }
-    }
-
     /// Parallel light meets the disc of a sphere evenly, so that in a white furnace the mean over
     /// it is that of the albedo by the cosine, whether the sky is white or a lamp all around.
     #[test]
     fn a_mirror_in_a_white_furnace_shows_its_average_albedo() {
         let (tables, film) = (Tables::embedded(), Film { edge: 40, samples: 64 });
-        let all_around = Lamp { towards: Vec3::Y, height: 2.0, radiance: Vec3::ONE };
-        let furnaces = [even(Vec3::ONE, vec![]), even(Vec3::ZERO, vec![all_around])];
+        let furnaces = [Sky::white(), Sky::white_lamp()];
         for (sigma, gamma) in [(0.3, 1.51), (0.1, 1.65), (0.3, 2.0), (1.0, 50.0)] {
             let lobe = tables.student_t(sigma, gamma).unwrap();
             let albedo = tables.albedo(sigma, gamma, Masking::Uncorrelated).unwrap();

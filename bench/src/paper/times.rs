@@ -11,7 +11,7 @@ use microfacet_sampler::Tables;
 
 use super::forms::{Form, Line, Stage};
 use super::method::Method;
-use super::studio::Sky;
+use super::sky::Sky;
 use crate::clock::{self, Calls};
 use crate::inputs::{Inputs, Stream};
 use crate::rows::{Quantity, normals, values};

@@ -116,7 +116,7 @@ pub(super) fn index([i, j, k]: [usize; 3]) -> usize {
 }
 
 /// The cell at a place in a channel.
-fn cell(index: usize) -> [usize; 3] {
+pub(super) fn cell(index: usize) -> [usize; 3] {
     let [_, d, p] = DIMENSIONS;
     [index / (d * p), index / p % d, index % p]
 }

@@ -2,6 +2,8 @@
 //! Representation*, doi:10.1007/978-3-7091-6453-2_2) of a view and a light over an isotropic
 //! surface.
 
+use glam::DVec3;
+
 /// Where a view `v` and a light `l` stand, up to a rotation about the macro normal `n`; radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfDifference {
@@ -15,7 +17,19 @@ pub struct HalfDifference {
 }
 
 impl HalfDifference {
-    /// v·n and l·n; negative below the horizon.
+    /// `v` and `l`, unit vectors in a frame whose pole is `n`, with `m` at
+    /// (sin θ_h, 0, cos θ_h): the tangent points to where `m` leans.
+    pub fn directions(self) -> [DVec3; 2] {
+        let (sin, cos) = self.theta_d.sin_cos();
+        let (sin_h, cos_h) = self.theta_h.sin_cos();
+        // About m as the pole, then turned with it.
+        let side = DVec3::new(sin * self.phi_d.cos(), sin * self.phi_d.sin(), 0.0);
+        [-side, side].map(|side| {
+            DVec3::new(cos_h * side.x + sin_h * cos, side.y, cos_h * cos - sin_h * side.x)
+        })
+    }
+
+    /// v·n and l·n; negative below the horizon. Those of [`directions`](Self::directions), for less.
     ///
     /// In a frame with `m` as its pole the directions are (∓sin θ_d cos φ_d, ∓sin θ_d sin φ_d,
     /// cos θ_d), the upper sign for `v`; there `n` is (−sin θ_h, 0, cos θ_h).
@@ -30,7 +44,7 @@ impl HalfDifference {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    use glam::{DMat3, DVec3};
+    use glam::DMat3;
 
     use super::*;
 
@@ -44,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn cosines_are_those_of_vectors_that_are_turned() {
+    fn directions_and_cosines_are_those_of_vectors_that_are_turned() {
         for theta_h in [0.0, 0.3, 1.2, FRAC_PI_2] {
             for theta_d in [0.0, 0.7, FRAC_PI_2] {
                 for phi_d in [0.0, 0.4, FRAC_PI_2, 2.0, PI] {
@@ -53,7 +67,11 @@ mod tests {
                     let turn = DMat3::from_rotation_y(theta_h);
                     let (m, l) = (turn * DVec3::Z, turn * about_m);
                     let v = 2.0 * l.dot(m) * m - l;
-                    assert_near(at(theta_h, theta_d, phi_d).cosines(), [v.z, l.z]);
+                    let at = at(theta_h, theta_d, phi_d);
+                    assert_near(at.cosines(), [v.z, l.z]);
+                    for (found, expected) in at.directions().into_iter().zip([v, l]) {
+                        assert!((found - expected).abs().max_element() < 1e-15, "{at:?}: {found}");
+                    }
                 }
             }
         }

@@ -135,6 +135,7 @@ impl MaskingTable {
 
 #[cfg(test)]
 mod tests {
+    use super::super::file::cell;
     use super::*;
 
     #[test]
@@ -184,15 +185,8 @@ mod tests {
         let lobe = StudentT::new(0.4, 2.6).unwrap();
         let found = samples.specular(&lobe);
         for i in (0..samples.len()).step_by(501) {
-            let (row, j, k) = (samples.row[i], samples.index[i] / 180 % 90, samples.index[i] % 180);
-            let at = angles([row, j, k], MIDDLE);
-            let turn = glam::DMat3::from_rotation_y(at.theta_h);
-            let (sin, cos) = at.theta_d.sin_cos();
-            let (m, l) = (
-                turn * DVec3::Z,
-                turn * DVec3::new(sin * at.phi_d.cos(), sin * at.phi_d.sin(), cos),
-            );
-            let v = 2.0 * l.dot(m) * m - l;
+            let [v, l] = angles(cell(samples.index[i]), MIDDLE).directions();
+            let m = (v + l).normalize();
             let expected = lobe.d(m) * lobe.g1(v) * lobe.g1(l) / (4.0 * v.z * l.z);
             assert!((found[i] / expected - 1.0).abs() < 1e-5, "{i}");
         }

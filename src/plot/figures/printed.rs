@@ -1,23 +1,18 @@
 //! The error of Λ in each form that Ribardière et al. 2017 (doi:10.1111/cgf.13137) print.
 
-use microfacet_model::{Shape, printed};
+use microfacet_model::Shape;
+use microfacet_model::printed::{FORMS, Form};
 
 use crate::plot::figures::curve;
 use crate::plot::{Axis, Dash, Figure, Key, Method, Panel};
 
-/// One of the printed forms of Λ(γ, z).
-type Lambda = fn(f64, f64) -> Option<f64>;
+/// What each of [`FORMS`] is in a drawing.
+const METHODS: [Method; FORMS.len()] =
+    [Method::Hypergeometric, Method::Integer, Method::HalfInteger, Method::Rational];
 
-const FORMS: [(Method, &str, Lambda); 4] = [
-    (Method::Hypergeometric, "eq. 13–15, hypergeometric", |gamma, z| {
-        Some(printed::lambda_hypergeometric(gamma, z))
-    }),
-    (Method::Integer, "eq. 21, integer γ", printed::lambda_integer),
-    (Method::HalfInteger, "eq. 21, half-integer γ", printed::lambda_half_integer),
-    (Method::Rational, "eq. 22–23, rational", |gamma, z| {
-        Some(printed::lambda_rational(gamma, z))
-    }),
-];
+fn name(form: &Form) -> String {
+    format!("eq. {}, {}", form.equation.replace('-', "–"), form.name)
+}
 
 /// Four shapes: a small integer, a half-integer, and two where sums lose all digits.
 pub(super) fn figure() -> Figure {
@@ -29,20 +24,20 @@ pub(super) fn figure() -> Figure {
 fn panel(gamma: f64) -> Panel {
     let shape = Shape::new(gamma).expect("the figure's own parameters");
     let x = Axis::log("cot θ/σ", 1e-2, 1e3);
-    let is_finite = |form: Lambda| form(gamma, 1.0).map(f64::is_finite);
-    let defined = FORMS.into_iter().filter(|(_, _, form)| is_finite(*form) == Some(true));
-    let overflows = FORMS.iter().find(|(_, _, form)| is_finite(*form) == Some(false));
-    let missing = overflows.map_or(String::new(), |(_, name, _)| format!("; {name}: overflow"));
-    let error = |form: Lambda, z: f64| {
+    let is_finite = |form: &Form| (form.lambda)(gamma, 1.0).map(f64::is_finite);
+    let defined = FORMS.into_iter().zip(METHODS).filter(|(form, _)| is_finite(form) == Some(true));
+    let overflows = FORMS.iter().find(|form| is_finite(form) == Some(false));
+    let missing = overflows.map_or(String::new(), |form| format!("; {}: overflow", name(form)));
+    let error = |form: Form, z: f64| {
         let truth = shape.lambda(shape.asinh_slope(z));
-        let error = form(gamma, z).map_or(f64::NAN, |lambda| (lambda - truth).abs());
+        let error = (form.lambda)(gamma, z).map_or(f64::NAN, |lambda| (lambda - truth).abs());
         // Where Λ is 0, any error is infinite.
         let relative = error / truth.max(1e-300);
         // No error at all is drawn as half an ulp; what is no number stays so, and is not drawn.
         if relative < 1.1e-16 { 1.1e-16 } else { relative }
     };
-    let curves = defined.map(|(method, name, form)| {
-        let mut curve = curve(Key::Method(method), name.into(), &x, |z| error(form, z));
+    let curves = defined.map(|(form, method)| {
+        let mut curve = curve(Key::Method(method), name(&form), &x, |z| error(form, z));
         // What follows is noise of rounding.
         if let Some(lost) = curve.points.iter().position(|&(_, error)| error >= 1.0) {
             curve.points.truncate(lost + 1);
