@@ -48,7 +48,7 @@ const fn stop(tolerance: f64) -> Stop {
 
 impl Fitter {
     /// The estimated seconds of a fit on two cores.
-    pub const SECONDS: f64 = 4.0;
+    pub const SECONDS: f64 = 4.4;
 
     /// Whether [`fit`](Self::fit) can be made of a measurement.
     ///
