@@ -10,7 +10,7 @@ const STOP: Stop = Stop { width: 1e-9, spread: 1e-14 };
 
 impl Target<'_> {
     /// The distribution of kind `to` with the least RMSE, all parameters fitted together; each
-    /// distribution tried is one step of the stage, about [`tries`] in all.
+    /// distribution tried is one step of the stage, about as many as its progress expects.
     ///
     /// # Errors
     /// [`ConvertError::Minimiser`] with the minimiser's own message.

@@ -43,13 +43,13 @@ pub enum MerlError {
     Dimensions([u32; 3]),
     /// The number of bytes does not belong to the dimensions.
     Length(usize),
-    /// A value, in 1/sr, that is no number or above [`LARGEST`]: its channel, its cell and itself.
+    /// A value, in 1/sr, that is no number or above 1e9: its channel, its cell and itself.
     Value(usize, [usize; 3], f64),
     /// A channel without any value at the angles of a fit.
     Missing(usize),
     /// Every value at the angles of a fit is 0.
     Black,
-    /// The largest mean of a channel at the angles of a fit, in 1/sr, is below [`DARKEST`].
+    /// The largest mean of a channel at the angles of a fit, in 1/sr, is below 1e-5.
     Dark(f64),
     /// The minimiser's message.
     Minimiser(String),
