@@ -60,6 +60,7 @@ pub mod plan;
 pub mod plot;
 pub mod progress;
 mod quality;
+pub mod report;
 pub mod scene;
 pub mod store;
 pub mod survey;

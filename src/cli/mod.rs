@@ -17,6 +17,7 @@ mod plot;
 mod progress;
 mod query;
 mod recipe;
+mod report;
 mod request;
 mod sample;
 mod shell;
@@ -72,6 +73,7 @@ enum Command {
     Furnace(furnace::Args),
     Bsdf(bsdf::Args),
     Inspect(inspect::Args),
+    Report(report::Args),
     Query(query::Args),
     Sample(sample::Args),
     Convert(convert::Args),
@@ -126,6 +128,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Furnace(args) => furnace::run(args),
         Command::Bsdf(args) => bsdf::run(args),
         Command::Inspect(args) => inspect::run(args),
+        Command::Report(args) => report::run(args),
         Command::Query(args) => query::run(args),
         Command::Sample(args) => sample::run(args),
         Command::Convert(args) => convert::run(args),

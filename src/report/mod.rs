@@ -1,0 +1,75 @@
+//! A set as one HTML page: what it holds, where its errors are, and how its materials look. The
+//! page needs nothing beside it, no network, and no more than a browser.
+
+mod chi_square;
+mod curves;
+mod energy;
+mod errors;
+mod overview;
+mod page;
+mod sphere;
+mod subjects;
+
+use std::fmt;
+
+use microfacet_sampler::{MaterialError, Tables};
+
+use crate::progress::Meter;
+
+pub use chi_square::Validation;
+
+/// What a page is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'a> {
+    /// The name of the set, for its title.
+    pub name: &'a str,
+    /// The set.
+    pub set: &'a Tables,
+    /// The result of a validation of this set, if one ran.
+    pub validation: Option<&'a Validation>,
+}
+
+/// Why there is no page.
+#[derive(Debug)]
+pub enum ReportError {
+    /// The set has neither tables nor materials.
+    Empty,
+    /// The set does not hold what it declares to cover.
+    Material(MaterialError),
+}
+
+impl fmt::Display for ReportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(
+                f,
+                "the set has no tables and no materials; name what `microfacet-bake bake` wrote"
+            ),
+            Self::Material(why) => write!(f, "{why}"),
+        }
+    }
+}
+
+impl std::error::Error for ReportError {}
+
+impl From<MaterialError> for ReportError {
+    fn from(why: MaterialError) -> Self {
+        Self::Material(why)
+    }
+}
+
+/// The estimated seconds of [`page`] on the current threads.
+pub fn seconds(source: &Source) -> f64 {
+    errors::seconds(source.set) + energy::seconds(source.set) + sphere::seconds(source.set)
+}
+
+/// The page, as HTML; each part of it is a stage of the meter, on which [`seconds`] were expected.
+///
+/// # Errors
+/// [`ReportError`] for a set with nothing to show, or one that lacks what it declares.
+pub fn page(source: &Source, meter: &Meter) -> Result<String, ReportError> {
+    if source.set.tables().is_empty() && source.set.provenance().materials.is_empty() {
+        return Err(ReportError::Empty);
+    }
+    page::page(source, meter)
+}

@@ -1,0 +1,160 @@
+//! What of a set is shown: the shapes that the sphere can have, and the materials of the curves.
+
+use microfacet_common::shape::gamma_of_s;
+use microfacet_sampler::{MaterialEntry, Tables};
+
+/// Most shapes whose visible normals a page holds. Light that is reflected by other shapes is drawn
+/// by the next of heavier tails.
+const SLICES: usize = 8;
+/// Most shapes that a page lets choose from.
+const STOPS: usize = 64;
+/// Most materials with curves, a furnace and a picture of their own.
+const SHOWN: usize = 8;
+
+/// Stops of γ within a range, as people would type them.
+const ROUND: [f64; 41] = [
+    1.501,
+    1.51,
+    1.52,
+    1.55,
+    1.6,
+    1.65,
+    1.7,
+    1.75,
+    1.8,
+    1.85,
+    1.9,
+    1.95,
+    2.0,
+    2.1,
+    2.2,
+    2.3,
+    2.4,
+    2.5,
+    2.6,
+    2.8,
+    3.0,
+    3.2,
+    3.5,
+    4.0,
+    4.5,
+    5.0,
+    6.0,
+    7.0,
+    8.0,
+    10.0,
+    12.0,
+    15.0,
+    20.0,
+    25.0,
+    30.0,
+    40.0,
+    50.0,
+    60.0,
+    80.0,
+    100.0,
+    f64::INFINITY,
+];
+
+/// Shapes and roughnesses that stand for a set without materials by name.
+const SHAPES: [f64; 6] = [1.501, 1.65, 2.0, 3.0, 5.0, f64::INFINITY];
+const SIGMA: f64 = 0.3;
+
+/// What a page shows of a set.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Subjects {
+    /// The shapes γ that the sphere can have, ascending.
+    pub(super) stops: Vec<f64>,
+    /// Those of them whose visible normals the page holds, ascending; the first is the first stop.
+    pub(super) slices: Vec<f64>,
+    /// Whether the set holds a range of shapes, of which the stops are examples.
+    pub(super) is_range: bool,
+    /// Lobes with curves and pictures of their own.
+    pub(super) shown: Vec<Shown>,
+    /// Materials that could have them and are left out.
+    pub(super) left_out: usize,
+}
+
+/// A lobe with its name.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Shown {
+    /// Its name.
+    pub(super) name: String,
+    /// γ.
+    pub(super) gamma: f64,
+    /// σx and σy.
+    pub(super) sigma: [f64; 2],
+    /// The material of the recipe that it is.
+    pub(super) entry: Option<MaterialEntry>,
+}
+
+impl Subjects {
+    /// Of a set.
+    pub(super) fn of(set: &Tables) -> Self {
+        let materials: Vec<&MaterialEntry> =
+            set.provenance().materials.iter().filter(|entry| is_shown(set, entry)).collect();
+        let (stops, is_range) = stops(set, &materials);
+        let slices = slices(&stops);
+        let by_name = materials.iter().map(|entry| Shown {
+            name: entry.name.clone(),
+            gamma: entry.gamma(),
+            sigma: entry.sigma(),
+            entry: Some((*entry).clone()),
+        });
+        let mut shown: Vec<Shown> = by_name.collect();
+        if shown.is_empty() {
+            let gammas: &[f64] = if is_range { &SHAPES } else { &stops };
+            let is_stop = |gamma: &&f64| stops.contains(gamma);
+            shown = gammas.iter().filter(is_stop).map(|&gamma| Shown::example(gamma)).collect();
+        }
+        let left_out = shown.len().saturating_sub(SHOWN);
+        shown.truncate(SHOWN);
+        Self { stops, slices, is_range, shown, left_out }
+    }
+}
+
+impl Shown {
+    fn example(gamma: f64) -> Self {
+        let name = match gamma {
+            2.0 => "GGX".into(),
+            f64::INFINITY => "Beckmann".into(),
+            _ => format!("γ = {gamma}"),
+        };
+        Self { name, gamma, sigma: [SIGMA; 2], entry: None }
+    }
+}
+
+/// Whether a material has a lobe of the family that is not tilted, which this set serves.
+fn is_shown(set: &Tables, entry: &MaterialEntry) -> bool {
+    let family = entry.distribution.is_empty() && entry.theta.is_none() && !entry.is_smooth();
+    family && set.covers(entry.gamma())
+}
+
+/// The shapes to choose from, and whether some are examples of a range.
+fn stops(set: &Tables, materials: &[&MaterialEntry]) -> (Vec<f64>, bool) {
+    // An end that is a short number has passed through 1/(γ−1).
+    let short = |x: f64| format!("{x:.9e}").parse().unwrap_or(x);
+    let mut stops: Vec<f64> = materials.iter().map(|entry| entry.gamma()).collect();
+    let mut is_range = false;
+    for [low, high] in set.shapes() {
+        let [least, most] = [high, low].map(|s| short(gamma_of_s(s)));
+        stops.extend([least, most]);
+        if least < most {
+            is_range = true;
+            stops.extend(ROUND.iter().copied().filter(|gamma| (least..=most).contains(gamma)));
+        }
+    }
+    stops.retain(|&gamma| set.covers(gamma));
+    stops.sort_by(f64::total_cmp);
+    stops.dedup();
+    stops.truncate(STOPS);
+    (stops, is_range)
+}
+
+/// The heaviest tails, and others evenly among the rest.
+fn slices(stops: &[f64]) -> Vec<f64> {
+    if stops.len() <= SLICES {
+        return stops.to_vec();
+    }
+    (0..SLICES).map(|i| stops[i * (stops.len() - 1) / (SLICES - 1)]).collect()
+}
