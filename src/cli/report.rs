@@ -30,7 +30,7 @@ pub(super) fn run(args: Args) -> Outcome {
         .map_err(|why| Failure(format!("{}: {why}", args.out.display())))?;
     let name = match &args.tables {
         Some(path) => path.file_name().unwrap_or(path.as_os_str()).display().to_string(),
-        None => "the default set".into(),
+        None => "The default set".into(),
     };
     let source = Source { name: &name, set: &set, validation: None };
     let meter = Meter::default();

@@ -5,6 +5,7 @@ mod chi_square;
 mod curves;
 mod energy;
 mod errors;
+mod head;
 mod overview;
 mod page;
 mod sphere;

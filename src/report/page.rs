@@ -3,27 +3,70 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::subjects::Subjects;
-use super::{ReportError, Source, chi_square, curves, energy, errors, overview, sphere};
+use super::{ReportError, Source, chi_square, curves, energy, errors, head, overview, sphere};
 use crate::progress::Meter;
 
 /// Nothing is loaded: neither scripts nor pictures from elsewhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                       script-src 'unsafe-inline'; img-src data: blob:";
 
+/// A part of the page with a heading of its own.
+struct Section {
+    /// Its anchor.
+    id: &'static str,
+    /// Its heading.
+    title: &'static str,
+    /// What it shows, in a sentence or two.
+    lead: &'static str,
+    content: Markup,
+}
+
 pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError> {
     let subjects = Subjects::of(source.set);
-    let sphere = sphere::parts(source, &subjects, meter)?;
-    let sections = [
-        ("materials", "What was baked", overview::section(source, &subjects)),
-        ("curves", "Masking and albedo", curves::section(source, &subjects)),
-        ("energy", "Energy", energy::section(source, &subjects, meter)?),
-        ("errors", "Where the error is", errors::section(source, &subjects, meter)?),
-        ("chi-square", "Chi-square", chi_square::section(source)),
-    ];
-    let (body, scripts) = match sphere {
+    let (look, scripts) = match sphere::parts(source, &subjects, meter)? {
         Some(parts) => (parts.body, parts.scripts),
         None => (html! {}, html! {}),
     };
+    let sections = [
+        Section { id: "look", title: "Look", lead: "", content: look },
+        Section {
+            id: "baked",
+            title: "What was baked",
+            lead: "What the set holds, what was left out of it, and why.",
+            content: overview::section(source, &subjects),
+        },
+        Section {
+            id: "curves",
+            title: "Masking and albedo",
+            lead: "Smith's G1 is the share of facets that a view sees unmasked; the directional \
+                   albedo E is the share of light that one bounce returns if facets reflect all of \
+                   it. Each lobe is shown beside GGX and Beckmann of the same roughness σ.",
+            content: curves::section(source, &subjects),
+        },
+        Section {
+            id: "energy",
+            title: "Energy",
+            lead: "A white furnace: facets that reflect all light, lit from everywhere. What is \
+                   missing from 1 is light that further bounces would return, and what compensation \
+                   brings back.",
+            content: energy::section(source, &subjects, meter)?,
+        },
+        Section {
+            id: "errors",
+            title: "Where the error is",
+            lead: "The error of each table between its nodes, against the model in double \
+                   precision. A ring marks the place of the largest error that was certified when \
+                   the table was baked.",
+            content: errors::section(source, &subjects, meter)?,
+        },
+        Section {
+            id: "chi-square",
+            title: "Chi-square",
+            lead: "Normals drawn from the tables, tested against the analytic densities.",
+            content: chi_square::section(source),
+        },
+    ];
+    let sections = sections.iter().filter(|section| !section.content.0.is_empty());
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -31,17 +74,25 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="generator" content=(concat!("microfacet-bake ", env!("CARGO_PKG_VERSION")));
                 title { (source.name) " · microfacet-bake" }
                 style { (PreEscaped(include_str!("style.css"))) }
             }
             body {
-                header { h1 { (source.name) } }
-                main {
-                    (body)
-                    @for (id, title, content) in &sections {
-                        (section(id, title, content))
+                a.skip href="#main" { "To the content" }
+                (head::head(source, &subjects))
+                nav.contents aria-label="Sections" {
+                    ul.wrap {
+                        @for section in sections.clone() {
+                            li { a href=(format!("#{}", section.id)) { (section.title) } }
+                        }
                     }
                 }
+                main #main .wrap {
+                    @for section in sections { (section.html()) }
+                }
+                (head::foot(source))
+                script type="module" { (PreEscaped(include_str!("theme.js"))) }
                 (scripts)
             }
         }
@@ -49,13 +100,14 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
     Ok(page.into_string())
 }
 
-/// A section with its heading; nothing without content.
-fn section(id: &str, title: &str, content: &Markup) -> Markup {
-    html! {
-        @if !content.0.is_empty() {
-            section id=(id) aria-labelledby=(format!("{id}-title")) {
-                h2 id=(format!("{id}-title")) { (title) }
-                (content)
+impl Section {
+    fn html(&self) -> Markup {
+        let title = format!("{}-title", self.id);
+        html! {
+            section id=(self.id) aria-labelledby=(title) {
+                h2 id=(title) .visually-hidden[self.lead.is_empty()] { (self.title) }
+                @if !self.lead.is_empty() { p { (self.lead) } }
+                (self.content)
             }
         }
     }

@@ -1,0 +1,64 @@
+//! The head of the page, with what a reader wants to know first, and its foot.
+
+use maud::{Markup, html};
+use microfacet_sampler::Table;
+
+use super::Source;
+use super::subjects::Subjects;
+
+/// The name of the set, what it is in a few numbers, and the switch of colours.
+pub(super) fn head(source: &Source, subjects: &Subjects) -> Markup {
+    html! {
+        header.head.wrap {
+            div.kicker {
+                span { "microfacet-bake" }
+                (themes())
+            }
+            h1 { (source.name) }
+            dl.facts {
+                @for (name, value) in facts(source, subjects) {
+                    div { dt { (name) } dd { (value) } }
+                }
+            }
+        }
+    }
+}
+
+/// Hidden until there is a script that listens.
+fn themes() -> Markup {
+    html! {
+        fieldset.theme hidden {
+            legend.visually-hidden { "Colours of the page" }
+            @for (value, name) in [("system", "Auto"), ("light", "Light"), ("dark", "Dark")] {
+                label {
+                    input type="radio" name="theme" value=(value) checked[value == "system"];
+                    span { (name) }
+                }
+            }
+        }
+    }
+}
+
+fn facts(source: &Source, subjects: &Subjects) -> Vec<(&'static str, String)> {
+    let tables = source.set.tables();
+    let bytes: usize = tables.iter().map(Table::stored_bytes).sum();
+    let mut facts = vec![("tables", format!("{} ({bytes} bytes)", tables.len()))];
+    if let [first, .., last] = subjects.stops[..] {
+        facts.push(("shapes γ", format!("{first} to {last}")));
+    } else if let [only] = subjects.stops[..] {
+        facts.push(("shape γ", format!("{only}")));
+    }
+    facts
+}
+
+/// Where the page comes from.
+pub(super) fn foot(source: &Source) -> Markup {
+    let origin = source.set.provenance();
+    html! {
+        footer.wrap {
+            "Baked by " (origin.generator) ", numerics " (origin.numerics)
+            @if !origin.license.is_empty() { ", licence " (origin.license) }
+            ". Drawn by microfacet-bake " (env!("CARGO_PKG_VERSION")) "."
+        }
+    }
+}
