@@ -67,6 +67,7 @@ pub mod survey;
 pub mod table_set;
 pub mod table_spec;
 pub mod validate;
+pub mod words;
 
 /// The examples of the README, so that they keep compiling.
 #[cfg(doctest)]

@@ -2,7 +2,6 @@
 
 mod bake;
 mod bsdf;
-mod certificate;
 mod convert;
 mod escape;
 mod export;
@@ -10,7 +9,6 @@ mod fit;
 mod furnace;
 mod inspect;
 mod interrupt;
-mod material;
 mod negative;
 mod plan;
 mod plot;

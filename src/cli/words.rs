@@ -1,50 +1,14 @@
-//! Numbers, sizes, lists and columns in the texts that commands print.
+//! Times, lists and columns in the texts that commands print.
 
 use std::borrow::Cow;
 use std::path::Path;
 
-use bytesize::ByteSize;
+pub(super) use microfacet_bake::words::{bytes, count, error, exact_bytes, joined, number, range};
 
 use super::escape;
 
 /// Prose in the output ends here.
 pub(super) const COLUMNS: usize = 100;
-
-/// A number to seven digits, which hides the rounding of coordinates: `0.3`, `1e-8`, `inf`.
-pub(super) fn number(x: f64) -> String {
-    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
-    match rounded.abs() {
-        1e-3..1e7 | 0.0 | f64::INFINITY => format!("{rounded}"),
-        _ => format!("{rounded:e}"),
-    }
-}
-
-/// A range of numbers: `3`, or `1.501 to inf`.
-pub(super) fn range([min, max]: [f64; 2]) -> String {
-    let [min, max] = [min, max].map(number);
-    if min == max { min } else { format!("{min} to {max}") }
-}
-
-/// An error with all the digits of a certificate, which are rounded up.
-pub(super) fn error(x: f64) -> String {
-    if x == 0.0 { "0".into() } else { format!("{x:.2e}") }
-}
-
-/// A number of bytes to three digits: `29.2 kB`.
-pub(super) fn bytes(count: usize) -> String {
-    // 1, 2 or 3 digits stand before the point.
-    let decimals = 2 - count.max(1).ilog10() as usize % 3;
-    format!("{:.decimals$}", ByteSize(count as u64).display().si())
-}
-
-/// A number of bytes to three digits, and exactly: `29.2 kB (29232 bytes)`.
-pub(super) fn exact_bytes(count: usize) -> String {
-    if count < 1000 {
-        format!("{count} bytes")
-    } else {
-        format!("{} ({count} bytes)", bytes(count))
-    }
-}
 
 /// A time: `12 ms`, `20.8 s`, `7.5 h`.
 pub(super) fn seconds(seconds: f64) -> String {
@@ -55,11 +19,6 @@ pub(super) fn seconds(seconds: f64) -> String {
         ..7200.0 => format!("{seconds:.0} s"),
         _ => format!("{:.1} h", seconds / 3600.0),
     }
-}
-
-/// A count of things: `1 table`, `3 tables`.
-pub(super) fn count(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// How a size or a time compares with a larger one: `53 times smaller`, or `no smaller`; words for
@@ -83,14 +42,6 @@ pub(super) fn list<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String 
         shown.push(format!("{more} more"));
     }
     shown.join(", ")
-}
-
-/// Items joined as in a sentence: `a, b and c`.
-pub(super) fn joined(items: &[String]) -> String {
-    match items {
-        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
-        _ => items.concat(),
-    }
 }
 
 /// Lines of a text that starts with `head`, broken at spaces outside quotes, with `indent` spaces
@@ -161,29 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_seven_digits_and_no_zeros_behind() {
-        let numbers = [
-            (0.3, "0.3"),
-            (0.3999999999999999, "0.4"),
-            (1.25e-8, "1.25e-8"),
-            (0.0, "0"),
-            (-0.002, "-0.002"),
-            (491.50099405466847, "491.501"),
-            (1e9, "1e9"),
-            (f64::INFINITY, "inf"),
-        ];
-        for (x, text) in numbers {
-            assert_eq!(number(x), text);
-        }
-        assert_eq!(range([1.501, f64::INFINITY]), "1.501 to inf");
-        assert_eq!(range([0.4, 0.39999999999999]), "0.4");
-    }
-
-    #[test]
-    fn sizes_and_times_have_their_units() {
-        assert_eq!(exact_bytes(29232), "29.2 kB (29232 bytes)");
-        assert_eq!(exact_bytes(612), "612 bytes");
-        assert_eq!([0, 999, 462_672, 1_563_743].map(bytes), ["0 B", "999 B", "463 kB", "1.56 MB"]);
+    fn times_have_their_units() {
         let times = [0.0, 0.0123, 0.9994, 20.81, 320.4].map(seconds);
         assert_eq!(times, ["1 ms", "12 ms", "999 ms", "20.8 s", "320 s"]);
     }

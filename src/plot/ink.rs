@@ -130,6 +130,17 @@ impl Key {
     }
 }
 
+/// A colour for dark paper in place of one for white: its hue, mixed with the more white the darker
+/// it is. Lighter colours stay lighter, so that ramps keep their order.
+pub(super) fn on_dark(color: Color) -> Color {
+    /// Of black.
+    const WHITE: f64 = 0.42;
+    let [r, g, b] = color.map(f64::from);
+    let light = (0.2126 * r + 0.7152 * g + 0.0722 * b) / 255.0;
+    let part = WHITE * (1.0 - light);
+    color.map(|c| (f64::from(c) + (255.0 - f64::from(c)) * part).round() as u8)
+}
+
 /// The colour at a place of a ramp, 0 at its first stop and 1 at its last; beyond, the nearest.
 fn between(stops: &[Color; 5], place: f64) -> Color {
     let at = place.clamp(0.0, 1.0) * 4.0;
@@ -145,13 +156,18 @@ fn between(stops: &[Color; 5], place: f64) -> Color {
 mod tests {
     use super::*;
 
-    /// Contrast with white paper, by the relative luminance of WCAG 2.
-    fn contrast(color: Color) -> f64 {
+    /// Relative luminance of WCAG 2, with the 0.05 that its contrast adds.
+    fn luminance(color: Color) -> f64 {
         let linear = color.map(|c| {
             let c = f64::from(c) / 255.0;
             if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
         });
-        1.05 / (0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] + 0.05)
+        0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] + 0.05
+    }
+
+    /// Contrast with white paper.
+    fn contrast(color: Color) -> f64 {
+        1.05 / luminance(color)
     }
 
     #[test]
@@ -164,6 +180,40 @@ mod tests {
         let gammas = [1.5, 1.6, 2.0, 3.0, 40.0, f64::INFINITY].map(|x| Key::Gamma(x).color());
         for color in kinds.into_iter().chain(ramps).chain(gammas) {
             assert!(contrast(color) > 1.8, "{color:?}: {}", contrast(color));
+        }
+    }
+
+    #[test]
+    fn colours_for_dark_paper_stand_out_from_it_and_differ() {
+        let methods = [
+            Method::Table,
+            Method::Hypergeometric,
+            Method::Integer,
+            Method::HalfInteger,
+            Method::Rational,
+            Method::Ggx,
+            Method::Beckmann,
+            Method::Inversion,
+            Method::Rejection,
+            Method::Other,
+        ];
+        let steps = || (0..=40).map(|i| f64::from(i) / 40.0);
+        let gammas = steps().map(|x| Key::Gamma(1.5 + libm::exp10(4.0 * x - 2.0)));
+        let kinds = DistributionKind::ALL.map(Key::Kind).map(Key::color);
+        let keys = gammas
+            .chain(steps().map(|x| Key::Sigma(1.2 * x)))
+            .chain(methods.map(Key::Method))
+            .chain((0..NTH.len()).map(Key::Nth));
+        for color in keys.map(Key::color).chain(kinds) {
+            let contrast = luminance(on_dark(color)) / luminance([0x11; 3]);
+            assert!(contrast >= 3.0, "{color:?}: {contrast}");
+        }
+        for (i, a) in kinds.iter().enumerate() {
+            assert!(kinds[..i].iter().all(|b| on_dark(*a) != on_dark(*b)), "{a:?}");
+        }
+        for ramp in [GAMMAS, SIGMAS] {
+            let light: Vec<f64> = steps().map(|x| luminance(on_dark(between(&ramp, x)))).collect();
+            assert!(light.windows(2).all(|pair| pair[0] < pair[1]), "{light:?}");
         }
     }
 

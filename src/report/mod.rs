@@ -3,11 +3,13 @@
 
 mod chi_square;
 mod curves;
+mod drawing;
 mod energy;
 mod errors;
 mod head;
 mod overview;
 mod page;
+mod served;
 mod sphere;
 mod subjects;
 

@@ -1,10 +1,224 @@
 //! What was baked, what was skipped and why.
 
 use maud::{Markup, html};
+use microfacet_sampler::{Provenance, Table, Tables};
 
 use super::Source;
+use super::drawing::symbols;
+use super::served::{Served, served};
 use super::subjects::Subjects;
+use crate::words::table::{albedos, axis, covers, holds, normals, precision};
+use crate::words::{bytes, certificate, count, error};
 
-pub(super) fn section(_source: &Source, _subjects: &Subjects) -> Markup {
-    html! {}
+/// Rows of a table of the page; a library has thousands of materials.
+const ROWS: usize = 200;
+
+pub(super) fn section(source: &Source, _subjects: &Subjects) -> Markup {
+    let set = source.set;
+    html! {
+        @if set.provenance().materials.is_empty() {
+            (ranges(set))
+        } @else {
+            (materials(set))
+        }
+        (tables(set))
+        (origin(set.provenance()))
+    }
+}
+
+/// The ranges of a set without materials by name.
+fn ranges(set: &Tables) -> Markup {
+    html! {
+        p { "No materials by name; the set serves any in these ranges." }
+        dl.facts {
+            @for (name, lines) in [("visible normals", normals(set)), ("albedo", albedos(set.tables()))] {
+                div {
+                    dt { (name) }
+                    @for line in &lines { dd { (symbols(line)) } }
+                    @if lines.is_empty() { dd { "none" } }
+                }
+            }
+        }
+    }
+}
+
+fn materials(set: &Tables) -> Markup {
+    let all = served(set);
+    let shown = &all[..all.len().min(ROWS)];
+    html! {
+        div.scroll tabindex="0" role="region" aria-label="Materials" {
+            table {
+                caption {
+                    "Materials. Bytes are those of the tables that a material reads, some of which \
+                     others may share."
+                }
+                thead {
+                    tr {
+                        @for name in ["name", "σ", "γ or distribution", "masking", "Fresnel", "normals", "albedo"] {
+                            th scope="col" { (name) }
+                        }
+                        th.number scope="col" { "bytes" }
+                    }
+                }
+                tbody {
+                    @for Served { name, sigma, shape, masking, fresnel, lobe, albedo, bytes: size } in shown {
+                        tr {
+                            th scope="row" { bdi { (name) } }
+                            @for cell in [sigma, shape, masking, fresnel] { td { (symbols(cell)) } }
+                            @for part in [lobe, albedo] { td { (part.what) } }
+                            td.number { (bytes(*size)) }
+                        }
+                    }
+                }
+            }
+        }
+        @if all.len() > shown.len() {
+            p.note { "and " (count(all.len() - shown.len(), "more material")) }
+        }
+        (skipped(set, &all))
+    }
+}
+
+/// What was left out, each reason once.
+fn skipped(set: &Tables, all: &[Served]) -> Markup {
+    let mut reasons: Vec<(&str, &str, Vec<&str>)> = Vec::new();
+    for one in all {
+        for (of, part) in [("visible normals", &one.lobe), ("albedo", &one.albedo)] {
+            let Some(why) = &part.skipped else { continue };
+            match reasons.iter_mut().find(|(known, reason, _)| *known == of && reason == why) {
+                Some((.., names)) => names.push(&one.name),
+                None => reasons.push((of, why, vec![&one.name])),
+            }
+        }
+    }
+    // In the order of the columns.
+    reasons.sort_by_key(|(of, ..)| *of == "albedo");
+    html! {
+        h3 { "Skipped, and why" }
+        @if reasons.is_empty() {
+            p { "Nothing: every material of the set has tables of normals and of albedo." }
+        } @else {
+            ul.skipped {
+                @for (of, why, names) in &reasons {
+                    li {
+                        b { (of) } ": " (why) " ("
+                        @for (i, name) in names.iter().take(NAMES).enumerate() {
+                            @if i > 0 { ", " }
+                            bdi { (name) }
+                        }
+                        @if names.len() > NAMES { " and " (names.len() - NAMES) " more" }
+                        ")"
+                    }
+                }
+            }
+        }
+        p.note {
+            @if set.provenance().recipe.is_empty() {
+                "The set holds no recipe, so why something was left out is told by what it holds. "
+            }
+            "A set does not list materials of a scene that no geometry uses or that nothing \
+             covers; " code { "microfacet-bake plan" } " of the scene names them."
+        }
+    }
+}
+
+/// Names of materials after a reason.
+const NAMES: usize = 12;
+
+fn tables(set: &Tables) -> Markup {
+    let all = set.tables();
+    let total: usize = all.iter().map(Table::stored_bytes).sum();
+    if all.is_empty() {
+        return html! {
+            p { "The set has no tables: its materials have closed forms, or tables of another set." }
+        };
+    }
+    html! {
+        h3 { "Tables" }
+        div.scroll tabindex="0" role="region" aria-label="Tables" {
+            table {
+                caption {
+                    (count(all.len(), "table")) ", " (bytes(total))
+                    ". The error is the largest that was measured off the nodes when the table \
+                     was baked."
+                }
+                thead {
+                    tr {
+                        @for name in ["table", "γ", "σ", "nodes", "type"] { th scope="col" { (name) } }
+                        th.number scope="col" { "bytes" }
+                        th scope="col" { "largest error" }
+                    }
+                }
+                tbody { @for table in all.iter().take(ROWS) { (row(table)) } }
+            }
+        }
+        @if all.len() > ROWS { p.note { "and " (count(all.len() - ROWS, "more table")) } }
+        details {
+            summary { "Axes and certificates" }
+            @for table in all.iter().take(ROWS) { (details(table)) }
+        }
+    }
+}
+
+fn row(table: &Table) -> Markup {
+    let [gamma, sigma] = covers(&table.subject);
+    let nodes: Vec<String> = table.axes.iter().map(|axis| axis.len().to_string()).collect();
+    html! {
+        tr {
+            th scope="row" {
+                bdi { (table.name) } br;
+                span.muted { (symbols(&holds(table))) }
+            }
+            td { (symbols(&gamma)) }
+            td { (symbols(&sigma)) }
+            td { (nodes.join(" × ")) }
+            td { (precision(table.precision)) }
+            td.number { (bytes(table.stored_bytes())) }
+            td {
+                @match certificate::largest(table) {
+                    Some((what, max)) => { (what) " " (error(max)) }
+                    None => "not measured",
+                }
+            }
+        }
+    }
+}
+
+fn details(table: &Table) -> Markup {
+    html! {
+        h4 { bdi { (table.name) } }
+        ul {
+            @for one in &table.axes {
+                li { b { bdi { (one.name) } } ": " (symbols(&axis(one))) }
+            }
+            li { "channels: " (table.channels.join(", ")) }
+            @for line in certificate::lines(table) { li { (symbols(&line)) } }
+        }
+    }
+}
+
+fn origin(origin: &Provenance) -> Markup {
+    html! {
+        details {
+            summary { "Where it comes from" }
+            dl {
+                dt { "baked by" }
+                dd { (origin.generator) ", numerics " (origin.numerics) }
+                @if !origin.license.is_empty() {
+                    dt { "licence" }
+                    dd { (origin.license) }
+                }
+                @for (name, value) in &origin.conventions {
+                    dt { (name) }
+                    dd { (value) }
+                }
+            }
+        }
+        @if !origin.recipe.is_empty() {
+            details {
+                summary { "Recipe" }
+                pre tabindex="0" { code { (origin.recipe) } }
+            }
+        }
+    }
 }

@@ -1,7 +1,10 @@
 //! What of a set is shown: the shapes that the sphere can have, and the materials of the curves.
 
 use microfacet_common::shape::gamma_of_s;
-use microfacet_sampler::{MaterialEntry, Tables};
+use microfacet_sampler::{Masking, MaterialEntry, Tables};
+
+use super::drawing::symbols;
+use crate::words::number;
 
 /// Most shapes whose visible normals a page holds. Light that is reflected by other shapes is drawn
 /// by the next of heavier tails.
@@ -9,7 +12,7 @@ const SLICES: usize = 8;
 /// Most shapes that a page lets choose from.
 const STOPS: usize = 64;
 /// Most materials with curves, a furnace and a picture of their own.
-const SHOWN: usize = 8;
+pub(super) const SHOWN: usize = 8;
 
 /// Stops of γ within a range, as people would type them.
 const ROUND: [f64; 41] = [
@@ -114,6 +117,23 @@ impl Subjects {
 }
 
 impl Shown {
+    /// σ of the round lobe that it is, or that stands in for it.
+    pub(super) fn round_sigma(&self) -> f64 {
+        self.entry.as_ref().map_or(self.sigma[0], MaterialEntry::round_sigma)
+    }
+
+    /// The form of masking that it states, or the default.
+    pub(super) fn masking(&self) -> Masking {
+        self.entry.as_ref().map_or(Masking::default(), MaterialEntry::masking)
+    }
+
+    /// Its γ and σ, in words.
+    pub(super) fn description(&self) -> String {
+        let [x, y] = self.sigma.map(number);
+        let sigma = if x == y { format!("σ = {x}") } else { format!("σx = {x}, σy = {y}") };
+        format!("γ = {}, {sigma}", symbols(&number(self.gamma)))
+    }
+
     fn example(gamma: f64) -> Self {
         let name = match gamma {
             2.0 => "GGX".into(),

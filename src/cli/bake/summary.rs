@@ -9,11 +9,12 @@ use microfacet_bake::store::Written;
 use microfacet_bake::table_set::Baked;
 use microfacet_bake::validate::configuration::shapes;
 use microfacet_bake::validate::furnace::has_furnace;
+use microfacet_bake::words::certificate;
 use microfacet_sampler::{Kind, Table, Tables};
 
+use crate::cli::escape;
 use crate::cli::plan::Outline;
 use crate::cli::words::{columns, count, error, exact_bytes, seconds, shell, wrapped};
-use crate::cli::{certificate, escape};
 
 /// A bake that is done.
 pub(super) struct Summary<'a> {

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use microfacet_bake::words::certificate;
+use microfacet_bake::words::table::{axis, holds};
 use microfacet_sampler::{Table, Tables};
 
-use super::words::{axis, holds};
+use crate::cli::escape;
 use crate::cli::words::wrapped;
-use crate::cli::{certificate, escape};
 
 /// Everything that the overview leaves out.
 pub(super) fn of(set: &Tables) -> String {
@@ -40,7 +41,7 @@ pub(super) fn of(set: &Tables) -> String {
 fn of_table(table: &Table) -> String {
     let mut text = format!("\n{}\n", escape::line(&table.name));
     let masking = table.subject.masking.map_or(String::new(), |form| format!(", {form} masking"));
-    text += &wrapped("  ", &format!("{}{masking}", holds(table)), 4);
+    text += &wrapped("  ", &format!("{}{masking}", escape::line(&holds(table))), 4);
     let width = table.axes.iter().map(|axis| axis.name.len()).max().unwrap_or(0);
     for one in &table.axes {
         let head = format!("  {:width$}  ", escape::line(&one.name));
@@ -49,7 +50,7 @@ fn of_table(table: &Table) -> String {
     let channels: Vec<_> = table.channels.iter().map(|channel| escape::line(channel)).collect();
     text += &format!("  channels: {}\n", channels.join(", "));
     for line in certificate::lines(table) {
-        text += &wrapped("  ", &line, 4);
+        text += &wrapped("  ", &escape::line(&line), 4);
     }
     text
 }

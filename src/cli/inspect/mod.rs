@@ -1,17 +1,17 @@
 //! `inspect`: shows what a set of tables holds.
 
 mod details;
-mod words;
 
 use std::path::PathBuf;
 
+use microfacet_bake::words::certificate;
+use microfacet_bake::words::material::material;
+use microfacet_bake::words::table::{albedos, covers, holds, normals, precision};
 use microfacet_sampler::internals::describe;
-use microfacet_sampler::{Kind, LobeEntry, MaterialEntry, Reflectance, Table, Tables};
+use microfacet_sampler::{Table, Tables};
 
-use super::material::{gammas, material, reflectance};
-use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, joined, wrapped};
-use super::{Done, Outcome, certificate, escape, print, print_json, tables};
-use words::{covers, holds, precision};
+use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, wrapped};
+use super::{Done, Outcome, escape, print, print_json, tables};
 
 /// Show what a set of tables serves, and the size and the largest error of each table.
 #[derive(clap::Args)]
@@ -99,7 +99,7 @@ fn head(name: &str, set: &Tables, all: bool) -> String {
     for (i, entry) in origin.materials.iter().take(shown).enumerate() {
         let first = if i == 0 { "materials" } else { "" };
         let name = escape::line(&entry.name);
-        text += &self::entry(first, &format!("\"{name}\": {}", material(entry)));
+        text += &self::entry(first, &format!("\"{name}\": {}", escape::line(&material(entry))));
     }
     match origin.materials.len() {
         0 if tables.is_empty() => text += &entry("materials", "none"),
@@ -115,52 +115,12 @@ fn head(name: &str, set: &Tables, all: bool) -> String {
 fn listed(name: &str, lines: &[String], shown: usize) -> String {
     let mut text = String::new();
     for (i, line) in lines.iter().take(shown).enumerate() {
-        text += &entry(if i == 0 { name } else { "" }, line);
+        text += &entry(if i == 0 { name } else { "" }, &escape::line(line));
     }
     if lines.len() > shown {
         text += &entry("", &format!("and {} more", lines.len() - shown));
     }
     text
-}
-
-/// The lobes of which visible normals can be drawn.
-fn normals(set: &Tables) -> Vec<String> {
-    let mut lines: Vec<String> = set.shapes().into_iter().map(gammas).collect();
-    // Shapes of s ascend, and γ falls with s.
-    lines.reverse();
-    if !lines.is_empty() {
-        lines = vec![format!("gamma {}; every sigma", joined(&lines))];
-    }
-    if set.provenance().materials.iter().any(MaterialEntry::is_ggx) && !set.tabulates(2.0) {
-        lines.push("gamma 2 (GGX) in closed form".into());
-    }
-    for table in set.tables() {
-        if let (Kind::RadialSlope, LobeEntry::Distribution(label)) =
-            (table.kind, &table.subject.lobe)
-        {
-            lines.push(escape::line(label).into());
-        }
-    }
-    lines
-}
-
-/// The lobes of which there are albedos.
-fn albedos(tables: &[Table]) -> Vec<String> {
-    let mut lines: Vec<(String, Vec<String>)> = Vec::new();
-    for table in tables.iter().filter(|table| table.kind == Kind::Albedo) {
-        let [gamma, sigma] = covers(&table.subject);
-        let what = match (&table.subject.lobe, table.subject.reflectance) {
-            (LobeEntry::Distribution(label), _) => escape::line(label).into(),
-            (_, Some(Reflectance::Moments) | None) => format!("gamma {gamma}, sigma {sigma}"),
-            (_, Some(of)) => format!("gamma {gamma}, sigma {sigma}, {}", reflectance(&of)),
-        };
-        let masking = table.subject.masking.map_or(String::new(), |form| form.name().to_owned());
-        match lines.iter_mut().find(|(known, _)| *known == what) {
-            Some((_, forms)) => forms.push(masking),
-            None => lines.push((what, vec![masking])),
-        }
-    }
-    lines.iter().map(|(what, forms)| format!("{what}; {} masking", joined(forms))).collect()
 }
 
 /// One line for each table, under what it holds.
@@ -189,7 +149,7 @@ fn overview(tables: &[Table]) -> String {
     }
     let mut text = format!("{}\n", lines[0]);
     for (what, rows) in groups {
-        text += &wrapped("", &what, 2);
+        text += &wrapped("", &escape::line(&what), 2);
         for i in rows {
             text += &format!("{}\n", lines[i]);
         }
@@ -208,6 +168,8 @@ fn row(table: &Table) -> Vec<String> {
         nodes.join(" x "),
         precision(table.precision).into(),
         bytes(table.stored_bytes()),
-        worst.map_or("not measured".into(), |(what, max)| format!("{what} {}", error(max))),
+        worst.map_or("not measured".into(), |(what, max)| {
+            format!("{} {}", escape::line(&what), error(max))
+        }),
     ]
 }

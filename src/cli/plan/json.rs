@@ -5,10 +5,11 @@ use serde_json::{Value, json};
 use microfacet_bake::bake::albedo::AlbedoLobe;
 use microfacet_bake::plan::{Cost, Verdict, entry};
 use microfacet_bake::scene::{Ignored, Interval};
+use microfacet_bake::words::verdict::{albedo_reason, reason};
 use microfacet_sampler::{Kind, MaterialEntry};
 
 use super::Report;
-use super::words::{OWN_TABLES, Offer, Outline, albedo_reason, reason};
+use super::words::{OWN_TABLES, Offer, Outline};
 
 impl Outline<'_> {
     /// The verdict on each material of the scene.

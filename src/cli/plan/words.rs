@@ -10,11 +10,12 @@ use microfacet_bake::plan::{
 };
 use microfacet_bake::scene::{Ignored, Interval, Scene};
 use microfacet_bake::table_spec::{Quality, TableSpec, general_set};
+use microfacet_bake::words::material::{material as words_of, reflectance};
+use microfacet_bake::words::verdict::{albedo_reason, reason};
 use microfacet_sampler::Precision;
 use rayon::current_num_threads;
 use serde_json::json;
 
-use crate::cli::material::{material as words_of, reflectance};
 use crate::cli::{escape, words};
 
 /// Lines of materials, and of tables that are printed; `--json` has them all.
@@ -25,46 +26,6 @@ pub(super) const OWN_TABLES: usize = 4;
 
 /// Columns for what is baked or skipped; a longer name moves its own line only.
 const WHAT: usize = 18;
-
-/// Why a material gets no tables of its own, in short and in full.
-pub(super) fn reason(verdict: &Verdict) -> [Cow<'static, str>; 2] {
-    let [short, long] = match verdict {
-        Verdict::Bake(_) => ["baked", "tables are baked for it"],
-        Verdict::Same { .. } => ["same", "another material needs the same tables"],
-        Verdict::Within { .. } => {
-            ["within", "its gamma lies in a range that is baked for another material"]
-        }
-        Verdict::ClosedForm => {
-            ["closed form", "GGX: D, G1 and visible normals have closed forms; no tables"]
-        }
-        Verdict::Own => ["own tables", "not a Student-t lobe: tables of its own"],
-        Verdict::Embedded => ["embedded", "covered by the default set compiled into the sampler"],
-        Verdict::NotRough => ["not rough", "no microfacets"],
-        Verdict::NotUsed => ["not used", "no geometry uses it"],
-        Verdict::NotCovered(why) => return ["not covered".into(), why.reason().into()],
-    };
-    [short.into(), long.into()]
-}
-
-/// Why a material gets no albedo tables, in short and in full.
-pub(super) fn albedo_reason(verdict: &AlbedoVerdict) -> [Cow<'static, str>; 2] {
-    let [short, long] = match verdict {
-        AlbedoVerdict::Bake(_) => ["baked", "albedo tables cover it"],
-        AlbedoVerdict::NotAsked => {
-            ["no fresnel", "the recipe states no `fresnel`; --albedo bakes albedos for all"]
-        }
-        AlbedoVerdict::Imported => {
-            ["not asked", "they take long for this scene, and only --albedo bakes them"]
-        }
-        AlbedoVerdict::Declined => ["declined", "--no-albedo"],
-        AlbedoVerdict::Embedded => {
-            ["embedded", "the default set compiled into the sampler has its albedo"]
-        }
-        AlbedoVerdict::NotNeeded => ["not needed", "it gets no tables at all"],
-        AlbedoVerdict::NotCovered(why) => return ["not covered".into(), why.reason().into()],
-    };
-    [short.into(), long.into()]
-}
 
 fn shapes(Interval { min, max }: Interval) -> String {
     format!("gamma {}", words::range([min, max]))
@@ -304,7 +265,11 @@ impl<'a> Outline<'a> {
         let mut text = String::new();
         let materials = &self.scene.materials;
         for material in materials.iter().take(SHOWN) {
-            text += &line("has", &escape::line(&material.name), &words_of(&entry(material)));
+            text += &line(
+                "has",
+                &escape::line(&material.name),
+                &escape::line(&words_of(&entry(material))),
+            );
         }
         if let Some(more @ [_, ..]) = materials.get(SHOWN..) {
             let more = format!("and {} more", more.len());

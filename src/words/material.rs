@@ -1,14 +1,13 @@
-//! Materials in words: one home for what `plan`, `bake` and `inspect` say of them.
+//! Materials in words.
 
 use microfacet_common::shape::gamma_of_s;
 use microfacet_sampler::{FresnelEntry, MaterialEntry, Reflectance};
 
-use super::escape;
-use super::words::{number, range};
+use super::{number, range};
 
 /// What a material is: its roughness and shape or distribution, the masking that its albedo has,
 /// and the Fresnel term that it states.
-pub(super) fn material(entry: &MaterialEntry) -> String {
+pub fn material(entry: &MaterialEntry) -> String {
     let mut parts = Vec::new();
     if entry.is_smooth() {
         parts.push("smooth".into());
@@ -17,38 +16,44 @@ pub(super) fn material(entry: &MaterialEntry) -> String {
         parts.push(if x == y { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
         parts.push(format!("gamma {}", gammas(entry.s)));
     } else {
-        parts.push(escape::line(&entry.distribution).into());
+        parts.push(entry.distribution.clone());
     }
     parts.extend(entry.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));
     // Where none is stated there is one by default, but none without microfacets.
     if entry.masking.is_some() || !entry.is_smooth() {
         parts.push(format!("{} masking", entry.masking()));
     }
-    parts.push(entry.fresnel.map_or("no Fresnel term".into(), |fresnel| match fresnel {
+    parts.push(fresnel(entry.fresnel.as_ref()));
+    parts.join(", ")
+}
+
+/// The reflectance of a material's facets.
+pub fn fresnel(entry: Option<&FresnelEntry>) -> String {
+    let Some(entry) = entry else { return "no Fresnel term".into() };
+    match entry {
         FresnelEntry::Mirror => "F = 1".into(),
         FresnelEntry::Schlick([r, g, b]) if r == g && g == b => {
-            format!("Schlick with F0 {}", number(r))
+            format!("Schlick with F0 {}", number(*r))
         }
         FresnelEntry::Schlick(f0) => format!("Schlick with F0 {}", f0.map(number).join(", ")),
         FresnelEntry::Conductor { eta, k } => {
             let [eta, k] = [eta, k].map(|rgb| rgb.map(number).join(", "));
             format!("conductor with eta {eta} and k {k}")
         }
-        FresnelEntry::Dielectric(eta) => format!("dielectric of index {}", number(eta)),
+        FresnelEntry::Dielectric(eta) => format!("dielectric of index {}", number(*eta)),
         FresnelEntry::Dielectrics { min, max } => {
-            format!("dielectric of index {}", range([min, max.unwrap_or(f64::INFINITY)]))
+            format!("dielectric of index {}", range([*min, max.unwrap_or(f64::INFINITY)]))
         }
-    }));
-    parts.join(", ")
+    }
 }
 
 /// A range of γ, from a range of s = 1/(γ−1).
-pub(super) fn gammas([low, high]: [f64; 2]) -> String {
+pub fn gammas([low, high]: [f64; 2]) -> String {
     range([gamma_of_s(high), gamma_of_s(low)])
 }
 
 /// The reflectance of an albedo in words.
-pub(super) fn reflectance(reflectance: &Reflectance) -> String {
+pub fn reflectance(reflectance: &Reflectance) -> String {
     match reflectance {
         Reflectance::Moments => "for F = 1 and every Schlick term".into(),
         Reflectance::Conductor { eta, k } => {

@@ -2,15 +2,15 @@
 
 use microfacet_common::shape::gamma_of_s;
 use microfacet_sampler::{
-    Axis, Covered, Interpolation, Kind, LobeEntry, Mapping, Precision, Subject, Table,
+    Axis, Covered, Interpolation, Kind, LobeEntry, Mapping, MaterialEntry, Precision, Reflectance,
+    Subject, Table, Tables,
 };
 
-use crate::cli::escape;
-use crate::cli::material::{gammas, reflectance};
-use crate::cli::words::{count, number, range};
+use super::material::{gammas, reflectance};
+use super::{count, joined, number, range};
 
 /// What a table holds, and of what it is if that is not the whole family.
-pub(super) fn holds(table: &Table) -> String {
+pub fn holds(table: &Table) -> String {
     let kind = match table.kind {
         Kind::Shadowing | Kind::RadialShadowing => "Smith's G1 of a view",
         Kind::VisibleSlope | Kind::RadialSlope => {
@@ -32,7 +32,7 @@ pub(super) fn holds(table: &Table) -> String {
         LobeEntry::Ellipsoid { theta, .. } => {
             format!(", of an ellipsoid with theta {}", theta.map(number).join(", "))
         }
-        LobeEntry::Distribution(label) => format!(", of {}", escape::line(label)),
+        LobeEntry::Distribution(label) => format!(", of {}", label),
     };
     let of = table.subject.reflectance.as_ref();
     let reflectance = of.map_or(String::new(), |of| format!(", {}", reflectance(of)));
@@ -40,7 +40,7 @@ pub(super) fn holds(table: &Table) -> String {
 }
 
 /// The γ and the σ of the materials that a table serves, as cells of columns.
-pub(super) fn covers(Subject { lobe, covers, .. }: &Subject) -> [String; 2] {
+pub fn covers(Subject { lobe, covers, .. }: &Subject) -> [String; 2] {
     match (lobe, covers) {
         (LobeEntry::Distribution(_), _) => ["-".into(), "its own".into()],
         (LobeEntry::StudentT { sigma, s } | LobeEntry::Ellipsoid { sigma, s, .. }, _) => {
@@ -53,7 +53,8 @@ pub(super) fn covers(Subject { lobe, covers, .. }: &Subject) -> [String; 2] {
     }
 }
 
-pub(super) fn precision(precision: Precision) -> &'static str {
+/// The type of the values.
+pub fn precision(precision: Precision) -> &'static str {
     match precision {
         Precision::F32 => "f32",
         Precision::F16 => "f16",
@@ -61,8 +62,48 @@ pub(super) fn precision(precision: Precision) -> &'static str {
     }
 }
 
+/// The lobes of which visible normals can be drawn.
+pub fn normals(set: &Tables) -> Vec<String> {
+    let mut lines: Vec<String> = set.shapes().into_iter().map(gammas).collect();
+    // Shapes of s ascend, and γ falls with s.
+    lines.reverse();
+    if !lines.is_empty() {
+        lines = vec![format!("gamma {}; every sigma", joined(&lines))];
+    }
+    if set.provenance().materials.iter().any(MaterialEntry::is_ggx) && !set.tabulates(2.0) {
+        lines.push("gamma 2 (GGX) in closed form".into());
+    }
+    for table in set.tables() {
+        if let (Kind::RadialSlope, LobeEntry::Distribution(label)) =
+            (table.kind, &table.subject.lobe)
+        {
+            lines.push(label.clone());
+        }
+    }
+    lines
+}
+
+/// The lobes of which there are albedos.
+pub fn albedos(tables: &[Table]) -> Vec<String> {
+    let mut lines: Vec<(String, Vec<String>)> = Vec::new();
+    for table in tables.iter().filter(|table| table.kind == Kind::Albedo) {
+        let [gamma, sigma] = covers(&table.subject);
+        let what = match (&table.subject.lobe, table.subject.reflectance) {
+            (LobeEntry::Distribution(label), _) => label.clone(),
+            (_, Some(Reflectance::Moments) | None) => format!("gamma {gamma}, sigma {sigma}"),
+            (_, Some(of)) => format!("gamma {gamma}, sigma {sigma}, {}", reflectance(&of)),
+        };
+        let masking = table.subject.masking.map_or(String::new(), |form| form.name().to_owned());
+        match lines.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, forms)) => forms.push(masking),
+            None => lines.push((what, vec![masking])),
+        }
+    }
+    lines.iter().map(|(what, forms)| format!("{what}; {} masking", joined(forms))).collect()
+}
+
 /// An axis: what it is of, its range and nodes, the coordinate, and what lies between nodes.
-pub(super) fn axis(axis: &Axis) -> String {
+pub fn axis(axis: &Axis) -> String {
     let quantities = axis.quantities();
     let ends = || {
         let (least, most) =

@@ -3,7 +3,7 @@
 use microfacet_common::shape::gamma_of_s;
 use microfacet_sampler::Table;
 
-use super::{escape, words};
+use super::number;
 
 /// Ends of the keys of a quantity's errors.
 const MAX: &str = "_max_error";
@@ -64,28 +64,28 @@ fn errors(table: &Table) -> Vec<(&str, f64)> {
 
 /// The quantity with the largest error, as in a column, and that error; `None` if none was
 /// measured.
-pub(super) fn largest(table: &Table) -> Option<(String, f64)> {
+pub fn largest(table: &Table) -> Option<(String, f64)> {
     // Of equal errors the first, and a NaN before any number.
     let worse = |a: (_, f64), b: (_, f64)| if b.1.total_cmp(&a.1).is_gt() { b } else { a };
     let (key, error) = errors(table).into_iter().reduce(worse)?;
     let known = QUANTITIES.iter().find(|(known, ..)| *known == key);
-    Some((known.map_or_else(|| escape::line(key).into(), |known| known.1.to_owned()), error))
+    Some((known.map_or_else(|| key.to_owned(), |known| known.1.to_owned()), error))
 }
 
 /// The whole certificate, a line for each figure.
-pub(super) fn lines(table: &Table) -> Vec<String> {
+pub fn lines(table: &Table) -> Vec<String> {
     let figures = &table.certificate;
     let mut shown = vec![SHORTCUT.to_owned(), "points".into(), "quadrature_error".into()];
     let mut lines = Vec::new();
     for (key, max) in errors(table) {
         let name = QUANTITIES.iter().find(|(known, ..)| *known == key);
-        let name = name.map_or_else(|| escape::line(key), |known| known.2.into());
-        let mut line = format!("largest error of {name}: {}", words::error(max));
+        let name = name.map_or(key, |known| known.2);
+        let mut line = format!("largest error of {name}: {}", super::error(max));
         let others = [(RMS, "root mean square"), (OUTSIDE, "beyond the promised range")];
         for (end, what) in others {
             let key = format!("{key}{end}");
             if let Some(figure) = figures.get(&key) {
-                line += &format!(", {what} {}", words::error(*figure));
+                line += &format!(", {what} {}", super::error(*figure));
             }
             shown.push(key);
         }
@@ -95,7 +95,7 @@ pub(super) fn lines(table: &Table) -> Vec<String> {
     let place = |(key, name): &(&str, &str)| {
         let x = *figures.get(*key)?;
         let x = if *key == WORST_S { gamma_of_s(x) } else { x };
-        Some(format!("{name} {}", words::number(x)))
+        Some(format!("{name} {}", number(x)))
     };
     let places: Vec<String> = PLACES.iter().filter_map(place).collect();
     if !places.is_empty() {
@@ -103,21 +103,19 @@ pub(super) fn lines(table: &Table) -> Vec<String> {
     }
     if let Some(points) = figures.get("points") {
         let exact = figures.get("quadrature_error").map_or(String::new(), |error| {
-            format!("; the values at the nodes are exact to {}", words::error(*error))
+            format!("; the values at the nodes are exact to {}", super::error(*error))
         });
         lines.push(format!("measured at {points} points{exact}"));
     }
     if let Some(error) = figures.get(SHORTCUT) {
         lines.push(format!(
             "an isotropic table at sqrt(sigma_x sigma_y) in its place would be off by up to {}",
-            words::error(*error)
+            super::error(*error)
         ));
     }
     // Of files by other programs, or later versions.
     let known = |key: &String| shown.contains(key) || PLACES.iter().any(|place| place.0 == key);
     let others = figures.iter().filter(|(key, _)| !known(key));
-    lines.extend(
-        others.map(|(key, figure)| format!("{} {}", escape::line(key), words::number(*figure))),
-    );
+    lines.extend(others.map(|(key, figure)| format!("{key} {}", number(*figure))));
     lines
 }

@@ -1,0 +1,55 @@
+//! Plots of a page, and the letters of its texts.
+
+use maud::{Markup, PreEscaped};
+
+use crate::plot::{Figure, Panel};
+
+/// Pixels of a plot: two or three stand side by side, and its letters can be read on a phone.
+const SIZE: [f64; 2] = [400.0, 300.0];
+
+/// A panel as an element of the page; `label` says what is seen.
+pub(super) fn plot(panel: Panel, label: &str) -> Markup {
+    PreEscaped(Figure { panels: vec![panel], columns: 1, panel: SIZE }.inline_svg(label))
+}
+
+/// A text that is written for terminals, with the letters of the field for their names.
+pub(super) fn symbols(text: &str) -> String {
+    let is_part = |c: char| c.is_alphanumeric();
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let same = |c: char| is_part(c) == is_part(first);
+        let end = rest.find(|c| !same(c)).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(end);
+        out += match word {
+            "gamma" => "γ",
+            "sigma" => "σ",
+            "theta" => "θ",
+            "phi" => "φ",
+            "eta" => "η",
+            "inf" => "∞",
+            _ => word,
+        };
+        rest = after;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_words_become_letters_and_nothing_else_does() {
+        let words = [
+            ("gamma 1.501 to inf, sigma any", "γ 1.501 to ∞, σ any"),
+            ("the view by z = cot(theta)/sigma", "the view by z = cot(θ)/σ"),
+            ("information of a beta, theta_x", "information of a beta, θ_x"),
+            ("σ·gamma", "σ·γ"),
+            ("", ""),
+        ];
+        for (terminal, page) in words {
+            assert_eq!(symbols(terminal), page);
+        }
+    }
+}
