@@ -5,11 +5,12 @@ mod words;
 
 use std::path::PathBuf;
 
+use microfacet_bake::report::has_page;
 use microfacet_sampler::internals::describe;
 use microfacet_sampler::{Kind, LobeEntry, MaterialEntry, Reflectance, Table, Tables};
 
 use super::material::{gammas, material, reflectance};
-use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, joined, wrapped};
+use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, joined, shell, wrapped};
 use super::{Done, Outcome, certificate, escape, print, print_json, tables};
 use words::{covers, holds, precision};
 
@@ -59,6 +60,11 @@ pub(super) fn run(args: Args) -> Outcome {
         text += &details::of(&set);
     } else {
         text += "\n--details shows axes, certificates, conventions and the recipe\n";
+        if has_page(&set) {
+            let path =
+                args.tables.as_deref().map_or(String::new(), |path| format!(" {}", shell(path)));
+            text += &format!("microfacet-bake report{path} draws the set as a page\n");
+        }
     }
     print(&text)?;
     Ok(Done::Ok)
