@@ -219,6 +219,14 @@ fn more_materials_than_a_set_holds_become_numbered_sets() {
     assert_eq!(listed(&one), ["m3"]);
     assert!(read_materials(&folder.join("one"), &["m9"]).is_err());
     ok(folder, &["inspect", "out"]);
+    let again = ["bake", "lib.toml", "--cache", "cache", "--out", "out"];
+    let text = ok(folder, &[&again, &DRAFT[..], &per_set].concat());
+    let (_, next) = text.split_once("\nnext:\n").unwrap();
+    let first = next.lines().next().unwrap().trim().strip_prefix("microfacet-bake inspect ");
+    assert_eq!(
+        next.lines().nth(1),
+        first.map(|first| format!("  microfacet-bake report {first}")).as_deref()
+    );
 
     // One set in the place of three, and three in the place of one.
     ok(folder, &["bake", "lib.toml", "--cache", "cache", "--out", "out", "--quality", "draft"]);

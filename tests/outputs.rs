@@ -80,7 +80,8 @@ fn a_bake_says_what_it_baked_how_well_and_what_to_run_next() {
     let wrote = line(&text, "wrote out/tables.safetensors, ");
     assert!(wrote.ends_with(&format!(" kB ({bytes} bytes)")), "{wrote}");
     assert!(line(&text, "3 tables baked, in ").ends_with('s'), "{text}");
-    assert_eq!(next(&text), ["microfacet-bake validate out", "microfacet-bake inspect out"]);
+    let commands = ["validate", "inspect", "report"];
+    assert_eq!(next(&text), commands.map(|command| format!("microfacet-bake {command} out")));
 
     let again = ok(folder.path(), &DRAFT);
     line(&again, "all 3 tables came from the cache, in ");
@@ -168,7 +169,7 @@ fn a_set_of_closed_forms_is_a_set_in_every_format() {
     fits(&text);
     assert!(text.contains("no tables nor images; it is in tables.safetensors"), "{text}");
     assert!(!text.contains("error of"), "{text}");
-    assert_eq!(next(&text)[0], "microfacet-bake inspect out");
+    assert_eq!(next(&text)[..2], ["microfacet-bake inspect out", "microfacet-bake report out"]);
     assert!(!text.contains("validate out") && text.contains("--tabulate-ggx"), "{text}");
     // The old set is gone, and the new one in its place.
     assert_eq!(images("out"), 0);
@@ -195,7 +196,8 @@ fn a_set_of_closed_forms_is_a_set_in_every_format() {
 fn a_set_without_a_test_is_inspected() {
     let folder = folder(&material("coat", "distribution = \"gtr\"\nc = 0.2\ngamma = 1.3"));
     let text = ok(folder.path(), &DRAFT);
-    assert_eq!(next(&text)[0], "microfacet-bake inspect out --details");
+    let commands = ["inspect out --details", "report out"];
+    assert_eq!(next(&text)[..2], commands.map(|command| format!("microfacet-bake {command}")));
     refused(folder.path(), &["validate", "out"]);
     assert!(line(&text, "  D/D(0) ").ends_with("in radial_density_gtr_0.2_1.3"), "{text}");
     let shown = ok(folder.path(), &["inspect", "out"]);
@@ -211,6 +213,12 @@ fn commands_to_run_next_are_quoted_for_a_shell() {
     let text = ok(folder.path(), &[&DRAFT[..5], &[name]].concat());
     let quoted = r#"'my "frosted" glass'\''s'"#;
     assert_eq!(next(&text)[1], format!("microfacet-bake inspect {quoted}"));
+    assert_eq!(next(&text)[2], format!("microfacet-bake report {quoted}"));
+    let shown = ok(folder.path(), &["inspect", name]);
+    assert_eq!(
+        shown.lines().last(),
+        Some(&format!("microfacet-bake report {quoted} draws the set as a page")[..])
+    );
     if cfg!(unix) {
         for command in next(&text) {
             let pasted = command.replacen("microfacet-bake", "\"$PROGRAM\"", 1);
@@ -294,9 +302,12 @@ fn a_set_is_always_written() {
     assert_eq!(json["files"].as_array().unwrap().len(), 1);
     // A scene of which nothing has a lobe too.
     fs::write(at.join("s.pbrt"), "WorldBegin\nMaterial \"diffuse\"\nShape \"sphere\"\n").unwrap();
-    ok(at, &["bake", "s.pbrt", "--out", "out"]);
+    let text = ok(at, &["bake", "s.pbrt", "--out", "out"]);
     assert_eq!(store::read(&at.join("out")).unwrap().provenance().materials.len(), 0);
-    assert!(ok(at, &["inspect", "out"]).contains("materials  none\n"));
+    let shown = ok(at, &["inspect", "out"]);
+    assert!(shown.contains("materials  none\n"));
+    // There is nothing to draw.
+    assert!(!text.contains("report") && !shown.contains("report"), "{text}{shown}");
 }
 
 /// The sampler refuses it as a lobe, so that no table could be read.
@@ -359,6 +370,7 @@ fn the_embedded_set_is_shown_in_a_screen_of_words() {
     let shown = ok(at, &["inspect"]);
     fits(&shown);
     assert!(shown.lines().count() <= 30, "{shown}");
+    assert!(shown.ends_with("\nmicrofacet-bake report draws the set as a page\n"), "{shown}");
     assert!(line(&shown, "set").ends_with("the default set, compiled into the sampler"), "{shown}");
     assert!(line(&shown, "normals").ends_with("gamma 1.501 to inf; every sigma"), "{shown}");
     assert!(

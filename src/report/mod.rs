@@ -61,6 +61,11 @@ impl From<MaterialError> for ReportError {
     }
 }
 
+/// Whether a set has anything to show: a page of a set without tables and materials is refused.
+pub fn has_page(set: &Tables) -> bool {
+    !set.tables().is_empty() || !set.provenance().materials.is_empty()
+}
+
 /// The estimated seconds of [`page`] on the current threads.
 pub fn seconds(source: &Source) -> f64 {
     errors::seconds(source.set) + energy::seconds(source.set) + sphere::seconds(source.set)
@@ -71,7 +76,7 @@ pub fn seconds(source: &Source) -> f64 {
 /// # Errors
 /// [`ReportError`] for a set with nothing to show, or one that lacks what it declares.
 pub fn page(source: &Source, meter: &Meter) -> Result<String, ReportError> {
-    if source.set.tables().is_empty() && source.set.provenance().materials.is_empty() {
+    if !has_page(source.set) {
         return Err(ReportError::Empty);
     }
     page::page(source, meter)

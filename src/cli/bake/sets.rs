@@ -62,11 +62,11 @@ pub(super) fn run(
         return Ok(Done::Ok);
     }
     let bytes = written.iter().map(|file| file.bytes).sum();
-    let first = written.first();
+    let first = written.first().map_or(String::new(), |file| shell(&file.path));
     let last = written.last().map_or(String::new(), |file| file.path.display().to_string());
     summarize(&format!(
         "{} in {}: {}, {baked} baked, {} from the cache, in {}\nwrote {}, {}\nindex {}\nnext:\n  \
-         microfacet-bake inspect {}\n",
+         microfacet-bake inspect {first}\n  microfacet-bake report {first}\n",
         count(materials, "material"),
         count(sets, "numbered set"),
         count(tables, "table"),
@@ -75,7 +75,6 @@ pub(super) fn run(
         count(written.len(), "file"),
         exact_bytes(bytes),
         escape::line(&last),
-        first.map_or(String::new(), |file| shell(&file.path)),
     ))?;
     Ok(Done::Ok)
 }

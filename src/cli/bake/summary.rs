@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::json;
 
 use microfacet_bake::plan::Verdict;
+use microfacet_bake::report::has_page;
 use microfacet_bake::store::Written;
 use microfacet_bake::table_set::Baked;
 use microfacet_bake::validate::configuration::shapes;
@@ -100,7 +101,11 @@ impl Summary<'_> {
     fn next(&self) -> String {
         let out = shell(self.out);
         let set = &self.result.set;
-        let inspect = format!("  microfacet-bake inspect {out}\n");
+        let report = match has_page(set) {
+            true => format!("  microfacet-bake report {out}\n"),
+            false => String::new(),
+        };
+        let inspect = format!("  microfacet-bake inspect {out}\n{report}");
         let commands = if is_testable(set) {
             format!("  microfacet-bake validate {out}\n{inspect}")
         } else if set.tables().is_empty() {
@@ -116,7 +121,7 @@ impl Summary<'_> {
             };
             inspect + &wrapped("  ", why, 2)
         } else {
-            format!("  microfacet-bake inspect {out} --details\n")
+            format!("  microfacet-bake inspect {out} --details\n{report}")
                 + &wrapped(
                     "  ",
                     "validate has no test for such tables; their certificates are there",

@@ -4,13 +4,14 @@ mod details;
 
 use std::path::PathBuf;
 
+use microfacet_bake::report::has_page;
 use microfacet_bake::words::certificate;
 use microfacet_bake::words::material::material;
 use microfacet_bake::words::table::{albedos, covers, holds, normals, precision};
 use microfacet_sampler::internals::describe;
 use microfacet_sampler::{Table, Tables};
 
-use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, wrapped};
+use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, shell, wrapped};
 use super::{Done, Outcome, escape, print, print_json, tables};
 
 /// Show what a set of tables serves, and the size and the largest error of each table.
@@ -59,6 +60,11 @@ pub(super) fn run(args: Args) -> Outcome {
         text += &details::of(&set);
     } else {
         text += "\n--details shows axes, certificates, conventions and the recipe\n";
+        if has_page(&set) {
+            let path =
+                args.tables.as_deref().map_or(String::new(), |path| format!(" {}", shell(path)));
+            text += &format!("microfacet-bake report{path} draws the set as a page\n");
+        }
     }
     print(&text)?;
     Ok(Done::Ok)
