@@ -1,11 +1,18 @@
 //! The live sphere: data, shaders and pictures of it.
 
+mod random;
+mod scene;
+mod studio;
+mod tone;
+
 use maud::{Markup, html};
-use microfacet_sampler::Tables;
+use microfacet_sampler::{BindError, Tables};
 
 use super::subjects::Subjects;
 use super::{ReportError, Source};
 use crate::progress::Meter;
+pub use scene::{Film, Look};
+use scene::Scene;
 
 /// What the section of the sphere is made of.
 pub(super) struct Parts {
@@ -27,4 +34,12 @@ pub(super) fn parts(
     _meter: &Meter,
 ) -> Result<Option<Parts>, ReportError> {
     Ok(Some(Parts { body: html! {}, scripts: html! {} }))
+}
+
+/// The sphere of a page as RGB, from the upper left, by the crate's own BSDFs.
+///
+/// # Errors
+/// [`BindError`] for a shape that neither the set nor the default set covers.
+pub fn picture(set: &Tables, look: &Look, film: Film) -> Result<Vec<[u8; 3]>, BindError> {
+    Ok(Scene::new(&set.clone().or_embedded(), look)?.picture(film))
 }
