@@ -19,7 +19,7 @@
 mod albedo;
 mod c;
 mod members;
-mod numbers;
+pub(crate) mod numbers;
 mod shader;
 mod shape;
 pub mod texture;
@@ -27,6 +27,7 @@ pub mod texture;
 pub use albedo::AlbedoTable;
 pub use members::Part;
 pub use shader::{Language, Storage, texture_rows};
+pub(crate) use shader::{WIDTH, append_some, for_webgl};
 pub use shape::Shape;
 
 /// What can be written.

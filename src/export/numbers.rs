@@ -11,7 +11,7 @@ pub(super) fn identifier(gamma: f64) -> String {
 }
 
 /// γ as the command reads it: `3`, `1.65`, `inf`.
-pub(super) fn as_typed(gamma: f64) -> String {
+pub(crate) fn as_typed(gamma: f64) -> String {
     shortest(gamma.to_string(), format!("{gamma:e}"))
 }
 
@@ -22,7 +22,7 @@ pub(super) fn error(error: Option<f64>) -> String {
 
 /// A single-precision number in the fewest digits that bring it back, as all languages with a
 /// decimal point read it.
-pub(super) fn single(x: f32) -> String {
+pub(crate) fn single(x: f32) -> String {
     let text = shortest(format!("{x:?}"), format!("{x:e}"));
     if text.contains(['.', 'e']) { text } else { text + ".0" }
 }

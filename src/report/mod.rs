@@ -20,6 +20,7 @@ use microfacet_sampler::{MaterialError, Tables};
 use crate::progress::Meter;
 
 pub use chi_square::Validation;
+pub use sphere::{Film, Look, picture};
 
 /// What a page is made of.
 #[derive(Clone, Copy, Debug)]

@@ -15,7 +15,7 @@ use crate::store;
 pub(super) const LAYOUT: u32 = 1;
 
 /// Pairs in a row of the image.
-pub(super) const WIDTH: usize = 512;
+pub(crate) const WIDTH: usize = 512;
 
 /// What `student_t.json` says.
 #[derive(Serialize)]
@@ -74,7 +74,7 @@ struct Errors {
 pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     let (mut pairs, mut entries) = (Vec::new(), BTreeMap::new());
     for shape in shapes {
-        let entry = append(shape, &mut pairs);
+        let entry = append(shape, |_| true, &mut pairs);
         entries.insert(as_typed(shape.gamma), entry);
     }
     let height = pairs.len().div_ceil(WIDTH);
@@ -117,12 +117,22 @@ fn length(shape: &Shape) -> usize {
     members + tables.iter().map(|part| part.rows() * part.columns.div_ceil(2)).sum::<usize>()
 }
 
-/// Appends a shape: its members, then its tables.
-fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
+/// Appends a shape with some of its tables, by name, and returns the place of its first pair. What
+/// reads tables that are left out must not be called.
+pub(crate) fn append_some(
+    shape: &Shape,
+    is_kept: impl Fn(&str) -> bool,
+    pairs: &mut Vec<[f32; 2]>,
+) -> usize {
+    append(shape, is_kept, pairs).offset
+}
+
+/// Appends a shape: its members, then its tables, of those that are kept.
+fn append(shape: &Shape, is_kept: impl Fn(&str) -> bool, pairs: &mut Vec<[f32; 2]>) -> Entry {
     let offset = pairs.len();
     let lists = lists(shape);
     let mut at = lists.iter().map(|list| list.len().div_ceil(2)).sum::<usize>();
-    let parts = parts(shape);
+    let parts: Vec<Part> = parts(shape).into_iter().filter(|part| is_kept(&part.name)).collect();
     let mut tables = BTreeMap::new();
     for part in &parts {
         let (rows, columns) = (part.rows(), part.columns);
@@ -155,10 +165,11 @@ fn append(shape: &Shape, pairs: &mut Vec<[f32; 2]>) -> Entry {
     Entry { offset, length: at, members: named, tables, errors, albedos_of_default_set }
 }
 
-/// A member as a number; of a table its place in the shape, which is exact in single precision.
+/// A member as a number; of a table its place in the shape, which is exact in single precision, or
+/// 0 if it is left out.
 fn number(value: &Value, tables: &BTreeMap<String, Place>) -> f32 {
     match value {
-        Value::Table(Some(name)) => tables[name].offset as f32,
+        Value::Table(Some(name)) => tables.get(name).map_or(0.0, |place| place.offset as f32),
         _ => value.number().unwrap_or(0.0),
     }
 }

@@ -9,6 +9,7 @@ use std::fmt::Write;
 use super::members::{Member, Value, lists};
 use super::{ExportFile, Shape};
 pub use data::texture_rows;
+pub(crate) use data::{WIDTH, append_some};
 use language::head;
 pub use language::{Language, Storage};
 
@@ -55,6 +56,12 @@ pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> V
     };
     files.extend(data::files(shapes));
     files
+}
+
+/// The functions for WebGL 2, without what stands at the head of the file.
+pub(crate) fn for_webgl(shape: &Shape) -> String {
+    let storage = Language::GlslEs.storage(Storage::Texture);
+    translate::text(&module(&lists(shape), storage), Language::GlslEs, storage)
 }
 
 /// All text in WGSL.

@@ -162,7 +162,7 @@ impl TexelAxis {
 }
 
 /// The place at one coordinate along each axis; γ is that of a texture without such an axis.
-pub(super) fn place(axes: &[TexelAxis], gamma: f64, at: &[f64]) -> Place {
+pub(crate) fn place(axes: &[TexelAxis], gamma: f64, at: &[f64]) -> Place {
     let mut place = Place { gamma, sigma: f64::NAN, cos: None };
     // Views last: they depend on the others, in whatever order a texture has its axes.
     for views in [false, true] {

@@ -22,13 +22,15 @@ use rayon::prelude::*;
 pub use axis::{Along, Place, TexelAxis};
 pub use certificate::{Checks, Deviation, Known, known};
 pub use file::{BeforeRounding, Format, Made, files};
+pub(crate) use shader::coordinates as shader_coordinates;
 pub use shader::{Lines, shader_lines};
 pub use truth::{Channel, Truth};
 
 use crate::bake::albedo::SIGMA_MAX;
 use crate::progress::Stage;
 use crate::table_spec::GAMMA_MIN;
-use axis::{AXES, coordinates, place};
+pub(crate) use axis::place;
+use axis::{AXES, coordinates};
 use fit::{Filter, Target, fit};
 use truth::truths;
 

@@ -18,31 +18,35 @@ pub struct Lines {
     pub wgsl: String,
 }
 
-/// The lines for a texture whose texels reach the ends of its coordinates.
-pub fn shader_lines(spec: &TextureSpec) -> Lines {
+/// Where a texture whose texels reach the ends of its coordinates is read, as an expression of
+/// `gamma`, `sigma` and `mu`; the parts of a vector are around its number of axes.
+pub(crate) fn coordinates(axes: &[TexelAxis], gamma: f64, [vector, suffix]: [&str; 2]) -> String {
     // The fastest axis is the first coordinate.
-    let axes: Vec<&TexelAxis> = spec.axes.iter().rev().collect();
+    let axes: Vec<&TexelAxis> = axes.iter().rev().collect();
     let of = |part: &dyn Fn(&TexelAxis) -> String| -> Vec<String> {
         axes.iter().map(|axis| part(axis)).collect()
     };
     let n = |axis: &TexelAxis| axis.len() as f64;
     let offset = of(&|axis| Dialect::Shader.number(0.5 / n(axis)));
     let factor = of(&|axis| Dialect::Shader.number((n(axis) - 1.0) / n(axis)));
-    let coordinate = of(&|axis| Dialect::Shader.coordinate(axis.along, spec.gamma)).join(", ");
-    let read = |vector: &str, suffix: &str| {
-        // An average of one shape is a texture of one row.
-        let vector = format!("{vector}{}{suffix}", axes.len().max(2));
-        // One number serves for equal ones.
-        let all = |numbers: &[String]| match numbers {
-            [first, rest @ ..] if rest.iter().all(|other| other == first) => first.clone(),
-            _ => format!("{vector}({})", numbers.join(", ")),
-        };
-        let at = format!("{} + {} * ", all(&offset), all(&factor));
-        match axes.len() {
-            1 => format!("{vector}({at}{coordinate}, 0.5)"),
-            _ => format!("{at}{vector}({coordinate})"),
-        }
+    let coordinate = of(&|axis| Dialect::Shader.coordinate(axis.along, gamma)).join(", ");
+    // An average of one shape is a texture of one row.
+    let vector = format!("{vector}{}{suffix}", axes.len().max(2));
+    // One number serves for equal ones.
+    let all = |numbers: &[String]| match numbers {
+        [first, rest @ ..] if rest.iter().all(|other| other == first) => first.clone(),
+        _ => format!("{vector}({})", numbers.join(", ")),
     };
+    let at = format!("{} + {} * ", all(&offset), all(&factor));
+    match axes.len() {
+        1 => format!("{vector}({at}{coordinate}, 0.5)"),
+        _ => format!("{at}{vector}({coordinate})"),
+    }
+}
+
+/// The lines for a texture whose texels reach the ends of its coordinates.
+pub fn shader_lines(spec: &TextureSpec) -> Lines {
+    let read = |vector: &str, suffix: &str| coordinates(&spec.axes, spec.gamma, [vector, suffix]);
     let texture = &spec.name;
     let (mirror, of) = if spec.is_directional() {
         ("pow(max(0.0, 1.0 - mu), 5.0)", "")

@@ -1,11 +1,33 @@
 //! The live sphere: data, shaders and pictures of it.
+//!
+//! The page draws with the functions that `export glsl-es` writes and the tables of the set, and
+//! shows pictures of the same scene where there is no WebGL 2. `studio` lights it, `scene` draws it
+//! in Rust, `data` is what the script gets; `sphere.frag` draws it in a browser.
 
-use maud::{Markup, html};
-use microfacet_sampler::Tables;
+mod data;
+mod lobe;
+mod random;
+mod scene;
+mod studio;
+mod tone;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{Markup, PreEscaped, html};
+use microfacet_sampler::{BindError, Tables};
 
 use super::subjects::Subjects;
 use super::{ReportError, Source};
-use crate::progress::Meter;
+use crate::export::{Shape, for_webgl};
+use crate::progress::{Meter, Stage};
+use data::{Data, SIGMA, label, look};
+pub use scene::{Film, Look};
+use scene::{Scene, jpeg};
+
+/// Pictures of lobes, and the one that stands for the sphere.
+const PICTURE: Film = Film { size: 240, samples: 96, seed: 1 };
+/// Seconds of a picture on one processor, and of the tables of a shape.
+const SECONDS: [f64; 2] = [2.5, 0.05];
 
 /// What the section of the sphere is made of.
 pub(super) struct Parts {
@@ -16,15 +38,219 @@ pub(super) struct Parts {
 }
 
 /// The estimated seconds of [`parts`] on the current threads.
-pub(super) fn seconds(_set: &Tables) -> f64 {
-    0.0
+pub(super) fn seconds(set: &Tables) -> f64 {
+    let subjects = Subjects::of(set);
+    let work = [subjects.shown.len(), subjects.stops.len()];
+    let seconds: f64 = work.iter().zip(SECONDS).map(|(&n, each)| n as f64 * each).sum();
+    seconds / rayon::current_num_threads() as f64
 }
 
 /// `None` for a set without a lobe of the family.
+///
+/// # Errors
+/// [`ReportError::Material`] for a set that lacks what it declares to cover.
 pub(super) fn parts(
-    _source: &Source,
-    _subjects: &Subjects,
-    _meter: &Meter,
+    source: &Source,
+    subjects: &Subjects,
+    meter: &Meter,
 ) -> Result<Option<Parts>, ReportError> {
-    Ok(Some(Parts { body: html! {}, scripts: html! {} }))
+    if subjects.shown.is_empty() || subjects.stops.is_empty() {
+        return Ok(None);
+    }
+    let tables = source.set.clone().or_embedded();
+    let stage = meter.stage(seconds(source.set));
+    stage.split(subjects.shown.len());
+    let data = Data::new(&tables, subjects)?;
+    let pictures = pictures(&tables, subjects, &stage)?;
+    let first = &subjects.shown[0];
+    let stills = lobe::stills(&tables, &look(subjects, first), &first.name)?;
+    let body = html! {
+        section #look aria-labelledby="look-title" {
+            h2 #look-title { "How it looks" }
+            div.viewer {
+                (stage_of(&pictures[0], &first.name))
+                (controls(subjects, &data))
+                div.lobe { (lobe::live()) (stills) }
+            }
+            (gallery(subjects, &pictures))
+        }
+    };
+    let shape = Shape::bind(&tables, subjects.stops[0])?;
+    Ok(Some(Parts { body, scripts: scripts(&data, &shape) }))
+}
+
+/// The addresses of pictures, one a lobe.
+fn pictures(
+    tables: &Tables,
+    subjects: &Subjects,
+    stage: &Stage,
+) -> Result<Vec<String>, ReportError> {
+    let picture = |shown| {
+        let scene = Scene::new(tables, &look(subjects, shown)).map_err(unbound)?;
+        let file = jpeg(&scene.picture(PICTURE), PICTURE.size);
+        stage.step();
+        Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(file)))
+    };
+    subjects.shown.iter().map(picture).collect()
+}
+
+/// Round lobes stand in for others, so that only a shape can be missing.
+fn unbound(why: BindError) -> ReportError {
+    match why {
+        BindError::Material(why) => ReportError::Material(why),
+        other => panic!("a metal of a round lobe is always bound: {other}"),
+    }
+}
+
+/// The sphere, and the picture that stands for it.
+fn stage_of(picture: &str, name: &str) -> Markup {
+    html! {
+        div.stage {
+            img #sphere-still src=(picture) alt={ "A sphere of " (name) }
+                width=(PICTURE.size) height=(PICTURE.size);
+            canvas #sphere role="img" aria-label={ "A sphere of " (name) } hidden
+                width=(PICTURE.size) height=(PICTURE.size) {}
+            p #sphere-samples .samples {}
+        }
+    }
+}
+
+fn controls(subjects: &Subjects, data: &Data) -> Markup {
+    html! {
+        form #sphere-controls .controls hidden autocomplete="off" {
+            p.control {
+                label for="material" { "Material" }
+                select #material {
+                    option value="-1" { "as set below" }
+                    @for (i, shown) in subjects.shown.iter().enumerate() {
+                        option value=(i) { (shown.name) }
+                    }
+                }
+            }
+            p.control {
+                label for="shape" { "Shape" }
+                output #shape-value for="shape" {}
+                @if subjects.is_range {
+                    input #shape type="range" min="0" max=(subjects.stops.len() - 1) step="1";
+                } @else {
+                    select #shape {
+                        @for (i, &gamma) in subjects.stops.iter().enumerate() {
+                            option value=(i) { (label(gamma)) }
+                        }
+                    }
+                }
+            }
+            @for (axis, along) in [("x", "along the parallels"), ("y", "along the meridians")] {
+                p.control {
+                    label for={ "sigma-" (axis) } {
+                        "Roughness σ" (axis) " " small { (along) }
+                    }
+                    output id={ "sigma-" (axis) "-value" } for={ "sigma-" (axis) } {}
+                    input id={ "sigma-" (axis) } type="range" min="0" max=(slider_steps()) step="1";
+                }
+            }
+            p.control.check {
+                input #sigma-link type="checkbox" checked;
+                label for="sigma-link" { "σx and σy together" }
+            }
+            p.control {
+                label for="metal" { "Metal" }
+                select #metal {
+                    @for (i, name) in data.reflectance_names().enumerate() {
+                        option value=(i) { (name) }
+                    }
+                }
+            }
+            p.control.check {
+                input #compensation type="checkbox" checked;
+                label for="compensation" { "Light of further bounces (Kulla–Conty)" }
+                small #stand-in hidden {
+                    "The albedo of the round lobe of √(σx σy) stands in: too much light may come \
+                     back, or too little."
+                }
+            }
+        }
+    }
+}
+
+/// A hundred a decade.
+fn slider_steps() -> usize {
+    (100.0 * (SIGMA[1] / SIGMA[0]).log10()).round() as usize
+}
+
+/// A picture of each lobe, which shows it on the sphere.
+fn gallery(subjects: &Subjects, pictures: &[String]) -> Markup {
+    html! {
+        div.gallery {
+            @for (i, (shown, picture)) in subjects.shown.iter().zip(pictures).enumerate() {
+                @let [x, y] = shown.sigma;
+                figure.card {
+                    button type="button" data-material=(i) aria-label={ "Show " (shown.name) } {
+                        img src=(picture) alt="" loading="lazy"
+                            width=(PICTURE.size) height=(PICTURE.size);
+                    }
+                    figcaption {
+                        strong { (shown.name) } " "
+                        span {
+                            (label(shown.gamma)) ", "
+                            @if x == y { "σ = " (x) } @else { "σ = " (x) ", " (y) }
+                        }
+                    }
+                }
+            }
+        }
+        @if subjects.left_out > 0 {
+            p.note { "And " (subjects.left_out) " more, without a picture." }
+        }
+    }
+}
+
+/// Text of an element that is not HTML: it must not end it.
+fn verbatim(text: &str) -> PreEscaped<&str> {
+    assert!(!text.contains("</"), "the program's own text ends no element");
+    PreEscaped(text)
+}
+
+fn scripts(data: &Data, shape: &Shape) -> Markup {
+    let common = format!(
+        "{}{}{}",
+        studio::constants(),
+        random::constants(),
+        data::albedo_coordinates()
+    );
+    let scene = format!(
+        "{common}{}{}",
+        include_str!("studio.glsl"),
+        include_str!("sphere.frag").replace("out vec4 color;", &format!(
+            "out vec4 color;\n\n{}",
+            include_str!("fresnel.glsl")
+        )),
+    );
+    let shaders = [
+        ("sphere-module", for_webgl(shape)),
+        ("sphere-scene", scene),
+        ("sphere-lobe", include_str!("lobe.frag").into()),
+        ("sphere-present", include_str!("present.frag").into()),
+    ];
+    let script = concat!(
+        include_str!("gl.js"),
+        include_str!("sphere.js"),
+        include_str!("lobe.js"),
+        include_str!("controls.js"),
+    );
+    html! {
+        @for (id, text) in &shaders {
+            script id=(id) type="x-shader/x-fragment" { (verbatim(text)) }
+        }
+        script #sphere-data type="application/json" { (PreEscaped(data.json())) }
+        script type="module" { (verbatim(script)) }
+    }
+}
+
+/// The sphere of a page as RGB, from the upper left, by the crate's own BSDFs.
+///
+/// # Errors
+/// [`BindError`] for a shape that neither the set nor the default set covers.
+pub fn picture(set: &Tables, look: &Look, film: Film) -> Result<Vec<[u8; 3]>, BindError> {
+    Ok(Scene::new(&set.clone().or_embedded(), look)?.picture(film))
 }

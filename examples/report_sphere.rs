@@ -1,0 +1,65 @@
+//! The sphere of a report's page, drawn in Rust with the crate's own BSDFs: what `clients/web` holds
+//! the pixels of the browser against.
+//!
+//! `cargo run --release --example report_sphere -- --gamma 3 --sigma 0.2 --out sphere.png` writes
+//! one; `--help` has the options.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Parser;
+use microfacet_bake::report::{Film, Look, picture};
+use microfacet_bake::store;
+use microfacet_sampler::{ConductorFresnel, Metal, Tables};
+
+/// Renders the sphere of a report's page
+#[derive(Parser)]
+struct Arguments {
+    /// Shape γ, or inf
+    #[arg(long, default_value = "3")]
+    gamma: f64,
+    /// The shape that normals are drawn from, as `report.state().drawn` of the page has it; the
+    /// same as γ if absent
+    #[arg(long)]
+    drawn: Option<f64>,
+    /// σ, or σx,σy
+    #[arg(long, value_delimiter = ',', num_args = 1..=2, default_value = "0.2")]
+    sigma: Vec<f64>,
+    /// A metal by name, or mirror
+    #[arg(long, default_value = "gold")]
+    metal: String,
+    /// Whether further bounces are given back
+    #[arg(long)]
+    compensation: bool,
+    /// Pixels along its edges
+    #[arg(long, default_value = "160", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    size: u32,
+    /// Samples of a pixel
+    #[arg(long, default_value = "64", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    samples: u32,
+    /// The set; the embedded default if absent
+    #[arg(long)]
+    tables: Option<PathBuf>,
+    /// The PNG to write
+    #[arg(long)]
+    out: PathBuf,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let Arguments { gamma, drawn, sigma, metal, compensation, size, samples, tables, out } =
+        Arguments::parse();
+    let set = match tables {
+        Some(path) => store::read(&path)?,
+        None => Tables::embedded(),
+    };
+    let fresnel = match metal.as_str() {
+        "mirror" => ConductorFresnel::mirror(),
+        name => name.parse::<Metal>()?.into(),
+    };
+    let sigma = [sigma[0], *sigma.last().unwrap_or(&sigma[0])];
+    let look =
+        Look { gamma, drawn: drawn.unwrap_or(gamma), sigma, fresnel, compensated: compensation };
+    let pixels = picture(&set, &look, Film { size, samples, seed: 0 })?;
+    image::save_buffer(&out, pixels.as_flattened(), size, size, image::ColorType::Rgb8)?;
+    Ok(())
+}

@@ -1,0 +1,159 @@
+//! A sphere of a material in the studio, by the crate's own BSDFs: what the page draws, in Rust.
+//! Random numbers and estimators are those of `sphere.frag`.
+
+use glam::{Mat3, Vec3};
+use image::codecs::jpeg::JpegEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use microfacet_sampler::{
+    BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Lobe, MicrofacetDistribution,
+    StandIn, Tables, Transport,
+};
+use rayon::prelude::*;
+
+use super::random::{COUNT, numbers};
+use super::studio::{Studio, by_cosine, cosine_pdf};
+use super::tone::display;
+
+/// How a sphere looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Shape γ.
+    pub gamma: f64,
+    /// The shape that normals are drawn from, of the same or heavier tails.
+    pub drawn: f64,
+    /// σx along the parallels, σy along the meridians.
+    pub sigma: [f64; 2],
+    /// The reflectance of its facets.
+    pub fresnel: ConductorFresnel,
+    /// Whether the light of further bounces is given back, of other than round lobes by the round
+    /// one of √(σx σy).
+    pub compensated: bool,
+}
+
+/// A picture to be taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Film {
+    /// Pixels along its edges.
+    pub size: u32,
+    /// Samples of a pixel.
+    pub samples: u32,
+    /// Of the random numbers.
+    pub seed: u32,
+}
+
+/// A material with what draws for it.
+pub(super) struct Scene {
+    studio: Studio,
+    bsdf: Conductor<Lobe>,
+    drawn: Lobe,
+    compensated: bool,
+}
+
+impl Scene {
+    /// Tables are those of a set with the default set behind it.
+    ///
+    /// # Errors
+    /// [`BindError`] for a shape that the tables do not cover.
+    pub(super) fn new(tables: &Tables, look: &Look) -> Result<Self, BindError> {
+        let lobe = tables.lobe(look.sigma, look.gamma)?;
+        let compensation =
+            if look.compensated { Compensation::KullaConty } else { Compensation::None };
+        let bsdf = Conductor::new(lobe, look.fresnel).compensated(
+            tables,
+            compensation,
+            StandIn::Round,
+        )?;
+        let drawn = tables.lobe(look.sigma, look.drawn)?;
+        Ok(Self { studio: Studio::new(), bsdf, drawn, compensated: look.compensated })
+    }
+
+    /// The mean radiance of a pixel, counted from the lower left.
+    fn pixel(&self, at: [u32; 2], film: Film) -> Vec3 {
+        let sum: Vec3 = (0..film.samples).map(|i| self.sample(at, i, film)).sum();
+        sum / film.samples as f32
+    }
+
+    fn sample(&self, [x, y]: [u32; 2], index: u32, film: Film) -> Vec3 {
+        let u = numbers([x, y], film.seed, index);
+        let at = |pixel: u32, u: f32| {
+            2.0 * (pixel as f32 + 0.5 + tent(u)) / film.size as f32 - 1.0
+        };
+        let (origin, d) = self.studio.ray(at(x, u[0]), at(y, u[1]));
+        let half = origin.dot(d);
+        let nearest = origin - half * d;
+        let square = 1.0 - nearest.dot(nearest);
+        if !(square > 0.0) {
+            return self.studio.radiance(origin, d, false);
+        }
+        let n = (nearest - square.sqrt() * d).normalize();
+        self.shade(n, d, &u)
+    }
+
+    /// The light reflected against a ray at a point of the sphere: one light drawn by visible
+    /// normals, one by the lamps, with compensation one by the cosine, under the balance heuristic
+    /// (Veach 1997, section 9.2).
+    fn shade(&self, n: Vec3, d: Vec3, u: &[f32; COUNT]) -> Vec3 {
+        let frame = frame(n);
+        let to_tangent = frame.transpose();
+        let v = to_tangent * -d;
+        let m = self.drawn.sample_visible_normal(v, [u[2], u[3]]);
+        let mut lights = vec![
+            2.0 * v.dot(m) * m - v,
+            to_tangent * self.studio.sample([u[4], u[5], u[6]]),
+        ];
+        if self.compensated {
+            lights.push(by_cosine([u[7], u[8]]));
+        }
+        lights.into_iter().map(|l| self.share(n, &frame, v, l)).sum()
+    }
+
+    /// What a light adds, whichever way it was drawn.
+    fn share(&self, n: Vec3, frame: &Mat3, v: Vec3, l: Vec3) -> Vec3 {
+        let m = (v + l).normalize_or_zero();
+        let facing = v.dot(m);
+        if !(v.z > 0.0 && l.z > 0.0 && facing > 0.0) {
+            return Vec3::ZERO;
+        }
+        let towards = *frame * l;
+        let mut pdf = self.drawn.visible_normal_pdf(v, m) / (4.0 * facing);
+        pdf += self.studio.pdf(towards);
+        if self.compensated {
+            pdf += cosine_pdf(l);
+        }
+        let (f, _) = self.bsdf.eval_pdf(v, l, Transport::Radiance);
+        if !(pdf > 0.0) {
+            return Vec3::ZERO;
+        }
+        Vec3::from(f) * (l.z / pdf) * self.studio.radiance(n, towards, true)
+    }
+
+    /// The picture, from its upper left.
+    pub(super) fn picture(&self, film: Film) -> Vec<[u8; 3]> {
+        let size = film.size;
+        let pixel = |i: u32| display(self.pixel([i % size, size - 1 - i / size], film));
+        (0..size * size).into_par_iter().map(pixel).collect()
+    }
+}
+
+/// The tangent frame: x along the parallels, y along the meridians, z the normal.
+fn frame(n: Vec3) -> Mat3 {
+    let across = Vec3::new(n.z, 0.0, -n.x);
+    let length = across.length();
+    let x = if length > 1e-6 { across / length } else { Vec3::X };
+    Mat3::from_cols(x, n.cross(x), n)
+}
+
+/// A place within a pixel's tent of two pixels, about its middle.
+fn tent(u: f32) -> f32 {
+    let t = 2.0 * u - 1.0;
+    (1.0 - (1.0 - t.abs()).sqrt()).copysign(t)
+}
+
+/// A picture as a JPEG file.
+pub(super) fn jpeg(pixels: &[[u8; 3]], size: u32) -> Vec<u8> {
+    let mut file = Vec::new();
+    JpegEncoder::new_with_quality(&mut file, 90)
+        .write_image(pixels.as_flattened(), size, size, ExtendedColorType::Rgb8)
+        .expect("whole lines, in memory");
+    file
+}
