@@ -59,6 +59,14 @@ impl HeatMap {
         Ok(svg::write(&self.page()?))
     }
 
+    /// As an element of an HTML page, as [`Figure::inline_svg`](super::Figure::inline_svg).
+    ///
+    /// # Errors
+    /// As [`svg`](Self::svg).
+    pub fn inline_svg(&self, label: &str) -> Result<String, PlotError> {
+        Ok(svg::write_inline(&self.page()?, label))
+    }
+
     fn page(&self) -> Result<Canvas, PlotError> {
         let Self { columns, values, size, .. } = self;
         if *columns == 0 || values.is_empty() || !values.len().is_multiple_of(*columns) {
@@ -97,6 +105,11 @@ impl Bar {
     /// As SVG, without references to anything outside it.
     pub fn svg(&self) -> String {
         svg::write(&self.page())
+    }
+
+    /// As an element of an HTML page, as [`Figure::inline_svg`](super::Figure::inline_svg).
+    pub fn inline_svg(&self, label: &str) -> String {
+        svg::write_inline(&self.page(), label)
     }
 
     fn page(&self) -> Canvas {

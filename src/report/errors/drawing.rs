@@ -22,7 +22,7 @@ pub(super) fn scale(largest: impl Iterator<Item = f64>) -> Axis {
 }
 
 pub(super) fn bar(scale: &Axis) -> String {
-    Bar { scale: scale.clone(), width: 380.0 }.svg()
+    Bar { scale: scale.clone(), width: 380.0 }.inline_svg("the scale of the errors")
 }
 
 /// The map; of a table with one axis, a curve.
@@ -38,7 +38,7 @@ fn axis(span: &Span) -> Axis {
     Axis::marked(words::axis(span.quantity), ticks::of(span))
 }
 
-fn heat(map: &ErrorMap, y: &Span, scale: &Axis, _label: &str) -> String {
+fn heat(map: &ErrorMap, y: &Span, scale: &Axis, label: &str) -> String {
     let map = HeatMap {
         x: axis(&map.x),
         y: axis(y),
@@ -48,10 +48,10 @@ fn heat(map: &ErrorMap, y: &Span, scale: &Axis, _label: &str) -> String {
         ring: map.worst,
         size: SIZE,
     };
-    map.svg().expect("whole rows")
+    map.inline_svg(label).expect("whole rows")
 }
 
-fn curve(map: &ErrorMap, scale: &Axis, _label: &str) -> String {
+fn curve(map: &ErrorMap, scale: &Axis, label: &str) -> String {
     let key = Key::Method(Method::Table);
     let last = (map.columns - 1).max(1) as f64;
     // What is smaller than the scale's low end is rounding.
@@ -75,5 +75,5 @@ fn curve(map: &ErrorMap, scale: &Axis, _label: &str) -> String {
         curves: vec![curve],
         marks,
     };
-    Figure { panels: vec![panel], columns: 1, panel: SIZE }.svg()
+    Figure { panels: vec![panel], columns: 1, panel: SIZE }.inline_svg(label)
 }

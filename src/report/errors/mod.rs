@@ -59,9 +59,10 @@ pub(super) fn section(
                 "precision, measured anew when this page was made. They are differences: of G1, of "
                 "the CDF of the slopes drawn, of the share of light in an albedo. Each pixel is the "
                 "largest of the errors measured in it; a ring is where the certificate, the search "
-                "that ended the bake, found the table's largest."
+                "that ended the bake, found the table's largest. Black is about the rounding of "
+                "single precision."
             }
-            div class="scale" { (PreEscaped(drawing::bar(&scale))) }
+            div class="scale" style="max-width: 24rem" { (PreEscaped(drawing::bar(&scale))) }
             div class="figures" {
                 @for (table, map) in drawn() { (figure(table, map, &scale)) }
             }
@@ -79,7 +80,7 @@ pub(super) fn section(
             ul {
                 @for (table, why) in missing.iter().take(IN_WORDS) {
                     li {
-                        code { (table.name) } ": " (words::certificate(table)) " " (sentence(why))
+                        code { (table.name) } ": " (words::sentence(why)) @for line in words::lines(table) { " " (line) }
                     }
                 }
                 @if missing.len() > IN_WORDS { li { (missing.len() - IN_WORDS) " more" } }
@@ -94,17 +95,10 @@ fn figure(table: &Table, map: &ErrorMap, scale: &crate::plot::Axis) -> Markup {
             (PreEscaped(drawing::drawn(table, map, scale)))
             figcaption {
                 strong { (words::what(table)) } " " code { (table.name) } ". "
-                (words::certificate(table)) " " (words::map(map))
+                (words::certified(table)) " " (words::map(map))
             }
         }
     }
-}
-
-/// A reason as a sentence by itself.
-fn sentence(why: &str) -> String {
-    let mut letters = why.chars();
-    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-    format!("{first}{}.", letters.as_str())
 }
 
 #[cfg(test)]

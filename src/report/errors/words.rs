@@ -1,9 +1,10 @@
 //! Maps of errors in words.
 
-use microfacet_sampler::{Kind, Masking, Reflectance, Table};
+use microfacet_sampler::{Axis, Kind, Masking, Reflectance, Table};
 
 use crate::validate::certificate::worst_error;
 use crate::validate::error_map::{ErrorMap, Quantity};
+use crate::words::{self, certificate};
 
 /// What a table is of.
 pub(super) fn what(table: &Table) -> String {
@@ -67,47 +68,58 @@ pub(super) fn number(x: f64) -> String {
     }
 }
 
-/// An error to three digits.
+/// An error to three digits, which no line breaks.
 fn error(x: f64) -> String {
-    if x == 0.0 { "0".into() } else { format!("{x:.2e}").replace('-', "−") }
+    words::error(x).replace('-', "−")
+}
+
+/// A quantity with its value, which no line breaks.
+fn value(quantity: Quantity, x: f64) -> String {
+    let degrees = if quantity == Quantity::Azimuth { "°" } else { "" };
+    format!("{}\u{a0}=\u{a0}{}{degrees}", symbol(quantity), number(x)).replace(' ', "\u{a0}")
 }
 
 /// The largest error that a certificate states, and where it is.
-pub(super) fn certificate(table: &Table) -> String {
+pub(super) fn certified(table: &Table) -> String {
     let worst = worst_error(table);
     if worst == f64::INFINITY {
         return "It has no certificate.".into();
     }
-    let mut places = Vec::new();
-    for axis in &table.axes {
+    let place = |axis: &Axis| {
         let quantity = Quantity::of(axis);
-        if let Some(x) = quantity.worst(table) {
-            let degrees = if quantity == Quantity::Azimuth { "°" } else { "" };
-            places.push(format!("{} = {}{degrees}", symbol(quantity), number(x)));
-        }
-    }
+        Some(value(quantity, quantity.worst(table)?))
+    };
+    let places: Vec<String> = table.axes.iter().filter_map(place).collect();
     let at = if places.is_empty() { String::new() } else { format!(" at {}", places.join(", ")) };
     format!("Certified to {}{at}.", error(worst))
+}
+
+/// The whole certificate, as sentences.
+pub(super) fn lines(table: &Table) -> Vec<String> {
+    certificate::lines(table).iter().map(|line| sentence(line)).collect()
+}
+
+/// A text as a sentence by itself.
+pub(super) fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str())
 }
 
 /// What a map shows, for its caption.
 pub(super) fn map(map: &ErrorMap) -> String {
     let rows = map.errors.len() / map.columns;
     let grid = match rows {
-        1 => format!("{} places along the axis", map.columns),
-        _ => format!("{} × {rows} pixels", map.columns),
+        1 => format!("{} pixels", map.columns),
+        _ => format!("{}\u{a0}×\u{a0}{rows} pixels", map.columns),
     };
     let largest = map.largest();
     let mut text = if largest.is_nan() {
         "Some errors here are not a number: report it.".to_owned()
     } else {
-        format!("The largest here is {}", error(largest))
+        format!("Here it is at most {}", error(largest))
     };
-    let fixed: Vec<String> = map
-        .fixed
-        .iter()
-        .map(|(quantity, x)| format!("{} = {}", symbol(*quantity), number(*x)))
-        .collect();
+    let fixed: Vec<String> = map.fixed.iter().map(|&(quantity, x)| value(quantity, x)).collect();
     if !fixed.is_empty() {
         text += &format!(", for {}", fixed.join(", "));
     }
@@ -115,7 +127,7 @@ pub(super) fn map(map: &ErrorMap) -> String {
     if !over.is_empty() {
         text += &format!(", over all {}", over.join(" and "));
     }
-    text + &format!("; {grid}, {} errors.", map.points)
+    text + &format!("; {} errors in {grid}.", map.points)
 }
 
 /// What is seen, for those who do not see it.

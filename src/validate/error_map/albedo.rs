@@ -39,8 +39,7 @@ impl<'a> Directional<'a> {
         let (view, _) = spec.axes.split_last().ok_or(Unmeasured::NoAxes)?;
         let mut spans = materials(&spec);
         // Views are spaced as for the material of the largest error.
-        let worst = |span: &Span| span.quantity.worst(table).and_then(|worst| span.fraction(worst));
-        let at = coordinates(&spec, spans.iter().map(|span| worst(span).unwrap_or(0.5)));
+        let at = coordinates(&spec, spans.iter().map(|span| span.worst(table).unwrap_or(0.5)));
         let site = Site::new(&spec.axes, &at);
         spans.push(Span::new(Quantity::Cosine, promised_views(view, site)));
         Ok(Self { table, spec, spans })

@@ -16,7 +16,7 @@ pub struct Sides {
 
 /// Most pixels along x and y, and along x alone.
 const PIXELS: [usize; 2] = [48, 32];
-const ALONE: usize = 192;
+const ALONE: usize = 96;
 /// Fewest pixels along either.
 const FEWEST: usize = 6;
 /// Places in each cell of an axis, where there is time for so many.
@@ -26,7 +26,7 @@ const IN_PIXEL: usize = 4;
 /// Places along axes of which the largest error is shown: random numbers, and views of albedos.
 const OVER: [usize; 2] = [41, 6];
 /// Seconds of one thread that a map may take.
-const LIMIT: f64 = 0.9;
+const LIMIT: f64 = 1.2;
 
 /// Pairs of quantities for y and x, the first that a table has for the map that says most of it.
 const FIRST: [(Quantity, Quantity); 9] = [
@@ -126,19 +126,25 @@ impl Layout {
         self.counts[1..].iter().product()
     }
 
-    /// All places, the last axis fastest: evenly spaced with both ends; on the axes that are not
-    /// shown and have one place, where the certificate's largest error is, or the middle.
-    pub(super) fn places(&self, table: &Table, spans: &[Span]) -> Vec<Place> {
+    /// All places, the last axis fastest: evenly spaced with both ends, one of them moved to where
+    /// the certificate has its largest error. That is the only place, or else the middle, along
+    /// axes that are not shown and have one.
+    pub(super) fn places(&self, table: &Table, spans: &[Span], sides: Sides) -> Vec<Place> {
         let along = |axis: usize| -> Vec<f64> {
             let count = self.counts[axis];
-            let worst = || {
-                let span = spans.get(axis)?;
-                span.fraction(span.quantity.worst(table)?)
-            };
-            match count {
-                1 => vec![worst().unwrap_or(0.5)],
-                _ => (0..count).map(|i| i as f64 / (count - 1) as f64).collect(),
+            let worst = spans.get(axis).and_then(|span| span.worst(table));
+            if count == 1 {
+                return vec![worst.unwrap_or(0.5)];
             }
+            let mut all: Vec<f64> = (0..count).map(|i| i as f64 / (count - 1) as f64).collect();
+            if let Some(worst) = worst {
+                // Within the pixel that it lies in.
+                let each = count / self.pixels_along(axis, sides);
+                let first = (worst * (count / each) as f64) as usize * each;
+                let nearest = (worst * (count - 1) as f64).round() as usize;
+                all[nearest.clamp(first, first + each - 1).min(count - 1)] = worst;
+            }
+            all
         };
         let mut all: Vec<Place> = vec![[0.0; AXES]];
         for axis in 0..AXES {
@@ -153,11 +159,20 @@ impl Layout {
         all
     }
 
-    /// Axes that are not shown: those that stay at a value, and those of which the largest error is
+    /// Pixels along an axis; places where it is not shown.
+    fn pixels_along(&self, axis: usize, sides: Sides) -> usize {
+        match axis {
+            axis if axis == sides.x => self.pixels[0],
+            axis if Some(axis) == sides.y => self.pixels[1],
+            _ => self.counts[axis],
+        }
+    }
+
+    /// Of so many axes those that are not shown: those that stay at a value, and those of which the largest error is
     /// shown.
-    pub(super) fn others(&self, sides: Sides) -> [Vec<usize>; 2] {
+    pub(super) fn others(&self, sides: Sides, axes: usize) -> [Vec<usize>; 2] {
         let hidden: Vec<usize> =
-            (0..AXES).filter(|&i| i != sides.x && Some(i) != sides.y).collect();
+            (0..axes).filter(|&i| i != sides.x && Some(i) != sides.y).collect();
         let (over, fixed) = hidden.into_iter().partition(|&i| self.over[i]);
         [fixed, over]
     }
@@ -166,13 +181,14 @@ impl Layout {
     pub(super) fn reduced(&self, sides: Sides, errors: &[f64]) -> Vec<f64> {
         let [columns, rows] = self.pixels;
         let mut pixels = vec![0.0; columns * rows];
-        let stride = |axis: usize| self.counts[axis + 1..].iter().product::<usize>();
-        let pixel = |i: usize, axis: usize, pixels: usize| {
-            i / stride(axis) % self.counts[axis] / (self.counts[axis] / pixels)
+        let pixel = |i: usize, axis: usize| {
+            let stride: usize = self.counts[axis + 1..].iter().product();
+            let each = self.counts[axis] / self.pixels_along(axis, sides);
+            i / stride % self.counts[axis] / each
         };
         for (i, &error) in errors.iter().enumerate() {
-            let row = sides.y.map_or(0, |y| pixel(i, y, rows));
-            let into = &mut pixels[row * columns + pixel(i, sides.x, columns)];
+            let row = sides.y.map_or(0, |y| pixel(i, y));
+            let into = &mut pixels[row * columns + pixel(i, sides.x)];
             *into = worse(*into, error);
         }
         pixels

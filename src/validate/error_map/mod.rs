@@ -136,12 +136,12 @@ pub fn measure(
     let ruler = ruler(set, table)?;
     let spans = ruler.spans();
     let layout = Layout::new(table, sides);
-    let places = layout.places(table, spans);
+    let places = layout.places(table, spans, sides);
     stage.split(places.len());
     let errors = ruler.errors(&places, layout.run(), stage)?;
-    let worst = |axis: usize| spans[axis].fraction(spans[axis].quantity.worst(table)?);
+    let worst = |axis: usize| spans[axis].worst(table);
     let y = sides.y.map_or(Some(0.5), worst);
-    let [fixed, over]: [Vec<usize>; 2] = layout.others(sides);
+    let [fixed, over]: [Vec<usize>; 2] = layout.others(sides, spans.len());
     let place = places.first().copied().unwrap_or_default();
     Ok(ErrorMap {
         columns: layout.pixels[0],

@@ -88,14 +88,25 @@ impl Span {
 
     /// The share of the axis at which it has a value; `None` for a value beyond its ends.
     pub fn fraction(&self, value: f64) -> Option<f64> {
-        let turns: &[f64] =
-            if self.quantity == Quantity::Azimuth { &[0.0, 360.0, -360.0] } else { &[0.0] };
-        turns.iter().find_map(|turn| self.within(value + turn))
+        if self.quantity == Quantity::Azimuth {
+            let first = self.value(0.0);
+            // Of a full turn less rounding, the beginning is meant.
+            let beyond = (value - first).rem_euclid(360.0);
+            return self.within(if beyond > 360.0 - 1e-6 { first } else { first + beyond });
+        }
+        self.within(value)
+    }
+
+    /// The share of the axis at which the certificate of a table has its largest error.
+    pub(super) fn worst(&self, table: &Table) -> Option<f64> {
+        self.fraction(self.quantity.worst(table)?)
     }
 
     fn within(&self, value: f64) -> Option<f64> {
         let [first, last] = [0.0, 1.0].map(|share| self.value(share));
-        let same = |end: f64| end == value || (end - value).abs() <= SAME * end.abs();
+        let same = |end: f64| {
+            end == value || value.is_finite() && (end - value).abs() <= SAME * value.abs()
+        };
         // Before all others, for an axis of one value is both.
         if let Some(end) = [(first, 0.0), (last, 1.0)].into_iter().find(|(end, _)| same(*end)) {
             return Some(end.1);
@@ -129,10 +140,17 @@ mod tests {
                 assert!((back - share).abs() < 1e-9, "{share}: {back}");
             }
         }
+        // Neither is the end where it is infinite.
+        assert!((up.fraction(1.0).unwrap() - 0.5).abs() < 1e-9);
+        assert!((down.fraction(2.0).unwrap() - 0.5).abs() < 1e-9);
+        assert_eq!([up.fraction(f64::INFINITY), down.fraction(f64::INFINITY)], [Some(1.0); 2]);
         assert_eq!([up.fraction(-1.0), down.fraction(1.4), up.fraction(f64::NAN)], [None; 3]);
         // A circle closes, and an axis of one value has no length.
         let circle = Span::new(Quantity::Azimuth, |t| 30.0 + 360.0 * t);
         assert!((circle.fraction(-60.0).unwrap() - 0.75).abs() < 1e-9);
+        let late = Span::new(Quantity::Azimuth, |t| 340.0 + 350.0 * t);
+        assert!((late.fraction(-70.0).unwrap() - 310.0 / 350.0).abs() < 1e-9);
+        assert_eq!((late.fraction(-20.0), late.fraction(335.0)), (Some(0.0), None));
         let one = Span::new(Quantity::Gamma, |_| 2.0);
         assert_eq!((one.fraction(2.0), one.fraction(3.0)), (Some(0.0), None));
     }
