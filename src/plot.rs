@@ -5,6 +5,7 @@ mod axis;
 mod canvas;
 mod clip;
 mod figures;
+mod heat;
 mod ink;
 mod label;
 mod layout;
@@ -18,6 +19,7 @@ use std::fmt;
 
 pub use axis::Axis;
 pub use figures::{FIGURES, Listed, figure};
+pub use heat::{Bar, HeatMap};
 pub use ink::{Dash, Key, Method};
 pub use sheet::{Content, Sheet, Tile};
 

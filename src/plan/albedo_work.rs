@@ -43,7 +43,7 @@ impl AlbedoWork {
         // Nobody climbs along an axis of one node.
         let moving = spec.axes.iter().filter(|axis| axis.len() > 1).count() as f64;
         let climbed = CLIMBED * climbed_count(spec) as f64 * moving / spec.axes.len() as f64;
-        let place = PLACE * node;
+        let place = place_seconds(spec);
         Self {
             nodes: node * spec.nodes() as f64,
             interior: place * points::interior_count(spec) as f64,
@@ -60,6 +60,11 @@ impl AlbedoWork {
     pub(crate) fn doubling(&self) -> f64 {
         self.nodes + self.edges + self.climbs
     }
+}
+
+/// Seconds of one thread for a place of the certificate, of a shape that was prepared.
+pub(crate) fn place_seconds(spec: &AlbedoSpec) -> f64 {
+    1e-6 * PLACE * node_microseconds(spec)
 }
 
 /// Seconds of one thread to bake and to certify albedo tables, with the doublings expected.

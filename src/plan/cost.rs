@@ -8,10 +8,11 @@ use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::internals::describe;
 use microfacet_sampler::{
     Axis, Interpolation, Kind, LobeEntry, Mapping, Masking, MaterialEntry, Precision, Provenance,
+    Table,
 };
 
 use super::Plan;
-use super::albedo_work::{albedo_seconds, expected_bytes};
+use super::albedo_work::{albedo_seconds, expected_bytes, place_seconds};
 use crate::bake::albedo::{AlbedoError, AlbedoSpec};
 use crate::bake::{self};
 use crate::distribution::{Distribution, DistributionKind, Named};
@@ -151,16 +152,14 @@ fn distribution_tables(level: Level) -> [(Kind, Vec<Axis>); 4] {
 /// The seconds of one thread to bake the four tables of a distribution outside the family, and
 /// those to certify them.
 pub(crate) fn distribution_seconds(distribution: &Distribution, level: Level) -> [f64; 2] {
-    // Microseconds for a node of either slope table (the other tables are far smaller) and for a
-    // normal of the certificate, fitted as in `albedo_work`. A GTR has the longest tail.
     let scale = match distribution {
         Distribution::Named(Named {
             kind: DistributionKind::Gauss | DistributionKind::Schlick,
             ..
         }) => 1.25,
-        _ => 1.9,
+        _ => OF_LONG_TAILS,
     };
-    let [node, normal] = [65.0, 30.0];
+    let [node, normal] = OF_DISTRIBUTIONS;
     let nodes = |(_, axes): &(Kind, Vec<Axis>)| match &axes[..] {
         [first, last] => first.len() * last.len(),
         _ => 0,
@@ -170,23 +169,54 @@ pub(crate) fn distribution_seconds(distribution: &Distribution, level: Level) ->
     seconds.map(|microseconds| 1e-6 * scale * microseconds)
 }
 
-/// Seconds of one thread to bake a table, and to certify it.
-fn spec_seconds(spec: &TableSpec) -> [f64; 2] {
-    // Nanoseconds for a node and for a point of the certificate: fitted as in `albedo_work` to
-    // ranges of shapes.
-    let [node, point] = match spec.kind {
+/// Microseconds for a node of either slope table of a distribution (the other tables are far
+/// smaller) and for a normal of the certificate, fitted as in `albedo_work`; and how much longer
+/// the longest tails take, those of GTR.
+const OF_DISTRIBUTIONS: [f64; 2] = [65.0, 30.0];
+const OF_LONG_TAILS: f64 = 1.9;
+
+/// Nanoseconds for a node and for a point of the certificate: fitted as in `albedo_work` to ranges
+/// of shapes.
+const fn nanoseconds(kind: Kind) -> [f64; 2] {
+    match kind {
         Kind::Shadowing => [320.0, 230.0],
         Kind::VisibleSlopeConditional => [1600.0, 240.0],
         _ => [8500.0, 800.0],
-    };
-    let shapes = &spec.shapes.nodes;
+    }
+}
+
+/// Nanoseconds to prepare the shapes of a table, and how much longer each of its nodes and points
+/// takes than of a range.
+fn prepared(shapes: &[f64]) -> [f64; 2] {
     // A single shape is prepared for its table alone, in some milliseconds, and its rows are not
     // shared with others. Below the seam the peeled part takes longer.
-    let [prepare, longer] = match shapes[..] {
+    match shapes[..] {
         [s] if s > s_of_gamma(GAMMA_WHOLE) => [7e6, 4.2],
         [_] => [3e6, 1.9],
         _ => [0.0, 1.0],
-    };
+    }
+}
+
+/// Seconds of one thread to measure the error of a table at one place: longer for the shapes or
+/// distributions that take longest.
+pub(crate) fn point_seconds(table: &Table) -> f64 {
+    match table.kind {
+        Kind::Albedo => AlbedoSpec::of_table(table, 1e-6).map_or(0.0, |spec| place_seconds(&spec)),
+        // Two lookups, of which one integrates over the views.
+        Kind::AlbedoAverage => 40e-6,
+        Kind::RadialShadowing | Kind::RadialDensity | Kind::RadialSlope => {
+            1e-6 * OF_LONG_TAILS * OF_DISTRIBUTIONS[1]
+        }
+        Kind::RadialConditional => 1e-6 * radial::SLANTED * OF_LONG_TAILS * OF_DISTRIBUTIONS[1],
+        kind => 1e-9 * nanoseconds(kind)[1] * prepared(&table.axes[0].nodes)[1],
+    }
+}
+
+/// Seconds of one thread to bake a table, and to certify it.
+fn spec_seconds(spec: &TableSpec) -> [f64; 2] {
+    let [node, point] = nanoseconds(spec.kind);
+    let shapes = &spec.shapes.nodes;
+    let [prepare, longer] = prepared(shapes);
     let is_exact = spec.shapes.interpolation == Interpolation::Nodes;
     let measured = if is_exact { shapes.len() } else { 4 * shapes.len() - 3 };
     let places = (measured * POINTS) as f64;

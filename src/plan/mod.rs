@@ -19,7 +19,9 @@ use microfacet_sampler::{Ellipsoid, MaterialEntry, StudentT};
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
 pub(crate) use albedo_work::{AlbedoWork, albedo_seconds};
 pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, seconds, set_cost};
-pub(crate) use cost::{albedo_headers, distribution_seconds, on_threads, specs_seconds};
+pub(crate) use cost::{
+    albedo_headers, distribution_seconds, on_threads, point_seconds, specs_seconds,
+};
 pub use required_shapes::RequiredShapes;
 
 use microfacet_common::shape::s_of_gamma;

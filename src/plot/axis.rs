@@ -8,6 +8,8 @@ pub struct Axis {
     low: f64,
     high: f64,
     log: bool,
+    /// Ticks of an axis whose scale is neither even nor logarithmic, the most important first.
+    marks: Vec<Tick>,
 }
 
 /// A mark on an axis.
@@ -26,7 +28,7 @@ impl Axis {
     /// Unless `low < high`, both finite.
     pub fn linear(label: impl Into<String>, low: f64, high: f64) -> Self {
         assert!(low < high && low.is_finite() && high.is_finite(), "a range of {low} to {high}");
-        Self { label: label.into(), low, high, log: false }
+        Self { label: label.into(), low, high, log: false, marks: Vec::new() }
     }
 
     /// An axis with a logarithmic scale.
@@ -35,7 +37,25 @@ impl Axis {
     /// Unless `0 < low < high`, both finite.
     pub fn log(label: impl Into<String>, low: f64, high: f64) -> Self {
         assert!(0.0 < low && low < high && high.is_finite(), "a range of {low} to {high}");
-        Self { label: label.into(), low, high, log: true }
+        Self { label: label.into(), low, high, log: true, marks: Vec::new() }
+    }
+
+    /// An axis from 0 to 1 of a quantity on a scale of its own: numbers with their places, the most
+    /// important first. Where there is no room for all, the first are shown.
+    ///
+    /// # Panics
+    /// Without a number, or if one stands outside the axis.
+    pub fn marked(
+        label: impl Into<String>,
+        numbers: impl IntoIterator<Item = (f64, String)>,
+    ) -> Self {
+        let tick = |(at, label): (f64, String)| {
+            assert!((0.0..=1.0).contains(&at), "{label} at {at}");
+            Tick { at, label: Some(label) }
+        };
+        let marks: Vec<Tick> = numbers.into_iter().map(tick).collect();
+        assert!(!marks.is_empty(), "an axis without a number");
+        Self { marks, ..Self::linear(label, 0.0, 1.0) }
     }
 
     /// The value at a fraction of the axis's length.
@@ -60,6 +80,9 @@ impl Axis {
     /// Ticks where there is room for so many numbers.
     pub(super) fn ticks(&self, room: usize) -> Vec<Tick> {
         let room = room.max(2) as f64;
+        if !self.marks.is_empty() {
+            return self.marks_apart(1.0 / room);
+        }
         if self.log {
             let ticks = self.log_ticks(room);
             // Less than a decade may hold one number of 1, 2 and 5, which says no scale.
@@ -68,6 +91,17 @@ impl Axis {
             }
         }
         self.even_ticks(room)
+    }
+
+    /// The most important marks that are no nearer to each other than this.
+    fn marks_apart(&self, gap: f64) -> Vec<Tick> {
+        let mut kept: Vec<Tick> = Vec::new();
+        for tick in &self.marks {
+            if kept.iter().all(|other| (other.at - tick.at).abs() >= gap) {
+                kept.push(tick.clone());
+            }
+        }
+        kept
     }
 
     /// Multiples of 1, 2 or 5 times a power of ten.
@@ -162,6 +196,15 @@ mod tests {
         assert_eq!(labels(&Axis::linear("x", -1.0, 1.0), 5), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
         assert_eq!(labels(&Axis::linear("x", 0.0, 90.0), 6), ["0", "20", "40", "60", "80"]);
         assert_eq!(labels(&Axis::linear("x", 0.0, 3e4), 4), ["0", "10000", "20000", "30000"]);
+    }
+
+    #[test]
+    fn where_marks_crowd_the_first_of_a_list_are_shown() {
+        let numbers = [(0.0, "2"), (1.0, "∞"), (0.5, "5"), (0.52, "6"), (0.9, "50")];
+        let axis = Axis::marked("γ", numbers.map(|(at, number)| (at, number.to_owned())));
+        assert_eq!(labels(&axis, 5), ["2", "∞", "5"]);
+        assert_eq!(labels(&axis, 11), ["2", "∞", "5", "50"]);
+        assert_eq!((axis.fraction(0.25), axis.value(0.25)), (0.25, 0.25));
     }
 
     #[test]

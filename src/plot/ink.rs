@@ -86,6 +86,9 @@ const NTH: [Color; 9] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, OLIVE, WI
 const FALSE: [Color; 5] =
     [[0, 0, 4], [80, 18, 123], [182, 54, 121], [251, 136, 97], [252, 253, 191]];
 
+/// Among false colours, what is not a number: a hue that no number has.
+pub(super) const NOT_A_NUMBER: Color = SKY;
+
 /// The false colour at a fraction of a scale; beyond its ends, that of the end.
 pub(super) fn false_color(fraction: f64) -> Color {
     between(&FALSE, fraction)

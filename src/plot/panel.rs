@@ -3,13 +3,13 @@
 use super::canvas::{Anchor, At, Canvas, Shape};
 use super::clip::{Place, clip};
 use super::ink::{BLACK, Color, Dash, GRID};
-use super::{Curve, Panel, label, text};
+use super::{Axis, Curve, Panel, label, text};
 
 /// Margins between a panel's area and what its axes span.
 pub(super) const LEFT: f64 = 78.0;
 pub(super) const RIGHT: f64 = 18.0;
 const ABOVE: f64 = 34.0;
-const BELOW: f64 = 50.0;
+pub(super) const BELOW: f64 = 50.0;
 
 /// Width of a curve.
 pub(super) const CURVE: f64 = 2.0;
@@ -36,7 +36,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    fn at(&self, [x, y]: Place) -> At {
+    pub(super) fn at(&self, [x, y]: Place) -> At {
         [self.left + self.width * x, self.top + self.height * (1.0 - y)]
     }
 }
@@ -51,7 +51,7 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel, corner: At, size: At) {
     };
     let middle = frame.left + 0.5 * frame.width;
     canvas.text([middle, corner[1] + 22.0], &panel.title, TITLE, Anchor::Middle, BLACK);
-    axes(canvas, panel, &frame);
+    axes(canvas, [&panel.x, &panel.y], &frame, true);
     let curves = |dash| panel.curves.iter().filter(move |curve| curve.dash == dash);
     let mut drawn = Vec::new();
     for curve in [Dash::Solid, Dash::Dashed, Dash::Dotted].into_iter().flat_map(curves) {
@@ -60,25 +60,31 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel, corner: At, size: At) {
     marks(canvas, panel, &frame, &drawn);
 }
 
-fn axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
+/// Draws the frame with the numbers of its axes and, if asked for, lines across at these.
+pub(super) fn axes(
+    canvas: &mut Canvas,
+    [x_axis, y_axis]: [&Axis; 2],
+    frame: &Frame,
+    has_grid: bool,
+) {
     let rooms = [frame.width / ROOM[0], frame.height / ROOM[1]].map(|room| room as usize);
     let (mut ticks, mut numbers) = (Vec::new(), Vec::new());
-    for tick in panel.x.ticks(rooms[0]) {
+    for tick in x_axis.ticks(rooms[0]) {
         let [x, y] = frame.at([tick.at, 0.0]);
         let long = if tick.label.is_some() { TICK } else { 0.5 * TICK };
-        if tick.label.is_some() {
+        if has_grid && tick.label.is_some() {
             canvas.line(vec![[x, y], frame.at([tick.at, 1.0])], GRID, 1.0, Dash::Solid);
         }
         ticks.push(vec![[x, y], [x, y + long]]);
         numbers.push(([x, y + TICK + NUMBERS + 2.0], tick.label, Anchor::Middle));
     }
     let mut widest: f64 = 0.0;
-    for tick in panel.y.ticks(rooms[1]) {
+    for tick in y_axis.ticks(rooms[1]) {
         let width = tick.label.as_ref().map_or(0.0, |label| text::width(label, NUMBERS));
         widest = widest.max(width);
         let [x, y] = frame.at([0.0, tick.at]);
         let long = if tick.label.is_some() { TICK } else { 0.5 * TICK };
-        if tick.label.is_some() {
+        if has_grid && tick.label.is_some() {
             canvas.line(vec![[x, y], frame.at([1.0, tick.at])], GRID, 1.0, Dash::Solid);
         }
         ticks.push(vec![[x - long, y], [x, y]]);
@@ -95,9 +101,9 @@ fn axes(canvas: &mut Canvas, panel: &Panel, frame: &Frame) {
         }
     }
     let [middle, bottom] = frame.at([0.5, 0.0]);
-    canvas.text([middle, bottom + 38.0], &panel.x.label, LETTERS, Anchor::Middle, BLACK);
+    canvas.text([middle, bottom + 38.0], &x_axis.label, LETTERS, Anchor::Middle, BLACK);
     let [left, half] = frame.at([0.0, 0.5]);
-    canvas.turned_text([left - TICK - 4.0 - widest - 10.0, half], &panel.y.label, LETTERS);
+    canvas.turned_text([left - TICK - 4.0 - widest - 10.0, half], &y_axis.label, LETTERS);
 }
 
 /// Draws a curve; returns its parts.

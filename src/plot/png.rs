@@ -1,8 +1,10 @@
 //! A page as PNG.
 
+use std::collections::BTreeSet;
 use std::io::Cursor;
 
 use ab_glyph::OutlineCurve;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 use tiny_skia::{
     ColorU8, FillRule, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke, StrokeDash,
@@ -15,6 +17,9 @@ use super::{PlotError, text};
 
 /// Pixels of the image along one of the page.
 pub(super) const SCALE: u32 = 2;
+
+/// So many colours are few.
+const FEW: usize = 32;
 
 /// The page as an RGB image, [`SCALE`] times its size.
 ///
@@ -35,9 +40,24 @@ pub(super) fn write(canvas: &Canvas) -> Result<Vec<u8>, PlotError> {
 
 fn encode(rgb: &[u8], [width, height]: [u32; 2]) -> ImageResult<Vec<u8>> {
     let mut file = Cursor::new(Vec::new());
-    let encoder = image::codecs::png::PngEncoder::new(&mut file);
+    let encoder = if has_few_colors(rgb) {
+        // Differences of neighbours, as other filters take them, have more values than a few
+        // colours.
+        PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::NoFilter)
+    } else {
+        PngEncoder::new(&mut file)
+    };
     encoder.write_image(rgb, width, height, ExtendedColorType::Rgb8)?;
     Ok(file.into_inner())
+}
+
+/// Whether an image has at most [`FEW`] colours.
+fn has_few_colors(rgb: &[u8]) -> bool {
+    let mut colors = BTreeSet::new();
+    rgb.chunks_exact(3).all(|color| {
+        colors.insert(color);
+        colors.len() <= FEW
+    })
 }
 
 /// An image of whole lines of pixels, as a file by itself.

@@ -1,8 +1,8 @@
 //! Pictures in rows and columns, in their own colours or in false ones, with a scale of these.
 
 use super::canvas::{Anchor, Canvas, Shape};
-use super::ink::{BLACK, Color, Dash, false_color};
-use super::{Axis, PlotError, png, svg};
+use super::ink::{BLACK, Color, false_color};
+use super::{Axis, PlotError, heat, png, svg};
 
 /// What a picture shows, line by line from its upper left corner.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,7 +94,8 @@ impl Sheet {
                 canvas.text(at, &tile.caption, NUMBERS, Anchor::Middle, BLACK);
             }
         }
-        self.bar(&mut canvas, [0.5 * (width - BAR[0]), foot + 12.0]);
+        let corner = [0.5 * (width - BAR[0]), foot + 12.0];
+        heat::bar(&mut canvas, &self.scale, corner, BAR, STEPS);
         Ok(canvas)
     }
 
@@ -115,22 +116,6 @@ impl Sheet {
             return Err(PlotError::Drawing(why));
         }
         Ok(Shape::Image { corner, size: [TILE; 2], columns: edge, pixels })
-    }
-
-    /// The scale: false colours with their numbers.
-    fn bar(&self, canvas: &mut Canvas, [left, top]: [f64; 2]) {
-        let pixels = (0..STEPS).map(|i| false_color((i as f64 + 0.5) / STEPS as f64)).collect();
-        let shape = Shape::Image { corner: [left, top], size: BAR, columns: STEPS, pixels };
-        canvas.shapes.push(shape);
-        let bottom = top + BAR[1];
-        for tick in self.scale.ticks((BAR[0] / 62.0) as usize) {
-            let x = left + BAR[0] * tick.at;
-            let Some(label) = tick.label else { continue };
-            canvas.line(vec![[x, bottom], [x, bottom + 4.0]], BLACK, 1.0, Dash::Solid);
-            canvas.text([x, bottom + NUMBERS + 5.0], &label, NUMBERS, Anchor::Middle, BLACK);
-        }
-        let at = [left + 0.5 * BAR[0], bottom + 36.0];
-        canvas.text(at, &self.scale.label, LETTERS, Anchor::Middle, BLACK);
     }
 }
 

@@ -49,7 +49,7 @@ pub fn interior_references(
 ) -> Result<Vec<Reference>, AlbedoError> {
     let points = interior(spec);
     stage.split(points.len());
-    references(spec, points, stage)
+    references(spec, points, true, stage)
 }
 
 /// The model's values at corners, and in the middle of every cell along every edge.
@@ -59,19 +59,22 @@ pub fn interior_references(
 pub fn edge_references(spec: &AlbedoSpec, stage: &Stage) -> Result<Vec<Reference>, AlbedoError> {
     let points = edges(spec);
     stage.split(points.len());
-    references(spec, points, stage)
+    references(spec, points, true, stage)
 }
 
+/// The model's values, with those of the lobe that usually stands in if these are asked for.
 fn references(
     spec: &AlbedoSpec,
     points: Vec<Point>,
+    with_stand_in: bool,
     stage: &Stage,
 ) -> Result<Vec<Reference>, AlbedoError> {
     let integrand = Integrand::new(&spec.reflectance)?;
     let finest = if spec.reflectance.indices().is_some() { FINEST_OF_KINKS } else { 0.0 };
     let tolerance = (FINER * spec.tolerance).max(finest);
     let gammas = points.iter().map(|point| point.site.gamma);
-    let stand_in = spec.lobe.stand_in().filter(|_| spec.reflectance == Reflectance::Moments);
+    let has_stand_in = with_stand_in && spec.reflectance == Reflectance::Moments;
+    let stand_in = spec.lobe.stand_in().filter(|_| has_stand_in);
     Models::with(&spec.lobe, gammas, tolerance, |models| {
         let one = |point: &Point| {
             let site = &point.site;
@@ -137,23 +140,8 @@ fn figures(
     stage: &Stage,
 ) -> Result<BTreeMap<String, f64>, AlbedoError> {
     let masking = table.subject.masking.unwrap_or_default();
-    // A table of a single lobe is read once.
-    let own = match (&spec.lobe, references.first()) {
-        (AlbedoLobe::Family(_), _) | (_, None) => None,
-        (_, Some(at)) => Some(Reading::from_table(table, at.site)?),
-    };
-    let measured = |Reference { site, v, exact, .. }: &Reference| {
-        let got = match &own {
-            Some(own) => own.at(*v),
-            None => Reading::from_table(table, *site)?.at(*v),
-        };
-        let exact = exact.of(masking);
-        let exact = match spec.reflectance {
-            Reflectance::Moments => [&exact[..], &[exact[0] + exact[1]]].concat(),
-            _ => exact.to_vec(),
-        };
-        Ok(got.iter().zip(&exact).map(|(got, exact)| (got - exact).abs()).collect())
-    };
+    let reader = Reader::new(spec, table, references.first())?;
+    let measured = |at: &Reference| reader.errors(at);
     let errors = measured_at(references, measured)?;
     let found = climbed(spec, &errors, measured, stage)?;
     let found: Vec<Errors<'_>> = found.iter().map(|(at, errors)| (at, errors.clone())).collect();
@@ -164,6 +152,85 @@ fn figures(
         figures.insert("shortcut_max_error".into(), round_up(worst));
     }
     Ok(figures)
+}
+
+/// Reads one table of directional albedos.
+struct Reader<'a> {
+    spec: &'a AlbedoSpec,
+    table: &'a Table,
+    /// A table of a single lobe is read once.
+    own: Option<Reading>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(
+        spec: &'a AlbedoSpec,
+        table: &'a Table,
+        first: Option<&Reference>,
+    ) -> Result<Self, MaterialError> {
+        let own = match (&spec.lobe, first) {
+            (AlbedoLobe::Family(_), _) | (_, None) => None,
+            (_, Some(at)) => Some(Reading::from_table(table, at.site)?),
+        };
+        Ok(Self { spec, table, own })
+    }
+
+    /// The errors of all quantities.
+    fn errors(
+        &self,
+        Reference { site, v, exact, .. }: &Reference,
+    ) -> Result<Vec<f64>, MaterialError> {
+        let got = match &self.own {
+            Some(own) => own.at(*v),
+            None => Reading::from_table(self.table, *site)?.at(*v),
+        };
+        let exact = exact.of(self.table.subject.masking.unwrap_or_default());
+        let exact = match self.spec.reflectance {
+            Reflectance::Moments => [&exact[..], &[exact[0] + exact[1]]].concat(),
+            _ => exact.to_vec(),
+        };
+        Ok(got.iter().zip(&exact).map(|(got, exact)| (got - exact).abs()).collect())
+    }
+}
+
+/// The largest error of any quantity of one table at each of some places; each is a step of the
+/// stage.
+pub(super) fn errors_at(
+    spec: &AlbedoSpec,
+    table: &Table,
+    points: Vec<Point>,
+    stage: &Stage,
+) -> Result<Vec<f64>, AlbedoError> {
+    let references = references(spec, points, false, stage)?;
+    let reader = Reader::new(spec, table, references.first())?;
+    let errors = measured_at(&references, |at| reader.errors(at))?;
+    Ok(errors.iter().map(|(_, errors)| largest(errors)).collect())
+}
+
+/// The largest error of any quantity of averages at a place, by the directional table that they
+/// are of; `set` holds the averages alone.
+pub(super) fn average_error(
+    set: &Tables,
+    directional: &Table,
+    site: &Site,
+) -> Result<f64, MaterialError> {
+    Ok(largest(&average_errors(set, directional, site)?))
+}
+
+/// The largest of some errors; a NaN is the worst.
+fn largest(errors: &[f64]) -> f64 {
+    errors.iter().copied().max_by(f64::total_cmp).unwrap_or(0.0)
+}
+
+fn average_errors(
+    set: &Tables,
+    directional: &Table,
+    &Site { sigma, gamma, .. }: &Site,
+) -> Result<Vec<f64>, MaterialError> {
+    let masking = directional.subject.masking.unwrap_or_default();
+    let got = all(set.average_moments(sigma, gamma, masking)?);
+    let exact = all(TabulatedAlbedo::from_table(directional, sigma, gamma)?.average_moments());
+    Ok(got.iter().zip(exact).map(|(got, exact)| (got - exact).abs()).collect())
 }
 
 /// Steps of a climb, in cells.
@@ -200,7 +267,7 @@ fn climbed(
     let mut seen: Vec<(Reference, Vec<f64>)> = Vec::new();
     for step in STEPS {
         let around = tops.iter().flat_map(|(_, point, _)| beside(spec, point, step)).collect();
-        let references = references(spec, around, stage)?;
+        let references = references(spec, around, true, stage)?;
         let errors = measured_at(&references, measured)?;
         for (i, point, error) in &mut tops {
             if let Some(top) = errors.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))
@@ -286,14 +353,7 @@ fn averages(
 ) -> Result<BTreeMap<String, f64>, MaterialError> {
     let set = Tables::from_tables(Default::default(), vec![table.clone()])
         .map_err(|why| MaterialError::NoTable(why.to_string()))?;
-    let masking = table.subject.masking.unwrap_or_default();
-    let measured = |at: &Reference| {
-        let Site { sigma, gamma, .. } = at.site;
-        let got = all(set.average_moments(sigma, gamma, masking)?);
-        let exact = all(TabulatedAlbedo::from_table(directional, sigma, gamma)?.average_moments());
-        Ok(got.iter().zip(exact).map(|(got, exact)| (got - exact).abs()).collect())
-    };
-    let errors = measured_at(references, measured)?;
+    let errors = measured_at(references, |at| average_errors(&set, directional, &at.site))?;
     let mut figures = summary(spec, &errors, &[]);
     figures.remove("worst_cos_theta");
     Ok(figures)

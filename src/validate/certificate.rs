@@ -277,48 +277,106 @@ pub(super) fn round_up(x: f64) -> f64 {
 const BESIDE: [([f32; 2], f32); 4] =
     [([0.0, 1.0], 0.4), ([1.0, 0.0], 1.0), ([0.6, 0.8], 0.0), ([1.0, 0.0], 0.5)];
 
-/// Measures one table.
-struct Ruler<'a> {
-    tables: &'a Tables,
-    table: &'a Table,
+/// The shapes along the axis of a table that are measured.
+#[derive(Clone, Debug)]
+pub(super) struct Shapes {
+    nodes: Vec<f64>,
+    /// Whether the table covers shapes between its nodes.
+    is_range: bool,
     /// The ends of the range of shapes to measure.
     s: [f64; 2],
+}
+
+impl Shapes {
+    fn new(axis: &Axis, [low, high]: [f64; 2]) -> Self {
+        let [first, last] = axis.ends();
+        let [low, high] = [first.max(low), last.min(high)];
+        // At the seam itself, γ = 1.8, the tables of the whole distribution are read, not the
+        // peeled ones.
+        let beside = low == s_of_gamma(GAMMA_WHOLE) && high > low + SEAM;
+        let low = if beside { low + SEAM } else { low };
+        let is_range = axis.interpolation != Interpolation::Nodes && axis.nodes.len() > 1;
+        // Slightly inside the far end, since 1 + 1/s may round to just outside; but a range may be
+        // narrower than that.
+        let s = [low, (high * (1.0 - 1e-15)).max(low)];
+        Self { nodes: axis.nodes.clone(), is_range, s }
+    }
+
+    /// Number of cells; 0 for a list of single shapes.
+    fn cells(&self) -> f64 {
+        if self.is_range { (self.nodes.len() - 1) as f64 } else { 0.0 }
+    }
+
+    /// Places of the ends of a range.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        let (nodes, count) = (&self.nodes, self.nodes.len());
+        self.s.map(|s| {
+            let cell = nodes.partition_point(|&node| node <= s).clamp(1, count - 1) - 1;
+            cell as f64 + (s - nodes[cell]) / (nodes[cell + 1] - nodes[cell])
+        })
+    }
+
+    /// Places to measure: those of a list, or three between every two nodes of a range.
+    fn sweep(&self) -> Vec<f64> {
+        let count = self.nodes.len();
+        if !self.is_range {
+            return (0..count).map(|i| i as f64).collect();
+        }
+        let ends = self.ends();
+        let between = (0..count - 1).flat_map(|i| [0.0, 0.21, 0.5, 0.83].map(|w| i as f64 + w));
+        let inside = between.filter(|&place| place > ends[0] && place < ends[1]);
+        inside.chain(ends).collect()
+    }
+
+    /// The place at a share of the range; of a list, that of the shape nearest to s.
+    pub(super) fn place(&self, share: f64, s: f64) -> f64 {
+        if self.is_range {
+            let [first, last] = self.ends();
+            return first + share * (last - first);
+        }
+        let off = |i: &usize| (self.nodes[*i] - s).abs();
+        (0..self.nodes.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0) as f64
+    }
+
+    /// s at a place, inside the ends.
+    pub(super) fn s(&self, place: f64) -> f64 {
+        let nodes = &self.nodes;
+        if !self.is_range {
+            return nodes[place as usize];
+        }
+        let cell = (place as usize).min(nodes.len() - 2);
+        let s = nodes[cell] + (place - cell as f64) * (nodes[cell + 1] - nodes[cell]);
+        s.clamp(self.s[0], self.s[1])
+    }
+}
+
+/// Measures one table.
+pub(super) struct Ruler<'a> {
+    tables: &'a Tables,
+    table: &'a Table,
+    pub(super) shapes: Shapes,
     views: Along,
     numbers: Along,
 }
 
 /// A material made from the tables, and its shape in the model.
-type LobeAndShape = (StudentT, Shape);
+pub(super) type LobeAndShape = (StudentT, Shape);
 
 impl<'a> Ruler<'a> {
-    fn new(tables: &'a Tables, table: &'a Table, s: [f64; 2]) -> Self {
+    pub(super) fn new(tables: &'a Tables, table: &'a Table, s: [f64; 2]) -> Self {
         let nodes = |axis: usize| table.axes[axis].nodes.len();
         let (views, numbers) = match table.kind {
             Kind::Shadowing => (Along::whole(nodes(1)), Along::none()),
             Kind::VisibleSlopeConditional => (Along::none(), Along::mirrored(nodes(1))),
             _ => (Along::whole(nodes(1)), Along::mirrored(nodes(2))),
         };
-        let [first, last] = table.axes[0].ends();
-        let [low, high] = [first.max(s[0]), last.min(s[1])];
-        // At the seam itself, γ = 1.8, the tables of the whole distribution are read, not the
-        // peeled ones.
-        let beside = low == s_of_gamma(GAMMA_WHOLE) && high > low + SEAM;
-        let low = if beside { low + SEAM } else { low };
-        // Slightly inside the far end, since 1 + 1/s may round to just outside; but a range may be
-        // narrower than that.
-        Self { tables, table, s: [low, (high * (1.0 - 1e-15)).max(low)], views, numbers }
-    }
-
-    /// Whether the table covers shapes between its nodes.
-    fn is_range(&self) -> bool {
-        let Axis { interpolation, nodes, .. } = &self.table.axes[0];
-        *interpolation != Interpolation::Nodes && nodes.len() > 1
+        Self { tables, table, shapes: Shapes::new(&table.axes[0], s), views, numbers }
     }
 
     fn measured(&self, points: usize, stage: &Stage) -> Result<Found, MaterialError> {
         // A maximum that is missed at one γ is found at a neighbouring γ; a single γ has none and
         // takes more points.
-        let points = if self.is_range() { points } else { 3 * points };
+        let points = if self.shapes.is_range { points } else { 3 * points };
         let points = match self.table.kind {
             Kind::VisibleSlopeConditional => points / BESIDE.len(),
             _ => points,
@@ -335,59 +393,39 @@ impl<'a> Ruler<'a> {
             stage.step();
             Ok(seen)
         };
-        let shapes = self.shapes();
+        let shapes = self.shapes.sweep();
         // The climbs take as long as a third of a shape.
         stage.split(shapes.len() + 1);
         let seen = shapes.par_iter().map(at_shape).collect::<Result<Vec<_>, MaterialError>>()?;
-        let shape_cells =
-            if self.is_range() { (self.table.axes[0].nodes.len() - 1) as f64 } else { 0.0 };
-        let cells = [shape_cells, self.views.cells, self.numbers.cells];
+        let cells = [self.shapes.cells(), self.views.cells, self.numbers.cells];
         // `lobe` does not fail here: it has not at the points of the sweep on either side.
         let error = |at: Place| self.lobe(at[0]).map_or(f64::NAN, |lobe| self.error(&lobe, at));
         Ok(climbed(seen.concat(), (points / 200).max(2), cells, error))
     }
 
-    /// Places of the shapes to measure: those of a list, or three between every two nodes of a
-    /// range.
-    fn shapes(&self) -> Vec<f64> {
-        let nodes = &self.table.axes[0].nodes;
-        let (count, [low, high]) = (nodes.len(), self.s);
-        if !self.is_range() {
-            return (0..count).map(|i| i as f64).collect();
-        }
-        let place = |s: f64| {
-            let cell = nodes.partition_point(|&node| node <= s).clamp(1, count - 1) - 1;
-            cell as f64 + (s - nodes[cell]) / (nodes[cell + 1] - nodes[cell])
-        };
-        let ends = [low, high].map(place);
-        let between = (0..count - 1).flat_map(|i| [0.0, 0.21, 0.5, 0.83].map(|w| i as f64 + w));
-        let inside = between.filter(|&place| place > ends[0] && place < ends[1]);
-        inside.chain(ends).collect()
-    }
-
-    /// s at a place, inside the ends.
-    fn s(&self, place: f64) -> f64 {
-        let nodes = &self.table.axes[0].nodes;
-        if !self.is_range() {
-            return nodes[place as usize];
-        }
-        let cell = (place as usize).min(nodes.len() - 2);
-        let s = nodes[cell] + (place - cell as f64) * (nodes[cell + 1] - nodes[cell]);
-        s.clamp(self.s[0], self.s[1])
-    }
-
-    fn lobe(&self, place: f64) -> Result<LobeAndShape, MaterialError> {
-        let gamma = gamma_of_s(self.s(place));
+    /// The material and the shape at a place along the axis of shapes.
+    pub(super) fn lobe(&self, place: f64) -> Result<LobeAndShape, MaterialError> {
+        let gamma = gamma_of_s(self.shapes.s(place));
         let shape = Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
         Ok((self.tables.student_t(1.0, gamma)?, shape))
     }
 
-    fn error(&self, (lobe, shape): &LobeAndShape, [_, a, b]: Place) -> f64 {
+    fn error(&self, lobe: &LobeAndShape, [_, a, b]: Place) -> f64 {
         let u = number(b, 0.5 * self.numbers.cells);
+        self.error_at(lobe, || self.view(lobe.1.s(), a), u)
+    }
+
+    /// The error at a view, where the table has one, and a random number.
+    pub(super) fn error_at(
+        &self,
+        (lobe, shape): &LobeAndShape,
+        v: impl Fn() -> Vec3,
+        u: f32,
+    ) -> f64 {
         match self.table.kind {
-            Kind::Shadowing => g1_error(lobe, shape, self.view(shape.s(), a)),
+            Kind::Shadowing => g1_error(lobe, shape, v()),
             Kind::VisibleSlopeConditional => across_error(lobe, shape, u),
-            _ => along_error(lobe, shape, self.view(shape.s(), a), u),
+            _ => along_error(lobe, shape, v(), u),
         }
     }
 
@@ -398,7 +436,7 @@ impl<'a> Ruler<'a> {
 
     /// s, z = cot θ/σ and u; NaN for axes that the table does not have.
     fn named(&self, [shape, a, b]: Place) -> [f64; 3] {
-        let s = self.s(shape);
+        let s = self.shapes.s(shape);
         let z = if self.views.cells > 0.0 { exact_cotangent(self.view(s, a)) } else { f64::NAN };
         let half = 0.5 * self.numbers.cells;
         [s_of_gamma(gamma_of_s(s)), z, if half > 0.0 { number(b, half).into() } else { f64::NAN }]

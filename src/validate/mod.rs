@@ -5,6 +5,7 @@ pub mod albedo;
 pub mod bsdf;
 pub mod certificate;
 pub mod configuration;
+pub mod error_map;
 pub mod furnace;
 pub mod pdf_integral;
 pub mod points;

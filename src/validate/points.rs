@@ -40,7 +40,7 @@ pub struct Point {
 }
 
 /// The promised range of an axis, in its coordinate.
-struct Range {
+pub(super) struct Range {
     ends: Vec<f64>,
     /// The middles of the cells in the range.
     cells: Vec<f64>,
@@ -83,7 +83,7 @@ impl Range {
     }
 
     /// The coordinate at the share x ∈ [0, 1] of the range; around the full circle for an azimuth.
-    fn at(&self, x: f64) -> f64 {
+    pub(super) fn at(&self, x: f64) -> f64 {
         let [first, last] = [self.ends[0], self.ends[self.ends.len() - 1]];
         let last = self.cells.last().map_or(last, |cell| cell.max(last));
         first + x * (last - first)
@@ -114,7 +114,7 @@ pub fn interior_count(spec: &AlbedoSpec) -> usize {
     (spec.nodes() / NODES_A_POINT).clamp(FEWEST, MOST)
 }
 
-fn ranges(spec: &AlbedoSpec) -> Vec<Range> {
+pub(super) fn ranges(spec: &AlbedoSpec) -> Vec<Range> {
     spec.axes.iter().map(|axis| Range::new(axis, spec)).collect()
 }
 
@@ -155,6 +155,30 @@ fn coordinate(axis: &Axis, Site { gamma, sigma, eta, cos, .. }: &Site) -> f64 {
             view.coordinate(cos.max(view.floor()))
         }
         _ => unreachable!("the last axis is the view"),
+    }
+}
+
+/// The place of a view by its cosine, at coordinates along the axes of materials.
+pub(super) fn seen(spec: &AlbedoSpec, material: &[f64], cos: f64) -> Point {
+    point(spec, material, View::Cos(cos))
+}
+
+/// The promised views of the material of a site, from the lowest to the normal: cos θ at a share
+/// of their range, spaced as on the axis.
+pub(super) fn promised_views(axis: &Axis, site: Site) -> impl Fn(f64) -> f64 + use<> {
+    let low = coordinate(axis, &Site { cos: PROMISED.1, ..site });
+    let mapping = axis.mapping;
+    move |share| {
+        let t = low + share * (1.0 - low);
+        let cos = match mapping {
+            Mapping::CriticalBlend(view) => {
+                view.prepare(site.sigma, site.gamma, 1.0 / site.eta).quantity(t)
+            }
+            Mapping::ViewBlend(view) => view.prepare(site.sigma, site.gamma).quantity(t),
+            _ => unreachable!("the last axis is the view"),
+        };
+        // The coordinate and its inverse round.
+        cos.clamp(PROMISED.1, 1.0)
     }
 }
 

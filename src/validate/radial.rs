@@ -37,6 +37,8 @@ const RARE: f64 = ROUNDING;
 /// Cotangents, divided by σ, of views that see the steepest slopes. Random numbers just below 1 are
 /// so coarse that a single view would draw few of these.
 const SLANTS: [f64; 5] = [0.0, 0.03, 0.1, 0.3, 1.0];
+/// How many they are.
+pub(crate) const SLANTED: f64 = SLANTS.len() as f64;
 /// Number of the last random numbers below 1 that are all tried.
 const LAST: f64 = 16.0;
 /// Ways to draw slopes across: from each view, by the row of the in-plane slope or by the last
@@ -76,16 +78,9 @@ pub fn measure(radial: &Lobe, marginal: &Marginal) -> Errors {
 
 /// The largest error of one table with these axes.
 fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found {
-    let slanted = SLANTS.map(|z| (view(z * marginal.sigma()), MarginalView::new(marginal, z)));
-    let ruler = Ruler { radial, marginal, slanted, axes };
+    let ruler = Ruler::new(radial, marginal, axes);
     let cells = |axis: &Axis| (axis.nodes.len() - 1) as f64;
-    let first = Along::whole(axes[0].nodes.len());
-    let first = match axes[0].mapping {
-        // In-plane slopes end at their bound R, which is κ of this axis: rows beyond it are not
-        // read.
-        Mapping::Rational(_) if kind == Kind::RadialConditional => first.up_to(0.5),
-        _ => first,
-    };
+    let first = Along::whole(axes[0].nodes.len()).up_to(read(kind, &axes[0]));
     match kind {
         Kind::RadialSlope | Kind::RadialConditional => {
             let half = cells(&axes[1]);
@@ -113,6 +108,16 @@ fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found
             let points = PER_CELL * (axes[0].nodes.len() - 1);
             searched(places([&first, &Along::none()], points), [first.cells, 0.0], 1, error)
         }
+    }
+}
+
+/// The share of the first axis that is read.
+pub(super) fn read(kind: Kind, axis: &Axis) -> f64 {
+    match axis.mapping {
+        // In-plane slopes end at their bound R, which is κ of this axis: rows beyond it are not
+        // read.
+        Mapping::Rational(_) if kind == Kind::RadialConditional => 0.5,
+        _ => 1.0,
     }
 }
 
@@ -149,14 +154,36 @@ fn last(share: f64) -> f64 {
 }
 
 /// A distribution and its tables, one of which has these axes.
-struct Ruler<'a> {
+pub(super) struct Ruler<'a> {
     radial: &'a Lobe,
     marginal: &'a Marginal<'a>,
     slanted: [(Vec3, MarginalView<'a>); SLANTS.len()],
     axes: &'a [Axis],
 }
 
-impl Ruler<'_> {
+impl<'a> Ruler<'a> {
+    pub(super) fn new(radial: &'a Lobe, marginal: &'a Marginal<'a>, axes: &'a [Axis]) -> Self {
+        let slanted = SLANTS.map(|z| (view(z * marginal.sigma()), MarginalView::new(marginal, z)));
+        Self { radial, marginal, slanted, axes }
+    }
+
+    /// The error at places along the axes, in shares of what is read of them; of slopes across, the
+    /// largest from all of [`SLANTS`].
+    pub(super) fn error(&self, kind: Kind, [first, u]: [f64; 2]) -> f64 {
+        let cells = |axis: usize| (self.axes[axis].nodes.len() - 1) as f64;
+        let place = first * cells(0) * read(kind, &self.axes[0]);
+        let u = || number(2.0 * u * cells(1), cells(1));
+        match kind {
+            Kind::RadialShadowing => self.g1(place),
+            Kind::RadialDensity => self.density(place),
+            Kind::RadialSlope => self.along(place, u()),
+            _ => {
+                let error = |way| self.across(way, self.first_number(way, place, 0.0), u());
+                (0..SLANTS.len()).map(error).max_by(f64::total_cmp).unwrap_or(f64::NAN)
+            }
+        }
+    }
+
     /// The cotangent or slope that is `place` cells along the first axis, divided by σ.
     fn quantity(&self, place: f64) -> f64 {
         // Without a γ axis s is 1.

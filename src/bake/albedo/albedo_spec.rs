@@ -1,12 +1,13 @@
 //! The specification of albedo tables: the lobe, the reflectance, and the nodes.
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 use microfacet_sampler::axis::lagrange::nodes_read;
 use microfacet_sampler::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
 };
 use microfacet_sampler::{
     Axis, Covered, Interpolation, Kind, Mapping, Masking, Precision, Reflectance, Side, Subject,
+    Table,
 };
 
 use super::{AlbedoError, AlbedoLobe, view_of};
@@ -53,6 +54,13 @@ impl Domain {
     pub fn covered(&self) -> Covered {
         let s = [s_of_gamma(self.gamma.max), s_of_gamma(self.gamma.min)];
         Covered { s, sigma: Some([self.sigma.min, self.sigma.max]) }
+    }
+
+    /// The domain that a table states to cover.
+    pub(super) fn of_covered(covered: &Covered) -> Option<Self> {
+        let ([low, high], [min, max]) = (covered.s, covered.sigma?);
+        let [heavy, light] = [high, low].map(gamma_of_s);
+        Some(Self { gamma: Interval { min: heavy, max: light }, sigma: Interval { min, max } })
     }
 
     /// The domain as part of table names; empty for the general domain.
@@ -179,6 +187,18 @@ impl AlbedoSpec {
         let lobe = AlbedoLobe::Family(Domain::GENERAL);
         Self::new(lobe, Reflectance::Moments, Masking::ALL.into(), level, precision)
             .expect("the family is no ellipsoid")
+    }
+
+    /// The specification that a directional table follows, of its form of masking alone; `None`
+    /// for a table of other values, and for one of a distribution that its label does not say.
+    ///
+    /// A table does not state the error aimed at in its nodes: a given one stands for it.
+    pub fn of_table(table: &Table, tolerance: f64) -> Option<Self> {
+        let Subject { lobe, masking, reflectance, covers } = &table.subject;
+        let lobe = AlbedoLobe::of_entry(lobe, *covers, &table.axes)?;
+        let (maskings, reflectance) = (vec![(*masking)?], (*reflectance)?);
+        let (axes, precision) = (table.axes.clone(), table.precision);
+        Some(Self { lobe, reflectance, maskings, axes, tolerance, precision })
     }
 
     /// The same specification with one axis twice as dense.

@@ -6,13 +6,13 @@ use std::collections::HashMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_common::shape::{gamma_of_s, s_of_gamma};
 use microfacet_model::classic::{Marginal, RadialAlbedo};
 use microfacet_model::{
     Albedo, AlbedoIntegrator, Ellipsoid, EllipsoidError, ParameterError, Shape, Skew,
 };
-use microfacet_sampler::LobeEntry;
 use microfacet_sampler::axis::Azimuth;
+use microfacet_sampler::{Axis, Covered, LobeEntry, Mapping};
 
 use super::{AlbedoError, CHANNELS, Domain, Site};
 use crate::distribution::Distribution;
@@ -59,6 +59,27 @@ impl AlbedoLobe {
             }
             Self::Radial { ref distribution, .. } => LobeEntry::Distribution(distribution.label()),
         }
+    }
+
+    /// The lobe that the description of a table states; `None` for a distribution that its label
+    /// does not say whole, and for a range without its ends.
+    pub(super) fn of_entry(
+        entry: &LobeEntry,
+        covers: Option<Covered>,
+        axes: &[Axis],
+    ) -> Option<Self> {
+        Some(match *entry {
+            LobeEntry::Family => Self::Family(Domain::of_covered(&covers?)?),
+            LobeEntry::StudentT { sigma, s } => Self::StudentT { sigma, gamma: gamma_of_s(s) },
+            LobeEntry::Ellipsoid { sigma, theta, s } => {
+                Self::Ellipsoid { sigma, theta, gamma: gamma_of_s(s) }
+            }
+            LobeEntry::Distribution(ref label) => {
+                let Mapping::Azimuth(azimuth) = axes.first()?.mapping else { return None };
+                let distribution = Distribution::Named(label.parse().ok()?);
+                Self::Radial { distribution, sigma: azimuth.sigma[0] }
+            }
+        })
     }
 
     /// The lobe as part of table names and in messages; empty for the general family.

@@ -1,0 +1,105 @@
+//! Where the errors of tables are: heat maps over their axes, of errors measured anew.
+
+mod chosen;
+mod drawing;
+mod ticks;
+mod words;
+
+use maud::{Markup, PreEscaped, html};
+use microfacet_sampler::{Table, Tables};
+
+use super::subjects::Subjects;
+use super::{ReportError, Source};
+use crate::plan::on_threads;
+use crate::progress::Meter;
+use crate::validate::error_map::{self, ErrorMap, Sides, Unmeasured, measure};
+use chosen::Chosen;
+
+/// Most tables without a map whose certificates are said in words.
+const IN_WORDS: usize = 12;
+
+/// The estimated seconds of [`section`] on the current threads.
+pub(super) fn seconds(set: &Tables) -> f64 {
+    let seconds = Chosen::of(set).maps.into_iter().map(|(table, sides)| of_map(table, sides));
+    seconds.sum()
+}
+
+fn of_map(table: &Table, sides: Sides) -> f64 {
+    on_threads(error_map::seconds(table, sides))
+}
+
+/// A table with the map that was measured of it, or why there is none.
+type Measured<'a> = (&'a Table, Result<ErrorMap, Unmeasured>);
+
+pub(super) fn section(
+    source: &Source,
+    _subjects: &Subjects,
+    meter: &Meter,
+) -> Result<Markup, ReportError> {
+    let chosen = Chosen::of(source.set);
+    let map = |&(table, sides): &(_, Sides)| -> Measured<'_> {
+        let stage = meter.stage(of_map(table, sides));
+        (table, measure(source.set, table, sides, &stage))
+    };
+    let measured: Vec<Measured<'_>> = chosen.maps.iter().map(map).collect();
+    let drawn = || measured.iter().filter_map(|(table, map)| Some((*table, map.as_ref().ok()?)));
+    let missing: Vec<(&Table, String)> = measured
+        .iter()
+        .filter_map(|(table, map)| Some((*table, map.as_ref().err()?.to_string())))
+        .chain(chosen.single.iter().map(|table| (*table, Unmeasured::NoAxes.to_string())))
+        .collect();
+    let scale = drawing::scale(drawn().map(|(_, map)| map.largest()));
+    if drawn().next().is_none() && missing.is_empty() {
+        return Ok(html! {});
+    }
+    Ok(html! {
+        @if drawn().next().is_some() {
+            p {
+                "Errors of what a renderer reads from the tables, against the model in double "
+                "precision, measured anew when this page was made. They are differences: of G1, of "
+                "the CDF of the slopes drawn, of the share of light in an albedo. Each pixel is the "
+                "largest of the errors measured in it; a ring is where the certificate, the search "
+                "that ended the bake, found the table's largest. Black is about the rounding of "
+                "single precision."
+            }
+            div class="scale" style="max-width: 24rem" { (PreEscaped(drawing::bar(&scale))) }
+            div class="figures" {
+                @for (table, map) in drawn() { (figure(table, map, &scale)) }
+            }
+        }
+        @if chosen.left_out > 0 {
+            p class="note" {
+                "The maps are those of the largest errors; "
+                (chosen.left_out)
+                @if chosen.left_out == 1 { " more is" } @else { " more are" }
+                " left out."
+            }
+        }
+        @if !missing.is_empty() {
+            p { "Without a map, by their certificates:" }
+            ul {
+                @for (table, why) in missing.iter().take(IN_WORDS) {
+                    li {
+                        code { (table.name) } ": " (words::sentence(why)) @for line in words::lines(table) { " " (line) }
+                    }
+                }
+                @if missing.len() > IN_WORDS { li { (missing.len() - IN_WORDS) " more" } }
+            }
+        }
+    })
+}
+
+fn figure(table: &Table, map: &ErrorMap, scale: &crate::plot::Axis) -> Markup {
+    html! {
+        figure class="map" {
+            (PreEscaped(drawing::drawn(table, map, scale)))
+            figcaption {
+                strong { (words::what(table)) } " " code { (table.name) } ". "
+                (words::certified(table)) " " (words::map(map))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
