@@ -212,19 +212,15 @@ fn verbatim(text: &str) -> PreEscaped<&str> {
 }
 
 fn scripts(data: &Data, shape: &Shape) -> Markup {
-    let common = format!(
-        "{}{}{}",
-        studio::constants(),
-        random::constants(),
-        data::albedo_coordinates()
-    );
+    let common =
+        format!("{}{}{}", studio::constants(), random::constants(), data::albedo_coordinates());
     let scene = format!(
         "{common}{}{}",
         include_str!("studio.glsl"),
-        include_str!("sphere.frag").replace("out vec4 color;", &format!(
-            "out vec4 color;\n\n{}",
-            include_str!("fresnel.glsl")
-        )),
+        include_str!("sphere.frag").replace(
+            "out vec4 color;",
+            &format!("out vec4 color;\n\n{}", include_str!("fresnel.glsl"))
+        ),
     );
     let shaders = [
         ("sphere-module", for_webgl(shape)),
