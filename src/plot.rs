@@ -96,8 +96,8 @@ impl Figure {
     }
 
     /// As an element of an HTML page, of class `plot`: as wide as its place, in the page's fonts,
-    /// with colours for light and dark; `label` is read to those who do not see it. The page defines
-    /// the custom properties `--ink` and `--line`.
+    /// with colours for light and dark; `label` is read to those who do not see it. The page
+    /// defines the custom properties `--ink` and `--line`.
     pub fn inline_svg(&self, label: &str) -> String {
         svg::write_inline(&layout::page(self), label)
     }

@@ -100,6 +100,3 @@ fn figure(table: &Table, map: &ErrorMap, scale: &crate::plot::Axis) -> Markup {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

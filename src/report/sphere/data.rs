@@ -15,8 +15,8 @@ use microfacet_sampler::{
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::scene::Look;
 use super::super::subjects::{Shown, Subjects};
+use super::scene::Look;
 use crate::export::numbers::as_typed;
 use crate::export::texture::{Along, TexelAxis, place, shader_coordinates};
 use crate::export::{Shape, WIDTH, append_some};
@@ -95,8 +95,8 @@ pub(super) fn label(gamma: f64) -> String {
 
 /// The shape whose visible normals are drawn for a stop: of the same or the next heavier tails.
 fn drawn(subjects: &Subjects, gamma: f64) -> f64 {
-    let heavier = subjects.slices.iter().copied().filter(|slice| *slice <= gamma);
-    heavier.last().unwrap_or(gamma)
+    let mut heavier = subjects.slices.iter().copied().filter(|slice| *slice <= gamma);
+    heavier.next_back().unwrap_or(gamma)
 }
 
 /// The stop nearest to a γ, as materials have it.
@@ -108,7 +108,8 @@ fn stop(subjects: &Subjects, gamma: f64) -> usize {
 fn fresnel(entry: Option<&MaterialEntry>) -> FresnelEntry {
     match entry.and_then(|entry| entry.fresnel) {
         Some(
-            own @ (FresnelEntry::Mirror | FresnelEntry::Schlick(_) | FresnelEntry::Conductor { .. }),
+            own
+            @ (FresnelEntry::Mirror | FresnelEntry::Schlick(_) | FresnelEntry::Conductor { .. }),
         ) => own,
         _ => UNSTATED.into(),
     }

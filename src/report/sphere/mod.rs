@@ -65,15 +65,12 @@ pub(super) fn parts(
     let first = &subjects.shown[0];
     let stills = lobe::stills(&tables, &look(subjects, first), &first.name)?;
     let body = html! {
-        section #look aria-labelledby="look-title" {
-            h2 #look-title { "How it looks" }
-            div.viewer {
-                (stage_of(&pictures[0], &first.name))
-                (controls(subjects, &data))
-                div.lobe { (lobe::live()) (stills) }
-            }
-            (gallery(subjects, &pictures))
+        div.viewer {
+            (stage_of(&pictures[0], &first.name))
+            (controls(subjects, &data))
+            div.lobe { (lobe::live()) (stills) }
         }
+        (gallery(subjects, &pictures))
     };
     let shape = Shape::bind(&tables, subjects.stops[0])?;
     Ok(Some(Parts { body, scripts: scripts(&data, &shape) }))
@@ -212,19 +209,15 @@ fn verbatim(text: &str) -> PreEscaped<&str> {
 }
 
 fn scripts(data: &Data, shape: &Shape) -> Markup {
-    let common = format!(
-        "{}{}{}",
-        studio::constants(),
-        random::constants(),
-        data::albedo_coordinates()
-    );
+    let common =
+        format!("{}{}{}", studio::constants(), random::constants(), data::albedo_coordinates());
     let scene = format!(
         "{common}{}{}",
         include_str!("studio.glsl"),
-        include_str!("sphere.frag").replace("out vec4 color;", &format!(
-            "out vec4 color;\n\n{}",
-            include_str!("fresnel.glsl")
-        )),
+        include_str!("sphere.frag").replace(
+            "out vec4 color;",
+            &format!("out vec4 color;\n\n{}", include_str!("fresnel.glsl"))
+        ),
     );
     let shaders = [
         ("sphere-module", for_webgl(shape)),

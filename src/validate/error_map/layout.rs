@@ -168,8 +168,8 @@ impl Layout {
         }
     }
 
-    /// Of so many axes those that are not shown: those that stay at a value, and those of which the largest error is
-    /// shown.
+    /// Of so many axes those that are not shown: those that stay at a value, and those of which the
+    /// largest error is shown.
     pub(super) fn others(&self, sides: Sides, axes: usize) -> [Vec<usize>; 2] {
         let hidden: Vec<usize> =
             (0..axes).filter(|&i| i != sides.x && Some(i) != sides.y).collect();
