@@ -18,7 +18,7 @@ use crate::bake::{self};
 use crate::distribution::{Distribution, DistributionKind, Named};
 use crate::table_spec::{GAMMA_WHOLE, Level, Quality, TableSpec, general_set};
 use crate::validate::certificate::POINTS;
-use crate::validate::radial;
+use crate::validate::{error_map, radial};
 
 /// Bytes and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -201,7 +201,7 @@ fn prepared(shapes: &[f64]) -> [f64; 2] {
 /// distributions that take longest.
 pub(crate) fn point_seconds(table: &Table) -> f64 {
     match table.kind {
-        Kind::Albedo => AlbedoSpec::of_table(table, 1e-6).map_or(0.0, |spec| place_seconds(&spec)),
+        Kind::Albedo => error_map::spec(table).map_or(0.0, |spec| place_seconds(&spec)),
         // Two lookups, of which one integrates over the views.
         Kind::AlbedoAverage => 40e-6,
         Kind::RadialShadowing | Kind::RadialDensity | Kind::RadialSlope => {

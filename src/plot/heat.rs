@@ -204,9 +204,12 @@ mod tests {
         for error in [1e-9, 1e-4, 1.0] {
             let map = map(vec![error; 4], Some([0.5, 0.5]));
             let beneath = at(&map, [0.5, 0.5]);
-            let ring = at(&map, [0.5 + RADIUS / (400.0 - LEFT - RIGHT), 0.5]);
-            assert_eq!(ring, RING[1].1);
-            assert_ne!(beneath, ring);
+            let beside = |off: f64| at(&map, [0.5 + off / (400.0 - LEFT - RIGHT), 0.5]);
+            let across: Vec<Color> = (0..24).map(|i| beside(0.5 * f64::from(i))).collect();
+            for (_, color) in RING {
+                assert!(across.contains(&color), "{error}: {across:?}");
+                assert_ne!(beneath, color);
+            }
         }
     }
 

@@ -95,8 +95,11 @@ fn figure(table: &Table, map: &ErrorMap, scale: &crate::plot::Axis) -> Markup {
             (PreEscaped(drawing::drawn(table, map, scale)))
             figcaption {
                 strong { (words::what(table)) } " " code { (table.name) } ". "
-                (words::certified(table)) " " (words::map(map))
+                (words::certified(table)) " " (words::map(table, map))
             }
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

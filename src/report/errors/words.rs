@@ -106,8 +106,8 @@ pub(super) fn sentence(text: &str) -> String {
     format!("{first}{}.", letters.as_str())
 }
 
-/// What a map shows, for its caption.
-pub(super) fn map(map: &ErrorMap) -> String {
+/// What a map of a table shows, for its caption.
+pub(super) fn map(table: &Table, map: &ErrorMap) -> String {
     let rows = map.errors.len() / map.columns;
     let grid = match rows {
         1 => format!("{} pixels", map.columns),
@@ -127,7 +127,12 @@ pub(super) fn map(map: &ErrorMap) -> String {
     if !over.is_empty() {
         text += &format!(", over all {}", over.join(" and "));
     }
-    text + &format!("; {} errors in {grid}.", map.points)
+    text += &format!("; {} errors in {grid}.", map.points);
+    if largest > worst_error(table) {
+        text += " That is more than its certificate promises: the search that ended the bake went \
+                 by another way.";
+    }
+    text
 }
 
 /// What is seen, for those who do not see it.

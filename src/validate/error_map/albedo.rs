@@ -16,7 +16,7 @@ const FINE: f64 = 1.0 / 300.0;
 const TOLERANCES: [f64; 2] = [1e-7, 1e-5];
 
 /// The specification of a directional table, with an accuracy that its errors ask for.
-pub(super) fn spec(table: &Table) -> Option<AlbedoSpec> {
+pub(crate) fn spec(table: &Table) -> Option<AlbedoSpec> {
     let [least, most] = TOLERANCES;
     AlbedoSpec::of_table(table, (FINE * worst_error(table)).clamp(least, most))
 }

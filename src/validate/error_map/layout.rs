@@ -26,7 +26,7 @@ const IN_PIXEL: usize = 4;
 /// Places along axes of which the largest error is shown: random numbers, and views of albedos.
 const OVER: [usize; 2] = [41, 6];
 /// Seconds of one thread that a map may take.
-const LIMIT: f64 = 1.2;
+const LIMIT: f64 = 1.5;
 
 /// Pairs of quantities for y and x, the first that a table has for the map that says most of it.
 const FIRST: [(Quantity, Quantity); 9] = [
@@ -168,8 +168,8 @@ impl Layout {
         }
     }
 
-    /// Of so many axes those that are not shown: those that stay at a value, and those of which the
-    /// largest error is shown.
+    /// Of so many axes, those that are not shown: those that stay at a value, and those of which
+    /// the largest error is shown.
     pub(super) fn others(&self, sides: Sides, axes: usize) -> [Vec<usize>; 2] {
         let hidden: Vec<usize> =
             (0..axes).filter(|&i| i != sides.x && Some(i) != sides.y).collect();
