@@ -1,4 +1,4 @@
-//! The sphere of a report's page, drawn in Rust with the crate's own BSDFs: what `clients/web` holds
+//! The sphere of a page, by the crate's own BSDFs: what `clients/web` is to hold
 //! the pixels of the browser against.
 //!
 //! `cargo run --release --example report_sphere -- --gamma 3 --sigma 0.2 --out sphere.png` writes

@@ -95,8 +95,8 @@ pub(super) fn label(gamma: f64) -> String {
 
 /// The shape whose visible normals are drawn for a stop: of the same or the next heavier tails.
 fn drawn(subjects: &Subjects, gamma: f64) -> f64 {
-    let heavier = subjects.slices.iter().copied().filter(|slice| *slice <= gamma);
-    heavier.last().unwrap_or(gamma)
+    let mut heavier = subjects.slices.iter().copied().filter(|slice| *slice <= gamma);
+    heavier.next_back().unwrap_or(gamma)
 }
 
 /// The stop nearest to a γ, as materials have it.

@@ -65,15 +65,12 @@ pub(super) fn parts(
     let first = &subjects.shown[0];
     let stills = lobe::stills(&tables, &look(subjects, first), &first.name)?;
     let body = html! {
-        section #look aria-labelledby="look-title" {
-            h2 #look-title { "How it looks" }
-            div.viewer {
-                (stage_of(&pictures[0], &first.name))
-                (controls(subjects, &data))
-                div.lobe { (lobe::live()) (stills) }
-            }
-            (gallery(subjects, &pictures))
+        div.viewer {
+            (stage_of(&pictures[0], &first.name))
+            (controls(subjects, &data))
+            div.lobe { (lobe::live()) (stills) }
         }
+        (gallery(subjects, &pictures))
     };
     let shape = Shape::bind(&tables, subjects.stops[0])?;
     Ok(Some(Parts { body, scripts: scripts(&data, &shape) }))
