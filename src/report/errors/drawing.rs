@@ -71,7 +71,7 @@ fn curve(map: &ErrorMap, scale: &Axis, label: &str) -> String {
     let panel = Panel {
         title: String::new(),
         x: axis(&map.x),
-        y: scale.clone(),
+        y: scale.clone().coarse(),
         curves: vec![curve],
         marks,
     };
