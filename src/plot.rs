@@ -28,7 +28,7 @@ pub use sheet::{Content, Sheet, Tile};
 pub struct Curve {
     /// What it is, which its colour follows from.
     pub key: Key,
-    /// Name.
+    /// Name; the legend leaves out a curve without one.
     pub name: String,
     /// How it is drawn.
     pub dash: Dash,

@@ -10,6 +10,8 @@ pub struct Axis {
     log: bool,
     /// Ticks of an axis whose scale is neither even nor logarithmic, the most important first.
     marks: Vec<Tick>,
+    /// Whether there are ticks between the numbers of a logarithmic scale.
+    is_fine: bool,
 }
 
 /// A mark on an axis.
@@ -28,7 +30,7 @@ impl Axis {
     /// Unless `low < high`, both finite.
     pub fn linear(label: impl Into<String>, low: f64, high: f64) -> Self {
         assert!(low < high && low.is_finite() && high.is_finite(), "a range of {low} to {high}");
-        Self { label: label.into(), low, high, log: false, marks: Vec::new() }
+        Self { label: label.into(), low, high, log: false, marks: Vec::new(), is_fine: true }
     }
 
     /// An axis with a logarithmic scale.
@@ -37,7 +39,13 @@ impl Axis {
     /// Unless `0 < low < high`, both finite.
     pub fn log(label: impl Into<String>, low: f64, high: f64) -> Self {
         assert!(0.0 < low && low < high && high.is_finite(), "a range of {low} to {high}");
-        Self { label: label.into(), low, high, log: true, marks: Vec::new() }
+        Self { label: label.into(), low, high, log: true, marks: Vec::new(), is_fine: true }
+    }
+
+    /// The same without ticks between the numbers, for a small drawing.
+    #[must_use]
+    pub fn coarse(self) -> Self {
+        Self { is_fine: false, ..self }
     }
 
     /// An axis from 0 to 1 of a quantity on a scale of its own: numbers with their places, the most
@@ -84,7 +92,8 @@ impl Axis {
             return self.marks_apart(1.0 / room);
         }
         if self.log {
-            let ticks = self.log_ticks(room);
+            let mut ticks = self.log_ticks(room);
+            ticks.retain(|tick| self.is_fine || tick.label.is_some());
             // Less than a decade may hold one number of 1, 2 and 5, which says no scale.
             if ticks.iter().filter(|tick| tick.label.is_some()).count() > 1 {
                 return ticks;
@@ -180,6 +189,7 @@ mod tests {
         assert_eq!(labels(&Axis::log("x", 3e-7, 4e-6), 4), ["5·10⁻⁷", "10⁻⁶", "2·10⁻⁶"]);
         let powers = ["10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴", "10⁰"];
         assert_eq!(labels(&Axis::log("x", 1e-16, 1.0), 5), powers);
+        assert_eq!(Axis::log("x", 1.0, 10.0).coarse().ticks(4).len(), 4);
         // Between the numbers stand ticks without one, at 3, 4, 6 to 9.
         let ticks = Axis::log("x", 1.0, 10.0).ticks(4);
         assert_eq!(ticks.len(), 10);

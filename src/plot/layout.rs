@@ -45,10 +45,11 @@ pub(super) fn page(figure: &Figure) -> Canvas {
     canvas
 }
 
-/// What the legend of a row names: each curve once.
+/// What the legend of a row names: each curve once, but none without a name.
 fn entries(row: &[Panel]) -> Vec<Entry<'_>> {
     let mut all = Vec::new();
-    for curve in row.iter().flat_map(|panel| &panel.curves) {
+    let curves = row.iter().flat_map(|panel| &panel.curves);
+    for curve in curves.filter(|curve| !curve.name.is_empty()) {
         let entry = Entry { color: curve.key.color(), dash: curve.dash, name: &curve.name };
         if !all.contains(&entry) {
             all.push(entry);

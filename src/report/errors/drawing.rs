@@ -67,11 +67,11 @@ fn curve(map: &ErrorMap, scale: &Axis, label: &str) -> String {
         Mark { key, name: String::new(), at: (x, near), filled: false }
     };
     let marks = map.worst.map(ring).into_iter().filter(|mark| !mark.at.1.is_nan()).collect();
-    let curve = Curve { key, name: LABEL.into(), dash: Dash::Solid, points };
+    let curve = Curve { key, name: String::new(), dash: Dash::Solid, points };
     let panel = Panel {
         title: String::new(),
         x: axis(&map.x),
-        y: scale.clone(),
+        y: scale.clone().coarse(),
         curves: vec![curve],
         marks,
     };

@@ -55,12 +55,9 @@ pub(super) fn section(
     Ok(html! {
         @if drawn().next().is_some() {
             p {
-                "Errors of what a renderer reads from the tables, against the model in double "
-                "precision, measured anew when this page was made. They are differences: of G1, of "
-                "the CDF of the slopes drawn, of the share of light in an albedo. Each pixel is the "
-                "largest of the errors measured in it; a ring is where the certificate, the search "
-                "that ended the bake, found the table's largest. Black is about the rounding of "
-                "single precision."
+                "Measured anew when this page was made: differences of G1, of the CDF of the slopes "
+                "drawn, and of the share of light in an albedo. Each pixel is the largest of the "
+                "errors measured in it; black is about the rounding of single precision."
             }
             div class="scale" style="max-width: 24rem" { (PreEscaped(drawing::bar(&scale))) }
             div class="figures" {

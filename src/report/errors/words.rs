@@ -66,6 +66,7 @@ pub(super) fn number(x: f64) -> String {
         1e-3..1e5 | 0.0 => format!("{rounded}"),
         _ => format!("{rounded:e}"),
     }
+    .replace('-', "−")
 }
 
 /// An error to three digits, which no line breaks.

@@ -113,12 +113,12 @@ fn material(spec: &AlbedoSpec, i: usize, axis: Axis) -> Span {
     let at = move |share| between(ends, quantity, share);
     match axis.mapping {
         Mapping::Azimuth(azimuth) => {
-            let first = azimuth.prepare(axis.len()).quantity(ends[0]);
+            let azimuth = azimuth.prepare(axis.len());
+            let first = azimuth.quantity(ends[0]).to_degrees();
             Span::new(quantity, move |share| {
-                let phi = azimuth.prepare(axis.len()).quantity(at(share));
+                let phi = azimuth.quantity(at(share)).to_degrees();
                 // A full circle begins at the first principal axis.
-                let phi = if phi < first { phi + std::f64::consts::TAU } else { phi };
-                phi.to_degrees()
+                if phi < first { phi + 360.0 } else { phi }
             })
         }
         _ => Span::new(quantity, move |share| axis.quantity(at(share)).unwrap_or(f64::NAN)),

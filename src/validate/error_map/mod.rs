@@ -142,7 +142,9 @@ pub fn measure(
     let errors = ruler.errors(&places, layout.run(), stage)?;
     let worst = |axis: usize| spans[axis].worst(table);
     let y = sides.y.map_or(Some(0.5), worst);
-    let [fixed, over]: [Vec<usize>; 2] = layout.others(sides, spans.len());
+    let [mut fixed, over]: [Vec<usize>; 2] = layout.others(sides, spans.len());
+    // An axis of one value says nothing of the map.
+    fixed.retain(|&i| table.axes[i].nodes.len() > 1);
     let place = places.first().copied().unwrap_or_default();
     Ok(ErrorMap {
         columns: layout.pixels[0],
