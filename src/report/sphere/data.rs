@@ -15,8 +15,8 @@ use microfacet_sampler::{
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::scene::Look;
 use super::super::subjects::{Shown, Subjects};
+use super::scene::Look;
 use crate::export::numbers::as_typed;
 use crate::export::texture::{Along, TexelAxis, place, shader_coordinates};
 use crate::export::{Shape, WIDTH, append_some};
@@ -50,6 +50,8 @@ pub(super) struct Data {
     average_count: usize,
     reflectances: Vec<Reflectance>,
     materials: Vec<Material>,
+    /// Which of them is shown first.
+    opening: usize,
 }
 
 /// A shape that the sphere can have.
@@ -108,7 +110,8 @@ fn stop(subjects: &Subjects, gamma: f64) -> usize {
 fn fresnel(entry: Option<&MaterialEntry>) -> FresnelEntry {
     match entry.and_then(|entry| entry.fresnel) {
         Some(
-            own @ (FresnelEntry::Mirror | FresnelEntry::Schlick(_) | FresnelEntry::Conductor { .. }),
+            own
+            @ (FresnelEntry::Mirror | FresnelEntry::Schlick(_) | FresnelEntry::Conductor { .. }),
         ) => own,
         _ => UNSTATED.into(),
     }
@@ -248,6 +251,7 @@ impl Data {
             average_count: AVERAGES,
             reflectances,
             materials,
+            opening: subjects.opening(),
         })
     }
 

@@ -37,8 +37,7 @@ pub(super) fn numbers([x, y]: [u32; 2], seed: u32, sample: u32) -> [f32; COUNT] 
 }
 
 fn pcg3d(v: [u32; 3]) -> [u32; 3] {
-    let [mut x, mut y, mut z] =
-        v.map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    let [mut x, mut y, mut z] = v.map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     let mix = |x: &mut u32, y: &mut u32, z: &mut u32| {
         *x = x.wrapping_add(y.wrapping_mul(*z));
         *y = y.wrapping_add(z.wrapping_mul(*x));

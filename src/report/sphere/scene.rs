@@ -58,11 +58,8 @@ impl Scene {
         let lobe = tables.lobe(look.sigma, look.gamma)?;
         let compensation =
             if look.compensated { Compensation::KullaConty } else { Compensation::None };
-        let bsdf = Conductor::new(lobe, look.fresnel).compensated(
-            tables,
-            compensation,
-            StandIn::Round,
-        )?;
+        let bsdf =
+            Conductor::new(lobe, look.fresnel).compensated(tables, compensation, StandIn::Round)?;
         let drawn = tables.lobe(look.sigma, look.drawn)?;
         Ok(Self { studio: Studio::new(), bsdf, drawn, compensated: look.compensated })
     }
@@ -75,9 +72,7 @@ impl Scene {
 
     fn sample(&self, [x, y]: [u32; 2], index: u32, film: Film) -> Vec3 {
         let u = numbers([x, y], film.seed, index);
-        let at = |pixel: u32, u: f32| {
-            2.0 * (pixel as f32 + 0.5 + tent(u)) / film.size as f32 - 1.0
-        };
+        let at = |pixel: u32, u: f32| 2.0 * (pixel as f32 + 0.5 + tent(u)) / film.size as f32 - 1.0;
         let (origin, d) = self.studio.ray(at(x, u[0]), at(y, u[1]));
         let half = origin.dot(d);
         let nearest = origin - half * d;
@@ -97,10 +92,8 @@ impl Scene {
         let to_tangent = frame.transpose();
         let v = to_tangent * -d;
         let m = self.drawn.sample_visible_normal(v, [u[2], u[3]]);
-        let mut lights = vec![
-            2.0 * v.dot(m) * m - v,
-            to_tangent * self.studio.sample([u[4], u[5], u[6]]),
-        ];
+        let mut lights =
+            vec![2.0 * v.dot(m) * m - v, to_tangent * self.studio.sample([u[4], u[5], u[6]])];
         if self.compensated {
             lights.push(by_cosine([u[7], u[8]]));
         }
