@@ -1,5 +1,5 @@
-//! The sphere of a page, by the crate's own BSDFs: what `clients/web` is to hold
-//! the pixels of the browser against.
+//! The sphere of a page, by the crate's own BSDFs: what the pixels of a
+//! browser are held against.
 //!
 //! `cargo run --release --example report_sphere -- --gamma 3 --sigma 0.2 --out sphere.png` writes
 //! one; `--help` has the options.

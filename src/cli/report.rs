@@ -35,7 +35,7 @@ pub(super) fn run(args: Args) -> Outcome {
         Some(path) => path.file_name().unwrap_or(path.as_os_str()).display().to_string(),
         None => "The default set".into(),
     };
-    let source = Source { name: &name, set: &set, validation: None };
+    let source = Source { name: &name, set: &set };
     let meter = Meter::default();
     meter.expect(seconds(&source));
     let bar = progress::show(&meter, "drawing");

@@ -4,7 +4,9 @@ use maud::{Markup, html};
 use microfacet_sampler::Table;
 
 use super::Source;
+use super::drawing::symbols;
 use super::subjects::Subjects;
+use crate::words;
 
 /// The name of the set, what it is in a few numbers, and the switch of colours.
 pub(super) fn head(source: &Source, subjects: &Subjects) -> Markup {
@@ -17,7 +19,7 @@ pub(super) fn head(source: &Source, subjects: &Subjects) -> Markup {
             h1 { (source.name) }
             dl.facts {
                 @for (name, value) in facts(source, subjects) {
-                    div { dt { (name) } dd { (value) } }
+                    div { dt { (name) } dd { (symbols(&value)) } }
                 }
             }
         }
@@ -42,7 +44,7 @@ fn themes() -> Markup {
 fn facts(source: &Source, subjects: &Subjects) -> Vec<(&'static str, String)> {
     let tables = source.set.tables();
     let bytes: usize = tables.iter().map(Table::stored_bytes).sum();
-    let mut facts = vec![("tables", format!("{} ({bytes} bytes)", tables.len()))];
+    let mut facts = vec![("tables", format!("{}, {}", tables.len(), words::bytes(bytes)))];
     if let [first, .., last] = subjects.stops[..] {
         facts.push(("shapes γ", format!("{first} to {last}")));
     } else if let [only] = subjects.stops[..] {

@@ -1,7 +1,6 @@
 //! A set as one HTML page: what it holds, where its errors are, and how its materials look. The
 //! page needs nothing beside it, no network, and no more than a browser.
 
-mod chi_square;
 mod curves;
 mod drawing;
 mod energy;
@@ -19,7 +18,6 @@ use microfacet_sampler::{MaterialError, Tables};
 
 use crate::progress::Meter;
 
-pub use chi_square::Validation;
 pub use sphere::{Film, Look, picture};
 
 /// What a page is made of.
@@ -29,8 +27,6 @@ pub struct Source<'a> {
     pub name: &'a str,
     /// The set.
     pub set: &'a Tables,
-    /// The result of a validation of this set, if one ran.
-    pub validation: Option<&'a Validation>,
 }
 
 /// Why there is no page.

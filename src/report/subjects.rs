@@ -114,6 +114,12 @@ impl Subjects {
         shown.truncate(SHOWN);
         Self { stops, slices, is_range, shown, left_out }
     }
+
+    /// Which of the lobes is shown first: the first material, or among examples that of γ = 3.
+    pub(super) fn opening(&self) -> usize {
+        let is_example = |shown: &Shown| shown.entry.is_none() && shown.gamma == 3.0;
+        self.shown.iter().position(is_example).unwrap_or(0)
+    }
 }
 
 impl Shown {

@@ -2,9 +2,10 @@
 //     report.set({sigma: [x, y], gamma, metal, compensation, size, samples}) -> Promise
 //         shows this, and resolves when exactly so many samples are there; what is left out stays.
 //         gamma is that of a stop, metal a name of the list
-//     report.pixels() -> RGBA of the canvas, from the lower left
+//     report.pixels() -> Promise of RGBA of the canvas, from the lower left
 //     report.state() -> what is shown, with the shape `drawn` whose normals are drawn
-//     report.lobe(degrees) -> f cos of the lobe, of GGX and of Beckmann at 721 lights, in fours
+//     report.lobe(degrees) -> Promise of f cos of the lobe, of GGX and of Beckmann at 721 lights
+//         from -90 to 90 degrees, in fours of which the last is 1; whole degrees from 0 to 89
 
 const $ = (id) => document.getElementById(id);
 const controls = {
@@ -48,7 +49,8 @@ function tell() {
     }
     const round = sigma[0] === sigma[1];
     $('stand-in').hidden = round || !compensation;
-    const rough = round ? `σ = ${short(sigma[0])}` : `σx = ${short(sigma[0])}, σy = ${short(sigma[1])}`;
+    const [x, y] = sigma.map(short);
+    const rough = round ? `σ = ${x}` : `σx = ${x}, σy = ${y}`;
     const metal = data.reflectances[reflectance].name;
     const bounces = compensation ? 'with compensation' : 'one bounce';
     $('sphere').setAttribute('aria-label', `A sphere of ${metal}, ${label}, ${rough}, ${bounces}`);
@@ -156,8 +158,8 @@ function listen(sphere, plot) {
             metal: data.reflectances[state.reflectance].name,
             drawn: gammaOf(data.stops[state.stop].drawn),
         }),
-        lobe(degrees) {
-            plot.turn(degrees);
+        async lobe(degrees) {
+            await plot.turn(degrees);
             return plot.values;
         },
     };
@@ -179,7 +181,7 @@ async function begin() {
     sphere.onprogress = (index, samples) => {
         $('sphere-samples').textContent = `${index} of ${samples} samples`;
     };
-    const { stop, sigma, reflectance } = data.materials[0];
+    const { stop, sigma, reflectance } = data.materials[data.opening];
     state = merge({ ...ofAddress() });
     if (!location.hash) state = { ...state, stop, sigma: [...sigma], reflectance };
     controls.link.checked = state.sigma[0] === state.sigma[1];

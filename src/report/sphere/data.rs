@@ -50,6 +50,8 @@ pub(super) struct Data {
     average_count: usize,
     reflectances: Vec<Reflectance>,
     materials: Vec<Material>,
+    /// Which of them is shown first.
+    opening: usize,
 }
 
 /// A shape that the sphere can have.
@@ -249,6 +251,7 @@ impl Data {
             average_count: AVERAGES,
             reflectances,
             materials,
+            opening: subjects.opening(),
         })
     }
 

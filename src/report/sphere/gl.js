@@ -10,7 +10,9 @@ async function unpacked(base64, bytes) {
         new DecompressionStream('deflate-raw'));
     const planes = new Uint8Array(await new Response(stream).arrayBuffer());
     const all = new Uint8Array(planes.length), count = planes.length / bytes;
-    for (let i = 0; i < planes.length; i++) all[(i % count) * bytes + Math.floor(i / count)] = planes[i];
+    for (let i = 0; i < planes.length; i++) {
+        all[(i % count) * bytes + Math.floor(i / count)] = planes[i];
+    }
     return all.buffer;
 }
 
@@ -81,6 +83,27 @@ function target(gl, width, height) {
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
     return { texture: it, frame };
+}
+
+// What is drawn in the present frame, without waiting for it; null if the context is lost.
+async function read(gl, [width, height], type, array) {
+    const buffer = gl.createBuffer();
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+    gl.bufferData(gl.PIXEL_PACK_BUFFER, array.byteLength, gl.STREAM_READ);
+    gl.readPixels(0, 0, width, height, gl.RGBA, type, 0);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    while (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) {
+        if (gl.isContextLost()) return null;
+        await new Promise((done) => setTimeout(done, 4));
+    }
+    gl.deleteSync(fence);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+    gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, array);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    gl.deleteBuffer(buffer);
+    return array;
 }
 
 // Tables and albedos, with what makes textures of them.

@@ -8,7 +8,8 @@ class LobePlot {
         this.figure = figure;
         this.sphere = sphere;
         this.handle = figure.querySelector('[role=slider]');
-        this.curves = ['shape', 'ggx', 'beckmann'].map((name) => figure.querySelector(`.of-${name}`));
+        const names = ['shape', 'ggx', 'beckmann'];
+        this.curves = names.map((name) => figure.querySelector(`.of-${name}`));
         this.degrees = 45;
         const svg = figure.querySelector('svg');
         svg.addEventListener('pointerdown', (event) => {
@@ -36,32 +37,51 @@ class LobePlot {
 
     turn(degrees) {
         this.degrees = Math.min(Math.max(Math.round(degrees), 0), 89);
-        this.draw();
+        return this.draw();
     }
 
+    // Draws a state; while one is being computed, only the latest of those that follow is drawn.
     draw(state = this.state) {
         this.state = state;
-        const view = this.degrees * Math.PI / 180;
-        const all = this.sphere.lobe(state, view, LIGHTS);
-        if (!all) return;
+        this.again = true;
+        this.drawing ??= this.work().finally(() => { this.drawing = null; });
+        return this.drawing;
+    }
+
+    async work() {
+        while (this.again) {
+            this.again = false;
+            const { degrees } = this;
+            this.place(degrees);
+            const all = await this.sphere.lobe(this.state, degrees * Math.PI / 180, LIGHTS);
+            if (all) this.show(all);
+        }
+    }
+
+    place(degrees) {
+        const view = degrees * Math.PI / 180;
+        const [x, y] = [-Math.sin(view), -Math.cos(view)].map((at) => (at * REACH).toFixed(2));
+        this.figure.querySelector('.of-view').setAttribute('d', `M0 0L${x} ${y}`);
+        this.handle.setAttribute('transform', `translate(${x} ${y})`);
+        this.handle.setAttribute('aria-valuenow', degrees);
+        this.handle.setAttribute('aria-valuetext', `${degrees} degrees`);
+        this.figure.querySelector('.of-angle').textContent = `θ = ${degrees}°`;
+    }
+
+    show(all) {
         this.values = all;
         let most = 0;
-        for (let i = 0; i < LIGHTS; i++) for (let j = 0; j < 3; j++) most = Math.max(most, all[4 * i + j]);
+        for (let i = 0; i < 4 * LIGHTS; i++) if (i % 4 < 3) most = Math.max(most, all[i]);
         this.curves.forEach((curve, j) => {
             const points = [];
             for (let i = 0; i < LIGHTS; i++) {
                 const angle = Math.PI * (i / (LIGHTS - 1) - 0.5);
                 const r = most > 0 ? REACH * all[4 * i + j] / most : 0;
-                points.push(`${(r * Math.sin(angle)).toFixed(2)},${(-r * Math.cos(angle)).toFixed(2)}`);
+                const at = [r * Math.sin(angle), -r * Math.cos(angle)];
+                points.push(at.map((x) => x.toFixed(2)).join());
             }
             curve.setAttribute('points', points.join(' '));
         });
-        const [x, y] = [-Math.sin(view), -Math.cos(view)].map((at) => at * REACH);
-        this.figure.querySelector('.of-view').setAttribute('d', `M0 0L${x} ${y}`);
-        this.handle.setAttribute('transform', `translate(${x} ${y})`);
-        this.handle.setAttribute('aria-valuenow', this.degrees);
-        this.handle.setAttribute('aria-valuetext', `${this.degrees} degrees`);
-        this.figure.querySelector('.of-angle').textContent = `θ = ${this.degrees}°`;
-        this.figure.querySelector('.of-scale').textContent = most.toPrecision(3);
+        this.figure.querySelector('.of-scale').textContent = Number(most.toPrecision(3));
     }
 }

@@ -62,13 +62,15 @@ pub(super) fn parts(
     stage.split(subjects.shown.len());
     let data = Data::new(&tables, subjects)?;
     let pictures = pictures(&tables, subjects, &stage)?;
-    let first = &subjects.shown[0];
+    let first = &subjects.shown[subjects.opening()];
     let stills = lobe::stills(&tables, &look(subjects, first), &first.name)?;
     let body = html! {
-        div.viewer {
-            (stage_of(&pictures[0], &first.name))
-            (controls(subjects, &data))
-            div.lobe { (lobe::live()) (stills) }
+        div.look {
+            (stage_of(&pictures[subjects.opening()], &first.name))
+            div.panel {
+                (controls(subjects, &data))
+                div.lobe { (lobe::live()) (stills) }
+            }
         }
         (gallery(subjects, &pictures))
     };
@@ -115,7 +117,7 @@ fn stage_of(picture: &str, name: &str) -> Markup {
 fn controls(subjects: &Subjects, data: &Data) -> Markup {
     html! {
         form #sphere-controls .controls hidden autocomplete="off" {
-            p.control {
+            div.row {
                 label for="material" { "Material" }
                 select #material {
                     option value="-1" { "as set below" }
@@ -124,7 +126,7 @@ fn controls(subjects: &Subjects, data: &Data) -> Markup {
                     }
                 }
             }
-            p.control {
+            div.row {
                 label for="shape" { "Shape" }
                 output #shape-value for="shape" {}
                 @if subjects.is_range {
@@ -138,7 +140,7 @@ fn controls(subjects: &Subjects, data: &Data) -> Markup {
                 }
             }
             @for (axis, along) in [("x", "along the parallels"), ("y", "along the meridians")] {
-                p.control {
+                div.row {
                     label for={ "sigma-" (axis) } {
                         "Roughness σ" (axis) " " small { (along) }
                     }
@@ -146,11 +148,11 @@ fn controls(subjects: &Subjects, data: &Data) -> Markup {
                     input id={ "sigma-" (axis) } type="range" min="0" max=(slider_steps()) step="1";
                 }
             }
-            p.control.check {
+            div.check {
                 input #sigma-link type="checkbox" checked;
                 label for="sigma-link" { "σx and σy together" }
             }
-            p.control {
+            div.row {
                 label for="metal" { "Metal" }
                 select #metal {
                     @for (i, name) in data.reflectance_names().enumerate() {
@@ -158,13 +160,13 @@ fn controls(subjects: &Subjects, data: &Data) -> Markup {
                     }
                 }
             }
-            p.control.check {
+            div.check {
                 input #compensation type="checkbox" checked;
                 label for="compensation" { "Light of further bounces (Kulla–Conty)" }
-                small #stand-in hidden {
-                    "The albedo of the round lobe of √(σx σy) stands in: too much light may come \
-                     back, or too little."
-                }
+            }
+            p #stand-in .note hidden {
+                "For σx ≠ σy the albedo of the round lobe of √(σx σy) stands in: too much light may \
+                 come back, or too little."
             }
         }
     }

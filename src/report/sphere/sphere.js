@@ -1,7 +1,7 @@
 // The sphere: samples are added until there are enough.
 
 const ENOUGH = 512;
-const BUDGET = 14;      // milliseconds of drawing a frame
+const SMOOTH = 22;      // milliseconds of a frame that leave room for more samples
 const PREVIEW = 45;     // most milliseconds of a sample while something is changed
 const SIZES = [640, 512, 400, 320, 240, 160, 112];
 
@@ -11,6 +11,7 @@ class Sphere {
         this.averages = averages;
         this.uploads = tables;
         this.cost = 1e-4;       // milliseconds of a sample of a pixel, as measured
+        this.batch = 1;         // samples of a frame
         this.waiting = [];
         this.visible = true;
         this.onprogress = () => {};
@@ -29,6 +30,7 @@ class Sphere {
         this.present = new Program(gl, text('sphere-present'));
         this.textures = this.uploads(gl);
         this.size = 0;
+        this.drawing = null;
         return true;
     }
 
@@ -113,21 +115,40 @@ class Sphere {
 
     wake() {
         const wanted = this.visible || this.waiting.length > 0;
-        if (this.request || !wanted || this.index >= this.samples) return;
+        const left = this.drawing || this.index < this.samples;
+        if (this.request || !wanted || !left) return;
         this.request = requestAnimationFrame(() => {
             this.request = 0;
-            this.frame();
+            if (!this.gl.isContextLost() && this.isDone()) this.frame();
             this.wake();
         });
     }
 
-    // As many samples as the budget has room for, at least one.
+    // Whether what was drawn last is there. Nothing waits for it: how long that took says how much
+    // can be drawn in a frame.
+    isDone() {
+        const { gl, drawing } = this;
+        if (!drawing) return true;
+        if (gl.getSyncParameter(drawing.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+        gl.deleteSync(drawing.fence);
+        this.drawing = null;
+        const took = performance.now() - drawing.begin;
+        this.cost += (took / drawing.work - this.cost) * (took > PREVIEW ? 0.8 : 0.3);
+        if (took < SMOOTH) this.batch = Math.min(2 * this.batch, 16);
+        else if (took > 2 * SMOOTH) this.batch = Math.ceil(this.batch / 2);
+        if (drawing.of !== this.state) return true;
+        this.onprogress(this.index, this.samples);
+        if (this.index >= this.samples) for (const { done } of this.waiting.splice(0)) done();
+        else if (!this.fixed && this.index < 8 && this.wanted() < this.size) this.restart();
+        return true;
+    }
+
+    // A few samples more, and what there is of the picture.
     frame() {
         const { gl, program, size } = this;
-        if (!gl || gl.isContextLost()) return;
-        const pixels = size * size, begin = performance.now();
-        const room = Math.floor(BUDGET / (pixels * this.cost));
-        const count = Math.min(Math.max(room, 1), 16, this.samples - this.index);
+        const count = Math.min(this.batch, this.samples - this.index);
+        if (count <= 0) return;
+        const begin = performance.now();
         gl.viewport(0, 0, size, size);
         gl.useProgram(program.program);
         for (const it of this.uniforms(this.state)) program.set(...it);
@@ -147,26 +168,22 @@ class Sphere {
         gl.bindFramebuffer(gl.FRAMEBUFFER, null);
         gl.useProgram(this.present.program);
         this.present.draw({ sum: [gl.TEXTURE_2D, this.targets[0].texture] });
-        // Reading waits for the drawing, which is thereby measured.
-        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-        const took = (performance.now() - begin) / (count * pixels);
-        this.cost += (took - this.cost) * (this.index === count ? 0.6 : 0.3);
-        this.onprogress(this.index, this.samples);
-        if (this.index >= this.samples) for (const { done } of this.waiting.splice(0)) done();
+        const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        gl.flush();
+        this.drawing = { fence, begin, work: count * size * size, of: this.state };
     }
 
-    // The canvas as RGBA, from the lower left.
+    // The canvas as RGBA, from the lower left; a promise of it.
     pixels() {
-        const { gl, size } = this, all = new Uint8Array(4 * size * size);
+        const { gl, size } = this;
         gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-        gl.readPixels(0, 0, size, size, gl.RGBA, gl.UNSIGNED_BYTE, all);
-        return all;
+        return read(gl, [size, size], gl.UNSIGNED_BYTE, new Uint8Array(4 * size * size));
     }
 
-    // f cos of a state, of GGX and of Beckmann at so many lights, in threes.
+    // f cos of a state, of GGX and of Beckmann at so many lights, in fours; a promise
+    // of them.
     lobe({ stop, sigma }, view, count) {
         const { gl, lobes } = this;
-        if (gl.isContextLost()) return null;
         this.strip ??= target(gl, count, 1);
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.strip.frame);
         gl.viewport(0, 0, count, 1);
@@ -178,8 +195,6 @@ class Sphere {
         lobes.set('view', '1f', view);
         lobes.set('count', '1f', count);
         lobes.draw({ student_t_tables: [gl.TEXTURE_2D, this.textures.tables] });
-        const all = new Float32Array(4 * count);
-        gl.readPixels(0, 0, count, 1, gl.RGBA, gl.FLOAT, all);
-        return all;
+        return read(gl, [count, 1], gl.FLOAT, new Float32Array(4 * count));
     }
 }

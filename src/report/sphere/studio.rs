@@ -35,21 +35,21 @@ fn lamps() -> [Lamp; 3] {
         Lamp { towards, across, up: towards.cross(across), half, soft, radiance, share }
     };
     [
-        lamp([-0.72, 0.78, 0.62], [0.46, 0.46], 0.2, [8.2, 7.9, 7.5], 0.6),
-        lamp([0.97, 0.16, 0.3], [0.1, 0.8], 0.08, [5.6, 5.7, 5.9], 0.2),
-        lamp([0.6, 0.52, -0.72], [0.34, 0.5], 0.16, [4.6, 5.1, 6.0], 0.2),
+        lamp([-0.72, 0.78, 0.62], [0.46, 0.46], 0.2, [7.2, 6.9, 6.4], 0.5),
+        lamp([0.97, 0.16, 0.3], [0.1, 0.8], 0.08, [4.4, 4.4, 4.4], 0.25),
+        lamp([0.6, 0.52, -0.72], [0.26, 0.42], 0.14, [3.0, 3.2, 3.6], 0.25),
     ]
 }
 
 /// Radiance of the dome: at the zenith, at the horizon, and what the backdrop adds to that about a
 /// direction.
-const ZENITH: Vec3 = Vec3::new(0.30, 0.31, 0.33);
-const HORIZON: Vec3 = Vec3::new(0.085, 0.088, 0.095);
-const GLOW: Vec3 = Vec3::new(0.34, 0.345, 0.36);
+const ZENITH: Vec3 = Vec3::new(0.22, 0.217, 0.215);
+const HORIZON: Vec3 = Vec3::new(0.055, 0.053, 0.052);
+const GLOW: Vec3 = Vec3::new(0.27, 0.262, 0.256);
 const GLOW_TOWARDS: Vec3 = Vec3::new(0.0, 0.0, -1.0);
 /// Radiance of the floor under the dome alone, and under the key light.
-const FLOOR_DOME: Vec3 = Vec3::new(0.15, 0.152, 0.158);
-const FLOOR_KEY: Vec3 = Vec3::new(0.36, 0.352, 0.34);
+const FLOOR_DOME: Vec3 = Vec3::new(0.09, 0.088, 0.086);
+const FLOOR_KEY: Vec3 = Vec3::new(0.26, 0.253, 0.245);
 /// The distances from the sphere between which the floor passes into the backdrop.
 const FLOOR_ENDS: [f32; 2] = [1.5, 9.0];
 /// The tangent of the key light's radius, for its shadow.
