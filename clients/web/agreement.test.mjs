@@ -1,0 +1,86 @@
+// The sphere's pixels are those of the crate's own BSDF: the same random numbers, samples and tone
+// curve, in the browser and in Rust.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { difference, launch, open } from './harness.mjs';
+
+const ALLOWED = 2;
+const SIZE = 96;
+const SAMPLES = 16;
+
+const folder = mkdtempSync(join(tmpdir(), 'sphere-'));
+let browser, opened;
+before(async () => {
+    browser = await launch();
+    opened = await open(browser, 'default');
+    await opened.page.waitForFunction(() => window.report);
+});
+after(async () => {
+    await browser.close();
+    rmSync(folder, { recursive: true });
+});
+
+/// What the page draws, from the upper left, and what it says that it is.
+function drawn(look) {
+    return opened.page.evaluate(async ({ gamma, ...look }) => {
+        await report.set({ ...look, gamma: gamma === 'inf' ? Infinity : gamma });
+        const bytes = await report.pixels(), row = 4 * look.size, flipped = [];
+        for (let y = look.size - 1; y >= 0; y--) flipped.push(...bytes.slice(y * row, (y + 1) * row));
+        const { drawn } = report.state();
+        return { pixels: flipped, drawn: drawn === Infinity ? 'inf' : drawn };
+    }, { ...look, size: SIZE, samples: SAMPLES });
+}
+
+/// What Rust draws, decoded by the browser.
+async function rendered({ sigma, gamma, metal, compensation }, drawn) {
+    const out = join(folder, 'sphere.png');
+    const options = {
+        gamma, drawn, sigma, metal, size: SIZE, samples: SAMPLES, out,
+    };
+    const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, `${value}`]);
+    execFileSync(process.env.SPHERE, compensation ? [...words, '--compensation'] : words);
+    const url = `data:image/png;base64,${readFileSync(out, 'base64')}`;
+    return opened.page.evaluate(async (src) => {
+        const image = Object.assign(new Image(), { src });
+        await image.decode();
+        const canvas = new OffscreenCanvas(image.width, image.height).getContext('2d');
+        canvas.drawImage(image, 0, 0);
+        return [...canvas.getImageData(0, 0, image.width, image.height).data];
+    }, url);
+}
+
+const look = (gamma, x, y, metal, compensation = true) =>
+    ({ gamma, sigma: [x, y], metal, compensation });
+
+/// Shapes that the page holds and shapes between them, both limits, ends of σ, two σ, one bounce.
+const LOOKS = [
+    look(3, 0.2, 0.2, 'gold'), look(1.501, 0.3, 0.3, 'silver'), look(1.7, 1, 1, 'gold'),
+    look(2, 0.05, 0.05, 'copper'), look('inf', 1, 1, 'gold'), look('inf', 0.01, 0.01, 'silver'),
+    look(4.5, 0.1, 0.5, 'aluminium'), look(60, 0.8, 0.8, 'copper'),
+    look(2.6, 0.4, 0.4, 'gold', false),
+];
+
+for (const one of LOOKS) {
+    test(`${one.metal}, γ = ${one.gamma}, σ = ${one.sigma}: as the crate draws it`, async () => {
+        const { pixels, drawn: slice } = await drawn(one);
+        const found = difference(pixels, await rendered(one, slice));
+        console.log(`at most ${found.largest}/255; ${found.differing} of ${found.pixels} differ`);
+        assert.ok(found.largest <= ALLOWED, `${found.largest}/255`);
+    });
+}
+
+for (const [what, other] of Object.entries({
+    'σ by 5 %': { sigma: [0.21, 0.21] }, 'compensation': { compensation: false },
+    'γ': { gamma: 3.2 }, 'metal': { metal: 'copper' },
+})) {
+    test(`another ${what} is told apart`, async () => {
+        const { pixels, drawn: slice } = await drawn(LOOKS[0]);
+        const found = difference(pixels, await rendered({ ...LOOKS[0], ...other }, slice));
+        assert.ok(found.largest > ALLOWED, `${found.largest}/255`);
+    });
+}

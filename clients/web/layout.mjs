@@ -1,0 +1,140 @@
+// How a page lies on a screen or on paper. Each function runs in the page, after `shownText`, and
+// returns what it found wrong, in words.
+
+/// Nothing is beyond the page, cut, on top of other text, too small to read or to touch.
+export function layout({ touch }) {
+    const found = [];
+    const words = element => {
+        const text = (element.getAttribute('aria-label') ?? element.textContent).trim();
+        const name = element.getAttribute('class') ?? element.id;
+        return `${element.tagName.toLowerCase()}.${name} "${text.slice(0, 40)}"`;
+    };
+    const { scrollingElement: root } = document;
+    if (root.scrollWidth > root.clientWidth) {
+        found.push(`the page is ${root.scrollWidth} wide, the window ${root.clientWidth}`);
+    }
+    // What scrolls by itself may be wider than the window.
+    const scrolls = element => {
+        const { overflowX } = getComputedStyle(element);
+        return ['auto', 'scroll'].includes(overflowX) && element.scrollWidth > element.clientWidth;
+    };
+    const within = element => {
+        for (let at = element; at && at !== document.body; at = at.parentElement) {
+            if (scrolls(at)) {
+                return at;
+            }
+        }
+        return null;
+    };
+    const texts = window.shownText();
+    const isOut = box => box.left < -0.5 || box.right > root.clientWidth + 0.5;
+    const outside =
+        texts.filter(({ element, boxes }) => !within(element) && boxes.some(isOut));
+    outside.forEach(({ element }) => found.push(`beyond the page: ${words(element)}`));
+    for (const element of document.body.querySelectorAll('*')) {
+        const { overflowX, overflowY, clip, clipPath } = getComputedStyle(element);
+        const hides = value => value === 'hidden' || value === 'clip';
+        const isShown = element.clientWidth > 2 && clip === 'auto' && clipPath === 'none';
+        const cut = hides(overflowX) && element.scrollWidth > element.clientWidth + 1
+            || hides(overflowY) && element.scrollHeight > element.clientHeight + 1;
+        if (isShown && cut && !(element instanceof SVGElement)) {
+            found.push(`cut: ${words(element)}`);
+        }
+        if (element instanceof SVGSVGElement && element.checkVisibility()) {
+            const frame = element.getBoundingClientRect();
+            for (const text of element.querySelectorAll('text')) {
+                const box = text.getBoundingClientRect();
+                const over = Math.max(frame.left - box.left, box.right - frame.right,
+                    frame.top - box.top, box.bottom - frame.bottom);
+                if (over > 1) {
+                    found.push(`cut by its figure by ${over.toFixed(1)}: "${text.textContent}"`);
+                }
+            }
+        }
+    }
+    const controls = [...document.querySelectorAll('input, select, canvas')]
+        .filter(element => element.checkVisibility({ visibilityProperty: true }))
+        .map(element => ({ element, boxes: [element.getBoundingClientRect()] }));
+    found.push(...overlaps([...texts, ...controls], words, within));
+    for (const { element, boxes } of texts) {
+        let size = parseFloat(getComputedStyle(element).fontSize);
+        if (element instanceof SVGElement) {
+            const drawn = element.closest('text');
+            const matrix = drawn?.getScreenCTM();
+            size *= matrix ? Math.hypot(matrix.a, matrix.b) : 1;
+        }
+        if (size < 9 && boxes.length > 0) {
+            found.push(`letters of ${size.toFixed(1)} pixels: ${words(element)}`);
+        }
+    }
+    if (touch) {
+        found.push(...targets());
+    }
+    return [...new Set(found)];
+
+    function overlaps(all, words, within) {
+        const inks = all.flatMap(({ element, boxes }) => boxes.map(box => ({ element, box })));
+        inks.sort((a, b) => a.box.top - b.box.top);
+        const found = [];
+        inks.forEach(({ element, box }, i) => {
+            for (let j = i + 1; j < inks.length && inks[j].box.top < box.bottom - 2; j++) {
+                const other = inks[j];
+                const wide = Math.min(box.right, other.box.right) - Math.max(box.left, other.box.left);
+                const high = Math.min(box.bottom, other.box.bottom) - other.box.top;
+                const nested = element.contains(other.element) || other.element.contains(element);
+                // Lines stand closer than their boxes, and what scrolls is cut at its edge.
+                const close = Math.min(box.height, other.box.height) * 0.45;
+                if (!nested && wide > 2 && high > close && within(element) === within(other.element)) {
+                    found.push(`overlap: ${words(element)} and ${words(other.element)}`);
+                }
+            }
+        });
+        return found;
+    }
+
+    /// WCAG 2.2, 2.5.8: 24 pixels, or links within a sentence.
+    function targets() {
+        const found = [];
+        const all = 'button, select, input, summary, a[href], [role=slider], [role=button]';
+        for (const element of document.querySelectorAll(all)) {
+            if (!element.checkVisibility({ visibilityProperty: true })) {
+                continue;
+            }
+            const isInText = element.matches('a') && element.closest('p, li, td, figcaption, dd');
+            const label = element.matches('[type=checkbox], [type=radio]') && element.labels?.[0];
+            const boxes = [element, label].filter(Boolean).map(it => it.getBoundingClientRect());
+            const fits = box => box.width >= 24 && box.height >= 24;
+            if (!isInText && !boxes.some(fits)) {
+                const { width, height } = boxes[0];
+                found.push(`a target of ${width.toFixed(0)} × ${height.toFixed(0)}: ${words(element)}`);
+            }
+        }
+        return found;
+    }
+}
+
+/// On paper: pictures are there, and what must not be divided is asked to stay whole and fits.
+export function printed({ pageHeight }) {
+    const found = [];
+    for (const element of document.querySelectorAll('figure, img, svg, tr')) {
+        if (!element.checkVisibility()) {
+            continue;
+        }
+        const box = element.getBoundingClientRect();
+        let whole = false;
+        for (let at = element; at; at = at.parentElement) {
+            whole ||= getComputedStyle(at).breakInside === 'avoid';
+        }
+        const replaced = element.matches('img, svg, tr');
+        if (!whole && !replaced) {
+            found.push(`may be divided: ${element.tagName}.${element.getAttribute('class')}`);
+        }
+        if (box.height > pageHeight) {
+            found.push(`taller than a sheet: ${element.tagName}.${element.getAttribute('class')}`);
+        }
+    }
+    const controls = [...document.querySelectorAll('input, select, button')];
+    const useless = controls.filter(control => control.checkVisibility());
+    useless.forEach(control => found.push(`a control on paper: ${control.id || control.className}`));
+    return found;
+}
