@@ -30,7 +30,9 @@ function drawn(look) {
     return opened.page.evaluate(async ({ gamma, ...look }) => {
         await report.set({ ...look, gamma: gamma === 'inf' ? Infinity : gamma });
         const bytes = await report.pixels(), row = 4 * look.size, flipped = [];
-        for (let y = look.size - 1; y >= 0; y--) flipped.push(...bytes.slice(y * row, (y + 1) * row));
+        for (let at = bytes.length - row; at >= 0; at -= row) {
+            flipped.push(...bytes.slice(at, at + row));
+        }
         const { drawn } = report.state();
         return { pixels: flipped, drawn: drawn === Infinity ? 'inf' : drawn };
     }, { ...look, size: SIZE, samples: SAMPLES });

@@ -79,12 +79,14 @@ export function layout({ touch }) {
         inks.forEach(({ element, box }, i) => {
             for (let j = i + 1; j < inks.length && inks[j].box.top < box.bottom - 2; j++) {
                 const other = inks[j];
-                const wide = Math.min(box.right, other.box.right) - Math.max(box.left, other.box.left);
+                const right = Math.min(box.right, other.box.right);
+                const wide = right - Math.max(box.left, other.box.left);
                 const high = Math.min(box.bottom, other.box.bottom) - other.box.top;
                 const nested = element.contains(other.element) || other.element.contains(element);
                 // Lines stand closer than their boxes, and what scrolls is cut at its edge.
                 const close = Math.min(box.height, other.box.height) * 0.45;
-                if (!nested && wide > 2 && high > close && within(element) === within(other.element)) {
+                const together = within(element) === within(other.element);
+                if (!nested && wide > 2 && high > close && together) {
                     found.push(`overlap: ${words(element)} and ${words(other.element)}`);
                 }
             }
@@ -106,7 +108,8 @@ export function layout({ touch }) {
             const fits = box => box.width >= 24 && box.height >= 24;
             if (!isInText && !boxes.some(fits)) {
                 const { width, height } = boxes[0];
-                found.push(`a target of ${width.toFixed(0)} × ${height.toFixed(0)}: ${words(element)}`);
+                const size = `${width.toFixed(0)} × ${height.toFixed(0)}`;
+                found.push(`a target of ${size}: ${words(element)}`);
             }
         }
         return found;
@@ -135,6 +138,6 @@ export function printed({ pageHeight }) {
     }
     const controls = [...document.querySelectorAll('input, select, button')];
     const useless = controls.filter(control => control.checkVisibility());
-    useless.forEach(control => found.push(`a control on paper: ${control.id || control.className}`));
+    for (const { id, className } of useless) found.push(`a control on paper: ${id || className}`);
     return found;
 }
