@@ -159,3 +159,80 @@ fn a_page_goes_to_standard_output() {
     let file = ok(at, &["report", "gold/tables.safetensors", "--out", "-"]);
     assert!(file.contains("<title>tables.safetensors · microfacet-bake</title>"));
 }
+
+/// What `validate` prints of a set, with these options, into a file.
+fn validate(at: &Path, set: &str, more: &[&str], file: &str) {
+    let few = ["validate", set, "--samples", "20000", "--configurations", "20", "--json"];
+    let output = run(at, &[&few[..], more].concat());
+    assert!(output.status.code().is_some_and(|code| code <= 1));
+    fs::write(at.join(file), output.stdout).unwrap();
+}
+
+#[test]
+fn a_validation_is_shown_on_the_page_of_its_set() {
+    let folder = workshop();
+    let at = folder.path();
+    let page = |args: &[&str]| ok(at, &[&["report"], args, &["--out", "-"]].concat());
+    let bare = page(&["gold"]);
+    assert!(bare.contains("microfacet-bake validate SET --json"));
+    assert!(!bare.contains("Sorted p-values"));
+    validate(at, "gold", &[], "good.json");
+    let good = page(&["gold", "--validation", "good.json"]);
+    for part in [">Passed<", "20 configurations", "Sorted p-values", "None was rejected"] {
+        assert!(good.contains(part), "{part}");
+    }
+    assert!(!good.contains("microfacet-bake validate SET --json"));
+    validate(at, "gold", &["--perturb-gamma", "2"], "bad.json");
+    let bad = page(&["gold", "--validation", "bad.json"]);
+    for part in [">Rejected<", "was multiplied by 2", "configurations were rejected"] {
+        assert!(bad.contains(part), "{part}");
+    }
+    assert!(!bad.contains(">Passed<"));
+}
+
+/// Images of a set are that set.
+#[test]
+fn a_validation_of_images_is_one_of_the_set() {
+    let folder = workshop();
+    let at = folder.path();
+    let both = ["--format", "exr,safetensors", "--quality", "draft"];
+    fs::write(at.join("glass.toml"), "[[material]]\nname = \"glass\"\nsigma = 0.3\ngamma = 3.0\n")
+        .unwrap();
+    ok(at, &[&["bake", "glass.toml", "--out", "both"], &both[..]].concat());
+    fs::create_dir(at.join("images")).unwrap();
+    for name in names(&at.join("both")).iter().filter(|name| name.ends_with(".exr")) {
+        fs::copy(at.join("both").join(name), at.join("images").join(name)).unwrap();
+    }
+    validate(at, "images", &[], "images.json");
+    ok(at, &["report", "both/tables.safetensors", "--validation", "images.json"]);
+    refuses(at, &["gold", "--validation", "images.json"], &["another set", "validate SET --json"]);
+}
+
+#[test]
+fn what_is_no_validation_is_refused() {
+    let folder = workshop();
+    let at = folder.path();
+    let with = |file: &'static str| ["gold", "--validation", file];
+    refuses(at, &with("absent.json"), &["absent.json"]);
+    refuses(at, &with("gold"), &["gold: is a folder"]);
+    validate(at, "gold", &[], "whole.json");
+    let whole = fs::read_to_string(at.join("whole.json")).unwrap();
+    let what = "not the result of a validation";
+    for (broken, why) in [
+        (String::new(), what),
+        (whole[..whole.len() / 2].into(), what),
+        ("[]".into(), what),
+        (whole.replacen("\"set\"", "\"sets\"", 1), "missing field `set`"),
+        (whole.replacen("\"gamma\": \"2\"", "\"gamma\": \"two\"", 1), "\"two\" is no number"),
+    ] {
+        assert_ne!(broken, whole);
+        fs::write(at.join("broken.json"), broken).unwrap();
+        refuses(at, &with("broken.json"), &["broken.json", why]);
+    }
+    let stressed = ["validate", "gold", "--stress", "--points", "1", "--json"];
+    fs::write(at.join("stress.json"), ok(at, &stressed)).unwrap();
+    refuses(at, &with("stress.json"), &["stress.json", what, "validate SET --json"]);
+    let file = fs::File::create(at.join("huge.json")).unwrap();
+    file.set_len(1 << 40).unwrap();
+    refuses(at, &with("huge.json"), &["huge.json", "at most 64 MiB are read"]);
+}

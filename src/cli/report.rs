@@ -1,18 +1,22 @@
 //! `report`: a set as one HTML page.
 
-use std::path::PathBuf;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
+use microfacet_bake::input::{MAX_TEXT, open_or_stdin, shown};
 use microfacet_bake::progress::Meter;
 use microfacet_bake::report::{Source, page, seconds};
 use microfacet_bake::store;
+use microfacet_bake::validate::record::Record;
 
 use super::words::exact_bytes;
-use super::{Done, Outcome, print, progress, summarize, tables, unwritable, write_file};
+use super::{Done, Failure, Outcome, print, progress, summarize, tables, unwritable, write_file};
 
 /// Write a page that shows what a set holds, where its errors are, and how its materials look.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   microfacet-bake report glass --out glass.html
+  microfacet-bake report glass --validation glass.json
   microfacet-bake report
   microfacet-bake report glass --out - | gzip > glass.html.gz
 The page is one file, needs no network, and opens in any browser.")]
@@ -23,6 +27,10 @@ pub(super) struct Args {
     /// File to write, or `-` for standard output; one that exists is replaced as a whole.
     #[arg(long, short, value_name = "FILE", default_value = "report.html")]
     out: PathBuf,
+    /// What `validate SET --json` printed of the same set, to show its results; `-` for standard
+    /// input.
+    #[arg(long, value_name = "FILE")]
+    validation: Option<PathBuf>,
 }
 
 pub(super) fn run(args: Args) -> Outcome {
@@ -35,7 +43,8 @@ pub(super) fn run(args: Args) -> Outcome {
         Some(path) => path.file_name().unwrap_or(path.as_os_str()).display().to_string(),
         None => "The default set".into(),
     };
-    let source = Source { name: &name, set: &set };
+    let validation = args.validation.as_deref().map(validation).transpose()?;
+    let source = Source { name: &name, set: &set, validation: validation.as_ref() };
     let meter = Meter::default();
     meter.expect(seconds(&source));
     let bar = progress::show(&meter, "drawing");
@@ -48,4 +57,18 @@ pub(super) fn run(args: Args) -> Outcome {
     write_file(&args.out, html.as_bytes())?;
     summarize(&format!("{} ({})\n", args.out.display(), exact_bytes(html.len())))?;
     Ok(Done::Ok)
+}
+
+/// Reads what `validate --json` printed.
+fn validation(path: &Path) -> Result<Record, Failure> {
+    let failed = |why: &dyn std::fmt::Display| Failure(format!("{}: {why}", shown(path)));
+    let mut text = Vec::new();
+    let mut input = open_or_stdin(path, MAX_TEXT).map_err(|why| failed(&why))?;
+    input.read_to_end(&mut text).map_err(|why| failed(&why))?;
+    serde_json::from_slice(&text).map_err(|why| {
+        failed(&format!(
+            "not the result of a validation: {why}; give what `microfacet-bake validate SET --json` \
+             prints"
+        ))
+    })
 }

@@ -3,15 +3,14 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use serde_json::json;
-
 use microfacet_bake::progress::Meter;
 use microfacet_bake::validate::configuration::{Configuration, configurations, shapes};
 use microfacet_bake::validate::furnace::{
     Furnace, Survey, TOLERANCE as FURNACE_TOLERANCE, survey, survey_seconds,
 };
+use microfacet_bake::validate::record::Record;
 use microfacet_bake::validate::{
-    LEVEL, Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all, seconds,
+    Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all, seconds,
 };
 
 use microfacet_sampler::{LobeEntry, Reflectance, Tables};
@@ -26,6 +25,7 @@ use super::{
 #[command(after_help = "Examples:
   microfacet-bake validate --configurations 50 --samples 1e6
   microfacet-bake validate --sigma 0.3 --gamma 3 --theta 60 --degrees
+  microfacet-bake validate glass --json > glass.json    for `report glass --validation glass.json`
   microfacet-bake validate --stress --points 2e6")]
 pub(super) struct Args {
     /// A table file, or a folder with one; the embedded default if absent.
@@ -42,7 +42,7 @@ pub(super) struct Args {
     /// Multiply the model's gamma by this; 1.01 shows that the tests reject.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::number(FACTORS, "1 leaves gamma as it is"))]
     perturb_gamma: f64,
-    /// Print the result as JSON.
+    /// Print the result as JSON, with the identity of the set; `report --validation` reads it.
     #[arg(long)]
     json: bool,
     /// Test one configuration: its roughness, `X` or `X,Y`.
@@ -117,7 +117,8 @@ pub(super) fn run(args: Args) -> Outcome {
     let passed = result.passed() && furnaces.iter().all(Survey::passed);
     let source = source.map_or(String::new(), |path| format!("{path} "));
     if args.json {
-        print_json(&as_json(&result, options, &furnaces, &untested, passed))?;
+        let record = Record::new(&set, options, &result, &furnaces, untested)?;
+        print_json(&serde_json::to_value(&record)?)?;
         return Ok(Done::judged(passed));
     }
     if !result.reports.is_empty() {
@@ -236,36 +237,4 @@ fn white(furnaces: &[Survey]) -> String {
         )
     };
     furnaces.iter().map(line).collect()
-}
-
-fn as_json(
-    result: &Result,
-    options: Options,
-    furnaces: &[Survey],
-    untested: &[String],
-    passed: bool,
-) -> serde_json::Value {
-    let reports: Vec<_> = result
-        .reports
-        .iter()
-        .map(|report| {
-            let Configuration { sigma_x, sigma_y, gamma, theta, phi, seed } = report.configuration;
-            json!({
-                "sigma_x": sigma_x, "sigma_y": sigma_y, "gamma": gamma.to_string(), "theta": theta, "phi": phi, "seed": seed,
-                "p_lobe": report.normals.lobe.p, "p_world": report.normals.world.p, "ks": report.normals.ks, "g1_error": report.g1_error,
-            })
-        })
-        .collect();
-    let furnaces: Vec<_> = furnaces
-        .iter()
-        .map(|survey| {
-            let (low, high) = (survey.lowest.kulla_conty, survey.highest.kulla_conty);
-            json!({ "masking": survey.masking.name(), "points": survey.points, "lowest": low, "highest": high })
-        })
-        .collect();
-    json!({
-        "passed": passed, "not_tested": untested, "furnaces": furnaces, "samples": options.samples, "level": LEVEL, "level_of_one_test": result.level,
-        "rejected": result.rejected(), "pdf_tolerance": PDF_TOLERANCE,
-        "worst_pdf_integral": result.worst_integral().map(|report| report.pdf_integral), "configurations": reports,
-    })
 }

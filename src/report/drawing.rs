@@ -1,6 +1,6 @@
 //! Plots of a page, and the letters of its texts.
 
-use maud::{Markup, PreEscaped};
+use maud::{Markup, PreEscaped, html};
 
 use crate::plot::{Figure, Panel};
 
@@ -35,6 +35,20 @@ pub(super) fn symbols(text: &str) -> String {
     out
 }
 
+/// A text in which backticks enclose what is typed.
+pub(super) fn code(text: &str) -> Markup {
+    let parts: Vec<&str> = text.split('`').collect();
+    // One that encloses nothing is a letter of some name.
+    if parts.len() % 2 == 0 {
+        return html! { (text) };
+    }
+    html! {
+        @for (i, part) in parts.iter().enumerate() {
+            @if i % 2 == 1 { code { (part) } } @else { (part) }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -50,6 +64,20 @@ mod tests {
         ];
         for (terminal, page) in words {
             assert_eq!(symbols(terminal), page);
+        }
+    }
+
+    #[test]
+    fn what_is_typed_is_code() {
+        for (text, page) in [
+            (
+                "give `--albedo`, or `a < b`.",
+                "give <code>--albedo</code>, or <code>a &lt; b</code>.",
+            ),
+            ("a lone ` and <b>", "a lone ` and &lt;b&gt;"),
+            ("", ""),
+        ] {
+            assert_eq!(code(text).0, page);
         }
     }
 }

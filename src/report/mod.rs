@@ -11,12 +11,14 @@ mod page;
 mod served;
 mod sphere;
 mod subjects;
+mod validated;
 
 use std::fmt;
 
-use microfacet_sampler::{MaterialError, Tables};
+use microfacet_sampler::{LoadError, MaterialError, Tables};
 
 use crate::progress::Meter;
+use crate::validate::record::Record;
 
 pub use sphere::{Film, Look, picture};
 
@@ -27,6 +29,8 @@ pub struct Source<'a> {
     pub name: &'a str,
     /// The set.
     pub set: &'a Tables,
+    /// What a validation of it found.
+    pub validation: Option<&'a Record>,
 }
 
 /// Why there is no page.
@@ -36,6 +40,15 @@ pub enum ReportError {
     Empty,
     /// The set does not hold what it declares to cover.
     Material(MaterialError),
+    /// The validation is of another set.
+    OtherSet {
+        /// The identity of that.
+        of: String,
+        /// The identity of this.
+        set: String,
+    },
+    /// The set could not be written, and so has no identity.
+    Unsound(LoadError),
 }
 
 impl fmt::Display for ReportError {
@@ -46,6 +59,12 @@ impl fmt::Display for ReportError {
                 "the set has no tables and no materials; name what `microfacet-bake bake` wrote"
             ),
             Self::Material(why) => write!(f, "{why}"),
+            Self::OtherSet { of, set } => write!(
+                f,
+                "a validation of another set ({of:?}, and this one is {set:?}); give what \
+                 `microfacet-bake validate SET --json` prints of the set that is reported"
+            ),
+            Self::Unsound(why) => write!(f, "{why}"),
         }
     }
 }
@@ -71,10 +90,12 @@ pub fn seconds(source: &Source) -> f64 {
 /// The page, as HTML; each part of it is a stage of the meter, on which [`seconds`] were expected.
 ///
 /// # Errors
-/// [`ReportError`] for a set with nothing to show, or one that lacks what it declares.
+/// [`ReportError`] for a set with nothing to show, or one that lacks what it declares, and for a
+/// validation of another set.
 pub fn page(source: &Source, meter: &Meter) -> Result<String, ReportError> {
     if !has_page(source.set) {
         return Err(ReportError::Empty);
     }
+    validated::check(source)?;
     page::page(source, meter)
 }

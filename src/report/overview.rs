@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use microfacet_sampler::{Provenance, Table, Tables};
 
 use super::Source;
-use super::drawing::symbols;
+use super::drawing::{code, symbols};
 use super::served::{Served, served};
 use super::subjects::Subjects;
 use crate::words::table::{albedos, axis, covers, holds, normals, precision};
@@ -12,6 +12,10 @@ use crate::words::{bytes, certificate, count, error};
 
 /// Rows of a table of the page; a library has thousands of materials.
 const ROWS: usize = 200;
+/// Tables whose axes and certificates are listed.
+const DETAILS: usize = 40;
+/// Bytes of a recipe that are shown.
+const RECIPE: usize = 16 << 10;
 
 pub(super) fn section(source: &Source, _subjects: &Subjects) -> Markup {
     let set = source.set;
@@ -101,7 +105,7 @@ fn skipped(set: &Tables, all: &[Served]) -> Markup {
             ul.skipped {
                 @for (of, why, names) in &reasons {
                     li {
-                        b { (of) } ": " (why) " ("
+                        b { (of) } ": " (code(why)) " ("
                         @for (i, name) in names.iter().take(NAMES).enumerate() {
                             @if i > 0 { ", " }
                             bdi { (name) }
@@ -155,7 +159,13 @@ fn tables(set: &Tables) -> Markup {
         @if all.len() > ROWS { p.note { "and " (count(all.len() - ROWS, "more table")) } }
         details {
             summary { "Axes and certificates" }
-            @for table in all.iter().take(ROWS) { (details(table)) }
+            @for table in all.iter().take(DETAILS) { (details(table)) }
+            @if all.len() > DETAILS {
+                p.note {
+                    "and those of " (count(all.len() - DETAILS, "more table")) ", which "
+                    code { "microfacet-bake inspect --details" } " prints"
+                }
+            }
         }
     }
 }
@@ -217,8 +227,24 @@ fn origin(origin: &Provenance) -> Markup {
         @if !origin.recipe.is_empty() {
             details {
                 summary { "Recipe" }
-                pre tabindex="0" { code { (origin.recipe) } }
+                @let shown = beginning(&origin.recipe);
+                pre tabindex="0" { code { (shown) } }
+                @if shown.len() < origin.recipe.len() {
+                    p.note {
+                        "and " (bytes(origin.recipe.len() - shown.len())) " more, which "
+                        code { "microfacet-bake inspect --json" } " prints"
+                    }
+                }
             }
         }
     }
+}
+
+/// The whole lines of a recipe that are shown.
+fn beginning(recipe: &str) -> &str {
+    if recipe.len() <= RECIPE {
+        return recipe;
+    }
+    let end = recipe.as_bytes()[..RECIPE].iter().rposition(|&byte| byte == b'\n');
+    &recipe[..end.map_or(0, |end| end + 1)]
 }

@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::subjects::Subjects;
-use super::{ReportError, Source, curves, energy, errors, head, overview, sphere};
+use super::{ReportError, Source, curves, energy, errors, head, overview, sphere, validated};
 use crate::progress::Meter;
 
 /// Nothing is loaded: neither scripts nor pictures from elsewhere.
@@ -58,6 +58,13 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
                    precision. A ring marks the place of the largest error that was certified when \
                    the table was baked.",
             content: errors::section(source, &subjects, meter)?,
+        },
+        Section {
+            id: "validation",
+            title: "Validation",
+            lead: "Normals that were drawn from the tables, counted, and compared with the density \
+                   of the model by chi-square.",
+            content: validated::section(source),
         },
     ];
     let sections = sections.iter().filter(|section| !section.content.0.is_empty());

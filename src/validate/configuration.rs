@@ -4,18 +4,20 @@ use std::fmt;
 
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
+use serde::{Deserialize, Serialize};
 
 use microfacet_common::shape::gamma_of_s;
 use microfacet_sampler::{MaterialEntry, Tables};
 
 /// One material seen from one direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Configuration {
     /// σx.
     pub sigma_x: f64,
     /// σy.
     pub sigma_y: f64,
-    /// Shape.
+    /// Shape; as JSON a text, since it may be `inf`.
+    #[serde(with = "text")]
     pub gamma: f64,
     /// Polar angle of the view, radians.
     pub theta: f64,
@@ -42,6 +44,22 @@ impl fmt::Display for Configuration {
             f,
             "--sigma {sigma_x},{sigma_y} --gamma {gamma} --theta {theta} --phi {phi} --seed {seed}"
         )
+    }
+}
+
+/// A number as a text.
+mod text {
+    use std::borrow::Cow;
+
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub(super) fn serialize<S: Serializer>(x: &f64, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(x)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        let text = Cow::<str>::deserialize(from)?;
+        text.parse().map_err(|_| D::Error::custom(format!("{text:?} is no number")))
     }
 }
 

@@ -10,6 +10,7 @@ pub mod furnace;
 pub mod pdf_integral;
 pub mod points;
 pub mod radial;
+pub mod record;
 mod run;
 pub mod stress;
 

@@ -9,7 +9,7 @@ use crate::table_set::{Target, bake};
 use crate::table_spec::Quality;
 
 fn html(set: &Tables, meter: &Meter) -> String {
-    let source = Source { name: "a set", set };
+    let source = Source { name: "a set", set, validation: None };
     section(&source, &Subjects::of(set), meter).unwrap().into_string()
 }
 

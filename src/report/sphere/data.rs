@@ -28,7 +28,7 @@ const TEXELS: usize = 24;
 /// Averages along √σ, after the one of a mirror, which loses nothing.
 const AVERAGES: usize = 48;
 /// The metal of lobes that state no reflectance of a conductor.
-const UNSTATED: Metal = Metal::Gold;
+pub(super) const UNSTATED: Metal = Metal::Gold;
 
 /// All that the script reads, as JSON. Tables are deflated bytes, those of numbers with the bytes
 /// of equal weight together, in base64.
@@ -106,15 +106,21 @@ fn stop(subjects: &Subjects, gamma: f64) -> usize {
     subjects.stops.iter().position(|&stop| stop >= gamma).unwrap_or(subjects.stops.len() - 1)
 }
 
-/// The reflectance of a material as the sphere has it, with its name if it is its own.
+/// Whether a lobe is shown in [`UNSTATED`].
+pub(super) fn is_unstated(shown: &Shown) -> bool {
+    conductor_of(shown.entry.as_ref()).is_none()
+}
+
+/// The reflectance that a material states of a conductor.
+fn conductor_of(entry: Option<&MaterialEntry>) -> Option<FresnelEntry> {
+    use FresnelEntry::{Conductor, Mirror, Schlick};
+    let stated = entry.and_then(|entry| entry.fresnel);
+    stated.filter(|fresnel| matches!(fresnel, Mirror | Schlick(_) | Conductor { .. }))
+}
+
+/// The reflectance of a material as the sphere has it.
 fn fresnel(entry: Option<&MaterialEntry>) -> FresnelEntry {
-    match entry.and_then(|entry| entry.fresnel) {
-        Some(
-            own
-            @ (FresnelEntry::Mirror | FresnelEntry::Schlick(_) | FresnelEntry::Conductor { .. }),
-        ) => own,
-        _ => UNSTATED.into(),
-    }
+    conductor_of(entry).unwrap_or_else(|| UNSTATED.into())
 }
 
 fn conductor(fresnel: FresnelEntry) -> ConductorFresnel {

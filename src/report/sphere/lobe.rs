@@ -2,7 +2,6 @@
 //! for where none runs.
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::fmt::Write;
 
 use glam::Vec3;
 use maud::{Markup, html};
@@ -12,7 +11,7 @@ use super::scene::Look;
 
 /// The length of the longest arrow, as `REACH` of lobe.js, and lights of a still.
 const REACH: f64 = 150.0;
-const LIGHTS: usize = 361;
+const LIGHTS: usize = 241;
 /// The views of stills, in degrees.
 const VIEWS: [u32; 3] = [15, 45, 75];
 /// Names of the curves, as classes.
@@ -132,12 +131,15 @@ fn values(lobe: &Lobe, view: f64) -> Vec<f64> {
     (0..LIGHTS).map(of).collect()
 }
 
+/// Points as SVG has them, to a tenth; those that fall on one are one.
 fn points(values: &[f64], most: f64) -> String {
-    let mut text = String::new();
-    for (i, value) in values.iter().enumerate() {
+    let point = |(i, value): (usize, &f64)| {
         let (r, angle) = (REACH * value / most, angle(i));
-        write!(text, "{:.1},{:.1} ", r * angle.sin(), -r * angle.cos()).expect("memory");
-    }
-    text.truncate(text.trim_end().len());
-    text
+        // −0 would be another text than 0.
+        let [x, y] = [r * angle.sin(), -r * angle.cos()].map(|x| (10.0 * x).round() / 10.0 + 0.0);
+        format!("{x},{y}")
+    };
+    let mut points: Vec<String> = values.iter().enumerate().map(point).collect();
+    points.dedup();
+    points.join(" ")
 }

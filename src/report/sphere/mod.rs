@@ -14,13 +14,13 @@ mod tone;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{Markup, PreEscaped, html};
-use microfacet_sampler::{BindError, Tables};
+use microfacet_sampler::{BindError, Masking, Tables};
 
-use super::subjects::Subjects;
+use super::subjects::{Shown, Subjects};
 use super::{ReportError, Source};
 use crate::export::{Shape, for_webgl};
 use crate::progress::{Meter, Stage};
-use data::{Data, SIGMA, label, look};
+use data::{Data, SIGMA, UNSTATED, is_unstated, label, look};
 pub use scene::{Film, Look};
 use scene::{Scene, jpeg};
 
@@ -73,6 +73,7 @@ pub(super) fn parts(
             }
         }
         (gallery(subjects, &pictures))
+        (differences(subjects))
     };
     let shape = Shape::bind(&tables, subjects.stops[0])?;
     Ok(Some(Parts { body, scripts: scripts(&data, &shape) }))
@@ -200,6 +201,24 @@ fn gallery(subjects: &Subjects, pictures: &[String]) -> Markup {
         }
         @if subjects.left_out > 0 {
             p.note { "And " (subjects.left_out) " more, without a picture." }
+        }
+    }
+}
+
+/// Where the sphere and the pictures are not what a material states.
+fn differences(subjects: &Subjects) -> Markup {
+    let is_beyond = |shown: &Shown| shown.sigma.iter().any(|x| !(SIGMA[0]..=SIGMA[1]).contains(x));
+    let is_other = |shown: &Shown| {
+        shown.entry.as_ref().is_some_and(|entry| entry.masking() != Masking::HeightCorrelated)
+    };
+    let any = |what: &dyn Fn(&Shown) -> bool| subjects.shown.iter().any(what);
+    html! {
+        p.note {
+            "Masking is height-correlated"
+            @if any(&is_other) { ", also of materials that state another" }
+            ". "
+            @if any(&is_unstated) { "What states no conductor is shown in " (UNSTATED.name()) ". " }
+            @if any(&is_beyond) { "σ is kept within " (SIGMA[0]) " and " (SIGMA[1]) "." }
         }
     }
 }

@@ -1,0 +1,96 @@
+//! What the script is given, and what is lit by what.
+
+use std::io::Read;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::read::DeflateDecoder;
+use glam::Vec3;
+use half::f16;
+use microfacet_sampler::{Masking, Tables};
+use serde_json::Value;
+
+use super::super::subjects::Subjects;
+use super::data::Data;
+use crate::export::Shape;
+
+/// Numbers of a text as `gl.js` reads them: inflated, bytes of equal weight together.
+fn unpacked<const N: usize>(text: &Value) -> Vec<[u8; N]> {
+    let deflated = STANDARD.decode(text.as_str().unwrap()).unwrap();
+    let mut planes = Vec::new();
+    DeflateDecoder::new(&deflated[..]).read_to_end(&mut planes).unwrap();
+    let count = planes.len() / N;
+    assert_eq!(planes.len(), N * count);
+    (0..count).map(|i| std::array::from_fn(|n| planes[n * count + i])).collect()
+}
+
+fn data(set: &Tables) -> (Subjects, Value) {
+    let subjects = Subjects::of(set);
+    let json = Data::new(set, &subjects).unwrap().json();
+    (subjects, serde_json::from_str(&json).unwrap())
+}
+
+/// The tables of each stop stand between its place and the next, bit for bit: masking of all, slopes
+/// of those that are drawn.
+#[test]
+fn the_script_is_given_the_tables_of_each_shape() {
+    let set = Tables::embedded();
+    let (subjects, data) = data(&set);
+    let pairs: Vec<[u8; 4]> = unpacked(&data["tables"]);
+    let numbers: Vec<f32> = pairs.into_iter().map(f32::from_le_bytes).collect();
+    assert_eq!(numbers.len() % (2 * data["width"].as_u64().unwrap() as usize), 0);
+    let stops = data["stops"].as_array().unwrap();
+    assert_eq!(stops.len(), subjects.stops.len());
+    let place = |at: &Value| 2 * at.as_u64().unwrap() as usize;
+    let mut places: Vec<usize> = stops.iter().map(|stop| place(&stop["shape"])).collect();
+    places.extend([place(&data["ggx"]), place(&data["beckmann"]), numbers.len()]);
+    places.sort_unstable();
+    for (stop, &gamma) in stops.iter().zip(&subjects.stops) {
+        assert_eq!(stop["gamma"].as_f64().unwrap_or(f64::INFINITY), gamma);
+        let start = place(&stop["shape"]);
+        let end = places.iter().copied().find(|&place| place > start).unwrap();
+        let shape = Shape::bind(&set, gamma).unwrap();
+        for part in shape.parts() {
+            let is_slice = subjects.slices.contains(&gamma);
+            let is_kept = part.name == "masking" || is_slice && part.name == "slopes";
+            if part.columns % 2 == 0 && (is_kept || !is_slice && part.name == "slopes") {
+                let mut there = numbers[start..end].windows(part.values.len());
+                assert_eq!(there.any(|at| at == part.values), is_kept, "{}, {gamma}", part.name);
+            }
+        }
+        let drawn = subjects.stops[stop["drawn"].as_u64().unwrap() as usize];
+        assert!(subjects.slices.contains(&drawn) && drawn <= gamma, "{gamma} is drawn by {drawn}");
+    }
+}
+
+/// The volume of albedos has a layer a stop, a row a roughness, a texel a view, and between texels
+/// the filter of the device finds the albedo of the tables.
+#[test]
+fn the_albedo_texture_is_that_of_the_tables() {
+    let set = Tables::embedded();
+    let (subjects, data) = data(&set);
+    let size = data["texels"].as_u64().unwrap() as usize;
+    let lost = unpacked::<2>(&data["lost"]).into_iter().map(|x| f16::from_le_bytes(x).to_f64());
+    let lost: Vec<f64> = lost.collect();
+    assert_eq!(lost.len(), subjects.stops.len() * size * size);
+    let mut worst: f64 = 0.0;
+    for (layer, &gamma) in lost.chunks(size * size).zip(&subjects.stops) {
+        for sigma in [0.01, 0.0123, 0.05, 0.11, 0.3, 0.47, 0.77, 1.0] {
+            let albedo = set.albedo(sigma, gamma, Masking::HeightCorrelated).unwrap();
+            for cos in [1e-3, 0.01, 0.033, 0.1, 0.27, 0.5, 0.71, 0.93, 1.0] {
+                let [row, column] = coordinates(gamma, sigma, cos).map(|x| x * size as f64 - 0.5);
+                let at = |x: f64| (x.floor().clamp(0.0, (size - 2) as f64) as usize, x);
+                let ((i, y), (j, x)) = (at(row), at(column));
+                let [y, x] = [y - i as f64, x - j as f64];
+                let texel = |i: usize, j: usize| layer[size * i + j];
+                let along = |i: usize| texel(i, j) * (1.0 - x) + texel(i, j + 1) * x;
+                let found = along(i) * (1.0 - y) + along(i + 1) * y;
+                let v = Vec3::new((1.0 - cos * cos).sqrt() as f32, 0.0, cos as f32);
+                let off = (found - f64::from(albedo.lost(v))).abs();
+                worst = worst.max(off);
+            }
+        }
+    }
+    println!("largest error of the volume between texels: {worst:.2e}");
+    assert!(worst < 2e-3, "{worst:e}");
+}
