@@ -24,7 +24,7 @@ use crate::export::{Shape, WIDTH, append_some};
 /// σ that the sphere can have.
 pub(super) const SIGMA: [f64; 2] = [0.01, 1.0];
 /// Texels of albedos along roughness and view.
-const TEXELS: usize = 24;
+const TEXELS: [usize; 2] = [32, 48];
 /// Averages along √σ, after the one of a mirror, which loses nothing.
 const AVERAGES: usize = 48;
 /// The metal of lobes that state no reflectance of a conductor.
@@ -42,9 +42,10 @@ pub(super) struct Data {
     ggx: usize,
     beckmann: usize,
     sigma: [f64; 2],
-    /// 1 − E in half precision, by stop, roughness and view, and its texels along the last two.
+    /// √(1 − E) in half precision, by stop, roughness and view, and its texels along the last two.
+    /// Of heavy tails 1 − E rises as σ, and so the root as the coordinate √σ.
     lost: String,
-    texels: usize,
+    texels: [usize; 2],
     /// ln(1 − E_avg) by stop and at √(σ/σ_max) = 1/n, 2/n … 1.
     averages: String,
     average_count: usize,
@@ -160,9 +161,9 @@ pub(super) fn look(subjects: &Subjects, shown: &Shown) -> Look {
 }
 
 /// The axes of albedos: roughness, then views.
-fn axes() -> [TexelAxis; 2] {
+pub(super) fn axes() -> [TexelAxis; 2] {
     let along = [Along::Roughness { largest: SIGMA[1] }, Along::view(3.0, 0.5)];
-    along.map(|along| TexelAxis::to_ends(along, TEXELS))
+    std::array::from_fn(|i| TexelAxis::to_ends(along[i], TEXELS[i]))
 }
 
 /// Where albedos are read, as GLSL.
@@ -173,18 +174,18 @@ pub(super) fn albedo_coordinates() -> String {
     )
 }
 
-/// 1 − E of a shape at the texels, views fastest, and ln(1 − E_avg).
+/// √(1 − E) of a shape at the texels, views fastest, and ln(1 − E_avg).
 fn albedos(tables: &Tables, gamma: f64) -> Result<(Vec<f16>, Vec<f32>), MaterialError> {
     let masking = Masking::HeightCorrelated;
     let axes = axes();
-    let mut lost = Vec::with_capacity(TEXELS * TEXELS);
+    let mut lost = Vec::with_capacity(TEXELS.iter().product());
     for &s in &axes[0].texels {
         for &t in &axes[1].texels {
             let place = place(&axes, gamma, &[s, t]);
             let cos = place.cos.unwrap_or(1.0) as f32;
             let v = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
             let sigma = place.sigma.max(StudentT::SIGMAS[0]);
-            lost.push(f16::from_f32(tables.albedo(sigma, gamma, masking)?.lost(v)));
+            lost.push(f16::from_f32(tables.albedo(sigma, gamma, masking)?.lost(v).sqrt()));
         }
     }
     let average = |i: usize| {

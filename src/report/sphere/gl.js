@@ -116,7 +116,7 @@ async function loadTables() {
         tables: texture(gl, gl.TEXTURE_2D, gl.NEAREST, () => gl.texImage2D(
             gl.TEXTURE_2D, 0, gl.RG32F, width, height, 0, gl.RG, gl.FLOAT, numbers)),
         lost: texture(gl, gl.TEXTURE_3D, gl.LINEAR, () => gl.texImage3D(
-            gl.TEXTURE_3D, 0, gl.R16F, texels, texels, data.stops.length, 0, gl.RED,
+            gl.TEXTURE_3D, 0, gl.R16F, texels[1], texels[0], data.stops.length, 0, gl.RED,
             gl.HALF_FLOAT, new Uint16Array(lost))),
     });
     return { upload, averages: new Float32Array(averages) };

@@ -268,3 +268,6 @@ fn scripts(data: &Data, shape: &Shape) -> Markup {
 pub fn picture(set: &Tables, look: &Look, film: Film) -> Result<Vec<[u8; 3]>, BindError> {
     Ok(Scene::new(&set.clone().or_embedded(), look)?.picture(film))
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,7 +9,7 @@ uniform float compensated;     // 1 or 0
 uniform vec3 returned;         // the factor of Kulla and Conty's lobe, by channel
 uniform float gamma;           // for the coordinate of albedos; 1e30 stands for infinity
 uniform float layer;           // of the shape among albedos, in [0, 1]
-uniform highp sampler3D lost;  // 1 - E by layer, roughness and view
+uniform highp sampler3D lost;  // sqrt(1 - E) by layer, roughness and view
 uniform highp uint index;      // of the sample
 uniform highp uint seed;
 uniform float size;            // pixels along an edge
@@ -37,7 +37,8 @@ float tent(float u) {
 
 float lost_at(float mu) {
     vec2 at = albedo_coordinates(gamma, sqrt(sigma.x * sigma.y), max(mu, 1e-4));
-    return texture(lost, vec3(at, layer)).r;
+    float root = texture(lost, vec3(at, layer)).r;
+    return root * root;
 }
 
 mat3 frame_at(vec3 n) {
