@@ -99,3 +99,6 @@ pub fn page(source: &Source, meter: &Meter) -> Result<String, ReportError> {
     validated::check(source)?;
     page::page(source, meter)
 }
+
+#[cfg(test)]
+mod tests;

@@ -31,8 +31,8 @@ fn data(set: &Tables) -> (Subjects, Value) {
     (subjects, serde_json::from_str(&json).unwrap())
 }
 
-/// The tables of each stop stand between its place and the next, bit for bit: masking of all, slopes
-/// of those that are drawn.
+/// The tables of each stop stand between its place and the next, bit for bit: masking of all,
+/// slopes of those that are drawn.
 #[test]
 fn the_script_is_given_the_tables_of_each_shape() {
     let set = Tables::embedded();
