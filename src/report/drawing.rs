@@ -39,7 +39,7 @@ pub(super) fn symbols(text: &str) -> String {
 pub(super) fn code(text: &str) -> Markup {
     let parts: Vec<&str> = text.split('`').collect();
     // One that encloses nothing is a letter of some name.
-    if parts.len() % 2 == 0 {
+    if parts.len().is_multiple_of(2) {
         return html! { (text) };
     }
     html! {
