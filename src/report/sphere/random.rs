@@ -7,7 +7,7 @@
 
 use std::fmt::Write;
 
-/// Numbers of a sample.
+/// Numbers of a sample, in threes; the last is not used.
 pub(super) const COUNT: usize = 9;
 
 /// Fractional parts of √2, √3, √5 … √23 as 32 bits.

@@ -85,17 +85,17 @@ impl Scene {
     }
 
     /// The light reflected against a ray at a point of the sphere: one light drawn by visible
-    /// normals, one by the lamps, with compensation one by the cosine, under the balance heuristic
+    /// normals, one by each lamp, with compensation one by the cosine, under the balance heuristic
     /// (Veach 1997, section 9.2).
     fn shade(&self, n: Vec3, d: Vec3, u: &[f32; COUNT]) -> Vec3 {
         let frame = frame(n);
         let to_tangent = frame.transpose();
         let v = to_tangent * -d;
         let m = self.drawn.sample_visible_normal(v, [u[2], u[3]]);
-        let mut lights =
-            vec![2.0 * v.dot(m) * m - v, to_tangent * self.studio.sample([u[4], u[5], u[6]])];
+        let mut lights = vec![2.0 * v.dot(m) * m - v];
+        lights.extend(self.studio.sample([u[4], u[5]]).map(|towards| to_tangent * towards));
         if self.compensated {
-            lights.push(by_cosine([u[7], u[8]]));
+            lights.push(by_cosine([u[6], u[7]]));
         }
         lights.into_iter().map(|l| self.share(n, &frame, v, l)).sum()
     }

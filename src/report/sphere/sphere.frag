@@ -73,8 +73,10 @@ vec3 shade(vec3 n, vec3 d, vec3 a, vec3 b, vec3 c) {
     float lost_v = compensated > 0.0 ? lost_at(v.z) : 0.0;
     vec3 m = student_t_sample_visible_normal(drawn, sigma, v, vec2(a.z, b.x));
     vec3 sum = share(n, frame, v, lost_v, student_t_reflect(v, m));
-    sum += share(n, frame, v, lost_v, sample_lamps(vec3(b.yz, c.x)) * frame);
-    if (compensated > 0.0) sum += share(n, frame, v, lost_v, by_cosine(c.yz));
+    for (int i = 0; i < LAMPS.length(); i++) {
+        sum += share(n, frame, v, lost_v, sample_lamp(LAMPS[i], b.yz) * frame);
+    }
+    if (compensated > 0.0) sum += share(n, frame, v, lost_v, by_cosine(c.xy));
     return sum;
 }
 

@@ -53,20 +53,19 @@ vec3 radiance(vec3 from, vec3 d, bool with_lamps) {
     return sum;
 }
 
-// A direction towards one of the lamps, from three numbers.
-vec3 sample_lamps(vec3 u) {
-    int i = u.x < LAMPS[0].share ? 0 : u.x < LAMPS[0].share + LAMPS[1].share ? 1 : 2;
-    vec2 p = (2.0 * u.yz - 1.0) * LAMPS[i].half_size;
-    return normalize(LAMPS[i].towards + p.x * LAMPS[i].across + p.y * LAMPS[i].up);
+// A direction towards a lamp, from two numbers.
+vec3 sample_lamp(Lamp lamp, vec2 u) {
+    vec2 p = (2.0 * u - 1.0) * lamp.half_size;
+    return normalize(lamp.towards + p.x * lamp.across + p.y * lamp.up);
 }
 
-// Its density per steradian.
+// The density of directions towards all lamps, one each, per steradian.
 float lamps_pdf(vec3 d) {
     float sum = 0.0;
     for (int i = 0; i < LAMPS.length(); i++) {
         float z = lamp_place(LAMPS[i], d).z;
         vec2 size = LAMPS[i].half_size;
-        if (z > 0.0) sum += LAMPS[i].share / (4.0 * size.x * size.y * z * z * z);
+        if (z > 0.0) sum += 1.0 / (4.0 * size.x * size.y * z * z * z);
     }
     return sum;
 }

@@ -22,22 +22,20 @@ pub(super) struct Lamp {
     /// How far within its edges the light rises.
     soft: f32,
     radiance: Vec3,
-    /// The probability that it is drawn.
-    share: f32,
 }
 
 /// A key light upper left, a strip to the right, a rim light behind.
 fn lamps() -> [Lamp; 3] {
-    let lamp = |towards: [f32; 3], half: [f32; 2], soft, radiance: [f32; 3], share| {
+    let lamp = |towards: [f32; 3], half: [f32; 2], soft, radiance: [f32; 3]| {
         let towards = Vec3::from(towards).normalize();
         let across = Vec3::Y.cross(towards).normalize();
         let (half, radiance) = (Vec2::from(half), Vec3::from(radiance));
-        Lamp { towards, across, up: towards.cross(across), half, soft, radiance, share }
+        Lamp { towards, across, up: towards.cross(across), half, soft, radiance }
     };
     [
-        lamp([-0.72, 0.78, 0.62], [0.46, 0.46], 0.2, [7.2, 6.9, 6.4], 0.5),
-        lamp([0.97, 0.16, 0.3], [0.1, 0.8], 0.08, [4.4, 4.4, 4.4], 0.25),
-        lamp([0.6, 0.52, -0.72], [0.26, 0.42], 0.14, [3.0, 3.2, 3.6], 0.25),
+        lamp([-0.72, 0.78, 0.62], [0.46, 0.46], 0.2, [7.2, 6.9, 6.4]),
+        lamp([0.97, 0.16, 0.3], [0.1, 0.8], 0.08, [4.4, 4.4, 4.4]),
+        lamp([0.6, 0.52, -0.72], [0.26, 0.42], 0.14, [3.0, 3.2, 3.6]),
     ]
 }
 
@@ -149,21 +147,17 @@ impl Studio {
         (FLOOR_DOME * dome + FLOOR_KEY * (key * (0.35 + 0.65 * dome)), share)
     }
 
-    /// A direction towards one of the lamps, from three numbers in [0, 1).
-    pub(super) fn sample(&self, [choice, a, b]: [f32; 3]) -> Vec3 {
-        let [key, strip, rim] = &self.lamps;
-        let lamp = match choice {
-            x if x < key.share => key,
-            x if x < key.share + strip.share => strip,
-            _ => rim,
-        };
-        let p = (2.0 * Vec2::new(a, b) - 1.0) * lamp.half;
-        (lamp.towards + p.x * lamp.across + p.y * lamp.up).normalize()
+    /// A direction towards each of the lamps, from two numbers in [0, 1).
+    pub(super) fn sample(&self, [a, b]: [f32; 2]) -> [Vec3; 3] {
+        let p = 2.0 * Vec2::new(a, b) - 1.0;
+        self.lamps.each_ref().map(|Lamp { towards, across, up, half, .. }| {
+            (towards + p.x * half.x * across + p.y * half.y * up).normalize()
+        })
     }
 
-    /// The density of [`sample`](Self::sample) per steradian.
+    /// The density of [`sample`](Self::sample) per steradian: how many of its directions there are.
     pub(super) fn pdf(&self, d: Vec3) -> f32 {
-        let of = |lamp: &Lamp| lamp.place(d).map_or(0.0, |(_, z)| lamp.share * lamp.pdf(z));
+        let of = |lamp: &Lamp| lamp.place(d).map_or(0.0, |(_, z)| lamp.pdf(z));
         self.lamps.iter().map(of).sum()
     }
 }
@@ -187,21 +181,20 @@ pub(super) fn constants() -> String {
     let studio = Studio::new();
     let mut text = String::from(
         "struct Lamp { vec3 towards; vec3 across; vec3 up; vec2 half_size; float soft; \
-         vec3 radiance; float share; };\n",
+         vec3 radiance; };\n",
     );
     let lamps: Vec<String> = studio
         .lamps
         .iter()
         .map(|lamp| {
             format!(
-                "    Lamp({}, {},\n         {}, {}, {},\n         {}, {})",
+                "    Lamp({}, {},\n         {}, {}, {},\n         {})",
                 vec3(lamp.towards),
                 vec3(lamp.across),
                 vec3(lamp.up),
                 vec2(lamp.half),
                 single(lamp.soft),
                 vec3(lamp.radiance),
-                single(lamp.share),
             )
         })
         .collect();
