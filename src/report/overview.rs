@@ -4,11 +4,11 @@ use maud::{Markup, html};
 use microfacet_sampler::{Provenance, Table, Tables};
 
 use super::Source;
-use super::drawing::symbols;
+use super::drawing::{error, symbols};
 use super::served::{Served, served};
 use super::subjects::Subjects;
 use crate::words::table::{albedos, axis, covers, holds, normals, precision};
-use crate::words::{bytes, certificate, count, error};
+use crate::words::{bytes, certificate, count};
 
 /// Rows of a table of the page; a library has thousands of materials.
 const ROWS: usize = 200;
@@ -101,7 +101,7 @@ fn skipped(set: &Tables, all: &[Served]) -> Markup {
             ul.skipped {
                 @for (of, why, names) in &reasons {
                     li {
-                        b { (of) } ": " (why) " ("
+                        b { (of) } ": " (with_code(why)) " ("
                         @for (i, name) in names.iter().take(NAMES).enumerate() {
                             @if i > 0 { ", " }
                             bdi { (name) }
@@ -118,6 +118,15 @@ fn skipped(set: &Tables, all: &[Served]) -> Markup {
             }
             "A set does not list materials of a scene that no geometry uses or that nothing \
              covers; " code { "microfacet-bake plan" } " of the scene names them."
+        }
+    }
+}
+
+/// A text in which backticks enclose code.
+fn with_code(text: &str) -> Markup {
+    html! {
+        @for (i, part) in text.split('`').enumerate() {
+            @if i % 2 == 1 { code { (part) } } @else { (part) }
         }
     }
 }
