@@ -1,8 +1,8 @@
-//! The sphere of a page, by the crate's own BSDFs: what the pixels of a
-//! browser are held against.
+//! The sphere of a page and its lobe in the plane of incidence, by the crate's own BSDFs: what a
+//! browser's are held against.
 //!
 //! `cargo run --release --example report_sphere -- --gamma 3 --sigma 0.2 --out sphere.png` writes
-//! one; `--help` has the options.
+//! one, and `--lobe 45` prints the lobe for a view at 45 degrees; `--help` has the options.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -11,6 +11,9 @@ use clap::Parser;
 use microfacet_bake::report::{Film, Look, picture};
 use microfacet_bake::store;
 use microfacet_sampler::{ConductorFresnel, Metal, Tables};
+
+/// Lights of the lobe, as the page has them.
+const LIGHTS: usize = 721;
 
 /// Renders the sphere of a report's page
 #[derive(Parser)]
@@ -40,13 +43,17 @@ struct Arguments {
     /// The set; the embedded default if absent
     #[arg(long)]
     tables: Option<PathBuf>,
-    /// The PNG to write
+    /// Prints f cos of the lobe, of GGX and of Beckmann for a view at so many degrees, a light a
+    /// line, as `report.lobe` of the page has them
     #[arg(long)]
-    out: PathBuf,
+    lobe: Option<f64>,
+    /// The PNG to write
+    #[arg(long, required_unless_present = "lobe")]
+    out: Option<PathBuf>,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let Arguments { gamma, drawn, sigma, metal, compensation, size, samples, tables, out } =
+    let Arguments { gamma, drawn, sigma, metal, compensation, size, samples, tables, lobe, out } =
         Arguments::parse();
     let set = match tables {
         Some(path) => store::read(&path)?,
@@ -59,6 +66,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sigma = [sigma[0], *sigma.last().unwrap_or(&sigma[0])];
     let look =
         Look { gamma, drawn: drawn.unwrap_or(gamma), sigma, fresnel, compensated: compensation };
+    if let Some(degrees) = lobe {
+        let [shape, ggx, beckmann] = look.in_plane(&set, degrees, LIGHTS)?;
+        for ((shape, ggx), beckmann) in shape.iter().zip(ggx).zip(beckmann) {
+            println!("{shape:e} {ggx:e} {beckmann:e}");
+        }
+    }
+    let Some(out) = out else { return Ok(()) };
     let pixels = picture(&set, &look, Film { size, samples, seed: 0 })?;
     image::save_buffer(&out, pixels.as_flattened(), size, size, image::ColorType::Rgb8)?;
     Ok(())

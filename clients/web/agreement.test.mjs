@@ -1,5 +1,5 @@
 // The sphere's pixels are those of the crate's own BSDF: the same random numbers, samples and tone
-// curve, in the browser and in Rust.
+// curve, in the browser and in Rust. And the lobe in the plane of incidence is that of the crate.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -12,12 +12,15 @@ import { difference, launch, open } from './harness.mjs';
 const ALLOWED = 2;
 const SIZE = 96;
 const SAMPLES = 16;
+/// Of the largest value of a lobe.
+const OFF = 1e-4;
 
 const folder = mkdtempSync(join(tmpdir(), 'sphere-'));
 let browser, opened;
 before(async () => {
     browser = await launch();
-    opened = await open(browser, 'default');
+    // It stays until the browser is closed.
+    opened = await open({ after() {} }, browser, 'default');
     await opened.page.waitForFunction(() => window.report);
 });
 after(async () => {
@@ -86,3 +89,40 @@ for (const [what, other] of Object.entries({
         assert.ok(found.largest > ALLOWED, `${found.largest}/255`);
     });
 }
+
+/// How far the curves of the page are from those of the crate, by the largest of each.
+async function apart({ gamma, sigma }, degrees, other = {}) {
+    const ours = await opened.page.evaluate(async ([gamma, sigma, degrees]) => {
+        const shape = gamma === 'inf' ? Infinity : gamma;
+        await report.set({ gamma: shape, sigma, size: 64, samples: 1 });
+        return [...await report.lobe(degrees)];
+    }, [gamma, sigma, degrees]);
+    const options = { gamma, sigma, lobe: degrees, ...other };
+    const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, `${value}`]);
+    const lines = execFileSync(process.env.SPHERE, words, { encoding: 'utf8' }).trim().split('\n');
+    const theirs = lines.map(line => line.split(' ').map(Number));
+    assert.equal(ours.length, 4 * theirs.length);
+    return [0, 1, 2].map(curve => {
+        const largest = Math.max(...theirs.map(values => values[curve]));
+        assert.ok(largest > 0);
+        const off = theirs.map((values, i) => Math.abs(values[curve] - ours[4 * i + curve]));
+        assert.ok(off.every(Number.isFinite));
+        return Math.max(...off) / largest;
+    });
+}
+
+for (const one of LOOKS.slice(0, 8)) {
+    for (const degrees of [0, 45, 80, 89]) {
+        test(`the lobe of γ = ${one.gamma}, σ = ${one.sigma}, at ${degrees}°`, async () => {
+            const off = await apart(one, degrees);
+            console.log(`off by ${off.map(x => x.toExponential(1)).join(', ')} of the largest`);
+            assert.ok(off.every(x => x <= OFF), `${off}`);
+        });
+    }
+}
+
+test('the lobe of another σ, γ or view is told apart', async () => {
+    assert.ok((await apart(LOOKS[0], 45, { sigma: 0.202 })).every(x => x > OFF));
+    assert.ok((await apart(LOOKS[0], 45, { lobe: 46 })).every(x => x > OFF));
+    assert.ok((await apart(LOOKS[0], 45, { gamma: 3.1 }))[0] > OFF);
+});

@@ -36,9 +36,10 @@ export function source(name) {
     return readFileSync(join(FOLDER, `${name}.html`));
 }
 
-/// Opens a page, and keeps what should not happen: words on the console, errors of scripts, and
-/// requests, whether they succeed or not. `options.init` runs before the page's own scripts.
-export async function open(browser, name, options = {}) {
+/// Opens a page until a test ends, and keeps what should not happen: words on the console, errors
+/// of scripts, and requests, whether they succeed or not. `options.init` runs before the page's own
+/// scripts.
+export async function open(test, browser, name, options = {}) {
     const { width = 1440, height = 900, scheme = 'light', scripts = true, touch = false } = options;
     const context = await browser.newContext({
         viewport: { width, height },
@@ -47,6 +48,7 @@ export async function open(browser, name, options = {}) {
         javaScriptEnabled: scripts,
         hasTouch: touch,
     });
+    test.after(() => context.close());
     const page = await context.newPage();
     const troubles = [];
     page.on('console', message => {
@@ -67,7 +69,14 @@ export async function open(browser, name, options = {}) {
         await page.addInitScript(options.init);
     }
     await page.goto(url, { waitUntil: 'load' });
-    return { page, troubles, close: () => context.close() };
+    return { page, troubles };
+}
+
+/// Waits until the page draws by itself, and lets its sphere rest, so that tests that are not about
+/// its pixels do not wait for them.
+export async function settled(page, look = { size: 112, samples: 2 }) {
+    await page.waitForFunction(() => window.report);
+    await page.evaluate(look => report.set(look), look);
 }
 
 /// What both tests of pixels say of two pictures of the same size, in RGBA bytes.

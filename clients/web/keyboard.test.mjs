@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { launch, open } from './harness.mjs';
+import { launch, open, settled } from './harness.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
@@ -19,9 +19,9 @@ function controls() {
 }
 
 for (const name of ['default', 'gold', 'brushed']) {
-    test(`${name}: Tab reaches every control, and shows where it is`, async () => {
-        const { page, close } = await open(browser, name);
-        await page.evaluate(() => window.report?.ready);
+    test(`${name}: Tab reaches every control, and shows where it is`, async t => {
+        const { page } = await open(t, browser, name);
+        await settled(page);
         const count = await page.evaluate(controls);
         assert.ok(count > 0, 'no controls');
         const seen = new Map();
@@ -42,7 +42,7 @@ for (const name of ['default', 'gold', 'brushed']) {
         }
         const reached = await page.evaluate(
             indices => window.controls.map((element, i) => ({
-                what: element.id || element.className || element.textContent.trim(),
+                what: element.id || element.getAttribute('class') || element.textContent.trim(),
                 isReached: indices.includes(i)
                     || element.type === 'radio' && indices.some(j =>
                         window.controls[j]?.name === element.name),
@@ -53,14 +53,13 @@ for (const name of ['default', 'gold', 'brushed']) {
         assert.deepEqual(missed, []);
         const unseen = [...seen].filter(([i, isSeen]) => i >= 0 && !isSeen);
         assert.deepEqual(unseen.map(([i]) => reached[i].what), [], 'no ring about the focus');
-        await close();
     });
 }
 
 for (const name of ['default', 'gold']) {
-    test(`${name}: keys change what has the focus`, async () => {
-        const { page, troubles, close } = await open(browser, name);
-        await page.evaluate(() => window.report?.ready);
+    test(`${name}: keys change what has the focus`, async t => {
+        const { page, troubles } = await open(t, browser, name);
+        await settled(page);
         await page.evaluate(controls);
         const kinds = new Set();
         const all = await page.evaluateHandle(() => window.controls);
@@ -86,12 +85,12 @@ for (const name of ['default', 'gold']) {
                 await page.keyboard.press(key);
                 isChanged ||= (await value()) !== before;
             }
-            const what = await control.evaluate(element => element.id || element.className);
+            const what = await control.evaluate(element =>
+                element.id || element.getAttribute('class'));
             assert.ok(isChanged, `${kind} ${what} stays at ${before}`);
         }
         console.log(`${name}: ${[...kinds].join(', ')} obey keys`);
         assert.ok(kinds.has('range') && kinds.has('checkbox') && kinds.has('slider'));
         assert.deepEqual(troubles, []);
-        await close();
     });
 }

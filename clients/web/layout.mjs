@@ -6,7 +6,7 @@ export function layout({ touch }) {
     const found = [];
     const words = element => {
         const text = (element.getAttribute('aria-label') ?? element.textContent).trim();
-        const name = element.getAttribute('class') ?? element.id;
+        const name = element.getAttribute('class') || element.id;
         return `${element.tagName.toLowerCase()}.${name} "${text.slice(0, 40)}"`;
     };
     const { scrollingElement: root } = document;
@@ -52,8 +52,10 @@ export function layout({ touch }) {
             }
         }
     }
-    const controls = [...document.querySelectorAll('input, select, canvas')]
-        .filter(element => element.checkVisibility({ visibilityProperty: true }))
+    // An input that is not seen lies over what is shown for it.
+    const isSeen = { visibilityProperty: true, opacityProperty: true };
+    const controls = [...document.querySelectorAll('input, select, canvas, img')]
+        .filter(element => element.checkVisibility(isSeen))
         .map(element => ({ element, boxes: [element.getBoundingClientRect()] }));
     found.push(...overlaps([...texts, ...controls], words, within));
     for (const { element, boxes } of texts) {
@@ -99,7 +101,8 @@ export function layout({ touch }) {
         const found = [];
         const all = 'button, select, input, summary, a[href], [role=slider], [role=button]';
         for (const element of document.querySelectorAll(all)) {
-            if (!element.checkVisibility({ visibilityProperty: true })) {
+            const isShown = element.checkVisibility({ visibilityProperty: true });
+            if (!isShown || window.isForReaders(element)) {
                 continue;
             }
             const isInText = element.matches('a') && element.closest('p, li, td, figcaption, dd');
@@ -136,8 +139,13 @@ export function printed({ pageHeight }) {
             found.push(`taller than a sheet: ${element.tagName}.${element.getAttribute('class')}`);
         }
     }
-    const controls = [...document.querySelectorAll('input, select, button')];
-    const useless = controls.filter(control => control.checkVisibility());
-    for (const { id, className } of useless) found.push(`a control on paper: ${id || className}`);
+    // A button without a box of its own is what it holds.
+    const controls = document.querySelectorAll('input, select, button, summary, [role=slider]');
+    for (const control of controls) {
+        if (control.getClientRects().length > 0) {
+            const what = control.id || control.getAttribute('class') || control.tagName;
+            found.push(`a control on paper: ${what.toLowerCase()}`);
+        }
+    }
     return found;
 }

@@ -2,32 +2,42 @@
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { PAGES, launch, open, source } from './harness.mjs';
+import { PAGES, launch, open, settled, source } from './harness.mjs';
 import { names, structure } from './structure.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
 
-/// A megabyte, and a tenth of that for a shape.
+/// A megabyte; and a tenth of that for a shape, besides style and scripts, which are the same on
+/// every page.
 const BYTES = 1_000_000;
 const BYTES_OF_SHAPE = 100_000;
 
+/// The bytes of a page that are style, scripts and shaders.
+function fixed() {
+    const all = document.querySelectorAll('style, script:not([type="application/json"])');
+    const bytes = text => new TextEncoder().encode(text).length;
+    return [...all].reduce((sum, { textContent }) => sum + bytes(textContent), 0);
+}
+
 for (const name of PAGES) {
-    test(`${name}: loads, asks for nothing, is whole`, async () => {
-        const { page, troubles, close } = await open(browser, name);
-        await page.evaluate(settled);
+    test(`${name}: loads, asks for nothing, is whole`, async t => {
+        const { page, troubles } = await open(t, browser, name);
+        await settled(page);
         assert.deepEqual(await page.evaluate(structure), []);
         const { count, found, roles } = await names(page);
         assert.deepEqual(found, []);
         assert.ok(count > 0, 'nothing has a name');
         assert.deepEqual(troubles, []);
         const bytes = source(name).length;
-        const shapes = await page.evaluate(() => window.report?.shapes ?? 0);
-        console.log(`${name}: ${bytes} bytes, ${count} named elements: ${roles.join(', ')}`);
+        const same = await page.evaluate(fixed);
+        const shapes = await page.evaluate(() => report.state().shapes);
+        const each = Math.round((bytes - same) / shapes);
+        console.log(`${name}: ${bytes} bytes, of which ${same} fixed, and ${each} for each of `
+            + `${shapes} shapes; ${count} named elements: ${roles.join(', ')}`);
         assert.ok(bytes <= BYTES, `${bytes} bytes`);
-        assert.ok(!shapes || bytes <= Math.max(1, shapes) * BYTES_OF_SHAPE, `${shapes} shapes`);
-        await close();
+        assert.ok(shapes > 0 && each <= BYTES_OF_SHAPE, `${each} bytes a shape`);
     });
 }
 
@@ -50,8 +60,8 @@ const LACKING = {
 
 for (const [what, lacking] of Object.entries(LACKING)) {
     for (const name of ['default', 'gold', 'ggx']) {
-        test(`${name}: where ${what} there are pictures`, async () => {
-            const { page, troubles, close } = await open(browser, name, lacking);
+        test(`${name}: where ${what} there are pictures`, async t => {
+            const { page, troubles } = await open(t, browser, name, lacking);
             // Without scripts in the page, ours run in a world of their own.
             assert.deepEqual(await page.evaluate(structure), []);
             const pictures = page.locator('#look img');
@@ -63,24 +73,16 @@ for (const [what, lacking] of Object.entries(LACKING)) {
             assert.equal(await page.locator('#look .controls').isVisible(), false, 'controls');
             assert.equal(await page.locator('#look canvas').isVisible(), false, 'a canvas');
             assert.deepEqual(troubles, []);
-            await close();
         });
     }
 }
 
-test('a browser without any GL draws the pictures', async () => {
+test('a browser without any GL draws the pictures', async t => {
     const bare = await launch(['--disable-3d-apis']);
-    const { page, troubles, close } = await open(bare, 'default');
+    t.after(() => bare.close());
+    const { page, troubles } = await open(t, bare, 'default');
     const gl = await page.evaluate(() => document.createElement('canvas').getContext('webgl2'));
     assert.equal(gl, null);
     assert.ok((await page.locator('#look img').count()) > 0, 'no pictures');
     assert.deepEqual(troubles, []);
-    await close();
-    await bare.close();
 });
-
-/// Resolves when the page's own work at the start is done.
-async function settled() {
-    await window.report?.ready;
-    await new Promise(done => requestAnimationFrame(() => setTimeout(done, 200)));
-}

@@ -27,11 +27,14 @@ const GOOD = `<!DOCTYPE html>
 figure { break-inside: avoid; margin: 0; }
 input { min-height: 24px; }
 .scroll { overflow-x: auto; }
-@media print { input { display: none; } }
+.reader { position: absolute; width: 1px; height: 1px; overflow: hidden; white-space: nowrap; }
+@media print { input { display: none; } button { display: contents; } }
 </style></head><body><main><h1>A page</h1><section><h2>A part</h2>
+<h3 class="reader">For screen readers alone, as wide as it may be, and not to be seen.</h3>
 <p id="words">Words that are read.</p>
 <label for="sigma">Roughness</label> <input id="sigma" type="range">
 <figure><img src="${DOT}" alt="a dot"><figcaption>A dot</figcaption></figure>
+<button aria-label="Show a dot"><img src="${DOT}" alt="" width="24" height="24"></button>
 <svg role="img" aria-label="a figure" width="100" height="40"><text x="5" y="20" font-size="10"
  fill="light-dark(#111,#eee)">text</text></svg>
 <div class="scroll"><table><caption>Numbers</caption>
@@ -39,11 +42,11 @@ input { min-height: 24px; }
 </section></main></body></html>`;
 
 /// All that is said of a page at the width of a phone.
-async function findings(html) {
+async function findings(t, html) {
     const path = join(folder, 'page.html');
     writeFileSync(path, html);
     const options = { url: pathToFileURL(path).href, width: 390 };
-    const { page, troubles, close } = await open(browser, '', options);
+    const { page, troubles } = await open(t, browser, '', options);
     await page.evaluate(shownText);
     const found = [
         ...troubles,
@@ -54,12 +57,11 @@ async function findings(html) {
     ];
     await page.emulateMedia({ media: 'print' });
     found.push(...await page.evaluate(printed, { pageHeight: 1000 }));
-    await close();
     return found;
 }
 
-test('a page without faults is told to have none', async () => {
-    assert.deepEqual(await findings(GOOD), []);
+test('a page without faults is told to have none', async t => {
+    assert.deepEqual(await findings(t, GOOD), []);
 });
 
 /// What is replaced by what, and a word of what must be said.
@@ -79,6 +81,9 @@ const MUTANTS = [
     ['<caption>Numbers</caption>', '', /no caption/],
     ['<th scope="col">', '<th>', /th with scope/],
     [' alt="a dot"', '', /no alt/],
+    [' alt="a dot"', ' alt=""', /no alt/],
+    ['<button aria-label="Show a dot">', '<button>', /no alt of a picture in button/],
+    ['<button aria-label="Show a dot">', '<button>', /a button without a name/],
     ['<figcaption>A dot</figcaption>', '', /figure/],
     ['<label for="sigma">Roughness</label>', '', /a slider without a name/],
     [' aria-label="a figure"', '', /a (img|image|graphics-document) without a name/],
@@ -86,7 +91,9 @@ const MUTANTS = [
     ['<p id="words">', '<p id="words" style="margin-left: -20px">', /beyond the page/],
     ['<p id="words">', '<p style="width: 60px; height: 9px; overflow: hidden">', /cut: p/],
     ['x="5" y="20"', 'x="90" y="20"', /cut by its figure/],
-    ['<p id="words">', '<p style="position: relative; top: 60px">', /overlap/],
+    ['<p id="words">', '<p style="position: relative; top: 80px">', /overlap/],
+    ['class="reader"', 'style="position: absolute; left: -50rem"', /beyond the page: h3/],
+    ['<p id="words">', '<p style="position: relative; z-index: 1; top: 120px">', /overlap.* img/],
     ['<p id="words">', '<p style="font-size: 7px">', /letters of 7/],
     ['font-size="10"', 'font-size="8"', /letters of 8/],
     ['min-height: 24px', 'height: 12px', /a target of/],
@@ -95,13 +102,14 @@ const MUTANTS = [
     ['light-dark(#111,#eee)', '#bbb', /contrast/],
     ['figure { break-inside: avoid;', 'figure {', /may be divided/],
     ['alt="a dot"', 'alt="a dot" style="width: 20px; height: 1200px"', /taller than a sheet/],
-    ['@media print { input { display: none; } }', '', /a control on paper/],
+    ['@media print { input { display: none; }', '@media print {', /a control on paper: sigma/],
+    ['button { display: contents; }', '', /a control on paper: button/],
 ];
 
 for (const [from, to, said] of MUTANTS) {
-    test(`${from} → ${to}`, async () => {
+    test(`${from} → ${to}`, async t => {
         assert.ok(GOOD.includes(from), 'the page without faults lacks it');
-        const found = await findings(GOOD.replace(from, to));
+        const found = await findings(t, GOOD.replace(from, to));
         assert.ok(found.some(word => said.test(word)), `${said} is not in ${found.join('\n')}`);
     });
 }

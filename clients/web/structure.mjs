@@ -37,7 +37,11 @@ export function structure() {
         lacks('th with scope in a table', table.querySelector('th[scope]'));
     }
     for (const picture of document.querySelectorAll('img')) {
-        lacks(`alt of a picture in ${picture.parentElement.className}`, picture.alt.trim());
+        // What an element with a name of its own holds is a part of it.
+        const named = picture.closest(':is(button, a)[aria-label]')?.getAttribute('aria-label');
+        const { parentElement: around } = picture;
+        const where = around.className || around.tagName.toLowerCase();
+        lacks(`alt of a picture in ${where}`, picture.alt.trim() || named?.trim());
         lacks(`picture "${picture.alt}"`, picture.complete && picture.naturalWidth > 0);
     }
     for (const figure of document.querySelectorAll('figure')) {
@@ -54,19 +58,29 @@ export function structure() {
 /// Text that is shown, as elements with the text that is directly in them. Used by functions that
 /// run in the page, and so installed there.
 export function shownText() {
+    // What is for screen readers alone is in a box of a pixel that cuts it.
+    window.isForReaders = element => {
+        for (let at = element; at; at = at.parentElement) {
+            const { width, height } = at.getBoundingClientRect();
+            if (width <= 1 && height <= 1 && getComputedStyle(at).overflowX === 'hidden') {
+                return true;
+            }
+        }
+        return false;
+    };
     window.shownText = () => {
         const elements = new Map();
         const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
         while (walker.nextNode()) {
             const { parentElement: element, textContent: text } = walker.currentNode;
             const skipped = element.closest('script, style, template, title, desc, option');
-            if (skipped || !text.trim() || !element.checkVisibility({ visibilityProperty: true })) {
+            const isShown = element.checkVisibility({ visibilityProperty: true });
+            if (skipped || !text.trim() || !isShown || window.isForReaders(element)) {
                 continue;
             }
             const range = document.createRange();
             range.selectNodeContents(walker.currentNode);
             const boxes = [...range.getClientRects()].filter(box => box.width > 1.5);
-            // Text for screen readers alone is a pixel wide.
             if (boxes.length > 0) {
                 const known = elements.get(element) ?? { element, text: '', boxes: [] };
                 known.text += text.trim();

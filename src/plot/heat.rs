@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, At, Canvas, Shape};
 use super::ink::{BLACK, Color, Dash, NOT_A_NUMBER, false_color};
-use super::panel::{self, BELOW, Frame, LEFT, RIGHT};
+use super::panel::{self, BARE, BELOW, Frame, LEFT, RIGHT};
 use super::{Axis, PlotError, svg};
 
 /// Numbers in false colours over two axes.
@@ -36,8 +36,6 @@ pub struct Bar {
 
 /// Shades that maps and their bars are drawn in: so few take less bytes, and can be told apart.
 const SHADES: usize = 24;
-/// Room above a map.
-const ABOVE: f64 = 14.0;
 /// The ring: its radius, its sides, and the width of its line and of the dark one under it. Both
 /// colours stay in light and dark, for so do those beneath.
 const RADIUS: f64 = 7.0;
@@ -76,9 +74,9 @@ impl HeatMap {
         let mut canvas = Canvas { size: *size, shapes: Vec::new() };
         let frame = Frame {
             left: LEFT,
-            top: ABOVE,
+            top: BARE,
             width: size[0] - LEFT - RIGHT,
-            height: size[1] - ABOVE - BELOW,
+            height: size[1] - BARE - BELOW,
         };
         // Images begin at the top.
         let rows = values.chunks(*columns).rev();
@@ -182,8 +180,8 @@ mod tests {
     fn at(map: &HeatMap, [x, y]: [f64; 2]) -> Color {
         let image = png::write(&map.page().unwrap()).unwrap();
         let image = image::load_from_memory(&image).unwrap().to_rgb8();
-        let [width, height] = [400.0 - LEFT - RIGHT, 300.0 - ABOVE - BELOW];
-        let place = [LEFT + x * width, ABOVE + (1.0 - y) * height];
+        let [width, height] = [400.0 - LEFT - RIGHT, 300.0 - BARE - BELOW];
+        let place = [LEFT + x * width, BARE + (1.0 - y) * height];
         let [x, y] = place.map(|x| (2.0 * x) as u32);
         image.get_pixel(x, y).0
     }

@@ -9,7 +9,7 @@ use super::{Figure, Panel, text};
 const LINE: f64 = 19.0;
 const LETTERS: f64 = 12.0;
 /// Length of the sample of a curve, the gap before its name, and that after it.
-const SAMPLE: f64 = 28.0;
+const SAMPLE: f64 = 22.0;
 const GAP: f64 = 7.0;
 const APART: f64 = 20.0;
 /// Room beneath a legend.
@@ -58,19 +58,24 @@ fn entries(row: &[Panel]) -> Vec<Entry<'_>> {
     all
 }
 
-/// Draws a legend in columns as wide as its longest name; returns its height.
+/// Draws a legend in one line, or in columns as wide as its longest name; returns its height.
 fn legend(canvas: &mut Canvas, all: &[Entry], top: f64) -> f64 {
     if all.is_empty() {
         return 0.0;
     }
-    let widest = all.iter().map(|entry| text::width(entry.name, LETTERS)).fold(0.0, f64::max);
-    let (pitch, room) = (SAMPLE + GAP + widest + APART, canvas.size[0] - LEFT - RIGHT);
+    let pitches: Vec<f64> =
+        all.iter().map(|entry| SAMPLE + GAP + text::width(entry.name, LETTERS) + APART).collect();
+    let room = canvas.size[0] - LEFT - RIGHT + APART;
+    let is_line = pitches.iter().sum::<f64>() <= room;
+    let widest = pitches.iter().copied().fold(0.0, f64::max);
     // As many columns as fit, but no more than fill the lines evenly.
-    let fit = ((room + APART) / pitch).floor().max(1.0) as usize;
+    let fit = if is_line { all.len() } else { (room / widest).floor().max(1.0) as usize };
     let lines = all.len().div_ceil(fit);
     let columns = all.len().div_ceil(lines);
     for (i, entry) in all.iter().enumerate() {
-        let x = LEFT + pitch * (i % columns) as f64;
+        let before =
+            if is_line { pitches[..i].iter().sum() } else { widest * (i % columns) as f64 };
+        let x = LEFT + before;
         let y = top + LINE * ((i / columns) as f64 + 0.5);
         canvas.line(vec![[x, y], [x + SAMPLE, y]], entry.color, panel::CURVE, entry.dash);
         let start = [x + SAMPLE + GAP, y + 0.35 * LETTERS];

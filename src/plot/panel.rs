@@ -9,6 +9,8 @@ use super::{Axis, Curve, Panel, label, text};
 pub(super) const LEFT: f64 = 78.0;
 pub(super) const RIGHT: f64 = 18.0;
 const ABOVE: f64 = 34.0;
+/// Room above what has no title.
+pub(super) const BARE: f64 = 14.0;
 pub(super) const BELOW: f64 = 50.0;
 
 /// Width of a curve.
@@ -22,7 +24,7 @@ const NUMBERS: f64 = 11.0;
 /// Length of a tick with a number.
 const TICK: f64 = 5.0;
 /// Room of a number along x and along y.
-const ROOM: At = [62.0, 34.0];
+const ROOM: At = [50.0, 34.0];
 /// Half the width, and the height, of the triangle where a curve leaves.
 const TRIANGLE: At = [5.0, 8.0];
 
@@ -43,11 +45,12 @@ impl Frame {
 
 /// Draws a panel into an area of the page.
 pub(super) fn draw(canvas: &mut Canvas, panel: &Panel, corner: At, size: At) {
+    let above = if panel.title.is_empty() { BARE } else { ABOVE };
     let frame = Frame {
         left: corner[0] + LEFT,
-        top: corner[1] + ABOVE,
+        top: corner[1] + above,
         width: size[0] - LEFT - RIGHT,
-        height: size[1] - ABOVE - BELOW,
+        height: size[1] - above - BELOW,
     };
     let middle = frame.left + 0.5 * frame.width;
     canvas.text([middle, corner[1] + 22.0], &panel.title, TITLE, Anchor::Middle, BLACK);

@@ -81,11 +81,15 @@ fn themed(color: Color) -> String {
 fn write_shape(out: &mut String, shape: &Shape, place: Place) -> std::fmt::Result {
     match shape {
         Shape::Line { points, color, width, dash } => {
-            write!(
-                out,
-                "<polyline {} stroke-width=\"{width}\" stroke-linejoin=\"round\"",
-                paint(None, Some(*color), place)
-            )?;
+            // A page has thousands of ticks: what says nothing of them is left out.
+            let paint = paint(None, Some(*color), place);
+            match points.len() {
+                2 => write!(out, "<polyline {}", paint.trim_start_matches("fill=\"none\" "))?,
+                _ => write!(out, "<polyline {paint} stroke-linejoin=\"round\"")?,
+            }
+            if *width != 1.0 {
+                write!(out, " stroke-width=\"{width}\"")?;
+            }
             let lengths: Vec<String> =
                 dash.lengths().iter().map(|length| number(length * width)).collect();
             if !lengths.is_empty() {

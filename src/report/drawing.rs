@@ -3,13 +3,25 @@
 use maud::{Markup, PreEscaped, html};
 
 use crate::plot::{Figure, Panel};
+use crate::words;
 
-/// Pixels of a plot: two or three stand side by side, and its letters can be read on a phone.
-const SIZE: [f64; 2] = [400.0, 300.0];
+/// Pixels of a plot: two stand side by side on paper, three on a desk, and its letters can be read
+/// there and on a phone.
+pub(super) const SIZE: [f64; 2] = [380.0, 290.0];
 
 /// A panel as an element of the page; `label` says what is seen.
 pub(super) fn plot(panel: Panel, label: &str) -> Markup {
     PreEscaped(Figure { panels: vec![panel], columns: 1, panel: SIZE }.inline_svg(label))
+}
+
+/// An error to three digits, which no line breaks.
+pub(super) fn error(x: f64) -> String {
+    words::error(x).replace('-', "−")
+}
+
+/// Equations that no line breaks.
+pub(super) fn unbroken(text: &str) -> String {
+    text.replace(" = ", "\u{a0}=\u{a0}")
 }
 
 /// A text that is written for terminals, with the letters of the field for their names.
@@ -52,6 +64,12 @@ pub(super) fn code(text: &str) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn neither_errors_nor_equations_are_broken() {
+        assert_eq!(error(7.25e-5), "7.25e−5");
+        assert_eq!(unbroken("γ = 3, σ = 0.2"), "γ\u{a0}=\u{a0}3, σ\u{a0}=\u{a0}0.2");
+    }
 
     #[test]
     fn whole_words_become_letters_and_nothing_else_does() {

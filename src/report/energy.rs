@@ -4,13 +4,12 @@ use maud::{Markup, html};
 use microfacet_sampler::{MaterialError, Tables};
 use rayon::prelude::*;
 
-use super::drawing::plot;
+use super::drawing::{error, plot};
 use super::subjects::{Shown, Subjects};
 use super::{ReportError, Source};
 use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::progress::Meter;
 use crate::validate::furnace::{Furnace, furnace, seconds as furnace_seconds};
-use crate::words::error;
 
 /// Cosines of the views.
 const VIEWS: [f64; 21] = [
@@ -110,7 +109,7 @@ fn drawn(set: &Tables, shown: &Shown, rows: &[Furnace]) -> Markup {
             figcaption {
                 b { bdi { (shown.name) } } ": " (shown.description()) ", "
                 (shown.masking()) " masking. "
-                "One bounce loses up to " (lost) ", at cos θ = " (single.cos_theta) ". "
+                "One bounce loses up to " (lost) ", at cos\u{a0}θ\u{a0}=\u{a0}" (single.cos_theta) ". "
                 "The largest deviation from 1 is " (error(kulla_conty.off))
                 " with Kulla–Conty's lobe and " (error(turquin.off)) " with Turquin's scaling. "
                 @if shown.sigma[0] != shown.sigma[1] {

@@ -46,9 +46,9 @@ fn facts(source: &Source, subjects: &Subjects) -> Vec<(&'static str, String)> {
     let bytes: usize = tables.iter().map(Table::stored_bytes).sum();
     let mut facts = vec![("tables", format!("{}, {}", tables.len(), words::bytes(bytes)))];
     if let [first, .., last] = subjects.stops[..] {
-        facts.push(("shapes γ", format!("{first} to {last}")));
+        facts.push(("shapes γ", format!("{} to {}", words::number(first), words::number(last))));
     } else if let [only] = subjects.stops[..] {
-        facts.push(("shape γ", format!("{only}")));
+        facts.push(("shape γ", words::number(only)));
     }
     facts
 }

@@ -4,11 +4,11 @@ use maud::{Markup, html};
 use microfacet_sampler::{Provenance, Table, Tables};
 
 use super::Source;
-use super::drawing::{code, symbols};
+use super::drawing::{code, error, symbols};
 use super::served::{Served, served};
 use super::subjects::Subjects;
 use crate::words::table::{albedos, axis, covers, holds, normals, precision};
-use crate::words::{bytes, certificate, count, error};
+use crate::words::{bytes, certificate, count};
 
 /// Rows of a table of the page; a library has thousands of materials.
 const ROWS: usize = 200;

@@ -3,7 +3,7 @@
 use microfacet_common::shape::gamma_of_s;
 use microfacet_sampler::{Masking, MaterialEntry, Tables};
 
-use super::drawing::symbols;
+use super::drawing::{symbols, unbroken};
 use crate::words::number;
 
 /// Most shapes whose visible normals a page holds. Light that is reflected by other shapes is drawn
@@ -91,6 +91,11 @@ pub(super) struct Shown {
     pub(super) entry: Option<MaterialEntry>,
 }
 
+/// γ in words.
+pub(super) fn shape(gamma: f64) -> String {
+    unbroken(&format!("γ = {}", symbols(&number(gamma))))
+}
+
 impl Subjects {
     /// Of a set.
     pub(super) fn of(set: &Tables) -> Self {
@@ -133,18 +138,20 @@ impl Shown {
         self.entry.as_ref().map_or(Masking::default(), MaterialEntry::masking)
     }
 
-    /// Its γ and σ, in words.
+    /// Its γ, unless that is its name, and σ, in words.
     pub(super) fn description(&self) -> String {
         let [x, y] = self.sigma.map(number);
         let sigma = if x == y { format!("σ = {x}") } else { format!("σx = {x}, σy = {y}") };
-        format!("γ = {}, {sigma}", symbols(&number(self.gamma)))
+        let gamma = shape(self.gamma);
+        let words = if self.name == gamma { sigma } else { format!("{gamma}, {sigma}") };
+        unbroken(&words)
     }
 
     fn example(gamma: f64) -> Self {
         let name = match gamma {
             2.0 => "GGX".into(),
             f64::INFINITY => "Beckmann".into(),
-            _ => format!("γ = {gamma}"),
+            _ => shape(gamma),
         };
         Self { name, gamma, sigma: [SIGMA; 2], entry: None }
     }

@@ -2,12 +2,11 @@
 
 use microfacet_sampler::Table;
 
+use super::super::drawing::SIZE;
 use super::{ticks, words};
 use crate::plot::{Axis, Bar, Curve, Dash, Figure, HeatMap, Key, Mark, Method, Panel};
 use crate::validate::error_map::{ErrorMap, Span};
 
-/// Width and height of a drawing.
-const SIZE: [f64; 2] = [400.0, 300.0];
 /// The low end of the scale: about the rounding of single precision.
 const LOW: f64 = 1e-7;
 /// The least high end.

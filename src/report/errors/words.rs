@@ -2,9 +2,10 @@
 
 use microfacet_sampler::{Axis, Kind, Masking, Reflectance, Table};
 
+use super::super::drawing::error;
 use crate::validate::certificate::worst_error;
 use crate::validate::error_map::{ErrorMap, Quantity};
-use crate::words::{self, certificate};
+use crate::words::certificate;
 
 /// What a table is of.
 pub(super) fn what(table: &Table) -> String {
@@ -67,11 +68,6 @@ pub(super) fn number(x: f64) -> String {
         _ => format!("{rounded:e}"),
     }
     .replace('-', "−")
-}
-
-/// An error to three digits, which no line breaks.
-fn error(x: f64) -> String {
-    words::error(x).replace('-', "−")
 }
 
 /// A quantity with its value, which no line breaks.

@@ -3,7 +3,8 @@
 //         shows this, and resolves when exactly so many samples are there; what is left out stays.
 //         gamma is that of a stop, metal a name of the list
 //     report.pixels() -> Promise of RGBA of the canvas, from the lower left
-//     report.state() -> what is shown, with the shape `drawn` whose normals are drawn
+//     report.state() -> what is shown, with the shape `drawn` whose normals are drawn, and the
+//         number of shapes to choose from
 //     report.lobe(degrees) -> Promise of f cos of the lobe, of GGX and of Beckmann at 721 lights
 //         from -90 to 90 degrees, in fours of which the last is 1; whole degrees from 0 to 89
 
@@ -50,7 +51,7 @@ function tell() {
     const round = sigma[0] === sigma[1];
     $('stand-in').hidden = round || !compensation;
     const [x, y] = sigma.map(short);
-    const rough = round ? `σ = ${x}` : `σx = ${x}, σy = ${y}`;
+    const rough = round ? `σ\u00a0=\u00a0${x}` : `σx\u00a0=\u00a0${x}, σy\u00a0=\u00a0${y}`;
     const metal = data.reflectances[reflectance].name;
     const bounces = compensation ? 'with compensation' : 'one bounce';
     $('sphere').setAttribute('aria-label', `A sphere of ${metal}, ${label}, ${rough}, ${bounces}`);
@@ -156,7 +157,7 @@ function listen(sphere, plot) {
         state: () => ({
             sigma: state.sigma, gamma: gammaOf(state.stop), compensation: state.compensation,
             metal: data.reflectances[state.reflectance].name,
-            drawn: gammaOf(data.stops[state.stop].drawn),
+            drawn: gammaOf(data.stops[state.stop].drawn), shapes: data.stops.length,
         }),
         async lobe(degrees) {
             await plot.turn(degrees);
@@ -174,9 +175,13 @@ async function begin() {
     const { upload, averages } = await loadTables();
     const sphere = new Sphere(canvas, upload, averages);
     if (!sphere.start()) return;
-    $('look').classList.add('is-live');
-    canvas.hidden = $('sphere-controls').hidden = $('lobe-live').hidden = false;
-    $('lobe-still').hidden = $('sphere-still').hidden = true;
+    // What is drawn here, or pictures.
+    const live = (is) => {
+        for (const it of ['sphere', 'sphere-controls', 'lobe-live']) $(it).hidden = !is;
+        for (const it of ['sphere-still', 'lobe-still']) $(it).hidden = is;
+        if (!is) $('sphere-samples').textContent = '';
+    };
+    live(true);
     const plot = new LobePlot($('lobe-live'), sphere);
     sphere.onprogress = (index, samples) => {
         $('sphere-samples').textContent = `${index} of ${samples} samples`;
@@ -188,10 +193,14 @@ async function begin() {
     const update = listen(sphere, plot);
     update(false);
 
-    canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
+    canvas.addEventListener('webglcontextlost', (event) => {
+        event.preventDefault();
+        live(false);
+    });
     canvas.addEventListener('webglcontextrestored', () => {
         sphere.strip = sphere.targets = undefined;
-        sphere.start();
+        if (!sphere.start()) return;
+        live(true);
         update(false);
     });
     // What is not seen is not drawn.

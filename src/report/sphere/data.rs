@@ -15,9 +15,8 @@ use microfacet_sampler::{
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::super::subjects::{Shown, Subjects};
+use super::super::subjects::{Shown, Subjects, shape};
 use super::scene::Look;
-use crate::export::numbers::as_typed;
 use crate::export::texture::{Along, TexelAxis, place, shader_coordinates};
 use crate::export::{Shape, WIDTH, append_some};
 
@@ -90,9 +89,9 @@ struct Material {
 /// γ for people.
 pub(super) fn label(gamma: f64) -> String {
     match gamma {
-        2.0 => "GGX (γ = 2)".into(),
-        f64::INFINITY => "Beckmann (γ = ∞)".into(),
-        _ => format!("γ = {}", as_typed(gamma)),
+        2.0 => format!("GGX ({})", shape(gamma)),
+        f64::INFINITY => format!("Beckmann ({})", shape(gamma)),
+        _ => shape(gamma),
     }
 }
 

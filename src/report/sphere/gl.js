@@ -85,8 +85,17 @@ function target(gl, width, height) {
     return { texture: it, frame };
 }
 
+// Sines and cosines of so many angles from -90 to 90 degrees, as a texture of a row.
+function directions(gl, count) {
+    const angle = (i) => Math.PI * (i / (count - 1) - 0.5);
+    const pairs = Array.from({ length: count }, (_, i) => [Math.sin(angle(i)), Math.cos(angle(i))]);
+    return texture(gl, gl.TEXTURE_2D, gl.NEAREST, () => gl.texImage2D(
+        gl.TEXTURE_2D, 0, gl.RG32F, count, 1, 0, gl.RG, gl.FLOAT, new Float32Array(pairs.flat())));
+}
+
 // What is drawn in the present frame, without waiting for it; null if the context is lost.
 async function read(gl, [width, height], type, array) {
+    if (gl.isContextLost()) return null;
     const buffer = gl.createBuffer();
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
     gl.bufferData(gl.PIXEL_PACK_BUFFER, array.byteLength, gl.STREAM_READ);
@@ -94,8 +103,9 @@ async function read(gl, [width, height], type, array) {
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
     const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
-    while (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) {
+    for (;;) {
         if (gl.isContextLost()) return null;
+        if (gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED) break;
         await new Promise((done) => setTimeout(done, 4));
     }
     gl.deleteSync(fence);

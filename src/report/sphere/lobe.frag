@@ -5,8 +5,10 @@ uniform highp uint shape;
 uniform highp uint ggx;
 uniform highp uint beckmann;
 uniform vec2 sigma;
-uniform float view;   // radians; the view stands on the negative side
-uniform float count;  // lights
+// Sines and cosines of the view, which stands on the negative side, and of each light: the device's
+// own are off by what is much at the horizon.
+uniform vec2 view;
+uniform highp sampler2D lights;
 out vec4 color;
 
 float lobe(uint one, vec3 v, vec3 l) {
@@ -17,8 +19,8 @@ float lobe(uint one, vec3 v, vec3 l) {
 }
 
 void main() {
-    float angle = 3.14159265 * ((gl_FragCoord.x - 0.5) / (count - 1.0) - 0.5);
-    vec3 v = vec3(-sin(view), 0.0, cos(view)), l = vec3(sin(angle), 0.0, cos(angle));
+    vec2 light = texelFetch(lights, ivec2(gl_FragCoord.xy), 0).xy;
+    vec3 v = vec3(-view.x, 0.0, view.y), l = vec3(light.x, 0.0, light.y);
     color = vec4(0.0, 0.0, 0.0, 1.0);
     if (l.z > 1e-6) color.rgb = vec3(lobe(shape, v, l), lobe(ggx, v, l), lobe(beckmann, v, l));
 }

@@ -44,6 +44,7 @@ class LobePlot {
     draw(state = this.state) {
         this.state = state;
         this.again = true;
+        this.place(this.degrees);
         this.drawing ??= this.work().finally(() => { this.drawing = null; });
         return this.drawing;
     }
@@ -52,7 +53,6 @@ class LobePlot {
         while (this.again) {
             this.again = false;
             const { degrees } = this;
-            this.place(degrees);
             const all = await this.sphere.lobe(this.state, degrees * Math.PI / 180, LIGHTS);
             if (all) this.show(all);
         }
@@ -65,7 +65,7 @@ class LobePlot {
         this.handle.setAttribute('transform', `translate(${x} ${y})`);
         this.handle.setAttribute('aria-valuenow', degrees);
         this.handle.setAttribute('aria-valuetext', `${degrees} degrees`);
-        this.figure.querySelector('.of-angle').textContent = `θ = ${degrees}°`;
+        this.figure.querySelector('.of-angle').textContent = `θ\u00a0=\u00a0${degrees}°`;
     }
 
     show(all) {

@@ -2,6 +2,7 @@
 //! for where none runs.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt::Write;
 
 use glam::Vec3;
 use maud::{Markup, html};
@@ -11,7 +12,7 @@ use super::scene::Look;
 
 /// The length of the longest arrow, as `REACH` of lobe.js, and lights of a still.
 const REACH: f64 = 150.0;
-const LIGHTS: usize = 241;
+const LIGHTS: usize = 361;
 /// The views of stills, in degrees.
 const VIEWS: [u32; 3] = [15, 45, 75];
 /// Names of the curves, as classes.
@@ -43,8 +44,8 @@ fn legend() -> Markup {
     html! {
         ul.legend {
             li.key-shape { "the lobe" }
-            li.key-ggx { "GGX of the same σ" }
-            li.key-beckmann { "Beckmann of the same σ" }
+            li.key-ggx { "GGX" }
+            li.key-beckmann { "Beckmann" }
         }
     }
 }
@@ -64,7 +65,8 @@ pub(super) fn live() -> Markup {
             (legend())
             figcaption #lobe-caption {
                 "Light in the plane of incidence, f cos θ of one bounce with F = 1: "
-                span #lobe-name {} ". View at " span.of-angle {} "; drag it. The outer circle is "
+                span #lobe-name {} ", beside GGX and Beckmann of the same σ. The view is at "
+                span.of-angle {} span.screen { "; drag it" } ", and the outer circle at "
                 span.of-scale {} "."
             }
         }
@@ -76,23 +78,46 @@ pub(super) fn live() -> Markup {
 /// # Errors
 /// [`MaterialError`] for a shape that the tables do not cover.
 pub(super) fn stills(tables: &Tables, look: &Look, name: &str) -> Result<Markup, MaterialError> {
-    let lobes: Vec<Lobe> = [look.gamma, 2.0, f64::INFINITY]
-        .into_iter()
-        .map(|gamma| tables.lobe(look.sigma, gamma))
-        .collect::<Result<_, _>>()?;
+    let lobes = look.beside(tables)?;
     Ok(html! {
         div #lobe-still .stills {
             @for view in VIEWS {
                 (still(&lobes, view, name))
             }
             (legend())
+            p.note { "Light in the plane of incidence, f cos θ of one bounce with F = 1, beside \
+                     GGX and Beckmann of the same σ." }
         }
     })
 }
 
-fn still(lobes: &[Lobe], degrees: u32, name: &str) -> Markup {
+impl Look {
+    /// The lobe, and GGX and Beckmann of the same σ.
+    fn beside(&self, tables: &Tables) -> Result<[Lobe; 3], MaterialError> {
+        let of = |gamma| tables.lobe(self.sigma, gamma);
+        Ok([of(self.gamma)?, of(2.0)?, of(f64::INFINITY)?])
+    }
+
+    /// f cos of one bounce with F = 1 in the plane of incidence along x, at so many lights from −90°
+    /// to 90°: of the lobe, of GGX and of Beckmann. The view is so many degrees from the normal, on
+    /// the negative side.
+    ///
+    /// # Errors
+    /// [`MaterialError`] for a shape that neither the set nor the default set covers.
+    pub fn in_plane(
+        &self,
+        set: &Tables,
+        degrees: f64,
+        lights: usize,
+    ) -> Result<[Vec<f64>; 3], MaterialError> {
+        let lobes = self.beside(&set.clone().or_embedded())?;
+        Ok(lobes.map(|lobe| values(&lobe, degrees.to_radians(), lights)))
+    }
+}
+
+fn still(lobes: &[Lobe; 3], degrees: u32, name: &str) -> Markup {
     let view = f64::from(degrees).to_radians();
-    let values: Vec<Vec<f64>> = lobes.iter().map(|lobe| values(lobe, view)).collect();
+    let values = lobes.each_ref().map(|lobe| values(lobe, view, LIGHTS));
     let most = values.iter().flatten().copied().fold(f64::MIN_POSITIVE, f64::max);
     let points: Vec<String> = values.iter().map(|values| points(values, most)).collect();
     let [x, y] = [-REACH * view.sin(), -REACH * view.cos()];
@@ -106,40 +131,87 @@ fn still(lobes: &[Lobe], degrees: u32, name: &str) -> Markup {
                     fill="currentColor" {} },
                 &id,
             ))
-            figcaption id=(id) { (name) ", view at θ = " (degrees) "°" }
+            figcaption id=(id) { (name) ", view at θ\u{a0}=\u{a0}" (degrees) "°" }
         }
     }
 }
 
-/// The light of a place among those of the plane of incidence, in radians.
-fn angle(i: usize) -> f64 {
-    PI * i as f64 / (LIGHTS - 1) as f64 - FRAC_PI_2
+/// The angle of a light among so many of the plane of incidence.
+fn angle(i: usize, lights: usize) -> f64 {
+    PI * i as f64 / (lights - 1) as f64 - FRAC_PI_2
 }
 
 /// f cos of one bounce with F = 1, from −90° to 90°; the view stands on the negative side.
-fn values(lobe: &Lobe, view: f64) -> Vec<f64> {
+fn values(lobe: &Lobe, view: f64, lights: usize) -> Vec<f64> {
     let at = |angle: f64| Vec3::new(angle.sin() as f32, 0.0, angle.cos() as f32);
     let v = at(-view);
     let of = |i: usize| {
-        let l = at(angle(i));
+        let l = at(angle(i, lights));
         if !(l.z > 1e-6) {
             return 0.0;
         }
         let white = lobe.d((v + l).normalize()) * lobe.g2(v, l, Masking::HeightCorrelated);
         f64::from(white / (4.0 * v.z))
     };
-    (0..LIGHTS).map(of).collect()
+    (0..lights).map(of).collect()
 }
 
-/// Points as SVG has them, to a tenth; those that fall on one are one.
+/// Points as SVG has them.
 fn points(values: &[f64], most: f64) -> String {
-    let point = |(i, value): (usize, &f64)| {
-        let (r, angle) = (REACH * value / most, angle(i));
-        // −0 would be another text than 0.
-        let [x, y] = [r * angle.sin(), -r * angle.cos()].map(|x| (10.0 * x).round() / 10.0 + 0.0);
-        format!("{x},{y}")
+    let mut text = String::new();
+    let at = |(i, value): (usize, &f64)| {
+        let (r, angle) = (REACH * value / most, angle(i, values.len()));
+        [r * angle.sin(), -r * angle.cos()]
     };
-    let mut points: Vec<String> = values.iter().enumerate().map(point).collect();
-    points.dedup();
-    points.join(" ")
+    for [x, y] in thinned(&values.iter().enumerate().map(at).collect::<Vec<_>>()) {
+        write!(text, "{x:.1},{y:.1} ").expect("memory");
+    }
+    text.truncate(text.trim_end().len());
+    text
+}
+
+/// Those of the points between which straight lines stray from none by more than is seen.
+fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    const SEEN: f64 = 0.1;
+    let strays = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2], [x, y]: [f64; 2]| {
+        let along = [bx - ax, by - ay];
+        let length = along[0] * along[0] + along[1] * along[1];
+        let t = ((x - ax) * along[0] + (y - ay) * along[1]) / length.max(f64::MIN_POSITIVE);
+        let t = t.clamp(0.0, 1.0);
+        (x - ax - t * along[0]).hypot(y - ay - t * along[1]) > SEEN
+    };
+    let mut kept = vec![0];
+    for i in 1..points.len() {
+        let from = kept[kept.len() - 1];
+        if (from + 1..i).any(|j| strays(points[from], points[i], points[j])) {
+            kept.push(i - 1);
+        }
+    }
+    kept.push(points.len() - 1);
+    kept.into_iter().map(|i| points[i]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_between_the_points_that_are_kept_meet_those_that_are_not() {
+        let circle: Vec<[f64; 2]> = (0..=360)
+            .map(|i| f64::from(i).to_radians().sin_cos())
+            .map(|(sin, cos)| [REACH * cos, REACH * sin])
+            .collect();
+        let kept = thinned(&circle);
+        assert_eq!([kept[0], kept[kept.len() - 1]], [circle[0], circle[360]]);
+        // The chord of a sagitta of 0.1 is 11 long.
+        assert!((80..120).contains(&kept.len()), "{}", kept.len());
+        let off = |ends: &[[f64; 2]]| {
+            let middle = [0.5 * (ends[0][0] + ends[1][0]), 0.5 * (ends[0][1] + ends[1][1])];
+            REACH - middle[0].hypot(middle[1])
+        };
+        assert!(kept.windows(2).all(|ends| off(ends) < 0.11));
+        // A lobe that is no wider than a light stays as long as it is.
+        let needle = [[0.0, 0.0], [0.0, 0.0], [0.0, -150.0], [0.0, 0.0], [0.0, 0.0]];
+        assert!(thinned(&needle).contains(&[0.0, -150.0]));
+    }
 }

@@ -143,7 +143,7 @@ fn controls(subjects: &Subjects, data: &Data) -> Markup {
             @for (axis, along) in [("x", "along the parallels"), ("y", "along the meridians")] {
                 div.row {
                     label for={ "sigma-" (axis) } {
-                        "Roughness σ" (axis) " " small { (along) }
+                        "Roughness σ" (axis) " " span.muted { (along) }
                     }
                     output id={ "sigma-" (axis) "-value" } for={ "sigma-" (axis) } {}
                     input id={ "sigma-" (axis) } type="range" min="0" max=(slider_steps()) step="1";
@@ -178,27 +178,22 @@ fn slider_steps() -> usize {
     (100.0 * (SIGMA[1] / SIGMA[0]).log10()).round() as usize
 }
 
-/// A picture of each lobe, which shows it on the sphere.
+/// A picture of each lobe, which shows it on the sphere; where there is one, that does.
 fn gallery(subjects: &Subjects, pictures: &[String]) -> Markup {
     html! {
-        div.gallery {
+        @if pictures.len() > 1 { div.gallery {
             @for (i, (shown, picture)) in subjects.shown.iter().zip(pictures).enumerate() {
-                @let [x, y] = shown.sigma;
                 figure.card {
                     button type="button" data-material=(i) aria-label={ "Show " (shown.name) } {
-                        img src=(picture) alt="" loading="lazy"
-                            width=(PICTURE.size) height=(PICTURE.size);
+                        img src=(picture) alt="" width=(PICTURE.size) height=(PICTURE.size);
                     }
                     figcaption {
-                        strong { (shown.name) } " "
-                        span {
-                            (label(shown.gamma)) ", "
-                            @if x == y { "σ = " (x) } @else { "σ = " (x) ", " (y) }
-                        }
+                        strong { (shown.name) } br;
+                        (shown.description())
                     }
                 }
             }
-        }
+        } }
         @if subjects.left_out > 0 {
             p.note { "And " (subjects.left_out) " more, without a picture." }
         }

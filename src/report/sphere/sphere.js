@@ -181,10 +181,11 @@ class Sphere {
     }
 
     // f cos of a state, of GGX and of Beckmann at so many lights, in fours; a promise
-    // of them.
-    lobe({ stop, sigma }, view, count) {
+    // of them, or of null while the context is lost.
+    async lobe({ stop, sigma }, view, count) {
         const { gl, lobes } = this;
-        this.strip ??= target(gl, count, 1);
+        if (gl.isContextLost()) return null;
+        this.strip ??= { ...target(gl, count, 1), lights: directions(gl, count) };
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.strip.frame);
         gl.viewport(0, 0, count, 1);
         gl.useProgram(lobes.program);
@@ -192,9 +193,11 @@ class Sphere {
         lobes.set('ggx', '1ui', data.ggx);
         lobes.set('beckmann', '1ui', data.beckmann);
         lobes.set('sigma', '2f', ...sigma);
-        lobes.set('view', '1f', view);
-        lobes.set('count', '1f', count);
-        lobes.draw({ student_t_tables: [gl.TEXTURE_2D, this.textures.tables] });
+        lobes.set('view', '2f', Math.sin(view), Math.cos(view));
+        lobes.draw({
+            student_t_tables: [gl.TEXTURE_2D, this.textures.tables],
+            lights: [gl.TEXTURE_2D, this.strip.lights],
+        });
         return read(gl, [count, 1], gl.FLOAT, new Float32Array(4 * count));
     }
 }

@@ -4,10 +4,10 @@ mod plots;
 
 use maud::{Markup, html};
 
-use super::drawing::symbols;
+use super::drawing::{error, symbols};
 use super::{ReportError, Source};
 use crate::validate::record::{Record, Returned, Tested, identity};
-use crate::words::{count, error, number};
+use crate::words::{count, number};
 
 /// Rows of the table of configurations.
 const WORST: usize = 5;

@@ -2,10 +2,10 @@
 
 use maud::{Markup, html};
 
-use super::super::drawing::plot;
+use super::super::drawing::{error, plot};
 use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::validate::record::{Record, Tested};
-use crate::words::{error, number};
+use crate::words::number;
 
 /// Points of a curve.
 const POINTS: usize = 200;
