@@ -68,6 +68,9 @@ const LOOKS = [
     look(2, 0.05, 0.05, 'copper'), look('inf', 1, 1, 'gold'), look('inf', 0.01, 0.01, 'silver'),
     look(4.5, 0.1, 0.5, 'aluminium'), look(60, 0.8, 0.8, 'copper'),
     look(2.6, 0.4, 0.4, 'gold', false),
+    // Smooth heavy tails, whose albedo falls steeply about the normal.
+    look(1.501, 0.013, 0.013, 'silver'), look(1.51, 0.01, 0.01, 'mirror'),
+    look(1.7, 0.03, 0.03, 'mirror'),
 ];
 
 for (const one of LOOKS) {
