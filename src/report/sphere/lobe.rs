@@ -98,9 +98,9 @@ impl Look {
         Ok([of(self.gamma)?, of(2.0)?, of(f64::INFINITY)?])
     }
 
-    /// f cos of one bounce with F = 1 in the plane of incidence along x, at so many lights from −90°
-    /// to 90°: of the lobe, of GGX and of Beckmann. The view is so many degrees from the normal, on
-    /// the negative side.
+    /// f cos of one bounce with F = 1 in the plane of incidence along x, at so many lights from
+    /// −90° to 90°: of the lobe, of GGX and of Beckmann. The view is so many degrees from the
+    /// normal, on the negative side.
     ///
     /// # Errors
     /// [`MaterialError`] for a shape that neither the set nor the default set covers.
