@@ -8,6 +8,9 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
 
+/// A window in which the sphere is small, and soon drawn.
+const NARROW = { width: 390, height: 844 };
+
 /// Where the handle of the lobe is for a view of so many degrees, in the window.
 function place(degrees) {
     const svg = document.querySelector('#lobe-live svg');
@@ -51,8 +54,7 @@ const DRAGS = {
 
 for (const [hand, drag] of Object.entries(DRAGS)) {
     test(`the view of the lobe follows a ${hand}`, async t => {
-        const narrow = { width: 390, height: 844, touch: true };
-        const options = hand === 'finger' ? narrow : {};
+        const options = hand === 'finger' ? { ...NARROW, touch: true } : {};
         const { page, troubles } = await open(t, browser, 'default', options);
         await settled(page);
         await page.evaluate(() => report.lobe(45));
@@ -76,7 +78,7 @@ const seen = page => page.evaluate(async () => {
 });
 
 test('sliders, lists and pictures change the sphere', async t => {
-    const { page, troubles } = await open(t, browser, 'default');
+    const { page, troubles } = await open(t, browser, 'default', NARROW);
     await settled(page);
     let last = await seen(page);
     const changed = async what => {
@@ -111,7 +113,7 @@ test('sliders, lists and pictures change the sphere', async t => {
 const OWN_WORDS = /CONTEXT_LOST_WEBGL/;
 
 test('pictures stand for the sphere while its context is lost, and then it is back', async t => {
-    const { page, troubles } = await open(t, browser, 'default');
+    const { page, troubles } = await open(t, browser, 'default', NARROW);
     await settled(page);
     const before = await seen(page);
     await page.evaluate(() => new Promise(lost => {

@@ -18,7 +18,7 @@ function controls() {
     return window.controls.length;
 }
 
-for (const name of ['default', 'gold', 'brushed']) {
+for (const name of ['default', 'gold']) {
     test(`${name}: Tab reaches every control, and shows where it is`, async t => {
         const { page } = await open(t, browser, name);
         await settled(page);

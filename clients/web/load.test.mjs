@@ -59,7 +59,7 @@ const LACKING = {
 };
 
 for (const [what, lacking] of Object.entries(LACKING)) {
-    for (const name of ['default', 'gold', 'ggx']) {
+    for (const name of ['default', 'ggx']) {
         test(`${name}: where ${what} there are pictures`, async t => {
             const { page, troubles } = await open(t, browser, name, lacking);
             // Without scripts in the page, ours run in a world of their own.

@@ -181,7 +181,7 @@ fn row(table: &Table) -> Markup {
             }
             td { (symbols(&gamma)) }
             td { (symbols(&sigma)) }
-            td { (nodes.join(" × ")) }
+            td { (nodes.join("\u{a0}×\u{a0}")) }
             td { (precision(table.precision)) }
             td.number { (bytes(table.stored_bytes())) }
             td {

@@ -12,7 +12,11 @@ class LobePlot {
         this.curves = names.map((name) => figure.querySelector(`.of-${name}`));
         this.degrees = 45;
         const svg = figure.querySelector('svg');
+        // A finger elsewhere scrolls. Browsers do not heed touch-action within a drawing.
+        this.handle.addEventListener('touchstart', (event) => event.preventDefault(),
+            { passive: false });
         svg.addEventListener('pointerdown', (event) => {
+            if (event.pointerType === 'touch' && !this.handle.contains(event.target)) return;
             svg.setPointerCapture(event.pointerId);
             this.handle.focus({ preventScroll: true });
             this.drag(svg, event);

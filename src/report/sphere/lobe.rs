@@ -64,7 +64,7 @@ pub(super) fn live() -> Markup {
             (drawing(["", "", ""], "", &handle, "lobe-caption"))
             (legend())
             figcaption #lobe-caption {
-                "Light in the plane of incidence, f cos θ of one bounce with F = 1: "
+                "Light in the plane of incidence, f cos\u{a0}θ of one bounce with F\u{a0}=\u{a0}1: "
                 span #lobe-name {} ", beside GGX and Beckmann of the same σ. The view is at "
                 span.of-angle {} span.screen { "; drag it" } ", and the outer circle at "
                 span.of-scale {} "."
@@ -85,7 +85,7 @@ pub(super) fn stills(tables: &Tables, look: &Look, name: &str) -> Result<Markup,
                 (still(&lobes, view, name))
             }
             (legend())
-            p.note { "Light in the plane of incidence, f cos θ of one bounce with F = 1, beside \
+            p.note { "Light in the plane of incidence, f cos\u{a0}θ of one bounce with F\u{a0}=\u{a0}1, beside \
                      GGX and Beckmann of the same σ." }
         }
     })
@@ -98,9 +98,9 @@ impl Look {
         Ok([of(self.gamma)?, of(2.0)?, of(f64::INFINITY)?])
     }
 
-    /// f cos of one bounce with F = 1 in the plane of incidence along x, at so many lights from −90°
-    /// to 90°: of the lobe, of GGX and of Beckmann. The view is so many degrees from the normal, on
-    /// the negative side.
+    /// f cos of one bounce with F = 1 in the plane of incidence along x, at so many lights from
+    /// −90° to 90°: of the lobe, of GGX and of Beckmann. The view is so many degrees from the
+    /// normal, on the negative side.
     ///
     /// # Errors
     /// [`MaterialError`] for a shape that neither the set nor the default set covers.
