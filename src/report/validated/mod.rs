@@ -152,9 +152,9 @@ fn worst(record: &Record) -> Markup {
     }
 }
 
-/// A number to four digits.
+/// A number to four digits, which no line breaks.
 fn short(x: f64) -> String {
-    number(format!("{x:.3e}").parse().unwrap_or(x))
+    number(format!("{x:.3e}").parse().unwrap_or(x)).replace('-', "−")
 }
 
 fn furnaces(record: &Record) -> Markup {
