@@ -155,7 +155,11 @@ mod tests {
         let one = Figure::new(vec![panel(vec![three])]).svg();
         let strokes = |drawn: &str| -> Vec<String> {
             let wide = drawn.lines().filter(|line| line.contains("stroke-width=\"2\""));
-            wide.map(|line| line.split('"').nth(3).unwrap().to_owned()).collect()
+            let stroke = |line: &str| {
+                let (_, rest) = line.split_once(" stroke=\"").unwrap();
+                rest.split_once('"').unwrap().0.to_owned()
+            };
+            wide.map(stroke).collect()
         };
         // Each curve in the panel and in the legend.
         assert_eq!(strokes(&both).len(), 4);
