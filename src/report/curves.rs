@@ -1,18 +1,21 @@
 //! G1 and E of the lobes shown, beside GGX and Beckmann of the same σ.
 
+use std::f64::consts::PI;
+
 use glam::Vec3;
 use maud::{Markup, html};
 use microfacet_sampler::{Albedo, Lobe, MaterialEntry, MicrofacetDistribution, Tables};
 
 use super::Source;
-use super::drawing::{plot, symbols};
+use super::drawing::{plot, symbols, unbroken};
 use super::subjects::{SHOWN, Shown, Subjects};
 use crate::distribution::DistributionKind;
 use crate::plot::{Axis, Curve, Dash, Key, Method, Panel};
 use crate::words::material::{gammas, material};
 use crate::words::number;
 
-/// Views of a curve, from the normal to the horizon, one every second degree.
+/// Views of a curve from the normal to the horizon, denser at both: heavy tails fall steeply at the
+/// one, and all albedos rise at the other.
 const VIEWS: u32 = 45;
 /// The view of which captions state the numbers, in degrees.
 const STATED: f64 = 80.0;
@@ -181,7 +184,7 @@ fn view(degrees: f64) -> Vec3 {
 
 fn curve(line: &Line, quantity: Quantity) -> Option<Curve> {
     let point = |i: u32| {
-        let degrees = 90.0 * f64::from(i) / f64::from(VIEWS);
+        let degrees = 45.0 * (1.0 - (PI * f64::from(i) / f64::from(VIEWS)).cos());
         Some((degrees, quantity(line, view(degrees))?))
     };
     let points = (0..=VIEWS).map(point).collect::<Option<Vec<_>>>()?;
@@ -191,5 +194,5 @@ fn curve(line: &Line, quantity: Quantity) -> Option<Curve> {
 /// The quantity at the view that is stated, with the name of the lobe.
 fn at(line: &Line, quantity: Quantity) -> Option<String> {
     let value = quantity(line, view(STATED))?;
-    Some(format!("{value:.3} ({})", line.name))
+    Some(format!("{value:.3} ({})", unbroken(&line.name)))
 }
