@@ -205,7 +205,7 @@ fn a_validation_of_images_is_one_of_the_set() {
     }
     validate(at, "images", &[], "images.json");
     ok(at, &["report", "both/tables.safetensors", "--validation", "images.json"]);
-    refuses(at, &["gold", "--validation", "images.json"], &["another set", "validate SET --json"]);
+    refuses(at, &["gold", "--validation", "images.json"], &["images.json: ", "another set"]);
 }
 
 #[test]

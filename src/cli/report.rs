@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use microfacet_bake::input::{MAX_TEXT, open_or_stdin, shown};
 use microfacet_bake::progress::Meter;
-use microfacet_bake::report::{Source, page, seconds};
+use microfacet_bake::report::{ReportError, Source, page, seconds};
 use microfacet_bake::store;
 use microfacet_bake::validate::record::Record;
 
@@ -48,7 +48,10 @@ pub(super) fn run(args: Args) -> Outcome {
     let meter = Meter::default();
     meter.expect(seconds(&source));
     let bar = progress::show(&meter, "drawing");
-    let html = page(&source, &meter)?;
+    let html = page(&source, &meter).map_err(|why| match (&why, &args.validation) {
+        (ReportError::OtherSet { .. }, Some(file)) => Failure(format!("{}: {why}", shown(file))),
+        _ => why.into(),
+    })?;
     drop(bar);
     if to_stdout {
         print(&html)?;

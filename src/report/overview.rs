@@ -6,7 +6,6 @@ use microfacet_sampler::{Provenance, Table, Tables};
 use super::Source;
 use super::drawing::{code, error, symbols};
 use super::served::{Served, served};
-use super::subjects::Subjects;
 use crate::words::table::{albedos, axis, covers, holds, normals, precision};
 use crate::words::{bytes, certificate, count};
 
@@ -17,7 +16,7 @@ const DETAILS: usize = 40;
 /// Bytes of a recipe that are shown.
 const RECIPE: usize = 16 << 10;
 
-pub(super) fn section(source: &Source, _subjects: &Subjects) -> Markup {
+pub(super) fn section(source: &Source) -> Markup {
     let set = source.set;
     html! {
         @if set.provenance().materials.is_empty() {

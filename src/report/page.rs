@@ -33,7 +33,7 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
             id: "baked",
             title: "What was baked",
             lead: "What the set holds, what was left out of it, and why.",
-            content: overview::section(source, &subjects),
+            content: overview::section(source),
         },
         Section {
             id: "curves",
@@ -57,7 +57,7 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
             lead: "The error of each table between its nodes, against the model in double \
                    precision. A ring marks the place of the largest error that was certified when \
                    the table was baked.",
-            content: errors::section(source, &subjects, meter)?,
+            content: errors::section(source, meter)?,
         },
         Section {
             id: "validation",

@@ -5,7 +5,6 @@ use microfacet_sampler::{MaterialEntry, Table, Tables};
 use super::{Source, overview, page};
 use crate::plan::{Options, Plan};
 use crate::progress::Meter;
-use crate::report::subjects::Subjects;
 use crate::scene::Scene;
 use crate::table_set::{Target, bake};
 use crate::table_spec::Quality;
@@ -90,7 +89,7 @@ fn a_library_does_not_swell_the_page() {
     let set = Tables::from_tables(origin, (0..number).map(table).collect()).unwrap();
     let of = |set: &Tables| {
         let source = Source { name: "a set", set, validation: None };
-        overview::section(&source, &Subjects::of(set)).into_string()
+        overview::section(&source).into_string()
     };
     let page = of(&set);
     for said in ["1800 more materials", "1800 more tables", "inspect --json"] {

@@ -63,7 +63,7 @@ pub struct Tested {
 /// The light that the white furnaces of a table return with the Kulla–Conty lobe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Returned {
-    /// Masking, `height_correlated` or `separable`.
+    /// The form of masking, by its name.
     pub masking: String,
     /// Materials and views.
     pub points: usize,

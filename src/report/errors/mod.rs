@@ -8,7 +8,6 @@ mod words;
 use maud::{Markup, PreEscaped, html};
 use microfacet_sampler::{Table, Tables};
 
-use super::subjects::Subjects;
 use super::{ReportError, Source};
 use crate::plan::on_threads;
 use crate::progress::Meter;
@@ -31,11 +30,7 @@ fn of_map(table: &Table, sides: Sides) -> f64 {
 /// A table with the map that was measured of it, or why there is none.
 type Measured<'a> = (&'a Table, Result<ErrorMap, Unmeasured>);
 
-pub(super) fn section(
-    source: &Source,
-    _subjects: &Subjects,
-    meter: &Meter,
-) -> Result<Markup, ReportError> {
+pub(super) fn section(source: &Source, meter: &Meter) -> Result<Markup, ReportError> {
     let chosen = Chosen::of(source.set);
     let map = |&(table, sides): &(_, Sides)| -> Measured<'_> {
         let stage = meter.stage(of_map(table, sides));

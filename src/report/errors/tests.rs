@@ -10,7 +10,7 @@ use crate::table_spec::Quality;
 
 fn html(set: &Tables, meter: &Meter) -> String {
     let source = Source { name: "a set", set, validation: None };
-    section(&source, &Subjects::of(set), meter).unwrap().into_string()
+    section(&source, meter).unwrap().into_string()
 }
 
 fn drawn(set: &Tables) -> String {

@@ -106,21 +106,28 @@ fn stop(subjects: &Subjects, gamma: f64) -> usize {
     subjects.stops.iter().position(|&stop| stop >= gamma).unwrap_or(subjects.stops.len() - 1)
 }
 
-/// Whether a lobe is shown in [`UNSTATED`].
+/// Whether a lobe is shown in another reflectance than its material states.
 pub(super) fn is_unstated(shown: &Shown) -> bool {
-    conductor_of(shown.entry.as_ref()).is_none()
+    shown.entry.as_ref().and_then(conductor_of).is_none()
 }
 
 /// The reflectance that a material states of a conductor.
-fn conductor_of(entry: Option<&MaterialEntry>) -> Option<FresnelEntry> {
+fn conductor_of(entry: &MaterialEntry) -> Option<FresnelEntry> {
     use FresnelEntry::{Conductor, Mirror, Schlick};
-    let stated = entry.and_then(|entry| entry.fresnel);
-    stated.filter(|fresnel| matches!(fresnel, Mirror | Schlick(_) | Conductor { .. }))
+    entry.fresnel.filter(|fresnel| matches!(fresnel, Mirror | Schlick(_) | Conductor { .. }))
 }
 
-/// The reflectance of a material as the sphere has it.
-fn fresnel(entry: Option<&MaterialEntry>) -> FresnelEntry {
-    conductor_of(entry).unwrap_or_else(|| UNSTATED.into())
+/// The metal that a name mentions: "brushed aluminium".
+pub(super) fn metal_of(name: &str) -> Option<Metal> {
+    let name = name.to_lowercase();
+    name.split(|c: char| !c.is_alphabetic()).find_map(|word| word.parse().ok())
+}
+
+/// The reflectance of a material as the sphere has it: its own, that of the metal in its name, or
+/// [`UNSTATED`].
+fn fresnel(shown: &Shown) -> FresnelEntry {
+    let own = shown.entry.as_ref().and_then(conductor_of);
+    own.unwrap_or_else(|| metal_of(&shown.name).unwrap_or(UNSTATED).into())
 }
 
 fn conductor(fresnel: FresnelEntry) -> ConductorFresnel {
@@ -154,7 +161,7 @@ pub(super) fn look(subjects: &Subjects, shown: &Shown) -> Look {
         gamma,
         drawn: drawn(subjects, gamma),
         sigma: shown.sigma.map(|sigma| sigma.clamp(SIGMA[0], SIGMA[1])),
-        fresnel: conductor(fresnel(shown.entry.as_ref())),
+        fresnel: conductor(fresnel(shown)),
         compensated: true,
     }
 }
@@ -226,7 +233,7 @@ impl Data {
             Metal::ALL.map(|metal| Reflectance::new(metal.name(), metal.into())).into();
         reflectances.push(Reflectance::new("mirror", FresnelEntry::Mirror));
         let material = |shown: &Shown| {
-            let own = Reflectance::new(&shown.name, fresnel(shown.entry.as_ref()));
+            let own = Reflectance::new(&shown.name, fresnel(shown));
             let known = reflectances.iter().position(|other| own.is_same(other));
             let reflectance = known.unwrap_or_else(|| {
                 reflectances.push(own);

@@ -212,7 +212,10 @@ fn differences(subjects: &Subjects) -> Markup {
             "Masking is height-correlated"
             @if any(&is_other) { ", also of materials that state another" }
             ". "
-            @if any(&is_unstated) { "What states no conductor is shown in " (UNSTATED.name()) ". " }
+            @if any(&is_unstated) {
+                "What states no conductor is shown in the metal of its name, or in "
+                (UNSTATED.name()) ". "
+            }
             @if any(&is_beyond) { "σ is kept within " (SIGMA[0]) " and " (SIGMA[1]) "." }
         }
     }

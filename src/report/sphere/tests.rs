@@ -7,11 +7,11 @@ use base64::engine::general_purpose::STANDARD;
 use flate2::read::DeflateDecoder;
 use glam::Vec3;
 use half::f16;
-use microfacet_sampler::{Masking, Tables};
+use microfacet_sampler::{Masking, Metal, Tables};
 use serde_json::Value;
 
 use super::super::subjects::Subjects;
-use super::data::{Data, SIGMA, axes};
+use super::data::{Data, SIGMA, axes, metal_of};
 use crate::export::Shape;
 use crate::export::texture::{TexelAxis, place};
 
@@ -107,3 +107,16 @@ const ALBEDO: f64 = 1.0 / 255.0;
 /// The cosine of the views that a pixel of the sphere's edge may have; below it the albedo of a
 /// smooth lobe falls within a texel.
 const LEAST: f64 = 0.02;
+
+#[test]
+fn a_name_mentions_a_metal_by_a_whole_word() {
+    for (name, metal) in [
+        ("Brushed Aluminium", Some(Metal::Aluminium)),
+        ("aluminum_01", Some(Metal::Aluminium)),
+        ("copper/gold", Some(Metal::Copper)),
+        ("golden", None),
+        ("", None),
+    ] {
+        assert_eq!(metal_of(name), metal, "{name}");
+    }
+}
