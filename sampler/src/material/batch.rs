@@ -255,6 +255,8 @@ fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
     }
     // A view taken at the horizon is shorter than 1, and may be almost nothing.
     let length2 = vx * vx + vy * vy + vz * vz;
+    // Nothing is behind a view whose length is out of range.
+    let hidden = hidden & length2.simd_le(f32::MAX);
     let back = facing / length2.fast_max(f32x4::splat(f32::MIN_POSITIVE));
     let turned = [m[0] - back * vx, m[1] - back * vy, m[2] - back * vz];
     let turned = above_horizon(turned, f32x4::ONE);

@@ -410,7 +410,7 @@ mod tests {
             let rows = lobe.slices.rows as f32;
             for i in 0..331 {
                 let at = rows * i as f32 / 330.0;
-                let table = lobe.rows_at(at);
+                let table = lobe.rows_at(at).unwrap();
                 let view = Nodes::new(f32x4::splat(at / SHARED as f32)).at(0);
                 for j in 0..=500 {
                     let x = -1.0 + j as f32 / 250.0;

@@ -12,6 +12,22 @@ use crate::error::BatchError;
 /// since a few steep normals take much of what is seen.
 pub(crate) const SMOOTH: f32 = 1e-3;
 
+/// Whether a normal faces away from the view by more than rounding does to a drawn one.
+#[inline(always)]
+pub(crate) fn is_hidden(v: Vec3, m: Vec3) -> bool {
+    v.dot(m) < -5e-7
+}
+
+/// The density of visible normals, (v·m)⁺ D(m)/A(v), from `facing` = v·m and 1/A.
+///
+/// Products are kept finite one by one: of vectors far from unit length one factor may overflow
+/// and another vanish, and 0·∞ is no number.
+#[inline(always)]
+pub(crate) fn visible_density(facing: f32, d: f32, inverse_area: f32) -> f32 {
+    let finite = |x: f32| if x < f32::MAX { x } else { f32::MAX };
+    saturated(finite(finite(facing.max(0.0)) * d) * inverse_area)
+}
+
 /// What a BSDF needs of one facet, see [`MicrofacetDistribution::facet`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Facet {

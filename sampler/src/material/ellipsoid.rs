@@ -7,7 +7,7 @@ use microfacet_common::{Masking, Skew, saturated};
 use wide::f32x4;
 
 use super::below_horizon::{ExcessShare, Numbers, SlopeBelowHorizon};
-use super::distribution::{Facet, MicrofacetDistribution, SMOOTH};
+use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, is_hidden, visible_density};
 use super::key::LobeKey;
 use super::sample::{HORIZON, above_horizon, first_three};
 use super::student_t::{Stretched, StudentT};
@@ -229,9 +229,8 @@ impl MicrofacetDistribution for Ellipsoid {
     /// below the horizon.
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
-        let facing = v.dot(m).max(0.0);
         let w = self.to_unit(v);
-        saturated(facing * self.d(m) * self.inverse_area(w, &self.lobe.stretch(w)))
+        visible_density(v.dot(m), self.d(m), self.inverse_area(w, &self.lobe.stretch(w)))
     }
 
     /// The weight f·cos θ_l/pdf of a light reflected off a [sampled](Self::sample_visible_normal)
@@ -266,11 +265,18 @@ impl MicrofacetDistribution for Ellipsoid {
         if !(m.z > 0.0 && w.z >= 0.0) {
             return self.visible_normal_pdf(v, m);
         }
+        if is_hidden(v, m) {
+            return 0.0;
+        }
         let (unit, scale) = self.normal_to_unit(m);
         let length = sqrt(unit.dot(unit));
+        // Of a normal far from unit length the square is out of range.
+        if !(length > 0.0 && length <= f32::MAX) {
+            return 0.0;
+        }
         // The ratio of solid angles, scale over the length cubed.
         let stretch = scale / length / (length * length);
-        saturated(self.lobe.table_pdf(w, unit / length) * stretch)
+        saturated(self.lobe.density_of_samples(w, unit / length) * stretch)
     }
 
     fn key(&self) -> LobeKey {

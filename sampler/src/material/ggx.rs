@@ -5,11 +5,11 @@ use core::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 use microfacet_common::{Masking, Roughness, saturated};
 
-use super::distribution::{Facet, MicrofacetDistribution, SMOOTH};
+use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, visible_density};
 use super::key::LobeKey;
 use super::roughness::checked;
 use super::sample::{above_horizon, face};
-use super::student_t::SHORT;
+use super::student_t::{LONG, LONGEST, SHORT};
 use crate::elementary::turn;
 use crate::error::MaterialError;
 use crate::math::{sqrt, unit};
@@ -82,7 +82,8 @@ impl Ggx {
     fn along(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let w = self.stretch(v);
         let length = sqrt(w.dot(w));
-        let (w, length) = if length >= SHORT { (w, length) } else { (lifted(w, length), 1.0) };
+        let common = (SHORT..=LONG).contains(&length);
+        let (w, length) = if common { (w, length) } else { (lifted(w, length), 1.0) };
         // Height of the half vector first, so that it keeps its digits where the cap ends at −w.z.
         let height = (1.0 - unit(u[0])).max(LAST) * (length + w.z);
         let z = height - w.z;
@@ -115,8 +116,7 @@ impl MicrofacetDistribution for Ggx {
 
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
-        let facing = v.dot(m).max(0.0);
-        saturated(facing * self.d(m) * self.inverse_area(v))
+        visible_density(v.dot(m), self.d(m), self.inverse_area(v))
     }
 
     #[inline(always)]
@@ -145,10 +145,10 @@ impl MicrofacetDistribution for Ggx {
     }
 }
 
-/// A stretched view of unit length, since the squares of a short one would leave the range of f32;
-/// the null vector gives no direction and is taken as normal incidence.
+/// A stretched view of unit length, since the squares of a short or long one would leave the range
+/// of f32; the null vector, and one whose own square does, are taken as normal incidence.
 #[cold]
 #[inline(never)]
 fn lifted(w: Vec3, length: f32) -> Vec3 {
-    if length > 0.0 { w / length } else { Vec3::Z }
+    if length > 0.0 && length <= LONGEST { w / length } else { Vec3::Z }
 }

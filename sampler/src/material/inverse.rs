@@ -57,38 +57,49 @@ pub(super) struct Cell {
     nodes: [Node; 2],
 }
 
+/// The t of 2⁻³³, less than any random number but 0 that generators of 32 bits draw. Nearer to an
+/// end is what was drawn at 0, which stands for all numbers around it, though the density of the
+/// map may vanish there.
+const LEAST_T: f64 = 1.0 / 256.0;
+
 /// Coordinate in [0, 1] of a place, and the derivative of the value there.
 pub(super) struct Place {
     t: f64,
     dg_dt: f64,
+    /// Whether it stands for places nearer to the end.
+    pub(super) is_end: bool,
 }
 
 impl Cell {
-    /// Among the `cells + 1` ascending nodes from `first` on; `None` before the first.
+    /// Among the `cells + 1` ascending nodes from `first` on.
     #[inline(always)]
-    fn find(rows: &Rows<'_>, first: usize, cells: usize, g: f64) -> Option<Self> {
+    fn find(rows: &Rows<'_>, first: usize, cells: usize, g: f64) -> Self {
         let cell = rows.count(first, first + cells, g as f32).max(1) - 1;
         let nodes = [rows.node(first + cell), rows.node(first + cell + 1)];
-        // The halves meet at u = ½ up to the rounding of their nodes; a normal in a gap between
-        // them is a rounded sample of its edge.
-        let g = g.min(f64::from(nodes[1][0]));
-        let width = 1.0 / cells as f64;
-        (g >= f64::from(nodes[0][0])).then_some(Self { cell, width, g, nodes })
+        // A sampled g may have been rounded across a node, into the cell beside its own; the halves
+        // meet at u = ½ up to the rounding of their nodes; and at the first node lies the
+        // silhouette, which rounding crosses. Outside its cell, g is a rounded sample of the
+        // nearer end.
+        let g = g.max(f64::from(nodes[0][0])).min(f64::from(nodes[1][0]));
+        Self { cell, width: 1.0 / cells as f64, g, nodes }
     }
 
     /// The place of the value, to 1e-11.
     #[inline(always)]
     pub(super) fn place(&self) -> Place {
         let cubic = Cubic::new(self.nodes[0], self.nodes[1]);
-        let w = cubic.solve(self.g);
-        Place { t: (self.cell as f64 + w) * self.width, dg_dt: cubic.derivative(w) / self.width }
+        let t = (self.cell as f64 + cubic.solve(self.g)) * self.width;
+        let is_end = !(t > LEAST_T);
+        let t = if is_end { LEAST_T } else { t };
+        let w = (t / self.width - self.cell as f64).min(1.0);
+        Place { t, dg_dt: cubic.derivative(w) / self.width, is_end }
     }
 }
 
 impl Place {
-    /// du/dg.
+    /// du/dg; ∞ where many random numbers have one slope.
     pub(super) fn density(&self) -> f64 {
-        if self.dg_dt > 0.0 { MirroredRoot::rate(self.t) / self.dg_dt } else { 0.0 }
+        MirroredRoot::rate(self.t) / self.dg_dt.max(0.0)
     }
 }
 
@@ -99,22 +110,22 @@ impl StudentT {
         self.slices.view.of_view(view.rho, view.z) * self.slices.rows as f32
     }
 
-    /// The two rows at a view's coordinate, interpolated as the sampler does.
+    /// The two rows at a view's coordinate, interpolated as the sampler does; `None` where it is
+    /// NaN.
     #[inline(always)]
-    pub(super) fn rows_at(&self, coordinate: f32) -> Rows<'_> {
+    pub(super) fn rows_at(&self, coordinate: f32) -> Option<Rows<'_>> {
         let slices = &self.slices;
         let (row, between) = split(f32x4::splat(coordinate));
         let (row, between) = (row.to_array()[0] as u32 as usize, between.to_array()[0]);
         let stride = 2 * (slices.half_cells + 1);
-        let [low, high] =
-            [row * stride, (row + 1) * stride].map(|start| &slices.slope[start..start + stride]);
-        Rows { low, high, between }
+        let (low, high) = slices.slope.get(row * stride..)?.get(..2 * stride)?.split_at(stride);
+        Some(Rows { low, high, between })
     }
 
     /// The half of the row that holds the in-plane slope of half tangent h, and the cell in it;
     /// `ends` are 1 + h and 1 − h.
     #[inline(always)]
-    pub(super) fn cell_along(&self, rows: &Rows<'_>, ends: [f64; 2]) -> (usize, Option<Cell>) {
+    pub(super) fn cell_along(&self, rows: &Rows<'_>, ends: [f64; 2]) -> (usize, Cell) {
         let cells = self.slices.half_cells;
         let low = ends[0];
         // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
@@ -127,7 +138,7 @@ impl StudentT {
 
     /// The cell of the slopes across that holds the distance g from their end.
     #[inline(always)]
-    pub(super) fn cell_across(&self, g: f64) -> Option<Cell> {
+    pub(super) fn cell_across(&self, g: f64) -> Cell {
         let nodes = &self.slices.across;
         Cell::find(&Rows::one(nodes), 0, nodes.len() - 1, g)
     }
@@ -135,7 +146,7 @@ impl StudentT {
     /// The random number at which a row of the table has the in-plane slope x : z.
     pub(super) fn number_along(&self, rows: &Rows<'_>, x: f64, z: f64) -> f64 {
         let (half, cell) = self.cell_along(rows, ends(x, z));
-        let u = cell.map_or(0.0, |cell| MirroredRoot::number(cell.place().t));
+        let u = MirroredRoot::number(cell.place().t);
         // The other half ascends from u = 1.
         if half == 0 { u } else { 1.0 - u }
     }
@@ -159,7 +170,7 @@ mod tests {
             let lobe = tables.student_t(1.0, gamma).unwrap();
             for z in [0.0, 1e-3, 0.1, 0.4, 0.7, 0.95, 0.9999] {
                 let view = lobe.stretch(Vec3::new(libm::sqrtf(1.0 - z * z), 0.0, z));
-                let rows = lobe.rows_at(lobe.coordinate(&view));
+                let rows = lobe.rows_at(lobe.coordinate(&view)).unwrap();
                 for i in 1..400 {
                     let u = i as f32 / 400.0;
                     let slope = lobe.sample_slope(&view, u);

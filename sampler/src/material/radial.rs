@@ -5,9 +5,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use glam::Vec3;
-use microfacet_common::saturated;
 
-use super::distribution::{MicrofacetDistribution, SMOOTH};
+use super::distribution::{MicrofacetDistribution, SMOOTH, visible_density};
 use super::key::LobeKey;
 use super::roughness::checked;
 use super::slices::{Slice, Slices};
@@ -162,8 +161,7 @@ impl MicrofacetDistribution for Radial {
     /// Density of visible normals (v·m)⁺ D(m) G1(v)/(v·n) per steradian, with the tables' D and G1.
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
-        let facing = v.dot(m).max(0.0);
-        saturated(facing * self.d(m) * self.plane.inverse_area(&self.plane.stretch(v)))
+        visible_density(v.dot(m), self.d(m), self.plane.inverse_area(&self.plane.stretch(v)))
     }
 
     fn key(&self) -> LobeKey {

@@ -116,7 +116,7 @@ pub(crate) fn first_three(m: f32x4) -> Vec3 {
 #[inline(always)]
 pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
     let facing = v.dot(m);
-    if facing < 0.0 {
+    if facing < 0.0 && facing.is_finite() {
         let (a, b) = turned_back(m, v, facing);
         raised(a * m + b * v)
     } else {
@@ -132,8 +132,10 @@ pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
 #[cold]
 #[inline(never)]
 fn turned_back(m: Vec3, v: Vec3, facing: f32) -> (f32, f32) {
-    // A view taken at the horizon is shorter than 1, and may be almost nothing.
-    let part = facing / v.dot(v).max(f32::MIN_POSITIVE);
+    // A view taken at the horizon is shorter than 1, and may be almost nothing; of one whose length
+    // is out of range nothing is taken.
+    let length2 = v.dot(v).max(f32::MIN_POSITIVE);
+    let part = if length2 <= f32::MAX { facing / length2 } else { return (1.0, 0.0) };
     let turned = m - part * v;
     let inverse = 1.0 / sqrt(turned.dot(turned));
     (inverse, -part * inverse)

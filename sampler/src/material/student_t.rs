@@ -8,7 +8,7 @@ use microfacet_common::{Masking, Roughness, saturated};
 use wide::f32x4;
 
 use super::batch::same_lengths;
-use super::distribution::{Facet, MicrofacetDistribution, SMOOTH};
+use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, is_hidden, visible_density};
 use super::key::LobeKey;
 use super::normals::Normals;
 use super::roughness::checked;
@@ -63,6 +63,13 @@ pub(crate) const NORMAL_INCIDENCE: f32 = 1e-18;
 /// For shorter horizontal parts the azimuth is scaled to unit length: otherwise the square of a
 /// normal carrying it would leave the range of f32.
 pub(crate) const SHORT: f32 = 1e-6;
+
+/// The azimuth of longer ones is scaled for the same reason. No direction of unit length has one,
+/// since σ ≤ 10⁶; through the matrix of a tilted lobe, whose entries are at most 10¹⁸, it may.
+pub(crate) const LONG: f32 = 1e9;
+
+/// The squares of longer parts leave the range of f32.
+pub(crate) const LONGEST: f32 = 1e19;
 
 /// Less than the area of any direction; its reciprocal times the number of cells stays finite.
 pub(crate) const LEAST_AREA: f32 = 1e-30;
@@ -135,15 +142,16 @@ impl StudentT {
     pub(crate) fn stretch(&self, w: Vec3) -> Stretched {
         let (x, y) = (self.sigma_x * w.x, self.sigma_y * w.y);
         let rho = sqrt(x * x + y * y);
-        let z = w.z.max(0.0);
-        if rho >= SHORT {
+        let z = w.z.max(0.0).min(LONGEST);
+        if (SHORT..=LONG).contains(&rho) {
             Stretched { x, y, frame: rho, rho, z }
-        } else if rho >= NORMAL_INCIDENCE {
+        } else if (NORMAL_INCIDENCE..=LONGEST).contains(&rho) {
             Stretched { x: x / rho, y: y / rho, frame: 1.0, rho, z }
         } else {
-            // Normal incidence, straight down, or NaN: without z > 0 it is taken at the horizon, as
-            // every view below it, with an arbitrary azimuth.
-            Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: if z > 0.0 { 0.0 } else { 1.0 }, z }
+            // Normal incidence, straight down, NaN or too long: without z > 0 it is taken at the
+            // horizon, as every view below it, with an arbitrary azimuth.
+            let (rho, z) = if z > 0.0 { (0.0, z.max(NORMAL_INCIDENCE)) } else { (1.0, 0.0) };
+            Stretched { x: 1.0, y: 0.0, frame: 1.0, rho, z }
         }
     }
 
@@ -279,8 +287,7 @@ impl MicrofacetDistribution for StudentT {
 
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
-        let facing = v.dot(m).max(0.0);
-        saturated(facing * self.d(m) * self.inverse_area(&self.stretch(v)))
+        visible_density(v.dot(m), self.d(m), self.inverse_area(&self.stretch(v)))
     }
 
     #[inline(always)]
@@ -298,10 +305,11 @@ impl MicrofacetDistribution for StudentT {
 
     /// The density with which the sampler draws `m`, the Jacobian of its own map.
     ///
-    /// An estimator that divides by it is unbiased at any resolution of the tables. It integrates
-    /// to 1 over all m and costs two searches and a few square roots: use it where bias matters.
+    /// An estimator that divides by it is unbiased at any resolution of the tables. It is above 0
+    /// at every normal that is drawn for a view above the horizon, integrates to 1 over all m, and
+    /// costs two searches and a few square roots: use it where bias matters.
     fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
-        self.density_of_samples(v, m)
+        if is_hidden(v, m) { 0.0 } else { self.density_of_samples(v, m) }
     }
 
     fn key(&self) -> LobeKey {

@@ -9,6 +9,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 use wide::f32x4;
 
+use super::distribution::MicrofacetDistribution;
 use super::student_t::{Stretched, StudentT};
 use crate::axis::half_tangent::{ends_and_rate, slope_at};
 use crate::elementary::{exp2, log2};
@@ -23,18 +24,21 @@ struct UnitSlopes {
 
 impl StudentT {
     /// Costs two searches and a few square roots; see
-    /// [`MicrofacetDistribution::table_pdf`](crate::MicrofacetDistribution::table_pdf).
+    /// [`MicrofacetDistribution::table_pdf`](crate::MicrofacetDistribution::table_pdf). For a normal
+    /// that is not [hidden](super::distribution::is_hidden): this does not ask, since rounding may
+    /// put the slope of a drawn one behind the silhouette.
     pub(crate) fn density_of_samples(&self, v: Vec3, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
             return 0.0;
         }
         let view = self.stretch(v);
+        let at = self.coordinate(&view);
+        let Some(rows) = self.rows_at(at) else { return 0.0 };
         let slopes = self.unit_slopes(&view, m);
         let UnitSlopes { x, z, y } = slopes;
         let ([low, high], rate) = ends_and_rate(x, z);
-        let at = self.coordinate(&view);
-        let cell = self.cell_along(&self.rows_at(at), [low, high]).1;
-        let mut along = cell.map_or(0.0, |cell| cell.place().density()) * rate;
+        let place = self.cell_along(&rows, [low, high]).1.place();
+        let mut along = place.density() * rate;
         if self.slices.peeled {
             let heavy = f64::from(unit(self.slices.heavy.share(at)));
             along = (1.0 - heavy) * along + heavy * self.heavy_density(&slopes);
@@ -42,19 +46,26 @@ impl StudentT {
         let s = f64::from(self.s);
         let norm = sqrt64(z * z + s * x * x);
         let ([_, g], rate) = ends_and_rate(y.abs(), norm);
-        let across = self.cell_across(g).map_or(0.0, |cell| cell.place().density()) * rate;
+        let place_across = self.cell_across(g).place();
+        let across = place_across.density() * rate;
         // p(x, y) = p(x) p(t)/√(1 + s x²); `along` is per unit of x/z. Slopes in the tangent frame
         // scale by σ, and dm = cos³θ per slope area.
         let cos = f64::from(m.z);
         let area = norm * f64::from(self.sigma_x) * f64::from(self.sigma_y) * (cos * cos * cos);
         let density = along * across * z / area;
-        if density.is_finite() { (density as f32).min(f32::MAX) } else { 0.0 }
+        let density = if density > 0.0 { density.min(f64::from(f32::MAX)) as f32 } else { 0.0 };
+        if place.is_end || place_across.is_end {
+            // Towards the horizon the analytic density may grow without limit, and a quotient of
+            // both would.
+            return density.max(self.visible_normal_pdf(v, m));
+        }
+        density
     }
 
     /// See [`internals::table_joints`](crate::internals::table_joints).
     pub(crate) fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
         let view = self.stretch(v);
-        let rows = self.rows_at(self.coordinate(&view));
+        let Some(rows) = self.rows_at(self.coordinate(&view)) else { return Default::default() };
         let half = self.slices.half_cells + 1;
         let slope = |g: f64, sign: f64| {
             let [x, z] = slope_at(g);

@@ -4,11 +4,12 @@
 use glam::Vec3;
 use wide::f32x4;
 
-use super::student_t::{NORMAL_INCIDENCE, SHORT, StudentT};
+use super::student_t::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, StudentT};
 use crate::axis::HalfTangent;
 use crate::lanes::swap_pairs;
 
-/// 2⁴⁰: a short horizontal part times this has squares well within the range of f32.
+/// 2⁴⁰: a short horizontal part times this, or a long one over it, has squares well within the range
+/// of f32.
 const LIFT: f32 = 1_099_511_627_776.0;
 
 /// A stretched view in lanes: x and y in the first two of `xy`, the others in all lanes.
@@ -24,13 +25,14 @@ pub(crate) struct View {
     pub(crate) silhouette: f32x4,
 }
 
-/// The horizontal part of a view where that is short, its frame, ρ and √(ρ² + z²), see [`Views`].
+/// The horizontal part of a view where that is short or too long, its frame, ρ, z and √(ρ² + z²),
+/// see [`Views`].
 #[cold]
 #[inline(never)]
-fn upright(x: f32, y: f32, z: f32) -> [f32; 5] {
+fn upright(x: f32, y: f32, z: f32) -> [f32; 6] {
     let [x, y, z] = [x, y, z].map(f32x4::splat);
-    let Views { x, y, frame, rho, length, .. } = Views::new(x, y, z);
-    [x, y, frame, rho, length].map(|x| x.to_array()[0])
+    let Views { x, y, frame, rho, z, length } = Views::new(x, y, z);
+    [x, y, frame, rho, z, length].map(|x| x.to_array()[0])
 }
 
 impl StudentT {
@@ -45,16 +47,17 @@ impl StudentT {
     #[inline(always)]
     pub(crate) fn stretched<const HEAVY: bool>(&self, xy: f32x4, z: f32) -> View {
         let (slices, fast) = (&self.slices, &self.slices.fast);
-        let z = f32x4::splat(if z > 0.0 { z } else { 0.0 });
+        let mut z = f32x4::splat(if z > 0.0 { z } else { 0.0 });
         let squares = xy * xy;
         let rho2 = squares + swap_pairs(squares);
-        let (mut xy, mut rho, mut length) = (xy, rho2.sqrt(), (rho2 + z * z).sqrt());
+        let length2 = rho2 + z * z;
+        let (mut xy, mut rho, mut length) = (xy, rho2.sqrt(), length2.sqrt());
         let mut frame = rho;
-        if !(rho.to_array()[0] >= SHORT) {
+        if !(rho.to_array()[0] >= SHORT && length2.to_array()[0] <= LONG * LONG) {
             let [x, y, ..] = xy.to_array();
             let [x, y, others @ ..] = upright(x, y, z.to_array()[0]);
             xy = f32x4::new([x, y, 0.0, 0.0]);
-            [frame, rho, length] = others.map(f32x4::splat);
+            [frame, rho, z, length] = others.map(f32x4::splat);
         }
         let axis = HalfTangent { crowded: HEAVY && slices.view.crowded };
         let [at, silhouette] = axis.of_views(rho, z, length, fast.rows);
@@ -78,22 +81,28 @@ impl Views {
     pub(crate) fn new(x: f32x4, y: f32x4, z: f32x4) -> Self {
         let z = z & z.simd_gt(0.0);
         let rho2 = x * x + y * y;
+        let length2 = rho2 + z * z;
         let rho = rho2.sqrt();
-        let views = Self { x, y, frame: rho, rho, z, length: (rho2 + z * z).sqrt() };
-        if rho.simd_ge(SHORT).all() { views } else { views.of_any_length() }
+        let views = Self { x, y, frame: rho, rho, z, length: length2.sqrt() };
+        let common = rho.simd_ge(SHORT) & length2.simd_le(LONG * LONG);
+        if common.all() { views } else { views.of_any_length() }
     }
 
-    /// With a frame whose squares stay in range where the horizontal part is short.
+    /// With a frame whose squares stay in range where the horizontal part is short or long.
     fn of_any_length(self) -> Self {
-        let Self { x, y, rho, z, .. } = self;
-        let lift = rho.simd_ge(SHORT).select(f32x4::ONE, f32x4::splat(LIFT));
-        // Normal incidence, straight down, or NaN: without z > 0 the view is taken at the horizon,
-        // as every view below it, with an arbitrary azimuth.
-        let tilted = rho.simd_ge(NORMAL_INCIDENCE);
-        let upright = z.simd_gt(0.0).select(f32x4::ZERO, f32x4::ONE);
-        let rho = tilted.select(rho, upright);
+        let Self { x, y, rho, .. } = self;
+        let z = self.z.fast_min(f32x4::splat(LONGEST));
+        let sunk = rho.simd_gt(LONG).select(f32x4::splat(1.0 / LIFT), f32x4::ONE);
+        let lift = rho.simd_ge(SHORT).select(sunk, f32x4::splat(LIFT));
+        // Normal incidence, straight down, NaN or too long: without z > 0 the view is taken at the
+        // horizon, as every view below it, with an arbitrary azimuth.
+        let tilted = rho.simd_ge(NORMAL_INCIDENCE) & rho.simd_le(LONGEST);
+        let above = z.simd_gt(0.0);
+        let rho = tilted.select(rho, above.select(f32x4::ZERO, f32x4::ONE));
+        let z = tilted.select(z, above & z.fast_max(f32x4::splat(NORMAL_INCIDENCE)));
         // Not a bit of the other views changes.
-        let length = tilted.select(self.length, (rho * rho + z * z).sqrt());
+        let common = tilted & self.length.simd_le(f32::MAX);
+        let length = common.select(self.length, (rho * rho + z * z).sqrt());
         Self {
             x: tilted.select(x * lift, f32x4::ONE),
             y: tilted.select(y * lift, f32x4::ZERO),

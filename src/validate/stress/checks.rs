@@ -211,6 +211,8 @@ impl Checker<'_> {
         self.require(sound(d), "d negative, NaN or inf", d.into(), at);
         self.require(sound(pdf), "visible_normal_pdf negative, NaN or inf", pdf.into(), at);
         self.require(sound(table), "table_pdf negative, NaN or inf", table.into(), at);
+        let divides = table > 0.0 || pdf == 0.0 || v.z <= 0.0;
+        self.require(divides, "table_pdf 0 at a drawn normal", pdf.into(), at);
         let truth =
             [self.exact.d(m.as_dvec3()), self.exact.visible_normal_pdf(v.as_dvec3(), m.as_dvec3())];
         for (i, (got, want)) in [d, pdf].into_iter().zip(truth).enumerate() {
