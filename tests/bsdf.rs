@@ -75,7 +75,38 @@ fn glass() -> (Lobe, Dielectric<Lobe>) {
 /// p of a BSDF's samples against a density.
 fn p(bsdf: &impl Bsdf<3>, v: Vec3, density: impl Fn(Vec3) -> f32) -> f64 {
     let draw = |choice, u| bsdf.sample(v, choice, u, Transport::Radiance).map(|sample| sample.l);
-    test(v, 200_000, 5, None, &[], draw, density).p
+    test(v, 200_000, 5, Vec::new(), &[], draw, density).p
+}
+
+/// What rough glass of γ < 2 draws, but for what is only sampled, is what `pdf` alone leads to
+/// expect. A renderer that weights by densities tests the same.
+#[test]
+fn rough_glass_of_long_tails_has_its_density() {
+    let tables = Tables::embedded();
+    // p of a view, and what it is if deltas are counted with all others.
+    let p = |gamma: f64, (eta, sigma): (f64, [f32; 2]), theta: f64, deltas: bool| {
+        let one = Specimen { gamma, sigma, ..specimen(Surface::Dielectric(eta)) };
+        let glass = one.bsdf(&tables).unwrap();
+        let one = Configuration { specimen: one, theta, phi: 0.4, seed: 3 };
+        let v = one.view();
+        let draw = |choice, u| {
+            let sample = glass.sample(v, choice, u, Transport::Radiance)?;
+            (deltas || !sample.delta).then_some(sample.l)
+        };
+        test(v, 200_000, 3, one.edges(), &[], draw, |l| Bsdf::<3>::pdf(&glass, v, l)).p
+    };
+    let surfaces = [(1.5, [0.1, 0.1]), (1.5, [0.5, 0.2]), (1.0 / 1.5, [0.3, 0.3])];
+    let views = [0.3, 1.0, 2.2];
+    let mut all = Vec::new();
+    for gamma in [1.55, 1.7] {
+        for surface in surfaces {
+            all.extend(views.map(|theta| p(gamma, surface, theta, false)));
+        }
+    }
+    let worst = all.iter().copied().fold(1.0, f64::min);
+    assert!(worst > LEVEL / all.len() as f64, "{all:?}");
+    // The cells resolve what is only sampled.
+    assert!(p(1.55, surfaces[0], 1.0, true) < 1e-10);
 }
 
 /// Each of these is a mistake that a density may have.

@@ -23,6 +23,12 @@ pub fn tables_of_shape(tables: &Tables, gamma: f64) -> Result<[&Table; 3], Mater
     slices::tables_of_shape(tables.tables(), gamma)
 }
 
+/// The cosine m·n below which a facet that refracts is only sampled, where D has a pole at the
+/// horizon (see [`Dielectric`](crate::Dielectric)).
+pub fn steep_cosine(eta: f32) -> f32 {
+    crate::bsdf::steep_cosine(eta)
+}
+
 /// Where the tabulated density has its joints for a view: unit slopes x in the plane of incidence,
 /// ascending, and t ≥ 0 across it.
 ///

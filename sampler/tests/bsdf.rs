@@ -437,6 +437,48 @@ fn what_tables_lack_is_said_with_the_lines_that_add_it() {
     assert!(matches!(why, Err(BindError::NoAlbedo { stand_in: false, .. })));
 }
 
+/// A renderer that evaluates the density of a direction that was sampled finds it again: what
+/// single precision cannot tell from v and l is flagged as only sampled, and keeps its weight.
+#[test]
+fn densities_of_refracted_light_are_found_again() {
+    let tables = Tables::embedded();
+    let mut random = StdRng::seed_from_u64(11);
+    for gamma in [1.501, 1.55, 1.65, 1.8, 1.99, 2.0, 3.0] {
+        for (sigma, eta) in [([0.3, 0.3], 1.5), ([0.6, 0.3], 1.0 / 1.5), ([0.1, 0.1], 3.0)] {
+            let lobe = tables.student_t(sigma, gamma).unwrap();
+            let glass = Dielectric::new(lobe, eta).unwrap().with_channels::<1>();
+            let mut only_sampled = 0.0;
+            for _ in 0..20_000 {
+                let v = any_direction(&mut random);
+                let (choice, u) = (random.random(), [random.random(), random.random()]);
+                let Some(sample) = glass.sample(v, choice, u, Transport::Importance) else {
+                    continue;
+                };
+                let ([f], pdf) = glass.eval_pdf(v, sample.l, Transport::Importance);
+                let what = format!("gamma {gamma}, eta {eta}, v {v}, u {u:?}: {sample:?}");
+                if sample.delta {
+                    assert_eq!((f, pdf, sample.pdf), (0.0, 0.0, 0.0), "{what}");
+                    assert_eq!(sample.event, Event::Transmission, "{what}");
+                    assert!(sample.weight[0] > 0.0 && sample.weight[0] <= 1.0, "{what}");
+                    only_sampled += 1.0 / 20_000.0;
+                } else if pdf < f32::MAX {
+                    let off = pdf / sample.pdf - 1.0;
+                    assert!(off.abs() < 0.02, "{what}: {off}");
+                }
+            }
+            // Nearly all of the light at 1.501, and none from 2 on.
+            let [least, most] = match gamma {
+                1.501 => [0.3, 1.0],
+                1.55 => [0.01, 0.2],
+                1.65 => [1e-4, 0.02],
+                1.8 => [0.0, 1e-3],
+                _ => [0.0, 0.0],
+            };
+            assert!((least..=most).contains(&only_sampled), "{gamma} {eta}: {only_sampled}");
+        }
+    }
+}
+
 #[test]
 fn names_that_the_set_does_not_have_are_refused() {
     let why = Tables::embedded().bsdf("gold", Compensation::None, StandIn::Refused).unwrap_err();

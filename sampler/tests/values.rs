@@ -159,6 +159,32 @@ fn refuses_what_it_cannot_bind() {
     assert!(tables.material("glass").unwrap_err().to_string().contains("no named materials"));
 }
 
+/// Where a texture of roughness crosses the limit of smooth surfaces, the light of one bounce jumps
+/// to all of it.
+#[test]
+fn smooth_surfaces_brighten_little_at_the_limit() {
+    let tables = Tables::embedded();
+    for gamma in [1.501, 1.52, 1.55, 1.6, 1.8, 1.9, 2.0, 2.2, 3.0, f64::INFINITY] {
+        let is_smooth =
+            |sigma: f64| tables.student_t(sigma, gamma).unwrap().is_effectively_smooth();
+        // By bisection on a logarithmic scale.
+        let (mut low, mut high) = (1e-8_f64, 1e-2_f64);
+        assert!(is_smooth(low) && !is_smooth(high), "{gamma}");
+        for _ in 0..40 {
+            let middle = (low * high).sqrt();
+            if is_smooth(middle) { low = middle } else { high = middle }
+        }
+        let integrator = model::AlbedoIntegrator::new(model::Shape::new(gamma).unwrap(), 1e-6);
+        for cos in [0.01, 0.1, 0.8] {
+            let returned = integrator.reflection(high, cos, |_| [1.0]).unwrap();
+            for form in Masking::ALL {
+                let lost = 1.0 - returned.of(form)[0];
+                assert!(lost < 6e-3, "gamma {gamma}, sigma {high:e}, cos {cos}: {lost:e}");
+            }
+        }
+    }
+}
+
 /// Slopes whose square overflows: Beckmann's D is 0 there, and not 0·∞.
 #[test]
 fn beckmann_is_zero_on_the_horizon() {

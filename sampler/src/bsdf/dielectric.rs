@@ -30,6 +30,14 @@ use crate::tables::Tables;
 /// and then nothing happens: all light goes straight on, as a delta. Nearer to 1 than 1e-3, the
 /// facet between two directions is known to 1e-8/|η − 1| only, so that `eval` and `pdf` of a narrow
 /// lobe err by some per cent; samples do not.
+///
+/// For γ < 2 many of the facets that a view sees are steeper than single precision tells from a
+/// view and a light: all that they transmit goes within rounding of the cone l·n = −(v·n)/η, where
+/// the density has a pole. These facets, of m·n below 3e-6 (1 + η)/|1 − η|, are *only sampled*:
+/// their light is flagged as a delta and has its whole weight, and f and density are those of the
+/// other facets alone. So a renderer that weights by densities stays unbiased, as beside a mirror.
+/// Of light transmitted at 50° into glass (η = 1.5, σ = 0.3) that is 12 % at γ = 1.55, 0.65 % at
+/// 1.65, 0.02 % at 1.8, and 94 % at 1.501, as the example `steep_facets` prints.
 #[derive(Clone, Debug)]
 pub struct Dielectric<L, const N: usize = 3> {
     lobe: L,
@@ -38,6 +46,8 @@ pub struct Dielectric<L, const N: usize = 3> {
     eta: f32,
     masking: Masking,
     smooth: bool,
+    /// Whether D has a pole at the horizon, and facets next to it are only sampled.
+    has_pole: bool,
     /// Where light is given back.
     returned: Option<Box<Returned>>,
 }
@@ -75,7 +85,9 @@ impl<L: MicrofacetDistribution> Dielectric<L> {
     pub fn new(lobe: L, eta: f64) -> Result<Self, BindError> {
         let (index, eta) = (eta, checked(eta)?);
         let smooth = lobe.is_effectively_smooth() || eta == 1.0;
-        Ok(Self { lobe, index, eta, masking: Masking::default(), smooth, returned: None })
+        let has_pole = lobe.key().has_pole();
+        let masking = Masking::default();
+        Ok(Self { lobe, index, eta, masking, smooth, has_pole, returned: None })
     }
 }
 
@@ -83,8 +95,8 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
     /// The same in another number of channels.
     #[must_use]
     pub fn with_channels<const M: usize>(self) -> Dielectric<L, M> {
-        let Self { lobe, index, eta, masking, smooth, returned } = self;
-        Dielectric { lobe, index, eta, masking, smooth, returned }
+        let Self { lobe, index, eta, masking, smooth, has_pole, returned } = self;
+        Dielectric { lobe, index, eta, masking, smooth, has_pole, returned }
     }
 
     /// The same with another form of masking and shadowing, and without compensation, which depends
@@ -161,8 +173,16 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
 
     /// The part of facets at a light that reflects or refracts.
     #[inline(always)]
-    fn facets(&self, seen: &Seen, l: Vec3, sender: Sender, factor: f32, scale: f32) -> Part<N> {
+    fn facets(
+        &self,
+        seen: &Seen,
+        account: Account<'_>,
+        l: Vec3,
+        sender: Sender,
+        scale: f32,
+    ) -> Part<N> {
         let v = seen.v;
+        let factor = account.map_or(1.0, |(returned, shares)| returned.energy.factor(&shares));
         let (m, refraction) = sender;
         match refraction {
             None => {
@@ -190,9 +210,8 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         sender: Option<Sender>,
         scale: f32,
     ) -> Mixture<N> {
-        let factor = account.map_or(1.0, |(returned, shares)| returned.energy.factor(&shares));
         let facets =
-            sender.map_or(Part::NONE, |sender| self.facets(seen, l, sender, factor, scale));
+            sender.map_or(Part::NONE, |sender| self.facets(seen, account, l, sender, scale));
         let Some((Returned { energy, broad }, shares)) = account else {
             return Mixture { p: 1.0, facets, broad: Part::NONE };
         };
@@ -211,14 +230,23 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         Mixture { p: 1.0 - lost, facets, broad }
     }
 
-    /// The facet between a view from above and a light; `None` if there is none.
+    /// The facet between a view from above and a light; `None` if there is none, or none but one
+    /// that is only sampled.
     #[inline(always)]
     fn between(&self, seen: &Seen, l: Vec3) -> Option<Sender> {
         if l.z > 0.0 {
-            Some(((seen.v + l).normalize_or_zero(), None))
-        } else {
-            seen.face.facet(seen.v, l).map(|facet| (facet.m, Some(facet)))
+            return Some(((seen.v + l).normalize_or_zero(), None));
         }
+        let facet = seen.face.facet(seen.v, l)?;
+        let is_known = !self.has_pole || facet.m.z >= seen.face.steep();
+        is_known.then_some((facet.m, Some(facet)))
+    }
+
+    /// Whether a drawn facet may be one that is only sampled. Those far from it are not looked for
+    /// between the view and the light, which differs by rounding alone.
+    #[inline(always)]
+    fn may_be_steep(&self, seen: &Seen, (m, refraction): &Sender) -> bool {
+        self.has_pole && refraction.is_some() && m.z < 2.0 * seen.face.steep()
     }
 
     /// Light drawn by a facet of normal m.
@@ -279,7 +307,18 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Dielectric<L, N> {
             ((_, rest), _) => {
                 let m = self.lobe.sample_visible_normal(seen.v, u);
                 let (l, sender) = Self::drawn(&seen, rest, m)?;
-                (l, Some(sender))
+                if self.may_be_steep(&seen, &sender) {
+                    // As evaluation will find it.
+                    let found = self.between(&seen, l);
+                    if found.is_none() {
+                        let facets = self.facets(&seen, account, l, sender, scale);
+                        let weight = facets.weight.map(|weight| weight / (1.0 - lost));
+                        return Some(sample(l, weight, 0.0, true));
+                    }
+                    (l, found)
+                } else {
+                    (l, Some(sender))
+                }
             }
         };
         let mixture = self.mixture(&seen, account, l, sender, scale);

@@ -20,6 +20,21 @@ pub(super) fn checked(eta: f64) -> Result<f32, BindError> {
     Ok(if (eta - 1.0).abs() < NOTHING { 1.0 } else { eta as f32 })
 }
 
+/// What single precision leaves unknown of a facet's cosine m·n, found from a view and a light as
+/// (v + η l)·n/|v + η l|, is to be a hundredth of it. The sum is rounded to 2⁻²⁵ (1 + η), and it is
+/// at least |1 − η| long.
+const STEEP: f32 = 100.0 / (1 << 25) as f32;
+
+/// At most this cosine is steep, however near η is to 1.
+const STEEPEST: f32 = 0.01;
+
+/// The cosine m·n below which a facet that refracts is not known from the view and the light well
+/// enough for a D with a pole at the horizon; the same for η and 1/η.
+#[inline(always)]
+pub(crate) fn steep_cosine(eta: f32) -> f32 {
+    (STEEP * (1.0 + eta) / (1.0 - eta).abs()).min(STEEPEST)
+}
+
 /// An interface seen from one side of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interface {
@@ -49,6 +64,12 @@ impl Interface {
     #[inline(always)]
     pub(super) fn eta(self) -> f32 {
         self.eta
+    }
+
+    /// See [`steep_cosine`].
+    #[inline(always)]
+    pub(super) fn steep(self) -> f32 {
+        steep_cosine(self.eta)
     }
 
     /// The factor on transmitted light, (n_v/n_l)² of radiance and 1 of importance.

@@ -29,6 +29,7 @@ pub use compensation::{Compensation, f82_tint_average, fresnel_average, schlick_
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use error::BindError;
+pub(crate) use interface::steep_cosine;
 pub use metal::{Metal, UnknownMetal};
 pub use plastic::Plastic;
 pub use reflectance::ConductorFresnel;
@@ -67,7 +68,9 @@ pub struct BsdfSample<const N: usize = 3> {
     pub pdf: f32,
     /// Whether light was reflected or transmitted.
     pub event: Event,
-    /// Whether the event is a delta: a smooth surface sends all light in one direction.
+    /// Whether the event is a delta, whose light no evaluation finds: a smooth surface sends all
+    /// light in one direction, and what facets next to the horizon refract is [only
+    /// sampled](Dielectric) for γ < 2.
     pub delta: bool,
     /// n_l/n_v, the index of refraction on the side of `l` over that on the side of the view: 1 for
     /// reflection. Russian roulette on radiance undoes the weight's 1/η² by it.
@@ -95,7 +98,8 @@ impl<const N: usize> BsdfSample<N> {
 ///   is seen.
 /// - f excludes the cosine; the weight of a sample is f |cos θ_l|/pdf, formed as that and not as a
 ///   quotient, so that it stays finite where f and the density do not.
-/// - Densities are per steradian of `l`, of all that [`sample`](Self::sample) draws together.
+/// - Densities are per steradian of `l`, of all that [`sample`](Self::sample) draws together but
+///   deltas.
 /// - f obeys f(v, l) = f(l, v) for reflection; for transmission f(v, l)/n_v² = f(l, v)/n_l² of
 ///   radiance. Turquin's compensation alone breaks this.
 /// - A delta event has f = pdf = 0, and its sample says so; those of lobes that are

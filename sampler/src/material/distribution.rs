@@ -12,6 +12,14 @@ use crate::error::BatchError;
 /// since a few steep normals take much of what is seen.
 pub(crate) const SMOOTH: f32 = 1e-3;
 
+/// The masking 1 − G1 of such a surface at [`GRAZING`], at most: that of GGX with α = 1e-3. Tails
+/// that are longer take more at grazing views than their mean slope tells, and the surface would
+/// brighten there as it becomes a mirror.
+pub(crate) const SMOOTH_MASKED: f32 = 2.5e-3;
+
+/// The cosine of the view at which a smooth surface is judged.
+pub(crate) const GRAZING: f32 = 0.01;
+
 /// Whether a normal faces away from the view by more than rounding does to a drawn one.
 #[inline(always)]
 pub(crate) fn is_hidden(v: Vec3, m: Vec3) -> bool {
@@ -192,8 +200,11 @@ pub trait MicrofacetDistribution {
     }
 
     /// Whether the lobe is so narrow that a renderer should treat the surface as a mirror: its mean
-    /// absolute slope, in the rougher direction, is below 1e-3 (for GGX: α < 1e-3), and so is the
-    /// slope of its mean normal.
+    /// absolute slope, in the rougher direction, is below 1e-3 (for GGX: α < 1e-3), so is the slope
+    /// of its mean normal, and 1 − G1 is at most 2.5e-3 where cos θ = 0.01.
+    ///
+    /// A mirror returns all light, which just above this one bounce does to 6e-3 at cos θ ≥ 0.01,
+    /// whatever γ; the surface brightens by that where a texture of roughness crosses it.
     fn is_effectively_smooth(&self) -> bool;
 
     /// Bytes of table that lookups touch; 0 for closed forms.

@@ -285,8 +285,7 @@ impl MicrofacetDistribution for Ellipsoid {
 
     fn is_effectively_smooth(&self) -> bool {
         let Matrix { p, q, r, x, y } = self.matrix;
-        let spread = self.lobe.mean_slope() * p.max(q.abs()).max(r);
-        [spread, x, y].into_iter().all(|slope| slope.abs() < SMOOTH)
+        self.lobe.is_smooth(p.max(q.abs()).max(r)) && x.abs().max(y.abs()) < SMOOTH
     }
 
     fn bytes(&self) -> usize {

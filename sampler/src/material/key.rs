@@ -81,6 +81,16 @@ impl LobeKey {
         }
     }
 
+    /// Whether D grows without limit towards the horizon, as that of γ < 2 does.
+    pub(crate) fn has_pole(&self) -> bool {
+        match self {
+            Self::Round { gamma, .. }
+            | Self::Anisotropic { gamma, .. }
+            | Self::Tilted { gamma, .. } => *gamma < 2.0,
+            Self::Distribution(_) | Self::Unknown => false,
+        }
+    }
+
     /// A recipe's material of this lobe, as far as it knows it, with a reflectance.
     pub(crate) fn recipe(&self, fresnel: &str, masking: Masking) -> String {
         let lobe = match self {

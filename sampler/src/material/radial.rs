@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use super::distribution::{MicrofacetDistribution, SMOOTH, visible_density};
+use super::distribution::{MicrofacetDistribution, visible_density};
 use super::key::LobeKey;
 use super::roughness::checked;
 use super::slices::{Slice, Slices};
@@ -169,7 +169,7 @@ impl MicrofacetDistribution for Radial {
     }
 
     fn is_effectively_smooth(&self) -> bool {
-        self.sigma() * self.plane.mean_slope() < SMOOTH
+        self.plane.is_smooth(self.sigma())
     }
 
     fn bytes(&self) -> usize {

@@ -8,7 +8,9 @@ use microfacet_common::{Masking, Roughness, saturated};
 use wide::f32x4;
 
 use super::batch::same_lengths;
-use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, is_hidden, visible_density};
+use super::distribution::{
+    Facet, GRAZING, MicrofacetDistribution, SMOOTH, SMOOTH_MASKED, is_hidden, visible_density,
+};
 use super::key::LobeKey;
 use super::normals::Normals;
 use super::roughness::checked;
@@ -163,8 +165,17 @@ impl StudentT {
     }
 
     /// The mean of |x| over unit slopes x: 1 for GGX, and without limit towards γ = 3/2.
-    pub(crate) fn mean_slope(&self) -> f32 {
+    fn mean_slope(&self) -> f32 {
         2.0 * self.slices.first_moment()
+    }
+
+    /// Whether a lobe of this shape with roughness σ is a mirror, see
+    /// [`MicrofacetDistribution::is_effectively_smooth`].
+    pub(crate) fn is_smooth(&self, sigma: f32) -> bool {
+        let rho = sigma * sqrt(1.0 - GRAZING * GRAZING);
+        let grazing = Stretched { x: 1.0, y: 0.0, frame: 1.0, rho, z: GRAZING };
+        let masked = 1.0 - GRAZING * self.inverse_area(&grazing);
+        sigma * self.mean_slope() < SMOOTH && masked <= SMOOTH_MASKED
     }
 
     /// cells/(z + κρ): times z, it is the view coordinate q in cells.
@@ -317,7 +328,7 @@ impl MicrofacetDistribution for StudentT {
     }
 
     fn is_effectively_smooth(&self) -> bool {
-        self.sigma_x.max(self.sigma_y) * self.mean_slope() < SMOOTH
+        self.is_smooth(self.sigma_x.max(self.sigma_y))
     }
 
     fn bytes(&self) -> usize {

@@ -8,8 +8,8 @@ use super::student_t::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, StudentT};
 use crate::axis::HalfTangent;
 use crate::lanes::swap_pairs;
 
-/// 2⁴⁰: a short horizontal part times this, or a long one over it, has squares well within the range
-/// of f32.
+/// 2⁴⁰: a short horizontal part times this, or a long one over it, has squares well within the
+/// range of f32.
 const LIFT: f32 = 1_099_511_627_776.0;
 
 /// A stretched view in lanes: x and y in the first two of `xy`, the others in all lanes.

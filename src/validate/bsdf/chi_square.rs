@@ -22,14 +22,14 @@ const LEAST_LEFT: f64 = 2e-3;
 
 /// Draws `samples` lights by `draw(choice, u)`, and compares their counts with the integrals of
 /// `density`. Draws without a light are a cell of their own, which is expected to hold what the
-/// density leaves to one; lights at elevations in the range `blind` are counted there, too.
+/// density leaves to one. The elevations `edges` are edges of cells.
 /// Cells are also small where there are many lights of `guide`, such as those of a narrow part of
 /// the density that is seldom drawn.
 pub fn test(
     v: Vec3,
     samples: usize,
     seed: u64,
-    blind: Option<[f64; 2]>,
+    edges: Vec<f64>,
     guide: &[Vec3],
     mut draw: impl FnMut(f32, [f32; 2]) -> Option<Vec3>,
     density: impl Fn(Vec3) -> f32,
@@ -39,11 +39,11 @@ pub fn test(
     let pilots = (samples / 50).clamp(PILOT[0], PILOT[1]);
     let drawn = (0..pilots).filter_map(|_| next());
     let pilot: Vec<Vec3> = drawn.chain(guide.iter().copied()).collect();
-    let grid = Grid::new(v, &pilot, (pilots + guide.len()) / CELLS, blind);
+    let grid = Grid::new(v, &pilot, (pilots + guide.len()) / CELLS, edges);
     let rest = grid.count();
     let mut counts = vec![0_u64; rest + 1];
     for _ in 0..samples {
-        counts[next().and_then(|l| grid.cell(l)).unwrap_or(rest)] += 1;
+        counts[next().map_or(rest, |l| grid.cell(l))] += 1;
     }
     let mut shares = grid.shares(samples, density);
     let left = 1.0 - shares.iter().sum::<f64>();
@@ -147,8 +147,8 @@ fn one(
         (!sample.delta).then_some(sample.l)
     };
     let guide: Vec<Vec3> = (0..PILOT[0]).filter_map(&mut by_facet).collect();
-    let (seed, blind) = (configuration.seed, configuration.blind());
+    let (seed, edges) = (configuration.seed, configuration.edges());
     let density = |l| Bsdf::<3>::pdf(&judged, v, l);
-    let test = test(v, options.samples, seed, blind, &guide, draw, density);
+    let test = test(v, options.samples, seed, edges, &guide, draw, density);
     Ok(Report { configuration: *configuration, test })
 }

@@ -7,6 +7,7 @@ use glam::Vec3;
 use rand::rngs::StdRng;
 use rand::{Rng, RngExt, SeedableRng};
 
+use microfacet_sampler::internals::steep_cosine;
 use microfacet_sampler::{Compensation, Masking, Metal};
 
 use super::specimen::{LobeOf, Specimen, Surface};
@@ -32,19 +33,23 @@ impl Configuration {
         direction(self.theta, self.phi)
     }
 
-    /// Elevations of lights whose density single precision does not resolve.
-    ///
-    /// For γ < 2 D has a pole where the normal lies in the surface, and the light that such facets
-    /// transmit is on the cone l·n = −(v·n)/η. Near γ = 3/2 that is most of it, closer to the cone
-    /// than single precision tells lights apart.
-    pub fn blind(&self) -> Option<[f64; 2]> {
-        /// Cosines to either side of the cone.
-        const WIDTH: f64 = 2e-3;
-        let Surface::Dielectric(eta) = self.specimen.surface else { return None };
+    /// Elevations at which the density may jump: the ends of the range about the cone l·n =
+    /// −(v·n)/η where it would have a pole for γ < 2, and where most lights are only sampled.
+    pub fn edges(&self) -> Vec<f64> {
+        let Surface::Dielectric(eta) = self.specimen.surface else { return Vec::new() };
+        if self.specimen.gamma >= 2.0 {
+            return Vec::new();
+        }
         let cos = f64::from(self.view().z);
-        let at = -cos / if cos > 0.0 { eta } else { 1.0 / eta };
-        let poles = self.specimen.gamma < 2.0 && at.abs() < 1.0 + WIDTH;
-        poles.then(|| [at - WIDTH, at + WIDTH].map(|sin| sin.clamp(-1.0, 1.0).asin()))
+        let (steep, eta) = (f64::from(steep_cosine(eta as f32)), f64::from(eta as f32));
+        let eta = if cos > 0.0 { eta } else { 1.0 / eta };
+        // Of facets with a smaller cosine |cos θ_v + η l·n| is less than it times |v + η l|.
+        let (at, width) = (-cos / eta, steep * (1.0 + eta) / eta);
+        [at - width, at, at + width]
+            .into_iter()
+            .filter(|sin| sin.abs() < 1.0)
+            .map(f64::asin)
+            .collect()
     }
 }
 

@@ -42,7 +42,6 @@ enum Node {
         above: usize,
     },
     Leaf(usize),
-    Blind,
 }
 
 /// Cells of the sphere.
@@ -51,7 +50,7 @@ pub(super) struct Grid {
     /// The azimuth that the others are counted from, opposite to the seam.
     ahead: [f64; 2],
     most: usize,
-    blind: Option<[f64; 2]>,
+    edges: Vec<f64>,
     nodes: Vec<Node>,
     /// Each cell in parts that hold few of the pilot's lights, and what encloses them: where
     /// quadrature begins to look for peaks.
@@ -60,12 +59,13 @@ pub(super) struct Grid {
 
 impl Grid {
     /// Cells for a view from lights that were drawn for it, none with more than `most` of them if
-    /// it can be divided. Elevations in the range `blind` belong to no cell.
-    pub(super) fn new(v: Vec3, pilot: &[Vec3], most: usize, blind: Option<[f64; 2]>) -> Self {
+    /// it can be divided. The elevations `edges` are edges of cells.
+    pub(super) fn new(v: Vec3, pilot: &[Vec3], most: usize, mut edges: Vec<f64>) -> Self {
+        edges.push(0.0);
         let r = f64::from(v.x).hypot(v.y.into());
         // Lobes lie opposite to the view; the seam is behind them.
         let ahead = if r > 0.0 { [-f64::from(v.x) / r, -f64::from(v.y) / r] } else { [1.0, 0.0] };
-        let mut grid = Self { ahead, most, blind, nodes: Vec::new(), cells: Vec::new() };
+        let mut grid = Self { ahead, most, edges, nodes: Vec::new(), cells: Vec::new() };
         let mut places: Vec<_> = pilot.iter().map(|&l| grid.place(l)).collect();
         let whole = Cell([[-FRAC_PI_2, FRAC_PI_2], [-PI, PI]]);
         grid.grow(whole, &mut places);
@@ -87,15 +87,11 @@ impl Grid {
     /// Divides a cell with the pilot's lights in it.
     fn grow(&mut self, cell: Cell, places: &mut [[f64; 2]]) {
         let node = self.nodes.len();
-        self.nodes.push(Node::Blind);
+        self.nodes.push(Node::Leaf(self.cells.len()));
         let Some((along, at)) = self.edge(&cell, places) else {
-            let [low, high] = cell.0[0];
-            if !self.blind.is_some_and(|[from, to]| from <= low && high <= to) {
-                self.nodes[node] = Node::Leaf(self.cells.len());
-                let mut parts = Vec::new();
-                divide(cell, places, &mut parts);
-                self.cells.push(parts);
-            }
+            let mut parts = Vec::new();
+            divide(cell, places, &mut parts);
+            self.cells.push(parts);
             return;
         };
         let [(low, below), (high, above)] = split(&cell, along, at, places);
@@ -104,24 +100,22 @@ impl Grid {
         self.grow(high, above);
     }
 
-    /// Where a cell is divided: at the horizon, at the ends of what is blind, and then at the
-    /// median along its longer side; `None` for one with few lights.
+    /// Where a cell is divided: at the horizon and other fixed edges, and then at the median along
+    /// its longer side; `None` for one with few lights.
     fn edge(&self, cell: &Cell, places: &mut [[f64; 2]]) -> Option<(usize, f64)> {
-        let mut fixed = self.blind.into_iter().flatten().chain([0.0]);
-        if let Some(at) = fixed.find(|&at| cell.holds(0, at)) {
+        if let Some(&at) = self.edges.iter().find(|&&at| cell.holds(0, at)) {
             return Some((0, at));
         }
         if places.len() > self.most { median(cell, places) } else { None }
     }
 
-    /// The cell of a light; `None` where the grid is blind.
-    pub(super) fn cell(&self, l: Vec3) -> Option<usize> {
+    /// The cell of a light.
+    pub(super) fn cell(&self, l: Vec3) -> usize {
         let place = self.place(l);
         let mut node = 0;
         loop {
             node = match self.nodes[node] {
-                Node::Leaf(cell) => return Some(cell),
-                Node::Blind => return None,
+                Node::Leaf(cell) => return cell,
                 Node::Split { along, at, above } => {
                     if place[along] < at {
                         node + 1

@@ -15,7 +15,7 @@ from . import parameters
 from .arithmetic import LARGEST_DENSITY
 from .compensation import kulla_conty, turquin
 from .energy import Energy
-from .interface import Facet, between, drawn, either
+from .interface import Facet, between, drawn, either, steep
 from .shape import g2_over_g1
 from .spectra import blocked, spectrum
 from .surface import surface_class
@@ -49,9 +49,10 @@ class Seen:
 
 def dielectric_class() -> type:
     """The class of the plugin in the current variant."""
-    reflection, transmission = (
+    reflection, transmission, only_sampled = (
         mi.BSDFFlags.GlossyReflection,
         mi.BSDFFlags.GlossyTransmission,
+        mi.BSDFFlags.DeltaTransmission,
     )
 
     class StudentTDielectric(surface_class()):  # type: ignore[misc]
@@ -60,7 +61,8 @@ def dielectric_class() -> type:
         Seen from either side the microsurface is the same: a direction below is taken through the
         point reflection v -> -v, which leaves the facets in place. Facets are drawn by visible
         normals and events by F, so a sample's weight is G2/G1, for refracted radiance times
-        (n_v/n_l)^2.
+        (n_v/n_l)^2. For gamma < 2 what facets next to the horizon refract is only sampled, as a
+        delta: single precision does not tell them from view and light.
         """
 
         def __init__(self, props: mi.Properties) -> None:
@@ -74,9 +76,11 @@ def dielectric_class() -> type:
                     " texture: make sigma a number, or set compensation to none"
                 )
             sides = self._flags(mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide)
+            self._has_pole = self._gamma < 2
+            refraction = transmission | only_sampled if self._has_pole else transmission
             self.m_components = [
                 reflection | sides,
-                transmission | sides | mi.BSDFFlags.NonSymmetric,
+                refraction | sides | mi.BSDFFlags.NonSymmetric,
             ]
             self.m_flags = self.m_components[0] | self.m_components[1]
             self._energy: Energy | None = None
@@ -116,6 +120,7 @@ def dielectric_class() -> type:
             m = self._shape.sample_visible_normal(seen.sigma, seen.v, sample2, active)
             if self._compensation != "kulla_conty":
                 l, facet = drawn(seen.eta, seen.v, m, sample1, seen.chance())
+                delta = self._only_sampled(seen, l, facet)
                 white, base, chance = self._facets(si, seen, l, facet, active)
                 weight, pdf = white / dr.maximum(chance, 1e-30), base * chance
             else:
@@ -129,19 +134,24 @@ def dielectric_class() -> type:
                 )
                 l, facet = drawn(seen.eta, seen.v, m, rest, seen.chance())
                 broad = self._broad(seen, rest, sample2, active)
+                delta = is_facet & self._only_sampled(seen, l, facet)
+                white, _, chance = self._facets(si, seen, l, facet, active & delta)
+                alone = white / dr.maximum(p * chance, 1e-30)
                 l = dr.select(is_facet, l, broad)
-                facet = either(is_facet, facet, between(seen.eta, seen.v, l))
+                facet = either(is_facet, facet, between(seen.eta, seen.v, l, self._has_pole))
                 value, pdf = self._mixed(si, seen, l, facet, active)
-                weight = value / dr.maximum(pdf, 1e-30)
+                weight = dr.select(delta, alone, value / dr.maximum(pdf, 1e-30))
                 facet.sends = facet.sends | (~is_facet if dr.is_jit_v(mi.Float) else not is_facet)
                 facet.reflects = l.z > 0
-            active = active & facet.sends & (pdf > 0)
+            active = active & facet.sends & ((pdf > 0) | delta)
             reflects = facet.reflects
             bs.wo = seen.sign * l
-            bs.pdf = dr.select(active, pdf, 0.0)
+            # Mitsuba has the probability of an event as the density of a delta.
+            bs.pdf = dr.select(active, dr.select(delta, chance, pdf), 0.0)
             bs.eta = dr.select(reflects, 1.0, seen.eta)
             bs.sampled_component = dr.select(reflects, mi.UInt32(0), mi.UInt32(1))
-            bs.sampled_type = dr.select(reflects, mi.UInt32(+reflection), mi.UInt32(+transmission))
+            refraction = dr.select(delta, mi.UInt32(+only_sampled), mi.UInt32(+transmission))
+            bs.sampled_type = dr.select(reflects, mi.UInt32(+reflection), refraction)
             return bs, spectrum(blocked(weight, active))
 
         def eval_pdf(
@@ -158,7 +168,7 @@ def dielectric_class() -> type:
                 active = active & (l.z < 0)
             if not seen.transmits:
                 active = active & (l.z > 0)
-            facet = between(seen.eta, seen.v, l)
+            facet = between(seen.eta, seen.v, l, self._has_pole)
             if self._compensation == "kulla_conty":
                 value, pdf = self._mixed(si, seen, l, facet, active)
             else:
@@ -166,6 +176,14 @@ def dielectric_class() -> type:
                 active = active & facet.sends
                 value, pdf = white * base, base * chance
             return spectrum(blocked(value, active)), dr.select(active, pdf, 0.0)
+
+        def _only_sampled(self, seen: Seen, l: mi.Vector3f, facet: Facet) -> mi.Bool:
+            """Whether a drawn facet is too steep to be found again from its light."""
+            if not self._has_pole:
+                return mi.Bool(False)
+            found = between(seen.eta, seen.v, l, True)
+            near = (facet.m.z < 2 * steep(seen.eta)) & facet.sends
+            return near & ((facet.reflects | found.sends) == False)  # noqa: E712
 
         def _described(self) -> dict[str, object]:
             return {"eta": self._eta}

@@ -15,6 +15,10 @@ from .fresnel import dielectric, of_cosines, refracted_cos, transmitted
 
 #: The least cosine between a direction and a facet: below, Fresnel's equations are 0/0.
 _LEAST = 1e-7
+#: As in the crate: the cosine of a facet is known from view and light to a hundredth of
+#: this times (1 + eta)/|1 - eta|, and at most _STEEPEST is steep.
+_STEEP = 100 / 2**25
+_STEEPEST = 0.01
 
 
 @dataclass
@@ -53,14 +57,21 @@ def drawn(
     return l, Facet(m, sends, reflects, facing, share, jacobian)
 
 
-def between(eta: mi.Float, v: mi.Vector3f, l: mi.Vector3f) -> Facet:
-    """The facet that sends v to l."""
+def steep(eta: mi.Float) -> mi.Float:
+    """The cosine below which a facet that refracts is only sampled, for gamma < 2."""
+    return dr.minimum(_STEEP * (1 + eta) / dr.abs(1 - eta), _STEEPEST)
+
+
+def between(eta: mi.Float, v: mi.Vector3f, l: mi.Vector3f, has_pole: bool) -> Facet:
+    """The facet that sends v to l. ``has_pole``: those that are only sampled send nothing."""
     reflects = l.z > 0
     h = v + dr.select(reflects, 1.0, eta) * l
     length = dr.sqrt(dr.maximum(dr.squared_norm(h), 1e-30))
     m = h * (dr.select(h.z < 0, -1.0, 1.0) / length)
     cos_v, cos_l = dr.dot(v, m), dr.dot(l, m)
     sends = (cos_v > 0) & dr.select(reflects, cos_l > 0, cos_l < 0)
+    if has_pole:
+        sends = sends & (reflects | (m.z >= steep(eta)))
     facing = dr.clip(cos_v, _LEAST, 1)
     refracted = dr.clip(-cos_l, _LEAST, 1)
     share = dr.select(
