@@ -91,7 +91,7 @@ impl Distribution {
 }
 
 /// Why a distribution could not be made.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub enum DistributionError {
     /// No distribution has this name.
     Unknown(String),
@@ -124,6 +124,8 @@ impl fmt::Display for DistributionError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(DistributionError);
 
 impl std::error::Error for DistributionError {}
 

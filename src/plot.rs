@@ -112,7 +112,7 @@ impl Figure {
 }
 
 /// Why a figure was not drawn.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub enum PlotError {
     /// No figure has this name.
     Unknown(String),
@@ -131,6 +131,8 @@ impl fmt::Display for PlotError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(PlotError);
 
 impl std::error::Error for PlotError {}
 

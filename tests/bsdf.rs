@@ -16,7 +16,7 @@ use microfacet_bake::validate::bsdf::{furnace, reciprocity};
 use microfacet_bake::validate::{LEVEL, Options};
 use microfacet_sampler::{
     AnyBsdf, BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Event, Kind,
-    Lobe, Masking, Precision, Skew, StandIn, Tables, Transport,
+    Lobe, Masking, Plastic, Precision, Skew, StandIn, Tables, Transport, encode,
 };
 
 use crate::command::{json, ok, refused, run as run_command};
@@ -248,6 +248,19 @@ fn the_lines_of_a_message_make_what_is_missing() {
             assert!((more / exact.compensation(v, l) - 1.0).abs() < 1e-2, "{lines}");
         }
     }
+}
+
+/// A rough plastic does not bind to the default set, and to one of these lines it does.
+#[test]
+fn the_lines_of_a_message_make_a_plastic() {
+    let bind = |set: &Tables| {
+        let coat = Tables::embedded().student_t(0.3, 2.5).unwrap();
+        Plastic::new(coat, 1.5, [0.1, 0.4, 0.2], set, Compensation::None, StandIn::Refused)
+    };
+    let lines = lines(&bind(&Tables::embedded()).unwrap_err());
+    let set = draft(&lines);
+    let file = encode(set.provenance(), set.tables()).unwrap();
+    bind(&Tables::from_bytes(&file).unwrap()).expect(&lines);
 }
 
 /// A recipe that names an anisotropic or tilted lobe serves it exactly, by name and by parameters.

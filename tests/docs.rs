@@ -1,6 +1,7 @@
 //! The pages say what the code does.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use microfacet_bake::plot::FIGURES;
 use microfacet_sampler::{Kind, Mapping};
@@ -40,6 +41,40 @@ fn the_page_of_the_format_is_of_this_version() {
             "docs/format.md: no `{}`",
             kind.name()
         );
+    }
+}
+
+/// Files below a folder whose name ends so.
+fn files(folder: &Path, end: &str, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files(&path, end, found);
+        } else if path.to_str().is_some_and(|path| path.ends_with(end)) {
+            found.push(path);
+        }
+    }
+}
+
+/// An example works where it is copied to: its vectors are those of the crate that it shows.
+#[test]
+fn no_example_asks_for_a_crate_of_vectors() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut all =
+        ["README.md", "sampler/README.md", "model/README.md"].map(|at| root.join(at)).into();
+    files(&root.join("docs"), ".md", &mut all);
+    files(&root.join("sampler/src"), ".rs", &mut all);
+    files(&root.join("model/src"), ".rs", &mut all);
+    assert!(all.len() > 100, "{}", all.len());
+    for path in all {
+        let is_page = path.extension().is_some_and(|end| end == "md");
+        for line in fs::read_to_string(&path).unwrap().lines() {
+            let said =
+                line.trim_start().strip_prefix("//").map(|doc| doc.trim_start_matches(['/', '!']));
+            let said = if is_page { Some(line) } else { said };
+            let code = said.unwrap_or("").trim_start_matches(['#', ' ']);
+            assert!(!code.starts_with("use glam::"), "{}: {line}", path.display());
+        }
     }
 }
 

@@ -118,23 +118,29 @@ fn exact_texels_are_those_of_the_model() {
     assert!(fitted < 0.7 * exact, "{fitted} of {exact}");
 }
 
+fn is_valid(spec: &TextureSpec) {
+    let kind = if spec.axes.len() == 3 { "3d" } else { "2d" };
+    let (name, line) = (&spec.name, shader_lines(spec).wgsl);
+    let source = format!(
+        "@group(0) @binding(0) var {name}_texture: texture_{kind}<f32>;\n\
+         @group(0) @binding(1) var linear_clamp: sampler;\n\
+         fn read(gamma: f32, sigma: f32, mu: f32) -> f32 {{\n{line}\nreturn 0.0;\n}}"
+    );
+    let module = naga::front::wgsl::parse_str(&source).expect(&source);
+    naga::valid::Validator::new(Default::default(), Default::default())
+        .validate(&module)
+        .expect(&source);
+}
+
 #[test]
 fn lines_of_wgsl_are_valid() {
     for shapes in [Shapes::One(2.0), Shapes::One(f64::INFINITY), Shapes::DownTo(1.6)] {
         for channels in [Channels::E, Channels::OneMinusE, Channels::ScaleBias] {
             let size = if matches!(shapes, Shapes::One(_)) { &[32, 24][..] } else { &[8, 32, 24] };
-            for spec in TextureSpec::of_shapes("lut", shapes, 3.0, size, CORRELATED, channels) {
-                let kind = if spec.axes.len() == 3 { "3d" } else { "2d" };
-                let (name, line) = (&spec.name, shader_lines(&spec).wgsl);
-                let source = format!(
-                    "@group(0) @binding(0) var {name}: texture_{kind}<f32>;\n\
-                     @group(0) @binding(1) var linear_clamp: sampler;\n\
-                     fn read(gamma: f32, sigma: f32, mu: f32) -> f32 {{\n{line}\nreturn 0.0;\n}}"
-                );
-                let module = naga::front::wgsl::parse_str(&source).expect(&source);
-                naga::valid::Validator::new(Default::default(), Default::default())
-                    .validate(&module)
-                    .expect(&source);
+            // Words of the language, and of the line itself, are names like others.
+            for name in ["lut", "var", "sigma", "pow", "vec2f"] {
+                let specs = TextureSpec::of_shapes(name, shapes, 3.0, size, CORRELATED, channels);
+                specs.iter().for_each(is_valid);
             }
         }
     }
@@ -183,6 +189,30 @@ fn files_hold_the_same_values() {
     let halves: Vec<u8> =
         values.iter().flat_map(|&x| half::f16::from_f32(x).to_le_bytes()).collect();
     assert_eq!(ktx.levels().next().unwrap().data, halves);
+}
+
+/// All that a header declares has a word behind its name, which so may be one of C's own.
+#[test]
+fn headers_are_named_by_any_word() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, channels) in [("int", "e"), ("sigma", "scale-bias"), ("lut", "one-minus-e")] {
+        let with = ["--name", name, "--channels", channels, "--gamma", "2", "--size", "4x4"];
+        let export = ["export", "lut", "--format", "c", "--out", "out"];
+        ok(folder.path(), &[&export[..], &with].concat());
+        for name in [name, &format!("{name}_average")] {
+            let path = folder.path().join(format!("out/{name}.h"));
+            let header = fs::read_to_string(path).unwrap();
+            let declared = header.lines().filter_map(|line| line.strip_prefix("static "));
+            let declared: Vec<&str> =
+                declared.map(|line| line.split(['[', '(']).next().unwrap()).collect();
+            let kind = if channels == "scale-bias" { "void" } else { "float" };
+            let [texels, read] =
+                [format!("const float {name}_texels"), format!("inline {kind} {name}_read")];
+            assert_eq!(declared, [texels, read]);
+            // Nothing reads the array by another name.
+            assert_eq!(header.matches(&format!("{name}[")).count(), 0, "{header}");
+        }
+    }
 }
 
 #[test]
@@ -371,6 +401,12 @@ fn what_cannot_be_made_is_refused_with_a_remedy() {
         (&["--gamma", "2", "--gamma-min", "2"], "cannot be used with"),
         (&["--gamma", "2", "--name", "GGX"], "a-z, 0-9 and _"),
         (&["--gamma", "2", "--name", "../x"], "a-z, 0-9 and _"),
+        (&["--gamma", "2", "--name", "_x"], "begins with a letter"),
+        (&["--gamma", "2", "--name", "2x"], "begins with a letter"),
+        (&["--gamma", "2", "--name", "a__b"], "C++ and GLSL reserve"),
+        (&["--gamma", "2", "--name", "x_"], "C++ and GLSL reserve"),
+        (&["--gamma", "2", "--name", "gl_x"], "C++ and GLSL reserve"),
+        (&["--gamma", "2", "--name", "math", "--format", "c"], "as math_albedo"),
         (&[], "name a shape with --gamma"),
     ] {
         let message = refused(at, &[&lut[..], &npy, more].concat());

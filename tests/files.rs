@@ -68,3 +68,13 @@ fn a_channel_named_twice_is_refused() {
     let message = decode_exr(&file).unwrap_err().to_string();
     assert!(message.contains("not those of the description"), "{message}");
 }
+
+/// A table that follows a measured file has its name, in any script.
+#[test]
+fn an_image_of_any_name_is_read_back() {
+    let set = small_table(Precision::F32);
+    let mut table = set.tables()[0].clone();
+    table.name = "é м漢🎨".into();
+    let bytes = encode_exr(set.provenance(), &table).unwrap();
+    assert_eq!(decode_exr(&bytes).unwrap().tables(), [table]);
+}

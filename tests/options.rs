@@ -60,6 +60,18 @@ fn other_names_of_sigma_are_told_their_relation() {
     }
 }
 
+#[test]
+fn parameters_of_a_material_are_told_where_they_belong() {
+    let folder = tempfile::tempdir().unwrap();
+    for option in ["sigma", "gamma", "alpha", "roughness", "theta", "fresnel"] {
+        for command in ["bake p.pbrt --out out", "plan p.pbrt"] {
+            let named = format!("unexpected argument '--{option} <X>'");
+            let line = format!("{command} --{option} 2.5");
+            refuses(folder.path(), &line, &[&named, "`microfacet-bake recipe`"]);
+        }
+    }
+}
+
 /// Each of these was once ignored in silence.
 #[test]
 fn options_that_mean_nothing_together_are_refused() {

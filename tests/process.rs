@@ -254,6 +254,47 @@ fn inspecting_a_lie_takes_little_memory() {
     }
 }
 
+/// A stack that memory does not hold stands for a system that starts no more threads: none at all,
+/// or none but the one that waits for signals.
+#[test]
+fn where_no_threads_can_be_started_one_does_the_work() {
+    let workshop = workshop();
+    let (expected, _) = baked(&workshop, "old");
+    let whole = content(&expected).0;
+    let recipe = workshop.path().join("old.toml");
+    for (threads, stack) in [(1, 4_u64 << 30), (8, 600 << 20)] {
+        let script = "ulimit -v 2097152; exec \"$0\" \"$@\"";
+        let start = |words: &[&str]| {
+            let mut shell = Command::new("sh");
+            shell
+                .args(["-c", script, PROGRAM])
+                .args(words)
+                .env("RUST_MIN_STACK", stack.to_string());
+            shell.current_dir(workshop.path()).output().unwrap()
+        };
+        let options = ["--no-cache", "--quality", "draft", "--format", "exr,safetensors"];
+        let out = format!("out of {stack}");
+        let words = ["--threads", &threads.to_string(), "bake", recipe.to_str().unwrap()];
+        let output = start(&[&words[..], &options, &["--out", &out]].concat());
+        let text = message(&output);
+        assert!(output.status.success(), "{text}");
+        assert!(text.contains("warning: threads cannot be started") && text.contains("--threads"));
+        assert!(content(&workshop.path().join(out)).0 == whole, "another set");
+        // What divides no work has nothing to warn of.
+        for words in [
+            "recipe",
+            "inspect",
+            "completions bash",
+            "man --out man",
+            "plot student-t --out a.svg",
+            "sample --sigma 0.3 --gamma 3 --theta 1 --count 9 --out n",
+        ] {
+            let output = start(&words.split(' ').collect::<Vec<_>>());
+            assert!(output.status.success() && output.stderr.is_empty(), "{}", message(&output));
+        }
+    }
+}
+
 #[test]
 fn more_memory_than_allowed_is_refused_with_the_estimate() {
     let workshop = workshop();

@@ -188,6 +188,12 @@ fn a_validation_is_shown_on_the_page_of_its_set() {
         assert!(bad.contains(part), "{part}");
     }
     assert!(!bad.contains(">Passed<"));
+    // An error of any size has a place on the axis.
+    let text = fs::read_to_string(at.join("good.json")).unwrap();
+    let mut wild: serde_json::Value = serde_json::from_str(&text).unwrap();
+    wild["configurations"][0]["g1_error"] = 1e308.into();
+    fs::write(at.join("wild.json"), wild.to_string()).unwrap();
+    assert!(page(&["gold", "--validation", "wild.json"]).contains("the largest is 1.00e308"));
 }
 
 /// Images of a set are that set.

@@ -108,6 +108,19 @@ impl Real for f64 {
     }
 }
 
+/// Gives an error a `Debug` in the words of its `Display`, because that is what a program shows of
+/// it which returns it from `main` or unwraps it: the value, what is allowed, and the remedy.
+#[macro_export]
+macro_rules! debug_in_words {
+    ($error:ty) => {
+        impl ::core::fmt::Debug for $error {
+            fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                ::core::fmt::Display::fmt(self, f)
+            }
+        }
+    };
+}
+
 /// A density, no more than the largest number. (`min` would take NaN for that, and hide it.)
 #[inline(always)]
 pub fn saturated<T: Real>(density: T) -> T {

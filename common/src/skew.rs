@@ -33,7 +33,7 @@ pub struct Skew {
 }
 
 /// Why a matrix makes no ellipsoid.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum SkewError {
     /// `!(sigma > 0)` or infinite.
     Sigma(f64),
@@ -70,6 +70,8 @@ impl fmt::Display for SkewError {
         }
     }
 }
+
+crate::debug_in_words!(SkewError);
 
 impl core::error::Error for SkewError {}
 

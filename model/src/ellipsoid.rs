@@ -14,7 +14,7 @@ use crate::shape::Shape;
 use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon};
 
 /// Why an ellipsoid was refused.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum EllipsoidError {
     /// The shape is outside its domain.
     Parameter(ParameterError),
@@ -35,6 +35,8 @@ impl fmt::Display for EllipsoidError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(EllipsoidError);
 
 impl core::error::Error for EllipsoidError {}
 
@@ -60,7 +62,7 @@ impl From<SkewError> for EllipsoidError {
 /// no singular limit in γ, and all members of one γ share the same tables.
 ///
 /// ```
-/// use glam::DVec3;
+/// use microfacet_model::glam::DVec3;
 /// use microfacet_model::{Ellipsoid, MicrofacetDistribution, Skew};
 /// let brushed = Ellipsoid::new(Skew::new([0.3, 0.1], [0.2, -0.1, 0.5])?, 2.7)?;
 /// let v = DVec3::new(0.8, 0.0, 0.6);

@@ -3,7 +3,7 @@
 use core::fmt;
 
 /// A parameter outside the domain of a distribution.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum ParameterError {
     /// `!(sigma > 0)` or `sigma` infinite: the roughness must be a positive finite number.
     Sigma(f64),
@@ -80,5 +80,7 @@ impl fmt::Display for ParameterError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(ParameterError);
 
 impl core::error::Error for ParameterError {}

@@ -22,7 +22,7 @@
 //! # D, masking, visible normals
 //!
 //! ```
-//! use glam::DVec3;
+//! use microfacet_model::glam::DVec3;
 //! use microfacet_model::{Masking, MicrofacetDistribution, StudentT};
 //!
 //! let gold = StudentT::new([0.3, 0.1], 4.0)?; // sigma; gamma
@@ -77,6 +77,9 @@ mod student_t;
 mod transmission;
 mod visible;
 mod walk;
+
+// What every caller needs in the version that this crate is built with.
+pub use glam;
 
 pub use albedo::{Albedo, AlbedoIntegrator};
 pub use distribution::MicrofacetDistribution;

@@ -20,7 +20,7 @@ use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon};
 /// γ = ∞ is Beckmann with α = σ.
 ///
 /// ```
-/// use glam::DVec3;
+/// use microfacet_model::glam::DVec3;
 /// use microfacet_model::{MicrofacetDistribution, StudentT};
 /// let gold = StudentT::new(0.3, 4.0)?;
 /// let v = DVec3::new(0.8, 0.0, 0.6);

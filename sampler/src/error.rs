@@ -10,7 +10,7 @@ use microfacet_common::{Masking, SkewError};
 pub const GAMMA_MIN: f64 = 1.501;
 
 /// Why bytes are not a table set that this crate can use.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub enum LoadError {
     /// The bytes contradict the format: truncated, damaged, or describing something impossible.
     Invalid(String),
@@ -28,10 +28,12 @@ impl fmt::Display for LoadError {
     }
 }
 
+microfacet_common::debug_in_words!(LoadError);
+
 impl core::error::Error for LoadError {}
 
 /// Why a set cannot give what was asked for: a lobe or an albedo.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub enum MaterialError {
     /// A roughness, or an entry of an ellipsoid's matrix, that single precision cannot hold, or
     /// NaN.
@@ -189,6 +191,8 @@ impl fmt::Display for MaterialError {
     }
 }
 
+microfacet_common::debug_in_words!(MaterialError);
+
 impl core::error::Error for MaterialError {}
 
 /// An interval in a message: its ends to nine digits, which hides the rounding of 1/(1/x), and by
@@ -223,7 +227,7 @@ impl From<SkewError> for MaterialError {
 }
 
 /// The slices of a batch differ in length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct BatchError {
     /// Names of two parameters that differ.
     pub slices: [&'static str; 2],
@@ -240,5 +244,7 @@ impl fmt::Display for BatchError {
         )
     }
 }
+
+microfacet_common::debug_in_words!(BatchError);
 
 impl core::error::Error for BatchError {}

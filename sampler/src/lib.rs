@@ -24,11 +24,13 @@
 //!
 //! Load a set once, take a lobe and make a BSDF of it for each material, and ask it for `f`, a
 //! density and samples. [`Bsdf`] has the conventions. Where light of further bounces is to come
-//! back, tables of albedos are read too.
+//! back, tables of albedos are read too. A rough [`Plastic`] reads those of its coat in any case,
+//! and the default set has none of dielectrics: bake a recipe that names it, and load that by
+//! [`Tables::from_bytes`].
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {
-//! use glam::Vec3;
+//! use microfacet_sampler::glam::Vec3;
 //! use microfacet_sampler::{Bsdf, Compensation, Conductor, Metal, StandIn, Tables, Transport};
 //!
 //! let tables = Tables::embedded(); // or Tables::from_bytes(&file)
@@ -49,7 +51,7 @@
 //! The weight f·cos/pdf of a reflection off a visible normal is G2/G1 in closed form:
 //!
 //! ```
-//! use glam::Vec3;
+//! use microfacet_sampler::glam::Vec3;
 //! use microfacet_sampler::{Masking, MicrofacetDistribution};
 //!
 //! /// A light, its weight without Fresnel, and its density.
@@ -90,7 +92,7 @@
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {
-//! # use glam::Vec3;
+//! # use microfacet_sampler::glam::Vec3;
 //! # use microfacet_sampler::{MicrofacetDistribution, Skew, Tables};
 //! let skew = Skew::new([0.3, 0.1], [0.2, -0.1, 0.5])?; // sigma; turns about x, y, z
 //! let brushed = Tables::embedded().ellipsoid(skew, 2.7)?;
@@ -107,7 +109,7 @@
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {
-//! # use glam::Vec3;
+//! # use microfacet_sampler::glam::Vec3;
 //! # use microfacet_sampler::{MicrofacetDistribution, Tables};
 //! let lobe = Tables::embedded().student_t(0.3, 4.0)?;
 //! let (v, u) = ([Vec3::new(0.6, 0.0, 0.8); 64], [[0.3, 0.7]; 64]);
@@ -127,7 +129,7 @@
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {
-//! # use glam::Vec3;
+//! # use microfacet_sampler::glam::Vec3;
 //! # use microfacet_sampler::{Masking, Tables};
 //! let albedo = Tables::embedded().albedo(0.8, 3.0, Masking::HeightCorrelated)?;
 //! let v = Vec3::new(0.6, 0.0, 0.8);

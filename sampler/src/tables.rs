@@ -19,7 +19,7 @@ pub const DEFAULT_SET: &[u8] = include_bytes!("../data/default.safetensors");
 /// A set of tables, loaded and checked.
 ///
 /// ```
-/// use glam::Vec3;
+/// use microfacet_sampler::glam::Vec3;
 /// use microfacet_sampler::{MicrofacetDistribution, Tables};
 /// # #[cfg(feature = "embedded")] {
 /// let tables = Tables::embedded();

@@ -386,6 +386,8 @@ fn what_tables_lack_is_said_with_the_lines_that_add_it() {
     let text = refused.to_string();
     assert!(matches!(refused, BindError::NoAlbedo { stand_in: true, .. }));
     assert!(text.contains("sigma = [0.4, 0.1]") && text.contains("StandIn::Round"), "{text}");
+    // What a program shows that returns it from `main`.
+    assert_eq!(format!("{refused:?}"), text);
     // Without compensation none is needed, and the round lobe may stand in.
     gold.clone().compensated(&tables, Compensation::None, StandIn::Refused).unwrap();
     let gold = gold.compensated(&tables, Compensation::KullaConty, StandIn::Round).unwrap();

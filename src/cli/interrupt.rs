@@ -44,7 +44,7 @@ fn prepare() {
 #[cfg(unix)]
 pub(super) fn watch() {
     use std::sync::Arc;
-    use std::sync::atomic::AtomicBool;
+    use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
@@ -64,7 +64,7 @@ pub(super) fn watch() {
         let _ = flag::register_conditional_default(signal, again.clone());
         let _ = flag::register(signal, again.clone());
     }
-    std::thread::spawn(move || {
+    let watcher = std::thread::Builder::new().spawn(move || {
         if let Some(signal) = handled.forever().next() {
             prepare();
             // So that a shell sees what ended it: status 128 and the signal.
@@ -72,6 +72,10 @@ pub(super) fn watch() {
             std::process::exit(128 + signal);
         }
     });
+    // Where no thread can be started, the first signal does what a second one would.
+    if watcher.is_err() {
+        again.store(true, Relaxed);
+    }
 }
 
 /// The signals that are ignored, a bit each, where the kernel says so.

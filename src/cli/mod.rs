@@ -36,6 +36,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use anstyle::{AnsiColor, Style};
 use clap::{Parser, Subcommand};
+use rayon::ThreadPoolBuilder;
 
 use microfacet_bake::store;
 use microfacet_sampler::Tables;
@@ -82,6 +83,14 @@ enum Command {
     Man(shell::ManPages),
 }
 
+impl Command {
+    /// Whether it divides work among threads, of which the others start none.
+    fn is_parallel(&self) -> bool {
+        use Command::{Completions, Inspect, Man, Plot, Recipe, Sample};
+        !matches!(self, Recipe(_) | Inspect(_) | Sample(_) | Plot(_) | Completions(_) | Man(_))
+    }
+}
+
 /// How a command ends without an error.
 enum Done {
     /// Exit status 0.
@@ -114,11 +123,42 @@ pub(crate) fn main() -> ExitCode {
     };
     QUIET.store(cli.quiet, Relaxed);
     interrupt::watch();
-    if let Some(threads) = cli.threads {
-        // Fails only if a thread pool exists already, and none does.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    match among_threads(cli.threads, cli.command) {
+        Ok(Done::Ok) => ExitCode::SUCCESS,
+        Ok(Done::Rejected) => ExitCode::from(1),
+        Err(Failure(message)) => {
+            // Further lines are indented, so that none of them passes for a message of ours.
+            say("error", &escape::lines(&message).replace('\n', "\n    "));
+            ExitCode::from(2)
+        }
     }
-    let outcome = match cli.command {
+}
+
+/// Runs a command with so many threads, or one a processor. Where the system does not start them,
+/// as where a container has no more processes, the main thread does the work alone.
+fn among_threads(threads: Option<usize>, command: Command) -> Outcome {
+    if !command.is_parallel() {
+        return run(command);
+    }
+    // Not rayon's global pool, which panics where it cannot be had, and is tried once only.
+    match ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
+        Ok(pool) => pool.install(|| run(command)),
+        Err(why) => {
+            report(
+                "warning",
+                format!(
+                    "threads cannot be started ({why}): all work is done by one; ask for fewer with \
+                     --threads, or raise the limit on processes or memory"
+                ),
+            );
+            let _pool = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()?;
+            run(command)
+        }
+    }
+}
+
+fn run(command: Command) -> Outcome {
+    match command {
         Command::Recipe(args) => recipe::run(args),
         Command::Bake(args) => bake::run(args),
         Command::Plan(args) => plan::run(args),
@@ -135,15 +175,6 @@ pub(crate) fn main() -> ExitCode {
         Command::Plot(args) => plot::run(args),
         Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),
-    };
-    match outcome {
-        Ok(Done::Ok) => ExitCode::SUCCESS,
-        Ok(Done::Rejected) => ExitCode::from(1),
-        Err(Failure(message)) => {
-            // Further lines are indented, so that none of them passes for a message of ours.
-            say("error", &escape::lines(&message).replace('\n', "\n    "));
-            ExitCode::from(2)
-        }
     }
 }
 

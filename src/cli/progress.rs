@@ -34,7 +34,7 @@ pub(super) fn show(meter: &Meter, what: &'static str) -> Bar {
         return Bar { ended, thread: None };
     }
     let (meter, end) = (meter.clone(), ended.clone());
-    let thread = std::thread::spawn(move || {
+    let draw = move || {
         let start = Instant::now();
         while !end.load(Relaxed) && start.elapsed() < DELAY {
             std::thread::park_timeout(DELAY);
@@ -60,8 +60,9 @@ pub(super) fn show(meter: &Meter, what: &'static str) -> Bar {
             std::thread::park_timeout(TICK);
         }
         hide();
-    });
-    Bar { ended, thread: Some(thread) }
+    };
+    // The work goes on without a bar where no thread can be started.
+    Bar { ended, thread: std::thread::Builder::new().spawn(draw).ok() }
 }
 
 fn bar(meter: &Meter, start: Instant) -> ProgressBar {

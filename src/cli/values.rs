@@ -144,8 +144,18 @@ fn other_name(word: &str) -> UnknownArgumentValueParser {
 #[derive(clap::Args)]
 #[allow(dead_code, reason = "no value of these is ever accepted")]
 pub(super) struct InRecipe {
-    #[arg(long, aliases = ["gamma", "alpha", "roughness", "theta", "fresnel"], hide = true, value_name = "X", value_parser = in_recipe())]
+    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
     sigma: Option<String>,
+    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
+    gamma: Option<String>,
+    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
+    alpha: Option<String>,
+    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
+    roughness: Option<String>,
+    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
+    theta: Option<String>,
+    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
+    fresnel: Option<String>,
 }
 
 fn in_recipe() -> UnknownArgumentValueParser {

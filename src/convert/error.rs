@@ -5,7 +5,7 @@ use std::fmt;
 use crate::distribution::{DistributionError, DistributionKind};
 
 /// Why there is no replacement.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub enum ConvertError {
     /// A distribution could not be made.
     Distribution(DistributionError),
@@ -56,6 +56,8 @@ impl fmt::Display for ConvertError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(ConvertError);
 
 impl std::error::Error for ConvertError {}
 

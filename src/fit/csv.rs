@@ -13,7 +13,7 @@ use crate::input::{Limited, MAX_TEXT};
 pub const MAX_ROWS: usize = 1_000_000;
 
 /// Why a measurement could not be read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub enum MeasuredError {
     /// A row that cannot be read, or is out of range.
     Row(RowError),
@@ -34,6 +34,8 @@ impl fmt::Display for MeasuredError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(MeasuredError);
 
 impl std::error::Error for MeasuredError {}
 

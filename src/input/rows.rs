@@ -16,7 +16,7 @@ pub struct Row {
 }
 
 /// Why a row was refused.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct RowError {
     /// The line on which it begins, from 1.
     pub line: u64,
@@ -35,6 +35,8 @@ impl fmt::Display for RowError {
         write!(f, "line {}: {}", self.line, self.why)
     }
 }
+
+microfacet_common::debug_in_words!(RowError);
 
 impl std::error::Error for RowError {}
 

@@ -34,7 +34,6 @@ pub struct Source<'a> {
 }
 
 /// Why there is no page.
-#[derive(Debug)]
 pub enum ReportError {
     /// The set has neither tables nor materials.
     Empty,
@@ -68,6 +67,8 @@ impl fmt::Display for ReportError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(ReportError);
 
 impl std::error::Error for ReportError {}
 

@@ -130,7 +130,6 @@ impl fmt::Display for Place {
 }
 
 /// Why a scene description was refused.
-#[derive(Debug)]
 pub struct SceneError {
     /// The place of the error.
     pub place: Place,
@@ -161,6 +160,8 @@ impl fmt::Display for SceneError {
         write!(f, "{}: {}", self.place, self.kind)
     }
 }
+
+microfacet_common::debug_in_words!(SceneError);
 
 impl fmt::Display for SceneErrorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -51,7 +51,7 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
         let samples = table.values.iter().skip(i).step_by(count).copied();
         channel_of(channel_name(channel), flat(table.precision == Precision::F16, samples))
     });
-    let mut attributes = LayerAttributes::named(Text::new_or_panic(&table.name));
+    let mut attributes = named(&table.name);
     describe_with(&mut attributes, &document)?;
     write_layer((width, height), attributes, AnyChannels::sort(channels.collect()))
 }
@@ -63,7 +63,7 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
 /// A message if it cannot be written.
 ///
 /// # Panics
-/// If a channel has another number of samples than the image, or a name is not ASCII.
+/// If a channel has another number of samples than the image, or a name that is not ASCII.
 pub fn encode_channels(
     name: &str,
     size: [usize; 2],
@@ -75,7 +75,7 @@ pub fn encode_channels(
         .into_iter()
         .map(|(channel, samples)| channel_of(channel, flat(half, samples.into_iter())))
         .collect();
-    let mut attributes = LayerAttributes::named(Text::new_or_panic(name));
+    let mut attributes = named(name);
     if let Some(text) = description {
         describe_with(&mut attributes, text)?;
     }
@@ -88,6 +88,11 @@ fn flat(half: bool, samples: impl Iterator<Item = f32>) -> FlatSamples {
     } else {
         FlatSamples::F32(samples.collect())
     }
+}
+
+/// The attributes of a layer of this name: what follows a measured file may be named in any script.
+fn named(name: &str) -> LayerAttributes {
+    LayerAttributes::named(Text::new_or_panic(ascii(name)))
 }
 
 fn describe_with(attributes: &mut LayerAttributes, text: &str) -> std::result::Result<(), String> {
@@ -275,14 +280,14 @@ pub(super) fn is_table(path: &Path) -> std::result::Result<bool, String> {
     Ok(document.is_some_and(|document| only_table(&document).is_ok_and(|table| table.name == name)))
 }
 
-/// The description in ASCII, since EXR text has no Unicode.
-fn ascii(document: &str) -> String {
-    let mut ascii = String::with_capacity(document.len());
-    for c in document.chars() {
+/// A description or a name in ASCII, since EXR text has no Unicode.
+fn ascii(text: &str) -> String {
+    let mut ascii = String::with_capacity(text.len());
+    for c in text.chars() {
         if c.is_ascii() {
             ascii.push(c);
         } else {
-            // Such characters occur in strings only, where JSON allows the escape.
+            // In JSON such characters occur in strings only, which allow the escape.
             let mut units = [0; 2];
             c.encode_utf16(&mut units)
                 .iter()

@@ -39,7 +39,6 @@ pub enum Format {
 }
 
 /// Why a set could not be read or written.
-#[derive(Debug)]
 pub enum StoreError {
     /// The operating system reported an error.
     Io(PathBuf, std::io::Error),
@@ -82,6 +81,8 @@ impl fmt::Display for StoreError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(StoreError);
 
 impl std::error::Error for StoreError {}
 

@@ -98,7 +98,6 @@ pub struct Baked {
 }
 
 /// Why no set could be made.
-#[derive(Debug)]
 pub enum BakeError {
     /// The tables do not make a set: a fault of the plan.
     Set(LoadError),
@@ -202,6 +201,8 @@ impl fmt::Display for BakeError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(BakeError);
 
 impl std::error::Error for BakeError {}
 

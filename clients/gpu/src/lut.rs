@@ -37,7 +37,7 @@ fn agrees(gpu: &Gpu, folder: &Path, name: &str) -> bool {
     let kind = if size[2] == 0 { "2d" } else { "3d" };
     let line = told["read"]["wgsl"].as_str().expect("a line");
     let wgsl = format!(
-        "@group(0) @binding(0) var lut: texture_{kind}<f32>;
+        "@group(0) @binding(0) var lut_texture: texture_{kind}<f32>;
         @group(0) @binding(1) var<storage, read> places: array<vec4f>;
         @group(0) @binding(2) var<storage, read_write> found: array<f32>;
         @group(0) @binding(4) var linear_clamp: sampler;

@@ -33,7 +33,7 @@ pub use schlick::Schlick;
 pub use tabulated::{Tabulated, TabulatedError};
 
 /// A distribution's parameter outside its range.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct ClassicError {
     /// Name of the parameter.
     pub name: &'static str,
@@ -48,6 +48,8 @@ impl fmt::Display for ClassicError {
         write!(f, "{} = {}: must lie in {}", self.name, self.value, self.range)
     }
 }
+
+microfacet_common::debug_in_words!(ClassicError);
 
 impl core::error::Error for ClassicError {}
 

@@ -16,7 +16,7 @@ const STEEPEST: f64 = 1e150;
 /// is what to use where speed matters.
 ///
 /// ```
-/// use glam::DVec3;
+/// use microfacet_model::glam::DVec3;
 /// use microfacet_model::MicrofacetDistribution;
 /// use microfacet_model::classic::{Gtr, Radial};
 /// let paint = Gtr::new(0.2, 1.5)?; // C; gamma

@@ -10,7 +10,7 @@ use super::{Isotropic, bisect};
 const GAP: f64 = 0.1;
 
 /// Why a measured distribution was refused. Rows count from 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum TabulatedError {
     /// Fewer than three rows; how many.
     TooFew(usize),
@@ -44,6 +44,8 @@ impl fmt::Display for TabulatedError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(TabulatedError);
 
 impl core::error::Error for TabulatedError {}
 

@@ -6,7 +6,7 @@ use core::fmt;
 use crate::error::{MaterialError, Range};
 
 /// Why a BSDF cannot be made: a number outside its domain, or an albedo that the tables lack.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub enum BindError {
     /// An index of refraction η or an extinction k outside its range, or NaN.
     Index {
@@ -90,6 +90,8 @@ impl fmt::Display for BindError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(BindError);
 
 impl core::error::Error for BindError {}
 

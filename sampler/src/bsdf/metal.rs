@@ -161,7 +161,7 @@ impl fmt::Display for Metal {
 }
 
 /// The error for a text that names no [`Metal`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct UnknownMetal;
 
 impl fmt::Display for UnknownMetal {
@@ -174,6 +174,8 @@ impl fmt::Display for UnknownMetal {
         write!(f, "{last}")
     }
 }
+
+microfacet_common::debug_in_words!(UnknownMetal);
 
 impl core::error::Error for UnknownMetal {}
 

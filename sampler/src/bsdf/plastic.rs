@@ -34,6 +34,26 @@ use crate::tables::Tables;
 /// albedos, compensation included; a smooth coat needs no tables. With a compensation a white base
 /// returns all light. With a [`Bounded`](crate::Bounded) lobe fewer samples are lost.
 ///
+/// Albedos of a rough coat are in no default set. They are baked for a recipe that names it, for
+/// round lobes of the family; [`StandIn::Round`] takes them for anisotropic and tilted ones.
+///
+/// ```
+/// # #[cfg(feature = "embedded")] {
+/// use microfacet_sampler::{BindError, Compensation, Plastic, Smooth, StandIn, Tables};
+///
+/// let tables = Tables::embedded();
+/// let coat = tables.student_t(0.3, 2.5)?;
+/// let (none, green) = (Compensation::None, [0.1, 0.4, 0.2]);
+/// let rough = Plastic::new(coat, 1.5, green, &tables, none, StandIn::Refused);
+/// let Err(BindError::NoAlbedo { recipe, .. }) = rough else { panic!("not refused") };
+/// // Bake these lines, and load the set: Tables::from_bytes(&file).
+/// assert!(recipe.contains("gamma = 2.5\nfresnel = { dielectric = 1.5 }"));
+/// // Without microfacets none is needed.
+/// assert!(Plastic::new(Smooth, 1.5, green, &tables, none, StandIn::Refused).is_ok());
+/// # }
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+///
 /// [`Dielectric`]: crate::Dielectric
 #[derive(Clone, Debug)]
 pub struct Plastic<L, const N: usize = 3> {

@@ -55,7 +55,7 @@ const SLACK: f64 = 1e-6;
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
-/// # use glam::Vec3;
+/// # use microfacet_sampler::glam::Vec3;
 /// # use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
 /// let bounded = Tables::embedded().student_t(0.8, 3.0)?.bounded();
 /// let v = Vec3::new(0.6, 0.0, 0.8);

@@ -74,7 +74,7 @@ impl Facet {
 /// surface. Sampling takes a view below the horizon at it; densities are for views above it.
 ///
 /// ```
-/// use glam::Vec3;
+/// use microfacet_sampler::glam::Vec3;
 /// use microfacet_sampler::{Ggx, Masking, MicrofacetDistribution};
 ///
 /// /// The weight f cos / pdf of one reflection, without Fresnel, and its direction.

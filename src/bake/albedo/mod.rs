@@ -106,7 +106,7 @@ impl fmt::Display for Site {
 }
 
 /// Why a bake of albedos failed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub enum AlbedoError {
     /// A parameter outside the domain of the model.
     Parameter(ParameterError),
@@ -153,6 +153,8 @@ impl fmt::Display for AlbedoError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(AlbedoError);
 
 impl std::error::Error for AlbedoError {}
 

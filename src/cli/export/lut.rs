@@ -111,14 +111,25 @@ fn size(text: &str) -> Result<Size, String> {
 }
 
 fn name(text: &str) -> Result<String, String> {
-    let good =
-        |(i, c): (usize, char)| c == '_' || c.is_ascii_lowercase() || (i > 0 && c.is_ascii_digit());
-    if !text.is_empty() && text.char_indices().all(good) {
-        Ok(text.into())
-    } else {
-        Err(format!("\"{text}\" must be a name of a-z, 0-9 and _, as ggx_albedo"))
+    let good = |c: char| c == '_' || c.is_ascii_lowercase() || c.is_ascii_digit();
+    if !text.starts_with(|c: char| c.is_ascii_lowercase()) || !text.chars().all(good) {
+        return Err(format!(
+            "\"{text}\" must be a name of a-z, 0-9 and _ that begins with a letter, as ggx_albedo"
+        ));
     }
+    if text.contains("__") || text.ends_with('_') || text.starts_with("gl_") {
+        return Err(format!(
+            "\"{text}\" must be a name without __, _ at its end and gl_ at its start, which C++ and \
+             GLSL reserve, as ggx_albedo"
+        ));
+    }
+    Ok(text.into())
 }
+
+/// The headers of C: a file of such a name would hide one, as `math.h` from itself.
+const HEADERS: &str = "assert complex ctype errno fenv float inttypes iso646 limits locale math \
+                       setjmp signal stdalign stdarg stdatomic stdbit stdbool stdckdint stddef \
+                       stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype";
 
 impl ChannelsArg {
     fn channels(self) -> Channels {
@@ -209,6 +220,13 @@ fn of_family(args: &Args) -> Outcome {
         return Err(Failure(
             "name formats with --format, as --format ktx2,npy, or an engine with --layout".into(),
         ));
+    }
+    if formats.contains(&Format::C) && HEADERS.split(' ').any(|header| header == args.name) {
+        let name = &args.name;
+        return Err(Failure(format!(
+            "--name {name}: {name}.h is a header of C, which this one would hide; take another name, \
+             as {name}_albedo"
+        )));
     }
     super::check_writable(&args.out)?;
     note_unfitted(&specs[0]);

@@ -6,8 +6,9 @@ use super::axis::{Along, TexelAxis};
 use super::{Channel, TextureSpec};
 use crate::export::numbers::single;
 
-/// The same line in three languages, where `lut` is the texture, read with a linear filter that
-/// clamps. Variables are `sigma`, `mu`, the cosine of the view, in [1e-4, 1], and `gamma`.
+/// The same line in three languages, where `lut_texture` is the texture `lut`, read with a linear
+/// filter that clamps. Variables are `sigma`, `mu`, the cosine of the view, in [1e-4, 1], and
+/// `gamma`.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Lines {
     /// GLSL, for any version with `texture`.
@@ -47,7 +48,8 @@ pub(crate) fn coordinates(axes: &[TexelAxis], gamma: f64, [vector, suffix]: [&st
 /// The lines for a texture whose texels reach the ends of its coordinates.
 pub fn shader_lines(spec: &TextureSpec) -> Lines {
     let read = |vector: &str, suffix: &str| coordinates(&spec.axes, spec.gamma, [vector, suffix]);
-    let texture = &spec.name;
+    // With a word behind it no name is one of a language or of a variable here.
+    let texture = format!("{}_texture", spec.name);
     let (mirror, of) = if spec.is_directional() {
         ("pow(max(0.0, 1.0 - mu), 5.0)", "")
     } else {

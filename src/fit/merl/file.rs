@@ -35,7 +35,6 @@ pub(super) const LARGEST: f64 = 1e9;
 pub(super) const DARKEST: f64 = 1e-5;
 
 /// Why a file is none of the database, or cannot be fitted.
-#[derive(Debug)]
 pub enum MerlError {
     /// The operating system's error.
     Io(io::Error),
@@ -97,6 +96,8 @@ impl fmt::Display for MerlError {
         }
     }
 }
+
+microfacet_common::debug_in_words!(MerlError);
 
 impl std::error::Error for MerlError {}
 

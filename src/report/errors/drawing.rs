@@ -16,8 +16,9 @@ const LABEL: &str = "largest error";
 /// The scale that all maps of a page share: up to the next power of ten after the largest error.
 pub(super) fn scale(largest: impl Iterator<Item = f64>) -> Axis {
     let high = largest.filter(|x| x.is_finite()).fold(HIGH, f64::max);
-    // Rounding must not add a decade.
-    Axis::log(LABEL, LOW, libm::exp10((libm::log10(high) - 1e-9).ceil()))
+    // Rounding must not add a decade. The last one of doubles ends below its power of ten.
+    let decade = libm::exp10((libm::log10(high) - 1e-9).ceil());
+    Axis::log(LABEL, LOW, decade.min(f64::MAX))
 }
 
 pub(super) fn bar(scale: &Axis) -> String {
@@ -75,4 +76,11 @@ fn curve(map: &ErrorMap, scale: &Axis, label: &str) -> String {
         marks,
     };
     Figure { panels: vec![panel], columns: 1, panel: SIZE }.inline_svg(label)
+}
+
+#[test]
+fn the_scale_reaches_any_error() {
+    for (largest, decade) in [(2e-5, HIGH), (2e-3, 1e-2), (1e-2, 1e-2), (1.5e308, f64::MAX)] {
+        assert_eq!(scale([1e-9, f64::NAN, largest].into_iter()), Axis::log(LABEL, LOW, decade));
+    }
 }

@@ -76,7 +76,7 @@ pub(super) fn masking(record: &Record) -> Markup {
     let panel = Panel {
         title: "Error of G1".into(),
         x: Axis::linear("share of the configurations with a smaller error", 0.0, 1.0),
-        y: Axis::log("error of G1", LEAST, 2.0 * high).coarse(),
+        y: Axis::log("error of G1", LEAST, (2.0 * high).min(f64::MAX)).coarse(),
         curves: vec![curve],
         marks: Vec::new(),
     };

@@ -7,7 +7,8 @@ use crate::export::numbers::{as_typed, lines, single};
 use crate::export::texture::shader::Dialect;
 use crate::export::texture::{Along, Channel, shader_lines};
 
-/// The header: `NAME`, the values, and `NAME_read`, which interpolates them.
+/// The header: `NAME_texels`, the values, and `NAME_read`, which interpolates them. With a word
+/// behind it no name is one of the language, of `<math.h>` or of a variable here.
 pub(super) fn encode(made: &Made) -> String {
     let (texture, spec) = (&made.texture, &made.texture.spec);
     let name = &spec.name;
@@ -44,7 +45,7 @@ pub(super) fn encode(made: &Made) -> String {
     let _ = writeln!(text, "   {} */", shader_lines(spec).glsl);
     let guard = name.to_uppercase();
     let _ = write!(text, "#ifndef {guard}_H\n#define {guard}_H\n\n#include <math.h>\n\n");
-    let _ = writeln!(text, "static const float {name}[{}] = {{", texture.values.len());
+    let _ = writeln!(text, "static const float {name}_texels[{}] = {{", texture.values.len());
     text += &lines(texture.values.iter().map(|&x| single(x) + "f"));
     text += "\n};\n\n";
     text += &function(made, channels);
@@ -119,7 +120,7 @@ fn function(made: &Made, channels: usize) -> String {
          \x20           weight *= next ? share[axis] : 1.0f - share[axis];\n\
          \x20       }}\n\
          \x20       for (channel = 0; channel < {channels}; channel++)\n\
-         \x20           out[channel] += weight * {name}[texel * {channels} + channel];\n\
+         \x20           out[channel] += weight * {name}_texels[texel * {channels} + channel];\n\
          \x20   }}\n{result}}}\n",
         arguments.join(", "),
         coordinates.join(",\n        "),
