@@ -109,6 +109,21 @@ fn the_numbers_are_those_of_the_crate() {
     }
 }
 
+/// What is one-sided has to be told what to do on the other side, in every language.
+#[test]
+fn texts_say_that_directions_of_the_other_side_are_negated() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for (target, file) in [("c", "student_t.h"), ("wgsl", "student_t.wgsl")] {
+        ok(at, &["export", target, "--gamma", "2", "--out", target]);
+        let text = fs::read_to_string(at.join(target).join(file)).unwrap();
+        let text = text.replace("\n// ", " ").replace("\n * ", " ");
+        let rest = text.split_once("All is one-sided").expect(file).1;
+        assert!(rest.starts_with(": negate a direction on the other side"), "{file}");
+        assert!(text.contains("the alpha of GGX and Beckmann; shape gamma"), "{file}");
+    }
+}
+
 #[test]
 fn other_sets_are_exported_with_what_they_lack() {
     let folder = tempfile::tempdir().unwrap();
@@ -262,11 +277,13 @@ fn the_data_of_shaders_is_where_its_description_says() {
     let image = exr::prelude::read_first_flat_layer_from_file(at.join("student_t.exr")).unwrap();
     let layer = image.layer_data;
     assert_eq!((layer.size.x(), layer.size.y()), (width, height));
-    for (name, channel) in [("R", 0), ("G", 1)] {
-        let stored = layer.channel_data.list.iter().find(|stored| stored.name == *name).unwrap();
-        let stored: Vec<f32> = stored.sample_data.values_as_f32().collect();
-        let expected: Vec<f32> = numbers.iter().skip(channel).step_by(2).copied().collect();
-        assert_eq!(stored, expected, "{name}");
+    let plane = |channel: usize| numbers.iter().skip(channel).step_by(2).copied().collect();
+    let expected: [(&str, Vec<f32>); 3] =
+        [("B", vec![0.0; width * height]), ("G", plane(1)), ("R", plane(0))];
+    assert_eq!(layer.channel_data.list.len(), expected.len());
+    for (stored, (name, expected)) in layer.channel_data.list.iter().zip(expected) {
+        let values: Vec<f32> = stored.sample_data.values_as_f32().collect();
+        assert!(stored.name == *name && values == expected, "{name}");
     }
 
     let shapes = description["shapes"].as_object().unwrap();

@@ -354,6 +354,48 @@ fn layouts_are_read_back() {
     }
 }
 
+/// Texels at the middles are clamped beyond the last, at α = 1: this, not the cosine, darkens rough
+/// metal in three.js, whose shader divides by E.
+#[test]
+fn a_clamp_at_the_last_middle_shows_at_full_roughness() {
+    let worst = |name: &str, root: f64| {
+        let layout = Layout::find(name).unwrap();
+        let spec = &layout.specs(2.0, layout.size, false)[0];
+        let cos = |i: i32| Some(0.05 + 0.95 * f64::from(i) / 99.0);
+        let at = |i| Place { gamma: 2.0, sigma: root * root, cos: cos(i) };
+        let places: Vec<Place> = (0..100).map(at).collect();
+        let known = known(&places, spec.masking, &Stage::unwatched()).unwrap();
+        let found = Checks::at(spec, &known).of(&made(spec), |_| true);
+        found.iter().find(|found| found.quantity == "e").unwrap().relative
+    };
+    let [largest, rms] = worst("three", 1.0);
+    assert!((0.10..0.12).contains(&largest) && (0.06..0.09).contains(&rms), "{largest} {rms}");
+    for (name, root) in [("three", 31.0 / 32.0), ("cycles", 1.0)] {
+        let [largest, _] = worst(name, root);
+        assert!(largest < 0.01, "{name}: {largest}");
+    }
+}
+
+/// Images of two channels are refused by readers that want colours, such as three.js's.
+#[test]
+fn two_channels_are_written_as_three_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "lut", "--gamma", "2", "--size", "4x5", "--format", "exr,npy"];
+    ok(at, &[&export[..], &["--channels", "scale-bias", "--out", "out"]].concat());
+    let npy = fs::read(at.join("out/lut.npy")).unwrap();
+    let values: Vec<f32> = npyz::NpyFile::new(Cursor::new(npy)).unwrap().into_vec().unwrap();
+    let image = exr::prelude::read_first_flat_layer_from_file(at.join("out/lut.exr")).unwrap();
+    let channels = image.layer_data.channel_data.list;
+    let plane = |channel: usize| values.iter().skip(channel).step_by(2).copied().collect();
+    let expected: [(&str, Vec<f32>); 3] = [("B", vec![0.0; 20]), ("G", plane(1)), ("R", plane(0))];
+    assert_eq!(channels.len(), expected.len());
+    for (stored, (name, expected)) in channels.iter().zip(expected) {
+        let found: Vec<f32> = stored.sample_data.values_as_f32().collect();
+        assert!(stored.name == *name && found == expected, "{name}: {found:?}");
+    }
+}
+
 #[test]
 fn layouts_are_written() {
     let folder = tempfile::tempdir().unwrap();
@@ -366,6 +408,12 @@ fn layouts_are_written() {
     let text = fs::read_to_string(at.join("out/microfacet_tools_luts.h")).unwrap();
     assert!(text.contains("BSDL_INLINE_METHOD MiniMicrofacetGGX::Energy& "), "{text}");
     assert_eq!(text.matches("f,").count(), 256);
+    let babylon = ["babylon", "--size", "8x8", "--out", "out"];
+    let output = run(at, &[&export[..], &babylon].concat());
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    for needed in ["isRGBD = true", "noMipmap", "invertY", "CLAMP_ADDRESSMODE"] {
+        assert!(notes.contains(needed), "{notes}");
+    }
     let other = ["three", "--size", "8x8", "--gamma", "3", "--out", "out"];
     let output = run(at, &[&export[..], &other].concat());
     let notes = String::from_utf8_lossy(&output.stderr).into_owned();

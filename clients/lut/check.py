@@ -33,11 +33,21 @@ def arrays(folder, name):
 
     with OpenEXR.File(str(folder / f"{name}.exr"), separate_channels=True) as image:
         planes = image.channels()
-        names = "Y" if channels == 1 else "RG"
-        stack = np.stack([planes[channel].pixels for channel in names], axis=-1)
+        names = ["Y"] if channels == 1 else ["R", "G", "B"]
+        assert sorted(planes) == sorted(names), sorted(planes)
+        colours = np.stack([planes[channel].pixels for channel in names], axis=-1)
+        # A third colour is there for readers that want one.
+        assert not colours[..., channels:].any()
+        stack = colours[..., :channels]
         assert json.loads(image.header()["microfacet"])["axes_slowest_first"] == told["axes_slowest_first"]
     assert stack.dtype == dtype and stack.shape == (height * depth, width, channels)
     found["exr"] = stack.reshape(shape)
+
+    # three.js has the last row first, in RGBA; what is grey is in all three colours.
+    three = json.loads((folder / f"{name}.exr.json").read_text())
+    assert three["size"] == [width, height * depth], three["size"]
+    texels = np.frombuffer(base64.b64decode(three["texels"]), np.float32).reshape(height * depth, width, 4)
+    found["exr in three.js"] = texels[::-1, :, :channels].astype(dtype).reshape(shape)
 
     ktx = json.loads((folder / f"{name}.ktx2.json").read_text())
     volume = len(shape) == 4

@@ -4,7 +4,7 @@
 //! `shipped` is a folder with files of engines, as that page names them; without it, what is
 //! shipped is not measured. Each cell is the largest error and the root mean square, as the engine
 //! reads its table: over √σ = 1/400 … 1 and 500 cosines from 1e-3 to 1; the largest error also over
-//! 120 cosines that are even in logarithms up to 0.1.
+//! 120 cosines that are even in logarithms up to 0.1. Relative errors are shares of what is true.
 
 mod shipped;
 
@@ -38,6 +38,37 @@ fn places() -> Vec<Place> {
     rough.flat_map(of).collect()
 }
 
+/// What a table is of.
+struct What {
+    title: &'static str,
+    quantity: &'static str,
+    relative: bool,
+    least_cos: f64,
+    least_sigma: f64,
+}
+
+impl What {
+    fn counts(&self, place: &Place) -> bool {
+        place.cos.is_some_and(|cos| cos >= self.least_cos) && place.sigma >= self.least_sigma
+    }
+}
+
+const ERRORS: What =
+    What { title: "E", quantity: "e", relative: false, least_cos: HORIZON, least_sigma: 0.0 };
+const TABLES: [What; 5] = [
+    ERRORS,
+    What { title: "E, cos θ ≥ 0.02", least_cos: ABOVE, ..ERRORS },
+    What { title: "bias", quantity: "bias", ..ERRORS },
+    What { title: "E, cos θ ≥ 0.02, relative", relative: true, least_cos: ABOVE, ..ERRORS },
+    What {
+        title: "E, cos θ ≥ 0.02, α = 1, relative",
+        relative: true,
+        least_cos: ABOVE,
+        least_sigma: 1.0,
+        ..ERRORS
+    },
+];
+
 /// Textures as they are measured: with the places of the largest error, and those of the mean.
 struct Judge {
     all: HashMap<&'static str, Vec<Known>>,
@@ -53,18 +84,18 @@ impl Judge {
         Self { all: Masking::ALL.map(known).into(), ours: HashMap::new() }
     }
 
-    /// Largest error and root mean square of a quantity from some cosine on.
-    fn of(&self, texture: &Texture, quantity: &str, least: f64) -> String {
+    /// Largest error and root mean square.
+    fn of(&self, texture: &Texture, what: &What) -> String {
         let all = &self.all[texture.spec.masking.name()];
-        let find = |found: Vec<Deviation>| {
-            found.into_iter().find(|found| found.quantity == quantity).expect("a quantity")
+        let found = |known: &[Known]| {
+            let found = Checks::at(&texture.spec, known).of(texture, |place| what.counts(place));
+            let of = |found: &Deviation| found.quantity == what.quantity;
+            let found = found.into_iter().find(of).expect("a quantity");
+            if what.relative { found.relative } else { [found.largest, found.rms] }
         };
-        let within = |place: &Place| place.cos.is_some_and(|cos| cos >= least);
-        let largest = find(Checks::at(&texture.spec, all).of(texture, within)).largest;
         let even: Vec<Known> =
             all.chunks(EVEN + LOW).flat_map(|row| row[..EVEN].to_vec()).collect();
-        let rms = find(Checks::at(&texture.spec, &even).of(texture, within)).rms;
-        format!("{largest:.1e} / {rms:.1e}")
+        format!("{:.1e} / {:.1e}", found(all)[0], found(&even)[1])
     }
 
     /// Our own texture of the same size, fitted.
@@ -105,21 +136,21 @@ fn main() {
         let [exact, fitted] = [false, true].map(|fitted| written(layout, fitted));
         (layout, [found, Some(exact), Some(fitted), Some(judge.ours(layout, Channels::ScaleBias))])
     });
-    for (quantity, least) in [("e", HORIZON), ("e", ABOVE), ("bias", HORIZON)] {
-        println!("\n{quantity}, cos θ ≥ {least}:\n");
+    for what in &TABLES {
+        println!("\n{}:\n", what.title);
         println!("| layout | texels | shipped | exact values | fitted values | our coordinates |");
         println!("| --- | --- | --- | --- | --- | --- |");
         for (layout, textures) in &tables {
             let has = |texture: &Texture| {
                 let spec = &texture.spec;
-                quantity == "e" || spec.channels.iter().any(|channel| channel.name() == "bias")
+                what.quantity == "e" || spec.channels.iter().any(|channel| channel.name() == "bias")
             };
-            if quantity == "bias" && !textures[1].as_ref().is_some_and(has) {
+            if what.quantity == "bias" && !textures[1].as_ref().is_some_and(has) {
                 continue;
             }
             let [rows, columns] = layout.size;
             let cell = |texture: &Option<Texture>| {
-                let cell = texture.as_ref().map(|texture| judge.of(texture, quantity, least));
+                let cell = texture.as_ref().map(|texture| judge.of(texture, what));
                 cell.unwrap_or_else(|| "–".into())
             };
             let cells: Vec<String> = textures.iter().map(cell).collect();

@@ -4,7 +4,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
-use microfacet_sampler::{Masking, MicrofacetDistribution, StudentT, Tables};
+use microfacet_sampler::{Bsdf, Dielectric, Masking, MicrofacetDistribution, StudentT, Tables};
 use proptest::prelude::*;
 
 fn material() -> impl Strategy<Value = StudentT> {
@@ -100,4 +100,61 @@ proptest! {
             prop_assert!(close(t.d(m), d as f32, 1e-5), "{} {d}", t.d(m));
         }
     }
+}
+
+/// A surface has the same facets from below: those of the negated view, which a dielectric reflects
+/// inside with their density, and not those of its mirror image.
+#[test]
+fn views_of_the_other_side_are_negated() {
+    let lobe = Tables::embedded().student_t(0.5, 2.7).unwrap();
+    let glass = Dielectric::new(lobe.clone(), 1.5).unwrap();
+    let v = Vec3::new(0.6, 0.0, -0.8);
+    let image = v * Vec3::new(1.0, 1.0, -1.0);
+    let mut seen = 0;
+    for m in (0..400).map(|i| at(0.02 * (i % 20) as f32, 0.3 * (i / 20) as f32)) {
+        let l = 2.0 * v.dot(m) * m - v;
+        // All light is reflected below the critical angle's cosine of sqrt(1 - 1/1.5^2).
+        if -v.dot(m) > 0.74 || v.dot(m) > -0.01 || l.z > -0.01 {
+            continue;
+        }
+        let density = glass.pdf(v, l) * 4.0 * -v.dot(m);
+        let [negated, mirrored] = [-v, image].map(|v| lobe.visible_normal_pdf(v, m));
+        assert!(close(density, negated, 1e-4), "{m}: {density} is not {negated}");
+        assert!(!close(density, mirrored, 0.03), "{m}: {density} is {mirrored}");
+        seen += 1;
+    }
+    assert!(seen > 30 && lobe.g1(-v) == lobe.g1(image), "{seen}");
+    // The example of docs/export.md.
+    let m = Vec3::new(-0.5, 0.0, 0.75_f32.sqrt());
+    let [negated, mirrored] = [-v, image].map(|v| lobe.visible_normal_pdf(v, m));
+    assert!(
+        (negated - 0.58).abs() < 5e-3 && (mirrored - 0.23).abs() < 5e-3,
+        "{negated} {mirrored}"
+    );
+}
+
+/// Where densities are subnormal f cos over the density has lost its digits; the weight has not.
+#[test]
+fn weights_keep_their_digits_in_the_far_tails_of_beckmann() {
+    let mut worst = 0.0_f32;
+    for sigma in [1e-3, 0.05] {
+        let lobe = Tables::embedded().student_t(sigma, f64::INFINITY).unwrap();
+        for i in 0..20_000 {
+            let v = at(1.5 * (i as f32 * 0.618_034).fract(), i as f32);
+            let along = if i % 2 == 0 { 0.0 } else { 1.0_f32.next_down() };
+            let u = [along, (i as f32 * 0.754_877_7).fract()];
+            let m = lobe.sample_visible_normal(v, if i % 4 < 2 { u } else { [u[1], u[0]] });
+            let l = 2.0 * v.dot(m) * m - v;
+            if l.z > 0.0 {
+                let f_cos = lobe.d(m) * lobe.g2(v, l, Masking::HeightCorrelated) / (4.0 * v.z);
+                let pdf = lobe.visible_normal_pdf(v, m) / (4.0 * v.dot(m));
+                if pdf > 0.0 {
+                    worst = worst.max(f_cos / pdf);
+                }
+                let weight = lobe.reflection_weight(v, l, Masking::HeightCorrelated);
+                assert!((0.0..=1.0).contains(&weight), "{v} {l}: {weight}");
+            }
+        }
+    }
+    assert!(worst > 1.001, "{worst}: docs/export.md says otherwise");
 }

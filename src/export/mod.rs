@@ -24,6 +24,8 @@ mod shader;
 mod shape;
 pub mod texture;
 
+use crate::store;
+
 pub use albedo::AlbedoTable;
 pub use members::Part;
 pub use shader::{Language, Storage, texture_rows};
@@ -46,6 +48,20 @@ pub struct ExportFile {
     pub name: String,
     /// Its bytes; text is UTF-8.
     pub contents: Vec<u8>,
+}
+
+/// Numbers as an OpenEXR image: one plane as the luminance Y, two or three as R, G and B. A third
+/// that is missing is 0: three.js, and whatever wants colours, refuses an image without it.
+fn open_exr(
+    name: &str,
+    size: [usize; 2],
+    mut planes: Vec<Vec<f32>>,
+    half: bool,
+    description: Option<&str>,
+) -> Result<Vec<u8>, String> {
+    let names = if planes.len() == 1 { &["Y"][..] } else { &["R", "G", "B"] };
+    planes.resize(names.len(), vec![0.0; size[0] * size[1]]);
+    store::encode_channels(name, size, names.iter().copied().zip(planes), half, description)
 }
 
 /// The files of a target. Those with functions, which do not depend on the shapes, come first. Then

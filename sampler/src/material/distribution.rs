@@ -70,8 +70,11 @@ impl Facet {
 ///
 /// Directions are unit vectors in the tangent frame, n = +z. `v` is the view, `l` the light, `m` a
 /// microfacet normal; densities are per steradian. Everything is one-sided: views and lights at or
-/// below the horizon have G1 = 0 and Λ = ∞, so flip a direction on the other side of a transmitting
-/// surface. Sampling takes a view below the horizon at it; densities are for views above it.
+/// below the horizon have G1 = 0 and Λ = ∞. So negate a direction on the other side of a
+/// transmitting surface first, v ↦ −v and l ↦ −l: facets stay where they are, and m above the
+/// horizon. Its mirror image in the plane z = 0 sees other facets: the density of visible normals
+/// is another there, and for a tilted lobe masking is, too. Sampling takes a view below the horizon
+/// at it; densities are for views above it.
 ///
 /// ```
 /// use microfacet_sampler::glam::Vec3;
@@ -112,7 +115,8 @@ pub trait MicrofacetDistribution {
     /// The weight f·cos θ_l/pdf of a light reflected off a [sampled](Self::sample_visible_normal)
     /// visible normal, without Fresnel: G2(v, l)/G1(v) ∈ [0, 1].
     ///
-    /// Computed as G2/G1; dividing f·cos θ_l by the density would overflow near the horizon. 0 when
+    /// Computed as G2/G1; dividing f·cos θ_l by the density would overflow near the horizon, and
+    /// has few digits, or none, where both are subnormal, as in the far tails of Beckmann. 0 when
     /// `v` or `l` is at or below the horizon.
     #[inline]
     fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {

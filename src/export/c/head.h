@@ -2,9 +2,10 @@
  *
  * student_t.h: microfacet lobes of the Student-t family, for C99, C++11, CUDA and HIP.
  *
- * The Student-t distribution of slopes (roughness sigma, shape gamma > 3/2; Ribardiere et al. 2017,
- * doi:10.1111/cgf.13137) contains GGX (gamma = 2) and Beckmann (gamma = infinity). This file has
- * the functions, and the file of a shape its tables, such as student_t_gamma_3.h for gamma = 3:
+ * The Student-t distribution of slopes (roughness sigma, the alpha of GGX and Beckmann; shape gamma
+ * > 3/2; Ribardiere et al. 2017, doi:10.1111/cgf.13137) contains GGX (gamma = 2) and Beckmann
+ * (gamma = infinity). This file has the functions, and the file of a shape its tables, such as
+ * student_t_gamma_3.h for gamma = 3:
  *
  *     #include "student_t_gamma_3.h"
  *
@@ -19,14 +20,17 @@
  *
  * Towards a given light l, normalise m = v + l: f cos = F D(m) G2(v, l)/(4 v_z), and its density is
  * student_t_reflection_pdf of that m. Densities are over all lights. Those below the horizon have
- * their share of them, and the weight 0. A surface with sigma below 1e-3, or below 1e-4 for gamma <
- * 1.6, is better rendered as a mirror.
+ * their share of them, and the weight 0. Take the weight of a sampled light from
+ * student_t_reflection_weight: f cos over the density has few digits, or none, where both are
+ * subnormal, as in the far tails of Beckmann. A surface with sigma below 1e-3, or below 1e-4 for
+ * gamma < 1.6, is better rendered as a mirror.
  *
  * Frame. Directions are float[3], unit vectors in the tangent frame, in which the normal of the
  * surface is (0, 0, 1): v to the viewer, l to the light, m a microfacet normal, w any of them.
  * sigma is {sigma_x, sigma_y}, the alpha of GGX and Beckmann along the x and the y axis. Densities
- * are per steradian. All is one-sided: mirror a direction on the other side of a transmitting
- * surface at the surface first.
+ * are per steradian. All is one-sided: negate a direction on the other side of a transmitting
+ * surface first, v -> -v and l -> -l. Facets stay where they are, and m above the horizon. A mirror
+ * image {v_x, v_y, -v_z} sees other facets: its G1 and G2 are those of -v, its densities are not.
  *
  * Domain. No function reads outside its tables. With directions of length 1, null, or with NaN
  * among their coordinates, none but student_t_reflect returns NaN.
@@ -58,12 +62,15 @@
  * products and sums, normals of gamma <= 2 agree to 1e-3 only (-ffp-contract=off prevents it). Do
  * not use -ffast-math: densities may be lost, and what is said of NaN no longer holds.
  *
- * Copies. Tables are static: each translation unit that uses a shape has its own copy, at another
- * address, 55 kB or so. In a large program wrap what you need in one translation unit.
+ * Copies. From C++17 on tables and functions are inline: a program has one copy of a shape, at one
+ * address, all its translation units must include the same export of it, and inline functions and
+ * classes of other headers may use both. In C and in C++ before they are static: each translation
+ * unit that uses a shape has its own copy, at another address, 55 kB or so, and what is inline in a
+ * header of C++ must not use them. There wrap what you need in one translation unit.
  *
- * CUDA and HIP. All functions are for host and device. In device code tables are in device memory.
- * A shape has one address on the host and another on the device: take it where it is used, and do
- * not pass it to a kernel. NVRTC and hipRTC work, too.
+ * CUDA and HIP. All functions are for host and device. In device code tables are in device memory,
+ * and static whatever the standard. A shape has one address on the host and another on the device:
+ * take it where it is used, and do not pass it to a kernel. NVRTC and hipRTC work, too.
  */
 #ifndef STUDENT_T_H
 #define STUDENT_T_H
@@ -76,18 +83,27 @@
 #endif
 
 /* Qualifiers of functions and of tables; define them beforehand to have others. */
+#if (defined(__cplusplus) && __cplusplus >= 201703L) || \
+    (defined(_MSVC_LANG) && _MSVC_LANG >= 201703L)
+#define STUDENT_T_IMPL_INLINE inline
+#define STUDENT_T_IMPL_CONST inline const
+#else
+#define STUDENT_T_IMPL_INLINE static inline
+#define STUDENT_T_IMPL_CONST static const
+#endif
 #ifndef STUDENT_T_FUNCTION
 #if defined(__CUDACC__) || defined(__HIPCC__) || defined(__HIP__)
-#define STUDENT_T_FUNCTION static inline __host__ __device__
+#define STUDENT_T_FUNCTION STUDENT_T_IMPL_INLINE __host__ __device__
 #else
-#define STUDENT_T_FUNCTION static inline
+#define STUDENT_T_FUNCTION STUDENT_T_IMPL_INLINE
 #endif
 #endif
 #ifndef STUDENT_T_DATA
 #if defined(__CUDA_ARCH__) || (defined(__HIP_DEVICE_COMPILE__) && __HIP_DEVICE_COMPILE__)
+/* nvcc takes no inline variables of a device where it compiles a whole program. */
 #define STUDENT_T_DATA static __device__ const
 #else
-#define STUDENT_T_DATA static const
+#define STUDENT_T_DATA STUDENT_T_IMPL_CONST
 #endif
 #endif
 

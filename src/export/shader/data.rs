@@ -7,9 +7,8 @@ use serde::Serialize;
 
 use super::super::members::{Member, PREFIXES, Part, Value, lists, parts};
 use super::super::numbers::as_typed;
-use super::super::{ExportFile, Shape};
+use super::super::{ExportFile, Shape, open_exr};
 use super::NAME;
-use crate::store;
 
 /// Raised whenever the order of members or tables changes.
 pub(super) const LAYOUT: u32 = 1;
@@ -94,10 +93,9 @@ pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     };
     let json = serde_json::to_string_pretty(&description).expect("names and finite numbers");
     let bytes = pairs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
-    let channel = |i: usize| pairs.iter().map(|pair| pair[i]).collect();
-    let channels = [("R", channel(0)), ("G", channel(1))];
-    let image = store::encode_channels(NAME, [WIDTH, height], channels, false, None)
-        .expect("finite numbers");
+    let planes = [0, 1].map(|i| pairs.iter().map(|pair| pair[i]).collect());
+    let image =
+        open_exr(NAME, [WIDTH, height], planes.into(), false, None).expect("finite numbers");
     vec![
         ExportFile { name: description.file, contents: bytes },
         ExportFile { name: format!("{NAME}.json"), contents: (json + "\n").into() },

@@ -39,6 +39,9 @@ pub struct Deviation {
     pub rms: f64,
     /// The largest, if the filter's shares are multiples of 1/256, as those of much hardware.
     pub coarse: f64,
+    /// The largest and the root mean square as shares of what is true, by which shaders may divide;
+    /// without meaning where that may be 0, as the bias.
+    pub relative: [f64; 2],
 }
 
 /// A place with what is true there.
@@ -157,24 +160,28 @@ impl Checks {
         let mut found: Vec<Deviation> = Vec::new();
         for (quantity, of) in quantities {
             let (mut worst, mut at, mut coarse, mut sum) = (-1.0, None, 0.0_f64, 0.0);
+            let (mut share, mut shares) = (0.0_f64, 0.0);
             let mut count = 0;
             for (known, tap) in self.points.iter().filter(|(known, _)| counts(&known.place)) {
                 let error = |read: fn(&Filter, &[f64], Tap) -> f64| {
                     let read = |channel: usize| read(&self.filter, &planes[channel], *tap);
                     let (got, want) = of(&read, known.truth);
-                    (got - want).abs()
+                    ((got - want).abs(), want)
                 };
-                let fine = error(Filter::read);
-                coarse = coarse.max(error(Filter::read_coarsely));
+                let (fine, want) = error(Filter::read);
+                coarse = coarse.max(error(Filter::read_coarsely).0);
                 sum += fine * fine;
+                share = share.max(fine / want);
+                shares += (fine / want).powi(2);
                 count += 1;
                 if fine > worst {
                     (worst, at) = (fine, Some(known.place));
                 }
             }
             if let Some(at) = at {
-                let rms = (sum / f64::from(count)).sqrt();
-                found.push(Deviation { quantity, largest: worst, at, rms, coarse });
+                let [rms, mean] = [sum, shares].map(|sum| (sum / f64::from(count)).sqrt());
+                let relative = [share, mean];
+                found.push(Deviation { quantity, largest: worst, at, rms, coarse, relative });
             }
         }
         found

@@ -33,6 +33,7 @@ fn of_the_default_set_each_table_has_a_map_that_is_small_and_keeps_to_its_certif
         assert!(figures.iter().any(|figure| figure.contains(&name)), "{name}");
     }
     for figure in figures {
+        assert!(figure.contains("; measured at ") && !figure.contains(" errors in "), "{figure}");
         assert!(figure.len() < 6000, "{} bytes: {figure}", figure.len());
         assert!(!figure.contains("more than its certificate"), "{figure}");
     }

@@ -124,7 +124,7 @@ pub(super) fn map(table: &Table, map: &ErrorMap) -> String {
     if !over.is_empty() {
         text += &format!(", over all {}", over.join(" and "));
     }
-    text += &format!("; {} errors in {grid}.", map.points);
+    text += &format!("; measured at {} points, shown in {grid}.", map.points);
     if largest > worst_error(table) {
         text += " That is more than its certificate promises: the search that ended the bake went \
                  by another way.";

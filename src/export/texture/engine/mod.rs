@@ -161,7 +161,10 @@ pub const LAYOUTS: [Layout; 10] = [
         name: "babylon",
         engine: "Babylon.js",
         size: [256, 256],
-        advice: "set it as the scene's environmentBRDFTexture; the third channel, cloth, is 0",
+        advice: "load it by new Texture(url, scene, true, false), the flags noMipmap and invertY, \
+                 with isRGBD = true, which decodes it, and CLAMP_ADDRESSMODE as wrapU and wrapV, and \
+                 set it as the scene's environmentBRDFTexture before the first material of PBR is \
+                 made; the third channel, cloth, is 0",
         axes: |size| middles(ROOT, COSINE, size),
         masking: CORRELATED,
         channels: BIAS_E_CLOTH,

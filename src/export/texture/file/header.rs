@@ -44,16 +44,24 @@ pub(super) fn encode(made: &Made) -> String {
     );
     let _ = writeln!(text, "   {} */", shader_lines(spec).glsl);
     let guard = name.to_uppercase();
-    let _ = write!(text, "#ifndef {guard}_H\n#define {guard}_H\n\n#include <math.h>\n\n");
-    let _ = writeln!(text, "static const float {name}_texels[{}] = {{", texture.values.len());
+    let _ = write!(
+        text,
+        "#ifndef {guard}_H\n#define {guard}_H\n\n#include <math.h>\n\n\
+         /* From C++17 on a program has one copy, which inline functions may use. */\n\
+         #if (defined(__cplusplus) && __cplusplus >= 201703L) || \\\n    \
+         (defined(_MSVC_LANG) && _MSVC_LANG >= 201703L)\n\
+         #define {guard}_DATA inline const\n#define {guard}_FUNCTION inline\n#else\n\
+         #define {guard}_DATA static const\n#define {guard}_FUNCTION static inline\n#endif\n\n"
+    );
+    let _ = writeln!(text, "{guard}_DATA float {name}_texels[{}] = {{", texture.values.len());
     text += &lines(texture.values.iter().map(|&x| single(x) + "f"));
     text += "\n};\n\n";
-    text += &function(made, channels);
+    text += &function(made, channels, &guard);
     let _ = writeln!(text, "\n#endif");
     text
 }
 
-fn function(made: &Made, channels: usize) -> String {
+fn function(made: &Made, channels: usize, guard: &str) -> String {
     let spec = &made.texture.spec;
     let name = &spec.name;
     let mut arguments = Vec::new();
@@ -97,7 +105,7 @@ fn function(made: &Made, channels: usize) -> String {
     };
     format!(
         "/* {meaning} between\n   the texels; arguments beyond the ends, and NaN, are taken there. C99. */\n\
-         static inline {kind} {name}_read({}{parameter}) {{\n{clamps}\
+         {guard}_FUNCTION {kind} {name}_read({}{parameter}) {{\n{clamps}\
          \x20   const float c[{axes}] = {{\n        {}\n    }};\n\
          \x20   const int n[{axes}] = {{ {} }};\n\
          \x20   int first = 0, stride[{axes}], corner, axis, channel;\n\

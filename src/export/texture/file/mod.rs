@@ -9,8 +9,7 @@ mod npy;
 use half::f16;
 
 use super::{Deviation, Texture};
-use crate::export::ExportFile;
-use crate::store;
+use crate::export::{ExportFile, open_exr};
 
 /// A format of files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -123,16 +122,6 @@ fn bytes(texture: &Texture) -> Vec<u8> {
 
 pub(super) fn exr(texture: &Texture, description: Option<&str>) -> Result<Vec<u8>, String> {
     let [width, height, depth] = extent(texture);
-    let names = match texture.spec.channels.len() {
-        1 => &["Y"][..],
-        channels => &["R", "G", "B"][..channels],
-    };
-    let channels = names.iter().enumerate().map(|(i, name)| (*name, texture.plane(i).collect()));
-    store::encode_channels(
-        &texture.spec.name,
-        [width, height * depth],
-        channels,
-        texture.half,
-        description,
-    )
+    let planes = (0..texture.spec.channels.len()).map(|i| texture.plane(i).collect()).collect();
+    open_exr(&texture.spec.name, [width, height * depth], planes, texture.half, description)
 }

@@ -41,6 +41,7 @@ class Shape:
     Directions are unit vectors of the tangent frame, in which the normal of the surface is
     (0, 0, 1). ``sigma`` is (sigma_x, sigma_y), the alpha of GGX and Beckmann, in [1e-4, 1e3].
     All is one-sided: what is asked of a direction below the horizon has no meaning, but is finite.
+    Negate a direction on the other side of a transmitting surface; facets stay where they are.
     Gamma is a constant: formulas of GGX (2) and Beckmann (inf) replace tables where they can.
     """
 
