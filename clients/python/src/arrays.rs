@@ -6,9 +6,13 @@ use std::ops::Range;
 use std::process;
 use std::sync::OnceLock;
 
-use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::{PySlice, PyTuple};
 use rayon::prelude::*;
 
 /// Items that one call of a function is given, so that it may work on several at once.
@@ -42,36 +46,54 @@ pub(crate) fn has_threads() -> bool {
 
 /// An argument: an array whose last axis has N numbers, or for N = 1 has any number of axes.
 pub(crate) struct Input<'py, T: Element, const N: usize> {
+    /// Its items in C's order, without the axes along which one is repeated.
     array: PyReadonlyArrayDyn<'py, T>,
     batch: Vec<usize>,
+    /// Items from one to the next along each axis of `batch`; 0 where one is repeated.
+    strides: Vec<usize>,
 }
 
 impl<'py, T: Element + Copy + Send + Sync, const N: usize> Input<'py, T, N> {
     /// Converts anything that NumPy takes as an array; `name` is that of the argument.
     pub(crate) fn new(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
         let py = value.py();
-        // In C's order, which its numbers are taken in.
-        let arguments = (value, T::get_dtype(py), "C");
         let numpy = py.import("numpy")?;
-        if numpy.call_method1("iscomplexobj", (value,))?.is_truthy()? {
+        let given = numpy.call_method1("asarray", (value,))?.cast_into::<PyUntypedArray>()?;
+        if given.dtype().kind() == b'c' {
             return Err(PyValueError::new_err(format!("{name} must be real, and is complex")));
         }
-        let array = numpy.call_method1("asarray", arguments)?;
-        let array = array.cast_into::<PyArrayDyn<T>>()?.readonly();
-        let shape = array.shape();
-        let batch = match (N, shape) {
-            (1, _) => shape.to_vec(),
-            (_, [batch @ .., last]) if *last == N => batch.to_vec(),
-            _ => {
-                let last = if N == 3 { "x, y, z" } else { "u1, u2" };
-                return Err(PyValueError::new_err(format!(
-                    "{name} has the shape {}: its last axis must have {N} numbers, as in [{last}] \
-                     or an array of shape (N, {N})",
-                    shown(shape)
-                )));
+        let shape = given.shape();
+        let (batch, last) = shape.split_at(shape.len().saturating_sub((N > 1).into()));
+        let axes = || batch.iter().zip(given.strides());
+        let repeats = |(&n, &stride): (&usize, &isize)| n == 1 || n > 1 && stride == 0;
+        let index = axes().map(|axis| match repeats(axis) {
+            true => Ok(0_usize.into_pyobject(py)?.into_any()),
+            false => Ok(PySlice::full(py).into_any()),
+        });
+        let once = given.get_item(PyTuple::new(py, index.collect::<PyResult<Vec<_>>>()?)?)?;
+        // A copy only where it has another type, order or alignment.
+        let array = numpy.call_method1("asarray", (once, T::get_dtype(py), "C"))?;
+        let mut array = array.cast_into::<PyArrayDyn<T>>()?;
+        if !array.is_aligned() {
+            array = array.call_method0("copy")?.cast_into()?;
+        }
+        if N > 1 && last != [N] {
+            let last = if N == 3 { "x, y, z" } else { "u1, u2" };
+            return Err(PyValueError::new_err(format!(
+                "{name} has the shape {}: its last axis must have {N} numbers, as in [{last}] or an \
+                 array of shape (N, {N})",
+                shown(shape)
+            )));
+        }
+        let mut next = 1;
+        let mut strides = vec![0; batch.len()];
+        for (stride, axis) in strides.iter_mut().zip(axes()).rev() {
+            if !repeats(axis) {
+                *stride = next;
+                next *= axis.0;
             }
-        };
-        Ok(Self { array, batch })
+        }
+        Ok(Self { array: array.readonly(), batch: batch.to_vec(), strides })
     }
 
     /// Its shape, without the axis of components.
@@ -79,47 +101,57 @@ impl<'py, T: Element + Copy + Send + Sync, const N: usize> Input<'py, T, N> {
         &self.batch
     }
 
-    /// All its numbers.
-    pub(crate) fn all(&self) -> Vec<T> {
-        self.array.as_array().iter().copied().collect()
+    /// Its first K items, which must be there.
+    pub(crate) fn first<const K: usize>(&self) -> [[T; N]; K] {
+        let values = self.values(&self.batch);
+        let items = values.chunk(0..K);
+        array::from_fn(|i| items[i])
     }
 
-    /// Its numbers, repeated along the axes that it lacks.
+    /// Its items, repeated along the axes that it lacks.
     fn values(&self, batch: &[usize]) -> Values<'_, T, N> {
-        if self.batch.iter().all(|&n| n == 1) {
-            return Values::One(
-                self.all().try_into().unwrap_or_else(|_| unreachable!("N numbers")),
-            );
+        let items = self.array.as_slice().expect("it is in C's order and aligned").as_chunks().0;
+        let lacks = batch.len() - self.strides.len();
+        let mut axes: Vec<(usize, usize)> = Vec::new();
+        for (i, &n) in batch.iter().enumerate().rev() {
+            let stride = i.checked_sub(lacks).map_or(0, |i| self.strides[i]);
+            match axes.last_mut() {
+                _ if n == 1 => {}
+                // No result is as large as what saturates.
+                Some((inner, of)) if stride == *of * *inner => *inner = inner.saturating_mul(n),
+                _ => axes.push((n, stride)),
+            }
         }
-        if self.batch == batch
-            && let Ok(values) = self.array.as_slice()
-        {
-            return Values::Each(Cow::Borrowed(values.as_chunks().0));
-        }
-        let mut shape = batch.to_vec();
-        if N > 1 {
-            shape.push(N);
-        }
-        let own = self.array.as_array();
-        let all = own.broadcast(shape).expect("the shapes fit");
-        let mut numbers = all.iter().copied();
-        let mut item = || array::from_fn(|_| numbers.next().expect("N numbers an item"));
-        Values::Each(Cow::Owned((0..batch.iter().product()).map(|_| item()).collect()))
+        Values { items, axes }
     }
 }
 
-/// The items of an argument: one for each result, or the same for all.
-enum Values<'a, T: Clone, const N: usize> {
-    Each(Cow<'a, [[T; N]]>),
-    One([T; N]),
+/// The items of an argument, one for each result.
+struct Values<'a, T, const N: usize> {
+    items: &'a [[T; N]],
+    /// Lengths and strides of the axes of results, the innermost first; what can be is one axis.
+    axes: Vec<(usize, usize)>,
 }
 
 impl<T: Copy, const N: usize> Values<'_, T, N> {
     fn chunk(&self, range: Range<usize>) -> Cow<'_, [[T; N]]> {
-        match self {
-            Self::Each(all) => Cow::Borrowed(&all[range]),
-            Self::One(one) => Cow::Owned(vec![*one; range.len()]),
+        if let [(_, 1)] = self.axes[..] {
+            return Cow::Borrowed(&self.items[range]);
         }
+        let (inner, step) = self.axes.first().copied().unwrap_or((1, 0));
+        let mut chunk = Vec::with_capacity(range.len());
+        let mut i = range.start;
+        while i < range.end {
+            let (mut rest, mut at) = (i, 0);
+            for (n, stride) in &self.axes {
+                at += rest % n * stride;
+                rest /= n;
+            }
+            let run = (inner - i % inner).min(range.end - i);
+            chunk.extend((0..run).map(|k| self.items[at + k * step]));
+            i += run;
+        }
+        Cow::Owned(chunk)
     }
 }
 
@@ -169,7 +201,9 @@ where
     if M > 1 {
         shape.push(M);
     }
-    let array = PyArrayDyn::<T>::zeros(py, shape, false);
+    // By NumPy's own function, which raises: too many axes, or too little memory.
+    let array = py.import("numpy")?.call_method1("zeros", (shape, T::get_dtype(py)))?;
+    let array = array.cast_into::<PyArrayDyn<T>>()?;
     {
         let mut writing = array.readwrite();
         let out = writing.as_slice_mut().expect("a new array is contiguous").as_chunks_mut().0;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bytemuck::{cast_slice, cast_slice_mut};
 use glam::Vec3;
 use microfacet_sampler::{Albedo, Lobe, LobeKey, MicrofacetDistribution, Skew, Tables};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 
 use crate::arrays::{Cost, Input, each, each2, map, map2};
@@ -219,7 +220,9 @@ impl PyLobe {
         let v = v.as_array();
         let (v, u) = (v.as_slice().map(|v| v.as_chunks().0), u.as_slice()?.as_chunks().0);
         let v: &[[f32; 3]] = v.ok_or_else(|| refused("v must be contiguous"))?;
-        let mut m = vec![Vec3::ZERO; v.len()];
+        let mut m = Vec::new();
+        m.try_reserve_exact(v.len()).map_err(|why| PyMemoryError::new_err(why.to_string()))?;
+        m.resize(v.len(), Vec3::ZERO);
         let start = std::time::Instant::now();
         self.lobe.sample_batch(cast_slice(v), u, &mut m).map_err(refused)?;
         Ok(start.elapsed().as_secs_f64())
@@ -260,8 +263,8 @@ pub(crate) fn view<'py, T: numpy::Element + Copy + Send + Sync + Into<f64>>(
         (Some(v), None) => {
             let v = Input::<T, 3>::new("v", v)?;
             // Three cosines look like one direction, though rarely of length 1.
-            let square = |v: Vec<T>| v.into_iter().map(|x| x.into().powi(2)).sum::<f64>();
-            if v.batch().is_empty() && (square(v.all()) - 1.0).abs() > 1e-3 {
+            let square = |[v]: [[T; 3]; 1]| v.map(|x| x.into().powi(2)).iter().sum::<f64>();
+            if v.batch().is_empty() && (square(v.first()) - 1.0).abs() > 1e-3 {
                 return Err(refused(
                     "v is no unit vector; an array of cosines goes into cos_theta",
                 ));

@@ -50,10 +50,10 @@ pub(crate) fn numbers<const N: usize>(
     meaning: &str,
 ) -> PyResult<[f64; N]> {
     let input = Input::<f64, 1>::new(name, value)?;
-    match (input.batch(), &input.all()[..]) {
-        ([], [one]) => Ok([*one; N]),
-        ([n], all) if *n == N => Ok(std::array::from_fn(|i| all[i])),
-        (shape, _) => Err(refused(format!(
+    match input.batch() {
+        [] => Ok([input.first::<1>()[0][0]; N]),
+        [n] if *n == N => Ok(input.first().map(|[x]| x)),
+        shape => Err(refused(format!(
             "{name} has the shape {}: it must be a number, or {meaning}",
             shown(shape)
         ))),
@@ -68,8 +68,8 @@ pub(crate) fn sigma(value: &Bound<'_, PyAny>) -> PyResult<Roughness> {
 /// Three turns; a number would stand for none of them.
 pub(crate) fn angles(value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
     let input = Input::<f64, 3>::new("theta", value)?;
-    match (input.batch(), &input.all()[..]) {
-        ([], [x, y, z]) => Ok([*x, *y, *z]),
+    match input.batch() {
+        [] => Ok(input.first::<1>()[0]),
         _ => Err(refused("theta must be three angles (x, y, z) in radians")),
     }
 }

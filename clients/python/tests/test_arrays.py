@@ -2,6 +2,7 @@
 
 import math
 import multiprocessing
+import subprocess
 import sys
 import threading
 import time
@@ -95,6 +96,140 @@ def test_corners_give_numbers():
             m = lobe.sample_visible_normal(v[:, None, :], u)
             assert np.isfinite(m[:5]).all() and (m[:5, :, 2] > 0).all()
             assert np.isfinite(lobe.g1(v)).all() and np.isfinite(lobe.d(m[:5])).all()
+
+
+def any_layout(rng: np.random.Generator, shape: "tuple[int, ...]") -> np.ndarray:
+    """Numbers of a shape, in one of the ways in which memory may hold them."""
+    order = rng.permutation(len(shape))
+    dtype = rng.choice(["<f4", ">f4", "<f8"])
+    x = rng.random([shape[i] for i in order]).astype(dtype).transpose(np.argsort(order))
+    way = rng.choice(["as it is", "reversed", "repeated", "not aligned"])
+    if way == "reversed":
+        return np.flip(x)
+    if way == "repeated" and shape and x.size:
+        return np.broadcast_to(x.take([0], rng.integers(len(shape))), shape)
+    if way == "not aligned":
+        odd = np.zeros(x.nbytes + 1, np.uint8)[1:].view(dtype).reshape(shape)
+        odd[...] = x
+        return odd
+    return x
+
+
+def test_arguments_of_every_shape_and_layout_broadcast():
+    rng = np.random.default_rng(5)
+    gold = microfacet.Conductor(LOBE, metal="gold")
+    lasts = [(3,), (), (2,)]
+    for _ in range(600):
+        lengths = [1, 2, 2, 3, 3, 7, 7, 40] + [0] * (rng.random() < 0.1)
+        batch = rng.choice(lengths, rng.integers(5))
+        given = []
+        for last in lasts:
+            own = np.where(rng.random(len(batch)) < 0.4, 1, batch)[rng.integers(len(batch) + 1) :]
+            given.append(any_layout(rng, (*own.tolist(), *last)))
+        shape = np.broadcast_shapes(*(x.shape[: x.ndim - len(y)] for x, y in zip(given, lasts)))
+        whole = [np.broadcast_to(x, shape + last) for x, last in zip(given, lasts)]
+        have = gold.sample(*given)
+        want = gold.sample(*(np.array(x, np.float32, order="C") for x in whole))
+        assert have.pdf.shape == shape
+        for name in ["l", "weight", "pdf", "eta"]:
+            assert np.array_equal(getattr(have, name), getattr(want, name), equal_nan=True)
+
+
+def test_one_number_that_is_repeated_stands_for_all():
+    pair = microfacet.StudentT(np.broadcast_to(0.3, 2), 2.5)
+    assert pair.sigma == (0.3, 0.3)
+    tilted = exact.Ellipsoid(0.3, np.broadcast_to(0.1, 3), 2.5)
+    assert tilted.d(V) == exact.Ellipsoid(0.3, [0.1, 0.1, 0.1], 2.5).d(V)
+
+
+#: Axes that NumPy's arrays may have.
+MOST = 64 if int(np.__version__.split(".")[0]) >= 2 else 32
+
+
+@pytest.mark.parametrize("lobe", [LOBE, exact.StudentT(0.4, 2.5)], ids=["tables", "model"])
+@pytest.mark.parametrize("axes", [30, 31, 32, 33, 62])
+def test_arrays_have_as_many_axes_as_numpys(lobe, axes):
+    if axes + 2 > MOST:
+        pytest.skip("this NumPy has fewer")
+    # Two of them have a length.
+    batch = (2, *[1] * (axes - 2), 3)
+    v, u = np.broadcast_to(V, (*batch, 3)), np.full((*batch[:-1], 1, 2), 0.3)
+    assert lobe.g1(v).shape == lobe.d(v).shape == lobe.g2(v, V).shape == batch
+    m = lobe.sample_visible_normal(v, u)
+    assert m.shape == (*batch, 3)
+    assert np.abs(m - lobe.sample_visible_normal(V, [0.3, 0.3])).max() < 5e-7
+    cos = np.full(batch, 0.8)
+    assert (lobe.albedo(cos_theta=cos) == lobe.albedo(0.8)).all()
+    assert lobe.albedo_parts(cos_theta=cos).shape == (*batch, 3)
+    # All of them longer than 1, or empty, as far as NumPy has such arrays.
+    batch = (0, *[2] * min(axes - 1, 40))
+    assert lobe.g1(np.zeros((*batch, 3))).shape == batch
+
+
+def test_more_axes_than_numpys_are_refused():
+    cos = np.full((1,) * MOST, 0.8)
+    assert LOBE.albedo(cos_theta=cos).shape == cos.shape
+    for call in [
+        lambda: LOBE.albedo_parts(cos_theta=cos),
+        lambda: exact.StudentT(0.4, 2.5).albedo_parts(cos_theta=cos),
+        lambda: microfacet.Conductor(LOBE).sample(V, cos, [0.1, 0.2]),
+    ]:
+        with pytest.raises(ValueError, match="dimension"):
+            call()
+    with pytest.raises(ValueError, match="sigma has the shape"):
+        microfacet.StudentT(cos, 2.5)
+    with pytest.raises(ValueError, match="f0 has the shape"):
+        microfacet.Conductor(LOBE, f0=cos)
+    with pytest.raises(ValueError, match="theta must be"):
+        microfacet.Ellipsoid(0.3, np.zeros((1,) * (MOST - 1) + (3,)), 2.5)
+
+
+#: With 4 GiB of addresses, so that no machine has room for what is refused: results of 10 GB and
+#: more, of arguments of 600 kB. Results of 16 MB then take no more than half of that beside them.
+LITTLE_MEMORY = """
+import resource
+import numpy as np
+import microfacet
+from microfacet import exact
+
+resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
+lobe, model = microfacet.StudentT(0.4, 2.5), exact.StudentT(0.4, 2.5)
+gold = microfacet.Conductor(lobe, metal="gold")
+v = np.broadcast_to(np.float32([0.6, 0.0, 0.8]), (50_000, 1, 3)).copy()
+w, u = np.swapaxes(v, 0, 1), np.full((1, 50_000, 2), 0.3, np.float32)
+choice, all = np.full((50_000, 1, 1), 0.5), np.broadcast_to(v, (50_000, 50_000, 3))
+calls = [
+    lambda: gold.eval(v, w), lambda: gold.pdf(v, w), lambda: gold.sample(v, 0.5, u),
+    lambda: gold.sample(v[0, 0], choice, u),
+]
+for one in [lobe, model]:
+    for name in ["g2", "reflection_weight", "visible_normal_pdf", "sample_visible_normal"]:
+        calls.append(lambda f=getattr(one, name), x=u if name[0] == "s" else w: f(v, x))
+    for name in ["d", "g1", "lambda_", "albedo", "albedo_parts"]:
+        calls.append(lambda f=getattr(one, name): f(all))
+for i, call in enumerate(calls):
+    try:
+        call()
+    except MemoryError:
+        continue
+    raise SystemExit(f"no MemoryError by call {i}")
+
+
+def peak():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+for call in [lambda: lobe.g2(v[:2000], w[:, :2000]), lambda: lobe.g2(all[:2000, :2000], v[0, 0])]:
+    before = peak()
+    assert call().nbytes == 16_000_000
+    assert peak() - before < 24_000, f"{peak() - before} kB"
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits and units are those of Linux")
+def test_what_memory_lacks_is_an_exception_and_what_is_repeated_takes_none():
+    done = subprocess.run([sys.executable, "-c", LITTLE_MEMORY], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
 
 
 def draw(queue: "multiprocessing.Queue[bool]", u: np.ndarray) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
+import random
 import signal
 import time
 from collections.abc import Iterator
@@ -118,6 +120,62 @@ def test_numbered_sets_open_as_one_or_in_part(client: Any, tmp_path: Path) -> No
         microfacet.Tables(tmp_path / "out", materials=["gold"])
 
 
+def literal(value: Any) -> str:
+    """A value in the TOML that one writes by hand, on one line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {literal(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(literal, value)) + "]"
+    return json.dumps(value) if isinstance(value, (str, bool)) else repr(value)
+
+
+def any_material(rng: random.Random, number: int) -> dict[str, Any]:
+    """A material of any shape: numbers, lists and tables, names of any length and characters."""
+    some = rng.choice
+    names = ["m", "n" * 120, 'a "b" \\ \'c\' # [[material]]', "\n[[material]]\r\n",
+             "м漢\u0085\x00"]
+    name = some(names)
+    of = some(["sigma", "sigma", "sigma", "theta", "word", "number"])
+    table: dict[str, Any] = {"name": f"{name} {number}"}
+    if of == "word":
+        table |= {"distribution": some(["beckmann", "gauss"]), "m": some([0.25, 0.3])}
+    elif of == "number":
+        table |= {"distribution": "student-t", "sigma": 0.3, "gamma": some([3.0, 1e20])}
+    elif of == "theta":
+        table |= {"sigma": some([0.3, [0.4, 0.2]]), "gamma": 2.5, "theta": [3, -6.5, 30]}
+        table |= some([{}, {"degrees": True}])
+    else:
+        extent = {"min": 0.1, "max": 0.2}
+        table["sigma"] = some([0.3, 0, [0.3, 0.2], extent, [extent, 0.3], [extent, extent]])
+        table["gamma"] = some([2.3, 3, "inf", float("inf"), {"min": 3.0, "max": 4}])
+    index = {"eta": [0.14, 0.37, 1.44], "k": [3.98, 2.39, 1.6]}
+    fresnel = some([None, "mirror", {"schlick": 0.04}, {"metal": "gold"}, {"conductor": index}])
+    if fresnel and of != "theta":
+        table |= {"fresnel": fresnel, "masking": some(["uncorrelated", "height-correlated"])}
+    entries = list(table.items())
+    rng.shuffle(entries)
+    return dict(entries)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_materials_of_all_shapes_are_those_of_a_recipe() -> None:
+    rng = random.Random(1)
+    lists = [[any_material(rng, i) for i in range(rng.randint(1, 5))] for _ in range(150)]
+    round_ones = [{"name": f"m {i}", "sigma": 0.1, "gamma": 2.3} for i in range(3)]
+    # All on one line each; one that is not; what the error for other things proposes.
+    lists += [round_ones, [*round_ones, {**round_ones[0], "name": "n" * 120}]]
+    lists += [[{"name": name, "sigma": 0.3, "gamma": 2.5} for name in ("gold", "silver")]]
+    for tables in lists:
+        text = "".join(
+            "[[material]]\n" + "".join(f"{key} = {literal(table[key])}\n" for key in table)
+            for table in tables
+        )
+        want = farm.Library(text)
+        (have,) = farm.libraries(tables)
+        assert have.sets == want.sets, text
+        assert [need.id for need in have.needs()] == [need.id for need in want.needs()], text
+
+
 def test_needs_travel(tmp_path: Path) -> None:
     (library,) = farm.libraries(materials(), quality="draft", per_set=10_000)
     needs = library.needs()
@@ -152,6 +210,8 @@ def test_what_is_wrong_is_said(client: Any, tmp_path: Path) -> None:
     says(r"^material \'bad\': unknown key", [{**bad, "gamma": 3, "department": "fx"}])
     says("name is None", [{"sigma": 0.3, "gamma": 3.0}])
     says("material \'bad\': sigma is a object", [{**bad, "sigma": object()}], TypeError)
+    says("material \'bad\': masking: .*surrogates", [{**bad, "masking": "\ud800"}])
+    says(r"^material \'bad\': sigma: .*limit", [{**bad, "sigma": 10**5000}])
     # Nothing was written.
     assert not (tmp_path / "out").exists()
 

@@ -94,31 +94,40 @@ def libraries(scene: Scene, **options: Any) -> Iterator[Library]:
     names: set[str] = set()
     materials = iter(scene)
     while part := list(islice(materials, per_set)):
-        texts = []
+        tables = []
         for material in part:
-            texts.append(_recipe(material))
+            tables.append(_table(material))
             # In one set the recipe's reader would say so; two may be a week apart.
             if material["name"] in names:
                 raise ValueError(f"two materials are named {material['name']!r}: rename one")
             names.add(material["name"])
         try:
-            library = Library("\n".join(texts), **options)
+            library = Library(_recipe(tables), **options)
         except ValueError:
-            # Lines of the joined text mean nothing to the caller: say whose they are.
-            for text, material in zip(texts, part):
+            # Lines of the text mean nothing to the caller: say whose they are.
+            for table in tables:
                 try:
-                    Library(text, **options)
+                    Library(_recipe([table]), **options)
                 except ValueError as why:
                     said = re.sub(r"^recipe:\d+:\d+: ", "", str(why))
-                    raise ValueError(f"material {material['name']!r}: {said}") from None
+                    raise ValueError(f"material {table['name']!r}: {said}") from None
             raise
         yield library
 
 
-def _recipe(material: Mapping[str, Any]) -> str:
-    """A material as the text of a recipe."""
+def _recipe(tables: list[dict[str, Any]]) -> str:
+    """Materials as the text of a recipe.
+
+    As one document, since TOML's ``[[material]]`` and ``material = [{...}]`` do not go together,
+    and tomli_w writes either, by the length of the lines.
+    """
     import tomli_w
 
+    return tomli_w.dumps({"material": tables})
+
+
+def _table(material: Mapping[str, Any]) -> dict[str, Any]:
+    """A material as a table of values that TOML knows."""
     if not isinstance(material, Mapping):
         raise TypeError(
             "each material must be a table of a recipe's keys, such as"
@@ -134,13 +143,15 @@ def _recipe(material: Mapping[str, Any]) -> str:
             continue
         try:
             plain[key] = _plain(value)
-            tomli_w.dumps({key: plain[key]})
+            _recipe([{key: plain[key]}]).encode()
+        except ValueError as why:
+            raise ValueError(f"material {name!r}: {key}: {why}") from None
         except TypeError:
             kind = type(value).__name__
             raise TypeError(
                 f"material {name!r}: {key} is a {kind}: give numbers, texts, lists or tables"
             ) from None
-    return tomli_w.dumps({"material": [plain]})
+    return plain
 
 
 def _plain(value: Any) -> Any:
