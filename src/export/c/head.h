@@ -22,8 +22,10 @@
  * student_t_reflection_pdf of that m. Densities are over all lights. Those below the horizon have
  * their share of them, and the weight 0. Take the weight of a sampled light from
  * student_t_reflection_weight: f cos over the density has few digits, or none, where both are
- * subnormal, as in the far tails of Beckmann. A surface with sigma below 1e-3, or below 1e-4 for
- * gamma < 1.6, is better rendered as a mirror.
+ * subnormal, as in the far tails of Beckmann. A surface is better rendered as a mirror with sigma
+ * below 1e-3 for gamma >= 2, 4e-4 for 1.8, 6e-5 for 1.6, 2e-5 for 1.55, and 2e-7 for 1.501. Facets
+ * that refract are resolved from v and l above a cosine of 3e-6 (1 + eta)/|1 - eta| only, which
+ * matters for gamma < 2: see docs/export.md.
  *
  * Frame. Directions are float[3], unit vectors in the tangent frame, in which the normal of the
  * surface is (0, 0, 1): v to the viewer, l to the light, m a microfacet normal, w any of them.
