@@ -13,7 +13,8 @@ use command::{names, ok, refused, run};
 use microfacet_bake::bake::albedo::weights;
 use microfacet_bake::export::texture::engine::{LAYOUTS, Layout};
 use microfacet_bake::export::texture::{
-    Channels, Checks, Deviation, Place, Shapes, Texture, TextureSpec, check, known, shader_lines,
+    Channels, Checks, Deviation, Format, Made, Place, Shapes, Texture, TextureSpec, check, files,
+    known, shader_lines,
 };
 use microfacet_bake::progress::Stage;
 use microfacet_model::{AlbedoIntegrator, Shape};
@@ -194,18 +195,18 @@ fn files_hold_the_same_values() {
 /// All that a header declares has a word behind its name, which so may be one of C's own.
 #[test]
 fn headers_are_named_by_any_word() {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, channels) in [("int", "e"), ("sigma", "scale-bias"), ("lut", "one-minus-e")] {
-        let with = ["--name", name, "--channels", channels, "--gamma", "2", "--size", "4x4"];
-        let export = ["export", "lut", "--format", "c", "--out", "out"];
-        ok(folder.path(), &[&export[..], &with].concat());
-        for name in [name, &format!("{name}_average")] {
-            let path = folder.path().join(format!("out/{name}.h"));
-            let header = fs::read_to_string(path).unwrap();
+    for (name, channels) in [("int", Channels::E), ("sigma", Channels::ScaleBias)] {
+        let specs =
+            TextureSpec::of_shapes(name, Shapes::One(2.0), 1.0, &[4, 4], CORRELATED, channels);
+        for spec in specs.map(|spec| TextureSpec { fitted: false, ..spec }) {
+            let one = Made { texture: made(&spec), errors: Vec::new(), before_rounding: None };
+            let header = files(&[Format::C], &[one]).unwrap().remove(0).contents;
+            let header = String::from_utf8(header).unwrap();
             let declared = header.lines().filter_map(|line| line.strip_prefix("static "));
             let declared: Vec<&str> =
                 declared.map(|line| line.split(['[', '(']).next().unwrap()).collect();
-            let kind = if channels == "scale-bias" { "void" } else { "float" };
+            let name = &spec.name;
+            let kind = if channels == Channels::E { "float" } else { "void" };
             let [texels, read] =
                 [format!("const float {name}_texels"), format!("inline {kind} {name}_read")];
             assert_eq!(declared, [texels, read]);

@@ -285,7 +285,7 @@ fn where_no_threads_can_be_started_one_does_the_work() {
             "recipe",
             "inspect",
             "completions bash",
-            "man --out man",
+            "man",
             "plot student-t --out a.svg",
             "sample --sigma 0.3 --gamma 3 --theta 1 --count 9 --out n",
         ] {
