@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use microfacet_sampler::Metal;
 
-use super::error::did_you_mean;
+use super::error::{MOST_CANDIDATES, did_you_mean};
 use super::limits::Budget;
 use super::material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
 use super::names::Names;
@@ -51,6 +51,16 @@ pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Fre
     }
 }
 
+/// Some of a format's kinds of materials or nodes, and parameters that all of them have; words with
+/// spaces between.
+pub(super) type Row = (&'static str, &'static str);
+
+/// The parameters that the `rows` give to a kind; none if it is in no row.
+pub(super) fn names_of(rows: &[Row], kind: &str) -> Vec<&'static str> {
+    let of_kind = |(kinds, _): &&Row| kinds.split(' ').any(|known| known == kind);
+    rows.iter().filter(of_kind).flat_map(|(_, names)| names.split(' ')).collect()
+}
+
 /// A text that is kept for each of many materials, without the end of a very long one.
 pub(super) fn shortened(text: Cow<'_, str>) -> Cow<'_, str> {
     shortened_to(limits::MESSAGE, text)
@@ -91,7 +101,7 @@ pub(super) struct Builder {
     /// How often each name was requested.
     names: Names,
     warned: HashSet<String>,
-    /// Suggestions for names that may still be looked for.
+    /// Names that may still be compared for suggestions.
     hints: Budget,
     textures: Textures<PathBuf>,
 }
@@ -261,10 +271,26 @@ impl Builder {
         word: &str,
         candidates: impl IntoIterator<Item = &'a str>,
     ) -> String {
-        if !self.hints.take(1) {
+        if self.hints.left() == 0 {
             return String::new();
         }
-        did_you_mean(word, &candidates.into_iter().collect::<Vec<_>>())
+        let candidates: Vec<&str> = candidates.into_iter().take(MOST_CANDIDATES).collect();
+        match self.hints.take(candidates.len() as u64) {
+            true => did_you_mean(word, &candidates),
+            false => String::new(),
+        }
+    }
+
+    /// Warns of a parameter that is not among those `known` of its `owner`: it is not read.
+    pub(super) fn check_name(&mut self, owner: &str, name: &str, known: &[&str], place: &Place) {
+        if known.contains(&name) {
+            return;
+        }
+        let hint = match self.did_you_mean(name, known.iter().copied()) {
+            none if none.is_empty() => format!("; it has {}", known.join(", ")),
+            hint => hint,
+        };
+        self.warn(place, format!("{owner} has no parameter `{name}`{hint}; this one is not read"));
     }
 
     /// The range of a channel of an image file; [0, 1] with a warning if it cannot be read.

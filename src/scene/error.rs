@@ -238,6 +238,9 @@ fn synonym(word: &str, keys: &[&str]) -> Option<String> {
     SYNONYMS.iter().find_map(of)
 }
 
+/// Candidates of one word, of which more are left out.
+pub(super) const MOST_CANDIDATES: usize = 10_000;
+
 /// The text "; did you mean `x`?" for the candidate closest to `word`, if one is close enough; else
 /// empty.
 ///
@@ -249,14 +252,13 @@ pub(super) fn did_you_mean(word: &str, candidates: &[&str]) -> String {
         strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase())
     };
     const LONGEST: usize = 64;
-    const MOST: usize = 10_000;
     if word.len() > LONGEST {
         return String::new();
     }
     candidates
         .iter()
         .filter(|candidate| candidate.len() <= LONGEST)
-        .take(MOST)
+        .take(MOST_CANDIDATES)
         .map(|&candidate| (distance(candidate), candidate))
         .filter(|&(d, candidate)| 3 * d <= candidate.len().max(word.len()).max(3))
         .min_by_key(|&(d, _)| d)

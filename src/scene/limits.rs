@@ -81,8 +81,9 @@ pub(super) const NAME: usize = 1024;
 pub(super) const MESSAGE: usize = 1024;
 /// Warnings of a scene; one more says that there are further ones.
 pub(super) const WARNINGS: usize = 10_000;
-/// Suggestions of similar names in a scene: each takes up to a second among 10 000 long ones.
-pub(super) const HINTS: u64 = 20;
+/// Names that are compared for suggestions of similar ones in a scene: 10 000 long ones take up to
+/// a second.
+pub(super) const HINTS: u64 = 200_000;
 /// Included files, each as often as it is included.
 pub(super) const INCLUDES: usize = 10_000;
 /// Folders that a Mitsuba scene adds with `<path>`: every file is looked for in each.

@@ -15,7 +15,8 @@
 //! 1e-3. In Mitsuba α is as written, but at least 1e-4; γ is ∞ for `beckmann` and 2 for `ggx`.
 //!
 //! A roughness that comes from an image is the range of that image's pixels, with the scene's
-//! scales and offsets applied. An image that cannot be read counts as [0, 1], with a warning.
+//! scales and offsets applied. An image that cannot be read counts as [0, 1], with a warning. A
+//! parameter that its material does not have gives one too: it may be a known one mistyped.
 //! Materials that are not microfacet models, and those that were not understood, are listed in
 //! [`Scene::ignored`]; they are not errors. A missing included file gives a warning, since scenes
 //! often travel without their geometry; then every material counts as used. So does one of XML that

@@ -544,3 +544,26 @@ fn what_is_not_understood_is_bounded() {
     let text = format!("<scene><shape type=\"cube\">{lost}</shape></scene>");
     assert_eq!(soon_loaded("a.xml", &text).warnings.len(), 10_001);
 }
+
+/// Each of them may be told the names that are known.
+#[test]
+fn unknown_names_are_bounded() {
+    let members: String = (0..1_000_000).map(|i| format!("\"a{i}\":0,")).collect();
+    let text = format!(
+        "{{\"asset\":{{\"version\":\"2.0\"}},\"materials\":[{{{members}\"name\":\"m\"}}]}}"
+    );
+    assert_eq!(soon_loaded("a.gltf", &text).warnings.len(), 100);
+    let inputs = |word: &str| {
+        (0..100_000).map(|i| format!("<input name=\"{word}{i}\"/>")).collect::<String>()
+    };
+    let text = format!(
+        "<materialx><nodedef name=\"d\" node=\"n\">{}</nodedef><n type=\"float\">{}</n></materialx>",
+        inputs("known"),
+        inputs("other")
+    );
+    assert_eq!(soon_loaded("a.mtlx", &text).warnings.len(), 10_001);
+    let properties: String =
+        (0..100_000).map(|i| format!("<float name=\"a{i}\" value=\"1\"/>")).collect();
+    let text = format!("<scene><bsdf type=\"conductor\">{properties}</bsdf></scene>");
+    assert_eq!(soon_loaded("a.xml", &text).warnings.len(), 10_001);
+}

@@ -24,7 +24,8 @@
 //!   costs the material, the texture or the mesh that it is in. A member that is null is absent.
 //!   Indices may be written as `1.0`.
 //! - `extensionsRequired` lists what a reader has to know (3.12): a material with one of those that
-//!   is not known here is not understood. Others have no say.
+//!   is not known here is not understood. Others of a material are warned of, unless they leave its
+//!   lobes as they are, and so is a member that glTF does not have. `extras` may hold anything.
 //! - The form of G2 is left to the renderer: appendix B and the anisotropy extension show one form
 //!   each.
 //!
@@ -38,13 +39,14 @@ mod schema;
 mod value;
 
 use std::borrow::Cow;
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use self::parameters::{Material, Named};
 use self::schema::{Document, Mesh, VERSION_1};
-use self::value::{Value, message};
+use self::value::{Unknown, Value, message};
 use super::builder::Builder;
 use super::error::Lines;
 use super::texture::Textures;
@@ -83,6 +85,9 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     importer.materials()?;
     Ok(importer.builder.finish(Vec::new()))
 }
+
+/// What the names of Khronos' extensions of materials begin with.
+const KHRONOS: &str = "KHR_materials_";
 
 /// What helps where the JSON is too large.
 const SEPARATE: &str = "export images and geometry to files of their own";
@@ -163,8 +168,12 @@ impl Importer<'_> {
                 _ => format!("material {i}"),
             };
             let used = used.any || used.materials.contains(&i);
-            match Value::of(text).requiring(&required).read() {
-                Ok(material) => self.material(&name, &material, used)?,
+            let unknown = RefCell::default();
+            match Value::of(text).requiring(&required).noting(&unknown).read() {
+                Ok(material) => {
+                    self.check_names(&name, unknown.into_inner());
+                    self.material(&name, &material, used)?;
+                }
                 Err(why) => self.builder.not_understood(&name, "material", &self.place, why)?,
             }
         }
@@ -173,6 +182,25 @@ impl Importer<'_> {
             self.material("default material", &Material::default(), true)?;
         }
         Ok(())
+    }
+
+    /// Warns of what is not known in a material.
+    fn check_names(&mut self, material: &str, unknown: Vec<Unknown>) {
+        for Unknown { object, name, known } in unknown {
+            if object == "extensions" {
+                // The beginning would make all of them alike.
+                let stem = |name: &'static str| name.strip_prefix(KHRONOS).unwrap_or(name);
+                let own = name.strip_prefix(KHRONOS).unwrap_or(&name);
+                let hint = self.builder.did_you_mean(own, known.into_iter().map(stem));
+                let extension = format!("the extension {name} of material \"{material}\"");
+                let warning = format!("{extension} is not read{hint}; its lobes are without it");
+                self.builder.warn(&self.place, warning);
+            } else {
+                let of = if object.is_empty() { "" } else { " of " };
+                let owner = format!("{object}{of}material \"{material}\"");
+                self.builder.check_name(&owner, &name, &known, &self.place);
+            }
+        }
     }
 
     fn used(&mut self) -> Used {

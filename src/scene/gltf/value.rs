@@ -1,5 +1,6 @@
 //! Values of the document that are read one by one, so that an error in one costs that one alone.
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::marker::PhantomData;
@@ -9,8 +10,9 @@ use serde::{Deserialize, Deserializer, forward_to_deserialize_any};
 use serde_json::Error;
 use serde_json::value::RawValue;
 
+use super::parameters::OTHERS;
 use super::schema::VERSION_1;
-use crate::scene::builder::{shortened, shortened_to};
+use crate::scene::builder::{names_of, shortened, shortened_to};
 use crate::scene::limits;
 
 /// A value of the document as its text, which takes no more memory than that.
@@ -20,18 +22,38 @@ use crate::scene::limits;
 #[derive(Clone, Copy)]
 pub(super) struct Value<'de, 'r> {
     text: &'de RawValue,
+    /// The member that it is; empty for one that was not reached by a name.
+    member: &'r str,
     required: &'r BTreeSet<String>,
+    unknown: Option<&'r RefCell<Vec<Unknown>>>,
+}
+
+/// Members that are not known and that are told of one material.
+const MAX_UNKNOWN: usize = 100;
+
+/// A member that no lobe is read from and that glTF does not have.
+pub(super) struct Unknown {
+    /// The object that it is in, as a member of its own.
+    pub(super) object: String,
+    pub(super) name: String,
+    /// The names that glTF has there.
+    pub(super) known: Vec<&'static str>,
 }
 
 impl<'de, 'r> Value<'de, 'r> {
     pub(super) fn of(text: &'de RawValue) -> Self {
         const NONE: &BTreeSet<String> = &BTreeSet::new();
-        Self { text, required: NONE }
+        Self { text, member: "", required: NONE, unknown: None }
     }
 
     /// The same, which cannot be read where it has one of these extensions and it is not known.
     pub(super) fn requiring(self, required: &'r BTreeSet<String>) -> Self {
         Self { required, ..self }
+    }
+
+    /// The same, which notes what is not known in a material.
+    pub(super) fn noting(self, unknown: &'r RefCell<Vec<Unknown>>) -> Self {
+        Self { unknown: Some(unknown), ..self }
     }
 
     /// Reads it; the error says why it cannot be read.
@@ -62,7 +84,7 @@ impl<'de> Deserializer<'de> for Value<'de, '_> {
         known: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        self.text.deserialize_map(Object { visitor, known, required: self.required })
+        self.text.deserialize_map(Object { visitor, known, value: self })
     }
 
     /// Of members that are there; null is not.
@@ -90,13 +112,13 @@ impl<'de> Deserializer<'de> for Value<'de, '_> {
 }
 
 /// Gives the members of an object to the visitor of a struct with the members `known`.
-struct Object<'r, V> {
+struct Object<'de, 'r, V> {
     visitor: V,
     known: &'static [&'static str],
-    required: &'r BTreeSet<String>,
+    value: Value<'de, 'r>,
 }
 
-impl<'de, V: Visitor<'de>> Visitor<'de> for Object<'_, V> {
+impl<'de, V: Visitor<'de>> Visitor<'de> for Object<'de, '_, V> {
     type Value = V::Value;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -104,8 +126,8 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Object<'_, V> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<V::Value, A::Error> {
-        let Self { visitor, known, required } = self;
-        visitor.visit_map(Members { map, known, required, last: None })
+        let Self { visitor, known, value } = self;
+        visitor.visit_map(Members { map, known, value, last: None })
     }
 }
 
@@ -113,9 +135,33 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Object<'_, V> {
 struct Members<'de, 'r, A> {
     map: A,
     known: &'static [&'static str],
-    required: &'r BTreeSet<String>,
+    /// The object.
+    value: Value<'de, 'r>,
     /// That of which the name was read last.
     last: Option<(String, &'de RawValue)>,
+}
+
+impl<A> Members<'_, '_, A> {
+    /// Notes a member if it is not known; the error says that it is required.
+    fn check(&self, name: &str) -> Result<(), String> {
+        let Value { member, required, unknown, .. } = self.value;
+        let others = || names_of(&OTHERS, member);
+        if self.known.contains(&name) || others().contains(&name) {
+            return Ok(());
+        }
+        if required.contains(name) {
+            return Err(format!("{name} is not known here, and extensionsRequired has it"));
+        }
+        // Any object may have these two, and of a texture nothing else is read than its number.
+        let Some(unknown) = unknown.filter(|_| !member.ends_with("Texture")) else { return Ok(()) };
+        let is_free = ["extensions", "extras"].contains(&name);
+        if !is_free && unknown.borrow().len() < MAX_UNKNOWN {
+            let known = self.known.iter().copied().chain(others()).collect();
+            let (object, name) = (member.to_owned(), name.to_owned());
+            unknown.borrow_mut().push(Unknown { object, name, known });
+        }
+        Ok(())
+    }
 }
 
 impl<'de, A: MapAccess<'de>> MapAccess<'de> for Members<'de, '_, A> {
@@ -129,11 +175,7 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for Members<'de, '_, A> {
             if text.get() == "null" {
                 continue;
             }
-            if self.required.contains(&name) && !self.known.contains(&&name[..]) {
-                return Err(A::Error::custom(format!(
-                    "{name} is not known here, and extensionsRequired has it"
-                )));
-            }
+            self.check(&name).map_err(A::Error::custom)?;
             let key = seed.deserialize(name.as_str().into_deserializer())?;
             self.last = Some((name, text));
             return Ok(Some(key));
@@ -144,7 +186,7 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for Members<'de, '_, A> {
     fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, A::Error> {
         let last = self.last.take();
         let (name, text) = last.ok_or_else(|| A::Error::custom("a value without a name"))?;
-        let value = seed.deserialize(Value { text, required: self.required });
+        let value = seed.deserialize(Value { text, member: &name, ..self.value });
         value.map_err(|error| A::Error::custom(format!("{name}: {}", message(&error))))
     }
 }

@@ -112,6 +112,11 @@ impl<'a> Reader<'a> {
                 .place
                 .invalid(format!("the distribution \"{name}\" is not known; MaterialX has ggx")));
         }
+        if let Some(retro) = self.index.given(at.node(), "retroreflective")
+            && retro.attribute("value") != Some("false")
+        {
+            self.builder.warn(&retro.place, "retroreflective is not read; the lobe is without it");
+        }
         let roughness = self.alpha(at)?;
         let film = self.film(at, "thinfilm_thickness")? || film;
         let (name, fresnel) = match &at.node().tag[..] {

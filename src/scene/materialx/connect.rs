@@ -47,7 +47,11 @@ impl<'a> Reader<'a> {
                 _ => Ok(Some(At::new(node, scope))),
             };
         }
-        Ok(None)
+        // An output alone is one of the document (`PortElement::getConnectedOutput`).
+        match input.attribute("output") {
+            Some(name) if !name.is_empty() => self.output(input, self.root).map(Some),
+            _ => Ok(None),
+        }
     }
 
     /// The input that gives a graph in `scope` the value of its interface.

@@ -113,7 +113,7 @@ impl<'a> Index<'a> {
 
     /// The child `name`, if it has a value or a connection; else the default of its node holds.
     pub(super) fn given(&self, element: &'a Element, name: &'a str) -> Option<&'a Element> {
-        let says = ["value", "nodename", "nodegraph", "interfacename"];
+        let says = ["value", "nodename", "nodegraph", "interfacename", "output"];
         let says = |input: &&Element| says.iter().any(|name| input.attribute(name).is_some());
         self.child(element, name).filter(says)
     }
@@ -123,10 +123,15 @@ impl<'a> Index<'a> {
         self.outputs.get(&(graph.key(), name)).copied()
     }
 
+    /// The `nodedef` of that name, if the document has it.
+    pub(super) fn nodedef(&self, name: &'a str) -> Option<&'a Element> {
+        self.child(self.root, name).filter(|found| found.tag == "nodedef")
+    }
+
     /// The `nodedef` of a node, if the document has it.
     pub(super) fn definition(&self, node: &'a Element) -> Option<&'a Element> {
         if let Some(name) = node.attribute("nodedef") {
-            return self.child(self.root, name).filter(|found| found.tag == "nodedef");
+            return self.nodedef(name);
         }
         let of = |of_type| self.definitions.get(&(&node.tag[..], of_type)).copied();
         of(node.attribute("type").unwrap_or_default()).or_else(|| of(""))

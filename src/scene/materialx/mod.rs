@@ -39,6 +39,10 @@
 //!   graphs of nodes that the document defines itself (`nodedef`); weights of 0 end there.
 //! - A shader appears once for each `surfacematerial` that uses it, under that name, or else under
 //!   its own. A material is used if a `materialassign` names it, or if the document has none.
+//! - An input with an `output` alone is connected to that output of the document. Inputs that the
+//!   definition of their node does not have are warned of.
+//! - `specular_haze` and `specular_retroreflectivity` of OpenPBR 1.2, and `retroreflective` of BSDF
+//!   nodes, are not read; where they are not 0 a warning says so.
 //! - An image is read in its first channel if it is a float, else in the channel that is taken from
 //!   it; it is decoded from sRGB if it is a colour in the colour space `srgb_texture`. A file with
 //!   `<UDIM>` or `<UVTILE>` in its name is all the tiles that exist.
@@ -51,6 +55,7 @@
 mod bsdfs;
 mod connect;
 mod constant;
+mod definitions;
 mod graph;
 mod image;
 mod index;
@@ -95,6 +100,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         circle: HashSet::new(),
         bsdfs: Budget::new(limits::BSDFS),
     };
+    reader.check_inputs();
     reader.check_circles();
     reader.materials()?;
     Ok(reader.builder.finish(included))

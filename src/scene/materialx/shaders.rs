@@ -139,6 +139,9 @@ impl<'a> Reader<'a> {
             r + (sum.min(1.0).sqrt().sqrt() - r) * coat
         };
         let film = self.film(at, "thin_film_weight")?;
+        for weight in ["specular_haze", "specular_retroreflectivity"] {
+            self.without(at, weight)?;
+        }
 
         let mut model = Model::default();
         // It is the weight of the metal's lobe; of the dielectric it changes the index alone.

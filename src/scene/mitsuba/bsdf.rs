@@ -3,7 +3,7 @@
 use super::Reader;
 use super::fresnel::constant_dielectric;
 use super::value::named;
-use crate::scene::builder::{BECKMANN, GGX, Lobe};
+use crate::scene::builder::{BECKMANN, GGX, Lobe, Row};
 use crate::scene::error::did_you_mean;
 use crate::scene::xml::Element;
 use crate::scene::{Interval, Masking, Roughness, SceneError};
@@ -12,6 +12,45 @@ use crate::scene::{Interval, Masking, Roughness, SceneError};
 const LEAST_ALPHA: f64 = 1e-4;
 /// Lower limit of α for the principled BSDFs, from `calc_dist_params`.
 const LEAST_PRINCIPLED_ALPHA: f64 = 1e-3;
+
+/// Properties of the BSDFs with lobes; the last two rows are those of Mitsuba 0.6.
+const PROPERTIES: [Row; 12] = [
+    (
+        "roughconductor roughdielectric roughplastic pplastic roughcoating",
+        "alpha alpha_u alpha_v distribution sample_visible",
+    ),
+    ("conductor roughconductor", "material eta k specular_reflectance"),
+    ("dielectric thindielectric roughdielectric", "specular_transmittance"),
+    (
+        "dielectric thindielectric roughdielectric plastic roughplastic pplastic coating roughcoating",
+        "int_ior ext_ior specular_reflectance",
+    ),
+    ("plastic roughplastic pplastic", "diffuse_reflectance"),
+    ("plastic roughplastic", "nonlinear"),
+    ("pplastic", "eta"),
+    (
+        "principled principledthin",
+        "base_color roughness anisotropic spec_trans spec_tint sheen sheen_tint flatness eta \
+         diffuse_reflectance_sampling_rate",
+    ),
+    (
+        "principled",
+        "metallic specular clearcoat clearcoat_gloss main_specular_sampling_rate \
+         clearcoat_sampling_rate",
+    ),
+    (
+        "principledthin",
+        "diff_trans specular_reflectance_sampling_rate specular_transmittance_sampling_rate \
+         diffuse_transmittance_sampling_rate",
+    ),
+    ("coating roughcoating", "thickness sigma_a"),
+    (
+        "conductor roughconductor dielectric thindielectric roughdielectric plastic roughplastic \
+         coating roughcoating",
+        "ensure_energy_conservation",
+    ),
+];
+
 /// Kind of the clearcoat of a principled BSDF.
 const CLEARCOAT: &str = "principled clearcoat";
 
@@ -26,6 +65,7 @@ impl<'a> Reader<'a> {
         let class = bsdf.attribute("type").unwrap_or("no type");
         let unnamed = || format!("{class} at line {}", bsdf.place.line.unwrap_or_default());
         let name = name.map_or_else(unnamed, str::to_owned);
+        self.check_properties(&PROPERTIES, bsdf);
         let read = self.lobes(bsdf, &name, used);
         self.ranges.abandon();
         let shown = coating(class).map(|lobe| format!("{name}.{lobe}"));

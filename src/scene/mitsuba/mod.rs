@@ -24,10 +24,13 @@
 //! - A `bitmap` texture is decoded from sRGB unless it is `raw`; its luminance is used.
 //! - `$name` in an attribute stands for the value that `<default>` gives it.
 //!
-//! Scenes of Mitsuba 0.6 are read as far as they share the names, and with its spellings `intIOR`,
-//! `extIOR`, `alphaU` and `alphaV` as well; its distributions `phong` and `as` and its BSDFs
+//! Scenes of Mitsuba 0.6 are read as far as they share the names, and with its spellings, such as
+//! `intIOR` and `alphaU`, as well; its distributions `phong` and `as` and its BSDFs
 //! `phong`, `ward` and `sssbrdf` are not read. Where the scene's own `version` begins with 0, a
 //! conductor is copper by default.
+//!
+//! Mitsuba refuses a property that a plugin does not have. Here those of BSDFs with lobes, and of
+//! the textures of their roughness, are warned of, and the rest is read.
 //!
 //! A BSDF with something impossible in it is listed as not understood, and the rest is read. A bad
 //! index of refraction leaves the lobe without its Fresnel term. References to what does not exist,

@@ -1,21 +1,68 @@
 //! Numbers, and the ranges of textures.
 
 use super::{Reader, find};
+use crate::scene::builder::{Row, names_of};
 use crate::scene::texture::{Channel, Encoding};
 use crate::scene::xml::Element;
 use crate::scene::{Interval, SceneError};
 
-/// Names of properties, and those that Mitsuba 0.6 has for the same.
-const OLDER: [(&str, &str); 4] =
-    [("alpha_u", "alphaU"), ("alpha_v", "alphaV"), ("int_ior", "intIOR"), ("ext_ior", "extIOR")];
+/// Properties of textures by their type; the second and the fourth row are of Mitsuba 0.6.
+const TEXTURES: [Row; 5] = [
+    ("bitmap", "filename bitmap data to_uv filter_type wrap_mode raw format accel"),
+    ("bitmap", "channel gamma cache max_anisotropy wrap_mode_u wrap_mode_v"),
+    ("checkerboard", "color0 color1 to_uv"),
+    ("bitmap checkerboard", "coordinates uoffset voffset uvscale uscale vscale"),
+    ("uniform", "value wavelength_min wavelength_max lambda_min lambda_max"),
+];
 
 /// The property of that name, in either spelling.
 pub(super) fn named<'a>(element: &'a Element, name: &str) -> Option<&'a Element> {
-    let older = || OLDER.iter().find(|(newer, _)| *newer == name);
-    element.child_named(name).or_else(|| element.child_named(older()?.1))
+    let is_older = |child: &&Element| child.attribute("name").is_some_and(|n| newer(n) == name);
+    element.child_named(name).or_else(|| element.children.iter().find(is_older))
+}
+
+/// The name of a property of Mitsuba 0.6 as Mitsuba 3 has it: `int_ior` for `intIOR` (its
+/// `camel_to_underscore_case`).
+fn newer(name: &str) -> String {
+    let mut newer = String::with_capacity(name.len() + 2);
+    let (mut after_small, mut in_word) = (false, false);
+    for letter in name.chars() {
+        in_word = letter.is_ascii_uppercase() && (after_small || in_word);
+        if in_word && after_small {
+            newer.push('_');
+        }
+        newer.push(if in_word { letter.to_ascii_lowercase() } else { letter });
+        after_small = letter.is_ascii_lowercase();
+    }
+    newer
 }
 
 impl<'a> Reader<'a> {
+    /// Warns of properties that a plugin has not, unless it is in none of the `rows`.
+    pub(super) fn check_properties(&mut self, rows: &[Row], plugin: &Element) {
+        let class = plugin.attribute("type").unwrap_or_default();
+        let known = names_of(rows, class);
+        for child in &plugin.children {
+            let id = child.attribute("id").filter(|_| child.tag == "ref");
+            // What does not exist is warned of where it is used.
+            let what = id.map_or(Some(child), |id| self.ids.get(id).copied());
+            // BSDFs inside have any name, and the others are no properties.
+            let others = ["bsdf", "default", "path", "alias"];
+            if known.is_empty() || what.is_none_or(|what| others.contains(&&what.tag[..])) {
+                continue;
+            }
+            match child.attribute("name") {
+                Some(name) if known.contains(&&newer(name)[..]) => {}
+                Some(name) => self.builder.check_name(class, name, &known, &child.place),
+                None => {
+                    let warning =
+                        format!("<{}> in {class} has no name, and is not read", child.tag);
+                    self.builder.warn(&child.place, warning);
+                }
+            }
+        }
+    }
+
     /// A property that is a number, or the range of a texture.
     pub(super) fn property(
         &mut self,
@@ -60,6 +107,7 @@ impl<'a> Reader<'a> {
 
     fn texture(&mut self, texture: &'a Element) -> Result<Interval, SceneError> {
         let place = &texture.place;
+        self.check_properties(&TEXTURES, texture);
         match texture.required("type")? {
             "bitmap" => {
                 let value = |name| texture.child_named(name).and_then(|p| p.attribute("value"));

@@ -30,11 +30,13 @@
 //! - Included files are looked up beside the scene's own file. `Import` is an `Include` that leaves
 //!   the graphics state unchanged.
 //!
-//! pbrt refuses a scene with a material that is not defined, is defined twice, or has an impossible
-//! value. Here such a material is warned of, or listed as not understood, and the rest is read; of
-//! two definitions the first counts. Directives of pbrt-v1 and v2 are passed over with a warning,
-//! and materials that pbrt-v3 has and v4 has not are listed as not understood; mixtures of v3 are
-//! followed, and its mapping of the roughness of `subsurface`, which is another, is warned of.
+//! pbrt refuses a scene with a material that is not defined, is defined twice, has an impossible
+//! value, or a parameter that its class has not, or has with another type. Here such a material is
+//! warned of, or listed as not understood, and the rest is read; of two definitions the first
+//! counts, and a number is read whatever its type is. Directives of pbrt-v1 and v2 are passed over
+//! with a warning, and materials that pbrt-v3 has and v4 has not are listed as not understood;
+//! mixtures of v3 are followed, and its mapping of the roughness of `subsurface`, which is another,
+//! is warned of.
 //!
 //! The file is read as a stream. Everything that belongs to shapes is skipped without being stored.
 //!
@@ -43,6 +45,7 @@
 mod directives;
 mod fresnel;
 mod materials;
+mod parameters;
 mod references;
 mod spectra;
 mod syntax;
@@ -58,6 +61,7 @@ use std::rc::Rc;
 use flate2::read::MultiGzDecoder;
 
 use self::materials::Definition;
+use self::parameters::{MATERIALS, TEXTURES};
 use self::syntax::{Parameter, parameters, quoted, skip_arguments};
 use self::token::{Token, Tokens};
 use super::builder::Builder;
@@ -200,6 +204,7 @@ impl Reader {
                 let parameters = parameters(tokens)?;
                 if target == "material" {
                     self.hold(&parameters, &place)?;
+                    self.check_attributes(&parameters);
                     self.attributes(parameters, &place)?;
                 }
                 Ok(())
@@ -219,6 +224,7 @@ impl Reader {
                 let class = quoted(tokens, "the type of the material")?;
                 let own = parameters(tokens)?;
                 self.hold(&own, &place)?;
+                self.check_parameters(&MATERIALS, &class, &own);
                 let parameters = self.with_attributes(own);
                 // The empty type is an old word for this one.
                 let class = if class.is_empty() { "interface".to_owned() } else { class };
@@ -232,9 +238,10 @@ impl Reader {
                 let name = quoted(tokens, "the name of the material")?;
                 let own = parameters(tokens)?;
                 self.hold(&own, &place)?;
-                let parameters = self.with_attributes(own);
-                let class = parameters.iter().find(|p| p.name == "type");
+                let class = own.iter().chain(&self.state.attributes).find(|p| p.name == "type");
                 let class = class.and_then(|p| p.values.last().cloned()).unwrap_or_default();
+                self.check_parameters(&MATERIALS, &class, &own);
+                let parameters = self.with_attributes(own);
                 let slot = self.named(&name, &place)?;
                 if let Some(first) = &self.slots[slot].definition {
                     let warning = format!(
@@ -263,6 +270,7 @@ impl Reader {
                 let parameters = parameters(tokens)?;
                 if kind == "float" {
                     self.hold(&parameters, &place)?;
+                    self.check_parameters(&TEXTURES, &class, &parameters);
                     if self.textures.len() == limits::MATERIALS {
                         return Err(place.too_large(format!(
                             "the scene has more than {} textures; split it",

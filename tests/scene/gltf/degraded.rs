@@ -88,3 +88,51 @@ fn indices_may_be_written_as_decimals() {
     let used: Vec<_> = scene.materials.iter().map(|material| material.used).collect();
     assert_eq!(used, [false, true]);
 }
+
+#[test]
+fn a_member_that_gltf_has_not_is_warned_of() {
+    let case = |material: &str, parts: &[&str]| {
+        let scene = beside(&format!("{{\"name\": \"m\", {material}}}"), "");
+        assert_warned(&scene, "a.gltf", parts);
+        assert_eq!(scene.doubts().count(), 1);
+    };
+    let owner = "pbrMetallicRoughness of material \"m\" has no parameter `roughnessFactr`";
+    let pbr = |members: &str| format!("\"pbrMetallicRoughness\": {{{members}}}");
+    case(&pbr("\"roughnessFactr\": 0.3"), &[owner, "did you mean `roughnessFactor`?"]);
+    case("\"pbrMetalicRoughness\": {}", &["material \"m\" has no parameter", "`pbrMetallicRough"]);
+    let extension =
+        |name: &str, members: &str| format!("\"extensions\": {{\"{name}\": {members}}}");
+    let coat = extension("KHR_materials_clearcoat", "{\"clearcoatFacter\": 1}");
+    case(&coat, &["KHR_materials_clearcoat of", "`clearcoatFacter`", "`clearcoatFactor`?"]);
+    let retro = extension("KHR_materials_retroreflection", "{\"retroreflectionFactor\": 0.5}");
+    case(&retro, &["the extension KHR_materials_retroreflection of material \"m\" is not read"]);
+    let coats = extension("KHR_materials_clearcoats", "{}");
+    case(&coats, &["KHR_materials_clearcoats", "did you mean `clearcoat`?"]);
+    case(&extension("EXT_materials_x", "{}"), &["the extension EXT_materials_x"]);
+}
+
+#[test]
+fn members_without_a_part_in_a_lobe_are_not_warned_of() {
+    let texture = "{\"index\": 0, \"texCoord\": 1, \"scale\": 1, \"strength\": 1, \"extensions\": \
+                   {\"KHR_texture_transform\": {\"scale\": [1, 1]}}}";
+    let extensions = "\"KHR_materials_anisotropy\": {\"anisotropyRotation\": 1},
+        \"KHR_materials_clearcoat\": {\"clearcoatTexture\": T, \"clearcoatNormalTexture\": T},
+        \"KHR_materials_iridescence\": {\"iridescenceIor\": 1.3, \"iridescenceTexture\": T},
+        \"KHR_materials_specular\": {\"specularTexture\": T, \"specularColorTexture\": T},
+        \"KHR_materials_sheen\": {\"sheenColorFactor\": [1, 1, 1]}, \"KHR_materials_volume\": {},
+        \"KHR_materials_transmission\": {\"transmissionTexture\": T}, \"KHR_materials_ior\": {},
+        \"KHR_materials_dispersion\": {\"dispersion\": 1}, \"KHR_xmp_json_ld\": {\"packet\": 0},
+        \"KHR_materials_emissive_strength\": {}, \"KHR_materials_diffuse_transmission\": {},
+        \"ADOBE_materials_clearcoat_tint\": {}, \"EXT_materials_absent\": null";
+    let material = format!(
+        "\"extras\": {{\"roughnessFactr\": 1}}, \"normalTexture\": T, \"occlusionTexture\": T,
+         \"emissiveTexture\": T, \"emissiveFactor\": [1, 1, 1], \"alphaMode\": \"MASK\",
+         \"alphaCutoff\": 0.5, \"doubleSided\": true, \"pbrMetallicRoughness\": {{
+         \"baseColorTexture\": T, \"extras\": 5, \"extensions\": {{}}}}, \"extensions\": {{{extensions}}}"
+    );
+    let scene = beside(
+        &format!("{{\"name\": \"m\", {}}}", material.replace(": T", &format!(": {texture}"))),
+        "",
+    );
+    assert_eq!(scene.warnings, [""; 0]);
+}

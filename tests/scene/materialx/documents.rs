@@ -161,3 +161,103 @@ fn shaders_that_others_are_made_of_are_no_materials() {
     );
     assert_eq!(names(&load("a.mtlx", &text)), ["m", "m (2)"]);
 }
+
+#[test]
+fn an_input_that_a_node_has_not_is_warned_of() {
+    let case = |content: &str, parts: &[&str]| {
+        let scene = load("a.mtlx", &document(&content.replace("<input", "\n<input")));
+        assert_warned(&scene, "a.mtlx:2:1", parts);
+        assert_eq!(scene.doubts().count(), 1);
+    };
+    let node = |class: &str, of_type: &str, input: &str| {
+        format!(
+            "<{class} name=\"a\" type=\"{of_type}\"><input name=\"{input}\" value=\"0.5\"/></{class}>"
+        )
+    };
+    for (class, input, near) in [
+        ("standard_surface", "specular_roughnes", "specular_roughness"),
+        ("open_pbr_surface", "specular_IOR", "specular_ior"),
+        ("gltf_pbr", "roughnes", "roughness"),
+        ("UsdPreviewSurface", "clearcoatRoughnes", "clearcoatRoughness"),
+        ("disney_principled", "rougness", "roughness"),
+        ("surface", "bdsf", "bsdf"),
+    ] {
+        let parts = [&format!("{class} has no parameter `{input}`")[..], &format!("`{near}`?")];
+        case(&node(class, "surfaceshader", input), &parts);
+    }
+    for (class, of_type, input) in [
+        ("conductor_bsdf", "BSDF", "rouhgness"),
+        ("generalized_schlick_bsdf", "BSDF", "rouhgness"),
+        ("roughness_anisotropy", "vector2", "rouhgness"),
+        ("surfacematerial", "material", "surface_shader"),
+        ("image", "float", "fil"),
+        ("multiply", "float", "in3"),
+    ] {
+        let part = format!("{class} has no parameter `{input}`");
+        case(&node(class, of_type, input), &[&part]);
+    }
+    // A node that the document defines has the inputs of its definition, also inherited ones.
+    let own = "<nodedef name=\"d\" node=\"mine\" inherit=\"e\"/><nodedef name=\"e\" node=\"other\">\
+               <input name=\"rough\"/><output name=\"o\" type=\"float\"/></nodedef>";
+    let mine = node("mine", "float", "ruogh");
+    let scene = load("a.mtlx", &document(&format!("{own}\n{mine}")));
+    assert_warned(&scene, ":2:29", &["mine has no parameter `ruogh`", "`rough`?"]);
+    for sound in [
+        format!("{own}{}", node("mine", "float", "rough")),
+        format!("{own}{}", node("mine", "float", "ruogh")).replace("name=\"e\"", "name=\"f\""),
+        node("noise2d", "float", "anything"),
+        node("standard_surface", "surfaceshader", "coat_normal"),
+        node("open_pbr_surface", "surfaceshader", "specular_haze_spread"),
+    ] {
+        assert_eq!(load("a.mtlx", &document(&sound)).warnings, [""; 0], "{sound}");
+    }
+}
+
+#[test]
+fn known_inputs_that_are_not_read_are_said_unless_they_are_zero() {
+    let input = |name: &str, value: &str| {
+        let text = format!("\n<input name=\"{name}\" value=\"{value}\"/>");
+        let shader = "open_pbr_surface name=\"a\" type=\"surfaceshader\"";
+        load("a.mtlx", &document(&format!("<{shader}>{text}</open_pbr_surface>")))
+    };
+    for name in ["specular_haze", "specular_retroreflectivity"] {
+        let scene = input(name, "0.5");
+        assert_warned(&scene, ":1:27", &[name, "is not read; the lobe is without it"]);
+        assert_eq!(names(&scene), ["a"]);
+        assert_eq!(input(name, "0").warnings, [""; 0]);
+    }
+    let retro = |value: &str| {
+        let node = format!(
+            "<conductor_bsdf name=\"c\" type=\"BSDF\">\n\
+            <input name=\"retroreflective\" type=\"boolean\" value=\"{value}\"/></conductor_bsdf>"
+        );
+        let surface = "<surface name=\"a\" type=\"surfaceshader\"><input name=\"bsdf\" nodename=\"c\"/></surface>";
+        load("a.mtlx", &document(&(node + surface)))
+    };
+    assert_warned(&retro("true"), ":2:1", &["retroreflective is not read"]);
+    assert_eq!(retro("false").warnings, [""; 0]);
+}
+
+/// As in `pbrlib/multioutput` of MaterialX' own suite.
+#[test]
+fn an_output_alone_is_one_of_the_document() {
+    let scene = |output: &str| {
+        load(
+            "a.mtlx",
+            &document(&format!(
+                "<constant name=\"c\" type=\"color4\"><input name=\"value\" value=\"1, 0.25, 0.25, 0.42\"/></constant>
+                 <extract name=\"e\" type=\"float\"><input name=\"in\" nodename=\"c\"/><input name=\"index\" value=\"3\"/></extract>
+                 <output name=\"alpha\" type=\"float\" nodename=\"e\"/>
+                 <standard_surface name=\"s\" type=\"surfaceshader\">
+                 <input name=\"specular_roughness\" type=\"float\" output=\"{output}\"/></standard_surface>
+                 <output name=\"shader\" type=\"surfaceshader\" nodename=\"s\"/>
+                 <surfacematerial name=\"m\" type=\"material\"><input name=\"surfaceshader\" output=\"shader\"/></surfacematerial>"
+            )),
+        )
+    };
+    let found = scene("alpha");
+    assert_eq!((names(&found), &found.warnings[..]), (vec!["m"], &[][..]));
+    assert_close(found.materials[0].roughness, [0.1764; 2], [0.1764; 2]);
+    let none = scene("alhpa");
+    assert!(none.ignored[0].reason.contains("there is no output \"alhpa\""), "{none:?}");
+}

@@ -63,10 +63,13 @@ fn distributions_of_other_versions_cost_their_lobe() {
 #[test]
 fn a_bad_fresnel_value_leaves_the_lobe() {
     let case = |class: &str, property: &str, place: &str, parts: &[&str]| {
-        let scene = bsdf(class, &format!("<float name=\"alpha\" value=\"0.3\"/>\n{property}"));
+        let (name, value) =
+            if class == "principled" { ("roughness", 0.5) } else { ("alpha", 0.25) };
+        let rough = format!("<float name=\"{name}\" value=\"{value}\"/>");
+        let scene = bsdf(class, &format!("{rough}\n{property}"));
         let a = named(&scene, "a");
         assert_eq!((a.fresnel, scene.ignored.len()), (None, 0));
-        assert!(a.roughness == isotropic(0.3) || class == "principled", "{a:?}");
+        assert_eq!(a.roughness, isotropic(0.25));
         assert_warned(&scene, place, &[parts, &["without its Fresnel term"]].concat());
     };
     let glass = "roughdielectric";
@@ -224,4 +227,56 @@ fn plugins_of_version_0_6_are_told_apart() {
         bsdf("mixturebsdf", &format!("<string name=\"weights\" value=\"0.5, 0.5\"/>{inner}"));
     assert_eq!(names(&scene), ["a", "good"]);
     assert_eq!((scene.ignored.len(), &scene.ignored[0].kind[..]), (1, "diffuse"));
+}
+
+#[test]
+fn a_property_that_a_plugin_has_not_is_warned_of() {
+    let case = |class: &str, property: &str, parts: &[&str]| {
+        let scene = bsdf(class, &format!("\n{property}"));
+        assert_warned(&scene, "a.xml:2:1", parts);
+        assert_eq!(scene.doubts().count(), 1);
+    };
+    let float = |name: &str| format!("<float name=\"{name}\" value=\"0.3\"/>");
+    let typo = ["roughconductor has no parameter `alhpa`", "did you mean `alpha`?"];
+    case("roughconductor", &float("alhpa"), &typo);
+    case("roughdielectric", &float("intIRO"), &["`intIRO`", "did you mean `int_ior`?"]);
+    // The smooth one has no such property.
+    case("conductor", &float("alpha"), &["conductor has no parameter `alpha`"]);
+    case("principled", &float("Roughness"), &["`Roughness`", "did you mean `roughness`?"]);
+    case("principledthin", &float("spec_tran"), &["`spec_tran`", "`spec_trans`?"]);
+    case("roughplastic", "<float value=\"0.3\"/>", &["<float> in roughplastic has no name"]);
+    let texture = "<texture type=\"checkerboard\" name=\"alpha\">\n\
+                   <float name=\"colour0\" value=\"1\"/></texture>";
+    let scene = bsdf("roughconductor", texture);
+    assert_warned(&scene, ":2:1", &["checkerboard has no parameter `colour0`", "`color0`?"]);
+}
+
+#[test]
+fn properties_of_either_version_are_not_warned_of() {
+    let float = |name: &&str| format!("<float name=\"{name}\" value=\"0.3\"/>");
+    for (class, names) in [
+        ("roughconductor", "alphaU alphaV eta k specularReflectance sampleVisible"),
+        ("roughconductor", "alpha_u alpha_v eta k specular_reflectance sample_visible"),
+        ("dielectric", "int_ior ext_ior specular_reflectance specular_transmittance"),
+        ("thindielectric", "intIOR extIOR specularTransmittance ensureEnergyConservation"),
+        ("roughplastic", "diffuseReflectance nonlinear alpha intIOR"),
+        ("pplastic", "alpha eta diffuse_reflectance"),
+        ("roughcoating", "alpha thickness sigmaA int_ior"),
+        ("principled", "base_color roughness anisotropic metallic spec_trans specular spec_tint"),
+        ("principled", "sheen sheen_tint flatness clearcoat clearcoat_gloss eta"),
+        ("principled", "main_specular_sampling_rate clearcoat_sampling_rate"),
+        ("principledthin", "diff_trans diffuse_transmittance_sampling_rate spec_trans eta"),
+        ("diffuse", "anything"),
+        ("twosided", "anything"),
+    ] {
+        let properties: String = names.split(' ').collect::<Vec<_>>().iter().map(float).collect();
+        let inner = "<bsdf type=\"diffuse\"/><ref id=\"good\"/><default name=\"x\" value=\"1\"/>";
+        let scene = bsdf(class, &format!("{properties}{inner}"));
+        assert_eq!(scene.warnings, [""; 0], "{class} {names}");
+    }
+    // What is read of the older spelling.
+    let scene = bsdf("principled", "<float name=\"specTrans\" value=\"1\"/>");
+    assert_eq!(scene.warnings, [""; 0]);
+    let older = "<float name=\"alphaU\" value=\"0.2\"/><float name=\"alphaV\" value=\"0.3\"/>";
+    assert_eq!(bsdf("roughconductor", older).materials[0].roughness, anisotropic(0.2, 0.3));
 }

@@ -79,8 +79,9 @@ fn polarized_plastic_takes_an_index_of_its_own() {
     let eta = fresnel("pplastic", "<float name=\"eta\" value=\"1.9\"/>");
     assert_eq!(eta, Some(Fresnel::Dielectric(1.9)));
     // Which no other plastic has.
-    let other = fresnel("roughplastic", "<float name=\"eta\" value=\"1.9\"/>");
-    assert_eq!(other, Some(Fresnel::Dielectric(1.49 / 1.000_277)));
+    let other = load("a.xml", &bsdf("roughplastic", "<float name=\"eta\" value=\"1.9\"/>"));
+    assert_eq!(other.materials[0].fresnel, Some(Fresnel::Dielectric(1.49 / 1.000_277)));
+    assert!(other.warnings[0].contains("roughplastic has no parameter `eta`"), "{other:?}");
 }
 
 #[test]

@@ -91,7 +91,8 @@ fn a_bad_fresnel_value_leaves_the_lobe() {
 
 #[test]
 fn names_that_nothing_defines_are_warned_of() {
-    let scene = beside(&format!("{NAMED} \"float eta\" 1\nNamedMaterial \"A\" Shape \"sphere\""));
+    let scene =
+        beside(&format!("{NAMED} \"float roughness\" 1\nNamedMaterial \"A\" Shape \"sphere\""));
     assert_warned(&scene, ":2:1", &["\"A\" is not defined; did you mean `a`?"]);
     let scene =
         beside("Material \"mix\" \"string materials\" [ \"goode\" \"good\" ]\nShape \"sphere\"");
@@ -210,4 +211,109 @@ fn a_blank_name_is_replaced_by_the_place() {
     let named = named(&scene, "conductor at a.pbrt:1");
     assert!(named.used && named.roughness == isotropic(0.5), "{named:?}");
     assert_not_understood(&scene, "material at a.pbrt:2", ":2:10", &["it has no type"]);
+}
+
+#[test]
+fn a_parameter_that_a_class_has_not_is_warned_of() {
+    let case = |text: &str, place: &str, parts: &[&str]| {
+        let scene = beside(text);
+        assert_warned(&scene, place, parts);
+        assert_eq!(scene.doubts().count(), 1);
+    };
+    let conductor = |parameter: &str, parts: &[&str]| {
+        case(&format!("Material \"conductor\" {parameter}"), ":1:22", parts);
+    };
+    let typo = ["conductor has no parameter `roughnes`", "; did you mean `roughness`?"];
+    conductor("\"float roughnes\" 0.3", &typo);
+    conductor("\"float urougness\" 0.3", &["`urougness`", "did you mean `uroughness`?"]);
+    conductor(
+        "\"string metal\" \"Cu\"",
+        &["`metal`; it has type, ", " eta, k, ", "; this one is not read"],
+    );
+    conductor("\"float thickness\" 1", &["conductor has no parameter `thickness`"]);
+    conductor("\"spectrum roughness\" [ 0.3 ]", &["type spectrum; it may be float, texture"]);
+    conductor("\"string remaproughness\" \"false\"", &["remaproughness of", "it may be bool"]);
+    let coated =
+        "MakeNamedMaterial \"a\" \"string type\" \"coatedconductor\" \"float roughness\" 1";
+    case(coated, ":1:55", &["coatedconductor has no parameter `roughness`", "conductor.roughness"]);
+    let mixture = "Material \"mix\" \"string material\" [ \"good\" \"good\" ]";
+    case(mixture, ":1:16", &["mix has no parameter `material`", "`materials`?"]);
+    let attribute = "Attribute \"material\" \"float roughnes\" 0.3";
+    case(attribute, ":1:22", &["a material has no parameter `roughnes`", "`roughness`?"]);
+    let texture = "Texture \"t\" \"float\" \"constant\" \"float valu\" 1";
+    case(texture, ":1:32", &["constant has no parameter `valu`", "`value`?"]);
+}
+
+/// Whatever pbrt-v4 takes, and what has no part in a lobe.
+#[test]
+fn parameters_that_a_class_has_are_not_warned_of() {
+    let rough = |prefix: &str| {
+        let axes = ["", "u", "v"];
+        axes.map(|axis| format!("\"float {prefix}{axis}roughness\" 0.2 ")).concat()
+    };
+    let both = "\"texture displacement\" \"none\" \"string normalmap\" \"n.png\"";
+    let layer = "\"float thickness\" 0.1 \"float g\" 0 \"rgb albedo\" [ 0 0 0 ] \
+                 \"integer maxdepth\" 10 \"integer nsamples\" 1 \"spectrum reflectance\" \"x\"";
+    let remap = "\"bool remaproughness\" false";
+    for (class, parameters) in [
+        ("conductor", format!("{} {remap} \"rgb eta\" [ 1 1 1 ] \"rgb k\" [ 1 1 1 ]", rough(""))),
+        ("conductor", "\"rgb reflectance\" [ 0.9 0.9 0.9 ]".to_owned()),
+        ("dielectric", format!("{} {remap} \"spectrum eta\" \"glass-BK7\"", rough(""))),
+        ("thindielectric", "\"float eta\" 1.4".to_owned()),
+        ("coateddiffuse", format!("{} {remap} {layer} \"blackbody eta\" 3000", rough(""))),
+        (
+            "coatedconductor",
+            format!(
+                "{} {} {remap} {} \"float interface.eta\" 1.4 \"rgb conductor.eta\" [ 1 1 1 ] \
+                 \"texture conductor.k\" \"t\"",
+                rough("interface."),
+                rough("conductor."),
+                layer.replace("spectrum reflectance", "texture albedo"),
+            ),
+        ),
+        (
+            "subsurface",
+            format!(
+                "{} {remap} \"float eta\" 1.4 \"float scale\" 1 \"float g\" 0 \"string name\" \"Milk\" \
+                 \"rgb sigma_a\" [ 1 1 1 ] \"rgb sigma_s\" [ 1 1 1 ] \"rgb mfp\" [ 1 1 1 ] \
+                 \"rgb reflectance\" [ 1 1 1 ]",
+                rough("")
+            ),
+        ),
+        // Earlier versions of pbrt-v4 had it.
+        ("diffuse", "\"float sigma\" 20".to_owned()),
+    ] {
+        let scene = beside(&format!("Material \"{class}\" {parameters} {both}"));
+        assert_eq!(scene.warnings, [""; 0], "{class}");
+        assert!(scene.ignored.iter().all(|ignored| ignored.understood), "{:?}", scene.ignored);
+    }
+    let mixture =
+        "Material \"mix\" \"float amount\" 0.5 \"string materials\" [ \"good\" \"good\" ]";
+    assert_eq!(beside(mixture).warnings, [""; 0]);
+    let plane = "\"string mapping\" \"planar\" \"vector3 v1\" [ 1 0 0 ] \"vector3 v2\" [ 0 1 0 ] \
+                 \"float udelta\" 0 \"float vdelta\" 0 \"float uscale\" 1 \"float vscale\" 1";
+    for (class, parameters) in [
+        ("constant", "\"float value\" 1"),
+        ("scale", "\"float tex\" 1 \"texture scale\" \"t\""),
+        ("mix", "\"float tex1\" 1 \"float tex2\" 1 \"float amount\" 1"),
+        ("directionmix", "\"float tex1\" 1 \"float tex2\" 1 \"vector3 dir\" [ 0 1 0 ]"),
+        ("checkerboard", &format!("\"integer dimension\" 2 \"float tex1\" 1 {plane}")),
+        ("dots", &format!("\"float inside\" 1 \"float outside\" 0 {plane}")),
+        ("bilerp", &format!("\"float v00\" 1 \"float v01\" 0 \"float v10\" 1 {plane}")),
+        (
+            "imagemap",
+            &format!(
+                "\"string filename\" \"a.png\" \"string wrap\" \"clamp\" \"string filter\" \"ewa\" \
+                 \"string encoding\" \"linear\" \"float scale\" 2 \"bool invert\" true \
+                 \"float maxanisotropy\" 8 {plane}"
+            ),
+        ),
+        ("fbm", "\"integer octaves\" 8 \"float roughness\" 0.5"),
+    ] {
+        let scene = beside(&format!("Texture \"a\" \"float\" \"{class}\" {parameters}"));
+        assert_eq!(scene.warnings, [""; 0], "{class}");
+    }
+    let attributes = "Attribute \"material\" \"float roughness\" 0.3 \"float beta_m\" 0.3 \
+                      \"rgb transmittance\" [ 0 0 0 ]\nMaterial \"diffuse\"\nMaterial \"hair\"";
+    assert_eq!(load("a.pbrt", attributes).warnings, [""; 0]);
 }

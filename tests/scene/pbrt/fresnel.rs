@@ -75,11 +75,14 @@ fn eta_and_k_are_colours_or_names_and_copper_by_default() {
     assert_eq!(index("\"spectrum eta\" \"metal-Au-eta\""), Some(over(1.0, gold.eta(), copper.k())));
     let colour = [3.5, 2.5, 1.5];
     assert_eq!(index("\"rgb k\" [ 3.5 2.5 1.5 ]"), Some(over(1.0, copper.eta(), colour)));
-    // Spectra of the scene's own, textures, and a type that pbrt does not read.
+    // Spectra of the scene's own, and textures.
     assert_eq!(pair("[ 400 1.2 700 1.1 ]", "[ 400 3 700 4 ]"), None);
     assert_eq!(index("\"spectrum eta\" [ 400 1.2 700 1.1 ]"), None);
     assert_eq!(index("\"texture k\" \"map\""), None);
-    assert_eq!(index("\"string eta\" \"metal-Au-eta\" \"string k\" \"metal-Au-k\""), None);
+    let text = "Material \"conductor\" \"string eta\" \"metal-Au-eta\"";
+    let other = load("a.pbrt", text);
+    assert_eq!(other.materials[0].fresnel, None);
+    assert_warned(&other, ":1:22", &["eta of conductor has the type string", "rgb, spectrum"]);
 }
 
 #[test]
