@@ -5,9 +5,9 @@ use alloc::format;
 use alloc::vec::Vec;
 
 use glam::Vec3;
-use microfacet_common::gauss_legendre;
 use microfacet_common::shape::s_of_gamma;
 
+use super::average::{At, add, over_views};
 use crate::axis::lagrange::{SIX, combine, six};
 use crate::axis::{Mapping, PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend, Weights};
 use crate::error::MaterialError;
@@ -135,7 +135,12 @@ impl<const N: usize> ViewCurve<N> {
 
     /// Such averages of functions of the albedos.
     pub(crate) fn average_of<const M: usize>(&self, of: impl Fn([f32; N]) -> [f64; M]) -> [f64; M] {
-        self.0.average(|rows, view, cos| of(self.at(rows, view, cos)))
+        self.0.average(|rows, view, cos| {
+            let albedos = self.at(rows, view, cos);
+            let quantities = of(albedos);
+            let all = albedos.map(f64::from).into_iter().chain(quantities);
+            (quantities, all.fold(0, |bits, x| 2 * bits + u32::from(x == 0.0 || x == 1.0)))
+        })
     }
 }
 
@@ -195,6 +200,22 @@ impl Elevation<'_> {
         match self {
             Self::Blend(view) => view.floor(),
             Self::Critical(view) => view.floor(),
+        }
+    }
+
+    /// The coordinate of a view no lower than the first node.
+    pub(super) fn coordinate(&self, cos: f64) -> f64 {
+        match self {
+            Self::Blend(view) => view.coordinate(cos),
+            Self::Critical(view) => view.coordinate(cos),
+        }
+    }
+
+    /// The view at the middle of the coordinate, where that turns sharply.
+    pub(super) fn turn(&self) -> Option<f64> {
+        match self {
+            Self::Blend(_) => None,
+            Self::Critical(view) => Some(view.critical()),
         }
     }
 }
@@ -284,81 +305,23 @@ impl Curve {
     /// of azimuths, elevation and cos θ.
     pub(super) fn average<const N: usize>(
         &self,
-        quantities: impl Fn(&Rows, &Elevation<'_>, f32) -> [f64; N],
+        quantities: impl Fn(&Rows, &Elevation<'_>, f32) -> At<N>,
     ) -> [f64; N] {
+        let over = |rows: &Rows, view: &Elevation<'_>| {
+            over_views(view, self.views, &|cos| quantities(rows, view, cos))
+        };
         match &self.view {
-            View::Round(view) => {
-                let view = Elevation::Blend(view);
-                over_views(view.floor(), WIDTH, |cos| quantities(ROUND, &view, cos))
-            }
-            View::Critical(view) => {
-                let view = Elevation::Critical(view);
-                // The albedo has a square-root kink at the critical angle: narrower panels there.
-                over_views(view.floor(), WIDTH / 8.0, |cos| quantities(ROUND, &view, cos))
-            }
+            View::Round(view) => over(ROUND, &Elevation::Blend(view)),
+            View::Critical(view) => over(ROUND, &Elevation::Critical(view)),
             View::Turning(azimuth, blend) => {
                 let mut sum = [0.0; N];
                 for ([c, s], share) in azimuth.circle() {
-                    let (rows, view) =
-                        (azimuth.six(c, s), blend.prepare_shaped(azimuth.sigma(c, s)));
-                    let view = Elevation::Blend(&view);
-                    let part = over_views(view.floor(), WIDTH, |cos| quantities(&rows, &view, cos));
-                    for (sum, part) in sum.iter_mut().zip(part) {
-                        *sum += share * part;
-                    }
+                    let view = blend.prepare_shaped(azimuth.sigma(c, s));
+                    let part = over(&azimuth.six(c, s), &Elevation::Blend(&view));
+                    add(&mut sum, share, &part);
                 }
                 sum
             }
-        }
-    }
-}
-
-/// Views of smaller cosine weigh less than rounding.
-const LOWEST: f64 = 1e-9;
-/// Width of a quadrature panel in −ln h.
-const WIDTH: f64 = 0.35;
-
-/// 2 ∫ μ dμ of functions of cos θ that are resolved down to `floor`, in panels of `width` in
-/// y = −ln h.
-fn over_views<const N: usize>(
-    floor: f64,
-    width: f64,
-    quantities: impl Fn(f32) -> [f64; N],
-) -> [f64; N] {
-    // With h = tan(½ elevation), μ = 2h/(1+h²): even in the angle near normal incidence, and in its
-    // logarithm at grazing views, where small roughness makes its difference. Views below the
-    // table's first weigh nothing.
-    const RULE: [(f64, f64); 4] = gauss_legendre();
-    // Seen from its dense side, a dielectric of index 1 has no critical angle, and its first view
-    // is the horizon.
-    let panels = libm::ceil(libm::log(2.0 / floor.max(LOWEST)) / width) as usize;
-    let mut sum = [0.0_f64; N];
-    for panel in 0..panels {
-        for (node, weight) in RULE {
-            let h = libm::exp(-width * (panel as f64 + node));
-            let cos = 2.0 * h / (1.0 + h * h);
-            // 2 μ dμ, with dμ/dy = μ (1−h²)/(1+h²).
-            let measure = 2.0 * width * weight * cos * cos * (1.0 - h * h) / (1.0 + h * h);
-            for (sum, x) in sum.iter_mut().zip(quantities(cos as f32)) {
-                *sum += measure * x;
-            }
-        }
-    }
-    sum
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_average_down_to_the_horizon_ends() {
-        for floor in [0.0, 1e-12, 1e-5] {
-            let [one, cos] = over_views(floor, WIDTH, |cos| [1.0, f64::from(cos)]);
-            assert!(
-                (one - 1.0).abs() < 1e-6 && (cos - 2.0 / 3.0).abs() < 1e-6,
-                "{floor}: {one} {cos}"
-            );
         }
     }
 }

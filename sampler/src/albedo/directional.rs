@@ -65,7 +65,8 @@ impl Albedo {
 
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.
     pub fn lost(&self, v: Vec3) -> f32 {
-        -self.rest(v)[0]
+        // No −0.
+        0.0 - self.rest(v)[0]
     }
 
     /// Cosine-weighted averages of the moments over the hemisphere of views: 1/π ∫∫ · μ dμ dφ.
@@ -80,16 +81,18 @@ impl Albedo {
 
     /// The average share of light lost, 1 − E_avg, with all its digits.
     pub fn lost_average(&self) -> f32 {
-        -self.average[0]
+        0.0 - self.average[0]
     }
 
-    /// The averages by quadrature of the interpolated albedo, in the form of the tables' channels:
+    /// The averages by quadrature of what is looked up, in the form of the tables' channels:
     /// the values of tables of averages.
     pub(crate) fn integrate(&self) -> [f32; 3] {
         less_mirror(self.curve.average(|rows, view, cos| {
-            let [e, bias, f82] = self.at(rows, view, cos).map(f64::from);
-            let mirror = Moments::mirror(cos);
-            [e, bias + e * f64::from(mirror.bias), f82 + e * f64::from(mirror.f82)]
+            let rest = self.at(rows, view, cos);
+            let (mirror, e) = (Moments::mirror(cos), rest[0]);
+            let moments = mirror.plus(rest);
+            let less = [e, moments.bias - mirror.bias, moments.f82 - mirror.f82];
+            (less.map(f64::from), u32::from(e == 0.0) + 2 * u32::from(e == -1.0))
         }))
     }
 

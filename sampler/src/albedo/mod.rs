@@ -5,6 +5,7 @@
 //! [`curve`] collapses the axes of the material, which leaves a curve over the view, and
 //! [`directional`] or [`fresnel`] say what its channels mean.
 
+mod average;
 mod curve;
 mod directional;
 mod domain;

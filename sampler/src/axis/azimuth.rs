@@ -3,6 +3,7 @@
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, TAU};
 use core::f64::consts;
 
+use microfacet_common::gauss_legendre;
 use serde::{Deserialize, Serialize};
 
 use super::coordinate::{Coordinate, Placement};
@@ -161,15 +162,22 @@ impl PreparedAzimuth {
     }
 
     /// Directions spread over the coordinate, each with its share of the circle; the shares add up
-    /// to one.
-    ///
-    /// This is the midpoint rule, which on a closed circle is as good as any.
+    /// to one. Between nodes it is a Gauss–Legendre rule, since what is interpolated has kinks at
+    /// them.
     pub(crate) fn circle(&self) -> impl Iterator<Item = ([f64; 2], f64)> {
-        // Four points between nodes, limited for tables of any size.
-        let steps = if self.nodes == 1 { 1 } else { (4 * self.nodes).min(256) };
-        let middle = move |i: usize| (i as f64 + 0.5) / steps as f64;
-        let whole: f64 = (0..steps).map(|i| self.share(middle(i))).sum();
-        (0..steps).map(move |i| (self.direction(middle(i)), self.share(middle(i)) / whole))
+        const RULE: [(f64, f64); 4] = gauss_legendre();
+        // A limit for tables of any size.
+        let cells = if self.fold { self.nodes - 1 } else { self.nodes }.clamp(1, 64);
+        let points = RULE.len() * if self.nodes == 1 { 0 } else { cells };
+        let at = move |i: usize| {
+            let (node, weight) = RULE[i % RULE.len()];
+            let t = ((i / RULE.len()) as f64 + node) / cells as f64;
+            (t, weight * self.share(t))
+        };
+        let whole: f64 = (0..points).map(|i| at(i).1).sum();
+        let spread = (0..points).map(at).map(move |(t, share)| (self.direction(t), share / whole));
+        // A single node stands for every azimuth.
+        (points == 0).then(|| (self.direction(0.0), 1.0)).into_iter().chain(spread)
     }
 }
 

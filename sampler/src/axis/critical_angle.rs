@@ -90,6 +90,11 @@ impl PreparedCritical {
         self.floor
     }
 
+    /// μ_c, the view of t = ½.
+    pub(crate) fn critical(&self) -> f64 {
+        self.critical
+    }
+
     fn y(&self, cos: f64) -> f64 {
         let (_, x, h) = terms(cos, self.knee);
         fourth_roots(self.blend.share, x, h)

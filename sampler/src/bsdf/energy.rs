@@ -67,7 +67,7 @@ impl Energy {
     /// Of a rough interface whose albedos are those of the same lobe, index and form of masking.
     pub(super) fn rough(albedo: DielectricAlbedo, compensation: Compensation, eta: f32) -> Self {
         let sides = [&albedo.outside, &albedo.inside];
-        // By the same formulas as single views, so that a furnace closes to rounding.
+        // By the same formulas as single views, so that a furnace closes.
         let averages = sides.map(|curve| {
             curve.average_of(|shares| {
                 let Shares { reflection, transmission, lost } = Shares::of(shares);
