@@ -9,7 +9,8 @@ use microfacet_bake::table_spec::Quality;
 use microfacet_sampler::{Masking, Precision, Reflectance, Side, Tables, ViewCurve};
 use rand::{RngExt, SeedableRng};
 
-/// 2∫ μ dμ of functions of the view, by the midpoint rule in ln h of half the elevation's tangent h.
+/// 2∫ μ dμ of functions of the view, by the midpoint rule in ln h, h the tangent of half the
+/// elevation.
 fn over_views<const N: usize>(f: impl Fn(Vec3) -> [f32; N]) -> [f64; N] {
     const STEPS: usize = 12_000;
     let step = 31.0 / STEPS as f64;

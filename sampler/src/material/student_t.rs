@@ -144,7 +144,7 @@ impl StudentT {
     pub(crate) fn stretch(&self, w: Vec3) -> Stretched {
         let (x, y) = (self.sigma_x * w.x, self.sigma_y * w.y);
         let rho = sqrt(x * x + y * y);
-        let z = w.z.max(0.0).min(LONGEST);
+        let z = if w.z > 0.0 { w.z.min(LONGEST) } else { 0.0 };
         if (SHORT..=LONG).contains(&rho) {
             Stretched { x, y, frame: rho, rho, z }
         } else if (NORMAL_INCIDENCE..=LONGEST).contains(&rho) {
