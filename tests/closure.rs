@@ -9,7 +9,8 @@ use microfacet_bake::table_spec::Quality;
 use microfacet_sampler::{Masking, Precision, Reflectance, Side, Tables, ViewCurve};
 use rand::{RngExt, SeedableRng};
 
-/// 2∫ μ dμ of functions of the view, by the midpoint rule in ln h of half the elevation's tangent h.
+/// 2∫ μ dμ of functions of the view, by the midpoint rule in ln h, h the tangent of half the
+/// elevation.
 fn over_views<const N: usize>(f: impl Fn(Vec3) -> [f32; N]) -> [f64; N] {
     const STEPS: usize = 12_000;
     let step = 31.0 / STEPS as f64;
@@ -83,7 +84,7 @@ fn a_draft_set_closes() {
     let need = RequiredAlbedo { lobe, ..RequiredAlbedo::general() };
     let tables = bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap();
     let set = Tables::from_tables(Default::default(), tables).unwrap();
-    assert!(worst(&set, gammas, sigmas) < 5e-5);
+    assert!(worst(&set, gammas, sigmas) < 5e-4);
 }
 
 /// From the dense side there is a kink at the critical angle.
