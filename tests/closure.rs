@@ -84,7 +84,7 @@ fn a_draft_set_closes() {
     let need = RequiredAlbedo { lobe, ..RequiredAlbedo::general() };
     let tables = bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap();
     let set = Tables::from_tables(Default::default(), tables).unwrap();
-    assert!(worst(&set, gammas, sigmas) < 5e-5);
+    assert!(worst(&set, gammas, sigmas) < 5e-4);
 }
 
 /// From the dense side there is a kink at the critical angle.

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use microfacet_sampler::{Kind, Precision, Tables, encode};
 use tempfile::TempDir;
 
 use crate::command::{json, ok, refused, run};
@@ -130,4 +131,44 @@ fn half_of_pi_may_be_typed() {
     for theta in ["1.58", "-0.1", "nan"] {
         refused(folder.path(), &[&one[..], &[theta]].concat());
     }
+}
+
+/// What a set states is what it is judged by: coarse nodes and 16 bits are no faults, wrong values
+/// are.
+#[test]
+fn honest_sets_pass_at_every_precision_and_wrong_ones_do_not() {
+    let folder = tempfile::tempdir().unwrap();
+    const FEW: [&str; 4] = ["--samples", "20000", "--configurations", "12"];
+    let validated = |set: &str, more: &[&str]| {
+        let output = run(folder.path(), &[&["validate", set], &FEW[..], more].concat());
+        (output.status.code(), String::from_utf8(output.stdout).unwrap())
+    };
+    for precision in ["f16", "u16"] {
+        let bare = ["--quality", "draft", "--no-albedo", "--no-cache", "--precision", precision];
+        ok(folder.path(), &[&["bake", "--out", precision], &bare[..]].concat());
+        let (code, text) = validated(precision, &[]);
+        assert!(code == Some(0) && text.ends_with("PASSED\n"), "{precision}: {text}");
+        assert_eq!(validated(precision, &["--perturb-gamma", "1.05"]).0, Some(1), "{precision}");
+    }
+    let set = Tables::from_bytes(&fs::read(folder.path().join("u16/tables.safetensors")).unwrap());
+    let set = set.unwrap();
+    let mut tables = set.tables().to_vec();
+    for table in tables.iter_mut().filter(|table| table.kind == Kind::VisibleSlope) {
+        table.values.iter_mut().step_by(2).for_each(|x| *x *= 1.1);
+        table.precision = Precision::F32;
+    }
+    let wrong = encode(set.provenance(), &tables).unwrap();
+    fs::write(folder.path().join("wrong.safetensors"), wrong).unwrap();
+    assert_eq!(validated("wrong.safetensors", &[]).0, Some(1));
+}
+
+/// Smooth surfaces of heavy tails, for which draft tables of albedos are the coarsest.
+#[test]
+fn the_furnace_of_a_draft_set_closes() {
+    let folder = baked(
+        "[[material]]\nname = \"m\"\nsigma = { min = 1e-8, max = 1e-6 }\nfresnel = \"mirror\"\n\
+         gamma = { min = 1.501, max = 1.52 }\n",
+    );
+    let few = ["validate", "set", "--samples", "1000", "--configurations", "4"];
+    assert!(ok(folder.path(), &few).ends_with("PASSED\n"));
 }

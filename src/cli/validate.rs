@@ -5,9 +5,7 @@ use std::path::PathBuf;
 
 use microfacet_bake::progress::Meter;
 use microfacet_bake::validate::configuration::{Configuration, configurations, shapes};
-use microfacet_bake::validate::furnace::{
-    Furnace, Survey, TOLERANCE as FURNACE_TOLERANCE, survey, survey_seconds,
-};
+use microfacet_bake::validate::furnace::{Furnace, Survey, survey, survey_seconds};
 use microfacet_bake::validate::record::Record;
 use microfacet_bake::validate::{
     Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all, seconds,
@@ -230,10 +228,10 @@ fn white(furnaces: &[Survey]) -> String {
             let Furnace { sigma, gamma, cos_theta, kulla_conty, .. } = row;
             format!("{kulla_conty:.5} (sigma {sigma:.3e}, gamma {gamma:.4}, cos_theta {cos_theta})")
         };
-        let (name, points) = (survey.masking.name(), survey.points);
+        let (name, points, allowed) = (survey.masking.name(), survey.points, survey.allowed);
         let (low, high) = (row(&survey.lowest), row(&survey.highest));
         format!(
-            "white furnace, {name}, {points} points, Kulla-Conty: {low} to {high}; 1 +- {FURNACE_TOLERANCE:e} allowed\n"
+            "white furnace, {name}, {points} points, Kulla-Conty: {low} to {high}; 1 +- {allowed:e} allowed\n"
         )
     };
     furnaces.iter().map(line).collect()

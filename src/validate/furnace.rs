@@ -127,6 +127,9 @@ pub struct Survey {
     pub masking: Masking,
     /// Number of materials and views.
     pub points: usize,
+    /// Allowed deviation from 1: [`TOLERANCE`], or the error of E that the table's certificate
+    /// states, if that is larger.
+    pub allowed: f64,
     /// Where the Kulla–Conty lobe brings back the least light.
     pub lowest: Furnace,
     /// Where it brings back the most.
@@ -134,31 +137,34 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Whether every point is within [`TOLERANCE`] of 1.
+    /// Whether every point is as close to 1 as is allowed.
     pub fn passed(&self) -> bool {
         // Written so that a NaN fails.
-        [self.lowest, self.highest].iter().all(|row| (row.kulla_conty - 1.0).abs() <= TOLERANCE)
+        [self.lowest, self.highest].iter().all(|row| (row.kulla_conty - 1.0).abs() <= self.allowed)
     }
 }
 
 /// Cosines of the views of a survey.
 const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1.0];
 
-/// The form of masking of each albedo table of the family, and the materials of a survey of it.
-fn surveyed(tables: &Tables) -> Vec<(Masking, Vec<[f64; 2]>)> {
+/// The form of masking of each albedo table of the family, the deviation that it is allowed, and
+/// the materials of a survey of it.
+fn surveyed(tables: &Tables) -> Vec<(Masking, f64, Vec<[f64; 2]>)> {
     let materials = |(table, masking, covers): (&Table, Masking, Covered)| {
         let gammas = between(&table.axes[0], covers.s.map(gamma_of_s), 11);
         let sigmas = between(&table.axes[1], covers.sigma.unwrap_or_default(), 14);
         let pairs =
             gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| [sigma, gamma]));
-        (masking, pairs.collect())
+        let stated = ["e_max_error", "e_max_error_outside"];
+        let errors = stated.iter().filter_map(|key| table.certificate.get(*key));
+        (masking, errors.copied().fold(TOLERANCE, f64::max), pairs.collect())
     };
     of_family(tables).map(materials).collect()
 }
 
 /// The estimated seconds of [`survey`] on the current threads.
 pub fn survey_seconds(tables: &Tables) -> f64 {
-    surveyed(tables).iter().map(|(_, materials)| seconds(materials.len() * VIEWS.len())).sum()
+    surveyed(tables).iter().map(|(_, _, materials)| seconds(materials.len() * VIEWS.len())).sum()
 }
 
 /// The estimated seconds of so many furnaces on the current threads.
@@ -174,9 +180,9 @@ pub fn seconds(rows: usize) -> f64 {
 /// [`MaterialError`] if the set does not hold what it declares to cover.
 pub fn survey(tables: &Tables, stage: &Stage) -> Result<Vec<Survey>, MaterialError> {
     let all = surveyed(tables);
-    stage.split(all.iter().map(|(_, materials)| materials.len()).sum());
+    stage.split(all.iter().map(|(_, _, materials)| materials.len()).sum());
     all.into_iter()
-        .map(|(masking, materials)| {
+        .map(|(masking, allowed, materials)| {
             let views = |&[sigma, gamma]: &[f64; 2]| {
                 let rows = VIEWS.map(|cos| furnace(tables, masking, sigma, gamma, cos));
                 stage.step();
@@ -189,7 +195,7 @@ pub fn survey(tables: &Tables, stage: &Stage) -> Result<Vec<Survey>, MaterialErr
             let order = |a: &&Furnace, b: &&Furnace| a.kulla_conty.total_cmp(&b.kulla_conty);
             let lowest = *rows.iter().min_by(order).expect("a grid has points");
             let highest = *rows.iter().max_by(order).expect("a grid has points");
-            Ok(Survey { masking, points: rows.len(), lowest, highest })
+            Ok(Survey { masking, points: rows.len(), allowed, lowest, highest })
         })
         .collect()
 }

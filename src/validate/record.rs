@@ -98,7 +98,7 @@ impl Record {
             pdf_tolerance: PDF_TOLERANCE,
             worst_pdf_integral: outcome.worst_integral().map(|report| report.pdf_integral),
             configurations: outcome.reports.iter().map(Tested::from).collect(),
-            furnace_tolerance: TOLERANCE,
+            furnace_tolerance: furnaces.iter().map(|of| of.allowed).fold(TOLERANCE, f64::max),
             furnaces: furnaces.iter().map(Returned::from).collect(),
             not_tested,
         })

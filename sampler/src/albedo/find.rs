@@ -19,8 +19,8 @@ impl Tables {
     /// recipe does not narrow it). Between the two nothing is known: at γ = 1.501 and σ = 1e-9 a
     /// view of cos θ = 1e-7 loses two thirds of its light. The averages are those of
     /// the lookups of just this material, so that a white furnace closes: 1 − E_avg differs by no
-    /// more than 5e-5 of itself from the integral of 1 − E. The call takes some twenty
-    /// microseconds; keep the result.
+    /// more than 5e-5 of itself from the integral of 1 − E in default quality, and by 5e-4 in
+    /// draft. The call takes some twenty microseconds; keep the result.
     ///
     /// # Errors
     /// [`MaterialError`] for a γ outside the family, or a σ, γ or form of masking that the set's

@@ -51,6 +51,18 @@ impl<'a> Slice<'a> {
     }
 }
 
+/// Lets both halves of a row end at one slope at u = ½, where they store 1 + h and 1 − h.
+///
+/// Rounding to 16 bits parts them by up to 1e-3, which the samples would leave out or draw twice.
+fn join(row: &mut [Node]) {
+    let (low, high) = row.split_at_mut(row.len() / 2);
+    let ([.., before, low], [.., beyond, high]) = (low, high) else { return };
+    let middle = 0.5 * (low[0] + (2.0 - high[0]));
+    // Both halves still ascend. The second difference is exact.
+    high[0] = 2.0 - middle.min(2.0 - beyond[0]).max(before[0]);
+    low[0] = 2.0 - high[0];
+}
+
 fn pairs(values: &[f32]) -> Vec<Node> {
     values.chunks_exact(2).map(|node| [node[0], node[1]]).collect()
 }
@@ -136,6 +148,7 @@ impl Slices {
         };
         let shadowing_cells = shadowing.nodes.len() - 1;
         let mut slopes = slope.nodes;
+        slopes.chunks_exact_mut(2 * numbers.nodes.len()).for_each(join);
         slopes.chunks_exact_mut(numbers.nodes.len()).for_each(make_monotone);
         slopes.resize(slopes.len() + numbers.nodes.len() * 2 + 1, [0.0; 2]);
         Self {
