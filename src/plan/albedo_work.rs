@@ -27,7 +27,7 @@ const OF_RANGE: [f64; 2] = [4.5, 6.0];
 /// The seconds of one thread for albedo tables without doublings, by what they are spent on.
 pub(crate) struct AlbedoWork {
     pub(crate) nodes: f64,
-    /// The certificate's places inside, along edges, and on the way uphill.
+    /// The certificate's places inside, along edges and creases, and on the way uphill.
     pub(crate) interior: f64,
     pub(crate) edges: f64,
     pub(crate) climbs: f64,
@@ -47,7 +47,8 @@ impl AlbedoWork {
         Self {
             nodes: node * spec.nodes() as f64,
             interior: place * points::interior_count(spec) as f64,
-            edges: place * edge * points::edge_count(spec) as f64,
+            edges: place
+                * (edge * points::edge_count(spec) as f64 + points::crease_count(spec) as f64),
             climbs: place * climb * climbed * spec.maskings.len() as f64,
         }
     }

@@ -15,7 +15,7 @@ use microfacet_sampler::{
 };
 
 use super::certificate::round_up;
-use super::points::{Point, are_apart, beside, edges, interior};
+use super::points::{Point, are_apart, beside, crease, edges, has_crease, interior, is_tilted};
 use crate::bake::albedo::{
     AlbedoError, AlbedoLobe, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights,
 };
@@ -52,12 +52,13 @@ pub fn interior_references(
     references(spec, points, true, stage)
 }
 
-/// The model's values at corners, and in the middle of every cell along every edge.
+/// The model's values at corners, in the middle of every cell along every edge, and on the crease
+/// of a tilted lobe.
 ///
 /// # Errors
 /// As [`interior_references`].
 pub fn edge_references(spec: &AlbedoSpec, stage: &Stage) -> Result<Vec<Reference>, AlbedoError> {
-    let points = edges(spec);
+    let points = [edges(spec), crease(spec)].concat();
     stage.split(points.len());
     references(spec, points, true, stage)
 }
@@ -235,12 +236,35 @@ fn average_errors(
 
 /// Steps of a climb, in cells.
 const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
-/// Hills climbed for each quantity.
-const HILLS: usize = 4;
+/// Hills climbed for each quantity with each step. Each quantity goes on from the best place of
+/// all hills.
+const HILLS: [usize; STEPS.len()] = [4; STEPS.len()];
+/// The same for a tilted lobe, with about as many places: hills of nearly one height stand along
+/// its crease, and each is climbed by itself, the highest to the end.
+const HILLS_OF_TILTED: [usize; STEPS.len()] = [8, 8, 4, 2, 2, 2];
+
+fn hills(spec: &AlbedoSpec) -> [usize; STEPS.len()] {
+    if is_tilted(spec) { HILLS_OF_TILTED } else { HILLS }
+}
 
 /// Number of places on the way uphill, at most, for the certificate of one directional table.
 pub(crate) fn climbed_count(spec: &AlbedoSpec) -> usize {
-    quantities(spec).len() * HILLS * STEPS.len() * 2 * spec.axes.len()
+    let directions = 2 * spec.axes.len() * if has_crease(spec) { 2 } else { 1 };
+    quantities(spec).len() * hills(spec).iter().sum::<usize>() * directions
+}
+
+/// A quantity by its index, a place, and the quantity's error there.
+type Top = (usize, Point, f64);
+
+/// The highest of the tops of each quantity, which stand together.
+fn highest(tops: &[Top], count: usize) -> Vec<Top> {
+    let of_quantity = |group: &[Top]| {
+        let mut group = group.to_vec();
+        group.sort_by(|a, b| b.2.total_cmp(&a.2));
+        group.truncate(count);
+        group
+    };
+    tops.chunk_by(|a, b| a.0 == b.0).flat_map(of_quantity).collect()
 }
 
 /// The promised places on the way uphill from where each quantity has its largest errors, with
@@ -251,7 +275,8 @@ fn climbed(
     measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Copy + Send + Sync,
     stage: &Stage,
 ) -> Result<Vec<(Reference, Vec<f64>)>, AlbedoError> {
-    let mut tops: Vec<(usize, Point, f64)> = Vec::new();
+    let hills = hills(spec);
+    let mut tops: Vec<Top> = Vec::new();
     for i in 0..quantities(spec).len() {
         let mut worst: Vec<&Errors<'_>> =
             errors.iter().filter(|errors| errors.0.point.promised).collect();
@@ -259,18 +284,24 @@ fn climbed(
         let start = tops.len();
         for (at, errors) in worst {
             let apart = tops[start..].iter().all(|(_, point, _)| are_apart(spec, point, &at.point));
-            if tops.len() < start + HILLS && apart {
+            if tops.len() < start + hills[0] && apart {
                 tops.push((i, at.point.clone(), errors[i]));
             }
         }
     }
     let mut seen: Vec<(Reference, Vec<f64>)> = Vec::new();
-    for step in STEPS {
-        let around = tops.iter().flat_map(|(_, point, _)| beside(spec, point, step)).collect();
-        let references = references(spec, around, true, stage)?;
+    for (step, count) in STEPS.into_iter().zip(hills) {
+        tops = highest(&tops, count);
+        let around: Vec<Vec<Point>> =
+            tops.iter().map(|(_, point, _)| beside(spec, point, step)).collect();
+        let references = references(spec, around.concat(), true, stage)?;
         let errors = measured_at(&references, measured)?;
-        for (i, point, error) in &mut tops {
-            if let Some(top) = errors.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))
+        let mut from = 0;
+        for ((i, point, error), own) in tops.iter_mut().zip(&around) {
+            let own = from..from + own.len();
+            from = own.end;
+            let near = if is_tilted(spec) { &errors[own] } else { &errors[..] };
+            if let Some(top) = near.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))
                 && top.1[*i] > *error
             {
                 (*point, *error) = (top.0.point.clone(), top.1[*i]);
@@ -299,7 +330,7 @@ fn quantities(spec: &AlbedoSpec) -> &'static [&'static str] {
 }
 
 /// Largest and root-mean-square errors of each quantity, and the place of the largest of all; the
-/// means leave out the places `found` uphill.
+/// means leave out the places on a crease, and those `found` uphill.
 fn summary(
     spec: &AlbedoSpec,
     errors: &[Errors<'_>],
@@ -310,8 +341,9 @@ fn summary(
     let (mut inside, outside): (Vec<_>, Vec<_>) =
         errors.iter().partition(|errors| errors.0.point.promised);
     for (i, name) in quantities(spec).iter().enumerate() {
-        let squares: f64 = inside.iter().map(|errors| errors.1[i] * errors.1[i]).sum();
-        let rms = (squares / inside.len().max(1) as f64).sqrt();
+        let spread = inside.iter().filter(|errors| !errors.0.point.on_crease);
+        let squares: f64 = spread.clone().map(|errors| errors.1[i] * errors.1[i]).sum();
+        let rms = (squares / spread.count().max(1) as f64).sqrt();
         figures.insert(format!("{name}_rms_error"), round_up(rms));
     }
     inside.extend(found);

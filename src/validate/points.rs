@@ -1,15 +1,18 @@
 //! Places at which albedo tables are measured: corners, the middle of every cell along every edge,
-//! faces, and the interior.
+//! faces, the interior, and the crease of tilted lobes.
 //!
-//! Random places miss edges, where the windows of a polynomial are one-sided and errors largest: so
-//! those are listed. All places are fixed, so that certificates are part of a table's reproducible
-//! bytes.
+//! Random places miss edges, where the windows of a polynomial are one-sided and errors largest,
+//! and the crease, where E has a kink: so those are listed. All places are fixed, so that
+//! certificates are part of a table's reproducible bytes.
 
+use rayon::prelude::*;
+
+use microfacet_model::Ellipsoid;
 use microfacet_sampler::axis::LogRoughness;
-use microfacet_sampler::{Axis, Mapping};
+use microfacet_sampler::{Axis, Mapping, Masking};
 
 use super::certificate::low_discrepancy;
-use crate::bake::albedo::{AlbedoLobe, AlbedoSpec, Site};
+use crate::bake::albedo::{AlbedoLobe, AlbedoSpec, Site, area_ratio};
 
 /// Smallest σ and cos θ of the domain that certificates promise errors for.
 const PROMISED: (f64, f64) = (0.01, 0.02);
@@ -28,6 +31,9 @@ const VIEWS: [f64; 5] = [1.0, PROMISED.1, 1e-4, 3e-7, 0.0];
 /// Number of last cells that hold the cusp at the normal.
 const LAST_CELLS: f64 = 2.0;
 
+/// Lines across a crease in each cell of either axis, the middle of the cell among them.
+const LINES: usize = 4;
+
 /// A place to measure at.
 #[derive(Clone, Debug)]
 pub struct Point {
@@ -37,11 +43,15 @@ pub struct Point {
     pub site: Site,
     /// Whether it lies in the promised domain.
     pub promised: bool,
+    /// Whether it was found on a crease.
+    pub on_crease: bool,
 }
 
 /// The promised range of an axis, in its coordinate.
 pub(super) struct Range {
     ends: Vec<f64>,
+    /// From the first place to the last: the full circle of azimuths, which has no ends.
+    whole: [f64; 2],
     /// The middles of the cells in the range.
     cells: Vec<f64>,
 }
@@ -69,23 +79,19 @@ impl Range {
             (Mapping::Azimuth(azimuth), _) => [0.0, if azimuth.fold { 1.0 } else { 0.25 }],
             _ => [0.0, 1.0],
         };
-        let whole = match axis.mapping {
-            Mapping::Azimuth(azimuth) if !azimuth.fold && axis.len() > 1 => [0.0, 1.0],
-            _ => [low, high],
-        };
+        let whole = if is_circle(axis) { [0.0, 1.0] } else { [low, high] };
         let mut nodes = axis.nodes.clone();
         nodes.push(whole[1]);
         let middle = |pair: &[f64]| 0.5 * (pair[0].max(whole[0]) + pair[1].min(whole[1]));
         let inside = |pair: &&[f64]| pair[1] > whole[0] && pair[0] < whole[1];
         let cells = nodes.windows(2).filter(inside).map(middle).collect();
         let ends = if low == high { vec![low] } else { vec![low, high] };
-        Self { ends, cells }
+        Self { ends, whole, cells }
     }
 
     /// The coordinate at the share x ∈ [0, 1] of the range; around the full circle for an azimuth.
     pub(super) fn at(&self, x: f64) -> f64 {
-        let [first, last] = [self.ends[0], self.ends[self.ends.len() - 1]];
-        let last = self.cells.last().map_or(last, |cell| cell.max(last));
+        let [first, last] = self.whole;
         first + x * (last - first)
     }
 
@@ -94,6 +100,16 @@ impl Range {
         let i = (x * self.cells.len() as f64) as usize;
         self.cells.get(i).copied().unwrap_or(self.ends[0])
     }
+}
+
+/// Whether an axis is closed: the full circle of azimuths, whose nodes are evenly spaced.
+fn is_circle(axis: &Axis) -> bool {
+    matches!(axis.mapping, Mapping::Azimuth(azimuth) if !azimuth.fold) && axis.len() > 1
+}
+
+/// Whether the lobe is tilted, so that its table has the full circle of azimuths, and kinks.
+pub(super) fn is_tilted(spec: &AlbedoSpec) -> bool {
+    spec.lobe.ellipsoid().is_some()
 }
 
 /// Number of the places at corners and along edges.
@@ -107,6 +123,13 @@ pub fn edge_count(spec: &AlbedoSpec) -> usize {
     let along: usize =
         materials.iter().enumerate().map(|(i, range)| range.cells.len() * ends(Some(i))).sum();
     ends(None) * (VIEWS.len() + view.cells.len()) + along * VIEWS.len()
+}
+
+/// About the number of the places on a crease: it crosses half of all azimuths once, and most
+/// views twice.
+pub fn crease_count(spec: &AlbedoSpec) -> usize {
+    let count = |k: usize| spec.axes.get(k).map_or(0, Axis::len);
+    if has_crease(spec) { LINES * (count(0) / 2 + 2 * count(1)) } else { 0 }
 }
 
 /// Number of the places that lie inside.
@@ -140,7 +163,7 @@ fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
         _ => 0.0,
     };
     let promised = site.cos as f32 >= PROMISED.1 as f32 && site.sigma >= smoothest;
-    Point { at, site, promised }
+    Point { at, site, promised, on_crease: false }
 }
 
 /// The coordinate of a view; for a view below the first node, that of the first node.
@@ -194,22 +217,92 @@ fn cell(axis: &Axis) -> f64 {
     (last - first) / (axis.nodes.len() - 1).max(1) as f64
 }
 
-/// Promised neighbours of a place, `cells` away along each axis.
+/// Promised neighbours of a place, `cells` away along each axis; of a place on a crease, also those
+/// on it.
 pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
+    let crease = Crease::of(spec).filter(|_| point.on_crease);
     let mut points = Vec::new();
     for (k, (axis, range)) in spec.axes.iter().zip(ranges(spec)).enumerate() {
-        let cell = cell(axis);
-        let [low, high] = [range.ends[0], range.ends[range.ends.len() - 1]];
-        let high = range.cells.last().map_or(high, |cell| cell.max(high));
+        let (cell, [low, high]) = (cell(axis), range.whole);
         for step in [-cells, cells] {
             let mut at = point.at.clone();
-            at[k] = (at[k] + step * cell).clamp(low, high);
+            at[k] += step * cell;
+            at[k] = if is_circle(axis) { at[k].rem_euclid(1.0) } else { at[k].clamp(low, high) };
+            points.extend(crease.iter().filter_map(|crease| crease.nearest(k, &at)));
             let (material, view) = at.split_at(at.len() - 1);
             points.push(self::point(spec, material, View::At(view[0])));
         }
     }
     points.retain(|other| other.promised && other.at != point.at);
     points
+}
+
+/// The curve of views at which G1 of a tilted lobe reaches its clamp.
+///
+/// With height-correlated masking E has a kink there, and the errors of polynomials across it have
+/// a narrow ridge, which crosses cells anywhere.
+struct Crease<'a> {
+    spec: &'a AlbedoSpec,
+    ellipsoid: Ellipsoid,
+}
+
+impl<'a> Crease<'a> {
+    /// `None` where E has no such kink.
+    fn of(spec: &'a AlbedoSpec) -> Option<Self> {
+        let kink = spec.maskings.contains(&Masking::HeightCorrelated);
+        spec.lobe.ellipsoid().filter(|_| kink).map(|ellipsoid| Self { spec, ellipsoid })
+    }
+
+    /// Its promised places with the coordinate t along an axis: 0, azimuth, or 1, view.
+    fn crossings(&self, axis: usize, t: f64) -> Vec<Point> {
+        let at = |x: f64| if axis == 0 { [t, x] } else { [x, t] };
+        let clamped =
+            |x: f64| area_ratio(&self.ellipsoid, &Site::new(&self.spec.axes, &at(x))) < 1.0;
+        let other = &self.spec.axes[1 - axis];
+        // At the normal itself every azimuth meets the curve.
+        let last = if is_circle(other) { 1.0 } else { 1.0 - 1e-3 * cell(other) };
+        let stops = other.nodes.iter().copied().filter(|node| *node < last).chain([last]);
+        let stops: Vec<(f64, bool)> = stops.map(|x| (x, clamped(x))).collect();
+        let changes = stops.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+        let root = |pair: &[(f64, bool)]| {
+            let [(mut low, first), (mut high, _)] = [pair[0], pair[1]];
+            for _ in 0..48 {
+                let middle = 0.5 * (low + high);
+                *(if clamped(middle) == first { &mut low } else { &mut high }) = middle;
+            }
+            let [azimuth, view] = at(low);
+            Point { on_crease: true, ..point(self.spec, &[azimuth], View::At(view)) }
+        };
+        changes.map(root).filter(|place| place.promised).collect()
+    }
+
+    /// Its place with the coordinate of `at` along an axis that is nearest along the other.
+    fn nearest(&self, axis: usize, at: &[f64]) -> Option<Point> {
+        let other = 1 - axis;
+        let circle = is_circle(&self.spec.axes[other]);
+        let away = |place: &Point| {
+            let away = (place.at[other] - at[other]).abs();
+            if circle { away.min(1.0 - away) } else { away }
+        };
+        self.crossings(axis, at[axis]).into_iter().min_by(|a, b| away(a).total_cmp(&away(b)))
+    }
+}
+
+/// Whether E has the kink of a tilted lobe.
+pub(super) fn has_crease(spec: &AlbedoSpec) -> bool {
+    Crease::of(spec).is_some()
+}
+
+/// Where the crease of a tilted lobe crosses lines of equal azimuth and of equal view, some in each
+/// cell; none for other lobes.
+pub fn crease(spec: &AlbedoSpec) -> Vec<Point> {
+    let Some(crease) = Crease::of(spec) else { return Vec::new() };
+    let lines = |(k, axis): (usize, &Axis)| {
+        let step = cell(axis) / LINES as f64;
+        (0..(1.0 / step).round() as usize).map(move |i| (k, i as f64 * step))
+    };
+    let lines: Vec<(usize, f64)> = spec.axes.iter().enumerate().flat_map(lines).collect();
+    lines.into_par_iter().flat_map_iter(|(k, t)| crease.crossings(k, t)).collect()
 }
 
 /// All corners of the promised domain, and along each of its edges the middle of every cell.
@@ -243,15 +336,27 @@ fn product(materials: &[Range], along: Option<usize>) -> Vec<Vec<f64>> {
     all
 }
 
-/// Interior places: a third anywhere, a third on a face with the view in the middle of a cell, and
-/// a third with some axis in the middle of a cell; an eighth of all lies outside the promised
-/// domain. Apart from the middles of cells, they do not depend on the numbers of views and
-/// azimuths.
+/// Interior places: a third anywhere, a third on a face with the view off the nodes, and a third
+/// with some axis off the nodes, or both for a tilted lobe; an eighth of all lies outside the
+/// promised domain. Off the nodes is the middle of a cell, or a third of it for a tilted lobe.
+/// Apart from the cells, places do not depend on the numbers of views and azimuths.
 pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
     let ranges = ranges(spec);
     let (view, materials) = ranges.split_last().expect("the view is an axis");
+    let tilted = is_tilted(spec);
     let place = |i: usize| {
         let x = low_discrepancy(steps(), i);
+        // The places serve finer tables of the lobe, too, whose nodes stand in the middles of these
+        // cells, but never at a third.
+        let aside = match i % 2 {
+            _ if !tilted => 0.0,
+            0 => 1.0 / 6.0,
+            _ => -1.0 / 6.0,
+        };
+        let off_nodes = |k: usize, range: &Range, x: f64| {
+            let [low, high] = range.whole;
+            (range.cell(x) + aside * cell(&spec.axes[k])).clamp(low, high)
+        };
         let of = |k: usize, range: &Range| {
             let x = x[k];
             match (i % 3, i / 3 % (2 * ranges.len())) {
@@ -262,7 +367,7 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
                         range.ends[range.ends.len() - 1]
                     }
                 }
-                (2, j) if j / 2 == k => range.cell(x),
+                (2, j) if j / 2 == k || tilted => off_nodes(k, range, x),
                 // Preparing a shape takes longer than a view of it: so only a few shapes are used.
                 _ if matches!(spec.axes[k].mapping, Mapping::LogShape(_)) => some_shape(range, x),
                 _ => range.at(x),
@@ -274,7 +379,8 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
         let at = match (i % 8, i % 3) {
             (0, _) => return outside(spec, material, x, i % 16 == 8),
             (_, 1) if i / 3 % (2 * ranges.len()) / 2 == materials.len() => View::Cos(PROMISED.1),
-            (_, 1) => View::At(view.cell(b)),
+            (_, 1) => View::At(off_nodes(materials.len(), view, b)),
+            (_, 2) if tilted => View::At(off_nodes(materials.len(), view, b)),
             // Near the normal, where masking sets in with a cusp: logarithmically, and evenly.
             (1 | 5, _) => {
                 View::At(1.0 - LAST_CELLS * b / (spec.axes[materials.len()].len() - 1) as f64)

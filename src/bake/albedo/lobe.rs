@@ -113,6 +113,12 @@ impl AlbedoLobe {
         })
     }
 
+    /// The lobe as a valid ellipsoid, whose masking is clamped; `None` for any other.
+    pub(crate) fn ellipsoid(&self) -> Option<Ellipsoid> {
+        let &Self::Ellipsoid { sigma, theta, gamma } = self else { return None };
+        ellipsoid(sigma, theta, gamma).ok()
+    }
+
     /// Whether the albedo is the same at every azimuth.
     pub(super) fn is_round(&self) -> bool {
         matches!(self, Self::Family(_) | Self::Radial { .. })
@@ -136,6 +142,14 @@ impl AlbedoLobe {
             Self::Family(_) | Self::Radial { .. } => None,
         }
     }
+}
+
+/// The ratio A/μ of the microsurface's visible area to the macrosurface's; where it is below 1, G1
+/// is clamped.
+pub(crate) fn area_ratio(ellipsoid: &Ellipsoid, site: &Site) -> f64 {
+    let sin = ((1.0 - site.cos) * (1.0 + site.cos)).sqrt();
+    let (s, c) = libm::sincos(site.phi);
+    ellipsoid.projected_area(DVec3::new(sin * c, sin * s, site.cos)) / site.cos
 }
 
 fn ellipsoid(sigma: [f64; 2], theta: [f64; 3], gamma: f64) -> Result<Ellipsoid, AlbedoError> {
@@ -259,13 +273,10 @@ impl Model<'_> {
         }
     }
 
-    /// The ratio A/μ of the microsurface's visible area to the macrosurface's, for an ellipsoid;
-    /// where it is below 1, G1 is clamped.
+    /// [`area_ratio`] of an ellipsoid.
     pub(super) fn area_ratio(&self, site: &Site) -> Option<f64> {
         let Self::Ellipsoid(ellipsoid, _) = self else { return None };
-        let sin = ((1.0 - site.cos) * (1.0 + site.cos)).sqrt();
-        let (s, c) = libm::sincos(site.phi);
-        Some(ellipsoid.projected_area(DVec3::new(sin * c, sin * s, site.cos)) / site.cos)
+        Some(area_ratio(ellipsoid, site))
     }
 
     /// The albedo of the isotropic lobe with the same shape and this roughness.

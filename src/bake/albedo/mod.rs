@@ -29,6 +29,7 @@ use crate::progress::Stage;
 
 pub use albedo_spec::{AlbedoSpec, Domain, SIGMA_MAX};
 pub use integrand::{Integrand, weights};
+pub(crate) use lobe::area_ratio;
 pub use lobe::{AlbedoLobe, Model, Models};
 
 /// Most channels of any integrand.

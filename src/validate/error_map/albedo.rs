@@ -116,9 +116,9 @@ fn material(spec: &AlbedoSpec, i: usize, axis: Axis) -> Span {
             let azimuth = azimuth.prepare(axis.len());
             let first = azimuth.quantity(ends[0]).to_degrees();
             Span::new(quantity, move |share| {
+                // A full circle begins at the first principal axis, and ends there.
                 let phi = azimuth.quantity(at(share)).to_degrees();
-                // A full circle begins at the first principal axis.
-                if phi < first { phi + 360.0 } else { phi }
+                if phi < first || (phi == first && share == 1.0) { phi + 360.0 } else { phi }
             })
         }
         _ => Span::new(quantity, move |share| axis.quantity(at(share)).unwrap_or(f64::NAN)),
