@@ -15,7 +15,7 @@ use microfacet_sampler::{
 };
 
 use super::certificate::round_up;
-use super::points::{Point, are_apart, beside, crease, edges, has_crease, interior, turns};
+use super::points::{Point, are_apart, beside, crease, edges, has_crease, interior, is_tilted};
 use crate::bake::albedo::{
     AlbedoError, AlbedoLobe, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights,
 };
@@ -239,12 +239,12 @@ const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
 /// Hills climbed for each quantity with each step. Each quantity goes on from the best place of
 /// all hills.
 const HILLS: [usize; STEPS.len()] = [4; STEPS.len()];
-/// The same where azimuths and views are axes, with about as many places: hills of nearly one
-/// height stand in many cells, and each is climbed by itself, the highest to the end.
-const HILLS_OF_LOBES: [usize; STEPS.len()] = [8, 8, 4, 2, 2, 2];
+/// The same for a tilted lobe, with about as many places: hills of nearly one height stand along
+/// its crease, and each is climbed by itself, the highest to the end.
+const HILLS_OF_TILTED: [usize; STEPS.len()] = [8, 8, 4, 2, 2, 2];
 
 fn hills(spec: &AlbedoSpec) -> [usize; STEPS.len()] {
-    if turns(spec) { HILLS_OF_LOBES } else { HILLS }
+    if is_tilted(spec) { HILLS_OF_TILTED } else { HILLS }
 }
 
 /// Number of places on the way uphill, at most, for the certificate of one directional table.
@@ -300,7 +300,7 @@ fn climbed(
         for ((i, point, error), own) in tops.iter_mut().zip(&around) {
             let own = from..from + own.len();
             from = own.end;
-            let near = if turns(spec) { &errors[own] } else { &errors[..] };
+            let near = if is_tilted(spec) { &errors[own] } else { &errors[..] };
             if let Some(top) = near.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))
                 && top.1[*i] > *error
             {

@@ -107,9 +107,9 @@ fn is_circle(axis: &Axis) -> bool {
     matches!(axis.mapping, Mapping::Azimuth(azimuth) if !azimuth.fold) && axis.len() > 1
 }
 
-/// Whether the albedo of one lobe is tabulated over azimuths and views.
-pub(super) fn turns(spec: &AlbedoSpec) -> bool {
-    matches!(spec.axes[0].mapping, Mapping::Azimuth(_)) && spec.axes[0].len() > 1
+/// Whether the lobe is tilted, so that its table has the full circle of azimuths, and kinks.
+pub(super) fn is_tilted(spec: &AlbedoSpec) -> bool {
+    spec.lobe.ellipsoid().is_some()
 }
 
 /// Number of the places at corners and along edges.
@@ -337,21 +337,20 @@ fn product(materials: &[Range], along: Option<usize>) -> Vec<Vec<f64>> {
 }
 
 /// Interior places: a third anywhere, a third on a face with the view off the nodes, and a third
-/// with some axis off the nodes, or both where azimuths and views are axes; an eighth of all lies
-/// outside the promised domain. Off the nodes is the middle of a cell, or a third of it where the
-/// table may be refined. Apart from the cells, places do not depend on the numbers of views and
-/// azimuths.
+/// with some axis off the nodes, or both for a tilted lobe; an eighth of all lies outside the
+/// promised domain. Off the nodes is the middle of a cell, or a third of it for a tilted lobe.
+/// Apart from the cells, places do not depend on the numbers of views and azimuths.
 pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
     let ranges = ranges(spec);
     let (view, materials) = ranges.split_last().expect("the view is an axis");
-    let turns = turns(spec);
+    let tilted = is_tilted(spec);
     let place = |i: usize| {
         let x = low_discrepancy(steps(), i);
-        // The places serve finer tables, too, whose nodes stand in the middles of these cells, but
-        // never at a third.
-        let aside = match spec.doublings() {
-            0 => 0.0,
-            _ if i.is_multiple_of(2) => 1.0 / 6.0,
+        // The places serve finer tables of the lobe, too, whose nodes stand in the middles of these
+        // cells, but never at a third.
+        let aside = match i % 2 {
+            _ if !tilted => 0.0,
+            0 => 1.0 / 6.0,
             _ => -1.0 / 6.0,
         };
         let off_nodes = |k: usize, range: &Range, x: f64| {
@@ -368,7 +367,7 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
                         range.ends[range.ends.len() - 1]
                     }
                 }
-                (2, j) if j / 2 == k || turns => off_nodes(k, range, x),
+                (2, j) if j / 2 == k || tilted => off_nodes(k, range, x),
                 // Preparing a shape takes longer than a view of it: so only a few shapes are used.
                 _ if matches!(spec.axes[k].mapping, Mapping::LogShape(_)) => some_shape(range, x),
                 _ => range.at(x),
@@ -381,7 +380,7 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
             (0, _) => return outside(spec, material, x, i % 16 == 8),
             (_, 1) if i / 3 % (2 * ranges.len()) / 2 == materials.len() => View::Cos(PROMISED.1),
             (_, 1) => View::At(off_nodes(materials.len(), view, b)),
-            (_, 2) if turns => View::At(off_nodes(materials.len(), view, b)),
+            (_, 2) if tilted => View::At(off_nodes(materials.len(), view, b)),
             // Near the normal, where masking sets in with a cusp: logarithmically, and evenly.
             (1 | 5, _) => {
                 View::At(1.0 - LAST_CELLS * b / (spec.axes[materials.len()].len() - 1) as f64)
