@@ -161,14 +161,3 @@ fn honest_sets_pass_at_every_precision_and_wrong_ones_do_not() {
     fs::write(folder.path().join("wrong.safetensors"), wrong).unwrap();
     assert_eq!(validated("wrong.safetensors", &[]).0, Some(1));
 }
-
-/// Smooth surfaces of heavy tails, for which draft tables of albedos are the coarsest.
-#[test]
-fn the_furnace_of_a_draft_set_closes() {
-    let folder = baked(
-        "[[material]]\nname = \"m\"\nsigma = { min = 1e-8, max = 1e-6 }\nfresnel = \"mirror\"\n\
-         gamma = { min = 1.501, max = 1.52 }\n",
-    );
-    let few = ["validate", "set", "--samples", "1000", "--configurations", "4"];
-    assert!(ok(folder.path(), &few).ends_with("PASSED\n"));
-}

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::MicrofacetDistribution as _;
-use microfacet_sampler::{Masking, MaterialError, StudentT, Tables};
+use microfacet_sampler::{Masking, MaterialError, Precision, StudentT, Tables};
 
 const GAMMAS: [f64; 9] = [1.501, 1.55, 1.799_99, 1.8, 2.0, 3.0, 8.5, 1e5, f64::INFINITY];
 
@@ -193,5 +193,25 @@ fn beckmann_is_zero_on_the_horizon() {
         let lobe = tables.student_t(sigma, f64::INFINITY).unwrap();
         let (m, v) = (Vec3::new(1.0, 0.0, z), Vec3::new(0.8, 0.0, 0.6));
         assert_eq!((lobe.d(m), lobe.visible_normal_pdf(v, m)), (0.0, 0.0), "{sigma} {z}");
+    }
+}
+
+/// Rounding to 16 bits parts the halves of the random numbers by up to 1e-3 where they meet; the
+/// samples would leave out, or draw twice, what is between.
+#[test]
+fn slopes_are_continuous_at_one_half_at_every_precision() {
+    let set = Tables::embedded();
+    for precision in [Precision::F32, Precision::F16, Precision::U16] {
+        let tables = set.tables().iter().map(|table| table.clone().rounded(precision)).collect();
+        let rounded = Tables::from_tables(Default::default(), tables).unwrap();
+        for gamma in [1.8, 1.94, 3.0, 5.03, f64::INFINITY] {
+            let lobe = rounded.student_t(1.0, gamma).unwrap();
+            for z in [0.02_f32, 0.3, 0.55, 0.8, 0.99] {
+                let v = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
+                let normal = |u| lobe.sample_visible_normal(v, [u, 0.5]);
+                let jump = normal(0.5).distance(normal(0.5_f32.next_up()));
+                assert!(jump < 1e-6, "{precision:?}, gamma {gamma}, {z}: {jump}");
+            }
+        }
     }
 }
