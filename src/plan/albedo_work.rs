@@ -48,7 +48,9 @@ impl AlbedoWork {
             nodes: node * spec.nodes() as f64,
             interior: place * points::interior_count(spec) as f64,
             edges: place
-                * (edge * points::edge_count(spec) as f64 + points::crease_count(spec) as f64),
+                * (edge * points::edge_count(spec) as f64
+                    + points::crease_count(spec) as f64
+                    + points::smooth(spec).len() as f64),
             climbs: place * climb * climbed * spec.maskings.len() as f64,
         }
     }

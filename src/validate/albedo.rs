@@ -15,7 +15,9 @@ use microfacet_sampler::{
 };
 
 use super::certificate::round_up;
-use super::points::{Point, are_apart, beside, crease, edges, has_crease, interior, is_tilted};
+use super::points::{
+    Point, are_apart, beside, crease, edges, has_crease, interior, is_tilted, smooth,
+};
 use crate::bake::albedo::{
     AlbedoError, AlbedoLobe, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights,
 };
@@ -52,13 +54,13 @@ pub fn interior_references(
     references(spec, points, true, stage)
 }
 
-/// The model's values at corners, in the middle of every cell along every edge, and on the crease
-/// of a tilted lobe.
+/// The model's values at corners, in the middle of every cell along every edge, of smooth surfaces,
+/// and on the crease of a tilted lobe.
 ///
 /// # Errors
 /// As [`interior_references`].
 pub fn edge_references(spec: &AlbedoSpec, stage: &Stage) -> Result<Vec<Reference>, AlbedoError> {
-    let points = [edges(spec), crease(spec)].concat();
+    let points = [edges(spec), smooth(spec), crease(spec)].concat();
     stage.split(points.len());
     references(spec, points, true, stage)
 }
@@ -144,7 +146,8 @@ fn figures(
     let reader = Reader::new(spec, table, references.first())?;
     let measured = |at: &Reference| reader.errors(at);
     let errors = measured_at(references, measured)?;
-    let found = climbed(spec, &errors, measured, stage)?;
+    let mut found = climbed(spec, &errors, true, measured, stage)?;
+    found.extend(climbed(spec, &errors, false, measured, stage)?);
     let found: Vec<Errors<'_>> = found.iter().map(|(at, errors)| (at, errors.clone())).collect();
     let mut figures = summary(spec, &errors, &found);
     let form = Masking::ALL.iter().position(|form| *form == masking).unwrap_or(0);
@@ -243,6 +246,9 @@ const HILLS: [usize; STEPS.len()] = [4; STEPS.len()];
 /// its crease, and each is climbed by itself, the highest to the end.
 const HILLS_OF_TILTED: [usize; STEPS.len()] = [8, 8, 4, 2, 2, 2];
 
+/// The same outside the promised domain.
+const HILLS_OUTSIDE: [usize; STEPS.len()] = [1; STEPS.len()];
+
 fn hills(spec: &AlbedoSpec) -> [usize; STEPS.len()] {
     if is_tilted(spec) { HILLS_OF_TILTED } else { HILLS }
 }
@@ -250,7 +256,8 @@ fn hills(spec: &AlbedoSpec) -> [usize; STEPS.len()] {
 /// Number of places on the way uphill, at most, for the certificate of one directional table.
 pub(crate) fn climbed_count(spec: &AlbedoSpec) -> usize {
     let directions = 2 * spec.axes.len() * if has_crease(spec) { 2 } else { 1 };
-    quantities(spec).len() * hills(spec).iter().sum::<usize>() * directions
+    let places = hills(spec).into_iter().chain(HILLS_OUTSIDE).sum::<usize>();
+    quantities(spec).len() * places * directions
 }
 
 /// A quantity by its index, a place, and the quantity's error there.
@@ -267,19 +274,21 @@ fn highest(tops: &[Top], count: usize) -> Vec<Top> {
     tops.chunk_by(|a, b| a.0 == b.0).flat_map(of_quantity).collect()
 }
 
-/// The promised places on the way uphill from where each quantity has its largest errors, with
-/// their errors: the largest error lies between the listed places, and is found from the nearest.
+/// The places on the way uphill from where each quantity has its largest errors, inside the
+/// `promised` domain or outside, with their errors: the largest error lies between the listed
+/// places, and is found from the nearest.
 fn climbed(
     spec: &AlbedoSpec,
     errors: &[Errors<'_>],
+    promised: bool,
     measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Copy + Send + Sync,
     stage: &Stage,
 ) -> Result<Vec<(Reference, Vec<f64>)>, AlbedoError> {
-    let hills = hills(spec);
+    let hills = if promised { hills(spec) } else { HILLS_OUTSIDE };
     let mut tops: Vec<Top> = Vec::new();
     for i in 0..quantities(spec).len() {
         let mut worst: Vec<&Errors<'_>> =
-            errors.iter().filter(|errors| errors.0.point.promised).collect();
+            errors.iter().filter(|errors| errors.0.point.promised == promised).collect();
         worst.sort_by(|a, b| b.1[i].total_cmp(&a.1[i]));
         let start = tops.len();
         for (at, errors) in worst {
@@ -338,15 +347,16 @@ fn summary(
 ) -> BTreeMap<String, f64> {
     let points = errors.len() + found.len();
     let mut figures = BTreeMap::from([("points".to_owned(), points as f64)]);
-    let (mut inside, outside): (Vec<_>, Vec<_>) =
-        errors.iter().partition(|errors| errors.0.point.promised);
+    let is_promised = |errors: &&Errors<'_>| errors.0.point.promised;
+    let (mut inside, mut outside): (Vec<_>, Vec<_>) = errors.iter().partition(is_promised);
     for (i, name) in quantities(spec).iter().enumerate() {
         let spread = inside.iter().filter(|errors| !errors.0.point.on_crease);
         let squares: f64 = spread.clone().map(|errors| errors.1[i] * errors.1[i]).sum();
         let rms = (squares / spread.count().max(1) as f64).sqrt();
         figures.insert(format!("{name}_rms_error"), round_up(rms));
     }
-    inside.extend(found);
+    inside.extend(found.iter().filter(is_promised));
+    outside.extend(found.iter().filter(|errors| !is_promised(errors)));
     // A NaN counts as the worst error.
     let largest = |part: &[&Errors<'_>], i: usize| {
         part.iter().map(|errors| errors.1[i]).max_by(f64::total_cmp).map(round_up)

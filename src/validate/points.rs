@@ -233,7 +233,33 @@ pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
             points.push(self::point(spec, material, View::At(view[0])));
         }
     }
-    points.retain(|other| other.promised && other.at != point.at);
+    points.retain(|other| other.promised == point.promised && other.at != point.at);
+    points
+}
+
+/// Surfaces smoother than the promised ones where tails are heaviest, between all nodes: in the
+/// middle of the cell of the smallest γ and of every cell of σ, in every third cell of the view.
+/// None for a table without them.
+pub fn smooth(spec: &AlbedoSpec) -> Vec<Point> {
+    let AlbedoLobe::Family(domain) = spec.lobe else { return Vec::new() };
+    let ranges = ranges(spec);
+    let (view, materials) = ranges.split_last().expect("the view is an axis");
+    let mut material: Vec<f64> = materials.iter().map(|range| range.ends[0]).collect();
+    let gamma = |t: f64| {
+        let at = [&[t], &material[1..], &[1.0]].concat();
+        Site::new(&spec.axes, &at).gamma
+    };
+    let shapes =
+        if materials[0].cells.is_empty() { &materials[0].ends } else { &materials[0].cells };
+    let heaviest = shapes.iter().copied().min_by(|a, b| gamma(*a).total_cmp(&gamma(*b)));
+    material[0] = heaviest.unwrap_or(material[0]);
+    let mut points = Vec::new();
+    for pair in spec.axes[1].nodes.windows(2) {
+        material[1] = 0.5 * (pair[0] + pair[1]);
+        let seen = view.cells.iter().skip(1).step_by(3);
+        points.extend(seen.map(|&view| point(spec, &material, View::At(view))));
+    }
+    points.retain(|place| (domain.sigma.min..PROMISED.0).contains(&place.site.sigma));
     points
 }
 
