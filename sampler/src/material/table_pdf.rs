@@ -37,8 +37,11 @@ impl StudentT {
         let slopes = self.unit_slopes(&view, m);
         let UnitSlopes { x, z, y } = slopes;
         let ([low, high], rate) = ends_and_rate(x, z);
-        let place = self.cell_along(&rows, [low, high]).1.place();
+        let (half, cell) = self.cell_along(&rows, [low, high]);
+        let place = cell.place();
         let mut along = place.density() * rate;
+        // Beyond the end of a peeled table the heavy part goes on.
+        let is_end = place.is_end && !(self.slices.peeled && half == 1);
         if self.slices.peeled {
             let heavy = f64::from(unit(self.slices.heavy.share(at)));
             along = (1.0 - heavy) * along + heavy * self.heavy_density(&slopes);
@@ -54,7 +57,7 @@ impl StudentT {
         let area = norm * f64::from(self.sigma_x) * f64::from(self.sigma_y) * (cos * cos * cos);
         let density = along * across * z / area;
         let density = if density > 0.0 { density.min(f64::from(f32::MAX)) as f32 } else { 0.0 };
-        if place.is_end || place_across.is_end {
+        if is_end || place_across.is_end {
             // Towards the horizon the analytic density may grow without limit, and a quotient of
             // both would.
             return density.max(self.visible_normal_pdf(v, m));
