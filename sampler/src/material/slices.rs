@@ -63,6 +63,18 @@ fn join(row: &mut [Node]) {
     low[0] = 2.0 - high[0];
 }
 
+/// Spreads the first nodes of an axis where they are one number, as rounding to 16 bits makes them
+/// next to an end: all the random numbers between would draw one slope, and no density has that.
+fn spread(nodes: &mut [Node]) {
+    let Some(&[first, _]) = nodes.first() else { return };
+    let Some(count) = nodes.iter().position(|node| node[0] > first) else { return };
+    let step = nodes[count][0] - first;
+    for (i, node) in nodes[..count].iter_mut().enumerate() {
+        let share = i as f32 / count as f32;
+        node[0] = first + step * (share * share);
+    }
+}
+
 fn pairs(values: &[f32]) -> Vec<Node> {
     values.chunks_exact(2).map(|node| [node[0], node[1]]).collect()
 }
@@ -119,6 +131,7 @@ impl Slices {
         let (shadowing, slope, across) = (shadowing?, slope?, across?);
         let mut slices = Self::new([shadowing, slope], s);
         slices.across = across.nodes;
+        spread(&mut slices.across);
         make_monotone(&mut slices.across);
         let (numbers, rows) = (slices.half_cells + 1, slices.rows);
         slices.fast = FastPath {
@@ -149,7 +162,10 @@ impl Slices {
         let shadowing_cells = shadowing.nodes.len() - 1;
         let mut slopes = slope.nodes;
         slopes.chunks_exact_mut(2 * numbers.nodes.len()).for_each(join);
-        slopes.chunks_exact_mut(numbers.nodes.len()).for_each(make_monotone);
+        for half in slopes.chunks_exact_mut(numbers.nodes.len()) {
+            spread(half);
+            make_monotone(half);
+        }
         slopes.resize(slopes.len() + numbers.nodes.len() * 2 + 1, [0.0; 2]);
         Self {
             shadowing: cubic_cells(&shadowing.nodes, 1.0 / shadowing_cells as f64),
