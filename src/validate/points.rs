@@ -259,7 +259,8 @@ pub fn smooth(spec: &AlbedoSpec) -> Vec<Point> {
         let seen = view.cells.iter().skip(1).step_by(3);
         points.extend(seen.map(|&view| point(spec, &material, View::At(view))));
     }
-    points.retain(|place| (domain.sigma.min..PROMISED.0).contains(&place.site.sigma));
+    let covered = domain.sigma.min..PROMISED.0.min(domain.sigma.max);
+    points.retain(|place| covered.contains(&place.site.sigma));
     points
 }
 
