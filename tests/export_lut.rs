@@ -202,13 +202,14 @@ fn headers_are_named_by_any_word() {
             let one = Made { texture: made(&spec), errors: Vec::new(), before_rounding: None };
             let header = files(&[Format::C], &[one]).unwrap().remove(0).contents;
             let header = String::from_utf8(header).unwrap();
-            let declared = header.lines().filter_map(|line| line.strip_prefix("static "));
+            let name = &spec.name;
+            let qualified = format!("{}_", name.to_uppercase());
+            let declared = header.lines().filter_map(|line| line.strip_prefix(&qualified));
             let declared: Vec<&str> =
                 declared.map(|line| line.split(['[', '(']).next().unwrap()).collect();
-            let name = &spec.name;
             let kind = if channels == Channels::E { "float" } else { "void" };
             let [texels, read] =
-                [format!("const float {name}_texels"), format!("inline {kind} {name}_read")];
+                [format!("DATA float {name}_texels"), format!("FUNCTION {kind} {name}_read")];
             assert_eq!(declared, [texels, read]);
             // Nothing reads the array by another name.
             assert_eq!(header.matches(&format!("{name}[")).count(), 0, "{header}");
