@@ -57,10 +57,10 @@ pub(super) struct Cell {
     nodes: [Node; 2],
 }
 
-/// The t of 2⁻³³, less than any random number but 0 that generators of 32 bits draw. Nearer to an
-/// end is what was drawn at 0, which stands for all numbers around it, though the density of the
+/// The t of 2⁻⁴⁹, far less than any random number but 0 that generators of 32 bits draw. Nearer to
+/// an end is what was drawn at 0, which stands for all numbers around it, though the density of the
 /// map may vanish there.
-const LEAST_T: f64 = 1.0 / 256.0;
+const LEAST_T: f64 = 1.0 / 4096.0;
 
 /// Coordinate in [0, 1] of a place, and the derivative of the value there.
 pub(super) struct Place {
