@@ -40,10 +40,9 @@ impl StudentT {
         let (half, cell) = self.cell_along(&rows, [low, high]);
         let place = cell.place();
         let mut along = place.density() * rate;
-        // Beyond the end of a peeled table the heavy part goes on.
-        let is_end = place.is_end && !(self.slices.peeled && half == 1);
+        let mut heavy = 0.0;
         if self.slices.peeled {
-            let heavy = f64::from(unit(self.slices.heavy.share(at)));
+            heavy = f64::from(unit(self.slices.heavy.share(at)));
             along = (1.0 - heavy) * along + heavy * self.heavy_density(&slopes);
         }
         let s = f64::from(self.s);
@@ -57,9 +56,12 @@ impl StudentT {
         let area = norm * f64::from(self.sigma_x) * f64::from(self.sigma_y) * (cos * cos * cos);
         let density = along * across * z / area;
         let density = if density > 0.0 { density.min(f64::from(f32::MAX)) as f32 } else { 0.0 };
-        if is_end || place_across.is_end {
+        // Beyond the end of a peeled table the heavy part goes on.
+        let is_end = place.is_end && (half == 0 || heavy == 0.0);
+        if is_end || place_across.is_end || density == 0.0 {
             // Towards the horizon the analytic density may grow without limit, and a quotient of
-            // both would.
+            // both would; and rounding of a normal that is tilted mostly across may lose its slope
+            // along the view.
             return density.max(self.visible_normal_pdf(v, m));
         }
         density
