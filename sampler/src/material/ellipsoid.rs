@@ -270,13 +270,11 @@ impl MicrofacetDistribution for Ellipsoid {
         }
         let (unit, scale) = self.normal_to_unit(m);
         let length = sqrt(unit.dot(unit));
-        // Of a normal far from unit length the square is out of range.
-        if !(length > 0.0 && length <= f32::MAX) {
-            return 0.0;
-        }
         // The ratio of solid angles, scale over the length cubed.
         let stretch = scale / length / (length * length);
-        saturated(self.lobe.density_of_samples(w, unit / length) * stretch)
+        let density = self.lobe.density_of_samples(w, unit / length) * stretch;
+        // Of a normal far from unit length powers of the length are out of range, and 0·∞ is NaN.
+        if density > 0.0 { density.min(f32::MAX) } else { 0.0 }
     }
 
     fn key(&self) -> LobeKey {
