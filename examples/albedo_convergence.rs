@@ -1,9 +1,9 @@
 //! Error against time of one directional albedo: deterministic quadrature and Monte Carlo with the
 //! table's own sampler.
 //!
-//! `cargo run --release --example albedo_convergence` prints the table in `docs/albedo.md`. Both
-//! methods use the same materials, views and masking in one run; errors are root mean squares over
-//! these, against quadrature at a tolerance of 1e-13.
+//! `cargo run --profile dist --example albedo_convergence` prints the table in `docs/albedo.md`.
+//! Both methods use the same materials, views and masking in one run; errors are root mean squares
+//! over these, against quadrature at a tolerance of 1e-13.
 
 use std::time::Instant;
 

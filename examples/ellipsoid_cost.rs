@@ -1,11 +1,11 @@
 //! Time of one visible normal and its density: untilted anisotropic lobe against ellipsoid, with
 //! the lune sampler as the rival at γ = 2.
 //!
-//! `cargo run --release --example ellipsoid_cost` prints nanoseconds per draw, the least of many
-//! short rounds in turns. Measured: a normal of the ellipsoid takes 1.19 to 1.24 times as long as
-//! the untilted one for γ ≥ 2 (19 ns), and with its density 1.05 to 1.17 times; for γ = 1.6, where
-//! the heavy tail's closed form takes most of the time, 0.80 and 1.04 times. The lune takes 60 to
-//! 84 ns.
+//! `cargo run --profile dist --example ellipsoid_cost` prints nanoseconds per draw, the least of
+//! many short rounds in turns. Measured: a normal of the ellipsoid takes 1.19 to 1.24 times as long
+//! as the untilted one for γ ≥ 2 (19 ns), and with its density 1.05 to 1.17 times; for γ = 1.6,
+//! where the heavy tail's closed form takes most of the time, 0.80 and 1.04 times. The lune takes
+//! 60 to 84 ns.
 
 use std::error::Error;
 use std::hint::black_box;

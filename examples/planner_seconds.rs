@@ -2,8 +2,8 @@
 //! prints what each takes beside its estimate.
 //!
 //! ```sh
-//! cargo run --release --example planner_seconds
-//! cargo run --release --example planner_seconds -- 20
+//! cargo run --profile dist --example planner_seconds
+//! cargo run --profile dist --example planner_seconds -- 20
 //! ```
 //!
 //! The argument is the number of random materials of each kind, by default 2; corners come on top.

@@ -2,10 +2,10 @@
 //! and prints by how much each estimate was off once the bake has ended.
 //!
 //! ```sh
-//! cargo run --release --example progress -- default
-//! cargo run --release --example progress -- high
-//! cargo run --release --example progress -- 1e-3
-//! cargo run --release --example progress -- default tables/recipes/brushed-metals.toml
+//! cargo run --profile dist --example progress -- default
+//! cargo run --profile dist --example progress -- high
+//! cargo run --profile dist --example progress -- 1e-3
+//! cargo run --profile dist --example progress -- default tables/recipes/brushed-metals.toml
 //! ```
 //!
 //! The first argument is a quality or a largest error, the second a recipe or scene; without one

@@ -1,5 +1,5 @@
 //! What the tables cost next to the closed forms of GGX:
-//! `cargo run --release -p microfacet-sampler --example speed`.
+//! `cargo run --profile dist -p microfacet-sampler --example speed`.
 //!
 //! All contestants take turns in one thread over the same random views and numbers, which stay in
 //! the cache. A row is the median of many turns; ratios within a run mean more than nanoseconds.

@@ -104,8 +104,8 @@
 //! # Batches
 //!
 //! Over whole slices of views at a time. Student-t lobes work on four at once: the same normals, to
-//! 2 ulp, in 40 % of the time, and G1 in 60 % (`cargo run --release -p microfacet-bench`). Other
-//! lobes answer one by one.
+//! 2 ulp, in 40 % of the time, and G1 in 60 % (`cargo run --profile dist -p microfacet-bench`).
+//! Other lobes answer one by one.
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {

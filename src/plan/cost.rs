@@ -74,7 +74,8 @@ fn escaped(json: &str) -> usize {
 
 /// Estimates what tables add to a set. The bytes are right to a few per cent, since only the digits
 /// of certificates are unknown. The seconds, on the current threads, are scaled from times measured
-/// on one machine: `cargo run --release --example planner_seconds` shows how far they are off here.
+/// on one machine: `cargo run --profile dist --example planner_seconds` shows how far they are off
+/// here.
 pub fn cost(specs: &[TableSpec]) -> Cost {
     let header = |spec: &TableSpec| {
         let axes = serde_json::to_string(&bake::axes(spec)).map_or(0, |json| escaped(&json));

@@ -46,8 +46,8 @@ const SLACK: f64 = 1e-6;
 ///
 /// Prepared once for a material ([`StudentT::bounded`], a millisecond), it draws a normal in about
 /// twice the time of [`MicrofacetDistribution::sample_visible_normal`], in batches as well
-/// (`cargo run --release -p microfacet-bench`). Every normal that reflects upwards keeps its place;
-/// some of the others remain. Estimators of reflection that weight with G2/G1 times
+/// (`cargo run --profile dist -p microfacet-bench`). Every normal that reflects upwards keeps
+/// its place; some of the others remain. Estimators of reflection that weight with G2/G1 times
 /// [`share`](BoundedView::share), or divide by a density of [`BoundedView`], are unbiased, and of
 /// lower variance than those of [`MicrofacetDistribution::sample_visible_normal`]. After Eto &
 /// Tokuyoshi 2023, *Bounded VNDF Sampling for Smith-GGX Reflections*,
