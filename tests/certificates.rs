@@ -4,8 +4,10 @@
 //! The points here are chosen independently of those of the certificates, and the errors are
 //! computed by code of this test.
 
+use std::f64::consts::PI;
+
 use glam::{DVec3, Vec3};
-use microfacet_bake::bake::bake_radial;
+use microfacet_bake::bake::{albedo, bake_radial};
 use microfacet_bake::distribution::Named;
 use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::progress::Stage;
@@ -15,12 +17,17 @@ use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::certificate::worst_error;
 use microfacet_bake::validate::radial::certify;
 use microfacet_model::classic::{Marginal, MarginalView};
-use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope, across_cdf};
+use microfacet_model::{
+    AlbedoIntegrator, Ellipsoid, Shape, SignedSlope, UnitView, VisibleSlope, across_cdf,
+};
 use microfacet_sampler::axis::MirroredRoot;
 use microfacet_sampler::{
-    Axis, Kind, Lobe, Mapping, MaterialEntry, MicrofacetDistribution, Precision, Provenance,
+    Axis, Kind, Lobe, Mapping, MaterialEntry, MicrofacetDistribution, Precision, Provenance, Skew,
     StudentT, Table, Tables,
 };
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
 
 /// Places in a cell, as parts of its width.
 const PARTS: [f64; 7] = [0.0, 0.125, 0.3, 0.375, 0.5, 0.625, 0.8];
@@ -258,4 +265,97 @@ fn of_other_distributions_however_narrow() {
         let marginal = Marginal::new(&*built);
         Own::new(name, &marginal).hold(name);
     }
+}
+
+/// The view, of those at x ∈ [0, 1], at which G1 reaches its clamp, if it is clamped at the first
+/// and not at the last.
+fn crease(lobe: &Ellipsoid, views: impl Fn(f64) -> DVec3) -> Option<DVec3> {
+    let clamped = |x: f64| lobe.projected_area(views(x)) < views(x).z;
+    let [mut low, mut high] = [0.0, 1.0];
+    if !clamped(low) || clamped(high) {
+        return None;
+    }
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        *(if clamped(middle) { &mut low } else { &mut high }) = middle;
+    }
+    Some(views(low))
+}
+
+fn seen(cos: f64, phi: f64) -> DVec3 {
+    let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
+    DVec3::new(sin * phi.cos(), sin * phi.sin(), cos)
+}
+
+/// Views at random in the promised range.
+fn anywhere(count: usize) -> impl Iterator<Item = DVec3> {
+    let mut rng = StdRng::seed_from_u64(3);
+    (0..count).map(move |_| seen(rng.random_range(0.02..1.0), rng.random_range(-PI..PI)))
+}
+
+/// Bakes a draft of a lobe's albedo, and compares its errors at some views with what it certifies.
+fn no_view_errs_by_more(recipe: &str, lobe: &Ellipsoid, views: impl Iterator<Item = DVec3>) {
+    let recipe = format!(
+        "[[material]]\nname = \"it\"\n{recipe}\nfresnel = \"mirror\"\n\
+         masking = \"height-correlated\"\n"
+    );
+    let plan = Plan::new(&Scene::from_recipe_str(&recipe).unwrap(), Options::default()).unwrap();
+    let set = bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set;
+    let table = set.tables().iter().find(|table| table.kind == Kind::Albedo).unwrap();
+    let tabulated = set.material_albedo("it").unwrap();
+
+    let integrator = AlbedoIntegrator::new(*lobe.shape(), 1e-6);
+    let views: Vec<Vec3> = views.map(|v| v.as_vec3()).collect();
+    let errors = |v: &Vec3| {
+        let phi = f64::from(v.y).atan2(v.x.into());
+        let exact = integrator.reflection_skewed(lobe, v.z.into(), phi, albedo::weights).unwrap();
+        let [scale, bias, f82] = exact.height_correlated;
+        let got = tabulated.moments(*v);
+        let got = [got.scale, got.bias, got.f82, got.total()].map(f64::from);
+        let want = [scale, bias, f82, scale + bias];
+        [0, 1, 2, 3].map(|i| (got[i] - want[i]).abs())
+    };
+    let errors: Vec<[f64; 4]> = views.par_iter().map(errors).collect();
+    for (i, name) in ["scale", "bias", "f82", "e"].iter().enumerate() {
+        let says = table.certificate[&format!("{name}_max_error")];
+        let at = (0..views.len()).max_by(|&a, &b| errors[a][i].total_cmp(&errors[b][i])).unwrap();
+        println!("{name}: says {says:.3e}, errs by {:.3e} at {}", errors[at][i], views[at]);
+        assert!(errors[at][i] <= says, "{name} says {says:e}, errs by {:e}", errors[at][i]);
+    }
+}
+
+/// E of correlated masking has a kink where G1 of the view reaches its clamp, and its table its
+/// largest errors.
+#[test]
+fn of_the_albedo_of_a_tilted_lobe() {
+    let skew = Skew::new([0.3; 2], [0.1, 0.0, 0.0]).unwrap();
+    let lobe = Ellipsoid::new(skew, f64::INFINITY).unwrap();
+    let away = f64::atan2(-skew.y, -skew.x);
+    let shares = |n: usize| (0..n).map(move |i| (i as f64 + 0.37) / n as f64);
+    let by_azimuth = shares(500).filter_map(|x| {
+        let phi = 2.0 * PI * x;
+        crease(&lobe, |y| seen(0.9999 - 0.9799 * y, phi))
+    });
+    let by_view = shares(200)
+        .flat_map(|x| [-PI, PI].map(|turn| (x, turn)))
+        .filter_map(|(x, turn)| crease(&lobe, |y| seen(0.02 + 0.97 * x * x, away + turn * y)));
+    let on_it: Vec<DVec3> = by_azimuth.chain(by_view).collect();
+    assert!(on_it.len() > 400, "{}", on_it.len());
+    let recipe = "sigma = 0.3\ngamma = \"inf\"\ntheta = [0.1, 0, 0]";
+    no_view_errs_by_more(recipe, &lobe, on_it.into_iter().chain(anywhere(300)));
+}
+
+/// The largest error of E lies near a hill of another quantity.
+#[test]
+fn of_the_albedo_of_an_anisotropic_lobe() {
+    let lobe = Ellipsoid::new(Skew::new([0.6, 0.15], [0.0; 3]).unwrap(), 2.7).unwrap();
+    no_view_errs_by_more("sigma = [0.6, 0.15]\ngamma = 2.7", &lobe, anywhere(1500));
+}
+
+/// Errors have more hills than are climbed, and a finer table has nodes in the middles of cells of
+/// the first.
+#[test]
+fn of_the_albedo_of_a_brushed_lobe() {
+    let lobe = Ellipsoid::new(Skew::new([0.01, 0.7], [0.0; 3]).unwrap(), 2.0).unwrap();
+    no_view_errs_by_more("sigma = [0.01, 0.7]\ngamma = 2.0", &lobe, anywhere(800));
 }

@@ -49,6 +49,7 @@ impl AlbedoWork {
             interior: place * points::interior_count(spec) as f64,
             edges: place
                 * (edge * points::edge_count(spec) as f64
+                    + points::middle_count(spec) as f64
                     + points::crease_count(spec) as f64
                     + points::smooth(spec).len() as f64),
             climbs: place * climb * climbed * spec.maskings.len() as f64,

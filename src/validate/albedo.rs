@@ -16,7 +16,7 @@ use microfacet_sampler::{
 
 use super::certificate::round_up;
 use super::points::{
-    Point, are_apart, beside, crease, edges, has_crease, interior, is_tilted, smooth,
+    Point, are_apart, beside, crease, edges, has_azimuths, has_crease, interior, middles, smooth,
 };
 use crate::bake::albedo::{
     AlbedoError, AlbedoLobe, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights,
@@ -55,12 +55,12 @@ pub fn interior_references(
 }
 
 /// The model's values at corners, in the middle of every cell along every edge, of smooth surfaces,
-/// and on the crease of a tilted lobe.
+/// in the middles of cells over azimuths, and on the crease of a tilted lobe.
 ///
 /// # Errors
 /// As [`interior_references`].
 pub fn edge_references(spec: &AlbedoSpec, stage: &Stage) -> Result<Vec<Reference>, AlbedoError> {
-    let points = [edges(spec), smooth(spec), crease(spec)].concat();
+    let points = [edges(spec), smooth(spec), middles(spec), crease(spec)].concat();
     stage.split(points.len());
     references(spec, points, true, stage)
 }
@@ -239,18 +239,17 @@ fn average_errors(
 
 /// Steps of a climb, in cells.
 const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
-/// Hills climbed for each quantity with each step. Each quantity goes on from the best place of
-/// all hills.
+/// Hills climbed for each quantity with each step.
 const HILLS: [usize; STEPS.len()] = [4; STEPS.len()];
-/// The same for a tilted lobe, with about as many places: hills of nearly one height stand along
-/// its crease, and each is climbed by itself, the highest to the end.
-const HILLS_OF_TILTED: [usize; STEPS.len()] = [8, 8, 4, 2, 2, 2];
+/// The same over azimuths, with about as many places: hills of nearly one height stand about the
+/// circle, and along the crease of a tilted lobe.
+const HILLS_OF_AZIMUTHS: [usize; STEPS.len()] = [8, 8, 4, 2, 2, 2];
 
 /// The same outside the promised domain.
 const HILLS_OUTSIDE: [usize; STEPS.len()] = [1; STEPS.len()];
 
 fn hills(spec: &AlbedoSpec) -> [usize; STEPS.len()] {
-    if is_tilted(spec) { HILLS_OF_TILTED } else { HILLS }
+    if has_azimuths(spec) { HILLS_OF_AZIMUTHS } else { HILLS }
 }
 
 /// Number of places on the way uphill, at most, for the certificate of one directional table.
@@ -306,10 +305,14 @@ fn climbed(
         let references = references(spec, around.concat(), true, stage)?;
         let errors = measured_at(&references, measured)?;
         let mut from = 0;
+        let mut last = None;
         for ((i, point, error), own) in tops.iter_mut().zip(&around) {
             let own = from..from + own.len();
             from = own.end;
-            let near = if is_tilted(spec) { &errors[own] } else { &errors[..] };
+            // Each hill goes on by itself, and the highest of a quantity from the best place of
+            // all: often a hill of another quantity, between its listed places, is higher.
+            let is_highest = last.replace(*i) != Some(*i);
+            let near = if is_highest { &errors[..] } else { &errors[own] };
             if let Some(top) = near.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))
                 && top.1[*i] > *error
             {
