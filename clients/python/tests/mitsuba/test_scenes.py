@@ -238,17 +238,18 @@ def test_an_update_compiles_no_other_kernel() -> None:
         parameters = mi.traverse(bsdf)
         si, l = hit(directions(1000, 31, 0.1)), vectors(directions(1000, 32, 0.1))
         dr.eval(si, l)
-        misses = []
-        for value in (1.3, 1.35, 1.4, 1.45):
+        kernels = set()
+        for value in np.linspace(1.3, 1.45, 8):
             parameters[name] = mi.Float(value)
             parameters.update()
             with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
                 dr.kernel_history_clear()
                 dr.eval(bsdf.eval(CONTEXT, si, l))
                 history = dr.kernel_history([dr.KernelType.JIT])
-            misses.append(sum(not kernel["cache_hit"] for kernel in history))
-        # The order of variables in a kernel settles after two.
-        assert misses[2:] == [0, 0], (surface, misses)
+            kernels.add(tuple(kernel["hash"] for kernel in history))
+        # Dr.Jit orders the inputs of a kernel by their addresses, which changes from one update to
+        # another: the same work is one of two kernels.
+        assert len(kernels) <= 2, (surface, kernels)
 
 
 def test_no_variant_is_an_error_with_words() -> None:
