@@ -6,9 +6,9 @@
 //! measured by the certificate, for height-correlated masking. `-- 7` prints the seventh row alone.
 
 use microfacet_bake::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, bake};
+use microfacet_bake::certify::albedo::{certified, edge_references, interior_references};
+use microfacet_bake::interval::Interval;
 use microfacet_bake::progress::Stage;
-use microfacet_bake::scene::Interval;
-use microfacet_bake::validate::albedo::{certified, edge_references, interior_references};
 use microfacet_sampler::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
 };

@@ -9,7 +9,7 @@ use microfacet_model::classic::{
     AshikhminShirley, Gauss, Gtr, Isotropic, Member, Sawicki, Schlick, Tabulated,
 };
 
-use crate::fit::Angles;
+use crate::input::angles::Angles;
 
 /// The largest s = 1/(γ−1) that is searched: γ = 1.5025.
 pub(crate) const S_MAX: f64 = 1.99;

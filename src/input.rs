@@ -3,6 +3,8 @@
 //! A FIFO would hang, a device never ends, and a file of many gigabytes may hold nothing but zeros.
 //! So every file is looked at before it is opened, and read to a limit.
 
+pub mod angles;
+pub mod normals;
 pub mod rows;
 
 use std::fs::File;

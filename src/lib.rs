@@ -32,8 +32,8 @@
 //!
 //! # Test a set
 //!
-//! Every table carries the errors measured when it was baked ([`validate::certificate`] and, for
-//! albedos, [`validate::albedo`]).
+//! Every table carries the errors measured when it was baked ([`certify::certificate`] and, for
+//! albedos, [`certify::albedo`]).
 //! [`validate::run`] draws normals and tests them by chi-square, [`validate::stress`] visits
 //! corners, and [`validate::furnace`] is a white furnace.
 //!
@@ -48,11 +48,13 @@
 
 pub mod bake;
 pub mod cache;
+pub mod certify;
 pub mod convert;
 pub mod distribution;
 pub mod export;
 pub mod fit;
 pub mod input;
+pub mod interval;
 pub mod library;
 pub mod memory;
 mod minimise;

@@ -5,6 +5,7 @@ mod axis;
 mod canvas;
 mod clip;
 mod figures;
+mod frame;
 mod heat;
 mod ink;
 mod label;

@@ -5,14 +5,15 @@ mod command;
 
 use glam::Vec3;
 use microfacet_bake::bake::albedo::{self, AlbedoLobe, Domain};
+use microfacet_bake::certify::certificate::worst_error;
+use microfacet_bake::interval::Interval;
 use microfacet_bake::plan::{
     AlbedoVerdict, AlbedoWish, Options, Plan, RequiredAlbedo, albedo_cost, bare_cost,
 };
-use microfacet_bake::scene::{Interval, Scene};
+use microfacet_bake::scene::Scene;
 use microfacet_bake::store;
 use microfacet_bake::table_set::{Settings, Target, bake, bake_with};
 use microfacet_bake::table_spec::Quality;
-use microfacet_bake::validate::certificate::worst_error;
 use microfacet_bake::validate::furnace::direction;
 use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};

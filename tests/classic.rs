@@ -8,14 +8,14 @@ use std::sync::LazyLock;
 
 use glam::{DVec3, Vec3};
 use microfacet_bake::bake::bake_radial;
+use microfacet_bake::certify::certificate::worst_error;
+use microfacet_bake::certify::radial::measure;
 use microfacet_bake::distribution::Named;
 use microfacet_bake::plan::{Cost, Options, Plan, bare_cost, cost, distribution_cost};
 use microfacet_bake::progress::Stage;
 use microfacet_bake::scene::{Scene, load};
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::{Quality, general_set};
-use microfacet_bake::validate::certificate::worst_error;
-use microfacet_bake::validate::radial::measure;
 use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
 use microfacet_model::statistics::chi_square;
 use microfacet_sampler::{

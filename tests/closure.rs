@@ -3,8 +3,8 @@
 
 use glam::Vec3;
 use microfacet_bake::bake::albedo::{AlbedoLobe, Domain, bake};
+use microfacet_bake::interval::Interval;
 use microfacet_bake::plan::RequiredAlbedo;
-use microfacet_bake::scene::Interval;
 use microfacet_bake::table_spec::Quality;
 use microfacet_sampler::{Masking, Precision, Reflectance, Side, Tables, ViewCurve};
 use rand::{RngExt, SeedableRng};

@@ -2,14 +2,14 @@
 
 use std::sync::LazyLock;
 
+use microfacet_bake::certify::certificate::worst_error;
 use microfacet_bake::plan::{AlbedoWish, Options, Plan};
 use microfacet_bake::progress::{Meter, Stage};
+use microfacet_bake::report::error_map::{ErrorMap, Quantity, Sides, measure, sides};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::store;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
-use microfacet_bake::validate::certificate::worst_error;
-use microfacet_bake::validate::error_map::{ErrorMap, Quantity, Sides, measure, sides};
 use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::axis::MirroredRoot;
 use microfacet_sampler::{Kind, Mapping, Precision, Provenance, Table, Tables};

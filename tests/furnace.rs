@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 
 use glam::Vec3;
 use microfacet_bake::bake::albedo::{AlbedoLobe, Domain, bake};
+use microfacet_bake::interval::Interval;
 use microfacet_bake::plan::RequiredAlbedo;
 use microfacet_bake::progress::Stage;
-use microfacet_bake::scene::Interval;
 use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::furnace::{TOLERANCE, direction, furnace, survey};
 use microfacet_sampler::{Masking, Precision, Table, Tables};

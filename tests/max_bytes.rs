@@ -2,10 +2,10 @@
 //! smallest one that is possible.
 
 use microfacet_bake::cache::Cache;
+use microfacet_bake::certify::certificate::worst_error;
 use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{BakeError, Baked, Settings, Target, bake_with};
-use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables, encode};
 
 const GOLD: &str =

@@ -4,11 +4,12 @@ mod command;
 
 use glam::Vec3;
 use microfacet_bake::cache::Cache;
+use microfacet_bake::certify::certificate::worst_error;
+use microfacet_bake::interval::Interval;
 use microfacet_bake::plan::{Options, Plan, Verdict, bare_cost, cost};
-use microfacet_bake::scene::{Interval, Scene};
+use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_bake::table_spec::{Quality, general_set};
-use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{
     DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Precision, Tables, encode,
 };

@@ -7,14 +7,14 @@ use std::sync::LazyLock;
 
 use glam::Vec3;
 use microfacet_bake::bake::albedo::{AlbedoLobe, AlbedoSpec, Models, Site, bake, weights};
+use microfacet_bake::certify::albedo::{certified, interior_references, missed_by_half};
+use microfacet_bake::certify::certificate::worst_error;
 use microfacet_bake::plan::{Options, Plan, albedo_cost};
 use microfacet_bake::progress::Stage;
 use microfacet_bake::scene::Scene;
 use microfacet_bake::store;
 use microfacet_bake::table_set::{self, Target};
 use microfacet_bake::table_spec::Quality;
-use microfacet_bake::validate::albedo::{certified, interior_references, missed_by_half};
-use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{
     Albedo, FresnelAlbedo, Lobe, LobeEntry, Masking, MaterialError, MicrofacetDistribution,
     Precision, Reflectance, Table, Tables, encode,

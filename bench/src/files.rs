@@ -6,6 +6,7 @@ use microfacet_bake::store::replace;
 use serde_json::{Value, json};
 
 use crate::Failure;
+use crate::csv::{csv, number};
 use crate::figures::Figure;
 use crate::paper::Paper;
 use crate::plot;
@@ -53,24 +54,6 @@ const CELL: [&str; 10] = [
     "function", "gamma", "sigma_x", "sigma_y", "turn_x", "turn_y", "turn_z", "views", "numbers",
     "ns",
 ];
-
-/// A table with a header.
-pub(crate) fn csv<const N: usize>(
-    header: &[&str; N],
-    records: impl Iterator<Item = [String; N]>,
-) -> Result<Vec<u8>, Failure> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header)?;
-    for record in records {
-        writer.write_record(&record)?;
-    }
-    Ok(writer.into_inner()?)
-}
-
-/// With every digit.
-pub(crate) fn number(x: f64) -> String {
-    format!("{x:e}")
-}
 
 fn optional(x: Option<f64>) -> String {
     x.map_or(String::new(), number)

@@ -8,6 +8,7 @@
 mod cliffs;
 mod clock;
 mod conductors;
+mod csv;
 mod densities;
 mod error;
 mod figures;

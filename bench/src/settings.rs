@@ -1,13 +1,21 @@
 //! Which materials are compared, and how much is measured.
 
 use crate::inputs::COUNT;
-use crate::paper::Film;
 
 /// Roughness of the materials compared.
 pub(crate) const SIGMA: f64 = 0.5;
 /// Shape of the Student-t materials compared: an integer, so that the sums take part, and not a
 /// node of the general set.
 pub(crate) const GAMMA: f64 = 4.0;
+
+/// How finely a picture is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Film {
+    /// Pixels along an edge.
+    pub(crate) edge: usize,
+    /// Camera rays of a pixel.
+    pub(crate) samples: usize,
+}
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

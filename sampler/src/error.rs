@@ -248,3 +248,15 @@ impl fmt::Display for BatchError {
 microfacet_common::debug_in_words!(BatchError);
 
 impl core::error::Error for BatchError {}
+
+/// Checks that all slices of a batch have the length of the first; the error names one that has
+/// not.
+pub(crate) fn same_lengths(slices: &[(&'static str, usize)]) -> Result<(), BatchError> {
+    let (first, expected) = slices[0];
+    match slices.iter().find(|(_, length)| *length != expected) {
+        None => Ok(()),
+        Some(&(other, length)) => {
+            Err(BatchError { slices: [first, other], lengths: [expected, length] })
+        }
+    }
+}

@@ -6,7 +6,9 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::{Display, Write};
 use std::path::{Path, PathBuf};
 
-use microfacet_bake::fit::{self, Angles};
+use microfacet_bake::fit;
+use microfacet_bake::input::angles::Angles;
+use microfacet_bake::input::normals::read_csv;
 use microfacet_bake::input::{MAX_TEXT, open_or_stdin, shown};
 use microfacet_bake::progress::Meter;
 
@@ -66,7 +68,7 @@ fn normals(input: &Path, args: &Args) -> Outcome {
     let failed = |why: &dyn Display| Failure(format!("{path}: {why}"));
     let angles = args.unit.angles();
     let file = open_or_stdin(input, MAX_TEXT).map_err(|why| failed(&why))?;
-    let measured = fit::read_csv(file, angles).map_err(|why| failed(&why))?;
+    let measured = read_csv(file, angles).map_err(|why| failed(&why))?;
     let meter = Meter::default();
     let bar = progress::show(&meter, "fitting");
     let found = fit::fit(&measured, args.on.into(), &meter).map_err(|why| failed(&why))?;

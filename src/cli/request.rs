@@ -5,11 +5,11 @@ use std::path::Path;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
+use microfacet_bake::certify::certificate::worst_error;
 use microfacet_bake::library::{Library, PER_SET};
 use microfacet_bake::plan::{AlbedoWish, Options, Plan};
 use microfacet_bake::scene::{self, Scene};
 use microfacet_bake::table_spec::Quality;
-use microfacet_bake::validate::certificate::worst_error;
 use microfacet_sampler::{Precision, Table, Tables};
 
 use super::Failure;

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use bytesize::ByteSize;
 use clap::builder::UnknownArgumentValueParser;
 
-use microfacet_bake::fit::Angles;
+use microfacet_bake::input::angles::Angles;
 use microfacet_bake::scene::did_you_mean_key;
 use microfacet_bake::table_spec::GAMMA_MIN;
 use microfacet_sampler::Ggx;

@@ -14,7 +14,6 @@ mod target;
 
 pub use error::ConvertError;
 pub use formula::{Formula, by_formula, formulas, half_angle_parameter};
-use search::tries;
 pub use target::Target;
 
 use crate::distribution::Named;

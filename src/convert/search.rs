@@ -1,5 +1,6 @@
 //! The replacement with the least error, by a coarse scan and a minimiser.
 
+use super::target::{scan, tries};
 use super::{ConvertError, Form, Replacement, Target};
 use crate::distribution::{DistributionKind, Named};
 use crate::minimise::{self, Stop};
@@ -37,19 +38,5 @@ impl Target<'_> {
         let best = minimise::descend(&start, h, STOP, error).map_err(ConvertError::Minimiser)?;
         let found = self.judged(Named { kind: to, values: to.at(&best, self.narrow) })?;
         Ok(Replacement { ends_at: to.ends_at(&best), ..found })
-    }
-}
-
-/// Steps of a coarse scan along each parameter.
-fn scan(to: DistributionKind) -> usize {
-    if to.dimension() == 1 { 200 } else { 48 }
-}
-
-/// About how many distributions of a kind a search tries: those of the scan, and about as many of
-/// the minimiser as it takes to its tolerance. Only the progress reads it.
-pub(super) fn tries(to: DistributionKind) -> usize {
-    match to.dimension() {
-        1 => scan(to) + 40,
-        _ => (scan(to) + 1).pow(2) + 200,
     }
 }

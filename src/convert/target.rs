@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use microfacet_model::classic::{Isotropic, Tabulated};
 
-use super::{ConvertError, Form, Replacement, tries};
+use super::{ConvertError, Form, Replacement};
 use crate::distribution::{DistributionKind, Named};
 
 /// The distribution to be replaced, on the uniform grid over which errors are taken.
@@ -127,5 +127,19 @@ impl<'a> Target<'a> {
             Some(half) if (half - angle).abs() < 1e-6 * angle => self.judged(found),
             _ => Err(ConvertError::OutOfReach(to, angle)),
         }
+    }
+}
+
+/// Steps of a coarse scan along each parameter.
+pub(super) fn scan(to: DistributionKind) -> usize {
+    if to.dimension() == 1 { 200 } else { 48 }
+}
+
+/// About how many distributions of a kind a search tries: those of the scan, and about as many of
+/// the minimiser as it takes to its tolerance. Only the progress reads it.
+pub(super) fn tries(to: DistributionKind) -> usize {
+    match to.dimension() {
+        1 => scan(to) + 40,
+        _ => (scan(to) + 1).pow(2) + 200,
     }
 }

@@ -1,8 +1,6 @@
 //! Fits a Student-t, Beckmann and GGX to what was measured: to a distribution of normals ([`fit`]),
 //! or to a reflectance ([`merl`]).
 
-mod angles;
-mod csv;
 pub mod merl;
 
 use microfacet_model::classic::Tabulated;
@@ -10,9 +8,6 @@ use microfacet_model::classic::Tabulated;
 use crate::convert::{ConvertError, Form, Replacement, Target};
 use crate::distribution::DistributionKind;
 use crate::progress::Meter;
-
-pub use angles::Angles;
-pub use csv::{MAX_ROWS, MeasuredError, read_csv};
 
 /// The best Student-t, and its two well-known special cases for comparison.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +41,8 @@ mod tests {
     use microfacet_model::classic::{Isotropic, Member};
 
     use super::*;
+    use crate::input::angles::Angles;
+    use crate::input::normals::read_csv;
 
     fn measured(sigma: f64, gamma: f64, upto: f64) -> String {
         let truth = Member::student_t(sigma, gamma).unwrap();

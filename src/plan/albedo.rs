@@ -9,7 +9,8 @@ use super::albedo_work::albedo_seconds;
 use super::key::{Key, distinct};
 use super::{NotCovered, Options, entry, is_tabulated, refusal};
 use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, SIGMA_MAX};
-use crate::scene::{Format, Interval, Material, Scene};
+use crate::interval::Interval;
+use crate::scene::{Format, Material, Scene};
 use crate::table_spec::{Level, Quality};
 
 /// Which materials get albedo tables.

@@ -12,9 +12,9 @@ use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::{Mapping, Reflectance};
 
 use crate::bake::albedo::{AlbedoLobe, AlbedoSpec};
+use crate::certify::albedo::climbed_count;
+use crate::certify::points;
 use crate::distribution::{Distribution, DistributionKind, Named};
-use crate::validate::albedo::climbed_count;
-use crate::validate::points;
 
 /// A place of the certificate, a decade more accurate than a node, in nodes.
 const PLACE: f64 = 1.6;

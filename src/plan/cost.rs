@@ -12,13 +12,13 @@ use microfacet_sampler::{
 };
 
 use super::Plan;
-use super::albedo_work::{albedo_seconds, expected_bytes, place_seconds};
+use super::albedo_work::{albedo_seconds, expected_bytes};
 use crate::bake::albedo::{AlbedoError, AlbedoSpec};
 use crate::bake::{self};
+use crate::certify::certificate::POINTS;
+use crate::certify::radial;
 use crate::distribution::{Distribution, DistributionKind, Named};
 use crate::table_spec::{GAMMA_WHOLE, Level, Quality, TableSpec, general_set};
-use crate::validate::certificate::POINTS;
-use crate::validate::{error_map, radial};
 
 /// Bytes and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -198,11 +198,10 @@ fn prepared(shapes: &[f64]) -> [f64; 2] {
     }
 }
 
-/// Seconds of one thread to measure the error of a table at one place: longer for the shapes or
-/// distributions that take longest.
+/// Seconds of one thread to measure the error of a table other than of directional albedos at one
+/// place: longer for the shapes or distributions that take longest.
 pub(crate) fn point_seconds(table: &Table) -> f64 {
     match table.kind {
-        Kind::Albedo => error_map::spec(table).map_or(0.0, |spec| place_seconds(&spec)),
         // Two lookups, of which one integrates over the views.
         Kind::AlbedoAverage => 40e-6,
         Kind::RadialShadowing | Kind::RadialDensity | Kind::RadialSlope => {

@@ -9,7 +9,7 @@ use microfacet_sampler::Reflectance;
 
 use crate::bake::albedo::{AlbedoLobe, Domain};
 use crate::distribution::Distribution;
-use crate::scene::Interval;
+use crate::interval::Interval;
 
 /// A part of a scene as a key, equal to another if the parts are. No number of a scene is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]

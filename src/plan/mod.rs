@@ -17,7 +17,7 @@ use std::fmt;
 use microfacet_sampler::{Ellipsoid, MaterialEntry, StudentT};
 
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
-pub(crate) use albedo_work::{AlbedoWork, albedo_seconds};
+pub(crate) use albedo_work::{AlbedoWork, albedo_seconds, place_seconds};
 pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, seconds, set_cost};
 pub(crate) use cost::{
     albedo_headers, distribution_seconds, on_threads, point_seconds, specs_seconds,
@@ -28,7 +28,8 @@ use microfacet_common::shape::s_of_gamma;
 
 use crate::bake::albedo::SIGMA_MAX;
 use crate::distribution::Distribution;
-use crate::scene::{Format, Interval, Material, Scene, recipe_of};
+use crate::interval::Interval;
+use crate::scene::{Format, Material, Scene, recipe_of};
 use crate::table_spec::{GAMMA_MIN, Quality};
 
 /// γ of GGX.

@@ -4,9 +4,9 @@ use microfacet_common::shape::s_of_gamma;
 use microfacet_sampler::{Interpolation, Precision};
 
 use crate::bake::joined_name;
-use crate::scene::Interval;
+use crate::certify::certificate::ALL_SHAPES;
+use crate::interval::Interval;
 use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, SEAM, ShapeAxis, TableSpec, general_set};
-use crate::validate::certificate::ALL_SHAPES;
 
 /// A γ, or a range of γ, that tables are to cover.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

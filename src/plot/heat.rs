@@ -1,8 +1,9 @@
 //! A quantity over two axes in false colours, and the bar that says what these mean.
 
 use super::canvas::{Anchor, At, Canvas, Shape};
+use super::frame::Frame;
 use super::ink::{BLACK, Color, Dash, NOT_A_NUMBER, false_color};
-use super::panel::{self, BARE, BELOW, Frame, LEFT, RIGHT};
+use super::panel::{self, BARE, BELOW, LEFT, RIGHT};
 use super::{Axis, PlotError, svg};
 
 /// Numbers in false colours over two axes.

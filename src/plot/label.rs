@@ -1,8 +1,8 @@
 //! Names beside points, where they hide nothing.
 
 use super::canvas::{Anchor, At, Canvas};
+use super::frame::{DOT, Frame};
 use super::ink::{Color, Dash};
-use super::panel::{DOT, Frame};
 use super::text;
 
 /// Size of the letters and of the space that a line of them takes.

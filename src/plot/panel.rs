@@ -2,6 +2,7 @@
 
 use super::canvas::{Anchor, At, Canvas, Shape};
 use super::clip::{Place, clip};
+use super::frame::{DOT, Frame};
 use super::ink::{BLACK, Color, Dash, GRID};
 use super::{Axis, Curve, Panel, label, text};
 
@@ -15,8 +16,6 @@ pub(super) const BELOW: f64 = 50.0;
 
 /// Width of a curve.
 pub(super) const CURVE: f64 = 2.0;
-/// Radius of a point.
-pub(super) const DOT: f64 = 4.0;
 
 const TITLE: f64 = 15.0;
 const LETTERS: f64 = 12.0;
@@ -27,21 +26,6 @@ const TICK: f64 = 5.0;
 const ROOM: At = [50.0, 34.0];
 /// Half the width, and the height, of the triangle where a curve leaves.
 const TRIANGLE: At = [5.0, 8.0];
-
-/// The rectangle that the axes span, on the page.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) width: f64,
-    pub(super) height: f64,
-}
-
-impl Frame {
-    pub(super) fn at(&self, [x, y]: Place) -> At {
-        [self.left + self.width * x, self.top + self.height * (1.0 - y)]
-    }
-}
 
 /// Draws a panel into an area of the page.
 pub(super) fn draw(canvas: &mut Canvas, panel: &Panel, corner: At, size: At) {

@@ -4,6 +4,7 @@
 mod curves;
 mod drawing;
 mod energy;
+pub mod error_map;
 mod errors;
 mod head;
 mod overview;

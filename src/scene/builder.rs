@@ -11,7 +11,8 @@ use super::limits::Budget;
 use super::material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
 use super::names::Names;
 use super::texture::{self, Channel, Encoding, Textures};
-use super::{Interval, Place, Scene, SceneError, SceneErrorKind, limits};
+use super::{Place, Scene, SceneError, SceneErrorKind, limits};
+use crate::interval::Interval;
 
 /// γ of GGX (Trowbridge-Reitz).
 pub(super) const GGX: Interval = Interval::point(2.0);

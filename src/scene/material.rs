@@ -6,8 +6,9 @@ use std::path::Path;
 
 pub use microfacet_sampler::{FresnelEntry as Fresnel, Masking};
 
-use super::{Interval, Place};
+use super::Place;
 use crate::distribution::Distribution;
+use crate::interval::Interval;
 
 /// The slope roughness σ of a microfacet lobe, along the tangent (x) and the bitangent (y).
 ///

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 
-use super::{Interval, Place, SceneError};
+use super::{Place, SceneError};
+use crate::interval::Interval;
 
 /// Longer chains of references than this are refused, which bounds the stack for the recursion.
 const MAX_DEPTH: usize = 128;

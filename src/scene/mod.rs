@@ -37,7 +37,6 @@ mod cycle;
 mod error;
 mod gltf;
 mod include;
-mod interval;
 mod limits;
 mod material;
 mod materialx;
@@ -52,7 +51,6 @@ mod xml;
 use std::path::{Path, PathBuf};
 
 pub use error::{Place, SceneError, SceneErrorKind, did_you_mean_key};
-pub use interval::Interval;
 pub use material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
 pub(crate) use names::Names;
 
@@ -85,7 +83,8 @@ impl Scene {
     /// # Example
     ///
     /// ```
-    /// use microfacet_bake::scene::{Interval, Scene};
+    /// use microfacet_bake::interval::Interval;
+    /// use microfacet_bake::scene::Scene;
     ///
     /// let recipe = "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 4.0\n";
     /// let scene = Scene::from_recipe_str(recipe)?;

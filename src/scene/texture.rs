@@ -8,9 +8,9 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::Interval;
 use super::limits::{self, Budget};
 use crate::input;
+use crate::interval::Interval;
 
 /// The number of a pixel to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

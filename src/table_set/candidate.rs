@@ -7,9 +7,9 @@ use microfacet_sampler::{Precision, Table};
 use super::BakeError;
 use super::group::TableGroup;
 use super::job::Job;
+use crate::certify::certificate::worst_error;
 use crate::memory::{self, Values};
 use crate::table_spec::Level;
-use crate::validate::certificate::worst_error;
 
 /// 16-bit fixed point is the only small precision to choose from: half precision takes the same
 /// bytes, and its error, 3e-4 to 1e-3 of a value, is that of fixed point at best.

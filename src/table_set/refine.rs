@@ -4,10 +4,10 @@ use microfacet_sampler::{Precision, Table};
 
 use crate::bake;
 use crate::bake::albedo::{AlbedoError, AlbedoSpec};
+use crate::certify::albedo;
+use crate::certify::certificate::worst_error;
 use crate::plan::{AlbedoWork, albedo_seconds};
 use crate::progress::Meter;
-use crate::validate::albedo;
-use crate::validate::certificate::worst_error;
 
 /// Where only views can be refined, a doubling is kept if its error is at most this share of the
 /// error before: otherwise the error comes from elsewhere, such as an axis of the material. On a

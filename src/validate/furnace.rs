@@ -15,8 +15,8 @@ use microfacet_sampler::{
 };
 
 use crate::bake::albedo::Domain;
+use crate::interval::Interval;
 use crate::progress::Stage;
-use crate::scene::Interval;
 
 /// Allowed deviation from 1 with the Kulla–Conty lobe
 /// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).

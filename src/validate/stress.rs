@@ -6,6 +6,7 @@
 //! sampler against the model are measured along the way, by region.
 
 mod bsdf;
+mod bsdfs;
 mod checks;
 mod corners;
 mod derived;

@@ -12,9 +12,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
-use microfacet_bake::scene::{
-    self, Interval, Material, Roughness, Scene, SceneError, SceneErrorKind,
-};
+use microfacet_bake::interval::Interval;
+use microfacet_bake::scene::{self, Material, Roughness, Scene, SceneError, SceneErrorKind};
 use tempfile::TempDir;
 
 /// A folder with a scene in it.

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use microfacet_bake::interval::Interval;
 use microfacet_bake::scene::{
-    self, Format, Fresnel, Interval, Masking, Material, Origin, Place, Roughness, Scene,
+    self, Format, Fresnel, Masking, Material, Origin, Place, Roughness, Scene,
 };
 use microfacet_sampler::Metal;
 use proptest::prelude::*;

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::Paper;
 use super::integrated::{CLAIM, MEASURES, Verdict, verdicts};
 use crate::Failure;
-use crate::files::{csv, number};
+use crate::csv::{csv, number};
 
 impl Paper {
     /// Every file by its name.

@@ -11,11 +11,12 @@ use microfacet_sampler::{self as sampler, StudentT, Tables};
 
 use super::method::Method;
 use super::sky::Sky;
-use super::studio::{Film, Metal};
+use super::studio::Metal;
 use crate::masking::{self, Evaluate};
 use crate::rivals::lobe::Lobe;
 use crate::rivals::rational::{LARGEST, Rational};
 use crate::rivals::{beckmann, ggx};
+use crate::settings::Film;
 
 /// Makes the line of a picture with this number.
 pub(crate) type Line<'a> = Box<dyn Fn(usize) + 'a>;

@@ -22,7 +22,6 @@ use microfacet_sampler::Tables;
 use crate::settings::Settings;
 
 pub(crate) use approximation::Approximation;
-pub(crate) use studio::Film;
 
 /// All that is measured.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,9 +9,9 @@ use microfacet_sampler::{self as sampler, StudentT, Tables};
 use rayon::prelude::*;
 
 use super::sky::Sky;
-use super::studio::{Film, Metal};
+use super::studio::Metal;
 use crate::rivals::rational::Rational;
-use crate::settings::{SIGMA, Settings};
+use crate::settings::{Film, SIGMA, Settings};
 
 /// The shapes; the roughness is [`SIGMA`].
 pub(super) const SHAPES: [f64; 5] = [1.6, 2.2, 3.0, 10.0, 40.0];

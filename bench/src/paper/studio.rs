@@ -13,6 +13,7 @@ use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{ConductorFresnel, StudentT};
 
 use super::sky::Sky;
+use crate::settings::Film;
 
 /// The camera looks down by this many radians, from far away.
 const ELEVATION: f32 = 0.45;
@@ -67,15 +68,6 @@ impl<G: Fn(Vec3) -> f32> Metal<G> {
         }
         sum
     }
-}
-
-/// How finely a picture is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Film {
-    /// Pixels along an edge.
-    pub(crate) edge: usize,
-    /// Camera rays of a pixel.
-    pub(crate) samples: usize,
 }
 
 impl Film {

@@ -1,7 +1,7 @@
 //! Averages over views of what is looked up: piecewise polynomials of the view's coordinate, with
 //! kinks at nodes and where an albedo is clamped, integrated piece by piece.
 
-use super::curve::Elevation;
+use super::elevation::Elevation;
 use crate::math::sqrt64;
 
 /// The largest ratio of h from one end of a panel to the other.

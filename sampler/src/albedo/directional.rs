@@ -3,7 +3,8 @@
 use glam::Vec3;
 use microfacet_common::Masking;
 
-use super::curve::{Curve, Elevation, MaterialPoint, Rows, missing};
+use super::curve::{Curve, MaterialPoint, Rows, missing};
+use super::elevation::Elevation;
 use super::moments::{Moments, below, less_mirror};
 use crate::error::MaterialError;
 use crate::format::{Reflectance, Table};

@@ -9,6 +9,7 @@ mod average;
 mod curve;
 mod directional;
 mod domain;
+mod elevation;
 mod find;
 mod fresnel;
 mod moments;

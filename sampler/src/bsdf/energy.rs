@@ -3,8 +3,9 @@
 
 use microfacet_common::fresnel::dielectric;
 
+use super::averages::fresnel_average;
 use super::broad::Broad;
-use super::compensation::{Compensation, fresnel_average, kulla_conty, turquin};
+use super::compensation::{Compensation, kulla_conty, turquin};
 use super::interface::Interface;
 use crate::albedo::DielectricAlbedo;
 use glam::Vec3;

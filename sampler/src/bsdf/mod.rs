@@ -9,6 +9,7 @@
 //! missing.
 
 mod any;
+mod averages;
 mod bind;
 mod broad;
 mod compensation;
@@ -24,8 +25,9 @@ mod plastic;
 mod reflectance;
 
 pub use any::AnyBsdf;
+pub use averages::{f82_tint_average, fresnel_average, schlick_average};
 pub use bind::StandIn;
-pub use compensation::{Compensation, f82_tint_average, fresnel_average, schlick_average};
+pub use compensation::Compensation;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use error::BindError;

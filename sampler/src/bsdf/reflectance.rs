@@ -3,7 +3,7 @@
 use microfacet_common::fresnel::conductor;
 use microfacet_common::schlick::{f82_dip, f82_weight, schlick};
 
-use super::compensation::{fresnel_average, schlick_average};
+use super::averages::{fresnel_average, schlick_average};
 use super::error::BindError;
 use super::metal::Metal;
 use crate::math::unit;

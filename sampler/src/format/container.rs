@@ -14,9 +14,9 @@ use safetensors::{SafeTensors, tensor::TensorView};
 use serde::{Deserialize, Serialize};
 
 use super::checksum;
+use super::kind::Kind;
 use super::material::MaterialEntry;
 use super::precision::{Codec, Precision};
-use super::schema::Kind;
 use super::subject::{Covered, LobeEntry, Reflectance, Subject};
 use super::table::Table;
 use crate::axis::Axis;

@@ -4,6 +4,7 @@
 mod checksum;
 mod container;
 mod index;
+mod kind;
 mod material;
 mod precision;
 mod schema;
@@ -13,9 +14,9 @@ mod table;
 pub use checksum::{seal, seal_document};
 pub use container::{FORMAT, Provenance, VERSION, describe, encode, reassemble};
 pub use index::{Index, IndexedSet};
+pub use kind::{Channels, Kind};
 pub use material::{FresnelEntry, MaterialEntry};
 pub use precision::Precision;
-pub use schema::{Channels, Kind};
 pub use subject::{Covered, LobeEntry, Reflectance, Side, Subject};
 pub use table::Table;
 

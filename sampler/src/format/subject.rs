@@ -7,7 +7,7 @@ use alloc::string::String;
 use microfacet_common::{Masking, Skew};
 use serde::{Deserialize, Serialize};
 
-use super::schema::{Channels, Kind};
+use super::kind::{Channels, Kind};
 
 /// Whose normals a table is of.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -9,8 +9,8 @@ use alloc::vec::Vec;
 use microfacet_common::Real;
 use microfacet_common::shape::gamma_of_s;
 
+use super::kind::Kind;
 use super::precision::{Codec, Precision};
-use super::schema::Kind;
 use super::subject::Subject;
 use crate::axis::{Axis, Mapping, Weights};
 use crate::error::LoadError;

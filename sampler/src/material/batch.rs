@@ -22,7 +22,6 @@ use crate::axis::HalfTangent;
 use crate::axis::half_tangent::half_slope_at;
 use crate::axis::hermite::{Cell, cubic_lanes, hermite_lanes, horner_lanes, split};
 use crate::axis::roots;
-use crate::error::BatchError;
 
 /// Directions of a group.
 pub(crate) const LANES: usize = 4;
@@ -291,16 +290,4 @@ pub(crate) fn transpose(v: &[Vec3; LANES]) -> [f32x4; 3] {
         f32x4::new([v[0].y, v[1].y, v[2].y, v[3].y]),
         f32x4::new([v[0].z, v[1].z, v[2].z, v[3].z]),
     ]
-}
-
-/// Checks that all slices of a batch have the length of the first; the error names one that has
-/// not.
-pub(crate) fn same_lengths(slices: &[(&'static str, usize)]) -> Result<(), BatchError> {
-    let (first, expected) = slices[0];
-    match slices.iter().find(|(_, length)| *length != expected) {
-        None => Ok(()),
-        Some(&(other, length)) => {
-            Err(BatchError { slices: [first, other], lengths: [expected, length] })
-        }
-    }
 }

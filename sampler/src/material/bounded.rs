@@ -18,14 +18,14 @@ use glam::Vec3;
 use microfacet_common::Masking;
 use wide::f32x4;
 
-use super::batch::{LANES, coefficients, same_lengths, transpose};
+use super::batch::{LANES, coefficients, transpose};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::key::LobeKey;
 use super::sample::first_three;
 use super::student_t::StudentT;
 use super::views::{View, Views};
 use crate::axis::hermite::split;
-use crate::error::BatchError;
+use crate::error::{BatchError, same_lengths};
 use crate::math::unit;
 
 /// Cells of the slope x : z by x/(|x| + z), over [−1, 1], and rows of the table between two rows of

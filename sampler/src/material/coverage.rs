@@ -6,8 +6,7 @@ use alloc::vec::Vec;
 
 use microfacet_common::shape::gamma_of_s;
 
-use super::slices::serves;
-use crate::axis::Interpolation;
+use crate::axis::{Interpolation, Weights};
 use crate::error::Range;
 use crate::format::{Kind, SAME, Table};
 
@@ -17,6 +16,25 @@ pub(super) const LOBE: [&[Kind]; 3] = [
     &[Kind::VisibleSlope, Kind::VisibleSlopePeeled],
     &[Kind::VisibleSlopeConditional],
 ];
+
+/// Weights along the γ axis at s; `None` for a shape that the table was not baked and measured for,
+/// though its axis may reach there.
+pub(super) fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
+    let covered = table.subject.covers.is_none_or(|covers| covers.contains_shape(s));
+    if covered { table.axes[0].weights(s) } else { None }
+}
+
+/// The same at an end of the axis, for a shape that is outside by rounding alone.
+pub(super) fn end_weights(table: &Table, s: f64) -> Option<Weights> {
+    let [first, last] = table.axes[0].ends();
+    let covers = table.subject.covers?;
+    covers.contains_shape(s).then(|| table.axes[0].weights(s.clamp(first, last)))?
+}
+
+/// Whether the table serves s.
+fn serves(table: &Table, s: f64) -> bool {
+    shape_weights(table, s).or_else(|| end_weights(table, s)).is_some()
+}
 
 /// Whether a lobe of the shape s finds all its tables.
 pub(crate) fn contains(tables: &[Table], s: f64) -> bool {

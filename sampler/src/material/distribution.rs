@@ -3,9 +3,8 @@
 use glam::Vec3;
 use microfacet_common::{Masking, saturated};
 
-use super::batch::same_lengths;
 use super::key::LobeKey;
-use crate::error::BatchError;
+use crate::error::{BatchError, same_lengths};
 
 /// Below this mean absolute slope a surface counts as a mirror. For GGX it is α, which pbrt's
 /// `EffectivelySmooth` compares with the same number; for γ near 3/2 it is much larger than σ,

@@ -9,46 +9,13 @@ use wide::f32x4;
 use super::below_horizon::{ExcessShare, Numbers, SlopeBelowHorizon};
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, is_hidden, visible_density};
 use super::key::LobeKey;
+use super::matrix::{ENTRIES, Matrix};
 use super::sample::{HORIZON, above_horizon, first_three};
 use super::student_t::{Stretched, StudentT};
 use super::views::Views;
 use crate::axis::half_tangent::Slope;
 use crate::error::MaterialError;
 use crate::math::sqrt;
-
-/// The entries of a [`Skew`] in single precision.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Matrix {
-    p: f32,
-    q: f32,
-    r: f32,
-    x: f32,
-    y: f32,
-}
-
-/// Outside this range the squares of entries times those of slopes leave single precision.
-const ENTRIES: [f64; 2] = [1e-18, 1e18];
-
-impl Matrix {
-    pub(super) fn entries(self) -> [f32; 5] {
-        [self.p, self.q, self.r, self.x, self.y]
-    }
-}
-
-impl TryFrom<Skew> for Matrix {
-    type Error = MaterialError;
-
-    fn try_from(Skew { p, q, r, x, y }: Skew) -> Result<Self, MaterialError> {
-        let [low, high] = ENTRIES;
-        match [p, r].into_iter().find(|entry| !(low..=high).contains(entry)) {
-            Some(sigma) => Err(MaterialError::Sigma { sigma, range: ENTRIES }),
-            None => {
-                let [p, q, r, x, y] = [p, q, r, x, y].map(|entry| entry as f32);
-                Ok(Self { p, q, r, x, y })
-            }
-        }
-    }
-}
 
 /// An Ellipsoid lobe: that of Walter et al. 2015 (supplemental material of
 /// <https://doi.org/10.1145/2815618>) at γ = 2, a skewed Student-t for other γ, a skewed Beckmann

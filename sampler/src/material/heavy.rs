@@ -8,10 +8,8 @@
 
 use alloc::vec::Vec;
 
-use glam::Vec3;
 use wide::f32x4;
 
-use super::student_t::StudentT;
 use crate::axis::hermite::{Cell, cubic, cubic_cells, cubic_lanes, split};
 use crate::elementary::{exp2, log2};
 use crate::math::unit;
@@ -116,25 +114,10 @@ pub(crate) fn parts(u: f32x4, share: f32x4) -> [f32x4; 2] {
     [unit(heavy.select(1.0 - u, u) / heavy.select(share, rest)), heavy]
 }
 
-impl StudentT {
-    /// Share of `u[0]`, from 0 up, that
-    /// [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads from
-    /// the table; the rest draws from the closed-form heavy part.
-    ///
-    /// 1 where the whole distribution is tabulated.
-    pub fn tabulated_share(&self, v: Vec3) -> f32 {
-        if !self.slices.peeled {
-            return 1.0;
-        }
-        // To the bit as the sampler has it: the next number belongs to the other part.
-        let at = self.view::<true>(v).at.to_array()[0];
-        unit(1.0 - self.slices.heavy.share(at))
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use glam::Vec3;
+
     use crate::{MicrofacetDistribution, Tables};
 
     #[test]

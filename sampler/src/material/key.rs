@@ -6,7 +6,7 @@ use alloc::string::{String, ToString};
 use microfacet_common::shape::s_of_gamma;
 use microfacet_common::{Masking, Skew};
 
-use super::ellipsoid::Matrix;
+use super::matrix::Matrix;
 use crate::format::{LobeEntry, SAME};
 
 /// What tables of albedos know a lobe by: its parameters, as data.

@@ -6,10 +6,10 @@
 //! draws them, one at a time by [`fast_path`] and four at a time by [`batch`], with the part that
 //! no table holds from [`heavy`]. [`normals`] is D in closed form. [`inverse`] finds the random
 //! numbers of a slope: [`table_pdf`] is the density of what is drawn, and [`bounded`] leaves out
-//! normals that cannot reflect. [`ellipsoid`] takes directions through a matrix to a Student-t, and
-//! draws what lies [`below_horizon`] by rejection; [`radial`] has tables of its own, and [`ggx`]
-//! and the [`smooth`] surface need none. [`key`] is what albedo tables know a lobe by,
-//! and [`shape`] what exports write of one.
+//! normals that cannot reflect. [`ellipsoid`] takes directions through a [`matrix`] to a Student-t,
+//! and draws what lies [`below_horizon`] by rejection; [`radial`] has tables of its own, and
+//! [`ggx`] and the [`smooth`] surface need none. [`key`] is what albedo tables know a lobe by, and
+//! [`shape`] what exports write of one.
 
 mod batch;
 mod below_horizon;
@@ -23,6 +23,7 @@ mod heavy;
 mod inverse;
 mod key;
 mod lobe;
+mod matrix;
 mod normals;
 mod radial;
 mod roughness;

@@ -12,7 +12,7 @@ use super::student_t::{Stretched, StudentT};
 use crate::axis::MirroredRoot;
 use crate::axis::half_tangent::Slope;
 use crate::axis::hermite::{between_rows, hermite, locate};
-use crate::math::sqrt;
+use crate::math::{sqrt, unit};
 
 /// Smallest cosine of a sampled normal: keeps D finite, which for γ < 2 it is not on the horizon.
 pub(crate) const HORIZON: f32 = 1e-18;
@@ -44,6 +44,20 @@ impl StudentT {
     fn sample_heavy(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
         let m = self.sample_fast::<true>(Vec3::new(x, y, z), u);
         m.map_or_else(|| self.sample_general(x, y, z, u), first_three)
+    }
+
+    /// Share of `u[0]`, from 0 up, that
+    /// [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads from
+    /// the table; the rest draws from the closed-form heavy part.
+    ///
+    /// 1 where the whole distribution is tabulated.
+    pub fn tabulated_share(&self, v: Vec3) -> f32 {
+        if !self.slices.peeled {
+            return 1.0;
+        }
+        // To the bit as the sampler has it: the next number belongs to the other part.
+        let at = self.view::<true>(v).at.to_array()[0];
+        unit(1.0 - self.slices.heavy.share(at))
     }
 
     /// The in-plane slope from the table at u ∈ [0, 1].

@@ -4,31 +4,12 @@ use alloc::vec::Vec;
 
 use microfacet_common::shape::s_of_gamma;
 
-use super::coverage;
+use super::coverage::{self, end_weights, shape_weights};
 use super::heavy::Heavy;
 use crate::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
 use crate::axis::{Axis, HalfTangent, Mapping, MirroredRoot, Rational, Weights};
 use crate::error::MaterialError;
 use crate::format::{Kind, Table};
-
-/// Weights along the γ axis at s; `None` for a shape that the table was not baked and measured for,
-/// though its axis may reach there.
-fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
-    let covered = table.subject.covers.is_none_or(|covers| covers.contains_shape(s));
-    if covered { table.axes[0].weights(s) } else { None }
-}
-
-/// The same at an end of the axis, for a shape that is outside by rounding alone.
-fn end_weights(table: &Table, s: f64) -> Option<Weights> {
-    let [first, last] = table.axes[0].ends();
-    let covers = table.subject.covers?;
-    covers.contains_shape(s).then(|| table.axes[0].weights(s.clamp(first, last)))?
-}
-
-/// Whether the table serves s.
-pub(super) fn serves(table: &Table, s: f64) -> bool {
-    shape_weights(table, s).or_else(|| end_weights(table, s)).is_some()
-}
 
 /// A (value, slope) table without its γ axis.
 pub(crate) struct Slice<'a> {

@@ -7,7 +7,6 @@ use microfacet_common::shape::s_of_gamma;
 use microfacet_common::{Masking, Roughness, saturated};
 use wide::f32x4;
 
-use super::batch::same_lengths;
 use super::distribution::{
     Facet, GRAZING, MicrofacetDistribution, SMOOTH, SMOOTH_MASKED, is_hidden, visible_density,
 };
@@ -16,7 +15,7 @@ use super::normals::Normals;
 use super::roughness::checked;
 use super::slices::Slices;
 use crate::axis::hermite::{horner, split};
-use crate::error::{BatchError, MaterialError};
+use crate::error::{BatchError, MaterialError, same_lengths};
 use crate::format::Table;
 use crate::lanes::{swap_halves, swap_pairs};
 use crate::math::sqrt;

@@ -9,6 +9,7 @@
 //! closes to rounding rather than to the interpolation error.
 
 mod albedo_spec;
+mod domain;
 mod integrand;
 mod lobe;
 
@@ -27,7 +28,8 @@ use microfacet_sampler::{
 
 use crate::progress::Stage;
 
-pub use albedo_spec::{AlbedoSpec, Domain, SIGMA_MAX};
+pub use albedo_spec::AlbedoSpec;
+pub use domain::{Domain, SIGMA_MAX};
 pub use integrand::{Integrand, weights};
 pub(crate) use lobe::area_ratio;
 pub use lobe::{AlbedoLobe, Model, Models};

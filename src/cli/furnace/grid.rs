@@ -1,6 +1,6 @@
 //! The materials that a furnace runs: those named, and else what the set covers of a grid.
 
-use microfacet_bake::scene::Interval;
+use microfacet_bake::interval::Interval;
 use microfacet_bake::validate::furnace::domains;
 use microfacet_sampler::{Kind, Masking, Tables};
 

@@ -3,8 +3,9 @@
 use serde_json::{Value, json};
 
 use microfacet_bake::bake::albedo::AlbedoLobe;
+use microfacet_bake::interval::Interval;
 use microfacet_bake::plan::{Cost, Verdict, entry};
-use microfacet_bake::scene::{Ignored, Interval};
+use microfacet_bake::scene::Ignored;
 use microfacet_bake::words::verdict::{albedo_reason, reason};
 use microfacet_sampler::{Kind, MaterialEntry};
 

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 
 use microfacet_bake::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
 use microfacet_bake::distribution::Distribution;
+use microfacet_bake::interval::Interval;
 use microfacet_bake::plan::{
     AlbedoVerdict, AlbedoWish, Cost, Plan, Verdict, albedo_cost, bare_cost, entry,
 };
-use microfacet_bake::scene::{Ignored, Interval, Scene};
+use microfacet_bake::scene::{Ignored, Scene};
 use microfacet_bake::table_spec::{Quality, TableSpec, general_set};
 use microfacet_bake::words::material::{material as words_of, reflectance};
 use microfacet_bake::words::verdict::{albedo_reason, reason};

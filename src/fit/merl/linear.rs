@@ -27,10 +27,6 @@ pub(super) struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// Samples that a thread sums at once; the sums of chunks are added in order, so that the
-    /// result is the same for any number of threads.
-    pub(super) const CHUNK: usize = 1 << 14;
-
     pub(super) fn new(samples: &'a Samples, values: [Vec<f64>; 3]) -> Self {
         let (mut measured, mut bound) = ([0.0; 3], [0.0; 3]);
         for (channel, values) in values.iter().enumerate() {
@@ -96,7 +92,7 @@ impl<'a> Problem<'a> {
     /// parameters.
     fn sums(&self, specular: &[f64], points: [Option<Linear>; 3]) -> [Sums; 3] {
         let chunk = |start: usize| {
-            let range = start..(start + Self::CHUNK).min(specular.len());
+            let range = start..(start + Samples::CHUNK).min(specular.len());
             [0, 1, 2].map(|c| {
                 points[c].map_or(Sums::default(), |linear| {
                     Sums::of(
@@ -109,7 +105,7 @@ impl<'a> Problem<'a> {
                 })
             })
         };
-        let starts: Vec<usize> = (0..specular.len()).step_by(Self::CHUNK).collect();
+        let starts: Vec<usize> = (0..specular.len()).step_by(Samples::CHUNK).collect();
         let parts: Vec<[Sums; 3]> = starts.into_par_iter().map(chunk).collect();
         parts.into_iter().fold([Sums::default(); 3], |sum, part| {
             [0, 1, 2].map(|c| Sums {

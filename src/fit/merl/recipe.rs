@@ -5,9 +5,8 @@ use std::path::Path;
 
 use super::Fitted;
 use crate::bake::albedo::SIGMA_MAX;
-use crate::scene::{
-    Format, Fresnel, Interval, Masking, Material, Names, Origin, Place, Roughness, Scene,
-};
+use crate::interval::Interval;
+use crate::scene::{Format, Fresnel, Masking, Material, Names, Origin, Place, Roughness, Scene};
 
 /// The names of fitted materials: those of their files without the last extension, without
 /// characters that no comment may hold, and made unique.

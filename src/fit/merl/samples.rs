@@ -8,7 +8,6 @@ use rayon::prelude::*;
 
 use super::LIMIT_DEGREES;
 use super::file::{DIMENSIONS, MIDDLE, Measured, angles, index};
-use super::linear::Problem;
 
 /// Steps of the table of masking over the square root of the angle, between which Λ is linear:
 /// where γ is close to 3/2, Λ bends at the normal. The error of G1 is below 2e-6 for
@@ -42,6 +41,10 @@ pub(super) struct Samples {
 }
 
 impl Samples {
+    /// Samples that a thread sums at once; the sums of chunks are added in order, so that the
+    /// result is the same for any number of threads.
+    pub(super) const CHUNK: usize = 1 << 14;
+
     /// Takes every cell of θ_h, every so many of θ_d and φ_d, and leaves out those with a view or a
     /// light that is [`LIMIT_DEGREES`] or more from the normal.
     pub(super) fn new(strides: [usize; 2]) -> Self {
@@ -108,7 +111,7 @@ impl Samples {
             let [v, l] = self.places[i].map(|x| masking.g1(x));
             d[self.row[i]] * Masking::Uncorrelated.g2(v, l) * self.jacobian[i]
         };
-        (0..self.len()).into_par_iter().with_min_len(Problem::CHUNK).map(one).collect()
+        (0..self.len()).into_par_iter().with_min_len(Self::CHUNK).map(one).collect()
     }
 }
 

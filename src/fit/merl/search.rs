@@ -254,7 +254,7 @@ mod tests {
         // Enough samples for several chunks.
         let fitter = Fitter { levels: [[18, 36], [6, 12], [3, 6]].map(Samples::new) };
         let [_, _, last] = &fitter.levels;
-        assert!(last.len() > 2 * Problem::CHUNK);
+        assert!(last.len() > 2 * Samples::CHUNK);
         let lobe = StudentT::new(0.2, 1.7).unwrap();
         let mut measured = Measured { channels: [0, 1, 2].map(|_| vec![-1.0; CELLS]) };
         for samples in &fitter.levels {

@@ -2,8 +2,8 @@
 
 use microfacet_sampler::{Table, Tables};
 
-use crate::validate::certificate::worst_error;
-use crate::validate::error_map::{Sides, sides};
+use crate::certify::certificate::worst_error;
+use crate::report::error_map::{Sides, sides};
 
 /// Most maps of a page.
 const MOST: usize = 12;

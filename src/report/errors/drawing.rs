@@ -5,7 +5,7 @@ use microfacet_sampler::Table;
 use super::super::drawing::SIZE;
 use super::{ticks, words};
 use crate::plot::{Axis, Bar, Curve, Dash, Figure, HeatMap, Key, Mark, Method, Panel};
-use crate::validate::error_map::{ErrorMap, Span};
+use crate::report::error_map::{ErrorMap, Span};
 
 /// The low end of the scale: about the rounding of single precision.
 const LOW: f64 = 1e-7;

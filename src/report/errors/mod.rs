@@ -11,7 +11,7 @@ use microfacet_sampler::{Table, Tables};
 use super::{ReportError, Source};
 use crate::plan::on_threads;
 use crate::progress::Meter;
-use crate::validate::error_map::{self, ErrorMap, Sides, Unmeasured, measure};
+use crate::report::error_map::{self, ErrorMap, Sides, Unmeasured, measure};
 use chosen::Chosen;
 
 /// Most tables without a map whose certificates are said in words.

@@ -1,7 +1,7 @@
 //! Numbers along the axes of maps.
 
 use super::words::number;
-use crate::validate::error_map::{Quantity, Span};
+use crate::report::error_map::{Quantity, Span};
 
 /// Nearer to an end than this share, a number would be taken for it.
 const AT_END: f64 = 1e-3;

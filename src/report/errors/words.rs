@@ -3,8 +3,8 @@
 use microfacet_sampler::{Axis, Kind, Masking, Reflectance, Table};
 
 use super::super::drawing::error;
-use crate::validate::certificate::worst_error;
-use crate::validate::error_map::{ErrorMap, Quantity};
+use crate::certify::certificate::worst_error;
+use crate::report::error_map::{ErrorMap, Quantity};
 use crate::words::certificate;
 
 /// What a table is of.

@@ -9,7 +9,7 @@ use super::schema::{Document, Image};
 use super::value::Entry;
 use super::{Importer, Section};
 use crate::input;
-use crate::scene::Interval;
+use crate::interval::Interval;
 use crate::scene::limits::{self, Budget};
 use crate::scene::texture::{self, Channel, Encoding};
 

@@ -2,9 +2,10 @@
 
 use super::Importer;
 use super::parameters::{Clearcoat, Material, TextureInfo};
+use crate::interval::Interval;
 use crate::scene::builder::{GGX, Lobe};
 use crate::scene::texture::Channel;
-use crate::scene::{Fresnel, Interval, Roughness, SceneError};
+use crate::scene::{Fresnel, Roughness, SceneError};
 
 const COAT: &str = "KHR_materials_clearcoat";
 

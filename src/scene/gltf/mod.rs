@@ -32,6 +32,7 @@
 //! [spec]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 
 mod fresnel;
+mod ignored;
 mod image;
 mod material;
 mod parameters;
@@ -45,7 +46,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use self::parameters::{Material, Named};
-use self::schema::{Document, Mesh, VERSION_1};
+use self::schema::{Document, Mesh};
+use self::value::VERSION_1;
 use self::value::{Unknown, Value, message};
 use super::builder::Builder;
 use super::error::Lines;

@@ -4,31 +4,6 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use super::schema::{numbers, whole};
-use crate::scene::builder::Row;
-
-/// Members that leave every lobe as it is, of a material (under no name) and of objects in it.
-pub(super) const OTHERS: [Row; 6] = [
-    (
-        "",
-        "name normalTexture occlusionTexture emissiveTexture emissiveFactor alphaMode alphaCutoff \
-         doubleSided",
-    ),
-    ("KHR_materials_anisotropy", "anisotropyRotation"),
-    ("KHR_materials_clearcoat", "clearcoatTexture clearcoatNormalTexture"),
-    (
-        "KHR_materials_iridescence",
-        "iridescenceTexture iridescenceIor iridescenceThicknessMinimum \
-         iridescenceThicknessMaximum iridescenceThicknessTexture",
-    ),
-    ("KHR_materials_pbrSpecularGlossiness", "diffuseFactor diffuseTexture"),
-    (
-        "extensions",
-        "ADOBE_materials_clearcoat_tint KHR_materials_diffuse_roughness \
-         KHR_materials_diffuse_transmission KHR_materials_dispersion \
-         KHR_materials_emissive_strength KHR_materials_volume KHR_materials_volume_scatter \
-         KHR_xmp_json_ld MSFT_lod",
-    ),
-];
 
 /// The name alone: it is known where the rest cannot be read, and the rest where it is no text.
 #[derive(Deserialize)]
@@ -66,7 +41,7 @@ impl Default for MetallicRoughness {
     }
 }
 
-/// The extensions that are read; those of [`OTHERS`] are known too.
+/// The extensions that are read; those of [`OTHERS`](super::ignored::OTHERS) are known too.
 #[derive(Default, Deserialize)]
 pub(super) struct MaterialExtensions {
     #[serde(rename = "KHR_materials_anisotropy")]

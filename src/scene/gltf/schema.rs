@@ -33,10 +33,6 @@ pub(super) struct Document<'a> {
     pub(super) buffers: Vec<Entry<Buffer>>,
 }
 
-/// What a file of version 1 is, and what to do with it.
-pub(super) const VERSION_1: &str = "glTF 1.0, and only version 2.0 is read; convert it: \
-                                    `gltf-pipeline -i old.gltf -o new.gltf` (CesiumGS)";
-
 /// A whole number, which some programs write as `1.0`.
 pub(super) fn whole<'de, D: Deserializer<'de>, T: TryFrom<u64>>(input: D) -> Result<T, D::Error> {
     struct Whole<T>(PhantomData<T>);

@@ -10,8 +10,7 @@ use serde::{Deserialize, Deserializer, forward_to_deserialize_any};
 use serde_json::Error;
 use serde_json::value::RawValue;
 
-use super::parameters::OTHERS;
-use super::schema::VERSION_1;
+use super::ignored::OTHERS;
 use crate::scene::builder::{names_of, shortened, shortened_to};
 use crate::scene::limits;
 
@@ -203,6 +202,10 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Entry<T> {
         Ok(Self(read.map_err(|why| shortened_to(REASON, why.into()).into_owned())))
     }
 }
+
+/// What a file of version 1 is, and what to do with it.
+pub(super) const VERSION_1: &str = "glTF 1.0, and only version 2.0 is read; convert it: \
+                                    `gltf-pipeline -i old.gltf -o new.gltf` (CesiumGS)";
 
 /// A list of limited length: each element takes far more memory than the text "{}".
 pub(super) fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(

@@ -6,10 +6,11 @@ use super::graph::{negated, sum};
 use super::index::{At, Scope};
 use super::inputs::NO_FRESNEL;
 use super::shaders::{LEAST_ALPHA, Model, lobe, schlick, stretched};
+use crate::interval::Interval;
 use crate::scene::builder::{Lobe, conductor};
 use crate::scene::texture::Channel;
 use crate::scene::xml::Element;
-use crate::scene::{Fresnel, Interval, Roughness, SceneError};
+use crate::scene::{Fresnel, Roughness, SceneError};
 
 pub(super) const DIFFUSE: &str = "diffuse, without microfacets";
 const FABRIC: &str = "a fabric's distribution, not a Student-t one";

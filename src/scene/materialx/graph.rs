@@ -3,9 +3,11 @@
 use super::Reader;
 use super::connect::{channel_named, is_end, named, place, selected};
 use super::index::{At, Scope};
+use super::inputs::artistic;
+use crate::interval::Interval;
+use crate::scene::SceneError;
 use crate::scene::texture::Channel;
 use crate::scene::xml::Element;
-use crate::scene::{Interval, SceneError};
 
 pub(super) const RGB: [Channel; 3] = [Channel::Red, Channel::Green, Channel::Blue];
 
@@ -201,17 +203,6 @@ impl<'a> Reader<'a> {
     fn unknown(&mut self, node: &Element, reason: &str) -> Interval {
         self.builder.unread(named(node), reason, &node.place)
     }
-}
-
-/// The index of refraction and the extinction of a metal of a reflectance at normal incidence and
-/// an edge colour (Gulbrandsen, JCGT 3(4), 2014), limited as in `mx_artistic_ior`.
-pub(super) fn artistic(reflectivity: f64, edge: f64) -> [f64; 2] {
-    let r = reflectivity.clamp(0.0, 0.99);
-    let least = (1.0 - r) / (1.0 + r);
-    let greatest = (1.0 + r.sqrt()) / (1.0 - r.sqrt());
-    let n = greatest + (least - greatest) * edge;
-    let squared = ((n + 1.0) * (n + 1.0) * r - (n - 1.0) * (n - 1.0)) / (1.0 - r);
-    [n, squared.max(0.0).sqrt()]
 }
 
 /// Each value moved to the lower limit, and then to the higher one, as shaders do.

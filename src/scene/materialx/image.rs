@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use super::Reader;
 use super::connect::named;
 use super::index::At;
+use crate::interval::Interval;
+use crate::scene::limits;
 use crate::scene::texture::{Channel, Encoding};
 use crate::scene::xml::Element;
-use crate::scene::{Interval, limits};
 
 impl<'a> Reader<'a> {
     /// The range of a channel of the image of an image node.

@@ -1,11 +1,11 @@
 //! Values of the inputs of shading models and BSDFs, and the Fresnel terms that they state.
 
 use super::Reader;
-use super::graph::artistic;
 use super::index::At;
+use crate::interval::Interval;
 use crate::scene::builder::{conductor, dielectric};
 use crate::scene::texture::Channel;
-use crate::scene::{Fresnel, Interval, SceneError};
+use crate::scene::{Fresnel, SceneError};
 
 /// What is done about a Fresnel term that is impossible.
 pub(super) const NO_FRESNEL: (Option<Fresnel>, &str) = (None, "the lobe has no Fresnel term");
@@ -184,4 +184,15 @@ impl<'a> Reader<'a> {
             None => Ok(Interval::point(default)),
         }
     }
+}
+
+/// The index of refraction and the extinction of a metal of a reflectance at normal incidence and
+/// an edge colour (Gulbrandsen, JCGT 3(4), 2014), limited as in `mx_artistic_ior`.
+pub(super) fn artistic(reflectivity: f64, edge: f64) -> [f64; 2] {
+    let r = reflectivity.clamp(0.0, 0.99);
+    let least = (1.0 - r) / (1.0 + r);
+    let greatest = (1.0 + r.sqrt()) / (1.0 - r.sqrt());
+    let n = greatest + (least - greatest) * edge;
+    let squared = ((n + 1.0) * (n + 1.0) * r - (n - 1.0) * (n - 1.0)) / (1.0 - r);
+    [n, squared.max(0.0).sqrt()]
 }

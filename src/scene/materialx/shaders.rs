@@ -3,8 +3,9 @@
 use super::Reader;
 use super::index::At;
 use super::inputs::Metal;
+use crate::interval::Interval;
 use crate::scene::builder::{GGX, Lobe};
-use crate::scene::{Fresnel, Interval, Roughness, SceneError};
+use crate::scene::{Fresnel, Roughness, SceneError};
 
 /// The lower limit of α: `M_FLOAT_EPS` of the shaders (`stdlib/genglsl/lib/mx_math.glsl`).
 pub(super) const LEAST_ALPHA: f64 = 1e-8;

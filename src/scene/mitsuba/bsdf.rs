@@ -3,10 +3,11 @@
 use super::Reader;
 use super::fresnel::constant_dielectric;
 use super::value::named;
+use crate::interval::Interval;
 use crate::scene::builder::{BECKMANN, GGX, Lobe, Row};
 use crate::scene::error::did_you_mean;
 use crate::scene::xml::Element;
-use crate::scene::{Interval, Masking, Roughness, SceneError};
+use crate::scene::{Masking, Roughness, SceneError};
 
 /// Lower limit of α, from `MicrofacetDistribution::configure`.
 const LEAST_ALPHA: f64 = 1e-4;

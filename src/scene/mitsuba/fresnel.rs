@@ -2,10 +2,11 @@
 
 use super::Reader;
 use super::value::{named, number, rgb};
+use crate::interval::Interval;
 use crate::scene::builder::{conductor, dielectric, metal};
 use crate::scene::error::did_you_mean;
 use crate::scene::xml::Element;
-use crate::scene::{Fresnel, Interval, Place, SceneError};
+use crate::scene::{Fresnel, Place, SceneError};
 
 /// Indices of refraction by name (`render/ior.h`; Hecht, Optics, 4th edition, at 589 nm).
 const INDICES: [(&str, f64); 23] = [

@@ -1,10 +1,11 @@
 //! Numbers, and the ranges of textures.
 
 use super::{Reader, find};
+use crate::interval::Interval;
+use crate::scene::SceneError;
 use crate::scene::builder::{Row, names_of};
 use crate::scene::texture::{Channel, Encoding};
 use crate::scene::xml::Element;
-use crate::scene::{Interval, SceneError};
 
 /// Properties of textures by their type; the second and the fourth row are of Mitsuba 0.6.
 const TEXTURES: [Row; 5] = [

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use microfacet_sampler::Metal;
 
-use super::materials::Definition;
+use super::definition::Definition;
 use super::spectra;
 use super::syntax::Parameter;
 use crate::scene::builder::{conductor, dielectric};

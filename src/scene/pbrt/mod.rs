@@ -42,6 +42,7 @@
 //!
 //! [format]: https://pbrt.org/fileformat-v4
 
+mod definition;
 mod directives;
 mod fresnel;
 mod materials;
@@ -60,7 +61,7 @@ use std::rc::Rc;
 
 use flate2::read::MultiGzDecoder;
 
-use self::materials::Definition;
+use self::definition::Definition;
 use self::parameters::{MATERIALS, TEXTURES};
 use self::syntax::{Parameter, parameters, quoted, skip_arguments};
 use self::token::{Token, Tokens};

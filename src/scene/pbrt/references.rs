@@ -1,6 +1,6 @@
 //! References between materials: names, and the parts of mixtures.
 
-use super::materials::Definition;
+use super::definition::Definition;
 use super::syntax::Parameter;
 use super::{Reader, Slot};
 use crate::scene::{Place, cycle};

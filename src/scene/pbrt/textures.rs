@@ -1,10 +1,11 @@
 //! The ranges of pbrt's float textures.
 
 use super::Reader;
-use super::materials::Definition;
+use super::definition::Definition;
 use super::syntax::Parameter;
+use crate::interval::Interval;
+use crate::scene::SceneError;
 use crate::scene::texture::{Channel, Encoding};
-use crate::scene::{Interval, SceneError};
 
 impl Reader {
     /// A parameter that is a number or a texture.

@@ -10,9 +10,11 @@ use microfacet_model::classic::Marginal;
 use super::write::range;
 use super::{MATERIAL_KEYS, MEASURED_KEYS, Source, Table, Value};
 use crate::distribution::{Distribution, DistributionKind, Named};
-use crate::fit::{Angles, read_csv};
 use crate::input;
-use crate::scene::{Interval, Place, Roughness, SceneError, limits};
+use crate::input::angles::Angles;
+use crate::input::normals::read_csv;
+use crate::interval::Interval;
+use crate::scene::{Place, Roughness, SceneError, limits};
 use crate::table_spec::GAMMA_MIN;
 
 /// What a material says of its normals.

@@ -32,8 +32,9 @@ use self::write::quoted;
 pub(super) use self::write::write;
 use super::error::{Lines, did_you_mean_key};
 use super::limits::Budget;
-use super::{Format, Interval, Material, Origin, Place, Scene, SceneError, SceneErrorKind, limits};
+use super::{Format, Material, Origin, Place, Scene, SceneError, SceneErrorKind, limits};
 use crate::input;
+use crate::interval::Interval;
 
 // docs/recipe.md has each of these.
 const MATERIAL_KEYS: [&str; 8] =

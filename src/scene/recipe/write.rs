@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use crate::distribution::Distribution;
-use crate::fit::Angles;
-use crate::scene::{Fresnel, Interval, Material, Roughness};
+use crate::input::angles::Angles;
+use crate::interval::Interval;
+use crate::scene::{Fresnel, Material, Roughness};
 
 /// Writes the recipe that [`read`](super::read) turns into the same materials.
 pub(in crate::scene) fn write<'a>(materials: impl IntoIterator<Item = &'a Material>) -> String {

@@ -10,12 +10,12 @@ use super::super::job::Job;
 use super::super::refine::albedo_tables;
 use super::TableGroup;
 use crate::bake;
+use crate::certify::certificate::{POINTS, measure};
+use crate::certify::radial;
 use crate::distribution::Distribution;
 use crate::plan::{RequiredShapes, distribution_seconds, specs_seconds};
 use crate::progress::Meter;
 use crate::table_spec::{Level, TableSpec};
-use crate::validate::certificate::{POINTS, measure};
-use crate::validate::radial;
 
 impl TableGroup {
     /// The cache key of the tables: everything that their values depend on.

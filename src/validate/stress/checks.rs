@@ -8,7 +8,7 @@ use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::axis::half_tangent::half_tangent;
 use microfacet_sampler::{Ggx, Lobe, Masking, MaterialError, Skew, Tables};
 
-use super::bsdf::Bsdfs;
+use super::bsdfs::Bsdfs;
 use super::{Point, Report, direction};
 
 /// Four ulp of a unit vector's components.

@@ -6,7 +6,8 @@ mod unreadable;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use microfacet_bake::scene::{Format, Fresnel, Interval, Roughness};
+use microfacet_bake::interval::Interval;
+use microfacet_bake::scene::{Format, Fresnel, Roughness};
 
 use crate::{
     Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,

@@ -5,9 +5,9 @@ use std::io::Read;
 
 use microfacet_model::classic::{Tabulated, TabulatedError};
 
-use super::Angles;
-use crate::input::rows::{Row, RowError, Rows};
-use crate::input::{Limited, MAX_TEXT};
+use super::angles::Angles;
+use super::rows::{Row, RowError, Rows};
+use super::{Limited, MAX_TEXT};
 
 /// Most rows of a measurement. A fit to as many takes some seconds.
 pub const MAX_ROWS: usize = 1_000_000;

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use super::{Place, Quantity, Span, Unmeasured};
 use crate::bake::albedo::{AlbedoSpec, Site};
+use crate::certify::albedo::{average_error, errors_at};
+use crate::certify::certificate::worst_error;
+use crate::certify::points::{promised_views, ranges, seen};
 use crate::progress::Stage;
-use crate::validate::albedo::{average_error, errors_at};
-use crate::validate::certificate::worst_error;
-use crate::validate::points::{promised_views, ranges, seen};
 
 /// A node as accurate as this share of the table's largest error tells errors apart; no less than
 /// that of high quality, and no more than that of a draft.

@@ -112,7 +112,7 @@ fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found
 }
 
 /// The share of the first axis that is read.
-pub(super) fn read(kind: Kind, axis: &Axis) -> f64 {
+pub(crate) fn read(kind: Kind, axis: &Axis) -> f64 {
     match axis.mapping {
         // In-plane slopes end at their bound R, which is κ of this axis: rows beyond it are not
         // read.
@@ -154,7 +154,7 @@ fn last(share: f64) -> f64 {
 }
 
 /// A distribution and its tables, one of which has these axes.
-pub(super) struct Ruler<'a> {
+pub(crate) struct Ruler<'a> {
     radial: &'a Lobe,
     marginal: &'a Marginal<'a>,
     slanted: [(Vec3, MarginalView<'a>); SLANTS.len()],
@@ -162,14 +162,14 @@ pub(super) struct Ruler<'a> {
 }
 
 impl<'a> Ruler<'a> {
-    pub(super) fn new(radial: &'a Lobe, marginal: &'a Marginal<'a>, axes: &'a [Axis]) -> Self {
+    pub(crate) fn new(radial: &'a Lobe, marginal: &'a Marginal<'a>, axes: &'a [Axis]) -> Self {
         let slanted = SLANTS.map(|z| (view(z * marginal.sigma()), MarginalView::new(marginal, z)));
         Self { radial, marginal, slanted, axes }
     }
 
     /// The error at places along the axes, in shares of what is read of them; of slopes across, the
     /// largest from all of [`SLANTS`].
-    pub(super) fn error(&self, kind: Kind, [first, u]: [f64; 2]) -> f64 {
+    pub(crate) fn error(&self, kind: Kind, [first, u]: [f64; 2]) -> f64 {
         let cells = |axis: usize| (self.axes[axis].nodes.len() - 1) as f64;
         let place = first * cells(0) * read(kind, &self.axes[0]);
         let u = || number(2.0 * u * cells(1), cells(1));

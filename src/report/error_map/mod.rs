@@ -20,7 +20,6 @@ use crate::distribution::DistributionError;
 use crate::progress::Stage;
 use layout::Layout;
 
-pub(crate) use albedo::spec;
 pub use layout::{Sides, seconds, sides};
 pub use span::{Quantity, Span};
 

@@ -199,7 +199,7 @@ impl<'a> Reader<'a> {
 
 /// The largest error of any quantity of one table at each of some places; each is a step of the
 /// stage.
-pub(super) fn errors_at(
+pub(crate) fn errors_at(
     spec: &AlbedoSpec,
     table: &Table,
     points: Vec<Point>,
@@ -213,7 +213,7 @@ pub(super) fn errors_at(
 
 /// The largest error of any quantity of averages at a place, by the directional table that they
 /// are of; `set` holds the averages alone.
-pub(super) fn average_error(
+pub(crate) fn average_error(
     set: &Tables,
     directional: &Table,
     site: &Site,

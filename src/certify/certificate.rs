@@ -117,7 +117,7 @@ const TURNS: [[Within; 2]; 4] = [
 const TURNS_ALONE: [[Within; 2]; 4] = [TURNS[0], TURNS[3], TURNS[3], TURNS[3]];
 
 /// u at a place on a mirrored axis with so many cells in each half.
-pub(super) fn number(place: f64, half: f64) -> f32 {
+pub(crate) fn number(place: f64, half: f64) -> f32 {
     let of_half = |t: f64| MirroredRoot::number(t / half);
     let u = if place <= half { of_half(place) } else { 1.0 - of_half(2.0 * half - place) };
     u as f32
@@ -279,7 +279,7 @@ const BESIDE: [([f32; 2], f32); 4] =
 
 /// The shapes along the axis of a table that are measured.
 #[derive(Clone, Debug)]
-pub(super) struct Shapes {
+pub(crate) struct Shapes {
     nodes: Vec<f64>,
     /// Whether the table covers shapes between its nodes.
     is_range: bool,
@@ -308,7 +308,7 @@ impl Shapes {
     }
 
     /// Places of the ends of a range.
-    pub(super) fn ends(&self) -> [f64; 2] {
+    pub(crate) fn ends(&self) -> [f64; 2] {
         let (nodes, count) = (&self.nodes, self.nodes.len());
         self.s.map(|s| {
             let cell = nodes.partition_point(|&node| node <= s).clamp(1, count - 1) - 1;
@@ -329,7 +329,7 @@ impl Shapes {
     }
 
     /// The place at a share of the range; of a list, that of the shape nearest to s.
-    pub(super) fn place(&self, share: f64, s: f64) -> f64 {
+    pub(crate) fn place(&self, share: f64, s: f64) -> f64 {
         if self.is_range {
             let [first, last] = self.ends();
             return first + share * (last - first);
@@ -339,7 +339,7 @@ impl Shapes {
     }
 
     /// s at a place, inside the ends.
-    pub(super) fn s(&self, place: f64) -> f64 {
+    pub(crate) fn s(&self, place: f64) -> f64 {
         let nodes = &self.nodes;
         if !self.is_range {
             return nodes[place as usize];
@@ -351,19 +351,19 @@ impl Shapes {
 }
 
 /// Measures one table.
-pub(super) struct Ruler<'a> {
+pub(crate) struct Ruler<'a> {
     tables: &'a Tables,
     table: &'a Table,
-    pub(super) shapes: Shapes,
+    pub(crate) shapes: Shapes,
     views: Along,
     numbers: Along,
 }
 
 /// A material made from the tables, and its shape in the model.
-pub(super) type LobeAndShape = (StudentT, Shape);
+pub(crate) type LobeAndShape = (StudentT, Shape);
 
 impl<'a> Ruler<'a> {
-    pub(super) fn new(tables: &'a Tables, table: &'a Table, s: [f64; 2]) -> Self {
+    pub(crate) fn new(tables: &'a Tables, table: &'a Table, s: [f64; 2]) -> Self {
         let nodes = |axis: usize| table.axes[axis].nodes.len();
         let (views, numbers) = match table.kind {
             Kind::Shadowing => (Along::whole(nodes(1)), Along::none()),
@@ -404,7 +404,7 @@ impl<'a> Ruler<'a> {
     }
 
     /// The material and the shape at a place along the axis of shapes.
-    pub(super) fn lobe(&self, place: f64) -> Result<LobeAndShape, MaterialError> {
+    pub(crate) fn lobe(&self, place: f64) -> Result<LobeAndShape, MaterialError> {
         let gamma = gamma_of_s(self.shapes.s(place));
         let shape = Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
         Ok((self.tables.student_t(1.0, gamma)?, shape))
@@ -416,7 +416,7 @@ impl<'a> Ruler<'a> {
     }
 
     /// The error at a view, where the table has one, and a random number.
-    pub(super) fn error_at(
+    pub(crate) fn error_at(
         &self,
         (lobe, shape): &LobeAndShape,
         v: impl Fn() -> Vec3,
@@ -444,7 +444,7 @@ impl<'a> Ruler<'a> {
 }
 
 /// z at the coordinate t of an axis of views.
-pub(super) fn cotangent(axis: &Axis, s: f64, t: f64) -> f64 {
+pub(crate) fn cotangent(axis: &Axis, s: f64, t: f64) -> f64 {
     match axis.mapping {
         Mapping::Rational(mapping) => mapping.quantity(t, mapping.kappa(s)),
         Mapping::HalfTangent(mapping) => mapping.quantity(t),
@@ -453,7 +453,7 @@ pub(super) fn cotangent(axis: &Axis, s: f64, t: f64) -> f64 {
 }
 
 /// The view in the plane y = 0 with the cotangent z of its polar angle.
-pub(super) fn view(z: f64) -> Vec3 {
+pub(crate) fn view(z: f64) -> Vec3 {
     let UnitView { sin, cos } = UnitView::from_cotangent(z);
     Vec3::new(sin as f32, 0.0, cos as f32)
 }

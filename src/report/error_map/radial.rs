@@ -5,10 +5,10 @@ use microfacet_sampler::{Lobe, LobeEntry, Table, Tables};
 use rayon::prelude::*;
 
 use super::{Place, Quantity, Span, Unmeasured};
+use crate::certify::certificate::{cotangent, number};
+use crate::certify::radial::{Ruler, read};
 use crate::distribution::Named;
 use crate::progress::Stage;
-use crate::validate::certificate::{cotangent, number};
-use crate::validate::radial::{Ruler, read};
 
 /// The tables of one distribution, and one of them.
 pub(super) struct Radial<'a> {

@@ -2,8 +2,9 @@
 
 use microfacet_sampler::{Axis, Interpolation, Kind, Table};
 
+use super::albedo::spec;
 use super::{AXES, Place, Quantity, Span, worse};
-use crate::plan::point_seconds;
+use crate::plan;
 
 /// The axes that a map shows, by their place in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +63,14 @@ pub fn sides(table: &Table) -> Vec<Sides> {
 /// The estimated seconds of one thread that a map takes.
 pub fn seconds(table: &Table, sides: Sides) -> f64 {
     Layout::new(table, sides).points() as f64 * point_seconds(table)
+}
+
+/// Seconds of one thread to measure the error of a table at one place.
+fn point_seconds(table: &Table) -> f64 {
+    match table.kind {
+        Kind::Albedo => spec(table).map_or(0.0, |spec| plan::place_seconds(&spec)),
+        _ => plan::point_seconds(table),
+    }
 }
 
 /// Whether errors change along an axis: not along a list of single shapes.

@@ -5,8 +5,8 @@ use microfacet_sampler::{Provenance, Table, Tables};
 use rayon::prelude::*;
 
 use super::{Place, Quantity, Span, Unmeasured};
+use crate::certify::certificate::{ALL_SHAPES, Ruler, cotangent, number, view};
 use crate::progress::Stage;
-use crate::validate::certificate::{ALL_SHAPES, Ruler, cotangent, number, view};
 
 /// A table with those that a lobe is made of together with it.
 pub(super) struct Normals {

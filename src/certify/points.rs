@@ -48,7 +48,7 @@ pub struct Point {
 }
 
 /// The promised range of an axis, in its coordinate.
-pub(super) struct Range {
+pub(crate) struct Range {
     ends: Vec<f64>,
     /// From the first place to the last: the full circle of azimuths, which has no ends.
     whole: [f64; 2],
@@ -90,7 +90,7 @@ impl Range {
     }
 
     /// The coordinate at the share x ∈ [0, 1] of the range; around the full circle for an azimuth.
-    pub(super) fn at(&self, x: f64) -> f64 {
+    pub(crate) fn at(&self, x: f64) -> f64 {
         let [first, last] = self.whole;
         first + x * (last - first)
     }
@@ -137,7 +137,7 @@ pub fn interior_count(spec: &AlbedoSpec) -> usize {
     (spec.nodes() / NODES_A_POINT).clamp(FEWEST, MOST)
 }
 
-pub(super) fn ranges(spec: &AlbedoSpec) -> Vec<Range> {
+pub(crate) fn ranges(spec: &AlbedoSpec) -> Vec<Range> {
     spec.axes.iter().map(|axis| Range::new(axis, spec)).collect()
 }
 
@@ -182,13 +182,13 @@ fn coordinate(axis: &Axis, Site { gamma, sigma, eta, cos, .. }: &Site) -> f64 {
 }
 
 /// The place of a view by its cosine, at coordinates along the axes of materials.
-pub(super) fn seen(spec: &AlbedoSpec, material: &[f64], cos: f64) -> Point {
+pub(crate) fn seen(spec: &AlbedoSpec, material: &[f64], cos: f64) -> Point {
     point(spec, material, View::Cos(cos))
 }
 
 /// The promised views of the material of a site, from the lowest to the normal: cos θ at a share
 /// of their range, spaced as on the axis.
-pub(super) fn promised_views(axis: &Axis, site: Site) -> impl Fn(f64) -> f64 + use<> {
+pub(crate) fn promised_views(axis: &Axis, site: Site) -> impl Fn(f64) -> f64 + use<> {
     let low = coordinate(axis, &Site { cos: PROMISED.1, ..site });
     let mapping = axis.mapping;
     move |share| {

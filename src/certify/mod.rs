@@ -1,0 +1,7 @@
+//! Certificates: the errors of a table, measured through the run-time lookup against the model when
+//! the table is baked.
+
+pub mod albedo;
+pub mod certificate;
+pub mod points;
+pub mod radial;
