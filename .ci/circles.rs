@@ -111,8 +111,7 @@ fn read(root: &Path) -> BTreeMap<Module, Source> {
 
 impl Source {
     fn add(&mut self, text: &str) {
-        let text = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
-        let tokens = tokens(text);
+        let tokens = tokens(without_tests(text));
         let mut i = 0;
         while i < tokens.len() {
             let (token, line) = &tokens[i];
@@ -166,11 +165,30 @@ impl Source {
     }
 }
 
+/// What stands before the module of tests, if it is in this file: that is the last item.
+fn without_tests(text: &str) -> &str {
+    let starts = text.match_indices("#[cfg(test)]\nmod ");
+    let mut inline = starts.filter(|(at, _)| {
+        text[*at..].find(['{', ';']).is_some_and(|end| text[at + end..].starts_with('{'))
+    });
+    inline.next().map_or(text, |(at, _)| &text[..at])
+}
+
+/// The length of a literal of a character at the start of a text; of a lifetime's mark, 1.
+fn character(text: &str) -> usize {
+    let mut inner = text[1..].chars();
+    match (inner.next(), inner.next()) {
+        (Some('\\'), _) => text[3..].find('\'').map_or(1, |end| end + 4),
+        (Some(c), Some('\'')) => c.len_utf8() + 2,
+        _ => 1,
+    }
+}
+
 fn is_name(token: &str) -> bool {
     token.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// Names and punctuation with their lines, without comments and strings.
+/// Names and punctuation with their lines, without comments and literals.
 fn tokens(text: &str) -> Vec<(String, usize)> {
     let (mut tokens, mut line, mut rest) = (Vec::new(), 1, text);
     while let Some(c) = rest.chars().next() {
@@ -186,12 +204,15 @@ fn tokens(text: &str) -> Vec<(String, usize)> {
                 });
                 end.map_or(rest.len(), |end| end + 2)
             }
+            'r' if rest.starts_with("r#\"") => rest.find("\"#").map_or(rest.len(), |end| end + 2),
+            '\'' => character(rest),
             ':' if rest.starts_with("::") => 2,
             _ if name > 0 => name,
             _ => c.len_utf8(),
         };
         let token = &rest[..length];
-        if !c.is_whitespace() && c != '"' && !token.starts_with("//") {
+        let is_literal = matches!(c, '"' | '\'') || token.starts_with("r#");
+        if !c.is_whitespace() && !is_literal && !token.starts_with("//") {
             tokens.push((token.to_owned(), line));
         }
         line += token.matches('\n').count();

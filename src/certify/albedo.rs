@@ -241,7 +241,9 @@ fn average_errors(
 const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
 /// Hills climbed for each quantity with each step.
 const HILLS: [usize; STEPS.len()] = [4; STEPS.len()];
-/// The same over azimuths, where the middles of all cells are listed.
+/// The same over azimuths, where the middles of all cells are listed. Four hills at first missed
+/// 3 % of an F82 error, 8.28e-5 of σ = (0.1, 1), γ = 2; twice as many at the end found 0.2 % more,
+/// of one lobe of `brushed-metals.toml`.
 const HILLS_OF_AZIMUTHS: [usize; STEPS.len()] = [8, 5, 2, 1, 1, 1];
 
 /// The same outside the promised domain.

@@ -355,7 +355,7 @@ pub fn edges(spec: &AlbedoSpec) -> Vec<Point> {
 /// azimuth.
 ///
 /// Errors over azimuths have many hills of a cell's width. With the middles of half the cells, as
-/// on a chessboard, an F82 error of 8.5e-4 was certified as 8.13e-4.
+/// on a chessboard, an F82 error of 8.5e-4 was certified as 8.13e-4, of σ = (0.05, 0.4), γ = 1.6.
 pub fn middles(spec: &AlbedoSpec) -> Vec<Point> {
     let ranges = ranges(spec);
     let [azimuth, view] = &ranges[..] else { return Vec::new() };
