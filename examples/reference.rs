@@ -11,8 +11,8 @@ use std::fmt::{Debug, Write};
 use std::process::ExitCode;
 
 use glam::{DVec3, Vec3};
-use microfacet_common::Masking::{self, HeightCorrelated, Uncorrelated};
-use microfacet_common::schlick::{f82_weight, schlick_weight};
+use microfacet_core::Masking::{self, HeightCorrelated, Uncorrelated};
+use microfacet_core::schlick::{f82_weight, schlick_weight};
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::{Albedo, AlbedoIntegrator, StudentT};
 use microfacet_sampler::{MicrofacetDistribution, Moments, Tables};

@@ -4,7 +4,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_model::classic::{
     AshikhminShirley, Gauss, Gtr, Isotropic, Member, Sawicki, Schlick, Tabulated,
 };
@@ -125,7 +125,7 @@ impl fmt::Display for DistributionError {
     }
 }
 
-microfacet_common::debug_in_words!(DistributionError);
+microfacet_core::debug_in_words!(DistributionError);
 
 impl std::error::Error for DistributionError {}
 

@@ -133,7 +133,7 @@ impl fmt::Display for PlotError {
     }
 }
 
-microfacet_common::debug_in_words!(PlotError);
+microfacet_core::debug_in_words!(PlotError);
 
 impl std::error::Error for PlotError {}
 

@@ -1,6 +1,6 @@
 //! Table specifications: what is to be baked, as pure data.
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::axis::lagrange::nodes_read;
 use microfacet_sampler::axis::{InverseShape, even_nodes};
 use microfacet_sampler::{Interpolation, Kind, Precision};

@@ -11,7 +11,7 @@ fn the_default_set_is_reproducible() {
     let bytes = encode(set.provenance(), set.tables()).unwrap();
     assert!(
         bytes == COMMITTED,
-        "the baked set differs from sampler/data/default.safetensors; if the change is meant, raise bake::NUMERICS, run \
+        "the baked set differs from crates/sampler/data/default.safetensors; if the change is meant, raise bake::NUMERICS, run \
          `cargo run --release -- bake --out out`, copy out/tables.safetensors there, and note it as value-breaking"
     );
     assert!(COMMITTED.len() < 2 << 20);

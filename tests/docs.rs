@@ -60,11 +60,12 @@ fn files(folder: &Path, end: &str, found: &mut Vec<PathBuf>) {
 #[test]
 fn no_example_asks_for_a_crate_of_vectors() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut all =
-        ["README.md", "sampler/README.md", "model/README.md"].map(|at| root.join(at)).into();
+    let mut all = ["README.md", "crates/sampler/README.md", "crates/model/README.md"]
+        .map(|at| root.join(at))
+        .into();
     files(&root.join("docs"), ".md", &mut all);
-    files(&root.join("sampler/src"), ".rs", &mut all);
-    files(&root.join("model/src"), ".rs", &mut all);
+    files(&root.join("crates/sampler/src"), ".rs", &mut all);
+    files(&root.join("crates/model/src"), ".rs", &mut all);
     assert!(all.len() > 100, "{}", all.len());
     for path in all {
         let is_page = path.extension().is_some_and(|end| end == "md");

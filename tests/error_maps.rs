@@ -10,7 +10,7 @@ use microfacet_bake::scene::Scene;
 use microfacet_bake::store;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::axis::MirroredRoot;
 use microfacet_sampler::{Kind, Mapping, Precision, Provenance, Table, Tables};
 

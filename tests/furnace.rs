@@ -34,7 +34,7 @@ fn set() -> Tables {
 #[test]
 fn albedos_match_the_reference() {
     let set = set();
-    let text = include_str!("../model/tests/data/albedo.csv");
+    let text = include_str!("../crates/model/tests/data/albedo.csv");
     let mut count = 0;
     for row in text.lines().skip(1) {
         let f: Vec<&str> = row.split(',').collect();

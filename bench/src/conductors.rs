@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use glam::Vec3;
-use microfacet_common::schlick::schlick;
+use microfacet_core::schlick::schlick;
 use microfacet_sampler::{
     Bsdf, Conductor, ConductorFresnel, Ggx, Metal, MicrofacetDistribution, Tables, Transport,
 };

@@ -14,7 +14,7 @@ import numpy as np
 from microfacet_reader import Albedo, StudentT, Tables
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-SET = ROOT / "sampler/data/default.safetensors"
+SET = ROOT / "crates/sampler/data/default.safetensors"
 
 # The run-time crate works in single precision, which rounds by up to 6e-8 of a number, and the
 # reader in double. A lookup adds up ten to thirty such roundings. Numbers of any size are compared

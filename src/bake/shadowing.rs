@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_model::{Shape, UnitView};
 use microfacet_sampler::Axis;
 use microfacet_sampler::axis::Rational;

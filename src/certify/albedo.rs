@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_model::Albedo;
 use microfacet_sampler::{
     Albedo as TabulatedAlbedo, Axis, Kind, Masking, MaterialError, Moments, Reflectance, Table,

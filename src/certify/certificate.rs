@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use microfacet_common::shape::{S_END, gamma_of_s, s_of_gamma};
+use microfacet_core::shape::{S_END, gamma_of_s, s_of_gamma};
 use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope, across_cdf};
 use microfacet_sampler::axis::{HalfTangent, MirroredRoot};
 use microfacet_sampler::{

@@ -57,7 +57,7 @@ impl fmt::Display for ConvertError {
     }
 }
 
-microfacet_common::debug_in_words!(ConvertError);
+microfacet_core::debug_in_words!(ConvertError);
 
 impl std::error::Error for ConvertError {}
 

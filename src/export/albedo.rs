@@ -1,6 +1,6 @@
 //! The albedos of one shape under one form of masking, for any roughness.
 
-use microfacet_common::Masking;
+use microfacet_core::Masking;
 use microfacet_sampler::axis::lagrange::weights;
 use microfacet_sampler::axis::{LogRoughness, ViewBlend};
 use microfacet_sampler::internals::ShapeAlbedo;

@@ -1,7 +1,7 @@
 //! What lookups of a shape read, by name: the members of its description and its tables. Every
 //! target writes these, in this order.
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::internals::ShapeTables;
 
 use super::{AlbedoTable, Shape};

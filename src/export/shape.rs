@@ -1,6 +1,6 @@
 //! One shape with its tables, as every target writes it.
 
-use microfacet_common::Masking;
+use microfacet_core::Masking;
 use microfacet_sampler::internals::{ShapeTables, tables_of_shape};
 use microfacet_sampler::{MaterialError, Table, Tables};
 

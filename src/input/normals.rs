@@ -35,7 +35,7 @@ impl fmt::Display for MeasuredError {
     }
 }
 
-microfacet_common::debug_in_words!(MeasuredError);
+microfacet_core::debug_in_words!(MeasuredError);
 
 impl std::error::Error for MeasuredError {}
 

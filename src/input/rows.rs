@@ -36,7 +36,7 @@ impl fmt::Display for RowError {
     }
 }
 
-microfacet_common::debug_in_words!(RowError);
+microfacet_core::debug_in_words!(RowError);
 
 impl std::error::Error for RowError {}
 

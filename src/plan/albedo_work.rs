@@ -8,7 +8,7 @@
 //! fitted to the processor time of some 200 bakes on one thread. `examples/planner_seconds.rs`
 //! shows how well they meet other materials.
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::{Mapping, Reflectance};
 
 use crate::bake::albedo::{AlbedoLobe, AlbedoSpec};

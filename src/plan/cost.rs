@@ -4,7 +4,7 @@
 //! shares of the work are the same wherever they are computed. A [`Cost`] and [`seconds`] are for
 //! display, and are divided by the current threads.
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::internals::describe;
 use microfacet_sampler::{
     Axis, Interpolation, Kind, LobeEntry, Mapping, Masking, MaterialEntry, Precision, Provenance,

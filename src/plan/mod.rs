@@ -24,7 +24,7 @@ pub(crate) use cost::{
 };
 pub use required_shapes::RequiredShapes;
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 
 use crate::bake::albedo::SIGMA_MAX;
 use crate::distribution::Distribution;

@@ -1,6 +1,6 @@
 //! Required shapes: single γ and ranges of γ, and the table specifications for each.
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::{Interpolation, Precision};
 
 use crate::bake::joined_name;

@@ -69,7 +69,7 @@ impl fmt::Display for ReportError {
     }
 }
 
-microfacet_common::debug_in_words!(ReportError);
+microfacet_core::debug_in_words!(ReportError);
 
 impl std::error::Error for ReportError {}
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{
     Covered, FresnelEntry, LobeEntry, MaterialEntry, Reflectance, Table, Tables,
 };

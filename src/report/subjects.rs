@@ -1,6 +1,6 @@
 //! What of a set is shown: the shapes that the sphere can have, and the materials of the curves.
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{Masking, MaterialEntry, Tables};
 
 use super::drawing::{symbols, unbroken};

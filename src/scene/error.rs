@@ -161,7 +161,7 @@ impl fmt::Display for SceneError {
     }
 }
 
-microfacet_common::debug_in_words!(SceneError);
+microfacet_core::debug_in_words!(SceneError);
 
 impl fmt::Display for SceneErrorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

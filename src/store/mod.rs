@@ -82,7 +82,7 @@ impl fmt::Display for StoreError {
     }
 }
 
-microfacet_common::debug_in_words!(StoreError);
+microfacet_core::debug_in_words!(StoreError);
 
 impl std::error::Error for StoreError {}
 

@@ -202,7 +202,7 @@ impl fmt::Display for BakeError {
     }
 }
 
-microfacet_common::debug_in_words!(BakeError);
+microfacet_core::debug_in_words!(BakeError);
 
 impl std::error::Error for BakeError {}
 

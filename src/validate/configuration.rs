@@ -6,7 +6,7 @@ use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{MaterialEntry, Tables};
 
 /// One material seen from one direction.

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_model as model;
 use microfacet_sampler::{
     Albedo, Axis, Covered, Kind, LobeEntry, Masking, MaterialError, Reflectance, Subject, Table,

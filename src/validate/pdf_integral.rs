@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::Vec3;
 
-use microfacet_common::gauss_legendre;
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::gauss_legendre;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::axis::half_tangent::{ends, rate, slope_at};
 use microfacet_sampler::internals::table_joints;
 use microfacet_sampler::{Lobe, MicrofacetDistribution};

@@ -1,6 +1,6 @@
 //! The certificate of a table in words: the errors that its bake measured, and where.
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Table;
 
 use super::number;

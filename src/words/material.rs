@@ -1,6 +1,6 @@
 //! Materials in words.
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{FresnelEntry, MaterialEntry, Reflectance};
 
 use super::{number, range};

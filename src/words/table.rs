@@ -1,6 +1,6 @@
 //! What a table holds, is of, and lies over, in words.
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{
     Axis, Covered, Interpolation, Kind, LobeEntry, Mapping, MaterialEntry, Precision, Reflectance,
     Subject, Table, Tables,

@@ -2,7 +2,7 @@
 //! paper says that it is below 0.7 %; it does not say by which measure, so here are those that come
 //! to mind.
 
-use microfacet_common::gauss_legendre;
+use microfacet_core::gauss_legendre;
 use microfacet_model::{Shape, printed};
 
 use super::times::{GAMMAS, SIGMAS};

@@ -5,7 +5,7 @@
 //! cubic interpolation along the random numbers is worth.
 
 use glam::Vec3;
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::{Kind, Tables};
 use wide::f32x4;
 

@@ -79,7 +79,7 @@ impl<F: Fn(f32) -> [f32; 3]> GgxConductor<F> {
 
 #[cfg(test)]
 mod tests {
-    use microfacet_common::schlick::schlick;
+    use microfacet_core::schlick::schlick;
     use microfacet_sampler::{Bsdf, Conductor, ConductorFresnel, Ggx, Transport};
 
     use super::*;

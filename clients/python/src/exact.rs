@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use microfacet_common::schlick::{f82_weight, schlick_weight};
+use microfacet_core::schlick::{f82_weight, schlick_weight};
 use microfacet_model::{
     Albedo, AlbedoIntegrator, Ellipsoid, MicrofacetDistribution, ParameterError, Shape, Skew,
     StudentT,

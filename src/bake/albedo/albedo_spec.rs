@@ -1,6 +1,6 @@
 //! The specification of albedo tables: the lobe, the reflectance, and the nodes.
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::axis::lagrange::nodes_read;
 use microfacet_sampler::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,

@@ -1,6 +1,6 @@
 //! The range of materials that albedo tables are baked for.
 
-use microfacet_common::shape::{gamma_of_s, s_of_gamma};
+use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use microfacet_sampler::Covered;
 
 use crate::interval::Interval;

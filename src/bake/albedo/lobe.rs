@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use microfacet_common::shape::{gamma_of_s, s_of_gamma};
+use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use microfacet_model::classic::{Marginal, RadialAlbedo};
 use microfacet_model::{
     Albedo, AlbedoIntegrator, Ellipsoid, EllipsoidError, ParameterError, Shape, Skew,

@@ -157,7 +157,7 @@ impl fmt::Display for AlbedoError {
     }
 }
 
-microfacet_common::debug_in_words!(AlbedoError);
+microfacet_core::debug_in_words!(AlbedoError);
 
 impl std::error::Error for AlbedoError {}
 

@@ -135,7 +135,7 @@ fn float(x: f32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use microfacet_common::schlick::{F82_AVERAGE, F82_SCALE, SCHLICK_AVERAGE};
+    use microfacet_core::schlick::{F82_AVERAGE, F82_SCALE, SCHLICK_AVERAGE};
     use microfacet_sampler::StudentT;
 
     use super::*;

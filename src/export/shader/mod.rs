@@ -108,7 +108,7 @@ fn loader(name: &str, members: &[Member], signature: &str, at: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use microfacet_common::schlick::{F82_AVERAGE, F82_SCALE, SCHLICK_AVERAGE};
+    use microfacet_core::schlick::{F82_AVERAGE, F82_SCALE, SCHLICK_AVERAGE};
     use microfacet_sampler::{StudentT, Tables};
 
     use super::super::numbers::single;

@@ -1,6 +1,6 @@
 //! How far what a filter reads is from the model, at other points than those of the fit.
 
-use microfacet_common::Masking;
+use microfacet_core::Masking;
 use microfacet_model::ParameterError;
 
 use super::axis::{AXES, Place, TexelAxis, coordinates, place};

@@ -15,7 +15,7 @@ mod shader;
 mod truth;
 
 use half::f16;
-use microfacet_common::Masking;
+use microfacet_core::Masking;
 use microfacet_model::ParameterError;
 use rayon::prelude::*;
 

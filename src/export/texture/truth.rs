@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use microfacet_common::Masking;
-use microfacet_common::schlick::SCHLICK_AVERAGE;
+use microfacet_core::Masking;
+use microfacet_core::schlick::SCHLICK_AVERAGE;
 use microfacet_model::fresnel::schlick_weight;
 use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
 use rayon::prelude::*;

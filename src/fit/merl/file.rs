@@ -97,7 +97,7 @@ impl fmt::Display for MerlError {
     }
 }
 
-microfacet_common::debug_in_words!(MerlError);
+microfacet_core::debug_in_words!(MerlError);
 
 impl std::error::Error for MerlError {}
 

@@ -1,8 +1,8 @@
 //! The samples that a fit compares: cells with view and light well above the horizon.
 
 use glam::DVec3;
-use microfacet_common::Masking;
-use microfacet_common::schlick::schlick_weight;
+use microfacet_core::Masking;
+use microfacet_core::schlick::schlick_weight;
 use microfacet_model::{MicrofacetDistribution, StudentT};
 use rayon::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_model::StudentT;
 use rayon::prelude::*;
 

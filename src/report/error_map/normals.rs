@@ -1,6 +1,6 @@
 //! Errors of tables of masking and of visible normals.
 
-use microfacet_common::shape::{gamma_of_s, s_of_gamma};
+use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use microfacet_sampler::{Provenance, Table, Tables};
 use rayon::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{Axis, Mapping, Table};
 
 /// What an axis of a table is of.

@@ -8,7 +8,7 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use glam::Vec3;
 use half::f16;
-use microfacet_common::Masking;
+use microfacet_core::Masking;
 use microfacet_sampler::{
     ConductorFresnel, FresnelEntry, MaterialEntry, MaterialError, Metal, StudentT, Tables,
 };

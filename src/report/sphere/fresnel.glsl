@@ -1,5 +1,5 @@
 // The exact reflectance of a conductor of index eta + i k, as the crate has it
-// (common/src/fresnel.rs), from a cosine in [0, 1]; 1 at grazing.
+// (crates/core/src/fresnel.rs), from a cosine in [0, 1]; 1 at grazing.
 float conductor(float eta, float k, float mu) {
     float sin2 = 1.0 - mu * mu;
     float real = (eta - 1.0) * (eta + 1.0) - k * k + mu * mu;

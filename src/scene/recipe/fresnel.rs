@@ -136,7 +136,7 @@ impl Source<'_> {
 
     pub(super) fn masking(&self, value: &Value<'_>) -> Result<Masking, SceneError> {
         let name = value.get_ref().as_str().unwrap_or_default();
-        name.parse().map_err(|why: microfacet_common::UnknownMasking| {
+        name.parse().map_err(|why: microfacet_core::UnknownMasking| {
             let hint = did_you_mean(name, &Masking::ALL.map(Masking::name));
             self.place(value.span()).invalid(format!("{why}{hint}"))
         })

@@ -13,7 +13,7 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-use microfacet_common::shape::s_of_gamma;
+use microfacet_core::shape::s_of_gamma;
 use microfacet_model as model;
 use microfacet_sampler::{
     AnyBsdf, Bsdf, Compensation, Kind, Masking, Reflectance, Table, Tables, Transport,

@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec3, Vec3};
 
-use microfacet_common::gauss_legendre;
+use microfacet_core::gauss_legendre;
 
 /// Quadrature of a part of a cell, along both coordinates.
 const RULE: [(f64, f64); 4] = gauss_legendre();

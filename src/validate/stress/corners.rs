@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-use microfacet_common::shape::gamma_of_s;
+use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
 
 use super::Point;

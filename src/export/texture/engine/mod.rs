@@ -4,7 +4,7 @@
 mod image;
 mod text;
 
-use microfacet_common::Masking;
+use microfacet_core::Masking;
 
 use super::{Along, Channel, MOST_FITTED, TexelAxis, Texture, TextureSpec};
 use crate::export::ExportFile;

@@ -1,7 +1,7 @@
 """The density from which light of further bounces is drawn: the cosine, weighted by what is lost
 at each elevation.
 
-The density of ``sampler/src/bsdf/broad.rs``, of several rows: for a roughness that varies there is
+The density of ``crates/sampler/src/bsdf/broad.rs``, of several rows: for a roughness that varies there is
 one for each of some roughnesses, and for a dielectric one for each side.
 """
 

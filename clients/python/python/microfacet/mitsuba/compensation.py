@@ -1,6 +1,6 @@
 """What a conductor gets back of the light that one bounce loses to further ones.
 
-As in ``sampler/src/bsdf/compensation.rs``: a factor on the lobe (Turquin 2019,
+As in ``crates/sampler/src/bsdf/compensation.rs``: a factor on the lobe (Turquin 2019,
 https://blog.selfshadow.com/publications/turquin/ms_comp_final.pdf) or a broad lobe beside it (Kulla
 & Conty 2017, https://blog.selfshadow.com/publications/s2017-shading-course/).
 """

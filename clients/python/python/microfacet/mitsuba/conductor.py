@@ -1,6 +1,6 @@
 """The plugin ``student_t_conductor``: a rough conductor.
 
-As ``sampler/src/bsdf/conductor.rs``: every facet reflects, and absorbs what it does not reflect.
+As ``crates/sampler/src/bsdf/conductor.rs``: every facet reflects, and absorbs what it does not reflect.
 """
 
 from __future__ import annotations

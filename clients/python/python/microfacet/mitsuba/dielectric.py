@@ -1,6 +1,6 @@
 """The plugin ``student_t_dielectric``: a rough interface between two transparent media.
 
-As ``sampler/src/bsdf/dielectric.rs``: every facet reflects F of the light and refracts the rest.
+As ``crates/sampler/src/bsdf/dielectric.rs``: every facet reflects F of the light and refracts the rest.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The accounts of a rough dielectric: what one bounce reflects, transmits and loses of the light of
 either side, and where the light of further bounces goes.
 
-As ``sampler/src/bsdf/energy.rs``; ``docs/bsdf.md`` derives it.
+As ``crates/sampler/src/bsdf/energy.rs``; ``docs/bsdf.md`` derives it.
 """
 
 from __future__ import annotations

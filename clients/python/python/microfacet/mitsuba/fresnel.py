@@ -1,6 +1,6 @@
 """Reflectance of facets: Fresnel's equations, Schlick's approximation and the F82 tint.
 
-The same as ``common/src/fresnel.rs``, ``common/src/schlick.rs`` and ``reflectance.rs`` of the Rust
+The same as ``crates/core/src/fresnel.rs``, ``crates/core/src/schlick.rs`` and ``reflectance.rs`` of the Rust
 crates. Cosines are between a direction and the normal of a facet, in [0, 1].
 """
 

@@ -1,6 +1,6 @@
 """The interface of two transparent media, seen from one side.
 
-As ``sampler/src/bsdf/interface.rs`` (Walter et al. 2007,
+As ``crates/sampler/src/bsdf/interface.rs`` (Walter et al. 2007,
 https://doi.org/10.2312/EGWR/EGSR07/195-206).
 """
 

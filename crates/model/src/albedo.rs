@@ -1,0 +1,533 @@
+//! Directional albedo by deterministic quadrature over slopes.
+//!
+//! Let r, φ be polar coordinates of the unit slopes (slopes divided by σ), about the normal m = n.
+//! Reflection off m stays above the surface if and only if its slope lies in a certain disc (an
+//! ellipse in unit slopes), which contains the origin, so that
+//!
+//! ```text
+//! E = 1/(cos θ + ρ e(z)) ∫dφ ∫₀^{R(φ)} r dr P22(r) (cos θ − r b(φ)) F(v·m) S(l)
+//! ```
+//!
+//! with ρ the σ-stretched horizontal length of v, ρ e(z) = cos θ Λ(v), r b the slope towards v
+//! times sin θ (negative where m faces v), and S = G1(l) or G1(l)/(G1(l) + G1(v)(1 − G1(l))) for
+//! the two forms of masking. The factor in front is G1(v)/cos θ as one quotient, finite at grazing.
+//! The integrand is smooth inside the disc. It varies quickly in a layer of width σ along the rim,
+//! where l grazes, and, for views near grazing, where R(φ) turns, at right angles to v. Both are
+//! stretched by a hyperbolic sine whose scale is known.
+
+mod average;
+mod round;
+mod skewed;
+
+use core::f64::consts::{FRAC_PI_2, PI};
+
+use microfacet_core::Masking;
+
+use crate::converge::{CUT, converge, rules};
+use crate::error::ParameterError;
+use crate::panels::{End, Gauss};
+use crate::shape::Shape;
+use crate::slope_table::SlopeTable;
+use crate::smith_table::SmithTable;
+
+/// Largest rapidity of a slope, so that its square, e⁶⁸⁰, does not overflow.
+const LARGEST_RAPIDITY: f64 = 340.0;
+/// Widest panel along a ray, in the asinh slope w; the lobe's own singularities are at ±iπ/(2√s),
+/// 1.1 or more away.
+pub(crate) const PANEL: f64 = 1.5;
+/// Widest panel of φ.
+pub(crate) const SECTOR: f64 = 1.6;
+/// A square root is resolved by panels that begin this small: their error is 1e-3 (1e-2)^1.5.
+pub(crate) const ROOT: f64 = 0.01;
+
+/// Albedos of one view under N Fresnel weights, for both forms of masking.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Albedo<const N: usize> {
+    /// With G2 = G1(v) G1(l).
+    pub uncorrelated: [f64; N],
+    /// With G2 = 1/(1 + Λ(v) + Λ(l)).
+    pub height_correlated: [f64; N],
+    /// Upper estimate of the largest error: from the differences between the last orders of
+    /// quadrature, plus what is cut off.
+    pub error: f64,
+}
+
+impl<const N: usize> Albedo<N> {
+    /// The albedos for one form of masking.
+    pub fn of(&self, masking: Masking) -> [f64; N] {
+        match masking {
+            Masking::Uncorrelated => self.uncorrelated,
+            Masking::HeightCorrelated => self.height_correlated,
+        }
+    }
+
+    /// The largest difference to the albedos of `other`.
+    fn furthest(&self, other: &Self) -> f64 {
+        let pairs =
+            Masking::ALL.into_iter().flat_map(|form| self.of(form).into_iter().zip(other.of(form)));
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+}
+
+/// Integrates albedos for one shape γ and any roughness, view and Fresnel reflectance.
+#[derive(Clone, Debug)]
+pub struct AlbedoIntegrator {
+    shape: Shape,
+    pub(crate) smith: SmithTable,
+    pub(crate) slopes: SlopeTable,
+    rules: Vec<Gauss>,
+    pub(crate) tolerance: f64,
+    /// Asinh slope at which integrals over the lobe are cut off.
+    pub(crate) cut: f64,
+}
+
+/// The view and what depends on it alone.
+pub(crate) struct View {
+    pub(crate) cos: f64,
+    pub(crate) sin: f64,
+    /// Azimuth in the frame of the principal axes.
+    cos_phi: f64,
+    sin_phi: f64,
+    sigma: [f64; 2],
+    /// G1(v)/cos θ.
+    pub(crate) scale: f64,
+    pub(crate) g1: f64,
+    /// Smaller σ over larger.
+    aspect: f64,
+    /// Azimuth of v in unit space.
+    phi_0: f64,
+    /// Width of the turn of R(φ) at right angles to v.
+    turn: f64,
+    /// Unit slope of the m that reflects v to n, where Λ(l) has a branch point: azimuth and radius.
+    phi_normal: f64,
+    r_normal: f64,
+    /// The asinh slope of that radius.
+    w_normal: f64,
+    /// Whether the branch point is strong enough to need panels of its own.
+    branch: bool,
+    /// v·m at which the reflectance has a kink; 0 if it has none.
+    kink: f64,
+}
+
+impl AlbedoIntegrator {
+    /// Prepares an integrator for `shape`; `tolerance` is the absolute error aimed at, clamped to
+    /// [1e-13, 1e-2].
+    pub fn new(shape: Shape, tolerance: f64) -> Self {
+        let tolerance = tolerance.clamp(1e-13, 1e-2);
+        // The share of visible slopes beyond a rapidity v is less than cosh^(−2k) v.
+        let log = -libm::log(CUT * tolerance);
+        let cut = if shape.is_beckmann() {
+            log.sqrt()
+        } else {
+            let ln_cosh = 0.5 * log / (shape.gamma() - 1.5);
+            let root = shape.s().sqrt();
+            (ln_cosh + libm::log1p((-libm::expm1(-2.0 * ln_cosh)).sqrt())).min(LARGEST_RAPIDITY)
+                / root
+        };
+        let (smith, slopes) =
+            (SmithTable::new(&shape, (CUT * tolerance).max(1e-13)), SlopeTable::new(&shape, cut));
+        Self { shape, smith, slopes, rules: rules(), tolerance, cut }
+    }
+
+    /// ∫ π P22(r) r² dr beyond the largest rapidity, where integrals over heavy tails are cut off
+    /// before they are negligible: the power law r^(−2k−1), k = γ − 3/2, has no end. `None` where
+    /// they are.
+    pub(crate) fn tail(&self) -> Option<f64> {
+        let (s, k) = (self.shape.s(), self.shape.gamma() - 1.5);
+        let heavy = s > 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY;
+        heavy.then(|| {
+            libm::exp(-2.0 * k * LARGEST_RAPIDITY) * libm::exp2(2.0 * k) / (2.0 * k * s * s.sqrt())
+        })
+    }
+
+    /// The shape it was prepared for.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Albedo of reflection for roughness σ ≥ 0 along both axes and a view at cos θ ∈ [0, 1];
+    /// `weight` gives the reflectances at v·m ∈ [0, 1].
+    ///
+    /// σ = 0 is a mirror. cos θ = 0 is the limit of grazing views.
+    ///
+    /// # Errors
+    /// [`ParameterError`] unless 0 ≤ σ < ∞ and cos θ ∈ [0, 1].
+    pub fn reflection<const N: usize>(
+        &self,
+        sigma: f64,
+        cos_theta: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        self.reflection_to(self.tolerance, sigma, cos_theta, weight)
+    }
+
+    /// The same with another error aimed at, no smaller than the one it was prepared for.
+    fn reflection_to<const N: usize>(
+        &self,
+        tolerance: f64,
+        sigma: f64,
+        cos_theta: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        if !(0.0..=1.0).contains(&cos_theta) {
+            return Err(ParameterError::CosTheta(cos_theta));
+        }
+        // −0 is the horizon as well, not below it.
+        let cos_theta = cos_theta.abs();
+        if sigma == 0.0 {
+            let mirror = weight(cos_theta);
+            return Ok(Albedo { uncorrelated: mirror, height_correlated: mirror, error: 0.0 });
+        }
+        Ok(self.converged(tolerance, &self.view([sigma, sigma], cos_theta, 0.0)?, weight))
+    }
+
+    /// Albedo of reflection for roughness σx, σy > 0 and a view at cos θ ∈ [0, 1] and azimuth φ
+    /// (radians from the x axis); otherwise as [`reflection`](Self::reflection).
+    ///
+    /// # Errors
+    /// [`ParameterError`] unless both σ are positive and finite and cos θ ∈ [0, 1].
+    pub fn reflection_anisotropic<const N: usize>(
+        &self,
+        sigma: [f64; 2],
+        cos_theta: f64,
+        phi: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        Ok(self.converged(self.tolerance, &self.view(sigma, cos_theta, phi)?, weight))
+    }
+
+    /// Albedo of reflection for reflectances with a square-root singularity at
+    /// v·m = `kink` ∈ (0, 1), where total reflection sets in; otherwise as
+    /// [`reflection`](Self::reflection).
+    ///
+    /// # Errors
+    /// As [`reflection`](Self::reflection).
+    pub fn reflection_with_kink<const N: usize>(
+        &self,
+        sigma: f64,
+        cos_theta: f64,
+        kink: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        if sigma == 0.0 {
+            return self.reflection(sigma, cos_theta, weight);
+        }
+        let view = View { kink, ..self.view([sigma, sigma], cos_theta, 0.0)? };
+        Ok(self.converged(self.tolerance, &view, weight))
+    }
+
+    /// The integral of one view at the first order that is accurate enough, or else the last.
+    fn converged<const N: usize>(
+        &self,
+        tolerance: f64,
+        view: &View,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Albedo<N> {
+        if view.aspect == 1.0 && view.kink == 0.0 {
+            return self.round(tolerance, view, weight);
+        }
+        self.refined(tolerance, view.kink > 0.0, |rule| self.quadrature(rule, view, &weight))
+    }
+
+    /// The same for any `quadrature`; `kink` says whether a kink lies inside its domain.
+    pub(crate) fn refined<const N: usize>(
+        &self,
+        tolerance: f64,
+        kink: bool,
+        quadrature: impl Fn(&Gauss) -> [[f64; N]; 2],
+    ) -> Albedo<N> {
+        // At a kink orders converge algebraically, and their last difference says less about the
+        // error. Elsewhere twice that difference, because two orders may agree by chance.
+        let factor = if kink { 10.0 } else { 2.0 };
+        let ([uncorrelated, height_correlated], error) =
+            converge(&self.rules, tolerance, factor, quadrature);
+        Albedo { uncorrelated, height_correlated, error }
+    }
+
+    pub(crate) fn view(&self, sigma: [f64; 2], cos: f64, phi: f64) -> Result<View, ParameterError> {
+        for sigma in sigma {
+            if !(sigma > 0.0 && sigma < f64::INFINITY) {
+                return Err(ParameterError::Sigma(sigma));
+            }
+        }
+        if !(0.0..=1.0).contains(&cos) {
+            return Err(ParameterError::CosTheta(cos));
+        }
+        let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
+        let (sin_phi, cos_phi) = libm::sincos(phi);
+        let rho = sin * libm::hypot(sigma[0] * cos_phi, sigma[1] * sin_phi);
+        let excess =
+            if rho == 0.0 { 0.0 } else { self.shape.excess(self.shape.asinh_slope(cos / rho)) };
+        let area = cos + rho * excess;
+        let [sx, sy] = sigma;
+        let phi_0 = libm::atan2(sy * sin_phi, sx * cos_phi);
+        let half = sin / (1.0 + cos);
+        let (x, y) = (cos_phi / sx, sin_phi / sy);
+        let phi_normal = libm::atan2(y, x) + PI;
+        let r_normal = half * libm::hypot(x, y);
+        Ok(View {
+            cos,
+            sin,
+            cos_phi,
+            sin_phi,
+            sigma,
+            scale: 1.0 / area,
+            g1: cos / area,
+            aspect: sx.min(sy) / sx.max(sy),
+            phi_0,
+            turn: cos / (sin * sx.max(sy).max(1.0)),
+            phi_normal,
+            r_normal,
+            w_normal: self.shape.asinh_slope(r_normal),
+            branch: self.branches(sx.max(sy), r_normal),
+            kink: 0.0,
+        })
+    }
+
+    /// Whether the branch point of Λ(l) at l = n, which the unit slope `r_normal` reflects to, is
+    /// strong enough to need panels of its own.
+    fn branches(&self, sigma: f64, r_normal: f64) -> bool {
+        // Around it l turns by 2σ per unit slope; what is masked there, times the density.
+        let reach = r_normal.max(1.0);
+        let masked = 1.0 - self.smith.g1(1.0, libm::pow(2.0 * sigma * sigma * reach, 2.0));
+        let square = r_normal * r_normal;
+        let density = if self.shape.is_beckmann() {
+            libm::exp(-square)
+        } else {
+            libm::exp(-self.shape.gamma() * libm::log1p(self.shape.s() * square))
+        };
+        masked * density * reach * reach > 0.5 * self.tolerance
+    }
+
+    /// The integrals for both forms of masking at one order of quadrature.
+    fn quadrature<const N: usize>(
+        &self,
+        rule: &Gauss,
+        view: &View,
+        weight: &impl Fn(f64) -> [f64; N],
+    ) -> [[f64; N]; 2] {
+        let mut sum = [[0.0; N]; 2];
+        for (low, high) in self.sectors(view) {
+            rule.graded(low, high, SECTOR, |phi, jacobian| {
+                let part = self.ray(rule, view, phi, weight);
+                for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
+                    *sum += jacobian * part;
+                }
+            });
+        }
+        let fold = if view.aspect == 1.0 { 2.0 } else { 1.0 };
+        sum.map(|form| form.map(|x| x * fold * view.scale / PI))
+    }
+
+    /// The intervals of φ with the scales of variation at their ends; half a turn where the other
+    /// half is the same.
+    fn sectors(&self, view: &View) -> Vec<(End, End)> {
+        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
+        // b(φ) vanishes a right angle from φ₀; there R(φ) turns from the near rim to the far one.
+        let turn = |at: f64| End { at, scale: view.turn.max(1e-9) };
+        let scale = if view.branch { 0.05 * view.aspect } else { f64::INFINITY };
+        let normal = End { at: view.phi_normal, scale };
+        let phi_0 = view.phi_0;
+        if view.aspect == 1.0 {
+            let right = turn(phi_0 + FRAC_PI_2);
+            if view.kink == 0.0 {
+                return vec![(ungraded(phi_0), right), (right, normal)];
+            }
+            let conic = self.conic_sectors(view.cos, view.sin, view.kink, right, normal);
+            let (first, tangent) = (ungraded(phi_0), conic[0].0);
+            let before = if view.cos < view.kink {
+                vec![(first, right), (right, tangent)]
+            } else {
+                vec![(first, tangent)]
+            };
+            return [before, conic].concat();
+        }
+        // At the minor axis of the roughness ellipse its radius changes within an angle of the
+        // aspect.
+        let minor = if view.sigma[0] < view.sigma[1] { 0.0 } else { FRAC_PI_2 };
+        let narrow = |at: f64| End { at, scale: view.aspect };
+        let mut ends = [
+            turn(phi_0 + FRAC_PI_2),
+            turn(phi_0 - FRAC_PI_2),
+            normal,
+            narrow(minor),
+            narrow(minor + PI),
+        ];
+        for end in &mut ends {
+            end.at -= 2.0 * PI * libm::floor(end.at / (2.0 * PI));
+        }
+        ends.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let again = End { at: ends[0].at + 2.0 * PI, ..ends[0] };
+        (0..5).map(|i| (ends[i], *ends.get(i + 1).unwrap_or(&again))).collect()
+    }
+
+    /// The integral along one ray of slopes from m = n to the rim.
+    fn ray<const N: usize>(
+        &self,
+        rule: &Gauss,
+        view: &View,
+        phi: f64,
+        weight: &impl Fn(f64) -> [f64; N],
+    ) -> [[f64; N]; 2] {
+        let (sin_phi, cos_phi) = libm::sincos(phi);
+        let (x, y) = (view.sigma[0] * cos_phi, view.sigma[1] * sin_phi);
+        let a = x * x + y * y;
+        let b = view.sin * (x * view.cos_phi + y * view.sin_phi);
+        let aside = libm::fabs(libm::sin(phi - view.phi_normal));
+        self.along_ray(rule, view, [a, b, aside], weight, |_, r, k| {
+            let reach = k * r;
+            let l_x = view.sigma[0] * (reach * x + view.sin * view.cos_phi);
+            let l_y = view.sigma[1] * (reach * y + view.sin * view.sin_phi);
+            l_x * l_x + l_y * l_y
+        })
+    }
+
+    /// The same for a ray whose slope per unit slope has the square a and is b/sin θ away from the
+    /// view; `aside` is the sine of the angle to the branch point's ray. `across` gives the light's
+    /// squared horizontal length, stretched by σ, from its cosine, r and 2v·m/|m|².
+    fn along_ray<const N: usize>(
+        &self,
+        rule: &Gauss,
+        view: &View,
+        [a, b, aside]: [f64; 3],
+        weight: &impl Fn(f64) -> [f64; N],
+        across: impl Fn(f64, f64, f64) -> f64,
+    ) -> [[f64; N]; 2] {
+        let q = (b * b + a * view.cos * view.cos).sqrt();
+        let s = self.shape.s();
+        let rim = if b > 0.0 { view.cos / (b + q) } else { (q - b) / (a * view.cos) };
+        let w_rim = self.shape.asinh_slope(rim);
+        let end = if w_rim <= self.cut {
+            // l_z falls by 2q/(1 + a r²) per slope r: to √a, where masking sets in, and then to
+            // zero.
+            let layer = a.sqrt() * (1.0 + a * rim * rim) / (2.0 * q * (1.0 + s * rim * rim).sqrt());
+            End { at: w_rim, scale: layer }
+        } else {
+            End { at: self.cut, scale: f64::INFINITY }
+        };
+        // Distances from the branch point at l = n, in w.
+        let cone = |distance: f64| {
+            let scale = view.aspect * distance / (1.0 + s * view.r_normal * view.r_normal).sqrt();
+            if view.branch && scale < 0.5 { scale.max(0.01 * view.aspect) } else { f64::INFINITY }
+        };
+        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
+        let mut stops = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
+        let mut from = ungraded(0.0);
+        let mut points = Vec::with_capacity(128);
+        if b < 0.0 {
+            let normal = End { at: view.w_normal, scale: cone(view.r_normal * aside) };
+            if normal.scale.is_finite() && normal.at < end.at {
+                stops.push(normal);
+                stops.sort_by(|x, y| x.at.total_cmp(&y.at));
+            }
+        } else if stops.is_empty() {
+            from.scale = cone(view.r_normal);
+        }
+        for i in 0..=stops.len() {
+            let to = stops.get(i).copied().unwrap_or(end);
+            rule.graded(from, to, PANEL, |w, jacobian| points.push([w, jacobian, 0.0, 0.0]));
+            from = to;
+        }
+        // One pass over all points for each part of the formula: so the processor works on several
+        // points at a time.
+        for point in &mut points {
+            let (r, measure) = self.slopes.at(point[0]);
+            *point = [r, point[1] * measure, 0.0, 0.0];
+        }
+        for point in &mut points {
+            let [r, mass, ..] = *point;
+            let shrink = 1.0 / (1.0 + a * r * r);
+            let facing = view.cos - r * b;
+            let k = 2.0 * facing * shrink;
+            let l_z = k - view.cos;
+            *point = [l_z, across(l_z, r, k), mass * facing, (facing * shrink.sqrt()).min(1.0)];
+        }
+        for point in &mut points {
+            let [l_z, across, mass, mu] = *point;
+            let [uncorrelated, correlated] = self.smith.shares(view.g1, l_z, across);
+            *point = [mass * uncorrelated, mass * correlated, mu, 0.0];
+        }
+        let mut sum = [[0.0; N]; 2];
+        for [uncorrelated, correlated, mu, _] in points {
+            let fresnel = weight(mu.max(0.0));
+            for i in 0..N {
+                sum[0][i] += uncorrelated * fresnel[i];
+                sum[1][i] += correlated * fresnel[i];
+            }
+        }
+        if view.cos == 0.0
+            && b < 0.0
+            && let Some(tail) = self.tail()
+        {
+            // At grazing height-correlated masking (G2/G1 = 1) keeps all of it.
+            let fresnel = weight(-b / a.sqrt());
+            for i in 0..N {
+                sum[1][i] -= b * tail * fresnel[i];
+            }
+        }
+        sum
+    }
+
+    /// The intervals of φ, on the side towards the view, in which rays from m = n may meet the cone
+    /// v·m = `kink`. They run from `right`, at right angles to the view, or else from the cone's
+    /// tangent, to `towards`.
+    pub(crate) fn conic_sectors(
+        &self,
+        cos: f64,
+        sin: f64,
+        kink: f64,
+        right: End,
+        towards: End,
+    ) -> Vec<(End, End)> {
+        // Seen from m = n, the near side of the cone turns within this angle of the right angle.
+        let across = (kink - cos) * (kink + cos);
+        let angle = (libm::fabs(across).sqrt() / sin).min(1.0);
+        let first = if across <= 0.0 {
+            End { at: right.at, scale: right.scale.min(angle.max(1e-6)) }
+        } else {
+            // Rays meet the cone twice on one side of its tangent, and not at all on the other.
+            End { at: right.at + libm::asin(angle), scale: (0.3 * angle).max(1e-6) }
+        };
+        if sin <= kink {
+            return vec![(first, towards)];
+        }
+        // Near this asymptote rays meet the cone ever further out, where heavy tails still have
+        // mass: as the power 2γ−3 of the angle.
+        let scale = libm::exp(-14.0 / (2.0 * self.shape.gamma() - 2.0));
+        let asymptote = End { at: right.at + libm::asin(kink / sin), scale };
+        vec![(first, asymptote), (asymptote, towards)]
+    }
+
+    /// Where a ray meets the cone v·m = `kink`, in w, ascending: the roots of
+    /// (cos θ − r b)² = kink² (1 + a r²).
+    pub(crate) fn conic(
+        &self,
+        cos: f64,
+        kink: f64,
+        a: f64,
+        b: f64,
+        last: f64,
+        scale: f64,
+    ) -> Vec<End> {
+        if kink == 0.0 {
+            return Vec::new();
+        }
+        let square = kink * kink;
+        let (p, q) = (b * b - square * a, b * cos);
+        let rest = (cos - kink) * (cos + kink);
+        let root = square * (b * b + a * rest);
+        if root < 0.0 {
+            return Vec::new();
+        }
+        // The two roots without cancellation.
+        let sum = q + root.sqrt().copysign(q);
+        let facing = |r: &f64| *r > 0.0 && r.is_finite() && cos - r * b > 0.0;
+        let roots = [sum / p, rest / sum].into_iter().filter(facing);
+        let mut ends: Vec<End> = roots
+            .map(|r| End { at: self.shape.asinh_slope(r), scale })
+            .filter(|end| end.at > 0.0 && end.at < last)
+            .collect();
+        ends.sort_by(|x, y| x.at.total_cmp(&y.at));
+        ends
+    }
+}

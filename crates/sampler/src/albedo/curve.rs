@@ -1,0 +1,288 @@
+//! The albedos of one material as functions of the view: a table with the axes of the material
+//! collapsed.
+
+use alloc::format;
+use alloc::vec::Vec;
+
+use glam::Vec3;
+use microfacet_core::shape::s_of_gamma;
+
+use super::average::{At, add, over_views};
+use super::elevation::Elevation;
+use crate::axis::lagrange::{SIX, combine};
+use crate::axis::{Mapping, PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend, Weights};
+use crate::error::MaterialError;
+use crate::format::{Kind, Reflectance, Table};
+use crate::math::unit;
+
+/// The largest number of channels of an albedo table.
+const CHANNELS: usize = 4;
+
+/// Where the axes before that of the view are collapsed; a table without one of these axes ignores
+/// its quantity.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MaterialPoint {
+    pub(super) sigma: f64,
+    pub(super) gamma: f64,
+    /// Index of refraction ≥ 1 of the dense side over the thin one.
+    pub(super) eta: f64,
+}
+
+/// Weights along the axes of a material.
+pub(super) struct MaterialWeights {
+    pub(super) weights: Vec<Weights>,
+    /// The roughness of the weights, no less than the first node's.
+    sigma: f64,
+    /// Whether σ is 0.
+    pub(super) is_mirror: bool,
+}
+
+impl MaterialWeights {
+    /// `None` where the table was not baked for the material.
+    pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
+        let mut collapsed = Self { weights: Vec::new(), sigma: point.sigma, is_mirror: false };
+        for axis in &table.axes {
+            let quantity = match axis.mapping {
+                Mapping::LogShape(_) => point.gamma,
+                Mapping::LogRoughness(_) => {
+                    let covers = table.subject.covers?;
+                    let s = s_of_gamma(point.gamma);
+                    let sigma = covers.sigma.map_or(point.sigma, |ends| end(point.sigma, ends));
+                    if !(covers.contains_shape(s) && covers.contains_sigma(sigma)) {
+                        return None;
+                    }
+                    let first = axis.quantity(axis.nodes[0])?;
+                    // As single precision has them, in which lobes take σ.
+                    let below = (sigma as f32) < first as f32;
+                    // Between a mirror and the first node nothing is known.
+                    if below && sigma > 0.0 {
+                        return None;
+                    }
+                    collapsed.is_mirror = below;
+                    collapsed.sigma = sigma.max(first);
+                    collapsed.sigma
+                }
+                Mapping::ReflectanceRoot => {
+                    let [first, last] = axis.ends().map(|t| axis.quantity(t));
+                    end(point.eta, [first?, last?])
+                }
+                _ => break,
+            };
+            collapsed.weights.push(axis.weights(axis.coordinate(quantity)?)?);
+        }
+        Some(collapsed)
+    }
+}
+
+/// A quantity, or an end of a range that differs from it by no more than the rounding of single
+/// precision, in which lobes take their numbers.
+fn end(x: f64, ends: [f64; 2]) -> f64 {
+    let same = |end: &f64| (x - end).abs() <= f64::from(f32::EPSILON) * end;
+    ends.into_iter().find(same).unwrap_or(x)
+}
+
+/// N albedos of one material as functions of the view.
+#[derive(Clone, Debug)]
+pub struct ViewCurve<const N: usize>(Curve);
+
+impl<const N: usize> ViewCurve<N> {
+    /// Prepares a table of conductors or dielectrics, not one of moments, for one material.
+    ///
+    /// `eta` ≥ 1 is the index of a dielectric's dense side; tables of one material ignore σ and γ.
+    /// Where the table has fewer than N channels, the last albedos are 0.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoTable`] if the table has more channels, holds moments, or does not cover
+    /// the material.
+    pub fn from_table(
+        table: &Table,
+        sigma: f64,
+        gamma: f64,
+        eta: f64,
+    ) -> Result<Self, MaterialError> {
+        let shares =
+            table.subject.reflectance.filter(|reflectance| *reflectance != Reflectance::Moments);
+        let point = MaterialPoint { sigma, gamma, eta };
+        let curve = shares.filter(|reflectance| reflectance.channels().len() <= N);
+        let curve = curve.and_then(|_| Curve::new(table, &point));
+        curve.map(Self).ok_or_else(|| missing(table, &point))
+    }
+
+    pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
+        Curve::new(table, point).map(Self)
+    }
+
+    /// The albedos at a view, each in [0, 1].
+    ///
+    /// `v` is a unit vector in the tangent frame, n = +z. A view at or below the horizon is taken
+    /// as the grazing one of its azimuth, NaN likewise; only lobes that are not round depend on the
+    /// azimuth. Closer to grazing than the table's first view, μ₀ of
+    /// [`ViewBlend`](crate::axis::ViewBlend), albedos are held constant.
+    pub fn eval(&self, v: Vec3) -> [f32; N] {
+        let cos = unit(v.z);
+        self.0.with_view(v, |rows, view| self.at(rows, view, cos))
+    }
+
+    fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; N] {
+        let all = self.0.interpolate(rows, view.six(cos, self.0.views));
+        // Interpolation may leave [0, 1] by the table's error.
+        core::array::from_fn(|i| all[i].clamp(0.0, 1.0))
+    }
+
+    /// Cosine-weighted averages over the hemisphere of views: 1/π ∫∫ E μ dμ dφ.
+    pub fn average(&self) -> [f32; N] {
+        self.average_of(|albedos| albedos.map(f64::from)).map(|x| x as f32)
+    }
+
+    /// Such averages of functions of the albedos.
+    pub(crate) fn average_of<const M: usize>(&self, of: impl Fn([f32; N]) -> [f64; M]) -> [f64; M] {
+        self.0.average(|rows, view, cos| {
+            let albedos = self.at(rows, view, cos);
+            let quantities = of(albedos);
+            let all = albedos.map(f64::from).into_iter().chain(quantities);
+            (quantities, all.fold(0, |bits, x| 2 * bits + u32::from(x == 0.0 || x == 1.0)))
+        })
+    }
+}
+
+/// The error for a table that does not hold what was asked for.
+pub(super) fn missing(table: &Table, point: &MaterialPoint) -> MaterialError {
+    let MaterialPoint { sigma, gamma, .. } = point;
+    MaterialError::NoTable(format!("{} for sigma {sigma} and gamma {gamma}", table.name))
+}
+
+/// All channels of a table, at one material.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    /// The values at the nodes, azimuths slowest; channels that the table lacks are 0.
+    nodes: Vec<[f32; CHANNELS]>,
+    /// The number of views at each azimuth.
+    views: usize,
+    view: View,
+    /// The channel by which the others are clamped.
+    clamp: Option<usize>,
+    /// Whether the first channel is E − 1, not a share of light.
+    moments: bool,
+}
+
+/// The coordinates of the views.
+#[derive(Clone, Copy, Debug)]
+enum View {
+    /// The same at every azimuth.
+    Round(PreparedView),
+    /// By the roughness seen from the azimuth. γ is already in the parameters.
+    Turning(PreparedAzimuth, ViewBlend),
+    /// From inside a dielectric.
+    Critical(PreparedCritical),
+}
+
+/// Azimuths, by index, with their weights.
+pub(super) type Rows = [(usize, f32)];
+/// The single azimuth of a round lobe.
+const ROUND: &Rows = &[(0, 1.0)];
+
+impl Curve {
+    /// `None` where the table does not cover the material.
+    pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
+        let at = MaterialWeights::new(table, point)?;
+        let moments = table.subject.reflectance == Some(Reflectance::Moments);
+        let channels = table.channels.len();
+        let mut nodes: Vec<[f32; CHANNELS]> = Vec::new();
+        for node in table.collapsed::<f64>(&at.weights).chunks_exact(channels) {
+            nodes.push(core::array::from_fn(|i| node.get(i).map_or(0.0, |&x| x as f32)));
+        }
+        if at.is_mirror && moments {
+            nodes.fill([0.0; CHANNELS]);
+        }
+        let rest = &table.axes[at.weights.len()..];
+        let view = match (rest[0].mapping, rest[rest.len() - 1].mapping) {
+            (Mapping::Azimuth(azimuth), Mapping::ViewBlend(blend)) => {
+                View::Turning(azimuth.prepare(rest[0].len()), blend)
+            }
+            (_, Mapping::ViewBlend(blend)) => View::Round(blend.prepare(at.sigma, point.gamma)),
+            (_, Mapping::CriticalBlend(blend)) => {
+                View::Critical(blend.prepare(at.sigma, point.gamma, 1.0 / point.eta))
+            }
+            _ => unreachable!("validated on load"),
+        };
+        let clamp = table.channels.iter().position(|channel| channel == Kind::CLAMP);
+        Some(Self { nodes, views: rest[rest.len() - 1].len(), view, clamp, moments })
+    }
+
+    /// Calls `then` with the azimuths and the elevation of a view.
+    pub(super) fn with_view<R>(&self, v: Vec3, then: impl FnOnce(&Rows, &Elevation<'_>) -> R) -> R {
+        match &self.view {
+            View::Round(view) => then(ROUND, &Elevation::Blend(view)),
+            View::Critical(view) => then(ROUND, &Elevation::Critical(view)),
+            View::Turning(azimuth, blend) => {
+                let (x, y) = (f64::from(v.x), f64::from(v.y));
+                let r = libm::hypot(x, y);
+                // Along the normal any azimuth will do; NaN fails the comparison, too.
+                let (c, s) = if r > 0.0 && r < f64::INFINITY { (x / r, y / r) } else { (1.0, 0.0) };
+                let view = blend.prepare_shaped(azimuth.sigma(c, s));
+                then(&azimuth.six(c, s), &Elevation::Blend(&view))
+            }
+        }
+    }
+
+    /// The channels at some azimuths and views, clamped as G1(v) is.
+    pub(super) fn interpolate(
+        &self,
+        rows: &Rows,
+        (start, weights): (usize, [f32; SIX]),
+    ) -> [f32; CHANNELS] {
+        let mut sum = [0.0; CHANNELS];
+        // A table without an azimuth axis has one row.
+        for &(row, a) in rows.iter().filter(|row| row.1 != 0.0) {
+            let node = combine(&self.nodes, row * self.views + start, &weights);
+            for (sum, x) in sum.iter_mut().zip(node) {
+                *sum += a * x;
+            }
+        }
+        if self.moments {
+            // E in [0, 1], so that what is lost and its average agree.
+            sum[0] = sum[0].clamp(-1.0, 0.0);
+        }
+        match self.clamp.map(|i| sum[i]) {
+            // The channel is c = μ/(μ + A): above ½ the microsurface shows less area A than the
+            // surface on which it stands.
+            Some(clamp) if clamp > 0.5 => {
+                let share = ((1.0 - clamp) / clamp).max(0.0);
+                let one = if self.moments { 1.0 } else { 0.0 };
+                let [first, rest @ ..] = sum.map(|x| share * x);
+                let [a, b, c] = rest;
+                [first + one * (share - 1.0), a, b, c]
+            }
+            _ => sum,
+        }
+    }
+
+    /// The channels of cos θ at some azimuths.
+    pub(super) fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; CHANNELS] {
+        self.interpolate(rows, view.six(cos, self.views))
+    }
+
+    /// Cosine-weighted averages, over the hemisphere of views, of N quantities that are functions
+    /// of azimuths, elevation and cos θ.
+    pub(super) fn average<const N: usize>(
+        &self,
+        quantities: impl Fn(&Rows, &Elevation<'_>, f32) -> At<N>,
+    ) -> [f64; N] {
+        let over = |rows: &Rows, view: &Elevation<'_>| {
+            over_views(view, self.views, &|cos| quantities(rows, view, cos))
+        };
+        match &self.view {
+            View::Round(view) => over(ROUND, &Elevation::Blend(view)),
+            View::Critical(view) => over(ROUND, &Elevation::Critical(view)),
+            View::Turning(azimuth, blend) => {
+                let mut sum = [0.0; N];
+                for ([c, s], share) in azimuth.circle() {
+                    let view = blend.prepare_shaped(azimuth.sigma(c, s));
+                    let part = over(&azimuth.six(c, s), &Elevation::Blend(&view));
+                    add(&mut sum, share, &part);
+                }
+                sum
+            }
+        }
+    }
+}

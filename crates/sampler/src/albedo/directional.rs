@@ -1,0 +1,117 @@
+//! The directional albedo of one material with F = 1, and its moments.
+
+use glam::Vec3;
+use microfacet_core::Masking;
+
+use super::curve::{Curve, MaterialPoint, Rows, missing};
+use super::elevation::Elevation;
+use super::moments::{Moments, below, less_mirror};
+use crate::error::MaterialError;
+use crate::format::{Reflectance, Table};
+use crate::math::unit;
+
+/// The directional albedo of one material as a function of the view, with F = 1 and as moments of
+/// Fresnel weights.
+///
+/// It is made by [`Tables::albedo`](crate::Tables::albedo) and
+/// [`Tables::material_albedo`](crate::Tables::material_albedo). `v` is a unit vector in the tangent
+/// frame, n = +z; its azimuth matters only to lobes that are not round. A view at or below the
+/// horizon is taken as the grazing one of its azimuth, NaN in `v.z` likewise, and NaN in the other
+/// two as the x axis. Errors are those of the table's certificate: in E and each moment at most
+/// 3e-4 at default quality for cos θ ≥ 0.02 and σ ≥ 0.01. Closer to grazing than the table's first
+/// view, μ₀ of [`ViewBlend`](crate::axis::ViewBlend), albedos near their limits with the power of
+/// cos θ that they have there.
+#[derive(Clone, Debug)]
+pub struct Albedo {
+    masking: Masking,
+    curve: Curve,
+    /// The averages, in the form of the tables' channels.
+    average: [f32; 3],
+}
+
+impl Albedo {
+    /// Reads a table of moments, such as one that a bake has just filled; a table of one material
+    /// ignores σ and γ.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoTable`] for a table that holds no moments or does not cover the material.
+    pub fn from_table(table: &Table, sigma: f64, gamma: f64) -> Result<Self, MaterialError> {
+        let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
+        let moments = table.subject.reflectance == Some(Reflectance::Moments);
+        moments.then(|| Self::new(table, &point)).flatten().ok_or_else(|| missing(table, &point))
+    }
+
+    /// `None` where the table does not cover the material.
+    pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
+        let curve = Curve::new(table, point)?;
+        let mut albedo = Self { masking: table.subject.masking?, curve, average: [0.0; 3] };
+        albedo.average = albedo.integrate();
+        Some(albedo)
+    }
+
+    /// The form of masking that the albedo is for.
+    pub fn masking(&self) -> Masking {
+        self.masking
+    }
+
+    /// Moments of the Fresnel weights at a view, each in [0, 1], with a total of at most 1.
+    pub fn moments(&self, v: Vec3) -> Moments {
+        Moments::mirror(unit(v.z)).plus(self.rest(v))
+    }
+
+    /// The directional albedo E(v) with F = 1, in [0, 1].
+    pub fn albedo(&self, v: Vec3) -> f32 {
+        1.0 - self.lost(v)
+    }
+
+    /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.
+    pub fn lost(&self, v: Vec3) -> f32 {
+        // No −0.
+        0.0 - self.rest(v)[0]
+    }
+
+    /// Cosine-weighted averages of the moments over the hemisphere of views: 1/π ∫∫ · μ dμ dφ.
+    pub fn average_moments(&self) -> Moments {
+        Moments::mirror_average().plus(self.average)
+    }
+
+    /// The average albedo E_avg = 1/π ∫∫ E μ dμ dφ with F = 1.
+    pub fn albedo_average(&self) -> f32 {
+        1.0 - self.lost_average()
+    }
+
+    /// The average share of light lost, 1 − E_avg, with all its digits.
+    pub fn lost_average(&self) -> f32 {
+        0.0 - self.average[0]
+    }
+
+    /// The averages by quadrature of what is looked up, in the form of the tables' channels:
+    /// the values of tables of averages.
+    pub(crate) fn integrate(&self) -> [f32; 3] {
+        less_mirror(self.curve.average(|rows, view, cos| {
+            let rest = self.at(rows, view, cos);
+            let (mirror, e) = (Moments::mirror(cos), rest[0]);
+            let moments = mirror.plus(rest);
+            let less = [e, moments.bias - mirror.bias, moments.f82 - mirror.f82];
+            (less.map(f64::from), u32::from(e == 0.0) + 2 * u32::from(e == -1.0))
+        }))
+    }
+
+    /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
+    fn rest(&self, v: Vec3) -> [f32; 3] {
+        self.curve.with_view(v, |rows, view| self.at(rows, view, unit(v.z)))
+    }
+
+    fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; 3] {
+        let channels = |cos| {
+            let [e, bias, f82, _] = self.curve.at(rows, view, cos);
+            [e, bias, f82]
+        };
+        let (floor, here) = (view.floor() as f32, channels(cos));
+        // A mirror has no limit to near.
+        if cos >= floor || here[0] == 0.0 {
+            return here;
+        }
+        below(self.masking, floor, cos, here, channels(4.0 * floor))
+    }
+}

@@ -1,0 +1,244 @@
+//! Finds the table of a set that holds an albedo.
+
+use microfacet_core::Masking;
+use microfacet_core::shape::s_of_gamma;
+
+use super::curve::{MaterialPoint, MaterialWeights, ViewCurve};
+use super::directional::Albedo;
+use super::domain::{dielectrics, domains, smallest_sigma};
+use super::fresnel::{DielectricAlbedo, FresnelAlbedo};
+use super::moments::Moments;
+use crate::error::MaterialError;
+use crate::format::{FresnelEntry, Kind, LobeEntry, MaterialEntry, Reflectance, Side, Table};
+use crate::tables::Tables;
+
+impl Tables {
+    /// The directional albedo of the round Student-t lobe with σ and γ, for one form of masking.
+    ///
+    /// σ is 0, a mirror with E = 1, or lies in [1e-8, 3] (the default set, and every set whose
+    /// recipe does not narrow it). Between the two nothing is known: at γ = 1.501 and σ = 1e-9 a
+    /// view of cos θ = 1e-7 loses two thirds of its light. The averages are those of
+    /// the lookups of just this material, so that a white furnace closes: 1 − E_avg differs by no
+    /// more than 5e-5 of itself from the integral of 1 − E in default quality, and by 5e-4 in
+    /// draft. The call takes some twenty microseconds; keep the result.
+    ///
+    /// # Errors
+    /// [`MaterialError`] for a γ outside the family, or a σ, γ or form of masking that the set's
+    /// albedo tables do not cover.
+    pub fn albedo(
+        &self,
+        sigma: f64,
+        gamma: f64,
+        masking: Masking,
+    ) -> Result<Albedo, MaterialError> {
+        self.moments_of(Kind::Albedo, sigma, gamma, masking, Albedo::new)
+    }
+
+    /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments, from the table of averages alone.
+    ///
+    /// Off its nodes they differ from those of [`albedo`](Self::albedo) by the errors of its
+    /// certificate.
+    ///
+    /// # Errors
+    /// As [`albedo`](Self::albedo).
+    pub fn average_moments(
+        &self,
+        sigma: f64,
+        gamma: f64,
+        masking: Masking,
+    ) -> Result<Moments, MaterialError> {
+        self.moments_of(Kind::AlbedoAverage, sigma, gamma, masking, |table, point| {
+            let at = MaterialWeights::new(table, point)?;
+            let rest = table.collapsed::<f64>(&at.weights);
+            let rest =
+                if at.is_mirror { [0.0; 3] } else { core::array::from_fn(|i| rest[i] as f32) };
+            Some(Moments::mirror_average().plus(rest))
+        })
+    }
+
+    /// The albedo with F = 1 of a named material, and its moments, for the form of masking of its
+    /// recipe (height-correlated if it names none).
+    ///
+    /// An anisotropic Student-t whose σx, σy and γ are single numbers, an ellipsoid and a
+    /// distribution outside the family have tables of their own; averaging one takes about a
+    /// millisecond, so keep the result. A range is taken at its middle, and for an anisotropic
+    /// material with a range the round lobe of √(σx σy) stands in.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that was baked
+    /// without albedos, or what [`albedo`](Self::albedo) reports.
+    pub fn material_albedo(&self, name: &str) -> Result<Albedo, MaterialError> {
+        let entry = self.entry(name)?;
+        if entry.lobe() == LobeEntry::Family {
+            return self.albedo(entry.round_sigma(), entry.gamma(), entry.masking());
+        }
+        self.own(entry, Albedo::new, |reflectance| *reflectance == Reflectance::Moments)
+    }
+
+    /// The albedo of a named conductor or dielectric under its exact reflectance.
+    ///
+    /// Ranges are taken as by [`material_albedo`](Self::material_albedo), that of an index of
+    /// refraction at the middle of its coordinate
+    /// [`ReflectanceRoot`](crate::axis::ReflectanceRoot). A dielectric has the round lobe of
+    /// √(σx σy). For σ = 0 its albedo is that of 1e-8.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that states no
+    /// such reflectance or was baked without albedos.
+    pub fn material_fresnel_albedo(&self, name: &str) -> Result<FresnelAlbedo, MaterialError> {
+        let entry = self.entry(name)?;
+        if let Some(eta) = entry.fresnel.and_then(|fresnel| fresnel.middle_index()) {
+            return Ok(FresnelAlbedo::Dielectric(self.material_dielectric_albedo(name, eta)?));
+        }
+        let wanted = entry.fresnel.as_ref().map(FresnelEntry::tabulated).unwrap_or_default();
+        let conductor = |reflectance: &Reflectance| {
+            matches!(reflectance, Reflectance::Conductor { .. }) && wanted.contains(reflectance)
+        };
+        self.own(entry, ViewCurve::new, conductor).map(FresnelAlbedo::Conductor)
+    }
+
+    /// The albedo of a named material at an index of refraction η in the range that its recipe
+    /// states.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::OtherDistribution`] for a lobe that has
+    /// none, or as [`dielectric_albedo`](Self::dielectric_albedo).
+    pub fn material_dielectric_albedo(
+        &self,
+        name: &str,
+        eta: f64,
+    ) -> Result<DielectricAlbedo, MaterialError> {
+        let entry = self.entry(name)?;
+        if !matches!(entry.lobe(), LobeEntry::Family | LobeEntry::StudentT { .. }) {
+            let distribution = entry.lobe().name().into();
+            return Err(MaterialError::OtherDistribution { name: name.into(), distribution });
+        }
+        self.dielectric_albedo(entry.round_sigma(), entry.gamma(), eta, entry.masking())
+    }
+
+    /// The albedo of a rough dielectric of index η ∈ [0, ∞], inside over outside, with σ and γ, for
+    /// one form of masking.
+    ///
+    /// The call takes some microseconds; keep the result.
+    ///
+    /// # Errors
+    /// [`MaterialError::DielectricNotCovered`] if no table of the set covers it.
+    pub fn dielectric_albedo(
+        &self,
+        sigma: f64,
+        gamma: f64,
+        eta: f64,
+        masking: Masking,
+    ) -> Result<DielectricAlbedo, MaterialError> {
+        let side = |eta| self.interface_albedo(sigma, gamma, eta, masking);
+        Ok(DielectricAlbedo { masking, outside: side(eta)?, inside: side(1.0 / eta)? })
+    }
+
+    /// The same from one side: [reflection, transmission], where η ∈ [0, ∞] is the index of
+    /// refraction beyond the interface over that on the viewer's side.
+    ///
+    /// # Errors
+    /// [`MaterialError::DielectricNotCovered`] if no table of that side covers it.
+    pub fn interface_albedo(
+        &self,
+        sigma: f64,
+        gamma: f64,
+        eta: f64,
+        masking: Masking,
+    ) -> Result<ViewCurve<2>, MaterialError> {
+        let (side, dense) = if eta < 1.0 { (Side::Dense, 1.0 / eta) } else { (Side::Thin, eta) };
+        let point = MaterialPoint { sigma, gamma, eta: dense };
+        let mut tables = self.albedos(Kind::Albedo, &LobeEntry::Family, masking);
+        let found = tables.find_map(|table| {
+            let same = table.subject.reflectance?.side()? == side;
+            same.then(|| ViewCurve::new(table, &point)).flatten()
+        });
+        found.ok_or_else(|| {
+            let covered = dielectrics(self.tables().iter());
+            MaterialError::DielectricNotCovered { eta, sigma, gamma, masking, covered }
+        })
+    }
+
+    /// The albedo of a material's own lobe under a reflectance.
+    fn own<T>(
+        &self,
+        entry: &MaterialEntry,
+        read: impl Fn(&Table, &MaterialPoint) -> Option<T>,
+        serves: impl Fn(&Reflectance) -> bool,
+    ) -> Result<T, MaterialError> {
+        let point =
+            MaterialPoint { sigma: entry.round_sigma(), gamma: entry.gamma(), eta: f64::NAN };
+        let lobe = entry.lobe();
+        let mut tables = self.albedos(Kind::Albedo, &lobe, entry.masking());
+        let found = tables.find_map(|table| {
+            let serves = table.subject.reflectance.as_ref().is_some_and(&serves);
+            serves.then(|| read(table, &point)).flatten()
+        });
+        let remedy = "state its `fresnel` in its recipe, or bake it with --albedo";
+        found.ok_or_else(|| MaterialError::NoAlbedo { name: entry.name.clone(), remedy })
+    }
+
+    fn albedos(
+        &self,
+        kind: Kind,
+        lobe: &LobeEntry,
+        masking: Masking,
+    ) -> impl Iterator<Item = &Table> {
+        let of = move |table: &&Table| {
+            table.kind == kind
+                && table.subject.masking == Some(masking)
+                && table.subject.lobe == *lobe
+        };
+        self.tables().iter().filter(of)
+    }
+
+    /// The tables of moments of the family, of a kind and masking.
+    pub(super) fn moments(&self, kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
+        let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Moments);
+        self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments)
+    }
+
+    /// What `read` makes of the first table of moments of a kind and masking that covers (σ, γ).
+    fn moments_of<T>(
+        &self,
+        kind: Kind,
+        sigma: f64,
+        gamma: f64,
+        masking: Masking,
+        read: impl Fn(&Table, &MaterialPoint) -> Option<T>,
+    ) -> Result<T, MaterialError> {
+        if !(gamma > 1.5) {
+            return Err(MaterialError::Gamma(gamma));
+        }
+        let tables = |masking| self.moments(kind, masking);
+        let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
+        tables(masking)
+            .find_map(|table| read(table, &point))
+            .ok_or_else(|| not_covered(tables, masking, [sigma, gamma]))
+    }
+}
+
+/// Why no table of moments covers (σ, γ), and what they cover.
+fn not_covered<'a, I: Iterator<Item = &'a Table>>(
+    tables: impl Fn(Masking) -> I,
+    masking: Masking,
+    [sigma, gamma]: [f64; 2],
+) -> MaterialError {
+    let has = |masking: &Masking| tables(*masking).next().is_some();
+    if !has(&masking) {
+        let other = Masking::ALL.into_iter().find(has);
+        return MaterialError::MaskingNotCovered { masking, other };
+    }
+    let s = s_of_gamma(gamma);
+    let of_shape = tables(masking).filter_map(|table| {
+        let covers = table.subject.covers.filter(|covers| covers.contains_shape(s))?;
+        Some((covers.sigma?, smallest_sigma(table)?))
+    });
+    // Sets of single materials are listed with their shapes.
+    let whole = of_shape.filter(|([min, _], _)| *min == 0.0);
+    let range = whole.map(|([_, max], first)| [first, max]);
+    match range.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) {
+        Some(range) => MaterialError::SigmaNotCovered { sigma, range },
+        None => MaterialError::AlbedoNotCovered { sigma, gamma, covered: domains(tables(masking)) },
+    }
+}

@@ -1,0 +1,91 @@
+//! Finds the albedos of a lobe in tables.
+
+use alloc::format;
+
+use microfacet_core::Masking;
+
+use super::error::BindError;
+use crate::albedo::{Albedo, DielectricAlbedo};
+use crate::error::MaterialError;
+use crate::format::{Kind, Reflectance};
+use crate::material::{LobeKey, MicrofacetDistribution};
+use crate::tables::Tables;
+
+/// Whether the round lobe of √(σx σy) may stand in where the tables hold no albedo of an
+/// anisotropic or tilted lobe itself.
+///
+/// Its albedo is off by 0.07 to 0.6 for anisotropic lobes and by 0.2 to 0.9 for tilted ones
+/// (`docs/albedo.md`), so that compensation then returns too much light or too little. Exact ones
+/// are baked for a recipe that names the lobe, or when loading. Of dielectrics there are round
+/// lobes alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum StandIn {
+    /// It is an error.
+    #[default]
+    Refused,
+    /// It stands in.
+    Round,
+}
+
+impl Tables {
+    /// The albedo of a lobe with F = 1: of the lobe itself, or of the round lobe that stands in.
+    ///
+    /// # Errors
+    /// [`BindError::NoAlbedo`] naming the lines of a recipe that add it, or
+    /// [`BindError::Material`] for a round lobe that the tables do not cover.
+    pub fn albedo_of(
+        &self,
+        lobe: &impl MicrofacetDistribution,
+        masking: Masking,
+        stand_in: StandIn,
+    ) -> Result<Albedo, BindError> {
+        let key = lobe.key();
+        let own = self.tables().iter().find(|table| {
+            table.kind == Kind::Albedo
+                && table.subject.masking == Some(masking)
+                && table.subject.reflectance == Some(Reflectance::Moments)
+                && key.is(&table.subject.lobe)
+        });
+        if let Some(table) = own {
+            return Ok(Albedo::from_table(table, f64::NAN, f64::NAN)?);
+        }
+        let round = round(&key, stand_in).ok_or_else(|| BindError::NoAlbedo {
+            recipe: key.recipe("\"mirror\"", masking),
+            stand_in: key.round().is_some(),
+        })?;
+        Ok(self.albedo(round.0, round.1, masking)?)
+    }
+
+    /// The albedo of a dielectric of a lobe, by event and side: of a round lobe, or of the one that
+    /// stands in.
+    ///
+    /// # Errors
+    /// [`BindError::RoundOnly`] for a lobe that is not round and may not be stood in for,
+    /// [`BindError::NoAlbedo`] naming the lines of a recipe that add it.
+    pub fn dielectric_albedo_of(
+        &self,
+        lobe: &impl MicrofacetDistribution,
+        eta: f64,
+        masking: Masking,
+        stand_in: StandIn,
+    ) -> Result<DielectricAlbedo, BindError> {
+        let key = lobe.key();
+        let stood_for = key.round().is_some();
+        let (sigma, gamma) =
+            round(&key, stand_in).ok_or(BindError::RoundOnly { stand_in: stood_for })?;
+        self.dielectric_albedo(sigma, gamma, eta, masking).map_err(|why| match why {
+            MaterialError::DielectricNotCovered { .. } => {
+                let key = LobeKey::Round { sigma, gamma };
+                let fresnel = format!("{{ dielectric = {eta} }}");
+                BindError::NoAlbedo { recipe: key.recipe(&fresnel, masking), stand_in: false }
+            }
+            why => why.into(),
+        })
+    }
+}
+
+/// σ and γ of a round lobe, or of the one that may stand in for another.
+fn round(key: &LobeKey, stand_in: StandIn) -> Option<(f64, f64)> {
+    let may = stand_in == StandIn::Round || matches!(key, LobeKey::Round { .. });
+    key.round().filter(|_| may).map(|[sigma, gamma]| (sigma, gamma))
+}

@@ -1,0 +1,190 @@
+//! A rough conductor: reflection alone.
+
+use glam::Vec3;
+use microfacet_core::Masking;
+
+use super::bind::StandIn;
+use super::compensation::{Compensation, Returned};
+use super::error::BindError;
+use super::facets::{Facets, White};
+use super::mixture::{Mixture, Part, are_finite, choice, chosen};
+use super::reflectance::ConductorFresnel;
+use super::{Bsdf, BsdfSample, Transport};
+use crate::albedo::Albedo;
+use crate::material::MicrofacetDistribution;
+use crate::tables::Tables;
+
+/// A rough conductor: every facet reflects, and what it does not reflect is absorbed.
+///
+/// Conventions are those of [`Bsdf`]. Single scattering is D F G2/(4 cos θ_v cos θ_l) (Cook &
+/// Torrance 1982, <https://doi.org/10.1145/357290.357293>), sampled by visible normals: its weight
+/// F·G2/G1 is at most 1. [`compensated`](Self::compensated) adds what further bounces return. Black
+/// from below. With a [`Bounded`](crate::Bounded) lobe fewer samples are lost.
+#[derive(Clone, Debug)]
+pub struct Conductor<L, const N: usize = 3> {
+    lobe: L,
+    fresnel: ConductorFresnel<N>,
+    masking: Masking,
+    smooth: bool,
+    returned: Option<Returned<N>>,
+}
+
+impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
+    /// A conductor of single scattering, with height-correlated masking.
+    pub fn new(lobe: L, fresnel: impl Into<ConductorFresnel<N>>) -> Self {
+        let smooth = lobe.is_effectively_smooth();
+        let (fresnel, masking) = (fresnel.into(), Masking::default());
+        Self { lobe, fresnel, masking, smooth, returned: None }
+    }
+
+    /// The same with another form of masking and shadowing, and without compensation, which depends
+    /// on it.
+    #[must_use]
+    pub fn with_masking(self, masking: Masking) -> Self {
+        Self { masking, returned: None, ..self }
+    }
+
+    /// The same with a compensation of what one bounce loses, by an albedo from tables.
+    ///
+    /// # Errors
+    /// [`BindError`] if the tables hold no albedo of the lobe for its form of masking; it names the
+    /// lines of a recipe that add one.
+    pub fn compensated(
+        self,
+        tables: &Tables,
+        compensation: Compensation,
+        stand_in: StandIn,
+    ) -> Result<Self, BindError> {
+        if compensation == Compensation::None || self.smooth {
+            return Ok(Self { returned: None, ..self });
+        }
+        let albedo = tables.albedo_of(&self.lobe, self.masking, stand_in)?;
+        Ok(self.compensated_by(albedo, compensation))
+    }
+
+    /// The same by an albedo that is at hand, which must be of the same lobe; its form of masking
+    /// becomes that of the conductor.
+    #[must_use]
+    pub fn compensated_by(self, albedo: Albedo, compensation: Compensation) -> Self {
+        let masking = albedo.masking();
+        let returned = match self.smooth {
+            true => None,
+            false => Returned::new(albedo, compensation, &self.fresnel),
+        };
+        Self { masking, returned, ..self }
+    }
+
+    /// The lobe.
+    pub fn lobe(&self) -> &L {
+        &self.lobe
+    }
+
+    /// The facets' reflectance.
+    pub fn fresnel(&self) -> &ConductorFresnel<N> {
+        &self.fresnel
+    }
+
+    /// The form of masking and shadowing.
+    pub fn masking(&self) -> Masking {
+        self.masking
+    }
+
+    #[inline(always)]
+    fn facets(&self) -> Facets<'_, L> {
+        Facets { lobe: &self.lobe, masking: self.masking }
+    }
+
+    /// One bounce together with what is given back of the light that it loses, at a light above the
+    /// horizon.
+    #[inline(always)]
+    fn mixture(&self, returned: &Returned<N>, lost: f32, l: Vec3, white: White) -> Mixture<N> {
+        let single = white.part(self.fresnel.at(white.cos));
+        let factor = returned.factor(lost);
+        let facets =
+            Part { weight: core::array::from_fn(|i| single.weight[i] * factor[i]), ..single };
+        Mixture { p: returned.facets(lost), facets, broad: returned.part(lost, l) }
+    }
+
+    /// A sample with compensation; out of line, so that one without it is short.
+    #[inline(never)]
+    fn sample_mixture(
+        &self,
+        returned: &Returned<N>,
+        v: Vec3,
+        number: f32,
+        u: [f32; 2],
+    ) -> Option<BsdfSample<N>> {
+        if !are_finite(v, v) {
+            return None;
+        }
+        let lost = returned.lost(v);
+        let (is_facet, _) = chosen(choice(number), returned.facets(lost));
+        let (l, white) = if is_facet {
+            self.facets().draw(v, u)?
+        } else {
+            let l = returned.sample(u);
+            if !(l.z > 0.0) {
+                return None;
+            }
+            (l, self.facets().halfway(v, l))
+        };
+        let mixture = self.mixture(returned, lost, l, white);
+        Some(BsdfSample::reflected(l, mixture.weight(), mixture.pdf()))
+    }
+
+    #[inline(never)]
+    fn eval_mixture(&self, returned: &Returned<N>, v: Vec3, l: Vec3) -> ([f32; N], f32) {
+        if !are_finite(v, l) {
+            return ([0.0; N], 0.0);
+        }
+        self.mixture(returned, returned.lost(v), l, self.facets().halfway(v, l)).f_pdf(l)
+    }
+
+    fn mirror(&self, v: Vec3) -> BsdfSample<N> {
+        BsdfSample::mirrored(v, self.fresnel.at(v.z))
+    }
+}
+
+impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Conductor<L, N> {
+    #[inline(always)]
+    fn sample(
+        &self,
+        v: Vec3,
+        choice: f32,
+        u: [f32; 2],
+        _transport: Transport,
+    ) -> Option<BsdfSample<N>> {
+        if !(v.z > 0.0) {
+            return None;
+        }
+        if self.smooth {
+            return are_finite(v, v).then(|| self.mirror(v));
+        }
+        if let Some(returned) = &self.returned {
+            return self.sample_mixture(returned, v, choice, u);
+        }
+        let (l, white) = self.facets().draw(v, u)?;
+        let Part { weight, pdf } = white.part(self.fresnel.at(white.cos));
+        Some(BsdfSample::reflected(l, weight, pdf))
+    }
+
+    #[inline(always)]
+    fn eval_pdf(&self, v: Vec3, l: Vec3, _transport: Transport) -> ([f32; N], f32) {
+        if self.smooth || !(v.z > 0.0 && l.z > 0.0) {
+            return ([0.0; N], 0.0);
+        }
+        if let Some(returned) = &self.returned {
+            return self.eval_mixture(returned, v, l);
+        }
+        let white = self.facets().halfway(v, l);
+        (white.f(self.fresnel.at(white.cos), l), white.pdf)
+    }
+
+    fn is_delta(&self) -> bool {
+        self.smooth
+    }
+
+    fn transmits(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,182 @@
+//! What a dielectric interface does with the light of either side: the shares that one bounce
+//! reflects and transmits, and where the light of further bounces goes.
+
+use microfacet_core::fresnel::dielectric;
+
+use super::averages::fresnel_average;
+use super::broad::Broad;
+use super::compensation::{Compensation, kulla_conty, turquin};
+use super::interface::Interface;
+use crate::albedo::DielectricAlbedo;
+use glam::Vec3;
+
+/// The accounts of one interface.
+#[derive(Clone, Debug)]
+pub(super) struct Energy {
+    /// The albedos of one bounce, from both sides; `None` of a smooth interface, which loses
+    /// nothing.
+    albedo: Option<DielectricAlbedo>,
+    compensation: Compensation,
+    eta: f32,
+    /// The average that is lost to further bounces, from outside and from inside, and the share of
+    /// it that they reflect.
+    lost: [f32; 2],
+    reflected: [f32; 2],
+    /// The average that is transmitted from outside, compensation included.
+    transmitted: f32,
+    /// The average that one bounce reflects from inside.
+    back: f32,
+}
+
+/// The shares of the light of one view: reflected, transmitted and lost in one bounce.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shares {
+    pub(super) reflection: f32,
+    pub(super) transmission: f32,
+    pub(super) lost: f32,
+}
+
+impl Shares {
+    fn of([reflection, transmission]: [f32; 2]) -> Self {
+        // Interpolation may have them exceed one by the tables' error.
+        Self { reflection, transmission, lost: (1.0 - reflection - transmission).max(0.0) }
+    }
+}
+
+/// The index of the side above the surface; that below it is the other of 0 and 1.
+pub(super) const OUTSIDE: usize = 0;
+
+/// Index of the side of a view.
+#[inline(always)]
+pub(super) fn side(above: bool) -> usize {
+    if above { OUTSIDE } else { 1 - OUTSIDE }
+}
+
+impl Energy {
+    /// Of a smooth interface of index η, inside over outside.
+    pub(super) fn smooth(eta: f32) -> Self {
+        // Averages are taken on the thin side, whose reflectance has no kink; what enters from one
+        // side and from the other differs by η².
+        let dense = eta.max(1.0 / eta);
+        let thin = 1.0 - fresnel_average(|cos| dielectric(dense, cos));
+        let transmitted = if eta >= 1.0 { thin } else { thin / (dense * dense) };
+        let (albedo, compensation) = (None, Compensation::None);
+        let (lost, reflected, back) = ([0.0; 2], [1.0; 2], 0.0);
+        Self { albedo, compensation, eta, lost, transmitted, reflected, back }
+    }
+
+    /// Of a rough interface whose albedos are those of the same lobe, index and form of masking.
+    pub(super) fn rough(albedo: DielectricAlbedo, compensation: Compensation, eta: f32) -> Self {
+        let sides = [&albedo.outside, &albedo.inside];
+        // By the same formulas as single views, so that a furnace closes.
+        let averages = sides.map(|curve| {
+            curve.average_of(|shares| {
+                let Shares { reflection, transmission, lost } = Shares::of(shares);
+                let whole = (transmission * turquin(lost, 1.0)).into();
+                [reflection.into(), transmission.into(), lost.into(), whole]
+            })
+        });
+        let lost = averages.map(|[_, _, lost, _]| lost);
+        // The flux that changes sides is the same either way, by reciprocity; as much of it as one
+        // bounce would send there, from the side that sends less.
+        let squared = f64::from(eta) * f64::from(eta);
+        let [outside, inside] = averages.map(|[reflection, transmission, lost, _]| {
+            let sum = reflection + transmission;
+            if sum > 0.0 { lost * transmission / sum } else { 0.0 }
+        });
+        let flux = outside.min(squared * inside);
+        let crossing = |lost: f64, flux: f64| if lost > 0.0 { (flux / lost).min(1.0) } else { 0.0 };
+        let crossing = [crossing(lost[0], flux), crossing(lost[1], flux / squared)];
+        let [[_, single, _, whole], [back, ..]] = averages;
+        let transmitted = match compensation {
+            Compensation::None => single,
+            Compensation::Turquin => whole,
+            Compensation::KullaConty => single + crossing[0] * lost[0],
+        };
+        Self {
+            albedo: Some(albedo),
+            compensation,
+            eta,
+            lost: lost.map(|x| x as f32),
+            transmitted: transmitted as f32,
+            reflected: crossing.map(|x| (1.0 - x) as f32),
+            back: back as f32,
+        }
+    }
+
+    /// The shares of a view, which is taken as above whatever its sign.
+    #[inline]
+    pub(super) fn shares(&self, side: usize, v: Vec3) -> Shares {
+        match &self.albedo {
+            None => {
+                let reflection = Interface::new(self.eta, side == OUTSIDE).reflectance(v.z.abs());
+                Shares { reflection, transmission: 1.0 - reflection, lost: 0.0 }
+            }
+            Some(albedo) => {
+                let curve = if side == 0 { &albedo.outside } else { &albedo.inside };
+                Shares::of(curve.eval(Vec3::new(v.x, v.y, v.z.abs())))
+            }
+        }
+    }
+
+    /// The factor on facets: Turquin's, or 1.
+    #[inline(always)]
+    pub(super) fn factor(&self, shares: &Shares) -> f32 {
+        if self.compensation == Compensation::Turquin { turquin(shares.lost, 1.0) } else { 1.0 }
+    }
+
+    /// The part of a view's lost light that a lobe of further bounces gives back: all or nothing.
+    #[inline(always)]
+    pub(super) fn returned(&self, shares: &Shares) -> f32 {
+        if self.compensation == Compensation::KullaConty { shares.lost } else { 0.0 }
+    }
+
+    /// The share of what is lost that further bounces reflect.
+    #[inline(always)]
+    pub(super) fn reflected(&self, side: usize) -> f32 {
+        self.reflected[side]
+    }
+
+    /// The densities from which the lobes of further bounces on either side are drawn.
+    pub(super) fn broad(&self) -> [Broad; 2] {
+        match self.compensation {
+            Compensation::KullaConty => {
+                [0, 1].map(|side| Broad::new(|l| self.shares(side, l).lost))
+            }
+            _ => [Broad::COSINE; 2],
+        }
+    }
+
+    /// π times the lobe of further bounces between a view and a light on a given side, over the
+    /// share of the lost light that goes there: for a view of `lost` light it integrates to that.
+    #[inline(always)]
+    pub(super) fn lobe(&self, lost: f32, side: usize, there: &Shares) -> f32 {
+        kulla_conty(lost, there.lost, self.lost[side])
+    }
+
+    /// What all bounces together transmit of the light of a view from outside.
+    #[inline(always)]
+    pub(super) fn transmitted(&self, shares: &Shares) -> f32 {
+        shares.transmission * self.factor(shares)
+            + (1.0 - self.reflected[OUTSIDE]) * self.returned(shares)
+    }
+
+    /// Its cosine-weighted average over views.
+    pub(super) fn transmitted_average(&self) -> f32 {
+        self.transmitted
+    }
+
+    /// What is left of light between the coat and a base of albedo ρ, times η²: 1 − ρ R, with R the
+    /// share of diffuse light from inside that the coat sends back.
+    ///
+    /// R is what all bounces do not transmit, or without compensation what one bounce reflects.
+    pub(super) fn left(&self, base: f32) -> f32 {
+        let squared = self.eta * self.eta;
+        match (&self.albedo, self.compensation) {
+            (Some(_), Compensation::None) => squared * (1.0 - base * self.back),
+            // From the flux outside, 1 − R = T/η², so that what enters a white base leaves it again
+            // to rounding; without the cancellation of 1 − (1 − T/η²).
+            _ => squared * (1.0 - base) + base * self.transmitted,
+        }
+    }
+}

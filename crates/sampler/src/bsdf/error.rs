@@ -1,0 +1,102 @@
+//! Why a BSDF cannot be made.
+
+use alloc::string::String;
+use core::fmt;
+
+use crate::error::{MaterialError, Range};
+
+/// Why a BSDF cannot be made: a number outside its domain, or an albedo that the tables lack.
+#[derive(Clone, PartialEq)]
+pub enum BindError {
+    /// An index of refraction η or an extinction k outside its range, or NaN.
+    Index {
+        /// Which it is, `eta` or `k`.
+        name: &'static str,
+        /// The number given.
+        value: f64,
+        /// The smallest and the largest that are allowed.
+        range: [f64; 2],
+    },
+    /// A reflectance outside [0, 1], or NaN.
+    Reflectance {
+        /// Which it is: `f0`, `tint` or `base`.
+        name: &'static str,
+        /// The number given.
+        value: f32,
+    },
+    /// The tables have no albedo of a lobe for the compensation that was asked for.
+    NoAlbedo {
+        /// The lines of a recipe that add it.
+        recipe: String,
+        /// Whether the round lobe of √(σx σy) could stand in.
+        stand_in: bool,
+    },
+    /// A dielectric or plastic whose lobe is not round: albedos of dielectrics are tabulated for
+    /// round lobes of the family alone.
+    RoundOnly {
+        /// Whether the round lobe of √(σx σy) could stand in.
+        stand_in: bool,
+    },
+    /// What the tables report: a lobe, γ, σ, index or form of masking that they do not cover, or a
+    /// name that they do not know.
+    Material(MaterialError),
+    /// A named material whose recipe states no reflectance, so that no BSDF follows from it.
+    NoFresnel(String),
+}
+
+impl fmt::Display for BindError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Index { name, value, range } => {
+                write!(
+                    f,
+                    "{name} = {value}: an index of refraction must lie in {}",
+                    Range(*range)
+                )?;
+                if *name == "eta" { write!(f, "; n inside over n outside") } else { Ok(()) }
+            }
+            Self::Reflectance { name, value } => {
+                write!(f, "{name} = {value}: a reflectance must lie in [0, 1]")
+            }
+            Self::NoAlbedo { recipe, stand_in } => {
+                write!(
+                    f,
+                    "the tables hold no albedo of this lobe, which compensation needs; add it to a recipe and bake that:\n\
+                     {recipe}\nor bake it when loading"
+                )?;
+                if *stand_in {
+                    write!(f, ", or let the round lobe stand in with `StandIn::Round`")?;
+                }
+                Ok(())
+            }
+            Self::RoundOnly { stand_in } => {
+                write!(
+                    f,
+                    "tables hold albedos of dielectrics for round lobes of the family alone; "
+                )?;
+                match stand_in {
+                    true => write!(f, "let the round lobe stand in with `StandIn::Round`"),
+                    false => {
+                        write!(f, "take a lobe of the family, or a dielectric without compensation")
+                    }
+                }
+            }
+            Self::Material(why) => why.fmt(f),
+            Self::NoFresnel(name) => write!(
+                f,
+                "material \"{name}\" states no reflectance; add a line to it in its recipe, such as \
+                 `fresnel = {{ metal = \"gold\" }}` or `fresnel = {{ dielectric = 1.5 }}`, and bake it again"
+            ),
+        }
+    }
+}
+
+microfacet_core::debug_in_words!(BindError);
+
+impl core::error::Error for BindError {}
+
+impl From<MaterialError> for BindError {
+    fn from(why: MaterialError) -> Self {
+        Self::Material(why)
+    }
+}

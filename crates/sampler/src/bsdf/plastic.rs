@@ -1,0 +1,281 @@
+//! Plastic: a rough dielectric coat over a diffuse base.
+
+use alloc::boxed::Box;
+
+use glam::Vec3;
+use microfacet_core::Masking;
+
+use super::bind::StandIn;
+use super::broad::Broad;
+use super::compensation::Compensation;
+use super::energy::{Energy, OUTSIDE, Shares};
+use super::error::BindError;
+use super::facets::{Facets, White};
+use super::interface::{Interface, checked};
+use super::mixture::{Mixture, Part, are_finite, choice, chosen};
+use super::reflectance::reflectances;
+use super::{Bsdf, BsdfSample, Transport};
+use crate::albedo::DielectricAlbedo;
+use crate::material::MicrofacetDistribution;
+use crate::tables::Tables;
+
+/// A rough dielectric coat over a Lambert base, which gets exactly the light that the coat lets
+/// through.
+///
+/// Conventions are those of [`Bsdf`]; black from below. The coat reflects as [`Dielectric`] does.
+/// Of the light T(v) that it transmits from the direction of v the base of albedo ρ returns
+///
+/// ```text
+/// f = T(v) T(l) ρ / (π η² (1 − ρ R))
+/// ```
+///
+/// with R the share of diffuse light from inside that the coat sends back, so that the light
+/// reflected between base and coat any number of times is counted. T and R are from the tables'
+/// albedos, compensation included; a smooth coat needs no tables. With a compensation a white base
+/// returns all light. With a [`Bounded`](crate::Bounded) lobe fewer samples are lost.
+///
+/// Albedos of a rough coat are in no default set. They are baked for a recipe that names it, for
+/// round lobes of the family; [`StandIn::Round`] takes them for anisotropic and tilted ones.
+///
+/// ```
+/// # #[cfg(feature = "embedded")] {
+/// use microfacet_sampler::{BindError, Compensation, Plastic, Smooth, StandIn, Tables};
+///
+/// let tables = Tables::embedded();
+/// let coat = tables.student_t(0.3, 2.5)?;
+/// let (none, green) = (Compensation::None, [0.1, 0.4, 0.2]);
+/// let rough = Plastic::new(coat, 1.5, green, &tables, none, StandIn::Refused);
+/// let Err(BindError::NoAlbedo { recipe, .. }) = rough else { panic!("not refused") };
+/// // Bake these lines, and load the set: Tables::from_bytes(&file).
+/// assert!(recipe.contains("gamma = 2.5\nfresnel = { dielectric = 1.5 }"));
+/// // Without microfacets none is needed.
+/// assert!(Plastic::new(Smooth, 1.5, green, &tables, none, StandIn::Refused).is_ok());
+/// # }
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+///
+/// [`Dielectric`]: crate::Dielectric
+#[derive(Clone, Debug)]
+pub struct Plastic<L, const N: usize = 3> {
+    lobe: L,
+    /// The index as it was given, and in single precision.
+    index: f64,
+    eta: f32,
+    base: [f32; N],
+    masking: Masking,
+    smooth: bool,
+    energy: Box<Energy>,
+    /// ρ/(η² (1 − ρ R)), and the mean of that times the average of T.
+    diffuse: [f32; N],
+    mean: f32,
+    /// The density from which light of the base and of the coat's further bounces is drawn.
+    broad: Box<Broad>,
+}
+
+impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
+    /// Plastic with a coat of index η, inside over outside, over a base of albedo ρ, with
+    /// height-correlated masking, and albedos of the coat from tables.
+    ///
+    /// # Errors
+    /// [`BindError`] for an η outside [1e-3, 1e3], a ρ outside [0, 1], or a rough coat whose albedo
+    /// the tables do not hold, which is needed without compensation too; it names the lines of a
+    /// recipe that add it.
+    pub fn new(
+        lobe: L,
+        eta: f64,
+        base: [f32; N],
+        tables: &Tables,
+        compensation: Compensation,
+        stand_in: StandIn,
+    ) -> Result<Self, BindError> {
+        let masking = Masking::default();
+        Self::new_masked(lobe, eta, base, masking, tables, compensation, stand_in)
+    }
+
+    /// The same with a form of masking and shadowing.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn new_masked(
+        lobe: L,
+        eta: f64,
+        base: [f32; N],
+        masking: Masking,
+        tables: &Tables,
+        compensation: Compensation,
+        stand_in: StandIn,
+    ) -> Result<Self, BindError> {
+        if is_smooth(&lobe, checked(eta)?) {
+            return Self::made(lobe, eta, base, masking, Energy::smooth);
+        }
+        let albedo = tables.dielectric_albedo_of(&lobe, eta, masking, stand_in)?;
+        Self::made(lobe, eta, base, masking, |eta| Energy::rough(albedo, compensation, eta))
+    }
+
+    /// The same by albedos that are at hand, which must be of the same lobe and index; their form
+    /// of masking becomes that of the plastic.
+    ///
+    /// # Errors
+    /// [`BindError`] for an η outside [1e-3, 1e3] or a ρ outside [0, 1].
+    pub fn with_albedo(
+        lobe: L,
+        eta: f64,
+        base: [f32; N],
+        albedo: DielectricAlbedo,
+        compensation: Compensation,
+    ) -> Result<Self, BindError> {
+        let masking = albedo.masking;
+        let smooth = is_smooth(&lobe, checked(eta)?);
+        Self::made(lobe, eta, base, masking, |eta| match smooth {
+            true => Energy::smooth(eta),
+            false => Energy::rough(albedo, compensation, eta),
+        })
+    }
+
+    fn made(
+        lobe: L,
+        eta: f64,
+        base: [f32; N],
+        masking: Masking,
+        energy: impl FnOnce(f32) -> Energy,
+    ) -> Result<Self, BindError> {
+        let (index, eta) = (eta, checked(eta)?);
+        reflectances("base", &base)?;
+        let energy = Box::new(energy(eta));
+        let diffuse = base.map(|base| {
+            let left = energy.left(base);
+            // No light comes in where none gets out.
+            if left > 0.0 { base / left } else { 0.0 }
+        });
+        let mean = diffuse.iter().sum::<f32>() / N as f32;
+        // Base and coat in proportion, on average over views.
+        let broad = Box::new(Broad::new(|l| {
+            let shares = energy.shares(OUTSIDE, l);
+            energy.transmitted(&shares) * mean
+                + energy.reflected(OUTSIDE) * energy.returned(&shares)
+        }));
+        let mean = mean * energy.transmitted_average();
+        let smooth = is_smooth(&lobe, eta);
+        Ok(Self { lobe, index, eta, base, masking, smooth, energy, diffuse, mean, broad })
+    }
+
+    /// The lobe of the coat.
+    pub fn lobe(&self) -> &L {
+        &self.lobe
+    }
+
+    /// The index of refraction of the coat, inside over outside.
+    pub fn eta(&self) -> f64 {
+        self.index
+    }
+
+    /// The albedo of the base.
+    pub fn base(&self) -> [f32; N] {
+        self.base
+    }
+
+    /// The form of masking and shadowing.
+    pub fn masking(&self) -> Masking {
+        self.masking
+    }
+
+    /// The probability of facets: their share of the light that returns.
+    #[inline(always)]
+    fn facets_share(&self, shares: &Shares) -> f32 {
+        let energy = &self.energy;
+        let facets = shares.reflection * energy.factor(shares);
+        let diffuse = energy.transmitted(shares) * self.mean
+            + energy.reflected(OUTSIDE) * energy.returned(shares);
+        if diffuse > 0.0 { facets / (facets + diffuse) } else { 1.0 }
+    }
+
+    /// The coat's facets.
+    #[inline(always)]
+    fn facets(&self) -> Facets<'_, L> {
+        Facets { lobe: &self.lobe, masking: self.masking }
+    }
+
+    /// What the coat reflects of a light, compensation included.
+    #[inline(always)]
+    fn coat(&self, shares: &Shares, white: White) -> Part<N> {
+        let reflectance = Interface::new(self.eta, true).reflectance(white.cos);
+        white.part([reflectance * self.energy.factor(shares); N])
+    }
+
+    /// The coat's facet halfway between a view and a light.
+    #[inline(always)]
+    fn halfway(&self, shares: &Shares, v: Vec3, l: Vec3) -> Part<N> {
+        // That of a smooth coat is a delta.
+        if self.smooth { Part::NONE } else { self.coat(shares, self.facets().halfway(v, l)) }
+    }
+
+    /// The base at a light, with what the coat's further bounces reflect.
+    #[inline(always)]
+    fn diffuse(&self, shares: &Shares, l: Vec3) -> Part<N> {
+        let energy = &self.energy;
+        let there = energy.shares(OUTSIDE, l);
+        let (entering, leaving) = (energy.transmitted(shares), energy.transmitted(&there));
+        let coat =
+            energy.reflected(OUTSIDE) * energy.lobe(energy.returned(shares), OUTSIDE, &there);
+        let lobe = self.diffuse.map(|diffuse| entering * leaving * diffuse + coat);
+        Part::broad(l, &self.broad, 1.0, lobe)
+    }
+}
+
+/// Whether a coat of this index has no facets that count.
+fn is_smooth(lobe: &impl MicrofacetDistribution, eta: f32) -> bool {
+    lobe.is_effectively_smooth() || eta == 1.0
+}
+
+impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Plastic<L, N> {
+    #[inline]
+    fn sample(
+        &self,
+        v: Vec3,
+        number: f32,
+        u: [f32; 2],
+        _transport: Transport,
+    ) -> Option<BsdfSample<N>> {
+        if !(v.z > 0.0 && are_finite(v, v)) {
+            return None;
+        }
+        let shares = self.energy.shares(OUTSIDE, v);
+        let p = self.facets_share(&shares);
+        let (is_facet, _) = chosen(choice(number), p);
+        let (l, facets) = if is_facet {
+            if self.smooth {
+                return Some(BsdfSample::mirrored(v, [shares.reflection / p; N]));
+            }
+            let (l, white) = self.facets().draw(v, u)?;
+            (l, self.coat(&shares, white))
+        } else {
+            let l = self.broad.sample(u);
+            if !(l.z > 0.0) {
+                return None;
+            }
+            (l, self.halfway(&shares, v, l))
+        };
+        let mixture = Mixture { p, facets, broad: self.diffuse(&shares, l) };
+        Some(BsdfSample::reflected(l, mixture.weight(), mixture.pdf()))
+    }
+
+    #[inline]
+    fn eval_pdf(&self, v: Vec3, l: Vec3, _transport: Transport) -> ([f32; N], f32) {
+        if !(v.z > 0.0 && l.z > 0.0 && are_finite(v, l)) {
+            return ([0.0; N], 0.0);
+        }
+        let shares = self.energy.shares(OUTSIDE, v);
+        let facets = self.halfway(&shares, v, l);
+        let p = self.facets_share(&shares);
+        Mixture { p, facets, broad: self.diffuse(&shares, l) }.f_pdf(l)
+    }
+
+    /// Never: the base scatters.
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn transmits(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,262 @@
+//! Errors of a table file, and of requests to the tables it holds.
+
+use alloc::string::String;
+use core::fmt;
+
+use microfacet_core::{Masking, SkewError};
+
+/// The smallest γ of tables; below, almost every visible normal has a slope beyond any
+/// floating-point number. The mathematics begins at 3/2.
+pub const GAMMA_MIN: f64 = 1.501;
+
+/// Why bytes are not a table set that this crate can use.
+#[derive(Clone, PartialEq)]
+pub enum LoadError {
+    /// The bytes contradict the format: truncated, damaged, or describing something impossible.
+    Invalid(String),
+    /// A file that may be valid but that this version cannot read: another version of the format,
+    /// or nodes at places that no reader here expects.
+    Unsupported(String),
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Invalid(why) => write!(f, "not a valid table set: {why}"),
+            Self::Unsupported(why) => write!(f, "table set not supported: {why}"),
+        }
+    }
+}
+
+microfacet_core::debug_in_words!(LoadError);
+
+impl core::error::Error for LoadError {}
+
+/// Why a set cannot give what was asked for: a lobe or an albedo.
+#[derive(Clone, PartialEq)]
+pub enum MaterialError {
+    /// A roughness, or an entry of an ellipsoid's matrix, that single precision cannot hold, or
+    /// NaN.
+    Sigma {
+        /// The roughness asked for.
+        sigma: f64,
+        /// The smallest and the largest that are allowed: [1e-8, 1e6], for an ellipsoid's matrix
+        /// [1e-18, 1e18].
+        range: [f64; 2],
+    },
+    /// γ ≤ 3/2 or NaN: no member of the family.
+    Gamma(f64),
+    /// The material's distribution has no albedo of the kind that was asked for.
+    OtherDistribution {
+        /// The material.
+        name: String,
+        /// Its distribution.
+        distribution: String,
+    },
+    /// A table of a material's own distribution is missing from the set.
+    NoTable(String),
+    /// No table of the set holds the albedo of this dielectric.
+    DielectricNotCovered {
+        /// Its index of refraction, inside over outside.
+        eta: f64,
+        /// Its σ.
+        sigma: f64,
+        /// Its γ.
+        gamma: f64,
+        /// The form of masking asked for.
+        masking: Masking,
+        /// The dielectrics that are covered, for that form and any other.
+        covered: String,
+    },
+    /// A matrix, or a roughness and angles, of no ellipsoid.
+    Skew(SkewError),
+    /// γ is legal but no tables of this set serve it; `covered` lists what they serve.
+    NotCovered {
+        /// The γ asked for.
+        gamma: f64,
+        /// The ranges or values that are covered.
+        covered: String,
+    },
+    /// The set has no albedo tables for this form of masking.
+    MaskingNotCovered {
+        /// The form asked for.
+        masking: Masking,
+        /// The form that it has tables for, if any.
+        other: Option<Masking>,
+    },
+    /// The albedo tables that hold γ do not hold σ.
+    SigmaNotCovered {
+        /// The σ asked for.
+        sigma: f64,
+        /// The smallest and the largest that they hold, apart from 0, a mirror.
+        range: [f64; 2],
+    },
+    /// No albedo table of this set covers the pair of σ and γ; `covered` lists the pairs that are
+    /// covered.
+    AlbedoNotCovered {
+        /// The σ asked for.
+        sigma: f64,
+        /// The γ asked for.
+        gamma: f64,
+        /// The pairs that are covered.
+        covered: String,
+    },
+    /// A material that has no albedo of its own in this set.
+    NoAlbedo {
+        /// The material.
+        name: String,
+        /// Why, and what helps.
+        remedy: &'static str,
+    },
+    /// No material of that name in the set; `known` lists those it has.
+    NoSuchMaterial {
+        /// The name asked for.
+        name: String,
+        /// Names in the set.
+        known: String,
+    },
+}
+
+impl fmt::Display for MaterialError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sigma { sigma, range } => write!(
+                f,
+                "sigma = {sigma:?}: a roughness must lie in {}; below, treat the surface as smooth",
+                Range(*range)
+            ),
+            Self::Gamma(x) => {
+                write!(
+                    f,
+                    "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann"
+                )
+            }
+            Self::OtherDistribution { name, distribution } => write!(
+                f,
+                "material \"{name}\" is of the kind {distribution}, which has no dielectric albedo of \
+                 its own; only round Student-t lobes refract"
+            ),
+            Self::NoTable(name) => {
+                write!(f, "table `{name}` is missing from this set; bake it again")
+            }
+            Self::DielectricNotCovered { eta, sigma, gamma, masking, covered } => write!(
+                f,
+                "no table of this set holds the albedo of a dielectric of index {eta} (in [0, inf]) with sigma {sigma}, gamma {gamma} \
+                 and {masking} masking; it holds {covered}; add `fresnel = {{ dielectric = {eta} }}` and `masking = \"{masking}\"` to a \
+                 material of the recipe that covers them, and bake it again"
+            ),
+            Self::Skew(why) => why.fmt(f),
+            Self::NotCovered { gamma, covered } if *gamma < GAMMA_MIN => write!(
+                f,
+                "gamma = {gamma} is not covered by any tables, which begin at {GAMMA_MIN}: below, almost every visible normal \
+                 lies within rounding of the horizon; this set serves {covered}; take gamma = {GAMMA_MIN} or more"
+            ),
+            Self::NotCovered { gamma, covered } => write!(
+                f,
+                "gamma = {gamma} is not covered by the tables of this set, which serve {covered}; bake a set that \
+                 does: a recipe line `gamma = {gamma}`, or `microfacet-bake bake` without a recipe for all of [1.501, inf]"
+            ),
+            Self::MaskingNotCovered { masking, other } => {
+                write!(f, "this set has no albedo tables for {masking} masking")?;
+                match other {
+                    Some(other) => write!(f, ", only for {other}")?,
+                    None => write!(f, ", nor for any other")?,
+                }
+                write!(
+                    f,
+                    "; bake a set that does: a recipe's material with `fresnel` and `masking = \"{masking}\"`, or \
+                     `microfacet-bake bake` without a recipe for both forms"
+                )
+            }
+            Self::SigmaNotCovered { sigma, range } => write!(
+                f,
+                "sigma = {sigma:?} is not covered by the albedo tables of this set, which hold {} and 0, a mirror; clamp it, or \
+                 bake a set whose recipe holds it",
+                Range(*range)
+            ),
+            Self::AlbedoNotCovered { sigma, gamma, covered } => write!(
+                f,
+                "sigma = {sigma:?} with gamma = {gamma} is not covered by the albedo tables of this set, which hold {covered}; bake a \
+                 set that does: a recipe's material with `fresnel`, or `microfacet-bake bake` without a recipe for all"
+            ),
+            Self::NoAlbedo { name, remedy } => {
+                write!(f, "material \"{name}\" has no such albedo in this set: {remedy}")
+            }
+            Self::NoSuchMaterial { name, known } => write!(
+                f,
+                "no material \"{name}\" in this set, which holds {known}; to add it, append to its recipe, with its own roughness and shape, and bake again:\n\
+                 [[material]]\nname = \"{name}\"\nsigma = 0.3\ngamma = 3.0"
+            ),
+        }
+    }
+}
+
+microfacet_core::debug_in_words!(MaterialError);
+
+impl core::error::Error for MaterialError {}
+
+/// An interval in a message: its ends to nine digits, which hides the rounding of 1/(1/x), and by
+/// powers of ten where they are long.
+pub(crate) struct Range(pub(crate) [f64; 2]);
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [low, high] = self.0.map(Short);
+        if self.0[0] == self.0[1] { write!(f, "{low}") } else { write!(f, "[{low}, {high}]") }
+    }
+}
+
+/// A number in a message, as in [`Range`].
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let short: f64 = alloc::format!("{:.8e}", self.0).parse().unwrap_or(self.0);
+        match short.abs() {
+            1e-4..1e6 => write!(f, "{short}"),
+            0.0 | f64::INFINITY => write!(f, "{short}"),
+            _ => write!(f, "{short:e}"),
+        }
+    }
+}
+
+impl From<SkewError> for MaterialError {
+    fn from(why: SkewError) -> Self {
+        Self::Skew(why)
+    }
+}
+
+/// The slices of a batch differ in length.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct BatchError {
+    /// Names of two parameters that differ.
+    pub slices: [&'static str; 2],
+    /// Their lengths.
+    pub lengths: [usize; 2],
+}
+
+impl fmt::Display for BatchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([a, b], [n, m]) = (self.slices, self.lengths);
+        write!(
+            f,
+            "a batch of {n} `{a}` and {m} `{b}`: all slices must have the same length; cut the longer one"
+        )
+    }
+}
+
+microfacet_core::debug_in_words!(BatchError);
+
+impl core::error::Error for BatchError {}
+
+/// Checks that all slices of a batch have the length of the first; the error names one that has
+/// not.
+pub(crate) fn same_lengths(slices: &[(&'static str, usize)]) -> Result<(), BatchError> {
+    let (first, expected) = slices[0];
+    match slices.iter().find(|(_, length)| *length != expected) {
+        None => Ok(()),
+        Some(&(other, length)) => {
+            Err(BatchError { slices: [first, other], lengths: [expected, length] })
+        }
+    }
+}

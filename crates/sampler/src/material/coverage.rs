@@ -1,0 +1,114 @@
+//! The shapes that a set serves: those that every kind of table a lobe needs covers.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use microfacet_core::shape::gamma_of_s;
+
+use crate::axis::{Interpolation, Weights};
+use crate::error::Range;
+use crate::format::{Kind, SAME, Table};
+
+/// The kinds of tables that a Student-t lobe reads, one of each list; earlier ones are preferred.
+pub(super) const LOBE: [&[Kind]; 3] = [
+    &[Kind::Shadowing],
+    &[Kind::VisibleSlope, Kind::VisibleSlopePeeled],
+    &[Kind::VisibleSlopeConditional],
+];
+
+/// Weights along the γ axis at s; `None` for a shape that the table was not baked and measured for,
+/// though its axis may reach there.
+pub(super) fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
+    let covered = table.subject.covers.is_none_or(|covers| covers.contains_shape(s));
+    if covered { table.axes[0].weights(s) } else { None }
+}
+
+/// The same at an end of the axis, for a shape that is outside by rounding alone.
+pub(super) fn end_weights(table: &Table, s: f64) -> Option<Weights> {
+    let [first, last] = table.axes[0].ends();
+    let covers = table.subject.covers?;
+    covers.contains_shape(s).then(|| table.axes[0].weights(s.clamp(first, last)))?
+}
+
+/// Whether the table serves s.
+fn serves(table: &Table, s: f64) -> bool {
+    shape_weights(table, s).or_else(|| end_weights(table, s)).is_some()
+}
+
+/// Whether a lobe of the shape s finds all its tables.
+pub(crate) fn contains(tables: &[Table], s: f64) -> bool {
+    LOBE.iter().all(|kinds| of_kinds(tables, kinds).any(|table| serves(table, s)))
+}
+
+/// The shapes that lobes can have, as ascending intervals of s; one shape is one of no width.
+pub(crate) fn shapes(tables: &[Table]) -> Vec<[f64; 2]> {
+    let [first, rest @ ..] =
+        LOBE.map(|kinds| united(of_kinds(tables, kinds).flat_map(intervals).collect()));
+    rest.iter().fold(first, |all, other| {
+        let pairs = all.iter().flat_map(|a| other.iter().map(move |b| common(*a, *b)));
+        united(pairs.flatten().collect())
+    })
+}
+
+/// What two intervals have in common; ends that are the same but for rounding, one shape.
+fn common(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
+    let (low, high) = (a[0].max(b[0]), a[1].min(b[1]));
+    (low <= high * (1.0 + SAME)).then_some([low.min(high), high])
+}
+
+/// The same in words, by γ.
+pub(super) fn in_words(tables: &[Table]) -> String {
+    // The larger s is the smaller γ.
+    let gammas = |[low, high]: [f64; 2]| {
+        let range = Range([gamma_of_s(high), gamma_of_s(low)]);
+        if low == high { format!("gamma = {range}") } else { format!("gamma in {range}") }
+    };
+    let all: Vec<String> = shapes(tables).into_iter().rev().map(gammas).collect();
+    if all.is_empty() { "none".into() } else { all.join(", ") }
+}
+
+fn of_kinds<'a>(tables: &'a [Table], kinds: &[Kind]) -> impl Iterator<Item = &'a Table> {
+    tables.iter().filter(|table| kinds.contains(&table.kind))
+}
+
+/// The intervals of s that a table covers.
+fn intervals(table: &Table) -> Vec<[f64; 2]> {
+    let axis = &table.axes[0];
+    if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
+        return axis.nodes.iter().map(|&s| [s; 2]).collect();
+    }
+    alloc::vec![table.subject.covers.map_or(axis.ends(), |covers| covers.s)]
+}
+
+/// Ascending, with those joined that touch.
+fn united(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    all.dedup_by(|next, last| {
+        let touch = next[0] <= last[1] * (1.0 + SAME);
+        if touch {
+            last[1] = last[1].max(next[1]);
+        }
+        touch
+    });
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_that_meet_but_for_rounding_are_one_shape() {
+        let end = 1.25 * (1.0 + 5e-10);
+        assert_eq!(common([0.0, 1.25], [end, 1.9]), Some([1.25; 2]));
+        assert_eq!(common([0.0, 1.25], [1.26, 1.9]), None);
+        assert_eq!(common([0.0, 1.25], [0.5, 1.9]), Some([0.5, 1.25]));
+    }
+
+    #[test]
+    fn intervals_that_touch_are_one() {
+        let all = united(alloc::vec![[1.25, 1.9], [0.5, 0.5], [0.1, 0.2], [0.3, 1.25], [0.0, 0.1]]);
+        assert_eq!(all, [[0.0, 0.2], [0.3, 1.9]]);
+    }
+}

@@ -1,0 +1,240 @@
+//! What every lobe can be asked: one trait for all of them.
+
+use glam::Vec3;
+use microfacet_core::{Masking, saturated};
+
+use super::key::LobeKey;
+use crate::error::{BatchError, same_lengths};
+
+/// Below this mean absolute slope a surface counts as a mirror. For GGX it is α, which pbrt's
+/// `EffectivelySmooth` compares with the same number; for γ near 3/2 it is much larger than σ,
+/// since a few steep normals take much of what is seen.
+pub(crate) const SMOOTH: f32 = 1e-3;
+
+/// The masking 1 − G1 of such a surface at [`GRAZING`], at most: that of GGX with α = 1e-3. Tails
+/// that are longer take more at grazing views than their mean slope tells, and the surface would
+/// brighten there as it becomes a mirror.
+pub(crate) const SMOOTH_MASKED: f32 = 2.5e-3;
+
+/// The cosine of the view at which a smooth surface is judged.
+pub(crate) const GRAZING: f32 = 0.01;
+
+/// Whether a normal faces away from the view by more than rounding does to a drawn one.
+#[inline(always)]
+pub(crate) fn is_hidden(v: Vec3, m: Vec3) -> bool {
+    v.dot(m) < -5e-7
+}
+
+/// The density of visible normals, (v·m)⁺ D(m)/A(v), from `facing` = v·m and 1/A.
+///
+/// Products are kept finite one by one: of vectors far from unit length one factor may overflow
+/// and another vanish, and 0·∞ is no number.
+#[inline(always)]
+pub(crate) fn visible_density(facing: f32, d: f32, inverse_area: f32) -> f32 {
+    let finite = |x: f32| if x < f32::MAX { x } else { f32::MAX };
+    saturated(finite(finite(facing.max(0.0)) * d) * inverse_area)
+}
+
+/// What a BSDF needs of one facet, see [`MicrofacetDistribution::facet`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Facet {
+    /// D(m)/A(v) per steradian, with A the projected area of the microsurface: the density of
+    /// visible normals over v·m.
+    pub density: f32,
+    /// G2(v, l)/G1(v) ∈ [0, 1].
+    pub weight: f32,
+}
+
+impl Facet {
+    /// The facet of a lobe whose projected area is (v·n)/G1, from D and the G1 of view and light.
+    ///
+    /// Both numbers are of the same G1, so that a BRDF made of them is reciprocal to rounding.
+    #[inline(always)]
+    pub(crate) fn of_g1(d: f32, v: Vec3, [g1_v, g1_l]: [f32; 2], masking: Masking) -> Self {
+        if !(v.z > 0.0) {
+            return Self::default();
+        }
+        let density = saturated(d * (g1_v / v.z));
+        Self { density, weight: masking.g2_over_g1(g1_v, g1_l) }
+    }
+}
+
+/// A lobe: a distribution of microfacet normals whose parameters are fixed, under Smith's model.
+///
+/// It is what renderers know as `TrowbridgeReitzDistribution` (pbrt) or `MicrofacetDistribution`
+/// (Mitsuba); σ is their α. The trait of the same name in `microfacet-model` has D, G1, Λ, G2,
+/// weights, visible normals and densities in double precision, with the same arguments in the same
+/// order. Smith's model: Heitz 2014, *Understanding the masking-shadowing function in
+/// microfacet-based BRDFs*, <https://jcgt.org/published/0003/02/03/>.
+///
+/// Directions are unit vectors in the tangent frame, n = +z. `v` is the view, `l` the light, `m` a
+/// microfacet normal; densities are per steradian. Everything is one-sided: views and lights at or
+/// below the horizon have G1 = 0 and Λ = ∞. So negate a direction on the other side of a
+/// transmitting surface first, v ↦ −v and l ↦ −l: facets stay where they are, and m above the
+/// horizon. Its mirror image in the plane z = 0 sees other facets: the density of visible normals
+/// is another there, and for a tilted lobe masking is, too. Sampling takes a view below the horizon
+/// at it; densities are for views above it.
+///
+/// ```
+/// use microfacet_sampler::glam::Vec3;
+/// use microfacet_sampler::{Ggx, Masking, MicrofacetDistribution};
+///
+/// /// The weight f cos / pdf of one reflection, without Fresnel, and its direction.
+/// fn reflect(lobe: &impl MicrofacetDistribution, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+///     let m = lobe.sample_visible_normal(v, u);
+///     let l = 2.0 * v.dot(m) * m - v;
+///     (l, lobe.reflection_weight(v, l, Masking::HeightCorrelated))
+/// }
+///
+/// let (l, weight) = reflect(&Ggx::new(0.3)?, Vec3::new(0.6, 0.0, 0.8), [0.3, 0.7]);
+/// assert!(l.z > 0.0 && weight > 0.9 && weight <= 1.0);
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+pub trait MicrofacetDistribution {
+    /// Normal distribution function D(m), with ∫ D(m) (m·n) dm = 1; 0 for m at or below the
+    /// horizon.
+    fn d(&self, m: Vec3) -> f32;
+
+    /// Smith masking G1(v) ∈ [0, 1]: the visible share of the microsurface projected along `v`.
+    fn g1(&self, v: Vec3) -> f32;
+
+    /// Smith's Λ(v) = 1/G1 − 1 ≥ 0. Its absolute accuracy is that of G1: where Λ is below 1e-5 only
+    /// its order of magnitude is meaningful.
+    #[inline]
+    fn lambda(&self, v: Vec3) -> f32 {
+        1.0 / self.g1(v) - 1.0
+    }
+
+    /// Masking and shadowing G2 of view and light; 0 when either is at or below the horizon.
+    #[inline]
+    fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        masking.g2(self.g1(v), self.g1(l))
+    }
+
+    /// The weight f·cos θ_l/pdf of a light reflected off a [sampled](Self::sample_visible_normal)
+    /// visible normal, without Fresnel: G2(v, l)/G1(v) ∈ [0, 1].
+    ///
+    /// Computed as G2/G1; dividing f·cos θ_l by the density would overflow near the horizon, and
+    /// has few digits, or none, where both are subnormal, as in the far tails of Beckmann. 0 when
+    /// `v` or `l` is at or below the horizon.
+    #[inline]
+    fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        if v.z > 0.0 { masking.g2_over_g1(self.g1(v), self.g1(l)) } else { 0.0 }
+    }
+
+    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
+    ///
+    /// From tables `u[0]` chooses the slope along the azimuth of the view and `u[1]` that across,
+    /// both rising, so that stratified numbers give stratified normals; each lobe says more. It has
+    /// unit length to 4 ulp, lies above the horizon, and faces the view to rounding
+    /// (v·m > −5e-7).
+    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3;
+
+    /// Density of visible normals, (v·m)⁺ D(m)/A(v), with A the projected area of the microsurface
+    /// (Heitz & d'Eon 2014, eq. 2, <https://doi.org/10.1111/cgf.12417>). 1/A is G1(v)/(v·n), but
+    /// for a tilted lobe where its G1 is clamped to 1. The density of reflected lights is this over
+    /// 4 v·m.
+    ///
+    /// 0 where `m` faces away or lies below the horizon; finite at grazing views. It is the
+    /// analytic density with the area from the tables.
+    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32;
+
+    /// Density with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m`, the
+    /// tables' errors included: an estimator that divides by it is unbiased.
+    ///
+    /// [`Radial`](crate::Radial) alone returns [`visible_normal_pdf`](Self::visible_normal_pdf)
+    /// here, from which its samples differ by the errors of its tables.
+    #[inline]
+    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        self.visible_normal_pdf(v, m)
+    }
+
+    /// A visible normal and its analytic density, [`visible_normal_pdf`](Self::visible_normal_pdf).
+    ///
+    /// The samples differ from it by the errors of the tables, some 1e-4 of the CDF; where that
+    /// bias matters divide by [`table_pdf`](Self::table_pdf).
+    #[inline]
+    fn sample_with_pdf(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        let m = self.sample_visible_normal(v, u);
+        (m, self.visible_normal_pdf(v, m))
+    }
+
+    /// The facet that takes light between `v` and `l`, both above the horizon: with
+    /// [`reflecting_share`](Self::reflecting_share) all of a lobe that the evaluation of a BSDF
+    /// calls. Its normal is along `m`, of any length, so that a half vector need not be normalised.
+    ///
+    /// The microfacet BRDF without Fresnel is density·weight/(4 l·n), the density of the reflected
+    /// light density/4. For light that is transmitted `l` is the direction opposite to it.
+    #[inline]
+    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+        let m = m.normalize_or_zero();
+        let facing = v.dot(m);
+        if !(facing > 0.0) {
+            return Facet::default();
+        }
+        let density = saturated(self.visible_normal_pdf(v, m) / facing);
+        Facet { density, weight: self.reflection_weight(v, l, masking) }
+    }
+
+    /// A visible normal for reflection alone, of any length, and the
+    /// [share](Self::reflecting_share) of `v`.
+    ///
+    /// The light is 2 (v·m)/(m·m) m − v, which is shorter to compute than the unit normal. Where
+    /// v·m is not positive, rounding has put the normal behind the silhouette, and no light is
+    /// reflected.
+    ///
+    /// Lobes may leave out normals that reflect the view below the horizon, as
+    /// [`Bounded`](crate::Bounded) does; all others keep their density, divided by the share.
+    #[inline(always)]
+    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        (self.sample_visible_normal(v, u), 1.0)
+    }
+
+    /// The probability in (0, 1] that a visible normal is one of those that
+    /// [`sample_reflecting_normal`](Self::sample_reflecting_normal) draws.
+    #[inline(always)]
+    fn reflecting_share(&self, _v: Vec3) -> f32 {
+        1.0
+    }
+
+    /// What tables of albedos know the lobe by; the default is a lobe that they do not know.
+    fn key(&self) -> LobeKey {
+        LobeKey::Unknown
+    }
+
+    /// Whether the lobe is so narrow that a renderer should treat the surface as a mirror: its mean
+    /// absolute slope, in the rougher direction, is below 1e-3 (for GGX: α < 1e-3), so is the slope
+    /// of its mean normal, and 1 − G1 is at most 2.5e-3 where cos θ = 0.01.
+    ///
+    /// A mirror returns all light, which just above this one bounce does to 6e-3 at cos θ ≥ 0.01,
+    /// whatever γ; the surface brightens by that where a texture of roughness crosses it.
+    fn is_effectively_smooth(&self) -> bool;
+
+    /// Bytes of table that lookups touch; 0 for closed forms.
+    fn bytes(&self) -> usize;
+
+    /// [`sample_visible_normal`](Self::sample_visible_normal) for each view and pair of numbers,
+    /// into `m`: the same normals, to 2 ulp.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `m` is then untouched.
+    fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len())])?;
+        for ((v, u), m) in v.iter().zip(u).zip(m) {
+            *m = self.sample_visible_normal(*v, *u);
+        }
+        Ok(())
+    }
+
+    /// [`g1`](Self::g1) for each view, into `g1`: the same numbers.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `g1` is then untouched.
+    fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("g1", g1.len())])?;
+        for (v, g1) in v.iter().zip(g1) {
+            *g1 = self.g1(*v);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,154 @@
+//! GGX without tables: at γ = 2 masking and visible normals have closed forms.
+
+use core::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+use microfacet_core::{Masking, Roughness, saturated};
+
+use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, visible_density};
+use super::key::LobeKey;
+use super::roughness::checked;
+use super::sample::{above_horizon, face};
+use super::student_t::{LONG, LONGEST, SHORT};
+use crate::elementary::turn;
+use crate::error::MaterialError;
+use crate::math::{sqrt, unit};
+
+/// The smallest 1 − u₁: keeps a normal off the horizon, where its length may vanish.
+const LAST: f32 = 1.0 / 16_777_216.0;
+
+/// GGX (Trowbridge–Reitz), the member γ = 2 of the family, from closed forms alone: no table is
+/// needed, none is read, and nothing is interpolated.
+///
+/// G1 is Walter et al. 2007, eq. 34 (<https://doi.org/10.2312/EGWR/EGSR07/195-206>). Visible normals
+/// are drawn by spherical caps (Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical
+/// Caps*, listing 1, <https://doi.org/10.1111/cgf.14867>): `u[0]` chooses the height of a point on a
+/// cap and `u[1]` its azimuth about n, so the map from `u` to normals is another one than that of
+/// tables, of the same density.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    alpha_x: f32,
+    alpha_y: f32,
+    /// 1/αx and 1/αy.
+    inverse_alpha: [f32; 2],
+    /// 1/(παxαy).
+    scale: f32,
+}
+
+impl Ggx {
+    /// From the roughness α, a number or a pair for x and y; it is the σ of the family.
+    ///
+    /// # Errors
+    /// [`MaterialError::Sigma`] unless every α lies in [1e-8, 1e6].
+    pub fn new(alpha: impl Into<Roughness>) -> Result<Self, MaterialError> {
+        let [alpha_x, alpha_y] = checked(alpha.into())?;
+        let inverse_alpha = [1.0 / alpha_x, 1.0 / alpha_y];
+        Ok(Self { alpha_x, alpha_y, inverse_alpha, scale: FRAC_1_PI / (alpha_x * alpha_y) })
+    }
+
+    /// αx and αy.
+    pub fn alpha(&self) -> [f32; 2] {
+        [self.alpha_x, self.alpha_y]
+    }
+
+    /// A direction with its horizontal part times α; one below the horizon is taken at it.
+    #[inline(always)]
+    fn stretch(&self, v: Vec3) -> Vec3 {
+        Vec3::new(self.alpha_x * v.x, self.alpha_y * v.y, v.z.max(0.0))
+    }
+
+    /// D of a normal above the horizon whose squared length is given: 1/(παxαy b²) with
+    /// b = (z² + (x/αx)² + (y/αy)²)/|m|².
+    #[inline(always)]
+    fn d_of(&self, m: Vec3, length2: f32) -> f32 {
+        let (x, y) = (m.x * self.inverse_alpha[0], m.y * self.inverse_alpha[1]);
+        let root = length2 / (m.z * m.z + (x * x + y * y)).max(f32::MIN_POSITIVE);
+        self.scale * root * root
+    }
+
+    /// G1/z = 2/(z + √(ρ² + z²)), finite at grazing.
+    #[inline(always)]
+    fn inverse_area(&self, v: Vec3) -> f32 {
+        let w = self.stretch(v);
+        let length = sqrt(w.dot(w));
+        // The null vector, and views straight from below, have no area: any positive one will do.
+        2.0 / (w.z + length).max(f32::MIN_POSITIVE)
+    }
+
+    /// A visible normal, of any length, which rounding may have put behind the silhouette: the half
+    /// vector of the stretched view and a point of the cap z > −w.z of the sphere of its length,
+    /// stretched back.
+    #[inline(always)]
+    fn along(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let w = self.stretch(v);
+        let length = sqrt(w.dot(w));
+        let common = (SHORT..=LONG).contains(&length);
+        let (w, length) = if common { (w, length) } else { (lifted(w, length), 1.0) };
+        // Height of the half vector first, so that it keeps its digits where the cap ends at −w.z.
+        let height = (1.0 - unit(u[0])).max(LAST) * (length + w.z);
+        let z = height - w.z;
+        let radius = sqrt(((length - z) * (length + z)).max(0.0));
+        let [sin, cos] = turn(unit(u[1]));
+        let (x, y) = (w.x + radius * cos, w.y + radius * sin);
+        Vec3::new(self.alpha_x * x, self.alpha_y * y, height)
+    }
+}
+
+impl MicrofacetDistribution for Ggx {
+    #[inline]
+    fn d(&self, m: Vec3) -> f32 {
+        if !(m.z > 0.0) {
+            return 0.0;
+        }
+        saturated(self.d_of(m, 1.0))
+    }
+
+    #[inline]
+    fn g1(&self, v: Vec3) -> f32 {
+        (v.z.max(0.0) * self.inverse_area(v)).min(1.0)
+    }
+
+    // Not inlined, it would find a view in memory that its caller has in registers.
+    #[inline(always)]
+    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        face(above_horizon(self.along(v, u)), Vec3::new(v.x, v.y, v.z.max(0.0)))
+    }
+
+    #[inline]
+    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        visible_density(v.dot(m), self.d(m), self.inverse_area(v))
+    }
+
+    #[inline(always)]
+    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+        if !(m.z > 0.0) {
+            return Facet::default();
+        }
+        Facet::of_g1(self.d_of(m, m.dot(m)), v, [self.g1(v), self.g1(l)], masking)
+    }
+
+    #[inline(always)]
+    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        (self.along(v, u), 1.0)
+    }
+
+    fn key(&self) -> LobeKey {
+        LobeKey::of_family(self.alpha(), 2.0)
+    }
+
+    fn is_effectively_smooth(&self) -> bool {
+        self.alpha_x.max(self.alpha_y) < SMOOTH
+    }
+
+    fn bytes(&self) -> usize {
+        0
+    }
+}
+
+/// A stretched view of unit length, since the squares of a short or long one would leave the range
+/// of f32; the null vector, and one whose own square does, are taken as normal incidence.
+#[cold]
+#[inline(never)]
+fn lifted(w: Vec3, length: f32) -> Vec3 {
+    if length > 0.0 && length <= LONGEST { w / length } else { Vec3::Z }
+}

@@ -1,0 +1,136 @@
+//! Any of the lobes: what a recipe's name stands for.
+
+use glam::Vec3;
+use microfacet_core::Masking;
+
+use super::{
+    Bounded, Ellipsoid, Facet, Ggx, LobeKey, MicrofacetDistribution, Radial, Smooth, StudentT,
+};
+use crate::error::BatchError;
+
+/// One of the lobes, as [`Tables::material`](crate::Tables::material) gives it for a name.
+///
+/// It answers everything that a [`MicrofacetDistribution`] does, for the price of a branch.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Lobe {
+    /// A member of the Student-t family, from tables.
+    StudentT(StudentT),
+    /// GGX in closed form, where the set has no table of γ = 2.
+    Ggx(Ggx),
+    /// A tilted, turned member of the family.
+    Ellipsoid(Ellipsoid),
+    /// An isotropic distribution outside the family.
+    Radial(Radial),
+    /// A Student-t prepared for reflection.
+    Bounded(Bounded),
+    /// A smooth surface, σ = 0.
+    Smooth(Smooth),
+}
+
+macro_rules! from {
+    ($($lobe:ident),*) => {$(
+        impl From<$lobe> for Lobe {
+            fn from(lobe: $lobe) -> Self {
+                Self::$lobe(lobe)
+            }
+        }
+    )*};
+}
+
+from!(StudentT, Ggx, Ellipsoid, Radial, Bounded, Smooth);
+
+/// Calls one function of whichever lobe it is.
+macro_rules! each {
+    ($lobe:ident, $one:ident => $call:expr) => {
+        match $lobe {
+            Lobe::StudentT($one) => $call,
+            Lobe::Ggx($one) => $call,
+            Lobe::Ellipsoid($one) => $call,
+            Lobe::Radial($one) => $call,
+            Lobe::Bounded($one) => $call,
+            Lobe::Smooth($one) => $call,
+        }
+    };
+}
+
+impl MicrofacetDistribution for Lobe {
+    #[inline]
+    fn d(&self, m: Vec3) -> f32 {
+        each!(self, lobe => lobe.d(m))
+    }
+
+    #[inline]
+    fn g1(&self, v: Vec3) -> f32 {
+        each!(self, lobe => lobe.g1(v))
+    }
+
+    #[inline]
+    fn lambda(&self, v: Vec3) -> f32 {
+        each!(self, lobe => lobe.lambda(v))
+    }
+
+    #[inline]
+    fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        each!(self, lobe => lobe.g2(v, l, masking))
+    }
+
+    #[inline]
+    fn sample_with_pdf(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        each!(self, lobe => lobe.sample_with_pdf(v, u))
+    }
+
+    #[inline]
+    fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+        each!(self, lobe => lobe.reflection_weight(v, l, masking))
+    }
+
+    #[inline]
+    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        each!(self, lobe => lobe.sample_visible_normal(v, u))
+    }
+
+    #[inline]
+    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        each!(self, lobe => lobe.visible_normal_pdf(v, m))
+    }
+
+    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        each!(self, lobe => lobe.table_pdf(v, m))
+    }
+
+    #[inline]
+    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+        each!(self, lobe => lobe.facet(v, m, l, masking))
+    }
+
+    #[inline]
+    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        each!(self, lobe => lobe.sample_reflecting_normal(v, u))
+    }
+
+    #[inline]
+    fn reflecting_share(&self, v: Vec3) -> f32 {
+        each!(self, lobe => lobe.reflecting_share(v))
+    }
+
+    fn key(&self) -> LobeKey {
+        each!(self, lobe => lobe.key())
+    }
+
+    fn is_effectively_smooth(&self) -> bool {
+        each!(self, lobe => lobe.is_effectively_smooth())
+    }
+
+    fn bytes(&self) -> usize {
+        each!(self, lobe => MicrofacetDistribution::bytes(lobe))
+    }
+
+    fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
+        each!(self, lobe => MicrofacetDistribution::sample_batch(lobe, v, u, m))
+    }
+
+    fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
+        each!(self, lobe => lobe.g1_batch(v, g1))
+    }
+}

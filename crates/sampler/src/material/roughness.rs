@@ -1,0 +1,19 @@
+//! The range of roughness that single precision can hold.
+
+use microfacet_core::Roughness;
+
+use crate::axis::LogRoughness;
+use crate::error::MaterialError;
+
+/// Outside this range the squares of stretched directions, and of normals made from them, leave
+/// single precision. Albedo tables begin at its lower end.
+pub(super) const SIGMAS: [f64; 2] = [LogRoughness::BAKED.first, 1e6];
+
+/// σx and σy in single precision.
+pub(crate) fn checked(sigma: Roughness) -> Result<[f32; 2], MaterialError> {
+    let [low, high] = SIGMAS.map(|end| end as f32);
+    match sigma.0.into_iter().find(|sigma| !(low..=high).contains(&(*sigma as f32))) {
+        Some(sigma) => Err(MaterialError::Sigma { sigma, range: SIGMAS }),
+        None => Ok(sigma.0.map(|sigma| sigma as f32)),
+    }
+}

@@ -1,0 +1,221 @@
+//! A table's γ axis collapsed at one shape, which leaves the slice that lookups read.
+
+use alloc::vec::Vec;
+
+use microfacet_core::shape::s_of_gamma;
+
+use super::coverage::{self, end_weights, shape_weights};
+use super::heavy::Heavy;
+use crate::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
+use crate::axis::{Axis, HalfTangent, Mapping, MirroredRoot, Rational, Weights};
+use crate::error::MaterialError;
+use crate::format::{Kind, Table};
+
+/// A (value, slope) table without its γ axis.
+pub(crate) struct Slice<'a> {
+    pub(crate) kind: Kind,
+    pub(crate) nodes: Vec<Node>,
+    /// Axes of the table.
+    pub(crate) axes: &'a [Axis],
+}
+
+impl<'a> Slice<'a> {
+    /// A table that has no γ axis.
+    pub(crate) fn whole(table: &'a Table) -> Self {
+        Self { kind: table.kind, nodes: pairs(&table.values), axes: &table.axes }
+    }
+
+    /// The slice with these weights along the γ axis.
+    fn at(table: &'a Table, weights: Weights) -> Self {
+        let nodes = pairs(&table.collapsed(&[weights]));
+        Self { kind: table.kind, nodes, axes: &table.axes }
+    }
+}
+
+/// Lets both halves of a row end at one slope at u = ½, where they store 1 + h and 1 − h.
+///
+/// Rounding to 16 bits parts them by up to 1e-3, which the samples would leave out or draw twice.
+fn join(row: &mut [Node]) {
+    let (low, high) = row.split_at_mut(row.len() / 2);
+    let ([.., before, low], [.., beyond, high]) = (low, high) else { return };
+    let middle = 0.5 * (low[0] + (2.0 - high[0]));
+    // Both halves still ascend. The second difference is exact.
+    high[0] = 2.0 - middle.min(2.0 - beyond[0]).max(before[0]);
+    low[0] = 2.0 - high[0];
+}
+
+/// Spreads the first nodes of an axis where they are one number, as rounding to 16 bits makes them
+/// next to an end: all the random numbers between would draw one slope, and no density has that.
+fn spread(nodes: &mut [Node]) {
+    let Some(&[first, _]) = nodes.first() else { return };
+    let Some(count) = nodes.iter().position(|node| node[0] > first) else { return };
+    let step = nodes[count][0] - first;
+    for (i, node) in nodes[..count].iter_mut().enumerate() {
+        let share = i as f32 / count as f32;
+        node[0] = first + step * (share * share);
+    }
+}
+
+fn pairs(values: &[f32]) -> Vec<Node> {
+    values.chunks_exact(2).map(|node| [node[0], node[1]]).collect()
+}
+
+/// Slices of one shape.
+#[derive(Clone, Debug)]
+pub(crate) struct Slices {
+    /// G1/q over the number of cells, by cell of the view coordinate, so that the coordinate in
+    /// cells needs no scaling of its own.
+    pub(crate) shadowing: Vec<Cell>,
+    /// Cells of the view axis of G1.
+    pub(crate) shadowing_cells: f32,
+    /// The view coordinate q of G1, and its κ.
+    pub(crate) shadowing_view: Rational,
+    pub(crate) kappa: f32,
+    /// In-plane slopes: rows by view, each of `2 (cells + 1)` nodes with the half for u ≤ ½ first;
+    /// then a row and a node that are read with weight 0.
+    pub(crate) slope: Vec<Node>,
+    /// Cells of the view axis of slopes, and its coordinate.
+    pub(crate) rows: usize,
+    pub(crate) view: HalfTangent,
+    /// Cells of one half of the u₁ axis.
+    pub(crate) half_cells: usize,
+    /// Whether `slope` is peeled.
+    pub(crate) peeled: bool,
+    /// Slopes across, the half for u > ½.
+    pub(crate) across: Vec<Node>,
+    /// What the fast path reads besides `slope`.
+    pub(crate) fast: FastPath,
+    /// Constants of the heavy part, where `slope` is peeled.
+    pub(crate) heavy: Heavy,
+}
+
+/// The layout of the fast path.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FastPath {
+    /// Whether the lobe is of the common kind, without a peeled table or a crowded axis.
+    pub(crate) plain: bool,
+    /// Slopes across by cell.
+    pub(crate) across: Vec<Cell>,
+    /// Factors from min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
+    pub(crate) scales: [f32; 2],
+    /// Cells of the view axis, and the reciprocal.
+    pub(crate) rows: [f32; 2],
+    /// Nodes of half a row of `slope`.
+    pub(crate) half: u32,
+}
+
+impl Slices {
+    pub(crate) fn from_tables(tables: &[Table], gamma: f64, s: f64) -> Result<Self, MaterialError> {
+        let find =
+            |kinds| find(tables, kinds, gamma, s).map(|(table, weights)| Slice::at(table, weights));
+        let [shadowing, slope, across] = coverage::LOBE.map(find);
+        let (shadowing, slope, across) = (shadowing?, slope?, across?);
+        let mut slices = Self::new([shadowing, slope], s);
+        slices.across = across.nodes;
+        spread(&mut slices.across);
+        make_monotone(&mut slices.across);
+        let (numbers, rows) = (slices.half_cells + 1, slices.rows);
+        slices.fast = FastPath {
+            plain: !slices.peeled && !slices.view.crowded,
+            scales: [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale),
+            across: cubic_cells(&slices.across, 1.0),
+            rows: [rows as f32, (1.0 / rows as f64) as f32],
+            half: numbers as u32,
+        };
+        if slices.peeled {
+            let moment = f64::from(slices.first_moment());
+            let share = |t: f64| slices.share_of_moment(moment, t);
+            slices.heavy = Heavy::new(gamma, s, rows, share);
+        }
+        Ok(slices)
+    }
+
+    /// From the slices of G1 and of in-plane slopes alone.
+    pub(crate) fn new([shadowing, slope]: [Slice; 2], s: f64) -> Self {
+        let (Mapping::Rational(shadowing_view), [.., view, numbers]) =
+            (shadowing.axes[shadowing.axes.len() - 1].mapping, slope.axes)
+        else {
+            unreachable!("validated on load")
+        };
+        let Mapping::HalfTangent(coordinate) = view.mapping else {
+            unreachable!("validated on load")
+        };
+        let shadowing_cells = shadowing.nodes.len() - 1;
+        let mut slopes = slope.nodes;
+        slopes.chunks_exact_mut(2 * numbers.nodes.len()).for_each(join);
+        for half in slopes.chunks_exact_mut(numbers.nodes.len()) {
+            spread(half);
+            make_monotone(half);
+        }
+        slopes.resize(slopes.len() + numbers.nodes.len() * 2 + 1, [0.0; 2]);
+        Self {
+            shadowing: cubic_cells(&shadowing.nodes, 1.0 / shadowing_cells as f64),
+            shadowing_cells: shadowing_cells as f32,
+            kappa: shadowing_view.kappa(s) as f32,
+            shadowing_view,
+            slope: slopes,
+            rows: view.nodes.len() - 1,
+            view: coordinate,
+            half_cells: numbers.nodes.len() - 1,
+            peeled: slope.kind == Kind::VisibleSlopePeeled,
+            across: Vec::new(),
+            fast: FastPath::default(),
+            heavy: Heavy::default(),
+        }
+    }
+
+    /// M₀ρ/area at the coordinate t of a view, from the table of G1.
+    pub(super) fn share_of_moment(&self, moment: f64, t: f64) -> f64 {
+        let [tau, rest] = self.view.parts(t);
+        // ρ : z is 1 − τ² : 2τ.
+        let (rho, z) = (rest * (1.0 + tau), 2.0 * tau);
+        let kappa = f64::from(self.kappa);
+        let at = self.shadowing_view.coordinate(z / rho, kappa) * f64::from(self.shadowing_cells);
+        let cell = (at as usize).min(self.shadowing.len() - 2);
+        let [c0, c1, c2, c3] = self.shadowing[cell].map(f64::from);
+        let w = at - cell as f64;
+        let shadowing = c0 + w * (c1 + w * (c2 + w * c3));
+        let share = moment * rho / (z + kappa * rho) * shadowing * f64::from(self.shadowing_cells);
+        share.clamp(0.0, 1.0)
+    }
+
+    /// M₀ = ∫₀^∞ x p(x) dx, the projected area per ρ at grazing: κ over the first value of G1/q.
+    pub(crate) fn first_moment(&self) -> f32 {
+        self.kappa / (self.shadowing[0][0] * self.shadowing_cells)
+    }
+
+    /// Bytes that lookups of this lobe touch.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&self.shadowing[..])
+            + size_of_val(&self.slope[..])
+            + size_of_val(&self.fast.across[..])
+    }
+}
+
+/// The first table of one of `kinds` that covers s, and its weights; earlier kinds are preferred,
+/// and tables that hold s itself to those that end beside it.
+fn find<'a>(
+    tables: &'a [Table],
+    kinds: &[Kind],
+    gamma: f64,
+    s: f64,
+) -> Result<(&'a Table, Weights), MaterialError> {
+    for weights in [shape_weights, end_weights] {
+        for &kind in kinds {
+            let of_kind = tables.iter().filter(|table| table.kind == kind);
+            let mut served = of_kind.filter_map(|table| Some((table, weights(table, s)?)));
+            if let Some(found) = served.next() {
+                return Ok(found);
+            }
+        }
+    }
+    Err(MaterialError::NotCovered { gamma, covered: coverage::in_words(tables) })
+}
+
+/// The tables that a lobe of one shape reads: of masking, of slopes in the plane of incidence, and
+/// of those across it.
+pub(crate) fn tables_of_shape(tables: &[Table], gamma: f64) -> Result<[&Table; 3], MaterialError> {
+    let find = |kinds| find(tables, kinds, gamma, s_of_gamma(gamma)).map(|(table, _)| table);
+    let [shadowing, slope, across] = coverage::LOBE.map(find);
+    Ok([shadowing?, slope?, across?])
+}

@@ -1,0 +1,265 @@
+//! A set of tables, and the lobes made from it.
+
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use microfacet_core::shape::s_of_gamma;
+use microfacet_core::{Roughness, Skew};
+
+use crate::error::{LoadError, MaterialError};
+use crate::format::{Kind, LobeEntry, MaterialEntry, Provenance, Table, decode};
+use crate::material::{Ellipsoid, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
+
+/// The default set as the bytes of a safetensors file, for those who pass it on.
+#[cfg(feature = "embedded")]
+pub const DEFAULT_SET: &[u8] = include_bytes!("../data/default.safetensors");
+
+/// A set of tables, loaded and checked.
+///
+/// ```
+/// use microfacet_sampler::glam::Vec3;
+/// use microfacet_sampler::{MicrofacetDistribution, Tables};
+/// # #[cfg(feature = "embedded")] {
+/// let tables = Tables::embedded();
+/// let glass = tables.student_t(0.454, 3.0)?;
+/// let v = Vec3::new(0.6, 0.0, 0.8);
+/// let (m, pdf) = glass.sample_with_pdf(v, [0.3, 0.7]);
+/// assert!(v.dot(m) > 0.0 && pdf > 0.0);
+/// # }
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tables {
+    provenance: Provenance,
+    tables: Vec<Table>,
+}
+
+impl Tables {
+    /// The default set, compiled in: all γ ∈ [1.501, ∞].
+    ///
+    /// The call decodes about 1 MB in well under a millisecond; keep the result. The checksum is
+    /// skipped, since the bytes are part of the program.
+    #[cfg(feature = "embedded")]
+    pub fn embedded() -> Self {
+        let (provenance, tables) =
+            decode(DEFAULT_SET, false).expect("the embedded tables are tested");
+        Self { provenance, tables }
+    }
+
+    /// Reads a set from the bytes of a safetensors file written by `microfacet-bake`.
+    ///
+    /// # Errors
+    /// [`LoadError::Invalid`] for bytes that are damaged, truncated or no table set,
+    /// [`LoadError::Unsupported`] for another version of the format. Every part is checked, the
+    /// checksum included; no input makes it panic or allocate more than a few times its size.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, LoadError> {
+        let (provenance, tables) = decode(bytes, true)?;
+        Ok(Self { provenance, tables })
+    }
+
+    /// Makes a set from tables, such as those that a bake has just filled.
+    ///
+    /// # Errors
+    /// [`LoadError::Invalid`] if one of them is not valid.
+    pub fn from_tables(provenance: Provenance, tables: Vec<Table>) -> Result<Self, LoadError> {
+        for table in &tables {
+            table.validate()?;
+        }
+        Ok(Self { provenance, tables })
+    }
+
+    /// The set of some of its materials, without the tables that serve lobes of others alone.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoSuchMaterial`] naming those that exist.
+    pub fn only(mut self, names: &[&str]) -> Result<Self, MaterialError> {
+        let mut kept: Vec<MaterialEntry> = Vec::new();
+        for (i, name) in names.iter().enumerate() {
+            if !names[..i].contains(name) {
+                kept.push(self.entry(name)?.clone());
+            }
+        }
+        let mut lobes: Vec<LobeEntry> = kept.iter().map(MaterialEntry::lobe).collect();
+        lobes.push(LobeEntry::Family);
+        self.tables.retain(|table| lobes.contains(&table.subject.lobe));
+        self.provenance.materials = kept;
+        Ok(self)
+    }
+
+    /// One set of the materials and tables of several; a table that some of them share, once.
+    ///
+    /// # Errors
+    /// [`LoadError::Invalid`] if two sets have different tables, or different materials, of the
+    /// same name, or were baked by different numeric methods.
+    pub fn joined(sets: impl IntoIterator<Item = Self>) -> Result<Self, LoadError> {
+        let mut sets = sets.into_iter();
+        let Some(mut all) = sets.next() else {
+            return Self::from_tables(Provenance::default(), Vec::new());
+        };
+        let different = |what: &str, name: &str| {
+            LoadError::Invalid(format!(
+                "two sets have different {what} `{name}`: join those of one bake"
+            ))
+        };
+        let named = |tables: &[Table]| -> BTreeMap<String, usize> {
+            tables.iter().enumerate().map(|(i, table)| (table.name.clone(), i)).collect()
+        };
+        let mut known = named(&all.tables);
+        for Self { provenance, tables } in sets {
+            if provenance.numerics != all.provenance.numerics {
+                return Err(different("numeric methods", &provenance.generator));
+            }
+            for table in tables {
+                match known.get(&table.name) {
+                    Some(&i) if all.tables[i] == table => {}
+                    Some(_) => return Err(different("tables", &table.name)),
+                    None => {
+                        known.insert(table.name.clone(), all.tables.len());
+                        all.tables.push(table);
+                    }
+                }
+            }
+            all.provenance.materials.extend(provenance.materials);
+            all.provenance.conventions.extend(provenance.conventions);
+            if !provenance.recipe.is_empty() {
+                all.provenance.recipe.push('\n');
+                all.provenance.recipe += &provenance.recipe;
+            }
+        }
+        all.provenance.check()?;
+        Ok(all)
+    }
+
+    /// The tables of the set.
+    pub fn tables(&self) -> &[Table] {
+        &self.tables
+    }
+
+    /// The first table of a kind.
+    pub fn table(&self, kind: Kind) -> Option<&Table> {
+        self.tables.iter().find(|table| table.kind == kind)
+    }
+
+    /// Where the set comes from.
+    pub fn provenance(&self) -> &Provenance {
+        &self.provenance
+    }
+
+    /// Whether [`lobe`](Self::lobe) serves the shape γ; it always serves γ = 2.
+    pub fn covers(&self, gamma: f64) -> bool {
+        gamma == 2.0 || self.tabulates(gamma)
+    }
+
+    /// Whether [`student_t`](Self::student_t) and [`ellipsoid`](Self::ellipsoid) serve the shape γ.
+    pub fn tabulates(&self, gamma: f64) -> bool {
+        gamma > 1.5 && coverage::contains(&self.tables, s_of_gamma(gamma))
+    }
+
+    /// The shapes that [`student_t`](Self::student_t) serves, as ascending, disjoint ranges [min,
+    /// max] of s = 1/(γ−1); a single shape is a range of no width.
+    ///
+    /// A lobe needs tables of several kinds; these are the shapes that all of them cover.
+    pub fn shapes(&self) -> Vec<[f64; 2]> {
+        coverage::shapes(&self.tables)
+    }
+
+    /// The Student-t lobe of roughness σ ∈ [1e-8, 1e6] (one number, or a pair for x and y) and
+    /// shape γ ∈ (3/2, ∞], read from the tables.
+    ///
+    /// γ = 2 is GGX with α = σ, γ = `f64::INFINITY` is Beckmann. γ is taken in double precision
+    /// because single precision is too coarse near 3/2. The γ axis is collapsed here, which takes
+    /// some microseconds and about 20 KiB; [`StudentT::with_roughness`] is cheaper for a lobe that
+    /// differs in σ only.
+    ///
+    /// # Errors
+    /// [`MaterialError`] for a σ or γ outside the family, or a γ that this set does not cover; the
+    /// set of a scene of GGX alone has no tables, see [`lobe`](Self::lobe).
+    pub fn student_t(
+        &self,
+        sigma: impl Into<Roughness>,
+        gamma: f64,
+    ) -> Result<StudentT, MaterialError> {
+        StudentT::from_tables(&self.tables, sigma.into(), gamma)
+    }
+
+    /// The lobe of [`student_t`](Self::student_t), or [`Ggx`] in closed form for γ = 2 where no
+    /// table covers it; σ = 0 is [`Smooth`].
+    ///
+    /// # Errors
+    /// As [`student_t`](Self::student_t).
+    pub fn lobe(&self, sigma: impl Into<Roughness>, gamma: f64) -> Result<Lobe, MaterialError> {
+        let sigma = sigma.into();
+        if sigma.0 == [0.0; 2] {
+            return if gamma > 1.5 { Ok(Smooth.into()) } else { Err(MaterialError::Gamma(gamma)) };
+        }
+        match self.student_t(sigma, gamma) {
+            Err(MaterialError::NotCovered { .. }) if gamma == 2.0 => Ok(Ggx::new(sigma)?.into()),
+            lobe => Ok(lobe?.into()),
+        }
+    }
+
+    /// An ellipsoid: a Student-t lobe of shape γ ∈ (3/2, ∞] seen through a matrix, tilted and
+    /// turned.
+    ///
+    /// It reads the same tables as [`student_t`](Self::student_t), at γ = 2 too.
+    ///
+    /// # Errors
+    /// [`MaterialError`] for a γ outside the family, or one that this set does not cover.
+    pub fn ellipsoid(&self, skew: Skew, gamma: f64) -> Result<Ellipsoid, MaterialError> {
+        Ellipsoid::new(self.student_t(1.0, gamma)?, skew)
+    }
+
+    /// The lobe of a named material of the set's recipe, whatever its distribution.
+    ///
+    /// A range in the recipe is taken at its middle, of σ and of s = 1/(γ−1); use
+    /// [`lobe`](Self::lobe) for other values.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoSuchMaterial`] naming those that exist, or what [`lobe`](Self::lobe) and
+    /// [`ellipsoid`](Self::ellipsoid) report.
+    pub fn material(&self, name: &str) -> Result<Lobe, MaterialError> {
+        let entry = self.entry(name)?;
+        match (entry.theta, entry.distribution.is_empty()) {
+            (Some(theta), _) => {
+                let skew = Skew::new(entry.sigma(), theta)?;
+                Ok(self.ellipsoid(skew, entry.gamma())?.into())
+            }
+            (None, true) => self.lobe(entry.sigma(), entry.gamma()),
+            (None, false) => {
+                let sigma = entry.sigma[0][0] as f32;
+                Ok(Radial::from_tables(&self.tables, sigma, &entry.lobe())?.into())
+            }
+        }
+    }
+
+    /// This set with the default set behind it: shapes that its own tables do not cover are read
+    /// from the default set.
+    ///
+    /// For lookups; names of tables may then repeat, which a file does not allow.
+    #[cfg(feature = "embedded")]
+    pub fn or_embedded(mut self) -> Self {
+        self.tables.extend(Self::embedded().tables);
+        self
+    }
+
+    pub(crate) fn entry(&self, name: &str) -> Result<&MaterialEntry, MaterialError> {
+        let materials = &self.provenance.materials;
+        materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
+            // A scene may have thousands of materials.
+            const SHOWN: usize = 12;
+            let mut known: Vec<String> = materials
+                .iter()
+                .take(SHOWN)
+                .map(|entry| alloc::format!("\"{}\"", entry.name))
+                .collect();
+            if materials.len() > SHOWN {
+                known.push(alloc::format!("{} more", materials.len() - SHOWN));
+            }
+            let known =
+                if known.is_empty() { "no named materials".to_string() } else { known.join(", ") };
+            MaterialError::NoSuchMaterial { name: name.into(), known }
+        })
+    }
+}
