@@ -8,7 +8,7 @@
 
 use microfacet_bake::bake::albedo::weights;
 use microfacet_model::{AlbedoIntegrator, Shape};
-use microfacet_sampler::axis::{ViewBlend, even_nodes, lagrange};
+use microfacet_tables::axis::{ViewBlend, even_nodes, lagrange};
 use rayon::prelude::*;
 
 /// The coordinate of the view, t(μ), ascending to 1 at normal incidence.

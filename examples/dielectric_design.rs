@@ -9,10 +9,11 @@ use microfacet_bake::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain,
 use microfacet_bake::certify::albedo::{certified, edge_references, interior_references};
 use microfacet_bake::interval::Interval;
 use microfacet_bake::progress::Stage;
-use microfacet_sampler::axis::{
+use microfacet_sampler::Masking;
+use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
 };
-use microfacet_sampler::{Axis, Interpolation, Mapping, Masking, Precision, Reflectance, Side};
+use microfacet_tables::{Axis, Interpolation, Mapping, Precision, Reflectance, Side};
 
 /// Error aimed at in a node. Estimates are careful: at places throughout the domain even 1e-2 gives
 /// values that are right to 2e-4.

@@ -18,7 +18,8 @@ use microfacet_bake::plan::{AlbedoWish, Options, Plan, albedo_cost, set_cost};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::{Masking, Precision, Reflectance, encode};
+use microfacet_sampler::Masking;
+use microfacet_tables::{Precision, Reflectance, encode};
 
 const KINDS: [&str; 8] = [
     "normals",

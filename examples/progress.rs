@@ -20,7 +20,7 @@ use microfacet_bake::plan::{AlbedoWish, Options, Plan};
 use microfacet_bake::scene;
 use microfacet_bake::table_set::{Settings, Target, bake_with};
 use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::Precision;
+use microfacet_tables::Precision;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -7,8 +7,8 @@
 //! double precision between the nodes of both axes.
 
 use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope};
-use microfacet_sampler::axis::HalfTangent;
-use microfacet_sampler::axis::half_tangent::{half_tangent, slope_at};
+use microfacet_tables::axis::HalfTangent;
+use microfacet_tables::axis::half_tangent::{half_tangent, slope_at};
 
 const VIEWS: usize = 64;
 const NUMBERS: usize = 16;

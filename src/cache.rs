@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 use etcetera::BaseStrategy;
 use sha2::{Digest, Sha256};
 
-use microfacet_sampler::{Mapping, Provenance, Table, VERSION, encode};
+use microfacet_tables::{Mapping, Provenance, Table, VERSION, encode};
 
 use crate::bake::NUMERICS;
 use crate::store::{self, make_folder, remove_abandoned, replace};

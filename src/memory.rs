@@ -87,7 +87,8 @@ mod tests {
     use crate::bake::albedo::AlbedoLobe;
     use crate::bake::axes;
     use crate::table_spec::{Quality, TableSpec, general_set};
-    use microfacet_sampler::{Masking, Precision, Reflectance};
+    use microfacet_sampler::Masking;
+    use microfacet_tables::{Precision, Reflectance};
 
     #[test]
     fn values_are_counted_as_they_are_baked() {

@@ -1,12 +1,12 @@
 //! Table specifications: what is to be baked, as pure data.
 
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::axis::lagrange::nodes_read;
-use microfacet_sampler::axis::{InverseShape, even_nodes};
-use microfacet_sampler::{Interpolation, Kind, Precision};
+use microfacet_tables::axis::lagrange::nodes_read;
+use microfacet_tables::axis::{InverseShape, even_nodes};
+use microfacet_tables::{Interpolation, Kind, Precision};
 
 pub use crate::quality::{Level, Quality, Resolution};
-pub use microfacet_sampler::internals::GAMMA_MIN;
+pub use microfacet_tables::GAMMA_MIN;
 
 /// γ from which the whole visible distribution is tabulated; for smaller γ its heavy part is
 /// peeled.

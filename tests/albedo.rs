@@ -17,10 +17,8 @@ use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::furnace::direction;
 use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
-use microfacet_sampler::{
-    FresnelAlbedo, Kind, Lobe, Masking, MicrofacetDistribution, Precision, Provenance, Reflectance,
-    Table, Tables, encode,
-};
+use microfacet_sampler::{FresnelAlbedo, Lobe, Masking, MicrofacetDistribution, Tables};
+use microfacet_tables::{Kind, Precision, Provenance, Reflectance, Table, encode};
 use serde_json::Value;
 
 use command::{json, ok, run};

@@ -15,9 +15,10 @@ use microfacet_bake::validate::bsdf::specimen::{LobeOf, Specimen, Surface, table
 use microfacet_bake::validate::bsdf::{furnace, reciprocity};
 use microfacet_bake::validate::{LEVEL, Options};
 use microfacet_sampler::{
-    AnyBsdf, BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Event, Kind,
-    Lobe, Masking, Plastic, Precision, Skew, StandIn, Tables, Transport, encode,
+    AnyBsdf, BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Event, Lobe,
+    Masking, Plastic, Skew, StandIn, Tables, Transport,
 };
+use microfacet_tables::{Kind, Precision, encode};
 
 use crate::command::{json, ok, refused, run as run_command};
 

@@ -20,11 +20,9 @@ use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_model::{
     AlbedoIntegrator, Ellipsoid, Shape, SignedSlope, UnitView, VisibleSlope, across_cdf,
 };
-use microfacet_sampler::axis::MirroredRoot;
-use microfacet_sampler::{
-    Axis, Kind, Lobe, Mapping, MaterialEntry, MicrofacetDistribution, Precision, Provenance, Skew,
-    StudentT, Table, Tables,
-};
+use microfacet_sampler::{Lobe, MicrofacetDistribution, Skew, StudentT, Tables};
+use microfacet_tables::axis::MirroredRoot;
+use microfacet_tables::{Axis, Kind, Mapping, MaterialEntry, Precision, Provenance, Table};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;

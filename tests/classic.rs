@@ -18,9 +18,8 @@ use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::{Quality, general_set};
 use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
 use microfacet_model::statistics::chi_square;
-use microfacet_sampler::{
-    Kind, Lobe, MaterialEntry, MicrofacetDistribution, Precision, Provenance, Tables, encode,
-};
+use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
+use microfacet_tables::{Kind, MaterialEntry, Precision, Provenance, encode};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 

@@ -3,7 +3,8 @@
 mod command;
 
 use microfacet_bake::store;
-use microfacet_sampler::{Kind, Lobe, Tables};
+use microfacet_sampler::{Lobe, Tables};
+use microfacet_tables::Kind;
 
 use command::{ok, refused, run};
 

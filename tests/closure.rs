@@ -6,7 +6,8 @@ use microfacet_bake::bake::albedo::{AlbedoLobe, Domain, bake};
 use microfacet_bake::interval::Interval;
 use microfacet_bake::plan::RequiredAlbedo;
 use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::{Masking, Precision, Reflectance, Side, Tables, ViewCurve};
+use microfacet_sampler::{Masking, Tables, ViewCurve};
+use microfacet_tables::{Precision, Reflectance, Side};
 use rand::{RngExt, SeedableRng};
 
 /// 2∫ μ dμ of functions of the view, by the midpoint rule in ln h, h the tangent of half the

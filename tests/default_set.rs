@@ -2,7 +2,8 @@
 
 use microfacet_bake::plan::Plan;
 use microfacet_bake::table_set::{Target, bake};
-use microfacet_sampler::{DEFAULT_SET as COMMITTED, Kind, encode};
+use microfacet_sampler::DEFAULT_SET as COMMITTED;
+use microfacet_tables::{Kind, encode};
 
 #[test]
 fn the_default_set_is_reproducible() {

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use microfacet_bake::plot::FIGURES;
-use microfacet_sampler::{Kind, Mapping};
+use microfacet_tables::{Kind, Mapping};
 
 /// `text` with every run of white space as one space, so that a page may break its lines anywhere.
 fn flat(text: &str) -> String {
@@ -33,7 +33,7 @@ fn the_page_of_the_format_has_every_mapping_and_its_formula() {
 fn the_page_of_the_format_is_of_this_version() {
     let page = include_str!("../docs/format.md");
     assert!(
-        page.starts_with(&format!("# The table format, version {}\n", microfacet_sampler::VERSION))
+        page.starts_with(&format!("# The table format, version {}\n", microfacet_tables::VERSION))
     );
     for kind in Kind::ALL {
         assert!(

@@ -11,8 +11,9 @@ use microfacet_bake::store;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::axis::MirroredRoot;
-use microfacet_sampler::{Kind, Mapping, Precision, Provenance, Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::axis::MirroredRoot;
+use microfacet_tables::{Kind, Mapping, Precision, Provenance, Table};
 
 /// Lobes of one shape and of a range, of either kind of normals, and albedos of each kind that is
 /// quick to bake.

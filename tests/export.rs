@@ -8,8 +8,8 @@ use std::fs;
 
 use command::{names, ok, refused, run};
 use glam::Vec3;
-use microfacet_sampler::axis::LogRoughness;
 use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
+use microfacet_tables::axis::LogRoughness;
 
 /// The numbers of each array in a header, by name.
 fn arrays(header: &str) -> BTreeMap<String, Vec<f32>> {

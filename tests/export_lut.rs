@@ -19,7 +19,7 @@ use microfacet_bake::export::texture::{
 use microfacet_bake::progress::Stage;
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::Masking;
-use microfacet_sampler::axis::LogShape;
+use microfacet_tables::axis::LogShape;
 use serde_json::Value;
 
 const CORRELATED: Masking = Masking::HeightCorrelated;

@@ -6,7 +6,8 @@ use microfacet_bake::plan::Plan;
 use microfacet_bake::progress::Stage;
 use microfacet_bake::store::{decode_exr, encode_exr};
 use microfacet_bake::table_spec::{ShapeAxis, TableSpec};
-use microfacet_sampler::{Kind, LoadError, Precision, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Kind, LoadError, Precision};
 
 fn small_table(precision: Precision) -> Tables {
     let spec = TableSpec {

@@ -10,7 +10,8 @@ use microfacet_bake::plan::RequiredAlbedo;
 use microfacet_bake::progress::Stage;
 use microfacet_bake::table_spec::Quality;
 use microfacet_bake::validate::furnace::{TOLERANCE, direction, furnace, survey};
-use microfacet_sampler::{Masking, Precision, Table, Tables};
+use microfacet_sampler::{Masking, Tables};
+use microfacet_tables::{Precision, Table};
 
 /// Full tables of the two shapes, at the nodes of the default quality.
 fn baked() -> &'static [Table] {

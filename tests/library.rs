@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use command::{json, names, ok, refused, run};
 use microfacet_bake::store::{read, read_materials};
-use microfacet_sampler::{Index, MicrofacetDistribution};
+use microfacet_sampler::MicrofacetDistribution;
+use microfacet_tables::Index;
 
 /// Anisotropic mirrors, each with an albedo of its own, and a round one.
 fn recipe(count: usize) -> String {

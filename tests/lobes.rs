@@ -8,9 +8,8 @@ use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
 use microfacet_model as model;
 use microfacet_model::classic::Gtr;
-use microfacet_sampler::{
-    Ggx, Lobe, Masking, MicrofacetDistribution, Precision, Skew, StudentT, Tables,
-};
+use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Skew, StudentT, Tables};
+use microfacet_tables::Precision;
 
 const RECIPE: &str = "
 [[material]]

@@ -6,7 +6,8 @@ use microfacet_bake::certify::certificate::worst_error;
 use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{BakeError, Baked, Settings, Target, bake_with};
-use microfacet_sampler::{Precision, Table, Tables, encode};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Precision, Table, encode};
 
 const GOLD: &str =
     "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0\nfresnel = \"mirror\"\n";

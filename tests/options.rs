@@ -5,7 +5,8 @@ use std::path::Path;
 use std::process::Command;
 
 use microfacet_bake::store;
-use microfacet_sampler::{Kind, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::Kind;
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 

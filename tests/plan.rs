@@ -10,9 +10,8 @@ use microfacet_bake::plan::{Options, Plan, Verdict, bare_cost, cost};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_bake::table_spec::{Quality, general_set};
-use microfacet_sampler::{
-    DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Precision, Tables, encode,
-};
+use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Tables};
+use microfacet_tables::{Precision, encode};
 
 use command::{json, ok, refused, run};
 

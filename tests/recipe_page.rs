@@ -9,7 +9,8 @@ use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::{Lobe, Metal, Precision};
+use microfacet_sampler::{Lobe, Metal};
+use microfacet_tables::Precision;
 
 use command::{ok, refused};
 

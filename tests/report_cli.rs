@@ -5,10 +5,11 @@ mod command;
 use std::fs;
 use std::path::Path;
 
-use microfacet_sampler::VERSION;
 use tempfile::TempDir;
 
 use command::{names, ok, refused, run};
+
+use microfacet_tables::VERSION;
 
 /// A folder with a set that is quick to draw: a closed form, without tables.
 fn workshop() -> TempDir {

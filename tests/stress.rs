@@ -3,7 +3,8 @@
 
 use microfacet_bake::progress::Stage;
 use microfacet_bake::validate::stress::{self, Report};
-use microfacet_sampler::{Kind, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::Kind;
 
 /// Errors that the documentation promises for σ ∈ [1e-4, 10]: G1, D, visible density, CDF; see
 /// `docs/reliability.md`.

@@ -4,7 +4,8 @@
 use microfacet_bake::bake::bake;
 use microfacet_bake::progress::Stage;
 use microfacet_bake::table_spec::{Quality, general_set};
-use microfacet_sampler::{Precision, Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Precision, Table};
 
 fn baked(threads: usize) -> Vec<Table> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -2,8 +2,10 @@
 
 use std::fs;
 
-use microfacet_sampler::{Kind, Precision, Tables, encode};
 use tempfile::TempDir;
+
+use microfacet_sampler::Tables;
+use microfacet_tables::{Kind, Precision, encode};
 
 use crate::command::{json, ok, refused, run};
 

@@ -16,9 +16,9 @@ use microfacet_bake::store;
 use microfacet_bake::table_set::{self, Target};
 use microfacet_bake::table_spec::Quality;
 use microfacet_sampler::{
-    Albedo, FresnelAlbedo, Lobe, LobeEntry, Masking, MaterialError, MicrofacetDistribution,
-    Precision, Reflectance, Table, Tables, encode,
+    Albedo, FresnelAlbedo, Lobe, Masking, MaterialError, MicrofacetDistribution, Tables,
 };
+use microfacet_tables::{LobeEntry, Precision, Reflectance, Table, encode};
 
 use command::{json, run};
 
@@ -291,9 +291,7 @@ fn damaged_tables_are_refused() {
     assert!(refused(|t| t.axes[0].nodes[1] *= 1.01).contains("azimuth"));
     assert!(refused(|t| t.channels[0] = "value".into()).contains("channels"));
     let sigma = |t: &mut Table| {
-        let microfacet_sampler::Mapping::Azimuth(azimuth) = &mut t.axes[0].mapping else {
-            panic!()
-        };
+        let microfacet_tables::Mapping::Azimuth(azimuth) = &mut t.axes[0].mapping else { panic!() };
         azimuth.sigma[1] = 0.0;
     };
     assert!(refused(sigma).contains("sigma"));

@@ -3,7 +3,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use microfacet_sampler::{Kind, MicrofacetDistribution, Tables};
+use microfacet_sampler::{MicrofacetDistribution, Tables};
+use microfacet_tables::Kind;
 
 use crate::paper::Approximation;
 use crate::rows::{Quantity, Row};

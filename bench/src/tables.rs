@@ -4,7 +4,8 @@ use microfacet_bake::plan::{Options, Plan};
 use microfacet_bake::scene::Scene;
 use microfacet_bake::table_set::{Target, bake};
 use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::{Precision, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::Precision;
 
 use crate::settings::{GAMMA, SIGMA};
 

@@ -12,8 +12,9 @@ use microfacet_bake::table_set::{Settings, Target, bake_with};
 use microfacet_bake::table_spec::Quality;
 use microfacet_sampler::{
     AnyBsdf, BindError, Compensation, Conductor, ConductorFresnel, Dielectric, Masking, Metal,
-    Plastic, Precision, StandIn, Tables,
+    Plastic, StandIn, Tables,
 };
+use microfacet_tables::Precision;
 
 use crate::scene::{Floor, Scene};
 use crate::sky::Sky;

@@ -8,9 +8,9 @@ use microfacet_bake::scene::Scene as Materials;
 use microfacet_bake::table_set::{Settings, Target, bake_with};
 use microfacet_bake::table_spec::Quality;
 use microfacet_sampler::{
-    AnyBsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Masking, Precision, StandIn,
-    Tables,
+    AnyBsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Masking, StandIn, Tables,
 };
+use microfacet_tables::Precision;
 
 use super::{Film, Limit, REACH, pixel};
 use crate::scene::Scene;

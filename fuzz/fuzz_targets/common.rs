@@ -4,7 +4,7 @@ fn load(bytes: &[u8]) {
     use microfacet_sampler::MicrofacetDistribution;
 
     let mut bytes = bytes.to_vec();
-    microfacet_sampler::internals::seal(&mut bytes);
+    microfacet_tables::seal(&mut bytes);
     let Ok(set) = microfacet_sampler::Tables::from_bytes(&bytes) else { return };
     for gamma in [1.501, 1.8, 2.0, 3.0, f64::INFINITY] {
         let Ok(material) = set.student_t(0.3_f32, gamma) else { continue };

@@ -4,8 +4,8 @@
 use rayon::prelude::*;
 
 use microfacet_model::{Shape, across_quantile};
-use microfacet_sampler::Axis;
-use microfacet_sampler::internals::limit_slopes;
+use microfacet_tables::Axis;
+use microfacet_tables::axis::hermite::limit_slopes;
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
 use crate::progress::Stage;

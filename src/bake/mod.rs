@@ -10,8 +10,8 @@ mod shadowing;
 mod visible_slope;
 
 use microfacet_model::{Shape, SignedSlope};
-use microfacet_sampler::axis::{MirroredRoot, half_tangent};
-use microfacet_sampler::{Axis, Channels, Interpolation, Kind, Mapping, Subject, Table};
+use microfacet_tables::axis::{MirroredRoot, half_tangent};
+use microfacet_tables::{Axis, Channels, Interpolation, Kind, Mapping, Subject, Table};
 
 use crate::progress::Stage;
 use crate::table_spec::{ShapeAxis, TableSpec};

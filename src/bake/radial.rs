@@ -5,12 +5,10 @@
 //! roots of such integrals.
 
 use microfacet_model::classic::{Marginal, MarginalView};
-use microfacet_sampler::axis::half_tangent::{rate, slope_at};
-use microfacet_sampler::axis::{HalfTangent, Rational};
-use microfacet_sampler::internals::limit_slopes;
-use microfacet_sampler::{
-    Axis, Interpolation, Kind, LobeEntry, Mapping, Precision, Subject, Table,
-};
+use microfacet_tables::axis::half_tangent::{rate, slope_at};
+use microfacet_tables::axis::hermite::limit_slopes;
+use microfacet_tables::axis::{HalfTangent, Rational};
+use microfacet_tables::{Axis, Interpolation, Kind, LobeEntry, Mapping, Precision, Subject, Table};
 use rayon::prelude::*;
 
 use super::shadowing::ratios;

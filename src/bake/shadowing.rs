@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_model::{Shape, UnitView};
-use microfacet_sampler::Axis;
-use microfacet_sampler::axis::Rational;
+use microfacet_tables::Axis;
+use microfacet_tables::axis::Rational;
 
 use super::{round, shapes};
 use crate::progress::Stage;

@@ -25,9 +25,9 @@
 use rayon::prelude::*;
 
 use microfacet_model::{Shape, UnitView, VisibleSlope};
-use microfacet_sampler::axis::HalfTangent;
-use microfacet_sampler::internals::limit_slopes;
-use microfacet_sampler::{Axis, Kind};
+use microfacet_tables::axis::HalfTangent;
+use microfacet_tables::axis::hermite::limit_slopes;
+use microfacet_tables::{Axis, Kind};
 
 use super::{distance, half_tangent_rate, mirrored, round, shapes};
 use crate::progress::Stage;

@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use microfacet_core::shape::s_of_gamma;
 use microfacet_model::Albedo;
 use microfacet_sampler::{
-    Albedo as TabulatedAlbedo, Axis, Kind, Masking, MaterialError, Moments, Reflectance, Table,
-    Tables, ViewCurve,
+    Albedo as TabulatedAlbedo, Masking, MaterialError, Moments, Tables, ViewCurve,
 };
+use microfacet_tables::{Axis, Kind, Reflectance, Table};
 
 use super::certificate::round_up;
 use super::points::{

@@ -13,11 +13,9 @@ use rayon::prelude::*;
 
 use microfacet_core::shape::{S_END, gamma_of_s, s_of_gamma};
 use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope, across_cdf};
-use microfacet_sampler::axis::{HalfTangent, MirroredRoot};
-use microfacet_sampler::{
-    Axis, Interpolation, Kind, Mapping, MaterialError, MicrofacetDistribution, StudentT, Table,
-    Tables,
-};
+use microfacet_sampler::{MaterialError, MicrofacetDistribution, StudentT, Tables};
+use microfacet_tables::axis::{HalfTangent, MirroredRoot};
+use microfacet_tables::{Axis, Interpolation, Kind, Mapping, Table};
 
 use crate::progress::Stage;
 use crate::table_spec::{GAMMA_WHOLE, SEAM};

@@ -8,8 +8,9 @@
 use rayon::prelude::*;
 
 use microfacet_model::Ellipsoid;
-use microfacet_sampler::axis::LogRoughness;
-use microfacet_sampler::{Axis, Mapping, Masking};
+use microfacet_sampler::Masking;
+use microfacet_tables::axis::LogRoughness;
+use microfacet_tables::{Axis, Mapping};
 
 use super::certificate::low_discrepancy;
 use crate::bake::albedo::{AlbedoLobe, AlbedoSpec, Site, area_ratio};
@@ -468,7 +469,8 @@ fn steps() -> [f64; 4] {
 mod tests {
     use super::*;
     use crate::table_spec::Quality;
-    use microfacet_sampler::{Masking, Precision, Reflectance};
+    use microfacet_sampler::Masking;
+    use microfacet_tables::{Precision, Reflectance};
 
     #[test]
     fn places_are_counted_as_they_are_listed() {

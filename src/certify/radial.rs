@@ -8,11 +8,9 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
 use microfacet_model::classic::{Marginal, MarginalView};
-use microfacet_sampler::axis::HalfTangent;
-use microfacet_sampler::{
-    Axis, Kind, LoadError, Lobe, Mapping, MaterialEntry, MicrofacetDistribution, Provenance, Table,
-    Tables,
-};
+use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
+use microfacet_tables::axis::HalfTangent;
+use microfacet_tables::{Axis, Kind, LoadError, Mapping, MaterialEntry, Provenance, Table};
 use rayon::prelude::*;
 
 use super::certificate::{

@@ -10,7 +10,8 @@ use microfacet_bake::library::{Library, PER_SET};
 use microfacet_bake::plan::{AlbedoWish, Options, Plan};
 use microfacet_bake::scene::{self, Scene};
 use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::{Precision, Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Precision, Table};
 
 use super::Failure;
 use super::values::{self, InRecipe};

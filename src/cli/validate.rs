@@ -10,8 +10,8 @@ use microfacet_bake::validate::record::Record;
 use microfacet_bake::validate::{
     Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all, seconds,
 };
-
-use microfacet_sampler::{LobeEntry, Reflectance, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{LobeEntry, Reflectance};
 
 use super::view::View;
 use super::{

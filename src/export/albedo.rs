@@ -1,10 +1,11 @@
 //! The albedos of one shape under one form of masking, for any roughness.
 
 use microfacet_core::Masking;
-use microfacet_sampler::axis::lagrange::weights;
-use microfacet_sampler::axis::{LogRoughness, ViewBlend};
-use microfacet_sampler::internals::ShapeAlbedo;
-use microfacet_sampler::{Albedo, Table, Tables};
+use microfacet_sampler::port::ShapeAlbedo;
+use microfacet_sampler::{Albedo, Tables};
+use microfacet_tables::Table;
+use microfacet_tables::axis::lagrange::weights;
+use microfacet_tables::axis::{LogRoughness, ViewBlend};
 
 use crate::bake::albedo::SIGMA_MAX;
 

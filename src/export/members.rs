@@ -2,7 +2,7 @@
 //! target writes these, in this order.
 
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::internals::ShapeTables;
+use microfacet_sampler::port::ShapeTables;
 
 use super::{AlbedoTable, Shape};
 

@@ -1,8 +1,9 @@
 //! One shape with its tables, as every target writes it.
 
 use microfacet_core::Masking;
-use microfacet_sampler::internals::{ShapeTables, tables_of_shape};
-use microfacet_sampler::{MaterialError, Table, Tables};
+use microfacet_sampler::port::{ShapeTables, tables_of_shape};
+use microfacet_sampler::{MaterialError, Tables};
+use microfacet_tables::Table;
 
 use super::albedo::AlbedoTable;
 

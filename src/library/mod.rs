@@ -133,7 +133,7 @@ fn divided(mut scene: Scene, per_set: usize) -> Vec<Scene> {
 mod tests {
     use super::*;
     use crate::table_spec::Quality;
-    use microfacet_sampler::Precision;
+    use microfacet_tables::Precision;
 
     fn scene(count: usize) -> Scene {
         let one = |i: usize| {

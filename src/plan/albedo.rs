@@ -3,7 +3,8 @@
 
 use std::collections::HashMap;
 
-use microfacet_sampler::{LobeEntry, Masking, Precision, Reflectance};
+use microfacet_sampler::Masking;
+use microfacet_tables::{LobeEntry, Precision, Reflectance};
 
 use super::albedo_work::albedo_seconds;
 use super::key::{Key, distinct};

@@ -9,7 +9,7 @@
 //! shows how well they meet other materials.
 
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::{Mapping, Reflectance};
+use microfacet_tables::{Mapping, Reflectance};
 
 use crate::bake::albedo::{AlbedoLobe, AlbedoSpec};
 use crate::certify::albedo::climbed_count;

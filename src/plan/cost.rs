@@ -5,10 +5,10 @@
 //! display, and are divided by the current threads.
 
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::internals::describe;
-use microfacet_sampler::{
-    Axis, Interpolation, Kind, LobeEntry, Mapping, Masking, MaterialEntry, Precision, Provenance,
-    Table,
+use microfacet_sampler::Masking;
+use microfacet_tables::{
+    Axis, Interpolation, Kind, LobeEntry, Mapping, MaterialEntry, Precision, Provenance, Table,
+    describe,
 };
 
 use super::Plan;

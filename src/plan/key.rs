@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::hash::{Hash, Hasher};
 use std::mem::discriminant;
 
-use microfacet_sampler::Reflectance;
+use microfacet_tables::Reflectance;
 
 use crate::bake::albedo::{AlbedoLobe, Domain};
 use crate::distribution::Distribution;

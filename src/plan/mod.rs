@@ -14,8 +14,6 @@ mod required_shapes;
 
 use std::fmt;
 
-use microfacet_sampler::{Ellipsoid, MaterialEntry, StudentT};
-
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
 pub(crate) use albedo_work::{AlbedoWork, albedo_seconds, place_seconds};
 pub use cost::{Cost, albedo_cost, bare_cost, cost, distribution_cost, seconds, set_cost};
@@ -25,6 +23,8 @@ pub(crate) use cost::{
 pub use required_shapes::RequiredShapes;
 
 use microfacet_core::shape::s_of_gamma;
+use microfacet_sampler::{Ellipsoid, StudentT};
+use microfacet_tables::MaterialEntry;
 
 use crate::bake::albedo::SIGMA_MAX;
 use crate::distribution::Distribution;

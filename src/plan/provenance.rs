@@ -1,6 +1,6 @@
 //! What a set states about itself: origin, licence, and the meaning of its tables.
 
-use microfacet_sampler::Provenance;
+use microfacet_tables::Provenance;
 
 use super::Plan;
 use crate::bake::NUMERICS;

@@ -1,7 +1,7 @@
 //! Required shapes: single γ and ranges of γ, and the table specifications for each.
 
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::{Interpolation, Precision};
+use microfacet_tables::{Interpolation, Precision};
 
 use crate::bake::joined_name;
 use crate::certify::certificate::ALL_SHAPES;

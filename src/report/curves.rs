@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 
 use glam::Vec3;
 use maud::{Markup, html};
-use microfacet_sampler::{Albedo, Lobe, MaterialEntry, MicrofacetDistribution, Tables};
+
+use microfacet_sampler::{Albedo, Lobe, MicrofacetDistribution, Tables};
+use microfacet_tables::MaterialEntry;
 
 use super::Source;
 use super::drawing::{plot, symbols, unbroken};

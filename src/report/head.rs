@@ -1,7 +1,8 @@
 //! The head of the page, with what a reader wants to know first, and its foot.
 
 use maud::{Markup, html};
-use microfacet_sampler::Table;
+
+use microfacet_tables::Table;
 
 use super::Source;
 use super::drawing::symbols;

@@ -16,7 +16,8 @@ mod validated;
 
 use std::fmt;
 
-use microfacet_sampler::{LoadError, MaterialError, Tables};
+use microfacet_sampler::{MaterialError, Tables};
+use microfacet_tables::LoadError;
 
 use crate::progress::Meter;
 use crate::validate::record::Record;

@@ -1,7 +1,9 @@
 //! What was baked, what was skipped and why.
 
 use maud::{Markup, html};
-use microfacet_sampler::{Provenance, Table, Tables};
+
+use microfacet_sampler::Tables;
+use microfacet_tables::{Provenance, Table};
 
 use super::Source;
 use super::drawing::{code, error, symbols};

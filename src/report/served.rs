@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_sampler::{
-    Covered, FresnelEntry, LobeEntry, MaterialEntry, Reflectance, Table, Tables,
-};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Covered, FresnelEntry, LobeEntry, MaterialEntry, Reflectance, Table};
 
 use crate::plan::{AlbedoVerdict, Options, Plan};
 use crate::scene::Scene;

@@ -1,7 +1,8 @@
 //! What of a set is shown: the shapes that the sphere can have, and the materials of the curves.
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_sampler::{Masking, MaterialEntry, Tables};
+use microfacet_sampler::{Masking, Tables};
+use microfacet_tables::MaterialEntry;
 
 use super::drawing::{symbols, unbroken};
 use crate::words::number;

@@ -1,6 +1,7 @@
 //! Whole pages: what names do to them, and how large they are.
 
-use microfacet_sampler::{MaterialEntry, Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{MaterialEntry, Table};
 
 use super::{Source, overview, page};
 use crate::plan::{Options, Plan};

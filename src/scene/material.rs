@@ -4,11 +4,12 @@ use std::borrow::Cow;
 use std::fmt;
 use std::path::Path;
 
-pub use microfacet_sampler::{FresnelEntry as Fresnel, Masking};
-
 use super::Place;
 use crate::distribution::Distribution;
 use crate::interval::Interval;
+
+pub use microfacet_sampler::Masking;
+pub use microfacet_tables::FresnelEntry as Fresnel;
 
 /// The slope roughness σ of a microfacet lobe, along the tangent (x) and the bitangent (y).
 ///

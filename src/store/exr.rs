@@ -13,8 +13,10 @@ use exr::prelude::*;
 use half::f16;
 use serde::Deserialize;
 
-use microfacet_sampler::internals::{describe, reassemble, seal_document};
-use microfacet_sampler::{LoadError, Precision, Provenance, Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{
+    LoadError, Precision, Provenance, Table, describe, reassemble, seal_document,
+};
 
 use crate::input::{self, MAX_TABLES, MAX_TEXT};
 
@@ -44,7 +46,7 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
         .ok_or("the description has no place for a checksum")?;
     let bytes = if table.precision == Precision::F16 { 2 } else { 4 };
     check_samples(bytes * table.values.len() as u64)?;
-    let width = table.axes.last().map_or(1, microfacet_sampler::Axis::len);
+    let width = table.axes.last().map_or(1, microfacet_tables::Axis::len);
     let count = table.channels.len();
     let height = table.values.len() / count / width;
     let channels = table.channels.iter().enumerate().map(|(i, channel)| {

@@ -8,11 +8,11 @@ mod lock;
 mod numbered;
 mod replace;
 
-use std::fmt;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fmt, io};
 
-use microfacet_sampler::{Index, LoadError, Table, Tables, encode};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Index, LoadError, Table, encode};
 
 use crate::input::{self, MAX_TABLES};
 

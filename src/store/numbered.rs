@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 
-use microfacet_sampler::{Index, IndexedSet, Tables, encode};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Index, IndexedSet, encode};
 
 use super::journal::{self, RECORD, Replacement};
-use super::{Format, OutputFolder, StoreError, Written, allow, interrupt, invalid};
-use super::{read, read_file, replace};
+use super::{
+    Format, OutputFolder, StoreError, Written, allow, interrupt, invalid, read, read_file, replace,
+};
 use crate::input::{self, MAX_TABLES};
 
 /// Writes any number of sets into a folder: one is `tables.safetensors`, several are

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use microfacet_sampler::{Precision, Table};
+use microfacet_tables::{Precision, Table};
 
 use super::BakeError;
 use super::group::TableGroup;

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::io;
 
-use microfacet_sampler::Table;
+use microfacet_tables::Table;
 
 use super::Settings;
 use crate::cache::Cache;

@@ -11,10 +11,10 @@ mod need;
 mod refine;
 mod search;
 
-use std::fmt;
-use std::io;
+use std::{fmt, io};
 
-use microfacet_sampler::{LoadError, MaterialError, Precision, Table, Tables};
+use microfacet_sampler::{MaterialError, Tables};
+use microfacet_tables::{LoadError, Precision, Table};
 
 use crate::bake;
 use crate::cache::Cache;

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use microfacet_sampler::Precision;
+use microfacet_tables::Precision;
 
 use super::candidate::Candidate;
 use super::group::TableGroup;

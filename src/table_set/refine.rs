@@ -1,6 +1,6 @@
 //! Refines albedo tables: adds nodes of the view until the error is met.
 
-use microfacet_sampler::{Precision, Table};
+use microfacet_tables::{Precision, Table};
 
 use crate::bake;
 use crate::bake::albedo::{AlbedoError, AlbedoSpec};

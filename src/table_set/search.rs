@@ -6,7 +6,7 @@
 //! coarsest grade that is predicted to meet the budget, and the error in its certificate corrects
 //! the prediction, until the chosen grade has been measured.
 
-use microfacet_sampler::{Provenance, Table, encode};
+use microfacet_tables::{Provenance, Table, encode};
 
 use super::candidate::{Candidate, Grade, Pick, SEARCH_OVER_FIRST};
 use super::group::TableGroup;

@@ -7,7 +7,8 @@ use rand::{Rng, RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_sampler::{MaterialEntry, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::MaterialEntry;
 
 /// One material seen from one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

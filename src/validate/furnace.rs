@@ -9,10 +9,8 @@ use rayon::prelude::*;
 
 use microfacet_core::shape::gamma_of_s;
 use microfacet_model as model;
-use microfacet_sampler::{
-    Albedo, Axis, Covered, Kind, LobeEntry, Masking, MaterialError, Reflectance, Subject, Table,
-    Tables,
-};
+use microfacet_sampler::{Albedo, Masking, MaterialError, Tables};
+use microfacet_tables::{Axis, Covered, Kind, LobeEntry, Reflectance, Subject, Table};
 
 use crate::bake::albedo::Domain;
 use crate::interval::Interval;

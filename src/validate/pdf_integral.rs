@@ -6,9 +6,8 @@ use glam::Vec3;
 
 use microfacet_core::gauss_legendre;
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::axis::half_tangent::{ends, rate, slope_at};
-use microfacet_sampler::internals::table_joints;
 use microfacet_sampler::{Lobe, MicrofacetDistribution};
+use microfacet_tables::axis::half_tangent::{ends, rate, slope_at};
 
 /// Parts of each interval between joints, since 1/(a cubic's derivative) is not a polynomial.
 const PARTS: usize = 8;
@@ -26,7 +25,7 @@ const PIECES: usize = 32;
 pub fn integral(lobe: &Lobe, gamma: f64, v: Vec3) -> f64 {
     let s = s_of_gamma(gamma);
     let ([mut along, mut across], tabulated) = match lobe {
-        Lobe::StudentT(lobe) => (table_joints(lobe, v), lobe.tabulated_share(v)),
+        Lobe::StudentT(lobe) => (lobe.table_joints(v), lobe.tabulated_share(v)),
         _ => (ggx_joints(v), 1.0),
     };
     let peeled = tabulated < 1.0;

@@ -1,7 +1,7 @@
 //! The record of a validation, as JSON: what `validate --json` prints and a page shows.
 
 use microfacet_sampler::Tables;
-use microfacet_sampler::internals::{describe, seal_document};
+use microfacet_tables::{describe, seal_document};
 use serde::{Deserialize, Serialize};
 
 use super::configuration::Configuration;
@@ -86,7 +86,7 @@ impl Record {
         outcome: &Outcome,
         furnaces: &[Survey],
         not_tested: Vec<String>,
-    ) -> Result<Self, microfacet_sampler::LoadError> {
+    ) -> Result<Self, microfacet_tables::LoadError> {
         Ok(Self {
             set: identity(set)?,
             passed: outcome.passed() && furnaces.iter().all(Survey::passed),
@@ -132,8 +132,8 @@ impl From<&Survey> for Returned {
 /// whether as safetensors or as images: a CRC-32.
 ///
 /// # Errors
-/// [`LoadError::Invalid`](microfacet_sampler::LoadError) for a set that could not be written.
-pub fn identity(set: &Tables) -> Result<String, microfacet_sampler::LoadError> {
+/// [`LoadError::Invalid`](microfacet_tables::LoadError) for a set that could not be written.
+pub fn identity(set: &Tables) -> Result<String, microfacet_tables::LoadError> {
     /// The digits, where a document has them.
     #[derive(Deserialize)]
     struct Sealed {

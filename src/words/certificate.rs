@@ -1,7 +1,7 @@
 //! The certificate of a table in words: the errors that its bake measured, and where.
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_sampler::Table;
+use microfacet_tables::Table;
 
 use super::number;
 

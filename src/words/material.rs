@@ -1,7 +1,7 @@
 //! Materials in words.
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_sampler::{FresnelEntry, MaterialEntry, Reflectance};
+use microfacet_tables::{FresnelEntry, MaterialEntry, Reflectance};
 
 use super::{number, range};
 

@@ -1,9 +1,10 @@
 //! What a table holds, is of, and lies over, in words.
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_sampler::{
+use microfacet_sampler::Tables;
+use microfacet_tables::{
     Axis, Covered, Interpolation, Kind, LobeEntry, Mapping, MaterialEntry, Precision, Reflectance,
-    Subject, Table, Tables,
+    Subject, Table,
 };
 
 use super::material::{gammas, reflectance};

@@ -6,7 +6,8 @@
 
 use glam::Vec3;
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::{Kind, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::Kind;
 use wide::f32x4;
 
 /// Bound to one shape.

@@ -130,7 +130,7 @@ impl PyLibrary {
     /// The names of the materials of each set.
     #[getter]
     fn sets(&self) -> Vec<Vec<String>> {
-        let names = |entries: &[microfacet_sampler::MaterialEntry]| {
+        let names = |entries: &[microfacet_tables::MaterialEntry]| {
             entries.iter().map(|entry| entry.name.clone()).collect()
         };
         self.library.parts.iter().map(|part| names(&part.plan.materials)).collect()

@@ -5,14 +5,14 @@ use std::sync::{Arc, LazyLock};
 use std::thread;
 use std::time::Duration;
 
+use microfacet_tables::{Precision, describe};
+use microfacet_sampler::Tables;
 use microfacet_bake::cache::Cache;
 use microfacet_bake::plan::{AlbedoWish, Options, Plan};
 use microfacet_bake::scene::{self, Scene};
 use microfacet_bake::store::{self, Format};
 use microfacet_bake::table_set::{Settings, Target, bake_with};
 use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::internals::describe;
-use microfacet_sampler::{Precision, Tables};
 use pyo3::exceptions::{PyFileNotFoundError, PyRuntimeError, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 

@@ -8,6 +8,7 @@
 //! | [`shape`] | the two ways to write the shape, γ and s = 1/(γ−1) |
 //! | [`fresnel`] | exact reflectance of dielectrics and conductors |
 //! | [`schlick`] | the weights of Schlick's reflectance and of the F82 tint |
+//! | [`math`] | square roots with and without the standard library, and clamping |
 //! | [`gauss_legendre()`] | quadrature rules, at compile time too |
 //!
 //! The sampler must not depend on the model, whose code a renderer does not need, nor the model on
@@ -30,6 +31,7 @@
 pub mod fresnel;
 mod gauss_legendre;
 mod masking;
+pub mod math;
 mod roughness;
 pub mod schlick;
 pub mod shape;

@@ -1,36 +1,10 @@
-//! Errors of a table file, and of requests to the tables it holds.
+//! Errors of requests to the tables of a set.
 
 use alloc::string::String;
 use core::fmt;
 
 use microfacet_core::{Masking, SkewError};
-
-/// The smallest γ of tables; below, almost every visible normal has a slope beyond any
-/// floating-point number. The mathematics begins at 3/2.
-pub const GAMMA_MIN: f64 = 1.501;
-
-/// Why bytes are not a table set that this crate can use.
-#[derive(Clone, PartialEq)]
-pub enum LoadError {
-    /// The bytes contradict the format: truncated, damaged, or describing something impossible.
-    Invalid(String),
-    /// A file that may be valid but that this version cannot read: another version of the format,
-    /// or nodes at places that no reader here expects.
-    Unsupported(String),
-}
-
-impl fmt::Display for LoadError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Invalid(why) => write!(f, "not a valid table set: {why}"),
-            Self::Unsupported(why) => write!(f, "table set not supported: {why}"),
-        }
-    }
-}
-
-microfacet_core::debug_in_words!(LoadError);
-
-impl core::error::Error for LoadError {}
+use microfacet_tables::{GAMMA_MIN, Range};
 
 /// Why a set cannot give what was asked for: a lobe or an albedo.
 #[derive(Clone, PartialEq)]
@@ -194,31 +168,6 @@ impl fmt::Display for MaterialError {
 microfacet_core::debug_in_words!(MaterialError);
 
 impl core::error::Error for MaterialError {}
-
-/// An interval in a message: its ends to nine digits, which hides the rounding of 1/(1/x), and by
-/// powers of ten where they are long.
-pub(crate) struct Range(pub(crate) [f64; 2]);
-
-impl fmt::Display for Range {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [low, high] = self.0.map(Short);
-        if self.0[0] == self.0[1] { write!(f, "{low}") } else { write!(f, "[{low}, {high}]") }
-    }
-}
-
-/// A number in a message, as in [`Range`].
-struct Short(f64);
-
-impl fmt::Display for Short {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let short: f64 = alloc::format!("{:.8e}", self.0).parse().unwrap_or(self.0);
-        match short.abs() {
-            1e-4..1e6 => write!(f, "{short}"),
-            0.0 | f64::INFINITY => write!(f, "{short}"),
-            _ => write!(f, "{short:e}"),
-        }
-    }
-}
 
 impl From<SkewError> for MaterialError {
     fn from(why: SkewError) -> Self {

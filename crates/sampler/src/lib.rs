@@ -18,7 +18,8 @@
 //! | evaluate and sample a lobe for a BSDF of your own | [`MicrofacetDistribution`]: D, G1, Λ, G2, weights, visible normals and their densities, batches |
 //! | lose fewer samples below the horizon | [`StudentT::bounded`], prepared once for a material |
 //! | compensate multiple scattering | [`Conductor::compensated`]; [`Tables::albedo`], [`Albedo`] |
-//! | write a set, or read one table | [`encode`], [`Table`], [`axis`] |
+//! | write a set, or read one table | the crate [`microfacet_tables`] |
+//! | write the lookups in another language | [`port`] |
 //!
 //! # A material
 //!
@@ -72,7 +73,7 @@
 //! # Materials by name
 //!
 //! A set baked from a recipe knows its materials, whatever their distribution, and lists them with
-//! their forms of masking in its [`Provenance`]; [`Lobe`] is any of them. GTR, Gauss, Schlick and
+//! their forms of masking in its [`Provenance`](Tables::provenance); [`Lobe`] is any of them. GTR, Gauss, Schlick and
 //! measured distributions are a [`Radial`], with tables of their own.
 //!
 //! ```no_run
@@ -150,40 +151,33 @@
 
 extern crate alloc;
 
-pub mod axis;
-
 mod albedo;
 mod bsdf;
 mod elementary;
 mod error;
-mod format;
-#[doc(hidden)]
-pub mod internals;
 mod lanes;
 mod material;
-mod math;
+pub mod port;
+
 mod tables;
 
 // What every caller needs in the version that this crate is built with.
 pub use glam;
+pub use microfacet_tables;
 
 pub use albedo::{Albedo, DielectricAlbedo, FresnelAlbedo, Moments, ViewCurve};
-pub use axis::{Axis, Interpolation, Mapping};
 pub use bsdf::{
     AnyBsdf, BindError, Bsdf, BsdfSample, Compensation, Conductor, ConductorFresnel, Dielectric,
     Event, Metal, Plastic, StandIn, Transport, UnknownMetal, f82_tint_average, fresnel_average,
     schlick_average,
 };
-pub use error::{BatchError, LoadError, MaterialError};
-pub use format::{
-    Channels, Covered, FORMAT, FresnelEntry, Index, IndexedSet, Kind, LobeEntry, MaterialEntry,
-    Precision, Provenance, Reflectance, Side, Subject, Table, VERSION, encode,
-};
+pub use error::{BatchError, MaterialError};
 pub use material::{
     Bounded, BoundedView, Ellipsoid, Facet, Ggx, Lobe, LobeKey, MicrofacetDistribution, Radial,
     Smooth, StudentT,
 };
 pub use microfacet_core::{Masking, Roughness, Skew, SkewError};
+pub use microfacet_tables::LoadError;
 #[cfg(feature = "embedded")]
 pub use tables::DEFAULT_SET;
 pub use tables::Tables;

@@ -7,9 +7,9 @@ use alloc::vec::Vec;
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Roughness, Skew};
+use microfacet_tables::{Kind, LoadError, LobeEntry, MaterialEntry, Provenance, Table, decode};
 
-use crate::error::{LoadError, MaterialError};
-use crate::format::{Kind, LobeEntry, MaterialEntry, Provenance, Table, decode};
+use crate::error::MaterialError;
 use crate::material::{Ellipsoid, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
 
 /// The default set as the bytes of a safetensors file, for those who pass it on.

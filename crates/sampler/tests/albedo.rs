@@ -3,7 +3,8 @@
 use glam::Vec3;
 use microfacet_model::fresnel::{F82Tint, schlick_weight};
 use microfacet_model::{AlbedoIntegrator, Shape};
-use microfacet_sampler::{Albedo, Kind, Masking, Table, Tables};
+use microfacet_sampler::{Albedo, Masking, Tables};
+use microfacet_tables::{Kind, Table};
 
 const COSINES: [f32; 5] = [0.02, 0.1, 0.35, 0.8, 1.0];
 

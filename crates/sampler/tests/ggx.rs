@@ -4,9 +4,8 @@ use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::statistics::{sidak, test_visible_normals};
-use microfacet_sampler::{
-    Ggx, Lobe, MaterialEntry, MaterialError, MicrofacetDistribution, Provenance, Tables,
-};
+use microfacet_sampler::{Ggx, Lobe, MaterialError, MicrofacetDistribution, Tables};
+use microfacet_tables::{MaterialEntry, Provenance};
 
 const SIGMAS: [[f64; 2]; 4] = [[0.3, 0.3], [1e-3, 0.01], [4.0, 0.5], [1e-8, 1e6]];
 const VIEWS: [[f64; 2]; 5] = [[0.0, 0.0], [1e-3, 1.0], [0.8, -2.5], [1.4, 3.0], [1.5705, 0.6]];
@@ -94,7 +93,7 @@ fn without_tables() -> Tables {
 
 #[test]
 fn a_set_without_tables_has_ggx_and_nothing_else() {
-    let bytes = microfacet_sampler::encode(without_tables().provenance(), &[]).unwrap();
+    let bytes = microfacet_tables::encode(without_tables().provenance(), &[]).unwrap();
     let set = Tables::from_bytes(&bytes).unwrap();
     let gold = set.material("gold").unwrap();
     assert!(matches!(gold, Lobe::Ggx(ggx) if ggx.alpha() == [0.2, 0.2]));

@@ -2,12 +2,12 @@
 //! out of their domain.
 
 use glam::Vec3;
-use microfacet_sampler::axis::{HalfTangent, Rational};
-use microfacet_sampler::internals::seal;
-use microfacet_sampler::{
-    Axis, Covered, FresnelEntry, Ggx, Interpolation, Kind, LoadError, Lobe, LobeEntry, Mapping,
-    Masking, MaterialEntry, MicrofacetDistribution, Precision, Provenance, Reflectance, Side, Skew,
-    Subject, Table, Tables, VERSION, encode,
+
+use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Skew, Tables};
+use microfacet_tables::axis::{HalfTangent, Rational};
+use microfacet_tables::{
+    Axis, Covered, FresnelEntry, Interpolation, Kind, LoadError, LobeEntry, Mapping, MaterialEntry,
+    Precision, Provenance, Reflectance, Side, Subject, Table, VERSION, encode, seal,
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {

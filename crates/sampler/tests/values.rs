@@ -3,8 +3,8 @@
 use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
-use microfacet_sampler::MicrofacetDistribution as _;
-use microfacet_sampler::{Masking, MaterialError, Precision, StudentT, Tables};
+use microfacet_sampler::{Masking, MaterialError, MicrofacetDistribution as _, StudentT, Tables};
+use microfacet_tables::Precision;
 
 const GAMMAS: [f64; 9] = [1.501, 1.55, 1.799_99, 1.8, 2.0, 3.0, 8.5, 1e5, f64::INFINITY];
 

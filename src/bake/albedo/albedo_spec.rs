@@ -1,13 +1,13 @@
 //! The specification of albedo tables: the lobe, the reflectance, and the nodes.
 
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::axis::lagrange::nodes_read;
-use microfacet_sampler::axis::{
+use microfacet_sampler::Masking;
+use microfacet_tables::axis::lagrange::nodes_read;
+use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
 };
-use microfacet_sampler::{
-    Axis, Covered, Interpolation, Kind, Mapping, Masking, Precision, Reflectance, Side, Subject,
-    Table,
+use microfacet_tables::{
+    Axis, Covered, Interpolation, Kind, Mapping, Precision, Reflectance, Side, Subject, Table,
 };
 
 use super::domain::{Domain, SIGMA_MAX};

@@ -1,7 +1,7 @@
 //! The range of materials that albedo tables are baked for.
 
 use microfacet_core::shape::{gamma_of_s, s_of_gamma};
-use microfacet_sampler::Covered;
+use microfacet_tables::Covered;
 
 use crate::interval::Interval;
 use crate::table_spec::GAMMA_MIN;

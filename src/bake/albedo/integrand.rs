@@ -3,7 +3,7 @@
 
 use microfacet_model::fresnel::{Conductor, Dielectric, f82_weight, schlick_weight};
 use microfacet_model::{Albedo, ParameterError};
-use microfacet_sampler::{Reflectance, Side};
+use microfacet_tables::{Reflectance, Side};
 
 use super::{AlbedoError, CHANNELS, Model, Site};
 

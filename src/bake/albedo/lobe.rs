@@ -1,5 +1,5 @@
 //! The lobes that albedos are baked for, and their quadrature. **A new one goes here** and in
-//! [`LobeEntry`](microfacet_sampler::LobeEntry).
+//! [`LobeEntry`](microfacet_tables::LobeEntry).
 
 use std::collections::HashMap;
 
@@ -11,8 +11,8 @@ use microfacet_model::classic::{Marginal, RadialAlbedo};
 use microfacet_model::{
     Albedo, AlbedoIntegrator, Ellipsoid, EllipsoidError, ParameterError, Shape, Skew,
 };
-use microfacet_sampler::axis::Azimuth;
-use microfacet_sampler::{Axis, Covered, LobeEntry, Mapping};
+use microfacet_tables::axis::Azimuth;
+use microfacet_tables::{Axis, Covered, LobeEntry, Mapping};
 
 use super::{AlbedoError, CHANNELS, Domain, Site};
 use crate::distribution::Distribution;

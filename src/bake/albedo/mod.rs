@@ -19,12 +19,9 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use microfacet_model::{Albedo, ParameterError};
-use microfacet_sampler::axis::ViewBlend;
-use microfacet_sampler::internals::average_channels;
-use microfacet_sampler::{
-    Albedo as TabulatedAlbedo, Axis, Kind, LoadError, Mapping, Masking, MaterialError, Precision,
-    Reflectance, Table,
-};
+use microfacet_sampler::{Albedo as TabulatedAlbedo, Masking, MaterialError};
+use microfacet_tables::axis::ViewBlend;
+use microfacet_tables::{Axis, Kind, LoadError, Mapping, Precision, Reflectance, Table};
 
 use crate::progress::Stage;
 
@@ -321,7 +318,7 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
     let mut whole = directional.clone();
     whole.subject.covers = spec.everywhere();
     let at = |(gamma, sigma): (f64, f64)| {
-        Ok(average_channels(&TabulatedAlbedo::from_table(&whole, sigma, gamma)?))
+        Ok(TabulatedAlbedo::from_table(&whole, sigma, gamma)?.integrate())
     };
     let pairs = gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| (gamma, sigma)));
     let values = pairs.map(at).collect::<Result<Vec<_>, MaterialError>>()?;

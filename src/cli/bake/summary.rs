@@ -11,7 +11,8 @@ use microfacet_bake::table_set::Baked;
 use microfacet_bake::validate::configuration::shapes;
 use microfacet_bake::validate::furnace::has_furnace;
 use microfacet_bake::words::certificate;
-use microfacet_sampler::{Kind, Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Kind, Table};
 
 use crate::cli::escape;
 use crate::cli::plan::Outline;

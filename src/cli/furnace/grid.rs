@@ -2,7 +2,8 @@
 
 use microfacet_bake::interval::Interval;
 use microfacet_bake::validate::furnace::domains;
-use microfacet_sampler::{Kind, Masking, Tables};
+use microfacet_sampler::{Masking, Tables};
+use microfacet_tables::Kind;
 
 use crate::cli::{Failure, report};
 

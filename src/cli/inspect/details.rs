@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use microfacet_bake::words::certificate;
 use microfacet_bake::words::table::{axis, holds};
-use microfacet_sampler::{Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::Table;
 
 use crate::cli::escape;
 use crate::cli::words::wrapped;

@@ -8,8 +8,8 @@ use microfacet_bake::report::has_page;
 use microfacet_bake::words::certificate;
 use microfacet_bake::words::material::material;
 use microfacet_bake::words::table::{albedos, covers, holds, normals, precision};
-use microfacet_sampler::internals::describe;
-use microfacet_sampler::{Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Table, describe};
 
 use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, shell, wrapped};
 use super::{Done, Outcome, escape, print, print_json, tables};

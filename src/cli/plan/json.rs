@@ -7,7 +7,7 @@ use microfacet_bake::interval::Interval;
 use microfacet_bake::plan::{Cost, Verdict, entry};
 use microfacet_bake::scene::Ignored;
 use microfacet_bake::words::verdict::{albedo_reason, reason};
-use microfacet_sampler::{Kind, MaterialEntry};
+use microfacet_tables::{Kind, MaterialEntry};
 
 use super::Report;
 use super::words::{OWN_TABLES, Offer, Outline};

@@ -9,7 +9,7 @@ use serde_json::json;
 use microfacet_bake::library::Library;
 use microfacet_bake::plan::{Cost, set_cost};
 use microfacet_bake::table_set::{Need, Target};
-use microfacet_sampler::Index;
+use microfacet_tables::Index;
 
 use super::{Args, Report, Request};
 use crate::cli::words::{bytes, columns, count, seconds, shell};

@@ -13,7 +13,7 @@ use microfacet_bake::scene::{Ignored, Scene};
 use microfacet_bake::table_spec::{Quality, TableSpec, general_set};
 use microfacet_bake::words::material::{material as words_of, reflectance};
 use microfacet_bake::words::verdict::{albedo_reason, reason};
-use microfacet_sampler::Precision;
+use microfacet_tables::Precision;
 use rayon::current_num_threads;
 use serde_json::json;
 

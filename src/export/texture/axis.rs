@@ -1,6 +1,6 @@
 //! What runs along a texture, and where its texels lie.
 
-use microfacet_sampler::axis::{LogShape, ViewBlend};
+use microfacet_tables::axis::{LogShape, ViewBlend};
 
 /// The most axes of a texture.
 pub(super) const AXES: usize = 3;

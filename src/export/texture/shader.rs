@@ -1,6 +1,6 @@
 //! The line with which a shader reads a texture.
 
-use microfacet_sampler::axis::LogShape;
+use microfacet_tables::axis::LogShape;
 
 use super::axis::{Along, TexelAxis};
 use super::{Channel, TextureSpec};

@@ -1,7 +1,9 @@
 //! Errors of tables of albedos.
 
-use microfacet_sampler::{Axis, Kind, Mapping, Provenance, Table, Tables};
 use rayon::prelude::*;
+
+use microfacet_sampler::Tables;
+use microfacet_tables::{Axis, Kind, Mapping, Provenance, Table};
 
 use super::{Place, Quantity, Span, Unmeasured};
 use crate::bake::albedo::{AlbedoSpec, Site};

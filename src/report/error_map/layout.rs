@@ -1,6 +1,6 @@
 //! Which axes a map shows, and at how many places it is measured.
 
-use microfacet_sampler::{Axis, Interpolation, Kind, Table};
+use microfacet_tables::{Axis, Interpolation, Kind, Table};
 
 use super::albedo::spec;
 use super::{AXES, Place, Quantity, Span, worse};

@@ -13,7 +13,8 @@ mod span;
 
 use std::fmt;
 
-use microfacet_sampler::{LoadError, MaterialError, Table, Tables};
+use microfacet_sampler::{MaterialError, Tables};
+use microfacet_tables::{LoadError, Table};
 
 use crate::bake::albedo::AlbedoError;
 use crate::distribution::DistributionError;
@@ -158,7 +159,7 @@ pub fn measure(
 }
 
 fn ruler<'a>(set: &'a Tables, table: &'a Table) -> Result<Box<dyn Ruler + 'a>, Unmeasured> {
-    use microfacet_sampler::Kind;
+    use microfacet_tables::Kind;
     Ok(match table.kind {
         Kind::Albedo => Box::new(albedo::Directional::new(table)?),
         Kind::AlbedoAverage => Box::new(albedo::Average::new(set, table)?),

@@ -1,7 +1,8 @@
 //! Errors of tables of masking and of visible normals.
 
 use microfacet_core::shape::{gamma_of_s, s_of_gamma};
-use microfacet_sampler::{Provenance, Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Provenance, Table};
 use rayon::prelude::*;
 
 use super::{Place, Quantity, Span, Unmeasured};
@@ -22,7 +23,7 @@ impl Normals {
         let set = Tables::from_tables(Provenance::default(), with_others(set, table))?;
         let worst = Quantity::Gamma.worst(table).map_or(1.0, s_of_gamma);
         let shapes = ruler(&set).shapes;
-        let span = |axis: &microfacet_sampler::Axis| match Quantity::of(axis) {
+        let span = |axis: &microfacet_tables::Axis| match Quantity::of(axis) {
             Quantity::Gamma => {
                 let shapes = shapes.clone();
                 Span::new(Quantity::Gamma, move |share| {
@@ -95,7 +96,7 @@ fn with_others(set: &Tables, table: &Table) -> Vec<Table> {
         _ => true,
     };
     let is_beside = |other: &&Table| {
-        let of_normals = other.kind == microfacet_sampler::Kind::Shadowing
+        let of_normals = other.kind == microfacet_tables::Kind::Shadowing
             || other.axes.iter().any(|axis| Quantity::of(axis) == Quantity::Number);
         let of_family = other.subject.lobe == table.subject.lobe;
         other.kind != table.kind && of_normals && of_family && overlaps(other)

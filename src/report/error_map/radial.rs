@@ -1,7 +1,8 @@
 //! Errors of the tables of a distribution outside the family.
 
 use microfacet_model::classic::{Isotropic, Marginal};
-use microfacet_sampler::{Lobe, LobeEntry, Table, Tables};
+use microfacet_sampler::{Lobe, Tables};
+use microfacet_tables::{LobeEntry, Table};
 use rayon::prelude::*;
 
 use super::{Place, Quantity, Span, Unmeasured};
@@ -28,7 +29,7 @@ impl<'a> Radial<'a> {
         let entry =
             of_label.ok_or_else(|| Unmeasured::NoTable(format!("a material of `{label}`")))?;
         let lobe = set.material(&entry.name)?;
-        let span = |axis: &microfacet_sampler::Axis| match Quantity::of(axis) {
+        let span = |axis: &microfacet_tables::Axis| match Quantity::of(axis) {
             Quantity::Number => {
                 let half = (axis.nodes.len() - 1) as f64;
                 Span::new(Quantity::Number, move |share| number(2.0 * half * share, half).into())

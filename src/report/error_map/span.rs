@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_sampler::{Axis, Mapping, Table};
+use microfacet_tables::{Axis, Mapping, Table};
 
 /// What an axis of a table is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! Which maps a page has.
 
-use microfacet_sampler::{Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::Table;
 
 use crate::certify::certificate::worst_error;
 use crate::report::error_map::{Sides, sides};

@@ -1,6 +1,6 @@
 //! Maps of errors as drawings.
 
-use microfacet_sampler::Table;
+use microfacet_tables::Table;
 
 use super::super::drawing::SIZE;
 use super::{ticks, words};

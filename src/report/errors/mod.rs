@@ -6,7 +6,9 @@ mod ticks;
 mod words;
 
 use maud::{Markup, PreEscaped, html};
-use microfacet_sampler::{Table, Tables};
+
+use microfacet_sampler::Tables;
+use microfacet_tables::Table;
 
 use super::{ReportError, Source};
 use crate::plan::on_threads;

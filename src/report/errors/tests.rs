@@ -1,6 +1,6 @@
 use std::time::Instant;
 
-use microfacet_sampler::{Kind, Provenance};
+use microfacet_tables::{Kind, Provenance};
 
 use super::*;
 use crate::plan::{Options, Plan};

@@ -1,6 +1,7 @@
 //! Maps of errors in words.
 
-use microfacet_sampler::{Axis, Kind, Masking, Reflectance, Table};
+use microfacet_sampler::Masking;
+use microfacet_tables::{Axis, Kind, Reflectance, Table};
 
 use super::super::drawing::error;
 use crate::certify::certificate::worst_error;

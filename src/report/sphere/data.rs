@@ -9,9 +9,8 @@ use flate2::write::DeflateEncoder;
 use glam::Vec3;
 use half::f16;
 use microfacet_core::Masking;
-use microfacet_sampler::{
-    ConductorFresnel, FresnelEntry, MaterialEntry, MaterialError, Metal, StudentT, Tables,
-};
+use microfacet_sampler::{ConductorFresnel, MaterialError, Metal, StudentT, Tables};
+use microfacet_tables::{FresnelEntry, MaterialEntry};
 use rayon::prelude::*;
 use serde::Serialize;
 

@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use microfacet_model::classic::Marginal;
-use microfacet_sampler::{LoadError, MaterialEntry, Precision, Provenance, Table, Tables};
+use microfacet_sampler::Tables;
+use microfacet_tables::{LoadError, MaterialEntry, Precision, Provenance, Table};
 
 use super::super::BakeError;
 use super::super::job::Job;

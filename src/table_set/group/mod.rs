@@ -4,7 +4,7 @@ mod bake;
 
 use serde::{Deserialize, Serialize};
 
-use microfacet_sampler::{MaterialEntry, Precision};
+use microfacet_tables::{MaterialEntry, Precision};
 
 use super::BakeError;
 use crate::bake::{joined_name, radial_bytes};

@@ -15,9 +15,8 @@ use rayon::prelude::*;
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_model as model;
-use microfacet_sampler::{
-    AnyBsdf, Bsdf, Compensation, Kind, Masking, Reflectance, Table, Tables, Transport,
-};
+use microfacet_sampler::{AnyBsdf, Bsdf, Compensation, Masking, Tables, Transport};
+use microfacet_tables::{Kind, Reflectance, Table};
 
 use super::specimen::{self, LobeOf, Specimen, Surface, Unmade};
 use crate::progress::Stage;

@@ -4,8 +4,9 @@ use std::fmt;
 
 use microfacet_sampler::{
     AnyBsdf, BindError, Compensation, Conductor, ConductorFresnel, Dielectric, Ggx, Lobe, Masking,
-    MaterialError, Metal, Plastic, Precision, Skew, Smooth, StandIn, Tables,
+    MaterialError, Metal, Plastic, Skew, Smooth, StandIn, Tables,
 };
+use microfacet_tables::Precision;
 
 use crate::plan::{Options, Plan};
 use crate::scene::Scene;

@@ -4,9 +4,10 @@ use glam::{DVec3, Vec3};
 
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::{self as model, SignedSlope, VisibleSlope};
-use microfacet_sampler::MicrofacetDistribution as _;
-use microfacet_sampler::axis::half_tangent::half_tangent;
-use microfacet_sampler::{Ggx, Lobe, Masking, MaterialError, Skew, Tables};
+use microfacet_sampler::{
+    Ggx, Lobe, Masking, MaterialError, MicrofacetDistribution as _, Skew, Tables,
+};
+use microfacet_tables::axis::half_tangent::half_tangent;
 
 use super::bsdfs::Bsdfs;
 use super::{Point, Report, direction};

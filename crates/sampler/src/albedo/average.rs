@@ -1,8 +1,9 @@
 //! Averages over views of what is looked up: piecewise polynomials of the view's coordinate, with
 //! kinks at nodes and where an albedo is clamped, integrated piece by piece.
 
+use microfacet_core::math::sqrt64;
+
 use super::elevation::Elevation;
-use crate::math::sqrt64;
 
 /// The largest ratio of h from one end of a panel to the other.
 const RATIO: f64 = 1.5;
@@ -163,7 +164,7 @@ fn view_at(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axis::{CriticalBlend, ViewBlend};
+    use microfacet_tables::axis::{CriticalBlend, ViewBlend};
 
     #[test]
     fn the_whole_hemisphere_is_covered_and_clamps_are_met() {

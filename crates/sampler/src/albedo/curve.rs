@@ -5,15 +5,15 @@ use alloc::format;
 use alloc::vec::Vec;
 
 use glam::Vec3;
+use microfacet_core::math::unit;
 use microfacet_core::shape::s_of_gamma;
+use microfacet_tables::axis::lagrange::{SIX, combine};
+use microfacet_tables::axis::{PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend};
+use microfacet_tables::{Kind, Mapping, Reflectance, Table, Weights};
 
 use super::average::{At, add, over_views};
 use super::elevation::Elevation;
-use crate::axis::lagrange::{SIX, combine};
-use crate::axis::{Mapping, PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend, Weights};
 use crate::error::MaterialError;
-use crate::format::{Kind, Reflectance, Table};
-use crate::math::unit;
 
 /// The largest number of channels of an albedo table.
 const CHANNELS: usize = 4;
@@ -117,7 +117,7 @@ impl<const N: usize> ViewCurve<N> {
     /// `v` is a unit vector in the tangent frame, n = +z. A view at or below the horizon is taken
     /// as the grazing one of its azimuth, NaN likewise; only lobes that are not round depend on the
     /// azimuth. Closer to grazing than the table's first view, μ₀ of
-    /// [`ViewBlend`](crate::axis::ViewBlend), albedos are held constant.
+    /// [`ViewBlend`](microfacet_tables::axis::ViewBlend), albedos are held constant.
     pub fn eval(&self, v: Vec3) -> [f32; N] {
         let cos = unit(v.z);
         self.0.with_view(v, |rows, view| self.at(rows, view, cos))

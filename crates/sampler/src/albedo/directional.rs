@@ -2,13 +2,13 @@
 
 use glam::Vec3;
 use microfacet_core::Masking;
+use microfacet_core::math::unit;
+use microfacet_tables::{Reflectance, Table};
 
 use super::curve::{Curve, MaterialPoint, Rows, missing};
 use super::elevation::Elevation;
 use super::moments::{Moments, below, less_mirror};
 use crate::error::MaterialError;
-use crate::format::{Reflectance, Table};
-use crate::math::unit;
 
 /// The directional albedo of one material as a function of the view, with F = 1 and as moments of
 /// Fresnel weights.
@@ -19,7 +19,7 @@ use crate::math::unit;
 /// horizon is taken as the grazing one of its azimuth, NaN in `v.z` likewise, and NaN in the other
 /// two as the x axis. Errors are those of the table's certificate: in E and each moment at most
 /// 3e-4 at default quality for cos θ ≥ 0.02 and σ ≥ 0.01. Closer to grazing than the table's first
-/// view, μ₀ of [`ViewBlend`](crate::axis::ViewBlend), albedos near their limits with the power of
+/// view, μ₀ of [`ViewBlend`](microfacet_tables::axis::ViewBlend), albedos near their limits with the power of
 /// cos θ that they have there.
 #[derive(Clone, Debug)]
 pub struct Albedo {
@@ -85,9 +85,9 @@ impl Albedo {
         0.0 - self.average[0]
     }
 
-    /// The averages by quadrature of what is looked up, in the form of the tables' channels:
-    /// the values of tables of averages.
-    pub(crate) fn integrate(&self) -> [f32; 3] {
+    /// The averages by quadrature of what is looked up, in the form of the tables' channels: the
+    /// values that a bake writes into tables of averages.
+    pub fn integrate(&self) -> [f32; 3] {
         less_mirror(self.curve.average(|rows, view, cos| {
             let rest = self.at(rows, view, cos);
             let (mirror, e) = (Moments::mirror(cos), rest[0]);

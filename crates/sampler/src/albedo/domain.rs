@@ -5,10 +5,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use microfacet_core::shape::gamma_of_s;
-
-use crate::axis::Mapping;
-use crate::error::Range;
-use crate::format::{Covered, Table};
+use microfacet_tables::{Covered, Mapping, Range, Table};
 
 /// The roughness of the first node: the smallest that a table holds, apart from 0.
 pub(super) fn smallest_sigma(table: &Table) -> Option<f64> {

@@ -1,7 +1,7 @@
 //! Where a view stands among the nodes of a table, at one azimuth.
 
-use crate::axis::lagrange::{SIX, six};
-use crate::axis::{PreparedCritical, PreparedView};
+use microfacet_tables::axis::lagrange::{SIX, six};
+use microfacet_tables::axis::{PreparedCritical, PreparedView};
 
 /// The coordinate of views at one azimuth.
 pub(super) enum Elevation<'a> {

@@ -2,6 +2,7 @@
 
 use microfacet_core::Masking;
 use microfacet_core::shape::s_of_gamma;
+use microfacet_tables::{FresnelEntry, Kind, LobeEntry, MaterialEntry, Reflectance, Side, Table};
 
 use super::curve::{MaterialPoint, MaterialWeights, ViewCurve};
 use super::directional::Albedo;
@@ -9,7 +10,6 @@ use super::domain::{dielectrics, domains, smallest_sigma};
 use super::fresnel::{DielectricAlbedo, FresnelAlbedo};
 use super::moments::Moments;
 use crate::error::MaterialError;
-use crate::format::{FresnelEntry, Kind, LobeEntry, MaterialEntry, Reflectance, Side, Table};
 use crate::tables::Tables;
 
 impl Tables {
@@ -79,7 +79,7 @@ impl Tables {
     ///
     /// Ranges are taken as by [`material_albedo`](Self::material_albedo), that of an index of
     /// refraction at the middle of its coordinate
-    /// [`ReflectanceRoot`](crate::axis::ReflectanceRoot). A dielectric has the round lobe of
+    /// [`ReflectanceRoot`](microfacet_tables::axis::ReflectanceRoot). A dielectric has the round lobe of
     /// √(σx σy). For σ = 0 its albedo is that of 1e-8.
     ///
     /// # Errors

@@ -4,9 +4,9 @@ use alloc::vec::Vec;
 
 use microfacet_core::Masking;
 use microfacet_core::shape::s_of_gamma;
+use microfacet_tables::axis::{LogRoughness, ViewBlend};
+use microfacet_tables::{Axis, Interpolation, Kind, Mapping, Table};
 
-use crate::axis::{Axis, Interpolation, LogRoughness, Mapping, ViewBlend};
-use crate::format::{Kind, Table};
 use crate::tables::Tables;
 
 /// A table of moments of the family with its axis of γ collapsed.

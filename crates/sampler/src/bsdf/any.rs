@@ -2,11 +2,12 @@
 
 use glam::Vec3;
 
+use microfacet_tables::FresnelEntry;
+
 use super::bind::StandIn;
 use super::compensation::Compensation;
 use super::error::BindError;
 use super::{Bsdf, BsdfSample, Conductor, ConductorFresnel, Dielectric, Plastic, Transport};
-use crate::format::FresnelEntry;
 use crate::material::Lobe;
 use crate::tables::Tables;
 

@@ -3,11 +3,11 @@
 use alloc::format;
 
 use microfacet_core::Masking;
+use microfacet_tables::{Kind, Reflectance};
 
 use super::error::BindError;
 use crate::albedo::{Albedo, DielectricAlbedo};
 use crate::error::MaterialError;
-use crate::format::{Kind, Reflectance};
 use crate::material::{LobeKey, MicrofacetDistribution};
 use crate::tables::Tables;
 

@@ -5,8 +5,9 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
+use microfacet_core::math::{sqrt, unit};
+
 use crate::elementary::turn;
-use crate::math::{sqrt, unit};
 
 /// Bands of elevation, between the cosines (i/32)⁴: a smooth surface loses its light at grazing,
 /// within its roughness of the horizon.

@@ -3,7 +3,9 @@
 use alloc::string::String;
 use core::fmt;
 
-use crate::error::{MaterialError, Range};
+use microfacet_tables::Range;
+
+use crate::error::MaterialError;
 
 /// Why a BSDF cannot be made: a number outside its domain, or an albedo that the tables lack.
 #[derive(Clone, PartialEq)]

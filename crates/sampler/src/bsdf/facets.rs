@@ -1,11 +1,11 @@
 //! Reflection off single facets, which conductors and coats share.
 
 use glam::Vec3;
+use microfacet_core::math::sqrt;
 use microfacet_core::{Masking, saturated};
 
 use super::mixture::Part;
 use crate::material::{Facet, MicrofacetDistribution};
-use crate::math::sqrt;
 
 /// Facets of a lobe that reflect.
 #[derive(Clone, Copy)]

@@ -2,11 +2,11 @@
 
 use glam::Vec3;
 use microfacet_core::fresnel::{dielectric, dielectric_of_cosines, refracted_cos};
+use microfacet_core::math::sqrt64;
 
 use super::Transport;
 use super::error::BindError;
 use super::reflectance::indices;
-use crate::math::sqrt64;
 
 /// Indices of refraction, inside over outside. Those of matter lie well within it.
 const ETA: [f64; 2] = [1e-3, 1e3];
@@ -29,9 +29,10 @@ const STEEP: f32 = 100.0 / (1 << 25) as f32;
 const STEEPEST: f32 = 0.01;
 
 /// The cosine m·n below which a facet that refracts is not known from the view and the light well
-/// enough for a D with a pole at the horizon; the same for η and 1/η.
+/// enough for a D with a pole at the horizon, so that it is only sampled (see
+/// [`Dielectric`](crate::Dielectric)); the same for η and 1/η.
 #[inline(always)]
-pub(crate) fn steep_cosine(eta: f32) -> f32 {
+pub fn steep_cosine(eta: f32) -> f32 {
     (STEEP * (1.0 + eta) / (1.0 - eta).abs()).min(STEEPEST)
 }
 

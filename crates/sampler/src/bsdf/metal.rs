@@ -3,7 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
-use crate::format::FresnelEntry;
+use microfacet_tables::FresnelEntry;
 
 /// A metal whose complex index of refraction, eta + i k, is known by measurement.
 ///

@@ -2,10 +2,10 @@
 //! further bounces.
 
 use glam::Vec3;
+use microfacet_core::math::unit;
 use microfacet_core::saturated;
 
 use super::broad::{Broad, cosine_pdf};
-use crate::math::unit;
 
 /// One of the two: a weight f |cos θ_l|/pdf by channel and a density, both of that part alone.
 #[derive(Clone, Copy, Debug)]

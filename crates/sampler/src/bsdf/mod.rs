@@ -31,7 +31,7 @@ pub use compensation::Compensation;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use error::BindError;
-pub(crate) use interface::steep_cosine;
+pub use interface::steep_cosine;
 pub use metal::{Metal, UnknownMetal};
 pub use plastic::Plastic;
 pub use reflectance::ConductorFresnel;

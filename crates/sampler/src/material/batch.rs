@@ -12,16 +12,16 @@
 use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
+use microfacet_tables::axis::half_tangent::half_slope_at;
+use microfacet_tables::axis::hermite::{Cell, cubic_lanes, hermite_lanes, horner_lanes, split};
+use microfacet_tables::axis::{HalfTangent, roots};
+
 use super::distribution::MicrofacetDistribution;
 use super::fast_path::{least_clear, pair, start};
 use super::heavy::parts;
 use super::sample::HORIZON;
 use super::student_t::StudentT;
 use super::views::Views;
-use crate::axis::HalfTangent;
-use crate::axis::half_tangent::half_slope_at;
-use crate::axis::hermite::{Cell, cubic_lanes, hermite_lanes, horner_lanes, split};
-use crate::axis::roots;
 
 /// Directions of a group.
 pub(crate) const LANES: usize = 4;

@@ -10,11 +10,12 @@ use core::f32::consts::LN_2;
 
 use wide::f32x4;
 
+use microfacet_core::math::{sqrt, unit};
+use microfacet_tables::axis::half_tangent::Slope;
+use microfacet_tables::axis::hermite::{Cell, cubic_cells, horner, locate};
+
 use super::student_t::{Stretched, StudentT};
-use crate::axis::half_tangent::Slope;
-use crate::axis::hermite::{Cell, cubic_cells, horner, locate};
 use crate::elementary::{exp2, log2};
-use crate::math::{sqrt, unit};
 
 /// Up to this a the excess is a difference from the shadowing table; for larger a that difference
 /// loses digits.

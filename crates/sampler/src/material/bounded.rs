@@ -16,6 +16,8 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 use microfacet_core::Masking;
+use microfacet_core::math::unit;
+use microfacet_tables::axis::hermite::split;
 use wide::f32x4;
 
 use super::batch::{LANES, coefficients, transpose};
@@ -24,9 +26,7 @@ use super::key::LobeKey;
 use super::sample::first_three;
 use super::student_t::StudentT;
 use super::views::{View, Views};
-use crate::axis::hermite::split;
 use crate::error::{BatchError, same_lengths};
-use crate::math::unit;
 
 /// Cells of the slope x : z by x/(|x| + z), over [−1, 1], and rows of the table between two rows of
 /// limits.

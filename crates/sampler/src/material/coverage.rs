@@ -5,10 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use microfacet_core::shape::gamma_of_s;
-
-use crate::axis::{Interpolation, Weights};
-use crate::error::Range;
-use crate::format::{Kind, SAME, Table};
+use microfacet_tables::{Interpolation, Kind, Range, SAME, Table, Weights};
 
 /// The kinds of tables that a Student-t lobe reads, one of each list; earlier ones are preferred.
 pub(super) const LOBE: [&[Kind]; 3] = [

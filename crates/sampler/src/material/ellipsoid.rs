@@ -3,7 +3,9 @@
 use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
+use microfacet_core::math::sqrt;
 use microfacet_core::{Masking, Skew, saturated};
+use microfacet_tables::axis::half_tangent::Slope;
 use wide::f32x4;
 
 use super::below_horizon::{ExcessShare, Numbers, SlopeBelowHorizon};
@@ -13,9 +15,7 @@ use super::matrix::{ENTRIES, Matrix};
 use super::sample::{HORIZON, above_horizon, first_three};
 use super::student_t::{Stretched, StudentT};
 use super::views::Views;
-use crate::axis::half_tangent::Slope;
 use crate::error::MaterialError;
-use crate::math::sqrt;
 
 /// An Ellipsoid lobe: that of Walter et al. 2015 (supplemental material of
 /// <https://doi.org/10.1145/2815618>) at γ = 2, a skewed Student-t for other γ, a skewed Beckmann

@@ -20,13 +20,14 @@
 use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
+use microfacet_tables::axis::half_tangent::half_slope_at;
+use microfacet_tables::axis::hermite::{Node, basis, cubic, split};
+use microfacet_tables::axis::roots;
+
 use super::heavy::Part;
 use super::sample::HORIZON;
 use super::student_t::StudentT;
 use super::views::View;
-use crate::axis::half_tangent::half_slope_at;
-use crate::axis::hermite::{Node, basis, cubic, split};
-use crate::axis::roots;
 use crate::lanes::{pairs, pairs_of_firsts, sum, swap_pairs};
 
 impl StudentT {

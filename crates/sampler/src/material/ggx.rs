@@ -3,6 +3,7 @@
 use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
+use microfacet_core::math::{sqrt, unit};
 use microfacet_core::{Masking, Roughness, saturated};
 
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, visible_density};
@@ -12,7 +13,6 @@ use super::sample::{above_horizon, face};
 use super::student_t::{LONG, LONGEST, SHORT};
 use crate::elementary::turn;
 use crate::error::MaterialError;
-use crate::math::{sqrt, unit};
 
 /// The smallest 1 − u₁: keeps a normal off the horizon, where its length may vanish.
 const LAST: f32 = 1.0 / 16_777_216.0;

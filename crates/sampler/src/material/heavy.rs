@@ -10,9 +10,10 @@ use alloc::vec::Vec;
 
 use wide::f32x4;
 
-use crate::axis::hermite::{Cell, cubic, cubic_cells, cubic_lanes, split};
+use microfacet_core::math::unit;
+use microfacet_tables::axis::hermite::{Cell, cubic, cubic_cells, cubic_lanes, split};
+
 use crate::elementary::{exp2, log2};
-use crate::math::unit;
 
 /// Cells of the share for each row of the table: its transition near normal incidence narrows as
 /// γ → 3/2, and two cells a row follow it to 4e-6 at γ = 1.501.

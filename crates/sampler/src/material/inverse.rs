@@ -5,10 +5,11 @@
 
 use wide::{bytemuck, f32x4, i32x4};
 
+use microfacet_tables::axis::MirroredRoot;
+use microfacet_tables::axis::half_tangent::ends;
+use microfacet_tables::axis::hermite::{Cubic, Node, split};
+
 use super::student_t::{Stretched, StudentT};
-use crate::axis::MirroredRoot;
-use crate::axis::half_tangent::ends;
-use crate::axis::hermite::{Cubic, Node, split};
 
 /// Two neighbouring rows of a table and the position between them.
 pub(super) struct Rows<'a> {

@@ -5,9 +5,9 @@ use alloc::string::{String, ToString};
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Masking, Skew};
+use microfacet_tables::{LobeEntry, SAME};
 
 use super::matrix::Matrix;
-use crate::format::{LobeEntry, SAME};
 
 /// What tables of albedos know a lobe by: its parameters, as data.
 #[derive(Clone, Debug, PartialEq)]

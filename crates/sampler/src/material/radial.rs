@@ -6,17 +6,18 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
+use microfacet_core::math::sqrt;
+use microfacet_tables::axis::half_tangent::Slope;
+use microfacet_tables::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
+use microfacet_tables::axis::{HalfTangent, MirroredRoot, Rational};
+use microfacet_tables::{Kind, LobeEntry, Mapping, Table};
+
 use super::distribution::{MicrofacetDistribution, visible_density};
 use super::key::LobeKey;
 use super::roughness::checked;
 use super::slices::{Slice, Slices};
 use super::student_t::StudentT;
-use crate::axis::half_tangent::Slope;
-use crate::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
-use crate::axis::{HalfTangent, Mapping, MirroredRoot, Rational};
 use crate::error::MaterialError;
-use crate::format::{Kind, LobeEntry, Table};
-use crate::math::sqrt;
 
 /// A lobe of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
 ///

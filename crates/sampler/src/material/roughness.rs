@@ -1,8 +1,8 @@
 //! The range of roughness that single precision can hold.
 
 use microfacet_core::Roughness;
+use microfacet_tables::axis::LogRoughness;
 
-use crate::axis::LogRoughness;
 use crate::error::MaterialError;
 
 /// Outside this range the squares of stretched directions, and of normals made from them, leave

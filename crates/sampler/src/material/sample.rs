@@ -2,17 +2,18 @@
 //!
 //! The in-plane slope x and the slope across t are independent (see the model crate), so one lookup
 //! inverts each CDF. A table holds the distance of the slope's half tangent from an end,
-//! see [`half_tangent`](crate::axis::half_tangent); there the silhouette is linear in the view
+//! see [`half_tangent`](microfacet_tables::axis::half_tangent); there the silhouette is linear in the view
 //! coordinate, so no sampled normal faces away, however coarse the table.
 
 use glam::Vec3;
 use wide::f32x4;
 
+use microfacet_core::math::{sqrt, unit};
+use microfacet_tables::axis::MirroredRoot;
+use microfacet_tables::axis::half_tangent::Slope;
+use microfacet_tables::axis::hermite::{between_rows, hermite, locate};
+
 use super::student_t::{Stretched, StudentT};
-use crate::axis::MirroredRoot;
-use crate::axis::half_tangent::Slope;
-use crate::axis::hermite::{between_rows, hermite, locate};
-use crate::math::{sqrt, unit};
 
 /// Smallest cosine of a sampled normal: keeps D finite, which for γ < 2 it is not on the horizon.
 pub(crate) const HORIZON: f32 = 1e-18;

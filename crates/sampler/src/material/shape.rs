@@ -2,9 +2,10 @@
 
 use alloc::vec::Vec;
 
+use microfacet_tables::axis::hermite::{Cell, Node};
+
 use super::heavy::CELLS_PER_ROW;
 use super::student_t::StudentT;
-use crate::axis::hermite::{Cell, Node};
 
 /// The slices and constants of a Student-t lobe of one shape, whatever its roughness, in the form
 /// in which this crate's own lookups have them. Cells are followed by a guard, which is read at

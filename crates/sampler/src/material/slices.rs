@@ -3,13 +3,13 @@
 use alloc::vec::Vec;
 
 use microfacet_core::shape::s_of_gamma;
+use microfacet_tables::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
+use microfacet_tables::axis::{HalfTangent, MirroredRoot, Rational};
+use microfacet_tables::{Axis, Kind, Mapping, Table, Weights};
 
 use super::coverage::{self, end_weights, shape_weights};
 use super::heavy::Heavy;
-use crate::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
-use crate::axis::{Axis, HalfTangent, Mapping, MirroredRoot, Rational, Weights};
 use crate::error::MaterialError;
-use crate::format::{Kind, Table};
 
 /// A (value, slope) table without its γ axis.
 pub(crate) struct Slice<'a> {

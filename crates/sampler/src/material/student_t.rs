@@ -3,8 +3,11 @@
 use core::f32::consts::PI;
 
 use glam::Vec3;
+use microfacet_core::math::sqrt;
 use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Masking, Roughness, saturated};
+use microfacet_tables::Table;
+use microfacet_tables::axis::hermite::{horner, split};
 use wide::f32x4;
 
 use super::distribution::{
@@ -14,11 +17,8 @@ use super::key::LobeKey;
 use super::normals::Normals;
 use super::roughness::checked;
 use super::slices::Slices;
-use crate::axis::hermite::{horner, split};
 use crate::error::{BatchError, MaterialError, same_lengths};
-use crate::format::Table;
 use crate::lanes::{swap_halves, swap_pairs};
-use crate::math::sqrt;
 
 /// A Student-t lobe with fixed roughness and shape, holding only the slices of the tables it needs.
 ///

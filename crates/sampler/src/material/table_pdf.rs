@@ -9,11 +9,12 @@ use alloc::vec::Vec;
 use glam::Vec3;
 use wide::f32x4;
 
+use microfacet_core::math::{sqrt64, unit};
+use microfacet_tables::axis::half_tangent::{ends_and_rate, slope_at};
+
 use super::distribution::MicrofacetDistribution;
 use super::student_t::{Stretched, StudentT};
-use crate::axis::half_tangent::{ends_and_rate, slope_at};
 use crate::elementary::{exp2, log2};
-use crate::math::{sqrt64, unit};
 
 /// A normal's slopes in unit space: in-plane x : z, and across y : z, with t = y/√(z² + s x²).
 struct UnitSlopes {
@@ -67,8 +68,12 @@ impl StudentT {
         density
     }
 
-    /// See [`internals::table_joints`](crate::internals::table_joints).
-    pub(crate) fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
+    /// Where the tabulated density ([`table_pdf`](MicrofacetDistribution::table_pdf)) has its joints
+    /// for a view: unit slopes x in the plane of incidence, ascending, and t ≥ 0 across it.
+    ///
+    /// Between them the density of the samples is smooth, so a quadrature that respects them
+    /// converges fast. x may end at ±∞.
+    pub fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
         let view = self.stretch(v);
         let Some(rows) = self.rows_at(self.coordinate(&view)) else { return Default::default() };
         let half = self.slices.half_cells + 1;

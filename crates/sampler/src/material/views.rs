@@ -4,8 +4,9 @@
 use glam::Vec3;
 use wide::f32x4;
 
+use microfacet_tables::axis::HalfTangent;
+
 use super::student_t::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, StudentT};
-use crate::axis::HalfTangent;
 use crate::lanes::swap_pairs;
 
 /// 2⁴⁰: a short horizontal part times this, or a long one over it, has squares well within the

@@ -1,7 +1,8 @@
 //! What a texture is, as JSON: beside it, and inside the formats that can hold it.
 
-use microfacet_sampler::axis::LogShape;
 use serde_json::{Map, Value, json};
+
+use microfacet_tables::axis::LogShape;
 
 use super::Made;
 use crate::export::numbers::{as_typed, single};

@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 /// The number of nodes that the polynomial of albedo tables goes through.
-pub(crate) const SIX: usize = 6;
+pub const SIX: usize = 6;
 
 /// The first of the `window` of `n` nodes that a polynomial goes through. The cell that ends at
 /// node `above` is in their middle, or as near to it as the ends allow: windows at the ends are
@@ -49,7 +49,7 @@ pub(super) fn is_even(nodes: &[f64]) -> bool {
 /// [`weights`] of six of `n` ≥ 6 nodes spread evenly over [0, 1], in single precision: the first
 /// node, and the weights. A t outside [0, 1] is taken at the nearer end, NaN at 0.
 #[inline]
-pub(crate) fn six(t: f32, n: usize) -> (usize, [f32; SIX]) {
+pub fn six(t: f32, n: usize) -> (usize, [f32; SIX]) {
     // `max` takes NaN to 0, which `clamp` would keep.
     let x = (t * (n - 1) as f32).max(0.0).min((n - 1) as f32);
     let start = first_node(x as usize + 1, n, SIX);
@@ -76,11 +76,7 @@ pub(super) fn six_weights(x: f32) -> [f32; SIX] {
 
 /// Σ weightᵢ nodeᵢ over the six nodes from `start` on, for each channel.
 #[inline]
-pub(crate) fn combine<const N: usize>(
-    nodes: &[[f32; N]],
-    start: usize,
-    weights: &[f32; SIX],
-) -> [f32; N] {
+pub fn combine<const N: usize>(nodes: &[[f32; N]], start: usize, weights: &[f32; SIX]) -> [f32; N] {
     let mut sum = [0.0; N];
     for (node, w) in nodes[start..start + SIX].iter().zip(weights) {
         for (sum, x) in sum.iter_mut().zip(node) {

@@ -61,20 +61,20 @@ impl Rational {
 
     /// t of the slope x : z with x, z ≥ 0, given `kappa_z` = κz.
     #[inline(always)]
-    pub(crate) fn of_slope(&self, x: f32, kappa_z: f32) -> f32 {
+    pub fn of_slope(&self, x: f32, kappa_z: f32) -> f32 {
         let whole = x + kappa_z;
         if self.crowded { crowded::fast(kappa_z / whole) } else { x / whole }
     }
 
     /// t times `cells` of x = z/ρ, given r = cells/(z + κρ).
     #[inline(always)]
-    pub(crate) fn of_view(&self, rho: f32, z: f32, kappa: f32, r: f32, cells: f32) -> f32 {
+    pub fn of_view(&self, rho: f32, z: f32, kappa: f32, r: f32, cells: f32) -> f32 {
         if self.crowded { crowded::fast(kappa * rho * r / cells) * cells } else { z * r }
     }
 
     /// q and t, both times `cells`, of four views, given `across` = κρ.
     #[inline(always)]
-    pub(crate) fn of_views(&self, across: f32x4, z: f32x4, cells: f32) -> [f32x4; 2] {
+    pub fn of_views(&self, across: f32x4, z: f32x4, cells: f32) -> [f32x4; 2] {
         let area = z + across;
         let q = z * cells / area;
         [q, if self.crowded { (1.0 - (across / area).sqrt()) * cells } else { q }]

@@ -12,13 +12,10 @@ mod subject;
 mod table;
 
 pub use checksum::{seal, seal_document};
-pub use container::{FORMAT, Provenance, VERSION, describe, encode, reassemble};
+pub use container::{FORMAT, Provenance, VERSION, decode, describe, encode, reassemble};
 pub use index::{Index, IndexedSet};
 pub use kind::{Channels, Kind};
 pub use material::{FresnelEntry, MaterialEntry};
 pub use precision::Precision;
-pub use subject::{Covered, LobeEntry, Reflectance, Side, Subject};
+pub use subject::{Covered, LobeEntry, Reflectance, SAME, Side, Subject};
 pub use table::Table;
-
-pub(crate) use container::decode;
-pub(crate) use subject::SAME;

@@ -5,9 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use microfacet_core::math::sqrt64;
+
 use super::coordinate::{Coordinate, bisect, positive};
 use super::lagrange::SIX;
-use crate::math::sqrt64;
 
 /// The view coordinate of albedo tables, t ∈ [0, 1] of μ = cos θ_v ∈ [μ₀, 1].
 ///
@@ -136,7 +137,7 @@ impl PreparedView {
     }
 
     /// t of any cos θ ∈ [0, 1]; a view with cos θ < μ₀ is taken at the first node.
-    pub(crate) fn clamped(&self, cos: f32) -> f32 {
+    pub fn clamped(&self, cos: f32) -> f32 {
         if cos > self.floor as f32 { self.coordinate(f64::from(cos)) as f32 } else { 0.0 }
     }
 

@@ -4,11 +4,11 @@ use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, TAU};
 use core::f64::consts;
 
 use microfacet_core::gauss_legendre;
+use microfacet_core::math::sqrt64;
 use serde::{Deserialize, Serialize};
 
 use super::coordinate::{Coordinate, Placement};
 use super::lagrange::{SIX, six_weights};
-use crate::math::sqrt64;
 
 /// The azimuth φ of a view, in radians from the x axis, as a coordinate t ∈ [0, 1].
 ///
@@ -132,7 +132,7 @@ impl PreparedAzimuth {
     /// The six nodes nearest to (cos φ, sin φ) with their weights in the polynomial, in single
     /// precision.
     #[inline]
-    pub(crate) fn six(&self, c: f64, s: f64) -> [(usize, f32); SIX] {
+    pub fn six(&self, c: f64, s: f64) -> [(usize, f32); SIX] {
         if self.nodes == 1 {
             let mut one = [(0, 0.0); SIX];
             one[0].1 = 1.0;
@@ -164,7 +164,7 @@ impl PreparedAzimuth {
     /// Directions spread over the coordinate, each with its share of the circle; the shares add up
     /// to one. Between nodes it is a Gauss–Legendre rule, since what is interpolated has kinks at
     /// them.
-    pub(crate) fn circle(&self) -> impl Iterator<Item = ([f64; 2], f64)> {
+    pub fn circle(&self) -> impl Iterator<Item = ([f64; 2], f64)> {
         const RULE: [(f64, f64); 4] = gauss_legendre();
         // A limit for tables of any size.
         let cells = if self.fold { self.nodes - 1 } else { self.nodes }.clamp(1, 64);

@@ -1,23 +1,23 @@
 //! Elementary functions of scalars. Square roots are correctly rounded with `std` and without it;
-//! transcendental functions are always `libm`'s or this crate's own, so that a sampled normal has
+//! transcendental functions are always `libm`'s or the sampler's own, so that a sampled normal has
 //! the same bits on every system.
 
-use microfacet_core::Real;
+use crate::Real;
 
 /// Square root.
 #[inline(always)]
-pub(crate) fn sqrt(x: f32) -> f32 {
+pub fn sqrt(x: f32) -> f32 {
     Real::sqrt(x)
 }
 
 /// √x in double precision.
 #[inline(always)]
-pub(crate) fn sqrt64(x: f64) -> f64 {
+pub fn sqrt64(x: f64) -> f64 {
     Real::sqrt(x)
 }
 
 /// x clamped to [0, 1], and 0 for NaN: random numbers and cosines as every lookup takes them.
 #[inline(always)]
-pub(crate) fn unit(x: f32) -> f32 {
+pub fn unit(x: f32) -> f32 {
     if x > 0.0 { x.min(1.0) } else { 0.0 }
 }

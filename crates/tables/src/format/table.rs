@@ -63,7 +63,7 @@ impl Table {
     }
 
     /// The values with the first axes collapsed, each to some of its nodes with their weights.
-    pub(crate) fn collapsed<T: Real + From<f32>>(&self, at: &[Weights]) -> Vec<T> {
+    pub fn collapsed<T: Real + From<f32>>(&self, at: &[Weights]) -> Vec<T> {
         let zero = T::constant(0.0);
         // All combinations of the nodes along the axes, as an index and the product of the weights.
         let mut rows = vec![(0, 1.0)];

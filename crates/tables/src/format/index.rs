@@ -18,8 +18,8 @@ const VERSION: u32 = 1;
 ///
 /// Each file is a whole set with all that its materials need. To serve some materials of a library
 /// of any size, read the files that [`files_of`](Self::files_of) names, one after the other, keep
-/// [`Tables::only`](crate::Tables::only) what serves them, and put that together with
-/// [`Tables::joined`](crate::Tables::joined).
+/// only what serves them (`Tables::only` of the crate `microfacet-sampler`), and put that together
+/// (`Tables::joined`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Index {
     /// The sets, in order.

@@ -11,9 +11,10 @@
 use serde::{Deserialize, Serialize};
 use wide::f32x4;
 
+use microfacet_core::math::{sqrt, sqrt64};
+
 use super::coordinate::Coordinate;
 use super::crowded;
-use crate::math::{sqrt, sqrt64};
 
 /// The half tangent τ = z/(1 + √(1+z²)) ∈ [0, 1] of a view's unit cotangent z = cot θ_v/σ_v ∈
 /// [0, ∞].
@@ -52,7 +53,7 @@ impl HalfTangent {
 
     /// t times `rows` of four views, and 1 − τ; `length` is √(ρ² + z²).
     #[inline(always)]
-    pub(crate) fn of_views(
+    pub fn of_views(
         &self,
         rho: f32x4,
         z: f32x4,
@@ -73,7 +74,7 @@ impl HalfTangent {
 
     /// t of a view from its stretched horizontal length ρ and vertical part z ≥ 0, not both 0.
     #[inline(always)]
-    pub(crate) fn of_view(&self, rho: f32, z: f32) -> f32 {
+    pub fn of_view(&self, rho: f32, z: f32) -> f32 {
         let length = sqrt(rho * rho + z * z);
         let r = 1.0 / (rho + length);
         if self.crowded {
@@ -119,7 +120,7 @@ pub fn rate(x: f64, z: f64) -> f64 {
 
 /// [`ends`] and [`rate`] of one slope, with one root and one division for both.
 #[inline(always)]
-pub(crate) fn ends_and_rate(x: f64, z: f64) -> ([f64; 2], f64) {
+pub fn ends_and_rate(x: f64, z: f64) -> ([f64; 2], f64) {
     let r = sqrt64(x * x + z * z);
     let (whole, steep) = (z + r, r + x.abs());
     let inverse = 1.0 / (r * whole * steep);
@@ -130,28 +131,31 @@ pub(crate) fn ends_and_rate(x: f64, z: f64) -> ([f64; 2], f64) {
 }
 
 /// The slope x : z whose half tangent is the distance g ∈ [0, 2] from 1.
+#[inline]
 pub fn slope_at(g: f64) -> [f64; 2] {
     [2.0 * (1.0 - g), g * (2.0 - g)]
 }
 
 /// A slope x : z in single precision, as lookups return it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Slope {
-    pub(crate) x: f32,
-    pub(crate) z: f32,
+pub struct Slope {
+    /// Along the tangent plane.
+    pub x: f32,
+    /// Along the macro normal, not negative.
+    pub z: f32,
 }
 
 impl Slope {
     /// [`slope_at`] the distance g from the end h = `sign`, 1 or −1.
     #[inline(always)]
-    pub(crate) fn from_end(g: f32, sign: f32) -> Self {
+    pub fn from_end(g: f32, sign: f32) -> Self {
         Self { x: sign * (2.0 - 2.0 * g), z: g * (2.0 - g) }
     }
 }
 
 /// [`slope_at`] with −x/2 in the place of x: (g − 1) : g(2 − g), one operation less.
 #[inline(always)]
-pub(crate) fn half_slope_at(g: f32x4) -> [f32x4; 2] {
+pub fn half_slope_at(g: f32x4) -> [f32x4; 2] {
     [g - 1.0, g * (2.0 - g)]
 }
 

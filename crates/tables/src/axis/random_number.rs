@@ -2,8 +2,9 @@
 
 use wide::f32x4;
 
+use microfacet_core::math::sqrt;
+
 use super::coordinate::Coordinate;
-use crate::math::sqrt;
 
 /// The coordinate t = (2 min(u, 1−u))^¼ ∈ [0, 1] of a random number u.
 ///
@@ -43,14 +44,14 @@ impl MirroredRoot {
     }
 
     /// The factor from [`roots`] to cells.
-    pub(crate) fn scale(cells: usize) -> f32 {
+    pub fn scale(cells: usize) -> f32 {
         (cells as f64 * FOURTH_ROOT_OF_2) as f32
     }
 }
 
 /// min(u, 1−u)^¼ of four random numbers: t/⁴√2; 0 outside [0, 1], and NaN or 0 for NaN.
 #[inline(always)]
-pub(crate) fn roots(u: f32x4) -> f32x4 {
+pub fn roots(u: f32x4) -> f32x4 {
     u.fast_min(1.0 - u).fast_max(f32x4::ZERO).sqrt().sqrt()
 }
 

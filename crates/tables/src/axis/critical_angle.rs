@@ -4,10 +4,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use microfacet_core::math::sqrt64;
+
 use super::coordinate::{Coordinate, bisect, positive};
 use super::lagrange::{SIX, six};
 use super::view_blend::{fourth_roots, harmonic, kappa, terms};
-use crate::math::sqrt64;
 
 /// The view coordinate of the dense side of an interface of index η, t ∈ [0, 1].
 ///
@@ -91,7 +92,7 @@ impl PreparedCritical {
     }
 
     /// μ_c, the view of t = ½.
-    pub(crate) fn critical(&self) -> f64 {
+    pub fn critical(&self) -> f64 {
         self.critical
     }
 
@@ -131,7 +132,7 @@ impl PreparedCritical {
 
     /// The first of the six nodes about cos θ ∈ [0, 1], all in one half, and their weights; `n`
     /// nodes, an odd number, are spread evenly.
-    pub(crate) fn six(&self, cos: f64, n: usize) -> (usize, [f32; SIX]) {
+    pub fn six(&self, cos: f64, n: usize) -> (usize, [f32; SIX]) {
         let half = n / 2 + 1;
         let cos = cos.max(self.floor);
         let (start, weights) = six(self.half(cos) as f32, half);

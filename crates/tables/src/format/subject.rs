@@ -27,7 +27,7 @@ pub enum LobeEntry {
     Ellipsoid {
         /// σx and σy.
         sigma: [f64; 2],
-        /// θx, θy, θz in radians, as for [`Skew::new`](crate::Skew::new).
+        /// θx, θy, θz in radians, as for [`Skew::new`](microfacet_core::Skew::new).
         theta: [f64; 3],
         /// 1/(γ−1).
         s: f64,
@@ -70,7 +70,7 @@ impl LobeEntry {
 
     /// Whether G1 is clamped at one, as for a tilted lobe, of which less may be seen than of the
     /// macrosurface.
-    pub(crate) const fn is_clamped(&self) -> bool {
+    pub const fn is_clamped(&self) -> bool {
         matches!(self, Self::Ellipsoid { .. })
     }
 }
@@ -189,16 +189,16 @@ pub struct Covered {
 
 /// Two numbers are the same within this after a coordinate and its inverse: 1/(γ−1) of the end of a
 /// range may round to just outside it.
-pub(crate) const SAME: f64 = 1e-9;
+pub const SAME: f64 = 1e-9;
 
 impl Covered {
     /// Whether the shape s = 1/(γ−1) is among them.
-    pub(crate) fn contains_shape(&self, s: f64) -> bool {
+    pub fn contains_shape(&self, s: f64) -> bool {
         within(self.s, s)
     }
 
     /// Whether the roughness σ is; false of tables without an axis of σ.
-    pub(crate) fn contains_sigma(&self, sigma: f64) -> bool {
+    pub fn contains_sigma(&self, sigma: f64) -> bool {
         self.sigma.is_some_and(|range| within(range, sigma))
     }
 }

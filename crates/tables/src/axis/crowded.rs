@@ -4,7 +4,7 @@
 //! power of 1 − x less than two, too slowly for even nodes. The functions use the rest 1 − x, which
 //! callers know without cancellation.
 
-use crate::math::sqrt;
+use microfacet_core::math::sqrt;
 
 /// t of x and the rest 1 − x.
 pub(super) fn coordinate(x: f64, rest: f64) -> f64 {

@@ -8,16 +8,16 @@ use alloc::vec::Vec;
 
 use wide::{f32x4, i32x4};
 
-use crate::math::sqrt64;
+use microfacet_core::math::sqrt64;
 
 /// (value, slope) at a node, the slope per node index.
-pub(crate) type Node = [f32; 2];
+pub type Node = [f32; 2];
 
 /// Splits a coordinate in [0, cells] into a cell and the position inside it.
 ///
 /// The position is 1 at the last node, so that both ends are reached. NaN gives cell 0.
 #[inline(always)]
-pub(crate) fn locate(x: f32, cells: usize) -> (usize, f32) {
+pub fn locate(x: f32, cells: usize) -> (usize, f32) {
     // The cast saturates and takes NaN to 0; the cell is at most cells − 1 whatever x is.
     let cell = (x as i32).clamp(0, cells as i32 - 1);
     (cell as usize, x - cell as f32)
@@ -25,7 +25,7 @@ pub(crate) fn locate(x: f32, cells: usize) -> (usize, f32) {
 
 /// The cubic through two nodes at position w ∈ [0, 1] between them.
 #[inline(always)]
-pub(crate) fn hermite(a: Node, b: Node, w: f32) -> f32 {
+pub fn hermite(a: Node, b: Node, w: f32) -> f32 {
     let rise = b[0] - a[0];
     let c2 = 3.0 * rise - 2.0 * a[1] - b[1];
     let c3 = a[1] + b[1] - 2.0 * rise;
@@ -34,7 +34,7 @@ pub(crate) fn hermite(a: Node, b: Node, w: f32) -> f32 {
 
 /// The weights of [value, slope, value, slope] of two nodes at w, which is the same in all lanes.
 #[inline(always)]
-pub(crate) fn basis(w: f32x4) -> f32x4 {
+pub fn basis(w: f32x4) -> f32x4 {
     let [c0, c1] = [f32x4::new([1.0, 0.0, 0.0, 0.0]), f32x4::new([0.0, 1.0, 0.0, 0.0])];
     let [c2, c3] = [f32x4::new([-3.0, -2.0, 3.0, -1.0]), f32x4::new([2.0, 1.0, -2.0, 1.0])];
     c0 + w * (c1 + w * (c2 + w * c3))
@@ -43,7 +43,7 @@ pub(crate) fn basis(w: f32x4) -> f32x4 {
 /// [`hermite`] of four pairs of nodes at four positions; the nodes are
 /// [value, slope, value, slope].
 #[inline(always)]
-pub(crate) fn hermite_lanes([v0, s0, v1, s1]: [f32x4; 4], w: f32x4) -> f32x4 {
+pub fn hermite_lanes([v0, s0, v1, s1]: [f32x4; 4], w: f32x4) -> f32x4 {
     // `basis` without its zero terms, which changes no bit.
     let b0 = 1.0 + w * (w * (w * 2.0 - 3.0));
     let b1 = w * (1.0 + w * (w - 2.0));
@@ -53,11 +53,11 @@ pub(crate) fn hermite_lanes([v0, s0, v1, s1]: [f32x4; 4], w: f32x4) -> f32x4 {
 }
 
 /// Coefficients of the cubic c₀ + w(c₁ + w(c₂ + w c₃)) of a cell.
-pub(crate) type Cell = [f32; 4];
+pub type Cell = [f32; 4];
 
 /// The cubics between nodes, multiplied by `scale`, and after them a *guard cell*: a coordinate at
 /// the upper end may fall into it, at position 0, so that fast lookups need not clamp the cell.
-pub(crate) fn cubic_cells(nodes: &[Node], scale: f64) -> Vec<Cell> {
+pub fn cubic_cells(nodes: &[Node], scale: f64) -> Vec<Cell> {
     let guard = nodes.last().map(|node| [f64::from(node[0]), 0.0, 0.0, 0.0]);
     let cubics = nodes.windows(2).map(|pair| Cubic::new(pair[0], pair[1]).c);
     cubics.chain(guard).map(|c| c.map(|c| (c * scale) as f32)).collect()
@@ -65,25 +65,25 @@ pub(crate) fn cubic_cells(nodes: &[Node], scale: f64) -> Vec<Cell> {
 
 /// The cubic of a cell at position w with the fewest operations.
 #[inline(always)]
-pub(crate) fn horner(c: &Cell, w: f32) -> f32 {
+pub fn horner(c: &Cell, w: f32) -> f32 {
     c[0] + w * (c[1] + w * (c[2] + w * c[3]))
 }
 
 /// The cubic of a cell at position w, in two halves that do not wait for each other.
 #[inline(always)]
-pub(crate) fn cubic(c: &Cell, w: f32) -> f32 {
+pub fn cubic(c: &Cell, w: f32) -> f32 {
     (c[0] + w * c[1]) + (w * w) * (c[2] + w * c[3])
 }
 
 /// [`cubic`] of four cells at four positions.
 #[inline(always)]
-pub(crate) fn cubic_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
+pub fn cubic_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
     (c0 + w * c1) + (w * w) * (c2 + w * c3)
 }
 
 /// [`horner`] of four cells at four positions.
 #[inline(always)]
-pub(crate) fn horner_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
+pub fn horner_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
     c0 + w * (c1 + w * (c2 + w * c3))
 }
 
@@ -93,14 +93,14 @@ pub(crate) fn horner_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
 /// The cast saturates only where the hardware's does; NaN gives a cell outside the table, or a NaN
 /// position.
 #[inline(always)]
-pub(crate) fn split(x: f32x4) -> (i32x4, f32x4) {
+pub fn split(x: f32x4) -> (i32x4, f32x4) {
     let cell = x.fast_trunc_int();
     (cell, x - f32x4::from_i32x4(cell))
 }
 
 /// Two neighbouring nodes, each interpolated linearly between the rows `low` and `high` of a table.
 #[inline(always)]
-pub(crate) fn between_rows(low: &[Node], high: &[Node], cell: usize, w: f32) -> (Node, Node) {
+pub fn between_rows(low: &[Node], high: &[Node], cell: usize, w: f32) -> (Node, Node) {
     // A window of two nodes is 16 bytes: one load per row.
     let (a, b) = (&low[cell..cell + 2], &high[cell..cell + 2]);
     let mix = |a: Node, b: Node| [a[0] + w * (b[0] - a[0]), a[1] + w * (b[1] - a[1])];
@@ -109,29 +109,35 @@ pub(crate) fn between_rows(low: &[Node], high: &[Node], cell: usize, w: f32) -> 
 
 /// A cubic on [0, 1] in double precision, for inverting [`hermite`].
 #[derive(Clone, Copy)]
-pub(crate) struct Cubic {
+pub struct Cubic {
     c: [f64; 4],
 }
 
 impl Cubic {
-    pub(crate) fn new(a: Node, b: Node) -> Self {
+    /// Between two nodes.
+    #[inline]
+    pub fn new(a: Node, b: Node) -> Self {
         let [a0, a1, b0, b1] = [a[0], a[1], b[0], b[1]].map(f64::from);
         let rise = b0 - a0;
         Self { c: [a0, a1, 3.0 * rise - 2.0 * a1 - b1, a1 + b1 - 2.0 * rise] }
     }
 
-    pub(crate) fn value(&self, w: f64) -> f64 {
+    /// Its value at w.
+    #[inline]
+    pub fn value(&self, w: f64) -> f64 {
         self.c[0] + w * (self.c[1] + w * (self.c[2] + w * self.c[3]))
     }
 
-    pub(crate) fn derivative(&self, w: f64) -> f64 {
+    /// Its derivative at w.
+    #[inline]
+    pub fn derivative(&self, w: f64) -> f64 {
         self.c[1] + w * (2.0 * self.c[2] + w * 3.0 * self.c[3])
     }
 
     /// The w ∈ [0, 1] where the cubic is `y`, to 1e-11; the cubic ascends, as nodes are kept
     /// monotone.
     #[inline(always)]
-    pub(crate) fn solve(&self, y: f64) -> f64 {
+    pub fn solve(&self, y: f64) -> f64 {
         let whole = self.c[1] + self.c[2] + self.c[3];
         // Newton's steps from the chord, without a branch: they double the digits, and three are
         // enough in all but a few cells in a thousand.
@@ -168,7 +174,7 @@ impl Cubic {
 }
 
 /// Makes a row of nodes ascend despite rounding and negative weights along other axes.
-pub(crate) fn make_monotone(run: &mut [Node]) {
+pub fn make_monotone(run: &mut [Node]) {
     let mut last = 0.0_f32;
     for node in run.iter_mut() {
         last = last.max(node[0]);

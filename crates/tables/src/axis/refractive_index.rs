@@ -2,8 +2,9 @@
 
 use core::f64::consts::FRAC_PI_2;
 
+use microfacet_core::math::sqrt64;
+
 use super::coordinate::{Coordinate, Placement};
-use crate::math::sqrt64;
 
 /// The coordinate of an index of refraction η ∈ [1, ∞], dense side over thin: t = acos(1 − 2x)/π ∈
 /// [0, 1] with x = F0^¼ = √((η−1)/(η+1)).

@@ -48,7 +48,7 @@ pub struct Provenance {
 
 impl Provenance {
     /// Checks every number of the materials, and that their names differ.
-    pub(crate) fn check(&self) -> Result<(), LoadError> {
+    pub fn check(&self) -> Result<(), LoadError> {
         let mut names = BTreeSet::new();
         for material in &self.materials {
             let named =
@@ -175,7 +175,7 @@ pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, Load
 /// # Errors
 /// [`LoadError`] saying what is wrong; it never panics, and never allocates more than a few times
 /// the input.
-pub(crate) fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Table>), LoadError> {
+pub fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Table>), LoadError> {
     let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|why| {
         invalid(format!("{why}; a table set is a safetensors file written by `microfacet-bake`"))
     })?;

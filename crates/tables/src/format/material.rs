@@ -27,7 +27,7 @@ pub struct MaterialEntry {
     /// is then the scale of its tables, and `s` means nothing.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub distribution: String,
-    /// The turn of an ellipsoid, θx, θy, θz in radians as for [`Skew::new`](crate::Skew::new); its
+    /// The turn of an ellipsoid, θx, θy, θz in radians as for [`Skew::new`](microfacet_core::Skew::new); its
     /// σ and s are single numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub theta: Option<[f64; 3]>,

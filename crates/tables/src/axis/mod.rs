@@ -22,7 +22,7 @@ mod coordinate;
 mod critical_angle;
 mod crowded;
 pub mod half_tangent;
-pub(crate) mod hermite;
+pub mod hermite;
 mod inverse_shape;
 pub mod lagrange;
 mod log_roughness;
@@ -44,7 +44,7 @@ pub use rational::Rational;
 pub use refractive_index::ReflectanceRoot;
 pub use view_blend::{PreparedView, ViewBlend};
 
-pub(crate) use random_number::roots;
+pub use random_number::roots;
 
 use coordinate::Coordinate;
 
@@ -166,7 +166,7 @@ impl Interpolation {
 }
 
 /// Nodes of an axis, by index, with their weights in an interpolated value.
-pub(crate) type Weights = Vec<(usize, f64)>;
+pub type Weights = Vec<(usize, f64)>;
 
 /// One axis of a table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -259,7 +259,7 @@ impl Axis {
     /// does not cover t.
     ///
     /// A t within rounding of a node is taken as that node.
-    pub(crate) fn weights(&self, t: f64) -> Option<Weights> {
+    pub fn weights(&self, t: f64) -> Option<Weights> {
         let [first, last] = self.ends();
         // On some axes t has come through logarithms and their inverses.
         let same = match self.interpolation {
@@ -275,7 +275,7 @@ impl Axis {
 
     /// Checks what every reader relies on: finite, strictly ascending nodes within the mapping's
     /// range, at the places that it prescribes, and evenly spaced where a polynomial needs that.
-    pub(crate) fn validate(&self) -> Result<(), LoadError> {
+    pub fn validate(&self) -> Result<(), LoadError> {
         let fail = |why: &str| Err(LoadError::Invalid(format!("axis `{}`: {why}", self.name)));
         let unsupported =
             |why: &str| Err(LoadError::Unsupported(format!("axis `{}`: {why}", self.name)));

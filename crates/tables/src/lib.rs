@@ -1,0 +1,52 @@
+//! What a table of a microfacet material is: its coordinates, its values with the errors measured
+//! when it was baked, the lookup along its axes, and the file of a set.
+//!
+//! | | |
+//! | --- | --- |
+//! | [`Table`] | values over [`Axis`]es, what they are of ([`Kind`], [`Subject`]) and how far they err |
+//! | [`axis`] | one file a coordinate: its formula, its inverse, its nodes, and its fast form in f32 |
+//! | [`encode`], [`decode`] | a set to and from the bytes of a safetensors file; `docs/format.md` specifies it |
+//! | [`describe`], [`reassemble`] | the description of one table, for another container |
+//! | [`Provenance`], [`MaterialEntry`] | where a set comes from, and its materials |
+//! | [`Index`] | which of the numbered sets of a library holds a material |
+//!
+//! Whoever bakes a set (`microfacet-baker`) and whoever looks it up (`microfacet-sampler`) meet
+//! here, so that a coordinate is one formula for both. A renderer needs this crate only to write
+//! sets, or to read one table by itself:
+//!
+//! ```
+//! # fn main() -> Result<(), microfacet_tables::LoadError> {
+//! use microfacet_tables::{Kind, Precision, Provenance, Table, decode, encode};
+//! # let file = include_bytes!("../../sampler/data/default.safetensors");
+//! let (provenance, tables) = decode(file, true)?;
+//! let g1 = tables.iter().find(|table| table.kind == Kind::Shadowing).unwrap();
+//! assert!(g1.certificate["g1_max_error"] < 1e-5);
+//!
+//! let again = encode(&provenance, &tables)?;
+//! assert_eq!(again, file);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! `no_std` with `alloc` without the feature `std`, which brings hardware square roots.
+
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
+
+pub mod axis;
+
+mod error;
+mod format;
+
+pub use axis::{Axis, Interpolation, Mapping, Weights};
+pub use error::{LoadError, Range};
+pub use format::{
+    Channels, Covered, FORMAT, FresnelEntry, Index, IndexedSet, Kind, LobeEntry, MaterialEntry,
+    Precision, Provenance, Reflectance, SAME, Side, Subject, Table, VERSION, decode, describe,
+    encode, reassemble, seal, seal_document,
+};
+
+/// The smallest γ of tables; below, almost every visible normal has a slope beyond any
+/// floating-point number. The mathematics begins at 3/2.
+pub const GAMMA_MIN: f64 = 1.501;
