@@ -4,21 +4,22 @@
 use std::sync::OnceLock;
 
 use glam::Vec3;
-use microfacet_bake::plan::{Options as PlanOptions, Plan};
-use microfacet_bake::progress::Stage;
-use microfacet_bake::scene::Scene;
-use microfacet_bake::table_set::{Settings, Target, bake};
-use microfacet_bake::table_spec::Quality;
-use microfacet_bake::validate::bsdf::chi_square::{run, test};
-use microfacet_bake::validate::bsdf::configuration::{Configuration, configurations};
-use microfacet_bake::validate::bsdf::specimen::{LobeOf, Specimen, Surface, tables};
-use microfacet_bake::validate::bsdf::{furnace, reciprocity};
-use microfacet_bake::validate::{LEVEL, Options};
+use microfacet_baker::plan::{Options as PlanOptions, Plan};
+use microfacet_baker::progress::Stage;
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{Settings, Target, bake};
+use microfacet_baker::table_spec::Quality;
+use microfacet_sampler::bsdf::Event;
 use microfacet_sampler::{
-    AnyBsdf, BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Event, Lobe,
-    Masking, Plastic, Skew, StandIn, Tables, Transport,
+    AnyBsdf, BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Lobe, Masking,
+    Plastic, Skew, StandIn, Tables, Transport,
 };
 use microfacet_tables::{Kind, Precision, encode};
+use microfacet_validate::bsdf::chi_square::{run, test};
+use microfacet_validate::bsdf::configuration::{Configuration, configurations};
+use microfacet_validate::bsdf::specimen::{LobeOf, Specimen, Surface, tables};
+use microfacet_validate::bsdf::{furnace, reciprocity};
+use microfacet_validate::{LEVEL, Options};
 
 use crate::command::{json, ok, refused, run as run_command};
 
@@ -217,17 +218,14 @@ fn draft(recipe: &str) -> Tables {
     bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set
 }
 
-/// The lines of a recipe in a message.
+/// The lines of a recipe in an error.
 fn lines(why: &BindError) -> String {
-    let text = why.to_string();
-    let (_, rest) = text.split_once("[[material]]").unwrap_or_else(|| panic!("no lines: {text}"));
-    let end = rest.find("\nor ").expect(&text);
-    format!("[[material]]{}\n", &rest[..end])
+    format!("{}\n", why.recipe().unwrap_or_else(|| panic!("no lines: {why}")))
 }
 
-/// What a message says to append to a recipe makes the tables that were missing.
+/// What an error says to append to a recipe makes the tables that were missing.
 #[test]
-fn the_lines_of_a_message_make_what_is_missing() {
+fn the_lines_of_an_error_make_what_is_missing() {
     let start = "[[material]]\nname = \"first\"\nsigma = 0.2\ngamma = 3.0\n";
     let bare = draft(start);
     for gamma in [2.5, f64::INFINITY] {

@@ -7,15 +7,15 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
-use microfacet_bake::bake::{albedo, bake_radial};
-use microfacet_bake::certify::certificate::worst_error;
-use microfacet_bake::certify::radial::certify;
-use microfacet_bake::distribution::Named;
-use microfacet_bake::plan::{Options, Plan};
-use microfacet_bake::progress::Stage;
-use microfacet_bake::scene::Scene;
-use microfacet_bake::table_set::{Target, bake};
-use microfacet_bake::table_spec::Quality;
+use microfacet_baker::bake::{albedo, bake_radial};
+use microfacet_baker::certify::certificate::worst_error;
+use microfacet_baker::certify::radial::certify;
+use microfacet_baker::distribution::Named;
+use microfacet_baker::plan::{Options, Plan};
+use microfacet_baker::progress::Stage;
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{Target, bake};
+use microfacet_baker::table_spec::Quality;
 use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_model::{
     AlbedoIntegrator, Ellipsoid, Shape, SignedSlope, UnitView, VisibleSlope, across_cdf,

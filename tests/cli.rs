@@ -2,7 +2,7 @@
 
 mod command;
 
-use microfacet_bake::store;
+use microfacet_baker::store;
 use microfacet_sampler::{Lobe, Tables};
 use microfacet_tables::Kind;
 

@@ -2,11 +2,12 @@
 //! close.
 
 use glam::Vec3;
-use microfacet_bake::bake::albedo::{AlbedoLobe, Domain, bake};
-use microfacet_bake::interval::Interval;
-use microfacet_bake::plan::RequiredAlbedo;
-use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::{Masking, Tables, ViewCurve};
+use microfacet_baker::bake::albedo::{AlbedoLobe, Domain, bake};
+use microfacet_baker::interval::Interval;
+use microfacet_baker::plan::RequiredAlbedo;
+use microfacet_baker::table_spec::Quality;
+use microfacet_sampler::albedo::ViewCurve;
+use microfacet_sampler::{Masking, Tables};
 use microfacet_tables::{Precision, Reflectance, Side};
 use rand::{RngExt, SeedableRng};
 

@@ -26,7 +26,7 @@ fn seeds_of_table_files_are_of_this_version() {
     for target in ["loader", "image"] {
         for entry in fs::read_dir(folder.join(target)).unwrap() {
             let path = entry.unwrap().path();
-            microfacet_bake::store::read(&path)
+            microfacet_baker::store::read(&path)
                 .unwrap_or_else(|why| panic!("{}: {why}", path.display()));
         }
     }
@@ -36,7 +36,7 @@ fn seeds_of_table_files_are_of_this_version() {
 fn table_files() {
     seeds("loader").iter().for_each(|bytes| load(bytes));
     for bytes in seeds("image") {
-        let _ = microfacet_bake::store::decode_exr(&bytes);
+        let _ = microfacet_baker::store::decode_exr(&bytes);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The committed default set is what this code bakes, byte for byte.
 
-use microfacet_bake::plan::Plan;
-use microfacet_bake::table_set::{Target, bake};
+use microfacet_baker::plan::Plan;
+use microfacet_baker::table_set::{Target, bake};
 use microfacet_sampler::DEFAULT_SET as COMMITTED;
 use microfacet_tables::{Kind, encode};
 

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use microfacet_bake::plot::FIGURES;
+use microfacet_report::plot::FIGURES;
+use microfacet_study::STUDIES;
 use microfacet_tables::{Kind, Mapping};
 
 /// `text` with every run of white space as one space, so that a page may break its lines anywhere.
@@ -64,6 +65,7 @@ fn no_example_asks_for_a_crate_of_vectors() {
         .map(|at| root.join(at))
         .into();
     files(&root.join("docs"), ".md", &mut all);
+    files(&root.join("crates/tables/src"), ".rs", &mut all);
     files(&root.join("crates/sampler/src"), ".rs", &mut all);
     files(&root.join("crates/model/src"), ".rs", &mut all);
     assert!(all.len() > 100, "{}", all.len());
@@ -101,11 +103,10 @@ fn the_page_of_what_was_reproduced_has_whole_rows_and_commands_that_there_are() 
         assert!(whole, "docs/reproduced.md: {row:?}");
         // Between backticks are commands.
         for command in row[1].split('`').skip(1).step_by(2) {
-            if let Some(example) = after(command, "--example") {
-                let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
-                let found = folder.join(format!("{example}.rs")).exists()
-                    || folder.join(example).join("main.rs").exists();
-                assert!(found, "docs/reproduced.md: no example {example}");
+            if command.contains("microfacet-study") {
+                let name = after(command, "--").unwrap_or_default();
+                let found = STUDIES.iter().any(|study| study.name == name);
+                assert!(found, "docs/reproduced.md: no study {name}");
             }
             figures.extend(after(command, "plot"));
         }

@@ -6,14 +6,13 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
-use microfacet_bake::plan::{Options, Plan};
-use microfacet_bake::scene::Scene;
-use microfacet_bake::table_set::{Target, bake};
+use microfacet_baker::plan::{Options, Plan};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{Target, bake};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::statistics::{chi_square, sidak};
-use microfacet_sampler::MicrofacetDistribution as _;
-use microfacet_sampler::{Masking, MaterialError, Skew, Tables};
+use microfacet_sampler::{Masking, MaterialError, MicrofacetDistribution as _, Skew, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;

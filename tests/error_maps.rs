@@ -2,15 +2,15 @@
 
 use std::sync::LazyLock;
 
-use microfacet_bake::certify::certificate::worst_error;
-use microfacet_bake::plan::{AlbedoWish, Options, Plan};
-use microfacet_bake::progress::{Meter, Stage};
-use microfacet_bake::report::error_map::{ErrorMap, Quantity, Sides, measure, sides};
-use microfacet_bake::scene::Scene;
-use microfacet_bake::store;
-use microfacet_bake::table_set::{Target, bake};
-use microfacet_bake::table_spec::Quality;
+use microfacet_baker::certify::certificate::worst_error;
+use microfacet_baker::plan::{AlbedoWish, Options, Plan};
+use microfacet_baker::progress::{Meter, Stage};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::store;
+use microfacet_baker::table_set::{Target, bake};
+use microfacet_baker::table_spec::Quality;
 use microfacet_core::shape::s_of_gamma;
+use microfacet_report::error_map::{ErrorMap, Quantity, Sides, measure, sides};
 use microfacet_sampler::Tables;
 use microfacet_tables::axis::MirroredRoot;
 use microfacet_tables::{Kind, Mapping, Precision, Provenance, Table};

@@ -2,23 +2,21 @@
 //! reads them by a filter of hardware; here is what needs neither.
 
 mod command;
-#[path = "../examples/engines/shipped.rs"]
-#[allow(dead_code, reason = "the example reads files by name")]
-mod shipped;
 
 use std::fs;
 use std::io::Cursor;
 
 use command::{names, ok, refused, run};
-use microfacet_bake::bake::albedo::weights;
-use microfacet_bake::export::texture::engine::{LAYOUTS, Layout};
-use microfacet_bake::export::texture::{
+use microfacet_baker::bake::albedo::weights;
+use microfacet_baker::progress::Stage;
+use microfacet_export::texture::engine::{LAYOUTS, Layout};
+use microfacet_export::texture::{
     Channels, Checks, Deviation, Format, Made, Place, Shapes, Texture, TextureSpec, check, files,
     known, shader_lines,
 };
-use microfacet_bake::progress::Stage;
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::Masking;
+use microfacet_study::engines::shipped;
 use microfacet_tables::axis::LogShape;
 use serde_json::Value;
 
@@ -443,11 +441,11 @@ fn what_cannot_be_made_is_refused_with_a_remedy() {
         (&["--gamma", "2", "--sigma-max", "-1"], "(0, 3]"),
         (&["--gamma", "2", "--sigma-max", "3.1"], "(0, 3]"),
         (&["--gamma", "2", "--sigma-max", "1e-12"], "below 0.0001"),
-        (&["--gamma-min", "1e17"], "use --gamma inf"),
+        (&["--gamma-min", "1e17"], "the one shape gamma = inf"),
         (&["--gamma", "2", "--sigma-max", "nan"], "finite"),
         (&["--gamma", "1.4"], "1.5"),
         (&["--gamma", "1.5005"], "1.501"),
-        (&["--gamma-min", "inf"], "use --gamma inf"),
+        (&["--gamma-min", "inf"], "the one shape gamma = inf"),
         (&["--gamma-min", "3", "--gamma-max", "2"], "does not lie above --gamma-min 3"),
         (&["--gamma-min", "3", "--gamma-max", "4"], "leave out --gamma-max"),
         (&["--gamma", "2", "--gamma-max", "3"], "--gamma-max is of no use"),

@@ -1,11 +1,11 @@
 //! Damaged images: every truncation and every flipped bit of a small table gives an error or the
 //! identical table.
 
-use microfacet_bake::bake::bake;
-use microfacet_bake::plan::Plan;
-use microfacet_bake::progress::Stage;
-use microfacet_bake::store::{decode_exr, encode_exr};
-use microfacet_bake::table_spec::{ShapeAxis, TableSpec};
+use microfacet_baker::bake::bake;
+use microfacet_baker::plan::Plan;
+use microfacet_baker::progress::Stage;
+use microfacet_baker::store::{decode_exr, encode_exr};
+use microfacet_baker::table_spec::{ShapeAxis, TableSpec};
 use microfacet_sampler::Tables;
 use microfacet_tables::{Kind, LoadError, Precision};
 

@@ -4,14 +4,14 @@
 use std::sync::OnceLock;
 
 use glam::Vec3;
-use microfacet_bake::bake::albedo::{AlbedoLobe, Domain, bake};
-use microfacet_bake::interval::Interval;
-use microfacet_bake::plan::RequiredAlbedo;
-use microfacet_bake::progress::Stage;
-use microfacet_bake::table_spec::Quality;
-use microfacet_bake::validate::furnace::{TOLERANCE, direction, furnace, survey};
+use microfacet_baker::bake::albedo::{AlbedoLobe, Domain, bake};
+use microfacet_baker::interval::Interval;
+use microfacet_baker::plan::RequiredAlbedo;
+use microfacet_baker::progress::Stage;
+use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::{Masking, Tables};
 use microfacet_tables::{Precision, Table};
+use microfacet_validate::furnace::{TOLERANCE, direction, furnace, survey};
 
 /// Full tables of the two shapes, at the nodes of the default quality.
 fn baked() -> &'static [Table] {

@@ -11,10 +11,11 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use microfacet_bake::store;
 use tempfile::TempDir;
 
 use command::{names, ok, refused, run};
+
+use microfacet_baker::store;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_microfacet-bake");
 

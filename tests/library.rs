@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use command::{json, names, ok, refused, run};
-use microfacet_bake::store::{read, read_materials};
+use microfacet_baker::store::{read, read_materials};
 use microfacet_sampler::MicrofacetDistribution;
 use microfacet_tables::Index;
 
@@ -231,7 +231,7 @@ fn more_materials_than_a_set_holds_become_numbered_sets() {
 
     // One set in the place of three, and three in the place of one.
     ok(folder, &["bake", "lib.toml", "--cache", "cache", "--out", "out", "--quality", "draft"]);
-    assert_eq!(names(&folder.join("out")), [microfacet_bake::store::SET_FILE]);
+    assert_eq!(names(&folder.join("out")), [microfacet_baker::store::SET_FILE]);
     assert_eq!(
         fs::read(folder.join("out/tables.safetensors")).unwrap(),
         fs::read(folder.join("one/tables.safetensors")).unwrap()

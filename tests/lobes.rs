@@ -2,10 +2,10 @@
 //! what has a counterpart in the model agrees with it.
 
 use glam::{DVec3, Vec3};
-use microfacet_bake::plan::{Options, Plan};
-use microfacet_bake::scene::Scene;
-use microfacet_bake::table_set::{Target, bake};
-use microfacet_bake::table_spec::Quality;
+use microfacet_baker::plan::{Options, Plan};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{Target, bake};
+use microfacet_baker::table_spec::Quality;
 use microfacet_model as model;
 use microfacet_model::classic::Gtr;
 use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Skew, StudentT, Tables};

@@ -1,11 +1,11 @@
 //! A budget of bytes for tables of all kinds is filled, never exceeded, and refused with the
 //! smallest one that is possible.
 
-use microfacet_bake::cache::Cache;
-use microfacet_bake::certify::certificate::worst_error;
-use microfacet_bake::plan::{Options, Plan};
-use microfacet_bake::scene::Scene;
-use microfacet_bake::table_set::{BakeError, Baked, Settings, Target, bake_with};
+use microfacet_baker::cache::Cache;
+use microfacet_baker::certify::certificate::worst_error;
+use microfacet_baker::plan::{Options, Plan};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_sampler::Tables;
 use microfacet_tables::{Precision, Table, encode};
 

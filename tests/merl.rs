@@ -1,19 +1,17 @@
 //! `fit --merl`: files in the format of the MERL database, made of our own lobes.
 
 mod command;
-#[path = "../examples/merl/made.rs"]
-mod made;
 
 use std::fs;
 use std::path::Path;
 
 use command::{ok, refused};
-use made::Material;
-use microfacet_bake::fit::merl::{
+
+use microfacet_baker::progress::Meter;
+use microfacet_fit::merl::{
     BYTES, Comparison, Fitted, Fitter, MIDDLE, Measured, MerlError, encode,
 };
-use microfacet_bake::progress::Meter;
-use microfacet_bake::scene;
+use microfacet_study::merl::made::Material;
 
 fn fit(material: &Material) -> Comparison {
     let measured = Measured::decode(&material.file(MIDDLE).unwrap()).unwrap();
@@ -102,7 +100,7 @@ fn the_command_compares_and_writes_a_recipe() {
     assert!(text.contains("best for 2 materials: Student-t 1, GGX 1, Beckmann 0"), "{text}");
     assert!(text.ends_with("fitted.toml\n"), "{text}");
     // The recipe is one: `plan` takes it, with names of their own and the masking of the fit.
-    let found = scene::load(&at.join("fitted.toml")).unwrap();
+    let found = microfacet_scene::load(&at.join("fitted.toml")).unwrap();
     let names: Vec<&str> = found.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["gold", "gold (2)"]);
     assert!(ok(at, &["plan", "fitted.toml"]).contains("uncorrelated"));

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use microfacet_bake::store;
+use microfacet_baker::store;
 use microfacet_sampler::Tables;
 use microfacet_tables::Kind;
 use safetensors::tensor::TensorView;

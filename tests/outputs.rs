@@ -4,9 +4,9 @@ mod command;
 
 use std::fs;
 
-use microfacet_bake::store;
-
 use command::{json, ok, refused, run};
+
+use microfacet_baker::store;
 
 const GLASS: &str = include_str!("../tables/recipes/frosted-glass.toml");
 

@@ -3,13 +3,13 @@
 mod command;
 
 use glam::Vec3;
-use microfacet_bake::cache::Cache;
-use microfacet_bake::certify::certificate::worst_error;
-use microfacet_bake::interval::Interval;
-use microfacet_bake::plan::{Options, Plan, Verdict, bare_cost, cost};
-use microfacet_bake::scene::Scene;
-use microfacet_bake::table_set::{BakeError, Baked, Settings, Target, bake_with};
-use microfacet_bake::table_spec::{Quality, general_set};
+use microfacet_baker::cache::Cache;
+use microfacet_baker::certify::certificate::worst_error;
+use microfacet_baker::interval::Interval;
+use microfacet_baker::plan::{Options, Plan, Verdict, bare_cost, cost};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with};
+use microfacet_baker::table_spec::{Quality, general_set};
 use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Tables};
 use microfacet_tables::{Precision, encode};
 

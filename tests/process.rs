@@ -162,7 +162,7 @@ fn a_second_bake_into_a_folder_is_refused() {
     let workshop = workshop();
     let out = workshop.path().join("shared");
     fs::create_dir(&out).unwrap();
-    let held = microfacet_bake::store::OutputFolder::open(&out).unwrap();
+    let held = microfacet_baker::store::OutputFolder::open(&out).unwrap();
     let output = bake(&workshop, "old", &out).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(message(&output).contains("another bake"), "{}", message(&output));

@@ -4,11 +4,10 @@ mod command;
 
 use std::fs;
 
-use microfacet_bake::distribution::DistributionKind;
-use microfacet_bake::plan::{Options, Plan};
-use microfacet_bake::scene;
-use microfacet_bake::table_set::{Target, bake};
-use microfacet_bake::table_spec::Quality;
+use microfacet_baker::distribution::DistributionKind;
+use microfacet_baker::plan::{Options, Plan};
+use microfacet_baker::table_set::{Target, bake};
+use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::{Lobe, Metal};
 use microfacet_tables::Precision;
 
@@ -34,7 +33,8 @@ fn every_example_of_the_page_bakes() {
     for recipe in blocks("toml") {
         let path = folder.path().join("recipe.toml");
         fs::write(&path, recipe).unwrap();
-        let scene = scene::load(&path).unwrap_or_else(|why| panic!("{why} in\n{recipe}"));
+        let scene =
+            microfacet_scene::load(&path).unwrap_or_else(|why| panic!("{why} in\n{recipe}"));
         assert_eq!(scene.warnings, [""; 0], "{recipe}");
         assert_eq!(scene.materials.len(), recipe.matches("[[material]]").count(), "{recipe}");
         let plan = Plan::new(&scene, Options::default()).unwrap();

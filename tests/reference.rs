@@ -1,8 +1,6 @@
-//! `docs/reference.csv` is what `examples/reference.rs` makes, byte for byte.
+//! `docs/reference.csv` is what the study `reference` makes, byte for byte.
 
-#[path = "../examples/reference.rs"]
-#[allow(dead_code, reason = "the example's `main` writes the file")]
-mod reference;
+use microfacet_study::reference;
 
 const COMMITTED: &str = include_str!("../docs/reference.csv");
 
@@ -13,7 +11,7 @@ fn the_test_vectors_are_those_of_this_code() {
     if let Some((i, (committed, made))) = lines().find(|(_, (committed, made))| committed != made) {
         panic!(
             "docs/reference.csv, line {}:\n{committed}\nis now\n{made}\nIf the change is meant, run \
-             `cargo run --release --example reference -- docs/reference.csv`",
+             `cargo run --release -p microfacet-study -- reference docs/reference.csv`",
             i + 1
         );
     }

@@ -1,10 +1,11 @@
 //! The stress test at a million corners and random points, and proof that it rejects damaged
 //! tables.
 
-use microfacet_bake::progress::Stage;
-use microfacet_bake::validate::stress::{self, Report};
+use microfacet_baker::progress::Stage;
 use microfacet_sampler::Tables;
 use microfacet_tables::Kind;
+use microfacet_validate::stress;
+use microfacet_validate::stress::Report;
 
 /// Errors that the documentation promises for σ ∈ [1e-4, 10]: G1, D, visible density, CDF; see
 /// `docs/reliability.md`.

@@ -5,10 +5,11 @@ mod command;
 use std::fs;
 use std::path::Path;
 
-use microfacet_bake::store;
 use serde_json::{Value, json};
 
 use command::{json, ok, refused, run};
+
+use microfacet_baker::store;
 
 /// A rough metal without a Fresnel term, a diffuse material, a smooth one, and some of pbrt-v3.
 const PBRT: &str = r#"WorldBegin

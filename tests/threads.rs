@@ -1,9 +1,9 @@
 //! The same bits for any number of threads and in every build: run this in debug and with
 //! `--release`.
 
-use microfacet_bake::bake::bake;
-use microfacet_bake::progress::Stage;
-use microfacet_bake::table_spec::{Quality, general_set};
+use microfacet_baker::bake::bake;
+use microfacet_baker::progress::Stage;
+use microfacet_baker::table_spec::{Quality, general_set};
 use microfacet_sampler::Tables;
 use microfacet_tables::{Precision, Table};
 

@@ -6,18 +6,17 @@ mod command;
 use std::sync::LazyLock;
 
 use glam::Vec3;
-use microfacet_bake::bake::albedo::{AlbedoLobe, AlbedoSpec, Models, Site, bake, weights};
-use microfacet_bake::certify::albedo::{certified, interior_references, missed_by_half};
-use microfacet_bake::certify::certificate::worst_error;
-use microfacet_bake::plan::{Options, Plan, albedo_cost};
-use microfacet_bake::progress::Stage;
-use microfacet_bake::scene::Scene;
-use microfacet_bake::store;
-use microfacet_bake::table_set::{self, Target};
-use microfacet_bake::table_spec::Quality;
-use microfacet_sampler::{
-    Albedo, FresnelAlbedo, Lobe, Masking, MaterialError, MicrofacetDistribution, Tables,
-};
+use microfacet_baker::bake::albedo::{AlbedoLobe, AlbedoSpec, Models, Site, bake, weights};
+use microfacet_baker::certify::albedo::{certified, interior_references, missed_by_half};
+use microfacet_baker::certify::certificate::worst_error;
+use microfacet_baker::plan::{Options, Plan, albedo_cost};
+use microfacet_baker::progress::Stage;
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::Target;
+use microfacet_baker::table_spec::Quality;
+use microfacet_baker::{store, table_set};
+use microfacet_sampler::albedo::{Albedo, FresnelAlbedo};
+use microfacet_sampler::{Lobe, Masking, MaterialError, MicrofacetDistribution, Tables};
 use microfacet_tables::{LobeEntry, Precision, Reflectance, Table, encode};
 
 use command::{json, run};
@@ -272,7 +271,10 @@ fn materials_without_such_a_table_say_what_helps() {
     let round = SET.albedo((0.25_f64 * 0.1).sqrt(), 2.7, Masking::Uncorrelated).unwrap();
     assert_eq!(worn.albedo(direction(0.3, 1.0)), round.albedo(direction(0.3, 2.0)));
     // A table of moments is not taken for one of shares, nor the other way round.
-    assert!(microfacet_sampler::ViewCurve::<3>::from_table(views(&SET)[0], 0.3, 2.7, 1.0).is_err());
+    assert!(
+        microfacet_sampler::albedo::ViewCurve::<3>::from_table(views(&SET)[0], 0.3, 2.7, 1.0)
+            .is_err()
+    );
 }
 
 #[test]

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use microfacet_bake::store::replace;
 use serde_json::{Value, json};
 
-use crate::Failure;
+use microfacet_baker::store::replace;
+
 use crate::csv::{csv, number};
 use crate::figures::Figure;
 use crate::paper::Paper;
-use crate::plot;
 use crate::rows::Row;
 use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::sweep::{Cell, Summary};
+use crate::{Failure, plot};
 
 /// Every file of the benchmark by its name.
 pub(crate) fn files(

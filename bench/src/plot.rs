@@ -1,6 +1,6 @@
 //! Run time against error, with the Pareto front: no rival is both faster and more accurate.
 
-use microfacet_bake::plot::{Axis, Curve, Dash, Figure, Key, Mark, Method, Panel};
+use microfacet_report::plot::{Axis, Curve, Dash, Figure, Key, Mark, Method, Panel};
 
 use crate::rows::{Quantity, Row};
 use crate::settings::GAMMA;

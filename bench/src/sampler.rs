@@ -6,7 +6,8 @@ use std::hint::black_box;
 use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
-use microfacet_sampler::{Bounded, Ggx, MicrofacetDistribution as _, StudentT, Tables};
+use microfacet_sampler::lobe::Bounded;
+use microfacet_sampler::{Ggx, MicrofacetDistribution as _, StudentT, Tables};
 use microfacet_tables::Table;
 
 use crate::inputs::Stream;

@@ -1,9 +1,9 @@
 //! Tables of several sizes and precisions, for one shape.
 
-use microfacet_bake::plan::{Options, Plan};
-use microfacet_bake::scene::Scene;
-use microfacet_bake::table_set::{Target, bake};
-use microfacet_bake::table_spec::Quality;
+use microfacet_baker::plan::{Options, Plan};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{Target, bake};
+use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::Tables;
 use microfacet_tables::Precision;
 

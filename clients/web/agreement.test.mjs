@@ -41,14 +41,20 @@ function drawn(look) {
     }, { ...look, size: SIZE, samples: SAMPLES });
 }
 
+/** The words of the study of a sphere and its lobe. */
+function study(options) {
+    const named = ([name, value]) => [`--${name}`, `${value}`];
+    return ['report_sphere', ...Object.entries(options).flatMap(named)];
+}
+
 /// What Rust draws, decoded by the browser.
 async function rendered({ sigma, gamma, metal, compensation }, drawn) {
     const out = join(folder, 'sphere.png');
     const options = {
         gamma, drawn, sigma, metal, size: SIZE, samples: SAMPLES, out,
     };
-    const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, `${value}`]);
-    execFileSync(process.env.SPHERE, compensation ? [...words, '--compensation'] : words);
+    const words = study(options);
+    execFileSync(process.env.STUDY, compensation ? [...words, '--compensation'] : words);
     const url = `data:image/png;base64,${readFileSync(out, 'base64')}`;
     return opened.page.evaluate(async (src) => {
         const image = Object.assign(new Image(), { src });
@@ -101,8 +107,8 @@ async function apart({ gamma, sigma }, degrees, other = {}) {
         return [...await report.lobe(degrees)];
     }, [gamma, sigma, degrees]);
     const options = { gamma, sigma, lobe: degrees, ...other };
-    const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, `${value}`]);
-    const lines = execFileSync(process.env.SPHERE, words, { encoding: 'utf8' }).trim().split('\n');
+    const words = study(options);
+    const lines = execFileSync(process.env.STUDY, words, { encoding: 'utf8' }).trim().split('\n');
     const theirs = lines.map(line => line.split(' ').map(Number));
     assert.equal(ours.length, 4 * theirs.length);
     return [0, 1, 2].map(curve => {

@@ -26,7 +26,7 @@ fn load(bytes: &[u8]) {
 
 /// An albedo is a share of light, whatever the tables hold.
 fn albedos(set: &microfacet_sampler::Tables) {
-    use microfacet_sampler::FresnelAlbedo;
+    use microfacet_sampler::albedo::FresnelAlbedo;
     use microfacet_sampler::Masking;
     let share = |x: f32| assert!((0.0..=1.0).contains(&x), "an albedo of {x}");
     let view = |cos: f32| glam::Vec3::new(0.0, (1.0_f32 - cos * cos).sqrt(), cos);
@@ -70,7 +70,7 @@ fn scene(name: &str, bytes: &[u8]) {
     FOLDER.with(|folder| {
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).expect("a temporary file");
-        if let Ok(scene) = microfacet_bake::scene::load(&path) {
+        if let Ok(scene) = microfacet_scene::load(&path) {
             let _ = scene.to_recipe();
         }
     });

@@ -3,5 +3,5 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let _ = microfacet_bake::store::decode_exr(bytes);
+    let _ = microfacet_baker::store::decode_exr(bytes);
 });

@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use microfacet_bake::scene::Scene;
+use microfacet_baker::scene::Scene;
 
 libfuzzer_sys::fuzz_target!(|text: &str| {
     if let Ok(scene) = Scene::from_recipe_str(text) {

@@ -9,14 +9,15 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use microfacet_bake::cache::Cache;
-use microfacet_bake::input::MAX_TABLES;
-use microfacet_bake::library::{Library, Part, Shard};
-use microfacet_bake::plan::{Plan, set_cost};
-use microfacet_bake::progress::Meter;
-use microfacet_bake::scene::Scene;
-use microfacet_bake::store::{Format, OutputFolder};
-use microfacet_bake::table_set::{Baked, Settings, Target, bake_with};
+
+use microfacet_baker::cache::Cache;
+use microfacet_baker::input::MAX_TABLES;
+use microfacet_baker::library::{Library, Part, Shard};
+use microfacet_baker::plan::{Plan, set_cost};
+use microfacet_baker::progress::Meter;
+use microfacet_baker::scene::Scene;
+use microfacet_baker::store::{Format, OutputFolder};
+use microfacet_baker::table_set::{Baked, Settings, Target, bake_with};
 
 use super::plan::{Outline, remind};
 use super::request::Request;

@@ -6,17 +6,16 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use serde_json::{Value, json};
 
-use microfacet_bake::progress::Meter;
-use microfacet_bake::table_set::Settings;
-use microfacet_bake::table_spec::Quality;
-use microfacet_bake::validate::bsdf::chi_square;
-use microfacet_bake::validate::bsdf::configuration::{Configuration, configurations};
-use microfacet_bake::validate::bsdf::furnace::{self, PAIRS, Row};
-use microfacet_bake::validate::bsdf::reciprocity::{self, Worst};
-use microfacet_bake::validate::bsdf::specimen;
-use microfacet_bake::validate::furnace::TOLERANCE as FURNACE_TOLERANCE;
-use microfacet_bake::validate::{LEVEL, Options};
+use microfacet_baker::progress::Meter;
+use microfacet_baker::table_set::Settings;
+use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::{Masking, Tables};
+use microfacet_validate::bsdf::configuration::{Configuration, configurations};
+use microfacet_validate::bsdf::furnace::{PAIRS, Row};
+use microfacet_validate::bsdf::reciprocity::Worst;
+use microfacet_validate::bsdf::{chi_square, furnace, reciprocity, specimen};
+use microfacet_validate::furnace::TOLERANCE as FURNACE_TOLERANCE;
+use microfacet_validate::{LEVEL, Options};
 
 use super::bake::cache;
 use super::{Failure, Outcome, print_json, progress, summarize, values, verdict};

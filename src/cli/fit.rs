@@ -6,16 +6,15 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::{Display, Write};
 use std::path::{Path, PathBuf};
 
-use microfacet_bake::fit;
-use microfacet_bake::input::angles::Angles;
-use microfacet_bake::input::normals::read_csv;
-use microfacet_bake::input::{MAX_TEXT, open_or_stdin, shown};
-use microfacet_bake::progress::Meter;
+use microfacet_baker::input::angles::Angles;
+use microfacet_baker::input::normals::read_csv;
+use microfacet_baker::input::{MAX_TEXT, open_or_stdin, shown};
+use microfacet_baker::progress::Meter;
 
 use super::convert::{On, ends};
 use super::values::Unit;
 use super::words::number;
-use super::{Done, Failure, Outcome, print, progress};
+use super::{Done, Failure, Outcome, print, progress, remedy};
 
 /// Fit a Student-t to a measured distribution of normals, or to measured materials.
 ///
@@ -68,10 +67,11 @@ fn normals(input: &Path, args: &Args) -> Outcome {
     let failed = |why: &dyn Display| Failure(format!("{path}: {why}"));
     let angles = args.unit.angles();
     let file = open_or_stdin(input, MAX_TEXT).map_err(|why| failed(&why))?;
-    let measured = read_csv(file, angles).map_err(|why| failed(&why))?;
+    let measured = read_csv(file, angles).map_err(|why| failed(&remedy::told(&why)))?;
     let meter = Meter::default();
     let bar = progress::show(&meter, "fitting");
-    let found = fit::fit(&measured, args.on.into(), &meter).map_err(|why| failed(&why))?;
+    let found =
+        microfacet_fit::fit(&measured, args.on.into(), &meter).map_err(|why| failed(&why))?;
     drop(bar);
     let mut text = String::new();
     let (first, last) = measured.assumed();

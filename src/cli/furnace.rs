@@ -7,11 +7,11 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::json;
 
-use microfacet_bake::progress::Meter;
-use microfacet_bake::validate::furnace::{
+use microfacet_baker::progress::Meter;
+use microfacet_sampler::{Masking, Tables};
+use microfacet_validate::furnace::{
     Furnace, TOLERANCE, Walk, furnace, seconds, walk, walk_seconds,
 };
-use microfacet_sampler::{Masking, Tables};
 
 use super::{Done, Outcome, print, print_json, progress, summarize, tables, values};
 

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use microfacet_bake::store;
+use microfacet_baker::store;
 
 use super::{progress, styled};
 

@@ -15,6 +15,7 @@ mod plot;
 mod progress;
 mod query;
 mod recipe;
+mod remedy;
 mod report;
 mod request;
 mod sample;
@@ -27,6 +28,7 @@ mod values;
 mod view;
 mod words;
 
+use std::any::Any;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
@@ -38,7 +40,7 @@ use anstyle::{AnsiColor, Style};
 use clap::{Parser, Subcommand};
 use rayon::ThreadPoolBuilder;
 
-use microfacet_bake::store;
+use microfacet_baker::store;
 use microfacet_sampler::Tables;
 
 /// Bake, check and query tables for Student-t microfacet materials.
@@ -106,11 +108,12 @@ impl Done {
 }
 
 /// A message for the user; exit status 2.
+#[derive(Debug)]
 struct Failure(String);
 
-impl<E: Display> From<E> for Failure {
+impl<E: Display + Any> From<E> for Failure {
     fn from(error: E) -> Self {
-        Self(error.to_string())
+        Self(remedy::told(&error))
     }
 }
 

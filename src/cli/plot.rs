@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use microfacet_bake::plot::{self, FIGURES};
+
+use microfacet_report::plot;
+use microfacet_report::plot::FIGURES;
 
 use super::{Done, Failure, Outcome, print, write_file};
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
-use microfacet_bake::progress::Meter;
+use microfacet_baker::progress::Meter;
 
 /// The bar on the terminal, if there is one: what is printed meanwhile goes above it.
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use microfacet_bake::store;
+use microfacet_baker::store;
 
 use super::{Done, Failure, Outcome, print, summarize, unwritable, write_file};
 

@@ -3,11 +3,11 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use microfacet_bake::input::{MAX_TEXT, open_or_stdin, shown};
-use microfacet_bake::progress::Meter;
-use microfacet_bake::report::{ReportError, Source, page, seconds};
-use microfacet_bake::store;
-use microfacet_bake::validate::record::Record;
+use microfacet_baker::input::{MAX_TEXT, open_or_stdin, shown};
+use microfacet_baker::progress::Meter;
+use microfacet_baker::store;
+use microfacet_report::{ReportError, Source, page, seconds};
+use microfacet_validate::record::Record;
 
 use super::words::exact_bytes;
 use super::{Done, Failure, Outcome, print, progress, summarize, tables, unwritable, write_file};

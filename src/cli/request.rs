@@ -5,11 +5,11 @@ use std::path::Path;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
-use microfacet_bake::certify::certificate::worst_error;
-use microfacet_bake::library::{Library, PER_SET};
-use microfacet_bake::plan::{AlbedoWish, Options, Plan};
-use microfacet_bake::scene::{self, Scene};
-use microfacet_bake::table_spec::Quality;
+use microfacet_baker::certify::certificate::worst_error;
+use microfacet_baker::library::{Library, PER_SET};
+use microfacet_baker::plan::{AlbedoWish, Options, Plan};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::Tables;
 use microfacet_tables::{Precision, Table};
 
@@ -117,7 +117,7 @@ impl Request {
 
     /// Reads a scene; `--strict` refuses one of which anything is doubtful.
     pub(super) fn scene(&self, path: &Path) -> Result<Scene, Failure> {
-        let scene = scene::load(path)?;
+        let scene = microfacet_scene::load(path)?;
         let doubts = || scene.doubts();
         if self.strict
             && let Some(first) = doubts().next()

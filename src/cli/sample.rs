@@ -11,12 +11,12 @@ use rand::{RngExt, SeedableRng};
 use safetensors::Dtype;
 use safetensors::tensor::{Metadata, TensorInfo};
 
-use microfacet_bake::progress::{Meter, Stage};
-use microfacet_bake::store::replace_with;
-use microfacet_bake::validate::configuration::Configuration;
+use microfacet_baker::progress::{Meter, Stage};
+use microfacet_baker::store::replace_with;
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::{Lobe, MicrofacetDistribution as _};
+use microfacet_validate::configuration::Configuration;
 
 use super::view::View;
 use super::{

@@ -2,11 +2,11 @@
 
 use serde_json::json;
 
-use microfacet_bake::progress::Meter;
-use microfacet_bake::validate::stress::{
+use microfacet_baker::progress::Meter;
+use microfacet_sampler::Tables;
+use microfacet_validate::stress::{
     ERRORS, ROUGHNESSES, Region, Report, SHAPES, VIEWS, run, seconds,
 };
-use microfacet_sampler::Tables;
 
 use super::{Done, Outcome, print_json, progress, summarize, verdict};
 

@@ -3,15 +3,15 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use microfacet_bake::progress::Meter;
-use microfacet_bake::validate::configuration::{Configuration, configurations, shapes};
-use microfacet_bake::validate::furnace::{Furnace, Survey, survey, survey_seconds};
-use microfacet_bake::validate::record::Record;
-use microfacet_bake::validate::{
-    Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all, seconds,
-};
+use microfacet_baker::progress::Meter;
 use microfacet_sampler::Tables;
 use microfacet_tables::{LobeEntry, Reflectance};
+use microfacet_validate::configuration::{Configuration, configurations, shapes};
+use microfacet_validate::furnace::{Furnace, Survey, survey, survey_seconds};
+use microfacet_validate::record::Record;
+use microfacet_validate::{
+    Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all, seconds,
+};
 
 use super::view::View;
 use super::{

@@ -6,9 +6,9 @@ use std::ops::RangeInclusive;
 use bytesize::ByteSize;
 use clap::builder::UnknownArgumentValueParser;
 
-use microfacet_bake::input::angles::Angles;
-use microfacet_bake::scene::did_you_mean_key;
-use microfacet_bake::table_spec::GAMMA_MIN;
+use microfacet_baker::input::angles::Angles;
+use microfacet_baker::scene::did_you_mean_key;
+use microfacet_baker::table_spec::GAMMA_MIN;
 use microfacet_sampler::Ggx;
 
 /// Parses a whole number as `100000` or `1e5`, and checks its range.

@@ -3,9 +3,11 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-pub(super) use microfacet_bake::words::{bytes, count, error, exact_bytes, joined, number, range};
-
 use super::escape;
+
+pub(super) use microfacet_report::words::{
+    bytes, count, error, exact_bytes, joined, number, range,
+};
 
 /// Prose in the output ends here.
 pub(super) const COLUMNS: usize = 100;

@@ -5,8 +5,9 @@ use std::fs;
 use std::fs::File;
 use std::time::{Duration, Instant};
 
-use microfacet_bake::scene::Scene;
 use proptest::prelude::*;
+
+use microfacet_baker::scene::Scene;
 
 use crate::{Folder, assert_not_understood, assert_refused, assert_warned, load, names};
 

@@ -12,9 +12,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
-use microfacet_bake::interval::Interval;
-use microfacet_bake::scene::{self, Material, Roughness, Scene, SceneError, SceneErrorKind};
 use tempfile::TempDir;
+
+use microfacet_baker::interval::Interval;
+use microfacet_baker::scene::{Material, Roughness, Scene, SceneError, SceneErrorKind};
 
 /// A folder with a scene in it.
 struct Folder(TempDir);
@@ -34,7 +35,7 @@ impl Folder {
     }
 
     fn load(&self, name: &str) -> Result<Scene, SceneError> {
-        scene::load(&self.path(name))
+        microfacet_scene::load(&self.path(name))
     }
 }
 

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use microfacet_bake::interval::Interval;
-use microfacet_bake::scene::{
-    self, Format, Fresnel, Masking, Material, Origin, Place, Roughness, Scene,
+use microfacet_baker::interval::Interval;
+use microfacet_baker::scene::{
+    Format, Fresnel, Masking, Material, Origin, Place, Roughness, Scene,
 };
 use microfacet_sampler::Metal;
 use proptest::prelude::*;
@@ -236,7 +236,7 @@ fn recipes_that_say_nothing_or_twice_the_same_are_refused() {
 fn the_shipped_recipes_say_what_was_published() {
     let load = |name: &str| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tables/recipes");
-        scene::load(&folder.join(name)).unwrap()
+        microfacet_scene::load(&folder.join(name)).unwrap()
     };
     let glass = [("frosted-glass.toml", 0.454), ("etched-glass.toml", 0.524)];
     for (file, sigma) in glass {

@@ -1,6 +1,6 @@
 //! The figures as drawings.
 
-use microfacet_bake::plot::{
+use microfacet_report::plot::{
     Axis, Content, Curve, Dash, Figure, Key, Method as Plotted, Panel, PlotError, Sheet, Tile,
 };
 

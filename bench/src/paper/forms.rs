@@ -8,9 +8,9 @@ use glam::Vec3;
 use microfacet_model::printed;
 use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{self as sampler, StudentT, Tables};
+use microfacet_study::spheres::sky::Sky;
 
 use super::method::Method;
-use super::sky::Sky;
 use super::studio::Metal;
 use crate::masking::{self, Evaluate};
 use crate::rivals::lobe::Lobe;

@@ -1,6 +1,7 @@
 //! The methods that are timed: their names, and what they are in drawings.
 
-use microfacet_bake::plot::{self, Key};
+use microfacet_report::plot;
+use microfacet_report::plot::Key;
 
 /// A way to compute G1, or to draw visible normals, in the order of tables and legends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

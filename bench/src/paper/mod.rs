@@ -10,9 +10,6 @@ mod forms;
 mod integrated;
 mod method;
 mod pictures;
-#[cfg_attr(not(test), expect(dead_code, reason = "only tests light by a white furnace here"))]
-#[path = "../../../examples/spheres/sky.rs"]
-mod sky;
 mod studio;
 mod terminal;
 mod times;

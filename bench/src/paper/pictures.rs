@@ -6,9 +6,9 @@ use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{self as sampler, StudentT, Tables};
+use microfacet_study::spheres::sky::Sky;
 use rayon::prelude::*;
 
-use super::sky::Sky;
 use super::studio::Metal;
 use crate::rivals::rational::Rational;
 use crate::settings::{Film, SIGMA, Settings};

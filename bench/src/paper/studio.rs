@@ -11,8 +11,8 @@
 use glam::{DVec3, Mat3, Vec3};
 use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{ConductorFresnel, StudentT};
+use microfacet_study::spheres::sky::Sky;
 
-use super::sky::Sky;
 use crate::settings::Film;
 
 /// The camera looks down by this many radians, from far away.

@@ -8,10 +8,10 @@ use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::StudentT;
 use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::Tables;
+use microfacet_study::spheres::sky::Sky;
 
 use super::forms::{Form, Line, Stage};
 use super::method::Method;
-use super::sky::Sky;
 use crate::clock::{self, Calls};
 use crate::inputs::{Inputs, Stream};
 use crate::rows::{Quantity, normals, values};

@@ -4,7 +4,9 @@ use std::hint::black_box;
 use std::ops::Range;
 
 use glam::Vec3;
-use microfacet_sampler::{Bounded, Masking, MicrofacetDistribution};
+
+use microfacet_sampler::lobe::Bounded;
+use microfacet_sampler::{Masking, MicrofacetDistribution};
 
 /// The arguments of one call.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use microfacet_sampler::{Albedo, Ggx, Lobe, Masking, MicrofacetDistribution, Moments, Tables};
+
+use microfacet_sampler::albedo::{Albedo, Moments};
+use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Tables};
 
 use crate::lookup::{Answer, Point};
 use crate::points::Group;

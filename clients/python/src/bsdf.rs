@@ -1,10 +1,10 @@
 //! Complete materials.
 
-use microfacet_sampler::{
-    AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Event, Metal, Plastic,
-};
 use pyo3::prelude::*;
 use pyo3::types::{PyEllipsis, PySlice, PyTuple};
+
+use microfacet_sampler::{AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Metal, Plastic};
+use microfacet_sampler::bsdf::Event;
 
 use crate::arrays::{Cost, Input, each2, each3};
 use crate::lobe::PyLobe;

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use microfacet_bake::cache::Cache;
-use microfacet_bake::library::{Library, PER_SET};
-use microfacet_bake::store::{OutputFolder, SetWriter};
-use microfacet_bake::table_set::{Need, Settings, Target, bake_with};
 use pyo3::exceptions::{PyOSError, PyRuntimeError};
 use pyo3::prelude::*;
+
+use microfacet_baker::cache::Cache;
+use microfacet_baker::library::{Library, PER_SET};
+use microfacet_baker::store::{OutputFolder, SetWriter};
+use microfacet_baker::table_set::{Need, Settings, Target, bake_with};
 
 use crate::tables::{interruptible, options_of, scene_of, target_of, warn_of};
 use crate::words::{refused, unread};

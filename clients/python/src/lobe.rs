@@ -4,9 +4,12 @@ use std::sync::Arc;
 
 use bytemuck::{cast_slice, cast_slice_mut};
 use glam::Vec3;
-use microfacet_sampler::{Albedo, Lobe, LobeKey, MicrofacetDistribution, Skew, Tables};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
+
+use microfacet_sampler::albedo::Albedo;
+use microfacet_sampler::{Lobe, MicrofacetDistribution, Skew, Tables};
+use microfacet_sampler::lobe::LobeKey;
 
 use crate::arrays::{Cost, Input, each, each2, map, map2};
 use crate::tables::{PyTables, embedded};

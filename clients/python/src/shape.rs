@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use microfacet_bake::export::Shape;
-use microfacet_sampler::{DielectricAlbedo, Tables};
+use microfacet_sampler::albedo::DielectricAlbedo;
+use microfacet_sampler::Tables;
+use microfacet_export::Shape;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

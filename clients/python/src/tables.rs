@@ -5,14 +5,15 @@ use std::sync::{Arc, LazyLock};
 use std::thread;
 use std::time::Duration;
 
+use microfacet_baker::cache::Cache;
+use microfacet_baker::plan::{AlbedoWish, Options, Plan};
+use microfacet_baker::store;
+use microfacet_baker::scene::Scene;
+use microfacet_baker::store::Format;
+use microfacet_baker::table_set::{Settings, Target, bake_with};
+use microfacet_baker::table_spec::Quality;
 use microfacet_tables::{Precision, describe};
 use microfacet_sampler::Tables;
-use microfacet_bake::cache::Cache;
-use microfacet_bake::plan::{AlbedoWish, Options, Plan};
-use microfacet_bake::scene::{self, Scene};
-use microfacet_bake::store::{self, Format};
-use microfacet_bake::table_set::{Settings, Target, bake_with};
-use microfacet_bake::table_spec::Quality;
 use pyo3::exceptions::{PyFileNotFoundError, PyRuntimeError, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 
@@ -294,7 +295,7 @@ fn general(albedo: Option<bool>) -> Plan {
 pub(crate) fn scene_of(recipe: &Bound<'_, PyAny>) -> PyResult<Scene> {
     let scene = match recipe.extract::<String>() {
         Ok(text) if text.contains('\n') => Scene::from_recipe_str(&text),
-        _ => scene::load(&path("recipe", "the text of a recipe", recipe)?),
+        _ => microfacet_scene::load(&path("recipe", "the text of a recipe", recipe)?),
     };
     scene.map_err(unscened)
 }

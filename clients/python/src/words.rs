@@ -2,9 +2,10 @@
 
 use std::io;
 
-use microfacet_bake::scene::{SceneError, SceneErrorKind};
-use microfacet_bake::store::StoreError;
-use microfacet_sampler::{BindError, Compensation, Masking, Roughness, StandIn, Transport};
+use microfacet_sampler::{BindError, Compensation, Masking, StandIn, Transport};
+use microfacet_sampler::lobe::Roughness;
+use microfacet_baker::scene::{SceneError, SceneErrorKind};
+use microfacet_baker::store::StoreError;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -20,11 +21,12 @@ pub(crate) fn unbound(why: BindError) -> PyErr {
     let words = [
         ("`StandIn::Round`", "stand_in=True"),
         ("and the sigma and theta of its Skew", "and its sigma and theta"),
-        ("or bake it when loading", "(microfacet.bake takes its text)"),
         (", which compensation needs", ""),
     ];
-    let why = words.iter().fold(why.to_string(), |why, (rust, python)| why.replace(rust, python));
-    refused(why)
+    let lines = why.recipe().unwrap_or_default();
+    let start = if lines.is_empty() { "" } else { "; microfacet.bake takes a recipe with\n" };
+    let why = format!("{why}{start}{lines}");
+    refused(words.iter().fold(why, |why, (rust, python)| why.replace(rust, python)))
 }
 
 /// Why a scene cannot be read: errors of the operating system are OSError.

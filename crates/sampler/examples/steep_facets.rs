@@ -3,9 +3,11 @@
 //! `cargo run --release -p microfacet-sampler --example steep_facets`.
 
 use glam::Vec3;
-use microfacet_sampler::{Bsdf, BsdfSample, Dielectric, Event, Tables, Transport};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
+
+use microfacet_sampler::bsdf::Event;
+use microfacet_sampler::{Bsdf, BsdfSample, Dielectric, Tables, Transport};
 
 const SAMPLES: usize = 200_000;
 const GAMMAS: [f64; 8] = [1.501, 1.52, 1.55, 1.6, 1.65, 1.7, 1.8, 1.9];

@@ -75,13 +75,8 @@ pub enum MaterialError {
         /// The pairs that are covered.
         covered: String,
     },
-    /// A material that has no albedo of its own in this set.
-    NoAlbedo {
-        /// The material.
-        name: String,
-        /// Why, and what helps.
-        remedy: &'static str,
-    },
+    /// A material that has no albedo of its own in this set: its recipe states no reflectance.
+    NoAlbedo(String),
     /// No material of that name in the set; `known` lists those it has.
     NoSuchMaterial {
         /// The name asked for.
@@ -116,8 +111,7 @@ impl fmt::Display for MaterialError {
             Self::DielectricNotCovered { eta, sigma, gamma, masking, covered } => write!(
                 f,
                 "no table of this set holds the albedo of a dielectric of index {eta} (in [0, inf]) with sigma {sigma}, gamma {gamma} \
-                 and {masking} masking; it holds {covered}; add `fresnel = {{ dielectric = {eta} }}` and `masking = \"{masking}\"` to a \
-                 material of the recipe that covers them, and bake it again"
+                 and {masking} masking; it holds {covered}"
             ),
             Self::Skew(why) => why.fmt(f),
             Self::NotCovered { gamma, covered } if *gamma < GAMMA_MIN => write!(
@@ -127,20 +121,14 @@ impl fmt::Display for MaterialError {
             ),
             Self::NotCovered { gamma, covered } => write!(
                 f,
-                "gamma = {gamma} is not covered by the tables of this set, which serve {covered}; bake a set that \
-                 does: a recipe line `gamma = {gamma}`, or `microfacet-bake bake` without a recipe for all of [1.501, inf]"
+                "gamma = {gamma} is not covered by the tables of this set, which serve {covered}"
             ),
             Self::MaskingNotCovered { masking, other } => {
                 write!(f, "this set has no albedo tables for {masking} masking")?;
                 match other {
-                    Some(other) => write!(f, ", only for {other}")?,
-                    None => write!(f, ", nor for any other")?,
+                    Some(other) => write!(f, ", only for {other}"),
+                    None => write!(f, ", nor for any other"),
                 }
-                write!(
-                    f,
-                    "; bake a set that does: a recipe's material with `fresnel` and `masking = \"{masking}\"`, or \
-                     `microfacet-bake bake` without a recipe for both forms"
-                )
             }
             Self::SigmaNotCovered { sigma, range } => write!(
                 f,
@@ -150,17 +138,14 @@ impl fmt::Display for MaterialError {
             ),
             Self::AlbedoNotCovered { sigma, gamma, covered } => write!(
                 f,
-                "sigma = {sigma:?} with gamma = {gamma} is not covered by the albedo tables of this set, which hold {covered}; bake a \
-                 set that does: a recipe's material with `fresnel`, or `microfacet-bake bake` without a recipe for all"
+                "sigma = {sigma:?} with gamma = {gamma} is not covered by the albedo tables of this set, which hold {covered}"
             ),
-            Self::NoAlbedo { name, remedy } => {
-                write!(f, "material \"{name}\" has no such albedo in this set: {remedy}")
+            Self::NoAlbedo(name) => {
+                write!(f, "material \"{name}\" has no such albedo in this set")
             }
-            Self::NoSuchMaterial { name, known } => write!(
-                f,
-                "no material \"{name}\" in this set, which holds {known}; to add it, append to its recipe, with its own roughness and shape, and bake again:\n\
-                 [[material]]\nname = \"{name}\"\nsigma = 0.3\ngamma = 3.0"
-            ),
+            Self::NoSuchMaterial { name, known } => {
+                write!(f, "no material \"{name}\" in this set, which holds {known}")
+            }
         }
     }
 }

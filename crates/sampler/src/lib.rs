@@ -17,7 +17,7 @@
 //! | evaluate and sample a material | [`Conductor`], [`Dielectric`], [`Plastic`]: [`Bsdf`]; [`Tables::bsdf`] by name, [`Metal`] |
 //! | evaluate and sample a lobe for a BSDF of your own | [`MicrofacetDistribution`]: D, G1, Λ, G2, weights, visible normals and their densities, batches |
 //! | lose fewer samples below the horizon | [`StudentT::bounded`], prepared once for a material |
-//! | compensate multiple scattering | [`Conductor::compensated`]; [`Tables::albedo`], [`Albedo`] |
+//! | compensate multiple scattering | [`Conductor::compensated`]; [`Tables::albedo`], [`albedo::Albedo`] |
 //! | write a set, or read one table | the crate [`microfacet_tables`] |
 //! | write the lookups in another language | [`port`] |
 //!
@@ -74,7 +74,7 @@
 //!
 //! A set baked from a recipe knows its materials, whatever their distribution, and lists them with
 //! their forms of masking in its [`Provenance`](Tables::provenance); [`Lobe`] is any of them. GTR, Gauss, Schlick and
-//! measured distributions are a [`Radial`], with tables of their own.
+//! measured distributions are a [`Radial`](lobe::Radial), with tables of their own.
 //!
 //! ```no_run
 //! # use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
@@ -123,10 +123,10 @@
 //!
 //! # Albedo and multiple scattering
 //!
-//! [`Bsdf`]s take care of it; [`Albedo`] is for a BSDF of your own. It knows which share of light
+//! [`Bsdf`]s take care of it; [`Albedo`](albedo::Albedo) is for a BSDF of your own. It knows which share of light
 //! one bounce returns, E(v), its average, and two moments from which the albedo of every Schlick
 //! reflectance follows. Two cures for the missing light are made from it: a factor on the lobe
-//! ([`Albedo::turquin`]) and a lobe of its own ([`Albedo::compensation`]).
+//! ([`turquin`](albedo::Albedo::turquin)) and a lobe of its own ([`compensation`](albedo::Albedo::compensation)).
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {
@@ -151,36 +151,38 @@
 
 extern crate alloc;
 
-mod albedo;
-mod bsdf;
+pub mod albedo;
+pub mod bsdf;
+pub mod port;
+
 mod elementary;
 mod error;
 mod lanes;
 mod material;
-pub mod port;
-
 mod tables;
 
 // What every caller needs in the version that this crate is built with.
 pub use glam;
 pub use microfacet_tables;
 
-pub use albedo::{Albedo, DielectricAlbedo, FresnelAlbedo, Moments, ViewCurve};
 pub use bsdf::{
     AnyBsdf, BindError, Bsdf, BsdfSample, Compensation, Conductor, ConductorFresnel, Dielectric,
-    Event, Metal, Plastic, StandIn, Transport, UnknownMetal, f82_tint_average, fresnel_average,
-    schlick_average,
+    Metal, Plastic, StandIn, Transport,
 };
-pub use error::{BatchError, MaterialError};
-pub use material::{
-    Bounded, BoundedView, Ellipsoid, Facet, Ggx, Lobe, LobeKey, MicrofacetDistribution, Radial,
-    Smooth, StudentT,
-};
-pub use microfacet_core::{Masking, Roughness, Skew, SkewError};
+pub use error::MaterialError;
+pub use material::{Ellipsoid, Ggx, Lobe, MicrofacetDistribution, StudentT};
+pub use microfacet_core::{Masking, Skew};
 pub use microfacet_tables::LoadError;
 #[cfg(feature = "embedded")]
 pub use tables::DEFAULT_SET;
 pub use tables::Tables;
+
+/// What [`MicrofacetDistribution`]s give and take, and those of special materials.
+pub mod lobe {
+    pub use crate::error::BatchError;
+    pub use crate::material::{Bounded, BoundedView, Facet, LobeKey, Radial, Smooth};
+    pub use microfacet_core::{Roughness, SkewError};
+}
 
 /// The examples of this crate's README, so that they keep compiling.
 #[cfg(all(doctest, feature = "embedded"))]

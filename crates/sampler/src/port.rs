@@ -7,7 +7,6 @@ use crate::material::slices;
 use crate::{MaterialError, Tables};
 
 pub use crate::albedo::shape::ShapeAlbedo;
-pub use crate::bsdf::steep_cosine;
 pub use crate::material::shape::{HeavyTables, ShapeTables};
 
 /// The tables that a lobe of one shape reads: of masking, of slopes in the plane of incidence, and

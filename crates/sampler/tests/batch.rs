@@ -1,9 +1,11 @@
 //! The functions over slices against the functions for one direction.
 
 use glam::Vec3;
-use microfacet_sampler::{BatchError, MicrofacetDistribution, StudentT, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
+
+use microfacet_sampler::lobe::BatchError;
+use microfacet_sampler::{MicrofacetDistribution, StudentT, Tables};
 
 /// Views of the whole hemisphere and a little below it, the axes, and vectors that are no
 /// directions; random numbers with both ends and beyond.

@@ -4,13 +4,15 @@
 #![cfg(feature = "embedded")]
 
 use glam::{DVec3, Vec3};
-use microfacet_sampler::{
-    BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Event, Ggx, Lobe,
-    Masking, MaterialError, Metal, MicrofacetDistribution, Plastic, Skew, Smooth, StandIn, Tables,
-    Transport,
-};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
+
+use microfacet_sampler::bsdf::Event;
+use microfacet_sampler::lobe::Smooth;
+use microfacet_sampler::{
+    BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Ggx, Lobe, Masking,
+    MaterialError, Metal, MicrofacetDistribution, Plastic, Skew, StandIn, Tables, Transport,
+};
 
 const RADIANCE: Transport = Transport::Radiance;
 
@@ -377,7 +379,7 @@ fn turquin_scales_the_lobe() {
 }
 
 #[test]
-fn what_tables_lack_is_said_with_the_lines_that_add_it() {
+fn what_tables_lack_is_said_and_the_lines_that_add_it_are_data() {
     let tables = Tables::embedded();
     let brushed = tables.student_t([0.4, 0.1], 3.0).unwrap();
     let gold: Conductor<_> = Conductor::new(brushed, Metal::Gold);
@@ -386,6 +388,9 @@ fn what_tables_lack_is_said_with_the_lines_that_add_it() {
     let text = refused.to_string();
     assert!(matches!(refused, BindError::NoAlbedo { stand_in: true, .. }));
     assert!(text.contains("sigma = [0.4, 0.1]") && text.contains("StandIn::Round"), "{text}");
+    assert!(!text.contains("[[material]]"), "{text}");
+    let recipe = refused.recipe().unwrap();
+    assert!(recipe.contains("sigma = [0.4, 0.1]\ngamma = 3\nfresnel = \"mirror\""), "{recipe}");
     // What a program shows that returns it from `main`.
     assert_eq!(format!("{refused:?}"), text);
     // Without compensation none is needed, and the round lobe may stand in.

@@ -1,7 +1,9 @@
 //! A facet is what the separate functions of its lobe say, whatever the length of the normal.
 
 use glam::Vec3;
-use microfacet_sampler::{Facet, Ggx, Masking, MicrofacetDistribution, Skew, Tables};
+
+use microfacet_sampler::lobe::Facet;
+use microfacet_sampler::{Ggx, Masking, MicrofacetDistribution, Skew, Tables};
 
 const COSINES: [f32; 6] = [1.0, 0.9, 0.4, 0.05, 1e-3, 1e-6];
 

@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use microfacet_bake::cache::Cache;
-use microfacet_bake::library::{Library, Part};
-use microfacet_bake::store::OutputFolder;
-use microfacet_bake::table_set::bake_with;
+use microfacet_baker::cache::Cache;
+use microfacet_baker::library::{Library, Part};
+use microfacet_baker::store::OutputFolder;
+use microfacet_baker::table_set::bake_with;
 
 use super::{Args, FormatArg, warn_of_cache};
 use crate::cli::words::{count, exact_bytes, seconds, shell};

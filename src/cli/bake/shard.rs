@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 
-use microfacet_bake::cache::Cache;
-use microfacet_bake::library::{Library, Receipt, Receipts, Shard};
-use microfacet_bake::store::check_folder;
-use microfacet_bake::table_set::{Need, Target};
+use microfacet_baker::cache::Cache;
+use microfacet_baker::library::{Library, Receipt, Receipts, Shard};
+use microfacet_baker::store::check_folder;
+use microfacet_baker::table_set::{Need, Target};
 
 use super::Args;
 use crate::cli::plan::remind;

@@ -4,15 +4,15 @@ use std::path::Path;
 
 use serde_json::json;
 
-use microfacet_bake::plan::Verdict;
-use microfacet_bake::report::has_page;
-use microfacet_bake::store::Written;
-use microfacet_bake::table_set::Baked;
-use microfacet_bake::validate::configuration::shapes;
-use microfacet_bake::validate::furnace::has_furnace;
-use microfacet_bake::words::certificate;
+use microfacet_baker::plan::Verdict;
+use microfacet_baker::store::Written;
+use microfacet_baker::table_set::Baked;
+use microfacet_report::has_page;
+use microfacet_report::words::certificate;
 use microfacet_sampler::Tables;
 use microfacet_tables::{Kind, Table};
+use microfacet_validate::configuration::shapes;
+use microfacet_validate::furnace::has_furnace;
 
 use crate::cli::escape;
 use crate::cli::plan::Outline;

@@ -2,14 +2,13 @@
 
 mod table;
 
-use std::error::Error;
 use std::fmt::Write;
 
 use clap::ValueEnum;
 
-use microfacet_bake::convert::{ConvertError, Form, Formula, Replacement, Target, by_formula};
-use microfacet_bake::distribution::{DistributionKind, Named};
-use microfacet_bake::progress::Meter;
+use microfacet_baker::distribution::{DistributionKind, Named};
+use microfacet_baker::progress::Meter;
+use microfacet_fit::convert::{ConvertError, Form, Formula, Replacement, Target, by_formula};
 
 use super::{Done, Failure, Outcome, print, progress, values, words};
 
@@ -73,8 +72,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: Args) -> Outcome {
-    let text = args.text().map_err(Failure::from)?;
-    print(&text)?;
+    print(&args.text()?)?;
     Ok(Done::Ok)
 }
 
@@ -83,7 +81,7 @@ impl Args {
         self.on.unwrap_or(On::Relative).into()
     }
 
-    fn text(&self) -> Result<String, Box<dyn Error>> {
+    fn text(&self) -> Result<String, Failure> {
         match (&self.from, &self.to) {
             (Some(_), Some(to)) if to.contains(':') => {
                 let name = to.split(':').next().unwrap_or(to);
@@ -95,7 +93,7 @@ impl Args {
         }
     }
 
-    fn pair(&self, from: &Named, to: DistributionKind) -> Result<String, Box<dyn Error>> {
+    fn pair(&self, from: &Named, to: DistributionKind) -> Result<String, Failure> {
         if self.shape.is_some() && to.parameters().len() < 2 {
             let why = "--shape is for a distribution of two parameters";
             return Err(format!("{why}, and {} has one: drop it", to.name()).into());
@@ -219,7 +217,7 @@ mod tests {
     fn run(line: &str) -> Result<String, String> {
         let words = std::iter::once("convert").chain(line.split(' '));
         let line = Line::try_parse_from(words).map_err(|e| e.to_string())?;
-        line.args.text().map_err(|e| e.to_string())
+        line.args.text().map_err(|Failure(why)| why)
     }
 
     #[test]

@@ -1,17 +1,16 @@
 //! Table 2 of Sawicki 2021: ours above the printed, differences marked.
 
-use std::error::Error;
 use std::fmt::Write;
 
-use microfacet_bake::convert::table::{COLUMNS, Value, rows};
-use microfacet_bake::progress::Meter;
+use microfacet_baker::progress::Meter;
+use microfacet_fit::convert::table::{COLUMNS, Value, rows};
 
-use crate::cli::progress;
+use crate::cli::{Failure, progress};
 
 /// How long the search takes: `microfacet-bake convert --table` on two cores.
 const SECONDS: f64 = 0.6;
 
-pub(super) fn text() -> Result<String, Box<dyn Error>> {
+pub(super) fn text() -> Result<String, Failure> {
     let meter = Meter::default();
     meter.expect(SECONDS);
     let bar = progress::show(&meter, "searching");

@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use clap::builder::PossibleValuesParser;
 
-use microfacet_bake::export::texture::engine::{LAYOUTS, Layout};
-use microfacet_bake::export::texture::{
-    self, BeforeRounding, Channels, Checks, Format, Made, Shapes, TextureSpec, shader_lines,
+use microfacet_baker::progress::{Meter, Stage};
+use microfacet_export::texture;
+use microfacet_export::texture::engine::{LAYOUTS, Layout};
+use microfacet_export::texture::{
+    BeforeRounding, Channels, Checks, Format, Made, Shapes, TextureSpec, shader_lines,
 };
-use microfacet_bake::progress::{Meter, Stage};
 use microfacet_sampler::Masking;
 
 use crate::cli::furnace::parse_masking;
@@ -205,7 +206,7 @@ fn of_family(args: &Args) -> Outcome {
         Shapes::DownTo(_) => vec![32, 64, 64],
     };
     let size = args.size.as_ref().map_or(default, |size| size.0.clone());
-    let sigma_max = args.sigma_max.unwrap_or(microfacet_bake::bake::albedo::SIGMA_MAX);
+    let sigma_max = args.sigma_max.unwrap_or(microfacet_baker::bake::albedo::SIGMA_MAX);
     texture::check(shapes, sigma_max, &size)?;
     let channels = args.channels.channels();
     let specs =

@@ -8,8 +8,8 @@ use std::path::Path;
 
 use clap::Subcommand;
 
-use microfacet_bake::export::{ExportFile, Language, Target};
-use microfacet_bake::store;
+use microfacet_baker::store;
+use microfacet_export::{ExportFile, Language, Target};
 
 use super::{Done, Failure, Outcome, summarize};
 

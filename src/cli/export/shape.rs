@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::builder::UnknownArgumentValueParser;
 
-use microfacet_bake::bake::albedo::SIGMA_MAX;
-use microfacet_bake::export::{Language, Shape, Storage, Target, files, texture_rows};
+use microfacet_baker::bake::albedo::SIGMA_MAX;
+use microfacet_export::{Language, Shape, Storage, Target, files, texture_rows};
 
 use crate::cli::{Outcome, report, tables, values};
 

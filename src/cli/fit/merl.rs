@@ -3,14 +3,15 @@
 use std::fmt::{Display, Write};
 use std::path::{Path, PathBuf};
 
-use microfacet_bake::distribution::DistributionKind;
-use microfacet_bake::fit::merl::{self, Comparison, Fitted, Fitter, Measured};
-use microfacet_bake::progress::Meter;
+use microfacet_baker::distribution::DistributionKind;
+use microfacet_baker::progress::Meter;
+use microfacet_fit::merl;
+use microfacet_fit::merl::{Comparison, Fitted, Fitter, Measured};
 
 use crate::cli::convert::ends;
 use crate::cli::recipe::check_new;
 use crate::cli::words::count;
-use crate::cli::{Done, Failure, Outcome, print, progress, summarize, write, write_file};
+use crate::cli::{Done, Failure, Outcome, print, progress, remedy, summarize, write, write_file};
 
 pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Outcome {
     let prints = recipe.is_some_and(|path| path.as_os_str() == "-");
@@ -22,7 +23,7 @@ pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Outcome {
     let fitter = Fitter::default();
     let read = |path: &Path| -> Result<Measured, Failure> {
         let failed = |why: &dyn Display| Failure(format!("{}: {why}", path.display()));
-        Measured::read(path).map_err(|why| failed(&why))
+        Measured::read(path).map_err(|why| failed(&remedy::told(&why)))
     };
     // A file that is refused is so before others have taken their time.
     if files.len() > 1 {

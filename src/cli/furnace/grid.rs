@@ -1,9 +1,9 @@
 //! The materials that a furnace runs: those named, and else what the set covers of a grid.
 
-use microfacet_bake::interval::Interval;
-use microfacet_bake::validate::furnace::domains;
+use microfacet_baker::interval::Interval;
 use microfacet_sampler::{Masking, Tables};
 use microfacet_tables::Kind;
+use microfacet_validate::furnace::domains;
 
 use crate::cli::{Failure, report};
 

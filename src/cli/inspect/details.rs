@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use microfacet_bake::words::certificate;
-use microfacet_bake::words::table::{axis, holds};
+use microfacet_report::words::certificate;
+use microfacet_report::words::table::{axis, holds};
 use microfacet_sampler::Tables;
 use microfacet_tables::Table;
 

@@ -4,10 +4,10 @@ mod details;
 
 use std::path::PathBuf;
 
-use microfacet_bake::report::has_page;
-use microfacet_bake::words::certificate;
-use microfacet_bake::words::material::material;
-use microfacet_bake::words::table::{albedos, covers, holds, normals, precision};
+use microfacet_report::has_page;
+use microfacet_report::words::certificate;
+use microfacet_report::words::material::material;
+use microfacet_report::words::table::{albedos, covers, holds, normals, precision};
 use microfacet_sampler::Tables;
 use microfacet_tables::{Table, describe};
 

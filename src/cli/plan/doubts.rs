@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use microfacet_bake::plan::Plan;
-use microfacet_bake::scene::Scene;
+use microfacet_baker::plan::Plan;
+use microfacet_baker::scene::Scene;
 
 use crate::cli::report;
 use crate::cli::words::{count, joined, list};

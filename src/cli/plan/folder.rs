@@ -8,10 +8,10 @@ use std::time::Instant;
 use rayon::current_num_threads;
 use serde_json::{Value, json};
 
-use microfacet_bake::progress::Meter;
-use microfacet_bake::scene::Ignored;
-use microfacet_bake::survey::{File, Outcome, Planned, Survey};
-use microfacet_bake::table_set::{Need, Target};
+use microfacet_baker::progress::Meter;
+use microfacet_baker::scene::Ignored;
+use microfacet_baker::table_set::{Need, Target};
+use microfacet_scene::survey::{File, Outcome, Planned, Survey};
 
 use super::doubts::Reasons;
 use super::json::ignored;
@@ -175,7 +175,7 @@ fn section(heading: &str, shown: usize, lines: impl Iterator<Item = String>) -> 
 }
 
 fn json(survey: &Survey, time: f64) -> Value {
-    let file = |file: &microfacet_bake::survey::File| {
+    let file = |file: &microfacet_scene::survey::File| {
         let path = file.path.display().to_string();
         match &file.outcome {
             Outcome::Planned(planned) => {

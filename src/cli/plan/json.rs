@@ -2,11 +2,11 @@
 
 use serde_json::{Value, json};
 
-use microfacet_bake::bake::albedo::AlbedoLobe;
-use microfacet_bake::interval::Interval;
-use microfacet_bake::plan::{Cost, Verdict, entry};
-use microfacet_bake::scene::Ignored;
-use microfacet_bake::words::verdict::{albedo_reason, reason};
+use microfacet_baker::bake::albedo::AlbedoLobe;
+use microfacet_baker::interval::Interval;
+use microfacet_baker::plan::{Cost, Verdict, entry};
+use microfacet_baker::scene::Ignored;
+use microfacet_report::words::verdict::{albedo_reason, reason};
 use microfacet_tables::{Kind, MaterialEntry};
 
 use super::Report;
@@ -18,7 +18,7 @@ impl Outline<'_> {
         let Self { scene, plan, .. } = self;
         let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
         let material = |(material, (verdict, albedo)): (
-            &microfacet_bake::scene::Material,
+            &microfacet_baker::scene::Material,
             (_, _),
         )| {
             let [short, long] = reason(verdict);

@@ -9,10 +9,10 @@ mod words;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use microfacet_bake::bake::albedo::AlbedoSpec;
-use microfacet_bake::library::Part;
-use microfacet_bake::plan::{Cost, albedo_cost, bare_cost, cost, distribution_cost};
-use microfacet_bake::table_spec::general_set;
+use microfacet_baker::bake::albedo::AlbedoSpec;
+use microfacet_baker::library::Part;
+use microfacet_baker::plan::{Cost, albedo_cost, bare_cost, cost, distribution_cost};
+use microfacet_baker::table_spec::general_set;
 
 use super::request::Request;
 use super::words::{bytes, compared, count, exact_bytes, seconds, wrapped};

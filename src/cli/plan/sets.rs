@@ -6,9 +6,9 @@ use std::time::Duration;
 use rayon::current_num_threads;
 use serde_json::json;
 
-use microfacet_bake::library::Library;
-use microfacet_bake::plan::{Cost, set_cost};
-use microfacet_bake::table_set::{Need, Target};
+use microfacet_baker::library::Library;
+use microfacet_baker::plan::{Cost, set_cost};
+use microfacet_baker::table_set::{Need, Target};
 use microfacet_tables::Index;
 
 use super::{Args, Report, Request};

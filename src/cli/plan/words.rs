@@ -3,16 +3,16 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use microfacet_bake::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
-use microfacet_bake::distribution::Distribution;
-use microfacet_bake::interval::Interval;
-use microfacet_bake::plan::{
+use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
+use microfacet_baker::distribution::Distribution;
+use microfacet_baker::interval::Interval;
+use microfacet_baker::plan::{
     AlbedoVerdict, AlbedoWish, Cost, Plan, Verdict, albedo_cost, bare_cost, entry,
 };
-use microfacet_bake::scene::{Ignored, Scene};
-use microfacet_bake::table_spec::{Quality, TableSpec, general_set};
-use microfacet_bake::words::material::{material as words_of, reflectance};
-use microfacet_bake::words::verdict::{albedo_reason, reason};
+use microfacet_baker::scene::{Ignored, Scene};
+use microfacet_baker::table_spec::{Quality, TableSpec, general_set};
+use microfacet_report::words::material::{material as words_of, reflectance};
+use microfacet_report::words::verdict::{albedo_reason, reason};
 use microfacet_tables::Precision;
 use rayon::current_num_threads;
 use serde_json::json;

@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use csv::StringRecord;
-use microfacet_bake::scene::did_you_mean_key;
+
+use microfacet_baker::scene::did_you_mean_key;
 
 /// Where the columns `inputs` are in a header, to which the columns `outputs` are appended.
 pub(super) fn find(

@@ -8,10 +8,11 @@ use std::fmt::Display;
 use std::path::PathBuf;
 
 use clap::{Subcommand, ValueEnum};
-use microfacet_bake::input::rows::{Row, RowError, Rows};
-use microfacet_bake::input::{MAX_ROW, open_or_stdin, shown};
-use microfacet_bake::progress::Meter;
 use rayon::prelude::*;
+
+use microfacet_baker::input::rows::{Row, RowError, Rows};
+use microfacet_baker::input::{MAX_ROW, open_or_stdin, shown};
+use microfacet_baker::progress::Meter;
 
 use super::values::Unit;
 use super::{Done, Failure, Outcome, interrupt, progress, report, tables, write_on};

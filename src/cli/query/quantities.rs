@@ -6,14 +6,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DVec3, Vec3};
 
-use microfacet_bake::validate::furnace::direction;
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::fresnel::schlick_weight;
-use microfacet_sampler::MicrofacetDistribution as _;
-use microfacet_sampler::{Masking, Moments, StudentT, Tables};
+use microfacet_sampler::albedo::Moments;
+use microfacet_sampler::{Masking, MicrofacetDistribution as _, StudentT, Tables};
+use microfacet_validate::furnace::direction;
 
 use super::Method;
+use crate::cli::remedy;
 use crate::cli::values::Unit;
 
 /// Values for the columns of one row, or why there are none.
@@ -131,7 +132,7 @@ impl<'a> Point<'a> {
     }
 
     fn lobe(&self) -> Result<StudentT, String> {
-        self.set.student_t(self.sigma, self.gamma).map_err(|why| why.to_string())
+        self.set.student_t(self.sigma, self.gamma).map_err(|why| remedy::told(&why))
     }
 
     fn exact(&self) -> model::StudentT {
@@ -241,7 +242,7 @@ impl Quantity for Albedo {
         Ok(match method {
             Method::Table => {
                 let albedo =
-                    known.set.albedo(sigma, gamma, masking).map_err(|why| why.to_string())?;
+                    known.set.albedo(sigma, gamma, masking).map_err(|why| remedy::told(&why))?;
                 let v = direction(cos as f32);
                 let Moments { scale, bias, .. } = albedo.moments(v);
                 [albedo.albedo(v), scale, bias].map(text).into()
@@ -251,7 +252,7 @@ impl Quantity for Albedo {
                 let albedo = known
                     .integrator(gamma)?
                     .reflection(sigma, cos, schlick)
-                    .map_err(|why| why.to_string())?;
+                    .map_err(|why| remedy::told(&why))?;
                 let [scale, bias] = albedo.of(masking);
                 [scale + bias, scale, bias].map(text).into()
             }
@@ -279,14 +280,14 @@ impl Quantity for AlbedoAverage {
                 let average = known
                     .set
                     .average_moments(sigma, gamma, masking)
-                    .map_err(|why| why.to_string())?;
+                    .map_err(|why| remedy::told(&why))?;
                 vec![average.total().to_string()]
             }
             Method::Exact => {
                 let albedo = known
                     .integrator(gamma)?
                     .average(sigma, |_| [1.0])
-                    .map_err(|why| why.to_string())?;
+                    .map_err(|why| remedy::told(&why))?;
                 vec![albedo.of(masking)[0].to_string()]
             }
         })

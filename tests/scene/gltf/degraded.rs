@@ -1,6 +1,6 @@
 //! What is not understood in a scene, and liberties of its writers, while the rest is read.
 
-use microfacet_bake::scene::{Roughness, Scene};
+use microfacet_baker::scene::{Roughness, Scene};
 
 use super::document;
 use crate::{assert_not_understood, assert_warned, isotropic, load, named, names};

@@ -1,6 +1,6 @@
 //! F0 of metals, of dielectrics, and of what lies between them.
 
-use microfacet_bake::scene::Fresnel;
+use microfacet_baker::scene::Fresnel;
 
 use super::document;
 use crate::load;

@@ -6,8 +6,9 @@ mod unreadable;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use microfacet_bake::interval::Interval;
-use microfacet_bake::scene::{Format, Fresnel, Roughness};
+
+use microfacet_baker::interval::Interval;
+use microfacet_baker::scene::{Format, Fresnel, Roughness};
 
 use crate::{
     Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
@@ -101,7 +102,7 @@ const TEXTURED: &str = r#"
             "clearcoatRoughnessTexture": {"index": 0}}}}"#;
 
 #[track_caller]
-fn assert_textured(scene: &microfacet_bake::scene::Scene) {
+fn assert_textured(scene: &microfacet_baker::scene::Scene) {
     assert_eq!(scene.warnings, [""; 0]);
     let check =
         |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(scene, name).roughness, x, y);

@@ -128,7 +128,7 @@ fn text_of_another_encoding_refuses_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.gltf");
     std::fs::write(&path, text).unwrap();
-    let scene = microfacet_bake::scene::load(&path).unwrap();
+    let scene = microfacet_scene::load(&path).unwrap();
     assert_eq!(names(&scene), ["Gr\u{fffd}n"]);
     assert!(scene.warnings[0].contains("not UTF-8"), "{:?}", scene.warnings);
 }

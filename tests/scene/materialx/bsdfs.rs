@@ -1,7 +1,7 @@
 //! Surfaces that are graphs of BSDF nodes.
 
-use microfacet_bake::interval::Interval;
-use microfacet_bake::scene::{Fresnel, Scene};
+use microfacet_baker::interval::Interval;
+use microfacet_baker::scene::{Fresnel, Scene};
 
 use super::{document, not_understood};
 use crate::{Folder, anisotropic, assert_close, isotropic, load, names, png};

@@ -4,8 +4,8 @@ mod bsdfs;
 mod documents;
 mod models;
 
-use microfacet_bake::interval::Interval;
-use microfacet_bake::scene::{Format, Fresnel, Roughness, Scene};
+use microfacet_baker::interval::Interval;
+use microfacet_baker::scene::{Format, Fresnel, Roughness, Scene};
 
 use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, names, png};
 

@@ -1,6 +1,6 @@
 //! Shading models, against the graphs that define them.
 
-use microfacet_bake::scene::{Fresnel, Material, Roughness, Scene};
+use microfacet_baker::scene::{Fresnel, Material, Roughness, Scene};
 
 use super::{document, shader};
 use crate::{anisotropic, assert_close, isotropic, load, names};

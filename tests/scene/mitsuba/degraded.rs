@@ -1,7 +1,7 @@
 //! What is not understood in a scene, and what only Mitsuba 0.6 has, while the rest is read.
 
-use microfacet_bake::interval::Interval;
-use microfacet_bake::scene::{Fresnel, Roughness, Scene};
+use microfacet_baker::interval::Interval;
+use microfacet_baker::scene::{Fresnel, Roughness, Scene};
 
 use super::scene;
 use crate::{

@@ -1,6 +1,6 @@
 //! Fresnel terms, against the plugins that define them.
 
-use microfacet_bake::scene::{Fresnel, Scene};
+use microfacet_baker::scene::{Fresnel, Scene};
 use microfacet_sampler::Metal;
 
 use super::bsdf;

@@ -3,8 +3,8 @@
 mod degraded;
 mod fresnel;
 
-use microfacet_bake::interval::Interval;
-use microfacet_bake::scene::{Format, Fresnel, Masking, Roughness};
+use microfacet_baker::interval::Interval;
+use microfacet_baker::scene::{Format, Fresnel, Masking, Roughness};
 use microfacet_sampler::Metal;
 
 use crate::{

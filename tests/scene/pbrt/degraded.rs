@@ -1,6 +1,6 @@
 //! What is not understood in a scene, while the rest of it is read.
 
-use microfacet_bake::scene::Scene;
+use microfacet_baker::scene::Scene;
 
 use crate::{
     anisotropic, assert_not_understood, assert_refused, assert_warned, isotropic, load, named,

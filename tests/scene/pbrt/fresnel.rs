@@ -1,6 +1,6 @@
 //! Fresnel terms.
 
-use microfacet_bake::scene::Fresnel;
+use microfacet_baker::scene::Fresnel;
 use microfacet_sampler::Metal;
 
 use crate::{anisotropic, assert_warned, isotropic, load, names};

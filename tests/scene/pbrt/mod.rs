@@ -8,8 +8,8 @@ use std::io::Write;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use microfacet_bake::interval::Interval;
-use microfacet_bake::scene::{Format, Fresnel, Masking, Roughness};
+use microfacet_baker::interval::Interval;
+use microfacet_baker::scene::{Format, Fresnel, Masking, Roughness};
 use microfacet_sampler::Metal;
 
 use crate::{Folder, anisotropic, assert_refused, assert_warned, isotropic, load, named, names};

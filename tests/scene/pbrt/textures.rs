@@ -1,8 +1,9 @@
 //! Ranges of float textures.
 
 use image::{GrayImage, ImageFormat, Luma, Rgb, RgbImage, Rgba, Rgba32FImage, RgbaImage};
-use microfacet_bake::interval::Interval;
-use microfacet_bake::scene::{Roughness, Scene};
+
+use microfacet_baker::interval::Interval;
+use microfacet_baker::scene::{Roughness, Scene};
 
 use crate::{
     Folder, assert_close, assert_not_understood, assert_warned, encoded, isotropic, load, named,

@@ -174,8 +174,7 @@ impl Tables {
             let serves = table.subject.reflectance.as_ref().is_some_and(&serves);
             serves.then(|| read(table, &point)).flatten()
         });
-        let remedy = "state its `fresnel` in its recipe, or bake it with --albedo";
-        found.ok_or_else(|| MaterialError::NoAlbedo { name: entry.name.clone(), remedy })
+        found.ok_or_else(|| MaterialError::NoAlbedo(entry.name.clone()))
     }
 
     fn albedos(

@@ -1,9 +1,11 @@
 //! Directional albedos from tables: the share of light that one bounce off the microsurface
 //! returns.
 //!
-//! One mechanism serves every lobe and reflectance: [`find`] chooses the table by its description,
-//! [`curve`] collapses the axes of the material, which leaves a curve over the view, and
-//! [`directional`] or [`fresnel`] say what its channels mean.
+//! One mechanism serves every lobe and reflectance: `find` chooses the table by its description,
+//! `curve` collapses the axes of the material, which leaves a curve over the view, and
+//! `directional` or `fresnel` say what its channels mean.
+//!
+//! The averages of reflectances over the hemisphere belong to a compensation of your own.
 
 mod average;
 mod curve;
@@ -13,9 +15,11 @@ mod elevation;
 mod find;
 mod fresnel;
 mod moments;
+mod reflectance_average;
 pub(crate) mod shape;
 
 pub use curve::ViewCurve;
 pub use directional::Albedo;
 pub use fresnel::{DielectricAlbedo, FresnelAlbedo};
 pub use moments::Moments;
+pub use reflectance_average::{f82_tint_average, fresnel_average, schlick_average};

@@ -1,7 +1,5 @@
 //! Finds the albedos of a lobe in tables.
 
-use alloc::format;
-
 use microfacet_core::Masking;
 use microfacet_tables::{Kind, Reflectance};
 
@@ -31,7 +29,7 @@ impl Tables {
     /// The albedo of a lobe with F = 1: of the lobe itself, or of the round lobe that stands in.
     ///
     /// # Errors
-    /// [`BindError::NoAlbedo`] naming the lines of a recipe that add it, or
+    /// [`BindError::NoAlbedo`] naming the lobe, or
     /// [`BindError::Material`] for a round lobe that the tables do not cover.
     pub fn albedo_of(
         &self,
@@ -50,7 +48,9 @@ impl Tables {
             return Ok(Albedo::from_table(table, f64::NAN, f64::NAN)?);
         }
         let round = round(&key, stand_in).ok_or_else(|| BindError::NoAlbedo {
-            recipe: key.recipe("\"mirror\"", masking),
+            lobe: key.clone(),
+            eta: None,
+            masking,
             stand_in: key.round().is_some(),
         })?;
         Ok(self.albedo(round.0, round.1, masking)?)
@@ -61,7 +61,7 @@ impl Tables {
     ///
     /// # Errors
     /// [`BindError::RoundOnly`] for a lobe that is not round and may not be stood in for,
-    /// [`BindError::NoAlbedo`] naming the lines of a recipe that add it.
+    /// [`BindError::NoAlbedo`] naming the lobe.
     pub fn dielectric_albedo_of(
         &self,
         lobe: &impl MicrofacetDistribution,
@@ -75,9 +75,8 @@ impl Tables {
             round(&key, stand_in).ok_or(BindError::RoundOnly { stand_in: stood_for })?;
         self.dielectric_albedo(sigma, gamma, eta, masking).map_err(|why| match why {
             MaterialError::DielectricNotCovered { .. } => {
-                let key = LobeKey::Round { sigma, gamma };
-                let fresnel = format!("{{ dielectric = {eta} }}");
-                BindError::NoAlbedo { recipe: key.recipe(&fresnel, masking), stand_in: false }
+                let lobe = LobeKey::Round { sigma, gamma };
+                BindError::NoAlbedo { lobe, eta: Some(eta), masking, stand_in: false }
             }
             why => why.into(),
         })

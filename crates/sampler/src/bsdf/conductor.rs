@@ -19,7 +19,7 @@ use crate::tables::Tables;
 /// Conventions are those of [`Bsdf`]. Single scattering is D F G2/(4 cos θ_v cos θ_l) (Cook &
 /// Torrance 1982, <https://doi.org/10.1145/357290.357293>), sampled by visible normals: its weight
 /// F·G2/G1 is at most 1. [`compensated`](Self::compensated) adds what further bounces return. Black
-/// from below. With a [`Bounded`](crate::Bounded) lobe fewer samples are lost.
+/// from below. With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 #[derive(Clone, Debug)]
 pub struct Conductor<L, const N: usize = 3> {
     lobe: L,

@@ -3,11 +3,10 @@
 
 use microfacet_core::fresnel::dielectric;
 
-use super::averages::fresnel_average;
 use super::broad::Broad;
 use super::compensation::{Compensation, kulla_conty, turquin};
 use super::interface::Interface;
-use crate::albedo::DielectricAlbedo;
+use crate::albedo::{DielectricAlbedo, fresnel_average};
 use glam::Vec3;
 
 /// The accounts of one interface.

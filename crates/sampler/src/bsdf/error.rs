@@ -1,11 +1,14 @@
 //! Why a BSDF cannot be made.
 
+use alloc::format;
 use alloc::string::String;
 use core::fmt;
 
+use microfacet_core::Masking;
 use microfacet_tables::Range;
 
 use crate::error::MaterialError;
+use crate::material::LobeKey;
 
 /// Why a BSDF cannot be made: a number outside its domain, or an albedo that the tables lack.
 #[derive(Clone, PartialEq)]
@@ -28,8 +31,12 @@ pub enum BindError {
     },
     /// The tables have no albedo of a lobe for the compensation that was asked for.
     NoAlbedo {
-        /// The lines of a recipe that add it.
-        recipe: String,
+        /// The lobe.
+        lobe: LobeKey,
+        /// The index of refraction of a dielectric.
+        eta: Option<f64>,
+        /// The form of masking.
+        masking: Masking,
         /// Whether the round lobe of √(σx σy) could stand in.
         stand_in: bool,
     },
@@ -60,12 +67,12 @@ impl fmt::Display for BindError {
             Self::Reflectance { name, value } => {
                 write!(f, "{name} = {value}: a reflectance must lie in [0, 1]")
             }
-            Self::NoAlbedo { recipe, stand_in } => {
-                write!(
-                    f,
-                    "the tables hold no albedo of this lobe, which compensation needs; add it to a recipe and bake that:\n\
-                     {recipe}\nor bake it when loading"
-                )?;
+            Self::NoAlbedo { lobe, eta, masking, stand_in } => {
+                write!(f, "the tables hold no albedo of this lobe, {lobe}")?;
+                if let Some(eta) = eta {
+                    write!(f, ", of a dielectric of index {eta}")?;
+                }
+                write!(f, " with {masking} masking, which compensation needs; bake it")?;
                 if *stand_in {
                     write!(f, ", or let the round lobe stand in with `StandIn::Round`")?;
                 }
@@ -96,6 +103,18 @@ impl fmt::Display for BindError {
 microfacet_core::debug_in_words!(BindError);
 
 impl core::error::Error for BindError {}
+
+impl BindError {
+    /// The lines of a recipe that add a missing albedo, if that is what this is about.
+    pub fn recipe(&self) -> Option<String> {
+        let Self::NoAlbedo { lobe, eta, masking, .. } = self else { return None };
+        let fresnel = match eta {
+            Some(eta) => format!("{{ dielectric = {eta} }}"),
+            None => "\"mirror\"".into(),
+        };
+        Some(lobe.recipe(&fresnel, *masking))
+    }
+}
 
 impl From<MaterialError> for BindError {
     fn from(why: MaterialError) -> Self {

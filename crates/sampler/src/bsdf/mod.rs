@@ -1,15 +1,14 @@
 //! Complete materials: what a renderer evaluates and samples, made of a lobe, a reflectance, and
 //! albedos where light of further bounces is to be given back.
 //!
-//! [`conductor`], [`dielectric`] and [`plastic`] are the BSDFs, [`any`] any of them;
-//! [`reflectance`] is Fresnel's or Schlick's of conductors, [`metal`] metals by name, and
-//! [`interface`] the geometry of refraction. [`facets`] reflect singly; [`mixture`] joins them with
-//! [`broad`], the density of light of further bounces. [`energy`] and [`compensation`] keep account
-//! of what one bounce returns; [`bind`] finds its albedos in tables, and [`error`] says what is
+//! `conductor`, `dielectric` and `plastic` are the BSDFs, `any` any of them;
+//! `reflectance` is Fresnel's or Schlick's of conductors, `metal` metals by name, and
+//! `interface` the geometry of refraction. `facets` reflect singly; `mixture` joins them with
+//! `broad`, the density of light of further bounces. `energy` and `compensation` keep account
+//! of what one bounce returns; `bind` finds its albedos in tables, and `error` says what is
 //! missing.
 
 mod any;
-mod averages;
 mod bind;
 mod broad;
 mod compensation;
@@ -25,7 +24,6 @@ mod plastic;
 mod reflectance;
 
 pub use any::AnyBsdf;
-pub use averages::{f82_tint_average, fresnel_average, schlick_average};
 pub use bind::StandIn;
 pub use compensation::Compensation;
 pub use conductor::Conductor;

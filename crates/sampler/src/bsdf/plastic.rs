@@ -32,20 +32,21 @@ use crate::tables::Tables;
 /// with R the share of diffuse light from inside that the coat sends back, so that the light
 /// reflected between base and coat any number of times is counted. T and R are from the tables'
 /// albedos, compensation included; a smooth coat needs no tables. With a compensation a white base
-/// returns all light. With a [`Bounded`](crate::Bounded) lobe fewer samples are lost.
+/// returns all light. With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 ///
 /// Albedos of a rough coat are in no default set. They are baked for a recipe that names it, for
 /// round lobes of the family; [`StandIn::Round`] takes them for anisotropic and tilted ones.
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
-/// use microfacet_sampler::{BindError, Compensation, Plastic, Smooth, StandIn, Tables};
+/// use microfacet_sampler::lobe::Smooth;
+/// use microfacet_sampler::{Compensation, Plastic, StandIn, Tables};
 ///
 /// let tables = Tables::embedded();
 /// let coat = tables.student_t(0.3, 2.5)?;
 /// let (none, green) = (Compensation::None, [0.1, 0.4, 0.2]);
 /// let rough = Plastic::new(coat, 1.5, green, &tables, none, StandIn::Refused);
-/// let Err(BindError::NoAlbedo { recipe, .. }) = rough else { panic!("not refused") };
+/// let recipe = rough.err().and_then(|why| why.recipe()).expect("refused for want of an albedo");
 /// // Bake these lines, and load the set: Tables::from_bytes(&file).
 /// assert!(recipe.contains("gamma = 2.5\nfresnel = { dielectric = 1.5 }"));
 /// // Without microfacets none is needed.

@@ -142,7 +142,7 @@ pub trait MicrofacetDistribution {
     /// Density with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m`, the
     /// tables' errors included: an estimator that divides by it is unbiased.
     ///
-    /// [`Radial`](crate::Radial) alone returns [`visible_normal_pdf`](Self::visible_normal_pdf)
+    /// [`Radial`](crate::lobe::Radial) alone returns [`visible_normal_pdf`](Self::visible_normal_pdf)
     /// here, from which its samples differ by the errors of its tables.
     #[inline]
     fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
@@ -184,7 +184,7 @@ pub trait MicrofacetDistribution {
     /// reflected.
     ///
     /// Lobes may leave out normals that reflect the view below the horizon, as
-    /// [`Bounded`](crate::Bounded) does; all others keep their density, divided by the share.
+    /// [`Bounded`](crate::lobe::Bounded) does; all others keep their density, divided by the share.
     #[inline(always)]
     fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
         (self.sample_visible_normal(v, u), 1.0)

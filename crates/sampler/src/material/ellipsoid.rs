@@ -101,7 +101,7 @@ impl Ellipsoid {
     ///
     /// A normal takes 1.2 times as long as one of the untilted anisotropic lobe, 1.1 to 1.2 times
     /// with its density; by the general path it took twice as long
-    /// (`cargo run --profile dist --example ellipsoid_cost`).
+    /// (`cargo run --profile dist -p microfacet-study -- ellipsoid_cost`).
     #[inline(always)]
     fn sample_fast<const HEAVY: bool>(&self, v: Vec3, u: [f32; 2]) -> Option<f32x4> {
         let Matrix { p, q, r, x, y } = self.matrix;

@@ -2,6 +2,7 @@
 
 use alloc::format;
 use alloc::string::{String, ToString};
+use core::fmt;
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Masking, Skew};
@@ -107,6 +108,20 @@ impl LobeKey {
         format!(
             "[[material]]\nname = \"another name\"\n{lobe}\nfresnel = {fresnel}\nmasking = \"{masking}\""
         )
+    }
+}
+
+impl fmt::Display for LobeKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Round { sigma, gamma } => write!(f, "sigma = {sigma}, gamma = {gamma}"),
+            Self::Anisotropic { sigma: [x, y], gamma } => {
+                write!(f, "sigma = [{x}, {y}], gamma = {gamma}")
+            }
+            Self::Tilted { gamma, .. } => write!(f, "tilted, gamma = {gamma}"),
+            Self::Distribution(label) => write!(f, "{label}"),
+            Self::Unknown => write!(f, "of no known distribution"),
+        }
     }
 }
 

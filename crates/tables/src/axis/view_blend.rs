@@ -1,7 +1,8 @@
 //! The view axis of albedo tables. **To space it differently, change this file alone** and bake
 //! again: baking, readers, certificates, examples and the description in every file follow.
 //!
-//! `cargo run --release --example albedo_design` measures the reasons for this spacing.
+//! `cargo run --release -p microfacet-study -- albedo_design` measures the reasons for this
+//! spacing.
 
 use serde::{Deserialize, Serialize};
 

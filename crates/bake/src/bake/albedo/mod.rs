@@ -1,0 +1,340 @@
+//! Bakes directional albedos of any lobe under any reflectance, for both forms of masking in one
+//! pass.
+//!
+//! One loop runs over the nodes of a specification's axes: [`Model`] is the lobe by quadrature,
+//! [`Integrand`] the reflectance. For the moments (F = 1 and its parts) a table holds E − 1 and, of
+//! the other moments, their excess over E times a mirror's, all of which vanish with σ; for exact
+//! reflectances it holds the shares of light. Nodes are spaced evenly in coordinates found by
+//! measuring. Averages are integrated from the stored, interpolated albedo, so that a white furnace
+//! closes to rounding rather than to the interpolation error.
+
+mod albedo_spec;
+mod domain;
+mod integrand;
+mod lobe;
+
+use std::fmt;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use microfacet_model::{Albedo, ParameterError};
+use microfacet_sampler::albedo::Albedo as TabulatedAlbedo;
+use microfacet_sampler::{Masking, MaterialError};
+use microfacet_tables::axis::ViewBlend;
+use microfacet_tables::{Axis, Kind, LoadError, Mapping, Precision, Reflectance, Table};
+
+use crate::progress::Stage;
+
+pub use albedo_spec::AlbedoSpec;
+pub use domain::{Domain, SIGMA_MAX};
+pub use integrand::{Integrand, weights};
+pub(crate) use lobe::area_ratio;
+pub use lobe::{AlbedoLobe, Model, Models};
+
+/// Most channels of any integrand.
+pub const CHANNELS: usize = 3;
+
+/// A material and a view: a place on the axes of a table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// γ, for tables with such an axis; else ∞, on which their view coordinate does not depend.
+    pub gamma: f64,
+    /// σ, or the roughness that a lobe shows at the azimuth.
+    pub sigma: f64,
+    /// Index of the dense side of a dielectric over that of the thin side.
+    pub eta: f64,
+    /// Azimuth of the view, radians.
+    pub phi: f64,
+    /// cos θ of the view.
+    pub cos: f64,
+}
+
+impl Site {
+    /// The place at a coordinate along each axis.
+    pub fn new(axes: &[Axis], at: &[f64]) -> Self {
+        let mut site =
+            Self { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi: 0.0, cos: f64::NAN };
+        for (axis, &t) in axes.iter().zip(at) {
+            let quantity = || axis.quantity(t).expect("an axis of a quantity");
+            match axis.mapping {
+                Mapping::LogShape(_) => site.gamma = quantity(),
+                Mapping::LogRoughness(_) => site.sigma = quantity(),
+                Mapping::ReflectanceRoot => site.eta = quantity(),
+                Mapping::Azimuth(azimuth) => {
+                    let azimuth = azimuth.prepare(axis.len());
+                    let [c, s] = azimuth.direction(t);
+                    (site.phi, site.sigma) = (azimuth.quantity(t), azimuth.sigma(c, s));
+                }
+                Mapping::ViewBlend(view) => {
+                    site.cos = view.prepare(site.sigma, site.gamma).quantity(t)
+                }
+                Mapping::CriticalBlend(view) => {
+                    site.cos = view.prepare(site.sigma, site.gamma, 1.0 / site.eta).quantity(t);
+                }
+                _ => unreachable!("no axis of an albedo"),
+            }
+        }
+        site
+    }
+
+    /// The direction of the view.
+    pub fn view(&self) -> Vec3 {
+        let sin = ((1.0 - self.cos) * (1.0 + self.cos)).sqrt();
+        let (s, c) = libm::sincos(self.phi);
+        Vec3::new((sin * c) as f32, (sin * s) as f32, self.cos as f32)
+    }
+
+    /// All places of a table, the last axis fastest.
+    pub(crate) fn all(axes: &[Axis]) -> Vec<Self> {
+        let mut at: Vec<Vec<f64>> = vec![Vec::new()];
+        for axis in axes {
+            let longer = |t: &Vec<f64>| -> Vec<Vec<f64>> {
+                axis.nodes.iter().map(|&node| [&t[..], &[node]].concat()).collect()
+            };
+            at = at.iter().flat_map(longer).collect();
+        }
+        at.into_par_iter().map(|at| Self::new(axes, &at)).collect()
+    }
+}
+
+impl fmt::Display for Site {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { gamma, sigma, eta, phi, cos } = self;
+        write!(f, "sigma {sigma}, gamma {gamma}, cos_theta {cos}, azimuth {phi}")?;
+        if eta.is_nan() { Ok(()) } else { write!(f, ", eta {eta}") }
+    }
+}
+
+/// Why a bake of albedos failed.
+#[derive(Clone, PartialEq)]
+pub enum AlbedoError {
+    /// A parameter outside the domain of the model.
+    Parameter(ParameterError),
+    /// A node whose E is NaN, or above 1 by more than its error estimate: a fault of the
+    /// quadrature, which must not reach a table.
+    Albedo {
+        /// The place.
+        at: Site,
+        /// The value.
+        value: f64,
+    },
+    /// A node whose error estimate exceeds what is allowed.
+    Accuracy {
+        /// The place.
+        at: Site,
+        /// The estimate.
+        error: f64,
+    },
+    /// The lobe has no such albedo.
+    Lobe(String),
+    /// A table does not cover the material it was baked for.
+    Material(MaterialError),
+    /// The tables could not be loaded.
+    Table(LoadError),
+}
+
+impl fmt::Display for AlbedoError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter(why) => why.fmt(f),
+            Self::Albedo { at, value } => {
+                write!(f, "albedo {value} at {at}: it must lie in [0, 1]; please report it")
+            }
+            Self::Accuracy { at, error } => {
+                write!(
+                    f,
+                    "the quadrature of an albedo reaches only {error:e} at {at}; keep such materials out of the recipe's ranges of \
+                     sigma and gamma, and please report it"
+                )
+            }
+            Self::Lobe(why) => why.fmt(f),
+            Self::Material(why) => why.fmt(f),
+            Self::Table(why) => why.fmt(f),
+        }
+    }
+}
+
+microfacet_core::debug_in_words!(AlbedoError);
+
+impl std::error::Error for AlbedoError {}
+
+impl From<ParameterError> for AlbedoError {
+    fn from(why: ParameterError) -> Self {
+        Self::Parameter(why)
+    }
+}
+
+impl From<MaterialError> for AlbedoError {
+    fn from(why: MaterialError) -> Self {
+        Self::Material(why)
+    }
+}
+
+impl From<LoadError> for AlbedoError {
+    fn from(why: LoadError) -> Self {
+        Self::Table(why)
+    }
+}
+
+/// Bakes the tables of a specification: a directional albedo for each form of masking and, for the
+/// moments of the family, their averages.
+///
+/// The certificate of each directional table has `quadrature_error`, the largest error estimate of
+/// a node.
+///
+/// # Errors
+/// [`AlbedoError`] if a node is no valid albedo or not accurate enough, or the specification lies
+/// outside the domain.
+pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, AlbedoError> {
+    Ok(bake_in(spec, &[spec.precision], &Stage::unwatched())?.concat())
+}
+
+/// Bakes the tables in several precisions from one pass over the nodes, which takes nearly all the
+/// time; each node is one step of the stage.
+///
+/// # Errors
+/// As [`bake`].
+pub fn bake_in(
+    spec: &AlbedoSpec,
+    precisions: &[Precision],
+    stage: &Stage,
+) -> Result<Vec<Vec<Table>>, AlbedoError> {
+    let sites = Site::all(&spec.axes);
+    stage.split(sites.len());
+    let gammas = sites.iter().map(|site| site.gamma);
+    Models::with(&spec.lobe, gammas, spec.tolerance, |models| {
+        let integrand = Integrand::new(&spec.reflectance)?;
+        let nodes = sites
+            .par_iter()
+            .map(|site| {
+                let node = node(spec, &integrand, models.at(site), site);
+                stage.step();
+                node
+            })
+            .collect::<Result<Vec<Node>, AlbedoError>>()?;
+        let rounded = |&precision: &Precision| {
+            let spec = AlbedoSpec { precision, ..spec.clone() };
+            let tables = spec.maskings.iter().map(|&masking| tables(&spec, &nodes, masking));
+            Ok(tables.collect::<Result<Vec<_>, AlbedoError>>()?.concat())
+        };
+        precisions.iter().map(rounded).collect()
+    })
+}
+
+/// The values of a node for both forms of masking, and their error estimate.
+struct Node {
+    values: Albedo<CHANNELS>,
+    /// μ/(μ + A), for lobes whose G1(v) is clamped.
+    clamp: Option<f64>,
+}
+
+/// Error allowed in a node, as a multiple of the one aimed at. Narrow lobes with long tails at
+/// grazing views, and the kinks of clamped masking and of total reflection, take the quadrature to
+/// its last order; the worst of `tables/recipes/brushed-metals.toml` reaches 26. The certificate
+/// states what was reached.
+const SLACK: f64 = 100.0;
+/// Where less than this share of the microsurface is visible, E is smaller still, and their
+/// quotient is not meaningful.
+const UNSEEN: f64 = 1e-6;
+
+fn node(
+    spec: &AlbedoSpec,
+    integrand: &Integrand,
+    model: &Model<'_>,
+    site: &Site,
+) -> Result<Node, AlbedoError> {
+    let mut values = integrand.at(model, site)?;
+    let ratio = model.area_ratio(site);
+    let clamp = ratio.map(|ratio| 1.0 / (1.0 + ratio));
+    // The factor that the clamp of G1(v) leaves in the shares is divided out.
+    let share = ratio.unwrap_or(1.0).min(1.0);
+    if share < UNSEEN {
+        (values.uncorrelated, values.height_correlated) = Default::default();
+        return Ok(Node { values, clamp });
+    }
+    if !(values.error <= SLACK * spec.tolerance) {
+        return Err(AlbedoError::Accuracy { at: *site, error: values.error });
+    }
+    for form in [&mut values.uncorrelated, &mut values.height_correlated] {
+        form.iter_mut().for_each(|x| *x /= share);
+        let sound = |x: f64| {
+            x >= -values.error / share && x <= 1.0 + (values.error + spec.tolerance) / share
+        };
+        // Checked before clamping: a wrong sum must be seen.
+        match spec.reflectance {
+            Reflectance::Moments => {
+                let e = form[0] + form[1];
+                if !sound(e) {
+                    return Err(AlbedoError::Albedo { at: *site, value: e });
+                }
+                let mirror = weights(site.cos);
+                // Near normal incidence on a smooth surface 1 − E is far below the quadrature's
+                // tolerance.
+                *form = [e - 1.0, form[1] - e * mirror[1], form[2] - e * mirror[2]];
+            }
+            _ => {
+                if let Some(&value) = form.iter().find(|x| !sound(**x)) {
+                    return Err(AlbedoError::Albedo { at: *site, value });
+                }
+                // Out of range by no more than the error of the quadrature.
+                form.iter_mut().for_each(|x| *x = x.clamp(0.0, 1.0));
+            }
+        }
+    }
+    Ok(Node { values, clamp })
+}
+
+/// The tables of one form of masking.
+fn tables(spec: &AlbedoSpec, nodes: &[Node], masking: Masking) -> Result<Vec<Table>, AlbedoError> {
+    let channels = spec.reflectance.channels().len();
+    let values = |node: &Node| {
+        node.values.of(masking)[..channels].iter().copied().chain(node.clamp).collect::<Vec<f64>>()
+    };
+    let directional = Table {
+        name: spec.name(Kind::Albedo, masking),
+        kind: Kind::Albedo,
+        subject: spec.subject(masking),
+        axes: spec.axes.clone(),
+        channels: spec.channels(),
+        values: nodes.iter().flat_map(values).map(|x| x as f32).collect(),
+        precision: Precision::F32,
+        certificate: [(
+            "quadrature_error".to_string(),
+            nodes.iter().map(|node| node.values.error).fold(0.0, f64::max),
+        )]
+        .into(),
+    }
+    .rounded(spec.precision);
+    let average = spec.has_averages().then(|| average(spec, &directional, masking)).transpose()?;
+    Ok([directional].into_iter().chain(average).collect())
+}
+
+/// The averages of a table of moments over γ, σ and the view.
+fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<Table, AlbedoError> {
+    directional.validate()?;
+    let axes = spec.axes[..2].to_vec();
+    let (gammas, sigmas) = (axes[0].quantities(), axes[1].quantities());
+    // The averages also cover the outer nodes, which the table's own range leaves out.
+    let mut whole = directional.clone();
+    whole.subject.covers = spec.everywhere();
+    let at = |(gamma, sigma): (f64, f64)| {
+        Ok(TabulatedAlbedo::from_table(&whole, sigma, gamma)?.integrate())
+    };
+    let pairs = gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| (gamma, sigma)));
+    let values = pairs.map(at).collect::<Result<Vec<_>, MaterialError>>()?;
+    Ok(Table {
+        name: spec.name(Kind::AlbedoAverage, masking),
+        kind: Kind::AlbedoAverage,
+        axes,
+        values: values.concat(),
+        precision: Precision::F32,
+        certificate: Default::default(),
+        ..directional.clone()
+    })
+}
+
+/// The view coordinate of a single lobe: its γ is a constant here, so that readers supply none.
+fn view_of(gamma: f64) -> ViewBlend {
+    ViewBlend::BAKED.of_shape(gamma)
+}

@@ -1,0 +1,494 @@
+//! Places at which albedo tables are measured: corners, the middle of every cell along every edge,
+//! faces, the interior, and the crease of tilted lobes.
+//!
+//! Random places miss edges, where the windows of a polynomial are one-sided and errors largest,
+//! and the crease, where E has a kink: so those are listed. All places are fixed, so that
+//! certificates are part of a table's reproducible bytes.
+
+use rayon::prelude::*;
+
+use microfacet_model::Ellipsoid;
+use microfacet_sampler::Masking;
+use microfacet_tables::axis::LogRoughness;
+use microfacet_tables::{Axis, Mapping};
+
+use super::certificate::low_discrepancy;
+use crate::bake::albedo::{AlbedoLobe, AlbedoSpec, Site, area_ratio};
+
+/// Smallest σ and cos θ of the domain that certificates promise errors for.
+const PROMISED: (f64, f64) = (0.01, 0.02);
+/// Smallest σ that is not a mirror.
+const SMOOTHEST: f64 = LogRoughness::BAKED.first;
+/// Interior places: one for so many nodes, within limits. With half as many places the climbs
+/// missed a maximum of the default set, an F82 error of 8.4e-5 where 7.3e-5 was found.
+const NODES_A_POINT: usize = 4;
+const FEWEST: usize = 240;
+const MOST: usize = 6144;
+
+/// Views at corners and along edges: the ends of the promised range, and grazing views outside,
+/// down to the horizon itself.
+const VIEWS: [f64; 5] = [1.0, PROMISED.1, 1e-4, 3e-7, 0.0];
+
+/// Number of last cells that hold the cusp at the normal.
+const LAST_CELLS: f64 = 2.0;
+
+/// Lines across a crease in each cell of either axis, the middle of the cell among them.
+const LINES: usize = 4;
+
+/// A place to measure at.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Coordinates along the axes.
+    at: Vec<f64>,
+    /// The same place in quantities.
+    pub site: Site,
+    /// Whether it lies in the promised domain.
+    pub promised: bool,
+    /// Whether it was found on a crease.
+    pub on_crease: bool,
+}
+
+/// The promised range of an axis, in its coordinate.
+pub struct Range {
+    ends: Vec<f64>,
+    /// From the first place to the last: the full circle of azimuths, which has no ends.
+    whole: [f64; 2],
+    /// The middles of the cells in the range.
+    cells: Vec<f64>,
+}
+
+impl Range {
+    fn new(axis: &Axis, spec: &AlbedoSpec) -> Self {
+        let of = |ends: [f64; 2]| {
+            let mut ends = ends.map(|x| axis.coordinate(x).unwrap_or(f64::NAN));
+            ends.sort_by(f64::total_cmp);
+            ends
+        };
+        let [low, high] = match (axis.mapping, &spec.lobe) {
+            (Mapping::LogShape(_), AlbedoLobe::Family(domain)) => {
+                of([domain.gamma.min, domain.gamma.max])
+            }
+            (Mapping::LogRoughness(_), AlbedoLobe::Family(domain)) => {
+                let max = domain.sigma.max;
+                of([PROMISED.0.min(max).max(domain.sigma.min).max(SMOOTHEST), max.max(SMOOTHEST)])
+            }
+            (Mapping::ReflectanceRoot, _) => {
+                of(spec.reflectance.indices().unwrap_or([f64::NAN; 2]))
+            }
+            (Mapping::Azimuth(_), _) if axis.len() == 1 => [0.0; 2],
+            // The ends of a full circle coincide: a quarter turn is the other corner.
+            (Mapping::Azimuth(azimuth), _) => [0.0, if azimuth.fold { 1.0 } else { 0.25 }],
+            _ => [0.0, 1.0],
+        };
+        let whole = if is_circle(axis) { [0.0, 1.0] } else { [low, high] };
+        let mut nodes = axis.nodes.clone();
+        nodes.push(whole[1]);
+        let middle = |pair: &[f64]| 0.5 * (pair[0].max(whole[0]) + pair[1].min(whole[1]));
+        let inside = |pair: &&[f64]| pair[1] > whole[0] && pair[0] < whole[1];
+        let cells = nodes.windows(2).filter(inside).map(middle).collect();
+        let ends = if low == high { vec![low] } else { vec![low, high] };
+        Self { ends, whole, cells }
+    }
+
+    /// The coordinate at the share x ∈ [0, 1] of the range; around the full circle for an azimuth.
+    pub fn at(&self, x: f64) -> f64 {
+        let [first, last] = self.whole;
+        first + x * (last - first)
+    }
+
+    /// The middle of a cell, at the share x ∈ [0, 1] of all cells; without cells, the place itself.
+    fn cell(&self, x: f64) -> f64 {
+        let i = (x * self.cells.len() as f64) as usize;
+        self.cells.get(i).copied().unwrap_or(self.ends[0])
+    }
+}
+
+/// Whether an axis is closed: the full circle of azimuths, whose nodes are evenly spaced.
+fn is_circle(axis: &Axis) -> bool {
+    matches!(axis.mapping, Mapping::Azimuth(azimuth) if !azimuth.fold) && axis.len() > 1
+}
+
+/// Whether the lobe differs by azimuth.
+pub(super) fn has_azimuths(spec: &AlbedoSpec) -> bool {
+    spec.axes.iter().any(|axis| matches!(axis.mapping, Mapping::Azimuth(_)) && axis.len() > 1)
+}
+
+/// Number of the places at corners and along edges.
+pub fn edge_count(spec: &AlbedoSpec) -> usize {
+    let ranges = ranges(spec);
+    let (view, materials) = ranges.split_last().expect("the view is an axis");
+    let ends = |but: Option<usize>| -> usize {
+        let others = materials.iter().enumerate().filter(|(i, _)| Some(*i) != but);
+        others.map(|(_, range)| range.ends.len()).product()
+    };
+    let along: usize =
+        materials.iter().enumerate().map(|(i, range)| range.cells.len() * ends(Some(i))).sum();
+    ends(None) * (VIEWS.len() + view.cells.len()) + along * VIEWS.len()
+}
+
+/// About the number of the places on a crease: it crosses half of all azimuths once, and most
+/// views twice.
+pub fn crease_count(spec: &AlbedoSpec) -> usize {
+    let count = |k: usize| spec.axes.get(k).map_or(0, Axis::len);
+    if has_crease(spec) { LINES * (count(0) / 2 + 2 * count(1)) } else { 0 }
+}
+
+/// Number of the places that lie inside.
+pub fn interior_count(spec: &AlbedoSpec) -> usize {
+    (spec.nodes() / NODES_A_POINT).clamp(FEWEST, MOST)
+}
+
+/// The promised range of each axis.
+pub fn ranges(spec: &AlbedoSpec) -> Vec<Range> {
+    spec.axes.iter().map(|axis| Range::new(axis, spec)).collect()
+}
+
+/// A view by its coordinate or its cosine.
+#[derive(Clone, Copy)]
+enum View {
+    At(f64),
+    Cos(f64),
+}
+
+fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
+    let t = if let View::At(t) = view { t } else { 1.0 };
+    let mut at = [material, &[t]].concat();
+    let mut site = Site::new(&spec.axes, &at);
+    if let View::Cos(cos) = view {
+        site.cos = cos;
+        at[material.len()] = coordinate(&spec.axes[material.len()], &site);
+    }
+    let smoothest = match &spec.lobe {
+        // If all materials are smoother, the roughest counts: otherwise there would be no promised
+        // place.
+        AlbedoLobe::Family(domain) => PROMISED.0.min(domain.sigma.max) * (1.0 - 1e-9),
+        _ => 0.0,
+    };
+    let promised = site.cos as f32 >= PROMISED.1 as f32 && site.sigma >= smoothest;
+    Point { at, site, promised, on_crease: false }
+}
+
+/// The coordinate of a view; for a view below the first node, that of the first node.
+fn coordinate(axis: &Axis, Site { gamma, sigma, eta, cos, .. }: &Site) -> f64 {
+    match axis.mapping {
+        Mapping::ViewBlend(view) => {
+            let view = view.prepare(*sigma, *gamma);
+            view.coordinate(cos.max(view.floor()))
+        }
+        Mapping::CriticalBlend(view) => {
+            let view = view.prepare(*sigma, *gamma, 1.0 / eta);
+            view.coordinate(cos.max(view.floor()))
+        }
+        _ => unreachable!("the last axis is the view"),
+    }
+}
+
+/// The place of a view by its cosine, at coordinates along the axes of materials.
+pub fn seen(spec: &AlbedoSpec, material: &[f64], cos: f64) -> Point {
+    point(spec, material, View::Cos(cos))
+}
+
+/// The promised views of the material of a site, from the lowest to the normal: cos θ at a share
+/// of their range, spaced as on the axis.
+pub fn promised_views(axis: &Axis, site: Site) -> impl Fn(f64) -> f64 + use<> {
+    let low = coordinate(axis, &Site { cos: PROMISED.1, ..site });
+    let mapping = axis.mapping;
+    move |share| {
+        let t = low + share * (1.0 - low);
+        let cos = match mapping {
+            Mapping::CriticalBlend(view) => {
+                view.prepare(site.sigma, site.gamma, 1.0 / site.eta).quantity(t)
+            }
+            Mapping::ViewBlend(view) => view.prepare(site.sigma, site.gamma).quantity(t),
+            _ => unreachable!("the last axis is the view"),
+        };
+        // The coordinate and its inverse round.
+        cos.clamp(PROMISED.1, 1.0)
+    }
+}
+
+/// Whether two places are a cell or more apart along some axis.
+pub fn are_apart(spec: &AlbedoSpec, a: &Point, b: &Point) -> bool {
+    let apart = |(k, axis): (usize, &Axis)| (a.at[k] - b.at[k]).abs() >= cell(axis);
+    spec.axes.iter().enumerate().any(|(k, axis)| axis.nodes.len() > 1 && apart((k, axis)))
+}
+
+/// The width of a cell; nodes are evenly spaced.
+fn cell(axis: &Axis) -> f64 {
+    let [first, last] = axis.ends();
+    (last - first) / (axis.nodes.len() - 1).max(1) as f64
+}
+
+/// Promised neighbours of a place, `cells` away along each axis; of a place on a crease, also those
+/// on it.
+pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
+    let crease = Crease::of(spec).filter(|_| point.on_crease);
+    let mut points = Vec::new();
+    for (k, (axis, range)) in spec.axes.iter().zip(ranges(spec)).enumerate() {
+        let (cell, [low, high]) = (cell(axis), range.whole);
+        for step in [-cells, cells] {
+            let mut at = point.at.clone();
+            at[k] += step * cell;
+            at[k] = if is_circle(axis) { at[k].rem_euclid(1.0) } else { at[k].clamp(low, high) };
+            points.extend(crease.iter().filter_map(|crease| crease.nearest(k, &at)));
+            let (material, view) = at.split_at(at.len() - 1);
+            points.push(self::point(spec, material, View::At(view[0])));
+        }
+    }
+    points.retain(|other| other.promised == point.promised && other.at != point.at);
+    points
+}
+
+/// Surfaces smoother than the promised ones where tails are heaviest, between all nodes: in the
+/// middle of the cell of the smallest γ and of every cell of σ, in every third cell of the view.
+/// None for a table without them.
+pub fn smooth(spec: &AlbedoSpec) -> Vec<Point> {
+    let AlbedoLobe::Family(domain) = spec.lobe else { return Vec::new() };
+    let ranges = ranges(spec);
+    let (view, materials) = ranges.split_last().expect("the view is an axis");
+    let mut material: Vec<f64> = materials.iter().map(|range| range.ends[0]).collect();
+    let gamma = |t: f64| {
+        let at = [&[t], &material[1..], &[1.0]].concat();
+        Site::new(&spec.axes, &at).gamma
+    };
+    let shapes =
+        if materials[0].cells.is_empty() { &materials[0].ends } else { &materials[0].cells };
+    let heaviest = shapes.iter().copied().min_by(|a, b| gamma(*a).total_cmp(&gamma(*b)));
+    material[0] = heaviest.unwrap_or(material[0]);
+    let mut points = Vec::new();
+    for pair in spec.axes[1].nodes.windows(2) {
+        material[1] = 0.5 * (pair[0] + pair[1]);
+        let seen = view.cells.iter().skip(1).step_by(3);
+        points.extend(seen.map(|&view| point(spec, &material, View::At(view))));
+    }
+    let covered = domain.sigma.min..PROMISED.0.min(domain.sigma.max);
+    points.retain(|place| covered.contains(&place.site.sigma));
+    points
+}
+
+/// The curve of views at which G1 of a tilted lobe reaches its clamp.
+///
+/// With height-correlated masking E has a kink there, and the errors of polynomials across it have
+/// a narrow ridge, which crosses cells anywhere.
+struct Crease<'a> {
+    spec: &'a AlbedoSpec,
+    ellipsoid: Ellipsoid,
+}
+
+impl<'a> Crease<'a> {
+    /// `None` where E has no such kink.
+    fn of(spec: &'a AlbedoSpec) -> Option<Self> {
+        let kink = spec.maskings.contains(&Masking::HeightCorrelated);
+        spec.lobe.ellipsoid().filter(|_| kink).map(|ellipsoid| Self { spec, ellipsoid })
+    }
+
+    /// Its promised places with the coordinate t along an axis: 0, azimuth, or 1, view.
+    fn crossings(&self, axis: usize, t: f64) -> Vec<Point> {
+        let at = |x: f64| if axis == 0 { [t, x] } else { [x, t] };
+        let clamped =
+            |x: f64| area_ratio(&self.ellipsoid, &Site::new(&self.spec.axes, &at(x))) < 1.0;
+        let other = &self.spec.axes[1 - axis];
+        // At the normal itself every azimuth meets the curve.
+        let last = if is_circle(other) { 1.0 } else { 1.0 - 1e-3 * cell(other) };
+        let stops = other.nodes.iter().copied().filter(|node| *node < last).chain([last]);
+        let stops: Vec<(f64, bool)> = stops.map(|x| (x, clamped(x))).collect();
+        let changes = stops.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+        let root = |pair: &[(f64, bool)]| {
+            let [(mut low, first), (mut high, _)] = [pair[0], pair[1]];
+            for _ in 0..48 {
+                let middle = 0.5 * (low + high);
+                *(if clamped(middle) == first { &mut low } else { &mut high }) = middle;
+            }
+            let [azimuth, view] = at(low);
+            Point { on_crease: true, ..point(self.spec, &[azimuth], View::At(view)) }
+        };
+        changes.map(root).filter(|place| place.promised).collect()
+    }
+
+    /// Its place with the coordinate of `at` along an axis that is nearest along the other.
+    fn nearest(&self, axis: usize, at: &[f64]) -> Option<Point> {
+        let other = 1 - axis;
+        let circle = is_circle(&self.spec.axes[other]);
+        let away = |place: &Point| {
+            let away = (place.at[other] - at[other]).abs();
+            if circle { away.min(1.0 - away) } else { away }
+        };
+        self.crossings(axis, at[axis]).into_iter().min_by(|a, b| away(a).total_cmp(&away(b)))
+    }
+}
+
+/// Whether E has the kink of a tilted lobe.
+pub(super) fn has_crease(spec: &AlbedoSpec) -> bool {
+    Crease::of(spec).is_some()
+}
+
+/// Where the crease of a tilted lobe crosses lines of equal azimuth and of equal view, some in each
+/// cell; none for other lobes.
+pub fn crease(spec: &AlbedoSpec) -> Vec<Point> {
+    let Some(crease) = Crease::of(spec) else { return Vec::new() };
+    let lines = |(k, axis): (usize, &Axis)| {
+        let step = cell(axis) / LINES as f64;
+        (0..(1.0 / step).round() as usize).map(move |i| (k, i as f64 * step))
+    };
+    let lines: Vec<(usize, f64)> = spec.axes.iter().enumerate().flat_map(lines).collect();
+    lines.into_par_iter().flat_map_iter(|(k, t)| crease.crossings(k, t)).collect()
+}
+
+/// All corners of the promised domain, and along each of its edges the middle of every cell.
+pub fn edges(spec: &AlbedoSpec) -> Vec<Point> {
+    let ranges = ranges(spec);
+    let (view, materials) = ranges.split_last().expect("the view is an axis");
+    let views = VIEWS.map(View::Cos);
+    let mut points = Vec::new();
+    let corners = product(materials, None);
+    for corner in &corners {
+        points.extend(views.iter().map(|&view| point(spec, corner, view)));
+        points.extend(view.cells.iter().map(|&t| point(spec, corner, View::At(t))));
+    }
+    for (i, _) in materials.iter().enumerate() {
+        for edge in product(materials, Some(i)) {
+            points.extend(views.iter().map(|&view| point(spec, &edge, view)));
+        }
+    }
+    points
+}
+
+/// The middle of every cell over azimuths and views; none for a lobe that is the same at every
+/// azimuth.
+///
+/// Errors over azimuths have many hills of a cell's width. With the middles of half the cells, as
+/// on a chessboard, an F82 error of 8.5e-4 was certified as 8.13e-4, of σ = (0.05, 0.4), γ = 1.6.
+pub fn middles(spec: &AlbedoSpec) -> Vec<Point> {
+    let ranges = ranges(spec);
+    let [azimuth, view] = &ranges[..] else { return Vec::new() };
+    let views = |&phi: &f64| view.cells.iter().map(move |&t| point(spec, &[phi], View::At(t)));
+    azimuth.cells.iter().flat_map(views).collect()
+}
+
+/// Number of the places in the middles of cells.
+pub fn middle_count(spec: &AlbedoSpec) -> usize {
+    match &ranges(spec)[..] {
+        [azimuth, view] => azimuth.cells.len() * view.cells.len(),
+        _ => 0,
+    }
+}
+
+/// All combinations of the axes' ends; for the axis `along`, the middles of its cells instead.
+fn product(materials: &[Range], along: Option<usize>) -> Vec<Vec<f64>> {
+    let mut all: Vec<Vec<f64>> = vec![Vec::new()];
+    for (i, range) in materials.iter().enumerate() {
+        let here = if along == Some(i) { &range.cells } else { &range.ends };
+        let longer =
+            |t: &Vec<f64>| here.iter().map(|&x| [&t[..], &[x]].concat()).collect::<Vec<_>>();
+        all = all.iter().flat_map(longer).collect();
+    }
+    all
+}
+
+/// Interior places: a third anywhere, a third on a face with the view in the middle of a cell, and
+/// a third with some axis in the middle of a cell; an eighth of all lies outside the promised
+/// domain. Apart from the cells, places do not depend on the numbers of views and azimuths: they
+/// serve the finer tables of a lobe, too, where some are nodes.
+pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
+    let ranges = ranges(spec);
+    let (view, materials) = ranges.split_last().expect("the view is an axis");
+    let place = |i: usize| {
+        let x = low_discrepancy(steps(), i);
+        let of = |k: usize, range: &Range| {
+            let x = x[k];
+            match (i % 3, i / 3 % (2 * ranges.len())) {
+                (1, j) if j / 2 == k => {
+                    if j % 2 == 0 {
+                        range.ends[0]
+                    } else {
+                        range.ends[range.ends.len() - 1]
+                    }
+                }
+                (2, j) if j / 2 == k => range.cell(x),
+                // Preparing a shape takes longer than a view of it: so only a few shapes are used.
+                _ if matches!(spec.axes[k].mapping, Mapping::LogShape(_)) => some_shape(range, x),
+                _ => range.at(x),
+            }
+        };
+        let material: Vec<f64> =
+            materials.iter().enumerate().map(|(k, range)| of(k, range)).collect();
+        let b = x[materials.len()];
+        let at = match (i % 8, i % 3) {
+            (0, _) => return outside(spec, material, x, i % 16 == 8),
+            (_, 1) if i / 3 % (2 * ranges.len()) / 2 == materials.len() => View::Cos(PROMISED.1),
+            (_, 1) => View::At(view.cell(b)),
+            // Near the normal, where masking sets in with a cusp: logarithmically, and evenly.
+            (1 | 5, _) => {
+                View::At(1.0 - LAST_CELLS * b / (spec.axes[materials.len()].len() - 1) as f64)
+            }
+            (2 | 3, _) => View::Cos(libm::pow(PROMISED.1, b)),
+            _ => View::Cos(PROMISED.1 + (1.0 - PROMISED.1) * b),
+        };
+        point(spec, &material, at)
+    };
+    (0..interior_count(spec)).map(place).collect()
+}
+
+/// A shape: the ends, or one of three places in a cell.
+fn some_shape(range: &Range, x: f64) -> f64 {
+    let n = range.cells.len();
+    let i = (x * (2 * n + 1) as f64) as usize;
+    match range.cells.get(i / 2) {
+        // Between the middle of this cell and that of the one before.
+        Some(cell) if i.is_multiple_of(2) && i > 0 => 0.62 * cell + 0.38 * range.cells[i / 2 - 1],
+        Some(cell) if i % 2 == 1 => *cell,
+        Some(_) => range.ends[0],
+        None => range.ends[range.ends.len() - 1],
+    }
+}
+
+/// A grazing view and, if `smooth`, a surface smoother than the promised ones, if there are any, at
+/// a view where it masks.
+fn outside(spec: &AlbedoSpec, mut material: Vec<f64>, x: [f64; 4], smooth: bool) -> Point {
+    if let AlbedoLobe::Family(domain) = spec.lobe
+        && domain.sigma.min <= SMOOTHEST
+        && smooth
+    {
+        let roughest = PROMISED.0.min(domain.sigma.max);
+        let sigma = roughest * libm::pow(SMOOTHEST / roughest, x[1]);
+        material[1] = spec.axes[1].coordinate(sigma).unwrap_or(material[1]);
+    }
+    let sigma = Site::new(&spec.axes, &[&material[..], &[1.0]].concat()).sigma;
+    let grazing = 1e-5 * sigma.min(0.1);
+    let cos = grazing * libm::pow(PROMISED.1 / grazing, x[material.len()]);
+    point(spec, &material, View::Cos(cos))
+}
+
+/// Steps of the low-discrepancy sequence in four dimensions: powers of the reciprocal of the root
+/// of x⁵ = x + 1.
+fn steps() -> [f64; 4] {
+    const ROOT: f64 = 1.167_303_978_261_418_7;
+    [1, 2, 3, 4].map(|k| libm::pow(ROOT, -f64::from(k)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table_spec::Quality;
+    use microfacet_sampler::Masking;
+    use microfacet_tables::{Precision, Reflectance};
+
+    #[test]
+    fn places_are_counted_as_they_are_listed() {
+        let lobes = [
+            AlbedoLobe::StudentT { sigma: [0.3, 0.1], gamma: 3.0 },
+            AlbedoLobe::Ellipsoid { sigma: [0.3; 2], theta: [0.2, 0.0, 0.0], gamma: 3.0 },
+        ];
+        let of = |lobe| {
+            let masking = vec![Masking::HeightCorrelated];
+            let draft = Quality::Draft;
+            AlbedoSpec::new(lobe, Reflectance::Moments, masking, draft, Precision::F32).unwrap()
+        };
+        let general = AlbedoSpec::general(Quality::Draft, Precision::F32);
+        for spec in lobes.map(of).into_iter().chain([general]) {
+            assert_eq!(edge_count(&spec), edges(&spec).len(), "{:?}", spec.lobe);
+            assert_eq!(middle_count(&spec), middles(&spec).len(), "{:?}", spec.lobe);
+            assert_eq!(interior_count(&spec), interior(&spec).len(), "{:?}", spec.lobe);
+        }
+    }
+}

@@ -1,0 +1,337 @@
+//! Distributions by name, as recipes and the command line give them: `blinn-phong:50`,
+//! `student-t:0.3,2.5`.
+
+use std::fmt;
+use std::str::FromStr;
+
+use microfacet_core::shape::gamma_of_s;
+use microfacet_model::classic::{
+    AshikhminShirley, Gauss, Gtr, Isotropic, Member, Sawicki, Schlick, Tabulated,
+};
+
+use crate::input::angles::Angles;
+
+/// The largest s = 1/(γ−1) that is searched: γ = 1.5025.
+pub const S_MAX: f64 = 1.99;
+
+/// A named distribution of one or two parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DistributionKind {
+    /// Beckmann, slope parameter m.
+    Beckmann,
+    /// Gaussian of the angle (Torrance–Sparrow), width m in radians.
+    Gauss,
+    /// Trowbridge–Reitz (GGX), C.
+    TrowbridgeReitz,
+    /// Generalised Trowbridge–Reitz, C and γ.
+    Gtr,
+    /// Blinn–Phong, exponent N.
+    BlinnPhong,
+    /// Schlick's rational distribution, m.
+    Schlick,
+    /// Sawicki's rational distribution, exponent N.
+    Sawicki,
+    /// Student-t, σ and γ.
+    StudentT,
+    /// Hyper-Cauchy, σ₀ and γ.
+    HyperCauchy,
+    /// Ashikhmin–Shirley, exponents along x and y; isotropic only where they are equal.
+    AshikhminShirley,
+}
+
+/// A distribution with its parameters.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Named {
+    /// The kind.
+    pub kind: DistributionKind,
+    /// Its parameters, in the order of [`DistributionKind::parameters`].
+    pub values: Vec<f64>,
+}
+
+/// A distribution outside the Student-t family that a material may have.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Distribution {
+    /// Given by name and parameters.
+    Named(Named),
+    /// Read from a file of angles and D.
+    Measured {
+        /// The file as the recipe names it.
+        file: String,
+        /// The unit of the angles in it.
+        angles: Angles,
+        /// The angles and D that it holds.
+        table: Tabulated,
+    },
+}
+
+impl Distribution {
+    /// Builds the distribution.
+    ///
+    /// # Errors
+    /// As [`DistributionKind::build`].
+    pub fn build(&self) -> Result<Box<dyn Isotropic>, DistributionError> {
+        match self {
+            Self::Named(named) => named.build(),
+            Self::Measured { table, .. } => Ok(Box::new(table.clone())),
+        }
+    }
+
+    /// The distribution as text, with every digit: `gtr:0.2,1.5` or `measured:steel.csv`.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Named(named) => {
+                let values: Vec<String> = named.values.iter().map(|x| format!("{x}")).collect();
+                format!("{}:{}", named.kind.name(), values.join(","))
+            }
+            Self::Measured { file, .. } => format!("measured:{file}"),
+        }
+    }
+}
+
+/// Why a distribution could not be made.
+#[derive(Clone, PartialEq)]
+pub enum DistributionError {
+    /// No distribution has this name.
+    Unknown(String),
+    /// The wrong number of parameters, or a parameter that is not a number.
+    Parameters(DistributionKind, String),
+    /// A parameter outside its range, with the model's message.
+    Range(DistributionKind, String),
+    /// An anisotropic distribution where an isotropic one is required.
+    Dimension(f64, f64),
+}
+
+impl fmt::Display for DistributionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(name) => {
+                let names: Vec<&str> =
+                    DistributionKind::ALL.iter().map(|kind| kind.name()).collect();
+                write!(f, "distribution `{name}` is not known; there are {}", names.join(", "))
+            }
+            Self::Parameters(kind, given) => {
+                let names = kind.parameters().join(",");
+                write!(f, "`{given}`: {} is written {0}:{names}, each a number", kind.name())
+            }
+            Self::Range(kind, why) => write!(f, "{}: {why}", kind.name()),
+            Self::Dimension(nx, ny) => write!(
+                f,
+                "ashikhmin-shirley with exponents {nx} and {ny} is anisotropic: its D depends on two angles and that of the \
+                 others on one; give equal exponents, or treat each axis as a blinn-phong"
+            ),
+        }
+    }
+}
+
+microfacet_core::debug_in_words!(DistributionError);
+
+impl std::error::Error for DistributionError {}
+
+impl DistributionKind {
+    /// All kinds.
+    pub const ALL: [Self; 10] = [
+        Self::Beckmann,
+        Self::Gauss,
+        Self::TrowbridgeReitz,
+        Self::Gtr,
+        Self::BlinnPhong,
+        Self::Schlick,
+        Self::Sawicki,
+        Self::StudentT,
+        Self::HyperCauchy,
+        Self::AshikhminShirley,
+    ];
+
+    /// The name in recipes and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Beckmann => "beckmann",
+            Self::Gauss => "gauss",
+            Self::TrowbridgeReitz => "trowbridge-reitz",
+            Self::Gtr => "gtr",
+            Self::BlinnPhong => "blinn-phong",
+            Self::Schlick => "schlick",
+            Self::Sawicki => "sawicki",
+            Self::StudentT => "student-t",
+            Self::HyperCauchy => "hyper-cauchy",
+            Self::AshikhminShirley => "ashikhmin-shirley",
+        }
+    }
+
+    /// The kind of this name; `ggx` and `torrance-sparrow` are understood too.
+    ///
+    /// # Errors
+    /// [`DistributionError::Unknown`], listing the names.
+    pub fn by_name(name: &str) -> Result<Self, DistributionError> {
+        let known = match name {
+            "ggx" => "trowbridge-reitz",
+            "torrance-sparrow" => "gauss",
+            other => other,
+        };
+        let found = Self::ALL.into_iter().find(|kind| kind.name() == known);
+        found.ok_or_else(|| DistributionError::Unknown(name.into()))
+    }
+
+    /// Names of its parameters.
+    pub const fn parameters(self) -> &'static [&'static str] {
+        match self {
+            Self::Beckmann | Self::Gauss | Self::Schlick => &["m"],
+            Self::TrowbridgeReitz => &["c"],
+            Self::Gtr => &["c", "gamma"],
+            Self::BlinnPhong | Self::Sawicki => &["n"],
+            Self::StudentT => &["sigma", "gamma"],
+            Self::HyperCauchy => &["sigma0", "gamma"],
+            Self::AshikhminShirley => &["nx", "ny"],
+        }
+    }
+
+    /// Builds the distribution with these parameters.
+    ///
+    /// # Errors
+    /// [`DistributionError`] for a wrong number of parameters, one out of range, or anisotropy.
+    pub fn build(self, values: &[f64]) -> Result<Box<dyn Isotropic>, DistributionError> {
+        match (self, values) {
+            (Self::Beckmann, &[m]) => self.boxed(Member::beckmann(m)),
+            (Self::TrowbridgeReitz, &[c]) => self.boxed(Member::trowbridge_reitz(c)),
+            (Self::BlinnPhong, &[n]) => self.boxed(Member::blinn_phong(n)),
+            (Self::StudentT, &[sigma, gamma]) => self.boxed(Member::student_t(sigma, gamma)),
+            (Self::HyperCauchy, &[sigma, gamma]) => self.boxed(Member::hyper_cauchy(sigma, gamma)),
+            (Self::Gauss, &[m]) => self.boxed(Gauss::new(m)),
+            (Self::Schlick, &[m]) => self.boxed(Schlick::new(m)),
+            (Self::Sawicki, &[n]) => self.boxed(Sawicki::new(n)),
+            (Self::Gtr, &[c, gamma]) => self.boxed(Gtr::new(c, gamma)),
+            (Self::AshikhminShirley, &[nx, ny]) => {
+                self.in_range(AshikhminShirley::new(nx, ny))?;
+                if nx != ny {
+                    return Err(DistributionError::Dimension(nx, ny));
+                }
+                self.boxed(Member::blinn_phong(nx))
+            }
+            _ => Err(DistributionError::Parameters(self, format!("{values:?}"))),
+        }
+    }
+
+    fn in_range<D>(self, made: Result<D, impl fmt::Display>) -> Result<D, DistributionError> {
+        made.map_err(|e| DistributionError::Range(self, e.to_string()))
+    }
+
+    fn boxed<D: Isotropic + 'static>(
+        self,
+        made: Result<D, impl fmt::Display>,
+    ) -> Result<Box<dyn Isotropic>, DistributionError> {
+        Ok(Box::new(self.in_range(made)?))
+    }
+
+    /// Parameters at a point of the search space [0, 1]ⁿ: logarithmic in the width; in s = 1/(γ−1)
+    /// (Student-t, with Beckmann at 0) or ln γ (GTR) for the shape.
+    ///
+    /// All widths are scaled by `narrow` ∈ (0, 1], so that the search for a narrow lobe has the
+    /// same steps as for any other.
+    pub fn at(self, point: &[f64], narrow: f64) -> Vec<f64> {
+        let log = |y: f64, low: f64, high: f64| {
+            (low * (y.clamp(0.0, 1.0) * (high / low).ln()).exp()).clamp(low, high)
+        };
+        let width = |y, low, high| log(y, low, high) * narrow;
+        let exponent = |y| log(y, 1e-2, 1e6) / (narrow * narrow);
+        let gamma = |y: f64| gamma_of_s(S_MAX * y.clamp(0.0, 1.0));
+        match (self, point) {
+            (Self::Beckmann | Self::Gauss, &[y]) => vec![width(y, 1e-3, 10.0)],
+            (Self::TrowbridgeReitz, &[y]) => vec![width(y, 1e-4, 10.0)],
+            (Self::Schlick, &[y]) => vec![width(y, 1e-6, 1.0)],
+            (Self::BlinnPhong | Self::Sawicki, &[y]) => vec![exponent(y)],
+            (Self::AshikhminShirley, &[y]) => vec![exponent(y); 2],
+            (Self::StudentT, &[y, z]) => vec![width(y, 1e-4, 10.0), gamma(z)],
+            // No Beckmann limit: σ₀ would diverge.
+            (Self::HyperCauchy, &[y, z]) => vec![width(y, 1e-4, 1e3), gamma(z.max(1e-4))],
+            (Self::Gtr, &[y, z]) => vec![width(y, 1e-5, 1.0), log(z, 0.1, 100.0)],
+            _ => unreachable!("points have `dimension` coordinates"),
+        }
+    }
+
+    /// The parameters that a search ended with at an end of [`at`](Self::at), apart from the limit
+    /// γ = ∞.
+    pub fn ends_at(self, point: &[f64]) -> Vec<&'static str> {
+        let at_end = |y: f64| !(1e-4..=1.0 - 1e-4).contains(&y);
+        let is_limit = |i: usize| self == Self::StudentT && i == 1 && point[i] < 0.5;
+        let ends = (0..point.len()).filter(|&i| at_end(point[i]) && !is_limit(i));
+        ends.map(|i| self.parameters()[i]).collect()
+    }
+
+    /// Number of parameters of its isotropic members.
+    pub fn dimension(self) -> usize {
+        if self == Self::AshikhminShirley { 1 } else { self.parameters().len() }
+    }
+}
+
+impl Named {
+    /// Builds the distribution.
+    ///
+    /// # Errors
+    /// As [`DistributionKind::build`].
+    pub fn build(&self) -> Result<Box<dyn Isotropic>, DistributionError> {
+        self.kind.build(&self.values)
+    }
+}
+
+impl FromStr for Named {
+    type Err = DistributionError;
+
+    /// Parses `name:value` or `name:value,value`; `inf` is a number.
+    fn from_str(text: &str) -> Result<Self, DistributionError> {
+        let (name, rest) = text.split_once(':').unwrap_or((text, ""));
+        let kind = DistributionKind::by_name(name)?;
+        let values: Result<Vec<f64>, _> = rest.split(',').map(|x| x.trim().parse()).collect();
+        let values = values.map_err(|_| DistributionError::Parameters(kind, text.into()))?;
+        if values.len() != kind.parameters().len() {
+            return Err(DistributionError::Parameters(kind, text.into()));
+        }
+        Ok(Self { kind, values })
+    }
+}
+
+impl fmt::Display for Named {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Six places, or six digits of what would lose them so.
+        let number = |x: &f64| match x.abs() {
+            1e-2..1e9 | 0.0 | f64::INFINITY => format!("{x:.6}"),
+            _ => format!("{x:.5e}"),
+        };
+        let values: Vec<String> = self.values.iter().map(number).collect();
+        write!(f, "{}:{}", self.kind.name(), values.join(","))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_parse_and_print() {
+        for kind in DistributionKind::ALL {
+            let point = vec![0.6; kind.dimension()];
+            let named = Named { kind, values: kind.at(&point, 1.0) };
+            let back: Named = named.to_string().parse().unwrap();
+            assert_eq!(back.kind, kind);
+            assert!(back.build().is_ok(), "{named}");
+        }
+        let beckmann: Named = "student-t:0.3,inf".parse().unwrap();
+        assert!(beckmann.build().unwrap().student_t().unwrap().shape().is_beckmann());
+        assert_eq!("ggx:0.1".parse::<Named>().unwrap().kind, DistributionKind::TrowbridgeReitz);
+    }
+
+    #[test]
+    fn errors_name_the_remedy() {
+        let message = |text: &str| match text.parse::<Named>() {
+            Ok(named) => named.build().map(|_| ()).unwrap_err().to_string(),
+            Err(e) => e.to_string(),
+        };
+        assert!(message("phong:3").contains("there are beckmann"));
+        assert!(message("gtr:0.1").contains("gtr:c,gamma"));
+        assert!(message("beckmann:x").contains("beckmann:m"));
+        assert!(message("schlick:2").contains("(0, 1]"));
+        assert!(message("sawicki:-1").contains("[0, inf)"));
+        assert!(message("ashikhmin-shirley:10,20").contains("anisotropic"));
+    }
+}

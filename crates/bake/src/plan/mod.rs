@@ -1,0 +1,393 @@
+//! Plans what to bake for a scene: pure functions, and as few tables as possible.
+//!
+//! Tables of visible normals have no σ axis (slopes are divided by σ before a lookup), so a
+//! material requires only its shape γ: one γ is a slice, 1D for masking and the slope across, 2D
+//! for the in-plane slope; a range of γ is a sub-range of the general set. Albedos do depend on σ,
+//! and are baked for materials that ask for them.
+
+mod albedo;
+mod albedo_work;
+mod cost;
+mod key;
+mod provenance;
+mod required_shapes;
+
+use std::fmt;
+
+pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
+pub use albedo_work::place_seconds;
+pub(crate) use albedo_work::{AlbedoWork, albedo_seconds};
+pub use cost::{
+    Cost, albedo_cost, bare_cost, cost, distribution_cost, on_threads, point_seconds, seconds,
+    set_cost,
+};
+pub(crate) use cost::{albedo_headers, distribution_seconds, specs_seconds};
+pub use required_shapes::RequiredShapes;
+
+use microfacet_core::shape::s_of_gamma;
+use microfacet_sampler::{Ellipsoid, StudentT};
+use microfacet_tables::MaterialEntry;
+
+use crate::bake::albedo::SIGMA_MAX;
+use crate::distribution::Distribution;
+use crate::interval::Interval;
+use crate::scene::{Format, Material, Scene, recipe_of};
+use crate::table_spec::{GAMMA_MIN, Quality};
+
+/// γ of GGX.
+const GGX: f64 = 2.0;
+
+/// What the renderer has at run time already, so that it need not be baked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Tabulate GGX as well, for a renderer without its closed forms.
+    pub tabulate_ggx: bool,
+    /// The default set is compiled in and accurate enough.
+    pub embedded: bool,
+    /// The default set also holds albedo tables that are accurate enough.
+    pub embedded_albedo: bool,
+    /// Which materials get albedo tables.
+    pub albedo: AlbedoWish,
+    /// The quality at which [`AlbedoWish::Auto`] estimates how long albedos take.
+    pub quality: Quality,
+    /// Refuse a scene of another format if no table covers one of its materials, as a recipe is
+    /// refused; else that material alone is left out.
+    pub strict: bool,
+}
+
+/// What the plan decides on a material.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Tables are baked for it: an index into [`Plan::shapes`].
+    Bake(usize),
+    /// Tables that are baked for another material serve it too.
+    Same {
+        /// Index into [`Plan::shapes`].
+        need: usize,
+        /// Index of the other material.
+        as_material: usize,
+    },
+    /// Its γ lies in a range that is baked for another material.
+    Within {
+        /// Index into [`Plan::shapes`].
+        need: usize,
+        /// Index of the other material.
+        of_material: usize,
+    },
+    /// GGX: D, G1 and visible normals have closed forms, which the sampler crate uses where there
+    /// is no table.
+    ClosedForm,
+    /// It is not a Student-t lobe: tables of its own are baked for it.
+    Own,
+    /// The default set that is compiled into the sampler crate covers it.
+    Embedded,
+    /// It has no microfacets.
+    NotRough,
+    /// No geometry uses it.
+    NotUsed,
+    /// No table and no closed form covers it.
+    NotCovered(NotCovered),
+}
+
+impl Verdict {
+    /// The index of the required shapes that cover the material, if any do.
+    pub fn need(&self) -> Option<usize> {
+        match *self {
+            Self::Bake(need) | Self::Same { need, .. } | Self::Within { need, .. } => Some(need),
+            _ => None,
+        }
+    }
+}
+
+/// What is to be baked for a scene, with the reason for each material.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plan {
+    /// Disjoint required shapes, from Beckmann to heavy tails: the ranges first, then the single
+    /// shapes.
+    pub shapes: Vec<RequiredShapes>,
+    /// Distributions outside the family that materials have, each once.
+    pub distributions: Vec<Distribution>,
+    /// One verdict for each material of the scene, in order.
+    pub verdicts: Vec<Verdict>,
+    /// The albedos that tables are to cover.
+    pub albedos: Vec<RequiredAlbedo>,
+    /// One verdict on the albedo of each material, in order.
+    pub albedo_verdicts: Vec<AlbedoVerdict>,
+    /// The albedos that [`AlbedoWish::Auto`] leaves out since they would take long.
+    pub offered: Vec<RequiredAlbedo>,
+    /// The scene as a recipe, as the set will state it; empty for the general set.
+    pub recipe: String,
+    /// The scene's materials, as the set will list them; empty for the general set.
+    pub materials: Vec<MaterialEntry>,
+}
+
+impl Plan {
+    /// The plan of the general set: all γ that tables cover, and all σ that albedo tables cover.
+    pub fn general() -> Self {
+        Self {
+            shapes: vec![RequiredShapes::general()],
+            albedos: vec![RequiredAlbedo::general()],
+            ..Self::default()
+        }
+    }
+
+    /// The plan of a scene.
+    ///
+    /// # Errors
+    /// [`NotCovered`] for more albedos than are planned. For a γ that no table covers, a σ that no
+    /// lobe can have, or a σ that no albedo table covers if an albedo is asked for: if the material
+    /// is of a recipe, or with [`Options::strict`].
+    pub fn new(scene: &Scene, options: Options) -> Result<Self, NotCovered> {
+        let wants: Vec<Result<Interval, Verdict>> = scene
+            .materials
+            .iter()
+            .map(|material| want(material, options))
+            .collect::<Result<_, _>>()?;
+        let mut needs = required_shapes::disjoint(wants.iter().flatten().copied());
+        if let Some(range) = required_shapes::cheaper_range(&needs) {
+            needs = required_shapes::disjoint(wants.iter().flatten().copied().chain([range]));
+        }
+        let find = |want: &Interval| {
+            required_shapes::find(&needs, *want).expect("the needs cover every want")
+        };
+        // Each range is baked for the first material that asks for exactly it, else for the first
+        // inside.
+        let mut owner: Vec<Option<usize>> = vec![None; needs.len()];
+        for exact in [true, false] {
+            for (i, want) in wants.iter().enumerate() {
+                let Ok(want) = want else { continue };
+                let need = find(want);
+                if owner[need].is_none() && (!exact || needs[need].gamma() == *want) {
+                    owner[need] = Some(i);
+                }
+            }
+        }
+        let within = |need: usize, i: usize, want: &Interval| match owner[need] {
+            Some(other) if other == i => Verdict::Bake(need),
+            Some(other) if wants[other] == Ok(*want) => Verdict::Same { need, as_material: other },
+            other => Verdict::Within { need, of_material: other.unwrap_or(i) },
+        };
+        let verdict = |(i, want): (usize, &Result<Interval, Verdict>)| match want {
+            Ok(want) => within(find(want), i, want),
+            // Where a table covers γ = 2 anyway, the sampler reads it.
+            Err(Verdict::ClosedForm) => match required_shapes::find(&needs, Interval::point(GGX)) {
+                Some(need) => within(need, i, &Interval::point(GGX)),
+                None => Verdict::ClosedForm,
+            },
+            Err(verdict) => verdict.clone(),
+        };
+        let verdicts = wants.iter().enumerate().map(verdict).collect();
+        let ((albedos, albedo_verdicts), offered) = albedo::required(scene, options)?;
+        let distributions = distributions(scene);
+        let recipe = recipe_of(scene.materials.iter().filter(|material| is_listed(material)));
+        let materials = scene.materials.iter().filter(|material| is_listed(material)).map(entry);
+        let materials = materials.collect();
+        Ok(Self {
+            shapes: needs,
+            distributions,
+            verdicts,
+            albedos,
+            albedo_verdicts,
+            offered,
+            recipe,
+            materials,
+        })
+    }
+
+    /// The materials that nothing covers, each with the reason: of them, and of their albedos.
+    pub fn not_covered(&self) -> impl Iterator<Item = &NotCovered> {
+        let lobes = self.verdicts.iter().filter_map(|verdict| match verdict {
+            Verdict::NotCovered(why) => Some(why),
+            _ => None,
+        });
+        let albedos = self.albedo_verdicts.iter().filter_map(|verdict| match verdict {
+            AlbedoVerdict::NotCovered(why) => Some(why),
+            _ => None,
+        });
+        lobes.chain(albedos)
+    }
+
+    /// Whether it needs no tables.
+    pub fn is_empty(&self) -> bool {
+        self.shapes.is_empty() && self.distributions.is_empty() && self.albedos.is_empty()
+    }
+
+    /// Whether closed forms serve some material.
+    pub fn has_closed_forms(&self) -> bool {
+        self.verdicts.contains(&Verdict::ClosedForm)
+    }
+}
+
+/// The range of γ that a material requires tables for, or the reason why it requires none.
+fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdict>, NotCovered> {
+    if !material.used {
+        return Ok(Err(Verdict::NotUsed));
+    }
+    if !is_rough(material) {
+        return Ok(Err(Verdict::NotRough));
+    }
+    if let Some(why) = not_covered(material) {
+        return refusal(material, options, why).map(|why| Err(Verdict::NotCovered(why)));
+    }
+    if material.distribution.is_some() {
+        return Ok(Err(Verdict::Own));
+    }
+    let gamma = material.gamma;
+    // Ellipsoids read tables at every γ.
+    if gamma == Interval::point(GGX) && !options.tabulate_ggx && material.theta.is_none() {
+        return Ok(Err(Verdict::ClosedForm));
+    }
+    Ok(if options.embedded { Err(Verdict::Embedded) } else { Ok(gamma) })
+}
+
+/// Why neither tables nor closed forms cover a rough material, if they do not.
+fn not_covered(material: &Material) -> Option<NotCovered> {
+    let range = lobe_sigmas(material);
+    let name = || material.name.clone();
+    for sigma in [material.roughness.x().max, material.roughness.y().max] {
+        if !(range[0]..=range[1]).contains(&sigma) {
+            return Some(NotCovered::Lobe { material: name(), sigma, range });
+        }
+    }
+    let gamma = material.gamma.min;
+    let outside = material.distribution.is_none() && gamma < GAMMA_MIN;
+    outside.then(|| NotCovered::Gamma { material: name(), gamma })
+}
+
+/// The reason itself, if the rest of the scene is planned without the material. A recipe asks for
+/// each of its materials; a scene of another format has them anyway.
+fn refusal(
+    material: &Material,
+    options: Options,
+    why: NotCovered,
+) -> Result<NotCovered, NotCovered> {
+    let refuses = options.strict || material.origin.format == Format::Recipe;
+    if refuses { Err(why) } else { Ok(why) }
+}
+
+/// The distributions outside the Student-t family, in order and without repetition.
+fn distributions(scene: &Scene) -> Vec<Distribution> {
+    let tabulated = scene.materials.iter().filter(|material| is_tabulated(material));
+    let all = tabulated.filter_map(|material| material.distribution.as_ref());
+    key::distinct(all).into_iter().cloned().collect()
+}
+
+/// Whether there are microfacets at any point at all.
+fn is_rough(material: &Material) -> bool {
+    let [least, _] = lobe_sigmas(material);
+    let [x, y] = [material.roughness.x().max, material.roughness.y().max];
+    x > 0.0 && y > 0.0 && x.max(y) >= least
+}
+
+/// The smallest and the largest σ that a lobe can have. A tilted lobe is held to it by its matrix
+/// alone.
+fn lobe_sigmas(material: &Material) -> [f64; 2] {
+    if material.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
+}
+
+/// Whether a set lists the material: if it is in use, and what it asks for can be had.
+fn is_listed(material: &Material) -> bool {
+    material.used && (!is_rough(material) || not_covered(material).is_none())
+}
+
+/// Whether tables may be baked for the material: if it is listed, and rough.
+fn is_tabulated(material: &Material) -> bool {
+    is_listed(material) && is_rough(material)
+}
+
+/// A material in the terms of a set, where one without microfacets has σ = 0.
+pub fn entry(material: &Material) -> MaterialEntry {
+    let pair = |interval: Interval| [interval.min, interval.max];
+    let Interval { min, max } = material.gamma;
+    let entry = MaterialEntry {
+        name: material.name.clone(),
+        sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
+        s: [s_of_gamma(max), s_of_gamma(min)],
+        distribution: material.distribution.as_ref().map_or(String::new(), Distribution::label),
+        theta: material.theta,
+        masking: material.masking,
+        fresnel: material.fresnel,
+    };
+    if is_rough(material) {
+        return entry;
+    }
+    MaterialEntry { sigma: [[0.0; 2]; 2], distribution: String::new(), theta: None, ..entry }
+}
+
+/// A material that tables cannot cover.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotCovered {
+    /// γ below [`GAMMA_MIN`].
+    Gamma {
+        /// Name of the material.
+        material: String,
+        /// Its γ.
+        gamma: f64,
+    },
+    /// A σ, along one axis or both, that a lobe in single precision cannot have.
+    Lobe {
+        /// Name of the material.
+        material: String,
+        /// Its largest σ along that axis.
+        sigma: f64,
+        /// What a lobe can have.
+        range: [f64; 2],
+    },
+    /// An albedo for σ above [`SIGMA_MAX`].
+    Sigma {
+        /// Name of the material.
+        material: String,
+        /// Its σ.
+        sigma: f64,
+    },
+    /// More tables of albedos than are planned.
+    Albedos {
+        /// How many are.
+        most: usize,
+    },
+}
+
+impl NotCovered {
+    /// The material that is not covered; `None` if the whole scene is not.
+    pub fn material(&self) -> Option<&str> {
+        match self {
+            Self::Gamma { material, .. }
+            | Self::Lobe { material, .. }
+            | Self::Sigma { material, .. } => Some(material),
+            Self::Albedos { .. } => None,
+        }
+    }
+
+    /// Why it is not covered, and what to do about it, without the name of the material.
+    pub fn reason(&self) -> String {
+        match self {
+            Self::Gamma { gamma, .. } => format!(
+                "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it, or sample it with the \
+                 model's exact sampler"
+            ),
+            Self::Lobe { sigma, range: [low, high], .. } => format!(
+                "sigma = {sigma:?} along one axis is outside [{low:e}, {high:e}], the roughness that a lobe can have; clamp it, \
+                 or write sigma = 0 along both for a mirror"
+            ),
+            Self::Sigma { sigma, .. } => format!(
+                "sigma = {sigma} is above {SIGMA_MAX}, the largest roughness that albedo tables cover; lower it, remove its \
+                 `fresnel`, or use --no-albedo"
+            ),
+            Self::Albedos { most } => format!(
+                "the materials ask for albedo tables of more than {most} lobes and reflectances; split the scene, or use \
+                 --no-albedo"
+            ),
+        }
+    }
+}
+
+impl fmt::Display for NotCovered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(material) = self.material() {
+            write!(f, "material \"{material}\": ")?;
+        }
+        f.write_str(&self.reason())
+    }
+}
+
+impl std::error::Error for NotCovered {}

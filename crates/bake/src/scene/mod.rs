@@ -1,0 +1,92 @@
+//! The microfacet lobes of a scene, whatever file describes it; and the native description, the
+//! recipe.
+//!
+//! A table set is planned from this list alone. The crate `microfacet-scene` reads other formats.
+
+mod error;
+mod limits;
+mod material;
+mod names;
+mod recipe;
+
+use std::path::{Path, PathBuf};
+
+pub use error::{
+    Lines, MOST_CANDIDATES, Place, SceneError, SceneErrorKind, characters, did_you_mean,
+    did_you_mean_key,
+};
+pub use limits::Budget;
+pub use material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
+pub use names::Names;
+
+/// The microfacet lobes of a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// The microfacet lobes, in the order of their definition; names are unique.
+    pub materials: Vec<Material>,
+    /// Materials without a lobe: those for which there is nothing to bake, and those that were
+    /// not understood.
+    pub ignored: Vec<Ignored>,
+    /// The files that the scene's own file includes, and those that they include, each once, with
+    /// links resolved.
+    pub included: Vec<PathBuf>,
+    /// Assumptions made where the scene could not be read in full, and values that look like a
+    /// mistake, each with its place.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Reads a native recipe.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneErrorKind::Syntax`] for text that is not TOML, [`SceneErrorKind::Invalid`] for an
+    /// unknown key, a duplicate name, no material at all, or a value out of its range.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use microfacet_baker::interval::Interval;
+    /// use microfacet_baker::scene::Scene;
+    ///
+    /// let recipe = "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 4.0\n";
+    /// let scene = Scene::from_recipe_str(recipe)?;
+    /// assert_eq!(scene.materials[0].gamma, Interval::point(4.0));
+    /// assert_eq!(scene.to_recipe(), recipe);
+    /// # Ok::<(), microfacet_baker::scene::SceneError>(())
+    /// ```
+    pub fn from_recipe_str(text: &str) -> Result<Self, SceneError> {
+        recipe::read(text, Path::new("recipe"))
+    }
+
+    /// Reads a native recipe from a file.
+    ///
+    /// # Errors
+    ///
+    /// As [`from_recipe_str`](Self::from_recipe_str); [`SceneErrorKind::Io`] if the file cannot be
+    /// read, [`SceneErrorKind::TooLarge`] and [`SceneErrorKind::Foreign`] for other kinds of TOML.
+    pub fn load_recipe(file: &Path) -> Result<Self, SceneError> {
+        recipe::load(file)
+    }
+
+    /// What makes it uncertain that all materials are there and right, each with its place: the
+    /// warnings, then the materials that were not understood.
+    pub fn doubts(&self) -> impl Iterator<Item = String> {
+        let unknown = self.ignored.iter().filter(|ignored| !ignored.understood);
+        self.warnings.iter().cloned().chain(unknown.map(Ignored::to_string))
+    }
+
+    /// The native recipe of the materials in use: the canonical form of this scene.
+    ///
+    /// It reads back to materials that [are the same](Material::asks_the_same), bit for bit. A
+    /// scene that uses no material gives an empty text, which is not a valid recipe.
+    #[must_use]
+    pub fn to_recipe(&self) -> String {
+        recipe_of(self.materials.iter().filter(|material| material.used))
+    }
+}
+
+/// The native recipe of some materials.
+pub fn recipe_of<'a>(materials: impl Iterator<Item = &'a Material>) -> String {
+    recipe::write(materials)
+}

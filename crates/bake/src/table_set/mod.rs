@@ -1,0 +1,266 @@
+//! The whole bake: from a plan and a target to a certified set.
+//!
+//! [`bake_with`] splits the plan into table groups, the tables that are refined together. For a
+//! [quality](Target::Quality) each group is baked at it; for the other targets `search` chooses the
+//! levels. A group bakes its tables, certifies them and keeps them in the cache.
+
+mod candidate;
+mod group;
+mod job;
+mod need;
+mod refine;
+mod search;
+
+use std::{fmt, io};
+
+use microfacet_sampler::{MaterialError, Tables};
+use microfacet_tables::{LoadError, Precision, Table};
+
+use crate::bake;
+use crate::cache::Cache;
+use crate::memory::{self, TooLarge, Values};
+use crate::plan::Plan;
+use crate::progress::Meter;
+use crate::table_spec::Quality;
+
+use group::TableGroup;
+use job::Job;
+use search::Search;
+
+pub use need::{Need, NotANeed};
+
+/// The accuracy or size that the tables are to have.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Target {
+    /// The numbers of nodes of a quality.
+    Quality(Quality, Precision),
+    /// Small tables with no larger error: absolute, of G1, of the CDF of slopes, of D/D(0) and of
+    /// albedos.
+    MaxError(f64),
+    /// Accurate tables whose safetensors file has no more bytes.
+    MaxBytes(usize),
+}
+
+impl Target {
+    /// The quality; the default one where tables are chosen by a budget.
+    pub fn quality(&self) -> Quality {
+        if let Self::Quality(quality, _) = self { *quality } else { Quality::Default }
+    }
+}
+
+impl Default for Target {
+    fn default() -> Self {
+        Self::Quality(Quality::Default, Precision::F32)
+    }
+}
+
+/// Cache, limits and progress report of a bake.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Where finished tables are kept; by default nowhere.
+    pub cache: Cache,
+    /// Bytes of memory that the bake may take; a larger bake is refused before any is taken. By
+    /// default 4 GiB.
+    pub max_memory: u64,
+    /// Whether to choose tables even where that takes more than three times as long as a bake at
+    /// default quality, and more than [`PATIENCE`] seconds. By default not.
+    pub patient: bool,
+    /// Counts the work, by nodes and places of certificates; a clone of it can be watched.
+    pub progress: Meter,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            cache: Cache::none(),
+            max_memory: 4 << 30,
+            patient: false,
+            progress: Meter::default(),
+        }
+    }
+}
+
+/// Seconds that choosing tables may always take, however fast the bake at default quality is.
+pub const PATIENCE: f64 = 10.0;
+
+/// A set, and what was done for it.
+#[derive(Debug)]
+pub struct Baked {
+    /// The set.
+    pub set: Tables,
+    /// Number of its tables that were newly baked; the others come from the cache.
+    pub baked: usize,
+    /// Why the cache could not keep some tables.
+    pub cache_error: Option<io::Error>,
+    /// Seconds for visible normals, and for albedos.
+    pub seconds: [f64; 2],
+}
+
+/// Why no set could be made.
+pub enum BakeError {
+    /// The tables do not make a set: a fault of the plan.
+    Set(LoadError),
+    /// Baking would take too much memory.
+    Memory(TooLarge),
+    /// [`Target::MaxError`] is not above 0.
+    NoError(f64),
+    /// [`Target::MaxError`] is too small for some tables.
+    OutOfReach {
+        /// What was asked for.
+        max_error: f64,
+        /// The tables that do not meet it.
+        name: String,
+        /// Their smallest measured error.
+        reached: f64,
+    },
+    /// [`Target::MaxBytes`] is too small.
+    TooSmall {
+        /// What was allowed.
+        max_bytes: usize,
+        /// What the smallest set takes.
+        smallest: usize,
+    },
+    /// Choosing the tables would take long, and [`Settings::patient`] is not set.
+    TooSlow {
+        /// Estimated seconds to choose them.
+        search: f64,
+        /// Estimated seconds of a bake at default quality.
+        default_seconds: f64,
+    },
+    /// [`Target::MaxBytes`], which all tables of a plan share, where each is to be baked by itself.
+    Inseparable,
+    /// Tables that were to be kept could not be.
+    NotKept(io::Error),
+    /// An albedo that is invalid, or not accurate enough.
+    Albedo(bake::albedo::AlbedoError),
+}
+
+impl BakeError {
+    fn invalid(why: impl Into<String>) -> Self {
+        Self::Set(LoadError::Invalid(why.into()))
+    }
+}
+
+impl From<LoadError> for BakeError {
+    fn from(why: LoadError) -> Self {
+        Self::Set(why)
+    }
+}
+
+impl From<MaterialError> for BakeError {
+    fn from(why: MaterialError) -> Self {
+        Self::invalid(why.to_string())
+    }
+}
+
+impl From<TooLarge> for BakeError {
+    fn from(why: TooLarge) -> Self {
+        Self::Memory(why)
+    }
+}
+
+impl From<bake::albedo::AlbedoError> for BakeError {
+    fn from(why: bake::albedo::AlbedoError) -> Self {
+        Self::Albedo(why)
+    }
+}
+
+impl fmt::Display for BakeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Set(why) => why.fmt(f),
+            Self::Memory(why) => why.fmt(f),
+            Self::Albedo(why) => why.fmt(f),
+            Self::NotKept(why) => write!(f, "finished tables cannot be kept: {why}"),
+            Self::Inseparable => f.write_str(
+                "the bytes of a set are divided among all of its tables, which so cannot be baked one by \
+                 one: choose a quality or a largest error instead",
+            ),
+            Self::NoError(max_error) => {
+                write!(
+                    f,
+                    "an error of {max_error} cannot be asked for: it must be above 0, such as 1e-4"
+                )
+            }
+            Self::OutOfReach { max_error, name, reached } => write!(
+                f,
+                "no resolution meets an error of {max_error:e}: {name} reaches {reached:.1e} at best; \
+                 allow that much"
+            ),
+            Self::TooSmall { max_bytes, smallest } => write!(
+                f,
+                "no set of these materials fits into {max_bytes} bytes: the smallest, of the coarsest \
+                 tables, has {smallest}"
+            ),
+            Self::TooSlow { search, default_seconds } => write!(
+                f,
+                "choosing these tables would take about {search:.0} s, the bake of default quality \
+                 about {default_seconds:.0} s: allow a larger error or fewer bytes, or let it take its time"
+            ),
+        }
+    }
+}
+
+microfacet_core::debug_in_words!(BakeError);
+
+impl std::error::Error for BakeError {}
+
+/// Bakes and certifies the tables of a plan, in memory, with the default [`Settings`].
+///
+/// ```
+/// use microfacet_baker::plan::{Options, Plan};
+/// use microfacet_baker::scene::Scene;
+/// use microfacet_baker::table_set::{Target, bake};
+/// use microfacet_sampler::MicrofacetDistribution;
+///
+/// let recipe = "[[material]]\nname = \"glass\"\nsigma = 0.454\ngamma = 3.0\n";
+/// let plan = Plan::new(&Scene::from_recipe_str(recipe).unwrap(), Options::default()).unwrap();
+/// let tables = bake(&plan, Target::MaxError(1e-3)).unwrap().set;
+/// let glass = tables.student_t(0.454, 3.0).unwrap();
+/// assert!(glass.g1(glam::Vec3::Z) == 1.0);
+/// ```
+///
+/// # Errors
+/// [`BakeError`] for a target that cannot be met, or not within the default time limit.
+pub fn bake(plan: &Plan, target: Target) -> Result<Baked, BakeError> {
+    bake_with(plan, target, Settings::default())
+}
+
+/// Bakes and certifies the tables of a plan with a cache, limits, and a report of the progress.
+///
+/// Finished tables go into the cache, and so does each table of a range of shapes until the whole
+/// range is done: an interrupted bake resumes where it stopped. The bytes of a set do not depend on
+/// the cache or the number of threads.
+///
+/// # Errors
+/// [`BakeError`] for a target that cannot be met within the settings.
+pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Baked, BakeError> {
+    let provenance = plan.provenance();
+    let mut job = Job::new(settings);
+    let tables: Vec<Table> = match target {
+        Target::Quality(quality, precision) => {
+            let groups = TableGroup::whole(plan)?;
+            let values = groups.iter().map(|group| group.values(quality.into()));
+            memory::check(Values::at_once(values), job.max_memory)?;
+            job.progress.expect(groups.iter().map(|group| group.work(quality.into(), 1)).sum());
+            let mut tables = Vec::new();
+            for group in &groups {
+                let sets = group.bake(quality.into(), &[precision], &mut job)?;
+                tables.extend(sets.into_iter().flatten());
+            }
+            tables
+        }
+        // Nothing can meet it, and trying would take minutes.
+        Target::MaxError(max_error) if !(max_error > 0.0) => {
+            return Err(BakeError::NoError(max_error));
+        }
+        Target::MaxError(max_error) => Search::new(plan)?.meeting(max_error, &mut job)?,
+        Target::MaxBytes(max_bytes) => {
+            Search::new(plan)?.within(max_bytes, &provenance, &mut job)?
+        }
+    };
+    let baked = job.baked_of(&tables);
+    let set = Tables::from_tables(provenance, tables)?;
+    Ok(Baked { set, baked, cache_error: job.cache_error, seconds: job.seconds })
+}

@@ -1,0 +1,77 @@
+//! Writes single shapes γ of the family, for any roughness, for renderers in other languages:
+//! tables and lookups, without an axis of γ, an archive to read, or a library to link. In C a shape
+//! is source text; for shaders the functions are text, and the tables of all shapes are data for
+//! one buffer or texture. [`texture`] writes albedos alone, for the filter of a texture.
+//!
+//! [`Shape::bind`] collapses the tables of a set at one γ. Every target is written from it, so all
+//! of them hold the same numbers; [`files`] makes the files of one.
+//!
+//! ```
+//! use microfacet_export::{Shape, Target, files};
+//! use microfacet_sampler::Tables;
+//!
+//! let shape = Shape::bind(&Tables::embedded(), 3.0)?;
+//! let names = files(Target::C, &[shape]).into_iter().map(|file| file.name);
+//! assert_eq!(names.collect::<Vec<_>>(), ["student_t.h", "student_t_gamma_3.h"]);
+//! # Ok::<(), microfacet_sampler::MaterialError>(())
+//! ```
+
+use microfacet_baker::store;
+
+mod albedo;
+mod c;
+mod members;
+pub mod numbers;
+mod shader;
+mod shape;
+pub mod texture;
+
+pub use albedo::AlbedoTable;
+pub use members::Part;
+pub use shader::{Language, Storage, texture_rows};
+pub use shader::{WIDTH, append_some, for_webgl};
+pub use shape::Shape;
+
+/// What can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// Headers for C99, C++11, CUDA and HIP.
+    C,
+    /// A shader module, with its tables as data.
+    Shader(Language, Storage),
+}
+
+/// A file of an export.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExportFile {
+    /// Its name, to stand in the same folder as all others of the target.
+    pub name: String,
+    /// Its bytes; text is UTF-8.
+    pub contents: Vec<u8>,
+}
+
+/// Numbers as an OpenEXR image: one plane as the luminance Y, two or three as R, G and B. A third
+/// that is missing is 0: three.js, and whatever wants colours, refuses an image without it.
+fn open_exr(
+    name: &str,
+    size: [usize; 2],
+    mut planes: Vec<Vec<f32>>,
+    half: bool,
+    description: Option<&str>,
+) -> Result<Vec<u8>, String> {
+    let names = if planes.len() == 1 { &["Y"][..] } else { &["R", "G", "B"] };
+    planes.resize(names.len(), vec![0.0; size[0] * size[1]]);
+    store::encode_channels(name, size, names.iter().copied().zip(planes), half, description)
+}
+
+/// The files of a target. Those with functions, which do not depend on the shapes, come first. Then
+/// comes one a shape, or for shaders what holds the data of all.
+///
+/// # Panics
+/// If there are no shapes for shaders.
+pub fn files(target: Target, shapes: &[Shape]) -> Vec<ExportFile> {
+    match target {
+        Target::C => c::files(shapes),
+        Target::Shader(language, storage) => shader::files(language, storage, shapes),
+    }
+}

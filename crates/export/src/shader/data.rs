@@ -1,0 +1,177 @@
+//! The tables of shapes for shaders: one list of pairs of numbers, as a buffer and as an image, and
+//! a description of what stands where.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::super::members::{Member, PREFIXES, Part, Value, lists, parts};
+use super::super::numbers::as_typed;
+use super::super::{ExportFile, Shape, open_exr};
+use super::NAME;
+
+/// Raised whenever the order of members or tables changes.
+pub(super) const LAYOUT: u32 = 1;
+
+/// Pairs in a row of the image.
+pub const WIDTH: usize = 512;
+
+/// What `student_t.json` says.
+#[derive(Serialize)]
+struct Description<'a> {
+    layout: u32,
+    generator: &'a str,
+    numerics: u32,
+    file: String,
+    image: String,
+    format: &'static str,
+    byte_order: &'static str,
+    width: usize,
+    height: usize,
+    shapes: BTreeMap<String, Entry>,
+}
+
+/// One shape in it; places and lengths are in pairs.
+#[derive(Serialize)]
+struct Entry {
+    offset: usize,
+    length: usize,
+    members: Vec<Named>,
+    tables: BTreeMap<String, Place>,
+    errors: Errors,
+    /// Forms of masking whose albedos are those of the default set.
+    albedos_of_default_set: Vec<&'static str>,
+}
+
+/// A member of the shape's description, of which pair i holds those 2i and 2i + 1.
+#[derive(Serialize)]
+struct Named {
+    name: String,
+    value: f32,
+}
+
+/// Where a table is in its shape: rows of so many numbers, padded to pairs.
+#[derive(Serialize)]
+struct Place {
+    offset: usize,
+    rows: usize,
+    columns: usize,
+}
+
+/// The largest errors of the tables against the model.
+#[derive(Serialize)]
+struct Errors {
+    g1: Option<f64>,
+    cdf_along: Option<f64>,
+    cdf_across: Option<f64>,
+    albedo: Option<f64>,
+    albedo_elsewhere: Option<f64>,
+    average: f64,
+}
+
+/// Data and description of all shapes.
+pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
+    let (mut pairs, mut entries) = (Vec::new(), BTreeMap::new());
+    for shape in shapes {
+        let entry = append(shape, |_| true, &mut pairs);
+        entries.insert(as_typed(shape.gamma), entry);
+    }
+    let height = pairs.len().div_ceil(WIDTH);
+    pairs.resize(WIDTH * height, [0.0; 2]);
+    let first = shapes.first().expect("shapes");
+    let description = Description {
+        layout: LAYOUT,
+        generator: &first.generator,
+        numerics: first.numerics,
+        file: format!("{NAME}.bin"),
+        image: format!("{NAME}.exr"),
+        format: "rg32f",
+        byte_order: "little",
+        width: WIDTH,
+        height,
+        shapes: entries,
+    };
+    let json = serde_json::to_string_pretty(&description).expect("names and finite numbers");
+    let bytes = pairs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let planes = [0, 1].map(|i| pairs.iter().map(|pair| pair[i]).collect());
+    let image =
+        open_exr(NAME, [WIDTH, height], planes.into(), false, None).expect("finite numbers");
+    vec![
+        ExportFile { name: description.file, contents: bytes },
+        ExportFile { name: format!("{NAME}.json"), contents: (json + "\n").into() },
+        ExportFile { name: description.image, contents: image },
+    ]
+}
+
+/// Rows of the texture of shapes: more than 2048 are not promised by WebGL 2.
+pub fn texture_rows(shapes: &[Shape]) -> usize {
+    shapes.iter().map(length).sum::<usize>().div_ceil(WIDTH)
+}
+
+/// Pairs of a shape.
+fn length(shape: &Shape) -> usize {
+    let members = lists(shape).iter().map(|list| list.len().div_ceil(2)).sum::<usize>();
+    let tables = parts(shape);
+    members + tables.iter().map(|part| part.rows() * part.columns.div_ceil(2)).sum::<usize>()
+}
+
+/// Appends a shape with some of its tables, by name, and returns the place of its first pair. What
+/// reads tables that are left out must not be called.
+pub fn append_some(
+    shape: &Shape,
+    is_kept: impl Fn(&str) -> bool,
+    pairs: &mut Vec<[f32; 2]>,
+) -> usize {
+    append(shape, is_kept, pairs).offset
+}
+
+/// Appends a shape: its members, then its tables, of those that are kept.
+fn append(shape: &Shape, is_kept: impl Fn(&str) -> bool, pairs: &mut Vec<[f32; 2]>) -> Entry {
+    let offset = pairs.len();
+    let lists = lists(shape);
+    let mut at = lists.iter().map(|list| list.len().div_ceil(2)).sum::<usize>();
+    let parts: Vec<Part> = parts(shape).into_iter().filter(|part| is_kept(&part.name)).collect();
+    let mut tables = BTreeMap::new();
+    for part in &parts {
+        let (rows, columns) = (part.rows(), part.columns);
+        tables.insert(part.name.clone(), Place { offset: at, rows, columns });
+        at += rows * columns.div_ceil(2);
+    }
+
+    let mut named = Vec::new();
+    for (prefix, list) in PREFIXES.into_iter().zip(lists) {
+        let numbers: Vec<f32> = list.iter().map(|member| number(&member.value, &tables)).collect();
+        pairs.extend(numbers.chunks(2).map(pair));
+        let names = list.into_iter().map(|Member { name, .. }| format!("{prefix}{name}"));
+        named.extend(names.zip(numbers).map(|(name, value)| Named { name, value }));
+    }
+    for Part { values, columns, .. } in parts {
+        pairs.extend(values.chunks(columns).flat_map(|row| row.chunks(2).map(pair)));
+    }
+    assert_eq!(pairs.len(), offset + at, "every table is where its member says");
+    assert!(at < 1 << f32::MANTISSA_DIGITS, "places are counted in single precision");
+    let [cdf_along, cdf_across] = shape.errors.cdf;
+    let errors = Errors {
+        g1: shape.errors.g1,
+        cdf_along,
+        cdf_across,
+        albedo: shape.worst_albedo(|table| table.errors[0]),
+        albedo_elsewhere: shape.worst_albedo(|table| table.errors[1]),
+        average: shape.worst_albedo(|table| Some(table.average_error)).unwrap_or_default(),
+    };
+    let albedos_of_default_set = shape.from_default.iter().map(|masking| masking.name()).collect();
+    Entry { offset, length: at, members: named, tables, errors, albedos_of_default_set }
+}
+
+/// A member as a number; of a table its place in the shape, which is exact in single precision, or
+/// 0 if it is left out.
+fn number(value: &Value, tables: &BTreeMap<String, Place>) -> f32 {
+    match value {
+        Value::Table(Some(name)) => tables.get(name).map_or(0.0, |place| place.offset as f32),
+        _ => value.number().unwrap_or(0.0),
+    }
+}
+
+fn pair(numbers: &[f32]) -> [f32; 2] {
+    [numbers[0], numbers.get(1).copied().unwrap_or_default()]
+}

@@ -1,0 +1,166 @@
+//! Shader modules: functions written once in WGSL, here, and translated.
+
+mod data;
+mod language;
+mod translate;
+
+use std::fmt::Write;
+
+use super::members::{Member, Value, lists};
+use super::{ExportFile, Shape};
+pub use data::texture_rows;
+pub use data::{WIDTH, append_some};
+use language::head;
+pub use language::{Language, Storage};
+
+/// Names of files before their extension.
+const NAME: &str = "student_t";
+
+/// The functions, after the tables and the members of shapes.
+const FUNCTIONS: &str = concat!(
+    include_str!("numbers.wgsl"),
+    "\n",
+    include_str!("masking.wgsl"),
+    "\n",
+    include_str!("normals.wgsl"),
+    "\n",
+    include_str!("albedo.wgsl"),
+);
+
+/// The module, a program that uses it, and the data.
+///
+/// # Panics
+/// If there are no shapes.
+pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> Vec<ExportFile> {
+    let storage = language.storage(storage);
+    let module = module(&lists(shapes.first().expect("shapes")), storage);
+    let sample = language.sample(storage);
+    let mut files = if language == Language::SpirV {
+        let words = translate::spirv(&format!("{module}{sample}"));
+        let contents = words.into_iter().flat_map(u32::to_le_bytes).collect();
+        // Its source beside it, which declares what it takes and returns.
+        vec![
+            ExportFile { name: format!("{NAME}.spv"), contents },
+            ExportFile { name: format!("{NAME}_sample.wgsl"), contents: sample.into() },
+        ]
+    } else {
+        let [of_module, of_sample] = language.extensions();
+        let name = format!("{NAME}.{of_module}");
+        let text = translate::text(&module, language, storage);
+        let contents = format!("{}\n{text}", head(&name, language, storage)).into();
+        let sample_name = format!("{NAME}_sample.{of_sample}");
+        vec![
+            ExportFile { name, contents },
+            ExportFile { name: sample_name, contents: sample.into() },
+        ]
+    };
+    files.extend(data::files(shapes));
+    files
+}
+
+/// The functions for WebGL 2, without what stands at the head of the file.
+pub fn for_webgl(shape: &Shape) -> String {
+    let storage = Language::GlslEs.storage(Storage::Texture);
+    translate::text(&module(&lists(shape), storage), Language::GlslEs, storage)
+}
+
+/// All text in WGSL.
+fn module([lobe, uncorrelated, correlated]: &[Vec<Member>; 3], storage: Storage) -> String {
+    let tables = match storage {
+        Storage::Buffer => include_str!("buffer.wgsl"),
+        Storage::Texture => include_str!("texture.wgsl"),
+    };
+    let first = lobe.len().div_ceil(2);
+    let second = first + uncorrelated.len().div_ceil(2);
+    let which = format!("select({second}u, {first}u, masking == STUDENT_T_UNCORRELATED)");
+    let shape = loader("StudentTShape", lobe, "student_t_impl_shape(shape: u32)", "shape");
+    let albedo = loader(
+        "StudentTAlbedoTable",
+        correlated,
+        "student_t_impl_albedo_table(shape: u32, masking: u32)",
+        &format!("shape + {which}"),
+    );
+    format!("{tables}\n{shape}\n{albedo}\n{FUNCTIONS}")
+}
+
+/// A struct of members, and a function that reads one. A table is the place of its first pair.
+fn loader(name: &str, members: &[Member], signature: &str, at: &str) -> String {
+    let mut fields = String::new();
+    let mut pairs = String::new();
+    let mut values = String::new();
+    for (i, pair) in members.chunks(2).enumerate() {
+        let first = pair[0].name;
+        writeln!(pairs, "    let {first} = student_t_impl_pair(at + {i}u);").expect("memory");
+        for (member, channel) in pair.iter().zip(["x", "y"]) {
+            let (kind, value) = match member.value {
+                Value::Table(_) => ("u32", format!("shape + u32({first}.{channel})")),
+                _ => ("f32", format!("{first}.{channel}")),
+            };
+            writeln!(fields, "    {}: {kind},", member.name).expect("memory");
+            writeln!(values, "        {value},").expect("memory");
+        }
+    }
+    format!(
+        "struct {name} {{\n{fields}}}\n\nfn {signature} -> {name} {{\n    let at = {at};\n{pairs}    \
+         return {name}(\n{values}    );\n}}\n"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use microfacet_core::schlick::{F82_AVERAGE, F82_SCALE, SCHLICK_AVERAGE};
+    use microfacet_sampler::{StudentT, Tables};
+
+    use super::super::numbers::single;
+    use super::*;
+
+    #[test]
+    fn constants_are_those_of_the_crate() {
+        let [low, high] = StudentT::SIGMAS.map(|sigma| single(sigma as f32));
+        let constants = [
+            format!("student_t_impl_max(sigma, {low}), {high})"),
+            format!("fourth * k, {} * mu", single(F82_SCALE as f32)),
+            format!(
+                "1.0 / {}, {})",
+                single((1.0 / SCHLICK_AVERAGE) as f32),
+                single(F82_AVERAGE as f32)
+            ),
+        ];
+        for constant in constants {
+            assert!(FUNCTIONS.contains(&constant), "{constant}");
+        }
+        let width = data::WIDTH;
+        let (mask, shift) = (width - 1, width.ilog2());
+        let texel = format!("at & {mask}u), i32(at >> {shift}u)");
+        assert!(width.is_power_of_two() && include_str!("texture.wgsl").contains(&texel));
+    }
+
+    #[test]
+    fn members_are_read_by_pairs_in_their_order() {
+        let shape = Shape::bind(&Tables::embedded(), 1.7).unwrap();
+        let [_, _, albedo] = lists(&shape);
+        let text = loader("T", &albedo, "t(shape: u32)", "shape");
+        let fields = text.lines().take_while(|line| *line != "}").skip(1);
+        let declared: Vec<&str> =
+            fields.map(|line| line.trim().split_once(": ").unwrap().0).collect();
+        assert!(declared.iter().copied().eq(albedo.iter().map(|member| member.name)));
+        // The second pair begins with the third member.
+        assert!(text.contains("let sigmas = student_t_impl_pair(at + 1u);"), "{text}");
+        let values = ["shape + u32(values.x),", "shape + u32(values.y),", "sigmas.x,", "sigmas.y,"];
+        assert!(text.contains(&values.join("\n        ")), "{text}");
+    }
+
+    #[test]
+    fn all_text_is_narrow() {
+        let shape = Shape::bind(&Tables::embedded(), 1.7).unwrap();
+        for storage in [Storage::Buffer, Storage::Texture] {
+            let text = module(&lists(&shape), storage);
+            for language in [Language::Wgsl, Language::GlslEs, Language::Msl] {
+                let head = head("student_t.metal", language, storage);
+                for line in head.lines().chain(text.lines()) {
+                    assert!(line.len() <= 100, "{line}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! What runs along a texture, and where its texels lie.
+
+use microfacet_tables::axis::{LogShape, ViewBlend};
+
+/// The most axes of a texture.
+pub(super) const AXES: usize = 3;
+
+/// The smallest σ that a texel is of: below it the albedo depends on cot θ/σ alone, and at 0 on
+/// nothing.
+const MIRROR: f64 = 1e-8;
+
+/// Coordinates in the first cell of roughnesses. With three E for γ = 1.6 errs by 1.5e-3 in
+/// 64 × 64 texels, in place of 6.8e-4.
+const FIRST_CELL: usize = 16;
+
+/// A material and a view of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Shape γ.
+    pub gamma: f64,
+    /// Roughness σ.
+    pub sigma: f64,
+    /// cos θ of the view; none for an average over all views.
+    pub cos: Option<f64>,
+}
+
+/// What runs along an axis, as a coordinate in [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Along {
+    /// ln(1 + 17/(2γ−3)), as a share of its value at the smallest γ. 0 is γ = ∞.
+    Shape {
+        /// γ at 1.
+        smallest: f64,
+    },
+    /// √(σ/σ_max).
+    Roughness {
+        /// σ_max.
+        largest: f64,
+    },
+    /// σ itself, up to 1.
+    LinearRoughness,
+    /// x^¼, x = μ/(μ + κσ√(1−μ²)); made by [`Along::view`].
+    View(ViewBlend),
+    /// μ.
+    Cosine {
+        /// The smallest μ that a texel is of.
+        least: f64,
+    },
+    /// √μ.
+    RootCosine,
+}
+
+impl Along {
+    /// The view in the coordinate that follows the roughness, with κ = scale + heavy/(2γ−3).
+    pub fn view(scale: f64, heavy: f64) -> Self {
+        let plain =
+            ViewBlend { weight: 0.0, normal: 0.0, share: 1.0, floor: 0.0, ..ViewBlend::BAKED };
+        Self::View(ViewBlend { scale, heavy, ..plain })
+    }
+
+    /// Whether it is a view, which depends on the material in some coordinates.
+    pub fn is_view(self) -> bool {
+        matches!(self, Self::View(_) | Self::Cosine { .. } | Self::RootCosine)
+    }
+
+    /// Sets what the coordinate c stands for. Of a place, the material must be known before views.
+    fn set(self, c: f64, place: &mut Place) {
+        match self {
+            Self::Shape { smallest } => {
+                let last = LogShape::BAKED.coordinate(smallest);
+                // Exact where a user named it.
+                place.gamma = if c == 1.0 { smallest } else { LogShape::BAKED.quantity(c * last) };
+            }
+            Self::Roughness { largest } => place.sigma = (largest * c * c).max(MIRROR),
+            Self::LinearRoughness => place.sigma = c.max(MIRROR),
+            Self::View(view) => {
+                place.cos = Some(view.prepare(place.sigma, place.gamma).quantity(c));
+            }
+            Self::Cosine { least } => place.cos = Some(c.max(least)),
+            Self::RootCosine => place.cos = Some(c * c),
+        }
+    }
+
+    /// The coordinate of a place.
+    fn of(self, place: &Place) -> f64 {
+        let cos = || place.cos.expect("a place with a view");
+        match self {
+            Self::Shape { smallest } => {
+                let coordinate = |gamma| LogShape::BAKED.coordinate(gamma);
+                coordinate(place.gamma) / coordinate(smallest)
+            }
+            Self::Roughness { largest } => (place.sigma / largest).sqrt(),
+            Self::LinearRoughness => place.sigma,
+            Self::View(view) => view.prepare(place.sigma, place.gamma).coordinate(cos()),
+            Self::Cosine { .. } => cos(),
+            Self::RootCosine => cos().sqrt(),
+        }
+    }
+}
+
+/// An axis of a texture. A filter takes coordinates before its first texel or behind its last at
+/// these, and is linear between two.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TexelAxis {
+    /// What runs along it.
+    pub along: Along,
+    /// The coordinate of each texel, ascending.
+    pub texels: Vec<f64>,
+}
+
+impl TexelAxis {
+    /// n texels from 0 to 1: a shader that reads c reads the texture at (½ + (n−1)c)/n.
+    pub fn to_ends(along: Along, n: usize) -> Self {
+        let texel = |i| i as f64 / (n - 1) as f64;
+        Self { along, texels: (0..n).map(texel).collect() }
+    }
+
+    /// n texels, each at the middle of its share of [0, 1]: a shader reads the texture at c.
+    pub fn to_middles(along: Along, n: usize) -> Self {
+        Self { along, texels: (0..n).map(|i| (i as f64 + 0.5) / n as f64).collect() }
+    }
+
+    /// Whether shapes run along it.
+    pub fn is_of_shapes(&self) -> bool {
+        matches!(self.along, Along::Shape { .. })
+    }
+
+    /// How many texels it has.
+    #[allow(clippy::len_without_is_empty, reason = "no axis is empty")]
+    pub fn len(&self) -> usize {
+        self.texels.len()
+    }
+
+    /// The texel before a coordinate, and the share of the next one in what a filter reads.
+    pub fn locate(&self, c: f64) -> (usize, f64) {
+        let before = self.texels.partition_point(|&texel| texel <= c).clamp(1, self.len() - 1) - 1;
+        let [a, b] = [self.texels[before], self.texels[before + 1]];
+        (before, ((c - a) / (b - a)).clamp(0.0, 1.0))
+    }
+
+    /// Coordinates over all of [0, 1], so many in each cell; texels and both ends are among them.
+    /// The first cell of roughnesses has more: there the smallest cosine that counts runs through
+    /// all coordinates of the view.
+    pub fn dense(&self, per_cell: usize) -> Vec<f64> {
+        let mut all = vec![0.0];
+        let mut cell = |from: f64, to: f64| {
+            let smooth = all.len() == 1 && matches!(self.along, Along::Roughness { .. });
+            let parts = if smooth { FIRST_CELL } else { per_cell };
+            let part = |i: usize| from + (to - from) * i as f64 / parts as f64;
+            all.extend((1..=parts).map(part));
+        };
+        let (first, last) = (self.texels[0], self.texels[self.len() - 1]);
+        if first > 0.0 {
+            cell(0.0, first);
+        }
+        self.texels.windows(2).for_each(|pair| cell(pair[0], pair[1]));
+        if last < 1.0 {
+            cell(last, 1.0);
+        }
+        all
+    }
+}
+
+/// The place at one coordinate along each axis; γ is that of a texture without such an axis.
+pub fn place(axes: &[TexelAxis], gamma: f64, at: &[f64]) -> Place {
+    let mut place = Place { gamma, sigma: f64::NAN, cos: None };
+    // Views last: they depend on the others, in whatever order a texture has its axes.
+    for views in [false, true] {
+        for (axis, &c) in axes.iter().zip(at) {
+            if axis.along.is_view() == views {
+                axis.along.set(c, &mut place);
+            }
+        }
+    }
+    place
+}
+
+/// The coordinate of a place along each axis.
+pub(super) fn coordinates(axes: &[TexelAxis], place: &Place) -> [f64; AXES] {
+    let mut at = [0.0; AXES];
+    at.iter_mut().zip(axes).for_each(|(c, axis)| *c = axis.along.of(place));
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_are_places_and_back() {
+        let along = [
+            Along::Shape { smallest: 1.6 },
+            Along::Roughness { largest: 3.0 },
+            Along::view(3.0, 0.5),
+        ];
+        let axes = along.map(|along| TexelAxis::to_ends(along, 8));
+        let of = |at: [f64; 3]| place(&axes, f64::NAN, &at);
+        assert_eq!(of([0.0, 1.0, 1.0]), Place { gamma: f64::INFINITY, sigma: 3.0, cos: Some(1.0) });
+        assert_eq!(of([1.0, 0.0, 0.0]), Place { gamma: 1.6, sigma: MIRROR, cos: Some(0.0) });
+        for at in [[0.3, 0.5, 0.7], [1.0, 1e-6, 0.01], [0.0, 1.0, 0.999]] {
+            let found = of(at);
+            let cos = found.cos.unwrap();
+            let x = cos
+                / (cos
+                    + (3.0 + 0.5 / (2.0 * found.gamma - 3.0))
+                        * found.sigma
+                        * (1.0 - cos * cos).sqrt());
+            assert!((x.powf(0.25) - at[2]).abs() < 1e-9, "{at:?}: {x}");
+            let back = coordinates(&axes, &found);
+            assert!(back.iter().zip(at).all(|(a, b)| (a - b).abs() < 1e-3), "{back:?}");
+        }
+    }
+
+    #[test]
+    fn filters_read_as_textures_do() {
+        let ends = TexelAxis::to_ends(Along::Cosine { least: 0.0 }, 5);
+        assert_eq!(
+            [0.0, 0.125, 0.25, 1.0].map(|c| ends.locate(c)),
+            [(0, 0.0), (0, 0.5), (1, 0.0), (3, 1.0)]
+        );
+        let middles = TexelAxis::to_middles(Along::Cosine { least: 0.0 }, 4);
+        assert_eq!(
+            [0.0, 0.125, 0.25, 1.0].map(|c| middles.locate(c)),
+            [(0, 0.0), (0, 0.0), (0, 0.5), (2, 1.0)]
+        );
+        assert_eq!(middles.dense(2).len(), 2 * 5 + 1);
+        assert_eq!(ends.dense(3).len(), 3 * 4 + 1);
+        assert!(middles.dense(3).contains(&0.625) && middles.dense(3).ends_with(&[1.0]));
+    }
+}

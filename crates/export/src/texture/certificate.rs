@@ -1,0 +1,272 @@
+//! How far what a filter reads is from the model, at other points than those of the fit.
+
+use microfacet_baker::progress::Stage;
+use microfacet_core::Masking;
+use microfacet_model::ParameterError;
+
+use super::axis::{AXES, Place, TexelAxis, coordinates, place};
+use super::fit::{Filter, Tap};
+use super::truth::{Channel, Truth, truths};
+use super::{Texture, TextureSpec};
+
+/// Points of a certificate: for each texel, but no fewer and no more than these.
+const PER_TEXEL: usize = 12;
+const POINTS: [usize; 2] = [20_000, 200_000];
+/// Points in each cell along edges, where only half as many texels are near: of textures with two
+/// axes, and with three.
+const PER_EDGE: [usize; 2] = [16, 6];
+/// Points for each texel of averages, whose points take longer.
+const PER_AVERAGE: usize = 5;
+const AVERAGES: [usize; 2] = [1_000, 6_000];
+/// Places within each cell of shapes: the texel and the middle, where lines err most to either
+/// side, and, in turn, one between.
+const WITHIN: [f64; 2] = [0.0, 0.5];
+const BETWEEN: [f64; 3] = [0.29, 0.76, 0.15];
+/// Steps of an additive recurrence that fills two dimensions evenly, and by the first alone one:
+/// 1/ρ and 1/ρ² of the plastic number, ρ³ = ρ + 1.
+const EVEN: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
+
+/// The error of a quantity, over all that is promised.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// `e`, `scale` or `bias`.
+    pub quantity: &'static str,
+    /// The largest.
+    pub largest: f64,
+    /// Where that is.
+    pub at: Place,
+    /// Its root mean square, over the texture's coordinates.
+    pub rms: f64,
+    /// The largest, if the filter's shares are multiples of 1/256, as those of much hardware.
+    pub coarse: f64,
+    /// The largest and the root mean square as shares of what is true, by which shaders may divide;
+    /// without meaning where that may be 0, as the bias.
+    pub relative: [f64; 2],
+}
+
+/// A place with what is true there.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// Where it is.
+    pub place: Place,
+    /// The model's albedo.
+    pub truth: Truth,
+}
+
+/// Places of one shape or several, under one form of masking, with what is true there.
+///
+/// # Errors
+/// [`ParameterError`] for a place outside the domain of the model.
+pub fn known(
+    places: &[Place],
+    masking: Masking,
+    stage: &Stage,
+) -> Result<Vec<Known>, ParameterError> {
+    let mut gammas: Vec<f64> = places.iter().map(|place| place.gamma).collect();
+    gammas.dedup();
+    let truths = truths(&gammas, places.len(), |i| places[i], masking, stage)?;
+    Ok(places.iter().zip(truths).map(|(&place, truth)| Known { place, truth }).collect())
+}
+
+/// Checks of a texture, which serve any values of it.
+#[derive(Clone, Debug)]
+pub struct Checks {
+    filter: Filter,
+    points: Vec<(Known, Tap)>,
+}
+
+impl Deviation {
+    /// The largest as a bound to rely on: the next number of two digits, since a larger error may
+    /// lie between the points.
+    pub fn stated(&self) -> f64 {
+        rounded_up(self.largest)
+    }
+
+    /// The same of the largest by a filter in steps of 1/256.
+    pub fn stated_coarse(&self) -> f64 {
+        rounded_up(self.coarse)
+    }
+}
+
+fn rounded_up(x: f64) -> f64 {
+    if !(x > 0.0 && x.is_finite()) {
+        return x;
+    }
+    let tens = x.log10().floor() - 1.0;
+    let digits = (x / 10_f64.powf(tens)).ceil();
+    // By its text: a product with a power of ten is not the nearest number to the two digits.
+    format!("{digits}e{tens}").parse().unwrap_or(x)
+}
+
+impl Checks {
+    /// Points throughout what is promised, along its edges and in its corners.
+    ///
+    /// # Errors
+    /// [`ParameterError`] for a place outside the domain of the model.
+    pub fn new(spec: &TextureSpec, stage: &Stage) -> Result<Self, ParameterError> {
+        let (axes, filter) = (&spec.axes, Filter::new(&spec.axes));
+        let directional = spec.is_directional();
+        let (per, [fewest, most]) =
+            if directional { (PER_TEXEL, POINTS) } else { (PER_AVERAGE, AVERAGES) };
+        let count = (per * filter.texels).clamp(fewest, most);
+        let mut at = Vec::new();
+        let slices = match axes.iter().find(|axis| axis.is_of_shapes()) {
+            Some(axis) => slices(axis),
+            None => vec![f64::NAN],
+        };
+        // Averages are dense without them.
+        let longest = axes.iter().map(TexelAxis::len).max().unwrap_or(1);
+        let edges =
+            if directional { PER_EDGE[usize::from(axes.len() == AXES)] * (longest - 1) } else { 1 };
+        for (i, &slice) in slices.iter().enumerate() {
+            let share = count / slices.len();
+            at.extend((0..share).map(|j| even(axes, slice, i * share + j)));
+            // Edges, and their ends.
+            for edge in 0..=edges {
+                let along = edge as f64 / edges as f64;
+                for corner in 0..4 {
+                    at.push(edge_point(axes, slice, along, corner));
+                }
+            }
+        }
+        let (mut places, mut taps) = (Vec::new(), Vec::new());
+        for mut at in at {
+            let mut place = place(axes, spec.gamma, &at);
+            if place.cos.is_some_and(|cos| cos < spec.least_cos) {
+                place.cos = Some(spec.least_cos);
+                at = coordinates(axes, &place);
+            }
+            places.push(place);
+            taps.push(filter.tap(axes, &at));
+        }
+        let known = known(&places, spec.masking, stage)?;
+        Ok(Self { filter, points: known.into_iter().zip(taps).collect() })
+    }
+
+    /// Checks at places that are known already.
+    pub fn at(spec: &TextureSpec, known: &[Known]) -> Self {
+        let filter = Filter::new(&spec.axes);
+        let tap = |known: &Known| filter.tap(&spec.axes, &coordinates(&spec.axes, &known.place));
+        let points = known.iter().map(|known| (*known, tap(known))).collect();
+        Self { filter, points }
+    }
+
+    /// The errors of a texture at the points that `counts` counts.
+    pub fn of(&self, texture: &Texture, counts: impl Fn(&Place) -> bool) -> Vec<Deviation> {
+        let planes: Vec<Vec<f64>> = (0..texture.spec.channels.len())
+            .map(|channel| texture.plane(channel).map(f64::from).collect())
+            .collect();
+        let quantities = quantities(&texture.spec.channels);
+        let mut found: Vec<Deviation> = Vec::new();
+        for (quantity, of) in quantities {
+            let (mut worst, mut at, mut coarse, mut sum) = (-1.0, None, 0.0_f64, 0.0);
+            let (mut share, mut shares) = (0.0_f64, 0.0);
+            let mut count = 0;
+            for (known, tap) in self.points.iter().filter(|(known, _)| counts(&known.place)) {
+                let error = |read: fn(&Filter, &[f64], Tap) -> f64| {
+                    let read = |channel: usize| read(&self.filter, &planes[channel], *tap);
+                    let (got, want) = of(&read, known.truth);
+                    ((got - want).abs(), want)
+                };
+                let (fine, want) = error(Filter::read);
+                coarse = coarse.max(error(Filter::read_coarsely).0);
+                sum += fine * fine;
+                share = share.max(fine / want);
+                shares += (fine / want).powi(2);
+                count += 1;
+                if fine > worst {
+                    (worst, at) = (fine, Some(known.place));
+                }
+            }
+            if let Some(at) = at {
+                let [rms, mean] = [sum, shares].map(|sum| (sum / f64::from(count)).sqrt());
+                let relative = [share, mean];
+                found.push(Deviation { quantity, largest: worst, at, rms, coarse, relative });
+            }
+        }
+        found
+    }
+}
+
+/// What is read of a quantity by a reader of channels, and what is true.
+type Reading = Box<dyn Fn(&dyn Fn(usize) -> f64, Truth) -> (f64, f64)>;
+
+/// The quantities that channels hold, as a shader forms them.
+fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
+    let mut all: Vec<(&'static str, Reading)> = Vec::new();
+    let find = |channel| channels.iter().position(|&other| other == channel);
+    for (i, &channel) in channels.iter().enumerate() {
+        match channel {
+            Channel::Empty | Channel::Excess => {}
+            // As far off as E.
+            Channel::Lost => all.push(("e", Box::new(move |read, t| (1.0 - read(i), t.e)))),
+            _ => all.push((channel.name(), Box::new(move |read, t| (read(i), channel.of(t))))),
+        }
+    }
+    if let (Some(e), Some(excess)) = (find(Channel::E), find(Channel::Excess)) {
+        let bias = move |read: &dyn Fn(usize) -> f64, t: Truth| read(excess) + read(e) * t.mirror;
+        all.push(("bias", Box::new(move |read, t| (bias(read, t), t.bias))));
+        all.push(("scale", Box::new(move |read, t| (read(e) - bias(read, t), t.e - t.bias))));
+    }
+    // Engines read E as the sum of both.
+    if let (Some(scale), Some(bias), None) =
+        (find(Channel::Scale), find(Channel::Bias), find(Channel::E))
+    {
+        all.push(("e", Box::new(move |read, t| (read(scale) + read(bias), t.e))));
+    }
+    all
+}
+
+/// Coordinates of shapes that are looked at: three of each cell, and the end.
+fn slices(axis: &TexelAxis) -> Vec<f64> {
+    let cells = axis.texels.windows(2).zip(BETWEEN.into_iter().cycle());
+    let cell = |(pair, between): (&[f64], f64)| {
+        let at = |within: f64| pair[0] + within * (pair[1] - pair[0]);
+        [at(WITHIN[0]), at(WITHIN[1]), at(between)]
+    };
+    cells.flat_map(cell).chain([1.0]).collect()
+}
+
+/// A point of an even sequence, in the slice of a shape.
+fn even(axes: &[TexelAxis], slice: f64, i: usize) -> [f64; AXES] {
+    let mut steps = EVEN.iter();
+    let mut along = |axis: &TexelAxis| match axis.is_of_shapes() {
+        true => slice,
+        false => (0.5 + i as f64 * steps.next().expect("two axes beside shapes")).fract(),
+    };
+    array(axes.iter().map(&mut along))
+}
+
+/// A point of an edge: all axes but shapes at an end, and one of them anywhere.
+fn edge_point(axes: &[TexelAxis], slice: f64, along: f64, corner: usize) -> [f64; AXES] {
+    let mut nth = 0;
+    let mut coordinate = |axis: &TexelAxis| {
+        if axis.is_of_shapes() {
+            return slice;
+        }
+        nth += 1;
+        // Of two axes the one runs and the other is at an end, then the other way around.
+        if nth - 1 == corner / 2 { along } else { (corner % 2) as f64 }
+    };
+    array(axes.iter().map(&mut coordinate))
+}
+
+fn array(coordinates: impl Iterator<Item = f64>) -> [f64; AXES] {
+    let mut at = [0.0; AXES];
+    at.iter_mut().zip(coordinates).for_each(|(to, c)| *to = c);
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_rounded_up() {
+        for (x, up) in
+            [(0.0163, 0.017), (0.002, 0.002), (5.98e-4, 6e-4), (9.91e-5, 1e-4), (0.0, 0.0)]
+        {
+            assert_eq!(rounded_up(x), up);
+        }
+    }
+}

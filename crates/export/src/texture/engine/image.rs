@@ -1,0 +1,62 @@
+//! Textures as images that engines load.
+
+use std::io::Cursor;
+
+use image::{DynamicImage, ImageFormat, RgbImage, RgbaImage};
+
+use super::Texture;
+use crate::ExportFile;
+use crate::texture::file::{exr, ktx2};
+
+/// The exponent with which Babylon.js decodes colours.
+const GAMMA: f32 = 2.2;
+
+/// OpenEXR in single precision.
+pub(super) fn open_exr(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
+    let texture = &textures[0];
+    let contents = exr(texture, None)?;
+    Ok(vec![ExportFile { name: format!("{}.exr", texture.spec.name), contents }])
+}
+
+/// Bevy: KTX 2 with two halves a texel.
+pub(super) fn bevy(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
+    let (texture, _) = textures[0].rounded();
+    let contents = ktx2::encode(&texture, None);
+    Ok(vec![ExportFile { name: "dfg.ktx2".into(), contents }])
+}
+
+/// glTF: eight bits a channel, linear.
+pub(super) fn gltf(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
+    let [width, height] = size(&textures[0]);
+    let bytes = textures[0].values.iter().map(|&x| eight_bits(x)).collect();
+    let image = RgbImage::from_raw(width, height, bytes).expect("three channels");
+    png("lut_ggx.png", image.into())
+}
+
+/// Babylon.js: colours over a divisor, which is opacity, in the gamma of displays. Of numbers up to
+/// 1 the divisor 1 has the finest steps.
+pub(super) fn babylon(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
+    let [width, height] = size(&textures[0]);
+    let texel = |rgb: &[f32]| {
+        let colour = |x: f32| eight_bits(x.max(0.0).powf(1.0 / GAMMA));
+        [colour(rgb[0]), colour(rgb[1]), colour(rgb[2]), 255]
+    };
+    let bytes = textures[0].values.chunks(3).flat_map(texel).collect();
+    let image = RgbaImage::from_raw(width, height, bytes).expect("four channels");
+    png("environmentBRDF.png", image.into())
+}
+
+fn size(texture: &Texture) -> [u32; 2] {
+    let size = texture.size();
+    [size[1] as u32, size[0] as u32]
+}
+
+fn eight_bits(x: f32) -> u8 {
+    (255.0 * x).round() as u8
+}
+
+fn png(name: &str, image: DynamicImage) -> Result<Vec<ExportFile>, String> {
+    let mut out = Cursor::new(Vec::new());
+    image.write_to(&mut out, ImageFormat::Png).map_err(|why| why.to_string())?;
+    Ok(vec![ExportFile { name: name.into(), contents: out.into_inner() }])
+}

@@ -1,0 +1,135 @@
+//! What a texture is, as JSON: beside it, and inside the formats that can hold it.
+
+use serde_json::{Map, Value, json};
+
+use microfacet_tables::axis::LogShape;
+
+use super::Made;
+use crate::numbers::{as_typed, single};
+use crate::texture::{Along, Channel, Deviation, Place, Texture, shader_lines};
+
+/// The description.
+pub(super) fn description(made: &Made) -> Map<String, Value> {
+    let texture = &made.texture;
+    let spec = &texture.spec;
+    let average = !spec.is_directional();
+    let mut all = Map::new();
+    let mut put = |key: &str, value: Value| {
+        all.insert(key.into(), value);
+    };
+    put("generator", concat!("microfacet-bake ", env!("CARGO_PKG_VERSION")).into());
+    let quantity =
+        if average { "average over all views of the albedo" } else { "directional albedo" };
+    put(
+        "quantity",
+        format!("{quantity} of reflection by the Student-t distribution, F = 1").into(),
+    );
+    put("masking", spec.masking.name().into());
+    if !spec.gamma.is_nan() {
+        put("gamma", as_typed(spec.gamma).into());
+    }
+    let axes = spec.axes.iter().map(|axis| {
+        let mut one = along(axis.along, spec.gamma);
+        one["texels"] = axis.len().into();
+        one
+    });
+    put("axes_slowest_first", axes.collect());
+    let channels = spec.channels.iter().map(|channel| Value::from(channel.name()));
+    put("channels", channels.collect());
+    if spec.channels.contains(&Channel::Excess) {
+        let mirror = if average { "1/21" } else { "(1 - mu)^5" };
+        let meaning = format!("bias = bias_excess + e {mirror}, scale = e - bias");
+        put("meaning", meaning.into());
+    }
+    put("coordinates", "c in [0, 1] along n texels is read at (1/2 + (n - 1) c) / n".into());
+    put("precision", if texture.half { "f16" } else { "f32" }.into());
+    let texels = if spec.fitted { "fitted to the linear filter" } else { "exact at the texels" };
+    put("values", texels.into());
+    if !average {
+        put("least_cos_theta", spec.least_cos.into());
+    }
+    put("errors", errors(&made.errors));
+    if let Some(before) = &made.before_rounding {
+        put("errors_in_f32", errors(&before.errors));
+        put("largest_rounding_to_f16", rounded(before.rounding));
+    }
+    let lines = shader_lines(spec);
+    put("read", json!({ "glsl": lines.glsl, "hlsl": lines.hlsl, "wgsl": lines.wgsl }));
+    all
+}
+
+fn errors(all: &[Deviation]) -> Value {
+    let entry = |error: &Deviation| {
+        let entry = json!({
+            "largest": error.stated(),
+            "at": at(&error.at),
+            "rms": rounded(error.rms),
+            "largest_if_filter_has_256_steps": error.stated_coarse(),
+        });
+        (error.quantity.to_owned(), entry)
+    };
+    Value::Object(all.iter().map(entry).collect())
+}
+
+fn along(along: Along, gamma: f64) -> Value {
+    match along {
+        Along::Shape { smallest } => json!({
+            "coordinate": format!(
+                "ln(1 + {scale} / (2 gamma - 3)) / ln(1 + {scale} / (2 gamma_min - 3))",
+                scale = LogShape::BAKED.scale
+            ),
+            "gamma_min": smallest,
+        }),
+        Along::Roughness { largest } => {
+            json!({ "coordinate": "sqrt(sigma / sigma_max)", "sigma_max": largest })
+        }
+        Along::LinearRoughness => json!({ "coordinate": "sigma" }),
+        Along::View(view) => json!({
+            "coordinate": "(mu / (mu + kappa sigma sqrt(1 - mu^2)))^(1/4), mu = cos theta",
+            "kappa": if gamma.is_nan() {
+                json!(format!("{} + {} / (2 gamma - 3)", view.scale, view.heavy))
+            } else {
+                json!(view.of_shape(gamma).scale)
+            },
+        }),
+        Along::Cosine { .. } => json!({ "coordinate": "mu = cos theta" }),
+        Along::RootCosine => json!({ "coordinate": "sqrt(mu), mu = cos theta" }),
+    }
+}
+
+/// Three digits are enough of an error.
+fn rounded(x: f64) -> Value {
+    let text = format!("{x:.2e}");
+    text.parse::<f64>().map_or(Value::Null, Value::from)
+}
+
+fn at(place: &Place) -> Value {
+    let gamma = format!("{:.4}", place.gamma).parse::<f64>().unwrap_or(place.gamma);
+    let mut at = json!({ "gamma": as_typed(gamma), "sigma": short(place.sigma) });
+    if let Some(cos) = place.cos {
+        at["cos_theta"] = short(cos);
+    }
+    at
+}
+
+/// A place in four digits.
+fn short(x: f64) -> Value {
+    format!("{x:.3e}").parse::<f64>().map_or(Value::Null, Value::from)
+}
+
+/// In one line, for formats that hold a text.
+pub(super) fn compact(description: &Map<String, Value>) -> String {
+    Value::Object(description.clone()).to_string()
+}
+
+/// As a file, with the values of a texture if they are asked for.
+pub(super) fn text(description: Map<String, Value>, values: Option<&Texture>) -> String {
+    let mut text = serde_json::to_string_pretty(&description).expect("names and numbers");
+    if let Some(texture) = values {
+        // A number a line would be long to scroll.
+        let numbers: Vec<String> = texture.values.iter().map(|&x| single(x)).collect();
+        text.truncate(text.len() - "\n}".len());
+        text += &format!(",\n  \"data\": [{}]\n}}", numbers.join(", "));
+    }
+    text + "\n"
+}

@@ -1,0 +1,357 @@
+//! Directional albedos as textures that a shader reads with the filter of its hardware, in one
+//! line: one shape γ, or a range of them as a volume, and the averages over all views.
+//!
+//! The coordinate of the view follows the roughness, so that E is smooth where it changes within
+//! the roughness of the horizon. The values are not those at the texels, but those for which what
+//! the filter reads between them is closest to the model. The same mechanism writes the textures
+//! that engines read today, see [`engine`].
+
+mod axis;
+mod certificate;
+pub mod engine;
+mod file;
+mod fit;
+mod shader;
+mod truth;
+
+use half::f16;
+use microfacet_baker::bake::albedo::SIGMA_MAX;
+use microfacet_baker::progress::Stage;
+use microfacet_baker::table_spec::GAMMA_MIN;
+use microfacet_core::Masking;
+use microfacet_model::ParameterError;
+use rayon::prelude::*;
+
+pub use axis::{Along, Place, TexelAxis};
+pub use certificate::{Checks, Deviation, Known, known};
+pub use file::{BeforeRounding, Format, Made, files};
+pub use shader::coordinates as shader_coordinates;
+pub use shader::{Lines, shader_lines};
+pub use truth::{Channel, Truth};
+
+pub use axis::place;
+use axis::{AXES, coordinates};
+use fit::{Filter, Target, fit};
+use truth::truths;
+
+/// The fewest and the most texels along an axis, and the most of a texture.
+pub const SIZES: [usize; 2] = [4, 4096];
+/// See [`SIZES`].
+pub const MOST_TEXELS: usize = 1 << 24;
+/// Textures of more texels than this hold the values at the texels. Errors fall with the square of
+/// their number along an axis, from 5.2e-3 for γ = ∞ in 32 × 32 texels, and a fit, which takes
+/// memory by the point, gains no more than half.
+pub const MOST_FITTED: usize = 1 << 18;
+/// The smallest cosine for which a certificate holds.
+pub const LEAST_COS: f64 = 1e-4;
+/// The smallest σ_max and the largest end of a range of shapes; beyond, single precision cannot
+/// tell the ends of an axis apart.
+const LEAST_SIGMA_MAX: f64 = 1e-4;
+const MOST_GAMMA_MIN: f64 = 1e4;
+/// Points of a fit within each cell along each axis: of textures with two axes, and with three.
+const PER_CELL: [usize; 2] = [3, 2];
+/// Points of a fit within each cell of averages.
+const PER_AVERAGE_CELL: usize = 3;
+/// Seconds that the albedo of one place takes on one processor, and an average; only their
+/// proportion matters, to the progress that is shown.
+const SECONDS: [f64; 2] = [1.3e-4, 4e-3];
+
+/// The shapes of a texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shapes {
+    /// One γ; the texture has the axes s and t.
+    One(f64),
+    /// From ∞ down to this γ; the texture has the axes γ, s and t.
+    DownTo(f64),
+}
+
+/// What the channels of a texture are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Channels {
+    /// E.
+    #[default]
+    E,
+    /// 1 − E.
+    OneMinusE,
+    /// E, and bias − E (1−μ)⁵: what scale and bias follow from.
+    ScaleBias,
+}
+
+impl Channels {
+    fn all(self) -> Vec<Channel> {
+        match self {
+            Self::E => vec![Channel::E],
+            Self::OneMinusE => vec![Channel::Lost],
+            Self::ScaleBias => vec![Channel::E, Channel::Excess],
+        }
+    }
+}
+
+/// A texture to be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureSpec {
+    /// The name of its file, without an extension.
+    pub name: String,
+    /// γ, where no axis is of shapes.
+    pub gamma: f64,
+    /// The axes, slowest first. Without a view the texture is of averages.
+    pub axes: Vec<TexelAxis>,
+    /// The form of masking.
+    pub masking: Masking,
+    /// The channels.
+    pub channels: Vec<Channel>,
+    /// The smallest cosine that counts.
+    pub least_cos: f64,
+    /// Whether values are fitted to the filter, or those at the texels.
+    pub fitted: bool,
+}
+
+/// κ = scale + heavy/(2γ−3), as [scale, heavy]. For GGX up to σ = 1 a constant errs less.
+fn kappa(shapes: Shapes, sigma_max: f64) -> [f64; 2] {
+    match shapes {
+        Shapes::One(2.0) if sigma_max <= 1.0 => [4.0, 0.0],
+        _ => [3.0, 0.5],
+    }
+}
+
+impl TextureSpec {
+    /// The texture of E, by a name, and that of its averages, by the same with `_average`; `size`
+    /// texels along γ (if there is a range), s and t.
+    ///
+    /// # Panics
+    /// If `size` has not one number an axis, each of at least two.
+    pub fn of_shapes(
+        name: &str,
+        shapes: Shapes,
+        sigma_max: f64,
+        size: &[usize],
+        masking: Masking,
+        channels: Channels,
+    ) -> [Self; 2] {
+        let [scale, heavy] = kappa(shapes, sigma_max);
+        let mut along = vec![Along::Roughness { largest: sigma_max }, Along::view(scale, heavy)];
+        let gamma = match shapes {
+            Shapes::One(gamma) => gamma,
+            Shapes::DownTo(smallest) => {
+                along.insert(0, Along::Shape { smallest });
+                f64::NAN
+            }
+        };
+        assert_eq!(size.len(), along.len(), "a size for each axis");
+        let axes: Vec<TexelAxis> =
+            along.into_iter().zip(size).map(|(along, &n)| TexelAxis::to_ends(along, n)).collect();
+        let directional = Self {
+            name: name.into(),
+            gamma,
+            masking,
+            channels: channels.all(),
+            least_cos: LEAST_COS,
+            fitted: size.iter().product::<usize>() <= MOST_FITTED,
+            axes,
+        };
+        let average = directional.average(&format!("{name}_average"));
+        [directional, average]
+    }
+
+    /// The texture of its averages, by another name.
+    pub fn average(&self, name: &str) -> Self {
+        let axes = self.axes.iter().filter(|axis| !axis.along.is_view()).cloned().collect();
+        Self { name: name.into(), axes, ..self.clone() }
+    }
+
+    /// Whether it has a view; else it is of averages.
+    pub fn is_directional(&self) -> bool {
+        self.axes.iter().any(|axis| axis.along.is_view())
+    }
+
+    /// An estimate of the seconds that it takes on one processor, in proportion.
+    pub fn seconds(&self) -> f64 {
+        let texels: f64 = self.axes.iter().map(|axis| axis.len() as f64).product();
+        let per_cell = self.per_cell();
+        let points = if self.fitted { (per_cell as f64).powi(self.axes.len() as i32) } else { 1.0 };
+        SECONDS[usize::from(!self.is_directional())] * texels * (points + 1.0)
+    }
+
+    fn per_cell(&self) -> usize {
+        match self.axes.len() {
+            _ if !self.is_directional() => PER_AVERAGE_CELL,
+            AXES => PER_CELL[1],
+            _ => PER_CELL[0],
+        }
+    }
+
+    /// Values at the texels, or fitted ones.
+    ///
+    /// # Errors
+    /// [`ParameterError`] for a place outside the domain of the model.
+    pub fn make(&self, stage: &Stage) -> Result<Texture, ParameterError> {
+        if !self.fitted {
+            let texels = Grid(self.axes.iter().map(|axis| axis.texels.clone()).collect());
+            let at = |i| place(&self.axes, self.gamma, &texels.at(i));
+            let truths = truths(&self.gammas(&texels.0), texels.len(), at, self.masking, stage)?;
+            return Ok(self.texture(
+                truths.iter().map(|&truth| {
+                    self.channels.iter().map(move |channel| channel.of(truth) as f32)
+                }),
+            ));
+        }
+        let points = self.points();
+        let places = |i: usize| points[i].1;
+        let gammas =
+            self.gammas(&self.axes.iter().map(|axis| self.dense(axis)).collect::<Vec<_>>());
+        let truths = truths(&gammas, points.len(), places, self.masking, stage)?;
+        let filter = Filter::new(&self.axes);
+        let target = |(at, place): &([f64; AXES], Place)| Target {
+            tap: filter.tap(&self.axes, at),
+            promised: place.cos.is_none_or(|cos| cos >= self.least_cos),
+        };
+        let targets: Vec<Target> = points.iter().map(target).collect();
+        let plane = |channel: &Channel| {
+            let wanted: Vec<f64> = truths.iter().map(|&truth| channel.of(truth)).collect();
+            let [least, most] = channel.range();
+            let values = fit(&filter, &targets, &wanted, vec![0.0; filter.texels]);
+            values.into_iter().map(|value| value.clamp(least, most)).collect()
+        };
+        let planes: Vec<Vec<f64>> = self.channels.iter().map(plane).collect();
+        let texel = |i: usize| planes.iter().map(move |plane| plane[i] as f32);
+        Ok(self.texture((0..filter.texels).map(texel)))
+    }
+
+    fn dense(&self, axis: &TexelAxis) -> Vec<f64> {
+        axis.dense(self.per_cell())
+    }
+
+    /// Points to fit to, with their coordinates: over all of the texture, and of views also the
+    /// smallest cosine that counts, which lies between others.
+    fn points(&self) -> Vec<([f64; AXES], Place)> {
+        let grid = Grid(self.axes.iter().map(|axis| self.dense(axis)).collect());
+        let of = |at: [f64; AXES]| (at, place(&self.axes, self.gamma, &at));
+        let mut points: Vec<_> = (0..grid.len()).into_par_iter().map(|i| of(grid.at(i))).collect();
+        if self.is_directional() {
+            let any = |axis: &TexelAxis| {
+                if axis.along.is_view() { vec![0.0] } else { self.dense(axis) }
+            };
+            let materials = Grid(self.axes.iter().map(any).collect());
+            points.extend((0..materials.len()).map(|i| {
+                let place = Place { cos: Some(self.least_cos), ..of(materials.at(i)).1 };
+                (coordinates(&self.axes, &place), place)
+            }));
+        }
+        points
+    }
+
+    /// The shapes of a grid.
+    fn gammas(&self, grid: &[Vec<f64>]) -> Vec<f64> {
+        let shapes = self.axes.iter().zip(grid).find(|(axis, _)| axis.is_of_shapes());
+        shapes.map_or(vec![self.gamma], |(axis, coordinates)| {
+            coordinates
+                .iter()
+                .map(|&c| place(std::slice::from_ref(axis), 0.0, &[c]).gamma)
+                .collect()
+        })
+    }
+
+    fn texture(&self, texels: impl Iterator<Item = impl Iterator<Item = f32>>) -> Texture {
+        Texture { spec: self.clone(), values: texels.flatten().collect(), half: false }
+    }
+}
+
+/// All combinations of coordinates along each axis, the last axis fastest.
+struct Grid(Vec<Vec<f64>>);
+
+impl Grid {
+    fn len(&self) -> usize {
+        self.0.iter().map(Vec::len).product()
+    }
+
+    fn at(&self, mut i: usize) -> [f64; AXES] {
+        let mut at = [0.0; AXES];
+        for (c, along) in at.iter_mut().zip(&self.0).rev() {
+            *c = along[i % along.len()];
+            i /= along.len();
+        }
+        at
+    }
+}
+
+/// A texture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// What it is.
+    pub spec: TextureSpec,
+    /// Its values, the channels of a texel together, the last axis fastest.
+    pub values: Vec<f32>,
+    /// Whether they are stored in 16 bits, which hold them without loss then.
+    pub half: bool,
+}
+
+impl Texture {
+    /// The values of a channel.
+    pub fn plane(&self, channel: usize) -> impl Iterator<Item = f32> + '_ {
+        self.values.iter().skip(channel).step_by(self.spec.channels.len()).copied()
+    }
+
+    /// Rounds it to 16 bits, and says by how much.
+    #[must_use]
+    pub fn rounded(&self) -> (Self, f64) {
+        let values: Vec<f32> = self.values.iter().map(|&x| f16::from_f32(x).to_f32()).collect();
+        let changes = values.iter().zip(&self.values).map(|(a, b)| f64::from((a - b).abs()));
+        let largest = changes.fold(0.0, f64::max);
+        (Self { values, half: true, spec: self.spec.clone() }, largest)
+    }
+
+    /// Texels along each axis, slowest first.
+    pub fn size(&self) -> Vec<usize> {
+        self.spec.axes.iter().map(TexelAxis::len).collect()
+    }
+}
+
+/// Why a texture cannot be made.
+///
+/// # Errors
+/// The value, what is allowed, and what to do.
+pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), String> {
+    let (gamma, axes, form) = match shapes {
+        Shapes::One(gamma) => (gamma, 2, "SxT, as 32x32"),
+        Shapes::DownTo(gamma) => (gamma, 3, "GxSxT, as 32x64x64"),
+    };
+    if !(gamma >= GAMMA_MIN) {
+        return Err(format!(
+            "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that textures cover; raise it"
+        ));
+    }
+    if matches!(shapes, Shapes::DownTo(f64::INFINITY)) {
+        return Err("a range of shapes goes from infinity down: give its smallest gamma, or ask \
+                    for the one shape gamma = inf"
+            .into());
+    }
+    if !(sigma_max > 0.0 && sigma_max <= SIGMA_MAX) {
+        return Err(format!(
+            "sigma-max = {sigma_max} must lie in (0, {SIGMA_MAX}]; 1 is what engines use"
+        ));
+    }
+    if sigma_max < LEAST_SIGMA_MAX {
+        return Err(format!(
+            "sigma-max = {sigma_max} is below {LEAST_SIGMA_MAX}: all of the texture would be a \
+             mirror's; raise it"
+        ));
+    }
+    if matches!(shapes, Shapes::DownTo(gamma) if gamma > MOST_GAMMA_MIN) {
+        return Err(format!(
+            "gamma-min = {gamma} is above {MOST_GAMMA_MIN}: all of the volume would be Beckmann's; \
+             ask for the one shape gamma = inf"
+        ));
+    }
+    if size.len() != axes {
+        return Err(format!("a texture of these shapes has {axes} sizes: {form}"));
+    }
+    let [fewest, most] = SIZES;
+    if let Some(n) = size.iter().find(|n| !(fewest..=most).contains(*n)) {
+        return Err(format!("a size of {n} must lie in [{fewest}, {most}]; give {form}"));
+    }
+    let texels: usize = size.iter().product();
+    if texels > MOST_TEXELS {
+        return Err(format!("{texels} texels are more than {MOST_TEXELS}; name smaller sizes"));
+    }
+    Ok(())
+}

@@ -1,0 +1,43 @@
+//! Replaces one distribution by another: by equal half angles, by least squares, or by published
+//! formulas.
+//!
+//! After Sawicki 2021, *Microfacet Distribution Function: To Change or Not to Change, That Is the
+//! Question* (<https://doi.org/10.5220/0010252702090220>): the error of a replacement is the root
+//! mean square of the difference over a uniform grid of θ in [0, π/2). [`table`] has his table 2,
+//! whose grids end earlier.
+
+use microfacet_baker::distribution::Named;
+
+mod error;
+mod formula;
+mod search;
+pub mod table;
+mod target;
+
+pub use error::ConvertError;
+pub use formula::{Formula, by_formula, formulas, half_angle_parameter};
+pub use target::Target;
+
+/// The quantity that is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// D(θ)/D(0): the shape of the highlight.
+    Relative,
+    /// D(θ) itself, normalised.
+    Density,
+}
+
+/// A replacement and its errors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replacement {
+    /// The distribution found.
+    pub to: Named,
+    /// RMSE of D/D(0), and of D in 1/sr.
+    pub rmse: [f64; 2],
+    /// Parameters found at the end of the range that was searched, beyond which a better value may
+    /// lie; empty if none.
+    pub ends_at: Vec<&'static str>,
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,138 @@
+//! The white furnace before and after compensation.
+
+use maud::{Markup, html};
+use microfacet_baker::progress::Meter;
+use microfacet_sampler::{MaterialError, Tables};
+use microfacet_validate::furnace::{Furnace, furnace, seconds as furnace_seconds};
+use rayon::prelude::*;
+
+use super::drawing::{error, plot};
+use super::subjects::{Shown, Subjects};
+use super::{ReportError, Source};
+use crate::plot::{Axis, Curve, Dash, Key, Panel};
+
+/// Cosines of the views.
+const VIEWS: [f64; 21] = [
+    1e-4, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7,
+    0.8, 0.9, 0.95, 1.0,
+];
+
+/// A share of the light that a furnace returns.
+type Share = fn(&Furnace) -> f64;
+
+/// What is drawn, with the place of its colour.
+const SHARES: [(&str, usize, Dash, Share); 3] = [
+    ("one bounce", 1, Dash::Solid, |row| row.single),
+    ("with Kulla–Conty's lobe", 0, Dash::Solid, |row| row.kulla_conty),
+    ("with Turquin's scaling", 2, Dash::Dashed, |row| row.turquin),
+];
+
+/// The estimated seconds of [`section`] on the current threads.
+pub(super) fn seconds(set: &Tables) -> f64 {
+    furnace_seconds(Subjects::of(set).shown.len() * VIEWS.len())
+}
+
+pub(super) fn section(
+    source: &Source,
+    subjects: &Subjects,
+    meter: &Meter,
+) -> Result<Markup, ReportError> {
+    let stage = meter.stage(seconds(source.set));
+    stage.split(subjects.shown.len() * VIEWS.len());
+    let set = source.set.clone().or_embedded();
+    let furnaces: Vec<Result<Vec<Furnace>, MaterialError>> = subjects
+        .shown
+        .par_iter()
+        .map(|shown| {
+            let row = |&cos: &f64| {
+                let row = furnace(&set, shown.masking(), shown.round_sigma(), shown.gamma, cos);
+                stage.step();
+                row
+            };
+            VIEWS.par_iter().map(row).collect()
+        })
+        .collect();
+    let figure = |(shown, rows): (&Shown, &Result<Vec<Furnace>, MaterialError>)| match rows {
+        Ok(rows) => drawn(source.set, shown, rows),
+        Err(why) => html! {
+            p.note { b { bdi { (shown.name) } } ": not drawn, since " (why) "." }
+        },
+    };
+    Ok(html! {
+        @if !subjects.shown.is_empty() {
+            p {
+                "Kulla and Conty (2017) add a lobe for what is missing; Turquin (2019) scales the \
+                 one bounce. Both read the albedo tables. The bounce itself is computed by \
+                 quadrature of the model, without tables."
+            }
+            div.figures {
+                @for pair in subjects.shown.iter().zip(&furnaces) { (figure(pair)) }
+            }
+            @if subjects.left_out > 0 {
+                p.note { (subjects.left_out) " more materials are not drawn." }
+            }
+        }
+    })
+}
+
+/// The furnaces of one lobe.
+fn drawn(set: &Tables, shown: &Shown, rows: &[Furnace]) -> Markup {
+    let curve = |(name, place, dash, share): &(&str, usize, Dash, Share)| Curve {
+        key: Key::Nth(*place),
+        name: (*name).into(),
+        dash: *dash,
+        points: rows.iter().map(|row| (row.cos_theta, share(row))).collect(),
+    };
+    let [single, kulla_conty, turquin] = SHARES.map(|(.., share)| furthest(rows, share));
+    let least = rows.iter().flat_map(|row| SHARES.map(|(.., share)| share(row)));
+    // A tenth below what is lowest, so that no curve lies on the edge.
+    let low = ((least.fold(1.0, f64::min) * 10.0).floor() / 10.0 - 0.1).clamp(0.0, 0.8);
+    let panel = Panel {
+        title: "White furnace".into(),
+        x: Axis::linear("cos θ, 0 for a grazing view", 0.0, 1.0),
+        y: Axis::linear("share of light that returns", low, 1.05),
+        curves: SHARES.iter().map(curve).collect(),
+        marks: Vec::new(),
+    };
+    let lost = format!("{:.1}%", 100.0 * single.off);
+    let label = format!(
+        "White furnace of {}: one bounce is off 1 by at most {lost}, with Kulla–Conty's lobe {}, \
+         with Turquin's scaling {}",
+        shown.name,
+        error(kulla_conty.off),
+        error(turquin.off)
+    );
+    let own = set.albedo(shown.round_sigma(), shown.gamma, shown.masking()).is_ok();
+    html! {
+        figure {
+            div.plots { (plot(panel, &label)) }
+            figcaption {
+                b { bdi { (shown.name) } } ": " (shown.description()) ", "
+                (shown.masking()) " masking. "
+                "One bounce loses up to " (lost) ", at cos\u{a0}θ\u{a0}=\u{a0}" (single.cos_theta) ". "
+                "The largest deviation from 1 is " (error(kulla_conty.off))
+                " with Kulla–Conty's lobe and " (error(turquin.off)) " with Turquin's scaling. "
+                @if shown.sigma[0] != shown.sigma[1] {
+                    "All three are of the round lobe of √(σx σy), which stands in for it. "
+                }
+                @if !own { "The albedo tables are those of the default set." }
+            }
+        }
+    }
+}
+
+/// How far from 1 a share is at most, and where.
+struct Furthest {
+    off: f64,
+    cos_theta: f64,
+}
+
+fn furthest(rows: &[Furnace], share: Share) -> Furthest {
+    let off = |row: &Furnace| (share(row) - 1.0).abs();
+    // A NaN is larger than any number.
+    let worst = rows.iter().max_by(|a, b| off(a).total_cmp(&off(b)));
+    worst.map_or(Furthest { off: f64::NAN, cos_theta: f64::NAN }, |row| Furthest {
+        off: off(row),
+        cos_theta: row.cos_theta,
+    })
+}

@@ -1,0 +1,205 @@
+//! Which axes a map shows, and at how many places it is measured.
+
+use microfacet_baker::plan;
+use microfacet_tables::{Axis, Interpolation, Kind, Table};
+
+use super::albedo::spec;
+use super::{AXES, Place, Quantity, Span, worse};
+
+/// The axes that a map shows, by their place in the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sides {
+    /// Along x.
+    pub x: usize,
+    /// Along y, if there is a second.
+    pub y: Option<usize>,
+}
+
+/// Most pixels along x and y, and along x alone.
+const PIXELS: [usize; 2] = [48, 32];
+const ALONE: usize = 96;
+/// Fewest pixels along either.
+const FEWEST: usize = 6;
+/// Places in each cell of an axis, where there is time for so many.
+const IN_CELL: f64 = 2.5;
+/// Most places in a pixel along an axis.
+const IN_PIXEL: usize = 4;
+/// Places along axes of which the largest error is shown: random numbers, and views of albedos.
+const OVER: [usize; 2] = [41, 6];
+/// Seconds of one thread that a map may take.
+const LIMIT: f64 = 1.5;
+
+/// Pairs of quantities for y and x, the first that a table has for the map that says most of it.
+const FIRST: [(Quantity, Quantity); 9] = [
+    (Quantity::Sigma, Quantity::Cosine),
+    (Quantity::Azimuth, Quantity::Cosine),
+    (Quantity::Eta, Quantity::Cosine),
+    (Quantity::Gamma, Quantity::Cosine),
+    (Quantity::Gamma, Quantity::Cotangent),
+    (Quantity::Gamma, Quantity::Number),
+    (Quantity::Number, Quantity::Cotangent),
+    (Quantity::Number, Quantity::Slope),
+    (Quantity::Gamma, Quantity::Sigma),
+];
+/// The same for a second map.
+const SECOND: [(Quantity, Quantity); 3] = [
+    (Quantity::Gamma, Quantity::Sigma),
+    (Quantity::Eta, Quantity::Sigma),
+    (Quantity::Number, Quantity::Cotangent),
+];
+
+/// The maps that a table has: the one that says most of it, and perhaps another.
+pub fn sides(table: &Table) -> Vec<Sides> {
+    let of = |quantity: Quantity| {
+        table.axes.iter().position(|axis| moves(axis) && Quantity::of(axis) == quantity)
+    };
+    let pair = |(y, x): &(Quantity, Quantity)| Some(Sides { x: of(*x)?, y: Some(of(*y)?) });
+    let first = FIRST.iter().find_map(pair);
+    let second = SECOND.iter().find_map(pair).filter(|second| first.as_ref() != Some(second));
+    let alone = || Some(Sides { x: table.axes.iter().rposition(moves)?, y: None });
+    first.or_else(alone).into_iter().chain(second).collect()
+}
+
+/// The estimated seconds of one thread that a map takes.
+pub fn seconds(table: &Table, sides: Sides) -> f64 {
+    Layout::new(table, sides).points() as f64 * point_seconds(table)
+}
+
+/// Seconds of one thread to measure the error of a table at one place.
+fn point_seconds(table: &Table) -> f64 {
+    match table.kind {
+        Kind::Albedo => spec(table).map_or(0.0, |spec| plan::place_seconds(&spec)),
+        _ => plan::point_seconds(table),
+    }
+}
+
+/// Whether errors change along an axis: not along a list of single shapes.
+fn moves(axis: &Axis) -> bool {
+    axis.nodes.len() > 1 && axis.interpolation != Interpolation::Nodes
+}
+
+/// Numbers of pixels, and of places along each axis.
+pub(super) struct Layout {
+    /// Along x and y.
+    pub(super) pixels: [usize; 2],
+    counts: [usize; AXES],
+    /// Axes of which the largest error is shown.
+    over: [bool; AXES],
+}
+
+impl Layout {
+    pub(super) fn new(table: &Table, sides: Sides) -> Self {
+        let shown = |axis: usize| axis == sides.x || Some(axis) == sides.y;
+        let (mut counts, mut over) = ([1; AXES], [false; AXES]);
+        for (i, axis) in table.axes.iter().enumerate().filter(|(i, _)| !shown(*i)) {
+            over[i] = moves(axis) && !Quantity::of(axis).is_of_material();
+            if over[i] {
+                counts[i] = OVER[usize::from(table.kind == Kind::Albedo)];
+            }
+        }
+        let others: usize = counts.iter().product();
+        let most = (LIMIT / point_seconds(table) / others as f64) as usize;
+        let cells = |axis: usize| {
+            let axis = &table.axes[axis];
+            (axis.len() - 1) as f64 * if Quantity::of(axis) == Quantity::Number { 2.0 } else { 1.0 }
+        };
+        let [x, y] = [Some(sides.x), sides.y];
+        let mut pixels = if y.is_some() { PIXELS } else { [ALONE, 1] };
+        let wanted = [x, y].map(|axis| axis.map_or(0.0, |axis| IN_CELL * cells(axis)));
+        let mut each: [usize; 2] = std::array::from_fn(|i| {
+            (wanted[i] / pixels[i] as f64).ceil().clamp(1.0, IN_PIXEL as f64) as usize
+        });
+        let points =
+            |pixels: [usize; 2], each: [usize; 2]| pixels.iter().chain(&each).product::<usize>();
+        while points(pixels, each) > most && each != [1; 2] {
+            let wider = usize::from(each[1] > each[0]);
+            each[wider] -= 1;
+        }
+        while points(pixels, each) > most && pixels[0] > FEWEST {
+            pixels = pixels.map(|n| if n > FEWEST { (n * 7 / 8).max(FEWEST) } else { n });
+        }
+        for (i, axis) in [x, y].into_iter().enumerate() {
+            if let Some(axis) = axis {
+                counts[axis] = pixels[i] * each[i];
+            }
+        }
+        Self { pixels, counts, over }
+    }
+
+    pub(super) fn points(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    /// The number of places that share the first axis.
+    pub(super) fn run(&self) -> usize {
+        self.counts[1..].iter().product()
+    }
+
+    /// All places, the last axis fastest: evenly spaced with both ends, one of them moved to where
+    /// the certificate has its largest error. That is the only place, or else the middle, along
+    /// axes that are not shown and have one.
+    pub(super) fn places(&self, table: &Table, spans: &[Span], sides: Sides) -> Vec<Place> {
+        let along = |axis: usize| -> Vec<f64> {
+            let count = self.counts[axis];
+            let worst = spans.get(axis).and_then(|span| span.worst(table));
+            if count == 1 {
+                return vec![worst.unwrap_or(0.5)];
+            }
+            let mut all: Vec<f64> = (0..count).map(|i| i as f64 / (count - 1) as f64).collect();
+            if let Some(worst) = worst {
+                // Within the pixel that it lies in.
+                let each = count / self.pixels_along(axis, sides);
+                let first = (worst * (count / each) as f64) as usize * each;
+                let nearest = (worst * (count - 1) as f64).round() as usize;
+                all[nearest.clamp(first, first + each - 1).min(count - 1)] = worst;
+            }
+            all
+        };
+        let mut all: Vec<Place> = vec![[0.0; AXES]];
+        for axis in 0..AXES {
+            let along = along(axis);
+            let with = |place: &Place, share: f64| {
+                let mut place = *place;
+                place[axis] = share;
+                place
+            };
+            all = all.iter().flat_map(|place| along.iter().map(|&x| with(place, x))).collect();
+        }
+        all
+    }
+
+    /// Pixels along an axis; places where it is not shown.
+    fn pixels_along(&self, axis: usize, sides: Sides) -> usize {
+        match axis {
+            axis if axis == sides.x => self.pixels[0],
+            axis if Some(axis) == sides.y => self.pixels[1],
+            _ => self.counts[axis],
+        }
+    }
+
+    /// Of so many axes, those that are not shown: those that stay at a value, and those of which
+    /// the largest error is shown.
+    pub(super) fn others(&self, sides: Sides, axes: usize) -> [Vec<usize>; 2] {
+        let hidden: Vec<usize> =
+            (0..axes).filter(|&i| i != sides.x && Some(i) != sides.y).collect();
+        let (over, fixed) = hidden.into_iter().partition(|&i| self.over[i]);
+        [fixed, over]
+    }
+
+    /// The worst error in each pixel, row by row from the low end of y.
+    pub(super) fn reduced(&self, sides: Sides, errors: &[f64]) -> Vec<f64> {
+        let [columns, rows] = self.pixels;
+        let mut pixels = vec![0.0; columns * rows];
+        let pixel = |i: usize, axis: usize| {
+            let stride: usize = self.counts[axis + 1..].iter().product();
+            let each = self.counts[axis] / self.pixels_along(axis, sides);
+            i / stride % self.counts[axis] / each
+        };
+        for (i, &error) in errors.iter().enumerate() {
+            let row = sides.y.map_or(0, |y| pixel(i, y));
+            let into = &mut pixels[row * columns + pixel(i, sides.x)];
+            *into = worse(*into, error);
+        }
+        pixels
+    }
+}

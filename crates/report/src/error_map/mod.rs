@@ -1,0 +1,177 @@
+//! Where the errors of a table are: its certificate's errors over two of its axes, measured anew.
+//!
+//! A map shows the part of a table that its certificate promises errors for. Each pixel is the
+//! largest of some errors within it: along the axes that are shown, and along those of views and
+//! random numbers that are not. Axes of materials that are not shown stay at the place of the
+//! certificate's largest error. Views are spaced as the table spaces them there.
+
+mod albedo;
+mod layout;
+mod normals;
+mod radial;
+mod span;
+
+use std::fmt;
+
+use microfacet_baker::bake::albedo::AlbedoError;
+use microfacet_baker::distribution::DistributionError;
+use microfacet_baker::progress::Stage;
+use microfacet_sampler::{MaterialError, Tables};
+use microfacet_tables::{LoadError, Table};
+
+use layout::Layout;
+
+pub use layout::{Sides, seconds, sides};
+pub use span::{Quantity, Span};
+
+/// Shares of the axes of a table, the last axes unused where it has fewer.
+type Place = [f64; AXES];
+/// Most axes of any table.
+const AXES: usize = 4;
+
+/// Errors of a table over one or two of its axes.
+pub struct ErrorMap {
+    /// The axis along x.
+    pub x: Span,
+    /// The axis along y; `None` for a table with one axis, or one that is measured along one.
+    pub y: Option<Span>,
+    /// Pixels along x.
+    pub columns: usize,
+    /// The largest error in each pixel, row by row from the low end of y; NaN where one is NaN.
+    pub errors: Vec<f64>,
+    /// Number of places measured.
+    pub points: usize,
+    /// Axes that are not shown and stay at a value.
+    pub fixed: Vec<(Quantity, f64)>,
+    /// Axes that are not shown, over which each pixel is the largest error.
+    pub over: Vec<Quantity>,
+    /// The place of the certificate's largest error, as shares of x and y, if the map has it.
+    pub worst: Option<[f64; 2]>,
+}
+
+impl ErrorMap {
+    /// The largest error; NaN if one is.
+    pub fn largest(&self) -> f64 {
+        self.errors.iter().copied().fold(0.0, worse)
+    }
+}
+
+/// Why the errors of a table were not measured.
+#[derive(Debug)]
+pub enum Unmeasured {
+    /// The table has one value, or none of its axes is of a known quantity.
+    NoAxes,
+    /// A table that is read together with it is missing.
+    NoTable(String),
+    /// The distribution is not known by its name alone.
+    Distribution(DistributionError),
+    /// The set does not make the lobe.
+    Material(MaterialError),
+    /// The tables do not make a set.
+    Load(LoadError),
+    /// The model has no such albedo.
+    Albedo(AlbedoError),
+}
+
+impl fmt::Display for Unmeasured {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoAxes => write!(f, "it has no axis along which errors could change"),
+            Self::NoTable(what) => {
+                write!(f, "the set lacks {what}, which is read together with it")
+            }
+            Self::Distribution(why) => write!(f, "{why}"),
+            Self::Material(why) => write!(f, "{why}"),
+            Self::Load(why) => write!(f, "{why}"),
+            Self::Albedo(why) => write!(f, "{why}"),
+        }
+    }
+}
+
+impl std::error::Error for Unmeasured {}
+
+impl From<DistributionError> for Unmeasured {
+    fn from(why: DistributionError) -> Self {
+        Self::Distribution(why)
+    }
+}
+
+impl From<MaterialError> for Unmeasured {
+    fn from(why: MaterialError) -> Self {
+        Self::Material(why)
+    }
+}
+
+impl From<LoadError> for Unmeasured {
+    fn from(why: LoadError) -> Self {
+        Self::Load(why)
+    }
+}
+
+impl From<AlbedoError> for Unmeasured {
+    fn from(why: AlbedoError) -> Self {
+        Self::Albedo(why)
+    }
+}
+
+/// The errors of one kind of tables.
+trait Ruler {
+    /// The axes of the table, in its order.
+    fn spans(&self) -> &[Span];
+
+    /// The errors at places, which share the first axis in runs of `run`.
+    fn errors(&self, places: &[Place], run: usize, stage: &Stage) -> Result<Vec<f64>, Unmeasured>;
+}
+
+/// Measures the errors of a table of this set over some of its axes, on all threads; each place is
+/// a step of the stage.
+///
+/// # Errors
+/// [`Unmeasured`] if the set lacks what the table is read with, or the model what it is of.
+pub fn measure(
+    set: &Tables,
+    table: &Table,
+    sides: Sides,
+    stage: &Stage,
+) -> Result<ErrorMap, Unmeasured> {
+    let ruler = ruler(set, table)?;
+    let spans = ruler.spans();
+    let layout = Layout::new(table, sides);
+    let places = layout.places(table, spans, sides);
+    stage.split(places.len());
+    let errors = ruler.errors(&places, layout.run(), stage)?;
+    let worst = |axis: usize| spans[axis].worst(table);
+    let y = sides.y.map_or(Some(0.5), worst);
+    let [mut fixed, over]: [Vec<usize>; 2] = layout.others(sides, spans.len());
+    // An axis of one value says nothing of the map.
+    fixed.retain(|&i| table.axes[i].nodes.len() > 1);
+    let place = places.first().copied().unwrap_or_default();
+    Ok(ErrorMap {
+        columns: layout.pixels[0],
+        errors: layout.reduced(sides, &errors),
+        points: places.len(),
+        fixed: fixed.iter().map(|&i| (spans[i].quantity, spans[i].value(place[i]))).collect(),
+        over: over.iter().map(|&i| spans[i].quantity).collect(),
+        worst: worst(sides.x).zip(y).map(|(x, y)| [x, y]),
+        x: spans[sides.x].clone(),
+        y: sides.y.map(|y| spans[y].clone()),
+    })
+}
+
+fn ruler<'a>(set: &'a Tables, table: &'a Table) -> Result<Box<dyn Ruler + 'a>, Unmeasured> {
+    use microfacet_tables::Kind;
+    Ok(match table.kind {
+        Kind::Albedo => Box::new(albedo::Directional::new(table)?),
+        Kind::AlbedoAverage => Box::new(albedo::Average::new(set, table)?),
+        Kind::Shadowing
+        | Kind::VisibleSlope
+        | Kind::VisibleSlopePeeled
+        | Kind::VisibleSlopeConditional => Box::new(normals::Normals::new(set, table)?),
+        _ => Box::new(radial::Radial::new(set, table)?),
+    })
+}
+
+/// The larger error; a NaN is the worst.
+fn worse(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}

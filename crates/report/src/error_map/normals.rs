@@ -1,0 +1,106 @@
+//! Errors of tables of masking and of visible normals.
+
+use microfacet_baker::certify::certificate::{ALL_SHAPES, Ruler, cotangent, number, view};
+use microfacet_baker::progress::Stage;
+use microfacet_core::shape::{gamma_of_s, s_of_gamma};
+use microfacet_sampler::Tables;
+use microfacet_tables::{Provenance, Table};
+use rayon::prelude::*;
+
+use super::{Place, Quantity, Span, Unmeasured};
+
+/// A table with those that a lobe is made of together with it.
+pub(super) struct Normals {
+    /// Its first table is the one to measure.
+    set: Tables,
+    /// s of the certificate's largest error.
+    worst: f64,
+    spans: Vec<Span>,
+}
+
+impl Normals {
+    pub(super) fn new(set: &Tables, table: &Table) -> Result<Self, Unmeasured> {
+        let set = Tables::from_tables(Provenance::default(), with_others(set, table))?;
+        let worst = Quantity::Gamma.worst(table).map_or(1.0, s_of_gamma);
+        let shapes = ruler(&set).shapes;
+        let span = |axis: &microfacet_tables::Axis| match Quantity::of(axis) {
+            Quantity::Gamma => {
+                let shapes = shapes.clone();
+                Span::new(Quantity::Gamma, move |share| {
+                    gamma_of_s(shapes.s(shapes.place(ascending(share), worst)))
+                })
+            }
+            Quantity::Number => {
+                let half = (axis.nodes.len() - 1) as f64;
+                Span::new(Quantity::Number, move |share| number(2.0 * half * share, half).into())
+            }
+            other => {
+                let axis = axis.clone();
+                Span::new(other, move |share| cotangent(&axis, worst, share))
+            }
+        };
+        let spans = table.axes.iter().map(span).collect();
+        Ok(Self { set, worst, spans })
+    }
+}
+
+impl super::Ruler for Normals {
+    fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+
+    fn errors(&self, places: &[Place], run: usize, stage: &Stage) -> Result<Vec<f64>, Unmeasured> {
+        let ruler = ruler(&self.set);
+        let axis = |quantity: Quantity| {
+            self.spans
+                .iter()
+                .position(|span| span.quantity == quantity)
+                .map(|i| (i, &self.spans[i]))
+        };
+        let (cotangent, number) = (axis(Quantity::Cotangent), axis(Quantity::Number));
+        let at = |place: &Place, axis: Option<(usize, &Span)>| {
+            axis.map_or(0.5, |(i, span)| span.value(place[i]))
+        };
+        let of_shape = |places: &[Place]| {
+            let share = ascending(places[0][0]);
+            let lobe = ruler.lobe(ruler.shapes.place(share, self.worst))?;
+            let error = |place: &Place| {
+                let u = at(place, number) as f32;
+                ruler.error_at(&lobe, || view(at(place, cotangent)), u)
+            };
+            let errors: Vec<f64> = places.par_iter().map(error).collect();
+            stage.steps(places.len());
+            Ok(errors)
+        };
+        let errors =
+            places.par_chunks(run).map(of_shape).collect::<Result<Vec<_>, Unmeasured>>()?;
+        Ok(errors.concat())
+    }
+}
+
+fn ruler(set: &Tables) -> Ruler<'_> {
+    let table = &set.tables()[0];
+    Ruler::new(set, table, table.subject.covers.map_or(ALL_SHAPES, |covers| covers.s))
+}
+
+/// The share of s at which γ is at this share: γ ascends along an axis of a map.
+fn ascending(share: f64) -> f64 {
+    1.0 - share
+}
+
+/// The table, and of the tables that a lobe is made of those of other kinds which it overlaps. More
+/// than one of its own kind would leave open which one is read.
+fn with_others(set: &Tables, table: &Table) -> Vec<Table> {
+    let overlaps = |other: &Table| match (other.subject.covers, table.subject.covers) {
+        (Some(a), Some(b)) => a.s[0] <= b.s[1] && b.s[0] <= a.s[1],
+        _ => true,
+    };
+    let is_beside = |other: &&Table| {
+        let of_normals = other.kind == microfacet_tables::Kind::Shadowing
+            || other.axes.iter().any(|axis| Quantity::of(axis) == Quantity::Number);
+        let of_family = other.subject.lobe == table.subject.lobe;
+        other.kind != table.kind && of_normals && of_family && overlaps(other)
+    };
+    let others = set.tables().iter().filter(is_beside);
+    std::iter::once(table).chain(others).cloned().collect()
+}

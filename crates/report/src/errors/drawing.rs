@@ -1,0 +1,86 @@
+//! Maps of errors as drawings.
+
+use microfacet_tables::Table;
+
+use super::super::drawing::SIZE;
+use super::{ticks, words};
+use crate::error_map::{ErrorMap, Span};
+use crate::plot::{Axis, Bar, Curve, Dash, Figure, HeatMap, Key, Mark, Method, Panel};
+
+/// The low end of the scale: about the rounding of single precision.
+const LOW: f64 = 1e-7;
+/// The least high end.
+const HIGH: f64 = 1e-4;
+const LABEL: &str = "largest error";
+
+/// The scale that all maps of a page share: up to the next power of ten after the largest error.
+pub(super) fn scale(largest: impl Iterator<Item = f64>) -> Axis {
+    let high = largest.filter(|x| x.is_finite()).fold(HIGH, f64::max);
+    // Rounding must not add a decade. The last one of doubles ends below its power of ten.
+    let decade = libm::exp10((libm::log10(high) - 1e-9).ceil());
+    Axis::log(LABEL, LOW, decade.min(f64::MAX))
+}
+
+pub(super) fn bar(scale: &Axis) -> String {
+    Bar { scale: scale.clone(), width: 380.0 }.inline_svg("the scale of the errors")
+}
+
+/// The map; of a table with one axis, a curve.
+pub(super) fn drawn(table: &Table, map: &ErrorMap, scale: &Axis) -> String {
+    let label = words::label(table, map);
+    match &map.y {
+        Some(y) => heat(map, y, scale, &label),
+        None => curve(map, scale, &label),
+    }
+}
+
+fn axis(span: &Span) -> Axis {
+    Axis::marked(words::axis(span.quantity), ticks::of(span))
+}
+
+fn heat(map: &ErrorMap, y: &Span, scale: &Axis, label: &str) -> String {
+    let map = HeatMap {
+        x: axis(&map.x),
+        y: axis(y),
+        columns: map.columns,
+        values: map.errors.clone(),
+        scale: scale.clone(),
+        ring: map.worst,
+        size: SIZE,
+    };
+    map.inline_svg(label).expect("whole rows")
+}
+
+fn curve(map: &ErrorMap, scale: &Axis, label: &str) -> String {
+    let key = Key::Method(Method::Table);
+    let last = (map.columns - 1).max(1) as f64;
+    // What is smaller than the scale's low end is rounding.
+    let error = |x: f64| x.max(LOW);
+    let points = map
+        .errors
+        .iter()
+        .enumerate()
+        .map(|(i, &x)| (i as f64 / last, if x.is_nan() { x } else { error(x) }));
+    let points: Vec<(f64, f64)> = points.collect();
+    let ring = |[x, _]: [f64; 2]| {
+        let near = points[(x * last).round() as usize].1;
+        Mark { key, name: String::new(), at: (x, near), filled: false }
+    };
+    let marks = map.worst.map(ring).into_iter().filter(|mark| !mark.at.1.is_nan()).collect();
+    let curve = Curve { key, name: String::new(), dash: Dash::Solid, points };
+    let panel = Panel {
+        title: String::new(),
+        x: axis(&map.x),
+        y: scale.clone().coarse(),
+        curves: vec![curve],
+        marks,
+    };
+    Figure { panels: vec![panel], columns: 1, panel: SIZE }.inline_svg(label)
+}
+
+#[test]
+fn the_scale_reaches_any_error() {
+    for (largest, decade) in [(2e-5, HIGH), (2e-3, 1e-2), (1e-2, 1e-2), (1.5e308, f64::MAX)] {
+        assert_eq!(scale([1e-9, f64::NAN, largest].into_iter()), Axis::log(LABEL, LOW, decade));
+    }
+}

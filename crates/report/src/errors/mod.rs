@@ -1,0 +1,100 @@
+//! Where the errors of tables are: heat maps over their axes, of errors measured anew.
+
+mod chosen;
+mod drawing;
+mod ticks;
+mod words;
+
+use maud::{Markup, PreEscaped, html};
+
+use microfacet_baker::plan::on_threads;
+use microfacet_baker::progress::Meter;
+use microfacet_sampler::Tables;
+use microfacet_tables::Table;
+
+use super::{ReportError, Source};
+use crate::error_map;
+use crate::error_map::{ErrorMap, Sides, Unmeasured, measure};
+use chosen::Chosen;
+
+/// Most tables without a map whose certificates are said in words.
+const IN_WORDS: usize = 12;
+
+/// The estimated seconds of [`section`] on the current threads.
+pub(super) fn seconds(set: &Tables) -> f64 {
+    let seconds = Chosen::of(set).maps.into_iter().map(|(table, sides)| of_map(table, sides));
+    seconds.sum()
+}
+
+fn of_map(table: &Table, sides: Sides) -> f64 {
+    on_threads(error_map::seconds(table, sides))
+}
+
+/// A table with the map that was measured of it, or why there is none.
+type Measured<'a> = (&'a Table, Result<ErrorMap, Unmeasured>);
+
+pub(super) fn section(source: &Source, meter: &Meter) -> Result<Markup, ReportError> {
+    let chosen = Chosen::of(source.set);
+    let map = |&(table, sides): &(_, Sides)| -> Measured<'_> {
+        let stage = meter.stage(of_map(table, sides));
+        (table, measure(source.set, table, sides, &stage))
+    };
+    let measured: Vec<Measured<'_>> = chosen.maps.iter().map(map).collect();
+    let drawn = || measured.iter().filter_map(|(table, map)| Some((*table, map.as_ref().ok()?)));
+    let missing: Vec<(&Table, String)> = measured
+        .iter()
+        .filter_map(|(table, map)| Some((*table, map.as_ref().err()?.to_string())))
+        .chain(chosen.single.iter().map(|table| (*table, Unmeasured::NoAxes.to_string())))
+        .collect();
+    let scale = drawing::scale(drawn().map(|(_, map)| map.largest()));
+    if drawn().next().is_none() && missing.is_empty() {
+        return Ok(html! {});
+    }
+    Ok(html! {
+        @if drawn().next().is_some() {
+            p {
+                "Measured anew when this page was made: differences of G1, of the CDF of the slopes "
+                "drawn, and of the share of light in an albedo. Each pixel is the largest of the "
+                "errors measured in it; black is about the rounding of single precision."
+            }
+            div class="scale" style="max-width: 24rem" { (PreEscaped(drawing::bar(&scale))) }
+            div class="figures" {
+                @for (table, map) in drawn() { (figure(table, map, &scale)) }
+            }
+        }
+        @if chosen.left_out > 0 {
+            p class="note" {
+                "The maps are those of the largest errors; "
+                (chosen.left_out)
+                @if chosen.left_out == 1 { " more is" } @else { " more are" }
+                " left out."
+            }
+        }
+        @if !missing.is_empty() {
+            p { "Without a map, by their certificates:" }
+            ul {
+                @for (table, why) in missing.iter().take(IN_WORDS) {
+                    li {
+                        code { (table.name) } ": " (words::sentence(why)) @for line in words::lines(table) { " " (line) }
+                    }
+                }
+                @if missing.len() > IN_WORDS { li { (missing.len() - IN_WORDS) " more" } }
+            }
+        }
+    })
+}
+
+fn figure(table: &Table, map: &ErrorMap, scale: &crate::plot::Axis) -> Markup {
+    html! {
+        figure class="map" {
+            (PreEscaped(drawing::drawn(table, map, scale)))
+            figcaption {
+                strong { (words::what(table)) } " " code { (table.name) } ". "
+                (words::certified(table)) " " (words::map(table, map))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,108 @@
+//! A set as one HTML page: what it holds, where its errors are, and how its materials look. The
+//! page needs nothing beside it, no network, and no more than a browser.
+
+mod curves;
+mod drawing;
+mod energy;
+pub mod error_map;
+mod errors;
+mod head;
+mod overview;
+mod page;
+pub mod plot;
+mod served;
+mod sphere;
+mod subjects;
+mod validated;
+pub mod words;
+
+use std::fmt;
+
+use microfacet_baker::progress::Meter;
+use microfacet_sampler::{MaterialError, Tables};
+use microfacet_tables::LoadError;
+use microfacet_validate::record::Record;
+
+pub use sphere::{Film, Look, picture};
+
+/// What a page is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'a> {
+    /// The name of the set, for its title.
+    pub name: &'a str,
+    /// The set.
+    pub set: &'a Tables,
+    /// What a validation of it found.
+    pub validation: Option<&'a Record>,
+}
+
+/// Why there is no page.
+pub enum ReportError {
+    /// The set has neither tables nor materials.
+    Empty,
+    /// The set does not hold what it declares to cover.
+    Material(MaterialError),
+    /// The validation is of another set.
+    OtherSet {
+        /// The identity of that.
+        of: String,
+        /// The identity of this.
+        set: String,
+    },
+    /// The set could not be written, and so has no identity.
+    Unsound(LoadError),
+}
+
+impl fmt::Display for ReportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(
+                f,
+                "the set has no tables and no materials; name what `microfacet-bake bake` wrote"
+            ),
+            Self::Material(why) => write!(f, "{why}"),
+            Self::OtherSet { of, set } => write!(
+                f,
+                "a validation of another set ({of:?}, and this one is {set:?}); give what \
+                 `microfacet-bake validate SET --json` prints of the set that is reported"
+            ),
+            Self::Unsound(why) => write!(f, "{why}"),
+        }
+    }
+}
+
+microfacet_core::debug_in_words!(ReportError);
+
+impl std::error::Error for ReportError {}
+
+impl From<MaterialError> for ReportError {
+    fn from(why: MaterialError) -> Self {
+        Self::Material(why)
+    }
+}
+
+/// Whether a set has anything to show: a page of a set without tables and materials is refused.
+pub fn has_page(set: &Tables) -> bool {
+    !set.tables().is_empty() || !set.provenance().materials.is_empty()
+}
+
+/// The estimated seconds of [`page`] on the current threads.
+pub fn seconds(source: &Source) -> f64 {
+    errors::seconds(source.set) + energy::seconds(source.set) + sphere::seconds(source.set)
+}
+
+/// The page, as HTML; each part of it is a stage of the meter, on which [`seconds`] were expected.
+///
+/// # Errors
+/// [`ReportError`] for a set with nothing to show, or one that lacks what it declares, and for a
+/// validation of another set.
+pub fn page(source: &Source, meter: &Meter) -> Result<String, ReportError> {
+    if !has_page(source.set) {
+        return Err(ReportError::Empty);
+    }
+    validated::check(source)?;
+    page::page(source, meter)
+}
+
+#[cfg(test)]
+mod tests;

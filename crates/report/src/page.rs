@@ -1,0 +1,116 @@
+//! The page as a whole: its head, its sections in order, its style.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use microfacet_baker::progress::Meter;
+
+use super::subjects::Subjects;
+use super::{ReportError, Source, curves, energy, errors, head, overview, sphere, validated};
+
+/// Nothing is loaded: neither scripts nor pictures from elsewhere.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
+                      script-src 'unsafe-inline'; img-src data: blob:";
+
+/// A part of the page with a heading of its own.
+struct Section {
+    /// Its anchor.
+    id: &'static str,
+    /// Its heading.
+    title: &'static str,
+    /// What it shows, in a sentence or two.
+    lead: &'static str,
+    content: Markup,
+}
+
+pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError> {
+    let subjects = Subjects::of(source.set);
+    let (look, scripts) = match sphere::parts(source, &subjects, meter)? {
+        Some(parts) => (parts.body, parts.scripts),
+        None => (html! {}, html! {}),
+    };
+    let sections = [
+        Section { id: "look", title: "Look", lead: "", content: look },
+        Section {
+            id: "baked",
+            title: "What was baked",
+            lead: "What the set holds, what was left out of it, and why.",
+            content: overview::section(source),
+        },
+        Section {
+            id: "curves",
+            title: "Masking and albedo",
+            lead: "Smith's G1 is the share of facets that a view sees unmasked; the directional \
+                   albedo E is the share of light that one bounce returns if facets reflect all of \
+                   it. Each lobe is shown beside GGX and Beckmann of the same roughness σ.",
+            content: curves::section(source, &subjects),
+        },
+        Section {
+            id: "energy",
+            title: "Energy",
+            lead: "A white furnace: facets that reflect all light, lit from everywhere. What is \
+                   missing from 1 is light that further bounces would return, and what compensation \
+                   brings back.",
+            content: energy::section(source, &subjects, meter)?,
+        },
+        Section {
+            id: "errors",
+            title: "Where the error is",
+            lead: "The error of each table between its nodes, against the model in double \
+                   precision. A ring marks the place of the largest error that was certified when \
+                   the table was baked.",
+            content: errors::section(source, meter)?,
+        },
+        Section {
+            id: "validation",
+            title: "Validation",
+            lead: "Normals that were drawn from the tables, counted, and compared with the density \
+                   of the model by chi-square.",
+            content: validated::section(source),
+        },
+    ];
+    let sections = sections.iter().filter(|section| !section.content.0.is_empty());
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="generator" content=(concat!("microfacet-bake ", env!("CARGO_PKG_VERSION")));
+                title { (source.name) " · microfacet-bake" }
+                style { (PreEscaped(include_str!("style.css"))) }
+            }
+            body {
+                a.skip href="#main" { "To the content" }
+                (head::head(source, &subjects))
+                nav.contents aria-label="Sections" {
+                    ul.wrap {
+                        @for section in sections.clone() {
+                            li { a href=(format!("#{}", section.id)) { (section.title) } }
+                        }
+                    }
+                }
+                main #main .wrap {
+                    @for section in sections { (section.html()) }
+                }
+                (head::foot(source))
+                script type="module" { (PreEscaped(include_str!("theme.js"))) }
+                (scripts)
+            }
+        }
+    };
+    Ok(page.into_string())
+}
+
+impl Section {
+    fn html(&self) -> Markup {
+        let title = format!("{}-title", self.id);
+        html! {
+            section id=(self.id) aria-labelledby=(title) {
+                h2 id=(title) .visually-hidden[self.lead.is_empty()] { (self.title) }
+                @if !self.lead.is_empty() { p { (self.lead) } }
+                (self.content)
+            }
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Distributions set so that they are near one Beckmann, after Sawicki 2021 (*Microfacet
+//! Distribution Function: To Change or Not to Change, That Is the Question*,
+//! <https://doi.org/10.5220/0010252702090220>), with the parameters that he prints.
+
+use std::f64::consts::FRAC_PI_2;
+
+use microfacet_baker::distribution::{DistributionKind, Named};
+use microfacet_model::classic::Isotropic;
+
+use crate::plot::figures::curve;
+use crate::plot::{Axis, Curve, Dash, Figure, Key, Panel};
+
+/// The parameters of one of his figures. That of Schlick is Beckmann's.
+struct Set {
+    beckmann: f64,
+    blinn_phong: f64,
+    gauss: f64,
+    trowbridge_reitz: f64,
+    sawicki: f64,
+}
+
+/// Those of his figure 1, and of figure 2.
+const SETS: [Set; 2] = [
+    Set {
+        beckmann: 0.4,
+        blinn_phong: 10.0,
+        gauss: 0.4364,
+        trowbridge_reitz: 0.4456,
+        sawicki: 12.04,
+    },
+    Set {
+        beckmann: 0.04464,
+        blinn_phong: 1000.0,
+        gauss: 0.04471,
+        trowbridge_reitz: 0.05354,
+        sawicki: 1174.3,
+    },
+];
+
+/// A distribution with how it is drawn.
+struct Drawn {
+    key: Key,
+    name: String,
+    dash: Dash,
+    d: Box<dyn Isotropic>,
+}
+
+impl Drawn {
+    fn curve(&self, x: &Axis, f: impl Fn(f64) -> f64) -> Curve {
+        Curve { dash: self.dash, ..curve(self.key, self.name.clone(), x, f) }
+    }
+}
+
+impl Set {
+    /// Beckmann first. Those that hide each other differ in their dashes.
+    fn all(&self) -> Vec<Drawn> {
+        use DistributionKind as Kind;
+        let of = |kind: Kind, parameter: &str, value: f64, dash| {
+            let d = Named { kind, values: vec![value] }.build().expect("printed parameters");
+            Drawn {
+                key: Key::Kind(kind),
+                name: format!("{}, {parameter} = {value}", kind.name()),
+                dash,
+                d,
+            }
+        };
+        vec![
+            of(Kind::Beckmann, "m", self.beckmann, Dash::Solid),
+            of(Kind::BlinnPhong, "N", self.blinn_phong, Dash::Dashed),
+            of(Kind::Gauss, "m", self.gauss, Dash::Dotted),
+            of(Kind::TrowbridgeReitz, "C", self.trowbridge_reitz, Dash::Solid),
+            of(Kind::Schlick, "m", self.beckmann, Dash::Dashed),
+            of(Kind::Sawicki, "N", self.sawicki, Dash::Solid),
+        ]
+    }
+
+    /// β as far as the lobes reach, in degrees.
+    fn angles(&self) -> Axis {
+        Axis::linear("β in degrees", 0.0, (5.0 * self.beckmann).min(FRAC_PI_2).to_degrees())
+    }
+
+    fn unit_forms(&self) -> Panel {
+        let x = self.angles();
+        let curves =
+            self.all().into_iter().map(|of| of.curve(&x, |at| of.d.relative_d(at.to_radians())));
+        Panel {
+            title: format!("D/D(0) near Beckmann, m = {}", self.beckmann),
+            curves: curves.collect(),
+            x,
+            y: Axis::linear("D(β)/D(0)", 0.0, 1.05),
+            marks: Vec::new(),
+        }
+    }
+
+    fn differences(&self) -> Panel {
+        let (x, all) = (self.angles(), self.all());
+        let beckmann = &all[0].d;
+        let curves = all[1..].iter().map(|of| {
+            of.curve(&x, |at| {
+                let theta = at.to_radians();
+                100.0 * (of.d.relative_d(theta) - beckmann.relative_d(theta))
+            })
+        });
+        Panel {
+            title: format!("Difference to Beckmann, m = {}", self.beckmann),
+            curves: curves.collect(),
+            x,
+            y: Axis::linear("difference in % of the maximum", -17.0, 17.0),
+            marks: Vec::new(),
+        }
+    }
+
+    fn tails(&self) -> Panel {
+        let (x, all) = (self.angles(), self.all());
+        let beckmann = &all[0].d;
+        let curves = all[1..].iter().map(|of| {
+            of.curve(&x, |at| {
+                let theta = at.to_radians();
+                of.d.relative_d(theta) / beckmann.relative_d(theta)
+            })
+        });
+        Panel {
+            title: format!("D/D(0) over Beckmann's, m = {}", self.beckmann),
+            curves: curves.collect(),
+            x,
+            y: Axis::log("ratio of D/D(0)", 0.1, 1e5),
+            marks: Vec::new(),
+        }
+    }
+
+    /// Brightness along the line through the highlight of a sphere, with view and light far away at
+    /// an angle of each other, relative to that where the half vector is the normal.
+    ///
+    /// Reflection has the form of Ashikhmin and Shirley 2000 (*An Anisotropic Phong BRDF Model*,
+    /// <https://doi.org/10.1080/10867651.2000.10487522>), D F/(4 (v·m) max(n·v, n·l)), times n·l.
+    /// All points have one half vector m, so that F and v·m cancel.
+    fn highlight(&self, degrees: f64) -> Panel {
+        let light = degrees.to_radians();
+        let half = 0.5 * light;
+        // Normals that view and light see, near the highlight.
+        let reach = 5.0 * self.beckmann;
+        let low = (half - reach).max(light - FRAC_PI_2).max(-FRAC_PI_2);
+        let high = (half + reach).min(FRAC_PI_2);
+        let x = Axis::linear("distance from the centre, in radii", low.sin(), high.sin());
+        let curves = self.all();
+        let curves = curves.iter().map(|of| {
+            let brightness = |normal: f64| {
+                let (cos_v, cos_l) = (normal.cos().max(0.0), (normal - light).cos().max(0.0));
+                of.d.relative_d((normal - half).abs()) * cos_l / cos_v.max(cos_l)
+            };
+            let peak = brightness(half);
+            of.curve(&x, |at| brightness(at.clamp(-1.0, 1.0).asin()) / peak)
+        });
+        Panel {
+            title: format!("Light at {degrees}° to the view, Beckmann m = {}", self.beckmann),
+            curves: curves.collect(),
+            x,
+            y: Axis::linear("relative brightness", 0.0, 1.05),
+            marks: Vec::new(),
+        }
+    }
+}
+
+/// D/D(0), and what Beckmann's has more or less, as in his figures 1 and 2.
+pub(super) fn distributions() -> Figure {
+    Figure::new(SETS.iter().flat_map(|set| [set.unit_forms(), set.differences()]).collect())
+}
+
+/// The same as ratios, which show the tails.
+pub(super) fn tails() -> Figure {
+    let panels = SETS.iter().map(Set::tails).collect();
+    Figure { panels, columns: 1, panel: [760.0, 360.0] }
+}
+
+/// Highlights of a rough sphere and of a smooth one, after his figures 3–5.
+pub(super) fn highlights() -> Figure {
+    let row = |set: &Set| [45.0, 120.0].map(|degrees| set.highlight(degrees));
+    Figure::new(SETS.iter().flat_map(row).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn largest(curve: &Curve) -> f64 {
+        curve.points.iter().map(|p| p.1.abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn differences_are_those_of_the_text() {
+        let [rough, smooth] = SETS.map(|set| set.differences().curves);
+        let of = |curves: &[Curve], kind| {
+            largest(curves.iter().find(|curve| curve.key == Key::Kind(kind)).unwrap())
+        };
+        // The text has 3.5 % for Blinn–Phong at N = 10, and 3–7 % for Sawicki.
+        assert!((of(&rough, DistributionKind::BlinnPhong) - 3.5).abs() < 0.05);
+        let [most, least] =
+            [&rough, &smooth].map(|curves| of(curves, DistributionKind::Sawicki).round());
+        assert_eq!([least, most], [3.0, 7.0]);
+        // And 13–15 % for Schlick, which is 12.4 to 15.3.
+        let [least, most] = [&rough, &smooth].map(|curves| of(curves, DistributionKind::Schlick));
+        assert!((least - 12.4).abs() < 0.05 && (most - 15.3).abs() < 0.05, "{least} {most}");
+        // All agree at β = 0.
+        assert!(rough.iter().chain(&smooth).all(|curve| curve.points[0] == (0.0, 0.0)));
+    }
+
+    #[test]
+    fn highlights_are_brightest_where_the_half_vector_is_the_normal() {
+        for (panel, degrees) in highlights().panels.iter().zip([45.0, 120.0, 45.0, 120.0]) {
+            let half = f64::to_radians(0.5 * degrees).sin();
+            for curve in &panel.curves {
+                let brightest = curve
+                    .points
+                    .iter()
+                    .copied()
+                    .fold((0.0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+                let (at, name) = (brightest.0, &curve.name);
+                // Between two of the points of the curve.
+                let step = curve.points[1].0 - curve.points[0].0;
+                assert!((at - half).abs() < 2.0 * step, "{}, {name}: {at}", panel.title);
+                assert!((0.99..1.0 + 1e-3).contains(&brightest.1), "{name}: {}", brightest.1);
+                assert!(curve.points.iter().all(|p| p.1 >= 0.0 && p.1.is_finite()), "{name}");
+            }
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! What the page's script is given: tables of shapes and albedos, metals and materials.
+
+use std::io::Write;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::DeflateEncoder;
+use glam::Vec3;
+use half::f16;
+use microfacet_core::Masking;
+use microfacet_export::texture::{Along, TexelAxis, place, shader_coordinates};
+use microfacet_export::{Shape, WIDTH, append_some};
+use microfacet_sampler::{ConductorFresnel, MaterialError, Metal, StudentT, Tables};
+use microfacet_tables::{FresnelEntry, MaterialEntry};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::super::subjects::{Shown, Subjects, shape};
+use super::scene::Look;
+
+/// σ that the sphere can have.
+pub(super) const SIGMA: [f64; 2] = [0.01, 1.0];
+/// Texels of albedos along roughness and view.
+const TEXELS: [usize; 2] = [32, 48];
+/// Averages along √σ, after the one of a mirror, which loses nothing.
+const AVERAGES: usize = 48;
+/// The metal of lobes that state no reflectance of a conductor.
+pub(super) const UNSTATED: Metal = Metal::Gold;
+
+/// All that the script reads, as JSON. Tables are deflated bytes, those of numbers with the bytes
+/// of equal weight together, in base64.
+#[derive(Serialize)]
+pub(super) struct Data {
+    width: usize,
+    /// The pairs of `export` for shaders: a texture so wide.
+    tables: String,
+    stops: Vec<Stop>,
+    /// Places of GGX and of Beckmann.
+    ggx: usize,
+    beckmann: usize,
+    sigma: [f64; 2],
+    /// √(1 − E) in half precision, by stop, roughness and view, and its texels along the last two.
+    /// Of heavy tails 1 − E rises as σ, and so the root as the coordinate √σ.
+    lost: String,
+    texels: [usize; 2],
+    /// ln(1 − E_avg) by stop and at √(σ/σ_max) = 1/n, 2/n … 1.
+    averages: String,
+    average_count: usize,
+    reflectances: Vec<Reflectance>,
+    materials: Vec<Material>,
+    /// Which of them is shown first.
+    opening: usize,
+}
+
+/// A shape that the sphere can have.
+#[derive(Serialize)]
+struct Stop {
+    /// γ; none is ∞.
+    gamma: Option<f64>,
+    label: String,
+    /// The place of its tables.
+    shape: usize,
+    /// The stop whose visible normals are drawn for it.
+    drawn: usize,
+}
+
+/// A reflectance to choose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Reflectance {
+    name: String,
+    /// Complex index of refraction; or F0 of Schlick's, and k below 0.
+    eta: [f64; 3],
+    k: [f64; 3],
+    /// Its average over the hemisphere.
+    average: [f32; 3],
+}
+
+/// A lobe with a picture.
+#[derive(Serialize)]
+struct Material {
+    name: String,
+    stop: usize,
+    sigma: [f64; 2],
+    reflectance: usize,
+}
+
+/// γ for people.
+pub(super) fn label(gamma: f64) -> String {
+    match gamma {
+        2.0 => format!("GGX ({})", shape(gamma)),
+        f64::INFINITY => format!("Beckmann ({})", shape(gamma)),
+        _ => shape(gamma),
+    }
+}
+
+/// The shape whose visible normals are drawn for a stop: of the same or the next heavier tails.
+fn drawn(subjects: &Subjects, gamma: f64) -> f64 {
+    let mut heavier = subjects.slices.iter().copied().filter(|slice| *slice <= gamma);
+    heavier.next_back().unwrap_or(gamma)
+}
+
+/// The stop nearest to a γ, as materials have it.
+fn stop(subjects: &Subjects, gamma: f64) -> usize {
+    subjects.stops.iter().position(|&stop| stop >= gamma).unwrap_or(subjects.stops.len() - 1)
+}
+
+/// Whether a lobe is shown in another reflectance than its material states.
+pub(super) fn is_unstated(shown: &Shown) -> bool {
+    shown.entry.as_ref().and_then(conductor_of).is_none()
+}
+
+/// The reflectance that a material states of a conductor.
+fn conductor_of(entry: &MaterialEntry) -> Option<FresnelEntry> {
+    use FresnelEntry::{Conductor, Mirror, Schlick};
+    entry.fresnel.filter(|fresnel| matches!(fresnel, Mirror | Schlick(_) | Conductor { .. }))
+}
+
+/// The metal that a name mentions: "brushed aluminium".
+pub(super) fn metal_of(name: &str) -> Option<Metal> {
+    let name = name.to_lowercase();
+    name.split(|c: char| !c.is_alphabetic()).find_map(|word| word.parse().ok())
+}
+
+/// The reflectance of a material as the sphere has it: its own, that of the metal in its name, or
+/// [`UNSTATED`].
+fn fresnel(shown: &Shown) -> FresnelEntry {
+    let own = shown.entry.as_ref().and_then(conductor_of);
+    own.unwrap_or_else(|| metal_of(&shown.name).unwrap_or(UNSTATED).into())
+}
+
+fn conductor(fresnel: FresnelEntry) -> ConductorFresnel {
+    let made = match fresnel {
+        FresnelEntry::Schlick(f0) => ConductorFresnel::schlick(f0.map(|f0| f0 as f32)),
+        FresnelEntry::Conductor { eta, k } => ConductorFresnel::exact(eta, k),
+        _ => Ok(ConductorFresnel::mirror()),
+    };
+    made.expect("files are checked when they are read")
+}
+
+impl Reflectance {
+    fn new(name: &str, fresnel: FresnelEntry) -> Self {
+        let (eta, k) = match fresnel {
+            FresnelEntry::Schlick(f0) => (f0, [-1.0; 3]),
+            FresnelEntry::Conductor { eta, k } => (eta, k),
+            _ => ([1.0; 3], [-1.0; 3]),
+        };
+        Self { name: name.into(), eta, k, average: conductor(fresnel).average() }
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        (self.eta, self.k) == (other.eta, other.k)
+    }
+}
+
+/// How a lobe looks in its picture.
+pub(super) fn look(subjects: &Subjects, shown: &Shown) -> Look {
+    let gamma = subjects.stops[stop(subjects, shown.gamma)];
+    Look {
+        gamma,
+        drawn: drawn(subjects, gamma),
+        sigma: shown.sigma.map(|sigma| sigma.clamp(SIGMA[0], SIGMA[1])),
+        fresnel: conductor(fresnel(shown)),
+        compensated: true,
+    }
+}
+
+/// The axes of albedos: roughness, then views.
+pub(super) fn axes() -> [TexelAxis; 2] {
+    let along = [Along::Roughness { largest: SIGMA[1] }, Along::view(3.0, 0.5)];
+    std::array::from_fn(|i| TexelAxis::to_ends(along[i], TEXELS[i]))
+}
+
+/// Where albedos are read, as GLSL.
+pub(super) fn albedo_coordinates() -> String {
+    let at = shader_coordinates(&axes(), f64::NAN, ["vec", ""]);
+    format!(
+        "vec2 albedo_coordinates(float gamma, float sigma, float mu) {{\n    return {at};\n}}\n"
+    )
+}
+
+/// √(1 − E) of a shape at the texels, views fastest, and ln(1 − E_avg).
+fn albedos(tables: &Tables, gamma: f64) -> Result<(Vec<f16>, Vec<f32>), MaterialError> {
+    let masking = Masking::HeightCorrelated;
+    let axes = axes();
+    let mut lost = Vec::with_capacity(TEXELS.iter().product());
+    for &s in &axes[0].texels {
+        for &t in &axes[1].texels {
+            let place = place(&axes, gamma, &[s, t]);
+            let cos = place.cos.unwrap_or(1.0) as f32;
+            let v = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
+            let sigma = place.sigma.max(StudentT::SIGMAS[0]);
+            lost.push(f16::from_f32(tables.albedo(sigma, gamma, masking)?.lost(v).sqrt()));
+        }
+    }
+    let average = |i: usize| {
+        let root = i as f64 / AVERAGES as f64;
+        let albedo = tables.albedo(SIGMA[1] * root * root, gamma, masking)?;
+        Ok(albedo.lost_average().max(f32::MIN_POSITIVE).ln())
+    };
+    Ok((lost, (1..=AVERAGES).map(average).collect::<Result<_, MaterialError>>()?))
+}
+
+impl Data {
+    /// Tables are those of the set with the default set behind it.
+    pub(super) fn new(tables: &Tables, subjects: &Subjects) -> Result<Self, MaterialError> {
+        let stops = &subjects.stops;
+        let mut gammas = stops.clone();
+        gammas.extend([2.0, f64::INFINITY].iter().filter(|gamma| !stops.contains(gamma)));
+        let shapes: Vec<Shape> = gammas
+            .par_iter()
+            .map(|&gamma| Shape::bind(tables, gamma))
+            .collect::<Result<_, MaterialError>>()?;
+        let mut pairs = Vec::new();
+        let places: Vec<usize> = shapes
+            .iter()
+            .map(|shape| {
+                let is_slice = subjects.slices.contains(&shape.gamma);
+                append_some(shape, |table| is_kept(table, is_slice), &mut pairs)
+            })
+            .collect();
+        let place = |gamma| places[gammas.iter().position(|&g| g == gamma).expect("among them")];
+        pairs.resize(pairs.len().next_multiple_of(WIDTH), [0.0; 2]);
+
+        let made: Vec<(Vec<f16>, Vec<f32>)> = stops
+            .par_iter()
+            .map(|&gamma| albedos(tables, gamma))
+            .collect::<Result<_, MaterialError>>()?;
+        let (lost, averages): (Vec<_>, Vec<_>) = made.into_iter().unzip();
+
+        let mut reflectances: Vec<Reflectance> =
+            Metal::ALL.map(|metal| Reflectance::new(metal.name(), metal.into())).into();
+        reflectances.push(Reflectance::new("mirror", FresnelEntry::Mirror));
+        let material = |shown: &Shown| {
+            let own = Reflectance::new(&shown.name, fresnel(shown));
+            let known = reflectances.iter().position(|other| own.is_same(other));
+            let reflectance = known.unwrap_or_else(|| {
+                reflectances.push(own);
+                reflectances.len() - 1
+            });
+            let sigma = look(subjects, shown).sigma;
+            let stop = stop(subjects, shown.gamma);
+            Material { name: shown.name.clone(), stop, sigma, reflectance }
+        };
+        let materials = subjects.shown.iter().map(material).collect();
+        let index = |gamma| stops.iter().position(|&stop| stop == gamma).expect("a slice");
+        let of_stop = |&gamma: &f64| Stop {
+            gamma: gamma.is_finite().then_some(gamma),
+            label: label(gamma),
+            shape: place(gamma),
+            drawn: index(drawn(subjects, gamma)),
+        };
+        Ok(Self {
+            width: WIDTH,
+            tables: packed(pairs.as_flattened().iter().map(|x| x.to_le_bytes())),
+            stops: stops.iter().map(of_stop).collect(),
+            ggx: place(2.0),
+            beckmann: place(f64::INFINITY),
+            sigma: SIGMA,
+            lost: packed(lost.iter().flatten().map(|x| x.to_le_bytes())),
+            texels: TEXELS,
+            averages: packed(averages.iter().flatten().map(|x| x.to_le_bytes())),
+            average_count: AVERAGES,
+            reflectances,
+            materials,
+            opening: subjects.opening(),
+        })
+    }
+
+    /// The names of reflectances, in their order.
+    pub(super) fn reflectance_names(&self) -> impl Iterator<Item = &str> {
+        self.reflectances.iter().map(|reflectance| reflectance.name.as_str())
+    }
+
+    /// As a JSON that no element of HTML ends in.
+    pub(super) fn json(&self) -> String {
+        serde_json::to_string(self).expect("names and finite numbers").replace('<', "\\u003c")
+    }
+}
+
+/// Which tables of a shape the page holds: all shapes are evaluated, slices are drawn from too.
+fn is_kept(table: &str, is_slice: bool) -> bool {
+    match table {
+        "masking" => true,
+        "slopes" | "across" | "heavy" => is_slice,
+        _ => false,
+    }
+}
+
+/// Numbers as text, see [`Data`].
+fn packed<const N: usize>(numbers: impl Iterator<Item = [u8; N]> + Clone) -> String {
+    let planes = (0..N).flat_map(|i| numbers.clone().map(move |bytes| bytes[i]));
+    let planes: Vec<u8> = planes.collect();
+    let mut deflated = DeflateEncoder::new(Vec::new(), Compression::best());
+    deflated.write_all(&planes).expect("memory");
+    STANDARD.encode(deflated.finish().expect("memory"))
+}

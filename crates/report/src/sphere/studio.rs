@@ -1,0 +1,225 @@
+//! The studio that a sphere is shown in: its lamps, its backdrop and its camera.
+//!
+//! World coordinates are right-handed, y up, z towards the camera; the sphere has radius 1 about
+//! the origin and lies on a floor. Light depends on the direction alone, but for that of the floor.
+//! `studio.glsl` has the same functions; their constants are written from here.
+
+use std::f32::consts::{FRAC_1_PI, PI};
+use std::fmt::Write;
+
+use glam::{Vec2, Vec3};
+
+use microfacet_export::numbers::single;
+
+/// A softbox at infinity: a rectangle on the plane at distance 1 across its direction.
+pub(super) struct Lamp {
+    /// Of unit length, as the two that span the rectangle.
+    towards: Vec3,
+    across: Vec3,
+    up: Vec3,
+    /// Half its edges.
+    half: Vec2,
+    /// How far within its edges the light rises.
+    soft: f32,
+    radiance: Vec3,
+}
+
+/// A key light upper left, a strip to the right, a rim light behind.
+fn lamps() -> [Lamp; 3] {
+    let lamp = |towards: [f32; 3], half: [f32; 2], soft, radiance: [f32; 3]| {
+        let towards = Vec3::from(towards).normalize();
+        let across = Vec3::Y.cross(towards).normalize();
+        let (half, radiance) = (Vec2::from(half), Vec3::from(radiance));
+        Lamp { towards, across, up: towards.cross(across), half, soft, radiance }
+    };
+    [
+        lamp([-0.72, 0.78, 0.62], [0.46, 0.46], 0.2, [7.2, 6.9, 6.4]),
+        lamp([0.97, 0.16, 0.3], [0.1, 0.8], 0.08, [4.4, 4.4, 4.4]),
+        lamp([0.6, 0.52, -0.72], [0.26, 0.42], 0.14, [3.0, 3.2, 3.6]),
+    ]
+}
+
+/// Radiance of the dome: at the zenith, at the horizon, and what the backdrop adds to that about a
+/// direction.
+const ZENITH: Vec3 = Vec3::new(0.22, 0.217, 0.215);
+const HORIZON: Vec3 = Vec3::new(0.055, 0.053, 0.052);
+const GLOW: Vec3 = Vec3::new(0.27, 0.262, 0.256);
+const GLOW_TOWARDS: Vec3 = Vec3::new(0.0, 0.0, -1.0);
+/// Radiance of the floor under the dome alone, and under the key light.
+const FLOOR_DOME: Vec3 = Vec3::new(0.09, 0.088, 0.086);
+const FLOOR_KEY: Vec3 = Vec3::new(0.26, 0.253, 0.245);
+/// The distances from the sphere between which the floor passes into the backdrop.
+const FLOOR_ENDS: [f32; 2] = [1.5, 9.0];
+/// The tangent of the key light's radius, for its shadow.
+const PENUMBRA: f32 = 0.5;
+
+/// Where the camera stands, and what it looks at; half its picture is seen at this tangent.
+const EYE: Vec3 = Vec3::new(0.0, 1.35, 6.2);
+const LOOKS_AT: Vec3 = Vec3::new(0.0, -0.1, 0.0);
+const TANGENT: f32 = 0.222;
+
+/// The studio.
+pub(super) struct Studio {
+    lamps: [Lamp; 3],
+    /// The camera's axes: right, up, and towards it.
+    camera: [Vec3; 3],
+}
+
+/// The cubic from 0 to 1, as of GLSL.
+fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+impl Lamp {
+    /// The place on its plane, in halves of its edges, and the cosine; `None` behind it.
+    fn place(&self, d: Vec3) -> Option<(Vec2, f32)> {
+        let z = d.dot(self.towards);
+        if !(z > 1e-3) {
+            return None;
+        }
+        let p = Vec2::new(d.dot(self.across), d.dot(self.up)) / (z * self.half);
+        (p.abs().max_element() < 1.0).then_some((p, z))
+    }
+
+    fn radiance(&self, p: Vec2) -> Vec3 {
+        let edge = (1.0 - p.abs()) * self.half;
+        let x = smoothstep(0.0, self.soft, edge.x) * smoothstep(0.0, self.soft, edge.y);
+        self.radiance * (x * (1.0 - 0.25 * p.dot(p)))
+    }
+
+    /// Its density per steradian, at a cosine.
+    fn pdf(&self, z: f32) -> f32 {
+        1.0 / (4.0 * self.half.x * self.half.y * z * z * z)
+    }
+}
+
+impl Studio {
+    pub(super) fn new() -> Self {
+        let back = (EYE - LOOKS_AT).normalize();
+        let right = Vec3::Y.cross(back).normalize();
+        Self { lamps: lamps(), camera: [right, back.cross(right), back] }
+    }
+
+    /// A ray through a point of the picture, in [−1, 1].
+    pub(super) fn ray(&self, x: f32, y: f32) -> (Vec3, Vec3) {
+        let [right, up, back] = self.camera;
+        (EYE, (right * (x * TANGENT) + up * (y * TANGENT) - back).normalize())
+    }
+
+    /// The light that arrives at a point from a direction; the camera sees no lamps.
+    pub(super) fn radiance(&self, from: Vec3, d: Vec3, with_lamps: bool) -> Vec3 {
+        let mut sum = self.dome(d);
+        if d.y < 0.0 {
+            let t = (from.y + 1.0) / -d.y;
+            let (floor, share) = self.floor(from + t.max(0.0) * d);
+            sum += (floor - sum) * share;
+        }
+        if with_lamps && d.y > -0.2 {
+            for lamp in &self.lamps {
+                if let Some((p, _)) = lamp.place(d) {
+                    sum += lamp.radiance(p);
+                }
+            }
+        }
+        sum
+    }
+
+    fn dome(&self, d: Vec3) -> Vec3 {
+        let up = d.y.max(0.0);
+        let facing = d.dot(GLOW_TOWARDS).max(0.0);
+        let square = facing * facing;
+        HORIZON + (ZENITH - HORIZON) * (up * up) + GLOW * (square * square * square)
+    }
+
+    /// The light of a point of the floor, and how much of it is floor, not backdrop.
+    fn floor(&self, q: Vec3) -> (Vec3, f32) {
+        // The sphere, which touches the floor, takes (R/distance)² cos of the dome.
+        let square = q.x * q.x + q.z * q.z;
+        let distance = (square + 1.0).sqrt();
+        let dome = 1.0 - 1.0 / (distance * distance * distance);
+        // How far the key light's middle passes by the sphere, in radii of its penumbra.
+        let towards = self.lamps[0].towards;
+        let along = -q.dot(towards);
+        let passes = (q.dot(q) - along * along).max(0.0).sqrt() - 1.0;
+        let key = smoothstep(-PENUMBRA, PENUMBRA, passes / along.max(0.2));
+        let share = 1.0 - smoothstep(FLOOR_ENDS[0], FLOOR_ENDS[1], square.sqrt());
+        (FLOOR_DOME * dome + FLOOR_KEY * (key * (0.35 + 0.65 * dome)), share)
+    }
+
+    /// A direction towards each of the lamps, from two numbers in [0, 1).
+    pub(super) fn sample(&self, [a, b]: [f32; 2]) -> [Vec3; 3] {
+        let p = 2.0 * Vec2::new(a, b) - 1.0;
+        self.lamps.each_ref().map(|Lamp { towards, across, up, half, .. }| {
+            (towards + p.x * half.x * across + p.y * half.y * up).normalize()
+        })
+    }
+
+    /// The density of [`sample`](Self::sample) per steradian: how many of its directions there are.
+    pub(super) fn pdf(&self, d: Vec3) -> f32 {
+        let of = |lamp: &Lamp| lamp.place(d).map_or(0.0, |(_, z)| lamp.pdf(z));
+        self.lamps.iter().map(of).sum()
+    }
+}
+
+/// A direction by the cosine, from two numbers in [0, 1).
+pub(super) fn by_cosine([a, b]: [f32; 2]) -> Vec3 {
+    let (sin, cos) = (2.0 * PI * b).sin_cos();
+    let (r, z) = (a.sqrt(), (1.0 - a).sqrt());
+    Vec3::new(r * cos, r * sin, z)
+}
+
+/// Its density per steradian.
+pub(super) fn cosine_pdf(l: Vec3) -> f32 {
+    l.z * FRAC_1_PI
+}
+
+/// The constants as GLSL.
+pub(super) fn constants() -> String {
+    let vec3 = |v: Vec3| format!("vec3({}, {}, {})", single(v.x), single(v.y), single(v.z));
+    let vec2 = |v: Vec2| format!("vec2({}, {})", single(v.x), single(v.y));
+    let studio = Studio::new();
+    let mut text = String::from(
+        "struct Lamp { vec3 towards; vec3 across; vec3 up; vec2 half_size; float soft; \
+         vec3 radiance; };\n",
+    );
+    let lamps: Vec<String> = studio
+        .lamps
+        .iter()
+        .map(|lamp| {
+            format!(
+                "    Lamp({}, {},\n         {}, {}, {},\n         {})",
+                vec3(lamp.towards),
+                vec3(lamp.across),
+                vec3(lamp.up),
+                vec2(lamp.half),
+                single(lamp.soft),
+                vec3(lamp.radiance),
+            )
+        })
+        .collect();
+    let count = lamps.len();
+    writeln!(text, "const Lamp LAMPS[{count}] = Lamp[{count}](\n{});", lamps.join(",\n"))
+        .expect("memory");
+    let [right, up, back] = studio.camera;
+    let vectors = [
+        ("ZENITH", ZENITH),
+        ("HORIZON", HORIZON),
+        ("GLOW", GLOW),
+        ("GLOW_TOWARDS", GLOW_TOWARDS),
+        ("FLOOR_DOME", FLOOR_DOME),
+        ("FLOOR_KEY", FLOOR_KEY),
+        ("EYE", EYE),
+        ("CAMERA_RIGHT", right),
+        ("CAMERA_UP", up),
+        ("CAMERA_BACK", back),
+    ];
+    for (name, value) in vectors {
+        writeln!(text, "const vec3 {name} = {};", vec3(value)).expect("memory");
+    }
+    writeln!(text, "const vec2 FLOOR_ENDS = {};", vec2(FLOOR_ENDS.into())).expect("memory");
+    for (name, value) in [("PENUMBRA", PENUMBRA), ("TANGENT", TANGENT)] {
+        writeln!(text, "const float {name} = {};", single(value)).expect("memory");
+    }
+    text
+}

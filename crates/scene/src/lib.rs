@@ -1,0 +1,77 @@
+//! Reads the microfacet materials of scenes: importers of pbrt, Mitsuba, glTF and MaterialX.
+//!
+//! [`load`] reads a scene description and lists the microfacet lobes in it. A table set is planned
+//! from that list alone; geometry, lights and cameras are skipped.
+//!
+//! | format | file | roughness to σ | γ | G2 |
+//! | --- | --- | --- | --- | --- |
+//! | recipe | `.toml` | as written | as written | as written |
+//! | [pbrt-v4] | `.pbrt`, `.pbrt.gz` | √roughness | 2 | height-correlated |
+//! | [Mitsuba 3] | `.xml` | α; `principled` roughness² | ∞ or 2 | uncorrelated |
+//! | [glTF 2.0] | `.gltf`, `.glb` | roughness² | 2 | left open |
+//! | [MaterialX] | `.mtlx` | roughness² with the model's anisotropy; BSDF nodes α | 2 | left open |
+//!
+//! In pbrt σ is the roughness as written with `remaproughness` false, and a surface is smooth under
+//! 1e-3. In Mitsuba α is as written, but at least 1e-4; γ is ∞ for `beckmann` and 2 for `ggx`.
+//!
+//! A roughness that comes from an image is the range of that image's pixels, with the scene's
+//! scales and offsets applied. An image that cannot be read counts as [0, 1], with a warning. A
+//! parameter that its material does not have gives one too: it may be a known one mistyped.
+//! Materials that are not microfacet models, and those that were not understood, are listed in
+//! [`Scene::ignored`]; they are not errors. A missing included file gives a warning, since scenes
+//! often travel without their geometry; then every material counts as used. So does one of XML that
+//! is not well formed. Outside recipes a material never refuses its scene, whatever it says. What
+//! does is another kind of document, the file's grammar or version, includes in a circle, and the
+//! limits of size.
+//!
+//! Scenes far larger than any that exist are refused, with the limit: reading ends within seconds
+//! and 1 GB of memory, whatever a file holds. Only regular files are read.
+//!
+//! [pbrt-v4]: https://pbrt.org/fileformat-v4
+//! [Mitsuba 3]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
+//! [glTF 2.0]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
+//! [MaterialX]: https://materialx.org/Specification.html
+
+mod builder;
+mod cycle;
+mod gltf;
+mod include;
+mod limits;
+mod materialx;
+mod memo;
+mod mitsuba;
+mod pbrt;
+pub mod survey;
+mod texture;
+mod xml;
+
+use std::path::Path;
+
+use microfacet_baker::input;
+use microfacet_baker::scene::{Format, Place, Scene, SceneError, SceneErrorKind};
+
+/// Reads the scene description in `path`; the extension determines the format.
+///
+/// # Errors
+///
+/// [`SceneErrorKind::UnknownExtension`] for an extension of no known format, [`SceneErrorKind::Io`]
+/// if the file cannot be read, [`SceneErrorKind::Syntax`], [`SceneErrorKind::Foreign`] and
+/// [`SceneErrorKind::TooLarge`] with the place of the error in it. A missing image or included file
+/// is a warning, and what is impossible in one material makes that material one that is
+/// [not understood](microfacet_baker::scene::Ignored::understood); in a recipe it is an error, [`SceneErrorKind::Invalid`].
+pub fn load(path: &Path) -> Result<Scene, SceneError> {
+    match Format::of(path) {
+        Some(Format::Recipe) => Scene::load_recipe(path),
+        Some(Format::Pbrt) => pbrt::load(path),
+        Some(Format::Mitsuba) => mitsuba::load(path),
+        Some(Format::Gltf) => gltf::load(path),
+        Some(Format::MaterialX) => materialx::load(path),
+        None => {
+            let place = Place::file(path);
+            // What is no file at all has no format either.
+            input::open(path, u64::MAX).map_err(|error| place.io(error))?;
+            let extension = path.extension().unwrap_or_default().into();
+            Err(SceneError { place, kind: SceneErrorKind::UnknownExtension(extension) })
+        }
+    }
+}

@@ -1,0 +1,417 @@
+//! pbrt-v4 scenes.
+//!
+//! Conventions, from the [file format's description][format] and pbrt's sources
+//! (`materials.cpp`, `materials.h`, `util/scattering.h`, `textures.cpp`):
+//!
+//! - `conductor`, `dielectric`, `coateddiffuse` and `subsurface` take `uroughness` and
+//!   `vroughness`, each of which defaults to `roughness`, which defaults to 0. `coatedconductor`
+//!   takes `interface.` and `conductor.` before these names, and has two rough interfaces.
+//!   `thindielectric` is smooth.
+//! - α = √roughness unless `remaproughness` is false. The distribution is Trowbridge-Reitz: γ = 2,
+//!   σ = α. When both α are below 1e-3 the surface is smooth, else both are at least 1e-4.
+//! - G2 is height-correlated.
+//! - A conductor has `eta` and `k`, each an `rgb` triple or a named spectrum (`"metal-Au-eta"`,
+//!   `"metal-Au-k"`), for which [`microfacet_sampler::Metal`] stands; each is copper's by default.
+//!   Instead it may have an `rgb` `reflectance` r: eta = 1 and k = 2 √(r/(1 − r)), r ≤ 0.9999. In a
+//!   `coatedconductor` eta and k are divided by the coat's index, `interface.eta`. A dielectric has
+//!   a `float` `eta`, 1.33 by default in `subsurface` and else 1.5, or is a glass by name
+//!   (`"glass-BK7"`), which has its index at 587.56 nm: dispersion is left out. Spectra of samples,
+//!   textures and colours of dielectrics leave the Fresnel term open; other names of spectra, and
+//!   of files with them, do so with a warning.
+//! - `interface`, "none" and an empty type are the boundary of a medium, without a surface.
+//! - `mix` uses two named materials; `Attribute "material"` gives defaults to the ones that follow.
+//! - A float image texture is the mean of red, green and blue, or opacity where the file has any
+//!   below 1 (`MIPMap::Bilerp<Float>` and `CreateFromFile` in `util/mipmap.cpp`); `filter` "point"
+//!   reads the first channel (`Texel<Float>`), and "ewa" either. All channels, opacity too, are
+//!   first decoded from sRGB where the samples are integers, except in a PNG whose `encoding` is
+//!   "linear" (`util/image.cpp`). The value is multiplied by `scale`; `invert` makes it 1 minus
+//!   that. Left out: what covers less than a pixel on the screen is the first channel's average
+//!   under any filter, and a palette's transparency, which pbrt drops, counts as opacity.
+//! - Included files are looked up beside the scene's own file. `Import` is an `Include` that leaves
+//!   the graphics state unchanged.
+//!
+//! pbrt refuses a scene with a material that is not defined, is defined twice, has an impossible
+//! value, or a parameter that its class has not, or has with another type. Here such a material is
+//! warned of, or listed as not understood, and the rest is read; of two definitions the first
+//! counts, and a number is read whatever its type is. Directives of pbrt-v1 and v2 are passed over
+//! with a warning, and materials that pbrt-v3 has and v4 has not are listed as not understood;
+//! mixtures of v3 are followed, and its mapping of the roughness of `subsurface`, which is another,
+//! is warned of.
+//!
+//! The file is read as a stream. Everything that belongs to shapes is skipped without being stored.
+//!
+//! [format]: https://pbrt.org/fileformat-v4
+
+mod definition;
+mod directives;
+mod fresnel;
+mod materials;
+mod parameters;
+mod references;
+mod spectra;
+mod syntax;
+mod textures;
+mod token;
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use flate2::read::MultiGzDecoder;
+
+use microfacet_baker::input;
+use microfacet_baker::input::unmarked_stream;
+use microfacet_baker::scene::{Format, Place, Scene, SceneError};
+
+use self::definition::Definition;
+use self::parameters::{MATERIALS, TEXTURES};
+use self::syntax::{Parameter, parameters, quoted, skip_arguments};
+use self::token::{Token, Tokens};
+use super::builder::Builder;
+use super::include::{Includes, absent};
+use super::memo::Memo;
+use crate::limits;
+
+/// Reads a pbrt-v4 scene.
+pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
+    let mut reader = Reader {
+        folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+        builder: Builder::new(Format::Pbrt),
+        includes: Includes::new(limits::PBRT),
+        state: State::default(),
+        saved: Vec::new(),
+        slots: Vec::new(),
+        names: HashMap::new(),
+        defined: Vec::new(),
+        held: 0,
+        textures: HashMap::new(),
+        ranges: Memo::default(),
+        shapes: false,
+        incomplete: false,
+        older: false,
+        of_v3: false,
+    };
+    let place = Place::file(path);
+    let open = open(path)?;
+    reader.includes.enter(path, &place)?;
+    reader.file(open, path)?;
+    reader.finish()
+}
+
+/// Opens a file, of any size since it is read as a stream.
+fn open(path: &Path) -> Result<File, SceneError> {
+    input::open(path, u64::MAX).map_err(|error| Place::file(path).io(error))
+}
+
+/// The part of pbrt's graphics state that decides which material a shape uses.
+#[derive(Clone, Default)]
+struct State {
+    /// Index in `slots`.
+    material: Option<usize>,
+    /// Parameters from `Attribute "material"`, each name once.
+    attributes: Vec<Rc<Parameter>>,
+}
+
+/// A material that is defined or referred to.
+struct Slot {
+    used: bool,
+    definition: Option<Definition>,
+    /// Where it was first mentioned.
+    place: Place,
+}
+
+struct Reader {
+    /// The folder that relative file names start from.
+    folder: PathBuf,
+    builder: Builder,
+    includes: Includes,
+    state: State,
+    /// States to return to, each with the place of the directive that saved it.
+    saved: Vec<(State, Place)>,
+    slots: Vec<Slot>,
+    /// Slots of the named materials.
+    names: HashMap<String, usize>,
+    /// Slots in the order of their definition.
+    defined: Vec<usize>,
+    /// Bytes of the materials and textures.
+    held: u64,
+    /// Float textures by name.
+    textures: HashMap<String, Rc<Definition>>,
+    /// Ranges of the textures that were evaluated.
+    ranges: Memo<String>,
+    shapes: bool,
+    /// Whether an included file is missing.
+    incomplete: bool,
+    /// Whether a directive of an older version was passed over.
+    older: bool,
+    /// Whether a material is defined that only pbrt-v3 has.
+    of_v3: bool,
+}
+
+impl Reader {
+    fn file(&mut self, file: File, path: &Path) -> Result<(), SceneError> {
+        if path.extension().is_some_and(|extension| extension == "gz") {
+            self.text(self.includes.metered(MultiGzDecoder::new(file)), path)
+        } else {
+            self.text(self.includes.metered(file), path)
+        }
+    }
+
+    fn text(&mut self, text: impl Read, path: &Path) -> Result<(), SceneError> {
+        let text = unmarked_stream(text).map_err(|error| Place::file(path).io(error))?;
+        self.statements(&mut Tokens::new(text, path))
+    }
+
+    fn statements<R: Read>(&mut self, tokens: &mut Tokens<R>) -> Result<(), SceneError> {
+        while let Some(token) = tokens.next()? {
+            if token != Token::Word {
+                return Err(tokens.place().syntax(format!(
+                    "expected a directive such as Material or Shape, not \"{}\"",
+                    tokens.text()
+                )));
+            }
+            self.statement(tokens)?;
+        }
+        Ok(())
+    }
+
+    fn statement<R: Read>(&mut self, tokens: &mut Tokens<R>) -> Result<(), SceneError> {
+        let place = tokens.place();
+        match tokens.text() {
+            "Shape" => {
+                self.shapes = true;
+                if let Some(slot) = self.state.material {
+                    self.slots[slot].used = true;
+                }
+                skip_arguments(tokens)
+            }
+            "AttributeBegin" | "ObjectBegin" => {
+                if self.saved.len() == limits::PBRT_BLOCKS {
+                    return Err(place.syntax(format!(
+                        "blocks are nested more than {} deep; an AttributeEnd may be missing",
+                        limits::PBRT_BLOCKS
+                    )));
+                }
+                self.saved.push((self.state.clone(), place));
+                skip_arguments(tokens)
+            }
+            directive @ ("AttributeEnd" | "ObjectEnd") => {
+                let unmatched = format!("{directive} without its beginning");
+                let (state, _) = self.saved.pop().ok_or_else(|| place.syntax(unmatched))?;
+                self.state = state;
+                skip_arguments(tokens)
+            }
+            "Attribute" => {
+                let target = quoted(tokens, "the target of the attributes")?;
+                let parameters = parameters(tokens)?;
+                if target == "material" {
+                    self.hold(&parameters, &place)?;
+                    self.check_attributes(&parameters);
+                    self.attributes(parameters, &place)?;
+                }
+                Ok(())
+            }
+            "Include" => {
+                let name = quoted(tokens, "the name of a file")?;
+                self.include(&name, &place)
+            }
+            "Import" => {
+                let name = quoted(tokens, "the name of a file")?;
+                let state = self.state.clone();
+                self.include(&name, &place)?;
+                self.state = state;
+                Ok(())
+            }
+            "Material" => {
+                let class = quoted(tokens, "the type of the material")?;
+                let own = parameters(tokens)?;
+                self.hold(&own, &place)?;
+                self.check_parameters(&MATERIALS, &class, &own);
+                let parameters = self.with_attributes(own);
+                // The empty type is an old word for this one.
+                let class = if class.is_empty() { "interface".to_owned() } else { class };
+                let name = self.by_place(&class, &place);
+                let slot = self.slot(&place)?;
+                self.define(slot, Definition::new(name, class, parameters, place));
+                self.state.material = Some(slot);
+                Ok(())
+            }
+            "MakeNamedMaterial" => {
+                let name = quoted(tokens, "the name of the material")?;
+                let own = parameters(tokens)?;
+                self.hold(&own, &place)?;
+                let class = own.iter().chain(&self.state.attributes).find(|p| p.name == "type");
+                let class = class.and_then(|p| p.values.last().cloned()).unwrap_or_default();
+                self.check_parameters(&MATERIALS, &class, &own);
+                let parameters = self.with_attributes(own);
+                let slot = self.named(&name, &place)?;
+                if let Some(first) = &self.slots[slot].definition {
+                    let warning = format!(
+                        "material \"{name}\" is defined twice, first at {}, which is kept; rename one \
+                         of them",
+                        first.place
+                    );
+                    self.builder.warn(&place, warning);
+                    return Ok(());
+                }
+                let name =
+                    if name.trim().is_empty() { self.by_place(&class, &place) } else { name };
+                self.define(slot, Definition::new(name, class, parameters, place));
+                Ok(())
+            }
+            "NamedMaterial" => {
+                let name = quoted(tokens, "the name of a material")?;
+                self.state.material = Some(self.named(&name, &place)?);
+                // A parameter list is allowed by the grammar here, and has no meaning.
+                parameters(tokens).map(drop)
+            }
+            "Texture" => {
+                let name = quoted(tokens, "the name of the texture")?;
+                let kind = quoted(tokens, "the type of the texture, \"float\" or \"spectrum\"")?;
+                let class = quoted(tokens, "the class of the texture")?;
+                let parameters = parameters(tokens)?;
+                if kind == "float" {
+                    self.hold(&parameters, &place)?;
+                    self.check_parameters(&TEXTURES, &class, &parameters);
+                    if self.textures.len() == limits::MATERIALS {
+                        return Err(place.too_large(format!(
+                            "the scene has more than {} textures; split it",
+                            limits::MATERIALS
+                        )));
+                    }
+                    let texture = Definition::new(name.clone(), class, parameters, place);
+                    self.textures.insert(name, Rc::new(texture));
+                }
+                Ok(())
+            }
+            "ActiveTransform" => {
+                // Its argument is a word, without quotes.
+                tokens.next()?;
+                Ok(())
+            }
+            directive if directives::is_passed_over(directive) => skip_arguments(tokens),
+            directive => {
+                let warning = directives::older(directive)
+                    .ok_or_else(|| place.syntax(directives::unknown(directive)))?;
+                // One of them tells the version.
+                if !std::mem::replace(&mut self.older, true) {
+                    self.builder.warn(&place, warning);
+                }
+                skip_arguments(tokens)
+            }
+        }
+    }
+
+    fn include(&mut self, name: &str, place: &Place) -> Result<(), SceneError> {
+        let path = self.folder.join(name);
+        if !self.includes.enter(&path, place)? {
+            self.incomplete = true;
+            self.builder.warn(
+                place,
+                format!(
+                    "{}; its materials are not seen, and all others count as used",
+                    absent(name, &path)
+                ),
+            );
+            return Ok(());
+        }
+        self.file(open(&path)?, &path)?;
+        self.includes.leave();
+        Ok(())
+    }
+
+    /// Counts what is kept of a directive at `place`.
+    fn hold(&mut self, parameters: &[Rc<Parameter>], place: &Place) -> Result<(), SceneError> {
+        self.held += parameters.iter().map(|parameter| parameter.bytes() as u64).sum::<u64>();
+        if self.held <= limits::PBRT_HELD {
+            return Ok(());
+        }
+        Err(place.too_large(format!(
+            "the materials and textures of the scene have more than {} MiB of parameters; split it",
+            limits::PBRT_HELD >> 20
+        )))
+    }
+
+    /// Puts parameters before those in force: the first of a name counts.
+    fn attributes(
+        &mut self,
+        mut parameters: Vec<Rc<Parameter>>,
+        place: &Place,
+    ) -> Result<(), SceneError> {
+        parameters.append(&mut self.state.attributes);
+        for parameter in parameters {
+            let attributes = &mut self.state.attributes;
+            if attributes.iter().any(|first| first.name == parameter.name) {
+                continue;
+            }
+            if attributes.len() == limits::PBRT_PARAMETERS {
+                return Err(place.too_large(format!(
+                    "more than {} attributes of materials are in force; remove those that pbrt does \
+                     not read",
+                    limits::PBRT_PARAMETERS
+                )));
+            }
+            attributes.push(parameter);
+        }
+        Ok(())
+    }
+
+    fn with_attributes(&self, mut parameters: Vec<Rc<Parameter>>) -> Vec<Rc<Parameter>> {
+        // The first parameter of a name counts: a material's own comes before the default.
+        parameters.extend(self.state.attributes.iter().cloned());
+        parameters
+    }
+
+    /// The name of a material that has none: its type and its place, short enough for a name.
+    fn by_place(&self, class: &str, place: &Place) -> String {
+        let class = if class.is_empty() { "material" } else { class };
+        let file = place.file.strip_prefix(&self.folder).unwrap_or(&place.file);
+        format!("{class} at {}:{}", file.display(), place.line.unwrap_or_default())
+    }
+
+    fn slot(&mut self, place: &Place) -> Result<usize, SceneError> {
+        if self.slots.len() == limits::MATERIALS {
+            return Err(place.too_large(format!(
+                "the scene has more than {} materials; split it",
+                limits::MATERIALS
+            )));
+        }
+        self.slots.push(Slot { used: false, definition: None, place: place.clone() });
+        Ok(self.slots.len() - 1)
+    }
+
+    fn named(&mut self, name: &str, place: &Place) -> Result<usize, SceneError> {
+        match self.names.get(name) {
+            Some(&slot) => Ok(slot),
+            None => {
+                let slot = self.slot(place)?;
+                self.names.insert(name.to_owned(), slot);
+                Ok(slot)
+            }
+        }
+    }
+
+    fn define(&mut self, slot: usize, definition: Definition) {
+        self.of_v3 |= definition.is_of_v3();
+        self.slots[slot].definition = Some(definition);
+        self.defined.push(slot);
+    }
+
+    fn finish(mut self) -> Result<Scene, SceneError> {
+        if let Some((_, place)) = self.saved.pop() {
+            return Err(place.syntax("this block has no end"));
+        }
+        self.check_references();
+        self.use_parts_of_mixtures();
+        let everything = !self.shapes || self.incomplete;
+        for slot in std::mem::take(&mut self.defined) {
+            let used = everything || self.slots[slot].used;
+            if let Some(definition) = self.slots[slot].definition.take() {
+                self.lobes(&definition, used)?;
+            }
+        }
+        Ok(self.builder.finish(self.includes.found()))
+    }
+}

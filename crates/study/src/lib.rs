@@ -1,0 +1,85 @@
+//! What only we run: reproductions of the papers, a small path tracer, and the measurements behind
+//! the choices that the other crates make.
+//!
+//! `cargo run --release -p microfacet-study` lists them; each module says what it prints, and which
+//! page of `docs/` shows it. `docs/reproduced.md` has the claims of the papers, one a row.
+
+pub mod albedo_convergence;
+pub mod albedo_design;
+pub mod dielectric_design;
+pub mod ellipsoid_cost;
+pub mod ellipsoid_note;
+pub mod engines;
+pub mod merl;
+pub mod planner_seconds;
+pub mod printed_formulas;
+pub mod progress;
+pub mod reference;
+pub mod report_sphere;
+pub mod reproduced;
+pub mod sawicki;
+pub mod spheres;
+pub mod student_t_paper;
+pub mod table_design;
+
+use std::error::Error;
+
+/// What runs a study, given what follows its name on the command line.
+pub type Run = fn(&[String]) -> Result<(), Box<dyn Error>>;
+
+/// A study, as the command line names it.
+#[derive(Clone, Copy, Debug)]
+pub struct Study {
+    /// Its name, which is that of its module.
+    pub name: &'static str,
+    /// What it shows.
+    pub what: &'static str,
+    /// Prints it.
+    pub run: Run,
+}
+
+const fn study(name: &'static str, what: &'static str, run: Run) -> Study {
+    Study { name, what, run }
+}
+
+/// All of them, by name.
+pub const STUDIES: [Study; 17] = [
+    study("albedo_convergence", "error against time of one directional albedo", |_| {
+        albedo_convergence::run();
+        Ok(())
+    }),
+    study("albedo_design", "coordinates of the view for albedos", |_| {
+        albedo_design::run();
+        Ok(())
+    }),
+    study("dielectric_design", "tables of albedos of dielectrics: errors and sizes [ROW]", |row| {
+        Ok(dielectric_design::run(row)?)
+    }),
+    study("ellipsoid_cost", "time of a normal of an ellipsoid", |_| ellipsoid_cost::run()),
+    study("ellipsoid_note", "the claims of the Ellipsoid note", |_| ellipsoid_note::run()),
+    study("engines", "errors of the albedos that engines ship [FOLDER]", |folder| {
+        engines::run(folder);
+        Ok(())
+    }),
+    study("merl", "makes files in the format of the MERL database [--start] FOLDER", merl::run),
+    study(
+        "planner_seconds",
+        "what bakes take beside their estimates [COUNT]",
+        planner_seconds::run,
+    ),
+    study("printed_formulas", "the printed formulas for masking beside ours", |_| {
+        printed_formulas::run();
+        Ok(())
+    }),
+    study("progress", "how far the time left is off TARGET [RECIPE]", progress::run),
+    study("reference", "writes the test vectors FILE", reference::run),
+    study("report_sphere", "the sphere of a page by the crate's BSDFs; --help", report_sphere::run),
+    study("reproduced", "numbers that papers print beside figures", |_| reproduced::run()),
+    study("sawicki", "the equations of Sawicki 2021", |_| sawicki::run()),
+    study("spheres", "figures 7 to 9 of Ribardiere et al. 2017; --help", spheres::run),
+    study("student_t_paper", "the equations of Ribardiere et al. 2017", |_| student_t_paper::run()),
+    study("table_design", "designs of the table of visible slopes", |_| {
+        table_design::run();
+        Ok(())
+    }),
+];

@@ -1,0 +1,176 @@
+//! Figures 7, 8 and 9 of Ribardière et al. 2017 (doi:10.1111/cgf.13137), by a small path tracer
+//! that takes its materials from the sampler crate.
+//!
+//! `cargo run --release -p microfacet-study -- spheres OUTPUT` writes figure 8 as OUTPUT.exr
+//! (linear radiance) and OUTPUT.png; `--help` has the options. Read `figures.rs` for how materials
+//! are made, and `path.rs` for how a renderer asks them; `scene.rs` is what surrounds them,
+//! `sky.rs` lights them, and `page.rs` is the paper.
+
+mod figures;
+mod page;
+mod path;
+mod random;
+mod scene;
+pub mod sky;
+#[cfg(test)]
+mod tests;
+
+use std::error::Error;
+use std::iter;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use clap::{Args, Parser};
+use glam::Vec3;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+
+use figures::{Figure, Sheet};
+use page::{Layout, Page};
+use path::Tracer;
+use random::Random;
+use scene::{Ray, Scene};
+
+use microfacet_baker::progress::Meter;
+
+/// The camera looks down by this many radians, from far away.
+const ELEVATION: f32 = 0.45;
+/// Half the edge of its picture; the sphere has radius 1.
+const REACH: f32 = 1.2;
+
+/// Renders a figure of Ribardière et al. 2017
+#[derive(Parser)]
+struct Arguments {
+    /// The files to write, without .exr and .png
+    output: PathBuf,
+    /// The figure
+    #[arg(long, value_enum, default_value = "8")]
+    figure: Figure,
+    /// Pixels across the page
+    #[arg(long, default_value = "1600", value_parser = clap::value_parser!(u32).range(200..=16384))]
+    width: u32,
+    #[command(flatten)]
+    limit: Limit,
+}
+
+/// When a pixel is done.
+#[derive(Args, Clone, Copy)]
+struct Limit {
+    /// Most paths in a pixel: a limit of the time
+    #[arg(long, default_value = "4096",
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(Random::MOST)))]
+    samples: u32,
+    /// Standard error at which a pixel is done, in steps of 1/255; 0 takes all samples
+    #[arg(long, default_value = "3", value_parser = steps)]
+    noise: f32,
+}
+
+fn steps(text: &str) -> Result<f32, String> {
+    let range = "must be a number from 0 to 255";
+    text.parse().ok().filter(|x| (0.0..=255.0).contains(x)).ok_or_else(|| range.into())
+}
+
+/// Paths between two looks at the error.
+const BATCH: u32 = 64;
+
+/// How a sphere's square is exposed.
+#[derive(Clone, Copy)]
+struct Film {
+    /// Pixels across.
+    cell: usize,
+    limit: Limit,
+    /// As of a [`Sheet`].
+    is_linear: bool,
+}
+
+/// A pixel of a sphere's square.
+fn pixel(scene: &Scene, [x, y]: [usize; 2], film: Film) -> Vec3 {
+    let Film { cell, limit, is_linear } = film;
+    let (sin, cos) = ELEVATION.sin_cos();
+    let (up, direction) = (Vec3::new(0.0, cos, -sin), Vec3::new(0.0, -sin, -cos));
+    let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
+    for index in 0..limit.samples {
+        let mut random = Random::new((y * cell + x) as u32, index);
+        let at = |pixel: usize, u: f32| REACH * (2.0 * (pixel as f32 + u) / cell as f32 - 1.0);
+        let [a, b] = random.two();
+        let origin = at(x, a) * Vec3::X - at(y, b) * up - 4.0 * direction;
+        let mut tracer = Tracer { scene, random: &mut random };
+        let radiance = tracer.radiance(&Ray { origin, direction });
+        sum += radiance;
+        squares += radiance * radiance;
+        let count = (index + 1) as f32;
+        if (index + 1) % BATCH == 0 {
+            let mean = sum / count;
+            let error = ((squares / count - mean * mean).max(Vec3::ZERO) / count).sqrt();
+            if page::steps(mean, error, is_linear) < limit.noise {
+                return mean;
+            }
+        }
+    }
+    sum / limit.samples as f32
+}
+
+/// All pixels of a sheet, line by line of each square, on all cores.
+fn render(sheet: &Sheet, film: Film, meter: &Meter) -> Vec<Vec<Vec3>> {
+    let cell = film.cell;
+    let scenes: Vec<&Scene> =
+        sheet.rows.iter().flat_map(|row| &row.cells).map(|cell| &cell.scene).collect();
+    meter.expect(1.0);
+    let stage = meter.stage(1.0);
+    stage.split(scenes.len() * cell);
+    let line = |i: usize| {
+        let line = (0..cell).map(|x| pixel(scenes[i / cell], [x, i % cell], film));
+        let line = line.collect();
+        stage.step();
+        line
+    };
+    (0..scenes.len() * cell).into_par_iter().map(line).collect()
+}
+
+/// Does some work, and shows on a terminal how much of it is done.
+fn watched<T>(what: &'static str, work: impl FnOnce(&Meter) -> T) -> T {
+    const STEPS: u64 = 1000;
+    let meter = Meter::default();
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %, {elapsed}")
+        .expect("a constant template");
+    let bar = ProgressBar::new(STEPS).with_style(style).with_message(what);
+    thread::scope(|scope| {
+        let (ended, end) = channel::<()>();
+        scope.spawn(|| {
+            let end = end;
+            while end.recv_timeout(Duration::from_millis(100)) == Err(RecvTimeoutError::Timeout) {
+                bar.set_position((STEPS as f64 * meter.share()) as u64);
+            }
+            bar.finish_and_clear();
+        });
+        let done = work(&meter);
+        drop(ended);
+        done
+    })
+}
+
+/// Prints what the module's page says.
+pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
+    let Arguments { output, figure, width, limit } =
+        Arguments::parse_from(iter::once("spheres").chain(arguments.iter().map(String::as_str)));
+    let file = |extension: &str| {
+        let mut name = output.clone().into_os_string();
+        name.push(extension);
+        PathBuf::from(name)
+    };
+    // Minutes of work should not end in a folder that does not exist.
+    let folder = match output.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    tempfile::tempfile_in(folder).map_err(|why| format!("{}: {why}", folder.display()))?;
+    let sheet = watched("Baking albedos", |meter| figure.sheet(meter))?;
+    let layout = Layout::new(&sheet, width as usize);
+    let film = Film { cell: layout.cell, limit, is_linear: sheet.is_linear };
+    let lines = watched("Rendering", |meter| render(&sheet, film, meter));
+    let page = Page { sheet: &sheet, layout, lines };
+    page.write_exr(&file(".exr"))?;
+    page.write_png(&file(".png"))
+}

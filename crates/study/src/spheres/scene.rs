@@ -1,0 +1,127 @@
+//! What surrounds a material: a sphere of it on a floor, under a sky.
+//!
+//! World coordinates are right-handed, y up. The sphere has radius 1 about the origin.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::{Mat3, Vec3};
+
+use microfacet_sampler::bsdf::Event;
+use microfacet_sampler::{AnyBsdf, Bsdf, BsdfSample, Transport};
+
+use crate::spheres::sky::Sky;
+
+/// The height of the floor.
+const FLOOR: f32 = -1.0;
+/// Edge of the floor's squares: so large that one sees them through rough diamond. Four of them
+/// meet under the sphere.
+const SQUARE: f32 = 2.0;
+/// Rays that leave a surface start on it, to the rounding of this scene's coordinates.
+const NEAREST: f32 = 1e-4;
+
+/// A ray.
+pub(crate) struct Ray {
+    pub(crate) origin: Vec3,
+    /// Of unit length.
+    pub(crate) direction: Vec3,
+}
+
+/// Where a ray meets a surface.
+pub(crate) struct Hit<'a> {
+    pub(crate) point: Vec3,
+    /// Tangent, bitangent and normal as columns: from the tangent frame to the world.
+    pub(crate) frame: Mat3,
+    pub(crate) bsdf: &'a dyn Bsdf,
+}
+
+/// A sphere of a material, and what lights it.
+pub(crate) struct Scene {
+    pub(crate) material: AnyBsdf,
+    /// Under the sphere, if it lies on one.
+    pub(crate) floor: Option<Floor>,
+    pub(crate) sky: Sky,
+}
+
+impl Scene {
+    /// What a ray meets first.
+    pub(crate) fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
+        let Ray { origin, direction } = *ray;
+        if let Some(t) = sphere(ray) {
+            let n = (origin + t * direction).normalize();
+            // Brushed round the vertical axis.
+            let tangent = Vec3::Y.cross(n).normalize_or(Vec3::X);
+            let frame = Mat3::from_cols(tangent, n.cross(tangent), n);
+            return Some(Hit { point: n, frame, bsdf: &self.material });
+        }
+        let floor = self.floor.as_ref()?;
+        let t = (FLOOR - origin.y) / direction.y;
+        if !(NEAREST..f32::INFINITY).contains(&t) {
+            return None;
+        }
+        let point = origin + t * direction;
+        let square = (point.x / SQUARE).floor() + (point.z / SQUARE).floor();
+        let bsdf = &floor.0[square.rem_euclid(2.0) as usize];
+        Some(Hit { point, frame: Mat3::from_cols(Vec3::X, -Vec3::Z, Vec3::Y), bsdf })
+    }
+
+    /// Whether the sphere is in the way of light from the sky; nothing reaches below the floor.
+    pub(crate) fn is_shadowed(&self, ray: &Ray) -> bool {
+        sphere(ray).is_some()
+    }
+}
+
+/// The distance to the sphere.
+fn sphere(ray: &Ray) -> Option<f32> {
+    let half = ray.origin.dot(ray.direction);
+    let discriminant = half * half - ray.origin.length_squared() + 1.0;
+    let root = discriminant.max(0.0).sqrt();
+    [-half - root, -half + root].into_iter().find(|t| discriminant > 0.0 && *t > NEAREST)
+}
+
+/// The squares of a floor, of two kinds.
+pub(crate) struct Floor([Diffuse; 2]);
+
+impl Floor {
+    pub(crate) const GREY: Self = Self::of([0.07, 0.075, 0.085], [0.7, 0.67, 0.62]);
+    /// Shows what a diamond refracts.
+    pub(crate) const COLOURED: Self = Self::of([0.03, 0.13, 0.45], [0.85, 0.42, 0.08]);
+
+    const fn of(one: [f32; 3], other: [f32; 3]) -> Self {
+        Self([Diffuse { albedo: one }, Diffuse { albedo: other }])
+    }
+}
+
+/// A BSDF of one's own fits in among those of the crate.
+struct Diffuse {
+    albedo: [f32; 3],
+}
+
+impl Bsdf for Diffuse {
+    fn sample(&self, v: Vec3, _: f32, u: [f32; 2], _: Transport) -> Option<BsdfSample> {
+        let (sin, cos) = (TAU * u[1]).sin_cos();
+        let (r, z) = (u[0].sqrt(), (1.0 - u[0]).sqrt());
+        (v.z > 0.0 && z > 0.0).then(|| BsdfSample {
+            l: Vec3::new(r * cos, r * sin, z),
+            weight: self.albedo,
+            pdf: z / PI,
+            event: Event::Reflection,
+            delta: false,
+            eta: 1.0,
+        })
+    }
+
+    fn eval_pdf(&self, v: Vec3, l: Vec3, _: Transport) -> ([f32; 3], f32) {
+        match v.z > 0.0 && l.z > 0.0 {
+            true => (self.albedo.map(|albedo| albedo / PI), l.z / PI),
+            false => ([0.0; 3], 0.0),
+        }
+    }
+
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn transmits(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,149 @@
+//! Why the table of visible slopes has its form: the largest CDF error of several designs of the
+//! same size.
+//!
+//! `cargo run --release -p microfacet-study -- table_design` prints the table in the docs of
+//! `microfacet_baker::bake`. Every design has 65 views by 2·17 random numbers, exact values and
+//! slopes at its nodes, cubic Hermite along u₁ and lines between views; errors are measured in
+//! double precision between the nodes of both axes.
+
+use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope};
+use microfacet_tables::axis::HalfTangent;
+use microfacet_tables::axis::half_tangent::{half_tangent, slope_at};
+
+const VIEWS: usize = 64;
+const NUMBERS: usize = 16;
+
+/// The quantity at a node.
+#[derive(Clone, Copy, Debug)]
+enum Stored {
+    /// h = x/(1 + √(1+x²)).
+    HalfTangent,
+    /// The random number that would give the same slope for GGX.
+    GgxNumber,
+}
+
+/// The coordinate of the view.
+#[derive(Clone, Copy, Debug)]
+enum View {
+    Cosine,
+    HalfTangent,
+}
+
+struct Design {
+    stored: Stored,
+    view: View,
+    /// u = ½ t^power in each half.
+    power: i32,
+}
+
+impl Design {
+    fn view(&self, at: f64) -> UnitView {
+        UnitView::from_cotangent(match self.view {
+            _ if at == 1.0 => f64::INFINITY,
+            View::Cosine => at / (1.0 - at * at).sqrt(),
+            View::HalfTangent => HalfTangent::default().quantity(at),
+        })
+    }
+
+    /// u at t ∈ [0, 2], the halves joined at t = 1.
+    fn number(&self, t: f64) -> f64 {
+        if t <= 1.0 { 0.5 * t.powi(self.power) } else { 1.0 - 0.5 * (2.0 - t).powi(self.power) }
+    }
+
+    fn store(&self, shape: &Shape, view: UnitView, x: SignedSlope) -> f64 {
+        let (sin, cos) = shape.unit_sin_cos(x.w);
+        let sin = x.sign * sin;
+        match self.stored {
+            Stored::HalfTangent => half_tangent(sin, cos),
+            Stored::GgxNumber => (1.0 + sin * view.cos - cos * view.sin) / (1.0 + view.cos),
+        }
+    }
+
+    fn restore(&self, shape: &Shape, view: UnitView, value: f64) -> SignedSlope {
+        let (sin, cos) = match self.stored {
+            Stored::HalfTangent => {
+                let [x, z] = slope_at(1.0 - value.clamp(-1.0, 1.0));
+                (x, z)
+            }
+            Stored::GgxNumber => {
+                let d = (value * (1.0 + view.cos) - 1.0).clamp(-1.0, 1.0);
+                let c = (1.0 - d * d).sqrt();
+                (d * view.cos + c * view.sin, (c * view.cos - d * view.sin).max(0.0))
+            }
+        };
+        SignedSlope {
+            w: shape.asinh_slope((sin / cos).abs()),
+            sign: if sin < 0.0 { -1.0 } else { 1.0 },
+        }
+    }
+
+    /// Values and slopes of one row, the slopes limited so that every cell ascends.
+    fn row(&self, shape: &Shape, at: f64) -> Vec<[f64; 2]> {
+        let view = self.view(at);
+        let slopes = VisibleSlope::new(shape, view);
+        let value = |t: f64| self.store(shape, view, slopes.quantile(self.number(t)));
+        let step = 1e-4;
+        let mut row: Vec<[f64; 2]> = (0..=2 * NUMBERS)
+            .map(|i| {
+                let t = i as f64 / NUMBERS as f64;
+                let (low, high) = ((t - step).max(0.0), (t + step).min(2.0));
+                [value(t), (value(high) - value(low)) / (high - low) / NUMBERS as f64]
+            })
+            .collect();
+        for i in 0..row.len() {
+            let before = if i > 0 { row[i][0] - row[i - 1][0] } else { f64::INFINITY };
+            let after = if i + 1 < row.len() { row[i + 1][0] - row[i][0] } else { f64::INFINITY };
+            row[i][1] = row[i][1].min(3.0 * before.min(after)).max(0.0);
+        }
+        row
+    }
+
+    /// Largest CDF error, at three views in every cell and four numbers in every cell.
+    fn error(&self, shape: &Shape) -> f64 {
+        let rows: Vec<_> = (0..=VIEWS).map(|i| self.row(shape, i as f64 / VIEWS as f64)).collect();
+        let mut worst = 0.0_f64;
+        for i in 0..3 * VIEWS {
+            let at = (i as f64 + 0.5) / 3.0;
+            let (row, between) = (at as usize, at.fract());
+            let view = self.view(at / VIEWS as f64);
+            let slopes = VisibleSlope::new(shape, view);
+            for j in 0..8 * NUMBERS {
+                let at = (j as f64 + 0.5) / 4.0;
+                let (cell, w) = (at as usize, at.fract());
+                let node = |i: usize, channel: usize| {
+                    let (a, b) = (rows[row][i][channel], rows[row + 1][i][channel]);
+                    a + between * (b - a)
+                };
+                let (a, b, da, db) =
+                    (node(cell, 0), node(cell + 1, 0), node(cell, 1), node(cell + 1, 1));
+                let rise = b - a;
+                let value =
+                    a + w * (da + w * (3.0 * rise - 2.0 * da - db + w * (da + db - 2.0 * rise)));
+                let u = self.number(at / NUMBERS as f64);
+                worst = worst.max((slopes.cdf(self.restore(shape, view, value)) - u).abs());
+            }
+        }
+        worst
+    }
+}
+
+/// Prints what the module's page says.
+pub fn run() {
+    println!(
+        "| stored | view axis | u | γ = 1.8 | 2 | 4 | ∞ |\n| --- | --- | --- | --- | --- | --- | --- |"
+    );
+    for stored in [Stored::HalfTangent, Stored::GgxNumber] {
+        for (view, power) in [
+            (View::Cosine, 4),
+            (View::HalfTangent, 1),
+            (View::HalfTangent, 2),
+            (View::HalfTangent, 4),
+        ] {
+            let design = Design { stored, view, power };
+            let errors: Vec<String> = [1.8, 2.0, 4.0, f64::INFINITY]
+                .map(|gamma| format!("{:.1e}", design.error(&Shape::new(gamma).expect("in range"))))
+                .into();
+            println!("| {stored:?} | {view:?} | t^{power} | {} |", errors.join(" | "));
+        }
+    }
+}

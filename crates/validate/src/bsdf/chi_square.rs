@@ -1,0 +1,154 @@
+//! χ² of the directions that a BSDF draws against its own density, on the whole sphere.
+
+use glam::Vec3;
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+use microfacet_baker::progress::Stage;
+use microfacet_model::statistics::{ChiSquare, chi_square, sidak};
+use microfacet_sampler::{Bsdf, Tables, Transport};
+
+use super::configuration::Configuration;
+use super::grid::Grid;
+use super::specimen::Unmade;
+use crate::run::{COUNTED, LEVEL, Options, USUAL, each};
+
+/// Cells, about, and lights that they are made from: more where more samples resolve more.
+const CELLS: usize = 256;
+const PILOT: [usize; 2] = [4096, 8192];
+/// What the density leaves to one is judged by itself from this share on; quadrature is good to
+/// some 1e-6 in each cell.
+const LEAST_LEFT: f64 = 2e-3;
+
+/// Draws `samples` lights by `draw(choice, u)`, and compares their counts with the integrals of
+/// `density`. Draws without a light are a cell of their own, which is expected to hold what the
+/// density leaves to one. The elevations `edges` are edges of cells.
+/// Cells are also small where there are many lights of `guide`, such as those of a narrow part of
+/// the density that is seldom drawn.
+pub fn test(
+    v: Vec3,
+    samples: usize,
+    seed: u64,
+    edges: Vec<f64>,
+    guide: &[Vec3],
+    mut draw: impl FnMut(f32, [f32; 2]) -> Option<Vec3>,
+    density: impl Fn(Vec3) -> f32,
+) -> ChiSquare {
+    let mut random = StdRng::seed_from_u64(seed);
+    let mut next = || draw(random.random(), [random.random(), random.random()]);
+    let pilots = (samples / 50).clamp(PILOT[0], PILOT[1]);
+    let drawn = (0..pilots).filter_map(|_| next());
+    let pilot: Vec<Vec3> = drawn.chain(guide.iter().copied()).collect();
+    let grid = Grid::new(v, &pilot, (pilots + guide.len()) / CELLS, edges);
+    let rest = grid.count();
+    let mut counts = vec![0_u64; rest + 1];
+    for _ in 0..samples {
+        counts[next().map_or(rest, |l| grid.cell(l))] += 1;
+    }
+    let mut shares = grid.shares(samples, density);
+    let left = 1.0 - shares.iter().sum::<f64>();
+    if left < LEAST_LEFT {
+        // Little is lost: it would be mostly the errors of all cells together.
+        let lost = counts.pop().unwrap_or(0);
+        counts[rest - 1] += lost;
+        shares[rest - 1] += left;
+    } else {
+        shares.push(left);
+    }
+    let expected: Vec<f64> = shares.iter().map(|share| share * samples as f64).collect();
+    chi_square(&counts, &expected)
+}
+
+/// The result for one configuration.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Material and view.
+    pub configuration: Configuration,
+    /// The test.
+    pub test: ChiSquare,
+}
+
+/// The result of a run.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// One report a configuration, the smallest p first.
+    pub reports: Vec<Report>,
+    /// Level of a single test after Šidák's correction.
+    pub level: f64,
+}
+
+impl Outcome {
+    /// Configurations that are rejected.
+    pub fn rejected(&self) -> usize {
+        // Written so that a NaN is rejected.
+        self.reports.iter().filter(|report| !(report.test.p >= self.level)).count()
+    }
+
+    /// Whether all tests pass.
+    pub fn passed(&self) -> bool {
+        self.rejected() == 0
+    }
+}
+
+/// The estimated seconds of a run on the current threads.
+pub fn seconds(configurations: usize, options: Options) -> f64 {
+    // Microseconds for the cells of a configuration and the integral of each, and for a light:
+    // fitted to `microfacet-bake bsdf --only chi-square --threads 1` with 1e4 and 5e5 samples.
+    let one = 240_000.0 + 0.7 * options.samples as f64;
+    1e-6 * one * configurations as f64 / rayon::current_num_threads() as f64
+}
+
+/// Tests all `configurations` in parallel, with the albedos of `tables`, and counts their lights in
+/// a stage of the progress.
+///
+/// # Errors
+/// [`Unmade`] for a configuration whose BSDF cannot be made.
+pub fn run(
+    tables: &Tables,
+    configurations: &[Configuration],
+    options: Options,
+    stage: &Stage,
+) -> Result<Outcome, Unmade> {
+    let mut reports = each(configurations, options.samples, stage, |configuration| {
+        one(tables, configuration, options, stage)
+    })?;
+    reports.sort_by(|a, b| a.test.p.total_cmp(&b.test.p));
+    Ok(Outcome { level: sidak(LEVEL, reports.len().max(USUAL)), reports })
+}
+
+fn one(
+    tables: &Tables,
+    configuration: &Configuration,
+    options: Options,
+    stage: &Stage,
+) -> Result<Report, Unmade> {
+    let judged = configuration.specimen.bsdf(tables)?;
+    let factor = options.gamma_factor;
+    let drawn = match factor == 1.0 {
+        true => judged.clone(),
+        false => configuration.specimen.reshaped(factor).bsdf(tables)?,
+    };
+    let v = configuration.view();
+    let mut count = 0;
+    let draw = |choice, u| {
+        count += 1;
+        if count % COUNTED == 0 {
+            stage.step();
+        }
+        let sample = drawn.sample(v, choice, u, Transport::Radiance)?;
+        (!sample.delta).then_some(sample.l)
+    };
+    // Facets alone, as often by reflection as by refraction.
+    let facets = configuration.specimen.facets().bsdf(tables)?;
+    let mut random = StdRng::seed_from_u64(!configuration.seed);
+    let mut by_facet = |i: usize| {
+        let (choice, u) = ([0.0, 1.0][i % 2], [random.random(), random.random()]);
+        let sample = facets.sample(v, choice, u, Transport::Radiance)?;
+        (!sample.delta).then_some(sample.l)
+    };
+    let guide: Vec<Vec3> = (0..PILOT[0]).filter_map(&mut by_facet).collect();
+    let (seed, edges) = (configuration.seed, configuration.edges());
+    let density = |l| Bsdf::<3>::pdf(&judged, v, l);
+    let test = test(v, options.samples, seed, edges, &guide, draw, density);
+    Ok(Report { configuration: *configuration, test })
+}

@@ -1,0 +1,299 @@
+//! The white furnace of complete BSDFs: what a white surface returns of the light of a view, by the
+//! Kulla–Conty compensation.
+//!
+//! One bounce is integrated with the model under the exact reflectance. What compensation adds to
+//! it is the difference between the BSDF's own f with and without it: for round lobes it does not
+//! depend on the azimuth of the light, so that lights on the side of the view measure it, away from
+//! any peak. Samples are a check of both, with their own standard error.
+
+use std::fmt;
+
+use glam::Vec3;
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+
+use microfacet_baker::progress::Stage;
+use microfacet_baker::table_set::Settings;
+use microfacet_baker::table_spec::Quality;
+use microfacet_core::shape::s_of_gamma;
+use microfacet_model as model;
+use microfacet_sampler::{AnyBsdf, Bsdf, Compensation, Masking, Tables, Transport};
+use microfacet_tables::{Kind, Reflectance, Table};
+
+use super::specimen::{self, LobeOf, Specimen, Surface, Unmade};
+use crate::furnace::{Estimate, TOLERANCE, direction, over_lights};
+
+/// Roughnesses and cosines of views; smaller ones are outside what certificates promise.
+const SIGMAS: [f32; 6] = [0.0, 0.01, 0.1, 0.3, 1.0, 3.0];
+const VIEWS: [f32; 6] = [1e-3, 0.02, 0.1, 0.3, 0.6, 1.0];
+const PROMISED: f32 = 0.02;
+/// Standard errors that the mean of samples may be off, among some hundred rows.
+const ERRORS: f64 = 4.5;
+
+/// Shapes with an index of refraction each, such that all ends meet once.
+pub const PAIRS: [[f64; 2]; 7] = [
+    [1.501, 1.5],
+    [1.6, 1.33],
+    [2.0, 1.5],
+    [2.0, 1.0 / 1.5],
+    [3.0, 2.4],
+    [f64::INFINITY, 1.05],
+    [f64::INFINITY, 3.0],
+];
+
+/// A white surface and a view in the furnace.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// The surface.
+    pub specimen: Specimen,
+    /// Cosine of the view; below 0 it is from inside.
+    pub cos_theta: f32,
+    /// The light that returns, of 1.
+    pub returned: f64,
+    /// What one bounce returns, without compensation; with plastic that off the coat.
+    pub single: f64,
+    /// The mean weight of samples, for some rows.
+    pub sampled: Option<Estimate>,
+    /// The error that certificates state for what one bounce returns; `None` outside their domain.
+    pub certified: Option<f64>,
+}
+
+impl Row {
+    /// Whether all light returns, and no more than what is certified.
+    pub fn passed(&self) -> bool {
+        // Written so that a NaN fails.
+        let most = self.certified.map_or(TOLERANCE, |error| error.min(TOLERANCE));
+        -TOLERANCE <= self.returned - 1.0 && self.returned - 1.0 <= most && self.sampled_well()
+    }
+
+    /// Standard errors that the mean of samples is off, beyond what quadrature may be.
+    pub fn standard_errors(&self) -> Option<f64> {
+        // Of mirrors it is off by up to 9e-5.
+        const QUADRATURE: f64 = 1e-4;
+        let Estimate { mean, error } = self.sampled?;
+        let beyond = (mean - self.returned).abs() - QUADRATURE;
+        // A NaN stays one, and fails.
+        Some(if beyond <= 0.0 { 0.0 } else { beyond / error.max(1e-9) })
+    }
+
+    /// Whether samples agree with quadrature.
+    fn sampled_well(&self) -> bool {
+        self.standard_errors().is_none_or(|errors| errors <= ERRORS)
+    }
+
+    /// What the surface is, and from where it is seen.
+    pub fn name(&self) -> &'static str {
+        match self.specimen.surface {
+            Surface::Dielectric(_) if self.cos_theta > 0.0 => NAMES[1],
+            Surface::Dielectric(_) => NAMES[2],
+            Surface::Plastic(..) => NAMES[3],
+            _ => NAMES[0],
+        }
+    }
+}
+
+/// What [`Row::name`] returns.
+pub const NAMES: [&str; 4] =
+    ["mirror", "dielectric from outside", "dielectric from inside", "white plastic"];
+
+impl fmt::Display for Row {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { specimen, cos_theta, returned, single, sampled, certified } = self;
+        write!(f, "{specimen}; cos_theta {cos_theta}: 1 {:+.2e}", returned - 1.0)?;
+        write!(f, ", of which one bounce {single:.5}")?;
+        if let Some(error) = certified {
+            write!(f, ", certified to {error:.1e}")?;
+        }
+        if let Some(Estimate { mean, error }) = sampled {
+            write!(f, "; sampled {mean:.5} +- {error:.5}")?;
+        }
+        Ok(())
+    }
+}
+
+/// The albedos for a furnace of these shapes and indices, at default quality.
+///
+/// # Errors
+/// [`Unmade`] if they cannot be baked.
+pub fn tables(pairs: &[[f64; 2]], masking: Masking, settings: Settings) -> Result<Tables, Unmade> {
+    // One by one: a range of roughness takes longer than these few.
+    let specimens: Vec<Specimen> = rows(pairs, masking).into_iter().map(|(one, _)| one).collect();
+    specimen::tables(&specimens, Quality::Default, settings)
+}
+
+/// The rows of a survey: mirrors, dielectrics from both sides and white plastics.
+pub fn rows(pairs: &[[f64; 2]], masking: Masking) -> Vec<(Specimen, f32)> {
+    let surfaces = |eta: f64| {
+        let glass = Surface::Dielectric(eta);
+        [
+            (Surface::Mirror, 1.0),
+            (glass, 1.0),
+            (glass, -1.0),
+            (Surface::Plastic(eta, [1.0; 3]), 1.0),
+        ]
+    };
+    let mut rows = Vec::new();
+    for &[gamma, eta] in pairs {
+        for (surface, side) in surfaces(eta) {
+            for sigma in SIGMAS {
+                let lobe = if sigma == 0.0 { LobeOf::Smooth } else { LobeOf::StudentT };
+                let compensation = Compensation::KullaConty;
+                let sigma = [sigma; 2];
+                let specimen = Specimen { lobe, sigma, gamma, surface, masking, compensation };
+                rows.extend(VIEWS.map(|cos| (specimen, side * cos)));
+            }
+        }
+    }
+    rows
+}
+
+/// The estimated seconds of so many rows on the current threads.
+pub fn seconds(rows: usize, samples: usize) -> f64 {
+    // Microseconds of a row's quadrature, and of a sample, of which every fifth row has some: 12 s
+    // for the 1,008 rows of `microfacet-bake bsdf --only furnace --threads 1`.
+    let one = 7_000.0 + 0.05 * samples as f64;
+    1e-6 * one * rows as f64 / rayon::current_num_threads() as f64
+}
+
+/// Runs the furnace for each row with the albedos of `tables`; every fifth row is also sampled.
+///
+/// # Errors
+/// [`Unmade`] for a surface that cannot be made.
+pub fn run(
+    tables: &Tables,
+    rows: &[(Specimen, f32)],
+    samples: usize,
+    seed: u64,
+    stage: &Stage,
+) -> Result<Vec<Row>, Unmade> {
+    stage.split(rows.len());
+    let one = |(i, &(specimen, cos)): (usize, &(Specimen, f32))| {
+        let row = row(
+            tables,
+            specimen,
+            cos,
+            if i % 5 == 2 { samples } else { 0 },
+            seed.wrapping_add(i as u64),
+        );
+        stage.step();
+        row
+    };
+    rows.par_iter().enumerate().map(one).collect()
+}
+
+fn row(
+    tables: &Tables,
+    specimen: Specimen,
+    cos_theta: f32,
+    samples: usize,
+    seed: u64,
+) -> Result<Row, Unmade> {
+    let whole = specimen.bsdf(tables)?;
+    let v = direction(cos_theta);
+    let single = single(&specimen, cos_theta)?;
+    // A base is seen from outside, and what the coat would transmit is no part of it.
+    let sides: &[f32] =
+        if matches!(specimen.surface, Surface::Dielectric(_)) { &[1.0, -1.0] } else { &[1.0] };
+    let returned = single + broad(&whole, &specimen.facets().bsdf(tables)?, v, sides);
+    let sampled = (samples > 0).then(|| sampled(&whole, v, samples, seed));
+    let promised = cos_theta.abs() >= PROMISED && specimen.lobe != LobeOf::Smooth;
+    let certified = if promised { certified(tables, &specimen) } else { None };
+    Ok(Row { specimen, cos_theta, returned, single, sampled, certified })
+}
+
+/// The light of one bounce off and through facets, by the model.
+fn single(specimen: &Specimen, cos_theta: f32) -> Result<f64, Unmade> {
+    let Specimen { sigma: [sigma, _], gamma, surface, masking, .. } = *specimen;
+    let (sigma, cos) = (f64::from(sigma), f64::from(cos_theta.abs()));
+    let unmade = |why: model::ParameterError| Unmade::new(specimen, &why);
+    let shape = model::Shape::new(gamma).map_err(unmade)?;
+    let integrator = model::AlbedoIntegrator::new(shape, 1e-6);
+    let (eta, transmits) = match surface {
+        Surface::Dielectric(eta) => (eta, true),
+        Surface::Plastic(eta, _) => (eta, false),
+        _ => {
+            let [mirror] =
+                integrator.reflection(sigma, cos, |_| [1.0]).map_err(unmade)?.of(masking);
+            return Ok(mirror);
+        }
+    };
+    // As single precision has it.
+    let eta = f64::from(eta as f32);
+    let eta = if cos_theta > 0.0 { eta } else { 1.0 / eta };
+    let pane = model::fresnel::Dielectric::new(eta).map_err(unmade)?;
+    let fresnel = |mu| [pane.reflectance(mu)];
+    let [reflected] = if eta < 1.0 {
+        let kink = ((1.0 - eta) * (1.0 + eta)).sqrt();
+        integrator.reflection_with_kink(sigma, cos, kink, fresnel)
+    } else {
+        integrator.reflection(sigma, cos, fresnel)
+    }
+    .map_err(unmade)?
+    .of(masking);
+    if !transmits {
+        return Ok(reflected);
+    }
+    let [transmitted] = integrator.transmission(sigma, cos, pane).map_err(unmade)?.of(masking);
+    Ok(reflected + transmitted)
+}
+
+/// ∫ of what one f has over another times the cosine, over lights on some sides of the surface.
+fn broad(whole: &AnyBsdf, facets: &AnyBsdf, v: Vec3, sides: &[f32]) -> f64 {
+    over_lights(|sin, cos| {
+        let more = |side: f32| {
+            let l = Vec3::new(sin, 0.0, side * cos);
+            let [f, g] = [whole, facets].map(|bsdf| bsdf.eval(v, l, Transport::Importance)[0]);
+            f64::from(f) - f64::from(g)
+        };
+        sides.iter().map(|&side| more(side)).sum()
+    })
+}
+
+/// The mean weight of samples.
+fn sampled(bsdf: &AnyBsdf, v: Vec3, samples: usize, seed: u64) -> Estimate {
+    let mut random = StdRng::seed_from_u64(seed);
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for _ in 0..samples {
+        let (choice, u) = (random.random(), [random.random(), random.random()]);
+        let sample = bsdf.sample(v, choice, u, Transport::Importance);
+        let weight = sample.map_or(0.0, |sample| f64::from(sample.weight[0]));
+        (sum, squares) = (sum + weight, squares + weight * weight);
+    }
+    let n = samples as f64;
+    let mean = sum / n;
+    Estimate { mean, error: ((squares / n - mean * mean).max(0.0) / n).sqrt() }
+}
+
+/// The largest error that certificates state for the light of one bounce: a dielectric's is in what
+/// it reflects and in what it transmits.
+fn certified(tables: &Tables, specimen: &Specimen) -> Option<f64> {
+    // Tables have the dense side's index over the thin side's.
+    let index = match specimen.surface {
+        Surface::Dielectric(eta) | Surface::Plastic(eta, _) => Some(eta.max(1.0 / eta)),
+        _ => None,
+    };
+    let conductor = index.is_none();
+    let embedded = Tables::embedded();
+    let tables = if conductor { &embedded } else { tables };
+    let (sigma, shape) = (f64::from(specimen.sigma[0]), s_of_gamma(specimen.gamma));
+    let within =
+        |[low, high]: [f64; 2], x: f64| low * (1.0 - 1e-6) <= x && x <= high * (1.0 + 1e-6);
+    let read = tables.tables().iter().filter(|table| {
+        let reflectance = table.subject.reflectance;
+        let same = match index {
+            Some(eta) => reflectance.and_then(|of| of.indices()).is_some_and(|of| within(of, eta)),
+            None => reflectance == Some(Reflectance::Moments),
+        };
+        let covers = table.subject.covers.is_some_and(|covers| {
+            within(covers.s, shape) && covers.sigma.is_none_or(|range| within(range, sigma))
+        });
+        table.kind == Kind::Albedo && same && covers
+    });
+    let error = |table: &Table| -> f64 {
+        let wanted =
+            |key: &str| if conductor { key == "e_max_error" } else { key.ends_with("_max_error") };
+        table.certificate.iter().filter(|(key, _)| wanted(key)).map(|(_, &error)| error).sum()
+    };
+    read.map(error).reduce(f64::max)
+}

@@ -1,0 +1,241 @@
+//! BSDFs as data, from which they are made, printed and baked for.
+
+use std::fmt;
+
+use microfacet_baker::plan::{Options, Plan};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{Settings, Target, bake_with};
+use microfacet_baker::table_spec::{GAMMA_MIN, Quality};
+use microfacet_sampler::lobe::Smooth;
+use microfacet_sampler::{
+    AnyBsdf, BindError, Compensation, Conductor, ConductorFresnel, Dielectric, Ggx, Lobe, Masking,
+    MaterialError, Metal, Plastic, Skew, StandIn, Tables,
+};
+use microfacet_tables::Precision;
+
+/// The lobe of a specimen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LobeOf {
+    /// From the default tables.
+    StudentT,
+    /// The same, prepared for reflection.
+    Bounded,
+    /// In closed form; γ is 2.
+    Ggx,
+    /// Tilted and turned by angles.
+    Ellipsoid([f64; 3]),
+    /// σ = 0.
+    Smooth,
+}
+
+/// What light meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Surface {
+    /// A conductor with F = 1.
+    Mirror,
+    /// A conductor with Schlick's reflectance.
+    Schlick([f32; 3]),
+    /// A conductor by Fresnel's equations.
+    Metal(Metal),
+    /// A dielectric of an index of refraction.
+    Dielectric(f64),
+    /// A coat of an index over a base.
+    Plastic(f64, [f32; 3]),
+}
+
+/// A BSDF as data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Specimen {
+    /// The lobe.
+    pub lobe: LobeOf,
+    /// σx and σy, as single precision has them.
+    pub sigma: [f32; 2],
+    /// γ.
+    pub gamma: f64,
+    /// What light meets.
+    pub surface: Surface,
+    /// The form of masking.
+    pub masking: Masking,
+    /// The compensation.
+    pub compensation: Compensation,
+}
+
+/// Why a specimen or its tables cannot be made.
+#[derive(Debug)]
+pub struct Unmade(String);
+
+impl fmt::Display for Unmade {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Unmade {}
+
+impl Unmade {
+    pub(super) fn new(specimen: &Specimen, why: &dyn fmt::Display) -> Self {
+        Self(format!("{specimen}: {why}"))
+    }
+}
+
+impl Specimen {
+    /// The lobe, from the default tables.
+    ///
+    /// # Errors
+    /// [`Unmade`] for a shape that they do not cover.
+    pub fn lobe_of_tables(&self) -> Result<Lobe, Unmade> {
+        self.lobe().map_err(|why| Unmade::new(self, &why))
+    }
+
+    fn lobe(&self) -> Result<Lobe, MaterialError> {
+        let tables = Tables::embedded();
+        let sigma = self.sigma.map(f64::from);
+        Ok(match self.lobe {
+            LobeOf::StudentT => tables.student_t(sigma, self.gamma)?.into(),
+            LobeOf::Bounded => tables.student_t(sigma, self.gamma)?.bounded().into(),
+            LobeOf::Ggx => Ggx::new(self.sigma)?.into(),
+            LobeOf::Ellipsoid(theta) => {
+                let skew = Skew::new(sigma, theta).expect("angles within a right angle");
+                tables.ellipsoid(skew, self.gamma)?.into()
+            }
+            LobeOf::Smooth => Smooth.into(),
+        })
+    }
+
+    /// The same with another γ within the family; GGX becomes a Student-t.
+    #[must_use]
+    pub fn reshaped(self, factor: f64) -> Self {
+        let lobe = if self.lobe == LobeOf::Ggx { LobeOf::StudentT } else { self.lobe };
+        // Not below the limit of the default tables. Beckmann times anything is Beckmann.
+        Self { lobe, gamma: (self.gamma * factor).max(GAMMA_MIN), ..self }
+    }
+
+    /// Its facets alone, without a base and without compensation.
+    #[must_use]
+    pub fn facets(self) -> Self {
+        let surface = match self.surface {
+            Surface::Plastic(eta, _) => Surface::Dielectric(eta),
+            other => other,
+        };
+        Self { surface, compensation: Compensation::None, ..self }
+    }
+
+    /// The BSDF, with a dielectric's albedos from `tables`, a conductor's and the lobe from the
+    /// default ones. The albedo of a round lobe stands in.
+    ///
+    /// # Errors
+    /// [`Unmade`] where tables or parameters do not allow it.
+    pub fn bsdf(&self, tables: &Tables) -> Result<AnyBsdf, Unmade> {
+        self.bound(tables).map_err(|why| Unmade::new(self, &why))
+    }
+
+    fn bound(&self, tables: &Tables) -> Result<AnyBsdf, BindError> {
+        let lobe = self.lobe()?;
+        let (form, stand_in) = (self.compensation, StandIn::Round);
+        let conductor = |lobe: Lobe, fresnel: ConductorFresnel| {
+            let conductor = Conductor::new(lobe, fresnel).with_masking(self.masking);
+            Ok(conductor.compensated(&Tables::embedded(), form, stand_in)?.into())
+        };
+        match self.surface {
+            Surface::Mirror => conductor(lobe, ConductorFresnel::mirror()),
+            Surface::Schlick(f0) => conductor(lobe, ConductorFresnel::schlick(f0)?),
+            Surface::Metal(metal) => conductor(lobe, metal.into()),
+            Surface::Dielectric(eta) => {
+                let glass = Dielectric::new(lobe, eta)?.with_masking(self.masking);
+                Ok(glass.compensated(tables, form, stand_in)?.into())
+            }
+            Surface::Plastic(eta, base) => {
+                let masking = self.masking;
+                Ok(Plastic::new_masked(lobe, eta, base, masking, tables, form, stand_in)?.into())
+            }
+        }
+    }
+
+    /// The index of refraction whose albedos are needed, of a round lobe of this σ; `None` if none
+    /// are.
+    fn wanted(&self) -> Option<[f64; 2]> {
+        let eta = match self.surface {
+            Surface::Dielectric(eta) if self.compensation != Compensation::None => eta,
+            Surface::Plastic(eta, _) => eta,
+            _ => return None,
+        };
+        let [x, y] = self.sigma.map(f64::from);
+        let area = match self.lobe {
+            LobeOf::Smooth => return None,
+            LobeOf::Ellipsoid(theta) => {
+                let Skew { p, r, .. } = Skew::new([x, y], theta).ok()?;
+                f64::from(p as f32) * f64::from(r as f32)
+            }
+            _ if x == y => return Some([x, eta]),
+            _ => x * y,
+        };
+        Some([area.sqrt(), eta])
+    }
+}
+
+/// The recipe of the dielectric albedos that some specimens need.
+pub fn recipe(specimens: &[Specimen]) -> String {
+    let material = |(i, ([sigma, eta], specimen)): (usize, ([f64; 2], &Specimen))| {
+        let Specimen { gamma, masking, .. } = specimen;
+        format!(
+            "[[material]]\nname = \"{i}\"\nsigma = {sigma}\ngamma = {gamma}\n\
+             fresnel = {{ dielectric = {eta} }}\nmasking = \"{masking}\"\n"
+        )
+    };
+    // One for each interface: specimens may share it.
+    let mut wanted: Vec<([f64; 2], &Specimen)> = Vec::new();
+    for specimen in specimens {
+        let Some(interface) = specimen.wanted() else { continue };
+        let same = |(of, other): &([f64; 2], &Specimen)| {
+            (*of, other.gamma, other.masking) == (interface, specimen.gamma, specimen.masking)
+        };
+        if !wanted.iter().any(same) {
+            wanted.push((interface, specimen));
+        }
+    }
+    wanted.into_iter().enumerate().map(material).collect()
+}
+
+/// The albedos that some specimens need, baked at a quality.
+///
+/// # Errors
+/// [`Unmade`] if they cannot be baked.
+pub fn tables(
+    specimens: &[Specimen],
+    quality: Quality,
+    settings: Settings,
+) -> Result<Tables, Unmade> {
+    let recipe = recipe(specimens);
+    if recipe.is_empty() {
+        return Ok(Tables::embedded());
+    }
+    let failed = |why: &dyn fmt::Display| Unmade(format!("albedos of dielectrics: {why}"));
+    let scene = Scene::from_recipe_str(&recipe).map_err(|why| failed(&why))?;
+    // Their lobes are in the default set.
+    let options = Options { embedded: true, ..Options::default() };
+    let plan = Plan::new(&scene, options).map_err(|why| failed(&why))?;
+    let target = Target::Quality(quality, Precision::F32);
+    Ok(bake_with(&plan, target, settings).map_err(|why| failed(&why))?.set)
+}
+
+/// Prints the parameters by the names of a recipe.
+impl fmt::Display for Specimen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { lobe, sigma: [x, y], gamma, surface, masking, compensation } = self;
+        match surface {
+            Surface::Mirror => f.write_str("mirror")?,
+            Surface::Schlick(f0) => write!(f, "conductor of f0 {f0:?}")?,
+            Surface::Metal(metal) => f.write_str(metal.name())?,
+            Surface::Dielectric(eta) => write!(f, "dielectric of eta {eta}")?,
+            Surface::Plastic(eta, base) => write!(f, "plastic of eta {eta} and base {base:?}")?,
+        }
+        match lobe {
+            LobeOf::StudentT => f.write_str(", Student-t")?,
+            LobeOf::Bounded => f.write_str(", bounded")?,
+            LobeOf::Ggx => f.write_str(", GGX in closed form")?,
+            LobeOf::Ellipsoid(theta) => write!(f, ", theta {theta:?}")?,
+            LobeOf::Smooth => return f.write_str(", smooth"),
+        }
+        write!(f, ", sigma {x},{y}, gamma {gamma}, {masking}, {compensation:?}")
+    }
+}

@@ -1,0 +1,294 @@
+//! The white furnace: with F = 1 all light must come back, and any deviation is an error.
+//!
+//! Single scattering is computed with the model, by quadrature; the compensation comes from tables,
+//! as in a renderer. The random walk is a reference independent of both.
+
+use glam::{DVec3, Vec3};
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+
+use microfacet_baker::bake::albedo::Domain;
+use microfacet_baker::interval::Interval;
+use microfacet_baker::progress::Stage;
+use microfacet_core::shape::gamma_of_s;
+use microfacet_model as model;
+use microfacet_sampler::albedo::Albedo;
+use microfacet_sampler::{Masking, MaterialError, Tables};
+use microfacet_tables::{Axis, Covered, Kind, LobeEntry, Reflectance, Subject, Table};
+
+/// Allowed deviation from 1 with the Kulla–Conty lobe
+/// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).
+pub const TOLERANCE: f64 = 2e-3;
+/// Bounces after which a walk is abandoned; it then counts as energy lost.
+const LIMIT: usize = 1_000_000;
+/// Walks that share a random number generator.
+const BATCH: usize = 1000;
+
+/// One material and view in the furnace.
+#[derive(Clone, Copy, Debug)]
+pub struct Furnace {
+    /// Roughness.
+    pub sigma: f64,
+    /// Shape.
+    pub gamma: f64,
+    /// Cosine of the view.
+    pub cos_theta: f64,
+    /// E by the model's quadrature: the share of light that one bounce returns.
+    pub single: f64,
+    /// The share with Turquin's scaling
+    /// ([2019](https://blog.selfshadow.com/publications/turquin/ms_comp_final.pdf)).
+    pub turquin: f64,
+    /// The share with the Kulla–Conty lobe.
+    pub kulla_conty: f64,
+}
+
+/// A mean and its standard error.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    /// The mean.
+    pub mean: f64,
+    /// Its standard error.
+    pub error: f64,
+}
+
+/// The result of the random walk.
+#[derive(Clone, Copy, Debug)]
+pub struct Walk {
+    /// Light that left after its first bounce: the height-correlated E.
+    pub single: Estimate,
+    /// All light that left.
+    pub total: Estimate,
+    /// Mean number of bounces.
+    pub bounces: f64,
+}
+
+/// Runs the furnace for one material and view; σ = 0 is a mirror, and a view at the horizon is
+/// raised to cos θ = 1e-30, one above 1 lowered to that.
+///
+/// # Errors
+/// [`MaterialError`] for a material that the tables do not cover.
+pub fn furnace(
+    tables: &Tables,
+    masking: Masking,
+    sigma: f64,
+    gamma: f64,
+    cos_theta: f64,
+) -> Result<Furnace, MaterialError> {
+    let albedo = tables.albedo(sigma, gamma, masking)?;
+    let cos = (cos_theta as f32).max(1e-30).clamp(1e-30, 1.0);
+    let shape = model::Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
+    let exact = model::AlbedoIntegrator::new(shape, 1e-6)
+        .reflection(sigma, f64::from(cos), |_| [1.0])
+        .expect("the tables hold sigma, and the cosine is that of a view");
+    let [single] = exact.of(masking);
+    let turquin = single * f64::from(albedo.turquin(direction(cos), 1.0));
+    let kulla_conty = single + lobe(&albedo, cos);
+    Ok(Furnace { sigma, gamma, cos_theta, single, turquin, kulla_conty })
+}
+
+/// ∫ of the compensating lobe times the cosine over all lights.
+fn lobe(albedo: &Albedo, cos_theta: f32) -> f64 {
+    let v = direction(cos_theta);
+    over_lights(|sin, cos| f64::from(albedo.compensation(v, Vec3::new(sin, 0.0, cos))))
+}
+
+/// ∫ f cos θ over the lights of a hemisphere, of an f that does not depend on the azimuth, given
+/// sin θ and cos θ.
+///
+/// By the midpoint rule in ln tan θ: a smooth surface loses its light at grazing, and one of heavy
+/// tails turns within its roughness of the normal. In a step of the cosine's logarithm that turn
+/// would be lost, 2.5e-4 of the integral at σ = 0.01 and γ = 1.501.
+pub(crate) fn over_lights(f: impl Fn(f32, f32) -> f64) -> f64 {
+    const STEPS: usize = 4000;
+    /// Lights closer than e⁻¹⁶ to the normal contribute nothing, nor those closer than e⁻³⁰ to the
+    /// horizon.
+    const RANGE: [f64; 2] = [-16.0, 30.0];
+    let step = (RANGE[1] - RANGE[0]) / STEPS as f64;
+    let at = |i: usize| {
+        let tan = libm::exp(RANGE[0] + (i as f64 + 0.5) * step);
+        let cos = 1.0 / libm::hypot(1.0, tan);
+        let sin = tan * cos;
+        f(sin as f32, cos as f32) * (sin * cos) * (sin * cos) * step
+    };
+    2.0 * std::f64::consts::PI * (0..STEPS).map(at).sum::<f64>()
+}
+
+/// A view at this cosine, for isotropic lobes.
+pub fn direction(cos: f32) -> Vec3 {
+    Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
+}
+
+/// The furnace over the domain of one albedo table.
+#[derive(Clone, Copy, Debug)]
+pub struct Survey {
+    /// The form of masking.
+    pub masking: Masking,
+    /// Number of materials and views.
+    pub points: usize,
+    /// Allowed deviation from 1: [`TOLERANCE`], or the error of E that the table's certificate
+    /// states, if that is larger.
+    pub allowed: f64,
+    /// Where the Kulla–Conty lobe brings back the least light.
+    pub lowest: Furnace,
+    /// Where it brings back the most.
+    pub highest: Furnace,
+}
+
+impl Survey {
+    /// Whether every point is as close to 1 as is allowed.
+    pub fn passed(&self) -> bool {
+        // Written so that a NaN fails.
+        [self.lowest, self.highest].iter().all(|row| (row.kulla_conty - 1.0).abs() <= self.allowed)
+    }
+}
+
+/// Cosines of the views of a survey.
+const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1.0];
+
+/// The form of masking of each albedo table of the family, the deviation that it is allowed, and
+/// the materials of a survey of it.
+fn surveyed(tables: &Tables) -> Vec<(Masking, f64, Vec<[f64; 2]>)> {
+    let materials = |(table, masking, covers): (&Table, Masking, Covered)| {
+        let gammas = between(&table.axes[0], covers.s.map(gamma_of_s), 11);
+        let sigmas = between(&table.axes[1], covers.sigma.unwrap_or_default(), 14);
+        let pairs =
+            gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| [sigma, gamma]));
+        let stated = ["e_max_error", "e_max_error_outside"];
+        let errors = stated.iter().filter_map(|key| table.certificate.get(*key));
+        (masking, errors.copied().fold(TOLERANCE, f64::max), pairs.collect())
+    };
+    of_family(tables).map(materials).collect()
+}
+
+/// The estimated seconds of [`survey`] on the current threads.
+pub fn survey_seconds(tables: &Tables) -> f64 {
+    surveyed(tables).iter().map(|(_, _, materials)| seconds(materials.len() * VIEWS.len())).sum()
+}
+
+/// The estimated seconds of so many furnaces on the current threads.
+pub fn seconds(rows: usize) -> f64 {
+    // Microseconds for a row: 2200 of `microfacet-bake furnace --threads 1`, 3400 of the survey.
+    1e-6 * 3000.0 * rows as f64 / rayon::current_num_threads() as f64
+}
+
+/// Runs the furnace for a grid of materials between the nodes of each albedo table, with views from
+/// grazing to normal; each material is one step of the stage.
+///
+/// # Errors
+/// [`MaterialError`] if the set does not hold what it declares to cover.
+pub fn survey(tables: &Tables, stage: &Stage) -> Result<Vec<Survey>, MaterialError> {
+    let all = surveyed(tables);
+    stage.split(all.iter().map(|(_, _, materials)| materials.len()).sum());
+    all.into_iter()
+        .map(|(masking, allowed, materials)| {
+            let views = |&[sigma, gamma]: &[f64; 2]| {
+                let rows = VIEWS.map(|cos| furnace(tables, masking, sigma, gamma, cos));
+                stage.step();
+                rows
+            };
+            let rows = materials
+                .par_iter()
+                .flat_map_iter(views)
+                .collect::<Result<Vec<_>, MaterialError>>()?;
+            let order = |a: &&Furnace, b: &&Furnace| a.kulla_conty.total_cmp(&b.kulla_conty);
+            let lowest = *rows.iter().min_by(order).expect("a grid has points");
+            let highest = *rows.iter().max_by(order).expect("a grid has points");
+            Ok(Survey { masking, points: rows.len(), allowed, lowest, highest })
+        })
+        .collect()
+}
+
+/// The tables that a furnace reads, each with its form of masking and what it covers.
+fn of_family(tables: &Tables) -> impl Iterator<Item = (&Table, Masking, Covered)> {
+    let is_read = |table: &&Table| {
+        let Subject { lobe, reflectance, .. } = &table.subject;
+        table.kind == Kind::Albedo
+            && (lobe, reflectance) == (&LobeEntry::Family, &Some(Reflectance::Moments))
+    };
+    let read = tables.tables().iter().filter(is_read);
+    read.filter_map(|table| Some((table, table.subject.masking?, table.subject.covers?)))
+}
+
+/// Whether a set has tables that a furnace reads.
+pub fn has_furnace(tables: &Tables) -> bool {
+    of_family(tables).next().is_some()
+}
+
+/// The materials that a furnace can be run for with one form of masking, a rectangle a table.
+pub fn domains(tables: &Tables, masking: Masking) -> Vec<Domain> {
+    // An end that is a short number has passed through 1/(γ−1), and tables cover what is within
+    // 1e-9 of them.
+    let short = |x: f64| format!("{x:.11e}").parse().unwrap_or(x);
+    of_family(tables)
+        .filter(|(_, of, _)| *of == masking)
+        .filter_map(|(_, _, Covered { s: [low, high], sigma })| {
+            let [min, max] = sigma?.map(short);
+            let [least, most] = [high, low].map(|s| short(gamma_of_s(s)));
+            let gamma = Interval { min: least, max: most };
+            Some(Domain { gamma, sigma: Interval { min, max } })
+        })
+        .collect()
+}
+
+/// `count` quantities of an axis in a range, between its nodes; for an axis of a single node, that
+/// node.
+fn between(axis: &Axis, range: [f64; 2], count: usize) -> Vec<f64> {
+    let [first, last] = axis.ends();
+    let mut ends = range.map(|x| axis.coordinate(x).unwrap_or(f64::NAN).clamp(first, last));
+    ends.sort_by(f64::total_cmp);
+    let [low, high] = ends;
+    let count = if low == high { 1 } else { count };
+    let at = |i: usize| low + (high - low) * (i as f64 + 0.43) / count as f64;
+    (0..count).filter_map(|i| axis.quantity(at(i))).collect()
+}
+
+/// The estimated seconds of [`walk`] on the current threads.
+pub fn walk_seconds(sigma: f64, gamma: f64, walks: usize) -> f64 {
+    // Microseconds for a ray, of which long tails take many bounces: fitted to `microfacet-bake
+    // furnace --threads 1 --walks 1e5`, within a factor of two for sigma of 0.3 to 3.
+    let ray = 1.0 + 0.2 * sigma / (gamma - 1.5);
+    1e-6 * ray * walks as f64 / rayon::current_num_threads() as f64
+}
+
+/// Follows `walks` rays on the microsurface, in parallel and counted in a stage of the progress;
+/// the same seed gives the same result on any number of threads.
+///
+/// # Errors
+/// [`model::ParameterError`] for parameters outside the family.
+pub fn walk(
+    sigma: f64,
+    gamma: f64,
+    cos_theta: f64,
+    walks: usize,
+    seed: u64,
+    stage: &Stage,
+) -> Result<Walk, model::ParameterError> {
+    stage.split(walks.div_ceil(BATCH));
+    let material = model::StudentT::new(sigma, gamma)?;
+    let v = DVec3::new((1.0 - cos_theta * cos_theta).max(0.0).sqrt(), 0.0, cos_theta);
+    let batch = |i: usize| {
+        let mut random = rand::rngs::StdRng::seed_from_u64(seed.wrapping_add(i as u64));
+        let mut counts = [0_usize; 3];
+        for _ in 0..BATCH.min(walks - i * BATCH) {
+            if let Some((_, bounces)) = material.walk(v, LIMIT, &mut || random.random()) {
+                counts[0] += usize::from(bounces == 1);
+                counts[1] += 1;
+                counts[2] += bounces;
+            }
+        }
+        stage.step();
+        counts
+    };
+    let add = |a: [usize; 3], b: [usize; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+    let [first, out, bounces] =
+        (0..walks.div_ceil(BATCH)).into_par_iter().map(batch).reduce(|| [0; 3], add);
+    let estimate = |count: usize| {
+        let mean = count as f64 / walks as f64;
+        Estimate { mean, error: (mean * (1.0 - mean) / walks as f64).sqrt() }
+    };
+    Ok(Walk {
+        single: estimate(first),
+        total: estimate(out),
+        bounces: bounces as f64 / walks as f64,
+    })
+}

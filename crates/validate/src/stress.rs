@@ -1,0 +1,230 @@
+//! Stress test: runs every public function of sampler and model at generated corners and random
+//! points, and counts violations.
+//!
+//! A violation is a NaN, an infinity, a value out of range, a normal that is not of unit length,
+//! lies below the horizon or faces away, or a broken monotonicity. Errors of the single-precision
+//! sampler against the model are measured along the way, by region.
+
+mod bsdf;
+mod bsdfs;
+mod checks;
+mod corners;
+mod derived;
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use microfacet_baker::progress::Stage;
+use microfacet_baker::table_spec::GAMMA_WHOLE;
+use microfacet_sampler::{MaterialError, Tables};
+
+use super::configuration::shapes;
+
+use corners::{corner_materials, corner_points, random_material, random_points};
+
+/// Points drawn for each random material.
+const POINTS_PER_MATERIAL: u64 = 256;
+
+/// One material, view and pair of random numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Point {
+    /// σx and σy.
+    pub sigma: [f32; 2],
+    /// γ.
+    pub gamma: f64,
+    /// Polar angle of the view, radians; up to 1e-6 beyond π/2.
+    pub theta: f64,
+    /// Azimuth of the view, radians.
+    pub phi: f64,
+    /// Random numbers.
+    pub u: [f32; 2],
+}
+
+impl Point {
+    /// The view as `query` forms it.
+    pub fn view(&self) -> Vec3 {
+        direction(self.theta, self.phi)
+    }
+}
+
+/// The direction of two angles, rounded as a renderer has it.
+pub(super) fn direction(theta: f64, phi: f64) -> Vec3 {
+    let (sin, cos) = theta.sin_cos();
+    DVec3::new(sin * phi.cos(), sin * phi.sin(), cos).as_vec3()
+}
+
+/// Prints the command that shows the point.
+impl fmt::Display for Point {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { sigma: [x, y], gamma, theta, phi, u: [u1, u2] } = self;
+        write!(
+            f,
+            "printf 'sigma_x,sigma_y,gamma,theta,phi,u1,u2\\n{x:?},{y:?},{gamma:?},{theta:?},{phi:?},{u1:?},{u2:?}\\n' | \
+             microfacet-bake query normal --input -"
+        )
+    }
+}
+
+/// The largest of some values, and its point.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Worst {
+    /// The largest value.
+    pub value: f64,
+    /// Its point.
+    pub at: Point,
+}
+
+impl Worst {
+    fn see(&mut self, value: f64, at: &Point) {
+        // A NaN counts as the worst.
+        if !(value <= self.value) {
+            *self = Self { value, at: *at };
+        }
+    }
+}
+
+/// A broken rule.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Violation {
+    /// Number of times.
+    pub count: u64,
+    /// The offending value that was largest in magnitude.
+    pub worst: Worst,
+}
+
+/// Quantities whose error against the model is measured, in the order of [`Region::errors`].
+pub const ERRORS: [&str; 4] = ["g1 abs", "d rel", "pdf rel", "cdf abs"];
+
+/// The result for a part of the domain.
+#[derive(Clone, Debug, Default)]
+pub struct Region {
+    /// Points tested.
+    pub points: u64,
+    /// Largest errors, in the order of [`ERRORS`].
+    pub errors: [Worst; 4],
+    /// Broken rules, by name.
+    pub violations: BTreeMap<&'static str, Violation>,
+}
+
+impl Region {
+    fn merge(&mut self, other: &Self) {
+        self.points += other.points;
+        for (mine, theirs) in self.errors.iter_mut().zip(&other.errors) {
+            mine.see(theirs.value, &theirs.at);
+        }
+        for (&rule, theirs) in &other.violations {
+            let mine = self.violations.entry(rule).or_default();
+            mine.count += theirs.count;
+            mine.worst.see(theirs.worst.value, &theirs.worst.at);
+        }
+    }
+}
+
+/// Names of the parts of the domain by shape.
+pub const SHAPES: [&str; 4] = ["gamma < 1.8", "gamma < 4", "gamma < 1e4", "to inf"];
+/// Names of the parts of the domain by view.
+pub const VIEWS: [&str; 4] = ["near n", "between", "grazing", "below horizon"];
+/// Names of the parts of the domain by roughness.
+pub const ROUGHNESSES: [&str; 2] = ["ordinary", "extreme"];
+
+/// The result of a stress run, by region.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Indexed by position in [`SHAPES`], [`VIEWS`] and [`ROUGHNESSES`]. Not on the stack, which a
+    /// run of many points on many threads would overflow: it keeps some reports for each halving.
+    pub regions: Box<[[[Region; ROUGHNESSES.len()]; VIEWS.len()]; SHAPES.len()]>,
+}
+
+impl Report {
+    fn region(&mut self, at: &Point) -> &mut Region {
+        let shape = [GAMMA_WHOLE, 4.0, 1e4].iter().filter(|&&gamma| at.gamma >= gamma).count();
+        let cos = at.view().z;
+        let view = match cos {
+            _ if cos < 0.0 => 3,
+            _ if cos < 1e-2 => 2,
+            _ if at.theta < 1e-2 => 0,
+            _ => 1,
+        };
+        let inside = at.sigma.iter().all(|sigma| (1e-4..=10.0).contains(sigma));
+        &mut self.regions[shape][view][usize::from(!inside)]
+    }
+
+    fn merge(mut self, other: Self) -> Self {
+        let (mine, theirs) = (self.regions.as_flattened_mut(), other.regions.as_flattened());
+        mine.as_flattened_mut().iter_mut().zip(theirs.as_flattened()).for_each(|(a, b)| a.merge(b));
+        self
+    }
+
+    /// All regions together.
+    pub fn total(&self) -> Region {
+        let mut total = Region::default();
+        self.regions.as_flattened().as_flattened().iter().for_each(|region| total.merge(region));
+        total
+    }
+}
+
+/// The estimated seconds of a run of at least so many points on the current threads.
+pub fn seconds(tables: &Tables, points: u64) -> f64 {
+    // Microseconds of `microfacet-bake validate --stress --threads 1` for a point.
+    let all = points.max(corner_count(&corner_materials(tables)));
+    1e-6 * 3.0 * all as f64 / rayon::current_num_threads() as f64
+}
+
+/// The number of corner points, about: it varies a little between materials.
+fn corner_count(materials: &[([f32; 2], f64)]) -> u64 {
+    let first = materials
+        .first()
+        .map_or(0, |&(sigma, gamma)| corner_points(sigma, gamma, 0).iter().map(Vec::len).sum());
+    (first * materials.len()) as u64
+}
+
+/// Tests all corners and then random points until `points` are tested, and counts them in a stage
+/// of the progress; the same `seed` gives the same points. A set without lobes has none.
+///
+/// # Errors
+/// [`MaterialError`] if the set does not hold what it declares to cover.
+pub fn run(
+    tables: &Tables,
+    points: u64,
+    seed: u64,
+    stage: &Stage,
+) -> Result<Report, MaterialError> {
+    let corners = corner_materials(tables);
+    stage.split(usize::try_from(points.max(corner_count(&corners))).unwrap_or(usize::MAX));
+    let corners = corners
+        .par_iter()
+        .enumerate()
+        .map(|(i, &(sigma, gamma))| {
+            let mut report = Report::default();
+            let points = corner_points(sigma, gamma, i);
+            let count = points.iter().map(Vec::len).sum();
+            checks::check(tables, sigma, gamma, points, &mut report)?;
+            stage.steps(count);
+            Ok::<_, MaterialError>(report)
+        })
+        .try_reduce(Report::default, |a, b| Ok(a.merge(b)))?;
+    let shapes = shapes(tables);
+    if shapes.is_empty() {
+        return Ok(corners);
+    }
+    let left = points.saturating_sub(corners.total().points).div_ceil(POINTS_PER_MATERIAL);
+    let random = (0..left)
+        .into_par_iter()
+        .fold(
+            || Ok(Report::default()),
+            |report: Result<Report, MaterialError>, i| {
+                let mut report = report?;
+                let mut numbers = corners::numbers(seed, i);
+                let (sigma, gamma) = random_material(tables, &shapes, &mut numbers);
+                let points = random_points(sigma, gamma, POINTS_PER_MATERIAL, &mut numbers);
+                checks::check(tables, sigma, gamma, points, &mut report)?;
+                stage.steps(POINTS_PER_MATERIAL as usize);
+                Ok(report)
+            },
+        )
+        .try_reduce(Report::default, |a, b| Ok(a.merge(b)))?;
+    Ok(corners.merge(random))
+}
