@@ -260,8 +260,8 @@ fn a_wrong_table_is_noticed() {
 }
 
 #[test]
-fn materials_without_such_a_table_say_what_helps() {
-    for (name, word) in [("silent", "fresnel"), ("gold", "append")] {
+fn materials_without_such_a_table_are_named() {
+    for (name, word) in [("silent", "no such albedo"), ("gold", "which holds")] {
         let why = SET.material_albedo(name).unwrap_err();
         assert!(why.to_string().contains(name) && why.to_string().contains(word), "{why}");
     }

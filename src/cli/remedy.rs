@@ -108,6 +108,7 @@ mod tests {
             (told(&StoreError::TooLarge("out".into(), "9 bytes".into())), "(--per-set)"),
             (told(&ConvertError::ShapeNeeded(DistributionKind::StudentT)), "(--shape)"),
             (told(&MerlError::Dimensions([1, 2, 3])), "--input"),
+            (told(&MaterialError::NoAlbedo("silent".into())), "(--albedo)"),
             (told(&unbound), "\n[[material]]\nname = \"another name\"\nsigma = [0.4, 0.1]\n"),
             (told(&set.material("silver").unwrap_err()), "\n[[material]]\nname = \"silver\"\n"),
             (
