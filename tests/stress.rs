@@ -2,6 +2,7 @@
 //! tables.
 
 use microfacet_baker::progress::Stage;
+use microfacet_report::words::command::query;
 use microfacet_sampler::Tables;
 use microfacet_tables::Kind;
 use microfacet_validate::stress;
@@ -19,12 +20,14 @@ fn a_million_points_break_no_rule() {
     if let Some((rule, found)) = total.violations.iter().next() {
         panic!(
             "{rule}: {} times, first {:e} at\n{}",
-            found.count, found.worst.value, found.worst.at
+            found.count,
+            found.worst.value,
+            query(&found.worst.at)
         );
     }
     for region in report.regions.as_flattened().iter().map(|by_sigma| &by_sigma[0]) {
         for ((worst, promised), name) in region.errors.iter().zip(PROMISED).zip(stress::ERRORS) {
-            assert!(worst.value <= promised, "{name}: {:e} at\n{}", worst.value, worst.at);
+            assert!(worst.value <= promised, "{name}: {:e} at\n{}", worst.value, query(&worst.at));
         }
     }
 }

@@ -10,6 +10,7 @@ use microfacet_baker::store::StoreError;
 use microfacet_baker::table_set::BakeError;
 use microfacet_fit::convert::ConvertError;
 use microfacet_fit::merl::MerlError;
+use microfacet_report::ReportError;
 use microfacet_sampler::{BindError, MaterialError};
 
 /// An error, and what helps.
@@ -41,6 +42,9 @@ fn of(error: &dyn Any) -> Option<String> {
     }
     if let Some(MerlError::Dimensions(_)) = error.downcast_ref() {
         return Some("; --input reads a CSV of angles and D".into());
+    }
+    if let Some(ReportError::OtherSet { .. }) = error.downcast_ref() {
+        return Some(": what `microfacet-bake validate SET --json` prints".into());
     }
     if let Some(why) = error.downcast_ref::<BindError>() {
         return match why {

@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use microfacet_baker::progress::Meter;
+use microfacet_report::words::command::query;
 use microfacet_sampler::Tables;
 use microfacet_validate::stress::{
     ERRORS, ROUGHNESSES, Region, Report, SHAPES, VIEWS, run, seconds,
@@ -64,7 +65,7 @@ fn summary(report: &Report, source: &str) -> String {
             ordinary.map(|(_, region)| region.errors[i]).max_by(|a, b| a.value.total_cmp(&b.value));
         // Nothing was measured where no tilt can be compared, as below gamma = 1.8.
         if let Some(worst) = worst.filter(|worst| worst.value != 0.0) {
-            text += &format!("  {error} {:.2e}: {}{source}\n", worst.value, worst.at);
+            text += &format!("  {error} {:.2e}: {}{source}\n", worst.value, query(&worst.at));
         }
     }
     let total = report.total();
@@ -73,7 +74,7 @@ fn summary(report: &Report, source: &str) -> String {
             "BROKEN {} times: {rule}, at worst {:e}",
             violation.count, violation.worst.value
         );
-        text += &format!("\n  {}{source}\n", violation.worst.at);
+        text += &format!("\n  {}{source}\n", query(&violation.worst.at));
     }
     text + &format!("{} points\n", total.points)
 }
@@ -84,12 +85,12 @@ fn document(report: &Report, source: &str) -> serde_json::Value {
             let errors: Vec<_> = ERRORS
                 .iter()
                 .zip(&region.errors)
-                .map(|(name, worst)| json!({ "quantity": name, "max": worst.value, "query": format!("{}{source}", worst.at) }))
+                .map(|(name, worst)| json!({ "quantity": name, "max": worst.value, "query": format!("{}{source}", query(&worst.at)) }))
                 .collect();
             let violations: Vec<_> = region
                 .violations
                 .iter()
-                .map(|(rule, found)| json!({ "rule": rule, "count": found.count, "worst": found.worst.value, "query": format!("{}{source}", found.worst.at) }))
+                .map(|(rule, found)| json!({ "rule": rule, "count": found.count, "worst": found.worst.value, "query": format!("{}{source}", query(&found.worst.at)) }))
                 .collect();
             json!({
                 "shape": shape, "view": view, "sigma": sigma, "points": region.points,

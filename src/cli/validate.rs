@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use microfacet_baker::progress::Meter;
+use microfacet_report::words::command;
 use microfacet_sampler::Tables;
 use microfacet_tables::{LobeEntry, Reflectance};
 use microfacet_validate::configuration::{Configuration, configurations, shapes};
@@ -215,7 +216,7 @@ fn summary(result: &Result, options: Options, source: &str) -> String {
             report.normals.lobe.p,
             report.normals.world.p,
             options.samples,
-            report.configuration
+            command::options(&report.configuration)
         );
     }
     text

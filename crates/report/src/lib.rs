@@ -1,5 +1,13 @@
 //! A set as one HTML page: what it holds, where its errors are, and how its materials look. The
 //! page needs nothing beside it, no network, and no more than a browser.
+//!
+//! [`page()`] makes it, one section a file; [`error_map`] measures a table over two of its
+//! axes, by the rulers of its certificate; [`picture`] is the sphere of a material by the crate's
+//! own BSDFs, as the page draws it in WebGL.
+//!
+//! All drawing lives here: [`plot`] has figures of the literature and of the model as data, and
+//! writes them as SVG and PNG. [`words`] is what commands and pages say of sets, tables,
+//! certificates and verdicts, so that both say the same.
 
 mod curves;
 mod drawing;
@@ -63,8 +71,8 @@ impl fmt::Display for ReportError {
             Self::Material(why) => write!(f, "{why}"),
             Self::OtherSet { of, set } => write!(
                 f,
-                "a validation of another set ({of:?}, and this one is {set:?}); give what \
-                 `microfacet-bake validate SET --json` prints of the set that is reported"
+                "a validation of another set ({of:?}, and this one is {set:?}); give one of the set \
+                 that is reported"
             ),
             Self::Unsound(why) => write!(f, "{why}"),
         }

@@ -1,7 +1,5 @@
 //! Materials and views to test, spread over the domain that tables cover.
 
-use std::fmt;
-
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
@@ -34,17 +32,6 @@ impl Configuration {
         let (sin, cos) = self.theta.sin_cos();
         let v = DVec3::new(sin * self.phi.cos(), sin * self.phi.sin(), cos.max(0.0));
         v.as_vec3()
-    }
-}
-
-/// Prints the options of `validate` and `sample` that reproduce it.
-impl fmt::Display for Configuration {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { sigma_x, sigma_y, gamma, theta, phi, seed } = self;
-        write!(
-            f,
-            "--sigma {sigma_x},{sigma_y} --gamma {gamma} --theta {theta} --phi {phi} --seed {seed}"
-        )
     }
 }
 

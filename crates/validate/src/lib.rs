@@ -1,5 +1,14 @@
-//! Tests of tables: what the sampler draws and returns, against the model. They report errors and
-//! never repair.
+//! Tests of tables from outside: what the sampler draws and returns, against the model. They report
+//! errors and never repair, and know nothing of how a table was baked.
+//!
+//! | | |
+//! | --- | --- |
+//! | [`run`] | chi-square and Kolmogorov–Smirnov tests of drawn normals, at [`configuration`]s spread over what a set covers |
+//! | [`pdf_integral`] | the tabulated density integrates to one |
+//! | [`furnace`] | the white furnace: the share of light that a lobe returns, table against model |
+//! | [`bsdf`] | complete materials: chi-square, reciprocity, energy, and what `eval_pdf` promises |
+//! | [`stress`] | corners and edges of every axis, and rules that no input may break |
+//! | [`record`] | a run as a file, which names the set that it tested |
 
 pub mod bsdf;
 pub mod configuration;

@@ -12,7 +12,6 @@ mod corners;
 mod derived;
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -54,18 +53,6 @@ impl Point {
 pub(super) fn direction(theta: f64, phi: f64) -> Vec3 {
     let (sin, cos) = theta.sin_cos();
     DVec3::new(sin * phi.cos(), sin * phi.sin(), cos).as_vec3()
-}
-
-/// Prints the command that shows the point.
-impl fmt::Display for Point {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { sigma: [x, y], gamma, theta, phi, u: [u1, u2] } = self;
-        write!(
-            f,
-            "printf 'sigma_x,sigma_y,gamma,theta,phi,u1,u2\\n{x:?},{y:?},{gamma:?},{theta:?},{phi:?},{u1:?},{u2:?}\\n' | \
-             microfacet-bake query normal --input -"
-        )
-    }
 }
 
 /// The largest of some values, and its point.

@@ -8,7 +8,7 @@ use microfacet_validate::record::{Record, Returned, Tested, identity};
 
 use super::drawing::{error, symbols};
 use super::{ReportError, Source};
-use crate::words::{count, number};
+use crate::words::{command, count, number};
 
 /// Rows of the table of configurations.
 const WORST: usize = 5;
@@ -145,7 +145,7 @@ fn worst(record: &Record) -> Markup {
                 code {
                     @for tested in &shown {
                         "microfacet-bake validate SET --samples " (record.samples) " "
-                        (tested.configuration) "\n"
+                        (command::options(&tested.configuration)) "\n"
                     }
                 }
             }

@@ -2,6 +2,7 @@
 //! a file says is repeated as it is; who shows it escapes it.
 
 pub mod certificate;
+pub mod command;
 pub mod material;
 pub mod table;
 pub mod verdict;
