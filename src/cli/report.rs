@@ -10,7 +10,9 @@ use microfacet_report::{ReportError, Source, page, seconds};
 use microfacet_validate::record::Record;
 
 use super::words::exact_bytes;
-use super::{Done, Failure, Outcome, print, progress, summarize, tables, unwritable, write_file};
+use super::{
+    Done, Failure, Outcome, print, progress, remedy, summarize, tables, unwritable, write_file,
+};
 
 /// Write a page that shows what a set holds, where its errors are, and how its materials look.
 #[derive(clap::Args)]
@@ -49,7 +51,9 @@ pub(super) fn run(args: Args) -> Outcome {
     meter.expect(seconds(&source));
     let bar = progress::show(&meter, "drawing");
     let html = page(&source, &meter).map_err(|why| match (&why, &args.validation) {
-        (ReportError::OtherSet { .. }, Some(file)) => Failure(format!("{}: {why}", shown(file))),
+        (ReportError::OtherSet { .. }, Some(file)) => {
+            Failure(format!("{}: {}", shown(file), remedy::told(&why)))
+        }
         _ => why.into(),
     })?;
     drop(bar);
