@@ -6,9 +6,11 @@ use glam::Vec3;
 use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
-use microfacet_sampler::lobe::Bounded;
-use microfacet_sampler::{Bsdf, Conductor, Ellipsoid, Ggx, MicrofacetDistribution, StudentT, Transport};
 use microfacet_guard::{CALLS, Inputs};
+use microfacet_sampler::lobe::Bounded;
+use microfacet_sampler::{
+    Bsdf, Conductor, Ellipsoid, Ggx, MicrofacetDistribution, StudentT, Transport,
+};
 
 /// The baseline: instructions per call at this commit. A count 1 % above it fails, which is one
 /// instruction in the short paths.

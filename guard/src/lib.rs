@@ -3,7 +3,9 @@
 use glam::Vec3;
 
 use microfacet_sampler::lobe::Bounded;
-use microfacet_sampler::{Conductor, ConductorFresnel, Ellipsoid, MicrofacetDistribution, Skew, StudentT, Tables};
+use microfacet_sampler::{
+    Conductor, ConductorFresnel, Ellipsoid, MicrofacetDistribution, Skew, StudentT, Tables,
+};
 
 /// Calls of each function; a count divided by it is instructions per call.
 pub const CALLS: usize = 1000;

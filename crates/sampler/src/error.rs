@@ -75,7 +75,7 @@ pub enum MaterialError {
         /// The pairs that are covered.
         covered: String,
     },
-    /// A material that has no albedo of its own in this set: its recipe states no reflectance.
+    /// A material that has no albedo of its own in this set for the reflectance asked for.
     NoAlbedo(String),
     /// No material of that name in the set; `known` lists those it has.
     NoSuchMaterial {
