@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import subprocess
 import sys
@@ -187,7 +188,8 @@ def test_variants_after_each_other() -> None:
     done = run(program)
     assert done.returncode == 0, done.stderr
     first, _, last = map(float, done.stdout.split())
-    assert first == last
+    # Threads add what falls on a pixel in any order, which the default filter of a film rounds.
+    assert math.isclose(first, last, rel_tol=1e-6), (first, last)
 
 
 def test_channels_keep_their_colours_in_polarised_variants() -> None:
