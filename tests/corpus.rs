@@ -26,10 +26,20 @@ fn seeds_of_table_files_are_of_this_version() {
     for target in ["loader", "image"] {
         for entry in fs::read_dir(folder.join(target)).unwrap() {
             let path = entry.unwrap().path();
-            microfacet_baker::store::read(&path)
-                .unwrap_or_else(|why| panic!("{}: {why}", path.display()));
+            if !path.file_name().unwrap().to_str().unwrap().starts_with("refused_") {
+                microfacet_baker::store::read(&path)
+                    .unwrap_or_else(|why| panic!("{}: {why}", path.display()));
+            }
         }
     }
+}
+
+/// The decoder of B44 in `exr` 1.74.2 overflows on these blocks, and is never asked.
+#[test]
+fn an_image_by_another_compression_is_refused_undecoded() {
+    let image = include_bytes!("../fuzz/seeds/image/refused_b44.exr");
+    let message = microfacet_baker::store::decode_exr(image).unwrap_err().to_string();
+    assert!(message.contains("b44 compression, and tables are"), "{message}");
 }
 
 #[test]

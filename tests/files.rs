@@ -1,6 +1,9 @@
 //! Damaged images: every truncation and every flipped bit of a small table gives an error or the
 //! identical table.
 
+use std::io::Cursor;
+
+use exr::prelude::*;
 use microfacet_baker::bake::bake;
 use microfacet_baker::plan::Plan;
 use microfacet_baker::progress::Stage;
@@ -78,4 +81,54 @@ fn an_image_of_any_name_is_read_back() {
     table.name = "é м漢🎨".into();
     let bytes = encode_exr(set.provenance(), &table).unwrap();
     assert_eq!(decode_exr(&bytes).unwrap().tables(), [table]);
+}
+
+/// Nothing that the writer does not write reaches a decoder, not even with the same pixels.
+#[test]
+fn an_image_written_anew_by_another_program_is_refused() {
+    let (set, file) = small_image();
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(Cursor::new(&file))
+        .unwrap();
+    let written = |change: &dyn Fn(&mut FlatImage)| {
+        let mut image = image.clone();
+        change(&mut image);
+        let mut file = Cursor::new(Vec::new());
+        image.write().to_buffered(&mut file).unwrap();
+        decode_exr(&file.into_inner())
+    };
+    assert_eq!(written(&|_| ()).unwrap(), set);
+    let refused = |part: &str, change: &dyn Fn(&mut FlatImage)| {
+        let why = written(change).unwrap_err().to_string();
+        assert!(why.contains(&format!("OpenEXR: {part}")), "{why}");
+    };
+    for (compression, name) in [
+        (Compression::Uncompressed, "no"),
+        (Compression::RLE, "rle"),
+        (Compression::ZIP1, "zip line"),
+        (Compression::PIZ, "piz"),
+        (Compression::PXR24, "pxr24"),
+        (Compression::B44, "b44"),
+        (Compression::B44A, "b44a"),
+    ] {
+        let name = format!("{name} compression, and");
+        refused(&name, &|image| image.layer_data[0].encoding.compression = compression);
+    }
+    refused("tiles", &|image| {
+        image.layer_data[0].encoding.blocks = Blocks::Tiles(Vec2(16, 16));
+    });
+    refused("integers", &|image| {
+        let samples = &mut image.layer_data[0].channel_data.list[0].sample_data;
+        *samples = FlatSamples::U32(vec![0; samples.len()]);
+    });
+    refused("2 parts", &|image| {
+        let mut part = image.layer_data[0].clone();
+        part.attributes.layer_name = Some("other".into());
+        image.layer_data.push(part);
+    });
 }

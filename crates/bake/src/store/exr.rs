@@ -8,7 +8,8 @@
 use std::io::{BufReader, Cursor, Read};
 use std::path::Path;
 
-use exr::meta::MetaData;
+use exr::meta::header::Header;
+use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::*;
 use half::f16;
 use serde::Deserialize;
@@ -23,6 +24,9 @@ use crate::input::{self, MAX_TABLES, MAX_TEXT};
 
 /// The attribute that holds the description.
 const ATTRIBUTE: &str = "microfacet";
+
+/// How pixels are stored; nothing else is read.
+const ENCODING: Encoding = Encoding::SMALL_LOSSLESS;
 
 /// EXR channel name of a table's channel.
 fn channel_name(channel: &str) -> &str {
@@ -114,7 +118,7 @@ fn write_layer(
     attributes: LayerAttributes,
     channels: AnyChannels<FlatSamples>,
 ) -> std::result::Result<Vec<u8>, String> {
-    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
+    let layer = Layer::new(size, attributes, ENCODING, channels);
     let mut bytes = Cursor::new(Vec::new());
     Image::from_layer(layer)
         .write()
@@ -130,7 +134,7 @@ fn write_layer(
 /// [`LoadError`] for an image that is damaged or was not written by [`encode`].
 pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     let invalid = |why: String| LoadError::Invalid(why);
-    check_size(bytes).map_err(invalid)?;
+    check_header(bytes).map_err(invalid)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -190,27 +194,53 @@ fn check_samples(bytes: u64) -> std::result::Result<(), String> {
 /// alone could reach a thousand.
 const EXPANSION: usize = 64;
 
-/// Refuses a header that declares more pixels than the file can hold, before the library allocates
-/// them.
-fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
+/// Refuses what [`encode`] does not write, before any pixel is decoded.
+fn check_header(bytes: &[u8]) -> std::result::Result<(), String> {
     let meta =
         MetaData::read_from_buffered(bytes, false).map_err(|why| format!("OpenEXR: {why}"))?;
-    let promised = |header: &exr::meta::header::Header| {
-        let Vec2(width, height) = header.layer_size;
-        width.checked_mul(height)?.checked_mul(header.channels.bytes_per_pixel)
-    };
-    let total =
-        meta.headers.iter().map(promised).try_fold(0_usize, |sum, bytes| sum.checked_add(bytes?));
-    if let Some(total) = total.filter(|total| *total <= EXPANSION * bytes.len()) {
-        return check_samples(total as u64);
+    if let [header] = &meta.headers[..] {
+        check_encoding(header)?;
+        check_size(header, bytes.len())
+    } else {
+        Err(format!("OpenEXR: {} parts, and a table is an image of one", meta.headers.len()))
     }
-    let size = meta.headers.first().map_or(Vec2(0, 0), |header| header.layer_size);
+}
+
+/// No table needs decoders of other compressions, and on hostile blocks that of B44 overflows
+/// (`exr` 1.74.2, `unpack14`).
+fn check_encoding(header: &Header) -> std::result::Result<(), String> {
+    let known = |channel: &ChannelDescription| {
+        channel.sample_type != SampleType::U32 && channel.sampling == Vec2(1, 1)
+    };
+    let found = if header.compression != ENCODING.compression {
+        header.compression.to_string()
+    } else if header.deep || header.blocks != BlockDescription::ScanLines {
+        "tiles or deep pixels".into()
+    } else if !header.channels.list.iter().all(known) {
+        "integers, or channels of fewer pixels".into()
+    } else {
+        return Ok(());
+    };
     Err(format!(
-        "OpenEXR: {} x {} pixels in a file of {} bytes: the header is damaged",
-        size.0,
-        size.1,
-        bytes.len()
+        "OpenEXR: {found}, and tables are lines of floats under {}: another program wrote this \
+         image; bake it again",
+        ENCODING.compression
     ))
+}
+
+/// Refuses a header that declares more pixels than the file can hold, before the library allocates
+/// them.
+fn check_size(header: &Header, file: usize) -> std::result::Result<(), String> {
+    let Vec2(width, height) = header.layer_size;
+    let total = width
+        .checked_mul(height)
+        .and_then(|area| area.checked_mul(header.channels.bytes_per_pixel));
+    match total.filter(|total| *total <= EXPANSION * file) {
+        Some(total) => check_samples(total as u64),
+        None => Err(format!(
+            "OpenEXR: {width} x {height} pixels in a file of {file} bytes: the header is damaged"
+        )),
+    }
 }
 
 /// The description in an image's attributes.

@@ -123,6 +123,7 @@ fn moments(axes: Vec<AxisRule>, channels: Vec<&'static str>) -> Layout {
 #[cfg(test)]
 mod tests {
     use alloc::collections::BTreeSet;
+    use alloc::format;
 
     use super::*;
     use crate::axis::Mapping;
