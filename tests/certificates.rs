@@ -8,7 +8,6 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 use microfacet_baker::bake::{albedo, bake_radial};
-use microfacet_baker::certify::certificate::worst_error;
 use microfacet_baker::certify::radial::certify;
 use microfacet_baker::distribution::Named;
 use microfacet_baker::plan::{Options, Plan};
@@ -22,7 +21,9 @@ use microfacet_model::{
 };
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Skew, StudentT, Tables};
 use microfacet_tables::axis::MirroredRoot;
-use microfacet_tables::{Axis, Kind, Mapping, MaterialEntry, Precision, Provenance, Table};
+use microfacet_tables::{
+    Axis, Kind, Mapping, MaterialEntry, Precision, Provenance, Quantity, Table,
+};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -134,7 +135,7 @@ fn hold(set: &Tables) {
         let last = table.axes[0].ends()[1] * (1.0 - 1e-15);
         let found =
             along(&table.axes[0]).into_iter().map(|s| error(s.min(last))).fold(0.0, f64::max);
-        let says = worst_error(table);
+        let says = table.certificate.worst();
         println!("{} {:?}: says {says:.2e}, errs by {found:.3e}", table.name, table.precision);
         assert!(found <= says, "{} says {says:e} and errs by {found:e}", table.name);
     }
@@ -240,7 +241,7 @@ impl<'a> Own<'a> {
             worst(&self.tables[3].axes[0], &|slope| self.density_error(slope)),
         ];
         for (table, found) in self.tables.iter().zip(found) {
-            let says = worst_error(table);
+            let says = table.certificate.worst();
             println!("{}: says {says:.2e}, errs by {found:.3e}", table.name);
             assert!(found <= says, "{} of {name} says {says:e} and errs by {found:e}", table.name);
         }
@@ -314,8 +315,9 @@ fn no_view_errs_by_more(recipe: &str, lobe: &Ellipsoid, views: impl Iterator<Ite
         [0, 1, 2, 3].map(|i| (got[i] - want[i]).abs())
     };
     let errors: Vec<[f64; 4]> = views.par_iter().map(errors).collect();
-    for (i, name) in ["scale", "bias", "f82", "e"].iter().enumerate() {
-        let says = table.certificate[&format!("{name}_max_error")];
+    let quantities = [Quantity::Scale, Quantity::Bias, Quantity::F82, Quantity::E];
+    for (i, quantity) in quantities.into_iter().enumerate() {
+        let (name, says) = (quantity.name(), table.certificate.error(quantity).unwrap());
         let at = (0..views.len()).max_by(|&a, &b| errors[a][i].total_cmp(&errors[b][i])).unwrap();
         println!("{name}: says {says:.3e}, errs by {:.3e} at {}", errors[at][i], views[at]);
         assert!(errors[at][i] <= says, "{name} says {says:e}, errs by {:e}", errors[at][i]);

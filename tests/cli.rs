@@ -4,7 +4,7 @@ mod command;
 
 use microfacet_baker::store;
 use microfacet_sampler::{Lobe, Tables};
-use microfacet_tables::Kind;
+use microfacet_tables::{Kind, Quantity};
 
 use command::{ok, refused, run};
 
@@ -22,7 +22,9 @@ fn from_a_recipe_to_normals() {
     let set = store::read(&at.join("out")).unwrap();
     let Lobe::StudentT(glass) = set.material("glass").unwrap() else { panic!("not from tables") };
     assert_eq!((glass.sigma(), glass.gamma()), ([0.454, 0.454], 3.0));
-    assert!(set.table(Kind::VisibleSlope).unwrap().certificate["cdf_max_error"] < 1e-4);
+    assert!(
+        set.table(Kind::VisibleSlope).unwrap().certificate.error(Quantity::Cdf).unwrap() < 1e-4
+    );
     let error = set.student_t(0.3, 4.0).unwrap_err().to_string();
     assert!(error.contains("gamma = 3"), "{error}");
 

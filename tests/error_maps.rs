@@ -2,7 +2,6 @@
 
 use std::sync::LazyLock;
 
-use microfacet_baker::certify::certificate::worst_error;
 use microfacet_baker::plan::{AlbedoWish, Options, Plan};
 use microfacet_baker::progress::{Meter, Stage};
 use microfacet_baker::scene::Scene;
@@ -70,7 +69,7 @@ fn maps(set: &Tables) -> Vec<(&Table, ErrorMap)> {
 /// certificate's place it finds nearly that.
 fn agree(set: &Tables) {
     for (table, map) in maps(set) {
-        let (largest, certified) = (map.largest(), worst_error(table));
+        let (largest, certified) = (map.largest(), table.certificate.worst());
         let name = &table.name;
         assert!(largest <= certified, "{name}: {largest:e} above {certified:e}");
         // A certificate adds a margin of rounding, and rounds up.
@@ -141,7 +140,7 @@ fn a_wrong_value_shows_where_it_is() {
         let wrong = planted(&default, name, nodes, by);
         let table = wrong.tables().iter().find(|table| table.name == name).unwrap();
         let map = measured(&wrong, table, sides(table)[0]);
-        assert!(map.largest() > 5.0 * worst_error(table), "{name}: {:e}", map.largest());
+        assert!(map.largest() > 5.0 * table.certificate.worst(), "{name}: {:e}", map.largest());
         // The node's place in the map, by its quantities.
         let material: Vec<f64> = nodes
             .iter()

@@ -2,7 +2,6 @@
 //! smallest one that is possible.
 
 use microfacet_baker::cache::Cache;
-use microfacet_baker::certify::certificate::worst_error;
 use microfacet_baker::plan::{Options, Plan};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with};
@@ -29,7 +28,7 @@ fn bytes(set: &Tables) -> Vec<u8> {
 }
 
 fn worst<'a>(tables: impl Iterator<Item = &'a Table>) -> f64 {
-    tables.map(worst_error).fold(0.0, f64::max)
+    tables.map(|table| table.certificate.worst()).fold(0.0, f64::max)
 }
 
 #[test]

@@ -4,14 +4,13 @@ mod command;
 
 use glam::Vec3;
 use microfacet_baker::cache::Cache;
-use microfacet_baker::certify::certificate::worst_error;
 use microfacet_baker::interval::Interval;
 use microfacet_baker::plan::{Options, Plan, Verdict, bare_cost, cost};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_baker::table_spec::{Quality, general_set};
 use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Tables};
-use microfacet_tables::{Precision, encode};
+use microfacet_tables::{Precision, Quantity, encode};
 
 use command::{json, ok, refused, run};
 
@@ -141,7 +140,9 @@ fn sub_ranges_draw_the_very_normals_of_the_general_set() {
         }
         // And it is no less accurate: its certificate is about the range asked for, without the
         // margins.
-        let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
+        let worst = |set: &Tables| {
+            set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+        };
         assert!(
             worst(&part) <= worst(&general) * 1.01,
             "{range}: {} {}",
@@ -239,7 +240,9 @@ fn an_error_budget_is_met_by_less() {
     let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
     let at = |target| bake(&plan, target, &Cache::none()).unwrap().set;
     let default = at(Target::Quality(Quality::Default, Precision::F32));
-    let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
+    let worst = |set: &Tables| {
+        set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+    };
     let mut before = bytes(&default).len();
     for max_error in [1e-4, 1e-3, 1e-2] {
         let set = at(Target::MaxError(max_error));
@@ -262,7 +265,9 @@ fn an_error_budget_is_met_by_less() {
 #[test]
 fn budgets_of_the_general_set_end() {
     let plan = normals_of(&Plan::general());
-    let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
+    let worst = |set: &Tables| {
+        set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+    };
     let met = bake(&plan, Target::MaxError(2e-3), &Cache::none()).unwrap().set;
     assert!(met.tables().len() == 5 && worst(&met) <= 2e-3, "{}", worst(&met));
     let filled = bake(&plan, Target::MaxBytes(100_000), &Cache::none()).unwrap().set;
@@ -271,7 +276,9 @@ fn budgets_of_the_general_set_end() {
     assert!(bytes(&met).len() < 100_000 && worst(&filled) < worst(&met), "{}", worst(&filled));
     // Masking that peeling uses is as fine as what it is peeled from requires.
     let peeled = |name: &str| filled.tables().iter().find(|table| table.name == name).unwrap();
-    assert!(peeled("shadowing_peeled").certificate["g1_max_error"] < 0.1 * worst(&filled));
+    assert!(
+        peeled("shadowing_peeled").certificate.error(Quantity::G1).unwrap() < 0.1 * worst(&filled)
+    );
 }
 
 #[test]
@@ -294,7 +301,9 @@ fn what_would_take_long_says_so_before_anything_is_baked() {
 fn a_byte_budget_is_filled_and_not_exceeded() {
     let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
     let at = |max_bytes| bake(&plan, Target::MaxBytes(max_bytes), &Cache::none());
-    let worst = |set: &Tables| set.tables().iter().map(worst_error).fold(0.0, f64::max);
+    let worst = |set: &Tables| {
+        set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+    };
     let [small, large] = [5_000, 8_000].map(|limit| {
         let set = at(limit).unwrap().set;
         assert!(bytes(&set).len() <= limit);
@@ -347,7 +356,7 @@ fn a_pavilion_needs_names_and_no_tables() {
     // For a run time that wants tables: with no larger an error than the general set's.
     let general = Tables::from_bytes(GENERAL).unwrap();
     let normals = general.tables().iter().filter(|table| !table.kind.is_albedo());
-    let worst = normals.map(worst_error).fold(0.0, f64::max);
+    let worst = normals.map(|table| table.certificate.worst()).fold(0.0, f64::max);
     let budget = format!("{worst:e}");
     let tabulated =
         ["bake", "pavilion.pbrt", "--tabulate-ggx", "--max-error", &budget, "--out", "tables"];

@@ -8,7 +8,6 @@ use std::sync::LazyLock;
 use glam::Vec3;
 use microfacet_baker::bake::albedo::{AlbedoLobe, AlbedoSpec, Models, Site, bake, weights};
 use microfacet_baker::certify::albedo::{certified, interior_references, missed_by_half};
-use microfacet_baker::certify::certificate::worst_error;
 use microfacet_baker::plan::{Options, Plan, albedo_cost};
 use microfacet_baker::progress::Stage;
 use microfacet_baker::scene::Scene;
@@ -17,7 +16,7 @@ use microfacet_baker::table_spec::Quality;
 use microfacet_baker::{store, table_set};
 use microfacet_sampler::albedo::{Albedo, FresnelAlbedo};
 use microfacet_sampler::{Lobe, Masking, MaterialError, MicrofacetDistribution, Tables};
-use microfacet_tables::{LobeEntry, Precision, Reflectance, Table, encode};
+use microfacet_tables::{LobeEntry, Precision, Quantity, Reflectance, Table, encode};
 
 use command::{json, run};
 
@@ -149,11 +148,11 @@ fn each_lobe_and_form_has_one_table_within_its_error() {
     let name = |form: Masking| format!("albedo_{}_gamma_2.7_sigma_0.6_0.15", form.name());
     assert_eq!(names, [Masking::Uncorrelated, Masking::HeightCorrelated].map(name));
     for table in tables {
-        assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
-        assert!(table.certificate["quadrature_error"] <= 1e-4);
+        assert!(table.certificate.worst() <= 3e-3, "{:?}", table.certificate);
+        assert!(table.certificate.quadrature.unwrap() <= 1e-4);
         // For single materials the isotropic stand-in is off by this much.
         assert!(
-            (0.05..0.3).contains(&table.certificate["shortcut_max_error"]),
+            (0.05..0.3).contains(&table.certificate.stand_in.unwrap()),
             "{:?}",
             table.certificate
         );
@@ -227,7 +226,7 @@ fn the_average_is_that_of_all_views_and_the_furnace_closes() {
 fn the_round_stand_in_is_off_by_what_the_certificate_says() {
     let own = SET.material_albedo("brushed").unwrap();
     let stand_in = Tables::embedded().albedo(0.3, 2.7, own.masking()).unwrap();
-    let said = views(&SET)[1].certificate["shortcut_max_error"];
+    let said = views(&SET)[1].certificate.stand_in.unwrap();
     let views =
         (0..4000).map(|i| direction(0.02 + 0.98 * f64::from(i % 40) / 39.0, 0.01 * f64::from(i)));
     let seen = views.map(|v| (own.albedo(v) - stand_in.albedo(v)).abs()).fold(0.0, f32::max);
@@ -240,7 +239,9 @@ fn a_wrong_table_is_noticed() {
     let references = interior_references(&right, &Stage::unwatched()).unwrap();
     let table = bake(&right).unwrap().remove(0);
     let error = |table: Table| {
-        worst_error(&certified(&right, vec![table], &references, &Stage::unwatched()).unwrap()[0])
+        certified(&right, vec![table], &references, &Stage::unwatched()).unwrap()[0]
+            .certificate
+            .worst()
     };
     // A table with its axes exchanged.
     let swapped = spec([0.15, 0.6], 2.7, Quality::Draft);
@@ -393,8 +394,8 @@ fn other_distributions_have_an_albedo_over_the_cosine() {
         (table.name.as_str(), table.shape()[0]),
         ("albedo_height-correlated_gtr_0.2_1.5", 1)
     );
-    assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
-    assert!(!table.certificate.contains_key("shortcut_max_error"));
+    assert!(table.certificate.worst() <= 3e-3, "{:?}", table.certificate);
+    assert!(table.certificate.stand_in.is_none());
     let (paint, albedo) = (set.material("paint").unwrap(), set.material_albedo("paint").unwrap());
     for cos in [0.1, 0.4, 0.9] {
         let v = direction(cos, 0.0);
@@ -422,7 +423,7 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
     let set = bake_all(&text, Quality::Draft);
     let table = views(&set)[0];
     assert!(table.name.ends_with("gamma_2_sigma_0.4_0.2_theta_0.05_-0.1_0.5"), "{}", table.name);
-    assert!(table.certificate["e_max_error"] <= 3e-3, "{:?}", table.certificate);
+    assert!(table.certificate.error(Quantity::E).unwrap() <= 3e-3, "{:?}", table.certificate);
     let (tilted, albedo) =
         (set.material("tilted").unwrap(), set.material_albedo("tilted").unwrap());
     for i in 0..8 {
@@ -466,7 +467,7 @@ fn an_anisotropic_conductor_has_the_albedo_of_its_own_lobe() {
     let tables = views(&set);
     let table = tables.iter().find(exact).unwrap();
     assert_eq!((tables.len(), table.channels.join(" ").as_str()), (2, "red green blue"));
-    assert!(worst_error(table) <= 3e-3, "{:?}", table.certificate);
+    assert!(table.certificate.worst() <= 3e-3, "{:?}", table.certificate);
     let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else {
         panic!()
     };

@@ -120,8 +120,8 @@ fn certified(set: &Tables) -> f64 {
     let whole = |kind| matches!(kind, Kind::VisibleSlope | Kind::VisibleSlopeConditional);
     let tables = set.tables().iter().filter(|table| whole(table.kind));
     tables
-        .filter_map(|table| table.certificate.get("cdf_max_error"))
-        .fold(0.0, |worst, &x| x.max(worst))
+        .filter_map(|table| table.certificate.error(microfacet_tables::Quantity::Cdf))
+        .fold(0.0, f64::max)
 }
 
 /// The median time of decoding the compiled-in set.

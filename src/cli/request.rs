@@ -5,7 +5,6 @@ use std::path::Path;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
-use microfacet_baker::certify::certificate::worst_error;
 use microfacet_baker::library::{Library, PER_SET};
 use microfacet_baker::plan::{AlbedoWish, Options, Plan};
 use microfacet_baker::scene::Scene;
@@ -161,7 +160,7 @@ impl Request {
             let (albedos, others): (Vec<&Table>, Vec<&Table>) =
                 embedded.tables().iter().partition(|table| table.kind.is_albedo());
             let worst = |tables: &[&Table]| {
-                tables.iter().map(|table| worst_error(table)).fold(0.0, f64::max)
+                tables.iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
             };
             if matches!(self.quality(), Quality::High) {
                 return Err(Failure(

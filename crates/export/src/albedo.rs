@@ -5,9 +5,9 @@ use microfacet_core::Masking;
 use microfacet_sampler::Tables;
 use microfacet_sampler::albedo::Albedo;
 use microfacet_sampler::port::ShapeAlbedo;
-use microfacet_tables::Table;
 use microfacet_tables::axis::lagrange::weights;
 use microfacet_tables::axis::{LogRoughness, ViewBlend};
+use microfacet_tables::{Errors, Table};
 
 /// Nodes of the polynomials along σ and along the view.
 pub(super) const WINDOW: usize = 6;
@@ -66,7 +66,10 @@ impl AlbedoTable {
             values: found.values,
             averages: Vec::new(),
             average_error: f64::INFINITY,
-            errors: ["", "_outside"].map(|part| worst(found.table, part)),
+            errors: [
+                worst(found.table, |of| Some(of.largest)),
+                worst(found.table, |of| of.outside),
+            ],
         };
         let average = |sigma: f64| average_of(found.table, sigma, gamma);
         let mut parts = 1;
@@ -115,8 +118,7 @@ fn average_of(table: &Table, sigma: f64, gamma: f64) -> Option<[f64; 3]> {
     Some([albedo.lost_average(), moments.bias, moments.f82].map(f64::from))
 }
 
-/// The largest error of a table's certificate, of E and its parts.
-fn worst(table: &Table, part: &str) -> Option<f64> {
-    let of = |channel| table.certificate.get(&format!("{channel}_max_error{part}")).copied();
-    ["e", "scale", "bias", "f82"].into_iter().filter_map(of).reduce(f64::max)
+/// The largest of some figure of a table's certificate over E and its parts.
+fn worst(table: &Table, figure: impl Fn(&Errors) -> Option<f64>) -> Option<f64> {
+    table.certificate.errors.values().filter_map(figure).reduce(f64::max)
 }

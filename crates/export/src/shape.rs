@@ -3,7 +3,7 @@
 use microfacet_core::Masking;
 use microfacet_sampler::port::{ShapeTables, tables_of_shape};
 use microfacet_sampler::{MaterialError, Tables};
-use microfacet_tables::Table;
+use microfacet_tables::Quantity;
 
 use super::albedo::AlbedoTable;
 
@@ -48,9 +48,8 @@ impl Shape {
         } else {
             let lobe = tables.student_t(1.0, gamma)?;
             let [masking, slopes, across] = tables_of_shape(tables, gamma)?;
-            let of = |table: &Table, name| table.certificate.get(name).copied();
-            let cdf = [slopes, across].map(|table| of(table, "cdf_max_error"));
-            let errors = Errors { g1: of(masking, "g1_max_error"), cdf };
+            let cdf = [slopes, across].map(|table| table.certificate.error(Quantity::Cdf));
+            let errors = Errors { g1: masking.certificate.error(Quantity::G1), cdf };
             (Some(ShapeTables::new(&lobe)), errors)
         };
         let mut from_default = Vec::new();

@@ -186,8 +186,8 @@ fn row(table: &Table) -> Markup {
             td { (precision(table.precision)) }
             td.number { (bytes(table.stored_bytes())) }
             td {
-                @match certificate::largest(table) {
-                    Some((what, max)) => { (what) " " (error(max)) }
+                @match table.certificate.largest() {
+                    Some((what, max)) => { (certificate::column(what)) " " (error(max)) }
                     None => "not measured",
                 }
             }
@@ -203,7 +203,7 @@ fn details(table: &Table) -> Markup {
                 li { b { bdi { (one.name) } } ": " (symbols(&axis(one))) }
             }
             li { "channels: " (table.channels.join(", ")) }
-            @for line in certificate::lines(table) { li { (symbols(&line)) } }
+            @for line in certificate::lines(&table.certificate) { li { (symbols(&line)) } }
         }
     }
 }

@@ -6,8 +6,9 @@ use glam::Vec3;
 use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Skew, Tables};
 use microfacet_tables::axis::{HalfTangent, Rational};
 use microfacet_tables::{
-    Axis, Covered, FresnelEntry, Interpolation, Kind, LoadError, LobeEntry, Mapping, MaterialEntry,
-    Precision, Provenance, Reflectance, Side, Subject, Table, VERSION, encode, seal,
+    Axis, Certificate, Covered, Errors, FresnelEntry, Interpolation, Kind, LoadError, LobeEntry,
+    Mapping, MaterialEntry, Precision, Provenance, Quantity, Reflectance, Side, Subject, Table,
+    VERSION, encode, seal,
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {
@@ -24,7 +25,10 @@ fn table(kind: Kind, precision: Precision, mut axes: Vec<Axis>, values: &[f32]) 
         values: values.to_vec(),
         precision,
         subject: Subject::shapes([1.0, 1.0]),
-        certificate: [("g1_max_error".to_string(), 0.5)].into_iter().collect(),
+        certificate: Certificate {
+            errors: [(Quantity::G1, Errors { largest: 0.5, ..Errors::default() })].into(),
+            ..Certificate::default()
+        },
     };
     table.rounded(precision)
 }
@@ -228,6 +232,8 @@ fn lying_descriptions_of_materials_and_tables_are_refused_by_name() {
         (covers, r#"\"covers\":{\"s\":[0.0,1.9],\"sigma\":[2.0,1.0]}"#, "sigma = [2, 1]"),
         (r#"\"lobe\":\"family\""#, r#"\"lobe\":{\"distribution\":\"gtr:1,2\"}"#, "not of the lobe"),
         (r#"\"g1_max_error\":0.5"#, r#"\"g1_max_error\":-0.5"#, "`g1_max_error`"),
+        (r#"\"g1_max_error\":0.5"#, r#"\"g2_max_error\":0.5"#, "no figure `g2_max_error`"),
+        (r#"\"g1_max_error\":0.5"#, r#"\"points\":0.5"#, "counts 0.5 points"),
     ];
     for (from, to, part) in lies {
         let error = Tables::from_bytes(&forge(from, to)).expect_err(to).to_string();

@@ -14,7 +14,7 @@ use microfacet_sampler::Masking;
 use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
 };
-use microfacet_tables::{Axis, Interpolation, Mapping, Precision, Reflectance, Side};
+use microfacet_tables::{Axis, Errors, Interpolation, Mapping, Precision, Reflectance, Side};
 
 /// Error aimed at in a node. Estimates are careful: at places throughout the domain even 1e-2 gives
 /// values that are right to 2e-4.
@@ -116,11 +116,11 @@ fn errors(spec: &AlbedoSpec) -> Result<String, AlbedoError> {
     let tables = bake(spec)?;
     let places = [interior_references(spec, &stage)?, edge_references(spec, &stage)?].concat();
     let tables = certified(spec, tables, &places, &stage)?;
-    let worst = |what: &str| {
-        let figures = tables.iter().flat_map(|table| &table.certificate);
-        figures.filter(|(name, _)| name.ends_with(what)).map(|(_, x)| *x).fold(0.0, f64::max)
-    };
-    let errors = ["max_error", "rms_error", "max_error_outside"].map(worst);
+    let all: Vec<Errors> =
+        tables.iter().flat_map(|table| table.certificate.errors.values().copied()).collect();
+    let worst =
+        |figure: fn(&Errors) -> Option<f64>| all.iter().filter_map(figure).fold(0.0, f64::max);
+    let errors = [worst(|of| Some(of.largest)), worst(|of| of.rms), worst(|of| of.outside)];
     Ok(errors.map(|x| format!("{x:.1e}")).join(" / "))
 }
 

@@ -16,11 +16,11 @@
 //!
 //! ```
 //! # fn main() -> Result<(), microfacet_tables::LoadError> {
-//! use microfacet_tables::{Kind, Precision, Provenance, Table, decode, encode};
+//! use microfacet_tables::{Kind, Precision, Provenance, Quantity, Table, decode, encode};
 //! # let file = include_bytes!("../../sampler/data/default.safetensors");
 //! let (provenance, tables) = decode(file, true)?;
 //! let g1 = tables.iter().find(|table| table.kind == Kind::Shadowing).unwrap();
-//! assert!(g1.certificate["g1_max_error"] < 1e-5);
+//! assert!(g1.certificate.error(Quantity::G1).unwrap() < 1e-5);
 //!
 //! let again = encode(&provenance, &tables)?;
 //! assert_eq!(again, file);
@@ -42,9 +42,9 @@ mod format;
 pub use axis::{Axis, Interpolation, Mapping, Weights};
 pub use error::{LoadError, Range};
 pub use format::{
-    Channels, Covered, FORMAT, FresnelEntry, Index, IndexedSet, Kind, LobeEntry, MaterialEntry,
-    Precision, Provenance, Reflectance, SAME, Side, Subject, Table, VERSION, decode, describe,
-    encode, reassemble, seal, seal_document,
+    Certificate, Channels, Coordinate, Covered, Errors, FORMAT, FresnelEntry, Index, IndexedSet,
+    Kind, LobeEntry, MaterialEntry, Precision, Provenance, Quantity, Reflectance, SAME, Side,
+    Subject, Table, VERSION, decode, describe, encode, reassemble, seal, seal_document,
 };
 
 /// The smallest γ of tables; below, almost every visible normal has a slope beyond any

@@ -14,7 +14,7 @@ use microfacet_core::shape::gamma_of_s;
 use microfacet_model as model;
 use microfacet_sampler::albedo::Albedo;
 use microfacet_sampler::{Masking, MaterialError, Tables};
-use microfacet_tables::{Axis, Covered, Kind, LobeEntry, Reflectance, Subject, Table};
+use microfacet_tables::{Axis, Covered, Kind, LobeEntry, Quantity, Reflectance, Subject, Table};
 
 /// Allowed deviation from 1 with the Kulla–Conty lobe
 /// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).
@@ -153,9 +153,9 @@ fn surveyed(tables: &Tables) -> Vec<(Masking, f64, Vec<[f64; 2]>)> {
         let sigmas = between(&table.axes[1], covers.sigma.unwrap_or_default(), 14);
         let pairs =
             gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| [sigma, gamma]));
-        let stated = ["e_max_error", "e_max_error_outside"];
-        let errors = stated.iter().filter_map(|key| table.certificate.get(*key));
-        (masking, errors.copied().fold(TOLERANCE, f64::max), pairs.collect())
+        let stated = table.certificate.errors.get(&Quantity::E);
+        let errors = stated.into_iter().flat_map(|of| [Some(of.largest), of.outside]).flatten();
+        (masking, errors.fold(TOLERANCE, f64::max), pairs.collect())
     };
     of_family(tables).map(materials).collect()
 }

@@ -8,7 +8,6 @@ use microfacet_baker::plan::Verdict;
 use microfacet_baker::store::Written;
 use microfacet_baker::table_set::Baked;
 use microfacet_report::has_page;
-use microfacet_report::words::certificate;
 use microfacet_sampler::Tables;
 use microfacet_tables::{Kind, Table};
 use microfacet_validate::configuration::shapes;
@@ -176,9 +175,12 @@ fn largest_errors(tables: &[Table]) -> String {
     for of in ["G1", "CDF of visible normals", "D/D(0)", "albedo"] {
         let tables = tables.iter().filter(|table| quantity(table.kind) == of);
         // A NaN, and an error that was not measured, are the worst.
-        let largest = |table: &Table| certificate::largest(table).map_or(f64::NAN, |(_, max)| max);
+        let largest =
+            |table: &Table| table.certificate.largest().map_or(f64::NAN, |(_, largest)| largest);
         if let Some(table) = tables.max_by(|a, b| largest(a).total_cmp(&largest(b))) {
-            let figure = certificate::largest(table)
+            let figure = table
+                .certificate
+                .largest()
                 .map_or("not measured".into(), |(_, largest)| error(largest));
             let place = format!("in {}", escape::line(&table.name));
             rows.push(vec![format!("  {of}"), figure, place]);

@@ -50,7 +50,7 @@ fn of_table(table: &Table) -> String {
     }
     let channels: Vec<_> = table.channels.iter().map(|channel| escape::line(channel)).collect();
     text += &format!("  channels: {}\n", channels.join(", "));
-    for line in certificate::lines(table) {
+    for line in certificate::lines(&table.certificate) {
         text += &wrapped("  ", &escape::line(&line), 4);
     }
     text

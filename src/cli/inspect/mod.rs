@@ -166,7 +166,7 @@ fn overview(tables: &[Table]) -> String {
 fn row(table: &Table) -> Vec<String> {
     let [gamma, sigma] = covers(&table.subject);
     let nodes: Vec<String> = table.axes.iter().map(|axis| axis.len().to_string()).collect();
-    let worst = certificate::largest(table);
+    let worst = table.certificate.largest();
     vec![
         format!("  {}", escape::line(&table.name)),
         gamma,
@@ -175,7 +175,7 @@ fn row(table: &Table) -> Vec<String> {
         precision(table.precision).into(),
         bytes(table.stored_bytes()),
         worst.map_or("not measured".into(), |(what, max)| {
-            format!("{} {}", escape::line(&what), error(max))
+            format!("{} {}", certificate::column(what), error(max))
         }),
     ]
 }

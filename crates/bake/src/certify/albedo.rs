@@ -2,8 +2,6 @@
 //! run-time lookup, against the model's quadrature, at the places that [`points`](super::points)
 //! lists.
 
-use std::collections::BTreeMap;
-
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -11,7 +9,9 @@ use microfacet_core::shape::s_of_gamma;
 use microfacet_model::Albedo;
 use microfacet_sampler::albedo::{Albedo as TabulatedAlbedo, Moments, ViewCurve};
 use microfacet_sampler::{Masking, MaterialError, Tables};
-use microfacet_tables::{Axis, Kind, Reflectance, Table};
+use microfacet_tables::{
+    Axis, Certificate, Coordinate, Errors, Kind, Quantity, Reflectance, Table,
+};
 
 use super::certificate::round_up;
 use super::points::{
@@ -102,8 +102,8 @@ fn references(
 }
 
 /// The tables with their certificates: errors of every quantity that is read, inside the promised
-/// domain and outside, and the error that the isotropic stand-in would have. Entries of the bake
-/// are kept.
+/// domain and outside, and the error that the isotropic stand-in would have. What the bake said of
+/// the nodes is kept.
 ///
 /// # Errors
 /// [`AlbedoError`] if a table does not cover its own domain.
@@ -121,40 +121,36 @@ pub fn certified(
     };
     stage.split(directional.len() * climbed_count(spec));
     let certified = |table: Table| {
-        let figures = match table.kind {
-            Kind::Albedo => figures(spec, &table, references, stage)?,
+        let found = match table.kind {
+            Kind::Albedo => directional_certificate(spec, &table, references, stage)?,
             _ => averages(spec, &table, of_form(&table)?, references)?,
         };
-        let mut certificate = table.certificate.clone();
-        certificate.extend(figures);
+        let certificate = Certificate { quadrature: table.certificate.quadrature, ..found };
         Ok(Table { certificate, ..table })
     };
     tables.into_iter().map(certified).collect()
 }
 
 /// The errors of all quantities at one place.
-type Errors<'a> = (&'a Reference, Vec<f64>);
+type At<'a> = (&'a Reference, Vec<f64>);
 
-fn figures(
+fn directional_certificate(
     spec: &AlbedoSpec,
     table: &Table,
     references: &[Reference],
     stage: &Stage,
-) -> Result<BTreeMap<String, f64>, AlbedoError> {
+) -> Result<Certificate, AlbedoError> {
     let masking = table.subject.masking.unwrap_or_default();
     let reader = Reader::new(spec, table, references.first())?;
     let measured = |at: &Reference| reader.errors(at);
     let errors = measured_at(references, measured)?;
     let mut found = climbed(spec, &errors, true, measured, stage)?;
     found.extend(climbed(spec, &errors, false, measured, stage)?);
-    let found: Vec<Errors<'_>> = found.iter().map(|(at, errors)| (at, errors.clone())).collect();
-    let mut figures = summary(spec, &errors, &found);
+    let found: Vec<At<'_>> = found.iter().map(|(at, errors)| (at, errors.clone())).collect();
     let form = Masking::ALL.iter().position(|form| *form == masking).unwrap_or(0);
     let shortcuts = references.iter().filter(|at| at.point.promised).filter_map(|at| at.shortcut);
-    if let Some(worst) = shortcuts.map(|forms| forms[form]).reduce(f64::max) {
-        figures.insert("shortcut_max_error".into(), round_up(worst));
-    }
-    Ok(figures)
+    let stand_in = shortcuts.map(|forms| forms[form]).reduce(f64::max).map(round_up);
+    Ok(Certificate { stand_in, ..summary(spec, &errors, &found) })
 }
 
 /// Reads one table of directional albedos.
@@ -274,7 +270,7 @@ fn highest(tops: &[Top], count: usize) -> Vec<Top> {
 /// places, and is found from the nearest.
 fn climbed(
     spec: &AlbedoSpec,
-    errors: &[Errors<'_>],
+    errors: &[At<'_>],
     promised: bool,
     measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Copy + Send + Sync,
     stage: &Stage,
@@ -282,7 +278,7 @@ fn climbed(
     let hills = if promised { hills(spec) } else { HILLS_OUTSIDE };
     let mut tops: Vec<Top> = Vec::new();
     for i in 0..quantities(spec).len() {
-        let mut worst: Vec<&Errors<'_>> =
+        let mut worst: Vec<&At<'_>> =
             errors.iter().filter(|errors| errors.0.point.promised == promised).collect();
         worst.sort_by(|a, b| b.1[i].total_cmp(&a.1[i]));
         let start = tops.len();
@@ -324,64 +320,62 @@ fn climbed(
 fn measured_at(
     references: &[Reference],
     measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Send + Sync,
-) -> Result<Vec<Errors<'_>>, MaterialError> {
+) -> Result<Vec<At<'_>>, MaterialError> {
     let errors = references.par_iter().map(measured).collect::<Result<Vec<_>, MaterialError>>()?;
     Ok(references.iter().zip(errors).collect())
 }
 
-/// The quantities that are read, by name.
-fn quantities(spec: &AlbedoSpec) -> &'static [&'static str] {
-    match spec.reflectance {
+/// The quantities that are read, in the order of their errors.
+fn quantities(spec: &AlbedoSpec) -> Vec<Quantity> {
+    let channels = match spec.reflectance {
         Reflectance::Moments => &["scale", "bias", "f82", "e"],
         _ => spec.reflectance.channels(),
-    }
+    };
+    channels.iter().filter_map(|name| Quantity::named(name)).collect()
 }
 
 /// Largest and root-mean-square errors of each quantity, and the place of the largest of all; the
 /// means leave out the places on a crease, and those `found` uphill.
-fn summary(
-    spec: &AlbedoSpec,
-    errors: &[Errors<'_>],
-    found: &[Errors<'_>],
-) -> BTreeMap<String, f64> {
-    let points = errors.len() + found.len();
-    let mut figures = BTreeMap::from([("points".to_owned(), points as f64)]);
-    let is_promised = |errors: &&Errors<'_>| errors.0.point.promised;
+fn summary(spec: &AlbedoSpec, errors: &[At<'_>], found: &[At<'_>]) -> Certificate {
+    let is_promised = |errors: &&At<'_>| errors.0.point.promised;
     let (mut inside, mut outside): (Vec<_>, Vec<_>) = errors.iter().partition(is_promised);
-    for (i, name) in quantities(spec).iter().enumerate() {
-        let spread = inside.iter().filter(|errors| !errors.0.point.on_crease);
+    let rms = |i: usize| {
+        let spread = errors.iter().filter(|at| is_promised(at) && !at.0.point.on_crease);
         let squares: f64 = spread.clone().map(|errors| errors.1[i] * errors.1[i]).sum();
-        let rms = (squares / spread.count().max(1) as f64).sqrt();
-        figures.insert(format!("{name}_rms_error"), round_up(rms));
-    }
+        round_up((squares / spread.count().max(1) as f64).sqrt())
+    };
     inside.extend(found.iter().filter(is_promised));
     outside.extend(found.iter().filter(|errors| !is_promised(errors)));
     // A NaN counts as the worst error.
-    let largest = |part: &[&Errors<'_>], i: usize| {
+    let largest = |part: &[&At<'_>], i: usize| {
         part.iter().map(|errors| errors.1[i]).max_by(f64::total_cmp).map(round_up)
     };
-    for (i, name) in quantities(spec).iter().enumerate() {
-        let parts = [("max_error", &inside), ("max_error_outside", &outside)];
-        let max =
-            |(what, part): (&str, &Vec<_>)| Some((format!("{name}_{what}"), largest(part, i)?));
-        figures.extend(parts.into_iter().filter_map(max));
-    }
-    let worst = |errors: &Errors<'_>| errors.1.iter().copied().max_by(f64::total_cmp);
+    let of_quantity = |(i, quantity)| {
+        let (inside, outside) = (largest(&inside, i)?, largest(&outside, i));
+        Some((quantity, Errors { largest: inside, rms: Some(rms(i)), outside }))
+    };
+    let by_quantity = quantities(spec).into_iter().enumerate().filter_map(of_quantity).collect();
+    let worst = |errors: &At<'_>| errors.1.iter().copied().max_by(f64::total_cmp);
     let place =
         inside.iter().max_by(|a, b| worst(a).unwrap_or(0.0).total_cmp(&worst(b).unwrap_or(0.0)));
-    if let Some((Reference { site: Site { gamma, sigma, eta, phi, cos }, .. }, _)) = place {
+    let at = place.map(|(Reference { site: Site { gamma, sigma, eta, phi, cos }, .. }, _)| {
         let axis = |name: &str| spec.axes.iter().any(|axis| axis.name == name);
         let all = [
-            ("gamma", "worst_s", s_of_gamma(*gamma)),
-            ("sigma", "worst_sigma", *sigma),
-            ("eta", "worst_eta", *eta),
-            ("azimuth", "worst_phi", *phi),
-            ("view", "worst_cos_theta", *cos),
+            ("gamma", Coordinate::S, s_of_gamma(*gamma)),
+            ("sigma", Coordinate::Sigma, *sigma),
+            ("eta", Coordinate::Eta, *eta),
+            ("azimuth", Coordinate::Phi, *phi),
+            ("view", Coordinate::Cosine, *cos),
         ];
         let there = all.into_iter().filter(|(name, _, x)| axis(name) && x.is_finite());
-        figures.extend(there.map(|(_, key, x)| (key.into(), x)));
+        there.map(|(_, coordinate, x)| (coordinate, x)).collect()
+    });
+    Certificate {
+        errors: by_quantity,
+        at: at.unwrap_or_default(),
+        points: Some((errors.len() + found.len()) as u32),
+        ..Certificate::default()
     }
-    figures
 }
 
 /// Errors of averages against quadrature of the directional albedo of the same material, as a
@@ -391,13 +385,13 @@ fn averages(
     table: &Table,
     directional: &Table,
     references: &[Reference],
-) -> Result<BTreeMap<String, f64>, MaterialError> {
+) -> Result<Certificate, MaterialError> {
     let set = Tables::from_tables(Default::default(), vec![table.clone()])
         .map_err(|why| MaterialError::NoTable(why.to_string()))?;
     let errors = measured_at(references, |at| average_errors(&set, directional, &at.site))?;
-    let mut figures = summary(spec, &errors, &[]);
-    figures.remove("worst_cos_theta");
-    Ok(figures)
+    let mut certificate = summary(spec, &errors, &[]);
+    certificate.at.remove(&Coordinate::Cosine);
+    Ok(certificate)
 }
 
 /// Scale, bias, F82 and E.

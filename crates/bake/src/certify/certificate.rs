@@ -15,7 +15,9 @@ use microfacet_core::shape::{S_END, gamma_of_s, s_of_gamma};
 use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope, across_cdf};
 use microfacet_sampler::{MaterialError, MicrofacetDistribution, StudentT, Tables};
 use microfacet_tables::axis::{HalfTangent, MirroredRoot};
-use microfacet_tables::{Axis, Interpolation, Kind, Mapping, Table};
+use microfacet_tables::{
+    Axis, Certificate, Coordinate, Errors, Interpolation, Kind, Mapping, Quantity, Table,
+};
 
 use crate::progress::Stage;
 use crate::table_spec::{GAMMA_WHOLE, SEAM};
@@ -169,6 +171,22 @@ pub(super) struct Found {
     pub(super) points: usize,
 }
 
+impl Found {
+    /// The certificate of a table of one quantity, rounded up; `with_rms` states the mean as well.
+    pub(super) fn certificate(&self, of: Quantity, with_rms: bool) -> Certificate {
+        let errors = Errors {
+            largest: round_up(self.worst.error + ROUNDING),
+            rms: with_rms.then(|| round_up(self.rms)),
+            outside: None,
+        };
+        Certificate {
+            errors: [(of, errors)].into(),
+            points: Some(self.points as u32),
+            ..Certificate::default()
+        }
+    }
+}
+
 /// Climbs from the worst of `seen`, `climbs` times and from places at least a cell apart, along
 /// axes of so many cells (0 for a missing axis).
 pub(super) fn climbed(
@@ -229,36 +247,14 @@ pub(crate) fn measure(
     table: &Table,
     s: [f64; 2],
     stage: &Stage,
-) -> Result<BTreeMap<String, f64>, MaterialError> {
+) -> Result<Certificate, MaterialError> {
     let ruler = Ruler::new(tables, table, s);
     let found = ruler.measured(POINTS, stage)?;
     let quantity = match table.kind {
-        Kind::Shadowing => "g1",
-        _ => "cdf",
+        Kind::Shadowing => Quantity::G1,
+        _ => Quantity::Cdf,
     };
-    let [s_worst, z, u] = ruler.named(found.worst.at);
-    let mut figures = BTreeMap::from([
-        (format!("{quantity}_max_error"), round_up(found.worst.error + ROUNDING)),
-        (format!("{quantity}_rms_error"), round_up(found.rms)),
-        ("worst_s".into(), s_worst),
-        ("points".into(), found.points as f64),
-    ]);
-    if z.is_finite() {
-        figures.insert("worst_view_cotangent".into(), z);
-    }
-    if u.is_finite() {
-        figures.insert("worst_u".into(), u);
-    }
-    Ok(figures)
-}
-
-/// The largest error of any quantity in a table's certificate, over the part of its domain that
-/// quality promises (keys ending in `_max_error`); ∞ if there is none.
-pub fn worst_error(table: &Table) -> f64 {
-    let promised = |key: &str| key.ends_with("_max_error") && !key.starts_with("shortcut");
-    let figures =
-        table.certificate.iter().filter(|(key, _)| promised(key)).map(|(_, figure)| *figure);
-    figures.reduce(f64::max).unwrap_or(f64::INFINITY)
+    Ok(Certificate { at: ruler.named(found.worst.at), ..found.certificate(quantity, true) })
 }
 
 /// Rounds up to three significant digits: a certificate must not promise more than was measured.
@@ -429,12 +425,17 @@ impl<'a> Ruler<'a> {
         view(cotangent(&self.table.axes[1], s, place / self.views.cells))
     }
 
-    /// s, z = cot θ/σ and u; NaN for axes that the table does not have.
-    fn named(&self, [shape, a, b]: Place) -> [f64; 3] {
+    /// s, and z = cot θ/σ and u where the table has such axes.
+    fn named(&self, [shape, a, b]: Place) -> BTreeMap<Coordinate, f64> {
         let s = self.shapes.s(shape);
-        let z = if self.views.cells > 0.0 { exact_cotangent(self.view(s, a)) } else { f64::NAN };
+        let z = (self.views.cells > 0.0).then(|| exact_cotangent(self.view(s, a)));
         let half = 0.5 * self.numbers.cells;
-        [s_of_gamma(gamma_of_s(s)), z, if half > 0.0 { number(b, half).into() } else { f64::NAN }]
+        let at = [
+            (Coordinate::S, Some(s_of_gamma(gamma_of_s(s)))),
+            (Coordinate::Cotangent, z.filter(|z| z.is_finite())),
+            (Coordinate::U, (half > 0.0).then(|| number(b, half).into())),
+        ];
+        at.into_iter().filter_map(|(coordinate, x)| Some((coordinate, x?))).collect()
     }
 }
 

@@ -4,18 +4,17 @@
 //! Places are spaced along the tables' own axes, as in [`certificate`](super::certificate): even
 //! steps of θ would nearly all miss a narrow distribution.
 
-use std::collections::BTreeMap;
-
 use glam::{DVec3, Vec3};
 use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
 use microfacet_tables::axis::HalfTangent;
-use microfacet_tables::{Axis, Kind, LoadError, Mapping, MaterialEntry, Provenance, Table};
+use microfacet_tables::{
+    Axis, Kind, LoadError, Mapping, MaterialEntry, Provenance, Quantity, Table,
+};
 use rayon::prelude::*;
 
 use super::certificate::{
-    Along, Found, ROUNDING, Seen, climbed, cotangent, exact_cotangent, number, places, round_up,
-    view,
+    Along, Found, ROUNDING, Seen, climbed, cotangent, exact_cotangent, number, places, view,
 };
 use crate::bake::radial_axes;
 use crate::progress::Stage;
@@ -256,15 +255,13 @@ pub fn certify(
         .map_err(|why| LoadError::Invalid(why.to_string()))?;
     stage.split(tables.len());
     for table in tables {
-        let key = match table.kind {
-            Kind::RadialShadowing => "g1_max_error",
-            Kind::RadialDensity => "d_max_error",
-            _ => "cdf_max_error",
+        let quantity = match table.kind {
+            Kind::RadialShadowing => Quantity::G1,
+            Kind::RadialDensity => Quantity::Density,
+            _ => Quantity::Cdf,
         };
         let found = found(&radial, marginal, table.kind, &table.axes);
-        let error = round_up(found.worst.error + ROUNDING);
-        table.certificate =
-            BTreeMap::from([(key.into(), error), ("points".into(), found.points as f64)]);
+        table.certificate = found.certificate(quantity, false);
         stage.step();
     }
     Ok(())

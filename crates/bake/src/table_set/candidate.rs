@@ -7,7 +7,6 @@ use microfacet_tables::{Precision, Table};
 use super::BakeError;
 use super::group::TableGroup;
 use super::job::Job;
-use crate::certify::certificate::worst_error;
 use crate::memory::{self, Values};
 use crate::table_spec::Level;
 
@@ -158,7 +157,7 @@ impl Candidate {
         self.expected -= ahead;
         job.progress.expect(work - ahead);
         for (i, tables) in all.into_iter().zip(self.group.bake(level, &precisions, job)?) {
-            let error = tables.iter().map(worst_error).fold(0.0, f64::max);
+            let error = tables.iter().map(|table| table.certificate.worst()).fold(0.0, f64::max);
             let values = tables.iter().map(Table::stored_bytes).sum::<usize>() as f64;
             let growth = values / self.group.bytes(level, PRECISIONS[i]) as f64;
             self.measured[i]

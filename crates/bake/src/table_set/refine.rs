@@ -5,7 +5,6 @@ use microfacet_tables::{Precision, Table};
 use crate::bake;
 use crate::bake::albedo::{AlbedoError, AlbedoSpec};
 use crate::certify::albedo;
-use crate::certify::certificate::worst_error;
 use crate::plan::{AlbedoWork, albedo_seconds};
 use crate::progress::Meter;
 
@@ -53,7 +52,7 @@ pub(super) fn albedo_tables(
             |tables| albedo::certified(&spec, tables, &references, &progress.stage(climbs));
         let sets = baked.into_iter().map(certify).collect::<Result<Vec<_>, AlbedoError>>()?;
         let full = sets[0].clone();
-        let error = full.iter().map(worst_error).fold(0.0, f64::max);
+        let error = full.iter().map(|table| table.certificate.worst()).fold(0.0, f64::max);
         let refinable = spec.refinable();
         match coarser.take() {
             Some((before, coarser)) if refinable.len() == 1 && error > WORTH * before => {

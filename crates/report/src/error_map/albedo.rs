@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use microfacet_baker::bake::albedo::{AlbedoSpec, Site};
 use microfacet_baker::certify::albedo::{average_error, errors_at};
-use microfacet_baker::certify::certificate::worst_error;
 use microfacet_baker::certify::points::{promised_views, ranges, seen};
 use microfacet_baker::progress::Stage;
 use microfacet_sampler::Tables;
@@ -20,7 +19,7 @@ const TOLERANCES: [f64; 2] = [1e-7, 1e-5];
 /// The specification of a directional table, with an accuracy that its errors ask for.
 pub(crate) fn spec(table: &Table) -> Option<AlbedoSpec> {
     let [least, most] = TOLERANCES;
-    AlbedoSpec::of_table(table, (FINE * worst_error(table)).clamp(least, most))
+    AlbedoSpec::of_table(table, (FINE * table.certificate.worst()).clamp(least, most))
 }
 
 fn known(table: &Table) -> Result<AlbedoSpec, Unmeasured> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_tables::{Axis, Mapping, Table};
+use microfacet_tables::{Axis, Coordinate, Mapping, Table};
 
 /// What an axis of a table is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,18 +48,17 @@ impl Quantity {
 
     /// Its value where the certificate of a table has its largest error.
     pub fn worst(self, table: &Table) -> Option<f64> {
-        let figure = |key: &str| table.certificate.get(key).copied();
+        let figure = |of| table.certificate.at.get(&of).copied();
         match self {
-            Self::Gamma => figure("worst_s").map(gamma_of_s),
-            Self::Sigma => figure("worst_sigma"),
-            Self::Eta => figure("worst_eta"),
-            Self::Azimuth => figure("worst_phi").map(f64::to_degrees),
-            Self::Cosine => figure("worst_cos_theta"),
+            Self::Gamma => figure(Coordinate::S).map(gamma_of_s),
+            Self::Sigma => figure(Coordinate::Sigma),
+            Self::Eta => figure(Coordinate::Eta),
+            Self::Azimuth => figure(Coordinate::Phi).map(f64::to_degrees),
+            Self::Cosine => figure(Coordinate::Cosine),
             // An infinite one is no figure of a certificate.
-            Self::Cotangent => {
-                figure("worst_view_cotangent").or_else(|| figure("worst_s").map(|_| f64::INFINITY))
-            }
-            Self::Number => figure("worst_u"),
+            Self::Cotangent => figure(Coordinate::Cotangent)
+                .or_else(|| figure(Coordinate::S).map(|_| f64::INFINITY)),
+            Self::Number => figure(Coordinate::U),
             Self::Slope => None,
         }
     }

@@ -1,6 +1,5 @@
 //! Which maps a page has.
 
-use microfacet_baker::certify::certificate::worst_error;
 use microfacet_sampler::Tables;
 use microfacet_tables::Table;
 
@@ -28,7 +27,7 @@ impl<'a> Chosen<'a> {
             all.extend(sides(table).into_iter().enumerate().map(|(nth, sides)| (nth, i, sides)));
         }
         let single = tables.iter().filter(|table| sides(table).is_empty()).collect();
-        let error = |i: usize| worst_error(&tables[i]);
+        let error = |i: usize| tables[i].certificate.worst();
         all.sort_by(|a, b| a.0.cmp(&b.0).then(error(b.1).total_cmp(&error(a.1))));
         let left_out = all.len().saturating_sub(MOST);
         all.truncate(MOST);

@@ -92,7 +92,7 @@ fn a_library_shows_the_largest_errors() {
     let chosen = Chosen::of(&set);
     assert_eq!(chosen.maps.len(), 12);
     assert_eq!(chosen.left_out, set.tables().len() - 12);
-    let error = microfacet_baker::certify::certificate::worst_error;
+    let error = |table: &Table| table.certificate.worst();
     let is_shown = |table: &&Table| chosen.maps.iter().any(|(shown, _)| shown.name == table.name);
     let least = chosen.maps.iter().map(|(table, _)| error(table)).fold(f64::INFINITY, f64::min);
     let others = set.tables().iter().filter(|table| !is_shown(table));

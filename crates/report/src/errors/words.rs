@@ -1,6 +1,5 @@
 //! Maps of errors in words.
 
-use microfacet_baker::certify::certificate::worst_error;
 use microfacet_sampler::Masking;
 use microfacet_tables::{Axis, Kind, Reflectance, Table};
 
@@ -79,7 +78,7 @@ fn value(quantity: Quantity, x: f64) -> String {
 
 /// The largest error that a certificate states, and where it is.
 pub(super) fn certified(table: &Table) -> String {
-    let worst = worst_error(table);
+    let worst = table.certificate.worst();
     if worst == f64::INFINITY {
         return "It has no certificate.".into();
     }
@@ -94,7 +93,7 @@ pub(super) fn certified(table: &Table) -> String {
 
 /// The whole certificate, as sentences.
 pub(super) fn lines(table: &Table) -> Vec<String> {
-    certificate::lines(table).iter().map(|line| sentence(line)).collect()
+    certificate::lines(&table.certificate).iter().map(|line| sentence(line)).collect()
 }
 
 /// A text as a sentence by itself.
@@ -126,7 +125,7 @@ pub(super) fn map(table: &Table, map: &ErrorMap) -> String {
         text += &format!(", over all {}", over.join(" and "));
     }
     text += &format!("; measured at {} points, shown in {grid}.", map.points);
-    if largest > worst_error(table) {
+    if largest > table.certificate.worst() {
         text += " That is more than its certificate promises: the search that ended the bake went \
                  by another way.";
     }

@@ -13,6 +13,7 @@ use microfacet_core::Masking;
 use safetensors::{SafeTensors, tensor::TensorView};
 use serde::{Deserialize, Serialize};
 
+use super::certificate::Certificate;
 use super::checksum;
 use super::kind::Kind;
 use super::material::MaterialEntry;
@@ -93,7 +94,7 @@ struct Descriptor {
     scale: Vec<f32>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     offset: Vec<f32>,
-    certificate: BTreeMap<String, f64>,
+    certificate: Certificate,
 }
 
 fn formula(axis: &Axis) -> (String, String) {

@@ -1,6 +1,7 @@
 //! The file format: what a table holds and how, and the container of a set; `docs/format.md`
 //! specifies it.
 
+mod certificate;
 mod checksum;
 mod container;
 mod index;
@@ -11,6 +12,7 @@ mod schema;
 mod subject;
 mod table;
 
+pub use certificate::{Certificate, Coordinate, Errors, Quantity};
 pub use checksum::{seal, seal_document};
 pub use container::{FORMAT, Provenance, VERSION, decode, describe, encode, reassemble};
 pub use index::{Index, IndexedSet};

@@ -1,6 +1,5 @@
 //! The table in memory: axes, channels and values, with a certificate of the errors measured on it.
 
-use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec;
@@ -9,6 +8,7 @@ use alloc::vec::Vec;
 use microfacet_core::Real;
 use microfacet_core::shape::gamma_of_s;
 
+use super::certificate::Certificate;
 use super::kind::Kind;
 use super::precision::{Codec, Precision};
 use super::subject::Subject;
@@ -35,9 +35,8 @@ pub struct Table {
     pub values: Vec<f32>,
     /// How the values are stored in a file.
     pub precision: Precision,
-    /// Errors measured on this table by the bake that made it, off its nodes and against the f64
-    /// model.
-    pub certificate: BTreeMap<String, f64>,
+    /// Errors that its bake measured on it.
+    pub certificate: Certificate,
 }
 
 impl Table {
@@ -103,15 +102,8 @@ impl Table {
         if let Err(why) = self.subject.check(self.kind) {
             return fail(why);
         }
-        // Of the other figures, coordinates of the worst place, an azimuth may be negative.
-        let lies = |(key, figure): &(&String, &f64)| {
-            let amount = key.ends_with("_error") || key.as_str() == "points";
-            !figure.is_finite() || amount && **figure < 0.0
-        };
-        if let Some((key, figure)) = self.certificate.iter().find(lies) {
-            return fail(format!(
-                "`{key}` of its certificate is {figure}; it must be finite, an error or a count 0 or more"
-            ));
+        if let Err(why) = self.certificate.check() {
+            return fail(why);
         }
         let layout = self.kind.layout(&self.subject);
         let names: Vec<&str> = self.axes.iter().map(|axis| axis.name.as_str()).collect();

@@ -19,7 +19,7 @@ use microfacet_baker::table_spec::Quality;
 use microfacet_core::shape::s_of_gamma;
 use microfacet_model as model;
 use microfacet_sampler::{AnyBsdf, Bsdf, Compensation, Masking, Tables, Transport};
-use microfacet_tables::{Kind, Reflectance, Table};
+use microfacet_tables::{Kind, Quantity, Reflectance, Table};
 
 use super::specimen::{self, LobeOf, Specimen, Surface, Unmade};
 use crate::furnace::{Estimate, TOLERANCE, direction, over_lights};
@@ -291,9 +291,9 @@ fn certified(tables: &Tables, specimen: &Specimen) -> Option<f64> {
         table.kind == Kind::Albedo && same && covers
     });
     let error = |table: &Table| -> f64 {
-        let wanted =
-            |key: &str| if conductor { key == "e_max_error" } else { key.ends_with("_max_error") };
-        table.certificate.iter().filter(|(key, _)| wanted(key)).map(|(_, &error)| error).sum()
+        let wanted = |of: &Quantity| !conductor || *of == Quantity::E;
+        let errors = table.certificate.errors.iter().filter(|(of, _)| wanted(of));
+        errors.map(|(_, errors)| errors.largest).sum()
     };
     read.map(error).reduce(f64::max)
 }

@@ -22,7 +22,9 @@ use microfacet_model::{Albedo, ParameterError};
 use microfacet_sampler::albedo::Albedo as TabulatedAlbedo;
 use microfacet_sampler::{Masking, MaterialError};
 use microfacet_tables::axis::ViewBlend;
-use microfacet_tables::{Axis, Kind, LoadError, Mapping, Precision, Reflectance, Table};
+use microfacet_tables::{
+    Axis, Certificate, Kind, LoadError, Mapping, Precision, Reflectance, Table,
+};
 
 use crate::progress::Stage;
 
@@ -299,11 +301,10 @@ fn tables(spec: &AlbedoSpec, nodes: &[Node], masking: Masking) -> Result<Vec<Tab
         channels: spec.channels(),
         values: nodes.iter().flat_map(values).map(|x| x as f32).collect(),
         precision: Precision::F32,
-        certificate: [(
-            "quadrature_error".to_string(),
-            nodes.iter().map(|node| node.values.error).fold(0.0, f64::max),
-        )]
-        .into(),
+        certificate: Certificate {
+            quadrature: Some(nodes.iter().map(|node| node.values.error).fold(0.0, f64::max)),
+            ..Certificate::default()
+        },
     }
     .rounded(spec.precision);
     let average = spec.has_averages().then(|| average(spec, &directional, masking)).transpose()?;
