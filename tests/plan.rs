@@ -9,8 +9,10 @@ use microfacet_baker::plan::{Options, Plan, Verdict, bare_cost, cost};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_baker::table_spec::{Quality, general_set};
-use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Tables};
-use microfacet_tables::{Precision, Quantity, encode};
+use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, Masking, MicrofacetDistribution, Tables};
+use microfacet_tables::{
+    Axis, Certificate, LobeEntry, Precision, Provenance, Quantity, Subject, Table, decode, encode,
+};
 
 use command::{json, ok, refused, run};
 
@@ -200,6 +202,68 @@ fn estimated_bytes_are_those_of_the_file() {
             assert!((estimate / real - 1.0).abs() < 0.04, "{estimate} for {real}");
         }
     }
+}
+
+/// An entry that has its key right is compared with what was asked for: all but the numbers.
+#[test]
+fn a_cache_entry_with_other_tables_is_baked_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let recipe = recipe(&[["glass", "0.3", "3.0"]])
+        + "[[material]]\nname = \"cloth\"\ndistribution = \"gauss\"\nm = 0.25\n"
+        + "[[material]]\nname = \"coat\"\nsigma = { min = 0.2, max = 0.25 }\ngamma = 3.0\n"
+        + "fresnel = { schlick = 0.04 }\n";
+    let plan = plan(&Scene::from_recipe_str(&recipe).unwrap());
+    let cache = Cache::new(folder.path().into());
+    let bake = || {
+        let settings = Settings { cache: cache.clone(), ..Settings::default() };
+        bake_with(&plan, DRAFT, settings).unwrap()
+    };
+    let genuine = bake();
+    assert_eq!(bake().baked, 0);
+    let mut entries: Vec<_> =
+        std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    assert_eq!(entries.len(), 3, "normals, a distribution, and albedos");
+    type Forgery = fn(&mut Provenance, &mut Vec<Table>);
+    let forgeries: [(&str, Forgery); 10] = [
+        ("numerics", |origin, _| origin.numerics -= 1),
+        ("none", |_, tables| tables.clear()),
+        ("one too many", |_, tables| tables.push(tables[0].clone())),
+        ("order", |_, tables| tables.reverse()),
+        ("name", |_, tables| tables[0].name = "../../evil".into()),
+        ("shape or lobe", |_, tables| match &mut tables[0].subject {
+            Subject { covers: Some(covers), .. } => covers.s = [0.25, 0.25],
+            subject => subject.lobe = LobeEntry::Distribution("gtr:1.5".into()),
+        }),
+        ("masking", |_, tables| tables[0].subject.masking = Some(Masking::Uncorrelated)),
+        ("axis", |_, tables| {
+            let axis = tables[0].axes.pop().unwrap();
+            let nodes = axis.nodes.iter().copied().step_by(2).collect();
+            tables[0].axes.push(Axis { nodes, ..axis });
+            let count = tables[0].shape().iter().product();
+            tables[0].values.truncate(count);
+        }),
+        ("precision", |_, tables| tables[0] = tables[0].clone().rounded(Precision::U16)),
+        ("certificate", |_, tables| tables[0].certificate = Certificate::default()),
+    ];
+    let mut forged_entries = 0;
+    for path in &entries {
+        let file = std::fs::read(path).unwrap();
+        for (what, forge) in forgeries {
+            let (mut origin, mut tables) = decode(&file, true).unwrap();
+            forge(&mut origin, &mut tables);
+            let Ok(forged) = encode(&origin, &tables) else { continue };
+            forged_entries += 1;
+            assert!(forged != file, "{what}");
+            std::fs::write(path, forged).unwrap();
+            let again = bake();
+            assert!(again.baked > 0, "{what}: {}", tables.first().map_or("", |table| &table.name));
+            assert!(bytes(&again.set) == bytes(&genuine.set), "{what}");
+            assert!(std::fs::read(path).unwrap() == file, "{what}: the entry is mended");
+        }
+    }
+    // The others are no sets.
+    assert_eq!(forged_entries, 22);
 }
 
 #[test]

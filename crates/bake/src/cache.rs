@@ -62,12 +62,14 @@ impl Cache {
         self.kept.clone()
     }
 
-    /// The tables kept under a key.
+    /// The tables kept under a key. Whether they are those that it means is for the caller to
+    /// compare, who knows what was asked for.
     pub fn get(&self, key: &str) -> Option<Vec<Table>> {
         let key = complete(key);
         let set = store::read_file(&self.path(&key)?).ok()?;
         // The entry holds its key: a file of this name with another key does not count.
-        (set.provenance().recipe == key).then(|| set.tables().to_vec())
+        let Provenance { recipe, numerics, .. } = set.provenance();
+        (*recipe == key && *numerics == NUMERICS).then(|| set.tables().to_vec())
     }
 
     /// Keeps tables under a key. The first call of a cache or its clones removes what bakes that

@@ -16,6 +16,7 @@ use microfacet_tables::{Axis, Channels, Interpolation, Kind, Mapping, Subject, T
 use crate::progress::Stage;
 use crate::table_spec::{ShapeAxis, TableSpec};
 
+pub(crate) use radial::radial_name;
 pub use radial::{bake_radial, radial_axes, radial_bytes};
 
 /// Number of the numeric method: raised when the same specification gives other values or

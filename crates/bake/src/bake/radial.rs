@@ -67,6 +67,11 @@ fn rational(kappa: f64) -> Mapping {
     Mapping::Rational(Rational { scale: kappa, crowded: false })
 }
 
+/// The name of a table of the distribution with a label.
+pub(crate) fn radial_name(kind: Kind, label: &str) -> String {
+    joined_name(&[kind.name(), &in_names(label)])
+}
+
 /// Bytes of the values of the four tables as they are stored.
 pub fn radial_bytes(level: Level, precision: Precision) -> usize {
     // The sizes do not depend on the distribution.
@@ -99,7 +104,7 @@ pub fn bake_radial(
             (_, []) => unreachable!("every kind has an axis"),
         };
         let table = Table {
-            name: joined_name(&[kind.name(), &in_names(label)]),
+            name: radial_name(kind, label),
             kind,
             subject: Subject { lobe: LobeEntry::Distribution(label.into()), ..Subject::default() },
             axes,

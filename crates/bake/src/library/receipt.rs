@@ -4,6 +4,7 @@
 //! But a shard of another state of the scene, or of another version, is of no use, and whoever
 //! waits for the set wants to hear of it before a week is lost.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -93,7 +94,11 @@ impl Receipts {
         paths.sort();
         for path in paths {
             let text = input::read_text(&path, MAX_TEXT).ok();
-            match text.and_then(|text| serde_json::from_str::<Receipt>(&text).ok()) {
+            let receipt = text.and_then(|text| serde_json::from_str::<Receipt>(&text).ok());
+            // Of 9e18 shards not even the missing ones could be listed.
+            let exists =
+                |receipt: &Receipt| Shard { number: receipt.shard, of: receipt.of }.exists();
+            match receipt.filter(exists) {
                 Some(receipt) if scene.file_name().is_some_and(|name| *name == *receipt.scene) => {
                     found.all.push(receipt);
                 }
@@ -130,8 +135,8 @@ impl Receipts {
         }
         let mut doubts = Vec::new();
         if let Some(of) = best {
-            let missing = (1..=of).filter(|i| done(of).all(|receipt| receipt.shard != *i));
-            let missing: Vec<usize> = missing.collect();
+            let ended: HashSet<usize> = done(of).map(|receipt| receipt.shard).collect();
+            let missing: Vec<usize> = (1..=of).filter(|i| !ended.contains(i)).collect();
             doubts.push(format!(
                 "{} of {of} shards {} not ended: {}",
                 missing.len(),
@@ -241,9 +246,18 @@ mod tests {
     fn what_is_no_receipt_is_named() {
         let cache = tempfile::tempdir().unwrap();
         receipt(1, 2, "now").leave(cache.path()).unwrap();
-        fs::write(cache.path().join(FOLDER).join("odd.json"), "{").unwrap();
+        let write = |name: &str, text: &str| {
+            fs::write(cache.path().join(FOLDER).join(name), text).unwrap();
+        };
+        write("odd.json", "{");
+        // Shards that cannot be.
+        for (shard, of) in [(1, 9_000_000_000_000_000_000), (3, 2), (0, 2), (0, 0)] {
+            let never = Receipt { shard, of, ..receipt(1, 1, "now") };
+            write(&format!("{shard}-{of}.json"), &serde_json::to_string(&never).unwrap());
+        }
         let found = Receipts::read(cache.path(), Path::new("lib.toml"));
         let said = found.doubts(&receipt(1, 1, "now"));
-        assert!(said.len() == 2 && said[1].contains("odd.json"), "{said:?}");
+        assert!(said.len() == 6 && said.concat().contains("odd.json"), "{said:?}");
+        assert_eq!(said[0], "1 of 2 shards has not ended: 2");
     }
 }

@@ -48,8 +48,9 @@ impl FromStr for Shard {
                 "\"{text}\" must be I/N, such as 2/16: the second of sixteen shards"
             )));
         };
-        match (1..=Self::MOST).contains(&of) && (1..=of).contains(&number) {
-            true => Ok(Self { number, of }),
+        let shard = Self { number, of };
+        match shard.exists() {
+            true => Ok(shard),
             false if number > of && (1..=of).contains(&of) => Err(NotAShard(format!(
                 "\"{text}\" is shard {number} of {of}: I goes from 1 to N, such as {of}/{number}"
             ))),
@@ -64,6 +65,11 @@ impl FromStr for Shard {
 impl Shard {
     /// Most shards of a library.
     pub const MOST: usize = 100_000;
+
+    /// Whether N is allowed, and I one of N.
+    pub(super) fn exists(self) -> bool {
+        (1..=Self::MOST).contains(&self.of) && (1..=self.of).contains(&self.number)
+    }
 
     /// Its part of the needs, in their order. The parts of all shards are disjoint and hold every
     /// need, and the planner's seconds are balanced: the longest need goes first, to the shard that

@@ -27,9 +27,9 @@ impl Job {
         Self { cache, progress, max_memory, patient, fresh, cache_error, seconds }
     }
 
-    /// The cached tables under a key.
-    pub(super) fn get(&self, key: &str) -> Option<Vec<Table>> {
-        self.cache.get(key)
+    /// The cached tables under a key, if they are those that are asked for.
+    pub(super) fn get(&self, key: &str, are: impl Fn(&[Table]) -> bool) -> Option<Vec<Table>> {
+        self.cache.get(key).filter(|tables| are(tables))
     }
 
     /// Caches tables under a key.

@@ -93,7 +93,9 @@ impl Need {
     pub fn is_kept(&self, cache: &Cache) -> bool {
         match self.target {
             Target::Quality(quality, precision) => {
-                cache.get(&self.group.key(quality.into(), precision)).is_some()
+                let level = quality.into();
+                let kept = cache.get(&self.group.key(level, precision));
+                kept.is_some_and(|tables| self.group.asks_for(&tables, level, precision))
             }
             _ => false,
         }

@@ -105,6 +105,10 @@ fn fit(table: &Table) -> Codec {
     Codec::fit(table.precision, &table.values, table.channels.len())
 }
 
+fn named_twice(table: &str) -> LoadError {
+    invalid(format!("table `{table}`: named twice"))
+}
+
 fn invalid(why: impl ToString) -> LoadError {
     LoadError::Invalid(why.to_string())
 }
@@ -118,8 +122,12 @@ fn invalid(why: impl ToString) -> LoadError {
 pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, LoadError> {
     provenance.check()?;
     let mut descriptors = Vec::new();
+    let mut names = BTreeSet::new();
     for table in tables {
         table.validate()?;
+        if !names.insert(&table.name) {
+            return Err(named_twice(&table.name));
+        }
         let (scale, offset) = fit(table).scale_offset();
         let Subject { lobe, masking, reflectance, covers } = table.subject.clone();
         descriptors.push(Descriptor {
@@ -267,7 +275,7 @@ fn assemble(
             return Err(fail("no channels".into()));
         }
         if !names.insert(descriptor.name.clone()) {
-            return Err(fail("named twice".into()));
+            return Err(named_twice(&descriptor.name));
         }
         let Descriptor { precision, scale, offset, channels, .. } = &descriptor;
         let codec = Codec::described(*precision, scale, offset, channels.len());

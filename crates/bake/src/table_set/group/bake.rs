@@ -10,6 +10,7 @@ use super::super::BakeError;
 use super::super::job::Job;
 use super::super::refine::albedo_tables;
 use super::TableGroup;
+use super::kept::is_of;
 use crate::bake;
 use crate::certify::certificate::{POINTS, measure};
 use crate::certify::radial;
@@ -45,7 +46,9 @@ impl TableGroup {
         let start = Instant::now();
         let keys: Vec<String> =
             precisions.iter().map(|&precision| self.key(level, precision)).collect();
-        let kept: Option<Vec<Vec<Table>>> = keys.iter().map(|key| job.get(key)).collect();
+        let kept: Option<Vec<Vec<Table>>> = std::iter::zip(&keys, precisions)
+            .map(|(key, &precision)| job.get(key, |tables| self.asks_for(tables, level, precision)))
+            .collect();
         let sets = match (kept, self) {
             (Some(sets), _) => {
                 job.progress.forget(self.work(level, precisions.len()));
@@ -89,7 +92,8 @@ impl TableGroup {
         for spec in self.specs(level) {
             // Kept in full precision: storing does not change the values.
             let key = format!("{spec:?}");
-            let table = job.get(&key).and_then(|mut tables| tables.pop());
+            let is_it = |tables: &[Table]| tables.len() == 1 && is_of(&tables[0], &spec);
+            let table = job.get(&key, is_it).and_then(|mut tables| tables.pop());
             let [seconds, _] = specs_seconds(std::slice::from_ref(&spec));
             if table.is_some() {
                 job.progress.forget(seconds);

@@ -1,6 +1,7 @@
 //! Table groups: tables that are chosen, baked, measured and kept together.
 
 mod bake;
+mod kept;
 
 use serde::{Deserialize, Serialize};
 
