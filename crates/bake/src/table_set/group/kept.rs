@@ -1,4 +1,5 @@
-//! Whether what a cache holds is what a group asks for: a file with the right key may hold anything.
+//! Whether what a cache holds is what a group asks for: a file with the right key may hold
+//! anything.
 //!
 //! Values and certificates are believed, as they are in any set: whoever can write to the cache is
 //! trusted with the numbers, and with nothing else.
