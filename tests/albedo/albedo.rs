@@ -1,0 +1,510 @@
+//! Albedo tables end to end: baked for recipes that ask, restricted to what they ask for, read
+//! back, and refused elsewhere.
+
+use glam::Vec3;
+use microfacet_baker::bake::albedo;
+use microfacet_baker::bake::albedo::{AlbedoLobe, Domain};
+use microfacet_baker::interval::Interval;
+use microfacet_baker::plan::{
+    AlbedoVerdict, AlbedoWish, Options, Plan, RequiredAlbedo, albedo_cost, bare_cost,
+};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::store;
+use microfacet_baker::table_set::{Settings, Target, bake, bake_with};
+use microfacet_baker::table_spec::Quality;
+use microfacet_model::fresnel::{Conductor, Dielectric};
+use microfacet_model::{AlbedoIntegrator, Shape};
+use microfacet_sampler::albedo::FresnelAlbedo;
+use microfacet_sampler::{Lobe, Masking, MicrofacetDistribution, Tables};
+use microfacet_tables::{Kind, Precision, Provenance, Reflectance, Table, encode};
+use microfacet_validate::furnace::direction;
+use serde_json::Value;
+
+use crate::common::{json, ok, run};
+
+const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
+
+fn domain(gamma: [f64; 2], sigma: [f64; 2]) -> AlbedoLobe {
+    let interval = |[min, max]: [f64; 2]| Interval { min, max };
+    AlbedoLobe::Family(Domain { gamma: interval(gamma), sigma: interval(sigma) })
+}
+
+/// A recipe of materials: name, σ, γ, and further lines.
+fn recipe(materials: &[[&str; 4]]) -> String {
+    let entry = |[name, sigma, gamma, more]: &[&str; 4]| {
+        format!("[[material]]\nname = \"{name}\"\nsigma = {sigma}\ngamma = {gamma}\n{more}\n")
+    };
+    materials.iter().map(entry).collect()
+}
+
+fn plan(materials: &[[&str; 4]], albedo: AlbedoWish) -> Plan {
+    let scene = Scene::from_recipe_str(&recipe(materials)).unwrap();
+    Plan::new(&scene, Options { albedo, ..Options::default() }).unwrap()
+}
+
+/// The part of a plan that is about albedos.
+fn albedos_of(plan: Plan) -> Plan {
+    Plan { shapes: Vec::new(), distributions: Vec::new(), ..plan }
+}
+
+const MIRROR: &str = "fresnel = \"mirror\"";
+const UNCORRELATED: &str = "fresnel = \"mirror\"\nmasking = \"uncorrelated\"";
+const CORRELATED: &str = "fresnel = { schlick = 0.04 }\nmasking = \"height-correlated\"";
+const MIXED: [[&str; 4]; 6] = [
+    ["plain", "0.2", "5.0", ""],
+    ["mirror", "0.454", "3.0", UNCORRELATED],
+    ["the other form", "0.454", "3.0", "fresnel = { schlick = 0.5 }"],
+    ["gold", "0.3", "2.0", CORRELATED],
+    ["brushed", "[0.6, 0.15]", "2.0", CORRELATED],
+    ["smooth", "0.0", "2.0", MIRROR],
+];
+
+#[test]
+fn those_who_ask_get_the_form_they_name() {
+    let plan_of = |albedo| plan(&MIXED, albedo);
+    let asked = plan_of(AlbedoWish::Auto);
+    let need = |lobe, maskings: &[Masking]| RequiredAlbedo {
+        lobe,
+        reflectance: Reflectance::Moments,
+        maskings: maskings.into(),
+    };
+    // The anisotropic material needs the albedo of its own lobe, not that of an isotropic stand-in.
+    let brushed = AlbedoLobe::StudentT { sigma: [0.6, 0.15], gamma: 2.0 };
+    let wanted = [
+        need(domain([3.0; 2], [0.454; 2]), &Masking::ALL),
+        need(domain([2.0; 2], [0.3; 2]), &[Masking::HeightCorrelated]),
+        need(brushed, &[Masking::HeightCorrelated]),
+    ];
+    assert_eq!(asked.albedos, wanted);
+    use AlbedoVerdict::{Bake, NotAsked, NotNeeded};
+    let bake = |need| Bake(vec![need]);
+    assert_eq!(asked.albedo_verdicts, [NotAsked, bake(0), bake(0), bake(1), bake(2), NotNeeded]);
+    assert!(plan_of(AlbedoWish::None).albedos.is_empty());
+    assert!(matches!(plan_of(AlbedoWish::All).albedo_verdicts[0], Bake(_)));
+    // GGX needs a table of its albedo, and no other.
+    let gold = plan(&MIXED[3..4], AlbedoWish::Auto);
+    assert!(gold.shapes.is_empty() && !gold.is_empty());
+}
+
+#[test]
+fn many_roughnesses_are_a_range_and_what_lies_inside_is_there() {
+    let sigmas: Vec<String> = (0..100).map(|i| format!("{}", 0.1 + 0.002 * f64::from(i))).collect();
+    let names: Vec<String> = (0..100).map(|i| format!("m{i}")).collect();
+    let mut materials: Vec<[&str; 4]> =
+        (0..100).map(|i| [names[i].as_str(), sigmas[i].as_str(), "3.0", MIRROR]).collect();
+    let one = plan(&materials, AlbedoWish::Auto);
+    assert_eq!(one.albedos.len(), 1);
+    assert_eq!(one.albedos[0].lobe, domain([3.0; 2], [0.1, 0.1 + 0.002 * 99.0]));
+    materials.push(["texture", "{ min = 0.0, max = 0.5 }", "{ min = 2.5, max = 4.0 }", MIRROR]);
+    let plan = plan(&materials, AlbedoWish::Auto);
+    assert_eq!(plan.albedos.len(), 1, "{:?}", plan.albedos);
+    assert!(plan.albedo_verdicts.iter().all(|verdict| *verdict == AlbedoVerdict::Bake(vec![0])));
+}
+
+#[test]
+fn a_part_reads_as_the_whole_does() {
+    let of = |lobe| {
+        let need = RequiredAlbedo {
+            lobe,
+            maskings: vec![Masking::HeightCorrelated],
+            ..RequiredAlbedo::general()
+        };
+        let tables = albedo::bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap();
+        Tables::from_tables(Provenance::default(), tables).unwrap()
+    };
+    // The whole has nodes on every side of the part's, so that the interpolation windows are the
+    // same.
+    let (part, whole) = (of(domain([2.6, 2.9], [0.0, 0.08])), of(domain([2.2, 3.6], [0.0, 0.2])));
+    assert!(part.tables()[0].values.len() < whole.tables()[0].values.len());
+    for gamma in [2.6, 2.77, 2.9] {
+        for sigma in [0.003, 0.02, 0.08] {
+            let [a, b] = [&part, &whole]
+                .map(|set| set.albedo(sigma, gamma, Masking::HeightCorrelated).unwrap());
+            for cos in [0.01, 0.3, 0.77, 1.0] {
+                let [a, b] = [&a, &b].map(|albedo| albedo.moments(direction(cos)));
+                // Node distances round differently.
+                assert!(
+                    (a.scale - b.scale).abs() < 1e-6 && (a.bias - b.bias).abs() < 1e-6,
+                    "{a:?} {b:?}"
+                );
+            }
+            assert!((a.albedo_average() - b.albedo_average()).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn a_single_material_has_its_albedo_and_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("r.toml"), recipe(&MIXED[1..2])).unwrap();
+    let summary = run(at, &["bake", "r.toml", "--out", "out", "--format", "safetensors,exr"]);
+    let text = String::from_utf8_lossy(&summary.stdout).into_owned();
+    assert!(text.contains("in albedo_") && text.contains("s, albedo "), "{text}");
+    let set = store::read(&at.join("out/tables.safetensors")).unwrap();
+    let albedo = set.albedo(0.454, 3.0, Masking::Uncorrelated).unwrap();
+    let model = AlbedoIntegrator::new(Shape::new(3.0).unwrap(), 1e-9);
+    for cos in [0.02_f32, 0.1, 0.33, 0.5, 0.9, 1.0] {
+        let exact = model.reflection(0.454, f64::from(cos), |_| [1.0]).unwrap().uncorrelated[0];
+        assert!((f64::from(albedo.albedo(direction(cos))) - exact).abs() < 2e-6, "{cos}");
+    }
+    let table = set.table(Kind::Albedo).unwrap();
+    assert_eq!(table.shape(), [1, 1, 33, 3]);
+    assert!(
+        table.certificate.quadrature.unwrap() < 1e-6
+            && table.subject.covers.unwrap().sigma == Some([0.454; 2])
+    );
+    // Another roughness, shape or form of masking is not there, and the message says what is.
+    for (sigma, gamma, masking) in [
+        (0.3, 3.0, Masking::Uncorrelated),
+        (0.5, 3.0, Masking::Uncorrelated),
+        (0.454, 2.9, Masking::Uncorrelated),
+    ] {
+        let why = set.albedo(sigma, gamma, masking).unwrap_err().to_string();
+        assert!(why.contains("hold gamma 3 with sigma 0.454"), "{why}");
+    }
+    assert!(set.albedo(0.454, 3.0, Masking::HeightCorrelated).is_err());
+    // The same as an image.
+    let image = store::read(&at.join("out/albedo_uncorrelated_gamma_3_sigma_0.454.exr")).unwrap();
+    assert_eq!(image.tables()[0], *table);
+    // The second bake takes all from the cache.
+    assert_eq!(json(at, &["bake", "r.toml", "--out", "out"])["baked"], 0);
+    let less = json(at, &["bake", "r.toml", "--out", "less", "--no-albedo"]);
+    assert_eq!(less["tables"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn imported_scenes_are_given_albedos_that_are_quick_and_have_to_ask_for_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    // Spectra of samples leave the Fresnel term open.
+    let open = "\"spectrum eta\" [ 400 2 700 3 ]";
+    let scene = format!(
+        "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float roughness\" 0.04 {open}"
+    );
+    std::fs::write(at.join("s.pbrt"), scene).unwrap();
+    let given = json(at, &["plan", "s.pbrt"]);
+    assert_eq!(given["albedo"][0]["masking"], serde_json::json!(["height-correlated"]));
+    assert_eq!(given["albedo"][0]["materials"], serde_json::json!(["steel"]));
+    assert_eq!(
+        (&given["materials"][0]["albedo"][0], &given["offered"]),
+        (&"baked".into(), &Value::Null)
+    );
+    let none = json(at, &["plan", "s.pbrt", "--no-albedo"]);
+    assert_eq!(none["materials"][0]["albedo"][0], "declined");
+
+    // Brushed metals have tables over the azimuth, which take longer.
+    let brushed = |i: u32| {
+        format!(
+            "MakeNamedMaterial \"{i}\" \"string type\" \"conductor\" {open}
+             \"float uroughness\" 0.0{i} \"float vroughness\" 0.3\n"
+        )
+    };
+    std::fs::write(at.join("b.pbrt"), (1..9).map(brushed).collect::<String>()).unwrap();
+    let shown = json(at, &["plan", "b.pbrt"]);
+    assert_eq!(shown["albedo"], Value::Array(Vec::new()));
+    assert_eq!(shown["materials"][0]["albedo"][0], "not asked");
+    let asked = json(at, &["plan", "b.pbrt", "--albedo"]);
+    let tables: usize = asked["albedo"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|of| of["names"].as_array().unwrap().len())
+        .sum();
+    assert_eq!(tables, 8);
+    // What it would add is what it adds, to the file with its header and to the time.
+    for of in ["bytes", "seconds"] {
+        let [with, without] = [&asked, &shown].map(|plan| plan["total"][of].as_f64().unwrap());
+        let offered = shown["offered"]["cost"][of].as_f64().unwrap();
+        assert!((offered / (with - without) - 1.0).abs() < 1e-9, "{of}: {offered}");
+    }
+    let text = ok(at, &["plan", "b.pbrt"]);
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        text.contains("albedo, not asked") && text.contains("--albedo bakes 8 tables"),
+        "{text}"
+    );
+
+    json(at, &["bake", "s.pbrt", "--quality", "draft", "--out", "out"]);
+    let set = store::read(&at.join("out")).unwrap();
+    assert!(set.albedo(0.2, 2.0, Masking::HeightCorrelated).is_ok());
+    assert!(set.provenance().conventions.contains_key("albedo"));
+}
+
+#[test]
+fn targets_are_met_or_refused() {
+    let plan = plan(&MIXED[1..2], AlbedoWish::Auto);
+    let plan = albedos_of(plan);
+    let patient = || Settings { patient: true, ..Settings::default() };
+    let bake = |target| bake_with(&plan, target, patient());
+    let worst = |target| {
+        bake(target)
+            .unwrap()
+            .set
+            .tables()
+            .iter()
+            .map(|table| table.certificate.worst())
+            .fold(0.0, f64::max)
+    };
+    let draft = worst(DRAFT);
+    let least = bake(Target::MaxError(1.1 * draft)).unwrap().set;
+    assert!(
+        least.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+            <= 1.1 * draft
+    );
+    // In fixed point it takes fewer bytes than the draft, even with some more nodes.
+    let stored = |set: &Tables| set.tables().iter().map(Table::stored_bytes).sum::<usize>();
+    assert_eq!(least.tables()[0].precision, Precision::U16);
+    assert!(stored(&least) < stored(&bake(DRAFT).unwrap().set));
+    let finer = 0.1 * draft;
+    assert!(worst(Target::MaxError(finer)) <= finer);
+    let refused = bake(Target::MaxError(1e-12)).unwrap_err().to_string();
+    assert!(refused.contains("albedo") && refused.contains("at best"), "{refused}");
+
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("r.toml"), recipe(&[["wild", "3.5", "2.0", MIRROR]]))
+        .unwrap();
+    for (args, words) in [
+        (&["--max-bytes", "9000"][..], &["3.5", "fresnel"][..]),
+        (&[], &["\"wild\"", "3.5", "above 3", "--no-albedo"]),
+    ] {
+        let output = run(folder.path(), &[&["bake", "r.toml", "--out", "out"], args].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
+}
+
+#[test]
+fn a_surface_smoother_than_the_promised_ones_has_a_certificate() {
+    let smooth = [
+        ["water", "0.002", "2.0", MIRROR],
+        ["pond", "0.002", "2.0", "fresnel = { dielectric = 1.33 }"],
+        ["nearly a mirror", "{ min = 0.0, max = 1e-4 }", "5.0", MIRROR],
+    ];
+    let plan = albedos_of(plan(&smooth, AlbedoWish::Auto));
+    let set = bake(&plan, DRAFT).unwrap().set;
+    for table in set.tables() {
+        assert!(table.certificate.worst() < 1e-2, "{}: {:?}", table.name, table.certificate);
+        table.validate().unwrap();
+    }
+}
+
+#[test]
+fn estimated_bytes_are_those_of_the_file() {
+    // Without the albedo whose views are refined.
+    let plan = albedos_of(plan(&MIXED[..4], AlbedoWish::Auto));
+    let set = bake(&plan, DRAFT).unwrap().set;
+    let bytes = |need: &RequiredAlbedo| {
+        albedo_cost(&need.spec(Quality::Draft, Precision::F32).unwrap()).bytes
+    };
+    let tables: usize = plan.albedos.iter().map(bytes).sum();
+    let estimate = (tables + bare_cost(set.provenance()).bytes) as f64;
+    let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
+    assert!((estimate / real - 1.0).abs() < 0.06, "{estimate} for {real}");
+}
+
+const EXACT: [[&str; 4]; 4] = [
+    [
+        "gold",
+        "0.3",
+        "2.0",
+        "fresnel = { conductor = { eta = [0.143, 0.375, 1.442], k = [3.983, 2.386, 1.603] } }\nmasking = \"height-correlated\"",
+    ],
+    ["glass", "0.454", "3.0", "fresnel = { dielectric = 1.6 }\nmasking = \"uncorrelated\""],
+    ["air", "0.454", "3.0", "fresnel = { dielectric = 0.625 }\nmasking = \"uncorrelated\""],
+    ["nothing", "0.454", "3.0", "fresnel = { dielectric = 1.0 }\nmasking = \"uncorrelated\""],
+];
+
+/// The mean of `worth` of view and normal over a grid of visible normals, in single precision: as a
+/// renderer would estimate it.
+fn mean(set: &Tables, name: &str, cos: f32, worth: impl Fn(&Lobe, Vec3, Vec3) -> f64) -> f64 {
+    const STEPS: usize = 300;
+    let material = set.material(name).unwrap();
+    let v = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
+    let numbers = (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| [step(i), step(j)]));
+    let sum: f64 = numbers.map(|u| worth(&material, v, material.sample_visible_normal(v, u))).sum();
+    sum / (STEPS * STEPS) as f64
+}
+
+/// The albedo of reflection: F G2/G1.
+fn reflected(
+    set: &Tables,
+    name: &str,
+    masking: Masking,
+    cos: f32,
+    fresnel: impl Fn(f64) -> f64,
+) -> f64 {
+    mean(set, name, cos, |material, v, m| {
+        let l = 2.0 * v.dot(m) * m - v;
+        let g = if l.z > 0.0 { material.g2(v, l, masking) / material.g1(v) } else { 0.0 };
+        fresnel(f64::from(v.dot(m))) * f64::from(g)
+    })
+}
+
+/// The albedo of transmission, with the refraction at each normal computed.
+fn transmitted(set: &Tables, name: &str, masking: Masking, cos: f32, face: Dielectric) -> f64 {
+    mean(set, name, cos, |material, v, m| {
+        let mu = f64::from(v.dot(m));
+        let Some(inside) = face.refracted_cos(mu) else { return 0.0 };
+        let l = (mu / face.eta() - inside) as f32 * m - v / face.eta() as f32;
+        let below = Vec3::new(l.x, l.y, -l.z);
+        let g = if l.z < 0.0 { material.g2(v, below, masking) / material.g1(v) } else { 0.0 };
+        (1.0 - face.reflectance(mu)) * f64::from(g)
+    })
+}
+
+/// Whether a table is under the exact reflectance of something.
+fn is_exact(table: &&Table) -> bool {
+    table.subject.reflectance.is_some_and(|reflectance| reflectance != Reflectance::Moments)
+}
+
+#[test]
+fn a_range_of_indices_has_an_axis() {
+    let text = recipe(&[[
+        "any",
+        "0.5",
+        "3.0",
+        "fresnel = { dielectric = { min = 1.2, max = 1.7 } }\nmasking = \"uncorrelated\"",
+    ]]);
+    let scene = Scene::from_recipe_str(&text).unwrap();
+    assert_eq!(
+        Scene::from_recipe_str(&scene.to_recipe()).unwrap().materials[0].fresnel,
+        scene.materials[0].fresnel
+    );
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    let set = bake(&plan, DRAFT).unwrap().set;
+    let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
+    let tables: Vec<_> = set.tables().iter().filter(is_exact).collect();
+    assert_eq!(tables.len(), 2);
+    for table in tables {
+        assert!(
+            table.axes[2].len() > 5 && table.certificate.worst() < 3e-3,
+            "{}: {:?}",
+            table.name,
+            table.certificate
+        );
+    }
+    let integrator = AlbedoIntegrator::new(Shape::new(3.0).unwrap(), 1e-6);
+    for eta in [1.2, 1.37, 1.7] {
+        let albedo = set.material_dielectric_albedo("any", eta).unwrap();
+        for cos in [0.1, 0.4, 0.9] {
+            for (got, eta) in [
+                (albedo.outside.eval(direction(cos)), eta),
+                (albedo.inside.eval(direction(cos)), 1.0 / eta),
+            ] {
+                let pane = Dielectric::new(eta).unwrap();
+                let want =
+                    integrator.transmission(0.5, f64::from(cos), pane).unwrap().uncorrelated[0];
+                assert!(
+                    (f64::from(got[1]) - want).abs() < 2e-3,
+                    "eta {eta}, {cos}: {got:?}, {want}"
+                );
+            }
+        }
+    }
+    // Everywhere a value in [0, 1], and no step where total reflection sets in.
+    let albedo = set.material_dielectric_albedo("any", 1.5).unwrap();
+    let critical = (1.0_f32 - 1.0 / 2.25).sqrt();
+    for curve in [&albedo.outside, &albedo.inside] {
+        for cos in
+            [f32::NAN, -1.0, 0.0, 1e-40, 1e-7, critical, 1.0 - f32::EPSILON, 1.0, f32::INFINITY]
+        {
+            assert!(
+                curve.eval(direction(cos)).iter().all(|x| (0.0..=1.0).contains(x)),
+                "{cos}: {:?}",
+                curve.eval(direction(cos))
+            );
+        }
+        let sides = [critical - 1e-6, critical + 1e-6].map(|cos| curve.eval(direction(cos)));
+        assert!(sides[0].iter().zip(sides[1]).all(|(a, b)| (a - b).abs() < 1e-4), "{sides:?}");
+    }
+    let why = set.material_dielectric_albedo("any", 4.0).unwrap_err().to_string();
+    assert!(why.contains("index 4 ") && why.contains("it holds"), "{why}");
+    for (range, told) in [
+        ("{ min = 0.5, max = 2.0 }", "0.5"),
+        ("{ min = 2.0, max = 1.5 }", "inverted"),
+        ("{ min = \"inf\", max = \"inf\" }", "inf"),
+        ("{ min = 1.5, max = 1.5 }", "1.5"),
+    ] {
+        let text =
+            recipe(&[["any", "0.5", "3.0", &format!("fresnel = {{ dielectric = {range} }}")]]);
+        let why = Scene::from_recipe_str(&text).unwrap_err().to_string();
+        assert!(why.contains(told), "{range}: {why}");
+    }
+}
+
+#[test]
+fn conductors_and_dielectrics_have_the_albedo_of_their_exact_reflectance() {
+    let scene = Scene::from_recipe_str(&recipe(&EXACT)).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    let set = bake(&plan, Target::default()).unwrap().set;
+    let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
+    // Gold; glass from both sides, which serves air; and one table for the index-matched interface,
+    // which is the same from both sides.
+    assert_eq!(set.tables().iter().filter(is_exact).count(), 4);
+    for table in set.tables().iter().filter(is_exact) {
+        assert!(table.certificate.worst() < 3e-4, "{}: {:?}", table.name, table.certificate);
+        assert!(table.certificate.quadrature.unwrap() < 1e-5);
+    }
+
+    let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else {
+        panic!()
+    };
+    let metal = [(0.143, 3.983), (0.375, 2.386), (1.442, 1.603)]
+        .map(|(eta, k)| Conductor::new(eta, k).unwrap());
+    for cos in [0.05, 0.3, 0.8, 1.0] {
+        for (got, metal) in gold.eval(direction(cos)).into_iter().zip(metal) {
+            let want =
+                reflected(&set, "gold", Masking::HeightCorrelated, cos, |x| metal.reflectance(x));
+            assert!((f64::from(got) - want).abs() < 2e-3, "gold at {cos}: {got}, {want}");
+        }
+        // Bounded by what F = 1 returns.
+        let all = set.material_albedo("gold").unwrap().albedo(direction(cos));
+        assert!(gold.eval(direction(cos)).iter().all(|&x| x <= all + 1e-5));
+    }
+    let average = gold.average();
+    assert!(average[0] > average[1] && average[1] > average[2] && average[0] < 1.0, "{average:?}");
+
+    let sides = |name| match set.material_fresnel_albedo(name).unwrap() {
+        FresnelAlbedo::Dielectric(sides) => sides,
+        other => panic!("{other:?}"),
+    };
+    let (glass, air, nothing) = (sides("glass"), sides("air"), sides("nothing"));
+    let interface = Dielectric::new(1.6).unwrap();
+    let all = set.material_albedo("glass").unwrap();
+    for cos in [0.05, 0.3, 0.6, 0.8, 1.0] {
+        let (entering, leaving) =
+            (glass.outside.eval(direction(cos)), glass.inside.eval(direction(cos)));
+        for (got, face) in [(entering, interface), (leaving, interface.reversed())] {
+            let want =
+                reflected(&set, "glass", Masking::Uncorrelated, cos, |x| face.reflectance(x));
+            assert!((f64::from(got[0]) - want).abs() < 2e-3, "glass at {cos}: {got:?}, {want}");
+            let want = transmitted(&set, "glass", Masking::Uncorrelated, cos, face);
+            assert!(
+                (f64::from(got[1]) - want).abs() < 3e-3,
+                "through glass at {cos}: {got:?}, {want}"
+            );
+            assert!(
+                got[0] <= all.albedo(direction(cos)) + 1e-4 && got[0] + got[1] <= 1.0 + 1e-4,
+                "{got:?}"
+            );
+        }
+        assert!(entering[0] < leaving[0] && entering[1] > leaving[1]);
+        // The other side of the same interface, from the same tables.
+        assert_eq!(
+            (air.outside.eval(direction(cos)), air.inside.eval(direction(cos))),
+            (leaving, entering)
+        );
+        assert_eq!(nothing.outside.eval(direction(cos))[0], 0.0);
+        assert_eq!(nothing.outside.eval(direction(cos)), nothing.inside.eval(direction(cos)));
+    }
+    // Average transmission is the same both ways up to the ratio of solid angles, η².
+    let (enters, leaves) = (glass.outside.average()[1], glass.inside.average()[1]);
+    assert!((enters - 2.56 * leaves).abs() < 1e-4, "{enters} and {leaves}");
+    assert!(
+        set.material_fresnel_albedo("glass").is_ok()
+            && set.material_fresnel_albedo("copper").is_err()
+    );
+}

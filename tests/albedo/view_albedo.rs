@@ -1,0 +1,500 @@
+//! Albedo tables over all views, end to end: for lobes that are not isotropic, and for those
+//! outside the family.
+
+use std::sync::LazyLock;
+
+use glam::Vec3;
+use microfacet_baker::bake::albedo::{AlbedoLobe, AlbedoSpec, Models, Site, bake, weights};
+use microfacet_baker::certify::albedo::{certified, interior_references, missed_by_half};
+use microfacet_baker::plan::{Options, Plan, albedo_cost};
+use microfacet_baker::progress::Stage;
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::Target;
+use microfacet_baker::table_spec::Quality;
+use microfacet_baker::{store, table_set};
+use microfacet_sampler::albedo::{Albedo, FresnelAlbedo};
+use microfacet_sampler::{Lobe, Masking, MaterialError, MicrofacetDistribution, Tables};
+use microfacet_tables::{LobeEntry, Precision, Quantity, Reflectance, Table, encode};
+
+use crate::common::{json, run};
+
+/// Independently integrated: σx, σy, γ, cos θ, φ, whether correlated, E.
+const REFERENCE: [([f64; 2], f64, f64, f64, bool, f64); 6] = [
+    (
+        [8.3663595940515578e-01, 1.8308432948070335e+00],
+        1.55,
+        6.0718204099530682e-01,
+        3.9627675943465577,
+        false,
+        2.0872905077163967e-02,
+    ),
+    (
+        [7.4568217468574471e-01, 1.4241501596865552e-01],
+        2.5,
+        7.6052364365567737e-01,
+        5.4189788932829108e-01,
+        true,
+        7.7274547738909416e-01,
+    ),
+    (
+        [1.3083347922293459e-01, 1.1215055613044751],
+        1.8581594715900893,
+        5.3205056829163744e-01,
+        3.3376563960005234,
+        false,
+        4.2776669010613888e-01,
+    ),
+    (
+        [8.2318179246625356e-01, 1.2108621091826757e-01],
+        8.0,
+        3.0189095046339626e-01,
+        1.0622907540033377,
+        true,
+        8.9592194255795199e-01,
+    ),
+    (
+        [4.7838580515658757e-01, 2.0],
+        3.0,
+        3.9786316530442611e-01,
+        4.3238001313265064,
+        false,
+        5.1051271478131088e-01,
+    ),
+    (
+        [6.3962601128219509e-01, 2.0],
+        1.7,
+        1.4856543593771659e-01,
+        1.7119071938636254,
+        true,
+        3.9822057356187424e-01,
+    ),
+];
+
+fn direction(cos: f64, phi: f64) -> Vec3 {
+    let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
+    Vec3::new((sin * phi.cos()) as f32, (sin * phi.sin()) as f32, cos as f32)
+}
+
+const CORRELATED: &str = "fresnel = { schlick = 0.04 }\nmasking = \"height-correlated\"";
+const PLAIN: &str = "fresnel = \"mirror\"\nmasking = \"uncorrelated\"";
+
+/// A recipe of materials: name, σ, γ, and further lines.
+fn recipe(materials: &[[&str; 4]]) -> String {
+    let entry = |[name, sigma, gamma, more]: &[&str; 4]| {
+        format!("[[material]]\nname = \"{name}\"\nsigma = {sigma}\ngamma = {gamma}\n{more}\n")
+    };
+    materials.iter().map(entry).collect()
+}
+
+const MATERIALS: [[&str; 4]; 6] = [
+    ["brushed", "[0.6, 0.15]", "2.7", CORRELATED],
+    ["the same", "[0.6, 0.15]", "2.7", CORRELATED],
+    ["other form", "[0.6, 0.15]", "2.7", PLAIN],
+    ["round", "0.3", "2.7", PLAIN],
+    ["worn", "[{ min = 0.2, max = 0.3 }, 0.1]", "2.7", PLAIN],
+    ["silent", "[0.4, 0.1]", "2.7", ""],
+];
+
+fn bake_all(text: &str, quality: Quality) -> Tables {
+    let scene = Scene::from_recipe_str(text).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    let set = table_set::bake(&plan, Target::Quality(quality, Precision::F32)).unwrap().set;
+    // Encoded and read back, as a renderer gets it.
+    Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap()
+}
+
+static SET: LazyLock<Tables> = LazyLock::new(|| bake_all(&recipe(&MATERIALS), Quality::Draft));
+
+fn views(set: &Tables) -> Vec<&Table> {
+    let own = |table: &&Table| table.kind.is_albedo() && table.subject.lobe != LobeEntry::Family;
+    set.tables().iter().filter(own).collect()
+}
+
+fn spec(sigma: [f64; 2], gamma: f64, quality: Quality) -> AlbedoSpec {
+    let lobe = AlbedoLobe::StudentT { sigma, gamma };
+    let form = vec![Masking::HeightCorrelated];
+    AlbedoSpec::new(lobe, Reflectance::Moments, form, quality, Precision::F32).unwrap()
+}
+
+#[test]
+fn the_model_agrees_with_independent_values() {
+    for (sigma, gamma, cos, phi, correlated, e) in REFERENCE {
+        let lobe = AlbedoLobe::StudentT { sigma, gamma };
+        let site = Site { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi, cos };
+        let albedo =
+            Models::with(&lobe, [], 1e-8, |models| models.at(&site).reflection(&site, weights))
+                .unwrap();
+        let [scale, bias, _] =
+            if correlated { albedo.height_correlated } else { albedo.uncorrelated };
+        assert!((scale + bias - e).abs() < 1e-7, "{sigma:?} {gamma}: {} for {e}", scale + bias);
+    }
+}
+
+#[test]
+fn a_table_of_default_quality_agrees_with_independent_values() {
+    let (sigma, gamma, cos, phi, _, e) = REFERENCE[1];
+    let table = bake(&spec(sigma, gamma, Quality::Default)).unwrap().remove(0);
+    let albedo = Albedo::from_table(&table, f64::NAN, f64::NAN).unwrap();
+    let got = f64::from(albedo.albedo(direction(cos, phi)));
+    assert!((got - e).abs() < 1e-4, "{got} for {e}");
+}
+
+#[test]
+fn each_lobe_and_form_has_one_table_within_its_error() {
+    let tables = views(&SET);
+    let names: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();
+    let name = |form: Masking| format!("albedo_{}_gamma_2.7_sigma_0.6_0.15", form.name());
+    assert_eq!(names, [Masking::Uncorrelated, Masking::HeightCorrelated].map(name));
+    for table in tables {
+        assert!(table.certificate.worst() <= 3e-3, "{:?}", table.certificate);
+        assert!(table.certificate.quadrature.unwrap() <= 1e-4);
+        // For single materials the isotropic stand-in is off by this much.
+        assert!(
+            (0.05..0.3).contains(&table.certificate.stand_in.unwrap()),
+            "{:?}",
+            table.certificate
+        );
+    }
+}
+
+#[test]
+fn opposite_and_mirrored_views_are_the_same_and_no_view_gains() {
+    for name in ["brushed", "other form"] {
+        let albedo = SET.material_albedo(name).unwrap();
+        for i in 0..400 {
+            let (cos, phi) = ((f64::from(i) * 0.618).fract().powi(3), 0.01 * f64::from(i));
+            let v = direction(cos, phi);
+            let [e, mirrored, opposite] =
+                [v, Vec3::new(v.x, -v.y, v.z), Vec3::new(-v.x, -v.y, v.z)]
+                    .map(|v| albedo.albedo(v));
+            assert!((0.0..=1.0).contains(&e), "{e} at {v}");
+            assert!(
+                (e - mirrored).abs() < 1e-6 && (e - opposite).abs() < 1e-6,
+                "{e} {mirrored} {opposite}"
+            );
+            let moments = albedo.moments(v);
+            assert!(moments.scale >= 0.0 && moments.bias >= 0.0 && moments.total() <= 1.0 + 1e-6);
+        }
+        // At the normal every azimuth gives the same; views below the horizon are taken as grazing,
+        // and so is NaN.
+        let normal = albedo.albedo(Vec3::Z);
+        assert!((albedo.albedo(Vec3::new(1e-30, -1e-30, 1.0)) - normal).abs() < 1e-6);
+        let grazing = albedo.albedo(Vec3::X);
+        assert_eq!(albedo.albedo(Vec3::new(0.8, 0.0, -0.6)), grazing);
+        assert_eq!(albedo.albedo(Vec3::new(f32::NAN, f32::NAN, f32::NAN)), grazing);
+        if albedo.masking() == Masking::HeightCorrelated {
+            assert!(albedo.lost(Vec3::new(1.0, 0.0, 1e-30)) < 1e-6);
+        }
+    }
+}
+
+/// 1/π ∫ f cos θ over the hemisphere, by the midpoint rule.
+fn hemisphere(f: impl Fn(Vec3) -> f32) -> f64 {
+    const N: usize = 200;
+    let mut sum = 0.0;
+    for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
+        // Even steps of x = √cos θ crowd views at grazing; 4x³ dx = 2 cos θ d(cos θ).
+        let x = (i as f64 + 0.5) / N as f64;
+        let cos = x * x;
+        let phi = std::f64::consts::TAU * (j as f64 + 0.5) / N as f64;
+        sum += 4.0 * x * x * x * f64::from(f(direction(cos, phi)));
+    }
+    sum / (N * N) as f64
+}
+
+#[test]
+fn the_average_is_that_of_all_views_and_the_furnace_closes() {
+    for name in ["brushed", "other form"] {
+        let albedo = SET.material_albedo(name).unwrap();
+        let average = hemisphere(|v| albedo.albedo(v));
+        assert!((average - f64::from(albedo.albedo_average())).abs() < 2e-5, "{average}");
+        let bias = hemisphere(|v| albedo.moments(v).bias);
+        assert!((bias - f64::from(albedo.average_moments().bias)).abs() < 2e-5, "{bias}");
+        let v = direction(0.3, 0.7);
+        let back = std::f64::consts::PI * hemisphere(|l| albedo.compensation(v, l));
+        assert!((back - f64::from(albedo.lost(v))).abs() < 1e-4, "{back}");
+        let l = direction(0.8, 2.0);
+        assert_eq!(albedo.compensation(v, l), albedo.compensation(l, v));
+        assert!((albedo.turquin(v, 1.0) * albedo.albedo(v) - 1.0).abs() < 1e-5);
+        assert_eq!(albedo.multiple_bounces(1.0), 1.0);
+    }
+}
+
+#[test]
+fn the_round_stand_in_is_off_by_what_the_certificate_says() {
+    let own = SET.material_albedo("brushed").unwrap();
+    let stand_in = Tables::embedded().albedo(0.3, 2.7, own.masking()).unwrap();
+    let said = views(&SET)[1].certificate.stand_in.unwrap();
+    let views =
+        (0..4000).map(|i| direction(0.02 + 0.98 * f64::from(i % 40) / 39.0, 0.01 * f64::from(i)));
+    let seen = views.map(|v| (own.albedo(v) - stand_in.albedo(v)).abs()).fold(0.0, f32::max);
+    assert!((f64::from(seen) - said).abs() < 0.1 * said + 3e-3, "{seen}, certified {said}");
+}
+
+#[test]
+fn a_wrong_table_is_noticed() {
+    let right = spec([0.6, 0.15], 2.7, Quality::Draft);
+    let references = interior_references(&right, &Stage::unwatched()).unwrap();
+    let table = bake(&right).unwrap().remove(0);
+    let error = |table: Table| {
+        certified(&right, vec![table], &references, &Stage::unwatched()).unwrap()[0]
+            .certificate
+            .worst()
+    };
+    // A table with its axes exchanged.
+    let swapped = spec([0.15, 0.6], 2.7, Quality::Draft);
+    assert!(error(bake(&swapped).unwrap().remove(0)) > 0.1);
+    // A table with one wrong node.
+    let mut wrong = table.clone();
+    let middle = wrong.values.len() / 6 * 3;
+    wrong.values[middle] = (wrong.values[middle] - 0.1).max(-1.0);
+    assert!(error(wrong) > 10.0 * error(table).max(3e-3));
+    // Tells which axis is the coarser: not the one that is twice as dense.
+    for axis in [0, 1] {
+        let dense = right.refined(axis).refined(axis);
+        let table = bake(&dense).unwrap().remove(0);
+        let [missed, other] = [axis, 1 - axis].map(|i| missed_by_half(&dense, &table, i).unwrap());
+        assert!(other > 10.0 * missed, "{axis}: {other} {missed}");
+    }
+}
+
+#[test]
+fn materials_without_such_a_table_are_named() {
+    for (name, word) in [("silent", "no such albedo"), ("gold", "which holds")] {
+        let why = SET.material_albedo(name).unwrap_err();
+        assert!(why.to_string().contains(name) && why.to_string().contains(word), "{why}");
+    }
+    assert!(matches!(SET.material_albedo("silent"), Err(MaterialError::NoAlbedo { .. })));
+    // For a range, the middle of the isotropic stand-in.
+    let worn = SET.material_albedo("worn").unwrap();
+    let round = SET.albedo((0.25_f64 * 0.1).sqrt(), 2.7, Masking::Uncorrelated).unwrap();
+    assert_eq!(worn.albedo(direction(0.3, 1.0)), round.albedo(direction(0.3, 2.0)));
+    // A table of moments is not taken for one of shares, nor the other way round.
+    assert!(
+        microfacet_sampler::albedo::ViewCurve::<3>::from_table(views(&SET)[0], 0.3, 2.7, 1.0)
+            .is_err()
+    );
+}
+
+#[test]
+fn damaged_tables_are_refused() {
+    let table = views(&SET)[0].clone();
+    let refused = |change: fn(&mut Table)| {
+        let mut table = table.clone();
+        change(&mut table);
+        table.validate().unwrap_err().to_string()
+    };
+    assert!(refused(|t| t.axes.swap(0, 1)).contains("axes"));
+    assert!(refused(|t| t.subject.masking = None).contains("masking"));
+    assert!(refused(|t| t.subject.reflectance = None).contains("reflectance"));
+    assert!(refused(|t| t.subject.lobe = LobeEntry::Family).contains("axes"));
+    assert!(refused(|t| t.values[0] = 1.5).contains("out of range"));
+    assert!(refused(|t| t.axes[0].nodes[1] *= 1.01).contains("azimuth"));
+    assert!(refused(|t| t.channels[0] = "value".into()).contains("channels"));
+    let sigma = |t: &mut Table| {
+        let microfacet_tables::Mapping::Azimuth(azimuth) = &mut t.axes[0].mapping else { panic!() };
+        azimuth.sigma[1] = 0.0;
+    };
+    assert!(refused(sigma).contains("sigma"));
+}
+
+#[test]
+fn the_commands_list_bake_keep_and_show_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("r.toml"), recipe(&MATERIALS[..1])).unwrap();
+    let shown = json(at, &["plan", "r.toml"]);
+    let listed = &shown["albedo"][0];
+    assert_eq!(listed["materials"], serde_json::json!(["brushed"]));
+    assert!(listed["cost"]["seconds"].as_f64().unwrap() > 0.0);
+    let text = String::from_utf8(run(at, &["plan", "r.toml"]).stdout).unwrap();
+    // Its bytes depend on how often it is refined.
+    assert!(
+        text.contains("albedo              gamma 2.7, sigma 0.6 and 0.15, ")
+            && text.contains("1 table, about "),
+        "{text}"
+    );
+    assert_eq!(json(at, &["plan", "r.toml", "--no-albedo"])["albedo"], serde_json::json!([]));
+
+    let bake =
+        ["bake", "r.toml", "--quality", "draft", "--out", "out", "--format", "safetensors,exr"];
+    let baked = json(at, &bake);
+    assert!(baked["baked"].as_u64().unwrap() > 0);
+    assert_eq!(json(at, &bake)["baked"], 0);
+    let text = String::from_utf8(run(at, &["inspect", "out", "--details"]).stdout).unwrap();
+    assert!(text.contains("albedo_height-correlated_gamma_2.7_sigma_0.6_0.15"), "{text}");
+    assert!(text.contains(
+        "an isotropic table at sqrt(sigma_x sigma_y) in its place would be off by up to"
+    ));
+    let set = store::read(&at.join("out")).unwrap();
+    assert!(set.material_albedo("brushed").is_ok());
+    assert!(set.provenance().conventions.contains_key("albedo_azimuth"));
+    let table = views(&set)[0];
+    assert_eq!(
+        store::read(&at.join(format!("out/{}.exr", table.name))).unwrap().tables()[0],
+        *table
+    );
+    // The estimate holds the doublings that are expected, of which this lobe may need one more or
+    // less.
+    let spec = spec([0.6, 0.15], 2.7, Quality::Draft);
+    let one = encode(&Default::default(), std::slice::from_ref(table)).unwrap().len();
+    let none = encode(&Default::default(), &[]).unwrap().len();
+    // A set's formulas are counted once.
+    let formulas: usize = table.axes.iter().map(|axis| axis.mapping.formula().len()).sum();
+    let real = one - none - formulas;
+    let estimate = albedo_cost(&spec).bytes;
+    assert!((0.6..1.6).contains(&(estimate as f64 / real as f64)), "{estimate} for {real}");
+
+    let less = ["bake", "r.toml", "--quality", "draft", "--out", "less", "--no-albedo"];
+    assert!(json(at, &less)["tables"].as_array().unwrap().iter().all(|t| t["kind"] != "albedo"));
+    let few = json(at, &["bake", "r.toml", "--max-bytes", "14000", "--out", "few"]);
+    assert!(few["tables"].as_array().unwrap().iter().any(|t| t["kind"] == "albedo"));
+    assert!(std::fs::metadata(at.join("few/tables.safetensors")).unwrap().len() <= 14000);
+
+    let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float uroughness\" 0.04 \
+                 \"float vroughness\" 0.25 \"spectrum eta\" [ 400 2 700 3 ]\nWorldBegin\n";
+    std::fs::write(at.join("s.pbrt"), scene).unwrap();
+    // It takes less than two seconds, so that nobody has to ask for it.
+    for asked in [&["plan", "s.pbrt"][..], &["plan", "s.pbrt", "--albedo"]] {
+        let albedo = &json(at, asked)["albedo"][0];
+        assert_eq!(albedo["materials"], serde_json::json!(["steel"]));
+        assert_eq!(albedo["masking"], serde_json::json!(["height-correlated"]));
+    }
+    assert_eq!(json(at, &["plan", "s.pbrt", "--no-albedo"])["albedo"], serde_json::json!([]));
+}
+
+const GTR: &str = "[[material]]\nname = \"paint\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.5\n\
+                   fresnel = \"mirror\"\nmasking = \"height-correlated\"\n";
+
+/// The albedo with F = 1 as a renderer would estimate it: G2/G1 over a grid of visible normals.
+fn estimate(v: Vec3, g1: f32, sample: impl Fn([f32; 2]) -> Vec3, g2: impl Fn(Vec3) -> f32) -> f64 {
+    const STEPS: usize = 300;
+    let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
+    let mut sum = 0.0;
+    for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+        let m = sample([step(i), step(j)]);
+        let l = 2.0 * v.dot(m) * m - v;
+        if l.z > 0.0 {
+            sum += f64::from(g2(l) / g1);
+        }
+    }
+    sum / (STEPS * STEPS) as f64
+}
+
+#[test]
+fn other_distributions_have_an_albedo_over_the_cosine() {
+    let scene = Scene::from_recipe_str(GTR).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    let set = table_set::bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set;
+    let set = Tables::from_bytes(&encode(set.provenance(), set.tables()).unwrap()).unwrap();
+    let table = views(&set)[0];
+    assert_eq!(
+        (table.name.as_str(), table.shape()[0]),
+        ("albedo_height-correlated_gtr_0.2_1.5", 1)
+    );
+    assert!(table.certificate.worst() <= 3e-3, "{:?}", table.certificate);
+    assert!(table.certificate.stand_in.is_none());
+    let (paint, albedo) = (set.material("paint").unwrap(), set.material_albedo("paint").unwrap());
+    for cos in [0.1, 0.4, 0.9] {
+        let v = direction(cos, 0.0);
+        assert_eq!(albedo.albedo(v), albedo.albedo(Vec3::new(0.0, v.x, v.z)));
+        let sample = |u| paint.sample_visible_normal(v, u);
+        let want = estimate(v, paint.g1(v), sample, |l| paint.g2(v, l, Masking::HeightCorrelated));
+        assert!((f64::from(albedo.albedo(v)) - want).abs() < 3e-3, "{cos}: {want}");
+    }
+    assert!(
+        set.material_dielectric_albedo("paint", 1.5)
+            .unwrap_err()
+            .to_string()
+            .contains("only round Student-t lobes refract")
+    );
+}
+
+#[test]
+fn ellipsoids_are_bound_by_name_with_their_albedo() {
+    let theta = "theta = [0.05, -0.1, 0.5]\nfresnel = \"mirror\"\nmasking = \"height-correlated\"";
+    let text = recipe(&[["tilted", "[0.4, 0.2]", "2.0", theta]]);
+    let scene = Scene::from_recipe_str(&text).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    // The plan has the visible normals of its γ, even for GGX, and no albedo of an isotropic lobe.
+    assert_eq!((plan.shapes.len(), plan.albedos.len()), (1, 1));
+    let set = bake_all(&text, Quality::Draft);
+    let table = views(&set)[0];
+    assert!(table.name.ends_with("gamma_2_sigma_0.4_0.2_theta_0.05_-0.1_0.5"), "{}", table.name);
+    assert!(table.certificate.error(Quantity::E).unwrap() <= 3e-3, "{:?}", table.certificate);
+    let (tilted, albedo) =
+        (set.material("tilted").unwrap(), set.material_albedo("tilted").unwrap());
+    for i in 0..8 {
+        let v = direction(0.3 + 0.08 * f64::from(i), 0.8 * f64::from(i));
+        let sample = |u| tilted.sample_visible_normal(v, u);
+        // Normals are drawn with density (v·m)⁺ D/(projected area); G1 is the clamped ratio of v·n
+        // to it.
+        let mut want = 0.0;
+        const STEPS: usize = 200;
+        for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+            let m = sample([i, j].map(|i| (i as f32 + 0.5) / STEPS as f32));
+            let l = 2.0 * v.dot(m) * m - v;
+            if l.z > 0.0 {
+                want += f64::from(tilted.reflection_weight(v, l, Masking::HeightCorrelated));
+            }
+        }
+        want /= (STEPS * STEPS) as f64;
+        assert!(
+            (f64::from(albedo.albedo(v)) - want).abs() < 4e-3,
+            "{v}: {} {want}",
+            albedo.albedo(v)
+        );
+    }
+    // The lobe is tilted, so that the opposite view sees another albedo.
+    let [a, b] =
+        [direction(0.4, 1.0), direction(0.4, 1.0 + std::f64::consts::PI)].map(|v| albedo.albedo(v));
+    assert!((a - b).abs() > 0.01, "{a} {b}");
+    let average = hemisphere(|v| albedo.albedo(v));
+    assert!((average - f64::from(albedo.albedo_average())).abs() < 1e-4, "{average}");
+    assert!(matches!(tilted, Lobe::Ellipsoid(_)));
+    assert!(matches!(SET.material("brushed"), Ok(Lobe::StudentT(_))));
+}
+
+#[test]
+fn an_anisotropic_conductor_has_the_albedo_of_its_own_lobe() {
+    const GOLD: &str =
+        "fresnel = { conductor = { eta = [0.143, 0.375, 1.442], k = [3.983, 2.386, 1.603] } }";
+    let set = bake_all(&recipe(&[["gold", "[0.5, 0.1]", "2.2", GOLD]]), Quality::Draft);
+    let exact =
+        |table: &&&Table| matches!(table.subject.reflectance, Some(Reflectance::Conductor { .. }));
+    let tables = views(&set);
+    let table = tables.iter().find(exact).unwrap();
+    assert_eq!((tables.len(), table.channels.join(" ").as_str()), (2, "red green blue"));
+    assert!(table.certificate.worst() <= 3e-3, "{:?}", table.certificate);
+    let FresnelAlbedo::Conductor(gold) = set.material_fresnel_albedo("gold").unwrap() else {
+        panic!()
+    };
+    let (material, all) = (set.material("gold").unwrap(), set.material_albedo("gold").unwrap());
+    let red = microfacet_model::fresnel::Conductor::new(0.143, 3.983).unwrap();
+    for i in 0..6 {
+        let v = direction(0.2 + 0.15 * f64::from(i), 0.9 * f64::from(i));
+        // G2/G1(v) F; masking that the recipe leaves out is height-correlated.
+        let mut want = 0.0;
+        const STEPS: usize = 200;
+        for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+            let m =
+                material.sample_visible_normal(v, [i, j].map(|i| (i as f32 + 0.5) / STEPS as f32));
+            let l = 2.0 * v.dot(m) * m - v;
+            if l.z > 0.0 {
+                let g = material.g2(v, l, Masking::HeightCorrelated) / material.g1(v);
+                want += f64::from(g) * red.reflectance(f64::from(v.dot(m)));
+            }
+        }
+        want /= (STEPS * STEPS) as f64;
+        let got = gold.eval(v);
+        assert!((f64::from(got[0]) - want).abs() < 4e-3, "{v}: {got:?} {want}");
+        assert!(
+            got.iter().all(|&x| x <= all.albedo(v) + 1e-3),
+            "{v}: {got:?} of {}",
+            all.albedo(v)
+        );
+    }
+    // Neither azimuths nor channels are mixed up in the average.
+    let average = hemisphere(|v| gold.eval(v)[2]);
+    assert!((average - f64::from(gold.average()[2])).abs() < 5e-5, "{average}");
+}

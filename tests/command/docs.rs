@@ -1,0 +1,119 @@
+//! The pages say what the code does.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use microfacet_report::plot::FIGURES;
+use microfacet_study::STUDIES;
+use microfacet_tables::{Kind, Mapping};
+
+/// `text` with every run of white space as one space, so that a page may break its lines anywhere.
+fn flat(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn the_page_of_the_format_has_every_mapping_and_its_formula() {
+    let page = flat(include_str!("../../docs/format.md"));
+    for mapping in Mapping::EVERY {
+        assert!(
+            page.contains(&format!("`{}`", mapping.name())),
+            "docs/format.md: no `{}`",
+            mapping.name()
+        );
+        assert!(
+            page.contains(&flat(mapping.formula())),
+            "docs/format.md: the formula of `{}` is {}",
+            mapping.name(),
+            mapping.formula()
+        );
+    }
+}
+
+#[test]
+fn the_page_of_the_format_is_of_this_version() {
+    let page = include_str!("../../docs/format.md");
+    assert!(
+        page.starts_with(&format!("# The table format, version {}\n", microfacet_tables::VERSION))
+    );
+    for kind in Kind::ALL {
+        assert!(
+            page.contains(&format!("`{}`", kind.name())),
+            "docs/format.md: no `{}`",
+            kind.name()
+        );
+    }
+}
+
+/// Files below a folder whose name ends so.
+fn files(folder: &Path, end: &str, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files(&path, end, found);
+        } else if path.to_str().is_some_and(|path| path.ends_with(end)) {
+            found.push(path);
+        }
+    }
+}
+
+/// An example works where it is copied to: its vectors are those of the crate that it shows.
+#[test]
+fn no_example_asks_for_a_crate_of_vectors() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut all = ["README.md", "crates/sampler/README.md", "crates/model/README.md"]
+        .map(|at| root.join(at))
+        .into();
+    files(&root.join("docs"), ".md", &mut all);
+    files(&root.join("crates/tables/src"), ".rs", &mut all);
+    files(&root.join("crates/sampler/src"), ".rs", &mut all);
+    files(&root.join("crates/model/src"), ".rs", &mut all);
+    assert!(all.len() > 100, "{}", all.len());
+    for path in all {
+        let is_page = path.extension().is_some_and(|end| end == "md");
+        for line in fs::read_to_string(&path).unwrap().lines() {
+            let said =
+                line.trim_start().strip_prefix("//").map(|doc| doc.trim_start_matches(['/', '!']));
+            let said = if is_page { Some(line) } else { said };
+            let code = said.unwrap_or("").trim_start_matches(['#', ' ']);
+            assert!(!code.starts_with("use glam::"), "{}: {line}", path.display());
+        }
+    }
+}
+
+/// The word after another in a command.
+fn after<'a>(command: &'a str, word: &str) -> Option<&'a str> {
+    let mut words = command.split_whitespace().skip_while(|each| *each != word);
+    words.nth(1)
+}
+
+#[test]
+fn the_page_of_what_was_reproduced_has_whole_rows_and_commands_that_there_are() {
+    let page = include_str!("../../docs/reproduced.md");
+    assert!(!page.contains('@'), "docs/reproduced.md: something is to be filled in");
+    let rows: Vec<Vec<&str>> = page
+        .lines()
+        .filter(|line| line.starts_with('|') && !line.starts_with("| --"))
+        .map(|line| line.trim_matches('|').split(" | ").map(str::trim).collect())
+        .collect();
+    assert!(rows.iter().filter(|row| row[0] == "claim").count() == 3 && rows.len() > 40);
+    let mut figures = Vec::new();
+    for row in rows {
+        let whole = row.len() == 4 && row.iter().all(|cell| !cell.is_empty());
+        assert!(whole, "docs/reproduced.md: {row:?}");
+        // Between backticks are commands.
+        for command in row[1].split('`').skip(1).step_by(2) {
+            if command.contains("microfacet-study") {
+                let name = after(command, "--").unwrap_or_default();
+                let found = STUDIES.iter().any(|study| study.name == name);
+                assert!(found, "docs/reproduced.md: no study {name}");
+            }
+            figures.extend(after(command, "plot"));
+        }
+    }
+    for listed in FIGURES {
+        assert!(figures.contains(&listed.name), "docs/reproduced.md: no {}", listed.name);
+    }
+    let known = FIGURES.map(|listed| listed.name);
+    assert!(figures.iter().all(|figure| known.contains(figure)), "{figures:?}");
+}

@@ -1,0 +1,102 @@
+//! The page of recipes, and the recipe that the command prints: what they show can be baked.
+
+use std::fs;
+
+use microfacet_baker::distribution::DistributionKind;
+use microfacet_baker::plan::{Options, Plan};
+use microfacet_baker::table_set::{Target, bake};
+use microfacet_baker::table_spec::Quality;
+use microfacet_sampler::{Lobe, Metal};
+use microfacet_tables::Precision;
+
+use crate::common::{ok, refused};
+
+const PAGE: &str = include_str!("../../docs/recipe.md");
+
+/// The blocks of a language.
+fn blocks(language: &str) -> Vec<&'static str> {
+    let begin = format!("\n```{language}\n");
+    let blocks: Vec<_> =
+        PAGE.split(&begin[..]).skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    assert!(!blocks.is_empty(), "no block of {language}");
+    blocks
+}
+
+/// Every block is a recipe whose materials are baked, albedos included.
+#[test]
+fn every_example_of_the_page_bakes() {
+    let folder = tempfile::tempdir().unwrap();
+    let [csv] = blocks("csv")[..] else { panic!("the page has one CSV") };
+    fs::write(folder.path().join("steel.csv"), csv).unwrap();
+    for recipe in blocks("toml") {
+        let path = folder.path().join("recipe.toml");
+        fs::write(&path, recipe).unwrap();
+        let scene =
+            microfacet_scene::load(&path).unwrap_or_else(|why| panic!("{why} in\n{recipe}"));
+        assert_eq!(scene.warnings, [""; 0], "{recipe}");
+        assert_eq!(scene.materials.len(), recipe.matches("[[material]]").count(), "{recipe}");
+        let plan = Plan::new(&scene, Options::default()).unwrap();
+        let target = Target::Quality(Quality::Draft, Precision::F32);
+        let set = bake(&plan, target).unwrap_or_else(|why| panic!("{why} in\n{recipe}")).set;
+        for material in &scene.materials {
+            let lobe = set.material(&material.name);
+            let lobe = lobe.unwrap_or_else(|why| panic!("{}: {why}", material.name));
+            assert_eq!(matches!(lobe, Lobe::Smooth(_)), material.name == "smooth");
+        }
+        assert_eq!(recipe.contains("fresnel"), set.tables().iter().any(|t| t.kind.is_albedo()));
+    }
+}
+
+#[test]
+fn every_distribution_and_its_parameters_are_on_the_page() {
+    let rows: Vec<&str> = PAGE.lines().filter(|line| line.starts_with("| `")).collect();
+    for kind in DistributionKind::ALL {
+        let name = format!("| `{}`", kind.name());
+        let row = rows.iter().find(|row| row.starts_with(&name));
+        let row = row.unwrap_or_else(|| panic!("docs/recipe.md: no row of `{}`", kind.name()));
+        for key in kind.parameters() {
+            assert!(row.contains(&format!("`{key}`")), "docs/recipe.md: no `{key}` in {row}");
+        }
+        let example = format!("distribution = \"{}\"", kind.name());
+        assert!(PAGE.contains(&example), "docs/recipe.md: no example {example}");
+    }
+}
+
+/// The table of metals states the numbers that `{ metal = .. }` stands for.
+#[test]
+fn every_metal_and_its_index_are_on_the_page() {
+    let (_, section) = PAGE.split_once("\n### Metals\n").unwrap();
+    let (section, _) = section.split_once("\n## ").unwrap();
+    let rows: Vec<&str> = section.lines().filter(|line| line.starts_with("| `")).collect();
+    assert_eq!(rows.len(), Metal::ALL.len(), "one row for each metal");
+    for (row, metal) in rows.iter().zip(Metal::ALL) {
+        let triple = |x: [f64; 3]| x.map(|x| format!("{x:.3}")).join(", ");
+        let numbers = format!("| `{metal}` | {} | {} | ", triple(metal.eta()), triple(metal.k()));
+        assert!(row.starts_with(&numbers), "docs/recipe.md: {row}\nis not {numbers}");
+        assert!(row.ends_with(&format!("]({}) |", metal.source())), "docs/recipe.md: {row}");
+    }
+}
+
+#[test]
+fn the_recipe_to_start_from_bakes_as_it_is_and_overwrites_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let printed = ok(at, &["recipe"]);
+    assert_eq!(ok(at, &["recipe", "--out", "mine.toml"]), "mine.toml\n");
+    assert_eq!(fs::read_to_string(at.join("mine.toml")).unwrap(), printed);
+    let bake = ["bake", "mine.toml", "--out", "out", "--quality", "draft", "--no-cache"];
+    let summary = ok(at, &bake);
+    assert!(summary.contains("albedo_") && summary.contains("visible_slope"), "{summary}");
+
+    fs::write(at.join("mine.toml"), "mine").unwrap();
+    let message = refused(at, &["recipe", "-o", "mine.toml"]);
+    assert!(message.contains("mine.toml: ") && message.contains("exists"), "{message}");
+    assert_eq!(fs::read_to_string(at.join("mine.toml")).unwrap(), "mine");
+    assert!(refused(at, &["recipe", "-o", "absent/mine.toml"]).contains("absent/mine.toml: "));
+
+    // The long help has the keys.
+    let help = ok(at, &["recipe", "--help"]);
+    for key in ["name", "sigma", "gamma", "theta", "distribution", "fresnel", "masking"] {
+        assert!(help.contains(&format!("\n  {key:12}  ")), "no {key} in {help}");
+    }
+}

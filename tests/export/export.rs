@@ -1,0 +1,318 @@
+//! Exports of shapes. `clients/c/run` and `clients/gpu/run` compile them and compare their
+//! functions with the crate's; here is what needs no compiler.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use crate::common::{names, ok, refused, run};
+use glam::Vec3;
+use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
+use microfacet_tables::axis::LogRoughness;
+
+/// The numbers of each array in a header, by name.
+fn arrays(header: &str) -> BTreeMap<String, Vec<f32>> {
+    let definitions = header.split("STUDENT_T_DATA float ").skip(1);
+    let array = |text: &str| {
+        let (name, rest) = text.split_once('[').unwrap();
+        let (count, rest) = rest.split_once("] = {").unwrap();
+        let items = rest.split_once('}').unwrap().0.split(',').map(str::trim);
+        let numbers: Vec<f32> = items
+            .filter(|item| !item.is_empty())
+            .map(|item| item.strip_suffix('f').unwrap().parse().unwrap())
+            .collect();
+        assert_eq!(count, numbers.len().to_string(), "{name}");
+        (name.to_owned(), numbers)
+    };
+    definitions.map(array).collect()
+}
+
+#[test]
+fn a_shape_is_a_small_header_beside_the_functions() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "c", "--gamma", "3,1.65", "--gamma", "inf", "--gamma", "1.501"];
+    let more = ["--gamma", "2", "--gamma", "3.0", "--gamma", "1e300", "--out", "out"];
+    ok(at, &[&export[..], &more].concat());
+    let out = at.join("out");
+    let shapes =
+        ["1e300", "1p501", "1p65", "2", "3", "inf"].map(|g| format!("student_t_gamma_{g}.h"));
+    assert_eq!(names(&out), [&["student_t.h".into()], &shapes[..]].concat());
+    for name in names(&out) {
+        let text = fs::read_to_string(out.join(&name)).unwrap();
+        assert!(text.is_ascii() && text.ends_with("#endif\n"), "{name}");
+        assert!(text.contains("SPDX-License-Identifier: CC0-1.0"), "{name}");
+        let widest = text.lines().max_by_key(|line| line.len()).unwrap();
+        assert!(widest.len() <= 100, "{name}: {widest}");
+        assert!(text.len() < 250_000, "{name}: {}", text.len());
+    }
+    // Closed forms leave only albedos.
+    let ggx = arrays(&fs::read_to_string(out.join("student_t_gamma_2.h")).unwrap());
+    assert!(ggx.keys().all(|name| name.contains("albedo") || name.contains("averages")), "{ggx:?}");
+    assert_eq!(ggx.len(), 4);
+}
+
+#[test]
+fn the_numbers_are_those_of_the_crate() {
+    let folder = tempfile::tempdir().unwrap();
+    ok(folder.path(), &["export", "c", "--gamma", "3", "--out", "."]);
+    let text = fs::read_to_string(folder.path().join("student_t_gamma_3.h")).unwrap();
+    let arrays = arrays(&text);
+    let array = |part: &str| &arrays[&format!("student_t_gamma_3_{part}")];
+    let member = |name: &str| {
+        let line = text.lines().find(|line| line.ends_with(&format!("/* {name} */"))).unwrap();
+        line.trim().split_once("f,").unwrap().0.parse::<f32>().unwrap()
+    };
+
+    // G1 from the cubics.
+    let tables = Tables::embedded();
+    let lobe = tables.student_t(0.4, 3.0).unwrap();
+    let (cubics, kappa) = (array("masking"), member("kappa"));
+    let cells = cubics.len() / 4 - 1;
+    assert_eq!(member("masking_cells"), cells as f32);
+    for i in 1..=100 {
+        let z = i as f32 / 100.0;
+        let v = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
+        let x = z / (z + kappa * 0.4 * v.x) * cells as f32;
+        let cell = (x as usize).min(cells);
+        let [a, b, c, d] = cubics[4 * cell..4 * cell + 4] else { unreachable!() };
+        let w = x - cell as f32;
+        let g1 = x * (a + w * (b + w * (c + w * d)));
+        assert!((g1 - lobe.g1(v)).abs() < 2e-6, "{z}: {g1} for {}", lobe.g1(v));
+    }
+
+    // Averages at inner nodes.
+    let averages = array("averages_height_correlated");
+    let cells = averages.len() / 3 - 1;
+    let ends = [1e-8, 3.0].map(|sigma| LogRoughness::BAKED.coordinate(sigma));
+    for node in [cells / 3, cells / 2, cells - 1] {
+        let t = ends[0] + (ends[1] - ends[0]) * node as f64 / cells as f64;
+        let sigma = LogRoughness::BAKED.quantity(t);
+        let albedo = tables.albedo(sigma, 3.0, Masking::HeightCorrelated).unwrap();
+        let stored = averages[3 * node].exp();
+        let lost = albedo.lost_average();
+        assert!((stored / lost - 1.0).abs() < 1e-4, "{sigma}: {stored} for {lost}");
+    }
+
+    // Albedos at the largest roughness and normal incidence, and their averages.
+    for masking in Masking::ALL {
+        let name = masking.name().replace('-', "_");
+        let albedo = tables.albedo(3.0, 3.0, masking).unwrap();
+        let [e, bias, _] = *array(&format!("albedo_{name}")).last_chunk::<3>().unwrap();
+        assert!((1.0 + e - albedo.albedo(Vec3::Z)).abs() < 1e-6, "{masking}");
+        assert!((bias - albedo.moments(Vec3::Z).bias).abs() < 1e-6, "{masking}");
+        let [lost, bias, f82] = *array(&format!("averages_{name}")).last_chunk::<3>().unwrap();
+        let average = albedo.average_moments();
+        assert!((1.0 - lost.exp() - average.total()).abs() < 1e-6, "{masking}");
+        assert!((bias - average.bias).abs() < 1e-6 && (f82 - average.f82).abs() < 1e-6);
+    }
+}
+
+/// What is one-sided has to be told what to do on the other side, in every language.
+#[test]
+fn texts_say_that_directions_of_the_other_side_are_negated() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for (target, file) in [("c", "student_t.h"), ("wgsl", "student_t.wgsl")] {
+        ok(at, &["export", target, "--gamma", "2", "--out", target]);
+        let text = fs::read_to_string(at.join(target).join(file)).unwrap();
+        let text = text.replace("\n// ", " ").replace("\n * ", " ");
+        let rest = text.split_once("All is one-sided").expect(file).1;
+        assert!(rest.starts_with(": negate a direction on the other side"), "{file}");
+        assert!(text.contains("the alpha of GGX and Beckmann; shape gamma"), "{file}");
+    }
+}
+
+#[test]
+fn other_sets_are_exported_with_what_they_lack() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("a.toml"), "[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 4.0\n").unwrap();
+    ok(at, &["bake", "a.toml", "--out", "set", "--quality", "draft"]);
+    let output = run(at, &["export", "c", "--gamma", "4", "--tables", "set", "--out", "out"]);
+    let notes = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && notes.contains("default set"), "{notes}");
+    let text = fs::read_to_string(at.join("out/student_t_gamma_4.h")).unwrap();
+    assert!(text.contains("masking are those of the default set"), "{text}");
+    ok(at, &["export", "wgsl", "--gamma", "4", "--tables", "set", "--out", "shader"]);
+    let json = fs::read_to_string(at.join("shader/student_t.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let forms = &json["shapes"]["4"]["albedos_of_default_set"];
+    assert_eq!(forms, &serde_json::json!(["uncorrelated", "height-correlated"]));
+    // Draft tables are smaller.
+    ok(at, &["export", "c", "--gamma", "4", "--out", "default"]);
+    let default = fs::read_to_string(at.join("default/student_t_gamma_4.h")).unwrap();
+    let count = |text: &str| arrays(text)["student_t_gamma_4_slopes"].len();
+    assert!(2 * count(&text) < count(&default), "{} {}", count(&text), count(&default));
+
+    let message =
+        refused(at, &["export", "c", "--gamma", "5", "--tables", "set", "--out", "other"]);
+    assert!(message.contains("gamma = 4") && message.contains("bake"), "{message}");
+    assert!(!at.join("other").exists());
+}
+
+#[test]
+fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let cases: [(&[&str], &[&str]); 9] = [
+        (&["wgsl", "--gamma", "3", "--tables", "nowhere"], &["nowhere", "no such file", "bake"]),
+        (&["cobol", "--gamma", "3"], &["cobol", "they are c, wgsl, glsl, glsl-es, hlsl"]),
+        (&["c", "--gamma", "3", "--textures"], &["--textures"]),
+        (&["wgsl", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
+        (&["c", "--gamma", "1.5"], &["(1.5, inf]"]),
+        (&["c", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
+        (&["c", "--gamma", "three"], &["three", "number"]),
+        (&["c", "--gamma", "3", "--sigma", "0.3"], &["every roughness"]),
+        (&["c"], &["--gamma"]),
+    ];
+    for (arguments, parts) in cases {
+        let message = refused(at, &[&["export"], arguments, &["--out", "out"]].concat());
+        for part in parts {
+            assert!(message.contains(part), "{arguments:?}: {message}");
+        }
+        assert!(!at.join("out").exists(), "{arguments:?}");
+    }
+    // One of several that cannot be written leaves the others as they were.
+    fs::create_dir_all(at.join("out/student_t_gamma_3.h")).unwrap();
+    fs::write(at.join("out/student_t.h"), "old").unwrap();
+    let message = refused(at, &["export", "c", "--gamma", "3", "--out", "out"]);
+    assert!(message.contains("student_t_gamma_3.h") && message.contains("folder"), "{message}");
+    assert_eq!(fs::read_to_string(at.join("out/student_t.h")).unwrap(), "old");
+    assert_eq!(names(&at.join("out")), ["student_t.h", "student_t_gamma_3.h"]);
+    // What is there is replaced.
+    fs::remove_dir(at.join("out/student_t_gamma_3.h")).unwrap();
+    ok(at, &["export", "c", "--gamma", "3", "--out", "out"]);
+    assert!(fs::read_to_string(at.join("out/student_t.h")).unwrap().contains("STUDENT_T_H"));
+}
+
+/// The functions of shader modules.
+const SHADER_FUNCTIONS: [&str; 14] = [
+    "student_t_d(",
+    "student_t_masking(",
+    "student_t_lambda(",
+    "student_t_masking_shadowing(",
+    "student_t_sample_visible_normal(",
+    "student_t_visible_normal_pdf(",
+    "student_t_reflect(",
+    "student_t_reflection_weight(",
+    "student_t_reflection_pdf(",
+    "student_t_albedo(",
+    "student_t_albedo_parts(",
+    "student_t_albedo_average(",
+    "student_t_albedo_average_parts(",
+    "student_t_compensation(",
+];
+
+#[test]
+fn every_language_has_all_functions_a_sample_and_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let cases = [
+        ("wgsl", "student_t.wgsl", "student_t_sample.wgsl", true),
+        ("glsl", "student_t.glsl", "student_t_sample.comp", true),
+        ("glsl-es", "student_t.glsl", "student_t_sample.frag", false),
+        ("hlsl", "student_t.hlsl", "student_t_sample.hlsl", true),
+        ("msl", "student_t.metal", "student_t_sample.metal", true),
+    ];
+    for (language, module, sample, has_buffers) in cases {
+        let mut data: Vec<Vec<u8>> = Vec::new();
+        for textures in [false, true] {
+            let out = format!("{language}-{textures}");
+            let mut export = vec!["export", language, "--gamma", "3,1.65", "--out", &out];
+            export.extend(textures.then_some("--textures"));
+            ok(at, &export);
+            let mut files = [module, sample, "student_t.bin", "student_t.exr", "student_t.json"];
+            files.sort();
+            assert_eq!(names(&at.join(&out)), files);
+            let text = |name: &str| fs::read_to_string(at.join(&out).join(name)).unwrap();
+            let (module, sample) = (text(module), text(sample));
+            assert!(module.is_ascii() && sample.is_ascii(), "{out}");
+            assert!(module.starts_with("// SPDX-License-Identifier: CC0-1.0"), "{out}");
+            for function in SHADER_FUNCTIONS {
+                // In the list at the top, and defined.
+                assert!(module.matches(function).count() >= 2, "{out}: {function}");
+            }
+            // What a translator made up, and an entry point.
+            let code: String = module.lines().filter(|line| !line.starts_with("//")).collect();
+            for foreign in ["naga", "fake", "impl_entry", "_group_", "main(", "#version", "sizes"] {
+                assert!(!code.contains(foreign), "{out}: {foreign}");
+            }
+            assert!(sample.lines().count() <= 46, "{out}");
+            let words = ["texture", "Texture2D", "sampler2D"];
+            let uses_texture = words.iter().any(|word| code.contains(word));
+            assert_eq!(uses_texture, textures || !has_buffers, "{out}");
+            data.push(fs::read(at.join(&out).join("student_t.bin")).unwrap());
+        }
+        // Buffers and textures have the same bytes.
+        assert_eq!(data[0], data[1], "{language}");
+    }
+
+    ok(at, &["export", "spirv", "--gamma", "3", "--out", "spirv"]);
+    let data = ["student_t.bin", "student_t.exr", "student_t.json"];
+    let files = [&data[..], &["student_t.spv", "student_t_sample.wgsl"]].concat();
+    assert_eq!(names(&at.join("spirv")), files);
+    let words = fs::read(at.join("spirv/student_t.spv")).unwrap();
+    assert_eq!(words[..4], 0x0723_0203_u32.to_le_bytes());
+    let entry = b"reflect_views";
+    assert!(words.windows(entry.len()).any(|window| window == entry));
+}
+
+#[test]
+fn the_data_of_shaders_is_where_its_description_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    ok(at, &["export", "wgsl", "--gamma", "3,inf,2,1.65", "--out", "."]);
+    let bytes = fs::read(at.join("student_t.bin")).unwrap();
+    let numbers: Vec<f32> =
+        bytes.chunks(4).map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap())).collect();
+    let text = fs::read_to_string(at.join("student_t.json")).unwrap();
+    let description: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let count = |value: &serde_json::Value| value.as_u64().unwrap() as usize;
+    let (width, height) = (count(&description["width"]), count(&description["height"]));
+    assert_eq!(numbers.len(), 2 * width * height);
+
+    // The image has the same numbers.
+    let image = exr::prelude::read_first_flat_layer_from_file(at.join("student_t.exr")).unwrap();
+    let layer = image.layer_data;
+    assert_eq!((layer.size.x(), layer.size.y()), (width, height));
+    let plane = |channel: usize| numbers.iter().skip(channel).step_by(2).copied().collect();
+    let expected: [(&str, Vec<f32>); 3] =
+        [("B", vec![0.0; width * height]), ("G", plane(1)), ("R", plane(0))];
+    assert_eq!(layer.channel_data.list.len(), expected.len());
+    for (stored, (name, expected)) in layer.channel_data.list.iter().zip(expected) {
+        let values: Vec<f32> = stored.sample_data.values_as_f32().collect();
+        assert!(stored.name == *name && values == expected, "{name}");
+    }
+
+    let shapes = description["shapes"].as_object().unwrap();
+    assert_eq!(shapes.keys().collect::<Vec<_>>(), ["1.65", "2", "3", "inf"]);
+    for (gamma, shape) in shapes {
+        let start = 2 * count(&shape["offset"]);
+        let members: Vec<(&str, f32)> = shape["members"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|member| {
+                (member["name"].as_str().unwrap(), member["value"].as_f64().unwrap() as f32)
+            })
+            .collect();
+        for (i, (name, value)) in members.iter().enumerate() {
+            assert_eq!(numbers[start + i], *value, "{gamma}: {name}");
+        }
+        let member = |name: &str| members.iter().find(|member| member.0 == name).unwrap().1;
+        assert_eq!(member("is_ggx"), f32::from(u8::from(gamma == "2")));
+        for (name, table) in shape["tables"].as_object().unwrap() {
+            let pairs = count(&table["rows"]) * count(&table["columns"]).div_ceil(2);
+            assert!(count(&table["offset"]) + pairs <= count(&shape["length"]), "{gamma}: {name}");
+        }
+        // The last albedo of a table is that of the largest roughness at normal incidence.
+        let table = &shape["tables"]["albedo_height_correlated"];
+        let last = 2 * (count(&table["offset"]) + 2 * (count(&table["rows"]) - 1));
+        let sigma = f64::from(member("height_correlated.sigma_max"));
+        let albedo = Tables::embedded()
+            .albedo(sigma, gamma.parse().unwrap(), Masking::HeightCorrelated)
+            .unwrap();
+        let stored = 1.0 + numbers[start + last];
+        assert!((stored - albedo.albedo(Vec3::Z)).abs() < 1e-6, "{gamma}: {stored}");
+    }
+}

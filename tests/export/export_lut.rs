@@ -1,0 +1,477 @@
+//! Albedos as textures. `clients/lut/run` opens them with other programs, and `clients/gpu/run`
+//! reads them by a filter of hardware; here is what needs neither.
+
+use std::fs;
+use std::io::Cursor;
+
+use crate::common::{names, ok, refused, run};
+use microfacet_baker::bake::albedo::weights;
+use microfacet_baker::progress::Stage;
+use microfacet_export::texture::engine::{LAYOUTS, Layout};
+use microfacet_export::texture::{
+    Channels, Checks, Deviation, Format, Made, Place, Shapes, Texture, TextureSpec, check, files,
+    known, shader_lines,
+};
+use microfacet_model::{AlbedoIntegrator, Shape};
+use microfacet_sampler::Masking;
+use microfacet_study::engines::shipped;
+use microfacet_tables::axis::LogShape;
+use serde_json::Value;
+
+const CORRELATED: Masking = Masking::HeightCorrelated;
+
+fn made(spec: &TextureSpec) -> Texture {
+    spec.make(&Stage::unwatched()).unwrap()
+}
+
+fn errors(spec: &TextureSpec, texture: &Texture) -> Vec<Deviation> {
+    Checks::new(spec, &Stage::unwatched()).unwrap().of(texture, |_| true)
+}
+
+#[test]
+fn errors_are_as_promised() {
+    let of = |shapes, sigma_max, size: [usize; 2], channels| {
+        let [spec, average] =
+            TextureSpec::of_shapes("lut", shapes, sigma_max, &size, CORRELATED, channels);
+        let average = errors(&average, &made(&average))[0].largest;
+        (errors(&spec, &made(&spec)), average)
+    };
+    let (small, average) = of(Shapes::One(2.0), 1.0, [32, 32], Channels::E);
+    assert!(small[0].largest < 6.5e-4 && average < 1.8e-4, "{small:?}");
+    // Steps of 1/256 are too fine to matter here.
+    assert!(small[0].coarse < 1.1 * small[0].largest, "{small:?}");
+    let (large, _) = of(Shapes::One(2.0), 1.0, [64, 64], Channels::E);
+    assert!(large[0].largest < 1.6e-4, "{large:?}");
+    let (heavy, _) = of(Shapes::One(1.6), 3.0, [64, 64], Channels::E);
+    assert!(heavy[0].largest < 7.3e-4, "{heavy:?}");
+    let (split, _) = of(Shapes::One(f64::INFINITY), 3.0, [16, 16], Channels::ScaleBias);
+    let quantities: Vec<&str> = split.iter().map(|found| found.quantity).collect();
+    assert_eq!(quantities, ["e", "bias", "scale"]);
+    let [e, bias, scale] = [0, 1, 2].map(|i| split[i].largest);
+    assert!(e < 1.3e-2 && bias < 1.4e-2 && scale < e + bias, "{split:?}");
+}
+
+/// What a volume states holds at other places, about which the certificate did not ask.
+#[test]
+fn a_volume_errs_by_what_it_states() {
+    let shapes = Shapes::DownTo(1.6);
+    let size = [4, 12, 12];
+    let [spec, average] =
+        TextureSpec::of_shapes("lut", shapes, 3.0, &size, CORRELATED, Channels::E);
+    // The middles of cells, and beside.
+    let last = LogShape::BAKED.coordinate(1.6);
+    for (i, cell) in [0.5, 1.45, 2.5, 2.6].into_iter().enumerate() {
+        let gamma = LogShape::BAKED.quantity(last * cell / 3.0);
+        let place = |j: i32, view: bool| {
+            let [a, b] = [0.618_034, 0.414_214].map(|step| (f64::from(j) * step).fract());
+            let cos = view.then_some(1e-4_f64.powf(a));
+            Place { gamma, sigma: (3.0 * b * b).max(1e-8), cos }
+        };
+        for (spec, count) in [(&spec, 3000), (&average, 100)] {
+            let view = spec.is_directional();
+            let places: Vec<Place> = (0..count).map(|j| place(i as i32 + j, view)).collect();
+            let known = known(&places, CORRELATED, &Stage::unwatched()).unwrap();
+            let texture = made(spec);
+            let found = Checks::at(spec, &known).of(&texture, |_| true)[0].largest;
+            let stated = errors(spec, &texture)[0].largest;
+            assert!(found < 1.05 * stated, "{gamma}: {found} of {stated}");
+        }
+    }
+}
+
+#[test]
+fn a_wrong_texel_is_seen() {
+    let [spec, _] = TextureSpec::of_shapes(
+        "lut",
+        Shapes::One(3.0),
+        1.0,
+        &[16, 16],
+        CORRELATED,
+        Channels::OneMinusE,
+    );
+    let good = made(&spec);
+    let before = errors(&spec, &good)[0].largest;
+    for texel in [0, 15, 7 * 16 + 9, 255] {
+        let mut bad = good.clone();
+        bad.values[texel] += 0.02;
+        let found = errors(&spec, &bad)[0];
+        // The horizon of the smoothest is below the smallest cosine that counts.
+        assert_eq!(found.largest > 0.01 + before / 2.0, texel != 0, "{texel}: {found:?}");
+    }
+}
+
+/// Values at the texels, where a texture is too large to fit.
+#[test]
+fn exact_texels_are_those_of_the_model() {
+    let [spec, _] =
+        TextureSpec::of_shapes("lut", Shapes::One(2.0), 1.0, &[8, 16], CORRELATED, Channels::E);
+    let spec = TextureSpec { fitted: false, ..spec };
+    let texture = made(&spec);
+    assert_eq!(texture.values.len(), 128);
+    // The last row is σ = 1, and its last texel E at the normal.
+    assert!((texture.values[127] - 0.306_853).abs() < 1e-6, "{}", texture.values[127]);
+    let fitted = TextureSpec { fitted: true, ..spec.clone() };
+    let [exact, fitted] = [&spec, &fitted].map(|spec| errors(spec, &made(spec))[0].largest);
+    assert!(fitted < 0.7 * exact, "{fitted} of {exact}");
+}
+
+fn is_valid(spec: &TextureSpec) {
+    let kind = if spec.axes.len() == 3 { "3d" } else { "2d" };
+    let (name, line) = (&spec.name, shader_lines(spec).wgsl);
+    let source = format!(
+        "@group(0) @binding(0) var {name}_texture: texture_{kind}<f32>;\n\
+         @group(0) @binding(1) var linear_clamp: sampler;\n\
+         fn read(gamma: f32, sigma: f32, mu: f32) -> f32 {{\n{line}\nreturn 0.0;\n}}"
+    );
+    let module = naga::front::wgsl::parse_str(&source).expect(&source);
+    naga::valid::Validator::new(Default::default(), Default::default())
+        .validate(&module)
+        .expect(&source);
+}
+
+#[test]
+fn lines_of_wgsl_are_valid() {
+    for shapes in [Shapes::One(2.0), Shapes::One(f64::INFINITY), Shapes::DownTo(1.6)] {
+        for channels in [Channels::E, Channels::OneMinusE, Channels::ScaleBias] {
+            let size = if matches!(shapes, Shapes::One(_)) { &[32, 24][..] } else { &[8, 32, 24] };
+            // Words of the language, and of the line itself, are names like others.
+            for name in ["lut", "var", "sigma", "pow", "vec2f"] {
+                let specs = TextureSpec::of_shapes(name, shapes, 3.0, size, CORRELATED, channels);
+                specs.iter().for_each(is_valid);
+            }
+        }
+    }
+}
+
+#[test]
+fn files_hold_the_same_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "lut", "--format", "npy,dds,ktx2,exr,json,c,npy", "--out", "out"];
+    ok(at, &[&export[..], &["--gamma-min", "1.8", "--size", "4x5x6", "--half"]].concat());
+    let out = at.join("out");
+    let forms = ["dds", "exr", "h", "json", "ktx2", "npy"];
+    let expected = ["lut", "lut_average"].map(|name| forms.map(|form| format!("{name}.{form}")));
+    assert_eq!(names(&out), expected.concat());
+    let json: Value = serde_json::from_slice(&fs::read(out.join("lut.json")).unwrap()).unwrap();
+    let values: Vec<f32> = serde_json::from_value(json["data"].clone()).unwrap();
+    assert_eq!(values.len(), 4 * 5 * 6);
+    assert!(json["largest_rounding_to_f16"].as_f64().unwrap() <= 2.5e-4);
+
+    let bytes = fs::read(out.join("lut.dds")).unwrap();
+    let mut dds = dds::Decoder::new(Cursor::new(bytes)).unwrap();
+    let dds::DataLayout::Volume(volume) = dds.layout() else { panic!("no volume") };
+    assert_eq!((volume.main().width(), volume.main().height(), volume.main().depth()), (6, 5, 4));
+    let mut read = Vec::new();
+    for _ in 0..4 {
+        let mut slice = [0_u8; 4 * 30];
+        let size = dds.main_size();
+        let view =
+            dds::ImageViewMut::new(&mut slice[..], size, dds::ColorFormat::GRAYSCALE_F32).unwrap();
+        dds.read_surface(view).unwrap();
+        read.extend(slice.chunks(4).map(|x| f32::from_ne_bytes(x.try_into().unwrap())));
+    }
+    assert_eq!(read, values);
+
+    let npy = npyz::NpyFile::new(Cursor::new(fs::read(out.join("lut.npy")).unwrap())).unwrap();
+    assert_eq!(npy.shape(), [4, 5, 6]);
+    let halves: Vec<half::f16> = npy.into_vec().unwrap();
+    assert!(halves.iter().map(|x| x.to_f32()).eq(values.iter().copied()));
+
+    let ktx = fs::read(out.join("lut.ktx2")).unwrap();
+    let ktx = ktx2::Reader::new(&ktx[..]).unwrap();
+    let header = ktx.header();
+    assert_eq!((header.pixel_width, header.pixel_height, header.pixel_depth), (6, 5, 4));
+    assert_eq!(header.format, Some(ktx2::Format::R16_SFLOAT));
+    let halves: Vec<u8> =
+        values.iter().flat_map(|&x| half::f16::from_f32(x).to_le_bytes()).collect();
+    assert_eq!(ktx.levels().next().unwrap().data, halves);
+}
+
+/// All that a header declares has a word behind its name, which so may be one of C's own.
+#[test]
+fn headers_are_named_by_any_word() {
+    for (name, channels) in [("int", Channels::E), ("sigma", Channels::ScaleBias)] {
+        let specs =
+            TextureSpec::of_shapes(name, Shapes::One(2.0), 1.0, &[4, 4], CORRELATED, channels);
+        for spec in specs.map(|spec| TextureSpec { fitted: false, ..spec }) {
+            let one = Made { texture: made(&spec), errors: Vec::new(), before_rounding: None };
+            let header = files(&[Format::C], &[one]).unwrap().remove(0).contents;
+            let header = String::from_utf8(header).unwrap();
+            let name = &spec.name;
+            let qualified = format!("{}_", name.to_uppercase());
+            let declared = header.lines().filter_map(|line| line.strip_prefix(&qualified));
+            let declared: Vec<&str> =
+                declared.map(|line| line.split(['[', '(']).next().unwrap()).collect();
+            let kind = if channels == Channels::E { "float" } else { "void" };
+            let [texels, read] =
+                [format!("DATA float {name}_texels"), format!("FUNCTION {kind} {name}_read")];
+            assert_eq!(declared, [texels, read]);
+            // Nothing reads the array by another name.
+            assert_eq!(header.matches(&format!("{name}[")).count(), 0, "{header}");
+        }
+    }
+}
+
+#[test]
+fn files_do_not_depend_on_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "lut", "--gamma", "3", "--size", "32x24", "--format", "json,exr,ktx2"];
+    ok(at, &[&export[..], &["--out", "a", "--threads", "1"]].concat());
+    ok(at, &[&export[..], &["--out", "b", "--threads", "7"]].concat());
+    for name in names(&at.join("a")) {
+        let [a, b] = ["a", "b"].map(|out| fs::read(at.join(out).join(&name)).unwrap());
+        assert!(a == b, "{name}");
+    }
+}
+
+/// Numbers from the tables that engines ship, where these are right, by row and column:
+/// Cycles 97dbe6f (Apache-2.0), openpbr-bsdf a29da96 (Apache-2.0), three.js 0.187.0 (MIT).
+#[test]
+fn layouts_are_those_of_engines() {
+    let written = |name: &str| {
+        let layout = Layout::find(name).unwrap();
+        let specs = layout.specs(2.0, layout.size, false);
+        let textures: Vec<Texture> = specs.iter().map(made).collect();
+        (layout, textures.clone(), layout.files(&textures).unwrap())
+    };
+    let (layout, textures, files) = written("cycles");
+    let cycles = shipped::decode(layout, &files[0].contents);
+    let text = String::from_utf8(files[0].contents.clone()).unwrap();
+    assert!(text.starts_with("/* Albedo of gamma 2, height-correlated masking, 32x32, exact"));
+    assert!(text.contains("static const float table_ggx_E[1024] = {\n  1.000000f, 0.98"), "{text}");
+    assert!(text.contains("static const float table_ggx_Eavg[32] = {\n  1.000000f, "));
+    for (row, column, value) in [
+        (1, 5, 0.891678),
+        (5, 10, 0.889039),
+        (16, 16, 0.847421),
+        (31, 31, 0.306853),
+        (8, 24, 0.727744),
+        (31, 5, 0.999296),
+    ] {
+        let found = cycles.values[32 * row + column];
+        assert!((found - value).abs() < 2.1e-6, "{row}, {column}: {found}");
+    }
+    for (i, value) in [(5, 0.997199), (16, 0.870874), (31, 0.409137)] {
+        assert!((textures[1].values[i] - value).abs() < 4e-6, "{i}: {}", textures[1].values[i]);
+    }
+
+    let (layout, _, files) = written("openpbr");
+    assert_eq!(files[1].name, "openpbr_ideal_metal_avg_energy_complement_data.h");
+    let openpbr = shipped::decode(layout, &files[0].contents);
+    for (row, column, value) in
+        [(16, 16, 10152.0), (20, 5, 14115.0), (31, 31, 45425.0), (24, 10, 22312.0)]
+    {
+        let found = 65535.0 * openpbr.values[32 * row + column];
+        // Shipped values are within 4e-5 of exact ones in this part.
+        assert!((found - value).abs() < 3.0, "{row}, {column}: {found}");
+    }
+
+    let (layout, _, files) = written("three");
+    let three = shipped::decode(layout, &files[0].contents);
+    for (row, column, scale, bias) in [(15, 15, 0.3452, 7.051e-5), (12, 4, 0.9893, 0.001015)] {
+        let found = &three.values[2 * (16 * row + column)..][..2];
+        // From 4,096 samples.
+        let near = (found[0] - scale).abs() < 3e-4 && (found[1] - bias).abs() < 3e-5;
+        assert!(near, "{row}, {column}: {found:?}");
+    }
+}
+
+/// Texels stand where their engines read them, by formulas written once more.
+#[test]
+fn texels_of_layouts_are_where_engines_read_them() {
+    let middle = |i: usize, n: usize| (i as f64 + 0.5) / n as f64;
+    let end = |i: usize, n: usize| i as f64 / (n - 1) as f64;
+    // √α and μ of a row and a column, and which channels are E, scale and bias.
+    type At = fn(&dyn Fn(usize, usize) -> f64, [usize; 2], [usize; 2]) -> [f64; 2];
+    let rough_first: At = |c, [i, j], [rows, columns]| [c(i, rows), c(j, columns)];
+    let view_first: At = |c, [i, j], [rows, columns]| [c(j, columns), c(i, rows)];
+    let size = [9, 14];
+    let integrator = AlbedoIntegrator::new(Shape::new(2.0).unwrap(), 1e-8);
+    for layout in &LAYOUTS {
+        let (at, channels): (At, &[&str]) = match layout.name {
+            "cycles" => (view_first, &["e"]),
+            "openpbr" | "osl" => (rough_first, &["lost"]),
+            "filament" | "unity" | "babylon" => (rough_first, &["bias", "e", ""]),
+            "three" => (view_first, &["scale", "bias"]),
+            "bevy" => (rough_first, &["scale", "bias"]),
+            "materialx" | "gltf" => (rough_first, &["scale", "bias", ""]),
+            other => panic!("{other} has no formula here"),
+        };
+        let ends = ["cycles", "openpbr", "osl", "unity"].contains(&layout.name);
+        let texture = made(&layout.specs(2.0, size, false)[0]);
+        for texel in [[2, 11], [7, 3]] {
+            let coordinate: &dyn Fn(usize, usize) -> f64 = if ends { &end } else { &middle };
+            let [root, cos] = at(coordinate, texel, size);
+            let sigma = if layout.name == "materialx" { root } else { root * root };
+            let cos = if ["osl", "unity"].contains(&layout.name) { cos * cos } else { cos };
+            let albedo = integrator.reflection(sigma, cos, weights).unwrap();
+            let uncorrelated = layout.name == "openpbr";
+            let of = if uncorrelated { albedo.uncorrelated } else { albedo.height_correlated };
+            for (k, channel) in channels.iter().enumerate() {
+                let want = match *channel {
+                    "e" => of[0] + of[1],
+                    "lost" => 1.0 - of[0] - of[1],
+                    "scale" => of[0],
+                    "bias" => of[1],
+                    _ => 0.0,
+                };
+                let index = (texel[0] * size[1] + texel[1]) * channels.len() + k;
+                let found = f64::from(texture.values[index]);
+                assert!((found - want).abs() < 1e-6, "{}: {found} for {want}", layout.name);
+            }
+        }
+    }
+}
+
+/// Every layout is read back as it was made, but for the rounding of its form.
+#[test]
+fn layouts_are_read_back() {
+    for layout in &LAYOUTS {
+        let size = if ["cycles", "openpbr", "osl"].contains(&layout.name) {
+            layout.size
+        } else {
+            [12, 12]
+        };
+        let textures: Vec<Texture> = layout.specs(2.0, size, false).iter().map(made).collect();
+        let files = layout.files(&textures).unwrap();
+        let back = shipped::decode(layout, &files[0].contents);
+        // Six decimals, sixteen bits, eight bits, and these through a power.
+        let allowed = match layout.name {
+            "cycles" => 6e-7,
+            "openpbr" => 8e-6,
+            "filament" | "three" | "bevy" => 2.5e-4,
+            "gltf" => 2e-3,
+            "babylon" => 4.4e-3,
+            _ => 0.0,
+        };
+        for (got, want) in back.values.iter().zip(&textures[0].values) {
+            assert!((got - want).abs() <= allowed, "{}: {got} for {want}", layout.name);
+        }
+    }
+}
+
+/// Texels at the middles are clamped beyond the last, at α = 1: this, not the cosine, darkens rough
+/// metal in three.js, whose shader divides by E.
+#[test]
+fn a_clamp_at_the_last_middle_shows_at_full_roughness() {
+    let worst = |name: &str, root: f64| {
+        let layout = Layout::find(name).unwrap();
+        let spec = &layout.specs(2.0, layout.size, false)[0];
+        let cos = |i: i32| Some(0.05 + 0.95 * f64::from(i) / 99.0);
+        let at = |i| Place { gamma: 2.0, sigma: root * root, cos: cos(i) };
+        let places: Vec<Place> = (0..100).map(at).collect();
+        let known = known(&places, spec.masking, &Stage::unwatched()).unwrap();
+        let found = Checks::at(spec, &known).of(&made(spec), |_| true);
+        found.iter().find(|found| found.quantity == "e").unwrap().relative
+    };
+    let [largest, rms] = worst("three", 1.0);
+    let [percent, mean] = [largest, rms].map(|share| 100.0 * share);
+    println!("three.js, alpha 1: E too large by {percent:.1} %, root mean square {mean:.1} %");
+    assert!((0.12..0.13).contains(&largest) && (0.06..0.07).contains(&rms), "{largest} {rms}");
+    for (name, root) in [("three", 31.0 / 32.0), ("cycles", 1.0)] {
+        let [largest, _] = worst(name, root);
+        println!("{name}, sqrt(alpha) {root}: {:.1} %", 100.0 * largest);
+        assert!(largest < 0.02, "{name}: {largest}");
+    }
+}
+
+/// Images of two channels are refused by readers that want colours, such as three.js's.
+#[test]
+fn two_channels_are_written_as_three_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "lut", "--gamma", "2", "--size", "4x5", "--format", "exr,npy"];
+    ok(at, &[&export[..], &["--channels", "scale-bias", "--out", "out"]].concat());
+    let npy = fs::read(at.join("out/lut.npy")).unwrap();
+    let values: Vec<f32> = npyz::NpyFile::new(Cursor::new(npy)).unwrap().into_vec().unwrap();
+    let image = exr::prelude::read_first_flat_layer_from_file(at.join("out/lut.exr")).unwrap();
+    let channels = image.layer_data.channel_data.list;
+    let plane = |channel: usize| values.iter().skip(channel).step_by(2).copied().collect();
+    let expected: [(&str, Vec<f32>); 3] = [("B", vec![0.0; 20]), ("G", plane(1)), ("R", plane(0))];
+    assert_eq!(channels.len(), expected.len());
+    for (stored, (name, expected)) in channels.iter().zip(expected) {
+        let found: Vec<f32> = stored.sample_data.values_as_f32().collect();
+        assert!(stored.name == *name && found == expected, "{name}: {found:?}");
+    }
+}
+
+#[test]
+fn layouts_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "lut", "--layout"];
+    let output = run(at, &[&export[..], &["osl", "--fit", "--out", "out"]].concat());
+    assert!(output.status.success());
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(notes.contains("put the file in place of SPI/microfacet_tools_luts.h"), "{notes}");
+    let text = fs::read_to_string(at.join("out/microfacet_tools_luts.h")).unwrap();
+    assert!(text.contains("BSDL_INLINE_METHOD MiniMicrofacetGGX::Energy& "), "{text}");
+    assert_eq!(text.matches("f,").count(), 256);
+    let babylon = ["babylon", "--size", "8x8", "--out", "out"];
+    let output = run(at, &[&export[..], &babylon].concat());
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    for needed in ["isRGBD = true", "noMipmap", "invertY", "CLAMP_ADDRESSMODE"] {
+        assert!(notes.contains(needed), "{notes}");
+    }
+    let other = ["three", "--size", "8x8", "--gamma", "3", "--out", "out"];
+    let output = run(at, &[&export[..], &other].concat());
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(notes.contains("has 16x16 texels: change its constants"), "{notes}");
+}
+
+#[test]
+fn what_cannot_be_made_is_refused_with_a_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let lut = ["export", "lut", "--out", "out"];
+    let npy = ["--format", "npy"];
+    for (more, says) in [
+        (&["--gamma", "2", "--size", "3x32"][..], "a size of 3 must lie in [4, 4096]"),
+        (&["--gamma", "2", "--size", "32x5000"], "a size of 5000 must lie in [4, 4096]"),
+        (&["--gamma", "2", "--size", "32"], "as 32x32 or 32x64x64"),
+        (&["--gamma", "2", "--size", "32xx32"], "as 32x32 or 32x64x64"),
+        (&["--gamma", "2", "--size", "8x8x8"], "has 2 sizes"),
+        (&["--gamma-min", "2", "--size", "8x8"], "has 3 sizes"),
+        (&["--gamma-min", "1.6", "--size", "512x4096x4096"], "more than 16777216"),
+        (&["--gamma", "2", "--sigma-max", "0"], "(0, 3]"),
+        (&["--gamma", "2", "--sigma-max", "-1"], "(0, 3]"),
+        (&["--gamma", "2", "--sigma-max", "3.1"], "(0, 3]"),
+        (&["--gamma", "2", "--sigma-max", "1e-12"], "below 0.0001"),
+        (&["--gamma-min", "1e17"], "the one shape gamma = inf"),
+        (&["--gamma", "2", "--sigma-max", "nan"], "finite"),
+        (&["--gamma", "1.4"], "1.5"),
+        (&["--gamma", "1.5005"], "1.501"),
+        (&["--gamma-min", "inf"], "the one shape gamma = inf"),
+        (&["--gamma-min", "3", "--gamma-max", "2"], "does not lie above --gamma-min 3"),
+        (&["--gamma-min", "3", "--gamma-max", "4"], "leave out --gamma-max"),
+        (&["--gamma", "2", "--gamma-max", "3"], "--gamma-max is of no use"),
+        (&["--gamma", "2", "--gamma-min", "2"], "cannot be used with"),
+        (&["--gamma", "2", "--name", "GGX"], "a-z, 0-9 and _"),
+        (&["--gamma", "2", "--name", "../x"], "a-z, 0-9 and _"),
+        (&["--gamma", "2", "--name", "_x"], "begins with a letter"),
+        (&["--gamma", "2", "--name", "2x"], "begins with a letter"),
+        (&["--gamma", "2", "--name", "a__b"], "C++ and GLSL reserve"),
+        (&["--gamma", "2", "--name", "x_"], "C++ and GLSL reserve"),
+        (&["--gamma", "2", "--name", "gl_x"], "C++ and GLSL reserve"),
+        (&["--gamma", "2", "--name", "math", "--format", "c"], "as math_albedo"),
+        (&[], "name a shape with --gamma"),
+    ] {
+        let message = refused(at, &[&lut[..], &npy, more].concat());
+        assert!(message.contains(says), "{more:?}: {message}");
+    }
+    for (more, says) in [
+        (&["--gamma", "2", "--format", "png"][..], "exr, dds, ktx2, npy, c, json"),
+        (&["--gamma", "2"], "or an engine with --layout"),
+        (&["--layout", "unreal"], "cycles, openpbr, osl, filament, three, bevy"),
+        (&["--layout", "cycles", "--format", "npy"], "cannot be used with"),
+        (&["--layout", "cycles", "--size", "8x8x8"], "has 2 sizes"),
+        (&["--gamma", "2", "--format", "npy", "--fit"], "--layout"),
+    ] {
+        let message = refused(at, &[&lut[..], more].concat());
+        assert!(message.contains(says), "{more:?}: {message}");
+    }
+    assert!(!at.join("out").exists());
+    assert_eq!(check(Shapes::One(2.0), 1.0, &[4, 4096]), Ok(()));
+}

@@ -1,0 +1,352 @@
+//! The judges of complete BSDFs pass what is right and reject what is wrong. In 40 configurations
+//! of 2e5 samples; `microfacet-bake bsdf` runs 200 of 1e6.
+
+use std::sync::OnceLock;
+
+use glam::Vec3;
+use microfacet_baker::plan::{Options as PlanOptions, Plan};
+use microfacet_baker::progress::Stage;
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{Settings, Target, bake};
+use microfacet_baker::table_spec::Quality;
+use microfacet_sampler::bsdf::Event;
+use microfacet_sampler::{
+    AnyBsdf, BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Lobe, Masking,
+    Plastic, Skew, StandIn, Tables, Transport,
+};
+use microfacet_tables::{Kind, Precision, encode};
+use microfacet_validate::bsdf::chi_square::{run, test};
+use microfacet_validate::bsdf::configuration::{Configuration, configurations};
+use microfacet_validate::bsdf::specimen::{LobeOf, Specimen, Surface, tables};
+use microfacet_validate::bsdf::{furnace, reciprocity};
+use microfacet_validate::{LEVEL, Options};
+
+use crate::common::{json, ok, refused, run as run_command};
+
+fn unwatched() -> Stage {
+    Stage::unwatched()
+}
+
+/// The configurations of the tests, and their albedos.
+fn drawn() -> &'static (Vec<Configuration>, Tables) {
+    static ALL: OnceLock<(Vec<Configuration>, Tables)> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let all = configurations(40, 7);
+        let specimens: Vec<_> = all.iter().map(|one| one.specimen).collect();
+        let set = tables(&specimens, Quality::Draft, Settings::default()).unwrap();
+        (all, set)
+    })
+}
+
+#[test]
+fn samples_have_their_density() {
+    let (all, set) = drawn();
+    let options = Options { samples: 200_000, gamma_factor: 1.0 };
+    let result = run(set, all, options, &unwatched()).unwrap();
+    let worst = &result.reports[0];
+    assert!(result.passed(), "p = {:e}: {}", worst.test.p, worst.configuration);
+    // The tests resolve: hundreds of cells each, but for what loses most of its light.
+    let cells = result.reports.iter().filter(|report| report.test.degrees > 100).count();
+    assert!(cells > 30, "{cells}");
+    // Every kind is there.
+    let has = |kind: fn(&Surface) -> bool| all.iter().any(|one| kind(&one.specimen.surface));
+    assert!(has(|surface| *surface == Surface::Mirror));
+    assert!(has(|surface| matches!(surface, Surface::Dielectric(eta) if *eta < 1.0)));
+    assert!(has(|surface| matches!(surface, Surface::Plastic(..))));
+    assert!(all.iter().any(|one| one.view().z < 0.0));
+}
+
+fn specimen(surface: Surface) -> Specimen {
+    Specimen {
+        lobe: LobeOf::StudentT,
+        sigma: [0.4, 0.4],
+        gamma: 3.0,
+        surface,
+        masking: Masking::HeightCorrelated,
+        compensation: Compensation::None,
+    }
+}
+
+fn glass() -> (Lobe, Dielectric<Lobe>) {
+    let lobe: Lobe = Tables::embedded().student_t(0.4, 3.0).unwrap().into();
+    (lobe.clone(), Dielectric::new(lobe, 1.5).unwrap())
+}
+
+/// p of a BSDF's samples against a density.
+fn p(bsdf: &impl Bsdf<3>, v: Vec3, density: impl Fn(Vec3) -> f32) -> f64 {
+    let draw = |choice, u| bsdf.sample(v, choice, u, Transport::Radiance).map(|sample| sample.l);
+    test(v, 200_000, 5, Vec::new(), &[], draw, density).p
+}
+
+/// What rough glass of γ < 2 draws, but for what is only sampled, is what `pdf` alone leads to
+/// expect. A renderer that weights by densities tests the same.
+#[test]
+fn rough_glass_of_long_tails_has_its_density() {
+    let tables = Tables::embedded();
+    // p of a view, and what it is if deltas are counted with all others.
+    let p = |gamma: f64, (eta, sigma): (f64, [f32; 2]), theta: f64, deltas: bool| {
+        let one = Specimen { gamma, sigma, ..specimen(Surface::Dielectric(eta)) };
+        let glass = one.bsdf(&tables).unwrap();
+        let one = Configuration { specimen: one, theta, phi: 0.4, seed: 3 };
+        let v = one.view();
+        let draw = |choice, u| {
+            let sample = glass.sample(v, choice, u, Transport::Radiance)?;
+            (deltas || !sample.delta).then_some(sample.l)
+        };
+        test(v, 200_000, 3, one.edges(), &[], draw, |l| Bsdf::<3>::pdf(&glass, v, l)).p
+    };
+    let surfaces = [(1.5, [0.1, 0.1]), (1.5, [0.5, 0.2]), (1.0 / 1.5, [0.3, 0.3])];
+    let views = [0.3, 1.0, 2.2];
+    let mut all = Vec::new();
+    for gamma in [1.55, 1.7] {
+        for surface in surfaces {
+            all.extend(views.map(|theta| p(gamma, surface, theta, false)));
+        }
+    }
+    let worst = all.iter().copied().fold(1.0, f64::min);
+    assert!(worst > LEVEL / all.len() as f64, "{all:?}");
+    // The cells resolve what is only sampled.
+    assert!(p(1.55, surfaces[0], 1.0, true) < 1e-10);
+}
+
+/// Each of these is a mistake that a density may have.
+#[test]
+fn wrong_densities_are_rejected() {
+    let v = Vec3::new(0.6, 0.0, 0.8);
+    let (lobe, glass) = glass();
+    let pdf = |v, l| Bsdf::<3>::pdf(&glass, v, l);
+    for v in [v, -v] {
+        assert!(p(&glass, v, |l| pdf(v, l)) > LEVEL / 100.0);
+        // The Jacobian of refraction is forgotten: m is counted as if it were l.
+        let eta = if v.z > 0.0 { 1.5 } else { 1.0 / 1.5 };
+        let without = |l: Vec3| {
+            if v.z * l.z > 0.0 {
+                return pdf(v, l);
+            }
+            let h = v + eta * l;
+            let m = h.normalize_or_zero();
+            let jacobian = l.dot(m).abs() * eta * eta / h.length_squared();
+            pdf(v, l) / jacobian
+        };
+        assert!(p(&glass, v, without) < 1e-10);
+        // So is the choice of the event: reflection has the density of a conductor.
+        let mirror: Conductor<Lobe> = Conductor::new(lobe.clone(), ConductorFresnel::mirror());
+        let chosen = |l: Vec3| match v.z * l.z > 0.0 {
+            true => Bsdf::<3>::pdf(&mirror, v.z.signum() * v, v.z.signum() * l),
+            false => pdf(v, l),
+        };
+        assert!(p(&glass, v, chosen) < 1e-10);
+        // Or the relative index is taken for its inverse.
+        let inverse = Dielectric::new(lobe.clone(), 1.0 / 1.5).unwrap();
+        assert!(p(&glass, v, |l| Bsdf::<3>::pdf(&inverse, v, l)) < 1e-10);
+    }
+    // The broad lobe of a compensation is forgotten, or the probability of it.
+    let rough: Lobe = Tables::embedded().student_t(1.0, 3.0).unwrap().into();
+    let bare: Conductor<Lobe> = Conductor::new(rough, ConductorFresnel::mirror());
+    let tables = Tables::embedded();
+    let whole =
+        bare.clone().compensated(&tables, Compensation::KullaConty, StandIn::Refused).unwrap();
+    assert!(p(&whole, v, |l| whole.pdf(v, l)) > LEVEL / 100.0);
+    assert!(p(&whole, v, |l| bare.pdf(v, l)) < 1e-10);
+    let other = |l: Vec3| 0.2 * bare.pdf(v, l) + 0.8 * l.z.max(0.0) * std::f32::consts::FRAC_1_PI;
+    assert!(p(&whole, v, other) < 1e-10);
+}
+
+#[test]
+fn another_shape_is_rejected() {
+    let surfaces = [Surface::Mirror, Surface::Dielectric(1.5), Surface::Dielectric(1.0 / 1.5)];
+    let all: Vec<_> = surfaces
+        .into_iter()
+        .map(|surface| Configuration { specimen: specimen(surface), theta: 0.8, phi: 0.3, seed: 3 })
+        .collect();
+    let judge = |gamma_factor| {
+        let options = Options { samples: 1_000_000, gamma_factor };
+        run(&Tables::embedded(), &all, options, &unwatched()).unwrap()
+    };
+    assert!(judge(1.0).passed());
+    assert_eq!(judge(1.05).rejected(), all.len());
+}
+
+#[test]
+fn view_and_light_may_be_exchanged() {
+    let (all, set) = drawn();
+    let result = reciprocity::run(set, all, 2000).unwrap();
+    assert!(result.passed(), "{:?}", result.worst);
+    assert!(result.pairs.iter().all(|&count| count > 2000), "{:?}", result.pairs);
+    // Turquin's factor is of the view alone, and importance is not radiance.
+    let mirror = Specimen { sigma: [1.0; 2], ..specimen(Surface::Mirror) };
+    let turquin = Specimen { compensation: Compensation::Turquin, ..mirror };
+    let compared = |specimen| reciprocity::compare(set, &specimen, 1, 2000).unwrap();
+    assert!(compared(mirror).worst.unwrap().difference < 1e-5);
+    assert!(compared(turquin).worst.unwrap().difference > 0.05);
+}
+
+/// The furnace of a single interface, with tables of the default quality.
+#[test]
+fn white_surfaces_return_all_light_and_wrong_tables_do_not() {
+    let (pairs, masking) = (&[[3.0, 1.5]], Masking::HeightCorrelated);
+    let set = furnace::tables(pairs, masking, Settings::default()).unwrap();
+    let all = furnace::rows(pairs, masking);
+    let rows = furnace::run(&set, &all, 20_000, 1, &unwatched()).unwrap();
+    assert_eq!(rows.len(), 144);
+    for row in &rows {
+        assert!(row.passed(), "{row}");
+    }
+    for name in furnace::NAMES {
+        let sampled = rows.iter().filter(|row| row.name() == name && row.sampled.is_some());
+        assert!(sampled.count() >= 5, "{name}");
+        // It is no furnace without a loss.
+        assert!(rows.iter().any(|row| row.name() == name && row.single < 0.7), "{name}");
+    }
+    // All shares of light three per cent too small.
+    let mut tables = set.tables().to_vec();
+    for table in tables.iter_mut().filter(|table| table.kind == Kind::Albedo) {
+        table.values.iter_mut().for_each(|share| *share *= 0.97);
+    }
+    let wrong = Tables::from_tables(set.provenance().clone(), tables).unwrap();
+    let rows = furnace::run(&wrong, &all, 0, 1, &unwatched()).unwrap();
+    for name in &furnace::NAMES[1..] {
+        assert!(rows.iter().any(|row| row.name() == *name && !row.passed()), "{name}");
+    }
+}
+
+fn draft(recipe: &str) -> Tables {
+    let scene = Scene::from_recipe_str(recipe).expect(recipe);
+    let plan = Plan::new(&scene, PlanOptions::default()).unwrap();
+    bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set
+}
+
+/// The lines of a recipe in an error.
+fn lines(why: &BindError) -> String {
+    format!("{}\n", why.recipe().unwrap_or_else(|| panic!("no lines: {why}")))
+}
+
+/// What an error says to append to a recipe makes the tables that were missing.
+#[test]
+fn the_lines_of_an_error_make_what_is_missing() {
+    let start = "[[material]]\nname = \"first\"\nsigma = 0.2\ngamma = 3.0\n";
+    let bare = draft(start);
+    for gamma in [2.5, f64::INFINITY] {
+        let brushed = Tables::embedded().student_t([0.4, 0.1], gamma).unwrap();
+        let gold: Conductor<_, 1> = Conductor::new(brushed, ConductorFresnel::mirror());
+        for masking in Masking::ALL {
+            let gold = gold.clone().with_masking(masking);
+            let compensate =
+                |set| gold.clone().compensated(set, Compensation::KullaConty, StandIn::Refused);
+            let lines = lines(&compensate(&bare).unwrap_err());
+            let set = draft(&format!("{start}{lines}"));
+            let whole = compensate(&set).expect(&lines);
+            // The lobe's own albedo, and not that of a round one.
+            let exact = set.material_albedo("another name").unwrap();
+            let v = Vec3::new(0.0, 0.8, 0.6);
+            let l = Vec3::new(0.0, 0.8, 0.6);
+            let more =
+                whole.eval(v, l, Transport::Radiance)[0] - gold.eval(v, l, Transport::Radiance)[0];
+            assert!((more / exact.compensation(v, l) - 1.0).abs() < 1e-2, "{lines}");
+        }
+    }
+}
+
+/// A rough plastic does not bind to the default set, and to one of these lines it does.
+#[test]
+fn the_lines_of_a_message_make_a_plastic() {
+    let bind = |set: &Tables| {
+        let coat = Tables::embedded().student_t(0.3, 2.5).unwrap();
+        Plastic::new(coat, 1.5, [0.1, 0.4, 0.2], set, Compensation::None, StandIn::Refused)
+    };
+    let lines = lines(&bind(&Tables::embedded()).unwrap_err());
+    let set = draft(&lines);
+    let file = encode(set.provenance(), set.tables()).unwrap();
+    bind(&Tables::from_bytes(&file).unwrap()).expect(&lines);
+}
+
+/// A recipe that names an anisotropic or tilted lobe serves it exactly, by name and by parameters.
+#[test]
+fn named_materials_have_their_own_albedos() {
+    let set = draft(
+        r#"
+[[material]]
+name = "brushed"
+sigma = [0.5, 0.15]
+gamma = 3.0
+fresnel = "mirror"
+
+[[material]]
+name = "tilted"
+sigma = [0.5, 0.3]
+theta = [0.2, -0.1, 0.7]
+gamma = 2.5
+fresnel = "mirror"
+
+[[material]]
+name = "gold"
+sigma = 0.3
+gamma = 3.0
+fresnel = { metal = "gold" }
+
+[[material]]
+name = "glass"
+sigma = 0.4
+gamma = 3.0
+fresnel = { dielectric = 1.5 }
+masking = "uncorrelated"
+
+[[material]]
+name = "unstated"
+sigma = 0.4
+gamma = 3.0
+"#,
+    );
+    let v = Vec3::new(0.3, 0.4, 0.75_f32.sqrt());
+    for name in ["brushed", "tilted"] {
+        let of = |form| set.bsdf(name, form, StandIn::Refused).expect(name);
+        let (bare, whole) = (of(Compensation::None), of(Compensation::KullaConty));
+        let albedo = set.material_albedo(name).unwrap();
+        // Behind the view, where both are small.
+        let l = Vec3::new(0.6, 0.64, 0.48).normalize();
+        let f = |bsdf: &AnyBsdf| bsdf.eval(v, l, Transport::Radiance)[0];
+        let (more, want) = (f(&whole) - f(&bare), albedo.compensation(v, l));
+        assert!((more / want - 1.0).abs() < 1e-2, "{name}: {more} for {want}");
+    }
+    // By parameters: the lobe finds the same table.
+    let tilted = set.ellipsoid(Skew::new([0.5, 0.3], [0.2, -0.1, 0.7]).unwrap(), 2.5).unwrap();
+    let mirror: Conductor<_, 1> = Conductor::new(tilted, ConductorFresnel::mirror());
+    mirror.compensated(&set, Compensation::KullaConty, StandIn::Refused).unwrap();
+
+    let Ok(AnyBsdf::Conductor(gold)) = set.bsdf("gold", Compensation::Turquin, StandIn::Refused)
+    else {
+        panic!("gold is a conductor");
+    };
+    let want: ConductorFresnel = microfacet_sampler::Metal::Gold.into();
+    assert_eq!((gold.fresnel(), gold.masking()), (&want, Masking::HeightCorrelated));
+    let Ok(AnyBsdf::Dielectric(glass)) =
+        set.bsdf("glass", Compensation::KullaConty, StandIn::Refused)
+    else {
+        panic!("glass is a dielectric");
+    };
+    assert_eq!((glass.eta(), glass.masking()), (1.5, Masking::Uncorrelated));
+    let sample = glass.sample(v, 0.9, [0.5; 2], Transport::Radiance).unwrap();
+    assert_eq!(sample.event, Event::Transmission);
+    let why = set.bsdf("unstated", Compensation::None, StandIn::Refused).unwrap_err();
+    assert!(matches!(why, BindError::NoFresnel(_)) && why.to_string().contains("unstated"));
+}
+
+#[test]
+fn the_command_judges() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let few = ["bsdf", "--only", "chi-square", "--configurations", "3", "--samples", "2e4"];
+    assert!(ok(at, &few).ends_with("PASSED\n"));
+    let one = json(at, &few);
+    assert!(one["passed"] == true && one["chi_square"]["rejected"] == 0, "{one}");
+    assert!(one["furnace"].is_null());
+    let pairs = ["bsdf", "--only", "reciprocity", "--configurations", "3"];
+    assert!(json(at, &pairs)["reciprocity"]["reflected"].as_u64() > Some(100));
+    let wrong = ["bsdf", "--only", "chi-square", "--configurations", "3", "--samples", "1e6"];
+    let output = run_command(at, &[&wrong[..], &["--perturb-gamma", "1.3"]].concat());
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.code() == Some(1) && text.ends_with("REJECTED\n"), "{text}");
+    assert!(refused(at, &["bsdf", "--gamma", "2"]).contains("--eta"));
+    assert!(refused(at, &["bsdf", "--gamma", "1.5005", "--eta", "1.5"]).contains("1.501"));
+    assert!(refused(at, &["bsdf", "--gamma", "2", "--eta", "0"]).contains("[0.1, 10]"));
+}

@@ -1,0 +1,206 @@
+//! Distributions outside the family: baked tables against the model's quadrature, by value and by
+//! chi-square.
+//!
+//! `cargo test --release --test lobes classic:: -- --nocapture` prints the figures.
+
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+use glam::{DVec3, Vec3};
+use microfacet_baker::bake::bake_radial;
+use microfacet_baker::certify::radial::measure;
+use microfacet_baker::distribution::Named;
+use microfacet_baker::plan::{Cost, Options, Plan, bare_cost, cost, distribution_cost};
+use microfacet_baker::progress::Stage;
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{Target, bake};
+use microfacet_baker::table_spec::{Quality, general_set};
+use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
+use microfacet_model::statistics::chi_square;
+use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
+use microfacet_scene::load;
+use microfacet_tables::{Kind, MaterialEntry, Precision, Provenance, Quantity, encode};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+/// Distributions of every kind, by name.
+fn all() -> Vec<(String, Box<dyn Isotropic>)> {
+    let names = [
+        "gauss:0.1",
+        "gauss:0.4",
+        "gtr:0.1,1.2",
+        "gtr:0.3,3",
+        "gtr:0.5,0.7",
+        "schlick:0.05",
+        "schlick:0.3",
+        "sawicki:0",
+        "sawicki:12",
+        "sawicki:1000",
+    ];
+    let mut all: Vec<(String, Box<dyn Isotropic>)> = names
+        .iter()
+        .map(|text| (text.to_string(), text.parse::<Named>().unwrap().build().unwrap()))
+        .collect();
+    let smooth = "gauss:0.25".parse::<Named>().unwrap().build().unwrap();
+    let rows: Vec<_> = (0..=450)
+        .map(|i| f64::from(i) * 0.5 * PI / 450.0)
+        .map(|t| (t, smooth.d(t) + 0.02))
+        .collect();
+    all.push(("measured:wide".into(), Box::new(Tabulated::new(&rows).unwrap())));
+    all
+}
+
+fn tabulated(name: &str, marginal: &Marginal) -> Lobe {
+    let entry = MaterialEntry {
+        name: "it".into(),
+        sigma: [[marginal.sigma(); 2]; 2],
+        s: [0.0; 2],
+        distribution: name.into(),
+        theta: None,
+        masking: None,
+        fresnel: None,
+    };
+    let tables = bake_radial(
+        marginal,
+        &entry.distribution,
+        Quality::Default,
+        Precision::F32,
+        &Stage::unwatched(),
+    );
+    let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
+    Tables::from_tables(provenance, tables).unwrap().material("it").unwrap()
+}
+
+/// The lobes of [`all`] from their tables.
+static LOBES: LazyLock<Vec<Lobe>> =
+    LazyLock::new(|| all().iter().map(|(name, d)| tabulated(name, &Marginal::new(&**d))).collect());
+
+fn view(theta: f64) -> Vec3 {
+    DVec3::new(theta.sin(), 0.0, theta.cos()).as_vec3()
+}
+
+#[test]
+fn tables_follow_the_quadrature() {
+    for ((name, d), radial) in all().into_iter().zip(LOBES.iter()) {
+        let e = measure(radial, &Marginal::new(&*d));
+        assert!(
+            e.g1 < 1e-4 && e.along < 5e-4 && e.across < 5e-4 && e.density < 1e-3,
+            "{name}: {e:?}"
+        );
+    }
+}
+
+#[test]
+fn draws_pass_chi_square() {
+    let mut rng = StdRng::seed_from_u64(17);
+    let mut smallest = (1.0_f64, String::new());
+    let mut tests = 0;
+    for ((name, d), radial) in all().into_iter().zip(LOBES.iter()) {
+        let marginal = Marginal::new(&*d);
+        for theta in [0.0, 0.7, 1.3, 1.55] {
+            let v = view(theta);
+            let cot = f64::from(v.z) / (marginal.sigma() * f64::from(v.x));
+            let exact = MarginalView::new(&marginal, cot);
+            const BINS: usize = 10;
+            let draws = 10_000;
+            let mut counts = [0; BINS * BINS];
+            for _ in 0..draws {
+                let m = radial.sample_visible_normal(v, [rng.random(), rng.random()]).as_dvec3();
+                let (x, y) = (m.x / (m.z * marginal.sigma()), m.y / (m.z * marginal.sigma()));
+                let tail = marginal.across_at(x.abs()).tail(y.abs());
+                let shares = [exact.shares(x).below, if y < 0.0 { tail } else { 1.0 - tail }];
+                let [a, b] = shares.map(|u| ((u * BINS as f64) as usize).min(BINS - 1));
+                counts[a * BINS + b] += 1;
+            }
+            let p = chi_square(&counts, &[f64::from(draws) / (BINS * BINS) as f64; BINS * BINS]).p;
+            tests += 1;
+            if p < smallest.0 {
+                smallest = (p, format!("{name} at {theta}"));
+            }
+        }
+    }
+    println!("{tests} tests, smallest p {:.4} ({})", smallest.0, smallest.1);
+    assert!(
+        smallest.0 > 1.0 - 0.99_f64.powf(1.0 / f64::from(tests)),
+        "p = {} for {}",
+        smallest.0,
+        smallest.1
+    );
+}
+
+#[test]
+fn recipes_name_distributions() {
+    let material = |text: &str| {
+        let recipe = format!("[[material]]\nname = \"it\"\n{text}\n");
+        Scene::from_recipe_str(&recipe).map(|scene| (scene.materials[0].clone(), scene.to_recipe()))
+    };
+    // A member of the family is read as the family.
+    let (beckmann, _) = material("distribution = \"beckmann\"\nm = 0.3").unwrap();
+    assert!(beckmann.distribution.is_none() && beckmann.gamma.min == f64::INFINITY);
+    let (ggx, _) = material("distribution = \"gtr\"\nc = 0.2\ngamma = 2").unwrap();
+    assert!(ggx.distribution.is_none() && (ggx.roughness.x().min - 0.2).abs() < 1e-15);
+    // Another distribution keeps its name when the recipe is written and read again.
+    let (gtr, text) = material("distribution = \"gtr\"\nc = 0.2\ngamma = 1.3").unwrap();
+    assert_eq!(gtr.distribution.as_ref().unwrap().label(), "gtr:0.2,1.3");
+    let again = Scene::from_recipe_str(&text).unwrap();
+    assert!(again.materials[0].asks_the_same(&gtr), "{text}");
+    let refused = |text: &str| material(text).unwrap_err().to_string();
+    assert!(refused("distribution = \"gtr\"\nc = 0.2").contains("has no `gamma`"));
+    assert!(refused("distribution = \"gtr\"\nc = 2.0\ngamma = 3").contains("(0, 1]"));
+    assert!(refused("distribution = \"phong\"\nn = 3").contains("there are beckmann"));
+    assert!(
+        refused("distribution = \"gauss\"\nm = 0.2\nsigma = 0.1").contains("unknown key `sigma`")
+    );
+    assert!(refused("distribution = { measured = \"nowhere.csv\" }").contains("nowhere.csv"));
+    assert!(refused("distribution = 3").contains("name in quotes"));
+}
+
+#[test]
+fn a_recipe_bakes_all_kinds() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..=200)
+        .map(|i| f64::from(i) * 0.5 * PI / 200.0)
+        .map(|t| format!("{t},{}\n", (-9.0 * t * t).exp()))
+        .collect();
+    std::fs::write(folder.path().join("steel.csv"), format!("theta,D\n{rows}")).unwrap();
+    let recipe = folder.path().join("metals.toml");
+    let text = "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 3.0\n\n\
+                [[material]]\nname = \"paint\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.3\n\n\
+                [[material]]\nname = \"steel\"\ndistribution = { measured = \"steel.csv\" }\n";
+    std::fs::write(&recipe, text).unwrap();
+    let scene = load(&recipe).unwrap();
+    let plan = Plan::new(&scene, Options::default()).unwrap();
+    assert_eq!((plan.shapes.len(), plan.distributions.len()), (1, 2));
+    let bake = |target| bake(&plan, target);
+    // Fixed point is enough for this error, in half the bytes.
+    let rough = bake(Target::MaxError(1e-3)).unwrap().set;
+    assert!(
+        rough
+            .tables()
+            .iter()
+            .all(|table| table.precision == Precision::U16 && table.certificate.worst() <= 1e-3)
+    );
+    let [full, fixed] = [Precision::F32, Precision::U16]
+        .map(|precision| bake(Target::Quality(Quality::Draft, precision)).unwrap().set);
+    for (precision, set) in [(Precision::F32, &full), (Precision::U16, &fixed)] {
+        let general = general_set(Quality::Draft, precision);
+        let normals = plan.shapes.iter().map(|need| cost(&need.specs(&general)));
+        let own =
+            plan.distributions.iter().map(|own| distribution_cost(own, Quality::Draft, precision));
+        let estimate: Cost = normals.chain(own).chain([bare_cost(set.provenance())]).sum();
+        let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
+        assert!((estimate.bytes as f64 / real - 1.0).abs() < 0.02, "{estimate:?} for {real}");
+        assert!(estimate.seconds > 0.0);
+    }
+    let set = Tables::from_bytes(&encode(full.provenance(), full.tables()).unwrap()).unwrap();
+    let v = Vec3::new(0.6, 0.0, 0.8);
+    assert!(set.material("gold").unwrap().g1(v) > 0.9);
+    for name in ["paint", "steel"] {
+        let m = set.material(name).unwrap().sample_visible_normal(v, [0.4, 0.6]);
+        assert!(m.dot(v) > 0.0 && m.z > 0.0, "{name}: {m}");
+        assert!(matches!(set.material(name), Ok(Lobe::Radial(_))));
+    }
+    assert!(matches!(set.material("gold"), Ok(Lobe::StudentT(_))));
+    let figures = set.tables().iter().find(|table| table.kind == Kind::RadialShadowing).unwrap();
+    assert!(figures.certificate.error(Quantity::G1).unwrap() < 1e-3);
+}

@@ -1,0 +1,13 @@
+//! Lobes and BSDFs of baked sets, against the model and reference values.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bsdf;
+mod classic;
+mod closure;
+mod ellipsoid;
+mod lobes;
+mod merl;
+mod reference;
+mod stress;

@@ -1,0 +1,9 @@
+//! Plans, budgets, and what validation and error maps find in a set.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod error_maps;
+mod max_bytes;
+mod plan;
+mod validate;

@@ -1,0 +1,557 @@
+//! Planning, the cache and error budgets: only what a scene needs is baked, and nothing twice.
+
+use glam::Vec3;
+use microfacet_baker::cache::Cache;
+use microfacet_baker::interval::Interval;
+use microfacet_baker::plan::{Options, Plan, Verdict, bare_cost, cost};
+use microfacet_baker::scene::Scene;
+use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with};
+use microfacet_baker::table_spec::{Quality, general_set};
+use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, Masking, MicrofacetDistribution, Tables};
+use microfacet_tables::{
+    Axis, Certificate, LobeEntry, Precision, Provenance, Quantity, Subject, Table, decode, encode,
+};
+
+use crate::common::{json, ok, refused, run};
+
+const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
+
+/// A recipe of materials: name, σ and γ as TOML.
+fn recipe(materials: &[[&str; 3]]) -> String {
+    let entry = |[name, sigma, gamma]: &[&str; 3]| {
+        format!("[[material]]\nname = \"{name}\"\nsigma = {sigma}\ngamma = {gamma}\n")
+    };
+    materials.iter().map(entry).collect()
+}
+
+fn scene(materials: &[[&str; 3]]) -> Scene {
+    Scene::from_recipe_str(&recipe(materials)).unwrap()
+}
+
+fn plan(scene: &Scene) -> Plan {
+    Plan::new(scene, Options::default()).unwrap()
+}
+
+fn bake(plan: &Plan, target: Target, cache: &Cache) -> Result<Baked, BakeError> {
+    bake_with(&normals_of(plan), target, Settings { cache: cache.clone(), ..Settings::default() })
+}
+
+/// The plan without its albedos, which take long.
+fn normals_of(plan: &Plan) -> Plan {
+    Plan { albedos: Vec::new(), ..plan.clone() }
+}
+
+fn bytes(set: &Tables) -> Vec<u8> {
+    encode(set.provenance(), set.tables()).unwrap()
+}
+
+const MIXED: [[&str; 3]; 9] = [
+    ["a", "0.3", "3.0"],
+    ["b", "0.7", "3.0"],
+    ["gold", "0.2", "2.0"],
+    ["mirror", "0.0", "5.0"],
+    ["series", "0.4", "{ min = 5.0, max = 20.0 }"],
+    ["inside", "0.1", "8.0"],
+    ["more", "0.1", "{ min = 15.0, max = \"inf\" }"],
+    ["heavy", "0.1", "1.6"],
+    ["beckmann", "[0.1, 0.4]", "\"inf\""],
+];
+
+#[test]
+fn every_material_gets_its_verdict() {
+    let mut scene = scene(&MIXED);
+    scene.materials[7].used = false;
+    let plan = plan(&scene);
+    let gammas: Vec<Interval> = plan.shapes.iter().map(|need| need.gamma()).collect();
+    // Overlapping ranges become one, which here includes Beckmann; equal shapes become one,
+    // whatever their roughness.
+    assert_eq!(gammas, [Interval { min: 5.0, max: f64::INFINITY }, Interval::point(3.0)]);
+    let expected = [
+        Verdict::Bake(1),
+        Verdict::Same { need: 1, as_material: 0 },
+        Verdict::ClosedForm,
+        Verdict::NotRough,
+        Verdict::Bake(0),
+        Verdict::Within { need: 0, of_material: 4 },
+        Verdict::Within { need: 0, of_material: 4 },
+        Verdict::NotUsed,
+        Verdict::Within { need: 0, of_material: 4 },
+    ];
+    assert_eq!(plan.verdicts, expected);
+
+    let options = Options { tabulate_ggx: true, ..Options::default() };
+    let all = Plan::new(&scene, options).unwrap();
+    assert!(all.shapes.iter().any(|need| need.gamma() == Interval::point(2.0)));
+    let none = Plan::new(&scene, Options { embedded: true, ..Options::default() }).unwrap();
+    assert!(none.shapes.is_empty() && none.verdicts[0] == Verdict::Embedded && none.is_empty());
+}
+
+#[test]
+fn a_range_over_ggx_serves_ggx() {
+    let plan = plan(&scene(&[["gold", "0.3", "2.0"], ["worn", "0.3", "{ min = 1.9, max = 2.5 }"]]));
+    assert_eq!(plan.verdicts, [Verdict::Within { need: 0, of_material: 1 }, Verdict::Bake(0)]);
+}
+
+#[test]
+fn a_slice_has_no_axis_of_shapes_and_a_smooth_scene_nothing() {
+    let general = general_set(Quality::Default, Precision::F32);
+    let specs = plan(&scene(&[["glass", "0.454", "3.0"]])).shapes[0].specs(&general);
+    let shapes: Vec<usize> = specs.iter().map(|spec| spec.shapes.nodes.len()).collect();
+    assert_eq!(shapes, [1, 1, 1]);
+    // γ = 1.8 itself belongs to the whole distribution's tables, not to the peeled ones.
+    let seam = plan(&scene(&[["seam", "0.3", "1.8"]])).shapes[0].specs(&general);
+    assert!(seam.iter().all(|spec| !spec.name.contains("peeled")));
+    assert!(plan(&scene(&[["mirror", "0.0", "3.0"]])).is_empty());
+}
+
+/// What the sampler refuses as a lobe is smooth or refused when it is planned, not at run time.
+#[test]
+fn roughnesses_that_no_lobe_can_have_are_not_baked() {
+    assert!(plan(&scene(&[["mirror", "9e-9", "3.0"]])).is_empty());
+    assert!(plan(&scene(&[["mirror", "[1e-9, 5e-9]", "3.0"]])).is_empty());
+    for sigma in ["[0.3, 1e-9]", "1.1e6", "{ min = 0.1, max = 2e6 }"] {
+        let error = Plan::new(&scene(&[["m", sigma, "3.0"]]), Options::default()).unwrap_err();
+        assert!(error.to_string().contains("[1e-8, 1e6]"), "{error}");
+    }
+    for sigma in ["1e-8", "1e6", "{ min = 0.0, max = 0.3 }", "{ min = 1e-9, max = 0.3 }"] {
+        assert!(!plan(&scene(&[["m", sigma, "3.0"]])).is_empty(), "{sigma}");
+    }
+}
+
+#[test]
+fn sub_ranges_draw_the_very_normals_of_the_general_set() {
+    let general = bake(&Plan::general(), DRAFT, &Cache::none()).unwrap().set;
+    let size =
+        general_set(Quality::Draft, Precision::F32).iter().map(|spec| spec.bytes()).sum::<usize>();
+    for (range, gammas) in [
+        ("{ min = 1.51, max = 2.2 }", [1.51, 1.5432, 1.7999, 1.8, 2.2]),
+        ("{ min = 2.9, max = 3.2 }", [2.9, 2.95, 3.0, 3.1, 3.2]),
+        ("{ min = 40.0, max = \"inf\" }", [40.0, 41.0, 1e3, 1e9, f64::INFINITY]),
+    ] {
+        let part = bake(&plan(&scene(&[["m", "0.3", range]])), DRAFT, &Cache::none()).unwrap().set;
+        assert!(part.tables().iter().map(|table| 4 * table.values.len()).sum::<usize>() < size);
+        for gamma in gammas {
+            let [a, b] = [&general, &part].map(|set| set.student_t([0.3, 0.5], gamma).unwrap());
+            for u in [[0.01, 0.9], [0.4, 0.2], [0.77, 0.5], [0.999, 0.03]] {
+                let v = Vec3::new(0.48, 0.6, 0.64);
+                assert_eq!(a.sample_visible_normal(v, u), b.sample_visible_normal(v, u), "{gamma}");
+                assert_eq!(a.g1(v), b.g1(v));
+            }
+        }
+        // And it is no less accurate: its certificate is about the range asked for, without the
+        // margins.
+        let worst = |set: &Tables| {
+            set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+        };
+        assert!(
+            worst(&part) <= worst(&general) * 1.01,
+            "{range}: {} {}",
+            worst(&part),
+            worst(&general)
+        );
+    }
+}
+
+#[test]
+fn a_thousand_materials_come_down_to_their_distinct_shapes() {
+    let names: Vec<String> = (0..1000).map(|i| format!("material {i}")).collect();
+    let sigmas: Vec<String> = (0..1000).map(|i| format!("{}", 0.001 * f64::from(i + 1))).collect();
+    let gammas: Vec<String> =
+        (0..1000).map(|i| format!("{}", 1.6 + 0.1 * f64::from(i % 23))).collect();
+    let materials: Vec<[&str; 3]> =
+        (0..1000).map(|i| [names[i].as_str(), sigmas[i].as_str(), gammas[i].as_str()]).collect();
+    let plan = plan(&scene(&materials));
+    // One of the 23 is GGX.
+    assert_eq!(plan.shapes.len(), 22);
+    let baked = plan.verdicts.iter().filter(|verdict| matches!(verdict, Verdict::Bake(_))).count();
+    let shared =
+        plan.verdicts.iter().filter(|verdict| matches!(verdict, Verdict::Same { .. })).count();
+    let closed = plan.verdicts.iter().filter(|verdict| **verdict == Verdict::ClosedForm).count();
+    assert_eq!((baked, closed, baked + shared + closed), (22, 44, 1000));
+}
+
+#[test]
+fn more_shapes_than_a_range_has_nodes_are_a_range() {
+    let gammas: Vec<String> = (0..200).map(|i| format!("{}", 2.5 + 0.01 * f64::from(i))).collect();
+    let names: Vec<String> = (0..200).map(|i| format!("m{i}")).collect();
+    let materials: Vec<[&str; 3]> =
+        (0..200).map(|i| [names[i].as_str(), "0.3", gammas[i].as_str()]).collect();
+    let plan = plan(&scene(&materials));
+    assert_eq!(plan.shapes.len(), 1);
+    assert_eq!(plan.shapes[0].gamma(), Interval { min: 2.5, max: 4.49 });
+    assert_eq!(plan.verdicts[0], Verdict::Bake(0));
+    assert_eq!(plan.verdicts[7], Verdict::Within { need: 0, of_material: 0 });
+}
+
+#[test]
+fn estimated_bytes_are_those_of_the_file() {
+    for materials in [&MIXED[..2], &MIXED[..]] {
+        let plan =
+            Plan { recipe: "x".repeat(500), materials: Vec::new(), ..plan(&scene(materials)) };
+        for precision in [Precision::F32, Precision::U16] {
+            let general = general_set(Quality::Draft, precision);
+            let specs: Vec<_> = plan.shapes.iter().flat_map(|need| need.specs(&general)).collect();
+            let target = Target::Quality(Quality::Draft, precision);
+            let set = bake(&plan, target, &Cache::none()).unwrap().set;
+            let (estimate, real) = (
+                (cost(&specs).bytes + bare_cost(&plan.provenance()).bytes) as f64,
+                bytes(&set).len() as f64,
+            );
+            assert!((estimate / real - 1.0).abs() < 0.04, "{estimate} for {real}");
+        }
+    }
+}
+
+/// An entry that has its key right is compared with what was asked for: all but the numbers.
+#[test]
+fn a_cache_entry_with_other_tables_is_baked_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let recipe = recipe(&[["glass", "0.3", "3.0"]])
+        + "[[material]]\nname = \"cloth\"\ndistribution = \"gauss\"\nm = 0.25\n"
+        + "[[material]]\nname = \"coat\"\nsigma = { min = 0.2, max = 0.25 }\ngamma = 3.0\n"
+        + "fresnel = { schlick = 0.04 }\n";
+    let plan = plan(&Scene::from_recipe_str(&recipe).unwrap());
+    let cache = Cache::new(folder.path().into());
+    let bake = || {
+        let settings = Settings { cache: cache.clone(), ..Settings::default() };
+        bake_with(&plan, DRAFT, settings).unwrap()
+    };
+    let genuine = bake();
+    assert_eq!(bake().baked, 0);
+    let mut entries: Vec<_> =
+        std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    assert_eq!(entries.len(), 3, "normals, a distribution, and albedos");
+    type Forgery = fn(&mut Provenance, &mut Vec<Table>);
+    let forgeries: [(&str, Forgery); 10] = [
+        ("numerics", |origin, _| origin.numerics -= 1),
+        ("none", |_, tables| tables.clear()),
+        ("one too many", |_, tables| tables.push(tables[0].clone())),
+        ("order", |_, tables| tables.reverse()),
+        ("name", |_, tables| tables[0].name = "../../evil".into()),
+        ("shape or lobe", |_, tables| match &mut tables[0].subject {
+            Subject { covers: Some(covers), .. } => covers.s = [0.25, 0.25],
+            subject => subject.lobe = LobeEntry::Distribution("gtr:1.5".into()),
+        }),
+        ("masking", |_, tables| tables[0].subject.masking = Some(Masking::Uncorrelated)),
+        ("axis", |_, tables| {
+            let axis = tables[0].axes.pop().unwrap();
+            let nodes = axis.nodes.iter().copied().step_by(2).collect();
+            tables[0].axes.push(Axis { nodes, ..axis });
+            let count = tables[0].shape().iter().product();
+            tables[0].values.truncate(count);
+        }),
+        ("precision", |_, tables| tables[0] = tables[0].clone().rounded(Precision::U16)),
+        ("certificate", |_, tables| tables[0].certificate = Certificate::default()),
+    ];
+    let mut forged_entries = 0;
+    for path in &entries {
+        let file = std::fs::read(path).unwrap();
+        for (what, forge) in forgeries {
+            let (mut origin, mut tables) = decode(&file, true).unwrap();
+            forge(&mut origin, &mut tables);
+            let Ok(forged) = encode(&origin, &tables) else { continue };
+            forged_entries += 1;
+            assert!(forged != file, "{what}");
+            std::fs::write(path, forged).unwrap();
+            let again = bake();
+            assert!(again.baked > 0, "{what}: {}", tables.first().map_or("", |table| &table.name));
+            assert!(bytes(&again.set) == bytes(&genuine.set), "{what}");
+            assert!(std::fs::read(path).unwrap() == file, "{what}: the entry is mended");
+        }
+    }
+    // The others are no sets.
+    assert_eq!(forged_entries, 22);
+}
+
+#[test]
+fn what_is_finished_is_not_baked_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let cache = Cache::new(folder.path().join("cache"));
+    let two = [["a", "0.3", "3.0"], ["b", "0.3", "4.0"]];
+    for precision in [Precision::F32, Precision::F16, Precision::U16] {
+        let target = Target::Quality(Quality::Draft, precision);
+        let first = bake(&plan(&scene(&two)), target, &cache).unwrap();
+        let second = bake(&plan(&scene(&two)), target, &cache).unwrap();
+        assert_eq!((first.baked, second.baked), (6, 0));
+        assert!(
+            bytes(&first.set) == bytes(&second.set),
+            "{precision:?}: kept tables give another file"
+        );
+    }
+    // Another shape is baked alone; another roughness is not even a change.
+    let other =
+        bake(&plan(&scene(&[["a", "0.9", "3.0"], ["b", "0.3", "4.5"]])), DRAFT, &cache).unwrap();
+    assert_eq!(other.baked, 3);
+    // A damaged entry is baked again, and so is one that lies about what it is.
+    let entries = || {
+        std::fs::read_dir(folder.path().join("cache")).unwrap().map(|entry| entry.unwrap().path())
+    };
+    let all: Vec<_> = entries().collect();
+    assert_eq!(all.len(), 7);
+    let genuine = std::fs::read(&all[0]).unwrap();
+    all.iter().for_each(|path| std::fs::write(path, &genuine).unwrap());
+    std::fs::write(&all[0], &genuine[..genuine.len() / 2]).unwrap();
+    let again = bake(&plan(&scene(&two)), DRAFT, &cache).unwrap();
+    assert_eq!(again.baked, 6);
+    assert_eq!(bake(&plan(&scene(&two)), DRAFT, &cache).unwrap().baked, 0);
+}
+
+#[test]
+fn an_error_budget_is_met_by_less() {
+    let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
+    let at = |target| bake(&plan, target, &Cache::none()).unwrap().set;
+    let default = at(Target::Quality(Quality::Default, Precision::F32));
+    let worst = |set: &Tables| {
+        set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+    };
+    let mut before = bytes(&default).len();
+    for max_error in [1e-4, 1e-3, 1e-2] {
+        let set = at(Target::MaxError(max_error));
+        assert!(worst(&set) <= max_error, "{max_error}: {}", worst(&set));
+        let size = bytes(&set).len();
+        assert!(size < before, "{size} bytes for an error of {max_error}, {before} for less");
+        // The certificates hold for the set that a reader gets.
+        assert_eq!(Tables::from_bytes(&bytes(&set)).unwrap(), set);
+        before = size;
+    }
+    let error = bake(&plan, Target::MaxError(1e-12), &Cache::none()).unwrap_err().to_string();
+    assert!(error.contains("1e-12") && error.contains("reaches"), "{error}");
+    for nonsense in [0.0, -1e-4, f64::NAN] {
+        let error =
+            bake(&plan, Target::MaxError(nonsense), &Cache::none()).unwrap_err().to_string();
+        assert!(error.contains("above 0"), "{error}");
+    }
+}
+
+#[test]
+fn budgets_of_the_general_set_end() {
+    let plan = normals_of(&Plan::general());
+    let worst = |set: &Tables| {
+        set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+    };
+    let met = bake(&plan, Target::MaxError(2e-3), &Cache::none()).unwrap().set;
+    assert!(met.tables().len() == 5 && worst(&met) <= 2e-3, "{}", worst(&met));
+    let filled = bake(&plan, Target::MaxBytes(100_000), &Cache::none()).unwrap().set;
+    assert!(bytes(&filled).len() <= 100_000);
+    // With more bytes than that error takes, the error is less.
+    assert!(bytes(&met).len() < 100_000 && worst(&filled) < worst(&met), "{}", worst(&filled));
+    // Masking that peeling uses is as fine as what it is peeled from requires.
+    let peeled = |name: &str| filled.tables().iter().find(|table| table.name == name).unwrap();
+    assert!(
+        peeled("shadowing_peeled").certificate.error(Quantity::G1).unwrap() < 0.1 * worst(&filled)
+    );
+}
+
+#[test]
+fn what_would_take_long_says_so_before_anything_is_baked() {
+    for target in [Target::MaxError(1e-5), Target::MaxBytes(20_000_000)] {
+        let settings = Settings::default();
+        let progress = settings.progress.clone();
+        let refused = bake_with(&Plan::general(), target, settings).unwrap_err();
+        assert_eq!(progress.share(), 0.0, "it was begun");
+        let BakeError::TooSlow { search, default_seconds } = refused else { panic!("{refused}") };
+        assert!(search > 3.0 * default_seconds && default_seconds > 1.0, "{refused}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let message = refused(folder.path(), &["bake", "--max-error", "1e-5", "--out", "out"]);
+    assert!(message.contains("--patient") && message.contains(" s"), "{message}");
+    assert!(!folder.path().join("out/tables.safetensors").exists());
+}
+
+#[test]
+fn a_byte_budget_is_filled_and_not_exceeded() {
+    let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
+    let at = |max_bytes| bake(&plan, Target::MaxBytes(max_bytes), &Cache::none());
+    let worst = |set: &Tables| {
+        set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+    };
+    let [small, large] = [5_000, 8_000].map(|limit| {
+        let set = at(limit).unwrap().set;
+        assert!(bytes(&set).len() <= limit);
+        set
+    });
+    assert!(worst(&large) < worst(&small));
+    let error = at(2_000).unwrap_err().to_string();
+    assert!(error.contains("2000 bytes"), "{error}");
+}
+
+/// Coated and metallic GGX at five roughnesses, as an architectural scene has them, and materials
+/// that need no table.
+const PAVILION: &str = r#"
+MakeNamedMaterial "polished" "string type" "coateddiffuse" "float roughness" 0.0104
+MakeNamedMaterial "plaster" "string type" "coateddiffuse" "float roughness" 0.0104 "rgb reflectance" [ 0.6 0.6 0.6 ]
+MakeNamedMaterial "lawn" "string type" "coateddiffuse" "float roughness" 0.1
+MakeNamedMaterial "marble" "string type" "coateddiffuse" "float uroughness" 0.001 "float vroughness" 0.001
+MakeNamedMaterial "steel" "string type" "conductor" "float roughness" 0.04
+    "spectrum eta" [ 400 2 700 3 ]
+MakeNamedMaterial "travertine" "string type" "coateddiffuse" "float roughness" 0.25
+MakeNamedMaterial "pool" "string type" "dielectric"
+MakeNamedMaterial "wall" "string type" "diffuse"
+"#;
+
+#[test]
+fn a_pavilion_needs_names_and_no_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("pavilion.pbrt"), PAVILION).unwrap();
+    let shown = json(at, &["plan", "pavilion.pbrt"]);
+    assert_eq!(shown["shapes"].as_array().unwrap().len(), 0);
+    let verdicts: Vec<&str> = shown["materials"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| m["verdict"].as_str().unwrap())
+        .collect();
+    assert_eq!(verdicts.iter().filter(|verdict| **verdict == "closed form").count(), 6);
+    assert_eq!(verdicts.iter().filter(|verdict| **verdict == "not rough").count(), 1);
+    assert_eq!(shown["ignored"].as_array().unwrap().len(), 1);
+
+    json(at, &["bake", "pavilion.pbrt", "--out", "out"]);
+    let file = std::fs::read(at.join("out/tables.safetensors")).unwrap();
+    assert!(50 * file.len() < GENERAL.len(), "{} bytes", file.len());
+    let steel = Tables::from_bytes(&file).unwrap().material("steel").unwrap();
+    assert!(matches!(steel, Lobe::Ggx(ggx) if ggx.alpha() == [0.2, 0.2]));
+    let verdict = run(at, &["validate", "out", "--configurations", "4", "--samples", "20000"]);
+    assert!(String::from_utf8_lossy(&verdict.stdout).ends_with("PASSED\n"), "{verdict:?}");
+
+    // For a run time that wants tables: with no larger an error than the general set's.
+    let general = Tables::from_bytes(GENERAL).unwrap();
+    let normals = general.tables().iter().filter(|table| !table.kind.is_albedo());
+    let worst = normals.map(|table| table.certificate.worst()).fold(0.0, f64::max);
+    let budget = format!("{worst:e}");
+    let tabulated =
+        ["bake", "pavilion.pbrt", "--tabulate-ggx", "--max-error", &budget, "--out", "tables"];
+    assert_eq!(json(at, &tabulated)["tables"].as_array().unwrap().len(), 3);
+    let file = std::fs::read(at.join("tables/tables.safetensors")).unwrap();
+    assert!(50 * file.len() < GENERAL.len(), "{} bytes", file.len());
+    assert!(Tables::from_bytes(&file).unwrap().material("steel").unwrap().bytes() > 0);
+}
+
+#[test]
+fn distributions_have_their_part_in_the_totals() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let paint = "[[material]]\nname = \"paint\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.3\n";
+    std::fs::write(at.join("r.toml"), recipe(&MIXED[..1]) + paint).unwrap();
+    let shown = json(at, &["plan", "r.toml", "--quality", "high", "--precision", "u16"]);
+    let own = &shown["distributions"][0];
+    assert_eq!(own["distribution"], "gtr:0.2,1.3");
+    assert_eq!(own["materials"], serde_json::json!(["paint"]));
+    let figure = |of: &serde_json::Value, name: &str| of["cost"][name].as_f64().unwrap();
+    for name in ["bytes", "seconds"] {
+        let tables = figure(own, name) + figure(&shown["shapes"][0], name);
+        let total = shown["total"][name].as_f64().unwrap();
+        // The rest is the file's own description.
+        let rest = if name == "bytes" { 3000.0 } else { 1e-9 };
+        assert!(
+            figure(own, name) > 0.0 && (0.0..rest).contains(&(total - tables)),
+            "{name}: {shown}"
+        );
+    }
+    assert!(ok(at, &["plan", "r.toml"]).contains("gtr:0.2,1.3         4 tables, "));
+}
+
+#[test]
+fn the_command_says_what_it_did_not_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let write =
+        |materials: &[[&str; 3]]| std::fs::write(at.join("r.toml"), recipe(materials)).unwrap();
+    let draft = ["bake", "r.toml", "--out", "out", "--quality", "draft"];
+    write(&MIXED[..2]);
+    assert_eq!(json(at, &draft)["baked"], 3);
+    let second = run(at, &draft);
+    assert!(
+        String::from_utf8_lossy(&second.stdout).contains("all 3 tables came from the cache"),
+        "{second:?}"
+    );
+    write(&[MIXED[0], MIXED[7]]);
+    assert_eq!(json(at, &draft)["baked"], 3);
+    assert_eq!(json(at, &[&draft[..], &["--no-cache"]].concat())["baked"], 6);
+    assert_eq!(json(at, &[&draft[..], &["--cache", "elsewhere"]].concat())["baked"], 6);
+    assert_eq!(json(at, &[&draft[..], &["--cache", "elsewhere"]].concat())["baked"], 0);
+
+    // A cache that cannot be written is a warning.
+    std::fs::write(at.join("file"), "").unwrap();
+    let output = run(at, &[&draft[..], &["--cache", "file"]].concat());
+    assert!(
+        output.status.success() && String::from_utf8_lossy(&output.stderr).contains("not kept"),
+        "{output:?}"
+    );
+
+    // A scene without a rough material has a set without tables.
+    write(&[["mirror", "0.0", "3.0"]]);
+    for (command, what) in [
+        (&["plan", "r.toml"][..], "no tables to bake"),
+        (&["bake", "r.toml", "--out", "empty"], "no tables"),
+    ] {
+        assert!(ok(at, command).contains(what));
+    }
+    assert!(at.join("empty/tables.safetensors").exists());
+}
+
+#[test]
+fn budgets_that_cannot_be_met_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("r.toml"), recipe(&MIXED[..1])).unwrap();
+    let with =
+        |more: &[&str]| refused(at, &[&["bake", "r.toml", "--out", "out"][..], more].concat());
+    assert!(with(&["--max-error", "0"]).contains("(0, 0.1]"));
+    assert!(with(&["--max-error", "nan"]).contains("(0, 0.1]"));
+    assert!(with(&["--max-error", "1e-3", "--quality", "high"]).contains("--quality"));
+    assert!(with(&["--max-bytes", "100"]).contains("100 bytes"));
+    assert!(with(&["--embedded", "--max-error", "1e-6"]).contains("compiled in"));
+    assert!(refused(at, &["plan", "absent.toml"]).contains("absent.toml"));
+}
+
+#[test]
+fn a_refused_bake_leaves_no_folder_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("bad.toml"), "[[material]]\n").unwrap();
+    std::fs::write(at.join("heavy.toml"), recipe(&[["heavy", "0.3", "1.5005"]])).unwrap();
+    std::fs::write(at.join("good.toml"), recipe(&MIXED[..1])).unwrap();
+    let refusals: [&[&str]; 4] = [
+        &["bad.toml"],
+        &["heavy.toml"],
+        &["good.toml", "--max-bytes", "100"],
+        &["good.toml", "--quality", "draft", "--max-memory", "1K"],
+    ];
+    std::fs::create_dir(at.join("mine")).unwrap();
+    for refusal in refusals {
+        let to = |out| refused(at, &[&["bake"], refusal, &["--out", out]].concat());
+        for out in ["new", "new/and/deep", "mine/new"] {
+            to(out);
+            assert!(!at.join("new").exists() && !at.join("mine/new").exists(), "{refusal:?} {out}");
+        }
+        // The folder that was there before stays.
+        to("mine");
+        assert!(at.join("mine").is_dir(), "{refusal:?}");
+    }
+    json(at, &["bake", "good.toml", "--out", "new/and/deep", "--quality", "draft"]);
+    assert!(at.join("new/and/deep/tables.safetensors").exists());
+}
+
+#[test]
+fn albedos_of_very_many_lobes_are_refused_in_one_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let refuse = |entry: fn(usize) -> String| {
+        let recipe: String =
+            (0..100_001).map(|i| format!("[[material]]\nname = \"{i}\"\n{}\n", entry(i))).collect();
+        let why = Plan::new(&Scene::from_recipe_str(&recipe).unwrap(), Options::default());
+        let message = why.unwrap_err().to_string();
+        assert!(
+            message.contains("more than 100000 ") && message.contains("--no-albedo"),
+            "{message}"
+        );
+        recipe
+    };
+    refuse(|i| format!("sigma = 0.5\ngamma = 3\nfresnel = {{ dielectric = 1.1{i:06} }}"));
+    let recipe = refuse(|i| format!("sigma = [0.5, 0.1{i:06}]\ngamma = 3\nfresnel = \"mirror\""));
+    // The command divides them into sets, each with a plan of its own.
+    std::fs::write(folder.path().join("a.toml"), recipe).unwrap();
+    let text = ok(folder.path(), &["plan", "a.toml"]);
+    assert!(text.contains("100001 materials in 11 numbered sets"), "{text}");
+}
