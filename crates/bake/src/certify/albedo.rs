@@ -331,7 +331,9 @@ fn quantities(spec: &AlbedoSpec) -> Vec<Quantity> {
         Reflectance::Moments => &["scale", "bias", "f82", "e"],
         _ => spec.reflectance.channels(),
     };
-    channels.iter().filter_map(|name| Quantity::named(name)).collect()
+    // One left out would give the errors of the next its name.
+    let of = |name: &&str| Quantity::named(name).expect("every channel is a quantity");
+    channels.iter().map(of).collect()
 }
 
 /// Largest and root-mean-square errors of each quantity, and the place of the largest of all; the
