@@ -41,11 +41,15 @@ pub(super) struct Args {
     out: Option<PathBuf>,
     /// Bake the I-th of N shards of what the scene needs into the cache, and write no set: for one
     /// of N processes on any machines that share the folder. A bake with --out then assembles it.
-    #[arg(long, value_name = "I/N", value_parser = str::parse::<Shard>, requires_all = ["scene", "cache"], conflicts_with_all = ["out", "format", "max_bytes", "no_cache"])]
+    #[arg(long, value_name = "I/N", value_parser = str::parse::<Shard>, requires_all = ["scene", "cache"], conflicts_with_all = ["out", "format", "split", "max_bytes", "no_cache"])]
     shard: Option<Shard>,
-    /// Container formats, comma separated.
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "safetensors")]
-    format: Vec<FormatArg>,
+    /// Container format.
+    #[arg(long, value_enum, default_value_t)]
+    format: FormatArg,
+    /// With --format exr: instead of one file write an image NAME.exr for each table, for programs
+    /// that open no parts. Such a folder is no set.
+    #[arg(long)]
+    split: bool,
     #[command(flatten)]
     request: Request,
     /// Choose each table's nodes and precision instead: small tables whose measured error (of G1,
@@ -78,11 +82,12 @@ pub(super) struct Args {
     json: bool,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 enum FormatArg {
-    /// One file with all tables.
+    /// tables.safetensors.
+    #[default]
     Safetensors,
-    /// One OpenEXR image a table.
+    /// tables.exr, an OpenEXR image of one part a table.
     Exr,
 }
 
@@ -189,7 +194,13 @@ pub(super) fn run(args: Args) -> Outcome {
                 .into(),
         ));
     }
-    let out = OutputFolder::open(folder)?;
+    if args.split && args.format != FormatArg::Exr {
+        return Err(Failure("--split: only images are split; add --format exr".into()));
+    }
+    let out = match args.split {
+        true => OutputFolder::open(folder)?,
+        false => OutputFolder::open_for_set(folder)?,
+    };
     let cache = cache(args.cache.as_deref(), args.no_cache);
     args.say_what_is_left(folder, &out, &cache);
     let mut library = match args.recipe.as_deref() {
@@ -217,21 +228,21 @@ pub(super) fn run(args: Args) -> Outcome {
     let result = bake_with(&plan, args.target(), settings)?;
     drop(bar);
     warn_of_cache(&result);
-    let formats: Vec<Format> = args
-        .format
-        .iter()
-        .map(|format| match format {
-            FormatArg::Safetensors => Format::Safetensors,
-            FormatArg::Exr => Format::Exr,
-        })
-        .collect();
-    let written = out.write(&result.set, &formats)?;
+    let format = match args.format {
+        FormatArg::Safetensors => Format::Safetensors,
+        FormatArg::Exr => Format::Exr,
+    };
+    let written = match args.split && !result.set.tables().is_empty() {
+        true => out.write_images(&result.set)?,
+        false => out.write(&result.set, format)?,
+    };
     let summary = Summary {
         outline,
         result: &result,
         written: &written,
         out: folder,
-        only_images: formats == [Format::Exr],
+        exr: format == Format::Exr,
+        split: args.split,
         seconds: start.elapsed().as_secs_f64(),
     };
     if args.json {

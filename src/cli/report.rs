@@ -23,8 +23,7 @@ use super::{
   microfacet-bake report glass --out - | gzip > glass.html.gz
 The page is one file, needs no network, and opens in any browser.")]
 pub(super) struct Args {
-    /// A .safetensors set, a folder that holds one or its images, or a single table as .exr; the
-    /// embedded default if absent.
+    /// A set, .safetensors or .exr, or a folder that holds one; the embedded default if absent.
     tables: Option<PathBuf>,
     /// File to write, or `-` for standard output; one that exists is replaced as a whole.
     #[arg(long, short, value_name = "FILE", default_value = "report.html")]

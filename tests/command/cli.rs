@@ -13,7 +13,7 @@ fn from_a_recipe_to_normals() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("glass.toml"), GLASS).unwrap();
-    let summary = ok(at, &["bake", "glass.toml", "--out", "out", "--format", "safetensors,exr"]);
+    let summary = ok(at, &["bake", "glass.toml", "--out", "out"]);
     assert!(summary.contains("G1 ") && summary.contains("in visible_slope_gamma_3\n"), "{summary}");
 
     // The file holds its material, and the certificate holds what the quality promises.
@@ -25,12 +25,6 @@ fn from_a_recipe_to_normals() {
     );
     let error = set.student_t(0.3, 4.0).unwrap_err().to_string();
     assert!(error.contains("gamma = 3"), "{error}");
-
-    // Every image reads back to the very table of the set.
-    for table in set.tables() {
-        let image = store::read(&at.join("out").join(format!("{}.exr", table.name))).unwrap();
-        assert_eq!(image.tables(), std::slice::from_ref(table));
-    }
 
     let shown = ok(at, &["inspect", "out"]);
     assert!(

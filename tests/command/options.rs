@@ -382,7 +382,7 @@ fn a_furnace_names_the_rows_that_do_not_close() {
         *value *= 0.98;
     }
     let damaged = Tables::from_tables(whole.provenance().clone(), tables).unwrap();
-    store::write(&at.join("damaged"), &damaged, &[store::Format::Safetensors]).unwrap();
+    store::write(&at.join("damaged"), &damaged, store::Format::Safetensors).unwrap();
     let line = "furnace damaged --gamma 1.6 --sigma 1e-8,2 --cos-theta 0.3";
     let output = run(at, &words(line));
     let text = String::from_utf8(output.stdout).unwrap();

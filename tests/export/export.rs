@@ -271,6 +271,16 @@ fn the_data_of_shaders_is_where_its_description_says() {
     let (width, height) = (count(&description["width"]), count(&description["height"]));
     assert_eq!(numbers.len(), 2 * width * height);
 
+    // It knows its companions, and is the last of them to be written.
+    let of = |name: &str| {
+        let mut crc = flate2::Crc::new();
+        crc.update(&fs::read(at.join(name)).unwrap());
+        format!("{:08x}", crc.sum())
+    };
+    let others = ["student_t.bin", "student_t.exr", "student_t.wgsl", "student_t_sample.wgsl"];
+    let listed: BTreeMap<&str, String> = others.map(|name| (name, of(name))).into();
+    assert_eq!(description["crc32"], serde_json::to_value(listed).unwrap());
+
     // The image has the same numbers.
     let image = exr::prelude::read_first_flat_layer_from_file(at.join("student_t.exr")).unwrap();
     let layer = image.layer_data;

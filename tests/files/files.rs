@@ -10,7 +10,7 @@ use microfacet_baker::progress::Stage;
 use microfacet_baker::store::{decode_exr, encode_exr};
 use microfacet_baker::table_spec::{ShapeAxis, TableSpec};
 use microfacet_sampler::Tables;
-use microfacet_tables::{Kind, LoadError, Precision};
+use microfacet_tables::{Kind, LoadError, Precision, Table};
 
 fn small_table(precision: Precision) -> Tables {
     let spec = TableSpec {
@@ -29,7 +29,7 @@ fn small_table(precision: Precision) -> Tables {
 
 fn small_image() -> (Tables, Vec<u8>) {
     let set = small_table(Precision::F16);
-    let bytes = encode_exr(set.provenance(), &set.tables()[0]).unwrap();
+    let bytes = encode_exr(set.provenance(), set.tables()).unwrap();
     assert_eq!(decode_exr(&bytes).unwrap(), set);
     (set, bytes)
 }
@@ -79,7 +79,7 @@ fn an_image_of_any_name_is_read_back() {
     let set = small_table(Precision::F32);
     let mut table = set.tables()[0].clone();
     table.name = "é м漢🎨".into();
-    let bytes = encode_exr(set.provenance(), &table).unwrap();
+    let bytes = encode_exr(set.provenance(), &[table.clone()]).unwrap();
     assert_eq!(decode_exr(&bytes).unwrap().tables(), [table]);
 }
 
@@ -126,9 +126,55 @@ fn an_image_written_anew_by_another_program_is_refused() {
         let samples = &mut image.layer_data[0].channel_data.list[0].sample_data;
         *samples = FlatSamples::U32(vec![0; samples.len()]);
     });
-    refused("2 parts", &|image| {
+    refused("2 parts of 1 tables", &|image| {
         let mut part = image.layer_data[0].clone();
         part.attributes.layer_name = Some("other".into());
         image.layer_data.push(part);
+    });
+}
+
+/// Parts stand for tables by their order, and say so by their names.
+#[test]
+fn parts_that_are_exchanged_renamed_or_missing_are_refused() {
+    let set = small_table(Precision::F32);
+    let table = |name: &str, change: f32| {
+        let mut table = Table { name: name.into(), ..set.tables()[0].clone() };
+        table.values.iter_mut().for_each(|x| *x *= change);
+        table
+    };
+    let tables = [table("one", 1.0), table("two", 0.5), table("three", 0.25)];
+    let file = encode_exr(set.provenance(), &tables).unwrap();
+    assert_eq!(decode_exr(&file).unwrap().tables(), tables);
+    let written = |change: &dyn Fn(&mut FlatImage)| {
+        let mut image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .all_layers()
+            .all_attributes()
+            .from_buffered(Cursor::new(&file))
+            .unwrap();
+        change(&mut image);
+        let mut file = Cursor::new(Vec::new());
+        image.write().to_buffered(&mut file).unwrap();
+        decode_exr(&file.into_inner())
+    };
+    assert_eq!(written(&|_| ()).unwrap().tables(), tables);
+    let refused = |part: &str, change: &dyn Fn(&mut FlatImage)| {
+        let why = written(change).unwrap_err().to_string();
+        assert!(why.contains(part), "{why}");
+    };
+    refused("a part named `three` in the place of the table `two`", &|image| {
+        image.layer_data.swap(1, 2);
+    });
+    refused("a part named `four`", &|image| {
+        image.layer_data[1].attributes.layer_name = Some("four".into());
+    });
+    refused("2 parts of 3 tables", &|image| {
+        image.layer_data.pop();
+    });
+    refused("checksum", &|image| {
+        let (one, two) = image.layer_data.split_at_mut(2);
+        std::mem::swap(&mut one[1].channel_data, &mut two[0].channel_data);
     });
 }

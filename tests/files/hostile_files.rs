@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use crate::common::{names, ok, refused, run};
+use crate::common::{names, ok, refused};
 
 use microfacet_baker::store;
 
@@ -90,33 +90,15 @@ fn what_is_no_file_is_not_read() {
         let part = if path == "sparse" { "no end within 1 MiB" } else { part };
         refuses(at, &format!("\"$0\" query g1 --input {path}"), part);
         // As a file in a folder.
-        let inside = at.join(format!("folder of {}", path.replace('/', "_")));
-        fs::create_dir(&inside).unwrap();
-        symlink(at.join(path), inside.join("tables.safetensors")).unwrap();
-        refuses(at, &format!("\"$0\" inspect '{}'", inside.display()), "tables.safetensors");
+        for name in ["tables.safetensors", "tables.exr", "tables.index.json"] {
+            let inside = at.join(format!("folder of {} {name}", path.replace('/', "_")));
+            fs::create_dir(&inside).unwrap();
+            symlink(at.join(path), inside.join(name)).unwrap();
+            refuses(at, &format!("\"$0\" inspect '{}'", inside.display()), name);
+        }
     }
     // The way out is named.
     refuses(at, "\"$0\" fit --input fifo", "`-` for standard input");
-}
-
-#[test]
-fn hidden_files_of_ours_that_are_not_are_refused() {
-    for name in [".microfacet-bake.commit", ".microfacet-bake.files"] {
-        let folder = workshop();
-        let at = folder.path();
-        bake(at, "gold.toml", "out", "exr");
-        for hostile in ["fifo", "sparse"] {
-            let _ = fs::remove_file(at.join("out").join(name));
-            fs::rename(at.join(hostile), at.join("out").join(name)).unwrap();
-            let part = "remove it";
-            refuses(at, "\"$0\" bake gold.toml --out out --no-cache --quality draft", part);
-            if name.ends_with("commit") {
-                refuses(at, "\"$0\" inspect out", name);
-            }
-        }
-        fs::remove_file(at.join("out").join(name)).unwrap();
-        ok(at, &["inspect", "out"]);
-    }
 }
 
 #[test]
@@ -219,11 +201,12 @@ fn outputs_go_where_links_lead_and_keep_their_mode() {
 
 #[test]
 fn modes_of_a_set_are_kept() {
-    for format in ["safetensors", "exr,safetensors"] {
+    for format in ["safetensors", "exr"] {
         let folder = workshop();
         let at = folder.path();
         bake(at, "gold.toml", "out", format);
-        let file = at.join("out/tables.safetensors");
+        let name = format!("tables.{format}");
+        let file = at.join("out").join(&name);
         fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
         let before = fs::read(&file).unwrap();
         bake(at, "glass.toml", "out", format);
@@ -234,7 +217,7 @@ fn modes_of_a_set_are_kept() {
         let before: Vec<_> = names(&at.join("out"));
         let again = ["bake", "gold.toml", "--out", "out", "--quality", "draft", "--format", format];
         let message = refused(at, &again);
-        assert!(message.contains("tables.safetensors: is write-protected"), "{message}");
+        assert!(message.contains(&format!("{name}: is write-protected")), "{message}");
         assert_eq!(names(&at.join("out")), before);
         // That is known before anything is read or baked.
         let message = refused(at, &["bake", "missing.toml", "--out", "out"]);
@@ -267,129 +250,83 @@ fn normals_go_to_standard_output() {
     assert!(!at.join("-").exists());
 }
 
+/// What was in a folder before, besides the set.
 #[test]
-fn only_what_a_set_recorded_is_removed() {
+fn only_the_set_of_a_folder_is_replaced() {
     let folder = workshop();
     let at = folder.path();
     let out = at.join("out");
+    fs::create_dir(&out).unwrap();
+    let others = ["backup.exr", "notes.txt", "tables-00001-00000000.safetensors", "tables.json"];
+    for name in others {
+        fs::write(out.join(name), name).unwrap();
+    }
+    symlink(at.join("fifo"), out.join("fifo.exr")).unwrap();
+    let all = |set: &[&str]| {
+        let mut all: Vec<String> =
+            [&others[..], &["fifo.exr"], set].concat().into_iter().map(String::from).collect();
+        all.sort();
+        all
+    };
     bake(at, "gold.toml", "out", "exr");
-    let gold: Vec<_> = names(&out).into_iter().filter(|name| name.ends_with(".exr")).collect();
-    let copy = out.join("backup_of_gold.exr");
-    fs::copy(out.join(&gold[0]), &copy).unwrap();
-    // Under a recorded name, but no table any more.
-    fs::write(out.join(&gold[1]), "notes").unwrap();
+    assert_eq!(names(&out), all(&["tables.exr"]));
     bake(at, "glass.toml", "out", "safetensors");
-    assert_eq!(names(&out), ["backup_of_gold.exr", "tables.safetensors", gold[1].as_str()]);
-    // A folder without a record: nothing is known to be ours but the set file.
-    bake(at, "gold.toml", "other", "exr");
-    fs::remove_file(at.join("other/.microfacet-bake.files")).unwrap();
-    bake(at, "glass.toml", "other", "safetensors");
-    let mut all = [gold.clone(), vec!["tables.safetensors".into()]].concat();
-    all.sort();
-    assert_eq!(names(&at.join("other")), all);
-    // Back to images: the set file goes.
-    bake(at, "gold.toml", "other", "exr");
-    assert_eq!(names(&at.join("other")), [vec![".microfacet-bake.files".into()], gold].concat());
+    assert_eq!(names(&out), all(&["tables.safetensors"]));
+    assert!(ok(at, &["inspect", "out"]).contains("glass"));
+    bake(at, "gold.toml", "out", "exr");
+    assert_eq!(names(&out), all(&["tables.exr"]));
+    assert!(ok(at, &["inspect", "out"]).contains("gold"));
 }
 
 /// Neither replaced nor removed.
 #[test]
-fn a_protected_image_protects_its_set() {
+fn a_protected_file_protects_its_set() {
     let folder = workshop();
     let at = folder.path();
     bake(at, "gold.toml", "out", "exr");
-    let before = names(&at.join("out"));
-    let image = at.join("out").join(&before[1]);
-    fs::set_permissions(&image, fs::Permissions::from_mode(0o444)).unwrap();
+    fs::set_permissions(at.join("out/tables.exr"), fs::Permissions::from_mode(0o444)).unwrap();
     for recipe in ["gold.toml", "glass.toml"] {
         let message = refused(at, &["bake", recipe, "--out", "out", "--quality", "draft"]);
-        assert!(message.contains(&format!("{}: is write-protected", before[1])), "{message}");
-        assert_eq!(names(&at.join("out")), before);
+        assert!(message.contains("tables.exr: is write-protected"), "{message}");
+        assert_eq!(names(&at.join("out")), ["tables.exr"]);
     }
 }
 
-/// The folder of a file that is named without one is the current one.
 #[test]
-fn a_journal_beside_a_bare_name_is_completed() {
-    let folder = workshop();
-    bake(folder.path(), "gold.toml", "out", "safetensors");
-    let out = folder.path().join("out");
-    fs::write(out.join(".microfacet-bake.commit"), "").unwrap();
-    ok(&out, &["inspect", "tables.safetensors"]);
-    assert_eq!(names(&out), ["tables.safetensors"]);
-}
-
-#[test]
-fn a_record_reaches_only_tables_in_its_folder() {
+fn an_image_is_the_set_and_an_image_of_a_table_is_that_table() {
     let folder = workshop();
     let at = folder.path();
-    bake(at, "gold.toml", "precious", "exr");
-    let gold = names(&at.join("precious"));
-    let image = &gold[1];
-    let table = image.strip_suffix(".exr").unwrap();
-    fs::create_dir(at.join("out")).unwrap();
-    symlink(at.join("fifo"), at.join("out/fifo.exr")).unwrap();
-    fs::write(at.join("out/photo.exr"), "photo").unwrap();
-    fs::write(at.join("out/notes.txt"), "notes").unwrap();
-    let record = format!(
-        "../precious/{image}\n{}/precious/{image}\n..\n.\n\nfifo.exr\nphoto.exr\nnotes.txt\n{table}\n",
-        at.display()
-    );
-    fs::write(at.join("out/.microfacet-bake.files"), record).unwrap();
-    let output = script(at, "\"$0\" bake glass.toml --out out --quality draft --no-cache");
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(names(&at.join("precious")), gold);
-    assert_eq!(
-        names(&at.join("out")),
-        ["fifo.exr", "notes.txt", "photo.exr", "tables.safetensors"]
-    );
-}
-
-#[test]
-fn a_folder_of_images_is_a_set() {
-    let folder = workshop();
-    let at = folder.path();
-    bake(at, "gold.toml", "both", "exr,safetensors");
-    let whole = store::read(&at.join("both")).unwrap();
-    fs::create_dir(at.join("images")).unwrap();
-    let is_image = |name: &String| name.ends_with(".exr");
-    let images: Vec<_> = names(&at.join("both")).into_iter().filter(is_image).collect();
-    for name in &images {
-        fs::copy(at.join("both").join(name), at.join("images").join(name)).unwrap();
-    }
-    fs::copy(at.join("both").join(&images[0]), at.join("images/a_copy.exr")).unwrap();
-    let read = store::read(&at.join("images")).unwrap();
-    let sorted = |set: &microfacet_sampler::Tables| {
-        let mut tables = set.tables().to_vec();
-        tables.sort_by(|a, b| a.name.cmp(&b.name));
-        tables
-    };
-    assert_eq!((read.provenance(), read.tables()), (whole.provenance(), &sorted(&whole)[..]));
-    assert!(ok(at, &["inspect", "images"]).contains("\"gold\": sigma "));
-    ok(at, &["validate", "images", "--configurations", "2", "--samples", "1000"]);
+    bake(at, "gold.toml", "set", "safetensors");
+    bake(at, "gold.toml", "image", "exr");
+    let whole = store::read(&at.join("set")).unwrap();
+    assert_eq!(store::read(&at.join("image")).unwrap(), whole);
+    assert!(ok(at, &["inspect", "image"]).contains("\"gold\": sigma "));
+    ok(at, &["validate", "image", "--configurations", "2", "--samples", "1000"]);
     fs::write(at.join("q.csv"), "sigma_x,sigma_y,gamma,theta,phi\n0.3,0.3,3,1,0\n").unwrap();
     let query = |tables| ok(at, &["query", "g1", "--input", "q.csv", "--tables", tables]);
-    assert_eq!(query("images"), query("both"));
+    assert_eq!(query("image"), query("set"));
 
-    // Images of other programs are passed over, damaged ones are not.
-    let frame = at.join("images/frame.exr");
-    image(&frame);
-    assert_eq!(store::read(&at.join("images")).unwrap().tables().len(), images.len());
-    fs::write(&frame, "damaged").unwrap();
+    let split = ["bake", "gold.toml", "--quality", "draft", "--out", "images", "--split"];
+    let said = ok(at, &[&split[..], &["--format", "exr"]].concat());
+    assert_eq!(names(&at.join("images")).len(), whole.tables().len());
+    for table in whole.tables() {
+        let image = store::read(&at.join(format!("images/{}.exr", table.name))).unwrap();
+        assert_eq!(
+            (image.provenance(), image.tables()),
+            (whole.provenance(), std::slice::from_ref(table))
+        );
+    }
+    // What it says to run next is one of them, since the folder is no set.
+    let next = said.lines().last().unwrap().trim().strip_prefix("microfacet-bake ").unwrap();
+    ok(at, &next.split(' ').collect::<Vec<_>>());
     let message = refused(at, &["inspect", "images"]);
-    assert!(message.contains("frame.exr"), "{message}");
-    fs::remove_file(&frame).unwrap();
+    let any = "holds none of tables.safetensors, tables.exr, tables.index.json";
+    assert!(message.contains(any), "{message}");
+    assert!(refused(at, &split).contains("--format exr"));
 
-    // Two bakes do not mix.
-    bake(at, "glass.toml", "other", "exr");
-    let other = names(&at.join("other")).into_iter().rfind(is_image).unwrap();
-    fs::copy(at.join("other").join(&other), at.join("images").join(&other)).unwrap();
-    let message = refused(at, &["inspect", "images"]);
-    assert!(message.contains("different bakes") && message.contains(&other), "{message}");
-
-    fs::create_dir(at.join("empty")).unwrap();
-    let message = refused(at, &["inspect", "empty"]);
-    assert!(message.contains("tables.safetensors") && message.contains("NAME.exr"), "{message}");
+    let photo = at.join("photo.exr");
+    image(&photo);
+    assert!(refused(at, &["inspect", "photo.exr"]).contains("another program wrote this image"));
 }
 
 /// Writes an image that holds no table.
@@ -416,7 +353,7 @@ fn a_full_disk_is_reported_and_leaves_what_was_there() {
     for command in commands {
         refuses(at, &format!("{command} full.svg"), "full.svg: No space left");
     }
-    bake(at, "gold.toml", "out", "exr,safetensors");
+    bake(at, "gold.toml", "out", "safetensors");
     fs::write(at.join("q.csv"), "sigma_x,sigma_y,gamma,theta,phi\n0.3,0.3,3,1,0\n").unwrap();
     for command in [
         &format!("{SAMPLE} -"),
@@ -427,28 +364,11 @@ fn a_full_disk_is_reported_and_leaves_what_was_there() {
     ] {
         refuses(at, &format!("{command} > /dev/full"), "No space left");
     }
-    // A file of a set that leads to a full device.
-    let before = names(&at.join("out"));
-    let image = before.iter().find(|name| name.ends_with(".exr")).unwrap();
-    let content = fs::read(at.join("out").join(image)).unwrap();
+    // A set that leads to a full device.
     fs::remove_file(at.join("out/tables.safetensors")).unwrap();
     symlink("/dev/full", at.join("out/tables.safetensors")).unwrap();
-    let output = run(
-        at,
-        &[
-            "bake",
-            "glass.toml",
-            "--out",
-            "out",
-            "--quality",
-            "draft",
-            "--format",
-            "exr,safetensors",
-        ],
-    );
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{message}");
+    let again = ["bake", "glass.toml", "--out", "out", "--quality", "draft"];
+    let message = refused(at, &again);
     assert!(message.contains("tables.safetensors: No space left"), "{message}");
-    assert_eq!(names(&at.join("out")), before);
-    assert_eq!(fs::read(at.join("out").join(image)).unwrap(), content);
+    assert_eq!(names(&at.join("out")), ["tables.safetensors"]);
 }

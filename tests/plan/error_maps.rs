@@ -187,7 +187,7 @@ fn a_table_alone_is_told_what_it_lacks() {
 fn images_have_the_maps_of_the_set() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("set");
-    store::write(&path, &SET, &[store::Format::Exr]).unwrap();
+    store::write(&path, &SET, store::Format::Exr).unwrap();
     let read = store::read(&path).unwrap();
     let slopes = |set: &Tables| {
         let table = set.tables().iter().find(|table| table.kind == Kind::VisibleSlope).unwrap();

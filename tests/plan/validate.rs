@@ -7,9 +7,9 @@ use tempfile::TempDir;
 use microfacet_sampler::Tables;
 use microfacet_tables::{Kind, Precision, encode};
 
-use crate::common::{json, ok, refused, run};
+use crate::common::{json, names, ok, refused, run};
 
-/// A folder with a draft of a recipe's set in `set`, as safetensors and as images.
+/// A folder with a draft of a recipe's set in `set`.
 fn baked(recipe: &str) -> TempDir {
     baked_as("draft", recipe)
 }
@@ -17,7 +17,7 @@ fn baked(recipe: &str) -> TempDir {
 fn baked_as(quality: &str, recipe: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("r.toml"), recipe).unwrap();
-    let options = ["--quality", quality, "--format", "exr,safetensors", "--no-cache"];
+    let options = ["--quality", quality];
     ok(folder.path(), &[&["bake", "r.toml", "--out", "set"], &options[..]].concat());
     folder
 }
@@ -75,12 +75,13 @@ fn what_has_no_lobe_is_refused_or_named() {
     let folder = baked(&material(
         "gamma = 3.0\nfresnel = { conductor = { eta = [0.2, 0.9, 1.1], k = [3.9, 2.4, 2.2] } }",
     ));
-    // One image of a set: GGX in closed form is not its business.
-    let images = fs::read_dir(folder.path().join("set")).unwrap();
-    let names = images.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    // One table of a set: GGX in closed form is not its business.
+    let split = ["--quality", "draft", "--format", "exr", "--split", "--out", "images"];
+    let split = [&["bake", "r.toml"], &split[..]].concat();
+    ok(folder.path(), &split);
     let mut refusals = 0;
-    for name in names.filter(|name| name.ends_with(".exr")) {
-        let path = format!("set/{name}");
+    for name in names(&folder.path().join("images")) {
+        let path = format!("images/{name}");
         let output = run(folder.path(), &["validate", &path, "--samples", "1000"]);
         let text = String::from_utf8(output.stdout).unwrap();
         let moments = name.starts_with("albedo") && !name.contains("conductor");
@@ -98,7 +99,8 @@ fn what_has_no_lobe_is_refused_or_named() {
     // GGX in closed form, which the materials of the set use, does not stand for the image either.
     let ggx = "[[material]]\nname = \"ggx\"\nsigma = 0.2\ngamma = 2.0\n";
     let with_ggx = baked(&(material("gamma = 3.0") + ggx));
-    let message = refused(with_ggx.path(), &["validate", "set/shadowing_gamma_3.exr"]);
+    ok(with_ggx.path(), &split);
+    let message = refused(with_ggx.path(), &["validate", "images/shadowing_gamma_3.exr"]);
     assert!(message.contains("nothing to judge"), "{message}");
     let text = ok(with_ggx.path(), &["validate", "set", "--samples", "20000"]);
     assert!(text.contains("--gamma 2 "), "GGX was not tested: {text}");

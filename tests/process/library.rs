@@ -8,7 +8,7 @@ use std::time::Duration;
 use crate::common::{json, names, ok, refused, run};
 use microfacet_baker::store::{read, read_materials};
 use microfacet_sampler::MicrofacetDistribution;
-use microfacet_tables::Index;
+use microfacet_tables::{Index, IndexedSet};
 
 /// Anisotropic mirrors, each with an albedo of its own, and a round one.
 fn recipe(count: usize) -> String {
@@ -188,12 +188,10 @@ fn more_materials_than_a_set_holds_become_numbered_sets() {
     let (said, baked) = assemble(folder, "out", &per_set);
     assert_eq!((&*said, baked), ("", 0));
     same(folder, "alone", "out");
-    let numbered = (1..=3).map(Index::file_name);
-    let expected: Vec<String> = [".microfacet-bake.files".to_owned()]
-        .into_iter()
-        .chain(numbered)
-        .chain([Index::FILE.to_owned()])
-        .collect();
+    let mut expected: Vec<String> =
+        index(&folder.join("out")).sets.into_iter().map(|set| set.file).collect();
+    assert!(expected.len() == 3 && expected[2].starts_with("tables-00003-"), "{expected:?}");
+    expected.push(Index::FILE.into());
     assert_eq!(names(&folder.join("out")), expected);
 
     // Both are opened alike, as a whole or for some materials.
@@ -229,13 +227,62 @@ fn more_materials_than_a_set_holds_become_numbered_sets() {
 
     // One set in the place of three, and three in the place of one.
     ok(folder, &["bake", "lib.toml", "--cache", "cache", "--out", "out", "--quality", "draft"]);
-    assert_eq!(names(&folder.join("out")), [microfacet_baker::store::SET_FILE]);
+    assert_eq!(names(&folder.join("out")), ["tables.safetensors"]);
     assert_eq!(
         fs::read(folder.join("out/tables.safetensors")).unwrap(),
         fs::read(folder.join("one/tables.safetensors")).unwrap()
     );
     assemble(folder, "one", &per_set);
     same(folder, "alone", "one");
+}
+
+fn index(folder: &Path) -> Index {
+    Index::from_json(&fs::read_to_string(folder.join(Index::FILE)).unwrap()).unwrap()
+}
+
+/// Files of two libraries, of one set under two names, and others that an index does not list.
+#[test]
+fn numbered_sets_are_those_of_their_index() {
+    let folder = folder(4);
+    let folder = folder.path();
+    alone(folder, &["--per-set", "2"]);
+    fs::write(folder.join("lib.toml"), recipe(4).replace(", 0.5]", ", 0.45]")).unwrap();
+    let other = ["bake", "lib.toml", "--no-cache", "--out", "other", "--per-set", "2"];
+    ok(folder, &[&other, &DRAFT[..]].concat());
+    let (own, foreign) = (index(&folder.join("alone")), index(&folder.join("other")));
+    let file = |i: usize| folder.join("alone").join(&own.sets[i].file);
+    let second = fs::read(file(1)).unwrap();
+    let refused = |part: &str| {
+        let why = read(&folder.join("alone")).unwrap_err().to_string();
+        assert!(why.contains(part), "{why}");
+        let why = read_materials(&folder.join("alone"), &["m2"]).unwrap_err().to_string();
+        assert!(why.contains(part), "{why}");
+    };
+    let foreign = fs::read(folder.join("other").join(&foreign.sets[1].file)).unwrap();
+    for wrong in [&foreign[..], &fs::read(file(0)).unwrap(), &second[..second.len() - 1], b""] {
+        fs::write(file(1), wrong).unwrap();
+        refused("it is of another library, or damaged");
+    }
+    fs::write(file(1), &second).unwrap();
+    read(&folder.join("alone")).unwrap();
+    // Listed with its checksum, but for other materials.
+    let json = folder.join("alone").join(Index::FILE);
+    let listed = fs::read_to_string(&json).unwrap();
+    fs::write(&json, listed.replace("\"m2\"", "\"m2\", \"m5\"")).unwrap();
+    refused("its material 2 is \"m3\", and tables.index.json lists \"m5\"");
+    // One file under many names.
+    let mut many = own.clone();
+    many.sets = (1..=1500).map(|i| IndexedSet::new(i, &second, vec![format!("m{i}")])).collect();
+    for set in &many.sets {
+        let _ = fs::hard_link(file(1), folder.join("alone").join(&set.file));
+    }
+    fs::write(&json, many.to_json()).unwrap();
+    refused("and tables.index.json lists");
+    // Sizes are added up before a file is opened.
+    many.sets.iter_mut().for_each(|set| set.bytes = 1 << 20);
+    fs::write(&json, many.to_json()).unwrap();
+    let why = read(&folder.join("alone")).unwrap_err().to_string();
+    assert!(why.contains("1500 MiB together, and at most 256 MiB are read at once"), "{why}");
 }
 
 #[test]
@@ -269,7 +316,7 @@ fn a_plan_of_several_sets_lists_them() {
     let folder = folder.path();
     let args = ["plan", "lib.toml", "--quality", "draft", "--per-set", "3"];
     let text = ok(folder, &args);
-    for what in ["tables-00001.safetensors", "3 materials", "2 numbered sets"] {
+    for what in ["set 1  3 materials", "set 2", "2 numbered sets"] {
         assert!(text.contains(what), "{text}");
     }
     // What takes seconds needs no shards.

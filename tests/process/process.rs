@@ -6,22 +6,21 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use microfacet_baker::store;
 use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_microfacet-bake");
 
-/// The one hidden file that belongs to a set of several files: their names.
-const RECORD: &str = ".microfacet-bake.files";
-
 /// A folder with two recipes whose sets differ in every file.
 fn workshop() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    // The same tables, and so the same file names, for materials with other names, which every file
-    // records.
+    // The same tables for materials with other names.
     for name in ["old", "new"] {
-        let recipe = format!("[[material]]\nname = \"{name}\"\nsigma = 0.3\ngamma = 3.0\n");
+        let material =
+            |i| format!("[[material]]\nname = \"{name} {i}\"\nsigma = 0.3\ngamma = 3.0\n");
+        let recipe = [1, 2].map(material).concat();
         fs::write(folder.path().join(format!("{name}.toml")), recipe).unwrap();
     }
     folder
@@ -29,17 +28,7 @@ fn workshop() -> TempDir {
 
 fn bake(workshop: &TempDir, recipe: &str, out: &Path) -> Command {
     let mut command = Command::new(PROGRAM);
-    command.args([
-        "bake",
-        "--no-cache",
-        "--quality",
-        "draft",
-        "--format",
-        "exr,safetensors",
-        "--threads",
-        "1",
-        "--out",
-    ]);
+    command.args(["bake", "--no-cache", "--quality", "draft", "--threads", "1", "--out"]);
     command.arg(out).arg(workshop.path().join(format!("{recipe}.toml")));
     command.stdout(Stdio::null()).stderr(Stdio::piped());
     command
@@ -51,7 +40,7 @@ fn message(output: &Output) -> String {
 
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// What lies in a folder: files of sets, and the program's own hidden ones.
+/// What lies in a folder: the files of a set, and the program's own hidden ones.
 fn content(folder: &Path) -> (Files, Vec<String>) {
     let (mut files, mut hidden) = (Files::new(), Vec::new());
     for entry in fs::read_dir(folder).unwrap() {
@@ -59,7 +48,7 @@ fn content(folder: &Path) -> (Files, Vec<String>) {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         if name.starts_with('.') {
             assert!(
-                name.starts_with(".microfacet-bake"),
+                name.starts_with(".microfacet-bake-") && name.ends_with(".partial"),
                 "a leftover that does not say whose it is: {name}"
             );
             hidden.push(name);
@@ -70,104 +59,129 @@ fn content(folder: &Path) -> (Files, Vec<String>) {
     (files, hidden)
 }
 
+/// The forms of a set: what is asked for, and how many files it has.
+const FORMS: [(&[&str], usize); 3] =
+    [(&[], 1), (&["--format", "exr"], 1), (&["--per-set", "1"], 3)];
+
 /// The folder after an undisturbed bake.
-fn baked(workshop: &TempDir, recipe: &str) -> (PathBuf, Files) {
-    let out = workshop.path().join(format!("out of {recipe}"));
-    let output = bake(workshop, recipe, &out).output().unwrap();
+fn baked(workshop: &TempDir, recipe: &str, (form, count): (&[&str], usize)) -> (PathBuf, Files) {
+    let out = workshop.path().join(format!("out of {recipe} {}", form.join(" ")));
+    let output = bake(workshop, recipe, &out).args(form).output().unwrap();
     assert!(output.status.success(), "{}", message(&output));
     let (files, hidden) = content(&out);
-    assert!(files.len() > 2 && hidden == [RECORD], "{:?} {hidden:?}", files.keys());
-    let record = fs::read_to_string(out.join(RECORD)).unwrap();
-    assert!(record.lines().all(|name| files.contains_key(name)), "{record}");
-    assert_eq!(record.lines().count(), files.len());
+    assert!(files.len() == count && hidden.is_empty(), "{:?} {hidden:?}", files.keys());
     (out, files)
 }
 
-/// 200 with `MICROFACET_KILLS=200`; a few otherwise.
+/// The names of the materials of the set in a folder.
+fn read(folder: &Path) -> Vec<String> {
+    let set = store::read(folder).unwrap();
+    assert!(!set.tables().is_empty());
+    set.provenance().materials.iter().map(|entry| entry.name.clone()).collect()
+}
+
+const OLD: [&str; 2] = ["old 1", "old 2"];
+const NEW: [&str; 2] = ["new 1", "new 2"];
+
+/// 200 with `MICROFACET_KILLS=200`; a few otherwise. Each bake has another form than the one
+/// before.
 #[test]
 fn killed_at_any_moment_one_whole_set_is_there() {
     let kills: u32 = std::env::var("MICROFACET_KILLS").map_or(8, |n| n.parse().unwrap());
     let workshop = workshop();
+    let whole: Vec<_> = FORMS.map(|form| (form, baked(&workshop, "new", form).1)).into();
     let start = Instant::now();
-    let (out, old) = baked(&workshop, "old");
-    let whole = start.elapsed();
-    let (_, new) = baked(&workshop, "new");
-    assert!(old.keys().eq(new.keys()) && old.iter().zip(&new).all(|(a, b)| a.1 != b.1));
-    let (mut outcomes, mut recipes) = ([0; 3], ["new", "old"].into_iter().cycle());
+    let (out, _) = baked(&workshop, "old", FORMS[0]);
+    let time = start.elapsed();
+    let mut outcomes = [0; 2];
     for i in 0..kills {
-        let recipe = recipes.next().unwrap();
-        let mut child = bake(&workshop, recipe, &out).spawn().unwrap();
+        let (form, _) = FORMS[i as usize % FORMS.len()];
+        let recipe = ["new", "old"][i as usize % 2];
+        let mut child = bake(&workshop, recipe, &out).args(form).spawn().unwrap();
         // Golden-ratio steps over the whole run and a little beyond.
-        std::thread::sleep(whole.mul_f64(1.2 * (f64::from(i) * 0.618_033_988_75).fract()));
+        std::thread::sleep(time.mul_f64(1.2 * (f64::from(i) * 0.618_033_988_75).fract()));
         child.kill().unwrap();
         child.wait().unwrap();
-        let (files, hidden) = content(&out);
-        let outcome = if files == old {
-            0
-        } else if files == new {
-            1
-        } else {
-            // In the last step some files of the new set may not have their names yet, and a
-            // journal says so.
-            assert!(hidden.iter().any(|name| name == ".microfacet-bake.commit"), "mixture at {i}");
-            let part_of =
-                |set: &Files| files.iter().all(|(name, bytes)| set.get(name) == Some(bytes));
-            assert!(part_of(&old) || part_of(&new), "mixture at {i}");
-            // Whoever opens the folder next, even only to look, gets a whole set: that of this
-            // bake, or the one before if this bake was killed while it completed that.
-            let look =
-                Command::new(PROGRAM).arg("inspect").arg(&out).stdout(Stdio::null()).status();
-            assert!(look.unwrap().success());
-            let (files, hidden) = content(&out);
-            assert!((files == old || files == new) && hidden == [RECORD], "not completed at {i}");
-            2
-        };
-        outcomes[outcome] += 1;
+        let names = read(&out);
+        assert!(names == OLD || names == NEW, "a mixture at {i}: {names:?}");
+        outcomes[usize::from(names == NEW)] += 1;
     }
-    println!("{kills} kills: {outcomes:?} found the old set, the new one, one to be completed");
-    let output = bake(&workshop, "new", &out).output().unwrap();
-    assert!(output.status.success(), "{}", message(&output));
-    assert_eq!(content(&out), (new.clone(), vec![RECORD.into()]));
+    println!("{kills} kills: {outcomes:?} found the old set, the new one");
+    // A bake that is not disturbed leaves nothing of the others.
+    for (form, expected) in whole {
+        let output = bake(&workshop, "new", &out).args(form.0).output().unwrap();
+        assert!(output.status.success(), "{}", message(&output));
+        let mut files = content(&out).0;
+        if form.1 == 1 {
+            // Numbered sets of a killed bake, which no index lists, are removed after a day.
+            files.retain(|name, _| !name.starts_with("tables-"));
+        }
+        assert!(expected.iter().all(|(name, bytes)| files.get(name) == Some(bytes)));
+        assert!(form.1 > 1 || files.len() == 1, "{:?}", files.keys());
+    }
+}
+
+/// Two bakes that write over each other, in turn in each form, and a reader beside them.
+#[test]
+fn beside_two_writers_every_read_finds_a_whole_set() {
+    let workshop = workshop();
+    let (out, _) = baked(&workshop, "old", FORMS[0]);
+    let end = Instant::now() + Duration::from_millis(1500);
+    let cache = workshop.path().join("cache");
+    let (reads, seen) = std::thread::scope(|scope| {
+        for (recipe, first) in [("old", 0), ("new", 1)] {
+            let (workshop, out, cache) = (&workshop, &out, &cache);
+            scope.spawn(move || {
+                for (form, _) in FORMS.iter().cycle().skip(first) {
+                    let mut command = Command::new(PROGRAM);
+                    command.args(["bake", "--quality", "draft", "--threads", "1", "--quiet"]);
+                    command.args(["--out".as_ref(), out.as_os_str(), "--cache".as_ref()]);
+                    command.arg(cache).arg(workshop.path().join(format!("{recipe}.toml")));
+                    let output = command.args(*form).output().unwrap();
+                    assert!(output.status.success(), "{}", message(&output));
+                    if Instant::now() > end {
+                        return;
+                    }
+                }
+            });
+        }
+        let (mut reads, mut seen) = (0, [false; 2]);
+        while Instant::now() < end {
+            let names = read(&out);
+            assert!(names == OLD || names == NEW, "a mixture: {names:?}");
+            seen[usize::from(names == NEW)] = true;
+            reads += 1;
+        }
+        (reads, seen)
+    });
+    println!("{reads} reads");
+    assert!(reads > 20 && seen == [true; 2], "{reads} reads, {seen:?}");
 }
 
 #[test]
 fn a_full_disk_leaves_the_old_set_and_says_so() {
     let workshop = workshop();
-    let (out, old) = baked(&workshop, "old");
     let recipe = workshop.path().join("new.toml");
-    // A limit on the size of files stands for a full disk. Without the trap the kernel kills the
-    // process, which is tried too.
-    for (trap, expected) in [("trap '' XFSZ; ", true), ("", false)] {
-        let script = format!(
-            "{trap}ulimit -f 4; exec \"$0\" bake --quality draft --format exr,safetensors --out \"$1\" \"$2\""
-        );
-        let mut shell = Command::new("sh");
-        let output = shell.args(["-c", &script, PROGRAM]).arg(&out).arg(&recipe).output().unwrap();
-        assert!(!output.status.success());
-        if expected {
-            let text = message(&output);
-            assert!(text.contains("File too large") && text.contains("out of old"), "{text}");
-            assert_eq!(content(&out), (old.clone(), vec![RECORD.into()]));
-        } else {
-            assert_eq!(content(&out).0, old);
+    for form in FORMS {
+        let (out, old) = baked(&workshop, "old", form);
+        // A limit on the size of files stands for a full disk. Without the trap the kernel kills
+        // the process, which is tried too.
+        for (trap, expected) in [("trap '' XFSZ; ", true), ("", false)] {
+            let script =
+                format!("{trap}ulimit -f 4; exec \"$0\" bake --quality draft --no-cache \"$@\"");
+            let mut shell = Command::new("sh");
+            shell.args(["-c", &script, PROGRAM]).args(form.0).arg("--out").arg(&out).arg(&recipe);
+            let output = shell.output().unwrap();
+            assert!(!output.status.success());
+            let (files, hidden) = content(&out);
+            assert_eq!(files, old);
+            if expected {
+                let text = message(&output);
+                assert!(text.contains("File too large") && text.contains("out of old"), "{text}");
+                assert!(hidden.is_empty(), "{hidden:?}");
+            }
         }
     }
-    // The next run tidies up.
-    assert!(bake(&workshop, "old", &out).output().unwrap().status.success());
-    assert_eq!(content(&out), (old, vec![RECORD.into()]));
-}
-
-#[test]
-fn a_second_bake_into_a_folder_is_refused() {
-    let workshop = workshop();
-    let out = workshop.path().join("shared");
-    fs::create_dir(&out).unwrap();
-    let held = microfacet_baker::store::OutputFolder::open(&out).unwrap();
-    let output = bake(&workshop, "old", &out).output().unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert!(message(&output).contains("another bake"), "{}", message(&output));
-    drop(held);
-    assert!(bake(&workshop, "old", &out).output().unwrap().status.success());
 }
 
 #[test]
@@ -198,28 +212,26 @@ fn outputs_that_are_no_folders_are_refused_before_baking() {
 fn folders_and_links_in_place_of_files() {
     let workshop = workshop();
     // A link to a folder is followed.
-    let (out, old) = baked(&workshop, "old");
+    let (out, old) = baked(&workshop, "old", FORMS[0]);
     let link = workshop.path().join("link");
     std::os::unix::fs::symlink(&out, &link).unwrap();
     assert!(bake(&workshop, "new", &link).output().unwrap().status.success());
-    assert_ne!(content(&out).0, old);
-    // A folder where a file should go stops the bake before anything is replaced.
+    assert_eq!(read(&out), NEW);
+    // A folder where a file should go stops the bake before it begins.
     let file = out.join("tables.safetensors");
     fs::remove_file(&file).unwrap();
     fs::create_dir(&file).unwrap();
-    let before = fs::read(out.join("shadowing_gamma_3.exr")).unwrap();
     let output = bake(&workshop, "old", &out).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(message(&output).contains("tables.safetensors"), "{}", message(&output));
-    assert_eq!(fs::read(out.join("shadowing_gamma_3.exr")).unwrap(), before);
-    // A link where a file should go is followed, and a bake killed meanwhile reaches no further.
+    // A link where a file should go is followed.
     fs::remove_dir(&file).unwrap();
     let elsewhere = workshop.path().join("elsewhere");
     std::os::unix::fs::symlink(&elsewhere, &file).unwrap();
     assert!(bake(&workshop, "old", &out).output().unwrap().status.success());
     assert!(fs::symlink_metadata(&file).unwrap().is_symlink());
     assert_eq!(fs::read(&elsewhere).unwrap(), old["tables.safetensors"]);
-    assert_eq!(content(&out), (old, vec![RECORD.into()]));
+    assert_eq!(content(&out), (old, Vec::new()));
 }
 
 /// Headers that promise more than the file holds must not cost memory: half a gigabyte of address
@@ -227,8 +239,9 @@ fn folders_and_links_in_place_of_files() {
 #[test]
 fn inspecting_a_lie_takes_little_memory() {
     let workshop = workshop();
-    let (out, _) = baked(&workshop, "old");
-    let image = fs::read(out.join("shadowing_gamma_3.exr")).unwrap();
+    let (out, _) = baked(&workshop, "old", FORMS[0]);
+    let (images, _) = baked(&workshop, "old", FORMS[1]);
+    let image = fs::read(images.join("tables.exr")).unwrap();
     let at = image.windows(10).position(|window| window == b"dataWindow").unwrap();
     // Name, type `box2i`, size, then x and y of either corner.
     let corner = at + 11 + 6 + 4 + 8;
@@ -259,8 +272,7 @@ fn inspecting_a_lie_takes_little_memory() {
 #[test]
 fn where_no_threads_can_be_started_one_does_the_work() {
     let workshop = workshop();
-    let (expected, _) = baked(&workshop, "old");
-    let whole = content(&expected).0;
+    let (_, whole) = baked(&workshop, "old", FORMS[0]);
     let recipe = workshop.path().join("old.toml");
     for (threads, stack) in [(1, 4_u64 << 30), (8, 600 << 20)] {
         let script = "ulimit -v 2097152; exec \"$0\" \"$@\"";
@@ -272,7 +284,7 @@ fn where_no_threads_can_be_started_one_does_the_work() {
                 .env("RUST_MIN_STACK", stack.to_string());
             shell.current_dir(workshop.path()).output().unwrap()
         };
-        let options = ["--no-cache", "--quality", "draft", "--format", "exr,safetensors"];
+        let options = ["--no-cache", "--quality", "draft"];
         let out = format!("out of {stack}");
         let words = ["--threads", &threads.to_string(), "bake", recipe.to_str().unwrap()];
         let output = start(&[&words[..], &options, &["--out", &out]].concat());

@@ -156,10 +156,10 @@ fn over() -> PyErr {
 
 #[pymethods]
 impl PyAssembly {
-    /// Locks the folder, which is made if it is not there.
+    /// Opens the folder, which is made if it is not there.
     #[new]
     fn new(out: PathBuf) -> PyResult<Self> {
-        let folder = OutputFolder::open(&out).map_err(unread)?;
+        let folder = OutputFolder::open_for_set(&out).map_err(unread)?;
         Ok(Self { writer: Arc::new(Mutex::new(Some(folder.sets()))) })
     }
 

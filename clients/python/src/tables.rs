@@ -148,7 +148,7 @@ impl PyTables {
     /// Writes the set into a folder, which is created: tables.safetensors. What a bake has written
     /// there before is replaced, numbered sets too.
     fn write(&self, folder: PathBuf) -> PyResult<()> {
-        store::write(&folder, &self.set, &[Format::Safetensors]).map_err(unread)?;
+        store::write(&folder, &self.set, Format::Safetensors).map_err(unread)?;
         Ok(())
     }
 

@@ -21,9 +21,9 @@ pub(super) fn run(
     start: Instant,
 ) -> Outcome {
     let sets = library.parts.len();
-    if args.format != [FormatArg::Safetensors] {
+    if args.format != FormatArg::Safetensors {
         return Err(Failure(format!(
-            "--format exr: the materials fill {sets} numbered sets, and images are of one; leave the \
+            "--format exr: the materials fill {sets} numbered sets, and an image is of one; leave the \
              option out"
         )));
     }

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use microfacet_baker::cache::Cache;
 use microfacet_baker::library::{Library, Receipt, Receipts, Shard};
-use microfacet_baker::store::check_folder;
+use microfacet_baker::store::OutputFolder;
 use microfacet_baker::table_set::{Need, Target};
 
 use super::Args;
@@ -22,7 +22,7 @@ const BETWEEN: Duration = Duration::from_secs(60);
 pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Outcome {
     let start = Instant::now();
     // Fail now rather than after an hour of baking.
-    check_folder(folder).map_err(|why| Failure(format!("{}: {why}", folder.display())))?;
+    OutputFolder::open(folder)?;
     let cache = Cache::new(folder.to_path_buf());
     let kept = folder.display().to_string();
     interrupt::leaves(move || {

@@ -24,8 +24,10 @@ pub(super) struct Summary<'a> {
     pub(super) written: &'a [Written],
     /// The folder, as it was given.
     pub(super) out: &'a Path,
-    /// Only images were asked for.
-    pub(super) only_images: bool,
+    /// An image was asked for.
+    pub(super) exr: bool,
+    /// Images of single tables were asked for, which are no set.
+    pub(super) split: bool,
     pub(super) seconds: f64,
 }
 
@@ -46,13 +48,12 @@ impl Summary<'_> {
         let tables = self.result.set.tables();
         let mut text = self.outline.lines(["baked", "skipped"], |_| String::new());
         if tables.is_empty() {
-            let images =
-                if self.only_images { " nor images; it is in tables.safetensors" } else { "" };
+            let image = if self.exr { " and so no image; it is in tables.safetensors" } else { "" };
             let lists = match self.result.set.provenance().materials.len() {
                 0 => "no material",
                 _ => "the materials in use",
             };
-            text += &format!("\nThe set has no tables{images}; it lists {lists}.\n");
+            text += &format!("\nThe set has no tables{image}; it lists {lists}.\n");
         } else {
             text += "\nlargest error of\n";
             text += &largest_errors(tables);
@@ -99,8 +100,11 @@ impl Summary<'_> {
 
     /// The commands that people run next.
     fn next(&self) -> String {
-        let out = shell(self.out);
         let set = &self.result.set;
+        if let (true, [image, ..]) = (self.split && !set.tables().is_empty(), self.written) {
+            return format!("next:\n  microfacet-bake inspect {}\n", shell(&image.path));
+        }
+        let out = shell(self.out);
         let report = match has_page(set) {
             true => format!("  microfacet-bake report {out}\n"),
             false => String::new(),

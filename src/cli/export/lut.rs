@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use clap::builder::PossibleValuesParser;
 
 use microfacet_baker::progress::{Meter, Stage};
+use microfacet_baker::store::OutputFolder;
 use microfacet_export::texture;
 use microfacet_export::texture::engine::{LAYOUTS, Layout};
 use microfacet_export::texture::{
@@ -229,7 +230,7 @@ fn of_family(args: &Args) -> Outcome {
              as {name}_albedo"
         )));
     }
-    super::check_writable(&args.out)?;
+    let out = OutputFolder::open(&args.out)?;
     note_unfitted(&specs[0]);
     let made = make(&specs, true, |spec, [values, checks]| {
         let texture = spec.make(values)?;
@@ -244,7 +245,7 @@ fn of_family(args: &Args) -> Outcome {
         Ok(Made { texture, errors: rounded, before_rounding })
     })?;
     let files = texture::files(&formats, &made)?;
-    let done = super::write(&args.out, &files)?;
+    let done = super::write(&out, &files)?;
     for made in &made {
         for error in &made.errors {
             let (name, quantity) = (&made.texture.spec.name, error.quantity);
@@ -275,7 +276,7 @@ fn of_engine(layout: &Layout, args: &Args) -> Outcome {
     let gamma = args.gamma.unwrap_or(2.0);
     let size = args.size.as_ref().map_or(layout.size.to_vec(), |size| size.0.clone());
     texture::check(Shapes::One(gamma), 1.0, &size)?;
-    super::check_writable(&args.out)?;
+    let out = OutputFolder::open(&args.out)?;
     let size = [size[0], size[1]];
     if size != layout.size {
         let [rows, columns] = layout.size;
@@ -292,7 +293,7 @@ fn of_engine(layout: &Layout, args: &Args) -> Outcome {
         note_unfitted(&specs[0]);
     }
     let textures = make(&specs, false, |spec, [values, _]| Ok(spec.make(values)?))?;
-    let done = super::write(&args.out, &layout.files(&textures)?)?;
+    let done = super::write(&out, &layout.files(&textures)?)?;
     report("note", format!("{}: {}", layout.engine, layout.advice));
     Ok(done)
 }

@@ -4,11 +4,10 @@ mod lut;
 mod shape;
 
 use std::ffi::OsString;
-use std::path::Path;
 
 use clap::Subcommand;
 
-use microfacet_baker::store;
+use microfacet_baker::store::OutputFolder;
 use microfacet_export::{ExportFile, Language, Target};
 
 use super::{Done, Failure, Outcome, summarize};
@@ -81,18 +80,10 @@ pub(super) fn run(args: Args) -> Outcome {
     }
 }
 
-/// Makes a folder and tries whether files can be written there, before long work.
-fn check_writable(folder: &Path) -> Result<(), Failure> {
-    store::check_folder(folder).map_err(|why| Failure(format!("{}: {why}", folder.display())))
-}
-
 /// Writes files into a folder and names them.
-fn write(folder: &Path, files: &[ExportFile]) -> Outcome {
-    let contents = files.iter().map(|file| (&file.name[..], &file.contents[..]));
-    let written = store::replace_files(folder, contents)
-        .map_err(|(path, why)| Failure(format!("{}: {why}", path.display())))?;
-    for (path, file) in written.iter().zip(files) {
-        summarize(&format!("{} ({} bytes)\n", path.display(), file.contents.len()))?;
+fn write(folder: &OutputFolder, files: &[ExportFile]) -> Outcome {
+    for file in folder.write_files(files.iter().map(|file| (&file.name[..], &file.contents[..])))? {
+        summarize(&format!("{} ({} bytes)\n", file.path.display(), file.bytes))?;
     }
     Ok(Done::Ok)
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::UnknownArgumentValueParser;
 
 use microfacet_baker::bake::albedo::SIGMA_MAX;
+use microfacet_baker::store::OutputFolder;
 use microfacet_export::{Language, Shape, Storage, Target, files, texture_rows};
 
 use crate::cli::{Outcome, report, tables, values};
@@ -87,5 +88,5 @@ pub(super) fn run(target: Target, args: Args) -> Outcome {
         );
         report("note", note);
     }
-    super::write(&args.out, &files(target, &shapes))
+    super::write(&OutputFolder::open(&args.out)?, &files(target, &shapes))
 }

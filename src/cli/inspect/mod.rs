@@ -18,8 +18,7 @@ use super::{Done, Outcome, escape, print, print_json, tables};
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  microfacet-bake inspect\n  microfacet-bake inspect --details")]
 pub(super) struct Args {
-    /// A .safetensors set, a folder that holds one or its images, or a single table as .exr; the
-    /// embedded default if absent.
+    /// A set, .safetensors or .exr, or a folder that holds one; the embedded default if absent.
     tables: Option<PathBuf>,
     /// Show axes, certificates, conventions and the recipe as well.
     #[arg(long)]

@@ -9,7 +9,6 @@ use serde_json::json;
 use microfacet_baker::library::Library;
 use microfacet_baker::plan::{Cost, set_cost};
 use microfacet_baker::table_set::{Need, Target};
-use microfacet_tables::Index;
 
 use super::{Args, Report, Request};
 use crate::cli::words::{bytes, columns, count, seconds, shell};
@@ -47,7 +46,7 @@ pub(super) fn run(args: &Args, library: &Library, [reading, planning]: [Duration
         total.bytes += cost.bytes;
         materials += part.plan.materials.len();
         rows.push(vec![
-            Index::file_name(i + 1),
+            format!("set {}", i + 1),
             count(part.plan.materials.len(), "material"),
             bytes(cost.bytes),
             format!("about {}", seconds(cost.seconds)),

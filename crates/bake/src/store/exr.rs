@@ -1,12 +1,11 @@
-//! One table as an OpenEXR image: the last axis along x, the others stacked along y, table channels
-//! as image channels.
+//! Tables as an OpenEXR image of one part each: the last axis along x, the others stacked along y,
+//! table channels as image channels.
 //!
 //! A table interpolated by Hermite cubics has its values in the luminance channel `Y`, which every
-//! viewer shows, and its derivatives in `slope`. The string attribute `microfacet` holds the
-//! description of the set.
+//! viewer shows, and its derivatives in `slope`. The string attribute `microfacet` of the first
+//! part holds the description of the set.
 
-use std::io::{BufReader, Cursor, Read};
-use std::path::Path;
+use std::io::Cursor;
 
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
@@ -19,8 +18,7 @@ use microfacet_tables::{
     LoadError, Precision, Provenance, Table, describe, reassemble, seal_document,
 };
 
-use super::image::table_of;
-use crate::input::{self, MAX_TABLES, MAX_TEXT};
+use crate::input::MAX_TABLES;
 
 /// The attribute that holds the description.
 const ATTRIBUTE: &str = "microfacet";
@@ -28,23 +26,36 @@ const ATTRIBUTE: &str = "microfacet";
 /// How pixels are stored; nothing else is read.
 const ENCODING: Encoding = Encoding::SMALL_LOSSLESS;
 
+/// A part of an image.
+type Part = Layer<AnyChannels<FlatSamples>>;
+
 /// EXR channel name of a table's channel.
 fn channel_name(channel: &str) -> &str {
     if channel == "value" { "Y" } else { channel }
 }
 
-/// Encodes a table as an image, compressed without loss; half-precision tables give half channels,
+/// Encodes tables as an image, compressed without loss; half-precision tables give half channels,
 /// all others f32.
 ///
 /// # Errors
-/// A message if the table is invalid or cannot be written.
-pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec<u8>, String> {
-    let document =
-        describe(provenance, std::slice::from_ref(table)).map_err(|why| why.to_string())?;
-    let document = seal_document(&ascii(&document), &table.values)
+/// A message if there are no tables, or one is invalid or cannot be written.
+pub fn encode(provenance: &Provenance, tables: &[Table]) -> std::result::Result<Vec<u8>, String> {
+    let document = describe(provenance, tables).map_err(|why| why.to_string())?;
+    let values = tables.iter().flat_map(|table| &table.values);
+    let document = seal_document(&ascii(&document), values)
         .ok_or("the description has no place for a checksum")?;
-    let bytes = if table.precision == Precision::F16 { 2 } else { 4 };
-    check_samples(bytes * table.values.len() as u64)?;
+    let bytes = |table: &Table| {
+        let bytes = if table.precision == Precision::F16 { 2 } else { 4 };
+        bytes * table.values.len() as u64
+    };
+    check_samples(tables.iter().map(bytes).sum())?;
+    let mut parts: Vec<Part> = tables.iter().map(part_of).collect();
+    let first = parts.first_mut().ok_or("a set without tables has no image")?;
+    describe_with(&mut first.attributes, &document)?;
+    write(parts)
+}
+
+fn part_of(table: &Table) -> Part {
     let width = table.axes.last().map_or(1, microfacet_tables::Axis::len);
     let count = table.channels.len();
     let height = table.values.len() / count / width;
@@ -52,9 +63,8 @@ pub fn encode(provenance: &Provenance, table: &Table) -> std::result::Result<Vec
         let samples = table.values.iter().skip(i).step_by(count).copied();
         channel_of(channel_name(channel), flat(table.precision == Precision::F16, samples))
     });
-    let mut attributes = named(&table.name);
-    describe_with(&mut attributes, &document)?;
-    write_layer((width, height), attributes, AnyChannels::sort(channels.collect()))
+    let channels = AnyChannels::sort(channels.collect());
+    Layer::new((width, height), named(&table.name), ENCODING, channels)
 }
 
 /// Encodes channels in 32 bits, or in 16, as an image, compressed without loss. A description is
@@ -80,7 +90,7 @@ pub fn encode_channels(
     if let Some(text) = description {
         describe_with(&mut attributes, text)?;
     }
-    write_layer((size[0], size[1]), attributes, AnyChannels::sort(channels))
+    write(vec![Layer::new((size[0], size[1]), attributes, ENCODING, AnyChannels::sort(channels))])
 }
 
 fn flat(half: bool, samples: impl Iterator<Item = f32>) -> FlatSamples {
@@ -91,7 +101,7 @@ fn flat(half: bool, samples: impl Iterator<Item = f32>) -> FlatSamples {
     }
 }
 
-/// The attributes of a layer of this name: what follows a measured file may be named in any script.
+/// The attributes of a part of this name: what follows a measured file may be named in any script.
 fn named(name: &str) -> LayerAttributes {
     LayerAttributes::named(Text::new_or_panic(ascii(name)))
 }
@@ -113,14 +123,13 @@ fn channel_of(name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
     }
 }
 
-fn write_layer(
-    size: (usize, usize),
-    attributes: LayerAttributes,
-    channels: AnyChannels<FlatSamples>,
-) -> std::result::Result<Vec<u8>, String> {
-    let layer = Layer::new(size, attributes, ENCODING, channels);
+/// The bytes of an image; all parts share a display window, which is the largest of them.
+fn write(parts: Vec<Part>) -> std::result::Result<Vec<u8>, String> {
+    let largest = |side: fn(&Part) -> usize| parts.iter().map(side).max().unwrap_or_default();
+    let window = (largest(|part| part.size.width()), largest(|part| part.size.height()));
+    let attributes = ImageAttributes::new(IntegerBounds::from_dimensions(window));
     let mut bytes = Cursor::new(Vec::new());
-    Image::from_layer(layer)
+    Image::from_layers(attributes, parts)
         .write()
         .non_parallel()
         .to_buffered(&mut bytes)
@@ -128,7 +137,7 @@ fn write_layer(
     Ok(bytes.into_inner())
 }
 
-/// Reads an image back into a set of one table.
+/// Reads an image back into a set.
 ///
 /// # Errors
 /// [`LoadError`] for an image that is damaged or was not written by [`encode`].
@@ -139,44 +148,63 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
-        .first_valid_layer()
+        .all_layers()
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
         .map_err(|why| invalid(format!("OpenEXR: {why}")))?;
-    let layer = image.layer_data;
-    let document = document(&layer.attributes).ok_or_else(|| {
+    let parts = image.layer_data;
+    let document = parts.first().and_then(document).ok_or_else(|| {
         invalid(format!("an OpenEXR image, but without the `{ATTRIBUTE}` attribute of a table"))
     })?;
-    let channels = only_table(&document).map_err(invalid)?.channels;
-    // Every channel is one of the table: a list that repeats one could ask for any memory.
-    if channels.len() != layer.channel_data.list.len() {
-        return Err(invalid("the channels are not those of the description".into()));
+    let heads = heads(&document).map_err(invalid)?;
+    if heads.len() != parts.len() {
+        let [parts, tables] = [parts.len(), heads.len()];
+        return Err(invalid(format!("OpenEXR: {parts} parts of {tables} tables")));
     }
-    let mut columns = Vec::new();
-    for channel in &channels {
-        let name = channel_name(channel);
-        let found = layer.channel_data.list.iter().find(|stored| stored.name == *name);
-        let found = found.ok_or_else(|| invalid(format!("no channel `{name}`")))?;
-        columns.push(found.sample_data.values_as_f32());
-    }
-    let pixels = layer.size.area();
-    let mut values = Vec::with_capacity(pixels * columns.len());
-    for _ in 0..pixels {
-        values.extend(columns.iter_mut().filter_map(Iterator::next));
-    }
-    if seal_document(&document, &values).is_none_or(|sealed| sealed != document) {
+    let values: Vec<Vec<f32>> = heads
+        .iter()
+        .zip(&parts)
+        .map(|(head, part)| values(head, part))
+        .collect::<std::result::Result<_, _>>()
+        .map_err(invalid)?;
+    if seal_document(&document, values.iter().flatten()).is_none_or(|sealed| sealed != document) {
         return Err(invalid(
             "checksum does not match: the file is damaged or was edited; bake again".into(),
         ));
     }
-    let mut values = Some(values);
+    let mut values = values.into_iter();
     let (provenance, tables) =
-        reassemble(&document, |_| values.take().ok_or("more than one table".to_string()))?;
+        reassemble(&document, |_| values.next().ok_or("no part of that name".to_string()))?;
     Tables::from_tables(provenance, tables)
 }
 
-/// Largest image, in bytes of its samples; the values made of them take up to twice as much again.
+/// The values of a table, channels fastest.
+fn values(Head { name, channels }: &Head, part: &Part) -> std::result::Result<Vec<f32>, String> {
+    let of = part.attributes.layer_name.as_ref().map(Text::to_string).unwrap_or_default();
+    if of != ascii(name) {
+        return Err(format!("OpenEXR: a part named `{of}` in the place of the table `{name}`"));
+    }
+    // Every channel is one of the table: a list that repeats one could ask for any memory.
+    if channels.is_empty() || channels.len() != part.channel_data.list.len() {
+        return Err("the channels are not those of the description".into());
+    }
+    let mut columns = Vec::new();
+    for channel in channels {
+        let name = channel_name(channel);
+        let found = part.channel_data.list.iter().find(|stored| stored.name == *name);
+        let found = found.ok_or_else(|| format!("no channel `{name}`"))?;
+        columns.push(found.sample_data.values_as_f32());
+    }
+    let pixels = part.size.area();
+    let mut values = Vec::with_capacity(pixels * columns.len());
+    for _ in 0..pixels {
+        values.extend(columns.iter_mut().filter_map(Iterator::next));
+    }
+    Ok(values)
+}
+
+/// Most bytes of an image's samples; the values made of them take up to twice as much again.
 const MAX_SAMPLES: u64 = MAX_TABLES / 4;
 
 /// Refuses an image that would take too much memory to read.
@@ -194,16 +222,26 @@ fn check_samples(bytes: u64) -> std::result::Result<(), String> {
 /// alone could reach a thousand.
 const EXPANSION: usize = 64;
 
-/// Refuses what [`encode`] does not write, before any pixel is decoded.
+/// Refuses what [`encode`] does not write, before any pixel is decoded, and what declares more
+/// pixels than the file can hold, before the library allocates them.
 fn check_header(bytes: &[u8]) -> std::result::Result<(), String> {
     let meta =
         MetaData::read_from_buffered(bytes, false).map_err(|why| format!("OpenEXR: {why}"))?;
-    if let [header] = &meta.headers[..] {
+    let mut all = 0_usize;
+    for header in &meta.headers {
         check_encoding(header)?;
-        check_size(header, bytes.len())
-    } else {
-        Err(format!("OpenEXR: {} parts, and a table is an image of one", meta.headers.len()))
+        let Vec2(width, height) = header.layer_size;
+        let area = width.checked_mul(height);
+        let total = area.and_then(|area| area.checked_mul(header.channels.bytes_per_pixel));
+        let total = total.and_then(|total| all.checked_add(total));
+        all = total.filter(|total| *total / EXPANSION <= bytes.len()).ok_or_else(|| {
+            let file = bytes.len();
+            format!(
+                "OpenEXR: {width} x {height} pixels in a file of {file} bytes: the header is damaged"
+            )
+        })?;
     }
+    check_samples(all as u64)
 }
 
 /// No table needs decoders of other compressions, and on hostile blocks that of B44 overflows
@@ -228,24 +266,9 @@ fn check_encoding(header: &Header) -> std::result::Result<(), String> {
     ))
 }
 
-/// Refuses a header that declares more pixels than the file can hold, before the library allocates
-/// them.
-fn check_size(header: &Header, file: usize) -> std::result::Result<(), String> {
-    let Vec2(width, height) = header.layer_size;
-    let total = width
-        .checked_mul(height)
-        .and_then(|area| area.checked_mul(header.channels.bytes_per_pixel));
-    match total.filter(|total| *total <= EXPANSION * file) {
-        Some(total) => check_samples(total as u64),
-        None => Err(format!(
-            "OpenEXR: {width} x {height} pixels in a file of {file} bytes: the header is damaged"
-        )),
-    }
-}
-
-/// The description in an image's attributes.
-fn document(attributes: &LayerAttributes) -> Option<String> {
-    match attributes.other.get(&Text::new_or_panic(ATTRIBUTE)) {
+/// The description in a part's attributes.
+fn document(part: &Part) -> Option<String> {
+    match part.attributes.other.get(&Text::new_or_panic(ATTRIBUTE)) {
         Some(AttributeValue::Text(text)) => Some(text.to_string()),
         _ => None,
     }
@@ -258,40 +281,14 @@ struct Head {
     channels: Vec<String>,
 }
 
-/// The one table that a document describes.
-fn only_table(document: &str) -> std::result::Result<Head, String> {
+/// The tables that a document describes.
+fn heads(document: &str) -> std::result::Result<Vec<Head>, String> {
     #[derive(Deserialize)]
     struct Document {
         tables: Vec<Head>,
     }
-    let mut document: Document = serde_json::from_str(document).map_err(|why| why.to_string())?;
-    let table = document.tables.pop().filter(|_| document.tables.is_empty());
-    let table = table.ok_or("the description is not that of one table")?;
-    if table.channels.is_empty() { Err("no channels".into()) } else { Ok(table) }
-}
-
-/// Whether a file NAME.exr says that it holds the table NAME, which copies under other names and
-/// other images do not. Only the header is read.
-///
-/// # Errors
-/// A message if the file cannot be read, or is damaged.
-pub(super) fn is_table(path: &Path) -> std::result::Result<bool, String> {
-    let Some(name) = path.file_name().and_then(|name| table_of(name.to_str()?)) else {
-        return Ok(false);
-    };
-    if !std::fs::metadata(path).map_err(|why| why.to_string())?.is_file() {
-        return Ok(false);
-    }
-    let input = input::open(path, u64::MAX).map_err(|why| why.to_string())?;
-    let meta = match MetaData::read_from_buffered(BufReader::new(input).take(MAX_TEXT), false) {
-        // Images of other programs.
-        Err(Error::NotSupported(_)) => return Ok(false),
-        meta => meta.map_err(|why| {
-            format!("OpenEXR: {why}; if it is no table of the set, move it elsewhere")
-        })?,
-    };
-    let document = meta.headers.first().and_then(|header| document(&header.own_attributes));
-    Ok(document.is_some_and(|document| only_table(&document).is_ok_and(|table| table.name == name)))
+    let document: Document = serde_json::from_str(document).map_err(|why| why.to_string())?;
+    Ok(document.tables)
 }
 
 /// A description or a name in ASCII, since EXR text has no Unicode.

@@ -1,20 +1,17 @@
 //! Libraries too large for one set: numbered sets and their index.
 
-use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering::Relaxed;
+use std::path::Path;
 
 use microfacet_sampler::Tables;
-use microfacet_tables::{Index, IndexedSet, encode};
+use microfacet_tables::{Index, IndexedSet};
 
-use super::journal::{self, RECORD, Replacement};
-use super::{
-    Format, OutputFolder, StoreError, Written, allow, interrupt, invalid, read, read_file, replace,
-};
+use super::replace::Replacement;
+use super::{Format, OutputFolder, StoreError, Written, bytes_of, invalid};
 use crate::input::{self, MAX_TABLES};
 
-/// Writes any number of sets into a folder: one is `tables.safetensors`, several are
-/// `tables-00001.safetensors` and so on with an index, `tables.index.json`. All take their places
-/// together at the end; only one is in memory at a time.
+/// Writes any number of sets into a folder: one is `tables.safetensors`, several are files such as
+/// `tables-00001-9d2ad2a6.safetensors` with an index, `tables.index.json`, which takes its place
+/// last; only one set is in memory at a time.
 #[derive(Debug)]
 pub struct SetWriter {
     folder: OutputFolder,
@@ -27,8 +24,8 @@ pub struct SetWriter {
 impl OutputFolder {
     /// Begins to write sets.
     pub fn sets(self) -> SetWriter {
-        let replacement = Replacement::new(self.path());
-        SetWriter { folder: self, first: None, replacement, index: Index { sets: Vec::new() } }
+        let index = Index { sets: Vec::new() };
+        SetWriter { folder: self, first: None, replacement: Replacement::default(), index }
     }
 }
 
@@ -51,64 +48,49 @@ impl SetWriter {
     }
 
     fn number(&mut self, set: &Tables) -> Result<(), StoreError> {
-        let file = Index::file_name(self.index.sets.len() + 1);
-        let path = || self.folder.path().join(&file);
-        let bytes =
-            encode(set.provenance(), set.tables()).map_err(|why| StoreError::Load(path(), why))?;
-        let allowed = allow(bytes.len() as u64, MAX_TABLES);
-        allowed.map_err(|why| StoreError::TooLarge(path(), why))?;
-        self.replacement
-            .add(&file, &bytes)
-            .map_err(|(name, why)| StoreError::Io(self.folder.path().join(name), why))?;
+        let number = self.index.sets.len() + 1;
+        let path = self.folder.path().join(format!("numbered set {number}"));
+        let bytes = bytes_of(set, Format::Safetensors, &path)?;
         let names = set.provenance().materials.iter().map(|entry| entry.name.clone());
-        let (bytes, materials) = (bytes.len() as u64, names.collect());
-        self.index.sets.push(IndexedSet { file, bytes, materials });
+        let entry = IndexedSet::new(number, &bytes, names.collect());
+        let path = self.folder.path().join(&entry.file);
+        let added = self.replacement.add(&path, |out| out.write_all(&bytes));
+        added.map_err(|why| StoreError::Io(path, why))?;
+        self.index.sets.push(entry);
         Ok(())
     }
 
-    /// Puts all sets in the place of what the folder held.
+    /// Puts all sets in the place of what the folder held: the index in one step, after the files
+    /// that it lists.
     ///
     /// # Errors
     /// As [`OutputFolder::write`]; also if two sets have materials of the same name.
     pub fn finish(self) -> Result<Vec<Written>, StoreError> {
         let Self { folder, first, mut replacement, index } = self;
         if let Some(set) = first {
-            return folder.write(&set, &[Format::Safetensors]);
+            return folder.write(&set, Format::Safetensors);
         }
         if index.sets.is_empty() {
             let why = invalid("there is no set to write: add one before".into());
             return Err(StoreError::Io(folder.path().into(), why));
         }
-        let failed = |(name, why): (String, _)| StoreError::Io(folder.path().join(name), why);
-        let json = index.to_json();
-        Index::from_json(&json)
-            .map_err(|why| StoreError::Load(folder.path().join(Index::FILE), why))?;
-        replacement.add(Index::FILE, json.as_bytes()).map_err(failed)?;
-        let mut names: Vec<String> = index.sets.iter().map(|set| set.file.clone()).collect();
-        names.push(Index::FILE.into());
-        let record: String = names.iter().map(|name| format!("{name}\n")).collect();
-        replacement.add(RECORD, record.as_bytes()).map_err(failed)?;
-        names.push(RECORD.into());
-        let mut stale = folder.old()?;
-        stale.retain(|old| !names.contains(old));
-        let _writing = interrupt::writing();
-        replacement.commit(&stale).map_err(failed)?;
-        folder.written().store(true, Relaxed);
-        let written = |file: &str, bytes| Written { path: folder.path().join(file), bytes };
-        let sets = index.sets.iter().map(|set| written(&set.file, set.bytes as usize));
-        Ok(sets.chain([written(Index::FILE, json.len())]).collect())
+        let (path, json) = (folder.path().join(Index::FILE), index.to_json());
+        Index::from_json(&json).map_err(|why| StoreError::Load(path.clone(), why))?;
+        let added = replacement.add(&path, |out| out.write_all(json.as_bytes()));
+        added.map_err(|why| StoreError::Io(path.clone(), why))?;
+        folder.exchange(replacement)?;
+        let written = |set: &IndexedSet| Written {
+            path: folder.path().join(&set.file),
+            bytes: set.bytes as usize,
+        };
+        let sets = index.sets.iter().map(written);
+        Ok(sets.chain([Written { path, bytes: json.len() }]).collect())
     }
 }
 
-/// The index of numbered sets at a path, if it is one or a folder that holds one.
-pub(super) fn index_at(path: &Path) -> Result<Option<Index>, StoreError> {
-    let file = if path.is_dir() {
-        path.join(Index::FILE)
-    } else if path.file_name().is_some_and(|name| name == Index::FILE) {
-        path.to_path_buf()
-    } else {
-        return Ok(None);
-    };
+/// The index in a folder, if it holds one.
+pub(super) fn index_at(folder: &Path) -> Result<Option<Index>, StoreError> {
+    let file = folder.join(Index::FILE);
     if std::fs::symlink_metadata(&file).is_err() {
         return Ok(None);
     }
@@ -117,18 +99,9 @@ pub(super) fn index_at(path: &Path) -> Result<Option<Index>, StoreError> {
     Index::from_json(&text).map(Some).map_err(|why| StoreError::Load(file, why))
 }
 
-/// The index of the numbered sets at a path, a folder or the index itself; `None` for one set.
-///
-/// # Errors
-/// [`StoreError`] if the index cannot be read.
-pub fn index(path: &Path) -> Result<Option<Index>, StoreError> {
-    index_at(path)
-}
-
-/// All numbered sets as one, if that is no larger than what is read of one.
+/// All sets of a folder's index as one, if that is no larger than what is read of one.
 pub(super) fn read_all(folder: &Path, index: &Index) -> Result<Tables, StoreError> {
-    let bytes: u64 = index.sets.iter().map(|set| set.bytes).sum();
-    if bytes > MAX_TABLES {
+    if index.bytes() > MAX_TABLES {
         let first = folder.join(index.sets.first().map_or(Index::FILE, |set| &set.file));
         return Err(StoreError::Io(
             folder.into(),
@@ -138,54 +111,49 @@ pub(super) fn read_all(folder: &Path, index: &Index) -> Result<Tables, StoreErro
                  (in Python `Tables(path, materials=[...])`, in Rust `store::read_materials`)",
                 index.sets.len(),
                 index.materials(),
-                bytes >> 20,
+                index.bytes() >> 20,
                 MAX_TABLES >> 20,
                 first.display()
             )),
         ));
     }
-    let sets = index.sets.iter().map(|set| read_file(&folder.join(&set.file)));
+    let sets = index.sets.iter().map(|set| read_listed(folder, set));
     joined(folder, sets.collect::<Result<Vec<Tables>, _>>()?)
+}
+
+/// Some materials of a folder's index; one file is in memory at a time.
+pub(super) fn read_some(
+    folder: &Path,
+    index: &Index,
+    names: &[&str],
+) -> Result<Tables, StoreError> {
+    let found = index.files_of(names);
+    let is_found = |name: &&str| found.iter().any(|(_, held)| held.contains(name));
+    if let Some(name) = names.iter().find(|name| !is_found(name)) {
+        let why = format!(
+            "none of the {} materials is named \"{name}\"; {} lists them",
+            index.materials(),
+            Index::FILE
+        );
+        return Err(StoreError::NoMaterial(folder.into(), why));
+    }
+    let part = |(set, held): (&IndexedSet, Vec<&str>)| {
+        let set = read_listed(folder, set)?;
+        set.only(&held).map_err(|why| StoreError::NoMaterial(folder.into(), why.to_string()))
+    };
+    let sets: Result<Vec<Tables>, StoreError> = found.into_iter().map(part).collect();
+    joined(folder, sets?)
+}
+
+/// A numbered set, if it is the one that the index lists.
+fn read_listed(folder: &Path, listed: &IndexedSet) -> Result<Tables, StoreError> {
+    let path = folder.join(&listed.file);
+    let bytes = input::read(&path, MAX_TABLES).map_err(|why| StoreError::Io(path.clone(), why))?;
+    let set = listed.check(&bytes).and_then(|()| Tables::from_bytes(&bytes));
+    let set = set.and_then(|set| listed.check_materials(set.provenance()).map(|()| set));
+    set.map_err(|why| StoreError::Load(path, why))
 }
 
 fn joined(folder: &Path, sets: Vec<Tables>) -> Result<Tables, StoreError> {
     Tables::joined(sets).map_err(|why| StoreError::Load(folder.into(), why))
-}
-
-/// Reads some materials of a set, or of numbered sets of any size; one file is in memory at a time.
-///
-/// # Errors
-/// [`StoreError`] naming the path and what is wrong, such as a material that is not there.
-pub fn read_materials(path: &Path, names: &[&str]) -> Result<Tables, StoreError> {
-    let folder = if path.is_dir() { path } else { replace::folder_of(path) };
-    let missing = |why: String| StoreError::NoMaterial(path.into(), why);
-    let only =
-        |set: Tables, names: &[&str]| set.only(names).map_err(|why| missing(why.to_string()));
-    loop {
-        if journal::is_interrupted(folder) {
-            OutputFolder::complete(folder)?;
-        }
-        let before = journal::record_stamp(folder);
-        let Some(index) = index_at(path)? else {
-            return only(read(path)?, names);
-        };
-        let found = index.files_of(names);
-        let is_found = |name: &&str| found.iter().any(|(_, held)| held.contains(name));
-        if let Some(name) = names.iter().find(|name| !is_found(name)) {
-            return Err(missing(format!(
-                "none of the {} materials is named \"{name}\"; {} lists them",
-                index.materials(),
-                Index::FILE
-            )));
-        }
-        let part = |(set, held): (&IndexedSet, Vec<&str>)| {
-            let path: PathBuf = folder.join(&set.file);
-            only(read_file(&path)?, &held)
-        };
-        let sets: Result<Vec<Tables>, StoreError> = found.into_iter().map(part).collect();
-        // If a bake replaced the sets meanwhile, the index was not theirs.
-        if !journal::is_interrupted(folder) && journal::record_stamp(folder) == before {
-            return joined(folder, sets?);
-        }
-    }
 }

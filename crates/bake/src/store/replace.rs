@@ -3,6 +3,7 @@
 //! A path is written to as a shell's `>` would: links are followed, modes kept, devices written
 //! through. What cannot be replaced as a whole is refused.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, Metadata, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -13,13 +14,12 @@ use tempfile::NamedTempFile;
 use super::interrupt::{self, Leftover};
 use crate::input;
 
-/// Prefix and suffix of the names of incomplete files; while no bake locks the folder, such a file
-/// is a leftover.
-pub(super) const PREFIX: &str = ".microfacet-bake-";
-pub(super) const SUFFIX: &str = ".partial";
+/// Prefix and suffix of the names of incomplete files.
+const PREFIX: &str = ".microfacet-bake-";
+const SUFFIX: &str = ".partial";
 
-/// Age at which an incomplete file is a leftover in a folder that nobody locks: all of its bytes
-/// are in memory when it is begun, so that it lives for seconds.
+/// Age at which an incomplete file is a leftover: it lives for seconds, since all of its bytes are
+/// in memory when it is begun, and of numbered sets until all are baked.
 const ABANDONED: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// Most links that are followed one after the other, as by Linux.
@@ -48,37 +48,10 @@ pub fn replace_with(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let pending = Pending::new(destination(path)?, write)?;
+    let mut replacement = Replacement::default();
+    replacement.add(path, write)?;
     let _writing = interrupt::writing();
-    pending.commit()
-}
-
-/// Writes several files into a folder, which is made if it is not there, each as [`replace`] does.
-/// All are completed beside the old ones before the first takes its place.
-///
-/// # Errors
-/// The path and the operating system's error. All old files are then untouched, unless the disk
-/// itself failed at the very end, when some may be replaced.
-pub fn replace_files<'a>(
-    folder: &Path,
-    files: impl IntoIterator<Item = (&'a str, &'a [u8])>,
-) -> Result<Vec<PathBuf>, (PathBuf, io::Error)> {
-    make_folder(folder).map_err(|why| (folder.to_path_buf(), why))?;
-    let mut complete = Vec::new();
-    for (name, bytes) in files {
-        let path = folder.join(name);
-        let pending = destination(&path)
-            .and_then(|to| Pending::new(to, |out| out.write_all(bytes)))
-            .map_err(|why| (path.clone(), why))?;
-        complete.push((path, pending));
-    }
-    let _writing = interrupt::writing();
-    let mut written = Vec::new();
-    for (path, pending) in complete {
-        pending.commit().map_err(|why| (path.clone(), why))?;
-        written.push(path);
-    }
-    Ok(written)
+    replacement.commit().map(|_| ()).map_err(|(_, why)| why)
 }
 
 /// Checks that a file could be written as by [`replace`], and writes nothing.
@@ -86,21 +59,11 @@ pub fn replace_files<'a>(
 /// # Errors
 /// As [`replace`].
 pub fn check_file(path: &Path) -> io::Result<()> {
-    Pending::new(destination(path)?, |_| Ok(())).map(|_| ())
-}
-
-/// Makes a folder unless it is there, and checks that files can be made in it.
-///
-/// # Errors
-/// The operating system's error, or one that says what the path is instead of a folder.
-pub fn check_folder(folder: &Path) -> io::Result<()> {
-    make_folder(folder)?;
-    stage(folder, |_| Ok(()), None).map(|_| ())
-}
-
-/// [`replace`] as part of a write that is marked already.
-pub(super) fn replace_unguarded(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    Pending::new(destination(path)?, |out| out.write_all(bytes))?.commit()
+    let to = destination(path)?;
+    if to.is_device() {
+        return OpenOptions::new().write(true).open(&to.path).map(|_| ());
+    }
+    stage(folder_of(&to.path), |_| Ok(()), to.old.as_ref()).map(|_| ())
 }
 
 /// The folder that a path is in.
@@ -109,19 +72,19 @@ pub(super) fn folder_of(path: &Path) -> &Path {
 }
 
 /// Where a path leads.
-pub(super) struct Destination {
-    pub(super) path: PathBuf,
+struct Destination {
+    path: PathBuf,
     /// The regular file or device there.
-    pub(super) old: Option<Metadata>,
+    old: Option<Metadata>,
 }
 
 impl Destination {
-    pub(super) fn is_device(&self) -> bool {
+    fn is_device(&self) -> bool {
         self.old.as_ref().is_some_and(|old| !old.is_file())
     }
 }
 
-pub(super) fn refused<T>(kind: io::ErrorKind, why: impl Into<String>) -> io::Result<T> {
+fn refused<T>(kind: io::ErrorKind, why: impl Into<String>) -> io::Result<T> {
     Err(io::Error::new(kind, why.into()))
 }
 
@@ -137,7 +100,7 @@ fn is_char_device(_: fs::FileType) -> bool {
 
 /// Follows symbolic links to what a path names, or would name if it existed, and checks that it can
 /// be written to.
-pub(super) fn destination(path: &Path) -> io::Result<Destination> {
+fn destination(path: &Path) -> io::Result<Destination> {
     // Descriptors such as /dev/stdout look like links, but lead where no path does.
     if let Ok(old) = fs::metadata(path)
         && !old.is_file()
@@ -188,37 +151,68 @@ pub(super) fn check_writable(path: &Path) -> io::Result<()> {
 
 /// A temporary file that an interrupt removes.
 #[derive(Debug)]
-pub(super) struct Staged {
-    pub(super) file: NamedTempFile,
+struct Staged {
+    file: NamedTempFile,
     _leftover: Leftover,
 }
 
-/// A complete new file that has yet to take its place; none for a device, which has its bytes.
-#[derive(Debug)]
-pub(super) struct Pending(Option<(Staged, PathBuf)>);
+/// New files, complete under temporary names, that take their places one right after the other.
+#[derive(Debug, Default)]
+pub(super) struct Replacement {
+    /// Where they go; devices have their bytes already.
+    all: Vec<(PathBuf, Option<(Staged, PathBuf)>)>,
+    /// Where they lead, to the paths that were named.
+    places: BTreeMap<PathBuf, PathBuf>,
+}
 
-impl Pending {
-    pub(super) fn new(
-        to: Destination,
+impl Replacement {
+    /// Completes a file under a temporary name.
+    pub(super) fn add(
+        &mut self,
+        path: &Path,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> io::Result<Self> {
-        if to.is_device() {
-            write(&mut OpenOptions::new().write(true).open(&to.path)?)?;
-            return Ok(Self(None));
+    ) -> io::Result<()> {
+        let to = destination(path)?;
+        if let (Ok(at), Some(file)) = (fs::canonicalize(folder_of(&to.path)), to.path.file_name())
+            && let Some(other) = self.places.insert(at.join(file), path.into())
+            && !to.is_device()
+        {
+            let why =
+                format!("leads to the same file as {}; remove one of the links", other.display());
+            return refused(io::ErrorKind::InvalidInput, why);
         }
-        Ok(Self(Some((stage(folder_of(&to.path), write, to.old.as_ref())?, to.path))))
+        let staged = if to.is_device() {
+            write(&mut OpenOptions::new().write(true).open(&to.path)?)?;
+            None
+        } else {
+            Some((stage(folder_of(&to.path), write, to.old.as_ref())?, to.path))
+        };
+        self.all.push((path.into(), staged));
+        Ok(())
     }
 
-    pub(super) fn commit(self) -> io::Result<()> {
-        let Some((staged, path)) = self.0 else { return Ok(()) };
-        staged.file.persist(&path).map_err(|error| error.error)?;
-        sync(folder_of(&path))
+    /// Puts all in their places, and returns their paths.
+    pub(super) fn commit(self) -> Result<Vec<PathBuf>, (PathBuf, io::Error)> {
+        let (mut written, mut folders) = (Vec::new(), BTreeSet::new());
+        for (path, staged) in self.all {
+            if let Some((staged, place)) = staged {
+                if let Err(why) = staged.file.persist(&place) {
+                    return Err((path, why.error));
+                }
+                folders.insert(folder_of(&place).to_path_buf());
+            }
+            written.push(path);
+        }
+        for folder in folders {
+            sync(&folder).map_err(|why| (folder, why))?;
+        }
+        Ok(written)
     }
 }
 
 /// A complete temporary file in `folder`, synchronised to disk, with the rights of an old file, or
 /// those that any new file gets.
-pub(super) fn stage(
+fn stage(
     folder: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     old: Option<&Metadata>,
@@ -256,7 +250,7 @@ pub(super) fn stage(
 }
 
 /// Makes renames in a folder durable, where the system can do that for this folder.
-pub(super) fn sync(folder: &Path) -> io::Result<()> {
+fn sync(folder: &Path) -> io::Result<()> {
     let Ok(folder) = fs::File::open(folder) else { return Ok(()) };
     match folder.sync_all() {
         // Some network file systems have no such thing.
@@ -270,34 +264,23 @@ pub(super) fn sync(folder: &Path) -> io::Result<()> {
     }
 }
 
-/// Removes incomplete files that nobody has touched for a day, from a folder that nobody locks and
-/// that holds no set: in one with a journal they may be the new set.
+/// Removes incomplete files that nobody has touched for a day.
 pub(crate) fn remove_abandoned(folder: &Path) {
     let is_abandoned = |file: &Metadata| {
         file.modified().is_ok_and(|at| at.elapsed().is_ok_and(|age| age > ABANDONED))
     };
-    for path in partial_files(folder).unwrap_or_default() {
-        if fs::symlink_metadata(&path).is_ok_and(|file| is_abandoned(&file)) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_partial = name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+        if is_partial
+            && fs::symlink_metadata(entry.path())
+                .is_ok_and(|file| file.is_file() && is_abandoned(&file))
+        {
             // Tidying up is no reason to fail.
-            let _ = fs::remove_file(path);
+            let _ = fs::remove_file(entry.path());
         }
     }
-}
-
-pub(super) fn is_partial(name: &str) -> bool {
-    name.starts_with(PREFIX) && name.ends_with(SUFFIX) && !name.contains(['/', '\\'])
-}
-
-/// The incomplete files in a folder.
-pub(super) fn partial_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder)? {
-        let entry = entry?;
-        if is_partial(&entry.file_name().to_string_lossy()) && entry.file_type()?.is_file() {
-            files.push(entry.path());
-        }
-    }
-    Ok(files)
 }
 
 /// Makes a folder, and those it is in, unless it is there.
@@ -315,22 +298,6 @@ pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
     refused(io::ErrorKind::NotADirectory, why)
 }
 
-/// Modes of files, for tests here and of the journal.
-#[cfg(all(test, unix))]
-pub(super) mod modes {
-    use std::os::unix::fs::{MetadataExt, PermissionsExt};
-
-    use super::*;
-
-    pub(in crate::store) fn mode(path: &Path) -> u32 {
-        fs::metadata(path).unwrap().mode() & 0o777
-    }
-
-    pub(in crate::store) fn set_mode(path: &Path, mode: u32) {
-        fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -344,19 +311,39 @@ mod tests {
             let file = fs::File::create(path(name)).unwrap();
             file.set_modified(std::time::SystemTime::now() - days * ABANDONED).unwrap();
         }
-        // In other folders they may be what a journal lists.
-        replace(&path("new"), b"new").unwrap();
-        assert!(path(&old).exists());
         remove_abandoned(folder.path());
         assert!(!path(&old).exists() && path(&young).exists() && path("other.partial").exists());
     }
 
     #[cfg(unix)]
     mod unix {
-        use std::os::unix::fs::{MetadataExt, symlink};
+        use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 
         use super::*;
-        use crate::store::replace::modes::{mode, set_mode};
+
+        fn mode(path: &Path) -> u32 {
+            fs::metadata(path).unwrap().mode() & 0o777
+        }
+
+        fn set_mode(path: &Path, mode: u32) {
+            fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
+        }
+
+        /// Whatever is written last would be in both.
+        #[test]
+        fn two_links_to_one_file_are_refused() {
+            let folder = tempfile::tempdir().unwrap();
+            let path = |name: &str| folder.path().join(name);
+            fs::write(path("one"), "old").unwrap();
+            symlink("one", path("link")).unwrap();
+            let mut files = Replacement::default();
+            files.add(&path("one"), |out| out.write_all(b"new")).unwrap();
+            let why = files.add(&path("link"), |_| Ok(())).unwrap_err().to_string();
+            assert!(why.contains("leads to the same file as"), "{why}");
+            drop(files);
+            assert_eq!(fs::read(path("one")).unwrap(), b"old");
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+        }
 
         #[test]
         fn links_are_followed_and_stay() {

@@ -29,6 +29,8 @@ struct Description<'a> {
     width: usize,
     height: usize,
     shapes: BTreeMap<String, Entry>,
+    /// The CRC-32 (ISO-HDLC) of all files that were written with this one.
+    crc32: BTreeMap<String, String>,
 }
 
 /// One shape in it; places and lengths are in pairs.
@@ -69,8 +71,9 @@ struct Errors {
     average: f64,
 }
 
-/// Data and description of all shapes.
-pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
+/// Adds data and description of all shapes to the files of functions; the description, which knows
+/// the others by their checksums, is the last to take its place.
+pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
     let (mut pairs, mut entries) = (Vec::new(), BTreeMap::new());
     for shape in shapes {
         let entry = append(shape, |_| true, &mut pairs);
@@ -79,28 +82,30 @@ pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     let height = pairs.len().div_ceil(WIDTH);
     pairs.resize(WIDTH * height, [0.0; 2]);
     let first = shapes.first().expect("shapes");
+    let bytes = pairs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let planes = [0, 1].map(|i| pairs.iter().map(|pair| pair[i]).collect());
+    let image =
+        open_exr(NAME, [WIDTH, height], planes.into(), false, None).expect("finite numbers");
+    let [file, name] = ["bin", "exr"].map(|end| format!("{NAME}.{end}"));
+    files.push(ExportFile { name: file.clone(), contents: bytes });
+    files.push(ExportFile { name: name.clone(), contents: image });
+    let crc32 =
+        |file: &ExportFile| (file.name.clone(), format!("{:08x}", crc32fast::hash(&file.contents)));
     let description = Description {
         layout: LAYOUT,
         generator: &first.generator,
         numerics: first.numerics,
-        file: format!("{NAME}.bin"),
-        image: format!("{NAME}.exr"),
+        file,
+        image: name,
         format: "rg32f",
         byte_order: "little",
         width: WIDTH,
         height,
         shapes: entries,
+        crc32: files.iter().map(crc32).collect(),
     };
     let json = serde_json::to_string_pretty(&description).expect("names and finite numbers");
-    let bytes = pairs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
-    let planes = [0, 1].map(|i| pairs.iter().map(|pair| pair[i]).collect());
-    let image =
-        open_exr(NAME, [WIDTH, height], planes.into(), false, None).expect("finite numbers");
-    vec![
-        ExportFile { name: description.file, contents: bytes },
-        ExportFile { name: format!("{NAME}.json"), contents: (json + "\n").into() },
-        ExportFile { name: description.image, contents: image },
-    ]
+    files.push(ExportFile { name: format!("{NAME}.json"), contents: (json + "\n").into() });
 }
 
 /// Rows of the texture of shapes: more than 2048 are not promised by WebGL 2.

@@ -54,7 +54,7 @@ pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> V
             ExportFile { name: sample_name, contents: sample.into() },
         ]
     };
-    files.extend(data::files(shapes));
+    data::append_files(shapes, &mut files);
     files
 }
 

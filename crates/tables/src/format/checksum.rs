@@ -57,9 +57,13 @@ pub(super) fn is_sealed(file: &[u8]) -> Option<bool> {
 /// table order.
 ///
 /// It is what an image carries. `None` if there is no place for the checksum.
-pub fn seal_document(document: &str, values: &[f32]) -> Option<String> {
+pub fn seal_document<'a>(
+    document: &str,
+    values: impl IntoIterator<Item = &'a f32>,
+) -> Option<String> {
     let at = position(document.as_bytes(), IN_DOCUMENT)?;
-    let digits = digits(document.as_bytes(), at, values.iter().map(|x| x.to_le_bytes()));
+    let values = values.into_iter().map(|x| x.to_le_bytes());
+    let digits = digits(document.as_bytes(), at, values);
     let digits = core::str::from_utf8(&digits).expect("hexadecimal digits are ASCII");
     // In a damaged document the place may be in the middle of a character.
     Some(format!("{}{digits}{}", document.get(..at)?, document.get(at + DIGITS..)?))

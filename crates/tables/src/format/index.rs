@@ -7,12 +7,13 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
+use super::container::Provenance;
 use crate::error::LoadError;
 
 /// The `format` entry of the document.
 const FORMAT: &str = "microfacet-tables index";
 /// Version of the document.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Which of the numbered sets in a folder holds which materials; `docs/format.md` has an example.
 ///
@@ -33,8 +34,57 @@ pub struct IndexedSet {
     pub file: String,
     /// The size of the file.
     pub bytes: u64,
+    /// The CRC-32 (ISO-HDLC) of the file, as eight hexadecimal digits.
+    pub crc32: String,
     /// The names of its materials; no other set has them.
     pub materials: Vec<String>,
+}
+
+impl IndexedSet {
+    /// The entry of the numbered set of these bytes, the first being 1, with these materials.
+    pub fn new(number: usize, bytes: &[u8], materials: Vec<String>) -> Self {
+        let crc32 = format!("{:08x}", crc32fast::hash(bytes));
+        let file = Index::file_name(number, &crc32);
+        Self { file, bytes: bytes.len() as u64, crc32, materials }
+    }
+
+    /// Checks that these bytes are the set that was listed.
+    ///
+    /// # Errors
+    /// [`LoadError::Invalid`] if their size or checksum is another.
+    pub fn check(&self, bytes: &[u8]) -> Result<(), LoadError> {
+        let (size, crc32) = (bytes.len() as u64, format!("{:08x}", crc32fast::hash(bytes)));
+        if (size, &crc32) == (self.bytes, &self.crc32) {
+            return Ok(());
+        }
+        Err(LoadError::Invalid(format!(
+            "{size} bytes of CRC-32 {crc32}, and {} lists {} of {}: it is of another library, or \
+             damaged; copy all files of the folder again, or bake again",
+            Index::FILE,
+            self.bytes,
+            self.crc32
+        )))
+    }
+
+    /// Checks that a set has the listed materials, and no others.
+    ///
+    /// # Errors
+    /// [`LoadError::Invalid`] naming the first that differs.
+    pub fn check_materials(&self, provenance: &Provenance) -> Result<(), LoadError> {
+        let held: Vec<&String> = provenance.materials.iter().map(|entry| &entry.name).collect();
+        let differs = |i: &usize| held.get(*i).copied() != self.materials.get(*i);
+        let Some(i) = (0..held.len().max(self.materials.len())).find(differs) else {
+            return Ok(());
+        };
+        let of = |name: Option<&String>| name.map_or("none".into(), |name| format!("\"{name}\""));
+        Err(LoadError::Invalid(format!(
+            "its material {} is {}, and {} lists {}; bake again",
+            i + 1,
+            of(held.get(i).copied()),
+            Index::FILE,
+            of(self.materials.get(i))
+        )))
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -48,24 +98,32 @@ impl Index {
     /// The file in a folder that holds the index of the numbered sets there.
     pub const FILE: &str = "tables.index.json";
 
-    /// The name of a numbered set, the first being 1: `tables-00001.safetensors`.
-    pub fn file_name(number: usize) -> String {
-        format!("tables-{number:05}.safetensors")
+    /// The name of a numbered set, the first being 1, with a checksum:
+    /// `tables-00001-9d2ad2a6.safetensors`. Two sets never have the same name, so that a new
+    /// library stands beside the old one until its index takes the place of that of the old.
+    fn file_name(number: usize, crc32: &str) -> String {
+        format!("tables-{number:05}-{crc32}.safetensors")
     }
 
-    /// Whether [`file_name`](Self::file_name) gives this name for some number.
-    pub fn is_file_name(name: &str) -> bool {
-        let number =
+    /// Whether a numbered set can have this name.
+    fn is_file_name(name: &str) -> bool {
+        let middle =
             name.strip_prefix("tables-").and_then(|rest| rest.strip_suffix(".safetensors"));
-        let number = number.filter(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()));
-        number.and_then(|n| n.parse().ok()).is_some_and(|n| n > 0 && name == Self::file_name(n))
+        let Some((number, crc32)) = middle.and_then(|middle| middle.split_once('-')) else {
+            return false;
+        };
+        let hexadecimal = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+        number.len() >= 5
+            && number.bytes().all(|byte| byte.is_ascii_digit())
+            && crc32.len() == 8
+            && crc32.bytes().all(hexadecimal)
     }
 
     /// Reads the document.
     ///
     /// # Errors
     /// [`LoadError`] if it is no index, of another version, names a file that is not that of a
-    /// numbered set, or a material twice.
+    /// numbered set, a file or a material twice, or sets of more bytes than can be counted.
     pub fn from_json(json: &str) -> Result<Self, LoadError> {
         let invalid = |why: String| LoadError::Invalid(format!("index: {why}"));
         let Document { format, version, sets } =
@@ -88,7 +146,11 @@ impl Index {
                 return Err(invalid(format!("the material \"{name}\" is in two sets")));
             }
         }
-        Ok(Self { sets })
+        let index = Self { sets };
+        match index.sets.iter().try_fold(0_u64, |sum, set| sum.checked_add(set.bytes)) {
+            Some(_) => Ok(index),
+            None => Err(invalid("the sets have more bytes than can be counted".into())),
+        }
     }
 
     /// The document.
@@ -96,6 +158,11 @@ impl Index {
         let document =
             Document { format: FORMAT.into(), version: VERSION, sets: self.sets.clone() };
         serde_json::to_string_pretty(&document).expect("texts and numbers are JSON") + "\n"
+    }
+
+    /// Bytes of all sets.
+    pub fn bytes(&self) -> u64 {
+        self.sets.iter().map(|set| set.bytes).sum()
     }
 
     /// Number of the materials in all sets.
@@ -122,10 +189,9 @@ mod tests {
     use super::*;
 
     fn index() -> Index {
-        let set = |number, names: &[&str]| IndexedSet {
-            file: Index::file_name(number),
-            bytes: 7,
-            materials: names.iter().map(|&name| name.into()).collect(),
+        let set = |number, names: &[&str]| {
+            let names = names.iter().map(|&name| name.into()).collect();
+            IndexedSet::new(number, format!("set {number}").as_bytes(), names)
         };
         Index { sets: vec![set(1, &["gold", "glass"]), set(2, &["brass"])] }
     }
@@ -134,10 +200,10 @@ mod tests {
     fn an_index_reads_back_and_finds_materials() {
         let index = index();
         assert_eq!(Index::from_json(&index.to_json()).unwrap(), index);
-        assert_eq!(index.materials(), 3);
+        assert_eq!((index.materials(), index.bytes()), (3, 10));
         let found = index.files_of(&["brass", "none", "glass"]);
         let found: Vec<_> = found.into_iter().map(|(set, names)| (&*set.file, names)).collect();
-        let [one, two] = ["tables-00001.safetensors", "tables-00002.safetensors"];
+        let [one, two] = ["tables-00001-e30a8e27.safetensors", "tables-00002-7a03df9d.safetensors"];
         assert_eq!(found, [(one, vec!["glass"]), (two, vec!["brass"])]);
         assert!(index.files_of(&[]).is_empty());
     }
@@ -146,18 +212,49 @@ mod tests {
     fn what_is_no_index_is_refused_by_name() {
         let json = index().to_json();
         let refused = |from: &str, to: &str, what: &str| {
+            assert!(json.contains(from), "{from} in {json}");
             let why = Index::from_json(&json.replacen(from, to, 1)).unwrap_err().to_string();
             assert!(why.contains(what), "{why}");
         };
+        let [one, two] = ["tables-00001-e30a8e27", "tables-00002-7a03df9d"];
         refused("brass", "gold", "\"gold\" is in two sets");
-        refused("tables-00002", "../tables-00002", "no name of a numbered set");
-        refused("tables-00002", "tables-00001", "no name of a numbered set");
-        refused("\"version\": 1", "\"version\": 2", "version 2");
+        refused(two, &format!("../{two}"), "no name of a numbered set");
+        refused(two, one, "no name of a numbered set");
+        refused(two, "tables-00002", "no name of a numbered set");
+        refused(two, "tables-2-7a03df9d", "no name of a numbered set");
+        refused(two, "tables-00002-7A03DF9D", "no name of a numbered set");
+        refused("\"bytes\": 5", "\"bytes\": 18446744073709551615", "more bytes than can be");
+        refused("\"version\": 2", "\"version\": 1", "version 1");
         refused(" index", " list", "\"microfacet-tables index\" is expected");
         refused("{", "", "index:");
-        for name in ["tables-1.safetensors", "tables-00000.safetensors", "tables.safetensors"] {
-            assert!(!Index::is_file_name(name), "{name}");
+    }
+
+    #[test]
+    fn a_set_is_what_the_index_lists() {
+        let set = &index().sets[0];
+        set.check(b"set 1").unwrap();
+        for other in [&b"set 2"[..], b"set 1 ", b""] {
+            let why = set.check(other).unwrap_err().to_string();
+            assert!(why.contains("lists 5 of e30a8e27"), "{why}");
         }
-        assert!(Index::is_file_name("tables-100000.safetensors"));
+        let of = |names: &[&str]| {
+            let text: Vec<String> = names
+                .iter()
+                .map(|name| {
+                    format!(r#"{{"name":"{name}","sigma":[[0.1,0.1],[0.1,0.1]],"s":[1,1]}}"#)
+                })
+                .collect();
+            let materials = serde_json::from_str(&format!("[{}]", text.join(","))).unwrap();
+            set.check_materials(&Provenance { materials, ..Provenance::default() })
+        };
+        of(&["gold", "glass"]).unwrap();
+        for (names, what) in [
+            (&["gold"][..], "its material 2 is none"),
+            (&["glass", "gold"], "its material 1 is \"glass\""),
+            (&["gold", "glass", "brass"], "lists none"),
+        ] {
+            let why = of(names).unwrap_err().to_string();
+            assert!(why.contains(what), "{why}");
+        }
     }
 }

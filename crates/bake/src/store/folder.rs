@@ -1,0 +1,195 @@
+//! Folders that files are written into: made when they are missing, and removed again if nothing
+//! was written.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::SystemTime;
+use std::{fs, io};
+
+use microfacet_sampler::Tables;
+use microfacet_tables::Index;
+
+use super::replace::{Replacement, check_writable, make_folder, remove_abandoned};
+use super::{Format, NAMES, StoreError, Written, bytes_of, image_of, interrupt, numbered};
+
+/// A folder to write into. One that was made for it is removed again on drop if it is empty.
+#[derive(Debug)]
+pub struct OutputFolder {
+    path: PathBuf,
+    /// Folders that did not exist before, the innermost first.
+    made: Vec<PathBuf>,
+    /// Whether something new is in the folder.
+    written: Arc<AtomicBool>,
+}
+
+impl OutputFolder {
+    /// Makes the folder if it does not exist, and checks that files can be written into it.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] if the path is no folder or cannot be written to.
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
+        let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+        let made: Vec<_> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        interrupt::will_make(&made);
+        let this = Self { path: path.into(), made, written: Arc::default() };
+        let failed = |why| StoreError::Io(path.into(), why);
+        make_folder(path).map_err(failed)?;
+        // Fail now rather than after an hour of work.
+        tempfile::tempfile_in(path).map_err(failed)?;
+        Ok(this)
+    }
+
+    /// As [`open`](Self::open), for a set: also checks that the set in the folder can be replaced.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] naming what cannot.
+    pub fn open_for_set(path: &Path) -> Result<Self, StoreError> {
+        let this = Self::open(path)?;
+        remove_abandoned(path);
+        let old = OldSet::of(path);
+        for file in old.files.keys().map(|name| path.join(name)) {
+            check_writable(&file).map_err(|why| StoreError::Io(file, why))?;
+        }
+        Ok(this)
+    }
+
+    /// Whether something was written, to be read at any time.
+    pub fn written(&self) -> Arc<AtomicBool> {
+        self.written.clone()
+    }
+
+    /// The folder.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a set as one file, `tables.safetensors` or `tables.exr`; a set without tables is
+    /// `tables.safetensors` in either format, several sets are [`sets`](Self::sets). The new file
+    /// takes the place of the set that was in the folder in one step, as
+    /// [`replace`](super::replace()) does it, and what else was of that set is removed; other files
+    /// stay. Of two writers at once the last one's set is there.
+    ///
+    /// # Errors
+    /// [`StoreError`] naming the path. The old set is then unchanged.
+    pub fn write(&self, set: &Tables, format: Format) -> Result<Vec<Written>, StoreError> {
+        let format = if set.tables().is_empty() { Format::Safetensors } else { format };
+        let path = self.path.join(format.file());
+        let bytes = bytes_of(set, format, &path)?;
+        let mut replacement = Replacement::default();
+        let added = replacement.add(&path, |out| out.write_all(&bytes));
+        added.map_err(|why| StoreError::Io(path.clone(), why))?;
+        self.exchange(replacement)?;
+        Ok(vec![Written { path, bytes: bytes.len() }])
+    }
+
+    /// Writes each table as an image of its own, NAME.exr, for programs that open no parts. Such a
+    /// folder is no set; other files in it stay.
+    ///
+    /// # Errors
+    /// [`StoreError`] naming the path, such as a table whose name no file can have.
+    pub fn write_images(&self, set: &Tables) -> Result<Vec<Written>, StoreError> {
+        let mut images = Vec::new();
+        for table in set.tables() {
+            let (name, bytes) = image_of(set, table)
+                .map_err(|why| StoreError::Exr(self.path.join(&table.name), why))?;
+            images.push((name, bytes));
+        }
+        self.write_files(images.iter().map(|(name, bytes)| (&name[..], &bytes[..])))
+    }
+
+    /// Writes files, each as [`replace`](super::replace()) does it. All are completed beside the
+    /// old ones before the first takes its place, and the others follow at once: only a process
+    /// that is killed between two renames leaves old files beside new ones.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] with the operating system's error, or that two of the names lead to one
+    /// file. All old files are then untouched, unless the disk itself failed at the very end, when
+    /// some may be replaced.
+    pub fn write_files<'a>(
+        &self,
+        files: impl IntoIterator<Item = (&'a str, &'a [u8])>,
+    ) -> Result<Vec<Written>, StoreError> {
+        let (mut replacement, mut all) = (Replacement::default(), Vec::new());
+        for (name, bytes) in files {
+            let path = self.path.join(name);
+            let added = replacement.add(&path, |out| out.write_all(bytes));
+            added.map_err(|why| StoreError::Io(path.clone(), why))?;
+            all.push(Written { path, bytes: bytes.len() });
+        }
+        let _writing = interrupt::writing();
+        replacement.commit().map_err(|(path, why)| StoreError::Io(path, why))?;
+        self.written.store(true, Relaxed);
+        Ok(all)
+    }
+
+    /// Puts a new set in the place of the old one.
+    pub(super) fn exchange(&self, new: Replacement) -> Result<(), StoreError> {
+        let old = OldSet::of(&self.path);
+        let _writing = interrupt::writing();
+        let new = new.commit().map_err(|(path, why)| StoreError::Io(path, why))?;
+        // While the write is marked: an interrupt sees both or neither.
+        self.written.store(true, Relaxed);
+        old.remove(&self.path, &new)
+    }
+}
+
+impl Drop for OutputFolder {
+    fn drop(&mut self) {
+        interrupt::remove_empty(&self.made);
+        interrupt::forget(&self.made);
+    }
+}
+
+/// What tells a file from another of the same name: time, size, and where there is one the number
+/// of the file, since clocks may tick slower than files are written.
+type Stamp = Option<(SystemTime, u64, u64)>;
+
+/// The files of the set in a folder, by name, before another takes its place.
+struct OldSet {
+    files: BTreeMap<String, Stamp>,
+}
+
+impl OldSet {
+    fn of(folder: &Path) -> Self {
+        let names = NAMES.map(String::from).into_iter().chain(indexed(folder));
+        let files = names.map(|name| (name.clone(), stamp(&folder.join(&name))));
+        Self { files: files.filter(|(_, stamp)| stamp.is_some()).collect() }
+    }
+
+    /// Removes what is not among the new files. What another writer put there meanwhile is not
+    /// touched, nor what its index lists.
+    fn remove(mut self, folder: &Path, new: &[PathBuf]) -> Result<(), StoreError> {
+        let remove = |(name, old): (String, Stamp)| {
+            let path = folder.join(name);
+            if new.contains(&path) || stamp(&path) != old {
+                return Ok(());
+            }
+            match fs::remove_file(&path) {
+                Err(why) if why.kind() != io::ErrorKind::NotFound => Err(StoreError::Io(path, why)),
+                _ => Ok(()),
+            }
+        };
+        // The index before what it lists.
+        self.files.remove_entry(Index::FILE).map_or(Ok(()), remove)?;
+        let listed = indexed(folder);
+        self.files.into_iter().filter(|(name, _)| !listed.contains(name)).try_for_each(remove)
+    }
+}
+
+/// The numbered sets that the index in a folder lists, if there is one.
+fn indexed(folder: &Path) -> Vec<String> {
+    let index = numbered::index_at(folder).ok().flatten();
+    index.into_iter().flat_map(|index| index.sets).map(|set| set.file).collect()
+}
+
+/// `None` of no file.
+fn stamp(path: &Path) -> Stamp {
+    let file = fs::symlink_metadata(path).ok()?;
+    #[cfg(unix)]
+    let number = std::os::unix::fs::MetadataExt::ino(&file);
+    #[cfg(not(unix))]
+    let number = 0;
+    Some((file.modified().ok()?, file.len(), number))
+}
