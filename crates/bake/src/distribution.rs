@@ -15,7 +15,7 @@ use crate::input::angles::Angles;
 pub const S_MAX: f64 = 1.99;
 
 /// A named distribution of one or two parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DistributionKind {
     /// Beckmann, slope parameter m.

@@ -7,7 +7,7 @@ use microfacet_sampler::Masking;
 use microfacet_tables::{LobeEntry, Precision, Reflectance};
 
 use super::albedo_work::albedo_seconds;
-use super::key::{Key, distinct};
+use super::key::{self, Numbers, distinct};
 use super::{NotCovered, Options, entry, is_tabulated, refusal};
 use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, SIGMA_MAX};
 use crate::interval::Interval;
@@ -102,7 +102,7 @@ const MAX_ALBEDOS: usize = 100_000;
 struct Needs {
     all: Vec<RequiredAlbedo>,
     /// The group of a lobe and the index of a reflectance.
-    of: HashMap<(Key<AlbedoLobe>, usize), usize>,
+    of: HashMap<((Numbers, Option<String>), usize), usize>,
     /// The groups of the family under each reflectance: few, since `least` makes one of a thousand.
     families: Vec<Vec<usize>>,
 }
@@ -115,7 +115,7 @@ impl Needs {
         (i, reflectance): (usize, Reflectance),
         masking: Masking,
     ) -> Result<(), NotCovered> {
-        let key = (Key(lobe), i);
+        let key = (key::of_lobe(&lobe), i);
         if let Some(&found) = self.of.get(&key) {
             // Both forms in one table group cost little more than one.
             let maskings = &mut self.all[found].maskings;
@@ -127,7 +127,6 @@ impl Needs {
         if self.all.len() == MAX_ALBEDOS {
             return Err(NotCovered::Albedos { most: MAX_ALBEDOS });
         }
-        let lobe = key.0.0.clone();
         if matches!(lobe, AlbedoLobe::Family(_)) {
             self.families[i].push(self.all.len());
         }
@@ -139,7 +138,7 @@ impl Needs {
     /// The first group that covers what a material asks for.
     fn serving(&self, Want { lobe, masking, .. }: Want, i: usize) -> Option<usize> {
         let AlbedoLobe::Family(domain) = &lobe else {
-            return self.of.get(&(Key(lobe), i)).copied();
+            return self.of.get(&(key::of_lobe(&lobe), i)).copied();
         };
         let covers = |need: &RequiredAlbedo| {
             matches!(&need.lobe, AlbedoLobe::Family(other) if other.contains(domain))
@@ -195,12 +194,12 @@ fn wanted(scene: &Scene, options: Options) -> Result<Wanted, NotCovered> {
         .map(|material| wants(material, options))
         .collect::<Result<_, _>>()?;
     let all = || wants.iter().flatten().flatten();
-    let mut reflectances = distinct(all().map(|want| want.reflectance));
+    let mut reflectances = distinct(all().map(|want| want.reflectance), key::of_reflectance);
     // The moments first, since they serve most materials.
     reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Moments);
-    let indices: HashMap<Key<Reflectance>, usize> =
-        reflectances.iter().enumerate().map(|(i, &reflectance)| (Key(reflectance), i)).collect();
-    let index = |want: &Want| indices[&Key(want.reflectance)];
+    let indices: HashMap<Numbers, usize> =
+        reflectances.iter().enumerate().map(|(i, of)| (key::of_reflectance(of), i)).collect();
+    let index = |want: &Want| indices[&key::of_reflectance(&want.reflectance)];
     // What is asked for under each reflectance and form of masking.
     let mut asked: Vec<[Vec<&AlbedoLobe>; Masking::ALL.len()]> =
         vec![Default::default(); reflectances.len()];
@@ -303,9 +302,10 @@ fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
 /// A small number of domains that cover all of `wants` with no more nodes in all.
 fn joined(wants: impl Iterator<Item = Domain>) -> Vec<Domain> {
     let mut groups: Vec<Vec<Domain>> = Vec::new();
-    let mut of_shapes: HashMap<Key<Interval>, usize> = HashMap::new();
-    for want in distinct(wants) {
-        let group = *of_shapes.entry(Key(want.gamma)).or_insert(groups.len());
+    let mut of_shapes: HashMap<Numbers, usize> = HashMap::new();
+    for want in distinct(wants, key::of_domain) {
+        let shapes = key::of(&[want.gamma.min, want.gamma.max]);
+        let group = *of_shapes.entry(shapes).or_insert(groups.len());
         if group == groups.len() {
             groups.push(Vec::new());
         }

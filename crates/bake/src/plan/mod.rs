@@ -269,7 +269,7 @@ fn refusal(
 fn distributions(scene: &Scene) -> Vec<Distribution> {
     let tabulated = scene.materials.iter().filter(|material| is_tabulated(material));
     let all = tabulated.filter_map(|material| material.distribution.as_ref());
-    key::distinct(all).into_iter().cloned().collect()
+    key::distinct(all, |all| key::of_distribution(all)).into_iter().cloned().collect()
 }
 
 /// Whether there are microfacets at any point at all.
