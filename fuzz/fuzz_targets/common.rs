@@ -61,6 +61,72 @@ fn albedos(set: &microfacet_sampler::Tables) {
     }
 }
 
+/// Reads an index, and looks at bytes through it as at the files that it lists.
+#[allow(dead_code)]
+fn index(bytes: &[u8]) {
+    use microfacet_tables::{Index, Provenance};
+
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let Ok(index) = Index::from_json(text) else { return };
+    assert_eq!(Index::from_json(&index.to_json()), Ok(index.clone()));
+    let all: Vec<&str> = index.sets.iter().flat_map(|set| &set.materials).map(|name| &**name).collect();
+    assert!(all.len() == index.materials() && index.files_of(&all).len() <= index.sets.len());
+    for set in &index.sets {
+        assert!(set.file.starts_with("tables-") && !set.file.contains(['/', '\\']));
+        let _ = (set.check(bytes), set.check_materials(&Provenance::default()));
+    }
+    let _ = index.bytes();
+}
+
+/// The single shape whose entry is asked for.
+#[allow(dead_code)]
+const ENTRY: &str = "[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 3\n";
+
+/// Puts bytes in the place of a cache's only entry, with a checksum that is right, and returns
+/// whether they are believed; then they serve what was asked for.
+#[allow(dead_code)]
+fn entry(bytes: &[u8]) -> bool {
+    use microfacet_baker::cache::Cache;
+    use microfacet_baker::plan::Plan;
+    use microfacet_baker::scene::Scene;
+    use microfacet_baker::table_set::{Need, Settings, Target, bake_with};
+    use microfacet_baker::table_spec::Quality;
+
+    struct Kept {
+        folder: tempfile::TempDir,
+        plan: Plan,
+        entry: std::path::PathBuf,
+    }
+    const TARGET: Target = Target::Quality(Quality::Draft, microfacet_tables::Precision::F16);
+    thread_local! {
+        static KEPT: Kept = {
+            let folder = tempfile::tempdir().expect("a temporary folder");
+            let scene = Scene::from_recipe_str(ENTRY).expect("a recipe");
+            let plan = Plan::new(&scene, Default::default()).expect("a plan");
+            let cache = Cache::new(folder.path().into());
+            bake_with(&plan, TARGET, Settings { cache, ..Settings::default() }).expect("tables");
+            let mut files = std::fs::read_dir(folder.path()).expect("a folder");
+            let entry = files.next().expect("an entry").expect("a name").path();
+            assert!(files.next().is_none(), "one entry");
+            Kept { folder, plan, entry }
+        };
+    }
+    KEPT.with(|Kept { folder, plan, entry }| {
+        let mut bytes = bytes.to_vec();
+        microfacet_tables::seal(&mut bytes);
+        std::fs::write(entry, &bytes).expect("a temporary file");
+        let cache = Cache::new(folder.path().into());
+        let needs = Need::of(plan, TARGET).expect("needs");
+        let believed = needs[0].is_kept(&cache);
+        if believed {
+            let settings = Settings { cache, ..Settings::default() };
+            let set = bake_with(plan, TARGET, settings).expect("a set").set;
+            set.student_t(0.3_f32, 3.0).expect("the shape that was asked for");
+        }
+        believed
+    })
+}
+
 /// Loads a scene from a file of that name in a folder of its own, and writes its recipe.
 #[allow(dead_code)]
 fn scene(name: &str, bytes: &[u8]) {

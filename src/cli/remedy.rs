@@ -109,7 +109,10 @@ mod tests {
             (told(&large()), "(--max-memory)"),
             (told(&BakeError::Memory(large())), "(--max-memory)"),
             (told(&slow), "(--patient)"),
-            (told(&StoreError::TooLarge("out".into(), "9 bytes".into())), "(--per-set)"),
+            (
+                told(&StoreError::TooLarge("out".into(), "9 bytes, and 8 are read".into())),
+                "(--per-set)",
+            ),
             (told(&ConvertError::ShapeNeeded(DistributionKind::StudentT)), "(--shape)"),
             (told(&MerlError::Dimensions([1, 2, 3])), "--input"),
             (told(&MaterialError::NoAlbedo("silent".into())), "(--albedo)"),

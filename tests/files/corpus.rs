@@ -34,6 +34,12 @@ fn seeds_of_table_files_are_of_this_version() {
     }
 }
 
+/// What a bake left in the cache; an entry of another version would be refused by its key.
+#[test]
+fn the_seed_of_an_entry_is_believed() {
+    assert!(entry(include_bytes!("../../fuzz/seeds/entry/gamma_3.safetensors")));
+}
+
 /// The decoder of B44 in `exr` 1.74.2 overflows on these blocks, and is never asked.
 #[test]
 fn an_image_by_another_compression_is_refused_undecoded() {
@@ -45,6 +51,10 @@ fn an_image_by_another_compression_is_refused_undecoded() {
 #[test]
 fn table_files() {
     seeds("loader").iter().for_each(|bytes| load(bytes));
+    seeds("index").iter().for_each(|bytes| index(bytes));
+    for bytes in seeds("entry") {
+        entry(&bytes);
+    }
     for bytes in seeds("image") {
         let _ = microfacet_baker::store::decode_exr(&bytes);
     }
