@@ -44,7 +44,7 @@ pub use error::{LoadError, Range};
 pub use format::{
     Certificate, Channels, Coordinate, Covered, Errors, FORMAT, FresnelEntry, Index, IndexedSet,
     Kind, LobeEntry, MaterialEntry, Precision, Provenance, Quantity, Reflectance, SAME, Side,
-    Subject, Table, VERSION, decode, describe, encode, reassemble, seal, seal_document,
+    Subject, Table, VERSION, crc32, decode, describe, encode, reassemble, seal, seal_document,
 };
 
 /// The smallest γ of tables; below, almost every visible normal has a slope beyond any

@@ -78,10 +78,9 @@ impl OutputFolder {
         let path = self.path.join(format.file());
         let bytes = bytes_of(set, format, &path)?;
         let mut replacement = Replacement::default();
-        let added = replacement.add(&path, |out| out.write_all(&bytes));
-        added.map_err(|why| StoreError::Io(path.clone(), why))?;
+        let written = replacement.put(path, &bytes)?;
         self.exchange(replacement)?;
-        Ok(vec![Written { path, bytes: bytes.len() }])
+        Ok(vec![written])
     }
 
     /// Writes each table as an image of its own, NAME.exr, for programs that open no parts. Such a
@@ -113,10 +112,7 @@ impl OutputFolder {
     ) -> Result<Vec<Written>, StoreError> {
         let (mut replacement, mut all) = (Replacement::default(), Vec::new());
         for (name, bytes) in files {
-            let path = self.path.join(name);
-            let added = replacement.add(&path, |out| out.write_all(bytes));
-            added.map_err(|why| StoreError::Io(path.clone(), why))?;
-            all.push(Written { path, bytes: bytes.len() });
+            all.push(replacement.put(self.path.join(name), bytes)?);
         }
         let _writing = interrupt::writing();
         replacement.commit().map_err(|(path, why)| StoreError::Io(path, why))?;

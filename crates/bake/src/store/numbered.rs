@@ -53,9 +53,7 @@ impl SetWriter {
         let bytes = bytes_of(set, Format::Safetensors, &path)?;
         let names = set.provenance().materials.iter().map(|entry| entry.name.clone());
         let entry = IndexedSet::new(number, &bytes, names.collect());
-        let path = self.folder.path().join(&entry.file);
-        let added = self.replacement.add(&path, |out| out.write_all(&bytes));
-        added.map_err(|why| StoreError::Io(path, why))?;
+        self.replacement.put(self.folder.path().join(&entry.file), &bytes)?;
         self.index.sets.push(entry);
         Ok(())
     }
@@ -76,15 +74,14 @@ impl SetWriter {
         }
         let (path, json) = (folder.path().join(Index::FILE), index.to_json());
         Index::from_json(&json).map_err(|why| StoreError::Load(path.clone(), why))?;
-        let added = replacement.add(&path, |out| out.write_all(json.as_bytes()));
-        added.map_err(|why| StoreError::Io(path.clone(), why))?;
+        let listing = replacement.put(path, json.as_bytes())?;
         folder.exchange(replacement)?;
         let written = |set: &IndexedSet| Written {
             path: folder.path().join(&set.file),
             bytes: set.bytes as usize,
         };
         let sets = index.sets.iter().map(written);
-        Ok(sets.chain([Written { path, bytes: json.len() }]).collect())
+        Ok(sets.chain([listing]).collect())
     }
 }
 

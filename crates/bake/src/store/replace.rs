@@ -12,6 +12,7 @@ use std::time::Duration;
 use tempfile::NamedTempFile;
 
 use super::interrupt::{self, Leftover};
+use super::{StoreError, Written};
 use crate::input;
 
 /// Prefix and suffix of the names of incomplete files.
@@ -166,8 +167,16 @@ pub(super) struct Replacement {
 }
 
 impl Replacement {
-    /// Completes a file under a temporary name.
-    pub(super) fn add(
+    /// Completes a file of these bytes under a temporary name.
+    pub(super) fn put(&mut self, path: PathBuf, bytes: &[u8]) -> Result<Written, StoreError> {
+        match self.add(&path, |out| out.write_all(bytes)) {
+            Ok(()) => Ok(Written { path, bytes: bytes.len() }),
+            Err(why) => Err(StoreError::Io(path, why)),
+        }
+    }
+
+    /// Completes what is written under a temporary name.
+    fn add(
         &mut self,
         path: &Path,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use microfacet_tables::crc32;
 use serde::Serialize;
 
 use super::super::members::{Member, PREFIXES, Part, Value, lists, parts};
@@ -89,8 +90,7 @@ pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
     let [file, name] = ["bin", "exr"].map(|end| format!("{NAME}.{end}"));
     files.push(ExportFile { name: file.clone(), contents: bytes });
     files.push(ExportFile { name: name.clone(), contents: image });
-    let crc32 =
-        |file: &ExportFile| (file.name.clone(), format!("{:08x}", crc32fast::hash(&file.contents)));
+    let checksum = |file: &ExportFile| (file.name.clone(), crc32(&file.contents));
     let description = Description {
         layout: LAYOUT,
         generator: &first.generator,
@@ -102,7 +102,7 @@ pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
         width: WIDTH,
         height,
         shapes: entries,
-        crc32: files.iter().map(crc32).collect(),
+        crc32: files.iter().map(checksum).collect(),
     };
     let json = serde_json::to_string_pretty(&description).expect("names and finite numbers");
     files.push(ExportFile { name: format!("{NAME}.json"), contents: (json + "\n").into() });

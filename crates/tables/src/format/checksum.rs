@@ -38,6 +38,11 @@ fn digits(bytes: &[u8], at: usize, more: impl Iterator<Item = [u8; 4]>) -> [u8; 
     text.as_bytes().try_into().expect("32 bits are eight digits")
 }
 
+/// The CRC-32 (ISO-HDLC) of a file as eight hexadecimal digits, by which another file knows it.
+pub fn crc32(bytes: &[u8]) -> String {
+    format!("{:08x}", crc32fast::hash(bytes))
+}
+
 /// Fills in the checksum of a safetensors file, for tools that edit files; false if the file has no
 /// place for it.
 pub fn seal(file: &mut [u8]) -> bool {
@@ -89,7 +94,7 @@ mod tests {
         let at = position_in_file(&file).unwrap();
         let mut zeroed = file.clone();
         zeroed[at..at + DIGITS].fill(b'0');
-        assert_eq!(file[at..at + DIGITS], *format!("{:08x}", crc32fast::hash(&zeroed)).as_bytes());
+        assert_eq!(file[at..at + DIGITS], *crc32(&zeroed).as_bytes());
         for bit in 0..8 * file.len() {
             file[bit / 8] ^= 1 << (bit % 8);
             assert_ne!(is_sealed(&file), Some(true), "bit {bit}");

@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
+use super::checksum::crc32;
 use super::container::Provenance;
 use crate::error::LoadError;
 
@@ -43,7 +44,7 @@ pub struct IndexedSet {
 impl IndexedSet {
     /// The entry of the numbered set of these bytes, the first being 1, with these materials.
     pub fn new(number: usize, bytes: &[u8], materials: Vec<String>) -> Self {
-        let crc32 = format!("{:08x}", crc32fast::hash(bytes));
+        let crc32 = crc32(bytes);
         let file = Index::file_name(number, &crc32);
         Self { file, bytes: bytes.len() as u64, crc32, materials }
     }
@@ -53,7 +54,7 @@ impl IndexedSet {
     /// # Errors
     /// [`LoadError::Invalid`] if their size or checksum is another.
     pub fn check(&self, bytes: &[u8]) -> Result<(), LoadError> {
-        let (size, crc32) = (bytes.len() as u64, format!("{:08x}", crc32fast::hash(bytes)));
+        let (size, crc32) = (bytes.len() as u64, crc32(bytes));
         if (size, &crc32) == (self.bytes, &self.crc32) {
             return Ok(());
         }
@@ -123,7 +124,7 @@ impl Index {
     ///
     /// # Errors
     /// [`LoadError`] if it is no index, of another version, names a file that is not that of a
-    /// numbered set, a file or a material twice, or sets of more bytes than can be counted.
+    /// numbered set, or a file or a material twice.
     pub fn from_json(json: &str) -> Result<Self, LoadError> {
         let invalid = |why: String| LoadError::Invalid(format!("index: {why}"));
         let Document { format, version, sets } =
@@ -146,11 +147,7 @@ impl Index {
                 return Err(invalid(format!("the material \"{name}\" is in two sets")));
             }
         }
-        let index = Self { sets };
-        match index.sets.iter().try_fold(0_u64, |sum, set| sum.checked_add(set.bytes)) {
-            Some(_) => Ok(index),
-            None => Err(invalid("the sets have more bytes than can be counted".into())),
-        }
+        Ok(Self { sets })
     }
 
     /// The document.
@@ -160,9 +157,9 @@ impl Index {
         serde_json::to_string_pretty(&document).expect("texts and numbers are JSON") + "\n"
     }
 
-    /// Bytes of all sets.
+    /// Bytes of all sets, at most [`u64::MAX`]: an index may state any size.
     pub fn bytes(&self) -> u64 {
-        self.sets.iter().map(|set| set.bytes).sum()
+        self.sets.iter().fold(0, |sum, set| sum.saturating_add(set.bytes))
     }
 
     /// Number of the materials in all sets.
@@ -206,6 +203,8 @@ mod tests {
         let [one, two] = ["tables-00001-e30a8e27.safetensors", "tables-00002-7a03df9d.safetensors"];
         assert_eq!(found, [(one, vec!["glass"]), (two, vec!["brass"])]);
         assert!(index.files_of(&[]).is_empty());
+        let wraps = index.to_json().replacen("5", &u64::MAX.to_string(), 1);
+        assert_eq!(Index::from_json(&wraps).unwrap().bytes(), u64::MAX);
     }
 
     #[test]
@@ -223,7 +222,6 @@ mod tests {
         refused(two, "tables-00002", "no name of a numbered set");
         refused(two, "tables-2-7a03df9d", "no name of a numbered set");
         refused(two, "tables-00002-7A03DF9D", "no name of a numbered set");
-        refused("\"bytes\": 5", "\"bytes\": 18446744073709551615", "more bytes than can be");
         refused("\"version\": 2", "\"version\": 1", "version 1");
         refused(" index", " list", "\"microfacet-tables index\" is expected");
         refused("{", "", "index:");

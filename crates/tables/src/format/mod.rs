@@ -13,7 +13,7 @@ mod subject;
 mod table;
 
 pub use certificate::{Certificate, Coordinate, Errors, Quantity};
-pub use checksum::{seal, seal_document};
+pub use checksum::{crc32, seal, seal_document};
 pub use container::{FORMAT, Provenance, VERSION, decode, describe, encode, reassemble};
 pub use index::{Index, IndexedSet};
 pub use kind::{Channels, Kind};
