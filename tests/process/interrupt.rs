@@ -67,6 +67,17 @@ fn an_interrupted_bake_leaves_nothing_and_goes_on_from_there() {
 }
 
 #[test]
+fn an_interrupted_export_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let lut = ["export", "lut", "--gamma-min", "1.6", "--size", "64x64x64", "--format", "dds"];
+    let child = start(folder.path(), &[&lut[..], &["--out", "new/lut"]].concat());
+    let output = interrupt_after(child, "-INT", || folder.path().join("new/lut").exists());
+    let text = message(&output, 2);
+    assert!(text.starts_with("interrupted: "), "{text}");
+    assert!(!folder.path().join("new").exists(), "the folder made for the export is left");
+}
+
+#[test]
 fn an_older_set_stays_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("one.toml"), ok(folder.path(), &["recipe"])).unwrap();
