@@ -140,7 +140,7 @@ impl Drop for OutputFolder {
 
 /// What tells a file from another of the same name: time, size, and where there is one the number
 /// of the file, since clocks may tick slower than files are written.
-type Stamp = Option<(SystemTime, u64, u64)>;
+pub(super) type Stamp = Option<(SystemTime, u64, u64)>;
 
 /// The files of the set in a folder, by name, before another takes its place.
 struct OldSet {
@@ -150,7 +150,7 @@ struct OldSet {
 impl OldSet {
     fn of(folder: &Path) -> Self {
         let names = NAMES.map(String::from).into_iter().chain(indexed(folder));
-        let files = names.map(|name| (name.clone(), stamp(&folder.join(&name))));
+        let files = names.map(|name| (name.clone(), link_stamp(&folder.join(&name))));
         Self { files: files.filter(|(_, stamp)| stamp.is_some()).collect() }
     }
 
@@ -159,7 +159,7 @@ impl OldSet {
     fn remove(mut self, folder: &Path, new: &[PathBuf]) -> Result<(), StoreError> {
         let remove = |(name, old): (String, Stamp)| {
             let path = folder.join(name);
-            if new.contains(&path) || stamp(&path) != old {
+            if new.contains(&path) || link_stamp(&path) != old {
                 return Ok(());
             }
             match fs::remove_file(&path) {
@@ -180,9 +180,13 @@ fn indexed(folder: &Path) -> Vec<String> {
     index.into_iter().flat_map(|index| index.sets).map(|set| set.file).collect()
 }
 
+fn link_stamp(path: &Path) -> Stamp {
+    stamp(fs::symlink_metadata(path))
+}
+
 /// `None` of no file.
-fn stamp(path: &Path) -> Stamp {
-    let file = fs::symlink_metadata(path).ok()?;
+pub(super) fn stamp(file: io::Result<fs::Metadata>) -> Stamp {
+    let file = file.ok()?;
     #[cfg(unix)]
     let number = std::os::unix::fs::MetadataExt::ino(&file);
     #[cfg(not(unix))]

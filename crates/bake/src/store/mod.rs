@@ -144,7 +144,6 @@ fn allow(bytes: u64, limit: u64) -> Result<(), String> {
 }
 
 /// What a path leads to.
-#[derive(PartialEq)]
 enum Found {
     File(PathBuf),
     Numbered(PathBuf, Index),
@@ -186,9 +185,9 @@ impl Found {
 /// # Errors
 /// [`StoreError`] naming the path and what is wrong.
 pub fn read(path: &Path) -> Result<Tables, StoreError> {
-    read_found(path, |found| match found {
-        Found::File(path) => read_file(path),
-        Found::Numbered(folder, index) => numbered::read_all(folder, index),
+    undisturbed(path, || match Found::at(path)? {
+        Found::File(path) => read_file(&path),
+        Found::Numbered(folder, index) => numbered::read_all(&folder, &index),
     })
 }
 
@@ -197,28 +196,31 @@ pub fn read(path: &Path) -> Result<Tables, StoreError> {
 /// # Errors
 /// [`StoreError`] naming the path and what is wrong, such as a material that is not there.
 pub fn read_materials(path: &Path, names: &[&str]) -> Result<Tables, StoreError> {
-    read_found(path, |found| match found {
+    undisturbed(path, || match Found::at(path)? {
         Found::File(file) => {
-            let only = read_file(file)?.only(names);
+            let only = read_file(&file)?.only(names);
             only.map_err(|why| StoreError::NoMaterial(path.into(), why.to_string()))
         }
-        Found::Numbered(folder, index) => numbered::read_some(folder, index, names),
+        Found::Numbered(folder, index) => numbered::read_some(&folder, &index, names),
     })
 }
 
-/// Reads what a path leads to; again, if something else has taken its place meanwhile.
-fn read_found(
-    path: &Path,
-    read: impl Fn(&Found) -> Result<Tables, StoreError>,
-) -> Result<Tables, StoreError> {
-    let mut found = Found::at(path)?;
+/// Reads what a path leads to; again, if that fails and something else has taken its place
+/// meanwhile.
+fn undisturbed<T>(path: &Path, read: impl Fn() -> Result<T, StoreError>) -> Result<T, StoreError> {
+    let there = || {
+        let names = if path.is_dir() { &NAMES[..] } else { &[""] };
+        let file = |name: &&str| if name.is_empty() { path.into() } else { path.join(name) };
+        names.iter().map(|name| folder::stamp(std::fs::metadata(file(name)))).collect::<Vec<_>>()
+    };
+    let mut before = there();
     loop {
-        let set = read(&found);
-        let now = if set.is_ok() { return set } else { Found::at(path)? };
-        if now == found {
-            return set;
+        let result = read();
+        let now = if result.is_ok() { return result } else { there() };
+        if now == before {
+            return result;
         }
-        found = now;
+        before = now;
     }
 }
 
@@ -242,6 +244,26 @@ mod tests {
         assert!(allow(10, 10).is_ok());
         let message = allow(11 << 20, 10 << 20).unwrap_err();
         assert!(message.contains("at most 10 MiB") && message.contains("precision"), "{message}");
+    }
+
+    /// Another writer's set takes the place of the one that was found, at the worst moment.
+    #[test]
+    fn a_set_that_moves_while_it_is_looked_for_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name);
+        std::fs::write(file(Index::FILE), "").unwrap();
+        let moves = std::cell::Cell::new(0);
+        let found = undisturbed(folder.path(), || {
+            let (from, to) = [(2, 0), (0, 1), (1, 1)][moves.get()];
+            moves.set(moves.get() + 1);
+            std::fs::rename(file(NAMES[from]), file(NAMES[to])).unwrap();
+            if from == to {
+                Found::at(folder.path())
+            } else {
+                Err(StoreError::NoMaterial(folder.path().into(), String::new()))
+            }
+        });
+        assert!(matches!(found.unwrap(), Found::File(path) if path == file(NAMES[1])));
     }
 
     #[test]

@@ -132,7 +132,11 @@ fn destination(path: &Path) -> io::Result<Destination> {
                 return refused(io::ErrorKind::PermissionDenied, why);
             }
             // To replace a file takes the right to write to its folder only. Ask for this one too.
-            OpenOptions::new().write(true).open(&path)?;
+            match OpenOptions::new().write(true).open(&path) {
+                // Another writer just removed it.
+                Err(why) if why.kind() == io::ErrorKind::NotFound => continue,
+                opened => opened?,
+            };
             return Ok(Destination { path, old: Some(old) });
         }
         let folder = folder_of(&path);
