@@ -4,7 +4,6 @@
 use glam::Vec3;
 use microfacet_baker::bake::albedo;
 use microfacet_baker::bake::albedo::{AlbedoLobe, Domain};
-use microfacet_baker::interval::Interval;
 use microfacet_baker::plan::{
     AlbedoVerdict, AlbedoWish, Options, Plan, RequiredAlbedo, albedo_cost, bare_cost,
 };
@@ -16,7 +15,7 @@ use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::albedo::FresnelAlbedo;
 use microfacet_sampler::{Lobe, Masking, MicrofacetDistribution, Tables};
-use microfacet_tables::{Kind, Precision, Provenance, Reflectance, Table, encode};
+use microfacet_tables::{Interval, Kind, Precision, Provenance, Reflectance, Table, encode};
 use microfacet_validate::furnace::direction;
 use serde_json::Value;
 

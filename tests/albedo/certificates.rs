@@ -22,7 +22,8 @@ use microfacet_model::{
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Skew, StudentT, Tables};
 use microfacet_tables::axis::MirroredRoot;
 use microfacet_tables::{
-    Axis, Kind, Mapping, MaterialEntry, Precision, Provenance, Quantity, Table,
+    Axis, Interval, Kind, LobeSpec, Mapping, MaterialEntry, Precision, Provenance, Quantity,
+    Roughness, Table,
 };
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -165,20 +166,18 @@ impl<'a> Own<'a> {
     fn new(name: &str, marginal: &'a Marginal<'a>) -> Self {
         let entry = MaterialEntry {
             name: "it".into(),
-            sigma: [[marginal.sigma(); 2]; 2],
-            s: [0.0; 2],
-            distribution: name.into(),
-            theta: None,
+            lobe: LobeSpec {
+                distribution: Some(name.into()),
+                ..LobeSpec::family(
+                    Roughness::Isotropic(Interval::point(marginal.sigma())),
+                    Interval::point(f64::INFINITY),
+                )
+            },
             masking: None,
             fresnel: None,
         };
-        let mut tables = bake_radial(
-            marginal,
-            &entry.distribution,
-            Quality::Draft,
-            Precision::F32,
-            &Stage::unwatched(),
-        );
+        let mut tables =
+            bake_radial(marginal, name, Quality::Draft, Precision::F32, &Stage::unwatched());
         certify(&mut tables, &entry, marginal, &Stage::unwatched()).unwrap();
         let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
         let radial =

@@ -5,12 +5,11 @@ use std::sync::OnceLock;
 
 use glam::Vec3;
 use microfacet_baker::bake::albedo::{AlbedoLobe, Domain, bake};
-use microfacet_baker::interval::Interval;
 use microfacet_baker::plan::RequiredAlbedo;
 use microfacet_baker::progress::Stage;
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::{Masking, Tables};
-use microfacet_tables::{Precision, Table};
+use microfacet_tables::{Interval, Precision, Table};
 use microfacet_validate::furnace::{TOLERANCE, direction, furnace, survey};
 
 /// Full tables of the two shapes, at the nodes of the default quality.

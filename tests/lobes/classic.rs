@@ -19,7 +19,9 @@ use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
 use microfacet_model::statistics::chi_square;
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
 use microfacet_scene::load;
-use microfacet_tables::{Kind, MaterialEntry, Precision, Provenance, Quantity, encode};
+use microfacet_tables::{
+    Interval, Kind, LobeSpec, MaterialEntry, Precision, Provenance, Quantity, Roughness, encode,
+};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -53,20 +55,17 @@ fn all() -> Vec<(String, Box<dyn Isotropic>)> {
 fn tabulated(name: &str, marginal: &Marginal) -> Lobe {
     let entry = MaterialEntry {
         name: "it".into(),
-        sigma: [[marginal.sigma(); 2]; 2],
-        s: [0.0; 2],
-        distribution: name.into(),
-        theta: None,
+        lobe: LobeSpec {
+            distribution: Some(name.into()),
+            ..LobeSpec::family(
+                Roughness::Isotropic(Interval::point(marginal.sigma())),
+                Interval::point(f64::INFINITY),
+            )
+        },
         masking: None,
         fresnel: None,
     };
-    let tables = bake_radial(
-        marginal,
-        &entry.distribution,
-        Quality::Default,
-        Precision::F32,
-        &Stage::unwatched(),
-    );
+    let tables = bake_radial(marginal, name, Quality::Default, Precision::F32, &Stage::unwatched());
     let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
     Tables::from_tables(provenance, tables).unwrap().material("it").unwrap()
 }
@@ -136,12 +135,12 @@ fn recipes_name_distributions() {
     };
     // A member of the family is read as the family.
     let (beckmann, _) = material("distribution = \"beckmann\"\nm = 0.3").unwrap();
-    assert!(beckmann.distribution.is_none() && beckmann.gamma.min == f64::INFINITY);
+    assert!(beckmann.lobe.distribution.is_none() && beckmann.lobe.gamma.min == f64::INFINITY);
     let (ggx, _) = material("distribution = \"gtr\"\nc = 0.2\ngamma = 2").unwrap();
-    assert!(ggx.distribution.is_none() && (ggx.roughness.x().min - 0.2).abs() < 1e-15);
+    assert!(ggx.lobe.distribution.is_none() && (ggx.lobe.roughness.x().min - 0.2).abs() < 1e-15);
     // Another distribution keeps its name when the recipe is written and read again.
     let (gtr, text) = material("distribution = \"gtr\"\nc = 0.2\ngamma = 1.3").unwrap();
-    assert_eq!(gtr.distribution.as_ref().unwrap().label(), "gtr:0.2,1.3");
+    assert_eq!(gtr.lobe.distribution.as_ref().unwrap().label(), "gtr:0.2,1.3");
     let again = Scene::from_recipe_str(&text).unwrap();
     assert!(again.materials[0].asks_the_same(&gtr), "{text}");
     let refused = |text: &str| material(text).unwrap_err().to_string();

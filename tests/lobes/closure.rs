@@ -3,12 +3,11 @@
 
 use glam::Vec3;
 use microfacet_baker::bake::albedo::{AlbedoLobe, Domain, bake};
-use microfacet_baker::interval::Interval;
 use microfacet_baker::plan::RequiredAlbedo;
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::albedo::ViewCurve;
 use microfacet_sampler::{Masking, Tables};
-use microfacet_tables::{Precision, Reflectance, Side};
+use microfacet_tables::{Interval, Precision, Reflectance, Side};
 use rand::{RngExt, SeedableRng};
 
 /// 2∫ μ dμ of functions of the view, by the midpoint rule in ln h, h the tangent of half the

@@ -2,14 +2,14 @@
 
 use glam::Vec3;
 use microfacet_baker::cache::Cache;
-use microfacet_baker::interval::Interval;
 use microfacet_baker::plan::{Options, Plan, Verdict, bare_cost, cost};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with};
 use microfacet_baker::table_spec::{Quality, general_set};
 use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, Masking, MicrofacetDistribution, Tables};
 use microfacet_tables::{
-    Axis, Certificate, LobeEntry, Precision, Provenance, Quantity, Subject, Table, decode, encode,
+    Axis, Certificate, Interval, LobeEntry, Precision, Provenance, Quantity, Subject, Table,
+    decode, encode,
 };
 
 use crate::common::{json, ok, refused, run};

@@ -381,7 +381,7 @@ fn nodes_of_shaders_and_values_in_a_circle_are_warned_of() {
          <standard_surface name=\"s\" type=\"surfaceshader\"><input name=\"specular_roughness\" nodegraph=\"g\" output=\"o\"/>\
          </standard_surface>",
     );
-    assert_eq!(load("a.mtlx", &twice).materials[0].roughness, crate::isotropic(0.25));
+    assert_eq!(load("a.mtlx", &twice).materials[0].lobe.roughness, crate::isotropic(0.25));
 }
 
 #[test]

@@ -14,8 +14,8 @@ use std::path::PathBuf;
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use tempfile::TempDir;
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Material, Roughness, Scene, SceneError, SceneErrorKind};
+use microfacet_tables::Interval;
 
 /// A folder with a scene in it.
 struct Folder(TempDir);

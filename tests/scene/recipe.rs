@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{
-    Format, Fresnel, Masking, Material, Origin, Place, Roughness, Scene,
+    Format, Fresnel, LobeSpec, Masking, Material, Origin, Place, Roughness, Scene,
 };
 use microfacet_sampler::Metal;
+use microfacet_tables::Interval;
 use proptest::prelude::*;
 
 use crate::{Folder, anisotropic, assert_refused, isotropic, load, named};
@@ -53,37 +53,37 @@ fn every_form_of_value_is_read() {
         "#,
     );
     let number = named(&scene, "number");
-    assert_eq!(number.roughness, isotropic(0.3));
-    assert_eq!(number.gamma, Interval::point(3.0));
+    assert_eq!(number.lobe.roughness, isotropic(0.3));
+    assert_eq!(number.lobe.gamma, Interval::point(3.0));
     assert_eq!((number.fresnel, number.masking), (None, None));
     assert_eq!(number.origin.format, Format::Recipe);
     assert_eq!(number.origin.place.line, Some(2));
     assert!(number.used);
 
     let limit = named(&scene, "limit");
-    assert_eq!(limit.roughness, anisotropic(0.3, 0.1));
-    assert_eq!(limit.gamma, Interval::point(f64::INFINITY));
+    assert_eq!(limit.lobe.roughness, anisotropic(0.3, 0.1));
+    assert_eq!(limit.lobe.gamma, Interval::point(f64::INFINITY));
     assert_eq!(limit.fresnel, Some(Fresnel::Mirror));
     assert_eq!(limit.masking, Some(Masking::Uncorrelated));
 
     let range = named(&scene, "range");
-    assert_eq!(range.roughness, Roughness::Isotropic(Interval { min: 0.0, max: 0.5 }));
-    assert!(range.roughness.is_isotropic());
-    assert_eq!(range.gamma, Interval { min: 1.6, max: f64::INFINITY });
+    assert_eq!(range.lobe.roughness, Roughness::Isotropic(Interval { min: 0.0, max: 0.5 }));
+    assert!(range.lobe.roughness.is_isotropic());
+    assert_eq!(range.lobe.gamma, Interval { min: 1.6, max: f64::INFINITY });
     assert_eq!(range.fresnel, Some(Fresnel::Schlick([0.04; 3])));
     assert_eq!(range.masking, Some(Masking::HeightCorrelated));
 
     let mixed = named(&scene, "mixed");
     assert_eq!(
-        mixed.roughness,
+        mixed.lobe.roughness,
         Roughness::Anisotropic { x: Interval { min: 0.1, max: 0.2 }, y: Interval::point(0.3) }
     );
-    assert_eq!(mixed.gamma, Interval::point(f64::INFINITY));
+    assert_eq!(mixed.lobe.gamma, Interval::point(f64::INFINITY));
     let (eta, k) = ([0.2, 0.9, 1.1], [0.0, 2.4, 2.2]);
     assert_eq!(mixed.fresnel, Some(Fresnel::Conductor { eta, k }));
 
     let pane = named(&scene, "pane");
-    assert_eq!(pane.roughness, Roughness::Smooth);
+    assert_eq!(pane.lobe.roughness, Roughness::Smooth);
     assert_eq!(pane.fresnel, Some(Fresnel::Dielectric(1.5)));
 }
 
@@ -119,7 +119,7 @@ fn schlick_has_one_number_or_three() {
 fn equal_axes_are_isotropic_and_equal_ranges_are_not() {
     let sigma = |text: &str| {
         let recipe = entry(&format!("sigma = {text}\ngamma = 2.0"));
-        load("r.toml", &recipe).materials[0].roughness
+        load("r.toml", &recipe).materials[0].lobe.roughness
     };
     assert_eq!(sigma("[0.2, 0.2]"), isotropic(0.2));
     assert_eq!(sigma("[0, 0]"), Roughness::Smooth);
@@ -204,7 +204,7 @@ fn names_of_other_programs_lead_to_sigma() {
 fn infinity_is_written_as_rust_and_people_do() {
     for text in ["inf", "+inf", "\"inf\"", "\"Inf\"", "\"INFINITY\"", "\"Infinity\"", "\" inf \""] {
         let scene = load("r.toml", &entry(&format!("sigma = 0.3\ngamma = {text}")));
-        assert_eq!(scene.materials[0].gamma, Interval::point(f64::INFINITY), "{text}");
+        assert_eq!(scene.materials[0].lobe.gamma, Interval::point(f64::INFINITY), "{text}");
     }
     for text in ["\"-inf\"", "\"nan\"", "\"3\"", "\"infinite\"", "\"\""] {
         assert_refused(
@@ -242,22 +242,22 @@ fn the_shipped_recipes_say_what_was_published() {
     for (file, sigma) in glass {
         let scene = load(file);
         assert_eq!(scene.materials.len(), 1);
-        assert_eq!(scene.materials[0].roughness, isotropic(sigma));
-        assert_eq!(scene.materials[0].gamma, Interval::point(3.0));
+        assert_eq!(scene.materials[0].lobe.roughness, isotropic(sigma));
+        assert_eq!(scene.materials[0].lobe.gamma, Interval::point(3.0));
     }
     let gold = load("gold-series.toml");
-    assert!(gold.materials.iter().all(|m| m.roughness == isotropic(0.3)));
-    let gammas: Vec<f64> = gold.materials.iter().map(|m| m.gamma.min).collect();
+    assert!(gold.materials.iter().all(|m| m.lobe.roughness == isotropic(0.3)));
+    let gammas: Vec<f64> = gold.materials.iter().map(|m| m.lobe.gamma.min).collect();
     assert_eq!(gammas, [1.51, 1.65, 2.0, 4.0, 10.0, 50.0]);
     let aluminium = load("anisotropic-aluminium.toml");
-    assert_eq!(aluminium.materials[0].roughness, anisotropic(0.7, 0.3));
+    assert_eq!(aluminium.materials[0].lobe.roughness, anisotropic(0.7, 0.3));
 }
 
 #[test]
 fn ellipsoids_have_a_turn_and_single_numbers() {
     let tilted = "sigma = [0.3, 0.1]\ngamma = 2.7\ntheta = [0.1, -0.2, 0.5]";
     let scene = load("r.toml", &entry(tilted));
-    assert_eq!(scene.materials[0].theta, Some([0.1, -0.2, 0.5]));
+    assert_eq!(scene.materials[0].lobe.theta, Some([0.1, -0.2, 0.5]));
     let again = Scene::from_recipe_str(&scene.to_recipe()).unwrap();
     assert!(again.materials[0].asks_the_same(&scene.materials[0]), "{}", scene.to_recipe());
     for (text, words) in [
@@ -286,7 +286,7 @@ fn angles_may_be_in_degrees_and_are_written_in_radians() {
     let degrees = "sigma = [0.3, 0.1]\ngamma = 2.7\ntheta = [10, -20.0, 450]\ndegrees = true";
     let scene = load("r.toml", &entry(degrees));
     let theta = [10.0_f64, -20.0, 450.0].map(f64::to_radians);
-    assert_eq!(scene.materials[0].theta, Some(theta));
+    assert_eq!(scene.materials[0].lobe.theta, Some(theta));
     assert_eq!(scene.warnings, [""; 0]);
     let written = scene.to_recipe();
     assert!(written.contains(&format!("theta = {theta:?}")) && !written.contains("degrees"));
@@ -295,7 +295,7 @@ fn angles_may_be_in_degrees_and_are_written_in_radians() {
 
     let radians =
         degrees.replace("true", "false").replace("450", "0.5").replace("10, -20.0", "1, -1");
-    assert_eq!(load("r.toml", &entry(&radians)).materials[0].theta, Some([1.0, -1.0, 0.5]));
+    assert_eq!(load("r.toml", &entry(&radians)).materials[0].lobe.theta, Some([1.0, -1.0, 0.5]));
     for (text, words) in [
         (degrees.replace("true", "\"yes\""), "degrees must be true"),
         ("sigma = 0.3\ngamma = 2.0\ndegrees = true".to_owned(), "no `theta`"),
@@ -337,7 +337,7 @@ fn a_measured_file_has_a_unit_of_its_own() {
         |recipe: &str, csv: &str| Folder::new(&[("r.toml", recipe), ("d.csv", csv)]).load("r.toml");
     let scene = load(&measured(", degrees = true"), degrees).unwrap();
     let other = load(&measured(""), &radians).unwrap();
-    assert_eq!(scene.materials[0].roughness, other.materials[0].roughness);
+    assert_eq!(scene.materials[0].lobe.roughness, other.materials[0].lobe.roughness);
     // The file keeps its unit, so that what is written reads back.
     let again = load(&scene.to_recipe(), degrees).unwrap();
     assert!(again.materials[0].asks_the_same(&scene.materials[0]), "{}", scene.to_recipe());
@@ -393,10 +393,7 @@ fn material() -> impl Strategy<Value = Material> {
     let parts = (name, roughness(), gamma, prop::option::of(fresnel), prop::option::of(masking));
     parts.prop_map(|(name, roughness, gamma, fresnel, masking)| Material {
         name,
-        roughness,
-        gamma,
-        distribution: None,
-        theta: None,
+        lobe: LobeSpec::family(roughness, gamma),
         fresnel,
         masking,
         origin: Origin {

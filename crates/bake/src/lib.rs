@@ -34,14 +34,13 @@
 //! | [`table_set`] | from a plan and a [`Target`](table_set::Target) to a certified set |
 //! | [`library`] | many materials in sets, baked by several processes |
 //! | [`store`], [`cache`], [`memory`] | files, what was baked before, and the limit of memory |
-//! | [`input`], [`interval`], [`progress`] | what the rest stands on |
+//! | [`input`], [`progress`] | what the rest stands on |
 
 pub mod bake;
 pub mod cache;
 pub mod certify;
 pub mod distribution;
 pub mod input;
-pub mod interval;
 pub mod library;
 pub mod memory;
 pub mod plan;

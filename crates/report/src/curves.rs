@@ -14,8 +14,8 @@ use super::Source;
 use super::drawing::{plot, symbols, unbroken};
 use super::subjects::{SHOWN, Shown, Subjects};
 use crate::plot::{Axis, Curve, Dash, Key, Method, Panel};
-use crate::words::material::{gammas, material};
-use crate::words::number;
+use crate::words::material::material;
+use crate::words::{number, range};
 
 /// Views of a curve from the normal to the horizon, denser at both: heavy tails fall steeply at the
 /// one, and all albedos rise at the other.
@@ -55,11 +55,8 @@ impl Line {
         let lobe = set.material(&entry.name).ok()?;
         let albedo = set.material_albedo(&entry.name).ok();
         let (key, dash) = (Key::Method(Method::Table), Dash::Solid);
-        let name = if entry.distribution.is_empty() {
-            format!("γ = {}, tilted", symbols(&gammas(entry.s)))
-        } else {
-            entry.distribution.clone()
-        };
+        let tilted = || format!("γ = {}, tilted", symbols(&range(entry.lobe.gamma)));
+        let name = entry.lobe.distribution.clone().unwrap_or_else(tilted);
         Some(Self { name, key, dash, lobe, albedo })
     }
 
@@ -100,8 +97,8 @@ pub(super) fn section(source: &Source, subjects: &Subjects) -> Markup {
 /// Materials with lobes that GGX and Beckmann do not compare with.
 fn others(set: &Tables) -> Vec<&MaterialEntry> {
     let is_other = |entry: &&MaterialEntry| {
-        let family = entry.distribution.is_empty() && entry.theta.is_none();
-        !family && !entry.is_smooth() && set.material(&entry.name).is_ok()
+        let family = entry.lobe.is_upright();
+        !family && !entry.lobe.is_smooth() && set.material(&entry.name).is_ok()
     };
     set.provenance().materials.iter().filter(is_other).collect()
 }

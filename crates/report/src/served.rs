@@ -8,7 +8,7 @@ use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
 use microfacet_tables::{Covered, FresnelEntry, LobeEntry, MaterialEntry, Reflectance, Table};
 
-use crate::words::material::{fresnel, gammas};
+use crate::words::material::fresnel;
 use crate::words::verdict::albedo_reason;
 use crate::words::{number, range};
 
@@ -68,14 +68,13 @@ fn of(
     entry: &MaterialEntry,
     wishes: &BTreeMap<String, AlbedoVerdict>,
 ) -> Served {
-    let [x, y] = entry.sigma.map(range);
-    let family = entry.distribution.is_empty();
-    let mut shape =
-        if family { format!("gamma {}", gammas(entry.s)) } else { entry.distribution.clone() };
-    if let Some(theta) = entry.theta {
+    let [x, y] = entry.lobe.sigmas().map(range);
+    let own = entry.lobe.distribution.clone();
+    let mut shape = own.unwrap_or_else(|| format!("gamma {}", range(entry.lobe.gamma)));
+    if let Some(theta) = entry.lobe.theta {
         shape += &format!(", tilted by theta {}", theta.map(number).join(", "));
     }
-    let smooth = entry.is_smooth();
+    let smooth = entry.lobe.is_smooth();
     Served {
         name: entry.name.clone(),
         sigma: if x == y { x } else { format!("{x} and {y}") },
@@ -90,17 +89,17 @@ fn of(
 
 /// What serves masking and visible normals.
 fn lobe(set: &Tables, default: &Tables, entry: &MaterialEntry) -> Part {
-    let covers = |set: &Tables| entry.s.into_iter().all(|s| set.tabulates(gamma_of_s(s)));
-    if entry.is_smooth() {
+    let covers = |set: &Tables| entry.lobe.s().into_iter().all(|s| set.tabulates(gamma_of_s(s)));
+    if entry.lobe.is_smooth() {
         Part::skipped("none: smooth", "no microfacets, σ = 0")
-    } else if !entry.distribution.is_empty() {
+    } else if entry.lobe.distribution.is_some() {
         match set.material(&entry.name) {
             Ok(_) => Part::OWN,
             Err(why) => Part::skipped("none", why.to_string()),
         }
     } else if covers(set) {
         Part::OWN
-    } else if entry.is_ggx() {
+    } else if entry.lobe.is_ggx() {
         Part::skipped("closed forms of GGX", "GGX has closed forms of D, G1 and visible normals")
     } else if covers(default) {
         let why = "the default set, which is compiled into the sampler, covers it";
@@ -122,15 +121,16 @@ fn albedo(
         true => set.material_fresnel_albedo(&entry.name).is_ok(),
         false => set.material_albedo(&entry.name).is_ok(),
     };
-    if entry.is_smooth() {
+    if entry.lobe.is_smooth() {
         return Part::skipped("none: smooth", "no microfacets, σ = 0");
     }
     if has(set) {
         return Part::OWN;
     }
     let moments = |set: &Tables| {
-        let [sigma, gamma] = [entry.round_sigma(), entry.gamma()];
-        entry.lobe() == LobeEntry::Family && set.albedo(sigma, gamma, entry.masking()).is_ok()
+        let [sigma, gamma] = [entry.lobe.round_sigma(), entry.lobe.gamma()];
+        entry.lobe.tabulated() == LobeEntry::Family
+            && set.albedo(sigma, gamma, entry.masking()).is_ok()
     };
     let behind = !exact && moments(default);
     let what = if behind { "default set" } else { "none" };
@@ -156,8 +156,8 @@ fn tables_of<'a>(
     set: &'a Tables,
     entry: &'a MaterialEntry,
 ) -> impl Iterator<Item = &'a Table> + 'a {
-    let own = entry.lobe();
-    let is_family = entry.distribution.is_empty() && !entry.is_smooth();
+    let own = entry.lobe.tabulated();
+    let is_family = entry.lobe.distribution.is_none() && !entry.lobe.is_smooth();
     let reflectances: Vec<Reflectance> =
         entry.fresnel.as_ref().map_or(vec![Reflectance::Moments], FresnelEntry::tabulated);
     let within = |[low, high]: [f64; 2], x: [f64; 2]| {
@@ -165,7 +165,7 @@ fn tables_of<'a>(
         let slack = 1e-9 * high.abs().max(1e-9);
         low - slack <= x[0] && x[1] <= high + slack
     };
-    let middle = [entry.round_sigma(); 2];
+    let middle = [entry.lobe.round_sigma(); 2];
     let reads = move |table: &&Table| {
         let subject = &table.subject;
         let same = !table.kind.is_albedo()
@@ -176,11 +176,11 @@ fn tables_of<'a>(
                 let lobe = !table.kind.is_albedo() || own == LobeEntry::Family;
                 is_family
                     && lobe
-                    && within(*s, entry.s)
+                    && within(*s, entry.lobe.s())
                     && sigma.is_none_or(|all| within(all, middle))
             }
             (LobeEntry::Family, None) => false,
-            (lobe, _) => *lobe == own && !entry.is_smooth(),
+            (lobe, _) => *lobe == own && !entry.lobe.is_smooth(),
         };
         same && covered
     };

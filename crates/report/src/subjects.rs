@@ -106,8 +106,8 @@ impl Subjects {
         let slices = slices(&stops);
         let by_name = materials.iter().map(|entry| Shown {
             name: entry.name.clone(),
-            gamma: entry.gamma(),
-            sigma: entry.sigma(),
+            gamma: entry.lobe.gamma(),
+            sigma: entry.lobe.sigma(),
             entry: Some((*entry).clone()),
         });
         let mut shown: Vec<Shown> = by_name.collect();
@@ -131,7 +131,7 @@ impl Subjects {
 impl Shown {
     /// σ of the round lobe that it is, or that stands in for it.
     pub(super) fn round_sigma(&self) -> f64 {
-        self.entry.as_ref().map_or(self.sigma[0], MaterialEntry::round_sigma)
+        self.entry.as_ref().map_or(self.sigma[0], |entry| entry.lobe.round_sigma())
     }
 
     /// The form of masking that it states, or the default.
@@ -160,15 +160,15 @@ impl Shown {
 
 /// Whether a material has a lobe of the family that is not tilted, which this set serves.
 fn is_shown(set: &Tables, entry: &MaterialEntry) -> bool {
-    let family = entry.distribution.is_empty() && entry.theta.is_none() && !entry.is_smooth();
-    family && set.covers(entry.gamma())
+    let family = entry.lobe.is_upright() && !entry.lobe.is_smooth();
+    family && set.covers(entry.lobe.gamma())
 }
 
 /// The shapes to choose from, and whether some are examples of a range.
 fn stops(set: &Tables, materials: &[&MaterialEntry]) -> (Vec<f64>, bool) {
     // An end that is a short number has passed through 1/(γ−1).
     let short = |x: f64| format!("{x:.9e}").parse().unwrap_or(x);
-    let mut stops: Vec<f64> = materials.iter().map(|entry| entry.gamma()).collect();
+    let mut stops: Vec<f64> = materials.iter().map(|entry| entry.lobe.gamma()).collect();
     let mut is_range = false;
     for [low, high] in set.shapes() {
         let [least, most] = [high, low].map(|s| short(gamma_of_s(s)));

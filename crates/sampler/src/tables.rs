@@ -81,7 +81,7 @@ impl Tables {
                 kept.push(self.entry(name)?.clone());
             }
         }
-        let mut lobes: Vec<LobeEntry> = kept.iter().map(MaterialEntry::lobe).collect();
+        let mut lobes: Vec<LobeEntry> = kept.iter().map(|entry| entry.lobe.tabulated()).collect();
         lobes.push(LobeEntry::Family);
         self.tables.retain(|table| lobes.contains(&table.subject.lobe));
         self.provenance.materials = kept;
@@ -220,16 +220,16 @@ impl Tables {
     /// [`MaterialError::NoSuchMaterial`] naming those that exist, or what [`lobe`](Self::lobe) and
     /// [`ellipsoid`](Self::ellipsoid) report.
     pub fn material(&self, name: &str) -> Result<Lobe, MaterialError> {
-        let entry = self.entry(name)?;
-        match (entry.theta, entry.distribution.is_empty()) {
+        let lobe = &self.entry(name)?.lobe;
+        match (lobe.theta, &lobe.distribution) {
             (Some(theta), _) => {
-                let skew = Skew::new(entry.sigma(), theta)?;
-                Ok(self.ellipsoid(skew, entry.gamma())?.into())
+                let skew = Skew::new(lobe.sigma(), theta)?;
+                Ok(self.ellipsoid(skew, lobe.gamma())?.into())
             }
-            (None, true) => self.lobe(entry.sigma(), entry.gamma()),
-            (None, false) => {
-                let sigma = entry.sigma[0][0] as f32;
-                Ok(Radial::from_tables(&self.tables, sigma, &entry.lobe())?.into())
+            (None, None) => self.lobe(lobe.sigma(), lobe.gamma()),
+            (None, Some(_)) => {
+                let sigma = lobe.roughness.x().min as f32;
+                Ok(Radial::from_tables(&self.tables, sigma, &lobe.tabulated())?.into())
             }
         }
     }

@@ -5,7 +5,7 @@ use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::statistics::{sidak, test_visible_normals};
 use microfacet_sampler::{Ggx, Lobe, MaterialError, MicrofacetDistribution, Tables};
-use microfacet_tables::{MaterialEntry, Provenance};
+use microfacet_tables::{Interval, LobeSpec, MaterialEntry, Provenance, Roughness};
 
 const SIGMAS: [[f64; 2]; 4] = [[0.3, 0.3], [1e-3, 0.01], [4.0, 0.5], [1e-8, 1e6]];
 const VIEWS: [[f64; 2]; 5] = [[0.0, 0.0], [1e-3, 1.0], [0.8, -2.5], [1.4, 3.0], [1.5705, 0.6]];
@@ -80,10 +80,10 @@ fn normals_are_visible_at_every_corner() {
 fn without_tables() -> Tables {
     let gold = MaterialEntry {
         name: "gold".into(),
-        sigma: [[0.2, 0.2], [0.1, 0.3]],
-        s: [1.0, 1.0],
-        distribution: String::new(),
-        theta: None,
+        lobe: LobeSpec::family(
+            Roughness::Anisotropic { x: Interval::point(0.2), y: [0.1, 0.3].into() },
+            Interval::point(2.0),
+        ),
         masking: None,
         fresnel: None,
     };

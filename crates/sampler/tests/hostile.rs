@@ -3,12 +3,13 @@
 
 use glam::Vec3;
 
+use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Skew, Tables};
 use microfacet_tables::axis::{HalfTangent, Rational};
 use microfacet_tables::{
-    Axis, Certificate, Covered, Errors, FresnelEntry, Interpolation, Kind, LoadError, LobeEntry,
-    Mapping, MaterialEntry, Precision, Provenance, Quantity, Reflectance, Side, Subject, Table,
-    VERSION, encode, seal,
+    Axis, Certificate, Covered, Errors, FresnelEntry, Interpolation, Interval, Kind, LoadError,
+    LobeEntry, LobeSpec, Mapping, MaterialEntry, Precision, Provenance, Quantity, Reflectance,
+    Roughness, Side, Subject, Table, VERSION, encode, seal,
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {
@@ -68,22 +69,21 @@ fn small_tables() -> Vec<Table> {
 
 /// A material of each form, with numbers that tell the fields apart.
 fn materials() -> Vec<MaterialEntry> {
-    let material = |name: &str, sigma: [[f64; 2]; 2], s: [f64; 2], fresnel: FresnelEntry| {
-        let (name, fresnel) = (name.into(), Some(fresnel));
-        let (distribution, theta, masking) = (String::new(), None, None);
-        MaterialEntry { name, sigma, s, distribution, theta, masking, fresnel }
+    let material = |name: &str, theta, sigma: [[f64; 2]; 2], s: [f64; 2], fresnel| {
+        let [x, y] = sigma.map(Interval::from);
+        let gamma = Interval::from(s).map_falling(gamma_of_s);
+        let lobe = LobeSpec { theta, ..LobeSpec::family(Roughness::anisotropic(x, y), gamma) };
+        MaterialEntry { name: name.into(), lobe, masking: None, fresnel: Some(fresnel) }
     };
     let [tilted, metal] = [[[0.25; 2], [0.375; 2]], [[0.0, 0.5], [0.125, 0.625]]];
+    let theta = Some([0.1, -0.2, 0.5]);
     let conductor = FresnelEntry::Conductor { eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
     let range = FresnelEntry::Dielectrics { min: 1.25, max: Some(2.5) };
     vec![
-        MaterialEntry {
-            theta: Some([0.1, -0.2, 0.5]),
-            ..material("tilted", tilted, [0.75; 2], FresnelEntry::Schlick([0.04; 3]))
-        },
-        material("metal", metal, [0.0, 1.5], conductor),
-        material("pane", [[0.5; 2]; 2], [1.0; 2], FresnelEntry::Dielectric(1.75)),
-        material("panes", [[0.5; 2]; 2], [1.0; 2], range),
+        material("tilted", theta, tilted, [0.8; 2], FresnelEntry::Schlick([0.04; 3])),
+        material("metal", None, metal, [0.0, 1.6], conductor),
+        material("pane", None, [[0.5; 2]; 2], [1.0; 2], FresnelEntry::Dielectric(1.75)),
+        material("panes", None, [[0.5; 2]; 2], [1.0; 2], range),
     ]
 }
 
@@ -198,19 +198,19 @@ fn lying_headers_are_refused_by_name() {
 
 #[test]
 fn lying_descriptions_of_materials_and_tables_are_refused_by_name() {
-    let metal = r#"\"sigma\":[[0.0,0.5],[0.125,0.625]],\"s\":[0.0,1.5]"#;
-    let tilted = r#"\"sigma\":[[0.25,0.25],[0.375,0.375]],\"s\":[0.75,0.75]"#;
+    let metal = r#"\"sigma\":[[0.0,0.5],[0.125,0.625]],\"s\":[0.0,1.6]"#;
+    let tilted = r#"\"sigma\":[[0.25,0.25],[0.375,0.375]],\"s\":[0.8,0.8]"#;
     let theta = r#"\"theta\":[0.1,-0.2,0.5]"#;
     let covers = r#"\"covers\":{\"s\":[1.0,1.0]}"#;
     let lies = [
         // Materials.
-        (metal, r#"\"sigma\":[[0.5,0.0],[0.1,0.6]],\"s\":[0.0,1.5]"#, "`metal`: sigma = [0.5, 0]"),
-        (metal, r#"\"sigma\":[[0.0,0.5],[0.6,0.1]],\"s\":[0.0,1.5]"#, "sigma = [0.6, 0.1]"),
-        (metal, r#"\"sigma\":[[-0.1,0.5],[0.1,0.6]],\"s\":[0.0,1.5]"#, "sigma = [-0.1, 0.5]"),
-        (metal, r#"\"sigma\":[[0.0,1e999],[0.1,0.6]],\"s\":[0.0,1.5]"#, "out of range"),
-        (metal, r#"\"sigma\":[[0.0,null],[0.1,0.6]],\"s\":[0.0,1.5]"#, "null"),
-        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[1.5,0.0]"#, "s = [1.5, 0]"),
-        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[-0.1,1.5]"#, "s = [-0.1, 1.5]"),
+        (metal, r#"\"sigma\":[[0.5,0.0],[0.1,0.6]],\"s\":[0.0,1.6]"#, "`metal`: sigma = [0.5, 0]"),
+        (metal, r#"\"sigma\":[[0.0,0.5],[0.6,0.1]],\"s\":[0.0,1.6]"#, "sigma = [0.6, 0.1]"),
+        (metal, r#"\"sigma\":[[-0.1,0.5],[0.1,0.6]],\"s\":[0.0,1.6]"#, "sigma = [-0.1, 0.5]"),
+        (metal, r#"\"sigma\":[[0.0,1e999],[0.1,0.6]],\"s\":[0.0,1.6]"#, "out of range"),
+        (metal, r#"\"sigma\":[[0.0,null],[0.1,0.6]],\"s\":[0.0,1.6]"#, "null"),
+        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[1.6,0.0]"#, "s = [1.6, 0]"),
+        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[-0.1,1.6]"#, "s = [-0.1, 1.6]"),
         (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[0.0,2.0]"#, "s = [0, 2]"),
         (r#"\"name\":\"pane\""#, r#"\"name\":\"metal\""#, "`metal`: named twice"),
         (tilted, r#"\"sigma\":[[0.2,0.3],[0.3,0.3]],\"s\":[0.7,0.7]"#, "`tilted`: theta is for"),
@@ -265,10 +265,12 @@ fn what_would_be_refused_is_not_written() {
             .to_string()
     };
     for why in [
-        first(|material| material.sigma[0] = [f64::NAN; 2]),
-        first(|material| material.sigma[1][1] = f64::INFINITY),
-        first(|material| material.s[0] = f64::NAN),
-        first(|material| material.theta = Some([f64::NAN; 3])),
+        first(|material| material.lobe.roughness = Roughness::Isotropic([f64::NAN; 2].into())),
+        first(|material| {
+            material.lobe.roughness = Roughness::Isotropic([0.1, f64::INFINITY].into())
+        }),
+        first(|material| material.lobe.gamma.max = f64::NAN),
+        first(|material| material.lobe.theta = Some([f64::NAN; 3])),
         first(|material| material.fresnel = Some(FresnelEntry::Schlick([0.5, f64::NAN, 0.5]))),
     ] {
         assert!(why.contains("`tilted`"), "{why}");

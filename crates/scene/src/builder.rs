@@ -4,12 +4,12 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{
-    Format, Fresnel, Ignored, MOST_CANDIDATES, Masking, Material, Names, Origin, Place, Roughness,
-    Scene, SceneError, SceneErrorKind, did_you_mean,
+    Format, Fresnel, Ignored, LobeSpec, MOST_CANDIDATES, Masking, Material, Names, Origin, Place,
+    Roughness, Scene, SceneError, SceneErrorKind, did_you_mean,
 };
 use microfacet_sampler::Metal;
+use microfacet_tables::Interval;
 
 use super::texture::{self, Channel, Encoding, Textures};
 use crate::limits;
@@ -148,10 +148,7 @@ impl Builder {
         };
         let material = Material {
             name: self.names.unique(name),
-            roughness: lobe.roughness,
-            gamma: lobe.gamma,
-            distribution: None,
-            theta: None,
+            lobe: LobeSpec::family(lobe.roughness, lobe.gamma),
             fresnel: lobe.fresnel,
             masking: lobe.masking,
             origin: Origin { format: self.format, place: place.clone(), lobe: lobe.name },

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Place, SceneError};
+use microfacet_tables::Interval;
 
 /// Longer chains of references than this are refused, which bounds the stack for the recursion.
 const MAX_DEPTH: usize = 128;

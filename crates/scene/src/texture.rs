@@ -9,7 +9,7 @@ use std::path::Path;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use microfacet_baker::input;
-use microfacet_baker::interval::Interval;
+use microfacet_tables::Interval;
 
 use crate::limits::{self, Budget};
 

@@ -8,13 +8,14 @@
 
 use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, bake};
 use microfacet_baker::certify::albedo::{certified, edge_references, interior_references};
-use microfacet_baker::interval::Interval;
 use microfacet_baker::progress::Stage;
 use microfacet_sampler::Masking;
 use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
 };
-use microfacet_tables::{Axis, Errors, Interpolation, Mapping, Precision, Reflectance, Side};
+use microfacet_tables::{
+    Axis, Errors, Interpolation, Interval, Mapping, Precision, Reflectance, Side,
+};
 
 /// Error aimed at in a node. Estimates are careful: at places throughout the domain even 1e-2 gives
 /// values that are right to 2e-4.

@@ -8,6 +8,7 @@
 //! | [`encode`], [`decode`] | a set to and from the bytes of a safetensors file; `docs/format.md` specifies it |
 //! | [`describe`], [`reassemble`] | the description of one table, for another container |
 //! | [`Provenance`], [`MaterialEntry`] | where a set comes from, and its materials |
+//! | [`LobeSpec`] | a lobe, as recipes, plans and files state it |
 //! | [`Index`] | which of the numbered sets of a library holds a material |
 //!
 //! Whoever bakes a set (`microfacet-baker`) and whoever looks it up (`microfacet-sampler`) meet
@@ -38,14 +39,17 @@ pub mod axis;
 
 mod error;
 mod format;
+mod interval;
 
 pub use axis::{Axis, Interpolation, Mapping, Weights};
 pub use error::{LoadError, Range};
 pub use format::{
     Certificate, Channels, Coordinate, Covered, Errors, FORMAT, FresnelEntry, Index, IndexedSet,
-    Kind, LobeEntry, MaterialEntry, Precision, Provenance, Quantity, Reflectance, SAME, Side,
-    Subject, Table, VERSION, crc32, decode, describe, encode, reassemble, seal, seal_document,
+    Kind, LobeEntry, LobeSpec, MaterialEntry, Precision, Provenance, Quantity, Reflectance,
+    Roughness, SAME, Side, Subject, Table, VERSION, crc32, decode, describe, encode, reassemble,
+    seal, seal_document,
 };
+pub use interval::Interval;
 
 /// The smallest γ of tables; below, almost every visible normal has a slope beyond any
 /// floating-point number. The mathematics begins at 3/2.

@@ -8,13 +8,14 @@ use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
 use microfacet_baker::bake::albedo::Domain;
-use microfacet_baker::interval::Interval;
 use microfacet_baker::progress::Stage;
 use microfacet_core::shape::gamma_of_s;
 use microfacet_model as model;
 use microfacet_sampler::albedo::Albedo;
 use microfacet_sampler::{Masking, MaterialError, Tables};
-use microfacet_tables::{Axis, Covered, Kind, LobeEntry, Quantity, Reflectance, Subject, Table};
+use microfacet_tables::{
+    Axis, Covered, Interval, Kind, LobeEntry, Quantity, Reflectance, Subject, Table,
+};
 
 /// Allowed deviation from 1 with the Kulla–Conty lobe
 /// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).

@@ -1,8 +1,7 @@
 //! The materials that a furnace runs: those named, and else what the set covers of a grid.
 
-use microfacet_baker::interval::Interval;
 use microfacet_sampler::{Masking, Tables};
-use microfacet_tables::Kind;
+use microfacet_tables::{Interval, Kind};
 use microfacet_validate::furnace::domains;
 
 use crate::cli::{Failure, report};

@@ -3,11 +3,10 @@
 use serde_json::{Value, json};
 
 use microfacet_baker::bake::albedo::AlbedoLobe;
-use microfacet_baker::interval::Interval;
 use microfacet_baker::plan::{Cost, Verdict, entry};
 use microfacet_baker::scene::Ignored;
 use microfacet_report::words::verdict::{albedo_reason, reason};
-use microfacet_tables::{Kind, MaterialEntry};
+use microfacet_tables::{Interval, Kind, LobeSpec, MaterialEntry};
 
 use super::Report;
 use super::words::{OWN_TABLES, Offer, Outline};
@@ -29,14 +28,15 @@ impl Outline<'_> {
                 _ => None,
             };
             // Without the name, which is the scene's.
-            let range = |Interval { min, max }: Interval| [min, max];
-            let MaterialEntry { distribution, theta, masking, fresnel, .. } = entry(material);
-            let of_family = distribution.is_empty();
+            let MaterialEntry {
+                lobe: LobeSpec { distribution, theta, .. }, masking, fresnel, ..
+            } = entry(material);
+            let of_family = distribution.is_none();
             json!({
                 "name": material.name, "lobe": material.origin.lobe, "place": material.origin.place.to_string(),
-                "sigma": [range(material.roughness.x()), range(material.roughness.y())],
-                "gamma": of_family.then(|| gamma(material.gamma)),
-                "distribution": (!of_family).then_some(distribution), "theta": theta, "masking": masking, "fresnel": fresnel,
+                "sigma": material.lobe.sigmas(),
+                "gamma": of_family.then(|| gamma(material.lobe.gamma)),
+                "distribution": distribution, "theta": theta, "masking": masking, "fresnel": fresnel,
                 "verdict": short, "why": long, "shapes": verdict.need(),
                 "shares_with": other, "albedo": albedo_reason(albedo),
             })

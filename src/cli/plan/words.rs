@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
 use microfacet_baker::distribution::Distribution;
-use microfacet_baker::interval::Interval;
 use microfacet_baker::plan::{
     AlbedoVerdict, AlbedoWish, Cost, Plan, Verdict, albedo_cost, bare_cost, entry,
 };
@@ -13,7 +12,7 @@ use microfacet_baker::scene::{Ignored, Scene};
 use microfacet_baker::table_spec::{Quality, TableSpec, general_set};
 use microfacet_report::words::material::{material as words_of, reflectance};
 use microfacet_report::words::verdict::{albedo_reason, reason};
-use microfacet_tables::Precision;
+use microfacet_tables::{Interval, Precision};
 use rayon::current_num_threads;
 use serde_json::json;
 
@@ -118,7 +117,7 @@ impl<'a> Users<'a> {
             }
             if *verdict == Verdict::Own {
                 // A scene has a thousand distributions at most.
-                let own = |known: &Distribution| material.distribution.as_ref() == Some(known);
+                let own = |known: &Distribution| material.lobe.distribution.as_ref() == Some(known);
                 if let Some(i) = plan.distributions.iter().position(own) {
                     users.distributions[i].push(name);
                 }

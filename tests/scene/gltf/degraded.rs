@@ -9,7 +9,7 @@ use crate::{assert_not_understood, assert_warned, isotropic, load, named, names}
 pub(super) fn beside(materials: &str, rest: &str) -> Scene {
     let good = "{\"name\": \"good\", \"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}}";
     let scene = load("a.gltf", &document(&format!("{materials},\n{good}"), rest));
-    assert_eq!(named(&scene, "good").roughness, isotropic(0.25));
+    assert_eq!(named(&scene, "good").lobe.roughness, isotropic(0.25));
     scene
 }
 
@@ -47,7 +47,7 @@ fn a_bad_fresnel_value_leaves_the_lobe() {
         );
         let scene = beside(&material, "");
         assert_eq!((named(&scene, "m").fresnel, scene.ignored.len()), (None, 0));
-        assert_eq!(named(&scene, "m").roughness, isotropic(1.0));
+        assert_eq!(named(&scene, "m").lobe.roughness, isotropic(1.0));
         assert_warned(&scene, "a.gltf", &[parts, &["\"m\"", "without its Fresnel term"]].concat());
     };
     let glass = "\"metallicFactor\": 0";
@@ -83,7 +83,7 @@ fn indices_may_be_written_as_decimals() {
     let folder = crate::Folder::new(&[("a.gltf", text.as_bytes()), ("a.bin", &png)]);
     let scene = folder.load("a.gltf").unwrap();
     assert_eq!(scene.warnings, [""; 0]);
-    let Roughness::Isotropic(range) = scene.materials[0].roughness else { unreachable!() };
+    let Roughness::Isotropic(range) = scene.materials[0].lobe.roughness else { unreachable!() };
     assert!((range.min - 0.16).abs() < 1e-12 && (range.max - 0.64).abs() < 1e-12, "{range:?}");
     let used: Vec<_> = scene.materials.iter().map(|material| material.used).collect();
     assert_eq!(used, [false, true]);

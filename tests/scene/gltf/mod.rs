@@ -7,8 +7,8 @@ mod unreadable;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Format, Fresnel, Roughness};
+use microfacet_tables::Interval;
 
 use crate::{
     Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
@@ -37,12 +37,12 @@ fn roughness_is_squared_and_the_rest_is_ggx() {
     );
     assert_eq!(names(&scene), ["half", "material 1", "mirror", "half (2)", "gloss"]);
     for material in &scene.materials {
-        assert_eq!(material.gamma, Interval::point(2.0));
+        assert_eq!(material.lobe.gamma, Interval::point(2.0));
         assert_eq!(material.masking, None);
         assert_eq!(material.origin.format, Format::Gltf);
         assert!(material.used, "there are no meshes");
     }
-    let roughness: Vec<_> = scene.materials.iter().map(|m| m.roughness).collect();
+    let roughness: Vec<_> = scene.materials.iter().map(|m| m.lobe.roughness).collect();
     let expected = [
         isotropic(0.25),
         isotropic(1.0),
@@ -70,8 +70,8 @@ fn extensions_add_anisotropy_and_a_coat() {
     );
     assert_eq!(names(&scene), ["car", "car.clearcoat", "bare"]);
     // 0.25 + 0.75 * 0.25
-    assert_eq!(scene.materials[0].roughness, anisotropic(0.4375, 0.25));
-    assert_eq!(scene.materials[1].roughness, isotropic(0.2 * 0.2));
+    assert_eq!(scene.materials[0].lobe.roughness, anisotropic(0.4375, 0.25));
+    assert_eq!(scene.materials[1].lobe.roughness, isotropic(0.2 * 0.2));
     assert_eq!(scene.materials[1].fresnel, Some(Fresnel::Schlick([0.04; 3])));
     assert_eq!(scene.materials[1].origin.lobe, Some("clearcoat"));
     assert_eq!(scene.ignored[0].name, "car.sheen");
@@ -90,7 +90,7 @@ fn meshes_tell_what_is_used() {
     let scene = load("a.gltf", &document(materials, bare));
     assert_eq!(names(&scene), ["a", "b", "c", "default material"]);
     assert!(named(&scene, "default material").used);
-    assert_eq!(named(&scene, "default material").roughness, isotropic(1.0));
+    assert_eq!(named(&scene, "default material").lobe.roughness, isotropic(1.0));
 }
 
 /// Materials that take the PNG's green and blue as roughness and as anisotropy.
@@ -104,13 +104,14 @@ const TEXTURED: &str = r#"
 #[track_caller]
 fn assert_textured(scene: &microfacet_baker::scene::Scene) {
     assert_eq!(scene.warnings, [""; 0]);
-    let check =
-        |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(scene, name).roughness, x, y);
+    let check = |name: &str, x: [f64; 2], y: [f64; 2]| {
+        assert_close(named(scene, name).lobe.roughness, x, y)
+    };
     check("rough", [0.04, 0.16], [0.04, 0.16]);
     check("coated", [0.25, 0.4375], [0.25, 0.25]);
     check("coated.clearcoat", [0.16, 0.64], [0.16, 0.64]);
-    assert!(named(scene, "rough").roughness.is_isotropic());
-    assert!(!named(scene, "coated").roughness.is_isotropic());
+    assert!(named(scene, "rough").lobe.roughness.is_isotropic());
+    assert!(!named(scene, "coated").lobe.roughness.is_isotropic());
 }
 
 #[test]
@@ -185,7 +186,7 @@ fn an_image_that_cannot_be_read_is_the_full_range() {
         "",
     ] {
         let scene = load("a.gltf", &document(TEXTURED, rest));
-        assert_close(named(&scene, "rough").roughness, [0.0, 0.25], [0.0, 0.25]);
+        assert_close(named(&scene, "rough").lobe.roughness, [0.0, 0.25], [0.0, 0.25]);
         assert!(!scene.warnings.is_empty());
         assert!(scene.warnings[0].contains("[0, 1]"), "{:?}", scene.warnings);
     }

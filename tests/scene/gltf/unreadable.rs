@@ -43,7 +43,7 @@ fn a_member_that_is_null_is_absent() {
          "extensions": {"KHR_materials_clearcoat": null, "KHR_materials_unlit": null}}"#;
     let scene = load("a.gltf", &document(materials, ", \"meshes\": null, \"images\": null"));
     assert_eq!(names(&scene), ["material 0", "material 1"]);
-    assert!(scene.materials.iter().all(|m| m.used && m.roughness == isotropic(1.0)));
+    assert!(scene.materials.iter().all(|m| m.used && m.lobe.roughness == isotropic(1.0)));
     assert_eq!((scene.ignored.len(), scene.warnings.len()), (0, 0));
 }
 
@@ -51,7 +51,7 @@ fn a_member_that_is_null_is_absent() {
 fn a_texture_that_cannot_be_read_covers_all() {
     let case = |rest: &str, why: &str| {
         let scene = load("a.gltf", &document(TEXTURED, &format!(", {rest}")));
-        assert_close(named(&scene, "rough").roughness, [0.0, 0.25], [0.0, 0.25]);
+        assert_close(named(&scene, "rough").lobe.roughness, [0.0, 0.25], [0.0, 0.25]);
         assert_eq!(scene.ignored, []);
         assert_warned(&scene, "a.gltf", &["texture 0 cannot be read (", why, "[0, 1]"]);
     };
@@ -104,7 +104,7 @@ fn a_required_extension_that_is_not_known_costs_its_materials_alone() {
     assert_eq!((names(&scene), scene.ignored.len()), (vec!["good"], 1));
     // One that is not required may be left aside (specification, 3.12).
     let scene = beside(&one("ADSK_x"), &required("\"ADSK_y\""));
-    assert_eq!((named(&scene, "m").roughness, scene.ignored.len()), (isotropic(1.0), 0));
+    assert_eq!((named(&scene, "m").lobe.roughness, scene.ignored.len()), (isotropic(1.0), 0));
     // Of these some are read, and the others leave the lobe as it is.
     for known in ["anisotropy", "clearcoat", "ior", "specular", "transmission", "iridescence"]
         .into_iter()

@@ -1,7 +1,7 @@
 //! Surfaces that are graphs of BSDF nodes.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Fresnel, Scene};
+use microfacet_tables::Interval;
 
 use super::{document, not_understood};
 use crate::{Folder, anisotropic, assert_close, isotropic, load, names, png};
@@ -29,14 +29,14 @@ const ROUGH: (&str, &str) = ("roughness", "value=\"0.2, 0.3\"");
 fn roughness_is_alpha_of_each_axis() {
     let scene = one("conductor_bsdf", &[ROUGH]);
     assert_eq!(names(&scene), ["a"]);
-    assert_eq!(scene.materials[0].roughness, anisotropic(0.2, 0.3));
-    assert_eq!(scene.materials[0].gamma, Interval::point(2.0));
-    assert_eq!(one("dielectric_bsdf", &[]).materials[0].roughness, isotropic(0.05));
+    assert_eq!(scene.materials[0].lobe.roughness, anisotropic(0.2, 0.3));
+    assert_eq!(scene.materials[0].lobe.gamma, Interval::point(2.0));
+    assert_eq!(one("dielectric_bsdf", &[]).materials[0].lobe.roughness, isotropic(0.05));
 
     let from = |node: &str| {
         let inputs = [("roughness", "nodename=\"r\"")];
         let text = surface(&(node.to_owned() + &bsdf("dielectric_bsdf", "end", &inputs)));
-        load("a.mtlx", &text).materials[0].roughness
+        load("a.mtlx", &text).materials[0].lobe.roughness
     };
     let stretched = |node: &str, roughness: &str| {
         from(&bsdf(node, "r", &[(roughness, "value=\"0.6\""), ("anisotropy", "value=\"0.36\"")]))
@@ -66,12 +66,12 @@ fn one_texture_for_both_axes_is_isotropic() {
         bsdf("convert", "r", &[("in", of_image)]),
     ];
     for pair in pairs {
-        let roughness = load(&pair).materials[0].roughness;
+        let roughness = load(&pair).materials[0].lobe.roughness;
         assert!(roughness.is_isotropic(), "{roughness:?}");
         assert_close(roughness, [0.2, 0.4], [0.2, 0.4]);
     }
     let half = bsdf("combine2", "r", &[("in1", of_image), ("in2", "value=\"0.2\"")]);
-    let roughness = load(&half).materials[0].roughness;
+    let roughness = load(&half).materials[0].lobe.roughness;
     assert!(!roughness.is_isotropic());
     assert_close(roughness, [0.2, 0.4], [0.2; 2]);
 }
@@ -231,8 +231,8 @@ fn nodes_are_followed_into_the_graphs_that_define_them() {
         <paint name="b" type="surfaceshader"><input name="gloss" value="0.3, 0.3"/></paint>"#;
     let scene = load("a.mtlx", &document(&format!("{DEFINED}{uses}")));
     assert_eq!(names(&scene), ["a", "b"]);
-    assert_eq!(scene.materials[0].roughness, isotropic(0.1));
-    assert_eq!(scene.materials[1].roughness, isotropic(0.3));
+    assert_eq!(scene.materials[0].lobe.roughness, isotropic(0.1));
+    assert_eq!(scene.materials[1].lobe.roughness, isotropic(0.3));
     // Also if the graph is named by an implementation.
     let named = DEFINED
         .replace("nodegraph name=\"NG_paint\" nodedef=\"ND_paint\"", "nodegraph name=\"NG_paint\"")
@@ -247,7 +247,7 @@ fn nodes_are_followed_into_the_graphs_that_define_them() {
         <half name="h" type="float"><input name="in" value="0.8"/></half>
         <gltf_pbr name="a" type="surfaceshader"><input name="roughness" nodename="h"/></gltf_pbr>"#;
     let scene = load("a.mtlx", &document(value));
-    assert_close(scene.materials[0].roughness, [0.16; 2], [0.16; 2]);
+    assert_close(scene.materials[0].lobe.roughness, [0.16; 2], [0.16; 2]);
 }
 
 #[test]

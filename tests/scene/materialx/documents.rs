@@ -28,7 +28,7 @@ fn an_included_document_keeps_its_folder_and_its_prefix() {
         std::fs::write(folder.path(image), png()).unwrap();
         let scene = folder.load("a.mtlx").unwrap();
         assert_eq!(scene.warnings, [""; 0], "{outer} {inner}");
-        assert_close(scene.materials[0].roughness, [0.04, 0.16], [0.04, 0.16]);
+        assert_close(scene.materials[0].lobe.roughness, [0.04, 0.16], [0.04, 0.16]);
     }
 }
 
@@ -72,7 +72,7 @@ fn tiles_count_together() {
             let check = |r: [f64; 2]| {
                 let scene = folder.load("a.mtlx").unwrap();
                 assert_eq!(scene.warnings, [""; 0]);
-                assert_close(scene.materials[0].roughness, r, r);
+                assert_close(scene.materials[0].lobe.roughness, r, r);
             };
             check([0.04, 0.16]);
             // What is no tile is not read.
@@ -257,7 +257,7 @@ fn an_output_alone_is_one_of_the_document() {
     };
     let found = scene("alpha");
     assert_eq!((names(&found), &found.warnings[..]), (vec!["m"], &[][..]));
-    assert_close(found.materials[0].roughness, [0.1764; 2], [0.1764; 2]);
+    assert_close(found.materials[0].lobe.roughness, [0.1764; 2], [0.1764; 2]);
     let none = scene("alhpa");
     assert!(none.ignored[0].reason.contains("there is no output \"alhpa\""), "{none:?}");
 }

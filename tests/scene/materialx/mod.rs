@@ -4,8 +4,8 @@ mod bsdfs;
 mod documents;
 mod models;
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Format, Fresnel, Roughness, Scene};
+use microfacet_tables::Interval;
 
 use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, names, png};
 
@@ -26,22 +26,22 @@ fn shader(class: &str, inputs: &[(&str, f64)]) -> Scene {
 fn standard_surface_follows_its_definition() {
     let default = shader("standard_surface", &[]);
     assert_eq!(names(&default), ["a"]);
-    assert_close(default.materials[0].roughness, [0.04; 2], [0.04; 2]);
-    assert_eq!(default.materials[0].gamma, Interval::point(2.0));
+    assert_close(default.materials[0].lobe.roughness, [0.04; 2], [0.04; 2]);
+    assert_eq!(default.materials[0].lobe.gamma, Interval::point(2.0));
     assert_eq!(default.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
     assert_eq!(default.materials[0].masking, None);
     assert_eq!(default.materials[0].origin.format, Format::MaterialX);
 
     let mirror = shader("standard_surface", &[("specular_roughness", 0.0), ("metalness", 1.0)]);
-    assert_eq!(mirror.materials[0].roughness, Roughness::Smooth);
+    assert_eq!(mirror.materials[0].lobe.roughness, Roughness::Smooth);
 
     let brushed =
         shader("standard_surface", &[("specular_roughness", 0.6), ("specular_anisotropy", 0.36)]);
     // aspect = sqrt(1 - 0.36) = 0.8
-    assert_close(brushed.materials[0].roughness, [0.45; 2], [0.288; 2]);
+    assert_close(brushed.materials[0].lobe.roughness, [0.45; 2], [0.288; 2]);
     let extreme =
         shader("standard_surface", &[("specular_roughness", 1.0), ("specular_anisotropy", 1.0)]);
-    assert_close(extreme.materials[0].roughness, [1.0; 2], [0.02f64.sqrt(); 2]);
+    assert_close(extreme.materials[0].lobe.roughness, [1.0; 2], [0.02f64.sqrt(); 2]);
 
     let layered = shader(
         "standard_surface",
@@ -56,8 +56,9 @@ fn standard_surface_follows_its_definition() {
         ],
     );
     assert_eq!(names(&layered), ["a", "a.transmission", "a.coat"]);
-    let roughness =
-        |i: usize, r: f64| assert_close(layered.materials[i].roughness, [r * r; 2], [r * r; 2]);
+    let roughness = |i: usize, r: f64| {
+        assert_close(layered.materials[i].lobe.roughness, [r * r; 2], [r * r; 2])
+    };
     // The coat roughens by t = 0.5 * 0.4 * 1 = 0.2.
     roughness(0, 0.5 + 0.5 * 0.2);
     roughness(1, 0.75 + 0.25 * 0.2);
@@ -72,7 +73,7 @@ fn standard_surface_follows_its_definition() {
 #[test]
 fn open_pbr_surface_follows_its_definition() {
     let default = shader("open_pbr_surface", &[]);
-    assert_close(default.materials[0].roughness, [0.09; 2], [0.09; 2]);
+    assert_close(default.materials[0].lobe.roughness, [0.09; 2], [0.09; 2]);
     assert_eq!(default.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
 
     let brushed = shader(
@@ -81,12 +82,12 @@ fn open_pbr_surface_follows_its_definition() {
     );
     // sqrt(2 / (1 + 0.25))
     let along = 0.25 * 1.6f64.sqrt();
-    assert_close(brushed.materials[0].roughness, [along; 2], [0.5 * along; 2]);
+    assert_close(brushed.materials[0].lobe.roughness, [along; 2], [0.5 * along; 2]);
     let line = shader(
         "open_pbr_surface",
         &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 1.0)],
     );
-    assert_close(line.materials[0].roughness, [0.25 * 2f64.sqrt(); 2], [1e-8; 2]);
+    assert_close(line.materials[0].lobe.roughness, [0.25 * 2f64.sqrt(); 2], [1e-8; 2]);
 
     let coated = shader(
         "open_pbr_surface",
@@ -101,10 +102,10 @@ fn open_pbr_surface_follows_its_definition() {
     assert_eq!(names(&coated), ["a", "a.coat"]);
     // (0.5^4 + 2 * 0.6^4)^(1/4), mixed half and half with 0.5
     let r = 0.5 * 0.5 + 0.5 * 0.3217f64.powf(0.25);
-    assert_close(coated.materials[0].roughness, [r * r; 2], [r * r; 2]);
+    assert_close(coated.materials[0].lobe.roughness, [r * r; 2], [r * r; 2]);
     assert_eq!(coated.materials[0].fresnel, None, "relative to the coat");
     let along = 0.36 * 1.6f64.sqrt();
-    assert_close(coated.materials[1].roughness, [along; 2], [0.5 * along; 2]);
+    assert_close(coated.materials[1].lobe.roughness, [along; 2], [0.5 * along; 2]);
     assert_eq!(coated.materials[1].fresnel, Some(Fresnel::Dielectric(1.6)));
     assert_eq!(coated.ignored[0].name, "a.fuzz_weight");
 }
@@ -164,7 +165,7 @@ fn node_graphs_are_followed() {
         let scene = folder.load("a.mtlx").unwrap();
         assert_eq!(scene.warnings, [""; 0]);
         let alpha = r.map(|r| r * r);
-        assert_close(scene.materials[0].roughness, alpha, alpha);
+        assert_close(scene.materials[0].lobe.roughness, alpha, alpha);
     };
     let image = r#"<image name="i" type="float"><input name="file" type="filename" value="a.png"/></image>"#;
     let colour = r#"<tiledimage name="i" type="color3"><input name="file" type="filename" value="a.png" colorspace="lin_rec709"/></tiledimage>"#;
@@ -251,7 +252,7 @@ fn what_a_graph_does_otherwise_is_the_full_range() {
         (r#"<image name="end" type="float"/>"#, "names no file"),
     ] {
         let scene = load("a.mtlx", &graph(nodes));
-        assert_eq!(scene.materials[0].roughness, Roughness::Isotropic(Interval::UNIT));
+        assert_eq!(scene.materials[0].lobe.roughness, Roughness::Isotropic(Interval::UNIT));
         assert!(scene.warnings[0].contains(part), "{:?}", scene.warnings);
     }
 }
@@ -278,14 +279,14 @@ fn included_documents_belong_to_the_scene() {
 #[test]
 fn values_out_of_range_are_moved_and_warned_of() {
     let scene = shader("standard_surface", &[("specular_roughness", 1.5), ("metalness", -1.0)]);
-    assert_eq!(scene.materials[0].roughness, isotropic(1.0));
+    assert_eq!(scene.materials[0].lobe.roughness, isotropic(1.0));
     assert_eq!(scene.warnings.len(), 2);
     assert!(scene.warnings[0].contains("specular_roughness is 1.5, outside [0, 1]"));
     let both = shader(
         "open_pbr_surface",
         &[("specular_roughness", 0.5), ("specular_roughness_anisotropy", 0.0)],
     );
-    assert_ne!(both.materials[0].roughness, anisotropic(0.25, 0.25));
+    assert_ne!(both.materials[0].lobe.roughness, anisotropic(0.25, 0.25));
 }
 
 #[test]
@@ -399,7 +400,7 @@ fn a_range_is_a_remapping() {
             .collect();
         let scene = load("a.mtlx", &graph(&format!("<range name=\"end\">{inputs}</range>")));
         assert_eq!(scene.warnings, [""; 0]);
-        assert_close(scene.materials[0].roughness, [r * r; 2], [r * r; 2]);
+        assert_close(scene.materials[0].lobe.roughness, [r * r; 2], [r * r; 2]);
     };
     let quarter = ("in", "interfacename=\"amount\"");
     check(&[quarter], 0.25);
@@ -425,7 +426,7 @@ fn a_range_is_a_remapping() {
     let far = "<input name=\"in\" nodename=\"i\"/><input name=\"inhigh\" value=\"1e-320\"/>";
     let far = load("a.mtlx", &graph(&format!("{image}<range name=\"end\">{far}</range>")));
     assert!(far.warnings.iter().any(|it| it.contains("not finite")), "{far:?}");
-    assert_eq!(far.materials[0].roughness.x(), Interval::UNIT);
+    assert_eq!(far.materials[0].lobe.roughness.x(), Interval::UNIT);
     // A constant, of which a Fresnel term may be made.
     let ior = r#"<range name="r"><input name="in" value="1"/><input name="outhigh" value="1.7"/></range>
         <open_pbr_surface name="a" type="surfaceshader"><input name="specular_ior" nodename="r"/></open_pbr_surface>"#;
@@ -437,7 +438,7 @@ fn a_range_is_a_remapping() {
 fn an_input_that_says_nothing_is_the_default() {
     let text = "<open_pbr_surface name=\"a\" type=\"surfaceshader\"><input name=\"specular_roughness\" type=\"float\"/></open_pbr_surface>";
     let scene = load("a.mtlx", &document(text));
-    assert_close(scene.materials[0].roughness, [0.09; 2], [0.09; 2]);
+    assert_close(scene.materials[0].lobe.roughness, [0.09; 2], [0.09; 2]);
 }
 
 #[test]

@@ -41,14 +41,14 @@ fn assert_conductor(material: &Material, expected: [f64; 2]) {
 #[test]
 fn gltf_pbr() {
     let default = shader("gltf_pbr", &[]);
-    assert_eq!(default.materials[0].roughness, isotropic(1.0));
+    assert_eq!(default.materials[0].lobe.roughness, isotropic(1.0));
     assert_schlick(&default.materials[0], 1.0);
 
     let dielectric = |inputs: &[(&str, f64)]| {
         shader("gltf_pbr", &[&[("metallic", 0.0), ("roughness", 0.5)], inputs].concat())
     };
     let plain = dielectric(&[]);
-    assert_eq!(plain.materials[0].roughness, isotropic(0.25));
+    assert_eq!(plain.materials[0].lobe.roughness, isotropic(0.25));
     assert_schlick(&plain.materials[0], 0.04);
     assert_schlick(&dielectric(&[("ior", 3.0)]).materials[0], 0.25);
     for (input, value) in [("specular", 0.5), ("iridescence", 1.0), ("metallic", 0.5)] {
@@ -59,11 +59,11 @@ fn gltf_pbr() {
     }
     // Along the tangent, the mixture of r^2 = 0.25 and 1 by 0.6^2.
     let brushed = dielectric(&[("anisotropy_strength", 0.6)]);
-    assert_close(brushed.materials[0].roughness, [0.25 + 0.75 * 0.36; 2], [0.25; 2]);
+    assert_close(brushed.materials[0].lobe.roughness, [0.25 + 0.75 * 0.36; 2], [0.25; 2]);
 
     let coated = dielectric(&[("clearcoat", 1.0), ("clearcoat_roughness", 0.3)]);
     assert_eq!(names(&coated), ["a", "a.clearcoat"]);
-    assert_close(coated.materials[1].roughness, [0.09; 2], [0.09; 2]);
+    assert_close(coated.materials[1].lobe.roughness, [0.09; 2], [0.09; 2]);
     assert_eq!(coated.materials[1].fresnel, Some(Fresnel::Dielectric(1.5)));
 
     assert!(dielectric(&[("specular", 0.0)]).ignored[0].reason.contains("diffuse"));
@@ -75,7 +75,7 @@ fn gltf_pbr() {
 #[test]
 fn usd_preview_surface() {
     let default = shader("UsdPreviewSurface", &[]);
-    assert_eq!(default.materials[0].roughness, isotropic(0.25));
+    assert_eq!(default.materials[0].lobe.roughness, isotropic(0.25));
     assert_schlick(&default.materials[0], 0.04);
 
     let inputs = [("useSpecularWorkflow", "1"), ("specularColor", "0.3, 0.3, 0.3")];
@@ -85,7 +85,7 @@ fn usd_preview_surface() {
     assert_eq!(shader("UsdPreviewSurface", &[("metallic", 0.5)]).materials[0].fresnel, None);
 
     let coated = shader("UsdPreviewSurface", &[("clearcoat", 1.0), ("ior", 3.0)]);
-    assert_close(coated.materials[1].roughness, [1e-4; 2], [1e-4; 2]);
+    assert_close(coated.materials[1].lobe.roughness, [1e-4; 2], [1e-4; 2]);
     assert_schlick(&coated.materials[1], 0.25);
 }
 
@@ -93,16 +93,16 @@ fn usd_preview_surface() {
 fn disney_principled() {
     let brushed = shader("disney_principled", &[("roughness", 0.6), ("anisotropic", 0.36)]);
     // The aspect is sqrt(1 - 0.36) = 0.8.
-    assert_close(brushed.materials[0].roughness, [0.45; 2], [0.288; 2]);
+    assert_close(brushed.materials[0].lobe.roughness, [0.45; 2], [0.288; 2]);
     assert_eq!(brushed.materials[0].fresnel, None);
     let metal = coloured("disney_principled", &[("metallic", "1"), ("baseColor", "0.7, 0.7, 0.7")]);
     assert_schlick(&metal.materials[0], 0.7);
 
     let coated = shader("disney_principled", &[("clearcoat", 1.0), ("clearcoatGloss", 0.75)]);
     assert_eq!(names(&coated), ["a", "a.clearcoat"]);
-    assert_eq!(coated.materials[1].roughness, isotropic(0.0625));
+    assert_eq!(coated.materials[1].lobe.roughness, isotropic(0.0625));
     let glossy = shader("disney_principled", &[("clearcoat", 1.0)]);
-    assert_eq!(glossy.materials[1].roughness, Roughness::Smooth);
+    assert_eq!(glossy.materials[1].lobe.roughness, Roughness::Smooth);
 
     assert_eq!(shader("disney_principled", &[("sheen", 1.0)]).ignored[0].name, "a.sheen");
     assert_eq!(shader("disney_principled", &[("specular", 0.0)]).materials, []);
@@ -168,7 +168,7 @@ fn metals_have_the_reflectance_of_their_colour() {
     assert_eq!(copper.materials[0].fresnel, Some(Fresnel::Schlick([0.45, 0.3, 0.15])));
     // No F0 exceeds 1.
     assert_eq!(open(&[("base_color", "1.2, 0.6, 0.3")]).materials[0].fresnel, None);
-    assert_ne!(open(&[]).materials[0].roughness, anisotropic(0.09, 0.09));
+    assert_ne!(open(&[]).materials[0].lobe.roughness, anisotropic(0.09, 0.09));
 }
 
 #[test]

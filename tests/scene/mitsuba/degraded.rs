@@ -1,7 +1,7 @@
 //! What is not understood in a scene, and what only Mitsuba 0.6 has, while the rest is read.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Fresnel, Roughness, Scene};
+use microfacet_tables::Interval;
 
 use super::scene;
 use crate::{
@@ -13,7 +13,7 @@ fn beside(text: &str) -> Scene {
     let good =
         "<bsdf type=\"roughconductor\" id=\"good\"><float name=\"alpha\" value=\"0.2\"/></bsdf>";
     let scene = load("a.xml", &scene(&format!("{text}\n{good}")));
-    assert_eq!(named(&scene, "good").roughness, isotropic(0.2));
+    assert_eq!(named(&scene, "good").lobe.roughness, isotropic(0.2));
     scene
 }
 
@@ -70,7 +70,7 @@ fn a_bad_fresnel_value_leaves_the_lobe() {
         let scene = bsdf(class, &format!("{rough}\n{property}"));
         let a = named(&scene, "a");
         assert_eq!((a.fresnel, scene.ignored.len()), (None, 0));
-        assert_eq!(a.roughness, isotropic(0.25));
+        assert_eq!(a.lobe.roughness, isotropic(0.25));
         assert_warned(&scene, place, &[parts, &["without its Fresnel term"]].concat());
     };
     let glass = "roughdielectric";
@@ -126,7 +126,7 @@ fn spellings_of_version_0_6_are_read() {
         "<float name=\"alphaU\" value=\"0.3\"/><float name=\"alphaV\" value=\"0.1\"/>
          <string name=\"intIOR\" value=\"water\"/><float name=\"extIOR\" value=\"1\"/>",
     );
-    assert_eq!(scene.materials[0].roughness, anisotropic(0.3, 0.1));
+    assert_eq!(scene.materials[0].lobe.roughness, anisotropic(0.3, 0.1));
     assert_eq!(scene.materials[0].fresnel, Some(Fresnel::Dielectric(1.333)));
     assert_eq!(scene.warnings, [""; 0]);
 }
@@ -143,13 +143,13 @@ fn a_coating_is_a_lobe_beside_the_bsdf_inside() {
     );
     assert_eq!(names(&scene), ["a.coating", "a", "good"]);
     let [coating, metal, _] = &scene.materials[..] else { unreachable!() };
-    assert_eq!(coating.roughness, isotropic(0.1));
-    assert_eq!(coating.gamma, Interval::point(2.0));
+    assert_eq!(coating.lobe.roughness, isotropic(0.1));
+    assert_eq!(coating.lobe.gamma, Interval::point(2.0));
     assert_eq!(coating.fresnel, Some(Fresnel::Dielectric(1.5)));
     assert_eq!(coating.origin.lobe, Some("coating"));
-    assert_eq!(metal.roughness, isotropic(0.4));
+    assert_eq!(metal.lobe.roughness, isotropic(0.4));
     let scene = bsdf("coating", inner);
-    assert_eq!(named(&scene, "a.coating").roughness, Roughness::Smooth);
+    assert_eq!(named(&scene, "a.coating").lobe.roughness, Roughness::Smooth);
     let clear = Some(Fresnel::Dielectric(1.5046 / 1.000_277));
     assert_eq!(named(&scene, "a.coating").fresnel, clear);
     // A bad coat leaves what is inside, under the name that its own lobe would have.
@@ -279,5 +279,5 @@ fn properties_of_either_version_are_not_warned_of() {
     let scene = bsdf("principled", "<float name=\"specTrans\" value=\"1\"/>");
     assert_eq!(scene.warnings, [""; 0]);
     let older = "<float name=\"alphaU\" value=\"0.2\"/><float name=\"alphaV\" value=\"0.3\"/>";
-    assert_eq!(bsdf("roughconductor", older).materials[0].roughness, anisotropic(0.2, 0.3));
+    assert_eq!(bsdf("roughconductor", older).materials[0].lobe.roughness, anisotropic(0.2, 0.3));
 }

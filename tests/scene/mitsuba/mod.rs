@@ -3,9 +3,9 @@
 mod degraded;
 mod fresnel;
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Format, Fresnel, Masking, Roughness};
 use microfacet_sampler::Metal;
+use microfacet_tables::Interval;
 
 use crate::{
     Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
@@ -59,22 +59,22 @@ fn rough_plugins_take_alpha_as_written() {
         assert!(material.used);
     }
     let brushed = named(&scene, "brushed");
-    assert_eq!(brushed.roughness, anisotropic(0.04, 0.2));
-    assert_eq!(brushed.gamma, Interval::point(f64::INFINITY));
+    assert_eq!(brushed.lobe.roughness, anisotropic(0.04, 0.2));
+    assert_eq!(brushed.lobe.gamma, Interval::point(f64::INFINITY));
     assert_eq!(brushed.fresnel, Some(Metal::Gold.into()));
     assert_eq!(brushed.origin.place.line, Some(2));
     let glass = named(&scene, "glass");
-    assert_eq!(glass.roughness, isotropic(0.1));
-    assert_eq!(glass.gamma, Interval::point(2.0));
+    assert_eq!(glass.lobe.roughness, isotropic(0.1));
+    assert_eq!(glass.lobe.gamma, Interval::point(2.0));
     assert_eq!(glass.fresnel, Some(Fresnel::Dielectric(1.333)));
     let plastic = named(&scene, "plastic");
-    assert_eq!(plastic.roughness, isotropic(0.3));
+    assert_eq!(plastic.lobe.roughness, isotropic(0.3));
     assert_eq!(plastic.fresnel, Some(Fresnel::Dielectric(1.49 / 1.000_277)));
     let mirror = named(&scene, "mirror");
-    assert_eq!(mirror.roughness, Roughness::Smooth);
+    assert_eq!(mirror.lobe.roughness, Roughness::Smooth);
     assert_eq!(mirror.fresnel, Some(Fresnel::Mirror));
     let copper = named(&scene, "copper");
-    assert_eq!(copper.gamma, Interval::point(f64::INFINITY), "the default distribution");
+    assert_eq!(copper.lobe.gamma, Interval::point(f64::INFINITY), "the default distribution");
     let (eta, k) = ([0.2, 0.9, 1.1], [3.9, 2.4, 2.2]);
     assert_eq!(copper.fresnel, Some(Fresnel::Conductor { eta, k }));
     assert_eq!(scene.ignored[0].kind, "diffuse");
@@ -85,8 +85,8 @@ fn rough_plugins_take_alpha_as_written() {
 fn principled_squares_the_roughness() {
     let first = |class: &str, properties: &str| load("a.xml", &bsdf(class, properties));
     let default = first("principled", "");
-    assert_eq!(default.materials[0].roughness, isotropic(0.25));
-    assert_eq!(default.materials[0].gamma, Interval::point(2.0));
+    assert_eq!(default.materials[0].lobe.roughness, isotropic(0.25));
+    assert_eq!(default.materials[0].lobe.gamma, Interval::point(2.0));
     // The documented default, specular = 0.5, is an index of 1.5.
     let Some(Fresnel::Dielectric(eta)) = default.materials[0].fresnel else {
         panic!("{:?}", default.materials[0].fresnel)
@@ -94,7 +94,7 @@ fn principled_squares_the_roughness() {
     assert!((eta - 1.5).abs() < 1e-15, "{eta}");
 
     let smooth = first("principled", "<float name=\"roughness\" value=\"0\"/>");
-    assert_eq!(smooth.materials[0].roughness, isotropic(1e-3), "raised, as Mitsuba does");
+    assert_eq!(smooth.materials[0].lobe.roughness, isotropic(1e-3), "raised, as Mitsuba does");
 
     let stretched = first(
         "principled",
@@ -102,7 +102,7 @@ fn principled_squares_the_roughness() {
          <float name=\"metallic\" value=\"1\"/><float name=\"clearcoat\" value=\"0.5\"/>",
     );
     // aspect = sqrt(1 - 0.9 * 0.4) = 0.8
-    assert_close(stretched.materials[0].roughness, [0.45; 2], [0.288; 2]);
+    assert_close(stretched.materials[0].lobe.roughness, [0.45; 2], [0.288; 2]);
     assert_eq!(stretched.materials[0].fresnel, None);
     assert_eq!(stretched.ignored[0].name, "a.clearcoat");
     assert!(stretched.ignored[0].reason.contains("GTR1"));
@@ -113,9 +113,9 @@ fn principled_squares_the_roughness() {
          <float name=\"eta\" value=\"2\"/>",
     );
     assert_eq!(names(&thin), ["a", "a.transmission"]);
-    assert_close(thin.materials[0].roughness, [0.36; 2], [0.36; 2]);
+    assert_close(thin.materials[0].lobe.roughness, [0.36; 2], [0.36; 2]);
     // 0.65 * 2 - 0.35 = 0.95
-    assert_close(thin.materials[1].roughness, [0.3249; 2], [0.3249; 2]);
+    assert_close(thin.materials[1].lobe.roughness, [0.3249; 2], [0.3249; 2]);
     assert_eq!(first("principledthin", "").materials, []);
 }
 
@@ -176,8 +176,8 @@ fn parameters_and_includes_are_followed() {
         ),
     ]);
     let scene = folder.load("a.xml").unwrap();
-    assert_eq!(named(&scene, "b").roughness, isotropic(0.2), "the first default holds");
-    assert_eq!(named(&scene, "a").roughness, isotropic(0.4), "the longest name is meant");
+    assert_eq!(named(&scene, "b").lobe.roughness, isotropic(0.2), "the first default holds");
+    assert_eq!(named(&scene, "a").lobe.roughness, isotropic(0.4), "the longest name is meant");
     assert_eq!(scene.warnings.len(), 1);
     assert!(scene.warnings[0].contains("a.xml:3:20: $file.xml is missing"), "{:?}", scene.warnings);
     assert!(named(&scene, "b").used, "something is missing that may use it");
@@ -224,20 +224,20 @@ fn textured_alpha_is_a_range() {
     let scene = folder.load("a.xml").unwrap();
     let dark = 0.2126 * 0.2 + 0.7152 * 0.4 + 0.0722;
     let light = 0.2126 * 0.4 + 0.7152 * 0.8;
-    assert_close(named(&scene, "shared").roughness, [dark, light], [dark, light]);
+    assert_close(named(&scene, "shared").lobe.roughness, [dark, light], [dark, light]);
     let decoded = |x: f64| ((x + 0.055) / 1.055f64).powf(2.4);
     let dark = 0.2126 * decoded(0.2) + 0.7152 * decoded(0.4) + 0.0722;
     let light = 0.2126 * decoded(0.4) + 0.7152 * decoded(0.8);
-    assert_close(named(&scene, "own").roughness, [dark, light], [dark, light]);
-    assert_close(named(&scene, "board").roughness, [0.5, 0.5], [0.2, 0.3]);
-    assert_close(named(&scene, "absent").roughness, [1e-4, 1.0], [1e-4, 1.0]);
+    assert_close(named(&scene, "own").lobe.roughness, [dark, light], [dark, light]);
+    assert_close(named(&scene, "board").lobe.roughness, [0.5, 0.5], [0.2, 0.3]);
+    assert_close(named(&scene, "absent").lobe.roughness, [1e-4, 1.0], [1e-4, 1.0]);
     assert!(scene.warnings.len() == 1 && scene.warnings[0].contains("absent.png"));
 }
 
 #[test]
 fn zero_alpha_is_raised_and_warned_of() {
     let scene = load("a.xml", &bsdf("roughconductor", "<float name=\"alpha\" value=\"0\"/>"));
-    assert_eq!(scene.materials[0].roughness, isotropic(1e-4));
+    assert_eq!(scene.materials[0].lobe.roughness, isotropic(1e-4));
     assert!(scene.warnings[0].contains("a.xml:1:24: alpha is 0"), "{:?}", scene.warnings);
 }
 

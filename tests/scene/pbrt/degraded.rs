@@ -11,7 +11,7 @@ use crate::{
 fn beside(text: &str) -> Scene {
     let good = "MakeNamedMaterial \"good\" \"string type\" \"conductor\" \"float roughness\" 0.04";
     let scene = load("a.pbrt", &format!("{text}\n{good}"));
-    assert_eq!(named(&scene, "good").roughness, isotropic(0.2));
+    assert_eq!(named(&scene, "good").lobe.roughness, isotropic(0.2));
     scene
 }
 
@@ -71,7 +71,7 @@ fn a_bad_interface_leaves_the_other() {
 fn a_bad_fresnel_value_leaves_the_lobe() {
     let case = |material: &str, place: &str, parts: &[&str]| {
         let scene = beside(&format!("MakeNamedMaterial \"a\" {material} \"float roughness\" 0.25"));
-        assert_eq!(named(&scene, "a").roughness, isotropic(0.5));
+        assert_eq!(named(&scene, "a").lobe.roughness, isotropic(0.5));
         assert_eq!((named(&scene, "a").fresnel, scene.ignored.len()), (None, 0));
         assert_warned(&scene, place, &[parts, &["without its Fresnel term"]].concat());
     };
@@ -104,7 +104,7 @@ fn names_that_nothing_defines_are_warned_of() {
 fn of_two_definitions_the_first_counts() {
     let scene = beside(&format!("{NAMED} \"float roughness\" 0.01\n{NAMED} \"float roughness\" 1"));
     assert_eq!(names(&scene), ["a", "good"]);
-    assert_eq!(scene.materials[0].roughness, isotropic(0.1));
+    assert_eq!(scene.materials[0].lobe.roughness, isotropic(0.1));
     assert_warned(&scene, ":2:1", &["twice", "a.pbrt:1:1"]);
 }
 
@@ -144,7 +144,7 @@ fn subsurface_beside_materials_of_v3_is_warned_of() {
     for text in [rough.clone() + "Material \"matte\"", rough.clone() + mixture] {
         let scene = beside(&text);
         assert_warned(&scene, ":1:1", &["pbrt-v4", "materials of pbrt-v3", "pbrt --upgrade"]);
-        assert_eq!(scene.materials[0].roughness, anisotropic(0.2, 0.3));
+        assert_eq!(scene.materials[0].lobe.roughness, anisotropic(0.2, 0.3));
     }
     // Both versions agree where nothing is mapped, and of a scene of v4 there is no doubt.
     let unmapped = skin("\"float roughness\" 0.04 \"bool remaproughness\" false");
@@ -209,7 +209,7 @@ fn a_blank_name_is_replaced_by_the_place() {
          NamedMaterial \"\" Shape \"sphere\"",
     );
     let named = named(&scene, "conductor at a.pbrt:1");
-    assert!(named.used && named.roughness == isotropic(0.5), "{named:?}");
+    assert!(named.used && named.lobe.roughness == isotropic(0.5), "{named:?}");
     assert_not_understood(&scene, "material at a.pbrt:2", ":2:10", &["it has no type"]);
 }
 

@@ -32,13 +32,13 @@ fn layered_materials_have_two_interfaces() {
     );
     assert_eq!(names(&scene), ["car.interface", "car.conductor", "skin"]);
     let [interface, conductor, skin] = &scene.materials[..] else { unreachable!() };
-    assert_eq!(interface.roughness, isotropic(0.1));
+    assert_eq!(interface.lobe.roughness, isotropic(0.1));
     assert_eq!(interface.fresnel, Some(Fresnel::Dielectric(1.6)));
     assert_eq!(interface.origin.lobe, Some("interface"));
-    assert_eq!(conductor.roughness, anisotropic(0.5, 0.6));
+    assert_eq!(conductor.lobe.roughness, anisotropic(0.5, 0.6));
     let fresnel = over(1.6, [0.2, 0.9, 1.1], [3.9, 2.4, 2.2]);
     assert_eq!(conductor.fresnel, Some(fresnel), "relative to the coat");
-    assert_eq!(skin.roughness, isotropic(0.4));
+    assert_eq!(skin.lobe.roughness, isotropic(0.4));
     assert_eq!(skin.fresnel, Some(Fresnel::Dielectric(1.33)));
 }
 

@@ -8,9 +8,9 @@ use std::io::Write;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Format, Fresnel, Masking, Roughness};
 use microfacet_sampler::Metal;
+use microfacet_tables::Interval;
 
 use crate::{Folder, anisotropic, assert_refused, assert_warned, isotropic, load, named, names};
 
@@ -51,12 +51,12 @@ fn roughness_is_remapped_and_the_rest_is_ggx() {
     let scene = load("house.pbrt", HOUSE);
     assert_eq!(names(&scene), ["paint", "tiles", "raw", "window", "frame"]);
     for material in &scene.materials {
-        assert_eq!(material.gamma, Interval::point(2.0));
+        assert_eq!(material.lobe.gamma, Interval::point(2.0));
         assert_eq!(material.masking, Some(Masking::HeightCorrelated));
         assert_eq!(material.origin.format, Format::Pbrt);
         assert!(material.used, "no shape says otherwise");
     }
-    let roughness = |name| named(&scene, name).roughness;
+    let roughness = |name| named(&scene, name).lobe.roughness;
     assert_eq!(roughness("paint"), isotropic(0.2));
     assert_eq!(roughness("tiles"), isotropic(0.03));
     assert_eq!(roughness("raw"), isotropic(0.04));
@@ -75,7 +75,7 @@ fn roughness_is_remapped_and_the_rest_is_ggx() {
 fn below_a_thousandth_alpha_is_smooth() {
     let material = |parameters: &str| {
         let text = format!("Material \"conductor\" \"bool remaproughness\" false {parameters}");
-        load("a.pbrt", &text).materials[0].roughness
+        load("a.pbrt", &text).materials[0].lobe.roughness
     };
     assert_eq!(material("\"float roughness\" 0.0009"), Roughness::Smooth);
     assert_eq!(material("\"float roughness\" 0.001"), isotropic(0.001));
@@ -138,7 +138,7 @@ fn attributes_are_defaults_in_their_block() {
         Material "conductor"
         "#,
     );
-    let roughness: Vec<_> = scene.materials.iter().map(|m| m.roughness).collect();
+    let roughness: Vec<_> = scene.materials.iter().map(|m| m.lobe.roughness).collect();
     assert_eq!(roughness, [isotropic(0.04), isotropic(0.5), Roughness::Smooth]);
 }
 
@@ -221,6 +221,6 @@ fn bad_syntax_is_refused_at_its_place() {
 #[test]
 fn roughness_above_one_is_used_and_warned_of() {
     let scene = load("a.pbrt", "Material \"conductor\" \"float roughness\" 4");
-    assert_eq!(scene.materials[0].roughness, isotropic(2.0));
+    assert_eq!(scene.materials[0].lobe.roughness, isotropic(2.0));
     assert!(scene.warnings[0].contains("a.pbrt:1:22: ") && scene.warnings[0].contains('4'));
 }

@@ -2,8 +2,8 @@
 
 use image::{GrayImage, ImageFormat, Luma, Rgb, RgbImage, Rgba, Rgba32FImage, RgbaImage};
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Roughness, Scene};
+use microfacet_tables::Interval;
 
 use crate::{
     Folder, assert_close, assert_not_understood, assert_warned, encoded, isotropic, load, named,
@@ -29,7 +29,7 @@ fn scene(file: &str, image: Vec<u8>, parameters: &str) -> Scene {
 fn check(file: &str, image: Vec<u8>, parameters: &str, sigma: [f64; 2]) {
     let scene = scene(file, image, parameters);
     assert_eq!(scene.warnings, [""; 0]);
-    assert_close(scene.materials[0].roughness, sigma, sigma);
+    assert_close(scene.materials[0].lobe.roughness, sigma, sigma);
 }
 
 const LINEAR: &str = "\"string encoding\" \"linear\"";
@@ -120,16 +120,17 @@ fn textures_give_ranges() {
     ]);
     let scene = folder.load("a.pbrt").unwrap();
     assert_eq!(scene.warnings, [""; 0]);
-    let check =
-        |name: &str, x: [f64; 2], y: [f64; 2]| assert_close(named(&scene, name).roughness, x, y);
+    let check = |name: &str, x: [f64; 2], y: [f64; 2]| {
+        assert_close(named(&scene, name).lobe.roughness, x, y)
+    };
     check("scaled", [0.1, 0.2], [0.1, 0.2]);
     check("inverted", [0.2, 0.6], [0.2, 0.6]);
     check("remapped", [0.2f64.sqrt(), 0.4f64.sqrt()], [0.2f64.sqrt(), 0.4f64.sqrt()]);
     check("srgb", DECODED, DECODED);
     check("board", [0.2, 0.4], [0.5, 0.5]);
     check("half", [0.6, 0.7], [0.6, 0.7]);
-    assert!(named(&scene, "half").roughness.is_isotropic(), "one texture on both axes");
-    assert!(!named(&scene, "board").roughness.is_isotropic());
+    assert!(named(&scene, "half").lobe.roughness.is_isotropic(), "one texture on both axes");
+    assert!(!named(&scene, "board").lobe.roughness.is_isotropic());
 }
 
 #[test]
@@ -148,7 +149,7 @@ fn textures_that_double_their_references_take_no_longer() {
         )
     };
     // One by one, 2^100 references would never be followed to their end.
-    assert_eq!(load("a.pbrt", &chain(100)).materials[0].roughness, isotropic(0.5));
+    assert_eq!(load("a.pbrt", &chain(100)).materials[0].lobe.roughness, isotropic(0.5));
     let scene = load("a.pbrt", &chain(1000));
     let name = "conductor at a.pbrt:1002";
     assert_not_understood(&scene, name, ":1002:1", &["a.pbrt:874:30: ", "more than 128 deep"]);
@@ -165,8 +166,11 @@ fn a_missing_image_is_the_full_range_with_a_warning() {
         Material "conductor" "texture roughness" "n"
         "#,
     );
-    assert_eq!(scene.materials[0].roughness, Roughness::Isotropic(Interval { min: 0.0, max: 0.5 }));
-    assert_eq!(scene.materials[1].roughness, Roughness::Isotropic(Interval::UNIT));
+    assert_eq!(
+        scene.materials[0].lobe.roughness,
+        Roughness::Isotropic(Interval { min: 0.0, max: 0.5 })
+    );
+    assert_eq!(scene.materials[1].lobe.roughness, Roughness::Isotropic(Interval::UNIT));
     let [missing, noise] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
     assert!(missing.contains("a.pbrt:2:9: ") && missing.contains("absent.png"), "{missing}");
     assert!(noise.contains("fbm") && noise.contains("[0, 1]"), "{noise}");

@@ -4,13 +4,12 @@
 use std::collections::HashMap;
 
 use microfacet_sampler::Masking;
-use microfacet_tables::{LobeEntry, Precision, Reflectance};
+use microfacet_tables::{Interval, LobeEntry, Precision, Reflectance};
 
 use super::albedo_work::albedo_seconds;
 use super::key::{self, Numbers, distinct};
 use super::{NotCovered, Options, entry, is_tabulated, refusal};
 use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, SIGMA_MAX};
-use crate::interval::Interval;
 use crate::scene::{Format, Material, Scene};
 use crate::table_spec::{Level, Quality};
 
@@ -244,7 +243,7 @@ fn wants(
     if let Some(verdict) = unasked(material, options) {
         return Ok(Err(verdict));
     }
-    let (gamma, [x, y]) = (material.gamma, [material.roughness.x(), material.roughness.y()]);
+    let (gamma, [x, y]) = (material.lobe.gamma, material.lobe.sigmas());
     // The usual stand-in for an anisotropic surface.
     let mean = |x: f64, y: f64| if x == y { x } else { (x * y).sqrt() };
     let round = AlbedoLobe::Family(Domain {
@@ -252,7 +251,7 @@ fn wants(
         sigma: Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) },
     });
     let entry = entry(material);
-    let lobe = match (entry.lobe(), &material.distribution) {
+    let lobe = match (entry.lobe.tabulated(), &material.lobe.distribution) {
         (LobeEntry::Family, _) => round.clone(),
         (LobeEntry::StudentT { sigma, .. }, _) => AlbedoLobe::StudentT { sigma, gamma: gamma.min },
         (LobeEntry::Ellipsoid { sigma, theta, .. }, _) => {
@@ -263,7 +262,7 @@ fn wants(
         }
         (LobeEntry::Distribution(_), None) => unreachable!("entries take it from the material"),
     };
-    let refracts = matches!(entry.lobe(), LobeEntry::Family | LobeEntry::StudentT { .. });
+    let refracts = matches!(entry.lobe.tabulated(), LobeEntry::Family | LobeEntry::StudentT { .. });
     let exact = material.fresnel.iter().flat_map(|fresnel| fresnel.tabulated());
     let exact = exact.filter(|reflectance| *reflectance != Reflectance::Moments);
     let of = |reflectance: Reflectance| {

@@ -56,7 +56,7 @@ pub fn bare_cost(provenance: &Provenance) -> Cost {
     let dielectric = |entry: &MaterialEntry| entry.fresnel.is_some_and(|f| f.indices().is_some());
     let formulas = Mapping::EVERY.into_iter().filter(|mapping| match mapping {
         Mapping::LogShape(_) | Mapping::LogRoughness(_) | Mapping::ViewBlend(_) => has("albedo"),
-        Mapping::Azimuth(_) => some(&|entry| entry.lobe() != LobeEntry::Family),
+        Mapping::Azimuth(_) => some(&|entry| entry.lobe.tabulated() != LobeEntry::Family),
         Mapping::ReflectanceRoot | Mapping::CriticalBlend(_) => some(&dielectric),
         _ => has("visible_slope"),
     });

@@ -24,13 +24,11 @@ pub use cost::{
 pub(crate) use cost::{albedo_headers, distribution_seconds, specs_seconds};
 pub use required_shapes::RequiredShapes;
 
-use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::{Ellipsoid, StudentT};
-use microfacet_tables::MaterialEntry;
+use microfacet_tables::{Interval, LobeSpec, MaterialEntry, Roughness};
 
 use crate::bake::albedo::SIGMA_MAX;
 use crate::distribution::Distribution;
-use crate::interval::Interval;
 use crate::scene::{Format, Material, Scene, recipe_of};
 use crate::table_spec::{GAMMA_MIN, Quality};
 
@@ -229,12 +227,12 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
     if let Some(why) = not_covered(material) {
         return refusal(material, options, why).map(|why| Err(Verdict::NotCovered(why)));
     }
-    if material.distribution.is_some() {
+    if material.lobe.distribution.is_some() {
         return Ok(Err(Verdict::Own));
     }
-    let gamma = material.gamma;
+    let gamma = material.lobe.gamma;
     // Ellipsoids read tables at every γ.
-    if gamma == Interval::point(GGX) && !options.tabulate_ggx && material.theta.is_none() {
+    if gamma == Interval::point(GGX) && !options.tabulate_ggx && material.lobe.theta.is_none() {
         return Ok(Err(Verdict::ClosedForm));
     }
     Ok(if options.embedded { Err(Verdict::Embedded) } else { Ok(gamma) })
@@ -244,13 +242,13 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
 fn not_covered(material: &Material) -> Option<NotCovered> {
     let range = lobe_sigmas(material);
     let name = || material.name.clone();
-    for sigma in [material.roughness.x().max, material.roughness.y().max] {
+    for sigma in material.lobe.sigmas().map(|sigma| sigma.max) {
         if !(range[0]..=range[1]).contains(&sigma) {
             return Some(NotCovered::Lobe { material: name(), sigma, range });
         }
     }
-    let gamma = material.gamma.min;
-    let outside = material.distribution.is_none() && gamma < GAMMA_MIN;
+    let gamma = material.lobe.gamma.min;
+    let outside = material.lobe.distribution.is_none() && gamma < GAMMA_MIN;
     outside.then(|| NotCovered::Gamma { material: name(), gamma })
 }
 
@@ -268,21 +266,21 @@ fn refusal(
 /// The distributions outside the Student-t family, in order and without repetition.
 fn distributions(scene: &Scene) -> Vec<Distribution> {
     let tabulated = scene.materials.iter().filter(|material| is_tabulated(material));
-    let all = tabulated.filter_map(|material| material.distribution.as_ref());
+    let all = tabulated.filter_map(|material| material.lobe.distribution.as_ref());
     key::distinct(all, |all| key::of_distribution(all)).into_iter().cloned().collect()
 }
 
 /// Whether there are microfacets at any point at all.
 fn is_rough(material: &Material) -> bool {
     let [least, _] = lobe_sigmas(material);
-    let [x, y] = [material.roughness.x().max, material.roughness.y().max];
+    let [x, y] = material.lobe.sigmas().map(|sigma| sigma.max);
     x > 0.0 && y > 0.0 && x.max(y) >= least
 }
 
 /// The smallest and the largest σ that a lobe can have. A tilted lobe is held to it by its matrix
 /// alone.
 fn lobe_sigmas(material: &Material) -> [f64; 2] {
-    if material.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
+    if material.lobe.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
 }
 
 /// Whether a set lists the material: if it is in use, and what it asks for can be had.
@@ -297,21 +295,13 @@ fn is_tabulated(material: &Material) -> bool {
 
 /// A material in the terms of a set, where one without microfacets has σ = 0.
 pub fn entry(material: &Material) -> MaterialEntry {
-    let pair = |interval: Interval| [interval.min, interval.max];
-    let Interval { min, max } = material.gamma;
-    let entry = MaterialEntry {
-        name: material.name.clone(),
-        sigma: [pair(material.roughness.x()), pair(material.roughness.y())],
-        s: [s_of_gamma(max), s_of_gamma(min)],
-        distribution: material.distribution.as_ref().map_or(String::new(), Distribution::label),
-        theta: material.theta,
-        masking: material.masking,
-        fresnel: material.fresnel,
+    let lobe = if is_rough(material) {
+        material.lobe.map(Distribution::label)
+    } else {
+        LobeSpec::family(Roughness::Smooth, material.lobe.gamma)
     };
-    if is_rough(material) {
-        return entry;
-    }
-    MaterialEntry { sigma: [[0.0; 2]; 2], distribution: String::new(), theta: None, ..entry }
+    let Material { name, masking, fresnel, .. } = material;
+    MaterialEntry { name: name.clone(), lobe, masking: *masking, fresnel: *fresnel }
 }
 
 /// A material that tables cannot cover.

@@ -1,11 +1,10 @@
 //! Required shapes: single γ and ranges of γ, and the table specifications for each.
 
 use microfacet_core::shape::s_of_gamma;
-use microfacet_tables::{Interpolation, Precision};
+use microfacet_tables::{Interpolation, Interval, Precision};
 
 use crate::bake::joined_name;
 use crate::certify::certificate::ALL_SHAPES;
-use crate::interval::Interval;
 use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, SEAM, ShapeAxis, TableSpec, general_set};
 
 /// A γ, or a range of γ, that tables are to cover.

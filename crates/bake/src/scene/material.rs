@@ -6,66 +6,9 @@ use std::path::Path;
 
 use super::Place;
 use crate::distribution::Distribution;
-use crate::interval::Interval;
 
 pub use microfacet_sampler::Masking;
-pub use microfacet_tables::FresnelEntry as Fresnel;
-
-/// The slope roughness σ of a microfacet lobe, along the tangent (x) and the bitangent (y).
-///
-/// σ is dimensionless: the scale of the surface's slopes in the Student-t distribution (Ribardière
-/// et al. 2017, doi:10.1111/cgf.13137, eq. 11 and 18), equal to the α of GGX (γ = 2) and of
-/// Beckmann (γ = ∞). A range may start at 0, for a texture with smooth points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Roughness {
-    /// σ = 0 everywhere: a mirror or a pane, with no microfacets to sample.
-    Smooth,
-    /// σx = σy at every point, even where σ varies.
-    Isotropic(Interval),
-    /// σx and σy vary independently.
-    Anisotropic {
-        /// σx.
-        x: Interval,
-        /// σy.
-        y: Interval,
-    },
-}
-
-impl Roughness {
-    /// The isotropic roughness of range `sigma`; [`Roughness::Smooth`] if that is 0 alone.
-    pub fn isotropic(sigma: Interval) -> Self {
-        if sigma.max > 0.0 { Self::Isotropic(sigma) } else { Self::Smooth }
-    }
-
-    /// A roughness with independent σx and σy; isotropic if both are the same single number.
-    pub fn anisotropic(x: Interval, y: Interval) -> Self {
-        if x.is_point() && x == y { Self::isotropic(x) } else { Self::Anisotropic { x, y } }
-    }
-
-    /// σx, which is 0 for a smooth surface.
-    #[must_use]
-    pub fn x(self) -> Interval {
-        match self {
-            Self::Smooth => Interval::point(0.0),
-            Self::Isotropic(x) | Self::Anisotropic { x, .. } => x,
-        }
-    }
-
-    /// σy, which is 0 for a smooth surface.
-    #[must_use]
-    pub fn y(self) -> Interval {
-        match self {
-            Self::Anisotropic { y, .. } => y,
-            _ => self.x(),
-        }
-    }
-
-    /// Whether σx = σy at every point.
-    #[must_use]
-    pub fn is_isotropic(self) -> bool {
-        !matches!(self, Self::Anisotropic { .. })
-    }
-}
+pub use microfacet_tables::{FresnelEntry as Fresnel, LobeSpec, Roughness};
 
 /// The format in which a material was described.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -130,16 +73,8 @@ pub struct Origin {
 pub struct Material {
     /// The name, unique in its scene; a further lobe is named "material.lobe".
     pub name: String,
-    /// σ.
-    pub roughness: Roughness,
-    /// The shape γ > 3/2; `INFINITY` is Beckmann, 2 is GGX.
-    pub gamma: Interval,
-    /// A distribution outside the Student-t family; σ is then the median slope of its normals, and
-    /// γ has no meaning.
-    pub distribution: Option<Distribution>,
-    /// The tilt and turn of an ellipsoid, θx, θy, θz in radians
-    /// (`microfacet_model::Ellipsoid::new`); σ and γ are then single numbers.
-    pub theta: Option<[f64; 3]>,
+    /// The lobe.
+    pub lobe: LobeSpec<Distribution>,
     /// The facets' reflectance; `None` if the scene states none, or none of these forms.
     pub fresnel: Option<Fresnel>,
     /// The form of G2 that the scene's renderer uses; `None` where the format leaves it open.
@@ -155,10 +90,7 @@ impl Material {
     #[must_use]
     pub fn asks_the_same(&self, other: &Self) -> bool {
         self.name == other.name
-            && self.roughness == other.roughness
-            && self.gamma == other.gamma
-            && self.distribution == other.distribution
-            && self.theta == other.theta
+            && self.lobe == other.lobe
             && self.fresnel == other.fresnel
             && self.masking == other.masking
     }

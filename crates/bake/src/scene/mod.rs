@@ -16,7 +16,7 @@ pub use error::{
     did_you_mean_key,
 };
 pub use limits::Budget;
-pub use material::{Format, Fresnel, Ignored, Masking, Material, Origin, Roughness};
+pub use material::{Format, Fresnel, Ignored, LobeSpec, Masking, Material, Origin, Roughness};
 pub use names::Names;
 
 /// The microfacet lobes of a scene.
@@ -46,12 +46,12 @@ impl Scene {
     /// # Example
     ///
     /// ```
-    /// use microfacet_baker::interval::Interval;
+    /// use microfacet_tables::Interval;
     /// use microfacet_baker::scene::Scene;
     ///
     /// let recipe = "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 4.0\n";
     /// let scene = Scene::from_recipe_str(recipe)?;
-    /// assert_eq!(scene.materials[0].gamma, Interval::point(4.0));
+    /// assert_eq!(scene.materials[0].lobe.gamma, Interval::point(4.0));
     /// assert_eq!(scene.to_recipe(), recipe);
     /// # Ok::<(), microfacet_baker::scene::SceneError>(())
     /// ```

@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use microfacet_baker::bake::albedo::SIGMA_MAX;
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{
-    Format, Fresnel, Masking, Material, Names, Origin, Place, Roughness, Scene,
+    Format, Fresnel, LobeSpec, Masking, Material, Names, Origin, Place, Roughness, Scene,
 };
+use microfacet_tables::Interval;
 
 use super::Fitted;
 
@@ -46,10 +46,10 @@ pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a str, &'a Fitted)>) -> Stri
         }
         scene.materials.push(Material {
             name: name.into(),
-            roughness: Roughness::Isotropic(Interval::point(sigma)),
-            gamma: Interval::point(gamma),
-            distribution: None,
-            theta: None,
+            lobe: LobeSpec::family(
+                Roughness::Isotropic(Interval::point(sigma)),
+                Interval::point(gamma),
+            ),
             fresnel: tabulated.then_some(Fresnel::Schlick(fitted.f0)),
             masking: Some(Masking::Uncorrelated),
             origin: Origin {
@@ -94,8 +94,8 @@ mod tests {
         let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
         assert_eq!(names, ["gold", "gold (2)", "gold (2) (2)", "x_[_]", "material"]);
         for (material, gamma) in scene.materials.iter().zip(gammas) {
-            assert_eq!(material.roughness.x(), Interval::point(0.1 + 0.2));
-            assert_eq!(material.gamma, Interval::point(gamma));
+            assert_eq!(material.lobe.roughness.x(), Interval::point(0.1 + 0.2));
+            assert_eq!(material.lobe.gamma, Interval::point(gamma));
             assert_eq!(material.fresnel, Some(Fresnel::Schlick([1.0, 0.0, 1.0 / 3.0])));
             assert_eq!(material.masking, Some(Masking::Uncorrelated));
         }

@@ -6,7 +6,7 @@ use microfacet_baker::distribution::Named;
 use microfacet_baker::progress::Stage;
 use microfacet_model::classic::{Isotropic, Marginal};
 use microfacet_sampler::{Lobe, Tables};
-use microfacet_tables::{LobeEntry, Table};
+use microfacet_tables::{LobeEntry, MaterialEntry, Table};
 use rayon::prelude::*;
 
 use super::{Place, Quantity, Span, Unmeasured};
@@ -25,7 +25,8 @@ impl<'a> Radial<'a> {
             return Err(Unmeasured::NoAxes);
         };
         let distribution = label.parse::<Named>()?.build()?;
-        let of_label = set.provenance().materials.iter().find(|entry| entry.distribution == *label);
+        let is_of = |entry: &&MaterialEntry| entry.lobe.distribution.as_ref() == Some(label);
+        let of_label = set.provenance().materials.iter().find(is_of);
         let entry =
             of_label.ok_or_else(|| Unmeasured::NoTable(format!("a material of `{label}`")))?;
         let lobe = set.material(&entry.name)?;

@@ -1,6 +1,5 @@
 //! Materials in words.
 
-use microfacet_core::shape::gamma_of_s;
 use microfacet_tables::{FresnelEntry, MaterialEntry, Reflectance};
 
 use super::{number, range};
@@ -9,18 +8,18 @@ use super::{number, range};
 /// and the Fresnel term that it states.
 pub fn material(entry: &MaterialEntry) -> String {
     let mut parts = Vec::new();
-    if entry.is_smooth() {
+    if entry.lobe.is_smooth() {
         parts.push("smooth".into());
-    } else if entry.distribution.is_empty() {
-        let [x, y] = entry.sigma.map(range);
-        parts.push(if x == y { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
-        parts.push(format!("gamma {}", gammas(entry.s)));
+    } else if let Some(label) = &entry.lobe.distribution {
+        parts.push(label.clone());
     } else {
-        parts.push(entry.distribution.clone());
+        let [x, y] = entry.lobe.sigmas().map(range);
+        parts.push(if x == y { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
+        parts.push(format!("gamma {}", range(entry.lobe.gamma)));
     }
-    parts.extend(entry.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));
+    parts.extend(entry.lobe.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));
     // Where none is stated there is one by default, but none without microfacets.
-    if entry.masking.is_some() || !entry.is_smooth() {
+    if entry.masking.is_some() || !entry.lobe.is_smooth() {
         parts.push(format!("{} masking", entry.masking()));
     }
     parts.push(fresnel(entry.fresnel.as_ref()));
@@ -45,11 +44,6 @@ pub fn fresnel(entry: Option<&FresnelEntry>) -> String {
             format!("dielectric of index {}", range([*min, max.unwrap_or(f64::INFINITY)]))
         }
     }
-}
-
-/// A range of γ, from a range of s = 1/(γ−1).
-pub fn gammas([low, high]: [f64; 2]) -> String {
-    range([gamma_of_s(high), gamma_of_s(low)])
 }
 
 /// The reflectance of an albedo in words.

@@ -19,8 +19,8 @@ pub fn number(x: f64) -> String {
 }
 
 /// A range of numbers: `3`, or `1.501 to inf`.
-pub fn range([min, max]: [f64; 2]) -> String {
-    let [min, max] = [min, max].map(number);
+pub fn range(ends: impl Into<[f64; 2]>) -> String {
+    let [min, max] = ends.into().map(number);
     if min == max { min } else { format!("{min} to {max}") }
 }
 

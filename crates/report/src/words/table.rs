@@ -3,11 +3,10 @@
 use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
 use microfacet_tables::{
-    Axis, Covered, Interpolation, Kind, LobeEntry, Mapping, MaterialEntry, Precision, Reflectance,
-    Subject, Table,
+    Axis, Covered, Interpolation, Kind, LobeEntry, Mapping, Precision, Reflectance, Subject, Table,
 };
 
-use super::material::{gammas, reflectance};
+use super::material::reflectance;
 use super::{count, joined, number, range};
 
 /// What a table holds, and of what it is if that is not the whole family.
@@ -54,6 +53,11 @@ pub fn covers(Subject { lobe, covers, .. }: &Subject) -> [String; 2] {
     }
 }
 
+/// A range of γ, from a range of s = 1/(γ−1).
+fn gammas([low, high]: [f64; 2]) -> String {
+    range([gamma_of_s(high), gamma_of_s(low)])
+}
+
 /// The type of the values.
 pub fn precision(precision: Precision) -> &'static str {
     match precision {
@@ -71,7 +75,7 @@ pub fn normals(set: &Tables) -> Vec<String> {
     if !lines.is_empty() {
         lines = vec![format!("gamma {}; every sigma", joined(&lines))];
     }
-    if set.provenance().materials.iter().any(MaterialEntry::is_ggx) && !set.tabulates(2.0) {
+    if set.provenance().materials.iter().any(|entry| entry.lobe.is_ggx()) && !set.tabulates(2.0) {
         lines.push("gamma 2 (GGX) in closed form".into());
     }
     for table in set.tables() {

@@ -69,8 +69,8 @@ impl Tables {
     /// without albedos, or what [`albedo`](Self::albedo) reports.
     pub fn material_albedo(&self, name: &str) -> Result<Albedo, MaterialError> {
         let entry = self.entry(name)?;
-        if entry.lobe() == LobeEntry::Family {
-            return self.albedo(entry.round_sigma(), entry.gamma(), entry.masking());
+        if entry.lobe.tabulated() == LobeEntry::Family {
+            return self.albedo(entry.lobe.round_sigma(), entry.lobe.gamma(), entry.masking());
         }
         self.own(entry, Albedo::new, |reflectance| *reflectance == Reflectance::Moments)
     }
@@ -109,11 +109,11 @@ impl Tables {
         eta: f64,
     ) -> Result<DielectricAlbedo, MaterialError> {
         let entry = self.entry(name)?;
-        if !matches!(entry.lobe(), LobeEntry::Family | LobeEntry::StudentT { .. }) {
-            let distribution = entry.lobe().name().into();
+        if !matches!(entry.lobe.tabulated(), LobeEntry::Family | LobeEntry::StudentT { .. }) {
+            let distribution = entry.lobe.tabulated().name().into();
             return Err(MaterialError::OtherDistribution { name: name.into(), distribution });
         }
-        self.dielectric_albedo(entry.round_sigma(), entry.gamma(), eta, entry.masking())
+        self.dielectric_albedo(entry.lobe.round_sigma(), entry.lobe.gamma(), eta, entry.masking())
     }
 
     /// The albedo of a rough dielectric of index η ∈ [0, ∞], inside over outside, with σ and γ, for
@@ -166,9 +166,12 @@ impl Tables {
         read: impl Fn(&Table, &MaterialPoint) -> Option<T>,
         serves: impl Fn(&Reflectance) -> bool,
     ) -> Result<T, MaterialError> {
-        let point =
-            MaterialPoint { sigma: entry.round_sigma(), gamma: entry.gamma(), eta: f64::NAN };
-        let lobe = entry.lobe();
+        let point = MaterialPoint {
+            sigma: entry.lobe.round_sigma(),
+            gamma: entry.lobe.gamma(),
+            eta: f64::NAN,
+        };
+        let lobe = entry.lobe.tabulated();
         let mut tables = self.albedos(Kind::Albedo, &lobe, entry.masking());
         let found = tables.find_map(|table| {
             let serves = table.subject.reflectance.as_ref().is_some_and(&serves);

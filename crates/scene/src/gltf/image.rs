@@ -6,7 +6,7 @@ use std::path::Path;
 use base64::Engine;
 
 use microfacet_baker::input;
-use microfacet_baker::interval::Interval;
+use microfacet_tables::Interval;
 
 use super::schema::{Document, Image};
 use super::value::Entry;

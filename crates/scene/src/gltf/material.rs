@@ -1,7 +1,7 @@
 //! The lobes of a material.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Fresnel, Roughness, SceneError};
+use microfacet_tables::Interval;
 
 use super::Importer;
 use super::parameters::{Clearcoat, Material, TextureInfo};

@@ -1,7 +1,7 @@
 //! The lobes of a surface: of one shading model, or of the BSDF nodes of a graph (`pbrlib`).
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Fresnel, Roughness, SceneError};
+use microfacet_tables::Interval;
 
 use super::Reader;
 use super::connect::named;

@@ -1,7 +1,7 @@
 //! Ranges of the values that MaterialX node graphs compute.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::SceneError;
+use microfacet_tables::Interval;
 
 use super::Reader;
 use super::connect::{channel_named, is_end, named, place, selected};

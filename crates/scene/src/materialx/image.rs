@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use microfacet_baker::interval::Interval;
+use microfacet_tables::Interval;
 
 use super::Reader;
 use super::connect::named;

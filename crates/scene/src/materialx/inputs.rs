@@ -1,7 +1,7 @@
 //! Values of the inputs of shading models and BSDFs, and the Fresnel terms that they state.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Fresnel, SceneError};
+use microfacet_tables::Interval;
 
 use super::Reader;
 use super::index::At;

@@ -1,7 +1,7 @@
 //! The lobes of the shading models of the MaterialX libraries.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Fresnel, Roughness, SceneError};
+use microfacet_tables::Interval;
 
 use super::Reader;
 use super::index::At;

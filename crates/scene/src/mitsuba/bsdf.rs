@@ -1,7 +1,7 @@
 //! The lobes of Mitsuba's BSDF plugins.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Masking, Roughness, SceneError, did_you_mean};
+use microfacet_tables::Interval;
 
 use super::Reader;
 use super::fresnel::constant_dielectric;

@@ -1,7 +1,7 @@
 //! Fresnel terms and indices of refraction.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Fresnel, Place, SceneError, did_you_mean};
+use microfacet_tables::Interval;
 
 use super::Reader;
 use super::value::{named, number, rgb};

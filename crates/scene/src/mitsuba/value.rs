@@ -1,7 +1,7 @@
 //! Numbers, and the ranges of textures.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::SceneError;
+use microfacet_tables::Interval;
 
 use super::{Reader, find};
 use crate::builder::{Row, names_of};

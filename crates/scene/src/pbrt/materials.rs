@@ -1,7 +1,7 @@
 //! The lobes of pbrt's materials.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::{Masking, Roughness, SceneError};
+use microfacet_tables::Interval;
 
 use super::Reader;
 use super::definition::{Definition, OLDER};

@@ -1,7 +1,7 @@
 //! The ranges of pbrt's float textures.
 
-use microfacet_baker::interval::Interval;
 use microfacet_baker::scene::SceneError;
+use microfacet_tables::Interval;
 
 use super::Reader;
 use super::definition::Definition;

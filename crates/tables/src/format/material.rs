@@ -5,38 +5,74 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use microfacet_core::shape::gamma_of_s;
-use microfacet_core::{Masking, Skew};
+use microfacet_core::Masking;
+use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use serde::{Deserialize, Serialize};
 
-use super::subject::{
-    LobeEntry, Reflectance, Side, check_conductor, check_indices, check_roughness, check_shapes,
-};
+use super::lobe::{LobeSpec, Roughness};
+use super::subject::{Reflectance, Side, check_conductor, check_indices};
 use crate::axis::ReflectanceRoot;
+use crate::interval::Interval;
 
 /// A named material of a recipe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "InFile", into = "InFile")]
 pub struct MaterialEntry {
     /// Its name.
     pub name: String,
-    /// σx and σy, as ranges [min, max] where a texture drives them.
-    pub sigma: [[f64; 2]; 2],
-    /// 1/(γ−1), so that γ = ∞ is the number 0; a range [min, max] likewise.
-    pub s: [f64; 2],
-    /// The distribution, such as `gtr:0.2,1.5`, of a material outside the Student-t family; `sigma`
-    /// is then the scale of its tables, and `s` means nothing.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub distribution: String,
-    /// The turn of an ellipsoid, θx, θy, θz in radians as for [`Skew::new`](microfacet_core::Skew::new); its
-    /// σ and s are single numbers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub theta: Option<[f64; 3]>,
+    /// Its lobe.
+    pub lobe: LobeSpec,
     /// The form of masking and shadowing that it states, if any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub masking: Option<Masking>,
     /// The reflectance of its facets, if it states one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fresnel: Option<FresnelEntry>,
+}
+
+/// A material as files of version 3 have it: ranges are [min, max], γ is s = 1/(γ−1), so that γ = ∞
+/// is the number 0, and no distribution is an empty text.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "MaterialEntry")]
+struct InFile {
+    name: String,
+    sigma: [Interval; 2],
+    s: [f64; 2],
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    distribution: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    theta: Option<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    masking: Option<Masking>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    fresnel: Option<FresnelEntry>,
+}
+
+impl From<MaterialEntry> for InFile {
+    fn from(MaterialEntry { name, lobe, masking, fresnel }: MaterialEntry) -> Self {
+        let (sigma, s) = (lobe.sigmas(), lobe.s());
+        let distribution = lobe.distribution.unwrap_or_default();
+        Self { name, sigma, s, distribution, theta: lobe.theta, masking, fresnel }
+    }
+}
+
+impl From<InFile> for MaterialEntry {
+    fn from(InFile { name, sigma, s, distribution, theta, masking, fresnel }: InFile) -> Self {
+        let roughness = match sigma {
+            [x, y] if x != y => Roughness::Anisotropic { x, y },
+            [x, _] if x == Interval::point(0.0) => Roughness::Smooth,
+            [x, _] => Roughness::Isotropic(x),
+        };
+        let [max, min] = s.map(gamma_written_as);
+        let distribution = (!distribution.is_empty()).then_some(distribution);
+        let lobe = LobeSpec { roughness, gamma: Interval { min, max }, theta, distribution };
+        Self { name, lobe, masking, fresnel }
+    }
+}
+
+/// A shape γ whose s is exactly this, if there is one: so s is the same where it is written again.
+fn gamma_written_as(s: f64) -> f64 {
+    let gamma = gamma_of_s(s);
+    let near = [gamma, gamma.next_down(), gamma.next_up()];
+    near.into_iter().find(|&gamma| s_of_gamma(gamma) == s).unwrap_or(gamma)
 }
 
 /// The reflectance of a material's facets, as in its recipe.
@@ -147,72 +183,15 @@ impl FresnelEntry {
     }
 }
 
-/// The middle of a range.
-fn middle([min, max]: [f64; 2]) -> f64 {
-    if min == max { min } else { 0.5 * (min + max) }
-}
-
 impl MaterialEntry {
     /// Checks every number; the error says what is wrong.
     pub(super) fn check(&self) -> Result<(), String> {
-        self.sigma.into_iter().try_for_each(check_roughness)?;
-        check_shapes(self.s)?;
-        self.fresnel.iter().try_for_each(FresnelEntry::check)?;
-        let Some(theta) = self.theta else { return Ok(()) };
-        let [[x, _], [y, _]] = self.sigma;
-        let single = [self.sigma[0], self.sigma[1], self.s].iter().all(|[min, max]| min == max);
-        if !single || !self.distribution.is_empty() {
-            return Err("theta is for a Student-t lobe with single numbers of sigma and s".into());
-        }
-        Skew::new([x, y], theta).map(drop).map_err(|why| format!("theta = {theta:?}: {why}"))
-    }
-
-    /// σx and σy, at the middle of their ranges.
-    pub fn sigma(&self) -> [f64; 2] {
-        self.sigma.map(middle)
-    }
-
-    /// γ, at the middle of the range of s.
-    pub fn gamma(&self) -> f64 {
-        gamma_of_s(middle(self.s))
-    }
-
-    /// σ of the isotropic lobe that stands in for an anisotropic one: √(σx σy).
-    pub fn round_sigma(&self) -> f64 {
-        let [x, y] = self.sigma();
-        if x == y { x } else { libm::sqrt(x * y) }
-    }
-
-    /// Whether it has no microfacets at all: σ = 0.
-    pub fn is_smooth(&self) -> bool {
-        self.sigma == [[0.0; 2]; 2]
-    }
-
-    /// Whether its lobe is GGX, which has closed forms.
-    pub fn is_ggx(&self) -> bool {
-        // Outside the family s has no meaning, and an ellipsoid reads tables.
-        let family = self.distribution.is_empty() && self.theta.is_none();
-        self.s == [1.0; 2] && family && !self.is_smooth()
+        self.lobe.check()?;
+        self.fresnel.iter().try_for_each(FresnelEntry::check)
     }
 
     /// The form of masking that it states; height-correlated if it states none.
     pub fn masking(&self) -> Masking {
         self.masking.unwrap_or_default()
-    }
-
-    /// The lobe of its albedo: the family's if it is round, or if it is anisotropic with a range,
-    /// for which the round lobe of [`round_sigma`](Self::round_sigma) stands in.
-    pub fn lobe(&self) -> LobeEntry {
-        if !self.distribution.is_empty() {
-            return LobeEntry::Distribution(self.distribution.clone());
-        }
-        let [x, y] = self.sigma;
-        let (sigma, s) = ([x[0], y[0]], self.s[0]);
-        let single = [x, y, self.s].into_iter().all(|[min, max]| min == max);
-        match self.theta {
-            Some(theta) => LobeEntry::Ellipsoid { sigma, theta, s },
-            None if x != y && single => LobeEntry::StudentT { sigma, s },
-            None => LobeEntry::Family,
-        }
     }
 }

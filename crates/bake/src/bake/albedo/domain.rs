@@ -1,9 +1,8 @@
 //! The range of materials that albedo tables are baked for.
 
 use microfacet_core::shape::{gamma_of_s, s_of_gamma};
-use microfacet_tables::Covered;
+use microfacet_tables::{Covered, Interval};
 
-use crate::interval::Interval;
 use crate::table_spec::GAMMA_MIN;
 
 /// Largest σ of the general tables.

@@ -7,6 +7,7 @@ use std::path::Path;
 use crate::scene::limits;
 use microfacet_model::Skew;
 use microfacet_model::classic::Marginal;
+use microfacet_tables::Interval;
 
 use super::write::range;
 use super::{MATERIAL_KEYS, MEASURED_KEYS, Source, Table, Value};
@@ -14,18 +15,11 @@ use crate::distribution::{Distribution, DistributionKind, Named};
 use crate::input;
 use crate::input::angles::Angles;
 use crate::input::normals::{MeasuredError, read_csv};
-use crate::interval::Interval;
-use crate::scene::{Place, Roughness, SceneError};
+use crate::scene::{LobeSpec, Place, Roughness, SceneError};
 use crate::table_spec::GAMMA_MIN;
 
 /// What a material says of its normals.
-pub(super) struct Lobe {
-    pub(super) roughness: Roughness,
-    pub(super) gamma: Interval,
-    /// What takes the place of both.
-    pub(super) distribution: Option<Distribution>,
-    pub(super) theta: Option<[f64; 3]>,
-}
+pub(super) type Lobe = LobeSpec<Distribution>;
 
 impl Source<'_> {
     pub(super) fn lobe(&self, place: &Place, table: &Table<'_>) -> Result<Lobe, SceneError> {
@@ -44,7 +38,7 @@ impl Source<'_> {
             }
             (None, None) => None,
         };
-        Ok(Lobe { roughness, gamma, distribution: None, theta })
+        Ok(Lobe { theta, ..Lobe::family(roughness, gamma) })
     }
 
     /// The lobe of a material with a named distribution; as a Student-t if it is one.
@@ -95,17 +89,12 @@ impl Source<'_> {
             Distribution::Measured { file: file.to_owned(), angles, table: measured }
         };
         let built = distribution.build().map_err(|e| place.invalid(e.to_string()))?;
-        let lobe = |sigma, gamma, distribution| Lobe {
-            roughness: Roughness::isotropic(sigma),
-            gamma: Interval::point(gamma),
-            distribution,
-            theta: None,
+        let lobe = |sigma, gamma, distribution| {
+            let [sigma, gamma] = [sigma, gamma].map(Interval::point);
+            Lobe { distribution, ..Lobe::family(Roughness::isotropic(sigma), gamma) }
         };
         Ok(match built.student_t() {
-            Some(t) => {
-                let sigma = Interval::point(t.sigma_x());
-                lobe(sigma, t.shape().gamma(), None)
-            }
+            Some(t) => lobe(t.sigma_x(), t.shape().gamma(), None),
             None => {
                 if !self.distributions.take(1) {
                     return Err(place.invalid(format!(
@@ -114,8 +103,7 @@ impl Source<'_> {
                         limits::DISTRIBUTIONS
                     )));
                 }
-                let sigma = Interval::point(Marginal::new(&*built).sigma());
-                lobe(sigma, 2.0, Some(distribution))
+                lobe(Marginal::new(&*built).sigma(), 2.0, Some(distribution))
             }
         })
     }

@@ -23,20 +23,19 @@ use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::Path;
 
+use microfacet_tables::Interval;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::scene::limits;
 use crate::scene::limits::Budget;
 
-use self::lobe::Lobe;
 use self::parts::parts;
 use self::write::quoted;
 pub(super) use self::write::write;
 use super::error::{Lines, did_you_mean_key};
 use super::{Format, Material, Origin, Place, Scene, SceneError, SceneErrorKind};
 use crate::input;
-use crate::interval::Interval;
 
 // docs/recipe.md has each of these.
 const MATERIAL_KEYS: [&str; 8] =
@@ -171,7 +170,7 @@ impl Source<'_> {
         let table = entry.get_ref().as_table().ok_or_else(|| {
             place.invalid("a material must be a table: head each material with [[material]]")
         })?;
-        let Lobe { roughness, gamma, distribution, theta } = self.lobe(&place, table)?;
+        let lobe = self.lobe(&place, table)?;
         let name = self.required(&place, table, "name", "\"gold\"")?;
         let name = match name.get_ref().as_str() {
             Some(text) if !text.is_empty() => text.to_owned(),
@@ -183,10 +182,7 @@ impl Source<'_> {
         };
         Ok(Material {
             name,
-            roughness,
-            gamma,
-            distribution,
-            theta,
+            lobe,
             fresnel: table.get("fresnel").map(|v| self.fresnel(v)).transpose()?,
             masking: table.get("masking").map(|v| self.masking(v)).transpose()?,
             origin: Origin { format: Format::Recipe, place, lobe: None },

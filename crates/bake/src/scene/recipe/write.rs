@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
+use microfacet_tables::Interval;
+
 use crate::distribution::Distribution;
 use crate::input::angles::Angles;
-use crate::interval::Interval;
 use crate::scene::{Fresnel, Material, Roughness};
 
 /// Writes the recipe that [`read`](super::read) turns into the same materials.
@@ -15,14 +16,14 @@ pub(in crate::scene) fn write<'a>(materials: impl IntoIterator<Item = &'a Materi
 
 fn entry(material: &Material) -> String {
     let mut text = format!("[[material]]\nname = {}\n", quoted(&material.name));
-    let sigma = match material.roughness {
+    let sigma = match material.lobe.roughness {
         Roughness::Smooth => range(Interval::point(0.0)),
         Roughness::Isotropic(sigma) => range(sigma),
         Roughness::Anisotropic { x, y } => format!("[{}, {}]", range(x), range(y)),
     };
     // Writing to a string cannot fail.
-    let _ = match &material.distribution {
-        None => writeln!(text, "sigma = {sigma}\ngamma = {}", range(material.gamma)),
+    let _ = match &material.lobe.distribution {
+        None => writeln!(text, "sigma = {sigma}\ngamma = {}", range(material.lobe.gamma)),
         // The file stays as it is, and so does its unit.
         Some(Distribution::Measured { file, angles, .. }) => {
             let unit = if *angles == Angles::Degrees { ", degrees = true" } else { "" };
@@ -36,7 +37,7 @@ fn entry(material: &Material) -> String {
             writeln!(text, "distribution = {}{values}", quoted(named.kind.name()))
         }
     };
-    if let Some(theta) = material.theta {
+    if let Some(theta) = material.lobe.theta {
         let _ = writeln!(text, "theta = {theta:?}");
     }
     if let Some(fresnel) = material.fresnel {

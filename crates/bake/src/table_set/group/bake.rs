@@ -150,7 +150,8 @@ fn radial_tables(
     let marginal = Marginal::new(&*built);
     let [bake, certify] = distribution_seconds(distribution, level);
     let stage = progress.stage(bake);
-    let full = bake::bake_radial(&marginal, &entry.distribution, level, Precision::F32, &stage);
+    let label = distribution.label();
+    let full = bake::bake_radial(&marginal, &label, level, Precision::F32, &stage);
     drop(stage);
     let certified = |&precision| {
         let mut tables: Vec<Table> =

@@ -88,7 +88,8 @@ impl TableGroup {
     fn others(plan: &Plan) -> Result<Vec<Self>, BakeError> {
         let of = |distribution: &Distribution| {
             let label = distribution.label();
-            let entry = plan.materials.iter().find(|entry| entry.distribution == label);
+            let has = |entry: &&MaterialEntry| entry.lobe.distribution.as_ref() == Some(&label);
+            let entry = plan.materials.iter().find(has);
             let entry =
                 entry.ok_or_else(|| BakeError::invalid(format!("no material has {label}")))?;
             Ok(Self::Distribution(distribution.clone(), entry.clone()))

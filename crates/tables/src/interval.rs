@@ -5,12 +5,27 @@
 /// The ends are never NaN and `min <= max`; only a shape parameter may have an infinite end.
 /// Arithmetic on intervals is conservative: the result holds every value that the operation
 /// takes on the arguments, for independent arguments.
+///
+/// In files it is `[min, max]`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Interval {
     /// The lower end.
     pub min: f64,
     /// The upper end.
     pub max: f64,
+}
+
+impl From<[f64; 2]> for Interval {
+    fn from([min, max]: [f64; 2]) -> Self {
+        Self { min, max }
+    }
+}
+
+impl From<Interval> for [f64; 2] {
+    fn from(Interval { min, max }: Interval) -> Self {
+        [min, max]
+    }
 }
 
 impl Interval {
