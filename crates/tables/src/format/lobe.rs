@@ -5,7 +5,6 @@ use alloc::string::String;
 
 use microfacet_core::Skew;
 use microfacet_core::shape::{gamma_of_s, s_of_gamma};
-use serde::{Deserialize, Serialize};
 
 use super::subject::{LobeEntry, check_roughness, check_shapes};
 use crate::interval::Interval;
@@ -15,8 +14,7 @@ use crate::interval::Interval;
 /// σ is dimensionless: the scale of the surface's slopes in the Student-t distribution (Ribardière
 /// et al. 2017, doi:10.1111/cgf.13137, eq. 11 and 18), equal to the α of GGX (γ = 2) and of
 /// Beckmann (γ = ∞). A range may start at 0, for a texture with smooth points.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roughness {
     /// σ = 0 everywhere: a mirror or a pane, with no microfacets to sample.
     Smooth,
@@ -71,7 +69,7 @@ impl Roughness {
 ///
 /// `D` is the distribution of one outside the Student-t family: its label, such as `gtr:0.2,1.5`,
 /// or whatever else says it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LobeSpec<D = String> {
     /// σx and σy ≥ 0. Outside the family: the median slope of the normals, which is the scale of
     /// its tables.
