@@ -1,4 +1,4 @@
-"""A reader of microfacet tables, format version 3, after the core of docs/format.md.
+"""A reader of microfacet tables, format version 4, after the core of docs/format.md.
 
 Directions are three numbers, a unit vector with n = +z. All arithmetic is in double precision.
 """
@@ -22,8 +22,8 @@ class Tables:
             self.document = json.loads(header["__metadata__"]["microfacet"])
         except (ValueError, KeyError, TypeError):
             raise ValueError(f"{path}: not a table set; microfacet-bake writes them") from None
-        if (self.document["format"], self.document["version"]) != ("microfacet-tables", 3):
-            raise ValueError(f"{path}: not microfacet tables of version 3")
+        if (self.document["format"], self.document["version"]) != ("microfacet-tables", 4):
+            raise ValueError(f"{path}: not microfacet tables of version 4")
         prefix = rb'\"checksum\":\"'
         digits = data.index(prefix, 8, start) + len(prefix)
         crc = zlib.crc32(data[:digits] + b"00000000" + data[digits + 8 :])
@@ -125,7 +125,7 @@ class StudentT:
         self.kappa, self.crowded = view["scale"] / (2 - self.s), view.get("crowded", False)
         self.moment, self.peeled = self.kappa / self.g[0, 0], not whole
         table, slopes = whole or peeled
-        self.rows_crowded = table["axes"][1]["mapping"].get("crowded", False)
+        self.knots = table["axes"][1]["mapping"].get("knots", [])
         halves = slopes.reshape(len(slopes), 2, -1, 2)
         self.rows = np.array([[make_monotone(run) for run in row] for row in halves])
         self.across = make_monotone(across[1])
@@ -178,9 +178,7 @@ class StudentT:
                 return sqrt(-expm1(2 * e)), sqrt(self.s) * exp(e)
             u = u / (1 - heavy) if u > 0 else 0.0
         r = hypot(rho, z)
-        t = z / (rho + r)
-        if self.rows_crowded:
-            t = 1 - sqrt((rho + rho * rho / (r + z)) / (rho + r))
+        t = np.interp(z / (rho + r), *np.transpose([[0, 0], *self.knots, [1, 1]]))
         i, w = cell(t, len(self.rows))
         half = 1 if u > 0.5 else 0
         return slope((1 - w) * self.rows[i, half] + w * self.rows[i + 1, half], u)

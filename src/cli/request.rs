@@ -62,9 +62,9 @@ enum PrecisionArg {
 enum QualityArg {
     /// Small, inaccurate tables.
     Draft,
-    /// CDF error below 1e-4 (gamma >= 1.8), G1 error below 1e-5.
+    /// CDF error below 3e-5 (gamma >= 1.8), G1 error below 1e-5.
     Default,
-    /// CDF error below 1.2e-5 (gamma >= 1.8), G1 error below 2e-6; eight times the bytes.
+    /// CDF error below 3e-6 (gamma >= 1.8), G1 error below 2e-6; eight times the bytes.
     High,
 }
 

@@ -43,7 +43,7 @@ fn a_shape_is_a_small_header_beside_the_functions() {
         assert!(text.contains("SPDX-License-Identifier: CC0-1.0"), "{name}");
         let widest = text.lines().max_by_key(|line| line.len()).unwrap();
         assert!(widest.len() <= 100, "{name}: {widest}");
-        assert!(text.len() < 250_000, "{name}: {}", text.len());
+        assert!(text.len() < 300_000, "{name}: {}", text.len());
     }
     // Closed forms leave only albedos.
     let ggx = arrays(&fs::read_to_string(out.join("student_t_gamma_2.h")).unwrap());

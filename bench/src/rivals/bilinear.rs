@@ -7,7 +7,8 @@
 use glam::Vec3;
 use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::Tables;
-use microfacet_tables::Kind;
+use microfacet_tables::axis::half_tangent::Lines;
+use microfacet_tables::{Kind, Mapping};
 use wide::f32x4;
 
 /// Bound to one shape.
@@ -17,22 +18,26 @@ pub(crate) struct Bilinear {
     /// Distances from the nearer end: rows by view, both halves of u₁.
     along: Vec<f32>,
     rows: usize,
+    /// The place of a view among them.
+    lines: Lines,
     numbers: usize,
     across: Vec<f32>,
 }
 
 impl Bilinear {
-    /// From a set that holds slices at γ alone, with evenly spaced views and fourth roots of the
-    /// numbers.
+    /// From a set that holds slices at γ alone.
     pub(crate) fn new(sigma: f64, gamma: f64, set: &Tables) -> Self {
         let of = |kind| set.table(kind).expect("a slice has tables of both kinds");
         let values = |kind| of(kind).values.iter().step_by(2).copied().collect::<Vec<f32>>();
         let axes = &of(Kind::VisibleSlope).axes;
+        let Mapping::HalfTangent(view) = axes[1].mapping else { unreachable!("validated on load") };
+        let rows = axes[1].nodes.len() - 1;
         Self {
             sigma: sigma as f32,
             s: s_of_gamma(gamma) as f32,
             along: values(Kind::VisibleSlope),
-            rows: axes[1].nodes.len() - 1,
+            rows,
+            lines: view.lines(rows as f32),
             numbers: axes[2].nodes.len(),
             across: values(Kind::VisibleSlopeConditional),
         }
@@ -55,7 +60,10 @@ impl Bilinear {
         let ratios = f32x4::new([x, y, v.z, 0.0]) / f32x4::new([rho, rho, rho + length, 1.0]);
         let [cos, sin, tau, _] = ratios.to_array();
         let (cos, sin) = if rho > 0.0 { (cos, sin) } else { (1.0, 0.0) };
-        let (row, between) = locate(tau * self.rows as f32, self.rows);
+        let Lines { cells, slopes: [first, middle, last], second } = self.lines;
+        let rest = 1.0 - tau;
+        let place = (first * tau).max(second - middle * rest).max(cells - last * rest);
+        let (row, between) = locate(place, self.rows);
         let (cell, w) = locate(t0 * (self.numbers - 1) as f32, self.numbers - 1);
         let at = row * 2 * self.numbers + half(u[0]) * self.numbers + cell;
         let (low, high) = (&self.along[at..at + 2], &self.along[at + 2 * self.numbers..][..2]);

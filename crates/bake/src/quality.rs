@@ -8,10 +8,10 @@
 pub enum Quality {
     /// Small and rough: previews, tests.
     Draft,
-    /// CDF error below 1e-4 where γ ≥ 1.8, G1 below 1e-5.
+    /// CDF error below 3e-5 where γ ≥ 1.8, G1 below 1e-5.
     #[default]
     Default,
-    /// CDF error below 1.2e-5 where γ ≥ 1.8, G1 below 2e-6.
+    /// CDF error below 3e-6 where γ ≥ 1.8, G1 below 2e-6.
     High,
 }
 
@@ -65,12 +65,14 @@ impl Level {
     pub fn resolution(self) -> Resolution {
         Resolution {
             shapes: self.nodes([9, 21, 33], 5),
-            peeled_shapes: self.nodes([7, 13, 25], 5),
+            peeled_shapes: self.nodes([7, 9, 13], 5),
             shadowing_shapes: self.nodes([17, 25, 49], 5),
             across_shapes: self.nodes([17, 33, 65], 5),
             shadowing_views: self.nodes([65, 97, 193], 9),
-            views: self.nodes([25, 81, 321], 9),
-            numbers: self.nodes([11, 17, 29], 5),
+            peeled_shadowing_views: self.nodes([97, 161, 321], 9),
+            // Knots of the axis are at eighths.
+            views: self.nodes([24, 88, 320], 8).next_multiple_of(8) + 1,
+            numbers: self.nodes([11, 21, 37], 5),
             across_numbers: self.nodes([17, 33, 65], 5),
         }
     }
@@ -93,8 +95,11 @@ pub struct Resolution {
     pub shadowing_shapes: usize,
     /// γ nodes of the table of slopes across.
     pub across_shapes: usize,
-    /// View nodes of the shadowing table.
+    /// View nodes of the shadowing table where the whole distribution is tabulated.
     pub shadowing_views: usize,
+    /// And where the heavy part is peeled: lobes next to γ = 3/2 have most of them beyond the views
+    /// where masking bends.
+    pub peeled_shadowing_views: usize,
     /// View nodes of the slope tables.
     pub views: usize,
     /// Nodes of one half of u₁.
@@ -109,7 +114,7 @@ mod tests {
 
     #[test]
     fn levels_meet_the_qualities_and_rise_between_and_beyond() {
-        for (quality, views) in [(Quality::Draft, 25), (Quality::Default, 81), (Quality::High, 321)]
+        for (quality, views) in [(Quality::Draft, 25), (Quality::Default, 89), (Quality::High, 321)]
         {
             assert_eq!(Level::from(quality).resolution().views, views);
             assert_eq!(Level::from(quality).quality(), quality);

@@ -28,8 +28,8 @@ impl ShapeAxis {
     }
 
     /// Nodes over [low, high] crowded towards s = 2 by [`InverseShape::crowded_nodes`].
-    pub fn crowded(low: f64, high: f64, count: usize) -> Self {
-        let nodes = InverseShape::crowded_nodes(low, high, count);
+    pub fn crowded(low: f64, high: f64, count: usize, linear: f64) -> Self {
+        let nodes = InverseShape::crowded_nodes(low, high, count, linear);
         Self { nodes, interpolation: Interpolation::Lagrange4 }
     }
 
@@ -128,12 +128,12 @@ pub fn general_set(level: impl Into<Level>, precision: Precision) -> Vec<TableSp
             name: "shadowing_peeled".into(),
             ..spec(
                 Kind::Shadowing,
-                ShapeAxis::crowded(whole, heaviest, r.shadowing_shapes),
-                r.shadowing_views,
+                ShapeAxis::crowded(whole, heaviest, r.shadowing_shapes, 2.0),
+                r.peeled_shadowing_views,
                 0,
             )
         },
-        spec(Kind::VisibleSlope, ShapeAxis::range(0.0, whole, r.shapes), r.views, r.numbers),
+        spec(Kind::VisibleSlope, ShapeAxis::crowded(0.0, whole, r.shapes, 0.0), r.views, r.numbers),
         spec(
             Kind::VisibleSlopePeeled,
             ShapeAxis::range(whole, heaviest, r.peeled_shapes),

@@ -103,7 +103,7 @@ pub(super) fn parts(shape: &Shape) -> Vec<Part<'_>> {
 pub(super) fn lobe(shape: &Shape) -> Vec<Member> {
     let tables = shape.tables.as_ref();
     let heavy = tables.and_then(|tables| tables.heavy.as_ref());
-    let flag = |of: fn(&ShapeTables) -> bool| Value::Flag(tables.is_some_and(of));
+    let crowded = tables.is_some_and(|tables| tables.masking_crowded);
     let number = |of: fn(&ShapeTables) -> f32| Value::Number(tables.map_or(0.0, of));
     let table = |name: &str| Value::Table(tables.map(|_| name.into()));
     let [d_s, d_power] = tables.map_or([1.0, 0.0], |tables| tables.normals);
@@ -113,12 +113,14 @@ pub(super) fn lobe(shape: &Shape) -> Vec<Member> {
         ("d_s", Value::Number(d_s)),
         ("d_power", Value::Number(d_power)),
         ("kappa", number(|tables| tables.kappa)),
-        ("masking_crowded", flag(|tables| tables.masking_crowded)),
+        ("masking_crowded", Value::Flag(crowded)),
         ("masking_cells", number(|tables| tables.masking_cells)),
         ("masking", table("masking")),
-        ("slopes_crowded", flag(|tables| tables.slopes_crowded)),
-        ("rows", number(|tables| tables.rows[0])),
-        ("inverse_rows", number(|tables| tables.rows[1])),
+        ("rows", number(|tables| tables.lines.cells)),
+        ("rows_first", number(|tables| tables.lines.slopes[0])),
+        ("rows_second", number(|tables| tables.lines.slopes[1])),
+        ("rows_second_end", number(|tables| tables.lines.second)),
+        ("rows_third", number(|tables| tables.lines.slopes[2])),
         ("numbers", Value::Count(tables.map_or(0, |tables| tables.numbers))),
         ("along_scale", number(|tables| tables.scales[0])),
         ("slopes", table("slopes")),

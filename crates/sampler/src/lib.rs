@@ -145,7 +145,7 @@
 //!
 //! - `std` (default): hardware square roots. Without it the crate is `no_std`, by `libm`, with the
 //!   same results.
-//! - `embedded` (default): the default set, [`Tables::embedded`], 1.6 MB of γ ∈ [1.501, ∞].
+//! - `embedded` (default): the default set, [`Tables::embedded`], 1.7 MB of γ ∈ [1.501, ∞].
 
 #![cfg_attr(not(feature = "std"), no_std)]
 

@@ -113,3 +113,21 @@ fn normals_that_reflect_are_the_visible_ones_of_any_length() {
     let skew = Skew::new([0.3, 0.1], [0.2, -0.1, 0.5]).unwrap();
     check_reflecting("tilted", &tables.ellipsoid(skew, 2.5).unwrap());
 }
+
+/// A matrix may leave of a steep normal no more than z had before the heavy part shrank it.
+#[test]
+fn normals_of_almost_singular_matrices_are_of_unit_length() {
+    let tables = Tables::embedded();
+    for gamma in [1.501, 1.51, 1.6] {
+        let skew = Skew::new([1e-8, 1e6], [0.3, 0.0, 0.0]).unwrap();
+        let lobe = tables.ellipsoid(skew, gamma).unwrap();
+        for theta in [1.57_f32, 1.5707, 1.570_76, 1.570_786_3, 1.570_79] {
+            let v = Vec3::new(theta.sin(), 0.0, theta.cos());
+            for i in 0..4000 {
+                let u = [1.0 - i as f32 * 1e-7, 0.5];
+                let length = lobe.sample_visible_normal(v, u).as_dvec3().length();
+                assert!((length - 1.0).abs() < 5e-7, "gamma {gamma}, {theta}, {u:?}: {length}");
+            }
+        }
+    }
+}

@@ -59,7 +59,7 @@ pub fn radial_axes(level: Level, kappa: f64, reach: f64) -> [(Kind, Vec<Axis>); 
 }
 
 /// The coordinate of views, and of slopes that have no bound.
-const SLOPE: HalfTangent = HalfTangent { crowded: false };
+const SLOPE: HalfTangent = HalfTangent { knots: None };
 const HALF_TANGENT: Mapping = Mapping::HalfTangent(SLOPE);
 
 /// q with the given κ, for tables without a γ axis.

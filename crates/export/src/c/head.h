@@ -78,7 +78,7 @@
 #define STUDENT_T_H
 
 /* Raised whenever the layout of student_t_shape changes: the files of shapes ask for theirs. */
-#define STUDENT_T_LAYOUT 1
+#define STUDENT_T_LAYOUT 2
 
 #if !defined(__CUDACC_RTC__) && !defined(__HIPCC_RTC__)
 #include <math.h>
@@ -138,9 +138,11 @@ typedef struct student_t_shape {
     int masking_crowded;   /* whether that is 1 - sqrt(1 - it) */
     float masking_cells;
     const float *masking;  /* [cells + 1][4]: cubics, of G1/coordinate/cells */
-    int slopes_crowded;    /* whether the coordinate of slopes, tau, is 1 - sqrt(1 - tau) */
-    float rows;            /* cells along the view */
-    float inverse_rows;    /* 1/rows */
+    float rows;            /* cells along the view, where the largest of three linear functions */
+    float rows_first;      /* of r = 1 - z/(rho + length) is the place: rows_first (1 - r), */
+    float rows_second;     /* rows_second_end - rows_second r, and rows - rows_third r */
+    float rows_second_end;
+    float rows_third;
     int numbers;           /* nodes of half a row */
     float along_scale;     /* 2^(1/4) (numbers - 1) */
     const float *slopes;   /* [rows + 2][2][numbers][2], and a node: value and slope, the half for

@@ -19,7 +19,7 @@ const HEADER: &str = concat!(
 const HEADER_NAME: &str = "student_t.h";
 
 /// `STUDENT_T_LAYOUT` of the header.
-const LAYOUT: u32 = 1;
+const LAYOUT: u32 = 2;
 
 pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     let header = ExportFile { name: HEADER_NAME.into(), contents: HEADER.into() };

@@ -81,13 +81,12 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
     /* The view, among the rows of the table, and the g of its silhouette in the first half. */
     d = student_t_impl_stretch(sigma_x, sigma_y, v);
     length = sqrtf(d.rho2 + d.z * d.z);
-    if (shape->slopes_crowded) {
+    {
         const float steep = length + d.z;
         silhouette = student_t_impl_unit(d.rho * (steep + d.rho) / (steep * (d.rho + length)));
-        at = (1.0f - sqrtf(silhouette)) * shape->rows;
-    } else {
-        at = d.z * shape->rows / (d.rho + length);
-        silhouette = 1.0f - at * shape->inverse_rows;
+        at = student_t_impl_max(shape->rows_first - shape->rows_first * silhouette,
+                                shape->rows_second_end - shape->rows_second * silhouette);
+        at = student_t_impl_max(at, shape->rows - shape->rows_third * silhouette);
     }
 
     /* The first number chooses between the tables and what is in none, which comes last. */

@@ -12,7 +12,7 @@ use super::super::{ExportFile, Shape, open_exr};
 use super::NAME;
 
 /// Raised whenever the order of members or tables changes.
-pub(super) const LAYOUT: u32 = 1;
+pub(super) const LAYOUT: u32 = 2;
 
 /// Pairs in a row of the image.
 pub const WIDTH: usize = 512;

@@ -103,13 +103,11 @@ fn student_t_impl_sample_tables(shape: StudentTShape, sigma: vec2f, v: vec3f, u:
     // The view, among the rows of the table, and the g of its silhouette in the first half.
     let d = student_t_impl_stretch(sigma, v);
     let tall = sqrt(d.square + d.z * d.z);
-    var at = d.z * shape.rows / (d.rho + tall);
-    var silhouette = 1.0 - at * shape.inverse_rows;
-    if shape.slopes_crowded > 0.0 {
-        let steep = tall + d.z;
-        silhouette = student_t_impl_unit(d.rho * (steep + d.rho) / (steep * (d.rho + tall)));
-        at = (1.0 - sqrt(silhouette)) * shape.rows;
-    }
+    let steep = tall + d.z;
+    let silhouette = student_t_impl_unit(d.rho * (steep + d.rho) / (steep * (d.rho + tall)));
+    let at = max(max(shape.rows_first - shape.rows_first * silhouette,
+                     shape.rows_second_end - shape.rows_second * silhouette),
+                 shape.rows - shape.rows_third * silhouette);
 
     // The first number chooses between the tables and what is in none, which comes last.
     var along = student_t_impl_unit(u.x);

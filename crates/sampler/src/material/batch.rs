@@ -14,7 +14,7 @@ use wide::{bytemuck, f32x4, i32x4};
 
 use microfacet_tables::axis::half_tangent::half_slope_at;
 use microfacet_tables::axis::hermite::{Cell, cubic_lanes, hermite_lanes, horner_lanes, split};
-use microfacet_tables::axis::{HalfTangent, roots};
+use microfacet_tables::axis::roots;
 
 use super::distribution::MicrofacetDistribution;
 use super::fast_path::{least_clear, pair, start};
@@ -107,8 +107,7 @@ impl StudentT {
     fn locate<const HEAVY: bool>(&self, views: Views, u: [f32x4; 2]) -> Located {
         let (slices, fast) = (&self.slices, &self.slices.fast);
         let Views { rho, z, length, .. } = views;
-        let axis = HalfTangent { crowded: HEAVY && slices.view.crowded };
-        let [at, silhouette] = axis.of_views(rho, z, length, fast.rows);
+        let [at, silhouette] = slices.place::<HEAVY>(rho, z, length);
         let (row, between) = split(at);
         let [number, heavy] = if HEAVY && slices.peeled {
             parts(u[0], slices.heavy.shares(at, coefficients))

@@ -229,7 +229,7 @@ impl Bounded {
     fn intervals_of(&self, [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 2] {
         let (lobe, slices) = (&self.lobe, &self.lobe.slices);
         let Views { rho, z, length, .. } = Views::new(vx * lobe.sigma_x, vy * lobe.sigma_y, vz);
-        let [at, _] = slices.view.of_views(rho, z, length, slices.fast.rows);
+        let [at, _] = slices.place::<true>(rho, z, length);
         self.intervals(rho, z, (vx * vx + vy * vy).sqrt(), at, |group, cells| {
             [0, 1].map(|end| {
                 f32x4::new(core::array::from_fn(|i| self.limit(group.at(i), cells[end].at(i), end)))

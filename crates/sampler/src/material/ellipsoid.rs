@@ -16,6 +16,7 @@ use super::sample::{HORIZON, above_horizon, first_three};
 use super::student_t::{Stretched, StudentT};
 use super::views::Views;
 use crate::error::MaterialError;
+use crate::lanes::sum;
 
 /// An Ellipsoid lobe: that of Walter et al. 2015 (supplemental material of
 /// <https://doi.org/10.1145/2815618>) at γ = 2, a skewed Student-t for other γ, a skewed Beckmann
@@ -123,9 +124,11 @@ impl Ellipsoid {
             [1.0; 2],
             to_tangent,
         )?;
-        // Not where an almost singular matrix has taken squares out of range, or a normal below the
+        // Not where an almost singular matrix has taken squares out of range, so that the length is
+        // not 1 (nor where z was as long as the rest before it shrank), or a normal below the
         // smallest cosine.
-        (m.to_array()[2] >= HORIZON).then_some(m)
+        let [[off, ..], [_, _, z, _]] = [(sum(m * m) - 1.0).abs(), m].map(f32x4::to_array);
+        (off < 5e-7 && z >= HORIZON).then_some(m)
     }
 
     /// A visible normal of a lobe with a heavy part, out of line as that of [`StudentT`].
@@ -149,7 +152,9 @@ impl Ellipsoid {
             self.lobe.unit_normal(&view, along, self.lobe.sample_across(u[1])).to_array()
         };
         let Matrix { p, q, r, x, y } = self.matrix;
-        above_horizon(Vec3::new(p * mx + q * my + x * mz, r * my + y * mz, mz))
+        let m = Vec3::new(p * mx + q * my + x * mz, r * my + y * mz, mz);
+        // The squares of what an almost singular matrix leaves may be no normal numbers.
+        above_horizon(m / m.abs().max_element())
     }
 
     #[cold]

@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use wide::f32x4;
 
 use microfacet_core::math::unit;
-use microfacet_tables::axis::hermite::{Cell, cubic, cubic_cells, cubic_lanes, split};
+use microfacet_tables::axis::hermite::{Cell, cubic, cubic_lanes, split};
 
 use crate::elementary::{exp2, log2};
 
@@ -34,22 +34,18 @@ impl Heavy {
     /// From its `share` of the visible area at t ∈ [0, 1], for a table of `rows` cells.
     pub(crate) fn new(gamma: f64, s: f64, rows: usize, share: impl Fn(f64) -> f64) -> Self {
         let cells = CELLS_PER_ROW * rows;
-        // Slopes per cell from half cells on either side, at the ends from one side.
-        let node = |i: usize| {
-            let at = |halves: f64| share((i as f64 + 0.5 * halves) / cells as f64);
-            let slope = match i {
-                0 => 4.0 * at(1.0) - 3.0 * at(0.0) - at(2.0),
-                _ if i == cells => 3.0 * at(0.0) - 4.0 * at(-1.0) + at(-2.0),
-                _ => (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 6.0,
-            };
-            [at(0.0) as f32, slope as f32]
+        // Through four places of each cell: the share has a kink at the knots of the view's axis,
+        // which are between cells.
+        let cell = |i: usize| {
+            let [a, b, c, d] = [0.0, 1.0, 2.0, 3.0]
+                .map(|thirds| share(((i as f64 + thirds / 3.0) / cells as f64).min(1.0)));
+            let (first, second, third) = (b - a, c - 2.0 * b + a, d - 3.0 * c + 3.0 * b - a);
+            let linear = 3.0 * (first - 0.5 * second + third / 3.0);
+            [a, linear, 4.5 * (second - third), 4.5 * third].map(|x| x as f32)
         };
-        let nodes: Vec<_> = (0..=cells).map(node).collect();
-        Self {
-            shares: cubic_cells(&nodes, 1.0),
-            exponent: (1.0 / (2.0 * gamma - 3.0)) as f32,
-            root_s: libm::sqrt(s) as f32,
-        }
+        let mut shares: Vec<Cell> = (0..cells).map(cell).collect();
+        shares.push([share(1.0) as f32, 0.0, 0.0, 0.0]);
+        Self { shares, exponent: (1.0 / (2.0 * gamma - 3.0)) as f32, root_s: libm::sqrt(s) as f32 }
     }
 
     /// The share at a view coordinate in rows, to rounding in [0, 1].

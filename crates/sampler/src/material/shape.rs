@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use microfacet_tables::axis::half_tangent::Lines;
 use microfacet_tables::axis::hermite::{Cell, Node};
 
 use super::heavy::CELLS_PER_ROW;
@@ -22,10 +23,8 @@ pub struct ShapeTables {
     pub masking_cells: f32,
     /// G1/q over the number of cells, as the cubic's coefficients in each cell of the view.
     pub masking: Vec<Cell>,
-    /// Whether the view coordinate of slopes is crowded.
-    pub slopes_crowded: bool,
-    /// Cells of the view coordinate of slopes, and the reciprocal.
-    pub rows: [f32; 2],
+    /// The view coordinate of slopes, in cells.
+    pub lines: Lines,
     /// Nodes of a half row of slopes, for u ≤ ½ or u > ½.
     pub numbers: usize,
     /// Factors from min(u, 1−u)^¼ to cells, along the plane of incidence and across it.
@@ -69,8 +68,7 @@ impl ShapeTables {
             masking_crowded: slices.shadowing_view.crowded,
             masking_cells: slices.shadowing_cells,
             masking: slices.shadowing.clone(),
-            slopes_crowded: slices.view.crowded,
-            rows: slices.fast.rows,
+            lines: slices.fast.lines,
             numbers: slices.half_cells + 1,
             scales: slices.fast.scales,
             slopes: slices.slope.clone(),

@@ -3,9 +3,11 @@
 use alloc::vec::Vec;
 
 use microfacet_core::shape::s_of_gamma;
+use microfacet_tables::axis::half_tangent::Lines;
 use microfacet_tables::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
 use microfacet_tables::axis::{HalfTangent, MirroredRoot, Rational};
 use microfacet_tables::{Axis, Kind, Mapping, Table, Weights};
+use wide::f32x4;
 
 use super::coverage::{self, end_weights, shape_weights};
 use super::heavy::Heavy;
@@ -92,14 +94,14 @@ pub(crate) struct Slices {
 /// The layout of the fast path.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FastPath {
-    /// Whether the lobe is of the common kind, without a peeled table or a crowded axis.
+    /// Whether the lobe is of the common kind, without a peeled table.
     pub(crate) plain: bool,
     /// Slopes across by cell.
     pub(crate) across: Vec<Cell>,
     /// Factors from min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
     pub(crate) scales: [f32; 2],
-    /// Cells of the view axis, and the reciprocal.
-    pub(crate) rows: [f32; 2],
+    /// Cells of the view axis.
+    pub(crate) lines: Lines,
     /// Nodes of half a row of `slope`.
     pub(crate) half: u32,
 }
@@ -116,10 +118,10 @@ impl Slices {
         make_monotone(&mut slices.across);
         let (numbers, rows) = (slices.half_cells + 1, slices.rows);
         slices.fast = FastPath {
-            plain: !slices.peeled && !slices.view.crowded,
+            plain: !slices.peeled,
             scales: [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale),
             across: cubic_cells(&slices.across, 1.0),
-            rows: [rows as f32, (1.0 / rows as f64) as f32],
+            lines: slices.view.lines(rows as f32),
             half: numbers as u32,
         };
         if slices.peeled {
@@ -161,6 +163,23 @@ impl Slices {
             across: Vec::new(),
             fast: FastPath::default(),
             heavy: Heavy::default(),
+        }
+    }
+
+    /// The coordinate of four views in rows, and 1 − τ. The same bits whatever `HEAVY` is, which
+    /// must be true of a peeled table.
+    #[inline(always)]
+    pub(crate) fn place<const HEAVY: bool>(
+        &self,
+        rho: f32x4,
+        z: f32x4,
+        length: f32x4,
+    ) -> [f32x4; 2] {
+        let lines = &self.fast.lines;
+        if HEAVY && self.peeled {
+            lines.of_views::<true>(rho, z, length)
+        } else {
+            lines.of_views::<false>(rho, z, length)
         }
     }
 

@@ -4,8 +4,6 @@
 use glam::Vec3;
 use wide::f32x4;
 
-use microfacet_tables::axis::HalfTangent;
-
 use super::student_t::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, StudentT};
 use crate::lanes::swap_pairs;
 
@@ -44,10 +42,9 @@ impl StudentT {
         self.stretched::<HEAVY>(f32x4::new([v.x, v.y, 0.0, 0.0]) * sigma, v.z)
     }
 
-    /// The same of a stretched view. `HEAVY` lobes have a peeled table or a crowded axis.
+    /// The same of a stretched view. `HEAVY` lobes have a peeled table.
     #[inline(always)]
     pub(crate) fn stretched<const HEAVY: bool>(&self, xy: f32x4, z: f32) -> View {
-        let (slices, fast) = (&self.slices, &self.slices.fast);
         let mut z = f32x4::splat(if z > 0.0 { z } else { 0.0 });
         let squares = xy * xy;
         let rho2 = squares + swap_pairs(squares);
@@ -60,8 +57,7 @@ impl StudentT {
             xy = f32x4::new([x, y, 0.0, 0.0]);
             [frame, rho, z, length] = others.map(f32x4::splat);
         }
-        let axis = HalfTangent { crowded: HEAVY && slices.view.crowded };
-        let [at, silhouette] = axis.of_views(rho, z, length, fast.rows);
+        let [at, silhouette] = self.slices.place::<HEAVY>(rho, z, length);
         View { xy, frame, rho, z, at, silhouette }
     }
 }

@@ -14,22 +14,36 @@ use wide::f32x4;
 use microfacet_core::math::{sqrt, sqrt64};
 
 use super::coordinate::Coordinate;
-use super::crowded;
 
 /// The half tangent τ = z/(1 + √(1+z²)) ∈ [0, 1] of a view's unit cotangent z = cot θ_v/σ_v ∈
 /// [0, ∞].
 ///
 /// τ is the tangent of half the elevation in unit space: 0 is grazing, 1 normal incidence (or
-/// σ → 0). Where `crowded`, t = 1 − √(1−τ).
+/// σ → 0). With knots, t is piecewise linear in τ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HalfTangent {
-    /// Whether the nodes crowd towards normal incidence.
-    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
-    pub crowded: bool,
+    /// Where the nodes become denser: t is linear in τ between (0, 0), these [τ, t] and (1, 1), and
+    /// convex, so that it is also the largest of the three linear functions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub knots: Option<[[f64; 2]; 2]>,
 }
 
 impl HalfTangent {
+    /// (0, 0), the knots and (1, 1).
+    fn points(&self) -> [[f64; 2]; 4] {
+        let [first, second] = self.knots.unwrap_or([[0.0; 2], [1.0; 2]]);
+        [[0.0; 2], first, second, [1.0; 2]]
+    }
+
+    /// The piece that holds `x`, of τ (`along` = 0) or t (1), as two points.
+    fn piece(&self, x: f64, along: usize) -> [[f64; 2]; 2] {
+        let points = self.points();
+        let i = (1..3).find(|&i| x < points[i][along]).unwrap_or(3);
+        // Without knots the last piece is empty.
+        if self.knots.is_none() { [points[0], points[3]] } else { [points[i - 1], points[i]] }
+    }
+
     /// t of z ∈ [0, ∞].
     pub fn coordinate(&self, z: f64) -> f64 {
         // z² would overflow.
@@ -37,12 +51,16 @@ impl HalfTangent {
             return 1.0;
         }
         let tau = half_tangent(z, 1.0);
-        if self.crowded { crowded::coordinate(tau, ends(z, 1.0)[1]) } else { tau }
+        let [[from, low], [to, high]] = self.piece(tau, 0);
+        low + (tau - from) * ((high - low) / (to - from))
     }
 
     /// τ and 1 − τ at t.
     pub fn parts(&self, t: f64) -> [f64; 2] {
-        if self.crowded { crowded::parts(t) } else { [t, 1.0 - t] }
+        let [[from, low], [to, high]] = self.piece(t, 1);
+        let slope = (to - from) / (high - low);
+        // 1 − τ from the end, where that is 1, without cancellation.
+        [from + (t - low) * slope, (1.0 - to) + (high - t) * slope]
     }
 
     /// z = 2τ/(1 − τ²) at t; ∞ for 1.
@@ -51,44 +69,80 @@ impl HalfTangent {
         2.0 * tau / (rest * (1.0 + tau))
     }
 
-    /// t times `rows` of four views, and 1 − τ; `length` is √(ρ² + z²).
-    #[inline(always)]
-    pub fn of_views(
-        &self,
-        rho: f32x4,
-        z: f32x4,
-        length: f32x4,
-        [rows, inverse_rows]: [f32; 2],
-    ) -> [f32x4; 2] {
-        if self.crowded {
-            // 1 − τ = (ρ + (length − z))/(ρ + length) with length − z = ρ²/(length + z), which does
-            // not cancel.
-            let steep = length + z;
-            let rest = rho * (steep + rho) / (steep * (rho + length));
-            [(1.0 - rest.sqrt()) * rows, rest]
-        } else {
-            let at = z * rows / (rho + length);
-            [at, 1.0 - at * inverse_rows]
+    /// The coordinate times a number of cells.
+    pub fn lines(&self, cells: f32) -> Lines {
+        let mut lines = Lines { cells, slopes: [cells; 3], second: cells };
+        if self.knots.is_some() {
+            let points = self.points();
+            lines.slopes = [0, 1, 2].map(|i| {
+                let [[from, low], [to, high]] = [points[i], points[i + 1]];
+                ((high - low) / (to - from)) as f32 * cells
+            });
+            let [[from, low], [to, high]] = [points[1], points[2]];
+            lines.second = (low + (1.0 - from) * ((high - low) / (to - from))) as f32 * cells;
         }
+        lines
     }
 
     /// t of a view from its stretched horizontal length ρ and vertical part z ≥ 0, not both 0.
     #[inline(always)]
     pub fn of_view(&self, rho: f32, z: f32) -> f32 {
         let length = sqrt(rho * rho + z * z);
-        let r = 1.0 / (rho + length);
-        if self.crowded {
-            // 1 − τ = (ρ + (length − z)) r, where length − z = ρ²/(length + z) does not cancel.
-            crowded::fast((rho + rho * rho / (length + z)) * r)
-        } else {
-            z * r
+        match self.knots {
+            None => z / (rho + length),
+            Some(_) => {
+                let [rho, z, length] = [rho, z, length].map(f32x4::splat);
+                self.lines(1.0).of_views::<true>(rho, z, length)[0].to_array()[0]
+            }
         }
+    }
+}
+
+/// A convex, piecewise linear coordinate in cells, as the largest of three linear functions of the
+/// rest r = 1 − τ: slope₁ (1 − r), second − slope₂ r and cells − slope₃ r. At r = 0 and 1 it is
+/// `cells` and 0 to the bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lines {
+    /// The number of cells.
+    pub cells: f32,
+    /// How fast the functions fall with r.
+    pub slopes: [f32; 3],
+    /// The second function at r = 0.
+    pub second: f32,
+}
+
+impl Lines {
+    /// The coordinate of four views, and r; `length` is √(ρ² + z²). Only `PRECISE`, r keeps its
+    /// digits next to normal incidence, where cells of a peeled table are as narrow as 7e-4 of τ.
+    #[inline(always)]
+    pub fn of_views<const PRECISE: bool>(&self, rho: f32x4, z: f32x4, length: f32x4) -> [f32x4; 2] {
+        let rest = if PRECISE {
+            // (ρ + (length − z))/(ρ + length) with length − z = ρ²/(length + z).
+            let steep = length + z;
+            rho * (steep + rho) / (steep * (rho + length))
+        } else {
+            1.0 - z / (rho + length)
+        };
+        let [first, second, third] = self.slopes.map(|slope| rest * slope);
+        let first = self.slopes[0] - first;
+        [first.fast_max(self.second - second).fast_max(self.cells - third), rest]
     }
 }
 
 impl Coordinate for HalfTangent {
     fn formula(&self) -> &'static str {
-        "τ = z/(1 + √(1+z²)); where crowded, t = 1 − √(1−τ)"
+        "τ = z/(1 + √(1+z²)); t is linear in τ between (0, 0), knots [τ, t] if any, and (1, 1)"
+    }
+
+    fn check(&self) -> Result<(), &'static str> {
+        let points = self.points();
+        let slopes = [0, 1, 2].map(|i| {
+            let [[from, low], [to, high]] = [points[i], points[i + 1]];
+            if low < high && from < to { (high - low) / (to - from) } else { f64::NAN }
+        });
+        // Not true of what is no number.
+        let convex = slopes[0] <= slopes[1] && slopes[1] <= slopes[2] && slopes[2] < 1e6;
+        if self.knots.is_none() || convex { Ok(()) } else { Err("knots that are not convex") }
     }
 }
 
@@ -163,12 +217,15 @@ pub fn half_slope_at(g: f32x4) -> [f32x4; 2] {
 mod tests {
     use super::*;
 
+    const KNOTS: [Option<[[f64; 2]; 2]>; 2] = [None, Some([[0.72, 0.625], [0.94, 0.875]])];
+
     const SLOPES: [f64; 9] = [0.0, 1e-12, 1e-3, 0.4, 1.0, 2.5, 1e3, 1e8, f64::INFINITY];
 
     #[test]
     fn there_and_back() {
-        for crowded in [false, true] {
-            let axis = HalfTangent { crowded };
+        for knots in KNOTS {
+            let axis = HalfTangent { knots };
+            assert!(axis.check().is_ok());
             for t in [0.0, 1e-9, 0.1, 0.5, 0.9, 0.999, 1.0] {
                 let back = axis.coordinate(axis.quantity(t));
                 assert!((back - t).abs() < 1e-15, "{t}: {back}");
@@ -206,19 +263,23 @@ mod tests {
     #[test]
     fn fast_forms_are_the_exact_ones() {
         for (rho, z) in [(1.0_f32, 0.0_f32), (0.7, 1e-5), (0.3, 0.9), (1e-4, 1.0), (0.0, 1.0)] {
-            let exact = |crowded| HalfTangent { crowded }.coordinate(f64::from(z) / f64::from(rho));
-            for crowded in [false, true] {
-                let got = f64::from(HalfTangent { crowded }.of_view(rho, z));
-                assert!((got - exact(crowded)).abs() < 2e-7, "{rho}, {z}: {got}");
-            }
             let lanes = |x: f32| f32x4::splat(x);
             let length = lanes(sqrt(rho * rho + z * z));
-            for crowded in [false, true] {
-                let axis = HalfTangent { crowded };
-                let [at, rest] = axis.of_views(lanes(rho), lanes(z), length, [80.0, 1.0 / 80.0]);
-                let [at, rest] = [at, rest].map(|x| f64::from(x.to_array()[2]));
-                assert!((at / 80.0 - exact(crowded)).abs() < 2e-7);
-                assert!((rest - (1.0 - exact(false))).abs() < 2e-7);
+            let z_over_rho = f64::from(z) / f64::from(rho);
+            for knots in KNOTS {
+                let axis = HalfTangent { knots };
+                let exact = axis.coordinate(z_over_rho);
+                let got = f64::from(axis.of_view(rho, z));
+                assert!((got - exact).abs() < 3e-7, "{rho}, {z}: {got}");
+                let (lines, [rho, z]) = (axis.lines(80.0), [rho, z].map(lanes));
+                let plain = lines.of_views::<false>(rho, z, length);
+                for views in [lines.of_views::<true>(rho, z, length), plain] {
+                    let [at, rest] = views.map(|x| f64::from(x.to_array()[2]));
+                    assert!((at / 80.0 - exact).abs() < 3e-7);
+                    let tau = HalfTangent::default().coordinate(z_over_rho);
+                    assert!((rest - (1.0 - tau)).abs() < 2e-7);
+                    assert!(z_over_rho < f64::INFINITY || at == 80.0, "{at}");
+                }
             }
         }
         for g in [1e-6_f32, 0.2, 0.8, 1.0] {

@@ -21,12 +21,13 @@ impl InverseShape {
         gamma_of_s(s)
     }
 
-    /// `count` nodes from `low` to `high` that crowd towards s = 2, even in s − ½ ln(1 − s/2).
+    /// `count` nodes from `low` to `high` that crowd towards s = 2, even in
+    /// `linear`·s − ln(1 − s/2).
     ///
     /// The projected area diverges there as 1/(2 − s), and what depends on it changes with the
     /// logarithm of 2 − s.
-    pub fn crowded_nodes(low: f64, high: f64, count: usize) -> Vec<f64> {
-        let warp = |s: f64| s - 0.5 * libm::log(1.0 - s / S_END);
+    pub fn crowded_nodes(low: f64, high: f64, count: usize, linear: f64) -> Vec<f64> {
+        let warp = |s: f64| linear * s - libm::log(1.0 - s / S_END);
         let mut nodes = even_nodes(warp(low), warp(high), count);
         nodes.iter_mut().for_each(|y| *y = bisect(low, high, *y, warp));
         // The ends themselves, without the rounding of the warp and its inverse.
@@ -63,7 +64,7 @@ mod tests {
 
     #[test]
     fn nodes_crowd_towards_the_end() {
-        let nodes = InverseShape::crowded_nodes(1.25, 1.99, 9);
+        let nodes = InverseShape::crowded_nodes(1.25, 1.99, 9, 2.0);
         assert_eq!([nodes[0], nodes[8]], [1.25, 1.99]);
         assert!(nodes.windows(3).all(|w| w[1] - w[0] > w[2] - w[1] && w[2] > w[1]), "{nodes:?}");
     }

@@ -86,7 +86,7 @@ impl Mapping {
         Self::LogShape(LogShape::BAKED),
         Self::LogRoughness(LogRoughness::BAKED),
         Self::ReflectanceRoot,
-        Self::HalfTangent(HalfTangent { crowded: true }),
+        Self::HalfTangent(HalfTangent { knots: Some([[0.7, 0.6], [0.9, 0.8]]) }),
         Self::Rational(Rational::BAKED),
         Self::ViewBlend(ViewBlend::BAKED),
         Self::CriticalBlend(CriticalBlend::BAKED),

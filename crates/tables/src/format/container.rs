@@ -26,7 +26,7 @@ use crate::error::LoadError;
 /// The `format` entry of the document.
 pub const FORMAT: &str = "microfacet-tables";
 /// Version of the format that this crate writes, and the only one that it reads.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 /// Key of the document in the safetensors metadata.
 const KEY: &str = "microfacet";
 

@@ -63,12 +63,11 @@ def table_normal(
     tz = far * (2 - far)
 
     tall = dr.sqrt(view.rho * view.rho + view.z * view.z)
-    if of["slopes_crowded"] > 0:
-        steep = tall + view.z
-        silhouette = unit(view.rho * (steep + view.rho) / (steep * (view.rho + tall)))
-        at = (1 - dr.sqrt(silhouette)) * of["rows"]
-    else:
-        at = view.z * of["rows"] / (view.rho + tall)
+    steep = tall + view.z
+    rest = unit(view.rho * (steep + view.rho) / (steep * (view.rho + tall)))
+    at = of["rows_first"] * (1 - rest)
+    at = dr.maximum(at, of["rows_second_end"] - of["rows_second"] * rest)
+    at = dr.maximum(at, of["rows"] - of["rows_third"] * rest)
 
     along = unit(u.x)
     if shape.heavy is None:
@@ -101,9 +100,10 @@ def _table_slope(
     shape: Shape, along: mi.Float, at: mi.Float, active: mi.Bool
 ) -> tuple[mi.Float, mi.Float]:
     """Half a slope x : z by tables: linear between the views, a cubic along the number."""
-    numbers = int(shape.members["numbers"])
-    row, between = place(at, int(shape.members["rows"]))
-    cell, w = place(_end(along) * shape.members["along_scale"], numbers - 1)
+    of = shape.members
+    numbers = int(of["numbers"])
+    row, between = place(at, int(of["rows"]))
+    cell, w = place(_end(along) * of["along_scale"], numbers - 1)
     second = along > 0.5
     low = (2 * row + dr.select(second, mi.UInt32(1), mi.UInt32(0))) * numbers + cell
     a = shape.slopes(low, active)
