@@ -83,7 +83,10 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
     length = sqrtf(d.rho2 + d.z * d.z);
     {
         const float steep = length + d.z;
-        silhouette = student_t_impl_unit(d.rho * (steep + d.rho) / (steep * (d.rho + length)));
+        /* Next to normal incidence 1 - tau loses digits, which the narrow cells there need. */
+        silhouette = shape->heavy ? d.rho * (steep + d.rho) / (steep * (d.rho + length))
+                                  : 1.0f - d.z / (d.rho + length);
+        silhouette = student_t_impl_unit(silhouette);
         at = student_t_impl_max(shape->rows_first - shape->rows_first * silhouette,
                                 shape->rows_second_end - shape->rows_second * silhouette);
         at = student_t_impl_max(at, shape->rows - shape->rows_third * silhouette);

@@ -103,8 +103,13 @@ fn student_t_impl_sample_tables(shape: StudentTShape, sigma: vec2f, v: vec3f, u:
     // The view, among the rows of the table, and the g of its silhouette in the first half.
     let d = student_t_impl_stretch(sigma, v);
     let tall = sqrt(d.square + d.z * d.z);
-    let steep = tall + d.z;
-    let silhouette = student_t_impl_unit(d.rho * (steep + d.rho) / (steep * (d.rho + tall)));
+    var rest = 1.0 - d.z / (d.rho + tall);
+    if shape.heavy_per_row > 0.0 {
+        // Next to normal incidence the other form loses digits, which the narrow cells there need.
+        let steep = tall + d.z;
+        rest = d.rho * (steep + d.rho) / (steep * (d.rho + tall));
+    }
+    let silhouette = student_t_impl_unit(rest);
     let at = max(max(shape.rows_first - shape.rows_first * silhouette,
                      shape.rows_second_end - shape.rows_second * silhouette),
                  shape.rows - shape.rows_third * silhouette);

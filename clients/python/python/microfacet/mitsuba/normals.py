@@ -64,7 +64,12 @@ def table_normal(
 
     tall = dr.sqrt(view.rho * view.rho + view.z * view.z)
     steep = tall + view.z
-    rest = unit(view.rho * (steep + view.rho) / (steep * (view.rho + tall)))
+    if shape.heavy is None:
+        rest = 1 - view.z / (view.rho + tall)
+    else:
+        # Next to normal incidence the other form loses digits, which the narrow cells there need.
+        rest = view.rho * (steep + view.rho) / (steep * (view.rho + tall))
+    rest = unit(rest)
     at = of["rows_first"] * (1 - rest)
     at = dr.maximum(at, of["rows_second_end"] - of["rows_second"] * rest)
     at = dr.maximum(at, of["rows"] - of["rows_third"] * rest)
