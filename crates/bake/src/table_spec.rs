@@ -117,6 +117,8 @@ pub fn general_set(level: impl Into<Level>, precision: Precision) -> Vec<TableSp
         numbers,
         precision,
     };
+    // Shapes crowd: G1 changes with the logarithm of 2 − s next to γ = 3/2, and the slopes of
+    // grazing views next to the seam, where even nodes in s leave most of the error.
     vec![
         spec(
             Kind::Shadowing,

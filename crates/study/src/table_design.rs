@@ -1,14 +1,18 @@
 //! Why the table of visible slopes has its form: the largest CDF error of several designs of the
 //! same size.
 //!
-//! `cargo run --release -p microfacet-study -- table_design` prints the table in the docs of
-//! `microfacet_baker::bake`. Every design has 65 views by 2·17 random numbers, exact values and
-//! slopes at its nodes, cubic Hermite along u₁ and lines between views; errors are measured in
-//! double precision between the nodes of both axes.
+//! `cargo run --release -p microfacet-study -- table_design` prints the tables in the docs of
+//! `microfacet_baker::bake`. Every design of the first has 65 views by 2·17 random numbers, exact
+//! values and slopes at its nodes, cubic Hermite along u₁ and lines between views; errors are
+//! measured in double precision between the nodes of both axes.
 
+use microfacet_baker::bake::axes;
+use microfacet_baker::table_spec::{Level, general_set};
 use microfacet_model::{Shape, SignedSlope, UnitView, VisibleSlope};
 use microfacet_tables::axis::HalfTangent;
 use microfacet_tables::axis::half_tangent::{half_tangent, slope_at};
+use microfacet_tables::{Kind, Mapping, Precision};
+use rayon::prelude::*;
 
 const VIEWS: usize = 64;
 const NUMBERS: usize = 16;
@@ -127,6 +131,58 @@ impl Design {
     }
 }
 
+/// The largest CDF error of linear interpolation between exact views, `cells` + 1 even nodes of a
+/// coordinate: in the middle of every cell and on either side of it. Peeled, the error counts by
+/// the share of the part that is left, 1 − M₀ sin θ/area.
+fn error_between_views(shape: &Shape, axis: HalfTangent, cells: usize, peeled: bool) -> f64 {
+    let design = Design { stored: Stored::HalfTangent, view: View::HalfTangent, power: 4 };
+    let slopes = |t: f64| {
+        let view = UnitView::from_cotangent(axis.quantity(t));
+        if peeled { VisibleSlope::peeled(shape, view) } else { VisibleSlope::new(shape, view) }
+    };
+    let numbers: Vec<f64> =
+        (1..4 * NUMBERS).map(|i| design.number(i as f64 / (2 * NUMBERS) as f64)).collect();
+    let row = |t: f64| -> Vec<f64> {
+        let (view, slopes) = (UnitView { sin: 1.0, cos: 0.0 }, slopes(t));
+        numbers.iter().map(|&u| design.store(shape, view, slopes.quantile(u))).collect()
+    };
+    let in_cell = |i: usize| {
+        let t = |w: f64| (i as f64 + w) / cells as f64;
+        let (low, high) = (row(t(0.0)), row(t(1.0)));
+        let mut worst = 0.0_f64;
+        for w in [0.25, 0.5, 0.75] {
+            let (view, exact) = (UnitView::from_cotangent(axis.quantity(t(w))), slopes(t(w)));
+            let whole = VisibleSlope::new(shape, view).area();
+            let share = if peeled { 1.0 - view.sin * shape.first_moment(0.0) / whole } else { 1.0 };
+            for ((a, b), u) in low.iter().zip(&high).zip(&numbers) {
+                let x = design.restore(shape, view, a + w * (b - a));
+                worst = worst.max(share * (exact.cdf(x) - u).abs());
+            }
+        }
+        worst
+    };
+    (0..cells).into_par_iter().map(in_cell).reduce(|| 0.0, f64::max)
+}
+
+/// Prints [`error_between_views`] with even nodes and with the knots of baked tables.
+fn print_views() {
+    println!("\n| views | nodes | γ: error | | | |\n| --- | --- | --- | --- | --- | --- |");
+    for spec in general_set(Level::DEFAULT, Precision::F32) {
+        let peeled = spec.kind == Kind::VisibleSlopePeeled;
+        let gammas = if peeled { [1.501, 1.51, 1.6, 1.79] } else { [1.8, 1.9, 4.0, f64::INFINITY] };
+        let Mapping::HalfTangent(baked) = axes(&spec)[1].mapping else { continue };
+        for axis in [HalfTangent::default(), baked] {
+            let error = |gamma| {
+                let shape = Shape::new(gamma).expect("in range");
+                let error = error_between_views(&shape, axis, spec.views - 1, peeled);
+                format!("{gamma}: {error:.1e}")
+            };
+            let nodes = axis.knots.map_or("even".into(), |knots| format!("knots {knots:?}"));
+            println!("| {} | {nodes} | {} |", spec.views, gammas.map(error).join(" | "));
+        }
+    }
+}
+
 /// Prints what the module's page says.
 pub fn run() {
     println!(
@@ -146,4 +202,5 @@ pub fn run() {
             println!("| {stored:?} | {view:?} | t^{power} | {} |", errors.join(" | "));
         }
     }
+    print_views();
 }

@@ -35,7 +35,13 @@ use crate::table_spec::TableSpec;
 
 /// The view axis, with more nodes towards normal incidence: there the slopes depend on the tilt η
 /// like η^(2γ−2), whose second derivative is infinite for γ < 2. The knots are at eighths, so that
-/// they are nodes, and where linear interpolation between views errs as much on either side.
+/// they are nodes, and the best of a coarse grid. The largest CDF error of linear interpolation
+/// between 89 exact views, as the command above prints it too:
+///
+/// | nodes | γ = 1.8 | 1.9 | 4 | ∞ | peeled: 1.501 | 1.51 | 1.6 | 1.79 |
+/// | --- | --- | --- | --- | --- | --- | --- | --- | --- |
+/// | even | 7.1e-5 | 2.0e-5 | 1.3e-5 | 1.8e-5 | 6.0e-4 | 7.0e-4 | 2.9e-4 | 4.0e-5 |
+/// | with knots | 2.2e-5 | 1.4e-5 | 1.7e-5 | 2.4e-5 | 4.9e-5 | 4.3e-5 | 2.7e-5 | 3.4e-5 |
 pub(super) fn view(kind: Kind) -> HalfTangent {
     let peeled = [[0.8, 0.375], [0.985, 0.75]];
     let whole = [[0.72, 0.625], [0.94, 0.875]];

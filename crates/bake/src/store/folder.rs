@@ -140,7 +140,7 @@ impl Drop for OutputFolder {
 
 /// What tells a file from another of the same name: time, size, and where there is one the number
 /// of the file, since clocks may tick slower than files are written.
-pub(super) type Stamp = Option<(SystemTime, u64, u64)>;
+type Stamp = Option<(SystemTime, u64, u64)>;
 
 /// The files of the set in a folder, by name, before another takes its place.
 struct OldSet {

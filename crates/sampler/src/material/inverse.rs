@@ -108,7 +108,7 @@ impl StudentT {
     /// The coordinate of a view in rows, to rounding as the sampler has it.
     #[inline(always)]
     pub(super) fn coordinate(&self, view: &Stretched) -> f32 {
-        self.slices.view.of_view(view.rho, view.z) * self.slices.rows as f32
+        self.slices.row(view.rho, view.z)
     }
 
     /// The two rows at a view's coordinate, interpolated as the sampler does; `None` where it is

@@ -86,7 +86,7 @@ impl StudentT {
     #[inline(always)]
     pub(super) fn locate_row(&self, view: &Stretched) -> (usize, f32) {
         let slices = &self.slices;
-        locate(slices.view.of_view(view.rho, view.z) * slices.rows as f32, slices.rows)
+        locate(slices.row(view.rho, view.z), slices.rows)
     }
 
     /// The slope across in units of √(1 + s x²).

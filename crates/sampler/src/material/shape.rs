@@ -68,7 +68,7 @@ impl ShapeTables {
             masking_crowded: slices.shadowing_view.crowded,
             masking_cells: slices.shadowing_cells,
             masking: slices.shadowing.clone(),
-            lines: slices.fast.lines,
+            lines: slices.lines,
             numbers: slices.half_cells + 1,
             scales: slices.fast.scales,
             slopes: slices.slope.clone(),

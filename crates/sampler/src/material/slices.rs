@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use microfacet_core::math::sqrt;
 use microfacet_core::shape::s_of_gamma;
 use microfacet_tables::axis::half_tangent::Lines;
 use microfacet_tables::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
@@ -76,9 +77,10 @@ pub(crate) struct Slices {
     /// In-plane slopes: rows by view, each of `2 (cells + 1)` nodes with the half for u ≤ ½ first;
     /// then a row and a node that are read with weight 0.
     pub(crate) slope: Vec<Node>,
-    /// Cells of the view axis of slopes, and its coordinate.
+    /// Cells of the view axis of slopes, its coordinate, and that in cells as lookups form it.
     pub(crate) rows: usize,
     pub(crate) view: HalfTangent,
+    pub(crate) lines: Lines,
     /// Cells of one half of the u₁ axis.
     pub(crate) half_cells: usize,
     /// Whether `slope` is peeled.
@@ -100,8 +102,6 @@ pub(crate) struct FastPath {
     pub(crate) across: Vec<Cell>,
     /// Factors from min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
     pub(crate) scales: [f32; 2],
-    /// Cells of the view axis.
-    pub(crate) lines: Lines,
     /// Nodes of half a row of `slope`.
     pub(crate) half: u32,
 }
@@ -121,7 +121,6 @@ impl Slices {
             plain: !slices.peeled,
             scales: [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale),
             across: cubic_cells(&slices.across, 1.0),
-            lines: slices.view.lines(rows as f32),
             half: numbers as u32,
         };
         if slices.peeled {
@@ -142,7 +141,7 @@ impl Slices {
         let Mapping::HalfTangent(coordinate) = view.mapping else {
             unreachable!("validated on load")
         };
-        let shadowing_cells = shadowing.nodes.len() - 1;
+        let (shadowing_cells, rows) = (shadowing.nodes.len() - 1, view.nodes.len() - 1);
         let mut slopes = slope.nodes;
         slopes.chunks_exact_mut(2 * numbers.nodes.len()).for_each(join);
         for half in slopes.chunks_exact_mut(numbers.nodes.len()) {
@@ -156,8 +155,9 @@ impl Slices {
             kappa: shadowing_view.kappa(s) as f32,
             shadowing_view,
             slope: slopes,
-            rows: view.nodes.len() - 1,
+            rows,
             view: coordinate,
+            lines: coordinate.lines(rows as f32),
             half_cells: numbers.nodes.len() - 1,
             peeled: slope.kind == Kind::VisibleSlopePeeled,
             across: Vec::new(),
@@ -175,12 +175,18 @@ impl Slices {
         z: f32x4,
         length: f32x4,
     ) -> [f32x4; 2] {
-        let lines = &self.fast.lines;
         if HEAVY && self.peeled {
-            lines.of_views::<true>(rho, z, length)
+            self.lines.of_views::<true>(rho, z, length)
         } else {
-            lines.of_views::<false>(rho, z, length)
+            self.lines.of_views::<false>(rho, z, length)
         }
+    }
+
+    /// The coordinate of one view in rows, to rounding as the sampler has it.
+    #[inline(always)]
+    pub(crate) fn row(&self, rho: f32, z: f32) -> f32 {
+        let [rho, z, length] = [rho, z, sqrt(rho * rho + z * z)].map(f32x4::splat);
+        self.place::<true>(rho, z, length)[0].to_array()[0]
     }
 
     /// M₀ρ/area at the coordinate t of a view, from the table of G1.
