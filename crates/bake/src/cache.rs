@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 use microfacet_tables::{Mapping, Provenance, Table, VERSION, encode};
 
 use crate::bake::NUMERICS;
-use crate::store::{self, make_folder, remove_abandoned, replace};
+use crate::store::{self, in_folder, make_folder, remove_abandoned, replace};
 
 /// A folder of finished tables, or no cache at all.
 ///
@@ -90,7 +90,7 @@ impl Cache {
         if !self.tidied.swap(true, Relaxed) {
             remove_abandoned(folder);
         }
-        replace(&path, &bytes).map_err(|why| at(&path, why))?;
+        in_folder(folder, || replace(&path, &bytes)).map_err(|why| at(&path, why))?;
         self.kept.store(true, Relaxed);
         Ok(())
     }

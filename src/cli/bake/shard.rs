@@ -21,8 +21,8 @@ const BETWEEN: Duration = Duration::from_secs(60);
 
 pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Outcome {
     let start = Instant::now();
-    // Fail now rather than after an hour of baking.
-    OutputFolder::open(folder)?;
+    // Fail now rather than after an hour of baking. Kept to the end: other shards use it.
+    let _folder = OutputFolder::open(folder)?;
     let cache = Cache::new(folder.to_path_buf());
     let kept = folder.display().to_string();
     interrupt::leaves(move || {

@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 use super::Shard;
 use crate::cache::versions;
 use crate::input::{self, MAX_TEXT};
-use crate::store::{make_folder, replace};
+use crate::store::{in_folder, make_folder, replace};
 use crate::table_set::Need;
 
 /// The folder of receipts in that of a cache.
@@ -69,7 +69,8 @@ impl Receipt {
         let library = &hex(Sha256::digest(format!("{scene}\n{versions}\n{needs}")))[..16];
         let path = folder.join(format!("{library}-{shard}-of-{of}.json"));
         let json = serde_json::to_string_pretty(self).map_err(io::Error::other)?;
-        replace(&path, (json + "\n").as_bytes()).map_err(|why| at(&path, why))
+        let json = json + "\n";
+        in_folder(&folder, || replace(&path, json.as_bytes())).map_err(|why| at(&path, why))
     }
 }
 

@@ -11,7 +11,7 @@ use std::{fs, io};
 use microfacet_sampler::Tables;
 use microfacet_tables::Index;
 
-use super::replace::{Replacement, check_writable, make_folder, remove_abandoned};
+use super::replace::{Replacement, check_writable, in_folder, remove_abandoned};
 use super::{Format, NAMES, StoreError, Written, bytes_of, image_of, interrupt, numbered};
 
 /// A folder to write into. One that was made for it is removed again on drop if it is empty.
@@ -35,9 +35,8 @@ impl OutputFolder {
         interrupt::will_make(&made);
         let this = Self { path: path.into(), made, written: Arc::default() };
         let failed = |why| StoreError::Io(path.into(), why);
-        make_folder(path).map_err(failed)?;
         // Fail now rather than after an hour of work.
-        tempfile::tempfile_in(path).map_err(failed)?;
+        in_folder(path, || tempfile::tempfile_in(path)).map_err(failed)?;
         Ok(this)
     }
 

@@ -28,7 +28,7 @@ pub use folder::OutputFolder;
 pub use interrupt::quiesce;
 pub use numbered::SetWriter;
 pub use replace::{check_file, replace, replace_with};
-pub(crate) use replace::{make_folder, remove_abandoned};
+pub(crate) use replace::{in_folder, make_folder, remove_abandoned};
 
 /// A container format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

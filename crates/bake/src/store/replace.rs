@@ -26,6 +26,9 @@ const ABANDONED: Duration = Duration::from_secs(24 * 60 * 60);
 /// Most links that are followed one after the other, as by Linux.
 const LINKS: usize = 40;
 
+/// Most times that a folder is made, since others may remove it.
+const TIMES: usize = 100;
+
 /// Writes `bytes` to `path` so that at every moment either the old file or the complete new one is
 /// there: into a temporary file in the same folder, synchronised to disk, then renamed over it.
 ///
@@ -171,9 +174,10 @@ pub(super) struct Replacement {
 }
 
 impl Replacement {
-    /// Completes a file of these bytes under a temporary name.
+    /// Completes a file of these bytes under a temporary name, in a folder that is made if it is
+    /// missing.
     pub(super) fn put(&mut self, path: PathBuf, bytes: &[u8]) -> Result<Written, StoreError> {
-        match self.add(&path, |out| out.write_all(bytes)) {
+        match in_folder(folder_of(&path), || self.add(&path, |out| out.write_all(bytes))) {
             Ok(()) => Ok(Written { path, bytes: bytes.len() }),
             Err(why) => Err(StoreError::Io(path, why)),
         }
@@ -311,9 +315,48 @@ pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
     refused(io::ErrorKind::NotADirectory, why)
 }
 
+/// Does something in a folder, which is made if it is missing, and again if it goes meanwhile: a
+/// process that made it and then wrote nothing removes it.
+pub(crate) fn in_folder<T>(
+    folder: &Path,
+    mut act: impl FnMut() -> io::Result<T>,
+) -> io::Result<T> {
+    let mut once = || make_folder(folder).and_then(|()| act());
+    for _ in 1..TIMES {
+        match once() {
+            Err(why) if why.kind() == io::ErrorKind::NotFound && !folder.exists() => {}
+            done => return done,
+        }
+    }
+    once()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_folder_that_another_removes_is_made_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("made").join("here");
+        let mut times = 0;
+        let done = in_folder(&path, || {
+            times += 1;
+            if times < 4 {
+                fs::remove_dir_all(path.parent().unwrap())?;
+            }
+            replace(&path.join("file"), b"whole")
+        });
+        done.unwrap();
+        assert_eq!((times, fs::read(path.join("file")).unwrap().as_slice()), (4, &b"whole"[..]));
+        // What fails in a folder that is there is no reason to try again.
+        let mut times = 0;
+        let failed = in_folder(&path, || {
+            times += 1;
+            fs::read(path.join("none"))
+        });
+        assert_eq!((failed.unwrap_err().kind(), times), (io::ErrorKind::NotFound, 1));
+    }
 
     #[test]
     fn only_old_partial_files_are_abandoned() {
