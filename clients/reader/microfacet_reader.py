@@ -29,19 +29,30 @@ class Tables:
         crc = zlib.crc32(data[:digits] + b"00000000" + data[digits + 8 :])
         if data[digits : digits + 8] != b"%08x" % crc:
             raise ValueError(f"{path}: the checksum does not match, the file is damaged")
-        for table in self.document["tables"]:
-            tensor = header[table["name"]]
+        self.tables = []
+        for stack in self.document["tables"]:
+            tensor = header[stack["name"]]
             first, last = (start + offset for offset in tensor["data_offsets"])
             dtype = {"F32": "<f4", "F16": "<f2", "U16": "<u2"}[tensor["dtype"]]
             values = np.frombuffer(data[first:last], dtype).reshape(tensor["shape"]).astype(float)
-            if table["precision"] == "u16":
-                values = np.array(table["offset"]) + np.array(table["scale"]) * values
-            table["values"] = values
+            if "count" not in stack:
+                values = values[np.newaxis]
+            for i, own in enumerate(values):
+                self.tables.append(self.table(stack, i, own))
+
+    def table(self, stack, i, values):
+        """One table of a tensor: what all of them share, and its own entries of the columns."""
+        columns = {key: stack[key][i] for key in COLUMNS if key in stack}
+        if stack["precision"] == "u16":
+            values = np.array(columns["offset"]) + np.array(columns["scale"]) * values
+        table = stack | columns | {"values": values}
+        table["axes"] = [with_nodes(self.document["axes"][axis], table) for axis in stack["axes"]]
+        return table
 
     def find(self, kind, coordinates, covers=lambda table: True, **wanted):
         """The first table that fits, its first axes collapsed at what `coordinates` says of it."""
         wanted |= {"kind": kind, "lobe": "family"}
-        for table in self.document["tables"]:
+        for table in self.tables:
             if all(table.get(key) == value for key, value in wanted.items()) and covers(table):
                 values, at = table["values"], zip(table["axes"], coordinates(table))
                 weights = [axis_weights(axis, t) for axis, t in at]
@@ -52,9 +63,46 @@ class Tables:
         return None
 
 
-def inside(x, ends):
+COLUMNS = ["gamma", "sigma", "eta", "k", "theta", "distribution", "scale", "offset"]
+
+
+def ends(interval):
+    """The ends of a number or a range; what is missing or null is infinite."""
+    if isinstance(interval, dict):
+        return interval["min"], inf if interval.get("max") is None else interval["max"]
+    return (inf, inf) if interval is None else (interval, interval)
+
+
+def covers_gamma(table, gamma):
+    """Whether a table covers gamma, but for rounding."""
+    least, most = ends(table["gamma"])
+    return inside(1 / (gamma - 1), 1 / (most - 1), 1 / (least - 1))
+
+
+def inside(x, least, most):
     """Whether x is in a range, but for rounding."""
-    return ends[0] * (1 - 1e-9) <= x <= ends[1] * (1 + 1e-9)
+    return least * (1 - 1e-9) <= x <= most * (1 + 1e-9)
+
+
+def coordinate(mapping, gamma, sigma):
+    """The coordinate of gamma, or of sigma, along an axis of it."""
+    if mapping["kind"] == "inverse_shape":
+        return 1 / (gamma - 1)
+    if mapping["kind"] == "log_shape":
+        return log1p(mapping["scale"] / (2 * gamma - 3))
+    t = log1p(sigma / mapping["offset"]) + mapping["linear"] * sigma
+    return t + mapping["slow"] * (log(sigma / mapping["first"]) if sigma > 0 else -inf)
+
+
+def with_nodes(axis, table):
+    """An axis with the coordinates of its nodes."""
+    nodes = axis.get("nodes")
+    if nodes is None:
+        gamma, sigma = (ends(table[key])[0] for key in ["gamma", "sigma"])
+        nodes = [coordinate(axis["mapping"], gamma, sigma)]
+    elif isinstance(nodes, int):
+        nodes = np.linspace(0, 1, nodes)
+    return axis | {"nodes": nodes}
 
 
 def window(nodes, k, t):
@@ -116,7 +164,7 @@ class StudentT:
     def __init__(self, tables, sigma, gamma):
         self.sigma, self.gamma, self.s = np.broadcast_to(sigma, 2), gamma, 1 / (gamma - 1)
         kinds = ["shadowing", "visible_slope", "visible_slope_peeled", "visible_slope_conditional"]
-        covers = lambda table: inside(self.s, table["covers"]["s"])
+        covers = lambda table: covers_gamma(table, gamma)
         found = (tables.find(kind, lambda table: [self.s], covers) for kind in kinds)
         g1, whole, peeled, across = found
         if not (g1 and (whole or peeled) and across):
@@ -203,25 +251,24 @@ class Albedo:
         self.sigma, self.masking, self.mirror = sigma, masking, False
 
         def covers(table):
-            ranges = table["covers"]
-            return inside(1 / (gamma - 1), ranges["s"]) and inside(sigma, ranges["sigma"])
+            return covers_gamma(table, gamma) and inside(sigma, *ends(table["sigma"]))
 
         def coordinates(table):
             shape, rough = (axis["mapping"] for axis in table["axes"][:2])
-            t = log1p(sigma / rough["offset"]) + rough["linear"] * sigma
-            t += rough["slow"] * (log(sigma / rough["first"]) if sigma > 0 else -inf)
+            t = coordinate(rough, gamma, sigma)
             first, last = (table["axes"][1]["nodes"][end] for end in (0, -1))
             self.mirror = sigma == 0
             if sigma > 0 and t < first - 1e-9 * (1 + abs(last)):
                 raise ValueError(f"sigma {sigma} lies between 0, a mirror, and the first node")
-            return log1p(shape["scale"] / (2 * gamma - 3)), max(t, first)
+            return coordinate(shape, gamma, sigma), max(t, first)
 
         wanted = {"reflectance": "moments", "masking": masking}
         directional = tables.find("albedo", coordinates, covers, **wanted)
         average = tables.find("albedo_average", coordinates, covers, **wanted)
-        if not (directional and average):
+        if not directional:
             raise ValueError(f"no albedo for sigma {sigma} and gamma {gamma}")
-        self.nodes, self.averages = directional[1], average[1] * (not self.mirror)
+        self.nodes = directional[1]
+        self.averages = average and average[1] * (not self.mirror)
         p = self.view = directional[0]["axes"][2]["mapping"]
         self.kappa = p["scale"] + p["heavy"] / (2 * gamma - 3)
         self.floor = p["floor"] * p["slope"] * sigma / (p["floor"] + p["slope"] * sigma)
@@ -256,6 +303,8 @@ class Albedo:
 
     def average(self):
         """Their averages over the hemisphere of views."""
+        if self.averages is None:
+            raise ValueError("a set of single materials has no averages: integrate the moments")
         e, bias, f82 = self.averages
         return limited((e, bias + (1 + e) / 21, f82 + (1 + e) * 117649 / 839808))
 

@@ -186,8 +186,7 @@ fn more_shapes_than_a_range_has_nodes_are_a_range() {
 #[test]
 fn estimated_bytes_are_those_of_the_file() {
     for materials in [&MIXED[..2], &MIXED[..]] {
-        let plan =
-            Plan { recipe: "x".repeat(500), materials: Vec::new(), ..plan(&scene(materials)) };
+        let plan = plan(&scene(materials));
         for precision in [Precision::F32, Precision::U16] {
             let general = general_set(Quality::Draft, precision);
             let specs: Vec<_> = plan.shapes.iter().flat_map(|need| need.specs(&general)).collect();

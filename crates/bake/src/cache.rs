@@ -68,8 +68,8 @@ impl Cache {
         let key = complete(key);
         let set = store::read_file(&self.path(&key)?).ok()?;
         // The entry holds its key: a file of this name with another key does not count.
-        let Provenance { recipe, numerics, .. } = set.provenance();
-        (*recipe == key && *numerics == NUMERICS).then(|| set.tables().to_vec())
+        let Provenance { key: of, numerics, .. } = set.provenance();
+        (*of == key && *numerics == NUMERICS).then(|| set.tables().to_vec())
     }
 
     /// Keeps tables under a key. The first call of a cache or its clones removes what bakes that
@@ -80,7 +80,7 @@ impl Cache {
     pub fn put(&self, key: &str, tables: &[Table]) -> io::Result<()> {
         let key = complete(key);
         let (Some(path), Some(folder)) = (self.path(&key), &self.folder) else { return Ok(()) };
-        let provenance = Provenance { recipe: key, numerics: NUMERICS, ..Provenance::default() };
+        let provenance = Provenance { key, numerics: NUMERICS, ..Provenance::default() };
         let bytes = encode(&provenance, tables).map_err(io::Error::other)?;
         let at = |path: &Path, why: io::Error| {
             io::Error::new(why.kind(), format!("{}: {why}", path.display()))

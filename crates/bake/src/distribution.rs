@@ -78,15 +78,31 @@ impl Distribution {
         }
     }
 
-    /// The distribution as text, with every digit: `gtr:0.2,1.5` or `measured:steel.csv`.
+    /// The distribution as text, with every digit: `gtr:0.2,1.5` or `measured:steel.csv`, or
+    /// `measured-degrees:steel.csv` where the angles in the file are in degrees.
     pub fn label(&self) -> String {
         match self {
             Self::Named(named) => {
                 let values: Vec<String> = named.values.iter().map(|x| format!("{x}")).collect();
                 format!("{}:{}", named.kind.name(), values.join(","))
             }
-            Self::Measured { file, .. } => format!("measured:{file}"),
+            Self::Measured { file, angles, .. } => format!("{}:{file}", measured(*angles)),
         }
+    }
+
+    /// The file, and the unit of the angles in it, of the label of a measured distribution.
+    pub fn measured_of(label: &str) -> Option<(&str, Angles)> {
+        let (kind, file) = label.split_once(':')?;
+        let unit = [Angles::Radians, Angles::Degrees].into_iter();
+        Some((file, unit.clone().find(|angles| measured(*angles) == kind)?))
+    }
+}
+
+/// What comes before the name of the file in a label.
+const fn measured(angles: Angles) -> &'static str {
+    match angles {
+        Angles::Radians => "measured",
+        Angles::Degrees => "measured-degrees",
     }
 }
 

@@ -1,10 +1,10 @@
 //! The albedos of one shape under one form of masking, for any roughness.
 
-use microfacet_baker::bake::albedo::SIGMA_MAX;
 use microfacet_core::Masking;
 use microfacet_sampler::Tables;
 use microfacet_sampler::albedo::Albedo;
 use microfacet_sampler::port::ShapeAlbedo;
+use microfacet_tables::SIGMA_MAX;
 use microfacet_tables::axis::lagrange::weights;
 use microfacet_tables::axis::{LogRoughness, ViewBlend};
 use microfacet_tables::{Errors, Table};

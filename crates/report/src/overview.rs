@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use microfacet_baker::scene::recipe_of;
 use microfacet_sampler::Tables;
 use microfacet_tables::{Provenance, Table};
 
@@ -118,8 +119,8 @@ fn skipped(set: &Tables, all: &[Served]) -> Markup {
             }
         }
         p.note {
-            @if set.provenance().recipe.is_empty() {
-                "The set holds no recipe, so why something was left out is told by what it holds. "
+            @if set.provenance().materials.is_empty() {
+                "The set lists no materials, so why something was left out is told by what it holds. "
             }
             "A set does not list materials of a scene that no geometry uses or that nothing \
              covers; " code { "microfacet-bake plan" } " of the scene names them."
@@ -225,15 +226,16 @@ fn origin(origin: &Provenance) -> Markup {
                 }
             }
         }
-        @if !origin.recipe.is_empty() {
+        @let recipe = recipe_of(&origin.materials);
+        @if !recipe.is_empty() {
             details {
                 summary { "Recipe" }
-                @let shown = beginning(&origin.recipe);
+                @let shown = beginning(&recipe);
                 pre tabindex="0" { code { (shown) } }
-                @if shown.len() < origin.recipe.len() {
+                @if shown.len() < recipe.len() {
                     p.note {
-                        "and " (bytes(origin.recipe.len() - shown.len())) " more, which "
-                        code { "microfacet-bake inspect --json" } " prints"
+                        "and " (bytes(recipe.len() - shown.len())) " more, which "
+                        code { "microfacet-bake inspect --details" } " prints"
                     }
                 }
             }

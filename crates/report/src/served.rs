@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use microfacet_baker::plan::{AlbedoVerdict, Options, Plan};
-use microfacet_baker::scene::Scene;
+use microfacet_baker::scene::{Scene, recipe_of};
 use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
 use microfacet_tables::{Covered, FresnelEntry, LobeEntry, MaterialEntry, Reflectance, Table};
@@ -47,7 +47,7 @@ impl Part {
 
 /// The materials of a set, in order.
 pub(super) fn served(set: &Tables) -> Vec<Served> {
-    let wishes = wishes(&set.provenance().recipe);
+    let wishes = wishes(&recipe_of(&set.provenance().materials));
     let default = Tables::embedded();
     let one = |entry| of(set, &default, entry, &wishes);
     set.provenance().materials.iter().map(one).collect()

@@ -123,10 +123,6 @@ impl Tables {
             }
             all.provenance.materials.extend(provenance.materials);
             all.provenance.conventions.extend(provenance.conventions);
-            if !provenance.recipe.is_empty() {
-                all.provenance.recipe.push('\n');
-                all.provenance.recipe += &provenance.recipe;
-            }
         }
         all.provenance.check()?;
         Ok(all)

@@ -13,7 +13,7 @@ use microfacet_tables::{
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {
-    Axis { name: name.into(), unit: "1".into(), mapping, interpolation, nodes: nodes.to_vec() }
+    Axis::new(name, mapping, interpolation, nodes.to_vec())
 }
 
 fn table(kind: Kind, precision: Precision, mut axes: Vec<Axis>, values: &[f32]) -> Table {
@@ -137,28 +137,64 @@ fn forge(from: &str, to: &str) -> Vec<u8> {
 
 #[test]
 fn lying_headers_are_refused_by_name() {
-    let nodes = r#"\"nodes\":[0.0,0.5,1.0]"#;
+    let nodes = r#"\"nodes\":3"#;
+    let places = |text: &'static str| format!(r#"\"nodes\":[{text}]"#);
+    let shape = r#"\"interpolation\":\"nodes\""#;
+    let own = |text: &str| format!(r#"\"interpolation\":\"nodes\",\"nodes\":{text}"#);
     let tensor = r#""shape":[1,3,2],"data_offsets":[0,24]"#;
-    let lies = [
+    let lies: &[(&str, &str, &str)] = &[
         // Shapes, offsets and types.
         (tensor, r#""shape":[1,2,3],"data_offsets":[0,24]"#, "shape [1, 2, 3]"),
         (tensor, r#""shape":[1,3,2],"data_offsets":[0,20]"#, "invalid"),
         (tensor, r#""shape":[1,3,2],"data_offsets":[4,28]"#, "invalid"),
         (tensor, r#""shape":[4294967296,4294967296,4294967296],"data_offsets":[0,24]"#, "overflow"),
         (r#""dtype":"F16""#, r#""dtype":"BF16""#, "stored as BF16"),
-        (r#"\"precision\":\"f16\""#, r#"\"precision\":\"u16\""#, "one finite number a channel"),
+        (r#"\"precision\":\"f16\""#, r#"\"precision\":\"u16\""#, "described as U16"),
+        (r#"\"offset\":[[0.0,0.2]]"#, r#"\"offset\":[[0.0]]"#, "one finite number a channel"),
         // Axes.
         (r#"\"name\":\"view\""#, r#"\"name\":\"gamma\""#, "axes [\"gamma\", \"gamma\"]"),
-        (nodes, r#"\"nodes\":[0.0,1.0,0.5]"#, "do not ascend"),
-        (nodes, r#"\"nodes\":[0.0,0.0,1.0]"#, "do not ascend"),
-        (nodes, r#"\"nodes\":[0.0,0.4,1.0]"#, "evenly"),
-        (nodes, r#"\"nodes\":[0.0,0.5,1.5]"#, "outside the range"),
-        (nodes, r#"\"nodes\":[]"#, "shape"),
-        (nodes, r#"\"nodes\":[0.0,0.5,1e999]"#, "number out of range"),
-        (nodes, r#"\"nodes\":[0.0,0.5,NaN]"#, "expected value"),
-        (nodes, r#"\"nodes\":[0.0,1.0]"#, "shape"),
-        (r#"\"nodes\":[1.0]"#, r#"\"nodes\":[2.0]"#, "outside the range"),
-        (r#"\"nodes\":[1.0]"#, r#"\"nodes\":[-1.0]"#, "outside the range"),
+        (nodes, &places("0.0,1.0,0.5"), "do not ascend"),
+        (nodes, &places("0.0,0.0,1.0"), "do not ascend"),
+        (nodes, &places("0.0,0.4,1.0"), "evenly"),
+        (nodes, &places("0.0,0.5,1.5"), "outside the range"),
+        (nodes, &places(""), "shape"),
+        (nodes, &places("0.0,0.5,1e999"), "number out of range"),
+        (nodes, &places("0.0,0.5,NaN"), "expected value"),
+        (nodes, &places("0.0,1.0"), "shape"),
+        (nodes, r#"\"nodes\":2"#, "shape"),
+        (nodes, r#"\"nodes\":0"#, "shape"),
+        (nodes, r#"\"nodes\":18446744073709551615"#, "axes and channels of []"),
+        (nodes, r#"\"nodes\":-3"#, "a number of nodes, or their coordinates"),
+        (nodes, r#"\"nodes\":null"#, "shape"),
+        (shape, &own("[2.0]"), "outside the range"),
+        (shape, &own("[-1.0]"), "outside the range"),
+        (shape, &own("1"), "places no nodes"),
+        (r#"\"axes\":[0,1]"#, r#"\"axes\":[0,5]"#, "axis 5 of 5"),
+        (r#"\"axes\":[0,1]"#, r#"\"axes\":[0]"#, "shape"),
+        // Several tables in a tensor.
+        (
+            r#"\"name\":\"shadowing\""#,
+            r#"\"name\":\"shadowing\",\"count\":1"#,
+            "channels of [1, 1, 3, 2]",
+        ),
+        (r#"\"name\":\"shadowing\""#, r#"\"name\":\"shadowing\",\"count\":0"#, "no tables"),
+        (
+            r#"\"name\":\"shadowing\""#,
+            r#"\"name\":\"shadowing\",\"count\":18446744073709551615"#,
+            "18446744073709551615 tables",
+        ),
+        (
+            r#"\"name\":\"shadowing\""#,
+            r#"\"name\":\"shadowing\",\"count\":60000"#,
+            "`gamma` has 1 entries for 60000 tables",
+        ),
+        (
+            r#"\"gamma\":[2.0],\"scale\""#,
+            r#"\"gamma\":[2.0,2.0],\"scale\""#,
+            "`gamma` has 2 entries",
+        ),
+        (r#"\"gamma\":[2.0],\"scale\""#, r#"\"scale\""#, "no nodes"),
+        (r#"\"g1_max_error\":[0.5]"#, r#"\"g1_max_error\":[]"#, "`g1_max_error` has 0 entries"),
         (
             r#"\"kind\":\"inverse_shape\""#,
             r#"\"kind\":\"reflectance_root\""#,
@@ -188,7 +224,7 @@ fn lying_headers_are_refused_by_name() {
         (r#"\"checksum\""#, r#"\"chequesum\""#, "checksum"),
         (r#"{"microfacet""#, r#"{"macrofacet""#, "without the `microfacet` document"),
     ];
-    for (from, to, part) in lies {
+    for &(from, to, part) in lies {
         let error = Tables::from_bytes(&forge(from, to)).expect_err(to).to_string();
         assert!(error.to_lowercase().contains(&part.to_lowercase()), "{to}: {error}");
     }
@@ -198,24 +234,36 @@ fn lying_headers_are_refused_by_name() {
 
 #[test]
 fn lying_descriptions_of_materials_and_tables_are_refused_by_name() {
-    let metal = r#"\"sigma\":[[0.0,0.5],[0.125,0.625]],\"s\":[0.0,1.6]"#;
-    let tilted = r#"\"sigma\":[[0.25,0.25],[0.375,0.375]],\"s\":[0.8,0.8]"#;
+    let range = |min: &str, max: &str| format!(r#"{{\"min\":{min},\"max\":{max}}}"#);
+    let metal = r#"\"sigma\":[{\"min\":0.0,\"max\":0.5},{\"min\":0.125,\"max\":0.625}],\"gamma\":{\"min\":1.625}"#;
+    let metal_of = |x: &[&str; 2], y: &[&str; 2], gamma: &str| {
+        let [x, y] = [x, y].map(|[min, max]| range(min, max));
+        format!(r#"\"sigma\":[{x},{y}],\"gamma\":{gamma}"#)
+    };
+    let (x, y) = (&["0.0", "0.5"], &["0.1", "0.6"]);
+    let tilted = r#"\"sigma\":[0.25,0.375],\"gamma\":2.25"#;
     let theta = r#"\"theta\":[0.1,-0.2,0.5]"#;
-    let covers = r#"\"covers\":{\"s\":[1.0,1.0]}"#;
-    let lies = [
+    let covers = r#"\"gamma\":[2.0],\"certificate\""#;
+    let covered = |text: &str| format!(r#"\"gamma\":[{text}],\"certificate\""#);
+    let lies: &[(&str, &str, &str)] = &[
         // Materials.
-        (metal, r#"\"sigma\":[[0.5,0.0],[0.1,0.6]],\"s\":[0.0,1.6]"#, "`metal`: sigma = [0.5, 0]"),
-        (metal, r#"\"sigma\":[[0.0,0.5],[0.6,0.1]],\"s\":[0.0,1.6]"#, "sigma = [0.6, 0.1]"),
-        (metal, r#"\"sigma\":[[-0.1,0.5],[0.1,0.6]],\"s\":[0.0,1.6]"#, "sigma = [-0.1, 0.5]"),
-        (metal, r#"\"sigma\":[[0.0,1e999],[0.1,0.6]],\"s\":[0.0,1.6]"#, "out of range"),
-        (metal, r#"\"sigma\":[[0.0,null],[0.1,0.6]],\"s\":[0.0,1.6]"#, "null"),
-        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[1.6,0.0]"#, "s = [1.6, 0]"),
-        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[-0.1,1.6]"#, "s = [-0.1, 1.6]"),
-        (metal, r#"\"sigma\":[[0.0,0.5],[0.1,0.6]],\"s\":[0.0,2.0]"#, "s = [0, 2]"),
+        (metal, &metal_of(&["0.5", "0.0"], y, "2.0"), "`metal`: sigma = [0.5, 0]"),
+        (metal, &metal_of(x, &["0.6", "0.1"], "2.0"), "sigma = [0.6, 0.1]"),
+        (metal, &metal_of(&["-0.1", "0.5"], y, "2.0"), "sigma = [-0.1, 0.5]"),
+        (metal, &metal_of(&["0.0", "1e999"], y, "2.0"), "out of range"),
+        (metal, &metal_of(&["0.0", "null"], y, "2.0"), "sigma = [0, inf]"),
+        (metal, &metal_of(x, y, &range("null", "3.0")), "a number, or an object"),
+        (metal, &metal_of(x, y, &range("3.0", "2.0")), "gamma = [3, 2]"),
+        (metal, &metal_of(x, y, "0.5"), "gamma = [0.5, 0.5]"),
+        (metal, &metal_of(x, y, "1.5"), "gamma = [1.5, 1.5]"),
+        (metal, &metal_of(x, y, "1.0"), "gamma = [1, 1]"),
+        (metal, r#"\"sigma\":[0.1,0.2,0.3],\"gamma\":2.0"#, "two for x and y"),
+        (metal, r#"\"sigma\":0.1"#, "missing field `gamma`"),
+        (metal, r#"\"sigma\":0.1,\"gamma\":2.0,\"s\":1.0"#, "unknown field `s`"),
         (r#"\"name\":\"pane\""#, r#"\"name\":\"metal\""#, "`metal`: named twice"),
-        (tilted, r#"\"sigma\":[[0.2,0.3],[0.3,0.3]],\"s\":[0.7,0.7]"#, "`tilted`: theta is for"),
-        (tilted, r#"\"sigma\":[[0.2,0.2],[0.3,0.3]],\"s\":[0.7,0.8]"#, "`tilted`: theta is for"),
-        (tilted, r#"\"sigma\":[[0.0,0.0],[0.3,0.3]],\"s\":[0.7,0.7]"#, "`tilted`: theta"),
+        (tilted, &metal_of(&["0.2", "0.3"], &["0.3", "0.3"], "2.5"), "`tilted`: theta is for"),
+        (tilted, r#"\"sigma\":[0.2,0.3],\"gamma\":{\"min\":2.5}"#, "`tilted`: theta is for"),
+        (tilted, r#"\"sigma\":[0.0,0.3],\"gamma\":2.5"#, "`tilted`: theta"),
         (theta, r#"\"theta\":[0.1,-0.2,0.5],\"distribution\":\"gtr:1,2\""#, "theta is for"),
         (r#"{\"schlick\":0.04}"#, r#"{\"schlick\":1.04}"#, "schlick = 1.04"),
         (r#"{\"schlick\":0.04}"#, r#"{\"schlick\":[0,2,1]}"#, "schlick = 2"),
@@ -226,16 +274,17 @@ fn lying_descriptions_of_materials_and_tables_are_refused_by_name() {
         (r#"\"min\":1.25"#, r#"\"min\":0.25"#, "[0.25, 2.5]"),
         (r#"\"min\":1.25"#, r#"\"min\":3.0"#, "[3, 2.5]"),
         // Tables.
-        (covers, r#"\"covers\":{\"s\":[1.9,0.0]}"#, "covers: s = [1.9, 0]"),
-        (covers, r#"\"covers\":{\"s\":[-1.0,1.9]}"#, "covers: s = [-1, 1.9]"),
-        (covers, r#"\"covers\":{\"s\":[0.0,2.0]}"#, "covers: s = [0, 2]"),
-        (covers, r#"\"covers\":{\"s\":[0.0,1.9],\"sigma\":[2.0,1.0]}"#, "sigma = [2, 1]"),
-        (r#"\"lobe\":\"family\""#, r#"\"lobe\":{\"distribution\":\"gtr:1,2\"}"#, "not of the lobe"),
-        (r#"\"g1_max_error\":0.5"#, r#"\"g1_max_error\":-0.5"#, "`g1_max_error`"),
-        (r#"\"g1_max_error\":0.5"#, r#"\"g2_max_error\":0.5"#, "no figure `g2_max_error`"),
-        (r#"\"g1_max_error\":0.5"#, r#"\"points\":0.5"#, "counts 0.5 points"),
+        (covers, &covered(r#"{\"min\":3.0,\"max\":2.0}"#), "no nodes"),
+        (covers, &covered("0.5"), "covers: gamma = [0.5, 0.5]"),
+        (covers, &covered("1.5"), "covers: gamma = [1.5, 1.5]"),
+        (covers, &covered(r#""2.0""#), "expected"),
+        (r#"\"lobe\":\"family\""#, r#"\"lobe\":\"distribution\""#, "no `distribution`"),
+        (r#"\"lobe\":\"family\""#, r#"\"lobe\":\"student_t\""#, "no `sigma`"),
+        (r#"\"g1_max_error\":[0.5]"#, r#"\"g1_max_error\":[-0.5]"#, "`g1_max_error`"),
+        (r#"\"g1_max_error\":[0.5]"#, r#"\"g2_max_error\":[0.5]"#, "no figure `g2_max_error`"),
+        (r#"\"g1_max_error\":[0.5]"#, r#"\"points\":[0.5]"#, "counts 0.5 points"),
     ];
-    for (from, to, part) in lies {
+    for &(from, to, part) in lies {
         let error = Tables::from_bytes(&forge(from, to)).expect_err(to).to_string();
         assert!(error.contains(part), "{to}: {error}");
     }
@@ -289,7 +338,7 @@ fn an_albedo_of_what_cannot_be_is_refused() {
     let (sigma, theta, s) = ([0.3, -0.3], [0.1, f64::NAN, 0.0], 2.0);
     let moments = Reflectance::Moments;
     refused(LobeEntry::StudentT { sigma, s: 1.0 }, moments, "sigma = [0.3, -0.3]");
-    refused(LobeEntry::StudentT { sigma: [0.3; 2], s }, moments, "s = [2, 2]");
+    refused(LobeEntry::StudentT { sigma: [0.3; 2], s }, moments, "gamma = [1.5, 1.5]");
     refused(LobeEntry::Ellipsoid { sigma, theta: [0.1; 3], s: 1.0 }, moments, "sigma");
     refused(LobeEntry::Ellipsoid { sigma: [0.3; 2], theta, s: 1.0 }, moments, "NaN");
     refused(LobeEntry::Distribution(String::new()), moments, "without a label");

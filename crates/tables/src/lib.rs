@@ -46,11 +46,14 @@ pub use error::{LoadError, Range};
 pub use format::{
     Certificate, Channels, Coordinate, Covered, Errors, FORMAT, FresnelEntry, Index, IndexedSet,
     Kind, LobeEntry, LobeSpec, MaterialEntry, Precision, Provenance, Quantity, Reflectance,
-    Roughness, SAME, Side, Subject, Table, VERSION, crc32, decode, describe, encode, reassemble,
-    seal, seal_document,
+    Roughness, SAME, Side, Subject, Table, VERSION, crc32, decode, describe, encode, joined_name,
+    names, reassemble, seal, seal_document, stated_axes,
 };
 pub use interval::Interval;
 
 /// The smallest γ of tables; below, almost every visible normal has a slope beyond any
 /// floating-point number. The mathematics begins at 3/2.
 pub const GAMMA_MIN: f64 = 1.501;
+
+/// The largest σ of albedo tables of the family.
+pub const SIGMA_MAX: f64 = 3.0;

@@ -207,7 +207,7 @@ fn of_family(args: &Args) -> Outcome {
         Shapes::DownTo(_) => vec![32, 64, 64],
     };
     let size = args.size.as_ref().map_or(default, |size| size.0.clone());
-    let sigma_max = args.sigma_max.unwrap_or(microfacet_baker::bake::albedo::SIGMA_MAX);
+    let sigma_max = args.sigma_max.unwrap_or(microfacet_tables::SIGMA_MAX);
     texture::check(shapes, sigma_max, &size)?;
     let channels = args.channels.channels();
     let specs =

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::builder::UnknownArgumentValueParser;
 
-use microfacet_baker::bake::albedo::SIGMA_MAX;
 use microfacet_baker::store::OutputFolder;
 use microfacet_export::{Language, Shape, Storage, Target, files, texture_rows};
+use microfacet_tables::SIGMA_MAX;
 
 use crate::cli::{Outcome, report, tables, values};
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use microfacet_baker::scene::recipe_of;
 use microfacet_report::words::certificate;
 use microfacet_report::words::table::{axis, holds};
 use microfacet_sampler::Tables;
@@ -29,10 +30,10 @@ pub(super) fn of(set: &Tables) -> String {
     for (key, value) in &origin.conventions {
         text += &wrapped(&format!("  {}: ", escape::line(key)), &escape::line(value), 4);
     }
-    if !origin.recipe.is_empty() {
+    if !origin.materials.is_empty() {
         // Indented, so that no line of it passes for one of ours.
         text += "\nrecipe\n";
-        for line in origin.recipe.lines() {
+        for line in recipe_of(&origin.materials).lines() {
             text += &format!("  {line}\n");
         }
     }

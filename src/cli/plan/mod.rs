@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use microfacet_baker::bake::albedo::AlbedoSpec;
 use microfacet_baker::library::Part;
-use microfacet_baker::plan::{Cost, albedo_cost, bare_cost, cost, distribution_cost};
+use microfacet_baker::plan::{Cost, albedo_costs, bare_cost, cost, distribution_cost};
 use microfacet_baker::table_spec::general_set;
 
 use super::request::Request;
@@ -88,14 +88,14 @@ impl<'a> Report<'a> {
         let outline = Outline::new(scene, plan, quality, precision)?;
         let own = plan.distributions.iter().map(|own| distribution_cost(own, quality, precision));
         let costs = outline.tables.iter().map(|specs| cost(specs));
-        let costs: Vec<Cost> =
-            costs.chain(own).chain(outline.albedos.iter().map(albedo_cost)).collect();
+        let costs: Vec<Cost> = costs.chain(own).chain(albedo_costs(&outline.albedos)).collect();
         let total = costs.iter().copied().chain([bare_cost(&plan.provenance())]).sum();
         let everything = request.general_plan();
         let albedos = everything.albedos.iter().map(|_| AlbedoSpec::general(quality, precision));
+        let albedos = albedo_costs(&albedos.collect::<Vec<_>>());
         let general = [cost(&general_set(quality, precision)), bare_cost(&everything.provenance())]
             .into_iter()
-            .chain(albedos.map(|spec| albedo_cost(&spec)))
+            .chain(albedos)
             .sum();
         Ok(Self { outline, costs, total, general, reading: 0.0, planning: 0.0 })
     }

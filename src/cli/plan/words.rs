@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
 use microfacet_baker::distribution::Distribution;
 use microfacet_baker::plan::{
-    AlbedoVerdict, AlbedoWish, Cost, Plan, Verdict, albedo_cost, bare_cost, entry,
+    AlbedoVerdict, AlbedoWish, Cost, Plan, Verdict, albedo_costs, bare_cost, entry,
 };
 use microfacet_baker::scene::{Ignored, Scene};
 use microfacet_baker::table_spec::{Quality, TableSpec, general_set};
@@ -77,7 +77,7 @@ impl Offer {
             plan.offered.iter().map(|need| need.spec(quality, precision)).collect();
         let specs = specs.ok().filter(|specs| !specs.is_empty())?;
         let tables = specs.iter().map(AlbedoSpec::tables).sum();
-        let mut cost: Cost = specs.iter().map(albedo_cost).sum();
+        let mut cost: Cost = albedo_costs(&specs).into_iter().sum();
         // The set describes albedos once it has any.
         let with = Plan { albedos: plan.offered.clone(), ..plan.clone() };
         let described = |plan: &Plan| bare_cost(&plan.provenance()).bytes;

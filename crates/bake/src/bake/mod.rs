@@ -16,7 +16,7 @@ use microfacet_tables::{Axis, Channels, Interpolation, Kind, Mapping, Subject, T
 use crate::progress::Stage;
 use crate::table_spec::{ShapeAxis, TableSpec};
 
-pub(crate) use radial::radial_name;
+pub(crate) use radial::radial_subject;
 pub use radial::{bake_radial, radial_axes, radial_bytes};
 
 /// Number of the numeric method: raised when the same specification gives other values or
@@ -74,17 +74,6 @@ fn along(count: usize) -> Axis {
 /// The axis of u₂, for the slope across, in which all quantiles are odd.
 fn across(count: usize) -> Axis {
     Axis::placed("u2", Mapping::OddRoot, Interpolation::Hermite, count)
-}
-
-/// The name of a table from its parts, without the empty ones.
-pub(crate) fn joined_name(parts: &[&str]) -> String {
-    let parts: Vec<&str> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
-    parts.join("_")
-}
-
-/// A label with the characters replaced that file names cannot have.
-pub(crate) fn in_names(label: &str) -> String {
-    label.replace([':', ',', '/', '\\', ' '], "_")
 }
 
 /// Channel names as tables hold them.

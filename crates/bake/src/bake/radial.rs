@@ -12,7 +12,7 @@ use microfacet_tables::{Axis, Interpolation, Kind, LobeEntry, Mapping, Precision
 use rayon::prelude::*;
 
 use super::shadowing::ratios;
-use super::{across, along, in_names, joined_name, mirrored, names, round};
+use super::{across, along, mirrored, names, round};
 use crate::progress::Stage;
 use crate::table_spec::Level;
 
@@ -67,9 +67,9 @@ fn rational(kappa: f64) -> Mapping {
     Mapping::Rational(Rational { scale: kappa, crowded: false })
 }
 
-/// The name of a table of the distribution with a label.
-pub(crate) fn radial_name(kind: Kind, label: &str) -> String {
-    joined_name(&[kind.name(), &in_names(label)])
+/// What the tables of the distribution with a label are of.
+pub(crate) fn radial_subject(label: &str) -> Subject {
+    Subject { lobe: LobeEntry::Distribution(label.into()), ..Subject::default() }
 }
 
 /// Bytes of the values of the four tables as they are stored.
@@ -90,7 +90,7 @@ pub fn bake_radial(
     precision: Precision,
     stage: &Stage,
 ) -> Vec<Table> {
-    let kappa = marginal.beyond(0.0).excess;
+    let (kappa, subject) = (marginal.beyond(0.0).excess, radial_subject(label));
     let table = |(kind, axes): (Kind, Vec<Axis>)| {
         let values = match (kind, &axes[..]) {
             (Kind::RadialShadowing, [views]) => shadowing(marginal, kappa, &views.nodes),
@@ -104,9 +104,9 @@ pub fn bake_radial(
             (_, []) => unreachable!("every kind has an axis"),
         };
         let table = Table {
-            name: radial_name(kind, label),
+            name: subject.name(kind),
             kind,
-            subject: Subject { lobe: LobeEntry::Distribution(label.into()), ..Subject::default() },
+            subject: subject.clone(),
             axes,
             channels: names(Kind::VALUE_AND_SLOPE),
             values: values.into_iter().flatten().collect(),

@@ -125,7 +125,8 @@ pub fn certified(
             Kind::Albedo => directional_certificate(spec, &table, references, stage)?,
             _ => averages(spec, &table, of_form(&table)?, references)?,
         };
-        let certificate = Certificate { quadrature: table.certificate.quadrature, ..found };
+        let certificate =
+            Certificate { quadrature: table.certificate.quadrature.map(round_up), ..found };
         Ok(Table { certificate, ..table })
     };
     tables.into_iter().map(certified).collect()
@@ -339,6 +340,8 @@ fn quantities(spec: &AlbedoSpec) -> Vec<Quantity> {
 /// Largest and root-mean-square errors of each quantity, and the place of the largest of all; the
 /// means leave out the places on a crease, and those `found` uphill.
 fn summary(spec: &AlbedoSpec, errors: &[At<'_>], found: &[At<'_>]) -> Certificate {
+    // Of one material the values are hardly more bytes than all figures would be.
+    let is_range = spec.nodes_of_materials() > 1;
     let is_promised = |errors: &&At<'_>| errors.0.point.promised;
     let (mut inside, mut outside): (Vec<_>, Vec<_>) = errors.iter().partition(is_promised);
     let rms = |i: usize| {
@@ -353,15 +356,20 @@ fn summary(spec: &AlbedoSpec, errors: &[At<'_>], found: &[At<'_>]) -> Certificat
         part.iter().map(|errors| errors.1[i]).max_by(f64::total_cmp).map(round_up)
     };
     let of_quantity = |(i, quantity)| {
-        let (inside, outside) = (largest(&inside, i)?, largest(&outside, i));
-        Some((quantity, Errors { largest: inside, rms: Some(rms(i)), outside }))
+        let all = Errors {
+            largest: largest(&inside, i)?,
+            rms: Some(rms(i)),
+            outside: largest(&outside, i),
+        };
+        Some((quantity, if is_range { all } else { Errors { rms: None, outside: None, ..all } }))
     };
     let by_quantity = quantities(spec).into_iter().enumerate().filter_map(of_quantity).collect();
     let worst = |errors: &At<'_>| errors.1.iter().copied().max_by(f64::total_cmp);
     let place =
         inside.iter().max_by(|a, b| worst(a).unwrap_or(0.0).total_cmp(&worst(b).unwrap_or(0.0)));
     let at = place.map(|(Reference { site: Site { gamma, sigma, eta, phi, cos }, .. }, _)| {
-        let axis = |name: &str| spec.axes.iter().any(|axis| axis.name == name);
+        // A single node is no place to choose from.
+        let axis = |name: &str| spec.axes.iter().any(|axis| axis.name == name && axis.len() > 1);
         let all = [
             ("gamma", Coordinate::S, s_of_gamma(*gamma)),
             ("sigma", Coordinate::Sigma, *sigma),
@@ -374,7 +382,7 @@ fn summary(spec: &AlbedoSpec, errors: &[At<'_>], found: &[At<'_>]) -> Certificat
     });
     Certificate {
         errors: by_quantity,
-        at: at.unwrap_or_default(),
+        at: at.filter(|_| is_range).unwrap_or_default(),
         points: Some((errors.len() + found.len()) as u32),
         ..Certificate::default()
     }

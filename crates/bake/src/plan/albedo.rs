@@ -4,12 +4,12 @@
 use std::collections::HashMap;
 
 use microfacet_sampler::Masking;
-use microfacet_tables::{Interval, LobeEntry, Precision, Reflectance};
+use microfacet_tables::{Interval, LobeEntry, Precision, Reflectance, SIGMA_MAX};
 
 use super::albedo_work::albedo_seconds;
 use super::key::{self, Numbers, distinct};
 use super::{NotCovered, Options, entry, is_tabulated, refusal};
-use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, SIGMA_MAX};
+use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
 use crate::scene::{Format, Material, Scene};
 use crate::table_spec::{Level, Quality};
 
@@ -49,6 +49,16 @@ impl RequiredAlbedo {
     pub fn general() -> Self {
         let lobe = AlbedoLobe::Family(Domain::GENERAL);
         Self { lobe, reflectance: Reflectance::Moments, maskings: Masking::ALL.into() }
+    }
+
+    /// Whether it is of round lobes of the family.
+    pub fn is_of_family(&self) -> bool {
+        matches!(self.lobe, AlbedoLobe::Family(_))
+    }
+
+    /// Whether averages are baked as well, as of a range of the family.
+    pub fn has_averages(&self) -> bool {
+        self.spec(Quality::Draft, Precision::F32).is_ok_and(|spec| spec.has_averages())
     }
 
     /// The specification of the tables that cover it.

@@ -4,11 +4,13 @@
 //! shares of the work are the same wherever they are computed. A [`Cost`] and [`seconds`] are for
 //! display, and are divided by the current threads.
 
+use std::collections::HashSet;
+
 use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::Masking;
 use microfacet_tables::{
-    Axis, Interpolation, Kind, LobeEntry, Mapping, MaterialEntry, Precision, Provenance, Table,
-    describe,
+    Axis, Interpolation, Kind, LobeEntry, Mapping, MaterialEntry, Precision, Provenance,
+    Reflectance, Subject, Table, describe, stated_axes,
 };
 
 use super::Plan;
@@ -72,15 +74,29 @@ fn escaped(json: &str) -> usize {
     json.len() + json.bytes().filter(|byte| matches!(byte, b'"' | b'\\')).count()
 }
 
+/// What the tables before one have described for it: a file describes an axis once, and tables of
+/// single materials that have one layout together.
+#[derive(Default)]
+struct Known(HashSet<String>);
+
+impl Known {
+    /// Bytes of those axes that are new.
+    fn axes(&mut self, subject: &Subject, axes: &[Axis]) -> usize {
+        let new = stated_axes(subject, axes).into_iter().filter(|json| self.0.insert(json.clone()));
+        new.map(|json| escaped(&json) + 1).sum()
+    }
+}
+
 /// Estimates what tables add to a set. The bytes are right to a few per cent, since only the digits
 /// of certificates are unknown. The seconds, on the current threads, are scaled from times measured
 /// on one machine: `cargo run --profile dist -p microfacet-study -- planner_seconds` shows how far
 /// they are off here.
 pub fn cost(specs: &[TableSpec]) -> Cost {
-    let header = |spec: &TableSpec| {
-        let axes = serde_json::to_string(&bake::axes(spec)).map_or(0, |json| escaped(&json));
-        // Name twice, kind, channels, certificate, shape and offsets.
-        axes + 2 * spec.name.len() + 440
+    let mut known = Known::default();
+    let mut header = |spec: &TableSpec| {
+        let axes = known.axes(&Subject::shapes(spec.covers), &bake::axes(spec));
+        // Kind, columns, certificate, shape and offsets.
+        axes + 2 * spec.name.len() + 400 + scales(spec.precision, Kind::VALUE_AND_SLOPE.len())
     };
     let bytes = specs.iter().map(|spec| spec.bytes() + header(spec)).sum();
     Cost::new(bytes, specs_seconds(specs).iter().sum())
@@ -93,7 +109,9 @@ pub fn cost(specs: &[TableSpec]) -> Cost {
 pub fn set_cost(plan: &Plan, quality: Quality, precision: Precision) -> Result<Cost, AlbedoError> {
     let general = general_set(quality, precision);
     let shapes = plan.shapes.iter().map(|need| Ok(cost(&need.specs(&general))));
-    let albedos = plan.albedos.iter().map(|need| Ok(albedo_cost(&need.spec(quality, precision)?)));
+    let specs = plan.albedos.iter().map(|need| need.spec(quality, precision));
+    let specs = specs.collect::<Result<Vec<_>, _>>()?;
+    let albedos = albedo_costs(&specs).into_iter().map(Ok);
     let own = plan.distributions.iter().map(|own| Ok(distribution_cost(own, quality, precision)));
     shapes.chain(albedos).chain(own).chain([Ok(bare_cost(&plan.provenance()))]).sum()
 }
@@ -110,19 +128,46 @@ pub(crate) fn specs_seconds(specs: &[TableSpec]) -> [f64; 2] {
 
 /// The cost of albedo tables, with the nodes that refinement is expected to add.
 pub fn albedo_cost(spec: &AlbedoSpec) -> Cost {
-    Cost::new(expected_bytes(spec) as usize + albedo_headers(spec), albedo_seconds(spec))
+    albedo_costs([spec])[0]
 }
 
-/// Bytes of the descriptions of albedo tables.
+/// The costs of albedo tables that one set holds, in order.
+pub fn albedo_costs<'a>(specs: impl IntoIterator<Item = &'a AlbedoSpec>) -> Vec<Cost> {
+    let mut known = Known::default();
+    let mut cost = |spec: &AlbedoSpec| {
+        let bytes = expected_bytes(spec) as usize + albedo_header(spec, &mut known);
+        Cost::new(bytes, albedo_seconds(spec))
+    };
+    specs.into_iter().map(&mut cost).collect()
+}
+
+/// Bytes of the descriptions of albedo tables, the first of their set.
 pub(crate) fn albedo_headers(spec: &AlbedoSpec) -> usize {
-    let json = |axes: &[Axis]| serde_json::to_string(axes).map_or(0, |json| escaped(&json));
-    // Name twice, kind, subject, channels, certificate, shape and offsets; for averages, over all
-    // axes but the view.
-    let name = |kind| 2 * spec.name(kind, Masking::HeightCorrelated).len();
-    let subject = serde_json::to_string(&spec.reflectance).map_or(0, |json| escaped(&json));
-    let one = json(&spec.axes) + name(Kind::Albedo) + subject + 800;
-    let average = json(&spec.axes[..2]) + name(Kind::AlbedoAverage) + subject + 680;
-    spec.maskings.len() * (one + if spec.has_averages() { average } else { 0 })
+    albedo_header(spec, &mut Known::default())
+}
+
+fn albedo_header(spec: &AlbedoSpec, known: &mut Known) -> usize {
+    let (channels, is_single) = (spec.channels(), spec.nodes_of_materials() == 1);
+    let lengths: Vec<usize> = spec.axes.iter().map(Axis::len).collect();
+    let optics = if matches!(spec.reflectance, Reflectance::Conductor { .. }) { 50 } else { 0 };
+    let columns = optics + scales(spec.precision, channels.len());
+    let mut header = |masking: Masking| {
+        let axes = known.axes(&spec.subject(masking), &spec.axes);
+        if is_single && !known.0.insert(format!("{channels:?}, {masking:?}, {lengths:?}")) {
+            return 75 + columns + axes;
+        }
+        // Kind, columns, certificate, shape and offsets.
+        let rest = if is_single { 470 } else { 820 };
+        let name = |kind| 2 * spec.name(kind, masking).len();
+        let average = if spec.has_averages() { name(Kind::AlbedoAverage) + rest } else { 0 };
+        axes + name(Kind::Albedo) + rest + columns + average
+    };
+    spec.maskings.iter().map(|&masking| header(masking)).sum()
+}
+
+/// Bytes of the scale and the offset of each channel.
+fn scales(precision: Precision, channels: usize) -> usize {
+    if precision == Precision::U16 { 26 * channels } else { 0 }
 }
 
 /// The cost of the four tables of a distribution outside the family.
@@ -135,9 +180,9 @@ pub fn distribution_cost(
     // The name ends in the label, or as many other characters; kind, channels, certificate, shape
     // and offsets.
     let suffix = distribution.label().len();
+    let (mut known, scales) = (Known::default(), scales(precision, Kind::VALUE_AND_SLOPE.len()));
     let header = |(kind, axes): &(Kind, Vec<Axis>)| {
-        let axes = serde_json::to_string(axes).map_or(0, |json| escaped(&json));
-        axes + 2 * (kind.name().len() + suffix) + 330
+        known.axes(&Subject::default(), axes) + 2 * (kind.name().len() + suffix) + 305 + scales
     };
     let headers = distribution_tables(level).iter().map(header).sum::<usize>();
     let bytes = headers + bake::radial_bytes(level, precision);

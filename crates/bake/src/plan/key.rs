@@ -8,7 +8,6 @@ use microfacet_tables::{Reflectance, Side};
 use ordered_float::OrderedFloat;
 
 use crate::bake::albedo::{AlbedoLobe, Domain};
-use crate::distribution::Distribution;
 
 /// The numbers of a part of a scene, in which −0 equals 0; each form has another number of them.
 pub(super) type Numbers = Vec<OrderedFloat<f64>>;
@@ -30,19 +29,8 @@ pub(super) fn of_lobe(lobe: &AlbedoLobe) -> (Numbers, Option<String>) {
         AlbedoLobe::Ellipsoid { sigma, theta, gamma } => {
             (of(&[&sigma[..], &theta[..], &[*gamma]].concat()), None)
         }
-        AlbedoLobe::Radial { distribution, sigma } => {
-            (of(&[*sigma]), Some(of_distribution(distribution)))
-        }
+        AlbedoLobe::Radial { distribution, sigma } => (of(&[*sigma]), Some(distribution.label())),
     }
-}
-
-/// The label of a distribution; a recipe reads a measured one in two units at most.
-pub(super) fn of_distribution(distribution: &Distribution) -> String {
-    let unit = match distribution {
-        Distribution::Named(_) => "",
-        Distribution::Measured { angles, .. } => angles.name(),
-    };
-    distribution.label() + unit
 }
 
 pub(super) fn of_reflectance(reflectance: &Reflectance) -> Numbers {

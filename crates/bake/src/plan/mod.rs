@@ -18,8 +18,8 @@ pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
 pub use albedo_work::place_seconds;
 pub(crate) use albedo_work::{AlbedoWork, albedo_seconds};
 pub use cost::{
-    Cost, albedo_cost, bare_cost, cost, distribution_cost, on_threads, point_seconds, seconds,
-    set_cost,
+    Cost, albedo_cost, albedo_costs, bare_cost, cost, distribution_cost, on_threads, point_seconds,
+    seconds, set_cost,
 };
 pub(crate) use cost::{albedo_headers, distribution_seconds, specs_seconds};
 pub use required_shapes::RequiredShapes;
@@ -27,10 +27,10 @@ pub use required_shapes::RequiredShapes;
 use microfacet_sampler::{Ellipsoid, StudentT};
 use microfacet_tables::{Interval, LobeSpec, MaterialEntry, Roughness};
 
-use crate::bake::albedo::SIGMA_MAX;
 use crate::distribution::Distribution;
-use crate::scene::{Format, Material, Scene, recipe_of};
+use crate::scene::{Format, Material, Scene};
 use crate::table_spec::{GAMMA_MIN, Quality};
+use microfacet_tables::SIGMA_MAX;
 
 /// γ of GGX.
 const GGX: f64 = 2.0;
@@ -113,8 +113,6 @@ pub struct Plan {
     pub albedo_verdicts: Vec<AlbedoVerdict>,
     /// The albedos that [`AlbedoWish::Auto`] leaves out since they would take long.
     pub offered: Vec<RequiredAlbedo>,
-    /// The scene as a recipe, as the set will state it; empty for the general set.
-    pub recipe: String,
     /// The scene's materials, as the set will list them; empty for the general set.
     pub materials: Vec<MaterialEntry>,
 }
@@ -177,7 +175,6 @@ impl Plan {
         let verdicts = wants.iter().enumerate().map(verdict).collect();
         let ((albedos, albedo_verdicts), offered) = albedo::required(scene, options)?;
         let distributions = distributions(scene);
-        let recipe = recipe_of(scene.materials.iter().filter(|material| is_listed(material)));
         let materials = scene.materials.iter().filter(|material| is_listed(material)).map(entry);
         let materials = materials.collect();
         Ok(Self {
@@ -187,7 +184,6 @@ impl Plan {
             albedos,
             albedo_verdicts,
             offered,
-            recipe,
             materials,
         })
     }
@@ -267,7 +263,7 @@ fn refusal(
 fn distributions(scene: &Scene) -> Vec<Distribution> {
     let tabulated = scene.materials.iter().filter(|material| is_tabulated(material));
     let all = tabulated.filter_map(|material| material.lobe.distribution.as_ref());
-    key::distinct(all, |all| key::of_distribution(all)).into_iter().cloned().collect()
+    key::distinct(all, |all| all.label()).into_iter().cloned().collect()
 }
 
 /// Whether there are microfacets at any point at all.
@@ -295,13 +291,11 @@ fn is_tabulated(material: &Material) -> bool {
 
 /// A material in the terms of a set, where one without microfacets has σ = 0.
 pub fn entry(material: &Material) -> MaterialEntry {
-    let lobe = if is_rough(material) {
-        material.lobe.map(Distribution::label)
-    } else {
-        LobeSpec::family(Roughness::Smooth, material.lobe.gamma)
-    };
-    let Material { name, masking, fresnel, .. } = material;
-    MaterialEntry { name: name.clone(), lobe, masking: *masking, fresnel: *fresnel }
+    let entry = material.entry();
+    if is_rough(material) {
+        return entry;
+    }
+    MaterialEntry { lobe: LobeSpec::family(Roughness::Smooth, material.lobe.gamma), ..entry }
 }
 
 /// A material that tables cannot cover.

@@ -2,88 +2,111 @@
 
 use microfacet_tables::Provenance;
 
-use super::Plan;
+use super::{Plan, RequiredAlbedo};
 use crate::bake::NUMERICS;
+use crate::table_spec::GAMMA_WHOLE;
 
-/// Conventions of every set.
-const CONVENTIONS: [(&str, &str); 10] = [
-    ("placement", "values sit at the nodes of the axes, not at cell centres"),
+/// What a set holds, as far as conventions differ.
+#[derive(Clone, Copy, PartialEq)]
+enum If {
+    Always,
+    /// Masking and visible normals.
+    Normals,
+    /// Slopes without their heavy part.
+    Peeled,
+    Albedos,
+    /// Averages, which albedos of a range have.
+    Averages,
+    /// Albedos of single lobes.
+    Lobes,
+    /// Materials that are left to closed forms.
+    ClosedForms,
+}
+
+/// The conventions that a reader could get wrong, in short: `docs/format.md` has them at length.
+const CONVENTIONS: [(If, &str, &str); 14] = [
+    (If::Always, "placement", "values sit at the nodes of the axes, not at cell centres"),
     (
+        If::Always,
         "gamma",
         "Student-t shape gamma > 3/2; the axis coordinate is s = 1/(gamma-1), 0 is Beckmann, 1 is GGX",
     ),
+    (If::Always, "sigma", "roughness alpha; a lookup divides slopes by it and by nothing else"),
     (
-        "sigma",
-        "GGX and Beckmann roughness alpha; slopes are divided by sigma, nothing else, before a lookup",
+        If::Always,
+        "frame",
+        "tangent space, n = +z; angles in radians; slopes positive towards the viewer",
     ),
-    ("frame", "tangent space, n = +z; angles in radians; slopes positive towards the viewer"),
+    (If::Normals, "masking", "shadowing tables hold Smith's G1 of one direction"),
+    (If::Normals, "slope_channel", "derivative of `value` by the node index of the last axis"),
     (
-        "masking",
-        "shadowing tables hold Smith's G1 of one direction; how two are combined is the reader's choice",
-    ),
-    ("slope_channel", "derivative of `value` with respect to the node index of the last axis"),
-    (
+        If::Normals,
         "shadowing",
-        "value = G1/q, q = z/(z+kappa) whether or not the axis is crowded, z = cot(theta)/sigma",
+        "G1/q, q = z/(z+kappa) whether or not the axis is crowded, z = cot(theta)/sigma",
     ),
     (
+        If::Normals,
         "visible_slope",
-        "value = distance of h = x/(1+sqrt(1+x^2)) from the end of its half: 1+h for u <= 1/2, 1-h above",
+        "distance of h = x/(1+sqrt(1+x^2)) from the end of its half: 1+h for u <= 1/2, 1-h above",
     ),
     (
+        If::Peeled,
         "visible_slope_peeled",
         "as visible_slope, for the density without its term x sin(theta) p(x), x > 0",
     ),
     (
+        If::Normals,
         "visible_slope_conditional",
-        "value = 1-h of t = y/sqrt(1+s x^2) for u > 1/2; odd about u = 1/2",
+        "1-h of t = y/sqrt(1+s x^2) for u > 1/2; odd about u = 1/2",
     ),
-];
-
-/// Conventions of a set with albedo tables.
-const ALBEDO: [(&str, &str); 4] = [
     (
+        If::Albedos,
         "albedo",
-        "share of light that one bounce returns. Of reflectance `moments` E is that with F = 1, the integral of G2/G1(v) over visible normals \
-         that reflect upwards. Channels: e = E-1; bias and f82, the same integral weighted with (1-v.m)^5 and 7^7/6^6 v.m (1-v.m)^6, less E times \
-         that weight at v.n. The weight 1-(1-v.m)^5 has E less the whole of bias. A sigma below the first node is a mirror. Other \
-         reflectances have the shares themselves; eta is the index of the dense side over the other's",
+        "share of light that one bounce returns, for the masking that the table names. Of `moments` e = \
+         E-1, E for F = 1; bias and f82 are E weighted with (1-v.m)^5 and 7^7/6^6 v.m (1-v.m)^6, less E \
+         times that weight at v.n. A sigma below the first node is a mirror. eta is the index of the dense \
+         side over the other's",
     ),
     (
+        If::Averages,
         "albedo_average",
         "2 int_0^1 x mu dmu of what is read from the albedo table, less E_avg times that of a mirror for bias and f82",
     ),
     (
-        "albedo_masking",
-        "each albedo table names its form of G2: uncorrelated G1(v) G1(l), height-correlated 1/(1+lambda(v)+lambda(l))",
+        If::Lobes,
+        "albedo_azimuth",
+        "of one lobe, over the azimuth of the view from the x axis; sigma in the view's coordinate is the \
+         roughness seen from there. `clamp` c = mu/(mu+A) above 1/2 scales the others' shares, 1+e for e, \
+         by (1-c)/c",
     ),
     (
-        "albedo_azimuth",
-        "of a lobe that is one material, over the azimuth of the view (radians, from the x axis) and the view; sigma in the view's coordinate is \
-         the roughness seen from the azimuth. A channel `clamp` c = mu/(mu+A) above 1/2 scales the others' shares, 1+e for e, by (1-c)/c",
+        If::ClosedForms,
+        "ggx",
+        "a material with gamma = 2 that no table covers has closed forms: G1 = 2/(1 + sqrt(1 + (sigma/cot theta)^2)), \
+         visible normals by spherical caps (Dupuy and Benyoub 2023)",
     ),
 ];
-
-/// The convention of a set that leaves a material to closed forms.
-const GGX: (&str, &str) = (
-    "ggx",
-    "a material with gamma = 2 that no table covers has closed forms: G1 = 2/(1 + sqrt(1 + (sigma/cot theta)^2)), \
-     visible normals by spherical caps (Dupuy and Benyoub 2023)",
-);
 
 impl Plan {
     /// Origin, licence and conventions of the set that a bake of this plan makes.
     pub fn provenance(&self) -> Provenance {
-        let albedo = ALBEDO.iter().filter(|_| !self.albedos.is_empty());
-        let ggx = self.has_closed_forms().then_some(&GGX);
-        let conventions = CONVENTIONS.iter().chain(albedo).chain(ggx);
+        let holds = |condition: &If| match condition {
+            If::Always => true,
+            If::Normals => !(self.shapes.is_empty() && self.distributions.is_empty()),
+            If::Peeled => self.shapes.iter().any(|need| need.gamma().min < GAMMA_WHOLE),
+            If::Albedos => !self.albedos.is_empty(),
+            If::Averages => self.albedos.iter().any(RequiredAlbedo::has_averages),
+            If::Lobes => self.albedos.iter().any(|need| !need.is_of_family()),
+            If::ClosedForms => self.has_closed_forms(),
+        };
+        let conventions = CONVENTIONS.iter().filter(|(condition, ..)| holds(condition));
         Provenance {
             generator: concat!("microfacet-bake ", env!("CARGO_PKG_VERSION")).into(),
             numerics: NUMERICS,
             license: "CC0-1.0".into(),
-            conventions: conventions.map(|&(key, text)| (key.into(), text.into())).collect(),
-            recipe: self.recipe.clone(),
+            conventions: conventions.map(|&(_, key, text)| (key.into(), text.into())).collect(),
             materials: self.materials.clone(),
+            key: String::new(),
         }
     }
 }

@@ -3,9 +3,9 @@
 use microfacet_core::shape::s_of_gamma;
 use microfacet_tables::{Interpolation, Interval, Precision};
 
-use crate::bake::joined_name;
 use crate::certify::certificate::ALL_SHAPES;
 use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, SEAM, ShapeAxis, TableSpec, general_set};
+use microfacet_tables::joined_name;
 
 /// A γ, or a range of γ, that tables are to cover.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

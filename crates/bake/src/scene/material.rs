@@ -7,6 +7,8 @@ use std::path::Path;
 use super::Place;
 use crate::distribution::Distribution;
 
+use microfacet_tables::MaterialEntry;
+
 pub use microfacet_sampler::Masking;
 pub use microfacet_tables::{FresnelEntry as Fresnel, LobeSpec, Roughness};
 
@@ -86,6 +88,14 @@ pub struct Material {
 }
 
 impl Material {
+    /// The material as sets list it.
+    #[must_use]
+    pub fn entry(&self) -> MaterialEntry {
+        let Self { name, masking, fresnel, .. } = self;
+        let lobe = self.lobe.map(Distribution::label);
+        MaterialEntry { name: name.clone(), lobe, masking: *masking, fresnel: *fresnel }
+    }
+
     /// Whether both state the same lobe under the same name, wherever they were described.
     #[must_use]
     pub fn asks_the_same(&self, other: &Self) -> bool {

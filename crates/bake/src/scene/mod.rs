@@ -11,6 +11,8 @@ mod recipe;
 
 use std::path::{Path, PathBuf};
 
+use microfacet_tables::MaterialEntry;
+
 pub use error::{
     Lines, MOST_CANDIDATES, Place, SceneError, SceneErrorKind, characters, did_you_mean,
     did_you_mean_key,
@@ -82,11 +84,12 @@ impl Scene {
     /// scene that uses no material gives an empty text, which is not a valid recipe.
     #[must_use]
     pub fn to_recipe(&self) -> String {
-        recipe_of(self.materials.iter().filter(|material| material.used))
+        let used = self.materials.iter().filter(|material| material.used);
+        recipe_of(&used.map(Material::entry).collect::<Vec<_>>())
     }
 }
 
-/// The native recipe of some materials.
-pub fn recipe_of<'a>(materials: impl Iterator<Item = &'a Material>) -> String {
+/// The native recipe of the materials that a set lists: baked, it makes the same set.
+pub fn recipe_of(materials: &[MaterialEntry]) -> String {
     recipe::write(materials)
 }

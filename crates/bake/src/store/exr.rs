@@ -11,11 +11,10 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::*;
 use half::f16;
-use serde::Deserialize;
 
 use microfacet_sampler::Tables;
 use microfacet_tables::{
-    LoadError, Precision, Provenance, Table, describe, reassemble, seal_document,
+    LoadError, Precision, Provenance, Table, describe, names, reassemble, seal_document,
 };
 
 use crate::input::MAX_TABLES;
@@ -157,7 +156,7 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     let document = parts.first().and_then(document).ok_or_else(|| {
         invalid(format!("an OpenEXR image, but without the `{ATTRIBUTE}` attribute of a table"))
     })?;
-    let heads = heads(&document).map_err(invalid)?;
+    let heads = names(&document)?;
     if heads.len() != parts.len() {
         let [parts, tables] = [parts.len(), heads.len()];
         return Err(invalid(format!("OpenEXR: {parts} parts of {tables} tables")));
@@ -165,7 +164,7 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     let values: Vec<Vec<f32>> = heads
         .iter()
         .zip(&parts)
-        .map(|(head, part)| values(head, part))
+        .map(|((name, channels), part)| values(name, channels, part))
         .collect::<std::result::Result<_, _>>()
         .map_err(invalid)?;
     if seal_document(&document, values.iter().flatten()).is_none_or(|sealed| sealed != document) {
@@ -175,12 +174,12 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     }
     let mut values = values.into_iter();
     let (provenance, tables) =
-        reassemble(&document, |_| values.next().ok_or("no part of that name".to_string()))?;
+        reassemble(&document, || values.next().ok_or("no part of that name".to_string()))?;
     Tables::from_tables(provenance, tables)
 }
 
 /// The values of a table, channels fastest.
-fn values(Head { name, channels }: &Head, part: &Part) -> std::result::Result<Vec<f32>, String> {
+fn values(name: &str, channels: &[String], part: &Part) -> std::result::Result<Vec<f32>, String> {
     let of = part.attributes.layer_name.as_ref().map(Text::to_string).unwrap_or_default();
     if of != ascii(name) {
         return Err(format!("OpenEXR: a part named `{of}` in the place of the table `{name}`"));
@@ -272,23 +271,6 @@ fn document(part: &Part) -> Option<String> {
         Some(AttributeValue::Text(text)) => Some(text.to_string()),
         _ => None,
     }
-}
-
-/// What has to be known of a table before its values are read.
-#[derive(Deserialize)]
-struct Head {
-    name: String,
-    channels: Vec<String>,
-}
-
-/// The tables that a document describes.
-fn heads(document: &str) -> std::result::Result<Vec<Head>, String> {
-    #[derive(Deserialize)]
-    struct Document {
-        tables: Vec<Head>,
-    }
-    let document: Document = serde_json::from_str(document).map_err(|why| why.to_string())?;
-    Ok(document.tables)
 }
 
 /// A description or a name in ASCII, since EXR text has no Unicode.

@@ -317,10 +317,7 @@ pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
 
 /// Does something in a folder, which is made if it is missing, and again if it goes meanwhile: a
 /// process that made it and then wrote nothing removes it.
-pub(crate) fn in_folder<T>(
-    folder: &Path,
-    mut act: impl FnMut() -> io::Result<T>,
-) -> io::Result<T> {
+pub(crate) fn in_folder<T>(folder: &Path, mut act: impl FnMut() -> io::Result<T>) -> io::Result<T> {
     let mut once = || make_folder(folder).and_then(|()| act());
     for _ in 1..TIMES {
         match once() {

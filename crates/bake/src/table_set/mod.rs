@@ -13,8 +13,8 @@ mod search;
 
 use std::{fmt, io};
 
-use microfacet_sampler::{MaterialError, Tables};
-use microfacet_tables::{LoadError, Precision, Table};
+use microfacet_sampler::{Masking, MaterialError, Tables};
+use microfacet_tables::{LoadError, Precision, Side, Subject, Table};
 
 use crate::bake;
 use crate::cache::Cache;
@@ -238,7 +238,7 @@ pub fn bake(plan: &Plan, target: Target) -> Result<Baked, BakeError> {
 pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Baked, BakeError> {
     let provenance = plan.provenance();
     let mut job = Job::new(settings);
-    let tables: Vec<Table> = match target {
+    let mut tables: Vec<Table> = match target {
         Target::Quality(quality, precision) => {
             let groups = TableGroup::whole(plan)?;
             let values = groups.iter().map(|group| group.values(quality.into()));
@@ -261,6 +261,17 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
         }
     };
     let baked = job.baked_of(&tables);
+    tables.sort_by_cached_key(layout);
     let set = Tables::from_tables(provenance, tables)?;
     Ok(Baked { set, baked, cache_error: job.cache_error, seconds: job.seconds })
+}
+
+/// What brings albedos of one layout together, which a file describes once. Other tables stay as
+/// they are, before them.
+fn layout(table: &Table) -> impl Ord + use<> {
+    let Subject { masking, reflectance, .. } = &table.subject;
+    let masking = Masking::ALL.iter().position(|form| Some(*form) == *masking);
+    let side = reflectance.and_then(|of| of.side()).map(Side::name);
+    let of = || (table.kind, masking, side, table.channels.clone(), table.shape());
+    table.kind.is_albedo().then(of)
 }

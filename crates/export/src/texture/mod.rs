@@ -15,11 +15,11 @@ mod shader;
 mod truth;
 
 use half::f16;
-use microfacet_baker::bake::albedo::SIGMA_MAX;
 use microfacet_baker::progress::Stage;
 use microfacet_baker::table_spec::GAMMA_MIN;
 use microfacet_core::Masking;
 use microfacet_model::ParameterError;
+use microfacet_tables::SIGMA_MAX;
 use rayon::prelude::*;
 
 pub use axis::{Along, Place, TexelAxis};

@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use microfacet_baker::bake::albedo::SIGMA_MAX;
 use microfacet_baker::scene::{
     Format, Fresnel, LobeSpec, Masking, Material, Names, Origin, Place, Roughness, Scene,
 };
 use microfacet_tables::Interval;
+use microfacet_tables::SIGMA_MAX;
 
 use super::Fitted;
 

@@ -34,9 +34,10 @@ impl Tables {
         self.moments_of(Kind::Albedo, sigma, gamma, masking, Albedo::new)
     }
 
-    /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments, from the table of averages alone.
+    /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments, from the table of averages alone; where
+    /// a set has none, as for single materials, those of [`albedo`](Self::albedo).
     ///
-    /// Off its nodes they differ from those of [`albedo`](Self::albedo) by the errors of its
+    /// Off the table's nodes they differ from those of [`albedo`](Self::albedo) by the errors of its
     /// certificate.
     ///
     /// # Errors
@@ -47,13 +48,14 @@ impl Tables {
         gamma: f64,
         masking: Masking,
     ) -> Result<Moments, MaterialError> {
-        self.moments_of(Kind::AlbedoAverage, sigma, gamma, masking, |table, point| {
-            let at = MaterialWeights::new(table, point)?;
+        let tabulated = self.moments_of(Kind::AlbedoAverage, sigma, gamma, masking, |table, at| {
+            let at = MaterialWeights::new(table, at)?;
             let rest = table.collapsed::<f64>(&at.weights);
             let rest =
                 if at.is_mirror { [0.0; 3] } else { core::array::from_fn(|i| rest[i] as f32) };
             Some(Moments::mirror_average().plus(rest))
-        })
+        });
+        tabulated.or_else(|_| Ok(self.albedo(sigma, gamma, masking)?.average_moments()))
     }
 
     /// The albedo with F = 1 of a named material, and its moments, for the form of masking of its

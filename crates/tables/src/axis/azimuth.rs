@@ -23,12 +23,18 @@ use super::lagrange::{SIX, six_weights};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Azimuth {
-    /// σ₁ and σ₂ along the principal axes.
+    /// σ₁ and σ₂ along the principal axes. In files it is left out where it is σx and σy of the
+    /// table's lobe, and then 0 until the lobe is known.
+    #[serde(default, skip_serializing_if = "is_left_out")]
     pub sigma: [f64; 2],
     /// Azimuth of the first principal axis, in radians.
     pub turn: f64,
     /// Whether the tabulated quantity is symmetric about both principal axes.
     pub fold: bool,
+}
+
+fn is_left_out(sigma: &[f64; 2]) -> bool {
+    *sigma == [0.0; 2]
 }
 
 impl Azimuth {

@@ -117,6 +117,16 @@ impl Mapping {
         self.get().formula()
     }
 
+    /// The number of values along an axis of n nodes.
+    pub(crate) fn values(&self, n: usize) -> usize {
+        self.get().values(n)
+    }
+
+    /// The place of the i-th of n nodes; `None` if the mapping lets nodes stand anywhere.
+    pub(crate) fn placed(&self, i: usize, n: usize) -> Option<f64> {
+        self.get().placement().node(i, n)
+    }
+
     fn get(&self) -> &dyn Coordinate {
         match self {
             Self::InverseShape => &InverseShape,
@@ -169,13 +179,10 @@ impl Interpolation {
 pub type Weights = Vec<(usize, f64)>;
 
 /// One axis of a table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Short name, such as `gamma`, `view` or `u1`.
     pub name: String,
-    /// Unit of the physical quantity; `1` for pure numbers.
-    pub unit: String,
     /// The map from the quantity to the coordinate.
     pub mapping: Mapping,
     /// How values between nodes are interpolated.
@@ -185,14 +192,14 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// An axis of a dimensionless quantity with the given nodes.
+    /// An axis with the given nodes.
     pub fn new(
         name: &str,
         mapping: Mapping,
         interpolation: Interpolation,
         nodes: Vec<f64>,
     ) -> Self {
-        Self { name: name.into(), unit: "1".into(), mapping, interpolation, nodes }
+        Self { name: name.into(), mapping, interpolation, nodes }
     }
 
     /// An axis of `count` nodes at the places that its mapping prescribes.
@@ -205,14 +212,19 @@ impl Axis {
         interpolation: Interpolation,
         count: usize,
     ) -> Self {
-        let node =
-            |i| mapping.get().placement().node(i, count).expect("a mapping that places its nodes");
+        let node = |i| mapping.placed(i, count).expect("a mapping that places its nodes");
         Self::new(name, mapping, interpolation, (0..count).map(node).collect())
     }
 
     /// The number of values along this axis.
     pub fn len(&self) -> usize {
-        self.mapping.get().values(self.nodes.len())
+        self.mapping.values(self.nodes.len())
+    }
+
+    /// Whether its nodes are exactly those that its mapping prescribes.
+    pub(crate) fn is_placed(&self) -> bool {
+        let n = self.nodes.len();
+        self.nodes.iter().enumerate().all(|(i, node)| self.mapping.placed(i, n) == Some(*node))
     }
 
     /// Whether it has no nodes; never true for an axis that was validated.
@@ -297,7 +309,7 @@ impl Axis {
             return fail("a node lies outside the range of its mapping");
         }
         let misplaced = |(i, x): (usize, &f64)| {
-            mapping.placement().node(i, n).is_some_and(|at| (x - at).abs() > 1e-12)
+            self.mapping.placed(i, n).is_some_and(|at| (x - at).abs() > 1e-12)
         };
         if self.nodes.iter().enumerate().any(misplaced) {
             return unsupported("this mapping needs nodes spread evenly over its range");

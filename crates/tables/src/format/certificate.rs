@@ -5,7 +5,7 @@ use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::String;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// A quantity that is read from tables, the most important first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -126,8 +126,8 @@ pub struct Errors {
 
 /// Errors measured on a table by the bake that made it, off its nodes, through the run-time lookup
 /// and against the f64 model. All are finite and not negative; empty where nothing was measured.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(into = "Figures", try_from = "Figures")]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(into = "Figures")]
 pub struct Certificate {
     /// The errors of each quantity.
     pub errors: BTreeMap<Quantity, Errors>,
@@ -175,7 +175,7 @@ impl Certificate {
 }
 
 /// A certificate as it stands in files: figures by key.
-type Figures = BTreeMap<String, f64>;
+pub(super) type Figures = BTreeMap<String, f64>;
 
 const ERROR: &str = "_error";
 const LARGEST: &str = "_max_error";

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::checksum::crc32;
-use super::container::Provenance;
+use super::document::Provenance;
 use crate::error::LoadError;
 
 /// The `format` entry of the document.
@@ -238,9 +238,7 @@ mod tests {
         let of = |names: &[&str]| {
             let text: Vec<String> = names
                 .iter()
-                .map(|name| {
-                    format!(r#"{{"name":"{name}","sigma":[[0.1,0.1],[0.1,0.1]],"s":[1,1]}}"#)
-                })
+                .map(|name| format!(r#"{{"name":"{name}","sigma":0.1,"gamma":2}}"#))
                 .collect();
             let materials = serde_json::from_str(&format!("[{}]", text.join(","))).unwrap();
             set.check_materials(&Provenance { materials, ..Provenance::default() })

@@ -6,13 +6,12 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use microfacet_core::Masking;
-use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use serde::{Deserialize, Serialize};
 
-use super::lobe::{LobeSpec, Roughness};
+use super::lobe::LobeSpec;
+use super::stored::{Range, Sigma};
 use super::subject::{Reflectance, Side, check_conductor, check_indices};
 use crate::axis::ReflectanceRoot;
-use crate::interval::Interval;
 
 /// A named material of a recipe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,16 +27,15 @@ pub struct MaterialEntry {
     pub fresnel: Option<FresnelEntry>,
 }
 
-/// A material as files of version 3 have it: ranges are [min, max], γ is s = 1/(γ−1), so that γ = ∞
-/// is the number 0, and no distribution is an empty text.
+/// A material as files have it.
 #[derive(Serialize, Deserialize)]
-#[serde(rename = "MaterialEntry")]
+#[serde(rename = "MaterialEntry", deny_unknown_fields)]
 struct InFile {
     name: String,
-    sigma: [Interval; 2],
-    s: [f64; 2],
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    distribution: String,
+    sigma: Sigma,
+    gamma: Range,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    distribution: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     theta: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -48,31 +46,18 @@ struct InFile {
 
 impl From<MaterialEntry> for InFile {
     fn from(MaterialEntry { name, lobe, masking, fresnel }: MaterialEntry) -> Self {
-        let (sigma, s) = (lobe.sigmas(), lobe.s());
-        let distribution = lobe.distribution.unwrap_or_default();
-        Self { name, sigma, s, distribution, theta: lobe.theta, masking, fresnel }
+        let LobeSpec { roughness, gamma, theta, distribution } = lobe;
+        let (sigma, gamma) = (roughness.into(), gamma.into());
+        Self { name, sigma, gamma, distribution, theta, masking, fresnel }
     }
 }
 
 impl From<InFile> for MaterialEntry {
-    fn from(InFile { name, sigma, s, distribution, theta, masking, fresnel }: InFile) -> Self {
-        let roughness = match sigma {
-            [x, y] if x != y => Roughness::Anisotropic { x, y },
-            [x, _] if x == Interval::point(0.0) => Roughness::Smooth,
-            [x, _] => Roughness::Isotropic(x),
-        };
-        let [max, min] = s.map(gamma_written_as);
-        let distribution = (!distribution.is_empty()).then_some(distribution);
-        let lobe = LobeSpec { roughness, gamma: Interval { min, max }, theta, distribution };
+    fn from(InFile { name, sigma, gamma, distribution, theta, masking, fresnel }: InFile) -> Self {
+        let (roughness, gamma) = (sigma.into(), gamma.into());
+        let lobe = LobeSpec { roughness, gamma, theta, distribution };
         Self { name, lobe, masking, fresnel }
     }
-}
-
-/// A shape γ whose s is exactly this, if there is one: so s is the same where it is written again.
-fn gamma_written_as(s: f64) -> f64 {
-    let gamma = gamma_of_s(s);
-    let near = [gamma, gamma.next_down(), gamma.next_up()];
-    near.into_iter().find(|&gamma| s_of_gamma(gamma) == s).unwrap_or(gamma)
 }
 
 /// The reflectance of a material's facets, as in its recipe.

@@ -87,11 +87,11 @@ impl Codec {
         }
     }
 
-    /// The scale and offset of a description; empty but for fixed point.
-    pub(super) fn scale_offset(&self) -> (Vec<f32>, Vec<f32>) {
+    /// The scale and offset of a description, for fixed point.
+    pub(super) fn scale_offset(&self) -> Option<(Vec<f32>, Vec<f32>)> {
         match self {
-            Self::U16 { scale, offset } => (scale.clone(), offset.clone()),
-            _ => (Vec::new(), Vec::new()),
+            Self::U16 { scale, offset } => Some((scale.clone(), offset.clone())),
+            _ => None,
         }
     }
 

@@ -3,14 +3,19 @@
 
 use alloc::format;
 use alloc::string::String;
+use alloc::vec::Vec;
 
+use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Masking, Skew};
 use serde::{Deserialize, Serialize};
 
 use super::kind::{Channels, Kind};
+use super::stored::{Single, gamma_of};
+use crate::interval::Interval;
+use crate::{GAMMA_MIN, SIGMA_MAX};
 
 /// Whose normals a table is of.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LobeEntry {
     /// The members of the Student-t family that the axes reach; for albedos, the round ones.
@@ -178,12 +183,11 @@ impl Reflectance {
 
 /// The materials that a table was baked and measured for; its axes may have nodes beyond, which
 /// interpolation reads.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Covered {
     /// Shapes, as [min, max] of 1/(γ−1).
     pub s: [f64; 2],
     /// Roughnesses, for tables that have an axis of σ.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma: Option<[f64; 2]>,
 }
 
@@ -192,6 +196,32 @@ pub struct Covered {
 pub const SAME: f64 = 1e-9;
 
 impl Covered {
+    /// All of these γ, and of these σ for tables that have an axis of σ.
+    pub fn of(gamma: Interval, sigma: Option<Interval>) -> Self {
+        Self { s: [gamma.max, gamma.min].map(s_of_gamma), sigma: sigma.map(Into::into) }
+    }
+
+    /// The range of γ, with as few digits as s allows.
+    pub fn gamma(&self) -> Interval {
+        let [max, min] = self.s.map(gamma_of);
+        Interval { min, max }
+    }
+
+    /// The range as part of names; empty for all that tables can cover.
+    fn label(&self) -> String {
+        let part = |name: &str, Interval { min, max }: Interval| {
+            if min == max { format!("{name}_{min}") } else { format!("{name}_{min}_to_{max}") }
+        };
+        let (gamma, sigma) = (self.gamma(), self.sigma.map(Interval::from));
+        let all = Interval { min: GAMMA_MIN, max: f64::INFINITY };
+        if gamma == all && sigma.is_none_or(|sigma| sigma == Interval { min: 0.0, max: SIGMA_MAX })
+        {
+            return String::new();
+        }
+        let sigma = sigma.map(|sigma| part("sigma", sigma)).unwrap_or_default();
+        joined_name(&[&part("gamma", gamma), &sigma])
+    }
+
     /// Whether the shape s = 1/(γ−1) is among them.
     pub fn contains_shape(&self, s: f64) -> bool {
         within(self.s, s)
@@ -206,10 +236,10 @@ impl Covered {
 /// Checks a range of 1/(γ−1), which is 0 at γ = ∞ and stays under 2, for γ > 3/2.
 pub(super) fn check_shapes([min, max]: [f64; 2]) -> Result<(), String> {
     if 0.0 <= min && min <= max && max < 2.0 {
-        Ok(())
-    } else {
-        Err(format!("s = [{min}, {max}] must ascend, from 0 or more to less than 2"))
+        return Ok(());
     }
+    let [min, max] = [max, min].map(gamma_of);
+    Err(format!("gamma = [{min}, {max}] must ascend, from more than 3/2"))
 }
 
 /// Checks a range of σ, which may start at 0 where a texture has smooth points.
@@ -244,6 +274,12 @@ pub(super) fn check_indices(min: f64, max: Option<f64>) -> Result<(), String> {
     }
 }
 
+/// A name from its parts, without the empty ones.
+pub fn joined_name(parts: &[&str]) -> String {
+    let parts: Vec<&str> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
+    parts.join("_")
+}
+
 fn within([min, max]: [f64; 2], x: f64) -> bool {
     x >= min - SAME * min && x <= max + SAME * max
 }
@@ -267,6 +303,45 @@ impl Subject {
         Self { covers: Some(Covered { s, sigma: None }), ..Self::default() }
     }
 
+    /// The name of a table of this kind: made of what it is of, with characters that file names can
+    /// have. The moments, which nearly all albedos have, are left out.
+    pub fn name(&self, kind: Kind) -> String {
+        let reflectance = match self.reflectance {
+            None | Some(Reflectance::Moments) => String::new(),
+            Some(other) => other.label(),
+        };
+        let lobe = match &self.lobe {
+            LobeEntry::Family => self.covers.map(|covers| covers.label()).unwrap_or_default(),
+            LobeEntry::StudentT { sigma: [x, y], s } => {
+                format!("gamma_{}_sigma_{x}_{y}", gamma_of(*s))
+            }
+            LobeEntry::Ellipsoid { sigma: [x, y], theta: [a, b, c], s } => {
+                format!("gamma_{}_sigma_{x}_{y}_theta_{a}_{b}_{c}", gamma_of(*s))
+            }
+            LobeEntry::Distribution(label) => label.replace([':', ',', '/', '\\', ' '], "_"),
+        };
+        let masking = self.masking.map_or("", Masking::name);
+        joined_name(&[kind.name(), masking, &reflectance, &lobe])
+    }
+
+    /// γ and σ, where they are single numbers.
+    pub(super) fn single(&self) -> Single {
+        let point = |[min, max]: [f64; 2]| (min == max).then_some(min);
+        let covers = self.covers.as_ref();
+        let (s, sigmas) = match self.lobe {
+            LobeEntry::Family => (covers.and_then(|covers| point(covers.s)), None),
+            LobeEntry::StudentT { sigma, s } => (Some(s), Some(sigma)),
+            LobeEntry::Ellipsoid { s, .. } => (Some(s), None),
+            LobeEntry::Distribution(_) => (None, None),
+        };
+        Single {
+            gamma: s.map(gamma_of),
+            sigma: covers.and_then(|covers| point(covers.sigma?)),
+            is_lobe: self.lobe != LobeEntry::Family,
+            sigmas,
+        }
+    }
+
     /// Checks the subject, and that it fits a kind of table; the error says what is wrong.
     pub(super) fn check(&self, kind: Kind) -> Result<(), String> {
         let albedo = kind.is_albedo();
@@ -287,6 +362,9 @@ impl Subject {
         self.lobe.check()?;
         self.reflectance.iter().try_for_each(Reflectance::check)?;
         let Some(Covered { s, sigma }) = self.covers else { return Ok(()) };
+        if self.lobe != LobeEntry::Family {
+            return Err("only tables of the family cover a range".into());
+        }
         check_shapes(s)
             .and(sigma.map_or(Ok(()), check_roughness))
             .map_err(|why| format!("the range that it covers: {why}"))

@@ -7,12 +7,13 @@ use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
 };
 use microfacet_tables::{
-    Axis, Covered, Interpolation, Kind, Mapping, Precision, Reflectance, Side, Subject, Table,
+    Axis, Covered, Interpolation, Kind, Mapping, Precision, Reflectance, SIGMA_MAX, Side, Subject,
+    Table,
 };
 
-use super::domain::{Domain, SIGMA_MAX};
+use super::domain::Domain;
 use super::{AlbedoError, AlbedoLobe, view_of};
-use crate::bake::{joined_name, names};
+use crate::bake::names;
 use crate::table_spec::{GAMMA_MIN, Level};
 
 /// Smallest σ node; smoother surfaces count as mirrors.
@@ -101,8 +102,7 @@ impl AlbedoSpec {
                     (_, true) => counts.azimuths,
                     _ => 4 * (counts.azimuths - 1),
                 };
-                let axis = Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count);
-                vec![Axis { unit: "rad".into(), ..axis }]
+                vec![Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count)]
             }
             (_, None) => unreachable!("lobes that are one material have azimuths"),
         };
@@ -149,11 +149,10 @@ impl AlbedoSpec {
     #[must_use]
     pub fn refined(&self, axis: usize) -> Self {
         let mut finer = self.clone();
-        let Axis { name, unit, mapping, interpolation, nodes } = &self.axes[axis];
+        let Axis { name, mapping, interpolation, nodes } = &self.axes[axis];
         let closed = matches!(mapping, Mapping::Azimuth(azimuth) if !azimuth.fold);
         let count = if closed { 2 * nodes.len() } else { 2 * nodes.len() - 1 };
-        finer.axes[axis] =
-            Axis { unit: unit.clone(), ..Axis::placed(name, *mapping, *interpolation, count) };
+        finer.axes[axis] = Axis::placed(name, *mapping, *interpolation, count);
         finer
     }
 
@@ -176,14 +175,8 @@ impl AlbedoSpec {
 
     /// Axes that can be [`refined`](Self::refined): those of the view with more than one node.
     pub fn refinable(&self) -> Vec<usize> {
-        let of_view = |axis: &Axis| {
-            axis.len() > 1
-                && matches!(
-                    axis.mapping,
-                    Mapping::Azimuth(_) | Mapping::ViewBlend(_) | Mapping::CriticalBlend(_)
-                )
-        };
-        (0..self.axes.len()).filter(|&i| of_view(&self.axes[i])).collect()
+        let refines = |axis: &Axis| axis.len() > 1 && is_of_view(axis);
+        (0..self.axes.len()).filter(|&i| refines(&self.axes[i])).collect()
     }
 
     /// Number of nodes at which the albedo is integrated.
@@ -197,9 +190,17 @@ impl AlbedoSpec {
         names(self.reflectance.channels()).into_iter().chain(clamp).collect()
     }
 
-    /// Whether tables of averages are baked as well.
+    /// Whether tables of averages are baked as well: of more than one material, since an albedo of
+    /// one has its averages in itself.
     pub fn has_averages(&self) -> bool {
-        matches!(self.lobe, AlbedoLobe::Family(_)) && self.reflectance == Reflectance::Moments
+        matches!(self.lobe, AlbedoLobe::Family(_))
+            && self.reflectance == Reflectance::Moments
+            && self.nodes_of_materials() > 1
+    }
+
+    /// Number of nodes that differ in more than the view.
+    pub fn nodes_of_materials(&self) -> usize {
+        self.axes.iter().filter(|axis| !is_of_view(axis)).map(Axis::len).product()
     }
 
     /// Number of tables.
@@ -218,10 +219,8 @@ impl AlbedoSpec {
 
     /// The subject in the description of a table.
     pub fn subject(&self, masking: Masking) -> Subject {
-        let covers =
-            if let AlbedoLobe::Family(domain) = &self.lobe { Some(domain.covered()) } else { None };
         let (masking, reflectance) = (Some(masking), Some(self.reflectance));
-        Subject { lobe: self.lobe.entry(), masking, reflectance, covers }
+        Subject { masking, reflectance, ..self.lobe.subject() }
     }
 
     /// The whole extent of the family's axes, with the outer nodes that only interpolation reads.
@@ -238,13 +237,14 @@ impl AlbedoSpec {
 
     /// The name of a table.
     pub fn name(&self, kind: Kind, masking: Masking) -> String {
-        // The moments, which nearly all tables hold, are left out of the name.
-        let reflectance = match self.reflectance {
-            Reflectance::Moments => String::new(),
-            other => other.label(),
-        };
-        joined_name(&[kind.name(), masking.name(), &reflectance, &self.lobe.label()])
+        self.subject(masking).name(kind)
     }
+}
+
+/// Whether an axis is of the view, and not of the material.
+fn is_of_view(axis: &Axis) -> bool {
+    let Axis { mapping, .. } = axis;
+    matches!(mapping, Mapping::Azimuth(_) | Mapping::ViewBlend(_) | Mapping::CriticalBlend(_))
 }
 
 /// The axes of γ and σ for a domain.

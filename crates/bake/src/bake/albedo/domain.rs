@@ -1,12 +1,6 @@
 //! The range of materials that albedo tables are baked for.
 
-use microfacet_core::shape::{gamma_of_s, s_of_gamma};
-use microfacet_tables::{Covered, Interval};
-
-use crate::table_spec::GAMMA_MIN;
-
-/// Largest σ of the general tables.
-pub const SIGMA_MAX: f64 = 3.0;
+use microfacet_tables::{Covered, GAMMA_MIN, Interval, SIGMA_MAX};
 
 /// The isotropic materials that tables are baked for; certificates hold for these only.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -38,26 +32,11 @@ impl Domain {
 
     /// The domain as a table's description states it.
     pub fn covered(&self) -> Covered {
-        let s = [s_of_gamma(self.gamma.max), s_of_gamma(self.gamma.min)];
-        Covered { s, sigma: Some([self.sigma.min, self.sigma.max]) }
+        Covered::of(self.gamma, Some(self.sigma))
     }
 
     /// The domain that a table states to cover.
     pub(super) fn of_covered(covered: &Covered) -> Option<Self> {
-        let ([low, high], [min, max]) = (covered.s, covered.sigma?);
-        let [heavy, light] = [high, low].map(gamma_of_s);
-        Some(Self { gamma: Interval { min: heavy, max: light }, sigma: Interval { min, max } })
-    }
-
-    /// The domain as part of table names; empty for the general domain.
-    pub(super) fn label(&self) -> String {
-        let part = |name: &str, Interval { min, max }: Interval| {
-            if min == max { format!("{name}_{min}") } else { format!("{name}_{min}_to_{max}") }
-        };
-        if *self == Self::GENERAL {
-            String::new()
-        } else {
-            format!("{}_{}", part("gamma", self.gamma), part("sigma", self.sigma))
-        }
+        Some(Self { gamma: covered.gamma(), sigma: covered.sigma?.into() })
     }
 }

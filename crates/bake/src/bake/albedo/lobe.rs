@@ -12,7 +12,7 @@ use microfacet_model::{
     Albedo, AlbedoIntegrator, Ellipsoid, EllipsoidError, ParameterError, Shape, Skew,
 };
 use microfacet_tables::axis::Azimuth;
-use microfacet_tables::{Axis, Covered, LobeEntry, Mapping};
+use microfacet_tables::{Axis, Covered, LobeEntry, Mapping, Subject};
 
 use super::{AlbedoError, CHANNELS, Domain, Site};
 use crate::distribution::Distribution;
@@ -82,17 +82,10 @@ impl AlbedoLobe {
         })
     }
 
-    /// The lobe as part of table names and in messages; empty for the general family.
-    pub fn label(&self) -> String {
-        let turn = |[x, y, z]: [f64; 3]| format!("_theta_{x}_{y}_{z}");
-        match self {
-            Self::Family(domain) => domain.label(),
-            Self::StudentT { sigma: [x, y], gamma } => format!("gamma_{gamma}_sigma_{x}_{y}"),
-            Self::Ellipsoid { sigma: [x, y], theta, gamma } => {
-                format!("gamma_{gamma}_sigma_{x}_{y}{}", turn(*theta))
-            }
-            Self::Radial { distribution, .. } => crate::bake::in_names(&distribution.label()),
-        }
+    /// What tables of the lobe are of, without a reflectance.
+    pub(crate) fn subject(&self) -> Subject {
+        let covers = if let Self::Family(domain) = self { Some(domain.covered()) } else { None };
+        Subject { lobe: self.entry(), covers, ..Subject::default() }
     }
 
     /// The mapping of its azimuth axis; `None` for the family, whose albedo does not depend on

@@ -29,7 +29,7 @@ use microfacet_tables::{
 use crate::progress::Stage;
 
 pub use albedo_spec::AlbedoSpec;
-pub use domain::{Domain, SIGMA_MAX};
+pub use domain::Domain;
 pub use integrand::{Integrand, weights};
 pub(crate) use lobe::area_ratio;
 pub use lobe::{AlbedoLobe, Model, Models};

@@ -2,19 +2,18 @@
 
 use std::fmt::Write as _;
 
-use microfacet_tables::Interval;
+use microfacet_tables::{Interval, MaterialEntry};
 
-use crate::distribution::Distribution;
+use crate::distribution::{Distribution, Named};
 use crate::input::angles::Angles;
-use crate::scene::{Fresnel, Material, Roughness};
+use crate::scene::{Fresnel, Roughness};
 
 /// Writes the recipe that [`read`](super::read) turns into the same materials.
-pub(in crate::scene) fn write<'a>(materials: impl IntoIterator<Item = &'a Material>) -> String {
-    let entries: Vec<String> = materials.into_iter().map(entry).collect();
-    entries.join("\n")
+pub(in crate::scene) fn write(materials: &[MaterialEntry]) -> String {
+    materials.iter().map(entry).collect::<Vec<_>>().join("\n")
 }
 
-fn entry(material: &Material) -> String {
+fn entry(material: &MaterialEntry) -> String {
     let mut text = format!("[[material]]\nname = {}\n", quoted(&material.name));
     let sigma = match material.lobe.roughness {
         Roughness::Smooth => range(Interval::point(0.0)),
@@ -22,14 +21,17 @@ fn entry(material: &Material) -> String {
         Roughness::Anisotropic { x, y } => format!("[{}, {}]", range(x), range(y)),
     };
     // Writing to a string cannot fail.
-    let _ = match &material.lobe.distribution {
+    let label = material.lobe.distribution.as_ref();
+    let _ = match label.map(|label| (Distribution::measured_of(label), label.parse::<Named>())) {
         None => writeln!(text, "sigma = {sigma}\ngamma = {}", range(material.lobe.gamma)),
         // The file stays as it is, and so does its unit.
-        Some(Distribution::Measured { file, angles, .. }) => {
-            let unit = if *angles == Angles::Degrees { ", degrees = true" } else { "" };
+        Some((Some((file, angles)), _)) => {
+            let unit = if angles == Angles::Degrees { ", degrees = true" } else { "" };
             writeln!(text, "distribution = {{ measured = {}{unit} }}", quoted(file))
         }
-        Some(Distribution::Named(named)) => {
+        // No bake writes such a label, and no recipe can say it.
+        Some((None, Err(_))) => writeln!(text, "# of the distribution {label:?}"),
+        Some((None, Ok(named))) => {
             let number = |x: f64| range(Interval::point(x));
             let pairs = named.kind.parameters().iter().zip(&named.values);
             let values: String =

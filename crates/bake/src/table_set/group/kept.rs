@@ -4,11 +4,11 @@
 //! Values and certificates are believed, as they are in any set: whoever can write to the cache is
 //! trusted with the numbers, and with nothing else.
 
-use microfacet_tables::{Axis, Kind, LobeEntry, Precision, Subject, Table};
+use microfacet_tables::{Axis, Kind, Precision, Subject, Table};
 
 use super::TableGroup;
 use crate::bake::albedo::AlbedoSpec;
-use crate::bake::{self, radial_axes, radial_name};
+use crate::bake::{self, radial_axes, radial_subject};
 use crate::table_spec::{Level, TableSpec};
 
 impl TableGroup {
@@ -52,14 +52,13 @@ pub(super) fn is_of(table: &Table, spec: &TableSpec) -> bool {
 /// The constants of some coordinates depend on the distribution, which takes long to build, and go
 /// with the values.
 fn is_radial(tables: &[Table], label: &str, level: Level, precision: Precision) -> bool {
-    let lobe = LobeEntry::Distribution(label.into());
-    let subject = Subject { lobe, ..Subject::default() };
+    let subject = radial_subject(label);
     let is_axis = |axis: &Axis, asked: &Axis| {
         (&axis.name, axis.interpolation, axis.len())
             == (&asked.name, asked.interpolation, asked.len())
     };
     let is = |table: &Table, (kind, axes): &(Kind, Vec<Axis>)| {
-        let asked = (radial_name(*kind, label), *kind, &subject, precision);
+        let asked = (subject.name(*kind), *kind, &subject, precision);
         (table.name.clone(), table.kind, &table.subject, table.precision) == asked
             && table.channels == Kind::VALUE_AND_SLOPE
             && table.axes.len() == axes.len()

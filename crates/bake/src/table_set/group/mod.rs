@@ -5,10 +5,10 @@ mod kept;
 
 use serde::{Deserialize, Serialize};
 
-use microfacet_tables::{MaterialEntry, Precision};
+use microfacet_tables::{Kind, MaterialEntry, Precision};
 
 use super::BakeError;
-use crate::bake::{joined_name, radial_bytes};
+use crate::bake::radial_bytes;
 use crate::distribution::Distribution;
 use crate::memory::Values;
 use crate::plan::{
@@ -107,7 +107,7 @@ impl TableGroup {
                 names.join(" with ")
             }
             Self::Distribution(distribution, _) => distribution.label(),
-            Self::Albedo(need) => joined_name(&["albedo", &need.lobe.label()]),
+            Self::Albedo(need) => need.lobe.subject().name(Kind::Albedo),
         }
     }
 

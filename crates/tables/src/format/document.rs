@@ -1,0 +1,224 @@
+//! The JSON document that describes a set: where it comes from, its materials, axes and tables.
+//!
+//! `docs/format.md` is the specification.
+
+use alloc::collections::{BTreeMap, BTreeSet};
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::checksum;
+use super::material::MaterialEntry;
+use super::stack::{Stack, stacked};
+use super::stored::StoredAxis;
+use super::subject::Subject;
+use super::table::Table;
+use crate::axis::Axis;
+use crate::error::LoadError;
+
+/// The `format` entry of the document.
+pub const FORMAT: &str = "microfacet-tables";
+/// Version of the format that this crate writes, and the only one that it reads.
+pub const VERSION: u32 = 4;
+/// Most tables of a set: each takes a kilobyte of memory besides its values, which may be few.
+const MOST_TABLES: usize = 1 << 16;
+
+/// Where a set comes from, and how its numbers are to be read.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Program and version that baked the set.
+    pub generator: String,
+    /// Number of the numeric method; it changes whenever the same recipe would give other bytes.
+    pub numerics: u32,
+    /// Licence of the data.
+    pub license: String,
+    /// The conventions that a reader could get wrong, in words.
+    pub conventions: BTreeMap<String, String>,
+    /// The named materials that it was baked for: all that a recipe states, to bake it again.
+    pub materials: Vec<MaterialEntry>,
+    /// What a cache keeps the tables under; empty in a set.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub key: String,
+}
+
+impl Provenance {
+    /// Checks every number of the materials, and that their names differ.
+    pub fn check(&self) -> Result<(), LoadError> {
+        let mut names = BTreeSet::new();
+        for material in &self.materials {
+            let named =
+                if names.insert(&material.name) { Ok(()) } else { Err("named twice".into()) };
+            material.check().and(named).map_err(|why: String| {
+                LoadError::Invalid(format!("material `{}`: {why}", material.name))
+            })?;
+        }
+        Ok(())
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+pub(super) struct Document {
+    format: String,
+    version: u32,
+    checksum: String,
+    #[serde(flatten)]
+    pub(super) provenance: Provenance,
+    /// Formulas of the mappings that occur, by kind, for authors of readers.
+    #[serde(default)]
+    mappings: BTreeMap<String, String>,
+    pub(super) axes: Vec<StoredAxis>,
+    pub(super) tables: Vec<Stack>,
+}
+
+pub(super) fn invalid(why: impl ToString) -> LoadError {
+    LoadError::Invalid(why.to_string())
+}
+
+fn of_table(name: &str, why: impl ToString) -> LoadError {
+    invalid(format!("table `{name}`: {}", why.to_string()))
+}
+
+impl Document {
+    /// The document of a set.
+    pub(super) fn of(provenance: &Provenance, tables: &[Table]) -> Result<Self, LoadError> {
+        provenance.check()?;
+        let mut names = BTreeSet::new();
+        for table in tables {
+            table.validate()?;
+            if !names.insert(&table.name) {
+                return Err(of_table(&table.name, "named twice"));
+            }
+        }
+        if tables.len() > MOST_TABLES {
+            return Err(too_many(tables.len()));
+        }
+        let mappings = tables.iter().flat_map(|table| &table.axes).map(|axis| &axis.mapping);
+        let mappings = mappings.map(|of| (of.name().into(), of.formula().into())).collect();
+        let (axes, tables) = stacked(tables);
+        Ok(Self {
+            format: FORMAT.into(),
+            version: VERSION,
+            checksum: checksum::NONE.into(),
+            provenance: provenance.clone(),
+            mappings,
+            axes,
+            tables,
+        })
+    }
+
+    pub(super) fn to_json(&self) -> Result<String, LoadError> {
+        serde_json::to_string(self).map_err(invalid)
+    }
+
+    /// Reads a document of this version.
+    pub(super) fn from_json(json: &str) -> Result<Self, LoadError> {
+        check_version(json)?;
+        let document: Self = serde_json::from_str(json).map_err(invalid)?;
+        document.provenance.check()?;
+        let tables = document.tables.iter().map(Stack::len);
+        let tables = tables.fold(0, usize::saturating_add);
+        if tables > MOST_TABLES {
+            return Err(too_many(tables));
+        }
+        let mut tensors = BTreeSet::new();
+        for stack in &document.tables {
+            stack.check(&document.axes).map_err(|why| of_table(&stack.name, why))?;
+            if !tensors.insert(&stack.name) {
+                return Err(of_table(&stack.name, "named twice"));
+            }
+        }
+        Ok(document)
+    }
+
+    /// The tables, with the values of each by stack and number in it.
+    pub(super) fn tables(
+        &self,
+        mut values: impl FnMut(&Stack, usize) -> Result<Vec<f32>, String>,
+    ) -> Result<Vec<Table>, LoadError> {
+        let (mut tables, mut names): (Vec<Table>, _) = (Vec::new(), BTreeSet::new());
+        for stack in &self.tables {
+            for i in 0..stack.len() {
+                let table = values(stack, i).and_then(|values| stack.table(i, &self.axes, values));
+                let table = table.map_err(|why| of_table(&stack.name, why))?;
+                table.validate()?;
+                if !names.insert(table.name.clone()) {
+                    return Err(of_table(&table.name, "named twice"));
+                }
+                tables.push(table);
+            }
+        }
+        Ok(tables)
+    }
+}
+
+fn too_many(tables: usize) -> LoadError {
+    invalid(format!("{tables} tables, and a set has at most {MOST_TABLES}"))
+}
+
+/// Checks the format and version of a document before anything else: a newer document may not parse
+/// as this version.
+pub(super) fn check_version(json: &str) -> Result<(), LoadError> {
+    #[derive(Deserialize)]
+    struct Head {
+        format: String,
+        version: u32,
+    }
+    let head: Head = serde_json::from_str(json).map_err(invalid)?;
+    if head.format != FORMAT {
+        return Err(invalid(format!("format \"{}\" where \"{FORMAT}\" is expected", head.format)));
+    }
+    if head.version != VERSION {
+        return Err(LoadError::Unsupported(format!(
+            "format version {} (this reader knows {VERSION}): update the reader or bake again",
+            head.version
+        )));
+    }
+    Ok(())
+}
+
+/// The JSON document that describes a set, with zeros for its checksum.
+///
+/// It is what [`encode`](super::encode) embeds, and what other containers may carry.
+///
+/// # Errors
+/// [`LoadError::Invalid`] if a material or a table would not load again.
+pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, LoadError> {
+    Document::of(provenance, tables)?.to_json()
+}
+
+/// The axes of a table as its document has them: the same text where tables share an axis.
+pub fn stated_axes(subject: &Subject, axes: &[Axis]) -> Vec<String> {
+    let single = subject.single();
+    let text = |axis| serde_json::to_string(&StoredAxis::of(axis, single)).unwrap_or_default();
+    axes.iter().map(text).collect()
+}
+
+/// The name and the channels of each table of the document of [`describe`], in order.
+///
+/// # Errors
+/// As [`reassemble`].
+pub fn names(json: &str) -> Result<Vec<(String, Vec<String>)>, LoadError> {
+    let document = Document::from_json(json)?;
+    let of = |stack: &Stack, i| {
+        let name = stack.table_name(i).map_err(|why| of_table(&stack.name, why))?;
+        Ok((name, stack.channels.clone()))
+    };
+    let all = document.tables.iter().flat_map(|stack| (0..stack.len()).map(move |i| of(stack, i)));
+    all.collect()
+}
+
+/// Reassembles a set from the document of [`describe`] and the decoded values of each table, for
+/// which it asks in order.
+///
+/// # Errors
+/// [`LoadError`] if the document is not that of a set, or a table is not valid.
+pub fn reassemble(
+    json: &str,
+    mut values: impl FnMut() -> Result<Vec<f32>, String>,
+) -> Result<(Provenance, Vec<Table>), LoadError> {
+    let document = Document::from_json(json)?;
+    let tables = document.tables(|_, _| values())?;
+    Ok((document.provenance, tables))
+}

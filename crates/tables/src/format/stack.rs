@@ -1,0 +1,544 @@
+//! Tables of one layout, as a document describes them: what all have in common once, and what each
+//! is of in columns with an entry a table. Their values are one tensor.
+
+use alloc::borrow::ToOwned;
+use alloc::collections::{BTreeMap, BTreeSet};
+use alloc::format;
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use microfacet_core::Masking;
+use microfacet_core::shape::s_of_gamma;
+use serde::{Deserialize, Serialize};
+
+use super::certificate::{Certificate, Figures};
+use super::kind::Kind;
+use super::precision::{Codec, Precision};
+use super::stored::{Range, Sigma, StoredAxis, gamma_of};
+use super::subject::{Covered, LobeEntry, Reflectance, Side, Subject, joined_name};
+use super::table::Table;
+use crate::interval::Interval;
+
+/// Tables of one layout.
+///
+/// Columns that no table has an entry in are left out.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Stack {
+    /// The name of the tensor, and of a table that is alone in it.
+    pub(super) name: String,
+    /// The number of tables, which the tensor has along a first dimension of its own; missing of
+    /// one without that dimension.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    count: Option<usize>,
+    kind: Kind,
+    lobe: Form,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    masking: Option<Masking>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    reflectance: Option<Optics>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    side: Option<Side>,
+    /// By index among the axes of the document.
+    axes: Vec<usize>,
+    pub(super) channels: Vec<String>,
+    pub(super) precision: Precision,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    gamma: Vec<Range>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    sigma: Vec<Sigma>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    theta: Vec<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    distribution: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    eta: Vec<Eta>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    k: Vec<[f64; 3]>,
+    /// For `u16`: value = offset + scale·integer, per channel.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    scale: Vec<Vec<f32>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    offset: Vec<Vec<f32>>,
+    certificate: BTreeMap<String, Vec<Option<Figure>>>,
+}
+
+/// A figure of a certificate, whole numbers without a point.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+enum Figure {
+    Whole(u32),
+    Real(f64),
+}
+
+impl From<f64> for Figure {
+    fn from(x: f64) -> Self {
+        if f64::from(x as u32) == x { Self::Whole(x as u32) } else { Self::Real(x) }
+    }
+}
+
+impl From<Figure> for f64 {
+    fn from(figure: Figure) -> Self {
+        match figure {
+            Figure::Whole(n) => n.into(),
+            Figure::Real(x) => x,
+        }
+    }
+}
+
+/// The form of the lobes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Form {
+    Family,
+    StudentT,
+    Ellipsoid,
+    Distribution,
+}
+
+/// The form of the reflectances.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Optics {
+    Moments,
+    Conductor,
+    Dielectric,
+}
+
+/// An index of refraction: of a conductor for red, green and blue, of a dielectric a range.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "three numbers, or a number or an object of `min` and `max`")]
+enum Eta {
+    Rgb([f64; 3]),
+    Range(Range),
+}
+
+impl Stack {
+    /// A stack of one table, whose axes are those of the document at these places.
+    fn one(table: &Table, axes: Vec<usize>) -> Self {
+        let Subject { lobe, masking, reflectance, covers } = &table.subject;
+        let codec = Codec::fit(table.precision, &table.values, table.channels.len());
+        let (scale, offset) = codec.scale_offset().unzip();
+        let point = |s: f64| vec![Range::from(Interval::point(gamma_of(s)))];
+        let two = |sigma: &[f64; 2]| vec![Sigma::Two(sigma.map(|x| Interval::point(x).into()))];
+        let none = Vec::new;
+        let (form, gamma, sigma, theta, distribution) = match lobe {
+            LobeEntry::Family => {
+                let gamma = covers.map(|covers| covers.gamma().into());
+                let sigma = covers.and_then(|covers| covers.sigma);
+                let sigma = sigma.map(|ends| Sigma::Round(Interval::from(ends).into()));
+                (Form::Family, Vec::from_iter(gamma), Vec::from_iter(sigma), none(), Vec::new())
+            }
+            LobeEntry::StudentT { sigma, s } => {
+                (Form::StudentT, point(*s), two(sigma), none(), Vec::new())
+            }
+            LobeEntry::Ellipsoid { sigma, theta, s } => {
+                (Form::Ellipsoid, point(*s), two(sigma), vec![*theta], Vec::new())
+            }
+            LobeEntry::Distribution(label) => {
+                (Form::Distribution, Vec::new(), Vec::new(), none(), vec![label.clone()])
+            }
+        };
+        let (optics, eta, k) = match *reflectance {
+            None => (None, Vec::new(), none()),
+            Some(Reflectance::Moments) => (Some(Optics::Moments), Vec::new(), none()),
+            Some(Reflectance::Conductor { eta, k }) => {
+                (Some(Optics::Conductor), vec![Eta::Rgb(eta)], vec![k])
+            }
+            Some(Reflectance::Dielectric { min, max, .. }) => {
+                let range = Interval { min, max: max.unwrap_or(f64::INFINITY) };
+                (Some(Optics::Dielectric), vec![Eta::Range(range.into())], none())
+            }
+        };
+        let figures = Figures::from(table.certificate.clone()).into_iter();
+        Self {
+            name: table.name.clone(),
+            count: None,
+            kind: table.kind,
+            lobe: form,
+            masking: *masking,
+            reflectance: optics,
+            side: reflectance.and_then(|of| of.side()),
+            axes,
+            channels: table.channels.clone(),
+            precision: table.precision,
+            gamma,
+            sigma,
+            theta,
+            distribution,
+            eta,
+            k,
+            scale: Vec::from_iter(scale),
+            offset: Vec::from_iter(offset),
+            certificate: figures.map(|(key, figure)| (key, vec![Some(figure.into())])).collect(),
+        }
+    }
+
+    /// The number of tables.
+    pub(super) fn len(&self) -> usize {
+        self.count.unwrap_or(1)
+    }
+
+    /// Whether a table follows in the same tensor.
+    fn takes(&self, next: &Self) -> bool {
+        let of = |stack: &Self| {
+            let Self { kind, lobe, masking, reflectance, side, precision, .. } = *stack;
+            (kind, lobe, masking, reflectance, side, precision)
+        };
+        of(self) == of(next)
+            && (&self.axes, &self.channels) == (&next.axes, &next.channels)
+            && [self.gamma.is_empty(), self.sigma.is_empty()]
+                == [next.gamma.is_empty(), next.sigma.is_empty()]
+    }
+
+    /// Adds the only table of another stack.
+    fn push(&mut self, next: Self) {
+        let count = self.len();
+        self.count = Some(count + 1);
+        self.gamma.extend(next.gamma);
+        self.sigma.extend(next.sigma);
+        self.theta.extend(next.theta);
+        self.distribution.extend(next.distribution);
+        self.eta.extend(next.eta);
+        self.k.extend(next.k);
+        self.scale.extend(next.scale);
+        self.offset.extend(next.offset);
+        for (key, figure) in next.certificate {
+            self.certificate.entry(key).or_insert_with(|| vec![None; count]).extend(figure);
+        }
+        self.certificate.values_mut().for_each(|column| column.resize(count + 1, None));
+    }
+
+    /// The dimensions of the tensor; `None` if they are larger than any file.
+    pub(super) fn shape(&self, axes: &[StoredAxis]) -> Option<Vec<usize>> {
+        let along = self.axes.iter().map(|&i| axes.get(i)?.len());
+        let all = self.count.map(Some).into_iter().chain(along);
+        all.chain([Some(self.channels.len())]).collect()
+    }
+
+    /// Checks that every axis is there, and every column as long as there are tables.
+    pub(super) fn check(&self, axes: &[StoredAxis]) -> Result<(), String> {
+        if self.channels.is_empty() {
+            return Err("no channels".into());
+        }
+        if self.len() == 0 {
+            return Err("no tables".into());
+        }
+        if let Some(i) = self.axes.iter().find(|&&i| i >= axes.len()) {
+            return Err(format!("axis {i} of {}", axes.len()));
+        }
+        let Self { gamma, sigma, theta, distribution, eta, k, scale, offset, .. } = self;
+        let columns = [
+            ("gamma", gamma.len()),
+            ("sigma", sigma.len()),
+            ("theta", theta.len()),
+            ("distribution", distribution.len()),
+            ("eta", eta.len()),
+            ("k", k.len()),
+            ("scale", scale.len()),
+            ("offset", offset.len()),
+        ];
+        let columns = columns.into_iter().filter(|(_, entries)| *entries > 0);
+        let figures = self.certificate.iter().map(|(key, column)| (&key[..], column.len()));
+        match columns.chain(figures).find(|(_, entries)| *entries != self.len()) {
+            Some((key, entries)) => {
+                Err(format!("`{key}` has {entries} entries for {} tables", self.len()))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// What the i-th table is of; the error says what is missing.
+    fn subject(&self, i: usize) -> Result<Subject, String> {
+        let missing = |key: &str| format!("no `{key}`, which its lobe or reflectance needs");
+        let gamma = self.gamma.get(i).copied().map(Interval::from);
+        let sigma = self.sigma.get(i).copied();
+        let single = || -> Result<([f64; 2], f64), String> {
+            let gamma = gamma.filter(|gamma| gamma.is_point()).ok_or_else(|| missing("gamma"))?;
+            let Some(Sigma::Two(sigma)) = sigma else { return Err(missing("sigma")) };
+            Ok((sigma.map(|x| Interval::from(x).min), s_of_gamma(gamma.min)))
+        };
+        let mut covers = None;
+        let lobe = match self.lobe {
+            Form::Family => {
+                covers = match (gamma, sigma) {
+                    (None, _) => None,
+                    (Some(gamma), None) => Some(Covered::of(gamma, None)),
+                    (Some(gamma), Some(Sigma::Round(sigma))) => {
+                        Some(Covered::of(gamma, Some(sigma.into())))
+                    }
+                    (Some(_), Some(Sigma::Two(_))) => return Err(missing("sigma")),
+                };
+                LobeEntry::Family
+            }
+            Form::StudentT => {
+                let (sigma, s) = single()?;
+                LobeEntry::StudentT { sigma, s }
+            }
+            Form::Ellipsoid => {
+                let (sigma, s) = single()?;
+                let theta = self.theta.get(i).copied().ok_or_else(|| missing("theta"))?;
+                LobeEntry::Ellipsoid { sigma, theta, s }
+            }
+            Form::Distribution => {
+                let label = self.distribution.get(i).cloned();
+                LobeEntry::Distribution(label.ok_or_else(|| missing("distribution"))?)
+            }
+        };
+        let reflectance = match (self.reflectance, self.eta.get(i).copied()) {
+            (None, _) => None,
+            (Some(Optics::Moments), _) => Some(Reflectance::Moments),
+            (Some(Optics::Conductor), Some(Eta::Rgb(eta))) => {
+                let k = self.k.get(i).copied().ok_or_else(|| missing("k"))?;
+                Some(Reflectance::Conductor { eta, k })
+            }
+            (Some(Optics::Dielectric), Some(Eta::Range(range))) => {
+                let Interval { min, max } = range.into();
+                let max = (max < f64::INFINITY).then_some(max);
+                let side = self.side.ok_or_else(|| missing("side"))?;
+                Some(Reflectance::Dielectric { side, min, max })
+            }
+            (Some(_), _) => return Err(missing("eta")),
+        };
+        Ok(Subject { lobe, masking: self.masking, reflectance, covers })
+    }
+
+    fn certificate(&self, i: usize) -> Result<Certificate, String> {
+        let of =
+            |(key, column): (&String, &Vec<Option<Figure>>)| Some((key.clone(), column[i]?.into()));
+        self.certificate.iter().filter_map(of).collect::<Figures>().try_into()
+    }
+
+    /// How the values of the i-th table are stored.
+    pub(super) fn codec(&self, i: usize) -> Result<Codec, String> {
+        let [scale, offset] =
+            [&self.scale, &self.offset].map(|column| column.get(i).map_or(&[][..], |own| own));
+        let codec = Codec::described(self.precision, scale, offset, self.channels.len());
+        codec.map_err(ToOwned::to_owned)
+    }
+
+    /// The name of the i-th table.
+    pub(super) fn table_name(&self, i: usize) -> Result<String, String> {
+        match self.count {
+            None => Ok(self.name.clone()),
+            Some(_) => Ok(self.subject(i)?.name(self.kind)),
+        }
+    }
+
+    /// The i-th table, of these values.
+    pub(super) fn table(
+        &self,
+        i: usize,
+        axes: &[StoredAxis],
+        values: Vec<f32>,
+    ) -> Result<Table, String> {
+        // So no axis has more nodes than there are values.
+        let shape = self.shape(axes).unwrap_or_default();
+        let shape = &shape[usize::from(self.count.is_some())..];
+        let expected = shape.iter().try_fold(1, |product: usize, n| product.checked_mul(*n));
+        if values.is_empty() || expected != Some(values.len()) {
+            return Err(format!("{} values for shape {shape:?}", values.len()));
+        }
+        let subject = self.subject(i)?;
+        let single = subject.single();
+        let axes = self.axes.iter().map(|&axis| axes[axis].axis(single));
+        Ok(Table {
+            name: self.table_name(i)?,
+            kind: self.kind,
+            axes: axes.collect::<Result<_, _>>()?,
+            channels: self.channels.clone(),
+            values,
+            precision: self.precision,
+            certificate: self.certificate(i)?,
+            subject,
+        })
+    }
+}
+
+/// The axes and the stacks of tables, in their order: each stack a run of tables of one layout.
+pub(super) fn stacked(tables: &[Table]) -> (Vec<StoredAxis>, Vec<Stack>) {
+    let (mut axes, mut stacks): (Vec<StoredAxis>, Vec<Stack>) = Default::default();
+    let mut places = BTreeMap::new();
+    let mut last_is_named = false;
+    for table in tables {
+        let single = table.subject.single();
+        let place = |axis| {
+            let stored = StoredAxis::of(axis, single);
+            *places.entry(stored.key()).or_insert_with(|| {
+                axes.push(stored);
+                axes.len() - 1
+            })
+        };
+        let stack = Stack::one(table, table.axes.iter().map(place).collect());
+        // A table among others is named after what it is of.
+        let is_named = table.name == table.subject.name(table.kind);
+        match stacks.last_mut() {
+            Some(last) if last_is_named && is_named && last.takes(&stack) => last.push(stack),
+            _ => stacks.push(stack),
+        }
+        last_is_named = is_named;
+    }
+    name(&mut stacks);
+    (axes, stacks)
+}
+
+/// Names the tensors of several tables after what these have in common.
+fn name(stacks: &mut [Stack]) {
+    let alone = stacks.iter().filter(|stack| stack.count.is_none());
+    let taken: BTreeSet<String> = alone.map(|stack| stack.name.clone()).collect();
+    let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
+    for stack in stacks.iter_mut().filter(|stack| stack.count.is_some()) {
+        let masking = stack.masking.map_or("", Masking::name);
+        let optics = match stack.reflectance {
+            Some(Optics::Conductor) => "conductors",
+            Some(Optics::Dielectric) => "dielectrics",
+            _ => "",
+        };
+        let side = stack.side.map_or("", Side::name);
+        let name = joined_name(&[stack.kind.name(), masking, optics, side]);
+        let number = numbers.entry(name.clone()).or_default();
+        stack.name = loop {
+            *number += 1;
+            let numbered = format!("{name}_{number}");
+            if !taken.contains(&numbered) {
+                break numbered;
+            }
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::{Axis, Azimuth, Interpolation, LogRoughness, LogShape, Mapping, ViewBlend};
+    use crate::format::{Provenance, decode, describe, encode};
+
+    const SIX: Interpolation = Interpolation::Lagrange6;
+
+    /// An albedo of one material, whose values tell it from others.
+    fn table(subject: Subject, axes: Vec<Axis>) -> Table {
+        let subject = Subject { masking: Some(Masking::Uncorrelated), ..subject };
+        let channels = subject.reflectance.unwrap().channels().iter().map(|&name| name.into());
+        let channels: Vec<String> = channels.collect();
+        let count = axes.iter().map(Axis::len).product::<usize>() * channels.len();
+        let first = subject.name(Kind::Albedo).len() as f32 / 512.0;
+        let table = Table {
+            name: subject.name(Kind::Albedo),
+            kind: Kind::Albedo,
+            subject,
+            axes,
+            channels,
+            values: (0..count).map(|i| first + i as f32 / 4096.0).collect(),
+            precision: Precision::U16,
+            certificate: Certificate { quadrature: Some(f64::from(first)), ..Default::default() },
+        };
+        table.rounded(Precision::U16)
+    }
+
+    fn view(mapping: ViewBlend) -> Axis {
+        Axis::placed("view", Mapping::ViewBlend(mapping), SIX, 7)
+    }
+
+    /// A round lobe.
+    fn round(sigma: f64, gamma: f64, reflectance: Reflectance) -> Table {
+        let axis = |name, mapping, node| Axis::new(name, mapping, SIX, vec![node]);
+        let (shape, rough) = (LogShape::BAKED, LogRoughness::BAKED);
+        let axes = vec![
+            axis("gamma", Mapping::LogShape(shape), shape.coordinate(gamma)),
+            axis("sigma", Mapping::LogRoughness(rough), rough.coordinate(sigma)),
+            view(ViewBlend::BAKED),
+        ];
+        let [gamma, sigma] = [gamma, sigma].map(Interval::point);
+        let covers = Some(Covered::of(gamma, Some(sigma)));
+        table(Subject { reflectance: Some(reflectance), covers, ..Subject::default() }, axes)
+    }
+
+    /// An anisotropic lobe.
+    fn brushed(sigma: [f64; 2], gamma: f64) -> Table {
+        let azimuth = Mapping::Azimuth(Azimuth { sigma, turn: 0.0, fold: true });
+        let axes =
+            vec![Axis::placed("azimuth", azimuth, SIX, 3), view(ViewBlend::BAKED.of_shape(gamma))];
+        let lobe = LobeEntry::StudentT { sigma, s: s_of_gamma(gamma) };
+        let reflectance = Some(Reflectance::Moments);
+        table(Subject { lobe, reflectance, ..Subject::default() }, axes)
+    }
+
+    fn tables() -> Vec<Table> {
+        let gold = Reflectance::Conductor { eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
+        let silver = Reflectance::Conductor { eta: [0.1, 0.2, 0.3], k: [4.0, 3.0, 2.0] };
+        let pane = |side| Reflectance::Dielectric { side, min: 1.5, max: None };
+        let moments = Reflectance::Moments;
+        let mut dielectric = round(0.4, f64::INFINITY, pane(Side::Thin));
+        let eta =
+            Axis::new("eta", Mapping::ReflectanceRoot, SIX, crate::axis::even_nodes(0.0, 1.0, 6));
+        dielectric.axes.insert(2, eta);
+        dielectric.values = vec![0.25; 6 * dielectric.values.len()];
+        vec![
+            round(0.1, 2.43, moments),
+            round(0.25, 1.7320508075688772, moments),
+            brushed([0.1, 0.3], 2.43),
+            brushed([0.2, 0.5], 3.1),
+            round(0.1, 2.43, gold),
+            round(0.3, 5.0, silver),
+            dielectric,
+        ]
+    }
+
+    #[test]
+    fn tables_of_one_layout_share_a_tensor_and_are_the_same_again() {
+        let tables = tables();
+        let bytes = encode(&Provenance::default(), &tables).unwrap();
+        assert_eq!(decode(&bytes, true).unwrap().1, tables);
+        let (axes, stacks) = stacked(&tables);
+        let counts: Vec<_> = stacks.iter().map(|stack| (&stack.name[..], stack.count)).collect();
+        assert_eq!(
+            counts,
+            [
+                ("albedo_uncorrelated_1", Some(2)),
+                ("albedo_uncorrelated_2", Some(2)),
+                ("albedo_uncorrelated_conductors_1", Some(2)),
+                (&tables[6].name[..], None),
+            ]
+        );
+        // Those of γ, σ, the view of all, the azimuth and η.
+        assert_eq!(axes.len(), 5);
+    }
+
+    #[test]
+    fn a_table_of_another_name_stands_alone() {
+        let mut tables = tables();
+        tables[1].name = "albedo_uncorrelated_1".into();
+        let (_, stacks) = stacked(&tables[..4]);
+        let names: Vec<_> = stacks.iter().map(|stack| (&stack.name[..], stack.len())).collect();
+        let first = (&tables[0].name[..], 1);
+        assert_eq!(names, [first, ("albedo_uncorrelated_1", 1), ("albedo_uncorrelated_2", 2)]);
+        let bytes = encode(&Provenance::default(), &tables).unwrap();
+        assert_eq!(decode(&bytes, true).unwrap().1, tables);
+    }
+
+    #[test]
+    fn columns_without_what_a_lobe_needs_are_refused_by_name() {
+        let json = describe(&Provenance::default(), &tables()).unwrap();
+        for (from, to, why) in [
+            (r#""gamma":[2.43,1.7320508075688772]"#, r#""gamma":[2.43]"#, "`gamma` has 1 entries"),
+            (
+                r#""gamma":[2.43,1.7320508075688772],"sigma":[0.1,0.25]"#,
+                r#""gamma":[2.43,2.43],"sigma":[0.1,0.1]"#,
+                "named twice",
+            ),
+            (r#""sigma":[0.1,0.25]"#, r#""sigma":[0.1,[0.2,0.3]]"#, "no `sigma`"),
+            (r#""gamma":[2.43,3.1],"#, "", "no `gamma`"),
+            (r#""k":[[3.9,2.4,2.2],[4.0,3.0,2.0]],"#, "", "no `k`"),
+            (r#""eta":[{"min":1.5}]"#, r#""eta":[[1.0,2.0,3.0]]"#, "no `eta`"),
+            (r#""side":"thin","#, "", "no `side`"),
+            (r#""quadrature_error":[0.0"#, r#""quadrature_error":[0.5,0.0"#, "has 3 entries"),
+        ] {
+            assert!(json.contains(from), "no {from} in {json}");
+            let mut values = tables().into_iter().map(|table| Ok(table.values));
+            let read = crate::reassemble(&json.replacen(from, to, 1), || values.next().unwrap());
+            let got = format!("{}", read.unwrap_err());
+            assert!(got.contains(why), "{to}: {got}");
+        }
+    }
+}
