@@ -11,8 +11,8 @@ use super::lobe::Roughness;
 use crate::axis::{Axis, Azimuth, Interpolation, Mapping, ViewBlend};
 use crate::interval::Interval;
 
-/// An interval: its number if it is one, else its ends. ∞, for which JSON has no number, is null, or
-/// a `max` that is missing.
+/// An interval: its number if it is one, else its ends. ∞, for which JSON has no number, is null,
+/// or a `max` that is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a number, or an object of `min` and `max`")]
 pub(super) enum Range {
