@@ -315,13 +315,14 @@ pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
     refused(io::ErrorKind::NotADirectory, why)
 }
 
-/// Does something in a folder, which is made if it is missing, and again if it goes meanwhile: a
-/// process that made it and then wrote nothing removes it.
+/// Writes something into a folder, which is made if it is missing, and again if it goes meanwhile:
+/// a process that made it and then wrote nothing removes it. By the time of a look a third may have
+/// made it again, so whatever is not found is a reason to try once more.
 pub(crate) fn in_folder<T>(folder: &Path, mut act: impl FnMut() -> io::Result<T>) -> io::Result<T> {
     let mut once = || make_folder(folder).and_then(|()| act());
     for _ in 1..TIMES {
         match once() {
-            Err(why) if why.kind() == io::ErrorKind::NotFound && !folder.exists() => {}
+            Err(why) if why.kind() == io::ErrorKind::NotFound => {}
             done => return done,
         }
     }
@@ -346,13 +347,22 @@ mod tests {
         });
         done.unwrap();
         assert_eq!((times, fs::read(path.join("file")).unwrap().as_slice()), (4, &b"whole"[..]));
-        // What fails in a folder that is there is no reason to try again.
+        // Another may have made it before we look whether it is there.
         let mut times = 0;
-        let failed = in_folder(&path, || {
+        let done = in_folder(&path, || {
             times += 1;
-            fs::read(path.join("none"))
+            if times == 1 { Err(io::ErrorKind::NotFound.into()) } else { Ok(times) }
         });
-        assert_eq!((failed.unwrap_err().kind(), times), (io::ErrorKind::NotFound, 1));
+        assert!(path.is_dir() && done.unwrap() == 2);
+        // What fails for ever is an error, and for another reason at once.
+        for (kind, tries) in [(io::ErrorKind::NotFound, TIMES), (io::ErrorKind::StorageFull, 1)] {
+            let mut times = 0;
+            let failed = in_folder(&path, || {
+                times += 1;
+                Err::<(), _>(kind.into())
+            });
+            assert_eq!((failed.unwrap_err().kind(), times), (kind, tries));
+        }
     }
 
     #[test]
