@@ -93,8 +93,8 @@ impl Distribution {
     /// The file, and the unit of the angles in it, of the label of a measured distribution.
     pub fn measured_of(label: &str) -> Option<(&str, Angles)> {
         let (kind, file) = label.split_once(':')?;
-        let unit = [Angles::Radians, Angles::Degrees].into_iter();
-        Some((file, unit.clone().find(|angles| measured(*angles) == kind)?))
+        let mut units = [Angles::Radians, Angles::Degrees].into_iter();
+        Some((file, units.find(|angles| measured(*angles) == kind)?))
     }
 }
 

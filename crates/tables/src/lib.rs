@@ -47,7 +47,7 @@ pub use format::{
     Certificate, Channels, Coordinate, Covered, Errors, FORMAT, FresnelEntry, Index, IndexedSet,
     Kind, LobeEntry, LobeSpec, MaterialEntry, Precision, Provenance, Quantity, Reflectance,
     Roughness, SAME, Side, Subject, Table, VERSION, crc32, decode, describe, encode, joined_name,
-    names, reassemble, seal, seal_document, stated_axes,
+    reassemble, seal, seal_document, stated_axes, stated_tables,
 };
 pub use interval::Interval;
 

@@ -76,6 +76,10 @@ fn escaped(json: &str) -> usize {
 
 /// What the tables before one have described for it: a file describes an axis once, and tables of
 /// single materials that have one layout together.
+///
+/// The constants below are counted in sets of draft quality of all kinds of tables, as averages
+/// over the digits of their figures; `estimated_bytes_are_those_of_the_file` in `tests/plan` and
+/// `tests/albedo` holds their sums to the files, to 4 %.
 #[derive(Default)]
 struct Known(HashSet<String>);
 

@@ -14,7 +14,7 @@ use half::f16;
 
 use microfacet_sampler::Tables;
 use microfacet_tables::{
-    LoadError, Precision, Provenance, Table, describe, names, reassemble, seal_document,
+    LoadError, Precision, Provenance, Table, describe, reassemble, seal_document, stated_tables,
 };
 
 use crate::input::MAX_TABLES;
@@ -156,7 +156,7 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
     let document = parts.first().and_then(document).ok_or_else(|| {
         invalid(format!("an OpenEXR image, but without the `{ATTRIBUTE}` attribute of a table"))
     })?;
-    let heads = names(&document)?;
+    let heads = stated_tables(&document)?;
     if heads.len() != parts.len() {
         let [parts, tables] = [parts.len(), heads.len()];
         return Err(invalid(format!("OpenEXR: {parts} parts of {tables} tables")));

@@ -238,7 +238,7 @@ pub fn bake(plan: &Plan, target: Target) -> Result<Baked, BakeError> {
 pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Baked, BakeError> {
     let provenance = plan.provenance();
     let mut job = Job::new(settings);
-    let mut tables: Vec<Table> = match target {
+    let tables: Vec<Table> = match target {
         Target::Quality(quality, precision) => {
             let groups = TableGroup::whole(plan)?;
             let values = groups.iter().map(|group| group.values(quality.into()));
@@ -249,7 +249,7 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
                 let sets = group.bake(quality.into(), &[precision], &mut job)?;
                 tables.extend(sets.into_iter().flatten());
             }
-            tables
+            in_layouts(tables)
         }
         // Nothing can meet it, and trying would take minutes.
         Target::MaxError(max_error) if !(max_error > 0.0) => {
@@ -261,13 +261,17 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
         }
     };
     let baked = job.baked_of(&tables);
-    tables.sort_by_cached_key(layout);
     let set = Tables::from_tables(provenance, tables)?;
     Ok(Baked { set, baked, cache_error: job.cache_error, seconds: job.seconds })
 }
 
-/// What brings albedos of one layout together, which a file describes once. Other tables stay as
-/// they are, before them.
+/// Tables in the order of a set: albedos of one layout together, which a file describes once.
+fn in_layouts(mut tables: Vec<Table>) -> Vec<Table> {
+    tables.sort_by_cached_key(layout);
+    tables
+}
+
+/// What albedos of one layout have in common. Other tables stay as they are, before them.
 fn layout(table: &Table) -> impl Ord + use<> {
     let Subject { masking, reflectance, .. } = &table.subject;
     let masking = Masking::ALL.iter().position(|form| Some(*form) == *masking);

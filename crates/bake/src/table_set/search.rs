@@ -11,7 +11,7 @@ use microfacet_tables::{Provenance, Table, encode};
 use super::candidate::{Candidate, Grade, Pick, SEARCH_OVER_FIRST};
 use super::group::TableGroup;
 use super::job::Job;
-use super::{BakeError, PATIENCE};
+use super::{BakeError, PATIENCE, in_layouts};
 use crate::plan::{Plan, bare_cost, on_threads};
 
 /// Ratio of two errors that count as different: one per cent.
@@ -162,6 +162,6 @@ impl Search {
 
     fn tables(&self, grades: &[Grade]) -> Vec<Table> {
         let each = self.candidates.iter().zip(grades);
-        each.flat_map(|(candidate, &grade)| candidate.tables(grade).to_vec()).collect()
+        in_layouts(each.flat_map(|(candidate, &grade)| candidate.tables(grade).to_vec()).collect())
     }
 }

@@ -199,7 +199,7 @@ pub fn stated_axes(subject: &Subject, axes: &[Axis]) -> Vec<String> {
 ///
 /// # Errors
 /// As [`reassemble`].
-pub fn names(json: &str) -> Result<Vec<(String, Vec<String>)>, LoadError> {
+pub fn stated_tables(json: &str) -> Result<Vec<(String, Vec<String>)>, LoadError> {
     let document = Document::from_json(json)?;
     let of = |stack: &Stack, i| {
         let name = stack.table_name(i).map_err(|why| of_table(&stack.name, why))?;

@@ -19,7 +19,7 @@ mod table;
 pub use certificate::{Certificate, Coordinate, Errors, Quantity};
 pub use checksum::{crc32, seal, seal_document};
 pub use container::{decode, encode};
-pub use document::{FORMAT, Provenance, VERSION, describe, names, reassemble, stated_axes};
+pub use document::{FORMAT, Provenance, VERSION, describe, reassemble, stated_axes, stated_tables};
 pub use index::{Index, IndexedSet};
 pub use kind::{Channels, Kind};
 pub use lobe::{LobeSpec, Roughness};
