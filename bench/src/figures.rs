@@ -67,7 +67,7 @@ pub(crate) fn figures(
             conductor(conductors::SCHLICK),
         ),
         figure(
-            "conductor, exact Fresnel, table / GGX by hand",
+            "conductor, exact Reflectance, table / GGX by hand",
             "",
             CONDUCTOR_MUST,
             CONDUCTOR_AIM,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use microfacet_baker::progress::Meter;
 use microfacet_report::words::command;
 use microfacet_sampler::Tables;
-use microfacet_tables::{LobeEntry, Reflectance};
+use microfacet_tables::Reflectance;
 use microfacet_validate::configuration::{Configuration, configurations, shapes};
 use microfacet_validate::furnace::{Furnace, Survey, survey, survey_seconds};
 use microfacet_validate::record::Record;
@@ -181,9 +181,8 @@ fn untested(set: &Tables) -> Vec<String> {
     }
     for table in set.tables() {
         let subject = &table.subject;
-        let lobe = subject.lobe != LobeEntry::Family;
-        let exact = subject.reflectance.is_some_and(|of| of != Reflectance::Moments);
-        if lobe || exact {
+        let exact = subject.reflectance.is_some_and(|of| of != Reflectance::Mirror);
+        if !subject.lobe.is_family() || exact {
             rest.push(format!("{}; see `microfacet-bake inspect` for its certificate", table.name));
         }
     }

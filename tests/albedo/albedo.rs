@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use microfacet_baker::bake::albedo;
-use microfacet_baker::bake::albedo::{AlbedoLobe, Domain};
+use microfacet_baker::bake::albedo::AlbedoLobe;
 use microfacet_baker::plan::{
     AlbedoVerdict, AlbedoWish, Cost, Options, Plan, RequiredAlbedo, albedo_costs, bare_cost,
 };
@@ -15,7 +15,9 @@ use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::albedo::FresnelAlbedo;
 use microfacet_sampler::{Lobe, Masking, MicrofacetDistribution, Tables};
-use microfacet_tables::{Interval, Kind, Precision, Provenance, Reflectance, Table, encode};
+use microfacet_tables::{
+    Interval, Kind, Precision, Provenance, Reflectance, Roughness, Table, encode,
+};
 use microfacet_validate::furnace::direction;
 use serde_json::Value;
 
@@ -25,7 +27,7 @@ const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
 
 fn domain(gamma: [f64; 2], sigma: [f64; 2]) -> AlbedoLobe {
     let interval = |[min, max]: [f64; 2]| Interval { min, max };
-    AlbedoLobe::Family(Domain { gamma: interval(gamma), sigma: interval(sigma) })
+    AlbedoLobe::family(Roughness::Isotropic(interval(sigma)), interval(gamma))
 }
 
 /// A recipe of materials: name, σ, γ, and further lines.
@@ -64,11 +66,11 @@ fn those_who_ask_get_the_form_they_name() {
     let asked = plan_of(AlbedoWish::Auto);
     let need = |lobe, maskings: &[Masking]| RequiredAlbedo {
         lobe,
-        reflectance: Reflectance::Moments,
+        reflectance: Reflectance::Mirror,
         maskings: maskings.into(),
     };
     // The anisotropic material needs the albedo of its own lobe, not that of an isotropic stand-in.
-    let brushed = AlbedoLobe::StudentT { sigma: [0.6, 0.15], gamma: 2.0 };
+    let brushed = AlbedoLobe::student_t([0.6, 0.15], 2.0);
     let wanted = [
         need(domain([3.0; 2], [0.454; 2]), &Masking::ALL),
         need(domain([2.0; 2], [0.3; 2]), &[Masking::HeightCorrelated]),
@@ -150,8 +152,7 @@ fn a_single_material_has_its_albedo_and_no_other() {
     let table = set.table(Kind::Albedo).unwrap();
     assert_eq!(table.shape(), [1, 1, 33, 3]);
     assert!(
-        table.certificate.quadrature.unwrap() < 1e-6
-            && table.subject.covers.unwrap().sigma == Some([0.454; 2])
+        table.certificate.quadrature.unwrap() < 1e-6 && table.subject.lobe.sigma() == [0.454; 2]
     );
     // Another roughness, shape or form of masking is not there, and the message says what is.
     for (sigma, gamma, masking) in [
@@ -355,7 +356,7 @@ fn transmitted(set: &Tables, name: &str, masking: Masking, cos: f32, face: Diele
 
 /// Whether a table is under the exact reflectance of something.
 fn is_exact(table: &&Table) -> bool {
-    table.subject.reflectance.is_some_and(|reflectance| reflectance != Reflectance::Moments)
+    table.subject.reflectance.is_some_and(|reflectance| reflectance != Reflectance::Mirror)
 }
 
 #[test]

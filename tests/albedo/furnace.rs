@@ -4,7 +4,7 @@
 use std::sync::OnceLock;
 
 use glam::Vec3;
-use microfacet_baker::bake::albedo::{AlbedoLobe, Domain, bake};
+use microfacet_baker::bake::albedo::{AlbedoLobe, bake};
 use microfacet_baker::plan::RequiredAlbedo;
 use microfacet_baker::progress::Stage;
 use microfacet_baker::table_spec::Quality;
@@ -20,7 +20,7 @@ fn baked() -> &'static [Table] {
 
 fn bake_at(quality: Quality) -> Vec<Table> {
     let part = |gamma: f64| {
-        let lobe = AlbedoLobe::Family(Domain { gamma: Interval::point(gamma), ..Domain::GENERAL });
+        let lobe = AlbedoLobe { gamma: Interval::point(gamma), ..AlbedoLobe::GENERAL };
         let need = RequiredAlbedo { lobe, ..RequiredAlbedo::general() };
         bake(&need.spec(quality, Precision::F32).unwrap()).unwrap()
     };

@@ -14,7 +14,7 @@ use microfacet_baker::table_spec::Quality;
 use microfacet_baker::{store, table_set};
 use microfacet_sampler::albedo::{Albedo, FresnelAlbedo};
 use microfacet_sampler::{Lobe, Masking, MaterialError, MicrofacetDistribution, Tables};
-use microfacet_tables::{LobeEntry, Precision, Quantity, Reflectance, Table, encode};
+use microfacet_tables::{LobeSpec, Precision, Quantity, Reflectance, Table, encode};
 
 use crate::common::{json, ok, run};
 
@@ -106,20 +106,20 @@ fn bake_all(text: &str, quality: Quality) -> Tables {
 static SET: LazyLock<Tables> = LazyLock::new(|| bake_all(&recipe(&MATERIALS), Quality::Draft));
 
 fn views(set: &Tables) -> Vec<&Table> {
-    let own = |table: &&Table| table.kind.is_albedo() && table.subject.lobe != LobeEntry::Family;
+    let own = |table: &&Table| table.kind.is_albedo() && !table.subject.lobe.is_family();
     set.tables().iter().filter(own).collect()
 }
 
 fn spec(sigma: [f64; 2], gamma: f64, quality: Quality) -> AlbedoSpec {
-    let lobe = AlbedoLobe::StudentT { sigma, gamma };
+    let lobe = AlbedoLobe::student_t(sigma, gamma);
     let form = vec![Masking::HeightCorrelated];
-    AlbedoSpec::new(lobe, Reflectance::Moments, form, quality, Precision::F32).unwrap()
+    AlbedoSpec::new(lobe, Reflectance::Mirror, form, quality, Precision::F32).unwrap()
 }
 
 #[test]
 fn the_model_agrees_with_independent_values() {
     for (sigma, gamma, cos, phi, correlated, e) in REFERENCE {
-        let lobe = AlbedoLobe::StudentT { sigma, gamma };
+        let lobe = AlbedoLobe::student_t(sigma, gamma);
         let site = Site { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi, cos };
         let albedo =
             Models::with(&lobe, [], 1e-8, |models| models.at(&site).reflection(&site, weights))
@@ -287,7 +287,7 @@ fn damaged_tables_are_refused() {
     assert!(refused(|t| t.axes.swap(0, 1)).contains("axes"));
     assert!(refused(|t| t.subject.masking = None).contains("masking"));
     assert!(refused(|t| t.subject.reflectance = None).contains("reflectance"));
-    assert!(refused(|t| t.subject.lobe = LobeEntry::Family).contains("axes"));
+    assert!(refused(|t| t.subject.lobe = LobeSpec::GENERAL).contains("axes"));
     assert!(refused(|t| t.values[0] = 1.5).contains("out of range"));
     assert!(refused(|t| t.axes[0].nodes[1] *= 1.01).contains("azimuth"));
     assert!(refused(|t| t.channels[0] = "value".into()).contains("channels"));

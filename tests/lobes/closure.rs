@@ -2,12 +2,12 @@
 //! close.
 
 use glam::Vec3;
-use microfacet_baker::bake::albedo::{AlbedoLobe, Domain, bake};
+use microfacet_baker::bake::albedo::{AlbedoLobe, bake};
 use microfacet_baker::plan::RequiredAlbedo;
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::albedo::ViewCurve;
 use microfacet_sampler::{Masking, Tables};
-use microfacet_tables::{Interval, Precision, Reflectance, Side};
+use microfacet_tables::{Interval, Precision, Reflectance, Roughness, Side};
 use rand::{RngExt, SeedableRng};
 
 /// 2∫ μ dμ of functions of the view, by the midpoint rule in ln h, h the tangent of half the
@@ -81,7 +81,7 @@ fn a_draft_set_closes() {
     // Heavy tails of smooth surfaces, where draft tables are the coarsest.
     let interval = |[min, max]: [f64; 2]| Interval { min, max };
     let (gammas, sigmas) = ([1.501, 1.52], [1e-8, 1e-6]);
-    let lobe = AlbedoLobe::Family(Domain { gamma: interval(gammas), sigma: interval(sigmas) });
+    let lobe = AlbedoLobe::family(Roughness::Isotropic(interval(sigmas)), interval(gammas));
     let need = RequiredAlbedo { lobe, ..RequiredAlbedo::general() };
     let tables = bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap();
     let set = Tables::from_tables(Default::default(), tables).unwrap();
@@ -91,10 +91,9 @@ fn a_draft_set_closes() {
 /// From the dense side there is a kink at the critical angle.
 #[test]
 fn a_smooth_dielectric_closes() {
-    let point = Interval::point;
-    let lobe = AlbedoLobe::Family(Domain { gamma: point(2.0), sigma: point(0.01) });
+    let lobe = AlbedoLobe::student_t([0.01; 2], 2.0);
     for side in [Side::Thin, Side::Dense] {
-        let reflectance = Reflectance::Dielectric { side, min: 1.5, max: Some(1.5) };
+        let reflectance = Reflectance::Interface { side, index: [1.5; 2].into() };
         let maskings = vec![Masking::HeightCorrelated];
         let need = RequiredAlbedo { lobe: lobe.clone(), reflectance, maskings };
         let table = bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap().remove(0);

@@ -8,8 +8,7 @@ use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with}
 use microfacet_baker::table_spec::{Quality, general_set};
 use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, Masking, MicrofacetDistribution, Tables};
 use microfacet_tables::{
-    Axis, Certificate, Interval, LobeEntry, Precision, Provenance, Quantity, Subject, Table,
-    decode, encode,
+    Axis, Certificate, Interval, Precision, Provenance, Quantity, Table, decode, encode,
 };
 
 use crate::common::{json, ok, refused, run};
@@ -228,9 +227,12 @@ fn a_cache_entry_with_other_tables_is_baked_again() {
         ("one too many", |_, tables| tables.push(tables[0].clone())),
         ("order", |_, tables| tables.reverse()),
         ("name", |_, tables| tables[0].name = "../../evil".into()),
-        ("shape or lobe", |_, tables| match &mut tables[0].subject {
-            Subject { covers: Some(covers), .. } => covers.s = [0.25, 0.25],
-            subject => subject.lobe = LobeEntry::Distribution("gtr:1.5".into()),
+        ("shape or lobe", |_, tables| {
+            let lobe = &mut tables[0].subject.lobe;
+            match &mut lobe.distribution {
+                Some(label) => *label = "gtr:1.5".into(),
+                None => lobe.gamma = Interval::point(5.0),
+            }
         }),
         ("masking", |_, tables| tables[0].subject.masking = Some(Masking::Uncorrelated)),
         ("axis", |_, tables| {

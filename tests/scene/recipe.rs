@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use microfacet_baker::scene::{
-    Format, Fresnel, LobeSpec, Masking, Material, Origin, Place, Roughness, Scene,
+    Format, LobeSpec, Masking, Material, Origin, Place, Reflectance, Roughness, Scene,
 };
 use microfacet_sampler::Metal;
 use microfacet_tables::Interval;
@@ -63,14 +63,14 @@ fn every_form_of_value_is_read() {
     let limit = named(&scene, "limit");
     assert_eq!(limit.lobe.roughness, anisotropic(0.3, 0.1));
     assert_eq!(limit.lobe.gamma, Interval::point(f64::INFINITY));
-    assert_eq!(limit.fresnel, Some(Fresnel::Mirror));
+    assert_eq!(limit.fresnel, Some(Reflectance::Mirror));
     assert_eq!(limit.masking, Some(Masking::Uncorrelated));
 
     let range = named(&scene, "range");
     assert_eq!(range.lobe.roughness, Roughness::Isotropic(Interval { min: 0.0, max: 0.5 }));
     assert!(range.lobe.roughness.is_isotropic());
     assert_eq!(range.lobe.gamma, Interval { min: 1.6, max: f64::INFINITY });
-    assert_eq!(range.fresnel, Some(Fresnel::Schlick([0.04; 3])));
+    assert_eq!(range.fresnel, Some(Reflectance::Schlick([0.04; 3])));
     assert_eq!(range.masking, Some(Masking::HeightCorrelated));
 
     let mixed = named(&scene, "mixed");
@@ -80,11 +80,11 @@ fn every_form_of_value_is_read() {
     );
     assert_eq!(mixed.lobe.gamma, Interval::point(f64::INFINITY));
     let (eta, k) = ([0.2, 0.9, 1.1], [0.0, 2.4, 2.2]);
-    assert_eq!(mixed.fresnel, Some(Fresnel::Conductor { eta, k }));
+    assert_eq!(mixed.fresnel, Some(Reflectance::Conductor { eta, k }));
 
     let pane = named(&scene, "pane");
     assert_eq!(pane.lobe.roughness, Roughness::Smooth);
-    assert_eq!(pane.fresnel, Some(Fresnel::Dielectric(1.5)));
+    assert_eq!(pane.fresnel, Some(Reflectance::dielectric(1.5)));
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn a_metal_by_name_is_the_conductor_of_its_index() {
     };
     for metal in Metal::ALL {
         let (eta, k) = (metal.eta(), metal.k());
-        assert_eq!(fresnel(&format!("\"{metal}\"")), Some(Fresnel::Conductor { eta, k }));
+        assert_eq!(fresnel(&format!("\"{metal}\"")), Some(Reflectance::Conductor { eta, k }));
     }
     assert_eq!(fresnel("\"aluminum\""), Some(Metal::Aluminium.into()));
 }
@@ -108,7 +108,7 @@ fn schlick_has_one_number_or_three() {
         (scene.materials[0].fresnel, scene.to_recipe())
     };
     let (copper, text) = fresnel("[0.95, 0.64, 0.54]");
-    assert_eq!(copper, Some(Fresnel::Schlick([0.95, 0.64, 0.54])));
+    assert_eq!(copper, Some(Reflectance::Schlick([0.95, 0.64, 0.54])));
     assert!(text.contains("fresnel = { schlick = [0.95, 0.64, 0.54] }"), "{text}");
     let (grey, text) = fresnel("[0.5, 0.5, 0.5]");
     assert_eq!(grey, fresnel("0.5").0);
@@ -381,12 +381,12 @@ fn roughness() -> impl Strategy<Value = Roughness> {
 fn material() -> impl Strategy<Value = Material> {
     let gamma = interval(prop_oneof![1.500_001..1e6, Just(f64::INFINITY)]);
     let fresnel = prop_oneof![
-        Just(Fresnel::Mirror),
-        (0.0..=1.0).prop_map(|f0| Fresnel::Schlick([f0; 3])),
-        prop::array::uniform3(0.0..=1.0).prop_map(Fresnel::Schlick),
-        (1e-3..10.0).prop_map(Fresnel::Dielectric),
+        Just(Reflectance::Mirror),
+        (0.0..=1.0).prop_map(|f0| Reflectance::Schlick([f0; 3])),
+        prop::array::uniform3(0.0..=1.0).prop_map(Reflectance::Schlick),
+        (1e-3..10.0).prop_map(Reflectance::dielectric),
         (prop::array::uniform3(1e-3..10.0), prop::array::uniform3(0.0..10.0))
-            .prop_map(|(eta, k)| Fresnel::Conductor { eta, k }),
+            .prop_map(|(eta, k)| Reflectance::Conductor { eta, k }),
     ];
     let masking = prop::sample::select(&Masking::ALL[..]);
     let name = ".+";

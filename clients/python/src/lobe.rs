@@ -49,8 +49,10 @@ impl PyLobe {
         masking: &str,
     ) -> PyResult<View<'py, f32>> {
         let view = view(v, cos_theta)?;
-        let turned =
-            matches!(self.lobe.key(), LobeKey::Anisotropic { .. } | LobeKey::Tilted { .. });
+        let turned = match self.lobe.key() {
+            LobeKey::Upright(lobe) => !lobe.roughness.is_isotropic(),
+            key => matches!(key, LobeKey::Tilted { .. }),
+        };
         // The round lobe that stands in has no azimuth, a table of the lobe itself has.
         if turned && matches!(view, View::Cosines(_)) && self.albedo_of(masking, false).is_ok() {
             return Err(azimuth_matters());

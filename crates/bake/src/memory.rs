@@ -108,9 +108,9 @@ mod tests {
 
     #[test]
     fn ten_thousand_anisotropic_materials_fit_into_the_default_limit() {
-        let lobe = AlbedoLobe::StudentT { sigma: [0.3, 0.1], gamma: 3.0 };
+        let lobe = AlbedoLobe::student_t([0.3, 0.1], 3.0);
         let (maskings, quality) = (vec![Masking::HeightCorrelated], Quality::Default);
-        let spec = AlbedoSpec::new(lobe, Reflectance::Moments, maskings, quality, Precision::F32);
+        let spec = AlbedoSpec::new(lobe, Reflectance::Mirror, maskings, quality, Precision::F32);
         let one = Values::of_albedo(&spec.unwrap());
         assert_eq!(check(Values::at_once([one; 10_000]), 4 << 30), Ok(()));
         assert!(check(10_000 * Values::at_once([one]), 4 << 30).is_err());

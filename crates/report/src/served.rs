@@ -6,7 +6,7 @@ use microfacet_baker::plan::{AlbedoVerdict, Options, Plan};
 use microfacet_baker::scene::{Scene, recipe_of};
 use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
-use microfacet_tables::{Covered, FresnelEntry, LobeEntry, MaterialEntry, Reflectance, Table};
+use microfacet_tables::{MaterialEntry, Reflectance, Table};
 
 use crate::words::material::fresnel;
 use crate::words::verdict::albedo_reason;
@@ -129,8 +129,7 @@ fn albedo(
     }
     let moments = |set: &Tables| {
         let [sigma, gamma] = [entry.lobe.round_sigma(), entry.lobe.gamma()];
-        entry.lobe.tabulated() == LobeEntry::Family
-            && set.albedo(sigma, gamma, entry.masking()).is_ok()
+        entry.lobe.tabulated().is_family() && set.albedo(sigma, gamma, entry.masking()).is_ok()
     };
     let behind = !exact && moments(default);
     let what = if behind { "default set" } else { "none" };
@@ -147,8 +146,8 @@ fn albedo(
 }
 
 /// Whether its albedo has a table of its own reflectance.
-fn is_exact(fresnel: &FresnelEntry) -> bool {
-    fresnel.tabulated().iter().any(|of| *of != Reflectance::Moments)
+fn is_exact(fresnel: &Reflectance) -> bool {
+    fresnel.tabulated().iter().any(|of| *of != Reflectance::Mirror)
 }
 
 /// The tables of a set that a material reads.
@@ -157,47 +156,23 @@ fn tables_of<'a>(
     entry: &'a MaterialEntry,
 ) -> impl Iterator<Item = &'a Table> + 'a {
     let own = entry.lobe.tabulated();
-    let is_family = entry.lobe.distribution.is_none() && !entry.lobe.is_smooth();
+    // Of its shape for visible normals, and of refraction.
+    let round = entry.lobe.round();
     let reflectances: Vec<Reflectance> =
-        entry.fresnel.as_ref().map_or(vec![Reflectance::Moments], FresnelEntry::tabulated);
-    let within = |[low, high]: [f64; 2], x: [f64; 2]| {
-        // Ends pass through 1/(γ−1) and through text.
-        let slack = 1e-9 * high.abs().max(1e-9);
-        low - slack <= x[0] && x[1] <= high + slack
-    };
-    let middle = [entry.lobe.round_sigma(); 2];
-    let reads = move |table: &&Table| {
-        let subject = &table.subject;
-        let same = !table.kind.is_albedo()
+        entry.fresnel.as_ref().map_or(vec![Reflectance::Mirror], Reflectance::tabulated);
+    let reads = move |Table { kind, subject, .. }: &&Table| {
+        let same = !kind.is_albedo()
             || (subject.masking == Some(entry.masking())
                 && subject.reflectance.as_ref().is_some_and(|of| reads_of(of, &reflectances)));
-        let covered = match (&subject.lobe, &subject.covers) {
-            (LobeEntry::Family, Some(Covered { s, sigma })) => {
-                let lobe = !table.kind.is_albedo() || own == LobeEntry::Family;
-                is_family
-                    && lobe
-                    && within(*s, entry.lobe.s())
-                    && sigma.is_none_or(|all| within(all, middle))
-            }
-            (LobeEntry::Family, None) => false,
-            (lobe, _) => *lobe == own && !entry.lobe.is_smooth(),
-        };
-        same && covered
+        let of_round =
+            !kind.is_albedo() || subject.reflectance.is_some_and(|of| of.side().is_some());
+        let lobe = if of_round && own.distribution.is_none() { &round } else { &own };
+        same && !entry.lobe.is_smooth() && subject.lobe.contains(lobe)
     };
     set.tables().iter().filter(reads)
 }
 
 /// Whether a table of a reflectance serves one of a material's: moments are read for F = 1 as well.
 fn reads_of(of: &Reflectance, wanted: &[Reflectance]) -> bool {
-    let holds = |wanted: &Reflectance| match (of, wanted) {
-        (
-            Reflectance::Dielectric { side, min, max },
-            Reflectance::Dielectric { side: wanted, min: least, max: most },
-        ) => {
-            let end = |max: &Option<f64>| max.unwrap_or(f64::INFINITY);
-            side == wanted && min <= least && end(most) <= end(max)
-        }
-        _ => of == wanted,
-    };
-    *of == Reflectance::Moments || wanted.iter().any(holds)
+    *of == Reflectance::Mirror || wanted.iter().any(|wanted| of.contains(wanted))
 }

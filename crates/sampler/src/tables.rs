@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Roughness, Skew};
-use microfacet_tables::{Kind, LoadError, LobeEntry, MaterialEntry, Provenance, Table, decode};
+use microfacet_tables::{Kind, LoadError, LobeSpec, MaterialEntry, Provenance, Table, decode};
 
 use crate::error::MaterialError;
 use crate::material::{Ellipsoid, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
@@ -81,9 +81,10 @@ impl Tables {
                 kept.push(self.entry(name)?.clone());
             }
         }
-        let mut lobes: Vec<LobeEntry> = kept.iter().map(|entry| entry.lobe.tabulated()).collect();
-        lobes.push(LobeEntry::Family);
-        self.tables.retain(|table| lobes.contains(&table.subject.lobe));
+        let lobes: Vec<LobeSpec> = kept.iter().map(|entry| entry.lobe.tabulated()).collect();
+        self.tables.retain(|Table { subject, .. }| {
+            subject.lobe.is_family() || lobes.iter().any(|lobe| subject.lobe.contains(lobe))
+        });
         self.provenance.materials = kept;
         Ok(self)
     }
@@ -223,9 +224,9 @@ impl Tables {
                 Ok(self.ellipsoid(skew, lobe.gamma())?.into())
             }
             (None, None) => self.lobe(lobe.sigma(), lobe.gamma()),
-            (None, Some(_)) => {
+            (None, Some(label)) => {
                 let sigma = lobe.roughness.x().min as f32;
-                Ok(Radial::from_tables(&self.tables, sigma, &lobe.tabulated())?.into())
+                Ok(Radial::from_tables(&self.tables, sigma, label)?.into())
             }
         }
     }

@@ -191,8 +191,7 @@ fn a_lobe_that_is_not_covered_is_told_what_the_set_serves() {
 fn what_a_table_covers_lies_on_its_axis() {
     for kind in [Kind::VisibleSlope, Kind::Albedo] {
         let mut table = Tables::embedded().table(kind).unwrap().clone();
-        let covers = table.subject.covers.as_mut().unwrap();
-        covers.s[1] = 1.9999;
+        table.subject.lobe.gamma.min = 1.50002;
         let error = Tables::from_tables(Default::default(), vec![table]).unwrap_err().to_string();
         assert!(error.contains("it covers gamma = 1.50002"), "{error}");
     }

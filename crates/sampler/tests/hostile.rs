@@ -7,9 +7,9 @@ use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Skew, Tables};
 use microfacet_tables::axis::{HalfTangent, Rational};
 use microfacet_tables::{
-    Axis, Certificate, Covered, Errors, FresnelEntry, Interpolation, Interval, Kind, LoadError,
-    LobeEntry, LobeSpec, Mapping, MaterialEntry, Precision, Provenance, Quantity, Reflectance,
-    Roughness, Side, Subject, Table, VERSION, encode, seal,
+    Axis, Certificate, Errors, Interpolation, Interval, Kind, LoadError, LobeSpec, Mapping,
+    MaterialEntry, Precision, Provenance, Quantity, Reflectance, Roughness, Side, Subject, Table,
+    VERSION, encode, seal,
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {
@@ -77,12 +77,12 @@ fn materials() -> Vec<MaterialEntry> {
     };
     let [tilted, metal] = [[[0.25; 2], [0.375; 2]], [[0.0, 0.5], [0.125, 0.625]]];
     let theta = Some([0.1, -0.2, 0.5]);
-    let conductor = FresnelEntry::Conductor { eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
-    let range = FresnelEntry::Dielectrics { min: 1.25, max: Some(2.5) };
+    let conductor = Reflectance::Conductor { eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
+    let range = Reflectance::Dielectric([1.25, 2.5].into());
     vec![
-        material("tilted", theta, tilted, [0.8; 2], FresnelEntry::Schlick([0.04; 3])),
+        material("tilted", theta, tilted, [0.8; 2], Reflectance::Schlick([0.04; 3])),
         material("metal", None, metal, [0.0, 1.6], conductor),
-        material("pane", None, [[0.5; 2]; 2], [1.0; 2], FresnelEntry::Dielectric(1.75)),
+        material("pane", None, [[0.5; 2]; 2], [1.0; 2], Reflectance::dielectric(1.75)),
         material("panes", None, [[0.5; 2]; 2], [1.0; 2], range),
     ]
 }
@@ -193,7 +193,7 @@ fn lying_headers_are_refused_by_name() {
             r#"\"gamma\":[2.0,2.0],\"scale\""#,
             "`gamma` has 2 entries",
         ),
-        (r#"\"gamma\":[2.0],\"scale\""#, r#"\"scale\""#, "no nodes"),
+        (r#"\"gamma\":[2.0],\"scale\""#, r#"\"scale\""#, "no `gamma`"),
         (r#"\"g1_max_error\":[0.5]"#, r#"\"g1_max_error\":[]"#, "`g1_max_error` has 0 entries"),
         (
             r#"\"kind\":\"inverse_shape\""#,
@@ -275,8 +275,8 @@ fn lying_descriptions_of_materials_and_tables_are_refused_by_name() {
         (r#"\"min\":1.25"#, r#"\"min\":3.0"#, "[3, 2.5]"),
         // Tables.
         (covers, &covered(r#"{\"min\":3.0,\"max\":2.0}"#), "no nodes"),
-        (covers, &covered("0.5"), "covers: gamma = [0.5, 0.5]"),
-        (covers, &covered("1.5"), "covers: gamma = [1.5, 1.5]"),
+        (covers, &covered("0.5"), "gamma = [0.5, 0.5]"),
+        (covers, &covered("1.5"), "gamma = [1.5, 1.5]"),
         (covers, &covered(r#""2.0""#), "expected"),
         (r#"\"lobe\":\"family\""#, r#"\"lobe\":\"distribution\""#, "no `distribution`"),
         (r#"\"lobe\":\"family\""#, r#"\"lobe\":\"student_t\""#, "no `sigma`"),
@@ -298,8 +298,8 @@ fn schlick_is_one_number_where_its_channels_are_equal() {
         (r#"{"schlick":[0.5,0.5,0.5]}"#, [0.5; 3], r#"{"schlick":0.5}"#),
         (r#"{"schlick":[0.95,0.64,0.54]}"#, [0.95, 0.64, 0.54], r#"{"schlick":[0.95,0.64,0.54]}"#),
     ] {
-        let entry: FresnelEntry = serde_json::from_str(text).unwrap();
-        assert_eq!(entry, FresnelEntry::Schlick(f0));
+        let entry: Reflectance = serde_json::from_str(text).unwrap();
+        assert_eq!(entry, Reflectance::Schlick(f0));
         assert_eq!(serde_json::to_string(&entry).unwrap(), again);
     }
 }
@@ -319,8 +319,13 @@ fn what_would_be_refused_is_not_written() {
             material.lobe.roughness = Roughness::Isotropic([0.1, f64::INFINITY].into())
         }),
         first(|material| material.lobe.gamma.max = f64::NAN),
+        first(|material| material.lobe.roughness = Roughness::ALL),
+        first(|material| {
+            let (side, index) = (Side::Thin, [1.5; 2].into());
+            material.fresnel = Some(Reflectance::Interface { side, index });
+        }),
         first(|material| material.lobe.theta = Some([f64::NAN; 3])),
-        first(|material| material.fresnel = Some(FresnelEntry::Schlick([0.5, f64::NAN, 0.5]))),
+        first(|material| material.fresnel = Some(Reflectance::Schlick([0.5, f64::NAN, 0.5]))),
     ] {
         assert!(why.contains("`tilted`"), "{why}");
     }
@@ -328,29 +333,41 @@ fn what_would_be_refused_is_not_written() {
 
 #[test]
 fn an_albedo_of_what_cannot_be_is_refused() {
-    let refused = |lobe: LobeEntry, reflectance: Reflectance, part: &str| {
-        let (masking, covers) = (Some(Masking::Uncorrelated), None);
-        let subject = Subject { lobe, masking, reflectance: Some(reflectance), covers };
+    let refused = |lobe: LobeSpec, reflectance: Reflectance, part: &str| {
+        let (masking, reflectance) = (Some(Masking::Uncorrelated), Some(reflectance));
+        let subject = Subject { lobe, masking, reflectance };
         let table = Table { kind: Kind::Albedo, subject, ..small_tables().remove(0) };
         let why = table.validate().unwrap_err().to_string();
         assert!(why.contains(part), "{why}");
     };
-    let (sigma, theta, s) = ([0.3, -0.3], [0.1, f64::NAN, 0.0], 2.0);
-    let moments = Reflectance::Moments;
-    refused(LobeEntry::StudentT { sigma, s: 1.0 }, moments, "sigma = [0.3, -0.3]");
-    refused(LobeEntry::StudentT { sigma: [0.3; 2], s }, moments, "gamma = [1.5, 1.5]");
-    refused(LobeEntry::Ellipsoid { sigma, theta: [0.1; 3], s: 1.0 }, moments, "sigma");
-    refused(LobeEntry::Ellipsoid { sigma: [0.3; 2], theta, s: 1.0 }, moments, "NaN");
-    refused(LobeEntry::Distribution(String::new()), moments, "without a label");
+    let (moments, single) = (Reflectance::Mirror, LobeSpec::student_t);
+    let tilted = |sigma, angle| LobeSpec { theta: Some([0.1, angle, 0.0]), ..single(sigma, 2.0) };
+    refused(single([0.3, -0.3], 2.0), moments, "sigma = [-0.3, -0.3]");
+    refused(single([0.3, 0.0], 2.0), moments, "single numbers more than 0");
+    refused(single([0.3, 0.1], 1.5), moments, "gamma = [1.5, 1.5]");
+    refused(tilted([0.3, -0.3], 0.1), moments, "sigma");
+    refused(tilted([0.3, 0.3], f64::NAN), moments, "NaN");
+    refused(LobeSpec::outside(String::new()), moments, "without a label");
+    let any = LobeSpec::family(Roughness::ALL, [2.0; 2].into());
+    refused(any, moments, "sigma = [0, inf]");
     let metal = Reflectance::Conductor { eta: [0.2, -0.9, 1.1], k: [3.9; 3] };
-    refused(LobeEntry::Family, metal, "eta must be more than 0");
-    for (min, max) in [(0.5, None), (2.0, Some(1.5)), (f64::NAN, None), (1.5, Some(f64::NAN))] {
-        let pane = Reflectance::Dielectric { side: Side::Thin, min, max };
-        refused(LobeEntry::Family, pane, "indices of refraction");
+    refused(LobeSpec::GENERAL, metal, "eta must be more than 0");
+    let inf = f64::INFINITY;
+    for index in [[0.5, inf], [2.0, 1.5], [f64::NAN, inf], [1.5, f64::NAN], [inf, inf]] {
+        let pane = Reflectance::Interface { side: Side::Thin, index: index.into() };
+        refused(LobeSpec::GENERAL, pane, "indices of refraction");
+    }
+    for material in [Reflectance::Schlick([0.04; 3]), Reflectance::dielectric(1.5)] {
+        refused(LobeSpec::GENERAL, material, "an albedo is of");
+    }
+    for gamma in [[f64::NAN, 2.0], [2.0, f64::NAN], [3.0, 2.0]] {
+        let mut table = small_tables().remove(0);
+        table.subject.lobe.gamma = gamma.into();
+        assert!(table.validate().unwrap_err().to_string().contains("must ascend"));
     }
     let mut table = small_tables().remove(0);
-    table.subject.covers = Some(Covered { s: [0.0, f64::NAN], sigma: None });
-    assert!(table.validate().is_err());
+    table.subject.lobe.roughness = Roughness::Isotropic([0.1; 2].into());
+    assert!(table.validate().unwrap_err().to_string().contains("of every sigma"));
 }
 
 /// There are as many values as the axes then have, so that only the mapping is wrong.

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use microfacet_baker::scene::{
-    Format, Fresnel, Ignored, LobeSpec, MOST_CANDIDATES, Masking, Material, Names, Origin, Place,
-    Roughness, Scene, SceneError, SceneErrorKind, did_you_mean,
+    Format, Ignored, LobeSpec, MOST_CANDIDATES, Masking, Material, Names, Origin, Place,
+    Reflectance, Roughness, Scene, SceneError, SceneErrorKind, did_you_mean,
 };
 use microfacet_sampler::Metal;
 use microfacet_tables::Interval;
@@ -26,14 +26,14 @@ pub(super) struct Lobe {
     pub(super) name: Option<&'static str>,
     pub(super) roughness: Roughness,
     pub(super) gamma: Interval,
-    pub(super) fresnel: Option<Fresnel>,
+    pub(super) fresnel: Option<Reflectance>,
     pub(super) masking: Option<Masking>,
 }
 
 /// The Fresnel term of a dielectric of relative index `eta`.
-pub(super) fn dielectric(eta: f64, place: &Place) -> Result<Fresnel, SceneError> {
+pub(super) fn dielectric(eta: f64, place: &Place) -> Result<Reflectance, SceneError> {
     if eta > 0.0 && eta < f64::INFINITY {
-        Ok(Fresnel::Dielectric(eta))
+        Ok(Reflectance::dielectric(eta))
     } else {
         Err(place.invalid(format!(
             "the index of refraction is {eta}; it must be finite and more than 0"
@@ -42,10 +42,14 @@ pub(super) fn dielectric(eta: f64, place: &Place) -> Result<Fresnel, SceneError>
 }
 
 /// The Fresnel term of a conductor.
-pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Fresnel, SceneError> {
+pub(super) fn conductor(
+    eta: [f64; 3],
+    k: [f64; 3],
+    place: &Place,
+) -> Result<Reflectance, SceneError> {
     let finite = eta.iter().chain(&k).all(|x| x.is_finite());
     if finite && eta.iter().all(|&eta| eta > 0.0) && k.iter().all(|&k| k >= 0.0) {
-        Ok(Fresnel::Conductor { eta, k })
+        Ok(Reflectance::Conductor { eta, k })
     } else {
         Err(place.invalid(format!(
             "the conductor has eta = {eta:?} and k = {k:?}; eta must be more than 0 and k at least 0"

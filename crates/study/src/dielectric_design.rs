@@ -6,7 +6,7 @@
 //! tables, stored in 16 bits, and measured by the certificate, for height-correlated masking. `--
 //! 7` prints the seventh row alone.
 
-use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain, bake};
+use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, bake};
 use microfacet_baker::certify::albedo::{certified, edge_references, interior_references};
 use microfacet_baker::progress::Stage;
 use microfacet_sampler::Masking;
@@ -14,7 +14,7 @@ use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
 };
 use microfacet_tables::{
-    Axis, Errors, Interpolation, Interval, Mapping, Precision, Reflectance, Side,
+    Axis, Errors, Interpolation, Interval, Mapping, Precision, Reflectance, Roughness, Side,
 };
 
 /// Error aimed at in a node. Estimates are careful: at places throughout the domain even 1e-2 gives
@@ -58,13 +58,11 @@ impl Design {
         let gammas = [0.0, shape.coordinate(self.gamma)];
         let sigmas = [rough.first, self.sigma].map(|sigma| rough.coordinate(sigma));
         let etas = self.eta.map(|eta| ReflectanceRoot.coordinate(eta));
-        let [min, max] = self.eta;
+        let sigma = Interval { min: 0.0, max: self.sigma };
+        let gamma = Interval { min: self.gamma, max: f64::INFINITY };
         AlbedoSpec {
-            lobe: AlbedoLobe::Family(Domain {
-                gamma: Interval { min: self.gamma, max: f64::INFINITY },
-                sigma: Interval { min: 0.0, max: self.sigma },
-            }),
-            reflectance: Reflectance::Dielectric { side, min, max: Some(max) },
+            lobe: AlbedoLobe::family(Roughness::Isotropic(sigma), gamma),
+            reflectance: Reflectance::Interface { side, index: self.eta.into() },
             maskings: vec![Masking::HeightCorrelated],
             axes: vec![
                 of("gamma", Mapping::LogShape(shape), gammas, self.shapes),

@@ -82,10 +82,11 @@ pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
 /// Microseconds to estimate the albedo of a lobe that is doubled along both axes.
 fn estimating() -> Result<f64, Box<dyn Error>> {
     const TIMES: usize = 1000;
-    let lobe = AlbedoLobe::Ellipsoid { sigma: [0.1, 0.3], theta: [0.3, 0.0, 0.0], gamma: 3.0 };
+    let lobe =
+        AlbedoLobe { theta: Some([0.3, 0.0, 0.0]), ..AlbedoLobe::student_t([0.1, 0.3], 3.0) };
     let maskings = vec![Masking::HeightCorrelated];
     let (quality, precision) = (Quality::Default, Precision::F32);
-    let spec = AlbedoSpec::new(lobe, Reflectance::Moments, maskings, quality, precision)?;
+    let spec = AlbedoSpec::new(lobe, Reflectance::Mirror, maskings, quality, precision)?;
     let clock = Clock::start();
     let all: f64 = (0..TIMES).map(|_| albedo_cost(&spec).seconds).sum();
     assert!(all > 0.0);

@@ -44,10 +44,10 @@ mod interval;
 pub use axis::{Axis, Interpolation, Mapping, Weights};
 pub use error::{LoadError, Range};
 pub use format::{
-    Certificate, Channels, Coordinate, Covered, Errors, FORMAT, FresnelEntry, Index, IndexedSet,
-    Kind, LobeEntry, LobeSpec, MaterialEntry, Precision, Provenance, Quantity, Reflectance,
-    Roughness, SAME, Side, Subject, Table, VERSION, crc32, decode, describe, encode, joined_name,
-    reassemble, seal, seal_document, stated_axes, stated_tables,
+    Certificate, Channels, Coordinate, Errors, FORMAT, Index, IndexedSet, Kind, LobeForm, LobeSpec,
+    MaterialEntry, Precision, Provenance, Quantity, Reflectance, Roughness, SAME, Side, Subject,
+    Table, VERSION, crc32, decode, describe, encode, joined_name, reassemble, seal, seal_document,
+    stated_axes, stated_tables,
 };
 pub use interval::Interval;
 

@@ -7,15 +7,11 @@ use glam::{DVec3, Vec3};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-use microfacet_baker::bake::albedo::Domain;
 use microfacet_baker::progress::Stage;
-use microfacet_core::shape::gamma_of_s;
 use microfacet_model as model;
 use microfacet_sampler::albedo::Albedo;
 use microfacet_sampler::{Masking, MaterialError, Tables};
-use microfacet_tables::{
-    Axis, Covered, Interval, Kind, LobeEntry, Quantity, Reflectance, Subject, Table,
-};
+use microfacet_tables::{Axis, Kind, LobeSpec, Quantity, Reflectance, Subject, Table};
 
 /// Allowed deviation from 1 with the Kulla–Conty lobe
 /// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).
@@ -149,9 +145,10 @@ const VIEWS: [f64; 10] = [1e-7, 1e-5, 1e-3, 0.02, 0.07, 0.2, 0.45, 0.8, 0.995, 1
 /// The form of masking of each albedo table of the family, the deviation that it is allowed, and
 /// the materials of a survey of it.
 fn surveyed(tables: &Tables) -> Vec<(Masking, f64, Vec<[f64; 2]>)> {
-    let materials = |(table, masking, covers): (&Table, Masking, Covered)| {
-        let gammas = between(&table.axes[0], covers.s.map(gamma_of_s), 11);
-        let sigmas = between(&table.axes[1], covers.sigma.unwrap_or_default(), 14);
+    let materials = |(table, masking): (&Table, Masking)| {
+        let lobe = &table.subject.lobe;
+        let gammas = between(&table.axes[0], [lobe.gamma.max, lobe.gamma.min], 11);
+        let sigmas = between(&table.axes[1], lobe.roughness.x().into(), 14);
         let pairs =
             gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| [sigma, gamma]));
         let stated = table.certificate.errors.get(&Quantity::E);
@@ -199,15 +196,14 @@ pub fn survey(tables: &Tables, stage: &Stage) -> Result<Vec<Survey>, MaterialErr
         .collect()
 }
 
-/// The tables that a furnace reads, each with its form of masking and what it covers.
-fn of_family(tables: &Tables) -> impl Iterator<Item = (&Table, Masking, Covered)> {
+/// The tables that a furnace reads, each with its form of masking.
+fn of_family(tables: &Tables) -> impl Iterator<Item = (&Table, Masking)> {
     let is_read = |table: &&Table| {
         let Subject { lobe, reflectance, .. } = &table.subject;
-        table.kind == Kind::Albedo
-            && (lobe, reflectance) == (&LobeEntry::Family, &Some(Reflectance::Moments))
+        table.kind == Kind::Albedo && lobe.is_family() && *reflectance == Some(Reflectance::Mirror)
     };
     let read = tables.tables().iter().filter(is_read);
-    read.filter_map(|table| Some((table, table.subject.masking?, table.subject.covers?)))
+    read.filter_map(|table| Some((table, table.subject.masking?)))
 }
 
 /// Whether a set has tables that a furnace reads.
@@ -215,20 +211,10 @@ pub fn has_furnace(tables: &Tables) -> bool {
     of_family(tables).next().is_some()
 }
 
-/// The materials that a furnace can be run for with one form of masking, a rectangle a table.
-pub fn domains(tables: &Tables, masking: Masking) -> Vec<Domain> {
-    // An end that is a short number has passed through 1/(γ−1), and tables cover what is within
-    // 1e-9 of them.
-    let short = |x: f64| format!("{x:.11e}").parse().unwrap_or(x);
-    of_family(tables)
-        .filter(|(_, of, _)| *of == masking)
-        .filter_map(|(_, _, Covered { s: [low, high], sigma })| {
-            let [min, max] = sigma?.map(short);
-            let [least, most] = [high, low].map(|s| short(gamma_of_s(s)));
-            let gamma = Interval { min: least, max: most };
-            Some(Domain { gamma, sigma: Interval { min, max } })
-        })
-        .collect()
+/// The round lobes that a furnace can be run for with one form of masking, a range a table.
+pub fn domains(tables: &Tables, masking: Masking) -> Vec<LobeSpec> {
+    let of = of_family(tables).filter(|(_, of)| *of == masking);
+    of.map(|(table, _)| table.subject.lobe.clone()).collect()
 }
 
 /// `count` quantities of an axis in a range, between its nodes; for an axis of a single node, that

@@ -29,7 +29,8 @@ pub(super) fn materials(
     let is_covered = |&(s, g): &(f64, f64)| set.albedo(s, g, masking).is_ok();
     let mut all: Vec<(f64, f64)> = Vec::new();
     for domain in domains(set, masking) {
-        let sigmas = if sigmas.is_empty() { &within(&SIGMAS, domain.sigma) } else { sigmas };
+        let sigmas =
+            if sigmas.is_empty() { &within(&SIGMAS, domain.roughness.x()) } else { sigmas };
         let gammas = if gammas.is_empty() { &within(&GAMMAS, domain.gamma) } else { gammas };
         for pair in product(sigmas, gammas).into_iter().filter(is_covered) {
             if !all.contains(&pair) {

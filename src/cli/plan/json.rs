@@ -2,11 +2,11 @@
 
 use serde_json::{Value, json};
 
-use microfacet_baker::bake::albedo::AlbedoLobe;
+use microfacet_baker::distribution::Distribution;
 use microfacet_baker::plan::{Cost, Verdict, entry};
 use microfacet_baker::scene::Ignored;
 use microfacet_report::words::verdict::{albedo_reason, reason};
-use microfacet_tables::{Interval, Kind, LobeSpec, MaterialEntry};
+use microfacet_tables::{Interval, Kind, LobeSpec, MaterialEntry, Reflectance};
 
 use super::Report;
 use super::words::{OWN_TABLES, Offer, Outline};
@@ -35,7 +35,7 @@ impl Outline<'_> {
             json!({
                 "name": material.name, "lobe": material.origin.lobe, "place": material.origin.place.to_string(),
                 "sigma": material.lobe.sigmas(),
-                "gamma": of_family.then(|| gamma(material.lobe.gamma)),
+                "gamma": of_family.then(|| texts(material.lobe.gamma)),
                 "distribution": distribution, "theta": theta, "masking": masking, "fresnel": fresnel,
                 "verdict": short, "why": long, "shapes": verdict.need(),
                 "shares_with": other, "albedo": albedo_reason(albedo),
@@ -63,9 +63,20 @@ pub(super) fn ignored(it: &Ignored) -> Value {
     })
 }
 
-/// A range of γ as texts, since JSON has no infinity.
-fn gamma(Interval { min, max }: Interval) -> [String; 2] {
-    [min, max].map(|gamma| gamma.to_string())
+/// A range as texts, since JSON has no infinity.
+fn texts(Interval { min, max }: Interval) -> [String; 2] {
+    [min, max].map(|x| x.to_string())
+}
+
+/// The reflectance of an albedo, without infinity.
+fn reflectance(of: &Reflectance) -> Value {
+    match of {
+        Reflectance::Interface { side, index } => {
+            let index = texts(*index);
+            json!({ "interface": { "side": side, "index": index } })
+        }
+        other => json!(other),
+    }
 }
 
 impl Report<'_> {
@@ -82,7 +93,7 @@ impl Report<'_> {
                 .iter()
                 .map(|spec| json!({ "name": spec.name, "kind": spec.kind.name(), "shapes": spec.shapes.nodes.len(), "views": spec.views, "numbers": spec.numbers }))
                 .collect();
-            json!({ "gamma": gamma(need.gamma()), "s": need.s(), "tables": tables, "cost": next(), "materials": names })
+            json!({ "gamma": texts(need.gamma()), "s": need.s(), "tables": tables, "cost": next(), "materials": names })
         }).collect();
         let distributions: Vec<_> = plan
             .distributions
@@ -95,10 +106,12 @@ impl Report<'_> {
         let albedos: Vec<_> = outline.albedos.iter().zip(&users.albedos).map(|(spec, names)| {
             let tables: Vec<_> = spec.maskings.iter().map(|&masking| spec.name(Kind::Albedo, masking)).collect();
             let nodes: Vec<_> = spec.axes.iter().map(|axis| json!({ "name": axis.name, "length": axis.len() })).collect();
-            let covers = if let AlbedoLobe::Family(domain) = &spec.lobe { Some(domain.covered()) } else { None };
+            let LobeSpec { distribution, theta, .. } = spec.lobe.map(Distribution::label);
             json!({
-                "names": tables, "lobe": spec.lobe.entry(), "covers": covers, "masking": spec.maskings, "reflectance": spec.reflectance,
-                "axes": nodes, "cost": next(), "materials": names,
+                "names": tables, "sigma": spec.lobe.sigmas(),
+                "gamma": distribution.is_none().then(|| texts(spec.lobe.gamma)),
+                "distribution": distribution, "theta": theta, "masking": spec.maskings,
+                "reflectance": reflectance(&spec.reflectance), "axes": nodes, "cost": next(), "materials": names,
             })
         }).collect();
         json!({

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
+use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
 use microfacet_baker::distribution::Distribution;
 use microfacet_baker::plan::{
     AlbedoVerdict, AlbedoWish, Cost, Plan, Verdict, albedo_costs, bare_cost, entry,
@@ -33,20 +33,13 @@ fn shapes(Interval { min, max }: Interval) -> String {
 
 /// A lobe in words: "gamma 3, sigma 0.1 to 0.4".
 fn lobe(lobe: &AlbedoLobe) -> String {
-    let axes = |gamma: f64, sigma: [f64; 2]| {
-        let [x, y] = sigma.map(words::number);
-        format!("{}, sigma {x} and {y}", shapes(Interval::point(gamma)))
-    };
-    match *lobe {
-        AlbedoLobe::Family(Domain { gamma, sigma }) => {
-            format!("{}, sigma {}", shapes(gamma), words::range([sigma.min, sigma.max]))
-        }
-        AlbedoLobe::StudentT { sigma, gamma } => axes(gamma, sigma),
-        AlbedoLobe::Ellipsoid { sigma, theta, gamma } => {
-            format!("{}, theta {}", axes(gamma, sigma), theta.map(words::number).join(", "))
-        }
-        AlbedoLobe::Radial { ref distribution, .. } => escape::line(&distribution.label()).into(),
+    if let Some(distribution) = &lobe.distribution {
+        return escape::line(&distribution.label()).into();
     }
+    let [x, y] = lobe.sigmas().map(words::range);
+    let sigma = if lobe.is_family() { x } else { format!("{x} and {y}") };
+    let theta = lobe.theta.map(|theta| format!(", theta {}", theta.map(words::number).join(", ")));
+    format!("{}, sigma {sigma}{}", shapes(lobe.gamma), theta.unwrap_or_default())
 }
 
 /// A plan and its scene, with the specifications of all tables.

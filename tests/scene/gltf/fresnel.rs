@@ -1,12 +1,12 @@
 //! F0 of metals, of dielectrics, and of what lies between them.
 
-use microfacet_baker::scene::Fresnel;
+use microfacet_baker::scene::Reflectance;
 
 use super::document;
 use crate::load;
 
 /// The Fresnel term of a material with these factors and extensions.
-fn fresnel(pbr: &str, extensions: &str) -> Option<Fresnel> {
+fn fresnel(pbr: &str, extensions: &str) -> Option<Reflectance> {
     let material =
         format!("{{\"pbrMetallicRoughness\": {{{pbr}}}, \"extensions\": {{{extensions}}}}}");
     let scene = load("a.gltf", &document(&material, ""));
@@ -17,7 +17,7 @@ fn fresnel(pbr: &str, extensions: &str) -> Option<Fresnel> {
 /// Checks F0 against numbers worked out by hand.
 #[track_caller]
 fn assert_f0(pbr: &str, extensions: &str, wanted: [f64; 3]) {
-    let Some(Fresnel::Schlick(f0)) = fresnel(pbr, extensions) else {
+    let Some(Reflectance::Schlick(f0)) = fresnel(pbr, extensions) else {
         panic!("{:?}", fresnel(pbr, extensions))
     };
     assert!(f0.iter().zip(wanted).all(|(f0, wanted)| (f0 - wanted).abs() < 1e-15), "{f0:?}");
@@ -49,7 +49,7 @@ fn a_dielectric_has_that_of_its_index() {
     );
     let scene =
         load("a.gltf", &document(&format!("{{\"pbrMetallicRoughness\": {{{textures}}}}}"), ""));
-    let Some(Fresnel::Schlick([f0, ..])) = scene.materials[0].fresnel else { unreachable!() };
+    let Some(Reflectance::Schlick([f0, ..])) = scene.materials[0].fresnel else { unreachable!() };
     assert!((f0 - 0.04).abs() < 1e-15, "{f0}");
 }
 

@@ -7,7 +7,7 @@ mod unreadable;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use microfacet_baker::scene::{Format, Fresnel, Roughness};
+use microfacet_baker::scene::{Format, Reflectance, Roughness};
 use microfacet_tables::Interval;
 
 use crate::{
@@ -72,7 +72,7 @@ fn extensions_add_anisotropy_and_a_coat() {
     // 0.25 + 0.75 * 0.25
     assert_eq!(scene.materials[0].lobe.roughness, anisotropic(0.4375, 0.25));
     assert_eq!(scene.materials[1].lobe.roughness, isotropic(0.2 * 0.2));
-    assert_eq!(scene.materials[1].fresnel, Some(Fresnel::Schlick([0.04; 3])));
+    assert_eq!(scene.materials[1].fresnel, Some(Reflectance::Schlick([0.04; 3])));
     assert_eq!(scene.materials[1].origin.lobe, Some("clearcoat"));
     assert_eq!(scene.ignored[0].name, "car.sheen");
 }

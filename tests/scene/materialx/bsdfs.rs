@@ -1,6 +1,6 @@
 //! Surfaces that are graphs of BSDF nodes.
 
-use microfacet_baker::scene::{Fresnel, Scene};
+use microfacet_baker::scene::{Reflectance, Scene};
 use microfacet_tables::Interval;
 
 use super::{document, not_understood};
@@ -80,16 +80,16 @@ fn one_texture_for_both_axes_is_isotropic() {
 fn fresnel_terms_are_those_of_the_nodes() {
     let fresnel = |class, inputs: &[_]| one(class, inputs).materials[0].fresnel;
     let (n, k) = (("ior", "value=\"0.2, 0.9, 1.1\""), ("extinction", "value=\"3.9, 2.4, 2.2\""));
-    let copper = Fresnel::Conductor { eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
+    let copper = Reflectance::Conductor { eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
     assert_eq!(fresnel("conductor_bsdf", &[n, k]), Some(copper));
     assert_eq!(fresnel("conductor_bsdf", &[n, k, ("thinfilm_thickness", "value=\"300\"")]), None);
     assert_eq!(
         fresnel("dielectric_bsdf", &[("ior", "value=\"1.7\"")]),
-        Some(Fresnel::Dielectric(1.7))
+        Some(Reflectance::dielectric(1.7))
     );
     let copper = ("color0", "value=\"0.9, 0.6, 0.5\"");
     let schlick = |more| fresnel("generalized_schlick_bsdf", &[copper, more]);
-    assert_eq!(schlick(("weight", "value=\"0.5\"")), Some(Fresnel::Schlick([0.9, 0.6, 0.5])));
+    assert_eq!(schlick(("weight", "value=\"0.5\"")), Some(Reflectance::Schlick([0.9, 0.6, 0.5])));
     for other in ["color82", "color90"] {
         assert_eq!(schlick((other, "value=\"1, 1, 0.9\"")), None, "{other}");
     }
@@ -106,7 +106,7 @@ fn fresnel_terms_are_those_of_the_nodes() {
         ("extinction", "nodename=\"m\" output=\"extinction\""),
     ];
     let text = surface(&(artistic + &bsdf("conductor_bsdf", "end", &outputs)));
-    let Some(Fresnel::Conductor { eta, k }) = load("a.mtlx", &text).materials[0].fresnel else {
+    let Some(Reflectance::Conductor { eta, k }) = load("a.mtlx", &text).materials[0].fresnel else {
         panic!("no conductor")
     };
     assert!((eta[0] - 3.0).abs() < 1e-12 && k == [0.0; 3], "{eta:?} {k:?}");

@@ -4,7 +4,7 @@ mod bsdfs;
 mod documents;
 mod models;
 
-use microfacet_baker::scene::{Format, Fresnel, Roughness, Scene};
+use microfacet_baker::scene::{Format, Reflectance, Roughness, Scene};
 use microfacet_tables::Interval;
 
 use crate::{Folder, anisotropic, assert_close, assert_refused, isotropic, load, names, png};
@@ -28,7 +28,7 @@ fn standard_surface_follows_its_definition() {
     assert_eq!(names(&default), ["a"]);
     assert_close(default.materials[0].lobe.roughness, [0.04; 2], [0.04; 2]);
     assert_eq!(default.materials[0].lobe.gamma, Interval::point(2.0));
-    assert_eq!(default.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
+    assert_eq!(default.materials[0].fresnel, Some(Reflectance::dielectric(1.5)));
     assert_eq!(default.materials[0].masking, None);
     assert_eq!(default.materials[0].origin.format, Format::MaterialX);
 
@@ -74,7 +74,7 @@ fn standard_surface_follows_its_definition() {
 fn open_pbr_surface_follows_its_definition() {
     let default = shader("open_pbr_surface", &[]);
     assert_close(default.materials[0].lobe.roughness, [0.09; 2], [0.09; 2]);
-    assert_eq!(default.materials[0].fresnel, Some(Fresnel::Dielectric(1.5)));
+    assert_eq!(default.materials[0].fresnel, Some(Reflectance::dielectric(1.5)));
 
     let brushed = shader(
         "open_pbr_surface",
@@ -106,7 +106,7 @@ fn open_pbr_surface_follows_its_definition() {
     assert_eq!(coated.materials[0].fresnel, None, "relative to the coat");
     let along = 0.36 * 1.6f64.sqrt();
     assert_close(coated.materials[1].lobe.roughness, [along; 2], [0.5 * along; 2]);
-    assert_eq!(coated.materials[1].fresnel, Some(Fresnel::Dielectric(1.6)));
+    assert_eq!(coated.materials[1].fresnel, Some(Reflectance::dielectric(1.6)));
     assert_eq!(coated.ignored[0].name, "a.fuzz_weight");
 }
 
@@ -431,7 +431,7 @@ fn a_range_is_a_remapping() {
     let ior = r#"<range name="r"><input name="in" value="1"/><input name="outhigh" value="1.7"/></range>
         <open_pbr_surface name="a" type="surfaceshader"><input name="specular_ior" nodename="r"/></open_pbr_surface>"#;
     let eta = load("a.mtlx", &document(ior)).materials[0].fresnel;
-    assert_eq!(eta, Some(Fresnel::Dielectric(1.7)));
+    assert_eq!(eta, Some(Reflectance::dielectric(1.7)));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Shading models, against the graphs that define them.
 
-use microfacet_baker::scene::{Fresnel, Material, Roughness, Scene};
+use microfacet_baker::scene::{Material, Reflectance, Roughness, Scene};
+use microfacet_tables::Interval;
 
 use super::{document, shader};
 use crate::{anisotropic, assert_close, isotropic, load, names};
@@ -17,7 +18,9 @@ fn coloured(class: &str, inputs: &[(&str, &str)]) -> Scene {
 
 #[track_caller]
 fn assert_schlick(material: &Material, f0: f64) {
-    let Some(Fresnel::Schlick(found)) = material.fresnel else { panic!("{:?}", material.fresnel) };
+    let Some(Reflectance::Schlick(found)) = material.fresnel else {
+        panic!("{:?}", material.fresnel)
+    };
     assert!(found.iter().all(|found| (found - f0).abs() < 1e-12), "{found:?} is not {f0}");
 }
 
@@ -30,7 +33,7 @@ fn gulbrandsen(r: f64, edge: f64) -> [f64; 2] {
 
 #[track_caller]
 fn assert_conductor(material: &Material, expected: [f64; 2]) {
-    let Some(Fresnel::Conductor { eta, k }) = material.fresnel else {
+    let Some(Reflectance::Conductor { eta, k }) = material.fresnel else {
         panic!("{:?}", material.fresnel)
     };
     for i in 0..3 {
@@ -64,7 +67,7 @@ fn gltf_pbr() {
     let coated = dielectric(&[("clearcoat", 1.0), ("clearcoat_roughness", 0.3)]);
     assert_eq!(names(&coated), ["a", "a.clearcoat"]);
     assert_close(coated.materials[1].lobe.roughness, [0.09; 2], [0.09; 2]);
-    assert_eq!(coated.materials[1].fresnel, Some(Fresnel::Dielectric(1.5)));
+    assert_eq!(coated.materials[1].fresnel, Some(Reflectance::dielectric(1.5)));
 
     assert!(dielectric(&[("specular", 0.0)]).ignored[0].reason.contains("diffuse"));
     let fabric = coloured("gltf_pbr", &[("sheen_color", "0, 0, 0.5")]);
@@ -113,7 +116,9 @@ fn a_specular_weight_changes_the_index() {
     let weighted = |inputs: &[(&str, f64)]| shader("open_pbr_surface", inputs);
     let fresnel = |weight: f64, ior: f64| {
         let inputs = [("specular_weight", weight), ("specular_ior", ior)];
-        let Some(Fresnel::Dielectric(eta)) = weighted(&inputs).materials[0].fresnel else {
+        let Some(Reflectance::Dielectric(Interval { min: eta, .. })) =
+            weighted(&inputs).materials[0].fresnel
+        else {
             panic!("no dielectric")
         };
         eta
@@ -143,7 +148,7 @@ fn a_specular_weight_changes_the_index() {
     assert_eq!(none(&[metal]).materials, []);
     let glass = ("transmission_weight", 1.0);
     assert_eq!(none(&[metal, glass]).materials, []);
-    assert_eq!(none(&[glass]).materials[0].fresnel, Some(Fresnel::Dielectric(1.0)));
+    assert_eq!(none(&[glass]).materials[0].fresnel, Some(Reflectance::dielectric(1.0)));
     assert_eq!(names(&none(&[("base_metalness", 0.5), glass])), ["a"]);
     assert_schlick(&weighted(&[metal, ("specular_weight", 0.5)]).materials[0], 0.8);
 }
@@ -165,7 +170,7 @@ fn metals_have_the_reflectance_of_their_colour() {
     assert_schlick(&open(&[]).materials[0], 0.8);
     assert_eq!(open(&[("specular_color", "0.9, 0.9, 0.9")]).materials[0].fresnel, None);
     let copper = open(&[("base_weight", "0.5"), ("base_color", "0.9, 0.6, 0.3")]);
-    assert_eq!(copper.materials[0].fresnel, Some(Fresnel::Schlick([0.45, 0.3, 0.15])));
+    assert_eq!(copper.materials[0].fresnel, Some(Reflectance::Schlick([0.45, 0.3, 0.15])));
     // No F0 exceeds 1.
     assert_eq!(open(&[("base_color", "1.2, 0.6, 0.3")]).materials[0].fresnel, None);
     assert_ne!(open(&[]).materials[0].lobe.roughness, anisotropic(0.09, 0.09));

@@ -1,6 +1,6 @@
 //! What is not understood in a scene, and what only Mitsuba 0.6 has, while the rest is read.
 
-use microfacet_baker::scene::{Fresnel, Roughness, Scene};
+use microfacet_baker::scene::{Reflectance, Roughness, Scene};
 use microfacet_tables::Interval;
 
 use super::scene;
@@ -127,7 +127,7 @@ fn spellings_of_version_0_6_are_read() {
          <string name=\"intIOR\" value=\"water\"/><float name=\"extIOR\" value=\"1\"/>",
     );
     assert_eq!(scene.materials[0].lobe.roughness, anisotropic(0.3, 0.1));
-    assert_eq!(scene.materials[0].fresnel, Some(Fresnel::Dielectric(1.333)));
+    assert_eq!(scene.materials[0].fresnel, Some(Reflectance::dielectric(1.333)));
     assert_eq!(scene.warnings, [""; 0]);
 }
 
@@ -145,12 +145,12 @@ fn a_coating_is_a_lobe_beside_the_bsdf_inside() {
     let [coating, metal, _] = &scene.materials[..] else { unreachable!() };
     assert_eq!(coating.lobe.roughness, isotropic(0.1));
     assert_eq!(coating.lobe.gamma, Interval::point(2.0));
-    assert_eq!(coating.fresnel, Some(Fresnel::Dielectric(1.5)));
+    assert_eq!(coating.fresnel, Some(Reflectance::dielectric(1.5)));
     assert_eq!(coating.origin.lobe, Some("coating"));
     assert_eq!(metal.lobe.roughness, isotropic(0.4));
     let scene = bsdf("coating", inner);
     assert_eq!(named(&scene, "a.coating").lobe.roughness, Roughness::Smooth);
-    let clear = Some(Fresnel::Dielectric(1.5046 / 1.000_277));
+    let clear = Some(Reflectance::dielectric(1.5046 / 1.000_277));
     assert_eq!(named(&scene, "a.coating").fresnel, clear);
     // A bad coat leaves what is inside, under the name that its own lobe would have.
     let bad = format!("<float name=\"alpha\" value=\"-1\"/>{inner}");

@@ -1,6 +1,6 @@
 //! Fresnel terms, against the plugins that define them.
 
-use microfacet_baker::scene::{Fresnel, Scene};
+use microfacet_baker::scene::{Reflectance, Scene};
 use microfacet_sampler::Metal;
 
 use super::bsdf;
@@ -12,7 +12,7 @@ fn one(class: &str, properties: &str) -> Scene {
     scene
 }
 
-fn fresnel(class: &str, properties: &str) -> Option<Fresnel> {
+fn fresnel(class: &str, properties: &str) -> Option<Reflectance> {
     one(class, properties).materials[0].fresnel
 }
 
@@ -25,16 +25,16 @@ fn a_conductor_is_a_mirror_by_default() {
     for class in ["conductor", "roughconductor"] {
         for material in ["", none] {
             let of = |properties: &str| fresnel(class, &format!("{material}{properties}"));
-            assert_eq!(of(""), Some(Fresnel::Mirror));
+            assert_eq!(of(""), Some(Reflectance::Mirror));
             // The index is 0 by default, and the extinction 1.
-            assert_eq!(of(K), Some(Fresnel::Mirror));
+            assert_eq!(of(K), Some(Reflectance::Mirror));
             let zero = "<float name=\"eta\" value=\"0\"/>";
-            assert_eq!(of(zero), Some(Fresnel::Mirror));
-            assert_eq!(of(&[zero, K].concat()), Some(Fresnel::Mirror));
+            assert_eq!(of(zero), Some(Reflectance::Mirror));
+            assert_eq!(of(&[zero, K].concat()), Some(Reflectance::Mirror));
             let eta = [0.2, 0.9, 1.1];
-            assert_eq!(of(ETA), Some(Fresnel::Conductor { eta, k: [1.0; 3] }));
+            assert_eq!(of(ETA), Some(Reflectance::Conductor { eta, k: [1.0; 3] }));
             let k = [3.9, 2.4, 2.2];
-            assert_eq!(of(&[ETA, K].concat()), Some(Fresnel::Conductor { eta, k }));
+            assert_eq!(of(&[ETA, K].concat()), Some(Reflectance::Conductor { eta, k }));
         }
     }
 }
@@ -42,7 +42,7 @@ fn a_conductor_is_a_mirror_by_default() {
 #[test]
 fn an_index_is_the_same_at_all_wavelengths_or_a_triple() {
     let of = |eta: &str| fresnel("roughconductor", &format!("{eta}{K}"));
-    let grey = Some(Fresnel::Conductor { eta: [0.7; 3], k: [3.9, 2.4, 2.2] });
+    let grey = Some(Reflectance::Conductor { eta: [0.7; 3], k: [3.9, 2.4, 2.2] });
     for tag in ["rgb", "float", "spectrum"] {
         assert_eq!(of(&format!("<{tag} name=\"eta\" value=\"0.7\"/>")), grey, "{tag}");
     }
@@ -60,7 +60,7 @@ fn a_conductor_of_version_0_6_is_copper_by_default() {
     assert_eq!(older(""), Some(Metal::Copper.into()));
     assert_eq!(older(ETA), None, "with the extinction of copper");
     let none = "<string name=\"material\" value=\"none\"/>";
-    assert_eq!(older(none), Some(Fresnel::Mirror));
+    assert_eq!(older(none), Some(Reflectance::Mirror));
 }
 
 #[test]
@@ -77,10 +77,10 @@ fn presets_are_metals_where_their_index_is_known() {
 #[test]
 fn polarized_plastic_takes_an_index_of_its_own() {
     let eta = fresnel("pplastic", "<float name=\"eta\" value=\"1.9\"/>");
-    assert_eq!(eta, Some(Fresnel::Dielectric(1.9)));
+    assert_eq!(eta, Some(Reflectance::dielectric(1.9)));
     // Which no other plastic has.
     let other = load("a.xml", &bsdf("roughplastic", "<float name=\"eta\" value=\"1.9\"/>"));
-    assert_eq!(other.materials[0].fresnel, Some(Fresnel::Dielectric(1.49 / 1.000_277)));
+    assert_eq!(other.materials[0].fresnel, Some(Reflectance::dielectric(1.49 / 1.000_277)));
     assert!(other.warnings[0].contains("roughplastic has no parameter `eta`"), "{other:?}");
 }
 
@@ -92,7 +92,7 @@ fn a_tint_changes_what_a_thin_surface_reflects() {
         assert_eq!(names(&scene), ["a", "a.transmission"]);
         [scene.materials[0].fresnel, scene.materials[1].fresnel]
     };
-    let dielectric = Some(Fresnel::Dielectric(1.5));
+    let dielectric = Some(Reflectance::dielectric(1.5));
     assert_eq!(thin(""), [dielectric; 2]);
     assert_eq!(thin("<float name=\"spec_tint\" value=\"0\"/>"), [dielectric; 2]);
     assert_eq!(thin("<float name=\"spec_tint\" value=\"1\"/>"), [None, dielectric]);

@@ -3,7 +3,7 @@
 mod degraded;
 mod fresnel;
 
-use microfacet_baker::scene::{Format, Fresnel, Masking, Roughness};
+use microfacet_baker::scene::{Format, Masking, Reflectance, Roughness};
 use microfacet_sampler::Metal;
 use microfacet_tables::Interval;
 
@@ -66,17 +66,17 @@ fn rough_plugins_take_alpha_as_written() {
     let glass = named(&scene, "glass");
     assert_eq!(glass.lobe.roughness, isotropic(0.1));
     assert_eq!(glass.lobe.gamma, Interval::point(2.0));
-    assert_eq!(glass.fresnel, Some(Fresnel::Dielectric(1.333)));
+    assert_eq!(glass.fresnel, Some(Reflectance::dielectric(1.333)));
     let plastic = named(&scene, "plastic");
     assert_eq!(plastic.lobe.roughness, isotropic(0.3));
-    assert_eq!(plastic.fresnel, Some(Fresnel::Dielectric(1.49 / 1.000_277)));
+    assert_eq!(plastic.fresnel, Some(Reflectance::dielectric(1.49 / 1.000_277)));
     let mirror = named(&scene, "mirror");
     assert_eq!(mirror.lobe.roughness, Roughness::Smooth);
-    assert_eq!(mirror.fresnel, Some(Fresnel::Mirror));
+    assert_eq!(mirror.fresnel, Some(Reflectance::Mirror));
     let copper = named(&scene, "copper");
     assert_eq!(copper.lobe.gamma, Interval::point(f64::INFINITY), "the default distribution");
     let (eta, k) = ([0.2, 0.9, 1.1], [3.9, 2.4, 2.2]);
-    assert_eq!(copper.fresnel, Some(Fresnel::Conductor { eta, k }));
+    assert_eq!(copper.fresnel, Some(Reflectance::Conductor { eta, k }));
     assert_eq!(scene.ignored[0].kind, "diffuse");
     assert_eq!(scene.warnings, [""; 0]);
 }
@@ -88,7 +88,8 @@ fn principled_squares_the_roughness() {
     assert_eq!(default.materials[0].lobe.roughness, isotropic(0.25));
     assert_eq!(default.materials[0].lobe.gamma, Interval::point(2.0));
     // The documented default, specular = 0.5, is an index of 1.5.
-    let Some(Fresnel::Dielectric(eta)) = default.materials[0].fresnel else {
+    let Some(Reflectance::Dielectric(Interval { min: eta, .. })) = default.materials[0].fresnel
+    else {
         panic!("{:?}", default.materials[0].fresnel)
     };
     assert!((eta - 1.5).abs() < 1e-15, "{eta}");

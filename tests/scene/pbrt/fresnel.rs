@@ -1,20 +1,21 @@
 //! Fresnel terms.
 
-use microfacet_baker::scene::Fresnel;
+use microfacet_baker::scene::Reflectance;
 use microfacet_sampler::Metal;
+use microfacet_tables::Interval;
 
 use crate::{anisotropic, assert_warned, isotropic, load, names};
 
 /// The Fresnel term of the last lobe of a material.
-fn fresnel(material: &str) -> Option<Fresnel> {
+fn fresnel(material: &str) -> Option<Reflectance> {
     let scene = load("a.pbrt", &format!("Material {material}"));
     assert_eq!(scene.warnings, [""; 0]);
     scene.materials.last().unwrap().fresnel
 }
 
 /// A conductor relative to a coat of this index.
-fn over(coat: f64, eta: [f64; 3], k: [f64; 3]) -> Fresnel {
-    Fresnel::Conductor { eta: eta.map(|x| x / coat), k: k.map(|x| x / coat) }
+fn over(coat: f64, eta: [f64; 3], k: [f64; 3]) -> Reflectance {
+    Reflectance::Conductor { eta: eta.map(|x| x / coat), k: k.map(|x| x / coat) }
 }
 
 const SILVER: &str = "\"spectrum conductor.eta\" \"metal-Ag-eta\"
@@ -33,13 +34,13 @@ fn layered_materials_have_two_interfaces() {
     assert_eq!(names(&scene), ["car.interface", "car.conductor", "skin"]);
     let [interface, conductor, skin] = &scene.materials[..] else { unreachable!() };
     assert_eq!(interface.lobe.roughness, isotropic(0.1));
-    assert_eq!(interface.fresnel, Some(Fresnel::Dielectric(1.6)));
+    assert_eq!(interface.fresnel, Some(Reflectance::dielectric(1.6)));
     assert_eq!(interface.origin.lobe, Some("interface"));
     assert_eq!(conductor.lobe.roughness, anisotropic(0.5, 0.6));
     let fresnel = over(1.6, [0.2, 0.9, 1.1], [3.9, 2.4, 2.2]);
     assert_eq!(conductor.fresnel, Some(fresnel), "relative to the coat");
     assert_eq!(skin.lobe.roughness, isotropic(0.4));
-    assert_eq!(skin.fresnel, Some(Fresnel::Dielectric(1.33)));
+    assert_eq!(skin.fresnel, Some(Reflectance::dielectric(1.33)));
 }
 
 #[test]
@@ -88,7 +89,7 @@ fn eta_and_k_are_colours_or_names_and_copper_by_default() {
 #[test]
 fn a_reflectance_is_that_at_normal_incidence() {
     let index = |parameters: &str| fresnel(&format!("\"conductor\" {parameters}"));
-    let Some(Fresnel::Conductor { eta, k }) = index("\"rgb reflectance\" [ 0.2 0 1 ]") else {
+    let Some(Reflectance::Conductor { eta, k }) = index("\"rgb reflectance\" [ 0.2 0 1 ]") else {
         panic!("no conductor")
     };
     assert_eq!(eta, [1.0; 3]);
@@ -113,7 +114,7 @@ fn glasses_have_their_index_at_the_d_line() {
         ("F11", [583.0, 1.785_426_602_677_4], [604.0, 1.782_278_668_315_6]),
     ] {
         let parameter = format!("eta\" \"glass-{name}\"");
-        let Some(Fresnel::Dielectric(eta)) =
+        let Some(Reflectance::Dielectric(Interval { min: eta, .. })) =
             fresnel(&format!("\"dielectric\" \"spectrum {parameter}"))
         else {
             panic!("{name}")

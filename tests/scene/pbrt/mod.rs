@@ -8,7 +8,7 @@ use std::io::Write;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use microfacet_baker::scene::{Format, Fresnel, Masking, Roughness};
+use microfacet_baker::scene::{Format, Masking, Reflectance, Roughness};
 use microfacet_sampler::Metal;
 use microfacet_tables::Interval;
 
@@ -62,7 +62,7 @@ fn roughness_is_remapped_and_the_rest_is_ggx() {
     assert_eq!(roughness("raw"), isotropic(0.04));
     assert_eq!(roughness("window"), Roughness::Smooth);
     assert_eq!(roughness("frame"), anisotropic(0.3, 0.1));
-    assert_eq!(named(&scene, "paint").fresnel, Some(Fresnel::Dielectric(1.5)));
+    assert_eq!(named(&scene, "paint").fresnel, Some(Reflectance::dielectric(1.5)));
     assert_eq!(named(&scene, "frame").fresnel, Some(Metal::Aluminium.into()));
     assert_eq!(named(&scene, "raw").origin.place.line, Some(13));
 

@@ -8,7 +8,7 @@ use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_tables::axis::half_tangent::{rate, slope_at};
 use microfacet_tables::axis::hermite::limit_slopes;
 use microfacet_tables::axis::{HalfTangent, Rational};
-use microfacet_tables::{Axis, Interpolation, Kind, LobeEntry, Mapping, Precision, Subject, Table};
+use microfacet_tables::{Axis, Interpolation, Kind, LobeSpec, Mapping, Precision, Subject, Table};
 use rayon::prelude::*;
 
 use super::shadowing::ratios;
@@ -69,7 +69,7 @@ fn rational(kappa: f64) -> Mapping {
 
 /// What the tables of the distribution with a label are of.
 pub(crate) fn radial_subject(label: &str) -> Subject {
-    Subject { lobe: LobeEntry::Distribution(label.into()), ..Subject::default() }
+    Subject::of(LobeSpec::outside(label.into()))
 }
 
 /// Bytes of the values of the four tables as they are stored.

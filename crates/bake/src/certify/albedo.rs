@@ -17,9 +17,7 @@ use super::certificate::round_up;
 use super::points::{
     Point, are_apart, beside, crease, edges, has_azimuths, has_crease, interior, middles, smooth,
 };
-use crate::bake::albedo::{
-    AlbedoError, AlbedoLobe, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights,
-};
+use crate::bake::albedo::{AlbedoError, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights};
 use crate::progress::Stage;
 
 /// Accuracy of the model's values that tables are compared with, as a multiple of that of a node.
@@ -75,8 +73,10 @@ fn references(
     let finest = if spec.reflectance.indices().is_some() { FINEST_OF_KINKS } else { 0.0 };
     let tolerance = (FINER * spec.tolerance).max(finest);
     let gammas = points.iter().map(|point| point.site.gamma);
-    let has_stand_in = with_stand_in && spec.reflectance == Reflectance::Moments;
-    let stand_in = spec.lobe.stand_in().filter(|_| has_stand_in);
+    let has_stand_in = with_stand_in && spec.reflectance == Reflectance::Mirror;
+    // The isotropic lobe of the family that usually stands in for one that is not round.
+    let has_stand_in = has_stand_in && !spec.lobe.is_family() && spec.lobe.distribution.is_none();
+    let stand_in = has_stand_in.then(|| spec.lobe.round_sigma());
     Models::with(&spec.lobe, gammas, tolerance, |models| {
         let one = |point: &Point| {
             let site = &point.site;
@@ -168,10 +168,8 @@ impl<'a> Reader<'a> {
         table: &'a Table,
         first: Option<&Reference>,
     ) -> Result<Self, MaterialError> {
-        let own = match (&spec.lobe, first) {
-            (AlbedoLobe::Family(_), _) | (_, None) => None,
-            (_, Some(at)) => Some(Reading::from_table(table, at.site)?),
-        };
+        let first = first.filter(|_| !spec.lobe.is_family());
+        let own = first.map(|at| Reading::from_table(table, at.site)).transpose()?;
         Ok(Self { spec, table, own })
     }
 
@@ -186,7 +184,7 @@ impl<'a> Reader<'a> {
         };
         let exact = exact.of(self.table.subject.masking.unwrap_or_default());
         let exact = match self.spec.reflectance {
-            Reflectance::Moments => [&exact[..], &[exact[0] + exact[1]]].concat(),
+            Reflectance::Mirror => [&exact[..], &[exact[0] + exact[1]]].concat(),
             _ => exact.to_vec(),
         };
         Ok(got.iter().zip(&exact).map(|(got, exact)| (got - exact).abs()).collect())
@@ -329,7 +327,7 @@ fn measured_at(
 /// The quantities that are read, in the order of their errors.
 fn quantities(spec: &AlbedoSpec) -> Vec<Quantity> {
     let channels = match spec.reflectance {
-        Reflectance::Moments => &["scale", "bias", "f82", "e"],
+        Reflectance::Mirror => &["scale", "bias", "f82", "e"],
         _ => spec.reflectance.channels(),
     };
     // One left out would give the errors of the next its name.
@@ -421,7 +419,7 @@ impl Reading {
         Site { sigma, gamma, eta, .. }: Site,
     ) -> Result<Self, MaterialError> {
         Ok(match table.subject.reflectance {
-            Some(Reflectance::Moments) => {
+            Some(Reflectance::Mirror) => {
                 Self::Moments(TabulatedAlbedo::from_table(table, sigma, gamma)?)
             }
             _ => Self::Shares(ViewCurve::from_table(table, sigma, gamma, eta)?),

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 use microfacet_model::Ellipsoid;
 use microfacet_sampler::Masking;
 use microfacet_tables::axis::LogRoughness;
-use microfacet_tables::{Axis, Mapping};
+use microfacet_tables::{Axis, Interval, Mapping};
 
 use super::certificate::low_discrepancy;
-use crate::bake::albedo::{AlbedoLobe, AlbedoSpec, Site, area_ratio};
+use crate::bake::albedo::{AlbedoSpec, Site, area_ratio, ellipsoid};
 
 /// Smallest σ and cos θ of the domain that certificates promise errors for.
 const PROMISED: (f64, f64) = (0.01, 0.02);
@@ -64,20 +64,18 @@ impl Range {
             ends.sort_by(f64::total_cmp);
             ends
         };
-        let [low, high] = match (axis.mapping, &spec.lobe) {
-            (Mapping::LogShape(_), AlbedoLobe::Family(domain)) => {
-                of([domain.gamma.min, domain.gamma.max])
+        let [low, high] = match axis.mapping {
+            Mapping::LogShape(_) => of(spec.lobe.gamma.into()),
+            Mapping::LogRoughness(_) => {
+                let Interval { min, max } = spec.lobe.roughness.x();
+                of([PROMISED.0.min(max).max(min).max(SMOOTHEST), max.max(SMOOTHEST)])
             }
-            (Mapping::LogRoughness(_), AlbedoLobe::Family(domain)) => {
-                let max = domain.sigma.max;
-                of([PROMISED.0.min(max).max(domain.sigma.min).max(SMOOTHEST), max.max(SMOOTHEST)])
+            Mapping::ReflectanceRoot => {
+                of(spec.reflectance.indices().unwrap_or(Interval::UNIT).into())
             }
-            (Mapping::ReflectanceRoot, _) => {
-                of(spec.reflectance.indices().unwrap_or([f64::NAN; 2]))
-            }
-            (Mapping::Azimuth(_), _) if axis.len() == 1 => [0.0; 2],
+            Mapping::Azimuth(_) if axis.len() == 1 => [0.0; 2],
             // The ends of a full circle coincide: a quarter turn is the other corner.
-            (Mapping::Azimuth(azimuth), _) => [0.0, if azimuth.fold { 1.0 } else { 0.25 }],
+            Mapping::Azimuth(azimuth) => [0.0, if azimuth.fold { 1.0 } else { 0.25 }],
             _ => [0.0, 1.0],
         };
         let whole = if is_circle(axis) { [0.0, 1.0] } else { [low, high] };
@@ -158,12 +156,10 @@ fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
         site.cos = cos;
         at[material.len()] = coordinate(&spec.axes[material.len()], &site);
     }
-    let smoothest = match &spec.lobe {
-        // If all materials are smoother, the roughest counts: otherwise there would be no promised
-        // place.
-        AlbedoLobe::Family(domain) => PROMISED.0.min(domain.sigma.max) * (1.0 - 1e-9),
-        _ => 0.0,
-    };
+    // If all materials are smoother, the roughest counts: otherwise there would be no promised
+    // place.
+    let roughest = spec.lobe.is_family().then(|| spec.lobe.roughness.x().max);
+    let smoothest = roughest.map_or(0.0, |roughest| PROMISED.0.min(roughest) * (1.0 - 1e-9));
     let promised = site.cos as f32 >= PROMISED.1 as f32 && site.sigma >= smoothest;
     Point { at, site, promised, on_crease: false }
 }
@@ -243,7 +239,9 @@ pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
 /// middle of the cell of the smallest γ and of every cell of σ, in every third cell of the view.
 /// None for a table without them.
 pub fn smooth(spec: &AlbedoSpec) -> Vec<Point> {
-    let AlbedoLobe::Family(domain) = spec.lobe else { return Vec::new() };
+    if !spec.lobe.is_family() {
+        return Vec::new();
+    }
     let ranges = ranges(spec);
     let (view, materials) = ranges.split_last().expect("the view is an axis");
     let mut material: Vec<f64> = materials.iter().map(|range| range.ends[0]).collect();
@@ -261,7 +259,8 @@ pub fn smooth(spec: &AlbedoSpec) -> Vec<Point> {
         let seen = view.cells.iter().skip(1).step_by(3);
         points.extend(seen.map(|&view| point(spec, &material, View::At(view))));
     }
-    let covered = domain.sigma.min..PROMISED.0.min(domain.sigma.max);
+    let Interval { min, max } = spec.lobe.roughness.x();
+    let covered = min..PROMISED.0.min(max);
     points.retain(|place| covered.contains(&place.site.sigma));
     points
 }
@@ -279,7 +278,7 @@ impl<'a> Crease<'a> {
     /// `None` where E has no such kink.
     fn of(spec: &'a AlbedoSpec) -> Option<Self> {
         let kink = spec.maskings.contains(&Masking::HeightCorrelated);
-        spec.lobe.ellipsoid().filter(|_| kink).map(|ellipsoid| Self { spec, ellipsoid })
+        ellipsoid(&spec.lobe).ok().filter(|_| kink).map(|ellipsoid| Self { spec, ellipsoid })
     }
 
     /// Its promised places with the coordinate t along an axis: 0, azimuth, or 1, view.
@@ -445,11 +444,9 @@ fn some_shape(range: &Range, x: f64) -> f64 {
 /// A grazing view and, if `smooth`, a surface smoother than the promised ones, if there are any, at
 /// a view where it masks.
 fn outside(spec: &AlbedoSpec, mut material: Vec<f64>, x: [f64; 4], smooth: bool) -> Point {
-    if let AlbedoLobe::Family(domain) = spec.lobe
-        && domain.sigma.min <= SMOOTHEST
-        && smooth
-    {
-        let roughest = PROMISED.0.min(domain.sigma.max);
+    let Interval { min, max } = spec.lobe.roughness.x();
+    if spec.lobe.is_family() && min <= SMOOTHEST && smooth {
+        let roughest = PROMISED.0.min(max);
         let sigma = roughest * libm::pow(SMOOTHEST / roughest, x[1]);
         material[1] = spec.axes[1].coordinate(sigma).unwrap_or(material[1]);
     }
@@ -469,6 +466,7 @@ fn steps() -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bake::albedo::AlbedoLobe;
     use crate::table_spec::Quality;
     use microfacet_sampler::Masking;
     use microfacet_tables::{Precision, Reflectance};
@@ -476,13 +474,13 @@ mod tests {
     #[test]
     fn places_are_counted_as_they_are_listed() {
         let lobes = [
-            AlbedoLobe::StudentT { sigma: [0.3, 0.1], gamma: 3.0 },
-            AlbedoLobe::Ellipsoid { sigma: [0.3; 2], theta: [0.2, 0.0, 0.0], gamma: 3.0 },
+            AlbedoLobe::student_t([0.3, 0.1], 3.0),
+            AlbedoLobe { theta: Some([0.2, 0.0, 0.0]), ..AlbedoLobe::student_t([0.3; 2], 3.0) },
         ];
         let of = |lobe| {
             let masking = vec![Masking::HeightCorrelated];
             let draft = Quality::Draft;
-            AlbedoSpec::new(lobe, Reflectance::Moments, masking, draft, Precision::F32).unwrap()
+            AlbedoSpec::new(lobe, Reflectance::Mirror, masking, draft, Precision::F32).unwrap()
         };
         let general = AlbedoSpec::general(Quality::Draft, Precision::F32);
         for spec in lobes.map(of).into_iter().chain([general]) {

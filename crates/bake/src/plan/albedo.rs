@@ -4,12 +4,12 @@
 use std::collections::HashMap;
 
 use microfacet_sampler::Masking;
-use microfacet_tables::{Interval, LobeEntry, Precision, Reflectance, SIGMA_MAX};
+use microfacet_tables::{LobeForm, LobeSpec, Precision, Reflectance, Roughness, SIGMA_MAX};
 
 use super::albedo_work::albedo_seconds;
 use super::key::{self, Numbers, distinct};
-use super::{NotCovered, Options, entry, is_tabulated, refusal};
-use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, Domain};
+use super::{NotCovered, Options, is_tabulated, refusal};
+use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
 use crate::scene::{Format, Material, Scene};
 use crate::table_spec::{Level, Quality};
 
@@ -47,13 +47,8 @@ pub struct RequiredAlbedo {
 impl RequiredAlbedo {
     /// The moments of the whole domain of the tables.
     pub fn general() -> Self {
-        let lobe = AlbedoLobe::Family(Domain::GENERAL);
-        Self { lobe, reflectance: Reflectance::Moments, maskings: Masking::ALL.into() }
-    }
-
-    /// Whether it is of round lobes of the family.
-    pub fn is_of_family(&self) -> bool {
-        matches!(self.lobe, AlbedoLobe::Family(_))
+        let (lobe, reflectance) = (LobeSpec::GENERAL, Reflectance::Mirror);
+        Self { lobe, reflectance, maskings: Masking::ALL.into() }
     }
 
     /// Whether averages are baked as well, as of a range of the family.
@@ -136,7 +131,7 @@ impl Needs {
         if self.all.len() == MAX_ALBEDOS {
             return Err(NotCovered::Albedos { most: MAX_ALBEDOS });
         }
-        if matches!(lobe, AlbedoLobe::Family(_)) {
+        if lobe.is_family() {
             self.families[i].push(self.all.len());
         }
         self.of.insert(key, self.all.len());
@@ -146,13 +141,11 @@ impl Needs {
 
     /// The first group that covers what a material asks for.
     fn serving(&self, Want { lobe, masking, .. }: Want, i: usize) -> Option<usize> {
-        let AlbedoLobe::Family(domain) = &lobe else {
+        if !lobe.is_family() {
             return self.of.get(&(key::of_lobe(&lobe), i)).copied();
-        };
-        let covers = |need: &RequiredAlbedo| {
-            matches!(&need.lobe, AlbedoLobe::Family(other) if other.contains(domain))
-                && need.maskings.contains(&masking)
-        };
+        }
+        let covers =
+            |need: &RequiredAlbedo| need.lobe.contains(&lobe) && need.maskings.contains(&masking);
         self.families[i].iter().copied().find(|&need| covers(&self.all[need]))
     }
 }
@@ -205,7 +198,7 @@ fn wanted(scene: &Scene, options: Options) -> Result<Wanted, NotCovered> {
     let all = || wants.iter().flatten().flatten();
     let mut reflectances = distinct(all().map(|want| want.reflectance), key::of_reflectance);
     // The moments first, since they serve most materials.
-    reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Moments);
+    reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Mirror);
     let indices: HashMap<Numbers, usize> =
         reflectances.iter().enumerate().map(|(i, of)| (key::of_reflectance(of), i)).collect();
     let index = |want: &Want| indices[&key::of_reflectance(&want.reflectance)];
@@ -223,12 +216,9 @@ fn wanted(scene: &Scene, options: Options) -> Result<Wanted, NotCovered> {
     let mut needs = Needs { families, ..Needs::default() };
     for (reflectance, asked) in reflectances.into_iter().enumerate().zip(asked) {
         for (lobes, masking) in asked.into_iter().zip(Masking::ALL) {
-            let domain = |lobe: &&AlbedoLobe| {
-                if let AlbedoLobe::Family(domain) = lobe { Some(*domain) } else { None }
-            };
-            let domains = joined(lobes.iter().filter_map(domain));
-            let own = lobes.into_iter().filter(|lobe| domain(lobe).is_none()).cloned();
-            for lobe in domains.into_iter().map(AlbedoLobe::Family).chain(own) {
+            let (round, own): (Vec<_>, Vec<_>) =
+                lobes.into_iter().partition(|lobe| lobe.is_family());
+            for lobe in joined(round.into_iter()).into_iter().chain(own.into_iter().cloned()) {
                 needs.add(lobe, reflectance, masking)?;
             }
         }
@@ -253,43 +243,24 @@ fn wants(
     if let Some(verdict) = unasked(material, options) {
         return Ok(Err(verdict));
     }
-    let (gamma, [x, y]) = (material.lobe.gamma, material.lobe.sigmas());
-    // The usual stand-in for an anisotropic surface.
-    let mean = |x: f64, y: f64| if x == y { x } else { (x * y).sqrt() };
-    let round = AlbedoLobe::Family(Domain {
-        gamma,
-        sigma: Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) },
-    });
-    let entry = entry(material);
-    let lobe = match (entry.lobe.tabulated(), &material.lobe.distribution) {
-        (LobeEntry::Family, _) => round.clone(),
-        (LobeEntry::StudentT { sigma, .. }, _) => AlbedoLobe::StudentT { sigma, gamma: gamma.min },
-        (LobeEntry::Ellipsoid { sigma, theta, .. }, _) => {
-            AlbedoLobe::Ellipsoid { sigma, theta, gamma: gamma.min }
-        }
-        (LobeEntry::Distribution(_), Some(distribution)) => {
-            AlbedoLobe::Radial { distribution: distribution.clone(), sigma: x.min }
-        }
-        (LobeEntry::Distribution(_), None) => unreachable!("entries take it from the material"),
-    };
-    let refracts = matches!(entry.lobe.tabulated(), LobeEntry::Family | LobeEntry::StudentT { .. });
+    let (lobe, round) = (material.lobe.tabulated(), material.lobe.round());
+    let refracts = matches!(lobe.form(), LobeForm::Family | LobeForm::StudentT);
     let exact = material.fresnel.iter().flat_map(|fresnel| fresnel.tabulated());
-    let exact = exact.filter(|reflectance| *reflectance != Reflectance::Moments);
+    let exact = exact.filter(|reflectance| *reflectance != Reflectance::Mirror);
     let of = |reflectance: Reflectance| {
         // The model has refraction for isotropic lobes of the family only.
         let lobe = if reflectance.indices().is_some() { &round } else { &lobe };
-        Want { lobe: lobe.clone(), reflectance, masking: entry.masking() }
+        Want { lobe: lobe.clone(), reflectance, masking: material.masking.unwrap_or_default() }
     };
-    let embedded = options.embedded_albedo && matches!(lobe, AlbedoLobe::Family(_));
-    let moments = (!embedded).then_some(Reflectance::Moments);
+    let embedded = options.embedded_albedo && lobe.is_family();
+    let moments = (!embedded).then_some(Reflectance::Mirror);
     let exact = exact.filter(|reflectance| refracts || reflectance.indices().is_none());
     let wants: Vec<Want> = moments.into_iter().chain(exact).map(of).collect();
     // The lobe itself too: the default set has no albedos beyond either.
     for lobe in std::iter::once(&lobe).chain(wants.iter().map(|want| &want.lobe)) {
-        if let AlbedoLobe::Family(Domain { sigma, .. }) = lobe
-            && sigma.max > SIGMA_MAX
-        {
-            let why = NotCovered::Sigma { material: material.name.clone(), sigma: sigma.max };
+        let sigma = lobe.roughness.x().max;
+        if lobe.is_family() && sigma > SIGMA_MAX {
+            let why = NotCovered::Sigma { material: material.name.clone(), sigma };
             return refusal(material, options, why).map(|why| Err(AlbedoVerdict::NotCovered(why)));
         }
     }
@@ -308,54 +279,53 @@ fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
     }
 }
 
-/// A small number of domains that cover all of `wants` with no more nodes in all.
-fn joined(wants: impl Iterator<Item = Domain>) -> Vec<Domain> {
-    let mut groups: Vec<Vec<Domain>> = Vec::new();
+/// A small number of ranges of round lobes that cover all of `wants` with no more nodes in all.
+fn joined<'a>(wants: impl Iterator<Item = &'a AlbedoLobe>) -> Vec<AlbedoLobe> {
+    let mut groups: Vec<Vec<AlbedoLobe>> = Vec::new();
     let mut of_shapes: HashMap<Numbers, usize> = HashMap::new();
-    for want in distinct(wants, key::of_domain) {
-        let shapes = key::of(&[want.gamma.min, want.gamma.max]);
+    for want in distinct(wants, |lobe| key::of_lobe(lobe)) {
+        let shapes = key::of(&<[f64; 2]>::from(want.gamma));
         let group = *of_shapes.entry(shapes).or_insert(groups.len());
         if group == groups.len() {
             groups.push(Vec::new());
         }
-        groups[group].push(want);
+        groups[group].push(want.clone());
     }
     least(groups)
 }
 
-/// A small number of domains that cover all of `groups`, each of one range of shapes.
-fn least(groups: Vec<Vec<Domain>>) -> Vec<Domain> {
-    let need =
-        |domain| RequiredAlbedo { lobe: AlbedoLobe::Family(domain), ..RequiredAlbedo::general() };
-    let cost = |domain| {
-        need(domain).spec(Quality::Default, Precision::F32).map_or(usize::MAX, |spec| spec.nodes())
+/// A small number of ranges that cover all of `groups`, each of one range of shapes.
+fn least(groups: Vec<Vec<AlbedoLobe>>) -> Vec<AlbedoLobe> {
+    let cost = |lobe: &AlbedoLobe| {
+        let need = RequiredAlbedo { lobe: lobe.clone(), ..RequiredAlbedo::general() };
+        need.spec(Quality::Default, Precision::F32).map_or(usize::MAX, |spec| spec.nodes())
     };
-    // One domain in the place of several, if it has no more nodes.
-    let hull_if_cheaper = |domains: Vec<Domain>| -> Vec<Domain> {
-        let hull = domains.iter().copied().reduce(|a, b| a.union(&b));
-        match hull {
-            Some(hull)
-                if cost(hull) <= domains.iter().map(|domain| cost(*domain)).sum::<usize>() =>
-            {
-                vec![hull]
-            }
-            _ => domains,
-        }
+    let hull = |a: AlbedoLobe, b: &AlbedoLobe| {
+        let sigma = Roughness::isotropic(a.roughness.x().union(b.roughness.x()));
+        AlbedoLobe::family(sigma, a.gamma.union(b.gamma))
+    };
+    // One range in the place of several, if it has no more nodes.
+    let hull_if_cheaper = |lobes: Vec<AlbedoLobe>| -> Vec<AlbedoLobe> {
+        let Some(first) = lobes.first() else { return lobes };
+        let all = lobes.iter().fold(first.clone(), hull);
+        if cost(&all) <= lobes.iter().map(cost).sum() { vec![all] } else { lobes }
     };
     // Joins all roughnesses of one shape, then all shapes.
     let all = groups.into_iter().flat_map(hull_if_cheaper).collect();
     let all = hull_if_cheaper(all);
-    // A domain inside another is covered by it. Comparing each with each takes no longer with more
-    // materials: a hull has fewer nodes than a thousand domains.
+    // A range inside another is covered by it. Comparing each with each takes no longer with more
+    // materials: a hull has fewer nodes than a thousand ranges.
     let inside = |i: usize| {
-        let holds = |(j, other): (usize, &Domain)| {
-            i != j && other.contains(&all[i]) && (*other != all[i] || j < i)
+        let holds = |(j, other): (usize, &AlbedoLobe)| {
+            i != j && other.contains(&all[i]) && (j < i || !all[i].contains(other))
         };
         all.iter().enumerate().any(holds)
     };
-    let mut kept: Vec<Domain> = (0..all.len()).filter(|&i| !inside(i)).map(|i| all[i]).collect();
+    let kept = (0..all.len()).filter(|&i| !inside(i)).map(|i| all[i].clone());
+    let mut kept: Vec<AlbedoLobe> = kept.collect();
     kept.sort_by(|a, b| {
-        b.gamma.max.total_cmp(&a.gamma.max).then(a.sigma.min.total_cmp(&b.sigma.min))
+        let least_sigma = |lobe: &AlbedoLobe| lobe.roughness.x().min;
+        b.gamma.max.total_cmp(&a.gamma.max).then(least_sigma(a).total_cmp(&least_sigma(b)))
     });
     kept
 }

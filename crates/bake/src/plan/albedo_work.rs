@@ -9,7 +9,7 @@
 //! `crates/study/src/planner_seconds.rs` shows how well they meet other materials.
 
 use microfacet_core::shape::s_of_gamma;
-use microfacet_tables::{Mapping, Reflectance};
+use microfacet_tables::{LobeForm, Mapping, Reflectance};
 
 use crate::bake::albedo::{AlbedoLobe, AlbedoSpec};
 use crate::certify::albedo::climbed_count;
@@ -117,24 +117,26 @@ fn expected(spec: &AlbedoSpec) -> [f64; 2] {
     // Decades of accuracy beyond default quality, and short of it.
     let decades = libm::log10(1e-6 / spec.tolerance);
     let (finer, coarser) = (decades.max(0.0), (-decades).max(0.0));
-    match (&spec.lobe, spec.reflectance) {
-        (AlbedoLobe::StudentT { sigma, gamma }, _) => {
-            let Features { s, aspect, rough, .. } = Features::of(*sigma, *gamma);
+    let lobe = &spec.lobe;
+    match (lobe.form(), spec.reflectance) {
+        (LobeForm::StudentT, _) => {
+            let Features { s, aspect, rough, .. } = Features::of_single(lobe);
             // An aspect of 4 to 8 needs the first doubling, and each factor of 3.3 another.
             let azimuths = 0.5 + (aspect - 1.3 - 0.42 * s) / 1.2 + 0.6 * s * finer;
             // The few views of a draft miss the hump of rough lobes with short tails.
             [azimuths, 0.1 + 0.5 * s * finer + coarser * (1.5 * rough - 0.7 * s).max(0.0)]
         }
-        (AlbedoLobe::Ellipsoid { sigma, theta, gamma }, _) => {
+        (LobeForm::Ellipsoid, _) => {
             // Rough lobes with heavy tails are hardly clamped, and those that hardly lean.
-            let Features { s, rough, heavy, .. } = Features::of(*sigma, *gamma);
-            let lean = libm::hypot(theta[0], theta[1]) / sigma[0].min(sigma[1]);
+            let Features { s, rough, heavy, .. } = Features::of_single(lobe);
+            let ([x, y], [a, b, _]) = (lobe.sigma(), lobe.theta.unwrap_or_default());
+            let lean = libm::hypot(a, b) / x.min(y);
             let leaning = (2.0 * lean).clamp(0.2, 1.0) * (1.0 - 0.8 * heavy);
             [leaning * (1.6 - 1.3 * s * rough).clamp(0.1, 1.0); 2]
         }
-        (AlbedoLobe::Family(_), Reflectance::Dielectric { .. }) => [0.0, 0.35],
-        (AlbedoLobe::Family(_), _) => [0.0; 2],
-        (AlbedoLobe::Radial { .. }, _) => [0.0, 0.15],
+        (LobeForm::Family, Reflectance::Interface { .. }) => [0.0, 0.35],
+        (LobeForm::Family, _) => [0.0; 2],
+        (LobeForm::Distribution, _) => [0.0, 0.15],
     }
 }
 
@@ -151,6 +153,11 @@ struct Features {
 }
 
 impl Features {
+    /// Of a single lobe.
+    fn of_single(lobe: &AlbedoLobe) -> Self {
+        Self::of(lobe.sigma(), lobe.gamma.min)
+    }
+
     fn of([x, y]: [f64; 2], gamma: f64) -> Self {
         let s = s_of_gamma(gamma);
         let aspect = libm::fabs(libm::log(x / y)).min(libm::log(100.0));
@@ -166,10 +173,11 @@ fn node_microseconds(spec: &AlbedoSpec) -> f64 {
     // Three indices, each for three channels.
     let metal = matches!(spec.reflectance, Reflectance::Conductor { .. });
     let weights = if metal { 1.8 } else { 1.0 };
-    let node = match &spec.lobe {
-        AlbedoLobe::Family(domain) if spec.reflectance.indices().is_some() => {
+    let lobe = &spec.lobe;
+    let node = match lobe.form() {
+        LobeForm::Family if spec.reflectance.indices().is_some() => {
             // The mean of the ends of the range, of which one may dominate.
-            let (gamma, sigma) = (domain.gamma, domain.sigma);
+            let (gamma, sigma) = (lobe.gamma, lobe.roughness.x());
             let ends = [(gamma.min, sigma.max), (gamma.max, sigma.min)];
             let ends = ends.map(|(gamma, sigma)| {
                 // A mirror, σ = 0, is as fast as the smoothest surface.
@@ -178,10 +186,10 @@ fn node_microseconds(spec: &AlbedoSpec) -> f64 {
             });
             0.5 * (ends[0] + ends[1]) * accurate(0.05)
         }
-        AlbedoLobe::Family(domain) => {
+        LobeForm::Family => {
             // To prepare a shape of heavy tails takes longer, which many nodes of a range hide.
-            let single = domain.gamma.is_point();
-            let heavy = single && s_of_gamma(domain.gamma.min) > 1.25;
+            let single = lobe.gamma.is_point();
+            let heavy = single && s_of_gamma(lobe.gamma.min) > 1.25;
             accurate(0.08)
                 * if heavy {
                     150.0
@@ -191,23 +199,23 @@ fn node_microseconds(spec: &AlbedoSpec) -> f64 {
                     90.0
                 }
         }
-        AlbedoLobe::StudentT { sigma, gamma } => {
-            let Features { s, aspect, rough, heavy } = Features::of(*sigma, *gamma);
+        LobeForm::StudentT => {
+            let Features { s, aspect, rough, heavy } = Features::of_single(lobe);
             let smooth = 5.54 + 0.61 * s + (0.43 * s - 0.3 * heavy) * aspect;
             let long = aspect.min(1.5) + 0.25 * s.min(1.0) * (aspect - 1.5).max(0.0);
             let branch = rough * (0.93 + 0.82 * long - 0.97 * s);
             accurate(0.126 + 0.08 * s) * libm::exp(smooth + branch)
         }
-        AlbedoLobe::Ellipsoid { sigma, gamma, .. } => {
+        LobeForm::Ellipsoid => {
             // The kinks of clamped masking are searched for on every chord, and are many where the
             // lobe is narrow.
-            let Features { s, rough, heavy, .. } = Features::of(*sigma, *gamma);
+            let Features { s, rough, heavy, .. } = Features::of_single(lobe);
             let smooth = 7.15 + 2.2 * s.min(1.1).sqrt() - 1.2 * heavy;
             accurate(0.2) * libm::exp(smooth + rough * (0.9 - 1.4 * s))
         }
-        AlbedoLobe::Radial { distribution, .. } => match distribution {
-            Distribution::Named(Named { kind: DistributionKind::Gauss, .. }) => 480.0,
-            Distribution::Named(Named { kind: DistributionKind::Schlick, .. }) => 210.0,
+        LobeForm::Distribution => match &lobe.distribution {
+            Some(Distribution::Named(Named { kind: DistributionKind::Gauss, .. })) => 480.0,
+            Some(Distribution::Named(Named { kind: DistributionKind::Schlick, .. })) => 210.0,
             _ => 1350.0,
         },
     };

@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::Masking;
 use microfacet_tables::{
-    Axis, Interpolation, Kind, LobeEntry, Mapping, MaterialEntry, Precision, Provenance,
+    Axis, Interpolation, Kind, LobeSpec, Mapping, MaterialEntry, Precision, Provenance,
     Reflectance, Subject, Table, describe, stated_axes,
 };
 
@@ -58,7 +58,7 @@ pub fn bare_cost(provenance: &Provenance) -> Cost {
     let dielectric = |entry: &MaterialEntry| entry.fresnel.is_some_and(|f| f.indices().is_some());
     let formulas = Mapping::EVERY.into_iter().filter(|mapping| match mapping {
         Mapping::LogShape(_) | Mapping::LogRoughness(_) | Mapping::ViewBlend(_) => has("albedo"),
-        Mapping::Azimuth(_) => some(&|entry| entry.lobe.tabulated() != LobeEntry::Family),
+        Mapping::Azimuth(_) => some(&|entry| !entry.lobe.tabulated().is_family()),
         Mapping::ReflectanceRoot | Mapping::CriticalBlend(_) => some(&dielectric),
         _ => has("visible_slope"),
     });
@@ -183,10 +183,10 @@ pub fn distribution_cost(
     let level = level.into();
     // The name ends in the label, or as many other characters; kind, channels, certificate, shape
     // and offsets.
-    let suffix = distribution.label().len();
+    let (label, subject) = (distribution.label(), Subject::of(LobeSpec::outside(String::new())));
     let (mut known, scales) = (Known::default(), scales(precision, Kind::VALUE_AND_SLOPE.len()));
     let header = |(kind, axes): &(Kind, Vec<Axis>)| {
-        known.axes(&Subject::default(), axes) + 2 * (kind.name().len() + suffix) + 305 + scales
+        known.axes(&subject, axes) + 2 * (kind.name().len() + label.len()) + 305 + scales
     };
     let headers = distribution_tables(level).iter().map(header).sum::<usize>();
     let bytes = headers + bake::radial_bytes(level, precision);

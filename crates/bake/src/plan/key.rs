@@ -4,10 +4,11 @@
 use std::collections::HashSet;
 use std::hash::Hash;
 
-use microfacet_tables::{Reflectance, Side};
+use microfacet_tables::{Interval, Reflectance, Side};
 use ordered_float::OrderedFloat;
 
-use crate::bake::albedo::{AlbedoLobe, Domain};
+use crate::bake::albedo::AlbedoLobe;
+use crate::distribution::Distribution;
 
 /// The numbers of a part of a scene, in which −0 equals 0; each form has another number of them.
 pub(super) type Numbers = Vec<OrderedFloat<f64>>;
@@ -17,28 +18,22 @@ pub(super) fn of(numbers: &[f64]) -> Numbers {
     numbers.iter().copied().map(OrderedFloat).collect()
 }
 
-pub(super) fn of_domain(Domain { gamma, sigma }: &Domain) -> Numbers {
-    of(&[gamma.min, gamma.max, sigma.min, sigma.max])
-}
-
 /// The numbers of a lobe, and the distribution of one outside the family.
 pub(super) fn of_lobe(lobe: &AlbedoLobe) -> (Numbers, Option<String>) {
-    match lobe {
-        AlbedoLobe::Family(domain) => (of_domain(domain), None),
-        AlbedoLobe::StudentT { sigma, gamma } => (of(&[&sigma[..], &[*gamma]].concat()), None),
-        AlbedoLobe::Ellipsoid { sigma, theta, gamma } => {
-            (of(&[&sigma[..], &theta[..], &[*gamma]].concat()), None)
-        }
-        AlbedoLobe::Radial { distribution, sigma } => (of(&[*sigma]), Some(distribution.label())),
-    }
+    let [x, y] = lobe.sigmas().map(<[f64; 2]>::from);
+    let theta = lobe.theta.iter().flatten().copied();
+    let all: Vec<f64> = [lobe.gamma.into(), x, y].concat().into_iter().chain(theta).collect();
+    (of(&all), lobe.distribution.as_ref().map(Distribution::label))
 }
 
 pub(super) fn of_reflectance(reflectance: &Reflectance) -> Numbers {
     match *reflectance {
-        Reflectance::Moments => Vec::new(),
+        Reflectance::Mirror => Vec::new(),
+        Reflectance::Schlick(f0) => of(&f0),
         Reflectance::Conductor { eta, k } => of(&[eta, k].concat()),
-        Reflectance::Dielectric { side, min, max } => {
-            of(&[f64::from(side == Side::Dense), min, max.unwrap_or(f64::INFINITY)])
+        Reflectance::Dielectric(Interval { min, max }) => of(&[min, max]),
+        Reflectance::Interface { side, index: Interval { min, max } } => {
+            of(&[f64::from(side == Side::Dense), min, max, 0.0])
         }
     }
 }

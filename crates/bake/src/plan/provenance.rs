@@ -96,7 +96,7 @@ impl Plan {
             If::Peeled => self.shapes.iter().any(|need| need.gamma().min < GAMMA_WHOLE),
             If::Albedos => !self.albedos.is_empty(),
             If::Averages => self.albedos.iter().any(RequiredAlbedo::has_averages),
-            If::Lobes => self.albedos.iter().any(|need| !need.is_of_family()),
+            If::Lobes => self.albedos.iter().any(|need| !need.lobe.is_family()),
             If::ClosedForms => self.has_closed_forms(),
         };
         let conventions = CONVENTIONS.iter().filter(|(condition, ..)| holds(condition));

@@ -10,7 +10,7 @@ use crate::distribution::Distribution;
 use microfacet_tables::MaterialEntry;
 
 pub use microfacet_sampler::Masking;
-pub use microfacet_tables::{FresnelEntry as Fresnel, LobeSpec, Roughness};
+pub use microfacet_tables::{LobeSpec, Reflectance, Roughness};
 
 /// The format in which a material was described.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -78,7 +78,7 @@ pub struct Material {
     /// The lobe.
     pub lobe: LobeSpec<Distribution>,
     /// The facets' reflectance; `None` if the scene states none, or none of these forms.
-    pub fresnel: Option<Fresnel>,
+    pub fresnel: Option<Reflectance>,
     /// The form of G2 that the scene's renderer uses; `None` where the format leaves it open.
     pub masking: Option<Masking>,
     /// Where it was described.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use microfacet_baker::scene::{
-    Format, Fresnel, LobeSpec, Masking, Material, Names, Origin, Place, Roughness, Scene,
+    Format, LobeSpec, Masking, Material, Names, Origin, Place, Reflectance, Roughness, Scene,
 };
 use microfacet_tables::Interval;
 use microfacet_tables::SIGMA_MAX;
@@ -50,7 +50,7 @@ pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a str, &'a Fitted)>) -> Stri
                 Roughness::Isotropic(Interval::point(sigma)),
                 Interval::point(gamma),
             ),
-            fresnel: tabulated.then_some(Fresnel::Schlick(fitted.f0)),
+            fresnel: tabulated.then_some(Reflectance::Schlick(fitted.f0)),
             masking: Some(Masking::Uncorrelated),
             origin: Origin {
                 format: Format::Recipe,
@@ -96,7 +96,7 @@ mod tests {
         for (material, gamma) in scene.materials.iter().zip(gammas) {
             assert_eq!(material.lobe.roughness.x(), Interval::point(0.1 + 0.2));
             assert_eq!(material.lobe.gamma, Interval::point(gamma));
-            assert_eq!(material.fresnel, Some(Fresnel::Schlick([1.0, 0.0, 1.0 / 3.0])));
+            assert_eq!(material.fresnel, Some(Reflectance::Schlick([1.0, 0.0, 1.0 / 3.0])));
             assert_eq!(material.masking, Some(Masking::Uncorrelated));
         }
         assert!(text.contains("#   gold (2) (2): 0.100000, 0.000000, 0.250000\n"), "{text}");

@@ -23,7 +23,7 @@ pub(crate) fn spec(table: &Table) -> Option<AlbedoSpec> {
 }
 
 fn known(table: &Table) -> Result<AlbedoSpec, Unmeasured> {
-    let lobe = table.subject.lobe.name();
+    let lobe = table.subject.lobe.distribution.as_deref().unwrap_or(&table.name);
     spec(table).ok_or_else(|| Unmeasured::NoTable(format!("the curve of `{lobe}`")))
 }
 

@@ -1,6 +1,6 @@
 //! Errors of tables of masking and of visible normals.
 
-use microfacet_baker::certify::certificate::{ALL_SHAPES, Ruler, cotangent, number, view};
+use microfacet_baker::certify::certificate::{Ruler, cotangent, number, view};
 use microfacet_baker::progress::Stage;
 use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use microfacet_sampler::Tables;
@@ -80,7 +80,7 @@ impl super::Ruler for Normals {
 
 fn ruler(set: &Tables) -> Ruler<'_> {
     let table = &set.tables()[0];
-    Ruler::new(set, table, table.subject.covers.map_or(ALL_SHAPES, |covers| covers.s))
+    Ruler::new(set, table, table.subject.lobe.s())
 }
 
 /// The share of s at which γ is at this share: γ ascends along an axis of a map.
@@ -91,14 +91,14 @@ fn ascending(share: f64) -> f64 {
 /// The table, and of the tables that a lobe is made of those of other kinds which it overlaps. More
 /// than one of its own kind would leave open which one is read.
 fn with_others(set: &Tables, table: &Table) -> Vec<Table> {
-    let overlaps = |other: &Table| match (other.subject.covers, table.subject.covers) {
-        (Some(a), Some(b)) => a.s[0] <= b.s[1] && b.s[0] <= a.s[1],
-        _ => true,
+    let overlaps = |other: &Table| {
+        let [a, b] = [other, table].map(|table| table.subject.lobe.gamma);
+        a.min <= b.max && b.min <= a.max
     };
     let is_beside = |other: &&Table| {
         let of_normals = other.kind == microfacet_tables::Kind::Shadowing
             || other.axes.iter().any(|axis| Quantity::of(axis) == Quantity::Number);
-        let of_family = other.subject.lobe == table.subject.lobe;
+        let of_family = other.subject.lobe.is_family();
         other.kind != table.kind && of_normals && of_family && overlaps(other)
     };
     let others = set.tables().iter().filter(is_beside);

@@ -6,7 +6,7 @@ use microfacet_baker::distribution::Named;
 use microfacet_baker::progress::Stage;
 use microfacet_model::classic::{Isotropic, Marginal};
 use microfacet_sampler::{Lobe, Tables};
-use microfacet_tables::{LobeEntry, MaterialEntry, Table};
+use microfacet_tables::{MaterialEntry, Table};
 use rayon::prelude::*;
 
 use super::{Place, Quantity, Span, Unmeasured};
@@ -21,7 +21,7 @@ pub(super) struct Radial<'a> {
 
 impl<'a> Radial<'a> {
     pub(super) fn new(set: &Tables, table: &'a Table) -> Result<Self, Unmeasured> {
-        let LobeEntry::Distribution(label) = &table.subject.lobe else {
+        let Some(label) = &table.subject.lobe.distribution else {
             return Err(Unmeasured::NoAxes);
         };
         let distribution = label.parse::<Named>()?.build()?;

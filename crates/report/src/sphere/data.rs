@@ -12,7 +12,7 @@ use microfacet_core::Masking;
 use microfacet_export::texture::{Along, TexelAxis, place, shader_coordinates};
 use microfacet_export::{Shape, WIDTH, append_some};
 use microfacet_sampler::{ConductorFresnel, MaterialError, Metal, StudentT, Tables};
-use microfacet_tables::{FresnelEntry, MaterialEntry};
+use microfacet_tables::{MaterialEntry, Reflectance};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -47,7 +47,7 @@ pub(super) struct Data {
     /// ln(1 − E_avg) by stop and at √(σ/σ_max) = 1/n, 2/n … 1.
     averages: String,
     average_count: usize,
-    reflectances: Vec<Reflectance>,
+    reflectances: Vec<Choice>,
     materials: Vec<Material>,
     /// Which of them is shown first.
     opening: usize,
@@ -67,7 +67,7 @@ struct Stop {
 
 /// A reflectance to choose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-struct Reflectance {
+struct Choice {
     name: String,
     /// Complex index of refraction; or F0 of Schlick's, and k below 0.
     eta: [f64; 3],
@@ -111,8 +111,8 @@ pub(super) fn is_unstated(shown: &Shown) -> bool {
 }
 
 /// The reflectance that a material states of a conductor.
-fn conductor_of(entry: &MaterialEntry) -> Option<FresnelEntry> {
-    use FresnelEntry::{Conductor, Mirror, Schlick};
+fn conductor_of(entry: &MaterialEntry) -> Option<Reflectance> {
+    use Reflectance::{Conductor, Mirror, Schlick};
     entry.fresnel.filter(|fresnel| matches!(fresnel, Mirror | Schlick(_) | Conductor { .. }))
 }
 
@@ -124,25 +124,25 @@ pub(super) fn metal_of(name: &str) -> Option<Metal> {
 
 /// The reflectance of a material as the sphere has it: its own, that of the metal in its name, or
 /// [`UNSTATED`].
-fn fresnel(shown: &Shown) -> FresnelEntry {
+fn fresnel(shown: &Shown) -> Reflectance {
     let own = shown.entry.as_ref().and_then(conductor_of);
     own.unwrap_or_else(|| metal_of(&shown.name).unwrap_or(UNSTATED).into())
 }
 
-fn conductor(fresnel: FresnelEntry) -> ConductorFresnel {
+fn conductor(fresnel: Reflectance) -> ConductorFresnel {
     let made = match fresnel {
-        FresnelEntry::Schlick(f0) => ConductorFresnel::schlick(f0.map(|f0| f0 as f32)),
-        FresnelEntry::Conductor { eta, k } => ConductorFresnel::exact(eta, k),
+        Reflectance::Schlick(f0) => ConductorFresnel::schlick(f0.map(|f0| f0 as f32)),
+        Reflectance::Conductor { eta, k } => ConductorFresnel::exact(eta, k),
         _ => Ok(ConductorFresnel::mirror()),
     };
     made.expect("files are checked when they are read")
 }
 
-impl Reflectance {
-    fn new(name: &str, fresnel: FresnelEntry) -> Self {
+impl Choice {
+    fn new(name: &str, fresnel: Reflectance) -> Self {
         let (eta, k) = match fresnel {
-            FresnelEntry::Schlick(f0) => (f0, [-1.0; 3]),
-            FresnelEntry::Conductor { eta, k } => (eta, k),
+            Reflectance::Schlick(f0) => (f0, [-1.0; 3]),
+            Reflectance::Conductor { eta, k } => (eta, k),
             _ => ([1.0; 3], [-1.0; 3]),
         };
         Self { name: name.into(), eta, k, average: conductor(fresnel).average() }
@@ -228,11 +228,11 @@ impl Data {
             .collect::<Result<_, MaterialError>>()?;
         let (lost, averages): (Vec<_>, Vec<_>) = made.into_iter().unzip();
 
-        let mut reflectances: Vec<Reflectance> =
-            Metal::ALL.map(|metal| Reflectance::new(metal.name(), metal.into())).into();
-        reflectances.push(Reflectance::new("mirror", FresnelEntry::Mirror));
+        let mut reflectances: Vec<Choice> =
+            Metal::ALL.map(|metal| Choice::new(metal.name(), metal.into())).into();
+        reflectances.push(Choice::new("mirror", Reflectance::Mirror));
         let material = |shown: &Shown| {
-            let own = Reflectance::new(&shown.name, fresnel(shown));
+            let own = Choice::new(&shown.name, fresnel(shown));
             let known = reflectances.iter().position(|other| own.is_same(other));
             let reflectance = known.unwrap_or_else(|| {
                 reflectances.push(own);

@@ -1,6 +1,6 @@
 //! Materials in words.
 
-use microfacet_tables::{FresnelEntry, MaterialEntry, Reflectance};
+use microfacet_tables::{MaterialEntry, Reflectance};
 
 use super::{number, range};
 
@@ -27,36 +27,39 @@ pub fn material(entry: &MaterialEntry) -> String {
 }
 
 /// The reflectance of a material's facets.
-pub fn fresnel(entry: Option<&FresnelEntry>) -> String {
-    let Some(entry) = entry else { return "no Fresnel term".into() };
+pub fn fresnel(entry: Option<&Reflectance>) -> String {
     match entry {
-        FresnelEntry::Mirror => "F = 1".into(),
-        FresnelEntry::Schlick([r, g, b]) if r == g && g == b => {
-            format!("Schlick with F0 {}", number(*r))
-        }
-        FresnelEntry::Schlick(f0) => format!("Schlick with F0 {}", f0.map(number).join(", ")),
-        FresnelEntry::Conductor { eta, k } => {
-            let [eta, k] = [eta, k].map(|rgb| rgb.map(number).join(", "));
-            format!("conductor with eta {eta} and k {k}")
-        }
-        FresnelEntry::Dielectric(eta) => format!("dielectric of index {}", number(*eta)),
-        FresnelEntry::Dielectrics { min, max } => {
-            format!("dielectric of index {}", range([*min, max.unwrap_or(f64::INFINITY)]))
-        }
+        None => "no Fresnel term".into(),
+        Some(Reflectance::Mirror) => "F = 1".into(),
+        Some(other) => of(other),
     }
 }
 
 /// The reflectance of an albedo in words.
 pub fn reflectance(reflectance: &Reflectance) -> String {
     match reflectance {
-        Reflectance::Moments => "for F = 1 and every Schlick term".into(),
+        Reflectance::Mirror => "for F = 1 and every Schlick term".into(),
+        other => format!("for a {}", of(other)),
+    }
+}
+
+fn of(reflectance: &Reflectance) -> String {
+    match reflectance {
+        Reflectance::Mirror => "mirror".into(),
+        Reflectance::Schlick([r, g, b]) if r == g && g == b => {
+            format!("Schlick with F0 {}", number(*r))
+        }
+        Reflectance::Schlick(f0) => format!("Schlick with F0 {}", f0.map(number).join(", ")),
         Reflectance::Conductor { eta, k } => {
             let [eta, k] = [eta, k].map(|rgb| rgb.map(number).join(", "));
-            format!("for a conductor with eta {eta} and k {k}")
+            format!("conductor with eta {eta} and k {k}")
         }
-        Reflectance::Dielectric { side, min, max } => {
-            let index = range([*min, max.unwrap_or(f64::INFINITY)]);
-            format!("for a dielectric of index {index} from its {} side", side.name())
+        Reflectance::Dielectric(index) => {
+            format!("dielectric of index {}", range(*index))
+        }
+        Reflectance::Interface { side, index } => {
+            let index = range(*index);
+            format!("dielectric of index {index} from its {} side", side.name())
         }
     }
 }

@@ -3,7 +3,8 @@
 use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
 use microfacet_tables::{
-    Axis, Covered, Interpolation, Kind, LobeEntry, Mapping, Precision, Reflectance, Subject, Table,
+    Axis, Interpolation, Kind, LobeForm, LobeSpec, Mapping, Precision, Reflectance, Roughness,
+    Subject, Table,
 };
 
 use super::material::reflectance;
@@ -27,29 +28,24 @@ pub fn holds(table: &Table) -> String {
         Kind::AlbedoAverage => "cosine-weighted average of the albedo",
         other => other.name(),
     };
-    let lobe = match &table.subject.lobe {
-        LobeEntry::Family | LobeEntry::StudentT { .. } => String::new(),
-        LobeEntry::Ellipsoid { theta, .. } => {
-            format!(", of an ellipsoid with theta {}", theta.map(number).join(", "))
-        }
-        LobeEntry::Distribution(label) => format!(", of {}", label),
-    };
+    let LobeSpec { theta, distribution, .. } = &table.subject.lobe;
+    let tilt = theta.map(|theta| theta.map(number).join(", "));
+    let tilt = tilt.map_or(String::new(), |theta| format!(", of an ellipsoid with theta {theta}"));
+    let lobe = distribution.as_ref().map_or(tilt, |label| format!(", of {label}"));
     let of = table.subject.reflectance.as_ref();
     let reflectance = of.map_or(String::new(), |of| format!(", {}", reflectance(of)));
     format!("{kind}{lobe}{reflectance}")
 }
 
 /// The γ and the σ of the materials that a table serves, as cells of columns.
-pub fn covers(Subject { lobe, covers, .. }: &Subject) -> [String; 2] {
-    match (lobe, covers) {
-        (LobeEntry::Distribution(_), _) => ["-".into(), "its own".into()],
-        (LobeEntry::StudentT { sigma, s } | LobeEntry::Ellipsoid { sigma, s, .. }, _) => {
-            [number(gamma_of_s(*s)), sigma.map(number).join(", ")]
-        }
-        (LobeEntry::Family, Some(Covered { s, sigma })) => {
-            [gammas(*s), sigma.map_or("any".into(), range)]
-        }
-        (LobeEntry::Family, None) => ["-".into(), "-".into()],
+pub fn covers(Subject { lobe, .. }: &Subject) -> [String; 2] {
+    let [x, y] = lobe.sigmas().map(range);
+    let gamma = range(lobe.gamma);
+    match lobe.form() {
+        LobeForm::Distribution => ["-".into(), "its own".into()],
+        LobeForm::StudentT | LobeForm::Ellipsoid => [gamma, format!("{x}, {y}")],
+        LobeForm::Family if lobe.roughness == Roughness::ALL => [gamma, "any".into()],
+        LobeForm::Family => [gamma, x],
     }
 }
 
@@ -79,11 +75,8 @@ pub fn normals(set: &Tables) -> Vec<String> {
         lines.push("gamma 2 (GGX) in closed form".into());
     }
     for table in set.tables() {
-        if let (Kind::RadialSlope, LobeEntry::Distribution(label)) =
-            (table.kind, &table.subject.lobe)
-        {
-            lines.push(label.clone());
-        }
+        let own = table.subject.lobe.distribution.iter();
+        lines.extend(own.filter(|_| table.kind == Kind::RadialSlope).cloned());
     }
     lines
 }
@@ -93,9 +86,9 @@ pub fn albedos(tables: &[Table]) -> Vec<String> {
     let mut lines: Vec<(String, Vec<String>)> = Vec::new();
     for table in tables.iter().filter(|table| table.kind == Kind::Albedo) {
         let [gamma, sigma] = covers(&table.subject);
-        let what = match (&table.subject.lobe, table.subject.reflectance) {
-            (LobeEntry::Distribution(label), _) => label.clone(),
-            (_, Some(Reflectance::Moments) | None) => format!("gamma {gamma}, sigma {sigma}"),
+        let what = match (&table.subject.lobe.distribution, table.subject.reflectance) {
+            (Some(label), _) => label.clone(),
+            (_, Some(Reflectance::Mirror) | None) => format!("gamma {gamma}, sigma {sigma}"),
             (_, Some(of)) => format!("gamma {gamma}, sigma {sigma}, {}", reflectance(&of)),
         };
         let masking = table.subject.masking.map_or(String::new(), |form| form.name().to_owned());

@@ -6,10 +6,9 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 use microfacet_core::math::unit;
-use microfacet_core::shape::s_of_gamma;
 use microfacet_tables::axis::lagrange::{SIX, combine};
 use microfacet_tables::axis::{PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend};
-use microfacet_tables::{Kind, Mapping, Reflectance, Table, Weights};
+use microfacet_tables::{Interval, Kind, Mapping, Reflectance, Table, Weights};
 
 use super::average::{At, add, over_views};
 use super::elevation::Elevation;
@@ -45,10 +44,10 @@ impl MaterialWeights {
             let quantity = match axis.mapping {
                 Mapping::LogShape(_) => point.gamma,
                 Mapping::LogRoughness(_) => {
-                    let covers = table.subject.covers?;
-                    let s = s_of_gamma(point.gamma);
-                    let sigma = covers.sigma.map_or(point.sigma, |ends| end(point.sigma, ends));
-                    if !(covers.contains_shape(s) && covers.contains_sigma(sigma)) {
+                    let Interval { min, max } = table.subject.lobe.roughness.x();
+                    let sigma = end(point.sigma, [min, max]);
+                    let covered = min <= sigma && sigma <= max;
+                    if !(covered && table.subject.lobe.contains_shape(point.gamma)) {
                         return None;
                     }
                     let first = axis.quantity(axis.nodes[0])?;
@@ -101,7 +100,7 @@ impl<const N: usize> ViewCurve<N> {
         eta: f64,
     ) -> Result<Self, MaterialError> {
         let shares =
-            table.subject.reflectance.filter(|reflectance| *reflectance != Reflectance::Moments);
+            table.subject.reflectance.filter(|reflectance| *reflectance != Reflectance::Mirror);
         let point = MaterialPoint { sigma, gamma, eta };
         let curve = shares.filter(|reflectance| reflectance.channels().len() <= N);
         let curve = curve.and_then(|_| Curve::new(table, &point));
@@ -185,7 +184,7 @@ impl Curve {
     /// `None` where the table does not cover the material.
     pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
         let at = MaterialWeights::new(table, point)?;
-        let moments = table.subject.reflectance == Some(Reflectance::Moments);
+        let moments = table.subject.reflectance == Some(Reflectance::Mirror);
         let channels = table.channels.len();
         let mut nodes: Vec<[f32; CHANNELS]> = Vec::new();
         for node in table.collapsed::<f64>(&at.weights).chunks_exact(channels) {

@@ -37,7 +37,7 @@ impl Albedo {
     /// [`MaterialError::NoTable`] for a table that holds no moments or does not cover the material.
     pub fn from_table(table: &Table, sigma: f64, gamma: f64) -> Result<Self, MaterialError> {
         let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
-        let moments = table.subject.reflectance == Some(Reflectance::Moments);
+        let moments = table.subject.reflectance == Some(Reflectance::Mirror);
         moments.then(|| Self::new(table, &point)).flatten().ok_or_else(|| missing(table, &point))
     }
 

@@ -4,8 +4,7 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use microfacet_core::shape::gamma_of_s;
-use microfacet_tables::{Covered, Mapping, Range, Table};
+use microfacet_tables::{Mapping, Range, Table};
 
 /// The roughness of the first node: the smallest that a table holds, apart from 0.
 pub(super) fn smallest_sigma(table: &Table) -> Option<f64> {
@@ -16,28 +15,28 @@ pub(super) fn smallest_sigma(table: &Table) -> Option<f64> {
 
 /// The materials of tables of moments.
 pub(super) fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
-    listed(tables.filter_map(material))
+    listed(tables.map(material))
 }
 
 /// The dielectrics of all tables, for each form of masking.
 pub(super) fn dielectrics<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
     let one = |table: &Table| {
-        let indices = Range(table.subject.reflectance?.indices()?);
+        let indices = Range(table.subject.reflectance?.indices()?.into());
         let masking = table.subject.masking?;
-        Some(format!("index {indices} with {} and {masking} masking", material(table)?))
+        Some(format!("index {indices} with {} and {masking} masking", material(table)))
     };
     listed(tables.filter_map(one))
 }
 
-fn material(table: &Table) -> Option<String> {
-    let Covered { s: [low, high], sigma } = table.subject.covers?;
-    // The larger s is the smaller γ.
-    let gamma = Range([gamma_of_s(high), gamma_of_s(low)]);
-    let sigma = match (sigma?, smallest_sigma(table)) {
-        ([0.0, max], Some(first)) => format!("0 or {}", Range([first, max])),
-        (range, _) => Range(range).to_string(),
+fn material(table: &Table) -> String {
+    let lobe = &table.subject.lobe;
+    let gamma = Range(lobe.gamma.into());
+    let sigma = lobe.roughness.x();
+    let sigma = match smallest_sigma(table) {
+        Some(first) if sigma.min == 0.0 => format!("0 or {}", Range([first, sigma.max])),
+        _ => Range(sigma.into()).to_string(),
     };
-    Some(format!("gamma {gamma} with sigma {sigma}"))
+    format!("gamma {gamma} with sigma {sigma}")
 }
 
 /// Without those said before, and not too many.

@@ -1,8 +1,7 @@
 //! Finds the table of a set that holds an albedo.
 
 use microfacet_core::Masking;
-use microfacet_core::shape::s_of_gamma;
-use microfacet_tables::{FresnelEntry, Kind, LobeEntry, MaterialEntry, Reflectance, Side, Table};
+use microfacet_tables::{Kind, LobeForm, MaterialEntry, Reflectance, Side, Table};
 
 use super::curve::{MaterialPoint, MaterialWeights, ViewCurve};
 use super::directional::Albedo;
@@ -71,10 +70,10 @@ impl Tables {
     /// without albedos, or what [`albedo`](Self::albedo) reports.
     pub fn material_albedo(&self, name: &str) -> Result<Albedo, MaterialError> {
         let entry = self.entry(name)?;
-        if entry.lobe.tabulated() == LobeEntry::Family {
+        if entry.lobe.tabulated().is_family() {
             return self.albedo(entry.lobe.round_sigma(), entry.lobe.gamma(), entry.masking());
         }
-        self.own(entry, Albedo::new, |reflectance| *reflectance == Reflectance::Moments)
+        self.own(entry, Albedo::new, |reflectance| *reflectance == Reflectance::Mirror)
     }
 
     /// The albedo of a named conductor or dielectric under its exact reflectance.
@@ -92,7 +91,7 @@ impl Tables {
         if let Some(eta) = entry.fresnel.and_then(|fresnel| fresnel.middle_index()) {
             return Ok(FresnelAlbedo::Dielectric(self.material_dielectric_albedo(name, eta)?));
         }
-        let wanted = entry.fresnel.as_ref().map(FresnelEntry::tabulated).unwrap_or_default();
+        let wanted = entry.fresnel.as_ref().map(Reflectance::tabulated).unwrap_or_default();
         let conductor = |reflectance: &Reflectance| {
             matches!(reflectance, Reflectance::Conductor { .. }) && wanted.contains(reflectance)
         };
@@ -111,8 +110,9 @@ impl Tables {
         eta: f64,
     ) -> Result<DielectricAlbedo, MaterialError> {
         let entry = self.entry(name)?;
-        if !matches!(entry.lobe.tabulated(), LobeEntry::Family | LobeEntry::StudentT { .. }) {
-            let distribution = entry.lobe.tabulated().name().into();
+        if !matches!(entry.lobe.form(), LobeForm::Family | LobeForm::StudentT) {
+            let distribution = entry.lobe.distribution.clone();
+            let distribution = distribution.unwrap_or_else(|| "ellipsoid".into());
             return Err(MaterialError::OtherDistribution { name: name.into(), distribution });
         }
         self.dielectric_albedo(entry.lobe.round_sigma(), entry.lobe.gamma(), eta, entry.masking())
@@ -150,7 +150,7 @@ impl Tables {
     ) -> Result<ViewCurve<2>, MaterialError> {
         let (side, dense) = if eta < 1.0 { (Side::Dense, 1.0 / eta) } else { (Side::Thin, eta) };
         let point = MaterialPoint { sigma, gamma, eta: dense };
-        let mut tables = self.albedos(Kind::Albedo, &LobeEntry::Family, masking);
+        let mut tables = self.of_family(Kind::Albedo, masking);
         let found = tables.find_map(|table| {
             let same = table.subject.reflectance?.side()? == side;
             same.then(|| ViewCurve::new(table, &point)).flatten()
@@ -174,32 +174,28 @@ impl Tables {
             eta: f64::NAN,
         };
         let lobe = entry.lobe.tabulated();
-        let mut tables = self.albedos(Kind::Albedo, &lobe, entry.masking());
+        let mut tables = self.albedos(Kind::Albedo, entry.masking());
         let found = tables.find_map(|table| {
-            let serves = table.subject.reflectance.as_ref().is_some_and(&serves);
+            let serves = table.subject.lobe.contains(&lobe)
+                && table.subject.reflectance.as_ref().is_some_and(&serves);
             serves.then(|| read(table, &point)).flatten()
         });
         found.ok_or_else(|| MaterialError::NoAlbedo(entry.name.clone()))
     }
 
-    fn albedos(
-        &self,
-        kind: Kind,
-        lobe: &LobeEntry,
-        masking: Masking,
-    ) -> impl Iterator<Item = &Table> {
-        let of = move |table: &&Table| {
-            table.kind == kind
-                && table.subject.masking == Some(masking)
-                && table.subject.lobe == *lobe
-        };
+    fn albedos(&self, kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
+        let of = move |table: &&Table| table.kind == kind && table.subject.masking == Some(masking);
         self.tables().iter().filter(of)
+    }
+
+    fn of_family(&self, kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
+        self.albedos(kind, masking).filter(|table| table.subject.lobe.is_family())
     }
 
     /// The tables of moments of the family, of a kind and masking.
     pub(super) fn moments(&self, kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
-        let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Moments);
-        self.albedos(kind, &LobeEntry::Family, masking).filter(of_moments)
+        let of_moments = |table: &&Table| table.subject.reflectance == Some(Reflectance::Mirror);
+        self.of_family(kind, masking).filter(of_moments)
     }
 
     /// What `read` makes of the first table of moments of a kind and masking that covers (σ, γ).
@@ -233,15 +229,13 @@ fn not_covered<'a, I: Iterator<Item = &'a Table>>(
         let other = Masking::ALL.into_iter().find(has);
         return MaterialError::MaskingNotCovered { masking, other };
     }
-    let s = s_of_gamma(gamma);
-    let of_shape = tables(masking).filter_map(|table| {
-        let covers = table.subject.covers.filter(|covers| covers.contains_shape(s))?;
-        Some((covers.sigma?, smallest_sigma(table)?))
-    });
+    let of_shape = tables(masking).filter(|table| table.subject.lobe.contains_shape(gamma));
     // Sets of single materials are listed with their shapes.
-    let whole = of_shape.filter(|([min, _], _)| *min == 0.0);
-    let range = whole.map(|([_, max], first)| [first, max]);
-    match range.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) {
+    let whole = of_shape.filter_map(|table| {
+        let sigma = table.subject.lobe.roughness.x();
+        Some([smallest_sigma(table)?, sigma.max]).filter(|_| sigma.min == 0.0)
+    });
+    match whole.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) {
         Some(range) => MaterialError::SigmaNotCovered { sigma, range },
         None => MaterialError::AlbedoNotCovered { sigma, gamma, covered: domains(tables(masking)) },
     }

@@ -3,7 +3,6 @@
 use alloc::vec::Vec;
 
 use microfacet_core::Masking;
-use microfacet_core::shape::s_of_gamma;
 use microfacet_tables::axis::{LogRoughness, ViewBlend};
 use microfacet_tables::{Axis, Interpolation, Kind, Mapping, Table};
 
@@ -30,10 +29,8 @@ impl<'a> ShapeAlbedo<'a> {
     /// Of the first table that has the shape, for every σ up to `largest`.
     pub fn find(tables: &'a Tables, gamma: f64, masking: Masking, largest: f64) -> Option<Self> {
         let serves = |table: &&Table| {
-            let sigmas = |[min, max]: [f64; 2]| min <= 0.0 && max >= largest;
-            table.subject.covers.is_some_and(|covers| {
-                covers.contains_shape(s_of_gamma(gamma)) && covers.sigma.is_some_and(sigmas)
-            })
+            let (lobe, sigma) = (&table.subject.lobe, table.subject.lobe.roughness.x());
+            lobe.contains_shape(gamma) && sigma.min <= 0.0 && sigma.max >= largest
         };
         let mut tables = tables.moments(Kind::Albedo, masking).filter(serves);
         tables.find_map(|table| Self::of(table, gamma))

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use microfacet_tables::FresnelEntry;
+use microfacet_tables::Reflectance;
 
 use super::bind::StandIn;
 use super::compensation::Compensation;
@@ -93,10 +93,10 @@ impl Tables {
         let masking = entry.masking();
         let fresnel = entry.fresnel.ok_or_else(|| BindError::NoFresnel(name.into()))?;
         let reflectance = match fresnel {
-            FresnelEntry::Mirror => ConductorFresnel::mirror(),
-            FresnelEntry::Schlick(f0) => ConductorFresnel::schlick(f0.map(|f0| f0 as f32))?,
-            FresnelEntry::Conductor { eta, k } => ConductorFresnel::exact(eta, k)?,
-            FresnelEntry::Dielectric(_) | FresnelEntry::Dielectrics { .. } => {
+            Reflectance::Mirror => ConductorFresnel::mirror(),
+            Reflectance::Schlick(f0) => ConductorFresnel::schlick(f0.map(|f0| f0 as f32))?,
+            Reflectance::Conductor { eta, k } => ConductorFresnel::exact(eta, k)?,
+            Reflectance::Dielectric(_) | Reflectance::Interface { .. } => {
                 let eta = fresnel.middle_index().unwrap_or(f64::NAN);
                 let dielectric = Dielectric::new(lobe, eta)?.with_masking(masking);
                 return Ok(dielectric.compensated(self, compensation, stand_in)?.into());

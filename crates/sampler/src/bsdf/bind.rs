@@ -1,7 +1,9 @@
 //! Finds the albedos of a lobe in tables.
 
+use alloc::boxed::Box;
+
 use microfacet_core::Masking;
-use microfacet_tables::{Kind, Reflectance};
+use microfacet_tables::{Kind, LobeSpec, Reflectance};
 
 use super::error::BindError;
 use crate::albedo::{Albedo, DielectricAlbedo};
@@ -41,14 +43,14 @@ impl Tables {
         let own = self.tables().iter().find(|table| {
             table.kind == Kind::Albedo
                 && table.subject.masking == Some(masking)
-                && table.subject.reflectance == Some(Reflectance::Moments)
+                && table.subject.reflectance == Some(Reflectance::Mirror)
                 && key.is(&table.subject.lobe)
         });
         if let Some(table) = own {
             return Ok(Albedo::from_table(table, f64::NAN, f64::NAN)?);
         }
         let round = round(&key, stand_in).ok_or_else(|| BindError::NoAlbedo {
-            lobe: key.clone(),
+            lobe: Box::new(key.clone()),
             eta: None,
             masking,
             stand_in: key.round().is_some(),
@@ -75,7 +77,7 @@ impl Tables {
             round(&key, stand_in).ok_or(BindError::RoundOnly { stand_in: stood_for })?;
         self.dielectric_albedo(sigma, gamma, eta, masking).map_err(|why| match why {
             MaterialError::DielectricNotCovered { .. } => {
-                let lobe = LobeKey::Round { sigma, gamma };
+                let lobe = Box::new(LobeKey::Upright(LobeSpec::student_t([sigma; 2], gamma)));
                 BindError::NoAlbedo { lobe, eta: Some(eta), masking, stand_in: false }
             }
             why => why.into(),
@@ -85,6 +87,6 @@ impl Tables {
 
 /// σ and γ of a round lobe, or of the one that may stand in for another.
 fn round(key: &LobeKey, stand_in: StandIn) -> Option<(f64, f64)> {
-    let may = stand_in == StandIn::Round || matches!(key, LobeKey::Round { .. });
+    let may = stand_in == StandIn::Round || key.is_round();
     key.round().filter(|_| may).map(|[sigma, gamma]| (sigma, gamma))
 }

@@ -1,5 +1,6 @@
 //! Why a BSDF cannot be made.
 
+use alloc::boxed::Box;
 use alloc::format;
 use alloc::string::String;
 use core::fmt;
@@ -32,7 +33,7 @@ pub enum BindError {
     /// The tables have no albedo of a lobe for the compensation that was asked for.
     NoAlbedo {
         /// The lobe.
-        lobe: LobeKey,
+        lobe: Box<LobeKey>,
         /// The index of refraction of a dielectric.
         eta: Option<f64>,
         /// The form of masking.

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
-use microfacet_tables::FresnelEntry;
+use microfacet_tables::Reflectance;
 
 /// A metal whose complex index of refraction, eta + i k, is known by measurement.
 ///
@@ -148,7 +148,7 @@ impl Metal {
     }
 }
 
-impl From<Metal> for FresnelEntry {
+impl From<Metal> for Reflectance {
     fn from(metal: Metal) -> Self {
         Self::Conductor { eta: metal.eta(), k: metal.k() }
     }

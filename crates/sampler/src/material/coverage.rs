@@ -17,15 +17,13 @@ pub(super) const LOBE: [&[Kind]; 3] = [
 /// Weights along the γ axis at s; `None` for a shape that the table was not baked and measured for,
 /// though its axis may reach there.
 pub(super) fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
-    let covered = table.subject.covers.is_none_or(|covers| covers.contains_shape(s));
-    if covered { table.axes[0].weights(s) } else { None }
+    if table.subject.lobe.contains_s(s) { table.axes[0].weights(s) } else { None }
 }
 
 /// The same at an end of the axis, for a shape that is outside by rounding alone.
 pub(super) fn end_weights(table: &Table, s: f64) -> Option<Weights> {
     let [first, last] = table.axes[0].ends();
-    let covers = table.subject.covers?;
-    covers.contains_shape(s).then(|| table.axes[0].weights(s.clamp(first, last)))?
+    table.subject.lobe.contains_s(s).then(|| table.axes[0].weights(s.clamp(first, last)))?
 }
 
 /// Whether the table serves s.
@@ -75,7 +73,7 @@ fn intervals(table: &Table) -> Vec<[f64; 2]> {
     if axis.interpolation == Interpolation::Nodes || axis.nodes.len() == 1 {
         return axis.nodes.iter().map(|&s| [s; 2]).collect();
     }
-    alloc::vec![table.subject.covers.map_or(axis.ends(), |covers| covers.s)]
+    alloc::vec![table.subject.lobe.s()]
 }
 
 /// Ascending, with those joined that touch.

@@ -4,9 +4,8 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use core::fmt;
 
-use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Masking, Skew};
-use microfacet_tables::{LobeEntry, SAME};
+use microfacet_tables::LobeSpec;
 
 use super::matrix::Matrix;
 
@@ -14,20 +13,9 @@ use super::matrix::Matrix;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LobeKey {
-    /// A round member of the Student-t family.
-    Round {
-        /// σ, 0 for a smooth surface.
-        sigma: f64,
-        /// γ.
-        gamma: f64,
-    },
-    /// An anisotropic one.
-    Anisotropic {
-        /// σx and σy.
-        sigma: [f64; 2],
-        /// γ.
-        gamma: f64,
-    },
+    /// An upright lobe of the Student-t family, σ = 0 for a smooth surface; or a distribution
+    /// outside it, by its label, such as `gtr:0.2,1.5`.
+    Upright(LobeSpec),
     /// An ellipsoid, by the entries p, q, r, x and y of its [`Skew`](crate::Skew).
     Tilted {
         /// The entries.
@@ -35,37 +23,31 @@ pub enum LobeKey {
         /// γ.
         gamma: f64,
     },
-    /// A distribution outside the family, by its label, such as `gtr:0.2,1.5`.
-    Distribution(String),
     /// A lobe that no table is of.
     Unknown,
 }
 
 impl LobeKey {
     pub(crate) fn of_family(sigma: [f32; 2], gamma: f64) -> Self {
-        let [x, y] = sigma.map(written);
-        if x == y {
-            Self::Round { sigma: x, gamma }
-        } else {
-            Self::Anisotropic { sigma: [x, y], gamma }
-        }
+        Self::Upright(LobeSpec::student_t(sigma.map(written), gamma))
     }
 
-    /// Whether a table that names its own lobe is of this one; roughness is compared in single
+    /// Whether it is a round lobe of the family.
+    pub fn is_round(&self) -> bool {
+        matches!(self, Self::Upright(lobe) if lobe.is_family())
+    }
+
+    /// Whether a table that names its own lobe is of this one; a tilt is compared in single
     /// precision, in which lobes take it.
-    pub(crate) fn is(&self, entry: &LobeEntry) -> bool {
-        let same = |gamma: f64, s: f64| (s_of_gamma(gamma) - s).abs() <= SAME * s;
-        match (self, entry) {
-            (Self::Anisotropic { sigma, gamma }, LobeEntry::StudentT { sigma: of, s }) => {
-                same(*gamma, *s) && sigma.map(|x| x as f32) == of.map(|x| x as f32)
-            }
-            (Self::Tilted { matrix, gamma }, LobeEntry::Ellipsoid { sigma, theta, s }) => {
-                let skew = Skew::new(*sigma, *theta).ok();
+    pub(crate) fn is(&self, table: &LobeSpec) -> bool {
+        match self {
+            Self::Upright(lobe) => !lobe.is_family() && table.contains(lobe),
+            Self::Tilted { matrix, gamma } => {
+                let skew = table.theta.and_then(|theta| Skew::new(table.sigma(), theta).ok());
                 let of = skew.and_then(|skew| Matrix::try_from(skew).ok());
-                same(*gamma, *s) && of.is_some_and(|of| of.entries() == *matrix)
+                table.contains_shape(*gamma) && of.is_some_and(|of| of.entries() == *matrix)
             }
-            (Self::Distribution(label), LobeEntry::Distribution(of)) => label == of,
-            _ => false,
+            Self::Unknown => false,
         }
     }
 
@@ -73,36 +55,31 @@ impl LobeKey {
     /// anisotropic or tilted lobe that of the same area in slopes, √(σx σy).
     pub(crate) fn round(&self) -> Option<[f64; 2]> {
         match self {
-            Self::Round { sigma, gamma } => Some([*sigma, *gamma]),
-            Self::Anisotropic { sigma: [x, y], gamma } => Some([libm::sqrt(x * y), *gamma]),
+            Self::Upright(lobe) if lobe.distribution.is_none() => {
+                Some([lobe.round_sigma(), lobe.gamma()])
+            }
             Self::Tilted { matrix: [p, _, r, ..], gamma } => {
                 Some([libm::sqrt(f64::from(*p) * f64::from(*r)), *gamma])
             }
-            Self::Distribution(_) | Self::Unknown => None,
+            _ => None,
         }
     }
 
     /// Whether D grows without limit towards the horizon, as that of γ < 2 does.
     pub(crate) fn has_pole(&self) -> bool {
-        match self {
-            Self::Round { gamma, .. }
-            | Self::Anisotropic { gamma, .. }
-            | Self::Tilted { gamma, .. } => *gamma < 2.0,
-            Self::Distribution(_) | Self::Unknown => false,
-        }
+        self.round().is_some_and(|[_, gamma]| gamma < 2.0)
     }
 
     /// A recipe's material of this lobe, as far as it knows it, with a reflectance.
     pub(crate) fn recipe(&self, fresnel: &str, masking: Masking) -> String {
         let lobe = match self {
-            Self::Round { sigma, gamma } => format!("sigma = {sigma}\ngamma = {gamma}"),
-            Self::Anisotropic { sigma: [x, y], gamma } => {
-                format!("sigma = [{x}, {y}]\ngamma = {gamma}")
+            Self::Upright(lobe) if lobe.distribution.is_some() => {
+                format!("# and the distribution {self}")
             }
+            Self::Upright(_) => self.to_string().replace(", gamma", "\ngamma"),
             Self::Tilted { gamma, .. } => {
                 format!("gamma = {gamma}\n# and the sigma and theta of its Skew")
             }
-            Self::Distribution(label) => format!("# and the distribution {label}"),
             Self::Unknown => "# and the sigma and gamma of a lobe of the family".into(),
         };
         format!(
@@ -114,12 +91,17 @@ impl LobeKey {
 impl fmt::Display for LobeKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Round { sigma, gamma } => write!(f, "sigma = {sigma}, gamma = {gamma}"),
-            Self::Anisotropic { sigma: [x, y], gamma } => {
-                write!(f, "sigma = [{x}, {y}], gamma = {gamma}")
+            Self::Upright(LobeSpec { distribution: Some(label), .. }) => f.write_str(label),
+            Self::Upright(lobe) => {
+                let [x, y] = lobe.sigma();
+                let gamma = lobe.gamma();
+                if x == y {
+                    write!(f, "sigma = {x}, gamma = {gamma}")
+                } else {
+                    write!(f, "sigma = [{x}, {y}], gamma = {gamma}")
+                }
             }
             Self::Tilted { gamma, .. } => write!(f, "tilted, gamma = {gamma}"),
-            Self::Distribution(label) => write!(f, "{label}"),
             Self::Unknown => write!(f, "of no known distribution"),
         }
     }

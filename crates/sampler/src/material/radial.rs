@@ -10,7 +10,7 @@ use microfacet_core::math::sqrt;
 use microfacet_tables::axis::half_tangent::Slope;
 use microfacet_tables::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
 use microfacet_tables::axis::{HalfTangent, MirroredRoot, Rational};
-use microfacet_tables::{Kind, LobeEntry, Mapping, Table};
+use microfacet_tables::{Kind, LobeSpec, Mapping, Table};
 
 use super::distribution::{MicrofacetDistribution, visible_density};
 use super::key::LobeKey;
@@ -59,13 +59,14 @@ impl Radial {
     pub(crate) fn from_tables(
         tables: &[Table],
         sigma: f32,
-        lobe: &LobeEntry,
+        label: &str,
     ) -> Result<Self, MaterialError> {
         let [sigma, _] = checked(sigma.into())?;
         let slice = |kind: Kind| {
-            let found =
-                tables.iter().find(|table| table.kind == kind && table.subject.lobe == *lobe);
-            let missing = || MaterialError::NoTable(format!("{} of {}", kind.name(), lobe.name()));
+            let found = tables.iter().find(|table| {
+                table.kind == kind && table.subject.lobe.distribution.as_deref() == Some(label)
+            });
+            let missing = || MaterialError::NoTable(format!("{} of {label}", kind.name()));
             found.map(Slice::whole).ok_or_else(missing)
         };
         let (shadowing, slope) = (slice(Kind::RadialShadowing)?, slice(Kind::RadialSlope)?);
@@ -89,7 +90,7 @@ impl Radial {
             slope: given,
             density: density.nodes,
             tilt,
-            name: lobe.name().into(),
+            name: label.into(),
         })
     }
 
@@ -166,7 +167,7 @@ impl MicrofacetDistribution for Radial {
     }
 
     fn key(&self) -> LobeKey {
-        LobeKey::Distribution(self.name.clone())
+        LobeKey::Upright(LobeSpec::outside(self.name.clone()))
     }
 
     fn is_effectively_smooth(&self) -> bool {

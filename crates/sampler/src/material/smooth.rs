@@ -32,7 +32,7 @@ impl MicrofacetDistribution for Smooth {
     }
 
     fn key(&self) -> LobeKey {
-        LobeKey::Round { sigma: 0.0, gamma: 2.0 }
+        LobeKey::of_family([0.0; 2], 2.0)
     }
 
     fn is_effectively_smooth(&self) -> bool {

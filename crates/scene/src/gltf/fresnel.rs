@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use microfacet_baker::scene::Fresnel;
+use microfacet_baker::scene::Reflectance;
 
 use super::material::unit;
 use super::parameters::{Material, Specular};
@@ -20,7 +20,7 @@ impl Material {
 
     /// Schlick's reflectance with F90 = 1 where that is what the material has, with the same F0
     /// everywhere; the error says what is impossible.
-    pub(super) fn fresnel(&self) -> Result<Option<Fresnel>, String> {
+    pub(super) fn fresnel(&self) -> Result<Option<Reflectance>, String> {
         let extensions = &self.extensions;
         // With a factor of 0, the default, there is no film, whatever its texture.
         if let Some(film) = &extensions.iridescence
@@ -31,7 +31,7 @@ impl Material {
         if let Some(pbr) = &extensions.specular_glossiness {
             let f0 = colour("specularFactor", pbr.specular_factor)?;
             let constant = pbr.specular_glossiness_texture.is_none();
-            return Ok(constant.then_some(Fresnel::Schlick(f0)));
+            return Ok(constant.then_some(Reflectance::Schlick(f0)));
         }
         let pbr = &self.pbr_metallic_roughness;
         let metallic = unit("metallicFactor", pbr.metallic_factor)?;
@@ -45,7 +45,7 @@ impl Material {
             return Ok(None);
         }
         if metallic == 1.0 {
-            return Ok(Some(Fresnel::Schlick(base)));
+            return Ok(Some(Reflectance::Schlick(base)));
         }
         let ior = extensions.ior.as_ref().map_or(1.5, |extension| extension.ior);
         if !(ior >= 1.0 || ior == 0.0) {
@@ -68,7 +68,7 @@ impl Material {
         }
         let dielectric = tint.map(|tint| (amplitude * amplitude * tint).min(1.0));
         let f0 = from_fn(|i| dielectric[i] * (1.0 - metallic) + base[i] * metallic);
-        Ok(Some(Fresnel::Schlick(f0)))
+        Ok(Some(Reflectance::Schlick(f0)))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The lobes of a material.
 
-use microfacet_baker::scene::{Fresnel, Roughness, SceneError};
+use microfacet_baker::scene::{Reflectance, Roughness, SceneError};
 use microfacet_tables::Interval;
 
 use super::Importer;
@@ -98,7 +98,7 @@ impl Importer<'_> {
         let roughness = self.factor("clearcoatRoughnessFactor", factor, texture, Channel::Green)?;
         let roughness = Roughness::isotropic(roughness.map_rising(|r| r * r));
         // The coat's index of refraction is fixed at 1.5 (KHR_materials_clearcoat).
-        let fresnel = Some(Fresnel::Schlick([0.04; 3]));
+        let fresnel = Some(Reflectance::Schlick([0.04; 3]));
         self.lobe(name, used, Some("clearcoat"), roughness, fresnel)
     }
 
@@ -108,7 +108,7 @@ impl Importer<'_> {
         used: bool,
         name: Option<&'static str>,
         roughness: Roughness,
-        fresnel: Option<Fresnel>,
+        fresnel: Option<Reflectance>,
     ) -> Result<(), SceneError> {
         let lobe = Lobe { name, roughness, gamma: GGX, fresnel, masking: None };
         self.builder.add(material, &self.place, used, lobe)

@@ -1,6 +1,6 @@
 //! The lobes of a surface: of one shading model, or of the BSDF nodes of a graph (`pbrlib`).
 
-use microfacet_baker::scene::{Fresnel, Roughness, SceneError};
+use microfacet_baker::scene::{Reflectance, Roughness, SceneError};
 use microfacet_tables::Interval;
 
 use super::Reader;
@@ -139,7 +139,7 @@ impl<'a> Reader<'a> {
                 (BSDF_LOBES[2], f0.filter(|_| is_schlick).and_then(schlick))
             }
         };
-        let fresnel: Option<Fresnel> = fresnel.filter(|_| !film);
+        let fresnel: Option<Reflectance> = fresnel.filter(|_| !film);
         Ok(Model { lobes: vec![lobe(Some(name), roughness, fresnel)], ..Model::default() })
     }
 

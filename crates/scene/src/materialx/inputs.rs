@@ -1,6 +1,6 @@
 //! Values of the inputs of shading models and BSDFs, and the Fresnel terms that they state.
 
-use microfacet_baker::scene::{Fresnel, SceneError};
+use microfacet_baker::scene::{Reflectance, SceneError};
 use microfacet_tables::Interval;
 
 use super::Reader;
@@ -9,7 +9,7 @@ use crate::builder::{conductor, dielectric};
 use crate::texture::Channel;
 
 /// What is done about a Fresnel term that is impossible.
-pub(super) const NO_FRESNEL: (Option<Fresnel>, &str) = (None, "the lobe has no Fresnel term");
+pub(super) const NO_FRESNEL: (Option<Reflectance>, &str) = (None, "the lobe has no Fresnel term");
 
 /// The share of metal in a material.
 pub(super) enum Metal {
@@ -63,7 +63,7 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         name: &'static str,
         default: f64,
-    ) -> Result<Option<Fresnel>, SceneError> {
+    ) -> Result<Option<Reflectance>, SceneError> {
         let fresnel = match self.constant(at, name, [default; 3]) {
             Ok(eta) => eta.map(|eta| dielectric(eta[0], &at.node().place)).transpose(),
             Err(error) => Err(error),
@@ -79,9 +79,11 @@ impl<'a> Reader<'a> {
         name: &'static str,
         default: f64,
         weight: Interval,
-    ) -> Result<Option<Fresnel>, SceneError> {
+    ) -> Result<Option<Reflectance>, SceneError> {
         let fresnel = self.dielectric(at, name, default)?;
-        let Some(Fresnel::Dielectric(eta)) = fresnel.filter(|_| weight.is_point()) else {
+        let Some(Reflectance::Dielectric(Interval { min: eta, .. })) =
+            fresnel.filter(|_| weight.is_point())
+        else {
             return Ok(None);
         };
         // The index as written, to the last digit.
@@ -91,7 +93,7 @@ impl<'a> Reader<'a> {
         let amplitude = (eta - 1.0) / (eta + 1.0);
         let f0 = (weight.min * amplitude * amplitude).clamp(0.0, 0.99999);
         let amplitude = f0.sqrt().copysign(amplitude);
-        Ok(Some(Fresnel::Dielectric((1.0 + amplitude) / (1.0 - amplitude))))
+        Ok(Some(Reflectance::dielectric((1.0 + amplitude) / (1.0 - amplitude))))
     }
 
     /// A constant colour of a Fresnel term; impossible ones are warned of.
@@ -121,7 +123,9 @@ impl<'a> Reader<'a> {
 
     /// The reflectance at normal incidence, ((1 − n) / (1 + n))², of a constant index `ior`.
     pub(super) fn normal_reflectance(&mut self, at: At<'a>) -> Result<Option<f64>, SceneError> {
-        let Some(Fresnel::Dielectric(eta)) = self.dielectric(at, "ior", 1.5)? else {
+        let Some(Reflectance::Dielectric(Interval { min: eta, .. })) =
+            self.dielectric(at, "ior", 1.5)?
+        else {
             return Ok(None);
         };
         let amplitude = (1.0 - eta) / (1.0 + eta);
@@ -134,7 +138,7 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         reflectivity: Option<[f64; 3]>,
         edge: Option<[f64; 3]>,
-    ) -> Result<Option<Fresnel>, SceneError> {
+    ) -> Result<Option<Reflectance>, SceneError> {
         let Some((r, edge)) = reflectivity.zip(edge) else { return Ok(None) };
         let [red, green, blue] = [0, 1, 2].map(|i| artistic(r[i], edge[i]));
         let fresnel =

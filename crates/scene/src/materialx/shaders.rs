@@ -1,6 +1,6 @@
 //! The lobes of the shading models of the MaterialX libraries.
 
-use microfacet_baker::scene::{Fresnel, Roughness, SceneError};
+use microfacet_baker::scene::{Reflectance, Roughness, SceneError};
 use microfacet_tables::Interval;
 
 use super::Reader;
@@ -29,7 +29,7 @@ impl Model {
         &mut self,
         name: Option<&'static str>,
         roughness: Result<Roughness, SceneError>,
-        fresnel: Option<Fresnel>,
+        fresnel: Option<Reflectance>,
     ) {
         match roughness {
             Ok(roughness) => self.lobes.push(lobe(name, roughness, fresnel)),
@@ -214,7 +214,7 @@ impl<'a> Reader<'a> {
         }
         if model.has("clearcoat", self.unit(at, "clearcoat", 0.0)) {
             let roughness = self.unit(at, "clearcoat_roughness", 0.0).map(squared);
-            model.push(Some("clearcoat"), roughness, Some(Fresnel::Dielectric(1.5)));
+            model.push(Some("clearcoat"), roughness, Some(Reflectance::dielectric(1.5)));
         }
         Ok(model)
     }
@@ -268,14 +268,14 @@ impl<'a> Reader<'a> {
 }
 
 /// The Fresnel term of Schlick's approximation, for reflectances from 0 to 1.
-pub(super) fn schlick(f0: [f64; 3]) -> Option<Fresnel> {
-    f0.iter().all(|f0| (0.0..=1.0).contains(f0)).then_some(Fresnel::Schlick(f0))
+pub(super) fn schlick(f0: [f64; 3]) -> Option<Reflectance> {
+    f0.iter().all(|f0| (0.0..=1.0).contains(f0)).then_some(Reflectance::Schlick(f0))
 }
 
 pub(super) fn lobe(
     name: Option<&'static str>,
     roughness: Roughness,
-    fresnel: Option<Fresnel>,
+    fresnel: Option<Reflectance>,
 ) -> Lobe {
     Lobe { name, roughness, gamma: GGX, fresnel, masking: None }
 }

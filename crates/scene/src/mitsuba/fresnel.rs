@@ -1,6 +1,6 @@
 //! Fresnel terms and indices of refraction.
 
-use microfacet_baker::scene::{Fresnel, Place, SceneError, did_you_mean};
+use microfacet_baker::scene::{Place, Reflectance, SceneError, did_you_mean};
 use microfacet_tables::Interval;
 
 use super::Reader;
@@ -47,8 +47,8 @@ impl<'a> Reader<'a> {
     /// The Fresnel term that was read; none, with a warning, if something impossible was found.
     pub(super) fn fresnel_or_warn(
         &mut self,
-        read: Result<Option<Fresnel>, SceneError>,
-    ) -> Result<Option<Fresnel>, SceneError> {
+        read: Result<Option<Reflectance>, SceneError>,
+    ) -> Result<Option<Reflectance>, SceneError> {
         self.ranges.abandon();
         self.builder.or_warn(read, (None, "the lobe is read without its Fresnel term"))
     }
@@ -57,7 +57,7 @@ impl<'a> Reader<'a> {
     pub(super) fn principled_fresnel(
         &mut self,
         bsdf: &'a Element,
-    ) -> Result<Option<Fresnel>, SceneError> {
+    ) -> Result<Option<Reflectance>, SceneError> {
         if self.weight(bsdf, "metallic")?.max > 0.0 || self.weight(bsdf, "spec_tint")?.max > 0.0 {
             return Ok(None);
         }
@@ -75,7 +75,7 @@ impl<'a> Reader<'a> {
         &mut self,
         bsdf: &'a Element,
         class: &str,
-    ) -> Result<Option<Fresnel>, SceneError> {
+    ) -> Result<Option<Reflectance>, SceneError> {
         if class.ends_with("conductor") {
             return self.conductor(bsdf);
         }
@@ -93,7 +93,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The Fresnel term of a conductor.
-    fn conductor(&self, bsdf: &Element) -> Result<Option<Fresnel>, SceneError> {
+    fn conductor(&self, bsdf: &Element) -> Result<Option<Reflectance>, SceneError> {
         let material = bsdf.child_named("material");
         let name = match material {
             Some(material) => material.required("value")?,
@@ -116,7 +116,7 @@ impl<'a> Reader<'a> {
                 let k = k.map_or(Ok(Some([1.0; 3])), read)?;
                 let of = |(eta, k): ([f64; 3], [f64; 3])| match eta {
                     // Such an index reflects everything, whatever the extinction is.
-                    [0.0, 0.0, 0.0] => Ok(Fresnel::Mirror),
+                    [0.0, 0.0, 0.0] => Ok(Reflectance::Mirror),
                     eta => conductor(eta, k, &bsdf.place),
                 };
                 eta.zip(k).map(of).transpose()
@@ -126,9 +126,9 @@ impl<'a> Reader<'a> {
 }
 
 /// The Fresnel term of a preset; none if its index is not known here.
-fn preset(name: &str, place: &Place) -> Result<Option<Fresnel>, SceneError> {
+fn preset(name: &str, place: &Place) -> Result<Option<Reflectance>, SceneError> {
     let stem = name.strip_suffix("_palik").unwrap_or(name);
-    let known = metal(stem).map(Fresnel::from);
+    let known = metal(stem).map(Reflectance::from);
     if known.is_none() && !UNKNOWN.contains(&stem) {
         return Err(place.invalid(format!(
             "the material \"{name}\" is no preset of Mitsuba; name another, or give eta and k"
@@ -141,7 +141,7 @@ fn preset(name: &str, place: &Place) -> Result<Option<Fresnel>, SceneError> {
 pub(super) fn constant_dielectric(
     eta: Interval,
     bsdf: &Element,
-) -> Result<Option<Fresnel>, SceneError> {
+) -> Result<Option<Reflectance>, SceneError> {
     eta.is_point().then(|| dielectric(eta.min, &bsdf.place)).transpose()
 }
 

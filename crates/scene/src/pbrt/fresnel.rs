@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use microfacet_baker::scene::{Fresnel, SceneError};
+use microfacet_baker::scene::{Reflectance, SceneError};
 use microfacet_sampler::Metal;
 
 use super::definition::Definition;
@@ -45,11 +45,14 @@ impl Parameter {
 }
 
 /// The Fresnel term of an interface, unless a spectrum or a texture leaves it open.
-pub(super) fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, SceneError> {
+pub(super) fn fresnel(
+    material: &Definition,
+    prefix: &str,
+) -> Result<Option<Reflectance>, SceneError> {
     match (&material.class[..], prefix) {
         ("conductor", _) => under(1.0, material, prefix),
         ("coatedconductor", "conductor.") => match outside(material, "interface.")? {
-            Some(Fresnel::Dielectric(coat)) => under(coat, material, prefix),
+            Some(Reflectance::Dielectric(coat)) => under(coat.min, material, prefix),
             _ => Ok(None),
         },
         _ => outside(material, prefix),
@@ -57,11 +60,11 @@ pub(super) fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Fres
 }
 
 /// The dielectric whose outside is the air.
-fn outside(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, SceneError> {
+fn outside(material: &Definition, prefix: &str) -> Result<Option<Reflectance>, SceneError> {
     // The defaults in materials.cpp.
     let default = if material.class == "subsurface" { 1.33 } else { 1.5 };
     let Some(eta) = material.parameter(&format!("{prefix}eta")) else {
-        return Ok(Some(Fresnel::Dielectric(default)));
+        return Ok(Some(Reflectance::dielectric(default)));
     };
     let index = match eta.spectrum() {
         Some(name) => spectra::glass(name).ok_or_else(|| eta.unknown(name, "float"))?,
@@ -73,7 +76,11 @@ fn outside(material: &Definition, prefix: &str) -> Result<Option<Fresnel>, Scene
 
 /// The conductor under a dielectric of index `coat`, to which its own index is relative
 /// (`ConductorMaterial` and `CoatedConductorMaterial::GetBxDF`).
-fn under(coat: f64, material: &Definition, prefix: &str) -> Result<Option<Fresnel>, SceneError> {
+fn under(
+    coat: f64,
+    material: &Definition,
+    prefix: &str,
+) -> Result<Option<Reflectance>, SceneError> {
     let parameter = |name: &str| material.parameter(&format!("{prefix}{name}"));
     let (eta, k) = (parameter("eta"), parameter("k"));
     let index = match material.parameter("reflectance") {

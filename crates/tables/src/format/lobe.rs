@@ -5,16 +5,23 @@ use alloc::string::String;
 
 use microfacet_core::Skew;
 use microfacet_core::shape::{gamma_of_s, s_of_gamma};
+use serde::{Deserialize, Serialize};
 
-use super::subject::{LobeEntry, check_roughness, check_shapes};
+use super::subject::joined_name;
 use crate::interval::Interval;
+use crate::{GAMMA_MIN, SIGMA_MAX};
+
+/// Two numbers are the same within this after a coordinate and its inverse: 1/(γ−1) of the end of a
+/// range may round to just outside it.
+pub const SAME: f64 = 1e-9;
 
 /// The slope roughness σ of a microfacet lobe, along the tangent (x) and the bitangent (y).
 ///
 /// σ is dimensionless: the scale of the surface's slopes in the Student-t distribution (Ribardière
 /// et al. 2017, doi:10.1111/cgf.13137, eq. 11 and 18), equal to the α of GGX (γ = 2) and of
 /// Beckmann (γ = ∞). A range may start at 0, for a texture with smooth points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Roughness {
     /// σ = 0 everywhere: a mirror or a pane, with no microfacets to sample.
     Smooth,
@@ -30,6 +37,9 @@ pub enum Roughness {
 }
 
 impl Roughness {
+    /// Every σx and σy: of tables of slopes that are divided by them.
+    pub const ALL: Self = Self::Isotropic(Interval { min: 0.0, max: f64::INFINITY });
+
     /// The isotropic roughness of range `sigma`; [`Roughness::Smooth`] if that is 0 alone.
     pub fn isotropic(sigma: Interval) -> Self {
         if sigma.max > 0.0 { Self::Isotropic(sigma) } else { Self::Smooth }
@@ -63,16 +73,41 @@ impl Roughness {
     pub fn is_isotropic(self) -> bool {
         !matches!(self, Self::Anisotropic { .. })
     }
+
+    /// Checks that ranges ascend from 0 or more; the error says what is wrong.
+    pub(super) fn check(self) -> Result<(), String> {
+        let sound = |Interval { min, max }| 0.0 <= min && min <= max && max < f64::INFINITY;
+        match [self.x(), self.y()].into_iter().find(|sigma| !sound(*sigma)) {
+            Some(Interval { min, max }) => Err(format!(
+                "sigma = [{min}, {max}] must ascend, from 0 or more to a finite number"
+            )),
+            None => Ok(()),
+        }
+    }
 }
 
-/// The lobe of a material, with ranges where a texture drives σ or γ.
+/// The form of a lobe, by which its tables differ in their axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LobeForm {
+    /// Round lobes of the Student-t family; tables of slopes that are divided by σ are of all.
+    Family,
+    /// A Student-t lobe, or a range of them, with σx and σy.
+    StudentT,
+    /// One lobe that is tilted and turned.
+    Ellipsoid,
+    /// An isotropic distribution outside the family.
+    Distribution,
+}
+
+/// A lobe, or the range of lobes of a material whose texture drives σ or γ, or of a table.
 ///
 /// `D` is the distribution of one outside the Student-t family: its label, such as `gtr:0.2,1.5`,
 /// or whatever else says it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LobeSpec<D = String> {
-    /// σx and σy ≥ 0. Outside the family: the median slope of the normals, which is the scale of
-    /// its tables.
+    /// σx and σy ≥ 0. Of a material outside the family: the median slope of the normals, which is
+    /// the scale of its tables.
     pub roughness: Roughness,
     /// The shape γ > 3/2; `INFINITY` is Beckmann, 2 is GGX. It has no meaning outside the family.
     pub gamma: Interval,
@@ -84,9 +119,42 @@ pub struct LobeSpec<D = String> {
 }
 
 impl<D> LobeSpec<D> {
+    /// Every round lobe that tables of albedos cover: γ ∈ [1.501, ∞] and σ ∈ [0, 3].
+    pub const GENERAL: Self = Self::family(
+        Roughness::Isotropic(Interval { min: 0.0, max: SIGMA_MAX }),
+        Interval { min: GAMMA_MIN, max: f64::INFINITY },
+    );
+
     /// An upright lobe of the family.
     pub const fn family(roughness: Roughness, gamma: Interval) -> Self {
         Self { roughness, gamma, theta: None, distribution: None }
+    }
+
+    /// One upright lobe of the family.
+    pub fn student_t([x, y]: [f64; 2], gamma: f64) -> Self {
+        let [x, y, gamma] = [x, y, gamma].map(Interval::point);
+        Self::family(Roughness::anisotropic(x, y), gamma)
+    }
+
+    /// A distribution outside the family, of every scale.
+    pub fn outside(distribution: D) -> Self {
+        let family = Self::family(Roughness::ALL, Interval::point(2.0));
+        Self { distribution: Some(distribution), ..family }
+    }
+
+    /// Its form.
+    pub fn form(&self) -> LobeForm {
+        match (&self.distribution, self.theta) {
+            (Some(_), _) => LobeForm::Distribution,
+            (_, Some(_)) => LobeForm::Ellipsoid,
+            _ if self.roughness.is_isotropic() => LobeForm::Family,
+            _ => LobeForm::StudentT,
+        }
+    }
+
+    /// Whether it is round lobes of the family.
+    pub fn is_family(&self) -> bool {
+        self.form() == LobeForm::Family
     }
 
     /// The range [min, max] of s = 1/(γ−1), which is 0 at γ = ∞.
@@ -107,6 +175,16 @@ impl<D> LobeSpec<D> {
     /// γ, at the middle of the range of s.
     pub fn gamma(&self) -> f64 {
         gamma_of_s(middle(self.s()))
+    }
+
+    /// Whether it has the shape s = 1/(γ−1), within [`SAME`].
+    pub fn contains_s(&self, s: f64) -> bool {
+        within(self.s(), s, SAME)
+    }
+
+    /// Whether it has the shape γ.
+    pub fn contains_shape(&self, gamma: f64) -> bool {
+        self.contains_s(s_of_gamma(gamma))
     }
 
     /// σ of the isotropic lobe that stands in for an anisotropic one: √(σx σy).
@@ -131,7 +209,7 @@ impl<D> LobeSpec<D> {
     }
 
     /// Whether σx, σy and γ are single numbers.
-    fn is_single(&self) -> bool {
+    pub fn is_single(&self) -> bool {
         let [x, y] = self.sigmas();
         [x, y, self.gamma].into_iter().all(Interval::is_point)
     }
@@ -148,32 +226,90 @@ impl<D> LobeSpec<D> {
     }
 }
 
-impl LobeSpec {
-    /// The lobe of its albedo's tables: the family's if it is round, or if it is anisotropic with a
-    /// range, for which the round lobe of [`round_sigma`](Self::round_sigma) stands in.
-    pub fn tabulated(&self) -> LobeEntry {
-        if let Some(label) = &self.distribution {
-            return LobeEntry::Distribution(label.clone());
-        }
-        let ([x, y], [s, _]) = (self.sigmas(), self.s());
-        let sigma = [x.min, y.min];
-        match self.theta {
-            Some(theta) => LobeEntry::Ellipsoid { sigma, theta, s },
-            None if x != y && self.is_single() => LobeEntry::StudentT { sigma, s },
-            None => LobeEntry::Family,
+impl<D: Clone + PartialEq> LobeSpec<D> {
+    /// The lobe that tables of its albedo are of: its own if it is a single one, and the round one
+    /// of [`round_sigma`](Self::round_sigma) for ranges of an anisotropic one.
+    #[must_use]
+    pub fn tabulated(&self) -> Self {
+        if self.form() == LobeForm::StudentT && !self.is_single() {
+            self.round()
+        } else {
+            self.clone()
         }
     }
 
-    /// Checks every number; the error says what is wrong.
+    /// The round lobe of σ = √(σx σy) that usually stands in for one that is not, without a tilt.
+    #[must_use]
+    pub fn round(&self) -> Self {
+        let mean = |x: f64, y: f64| if x == y { x } else { libm::sqrt(x * y) };
+        let [x, y] = self.sigmas();
+        let sigma = Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) };
+        Self::family(Roughness::isotropic(sigma), self.gamma)
+    }
+
+    /// Whether a table of this lobe, or of this range of round ones, is of another: σ within the
+    /// rounding of single precision, in which lobes take it, and γ within [`SAME`]. A tilt is the
+    /// same number.
+    pub fn contains(&self, other: &Self) -> bool {
+        if self.distribution.is_some() || other.distribution.is_some() {
+            return self.distribution == other.distribution;
+        }
+        let sigmas = self.sigmas().into_iter().zip(other.sigmas());
+        (self.theta, self.is_family()) == (other.theta, other.is_family())
+            && other.s().into_iter().all(|s| self.contains_s(s))
+            && sigmas.into_iter().all(|(all, Interval { min, max })| {
+                [min, max]
+                    .into_iter()
+                    .all(|sigma| within(all.into(), sigma, f64::from(f32::EPSILON)))
+            })
+    }
+}
+
+impl LobeSpec {
+    /// What it is as part of the name of a table; empty for all that tables can cover.
+    pub(super) fn label(&self) -> String {
+        let part = |name: &str, Interval { min, max }: Interval| {
+            if min == max { format!("{name}_{min}") } else { format!("{name}_{min}_to_{max}") }
+        };
+        if let Some(label) = &self.distribution {
+            return label.replace([':', ',', '/', '\\', ' '], "_");
+        }
+        let is_all = self.roughness == Roughness::ALL;
+        if self.gamma == Self::GENERAL.gamma && (is_all || *self == Self::GENERAL) {
+            return String::new();
+        }
+        let sigma = match self.sigmas() {
+            _ if is_all => String::new(),
+            [x, _] if self.is_family() => part("sigma", x),
+            [x, y] => format!("{}_{}", part("sigma", x), y.min),
+        };
+        let theta = self.theta.map(|[a, b, c]| format!("theta_{a}_{b}_{c}")).unwrap_or_default();
+        joined_name(&[&part("gamma", self.gamma), &sigma, &theta])
+    }
+
+    /// Checks every number but σ; the error says what is wrong.
     pub(super) fn check(&self) -> Result<(), String> {
-        self.sigmas().into_iter().try_for_each(|sigma| check_roughness(sigma.into()))?;
-        check_shapes(self.s())?;
+        let [min, max] = self.s();
+        if !(0.0 <= min && min <= max && max < 2.0) {
+            let Interval { min, max } = self.gamma;
+            return Err(format!("gamma = [{min}, {max}] must ascend, from more than 3/2"));
+        }
+        if self.distribution.as_ref().is_some_and(String::is_empty) {
+            return Err("a distribution without a label".into());
+        }
         let Some(theta) = self.theta else { return Ok(()) };
         if !self.is_single() || self.distribution.is_some() {
-            return Err("theta is for a Student-t lobe with single numbers of sigma and s".into());
+            return Err(
+                "theta is for a Student-t lobe with single numbers of sigma and gamma".into()
+            );
         }
         Skew::new(self.sigma(), theta).map(drop).map_err(|why| format!("theta = {theta:?}: {why}"))
     }
+}
+
+/// Whether a number is in a range, or beyond an end by no more than this part of it.
+fn within([min, max]: [f64; 2], x: f64, slack: f64) -> bool {
+    x >= min - slack * min && x <= max + slack * max
 }
 
 /// The middle of a range.

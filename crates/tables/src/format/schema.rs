@@ -7,7 +7,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::kind::Kind;
-use super::subject::{LobeEntry, Reflectance, Side, Subject};
+use super::lobe::LobeForm;
+use super::reflectance::Reflectance;
+use super::subject::{Side, Subject};
 use crate::axis::Interpolation::{self, Hermite, Lagrange4, Lagrange6, Linear, Nodes};
 
 /// One axis of a kind: its name, and the mappings and interpolations that readers know for it.
@@ -104,14 +106,16 @@ impl Kind {
 
 /// The axes of the material, then those of the view.
 fn albedo(subject: &Subject) -> Layout {
-    let reflectance = subject.reflectance.unwrap_or(Reflectance::Moments);
-    let mut axes = match subject.lobe {
-        LobeEntry::Family => vec![ALBEDO_SHAPE, SIGMA],
+    let reflectance = subject.reflectance.unwrap_or(Reflectance::Mirror);
+    let form = subject.lobe.form();
+    let mut axes = match form {
+        LobeForm::Family => vec![ALBEDO_SHAPE, SIGMA],
         _ => vec![AZIMUTH],
     };
     axes.extend(reflectance.indices().map(|_| ETA));
     axes.push(if reflectance.side() == Some(Side::Dense) { INNER_VIEW } else { VIEW });
-    let clamp = subject.lobe.is_clamped().then_some(Kind::CLAMP);
+    // G1 of a tilted lobe is clamped at one: less of it may be seen than of the macrosurface.
+    let clamp = (form == LobeForm::Ellipsoid).then_some(Kind::CLAMP);
     moments(axes, reflectance.channels().iter().copied().chain(clamp).collect())
 }
 
@@ -127,20 +131,20 @@ mod tests {
 
     use super::*;
     use crate::axis::Mapping;
+    use crate::format::LobeSpec;
+    use crate::interval::Interval;
 
     /// Subjects whose albedos have every axis that there is.
     fn subjects() -> [Subject; 3] {
-        let of = |lobe, reflectance| Subject {
-            lobe,
-            reflectance: Some(reflectance),
-            ..Subject::default()
-        };
-        let tilted = LobeEntry::Ellipsoid { sigma: [0.1, 0.2], theta: [0.1; 3], s: 1.0 };
-        let pane = |side| Reflectance::Dielectric { side, min: 1.5, max: None };
+        let of =
+            |lobe, reflectance| Subject { reflectance: Some(reflectance), ..Subject::of(lobe) };
+        let tilted = LobeSpec { theta: Some([0.1; 3]), ..LobeSpec::student_t([0.1, 0.2], 2.0) };
+        let index = Interval { min: 1.5, max: f64::INFINITY };
+        let pane = |side| Reflectance::Interface { side, index };
         [
-            of(LobeEntry::Family, pane(Side::Thin)),
-            of(LobeEntry::Family, pane(Side::Dense)),
-            of(tilted, Reflectance::Moments),
+            of(LobeSpec::GENERAL, pane(Side::Thin)),
+            of(LobeSpec::GENERAL, pane(Side::Dense)),
+            of(tilted, Reflectance::Mirror),
         ]
     }
 

@@ -9,16 +9,16 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use microfacet_core::Masking;
-use microfacet_core::shape::s_of_gamma;
 use serde::{Deserialize, Serialize};
 
 use super::certificate::{Certificate, Figures};
 use super::kind::Kind;
+use super::lobe::{LobeForm, LobeSpec, Roughness};
 use super::precision::{Codec, Precision};
-use super::stored::{Range, Sigma, StoredAxis, gamma_of};
-use super::subject::{Covered, LobeEntry, Reflectance, Side, Subject, joined_name};
+use super::reflectance::Reflectance;
+use super::stored::{Range, Sigma, StoredAxis};
+use super::subject::{Side, Subject, joined_name};
 use super::table::Table;
-use crate::interval::Interval;
 
 /// Tables of one layout.
 ///
@@ -33,7 +33,7 @@ pub(super) struct Stack {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     count: Option<usize>,
     kind: Kind,
-    lobe: Form,
+    lobe: LobeForm,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     masking: Option<Masking>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -87,16 +87,6 @@ impl From<Figure> for f64 {
     }
 }
 
-/// The form of the lobes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Form {
-    Family,
-    StudentT,
-    Ellipsoid,
-    Distribution,
-}
-
 /// The form of the reflectances.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -117,39 +107,21 @@ enum Eta {
 impl Stack {
     /// A stack of one table, whose axes are those of the document at these places.
     fn one(table: &Table, axes: Vec<usize>) -> Self {
-        let Subject { lobe, masking, reflectance, covers } = &table.subject;
+        let Subject { lobe, masking, reflectance } = &table.subject;
         let codec = Codec::fit(table.precision, &table.values, table.channels.len());
         let (scale, offset) = codec.scale_offset().unzip();
-        let point = |s: f64| vec![Range::from(Interval::point(gamma_of(s)))];
-        let two = |sigma: &[f64; 2]| vec![Sigma::Two(sigma.map(|x| Interval::point(x).into()))];
-        let none = Vec::new;
-        let (form, gamma, sigma, theta, distribution) = match lobe {
-            LobeEntry::Family => {
-                let gamma = covers.map(|covers| covers.gamma().into());
-                let sigma = covers.and_then(|covers| covers.sigma);
-                let sigma = sigma.map(|ends| Sigma::Round(Interval::from(ends).into()));
-                (Form::Family, Vec::from_iter(gamma), Vec::from_iter(sigma), none(), Vec::new())
-            }
-            LobeEntry::StudentT { sigma, s } => {
-                (Form::StudentT, point(*s), two(sigma), none(), Vec::new())
-            }
-            LobeEntry::Ellipsoid { sigma, theta, s } => {
-                (Form::Ellipsoid, point(*s), two(sigma), vec![*theta], Vec::new())
-            }
-            LobeEntry::Distribution(label) => {
-                (Form::Distribution, Vec::new(), Vec::new(), none(), vec![label.clone()])
-            }
-        };
+        let form = lobe.form();
+        let gamma = (form != LobeForm::Distribution).then(|| lobe.gamma.into());
+        let sigma = (lobe.roughness != Roughness::ALL).then(|| lobe.roughness.into());
         let (optics, eta, k) = match *reflectance {
-            None => (None, Vec::new(), none()),
-            Some(Reflectance::Moments) => (Some(Optics::Moments), Vec::new(), none()),
             Some(Reflectance::Conductor { eta, k }) => {
-                (Some(Optics::Conductor), vec![Eta::Rgb(eta)], vec![k])
+                (Some(Optics::Conductor), Some(Eta::Rgb(eta)), Some(k))
             }
-            Some(Reflectance::Dielectric { min, max, .. }) => {
-                let range = Interval { min, max: max.unwrap_or(f64::INFINITY) };
-                (Some(Optics::Dielectric), vec![Eta::Range(range.into())], none())
+            Some(Reflectance::Interface { index, .. }) => {
+                (Some(Optics::Dielectric), Some(Eta::Range(index.into())), None)
             }
+            Some(_) => (Some(Optics::Moments), None, None),
+            None => (None, None, None),
         };
         let figures = Figures::from(table.certificate.clone()).into_iter();
         Self {
@@ -163,12 +135,12 @@ impl Stack {
             axes,
             channels: table.channels.clone(),
             precision: table.precision,
-            gamma,
-            sigma,
-            theta,
-            distribution,
-            eta,
-            k,
+            gamma: Vec::from_iter(gamma),
+            sigma: Vec::from_iter(sigma),
+            theta: Vec::from_iter(lobe.theta),
+            distribution: Vec::from_iter(lobe.distribution.clone()),
+            eta: Vec::from_iter(eta),
+            k: Vec::from_iter(k),
             scale: Vec::from_iter(scale),
             offset: Vec::from_iter(offset),
             certificate: figures.map(|(key, figure)| (key, vec![Some(figure.into())])).collect(),
@@ -252,56 +224,37 @@ impl Stack {
     /// What the i-th table is of; the error says what is missing.
     fn subject(&self, i: usize) -> Result<Subject, String> {
         let missing = |key: &str| format!("no `{key}`, which its lobe or reflectance needs");
-        let gamma = self.gamma.get(i).copied().map(Interval::from);
-        let sigma = self.sigma.get(i).copied();
-        let single = || -> Result<([f64; 2], f64), String> {
-            let gamma = gamma.filter(|gamma| gamma.is_point()).ok_or_else(|| missing("gamma"))?;
-            let Some(Sigma::Two(sigma)) = sigma else { return Err(missing("sigma")) };
-            Ok((sigma.map(|x| Interval::from(x).min), s_of_gamma(gamma.min)))
-        };
-        let mut covers = None;
-        let lobe = match self.lobe {
-            Form::Family => {
-                covers = match (gamma, sigma) {
-                    (None, _) => None,
-                    (Some(gamma), None) => Some(Covered::of(gamma, None)),
-                    (Some(gamma), Some(Sigma::Round(sigma))) => {
-                        Some(Covered::of(gamma, Some(sigma.into())))
-                    }
-                    (Some(_), Some(Sigma::Two(_))) => return Err(missing("sigma")),
-                };
-                LobeEntry::Family
-            }
-            Form::StudentT => {
-                let (sigma, s) = single()?;
-                LobeEntry::StudentT { sigma, s }
-            }
-            Form::Ellipsoid => {
-                let (sigma, s) = single()?;
-                let theta = self.theta.get(i).copied().ok_or_else(|| missing("theta"))?;
-                LobeEntry::Ellipsoid { sigma, theta, s }
-            }
-            Form::Distribution => {
-                let label = self.distribution.get(i).cloned();
-                LobeEntry::Distribution(label.ok_or_else(|| missing("distribution"))?)
+        let sigma = self.sigma.get(i).map(|sigma| Roughness::from(*sigma));
+        let lobe = match (self.lobe, self.gamma.get(i), self.distribution.get(i)) {
+            (LobeForm::Distribution, _, None) => return Err(missing("distribution")),
+            (LobeForm::Distribution, _, Some(label)) => LobeSpec::outside(label.clone()),
+            (_, None, _) => return Err(missing("gamma")),
+            (form, Some(&gamma), _) => {
+                if form != LobeForm::Family && sigma.is_none() {
+                    return Err(missing("sigma"));
+                }
+                let lobe = LobeSpec::family(sigma.unwrap_or(Roughness::ALL), gamma.into());
+                LobeSpec { theta: self.theta.get(i).copied(), ..lobe }
             }
         };
+        if lobe.form() != self.lobe {
+            let (got, stated) = (lobe.form(), self.lobe);
+            return Err(format!("its columns are of the form {got:?}, not of {stated:?}"));
+        }
         let reflectance = match (self.reflectance, self.eta.get(i).copied()) {
             (None, _) => None,
-            (Some(Optics::Moments), _) => Some(Reflectance::Moments),
+            (Some(Optics::Moments), _) => Some(Reflectance::Mirror),
             (Some(Optics::Conductor), Some(Eta::Rgb(eta))) => {
                 let k = self.k.get(i).copied().ok_or_else(|| missing("k"))?;
                 Some(Reflectance::Conductor { eta, k })
             }
-            (Some(Optics::Dielectric), Some(Eta::Range(range))) => {
-                let Interval { min, max } = range.into();
-                let max = (max < f64::INFINITY).then_some(max);
+            (Some(Optics::Dielectric), Some(Eta::Range(index))) => {
                 let side = self.side.ok_or_else(|| missing("side"))?;
-                Some(Reflectance::Dielectric { side, min, max })
+                Some(Reflectance::Interface { side, index: index.into() })
             }
             (Some(_), _) => return Err(missing("eta")),
         };
-        Ok(Subject { lobe, masking: self.masking, reflectance, covers })
+        Ok(Subject { lobe, masking: self.masking, reflectance })
     }
 
     fn certificate(&self, i: usize) -> Result<Certificate, String> {

@@ -44,6 +44,21 @@ impl From<Range> for Interval {
     }
 }
 
+/// An interval as a [`Range`].
+pub(super) mod range {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::{Interval, Range};
+
+    pub(crate) fn serialize<S: Serializer>(of: &Interval, output: S) -> Result<S::Ok, S::Error> {
+        Range::from(*of).serialize(output)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Interval, D::Error> {
+        Range::deserialize(input).map(Interval::from)
+    }
+}
+
 /// A roughness: that of a round lobe, or σx and σy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a number or an object of `min` and `max`, or two for x and y")]

@@ -6,7 +6,6 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use microfacet_core::Real;
-use microfacet_core::shape::gamma_of_s;
 
 use super::certificate::Certificate;
 use super::kind::Kind;
@@ -14,6 +13,7 @@ use super::precision::{Codec, Precision};
 use super::subject::Subject;
 use crate::axis::{Axis, Mapping, Weights};
 use crate::error::LoadError;
+use crate::interval::Interval;
 
 /// A table of values at the nodes of named axes.
 ///
@@ -88,9 +88,10 @@ impl Table {
     fn uncovered(&self) -> Option<f64> {
         let of_shape =
             |axis: &&Axis| matches!(axis.mapping, Mapping::InverseShape | Mapping::LogShape(_));
-        let (covers, axis) = (self.subject.covers?, self.axes.iter().find(of_shape)?);
+        let axis = self.axes.iter().find(of_shape)?;
         let holds = |gamma: f64| axis.weights(axis.coordinate(gamma)?);
-        covers.s.map(gamma_of_s).into_iter().find(|&gamma| holds(gamma).is_none())
+        let Interval { min, max } = self.subject.lobe.gamma;
+        [max, min].into_iter().find(|&gamma| holds(gamma).is_none())
     }
 
     /// Checks everything that lookups rely on.

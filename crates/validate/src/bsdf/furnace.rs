@@ -16,10 +16,9 @@ use rayon::prelude::*;
 use microfacet_baker::progress::Stage;
 use microfacet_baker::table_set::Settings;
 use microfacet_baker::table_spec::Quality;
-use microfacet_core::shape::s_of_gamma;
 use microfacet_model as model;
 use microfacet_sampler::{AnyBsdf, Bsdf, Compensation, Masking, Tables, Transport};
-use microfacet_tables::{Kind, Quantity, Reflectance, Table};
+use microfacet_tables::{Interval, Kind, LobeSpec, Quantity, Reflectance, Table};
 
 use super::specimen::{self, LobeOf, Specimen, Surface, Unmade};
 use crate::furnace::{Estimate, TOLERANCE, direction, over_lights};
@@ -276,19 +275,17 @@ fn certified(tables: &Tables, specimen: &Specimen) -> Option<f64> {
     let conductor = index.is_none();
     let embedded = Tables::embedded();
     let tables = if conductor { &embedded } else { tables };
-    let (sigma, shape) = (f64::from(specimen.sigma[0]), s_of_gamma(specimen.gamma));
-    let within =
-        |[low, high]: [f64; 2], x: f64| low * (1.0 - 1e-6) <= x && x <= high * (1.0 + 1e-6);
+    let lobe = LobeSpec::student_t([f64::from(specimen.sigma[0]); 2], specimen.gamma);
+    let within = |Interval { min, max }: Interval, x: f64| {
+        min * (1.0 - 1e-6) <= x && x <= max * (1.0 + 1e-6)
+    };
     let read = tables.tables().iter().filter(|table| {
         let reflectance = table.subject.reflectance;
         let same = match index {
             Some(eta) => reflectance.and_then(|of| of.indices()).is_some_and(|of| within(of, eta)),
-            None => reflectance == Some(Reflectance::Moments),
+            None => reflectance == Some(Reflectance::Mirror),
         };
-        let covers = table.subject.covers.is_some_and(|covers| {
-            within(covers.s, shape) && covers.sigma.is_none_or(|range| within(range, sigma))
-        });
-        table.kind == Kind::Albedo && same && covers
+        table.kind == Kind::Albedo && same && table.subject.lobe.contains(&lobe)
     });
     let error = |table: &Table| -> f64 {
         let wanted = |of: &Quantity| !conductor || *of == Quantity::E;

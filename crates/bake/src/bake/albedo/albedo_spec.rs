@@ -1,19 +1,19 @@
 //! The specification of albedo tables: the lobe, the reflectance, and the nodes.
 
-use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::Masking;
 use microfacet_tables::axis::lagrange::nodes_read;
 use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
 };
 use microfacet_tables::{
-    Axis, Covered, Interpolation, Kind, Mapping, Precision, Reflectance, SIGMA_MAX, Side, Subject,
-    Table,
+    Axis, Interpolation, Interval, Kind, LobeForm, LobeSpec, Mapping, Precision, Reflectance,
+    Roughness, SIGMA_MAX, Side, Subject, Table,
 };
 
-use super::domain::Domain;
+use super::lobe::{azimuth, stated, tail};
 use super::{AlbedoError, AlbedoLobe, view_of};
 use crate::bake::names;
+use crate::distribution::Distribution;
 use crate::table_spec::{GAMMA_MIN, Level};
 
 /// Smallest σ node; smoother surfaces count as mirrors.
@@ -84,7 +84,8 @@ impl AlbedoSpec {
     /// those of the general tables. For other lobes it is the smallest table that is tried.
     ///
     /// # Errors
-    /// [`AlbedoError`] for parameters that describe no ellipsoid.
+    /// [`AlbedoError`] for parameters that describe no ellipsoid, or a reflectance that a table
+    /// cannot be of: see [`Reflectance::tabulated`].
     pub fn new(
         lobe: AlbedoLobe,
         reflectance: Reflectance,
@@ -92,29 +93,30 @@ impl AlbedoSpec {
         level: impl Into<Level>,
         precision: Precision,
     ) -> Result<Self, AlbedoError> {
+        reflectance.check_of_table().map_err(AlbedoError::Lobe)?;
         let level = level.into();
         let counts = Counts::at(level);
-        let mut axes = match (&lobe, lobe.azimuth()?) {
-            (AlbedoLobe::Family(domain), _) => materials(domain, &counts),
-            (_, Some(azimuth)) => {
-                let count = match (lobe.is_round(), azimuth.fold) {
-                    (true, _) => 1,
-                    (_, true) => counts.azimuths,
-                    _ => 4 * (counts.azimuths - 1),
+        let mut axes = match azimuth(&lobe)? {
+            None => materials(&lobe, &counts),
+            Some(azimuth) => {
+                let count = match lobe.form() {
+                    // Its albedo is the same at every azimuth.
+                    LobeForm::Distribution => 1,
+                    LobeForm::Ellipsoid => 4 * (counts.azimuths - 1),
+                    LobeForm::Family | LobeForm::StudentT => counts.azimuths,
                 };
                 vec![Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count)]
             }
-            (_, None) => unreachable!("lobes that are one material have azimuths"),
         };
-        axes.extend(reflectance.indices().map(|ends| {
+        axes.extend(reflectance.indices().map(|Interval { min, max }| {
             let nodes = even_nodes(0.0, 1.0, counts.indices);
-            let [from, to] = ends.map(|eta| ReflectanceRoot.coordinate(eta));
+            let [from, to] = [min, max].map(|eta| ReflectanceRoot.coordinate(eta));
             Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&nodes, from, to))
         }));
-        let (view, views) = match lobe {
-            AlbedoLobe::Family(_) if level >= CLOSE_FROM => (ViewBlend::CLOSE, counts.views),
-            AlbedoLobe::Family(_) => (ViewBlend::BAKED, counts.views),
-            _ => (view_of(lobe.tail()), counts.views_of_lobes),
+        let (view, views) = match lobe.is_family() {
+            true if level >= CLOSE_FROM => (ViewBlend::CLOSE, counts.views),
+            true => (ViewBlend::BAKED, counts.views),
+            false => (view_of(tail(&lobe)), counts.views_of_lobes),
         };
         axes.push(if reflectance.side() == Some(Side::Dense) {
             // E changes fast where total reflection sets in: two halves share a node there.
@@ -128,8 +130,8 @@ impl AlbedoSpec {
 
     /// The moments of the whole family, for both forms of masking.
     pub fn general(level: impl Into<Level>, precision: Precision) -> Self {
-        let lobe = AlbedoLobe::Family(Domain::GENERAL);
-        Self::new(lobe, Reflectance::Moments, Masking::ALL.into(), level, precision)
+        let maskings = Masking::ALL.into();
+        Self::new(LobeSpec::GENERAL, Reflectance::Mirror, maskings, level, precision)
             .expect("the family is no ellipsoid")
     }
 
@@ -138,8 +140,15 @@ impl AlbedoSpec {
     ///
     /// A table does not state the error aimed at in its nodes: a given one stands for it.
     pub fn of_table(table: &Table, tolerance: f64) -> Option<Self> {
-        let Subject { lobe, masking, reflectance, covers } = &table.subject;
-        let lobe = AlbedoLobe::of_entry(lobe, *covers, &table.axes)?;
+        let Subject { lobe, masking, reflectance } = &table.subject;
+        let lobe = match (&lobe.distribution, table.axes.first()?.mapping) {
+            (Some(label), Mapping::Azimuth(azimuth)) => AlbedoLobe {
+                roughness: Roughness::isotropic(Interval::point(azimuth.sigma[0])),
+                ..AlbedoLobe::outside(Distribution::Named(label.parse().ok()?))
+            },
+            (Some(_), _) => return None,
+            (None, _) => lobe.map(|_| unreachable!("it has none")),
+        };
         let (maskings, reflectance) = (vec![(*masking)?], (*reflectance)?);
         let (axes, precision) = (table.axes.clone(), table.precision);
         Some(Self { lobe, reflectance, maskings, axes, tolerance, precision })
@@ -159,11 +168,11 @@ impl AlbedoSpec {
     /// How many times an axis may be [`refined`](Self::refined). How many nodes it takes depends on
     /// the material, except for the moments of the family, whose nodes were found by measuring.
     pub fn doublings(&self) -> u32 {
-        match (&self.lobe, self.reflectance) {
-            (AlbedoLobe::Family(_), Reflectance::Moments) => 0,
+        match (self.lobe.form(), self.reflectance) {
+            (LobeForm::Family, Reflectance::Mirror) => 0,
             // No number of nodes resolves well the kink that the clamp of G1(l) leaves, nor the
             // onset of total reflection on smooth surfaces.
-            (AlbedoLobe::Family(_) | AlbedoLobe::Ellipsoid { .. }, _) => 2,
+            (LobeForm::Family | LobeForm::Ellipsoid, _) => 2,
             _ => 4,
         }
     }
@@ -186,15 +195,15 @@ impl AlbedoSpec {
 
     /// Names of the channels.
     pub fn channels(&self) -> Vec<String> {
-        let clamp = matches!(self.lobe, AlbedoLobe::Ellipsoid { .. }).then(|| Kind::CLAMP.into());
+        let clamp = self.lobe.theta.map(|_| Kind::CLAMP.into());
         names(self.reflectance.channels()).into_iter().chain(clamp).collect()
     }
 
     /// Whether tables of averages are baked as well: of more than one material, since an albedo of
     /// one has its averages in itself.
     pub fn has_averages(&self) -> bool {
-        matches!(self.lobe, AlbedoLobe::Family(_))
-            && self.reflectance == Reflectance::Moments
+        self.lobe.is_family()
+            && self.reflectance == Reflectance::Mirror
             && self.nodes_of_materials() > 1
     }
 
@@ -220,19 +229,16 @@ impl AlbedoSpec {
     /// The subject in the description of a table.
     pub fn subject(&self, masking: Masking) -> Subject {
         let (masking, reflectance) = (Some(masking), Some(self.reflectance));
-        Subject { masking, reflectance, ..self.lobe.subject() }
+        Subject { masking, reflectance, ..Subject::of(stated(&self.lobe)) }
     }
 
     /// The whole extent of the family's axes, with the outer nodes that only interpolation reads.
-    pub(super) fn everywhere(&self) -> Option<Covered> {
+    pub(super) fn everywhere(&self) -> LobeSpec {
         let ends = |i: usize| {
-            let mut ends =
-                self.axes[i].ends().map(|t| self.axes[i].quantity(t).unwrap_or(f64::NAN));
-            ends.sort_by(f64::total_cmp);
-            ends
+            let ends = self.axes[i].ends().map(|t| self.axes[i].quantity(t).unwrap_or(f64::NAN));
+            Interval { min: ends[0].min(ends[1]), max: ends[0].max(ends[1]) }
         };
-        let ([low, high], sigma) = (ends(0), ends(1));
-        Some(Covered { s: [s_of_gamma(high), s_of_gamma(low)], sigma: Some(sigma) })
+        LobeSpec::family(Roughness::Isotropic(ends(1)), ends(0))
     }
 
     /// The name of a table.
@@ -247,9 +253,9 @@ fn is_of_view(axis: &Axis) -> bool {
     matches!(mapping, Mapping::Azimuth(_) | Mapping::ViewBlend(_) | Mapping::CriticalBlend(_))
 }
 
-/// The axes of γ and σ for a domain.
-fn materials(domain: &Domain, counts: &Counts) -> Vec<Axis> {
-    let Domain { gamma, sigma } = domain;
+/// The axes of γ and σ for round lobes.
+fn materials(lobe: &AlbedoLobe, counts: &Counts) -> Vec<Axis> {
+    let (gamma, sigma) = (lobe.gamma, lobe.roughness.x());
     let shape = |gamma: f64| LogShape::BAKED.coordinate(gamma);
     let roughness = |sigma: f64| LogRoughness::BAKED.coordinate(sigma);
     let shapes = even_nodes(shape(f64::INFINITY), shape(GAMMA_MIN), counts.shapes);

@@ -30,12 +30,14 @@ impl Integrand {
     /// [`ParameterError`] for η ≤ 0 or k < 0.
     pub fn new(reflectance: &Reflectance) -> Result<Self, ParameterError> {
         Ok(match *reflectance {
-            Reflectance::Moments => Self::Moments,
+            Reflectance::Mirror | Reflectance::Schlick(_) => Self::Moments,
             Reflectance::Conductor { eta, k } => {
                 let channel = |i: usize| Conductor::new(eta[i], k[i]);
                 Self::Metal([channel(0)?, channel(1)?, channel(2)?])
             }
-            Reflectance::Dielectric { side, .. } => Self::Pane(side),
+            Reflectance::Interface { side, .. } => Self::Pane(side),
+            // Its tables are of one side each.
+            Reflectance::Dielectric(_) => Self::Pane(Side::Thin),
         })
     }
 

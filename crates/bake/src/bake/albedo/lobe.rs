@@ -1,140 +1,68 @@
 //! The lobes that albedos are baked for, and their quadrature. **A new one goes here** and in
-//! [`LobeEntry`](microfacet_tables::LobeEntry).
+//! [`LobeForm`].
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use microfacet_model::classic::{Marginal, RadialAlbedo};
 use microfacet_model::{
     Albedo, AlbedoIntegrator, Ellipsoid, EllipsoidError, ParameterError, Shape, Skew,
 };
 use microfacet_tables::axis::Azimuth;
-use microfacet_tables::{Axis, Covered, LobeEntry, Mapping, Subject};
+use microfacet_tables::{LobeForm, LobeSpec};
 
-use super::{AlbedoError, CHANNELS, Domain, Site};
+use super::{AlbedoError, CHANNELS, Site};
 use crate::distribution::Distribution;
 
-/// The lobe, or range of lobes, that one table of albedos is baked for.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum AlbedoLobe {
-    /// Isotropic lobes of the Student-t family.
-    Family(Domain),
-    /// One anisotropic Student-t lobe.
-    StudentT {
-        /// σx and σy.
-        sigma: [f64; 2],
-        /// γ.
-        gamma: f64,
-    },
-    /// One ellipsoid: a tilted Student-t lobe.
-    Ellipsoid {
-        /// σx and σy, and the turn in radians; see [`Skew::new`].
-        sigma: [f64; 2],
-        /// θx, θy and θz.
-        theta: [f64; 3],
-        /// γ.
-        gamma: f64,
-    },
-    /// An isotropic distribution outside the family.
-    Radial {
-        /// The distribution.
-        distribution: Distribution,
-        /// Its median slope.
-        sigma: f64,
-    },
+/// The lobe, or range of round lobes, that one table of albedos is baked for.
+pub type AlbedoLobe = LobeSpec<Distribution>;
+
+/// The lobe as the description of a table states it: that of a distribution is of every scale.
+pub(crate) fn stated(lobe: &AlbedoLobe) -> LobeSpec {
+    match &lobe.distribution {
+        Some(distribution) => LobeSpec::outside(distribution.label()),
+        None => lobe.map(Distribution::label),
+    }
 }
 
-impl AlbedoLobe {
-    /// The lobe as the description of its tables states it.
-    pub fn entry(&self) -> LobeEntry {
-        match *self {
-            Self::Family(_) => LobeEntry::Family,
-            Self::StudentT { sigma, gamma } => LobeEntry::StudentT { sigma, s: s_of_gamma(gamma) },
-            Self::Ellipsoid { sigma, theta, gamma } => {
-                LobeEntry::Ellipsoid { sigma, theta, s: s_of_gamma(gamma) }
-            }
-            Self::Radial { ref distribution, .. } => LobeEntry::Distribution(distribution.label()),
+/// The mapping of the azimuth axis of a lobe; `None` for the family, whose albedo is the same at
+/// every azimuth.
+///
+/// # Errors
+/// [`AlbedoError`] for parameters that describe no ellipsoid.
+pub(super) fn azimuth(lobe: &AlbedoLobe) -> Result<Option<Azimuth>, AlbedoError> {
+    Ok(match lobe.form() {
+        LobeForm::Family => None,
+        LobeForm::StudentT | LobeForm::Distribution => {
+            Some(Azimuth { sigma: lobe.sigma(), turn: 0.0, fold: true })
         }
-    }
-
-    /// The lobe that the description of a table states; `None` for a distribution that its label
-    /// does not say whole, and for a range without its ends.
-    pub(super) fn of_entry(
-        entry: &LobeEntry,
-        covers: Option<Covered>,
-        axes: &[Axis],
-    ) -> Option<Self> {
-        Some(match *entry {
-            LobeEntry::Family => Self::Family(Domain::of_covered(&covers?)?),
-            LobeEntry::StudentT { sigma, s } => Self::StudentT { sigma, gamma: gamma_of_s(s) },
-            LobeEntry::Ellipsoid { sigma, theta, s } => {
-                Self::Ellipsoid { sigma, theta, gamma: gamma_of_s(s) }
-            }
-            LobeEntry::Distribution(ref label) => {
-                let Mapping::Azimuth(azimuth) = axes.first()?.mapping else { return None };
-                let distribution = Distribution::Named(label.parse().ok()?);
-                Self::Radial { distribution, sigma: azimuth.sigma[0] }
-            }
-        })
-    }
-
-    /// What tables of the lobe are of, without a reflectance.
-    pub(crate) fn subject(&self) -> Subject {
-        let covers = if let Self::Family(domain) = self { Some(domain.covered()) } else { None };
-        Subject { lobe: self.entry(), covers, ..Subject::default() }
-    }
-
-    /// The mapping of its azimuth axis; `None` for the family, whose albedo does not depend on
-    /// azimuth.
-    ///
-    /// # Errors
-    /// [`AlbedoError`] for parameters that describe no ellipsoid.
-    pub(super) fn azimuth(&self) -> Result<Option<Azimuth>, AlbedoError> {
-        let untilted = |sigma| Some(Azimuth { sigma, turn: 0.0, fold: true });
-        Ok(match *self {
-            Self::Family(_) => None,
-            Self::StudentT { sigma, .. } => untilted(sigma),
-            Self::Radial { sigma, .. } => untilted([sigma; 2]),
-            Self::Ellipsoid { sigma, theta, gamma } => {
-                let (sigma, turn) = spread(&ellipsoid(sigma, theta, gamma)?);
-                Some(Azimuth { sigma, turn, fold: false })
-            }
-        })
-    }
-
-    /// The lobe as a valid ellipsoid, whose masking is clamped; `None` for any other.
-    pub(crate) fn ellipsoid(&self) -> Option<Ellipsoid> {
-        let &Self::Ellipsoid { sigma, theta, gamma } = self else { return None };
-        ellipsoid(sigma, theta, gamma).ok()
-    }
-
-    /// Whether the albedo is the same at every azimuth.
-    pub(super) fn is_round(&self) -> bool {
-        matches!(self, Self::Family(_) | Self::Radial { .. })
-    }
-
-    /// The shape γ that sets κ of the view's coordinate: that of the masking's tail, for a single
-    /// lobe. Outside the family the tail is not known, and γ of a short tail serves.
-    pub(super) fn tail(&self) -> f64 {
-        match *self {
-            Self::StudentT { gamma, .. } | Self::Ellipsoid { gamma, .. } => gamma,
-            Self::Family(_) | Self::Radial { .. } => f64::INFINITY,
+        LobeForm::Ellipsoid => {
+            let (sigma, turn) = spread(&ellipsoid(lobe)?);
+            Some(Azimuth { sigma, turn, fold: false })
         }
-    }
+    })
+}
 
-    /// σ of the isotropic lobe of the family that usually stands in for it.
-    pub fn stand_in(&self) -> Option<f64> {
-        match *self {
-            Self::StudentT { sigma: [x, y], .. } | Self::Ellipsoid { sigma: [x, y], .. } => {
-                Some((x * y).sqrt())
-            }
-            Self::Family(_) | Self::Radial { .. } => None,
-        }
+/// The shape γ that sets κ of the view's coordinate: that of the masking's tail, for a single lobe.
+/// Outside the family the tail is not known, and γ of a short tail serves.
+pub(super) fn tail(lobe: &AlbedoLobe) -> f64 {
+    match lobe.form() {
+        LobeForm::StudentT | LobeForm::Ellipsoid => lobe.gamma.min,
+        LobeForm::Family | LobeForm::Distribution => f64::INFINITY,
     }
+}
+
+/// A tilted lobe, whose masking is clamped.
+///
+/// # Errors
+/// [`AlbedoError`] for any other, or parameters that describe no ellipsoid.
+pub(crate) fn ellipsoid(lobe: &AlbedoLobe) -> Result<Ellipsoid, AlbedoError> {
+    let refused = |why: EllipsoidError| AlbedoError::Lobe(why.to_string());
+    let theta = lobe.theta.ok_or_else(|| AlbedoError::Lobe("the lobe is not tilted".into()))?;
+    let skew = Skew::new(lobe.sigma(), theta).map_err(|why| refused(why.into()))?;
+    Ellipsoid::new(skew, lobe.gamma.min).map_err(refused)
 }
 
 /// The ratio A/μ of the microsurface's visible area to the macrosurface's; where it is below 1, G1
@@ -143,12 +71,6 @@ pub(crate) fn area_ratio(ellipsoid: &Ellipsoid, site: &Site) -> f64 {
     let sin = ((1.0 - site.cos) * (1.0 + site.cos)).sqrt();
     let (s, c) = libm::sincos(site.phi);
     ellipsoid.projected_area(DVec3::new(sin * c, sin * s, site.cos)) / site.cos
-}
-
-fn ellipsoid(sigma: [f64; 2], theta: [f64; 3], gamma: f64) -> Result<Ellipsoid, AlbedoError> {
-    let refused = |why: EllipsoidError| AlbedoError::Lobe(why.to_string());
-    let skew = Skew::new(sigma, theta).map_err(|why| refused(why.into()))?;
-    Ellipsoid::new(skew, gamma).map_err(refused)
 }
 
 /// The spread of slopes about zero: the principal values of σ_φ² + t_φ² (roughness and mean slope
@@ -187,8 +109,14 @@ impl Models<'_> {
             |gamma| Ok::<_, AlbedoError>(AlbedoIntegrator::new(Shape::new(gamma)?, tolerance));
         // Places of a single lobe have no γ.
         let one = |model| Models([(f64::INFINITY.to_bits(), model)].into());
-        match lobe {
-            AlbedoLobe::Family(_) => {
+        let gamma = lobe.gamma.min;
+        if let Some(distribution) = &lobe.distribution {
+            let built = distribution.build().map_err(|why| AlbedoError::Lobe(why.to_string()))?;
+            let marginal = Marginal::new(&*built);
+            return then(&one(Model::Radial(RadialAlbedo::new(&marginal, tolerance))));
+        }
+        match (lobe.is_family(), lobe.theta) {
+            (true, _) => {
                 let mut all: Vec<f64> = gammas.into_iter().collect();
                 all.sort_by(f64::total_cmp);
                 all.dedup();
@@ -196,19 +124,8 @@ impl Models<'_> {
                     |&gamma: &f64| Ok((gamma.to_bits(), Model::StudentT(None, integrator(gamma)?)));
                 then(&Models(all.par_iter().map(model).collect::<Result<_, AlbedoError>>()?))
             }
-            &AlbedoLobe::StudentT { sigma, gamma } => {
-                then(&one(Model::StudentT(Some(sigma), integrator(gamma)?)))
-            }
-            &AlbedoLobe::Ellipsoid { sigma, theta, gamma } => {
-                let ellipsoid = ellipsoid(sigma, theta, gamma)?;
-                then(&one(Model::Ellipsoid(ellipsoid, integrator(gamma)?)))
-            }
-            AlbedoLobe::Radial { distribution, .. } => {
-                let built =
-                    distribution.build().map_err(|why| AlbedoError::Lobe(why.to_string()))?;
-                let marginal = Marginal::new(&*built);
-                then(&one(Model::Radial(RadialAlbedo::new(&marginal, tolerance))))
-            }
+            (_, None) => then(&one(Model::StudentT(Some(lobe.sigma()), integrator(gamma)?))),
+            (_, Some(_)) => then(&one(Model::Ellipsoid(ellipsoid(lobe)?, integrator(gamma)?))),
         }
     }
 

@@ -9,7 +9,6 @@
 //! closes to rounding rather than to the interpolation error.
 
 mod albedo_spec;
-mod domain;
 mod integrand;
 mod lobe;
 
@@ -29,10 +28,9 @@ use microfacet_tables::{
 use crate::progress::Stage;
 
 pub use albedo_spec::AlbedoSpec;
-pub use domain::Domain;
 pub use integrand::{Integrand, weights};
-pub(crate) use lobe::area_ratio;
 pub use lobe::{AlbedoLobe, Model, Models};
+pub(crate) use lobe::{area_ratio, ellipsoid, stated};
 
 /// Most channels of any integrand.
 pub const CHANNELS: usize = 3;
@@ -265,7 +263,7 @@ fn node(
         };
         // Checked before clamping: a wrong sum must be seen.
         match spec.reflectance {
-            Reflectance::Moments => {
+            Reflectance::Mirror => {
                 let e = form[0] + form[1];
                 if !sound(e) {
                     return Err(AlbedoError::Albedo { at: *site, value: e });
@@ -318,7 +316,7 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
     let (gammas, sigmas) = (axes[0].quantities(), axes[1].quantities());
     // The averages also cover the outer nodes, which the table's own range leaves out.
     let mut whole = directional.clone();
-    whole.subject.covers = spec.everywhere();
+    whole.subject.lobe = spec.everywhere();
     let at = |(gamma, sigma): (f64, f64)| {
         Ok(TabulatedAlbedo::from_table(&whole, sigma, gamma)?.integrate())
     };

@@ -22,18 +22,16 @@ fn by_comparison(
             reflectances.push(want.reflectance);
         }
     }
-    reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Moments);
+    reflectances.sort_by_key(|reflectance| *reflectance != Reflectance::Mirror);
     let mut needs: Vec<RequiredAlbedo> = Vec::new();
     for reflectance in reflectances {
         for masking in Masking::ALL {
             let same = |want: &&&Want| want.reflectance == reflectance && want.masking == masking;
             let lobes: Vec<&AlbedoLobe> = all.iter().filter(same).map(|want| &want.lobe).collect();
-            let domain = |lobe: &&AlbedoLobe| {
-                if let AlbedoLobe::Family(domain) = lobe { Some(*domain) } else { None }
-            };
-            let domains = joined_by_comparison(lobes.iter().filter_map(domain).collect());
-            let own = lobes.iter().filter(|lobe| domain(lobe).is_none()).copied().cloned();
-            for lobe in domains.into_iter().map(AlbedoLobe::Family).chain(own) {
+            let (round, own): (Vec<_>, Vec<_>) =
+                lobes.into_iter().partition(|lobe| lobe.is_family());
+            let round = joined_by_comparison(round.into_iter().cloned().collect());
+            for lobe in round.into_iter().chain(own.into_iter().cloned()) {
                 let same = |need: &&mut RequiredAlbedo| {
                     need.lobe == lobe && need.reflectance == reflectance
                 };
@@ -48,11 +46,9 @@ fn by_comparison(
         }
     }
     let covers = |need: &RequiredAlbedo, want: &Want| {
-        let lobe = match (&need.lobe, &want.lobe) {
-            (AlbedoLobe::Family(domain), AlbedoLobe::Family(other)) => domain.contains(other),
-            (one, other) => one == other,
-        };
-        lobe && need.reflectance == want.reflectance && need.maskings.contains(&want.masking)
+        need.lobe.contains(&want.lobe)
+            && need.reflectance == want.reflectance
+            && need.maskings.contains(&want.masking)
     };
     let serving = |want: &Want| needs.iter().position(|need| covers(need, want)).unwrap();
     let verdicts = wants.iter().map(|wants| match wants {
@@ -64,8 +60,8 @@ fn by_comparison(
 }
 
 /// The groups of `joined`, found by comparison.
-fn joined_by_comparison(wants: Vec<Domain>) -> Vec<Domain> {
-    let mut groups: Vec<Vec<Domain>> = Vec::new();
+fn joined_by_comparison(wants: Vec<AlbedoLobe>) -> Vec<AlbedoLobe> {
+    let mut groups: Vec<Vec<AlbedoLobe>> = Vec::new();
     for want in wants {
         match groups.iter_mut().find(|group| group[0].gamma == want.gamma) {
             Some(group) if group.contains(&want) => {}

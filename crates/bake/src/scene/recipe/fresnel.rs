@@ -5,17 +5,17 @@ use microfacet_sampler::bsdf::UnknownMetal;
 
 use super::{CONDUCTOR_KEYS, FRESNEL_KEYS, Source, Value, quoted};
 use crate::scene::error::did_you_mean;
-use crate::scene::{Fresnel, Masking, SceneError};
+use crate::scene::{Masking, Reflectance, SceneError};
 
 impl Source<'_> {
-    pub(super) fn fresnel(&self, value: &Value<'_>) -> Result<Fresnel, SceneError> {
+    pub(super) fn fresnel(&self, value: &Value<'_>) -> Result<Reflectance, SceneError> {
         let place = self.place(value.span());
         let forms = "fresnel must be \"mirror\", { schlick = F0 }, { schlick = [r, g, b] }, \
                      { metal = \"gold\" }, \
                      { conductor = { eta = [r, g, b], k = [r, g, b] } } or { dielectric = eta }, a number or \
                      { min = .., max = .. }";
         if value.get_ref().as_str() == Some("mirror") {
-            return Ok(Fresnel::Mirror);
+            return Ok(Reflectance::Mirror);
         }
         let table = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
         self.only_keys(table, &FRESNEL_KEYS)?;
@@ -32,14 +32,14 @@ impl Source<'_> {
                     Ok(f0)
                 };
                 if value.get_ref().is_array() {
-                    return Ok(Fresnel::Schlick(self.rgb(
+                    return Ok(Reflectance::Schlick(self.rgb(
                         value,
                         "schlick",
                         "[0.95, 0.64, 0.54]",
                         f0,
                     )?));
                 }
-                Ok(Fresnel::Schlick([f0(value)?; 3]))
+                Ok(Reflectance::Schlick([f0(value)?; 3]))
             }
             "metal" => self.metal(value),
             "dielectric" if value.get_ref().is_table() => {
@@ -47,15 +47,9 @@ impl Source<'_> {
                 let valid = eta.min >= 1.0 && eta.min < f64::INFINITY && eta.min < eta.max;
                 let what = "a range of indices inside over outside, from 1 or more up to \"inf\"; both sides are baked";
                 self.check(value, valid, "dielectric", what)?;
-                Ok(Fresnel::Dielectrics {
-                    min: eta.min,
-                    max: (eta.max < f64::INFINITY).then_some(eta.max),
-                })
+                Ok(Reflectance::Dielectric(eta))
             }
-            "dielectric" => {
-                let eta = self.index(value, "dielectric")?;
-                Ok(Fresnel::Dielectric(eta))
-            }
+            "dielectric" => Ok(Reflectance::dielectric(self.index(value, "dielectric")?)),
             _ => {
                 let table = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
                 self.only_keys(table, &CONDUCTOR_KEYS)?;
@@ -64,7 +58,7 @@ impl Source<'_> {
                         place.invalid("a conductor needs both eta = [r, g, b] and k = [r, g, b]")
                     );
                 };
-                Ok(Fresnel::Conductor {
+                Ok(Reflectance::Conductor {
                     eta: self
                         .rgb(eta, "eta", "[0.2, 0.9, 1.1]", |value| self.index(value, "eta"))?,
                     k: self.rgb(k, "k", "[3.9, 2.4, 2.2]", |value| {
@@ -83,7 +77,7 @@ impl Source<'_> {
         }
     }
 
-    fn metal(&self, value: &Value<'_>) -> Result<Fresnel, SceneError> {
+    fn metal(&self, value: &Value<'_>) -> Result<Reflectance, SceneError> {
         let invalid = |what: String| self.place(value.span()).invalid(what);
         let Some(name) = value.get_ref().as_str() else {
             let text = self.text.get(value.span()).unwrap_or_default();

@@ -6,7 +6,7 @@ use microfacet_tables::{Interval, MaterialEntry};
 
 use crate::distribution::{Distribution, Named};
 use crate::input::angles::Angles;
-use crate::scene::{Fresnel, Roughness};
+use crate::scene::{Reflectance, Roughness};
 
 /// Writes the recipe that [`read`](super::read) turns into the same materials.
 pub(in crate::scene) fn write(materials: &[MaterialEntry]) -> String {
@@ -44,15 +44,13 @@ fn entry(material: &MaterialEntry) -> String {
     }
     if let Some(fresnel) = material.fresnel {
         let value = match fresnel {
-            Fresnel::Mirror => "\"mirror\"".to_owned(),
-            Fresnel::Schlick([r, g, b]) if r == g && g == b => format!("{{ schlick = {r:?} }}"),
-            Fresnel::Schlick(f0) => format!("{{ schlick = {f0:?} }}"),
-            Fresnel::Conductor { eta, k } => {
+            Reflectance::Mirror => "\"mirror\"".to_owned(),
+            Reflectance::Schlick([r, g, b]) if r == g && g == b => format!("{{ schlick = {r:?} }}"),
+            Reflectance::Schlick(f0) => format!("{{ schlick = {f0:?} }}"),
+            Reflectance::Conductor { eta, k } => {
                 format!("{{ conductor = {{ eta = {eta:?}, k = {k:?} }} }}")
             }
-            Fresnel::Dielectric(eta) => format!("{{ dielectric = {eta:?} }}"),
-            Fresnel::Dielectrics { min, max } => {
-                let eta = Interval { min, max: max.unwrap_or(f64::INFINITY) };
+            Reflectance::Dielectric(eta) | Reflectance::Interface { index: eta, .. } => {
                 format!("{{ dielectric = {} }}", range(eta))
             }
         };

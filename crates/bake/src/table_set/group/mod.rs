@@ -5,9 +5,10 @@ mod kept;
 
 use serde::{Deserialize, Serialize};
 
-use microfacet_tables::{Kind, MaterialEntry, Precision};
+use microfacet_tables::{Kind, MaterialEntry, Precision, Subject};
 
 use super::BakeError;
+use crate::bake::albedo::stated;
 use crate::bake::radial_bytes;
 use crate::distribution::Distribution;
 use crate::memory::Values;
@@ -107,7 +108,7 @@ impl TableGroup {
                 names.join(" with ")
             }
             Self::Distribution(distribution, _) => distribution.label(),
-            Self::Albedo(need) => need.lobe.subject().name(Kind::Albedo),
+            Self::Albedo(need) => Subject::of(stated(&need.lobe)).name(Kind::Albedo),
         }
     }
 

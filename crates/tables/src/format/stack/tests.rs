@@ -1,4 +1,5 @@
 use super::*;
+use crate::Interval;
 use crate::axis::{Axis, Azimuth, Interpolation, LogRoughness, LogShape, Mapping, ViewBlend};
 use crate::format::{Provenance, decode, describe, encode};
 
@@ -37,9 +38,8 @@ fn round(sigma: f64, gamma: f64, reflectance: Reflectance) -> Table {
         axis("sigma", Mapping::LogRoughness(rough), rough.coordinate(sigma)),
         view(ViewBlend::BAKED),
     ];
-    let [gamma, sigma] = [gamma, sigma].map(Interval::point);
-    let covers = Some(Covered::of(gamma, Some(sigma)));
-    table(Subject { reflectance: Some(reflectance), covers, ..Subject::default() }, axes)
+    let lobe = LobeSpec::student_t([sigma; 2], gamma);
+    table(Subject { reflectance: Some(reflectance), ..Subject::of(lobe) }, axes)
 }
 
 /// An anisotropic lobe.
@@ -47,16 +47,16 @@ fn brushed(sigma: [f64; 2], gamma: f64) -> Table {
     let azimuth = Mapping::Azimuth(Azimuth { sigma, turn: 0.0, fold: true });
     let axes =
         vec![Axis::placed("azimuth", azimuth, SIX, 3), view(ViewBlend::BAKED.of_shape(gamma))];
-    let lobe = LobeEntry::StudentT { sigma, s: s_of_gamma(gamma) };
-    let reflectance = Some(Reflectance::Moments);
-    table(Subject { lobe, reflectance, ..Subject::default() }, axes)
+    let lobe = LobeSpec::student_t(sigma, gamma);
+    table(Subject { reflectance: Some(Reflectance::Mirror), ..Subject::of(lobe) }, axes)
 }
 
 fn tables() -> Vec<Table> {
     let gold = Reflectance::Conductor { eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
     let silver = Reflectance::Conductor { eta: [0.1, 0.2, 0.3], k: [4.0, 3.0, 2.0] };
-    let pane = |side| Reflectance::Dielectric { side, min: 1.5, max: None };
-    let moments = Reflectance::Moments;
+    let pane =
+        |side| Reflectance::Interface { side, index: Interval { min: 1.5, max: f64::INFINITY } };
+    let moments = Reflectance::Mirror;
     let mut dielectric = round(0.4, f64::INFINITY, pane(Side::Thin));
     let eta = Axis::new("eta", Mapping::ReflectanceRoot, SIX, crate::axis::even_nodes(0.0, 1.0, 6));
     dielectric.axes.insert(2, eta);
@@ -114,7 +114,7 @@ fn columns_without_what_a_lobe_needs_are_refused_by_name() {
             r#""gamma":[2.43,2.43],"sigma":[0.1,0.1]"#,
             "named twice",
         ),
-        (r#""sigma":[0.1,0.25]"#, r#""sigma":[0.1,[0.2,0.3]]"#, "no `sigma`"),
+        (r#""sigma":[0.1,0.25]"#, r#""sigma":[0.1,[0.2,0.3]]"#, "the form StudentT, not"),
         (r#""gamma":[2.43,3.1],"#, "", "no `gamma`"),
         (r#""k":[[3.9,2.4,2.2],[4.0,3.0,2.0]],"#, "", "no `k`"),
         (r#""eta":[{"min":1.5}]"#, r#""eta":[[1.0,2.0,3.0]]"#, "no `eta`"),
