@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use microfacet_baker::bake::albedo;
-use microfacet_baker::bake::albedo::AlbedoLobe;
+use microfacet_baker::bake::albedo::{AlbedoLobe, AlbedoSpec, Integrand, Models, Site};
 use microfacet_baker::plan::{
     AlbedoVerdict, AlbedoWish, Cost, Options, Plan, RequiredAlbedo, albedo_costs, bare_cost,
 };
@@ -13,10 +13,10 @@ use microfacet_baker::table_set::{Settings, Target, bake, bake_with};
 use microfacet_baker::table_spec::Quality;
 use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
-use microfacet_sampler::albedo::FresnelAlbedo;
+use microfacet_sampler::albedo::{FresnelAlbedo, ViewCurve};
 use microfacet_sampler::{Lobe, Masking, MicrofacetDistribution, Tables};
 use microfacet_tables::{
-    Interval, Kind, Precision, Provenance, Reflectance, Roughness, Table, encode,
+    Interval, Kind, Precision, Provenance, Reflectance, Roughness, Side, Table, encode,
 };
 use microfacet_validate::furnace::direction;
 use serde_json::Value;
@@ -431,6 +431,52 @@ fn a_range_of_indices_has_an_axis() {
             recipe(&[["any", "0.5", "3.0", &format!("fresnel = {{ dielectric = {range} }}")]]);
         let why = Scene::from_recipe_str(&text).unwrap_err().to_string();
         assert!(why.contains(told), "{range}: {why}");
+    }
+}
+
+/// The largest error of either share of light seen from inside a dielectric, of a draft for a lobe
+/// of σ = 0.3 and a range of indices: at some indices and views.
+fn inside(gamma: f64, indices: [f64; 2], etas: &[f64], views: &[f64]) -> f64 {
+    let lobe = AlbedoLobe::student_t([0.3; 2], gamma);
+    let side = Side::Dense;
+    let dense = Reflectance::Interface { side, index: indices.into() };
+    let maskings = vec![Masking::HeightCorrelated];
+    let spec = AlbedoSpec::new(lobe, dense, maskings, Quality::Draft, Precision::F32).unwrap();
+    let table = albedo::bake(&spec).unwrap().remove(0);
+    let (integrand, mut worst) = (Integrand::new(&dense).unwrap(), 0.0_f64);
+    for &eta in etas {
+        let curve = ViewCurve::<2>::from_table(&table, 0.3, gamma, eta).unwrap();
+        for &cos in views {
+            let site = Site { gamma, sigma: 0.3, eta, phi: 0.0, cos };
+            let exact = Models::with(&spec.lobe, [gamma], 1e-6, |models| {
+                integrand.at(models.at(&site), &site)
+            });
+            let exact = exact.unwrap().height_correlated;
+            let got = curve.eval(direction(cos as f32));
+            for (got, exact) in got.into_iter().zip(exact) {
+                worst = worst.max((f64::from(got) - exact).abs());
+            }
+        }
+    }
+    worst
+}
+
+/// An end at infinity is within its own rounding of every index, and once was taken for it.
+#[test]
+fn indices_up_to_infinity_are_told_apart() {
+    let views = [0.1, 0.5, 0.9, 1.0];
+    assert!(inside(3.0, [1.2, f64::INFINITY], &[1.2, 1.5, 2.5, f64::INFINITY], &views) < 5e-3);
+}
+
+/// Upright facets, of which heavy tails have many, begin to transmit where cos θ is 1/η: one
+/// polynomial across that view misses the transmitted share by 1e-2.
+#[test]
+fn views_at_which_upright_facets_begin_to_transmit_are_resolved() {
+    for eta in [1.2, 1.5, 3.0] {
+        let beside = [-0.1, -0.03, -0.01, -1e-3, -1e-5, 0.0, 1e-5, 1e-3, 0.01, 0.03, 0.1];
+        let views = beside.map(|step: f64| (1.0 / eta + step).min(1.0));
+        let error = inside(1.55, [eta; 2], &[eta], &views);
+        assert!(error < 1.5e-3, "{eta}: {error}");
     }
 }
 

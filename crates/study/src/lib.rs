@@ -7,6 +7,7 @@
 pub mod albedo_convergence;
 pub mod albedo_design;
 pub mod dielectric_design;
+pub mod dielectric_views;
 pub mod ellipsoid_cost;
 pub mod ellipsoid_note;
 pub mod engines;
@@ -43,7 +44,7 @@ const fn study(name: &'static str, what: &'static str, run: Run) -> Study {
 }
 
 /// All of them, by name.
-pub const STUDIES: [Study; 17] = [
+pub const STUDIES: [Study; 18] = [
     study("albedo_convergence", "error against time of one directional albedo", |_| {
         albedo_convergence::run();
         Ok(())
@@ -54,6 +55,9 @@ pub const STUDIES: [Study; 17] = [
     }),
     study("dielectric_design", "tables of albedos of dielectrics: errors and sizes [ROW]", |row| {
         Ok(dielectric_design::run(row)?)
+    }),
+    study("dielectric_views", "nodes of views from inside a dielectric", |_| {
+        Ok(dielectric_views::run()?)
     }),
     study("ellipsoid_cost", "time of a normal of an ellipsoid", |_| ellipsoid_cost::run()),
     study("ellipsoid_note", "the claims of the Ellipsoid note", |_| ellipsoid_note::run()),

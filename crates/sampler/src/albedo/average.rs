@@ -123,15 +123,16 @@ fn each_node(view: &Elevation<'_>, floor: f64, nodes: usize, mut then: impl FnMu
         }
         then(to[0] * to[0] * (to[0] * to[0]));
     };
-    let (lowest, normal) = (root(floor), [1.0, 1.0]);
-    match view.turn() {
-        None => part([lowest, 0.0], normal),
-        Some(turn) if turn > floor => {
-            let middle = [root(turn), 0.5];
-            part([lowest, 0.0], middle);
-            part(middle, normal);
+    let mut from = [root(floor), 0.0];
+    let [_, kinks @ .., _] = view.ends() else { return part(from, [1.0, 1.0]) };
+    let parts = (kinks.len() + 1) as f64;
+    let ends = kinks.iter().enumerate().map(|(i, &cos)| [root(cos), (i + 1) as f64 / parts]);
+    for to in ends.chain([[1.0, 1.0]]) {
+        // A part without width is a single point.
+        if to[0] > from[0] {
+            part(from, to);
         }
-        Some(_) => part([lowest, 0.5], normal),
+        from = to;
     }
 }
 
@@ -171,15 +172,20 @@ mod tests {
         let blend = |sigma| ViewBlend::BAKED.prepare(sigma, 2.0);
         // For η = 1 the first view is the horizon.
         let critical = |eta: f64| CriticalBlend::BAKED.prepare(0.3, 2.0, 1.0 / eta);
+        let upright = |eta: f64| CriticalBlend::UPRIGHT.prepare(0.3, 1.6, 1.0 / eta);
         let (rough, smooth) = (blend(0.3), blend(1e-8));
         let (glass, nothing) = (critical(1.5), critical(1.0));
+        let (heavy, light, none) = (upright(1.5), upright(1.2), upright(1.0));
         for view in [
             Elevation::Blend(&rough),
             Elevation::Blend(&smooth),
             Elevation::Critical(&glass),
             Elevation::Critical(&nothing),
+            Elevation::Critical(&heavy),
+            Elevation::Critical(&light),
+            Elevation::Critical(&none),
         ] {
-            let [one, cos, above] = over_views(&view, 21, &|cos| {
+            let [one, cos, above] = over_views(&view, 31, &|cos| {
                 let cos = f64::from(cos);
                 ([1.0, cos, (cos - 0.4).max(0.0)], u32::from(cos > 0.4))
             });

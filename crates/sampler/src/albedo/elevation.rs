@@ -34,11 +34,12 @@ impl Elevation<'_> {
         }
     }
 
-    /// The view at the middle of the coordinate, where that turns sharply.
-    pub(super) fn turn(&self) -> Option<f64> {
+    /// The ends of the parts of equal width in t, at which it turns sharply; none of a smooth
+    /// coordinate.
+    pub(super) fn ends(&self) -> &[f64] {
         match self {
-            Self::Blend(_) => None,
-            Self::Critical(view) => Some(view.critical()),
+            Self::Blend(_) => &[],
+            Self::Critical(view) => view.ends(),
         }
     }
 }

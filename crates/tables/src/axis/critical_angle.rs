@@ -1,6 +1,6 @@
-//! The view axis of albedos seen from inside a dielectric: two halves that meet where total
-//! reflection sets in, so that no polynomial crosses that kink, wherever the index of refraction
-//! puts it.
+//! The view axis of albedos seen from inside a dielectric: parts that meet where total reflection
+//! sets in and, for heavy tails, where upright facets begin to transmit, so that no polynomial
+//! crosses these kinks, wherever the index of refraction puts them.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,17 +10,22 @@ use super::coordinate::{Coordinate, bisect, positive};
 use super::lagrange::{SIX, six};
 use super::view_blend::{fourth_roots, harmonic, kappa, terms};
 
-/// The view coordinate of the dense side of an interface of index η, t ∈ [0, 1].
+/// The view coordinate of the dense side of an interface of index η, t ∈ [0, 1], in two or three
+/// parts of equal width; a polynomial reads nodes of one part only.
 ///
-/// t = ½ at μ_c = √(1 − 1/η²), where total reflection sets in; a polynomial reads nodes of one half
-/// only. With x, h and κ as for [`ViewBlend`](super::ViewBlend), p = share·x + (1−share)·h,
-/// y = share·x^¼ + (1−share)·h^¼, S(q) = asinh(√q/δ)/asinh(1/δ), δ² = kink·σ, and the harmonic sum
-/// μ₀ = 1/(1/floor + 1/(slope·σ) + 1/μ_c):
-/// t = ½ (1−root)(y(μ)−y(μ₀))/(y(μ_c)−y(μ₀)) + ½ root (1 − S((μ_c−μ)/(μ_c−μ₀))) for μ₀ ≤ μ < μ_c,
-/// t = ½ + ½ (1−root)(p(μ)−p(μ_c))/(1−p(μ_c)) + ½ root S((μ−μ_c)/(1−μ_c)) for μ ≥ μ_c.
+/// Level facets reflect totally below μ_c = √(1 − 1/η²), and upright ones, of which there are many
+/// where tails are heavy, above μ_u = 1/η. Two parts meet at μ_c. Three meet at the smaller and at
+/// the larger of μ_c and μ_u, whose order changes at η = √2, where t has a kink as a function of η.
+/// With x, h and κ as for [`ViewBlend`](super::ViewBlend), p = share·x + (1−share)·h,
+/// y = share·x^¼ + (1−share)·h^¼, S(q) = asinh(√q/δ)/asinh(1/δ), δ² = kink·σ + sharp², the harmonic
+/// sum μ₀ = 1/(1/floor + 1/(slope·σ) + 1/μ_c), and q = (μ−a)/(b−a) in a part from a to b, the
+/// coordinate within a part is
+/// (1−root)(y(μ)−y(a))/(y(b)−y(a)) + root (1−S(1−q)) in the first,
+/// (1−2w)(p(μ)−p(a))/(p(b)−p(a)) + w (1+S(q)−S(1−q)), w = between·root, in the second of three, and
+/// (1−root)(p(μ)−p(a))/(p(b)−p(a)) + root S(q) in the last.
 ///
-/// For μ ≥ μ_c there are no fourth roots, which are steep in η near 1: with them tables over all
-/// indices erred by 0.12 instead of 1e-3 (σ 0.454, γ 3, twenty indices).
+/// Above the first part there are no fourth roots, which are steep in η near 1: with them tables
+/// over all indices erred by 0.12 instead of 1e-3 (σ 0.454, γ 3, twenty indices).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CriticalBlend {
@@ -36,33 +41,66 @@ pub struct CriticalBlend {
     pub slope: f64,
     /// Share of S, in (0, 1).
     pub root: f64,
-    /// δ²/σ.
+    /// δ²/σ for a large σ.
     pub kink: f64,
+    /// Smallest δ.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub sharp: f64,
+    /// What the share of either S is multiplied by in the second of three parts; 0 if there are
+    /// two.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub between: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref)]
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
 }
 
 impl CriticalBlend {
-    /// The parameters of baked tables, found by measuring.
-    pub const BAKED: Self =
-        Self { share: 0.4, scale: 3.0, heavy: 0.5, floor: 2e-5, slope: 2e-3, root: 0.5, kink: 1.0 };
+    /// The parameters of baked tables over indices, found by measuring: tables in three parts need
+    /// many nodes of η near √2, where those parts change places.
+    pub const BAKED: Self = Self {
+        share: 0.4,
+        scale: 3.0,
+        heavy: 0.5,
+        floor: 2e-5,
+        slope: 2e-3,
+        root: 0.5,
+        kink: 1.0,
+        sharp: 0.0,
+        between: 0.0,
+    };
+
+    /// The parameters of baked tables of one index and a heavy tail, found by measuring.
+    pub const UPRIGHT: Self = Self { kink: 0.0, sharp: 0.1, between: 0.9, ..Self::BAKED };
+
+    /// The number of parts: two or three.
+    pub fn parts(&self) -> usize {
+        if self.between > 0.0 { 3 } else { 2 }
+    }
 
     /// Prepares the coordinate for σ > 0, γ and an index η ≥ 1 of the dense side, given as 1/η.
     pub fn prepare(&self, sigma: f64, gamma: f64, inverse_eta: f64) -> PreparedCritical {
         let critical = sqrt64((1.0 - inverse_eta) * (1.0 + inverse_eta));
         let floor = harmonic(harmonic(self.floor, self.slope * sigma), critical);
-        let kink = sqrt64(self.kink * sigma);
+        // For η = ∞ no view is below 1/η.
+        let upright = inverse_eta.max(floor);
+        let width = sqrt64(self.kink * sigma + self.sharp * self.sharp);
         let mut view = PreparedCritical {
             blend: *self,
             knee: kappa(self.scale, self.heavy, gamma) * sigma,
-            kink,
-            range: libm::asinh(1.0 / kink),
-            floor,
-            critical,
-            start: 0.0,
-            middle: 0.0,
-            second: 0.0,
+            width,
+            range: libm::asinh(1.0 / width),
+            ends: match self.parts() {
+                2 => [floor, critical, 1.0, 1.0],
+                _ => [floor, critical.min(upright), critical.max(upright), 1.0],
+            },
+            smooth: [[0.0; 2]; 3],
         };
-        [view.start, view.middle] = [floor, critical].map(|cos| view.y(cos));
-        view.second = view.p(critical);
+        view.smooth = core::array::from_fn(|i| {
+            [view.ends[i], view.ends[i + 1]].map(|cos| view.smooth(i, cos))
+        });
         view
     }
 }
@@ -74,107 +112,128 @@ pub struct PreparedCritical {
     /// κσ.
     knee: f64,
     /// δ and asinh(1/δ).
-    kink: f64,
+    width: f64,
     range: f64,
-    /// μ₀ and y(μ₀).
-    floor: f64,
-    start: f64,
-    /// μ_c, y(μ_c) and p(μ_c).
-    critical: f64,
-    middle: f64,
-    second: f64,
+    /// The ends of the parts, and 1.
+    ends: [f64; 4],
+    /// y at the ends of the first part, p at those of the others.
+    smooth: [[f64; 2]; 3],
 }
 
 impl PreparedCritical {
     /// μ₀, the view of the first node.
     pub fn floor(&self) -> f64 {
-        self.floor
+        self.ends[0]
     }
 
-    /// μ_c, the view of t = ½.
-    pub fn critical(&self) -> f64 {
-        self.critical
+    /// The ends of the parts, from μ₀ to 1.
+    pub fn ends(&self) -> &[f64] {
+        &self.ends[..=self.blend.parts()]
     }
 
-    fn y(&self, cos: f64) -> f64 {
+    /// The part of a view, from 0; a kink itself belongs to the one above it.
+    fn part(&self, cos: f64) -> usize {
+        let [_, kinks @ .., _] = self.ends() else { return 0 };
+        kinks.iter().filter(|kink| cos >= **kink).count()
+    }
+
+    fn smooth(&self, i: usize, cos: f64) -> f64 {
         let (_, x, h) = terms(cos, self.knee);
-        fourth_roots(self.blend.share, x, h)
-    }
-
-    fn p(&self, cos: f64) -> f64 {
-        let (_, x, h) = terms(cos, self.knee);
-        self.blend.share * x + (1.0 - self.blend.share) * h
+        let share = self.blend.share;
+        if i == 0 { fourth_roots(share, x, h) } else { share * x + (1.0 - share) * h }
     }
 
     /// S of a number in [0, 1].
-    fn near(&self, share: f64) -> f64 {
-        libm::asinh(sqrt64(share.max(0.0)) / self.kink) / self.range
+    fn near(&self, q: f64) -> f64 {
+        libm::asinh(sqrt64(q.max(0.0)) / self.width) / self.range
     }
 
-    /// The coordinate of cos θ within its half, in [0, 1].
-    fn half(&self, cos: f64) -> f64 {
-        // A half without width is a single point.
-        let part = |a: f64, b: f64, whole: f64| if whole > 0.0 { (a - b) / whole } else { 0.0 };
-        let (smooth, near) = if cos < self.critical {
-            let rest = part(self.critical, cos, self.critical - self.floor);
-            (part(self.y(cos), self.start, self.middle - self.start), 1.0 - self.near(rest))
+    /// The coordinate of cos θ within a part, in [0, 1].
+    fn within(&self, i: usize, cos: f64) -> f64 {
+        // A part without width is a single point.
+        let share = |x: f64, whole: f64| if whole > 0.0 { x / whole } else { 0.0 };
+        let ([a, b], [first, last]) = ([self.ends[i], self.ends[i + 1]], self.smooth[i]);
+        let smooth = share(self.smooth(i, cos) - first, last - first);
+        let from = || self.near(share(cos - a, b - a));
+        let to = || 1.0 - self.near(share(b - cos, b - a));
+        let CriticalBlend { root, between, .. } = self.blend;
+        if i == 0 {
+            (1.0 - root) * smooth + root * to()
+        } else if i + 1 < self.blend.parts() {
+            (1.0 - 2.0 * between * root) * smooth + between * root * (from() + to())
         } else {
-            let rest = part(cos, self.critical, 1.0 - self.critical);
-            (part(self.p(cos), self.second, 1.0 - self.second), self.near(rest))
-        };
-        (1.0 - self.blend.root) * smooth + self.blend.root * near
+            (1.0 - root) * smooth + root * from()
+        }
     }
 
     /// t of cos θ ∈ [μ₀, 1].
     pub fn coordinate(&self, cos: f64) -> f64 {
-        0.5 * self.half(cos) + if cos < self.critical { 0.0 } else { 0.5 }
+        let i = self.part(cos);
+        (i as f64 + self.within(i, cos)) / self.blend.parts() as f64
     }
 
-    /// The first of the six nodes about cos θ ∈ [0, 1], all in one half, and their weights; `n`
-    /// nodes, an odd number, are spread evenly.
+    /// The first of the six nodes about cos θ ∈ [0, 1], all in one part, and their weights; `n`
+    /// nodes, one more than a multiple of the number of parts, are spread evenly.
     pub fn six(&self, cos: f64, n: usize) -> (usize, [f32; SIX]) {
-        let half = n / 2 + 1;
-        let cos = cos.max(self.floor);
-        let (start, weights) = six(self.half(cos) as f32, half);
-        (if cos < self.critical { start } else { start + half - 1 }, weights)
+        let cells = n / self.blend.parts();
+        let cos = cos.max(self.floor());
+        let i = self.part(cos);
+        let (start, weights) = six(self.within(i, cos) as f32, cells + 1);
+        (start + i * cells, weights)
     }
 
     /// cos θ of t ∈ [0, 1].
     pub fn quantity(&self, t: f64) -> f64 {
-        let (low, high, t) = if t < 0.5 {
-            (self.floor, self.critical, 2.0 * t)
-        } else {
-            (self.critical, 1.0, 2.0 * t - 1.0)
-        };
-        // μ_c itself belongs to the upper half, and the lower half ends just before it.
-        bisect(low, high, t, |cos| if cos < high { self.half(cos) } else { f64::INFINITY })
+        let parts = self.blend.parts();
+        let t = parts as f64 * t;
+        let i = (t as usize).min(parts - 1);
+        let [low, high] = [self.ends[i], self.ends[i + 1]];
+        // A part ends just before the kink.
+        let is_here = |cos: f64| i + 1 == parts || cos < high;
+        bisect(low, high, t - i as f64, |cos| {
+            if is_here(cos) { self.within(i, cos) } else { f64::INFINITY }
+        })
     }
 }
 
 impl Coordinate for CriticalBlend {
     fn formula(&self) -> &'static str {
-        "below μ_c = √(1−1/η²) t = ½ (1−root) (y(μ)−y(μ₀))/(y(μ_c)−y(μ₀)) + ½ root (1 − S((μ_c−μ)/(μ_c−μ₀))), \
-         above t = ½ + ½ (1−root) (p(μ)−p(μ_c))/(1−p(μ_c)) + ½ root S((μ−μ_c)/(1−μ_c)); y = share·x^¼ + \
-         (1−share)·h^¼, p = share·x + (1−share)·h, S(q) = asinh(√q/δ)/asinh(1/δ), δ = √(kink·σ), μ₀ = \
-         1/(1/floor + 1/(slope·σ) + 1/μ_c), x, h and κ of view_blend"
+        "parts of equal width in t, from a to b: two, [μ₀, μ_c] and [μ_c, 1], or if between > 0 three, which meet at the \
+         smaller and the larger of μ_c = √(1−1/η²) and 1/η; within a part t goes by \
+         (1−root) (y(μ)−y(a))/(y(b)−y(a)) + root (1−S(1−q)) in the first, \
+         (1−2w) (p(μ)−p(a))/(p(b)−p(a)) + w (1+S(q)−S(1−q)), w = between·root, in the second of three, \
+         (1−root) (p(μ)−p(a))/(p(b)−p(a)) + root S(q) in the last; q = (μ−a)/(b−a), \
+         y = share·x^¼ + (1−share)·h^¼, p = share·x + (1−share)·h, S(q) = asinh(√q/δ)/asinh(1/δ), \
+         δ = √(kink·σ + sharp²), μ₀ = 1/(1/floor + 1/(slope·σ) + 1/μ_c), 1/η no less than μ₀, x, h and κ of view_blend"
     }
 
     fn check(&self) -> Result<(), &'static str> {
-        let Self { share, scale, heavy, floor, slope, root, kink } = *self;
-        let sound = positive(&[scale, floor, slope, kink])
+        let Self { share, scale, heavy, floor, slope, root, kink, sharp, between } = *self;
+        // A coordinate that is no wider than rounding has no nodes.
+        let width = if sharp > 0.0 { sharp } else { kink };
+        let sound = positive(&[scale, floor, slope, width])
             && (0.0..=1.0).contains(&share)
             && (0.0..1e6).contains(&heavy)
+            && (0.0..1e6).contains(&kink)
+            && (0.0..1e6).contains(&sharp)
             && root > 0.0
             && root < 1.0
+            && between >= 0.0
+            && 2.0 * between * root < 1.0
             && floor < 0.5;
         if sound { Ok(()) } else { Err("a parameter of the view coordinate is out of range") }
     }
 
     fn check_count(&self, n: usize) -> Result<(), &'static str> {
-        if n < 2 * SIX - 1 || n.is_multiple_of(2) {
-            Err("needs an odd number of nodes, eleven or more: six in either half")
-        } else {
-            Ok(())
+        let parts = self.parts();
+        match n > parts * (SIX - 1) && n % parts == 1 {
+            true => Ok(()),
+            false if parts == 2 => {
+                Err("needs an odd number of nodes, eleven or more: six in either half")
+            }
+            false => {
+                Err("needs one node more than a multiple of three, 16 or more: six in each third")
+            }
         }
     }
 }
@@ -185,9 +244,12 @@ mod tests {
 
     #[test]
     fn there_and_back() {
-        for eta in [1.0001, 1.5, 4.0] {
+        let blends = [CriticalBlend::BAKED, CriticalBlend::UPRIGHT];
+        for (eta, blend) in
+            [1.0001, 1.2, 1.5, 4.0].into_iter().flat_map(|eta| blends.map(|all| (eta, all)))
+        {
             for (sigma, gamma) in [(1e-6, 2.0), (0.3, 1.501), (2.0, f64::INFINITY)] {
-                let view = CriticalBlend::BAKED.prepare(sigma, gamma, 1.0 / eta);
+                let view = blend.prepare(sigma, gamma, 1.0 / eta);
                 assert_eq!(view.coordinate(1.0), 1.0);
                 for t in [0.0, 0.1, 0.4, 0.5, 0.6, 0.9, 1.0] {
                     let cos = view.quantity(t);
@@ -205,13 +267,27 @@ mod tests {
     }
 
     #[test]
-    fn halves_do_not_share_windows() {
-        let view = CriticalBlend::BAKED.prepare(0.3, 2.0, 1.0 / 1.5);
-        let critical = sqrt64(1.0 - 1.0 / 2.25);
-        assert_eq!(view.six(critical - 1e-9, 21).0, 5);
-        assert_eq!(view.six(critical + 1e-9, 21).0, 10);
-        // For η = 1 the lower half is a point.
-        let none = CriticalBlend::BAKED.prepare(0.3, 2.0, 1.0);
-        assert_eq!((none.six(0.0, 21).0, none.quantity(0.0)), (10, 0.0));
+    fn parts_do_not_share_windows() {
+        for (blend, eta) in [
+            (CriticalBlend::BAKED, 1.5),
+            (CriticalBlend::UPRIGHT, 1.2),
+            (CriticalBlend::UPRIGHT, 1.5),
+        ] {
+            let view = blend.prepare(0.3, 2.0, 1.0 / eta);
+            let (n, critical) = (10 * blend.parts() + 1, sqrt64(1.0 - 1.0 / (eta * eta)));
+            let has = |cos: f64| view.ends().iter().any(|end| (end - cos).abs() < 1e-15);
+            assert!(has(critical) && has(1.0 / eta) == (blend.parts() == 3));
+            for (i, cos) in view.ends()[1..blend.parts()].iter().enumerate() {
+                assert_eq!(view.six(cos - 1e-9, n).0, 10 * i + 5);
+                assert_eq!(view.six(cos + 1e-9, n).0, 10 * i + 10);
+            }
+        }
+        // For η = 1 the first part is a point, and for η = ∞ the last.
+        for blend in [CriticalBlend::BAKED, CriticalBlend::UPRIGHT] {
+            let none = blend.prepare(0.3, 2.0, 1.0);
+            assert_eq!((none.six(0.0, 31).0, none.quantity(0.0)), (31 / blend.parts(), 0.0));
+            let mirror = blend.prepare(0.3, 2.0, 0.0);
+            assert!(mirror.coordinate(0.5) < 1.0 && mirror.quantity(1.0) == 1.0);
+        }
     }
 }

@@ -365,11 +365,15 @@ mod tests {
             (Mapping::CriticalBlend(CriticalBlend { kink: 1e-320, ..CriticalBlend::BAKED }), 13),
             (Mapping::ViewBlend(ViewBlend { weight: 0.95, ..ViewBlend::BAKED }), 7),
             (Mapping::CriticalBlend(CriticalBlend { root: 1.0, ..CriticalBlend::BAKED }), 13),
+            (Mapping::CriticalBlend(CriticalBlend { sharp: -0.1, ..CriticalBlend::UPRIGHT }), 16),
+            (Mapping::CriticalBlend(CriticalBlend { between: 1.0, ..CriticalBlend::UPRIGHT }), 16),
             (Mapping::Azimuth(Azimuth { sigma: [0.0, 1.0], turn: 0.0, fold: true }), 5),
-            // Too few nodes, or an even number for two halves.
+            // Too few nodes, or not as many in each part.
             (Mapping::HalfTangent(HalfTangent::default()), 1),
             (Mapping::ViewBlend(ViewBlend::BAKED), 5),
             (Mapping::CriticalBlend(CriticalBlend::BAKED), 12),
+            (Mapping::CriticalBlend(CriticalBlend::UPRIGHT), 13),
+            (Mapping::CriticalBlend(CriticalBlend::UPRIGHT), 17),
         ];
         for (mapping, count) in bad {
             let nodes = (0..count).map(|i| i as f64 / (count - 1).max(1) as f64).collect();

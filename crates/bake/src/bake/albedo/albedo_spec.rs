@@ -42,6 +42,9 @@ pub struct AlbedoSpec {
 /// Level from which the view nodes are crowded towards the normal.
 const CLOSE_FROM: Level = Level(24);
 
+/// γ below which a dielectric has enough upright facets for a kink of its transmission.
+const HEAVY: f64 = 2.0;
+
 /// Numbers of nodes at a level, found by measuring.
 struct Counts {
     /// Nodes of the axes of the family: γ, σ and view.
@@ -119,9 +122,17 @@ impl AlbedoSpec {
             false => (view_of(tail(&lobe)), counts.views_of_lobes),
         };
         axes.push(if reflectance.side() == Some(Side::Dense) {
-            // E changes fast where total reflection sets in: two halves share a node there.
-            let mapping = Mapping::CriticalBlend(CriticalBlend::BAKED);
-            Axis::placed("view", mapping, INTERPOLATION, 2 * views - 1)
+            // E changes fast where total reflection sets in, and transmission where upright facets
+            // begin to transmit: parts share a node there.
+            let is_heavy = lobe.gamma.min < HEAVY;
+            let is_single = reflectance.indices().is_some_and(Interval::is_point);
+            let blend = match is_heavy && is_single {
+                true => CriticalBlend::UPRIGHT,
+                false => CriticalBlend::BAKED,
+            };
+            let parts = blend.parts();
+            let count = parts * (2 * (views - 1)).div_ceil(parts) + 1;
+            Axis::placed("view", Mapping::CriticalBlend(blend), INTERPOLATION, count)
         } else {
             Axis::placed("view", Mapping::ViewBlend(view), INTERPOLATION, views)
         });

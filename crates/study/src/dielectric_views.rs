@@ -1,0 +1,57 @@
+//! Where views from inside a dielectric have nodes: errors of one index and lobe with the two parts
+//! of [`CriticalBlend::BAKED`] and with the three of [`CriticalBlend::UPRIGHT`].
+//!
+//! `cargo run --profile dist -p microfacet-study -- dielectric_views` prints the table in
+//! `docs/albedo.md`: the largest error in the promised range over some roughnesses and indices.
+
+use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, bake};
+use microfacet_baker::certify::albedo::{certified, edge_references, interior_references};
+use microfacet_baker::progress::Stage;
+use microfacet_baker::table_spec::Quality;
+use microfacet_sampler::Masking;
+use microfacet_tables::axis::CriticalBlend;
+use microfacet_tables::{Axis, Interpolation, Mapping, Precision, Quantity, Reflectance, Side};
+
+const GAMMAS: [f64; 5] = [1.501, 1.55, 1.7, 1.9, 3.0];
+const SIGMAS: [f64; 3] = [0.1, 0.3, 1.0];
+const ETAS: [f64; 4] = [1.05, 1.3, 1.5, 3.0];
+/// Nodes in two and in three parts.
+const VIEWS: [(CriticalBlend, usize); 2] =
+    [(CriticalBlend::BAKED, 65), (CriticalBlend::UPRIGHT, 67)];
+
+/// The largest error of the reflected and of the transmitted share.
+fn errors(
+    lobe: AlbedoLobe,
+    eta: f64,
+    (blend, views): (CriticalBlend, usize),
+) -> Result<[f64; 2], AlbedoError> {
+    let dense = Reflectance::Interface { side: Side::Dense, index: [eta; 2].into() };
+    let maskings = vec![Masking::HeightCorrelated];
+    let mut spec = AlbedoSpec::new(lobe, dense, maskings, Quality::Default, Precision::F32)?;
+    let mapping = Mapping::CriticalBlend(blend);
+    let view = Axis::placed("view", mapping, Interpolation::Lagrange6, views);
+    *spec.axes.last_mut().expect("the view is an axis") = view;
+    let stage = Stage::unwatched();
+    let places = [interior_references(&spec, &stage)?, edge_references(&spec, &stage)?].concat();
+    let tables = certified(&spec, bake(&spec)?, &places, &stage)?;
+    let largest = |of| tables[0].certificate.errors.get(&of).map_or(f64::NAN, |of| of.largest);
+    Ok([Quantity::Reflection, Quantity::Transmission].map(largest))
+}
+
+/// Prints what the module's page says.
+pub fn run() -> Result<(), AlbedoError> {
+    println!("| γ | two parts, 65 views: reflected, transmitted | three parts, 67 views |");
+    println!("| --- | --- | --- |");
+    for gamma in GAMMAS {
+        let worst = |views| -> Result<String, AlbedoError> {
+            let mut worst = [0.0_f64; 2];
+            for (sigma, eta) in SIGMAS.into_iter().flat_map(|sigma| ETAS.map(|eta| (sigma, eta))) {
+                let here = errors(AlbedoLobe::student_t([sigma; 2], gamma), eta, views)?;
+                worst = [worst[0].max(here[0]), worst[1].max(here[1])];
+            }
+            Ok(worst.map(|x| format!("{x:.1e}")).join(", "))
+        };
+        println!("| {gamma} | {} | {} |", worst(VIEWS[0])?, worst(VIEWS[1])?);
+    }
+    Ok(())
+}
