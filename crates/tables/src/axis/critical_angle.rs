@@ -77,7 +77,7 @@ impl CriticalBlend {
 
     /// The number of parts: two or three.
     pub fn parts(&self) -> usize {
-        if self.between > 0.0 { 3 } else { 2 }
+        parts(self.between)
     }
 
     /// Prepares the coordinate for σ > 0, γ and an index η ≥ 1 of the dense side, given as 1/η.
@@ -87,8 +87,11 @@ impl CriticalBlend {
         // For η = ∞ no view is below 1/η.
         let upright = inverse_eta.max(floor);
         let width = sqrt64(self.kink * sigma + self.sharp * self.sharp);
+        let Self { share, root, between, .. } = *self;
         let mut view = PreparedCritical {
-            blend: *self,
+            share,
+            root,
+            between,
             knee: kappa(self.scale, self.heavy, gamma) * sigma,
             width,
             range: libm::asinh(1.0 / width),
@@ -96,19 +99,26 @@ impl CriticalBlend {
                 2 => [floor, critical, 1.0, 1.0],
                 _ => [floor, critical.min(upright), critical.max(upright), 1.0],
             },
-            smooth: [[0.0; 2]; 3],
+            first: [0.0; 2],
+            rest: [0.0; 3],
         };
-        view.smooth = core::array::from_fn(|i| {
-            [view.ends[i], view.ends[i + 1]].map(|cos| view.smooth(i, cos))
-        });
+        let [a, b, c, d] = view.ends;
+        view.first = [a, b].map(|cos| view.smooth(0, cos));
+        view.rest = [b, c, d].map(|cos| view.smooth(1, cos));
         view
     }
+}
+
+fn parts(between: f64) -> usize {
+    if between > 0.0 { 3 } else { 2 }
 }
 
 /// [`CriticalBlend`] prepared for one material and index of refraction.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedCritical {
-    blend: CriticalBlend,
+    share: f64,
+    root: f64,
+    between: f64,
     /// κσ.
     knee: f64,
     /// δ and asinh(1/δ).
@@ -116,8 +126,9 @@ pub struct PreparedCritical {
     range: f64,
     /// The ends of the parts, and 1.
     ends: [f64; 4],
-    /// y at the ends of the first part, p at those of the others.
-    smooth: [[f64; 2]; 3],
+    /// y at the ends of the first part, and p at those of the others.
+    first: [f64; 2],
+    rest: [f64; 3],
 }
 
 impl PreparedCritical {
@@ -128,7 +139,11 @@ impl PreparedCritical {
 
     /// The ends of the parts, from μ₀ to 1.
     pub fn ends(&self) -> &[f64] {
-        &self.ends[..=self.blend.parts()]
+        &self.ends[..=self.parts()]
+    }
+
+    fn parts(&self) -> usize {
+        parts(self.between)
     }
 
     /// The part of a view, from 0; a kink itself belongs to the one above it.
@@ -139,7 +154,7 @@ impl PreparedCritical {
 
     fn smooth(&self, i: usize, cos: f64) -> f64 {
         let (_, x, h) = terms(cos, self.knee);
-        let share = self.blend.share;
+        let share = self.share;
         if i == 0 { fourth_roots(share, x, h) } else { share * x + (1.0 - share) * h }
     }
 
@@ -152,14 +167,15 @@ impl PreparedCritical {
     fn within(&self, i: usize, cos: f64) -> f64 {
         // A part without width is a single point.
         let share = |x: f64, whole: f64| if whole > 0.0 { x / whole } else { 0.0 };
-        let ([a, b], [first, last]) = ([self.ends[i], self.ends[i + 1]], self.smooth[i]);
+        let [a, b] = [self.ends[i], self.ends[i + 1]];
+        let [first, last] = if i == 0 { self.first } else { [self.rest[i - 1], self.rest[i]] };
         let smooth = share(self.smooth(i, cos) - first, last - first);
         let from = || self.near(share(cos - a, b - a));
         let to = || 1.0 - self.near(share(b - cos, b - a));
-        let CriticalBlend { root, between, .. } = self.blend;
+        let Self { root, between, .. } = *self;
         if i == 0 {
             (1.0 - root) * smooth + root * to()
-        } else if i + 1 < self.blend.parts() {
+        } else if i + 1 < self.parts() {
             (1.0 - 2.0 * between * root) * smooth + between * root * (from() + to())
         } else {
             (1.0 - root) * smooth + root * from()
@@ -169,13 +185,13 @@ impl PreparedCritical {
     /// t of cos θ ∈ [μ₀, 1].
     pub fn coordinate(&self, cos: f64) -> f64 {
         let i = self.part(cos);
-        (i as f64 + self.within(i, cos)) / self.blend.parts() as f64
+        (i as f64 + self.within(i, cos)) / self.parts() as f64
     }
 
     /// The first of the six nodes about cos θ ∈ [0, 1], all in one part, and their weights; `n`
     /// nodes, one more than a multiple of the number of parts, are spread evenly.
     pub fn six(&self, cos: f64, n: usize) -> (usize, [f32; SIX]) {
-        let cells = n / self.blend.parts();
+        let cells = n / self.parts();
         let cos = cos.max(self.floor());
         let i = self.part(cos);
         let (start, weights) = six(self.within(i, cos) as f32, cells + 1);
@@ -184,7 +200,7 @@ impl PreparedCritical {
 
     /// cos θ of t ∈ [0, 1].
     pub fn quantity(&self, t: f64) -> f64 {
-        let parts = self.blend.parts();
+        let parts = self.parts();
         let t = parts as f64 * t;
         let i = (t as usize).min(parts - 1);
         let [low, high] = [self.ends[i], self.ends[i + 1]];
