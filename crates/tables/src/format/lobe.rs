@@ -316,3 +316,52 @@ fn within([min, max]: [f64; 2], x: f64, slack: f64) -> bool {
 fn middle([min, max]: [f64; 2]) -> f64 {
     if min == max { min } else { 0.5 * (min + max) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tilted lobe.
+    fn tilted(sigma: [f64; 2], gamma: f64, theta: [f64; 3]) -> LobeSpec {
+        LobeSpec { theta: Some(theta), ..LobeSpec::student_t(sigma, gamma) }
+    }
+
+    #[test]
+    fn a_lobe_is_found_in_its_own_table_alone() {
+        let [round, brushed] = [[0.3; 2], [0.1, 0.3]].map(|sigma| LobeSpec::student_t(sigma, 3.0));
+        let range = LobeSpec::family(Roughness::Isotropic([0.1, 0.5].into()), [2.0, 4.0].into());
+        let turned = tilted([0.1, 0.3], 3.0, [0.1, 0.2, 0.3]);
+        let gtr = LobeSpec::outside(String::from("gtr:0.2,1.5"));
+        let all = [&round, &brushed, &range, &turned, &gtr];
+        for (i, a) in all.iter().enumerate() {
+            for (j, b) in all.iter().enumerate() {
+                let inside = i == j || (i, j) == (2, 0);
+                assert_eq!(a.contains(b), inside, "{a:?}, {b:?}");
+            }
+        }
+        // Lobes take sigma in single precision, and s of a gamma is rounded.
+        let single = LobeSpec::student_t([f64::from(0.1_f32), f64::from(0.3_f32)], 3.0 + 1e-12);
+        assert!(brushed.contains(&single));
+        for other in [
+            LobeSpec::student_t([0.1, 0.3001], 3.0),
+            LobeSpec::student_t([0.1, 0.3], 3.0001),
+            LobeSpec::student_t([0.3, 0.1], 3.0),
+        ] {
+            assert!(!brushed.contains(&other), "{other:?}");
+        }
+        assert!(!turned.contains(&tilted([0.1, 0.3], 3.0, [0.1, 0.2, 0.4])));
+        assert!(!gtr.contains(&LobeSpec::outside("gtr:0.2,1.6".into())));
+    }
+
+    #[test]
+    fn a_range_of_an_anisotropic_lobe_has_a_round_stand_in() {
+        let x = Interval { min: 0.1, max: 0.4 };
+        let range = Roughness::Anisotropic { x, y: Interval::point(0.4) };
+        let lobe: LobeSpec = LobeSpec::family(range, Interval::point(3.0));
+        let sigma = Interval { min: 0.2, max: 0.4 };
+        let round = LobeSpec::family(Roughness::Isotropic(sigma), Interval::point(3.0));
+        assert_eq!((lobe.tabulated(), lobe.form()), (round, LobeForm::StudentT));
+        let single = LobeSpec::<String>::student_t([0.1, 0.4], 3.0);
+        assert_eq!(single.tabulated(), single);
+    }
+}

@@ -83,7 +83,7 @@ impl From<Sigma> for Roughness {
                 none if none == Interval::point(0.0) => Self::Smooth,
                 sigma => Self::Isotropic(sigma),
             },
-            Sigma::Two([x, y]) => Self::Anisotropic { x: x.into(), y: y.into() },
+            Sigma::Two([x, y]) => Self::anisotropic(x.into(), y.into()),
         }
     }
 }
