@@ -2,7 +2,8 @@
 //! of [`CriticalBlend::BAKED`] and with the three of [`CriticalBlend::UPRIGHT`].
 //!
 //! `cargo run --profile dist -p microfacet-study -- dielectric_views` prints the table in
-//! `docs/albedo.md`: the largest error in the promised range over some roughnesses and indices.
+//! `docs/albedo.md`, the largest error in the promised range over some roughnesses and indices; and
+//! the same at one γ for parameters beside those of three parts.
 
 use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, bake};
 use microfacet_baker::certify::albedo::{certified, edge_references, interior_references};
@@ -38,20 +39,36 @@ fn errors(
     Ok([Quantity::Reflection, Quantity::Transmission].map(largest))
 }
 
+/// The largest errors over roughnesses and indices, in words.
+fn worst(gamma: f64, views: (CriticalBlend, usize)) -> Result<String, AlbedoError> {
+    let mut worst = [0.0_f64; 2];
+    for (sigma, eta) in SIGMAS.into_iter().flat_map(|sigma| ETAS.map(|eta| (sigma, eta))) {
+        let here = errors(AlbedoLobe::student_t([sigma; 2], gamma), eta, views)?;
+        worst = [worst[0].max(here[0]), worst[1].max(here[1])];
+    }
+    Ok(worst.map(|x| format!("{x:.1e}")).join(", "))
+}
+
 /// Prints what the module's page says.
 pub fn run() -> Result<(), AlbedoError> {
     println!("| γ | two parts, 65 views: reflected, transmitted | three parts, 67 views |");
     println!("| --- | --- | --- |");
     for gamma in GAMMAS {
-        let worst = |views| -> Result<String, AlbedoError> {
-            let mut worst = [0.0_f64; 2];
-            for (sigma, eta) in SIGMAS.into_iter().flat_map(|sigma| ETAS.map(|eta| (sigma, eta))) {
-                let here = errors(AlbedoLobe::student_t([sigma; 2], gamma), eta, views)?;
-                worst = [worst[0].max(here[0]), worst[1].max(here[1])];
-            }
-            Ok(worst.map(|x| format!("{x:.1e}")).join(", "))
-        };
-        println!("| {gamma} | {} | {} |", worst(VIEWS[0])?, worst(VIEWS[1])?);
+        println!("| {gamma} | {} | {} |", worst(gamma, VIEWS[0])?, worst(gamma, VIEWS[1])?);
+    }
+    println!("\n| root, sharp, between | γ = 1.55: reflected, transmitted |\n| --- | --- |");
+    let own = CriticalBlend::UPRIGHT;
+    let beside = [
+        own,
+        CriticalBlend { root: 0.4, ..own },
+        CriticalBlend { root: 0.55, between: 0.8, ..own },
+        CriticalBlend { sharp: 0.05, ..own },
+        CriticalBlend { sharp: 0.2, ..own },
+        CriticalBlend { between: 0.7, ..own },
+    ];
+    for blend in beside {
+        let CriticalBlend { root, sharp, between, .. } = blend;
+        println!("| {root}, {sharp}, {between} | {} |", worst(1.55, (blend, VIEWS[1].1))?);
     }
     Ok(())
 }

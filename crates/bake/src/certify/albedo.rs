@@ -10,7 +10,7 @@ use microfacet_model::Albedo;
 use microfacet_sampler::albedo::{Albedo as TabulatedAlbedo, Moments, ViewCurve};
 use microfacet_sampler::{Masking, MaterialError, Tables};
 use microfacet_tables::{
-    Axis, Certificate, Coordinate, Errors, Kind, Quantity, Reflectance, Table,
+    Axis, Certificate, Coordinate, Errors, Kind, LobeForm, Quantity, Reflectance, Table,
 };
 
 use super::certificate::round_up;
@@ -73,9 +73,10 @@ fn references(
     let finest = if spec.reflectance.indices().is_some() { FINEST_OF_KINKS } else { 0.0 };
     let tolerance = (FINER * spec.tolerance).max(finest);
     let gammas = points.iter().map(|point| point.site.gamma);
-    let has_stand_in = with_stand_in && spec.reflectance == Reflectance::Mirror;
-    // The isotropic lobe of the family that usually stands in for one that is not round.
-    let has_stand_in = has_stand_in && !spec.lobe.is_family() && spec.lobe.distribution.is_none();
+    // Of the family a round lobe stands in, for one that is not.
+    let has_stand_in = with_stand_in
+        && spec.reflectance == Reflectance::Mirror
+        && matches!(spec.lobe.form(), LobeForm::StudentT | LobeForm::Ellipsoid);
     let stand_in = has_stand_in.then(|| spec.lobe.round_sigma());
     Models::with(&spec.lobe, gammas, tolerance, |models| {
         let one = |point: &Point| {

@@ -76,9 +76,8 @@ impl MaterialWeights {
 /// A quantity, or an end of a range that differs from it by no more than the rounding of single
 /// precision, in which lobes take their numbers.
 fn end(x: f64, ends: [f64; 2]) -> f64 {
-    // An infinite end is within its own rounding of every number.
-    let near = |end: f64| (x - end).abs() <= f64::from(f32::EPSILON) * end && end < f64::INFINITY;
-    let same = |end: &f64| near(*end);
+    // Every number is within the rounding of an infinite end.
+    let same = |end: &f64| *end < f64::INFINITY && (x - end).abs() <= f64::from(f32::EPSILON) * end;
     ends.into_iter().find(same).unwrap_or(x)
 }
 

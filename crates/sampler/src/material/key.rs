@@ -73,10 +73,10 @@ impl LobeKey {
     /// A recipe's material of this lobe, as far as it knows it, with a reflectance.
     pub(crate) fn recipe(&self, fresnel: &str, masking: Masking) -> String {
         let lobe = match self {
-            Self::Upright(lobe) if lobe.distribution.is_some() => {
-                format!("# and the distribution {self}")
+            Self::Upright(LobeSpec { distribution: Some(label), .. }) => {
+                format!("# and the distribution {label}")
             }
-            Self::Upright(_) => self.to_string().replace(", gamma", "\ngamma"),
+            Self::Upright(lobe) => format!("sigma = {}\ngamma = {}", sigma(lobe), lobe.gamma()),
             Self::Tilted { gamma, .. } => {
                 format!("gamma = {gamma}\n# and the sigma and theta of its Skew")
             }
@@ -92,18 +92,18 @@ impl fmt::Display for LobeKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Upright(LobeSpec { distribution: Some(label), .. }) => f.write_str(label),
-            Self::Upright(lobe) => {
-                let [x, y] = lobe.sigma();
-                let gamma = lobe.gamma();
-                if x == y {
-                    write!(f, "sigma = {x}, gamma = {gamma}")
-                } else {
-                    write!(f, "sigma = [{x}, {y}], gamma = {gamma}")
-                }
-            }
+            Self::Upright(lobe) => write!(f, "sigma = {}, gamma = {}", sigma(lobe), lobe.gamma()),
             Self::Tilted { gamma, .. } => write!(f, "tilted, gamma = {gamma}"),
             Self::Unknown => write!(f, "of no known distribution"),
         }
+    }
+}
+
+/// σ as recipes write it.
+fn sigma(lobe: &LobeSpec) -> String {
+    match lobe.sigma() {
+        [x, y] if x == y => x.to_string(),
+        [x, y] => format!("[{x}, {y}]"),
     }
 }
 

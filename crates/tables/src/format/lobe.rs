@@ -190,7 +190,7 @@ impl<D> LobeSpec<D> {
     /// σ of the isotropic lobe that stands in for an anisotropic one: √(σx σy).
     pub fn round_sigma(&self) -> f64 {
         let [x, y] = self.sigma();
-        if x == y { x } else { libm::sqrt(x * y) }
+        mean(x, y)
     }
 
     /// Whether it has no microfacets at all: σ = 0.
@@ -241,7 +241,6 @@ impl<D: Clone + PartialEq> LobeSpec<D> {
     /// The round lobe of σ = √(σx σy) that usually stands in for one that is not, without a tilt.
     #[must_use]
     pub fn round(&self) -> Self {
-        let mean = |x: f64, y: f64| if x == y { x } else { libm::sqrt(x * y) };
         let [x, y] = self.sigmas();
         let sigma = Interval { min: mean(x.min, y.min), max: mean(x.max, y.max) };
         Self::family(Roughness::isotropic(sigma), self.gamma)
@@ -310,6 +309,11 @@ impl LobeSpec {
 /// Whether a number is in a range, or beyond an end by no more than this part of it.
 fn within([min, max]: [f64; 2], x: f64, slack: f64) -> bool {
     x >= min - slack * min && x <= max + slack * max
+}
+
+/// √(xy), of equal numbers their bits.
+fn mean(x: f64, y: f64) -> f64 {
+    if x == y { x } else { libm::sqrt(x * y) }
 }
 
 /// The middle of a range.

@@ -1,8 +1,8 @@
 //! The reflectances that albedos are baked under, one variant each. **A new one goes here** and in
 //! [`Reflectance`], which names its channels.
 
+use microfacet_model::Albedo;
 use microfacet_model::fresnel::{Conductor, Dielectric, f82_weight, schlick_weight};
-use microfacet_model::{Albedo, ParameterError};
 use microfacet_tables::{Reflectance, Side};
 
 use super::{AlbedoError, CHANNELS, Model, Site};
@@ -27,8 +27,8 @@ impl Integrand {
     /// Computes the constants of a reflectance.
     ///
     /// # Errors
-    /// [`ParameterError`] for η ≤ 0 or k < 0.
-    pub fn new(reflectance: &Reflectance) -> Result<Self, ParameterError> {
+    /// [`AlbedoError`] for η ≤ 0 or k < 0, or a dielectric of no side.
+    pub fn new(reflectance: &Reflectance) -> Result<Self, AlbedoError> {
         Ok(match *reflectance {
             Reflectance::Mirror | Reflectance::Schlick(_) => Self::Moments,
             Reflectance::Conductor { eta, k } => {
@@ -36,8 +36,9 @@ impl Integrand {
                 Self::Metal([channel(0)?, channel(1)?, channel(2)?])
             }
             Reflectance::Interface { side, .. } => Self::Pane(side),
-            // Its tables are of one side each.
-            Reflectance::Dielectric(_) => Self::Pane(Side::Thin),
+            Reflectance::Dielectric(_) => {
+                return Err(AlbedoError::Lobe("a table is of one side of a dielectric".into()));
+            }
         })
     }
 
