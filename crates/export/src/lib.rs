@@ -50,8 +50,14 @@ pub struct ExportFile {
     pub contents: Vec<u8>,
 }
 
+impl ExportFile {
+    fn new(name: impl Into<String>, contents: impl Into<Vec<u8>>) -> Self {
+        Self { name: name.into(), contents: contents.into() }
+    }
+}
+
 /// Numbers as an OpenEXR image: one plane as the luminance Y, two or three as R, G and B. A third
-/// that is missing is 0: three.js, and whatever wants colours, refuses an image without it.
+/// that is missing is 0: readers of colours, such as three.js, refuse an image without it.
 fn open_exr(
     name: &str,
     size: [usize; 2],

@@ -47,23 +47,16 @@ pub struct Part<'a> {
     pub columns: usize,
 }
 
-impl Part<'_> {
-    /// How many rows it has.
-    pub(super) fn rows(&self) -> usize {
-        self.values.len() / self.columns
-    }
-}
-
-/// The members of a shape as shaders read them: of the lobe, and of albedos by form of masking.
-pub(super) fn lists(shape: &Shape) -> [Vec<Member>; 3] {
-    let [a, b] = &shape.albedos;
-    [lobe(shape), albedo(a), albedo(b)]
-}
-
-/// What stands before the names of each list, where they stand in one.
+/// What stands before the names of each list of members, where they stand in one.
 pub(super) const PREFIXES: [&str; 3] = ["", "uncorrelated.", "height_correlated."];
 
 impl Shape {
+    /// Its members as shaders read them: of the lobe, and of albedos by form of masking.
+    pub(super) fn lists(&self) -> [Vec<Member>; 3] {
+        let [a, b] = &self.albedos;
+        [lobe(self), albedo(a), albedo(b)]
+    }
+
     /// The numbers of its description by name, as `student_t.json` has them (`docs/shaders.md`);
     /// places of tables are not among them. A flag is 0 or 1.
     pub fn numbers(&self) -> Vec<(String, f32)> {
@@ -71,36 +64,31 @@ impl Shape {
             let named = |Member { name, value }| Some((format!("{prefix}{name}"), value.number()?));
             list.into_iter().filter_map(named).collect()
         };
-        PREFIXES.into_iter().zip(lists(self)).flat_map(of).collect()
+        PREFIXES.into_iter().zip(self.lists()).flat_map(of).collect()
     }
 
     /// Its tables.
     pub fn parts(&self) -> Vec<Part<'_>> {
-        parts(self)
+        fn part<const N: usize>(name: impl Into<String>, values: &[[f32; N]]) -> Part<'_> {
+            Part { name: name.into(), values: values.as_flattened(), columns: N }
+        }
+        let mut parts = Vec::new();
+        if let Some(tables) = &self.tables {
+            parts.push(part("masking", &tables.masking));
+            parts.push(part("slopes", &tables.slopes));
+            parts.push(part("across", &tables.across));
+            parts.extend(tables.heavy.as_ref().map(|heavy| part("heavy", &heavy.shares)));
+        }
+        for table in &self.albedos {
+            let [values, averages] = names(table);
+            parts.extend([part(values, &table.values), part(averages, &table.averages)]);
+        }
+        parts
     }
-}
-
-/// The tables of a shape.
-pub(super) fn parts(shape: &Shape) -> Vec<Part<'_>> {
-    fn part<const N: usize>(name: impl Into<String>, values: &[[f32; N]]) -> Part<'_> {
-        Part { name: name.into(), values: values.as_flattened(), columns: N }
-    }
-    let mut parts = Vec::new();
-    if let Some(tables) = &shape.tables {
-        parts.push(part("masking", &tables.masking));
-        parts.push(part("slopes", &tables.slopes));
-        parts.push(part("across", &tables.across));
-        parts.extend(tables.heavy.as_ref().map(|heavy| part("heavy", &heavy.shares)));
-    }
-    for table in &shape.albedos {
-        let [values, averages] = names(table);
-        parts.extend([part(values, &table.values), part(averages, &table.averages)]);
-    }
-    parts
 }
 
 /// The lobe; what GGX does not need is 0.
-pub(super) fn lobe(shape: &Shape) -> Vec<Member> {
+fn lobe(shape: &Shape) -> Vec<Member> {
     let tables = shape.tables.as_ref();
     let heavy = tables.and_then(|tables| tables.heavy.as_ref());
     let crowded = tables.is_some_and(|tables| tables.masking_crowded);
@@ -135,7 +123,7 @@ pub(super) fn lobe(shape: &Shape) -> Vec<Member> {
 }
 
 /// A table of albedos.
-pub(super) fn albedo(table: &AlbedoTable) -> Vec<Member> {
+fn albedo(table: &AlbedoTable) -> Vec<Member> {
     let [values, averages] = names(table);
     let [first, last] = table.ends;
     let (sigma, view) = (table.roughness, table.view);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::members::{self, Member, Value, parts};
+use super::members::{Member, Value};
 use super::numbers::{as_typed, error, identifier, lines, single};
 use super::{AlbedoTable, ExportFile, Shape};
 
@@ -22,12 +22,13 @@ const HEADER_NAME: &str = "student_t.h";
 const LAYOUT: u32 = 2;
 
 pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
-    let header = ExportFile { name: HEADER_NAME.into(), contents: HEADER.into() };
-    let shape = |shape: &Shape| {
+    let mut files = vec![ExportFile::new(HEADER_NAME, HEADER)];
+    for shape in shapes {
         let name = format!("student_t_gamma_{}", identifier(shape.gamma));
-        ExportFile { contents: text(shape, &name).into(), name: name + ".h" }
-    };
-    std::iter::once(header).chain(shapes.iter().map(shape)).collect()
+        let text = text(shape, &name);
+        files.push(ExportFile::new(name + ".h", text));
+    }
+    files
 }
 
 /// The file of a shape.
@@ -47,13 +48,12 @@ fn text(shape: &Shape, name: &str) -> String {
 "
     )
     .expect("memory");
-    for part in parts(shape) {
+    for part in shape.parts() {
         let (items, count) = (part.values.iter().map(|&x| float(x)), part.values.len());
         let array = format!("float {name}_{}[{count}]", part.name);
         writeln!(text, "\nSTUDENT_T_DATA {array} = {{\n{}\n}};", lines(items)).expect("memory");
     }
-    definition(&mut text, shape, name);
-    text + "\n#endif\n"
+    text + &definition(shape, name) + "\n#endif\n"
 }
 
 /// What a shape's file says of it.
@@ -105,18 +105,19 @@ fn comment(shape: &Shape, name: &str) -> String {
 }
 
 /// The definition of the shape: values in the order of the members of `student_t_shape`.
-fn definition(text: &mut String, shape: &Shape, name: &str) {
-    writeln!(text, "\nSTUDENT_T_DATA student_t_shape {name} = {{").expect("memory");
-    for Member { name: member, value } in members::lobe(shape) {
-        writeln!(text, "    {}, /* {member} */", literal(value, name)).expect("memory");
-    }
-    for (i, table) in shape.albedos.iter().enumerate() {
-        text.push_str(if i == 0 { "    {{\n" } else { "    }, {\n" });
-        for Member { name: member, value } in members::albedo(table) {
-            writeln!(text, "        {}, /* {member} */", literal(value, name)).expect("memory");
-        }
-    }
-    text.push_str("    }}\n};\n");
+fn definition(shape: &Shape, name: &str) -> String {
+    let [lobe, uncorrelated, correlated] = shape.lists().map(|members| {
+        let values = members.into_iter().map(|Member { name: member, value }| {
+            format!("{}, /* {member} */", literal(value, name))
+        });
+        values.collect::<Vec<_>>()
+    });
+    let [a, b] = [uncorrelated, correlated].map(|values| values.join("\n        "));
+    format!(
+        "\nSTUDENT_T_DATA student_t_shape {name} = {{\n    {}\n    {{{{\n        {a}\n    }}, {{\n        \
+         {b}\n    }}}}\n}};\n",
+        lobe.join("\n    ")
+    )
 }
 
 /// A member in a shape of this name.
@@ -175,11 +176,10 @@ mod tests {
             names.collect()
         };
         let shape = Shape::bind(&microfacet_sampler::Tables::embedded(), 1.7).unwrap();
-        let written = |members: Vec<Member>| members.into_iter().map(|member| member.name.into());
-        let mut expected: Vec<String> = written(members::lobe(&shape)).collect();
-        expected.push("albedo[2]".into());
-        assert_eq!(members("student_t_shape"), expected);
-        let albedo: Vec<String> = written(members::albedo(&shape.albedos[0])).collect();
+        let [mut lobe, albedo, _] =
+            shape.lists().map(|list| list.iter().map(|member| member.name).collect::<Vec<_>>());
+        lobe.push("albedo[2]");
+        assert_eq!(members("student_t_shape"), lobe);
         assert_eq!(members("student_t_albedo_table"), albedo);
     }
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use microfacet_tables::crc32;
 use serde::Serialize;
 
-use super::super::members::{Member, PREFIXES, Part, Value, lists, parts};
+use super::super::members::{Member, PREFIXES, Part, Value};
 use super::super::numbers::as_typed;
 use super::super::{ExportFile, Shape, open_exr};
 use super::NAME;
@@ -75,21 +75,18 @@ struct Errors {
 /// Adds data and description of all shapes to the files of functions; the description, which knows
 /// the others by their checksums, is the last to take its place.
 pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
-    let (mut pairs, mut entries) = (Vec::new(), BTreeMap::new());
-    for shape in shapes {
-        let entry = append(shape, |_| true, &mut pairs);
-        entries.insert(as_typed(shape.gamma), entry);
-    }
+    let mut pairs = Vec::new();
+    let entry = |shape: &Shape| (as_typed(shape.gamma), append(shape, |_| true, &mut pairs));
+    let entries = shapes.iter().map(entry).collect();
     let height = pairs.len().div_ceil(WIDTH);
     pairs.resize(WIDTH * height, [0.0; 2]);
     let first = shapes.first().expect("shapes");
-    let bytes = pairs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let bytes: Vec<u8> = pairs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
     let planes = [0, 1].map(|i| pairs.iter().map(|pair| pair[i]).collect());
-    let image =
-        open_exr(NAME, [WIDTH, height], planes.into(), false, None).expect("finite numbers");
+    let image = open_exr(NAME, [WIDTH, height], planes.into(), false, None);
     let [file, name] = ["bin", "exr"].map(|end| format!("{NAME}.{end}"));
-    files.push(ExportFile { name: file.clone(), contents: bytes });
-    files.push(ExportFile { name: name.clone(), contents: image });
+    files.push(ExportFile::new(&*file, bytes));
+    files.push(ExportFile::new(&*name, image.expect("finite numbers")));
     let checksum = |file: &ExportFile| (file.name.clone(), crc32(&file.contents));
     let description = Description {
         layout: LAYOUT,
@@ -105,19 +102,16 @@ pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
         crc32: files.iter().map(checksum).collect(),
     };
     let json = serde_json::to_string_pretty(&description).expect("names and finite numbers");
-    files.push(ExportFile { name: format!("{NAME}.json"), contents: (json + "\n").into() });
+    files.push(ExportFile::new(format!("{NAME}.json"), json + "\n"));
 }
 
 /// Rows of the texture of shapes: more than 2048 are not promised by WebGL 2.
 pub fn texture_rows(shapes: &[Shape]) -> usize {
-    shapes.iter().map(length).sum::<usize>().div_ceil(WIDTH)
-}
-
-/// Pairs of a shape.
-fn length(shape: &Shape) -> usize {
-    let members = lists(shape).iter().map(|list| list.len().div_ceil(2)).sum::<usize>();
-    let tables = parts(shape);
-    members + tables.iter().map(|part| part.rows() * part.columns.div_ceil(2)).sum::<usize>()
+    let mut pairs = Vec::new();
+    for shape in shapes {
+        append(shape, |_| true, &mut pairs);
+    }
+    pairs.len().div_ceil(WIDTH)
 }
 
 /// Appends a shape with some of its tables, by name, and returns the place of its first pair. What
@@ -133,12 +127,12 @@ pub fn append_some(
 /// Appends a shape: its members, then its tables, of those that are kept.
 fn append(shape: &Shape, is_kept: impl Fn(&str) -> bool, pairs: &mut Vec<[f32; 2]>) -> Entry {
     let offset = pairs.len();
-    let lists = lists(shape);
+    let lists = shape.lists();
     let mut at = lists.iter().map(|list| list.len().div_ceil(2)).sum::<usize>();
-    let parts: Vec<Part> = parts(shape).into_iter().filter(|part| is_kept(&part.name)).collect();
+    let parts: Vec<Part> = shape.parts().into_iter().filter(|part| is_kept(&part.name)).collect();
     let mut tables = BTreeMap::new();
     for part in &parts {
-        let (rows, columns) = (part.rows(), part.columns);
+        let (rows, columns) = (part.values.len() / part.columns, part.columns);
         tables.insert(part.name.clone(), Place { offset: at, rows, columns });
         at += rows * columns.div_ceil(2);
     }

@@ -34,7 +34,8 @@ impl Language {
         if self == Self::GlslEs { Storage::Texture } else { asked }
     }
 
-    /// Of the module and of the sample; of SPIR-V, which is both in one, twice.
+    /// Of the module and of the sample; of SPIR-V, which is both in one, the sample is its source,
+    /// which declares what it takes and returns.
     pub(super) fn extensions(self) -> [&'static str; 2] {
         match self {
             Self::Wgsl => ["wgsl", "wgsl"],
@@ -42,7 +43,7 @@ impl Language {
             Self::GlslEs => ["glsl", "frag"],
             Self::Hlsl => ["hlsl", "hlsl"],
             Self::Msl => ["metal", "metal"],
-            Self::SpirV => ["spv", "spv"],
+            Self::SpirV => ["spv", "wgsl"],
         }
     }
 

@@ -6,7 +6,7 @@ mod translate;
 
 use std::fmt::Write;
 
-use super::members::{Member, Value, lists};
+use super::members::{Member, Value};
 use super::{ExportFile, Shape};
 pub use data::texture_rows;
 pub use data::{WIDTH, append_some};
@@ -33,27 +33,19 @@ const FUNCTIONS: &str = concat!(
 /// If there are no shapes.
 pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> Vec<ExportFile> {
     let storage = language.storage(storage);
-    let module = module(&lists(shapes.first().expect("shapes")), storage);
+    let module = module(&shapes.first().expect("shapes").lists(), storage);
     let sample = language.sample(storage);
-    let mut files = if language == Language::SpirV {
+    let [of_module, of_sample] = language.extensions();
+    let name = format!("{NAME}.{of_module}");
+    let contents: Vec<u8> = if language == Language::SpirV {
         let words = translate::spirv(&format!("{module}{sample}"));
-        let contents = words.into_iter().flat_map(u32::to_le_bytes).collect();
-        // Its source beside it, which declares what it takes and returns.
-        vec![
-            ExportFile { name: format!("{NAME}.spv"), contents },
-            ExportFile { name: format!("{NAME}_sample.wgsl"), contents: sample.into() },
-        ]
+        words.into_iter().flat_map(u32::to_le_bytes).collect()
     } else {
-        let [of_module, of_sample] = language.extensions();
-        let name = format!("{NAME}.{of_module}");
         let text = translate::text(&module, language, storage);
-        let contents = format!("{}\n{text}", head(&name, language, storage)).into();
-        let sample_name = format!("{NAME}_sample.{of_sample}");
-        vec![
-            ExportFile { name, contents },
-            ExportFile { name: sample_name, contents: sample.into() },
-        ]
+        format!("{}\n{text}", head(&name, language, storage)).into()
     };
+    let sample = ExportFile::new(format!("{NAME}_sample.{of_sample}"), sample);
+    let mut files = vec![ExportFile::new(name, contents), sample];
     data::append_files(shapes, &mut files);
     files
 }
@@ -61,7 +53,7 @@ pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> V
 /// The functions for WebGL 2, without what stands at the head of the file.
 pub fn for_webgl(shape: &Shape) -> String {
     let storage = Language::GlslEs.storage(Storage::Texture);
-    translate::text(&module(&lists(shape), storage), Language::GlslEs, storage)
+    translate::text(&module(&shape.lists(), storage), Language::GlslEs, storage)
 }
 
 /// All text in WGSL.
@@ -138,7 +130,7 @@ mod tests {
     #[test]
     fn members_are_read_by_pairs_in_their_order() {
         let shape = Shape::bind(&Tables::embedded(), 1.7).unwrap();
-        let [_, _, albedo] = lists(&shape);
+        let [_, _, albedo] = shape.lists();
         let text = loader("T", &albedo, "t(shape: u32)", "shape");
         let fields = text.lines().take_while(|line| *line != "}").skip(1);
         let declared: Vec<&str> =
@@ -154,7 +146,7 @@ mod tests {
     fn all_text_is_narrow() {
         let shape = Shape::bind(&Tables::embedded(), 1.7).unwrap();
         for storage in [Storage::Buffer, Storage::Texture] {
-            let text = module(&lists(&shape), storage);
+            let text = module(&shape.lists(), storage);
             for language in [Language::Wgsl, Language::GlslEs, Language::Msl] {
                 let head = head("student_t.metal", language, storage);
                 for line in head.lines().chain(text.lines()) {

@@ -62,9 +62,7 @@ pub fn known(
     masking: Masking,
     stage: &Stage,
 ) -> Result<Vec<Known>, ParameterError> {
-    let mut gammas: Vec<f64> = places.iter().map(|place| place.gamma).collect();
-    gammas.dedup();
-    let truths = truths(&gammas, places.len(), |i| places[i], masking, stage)?;
+    let truths = truths(places.len(), |i| places[i], masking, stage)?;
     Ok(places.iter().zip(truths).map(|(&place, truth)| Known { place, truth }).collect())
 }
 

@@ -185,74 +185,54 @@ impl TextureSpec {
     /// # Errors
     /// [`ParameterError`] for a place outside the domain of the model.
     pub fn make(&self, stage: &Stage) -> Result<Texture, ParameterError> {
-        if !self.fitted {
-            let texels = Grid(self.axes.iter().map(|axis| axis.texels.clone()).collect());
+        let planes: Vec<Vec<f32>> = if self.fitted {
+            let points = self.points();
+            let truths = truths(points.len(), |i| points[i].1, self.masking, stage)?;
+            let filter = Filter::new(&self.axes);
+            let target = |(at, place): &([f64; AXES], Place)| Target {
+                tap: filter.tap(&self.axes, at),
+                promised: place.cos.is_none_or(|cos| cos >= self.least_cos),
+            };
+            let targets: Vec<Target> = points.iter().map(target).collect();
+            let plane = |channel: &Channel| {
+                let wanted: Vec<f64> = truths.iter().map(|&truth| channel.of(truth)).collect();
+                let [least, most] = channel.range();
+                let values = fit(&filter, &targets, &wanted, vec![0.0; filter.texels]);
+                values.into_iter().map(|value| value.clamp(least, most) as f32).collect()
+            };
+            self.channels.iter().map(plane).collect()
+        } else {
+            let texels = self.grid(|axis| axis.texels.clone());
             let at = |i| place(&self.axes, self.gamma, &texels.at(i));
-            let truths = truths(&self.gammas(&texels.0), texels.len(), at, self.masking, stage)?;
-            return Ok(self.texture(
-                truths.iter().map(|&truth| {
-                    self.channels.iter().map(move |channel| channel.of(truth) as f32)
-                }),
-            ));
-        }
-        let points = self.points();
-        let places = |i: usize| points[i].1;
-        let gammas =
-            self.gammas(&self.axes.iter().map(|axis| self.dense(axis)).collect::<Vec<_>>());
-        let truths = truths(&gammas, points.len(), places, self.masking, stage)?;
-        let filter = Filter::new(&self.axes);
-        let target = |(at, place): &([f64; AXES], Place)| Target {
-            tap: filter.tap(&self.axes, at),
-            promised: place.cos.is_none_or(|cos| cos >= self.least_cos),
+            let truths = truths(texels.len(), at, self.masking, stage)?;
+            let plane = |channel: &Channel| truths.iter().map(|&t| channel.of(t) as f32).collect();
+            self.channels.iter().map(plane).collect()
         };
-        let targets: Vec<Target> = points.iter().map(target).collect();
-        let plane = |channel: &Channel| {
-            let wanted: Vec<f64> = truths.iter().map(|&truth| channel.of(truth)).collect();
-            let [least, most] = channel.range();
-            let values = fit(&filter, &targets, &wanted, vec![0.0; filter.texels]);
-            values.into_iter().map(|value| value.clamp(least, most)).collect()
-        };
-        let planes: Vec<Vec<f64>> = self.channels.iter().map(plane).collect();
-        let texel = |i: usize| planes.iter().map(move |plane| plane[i] as f32);
-        Ok(self.texture((0..filter.texels).map(texel)))
+        let texel = |i: usize| planes.iter().map(move |plane| plane[i]);
+        let values = (0..planes[0].len()).flat_map(texel).collect();
+        Ok(Texture { spec: self.clone(), values, half: false })
     }
 
-    fn dense(&self, axis: &TexelAxis) -> Vec<f64> {
-        axis.dense(self.per_cell())
+    fn grid(&self, along: impl Fn(&TexelAxis) -> Vec<f64>) -> Grid {
+        Grid(self.axes.iter().map(along).collect())
     }
 
     /// Points to fit to, with their coordinates: over all of the texture, and of views also the
     /// smallest cosine that counts, which lies between others.
     fn points(&self) -> Vec<([f64; AXES], Place)> {
-        let grid = Grid(self.axes.iter().map(|axis| self.dense(axis)).collect());
+        let dense = |axis: &TexelAxis| axis.dense(self.per_cell());
+        let grid = self.grid(dense);
         let of = |at: [f64; AXES]| (at, place(&self.axes, self.gamma, &at));
         let mut points: Vec<_> = (0..grid.len()).into_par_iter().map(|i| of(grid.at(i))).collect();
         if self.is_directional() {
-            let any = |axis: &TexelAxis| {
-                if axis.along.is_view() { vec![0.0] } else { self.dense(axis) }
-            };
-            let materials = Grid(self.axes.iter().map(any).collect());
+            let materials =
+                self.grid(|axis| if axis.along.is_view() { vec![0.0] } else { dense(axis) });
             points.extend((0..materials.len()).map(|i| {
                 let place = Place { cos: Some(self.least_cos), ..of(materials.at(i)).1 };
                 (coordinates(&self.axes, &place), place)
             }));
         }
         points
-    }
-
-    /// The shapes of a grid.
-    fn gammas(&self, grid: &[Vec<f64>]) -> Vec<f64> {
-        let shapes = self.axes.iter().zip(grid).find(|(axis, _)| axis.is_of_shapes());
-        shapes.map_or(vec![self.gamma], |(axis, coordinates)| {
-            coordinates
-                .iter()
-                .map(|&c| place(std::slice::from_ref(axis), 0.0, &[c]).gamma)
-                .collect()
-        })
-    }
-
-    fn texture(&self, texels: impl Iterator<Item = impl Iterator<Item = f32>>) -> Texture {
-        Texture { spec: self.clone(), values: texels.flatten().collect(), half: false }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What the texels are of: directional albedos by quadrature, and their averages.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use microfacet_baker::bake::albedo::weights;
 use microfacet_baker::progress::Stage;
@@ -78,16 +78,11 @@ pub struct Truth {
     pub mirror: f64,
 }
 
-/// The albedos of `count` places of some shapes, each a step of the stage; all of them views, or
-/// all averages.
+/// The albedos of `count` places, each a step of the stage; all of them views, or all averages.
 ///
 /// # Errors
 /// [`ParameterError`] for a place outside the domain of the model.
-///
-/// # Panics
-/// If a place is of another shape than these.
 pub(super) fn truths(
-    gammas: &[f64],
     count: usize,
     place: impl Fn(usize) -> Place + Sync,
     masking: Masking,
@@ -95,10 +90,13 @@ pub(super) fn truths(
 ) -> Result<Vec<Truth>, ParameterError> {
     let average = count > 0 && place(0).cos.is_none();
     let tolerance = if average { AVERAGE_TOLERANCE } else { TOLERANCE };
-    let prepare =
-        |&gamma: &f64| Ok((gamma.to_bits(), AlbedoIntegrator::new(Shape::new(gamma)?, tolerance)));
+    let gammas: HashSet<u64> = (0..count).map(|i| place(i).gamma.to_bits()).collect();
+    let prepare = |gamma| {
+        let shape = Shape::new(f64::from_bits(gamma))?;
+        Ok((gamma, AlbedoIntegrator::new(shape, tolerance)))
+    };
     let integrators: HashMap<u64, AlbedoIntegrator> =
-        gammas.iter().map(prepare).collect::<Result<_, ParameterError>>()?;
+        gammas.into_iter().map(prepare).collect::<Result<_, ParameterError>>()?;
     stage.split(count);
     let of = |i: usize| {
         let place = place(i);

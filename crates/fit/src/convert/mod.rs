@@ -10,7 +10,6 @@ use microfacet_baker::distribution::Named;
 
 mod error;
 mod formula;
-mod search;
 pub mod table;
 mod target;
 

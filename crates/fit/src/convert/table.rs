@@ -48,7 +48,7 @@ pub struct Value {
 impl Value {
     /// The printed number.
     pub fn number(&self) -> f64 {
-        self.printed.parse().expect("the table holds numbers")
+        number(self.printed)
     }
 
     /// Ours, to the digits that are printed.
@@ -72,6 +72,10 @@ impl Value {
     }
 }
 
+fn number(printed: &str) -> f64 {
+    printed.parse().expect("the table holds numbers")
+}
+
 fn printed() -> impl Iterator<Item = Vec<&'static str>> {
     PRINTED.lines().skip(1).map(|line| line.split(',').collect())
 }
@@ -82,7 +86,7 @@ pub(super) fn printed_range(kind: DistributionKind) -> Option<[f64; 2]> {
         Beckmann => 0,
         _ => 3 + 2 * FITTED.iter().position(|fitted| *fitted == kind)?,
     };
-    let values = printed().map(|row| row[column].parse::<f64>().expect("the table holds numbers"));
+    let values = printed().map(|row| number(row[column]));
     Some(values.fold([f64::INFINITY, 0.0], |[low, high], x| [low.min(x), high.max(x)]))
 }
 
@@ -97,14 +101,11 @@ pub fn rows(stage: &Stage) -> Result<Vec<Vec<Value>>, ConvertError> {
     stage.split(all.len());
     all.into_par_iter()
         .map(|(texts, end)| {
-            let n: f64 = texts[1].parse().expect("the table holds numbers");
+            let n = number(texts[1]);
             let m = (2.0 / n).sqrt();
             let beckmann = Beckmann.build(&[m])?;
             let target = Target::up_to(&*beckmann, end, STEPS);
-            let relative = |found: &dyn microfacet_model::classic::Isotropic| {
-                target.rmse(found, Form::Relative)
-            };
-            let mut ours = vec![m, n, relative(&*BlinnPhong.build(&[n])?)];
+            let mut ours = vec![m, n, target.rmse(&*BlinnPhong.build(&[n])?, Form::Relative)];
             for kind in FITTED {
                 let found = target.by_rmse(kind, Form::Relative, &Stage::unwatched())?;
                 ours.extend([found.to.values[0], found.rmse[0]]);

@@ -1,11 +1,14 @@
-//! The distribution to be replaced on a grid of angles, and the replacement by equal half angle.
+//! The distribution to be replaced on a grid of angles, and its replacements by equal half angle
+//! and by the least error.
 
 use std::f64::consts::FRAC_PI_2;
 
 use microfacet_baker::distribution::{DistributionKind, Named};
+use microfacet_baker::progress::Stage;
 use microfacet_model::classic::{Isotropic, Tabulated};
 
 use super::{ConvertError, Form, Replacement};
+use crate::minimise::{self, Stop};
 
 /// The distribution to be replaced, on the uniform grid over which errors are taken.
 pub struct Target<'a> {
@@ -16,7 +19,7 @@ pub struct Target<'a> {
     /// Number of steps in [0, π/2); beyond the grid, if it ends before, everything counts as 0.
     steps: f64,
     /// Scale of the widths that are searched: 1 for all but narrow lobes.
-    pub(super) narrow: f64,
+    narrow: f64,
 }
 
 /// A half angle, radians, below which the widths that are searched scale with it.
@@ -24,6 +27,8 @@ const NARROW: f64 = 0.01;
 /// The largest grid; for half angles below 5e-3 it ends some 300 of them from the normal, where
 /// even GGX has fallen to 1e-10.
 const LARGEST_GRID: f64 = 20_000.0;
+/// The error is smooth, and known to rounding.
+const STOP: Stop = Stop { width: 1e-9, spread: 1e-14 };
 
 impl<'a> Target<'a> {
     /// Prepares the grid: 900 steps, or as many as give 64 within the half angle.
@@ -51,11 +56,11 @@ impl<'a> Target<'a> {
     pub fn measured(from: &'a Tabulated) -> Self {
         let mut this = Self::new(from);
         let (low, high) = from.assumed();
-        let inside = this.theta.iter().filter(|t| (low..=high).contains(*t)).count();
-        let skip = this.theta.partition_point(|t| *t < low);
-        this.theta = this.theta[skip..skip + inside].to_vec();
-        this.d = this.d[skip..skip + inside].to_vec();
-        this.steps = inside as f64;
+        let first = this.theta.partition_point(|t| *t < low);
+        let end = this.theta.partition_point(|t| *t <= high);
+        this.theta = this.theta[first..end].to_vec();
+        this.d = this.d[first..end].to_vec();
+        this.steps = this.theta.len() as f64;
         this
     }
 
@@ -128,16 +133,46 @@ impl<'a> Target<'a> {
             _ => Err(ConvertError::OutOfReach(to, angle)),
         }
     }
+
+    /// The distribution of kind `to` with the least RMSE, all parameters fitted together; each
+    /// distribution tried is one step of the stage, about as many as its progress expects.
+    ///
+    /// # Errors
+    /// [`ConvertError::Minimiser`] with the minimiser's own message.
+    pub fn by_rmse(
+        &self,
+        to: DistributionKind,
+        form: Form,
+        stage: &Stage,
+    ) -> Result<Replacement, ConvertError> {
+        stage.split(tries(to));
+        let error = |point: &[f64]| {
+            stage.step();
+            let to = to.build(&to.at(point, self.narrow));
+            to.map_or(f64::MAX, |to| self.rmse(&*to, form)).min(f64::MAX)
+        };
+        // A coarse scan finds the basin of the global minimum among several local ones.
+        let start = minimise::grid(to.dimension(), [scan(to); 2])
+            .into_iter()
+            .map(|point| (error(&point), point))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .expect("the scan is not empty")
+            .1;
+        let h = 1.0 / scan(to) as f64;
+        let best = minimise::descend(&start, h, STOP, error).map_err(ConvertError::Minimiser)?;
+        let found = self.judged(Named { kind: to, values: to.at(&best, self.narrow) })?;
+        Ok(Replacement { ends_at: to.ends_at(&best), ..found })
+    }
 }
 
 /// Steps of a coarse scan along each parameter.
-pub(super) fn scan(to: DistributionKind) -> usize {
+fn scan(to: DistributionKind) -> usize {
     if to.dimension() == 1 { 200 } else { 48 }
 }
 
 /// About how many distributions of a kind a search tries: those of the scan, and about as many of
 /// the minimiser as it takes to its tolerance. Only the progress reads it.
-pub(super) fn tries(to: DistributionKind) -> usize {
+fn tries(to: DistributionKind) -> usize {
     match to.dimension() {
         1 => scan(to) + 40,
         _ => (scan(to) + 1).pow(2) + 200,

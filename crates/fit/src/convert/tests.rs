@@ -9,6 +9,12 @@ fn named(text: &str) -> Named {
     text.parse().unwrap()
 }
 
+/// The nearest of a kind to a distribution by its text.
+fn nearest(text: &str, to: DistributionKind, form: Form) -> Replacement {
+    let built = named(text).build().unwrap();
+    Target::new(&*built).by_rmse(to, form, &Stage::unwatched()).unwrap()
+}
+
 #[test]
 fn every_family_finds_itself() {
     for text in [
@@ -21,56 +27,41 @@ fn every_family_finds_itself() {
     ] {
         let from = named(text);
         let built = from.build().unwrap();
-        let target = Target::new(&*built);
-        for found in [
-            target.by_rmse(from.kind, Form::Relative, &Stage::unwatched()).unwrap(),
-            target.by_half_angle(from.kind, None).unwrap(),
-        ] {
+        let by_half_angle = Target::new(&*built).by_half_angle(from.kind, None).unwrap();
+        for found in [nearest(text, from.kind, Form::Relative), by_half_angle] {
             let (a, b) = (found.to.values[0], from.values[0]);
-            assert!(
-                (a / b - 1.0).abs() < 1e-6 && found.rmse[0] < 1e-7,
-                "{text} became {}",
-                found.to
-            );
+            let near = (a / b - 1.0).abs() < 1e-6 && found.rmse[0] < 1e-7;
+            assert!(near, "{text} became {}", found.to);
         }
     }
     for text in ["student-t:0.3,2.5", "gtr:0.2,1.3", "hyper-cauchy:0.4,3"] {
         let from = named(text);
-        let built = from.build().unwrap();
-        let found =
-            Target::new(&*built).by_rmse(from.kind, Form::Density, &Stage::unwatched()).unwrap();
+        let found = nearest(text, from.kind, Form::Density);
         for (a, b) in found.to.values.iter().zip(&from.values) {
             assert!((a / b - 1.0).abs() < 1e-3, "{text} became {}", found.to);
         }
-        assert!(found.rmse[1] < 1e-3 * built.peak());
+        assert!(found.rmse[1] < 1e-3 * from.build().unwrap().peak());
     }
 }
 
 #[test]
 fn student_t_recognises_its_members() {
+    let student_t = |text| nearest(text, DistributionKind::StudentT, Form::Relative).to;
     for (text, gamma) in [("trowbridge-reitz:0.2", 2.0), ("blinn-phong:20", 12.0)] {
-        let built = named(text).build().unwrap();
-        let found = Target::new(&*built)
-            .by_rmse(DistributionKind::StudentT, Form::Relative, &Stage::unwatched())
-            .unwrap();
-        assert!((found.to.values[1] / gamma - 1.0).abs() < 1e-2, "{text} became {}", found.to);
+        let found = student_t(text);
+        assert!((found.values[1] / gamma - 1.0).abs() < 1e-2, "{text} became {found}");
     }
-    let built = named("beckmann:0.2").build().unwrap();
-    let found = Target::new(&*built)
-        .by_rmse(DistributionKind::StudentT, Form::Relative, &Stage::unwatched())
-        .unwrap();
-    assert!(found.to.values[1] > 1e3 && (found.to.values[0] - 0.2).abs() < 1e-3, "{}", found.to);
+    let found = student_t("beckmann:0.2");
+    assert!(found.values[1] > 1e3 && (found.values[0] - 0.2).abs() < 1e-3, "{found}");
 }
 
 #[test]
 fn the_optimum_beats_the_half_angle_and_the_formula() {
-    let from = named("blinn-phong:50");
+    let (from, to) = (named("blinn-phong:50"), DistributionKind::Beckmann);
     let built = from.build().unwrap();
-    let target = Target::new(&*built);
-    let best =
-        target.by_rmse(DistributionKind::Beckmann, Form::Relative, &Stage::unwatched()).unwrap();
-    let half = target.by_half_angle(DistributionKind::Beckmann, None).unwrap();
-    let formula = by_formula(&from, DistributionKind::Beckmann).unwrap()[0].1.clone().unwrap();
+    let best = nearest("blinn-phong:50", to, Form::Relative);
+    let half = Target::new(&*built).by_half_angle(to, None).unwrap();
+    let formula = by_formula(&from, to).unwrap()[0].1.clone().unwrap();
     assert!(best.rmse[0] <= half.rmse[0] && best.rmse[0] <= formula.rmse[0]);
     assert!((best.to.values[0] / formula.to.values[0] - 1.0).abs() < 0.02);
 }
@@ -79,18 +70,12 @@ fn the_optimum_beats_the_half_angle_and_the_formula() {
 fn refusals() {
     let built = named("blinn-phong:50").build().unwrap();
     let target = Target::new(&*built);
-    assert_eq!(
-        target.by_half_angle(DistributionKind::Gtr, None).unwrap_err(),
-        ConvertError::ShapeNeeded(DistributionKind::Gtr)
-    );
+    let refused = target.by_half_angle(DistributionKind::Gtr, None);
+    assert_eq!(refused, Err(ConvertError::ShapeNeeded(DistributionKind::Gtr)));
     target.by_half_angle(DistributionKind::Gtr, Some(2.0)).unwrap();
-    assert!(matches!(
-        by_formula(&named("gauss:0.1"), DistributionKind::Gtr),
-        Err(ConvertError::NoFormula(..))
-    ));
+    let refused = by_formula(&named("gauss:0.1"), DistributionKind::Gtr);
+    assert!(matches!(refused, Err(ConvertError::NoFormula(..))));
     let flat = named("blinn-phong:0").build().unwrap();
-    assert!(matches!(
-        Target::new(&*flat).by_half_angle(DistributionKind::Gauss, None),
-        Err(ConvertError::NoHalfAngle)
-    ));
+    let refused = Target::new(&*flat).by_half_angle(DistributionKind::Gauss, None);
+    assert_eq!(refused, Err(ConvertError::NoHalfAngle));
 }

@@ -1,15 +1,15 @@
 //! The files of the MERL database: an isotropic reflectance over half and difference angles.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt::Display;
+use std::io;
 use std::path::Path;
-use std::{fmt, io};
 
 use rayon::prelude::*;
 
-use microfacet_baker::input;
-use microfacet_baker::input::MAX_TABLES;
+use microfacet_baker::input::{self, MAX_TABLES};
 
-use super::HalfDifference;
+use super::{HalfDifference, LIMIT_DEGREES};
 
 /// Cells along θ_h, θ_d and φ_d, the last fastest.
 pub(super) const DIMENSIONS: [usize; 3] = [90, 90, 180];
@@ -36,70 +36,58 @@ pub(super) const LARGEST: f64 = 1e9;
 pub(super) const DARKEST: f64 = 1e-5;
 
 /// Why a file is none of the database, or cannot be fitted.
+#[derive(thiserror::Error)]
 pub enum MerlError {
     /// The operating system's error.
-    Io(io::Error),
+    #[error(transparent)]
+    Io(#[from] io::Error),
     /// The dimensions at the head of the file are others.
+    #[error(
+        "is no full-size MERL file: its first {HEADER} bytes give the dimensions {}, and must give \
+         {}", by(.0), by(&DIMENSIONS)
+    )]
     Dimensions([u32; 3]),
     /// The number of bytes does not belong to the dimensions.
+    #[error(
+        "has {0} bytes, and a MERL file of {cells} cells has {BYTES}; get it again, it is damaged",
+        cells = by(&DIMENSIONS)
+    )]
     Length(usize),
     /// A value, in 1/sr, that is no number or above 1e9: its channel, its cell and itself.
+    #[error(
+        "{channel} at theta_h {}, theta_d {}, phi_d {} (cells from 0) is {x:e}/sr, and must be at \
+         most {LARGEST:e}/sr; a negative number marks what was not measured",
+        .1[0], .1[1], .1[2], channel = CHANNELS[*.0], x = .2
+    )]
     Value(usize, [usize; 3], f64),
     /// A channel without any value at the angles of a fit.
+    #[error(
+        "{} has no value that is 0 or more where view and light are within {LIMIT_DEGREES} degrees \
+         of the normal; nothing can be fitted to it", CHANNELS[*.0]
+    )]
     Missing(usize),
     /// Every value at the angles of a fit is 0.
+    #[error(
+        "every value is 0 or missing: a material that reflects nothing has no highlight to fit"
+    )]
     Black,
     /// The largest mean of a channel at the angles of a fit, in 1/sr, is below 1e-5.
+    #[error(
+        "the mean reflectance is {0:.1e}/sr, and must be at least {DARKEST:e}/sr: the values are \
+         scaled otherwise than those of the database"
+    )]
     Dark(f64),
     /// The minimiser's message.
+    #[error("the minimiser failed: {0}")]
     Minimiser(String),
-}
-
-impl fmt::Display for MerlError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [h, d, p] = DIMENSIONS;
-        match self {
-            Self::Io(why) => why.fmt(f),
-            Self::Dimensions([x, y, z]) => write!(
-                f,
-                "is no full-size MERL file: its first {HEADER} bytes give the dimensions \
-                 {x} x {y} x {z}, and must give {h} x {d} x {p}"
-            ),
-            Self::Length(bytes) => write!(
-                f,
-                "has {bytes} bytes, and a MERL file of {h} x {d} x {p} cells has {BYTES}; get it \
-                 again, it is damaged"
-            ),
-            Self::Value(channel, [i, j, k], x) => write!(
-                f,
-                "{} at theta_h {i}, theta_d {j}, phi_d {k} (cells from 0) is {x:e}/sr, and must be \
-                 at most {LARGEST:e}/sr; a negative number marks what was not measured",
-                CHANNELS[*channel]
-            ),
-            Self::Dark(mean) => write!(
-                f,
-                "the mean reflectance is {mean:.1e}/sr, and must be at least {DARKEST:e}/sr: the \
-                 values are scaled otherwise than those of the database"
-            ),
-            Self::Missing(channel) => write!(
-                f,
-                "{} has no value that is 0 or more where view and light are within {} degrees of \
-                 the normal; nothing can be fitted to it",
-                CHANNELS[*channel],
-                super::LIMIT_DEGREES
-            ),
-            Self::Black => f.write_str(
-                "every value is 0 or missing: a material that reflects nothing has no highlight \
-                 to fit",
-            ),
-            Self::Minimiser(why) => write!(f, "the minimiser failed: {why}"),
-        }
-    }
 }
 
 microfacet_core::debug_in_words!(MerlError);
 
-impl std::error::Error for MerlError {}
+/// Dimensions in words.
+fn by<T: Display>([h, d, p]: &[T; 3]) -> String {
+    format!("{h} x {d} x {p}")
+}
 
 /// Where a cell's value stands; `place` as [`MIDDLE`]. The square root of θ_h is evenly spaced.
 pub(super) fn angles([i, j, k]: [usize; 3], place: f64) -> HalfDifference {
@@ -135,7 +123,7 @@ impl Measured {
     /// # Errors
     /// [`MerlError::Io`], and as [`decode`](Self::decode).
     pub fn read(path: &Path) -> Result<Self, MerlError> {
-        Self::decode(&input::read(path, MAX_TABLES).map_err(MerlError::Io)?)
+        Self::decode(&input::read(path, MAX_TABLES)?)
     }
 
     /// Decodes the bytes of a file.

@@ -65,19 +65,15 @@ impl<'a> Problem<'a> {
     /// of the least.
     pub(super) fn solve(&self, specular: &[f64], tolerance: f64) -> (f64, [Linear; 3]) {
         let total: f64 = self.measured.iter().sum();
-        let mut searches = [const { Search::new() }; 3];
+        let mut searches = [(); 3].map(|()| Search::new());
         for _ in 0..Search::STEPS {
-            let points = [0, 1, 2].map(|c| searches[c].next().map(|at| self.linear(c, at)));
+            let points = [0, 1, 2].map(|c| searches[c].next.map(|at| self.linear(c, at)));
             if points == [None; 3] {
                 break;
             }
-            let sums = self.sums(specular, points);
-            for (c, search) in searches.iter_mut().enumerate() {
-                if points[c].is_some() {
-                    let Sums { error, by_lambert, by_f0 } = sums[c];
-                    let slope = DVec2::new(self.bound[c] * by_lambert, by_f0);
-                    search.step(error, slope, tolerance * total / 3.0);
-                }
+            for (c, (error, slope)) in self.sums(specular, points).into_iter().enumerate() {
+                let slope = DVec2::new(self.bound[c] * slope.x, slope.y);
+                searches[c].step(error, slope, tolerance * total / 3.0);
             }
         }
         let error: f64 = searches.iter().map(|search| search.least).sum();
@@ -88,79 +84,56 @@ impl<'a> Problem<'a> {
         Linear { lambert: self.bound[channel] * at.x, f0: at.y }
     }
 
-    /// The error of each channel at its parameters, and its slopes; zero for a channel without
-    /// parameters.
-    fn sums(&self, specular: &[f64], points: [Option<Linear>; 3]) -> [Sums; 3] {
+    /// The error of each channel at its parameters, with its slope along the Lambert term and F0;
+    /// zero for a channel without parameters.
+    fn sums(&self, specular: &[f64], points: [Option<Linear>; 3]) -> [(f64, DVec2); 3] {
         let chunk = |start: usize| {
             let range = start..(start + Samples::CHUNK).min(specular.len());
+            let Samples { grazing, cos_l, .. } = self.samples;
             [0, 1, 2].map(|c| {
-                points[c].map_or(Sums::default(), |linear| {
-                    Sums::of(
-                        linear,
-                        &self.values[c][range.clone()],
-                        &specular[range.clone()],
-                        &self.samples.grazing[range.clone()],
-                        &self.samples.cos_l[range.clone()],
-                    )
+                points[c].map_or_else(Default::default, |linear| {
+                    let columns = [&self.values[c], specular, grazing, cos_l];
+                    sums(linear, columns.map(|column| &column[range.clone()]))
                 })
             })
         };
         let starts: Vec<usize> = (0..specular.len()).step_by(Samples::CHUNK).collect();
-        let parts: Vec<[Sums; 3]> = starts.into_par_iter().map(chunk).collect();
-        parts.into_iter().fold([Sums::default(); 3], |sum, part| {
-            [0, 1, 2].map(|c| Sums {
-                error: sum[c].error + part[c].error,
-                by_lambert: sum[c].by_lambert + part[c].by_lambert,
-                by_f0: sum[c].by_f0 + part[c].by_f0,
-            })
+        let parts: Vec<[(f64, DVec2); 3]> = starts.into_par_iter().map(chunk).collect();
+        parts.into_iter().fold(Default::default(), |sum, part| {
+            [0, 1, 2].map(|c| (sum[c].0 + part[c].0, sum[c].1 + part[c].1))
         })
     }
 }
 
-/// Σ |measured − model| cos θ_l, and its slopes along the Lambert term and F0.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    error: f64,
-    by_lambert: f64,
-    by_f0: f64,
-}
-
-impl Sums {
-    fn of(
-        linear: Linear,
-        values: &[f64],
-        specular: &[f64],
-        grazing: &[f64],
-        cos_l: &[f64],
-    ) -> Self {
-        // Side by side, as wide registers add.
-        const LANES: usize = 4;
-        let Linear { lambert, f0 } = linear;
-        let (mut error, mut by_lambert, mut by_f0) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        let mut one = |lane: usize, [y, specular, grazing, cos_l]: [f64; 4]| {
-            // Schlick's F0 + (1 − F0) w, as (1 − w) F0 + w.
-            let steady = specular * grazing;
-            let rate = specular - steady;
-            let rest = y - lambert - f0 * rate - steady;
-            let weight = if y >= 0.0 { cos_l } else { 0.0 };
-            let signed = weight.copysign(rest);
-            error[lane] += signed * rest;
-            by_lambert[lane] -= signed;
-            by_f0[lane] -= signed * rate;
-        };
-        let [(y, last_y), (s, last_s), (w, last_w), (c, last_c)] =
-            [values, specular, grazing, cos_l].map(|all| all.as_chunks::<LANES>());
-        for (((y, s), w), c) in y.iter().zip(s).zip(w).zip(c) {
-            for lane in 0..LANES {
-                one(lane, [y[lane], s[lane], w[lane], c[lane]]);
-            }
+/// Σ |measured − model| cos θ_l, and its slopes along the Lambert term and F0, from columns of what
+/// was measured, the specular reflectance, Schlick's weight and cos θ_l.
+fn sums(Linear { lambert, f0 }: Linear, columns: [&[f64]; 4]) -> (f64, DVec2) {
+    // Side by side, as wide registers add.
+    const LANES: usize = 4;
+    let (mut error, mut by_lambert, mut by_f0) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    let mut one = |lane: usize, [y, specular, grazing, cos_l]: [f64; 4]| {
+        // Schlick's F0 + (1 − F0) w, as (1 − w) F0 + w.
+        let steady = specular * grazing;
+        let rate = specular - steady;
+        let rest = y - lambert - f0 * rate - steady;
+        let weight = if y >= 0.0 { cos_l } else { 0.0 };
+        let signed = weight.copysign(rest);
+        error[lane] += signed * rest;
+        by_lambert[lane] -= signed;
+        by_f0[lane] -= signed * rate;
+    };
+    let [(y, last_y), (s, last_s), (w, last_w), (c, last_c)] =
+        columns.map(|all| all.as_chunks::<LANES>());
+    for (((y, s), w), c) in y.iter().zip(s).zip(w).zip(c) {
+        for lane in 0..LANES {
+            one(lane, [y[lane], s[lane], w[lane], c[lane]]);
         }
-        for i in 0..last_y.len() {
-            one(0, [last_y[i], last_s[i], last_w[i], last_c[i]]);
-        }
-        let sum = |lanes: [f64; LANES]| lanes.iter().sum();
-        Self { error: sum(error), by_lambert: sum(by_lambert), by_f0: sum(by_f0) }
     }
+    for i in 0..last_y.len() {
+        one(0, [last_y[i], last_s[i], last_w[i], last_c[i]]);
+    }
+    let sum = |lanes: [f64; LANES]| lanes.iter().sum();
+    (sum(error), DVec2::new(sum(by_lambert), sum(by_f0)))
 }
 
 /// The search for the least value of a convex function on the unit square by its centre of gravity
@@ -176,58 +149,48 @@ impl Sums {
 struct Search {
     /// What is left, counter-clockwise.
     polygon: Vec<DVec2>,
-    centre: DVec2,
+    /// Its centre, where the value and the slope are asked for next; `None` once the search has
+    /// ended.
+    next: Option<DVec2>,
     best: DVec2,
     least: f64,
     /// No value in the square is below this.
     bound: f64,
-    ended: bool,
 }
 
 impl Search {
     /// More than ever needed: by then at most 1e-11 of the square is left.
     const STEPS: usize = 60;
 
-    const fn new() -> Self {
+    fn new() -> Self {
         let centre = DVec2::splat(0.5);
         Self {
-            polygon: vec![],
-            centre,
+            polygon: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(DVec2::from).into(),
+            next: Some(centre),
             best: centre,
             least: f64::INFINITY,
             bound: f64::NEG_INFINITY,
-            ended: false,
         }
-    }
-
-    /// Where to ask for the value and the slope next; `None` once the search has ended.
-    fn next(&self) -> Option<DVec2> {
-        (!self.ended).then_some(self.centre)
     }
 
     /// Takes the value and a slope at the centre; ends where no point can be better by more than
     /// `tolerance`.
     fn step(&mut self, value: f64, slope: DVec2, tolerance: f64) {
-        if self.polygon.is_empty() {
-            self.polygon = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(DVec2::from).into();
-        }
+        let Some(centre) = self.next else { return };
         if value < self.least {
-            (self.least, self.best) = (value, self.centre);
+            (self.least, self.best) = (value, centre);
         }
         // The function lies above its tangent.
-        let tangent = |at: DVec2| value + slope.dot(at - self.centre);
+        let tangent = |at: DVec2| value + slope.dot(at - centre);
         let lowest = self.polygon.iter().map(|at| tangent(*at)).fold(f64::INFINITY, f64::min);
         self.bound = self.bound.max(lowest);
         if self.least - self.bound <= tolerance {
-            self.ended = true;
+            self.next = None;
             return;
         }
         // Where the tangent lies above the least value so far there is nothing better.
-        let left = clip(&self.polygon, |at| tangent(at) - self.least);
-        match centroid(&left) {
-            Some(centre) => (self.centre, self.polygon) = (centre, left),
-            None => self.ended = true,
-        }
+        self.polygon = clip(&self.polygon, |at| tangent(at) - self.least);
+        self.next = centroid(&self.polygon);
     }
 }
 
@@ -269,7 +232,7 @@ mod tests {
     fn least(f: impl Fn(DVec2) -> (f64, DVec2), tolerance: f64) -> (Search, usize) {
         let mut search = Search::new();
         let mut steps = 0;
-        while let Some(at) = search.next().filter(|_| steps < Search::STEPS) {
+        while let Some(at) = search.next.filter(|_| steps < Search::STEPS) {
             let (value, slope) = f(at);
             search.step(value, slope, tolerance);
             steps += 1;
@@ -316,13 +279,14 @@ mod tests {
                 let measured = (0..n).filter(|&i| values[i] >= 0.0);
                 measured.map(|i| (values[i] - model(i)).abs() * cos_l[i]).sum()
             };
-            let sums = Sums::of(linear, &values[..n], &specular[..n], &grazing[..n], &cos_l[..n]);
-            assert!((sums.error - error(linear)).abs() < 1e-14);
+            let columns = [&values[..n], &specular[..n], &grazing[..n], &cos_l[..n]];
+            let (sum, slope) = sums(linear, columns);
+            assert!((sum - error(linear)).abs() < 1e-14);
             let h = 1e-7;
             let by_lambert = error(Linear { lambert: linear.lambert + h, ..linear });
             let by_f0 = error(Linear { f0: linear.f0 + h, ..linear });
-            for (slope, moved) in [(sums.by_lambert, by_lambert), (sums.by_f0, by_f0)] {
-                assert!(((moved - sums.error) / h - slope).abs() < 1e-6, "{n}");
+            for (slope, moved) in [(slope.x, by_lambert), (slope.y, by_f0)] {
+                assert!(((moved - sum) / h - slope).abs() < 1e-6, "{n}");
             }
         }
     }

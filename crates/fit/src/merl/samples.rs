@@ -24,10 +24,17 @@ fn angle(place: f64) -> f64 {
     LIMIT_DEGREES.to_radians() * (place / STEPS as f64).powi(2)
 }
 
+/// A direction at an angle from the normal.
+fn direction(theta: f64) -> DVec3 {
+    let (sin, cos) = theta.sin_cos();
+    DVec3::new(sin, 0.0, cos)
+}
+
 /// Samples of all files alike: their places and the geometry of each.
+#[derive(Default)]
 pub(super) struct Samples {
     /// The place of each in a channel.
-    index: Vec<usize>,
+    pub(super) index: Vec<usize>,
     /// Its row of θ_h.
     row: Vec<usize>,
     /// Places of view and light in the table of masking.
@@ -48,14 +55,7 @@ impl Samples {
     /// Takes every cell of θ_h, every so many of θ_d and φ_d, and leaves out those with a view or a
     /// light that is [`LIMIT_DEGREES`] or more from the normal.
     pub(super) fn new(strides: [usize; 2]) -> Self {
-        let mut this = Self {
-            index: vec![],
-            row: vec![],
-            places: vec![],
-            jacobian: vec![],
-            cos_l: vec![],
-            grazing: vec![],
-        };
+        let mut this = Self::default();
         let along = |axis: usize| {
             let stride = strides[axis - 1];
             (stride / 2..DIMENSIONS[axis]).step_by(stride)
@@ -84,28 +84,16 @@ impl Samples {
         self.index.len()
     }
 
-    /// The place of a sample in a channel.
-    #[cfg(test)]
-    pub(super) fn index_of(&self, sample: usize) -> usize {
-        self.index[sample]
-    }
-
     /// What a file has measured there.
     pub(super) fn of(&self, measured: &Measured) -> [Vec<f64>; 3] {
-        measured
-            .channels
-            .each_ref()
-            .map(|channel| self.index.iter().map(|&at| channel[at]).collect())
+        let of = |channel: &Vec<f64>| self.index.iter().map(|&at| channel[at]).collect();
+        measured.channels.each_ref().map(of)
     }
 
     /// D G1(v) G1(l)/(4 v·n l·n) of each sample: the specular reflectance for F = 1, in 1/sr.
     pub(super) fn specular(&self, lobe: &StudentT) -> Vec<f64> {
-        let d: Vec<f64> = (0..DIMENSIONS[0])
-            .map(|i| {
-                let (sin, cos) = angles([i, 0, 0], MIDDLE).theta_h.sin_cos();
-                lobe.d(DVec3::new(sin, 0.0, cos))
-            })
-            .collect();
+        let d = |i: usize| lobe.d(direction(angles([i, 0, 0], MIDDLE).theta_h));
+        let d: Vec<f64> = (0..DIMENSIONS[0]).map(d).collect();
         let masking = MaskingTable::new(lobe);
         let one = |i: usize| {
             let [v, l] = self.places[i].map(|x| masking.g1(x));
@@ -115,17 +103,13 @@ impl Samples {
     }
 }
 
-/// Λ over the angle of a direction: two values are asked for at each sample, and the model would
-/// take most of the time.
+/// Λ over the angle of a direction: each sample reads two values, and the model would take most of
+/// the time.
 struct MaskingTable(Vec<f64>);
 
 impl MaskingTable {
     fn new(lobe: &StudentT) -> Self {
-        let lambda = |i: usize| {
-            let (sin, cos) = angle(i as f64).sin_cos();
-            lobe.lambda(DVec3::new(sin, 0.0, cos))
-        };
-        Self((0..=STEPS).map(lambda).collect())
+        Self((0..=STEPS).map(|i| lobe.lambda(direction(angle(i as f64)))).collect())
     }
 
     /// G1 = 1/(1 + Λ) at a [`place`].
@@ -166,12 +150,7 @@ mod tests {
             let lobe = StudentT::new(sigma, gamma).unwrap();
             let table = MaskingTable::new(&lobe);
             let places = (0..=5 * STEPS).map(|i| i as f64 / 5.0).chain([1e-9, 1e-3, 0.5]);
-            places
-                .map(|x| {
-                    let (sin, cos) = angle(x).sin_cos();
-                    (table.g1(x) - lobe.g1(DVec3::new(sin, 0.0, cos))).abs()
-                })
-                .fold(0.0, f64::max)
+            places.map(|x| (table.g1(x) - lobe.g1(direction(angle(x)))).abs()).fold(0.0, f64::max)
         };
         for sigma in [1e-4, 0.05, 0.3, 1.0, 10.0] {
             for gamma in [1.5025, 1.7, 2.0, 4.0, f64::INFINITY] {

@@ -262,7 +262,7 @@ mod tests {
                 for (c, channel) in measured.channels.iter_mut().enumerate() {
                     // Off by up to a fifth, without order.
                     let off = 0.2 * (i as f64 * (1.0 + c as f64)).sin();
-                    channel[samples.index_of(i)] = (0.1 + 0.5 * specular) * (1.0 + off);
+                    channel[samples.index[i]] = (0.1 + 0.5 * specular) * (1.0 + off);
                 }
             }
         }

@@ -8,54 +8,45 @@ use super::Made;
 use crate::numbers::{as_typed, single};
 use crate::texture::{Along, Channel, Deviation, Place, Texture, shader_lines};
 
-/// The description.
+/// The description, without what does not apply.
 pub(super) fn description(made: &Made) -> Map<String, Value> {
-    let texture = &made.texture;
-    let spec = &texture.spec;
+    let (texture, spec) = (&made.texture, &made.texture.spec);
     let average = !spec.is_directional();
-    let mut all = Map::new();
-    let mut put = |key: &str, value: Value| {
-        all.insert(key.into(), value);
-    };
-    put("generator", concat!("microfacet-bake ", env!("CARGO_PKG_VERSION")).into());
     let quantity =
         if average { "average over all views of the albedo" } else { "directional albedo" };
-    put(
-        "quantity",
-        format!("{quantity} of reflection by the Student-t distribution, F = 1").into(),
-    );
-    put("masking", spec.masking.name().into());
-    if !spec.gamma.is_nan() {
-        put("gamma", as_typed(spec.gamma).into());
-    }
     let axes = spec.axes.iter().map(|axis| {
         let mut one = along(axis.along, spec.gamma);
         one["texels"] = axis.len().into();
         one
     });
-    put("axes_slowest_first", axes.collect());
-    let channels = spec.channels.iter().map(|channel| Value::from(channel.name()));
-    put("channels", channels.collect());
-    if spec.channels.contains(&Channel::Excess) {
-        let mirror = if average { "1/21" } else { "(1 - mu)^5" };
-        let meaning = format!("bias = bias_excess + e {mirror}, scale = e - bias");
-        put("meaning", meaning.into());
-    }
-    put("coordinates", "c in [0, 1] along n texels is read at (1/2 + (n - 1) c) / n".into());
-    put("precision", if texture.half { "f16" } else { "f32" }.into());
-    let texels = if spec.fitted { "fitted to the linear filter" } else { "exact at the texels" };
-    put("values", texels.into());
-    if !average {
-        put("least_cos_theta", spec.least_cos.into());
-    }
-    put("errors", errors(&made.errors));
-    if let Some(before) = &made.before_rounding {
-        put("errors_in_f32", errors(&before.errors));
-        put("largest_rounding_to_f16", rounded(before.rounding));
-    }
-    let lines = shader_lines(spec);
-    put("read", json!({ "glsl": lines.glsl, "hlsl": lines.hlsl, "wgsl": lines.wgsl }));
-    all
+    let mirror = if average { "1/21" } else { "(1 - mu)^5" };
+    let meaning = format!("bias = bias_excess + e {mirror}, scale = e - bias");
+    let before = made.before_rounding.as_ref();
+    let all = [
+        ("generator", json!(concat!("microfacet-bake ", env!("CARGO_PKG_VERSION")))),
+        (
+            "quantity",
+            json!(format!("{quantity} of reflection by the Student-t distribution, F = 1")),
+        ),
+        ("masking", json!(spec.masking.name())),
+        ("gamma", json!((!spec.gamma.is_nan()).then(|| as_typed(spec.gamma)))),
+        ("axes_slowest_first", axes.collect()),
+        ("channels", spec.channels.iter().map(|channel| channel.name()).collect()),
+        ("meaning", json!(spec.channels.contains(&Channel::Excess).then_some(meaning))),
+        ("coordinates", json!("c in [0, 1] along n texels is read at (1/2 + (n - 1) c) / n")),
+        ("precision", json!(if texture.half { "f16" } else { "f32" })),
+        (
+            "values",
+            json!(if spec.fitted { "fitted to the linear filter" } else { "exact at the texels" }),
+        ),
+        ("least_cos_theta", json!((!average).then_some(spec.least_cos))),
+        ("errors", errors(&made.errors)),
+        ("errors_in_f32", json!(before.map(|before| errors(&before.errors)))),
+        ("largest_rounding_to_f16", json!(before.map(|before| rounded(before.rounding)))),
+        ("read", json!(shader_lines(spec))),
+    ];
+    let all = all.into_iter().filter(|(_, value)| !value.is_null());
+    all.map(|(key, value)| (key.into(), value)).collect()
 }
 
 fn errors(all: &[Deviation]) -> Value {
@@ -99,8 +90,11 @@ fn along(along: Along, gamma: f64) -> Value {
 
 /// Three digits are enough of an error.
 fn rounded(x: f64) -> Value {
-    let text = format!("{x:.2e}");
-    text.parse::<f64>().map_or(Value::Null, Value::from)
+    read(&format!("{x:.2e}"))
+}
+
+fn read(number: &str) -> Value {
+    number.parse::<f64>().map_or(Value::Null, Value::from)
 }
 
 fn at(place: &Place) -> Value {
@@ -114,7 +108,7 @@ fn at(place: &Place) -> Value {
 
 /// A place in four digits.
 fn short(x: f64) -> Value {
-    format!("{x:.3e}").parse::<f64>().map_or(Value::Null, Value::from)
+    read(&format!("{x:.3e}"))
 }
 
 /// In one line, for formats that hold a text.

@@ -72,29 +72,22 @@ pub fn files(formats: &[Format], made: &[Made]) -> Result<Vec<ExportFile>, Strin
         let mut description = describe::description(made);
         let all = formats.iter().map(|format| format!("{name}.{}", format.extension()));
         description.insert("files".into(), all.collect());
-        let mut add = |extension: &str, contents: Vec<u8>| {
-            files.push(ExportFile { name: format!("{name}.{extension}"), contents });
-        };
         for format in formats {
-            match format {
-                Format::Exr => {
-                    add("exr", exr(&made.texture, Some(&describe::compact(&description)))?)
-                }
-                Format::Dds => add("dds", dds::encode(&made.texture)?),
-                Format::Ktx2 => {
-                    add(
-                        "ktx2",
-                        ktx2::encode(&made.texture, Some(&describe::compact(&description))),
-                    );
-                }
-                Format::Npy => add("npy", npy::encode(&made.texture)?),
-                Format::C => add("h", header::encode(made).into_bytes()),
+            let compact = || describe::compact(&description);
+            let contents = match format {
+                Format::Exr => exr(&made.texture, Some(&compact()))?,
+                Format::Dds => dds::encode(&made.texture)?,
+                Format::Ktx2 => ktx2::encode(&made.texture, Some(&compact())),
+                Format::Npy => npy::encode(&made.texture)?,
+                Format::C => header::encode(made).into_bytes(),
                 // Below, with the values.
-                Format::Json => {}
-            }
+                Format::Json => continue,
+            };
+            files.push(ExportFile::new(format!("{name}.{}", format.extension()), contents));
         }
         let values = formats.contains(&Format::Json).then_some(&made.texture);
-        add("json", describe::text(description, values).into_bytes());
+        let text = describe::text(description, values);
+        files.push(ExportFile::new(format!("{name}.json"), text));
     }
     Ok(files)
 }
