@@ -15,6 +15,14 @@ use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
 use rayon::prelude::*;
 
+/// What Python passes, and what it is given back.
+pub(crate) type Any<'py> = Bound<'py, PyAny>;
+
+/// A number of an array.
+pub(crate) trait Number: Element + Copy + Default + Into<f64> + Send + Sync {}
+
+impl<T: Element + Copy + Default + Into<f64> + Send + Sync> Number for T {}
+
 /// Items that one call of a function is given, so that it may work on several at once.
 const CHUNK: usize = 1024;
 
@@ -38,7 +46,7 @@ impl Cost {
 }
 
 /// Whether other threads work for this process. In one that was forked after they were started they
-/// do not, and whoever waited for them would wait for ever. The first call is that of the import.
+/// do not, and waiting for them would have no end. The first call is that of the import.
 pub(crate) fn has_threads() -> bool {
     static OWNER: OnceLock<u32> = OnceLock::new();
     *OWNER.get_or_init(process::id) == process::id()
@@ -46,6 +54,7 @@ pub(crate) fn has_threads() -> bool {
 
 /// An argument: an array whose last axis has N numbers, or for N = 1 has any number of axes.
 pub(crate) struct Input<'py, T: Element, const N: usize> {
+    name: &'static str,
     /// Its items in C's order, without the axes along which one is repeated.
     array: PyReadonlyArrayDyn<'py, T>,
     batch: Vec<usize>,
@@ -53,9 +62,9 @@ pub(crate) struct Input<'py, T: Element, const N: usize> {
     strides: Vec<usize>,
 }
 
-impl<'py, T: Element + Copy + Send + Sync, const N: usize> Input<'py, T, N> {
+impl<'py, T: Number, const N: usize> Input<'py, T, N> {
     /// Converts anything that NumPy takes as an array; `name` is that of the argument.
-    pub(crate) fn new(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
+    pub(crate) fn new(name: &'static str, value: &Any<'py>) -> PyResult<Self> {
         let py = value.py();
         let numpy = py.import("numpy")?;
         let given = numpy.call_method1("asarray", (value,))?.cast_into::<PyUntypedArray>()?;
@@ -93,7 +102,12 @@ impl<'py, T: Element + Copy + Send + Sync, const N: usize> Input<'py, T, N> {
                 next *= axis.0;
             }
         }
-        Ok(Self { array: array.readonly(), batch: batch.to_vec(), strides })
+        Ok(Self { name, array: array.readonly(), batch: batch.to_vec(), strides })
+    }
+
+    /// Its name and its shape.
+    fn shape(&self) -> (&'static str, &[usize]) {
+        (self.name, &self.batch)
     }
 
     /// Its shape, without the axis of components.
@@ -188,15 +202,12 @@ pub(crate) fn shown(shape: &[usize]) -> String {
 
 /// An array of M numbers (for M = 1, without an axis of them) for each item of a batch, filled on
 /// all cores without the interpreter's lock. `fill` is given the range of items.
-fn filled<'py, T, const M: usize>(
+fn filled<'py, T: Number, const M: usize>(
     py: Python<'py>,
     batch: &[usize],
     cost: Cost,
     fill: impl Fn(Range<usize>, &mut [[T; M]]) + Sync,
-) -> PyResult<Bound<'py, PyAny>>
-where
-    T: Element + Copy + Send + Sync,
-{
+) -> PyResult<Any<'py>> {
     let mut shape = batch.to_vec();
     if M > 1 {
         shape.push(M);
@@ -229,49 +240,35 @@ where
 }
 
 /// A function of one argument, chunk by chunk.
-pub(crate) fn map<'py, T, U, const A: usize, const M: usize>(
-    py: Python<'py>,
+pub(crate) fn map<'py, T: Number, const A: usize, const M: usize>(
     a: &Input<'py, T, A>,
     cost: Cost,
-    f: impl Fn(&[[T; A]], &mut [[U; M]]) + Sync,
-) -> PyResult<Bound<'py, PyAny>>
-where
-    T: Element + Copy + Send + Sync,
-    U: Element + Copy + Send + Sync,
-{
+    f: impl Fn(&[[T; A]], &mut [[T; M]]) + Sync,
+) -> PyResult<Any<'py>> {
     let values = a.values(&a.batch);
-    filled(py, &a.batch, cost, |range, out| f(&values.chunk(range), out))
+    filled(a.array.py(), &a.batch, cost, |range, out| f(&values.chunk(range), out))
 }
 
 /// A function of two arguments, which broadcast, chunk by chunk.
-pub(crate) fn map2<'py, T, U, const A: usize, const B: usize, const M: usize>(
-    py: Python<'py>,
-    (name_a, a): (&str, &Input<'py, T, A>),
-    (name_b, b): (&str, &Input<'py, T, B>),
+pub(crate) fn map2<'py, T: Number, const A: usize, const B: usize, const M: usize>(
+    a: &Input<'py, T, A>,
+    b: &Input<'py, T, B>,
     cost: Cost,
-    f: impl Fn(&[[T; A]], &[[T; B]], &mut [[U; M]]) + Sync,
-) -> PyResult<Bound<'py, PyAny>>
-where
-    T: Element + Copy + Send + Sync,
-    U: Element + Copy + Send + Sync,
-{
-    let batch = broadcast(&[(name_a, &a.batch), (name_b, &b.batch)])?;
+    f: impl Fn(&[[T; A]], &[[T; B]], &mut [[T; M]]) + Sync,
+) -> PyResult<Any<'py>> {
+    let batch = broadcast(&[a.shape(), b.shape()])?;
+    let py = a.array.py();
     let (a, b) = (a.values(&batch), b.values(&batch));
     filled(py, &batch, cost, |range, out| f(&a.chunk(range.clone()), &b.chunk(range), out))
 }
 
 /// A function of one argument, item by item.
-pub(crate) fn each<'py, T, U, const A: usize, const M: usize>(
-    py: Python<'py>,
+pub(crate) fn each<'py, T: Number, const A: usize, const M: usize>(
     a: &Input<'py, T, A>,
     cost: Cost,
-    f: impl Fn([T; A]) -> [U; M] + Sync,
-) -> PyResult<Bound<'py, PyAny>>
-where
-    T: Element + Copy + Send + Sync,
-    U: Element + Copy + Send + Sync,
-{
-    map(py, a, cost, |a, out| {
+    f: impl Fn([T; A]) -> [T; M] + Sync,
+) -> PyResult<Any<'py>> {
+    map(a, cost, |a, out| {
         for (a, out) in a.iter().zip(out) {
             *out = f(*a);
         }
@@ -279,18 +276,13 @@ where
 }
 
 /// A function of two arguments, which broadcast, item by item.
-pub(crate) fn each2<'py, T, U, const A: usize, const B: usize, const M: usize>(
-    py: Python<'py>,
-    a: (&str, &Input<'py, T, A>),
-    b: (&str, &Input<'py, T, B>),
+pub(crate) fn each2<'py, T: Number, const A: usize, const B: usize, const M: usize>(
+    a: &Input<'py, T, A>,
+    b: &Input<'py, T, B>,
     cost: Cost,
-    f: impl Fn([T; A], [T; B]) -> [U; M] + Sync,
-) -> PyResult<Bound<'py, PyAny>>
-where
-    T: Element + Copy + Send + Sync,
-    U: Element + Copy + Send + Sync,
-{
-    map2(py, a, b, cost, |a, b, out| {
+    f: impl Fn([T; A], [T; B]) -> [T; M] + Sync,
+) -> PyResult<Any<'py>> {
+    map2(a, b, cost, |a, b, out| {
         for ((a, b), out) in a.iter().zip(b).zip(out) {
             *out = f(*a, *b);
         }
@@ -298,19 +290,22 @@ where
 }
 
 /// A function of three arguments, which broadcast, item by item.
-pub(crate) fn each3<'py, T, U, const A: usize, const B: usize, const C: usize, const M: usize>(
-    py: Python<'py>,
-    (name_a, a): (&str, &Input<'py, T, A>),
-    (name_b, b): (&str, &Input<'py, T, B>),
-    (name_c, c): (&str, &Input<'py, T, C>),
+pub(crate) fn each3<
+    'py,
+    T: Number,
+    const A: usize,
+    const B: usize,
+    const C: usize,
+    const M: usize,
+>(
+    a: &Input<'py, T, A>,
+    b: &Input<'py, T, B>,
+    c: &Input<'py, T, C>,
     cost: Cost,
-    f: impl Fn([T; A], [T; B], [T; C]) -> [U; M] + Sync,
-) -> PyResult<Bound<'py, PyAny>>
-where
-    T: Element + Copy + Send + Sync,
-    U: Element + Copy + Send + Sync,
-{
-    let batch = broadcast(&[(name_a, &a.batch), (name_b, &b.batch), (name_c, &c.batch)])?;
+    f: impl Fn([T; A], [T; B], [T; C]) -> [T; M] + Sync,
+) -> PyResult<Any<'py>> {
+    let batch = broadcast(&[a.shape(), b.shape(), c.shape()])?;
+    let py = a.array.py();
     let (a, b, c) = (a.values(&batch), b.values(&batch), c.values(&batch));
     filled(py, &batch, cost, |range, out| {
         let (a, b, c) = (a.chunk(range.clone()), b.chunk(range.clone()), c.chunk(range));

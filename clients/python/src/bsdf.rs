@@ -1,12 +1,13 @@
 //! Complete materials.
 
+use pyo3::basic::CompareOp;
 use pyo3::prelude::*;
 use pyo3::types::{PyEllipsis, PySlice, PyTuple};
 
-use microfacet_sampler::{AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Metal, Plastic};
 use microfacet_sampler::bsdf::Event;
+use microfacet_sampler::{AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Metal, Plastic};
 
-use crate::arrays::{Cost, Input, each2, each3};
+use crate::arrays::{Any, Cost, Input, each2, each3};
 use crate::lobe::PyLobe;
 use crate::words::{self, refused, unbound};
 
@@ -57,31 +58,18 @@ impl PySample {
 impl PyBsdf {
     /// f(v, l), shape (..., 3), without the cosine.
     #[pyo3(signature = (v, l, transport="radiance"))]
-    fn eval<'py>(
-        &self,
-        py: Python<'py>,
-        v: &Bound<'py, PyAny>,
-        l: &Bound<'py, PyAny>,
-        transport: &str,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn eval<'py>(&self, v: &Any<'py>, l: &Any<'py>, transport: &str) -> PyResult<Any<'py>> {
         let mode = words::transport(transport)?;
         let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        each2(py, ("v", &v), ("l", &l), Cost::Lookup, |v: [f32; 3], l: [f32; 3]| {
+        each2(&v, &l, Cost::Lookup, |v: [f32; 3], l: [f32; 3]| {
             self.bsdf.eval(v.into(), l.into(), mode)
         })
     }
 
     /// The density with which sample draws l for v, per steradian.
-    fn pdf<'py>(
-        &self,
-        py: Python<'py>,
-        v: &Bound<'py, PyAny>,
-        l: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn pdf<'py>(&self, v: &Any<'py>, l: &Any<'py>) -> PyResult<Any<'py>> {
         let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        each2(py, ("v", &v), ("l", &l), Cost::Lookup, |v: [f32; 3], l: [f32; 3]| {
-            [self.bsdf.pdf(v.into(), l.into())]
-        })
+        each2(&v, &l, Cost::Lookup, |v: [f32; 3], l: [f32; 3]| [self.bsdf.pdf(v.into(), l.into())])
     }
 
     /// Draws lights for views v from uniform numbers: u, shape (..., 2), for the direction and
@@ -90,9 +78,9 @@ impl PyBsdf {
     fn sample<'py>(
         &self,
         py: Python<'py>,
-        v: &Bound<'py, PyAny>,
-        choice: &Bound<'py, PyAny>,
-        u: &Bound<'py, PyAny>,
+        v: &Any<'py>,
+        choice: &Any<'py>,
+        u: &Any<'py>,
         transport: &str,
     ) -> PyResult<PySample> {
         let mode = words::transport(transport)?;
@@ -107,23 +95,22 @@ impl PyBsdf {
                 .map(|flag| f32::from(u8::from(flag)));
             [x, y, z, r, g, b, sample.pdf, sample.eta, other, delta]
         };
-        let (v, choice, u) = (("v", &v), ("choice", &choice), ("u", &u));
-        let all = each3(py, v, choice, u, Cost::Lookup, draw)?;
+        let all = each3(&v, &choice, &u, Cost::Lookup, draw)?;
         // Columns of their own: a view would keep all ten, and sums along its axis round more.
-        let column = |index: Bound<'py, PyAny>| -> PyResult<Bound<'py, PyAny>> {
+        let column = |index: Any<'py>| -> PyResult<Py<PyAny>> {
             let index = PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), index])?;
-            all.get_item(index)?.call_method0("copy")
+            Ok(all.get_item(index)?.call_method0("copy")?.unbind())
         };
         let vector = |at: isize| column(PySlice::new(py, at, at + 3, 1).into_any());
         let number = |at: i32| column(at.into_pyobject(py)?.into_any());
-        let flag = |at: i32| number(at)?.rich_compare(0, pyo3::basic::CompareOp::Ne);
+        let flag = |at: i32| number(at)?.bind(py).rich_compare(0, CompareOp::Ne).map(Bound::unbind);
         Ok(PySample {
-            l: vector(0)?.unbind(),
-            weight: vector(3)?.unbind(),
-            pdf: number(6)?.unbind(),
-            eta: number(7)?.unbind(),
-            transmitted: flag(8)?.unbind(),
-            delta: flag(9)?.unbind(),
+            l: vector(0)?,
+            weight: vector(3)?,
+            pdf: number(6)?,
+            eta: number(7)?,
+            transmitted: flag(8)?,
+            delta: flag(9)?,
         })
     }
 
@@ -155,11 +142,11 @@ impl PyConductor {
                         masking="height-correlated", compensation="none", stand_in=false))]
     #[expect(clippy::too_many_arguments, reason = "by keyword")]
     fn new(
-        lobe: &PyLobe,
-        f0: Option<&Bound<'_, PyAny>>,
-        f82: Option<&Bound<'_, PyAny>>,
-        eta: Option<&Bound<'_, PyAny>>,
-        k: Option<&Bound<'_, PyAny>>,
+        lobe: &Bound<'_, PyLobe>,
+        f0: Option<&Any>,
+        f82: Option<&Any>,
+        eta: Option<&Any>,
+        k: Option<&Any>,
         metal: Option<&str>,
         masking: &str,
         compensation: &str,
@@ -178,26 +165,25 @@ impl PyConductor {
             (None, None, None, Some(f0), None) => {
                 ConductorFresnel::schlick(words::reflectance("f0", f0)?).map_err(unbound)?
             }
-            (None, None, None, Some(f0), Some(tint)) => ConductorFresnel::f82_tint(
-                words::reflectance("f0", f0)?,
-                words::reflectance("f82", tint)?,
-            )
-            .map_err(unbound)?,
+            (None, None, None, Some(f0), Some(tint)) => {
+                let [f0, tint] = [("f0", f0), ("f82", tint)]
+                    .map(|(name, colour)| words::reflectance(name, colour));
+                ConductorFresnel::f82_tint(f0?, tint?).map_err(unbound)?
+            }
             _ => {
                 return Err(refused(
                     "the reflectance must be one of metal, eta with k, f0, and f0 with f82",
                 ));
             }
         };
-        let conductor = Conductor::new(lobe.lobe.clone(), fresnel)
-            .with_masking(words::masking(masking)?)
-            .compensated(
-                &lobe.tables,
-                words::compensation(compensation)?,
-                words::stand_in(stand_in),
-            )
+        let (masking, compensation) =
+            (words::masking(masking)?, words::compensation(compensation)?);
+        let about = format!("Conductor({})", lobe.repr()?);
+        let PyLobe { lobe, tables } = lobe.get();
+        let conductor = Conductor::new(lobe.clone(), fresnel)
+            .with_masking(masking)
+            .compensated(tables, compensation, words::stand_in(stand_in))
             .map_err(unbound)?;
-        let about = format!("Conductor({})", lobe.about());
         Ok(PyClassInitializer::from(PyBsdf::new(conductor, about)).add_subclass(Self {}))
     }
 }
@@ -215,22 +201,19 @@ impl PyDielectric {
     #[pyo3(signature = (lobe, eta, *, masking="height-correlated", compensation="none",
                         stand_in=false))]
     fn new(
-        lobe: &PyLobe,
+        lobe: &Bound<'_, PyLobe>,
         eta: f64,
         masking: &str,
         compensation: &str,
         stand_in: bool,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let dielectric = Dielectric::new(lobe.lobe.clone(), eta)
+        let about = format!("Dielectric({}, eta={eta})", lobe.repr()?);
+        let PyLobe { lobe, tables } = lobe.get();
+        let dielectric = Dielectric::new(lobe.clone(), eta)
             .map_err(unbound)?
             .with_masking(words::masking(masking)?)
-            .compensated(
-                &lobe.tables,
-                words::compensation(compensation)?,
-                words::stand_in(stand_in),
-            )
+            .compensated(tables, words::compensation(compensation)?, words::stand_in(stand_in))
             .map_err(unbound)?;
-        let about = format!("Dielectric({}, eta={eta})", lobe.about());
         Ok(PyClassInitializer::from(PyBsdf::new(dielectric, about)).add_subclass(Self {}))
     }
 }
@@ -247,24 +230,25 @@ impl PyPlastic {
     #[pyo3(signature = (lobe, eta, base, *, masking="height-correlated", compensation="none",
                         stand_in=false))]
     fn new(
-        lobe: &PyLobe,
+        lobe: &Bound<'_, PyLobe>,
         eta: f64,
-        base: &Bound<'_, PyAny>,
+        base: &Any,
         masking: &str,
         compensation: &str,
         stand_in: bool,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let about = format!("Plastic({}, eta={eta})", lobe.repr()?);
+        let PyLobe { lobe, tables } = lobe.get();
         let plastic = Plastic::new_masked(
-            lobe.lobe.clone(),
+            lobe.clone(),
             eta,
             words::reflectance("base", base)?,
             words::masking(masking)?,
-            &lobe.tables,
+            tables,
             words::compensation(compensation)?,
             words::stand_in(stand_in),
         )
         .map_err(unbound)?;
-        let about = format!("Plastic({}, eta={eta})", lobe.about());
         Ok(PyClassInitializer::from(PyBsdf::new(plastic, about)).add_subclass(Self {}))
     }
 }

@@ -1,17 +1,14 @@
 //! Tables of one shape for lookups elsewhere, and albedos of dielectrics.
 
-use std::sync::Arc;
-
 use glam::Vec3;
-use microfacet_sampler::albedo::DielectricAlbedo;
-use microfacet_sampler::Tables;
 use microfacet_export::Shape;
+use microfacet_sampler::Tables;
+use microfacet_sampler::albedo::DielectricAlbedo;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::Input;
-use crate::lobe::{View, of_views};
+use crate::arrays::{Any, Cost, Input, each};
 use crate::words::{one_of, refused};
 
 /// The tables of one shape gamma for any roughness, as exports for C and shaders have them
@@ -27,7 +24,7 @@ pub(crate) struct PyShape {
 }
 
 impl PyShape {
-    pub(crate) fn bind(py: Python<'_>, set: &Arc<Tables>, gamma: f64) -> PyResult<Self> {
+    pub(crate) fn bind(py: Python<'_>, set: &Tables, gamma: f64) -> PyResult<Self> {
         let shape = py.detach(|| Shape::bind(set, gamma)).map_err(refused)?;
         let (members, tables) = (PyDict::new(py), PyDict::new(py));
         for (name, value) in shape.numbers() {
@@ -58,15 +55,10 @@ pub(crate) struct PyDielectricAlbedo(pub(crate) DielectricAlbedo);
 impl PyDielectricAlbedo {
     /// The shares of light that are reflected and transmitted, shape (..., 2), each in [0, 1], for
     /// a view of this cosine on its side of the surface, "outside" or "inside".
-    fn shares<'py>(
-        &self,
-        py: Python<'py>,
-        cos_theta: &Bound<'py, PyAny>,
-        side: &str,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn shares<'py>(&self, cos_theta: &Any<'py>, side: &str) -> PyResult<Any<'py>> {
         let sides = [("outside", &self.0.outside), ("inside", &self.0.inside)];
         let curve = one_of("side", side, &sides)?;
-        let views = View::Cosines(Input::new("cos_theta", cos_theta)?);
-        of_views(py, views, |v: Vec3| curve.eval(v))
+        let cos = Input::new("cos_theta", cos_theta)?;
+        each(&cos, Cost::Lookup, |[cos]| curve.eval(Vec3::new(0.0, 0.0, cos)))
     }
 }

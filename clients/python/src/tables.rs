@@ -7,19 +7,18 @@ use std::time::Duration;
 
 use microfacet_baker::cache::Cache;
 use microfacet_baker::plan::{AlbedoWish, Options, Plan};
-use microfacet_baker::store;
 use microfacet_baker::scene::Scene;
-use microfacet_baker::store::Format;
+use microfacet_baker::store::{self, Format};
 use microfacet_baker::table_set::{Settings, Target, bake_with};
 use microfacet_baker::table_spec::Quality;
-use microfacet_tables::{Precision, describe};
 use microfacet_sampler::Tables;
+use microfacet_tables::{Precision, describe};
 use pyo3::exceptions::{PyFileNotFoundError, PyRuntimeError, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 
-use crate::arrays::has_threads;
+use crate::arrays::{Any, has_threads};
 use crate::bsdf::PyBsdf;
-use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT, named};
+use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT};
 use crate::shape::{PyDielectricAlbedo, PyShape};
 use crate::words::{self, one_of, refused, unbound, unread, unscened};
 
@@ -71,29 +70,25 @@ impl PyTables {
 
     /// The Student-t lobe of roughness sigma, a number or (sigma_x, sigma_y), each in [1e-8, 1e6],
     /// and shape gamma, which the tables must cover: 2 is GGX, inf is Beckmann.
-    fn student_t(
-        &self,
-        py: Python<'_>,
-        sigma: &Bound<'_, PyAny>,
-        gamma: f64,
-    ) -> PyResult<Py<PyStudentT>> {
-        PyStudentT::make(py, &self.set, sigma, gamma)
+    fn student_t(&self, py: Python<'_>, sigma: &Any, gamma: f64) -> PyResult<Py<PyStudentT>> {
+        Py::new(py, PyStudentT::of(&self.set, sigma, gamma)?)
     }
 
     /// A Student-t lobe tilted and turned by the angles theta = (x, y, z) in radians.
     fn ellipsoid(
         &self,
         py: Python<'_>,
-        sigma: &Bound<'_, PyAny>,
-        theta: &Bound<'_, PyAny>,
+        sigma: &Any,
+        theta: &Any,
         gamma: f64,
     ) -> PyResult<Py<PyEllipsoid>> {
-        PyEllipsoid::make(py, &self.set, sigma, theta, gamma)
+        Py::new(py, PyEllipsoid::of(&self.set, sigma, theta, gamma)?)
     }
 
     /// The lobe of a material by its name in the recipe that the set was baked from.
-    fn material(&self, name: &str) -> PyResult<PyLobe> {
-        named(self, name)
+    fn material(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyLobe>> {
+        let lobe = self.set.material(name).map_err(refused)?;
+        Py::new(py, PyLobe::new(lobe, &self.set, format!("Lobe({name:?})")))
     }
 
     /// The BSDF of a material by name: its lobe, reflectance and form of masking.
@@ -137,7 +132,7 @@ impl PyTables {
     }
 
     /// The description of the set, as `microfacet-bake inspect --json` prints it.
-    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
         let text = describe(self.set.provenance(), self.set.tables()).map_err(refused)?;
         let all = PyModule::import(py, "json")?.call_method1("loads", (text,))?;
         // It is a checksum of a file's bytes, and there may be none.
@@ -175,7 +170,7 @@ impl PyTables {
 #[expect(clippy::too_many_arguments, reason = "by keyword, as options of the command")]
 pub(crate) fn bake(
     py: Python<'_>,
-    recipe: Option<&Bound<'_, PyAny>>,
+    recipe: Option<&Any>,
     out: Option<PathBuf>,
     quality: &str,
     precision: &str,
@@ -183,7 +178,7 @@ pub(crate) fn bake(
     max_bytes: Option<usize>,
     albedo: Option<bool>,
     tabulate_ggx: bool,
-    cache: Option<&Bound<'_, PyAny>>,
+    cache: Option<&Any>,
     max_memory: u64,
 ) -> PyResult<PyTables> {
     if !has_threads() {
@@ -225,7 +220,7 @@ pub(crate) fn bake(
 /// folder, or of the set built in.
 #[pyfunction]
 #[pyo3(signature = (path=None))]
-pub(crate) fn inspect(py: Python<'_>, path: Option<PathBuf>) -> PyResult<Bound<'_, PyAny>> {
+pub(crate) fn inspect(py: Python<'_>, path: Option<PathBuf>) -> PyResult<Any<'_>> {
     PyTables::new(path, None)?.describe(py)
 }
 
@@ -292,7 +287,7 @@ fn general(albedo: Option<bool>) -> Plan {
 }
 
 /// Reads a recipe's text, which has more than one line, or what a path names.
-pub(crate) fn scene_of(recipe: &Bound<'_, PyAny>) -> PyResult<Scene> {
+pub(crate) fn scene_of(recipe: &Any) -> PyResult<Scene> {
     let scene = match recipe.extract::<String>() {
         Ok(text) if text.contains('\n') => Scene::from_recipe_str(&text),
         _ => microfacet_scene::load(&path("recipe", "the text of a recipe", recipe)?),
@@ -301,7 +296,7 @@ pub(crate) fn scene_of(recipe: &Bound<'_, PyAny>) -> PyResult<Scene> {
 }
 
 /// A path, which an argument may be beside something else.
-fn path(name: &str, or: &str, value: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+fn path(name: &str, or: &str, value: &Any) -> PyResult<PathBuf> {
     let of = value.get_type().name()?.to_string();
     let why = |_| PyTypeError::new_err(format!("{name} must be {or} or a path, and is a {of}"));
     value.extract().map_err(why)

@@ -2,14 +2,14 @@
 
 use std::io;
 
-use microfacet_sampler::{BindError, Compensation, Masking, StandIn, Transport};
-use microfacet_sampler::lobe::Roughness;
 use microfacet_baker::scene::{SceneError, SceneErrorKind};
 use microfacet_baker::store::StoreError;
+use microfacet_sampler::lobe::Roughness;
+use microfacet_sampler::{BindError, Compensation, Masking, StandIn, Transport};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Input, shown};
+use crate::arrays::{Any, Input, shown};
 
 /// An error with the text that the command prints.
 pub(crate) fn refused(why: impl ToString) -> PyErr {
@@ -47,8 +47,8 @@ pub(crate) fn unread(why: StoreError) -> PyErr {
 
 /// A number that stands for all N, or N of them; `meaning` says what they are.
 pub(crate) fn numbers<const N: usize>(
-    name: &str,
-    value: &Bound<'_, PyAny>,
+    name: &'static str,
+    value: &Any,
     meaning: &str,
 ) -> PyResult<[f64; N]> {
     let input = Input::<f64, 1>::new(name, value)?;
@@ -63,12 +63,12 @@ pub(crate) fn numbers<const N: usize>(
 }
 
 /// Roughness: a number, or a pair for x and y.
-pub(crate) fn sigma(value: &Bound<'_, PyAny>) -> PyResult<Roughness> {
+pub(crate) fn sigma(value: &Any) -> PyResult<Roughness> {
     Ok(Roughness(numbers("sigma", value, "a pair (sigma_x, sigma_y)")?))
 }
 
 /// Three turns; a number would stand for none of them.
-pub(crate) fn angles(value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
+pub(crate) fn angles(value: &Any) -> PyResult<[f64; 3]> {
     let input = Input::<f64, 3>::new("theta", value)?;
     match input.batch() {
         [] => Ok(input.first::<1>()[0]),
@@ -77,12 +77,12 @@ pub(crate) fn angles(value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
 }
 
 /// A colour: a number for all three channels, or three.
-pub(crate) fn colour(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
+pub(crate) fn colour(name: &'static str, value: &Any) -> PyResult<[f64; 3]> {
     numbers(name, value, "three (r, g, b)")
 }
 
 /// A colour in single precision.
-pub(crate) fn reflectance(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f32; 3]> {
+pub(crate) fn reflectance(name: &'static str, value: &Any) -> PyResult<[f32; 3]> {
     Ok(colour(name, value)?.map(|x| x as f32))
 }
 
@@ -110,11 +110,8 @@ pub(crate) fn compensation(word: &str) -> PyResult<Compensation> {
 }
 
 pub(crate) fn transport(word: &str) -> PyResult<Transport> {
-    one_of(
-        "transport",
-        word,
-        &[("radiance", Transport::Radiance), ("importance", Transport::Importance)],
-    )
+    let words = [("radiance", Transport::Radiance), ("importance", Transport::Importance)];
+    one_of("transport", word, &words)
 }
 
 /// Whether the round lobe may stand in.

@@ -1,0 +1,198 @@
+//! What lobes of both precisions have in common: closed forms, masking and visible normals.
+
+use bytemuck::{cast_slice, cast_slice_mut};
+use microfacet_model::{Ellipsoid, MicrofacetDistribution as _, StudentT};
+use microfacet_sampler::{Lobe, MicrofacetDistribution as _};
+use numpy::Element;
+use pyo3::prelude::*;
+
+use crate::arrays::{Any, Cost, Input, Number, each, each2, map, map2};
+use crate::words::{self, refused};
+
+/// A lobe in one of the precisions.
+pub(crate) enum Kind {
+    /// By tables, in single precision.
+    Tables(Lobe),
+    /// By the model, in double precision.
+    Exact(Model),
+}
+
+/// A member of the family, or one seen through a matrix.
+#[derive(Clone)]
+pub(crate) enum Model {
+    Family(StudentT),
+    Skewed(Box<Ellipsoid>),
+}
+
+/// Calls a function of whichever it is.
+macro_rules! of {
+    ($kind:expr, $lobe:ident => $call:expr) => {
+        match $kind {
+            Kind::Tables($lobe) => $call,
+            Kind::Exact(Model::Family($lobe)) => $call,
+            Kind::Exact(Model::Skewed($lobe)) => $call,
+        }
+    };
+}
+
+/// What lobes have in either precision.
+#[pyclass(name = "_Distribution", module = "microfacet", subclass, frozen)]
+pub(crate) struct PyDistribution {
+    kind: Kind,
+    about: String,
+}
+
+impl PyDistribution {
+    pub(crate) fn new(kind: Kind, about: String) -> PyClassInitializer<Self> {
+        Self { kind, about }.into()
+    }
+}
+
+#[pymethods]
+impl PyDistribution {
+    /// The normal distribution function D(m), per steradian.
+    ///
+    /// D(m) (m.n) integrates to 1 over all m; 0 for an m at or below the horizon.
+    fn d<'py>(&self, m: &Any<'py>) -> PyResult<Any<'py>> {
+        of!(&self.kind, lobe => {
+            each(&Input::new("m", m)?, Cost::Lookup, |m: [_; 3]| [lobe.d(m.into())])
+        })
+    }
+
+    /// Smith's masking G1(v), in [0, 1]; 0 at and below the horizon.
+    fn g1<'py>(&self, v: &Any<'py>) -> PyResult<Any<'py>> {
+        if let Kind::Tables(lobe) = &self.kind {
+            return map(
+                &Input::new("v", v)?,
+                Cost::Lookup,
+                |v: &[[f32; 3]], out: &mut [[f32; 1]]| {
+                    lobe.g1_batch(cast_slice(v), out.as_flattened_mut()).expect("as many of each");
+                },
+            );
+        }
+        of!(&self.kind, lobe => {
+            each(&Input::new("v", v)?, Cost::Lookup, |v: [_; 3]| [lobe.g1(v.into())])
+        })
+    }
+
+    /// Smith's Lambda(v) = 1/G1 - 1; infinite at and below the horizon.
+    fn lambda_<'py>(&self, v: &Any<'py>) -> PyResult<Any<'py>> {
+        of!(&self.kind, lobe => {
+            each(&Input::new("v", v)?, Cost::Lookup, |v: [_; 3]| [lobe.lambda(v.into())])
+        })
+    }
+
+    /// Masking and shadowing G2(v, l), in [0, 1].
+    ///
+    /// masking is "height-correlated", 1/(1 + Lambda(v) + Lambda(l)), or "uncorrelated",
+    /// G1(v) G1(l).
+    #[pyo3(signature = (v, l, masking="height-correlated"))]
+    fn g2<'py>(&self, v: &Any<'py>, l: &Any<'py>, masking: &str) -> PyResult<Any<'py>> {
+        let form = words::masking(masking)?;
+        of!(&self.kind, lobe => {
+            let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
+            let g2 = |v: [_; 3], l: [_; 3]| [lobe.g2(v.into(), l.into(), form)];
+            each2(&v, &l, Cost::Lookup, g2)
+        })
+    }
+
+    /// Draws visible normals m, shape (..., 3), from views v and uniform numbers u, shape (..., 2).
+    ///
+    /// u in [0, 1] is clamped to it. m is of unit length and above the horizon, and v.m >= 0 for
+    /// a view from above. By tables GGX is drawn from them, too, where the set has them for
+    /// gamma = 2; the model inverts distributions to rounding, in some ten microseconds each.
+    fn sample_visible_normal<'py>(&self, v: &Any<'py>, u: &Any<'py>) -> PyResult<Any<'py>> {
+        if let Kind::Tables(lobe) = &self.kind {
+            let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
+            let sample = |v: &[[f32; 3]], u: &[[f32; 2]], m: &mut [[f32; 3]]| {
+                let done = lobe.sample_batch(cast_slice(v), u, cast_slice_mut(m));
+                done.expect("as many of each");
+            };
+            return map2(&v, &u, Cost::Lookup, sample);
+        }
+        of!(&self.kind, lobe => {
+            let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
+            let sample =
+                |v: [_; 3], u: [_; 2]| lobe.sample_visible_normal(v.into(), u).to_array();
+            each2(&v, &u, Cost::Quadrature, sample)
+        })
+    }
+
+    /// The density of visible normals, G1(v) max(0, v.m) D(m)/(v.n), per steradian of m.
+    fn visible_normal_pdf<'py>(&self, v: &Any<'py>, m: &Any<'py>) -> PyResult<Any<'py>> {
+        of!(&self.kind, lobe => {
+            let (v, m) = (Input::new("v", v)?, Input::new("m", m)?);
+            let pdf = |v: [_; 3], m: [_; 3]| [lobe.visible_normal_pdf(v.into(), m.into())];
+            each2(&v, &m, Cost::Lookup, pdf)
+        })
+    }
+
+    /// G2(v, l)/G1(v), in [0, 1]: the weight f cos/pdf of a light l reflected off a drawn visible
+    /// normal, without Fresnel.
+    #[pyo3(signature = (v, l, masking="height-correlated"))]
+    fn reflection_weight<'py>(
+        &self,
+        v: &Any<'py>,
+        l: &Any<'py>,
+        masking: &str,
+    ) -> PyResult<Any<'py>> {
+        let form = words::masking(masking)?;
+        of!(&self.kind, lobe => {
+            let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
+            let weight = |v: [_; 3], l: [_; 3]| [lobe.reflection_weight(v.into(), l.into(), form)];
+            each2(&v, &l, Cost::Lookup, weight)
+        })
+    }
+
+    fn __repr__(&self) -> &str {
+        &self.about
+    }
+}
+
+/// Views: directions, or their cosines.
+pub(crate) enum View<'py, T: Element> {
+    Directions(Input<'py, T, 3>),
+    Cosines(Input<'py, T, 1>),
+}
+
+impl<'py, T: Number> View<'py, T> {
+    /// Takes what the methods `albedo` are given for a view.
+    pub(crate) fn new(v: Option<&Any<'py>>, cos_theta: Option<&Any<'py>>) -> PyResult<Self> {
+        match (v, cos_theta) {
+            (Some(v), None) if v.extract::<f64>().is_ok() => Ok(Self::Cosines(Input::new("v", v)?)),
+            (Some(v), None) => {
+                let v = Input::<T, 3>::new("v", v)?;
+                // Three cosines look like one direction, though rarely of length 1.
+                let square = |[v]: [[T; 3]; 1]| v.map(|x| x.into().powi(2)).iter().sum::<f64>();
+                if v.batch().is_empty() && (square(v.first()) - 1.0).abs() > 1e-3 {
+                    return Err(refused(
+                        "v is no unit vector; an array of cosines goes into cos_theta",
+                    ));
+                }
+                Ok(Self::Directions(v))
+            }
+            (None, Some(cos)) => Ok(Self::Cosines(Input::new("cos_theta", cos)?)),
+            _ => Err(refused("give either v, directions of shape (..., 3), or cos_theta")),
+        }
+    }
+
+    /// A function of each view; of a cosine alone, of a view without y.
+    pub(crate) fn each<const M: usize>(
+        &self,
+        cost: Cost,
+        f: impl Fn([T; 3]) -> [T; M] + Sync,
+    ) -> PyResult<Any<'py>> {
+        match self {
+            Self::Directions(v) => each(v, cost, f),
+            Self::Cosines(cos) => each(cos, cost, |[cos]| f([T::default(), T::default(), cos])),
+        }
+    }
+}
+
+/// The error for cosines where they do not suffice.
+pub(crate) fn azimuth_matters() -> PyErr {
+    refused(
+        "the lobe is not round, so that its albedo depends on the azimuth of the view: give v as \
+         directions of shape (..., 3)",
+    )
+}
